@@ -1,0 +1,135 @@
+//! The command line.
+
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
+
+use abbe::scene::RenderText;
+use abbe::{Error, Result};
+use clap::Parser;
+
+const EXAMPLES: &str = "\
+Examples:
+  render --exr scenes/prism.toml                       write ./prism.exr, show the plan and the progress
+  render scenes/prism.toml --exr out/frame.exr         name the file
+  render scenes/prism.toml --png look.png --exposure 1 also write a picture for looking, one stop brighter
+  render --plan scenes/prism.toml                      say what would be modelled and why; render nothing
+  render --check scenes/prism.toml                     find mistakes in the scene; render nothing
+  render --samples 16 --exr scenes/prism.toml          a quick look
+
+Exit codes: 0 done, 1 the render or a file failed, 2 the arguments or the scene are wrong.";
+
+/// Render a TOML scene to a linear OpenEXR image.
+#[derive(Parser)]
+#[command(name = "render", version, after_help = EXAMPLES)]
+struct Arguments {
+    /// The scene, a TOML file
+    scene: Option<PathBuf>,
+
+    /// The image to write; without a path, the scene's name in the current folder
+    #[arg(long, value_name = "FILE.exr", num_args = 0..=1)]
+    exr: Option<Option<PathBuf>>,
+
+    /// Also write an 8-bit sRGB picture for looking
+    #[arg(long, value_name = "FILE.png")]
+    png: Option<PathBuf>,
+
+    /// Brighten the picture by 2^STOPS (the EXR never changes)
+    #[arg(long, value_name = "STOPS", default_value_t = 0.0, allow_negative_numbers = true)]
+    exposure: f64,
+
+    /// Say what would be modelled, why, and at what cost; render nothing
+    #[arg(long, conflicts_with_all = ["check", "png"])]
+    plan: bool,
+
+    /// Check the scene; render nothing
+    #[arg(long, conflicts_with = "png")]
+    check: bool,
+
+    /// Camera samples per pixel, instead of the scene's
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    samples: Option<u32>,
+
+    /// Another set of random numbers, instead of the scene's
+    #[arg(long, value_name = "N")]
+    seed: Option<u64>,
+
+    /// Processor threads; all if absent. The image is the same for any number
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    threads: Option<u16>,
+}
+
+/// What the command line asks for.
+pub struct Job {
+    pub scene: PathBuf,
+    pub output: Output,
+    pub exposure: f64,
+    samples: Option<u32>,
+    seed: Option<u64>,
+    pool: rayon::ThreadPool,
+}
+
+/// What is wanted of the scene.
+pub enum Output {
+    Image { exr: PathBuf, png: Option<PathBuf> },
+    Plan,
+    Check,
+}
+
+/// Reads the command line; prints help, version and clap's own errors by itself and exits.
+pub fn parse() -> Result<Job> {
+    let arguments = Arguments::parse();
+    let (scene, exr) = scene_and_image(arguments.scene, arguments.exr)?;
+    if !arguments.exposure.is_finite() {
+        return refuse("an exposure is a finite number of stops", None);
+    }
+    let output = if arguments.plan {
+        Output::Plan
+    } else if arguments.check {
+        Output::Check
+    } else {
+        Output::Image { exr, png: arguments.png }
+    };
+    let threads = arguments.threads.map_or(0, usize::from);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    let pool =
+        pool.map_err(|error| Error::Arguments { message: format!("cannot start threads: {error}"), help: None })?;
+    let Arguments { exposure, samples, seed, .. } = arguments;
+    Ok(Job { scene, output, exposure, samples, seed, pool })
+}
+
+impl Job {
+    /// Lets flags replace what the scene says.
+    pub fn apply(&self, render: &mut RenderText) {
+        render.samples = self.samples.or(render.samples);
+        render.seed = self.seed.unwrap_or(render.seed);
+    }
+
+    /// Runs work on the threads that were asked for.
+    pub fn on_threads<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
+        self.pool.install(work)
+    }
+}
+
+/// `--exr` takes an image to write, or nothing; right before the scene it belongs to the scene.
+fn scene_and_image(scene: Option<PathBuf>, exr: Option<Option<PathBuf>>) -> Result<(PathBuf, PathBuf)> {
+    let is_exr = |path: &Path| path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("exr"));
+    match (scene, exr.flatten()) {
+        (Some(scene), Some(image)) if is_exr(&image) => Ok((scene, image)),
+        (Some(_), Some(image)) => {
+            let message = format!("--exr writes a file that ends in .exr, not {}", image.display());
+            refuse(&message, Some("name the scene once, and the image as in --exr out/frame.exr"))
+        }
+        (Some(scene), None) => Ok((scene.clone(), beside(&scene))),
+        (None, Some(scene)) if !is_exr(&scene) => Ok((scene.clone(), beside(&scene))),
+        (None, _) => refuse("no scene is given", Some("for instance: render --exr scenes/prism.toml")),
+    }
+}
+
+/// The scene's name with the ending .exr, in the current folder.
+fn beside(scene: &Path) -> PathBuf {
+    Path::new(scene.file_stem().unwrap_or(OsStr::new("image"))).with_extension("exr")
+}
+
+fn refuse<T>(message: &str, help: Option<&str>) -> Result<T> {
+    Err(Error::Arguments { message: message.to_owned(), help: help.map(str::to_owned) })
+}

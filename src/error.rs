@@ -1,0 +1,100 @@
+//! The one error type: what went wrong, where, and what to do.
+
+use std::fmt;
+use std::ops::Range;
+use std::path::PathBuf;
+
+/// A failure, as it is told to the person who ran the command.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// The scene does not mean anything that could be rendered.
+    #[error("{0}")]
+    Scene(Diagnostic),
+    /// The command line asks for something impossible.
+    #[error("{message}")]
+    Arguments {
+        /// What is wrong.
+        message: String,
+        /// What to do instead.
+        help: Option<String>,
+    },
+    /// A file could not be read or written.
+    #[error("cannot {doing} {}: {source}", .path.display())]
+    Io {
+        /// "read", "write" and the like.
+        doing: &'static str,
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// An image could not be encoded.
+    #[error("cannot write {}: {message}", .path.display())]
+    Encode {
+        /// The file.
+        path: PathBuf,
+        /// What the encoder said.
+        message: String,
+    },
+}
+
+/// `Result` with Abbe's error.
+pub type Result<T> = std::result::Result<T, Error>;
+
+impl Error {
+    /// The process exit code: 2 for a bad scene or bad arguments, 1 for everything else.
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Self::Scene(_) | Self::Arguments { .. } => 2,
+            Self::Io { .. } | Self::Encode { .. } => 1,
+        }
+    }
+}
+
+/// A mistake in a scene file, with the place where it stands.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Diagnostic {
+    /// The scene file as it was named.
+    pub file: PathBuf,
+    /// Its text.
+    pub text: String,
+    /// The bytes of the text that are wrong.
+    pub span: Range<usize>,
+    /// What is wrong.
+    pub message: String,
+    /// What to do.
+    pub help: Option<String>,
+}
+
+impl Diagnostic {
+    /// Line and column of the mistake, counted from 1, the column in characters.
+    pub fn line_and_column(&self) -> (usize, usize) {
+        let before = &self.text[..self.span.start.min(self.text.len())];
+        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+        (before.matches('\n').count() + 1, before[line_start..].chars().count() + 1)
+    }
+}
+
+impl fmt::Display for Diagnostic {
+    fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
+        let (line, column) = self.line_and_column();
+        write!(formatter, "{}:{line}:{column}: {}", self.file.display(), self.message)?;
+        match &self.help {
+            Some(help) => write!(formatter, " ({help})"),
+            None => Ok(()),
+        }
+    }
+}
+
+/// The candidate that a misspelt word most likely meant, if one is near enough.
+///
+/// Near: at most a third of the letters changed, counting a swap of neighbors as one change.
+pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let lower = word.to_lowercase();
+    candidates
+        .into_iter()
+        .map(|candidate| (strsim::damerau_levenshtein(&lower, &candidate.to_lowercase()), candidate))
+        .filter(|(changes, candidate)| *changes <= candidate.chars().count().max(3) / 3)
+        .min_by_key(|(changes, _)| *changes)
+        .map(|(_, candidate)| candidate)
+}

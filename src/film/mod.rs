@@ -1,0 +1,58 @@
+//! Floor 2: what is remembered of the light that arrives, and how it is written down.
+
+mod exr;
+mod file;
+mod filter;
+mod picture;
+mod sum;
+
+pub use self::exr::{Fact, Provenance, View, write_exr};
+pub use file::check_writable;
+pub use filter::Filter;
+pub use picture::write_png;
+pub use sum::PixelSum;
+
+use crate::spectrum::ColorSpace;
+
+/// Depth of a pixel whose rays meet nothing, the value compositing packages expect.
+pub const DEPTH_OF_NOTHING: f32 = 1e10;
+
+/// What one camera sample saw.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// Film red, green and blue, linear.
+    pub rgb: [f64; 3],
+    /// Distance along the viewing direction of what the camera ray met, if it met anything.
+    pub depth: Option<f64>,
+}
+
+/// A finished pixel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pixel {
+    /// Film red, green and blue, linear, the mean of the samples.
+    pub rgb: [f32; 3],
+    /// Share of the camera rays that met something.
+    pub alpha: f32,
+    /// The nearest depth among the samples, [`DEPTH_OF_NOTHING`] where none met anything.
+    pub depth: f32,
+}
+
+/// A finished image, rows from the top.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Film {
+    /// Pixels per row.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// What red, green and blue mean.
+    pub color_space: ColorSpace,
+    /// `width * height` pixels, row by row.
+    pub pixels: Vec<Pixel>,
+}
+
+impl Film {
+    /// The pixel in column x, row y.
+    pub fn at(&self, x: u32, y: u32) -> &Pixel {
+        &self.pixels[(y as usize) * self.width as usize + x as usize]
+    }
+}

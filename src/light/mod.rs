@@ -1,0 +1,103 @@
+//! Floor 2: how light is aimed at.
+//!
+//! Everything that shines is a [`Light`], whether rays meet it or next-event estimation aims at it; both use the same
+//! radiance and the same density, so that their weights add up to 1.
+
+mod area;
+mod environment;
+mod point;
+
+pub use area::Area;
+pub use environment::Environment;
+pub use point::Point;
+
+use crate::math::{DVec3, Ray};
+use crate::shape::Sighting;
+use crate::spectrum::{Quantity, Table};
+
+/// Number of a light in its scene.
+pub type LightId = usize;
+
+/// Something that shines.
+#[derive(Clone, Debug)]
+pub enum Light<S> {
+    /// A surface that shines.
+    Area(Area<S>),
+    /// A point that shines evenly.
+    Point(Point<S>),
+    /// What rays meet that miss everything.
+    Environment(Environment<S>),
+}
+
+/// A light as seen along one ray.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct View {
+    /// Distance to the light; anything nearer hides it.
+    pub distance: f64,
+    /// The object the light is, which cannot hide itself.
+    pub object: Option<u32>,
+    /// Density per steradian with which `aim` draws the ray's direction; none if it can draw no other.
+    pub pdf: Option<f64>,
+    /// Factor on the light's table that makes radiance (or, without a pdf, irradiance at right angles) of it.
+    pub factor: f64,
+}
+
+impl<S> Light<S> {
+    /// The same light with its spectrum converted.
+    pub fn map<T>(&self, convert: &mut impl FnMut(Quantity, &S) -> T) -> Light<T> {
+        match self {
+            Self::Area(area) => Light::Area(area.map(convert)),
+            Self::Point(point) => Light::Point(point.map(convert)),
+            Self::Environment(environment) => Light::Environment(environment.map(convert)),
+        }
+    }
+
+    /// The radiance, or intensity of a point.
+    pub fn emission(&self) -> &S {
+        match self {
+            Self::Area(area) => &area.radiance,
+            Self::Point(point) => &point.intensity,
+            Self::Environment(environment) => &environment.radiance,
+        }
+    }
+
+    /// Whether next-event estimation aims at it; otherwise it shines by being met.
+    pub fn is_aimed_at(&self) -> bool {
+        match self {
+            Self::Area(area) => area.aimed_at,
+            Self::Point(_) | Self::Environment(_) => true,
+        }
+    }
+
+    /// A direction from a surface toward the light; `normal` is the surface's unit normal on the lit side.
+    pub fn aim(&self, from: DVec3, normal: DVec3, u: [f64; 2]) -> Option<Sighting> {
+        match self {
+            Self::Area(area) => area.shape.aim(from, u),
+            Self::Point(point) => point.aim(from),
+            Self::Environment(environment) => Some(environment.aim(normal, u)),
+        }
+    }
+
+    /// The light along a ray that leaves a surface of the given normal, if it shines that way.
+    ///
+    /// `part` is what `aim` drew; without one, any part will do.
+    pub fn view(&self, ray: &Ray, normal: DVec3, part: Option<u32>) -> Option<View> {
+        match self {
+            Self::Area(area) => area.view(ray, part),
+            Self::Point(point) => Some(point.view(ray)),
+            Self::Environment(environment) => Some(environment.view(ray, normal)),
+        }
+    }
+}
+
+impl Light<Table> {
+    /// A rough measure of the light it sheds, by which one light is chosen among many.
+    pub fn power(&self) -> f64 {
+        let brightest = self.emission().range().1;
+        match self {
+            Self::Area(area) => brightest * std::f64::consts::PI * area.shape.area(),
+            Self::Point(_) => brightest * 4.0 * std::f64::consts::PI,
+            Self::Environment(_) => f64::INFINITY,
+        }
+    }
+}

@@ -1,0 +1,83 @@
+//! The `render` command: read, compile, plan, render, write.
+
+mod cli;
+mod messages;
+mod progress;
+
+use std::path::Path;
+use std::process::ExitCode;
+
+use abbe::Result;
+use abbe::film::{Fact, Provenance, View, check_writable, write_exr, write_png};
+use abbe::plan::{Plan, plan};
+use abbe::scene::{Scene, Source, compile};
+use abbe::spectrum::Curve;
+use abbe::trace::{World, render};
+
+use cli::{Job, Output};
+
+fn main() -> ExitCode {
+    let job = cli::parse();
+    match job.and_then(|job| run(&job)) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            messages::print_error(&error);
+            ExitCode::from(error.exit_code())
+        }
+    }
+}
+
+fn run(job: &Job) -> Result<()> {
+    let source = Source::read(&job.scene)?;
+    let mut description = source.parse()?;
+    job.apply(&mut description.render);
+    let scene = compile(&description, &source)?;
+    scene.warnings.iter().for_each(|warning| messages::warn(warning));
+    match &job.output {
+        Output::Check => {
+            messages::say(&format!("{} is a valid scene: {} objects", job.scene.display(), scene.objects.len()));
+            Ok(())
+        }
+        Output::Plan => {
+            plan(&scene).because.iter().for_each(|line| println!("{line}"));
+            Ok(())
+        }
+        Output::Image { exr, png } => image(job, &scene, exr, png.as_deref()),
+    }
+}
+
+fn image(job: &Job, scene: &Scene<Curve>, exr: &Path, png: Option<&Path>) -> Result<()> {
+    [Some(exr), png].into_iter().flatten().try_for_each(check_writable)?;
+    let plan = job.on_threads(|| plan(scene));
+    plan.because.iter().for_each(|line| messages::say(line));
+    let world = World::new(scene, plan.method.clone());
+    let progress = progress::Progress::new(scene.film.width, scene.film.height);
+    let (film, report) = job.on_threads(|| render(&world, &|pixels| progress.advance(pixels)));
+    progress.finish();
+    write_exr(&film, &view(scene), &provenance(scene, &plan, report.non_finite), exr)?;
+    if let Some(png) = png {
+        write_png(&film, job.exposure, png)?;
+    }
+    messages::print_report(&report, exr, png);
+    Ok(())
+}
+
+fn view(scene: &Scene<Curve>) -> View {
+    View { world_to_camera: scene.camera.world_to_camera(), screen_window_width: scene.camera.screen_window_width() }
+}
+
+fn provenance(scene: &Scene<Curve>, plan: &Plan, non_finite: u64) -> Provenance {
+    let text = |text: &str| Fact::Text(text.to_owned());
+    Provenance {
+        facts: vec![
+            ("version", text(env!("CARGO_PKG_VERSION"))),
+            ("sceneHash", text(&scene.hash)),
+            ("model", text(plan.method.basis.name())),
+            ("transport", text(plan.method.transport.name())),
+            ("filter", text(scene.film.filter.name())),
+            ("samples", Fact::Count(plan.method.samples.into())),
+            ("seed", text(&plan.method.seed.to_string())),
+            ("nonFinite", Fact::Count(non_finite)),
+        ],
+    }
+}

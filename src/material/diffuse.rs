@@ -1,0 +1,44 @@
+use std::f64::consts::{FRAC_1_PI, PI};
+
+use serde::Deserialize;
+
+use super::{Arrival, Branch};
+use crate::math::{DVec3, Frame, cosine_hemisphere};
+use crate::spectrum::{Lanes, Quantity, Table};
+
+/// A matte surface: the same radiance in every direction, on both sides (Lambert 1760).
+///
+/// ```toml
+/// diffuse = { reflectance = { rgb = [0.7, 0.7, 0.7] } }
+/// ```
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Diffuse<S> {
+    /// Share of the arriving light that leaves again.
+    pub reflectance: S,
+}
+
+impl<S> Diffuse<S> {
+    pub(super) fn map<T>(&self, convert: &mut impl FnMut(Quantity, &S) -> T) -> Diffuse<T> {
+        Diffuse { reflectance: convert(Quantity::Reflectance, &self.reflectance) }
+    }
+}
+
+impl Diffuse<Table> {
+    pub(super) fn scatter<const N: usize>(&self, arrival: &Arrival<N>, u: [f64; 2]) -> Branch<N> {
+        let local = cosine_hemisphere(u);
+        Branch {
+            wi: Frame::about(arrival.normal).to_world(local).normalize(),
+            share: arrival.read(&self.reflectance),
+            pdf: Some(local.z * FRAC_1_PI),
+            crosses: false,
+            eta_scale: 1.0,
+            polarization: 0.0,
+        }
+    }
+
+    pub(super) fn evaluate<const N: usize>(&self, arrival: &Arrival<N>, wi: DVec3) -> Option<(Lanes<N>, f64)> {
+        let pdf = wi.dot(arrival.normal) / PI;
+        (pdf > 0.0).then(|| (arrival.read(&self.reflectance) * pdf as f32, pdf))
+    }
+}

@@ -1,0 +1,25 @@
+use serde::Deserialize;
+
+use crate::shape::Sides;
+use crate::spectrum::Quantity;
+
+/// A surface that shines the same in all directions and reflects nothing. Finite ones light the scene as area lights.
+///
+/// ```toml
+/// emissive = { radiance = 10, sides = "both" }     # or "front"; "both" if absent
+/// ```
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Emissive<S> {
+    /// The radiance it shows.
+    pub radiance: S,
+    /// The sides that show it.
+    #[serde(default)]
+    pub sides: Sides,
+}
+
+impl<S> Emissive<S> {
+    pub(super) fn map<T>(&self, convert: &mut impl FnMut(Quantity, &S) -> T) -> Emissive<T> {
+        Emissive { radiance: convert(Quantity::Emission, &self.radiance), sides: self.sides }
+    }
+}

@@ -1,0 +1,79 @@
+//! Exact Fresnel equations for unpolarized light: the mean of s and p.
+
+use crate::math::DVec3;
+
+/// A smooth boundary between two clear media, met at an angle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Interface {
+    /// Share of the light that is reflected.
+    pub reflectance: f64,
+    /// Share that crosses; `reflectance + transmittance` is 1 to a few roundings.
+    pub transmittance: f64,
+    /// Cosine of the refracted ray's angle, 0 under total reflection.
+    pub cos_beyond: f64,
+    /// Degree of polarization (s - p) / (s + p) of the reflected light.
+    pub polarization_reflected: f64,
+    /// The same of the refracted light.
+    pub polarization_refracted: f64,
+    eta: f64,
+}
+
+impl Interface {
+    /// The boundary from index `n1` to a different index `n2`, met at an angle with cosine `c1` in 0..1.
+    ///
+    /// Fresnel 1823, Born & Wolf 1999, *Principles of Optics*, section 1.5.2. The transmittance has its own formula,
+    /// 2 n1 n2 c1 c2 (1 / (n1 c1 + n2 c2)^2 + 1 / (n2 c1 + n1 c2)^2), which keeps its digits at grazing angles; the
+    /// squared cosine beyond is (n2^2 - n1^2) / n2^2 + (n1 c1 / n2)^2, which keeps them for nearly equal indices.
+    pub fn new(n1: f64, n2: f64, c1: f64) -> Self {
+        let c1 = c1.clamp(0.0, 1.0);
+        let eta = n1 / n2;
+        let c2_squared = (n2 - n1) * (n2 + n1) / (n2 * n2) + (eta * c1) * (eta * c1);
+        if c2_squared <= 0.0 {
+            return Self {
+                reflectance: 1.0,
+                transmittance: 0.0,
+                cos_beyond: 0.0,
+                polarization_reflected: 0.0,
+                polarization_refracted: 0.0,
+                eta,
+            };
+        }
+        let c2 = c2_squared.sqrt().min(1.0);
+        let (s, p) = (n1 * c1 + n2 * c2, n2 * c1 + n1 * c2);
+        let (r_s, r_p) = ((n1 * c1 - n2 * c2) / s, (n2 * c1 - n1 * c2) / p);
+        let (reflected_s, reflected_p) = (r_s * r_s, r_p * r_p);
+        let (refracted_s, refracted_p) = (1.0 / (s * s), 1.0 / (p * p));
+        let degree = |s: f64, p: f64| if s + p > 0.0 { (s - p) / (s + p) } else { 0.0 };
+        Self {
+            reflectance: 0.5 * (reflected_s + reflected_p),
+            transmittance: 2.0 * n1 * n2 * c1 * c2 * (refracted_s + refracted_p),
+            cos_beyond: c2,
+            polarization_reflected: degree(reflected_s, reflected_p),
+            polarization_refracted: degree(refracted_s, refracted_p),
+            eta,
+        }
+    }
+
+    /// Direction of the refracted ray for a unit vector `wo` back to where the ray came from (Snell's law).
+    pub fn refract(&self, wo: DVec3, normal: DVec3) -> DVec3 {
+        let c1 = wo.dot(normal);
+        (normal * (self.eta * c1 - self.cos_beyond) - wo * self.eta).normalize()
+    }
+}
+
+/// Reflectances (s, p) of a metal n - i k under a medium of index `n1`, met at an angle with cosine `c`.
+///
+/// Born & Wolf 1999, section 14.4, in the real form of Lagarde 2013, *Memo on Fresnel equations*.
+pub fn conductor_reflectance(n1: f64, n: f64, k: f64, c: f64) -> [f64; 2] {
+    let c = c.clamp(0.0, 1.0);
+    let (eta, kappa) = (n / n1, k / n1);
+    let (c2, s2) = (c * c, 1.0 - c * c);
+    let t0 = eta * eta - kappa * kappa - s2;
+    let modulus = (t0 * t0 + 4.0 * eta * eta * kappa * kappa).sqrt();
+    let a = (0.5 * (modulus + t0)).max(0.0).sqrt();
+    let (t1, t2) = (modulus + c2, 2.0 * a * c);
+    let r_s = (t1 - t2) / (t1 + t2);
+    let (t3, t4) = (c2 * modulus + s2 * s2, t2 * s2);
+    let r_p = if t3 + t4 == 0.0 { 1.0 } else { r_s * (t3 - t4) / (t3 + t4) };
+    [r_s, r_p]
+}

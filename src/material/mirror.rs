@@ -1,0 +1,43 @@
+use serde::Deserialize;
+
+use super::{Arrival, Branch};
+use crate::math::DVec3;
+use crate::spectrum::{Quantity, Table};
+
+/// An ideal mirror on both sides.
+///
+/// ```toml
+/// mirror = { reflectance = 0.95 }     # 1 if absent
+/// ```
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[serde(bound(deserialize = "S: Deserialize<'de> + From<f64>"))]
+pub struct Mirror<S> {
+    /// Share of the arriving light that leaves again, the same at every angle.
+    #[serde(default = "super::dielectric::flat::<S, 1>")]
+    pub reflectance: S,
+}
+
+impl<S> Mirror<S> {
+    pub(super) fn map<T>(&self, convert: &mut impl FnMut(Quantity, &S) -> T) -> Mirror<T> {
+        Mirror { reflectance: convert(Quantity::Reflectance, &self.reflectance) }
+    }
+}
+
+impl Mirror<Table> {
+    pub(super) fn scatter<const N: usize>(&self, arrival: &Arrival<N>) -> Branch<N> {
+        Branch {
+            wi: reflect(arrival.wo, arrival.normal),
+            share: arrival.read(&self.reflectance),
+            pdf: None,
+            crosses: false,
+            eta_scale: 1.0,
+            polarization: 0.0,
+        }
+    }
+}
+
+/// The mirror image of the unit vector `wo` about the unit `normal`, normalized so that bounces do not drift.
+pub fn reflect(wo: DVec3, normal: DVec3) -> DVec3 {
+    (normal * (2.0 * wo.dot(normal)) - wo).normalize()
+}

@@ -1,0 +1,162 @@
+//! Floor 2: how light leaves a surface.
+//!
+//! `Material<S>` is written once and read twice: with `S = Curve` it is the scene file's vocabulary, with `S = Table` what
+//! the tracer reads; [`Material::map`] is the bridge. A material answers an [`Arrival`] with [`Branch`]es.
+
+mod conductor;
+mod dielectric;
+mod diffuse;
+mod emissive;
+mod fresnel;
+mod mirror;
+
+pub use conductor::Conductor;
+pub use dielectric::Dielectric;
+pub use diffuse::Diffuse;
+pub use emissive::Emissive;
+pub use fresnel::{Interface, conductor_reflectance};
+pub use mirror::{Mirror, reflect};
+
+use serde::Deserialize;
+
+use crate::math::DVec3;
+use crate::spectrum::{Draw, Lanes, Quantity, Table};
+
+/// What a surface does with light.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[serde(bound(deserialize = "S: Deserialize<'de> + From<f64>, Conductor<S>: Deserialize<'de>"))]
+pub enum Material<S> {
+    /// Scatters evenly in all directions.
+    Diffuse(Diffuse<S>),
+    /// Reflects like an ideal mirror.
+    Mirror(Mirror<S>),
+    /// Reflects like a smooth metal.
+    Conductor(Conductor<S>),
+    /// Reflects and refracts like glass.
+    Dielectric(Dielectric<S>),
+    /// Shines and absorbs.
+    Emissive(Emissive<S>),
+}
+
+/// What a material may know of the light that arrives, followed backward from the viewer.
+#[derive(Clone, Copy, Debug)]
+pub struct Arrival<'a, const N: usize> {
+    /// Unit vector to the viewer.
+    pub wo: DVec3,
+    /// Geometric unit normal on the viewer's side.
+    pub normal: DVec3,
+    /// Which bin each lane reads.
+    pub draw: &'a Draw<N>,
+    /// The lanes on the ray, each 1, the others 0.
+    pub present: Lanes<N>,
+    /// Refractive index on the viewer's side, per lane.
+    pub incident: [f64; N],
+    /// Refractive index beyond the surface, per lane; the same as `incident` where no medium begins or ends.
+    pub beyond: [f64; N],
+}
+
+impl<const N: usize> Arrival<'_, N> {
+    /// A table of the material, read for this ray.
+    pub fn read(&self, table: &Table) -> Lanes<N> {
+        self.draw.read(table)
+    }
+}
+
+/// One way light came to the surface, and the lanes that came by it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Branch<const N: usize> {
+    /// Unit vector toward where the light came from.
+    pub wi: DVec3,
+    /// Factor on each lane's throughput; 0 for lanes that did not come this way.
+    pub share: Lanes<N>,
+    /// Density per steradian with which `wi` was drawn, none for the one direction a smooth surface allows.
+    pub pdf: Option<f64>,
+    /// Whether the light came from beyond the surface.
+    pub crosses: bool,
+    /// The part of `share` that only converts radiance between media, (n_incident / n_beyond)^2.
+    pub eta_scale: f64,
+    /// Degree of polarization that this way would give to unpolarized light, (s - p) / (s + p); 0 where none is modelled.
+    pub polarization: f32,
+}
+
+impl<S> Material<S> {
+    /// The same material with every spectrum converted; `convert` is told what the spectrum describes.
+    pub fn map<T>(&self, convert: &mut impl FnMut(Quantity, &S) -> T) -> Material<T> {
+        match self {
+            Self::Diffuse(diffuse) => Material::Diffuse(diffuse.map(convert)),
+            Self::Mirror(mirror) => Material::Mirror(mirror.map(convert)),
+            Self::Conductor(conductor) => Material::Conductor(conductor.map(convert)),
+            Self::Dielectric(dielectric) => Material::Dielectric(dielectric.map(convert)),
+            Self::Emissive(emissive) => Material::Emissive(emissive.map(convert)),
+        }
+    }
+
+    /// Calls `visit` with every spectrum, what it describes and its key in the scene file.
+    pub fn each<E>(&self, mut visit: impl FnMut(Quantity, &'static str, &S) -> Result<(), E>) -> Result<(), E> {
+        use Quantity::*;
+        match self {
+            Self::Diffuse(diffuse) => visit(Reflectance, "reflectance", &diffuse.reflectance),
+            Self::Mirror(mirror) => visit(Reflectance, "reflectance", &mirror.reflectance),
+            Self::Conductor(conductor) => {
+                visit(MetalIndex, "n", &conductor.n)?;
+                visit(MetalExtinction, "k", &conductor.k)
+            }
+            Self::Dielectric(dielectric) => {
+                visit(Index, "index", &dielectric.index)?;
+                visit(Reflectance, "reflectance", &dielectric.reflectance)?;
+                visit(Transmittance, "transmittance", &dielectric.transmittance)?;
+                visit(Emission, "emission", &dielectric.emission)?;
+                visit(Absorption, "absorption", &dielectric.absorption)
+            }
+            Self::Emissive(emissive) => visit(Emission, "radiance", &emissive.radiance),
+        }
+    }
+
+    /// The material's kind, as the scene file names it.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::Diffuse(_) => "diffuse",
+            Self::Mirror(_) => "mirror",
+            Self::Conductor(_) => "conductor",
+            Self::Dielectric(_) => "dielectric",
+            Self::Emissive(_) => "emissive",
+        }
+    }
+
+    /// The medium behind the surface's front, where there is one.
+    pub fn medium(&self) -> Option<&Dielectric<S>> {
+        match self {
+            Self::Dielectric(dielectric) => Some(dielectric),
+            _ => None,
+        }
+    }
+
+    /// Whether light leaves in every direction, so that lights can be aimed at.
+    pub fn scatters_widely(&self) -> bool {
+        matches!(self, Self::Diffuse(_))
+    }
+}
+
+impl Material<Table> {
+    /// The ways on, backward: adds them to `branches`. `u` are two random numbers.
+    pub fn scatter<const N: usize>(&self, arrival: &Arrival<N>, u: [f64; 2], branches: &mut Vec<Branch<N>>) {
+        match self {
+            Self::Diffuse(diffuse) => branches.push(diffuse.scatter(arrival, u)),
+            Self::Mirror(mirror) => branches.push(mirror.scatter(arrival)),
+            Self::Conductor(conductor) => branches.push(conductor.scatter(arrival)),
+            Self::Dielectric(dielectric) => dielectric.scatter(arrival, branches),
+            Self::Emissive(_) => {}
+        }
+    }
+
+    /// BSDF times the cosine for light from the unit vector `wi`, and the density with which `scatter` draws `wi`.
+    ///
+    /// None where only a delta distribution could send light that way.
+    pub fn evaluate<const N: usize>(&self, arrival: &Arrival<N>, wi: DVec3) -> Option<(Lanes<N>, f64)> {
+        match self {
+            Self::Diffuse(diffuse) => diffuse.evaluate(arrival, wi),
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,56 @@
+use super::DVec3;
+
+/// A right-handed orthonormal frame about a unit normal; local z is the normal.
+#[derive(Clone, Copy, Debug)]
+pub struct Frame {
+    tangent: DVec3,
+    bitangent: DVec3,
+    normal: DVec3,
+}
+
+impl Frame {
+    /// The frame about the unit vector `normal`, free of branches near the poles.
+    ///
+    /// Duff et al. 2017, *Building an Orthonormal Basis, Revisited*, listing 3.
+    pub fn about(normal: DVec3) -> Self {
+        let sign = 1f64.copysign(normal.z);
+        let a = -1.0 / (sign + normal.z);
+        let b = normal.x * normal.y * a;
+        Self {
+            tangent: DVec3::new(1.0 + sign * normal.x * normal.x * a, sign * b, -sign * normal.x),
+            bitangent: DVec3::new(b, sign + normal.y * normal.y * a, -normal.y),
+            normal,
+        }
+    }
+
+    /// A vector given in the frame's coordinates, expressed in the world's.
+    pub fn to_world(&self, local: DVec3) -> DVec3 {
+        self.tangent * local.x + self.bitangent * local.y + self.normal * local.z
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn frames_are_orthonormal_at_the_poles_and_signed_zeros() {
+        let normals = [
+            DVec3::Z,
+            -DVec3::Z,
+            DVec3::new(0.0, 0.0, -1.0),
+            DVec3::new(-0.0, -0.0, -1.0),
+            DVec3::X,
+            -DVec3::Y,
+            DVec3::new(1e-9, -1e-9, -1.0).normalize(),
+        ];
+        for normal in normals {
+            let frame = Frame::about(normal);
+            let (t, b, n) = (frame.tangent, frame.bitangent, frame.normal);
+            for error in [t.dot(b), t.dot(n), b.dot(n), t.length() - 1.0, b.length() - 1.0] {
+                assert!(error.abs() < 1e-15, "{normal}: {error}");
+            }
+            assert!(t.cross(b).dot(n) > 0.0);
+        }
+    }
+}

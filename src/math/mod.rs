@@ -1,0 +1,20 @@
+//! Floor 0: points, directions and random numbers; knows glam only.
+
+mod bounds;
+mod frame;
+mod offset;
+mod ray;
+mod sampler;
+mod transform;
+mod warp;
+
+pub use bounds::Bounds;
+pub use frame::Frame;
+pub use offset::{UNIT_ROUNDOFF, gamma, offset_origin};
+pub use ray::Ray;
+pub use sampler::{BranchKey, Sampler};
+pub use transform::Transform;
+pub use warp::{ball_surface, cone, cosine_hemisphere, disk, one_minus_cos_of_cone, triangle_coordinates};
+
+/// Points and directions are 64-bit everywhere: see the rows S1 to X7 of `tests/stability_shapes.rs`.
+pub use glam::{DMat3, DVec2, DVec3};

@@ -1,0 +1,90 @@
+use super::{DMat3, DVec3};
+
+/// An affine map of space, x -> linear * x + translation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Transform {
+    linear: DMat3,
+    translation: DVec3,
+}
+
+impl Transform {
+    /// The map that changes nothing.
+    pub const IDENTITY: Self = Self { linear: DMat3::IDENTITY, translation: DVec3::ZERO };
+
+    /// Multiplies each coordinate by its factor.
+    pub fn scale(factors: DVec3) -> Self {
+        Self { linear: DMat3::from_diagonal(factors), ..Self::IDENTITY }
+    }
+
+    /// Turns counterclockwise, seen from the tip of `axis`, by an angle in degrees.
+    pub fn rotate(axis: DVec3, degrees: f64) -> Self {
+        // Rodrigues' rotation formula, with the exact values at quarter turns that sin and cos only approach.
+        let (sin, cos) = match degrees.rem_euclid(360.0) {
+            0.0 => (0.0, 1.0),
+            90.0 => (1.0, 0.0),
+            180.0 => (0.0, -1.0),
+            270.0 => (-1.0, 0.0),
+            other => libm::sincos(other.to_radians()),
+        };
+        let a = axis.normalize();
+        let cross =
+            DMat3::from_cols(DVec3::new(0.0, a.z, -a.y), DVec3::new(-a.z, 0.0, a.x), DVec3::new(a.y, -a.x, 0.0));
+        let outer = DMat3::from_cols(a * a.x, a * a.y, a * a.z);
+        Self { linear: DMat3::IDENTITY * cos + cross * sin + outer * (1.0 - cos), ..Self::IDENTITY }
+    }
+
+    /// Moves every point by a vector.
+    pub fn translate(by: DVec3) -> Self {
+        Self { translation: by, ..Self::IDENTITY }
+    }
+
+    /// This map followed by another.
+    pub fn then(&self, next: &Self) -> Self {
+        Self { linear: next.linear * self.linear, translation: next.linear * self.translation + next.translation }
+    }
+
+    /// Where a point goes.
+    pub fn point(&self, p: DVec3) -> DVec3 {
+        self.linear * p + self.translation
+    }
+
+    /// Where a difference of points goes.
+    pub fn vector(&self, v: DVec3) -> DVec3 {
+        self.linear * v
+    }
+
+    /// The unit normal of a transformed surface whose unit normal was `normal`; the front stays the front.
+    ///
+    /// Computed from the cofactors, which neither overflow nor vanish before the map itself does.
+    pub fn normal(&self, normal: DVec3) -> DVec3 {
+        let [a, b, c] = [self.linear.x_axis, self.linear.y_axis, self.linear.z_axis].map(|v| v / self.size());
+        let cofactors = DMat3::from_cols(b.cross(c), c.cross(a), a.cross(b));
+        (cofactors * normal).normalize() * 1f64.copysign(a.cross(b).dot(c))
+    }
+
+    /// Whether the map turns left hands into right hands.
+    pub fn mirrors(&self) -> bool {
+        self.linear.determinant() < 0.0
+    }
+
+    /// Whether every plane stays a plane: the map is finite and flattens nothing.
+    pub fn is_invertible(&self) -> bool {
+        let scaled = self.linear * (1.0 / self.size());
+        self.linear.is_finite() && self.translation.is_finite() && scaled.determinant().abs() > f64::MIN_POSITIVE
+    }
+
+    /// The factor by which all lengths grow, where it is the same in all directions to a few roundings.
+    pub fn uniform_scale(&self) -> Option<f64> {
+        let [a, b, c] = [self.linear.x_axis, self.linear.y_axis, self.linear.z_axis];
+        let tolerance = super::gamma(64);
+        let lengths = [a.length(), b.length(), c.length()];
+        let equal = lengths.iter().all(|l| (l / lengths[0] - 1.0).abs() <= tolerance);
+        let square = [a.dot(b), b.dot(c), c.dot(a)].iter().all(|x| x.abs() <= tolerance * lengths[0] * lengths[0]);
+        (equal && square).then_some(lengths[0])
+    }
+
+    fn size(&self) -> f64 {
+        let [a, b, c] = [self.linear.x_axis, self.linear.y_axis, self.linear.z_axis];
+        a.abs().max(b.abs()).max(c.abs()).max_element().max(f64::MIN_POSITIVE)
+    }
+}

@@ -1,0 +1,63 @@
+//! From the unit square to a shape, each with its density.
+
+use std::f64::consts::{FRAC_PI_4, PI, TAU};
+
+use super::{DVec2, DVec3};
+
+/// A point of the unit disk, uniform by area (density 1 / pi), by the concentric map that keeps strata compact.
+///
+/// Shirley & Chiu 1997, *A Low Distortion Map Between Disk and Square*.
+pub fn disk(u: [f64; 2]) -> DVec2 {
+    let (a, b) = (2.0 * u[0] - 1.0, 2.0 * u[1] - 1.0);
+    if a == 0.0 && b == 0.0 {
+        return DVec2::ZERO;
+    }
+    let (radius, angle) =
+        if a.abs() > b.abs() { (a, FRAC_PI_4 * (b / a)) } else { (b, 2.0 * FRAC_PI_4 - FRAC_PI_4 * (a / b)) };
+    let (sin, cos) = libm::sincos(angle);
+    DVec2::new(radius * cos, radius * sin)
+}
+
+/// A direction about local +z with density cos(theta) / pi per steradian.
+pub fn cosine_hemisphere(u: [f64; 2]) -> DVec3 {
+    let p = disk(u);
+    DVec3::new(p.x, p.y, (1.0 - p.length_squared()).max(0.0).sqrt())
+}
+
+/// A direction of the full sphere, uniform (density 1 / (4 pi) per steradian).
+pub fn ball_surface(u: [f64; 2]) -> DVec3 {
+    let z = 1.0 - 2.0 * u[0];
+    let radius = (1.0 - z * z).max(0.0).sqrt();
+    let (sin, cos) = libm::sincos(TAU * u[1]);
+    DVec3::new(radius * cos, radius * sin, z)
+}
+
+/// 1 - cos of a cone's half angle from the sine squared, without cancellation for narrow cones.
+pub fn one_minus_cos_of_cone(sin_squared: f64) -> f64 {
+    sin_squared / (1.0 + (1.0 - sin_squared).max(0.0).sqrt())
+}
+
+/// A direction within a cone about local +z and its constant density per steradian, 1 / (2 pi (1 - cos)).
+///
+/// The sine comes from x (2 - x) with x = 1 - cos, so that cones as narrow as a star keep all their digits.
+pub fn cone(one_minus_cos: f64, u: [f64; 2]) -> (DVec3, f64) {
+    let x = u[0] * one_minus_cos;
+    let radius = (x * (2.0 - x)).max(0.0).sqrt();
+    let (sin, cos) = libm::sincos(TAU * u[1]);
+    (DVec3::new(radius * cos, radius * sin, 1.0 - x), 1.0 / (2.0 * PI * one_minus_cos))
+}
+
+/// Affine coordinates (u, v) of a point of a triangle, uniform by area.
+///
+/// Heitz 2019, *A Low-Distortion Map Between Triangle and Square*.
+pub fn triangle_coordinates(u: [f64; 2]) -> [f64; 2] {
+    let [mut a, mut b] = u;
+    if b > a {
+        a *= 0.5;
+        b -= a;
+    } else {
+        b *= 0.5;
+        a -= b;
+    }
+    [a, b]
+}

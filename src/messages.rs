@@ -1,0 +1,71 @@
+//! What the command says to the person who runs it, on stderr.
+
+use std::io::IsTerminal;
+use std::path::Path;
+
+use abbe::trace::Report;
+use abbe::{Diagnostic, Error};
+use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
+
+/// One plain line.
+pub fn say(line: &str) {
+    eprintln!("{line}");
+}
+
+/// Something to know that stops nothing.
+pub fn warn(message: &str) {
+    eprintln!("warning: {message}");
+}
+
+/// What went wrong, where, and what to do.
+pub fn print_error(error: &Error) {
+    match error {
+        Error::Scene(diagnostic) => eprintln!("{}", underlined(diagnostic)),
+        Error::Arguments { message, help } => {
+            eprintln!("error: {message}");
+            help.iter().for_each(|help| eprintln!("help: {help}"));
+        }
+        other => eprintln!("error: {other}"),
+    }
+}
+
+/// The mistake with its line, the word underlined.
+fn underlined(diagnostic: &Diagnostic) -> String {
+    let path = diagnostic.file.display().to_string();
+    // An empty span, as at the end of a file, is shown as one column.
+    let end = diagnostic.span.end.max(diagnostic.span.start).min(diagnostic.text.len());
+    let start = diagnostic.span.start.min(end);
+    let snippet = Snippet::source(&diagnostic.text).path(path).annotation(AnnotationKind::Primary.span(start..end));
+    let mut group = Level::ERROR.primary_title(diagnostic.message.as_str()).element(snippet);
+    if let Some(help) = &diagnostic.help {
+        group = group.element(Level::HELP.message(help.as_str()));
+    }
+    let renderer = if std::io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none() {
+        Renderer::styled()
+    } else {
+        Renderer::plain()
+    };
+    renderer.render(&[group])
+}
+
+/// What the render noticed and where the image is.
+pub fn print_report(report: &Report, exr: &Path, png: Option<&Path>) {
+    if let Some([x, y, sample]) = report.first_non_finite {
+        warn(&format!(
+            "{} samples were not finite and are left out; the first is sample {sample} of pixel ({x}, {y})",
+            report.non_finite
+        ));
+    }
+    if report.unmatched > 0 {
+        warn(&format!(
+            "{} times light left a clear body it had not entered and went straight on: is a dielectric mesh open?",
+            report.unmatched
+        ));
+    }
+    if report.dropped + report.stopped > 0.0 {
+        say(&format!("branches that were not followed: {:.1e} of the weight", report.dropped + report.stopped));
+    }
+    for path in [Some(exr), png].into_iter().flatten() {
+        say(&format!("wrote {}", path.display()));
+    }
+}

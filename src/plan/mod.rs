@@ -1,0 +1,185 @@
+//! Floor 5: looks at a scene, decides how little of the world must be modelled to render it, and says why.
+
+use crate::film::Filter;
+use crate::light::Light;
+use crate::material::Material;
+use crate::scene::Scene;
+use crate::spectrum::{Basis, Curve, CurveKind, Quantity};
+use crate::trace::{Method, Transport, World, probe};
+
+/// How to render a scene and, in words, why.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plan {
+    /// What the tracer is to do.
+    pub method: Method,
+    /// One decision a line, each with its numbers.
+    pub because: Vec<String>,
+}
+
+/// Samples where the scene does not say.
+const SAMPLES: u32 = 256;
+/// Weight below which deterministic transport follows no branch.
+const CUTOFF: f64 = 1e-9;
+/// Weight above which a path splits into all its branches (row W5 of the stability catalog).
+const SPLIT: f64 = 0.05;
+/// Weight below which paths are ended at random.
+const ROULETTE: f64 = 0.05;
+
+/// Decides how to render a scene.
+pub fn plan(scene: &Scene<Curve>) -> Plan {
+    let basis = Basis::rgb();
+    let mut because = vec![model(scene, &basis)];
+    because.extend(indices(scene, &basis));
+    let (transport, reason) = transport(scene);
+    because.push(reason);
+    let samples = match (transport, scene.render.samples) {
+        (_, Some(samples)) => samples,
+        (Transport::Deterministic { .. }, None) => 1,
+        (Transport::Random { .. }, None) => SAMPLES,
+    };
+    because.extend(lights(scene));
+    let diffuse_bounces = scene.render.diffuse_bounces.unwrap_or(u32::MAX);
+    let method = Method { basis, transport, samples, seed: scene.render.seed, diffuse_bounces };
+    because.extend(cost(scene, &method));
+    Plan { method, because }
+}
+
+/// Which lanes, and what makes them enough.
+fn model(scene: &Scene<Curve>, basis: &Basis) -> String {
+    let [r, g, b] = [0, 1, 2].map(|i| basis.wavelengths_nm()[i]);
+    let read = scene.materials.iter().any(|m| {
+        let measured = |curve: &Curve| !matches!(curve.kind, CurveKind::Number(_) | CurveKind::Rgb(_));
+        m.material.each(|_, _, curve| if measured(curve) { Err(()) } else { Ok(()) }).is_err()
+    });
+    let colors = "model rgb: 3 lanes (padded to 4), for every color is a number or rgb";
+    match read {
+        true => format!("{colors}; indices are read at {r}, {g} and {b} nm"),
+        false => colors.into(),
+    }
+}
+
+/// What each clear material does to the lanes.
+fn indices(scene: &Scene<Curve>, basis: &Basis) -> Vec<String> {
+    let mut lines = Vec::new();
+    for named in &scene.materials {
+        match &named.material {
+            Material::Dielectric(dielectric) => {
+                let table = basis.tabulate(Quantity::Index, &dielectric.index);
+                let (low, high) = table.range();
+                let source = dielectric.index.source().map_or(String::new(), |source| format!(" ({source})"));
+                let name = &named.name;
+                lines.push(match table.is_flat() {
+                    true => format!("material {name}: index {low:.4} in every band{source}, so lanes stay together"),
+                    false => {
+                        format!("material {name}: index {low:.4} to {high:.4} over the bands{source}, so lanes part")
+                    }
+                });
+            }
+            Material::Conductor(conductor) if matches!(conductor.n.kind, CurveKind::Name(_)) => {
+                let source = conductor.n.source().map_or(String::new(), |source| format!(" ({source})"));
+                lines.push(format!(
+                    "material {}: n and k{source} are read at one wavelength a band, which can miss a metal's color by 10 %",
+                    named.name
+                ));
+            }
+            _ => {}
+        }
+    }
+    lines
+}
+
+/// Whether anything is left to chance.
+fn transport(scene: &Scene<Curve>) -> (Transport, String) {
+    let random = Transport::Random { split: SPLIT, roulette: ROULETTE };
+    let scattering =
+        scene.objects.iter().find(|object| scene.materials[object.material as usize].material.scatters_widely());
+    let why = match scattering {
+        None if scene.film.filter == Filter::Center => None,
+        None => Some("each sample falls anywhere in its pixel (filter \"box\")".to_owned()),
+        Some(object) => match (scene.render.diffuse_bounces, extended_light(scene)) {
+            (Some(0), None) if scene.film.filter == Filter::Center => None,
+            (Some(0), None) => Some("each sample falls anywhere in its pixel (filter \"box\")".to_owned()),
+            (Some(0), Some(light)) => Some(format!("{} is lit by {light}, which has many points", object.name)),
+            _ => Some(format!("light leaves {} in every direction", object.name)),
+        },
+    };
+    match why {
+        None => (
+            Transport::Deterministic { cutoff: CUTOFF },
+            format!(
+                "transport deterministic: no random light path, 1 sample per pixel is exact; branches end below weight {CUTOFF:e}"
+            ),
+        ),
+        Some(why) => (
+            random,
+            format!(
+                "transport random: {why}; paths split above weight {SPLIT}, then follow one branch, roulette below {ROULETTE}"
+            ),
+        ),
+    }
+}
+
+/// A light with an extent that next-event estimation would aim at.
+fn extended_light(scene: &Scene<Curve>) -> Option<String> {
+    scene.lights.iter().find(|light| light.is_aimed_at() && !matches!(light, Light::Point(_))).map(
+        |light| match light {
+            Light::Area(area) => scene.objects[area.object as usize].name.clone(),
+            _ => "the environment".into(),
+        },
+    )
+}
+
+/// What lights cannot do.
+fn lights(scene: &Scene<Curve>) -> Vec<String> {
+    let mut lines = Vec::new();
+    let wide = scene.materials.iter().any(|m| m.material.scatters_widely());
+    let points = scene.lights.iter().filter(|light| matches!(light, Light::Point(_))).count();
+    let bends = scene
+        .materials
+        .iter()
+        .find(|m| matches!(m.material, Material::Dielectric(_) | Material::Mirror(_) | Material::Conductor(_)));
+    if let (true, true, Some(bends)) = (wide, points > 0, bends) {
+        lines.push(format!(
+            "left out: light of point lights that reaches a diffuse surface by way of smooth ones ({})",
+            bends.name
+        ));
+    }
+    if scene.render.diffuse_bounces == Some(0) && wide {
+        lines.push("diffuse_bounces 0: diffuse surfaces are lit straight from the lights alone".into());
+    }
+    lines
+}
+
+/// What a few hundred samples say of the whole.
+fn cost(scene: &Scene<Curve>, method: &Method) -> Vec<String> {
+    let probe = probe(&World::new(scene, method.clone()));
+    let samples = f64::from(scene.film.width) * f64::from(scene.film.height) * f64::from(method.samples);
+    let mut lines = Vec::new();
+    if probe.parted > 0.0 {
+        lines.push(format!("lanes part in {:.0} % of the camera samples", 100.0 * probe.parted));
+    }
+    if probe.polarization > 1e-4 {
+        let bound = 100.0 * probe.polarization;
+        lines
+            .push(format!("polarization is left out: it would move at most {bound:.2} % of the light (P_A P_B bound)"));
+    }
+    let seconds = probe.time.as_secs_f64() * samples;
+    lines.push(format!(
+        "cost: {} sample{} per pixel, {:.1} rays each, about {} of processor time",
+        method.samples,
+        if method.samples == 1 { "" } else { "s" },
+        probe.rays,
+        in_words(seconds)
+    ));
+    lines
+}
+
+/// A time as people say it.
+fn in_words(seconds: f64) -> String {
+    match seconds {
+        s if s < 1.0 => "a second or less".into(),
+        s if s < 120.0 => format!("{s:.0} seconds"),
+        s if s < 7200.0 => format!("{:.0} minutes", s / 60.0),
+        s => format!("{:.1} hours", s / 3600.0),
+    }
+}

@@ -1,0 +1,177 @@
+//! From a shape as written to a shape that rays can meet.
+
+use sha2::Digest;
+
+use super::compile::Compiler;
+use super::description::{MeshText, ObjectText, ShapeText, StepText};
+use super::source::At;
+use crate::error::Result;
+use crate::math::{DVec3, Transform};
+use crate::shape::{Cube, Disc, Mesh, Plane, Quad, Shape, Sphere, Triangle, Vertices, read_mesh};
+
+/// Checks and builds the shape of one object.
+pub(super) struct ShapeCompiler<'a, 'b> {
+    pub(super) compiler: &'a mut Compiler<'b>,
+    pub(super) name: &'a str,
+    /// Whether a medium fills the shape.
+    pub(super) filled: bool,
+}
+
+impl Compiler<'_> {
+    /// A point whose coordinates are finite.
+    pub(super) fn point(&self, at: &At, point: [f64; 3]) -> Result<DVec3> {
+        let found = point.iter().find(|x| !x.is_finite());
+        match found {
+            Some(x) => Err(self.source.mistake_at(at, format!("a coordinate is a finite number, not {x}"), None)),
+            None => Ok(point.into()),
+        }
+    }
+
+    /// A vector of finite length above 0.
+    pub(super) fn direction(&self, at: &At, vector: [f64; 3]) -> Result<DVec3> {
+        let vector = self.point(at, vector)?;
+        match vector.try_normalize() {
+            Some(_) => Ok(vector),
+            None => Err(self.source.mistake_at(at, "a direction needs a length above 0", None)),
+        }
+    }
+
+    fn length(&self, at: &At, what: &str, length: f64) -> Result<f64> {
+        if length > 0.0 && length.is_finite() {
+            return Ok(length);
+        }
+        Err(self.source.mistake_at(at, format!("{what} is a length above 0, not {length}"), None))
+    }
+}
+
+impl ShapeCompiler<'_, '_> {
+    pub(super) fn shape(&mut self, object: &At, text: &ObjectText) -> Result<Shape> {
+        let at = object.key("shape");
+        let shape = match &text.shape {
+            ShapeText::Plane(plane) => {
+                let at = at.key("plane");
+                let point = self.compiler.point(&at.key("point"), plane.point)?;
+                Shape::Plane(Plane::new(point, self.compiler.direction(&at.key("normal"), plane.normal)?))
+            }
+            ShapeText::Triangle(triangle) => {
+                let at = at.key("triangle");
+                let points = self.points(&at.key("points"), &triangle.points)?;
+                let points = [points[0], points[1], points[2]];
+                if Triangle::is_degenerate(points) {
+                    return self.refuse(&at.key("points"), "the points of a triangle must not lie on a line");
+                }
+                Shape::Triangle(Triangle::new(points))
+            }
+            ShapeText::Sphere(sphere) => {
+                let at = at.key("sphere");
+                let center = self.compiler.point(&at.key("center"), sphere.center)?;
+                Shape::Sphere(Sphere::new(center, self.compiler.length(&at.key("radius"), "a radius", sphere.radius)?))
+            }
+            ShapeText::Disc(disc) => {
+                let at = at.key("disc");
+                let center = self.compiler.point(&at.key("center"), disc.center)?;
+                let normal = self.compiler.direction(&at.key("normal"), disc.normal)?;
+                let radius = self.compiler.length(&at.key("radius"), "a radius", disc.radius)?;
+                let u = disc.u.map(|u| self.compiler.direction(&at.key("u"), u)).transpose()?;
+                match Disc::new(center, normal, radius, u) {
+                    Some(disc) => Shape::Disc(disc),
+                    None => return self.refuse(&at.key("u"), "a disc's u must not be parallel to its normal"),
+                }
+            }
+            ShapeText::Quad(quad) => {
+                let at = at.key("quad");
+                let center = self.compiler.point(&at.key("center"), quad.center)?;
+                let u = self.compiler.direction(&at.key("u"), quad.u)?;
+                let v = self.compiler.direction(&at.key("v"), quad.v)?;
+                if u.normalize().cross(v.normalize()) == DVec3::ZERO {
+                    return self.refuse(&at.key("v"), "a quad's u and v must not be parallel");
+                }
+                Shape::Quad(Quad::new(center, u, v))
+            }
+            ShapeText::Cube(cube) => {
+                let at = at.key("cube");
+                let center = self.compiler.point(&at.key("center"), cube.center)?;
+                for edge in cube.size {
+                    self.compiler.length(&at.key("size"), "an edge", edge)?;
+                }
+                Shape::Cube(Cube::new(center, cube.size.into()))
+            }
+            ShapeText::Mesh(mesh) => self.mesh(&at.key("mesh"), mesh)?,
+        };
+        let map = self.transform(&object.key("transform"), &text.transform)?;
+        if self.filled && !shape.is_closed() && matches!(shape, Shape::Mesh(_)) {
+            let warning = format!("{}: a dielectric on an open mesh: light may enter it and never leave", self.name);
+            self.compiler.warnings.push(warning);
+        }
+        Ok(shape.transformed(&map))
+    }
+
+    fn refuse<T>(&self, at: &At, message: &str) -> Result<T> {
+        Err(self.compiler.source.mistake_at(at, message, None))
+    }
+
+    fn points(&self, at: &At, points: &[[f64; 3]]) -> Result<Vec<DVec3>> {
+        points.iter().enumerate().map(|(i, &point)| self.compiler.point(&at.index(i), point)).collect()
+    }
+
+    fn mesh(&mut self, at: &At, text: &MeshText) -> Result<Shape> {
+        let (vertices, faces) = match text {
+            MeshText { file: Some(file), points: None, faces: None } => self.mesh_file(&at.key("file"), file)?,
+            MeshText { file: None, points: Some(points), faces: Some(faces) } => {
+                let vertices = self.points(&at.key("points"), points)?;
+                if let Some(face) = faces.iter().position(|face| face.iter().any(|&i| i as usize >= vertices.len())) {
+                    let message = format!("a face asks for a point beyond the last, {}", vertices.len());
+                    return self.refuse(&at.key("faces").index(face), &message);
+                }
+                (Vertices::Double(vertices), faces.clone())
+            }
+            _ => return self.refuse(at, "a mesh has either a `file`, or `points` and `faces`"),
+        };
+        let Some((mesh, report)) = Mesh::new(vertices, faces) else {
+            return self.refuse(at, "no triangle of this mesh has an area");
+        };
+        if report.degenerate > 0 {
+            let warning = format!("{}: {} triangles without area were dropped", self.name, report.degenerate);
+            self.compiler.warnings.push(warning);
+        }
+        Ok(Shape::Mesh(Box::new(mesh)))
+    }
+
+    fn mesh_file(&mut self, at: &At, file: &str) -> Result<(Vertices, Vec<[u32; 3]>)> {
+        let path = self.compiler.source.folder().join(file);
+        let refuse = |message: String| self.compiler.source.mistake_at(at, message, None);
+        let bytes = std::fs::read(&path).map_err(|error| refuse(format!("cannot read {}: {error}", path.display())))?;
+        let mesh = read_mesh(&path).map_err(|message| refuse(format!("{}: {message}", path.display())))?;
+        self.compiler.hash.update(&bytes);
+        if mesh.names_materials {
+            let warning = format!("{}: the materials of {file} are ignored; the scene gives them", self.name);
+            self.compiler.warnings.push(warning);
+        }
+        Ok((mesh.vertices, mesh.faces))
+    }
+
+    fn transform(&self, at: &At, steps: &[StepText]) -> Result<Transform> {
+        let mut map = Transform::IDENTITY;
+        for (number, step) in steps.iter().enumerate() {
+            let here = at.index(number);
+            let next = match step {
+                StepText::Scale(factors) => Transform::scale(self.compiler.point(&here.key("scale"), *factors)?),
+                StepText::Translate(by) => Transform::translate(self.compiler.point(&here.key("translate"), *by)?),
+                StepText::Rotate(rotate) => {
+                    let here = here.key("rotate");
+                    let axis = self.compiler.direction(&here.key("axis"), rotate.axis)?;
+                    if !rotate.degrees.is_finite() {
+                        let message = format!("an angle is a finite number, not {}", rotate.degrees);
+                        return self.refuse(&here.key("degrees"), &message);
+                    }
+                    Transform::rotate(axis, rotate.degrees)
+                }
+            };
+            map = map.then(&next);
+            if !map.is_invertible() {
+                return self.refuse(&here, "this step flattens the shape or sends it to infinity");
+            }
+        }
+        Ok(map)
+    }
+}

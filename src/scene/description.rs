@@ -1,0 +1,270 @@
+//! The scene file, verbatim: holding a [`Description`] means the text was well formed, nothing more.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Deserializer};
+
+use crate::film::Filter;
+use crate::light::{Environment, Point};
+use crate::material::Material;
+use crate::spectrum::{ColorSpace, Curve};
+
+/// A whole scene file.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Description {
+    /// From where and how the scene is seen.
+    pub camera: CameraText,
+    /// The image to make.
+    pub film: FilmText,
+    /// How to make it; everything optional.
+    #[serde(default)]
+    pub render: RenderText,
+    /// Materials by name.
+    #[serde(default)]
+    pub material: BTreeMap<String, Material<Curve>>,
+    /// Surfaces.
+    #[serde(default)]
+    pub object: Vec<ObjectText>,
+    /// Light that no surface gives.
+    #[serde(default)]
+    pub light: Vec<LightText>,
+}
+
+/// ```toml
+/// [camera]
+/// position = [0, 1.2, 6]
+/// look_at = [0, 1, 0]
+/// vertical_fov = 35          # degrees
+/// ```
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CameraText {
+    /// Where the camera is.
+    pub position: [f64; 3],
+    /// The point in the middle of the image.
+    pub look_at: [f64; 3],
+    /// The direction that is up in the image.
+    #[serde(default = "up")]
+    pub up: [f64; 3],
+    /// Full angle from the bottom to the top of the image, in degrees.
+    pub vertical_fov: f64,
+    /// Rays start at this distance along the viewing direction.
+    #[serde(default)]
+    pub near: f64,
+}
+
+fn up() -> [f64; 3] {
+    [0.0, 1.0, 0.0]
+}
+
+/// ```toml
+/// [film]
+/// width = 960
+/// height = 540
+/// ```
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FilmText {
+    /// Pixels per row.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// Where in its pixel a sample falls.
+    #[serde(default)]
+    pub filter: Filter,
+    /// What the numbers of the file mean.
+    #[serde(default)]
+    pub color_space: ColorSpace,
+}
+
+/// ```toml
+/// [render]
+/// samples = 256
+/// seed = 0
+/// ```
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RenderText {
+    /// How spectra are carried.
+    #[serde(default)]
+    pub model: ModelText,
+    /// Camera samples per pixel.
+    pub samples: Option<u32>,
+    /// Chooses another set of random numbers.
+    #[serde(default)]
+    pub seed: u64,
+    /// How often light may leave a diffuse surface for another before it is gathered from the lights; no limit if absent.
+    pub diffuse_bounces: Option<u32>,
+}
+
+/// ```toml
+/// render.model = "auto"
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ModelText {
+    /// The least that the scene needs.
+    #[default]
+    Auto,
+    /// Three bands: red, green, blue.
+    Rgb,
+}
+
+/// ```toml
+/// [[object]]
+/// shape.sphere = { center = [0, 1, 0], radius = 1 }
+/// material = "glass"
+/// ```
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ObjectText {
+    /// For messages.
+    pub name: Option<String>,
+    /// Where the surface is.
+    pub shape: ShapeText,
+    /// Name of its material.
+    pub material: String,
+    /// Steps applied to the shape in this order.
+    #[serde(default)]
+    pub transform: Vec<StepText>,
+}
+
+/// The shapes, each documented where it is implemented, in `shape`.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[allow(missing_docs)]
+pub enum ShapeText {
+    Plane(PlaneText),
+    Triangle(TriangleText),
+    Sphere(SphereText),
+    Disc(DiscText),
+    Quad(QuadText),
+    Cube(CubeText),
+    Mesh(MeshText),
+}
+
+/// `plane = { point, normal }`
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[allow(missing_docs)]
+pub struct PlaneText {
+    pub point: [f64; 3],
+    pub normal: [f64; 3],
+}
+
+/// `triangle = { points = [p1, p2, p3] }`
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[allow(missing_docs)]
+pub struct TriangleText {
+    pub points: [[f64; 3]; 3],
+}
+
+/// `sphere = { center, radius }`
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[allow(missing_docs)]
+pub struct SphereText {
+    pub center: [f64; 3],
+    pub radius: f64,
+}
+
+/// `disc = { center, normal, radius, u }`, `u` optional
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[allow(missing_docs)]
+pub struct DiscText {
+    pub center: [f64; 3],
+    pub normal: [f64; 3],
+    pub radius: f64,
+    pub u: Option<[f64; 3]>,
+}
+
+/// `quad = { center, u, v }`
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[allow(missing_docs)]
+pub struct QuadText {
+    pub center: [f64; 3],
+    pub u: [f64; 3],
+    pub v: [f64; 3],
+}
+
+/// `cube = { center, size }`
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[allow(missing_docs)]
+pub struct CubeText {
+    pub center: [f64; 3],
+    #[serde(deserialize_with = "number_or_three")]
+    pub size: [f64; 3],
+}
+
+/// `mesh = { file }` or `mesh = { points, faces }`
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[allow(missing_docs)]
+pub struct MeshText {
+    pub file: Option<String>,
+    pub points: Option<Vec<[f64; 3]>>,
+    pub faces: Option<Vec<[u32; 3]>>,
+}
+
+/// One step of a transform: `{ scale = 2 }`, `{ rotate = { axis = [0, 1, 0], degrees = 30 } }`, `{ translate = [0, 1, 0] }`.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum StepText {
+    /// A factor, or one for each axis.
+    #[serde(deserialize_with = "number_or_three")]
+    Scale([f64; 3]),
+    /// A turn.
+    Rotate(RotateText),
+    /// A shift.
+    Translate([f64; 3]),
+}
+
+/// `rotate = { axis, degrees }`
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[allow(missing_docs)]
+pub struct RotateText {
+    pub axis: [f64; 3],
+    pub degrees: f64,
+}
+
+/// ```toml
+/// [[light]]
+/// environment = { radiance = 1 }
+/// ```
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LightText {
+    /// For messages.
+    pub name: Option<String>,
+    /// What rays meet that miss everything.
+    pub environment: Option<Environment<Curve>>,
+    /// A point that shines.
+    pub point: Option<Point<Curve>>,
+}
+
+/// A number that stands for all three axes, or three numbers.
+fn number_or_three<'de, D: Deserializer<'de>>(deserializer: D) -> Result<[f64; 3], D::Error> {
+    struct Three;
+    impl<'de> serde::de::Visitor<'de> for Three {
+        type Value = [f64; 3];
+        fn expecting(&self, formatter: &mut std::fmt::Formatter) -> std::fmt::Result {
+            formatter.write_str("a number or [x, y, z]")
+        }
+        fn visit_f64<E>(self, value: f64) -> Result<[f64; 3], E> {
+            Ok([value; 3])
+        }
+        fn visit_i64<E>(self, value: i64) -> Result<[f64; 3], E> {
+            Ok([value as f64; 3])
+        }
+        fn visit_seq<A: serde::de::SeqAccess<'de>>(self, sequence: A) -> Result<[f64; 3], A::Error> {
+            Deserialize::deserialize(serde::de::value::SeqAccessDeserializer::new(sequence))
+        }
+    }
+    deserializer.deserialize_any(Three)
+}

@@ -1,0 +1,154 @@
+//! Floor 3: the world, with every reference resolved.
+//!
+//! `Scene<Curve>` is what the scene file means; the plan looks at it. `Scene<Table>` has the same surfaces with every
+//! spectrum on the lanes; the tracer reads it.
+
+mod camera;
+mod compile;
+mod compile_shape;
+mod description;
+mod index;
+mod source;
+
+pub use camera::Camera;
+pub use compile::compile;
+pub use description::{Description, ModelText, RenderText};
+pub use source::Source;
+
+use std::sync::Arc;
+
+use crate::film::Filter;
+use crate::light::{Light, LightId};
+use crate::material::Material;
+use crate::math::Ray;
+use crate::shape::{Crossing, Shape};
+use crate::spectrum::{ColorSpace, Quantity};
+use index::Index;
+
+/// Number of a material in its scene.
+pub type MaterialId = u32;
+
+/// A world in which every name has been found and every number checked.
+#[derive(Clone, Debug)]
+pub struct Scene<S> {
+    /// From where it is seen.
+    pub camera: Camera,
+    /// The image to make.
+    pub film: FilmSettings,
+    /// How to make it.
+    pub render: RenderText,
+    /// Surfaces, in the order of the file.
+    pub objects: Vec<Object>,
+    /// Materials, in the order in which objects use them first.
+    pub materials: Vec<NamedMaterial<S>>,
+    /// Everything that shines.
+    pub lights: Vec<Light<S>>,
+    /// What rays see that meet nothing.
+    pub environment: Option<LightId>,
+    /// What the author should know but need not change.
+    pub warnings: Vec<String>,
+    /// SHA-256 of the scene file and the files it names, 64 hexadecimal digits.
+    pub hash: String,
+    index: Index,
+}
+
+/// Size and meaning of the image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FilmSettings {
+    /// Pixels per row.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// Where in its pixel a sample falls.
+    pub filter: Filter,
+    /// What the numbers mean.
+    pub color_space: ColorSpace,
+}
+
+/// A surface with its material.
+#[derive(Clone, Debug)]
+pub struct Object {
+    /// Its name, or `object N` counted from 1.
+    pub name: String,
+    /// Where it is.
+    pub shape: Arc<Shape>,
+    /// What it does with light.
+    pub material: MaterialId,
+    /// The light it is, if it shines.
+    pub light: Option<LightId>,
+}
+
+/// A material and the name its author gave it.
+#[derive(Clone, Debug)]
+pub struct NamedMaterial<S> {
+    /// Its name in the scene file.
+    pub name: String,
+    /// The material.
+    pub material: Material<S>,
+}
+
+/// Where a ray first meets the world.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit {
+    /// The object met.
+    pub object: u32,
+    /// Where on it.
+    pub crossing: Crossing,
+}
+
+impl<S> Scene<S> {
+    /// The same world with every spectrum converted; `convert` is told what the spectrum describes.
+    pub fn map<T>(&self, mut convert: impl FnMut(Quantity, &S) -> T) -> Scene<T> {
+        let materials = self.materials.iter();
+        Scene {
+            camera: self.camera.clone(),
+            film: self.film,
+            render: self.render.clone(),
+            objects: self.objects.clone(),
+            materials: materials
+                .map(|m| NamedMaterial { name: m.name.clone(), material: m.material.map(&mut convert) })
+                .collect(),
+            lights: self.lights.iter().map(|light| light.map(&mut convert)).collect(),
+            environment: self.environment,
+            warnings: self.warnings.clone(),
+            hash: self.hash.clone(),
+            index: self.index.clone(),
+        }
+    }
+
+    /// The material of an object.
+    pub fn material_of(&self, object: u32) -> &Material<S> {
+        &self.materials[self.objects[object as usize].material as usize].material
+    }
+
+    /// The nearest surface along a ray; of equally near ones, that of the object listed first.
+    pub fn intersect(&self, ray: &Ray) -> Option<Hit> {
+        let mut nearest: Option<Hit> = None;
+        self.index.walk(ray, f64::INFINITY, |object, limit| {
+            if let Some(crossing) = self.objects[object as usize].shape.intersect(ray, limit) {
+                if nearest.is_none_or(|n| crossing.t < n.crossing.t || object < n.object) {
+                    nearest = Some(Hit { object, crossing });
+                }
+                return Some(crossing.t);
+            }
+            Some(limit)
+        });
+        nearest
+    }
+
+    /// Whether anything lies before a light at `distance`; the light's own object does not hide it.
+    pub fn is_hidden(&self, ray: &Ray, distance: f64, light: Option<u32>) -> bool {
+        let mut hidden = false;
+        self.index.walk(ray, distance, |object, limit| {
+            if light != Some(object)
+                && let Some(crossing) = self.objects[object as usize].shape.intersect(ray, limit)
+                && (crossing.t < distance || light.is_none_or(|light| object < light))
+            {
+                hidden = true;
+                return None;
+            }
+            Some(limit)
+        });
+        hidden
+    }
+}

@@ -1,0 +1,58 @@
+use super::{Crossing, SurfacePoint};
+use crate::math::{DVec3, Ray, Transform, gamma};
+
+/// A plane with affine coordinates (a, b): the points `center + a u + b v`. Disc and quad are regions of it.
+#[derive(Clone, Debug)]
+pub(super) struct AffinePlane {
+    pub(super) center: DVec3,
+    pub(super) u: DVec3,
+    pub(super) v: DVec3,
+    normal: DVec3,
+    dual_u: DVec3,
+    dual_v: DVec3,
+}
+
+impl AffinePlane {
+    /// The plane spanned by two independent vectors; its front is the side of `normal`'s half space.
+    pub(super) fn new(center: DVec3, u: DVec3, v: DVec3, front: DVec3) -> Self {
+        let cross = u.normalize().cross(v.normalize()).normalize();
+        let normal = if cross.dot(front) < 0.0 { -cross } else { cross };
+        // The duals pick out one coordinate: dual_u.u = 1, dual_u.v = 0.
+        let dual = |of: DVec3, other: DVec3| {
+            let across = other.normalize().cross(cross);
+            across / across.dot(of)
+        };
+        Self { center, u, v, normal, dual_u: dual(u, v), dual_v: dual(v, u) }
+    }
+
+    /// The crossing with the whole plane; `uv` tells whether it lies in the region.
+    pub(super) fn intersect(&self, ray: &Ray, t_max: f64) -> Option<Crossing> {
+        let to_center = self.center - ray.origin;
+        let t = to_center.dot(self.normal) / ray.direction.dot(self.normal);
+        if !(t > 0.0 && t <= t_max && t.is_finite()) {
+            return None;
+        }
+        let d = ray.direction * t - to_center;
+        Some(Crossing { t, part: 0, uv: [d.dot(self.dual_u), d.dot(self.dual_v)] })
+    }
+
+    /// The point with the given coordinates.
+    pub(super) fn point(&self, [a, b]: [f64; 2]) -> SurfacePoint {
+        let position = self.at([a, b]);
+        // Two products and two sums, and 3 roundings of the normal: 7 on the largest terms.
+        let error = (self.center.abs() + self.u.abs() + self.v.abs()) * gamma(7);
+        SurfacePoint { position, error, normal: self.normal }
+    }
+
+    pub(super) fn at(&self, [a, b]: [f64; 2]) -> DVec3 {
+        self.center + self.u * a + self.v * b
+    }
+
+    pub(super) fn normal(&self) -> DVec3 {
+        self.normal
+    }
+
+    pub(super) fn transformed(&self, map: &Transform) -> Self {
+        Self::new(map.point(self.center), map.vector(self.u), map.vector(self.v), map.normal(self.normal))
+    }
+}

@@ -1,0 +1,118 @@
+use super::affine_plane::AffinePlane;
+use super::{Crossing, SurfacePoint};
+use crate::math::{Bounds, DVec3, Ray, Transform, UNIT_ROUNDOFF};
+
+/// A box, or after a transform a parallelepiped; its front is the outside.
+///
+/// ```toml
+/// shape.cube = { center = [0, 0.5, 0], size = 1 }            # full edges: a number, or [x, y, z]
+/// ```
+#[derive(Clone, Debug)]
+pub struct Cube {
+    center: DVec3,
+    half_edges: [DVec3; 3],
+    duals: [DVec3; 3],
+    /// Face 2 i + s lies at the end (s = 1) or the start (s = 0) of half edge i.
+    faces: Box<[AffinePlane; 6]>,
+}
+
+impl Cube {
+    /// The box with edges of the given full lengths along the axes.
+    pub fn new(center: DVec3, size: DVec3) -> Self {
+        let half = size * 0.5;
+        Self::spanned(center, [DVec3::X * half.x, DVec3::Y * half.y, DVec3::Z * half.z])
+    }
+
+    fn spanned(center: DVec3, half_edges: [DVec3; 3]) -> Self {
+        let face = |index: usize| {
+            let (axis, outward) = (index / 2, if index % 2 == 1 { 1.0 } else { -1.0 });
+            let arm = half_edges[axis] * outward;
+            AffinePlane::new(center + arm, half_edges[(axis + 1) % 3], half_edges[(axis + 2) % 3], arm)
+        };
+        let faces: [AffinePlane; 6] = std::array::from_fn(face);
+        let duals = std::array::from_fn(|axis| {
+            let normal = faces[2 * axis + 1].normal();
+            normal / normal.dot(half_edges[axis])
+        });
+        Self { center, half_edges, duals, faces: Box::new(faces) }
+    }
+
+    /// Slabs |coordinate| <= 1 in the cube's own coordinates: convex, so no ray slips through an edge.
+    pub(super) fn intersect(&self, ray: &Ray, t_max: f64) -> Option<Crossing> {
+        let d = ray.origin - self.center;
+        let (mut enter, mut leave) = ((f64::NEG_INFINITY, 0), (f64::INFINITY, 0));
+        for axis in 0..3 {
+            let (origin, speed) = (d.dot(self.duals[axis]), ray.direction.dot(self.duals[axis]));
+            if speed == 0.0 {
+                if origin.abs() > 1.0 {
+                    return None;
+                }
+                continue;
+            }
+            let forward = usize::from(speed > 0.0);
+            let sign = 1f64.copysign(speed);
+            let (near, far) = ((-sign - origin) / speed, (sign - origin) / speed);
+            if near > enter.0 {
+                enter = (near, 2 * axis + 1 - forward);
+            }
+            if far < leave.0 {
+                leave = (far, 2 * axis + forward);
+            }
+        }
+        if enter.0 > leave.0 {
+            return None;
+        }
+        let (t, face) = if enter.0 > 0.0 { enter } else { leave };
+        (t > 0.0 && t <= t_max).then(|| self.crossing(ray, t, face))
+    }
+
+    fn crossing(&self, ray: &Ray, t: f64, face: usize) -> Crossing {
+        let d = ray.at(t) - self.center;
+        // Kept inside the edges by more than the rounding of a slab coordinate, so that a ray that goes on inside starts
+        // inside all slabs and meets no face it did not cross.
+        let limit = 1.0 - 64.0 * UNIT_ROUNDOFF * (1.0 + self.center.abs().dot(self.reach()));
+        let coordinate = |axis: usize| d.dot(self.duals[axis]).clamp(-limit, limit);
+        Crossing { t, part: face as u32, uv: [coordinate((face / 2 + 1) % 3), coordinate((face / 2 + 2) % 3)] }
+    }
+
+    /// How much a rounding of a world coordinate can move a slab coordinate.
+    fn reach(&self) -> DVec3 {
+        self.duals.iter().fold(DVec3::ZERO, |reach, dual| reach.max(dual.abs()))
+    }
+
+    pub(super) fn point(&self, crossing: &Crossing) -> SurfacePoint {
+        self.faces[crossing.part as usize].point(crossing.uv)
+    }
+
+    pub(super) fn bounds(&self) -> Bounds {
+        let [a, b, c] = self.half_edges.map(|edge| edge.abs());
+        let reach = a + b + c;
+        Bounds { min: self.center - reach, max: self.center + reach }.padded(8)
+    }
+
+    pub(super) fn transformed(&self, map: &Transform) -> Self {
+        Self::spanned(map.point(self.center), self.half_edges.map(|edge| map.vector(edge)))
+    }
+
+    pub(super) fn area(&self) -> f64 {
+        (0..3).map(|axis| 2.0 * self.face_area(axis)).sum()
+    }
+
+    fn face_area(&self, axis: usize) -> f64 {
+        4.0 * self.half_edges[(axis + 1) % 3].cross(self.half_edges[(axis + 2) % 3]).length()
+    }
+
+    /// A point uniform by area, and the face it lies on.
+    pub(super) fn sample(&self, u: [f64; 2]) -> (DVec3, u32) {
+        let mut left = u[0] * self.area();
+        for face in 0..6 {
+            let area = self.face_area(face / 2);
+            if left < area || face == 5 {
+                let along = (left / area).min(1.0);
+                return (self.faces[face].at([2.0 * along - 1.0, 2.0 * u[1] - 1.0]), face as u32);
+            }
+            left -= area;
+        }
+        unreachable!("the last face takes what is left")
+    }
+}

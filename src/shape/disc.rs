@@ -1,0 +1,59 @@
+use std::f64::consts::PI;
+
+use super::affine_plane::AffinePlane;
+use super::{Crossing, SurfacePoint};
+use crate::math::{Bounds, DMat3, DVec3, Frame, Ray, Transform, disk};
+
+/// A flat disc; its front is the side `normal` points to. An uneven scale makes it an ellipse.
+///
+/// Its coordinates (u, v) run from -1 to 1 along the radius `u` and the radius at right angles, counterclockwise
+/// seen from the front.
+///
+/// ```toml
+/// shape.disc = { center = [0, 0, 0], normal = [0, 1, 0], radius = 1, u = [1, 0, 0] }    # u is optional
+/// ```
+#[derive(Clone, Debug)]
+pub struct Disc {
+    plane: AffinePlane,
+}
+
+impl Disc {
+    /// A disc with a normal of any length above 0; `u` gives the direction of its first coordinate, made
+    /// perpendicular to the normal. None if `u` is parallel to the normal.
+    pub fn new(center: DVec3, normal: DVec3, radius: f64, u: Option<DVec3>) -> Option<Self> {
+        let normal = normal.normalize();
+        let u = match u {
+            Some(u) => {
+                let u = u.normalize();
+                (u - normal * u.dot(normal)).try_normalize()?
+            }
+            None => Frame::about(normal).to_world(DVec3::X),
+        };
+        let plane = AffinePlane::new(center, u * radius, normal.cross(u) * radius, normal);
+        Some(Self { plane })
+    }
+
+    pub(super) fn intersect(&self, ray: &Ray, t_max: f64) -> Option<Crossing> {
+        self.plane.intersect(ray, t_max).filter(|c| c.uv[0] * c.uv[0] + c.uv[1] * c.uv[1] < 1.0)
+    }
+
+    pub(super) fn point(&self, uv: [f64; 2]) -> SurfacePoint {
+        self.plane.point(uv)
+    }
+
+    pub(super) fn bounds(&self) -> Bounds {
+        Bounds::of_ellipsoid(self.plane.center, DMat3::from_cols(self.plane.u, self.plane.v, DVec3::ZERO)).padded(8)
+    }
+
+    pub(super) fn transformed(&self, map: &Transform) -> Self {
+        Self { plane: self.plane.transformed(map) }
+    }
+
+    pub(super) fn area(&self) -> f64 {
+        PI * self.plane.u.cross(self.plane.v).length()
+    }
+
+    pub(super) fn sample(&self, u: [f64; 2]) -> DVec3 {
+        self.plane.at(disk(u).into())
+    }
+}

@@ -1,0 +1,157 @@
+//! Triangles from PLY and OBJ files.
+
+use std::fs::File;
+use std::io::BufReader;
+use std::path::Path;
+
+use ply_rs_bw::parser::{Parser, Reader};
+use ply_rs_bw::ply::{Property, PropertyAccess, PropertyAccessResult, PropertyType, ScalarType};
+
+use super::Vertices;
+use crate::math::DVec3;
+
+/// What a mesh file holds.
+pub struct MeshFile {
+    /// Its vertices, in the precision of the file.
+    pub vertices: Vertices,
+    /// Corners of its triangles; polygons are cut into fans.
+    pub faces: Vec<[u32; 3]>,
+    /// Whether the file asks for materials, which Abbe takes from the scene instead.
+    pub names_materials: bool,
+}
+
+/// Reads a mesh file by its ending, `.ply` or `.obj`; checks that corners exist and vertices are finite.
+///
+/// # Errors
+/// A sentence that says what is wrong with the file.
+pub fn read(path: &Path) -> Result<MeshFile, String> {
+    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_lowercase();
+    let file = match ending.as_str() {
+        "ply" => read_ply(path)?,
+        "obj" => read_obj(path)?,
+        _ => return Err("a mesh file ends in .ply or .obj".into()),
+    };
+    let count = file.vertices.len();
+    if let Some(vertex) = (0..count as u32).find(|&index| !file.vertices.at(index).is_finite()) {
+        return Err(format!("vertex {vertex} (counted from 0) is not finite"));
+    }
+    if let Some(face) = file.faces.iter().position(|face| face.iter().any(|&corner| corner as usize >= count)) {
+        return Err(format!(
+            "face {face} (counted from 0, after cutting polygons) asks for a vertex beyond the last, {count}"
+        ));
+    }
+    if file.faces.is_empty() {
+        return Err("the file holds no faces".into());
+    }
+    Ok(file)
+}
+
+#[derive(Default)]
+struct PlyVertex([f64; 3]);
+
+impl PropertyAccess for PlyVertex {
+    fn new() -> Self {
+        Self::default()
+    }
+
+    fn set_property(&mut self, name: &str, property: Property) -> PropertyAccessResult {
+        let axis = match name {
+            "x" => 0,
+            "y" => 1,
+            "z" => 2,
+            _ => return PropertyAccessResult::Ignored,
+        };
+        self.0[axis] = match property {
+            Property::Float(x) => f64::from(x),
+            Property::Double(x) => x,
+            Property::Char(x) => f64::from(x),
+            Property::UChar(x) => f64::from(x),
+            Property::Short(x) => f64::from(x),
+            Property::UShort(x) => f64::from(x),
+            Property::Int(x) => f64::from(x),
+            Property::UInt(x) => f64::from(x),
+            _ => return PropertyAccessResult::Ignored,
+        };
+        PropertyAccessResult::Set
+    }
+}
+
+#[derive(Default)]
+struct PlyFace(Vec<u32>);
+
+impl PropertyAccess for PlyFace {
+    fn new() -> Self {
+        Self::default()
+    }
+
+    fn set_property(&mut self, name: &str, property: Property) -> PropertyAccessResult {
+        if name != "vertex_indices" && name != "vertex_index" {
+            return PropertyAccessResult::Ignored;
+        }
+        // A negative index becomes one that no mesh has, and is refused with the others.
+        let index = |i: i64| u32::try_from(i).unwrap_or(u32::MAX);
+        self.0 = match property {
+            Property::ListChar(list) => list.into_iter().map(|i| index(i.into())).collect(),
+            Property::ListUChar(list) => list.into_iter().map(u32::from).collect(),
+            Property::ListShort(list) => list.into_iter().map(|i| index(i.into())).collect(),
+            Property::ListUShort(list) => list.into_iter().map(u32::from).collect(),
+            Property::ListInt(list) => list.into_iter().map(|i| index(i.into())).collect(),
+            Property::ListUInt(list) => list,
+            _ => return PropertyAccessResult::Ignored,
+        };
+        PropertyAccessResult::Set
+    }
+}
+
+fn read_ply(path: &Path) -> Result<MeshFile, String> {
+    let file = File::open(path).map_err(|error| error.to_string())?;
+    let mut reader = Reader::new(BufReader::new(file));
+    let (vertex_parser, face_parser) = (Parser::<PlyVertex>::new(), Parser::<PlyFace>::new());
+    let header = vertex_parser.read_header(&mut reader).map_err(|error| error.to_string())?;
+    let (mut points, mut polygons, mut double) = (Vec::new(), Vec::new(), false);
+    for element in header.elements.values() {
+        if element.name == "face" {
+            polygons = face_parser
+                .read_payload_for_element(&mut reader, element, &header)
+                .map_err(|error| error.to_string())?;
+        } else {
+            let read = vertex_parser
+                .read_payload_for_element(&mut reader, element, &header)
+                .map_err(|error| error.to_string())?;
+            if element.name == "vertex" {
+                let exact = [PropertyType::Scalar(ScalarType::Float)];
+                double = ["x", "y", "z"]
+                    .iter()
+                    .any(|axis| element.properties.get(*axis).is_none_or(|p| !exact.contains(&p.data_type)));
+                points = read;
+            }
+        }
+    }
+    let vertices = if double {
+        Vertices::Double(points.iter().map(|p| DVec3::from(p.0)).collect())
+    } else {
+        Vertices::Single(points.iter().map(|p| p.0.map(|x| x as f32)).collect())
+    };
+    let faces = polygons.iter().flat_map(|polygon| fan(&polygon.0)).collect();
+    Ok(MeshFile { vertices, faces, names_materials: false })
+}
+
+/// The triangles of a convex polygon, all sharing its first corner.
+fn fan(polygon: &[u32]) -> impl Iterator<Item = [u32; 3]> + '_ {
+    let rest = polygon.get(1..).unwrap_or_default();
+    rest.windows(2).map(move |pair| [polygon[0], pair[0], pair[1]])
+}
+
+fn read_obj(path: &Path) -> Result<MeshFile, String> {
+    let options = tobj::LoadOptions { triangulate: true, ..Default::default() };
+    let (models, materials) = tobj::load_obj(path, &options).map_err(|error| error.to_string())?;
+    let names_materials = materials.is_err() || materials.is_ok_and(|list| !list.is_empty());
+    let (mut points, mut faces) = (Vec::new(), Vec::new());
+    for model in models {
+        let first = points.len() as u32;
+        points.extend(model.mesh.positions.chunks_exact(3).map(|p| [p[0], p[1], p[2]]));
+        let corners = model.mesh.indices.chunks_exact(3);
+        faces.extend(corners.map(|c| [c[0] + first, c[1] + first, c[2] + first]));
+    }
+    Ok(MeshFile { vertices: Vertices::Single(points), faces, names_materials })
+}

@@ -1,0 +1,219 @@
+//! Floor 1: where surfaces are; knows no spectra.
+//!
+//! A shape answers four questions: where a ray crosses it, what the surface is like there, what box it fills, and, as a
+//! light, in which directions it is seen. Every answer carries the error bound that lets a new ray leave the surface.
+
+mod affine_plane;
+mod bvh;
+mod cube;
+mod disc;
+mod ellipsoid;
+mod mesh;
+mod mesh_file;
+mod plane;
+mod quad;
+mod sides;
+mod sphere;
+mod triangle;
+
+pub use bvh::Bvh;
+pub use cube::Cube;
+pub use disc::Disc;
+pub use ellipsoid::Ellipsoid;
+pub use mesh::{Mesh, MeshReport, Vertices};
+pub use mesh_file::read as read_mesh;
+pub use plane::Plane;
+pub use quad::Quad;
+pub use sides::Sides;
+pub use sphere::Sphere;
+pub use triangle::Triangle;
+
+use crate::math::{Bounds, DVec3, Ray, Transform};
+
+/// A surface.
+#[derive(Clone, Debug)]
+pub enum Shape {
+    /// An infinite plane.
+    Plane(Plane),
+    /// One triangle.
+    Triangle(Triangle),
+    /// A sphere.
+    Sphere(Sphere),
+    /// A sphere after an uneven scale.
+    Ellipsoid(Ellipsoid),
+    /// A flat disc or ellipse.
+    Disc(Disc),
+    /// A parallelogram.
+    Quad(Quad),
+    /// A box or parallelepiped.
+    Cube(Cube),
+    /// Many triangles.
+    Mesh(Box<Mesh>),
+}
+
+/// Where a ray crosses one shape.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Crossing {
+    /// Distance along the ray, above 0.
+    pub t: f64,
+    /// Triangle of a mesh, face of a cube; 0 elsewhere.
+    pub part: u32,
+    /// Affine coordinates on a triangle, disc, quad or cube face; 0 elsewhere.
+    pub uv: [f64; 2],
+}
+
+impl Crossing {
+    fn at(t: f64) -> Self {
+        Self { t, part: 0, uv: [0.0; 2] }
+    }
+}
+
+/// A point of a surface, as good as arithmetic can place it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SurfacePoint {
+    /// The point, in the world.
+    pub position: DVec3,
+    /// Bound of the distance to the true surface, coordinate by coordinate.
+    pub error: DVec3,
+    /// Geometric unit normal on the front side.
+    pub normal: DVec3,
+}
+
+impl SurfacePoint {
+    /// The ray that leaves the surface at this point along a unit vector and cannot hit it again there.
+    pub fn leave(&self, direction: DVec3) -> Ray {
+        let origin = crate::math::offset_origin(self.position, self.error, self.normal, direction);
+        Ray { origin, direction }
+    }
+}
+
+/// A direction in which a shape is seen from a point, drawn at random.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sighting {
+    /// Unit vector from the point to the shape.
+    pub direction: DVec3,
+    /// The part that was drawn, on shapes of several: seen only if the nearest crossing lies on it.
+    pub part: Option<u32>,
+}
+
+impl Shape {
+    /// The nearest crossing with 0 < t <= `t_max`.
+    pub fn intersect(&self, ray: &Ray, t_max: f64) -> Option<Crossing> {
+        match self {
+            Self::Plane(plane) => plane.intersect(ray, t_max),
+            Self::Triangle(triangle) => triangle.intersect(ray, t_max),
+            Self::Sphere(sphere) => sphere.intersect(ray, t_max),
+            Self::Ellipsoid(ellipsoid) => ellipsoid.intersect(ray, t_max),
+            Self::Disc(disc) => disc.intersect(ray, t_max),
+            Self::Quad(quad) => quad.intersect(ray, t_max),
+            Self::Cube(cube) => cube.intersect(ray, t_max),
+            Self::Mesh(mesh) => mesh.intersect(ray, t_max),
+        }
+    }
+
+    /// The surface at a crossing that `intersect` found on this ray.
+    pub fn point(&self, ray: &Ray, crossing: &Crossing) -> SurfacePoint {
+        match self {
+            Self::Plane(plane) => plane.point(ray.at(crossing.t)),
+            Self::Triangle(triangle) => triangle.point(crossing.uv),
+            Self::Sphere(sphere) => sphere.point(ray.at(crossing.t)),
+            Self::Ellipsoid(ellipsoid) => ellipsoid.point(ray.at(crossing.t)),
+            Self::Disc(disc) => disc.point(crossing.uv),
+            Self::Quad(quad) => quad.point(crossing.uv),
+            Self::Cube(cube) => cube.point(crossing),
+            Self::Mesh(mesh) => mesh.triangle(crossing.part).point(crossing.uv),
+        }
+    }
+
+    /// The box the shape fills, or none for an infinite one.
+    pub fn bounds(&self) -> Option<Bounds> {
+        match self {
+            Self::Plane(_) => None,
+            Self::Triangle(triangle) => Some(triangle.bounds()),
+            Self::Sphere(sphere) => Some(sphere.bounds()),
+            Self::Ellipsoid(ellipsoid) => Some(ellipsoid.bounds()),
+            Self::Disc(disc) => Some(disc.bounds()),
+            Self::Quad(quad) => Some(quad.bounds()),
+            Self::Cube(cube) => Some(cube.bounds()),
+            Self::Mesh(mesh) => Some(mesh.bounds()),
+        }
+    }
+
+    /// The shape after an invertible affine map.
+    pub fn transformed(self, map: &Transform) -> Self {
+        if *map == Transform::IDENTITY {
+            return self;
+        }
+        match self {
+            Self::Plane(plane) => Self::Plane(plane.transformed(map)),
+            Self::Triangle(triangle) => Self::Triangle(triangle.transformed(map)),
+            Self::Sphere(sphere) => sphere.transformed(map),
+            Self::Ellipsoid(ellipsoid) => Self::Ellipsoid(ellipsoid.transformed(map)),
+            Self::Disc(disc) => Self::Disc(disc.transformed(map)),
+            Self::Quad(quad) => Self::Quad(quad.transformed(map)),
+            Self::Cube(cube) => Self::Cube(cube.transformed(map)),
+            Self::Mesh(mesh) => Self::Mesh(Box::new(mesh.transformed(map))),
+        }
+    }
+
+    /// Whether the shape has an inside: a dielectric on it fills that, or the half space behind a plane.
+    pub fn is_closed(&self) -> bool {
+        match self {
+            Self::Plane(_) | Self::Sphere(_) | Self::Ellipsoid(_) | Self::Cube(_) => true,
+            Self::Triangle(_) | Self::Disc(_) | Self::Quad(_) => false,
+            Self::Mesh(mesh) => mesh.is_closed(),
+        }
+    }
+
+    /// The shape's area, infinite for a plane.
+    pub fn area(&self) -> f64 {
+        match self {
+            Self::Plane(_) => f64::INFINITY,
+            Self::Triangle(triangle) => triangle.area(),
+            Self::Sphere(sphere) => sphere.area(),
+            Self::Ellipsoid(ellipsoid) => ellipsoid.area(),
+            Self::Disc(disc) => disc.area(),
+            Self::Quad(quad) => quad.area(),
+            Self::Cube(cube) => cube.area(),
+            Self::Mesh(mesh) => mesh.area(),
+        }
+    }
+
+    /// A direction from a point toward the shape; none where the draw sees it exactly edge-on.
+    ///
+    /// `pdf_toward` gives its density. Spheres are drawn by the cone they fill, other shapes by their area.
+    pub fn aim(&self, from: DVec3, u: [f64; 2]) -> Option<Sighting> {
+        let (target, part) = match self {
+            Self::Plane(_) => return None,
+            Self::Sphere(sphere) => {
+                return sphere.aim(from, u).map(|direction| Sighting { direction, part: None });
+            }
+            Self::Triangle(triangle) => (triangle.sample(u), None),
+            Self::Ellipsoid(ellipsoid) => (ellipsoid.sample(u), None),
+            Self::Disc(disc) => (disc.sample(u), None),
+            Self::Quad(quad) => (quad.sample(u), None),
+            Self::Cube(cube) => {
+                let (target, face) = cube.sample(u);
+                (target, Some(face))
+            }
+            Self::Mesh(mesh) => {
+                let (target, triangle) = mesh.sample(u);
+                (target, Some(triangle))
+            }
+        };
+        Some(Sighting { direction: (target - from).try_normalize()?, part })
+    }
+
+    /// Density per steradian with which `aim` draws the direction of a ray that first meets the shape at a crossing.
+    pub fn pdf_toward(&self, ray: &Ray, crossing: &Crossing) -> f64 {
+        match self {
+            Self::Plane(_) => 0.0,
+            Self::Sphere(sphere) => sphere.pdf_toward(ray),
+            Self::Ellipsoid(ellipsoid) => ellipsoid.pdf_toward(ray),
+            _ => {
+                let cos = self.point(ray, crossing).normal.dot(ray.direction).abs();
+                crossing.t * crossing.t / (cos * self.area())
+            }
+        }
+    }
+}

@@ -1,0 +1,41 @@
+use super::{Crossing, SurfacePoint};
+use crate::math::{DVec3, Ray, Transform, gamma};
+
+/// The infinite plane through `point`; its front is the side `normal` points to.
+///
+/// ```toml
+/// shape.plane = { point = [0, 0, 0], normal = [0, 1, 0] }
+/// ```
+#[derive(Clone, Debug)]
+pub struct Plane {
+    point: DVec3,
+    normal: DVec3,
+}
+
+impl Plane {
+    /// The plane through a point with a normal of any length above 0.
+    pub fn new(point: DVec3, normal: DVec3) -> Self {
+        Self { point, normal: normal.normalize() }
+    }
+
+    /// t = (q - p0).n_p / (n.n_p): the difference is formed first, so that distance from the world's origin costs nothing.
+    pub(super) fn intersect(&self, ray: &Ray, t_max: f64) -> Option<Crossing> {
+        let t = (self.point - ray.origin).dot(self.normal) / ray.direction.dot(self.normal);
+        (t > 0.0 && t <= t_max && t.is_finite()).then(|| Crossing::at(t))
+    }
+
+    /// The point of the plane nearest to a computed hit.
+    pub(super) fn point(&self, hit: DVec3) -> SurfacePoint {
+        let away = hit - self.point;
+        let position = hit - self.normal * away.dot(self.normal);
+        // Height above the plane: 1 rounding of `away`, 3 of the dot product, 3 of the unit normal, on terms of size
+        // |away|; then 2 of the projection on terms of size |hit|.
+        let reach = away.abs().dot(DVec3::ONE);
+        let error = (hit.abs() + DVec3::splat(reach)) * gamma(8);
+        SurfacePoint { position, error, normal: self.normal }
+    }
+
+    pub(super) fn transformed(&self, map: &Transform) -> Self {
+        Self { point: map.point(self.point), normal: map.normal(self.normal) }
+    }
+}

@@ -1,0 +1,115 @@
+//! Next-event estimation: light that comes straight from the lights.
+
+use super::World;
+use super::path::Drawn;
+use crate::light::{Light, LightId};
+use crate::material::{Arrival, Material};
+use crate::math::{BranchKey, Ray, Sampler};
+use crate::shape::{Crossing, SurfacePoint};
+use crate::spectrum::{Table, Throughput};
+
+/// A place where light is gathered.
+pub(super) struct Gathering<'a, const N: usize> {
+    pub(super) world: &'a World,
+    pub(super) material: &'a Material<Table>,
+    pub(super) arrival: &'a Arrival<'a, N>,
+    pub(super) point: &'a SurfacePoint,
+    pub(super) throughput: Throughput<N>,
+    /// Whether the path goes on from here and may meet a light by itself.
+    pub(super) goes_on: bool,
+    pub(super) aims_at_all: bool,
+    /// Four random numbers of the vertex; the first light uses the first two, the choice of one light the last.
+    pub(super) u: [f64; 4],
+}
+
+/// Random numbers for the second light and those after it.
+const FURTHER_LIGHTS: u32 = 16;
+
+impl<const N: usize> Gathering<'_, N> {
+    /// What the sensor gets of the light that lights send straight to the surface.
+    pub(super) fn direct(&self, sampler: &Sampler, key: BranchKey) -> [f64; 3] {
+        let targets = &self.world.targets;
+        let mut sum = [0.0; 3];
+        if self.aims_at_all {
+            for (number, &target) in targets.iter().enumerate() {
+                let u = match number {
+                    0 => [self.u[0], self.u[1]],
+                    _ => {
+                        let u = sampler.four(key, FURTHER_LIGHTS + number as u32 / 2);
+                        if number % 2 == 0 { [u[0], u[1]] } else { [u[2], u[3]] }
+                    }
+                };
+                add(&mut sum, self.from(target, 1.0, u));
+            }
+        } else if let Some(target) = self.choose() {
+            add(&mut sum, self.from(target, self.world.probabilities[target], [self.u[0], self.u[1]]));
+        }
+        sum
+    }
+
+    /// The share of one light, aimed at with a probability.
+    fn from(&self, target: LightId, probability: f64, u: [f64; 2]) -> [f64; 3] {
+        let light = &self.world.scene.lights[target];
+        let normal = self.arrival.normal;
+        let lit = || {
+            let sighting = light.aim(self.point.position, normal, u)?;
+            let (bsdf_cos, bsdf_pdf) = self.material.evaluate(self.arrival, sighting.direction)?;
+            let ray = self.point.leave(sighting.direction);
+            let view = light.view(&ray, normal, sighting.part)?;
+            let factor = match view.pdf {
+                None => view.factor / probability,
+                Some(pdf) => {
+                    let pdf = pdf * probability;
+                    let weight = if self.goes_on { power_heuristic(pdf, bsdf_pdf) } else { 1.0 };
+                    view.factor * weight / pdf
+                }
+            };
+            if !factor.is_finite() || self.world.scene.is_hidden(&ray, view.distance, view.object) {
+                return None;
+            }
+            let reflected = self.throughput.scaled(factor).of(bsdf_cos * self.arrival.read(light.emission()));
+            Some(self.world.responses[target].sensor(self.arrival.draw, reflected))
+        };
+        lit().unwrap_or([0.0; 3])
+    }
+
+    /// One light, by its probability.
+    fn choose(&self) -> Option<LightId> {
+        let mut left = self.u[3];
+        let chosen = self.world.targets.iter().find(|&&light| {
+            left -= self.world.probabilities[light];
+            left < 0.0
+        });
+        chosen.or(self.world.targets.last()).copied()
+    }
+}
+
+/// The weight of a light that a path met by itself, beside next-event estimation at the path's last surface.
+pub(super) fn weight_of_meeting(
+    world: &World,
+    light: LightId,
+    drawn: Option<&Drawn>,
+    ray: &Ray,
+    crossing: Option<&Crossing>,
+) -> f64 {
+    let Some(drawn) = drawn else { return 1.0 };
+    let pdf = match (&world.scene.lights[light], crossing) {
+        (Light::Area(area), Some(crossing)) if area.aimed_at => area.pdf(ray, crossing),
+        (Light::Environment(environment), None) => Some(environment.pdf(ray, drawn.normal)),
+        _ => None,
+    };
+    let probability = if drawn.aimed_at_all { 1.0 } else { world.probabilities[light] };
+    pdf.map_or(1.0, |pdf| power_heuristic(drawn.pdf, pdf * probability))
+}
+
+/// Veach & Guibas 1995, *Optimally Combining Sampling Techniques for Monte Carlo Rendering*, power heuristic, beta = 2.
+fn power_heuristic(this: f64, other: f64) -> f64 {
+    let ratio = other / this;
+    1.0 / (1.0 + ratio * ratio)
+}
+
+pub(super) fn add(sum: &mut [f64; 3], more: [f64; 3]) {
+    for (sum, more) in sum.iter_mut().zip(more) {
+        *sum += more;
+    }
+}

@@ -1,0 +1,130 @@
+//! Which clear bodies a ray is inside of.
+
+use super::World;
+use crate::material::Dielectric;
+use crate::math::{DVec3, Ray};
+use crate::scene::MaterialId;
+use crate::spectrum::{Draw, Table};
+
+/// Different media that may overlap in one place.
+const MOST: usize = 6;
+
+/// The media around a point, each with how many bodies of it are there.
+///
+/// Of several, the one of highest priority is really there (Schmidt & Budge 2002, *Simple Nested Dielectrics in Ray
+/// Traced Images*). Counting by material lets one body be made of many objects.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Media {
+    entries: [(MaterialId, u32); MOST],
+    len: u8,
+}
+
+/// What crossing a surface does to the media of a ray.
+pub(super) struct Boundary {
+    /// The medium the ray came through; none is vacuum.
+    pub(super) here: Option<MaterialId>,
+    /// The medium it enters if it goes on.
+    pub(super) beyond: Option<MaterialId>,
+    /// The bodies around the ray if it goes on.
+    pub(super) crossed: Media,
+}
+
+impl Media {
+    /// The media around a point, by walking from it to infinity and back in thought: every body whose inside the walk
+    /// leaves more often than it enters is around the start.
+    pub(super) fn around(world: &World, start: DVec3, direction: DVec3) -> Self {
+        let mut balance: Vec<(MaterialId, i32)> = Vec::new();
+        let mut ray = Ray { origin: start, direction };
+        for _ in 0..MOST_CROSSINGS {
+            let Some(hit) = world.scene.intersect(&ray) else { break };
+            let object = &world.scene.objects[hit.object as usize];
+            let point = object.shape.point(&ray, &hit.crossing);
+            if world.scene.material_of(hit.object).medium().is_some() {
+                let step = if point.normal.dot(direction) > 0.0 { 1 } else { -1 };
+                match balance.iter_mut().find(|(material, _)| *material == object.material) {
+                    Some((_, count)) => *count += step,
+                    None => balance.push((object.material, step)),
+                }
+            }
+            ray = point.leave(direction);
+        }
+        let mut media = Self::default();
+        for (material, count) in balance.into_iter().filter(|(_, count)| *count > 0) {
+            (0..count).for_each(|_| media = media.entered(material).unwrap_or(media));
+        }
+        media
+    }
+
+    /// The media after walking from one point to another along a straight line.
+    pub(super) fn after_walk(mut self, world: &World, from: DVec3, to: DVec3) -> Self {
+        let Some(direction) = (to - from).try_normalize() else { return self };
+        let mut ray = Ray { origin: from, direction };
+        for _ in 0..MOST_CROSSINGS {
+            let left = (to - ray.origin).dot(direction);
+            let Some(hit) = world.scene.intersect(&ray).filter(|hit| hit.crossing.t <= left) else { break };
+            let object = &world.scene.objects[hit.object as usize];
+            let point = object.shape.point(&ray, &hit.crossing);
+            if world.scene.material_of(hit.object).medium().is_some() {
+                let enters = point.normal.dot(direction) < 0.0;
+                let walked = if enters { self.entered(object.material) } else { self.left(object.material) };
+                self = walked.unwrap_or(self);
+            }
+            ray = point.leave(direction);
+        }
+        self
+    }
+
+    /// The medium that is really there.
+    pub(super) fn inside(&self, world: &World) -> Option<MaterialId> {
+        let rank = |&(material, _): &(MaterialId, u32)| (medium(world, material).priority, material);
+        self.entries[..self.len as usize].iter().max_by_key(|entry| rank(entry)).map(|entry| entry.0)
+    }
+
+    /// What a ray meets that crosses the surface of a body; none if it leaves a body it never entered, or enters more
+    /// different ones than there is room for.
+    pub(super) fn boundary(&self, world: &World, material: MaterialId, enters: bool) -> Option<Boundary> {
+        let crossed = if enters { self.entered(material)? } else { self.left(material)? };
+        Some(Boundary { here: self.inside(world), beyond: crossed.inside(world), crossed })
+    }
+
+    fn entered(mut self, material: MaterialId) -> Option<Self> {
+        let len = self.len as usize;
+        match self.entries[..len].iter_mut().find(|entry| entry.0 == material) {
+            Some(entry) => entry.1 += 1,
+            None if len < MOST => {
+                self.entries[len] = (material, 1);
+                self.len += 1;
+            }
+            None => return None,
+        }
+        Some(self)
+    }
+
+    fn left(mut self, material: MaterialId) -> Option<Self> {
+        let len = self.len as usize;
+        let at = self.entries[..len].iter().position(|entry| entry.0 == material)?;
+        self.entries[at].1 -= 1;
+        if self.entries[at].1 == 0 {
+            self.entries.copy_within(at + 1..len, at);
+            self.entries[len - 1] = (0, 0);
+            self.len -= 1;
+        }
+        Some(self)
+    }
+}
+
+/// Surfaces a straight walk crosses at most; more are taken for a walk that never ends.
+const MOST_CROSSINGS: usize = 100_000;
+
+/// The dielectric that fills a medium.
+pub(super) fn medium(world: &World, material: MaterialId) -> &Dielectric<Table> {
+    world.scene.materials[material as usize].material.medium().expect("only dielectrics become media")
+}
+
+/// The refractive index of a medium, per lane; 1 in vacuum.
+pub(super) fn index<const N: usize>(world: &World, draw: &Draw<N>, inside: Option<MaterialId>) -> [f64; N] {
+    match inside {
+        Some(material) => draw.read_exact(&medium(world, material).index),
+        None => [1.0; N],
+    }
+}

@@ -1,0 +1,43 @@
+use crate::spectrum::Basis;
+
+/// How to render, as plain data: what the plan decides and the tracer obeys.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Method {
+    /// What the lanes stand for.
+    pub basis: Basis,
+    /// Which branches are followed.
+    pub transport: Transport,
+    /// Camera samples per pixel.
+    pub samples: u32,
+    /// Chooses the set of random numbers.
+    pub seed: u64,
+    /// How often light may leave a diffuse surface for another before it is gathered from the lights.
+    pub diffuse_bounces: u32,
+}
+
+/// Which of a surface's branches are followed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Transport {
+    /// All of them, until the weight falls below `cutoff`; what is dropped is summed and reported.
+    Deterministic {
+        /// Smallest weight that is followed.
+        cutoff: f64,
+    },
+    /// All while the weight is above `split`, then one; below `roulette` a path goes on with probability weight / roulette.
+    Random {
+        /// Weight above which all branches are followed and all lights are aimed at.
+        split: f64,
+        /// Weight below which paths are ended at random.
+        roulette: f64,
+    },
+}
+
+impl Transport {
+    /// The name recorded in a file.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Deterministic { .. } => "deterministic",
+            Self::Random { .. } => "random",
+        }
+    }
+}

@@ -1,0 +1,26 @@
+//! Floor 4: how light travels.
+//!
+//! What holds on every path:
+//!
+//! 1. A lane whose throughput is 0 is not on the ray.
+//! 2. Lanes on one ray share its geometry, random numbers and density, and differ only in throughput.
+//! 3. A surface answers with branches, a direction and the lanes that came by it; dispersive lanes part there.
+//! 4. The tracer is a loop over pending rays: it follows all branches while the weight is large, then one, then plays
+//!    roulette. A weight is the mean throughput over the lanes, without the factor of radiance between media.
+//! 5. Random numbers are a pure function of seed, pixel, sample, branch and use; sums have a fixed order.
+
+mod direct;
+mod media;
+mod method;
+mod path;
+mod probe;
+
+mod render;
+mod tracer;
+mod world;
+
+pub use method::{Method, Transport};
+pub use probe::{Probe, probe};
+
+pub use render::{Report, render};
+pub use world::World;

@@ -1,0 +1,72 @@
+use super::World;
+use super::media::{self, Media};
+use crate::math::{BranchKey, DVec3, Ray};
+use crate::spectrum::{Draw, Throughput};
+
+/// A ray on its way back from the camera.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Path<const N: usize> {
+    pub(super) ray: Ray,
+    pub(super) throughput: Throughput<N>,
+    /// The factor of radiance between the medium at the path's end and the camera's, which is no measure of importance.
+    pub(super) eta_scale: f64,
+    /// The bodies the ray is inside of.
+    pub(super) media: Media,
+    /// Which random numbers belong to the path's next vertex.
+    pub(super) key: BranchKey,
+    /// Surfaces met so far.
+    pub(super) vertices: u32,
+    /// How often the path may still leave a diffuse surface.
+    pub(super) diffuse_left: u32,
+    /// How the last direction was drawn; none after the camera or a smooth surface.
+    pub(super) drawn: Option<Drawn>,
+    /// Degree to which the last smooth surface would have polarized the light.
+    pub(super) polarization: f32,
+}
+
+/// How a direction was drawn at a surface whose lights were aimed at as well.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Drawn {
+    /// Density per steradian.
+    pub(super) pdf: f64,
+    /// The surface's unit normal on the viewer's side.
+    pub(super) normal: DVec3,
+    /// Whether every light was aimed at there, or one.
+    pub(super) aimed_at_all: bool,
+}
+
+impl<const N: usize> Path<N> {
+    /// The path of a camera ray.
+    pub(super) fn from_camera(world: &World, draw: &Draw<N>, ray: Ray) -> Self {
+        let camera = &world.scene.camera;
+        let media = if world.has_media && camera.starts_away() {
+            world.camera_media.after_walk(world, camera.position(), ray.origin)
+        } else {
+            world.camera_media
+        };
+        Self {
+            ray,
+            throughput: Throughput::starting(draw.start()),
+            eta_scale: 1.0,
+            media,
+            key: BranchKey::CAMERA,
+            vertices: 0,
+            diffuse_left: world.method.diffuse_bounces,
+            drawn: None,
+            polarization: 0.0,
+        }
+    }
+
+    /// How much the path can still matter: its mean throughput, without the factor of radiance between media.
+    pub(super) fn weight(&self, draw: &Draw<N>) -> f64 {
+        self.throughput.weight(draw.shares()) / self.eta_scale
+    }
+
+    /// Lets the medium around the ray absorb along a distance.
+    pub(super) fn absorb(&mut self, world: &World, draw: &Draw<N>, distance: f64) {
+        if let Some(material) = self.media.inside(world) {
+            let transmission = media::medium(world, material).transmission(draw, distance);
+            self.throughput = self.throughput.through(transmission);
+        }
+    }
+}

@@ -1,0 +1,60 @@
+//! A few hundred camera samples, traced ahead so that the plan can speak in numbers.
+
+use std::time::{Duration, Instant};
+
+use super::World;
+use super::render::sample;
+use super::tracer::Tracer;
+use crate::math::Sampler;
+use crate::spectrum::Draw;
+
+/// What a probe found, per camera sample.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Probe {
+    /// Camera samples traced.
+    pub samples: u32,
+    /// Rays followed, without those to lights.
+    pub rays: f64,
+    /// Share of the samples whose lanes parted.
+    pub parted: f64,
+    /// Bound of the weight that polarization would move.
+    pub polarization: f64,
+    /// Processor time.
+    pub time: Duration,
+}
+
+/// Camera samples along each side of the image.
+const SIDE: u32 = 24;
+/// Time after which the probe has seen enough.
+const ENOUGH: Duration = Duration::from_millis(300);
+
+/// Traces single samples of pixels spread over the image.
+pub fn probe(world: &World) -> Probe {
+    const N: usize = 4;
+    let draw = Draw::<N>::fixed(world.method.basis.len());
+    let mut tracer = Tracer::<N>::new(world);
+    let (mut samples, mut parted) = (0, 0);
+    let film = world.scene.film;
+    let start = Instant::now();
+    // A stride that is coprime to the number of places visits them all, far ones first.
+    let places = SIDE * SIDE;
+    for place in (0..places).map(|i| (i * 229) % places) {
+        let spread = |i: u32, size: u32| ((u64::from(2 * i + 1) * u64::from(size)) / u64::from(2 * SIDE)) as u32;
+        let (x, y) = (spread(place % SIDE, film.width), spread(place / SIDE, film.height));
+        let before = tracer.tally.partings;
+        sample(world, &mut tracer, &draw, &Sampler::new(world.method.seed, [x, y], 0), x, y);
+        samples += 1;
+        parted += u32::from(tracer.tally.partings > before);
+        if start.elapsed() > ENOUGH {
+            break;
+        }
+    }
+    let per_sample = 1.0 / f64::from(samples);
+    Probe {
+        samples,
+        rays: tracer.tally.rays as f64 * per_sample,
+        parted: f64::from(parted) * per_sample,
+        polarization: tracer.tally.polarization * per_sample,
+        time: start.elapsed().div_f64(f64::from(samples)),
+    }
+}

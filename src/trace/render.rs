@@ -1,0 +1,146 @@
+//! The loop over tiles.
+
+use rayon::prelude::*;
+
+use super::tracer::{Tally, Tracer};
+use super::{Transport, World};
+use crate::film::{Film, Pixel, PixelSum, Sample};
+use crate::math::{BranchKey, DVec2, Sampler};
+use crate::spectrum::Draw;
+
+/// Side of a tile in pixels.
+const TILE: u32 = 16;
+/// Use of the camera's random numbers: where in the pixel the sample falls.
+const PLACE: u32 = 0;
+
+/// What rendering noticed.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Report {
+    /// Camera samples taken.
+    pub samples: u64,
+    /// Rays followed, without those to lights.
+    pub rays: u64,
+    /// Samples left out because they were not finite.
+    pub non_finite: u64,
+    /// Column, row and number of the first of them.
+    pub first_non_finite: Option<[u32; 3]>,
+    /// Mean weight per camera sample of the branches that deterministic transport dropped.
+    pub dropped: f64,
+    /// Mean weight per camera sample of paths stopped because they would not end.
+    pub stopped: f64,
+    /// Surfaces of clear bodies that were left without having been entered: open meshes.
+    pub unmatched: u64,
+    /// Bound of the mean weight per camera sample that polarization would move.
+    pub polarization: f64,
+}
+
+/// Renders the world's image. `progress` is told how many pixels are done, from any thread.
+pub fn render(world: &World, progress: &(dyn Fn(u64) + Sync)) -> (Film, Report) {
+    match world.method.basis.len() {
+        0..=4 => render_lanes::<4>(world, progress),
+        bins => unreachable!("no basis has {bins} bins"),
+    }
+}
+
+fn render_lanes<const N: usize>(world: &World, progress: &(dyn Fn(u64) + Sync)) -> (Film, Report) {
+    let settings = world.scene.film;
+    let (columns, rows) = (settings.width.div_ceil(TILE), settings.height.div_ceil(TILE));
+    let bands: Vec<(Vec<Pixel>, Report)> = (0..rows)
+        .into_par_iter()
+        .map(|row| {
+            let height = TILE.min(settings.height - row * TILE);
+            let tiles: Vec<_> =
+                (0..columns).into_par_iter().map(|column| tile::<N>(world, column, row, progress)).collect();
+            let mut pixels = vec![BLANK; (settings.width * height) as usize];
+            let mut report = Report::default();
+            for (column, (tile, noted)) in tiles.iter().enumerate() {
+                let left = column * TILE as usize;
+                let width = tile.len() / height as usize;
+                for y in 0..height as usize {
+                    let start = y * settings.width as usize + left;
+                    pixels[start..start + width].copy_from_slice(&tile[y * width..(y + 1) * width]);
+                }
+                report.add(noted);
+            }
+            (pixels, report)
+        })
+        .collect();
+    let mut report = Report::default();
+    let mut pixels = Vec::with_capacity((settings.width as usize) * settings.height as usize);
+    for (band, noted) in bands {
+        pixels.extend(band);
+        report.add(&noted);
+    }
+    let samples = report.samples.max(1) as f64;
+    report.dropped /= samples;
+    report.stopped /= samples;
+    report.polarization /= samples;
+    let film = Film { width: settings.width, height: settings.height, color_space: settings.color_space, pixels };
+    (film, report)
+}
+
+const BLANK: Pixel = Pixel { rgb: [0.0; 3], alpha: 0.0, depth: 0.0 };
+
+/// The pixels of one tile, row by row.
+fn tile<const N: usize>(world: &World, column: u32, row: u32, progress: &(dyn Fn(u64) + Sync)) -> (Vec<Pixel>, Report) {
+    let settings = world.scene.film;
+    let draw = Draw::<N>::fixed(world.method.basis.len());
+    let mut tracer = Tracer::<N>::new(world);
+    let (mut pixels, mut report) = (Vec::new(), Report::default());
+    for y in row * TILE..settings.height.min((row + 1) * TILE) {
+        for x in column * TILE..settings.width.min((column + 1) * TILE) {
+            let mut sum = PixelSum::default();
+            for number in 0..world.method.samples {
+                let sampler = Sampler::new(world.method.seed, [x, y], number);
+                if !sum.add(&sample(world, &mut tracer, &draw, &sampler, x, y)) {
+                    report.non_finite += 1;
+                    report.first_non_finite.get_or_insert([x, y, number]);
+                }
+            }
+            pixels.push(sum.pixel());
+        }
+    }
+    let Tally { rays, dropped, stopped, unmatched, polarization, .. } = tracer.tally;
+    report.add(&Report {
+        samples: pixels.len() as u64 * u64::from(world.method.samples),
+        rays,
+        dropped,
+        stopped,
+        unmatched,
+        polarization,
+        ..Report::default()
+    });
+    progress(pixels.len() as u64);
+    (pixels, report)
+}
+
+/// One camera sample.
+pub(super) fn sample<const N: usize>(
+    world: &World,
+    tracer: &mut Tracer<N>,
+    draw: &Draw<N>,
+    sampler: &Sampler,
+    x: u32,
+    y: u32,
+) -> Sample {
+    let [u, v, ..] = match world.method.transport {
+        Transport::Deterministic { .. } => [0.5; 4],
+        Transport::Random { .. } => sampler.four(BranchKey::CAMERA, PLACE),
+    };
+    let film = DVec2::new(f64::from(x), f64::from(y)) + world.scene.film.filter.place([u, v]);
+    let (rgb, first) = tracer.radiance(world.scene.camera.ray(film), draw, sampler);
+    Sample { rgb, depth: first.map(|point| world.scene.camera.depth(point.position)) }
+}
+
+impl Report {
+    fn add(&mut self, other: &Self) {
+        self.samples += other.samples;
+        self.rays += other.rays;
+        self.non_finite += other.non_finite;
+        self.first_non_finite = self.first_non_finite.or(other.first_non_finite);
+        self.dropped += other.dropped;
+        self.stopped += other.stopped;
+        self.unmatched += other.unmatched;
+        self.polarization += other.polarization;
+    }
+}

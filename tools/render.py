@@ -1,0 +1,62 @@
+"""Finds the renderer, renders a scene and reads its EXR: what the checkers share.
+
+    from render import read, render
+    image = render(scene_text, samples=16, seed=3)
+    image.rgb                                   # float64, height x width x 3
+"""
+
+import os
+import subprocess
+import tempfile
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import OpenEXR
+
+ROOT = Path(__file__).resolve().parent.parent
+SCENES = ROOT / "scenes"
+
+
+class Image(NamedTuple):
+    header: dict
+    channels: dict  # name -> float array, height x width, as stored
+
+    @property
+    def rgb(self):
+        return np.stack([self.channels[name] for name in "RGB"], axis=-1).astype(np.float64)
+
+
+def binary():
+    """$RENDER if it is set, else the release build."""
+    path = Path(os.environ.get("RENDER") or ROOT / "target/release/render").resolve()
+    if not path.is_file():
+        raise SystemExit(f"{path} does not exist: run `cargo build --release`, or set RENDER to a built binary")
+    return path
+
+
+def read(path):
+    """The only part of an EXR file, every channel by its name."""
+    with OpenEXR.File(str(path), separate_channels=True) as file:
+        (part,) = file.parts
+        return Image(dict(part.header), {name: channel.pixels.copy() for name, channel in part.channels.items()})
+
+
+def write(scene, exr, **flags):
+    """Renders `scene` (a file, or a scene's text) into the file `exr`; flags as on the command line: samples=16, seed=3."""
+    if isinstance(scene, str):
+        text, scene = scene, Path(exr).with_suffix(".toml")
+        scene.write_text(text, "utf-8")
+    arguments = [word for name, value in flags.items() for word in (f"--{name}", str(value))]
+    command = [str(binary()), str(scene), "--exr", str(exr), *arguments]
+    run = subprocess.run(command, capture_output=True, text=True, check=False)
+    if run.returncode:
+        raise RuntimeError(f"{' '.join(command)}: exit code {run.returncode}\n{run.stderr}")
+
+
+def render(scene, **flags):
+    """The image of `scene`, by way of a temporary file."""
+    with tempfile.TemporaryDirectory() as folder:
+        exr = Path(folder) / "scene.exr"
+        write(scene, exr, **flags)
+        return read(exr)

@@ -1,0 +1,183 @@
+"""The EXR checker passes good files and names what is wrong with bad ones.
+
+pytest tools/tests/test_check_exr.py
+"""
+
+import check_exr
+import numpy as np
+import OpenEXR
+import pytest
+
+HEIGHT, WIDTH = 8, 12
+
+
+def header(**changes):
+    good = {
+        "type": OpenEXR.scanlineimage,
+        "compression": OpenEXR.ZIP_COMPRESSION,
+        "colorInteropID": "lin_rec709_scene",
+        "chromaticities": check_exr.CHROMATICITIES["lin_rec709_scene"],
+        "software": "Abbe 0.1.0",
+        "worldToCamera": np.diag([1, 1, -1, 1]).astype(np.float32),
+        "screenWindowWidth": 1.5,
+        "render/version": "0.1.0",
+        "render/sceneHash": "0f" * 32,
+        "render/seed": "18446744073709551615",
+        "render/samples": 4,
+        "render/filter": "box",
+        "render/model": "rgb",
+        "render/transport": "deterministic",
+        "render/nonFinite": 0,
+    }
+    return {name: value for name, value in {**good, **changes}.items() if value is not None}
+
+
+def plane(value, dtype=np.float32):
+    return np.full((HEIGHT, WIDTH), value, dtype)
+
+
+def channels(**changes):
+    good = {"R": plane(0.5), "G": plane(7e4), "B": plane(0), "A": plane(1), "Z": plane(2.5)}
+    return {name: value for name, value in {**good, **changes}.items() if value is not None}
+
+
+@pytest.fixture
+def found(tmp_path):
+    """The violations of a file that is good but for the given changes."""
+
+    def write_and_check(header, channels):
+        path = tmp_path / "image.exr"
+        OpenEXR.File(header, channels).write(str(path))
+        return check_exr.violations(path)
+
+    return write_and_check
+
+
+def test_a_good_file_breaks_no_rule(found):
+    assert found(header(), channels()) == []
+
+
+def test_every_color_space_passes_with_its_own_chromaticities(found):
+    for space, chromaticities in check_exr.CHROMATICITIES.items():
+        assert found(header(colorInteropID=space, chromaticities=chromaticities), channels()) == []
+
+
+def test_the_table_of_chromaticities_agrees_with_openexr():
+    for space, chromaticities in check_exr.CHROMATICITIES.items():
+        assert OpenEXR.colorInteropIDToChromaticities(space) == pytest.approx(chromaticities, abs=1e-7)
+
+
+def mirrored():
+    return np.eye(4, dtype=np.float32)
+
+
+def stretched():
+    return np.diag([1, 1.00001, -1, 1]).astype(np.float32)
+
+
+def projective():
+    matrix = np.diag([1, 1, -1, 1]).astype(np.float32)
+    matrix[2, 3] = 1
+    return matrix
+
+
+WINDOW = (np.array([0, 0], np.int32), np.array([WIDTH - 1, HEIGHT - 1], np.int32))
+SHIFTED = (np.array([1, 1], np.int32), np.array([WIDTH, HEIGHT], np.int32))
+LARGER = (np.array([0, 0], np.int32), np.array([WIDTH, HEIGHT], np.int32))
+
+
+@pytest.mark.parametrize(
+    ("changes", "reason"),
+    [
+        ({"type": OpenEXR.tiledimage, "tiles": OpenEXR.TileDescription()}, "not a scanline image"),
+        ({"compression": OpenEXR.PIZ_COMPRESSION}, "not ZIP"),
+        ({"lineOrder": OpenEXR.DECREASING_Y}, "not increasing y"),
+        ({"dataWindow": WINDOW, "displayWindow": LARGER}, "differs from display window"),
+        ({"dataWindow": SHIFTED, "displayWindow": SHIFTED}, "not at the origin"),
+        ({"pixelAspectRatio": 2.0}, "pixel aspect ratio"),
+        ({"colorInteropID": None}, "colorInteropID is None"),
+        ({"colorInteropID": "unknown"}, "colorInteropID is 'unknown'"),
+        ({"chromaticities": None}, "chromaticities are missing"),
+        ({"chromaticities": check_exr.CHROMATICITIES["lin_ap1_scene"]}, "not those of lin_rec709_scene"),
+        ({"acesImageContainerFlag": 1}, "OpenEXR warns of the color metadata"),
+        ({"screenWindowWidth": 0.0}, "screenWindowWidth"),
+        ({"screenWindowCenter": np.array([0.1, 0], np.float32)}, "screenWindowCenter"),
+        ({"worldToCamera": None}, "worldToCamera is missing"),
+        ({"worldToCamera": mirrored()}, "left-handed"),
+        ({"worldToCamera": stretched()}, "orthonormal"),
+        ({"worldToCamera": projective()}, "affine"),
+        ({"software": None}, "software is missing"),
+        ({"capDate": "2026:01:01 00:00:00"}, "capDate is present"),
+        ({"render/version": None}, "render/version is missing"),
+        ({"render/sceneHash": "0f" * 31}, "render/sceneHash"),
+        ({"render/seed": "-1"}, "render/seed"),
+        ({"render/samples": 0}, "render/samples"),
+        ({"render/samples": "4"}, "render/samples"),
+        ({"render/filter": "gaussian"}, "render/filter"),
+        ({"render/model": " "}, "render/model"),
+        ({"render/transport": None}, "render/transport is missing"),
+        ({"render/nonFinite": -1}, "render/nonFinite"),
+    ],
+)
+def test_a_bad_header_fails_for_its_own_reason(found, changes, reason):
+    violations = found(header(**changes), channels())
+    assert any(reason in violation for violation in violations), violations
+    assert len(violations) <= 2, violations
+
+
+@pytest.mark.parametrize(
+    ("changes", "reason"),
+    [
+        ({"Z": None}, "'Z': missing"),
+        ({"A": None}, "'A': missing"),
+        ({"R": plane(0.5, np.float16)}, "'R': float16, not 32-bit float"),
+        ({"Z": plane(2, np.uint32)}, "'Z': uint32, not 32-bit float"),
+        ({"G": plane(np.nan)}, "'G': 96 values not finite"),
+        ({"B": plane(-np.inf)}, "'B': 96 values not finite"),
+        ({"A": plane(1.0000001)}, "'A': from"),
+        ({"A": plane(-0.1)}, "'A': from"),
+        ({"Z": plane(0)}, "depths not positive"),
+        ({"A": plane(0)}, "not at the miss depth"),
+        ({"a_very_long_layer_name_indeed.RED": plane(0)}, "not 1 to 31 printable"),
+        ({"two words.R": plane(0)}, "not LAYER.CHANNEL"),
+        ({"1st.R": plane(0)}, "not LAYER.CHANNEL"),
+        ({"a.b.R": plane(0)}, "not LAYER.CHANNEL"),
+    ],
+)
+def test_a_bad_channel_fails_for_its_own_reason(found, changes, reason):
+    violations = found(header(), channels(**changes))
+    assert any(reason in violation for violation in violations), violations
+    assert len(violations) <= 2, violations
+
+
+def test_a_perceptually_linear_channel_fails(found):
+    marked = OpenEXR.Channel("R", plane(0.5), 1, 1, True)
+    assert found(header(), channels(R=marked)) == ["channel 'R': marked as perceptually linear"]
+
+
+def test_two_parts_fail(tmp_path):
+    path = tmp_path / "parts.exr"
+    parts = [OpenEXR.Part({**header(), "name": name}, channels(), name) for name in ("one", "two")]
+    OpenEXR.File(parts).write(str(path))
+    assert check_exr.violations(path) == ["2 parts, not one"]
+
+
+@pytest.mark.parametrize("share", [0.0, 0.1, 0.5, 0.9, 0.999])
+def test_a_truncated_file_fails_as_unreadable(tmp_path, share):
+    whole, cut = tmp_path / "whole.exr", tmp_path / "cut.exr"
+    noise = 1 - np.random.default_rng(1).random((5, 50, 20), np.float32)
+    OpenEXR.File(header(), dict(zip("RGBAZ", noise, strict=True))).write(str(whole))
+    assert check_exr.violations(whole) == []
+    content = whole.read_bytes()
+    cut.write_bytes(content[: int(share * len(content))])
+    (violation,) = check_exr.violations(cut)
+    assert violation.startswith("unreadable: ")
+
+
+def test_the_command_names_each_file_and_exits_with_1_on_any_violation(tmp_path, capsys):
+    good, bad = str(tmp_path / "good.exr"), str(tmp_path / "bad.exr")
+    OpenEXR.File(header(), channels()).write(good)
+    OpenEXR.File(header(capDate="2026:01:01 00:00:00"), channels()).write(bad)
+    assert check_exr.main([good]) == 0
+    assert check_exr.main([good, bad]) == 1
+    assert f"FAIL {bad}\n      capDate is present" in capsys.readouterr().out
