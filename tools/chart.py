@@ -17,13 +17,11 @@ import tempfile
 from pathlib import Path
 from typing import NamedTuple
 
-import matplotlib
 import numpy as np
 import render
-import smallpt_regions
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402
+import smallpt_reference
+from matplotlib.figure import Figure
+from smallpt_regions import scene_text, sees_glass
 
 REPEATS = 3
 REFERENCE_SEEDS = (101, 102)
@@ -38,7 +36,7 @@ class Setting(NamedTuple):
     half_reference: int
 
 
-FULL = Setting((256, 192), (4, 16, 64, 256), 512)
+FULL = Setting((256, 192), (4, 16, 64, 256), 256)
 QUICK = Setting((128, 96), (4, 16, 64), 256)
 
 
@@ -47,10 +45,11 @@ class Abbe:
 
     name = "Abbe"
     color = "#1b6ca8"
+    label_offset = (4, 6)
 
     def __init__(self, folder: Path, size: tuple[int, int]):
         self.scene = folder / "scene.toml"
-        self.scene.write_text(smallpt_regions.scene_text(*size))
+        self.scene.write_text(scene_text(*size))
         self.out = folder / "abbe.exr"
 
     def command(self, samples: int, seed: int) -> list:
@@ -69,20 +68,21 @@ class Smallpt:
 
     name = "smallpt"
     color = "#c4572b"
+    label_offset = (-14, -12)
 
     def __init__(self, folder: Path, size: tuple[int, int]):
-        self.binary = smallpt_regions.compile_program(folder)
+        self.binary = smallpt_reference.compile_program(folder)
         self.size = size
         self.out = folder / "smallpt.pfm"
 
     def command(self, samples: int, seed: int) -> list:
-        return [self.binary, samples, *self.size, seed, self.out, *smallpt_regions.EXACT_FLAGS]
+        return [self.binary, samples, *self.size, seed, self.out, *smallpt_reference.EXACT_FLAGS]
 
     def picture(self) -> np.ndarray:
-        return smallpt_regions.read_pfm(self.out).astype(np.float64)
+        return smallpt_reference.read_pfm(self.out).astype(np.float64)
 
     def version(self) -> str:
-        flags = " ".join(("g++ -O3 -march=native, run with", *smallpt_regions.EXACT_FLAGS))
+        flags = " ".join(("g++ -O3 -march=native, run with", *smallpt_reference.EXACT_FLAGS))
         return f"tools/smallpt.cpp, {flags}; {first_line(['g++', '--version'])}"
 
 
@@ -117,7 +117,7 @@ class Reference:
         for seed in REFERENCE_SEEDS:
             cpu_seconds(renderer.command(setting.half_reference, seed))
             halves.append(renderer.picture())
-        self.judged = ~smallpt_regions.sees_glass(*setting.size)
+        self.judged = ~sees_glass(*setting.size)
         self.mean = (halves[0] + halves[1]) / 2
         self.noise = (halves[0] - halves[1]) ** 2 / 4
 
@@ -170,17 +170,20 @@ def verdict(ours: list[Run], theirs: list[Run], measure_name: str, title: str) -
     )
 
 
-def draw(points: dict[str, list[Run]], colors: dict[str, str], note: str, path: Path) -> None:
+def draw(points: dict[str, list[Run]], renderers: list, note: str, path: Path) -> None:
     """Both measures of error against CPU time."""
-    figure, panels = plt.subplots(1, 2, figsize=(11, 4.8), layout="constrained")
+    figure = Figure(figsize=(11, 4.8), layout="constrained")
+    panels = figure.subplots(1, 2)
     titles = {"rms": "RMS error", "relative": "mean of (x - r)² / (r² + 0.01)"}
     for panel, (measure_name, title) in zip(panels, titles.items(), strict=True):
-        for name, own in points.items():
-            x = [point.cpu_seconds for point in own]
-            y = [getattr(point, measure_name) for point in own]
-            panel.loglog(x, y, "o-", color=colors[name], label=name)
-            for point, px, py in zip(own, x, y, strict=True):
-                panel.annotate(str(point.samples), (px, py), xytext=(5, 5), textcoords="offset points", fontsize=8)
+        for renderer in renderers:
+            own = points[renderer.name]
+            places = [(point.cpu_seconds, getattr(point, measure_name)) for point in own]
+            panel.loglog(*zip(*places, strict=True), "o-", color=renderer.color, label=renderer.name)
+            beside = {"xytext": renderer.label_offset, "textcoords": "offset points", "fontsize": 8}
+            for point, place in zip(own, places, strict=True):
+                panel.annotate(str(point.samples), place, color=renderer.color, **beside)
+        panel.margins(0.08)
         panel.set(xlabel="CPU seconds, one thread", ylabel=title)
         panel.grid(which="both", color="0.9")
         panel.legend()
@@ -220,7 +223,7 @@ def main() -> None:
     points = {renderer.name: medians(runs, renderer.name) for renderer in renderers}
     report(points, start, setting)
     note = f"{setting.size[0]} x {setting.size[1]}, medians of {REPEATS}, samples per pixel beside the points"
-    draw(points, {renderer.name: renderer.color for renderer in renderers}, note, arguments.out / "smallpt.png")
+    draw(points, renderers, note, arguments.out / "smallpt.png")
     print(f"wrote smallpt.png and smallpt.csv into {arguments.out}")
 
 

@@ -43,7 +43,7 @@ def read(path):
 
 
 def write(scene, exr, **flags):
-    """Renders `scene` (a file, or a scene's text) into the file `exr`; flags as on the command line: samples=16, seed=3."""
+    """Renders `scene` (a path, or a scene's text) into the file `exr`; flags as on the command line: samples=16."""
     if isinstance(scene, str):
         text, scene = scene, Path(exr).with_suffix(".toml")
         scene.write_text(text, "utf-8")

@@ -1,37 +1,18 @@
-"""The regions of scenes/smallpt.toml, and what the 99-line program (tools/smallpt.cpp) shows in them.
+"""The regions of scenes/smallpt.toml, and which of its pixels see the glass or the black front wall.
 
-    python tools/smallpt_regions.py            # say what each habit of the program changes, region by region
-    python tools/smallpt_regions.py --render   # render it anew into tools/smallpt_reference.json (10 CPU minutes)
+    from smallpt_regions import region_means, scene_text, sees_glass
+    region_means(image)["floor"]            # R, G, B
 
-Six regions cover the picture; the glass ball stands apart, for it shows Schlick's approximation.
+Six regions cover the picture; the glass ball stands apart, for there the 99-line program's Schlick approximation shows.
 """
 
-import argparse
-import json
-import os
-import subprocess
 import tomllib
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
-TOOLS = Path(__file__).resolve().parent
-SCENE = TOOLS.parent / "scenes/smallpt.toml"
-PROGRAM = TOOLS / "smallpt.cpp"
-REFERENCE = TOOLS / "smallpt_reference.json"
-
-SIZE = (256, 192)
-SEEDS = range(1, 9)
-LONG, SHORT = 512, 64
-EXACT_FLAGS = ("--box", "--no-clamp")
-HABITS = {
-    "tent filter": ("--no-clamp",),
-    f"clamp at {SHORT} samples": ("--box",),
-    "all as in the original": (),
-    "without Schlick": (*EXACT_FLAGS, "--exact-fresnel"),
-    "offset 1e-6 for 1e-4": (*EXACT_FLAGS, "--offset", "1e-6"),
-}
+SCENE = Path(__file__).resolve().parent.parent / "scenes/smallpt.toml"
 
 # Left, top, right, bottom in pixels of 1024 x 768, y down.
 SIX_REGIONS = {
@@ -136,84 +117,3 @@ def sees_front_wall(width: int, height: int) -> np.ndarray:
     seen = np.zeros((height, width), bool)
     seen[on_mirror] = behind.argmin(axis=0) == names.index("front wall")
     return seen
-
-
-def compile_program(folder: Path) -> Path:
-    """Compiles the 99-line program as fast as g++ makes it."""
-    binary = folder / "smallpt"
-    subprocess.run(["g++", "-O3", "-march=native", "-o", binary, PROGRAM], check=True)
-    return binary
-
-
-def read_pfm(path: Path) -> np.ndarray:
-    """The image in a little-endian color PFM, the top row first."""
-    with path.open("rb") as file:
-        if file.readline() != b"PF\n":
-            raise ValueError(f"{path} is no color PFM")
-        width, height = map(int, file.readline().split())
-        file.readline()
-        return np.frombuffer(file.read(), "<f4").reshape(height, width, 3)[::-1]
-
-
-def run_program(binary: Path, samples: int, seed: int, flags: tuple[str, ...]) -> np.ndarray:
-    """The picture of the 99-line program at the reference's size."""
-    out = binary.with_name("regions.pfm")
-    command = [binary, samples, *SIZE, seed, out, *flags]
-    subprocess.run([str(word) for word in command], check=True, preexec_fn=lambda: os.nice(10))
-    return read_pfm(out)
-
-
-def tabulate(values: dict[str, tuple[np.ndarray, np.ndarray]]) -> dict:
-    """Means and errors as they stand in the JSON file."""
-    return {
-        name: {"mean": [float(f"{x:.5g}") for x in mean], "error": [float(f"{x:.2g}") for x in error]}
-        for name, (mean, error) in values.items()
-    }
-
-
-def render_reference(folder: Path) -> dict:
-    """The long run, and by short ones with the same random numbers the relative change that each habit makes."""
-    binary = compile_program(folder)
-    long = [region_means(run_program(binary, LONG, seed, EXACT_FLAGS)) for seed in SEEDS]
-    plain = [region_means(run_program(binary, SHORT, seed, EXACT_FLAGS)) for seed in SEEDS]
-    changes = {}
-    for habit, flags in HABITS.items():
-        runs = [region_means(run_program(binary, SHORT, seed, flags)) for seed in SEEDS]
-        ratios = [{name: run[name] / base[name] - 1 for name in REGIONS} for run, base in zip(runs, plain)]
-        changes[habit] = {"flags": " ".join(flags), "regions": tabulate(mean_and_error(ratios))}
-    return {
-        "about": "means of tools/smallpt.cpp by region and band (R, G, B): python tools/smallpt_regions.py --render",
-        "size": SIZE,
-        "seeds": len(SEEDS),
-        "reference": {
-            "flags": " ".join(EXACT_FLAGS),
-            "samples": LONG,
-            "regions": tabulate(mean_and_error(long)),
-        },
-        "relative_changes": {"samples": SHORT, "habits": changes},
-    }
-
-
-def table(reference: dict) -> str:
-    """The changes in percent, a line for each habit and region."""
-    lines = ["changes in percent (one standard error), R G B"]
-    for habit, entry in reference["relative_changes"]["habits"].items():
-        lines.append(f"\n{habit}")
-        for name, values in entry["regions"].items():
-            pairs = zip(values["mean"], values["error"])
-            lines.append(f"  {name:<12}" + "".join(f"  {100 * x:+8.3f} ({100 * e:.3f})" for x, e in pairs))
-    return "\n".join(lines)
-
-
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--render", action="store_true", help="render the reference anew (10 CPU minutes)")
-    if parser.parse_args().render:
-        folder = TOOLS.parent / "target/smallpt"
-        folder.mkdir(parents=True, exist_ok=True)
-        REFERENCE.write_text(json.dumps(render_reference(folder), indent=1) + "\n")
-    print(table(json.loads(REFERENCE.read_text())))
-
-
-if __name__ == "__main__":
-    main()

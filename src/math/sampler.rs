@@ -45,6 +45,15 @@ impl Sampler {
         let seed = mix(self.pixel ^ branch.0.wrapping_add(u64::from(purpose)));
         sample_4d(self.index, 0, (seed >> 32) as u32).map(f64::from)
     }
+
+    /// Four numbers in [0, 1) for one use at one vertex, independent from sample to sample.
+    pub fn four_plain(&self, branch: BranchKey, purpose: u32) -> [f64; 4] {
+        let sample = mix(self.pixel ^ u64::from(self.index).wrapping_mul(0xd134_2543_de82_ef95));
+        let a = mix(sample ^ branch.0.wrapping_add(u64::from(purpose)));
+        let b = mix(a);
+        let unit = |x: u64| f64::from(x as u32) * (1.0 / 4_294_967_296.0);
+        [unit(a), unit(a >> 32), unit(b), unit(b >> 32)]
+    }
 }
 
 /// A bijection of 64 bits that spreads every input bit over all output bits.

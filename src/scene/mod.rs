@@ -15,6 +15,7 @@ pub use compile::compile;
 pub use description::{Description, ModelText, RenderText};
 pub use source::Source;
 
+use std::cell::Cell;
 use std::sync::Arc;
 
 use crate::film::Filter;
@@ -137,17 +138,27 @@ impl<S> Scene<S> {
     }
 
     /// Whether anything lies before a light at `distance`; the light's own object does not hide it.
-    pub fn is_hidden(&self, ray: &Ray, distance: f64, light: Option<u32>) -> bool {
+    ///
+    /// `hider` remembers what hid a light last: it is asked first, for it often hides the next one as well.
+    pub fn is_hidden(&self, ray: &Ray, distance: f64, light: Option<u32>, hider: &Cell<u32>) -> bool {
+        let hides = |object: u32| {
+            light != Some(object)
+                && self.objects[object as usize]
+                    .shape
+                    .intersect(ray, distance)
+                    .is_some_and(|crossing| crossing.t < distance || light.is_none_or(|light| object < light))
+        };
+        let last = hider.get();
+        if hides(last) {
+            return true;
+        }
         let mut hidden = false;
         self.index.walk(ray, distance, |object, limit| {
-            if light != Some(object)
-                && let Some(crossing) = self.objects[object as usize].shape.intersect(ray, limit)
-                && (crossing.t < distance || light.is_none_or(|light| object < light))
-            {
-                hidden = true;
-                return None;
+            hidden = object != last && hides(object);
+            if hidden {
+                hider.set(object);
             }
-            Some(limit)
+            (!hidden).then_some(limit)
         });
         hidden
     }

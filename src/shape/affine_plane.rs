@@ -10,6 +10,8 @@ pub(super) struct AffinePlane {
     normal: DVec3,
     dual_u: DVec3,
     dual_v: DVec3,
+    /// Largest terms of the sums behind a point of the plane, coordinate by coordinate.
+    terms: DVec3,
 }
 
 impl AffinePlane {
@@ -22,7 +24,13 @@ impl AffinePlane {
             let across = other.normalize().cross(cross);
             across / across.dot(of)
         };
-        Self { center, u, v, normal, dual_u: dual(u, v), dual_v: dual(v, u) }
+        let terms = center.abs() + u.abs() + v.abs();
+        Self { center, u, v, normal, dual_u: dual(u, v), dual_v: dual(v, u), terms }
+    }
+
+    /// The same plane as a side of a body whose own test works with terms as large as these.
+    pub(super) fn with_terms(self, terms: DVec3) -> Self {
+        Self { terms, ..self }
     }
 
     /// The crossing with the whole plane; `uv` tells whether it lies in the region.
@@ -40,8 +48,7 @@ impl AffinePlane {
     pub(super) fn point(&self, [a, b]: [f64; 2]) -> SurfacePoint {
         let position = self.at([a, b]);
         // Two products and two sums, and 3 roundings of the normal: 7 on the largest terms.
-        let error = (self.center.abs() + self.u.abs() + self.v.abs()) * gamma(7);
-        SurfacePoint { position, error, normal: self.normal }
+        SurfacePoint { position, error: self.terms * gamma(7), normal: self.normal }
     }
 
     pub(super) fn at(&self, [a, b]: [f64; 2]) -> DVec3 {

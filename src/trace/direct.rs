@@ -1,5 +1,7 @@
 //! Next-event estimation: light that comes straight from the lights.
 
+use std::cell::Cell;
+
 use super::World;
 use super::path::Drawn;
 use crate::light::{Light, LightId};
@@ -18,6 +20,8 @@ pub(super) struct Gathering<'a, const N: usize> {
     /// Whether the path goes on from here and may meet a light by itself.
     pub(super) goes_on: bool,
     pub(super) aims_at_all: bool,
+    /// The object that hid a light last.
+    pub(super) hider: &'a Cell<u32>,
     /// Four random numbers of the vertex; the first light uses the first two, the choice of one light the last.
     pub(super) u: [f64; 4],
 }
@@ -64,7 +68,7 @@ impl<const N: usize> Gathering<'_, N> {
                     view.factor * weight / pdf
                 }
             };
-            if !factor.is_finite() || self.world.scene.is_hidden(&ray, view.distance, view.object) {
+            if !factor.is_finite() || self.world.scene.is_hidden(&ray, view.distance, view.object, self.hider) {
                 return None;
             }
             let reflected = self.throughput.scaled(factor).of(bsdf_cos * self.arrival.read(light.emission()));

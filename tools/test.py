@@ -1,0 +1,88 @@
+"""The test command: installs what the tests need and runs all of them, Rust and Python, until the first that fails.
+
+    python3 tools/test.py                # everything
+    python3 tools/test.py --only pytest  # one step
+
+Needs cargo and Python 3.11 or newer; the Python packages go into .venv, by the hashes of tools/requirements.txt.
+"""
+
+import argparse
+import hashlib
+import importlib.util
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+REQUIREMENTS = ROOT / "tools/requirements.txt"
+ENVIRONMENT = ROOT / ".venv"
+PYTHON = ENVIRONMENT / "bin/python"
+RENDER = ROOT / "target/release/render"
+
+
+class Failure(Exception):
+    """What went wrong, in words for the person at the terminal."""
+
+
+def run(*command, **environment):
+    print("$ " + " ".join(map(str, command)), flush=True)
+    try:
+        code = subprocess.run(list(map(str, command)), cwd=ROOT, env={**os.environ, **environment}).returncode
+    except FileNotFoundError:
+        raise Failure(f"{command[0]} is not installed") from None
+    if code:
+        raise Failure(f"exit code {code}: {' '.join(map(str, command))}")
+
+
+def create_environment():
+    if sys.version_info < (3, 11):
+        raise Failure(f"the Python tools need Python 3.11 or newer, this is {sys.version.split()[0]}")
+    if importlib.util.find_spec("ensurepip") is None:
+        raise Failure("Python has no ensurepip to make .venv with: install the package python3-venv (Debian, Ubuntu)")
+    run(sys.executable, "-m", "venv", "--clear", ENVIRONMENT)
+
+
+def packages():
+    """Installs the locked packages, unless the environment's stamp says that it holds exactly these."""
+    stamp = ENVIRONMENT / "requirements.sha256"
+    wanted = hashlib.sha256(REQUIREMENTS.read_bytes()).hexdigest()
+    if stamp.is_file() and stamp.read_text() == wanted and PYTHON.exists():
+        print("already installed", flush=True)
+        return
+    create_environment()
+    run(PYTHON, "-m", "pip", "install", "--quiet", "--require-hashes", "-r", REQUIREMENTS)
+    stamp.write_text(wanted)
+
+
+STEPS = {
+    "format": lambda: run("cargo", "fmt", "--all", "--check"),
+    "clippy": lambda: run("cargo", "clippy", "--all-targets", "--", "-D", "warnings"),
+    "doc": lambda: run("cargo", "doc", "--no-deps", RUSTDOCFLAGS="-D warnings"),
+    "test": lambda: run("cargo", "test"),
+    "build": lambda: run("cargo", "build", "--release"),
+    "packages": packages,
+    "pytest": lambda: run(PYTHON, "-m", "pytest", "tools/tests", RENDER=str(RENDER)),
+}
+
+
+def main():
+    parser = argparse.ArgumentParser(description="Runs every test of the project.")
+    parser.add_argument("--only", choices=STEPS, help="run this step alone")
+    only = parser.parse_args().only
+    times = {}
+    for name in [only] if only else STEPS:
+        print(f"\n== {name}", flush=True)
+        start = time.monotonic()
+        try:
+            STEPS[name]()
+        except Failure as failure:
+            sys.exit(f"\nFAILED at {name}: {failure}")
+        times[name] = time.monotonic() - start
+        print(f"== {name} passed in {times[name]:.1f} s", flush=True)
+    print("\nall passed: " + ", ".join(f"{name} {seconds:.0f} s" for name, seconds in times.items()))
+
+
+if __name__ == "__main__":
+    main()
