@@ -9,14 +9,14 @@ use clap::Parser;
 
 const EXAMPLES: &str = "\
 Examples:
-  render --exr scenes/prism.toml                       write ./prism.exr, show the plan and the progress
-  render scenes/prism.toml --exr out/frame.exr         name the file
-  render scenes/prism.toml --png look.png --exposure 1 also write a picture for looking, one stop brighter
-  render --plan scenes/prism.toml                      say what would be modelled and why; render nothing
-  render --check scenes/prism.toml                     find mistakes in the scene; render nothing
-  render --samples 16 --exr scenes/prism.toml          a quick look
+  render --exr scenes/prism.toml                  write ./prism.exr
+  render scenes/prism.toml --exr out/frame.exr    name the file
+  render scenes/prism.toml --png look.png         write a picture to look at, too
+  render --plan scenes/prism.toml                 say what would be modelled, why
+  render --check scenes/prism.toml                find mistakes in the scene
+  render --samples 16 --exr scenes/prism.toml     take a quick look
 
-Exit codes: 0 done, 1 the render or a file failed, 2 the arguments or the scene are wrong.";
+Exit codes: 0 done, 1 the render or a file failed, 2 bad arguments or a bad scene.";
 
 /// Render a TOML scene to a linear OpenEXR image.
 #[derive(Parser)]
@@ -46,16 +46,24 @@ struct Arguments {
     check: bool,
 
     /// Camera samples per pixel, instead of the scene's
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..))]
     samples: Option<u32>,
 
     /// Another set of random numbers, instead of the scene's
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = seed)]
     seed: Option<u64>,
 
     /// Processor threads; all if absent. The image is the same for any number
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true,
+          value_parser = clap::value_parser!(u16).range(1..=MAX_THREADS))]
     threads: Option<u16>,
+}
+
+/// More threads than any one machine has processors for; many more would exhaust it.
+const MAX_THREADS: i64 = 1024;
+
+fn seed(text: &str) -> std::result::Result<u64, String> {
+    text.parse().map_err(|_| format!("a seed is a whole number from 0 to {}", u64::MAX))
 }
 
 /// What the command line asks for.
@@ -80,7 +88,11 @@ pub fn parse() -> Result<Job> {
     let arguments = Arguments::parse();
     let (scene, exr) = scene_and_image(arguments.scene, arguments.exr)?;
     if !arguments.exposure.is_finite() {
-        return refuse("an exposure is a finite number of stops", None);
+        return refuse("an exposure is a finite number of stops", Some("for instance: --exposure 1"));
+    }
+    if let Some(png) = arguments.png.as_deref().filter(|png| !ends_in(png, "png")) {
+        let message = format!("--png writes a file that ends in .png, not {}", png.display());
+        return refuse(&message, Some("for instance: --png look.png"));
     }
     let output = if arguments.plan {
         Output::Plan
@@ -112,7 +124,7 @@ impl Job {
 
 /// `--exr` takes an image to write, or nothing; right before the scene it belongs to the scene.
 fn scene_and_image(scene: Option<PathBuf>, exr: Option<Option<PathBuf>>) -> Result<(PathBuf, PathBuf)> {
-    let is_exr = |path: &Path| path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("exr"));
+    let is_exr = |path: &Path| ends_in(path, "exr");
     match (scene, exr.flatten()) {
         (Some(scene), Some(image)) if is_exr(&image) => Ok((scene, image)),
         (Some(_), Some(image)) => {
@@ -123,6 +135,10 @@ fn scene_and_image(scene: Option<PathBuf>, exr: Option<Option<PathBuf>>) -> Resu
         (None, Some(scene)) if !is_exr(&scene) => Ok((scene.clone(), beside(&scene))),
         (None, _) => refuse("no scene is given", Some("for instance: render --exr scenes/prism.toml")),
     }
+}
+
+fn ends_in(path: &Path, ending: &str) -> bool {
+    path.extension().is_some_and(|found| found.eq_ignore_ascii_case(ending))
 }
 
 /// The scene's name with the ending .exr, in the current folder.

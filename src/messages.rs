@@ -1,6 +1,6 @@
 //! What the command says to the person who runs it, on stderr.
 
-use std::io::IsTerminal;
+use std::io::{ErrorKind, IsTerminal};
 use std::path::Path;
 
 use abbe::trace::Report;
@@ -25,7 +25,19 @@ pub fn print_error(error: &Error) {
             eprintln!("error: {message}");
             help.iter().for_each(|help| eprintln!("help: {help}"));
         }
+        Error::Io { doing, path, source } => eprintln!("error: cannot {doing} {}: {}", path.display(), reason(source)),
         other => eprintln!("error: {other}"),
+    }
+}
+
+/// What the system said, in plain words where it is terse.
+fn reason(error: &std::io::Error) -> String {
+    match error.kind() {
+        ErrorKind::NotFound => "its folder does not exist and cannot be made".into(),
+        ErrorKind::AlreadyExists | ErrorKind::NotADirectory => "a file stands where its folder should be".into(),
+        ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => "permission is denied".into(),
+        ErrorKind::StorageFull => "the disk is full".into(),
+        _ => error.to_string(),
     }
 }
 

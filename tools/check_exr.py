@@ -83,9 +83,8 @@ def values(header, channels):
         yield f"channel 'A': from {alpha.min()} to {alpha.max()}, not within 0..1"
     if depth is not None and not (depth > 0).all():
         yield f"channel 'Z': {np.count_nonzero(~(depth > 0))} depths not positive"
-    if alpha is not None and depth is not None:
-        if wrong := np.count_nonzero((alpha == 0) & (depth != np.float32(MISS_DEPTH))):
-            yield f"channel 'Z': {wrong} pixels without coverage are not at the miss depth {MISS_DEPTH:g}"
+    if alpha is not None and depth is not None and (alpha[depth != np.float32(MISS_DEPTH)] == 0).any():
+        yield f"channel 'Z': pixels without coverage are not at the miss depth {MISS_DEPTH:g}"
 
 
 def color(header, channels):

@@ -1,6 +1,6 @@
 """The classic backward tracer, written from its formulas alone, to hold the renderer's image of a scene against.
 
-    python tools/classic.py [scenes/classic.toml]        # renders it both ways and compares; exit code 1 if they disagree
+    python tools/classic.py [scenes/classic.toml]    # renders it both ways; exit code 1 if they disagree
 
 Rays start at pixel centers and carry one weight per band. Each generation of rays is one set of arrays: find the
 nearest surface, add what shines there, split into reflected and transmitted rays, and go on until the weights are

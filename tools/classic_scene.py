@@ -3,8 +3,8 @@
     from classic_scene import read_scene
     scene = read_scene("scenes/classic.toml")
 
-Shapes: plane, triangle, mesh of triangles, sphere, disc; materials: diffuse, emissive, mirror, dielectric; lights: point,
-environment.
+Shapes: plane, triangle, mesh of triangles, sphere, disc. Materials: diffuse, emissive, mirror, dielectric. Lights:
+point, environment.
 """
 
 import tomllib

@@ -9,7 +9,7 @@ To add a row: describe its scene as the TOML would, and compute its answer in to
 from typing import NamedTuple
 
 import numpy as np
-from optics import fresnel, irradiance_in_box, irradiance_under_disc, irradiance_under_sphere, irradiance_under_square, slab
+import optics
 
 BANDS = (1.333, 1.52, 2.42)
 SPREAD = (1.1, 1.5, 2.5)
@@ -53,6 +53,11 @@ def plane(point, normal):
     return {"plane": {"point": point, "normal": normal}}
 
 
+def sky(radiance):
+    """Nothing but a sky."""
+    return scene({}, [], [{"environment": {"radiance": rgb(radiance)}}], eye=(0, 0, 1))
+
+
 BODIES = {"sphere": sphere(), "cube": cube()}
 
 
@@ -66,7 +71,7 @@ def lossless(name, body, index, size, **settings):
 def lossless_beside_white(name, body, index, size):
     """A white diffuse ball under the sky has the sky's radiance too."""
     materials = {"glass": {"dielectric": {"index": index}}, "white": {"diffuse": {"reflectance": 1}}}
-    objects = [("glass", body), ("white", sphere((1.6, -0.7, -1.2), 1.0))]
+    objects = [("glass", body), ("white", sphere((2.0, -0.7, -1.2)))]
     view = scene(materials, objects, [WHITE_SKY], eye=(1.7, 1.3, 3.1), fov=42, size=size, samples=256)
     return Row(f"lossless {name} beside a white ball, {label(index)}", [view], 1.0)
 
@@ -82,13 +87,14 @@ def inside_lamp(name, material, expected, size):
 def diffuse(name, body, size):
     """A convex Lambertian body under a uniform sky of 1 shows its reflectance."""
     reflectance = (0.5, 0.2, 0.9)
-    materials = {"grey": {"diffuse": {"reflectance": rgb(reflectance)}}}
-    view = scene(materials, [("grey", body)], [WHITE_SKY], eye=(1.7, 1.3, 3.1), fov=38, size=size, samples=128)
+    materials = {"gray": {"diffuse": {"reflectance": rgb(reflectance)}}}
+    view = scene(materials, [("gray", body)], [WHITE_SKY], eye=(1.7, 1.3, 3.1), fov=38, size=size, samples=128)
     return Row(f"diffuse {name} under a sky of 1", [view], np.array(reflectance))
 
 
 def plate(kind, degrees, index=BANDS, optical_depth=0.0, surfaces=None, **settings):
-    """Rays through a plate of thickness 0.01 between black and a plane that glows, before it (R), behind it (T) or both."""
+    """Rays through a plate of thickness 0.01 toward a plane that glows, before it (R), behind it (T), or one on each
+    side (R+T); the rest is black."""
     angle = np.radians(degrees)
     glass = {"dielectric": {"index": rgb(index), "absorption": optical_depth / 0.01}}
     glow = {"R": plane((0, 30, 0), (0, -1, 0)), "T": plane((0, -5, 0), (0, 1, 0))}
@@ -96,7 +102,7 @@ def plate(kind, degrees, index=BANDS, optical_depth=0.0, surfaces=None, **settin
     surfaces = surfaces or [cube((0, -0.005, 0), (40, 0.01, 40))]
     objects = [*(("glass", surface) for surface in surfaces), *(("glow", glow[side]) for side in kind.split("+"))]
     eye = (10 * float(np.sin(angle)), 10 * float(np.cos(angle)), 0)
-    answer = dict(zip("RT", slab(np.array(index), degrees, optical_depth)))
+    answer = dict(zip("RT", optics.slab(np.array(index), degrees, optical_depth), strict=True))
     what = f"{kind} of a plate" + (f" of optical depth {optical_depth:g}" if optical_depth else "")
     what += " made of two discs" if len(surfaces) > 1 else ""
     view = scene(materials, objects, eye=eye, up=(0, 0, 1), **settings)
@@ -114,7 +120,7 @@ def metal(degrees):
     materials = {"metal": {"conductor": {"n": rgb(METAL_N), "k": rgb(METAL_K)}}}
     eye = (10 * float(np.sin(angle)), 10 * float(np.cos(angle)), 0)
     view = scene(materials, [("metal", plane((0, 0, 0), (0, 1, 0)))], [WHITE_SKY], eye=eye, up=(0, 0, 1))
-    expected = fresnel(np.array(METAL_N) + 1j * np.array(METAL_K), degrees)
+    expected = optics.fresnel(np.array(METAL_N) + 1j * np.array(METAL_K), degrees)
     return Row(f"metal plane, {degrees} degrees", [view], expected)
 
 
@@ -127,7 +133,7 @@ def lit(name, lamp, irradiance, size):
 
 
 def closed_box(size):
-    """The walls of a diffuse box around a point light, seen whole from its center: even in area on each square wall."""
+    """The walls of a diffuse box around a point light, seen from its center: evenly in area on each square wall."""
     reflectance, intensity, edge = np.array([0.2, 0.5, 0.8]), 1.0, 2.0
     materials = {"wall": {"diffuse": {"reflectance": rgb(reflectance.tolist())}}}
     light = {"point": {"position": (0.3, -0.2, 0.4), "intensity": intensity}}
@@ -136,7 +142,7 @@ def closed_box(size):
         for target in (axis, -axis):
             camera = {"eye": (0, 0, 0), "target": target.tolist(), "up": np.roll(axis, 1).tolist(), "fov": 90}
             views.append(scene(materials, [("wall", cube(size=edge))], [light], **camera, size=size, samples=256))
-    irradiance = irradiance_in_box(4 * np.pi * intensity, 6 * edge**2, reflectance)
+    irradiance = optics.irradiance_in_box(4 * np.pi * intensity, 6 * edge**2, reflectance)
     return Row("closed diffuse box around a point light", views, irradiance * reflectance / np.pi, every_pixel=False)
 
 
@@ -158,7 +164,7 @@ def rows(quick):
     table += [lossless(*body, size, samples=128) for body in bodies]
     table += [lossless_beside_white(*body, size) for body in bodies]
     table += [plate(kind, degrees) for degrees in angles for kind in ("R", "T", "R+T")]
-    table += [plate(kind, 60, size=size, samples=64) for kind in "RT"]
+    table += [plate(kind, 60, size=size, samples=1024) for kind in "RT"]
     table += [plate(kind, 60, surfaces=two_discs()) for kind in "RT"]
     table += [plate(kind, degrees, (1.5,) * 3, 1.0) for degrees in (0, 60) for kind in ("R", "T", "R+T")]
     table += [metal(degrees) for degrees in (0, 60)]
@@ -168,7 +174,7 @@ def rows(quick):
     table += [closed_box(size)]
     disc = {"disc": {"center": (0, 2, 0), "normal": (0, -1, 0), "radius": 1}}
     square = {"quad": {"center": (0, 1, 0), "u": (1, 0, 0), "v": (0, 0, 1)}}
-    table += [lit("a disc lamp", disc, irradiance_under_disc(1, 2), size)]
-    table += [lit("a square lamp", square, irradiance_under_square(1, 1), size)]
-    table += [lit("a ball lamp", sphere((0, 2, 0), 0.5), irradiance_under_sphere(0.5, 2), size)]
+    table += [lit("a disc lamp", disc, optics.irradiance_under_disc(1, 2), size)]
+    table += [lit("a square lamp", square, optics.irradiance_under_square(1, 1), size)]
+    table += [lit("a ball lamp", sphere((0, 2, 0), 0.5), optics.irradiance_under_sphere(0.5, 2), size)]
     return table

@@ -42,14 +42,16 @@ def read(path):
         return Image(dict(part.header), {name: channel.pixels.copy() for name, channel in part.channels.items()})
 
 
-def write(scene, exr, **flags):
-    """Renders `scene` (a path, or a scene's text) into the file `exr`; flags as on the command line: samples=16."""
+def write(scene, exr, timeout=3600, **flags):
+    """Renders `scene` (a path, or a scene's text) into the file `exr`; flags as on the command line: samples=16.
+
+    A render that takes longer than `timeout` seconds is an error."""
     if isinstance(scene, str):
         text, scene = scene, Path(exr).with_suffix(".toml")
         scene.write_text(text, "utf-8")
     arguments = [word for name, value in flags.items() for word in (f"--{name}", str(value))]
     command = [str(binary()), str(scene), "--exr", str(exr), *arguments]
-    run = subprocess.run(command, capture_output=True, text=True, check=False)
+    run = subprocess.run(command, capture_output=True, text=True, check=False, timeout=timeout)
     if run.returncode:
         raise RuntimeError(f"{' '.join(command)}: exit code {run.returncode}\n{run.stderr}")
 

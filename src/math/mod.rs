@@ -11,7 +11,7 @@ mod warp;
 pub use bounds::Bounds;
 pub use frame::Frame;
 pub use offset::{UNIT_ROUNDOFF, gamma, offset_origin};
-pub use ray::Ray;
+pub use ray::{Ray, unit};
 pub use sampler::{BranchKey, Sampler};
 pub use transform::Transform;
 pub use warp::{ball_surface, cone, cosine_hemisphere, disk, one_minus_cos_of_cone, triangle_coordinates};

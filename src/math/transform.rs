@@ -1,4 +1,4 @@
-use super::{DMat3, DVec3};
+use super::{DMat3, DVec3, unit};
 
 /// An affine map of space, x -> linear * x + translation.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -59,7 +59,7 @@ impl Transform {
     pub fn normal(&self, normal: DVec3) -> DVec3 {
         let [a, b, c] = [self.linear.x_axis, self.linear.y_axis, self.linear.z_axis].map(|v| v / self.size());
         let cofactors = DMat3::from_cols(b.cross(c), c.cross(a), a.cross(b));
-        (cofactors * normal).normalize() * 1f64.copysign(a.cross(b).dot(c))
+        unit(cofactors * normal) * 1f64.copysign(a.cross(b).dot(c))
     }
 
     /// Whether the map turns left hands into right hands.

@@ -5,16 +5,16 @@ use std::sync::Arc;
 
 use sha2::{Digest, Sha256};
 
-use super::compile_shape::ShapeCompiler;
+use super::compile_shape::{MAX_LENGTH, ShapeCompiler};
 use super::description::{CameraText, Description, FilmText, LightText, ObjectText};
 use super::index::Index;
 use super::source::{At, Source};
 use super::{Camera, FilmSettings, NamedMaterial, Object, Scene};
-use crate::error::{Result, nearest};
+use crate::error::{Error, Result, nearest};
 use crate::light::{Area, Light, LightId};
 use crate::material::Material;
 use crate::shape::Sides;
-use crate::spectrum::{Curve, CurveKind, Quantity};
+use crate::spectrum::{Curve, CurveKind, Quantity, Refusal};
 
 /// Most pixels in a row or column.
 const MAX_SIDE: u32 = 65_536;
@@ -87,7 +87,7 @@ impl Compiler<'_> {
         let at = At::top("camera");
         let position = self.point(&at.key("position"), camera.position)?;
         let target = self.point(&at.key("look_at"), camera.look_at)?;
-        if position == target {
+        if (target - position).try_normalize().is_none() {
             let message = "the camera looks at the very point where it stands";
             return Err(self.source.mistake_at(&at.key("look_at"), message, None));
         }
@@ -96,8 +96,8 @@ impl Compiler<'_> {
             let message = format!("a field of view lies between 0 and 180 degrees, not {}", camera.vertical_fov);
             return Err(self.source.mistake_at(&at.key("vertical_fov"), message, None));
         }
-        if !(camera.near >= 0.0 && camera.near.is_finite()) {
-            let message = format!("near is a distance of 0 or more, not {}", camera.near);
+        if !(0.0..=MAX_LENGTH).contains(&camera.near) {
+            let message = format!("near is a distance from 0 to {MAX_LENGTH:e}, not {}", camera.near);
             return Err(self.source.mistake_at(&at.key("near"), message, None));
         }
         let size = [film.width, film.height];
@@ -123,7 +123,15 @@ impl Compiler<'_> {
     }
 
     fn curve(&self, at: &At, curve: &Curve, quantity: Quantity) -> Result<()> {
-        curve.check(quantity).map_err(|(message, help)| self.source.mistake_at(at, message, help))
+        curve.check(quantity).map_err(|refusal| self.refuse_curve(at, refusal.keys, refusal))
+    }
+
+    fn refuse_curve(&self, at: &At, keys: &[&str], refusal: Refusal) -> Error {
+        match (keys, refusal.entry) {
+            ([key, inner @ ..], _) => self.refuse_curve(&at.key(key), inner, refusal),
+            ([], Some(entry)) => self.source.mistake_at(&at.index(entry), refusal.message, refusal.help),
+            ([], None) => self.source.mistake_at(at, refusal.message, refusal.help),
+        }
     }
 
     fn objects(&mut self, description: &Description) -> Result<(Vec<Object>, Vec<NamedMaterial<Curve>>)> {
@@ -153,7 +161,7 @@ impl Compiler<'_> {
         Ok((objects, materials))
     }
 
-    fn unknown_material(&self, at: &At, text: &ObjectText, description: &Description) -> crate::Error {
+    fn unknown_material(&self, at: &At, text: &ObjectText, description: &Description) -> Error {
         let names = || description.material.keys().map(String::as_str);
         let help = match nearest(&text.material, names()) {
             Some(near) => format!("did you mean \"{near}\"?"),

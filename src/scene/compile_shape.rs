@@ -1,13 +1,20 @@
 //! From a shape as written to a shape that rays can meet.
 
+use std::path::Path;
+
 use sha2::Digest;
 
 use super::compile::Compiler;
 use super::description::{MeshText, ObjectText, ShapeText, StepText};
-use super::source::At;
-use crate::error::Result;
+use super::source::{At, nearest_file};
+use crate::error::{Error, Result};
 use crate::math::{DVec3, Transform};
 use crate::shape::{Cube, Disc, Mesh, Plane, Quad, Shape, Sphere, Triangle, Vertices, read_mesh};
+
+/// Largest length and coordinate: products of a few of them stay far within f64 and f32.
+pub(super) const MAX_LENGTH: f64 = 1e30;
+/// Smallest size, for the same reason.
+const MIN_LENGTH: f64 = 1e-30;
 
 /// Checks and builds the shape of one object.
 pub(super) struct ShapeCompiler<'a, 'b> {
@@ -18,11 +25,16 @@ pub(super) struct ShapeCompiler<'a, 'b> {
 }
 
 impl Compiler<'_> {
-    /// A point whose coordinates are finite.
+    /// A point that is not too far away.
     pub(super) fn point(&self, at: &At, point: [f64; 3]) -> Result<DVec3> {
-        let found = point.iter().find(|x| !x.is_finite());
-        match found {
-            Some(x) => Err(self.source.mistake_at(at, format!("a coordinate is a finite number, not {x}"), None)),
+        match point.iter().position(|x| !x.is_finite() || x.abs() > MAX_LENGTH) {
+            Some(axis) => {
+                let message = match point[axis] {
+                    x if x.is_finite() => format!("a coordinate is at most {MAX_LENGTH:e}"),
+                    x => format!("a coordinate is a finite number, not {x}"),
+                };
+                Err(self.source.mistake_at(&at.index(axis), message, None))
+            }
             None => Ok(point.into()),
         }
     }
@@ -37,10 +49,15 @@ impl Compiler<'_> {
     }
 
     fn length(&self, at: &At, what: &str, length: f64) -> Result<f64> {
-        if length > 0.0 && length.is_finite() {
+        if (MIN_LENGTH..=MAX_LENGTH).contains(&length) {
             return Ok(length);
         }
-        Err(self.source.mistake_at(at, format!("{what} is a length above 0, not {length}"), None))
+        let message = if length > 0.0 && length.is_finite() {
+            format!("{what} is a length from {MIN_LENGTH:e} to {MAX_LENGTH:e}")
+        } else {
+            format!("{what} is a length above 0, not {length}")
+        };
+        Err(self.source.mistake_at(at, message, None))
     }
 }
 
@@ -56,7 +73,10 @@ impl ShapeCompiler<'_, '_> {
             ShapeText::Triangle(triangle) => {
                 let at = at.key("triangle");
                 let points = self.points(&at.key("points"), &triangle.points)?;
-                let points = [points[0], points[1], points[2]];
+                let Ok(points) = <[DVec3; 3]>::try_from(points) else {
+                    let message = format!("a triangle has 3 points, not {}", triangle.points.len());
+                    return self.refuse(&at.key("points"), &message);
+                };
                 if Triangle::is_degenerate(points) {
                     return self.refuse(&at.key("points"), "the points of a triangle must not lie on a line");
                 }
@@ -103,7 +123,14 @@ impl ShapeCompiler<'_, '_> {
             let warning = format!("{}: a dielectric on an open mesh: light may enter it and never leave", self.name);
             self.compiler.warnings.push(warning);
         }
-        Ok(shape.transformed(&map))
+        let shape = shape.transformed(&map);
+        if let Some(bounds) = shape.bounds() {
+            let size = (bounds.max - bounds.min).max_element();
+            if !(size >= MIN_LENGTH && bounds.min.abs().max(bounds.max.abs()).max_element() <= 2.0 * MAX_LENGTH) {
+                return self.refuse(&object.key("transform"), "this makes the shape too small, too large or too far");
+            }
+        }
+        Ok(shape)
     }
 
     fn refuse<T>(&self, at: &At, message: &str) -> Result<T> {
@@ -119,9 +146,12 @@ impl ShapeCompiler<'_, '_> {
             MeshText { file: Some(file), points: None, faces: None } => self.mesh_file(&at.key("file"), file)?,
             MeshText { file: None, points: Some(points), faces: Some(faces) } => {
                 let vertices = self.points(&at.key("points"), points)?;
-                if let Some(face) = faces.iter().position(|face| face.iter().any(|&i| i as usize >= vertices.len())) {
-                    let message = format!("a face asks for a point beyond the last, {}", vertices.len());
-                    return self.refuse(&at.key("faces").index(face), &message);
+                let count = vertices.len();
+                for (number, face) in faces.iter().enumerate() {
+                    if let Some(corner) = face.iter().position(|&corner| corner as usize >= count) {
+                        let message = format!("there is no point {}: the {count} points count from 0", face[corner]);
+                        return self.refuse(&at.key("faces").index(number).index(corner), &message);
+                    }
                 }
                 (Vertices::Double(vertices), faces.clone())
             }
@@ -140,14 +170,31 @@ impl ShapeCompiler<'_, '_> {
     fn mesh_file(&mut self, at: &At, file: &str) -> Result<(Vertices, Vec<[u32; 3]>)> {
         let path = self.compiler.source.folder().join(file);
         let refuse = |message: String| self.compiler.source.mistake_at(at, message, None);
-        let bytes = std::fs::read(&path).map_err(|error| refuse(format!("cannot read {}: {error}", path.display())))?;
-        let mesh = read_mesh(&path).map_err(|message| refuse(format!("{}: {message}", path.display())))?;
+        let mesh = read_mesh(&path).map_err(|message| match path.try_exists() {
+            Ok(false) if path.extension().is_some() => self.missing(at, file, &path),
+            _ => refuse(format!("{file}: {message}")),
+        })?;
+        let is_far = |&vertex: &u32| mesh.vertices.at(vertex).abs().max_element() > MAX_LENGTH;
+        if let Some(vertex) = (0..mesh.vertices.len() as u32).find(is_far) {
+            return Err(refuse(format!("{file}: vertex {vertex} (counted from 0) is beyond {MAX_LENGTH:e}")));
+        }
+        let bytes = std::fs::read(&path).map_err(|error| refuse(format!("cannot read {file}: {error}")))?;
         self.compiler.hash.update(&bytes);
         if mesh.names_materials {
             let warning = format!("{}: the materials of {file} are ignored; the scene gives them", self.name);
             self.compiler.warnings.push(warning);
         }
         Ok((mesh.vertices, mesh.faces))
+    }
+
+    fn missing(&self, at: &At, file: &str, path: &Path) -> Error {
+        let near =
+            nearest_file(path).and_then(|near| near.file_name().map(|name| Path::new(file).with_file_name(name)));
+        let help = match near {
+            Some(near) => format!("did you mean \"{}\"?", near.display()),
+            None => "the path starts at the folder of the scene".into(),
+        };
+        self.compiler.source.mistake_at(at, format!("there is no file {file}"), Some(help))
     }
 
     fn transform(&self, at: &At, steps: &[StepText]) -> Result<Transform> {

@@ -158,7 +158,7 @@ pub struct PlaneText {
 #[serde(deny_unknown_fields)]
 #[allow(missing_docs)]
 pub struct TriangleText {
-    pub points: [[f64; 3]; 3],
+    pub points: Vec<[f64; 3]>,
 }
 
 /// `sphere = { center, radius }`

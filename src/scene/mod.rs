@@ -9,6 +9,9 @@ mod compile_shape;
 mod description;
 mod index;
 mod source;
+mod structure;
+mod syntax;
+mod wording;
 
 pub use camera::Camera;
 pub use compile::compile;

@@ -1,12 +1,16 @@
 //! The text of a scene file, and where in it a mistake stands.
 
+use std::io::ErrorKind;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use toml::de::{DeTable, DeValue};
 
-use super::Description;
+use super::structure::Mistake;
+use super::{Description, structure, syntax, wording};
 use crate::error::{Diagnostic, Error, Result, nearest};
+
+const A_SCENE: &str = "a scene is a TOML file, such as scenes/prism.toml";
 
 /// A scene file that was read.
 #[derive(Clone, Debug)]
@@ -23,17 +27,22 @@ impl Source {
     /// # Errors
     /// If it cannot be read or is not UTF-8.
     pub fn read(path: &Path) -> Result<Self> {
-        let text = std::fs::read_to_string(path).map_err(|source| match source.kind() {
-            std::io::ErrorKind::NotFound | std::io::ErrorKind::IsADirectory => Error::Arguments {
-                message: format!("there is no scene file {}", path.display()),
-                help: Some("a scene is a TOML file, such as scenes/prism.toml".into()),
-            },
-            std::io::ErrorKind::InvalidData => Error::Arguments {
-                message: format!("{} is not text in UTF-8", path.display()),
-                help: Some("a scene is a TOML file, such as scenes/prism.toml".into()),
-            },
-            _ => Error::Io { doing: "read", path: path.to_owned(), source },
-        })?;
+        let refuse = |message: String, help: String| Err(Error::Arguments { message, help: Some(help) });
+        let shown = path.display();
+        let text = match std::fs::read_to_string(path) {
+            Ok(text) => text,
+            Err(error) => {
+                return match error.kind() {
+                    ErrorKind::NotFound | ErrorKind::NotADirectory => {
+                        let near = nearest_file(path).map(|near| format!("did you mean {}?", near.display()));
+                        refuse(format!("there is no scene file {shown}"), near.unwrap_or(A_SCENE.into()))
+                    }
+                    ErrorKind::IsADirectory => refuse(format!("{shown} is a folder, not a scene"), A_SCENE.into()),
+                    ErrorKind::InvalidData => refuse(format!("{shown} is not text in UTF-8"), A_SCENE.into()),
+                    _ => Err(Error::Io { doing: "read", path: path.to_owned(), source: error }),
+                };
+            }
+        };
         Ok(Self { path: path.to_owned(), text })
     }
 
@@ -42,11 +51,15 @@ impl Source {
     /// # Errors
     /// If the text is not TOML or holds a key or value that no scene has.
     pub fn parse(&self) -> Result<Description> {
-        toml::from_str(&self.text).map_err(|error| {
-            let message = error.message().lines().next().unwrap_or("this is not TOML").to_owned();
-            let help = suggestion(&message);
-            self.mistake(error.span().unwrap_or(0..0), message, help)
-        })
+        let refuse = |(span, message, help): Mistake| self.mistake(span, message, help);
+        let document = DeTable::parse(&self.text).map_err(|error| refuse(syntax::explain(&self.text, &error)))?;
+        let document = document.get_ref();
+        let right = |mistake: Option<Mistake>| mistake.map_or(Ok(()), |mistake| Err(refuse(mistake)));
+        right(structure::misplaced(document))?;
+        let description = toml::from_str(&self.text);
+        let description = description.map_err(|error| refuse(wording::explain(&self.text, document, &error)))?;
+        right(structure::surplus(document))?;
+        Ok(description)
     }
 
     /// The folder that file names in the scene are relative to.
@@ -117,12 +130,12 @@ impl<'a> At<'a> {
     }
 }
 
-/// "did you mean" for a message of the form: unknown field `x`, expected one of `a`, `b`.
-fn suggestion(message: &str) -> Option<String> {
-    let quoted: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
-    let (word, known) = quoted.split_first()?;
-    if !message.starts_with("unknown ") {
-        return None;
-    }
-    nearest(word, known.iter().copied()).map(|near| format!("did you mean `{near}`?"))
+/// The file beside a missing one that was most likely meant.
+pub(super) fn nearest_file(missing: &Path) -> Option<PathBuf> {
+    let folder = missing.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let files = std::fs::read_dir(folder).ok()?.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
+    let mut names: Vec<String> = files.collect();
+    names.sort();
+    let near = nearest(missing.file_name()?.to_str()?, names.iter().map(String::as_str))?;
+    Some(missing.with_file_name(near))
 }

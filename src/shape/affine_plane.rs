@@ -1,3 +1,4 @@
+use super::triangle::difference_of_products;
 use super::{Crossing, SurfacePoint};
 use crate::math::{DVec3, Ray, Transform, gamma};
 
@@ -17,7 +18,10 @@ pub(super) struct AffinePlane {
 impl AffinePlane {
     /// The plane spanned by two independent vectors; its front is the side of `normal`'s half space.
     pub(super) fn new(center: DVec3, u: DVec3, v: DVec3, front: DVec3) -> Self {
-        let cross = u.normalize().cross(v.normalize()).normalize();
+        // Each coordinate is exact to a rounding, however narrow the angle: the height of points over the plane needs it.
+        let (a, b) = (u.normalize(), v.normalize());
+        let coordinate = |i: usize, j: usize| difference_of_products(a[i], b[j], a[j], b[i]);
+        let cross = DVec3::new(coordinate(1, 2), coordinate(2, 0), coordinate(0, 1)).normalize();
         let normal = if cross.dot(front) < 0.0 { -cross } else { cross };
         // The duals pick out one coordinate: dual_u.u = 1, dual_u.v = 0.
         let dual = |of: DVec3, other: DVec3| {

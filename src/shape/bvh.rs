@@ -30,6 +30,8 @@ struct Node {
 
 /// Deepest tree that traversal accepts; a deeper one is rebuilt by halves.
 const MAX_DEPTH: usize = 64;
+/// Moves a far side out by the roundings of both sides' distances.
+const WIDEN: f64 = 1.0 + 2.0 * gamma(3);
 /// Items in a leaf of a tree built by halves.
 const LEAF: usize = 4;
 
@@ -178,7 +180,7 @@ impl Bvh {
                 }
                 height -= 1;
                 let (node, entered) = stack[height];
-                if entered <= t_max {
+                if entered <= t_max * WIDEN {
                     current = node as usize;
                     break;
                 }
@@ -198,11 +200,11 @@ impl Node {
 
     /// Distance at which the ray may enter the box, if it meets it before `t_max`.
     ///
-    /// `f64::max` and `min` ignore the NaN of 0 * infinity, which a ray within a side's plane produces.
+    /// `f64::max` and `min` ignore the NaN of 0 * infinity, which a ray within a side's plane produces. `t_max` is
+    /// moved out too: a box that begins at a hit just found may hold an equally near one.
     #[inline]
     fn enter(&self, origin: DVec3, inverse: DVec3, t_max: f64) -> Option<f64> {
-        const WIDEN: f64 = 1.0 + 2.0 * gamma(3);
-        let (mut near, mut far) = (0.0, t_max);
+        let (mut near, mut far) = (0.0, t_max * WIDEN);
         for axis in 0..3 {
             let a = (f64::from(self.min[axis]) - origin[axis]) * inverse[axis];
             let b = (f64::from(self.max[axis]) - origin[axis]) * inverse[axis];

@@ -65,14 +65,14 @@ impl Cube {
             return None;
         }
         let (t, face) = if enter.0 > 0.0 { enter } else { leave };
-        (t > 0.0 && t <= t_max).then(|| self.crossing(ray, t, face))
+        (t > 0.0 && t <= t_max && t.is_finite()).then(|| self.crossing(ray, t, face))
     }
 
     fn crossing(&self, ray: &Ray, t: f64, face: usize) -> Crossing {
         let d = ray.at(t) - self.center;
         // Kept inside the edges by more than the rounding of a slab coordinate, so that a ray that goes on inside starts
         // inside all slabs and meets no face it did not cross.
-        let limit = 1.0 - 64.0 * UNIT_ROUNDOFF * (1.0 + self.center.abs().dot(self.reach()));
+        let limit = 1.0 - 64.0 * UNIT_ROUNDOFF * (1.0 + (self.center.abs() + self.extent()).dot(self.reach()));
         let coordinate = |axis: usize| d.dot(self.duals[axis]).clamp(-limit, limit);
         Crossing { t, part: face as u32, uv: [coordinate((face / 2 + 1) % 3), coordinate((face / 2 + 2) % 3)] }
     }
@@ -86,10 +86,15 @@ impl Cube {
         self.faces[crossing.part as usize].point(crossing.uv)
     }
 
-    pub(super) fn bounds(&self) -> Bounds {
+    /// How far the cube reaches from its center along each axis of the world.
+    fn extent(&self) -> DVec3 {
         let [a, b, c] = self.half_edges.map(|edge| edge.abs());
-        let reach = a + b + c;
-        Bounds { min: self.center - reach, max: self.center + reach }.padded(8)
+        a + b + c
+    }
+
+    pub(super) fn bounds(&self) -> Bounds {
+        let extent = self.extent();
+        Bounds { min: self.center - extent, max: self.center + extent }.padded(8)
     }
 
     pub(super) fn transformed(&self, map: &Transform) -> Self {

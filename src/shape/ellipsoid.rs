@@ -46,11 +46,16 @@ impl Ellipsoid {
     fn point_at(&self, unit: DVec3) -> SurfacePoint {
         let arm = self.axes * unit;
         let position = self.center + arm;
-        let normal = (self.inverse.transpose() * unit).normalize();
+        let gradient = self.inverse.transpose() * unit;
+        let length = gradient.length();
+        let normal = gradient / length;
         // As on a sphere, with 3 more roundings for the matrix, on the sizes of its terms; the unit vector itself comes
         // from the inverse matrix, whose own rounding grows with the axes' ratio and moves the point along the surface.
-        let terms = DMat3::from_cols(self.axes.x_axis.abs(), self.axes.y_axis.abs(), self.axes.z_axis.abs());
-        let error = terms * unit.abs() * gamma(12) + position.abs() * gamma(6);
+        let terms = terms_of(self.axes) * unit.abs();
+        // The roots of the ray that leaves are off by up to 24 roundings on the unit sphere, on the sizes of the terms
+        // of the inverse matrix; a step along the normal changes the height over that sphere by the gradient's length.
+        let height = unit.abs().dot(terms_of(self.inverse) * terms) / length;
+        let error = terms * gamma(12) + position.abs() * gamma(6) + normal.abs() * height * gamma(24);
         SurfacePoint { position, error, normal }
     }
 
@@ -88,4 +93,9 @@ impl Ellipsoid {
         let area_normal = self.inverse.transpose() * unit * self.axes.determinant().abs();
         t * t / (4.0 * PI * area_normal.dot(ray.direction).abs())
     }
+}
+
+/// The matrix with every entry without its sign.
+fn terms_of(matrix: DMat3) -> DMat3 {
+    DMat3::from_cols(matrix.x_axis.abs(), matrix.y_axis.abs(), matrix.z_axis.abs())
 }

@@ -1,11 +1,13 @@
 //! Triangles from PLY and OBJ files.
 
+use std::cell::Cell;
 use std::fs::File;
 use std::io::BufReader;
 use std::path::Path;
 
 use ply_rs_bw::parser::{Parser, Reader};
 use ply_rs_bw::ply::{Property, PropertyAccess, PropertyAccessResult, PropertyType, ScalarType};
+use tobj::LoadError;
 
 use super::Vertices;
 use crate::math::DVec3;
@@ -35,16 +37,18 @@ pub fn read(path: &Path) -> Result<MeshFile, String> {
     if let Some(vertex) = (0..count as u32).find(|&index| !file.vertices.at(index).is_finite()) {
         return Err(format!("vertex {vertex} (counted from 0) is not finite"));
     }
-    if let Some(face) = file.faces.iter().position(|face| face.iter().any(|&corner| corner as usize >= count)) {
-        return Err(format!(
-            "face {face} (counted from 0, after cutting polygons) asks for a vertex beyond the last, {count}"
-        ));
+    if let Some(corner) = file.faces.iter().flatten().find(|&&corner| corner as usize >= count) {
+        let vertex = if *corner == NO_VERTEX { "a negative vertex".into() } else { format!("vertex {corner}") };
+        return Err(format!("a face asks for {vertex}, but the {count} vertices count from 0"));
     }
     if file.faces.is_empty() {
         return Err("the file holds no faces".into());
     }
     Ok(file)
 }
+
+/// Stands for a negative index: no mesh has so many vertices.
+const NO_VERTEX: u32 = u32::MAX;
 
 #[derive(Default)]
 struct PlyVertex([f64; 3]);
@@ -88,8 +92,7 @@ impl PropertyAccess for PlyFace {
         if name != "vertex_indices" && name != "vertex_index" {
             return PropertyAccessResult::Ignored;
         }
-        // A negative index becomes one that no mesh has, and is refused with the others.
-        let index = |i: i64| u32::try_from(i).unwrap_or(u32::MAX);
+        let index = |i: i64| u32::try_from(i).unwrap_or(NO_VERTEX);
         self.0 = match property {
             Property::ListChar(list) => list.into_iter().map(|i| index(i.into())).collect(),
             Property::ListUChar(list) => list.into_iter().map(u32::from).collect(),
@@ -107,24 +110,21 @@ fn read_ply(path: &Path) -> Result<MeshFile, String> {
     let file = File::open(path).map_err(|error| error.to_string())?;
     let mut reader = Reader::new(BufReader::new(file));
     let (vertex_parser, face_parser) = (Parser::<PlyVertex>::new(), Parser::<PlyFace>::new());
-    let header = vertex_parser.read_header(&mut reader).map_err(|error| error.to_string())?;
+    let header = vertex_parser.read_header(&mut reader).map_err(ply_error)?;
     let (mut points, mut polygons, mut double) = (Vec::new(), Vec::new(), false);
     for element in header.elements.values() {
         if element.name == "face" {
-            polygons = face_parser
-                .read_payload_for_element(&mut reader, element, &header)
-                .map_err(|error| error.to_string())?;
-        } else {
-            let read = vertex_parser
-                .read_payload_for_element(&mut reader, element, &header)
-                .map_err(|error| error.to_string())?;
-            if element.name == "vertex" {
-                let exact = [PropertyType::Scalar(ScalarType::Float)];
-                double = ["x", "y", "z"]
-                    .iter()
-                    .any(|axis| element.properties.get(*axis).is_none_or(|p| !exact.contains(&p.data_type)));
-                points = read;
+            polygons = face_parser.read_payload_for_element(&mut reader, element, &header).map_err(ply_error)?;
+        } else if element.name == "vertex" {
+            for axis in ["x", "y", "z"] {
+                match element.properties.get(axis).map(|property| &property.data_type) {
+                    Some(PropertyType::Scalar(scalar)) => double |= *scalar != ScalarType::Float,
+                    _ => return Err(format!("its vertices have no {axis}")),
+                }
             }
+            points = vertex_parser.read_payload_for_element(&mut reader, element, &header).map_err(ply_error)?;
+        } else {
+            vertex_parser.read_payload_for_element(&mut reader, element, &header).map_err(ply_error)?;
         }
     }
     let vertices = if double {
@@ -136,6 +136,17 @@ fn read_ply(path: &Path) -> Result<MeshFile, String> {
     Ok(MeshFile { vertices, faces, names_materials: false })
 }
 
+fn ply_error(error: ply_rs_bw::parser::ParseError) -> String {
+    let text = error.to_string();
+    let first = text.lines().next().unwrap_or_default().trim_end_matches('.');
+    let message = first.split_once(": ").map_or(first, |(_, message)| message);
+    match (message.strip_prefix("Unexpected end of file"), error.line()) {
+        (Some(place), _) => format!("the file ends too early,{place}"),
+        (None, Some(line)) => format!("line {line} does not fit a PLY file with this header"),
+        (None, None) => message.to_owned(),
+    }
+}
+
 /// The triangles of a convex polygon, all sharing its first corner.
 fn fan(polygon: &[u32]) -> impl Iterator<Item = [u32; 3]> + '_ {
     let rest = polygon.get(1..).unwrap_or_default();
@@ -144,8 +155,20 @@ fn fan(polygon: &[u32]) -> impl Iterator<Item = [u32; 3]> + '_ {
 
 fn read_obj(path: &Path) -> Result<MeshFile, String> {
     let options = tobj::LoadOptions { triangulate: true, ..Default::default() };
-    let (models, materials) = tobj::load_obj(path, &options).map_err(|error| error.to_string())?;
-    let names_materials = materials.is_err() || materials.is_ok_and(|list| !list.is_empty());
+    let bytes = std::fs::read(path).map_err(|error| error.to_string())?;
+    // Names and comments may be in any encoding.
+    let text = String::from_utf8_lossy(&bytes);
+    let names_materials = Cell::new(false);
+    let models = tobj::load_obj_buf(&mut text.as_bytes(), &options, |_| {
+        names_materials.set(true);
+        Ok(Default::default())
+    });
+    let (models, _) = models.map_err(|error| match error {
+        LoadError::PositionParseError => "a vertex, v, is not made of numbers".into(),
+        LoadError::FaceParseError => "a face, f, is not made of whole numbers".into(),
+        LoadError::FaceVertexOutOfBounds => "a face, f, asks for a vertex that the file does not have".into(),
+        other => other.to_string(),
+    })?;
     let (mut points, mut faces) = (Vec::new(), Vec::new());
     for model in models {
         let first = points.len() as u32;
@@ -153,5 +176,5 @@ fn read_obj(path: &Path) -> Result<MeshFile, String> {
         let corners = model.mesh.indices.chunks_exact(3);
         faces.extend(corners.map(|c| [c[0] + first, c[1] + first, c[2] + first]));
     }
-    Ok(MeshFile { vertices: Vertices::Single(points), faces, names_materials })
+    Ok(MeshFile { vertices: Vertices::Single(points), faces, names_materials: names_materials.get() })
 }

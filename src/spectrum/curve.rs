@@ -8,6 +8,7 @@ use serde::de::{Deserializer, Error as _, MapAccess, Visitor};
 
 use super::Quantity;
 use super::basis::BAND_WAVELENGTHS_NM;
+use super::curve_check::Refusal;
 use super::data::{self, Glass};
 
 /// A spectrum as it stands in a scene file: a number, a catalog name, or a table with one kind and maybe a `scale`.
@@ -111,8 +112,11 @@ impl Curve {
         data::glass(name).map(|glass| glass.source).or_else(|| data::metal(name).map(|metal| metal.source))
     }
 
-    /// What is wrong with the curve as this quantity, if anything: the message and, where there is one, the remedy.
-    pub fn check(&self, quantity: Quantity) -> Result<(), (String, Option<String>)> {
+    /// Whether the curve can be this quantity.
+    ///
+    /// # Errors
+    /// What is wrong, where in the curve, and what to do.
+    pub fn check(&self, quantity: Quantity) -> Result<(), Refusal> {
         super::curve_check::check(self, quantity)
     }
 }
@@ -218,7 +222,7 @@ impl<'de> Visitor<'de> for CurveVisitor {
             return Err(M::Error::custom("a spectrum needs one of `rgb`, `samples`, `cauchy`, `sellmeier`, `abbe`"));
         };
         if kinds.next().is_some() {
-            return Err(M::Error::custom("a spectrum has exactly one kind, this one has several"));
+            return Err(M::Error::custom("a spectrum has exactly one kind"));
         }
         Ok(Curve { kind, scale: table.scale.unwrap_or(1.0) })
     }

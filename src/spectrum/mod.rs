@@ -13,6 +13,7 @@ mod throughput;
 pub use basis::{Basis, Quantity, Table};
 pub use color::{ColorSpace, Primaries, encode_srgb};
 pub use curve::{Curve, CurveKind};
+pub use curve_check::Refusal;
 pub use draw::Draw;
 pub use lanes::Lanes;
 pub use response::Response;

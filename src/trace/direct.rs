@@ -107,7 +107,12 @@ pub(super) fn weight_of_meeting(
 }
 
 /// Veach & Guibas 1995, *Optimally Combining Sampling Techniques for Monte Carlo Rendering*, power heuristic, beta = 2.
+///
+/// A direction drawn with density 0, exactly along the surface, has weight 0.
 fn power_heuristic(this: f64, other: f64) -> f64 {
+    if this == 0.0 {
+        return 0.0;
+    }
     let ratio = other / this;
     1.0 / (1.0 + ratio * ratio)
 }

@@ -3,7 +3,10 @@
     pytest tools/tests/test_scenes.py
 """
 
+import subprocess
+import sys
 import tomllib
+from pathlib import Path
 
 import check_exr
 import numpy as np
@@ -17,7 +20,7 @@ SCENES = sorted(render.SCENES.rglob("*.toml"))
 def rendered(request, tmp_path_factory):
     """A scene file as a dictionary, and the EXR of one sample per pixel."""
     exr = tmp_path_factory.mktemp("scenes") / "scene.exr"
-    render.write(request.param, exr, samples=1)
+    render.write(request.param, exr, samples=1, timeout=300)
     return tomllib.loads(request.param.read_text("utf-8")), exr
 
 
@@ -27,6 +30,13 @@ def test_the_file_keeps_every_rule(rendered):
 
 def test_every_sample_is_finite(rendered):
     assert render.read(rendered[1]).header["render/nonFinite"] == 0
+
+
+def test_openimageio_reads_every_pixel_as_finite(rendered):
+    oiiotool = Path(sys.executable).with_name("oiiotool")
+    report = subprocess.run([oiiotool, "--stats", rendered[1]], capture_output=True, text=True, check=True).stdout
+    assert "NanCount: 0 0 0 0 0" in report
+    assert "InfCount: 0 0 0 0 0" in report
 
 
 def test_the_first_line_says_what_to_look_for():
