@@ -3,7 +3,7 @@ use std::f64::consts::PI;
 use serde::Deserialize;
 
 use super::View;
-use crate::math::{DVec3, Frame, Ray, cosine_hemisphere};
+use crate::math::{DVec3, Frame, Ray, cosine_hemisphere, unit};
 use crate::shape::Sighting;
 use crate::spectrum::Quantity;
 
@@ -27,7 +27,7 @@ impl<S> Environment<S> {
 
     /// Draws directions by their cosine to the normal, as the irradiance of an even sky weighs them.
     pub(super) fn aim(&self, normal: DVec3, u: [f64; 2]) -> Sighting {
-        let direction = Frame::about(normal).to_world(cosine_hemisphere(u)).normalize();
+        let direction = unit(Frame::about(normal).to_world(cosine_hemisphere(u)));
         Sighting { direction, part: None }
     }
 

@@ -3,7 +3,7 @@ use std::f64::consts::{FRAC_1_PI, PI};
 use serde::Deserialize;
 
 use super::{Arrival, Branch};
-use crate::math::{DVec3, Frame, cosine_hemisphere};
+use crate::math::{DVec3, Frame, cosine_hemisphere, unit};
 use crate::spectrum::{Lanes, Quantity, Table};
 
 /// A matte surface: the same radiance in every direction, on both sides (Lambert 1760).
@@ -28,7 +28,7 @@ impl Diffuse<Table> {
     pub(super) fn scatter<const N: usize>(&self, arrival: &Arrival<N>, u: [f64; 2]) -> Branch<N> {
         let local = cosine_hemisphere(u);
         Branch {
-            wi: Frame::about(arrival.normal).to_world(local).normalize(),
+            wi: unit(Frame::about(arrival.normal).to_world(local)),
             share: arrival.read(&self.reflectance),
             pdf: Some(local.z * FRAC_1_PI),
             crosses: false,

@@ -1,13 +1,13 @@
 //! Exact Fresnel equations for unpolarized light: the mean of s and p.
 
-use crate::math::DVec3;
+use crate::math::{DVec3, unit};
 
 /// A smooth boundary between two clear media, met at an angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interface {
     /// Share of the light that is reflected.
     pub reflectance: f64,
-    /// Share that crosses; `reflectance + transmittance` is 1 to a few roundings.
+    /// Share that crosses; `reflectance + transmittance` is 1 to one rounding.
     pub transmittance: f64,
     /// Cosine of the refracted ray's angle, 0 under total reflection.
     pub cos_beyond: f64,
@@ -43,10 +43,17 @@ impl Interface {
         let (r_s, r_p) = ((n1 * c1 - n2 * c2) / s, (n2 * c1 - n1 * c2) / p);
         let (reflected_s, reflected_p) = (r_s * r_s, r_p * r_p);
         let (refracted_s, refracted_p) = (1.0 / (s * s), 1.0 / (p * p));
+        // The smaller one is computed and the larger one is what is left, so that both keep their digits and sum to 1.
+        let mut reflectance = 0.5 * (reflected_s + reflected_p);
+        let mut transmittance = 1.0 - reflectance;
+        if transmittance < 0.5 {
+            transmittance = 2.0 * n1 * n2 * c1 * c2 * (refracted_s + refracted_p);
+            reflectance = 1.0 - transmittance;
+        }
         let degree = |s: f64, p: f64| if s + p > 0.0 { (s - p) / (s + p) } else { 0.0 };
         Self {
-            reflectance: 0.5 * (reflected_s + reflected_p),
-            transmittance: 2.0 * n1 * n2 * c1 * c2 * (refracted_s + refracted_p),
+            reflectance,
+            transmittance,
             cos_beyond: c2,
             polarization_reflected: degree(reflected_s, reflected_p),
             polarization_refracted: degree(refracted_s, refracted_p),
@@ -57,7 +64,7 @@ impl Interface {
     /// Direction of the refracted ray for a unit vector `wo` back to where the ray came from (Snell's law).
     pub fn refract(&self, wo: DVec3, normal: DVec3) -> DVec3 {
         let c1 = wo.dot(normal);
-        (normal * (self.eta * c1 - self.cos_beyond) - wo * self.eta).normalize()
+        unit(normal * (self.eta * c1 - self.cos_beyond) - wo * self.eta)
     }
 }
 

@@ -1,7 +1,7 @@
 use serde::Deserialize;
 
 use super::{Arrival, Branch};
-use crate::math::DVec3;
+use crate::math::{DVec3, unit};
 use crate::spectrum::{Quantity, Table};
 
 /// An ideal mirror on both sides.
@@ -39,5 +39,5 @@ impl Mirror<Table> {
 
 /// The mirror image of the unit vector `wo` about the unit `normal`, normalized so that bounces do not drift.
 pub fn reflect(wo: DVec3, normal: DVec3) -> DVec3 {
-    (normal * (2.0 * wo.dot(normal)) - wo).normalize()
+    unit(normal * (2.0 * wo.dot(normal)) - wo)
 }

@@ -1,4 +1,4 @@
-use crate::math::{DVec2, DVec3, Frame, Ray};
+use crate::math::{DVec2, DVec3, Frame, Ray, unit};
 
 /// A pinhole camera.
 #[derive(Clone, Debug, PartialEq)]
@@ -45,7 +45,7 @@ impl Camera {
         let x = (2.0 * film.x / self.size.x - 1.0) * self.half.x;
         let y = (1.0 - 2.0 * film.y / self.size.y) * self.half.y;
         let along = self.forward + self.right * x + self.up * y;
-        Ray { origin: self.position + along * self.near, direction: along.normalize() }
+        Ray { origin: self.position + along * self.near, direction: unit(along) }
     }
 
     /// Distance of a point along the viewing direction.

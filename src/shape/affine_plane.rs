@@ -18,7 +18,7 @@ pub(super) struct AffinePlane {
 impl AffinePlane {
     /// The plane spanned by two independent vectors; its front is the side of `normal`'s half space.
     pub(super) fn new(center: DVec3, u: DVec3, v: DVec3, front: DVec3) -> Self {
-        // Each coordinate is exact to a rounding, however narrow the angle: the height of points over the plane needs it.
+        // Each coordinate exact to a rounding, however narrow the angle: the points' height over the plane needs it.
         let (a, b) = (u.normalize(), v.normalize());
         let coordinate = |i: usize, j: usize| difference_of_products(a[i], b[j], a[j], b[i]);
         let cross = DVec3::new(coordinate(1, 2), coordinate(2, 0), coordinate(0, 1)).normalize();

@@ -70,10 +70,12 @@ impl Ellipsoid {
 
     /// Thomsen's formula with p = 1.6075, within 1.1 %: it only weighs lights against each other.
     pub(super) fn area(&self) -> f64 {
-        let [a, b, c] = [self.axes.x_axis, self.axes.y_axis, self.axes.z_axis].map(DVec3::length);
+        let axes = [self.axes.x_axis, self.axes.y_axis, self.axes.z_axis].map(DVec3::length);
+        // In units of the first axis, so that a scale by a power of two multiplies the area exactly.
+        let [b, c] = [axes[1] / axes[0], axes[2] / axes[0]];
         let p = 1.6075;
-        let mean = (libm::pow(a * b, p) + libm::pow(b * c, p) + libm::pow(c * a, p)) / 3.0;
-        4.0 * PI * libm::pow(mean, 1.0 / p)
+        let mean = (libm::pow(b, p) + libm::pow(b * c, p) + libm::pow(c, p)) / 3.0;
+        4.0 * PI * axes[0] * axes[0] * libm::pow(mean, 1.0 / p)
     }
 
     pub(super) fn sample(&self, u: [f64; 2]) -> DVec3 {

@@ -17,6 +17,7 @@ mod probe;
 
 mod render;
 mod tracer;
+mod width;
 mod world;
 
 pub use method::{Method, Transport};

@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 use super::World;
 use super::render::sample;
 use super::tracer::Tracer;
+use super::width::{InLanes, in_lanes};
 use crate::math::Sampler;
 use crate::spectrum::Draw;
 
@@ -30,7 +31,21 @@ const ENOUGH: Duration = Duration::from_millis(300);
 
 /// Traces single samples of pixels spread over the image.
 pub fn probe(world: &World) -> Probe {
-    const N: usize = 4;
+    in_lanes(&world.method.basis, Probing { world })
+}
+
+struct Probing<'a> {
+    world: &'a World,
+}
+
+impl InLanes for Probing<'_> {
+    type Output = Probe;
+    fn run<const N: usize>(self) -> Probe {
+        probe_lanes::<N>(self.world)
+    }
+}
+
+fn probe_lanes<const N: usize>(world: &World) -> Probe {
     let draw = Draw::<N>::fixed(world.method.basis.len());
     let mut tracer = Tracer::<N>::new(world);
     let (mut samples, mut parted) = (0, 0);

@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use super::tracer::{Tally, Tracer};
+use super::width::{InLanes, in_lanes};
 use super::{Transport, World};
 use crate::film::{Film, Pixel, PixelSum, Sample};
 use crate::math::{BranchKey, DVec2, Sampler};
@@ -36,9 +37,18 @@ pub struct Report {
 
 /// Renders the world's image. `progress` is told how many pixels are done, from any thread.
 pub fn render(world: &World, progress: &(dyn Fn(u64) + Sync)) -> (Film, Report) {
-    match world.method.basis.len() {
-        0..=4 => render_lanes::<4>(world, progress),
-        bins => unreachable!("no basis has {bins} bins"),
+    in_lanes(&world.method.basis, Render { world, progress })
+}
+
+struct Render<'a> {
+    world: &'a World,
+    progress: &'a (dyn Fn(u64) + Sync),
+}
+
+impl InLanes for Render<'_> {
+    type Output = (Film, Report);
+    fn run<const N: usize>(self) -> (Film, Report) {
+        render_lanes::<N>(self.world, self.progress)
     }
 }
 

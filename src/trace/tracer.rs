@@ -40,13 +40,11 @@ pub(super) struct Tally {
     pub(super) polarization: f64,
 }
 
-/// Surfaces after which a path is stopped: light caught in a clear body for good, which no weight would end. Roulette lets
-/// one path in 10^43 come this far.
-const LAST_VERTEX: u32 = 10_000;
-/// Surfaces after which roulette ends even a path that loses nothing, one time in a hundred.
+/// Surfaces after which roulette ends even a path that loses nothing, one time in a thousand.
 const LONG: u32 = 64;
-/// The most certain that a long path is to go on.
-const SURE: f64 = 0.99;
+/// The most certain that a long path is to go on: nearer to 1 than light caught in a clear body needs to find its way out,
+/// so that none comes out much brighter than it went in.
+const SURE: f64 = 0.999;
 /// The least likely that a faint path goes on, so that none comes back brighter than ten times.
 const UNLIKELY: f64 = 0.1;
 
@@ -69,7 +67,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
         let mut first = None;
         let mut next = Some(Path::from_camera(self.world, draw, ray));
         while let Some(mut path) = next.or_else(|| self.pending.pop()) {
-            if path.vertices >= LAST_VERTEX {
+            if path.vertices >= self.world.method.transport.last_vertex() {
                 self.tally.stopped += path.weight(draw);
                 next = None;
                 continue;
