@@ -2,7 +2,7 @@
 
     python tools/check_exr.py FILE...           # exit code 1 if any file breaks a rule
 
-One scanline part under lossless ZIP, channels R G B A Z as 32-bit floats, finite, a stated color space, the camera,
+One scanline part under lossless ZIP, channels R G B A Z (and samples.V) as 32-bit floats, finite, a stated color space, the camera,
 and the provenance under render/. Attribute meanings: OpenEXR, "Standard Attributes"; color: ASWF Color Interop Forum,
 recommendations 03 and 04 (2026).
 """

@@ -38,7 +38,7 @@ pub enum Fact {
     Count(u64),
 }
 
-/// Writes channels R, G, B, A and Z, linear, in 32-bit float.
+/// Writes channels R, G, B, A, Z and samples.V, linear, in 32-bit float.
 ///
 /// # Errors
 /// If the file cannot be encoded or written; a file that was there before is then untouched.
@@ -55,6 +55,8 @@ pub fn write_exr(film: &Film, view: &View, provenance: &Provenance, path: &Path)
     list.push(channel("G", &|pixel| pixel.rgb[1]));
     list.push(channel("R", &|pixel| pixel.rgb[0]));
     list.push(channel("Z", &|pixel| pixel.depth));
+    // A channel in a layer of its own is also what makes Blender offer the depth to its compositor.
+    list.push(channel("samples.V", &|pixel| pixel.samples));
     let encoding =
         Encoding { compression: Compression::ZIP16, line_order: LineOrder::Increasing, ..Encoding::UNCOMPRESSED };
     let layer = Layer::new(size, attributes(film, view, provenance), encoding, AnyChannels::sort(list));

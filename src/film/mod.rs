@@ -35,6 +35,8 @@ pub struct Pixel {
     pub alpha: f32,
     /// The nearest depth among the samples, [`DEPTH_OF_NOTHING`] where none met anything.
     pub depth: f32,
+    /// How many samples the mean is made of.
+    pub samples: f32,
 }
 
 /// A finished image, rows from the top.

@@ -78,6 +78,7 @@ impl PixelSum {
             rgb: total.rgb.map(|sum| store(sum / kept)),
             alpha: (f64::from(total.met) / kept) as f32,
             depth: if self.nearest.is_finite() { store(self.nearest) } else { DEPTH_OF_NOTHING },
+            samples: (self.taken - self.rejected) as f32,
         }
     }
 }

@@ -2,11 +2,12 @@
 
 use std::cell::Cell;
 
-use super::World;
 use super::path::Drawn;
+use super::{World, media};
 use crate::light::{Light, LightId};
 use crate::material::{Arrival, Material};
 use crate::math::{BranchKey, Ray, Sampler};
+use crate::scene::MaterialId;
 use crate::shape::{Crossing, SurfacePoint};
 use crate::spectrum::{Table, Throughput};
 
@@ -17,6 +18,8 @@ pub(super) struct Gathering<'a, const N: usize> {
     pub(super) arrival: &'a Arrival<'a, N>,
     pub(super) point: &'a SurfacePoint,
     pub(super) throughput: Throughput<N>,
+    /// The medium the light arrives through.
+    pub(super) inside: Option<MaterialId>,
     /// Whether the path goes on from here and may meet a light by itself.
     pub(super) goes_on: bool,
     pub(super) aims_at_all: bool,
@@ -71,7 +74,12 @@ impl<const N: usize> Gathering<'_, N> {
             if !factor.is_finite() || self.world.scene.is_hidden(&ray, view.distance, view.object, self.hider) {
                 return None;
             }
-            let reflected = self.throughput.scaled(factor).of(bsdf_cos * self.arrival.read(light.emission()));
+            let mut arriving = self.arrival.read(light.emission());
+            if let Some(material) = self.inside {
+                arriving =
+                    arriving * media::medium(self.world, material).transmission(self.arrival.draw, view.distance);
+            }
+            let reflected = self.throughput.scaled(factor).of(bsdf_cos * arriving);
             Some(self.world.responses[target].sensor(self.arrival.draw, reflected))
         };
         lit().unwrap_or([0.0; 3])

@@ -89,7 +89,7 @@ fn render_lanes<const N: usize>(world: &World, progress: &(dyn Fn(u64) + Sync)) 
     (film, report)
 }
 
-const BLANK: Pixel = Pixel { rgb: [0.0; 3], alpha: 0.0, depth: 0.0 };
+const BLANK: Pixel = Pixel { rgb: [0.0; 3], alpha: 0.0, depth: 0.0, samples: 0.0 };
 
 /// The pixels of one tile, row by row.
 fn tile<const N: usize>(world: &World, column: u32, row: u32, progress: &(dyn Fn(u64) + Sync)) -> (Vec<Pixel>, Report) {

@@ -157,9 +157,19 @@ impl<'a, const N: usize> Tracer<'a, N> {
             let spread = path.vertices <= SPREAD;
             u = if spread { sampler.four(path.key, SCATTER) } else { sampler.four_plain(path.key, SCATTER) };
             let aims_at_all = world.aims_at_all(path.weight(draw));
-            let (throughput, goes_on, hider) = (path.throughput, path.diffuse_left > 0, &self.hider);
-            let arrival = &arrival;
-            let gathering = Gathering { world, material, arrival, point, throughput, goes_on, aims_at_all, hider, u };
+            let goes_on = path.diffuse_left > 0;
+            let gathering = Gathering {
+                world,
+                material,
+                arrival: &arrival,
+                point,
+                throughput: path.throughput,
+                inside: here,
+                goes_on,
+                aims_at_all,
+                hider: &self.hider,
+                u,
+            };
             add(sum, gathering.direct(sampler, path.key));
             drawn = Some(Drawn { pdf: 0.0, normal, aimed_at_all: aims_at_all });
             if !goes_on {
@@ -204,8 +214,8 @@ impl<'a, const N: usize> Tracer<'a, N> {
             Transport::Deterministic { cutoff } => {
                 for (number, branch) in self.branches.iter().enumerate() {
                     match weight_of(branch) {
-                        weight if weight >= cutoff => self.pending.push(child(number, branch, 1.0)),
-                        weight => self.tally.dropped += weight,
+                        weight if weight < cutoff => self.tally.dropped += weight,
+                        _ => self.pending.push(child(number, branch, 1.0)),
                     }
                 }
                 None
@@ -228,7 +238,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
                 for (number, branch) in self.branches.iter().enumerate() {
                     let u = || sampler.four_plain(path.key.child(number), CHOICE)[2];
                     let weight = weight_of(branch);
-                    if weight > 0.0
+                    if weight != 0.0
                         && let Some(factor) = survival(weight, roulette, path.vertices, u)
                     {
                         self.pending.extend(next.replace(child(number, branch, factor)));
@@ -244,7 +254,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
 ///
 /// `u` is asked for a random number only where something is left to chance.
 fn survival(weight: f64, roulette: f64, vertices: u32, u: impl FnOnce() -> f64) -> Option<f64> {
-    let mut chance = (weight / roulette).clamp(UNLIKELY, 1.0);
+    let mut chance = if weight < roulette { (weight / roulette).max(UNLIKELY) } else { 1.0 };
     if vertices >= LONG {
         chance = chance.min(SURE);
     }

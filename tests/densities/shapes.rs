@@ -1,0 +1,210 @@
+//! Directions drawn toward a shape against the density it claims, integrated over bins of directions.
+
+use std::f64::consts::{PI, TAU};
+
+use abbe::math::{DMat3, DVec3, Frame, Ray, Transform};
+use abbe::shape::{Cube, Disc, Ellipsoid, Quad, Shape, Sphere, Triangle};
+
+use crate::bodies::{ball, closed_mesh};
+use crate::chi_squared;
+use crate::random::Random;
+
+/// Calls of `check_shape` by the tests of this file.
+const TESTS: u32 = 20;
+const DRAWS: usize = 100_000;
+/// Bins by height, and around.
+const BINS: [usize; 2] = [12, 24];
+/// Points of the quadrature in a bin, each way.
+const POINTS: usize = 64;
+
+/// Directions within a cone, or within the image of a cone under a linear map, cut into bins.
+struct Bins {
+    axis: DVec3,
+    frame: Frame,
+    /// 1 - cos of the cone's half angle.
+    width: f64,
+    map: DMat3,
+    inverse: DMat3,
+    /// Whether bins grow dense toward the edge of the cone.
+    ///
+    /// The density of a body with an outline like a ball's is infinite along it; times the solid angle it has a bound.
+    dense: bool,
+}
+
+impl Bins {
+    /// All directions within `half_angle` of the axis.
+    fn new(axis: DVec3, half_angle: f64) -> Self {
+        let axis = axis.normalize();
+        let sin = libm::sin(0.5 * half_angle);
+        let (map, inverse) = (DMat3::IDENTITY, DMat3::IDENTITY);
+        Self { axis, frame: Frame::about(axis), width: 2.0 * sin * sin, map, inverse, dense: false }
+    }
+
+    /// The directions in which an ellipsoid is seen: the image of the cone in which the unit ball is seen.
+    fn of_ellipsoid(center: DVec3, axes: DMat3, from: DVec3) -> Self {
+        let toward = axes.inverse() * (center - from);
+        let half_angle = if toward.length() > 1.0 { libm::asin(1.0 / toward.length()) } else { PI };
+        Self { map: axes, inverse: axes.inverse(), dense: true, ..Self::new(toward, half_angle) }
+    }
+
+    /// The direction at a place in the unit square, and the solid angle that it stands for there.
+    fn direction(&self, [height, around]: [f64; 2]) -> (DVec3, f64) {
+        let (share, slope) = if self.dense { (height * (2.0 - height), 2.0 - 2.0 * height) } else { (height, 1.0) };
+        let x = self.width * share;
+        let (radius, (sin, cos)) = ((x * (2.0 - x)).max(0.0).sqrt(), libm::sincos(TAU * around));
+        let image = self.map * self.frame.to_world(DVec3::new(radius * cos, radius * sin, 1.0 - x));
+        let length = image.length();
+        // Solid angle grows under a linear map A by |det A| / |A n|^3.
+        let growth = self.map.determinant().abs() / (length * length * length);
+        (image / length, growth * TAU * self.width * slope)
+    }
+
+    fn index(&self, direction: DVec3) -> Option<usize> {
+        let local = (self.inverse * direction).normalize();
+        // 1 - cos by the chord, which keeps its digits in narrow cones.
+        let share = 0.5 * (local - self.axis).length_squared() / self.width;
+        if share > 1.0 + 1e-9 {
+            return None;
+        }
+        let height = if self.dense { 1.0 - (1.0 - share).max(0.0).sqrt() } else { share };
+        let x = local.dot(self.frame.to_world(DVec3::X));
+        let y = local.dot(self.frame.to_world(DVec3::Y));
+        let around = libm::atan2(y, x) / TAU + if y < 0.0 { 1.0 } else { 0.0 };
+        let cell = |x: f64, cells: usize| ((x * cells as f64) as usize).min(cells - 1);
+        Some(cell(height, BINS[0]) * BINS[1] + cell(around, BINS[1]))
+    }
+
+    /// Integral of a density over each bin, by one random point in each cell of a grid.
+    fn integrate(&self, random: &mut Random, mut density: impl FnMut(DVec3) -> f64) -> Vec<f64> {
+        let [rows, columns] = BINS.map(|bins| bins * POINTS);
+        let mut integrals = vec![0.0; BINS[0] * BINS[1]];
+        for (row, column) in (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column))) {
+            let mut within = |cell: usize, cells: usize| random.between(cell as f64, cell as f64 + 1.0) / cells as f64;
+            let (direction, solid_angle) = self.direction([within(row, rows), within(column, columns)]);
+            let bin = row / POINTS * BINS[1] + column / POINTS;
+            integrals[bin] += density(direction) * solid_angle / (rows * columns) as f64;
+        }
+        integrals
+    }
+}
+
+/// Tests what `aim` draws from a point against `pdf_toward`; what does not lie on the drawn part is not seen.
+fn check_shape(name: &str, shape: &Shape, from: DVec3, bins: &Bins) {
+    let mut random = Random::new(name.bytes().map(u64::from).sum());
+    let ray = |direction| Ray { origin: from, direction };
+    let mut counts = vec![0; BINS[0] * BINS[1]];
+    for _ in 0..DRAWS {
+        let Some(sighting) = shape.aim(from, random.pair()) else { panic!("{name}: nothing drawn") };
+        let crossing = shape.intersect(&ray(sighting.direction), f64::INFINITY);
+        let bin = bins.index(sighting.direction).unwrap_or_else(|| panic!("{name}: drawn beside the shape"));
+        if crossing.is_some_and(|crossing| sighting.part.is_none_or(|part| part == crossing.part)) {
+            counts[bin] += 1;
+        }
+    }
+    let mut probabilities = bins.integrate(&mut random, |direction| {
+        let ray = ray(direction);
+        shape.intersect(&ray, f64::INFINITY).map_or(0.0, |crossing| shape.pdf_toward(&ray, &crossing))
+    });
+    let integral: f64 = probabilities.iter().sum();
+    let seen = counts.iter().sum::<u64>() as f64 / DRAWS as f64;
+    // 4 standard deviations of the seen share, and the quadrature's own error.
+    let tolerance = 4.0 * (seen * (1.0 - seen) / DRAWS as f64).sqrt() + 1e-3;
+    println!("{name}: seen {seen:.4}, integral {integral:.5}");
+    assert!((integral - seen).abs() < tolerance, "{name}: the pdf integrates to {integral}, {seen} is seen");
+    probabilities.iter_mut().for_each(|probability| *probability /= integral);
+    chi_squared::check(name, &counts, &probabilities, TESTS);
+}
+
+fn check(name: &str, shape: &Shape, from: DVec3, axis: DVec3, half_angle: f64) {
+    check_shape(name, shape, from, &Bins::new(axis, half_angle));
+}
+
+fn check_ellipsoid(name: &str, shape: &Shape, center: DVec3, axes: DMat3, from: DVec3) {
+    check_shape(name, shape, from, &Bins::of_ellipsoid(center, axes, from));
+}
+
+/// A map that turns, stretches unevenly and turns again.
+fn skew() -> Transform {
+    Transform::rotate(DVec3::new(0.2, 1.0, -0.4), 35.0)
+        .then(&Transform::scale(DVec3::new(1.5, 0.4, 0.8)))
+        .then(&Transform::rotate(DVec3::new(1.0, 0.3, 0.5), 70.0))
+}
+
+#[test]
+fn directions_toward_a_sphere_follow_their_density() {
+    let (center, radius) = (DVec3::new(0.4, -0.2, 1.0), 0.7);
+    let sphere = Shape::Sphere(Sphere::new(center, radius));
+    let mut random = Random::new(61);
+    for (name, distance, half_angle) in [
+        ("sphere from outside", 3.0, 0.4),
+        ("sphere from nearby", 1.01, 0.5 * PI),
+        ("sphere from far away", 1e5, 1.1e-5),
+        ("sphere from inside", 0.6, PI),
+        ("sphere from its center", 0.0, PI),
+    ] {
+        let away = random.direction();
+        check(name, &sphere, center + away * radius * distance, -away, half_angle);
+    }
+}
+
+#[test]
+fn directions_toward_an_ellipsoid_follow_their_density() {
+    let axes = DMat3::from_diagonal(DVec3::new(1.0, 0.3, 0.6));
+    let center = DVec3::new(0.0, 0.1, -0.3);
+    let ellipsoid = Shape::Ellipsoid(Ellipsoid::new(center, axes));
+    let away = DVec3::new(0.36, 0.48, 0.8);
+    check_ellipsoid("ellipsoid from outside", &ellipsoid, center, axes, center + away * 3.0);
+    check_ellipsoid("ellipsoid from inside", &ellipsoid, center, axes, center + DVec3::new(0.4, -0.1, 0.2));
+    let skewed = Shape::Sphere(Sphere::new(DVec3::ZERO, 1.0)).transformed(&skew());
+    assert!(matches!(skewed, Shape::Ellipsoid(_)));
+    let axes = DMat3::from_cols(skew().vector(DVec3::X), skew().vector(DVec3::Y), skew().vector(DVec3::Z));
+    check_ellipsoid("skew ellipsoid from nearby", &skewed, DVec3::ZERO, axes, away * 1.3);
+}
+
+#[test]
+fn directions_toward_a_disc_follow_their_density() {
+    let normal = DVec3::new(0.3, 1.0, -0.2);
+    let disc = Shape::Disc(Disc::new(DVec3::ZERO, normal, 0.8, None).expect("no direction is asked for"));
+    check("disc from its front", &disc, DVec3::new(0.5, 1.0, 0.3), DVec3::new(-0.5, -1.0, -0.3), 0.8);
+    check("disc from its back", &disc, DVec3::new(1.5, -0.6, 0.3), DVec3::new(-1.5, 0.6, -0.3), 0.6);
+    let ellipse = disc.transformed(&skew());
+    check("ellipse", &ellipse, DVec3::new(0.5, 1.4, 0.3), DVec3::new(-0.5, -1.4, -0.3), 0.9);
+}
+
+#[test]
+fn directions_toward_a_quad_follow_their_density() {
+    let quad = Shape::Quad(Quad::new(DVec3::ZERO, DVec3::new(1.0, 0.0, 0.2), DVec3::new(0.4, 0.1, -0.7)));
+    check("quad from nearby", &quad, DVec3::new(0.2, 0.3, 0.1), -DVec3::Y, 0.5 * PI);
+    check("quad from the side", &quad, DVec3::new(2.6, 1.1, 1.0), DVec3::new(-2.6, -1.1, -1.0), 0.55);
+}
+
+#[test]
+fn directions_toward_a_triangle_follow_their_density() {
+    let points = [DVec3::new(0.0, 0.0, 1.0), DVec3::new(1.0, 0.2, 0.0), DVec3::new(-0.5, 0.4, -0.6)];
+    let triangle = Shape::Triangle(Triangle::new(points));
+    check("triangle", &triangle, DVec3::new(0.2, 1.2, 0.3), DVec3::new(0.0, -1.0, -0.1), 1.1);
+    check("triangle from below", &triangle, DVec3::new(-1.0, -0.4, 0.5), DVec3::new(1.0, 0.5, -0.4), 0.8);
+}
+
+#[test]
+fn directions_toward_a_cube_follow_their_density() {
+    let cube = Shape::Cube(Cube::new(DVec3::new(0.1, 0.0, 0.2), DVec3::new(1.0, 0.5, 1.6)));
+    let from = DVec3::new(1.2, 0.9, 1.4);
+    check("cube from outside", &cube, from, -from, 0.6);
+    check("cube from inside", &cube, DVec3::new(0.3, -0.1, 0.5), DVec3::Y, PI);
+}
+
+#[test]
+fn directions_toward_a_skew_cube_follow_their_density() {
+    let cube = Shape::Cube(Cube::new(DVec3::ZERO, DVec3::ONE)).transformed(&skew());
+    check("skew cube from nearby", &cube, DVec3::new(0.5, 0.8, 0.6), DVec3::new(-0.5, -0.8, -0.6), 2.0);
+}
+
+#[test]
+fn directions_toward_a_mesh_follow_their_density() {
+    let (points, faces) = ball();
+    let mesh = closed_mesh(points, faces).transformed(&skew());
+    let from = DVec3::new(1.0, 1.2, 0.9);
+    check("mesh from outside", &mesh, from, -from, 1.0);
+    check("mesh from inside", &mesh, DVec3::new(0.1, 0.05, 0.1), DVec3::Y, PI);
+}

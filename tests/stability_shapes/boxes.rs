@@ -1,0 +1,117 @@
+//! Rows B1 to B3 of the stability catalog: boxes of the tree, and vertices that are no numbers. (Row B4, the depth of
+//! the tree, is tested where the tree is built.)
+
+use std::fs;
+use std::path::Path;
+
+use abbe::math::{Bounds, DVec3, Ray};
+use abbe::shape::{Bvh, Mesh, Shape, Triangle, Vertices, read_mesh};
+
+use crate::OFFSET;
+use crate::random::Random;
+
+fn reaches(bvh: &Bvh, ray: &Ray, item: u32) -> bool {
+    let mut reached = false;
+    bvh.walk(ray, f64::INFINITY, |index, limit| {
+        reached |= index == item;
+        Some(limit)
+    });
+    reached
+}
+
+/// A point whose coordinates f32 holds, so that its box is not rounded outward.
+fn single(point: DVec3) -> DVec3 {
+    point.as_vec3().as_dvec3()
+}
+
+#[test]
+fn b1_a_ray_within_a_side_of_a_box_reaches_it() {
+    let mut random = Random::new(31);
+    for _ in 0..100_000 {
+        let corners = [single(random.direction() * 3.0), single(random.direction() * 3.0)];
+        let mut bounds = Bounds::around(corners);
+        let axis = (random.number() * 3.0) as usize;
+        if random.number() < 0.3 {
+            // A wall: the box is flat.
+            bounds.max[axis] = bounds.min[axis];
+        }
+        let mut target = bounds.min + (bounds.max - bounds.min) * random.number();
+        let mut origin = random.direction() * 10.0;
+        target[axis] = if random.number() < 0.5 { bounds.min[axis] } else { bounds.max[axis] };
+        origin[axis] = target[axis];
+        let mut direction = (target - origin).normalize();
+        direction[axis] = if random.number() < 0.5 { 0.0 } else { -0.0 };
+        let far_away = Bounds { min: DVec3::splat(100.0), max: DVec3::splat(101.0) };
+        assert!(reaches(&Bvh::new(&[far_away, bounds]), &Ray { origin, direction }, 1), "{bounds:?}, {origin}");
+    }
+}
+
+#[test]
+fn b2_a_ray_that_hits_a_triangle_on_the_rim_of_its_box_reaches_the_box() {
+    for (size, offset) in [(1.0, 0.0), (1e-3, 100.0), (10.0, 1e3)] {
+        let mut random = Random::new(32);
+        let (mut hits, mut missed) = (0, 0);
+        for _ in 0..200_000 {
+            let corner = single(OFFSET * offset + random.direction());
+            let mut arm = |axis: DVec3| single(corner + axis * size * random.between(-1.0, 1.0));
+            let points = [corner, arm(DVec3::X), arm(DVec3::Y)];
+            // The triangle is half a side of the flat box: aim at its corner, or along the edges they share.
+            let along = if random.number() < 0.5 { 0.0 } else { random.number() };
+            let target = corner + (points[1] - corner) * along;
+            let ray = Ray::new(target + random.direction() * 5.0 * size, DVec3::X);
+            let ray = Ray::new(ray.origin, target - ray.origin);
+            let triangle = Triangle::new(points);
+            let bounds = Bounds::around(points);
+            if Shape::Triangle(triangle).intersect(&ray, f64::INFINITY).is_some() {
+                hits += 1;
+                missed += usize::from(!reaches(&Bvh::new(&[bounds]), &ray, 0));
+            }
+        }
+        assert!(hits > 50_000, "only {hits} rays hit");
+        assert_eq!(missed, 0, "of {hits}, size {size:e}, offset {offset:e}");
+    }
+}
+
+fn ply(number: &str) -> String {
+    format!(
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+         element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 {number} 0\n0 1 0\n3 0 1 2\n"
+    )
+}
+
+fn obj(number: &str) -> String {
+    format!("v 0 0 0\nv 1 {number} 0\nv 0 1 0\nf 1 2 3\n")
+}
+
+fn refusal(path: &Path, text: &str) -> Option<String> {
+    fs::write(path, text).expect("the folder can be written");
+    read_mesh(path).err()
+}
+
+#[test]
+fn b3_mesh_files_with_vertices_that_are_not_finite_are_refused() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    for (name, text) in [("mesh.ply", ply as fn(&str) -> String), ("mesh.obj", obj)] {
+        let path = folder.path().join(name);
+        for number in ["nan", "inf", "-inf", "1e39"] {
+            let message = refusal(&path, &text(number)).unwrap_or_else(|| panic!("{name} with {number} is accepted"));
+            // By the line where the format knows no such number, else by the vertex.
+            let place = ["vertex 1 ", "line 11 "].iter().any(|place| message.contains(place));
+            assert!(place, "{name} with {number}: {message}");
+        }
+        assert_eq!(refusal(&path, &text("0.5")), None, "{name} is sound");
+    }
+}
+
+#[test]
+fn b3_the_largest_vertices_a_file_can_hold_build_a_mesh_that_is_hit() {
+    let most = f32::MAX;
+    let points = vec![[-most, -most, -most], [most, -most, -most], [0.0, most, -most], [1.0, 2.0, 3.0]];
+    let (mesh, report) = Mesh::new(Vertices::Single(points), vec![[0, 1, 2], [0, 1, 3]]).expect("they have areas");
+    assert_eq!(report.degenerate, 0);
+    let shape = Shape::Mesh(Box::new(mesh));
+    let ray = Ray::new(DVec3::new(0.0, 0.0, -10.0 * f64::from(most)), DVec3::Z);
+    let crossing = shape.intersect(&ray, f64::INFINITY).expect("the ray runs through the first triangle");
+    assert!((crossing.t / (9.0 * f64::from(most)) - 1.0).abs() < 1e-15 && crossing.part == 0, "{crossing:?}");
+    assert!(shape.area().is_finite() && shape.pdf_toward(&ray, &crossing).is_finite());
+}

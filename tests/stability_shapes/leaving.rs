@@ -1,0 +1,257 @@
+//! Rows X1 to X3, X6 and X7 of the stability catalog: new rays from flat surfaces. (Row X4 is in `glass.rs`, X5 in
+//! `spheres.rs`.)
+
+use abbe::math::{DMat3, DVec3, Frame, Ray, Transform, UNIT_ROUNDOFF};
+use abbe::shape::{Cube, Disc, Ellipsoid, Plane, Quad, Shape, Sphere, SurfacePoint, Triangle};
+
+use crate::OFFSET;
+use crate::exact::ExactVector;
+use crate::random::Random;
+
+/// Size of the surface, its coordinate offset and the distance of the ray's origin, both in sizes.
+const SETTINGS: [(f64, f64, f64); 12] = [
+    (1.0, 1.0, 5.0),
+    (1e-6, 1.0, 5.0),
+    (1e-3, 1.0, 5.0),
+    (1e3, 1.0, 5.0),
+    (1e6, 1.0, 5.0),
+    (1.0, 1.0, 1e3),
+    (1.0, 1.0, 1e5),
+    (1.0, 1e3, 5.0),
+    (1.0, 1e5, 5.0),
+    (1.0, 0.0, 5.0),
+    (1e-6, 1e5, 1e5),
+    (1e6, 1e5, 1e5),
+];
+
+/// A ray that left a surface, from where to where, and the corners of the triangle that it left.
+struct Departure {
+    arrival: Ray,
+    t: f64,
+    point: SurfacePoint,
+    leaving: Ray,
+    corners: [DVec3; 3],
+    /// The corner that makes a parallelogram of the triangle.
+    fourth: DVec3,
+}
+
+impl Departure {
+    /// Distance of the new origin from the plane of the triangle.
+    fn height(&self) -> f64 {
+        let [a, b, c] = self.corners.map(ExactVector::from);
+        let normal = (b - a).cross(c - a);
+        ((ExactVector::from(self.leaving.origin) - a).dot(normal) / normal.length()).abs().rounded()
+    }
+}
+
+/// Departures from the triangle (0, 0), (1, 0), (0, 1) of a square turned every way, built as `shape` from its corners,
+/// at the points that `aim` gives.
+fn departures(
+    (size, offset, distance): (f64, f64, f64),
+    aim: fn([f64; 2]) -> [f64; 2],
+    shape: impl Fn([DVec3; 3], DVec3) -> Shape,
+    mut test: impl FnMut(&Shape, &Departure),
+) {
+    const COUNT: usize = 40_000;
+    let mut random = Random::new(41);
+    let mut tested = 0;
+    while tested < COUNT {
+        let frame = Frame::about(random.direction());
+        let place = |x, y| OFFSET * offset * size + frame.to_world(DVec3::new(x, y, 0.0)) * size;
+        let corners = [place(0.0, 0.0), place(1.0, 0.0), place(0.0, 1.0)];
+        let fourth = place(1.0, 1.0);
+        let built = shape(corners, fourth);
+        let [x, y] = aim(random.pair());
+        let direction = random.direction();
+        let cos = direction.dot(frame.to_world(DVec3::Z));
+        if cos.abs() < 0.05 {
+            continue;
+        }
+        let arrival = Ray::new(place(x, y) - direction * distance * size, direction);
+        let Some(crossing) = built.intersect(&arrival, f64::INFINITY) else { continue };
+        let point = built.point(&arrival, &crossing);
+        let leaving = point.leave(Ray::new(DVec3::ZERO, random.direction()).direction);
+        tested += 1;
+        test(&built, &Departure { arrival, t: crossing.t, point, leaving, corners, fourth });
+    }
+}
+
+/// Anywhere in the triangle.
+fn anywhere([x, y]: [f64; 2]) -> [f64; 2] {
+    if x + y > 1.0 { [1.0 - x, 1.0 - y] } else { [x, y] }
+}
+
+/// On the edge that the triangle shares with the other one of the square.
+fn on_shared_edge([x, _]: [f64; 2]) -> [f64; 2] {
+    [x, 1.0 - x]
+}
+
+fn first(corners: [DVec3; 3], _: DVec3) -> Shape {
+    Shape::Triangle(Triangle::new(corners))
+}
+
+fn hits(shape: &Shape, ray: &Ray) -> bool {
+    shape.intersect(ray, f64::INFINITY).is_some()
+}
+
+/// Whether a ray hits the other triangle of the square.
+fn hits_neighbor(departure: &Departure) -> bool {
+    let [_, b, c] = departure.corners;
+    hits(&Shape::Triangle(Triangle::new([b, departure.fourth, c])), &departure.leaving)
+}
+
+#[test]
+fn x1_without_an_offset_half_of_all_new_rays_hit_the_surface_that_they_leave() {
+    let (mut own, mut all) = (0, 0);
+    departures(SETTINGS[0], anywhere, first, |shape, departure| {
+        let origin = departure.arrival.at(departure.t);
+        own += usize::from(hits(shape, &Ray { origin, direction: departure.leaving.direction }));
+        all += 1;
+    });
+    let share = f64::from(own as u32) / f64::from(all as u32);
+    println!("X1: {share:.3} of the rays hit their own surface");
+    assert!((0.2..0.6).contains(&share), "{share}");
+}
+
+#[test]
+fn x2_a_sheet_a_thousandth_of_the_size_away_is_seen_at_every_scale() {
+    for setting in SETTINGS {
+        departures(setting, anywhere, first, |_, departure| {
+            let side = departure.point.normal * departure.leaving.direction.dot(departure.point.normal).signum();
+            let sheet = Shape::Plane(Plane::new(departure.corners[0] + side * 1e-3 * setting.0, side));
+            // Nearly parallel rays meet the sheet far away, or by rounding never.
+            let steep = departure.leaving.direction.dot(side) > 1e-9;
+            assert!(!steep || hits(&sheet, &departure.leaving), "{setting:?}: {:?}", departure.leaving);
+        });
+    }
+}
+
+#[test]
+fn x3_no_ray_hits_the_triangles_that_it_leaves_and_the_offset_is_a_few_roundings() {
+    for setting in SETTINGS {
+        let (size, offset, distance) = setting;
+        let (mut own, mut highest) = (0, 0f64);
+        departures(setting, anywhere, first, |shape, departure| {
+            own += usize::from(hits(shape, &departure.leaving) || hits_neighbor(departure));
+            highest = highest.max(departure.height());
+        });
+        let roundings = highest / (UNIT_ROUNDOFF * (size + offset * size));
+        println!("X3: size {size:e}, offset {offset:e} s, distance {distance:e} s: moved by {roundings:.1} u (s + C)");
+        assert_eq!(own, 0, "{setting:?}");
+        assert!(roundings <= 32.0, "{setting:?}: {roundings} u (s + C)");
+    }
+}
+
+#[test]
+fn x3_no_ray_hits_the_plane_quad_or_disc_that_it_leaves() {
+    let plane = |[a, b, c]: [DVec3; 3], _| Shape::Plane(Plane::new(a, (b - a).cross(c - a)));
+    let quad = |[a, b, c]: [DVec3; 3], d: DVec3| Shape::Quad(Quad::new((a + d) * 0.5, (b - a) * 0.5, (c - a) * 0.5));
+    let disc = |[a, b, c]: [DVec3; 3], _| {
+        let normal = (b - a).cross(c - a);
+        Shape::Disc(Disc::new(a, normal, (b - a).length() * 2.0, None).expect("no direction is asked for"))
+    };
+    for setting in SETTINGS {
+        let (size, offset, _) = setting;
+        let mut highest = 0f64;
+        let mut check = |shape: &Shape, departure: &Departure| {
+            assert!(!hits(shape, &departure.leaving), "{setting:?}: {shape:?}, {:?}", departure.leaving);
+            let away = departure.leaving.origin - departure.point.position;
+            highest = highest.max(away.dot(departure.point.normal).abs());
+        };
+        departures(setting, anywhere, plane, &mut check);
+        departures(setting, anywhere, quad, &mut check);
+        departures(setting, anywhere, disc, &mut check);
+        let roundings = highest / (UNIT_ROUNDOFF * (size + offset * size));
+        println!("X3: flat shapes, {setting:?}: moved by {roundings:.1} u (s + C)");
+    }
+}
+
+#[test]
+fn x6_rays_do_not_hit_a_neighbor_in_the_plane_that_they_leave() {
+    for setting in [(1.0, 0.0, 5.0), (1.0, 1e3, 5.0), (1.0, 1e5, 5.0)] {
+        departures(setting, on_shared_edge, first, |_, departure| {
+            assert!(!hits_neighbor(departure), "{setting:?}: {:?}", departure.leaving);
+        });
+    }
+}
+
+#[test]
+fn x7_the_distance_of_the_camera_does_not_move_new_rays_away() {
+    let mut highest = 0f64;
+    departures((1.0, 1.0, 1e5), anywhere, first, |_, departure| highest = highest.max(departure.height()));
+    println!("X7: moved by {highest:.1e} s");
+    // The row allows 1e-9 s; where rays start from triangles by their corners, the distance does not count at all.
+    assert!(highest <= 64.0 * UNIT_ROUNDOFF, "{highest:e}");
+}
+
+/// How many of the rays that leave a shape at targets on it hit it again: on either side, or outside a closed one.
+fn returns(rays: usize, mut draw: impl FnMut(&mut Random) -> (Shape, DVec3)) -> usize {
+    let mut random = Random::new(42);
+    let mut again = 0;
+    for _ in 0..rays {
+        let (shape, target) = draw(&mut random);
+        let direction = random.direction();
+        let arrival = Ray::new(target - direction * random.between(1.0, 5.0), direction);
+        let Some(crossing) = shape.intersect(&arrival, f64::INFINITY) else { continue };
+        let point = shape.point(&arrival, &crossing);
+        let direction = Ray::new(DVec3::ZERO, random.direction()).direction;
+        let inward = shape.is_closed() && direction.dot(point.normal) < 0.0;
+        again += usize::from(hits(&shape, &point.leave(if inward { -direction } else { direction })));
+    }
+    again
+}
+
+#[test]
+fn x3_no_ray_hits_what_it_leaves_where_the_coordinates_of_the_surface_are_zero() {
+    // The floors of most scenes: no offset relative to a coordinate of 0 leaves them.
+    let on_floor = |random: &mut Random| DVec3::new(random.between(-1.0, 1.0), 0.0, random.between(-1.0, 1.0));
+    let triangle = returns(100_000, |random| {
+        let points = std::array::from_fn(|_| on_floor(random));
+        (Shape::Triangle(Triangle::new(points)), (points[0] + points[1] + points[2]) / 3.0)
+    });
+    assert_eq!(triangle, 0, "triangles");
+    let cube = returns(100_000, |random| {
+        let (half, tilt) = (random.between(0.1, 3.0), random.between(-0.1, 0.1));
+        let standing = Shape::Cube(Cube::new(DVec3::Y * half, DVec3::splat(2.0 * half)));
+        let map = if random.number() < 0.5 { Transform::IDENTITY } else { Transform::rotate(DVec3::X, tilt) };
+        (standing.transformed(&map), map.point(on_floor(random) * half))
+    });
+    assert_eq!(cube, 0, "cubes");
+    let sphere = returns(100_000, |random| {
+        let radius = random.between(0.1, 3.0);
+        (Shape::Sphere(Sphere::new(DVec3::Y * radius, radius)), on_floor(random) * 0.1 * radius)
+    });
+    assert_eq!(sphere, 0, "spheres");
+}
+
+#[test]
+fn x3_no_ray_hits_the_narrow_shape_that_it_leaves() {
+    for width in [1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8] {
+        let narrow = |random: &mut Random| {
+            let frame = Frame::about(random.direction());
+            [DVec3::X, DVec3::new(random.number(), width, 0.0)].map(|side| frame.to_world(side))
+        };
+        let triangle = returns(50_000, |random| {
+            let [u, v] = narrow(random);
+            let corner = random.direction() * random.between(0.0, 3.0).floor();
+            (Shape::Triangle(Triangle::new([corner, corner + u, corner + v])), corner + u * 0.3 + v * 0.4)
+        });
+        assert_eq!(triangle, 0, "triangles of width {width:e}");
+        let quad = returns(50_000, |random| {
+            let [u, v] = narrow(random);
+            let center = random.direction();
+            let target = center + u * random.between(-1.0, 1.0) + v * random.between(-1.0, 1.0);
+            (Shape::Quad(Quad::new(center, u, v)), target)
+        });
+        assert_eq!(quad, 0, "quads of width {width:e}");
+        let ellipsoid = returns(50_000, |random| {
+            let turned = |random: &mut Random| Transform::rotate(random.direction(), random.between(0.0, 360.0));
+            let flat = Transform::scale(DVec3::new(1.0, width.max(1e-3), 0.5));
+            let map = turned(random).then(&flat).then(&turned(random));
+            let body =
+                Shape::Ellipsoid(Ellipsoid::new(DVec3::Y * 0.7, DMat3::from_diagonal(DVec3::new(1.0, 0.7, 2.0))));
+            (body.transformed(&map), map.vector(random.direction() * 0.3))
+        });
+        assert_eq!(ellipsoid, 0, "ellipsoids of width {width:e}");
+    }
+}

@@ -1,0 +1,41 @@
+//! Closed bodies for rays to meet.
+
+use std::f64::consts::{PI, TAU};
+
+use abbe::math::DVec3;
+use abbe::shape::{Mesh, Shape, Vertices};
+
+const AROUND: u32 = 24;
+const RINGS: u32 = 11;
+
+/// Points and outward faces of a closed, convex ball of 528 triangles about the origin, radius 1.
+pub fn ball() -> (Vec<DVec3>, Vec<[u32; 3]>) {
+    let mut points = vec![DVec3::Z, -DVec3::Z];
+    for ring in 1..=RINGS {
+        for step in 0..AROUND {
+            let polar = PI * f64::from(ring) / f64::from(RINGS + 1);
+            // Turned a little, so that no vertex but the poles lies in a plane of the axes.
+            let azimuth = TAU * (f64::from(step) + 0.37) / f64::from(AROUND);
+            let (sin, cos) = libm::sincos(polar);
+            points.push(DVec3::new(sin * libm::cos(azimuth), sin * libm::sin(azimuth), cos));
+        }
+    }
+    let vertex = |ring: u32, step: u32| 2 + (ring - 1) * AROUND + step % AROUND;
+    let mut faces = Vec::new();
+    for step in 0..AROUND {
+        faces.push([0, vertex(1, step), vertex(1, step + 1)]);
+        for ring in 1..RINGS {
+            faces.push([vertex(ring, step), vertex(ring + 1, step), vertex(ring + 1, step + 1)]);
+            faces.push([vertex(ring, step), vertex(ring + 1, step + 1), vertex(ring, step + 1)]);
+        }
+        faces.push([1, vertex(RINGS, step + 1), vertex(RINGS, step)]);
+    }
+    (points, faces)
+}
+
+/// The mesh of some faces; panics if it is not closed.
+pub fn closed_mesh(points: Vec<DVec3>, faces: Vec<[u32; 3]>) -> Shape {
+    let (mesh, report) = Mesh::new(Vertices::Double(points), faces).expect("the faces have areas");
+    assert_eq!((report.degenerate, report.open_edges), (0, 0));
+    Shape::Mesh(Box::new(mesh))
+}

@@ -1,0 +1,41 @@
+//! Random numbers that are the same on every machine.
+
+use abbe::math::{DVec3, ball_surface};
+
+/// A stream of independent numbers.
+///
+/// Steele, Lea & Flood 2014, *Fast Splittable Pseudorandom Number Generators* (SplitMix64).
+pub struct Random(u64);
+
+impl Random {
+    pub fn new(seed: u64) -> Self {
+        Self(seed.wrapping_mul(0xd134_2543_de82_ef95))
+    }
+
+    fn bits(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let x = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        x ^ (x >> 31)
+    }
+
+    /// Uniform in [0, 1).
+    pub fn number(&mut self) -> f64 {
+        (self.bits() >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    /// Uniform in the unit square.
+    pub fn pair(&mut self) -> [f64; 2] {
+        [self.number(), self.number()]
+    }
+
+    /// Uniform between two numbers.
+    pub fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.number()
+    }
+
+    /// A uniform unit vector.
+    pub fn direction(&mut self) -> DVec3 {
+        ball_surface(self.pair())
+    }
+}
