@@ -11,12 +11,12 @@ const EXAMPLES: &str = "\
 Examples:
   render --exr scenes/prism.toml                  write ./prism.exr
   render scenes/prism.toml --exr out/frame.exr    name the file
-  render scenes/prism.toml --png look.png         write a picture to look at, too
-  render --plan scenes/prism.toml                 say what would be modelled, why
+  render scenes/prism.toml --png look.png         write a picture as well
+  render --plan scenes/prism.toml                 say what it would do, and why
   render --check scenes/prism.toml                find mistakes in the scene
   render --samples 16 --exr scenes/prism.toml     take a quick look
 
-Exit codes: 0 done, 1 the render or a file failed, 2 bad arguments or a bad scene.";
+Exit codes: 0 done, 1 the render or a file failed, 2 bad arguments or scene.";
 
 /// Render a TOML scene to a linear OpenEXR image.
 #[derive(Parser)]
@@ -86,7 +86,8 @@ pub enum Output {
 /// Reads the command line; prints help, version and clap's own errors by itself and exits.
 pub fn parse() -> Result<Job> {
     let arguments = Arguments::parse();
-    let (scene, exr) = scene_and_image(arguments.scene, arguments.exr)?;
+    let idle = [("--plan", arguments.plan), ("--check", arguments.check)].into_iter().find(|(_, asked)| *asked);
+    let (scene, exr) = scene_and_image(arguments.scene, arguments.exr, idle.map(|(flag, _)| flag))?;
     if !arguments.exposure.is_finite() {
         return refuse("an exposure is a finite number of stops", Some("for instance: --exposure 1"));
     }
@@ -123,10 +124,22 @@ impl Job {
 }
 
 /// `--exr` takes an image to write, or nothing; right before the scene it belongs to the scene.
-fn scene_and_image(scene: Option<PathBuf>, exr: Option<Option<PathBuf>>) -> Result<(PathBuf, PathBuf)> {
+///
+/// `idle` is the flag that asks for no image, if one does.
+fn scene_and_image(
+    scene: Option<PathBuf>,
+    exr: Option<Option<PathBuf>>,
+    idle: Option<&str>,
+) -> Result<(PathBuf, PathBuf)> {
     let is_exr = |path: &Path| ends_in(path, "exr");
     match (scene, exr.flatten()) {
-        (Some(scene), Some(image)) if is_exr(&image) => Ok((scene, image)),
+        (Some(scene), Some(image)) if is_exr(&image) => match idle {
+            Some(flag) => {
+                let message = format!("{flag} renders nothing, so {} would not be written", image.display());
+                refuse(&message, Some("leave one of them out"))
+            }
+            None => Ok((scene, image)),
+        },
         (Some(_), Some(image)) => {
             let message = format!("--exr writes a file that ends in .exr, not {}", image.display());
             refuse(&message, Some("name the scene once, and the image as in --exr out/frame.exr"))
@@ -143,7 +156,9 @@ fn ends_in(path: &Path, ending: &str) -> bool {
 
 /// The scene's name with the ending .exr, in the current folder.
 fn beside(scene: &Path) -> PathBuf {
-    Path::new(scene.file_stem().unwrap_or(OsStr::new("image"))).with_extension("exr")
+    let mut name = scene.file_stem().unwrap_or(OsStr::new("image")).to_owned();
+    name.push(".exr");
+    name.into()
 }
 
 fn refuse<T>(message: &str, help: Option<&str>) -> Result<T> {

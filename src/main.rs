@@ -35,11 +35,13 @@ fn run(job: &Job) -> Result<()> {
     scene.warnings.iter().for_each(|warning| messages::warn(warning));
     match &job.output {
         Output::Check => {
-            messages::say(&format!("{} is a valid scene: {} objects", job.scene.display(), scene.objects.len()));
+            let count = scene.objects.len();
+            let objects = if count == 1 { "object" } else { "objects" };
+            messages::say(&format!("{} is a valid scene: {count} {objects}", job.scene.display()));
             Ok(())
         }
         Output::Plan => {
-            plan(&scene).because.iter().for_each(|line| println!("{line}"));
+            messages::answer(&plan(&scene).because);
             Ok(())
         }
         Output::Image { exr, png } => image(job, &scene, exr, png.as_deref()),

@@ -1,6 +1,6 @@
 //! What the command says to the person who runs it, on stderr.
 
-use std::io::{ErrorKind, IsTerminal};
+use std::io::{ErrorKind, IsTerminal, Write};
 use std::path::Path;
 
 use abbe::trace::Report;
@@ -10,6 +10,12 @@ use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 /// One plain line.
 pub fn say(line: &str) {
     eprintln!("{line}");
+}
+
+/// What was asked for, a line each, on stdout. A reader that stops listening ends it without a word.
+pub fn answer(lines: &[String]) {
+    let mut stdout = std::io::stdout().lock();
+    let _ = lines.iter().try_for_each(|line| writeln!(stdout, "{line}"));
 }
 
 /// Something to know that stops nothing.

@@ -47,7 +47,7 @@ impl PixelSum {
             self.rejected += 1;
         }
         self.taken += 1;
-        if self.taken % BLOCK == 0 {
+        if self.taken.is_multiple_of(BLOCK) {
             self.carry();
         }
         finite

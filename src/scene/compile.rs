@@ -164,11 +164,11 @@ impl Compiler<'_> {
     fn unknown_material(&self, at: &At, text: &ObjectText, description: &Description) -> Error {
         let names = || description.material.keys().map(String::as_str);
         let help = match nearest(&text.material, names()) {
-            Some(near) => format!("did you mean \"{near}\"?"),
+            Some(near) => format!("did you mean {near:?}?"),
             None if description.material.is_empty() => format!("define it: [material.{}]", text.material),
             None => format!("the scene defines {}", names().collect::<Vec<_>>().join(", ")),
         };
-        let message = format!("there is no material named \"{}\"", text.material);
+        let message = format!("there is no material named {:?}", text.material);
         self.source.mistake_at(&at.key("material"), message, Some(help))
     }
 

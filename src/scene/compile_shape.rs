@@ -15,6 +15,8 @@ use crate::shape::{Cube, Disc, Mesh, Plane, Quad, Shape, Sphere, Triangle, Verti
 pub(super) const MAX_LENGTH: f64 = 1e30;
 /// Smallest size, for the same reason.
 const MIN_LENGTH: f64 = 1e-30;
+/// Smallest size relative to the coordinates: some thousand roundings.
+const RESOLVED: f64 = 1e-12;
 
 /// Checks and builds the shape of one object.
 pub(super) struct ShapeCompiler<'a, 'b> {
@@ -125,9 +127,14 @@ impl ShapeCompiler<'_, '_> {
         }
         let shape = shape.transformed(&map);
         if let Some(bounds) = shape.bounds() {
-            let size = (bounds.max - bounds.min).max_element();
-            if !(size >= MIN_LENGTH && bounds.min.abs().max(bounds.max.abs()).max_element() <= 2.0 * MAX_LENGTH) {
+            let (far, wide) = (bounds.min.abs().max(bounds.max.abs()).max_element(), bounds.max - bounds.min);
+            let thin = thickness(&text.shape, &map).unwrap_or(wide.max_element());
+            if !(thin >= MIN_LENGTH && far <= 2.0 * MAX_LENGTH) {
                 return self.refuse(&object.key("transform"), "this makes the shape too small, too large or too far");
+            }
+            if thin < RESOLVED * far {
+                return self
+                    .refuse(&at, "this is so small or thin that the rounding of its coordinates would distort it");
             }
         }
         Ok(shape)
@@ -171,11 +178,13 @@ impl ShapeCompiler<'_, '_> {
         let path = self.compiler.source.folder().join(file);
         let refuse = |message: String| self.compiler.source.mistake_at(at, message, None);
         let mesh = read_mesh(&path).map_err(|message| match path.try_exists() {
-            Ok(false) if path.extension().is_some() => self.missing(at, file, &path),
+            _ if file.is_empty() => refuse("a mesh file needs a name".into()),
+            _ if path.is_dir() => refuse(format!("{file} is a folder")),
+            Ok(false) => self.missing(at, file, &path),
             _ => refuse(format!("{file}: {message}")),
         })?;
         let is_far = |&vertex: &u32| mesh.vertices.at(vertex).abs().max_element() > MAX_LENGTH;
-        if let Some(vertex) = (0..mesh.vertices.len() as u32).find(is_far) {
+        if let Some(vertex) = (0..mesh.vertices.count() as u32).find(is_far) {
             return Err(refuse(format!("{file}: vertex {vertex} (counted from 0) is beyond {MAX_LENGTH:e}")));
         }
         let bytes = std::fs::read(&path).map_err(|error| refuse(format!("cannot read {file}: {error}")))?;
@@ -221,4 +230,13 @@ impl ShapeCompiler<'_, '_> {
         }
         Ok(map)
     }
+}
+
+/// The least distance between two faces of a cube after a transform; none for other shapes.
+fn thickness(shape: &ShapeText, map: &Transform) -> Option<f64> {
+    let ShapeText::Cube(cube) = shape else { return None };
+    let [x, y, z] = cube.size;
+    let [a, b, c] = [DVec3::X * x, DVec3::Y * y, DVec3::Z * z].map(|edge| map.vector(edge));
+    let height = |edge: DVec3, u: DVec3, v: DVec3| edge.dot(u.normalize().cross(v.normalize()).normalize()).abs();
+    Some(height(a, b, c).min(height(b, c, a)).min(height(c, a, b)))
 }

@@ -43,6 +43,8 @@ impl Source {
                 };
             }
         };
+        // A byte order mark would count as a column.
+        let text = text.strip_prefix('\u{feff}').unwrap_or(&text).to_owned();
         Ok(Self { path: path.to_owned(), text })
     }
 

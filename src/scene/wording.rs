@@ -128,6 +128,7 @@ impl<'t> Place<'t> {
             DeValue::Array(_) => "a list".into(),
             DeValue::Table(_) => "a table".into(),
             DeValue::Datetime(_) => "a date".into(),
+            DeValue::String(_) if written.len() > 40 || written.contains('\n') => "a text".into(),
             DeValue::String(_) => format!("the text {written}"),
             _ => written.to_owned(),
         };

@@ -31,7 +31,7 @@ pub enum Vertices {
 
 impl Vertices {
     /// How many there are.
-    pub fn len(&self) -> usize {
+    pub fn count(&self) -> usize {
         match self {
             Self::Single(points) => points.len(),
             Self::Double(points) => points.len(),
@@ -126,7 +126,7 @@ impl Mesh {
     }
 
     pub(super) fn transformed(&self, map: &Transform) -> Self {
-        let points = (0..self.vertices.len() as u32).map(|index| map.point(self.vertices.at(index))).collect();
+        let points = (0..self.vertices.count() as u32).map(|index| map.point(self.vertices.at(index))).collect();
         let turned = |[a, b, c]: [u32; 3]| if map.mirrors() { [a, c, b] } else { [a, b, c] };
         let triangles = self.triangles.iter().copied().map(turned).collect();
         Self::built(Vertices::Double(points), triangles, self.closed)
@@ -149,7 +149,7 @@ impl Mesh {
 /// Edges that keep the mesh from enclosing a volume, vertices at the same place counting as one.
 fn open_edges(vertices: &Vertices, triangles: &[[u32; 3]]) -> usize {
     let mut places: HashMap<[u64; 3], u32> = HashMap::new();
-    let merged: Vec<u32> = (0..vertices.len() as u32)
+    let merged: Vec<u32> = (0..vertices.count() as u32)
         .map(|index| {
             // Adding 0 makes -0 and 0 the same place.
             let key = vertices.at(index).to_array().map(|x| (x + 0.0).to_bits());

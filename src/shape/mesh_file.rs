@@ -33,7 +33,7 @@ pub fn read(path: &Path) -> Result<MeshFile, String> {
         "obj" => read_obj(path)?,
         _ => return Err("a mesh file ends in .ply or .obj".into()),
     };
-    let count = file.vertices.len();
+    let count = file.vertices.count();
     if let Some(vertex) = (0..count as u32).find(|&index| !file.vertices.at(index).is_finite()) {
         return Err(format!("vertex {vertex} (counted from 0) is not finite"));
     }

@@ -92,7 +92,7 @@ fn unknown<'a>(
         (None, Some(near)) => format!("did you mean \"{near}\"?"),
         (None, None) => format!("known names: {}", names.join(", ")),
     };
-    Refusal::new(format!("there is no {what} named \"{name}\"")).help(help)
+    Refusal::new(format!("there is no {what} named {name:?}")).help(help)
 }
 
 fn finite(curve: &Curve) -> Result<(), Refusal> {
@@ -237,6 +237,6 @@ fn form(kind: &CurveKind) -> String {
         CurveKind::Cauchy(_) => "`cauchy`".into(),
         CurveKind::Sellmeier { .. } => "`sellmeier`".into(),
         CurveKind::Abbe { .. } => "`abbe`".into(),
-        CurveKind::Name(name) => format!("the name \"{name}\""),
+        CurveKind::Name(name) => format!("the name {name:?}"),
     }
 }

@@ -1,0 +1,279 @@
+//! The command line: what it takes, what it answers, what it leaves behind.
+
+#[path = "messages/run.rs"]
+mod run;
+
+use std::fs;
+
+use run::{Answer, Folder, render};
+
+const SCENE: &str = r#"
+[camera]
+position = [0, 1, 6]
+look_at = [0, 1, 0]
+vertical_fov = 35
+
+[film]
+width = 6
+height = 4
+
+[render]
+samples = 1
+
+[material.white]
+diffuse = { reflectance = 0.7 }
+
+[[object]]
+shape.sphere = { center = [0, 1, 0], radius = 1 }
+material = "white"
+
+[[object]]
+shape.sphere = { center = [1, 0, 0], radius = 0.2 }
+material = "white"
+
+[[light]]
+environment = { radiance = 1 }
+"#;
+
+/// A folder that holds `ball.toml`, a scene of two white balls under an even sky.
+fn folder() -> Folder {
+    let folder = Folder::new();
+    folder.write("ball.toml", SCENE);
+    folder
+}
+
+fn assert_refused(answer: &Answer, code: i32, stderr: &str) {
+    assert_eq!(answer.stderr, stderr);
+    assert_eq!((answer.code, &*answer.stdout), (Some(code), ""));
+}
+
+/// Refused with this text, and nothing is left behind.
+fn assert_refuses(arguments: &[&str], code: i32, stderr: &str) {
+    let folder = folder();
+    assert_refused(&render(&folder, arguments), code, stderr);
+    assert_eq!(folder.listing(), ["ball.toml"]);
+}
+
+/// Succeeds in silence on stdout, and leaves exactly these files.
+fn assert_leaves(arguments: &[&str], files: &[&str]) {
+    let folder = folder();
+    let answer = render(&folder, arguments);
+    assert_eq!((answer.code, &*answer.stdout), (Some(0), ""), "{}", answer.stderr);
+    assert_eq!(folder.listing(), files, "{}", answer.stderr);
+}
+
+#[test]
+fn the_image_is_named_after_its_scene_and_stands_in_the_current_folder() {
+    let made = ["ball.exr", "ball.toml"];
+    assert_leaves(&["--exr", "ball.toml"], &made);
+    assert_leaves(&["ball.toml", "--exr"], &made);
+    assert_leaves(&["ball.toml"], &made);
+    let folder = Folder::new();
+    fs::create_dir(folder.path().join("scenes")).expect("folders can be made");
+    folder.write("scenes/ball.v2.toml", SCENE);
+    assert_eq!(render(&folder, &["--exr", "scenes/ball.v2.toml"]).code, Some(0));
+    assert_eq!(folder.listing(), ["ball.v2.exr", "scenes"]);
+}
+
+#[test]
+fn the_image_may_be_named_before_or_after_the_scene() {
+    let made = ["ball.toml", "frame.exr"];
+    assert_leaves(&["ball.toml", "--exr", "frame.exr"], &made);
+    assert_leaves(&["--exr", "frame.exr", "ball.toml"], &made);
+    assert_leaves(&["--exr=frame.exr", "ball.toml"], &made);
+    assert_leaves(&["ball.toml", "--exr", "FRAME.EXR"], &["FRAME.EXR", "ball.toml"]);
+}
+
+#[test]
+fn a_missing_output_folder_is_created() {
+    let folder = folder();
+    let arguments = ["ball.toml", "--exr", "out/today/frame.exr", "--png", "out/look/frame.png"];
+    assert_eq!(render(&folder, &arguments).code, Some(0));
+    assert!(folder.path().join("out/today/frame.exr").is_file());
+    assert!(folder.path().join("out/look/frame.png").is_file());
+}
+
+#[test]
+fn an_image_that_is_no_exr_is_refused() {
+    let help = "help: name the scene once, and the image as in --exr out/frame.exr\n";
+    let refusal = |name: &str| format!("error: --exr writes a file that ends in .exr, not {name}\n{help}");
+    assert_refuses(&["--exr", "foo.png", "ball.toml"], 2, &refusal("foo.png"));
+    assert_refuses(&["ball.toml", "--exr", "ball.toml"], 2, &refusal("ball.toml"));
+    assert_refuses(&["ball.toml", "--exr", ".exr"], 2, &refusal(".exr"));
+    assert_refuses(&["ball.toml", "--exr", "frames/"], 2, &refusal("frames/"));
+}
+
+#[test]
+fn a_picture_that_is_no_png_is_refused() {
+    let refusal = "error: --png writes a file that ends in .png, not look.jpg\nhelp: for instance: --png look.png\n";
+    assert_refuses(&["ball.toml", "--png", "look.jpg"], 2, refusal);
+}
+
+#[test]
+fn one_scene_is_asked_for() {
+    let refusal = "error: no scene is given\nhelp: for instance: render --exr scenes/prism.toml\n";
+    assert_refuses(&[], 2, refusal);
+    assert_refuses(&["--exr"], 2, refusal);
+    assert_refuses(&["--exr", "frame.exr"], 2, refusal);
+    let two = render(&folder(), &["ball.toml", "ball.toml"]);
+    assert_eq!(two.code, Some(2));
+    assert!(two.stderr.starts_with("error: unexpected argument 'ball.toml' found\n"), "{}", two.stderr);
+}
+
+#[test]
+fn a_scene_that_cannot_be_read_is_refused_with_the_nearest_file() {
+    let example = "help: a scene is a TOML file, such as scenes/prism.toml\n";
+    let missing = "error: there is no scene file bal.toml\nhelp: did you mean ball.toml?\n";
+    assert_refuses(&["bal.toml"], 2, missing);
+    assert_refuses(&["--exr", "bal.toml"], 2, missing);
+    assert_refuses(&["cup"], 2, &format!("error: there is no scene file cup\n{example}"));
+    assert_refuses(&["no/ball.toml"], 2, &format!("error: there is no scene file no/ball.toml\n{example}"));
+    assert_refuses(&["ball.toml/x.toml"], 2, &format!("error: there is no scene file ball.toml/x.toml\n{example}"));
+    assert_refuses(&["."], 2, &format!("error: . is a folder, not a scene\n{example}"));
+    let folder = folder();
+    fs::write(folder.path().join("latin.toml"), b"# caf\xe9\n").expect("files can be written");
+    let answer = render(&folder, &["latin.toml"]);
+    assert_refused(&answer, 2, &format!("error: latin.toml is not text in UTF-8\n{example}"));
+}
+
+#[test]
+fn an_image_that_cannot_be_written_is_refused_before_anything_is_rendered() {
+    let file = "a file stands where its folder should be";
+    let cannot = |path: &str, reason: &str| format!("error: cannot write {path}: {reason}\n");
+    assert_refuses(&["ball.toml", "--exr", "ball.toml/a.exr"], 1, &cannot("ball.toml/a.exr", file));
+    assert_refuses(&["ball.toml", "--exr", "ball.toml/b/a.exr"], 1, &cannot("ball.toml/b/a.exr", file));
+    assert_refuses(&["ball.toml", "--png", "ball.toml/a.png"], 1, &cannot("ball.toml/a.png", file));
+    let folder = folder();
+    fs::create_dir(folder.path().join("a.exr")).expect("folders can be made");
+    assert_refused(&render(&folder, &["ball.toml", "--exr", "a.exr"]), 1, &cannot("a.exr", "it is a folder"));
+    assert_eq!(folder.listing(), ["a.exr", "ball.toml"]);
+}
+
+/// No folder can be made there, whoever asks.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_folder_that_cannot_be_made_is_told() {
+    let reason = "its folder does not exist and cannot be made";
+    let refusal = format!("error: cannot write /proc/nothing/a.exr: {reason}\n");
+    assert_refuses(&["ball.toml", "--exr", "/proc/nothing/a.exr"], 1, &refusal);
+}
+
+#[test]
+fn numbers_on_the_command_line_are_checked() {
+    let more = "\n\nFor more information, try '--help'.\n";
+    let invalid =
+        |value: &str, flag: &str, why: &str| format!("error: invalid value '{value}' for '{flag}': {why}{more}");
+    let samples = "0 is not in 1..=4294967295";
+    assert_refuses(&["ball.toml", "--samples", "0"], 2, &invalid("0", "--samples <N>", samples));
+    let samples = "-3 is not in 1..=4294967295";
+    assert_refuses(&["ball.toml", "--samples", "-3"], 2, &invalid("-3", "--samples <N>", samples));
+    let threads = |n: &str| invalid(n, "--threads <N>", &format!("{n} is not in 1..=1024"));
+    assert_refuses(&["ball.toml", "--threads", "0"], 2, &threads("0"));
+    assert_refuses(&["ball.toml", "--threads", "1025"], 2, &threads("1025"));
+    let seed = "a seed is a whole number from 0 to 18446744073709551615";
+    assert_refuses(&["ball.toml", "--seed", "-1"], 2, &invalid("-1", "--seed <N>", seed));
+    let exposure = "error: an exposure is a finite number of stops\nhelp: for instance: --exposure 1\n";
+    assert_refuses(&["ball.toml", "--exposure", "nan"], 2, exposure);
+    assert_refuses(&["ball.toml", "--exposure", "inf"], 2, exposure);
+}
+
+#[test]
+fn a_misspelt_flag_is_told_with_the_nearest_right_one() {
+    let answer = render(&folder(), &["ball.toml", "--sampels", "3"]);
+    assert_eq!(answer.code, Some(2));
+    assert!(answer.stderr.contains("tip: a similar argument exists: '--samples'"), "{}", answer.stderr);
+}
+
+#[test]
+fn a_plan_goes_to_stdout_and_writes_nothing() {
+    for arguments in [["--plan", "ball.toml"].as_slice(), &["--plan", "--exr", "ball.toml"]] {
+        let folder = folder();
+        let answer = render(&folder, arguments);
+        assert_eq!((answer.code, &*answer.stderr), (Some(0), ""));
+        assert!(answer.stdout.starts_with("model rgb"), "{}", answer.stdout);
+        assert_eq!(folder.listing(), ["ball.toml"]);
+    }
+}
+
+#[test]
+fn a_check_says_that_the_scene_is_valid_and_writes_nothing() {
+    let folder = folder();
+    let answer = render(&folder, &["--check", "ball.toml"]);
+    assert_refused(&answer, 0, "ball.toml is a valid scene: 2 objects\n");
+    assert_eq!(folder.listing(), ["ball.toml"]);
+}
+
+#[test]
+fn a_plan_or_a_check_together_with_an_image_is_refused() {
+    for flag in ["--plan", "--check"] {
+        let refusal =
+            format!("error: {flag} renders nothing, so frame.exr would not be written\nhelp: leave one of them out\n");
+        assert_refuses(&[flag, "ball.toml", "--exr", "frame.exr"], 2, &refusal);
+        let png = render(&folder(), &[flag, "ball.toml", "--png", "look.png"]);
+        assert_eq!(png.code, Some(2), "{}", png.stderr);
+    }
+    assert_eq!(render(&folder(), &["--plan", "--check", "ball.toml"]).code, Some(2));
+}
+
+#[test]
+fn a_picture_is_8_bit_rgb_of_the_film_s_size() {
+    let folder = folder();
+    assert_eq!(render(&folder, &["ball.toml", "--png", "look.png"]).code, Some(0));
+    assert_eq!(folder.listing(), ["ball.exr", "ball.toml", "look.png"]);
+    let picture = image::open(folder.path().join("look.png")).expect("the picture can be read");
+    let image::DynamicImage::ImageRgb8(picture) = picture else { panic!("the picture is {:?}", picture.color()) };
+    assert_eq!(picture.dimensions(), (6, 4));
+    // The sky of radiance 1 in the corner is full white.
+    assert_eq!(picture.get_pixel(0, 0).0, [255; 3]);
+}
+
+#[test]
+fn an_exposure_of_minus_one_halves_the_light_of_the_picture_alone() {
+    let folder = folder();
+    assert_eq!(render(&folder, &["ball.toml", "--png", "a.png"]).code, Some(0));
+    let image = fs::read(folder.path().join("ball.exr")).expect("the image is there");
+    assert_eq!(render(&folder, &["ball.toml", "--png", "b.png", "--exposure", "-1"]).code, Some(0));
+    assert!(fs::read(folder.path().join("ball.exr")).expect("the image is there") == image);
+    let picture = image::open(folder.path().join("b.png")).expect("the picture can be read").into_rgb8();
+    // sRGB of 0.5: 255 (1.055 * 0.5^(1/2.4) - 0.055) = 187.5 (IEC 61966-2-1).
+    assert_eq!(picture.get_pixel(0, 0).0, [188; 3]);
+}
+
+#[test]
+fn an_existing_image_survives_a_failing_run_and_is_replaced_by_a_good_one() {
+    let folder = folder();
+    folder.write("ball.exr", "an older image");
+    let older = || fs::read(folder.path().join("ball.exr")).expect("the image is there") == b"an older image";
+    folder.write("bad.toml", &SCENE.replace("radius = 1 ", "radius = -1 "));
+    assert_eq!(render(&folder, &["bad.toml", "--exr", "ball.exr"]).code, Some(2));
+    assert!(older());
+    assert_eq!(render(&folder, &["ball.toml", "--png", "ball.toml/a.png"]).code, Some(1));
+    assert!(older());
+    assert_eq!(render(&folder, &["ball.toml", "--samples", "0"]).code, Some(2));
+    assert!(older());
+    assert_eq!(render(&folder, &["ball.toml"]).code, Some(0));
+    let image = fs::read(folder.path().join("ball.exr")).expect("the image is there");
+    assert_eq!(image[..4], [0x76, 0x2f, 0x31, 0x01], "the magic number of OpenEXR");
+    assert_eq!(folder.listing(), ["bad.toml", "ball.exr", "ball.toml"]);
+}
+
+#[test]
+fn flags_replace_what_the_scene_says() {
+    let folder = folder();
+    folder.write("none.toml", &SCENE.replace("samples = 1", "samples = 0"));
+    assert_eq!(render(&folder, &["--check", "none.toml"]).code, Some(2));
+    assert_eq!(render(&folder, &["--check", "none.toml", "--samples", "3"]).code, Some(0));
+    let plan = render(&folder, &["--plan", "ball.toml", "--samples", "3"]).stdout;
+    assert!(plan.contains("3 samples per pixel"), "{plan}");
+}
+
+#[test]
+fn help_shows_examples_and_exit_codes_within_80_columns() {
+    let help = render(&folder(), &["--help"]);
+    assert_eq!((help.code, &*help.stderr), (Some(0), ""));
+    let examples = help.stdout.split("Examples:\n").nth(1).expect("there are examples");
+    assert!(examples.contains("  render --exr scenes/prism.toml "), "{examples}");
+    assert!(examples.contains("\nExit codes: 0 done, 1 "), "{examples}");
+    assert!(examples.lines().all(|line| line.len() <= 80), "{examples}");
+    assert_eq!(render(&folder(), &["--version"]).stdout, format!("render {}\n", env!("CARGO_PKG_VERSION")));
+}

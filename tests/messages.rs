@@ -1,0 +1,205 @@
+//! Every mistake a person can make in a scene file, with the exact text that answers it.
+//!
+//! The files in `tests/messages/` hold the cases. A case is a heading, a patch to `base.toml`, the files a mesh is read
+//! from, and what `render --check scene.toml` then writes to stderr:
+//!
+//! ```text
+//! ## a misspelt key of the film
+//! - width = 4                          lines of the base scene, which stand there once, taken out
+//! + widht = 4                          lines put in their place, or at the end if nothing is taken out
+//! @ cup.ply                            another file in the folder of the scene
+//! > ply                                its lines
+//!
+//! error: unknown key `widht`
+//! ..
+//! ```
+
+#[path = "messages/run.rs"]
+mod run;
+
+use std::fs;
+use std::path::Path;
+
+use run::{Folder, render};
+
+const BASE: &str = include_str!("messages/base.toml");
+
+struct Case<'a> {
+    title: &'a str,
+    scene: String,
+    /// Other files: name and text.
+    files: Vec<(&'a str, String)>,
+    expected: &'a str,
+}
+
+impl<'a> Case<'a> {
+    fn new(text: &'a str) -> Self {
+        let (title, rest) = text.split_once('\n').expect("a heading ends its line");
+        let (patch, expected) = rest.split_once("\n\n").expect("a blank line ends the patch");
+        let (mut taken, mut put, mut files) = (Vec::new(), Vec::new(), Vec::<(&str, String)>::new());
+        for line in patch.lines() {
+            let (mark, line) = line.split_at(1);
+            let line = line.strip_prefix(' ').unwrap_or(line);
+            match mark {
+                "-" => taken.push(line),
+                "+" => put.push(line),
+                "@" => files.push((line, String::new())),
+                ">" => files.last_mut().expect("a file has a name").1 += &format!("{line}\n"),
+                other => panic!("{title}: what is {other}?"),
+            }
+        }
+        Self { title, scene: patched(title, &taken, &put), files, expected: expected.trim_end() }
+    }
+
+    /// What is wrong with the answer to this case, if anything.
+    fn failure(&self) -> Option<String> {
+        let folder = Folder::new();
+        for (name, text) in &self.files {
+            let path = folder.path().join(name);
+            fs::create_dir_all(path.parent().expect("a file stands in a folder")).expect("folders can be made");
+            fs::write(path, text).expect("files can be written");
+        }
+        folder.write("scene.toml", &self.scene);
+        let before = folder.listing();
+        // A check and a render refuse a scene with the same words, and neither leaves anything behind.
+        for flag in ["--check", "--exr"] {
+            let answer = render(&folder, &[flag, "scene.toml"]);
+            let told = answer.stderr.trim_end();
+            let answered = answer.code == Some(2) && answer.stdout.is_empty() && told == self.expected;
+            if !answered {
+                return Some(format!("## {}\n\n{told}\n\n(exit code {:?})", self.title, answer.code));
+            }
+            if folder.listing() != before {
+                return Some(format!("## {}\n\nleaves {:?}", self.title, folder.listing()));
+            }
+        }
+        None
+    }
+}
+
+fn patched(title: &str, taken: &[&str], put: &[&str]) -> String {
+    let mut lines: Vec<&str> = BASE.lines().collect();
+    let places: Vec<usize> = (0..lines.len()).filter(|&i| !taken.is_empty() && lines[i..].starts_with(taken)).collect();
+    let at = match (taken, places.as_slice()) {
+        ([], _) => lines.len(),
+        (_, [place]) => *place,
+        _ => panic!("{title}: the lines taken out stand in the base scene {} times", places.len()),
+    };
+    lines.splice(at..at + taken.len(), put.iter().copied());
+    lines.join("\n") + "\n"
+}
+
+fn check(table: &str, at_least: usize) {
+    let table = format!("\n{}", fs::read_to_string(Path::new("tests/messages").join(table)).expect("the table exists"));
+    let cases: Vec<Case> = table.split("\n## ").skip(1).map(Case::new).collect();
+    assert!(cases.len() >= at_least, "only {} cases were read", cases.len());
+    let failures: Vec<String> = cases.iter().filter_map(Case::failure).collect();
+    assert!(failures.is_empty(), "{} answers differ; they are now:\n\n{}", failures.len(), failures.join("\n\n"));
+}
+
+#[test]
+fn the_base_scene_itself_is_valid() {
+    let folder = Folder::new();
+    folder.write("scene.toml", BASE);
+    let answer = render(&folder, &["--check", "scene.toml"]);
+    assert_eq!((answer.code, &*answer.stderr), (Some(0), "scene.toml is a valid scene: 7 objects\n"));
+}
+
+#[test]
+fn unknown_keys_names_and_kinds_are_told_with_the_nearest_right_one() {
+    check("keys.txt", 40);
+}
+
+#[test]
+fn what_is_missing_is_told_where_it_is_missing() {
+    check("missing.txt", 20);
+}
+
+#[test]
+fn two_kinds_in_one_place_are_refused() {
+    check("kinds.txt", 8);
+}
+
+#[test]
+fn values_of_the_wrong_type_are_told_with_what_belongs_there() {
+    check("types.txt", 40);
+}
+
+#[test]
+fn impossible_numbers_and_shapes_are_refused() {
+    check("values.txt", 45);
+}
+
+#[test]
+fn impossible_spectra_are_refused() {
+    check("spectra.txt", 40);
+}
+
+#[test]
+fn text_that_is_not_toml_is_told_in_plain_words() {
+    check("syntax.txt", 25);
+}
+
+#[test]
+fn broken_mesh_files_are_refused_with_the_place_in_the_scene() {
+    check("meshes.txt", 25);
+}
+
+#[test]
+fn an_empty_scene_asks_for_a_camera_and_a_film() {
+    let folder = Folder::new();
+    folder.write("scene.toml", "");
+    let expected = "\
+error: the scene has no [camera]
+ --> scene.toml:1:1
+  |
+1 |
+  | ^
+  |
+  = help: every scene has [camera] and [film]
+";
+    let answer = render(&folder, &["--check", "scene.toml"]);
+    assert_eq!((answer.code, &*answer.stderr), (Some(2), expected));
+}
+
+#[test]
+fn lines_that_end_as_on_windows_are_counted_and_shown_alike() {
+    let folder = Folder::new();
+    folder.write("scene.toml", &BASE.replace("radius = 1 }", "radius = 0 }").replace('\n', "\r\n"));
+    let expected = "\
+error: a radius is a length above 0, not 0
+  --> scene.toml:31:47
+   |
+31 | shape.sphere = { center = [0, 1, 0], radius = 0 }
+   |                                               ^
+";
+    let answer = render(&folder, &["--check", "scene.toml"]);
+    assert_eq!((answer.code, &*answer.stderr), (Some(2), expected));
+}
+
+#[test]
+fn a_byte_order_mark_does_not_move_the_column() {
+    let folder = Folder::new();
+    folder.write("scene.toml", &format!("\u{feff}{}", BASE.replace("[camera]", "[kamera]")));
+    let answer = render(&folder, &["--check", "scene.toml"]);
+    assert!(answer.stderr.contains("--> scene.toml:1:2\n"), "{}", answer.stderr);
+}
+
+#[test]
+fn a_mesh_file_may_have_comments_in_any_encoding() {
+    let folder = Folder::new();
+    fs::write(folder.path().join("cup.obj"), b"# caf\xe9\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").expect("written");
+    let inline = "{ points = [[0, 0, 0], [1, 0, 0], [0, 1, 0]], faces = [[0, 1, 2]] }";
+    folder.write("scene.toml", &BASE.replace(inline, "{ file = \"cup.obj\" }"));
+    assert_eq!(render(&folder, &["--check", "scene.toml"]).code, Some(0));
+}
+
+#[test]
+fn a_mesh_is_looked_for_beside_its_scene() {
+    let folder = Folder::new();
+    let inline = "{ points = [[0, 0, 0], [1, 0, 0], [0, 1, 0]], faces = [[0, 1, 2]] }";
+    fs::create_dir(folder.path().join("scenes")).expect("folders can be made");
+    folder.write("scenes/scene.toml", &BASE.replace(inline, "{ file = \"cup.obj\" }"));
+    folder.write("scenes/cup.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    assert_eq!(render(&folder, &["--check", "scenes/scene.toml"]).code, Some(0));
+}
