@@ -60,7 +60,7 @@ STEPS = {
     "format": lambda: run("cargo", "fmt", "--all", "--check"),
     "clippy": lambda: run("cargo", "clippy", "--all-targets", "--", "-D", "warnings"),
     "doc": lambda: run("cargo", "doc", "--no-deps", RUSTDOCFLAGS="-D warnings"),
-    "test": lambda: run("cargo", "test"),
+    "test": lambda: run("cargo", "test", "--release"),
     "build": lambda: run("cargo", "build", "--release"),
     "packages": packages,
     "pytest": lambda: run(PYTHON, "-m", "pytest", "tools/tests", RENDER=str(RENDER)),

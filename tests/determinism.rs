@@ -1,0 +1,92 @@
+//! The image depends on the scene and the seed alone: not on the number of threads, nor on the run.
+//!
+//! ```text
+//! cargo test --test determinism
+//! ```
+
+use std::path::Path;
+use std::process::Command;
+
+use exr::prelude::read_first_flat_layer_from_file;
+
+/// Chance everywhere: a glass ball, mirror and metal on a diffuse floor under two lamps and a sky. The film is no
+/// multiple of any tile.
+const RANDOM: &str = r#"
+camera = { position = [0, 1.5, 6], look_at = [0, 0.7, 0], vertical_fov = 35 }
+film = { width = 75, height = 43 }
+render = { samples = 9, seed = 3 }
+[material]
+floor.diffuse.reflectance = 0.6
+glass.dielectric.index.rgb = [1.5, 1.52, 1.55]
+silver.mirror.reflectance = 0.9
+gold.conductor.metal = "Au"
+lamp.emissive.radiance = 8
+[[object]]
+shape.plane = { point = [0, 0, 0], normal = [0, 1, 0] }
+material = "floor"
+[[object]]
+shape.sphere = { center = [0, 0.8, 0], radius = 0.8 }
+material = "glass"
+[[object]]
+shape.sphere = { center = [-1.8, 0.7, -0.5], radius = 0.7 }
+material = "silver"
+[[object]]
+shape.cube = { center = [1.7, 0.5, -0.4], size = 1 }
+material = "gold"
+[[object]]
+shape.quad = { center = [0.5, 3, 0], u = [0.5, 0, 0], v = [0, 0, 0.5] }
+material = "lamp"
+[[object]]
+shape.sphere = { center = [-1, 2.5, 1], radius = 0.2 }
+material = "lamp"
+[[light]]
+environment.radiance = 0.2
+"#;
+
+/// Renders a scene with the command and answers the bytes of the EXR and the PNG.
+fn rendered(folder: &Path, scene: &str, flags: &[&str]) -> (Vec<u8>, Vec<u8>) {
+    std::fs::write(folder.join("scene.toml"), scene).expect("the scene can be written");
+    let output = Command::new(env!("CARGO_BIN_EXE_render"))
+        .args(["scene.toml", "--exr", "image.exr", "--png", "image.png"])
+        .args(flags)
+        .current_dir(folder)
+        .output()
+        .expect("the command runs");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let read = |name: &str| std::fs::read(folder.join(name)).expect("the image was written");
+    (read("image.exr"), read("image.png"))
+}
+
+#[test]
+fn any_number_of_threads_and_any_run_write_the_same_bytes() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let deterministic = RANDOM
+        .replace("height = 43", "height = 43, filter = \"center\"")
+        .replace("[material]", "[material]\nplain.diffuse.reflectance = 0")
+        .replace("material = \"floor\"", "material = \"silver\"");
+    for scene in [RANDOM, deterministic.as_str()] {
+        let first = rendered(folder.path(), scene, &["--threads", "1"]);
+        for threads in ["1", "2", "3", "7"] {
+            let again = rendered(folder.path(), scene, &["--threads", threads]);
+            assert!(again == first, "{threads} threads write other bytes");
+        }
+    }
+}
+
+#[test]
+fn another_seed_gives_another_image_of_the_same_scene() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let red = |flags: &[&str]| {
+        rendered(folder.path(), RANDOM, flags);
+        let image = read_first_flat_layer_from_file(folder.path().join("image.exr")).expect("an EXR");
+        let channels = image.layer_data.channel_data.list;
+        let red = channels.iter().find(|channel| channel.name.eq("R")).expect("a red channel");
+        red.sample_data.values_as_f32().collect::<Vec<f32>>()
+    };
+    let (of_scene, again, other) = (red(&[]), red(&["--seed", "3"]), red(&["--seed", "4"]));
+    assert_eq!(of_scene, again);
+    let differing = of_scene.iter().zip(&other).filter(|(a, b)| a != b).count();
+    assert!(differing * 2 > other.len(), "only {differing} pixels differ");
+    let mean = |image: &[f32]| image.iter().sum::<f32>() / image.len() as f32;
+    assert!((mean(&of_scene) / mean(&other) - 1.0).abs() < 0.1, "{} and {}", mean(&of_scene), mean(&other));
+}

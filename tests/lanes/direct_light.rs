@@ -1,0 +1,88 @@
+//! Light that comes straight from lights onto a diffuse floor, against closed forms: aiming at a light and meeting it
+//! by chance must together count it once.
+
+mod bounces;
+mod combined;
+mod flat;
+mod round;
+
+use std::f64::consts::PI;
+
+use abbe::math::DVec3;
+
+use crate::support::scenes::{Mean, SINGLE_PATH, SPLITTING, body, image, view};
+
+/// The bands' radiances are in these proportions.
+const BANDS: [f64; 3] = [1.0, 2.0, 0.5];
+const REFLECTANCE: f64 = 0.5;
+
+pub struct Case {
+    name: &'static str,
+    /// Objects of the material "lamp", and anything else.
+    scene: String,
+    /// The place on the floor y = 0 that is looked at, and from where.
+    point: [f64; 3],
+    camera: [f64; 3],
+    /// Irradiance by a light of radiance 1.
+    irradiance: f64,
+    /// Whether the light touches the floor so near that aiming alone finds it too rarely (row L3).
+    touches: bool,
+}
+
+fn case(name: &'static str, shapes: &[&str], irradiance: f64) -> Case {
+    let scene = lamp("", shapes);
+    Case { name, scene, point: [0.0; 3], camera: [7.0, 0.6, 3.0], irradiance, touches: false }
+}
+
+fn lamp(sides: &str, shapes: &[&str]) -> String {
+    body("lamp", &format!("emissive = {{ radiance = {{ rgb = {BANDS:?} }}{sides} }}"), shapes)
+}
+
+/// Irradiance of a horizontal place by a polygon of radiance 1 above it: half the sum of its edges' angles times the
+/// heights of their planes' normals (Lambert 1760; Baum, Rushmeier & Winget 1989).
+fn by_polygon(point: [f64; 3], corners: &[DVec3]) -> f64 {
+    let seen: Vec<DVec3> = corners.iter().map(|corner| (*corner - DVec3::from(point)).normalize()).collect();
+    let edges = (0..seen.len()).map(|i| (seen[i], seen[(i + 1) % seen.len()]));
+    let sum: f64 = edges.map(|(a, b)| libm::acos(a.dot(b)) * a.cross(b).normalize().y).sum();
+    0.5 * sum.abs()
+}
+
+fn by_quad(point: [f64; 3], center: DVec3, u: DVec3, v: DVec3) -> f64 {
+    by_polygon(point, &[center + u + v, center - u + v, center - u - v, center + u - v])
+}
+
+/// Irradiance by a ball wholly above the floor: that of its center's direction, pi sin^2 cos.
+fn by_ball(point: [f64; 3], center: [f64; 3], radius: f64) -> f64 {
+    let d = DVec3::from(center) - DVec3::from(point);
+    PI * radius * radius / d.length_squared() * d.normalize().y
+}
+
+fn assert_closed_forms(cases: &[Case]) {
+    // Aim at all lights, at one of them, and without going on to meet any.
+    let ways = [("", SPLITTING, 24), ("", SINGLE_PATH, 32), ("diffuse_bounces = 0\n", SINGLE_PATH, 32)];
+    for case in cases {
+        for (limit, transport, samples) in ways {
+            if case.touches && !limit.is_empty() {
+                continue;
+            }
+            let floor = format!("diffuse = {{ reflectance = {REFLECTANCE} }}");
+            // So far away and narrow that all pixels see one place.
+            let text = view(case.camera, case.point, 1e-5, 40)
+                + &format!("[render]\nsamples = {samples}\n{limit}")
+                + &body("floor", &floor, &["plane = { point = [0, 0, 0], normal = [0, 1, 0] }"])
+                + &case.scene;
+            let (film, report) = image(&text, transport);
+            assert_eq!(report.non_finite, 0, "{}", case.name);
+            let mean = Mean::of(&film);
+            let expected = BANDS.map(|band| band * REFLECTANCE / PI * case.irradiance);
+            if case.irradiance == 0.0 {
+                assert_eq!(mean.value, [0.0; 3], "{}", case.name);
+                continue;
+            }
+            let (off, error) = (mean.value[0] / expected[0] - 1.0, mean.error[0] / expected[0]);
+            println!("{:40} {off:+.1e} +- {error:.1e} {limit}", case.name);
+            mean.assert_near(expected, 3 * cases.len(), case.name);
+            assert!(mean.worst_error(expected) <= 0.01, "{}: {mean:?}", case.name);
+        }
+    }
+}

@@ -1,0 +1,64 @@
+use std::f64::consts::PI;
+
+use crate::support::scenes::{Mean, SINGLE_PATH, SPLITTING, body, environment, image, view};
+
+#[test]
+fn each_diffuse_bounce_adds_its_own_share() {
+    // In a diffuse ball everything is lit alike: each bounce returns its reflectance; of a ball in the middle that
+    // shines, it loses what falls back onto that, the ratio of their areas.
+    const ROOM: &str = "sphere = { center = [0, 0, 0], radius = 2 }";
+    let white = body("white", "diffuse = { reflectance = 0.6 }", &[ROOM]);
+    let point = "[[light]]\npoint = { position = [0, 0, 0], intensity = 3 }\n".to_owned();
+    let ball = body("lamp", "emissive = { radiance = 5 }", &["sphere = { center = [0, 0, 0], radius = 0.8 }"]);
+    let lost = 0.8 * 0.8 / 4.0;
+    for (light, irradiance, kept) in [(point, 3.0 / 4.0, 0.6), (ball, PI * 5.0 * lost, 0.6 * (1.0 - lost))] {
+        for bounces in [0, 1, 2, 5] {
+            // From beside the middle, away from it.
+            let text = view([1.2, 0.3, 0.2], [2.4, 0.6, 0.4], 20.0, 60)
+                + &format!("[render]\nsamples = 8\ndiffuse_bounces = {bounces}\n")
+                + &white
+                + &light;
+            let sum: f64 = (0..=bounces).map(|bounce| libm::pow(kept, f64::from(bounce))).sum();
+            let expected = 0.6 / PI * irradiance * sum;
+            let mean = Mean::of(&image(&text, SPLITTING).0);
+            mean.assert_near([expected; 3], 8, &format!("{bounces} bounces"));
+            assert!(mean.worst_error([expected; 3]) <= 0.01, "{mean:?}");
+        }
+    }
+}
+
+#[test]
+fn a_diffuse_body_in_an_even_sky_shows_its_reflectance() {
+    let ball = body("white", "diffuse = { reflectance = 0.5 }", &["sphere = { center = [0, 0, 0], radius = 1 }"]);
+    let text = view([0.5, 0.4, 4.0], [0.0; 3], 20.0, 60) + "[render]\nsamples = 4\n" + &ball + &environment(1.0);
+    for transport in [SPLITTING, SINGLE_PATH] {
+        Mean::of(&image(&text, transport).0).assert_near([0.5; 3], 2, "diffuse ball");
+    }
+}
+
+#[test]
+fn light_in_an_absorbing_medium_is_absorbed_on_its_way_to_a_surface() {
+    // A diffuse room filled with a medium of index 1 around a point: e^(-absorption r) on the way from the light, and
+    // again on the way to the camera in the middle.
+    let room = body("white", "diffuse = { reflectance = 0.6 }", &["sphere = { center = [0, 0, 0], radius = 2 }"]);
+    let haze =
+        body("haze", "dielectric = { index = 1, absorption = 0.5 }", &["sphere = { center = [0, 0, 0], radius = 3 }"]);
+    let lights = [
+        ("[[light]]\npoint = { position = [0, 0, 0], intensity = 3 }\n".to_owned(), 3.0 / 4.0, 2.0),
+        (
+            body("lamp", "emissive = { radiance = 5 }", &["sphere = { center = [0, 0, 0], radius = 0.01 }"]),
+            PI * 5.0 * 2.5e-5,
+            1.99,
+        ),
+    ];
+    for (light, irradiance, way) in lights {
+        let text = view([0.1, 0.0, 0.0], [1.0, 0.0, 0.0], 1e-5, 30)
+            + "[render]\nsamples = 16\ndiffuse_bounces = 0\n"
+            + &room
+            + &haze
+            + &light;
+        let expected = 0.6 / PI * irradiance * libm::exp(-0.5 * way) * libm::exp(-0.5 * 1.9);
+        let mean = Mean::of(&image(&text, SPLITTING).0);
+        assert!((mean.value[0] / expected - 1.0).abs() <= 0.01, "{mean:?} for {expected}");
+    }
+}

@@ -1,0 +1,63 @@
+use std::f64::consts::PI;
+
+use abbe::math::DVec3;
+
+use super::{BANDS, Case, assert_closed_forms, by_quad, case, lamp};
+
+/// Sides, a sky beside a lamp, and more lights than are all aimed at.
+fn combined_lights() -> Vec<Case> {
+    let square = "quad = { center = [0, 1, 0], u = [1, 0, 0], v = [0, 0, 1] }";
+    let irradiance = 4.0 * 0.5f64.sqrt() * libm::atan(0.5f64.sqrt());
+    let front = |name, shapes: &[&str], irradiance| Case {
+        scene: lamp(", sides = \"front\"", shapes),
+        ..case(name, &[], irradiance)
+    };
+    let down = "quad = { center = [0, 1, 0], u = [1, 0, 0], v = [0, 0, 1] }";
+    let up = "quad = { center = [0, 1, 0], u = [0, 0, 1], v = [1, 0, 0] }";
+    // Ten squares on a ring, each tilted another way; none hides another from the place.
+    let ring: Vec<(DVec3, DVec3, DVec3)> = (0..10)
+        .map(|i| {
+            let (sin, cos) = libm::sincos(f64::from(i) * 0.2 * PI);
+            let center = DVec3::new(2.0 * cos, 1.0 + 0.2 * f64::from(i), 2.0 * sin);
+            (center, DVec3::new(0.3, 0.05 * f64::from(i), 0.0), DVec3::new(0.0, 0.1, 0.2 + 0.01 * f64::from(i)))
+        })
+        .collect();
+    let quads: Vec<String> = ring
+        .iter()
+        .map(|(c, u, v)| {
+            format!("quad = {{ center = {:?}, u = {:?}, v = {:?} }}", c.to_array(), u.to_array(), v.to_array())
+        })
+        .collect();
+    let quads: Vec<&str> = quads.iter().map(String::as_str).collect();
+    let by_ring: f64 = ring.iter().map(|&(c, u, v)| by_quad([0.0; 3], c, u, v)).sum();
+    let sky = format!("[[light]]\nenvironment = {{ radiance = {{ rgb = {:?} }} }}\n", BANDS.map(|x| 0.7 * x));
+    vec![
+        front("front that faces the floor", &[down], irradiance),
+        front("back that faces the floor", &[up], 0.0),
+        case(
+            "light in the plane of the floor",
+            &["quad = { center = [1.5, 0, 0], u = [0, 0, 1], v = [1, 0, 0] }"],
+            0.0,
+        ),
+        case("ten squares", &quads, by_ring),
+        Case {
+            scene: lamp("", &[square]) + &sky,
+            ..case("square before a sky", &[], irradiance + 0.7 * (PI - irradiance))
+        },
+        Case {
+            scene: lamp("", &quads) + &sky,
+            ..case("ten squares before a sky", &[], by_ring + 0.7 * (PI - by_ring))
+        },
+        Case { scene: lamp("", &[]) + &sky, ..case("sky alone", &[], 0.7 * PI) },
+        Case {
+            scene: lamp("", &[square])
+                + &format!("[[light]]\npoint = {{ position = [0.3, 0.8, 0], intensity = {{ rgb = {BANDS:?} }} }}\n"),
+            ..case("square and point", &[], irradiance + 0.8 / libm::pow(0.73, 1.5))
+        },
+    ]
+}
+
+#[test]
+fn lights_together_send_the_sum_and_hide_each_other() {
+    assert_closed_forms(&combined_lights());
+}

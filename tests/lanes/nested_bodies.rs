@@ -1,0 +1,180 @@
+//! Bodies in bodies: rows M1, M3 and M4 of the stability catalog.
+
+use abbe::math::DVec3;
+
+use crate::support::random::Random;
+use crate::support::scenes::{EVERY_BRANCH, body, image, view};
+use abbe::trace::Transport;
+
+/// Reflectance over transmittance of one interface at normal incidence.
+fn lost(n1: f64, n2: f64) -> f64 {
+    let r = (n1 - n2) / (n1 + n2);
+    r * r / (1.0 - r * r)
+}
+
+/// What a row of interfaces lets through at normal incidence with all reflections between them, which adds up
+/// R / T (Stokes 1862, the pile of plates).
+fn transmitted(indices: &[f64]) -> f64 {
+    1.0 / (1.0 + indices.windows(2).map(|pair| lost(pair[0], pair[1])).sum::<f64>())
+}
+
+/// A box as a mesh, or as a hollow in one: its faces look inward then.
+fn faces(first: u32, hollow: bool) -> String {
+    // Corner i lies at x, y, z = +-1 by its bits 0, 1 and 2.
+    let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let turn = |[a, b, c]: [u32; 3]| if hollow { [a, c, b] } else { [a, b, c] };
+    let triangles = quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]);
+    triangles.map(|t| format!("{:?}, ", turn(t.map(|corner| corner + first)))).collect()
+}
+
+fn corners(half: f64) -> String {
+    let side = |bit: bool| if bit { half } else { -half };
+    (0..8).map(|i| format!("{:?}, ", [side(i & 1 > 0), side(i & 2 > 0), side(i & 4 > 0)])).collect()
+}
+
+/// A glass vessel with a hollow of half width 0.9.
+fn vessel() -> String {
+    let (points, faces) = (corners(1.0) + &corners(0.9), faces(0, false) + &faces(8, true));
+    let mesh = format!("mesh = {{ points = [{points}], faces = [{faces}] }}");
+    body("glass", "dielectric = { index = 1.5168, priority = 2 }", &[&mesh])
+}
+
+fn water(half: f64, priority: i32) -> String {
+    let cube = format!("cube = {{ center = [0, 0, 0], size = {:?} }}", 2.0 * half);
+    body("water", &format!("dielectric = {{ index = 1.333, priority = {priority} }}"), &[&cube])
+}
+
+/// Straight through the middle onto a shining plane, all reflections counted.
+fn seen_through(bodies: &str) -> f64 {
+    let plane = "plane = { point = [0, 0, -5], normal = [0, 0, 1] }";
+    let lamp = body("lamp", "emissive = { radiance = 1 }", &[plane]);
+    // Off the diagonals of the faces; so narrow that its rays count as one.
+    let text = view([0.31, 0.17, 5.0], [0.31, 0.17, 0.0], 1e-6, 1) + bodies + &lamp;
+    let (film, report) = image(&text, Transport::Deterministic { cutoff: 1e-12 });
+    assert_eq!(report.unmatched, 0);
+    f64::from(film.pixels[0].rgb[1])
+}
+
+#[test]
+fn m1_water_that_overlaps_its_vessel_lets_through_what_labelled_interfaces_would() {
+    let expected = transmitted(&[1.0, 1.5168, 1.333, 1.5168, 1.0]);
+    let solid =
+        body("glass", "dielectric = { index = 1.5168, priority = 1 }", &["cube = { center = [0, 0, 0], size = 2 }"]);
+    let ways = [
+        ("overlapping a little", vessel() + &water(0.91, 1)),
+        ("overlapping to the middle of the wall", vessel() + &water(0.95, 1)),
+        ("displacing glass", solid + &water(0.9, 2)),
+    ];
+    for (name, bodies) in ways {
+        let found = seen_through(&bodies);
+        println!("M1: {name} {:.1e}", found / expected - 1.0);
+        // A weight is rounded to 2^-24 at each of a few dozen surfaces that matter.
+        assert!((found / expected - 1.0).abs() <= 1e-6, "{name}: {found} for {expected}");
+    }
+    // The naive vessel, with a film of air between water and glass, differs by more than any rounding.
+    let naive = seen_through(&(vessel() + &water(0.89, 1)));
+    assert!((naive / transmitted(&[1.0, 1.5168, 1.0, 1.333, 1.0, 1.5168, 1.0]) - 1.0).abs() <= 1e-6, "{naive}");
+    assert!(naive < 0.95 * expected);
+}
+
+#[test]
+fn m3_overlap_and_displacement_bend_light_the_same_way() {
+    // At 30 degrees through vessel, water and vessel onto stripes; the same picture whichever body yields.
+    let stripes: String = (0..40)
+        .map(|i| {
+            let quad = format!(
+                "quad = {{ center = [{}, 0, -5], u = [0.05, 0, 0], v = [0, 9, 0] }}",
+                -2.0 + 0.1 * f64::from(i)
+            );
+            body(&format!("stripe{i}"), &format!("emissive = {{ radiance = {i} }}"), &[&quad])
+        })
+        .collect();
+    let pictures = [(vessel() + &water(0.91, 1)), vessel() + &water(0.95, 1)].map(|bodies| {
+        let text = view([2.9, 0.4, 4.7], [0.1, 0.05, 0.0], 12.0, 40) + &bodies + &stripes;
+        image(&text, Transport::Deterministic { cutoff: 1e-6 }).0
+    });
+    let [a, b] = pictures;
+    for (at, (a, b)) in a.pixels.iter().zip(&b.pixels).enumerate() {
+        assert!((a.rgb[0] - b.rgb[0]).abs() <= 1e-3 * b.rgb[0].max(1.0), "pixel {at}: {} and {}", a.rgb[0], b.rgb[0]);
+    }
+    assert!(b.pixels.iter().any(|pixel| pixel.rgb[0] > 5.0));
+}
+
+/// Balls (center, radius, index, priority), some within and some across each other.
+const BALLS: [([f64; 3], f64, f64, i32); 5] = [
+    ([0.0, 0.0, 0.0], 2.0, 1.6, 1),
+    ([0.3, 0.1, 0.0], 1.2, 1.333, 2),
+    ([0.4, 0.2, 0.1], 0.5, 1.0, 3),
+    ([-1.5, 0.6, 0.3], 0.9, 2.0, 0),
+    ([1.4, -0.9, 0.5], 0.8, 1.25, 4),
+];
+
+/// Absorption of each ball's medium; each tells them apart over a short way.
+const ABSORPTIONS: [f64; 5] = [2.0, 5.0, 0.0, 9.0, 14.0];
+
+/// The ball that a place is in, the one of highest priority; none if there is none.
+fn ball_around(place: DVec3) -> Option<usize> {
+    let within = |&i: &usize| (place - DVec3::from(BALLS[i].0)).length() < BALLS[i].1;
+    (0..BALLS.len()).filter(within).max_by_key(|&i| BALLS[i].3)
+}
+
+#[test]
+fn m4_a_camera_finds_the_media_around_it() {
+    let bodies: String = BALLS
+        .iter()
+        .zip(ABSORPTIONS)
+        .enumerate()
+        .map(|(i, ((center, radius, index, priority), absorption))| {
+            let ball = format!("sphere = {{ center = {center:?}, radius = {radius:?} }}");
+            let medium = format!("{{ index = {index:?}, priority = {priority}, absorption = {absorption:?} }}");
+            body(&format!("medium{i}"), &format!("dielectric = {medium}"), &[&ball])
+        })
+        .collect();
+    let mut random = Random::new(4);
+    let mut found = [0; BALLS.len() + 1];
+    let mut number = 0;
+    while number < 3000 {
+        // Every other ray starts away from the camera, maybe in another medium than the camera's.
+        let near = if number % 2 == 0 { 0.0 } else { random.between(0.0, 3.0) };
+        let (center, radius, ..) = BALLS[number % BALLS.len()];
+        let start = DVec3::from(center) + random.direction() * random.between(0.0, 1.3 * radius);
+        let direction = random.direction();
+        let position = start - direction * near;
+        let surface = |ball: &([f64; 3], f64, f64, i32)| ((start - DVec3::from(ball.0)).length() - ball.1).abs();
+        if BALLS.iter().map(surface).fold(f64::INFINITY, f64::min) < 0.13 {
+            continue;
+        }
+        number += 1;
+        // A small lamp before the start: its light comes through the first medium alone.
+        let lamp = format!("sphere = {{ center = {:?}, radius = 0.02 }}", (start + direction * 0.12).to_array());
+        let text = format!(
+            "camera = {{ position = {:?}, look_at = {:?}, vertical_fov = 0.001, near = {near:?} }}\n\
+             film = {{ width = 1, height = 1 }}\n{bodies}{}",
+            position.to_array(),
+            (position + direction).to_array(),
+            body("lamp", "emissive = { radiance = 1 }", &[&lamp])
+        );
+        let (film, report) = image(&text, EVERY_BRANCH);
+        assert_eq!(report.unmatched, 0, "from {position}");
+        let around = ball_around(start);
+        found[around.map_or(BALLS.len(), |ball| ball)] += 1;
+        let expected = libm::exp(-0.1 * around.map_or(0.0, |ball| ABSORPTIONS[ball]));
+        let seen = f64::from(film.pixels[0].rgb[0]);
+        assert!(
+            (seen - expected).abs() <= 1e-4,
+            "from {position} along {direction}, near {near}: {seen} for {expected}"
+        );
+    }
+    assert!(found.iter().all(|&count| count > 20), "{found:?}");
+}
+
+#[test]
+fn overlapping_bodies_of_one_material_are_one_body() {
+    let pair = ["cube = { center = [0, 0, 0.5], size = [9, 9, 1] }", "cube = { center = [0, 0, 1], size = [9, 9, 1] }"];
+    let bodies = body("glass", "dielectric = { index = 1.5, absorption = 0.5 }", &pair);
+    // A slab of thickness 1.5 with all its reflections: T = (1 - R)^2 a / (1 - R^2 a^2), a = e^(-absorption d).
+    let (r, a) = (0.04, libm::exp(-0.5 * 1.5));
+    let expected = (1.0 - r) * (1.0 - r) * a / (1.0 - r * r * a * a);
+    let found = seen_through(&bodies);
+    assert!((found / expected - 1.0).abs() <= 1e-6, "{found} for {expected}");
+}

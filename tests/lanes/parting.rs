@@ -1,0 +1,93 @@
+//! Dispersion: a render with an index per band is three renders with one index each.
+
+use crate::support::scenes::{EVERY_BRANCH, SINGLE_PATH, SPLITTING, image, images, view};
+use abbe::film::Film;
+use abbe::trace::Transport;
+
+const INDICES: [f64; 3] = [1.5, 1.57, 1.66];
+
+/// A ball and a prism of some glass among glowing, reflecting and, if asked for, diffuse things.
+fn text(index: &str, floor: &str, filter: &str, side: u32) -> String {
+    let view = view([0.3, 1.0, 6.0], [0.1, 0.7, 0.0], 30.0, side);
+    format!(
+        r#"{view}filter = "{filter}"
+[material]
+floor.{floor}
+glass.dielectric = {{ index = {index}, absorption.rgb = [0.1, 0.2, 0.3], transmittance.rgb = [0.9, 0.95, 1] }}
+silver.mirror.reflectance.rgb = [0.9, 0.8, 0.7]
+gold.conductor.metal = "Au"
+lamp.emissive.radiance.rgb = [5, 4, 3]
+sky.emissive = {{ radiance.rgb = [0.2, 0.3, 0.5], sides = "front" }}
+[[object]]
+shape.plane = {{ point = [0, 0, 0], normal = [0, 1, 0] }}
+material = "floor"
+[[object]]
+shape.plane = {{ point = [0, 0, -9], normal = [0.1, 0.2, 1] }}
+material = "sky"
+[[object]]
+shape.sphere = {{ center = [-0.5, 0.8, 0.4], radius = 0.75 }}
+material = "glass"
+[[object]]
+material = "glass"
+[object.shape.mesh]
+points = [[0.5, 0.1, 0.9], [1.5, 0.1, 0.6], [0.9, 0.1, -0.2], [0.9, 1.3, 0.5]]
+faces = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]
+[[object]]
+shape.sphere = {{ center = [1.6, 1.1, -2], radius = 1 }}
+material = "silver"
+[[object]]
+shape.disc = {{ center = [-1.8, 1, -2], normal = [0.6, 0, 1], radius = 1 }}
+material = "gold"
+[[object]]
+shape.quad = {{ center = [0, 3, -3], u = [1.5, 0, 0], v = [0, 0.3, 0.3] }}
+material = "lamp"
+[[light]]
+environment.radiance = 0.01
+"#
+    )
+}
+
+fn index_per_band() -> String {
+    format!("{{ rgb = {INDICES:?} }}")
+}
+
+/// Renders with lanes that part and with a flat index for each band, in this order.
+fn parted_and_flat(floor: &str, filter: &str, transport: Transport) -> (Film, [Film; 3]) {
+    let film = |index: &str| image(&text(index, floor, filter, 44), transport).0;
+    (film(&index_per_band()), INDICES.map(|index| film(&index.to_string())))
+}
+
+#[test]
+fn parted_lanes_equal_one_render_for_each_index_bit_for_bit() {
+    let (parted, flat) = parted_and_flat("mirror.reflectance.rgb = [0.3, 0.4, 0.6]", "center", EVERY_BRANCH);
+    let mut differing = 0;
+    for (at, pixel) in parted.pixels.iter().enumerate() {
+        let alone = [0, 1, 2].map(|band| flat[band].pixels[at].rgb[band]);
+        assert_eq!(pixel.rgb.map(f32::to_bits), alone.map(f32::to_bits), "pixel {at}");
+        differing += usize::from(pixel.rgb[2] != flat[0].pixels[at].rgb[2]);
+    }
+    assert!(differing > 300, "the glass disperses only {differing} pixels");
+}
+
+#[test]
+fn parted_lanes_equal_one_render_for_each_index_in_the_mean() {
+    const SEEDS: u64 = 24;
+    let floor = "diffuse.reflectance.rgb = [0.7, 0.6, 0.5]";
+    for transport in [SPLITTING, SINGLE_PATH] {
+        let films = |index: &str, first: u64| -> Vec<Film> {
+            let text = text(index, floor, "box", 48);
+            images(&text, transport, SEEDS + first).drain(first as usize..).map(|(film, _)| film).collect()
+        };
+        let parted = films(&index_per_band(), 0);
+        for (band, index) in INDICES.into_iter().enumerate() {
+            // Other seeds, so that the two are independent.
+            let flat = films(&index.to_string(), SEEDS);
+            let [a, b] = [&parted, &flat].map(|films| crate::support::scenes::Mean::over_seeds(films.iter()));
+            let error = a.error[band].hypot(b.error[band]);
+            let off = (a.value[band] - b.value[band]).abs();
+            println!("parting: band {band} {} and {} +- {error:.1e}", a.value[band], b.value[band]);
+            assert!(off <= 3.0 * error, "band {band}: {} parted, {} alone, +- {error}", a.value[band], b.value[band]);
+            assert!(error <= 0.01 * b.value[band], "band {band} is known to {error} only");
+        }
+    }
+}

@@ -1,0 +1,13 @@
+//! Triangles are read from files as they were written, closed or open, stay in front under transforms, and are found by
+//! their trees as a search through all of them would.
+//!
+//! ```text
+//! cargo test --test meshes
+//! ```
+
+mod support;
+
+mod meshes {
+    mod files;
+    mod nearest;
+}

@@ -1,0 +1,219 @@
+//! PLY and OBJ files, and what becomes of their triangles.
+
+use std::path::{Path, PathBuf};
+
+use abbe::math::{DVec3, Ray, Transform};
+use abbe::scene::{Source, compile};
+use abbe::shape::{Mesh, Shape, Vertices, read_mesh};
+
+use crate::support::random::Random;
+
+/// A pyramid over a square, its base cut into two triangles. No coordinate is exact in 32 bits.
+const POINTS: [[f64; 3]; 5] =
+    [[-0.9, 0.1, 0.7], [0.8, 0.1, 0.7], [0.8, 0.1, -1.1], [-0.9, 0.1, -1.1], [0.05, 1.3, -0.2]];
+const FACES: [[u32; 3]; 6] = [[0, 3, 2], [0, 2, 1], [0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]];
+const INSIDE: DVec3 = DVec3::new(0.0, 0.4, -0.2);
+
+/// The pyramid's corners, as exactly as 32 bits or 64 hold them.
+fn triangles(single: bool) -> Vec<[DVec3; 3]> {
+    let round = |x: f64| if single { f64::from(x as f32) } else { x };
+    FACES.map(|face| face.map(|corner| DVec3::from(POINTS[corner as usize].map(round)))).to_vec()
+}
+
+/// A folder with one file in it.
+fn file(name: &str, bytes: &[u8]) -> (tempfile::TempDir, PathBuf) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join(name);
+    std::fs::write(&path, bytes).expect("the file can be written");
+    (folder, path)
+}
+
+/// The triangles of a file, and whether it names materials.
+fn read(name: &str, bytes: &[u8]) -> (Vec<[DVec3; 3]>, bool) {
+    let (_folder, path) = file(name, bytes);
+    let mesh = read_mesh(&path).unwrap_or_else(|message| panic!("{name}: {message}"));
+    (mesh.faces.iter().map(|face| face.map(|corner| mesh.vertices.at(corner))).collect(), mesh.names_materials)
+}
+
+fn ply_header(format: &str, number: &str, corners: &str) -> String {
+    format!(
+        "ply\nformat {format} 1.0\ncomment a pyramid\nelement vertex 5\nproperty {number} x\nproperty {number} y\n\
+         property {number} z\nproperty uchar red\nelement face 5\n\
+         property list uchar {corners} vertex_indices\nend_header\n"
+    )
+}
+
+/// The base as a square, as a fan cuts it: the triangles of `FACES`.
+const POLYGONS: [&[u32]; 5] = [&[0, 3, 2, 1], &[0, 1, 4], &[1, 2, 4], &[2, 3, 4], &[3, 0, 4]];
+
+fn ply_text() -> String {
+    let vertices = POINTS.map(|[x, y, z]| format!("{x} {y} {z} 255\n")).concat();
+    let faces = POLYGONS.map(|polygon| {
+        let corners: Vec<String> = polygon.iter().map(u32::to_string).collect();
+        format!("{} {}\n", polygon.len(), corners.join(" "))
+    });
+    ply_header("ascii", "float", "int") + &vertices + &faces.concat()
+}
+
+/// Numbers as bytes, from the lowest or from the highest.
+fn ordered<const N: usize>(little: [u8; N], big: bool) -> Vec<u8> {
+    if big { little.into_iter().rev().collect() } else { little.to_vec() }
+}
+
+fn ply_binary(big: bool, single: bool) -> Vec<u8> {
+    let format = if big { "binary_big_endian" } else { "binary_little_endian" };
+    let (number, corners) = if single { ("float", "int") } else { ("double", "ushort") };
+    let mut bytes = ply_header(format, number, corners).into_bytes();
+    for point in POINTS {
+        for x in point {
+            bytes.extend(if single { ordered((x as f32).to_le_bytes(), big) } else { ordered(x.to_le_bytes(), big) });
+        }
+        bytes.push(255);
+    }
+    for polygon in POLYGONS {
+        bytes.push(polygon.len() as u8);
+        for &corner in polygon {
+            let corner =
+                if single { ordered(corner.to_le_bytes(), big) } else { ordered((corner as u16).to_le_bytes(), big) };
+            bytes.extend(corner);
+        }
+    }
+    bytes
+}
+
+#[test]
+fn every_kind_of_ply_gives_the_same_triangles() {
+    assert_eq!(read("a.ply", ply_text().as_bytes()).0, triangles(true));
+    let windows = ply_text().replace('\n', "\r\n");
+    assert_eq!(read("b.ply", windows.as_bytes()).0, triangles(true));
+    for big in [false, true] {
+        for single in [false, true] {
+            assert_eq!(read("c.PLY", &ply_binary(big, single)).0, triangles(single), "big {big}, single {single}");
+        }
+    }
+}
+
+#[test]
+fn every_way_to_write_an_obj_gives_the_same_triangles() {
+    let vertices = POINTS.map(|[x, y, z]| format!("v {x} {y} {z}\n")).concat();
+    let faces = [
+        "f 1 4 3 2\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n",
+        "f -5 -2 -3 -4\nf -5 -4 -1\nf -4 -3 -1\nf -3 -2 -1\nf -2 -5 -1\n",
+        "vt 0 0\nvn 0 1 0\nf 1/1/1 4/1/1 3/1/1 2/1/1\nf 1//1 2//1 5//1\nf 2/1 3/1 5/1\nf 3 4 5\nf 4 1 5\n",
+        "o base\nf 1 4 3 2\no sides\ng two\nf 1 2 5\nf 2 3 5\ng more\nf 3 4 5\nf 4 1 5\n",
+    ];
+    for faces in faces {
+        let (found, names_materials) = read("a.obj", (vertices.clone() + faces).as_bytes());
+        assert_eq!(found, triangles(true), "{faces}");
+        assert!(!names_materials, "{faces}");
+    }
+}
+
+/// The warnings of a scene that holds nothing but a mesh file of some material.
+fn warnings(name: &str, bytes: &[u8], material: &str) -> Vec<String> {
+    let (folder, _path) = file(name, bytes);
+    let text = format!(
+        "camera = {{ position = [0, 1, 5], look_at = [0, 0, 0], vertical_fov = 40 }}\n\
+         film = {{ width = 4, height = 4 }}\nlight = [{{ environment.radiance = 1 }}]\nmaterial.stuff.{material}\n\
+         [[object]]\nname = \"pyramid\"\nshape.mesh.file = \"{name}\"\nmaterial = \"stuff\"\n"
+    );
+    let source = Source { path: folder.path().join("scene.toml"), text };
+    let scene = source.parse().and_then(|description| compile(&description, &source));
+    scene.unwrap_or_else(|error| panic!("{error}")).warnings
+}
+
+#[test]
+fn materials_of_an_obj_are_ignored_with_a_warning() {
+    let body = POINTS.map(|[x, y, z]| format!("v {x} {y} {z}\n")).concat() + "f 1 4 3 2\nf 1 2 5\nf 2 3 5\n";
+    let with_library = format!("mtllib absent.mtl\n{body}usemtl red\nf 3 4 5\nf 4 1 5\n");
+    assert_eq!(read("a.obj", with_library.as_bytes()), (triangles(true), true));
+    let said = warnings("a.obj", with_library.as_bytes(), "mirror = {}");
+    assert_eq!(said, ["pyramid: the materials of a.obj are ignored; the scene gives them"]);
+    let without_library = format!("{body}usemtl red\nf 3 4 5\nf 4 1 5\n");
+    assert_eq!(read("a.obj", without_library.as_bytes()).0, triangles(true));
+    assert!(warnings("a.obj", format!("{body}f 3 4 5\nf 4 1 5\n").as_bytes(), "mirror = {}").is_empty());
+}
+
+#[test]
+fn a_dielectric_on_an_open_mesh_is_warned_of_and_on_a_closed_one_is_not() {
+    let closed =
+        POINTS.map(|[x, y, z]| format!("v {x} {y} {z}\n")).concat() + "f 1 4 3 2\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n";
+    let glass = "dielectric.index = 1.5";
+    assert!(warnings("a.obj", closed.as_bytes(), glass).is_empty());
+    let open = closed.replace("f 1 4 3 2\n", "");
+    let said = warnings("a.obj", open.as_bytes(), glass);
+    assert_eq!(said, ["pyramid: a dielectric on an open mesh: light may enter it and never leave"]);
+    assert!(warnings("a.obj", open.as_bytes(), "mirror = {}").is_empty());
+    let turned = closed.replace("f 1 2 5\n", "f 2 1 5\n");
+    assert_eq!(warnings("a.obj", turned.as_bytes(), glass).len(), 1, "one face looks the other way");
+    let empty_face = format!("{closed}f 1 2 2\n");
+    let said = warnings("a.obj", empty_face.as_bytes(), glass);
+    assert_eq!(said, ["pyramid: 1 triangles without area were dropped"]);
+}
+
+fn report(faces: &[[u32; 3]]) -> (usize, usize) {
+    let points = POINTS.map(DVec3::from).to_vec();
+    let (mesh, report) = Mesh::new(Vertices::Double(points), faces.to_vec()).expect("faces with area");
+    assert_eq!(Shape::Mesh(Box::new(mesh)).is_closed(), report.open_edges == 0);
+    (report.open_edges, report.degenerate)
+}
+
+#[test]
+fn open_edges_are_counted() {
+    assert_eq!(report(&FACES), (0, 0));
+    assert_eq!(report(&FACES[2..]), (4, 0));
+    assert_eq!(report(&FACES[1..]), (3, 0));
+    let mut turned = FACES;
+    turned[3].swap(0, 1);
+    assert_eq!(report(&turned), (3, 0));
+    let mut with_needle = FACES.to_vec();
+    with_needle.push([1, 1, 2]);
+    assert_eq!(report(&with_needle), (0, 1));
+    // Corners at the same place are one corner, however often they are written.
+    let split: Vec<DVec3> = FACES.iter().flatten().map(|&corner| DVec3::from(POINTS[corner as usize])).collect();
+    let faces = (0..6).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+    let (_, report) = Mesh::new(Vertices::Double(split), faces).expect("faces with area");
+    assert_eq!(report.open_edges, 0);
+}
+
+#[test]
+fn a_mesh_keeps_its_front_and_its_points_under_every_transform() {
+    let scale = |x, y, z| Transform::scale(DVec3::new(x, y, z));
+    let turn = Transform::rotate(DVec3::new(1.0, 2.0, -1.0), 50.0);
+    let maps = [
+        Transform::IDENTITY,
+        scale(-1.0, 1.0, 1.0),
+        scale(1.0, -3.0, 0.5),
+        scale(-1.0, -1.0, -1.0),
+        scale(2.0, 0.2, -1.0)
+            .then(&turn)
+            .then(&scale(1.0, -1.0, 2.0))
+            .then(&Transform::translate(DVec3::new(5.0, -3.0, 2.0))),
+    ];
+    let points = POINTS.map(DVec3::from);
+    let mut random = Random::new(9);
+    for map in maps {
+        let (mesh, _) = Mesh::new(Vertices::Double(points.to_vec()), FACES.to_vec()).expect("faces with area");
+        let mesh = Shape::Mesh(Box::new(mesh)).transformed(&map);
+        assert!(mesh.is_closed());
+        for _ in 0..2000 {
+            // From inside every ray leaves once, through the back of a face, where the map puts that face.
+            let ray = Ray::new(map.point(INSIDE), random.direction());
+            let crossing = mesh.intersect(&ray, f64::INFINITY).expect("a closed body");
+            let there = mesh.point(&ray, &crossing);
+            assert!(there.normal.dot(ray.direction) > 0.0, "{map:?}");
+            assert!((there.position - ray.at(crossing.t)).length() < 1e-13);
+            let corners = FACES[crossing.part as usize].map(|corner| map.point(points[corner as usize]));
+            assert!((there.position - corners[0]).dot(there.normal).abs() < 1e-13);
+            let onward = there.leave(ray.direction);
+            assert!(mesh.intersect(&onward, f64::INFINITY).is_none());
+        }
+    }
+}
+
+#[test]
+fn a_missing_file_and_another_ending_are_refused() {
+    assert!(read_mesh(Path::new("no/such/file.ply")).is_err());
+    let (_folder, path) = file("a.stl", b"solid");
+    assert_eq!(read_mesh(&path).err().as_deref(), Some("a mesh file ends in .ply or .obj"));
+}

@@ -1,0 +1,115 @@
+//! Every scene in `scenes/` compiles without a warning, renders, and is planned as its first lines promise.
+//!
+//! ```text
+//! cargo test --test scenes
+//! ```
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use abbe::plan::{Plan, plan};
+use abbe::scene::{Scene, Source, compile};
+use abbe::spectrum::Curve;
+use abbe::trace::{Transport, World, render};
+
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes")
+}
+
+fn paths() -> Vec<PathBuf> {
+    let entries = fs::read_dir(folder()).expect("a folder of scenes");
+    let mut paths: Vec<PathBuf> = entries.map(|entry| entry.expect("an entry").path()).collect();
+    paths.retain(|path| path.extension().is_some_and(|ending| ending == "toml"));
+    paths.sort();
+    paths
+}
+
+/// A scene at its own size, or no wider than `width`.
+fn compiled(path: &Path, width: Option<u32>) -> Scene<Curve> {
+    let source = Source::read(path).expect("a scene");
+    let mut description = source.parse().unwrap_or_else(|error| panic!("{error}"));
+    if let Some(width) = width {
+        let film = &mut description.film;
+        (film.width, film.height) = (width, (film.height * width).div_ceil(film.width));
+        description.render.samples = Some(1);
+    }
+    compile(&description, &source).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn planned(name: &str) -> (Plan, String) {
+    let plan = plan(&compiled(&folder().join(name).with_extension("toml"), None));
+    let because = plan.because.join("\n");
+    (plan, because)
+}
+
+fn assert_says(because: &str, what: &str) {
+    assert!(because.contains(what), "the plan does not say \"{what}\":\n{because}");
+}
+
+#[test]
+fn every_scene_compiles_without_a_warning_and_says_what_to_look_for() {
+    let paths = paths();
+    assert!(paths.len() >= 4, "only {} scenes", paths.len());
+    for path in paths {
+        let warnings = compiled(&path, None).warnings;
+        assert!(warnings.is_empty(), "{}: {warnings:?}", path.display());
+        let text = fs::read_to_string(&path).expect("a scene");
+        assert!(text.starts_with("# "), "{} does not begin with a comment", path.display());
+    }
+}
+
+#[test]
+fn a5_every_scene_renders_without_a_number_that_is_not_finite() {
+    for path in paths() {
+        let scene = compiled(&path, Some(96));
+        let (film, report) = render(&World::new(&scene, plan(&scene).method), &|_| ());
+        assert_eq!((report.non_finite, report.unmatched), (0, 0), "{}", path.display());
+        assert_eq!(report.samples, film.pixels.len() as u64, "{}", path.display());
+        let finite =
+            |pixel: &abbe::film::Pixel| pixel.rgb.iter().chain([&pixel.alpha, &pixel.depth]).all(|x| x.is_finite());
+        assert!(film.pixels.iter().all(finite), "{}", path.display());
+        let lit = film.pixels.iter().filter(|pixel| pixel.rgb.iter().any(|&x| x > 0.0)).count();
+        assert!(lit * 10 > film.pixels.len(), "{}: {lit} of {} pixels are lit", path.display(), film.pixels.len());
+    }
+}
+
+#[test]
+fn scenes_without_chance_are_planned_with_one_exact_sample() {
+    for name in ["classic", "spheres"] {
+        let (plan, because) = planned(name);
+        assert!(matches!(plan.method.transport, Transport::Deterministic { .. }), "{name}: {because}");
+        assert_eq!(plan.method.samples, 1, "{name}");
+        assert_says(&because, "transport deterministic: no random light path");
+    }
+}
+
+#[test]
+fn the_classic_scene_is_said_to_part_its_lanes_in_every_dispersive_glass() {
+    let (_, because) = planned("classic");
+    for glass in ["crown", "flint", "diamond", "pond"] {
+        let line = because.lines().find(|line| line.starts_with(&format!("material {glass}:")));
+        assert_says(line.expect("a line about the glass"), "so lanes part");
+    }
+    assert_says(&because, "material ruby: index 1.5200 in every band, so lanes stay together");
+    assert_says(&because, "diffuse surfaces are lit straight from the lights alone");
+}
+
+#[test]
+fn the_smallpt_scene_is_planned_as_a_path_tracer_of_three_lanes_that_stay_together() {
+    let (plan, because) = planned("smallpt");
+    assert!(matches!(plan.method.transport, Transport::Random { .. }), "{because}");
+    assert_eq!(plan.method.diffuse_bounces, u32::MAX);
+    assert_says(&because, "model rgb: 3 lanes");
+    assert_says(&because, "in every band, so lanes stay together");
+    assert_says(&because, "light leaves left wall in every direction");
+    assert!(!because.contains("lanes part"), "{because}");
+}
+
+#[test]
+fn the_prism_scene_is_said_to_part_its_lanes() {
+    let (plan, because) = planned("prism");
+    assert!(matches!(plan.method.transport, Transport::Random { .. }), "{because}");
+    assert_says(&because, "so lanes part");
+    assert_says(&because, "lanes part in ");
+    assert_says(&because, "indices are read at 656.27, 546.07 and 486.13 nm");
+}

@@ -1,0 +1,14 @@
+//! The optics rows of the stability catalog: Fresnel's equations where they cancel, directions that must not drift, and
+//! lanes that disagree. Each test is named after its row.
+//!
+//! ```text
+//! cargo test --test stability_optics
+//! ```
+
+mod support;
+
+mod stability_optics {
+    mod directions;
+    mod fresnel;
+    mod lanes_at_the_critical_angle;
+}

@@ -1,0 +1,197 @@
+//! The rows of the stability catalog about trees of branches: they must neither explode, nor lose light, nor run
+//! forever. Each test is named after its row.
+//!
+//! ```text
+//! cargo test --test stability_transport
+//! ```
+
+mod support;
+
+use std::f64::consts::PI;
+
+use abbe::film::Film;
+use abbe::math::DVec3;
+use abbe::plan::plan;
+use abbe::trace::{Transport, World, render};
+
+use support::random::Random;
+use support::scenes::{Mean, SINGLE_PATH, SPLITTING, body, environment, image, images, moments, scene, view};
+
+/// Twenty glass balls of radius 0.35 to 0.65 in a box of edge 4 that do not touch, under an even sky with a sun.
+fn glass_balls(side: u32, filter: &str, sun_radius: f64, sun_radiance: f64) -> String {
+    let mut random = Random::new(77);
+    let mut balls: Vec<(DVec3, f64)> = Vec::new();
+    while balls.len() < 20 {
+        let center = DVec3::from([(); 3].map(|()| random.between(-2.0, 2.0)));
+        let radius = random.between(0.35, 0.65);
+        if balls.iter().all(|ball| (ball.0 - center).length() > ball.1 + radius) {
+            balls.push((center, radius));
+        }
+    }
+    let shapes: Vec<String> = balls
+        .iter()
+        .map(|(center, radius)| format!("sphere = {{ center = {:?}, radius = {radius:?} }}", center.to_array()))
+        .collect();
+    let shapes: Vec<&str> = shapes.iter().map(String::as_str).collect();
+    let sun = format!("sphere = {{ center = [60, 64, 48], radius = {sun_radius:?} }}");
+    view([0.0, 0.0, 8.0], [0.0; 3], 22.6, side)
+        + &format!("filter = \"{filter}\"\n")
+        + &body("glass", "dielectric = { index = 1.5 }", &shapes)
+        + &body("sun", &format!("emissive = {{ radiance = {sun_radiance:?} }}"), &[&sun])
+        + &environment(0.5)
+}
+
+/// The sun that sheds as much light as the catalog's lobe, 30 cos^400, in as much of the sky: 2 pi / 401.
+const SUN_RADIUS: f64 = 7.0;
+
+/// Ten panes of index 1.5 before a shining plane; where `seen` is false, the plane is behind the camera instead.
+fn panes(seen: bool, side: u32) -> String {
+    let panes: Vec<String> =
+        (0..10).map(|i| format!("cube = {{ center = [0, 0, {}], size = [200, 200, 0.5] }}", -i)).collect();
+    let panes: Vec<&str> = panes.iter().map(String::as_str).collect();
+    let (z, facing) = if seen { (-20, 1) } else { (20, -1) };
+    let plane = format!("plane = {{ point = [0, 0, {z}], normal = [0, 0, {facing}] }}");
+    view([0.0, 0.0, 10.0], [0.0; 3], 1e-6, side)
+        + &body("glass", "dielectric = { index = 1.5 }", &panes)
+        + &body("lamp", "emissive = { radiance = 1, sides = \"front\" }", &[&plane])
+}
+
+/// What N panes of reflectance r at each surface reflect, all ways counted: 2 N r / (1 + (2 N - 1) r).
+const REFLECTED: f64 = 20.0 * 0.04 / (1.0 + 19.0 * 0.04);
+
+#[test]
+fn w1_a_camera_ray_into_a_cluster_of_glass_balls_costs_at_most_15_rays() {
+    let scene = scene(&glass_balls(100, "box", SUN_RADIUS, 30.0));
+    let method = plan(&scene).method;
+    assert_eq!(method.transport, SPLITTING);
+    let method = abbe::trace::Method { samples: 1, ..method };
+    let (_, report) = render(&World::new(&scene, method), &|_| ());
+    let rays = report.rays as f64 / report.samples as f64;
+    println!("W1: {rays:.2} rays for each camera ray");
+    assert!((2.0..=15.0).contains(&rays), "{rays} rays for each camera ray");
+}
+
+#[test]
+fn w2_a_stack_of_ten_panes_loses_no_light() {
+    for (seen, expected) in [(true, 1.0 - REFLECTED), (false, REFLECTED)] {
+        let mean = Mean::of(&image(&panes(seen, 160), SPLITTING).0);
+        println!("W2: {} +- {:.1e} for {expected:.6}", mean.value[0], mean.error[0]);
+        assert!((mean.value[0] - expected).abs() <= 0.002, "{mean:?}");
+        assert!(3.0 * mean.error[0] <= 0.002, "{mean:?}");
+    }
+}
+
+#[test]
+fn w3_light_caught_in_a_glass_cube_does_not_run_forever() {
+    // A quarter turn of view shows one face of six that are alike.
+    let cube = body("glass", "dielectric = { index = 1.5 }", &["cube = { center = [0, 0, 0], size = 2 }"]);
+    let text = |side: u32| view([0.0; 3], [0.0, 0.0, -1.0], 90.0, side) + &cube + &environment(1.0);
+    // Of the directions, 3 (1 - cos of the critical angle) lead out.
+    let exact = 3.0 * (1.0 - (1.0 - 1.0 / 2.25f64).sqrt());
+    for (transport, side) in [(SPLITTING, 142), (SINGLE_PATH, 60), (Transport::Deterministic { cutoff: 1e-9 }, 60)] {
+        let (film, report) = image(&text(side), transport);
+        // Pixels of a plane fill solid angles in proportion to the cube of the cosine.
+        let solid_angle = |at: usize| {
+            let place = |i: u32| 2.0 * (f64::from(i) + 0.5) / f64::from(side) - 1.0;
+            let (x, y) = (place(at as u32 % side), place(at as u32 / side));
+            let squared: f64 = 1.0 + x * x + y * y;
+            1.0 / (squared * squared.sqrt())
+        };
+        let all: f64 = (0..film.pixels.len()).map(solid_angle).sum();
+        let out: f64 = film.pixels.iter().enumerate().map(|(at, p)| solid_angle(at) * f64::from(p.rgb[0])).sum();
+        let escaped = out / all / 2.25;
+        println!("W3: {escaped:.4} for {exact:.4}, stopped {:.4}", report.stopped);
+        assert!((escaped - exact).abs() <= 0.01, "{escaped} escapes for {exact}");
+        if let Transport::Deterministic { .. } = transport {
+            let caught = film.pixels.iter().filter(|pixel| pixel.rgb[0] < 1.0).count() as f64;
+            let share = caught / film.pixels.len() as f64;
+            assert!((report.stopped - share).abs() <= 0.01, "{} stopped, {share} caught", report.stopped);
+        }
+    }
+}
+
+#[test]
+fn w4_roulette_below_any_weight_keeps_the_mean() {
+    for (split, roulette, side) in
+        [(1.0, 0.05, 140), (0.3, 0.3, 120), (0.05, 0.05, 64), (1e-2, 1e-2, 40), (1e-3, 1e-3, 24)]
+    {
+        let mean = Mean::of(&image(&panes(true, side), Transport::Random { split, roulette }).0);
+        println!("W4: split {split}: {} +- {:.1e}", mean.value[0], mean.error[0]);
+        mean.assert_near([1.0 - REFLECTED; 3], 5, &format!("split {split}, roulette {roulette}"));
+        assert!(mean.error[0] <= 0.004, "{mean:?}");
+    }
+}
+
+#[test]
+fn w5_splitting_and_roulette_agree_with_following_every_branch() {
+    // A sun so large that many pixels see it in the glass.
+    let radiance = 4.0;
+    let text = glass_balls(24, "center", 28.0, radiance);
+    let cutoff = 1e-7;
+    let (whole, report) = image(&text, Transport::Deterministic { cutoff });
+    let whole = mean_of_pixels(&whole);
+    for transport in [SPLITTING, SINGLE_PATH] {
+        let seeds = images(&text, transport, 100);
+        let mean = Mean::over_seeds(seeds.iter().map(|(film, _)| film));
+        // Nothing is brighter than the sun, so this much may be missing from the tree.
+        let missing = radiance * report.dropped;
+        println!("W5: {} +- {:.1e} for {whole}, missing at most {missing:.1e}", mean.value[0], mean.error[0]);
+        assert!(missing < 0.2 * mean.error[0], "{missing} missing, {} uncertain", mean.error[0]);
+        assert!((mean.value[0] - whole).abs() <= 3.0 * mean.error[0], "{mean:?} for {whole}");
+    }
+}
+
+#[test]
+fn w5_splitting_is_at_least_3_times_as_efficient_as_a_single_path() {
+    let text = glass_balls(40, "box", SUN_RADIUS, 30.0);
+    let [splitting, single] = [SPLITTING, SINGLE_PATH].map(|transport| {
+        let seeds = images(&text, transport, 64);
+        let rays = seeds.iter().map(|(_, report)| report.rays as f64 / report.samples as f64).sum::<f64>();
+        let films: Vec<&Film> = seeds.iter().map(|(film, _)| film).collect();
+        let variance: f64 = (0..films[0].pixels.len())
+            .map(|at| moments(films.iter().map(|film| f64::from(film.pixels[at].rgb[0]))).1)
+            .sum();
+        1.0 / (variance * rays)
+    });
+    println!("W5: {:.2} times as efficient", splitting / single);
+    assert!(splitting / single >= 3.0, "{} times as efficient", splitting / single);
+}
+
+#[test]
+fn w6_light_in_a_closed_white_box_dies_out_at_the_right_radiance() {
+    const REFLECTANCE: f64 = 0.99;
+    let white = format!("diffuse = {{ reflectance = {REFLECTANCE} }}");
+    let lit = "[[light]]\npoint = { position = [0, 0, 0], intensity = 1 }\n";
+    // Irradiance of the walls by a point in the middle, all bounces counted: 4 pi I / (S (1 - reflectance)).
+    let radiance = |area: f64| REFLECTANCE / PI * 4.0 * PI / (area * (1.0 - REFLECTANCE));
+    // A ball looks the same everywhere; of a box, a quarter turn of view shows a face of six that are alike, evenly.
+    let rooms = [
+        ("sphere = { center = [0, 0, 0], radius = 2 }", radiance(16.0 * PI)),
+        ("cube = { center = [0, 0, 0], size = 2 }", radiance(24.0)),
+    ];
+    for (room, expected) in rooms {
+        let text = view([0.0; 3], [0.0, 0.0, -1.0], 90.0, 60) + &body("white", &white, &[room]) + lit;
+        let seeds = images(&text, SPLITTING, 6);
+        let mean = Mean::over_seeds(seeds.iter().map(|(film, _)| film));
+        let rays = seeds[0].1.rays as f64 / seeds[0].1.samples as f64;
+        println!("W6: {} +- {:.1e} for {expected}, {rays:.0} rays", mean.value[0], mean.error[0]);
+        mean.assert_near([expected; 3], 1, room);
+        assert!(mean.worst_error([expected; 3]) <= 0.02, "{mean:?}");
+    }
+}
+
+#[test]
+fn a_surface_that_passes_no_light_on_shows_its_own_and_nothing_else() {
+    let black = "{ index = { rgb = [1.5, 1.6, 1.7] }, reflectance = 0, transmittance = 0, emission = 0.5 }";
+    let ball = body("ember", &format!("dielectric = {black}"), &["sphere = { center = [0, 0, 0], radius = 1 }"]);
+    let text = view([0.0, 0.0, 5.0], [0.0; 3], 10.0, 16) + &ball + &environment(1.0);
+    for transport in [SPLITTING, SINGLE_PATH, Transport::Deterministic { cutoff: 1e-9 }] {
+        let (film, report) = image(&text, transport);
+        assert_eq!(report.non_finite, 0, "{transport:?}");
+        assert!(film.pixels.iter().all(|pixel| pixel.rgb == [0.5; 3]), "{transport:?}");
+    }
+}
+
+fn mean_of_pixels(film: &Film) -> f64 {
+    film.pixels.iter().map(|pixel| f64::from(pixel.rgb[0])).sum::<f64>() / film.pixels.len() as f64
+}

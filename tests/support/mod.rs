@@ -1,0 +1,7 @@
+//! What several tests need; each test uses its part of it.
+
+#![allow(dead_code)]
+
+pub mod exact;
+pub mod random;
+pub mod scenes;
