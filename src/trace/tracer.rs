@@ -225,11 +225,13 @@ impl<'a, const N: usize> Tracer<'a, N> {
                     let u = sampler.four_plain(path.key, CHOICE);
                     let total: f64 = self.branches.iter().map(weight_of).sum();
                     let mut left = u[0] * total;
-                    let chosen = self.branches.iter().position(|branch| {
-                        left -= weight_of(branch);
+                    let mut bright = (0..self.branches.len()).filter(|&i| weight_of(&self.branches[i]) != 0.0);
+                    let last = bright.clone().last()?;
+                    let chosen = bright.find(|&i| {
+                        left -= weight_of(&self.branches[i]);
                         left < 0.0
                     });
-                    let number = chosen.unwrap_or(self.branches.len() - 1);
+                    let number = chosen.unwrap_or(last);
                     let branch = &self.branches[number];
                     let factor = survival(total, roulette, path.vertices, || u[1])?;
                     return Some(child(number, branch, factor * total / weight_of(branch)));
