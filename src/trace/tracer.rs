@@ -226,7 +226,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
                     let total: f64 = self.branches.iter().map(weight_of).sum();
                     let mut left = u[0] * total;
                     let mut bright = (0..self.branches.len()).filter(|&i| weight_of(&self.branches[i]) != 0.0);
-                    let last = bright.clone().last()?;
+                    let last = bright.clone().next_back()?;
                     let chosen = bright.find(|&i| {
                         left -= weight_of(&self.branches[i]);
                         left < 0.0
