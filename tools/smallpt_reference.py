@@ -10,6 +10,7 @@ All pictures are 256 x 192, from eight seeds whose spread gives the standard err
 import argparse
 import json
 import os
+import re
 import subprocess
 from pathlib import Path
 
@@ -128,7 +129,8 @@ def main() -> None:
     if arguments.render:
         folder = TOOLS.parent / "target/smallpt"
         folder.mkdir(parents=True, exist_ok=True)
-        REFERENCE.write_text(json.dumps(render_reference(folder), indent=1) + "\n")
+        text = json.dumps(render_reference(folder), indent=1)
+        REFERENCE.write_text(re.sub(r"\s*\n\s*(?=[\]\d-])", " ", text) + "\n")
     reference = json.loads(REFERENCE.read_text())
     print(compare(reference) if arguments.compare else table(reference))
 
