@@ -1,8 +1,9 @@
 //! Dispersion: a render with an index per band is three renders with one index each.
 
-use crate::support::scenes::{EVERY_BRANCH, SINGLE_PATH, SPLITTING, image, images, view};
 use abbe::film::Film;
 use abbe::trace::Transport;
+
+use crate::support::scenes::{EVERY_BRANCH, Mean, SINGLE_PATH, SPLITTING, image, images, standard_errors, view};
 
 const INDICES: [f64; 3] = [1.5, 1.57, 1.66];
 
@@ -69,25 +70,41 @@ fn parted_lanes_equal_one_render_for_each_index_bit_for_bit() {
     assert!(differing > 300, "the glass disperses only {differing} pixels");
 }
 
+/// One of the blocks of pixels that a film is cut into.
+fn block(film: &Film, column: u32, row: u32) -> Film {
+    let places = (0..BLOCK * BLOCK).map(|i| (column * BLOCK + i % BLOCK, row * BLOCK + i / BLOCK));
+    let pixels = places.map(|(x, y)| *film.at(x, y)).collect();
+    Film { width: BLOCK, height: BLOCK, pixels, ..*film }
+}
+
+const BLOCK: u32 = 8;
+
 #[test]
 fn parted_lanes_equal_one_render_for_each_index_in_the_mean() {
-    const SEEDS: u64 = 24;
+    const SEEDS: u64 = 32;
+    const BLOCKS: u32 = 5;
     let floor = "diffuse.reflectance.rgb = [0.7, 0.6, 0.5]";
     for transport in [SPLITTING, SINGLE_PATH] {
         let films = |index: &str, first: u64| -> Vec<Film> {
-            let text = text(index, floor, "box", 48);
+            let text = text(index, floor, "box", BLOCK * BLOCKS);
             images(&text, transport, SEEDS + first).drain(first as usize..).map(|(film, _)| film).collect()
         };
         let parted = films(&index_per_band(), 0);
         for (band, index) in INDICES.into_iter().enumerate() {
             // Other seeds, so that the two are independent.
             let flat = films(&index.to_string(), SEEDS);
-            let [a, b] = [&parted, &flat].map(|films| crate::support::scenes::Mean::over_seeds(films.iter()));
-            let error = a.error[band].hypot(b.error[band]);
-            let off = (a.value[band] - b.value[band]).abs();
-            println!("parting: band {band} {} and {} +- {error:.1e}", a.value[band], b.value[band]);
-            assert!(off <= 3.0 * error, "band {band}: {} parted, {} alone, +- {error}", a.value[band], b.value[band]);
-            assert!(error <= 0.01 * b.value[band], "band {band} is known to {error} only");
+            for place in 0..BLOCKS * BLOCKS {
+                let of = |films: &[Film]| {
+                    let blocks: Vec<Film> =
+                        films.iter().map(|film| block(film, place % BLOCKS, place / BLOCKS)).collect();
+                    let mean = Mean::over_seeds(blocks.iter());
+                    (mean.value[band], mean.error[band])
+                };
+                let ((a, error_a), (b, error_b)) = (of(&parted), of(&flat));
+                let (off, error) = ((a - b).abs(), error_a.hypot(error_b));
+                let limit = standard_errors((BLOCKS * BLOCKS * 6) as usize);
+                assert!(off <= limit * error, "block {place}, band {band}: {a} parted, {b} alone, +- {error}");
+            }
         }
     }
 }

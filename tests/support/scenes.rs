@@ -125,7 +125,7 @@ pub fn moments(values: impl Iterator<Item = f64> + Clone) -> (f64, f64) {
 }
 
 /// How many standard errors all of `claims` independent means keep within in 99.73 % of the cases.
-fn standard_errors(claims: usize) -> f64 {
+pub fn standard_errors(claims: usize) -> f64 {
     let chance = -libm::expm1(libm::log1p(-0.0027) / claims as f64);
     let (mut low, mut high) = (2.0, 10.0);
     for _ in 0..60 {

@@ -15,7 +15,7 @@ from smallpt_reference import REFERENCE, SIZE
 from smallpt_regions import REGIONS, mean_and_error, region_means, scene_text, sees_front_wall, sees_glass
 
 WIDTH, HEIGHT = SIZE
-SAMPLES = 24
+SAMPLES = 48
 SEEDS = range(1, 9)
 LARGEST_ERROR = 0.006
 EXPECTED = json.loads(REFERENCE.read_text())["reference"]["regions"]
@@ -31,7 +31,7 @@ def pictures():
 def centered():
     """A picture whose samples all leave a pixel's wall from the same point, so that a bad point shows."""
     text = scene_text(WIDTH // 2, HEIGHT // 2).replace("[film]", '[film]\nfilter = "center"')
-    return render(text, samples=256).rgb
+    return render(text, samples=1024).rgb
 
 
 def specks(image, ignored):
