@@ -74,7 +74,7 @@ fn provenance(scene: &Scene<Curve>, plan: &Plan, non_finite: u64) -> Provenance 
         facts: vec![
             ("version", text(env!("CARGO_PKG_VERSION"))),
             ("sceneHash", text(&scene.hash)),
-            ("model", text(plan.method.basis.name())),
+            ("model", text(&plan.method.basis.name())),
             ("transport", text(plan.method.transport.name())),
             ("filter", text(scene.film.filter.name())),
             ("samples", Fact::Count(plan.method.samples.into())),

@@ -63,7 +63,7 @@ pub fn write_exr(film: &Film, view: &View, provenance: &Provenance, path: &Path)
     let mut image = Image::from_layer(layer);
     let primaries = film.color_space.primaries();
     let [red, green, blue, white] =
-        [primaries.red, primaries.green, primaries.blue, primaries.white].map(|[x, y]| Vec2(x, y));
+        [primaries.red, primaries.green, primaries.blue, primaries.white].map(|[x, y]| Vec2(x as f32, y as f32));
     image.attributes.chromaticities = Some(Chromaticities { red, green, blue, white });
     let mut bytes = Cursor::new(Vec::new());
     image.write().to_buffered(&mut bytes).map_err(encode)?;

@@ -6,10 +6,12 @@
 mod area;
 mod environment;
 mod point;
+mod sun;
 
 pub use area::Area;
 pub use environment::Environment;
 pub use point::Point;
+pub use sun::Sun;
 
 use crate::math::{DVec3, Ray};
 use crate::shape::Sighting;
@@ -27,6 +29,8 @@ pub enum Light<S> {
     Point(Point<S>),
     /// What rays meet that miss everything.
     Environment(Environment<S>),
+    /// A disc in the sky.
+    Sun(Sun<S>),
 }
 
 /// A light as seen along one ray.
@@ -49,15 +53,17 @@ impl<S> Light<S> {
             Self::Area(area) => Light::Area(area.map(convert)),
             Self::Point(point) => Light::Point(point.map(convert)),
             Self::Environment(environment) => Light::Environment(environment.map(convert)),
+            Self::Sun(sun) => Light::Sun(sun.map(convert)),
         }
     }
 
-    /// The radiance, or intensity of a point.
+    /// The radiance, intensity of a point or irradiance of a sun.
     pub fn emission(&self) -> &S {
         match self {
             Self::Area(area) => &area.radiance,
             Self::Point(point) => &point.intensity,
             Self::Environment(environment) => &environment.radiance,
+            Self::Sun(sun) => &sun.irradiance,
         }
     }
 
@@ -65,7 +71,7 @@ impl<S> Light<S> {
     pub fn is_aimed_at(&self) -> bool {
         match self {
             Self::Area(area) => area.aimed_at,
-            Self::Point(_) | Self::Environment(_) => true,
+            Self::Point(_) | Self::Environment(_) | Self::Sun(_) => true,
         }
     }
 
@@ -75,6 +81,7 @@ impl<S> Light<S> {
             Self::Area(area) => area.shape.aim(from, u),
             Self::Point(point) => point.aim(from),
             Self::Environment(environment) => Some(environment.aim(normal, u)),
+            Self::Sun(sun) => Some(sun.aim(u)),
         }
     }
 
@@ -86,18 +93,36 @@ impl<S> Light<S> {
             Self::Area(area) => area.view(ray, part),
             Self::Point(point) => Some(point.view(ray)),
             Self::Environment(environment) => Some(environment.view(ray, normal)),
+            Self::Sun(sun) => sun.view(ray),
+        }
+    }
+
+    /// Whether it is met by rays that meet nothing else.
+    pub fn is_sky(&self) -> bool {
+        matches!(self, Self::Environment(_) | Self::Sun(_))
+    }
+
+    /// Whether it has an extent, so that what it sends to a point comes from many directions.
+    pub fn is_extended(&self) -> bool {
+        match self {
+            Self::Area(_) | Self::Environment(_) => true,
+            Self::Point(_) => false,
+            Self::Sun(sun) => sun.angular_diameter > 0.0,
         }
     }
 }
 
 impl Light<Table> {
-    /// A rough measure of the light it sheds, by which one light is chosen among many.
-    pub fn power(&self) -> f64 {
+    /// A rough measure of the light it sheds, by which one light is chosen among many: its power, or the irradiance a sky
+    /// gives, whose power depends on the scene's size.
+    pub fn strength(&self) -> f64 {
+        use std::f64::consts::PI;
         let brightest = self.emission().range().1;
         match self {
-            Self::Area(area) => brightest * std::f64::consts::PI * area.shape.area(),
-            Self::Point(_) => brightest * 4.0 * std::f64::consts::PI,
-            Self::Environment(_) => f64::INFINITY,
+            Self::Area(area) => brightest * PI * area.shape.area(),
+            Self::Point(_) => brightest * 4.0 * PI,
+            Self::Environment(_) => brightest * PI,
+            Self::Sun(_) => brightest,
         }
     }
 }

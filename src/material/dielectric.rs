@@ -57,24 +57,27 @@ impl<S> Dielectric<S> {
 }
 
 impl Dielectric<Table> {
-    /// One reflected branch with all lanes, and one refracted branch per distinct pair of indices: here lanes part.
+    /// One reflected branch with all lanes, and one refracted branch per distinct pair of indices: here lanes part, and
+    /// only those go on that are there for it.
     pub(super) fn scatter<const N: usize>(&self, arrival: &Arrival<N>, branches: &mut Vec<Branch<N>>) {
         let pairs: [(f64, f64); N] = std::array::from_fn(|i| (arrival.incident[i], arrival.beyond[i]));
         let cos = arrival.wo.dot(arrival.normal);
         let (tint, reflectance) = (arrival.read(&self.transmittance), arrival.read(&self.reflectance));
+        let tint = if arrival.is_dispersive() { tint * arrival.draw.parting() } else { tint };
         let (mut reflected, mut polarization) = (Lanes::ZERO, 0.0);
         for ((n1, n2), lanes) in arrival.present.groups_by(pairs) {
+            let crosses = lanes * tint;
             if n1 == n2 {
                 // Nothing happens at all: the direction keeps its bits.
-                branches.push(crossing(-arrival.wo, lanes * tint, 1.0, 0.0));
+                branches.push(crossing(-arrival.wo, crosses, 1.0, 0.0));
                 continue;
             }
             let interface = Interface::new(n1, n2, cos);
             reflected += lanes * reflectance * interface.reflectance as f32;
             polarization = interface.polarization_reflected;
-            if interface.transmittance > 0.0 {
+            if interface.transmittance > 0.0 && !crosses.is_zero() {
                 let eta_scale = (n1 / n2) * (n1 / n2);
-                let share = lanes * tint * (interface.transmittance * eta_scale) as f32;
+                let share = crosses * (interface.transmittance * eta_scale) as f32;
                 let wi = interface.refract(arrival.wo, arrival.normal);
                 branches.push(crossing(wi, share, eta_scale, interface.polarization_refracted));
             }
@@ -86,8 +89,15 @@ impl Dielectric<Table> {
         }
     }
 
+    fn is_clear(&self) -> bool {
+        self.absorption.is_flat() && self.absorption.bins()[0] == 0.0
+    }
+
     /// The share of each lane that is left after a distance inside, e^(-absorption * distance).
     pub fn transmission<const N: usize>(&self, draw: &Draw<N>, distance: f64) -> Lanes<N> {
+        if self.is_clear() {
+            return Lanes::ONE;
+        }
         let absorption = draw.read_exact(&self.absorption);
         Lanes::from_fn(|i| if absorption[i] == 0.0 { 1.0 } else { libm::exp(-absorption[i] * distance) as f32 })
     }

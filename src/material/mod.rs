@@ -61,6 +61,11 @@ impl<const N: usize> Arrival<'_, N> {
     pub fn read(&self, table: &Table) -> Lanes<N> {
         self.draw.read(table)
     }
+
+    /// Whether light that crosses the surface goes different ways in different lanes.
+    pub fn is_dispersive(&self) -> bool {
+        (1..N).any(|i| self.incident[i] != self.incident[0] || self.beyond[i] != self.beyond[0])
+    }
 }
 
 /// One way light came to the surface, and the lanes that came by it.

@@ -1,11 +1,16 @@
 //! Floor 5: looks at a scene, decides how little of the world must be modelled to render it, and says why.
 
+mod ladder;
+mod model;
+mod survey;
+
 use crate::film::Filter;
 use crate::light::Light;
 use crate::material::Material;
 use crate::scene::Scene;
-use crate::spectrum::{Basis, Curve, CurveKind, Quantity};
+use crate::spectrum::{Basis, Curve};
 use crate::trace::{Method, Transport, World, probe};
+use model::Model;
 
 /// How to render a scene and, in words, why.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,10 +32,8 @@ const ROULETTE: f64 = 0.05;
 
 /// Decides how to render a scene.
 pub fn plan(scene: &Scene<Curve>) -> Plan {
-    let basis = Basis::rgb();
-    let mut because = vec![model(scene, &basis)];
-    because.extend(indices(scene, &basis));
-    let (transport, reason) = transport(scene);
+    let Model { basis, mut because, next } = model::model(scene);
+    let (transport, reason) = transport(scene, &basis);
     because.push(reason);
     let samples = match (transport, scene.render.samples) {
         (_, Some(samples)) => samples,
@@ -40,60 +43,17 @@ pub fn plan(scene: &Scene<Curve>) -> Plan {
     because.extend(lights(scene));
     let diffuse_bounces = scene.render.diffuse_bounces.unwrap_or(u32::MAX);
     let method = Method { basis, transport, samples, seed: scene.render.seed, diffuse_bounces };
-    because.extend(cost(scene, &method));
+    because.extend(cost(scene, &method, next));
     Plan { method, because }
 }
 
-/// Which lanes, and what makes them enough.
-fn model(scene: &Scene<Curve>, basis: &Basis) -> String {
-    let [r, g, b] = [0, 1, 2].map(|i| basis.wavelengths_nm()[i]);
-    let read = scene.materials.iter().any(|m| {
-        let measured = |curve: &Curve| !matches!(curve.kind, CurveKind::Number(_) | CurveKind::Rgb(_));
-        m.material.each(|_, _, curve| if measured(curve) { Err(()) } else { Ok(()) }).is_err()
-    });
-    let colors = "model rgb: 3 lanes (padded to 4), for every color is a number or rgb";
-    match read {
-        true => format!("{colors}; indices are read at {r}, {g} and {b} nm"),
-        false => colors.into(),
-    }
-}
-
-/// What each clear material does to the lanes.
-fn indices(scene: &Scene<Curve>, basis: &Basis) -> Vec<String> {
-    let mut lines = Vec::new();
-    for named in &scene.materials {
-        match &named.material {
-            Material::Dielectric(dielectric) => {
-                let table = basis.tabulate(Quantity::Index, &dielectric.index);
-                let (low, high) = table.range();
-                let source = dielectric.index.source().map_or(String::new(), |source| format!(" ({source})"));
-                let name = &named.name;
-                lines.push(match table.is_flat() {
-                    true => format!("material {name}: index {low:.4} in every band{source}, so lanes stay together"),
-                    false => {
-                        format!("material {name}: index {low:.4} to {high:.4} over the bands{source}, so lanes part")
-                    }
-                });
-            }
-            Material::Conductor(conductor) if matches!(conductor.n.kind, CurveKind::Name(_)) => {
-                let source = conductor.n.source().map_or(String::new(), |source| format!(" ({source})"));
-                lines.push(format!(
-                    "material {}: n and k{source} are read at one wavelength a band, which can miss a metal's color by 10 %",
-                    named.name
-                ));
-            }
-            _ => {}
-        }
-    }
-    lines
-}
-
 /// Whether anything is left to chance.
-fn transport(scene: &Scene<Curve>) -> (Transport, String) {
+fn transport(scene: &Scene<Curve>, basis: &Basis) -> (Transport, String) {
     let random = Transport::Random { split: SPLIT, roulette: ROULETTE };
     let scattering =
         scene.objects.iter().find(|object| scene.materials[object.material as usize].material.scatters_widely());
     let why = match scattering {
+        _ if basis.draws_wavelengths() => Some("each sample carries other wavelengths".to_owned()),
         None if scene.film.filter == Filter::Center => None,
         None => Some("each sample falls anywhere in its pixel (filter \"box\")".to_owned()),
         Some(object) => match (scene.render.diffuse_bounces, extended_light(scene)) {
@@ -121,12 +81,11 @@ fn transport(scene: &Scene<Curve>) -> (Transport, String) {
 
 /// A light with an extent that next-event estimation would aim at.
 fn extended_light(scene: &Scene<Curve>) -> Option<String> {
-    scene.lights.iter().find(|light| light.is_aimed_at() && !matches!(light, Light::Point(_))).map(
-        |light| match light {
-            Light::Area(area) => scene.objects[area.object as usize].name.clone(),
-            _ => "the environment".into(),
-        },
-    )
+    scene.lights.iter().find(|light| light.is_aimed_at() && light.is_extended()).map(|light| match light {
+        Light::Area(area) => scene.objects[area.object as usize].name.clone(),
+        Light::Sun(_) => "the sun".into(),
+        _ => "the environment".into(),
+    })
 }
 
 /// What lights cannot do.
@@ -151,8 +110,10 @@ fn lights(scene: &Scene<Curve>) -> Vec<String> {
 }
 
 /// What a few hundred samples say of the whole.
-fn cost(scene: &Scene<Curve>, method: &Method) -> Vec<String> {
-    let probe = probe(&World::new(scene, method.clone()));
+fn cost(scene: &Scene<Curve>, method: &Method, next: Option<Basis>) -> Vec<String> {
+    let found = probe(&World::new(scene, method.clone()));
+    let next = next.map(|basis| (basis.name(), probe(&World::new(scene, Method { basis, ..method.clone() }))));
+    let probe = found;
     let samples = f64::from(scene.film.width) * f64::from(scene.film.height) * f64::from(method.samples);
     let mut lines = Vec::new();
     if probe.parted > 0.0 {
@@ -164,8 +125,11 @@ fn cost(scene: &Scene<Curve>, method: &Method) -> Vec<String> {
             .push(format!("polarization is left out: it would move at most {bound:.2} % of the light (P_A P_B bound)"));
     }
     let seconds = probe.time.as_secs_f64() * samples;
+    let beside = next.map_or(String::new(), |(name, other)| {
+        format!("; a sample of {name} takes {:.1} times as long", other.time.as_secs_f64() / probe.time.as_secs_f64())
+    });
     lines.push(format!(
-        "cost: {} sample{} per pixel, {:.1} rays each, about {} of processor time",
+        "cost: {} sample{} per pixel, {:.1} rays each, about {} of processor time{beside}",
         method.samples,
         if method.samples == 1 { "" } else { "s" },
         probe.rays,

@@ -6,16 +6,18 @@ use std::sync::Arc;
 use sha2::{Digest, Sha256};
 
 use super::compile_shape::{MAX_LENGTH, ShapeCompiler};
-use super::description::{CameraText, Description, FilmText, LightText, ObjectText};
+use super::description::{CameraText, Description, FilmText, LightText, ModelText, ObjectText, RenderText};
 use super::index::Index;
 use super::source::{At, Source};
 use super::{Camera, FilmSettings, NamedMaterial, Object, Scene};
 use crate::error::{Error, Result, nearest};
-use crate::light::{Area, Light, LightId};
+use crate::light::{Area, Environment, Light, LightId, Point, Sun};
 use crate::material::Material;
 use crate::shape::Sides;
-use crate::spectrum::{Curve, CurveKind, Quantity, Refusal};
+use crate::spectrum::{Curve, CurveKind, Quantity};
 
+/// The numbers of wavelengths that `render.model` may ask for.
+const BANDS: [u32; 4] = [8, 12, 16, 32];
 /// Most pixels in a row or column.
 const MAX_SIDE: u32 = 65_536;
 /// Most pixels in an image: at 20 bytes each, and as many again while the file is written, 10 GB.
@@ -28,15 +30,13 @@ const MAX_PIXELS: u64 = 1 << 28;
 pub fn compile(description: &Description, source: &Source) -> Result<Scene<Curve>> {
     let mut hash = Sha256::new();
     hash.update(source.text.as_bytes());
-    let mut compiler = Compiler { source, warnings: Vec::new(), hash };
+    let meters_per_unit = description.render.meters_per_unit;
+    let mut compiler = Compiler { source, warnings: Vec::new(), hash, meters_per_unit };
     let film = compiler.film(&description.film)?;
     let camera = compiler.camera(&description.camera, film)?;
-    if let Some(0) = description.render.samples {
-        let render = At::top("render");
-        return Err(source.mistake_at(&render.key("samples"), "a pixel needs at least 1 sample", None));
-    }
-    compiler.materials(&description.material)?;
-    let (objects, materials) = compiler.objects(description)?;
+    compiler.render(&description.render)?;
+    let materials = compiler.materials(&description.material)?;
+    let (objects, materials) = compiler.objects(description, &materials)?;
     let mut scene = Scene {
         camera,
         film,
@@ -45,7 +45,7 @@ pub fn compile(description: &Description, source: &Source) -> Result<Scene<Curve
         objects,
         materials,
         lights: Vec::new(),
-        environment: None,
+        skies: Vec::new(),
         warnings: Vec::new(),
         hash: String::new(),
     };
@@ -63,7 +63,10 @@ pub(super) struct Compiler<'a> {
     pub(super) source: &'a Source,
     pub(super) warnings: Vec<String>,
     pub(super) hash: Sha256,
+    pub(super) meters_per_unit: Option<f64>,
 }
+
+type Materials = BTreeMap<String, Material<Curve>>;
 
 impl Compiler<'_> {
     fn film(&mut self, film: &FilmText) -> Result<FilmSettings> {
@@ -108,39 +111,65 @@ impl Compiler<'_> {
         Ok(camera)
     }
 
-    fn materials(&mut self, materials: &BTreeMap<String, Material<Curve>>) -> Result<()> {
-        for (name, material) in materials {
+    fn render(&self, render: &RenderText) -> Result<()> {
+        let at = At::top("render");
+        let refuse = |key, message: String, help: Option<&str>| {
+            Err(self.source.mistake_at(&at.key(key), message, help.map(str::to_owned)))
+        };
+        if let Some(0) = render.samples {
+            return refuse("samples", "a pixel needs at least 1 sample".into(), None);
+        }
+        if let Some(error) = render.error.filter(|error| !(1e-6..=1.0).contains(error)) {
+            let help = "0.01 asks for one percent";
+            return refuse("error", format!("a relative error lies between 0.000001 and 1, not {error}"), Some(help));
+        }
+        if let Some(meters) = render.meters_per_unit.filter(|meters| !(1e-12..=1e12).contains(meters)) {
+            let help = "0.01 if the scene is in centimeters";
+            return refuse(
+                "meters_per_unit",
+                format!("a scene unit is 1e-12 to 1e12 meters, not {meters}"),
+                Some(help),
+            );
+        }
+        match render.model {
+            ModelText::Bands(bands) if !BANDS.contains(&bands) => {
+                refuse("model", format!("the model has 8, 12, 16 or 32 bands, not {bands}"), None)
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn materials(&mut self, texts: &Materials) -> Result<Materials> {
+        let mut materials = Materials::new();
+        for (name, material) in texts {
             let (top, kind) = (At::top("material"), material.kind());
             let named = top.key(name);
             let at = named.key(kind);
+            let mut curves = Vec::new();
             material.each(|quantity, key, curve| {
                 // A conductor given by name has its mistake where the name stands.
                 let metal = matches!(curve.kind, CurveKind::Name(_)) && quantity == Quantity::MetalIndex;
-                self.curve(&at.key(if metal { "metal" } else { key }), curve, quantity)
+                curves.push(self.curve(&at.key(if metal { "metal" } else { key }), curve, quantity)?);
+                Ok(())
             })?;
+            let mut curves = curves.into_iter();
+            let next = &mut |_, _: &Curve| curves.next().expect("each and map visit the same spectra");
+            materials.insert(name.clone(), material.map(next));
         }
-        Ok(())
+        Ok(materials)
     }
 
-    fn curve(&self, at: &At, curve: &Curve, quantity: Quantity) -> Result<()> {
-        curve.check(quantity).map_err(|refusal| self.refuse_curve(at, refusal.keys, refusal))
-    }
-
-    fn refuse_curve(&self, at: &At, keys: &[&str], refusal: Refusal) -> Error {
-        match (keys, refusal.entry) {
-            ([key, inner @ ..], _) => self.refuse_curve(&at.key(key), inner, refusal),
-            ([], Some(entry)) => self.source.mistake_at(&at.index(entry), refusal.message, refusal.help),
-            ([], None) => self.source.mistake_at(at, refusal.message, refusal.help),
-        }
-    }
-
-    fn objects(&mut self, description: &Description) -> Result<(Vec<Object>, Vec<NamedMaterial<Curve>>)> {
+    fn objects(
+        &mut self,
+        description: &Description,
+        compiled: &Materials,
+    ) -> Result<(Vec<Object>, Vec<NamedMaterial<Curve>>)> {
         let (mut objects, mut materials) = (Vec::new(), Vec::<NamedMaterial<Curve>>::new());
         for (number, text) in description.object.iter().enumerate() {
             let top = At::top("object");
             let at = top.index(number);
             let known = materials.iter().position(|material| material.name == text.material);
-            let material = match (known, description.material.get(&text.material)) {
+            let material = match (known, compiled.get(&text.material)) {
                 (Some(id), _) => id,
                 (None, Some(material)) => {
                     materials.push(NamedMaterial { name: text.material.clone(), material: material.clone() });
@@ -200,40 +229,65 @@ impl Compiler<'_> {
         for (number, text) in lights.iter().enumerate() {
             let top = At::top("light");
             let at = top.index(number);
-            match (&text.environment, &text.point) {
-                (Some(environment), None) => {
-                    let here = at.key("environment");
-                    self.curve(&here.key("radiance"), &environment.radiance, Quantity::Emission)?;
-                    if scene.environment.is_some() {
-                        return Err(self.source.mistake_at(&here, "a scene has at most one environment", None));
-                    }
-                    scene.environment = Some(scene.lights.len());
-                    scene.lights.push(Light::Environment(environment.clone()));
-                }
-                (None, Some(point)) => {
-                    let here = at.key("point");
-                    self.point(&here.key("position"), point.position)?;
-                    self.curve(&here.key("intensity"), &point.intensity, Quantity::Emission)?;
-                    scene.lights.push(Light::Point(point.clone()));
-                }
-                (None, None) => {
-                    let message = "a light is an `environment` or a `point`";
-                    return Err(self.source.mistake_at(&at, message, None));
-                }
-                (Some(_), Some(_)) => {
-                    let help = Some("start another [[light]] for the second".into());
-                    return Err(self.source.mistake_at(&at.key("point"), "a light has exactly one kind", help));
-                }
+            let kinds = [text.environment.is_some(), text.point.is_some(), text.sun.is_some()];
+            if kinds.iter().filter(|given| **given).count() != 1 {
+                return Err(self.not_one_kind(&at, text));
             }
+            let light = self.light(&at, text)?;
+            if let (Light::Environment(_), Some(_)) = (&light, scene.environment()) {
+                let message = "a scene has at most one environment";
+                return Err(self.source.mistake_at(&at.key("environment"), message, None));
+            }
+            if light.is_sky() {
+                scene.skies.push(scene.lights.len());
+            }
+            scene.lights.push(light);
         }
         Ok(())
+    }
+
+    fn not_one_kind(&self, at: &At, text: &LightText) -> Error {
+        let given =
+            [("environment", text.environment.is_some()), ("point", text.point.is_some()), ("sun", text.sun.is_some())];
+        match given.iter().filter(|kind| kind.1).nth(1) {
+            None => self.source.mistake_at(at, "a light is an `environment`, a `point` or a `sun`", None),
+            Some((second, _)) => {
+                let help = Some("start another [[light]] for the second".into());
+                self.source.mistake_at(&at.key(second), "a light has exactly one kind", help)
+            }
+        }
+    }
+
+    /// The only kind of light that an entry has.
+    fn light(&mut self, at: &At, text: &LightText) -> Result<Light<Curve>> {
+        if let Some(environment) = &text.environment {
+            let radiance =
+                self.curve(&at.key("environment").key("radiance"), &environment.radiance, Quantity::Emission)?;
+            return Ok(Light::Environment(Environment { radiance }));
+        }
+        if let Some(point) = &text.point {
+            let here = at.key("point");
+            self.point(&here.key("position"), point.position)?;
+            let intensity = self.curve(&here.key("intensity"), &point.intensity, Quantity::Emission)?;
+            return Ok(Light::Point(Point { intensity, ..point.clone() }));
+        }
+        let sun = text.sun.as_ref().expect("one kind was counted");
+        let here = at.key("sun");
+        self.direction(&here.key("toward"), sun.toward)?;
+        if !(0.0..=180.0).contains(&sun.angular_diameter) {
+            let message = format!("a sun is 0 to 180 degrees across, not {}", sun.angular_diameter);
+            return Err(self.source.mistake_at(&here.key("angular_diameter"), message, None));
+        }
+        let irradiance = self.curve(&here.key("irradiance"), &sun.irradiance, Quantity::Emission)?;
+        Ok(Light::Sun(Sun { irradiance, ..sun.clone() }))
     }
 }
 
 fn is_dark(radiance: &Curve) -> bool {
-    match &radiance.kind {
-        CurveKind::Number(value) => value * radiance.scale == 0.0,
-        CurveKind::Rgb(rgb) => rgb.iter().all(|x| x * radiance.scale == 0.0),
+    let dark = match &radiance.kind {
+        CurveKind::Number(value) => *value == 0.0,
+        CurveKind::Rgb(rgb) => rgb.iter().all(|x| *x == 0.0),
         _ => false,
-    }
+    };
+    dark || radiance.scale == 0.0 || radiance.luminance == Some(0.0)
 }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Deserializer};
 
 use crate::film::Filter;
-use crate::light::{Environment, Point};
+use crate::light::{Environment, Point, Sun};
 use crate::material::Material;
 use crate::spectrum::{ColorSpace, Curve};
 
@@ -89,6 +89,10 @@ pub struct RenderText {
     /// How spectra are carried.
     #[serde(default)]
     pub model: ModelText,
+    /// Relative error of the image that is wanted: a third of it is what the model of color may miss.
+    pub error: Option<f64>,
+    /// Length of a scene unit in meters: needed where a glass brings its own absorption.
+    pub meters_per_unit: Option<f64>,
     /// Camera samples per pixel.
     pub samples: Option<u32>,
     /// Chooses another set of random numbers.
@@ -99,7 +103,7 @@ pub struct RenderText {
 }
 
 /// ```toml
-/// render.model = "auto"
+/// render.model = "auto"     # "rgb", { bands = 16 }, "hero"
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -109,6 +113,10 @@ pub enum ModelText {
     Auto,
     /// Three bands: red, green, blue.
     Rgb,
+    /// As many fixed wavelengths: 8, 12, 16 or 32.
+    Bands(u32),
+    /// Fixed wavelengths, and some that are drawn and part in dispersive glass.
+    Hero,
 }
 
 /// ```toml
@@ -246,6 +254,8 @@ pub struct LightText {
     pub environment: Option<Environment<Curve>>,
     /// A point that shines.
     pub point: Option<Point<Curve>>,
+    /// A disc in the sky.
+    pub sun: Option<Sun<Curve>>,
 }
 
 /// A number that stands for all three axes, or three numbers.

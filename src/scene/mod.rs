@@ -5,10 +5,12 @@
 
 mod camera;
 mod compile;
+mod compile_curve;
 mod compile_shape;
 mod description;
 mod index;
 mod source;
+mod spectrum_file;
 mod structure;
 mod syntax;
 mod wording;
@@ -47,8 +49,8 @@ pub struct Scene<S> {
     pub materials: Vec<NamedMaterial<S>>,
     /// Everything that shines.
     pub lights: Vec<Light<S>>,
-    /// What rays see that meet nothing.
-    pub environment: Option<LightId>,
+    /// The lights that rays see which meet nothing.
+    pub skies: Vec<LightId>,
     /// What the author should know but need not change.
     pub warnings: Vec<String>,
     /// SHA-256 of the scene file and the files it names, 64 hexadecimal digits.
@@ -113,11 +115,16 @@ impl<S> Scene<S> {
                 .map(|m| NamedMaterial { name: m.name.clone(), material: m.material.map(&mut convert) })
                 .collect(),
             lights: self.lights.iter().map(|light| light.map(&mut convert)).collect(),
-            environment: self.environment,
+            skies: self.skies.clone(),
             warnings: self.warnings.clone(),
             hash: self.hash.clone(),
             index: self.index.clone(),
         }
+    }
+
+    /// The light that fills the whole sky, if there is one.
+    pub fn environment(&self) -> Option<LightId> {
+        self.skies.iter().copied().find(|&sky| matches!(self.lights[sky], Light::Environment(_)))
     }
 
     /// The material of an object.

@@ -132,6 +132,19 @@ impl<'a> At<'a> {
     }
 }
 
+impl std::fmt::Display for At<'_> {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter) -> std::fmt::Result {
+        for (number, step) in self.steps().into_iter().enumerate() {
+            match step {
+                Step::Key(key) if number == 0 => write!(formatter, "{key}")?,
+                Step::Key(key) => write!(formatter, ".{key}")?,
+                Step::Index(index) => write!(formatter, "[{index}]")?,
+            }
+        }
+        Ok(())
+    }
+}
+
 /// The file beside a missing one that was most likely meant.
 pub(super) fn nearest_file(missing: &Path) -> Option<PathBuf> {
     let folder = missing.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));

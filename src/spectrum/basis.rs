@@ -1,93 +1,257 @@
-use super::{Curve, Response};
+//! What the lanes of one render stand for, and how spectra are read onto them.
 
-/// What a curve describes, which decides how it is read onto the lanes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Quantity {
-    /// Share of light that leaves a surface again, 0 to 1.
-    Reflectance,
-    /// Share of light that crosses a surface, 0 to 1.
-    Transmittance,
-    /// Radiance, or for a point light intensity; not negative.
-    Emission,
-    /// Real refractive index of a dielectric; above 1.
-    Index,
-    /// Absorption coefficient per scene unit, base e; not negative.
-    Absorption,
-    /// Real part of a metal's refractive index; above 0.
-    MetalIndex,
-    /// Extinction coefficient of a metal: imaginary part of its index; not negative.
-    MetalExtinction,
-}
+use std::sync::Arc;
 
-/// A spectrum on the bins of one render's basis: one number per bin, in the unit of its quantity.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Table(Box<[f64]>);
-
-impl Table {
-    /// A table of the given bins.
-    pub fn new(bins: impl Into<Box<[f64]>>) -> Self {
-        Self(bins.into())
-    }
-
-    /// The number in each bin.
-    pub fn bins(&self) -> &[f64] {
-        &self.0
-    }
-
-    /// Smallest and largest bin.
-    pub fn range(&self) -> (f64, f64) {
-        self.0.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| (low.min(x), high.max(x)))
-    }
-
-    /// Whether all bins hold the same number: a surface with this index keeps lanes together.
-    pub fn is_flat(&self) -> bool {
-        self.0.windows(2).all(|pair| pair[0] == pair[1])
-    }
-}
+use super::bands::Bands;
+use super::cardinals::cardinals;
+use super::color::{ColorSpace, IDENTITY, Matrix, apply, product};
+use super::draw::MAX_HEROES;
+use super::mixture::Mixture;
+use super::table::MAX_LANES;
+use super::visible::{self, COUNT};
+use super::{Curve, CurveKind, Draw, Emission, Quantity, Response, Table, Upsampler};
 
 /// What the lanes of one render stand for: the bins on which all its spectra are tabulated.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Basis {
-    name: &'static str,
-    wavelengths_nm: [f64; 3],
+    space: ColorSpace,
+    upsampler: Arc<Upsampler>,
+    lanes: LaneKind,
+    /// Where the fixed lanes read an index, in nm, one per bin.
+    wavelengths_nm: Vec<f64>,
+    heroes: Option<(usize, Arc<Mixture>)>,
+    keeps_together: bool,
+}
+
+/// What the fixed lanes are.
+#[derive(Clone, Debug, PartialEq)]
+enum LaneKind {
+    /// Linear Rec.709.
+    Rgb,
+    /// Linear Rec.2020 under one light.
+    Prefiltered(Arc<Bands>),
+    /// Wavelengths: interpolated between the first ones, each with its function; ideal lines by the others.
+    Wavelengths(Arc<Vec<Vec<f64>>>),
 }
 
 /// Where the bands of the `rgb` basis read an index, in nm: the hydrogen C, mercury e and hydrogen F lines.
 pub const BAND_WAVELENGTHS_NM: [f64; 3] = [656.27, 546.07, 486.13];
+/// Where an index is read if lanes are to stay together, in nm: the helium d line.
+const ONE_WAVELENGTH_NM: f64 = 587.5618;
 
 impl Basis {
-    /// Three bands: the film's red, green and blue, linear Rec.709.
-    pub fn rgb() -> Self {
-        Self { name: "rgb", wavelengths_nm: BAND_WAVELENGTHS_NM }
+    /// Three bands: red, green and blue, linear Rec.709.
+    pub fn rgb(space: ColorSpace) -> Self {
+        Self::new(space, LaneKind::Rgb, BAND_WAVELENGTHS_NM.into())
     }
 
-    /// The model's name in a scene file.
-    pub fn name(&self) -> &'static str {
-        self.name
+    /// Three bands: red, green and blue of Rec.2020, in which every measured spectrum has the color it has under one light.
+    pub fn prefiltered(space: ColorSpace, light: &Emission) -> Self {
+        Self::new(space, LaneKind::Prefiltered(Arc::new(Bands::new(light))), BAND_WAVELENGTHS_NM.into())
     }
 
-    /// How many bins every table has.
-    pub fn len(&self) -> usize {
+    /// As many wavelengths in equal steps over the part of the spectrum that measured best for their number, and a lane of
+    /// its own for every ideal line.
+    ///
+    /// # Panics
+    /// If lanes and lines are none or more than [`MAX_LANES`].
+    pub fn bands(space: ColorSpace, bands: usize, lines_nm: &[f64]) -> Self {
+        let (from, to) = match bands {
+            ..=8 => (410.0, 710.0),
+            9..=14 => (400.0, 700.0),
+            15..=23 => (380.0, 730.0),
+            _ => (390.0, 730.0),
+        };
+        let step = (to - from) / bands as f64;
+        let nodes: Vec<f64> = (0..bands).map(|i| from + (i as f64 + 0.5) * step).collect();
+        Self::wavelengths(space, nodes, lines_nm)
+    }
+
+    /// Lanes of chosen wavelengths in nm, ascending, between which spectra are interpolated, and lines.
+    pub fn wavelengths(space: ColorSpace, nodes_nm: Vec<f64>, lines_nm: &[f64]) -> Self {
+        let functions = cardinals(&nodes_nm);
+        let mut wavelengths = nodes_nm;
+        wavelengths.extend(lines_nm);
+        assert!((1..=MAX_LANES).contains(&wavelengths.len()), "{} lanes do not fit", wavelengths.len());
+        Self::new(space, LaneKind::Wavelengths(Arc::new(functions)), wavelengths)
+    }
+
+    /// The same lanes, and heroes: wavelengths drawn where the lights shine, which go on where lanes part.
+    ///
+    /// # Panics
+    /// If they do not fit.
+    pub fn with_heroes(self, heroes: usize, lights: &[Emission]) -> Self {
+        assert!(heroes <= MAX_HEROES && self.wavelengths_nm.len() + heroes <= MAX_LANES, "{heroes} heroes do not fit");
+        Self { heroes: Some((heroes, Arc::new(Mixture::new(lights)))), ..self }
+    }
+
+    /// The same lanes, read at one wavelength by every index, but for those that are written as `rgb`.
+    pub fn kept_together(self) -> Self {
+        Self { keeps_together: true, ..self }
+    }
+
+    fn new(space: ColorSpace, lanes: LaneKind, wavelengths_nm: Vec<f64>) -> Self {
+        let upsampler = Arc::new(Upsampler::new(space));
+        Self { space, upsampler, lanes, wavelengths_nm, heroes: None, keeps_together: false }
+    }
+
+    /// The model's name, as it is recorded in a file.
+    pub fn name(&self) -> String {
+        let lanes = self.wavelengths_nm.len();
+        match (&self.lanes, &self.heroes) {
+            (LaneKind::Rgb, _) => "rgb".into(),
+            (LaneKind::Prefiltered(_), _) => "rgb, Rec.2020 prefiltered by the light".into(),
+            (LaneKind::Wavelengths(_), None) => format!("bands {lanes}"),
+            (LaneKind::Wavelengths(_), Some((heroes, _))) => format!("hero {lanes} + {heroes}"),
+        }
+    }
+
+    /// How many lanes a camera sample carries.
+    pub fn lanes(&self) -> usize {
+        self.wavelengths_nm.len() + self.heroes.as_ref().map_or(0, |(heroes, _)| *heroes)
+    }
+
+    /// How many of them are the same in every sample.
+    pub fn fixed_lanes(&self) -> usize {
         self.wavelengths_nm.len()
     }
 
-    /// Never: a basis has at least one bin.
-    pub fn is_empty(&self) -> bool {
-        false
-    }
-
-    /// Where an index, an absorption or a metal is read, in nm, one per bin.
+    /// Where the fixed lanes read an index, an absorption or a metal, in nm.
     pub fn wavelengths_nm(&self) -> &[f64] {
         &self.wavelengths_nm
     }
 
-    /// A checked curve, read onto the bins.
-    pub fn tabulate(&self, quantity: Quantity, curve: &Curve) -> Table {
-        Table(self.wavelengths_nm.iter().map(|&nm| curve.at(quantity, nm)).collect())
+    /// What makes spectra of `rgb` for this film.
+    pub fn upsampler(&self) -> &Upsampler {
+        &self.upsampler
     }
 
-    /// What the bins are worth to the sensor when a path ends in a light of this emission.
-    pub fn response(&self, _emission: &Curve) -> Response {
-        Response::identity()
+    /// The film's color space.
+    pub fn color_space(&self) -> ColorSpace {
+        self.space
     }
+
+    /// Whether samples differ in what their lanes stand for.
+    pub fn draws_wavelengths(&self) -> bool {
+        self.heroes.is_some()
+    }
+
+    /// The lanes of a camera sample, for a random number in 0..1.
+    pub fn draw<const N: usize>(&self, u: f64) -> Draw<N> {
+        let Some((count, mixture)) = &self.heroes else { return Draw::fixed(self.fixed_lanes()) };
+        // Rotated by equal steps (Wilkie et al. 2014, *Hero Wavelength Spectral Sampling*, equation 13).
+        let mut heroes = [Default::default(); MAX_HEROES];
+        for (i, hero) in heroes[..*count].iter_mut().enumerate() {
+            let rotated = u + i as f64 / *count as f64;
+            *hero = mixture.draw(if rotated < 1.0 { rotated } else { rotated - 1.0 }, *count);
+        }
+        Draw::with_heroes(self.fixed_lanes(), &heroes[..*count])
+    }
+
+    /// A checked curve, read onto the bins. An emission of wavelengths is an even table: its colors are in its response.
+    pub fn tabulate(&self, quantity: Quantity, curve: &Curve) -> Table {
+        if quantity == Quantity::Emission {
+            return self.emission(&Emission::new(curve, self.space), curve);
+        }
+        let reader = match quantity {
+            Quantity::Index if self.keeps_together && !matches!(curve.kind, CurveKind::Rgb(_)) => {
+                let index = curve.reader(quantity, &self.upsampler)(ONE_WAVELENGTH_NM);
+                Box::new(move |_| index)
+            }
+            _ => curve.reader(quantity, &self.upsampler),
+        };
+        let read = |nm: &f64| reader(*nm);
+        match (&self.lanes, quantity) {
+            (LaneKind::Rgb, Quantity::Reflectance | Quantity::Transmittance | Quantity::Absorption) => {
+                match curve.kind.rgb() {
+                    Some(rgb) => Table::new(rgb.map(|x| x * curve.scale)),
+                    None => Table::new(self.wavelengths_nm.iter().map(read).collect::<Vec<_>>()),
+                }
+            }
+            (LaneKind::Prefiltered(bands), _) if quantity != Quantity::Index => {
+                Table::new(bands.filter(quantity, curve, &*reader))
+            }
+            _ => self.table(self.wavelengths_nm.iter().map(read).collect(), &*reader),
+        }
+    }
+
+    /// The bins, and the fine grid if wavelengths are drawn.
+    fn table(&self, bins: Vec<f64>, value: &dyn Fn(f64) -> f64) -> Table {
+        Table::with_fine(&bins, self.fine(|nm| value(nm), |nm| value(nm)))
+    }
+
+    /// The visible grid and the lines behind it; empty if no wavelengths are drawn.
+    fn fine<T: Clone>(&self, smooth: impl Fn(f64) -> T, line: impl Fn(f64) -> T) -> Vec<T> {
+        let Some((_, mixture)) = &self.heroes else { return Vec::new() };
+        let mut fine: Vec<T> = visible::wavelengths().map(smooth).collect();
+        fine.extend(mixture.lines().iter().map(|&nm| line(nm)));
+        // Reading between two entries never runs off the end.
+        fine.push(fine[fine.len() - 1].clone());
+        fine
+    }
+
+    fn emission(&self, emission: &Emission, curve: &Curve) -> Table {
+        match (&self.lanes, curve.kind.rgb()) {
+            (LaneKind::Rgb, Some(rgb)) if curve.luminance.is_none() => Table::new(rgb.map(|x| x * curve.scale)),
+            (LaneKind::Rgb, _) => Table::new(apply(&ColorSpace::Rec709.of_xyz(), emission.xyz())),
+            (LaneKind::Prefiltered(_), _) => Table::new(apply(&ColorSpace::Rec2020.of_xyz(), emission.xyz())),
+            (LaneKind::Wavelengths(_), _) => {
+                let level = level(emission);
+                self.table(vec![level; self.fixed_lanes()], &|_| level)
+            }
+        }
+    }
+
+    /// What the lanes are worth to the sensor when a path ends in a light of this emission.
+    pub fn response(&self, curve: &Curve) -> Response {
+        let of_matrix = |matrix: &Matrix| Response::new(&[0, 1, 2].map(|lane| matrix.map(|row| row[lane])), Vec::new());
+        match &self.lanes {
+            LaneKind::Rgb if curve.is_measured() || curve.luminance.is_some() => {
+                of_matrix(&product(&self.space.of_xyz(), &ColorSpace::Rec709.to_xyz()))
+            }
+            LaneKind::Rgb if self.space == ColorSpace::Rec709 => of_matrix(&IDENTITY),
+            LaneKind::Rgb => of_matrix(&self.space.of_rec709()),
+            LaneKind::Prefiltered(_) => of_matrix(&product(&self.space.of_xyz(), &ColorSpace::Rec2020.to_xyz())),
+            LaneKind::Wavelengths(functions) => self.light_matrix(&Emission::new(curve, self.space), functions),
+        }
+    }
+
+    /// Light times color matching functions, integrated with the function of each lane.
+    fn light_matrix(&self, emission: &Emission, functions: &[Vec<f64>]) -> Response {
+        let level = level(emission);
+        let per_level = |color: [f64; 3]| if level == 0.0 { [0.0; 3] } else { color.map(|x| x / level) };
+        let mut columns = vec![[0.0; 3]; self.fixed_lanes()];
+        let mut add = |lane: usize, weight: f64, color: [f64; 3]| {
+            (0..3).for_each(|c| columns[lane][c] += weight * color[c]);
+        };
+        let light: Vec<[f64; 3]> = emission.columns().map(per_level).collect();
+        for (i, color) in light.iter().enumerate() {
+            functions.iter().enumerate().for_each(|(lane, function)| add(lane, function[i], *color));
+        }
+        for &[nm, power] in emission.lines() {
+            let color = per_level(emission.film(nm).map(|x| x * power));
+            let own = self.wavelengths_nm[functions.len()..].iter().position(|&lane| lane == nm);
+            match own {
+                Some(lane) => add(functions.len() + lane, 1.0, color),
+                None => {
+                    let (below, fraction) = visible::place(nm);
+                    let between = |f: &Vec<f64>| f[below] + fraction * (f[below + 1] - f[below]);
+                    functions.iter().enumerate().for_each(|(lane, function)| add(lane, between(function), color));
+                }
+            }
+        }
+        let at = |nm: f64| light[(nm - visible::FIRST_NM) as usize];
+        let line = |nm: f64| {
+            let powers = emission.lines().iter().filter(|line| line[0] == nm).map(|line| line[1]);
+            per_level(emission.film(nm).map(|x| x * powers.clone().sum::<f64>()))
+        };
+        debug_assert_eq!(light.len(), COUNT);
+        Response::new(&columns, self.fine(at, line))
+    }
+}
+
+/// The number that stands for a light's brightness in every lane: its strongest film channel.
+fn level(emission: &Emission) -> f64 {
+    let color = emission.color();
+    f64::from(color.iter().fold(0.0, |most: f64, x| most.max(x.abs())) as f32)
 }

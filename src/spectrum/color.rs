@@ -1,54 +1,217 @@
-//! Film color spaces and the one transfer curve a picture for looking needs.
+//! Film color spaces, their matrices, and the one transfer curve a picture for looking needs.
 
 use palette::{LinSrgb, Srgb};
 use serde::Deserialize;
 
-/// A linear, scene-referred RGB space, by its Color Interop Forum identifier.
+/// A 3 x 3 matrix, rows first.
+pub type Matrix = [[f64; 3]; 3];
+
+/// A linear, scene-referred color space, by its Color Interop Forum identifier.
 ///
 /// ```toml
 /// film.color_space = "lin_rec709_scene"
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 pub enum ColorSpace {
-    /// Linear light on the Rec.709 (sRGB) primaries, white D65.
+    /// The primaries of Rec.709 (sRGB), white D65.
     #[default]
     #[serde(rename = "lin_rec709_scene")]
     Rec709,
+    /// ACEScg, the AP1 primaries, white near D60.
+    #[serde(rename = "lin_ap1_scene")]
+    AcesCg,
+    /// ACES2065-1, the AP0 primaries, white near D60.
+    #[serde(rename = "lin_ap0_scene")]
+    Aces2065,
+    /// The primaries of Rec.2020, white D65.
+    #[serde(rename = "lin_rec2020_scene")]
+    Rec2020,
+    /// The primaries of DCI-P3, white D65.
+    #[serde(rename = "lin_p3d65_scene")]
+    P3D65,
+    /// CIE 1931 XYZ. White, a bare number as an emission, is D65; the color (1, 1, 1) is the equal-energy spectrum's.
+    #[serde(rename = "lin_ciexyzd65_scene")]
+    Xyz,
 }
 
-/// CIE 1931 (x, y) of an RGB space's primaries and white.
+/// CIE 1931 (x, y) of a color space's primaries and white.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Primaries {
-    /// Red primary.
-    pub red: [f32; 2],
-    /// Green primary.
-    pub green: [f32; 2],
-    /// Blue primary.
-    pub blue: [f32; 2],
-    /// White point.
-    pub white: [f32; 2],
+    /// Red primary, or X.
+    pub red: [f64; 2],
+    /// Green primary, or Y.
+    pub green: [f64; 2],
+    /// Blue primary, or Z.
+    pub blue: [f64; 2],
+    /// The color (1, 1, 1).
+    pub white: [f64; 2],
 }
+
+const D65: [f64; 2] = [0.3127, 0.3290];
+const ACES_WHITE: [f64; 2] = [0.32168, 0.33767];
 
 impl ColorSpace {
     /// The `colorInteropID` of the space.
     pub fn interop_id(self) -> &'static str {
         match self {
             Self::Rec709 => "lin_rec709_scene",
+            Self::AcesCg => "lin_ap1_scene",
+            Self::Aces2065 => "lin_ap0_scene",
+            Self::Rec2020 => "lin_rec2020_scene",
+            Self::P3D65 => "lin_p3d65_scene",
+            Self::Xyz => "lin_ciexyzd65_scene",
         }
     }
 
-    /// Primaries and white: ITU-R BT.709-6, table 1.
+    /// Primaries and white: ITU-R BT.709-6 table 1, ITU-R BT.2020-2 table 3, SMPTE RP 431-2 with the white of
+    /// BT.709, AMPAS S-2014-004 (AP1) and SMPTE ST 2065-1 (AP0).
     pub fn primaries(self) -> Primaries {
+        let of = |red, green, blue, white| Primaries { red, green, blue, white };
         match self {
-            Self::Rec709 => {
-                Primaries { red: [0.64, 0.33], green: [0.30, 0.60], blue: [0.15, 0.06], white: [0.3127, 0.3290] }
-            }
+            Self::Rec709 => of([0.64, 0.33], [0.30, 0.60], [0.15, 0.06], D65),
+            Self::AcesCg => of([0.713, 0.293], [0.165, 0.830], [0.128, 0.044], ACES_WHITE),
+            Self::Aces2065 => of([0.7347, 0.2653], [0.0, 1.0], [0.0001, -0.0770], ACES_WHITE),
+            Self::Rec2020 => of([0.708, 0.292], [0.170, 0.797], [0.131, 0.046], D65),
+            Self::P3D65 => of([0.680, 0.320], [0.265, 0.690], [0.150, 0.060], D65),
+            Self::Xyz => of([1.0, 0.0], [0.0, 1.0], [0.0, 0.0], [1.0 / 3.0; 2]),
         }
     }
+
+    /// XYZ of the space's white, Y = 1.
+    pub fn white(self) -> [f64; 3] {
+        from_chromaticity(if self == Self::Xyz { D65 } else { self.primaries().white })
+    }
+
+    /// The CIE illuminant that stands for the space's white where a spectrum is needed.
+    pub fn white_illuminant(self) -> &'static str {
+        match self {
+            Self::AcesCg | Self::Aces2065 => "D60",
+            _ => "D65",
+        }
+    }
+
+    /// Film color to CIE XYZ. SMPTE RP 177-1993, *Derivation of Basic Television Color Equations*.
+    pub fn to_xyz(self) -> Matrix {
+        if self == Self::Xyz {
+            return IDENTITY;
+        }
+        let Primaries { red, green, blue, white } = self.primaries();
+        let columns = transpose([red, green, blue].map(from_chromaticity_or_dark));
+        let strengths = apply(&inverse(&columns), from_chromaticity(white));
+        columns.map(|row| std::array::from_fn(|i| row[i] * strengths[i]))
+    }
+
+    /// CIE XYZ to film color.
+    pub fn of_xyz(self) -> Matrix {
+        inverse(&self.to_xyz())
+    }
+
+    /// Film color to linear Rec.709, adapted to its white.
+    pub fn to_rec709(self) -> Matrix {
+        if self == Self::Rec709 { IDENTITY } else { inverse(&self.of_rec709()) }
+    }
+
+    /// Linear Rec.709 to film color, adapted to the film's white.
+    pub fn of_rec709(self) -> Matrix {
+        if self == Self::Rec709 {
+            return IDENTITY;
+        }
+        let adapted = product(&adaptation(Self::Rec709.white(), self.white()), &Self::Rec709.to_xyz());
+        product(&self.of_xyz(), &adapted)
+    }
+}
+
+/// The matrix that changes nothing.
+pub const IDENTITY: Matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+
+/// XYZ of a chromaticity, Y = 1.
+fn from_chromaticity([x, y]: [f64; 2]) -> [f64; 3] {
+    [x / y, 1.0, (1.0 - x - y) / y]
+}
+
+/// XYZ of a chromaticity that may have y = 0, X + Y + Z = 1.
+fn from_chromaticity_or_dark([x, y]: [f64; 2]) -> [f64; 3] {
+    [x, y, 1.0 - x - y]
+}
+
+/// XYZ under one white to the corresponding XYZ under another, the linear Bradford transform (Lam 1985).
+pub fn adaptation(from: [f64; 3], to: [f64; 3]) -> Matrix {
+    const CONES: Matrix = [[0.8951, 0.2664, -0.1614], [-0.7502, 1.7135, 0.0367], [0.0389, -0.0685, 1.0296]];
+    let (from, to) = (apply(&CONES, from), apply(&CONES, to));
+    let scaled: Matrix = std::array::from_fn(|i| CONES[i].map(|x| x * to[i] / from[i]));
+    product(&inverse(&CONES), &scaled)
+}
+
+/// Matrix times column.
+pub fn apply(matrix: &Matrix, [x, y, z]: [f64; 3]) -> [f64; 3] {
+    matrix.map(|row| row[0] * x + row[1] * y + row[2] * z)
+}
+
+/// The matrix that applies `b`, then `a`.
+pub fn product(a: &Matrix, b: &Matrix) -> Matrix {
+    transpose(transpose(*b).map(|column| apply(a, column)))
+}
+
+fn transpose(m: Matrix) -> Matrix {
+    std::array::from_fn(|i| std::array::from_fn(|j| m[j][i]))
+}
+
+/// The inverse, by cofactors.
+pub fn inverse(m: &Matrix) -> Matrix {
+    let cofactor = |i: usize, j: usize| {
+        let (a, b, c, d) = ((i + 1) % 3, (i + 2) % 3, (j + 1) % 3, (j + 2) % 3);
+        m[a][c] * m[b][d] - m[a][d] * m[b][c]
+    };
+    let determinant: f64 = (0..3).map(|j| m[0][j] * cofactor(0, j)).sum();
+    std::array::from_fn(|i| std::array::from_fn(|j| cofactor(j, i) / determinant))
 }
 
 /// Eight-bit sRGB of a linear Rec.709 color: clipped to 0..1, then encoded (IEC 61966-2-1).
 pub fn encode_srgb(linear: [f32; 3]) -> [u8; 3] {
     let [red, green, blue] = linear.map(|x| x.clamp(0.0, 1.0));
     Srgb::<u8>::from_linear(LinSrgb::new(red, green, blue)).into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ALL: [ColorSpace; 6] = [
+        ColorSpace::Rec709,
+        ColorSpace::AcesCg,
+        ColorSpace::Aces2065,
+        ColorSpace::Rec2020,
+        ColorSpace::P3D65,
+        ColorSpace::Xyz,
+    ];
+
+    fn assert_near(found: [f64; 3], expected: [f64; 3], tolerance: f64) {
+        for i in 0..3 {
+            assert!((found[i] - expected[i]).abs() < tolerance, "{found:?} is not {expected:?}");
+        }
+    }
+
+    #[test]
+    fn white_is_one_in_every_space_and_white_in_xyz() {
+        for space in ALL.into_iter().filter(|space| *space != ColorSpace::Xyz) {
+            assert_near(apply(&space.of_xyz(), space.white()), [1.0; 3], 1e-12);
+            assert_near(apply(&space.of_rec709(), [1.0; 3]), [1.0; 3], 1e-12);
+        }
+        assert_near(apply(&ColorSpace::Xyz.of_rec709(), [1.0; 3]), ColorSpace::Xyz.white(), 1e-12);
+    }
+
+    /// IEC 61966-2-1, equation 7 prints the Rec.709 matrix to four decimals.
+    #[test]
+    fn the_rec709_matrix_is_the_published_one() {
+        let m = ColorSpace::Rec709.to_xyz();
+        assert_near(m[0], [0.4124, 0.3576, 0.1805], 5e-5);
+        assert_near(m[1], [0.2126, 0.7152, 0.0722], 5e-5);
+        assert_near(m[2], [0.0193, 0.1192, 0.9505], 5e-5);
+    }
+
+    #[test]
+    fn the_equal_energy_spectrum_is_pink_in_rec709() {
+        let [r, g, b] = apply(&ColorSpace::Rec709.of_xyz(), [1.0; 3]);
+        assert_near([r, g, b], [1.2048, 0.9483, 0.9089], 1e-3);
+    }
 }

@@ -1,21 +1,16 @@
 //! Spectra as authors write them.
 
-use std::fmt;
-
-use serde::Deserialize;
-use serde::de::value::MapAccessDeserializer;
-use serde::de::{Deserializer, Error as _, MapAccess, Visitor};
-
-use super::Quantity;
 use super::basis::BAND_WAVELENGTHS_NM;
 use super::curve_check::Refusal;
-use super::data::{self, Glass};
+use super::{Quantity, Upsampler, data};
 
 /// A spectrum as it stands in a scene file: a number, a catalog name, or a table with one kind and maybe a `scale`.
 ///
 /// ```toml
 /// reflectance = 0.5
 /// reflectance = { rgb = [0.7, 0.5, 0.3] }
+/// reflectance = "dark skin"
+/// reflectance = { file = "paint.csv", column = 2 }
 /// index = "N-SF11"
 /// index = { rgb = [1.513, 1.517, 1.523] }
 /// index = { samples = [[486.1, 1.522], [656.3, 1.514]] }
@@ -23,6 +18,9 @@ use super::data::{self, Glass};
 /// index = { sellmeier = { b = [1.0396, 0.2318, 1.0105], c = [0.0060, 0.0200, 103.56] } }
 /// index = { abbe = { nd = 1.5168, vd = 64.17 } }
 /// radiance = { rgb = [1, 0.9, 0.8], scale = 10 }
+/// radiance = { illuminant = "D65" }
+/// radiance = { blackbody = 5600, luminance = 3 }
+/// radiance = { lines = [[589.0, 2], [589.6, 1]] }
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
@@ -30,6 +28,8 @@ pub struct Curve {
     pub kind: CurveKind,
     /// A factor on every value.
     pub scale: f64,
+    /// CIE Y of an emission, in place of a factor.
+    pub luminance: Option<f64>,
 }
 
 /// The ways to write a spectrum.
@@ -39,9 +39,16 @@ pub enum CurveKind {
     Number(f64),
     /// Linear Rec.709; as an index, its values at 656.27, 546.07 and 486.13 nm.
     Rgb([f64; 3]),
-    /// (wavelength in nm, value), ascending; linear between, flat beyond the ends.
+    /// (wavelength in nm, value), ascending; linear between, flat beyond the ends, as an emission 0 there.
     Samples(Vec<[f64; 2]>),
-    /// A glass or metal of the catalog.
+    /// Samples in a text file: wavelengths in the first column, values in another, counted from 1.
+    File {
+        /// Its path, relative to the scene.
+        file: String,
+        /// The column of the values.
+        column: usize,
+    },
+    /// A glass, a metal or a reflectance of the catalog.
     Name(String),
     /// n = A + B / wavelength^2, wavelength in um (Cauchy 1836).
     Cauchy([f64; 2]),
@@ -59,6 +66,12 @@ pub enum CurveKind {
         /// Abbe number.
         vd: f64,
     },
+    /// A standard light of the catalog, Y = 1.
+    Illuminant(String),
+    /// A blackbody's light at a temperature in kelvin, Y = 1.
+    Blackbody(f64),
+    /// Ideal lines: (wavelength in nm, power).
+    Lines(Vec<[f64; 2]>),
 }
 
 impl From<f64> for Curve {
@@ -69,41 +82,87 @@ impl From<f64> for Curve {
 
 impl From<CurveKind> for Curve {
     fn from(kind: CurveKind) -> Self {
-        Self { kind, scale: 1.0 }
+        Self { kind, scale: 1.0, luminance: None }
+    }
+}
+
+impl CurveKind {
+    /// The three numbers of a color that is no measured spectrum.
+    pub fn rgb(&self) -> Option<[f64; 3]> {
+        match self {
+            Self::Number(value) => Some([*value; 3]),
+            Self::Rgb(rgb) => Some(*rgb),
+            _ => None,
+        }
     }
 }
 
 impl Curve {
-    /// The value at a wavelength. `rgb` is read at the three band wavelengths, linear between and flat outside.
+    /// The value at any wavelength in nm, with all look-ups done once.
+    ///
+    /// An `rgb` reflectance or transmittance becomes the smooth spectrum that `upsampler` finds, an absorption a multiple
+    /// of one, an index is read linearly between 486.13, 546.07 and 656.27 nm.
     ///
     /// # Panics
-    /// If the curve is a name that `check` would refuse.
-    pub fn at(&self, quantity: Quantity, wavelength_nm: f64) -> f64 {
-        let um = wavelength_nm * 1e-3;
-        self.scale
-            * match &self.kind {
-                CurveKind::Number(value) => *value,
-                CurveKind::Rgb([red, green, blue]) => {
-                    let [r, g, b] = BAND_WAVELENGTHS_NM;
-                    interpolate(&[[b, *blue], [g, *green], [r, *red]], wavelength_nm)
-                }
-                CurveKind::Samples(samples) => interpolate(samples, wavelength_nm),
-                CurveKind::Cauchy([a, b]) => a + b / (um * um),
-                CurveKind::Sellmeier { b, c } => sellmeier_squared(b, c, um).sqrt(),
-                CurveKind::Abbe { nd, vd } => {
-                    let [a, b] = cauchy_through(*nd, *vd);
-                    a + b / (um * um)
-                }
-                CurveKind::Name(name) => match quantity {
-                    Quantity::MetalIndex | Quantity::MetalExtinction => {
-                        let metal = data::metal(name).expect("the compiler checked the metal's name");
-                        let value = if quantity == Quantity::MetalIndex { 1 } else { 2 };
-                        let samples = metal.samples.iter().map(|s| [s.0, [s.0, s.1, s.2][value]]);
-                        interpolate(&samples.collect::<Vec<_>>(), wavelength_nm)
-                    }
-                    _ => glass_index(data::glass(name).expect("the compiler checked the glass's name"), wavelength_nm),
-                },
+    /// If `check` would refuse the curve, or if it is an emission, which [`super::Emission`] reads.
+    pub fn reader(&self, quantity: Quantity, upsampler: &Upsampler) -> Box<dyn Fn(f64) -> f64 + '_> {
+        let scale = self.scale;
+        match (&self.kind, quantity) {
+            (CurveKind::Rgb(rgb), Quantity::Reflectance | Quantity::Transmittance) => {
+                let sigmoid = upsampler.fit(rgb.map(|x| x * scale));
+                Box::new(move |nm| sigmoid.at(nm))
             }
+            (CurveKind::Rgb(rgb), Quantity::Absorption) => {
+                let twice = 2.0 * rgb.iter().fold(f64::MIN_POSITIVE, |most: f64, &x| most.max(x));
+                let sigmoid = upsampler.fit(rgb.map(|x| x / twice));
+                Box::new(move |nm| scale * twice * sigmoid.at(nm))
+            }
+            _ => self.plain_reader(quantity),
+        }
+    }
+
+    /// The value at any wavelength in nm, without a spectrum being made of `rgb`.
+    pub(super) fn plain_reader(&self, quantity: Quantity) -> Box<dyn Fn(f64) -> f64 + '_> {
+        let scale = self.scale;
+        match &self.kind {
+            CurveKind::Number(value) => Box::new(move |_| scale * value),
+            CurveKind::Rgb([red, green, blue]) => {
+                let [r, g, b] = BAND_WAVELENGTHS_NM;
+                let samples = [[b, *blue], [g, *green], [r, *red]];
+                Box::new(move |nm| scale * interpolate(&samples, nm))
+            }
+            CurveKind::Samples(samples) => Box::new(move |nm| scale * interpolate(samples, nm)),
+            CurveKind::Cauchy([a, b]) => Box::new(move |nm| scale * (a + b / (nm * nm * 1e-6))),
+            CurveKind::Sellmeier { b, c } => Box::new(move |nm| scale * sellmeier_squared(b, c, nm * 1e-3).sqrt()),
+            CurveKind::Abbe { nd, vd } => {
+                let [a, b] = cauchy_through(*nd, *vd);
+                Box::new(move |nm| scale * (a + b / (nm * nm * 1e-6)))
+            }
+            CurveKind::Name(name) => match quantity {
+                Quantity::MetalIndex | Quantity::MetalExtinction => {
+                    let metal = data::metal(name).expect("the compiler checked the metal's name");
+                    let which = usize::from(quantity == Quantity::MetalExtinction);
+                    Box::new(move |nm| scale * metal.nk(nm)[which])
+                }
+                Quantity::Index => {
+                    let glass = data::glass(name).expect("the compiler checked the glass's name");
+                    Box::new(move |nm| scale * glass.index(nm))
+                }
+                _ => {
+                    let reflectance = data::reflectance(name).expect("the compiler checked the name");
+                    Box::new(move |nm| scale * reflectance.at(nm))
+                }
+            },
+            CurveKind::File { .. } => panic!("the compiler reads files into samples"),
+            CurveKind::Illuminant(_) | CurveKind::Blackbody(_) | CurveKind::Lines(_) => {
+                panic!("lights are read by Emission")
+            }
+        }
+    }
+
+    /// Whether the curve is made of wavelengths, so that three numbers cannot hold it.
+    pub fn is_measured(&self) -> bool {
+        self.kind.rgb().is_none()
     }
 
     /// Who published the curve, if it is one of the catalog.
@@ -122,7 +181,7 @@ impl Curve {
 }
 
 /// Linear between samples, flat beyond the ends.
-fn interpolate(samples: &[[f64; 2]], x: f64) -> f64 {
+pub(super) fn interpolate(samples: &[[f64; 2]], x: f64) -> f64 {
     let after = samples.partition_point(|s| s[0] < x);
     if after == 0 {
         return samples[0][1];
@@ -140,90 +199,9 @@ pub(super) fn sellmeier_squared(b: &[f64], c: &[f64], um: f64) -> f64 {
     1.0 + b.iter().zip(c).map(|(b, c)| b * w2 / (w2 - c)).sum::<f64>()
 }
 
-/// A catalog glass; beyond its measured range, the value at the range's end.
-fn glass_index(glass: &Glass, wavelength_nm: f64) -> f64 {
-    let nm = wavelength_nm.clamp(glass.range_nm.0, glass.range_nm.1);
-    sellmeier_squared(glass.b, glass.c, nm * 1e-3).sqrt()
-}
-
 /// Cauchy's A and B (um^2) from n_d and V_d, with the lines C 656.27, d 587.56 and F 486.13 nm.
-fn cauchy_through(nd: f64, vd: f64) -> [f64; 2] {
+pub(super) fn cauchy_through(nd: f64, vd: f64) -> [f64; 2] {
     let inverse_square = |nm: f64| 1.0 / (nm * 1e-3 * nm * 1e-3);
     let b = (nd - 1.0) / (vd * (inverse_square(486.13) - inverse_square(656.27)));
     [nd - b * inverse_square(587.56), b]
-}
-
-const EXPECTED: &str = "a number, a catalog name in quotes, or a table such as { rgb = [r, g, b] }";
-
-impl<'de> Deserialize<'de> for Curve {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_any(CurveVisitor)
-    }
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct CurveTable {
-    rgb: Option<[f64; 3]>,
-    samples: Option<Vec<[f64; 2]>>,
-    cauchy: Option<[f64; 2]>,
-    sellmeier: Option<Sellmeier>,
-    abbe: Option<Abbe>,
-    scale: Option<f64>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Sellmeier {
-    b: Vec<f64>,
-    c: Vec<f64>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Abbe {
-    nd: f64,
-    vd: f64,
-}
-
-struct CurveVisitor;
-
-impl<'de> Visitor<'de> for CurveVisitor {
-    type Value = Curve;
-
-    fn expecting(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
-        formatter.write_str(EXPECTED)
-    }
-
-    fn visit_f64<E>(self, value: f64) -> Result<Curve, E> {
-        Ok(value.into())
-    }
-
-    fn visit_i64<E>(self, value: i64) -> Result<Curve, E> {
-        Ok((value as f64).into())
-    }
-
-    fn visit_str<E>(self, name: &str) -> Result<Curve, E> {
-        Ok(CurveKind::Name(name.to_owned()).into())
-    }
-
-    fn visit_map<M: MapAccess<'de>>(self, map: M) -> Result<Curve, M::Error> {
-        let table = CurveTable::deserialize(MapAccessDeserializer::new(map))?;
-        let mut kinds = [
-            table.rgb.map(CurveKind::Rgb),
-            table.samples.map(CurveKind::Samples),
-            table.cauchy.map(CurveKind::Cauchy),
-            table.sellmeier.map(|s| CurveKind::Sellmeier { b: s.b, c: s.c }),
-            table.abbe.map(|a| CurveKind::Abbe { nd: a.nd, vd: a.vd }),
-        ]
-        .into_iter()
-        .flatten();
-        let Some(kind) = kinds.next() else {
-            return Err(M::Error::custom("a spectrum needs one of `rgb`, `samples`, `cauchy`, `sellmeier`, `abbe`"));
-        };
-        if kinds.next().is_some() {
-            return Err(M::Error::custom("a spectrum has exactly one kind"));
-        }
-        Ok(Curve { kind, scale: table.scale.unwrap_or(1.0) })
-    }
 }

@@ -1,6 +1,7 @@
 //! Whether a curve can be what it is used as.
 
 use super::curve::sellmeier_squared;
+use super::curve_range::{article, in_range, shown};
 use super::data;
 use super::{Curve, CurveKind, Quantity};
 
@@ -18,25 +19,20 @@ pub struct Refusal {
 }
 
 impl Refusal {
-    fn new(message: impl Into<String>) -> Self {
+    pub(super) fn new(message: impl Into<String>) -> Self {
         Self { message: message.into(), help: None, keys: &[], entry: None }
     }
 
-    fn help(self, help: impl Into<String>) -> Self {
+    pub(super) fn help(self, help: impl Into<String>) -> Self {
         Self { help: Some(help.into()), ..self }
     }
 
-    fn at(self, keys: &'static [&'static str], entry: impl Into<Option<usize>>) -> Self {
+    pub(super) fn at(self, keys: &'static [&'static str], entry: impl Into<Option<usize>>) -> Self {
         Self { keys, entry: entry.into(), ..self }
     }
 }
 
-/// Largest emission: far within f32, which film and lanes hold.
-const MAX_EMISSION: f64 = 1e30;
-/// Largest n and k: several times those of any metal in visible light.
-const MAX_METAL: f64 = 100.0;
-
-const CAUCHY: &str = "for a glass, A is about 1.5 and B about 0.004 um^2";
+pub(super) const CAUCHY: &str = "for a glass, A is about 1.5 and B about 0.004 um^2";
 
 /// Everything that makes a curve unusable as a quantity, found before a ray is shot.
 pub(super) fn check(curve: &Curve, quantity: Quantity) -> Result<(), Refusal> {
@@ -44,6 +40,11 @@ pub(super) fn check(curve: &Curve, quantity: Quantity) -> Result<(), Refusal> {
     finite(curve)?;
     match &curve.kind {
         CurveKind::Samples(samples) => ascending(samples)?,
+        CurveKind::Lines(lines) => visible_lines(lines)?,
+        CurveKind::Blackbody(kelvin) if !(100.0..=1e9).contains(kelvin) => {
+            let refusal = Refusal::new(format!("a blackbody has 100 to 1e9 kelvin, not {}", shown(*kelvin)));
+            return Err(refusal.help("a candle has 1900, the sun 5772").at(&["blackbody"], None));
+        }
         CurveKind::Sellmeier { b, c } => sellmeier(b, c)?,
         CurveKind::Abbe { vd, .. } if *vd <= 0.0 => {
             return Err(Refusal::new("an Abbe number is above 0").at(&["abbe", "vd"], None));
@@ -54,23 +55,42 @@ pub(super) fn check(curve: &Curve, quantity: Quantity) -> Result<(), Refusal> {
 }
 
 fn kind_fits(curve: &Curve, quantity: Quantity) -> Result<(), Refusal> {
-    use Quantity::*;
+    use CurveKind::*;
+    use Quantity::{Emission, Index, MetalExtinction, MetalIndex, Reflectance, Transmittance};
+    if curve.luminance.is_some() && quantity != Emission {
+        let refusal = Refusal::new(format!("{} has no luminance", article(quantity)));
+        return Err(refusal.help("use `scale`").at(&["luminance"], None));
+    }
     match (&curve.kind, quantity) {
-        (CurveKind::Number(_) | CurveKind::Rgb(_), _) => Ok(()),
-        (CurveKind::Samples(_), Index | Absorption | MetalIndex | MetalExtinction) => Ok(()),
-        (CurveKind::Cauchy(_) | CurveKind::Sellmeier { .. } | CurveKind::Abbe { .. }, Index) => Ok(()),
-        (CurveKind::Name(name), Index) if data::glass(name).is_some() => Ok(()),
-        (CurveKind::Name(name), MetalIndex | MetalExtinction) if data::metal(name).is_some() => Ok(()),
-        (CurveKind::Name(name), Index) => {
-            let other = data::metal(name).map(|metal| format!("a metal: conductor = {{ metal = \"{}\" }}", metal.name));
-            let aliases = data::GLASSES.iter().flat_map(|glass| glass.aliases);
-            Err(unknown(name, "glass", data::glass_names().collect(), aliases, other))
+        (Number(_) | Rgb(_) | Samples(_), _) => Ok(()),
+        (Cauchy(_) | Sellmeier { .. } | Abbe { .. }, Index) => Ok(()),
+        (Illuminant(name), Emission) if data::illuminant(name).is_some() => Ok(()),
+        (Blackbody(_) | Lines(_), Emission) => Ok(()),
+        (Name(name), Index) if data::glass(name).is_some() => Ok(()),
+        (Name(name), MetalIndex | MetalExtinction) if data::metal(name).is_some() => Ok(()),
+        (Name(name), Reflectance | Transmittance) if data::reflectance(name).is_some() => Ok(()),
+        (Illuminant(name), Emission) => {
+            let names = data::illuminants().map(|illuminant| illuminant.name);
+            Err(unknown(name, "illuminant", names, None).at(&["illuminant"], None))
         }
-        (CurveKind::Name(name), MetalIndex | MetalExtinction) => {
+        (Name(name), Index) => Err(unknown_glass(name)),
+        (Name(name), MetalIndex | MetalExtinction) => {
             let other =
-                data::glass(name).map(|glass| format!("a glass: dielectric = {{ index = \"{}\" }}", glass.name));
-            let aliases = data::METALS.iter().flat_map(|metal| metal.aliases);
-            Err(unknown(name, "metal", data::metal_names().collect(), aliases, other))
+                data::glass(name).map(|glass| format!("a glass: dielectric = {{ index = \"{}\" }}", glass.name()));
+            let names = data::metals().flat_map(|metal| [vec![metal.name], metal.aliases].concat());
+            Err(unknown(name, "metal", names, other))
+        }
+        (Name(name), Reflectance | Transmittance) => {
+            let other = data::metal(name).map(|metal| format!("a metal: conductor = {{ metal = \"{}\" }}", metal.name));
+            Err(unknown(name, "reflectance", data::reflectances().map(|patch| patch.name), other))
+        }
+        (Name(name), Emission) if data::illuminant(name).is_some() => {
+            let refusal = Refusal::new(format!("{} cannot be given by {}", article(quantity), form(&curve.kind)));
+            Err(refusal.help(format!("it is an illuminant: write {{ illuminant = \"{name}\" }}")))
+        }
+        (kind, Emission) => {
+            let message = format!("{} cannot be given by {}", article(quantity), form(kind));
+            Err(Refusal::new(message).help("write a number, { rgb = [red, green, blue] } or { illuminant = \"D65\" }"))
         }
         (kind, _) => {
             let message = format!("{} cannot be given by {}", article(quantity), form(kind));
@@ -79,18 +99,18 @@ fn kind_fits(curve: &Curve, quantity: Quantity) -> Result<(), Refusal> {
     }
 }
 
-fn unknown<'a>(
-    name: &str,
-    what: &str,
-    names: Vec<&'a str>,
-    aliases: impl Iterator<Item = &'a &'a str>,
-    other: Option<String>,
-) -> Refusal {
-    let near = crate::error::nearest(name, names.iter().copied().chain(aliases.copied()));
+/// A name that no glass has.
+pub(super) fn unknown_glass(name: &str) -> Refusal {
+    let metal = data::metal(name).map(|metal| format!("a metal: conductor = {{ metal = \"{}\" }}", metal.name));
+    unknown(name, "glass", data::known_as(), metal)
+}
+
+fn unknown<'a>(name: &str, what: &str, names: impl Iterator<Item = &'a str>, other: Option<String>) -> Refusal {
+    let near = crate::error::nearest(name, names);
     let help = match (other, near) {
         (Some(other), _) => format!("it is {other}"),
         (None, Some(near)) => format!("did you mean \"{near}\"?"),
-        (None, None) => format!("known names: {}", names.join(", ")),
+        (None, None) => format!("`render catalog {what}` lists the known names"),
     };
     Refusal::new(format!("there is no {what} named {name:?}")).help(help)
 }
@@ -105,13 +125,17 @@ fn finite(curve: &Curve) -> Result<(), Refusal> {
         CurveKind::Abbe { nd, vd } => {
             vec![(&["abbe", "nd"], std::slice::from_ref(nd)), (&["abbe", "vd"], std::slice::from_ref(vd))]
         }
-        CurveKind::Name(_) => Vec::new(),
+        CurveKind::Lines(lines) => lines.iter().map(|pair| (&["lines"] as _, pair.as_slice())).collect(),
+        CurveKind::Blackbody(kelvin) => vec![(&["blackbody"], std::slice::from_ref(kelvin))],
+        CurveKind::Name(_) | CurveKind::File { .. } | CurveKind::Illuminant(_) => Vec::new(),
     };
     let scale: (&[&str], &[f64]) = (&["scale"], std::slice::from_ref(&curve.scale));
-    for (number, (keys, list)) in lists.into_iter().chain([scale]).enumerate() {
+    let luminance: (&[&str], &[f64]) = (&["luminance"], curve.luminance.as_slice());
+    for (number, (keys, list)) in lists.into_iter().chain([scale, luminance]).enumerate() {
         if let Some(entry) = list.iter().position(|x| !x.is_finite()) {
             let message = format!("a spectrum is made of finite numbers, not {}", list[entry]);
-            return Err(Refusal::new(message).at(keys, if keys == ["samples"] { number } else { entry }));
+            let pairs = keys == ["samples"] || keys == ["lines"];
+            return Err(Refusal::new(message).at(keys, if pairs { number } else { entry }));
         }
     }
     Ok(())
@@ -139,6 +163,19 @@ fn ascending(samples: &[[f64; 2]]) -> Result<(), Refusal> {
     })
 }
 
+fn visible_lines(lines: &[[f64; 2]]) -> Result<(), Refusal> {
+    if lines.is_empty() {
+        return Err(Refusal::new("a light of lines has at least one [wavelength in nm, power]"));
+    }
+    match lines.iter().position(|[nm, _]| !(360.0..=830.0).contains(nm)) {
+        Some(entry) => {
+            let message = format!("a line lies within 360 to 830 nm, not at {}", shown(lines[entry][0]));
+            Err(Refusal::new(message).at(&["lines"], entry))
+        }
+        None => Ok(()),
+    }
+}
+
 fn sellmeier(b: &[f64], c: &[f64]) -> Result<(), Refusal> {
     if b.len() != c.len() || b.is_empty() {
         let message = format!("a Sellmeier curve has as many b as c, here {} and {}", b.len(), c.len());
@@ -159,76 +196,6 @@ fn sellmeier(b: &[f64], c: &[f64]) -> Result<(), Refusal> {
     Ok(())
 }
 
-/// Every value between 360 and 830 nm is possible for the quantity.
-fn in_range(curve: &Curve, quantity: Quantity) -> Result<(), Refusal> {
-    let scale = if curve.scale == 1.0 { String::new() } else { format!(" with its scale of {}", shown(curve.scale)) };
-    let list = |keys, values: &[f64]| {
-        let mut scaled = values.iter().map(|x| x * curve.scale).enumerate();
-        scaled
-            .try_for_each(|(entry, value)| possible(quantity, value, &scale).map_err(|refusal| refusal.at(keys, entry)))
-    };
-    match &curve.kind {
-        CurveKind::Number(x) => possible(quantity, x * curve.scale, ""),
-        CurveKind::Rgb(rgb) => list(&["rgb"], rgb),
-        CurveKind::Samples(samples) => list(&["samples"], &samples.iter().map(|pair| pair[1]).collect::<Vec<_>>()),
-        kind => (360..=830).try_for_each(|nm| {
-            let value = curve.at(quantity, f64::from(nm));
-            possible(quantity, value, &format!(" at {nm} nm")).map_err(|refusal| match kind {
-                CurveKind::Cauchy(_) => refusal.help(CAUCHY).at(&["cauchy"], None),
-                _ => refusal,
-            })
-        }),
-    }
-}
-
-fn possible(quantity: Quantity, value: f64, place: &str) -> Result<(), Refusal> {
-    let name = article(quantity);
-    let (least, most) = match quantity {
-        Quantity::Reflectance | Quantity::Transmittance => (0.0, 1.0),
-        Quantity::Emission => (0.0, MAX_EMISSION),
-        Quantity::Index => (1.0, 10.0),
-        Quantity::Absorption => (0.0, f64::MAX),
-        Quantity::MetalIndex => (f64::MIN_POSITIVE, MAX_METAL),
-        Quantity::MetalExtinction => (0.0, MAX_METAL),
-    };
-    if (least..=most).contains(&value) {
-        return Ok(());
-    }
-    let shown_value = shown(value);
-    let refusal = Refusal::new(match quantity {
-        Quantity::MetalIndex if value <= 0.0 => format!("{name} is above 0, not {shown_value}{place}"),
-        _ if value < least => format!("{name} is at least {least}, not {shown_value}{place}"),
-        _ => format!("{name} is at most {}, not {shown_value}{place}", shown(most)),
-    });
-    Err(match quantity {
-        Quantity::Reflectance | Quantity::Transmittance if (2.0..=100.0).contains(&value) => {
-            refusal.help(format!("in percent? Then write {}", shown(value / 100.0)))
-        }
-        Quantity::Reflectance | Quantity::Transmittance if (100.0..=255.0).contains(&value) => {
-            refusal.help("a color from 0 to 255 is sRGB: its linear value is about (v / 255)^2.2")
-        }
-        _ => refusal,
-    })
-}
-
-/// Six digits of a number.
-fn shown(value: f64) -> String {
-    let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
-    if rounded == 0.0 || (1e-4..1e15).contains(&rounded.abs()) { rounded.to_string() } else { format!("{rounded:e}") }
-}
-
-fn article(quantity: Quantity) -> &'static str {
-    match quantity {
-        Quantity::Reflectance => "a reflectance",
-        Quantity::Transmittance => "a transmittance",
-        Quantity::Emission => "an emission",
-        Quantity::Index => "a refractive index",
-        Quantity::Absorption => "an absorption",
-        Quantity::MetalIndex => "a metal's index n",
-        Quantity::MetalExtinction => "a metal's extinction k",
-    }
-}
-
 fn form(kind: &CurveKind) -> String {
     match kind {
         CurveKind::Number(_) => "a number".into(),
@@ -237,6 +204,10 @@ fn form(kind: &CurveKind) -> String {
         CurveKind::Cauchy(_) => "`cauchy`".into(),
         CurveKind::Sellmeier { .. } => "`sellmeier`".into(),
         CurveKind::Abbe { .. } => "`abbe`".into(),
+        CurveKind::File { .. } => "`file`".into(),
+        CurveKind::Illuminant(_) => "`illuminant`".into(),
+        CurveKind::Blackbody(_) => "`blackbody`".into(),
+        CurveKind::Lines(_) => "`lines`".into(),
         CurveKind::Name(name) => format!("the name {name:?}"),
     }
 }

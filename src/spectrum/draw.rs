@@ -1,12 +1,33 @@
 use super::{Lanes, Table};
 
-/// Which bin of every table each lane of a camera sample reads.
+/// What each lane of a camera sample stands for: the fixed lanes read the bins of every table, heroes a wavelength that
+/// was drawn for this sample.
 ///
-/// The tracer passes it on and never looks inside.
+/// Heroes ride along until lanes part for the first time. From there on they alone count, and the fixed lanes count on
+/// all paths on which lanes never part: the two sets of paths share no path. The tracer passes the draw on and never looks
+/// inside.
 #[derive(Clone, Debug)]
 pub struct Draw<const N: usize> {
-    bins: [u16; N],
-    shares: Lanes<N>,
+    fixed: usize,
+    heroes: [Hero; MAX_HEROES],
+    count: usize,
+    /// What each lane counts while the lanes are together, and after they parted.
+    shares: [Lanes<N>; 2],
+}
+
+/// Most heroes of one camera sample.
+pub const MAX_HEROES: usize = 8;
+
+/// A wavelength drawn at random, as a place on the fine grid of every table.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Hero {
+    /// Entry of the fine grid at or below the wavelength.
+    pub(super) below: usize,
+    /// The part of the step to the next entry.
+    pub(super) fraction: f64,
+    /// One over the number of heroes times the density with which the wavelength was drawn, in nm; for an ideal line times
+    /// its probability.
+    pub(super) factor: f64,
 }
 
 impl<const N: usize> Draw<N> {
@@ -15,35 +36,62 @@ impl<const N: usize> Draw<N> {
     /// # Panics
     /// If there are more bins than lanes.
     pub fn fixed(bins: usize) -> Self {
-        assert!(bins <= N, "{bins} bins do not fit into {N} lanes");
-        Self {
-            bins: std::array::from_fn(|i| i.min(bins - 1) as u16),
-            shares: Lanes::from_fn(|i| if i < bins { 1.0 / bins as f32 } else { 0.0 }),
-        }
+        Self::with_heroes(bins, &[])
+    }
+
+    /// Fixed lanes, and after them heroes.
+    pub(super) fn with_heroes(fixed: usize, heroes: &[Hero]) -> Self {
+        let count = heroes.len();
+        assert!(fixed + count <= N, "{fixed} bins and {count} heroes do not fit into {N} lanes");
+        let share = |lanes: std::ops::Range<usize>| {
+            let each = 1.0 / lanes.len() as f32;
+            Lanes::from_fn(|i| if lanes.contains(&i) { each } else { 0.0 })
+        };
+        let parted = if count == 0 { 0..fixed } else { fixed..fixed + count };
+        let heroes = std::array::from_fn(|i| heroes.get(i).copied().unwrap_or_default());
+        Self { fixed, heroes, count, shares: [share(0..fixed), share(parted)] }
     }
 
     /// A weight: one number per lane.
     pub fn read(&self, table: &Table) -> Lanes<N> {
-        Lanes::from_fn(|i| table.bins()[self.bins[i] as usize] as f32)
+        let mut lanes = Lanes(*table.weights());
+        for (hero, lane) in self.heroes().zip(self.fixed..) {
+            lanes.0[lane] = table.between(hero.below, hero.fraction) as f32;
+        }
+        lanes
     }
 
     /// A refractive index: one number per lane with all its digits.
     pub fn read_exact(&self, table: &Table) -> [f64; N] {
-        std::array::from_fn(|i| table.bins()[self.bins[i] as usize])
+        let mut lanes = *table.fixed();
+        for (hero, lane) in self.heroes().zip(self.fixed..) {
+            lanes[lane] = table.between(hero.below, hero.fraction);
+        }
+        lanes
     }
 
     /// How much each lane counts when a single number must stand for a throughput; the shares sum to 1.
-    pub fn shares(&self) -> &Lanes<N> {
-        &self.shares
+    pub fn shares(&self, parted: bool) -> &Lanes<N> {
+        &self.shares[usize::from(parted)]
     }
 
-    /// The lanes a camera ray starts with: 1 where there is a bin.
+    /// The lanes that cross a surface at which lanes part: the heroes, or all where there are none.
+    pub fn parting(&self) -> Lanes<N> {
+        Lanes::from_fn(|i| if self.shares[1][i] == 0.0 { 0.0 } else { 1.0 })
+    }
+
+    /// The lanes a camera ray starts with: 1 where a lane stands for something.
     pub fn start(&self) -> Lanes<N> {
-        Lanes::from_fn(|i| if self.shares[i] == 0.0 { 0.0 } else { 1.0 })
+        Lanes::from_fn(|i| if i < self.fixed + self.count { 1.0 } else { 0.0 })
     }
 
-    /// The bin that a lane reads.
-    pub fn bin(&self, lane: usize) -> usize {
-        self.bins[lane] as usize
+    /// Number of fixed lanes.
+    pub(super) fn fixed_lanes(&self) -> usize {
+        self.fixed
+    }
+
+    /// The heroes, in the order of their lanes.
+    pub(super) fn heroes(&self) -> impl Iterator<Item = &Hero> {
+        self.heroes[..self.count].iter()
     }
 }

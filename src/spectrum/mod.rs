@@ -1,20 +1,35 @@
 //! Floor 1: what light is made of. A lane is a number that travels; only this folder knows what it stands for.
 
+mod advice;
+mod bands;
 mod basis;
+mod cardinals;
 mod color;
 mod curve;
 mod curve_check;
-mod data;
+mod curve_range;
+mod curve_text;
+pub mod data;
 mod draw;
+mod emission;
 mod lanes;
+mod mixture;
 mod response;
+mod table;
 mod throughput;
+mod upsample;
+pub mod visible;
 
-pub use basis::{Basis, Quantity, Table};
-pub use color::{ColorSpace, Primaries, encode_srgb};
+pub use advice::{absorption_of, imitation, provenance, reach};
+pub use bands::normal_reflectance;
+pub use basis::Basis;
+pub use color::{ColorSpace, Primaries, apply, encode_srgb};
 pub use curve::{Curve, CurveKind};
 pub use curve_check::Refusal;
 pub use draw::Draw;
+pub use emission::Emission;
 pub use lanes::Lanes;
 pub use response::Response;
+pub use table::{MAX_LANES, Quantity, Table};
 pub use throughput::Throughput;
+pub use upsample::{Sigmoid, Upsampler};

@@ -1,27 +1,59 @@
+use super::table::MAX_LANES;
 use super::{Draw, Lanes};
 
-/// What each lane of one light is worth to the sensor: a matrix, 3 film channels x bins.
+/// What each lane of one light is worth to the sensor: a matrix, 3 film channels x lanes.
 ///
 /// It belongs to the light a path ends in, so that a spiky illuminant can be integrated exactly whatever the lanes are.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Response {
-    /// The film's red, green and blue of each bin.
-    columns: Vec<[f64; 3]>,
+    /// Each film channel of every fixed lane, 0 beyond the last.
+    rows: Box<[[f64; MAX_LANES]; 3]>,
+    /// The film color of the light per nm on the fine grid, and of its ideal lines.
+    fine: Vec<[f64; 3]>,
 }
 
 impl Response {
-    /// The response in which bin i is film channel i: the bands are the film's own primaries.
+    /// The response in which lane i is film channel i.
     pub fn identity() -> Self {
-        Self { columns: vec![[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] }
+        Self::new(&[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], Vec::new())
     }
 
-    /// The film's red, green and blue of light that arrives in lanes.
-    pub fn sensor<const N: usize>(&self, draw: &Draw<N>, lanes: Lanes<N>) -> [f64; 3] {
+    /// A response with the film color of each fixed lane, and of each entry of the fine grid.
+    pub fn new(columns: &[[f64; 3]], fine: Vec<[f64; 3]>) -> Self {
+        let entry = |channel: usize, lane: usize| columns.get(lane).map_or(0.0, |column| column[channel]);
+        let rows = std::array::from_fn(|channel| std::array::from_fn(|lane| entry(channel, lane)));
+        Self { rows: Box::new(rows), fine }
+    }
+
+    /// The same response to one fixed lane and none to the others.
+    pub fn only(&self, lane: usize) -> Self {
+        let rows = self.rows.map(|row| std::array::from_fn(|i| if i == lane { row[i] } else { 0.0 }));
+        Self { rows: Box::new(rows), fine: vec![[0.0; 3]; self.fine.len()] }
+    }
+
+    /// The film's red, green and blue of light that arrives in lanes; `parted` says whether they parted on the way.
+    pub fn sensor<const N: usize>(&self, draw: &Draw<N>, lanes: Lanes<N>, parted: bool) -> [f64; 3] {
+        if parted && draw.heroes().next().is_some() {
+            return self.heroes(draw, lanes);
+        }
+        // Four sums side by side, so that the processor need not wait for each addition.
+        std::array::from_fn(|channel| {
+            let row: &[f64; N] = self.rows[channel].first_chunk().expect("no more lanes are compiled than fit");
+            let mut sums = [0.0; 4];
+            for (four, weights) in lanes.0.chunks_exact(4).zip(row.chunks_exact(4)) {
+                (0..4).for_each(|i| sums[i] += weights[i] * f64::from(four[i]));
+            }
+            (sums[0] + sums[1]) + (sums[2] + sums[3])
+        })
+    }
+
+    fn heroes<const N: usize>(&self, draw: &Draw<N>, lanes: Lanes<N>) -> [f64; 3] {
         let mut sensor = [0.0; 3];
-        for lane in (0..N).filter(|&lane| lanes[lane] != 0.0) {
-            let column = self.columns[draw.bin(lane)];
-            for channel in 0..3 {
-                sensor[channel] += column[channel] * f64::from(lanes[lane]);
+        for (hero, lane) in draw.heroes().zip(draw.fixed_lanes()..) {
+            let weight = hero.factor * f64::from(lanes[lane]);
+            if weight != 0.0 {
+                let (a, b) = (self.fine[hero.below], self.fine[hero.below + 1]);
+                (0..3).for_each(|c| sensor[c] += weight * (a[c] + hero.fraction * (b[c] - a[c])));
             }
         }
         sensor

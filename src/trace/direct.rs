@@ -18,6 +18,7 @@ pub(super) struct Gathering<'a, const N: usize> {
     pub(super) arrival: &'a Arrival<'a, N>,
     pub(super) point: &'a SurfacePoint,
     pub(super) throughput: Throughput<N>,
+    pub(super) parted: bool,
     /// The medium the light arrives through.
     pub(super) inside: Option<MaterialId>,
     /// Whether the path goes on from here and may meet a light by itself.
@@ -80,7 +81,7 @@ impl<const N: usize> Gathering<'_, N> {
                     arriving * media::medium(self.world, material).transmission(self.arrival.draw, view.distance);
             }
             let reflected = self.throughput.scaled(factor).of(bsdf_cos * arriving);
-            Some(self.world.responses[target].sensor(self.arrival.draw, reflected))
+            Some(self.world.responses[target].sensor(self.arrival.draw, reflected, self.parted))
         };
         lit().unwrap_or([0.0; 3])
     }
@@ -108,6 +109,7 @@ pub(super) fn weight_of_meeting(
     let pdf = match (&world.scene.lights[light], crossing) {
         (Light::Area(area), Some(crossing)) if area.aimed_at => area.pdf(ray, crossing),
         (Light::Environment(environment), None) => Some(environment.pdf(ray, drawn.normal)),
+        (Light::Sun(sun), None) => sun.pdf(ray),
         _ => None,
     };
     let probability = if drawn.aimed_at_all { 1.0 } else { world.probabilities[light] };

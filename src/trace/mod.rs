@@ -16,6 +16,7 @@ mod path;
 mod probe;
 
 mod render;
+mod spread;
 mod tracer;
 mod width;
 mod world;
@@ -24,4 +25,5 @@ pub use method::{Method, Transport};
 pub use probe::{Probe, probe};
 
 pub use render::{Report, render};
+pub use spread::{COLORS_NM, Spread, spread};
 pub use world::World;

@@ -12,6 +12,8 @@ pub(super) struct Path<const N: usize> {
     pub(super) eta_scale: f64,
     /// The bodies the ray is inside of.
     pub(super) media: Media,
+    /// Whether lanes have parted on the way, after which other lanes count.
+    pub(super) parted: bool,
     /// Which random numbers belong to the path's next vertex.
     pub(super) key: BranchKey,
     /// Surfaces met so far.
@@ -49,6 +51,7 @@ impl<const N: usize> Path<N> {
             throughput: Throughput::starting(draw.start()),
             eta_scale: 1.0,
             media,
+            parted: false,
             key: BranchKey::CAMERA,
             vertices: 0,
             diffuse_left: world.method.diffuse_bounces,
@@ -59,7 +62,7 @@ impl<const N: usize> Path<N> {
 
     /// How much the path can still matter: its mean throughput, without the factor of radiance between media.
     pub(super) fn weight(&self, draw: &Draw<N>) -> f64 {
-        self.throughput.weight(draw.shares()) / self.eta_scale
+        self.throughput.weight(draw.shares(self.parted)) / self.eta_scale
     }
 
     /// Lets the medium around the ray absorb along a distance.

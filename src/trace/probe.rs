@@ -7,7 +7,6 @@ use super::render::sample;
 use super::tracer::Tracer;
 use super::width::{InLanes, in_lanes};
 use crate::math::Sampler;
-use crate::spectrum::Draw;
 
 /// What a probe found, per camera sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,7 +45,6 @@ impl InLanes for Probing<'_> {
 }
 
 fn probe_lanes<const N: usize>(world: &World) -> Probe {
-    let draw = Draw::<N>::fixed(world.method.basis.len());
     let mut tracer = Tracer::<N>::new(world);
     let (mut samples, mut parted) = (0, 0);
     let film = world.scene.film;
@@ -57,7 +55,7 @@ fn probe_lanes<const N: usize>(world: &World) -> Probe {
         let spread = |i: u32, size: u32| ((u64::from(2 * i + 1) * u64::from(size)) / u64::from(2 * SIDE)) as u32;
         let (x, y) = (spread(place % SIDE, film.width), spread(place / SIDE, film.height));
         let before = tracer.tally.partings;
-        sample(world, &mut tracer, &draw, &Sampler::new(world.method.seed, [x, y], 0), x, y);
+        sample(world, &mut tracer, &Sampler::new(world.method.seed, [x, y], 0), x, y);
         samples += 1;
         parted += u32::from(tracer.tally.partings > before);
         if start.elapsed() > ENOUGH {

@@ -7,7 +7,6 @@ use super::width::{InLanes, in_lanes};
 use super::{Transport, World};
 use crate::film::{Film, Pixel, PixelSum, Sample};
 use crate::math::{BranchKey, DVec2, Sampler};
-use crate::spectrum::Draw;
 
 /// Side of a tile in pixels.
 const TILE: u32 = 16;
@@ -94,7 +93,6 @@ const BLANK: Pixel = Pixel { rgb: [0.0; 3], alpha: 0.0, depth: 0.0, samples: 0.0
 /// The pixels of one tile, row by row.
 fn tile<const N: usize>(world: &World, column: u32, row: u32, progress: &(dyn Fn(u64) + Sync)) -> (Vec<Pixel>, Report) {
     let settings = world.scene.film;
-    let draw = Draw::<N>::fixed(world.method.basis.len());
     let mut tracer = Tracer::<N>::new(world);
     let (mut pixels, mut report) = (Vec::new(), Report::default());
     for y in row * TILE..settings.height.min((row + 1) * TILE) {
@@ -102,7 +100,7 @@ fn tile<const N: usize>(world: &World, column: u32, row: u32, progress: &(dyn Fn
             let mut sum = PixelSum::default();
             for number in 0..world.method.samples {
                 let sampler = Sampler::new(world.method.seed, [x, y], number);
-                if !sum.add(&sample(world, &mut tracer, &draw, &sampler, x, y)) {
+                if !sum.add(&sample(world, &mut tracer, &sampler, x, y)) {
                     report.non_finite += 1;
                     report.first_non_finite.get_or_insert([x, y, number]);
                 }
@@ -128,17 +126,17 @@ fn tile<const N: usize>(world: &World, column: u32, row: u32, progress: &(dyn Fn
 pub(super) fn sample<const N: usize>(
     world: &World,
     tracer: &mut Tracer<N>,
-    draw: &Draw<N>,
     sampler: &Sampler,
     x: u32,
     y: u32,
 ) -> Sample {
-    let [u, v, ..] = match world.method.transport {
+    let [u, v, wavelength, _] = match world.method.transport {
         Transport::Deterministic { .. } => [0.5; 4],
         Transport::Random { .. } => sampler.four(BranchKey::CAMERA, PLACE),
     };
     let film = DVec2::new(f64::from(x), f64::from(y)) + world.scene.film.filter.place([u, v]);
-    let (rgb, first) = tracer.radiance(world.scene.camera.ray(film), draw, sampler);
+    let draw = world.method.basis.draw(wavelength);
+    let (rgb, first) = tracer.radiance(world.scene.camera.ray(film), &draw, sampler);
     Sample { rgb, depth: first.map(|point| world.scene.camera.depth(point.position)) }
 }
 

@@ -95,12 +95,21 @@ impl<'a, const N: usize> Tracer<'a, N> {
         (sum, first)
     }
 
-    /// The light of the environment at the end of a path that meets nothing.
+    /// The light of the sky at the end of a path that meets nothing.
     fn background(&self, path: &Path<N>, draw: &Draw<N>) -> [f64; 3] {
-        let Some(id) = self.world.scene.environment else { return [0.0; 3] };
-        let weight = weight_of_meeting(self.world, id, path.drawn.as_ref(), &path.ray, None);
-        let light = path.throughput.scaled(weight).of(draw.read(self.world.scene.lights[id].emission()));
-        self.world.responses[id].sensor(draw, light)
+        let mut sum = [0.0; 3];
+        for &id in &self.world.scene.skies {
+            let light = &self.world.scene.lights[id];
+            let factor = match light {
+                Light::Sun(sun) if sun.pdf(&path.ray).is_some() => sun.radiance_factor(),
+                Light::Sun(_) => continue,
+                _ => 1.0,
+            };
+            let weight = weight_of_meeting(self.world, id, path.drawn.as_ref(), &path.ray, None);
+            let arriving = path.throughput.scaled(weight * factor).of(draw.read(light.emission()));
+            add(&mut sum, self.world.responses[id].sensor(draw, arriving, path.parted));
+        }
+        sum
     }
 
     /// The light of a surface that shines by itself.
@@ -112,7 +121,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
         }
         let weight = weight_of_meeting(self.world, id, path.drawn.as_ref(), &path.ray, Some(&hit.crossing));
         let light = path.throughput.scaled(weight).of(draw.read(&area.radiance));
-        self.world.responses[id].sensor(draw, light)
+        self.world.responses[id].sensor(draw, light, path.parted)
     }
 
     /// Adds what lights send straight to a surface, and answers how the path goes on; further ways on become pending.
@@ -168,6 +177,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
                 arrival: &arrival,
                 point,
                 throughput: path.throughput,
+                parted: path.parted,
                 inside: here,
                 goes_on,
                 aims_at_all,
@@ -184,12 +194,14 @@ impl<'a, const N: usize> Tracer<'a, N> {
         // Send the path on.
         self.branches.clear();
         material.scatter(&arrival, [u[2], u[3]], &mut self.branches);
+        let parts = arrival.is_dispersive();
         self.tally.partings += u64::from(self.branches.iter().filter(|branch| branch.crosses).count() > 1);
-        self.follow(path, draw, sampler, |number, branch, factor| Path {
+        self.follow(path, draw, sampler, parts, |number, branch, factor| Path {
             ray: point.leave(branch.wi),
             throughput: path.throughput.through(branch.share).scaled(factor),
             eta_scale: path.eta_scale * branch.eta_scale,
             media: if branch.crosses { crossed } else { path.media },
+            parted: path.parted || (parts && branch.crosses),
             key: path.key.child(number),
             vertices: path.vertices,
             diffuse_left: path.diffuse_left - u32::from(wide),
@@ -204,10 +216,12 @@ impl<'a, const N: usize> Tracer<'a, N> {
         path: &Path<N>,
         draw: &Draw<N>,
         sampler: &Sampler,
+        parts: bool,
         child: impl Fn(usize, &Branch<N>, f64) -> Path<N>,
     ) -> Option<Path<N>> {
         let weight_of = |branch: &Branch<N>| {
-            path.throughput.through(branch.share).weight(draw.shares()) / (path.eta_scale * branch.eta_scale)
+            let shares = draw.shares(path.parted || (parts && branch.crosses));
+            path.throughput.through(branch.share).weight(shares) / (path.eta_scale * branch.eta_scale)
         };
         if path.polarization != 0.0 {
             let moved =

@@ -1,6 +1,6 @@
 //! The one place where a basis chooses how many lanes travel together.
 
-use crate::spectrum::Basis;
+use crate::spectrum::{Basis, MAX_LANES};
 
 /// Work that is done in N lanes.
 pub(super) trait InLanes {
@@ -12,8 +12,11 @@ pub(super) trait InLanes {
 
 /// Does work in the narrowest compiled width that a basis fits into.
 pub(super) fn in_lanes<W: InLanes>(basis: &Basis, work: W) -> W::Output {
-    match basis.len() {
+    match basis.lanes() {
         0..=4 => work.run::<4>(),
-        bins => unreachable!("no basis has {bins} bins"),
+        5..=8 => work.run::<8>(),
+        9..=16 => work.run::<16>(),
+        17..=MAX_LANES => work.run::<MAX_LANES>(),
+        lanes => unreachable!("no basis has {lanes} lanes"),
     }
 }

@@ -60,13 +60,16 @@ impl World {
     }
 }
 
-/// Lights by their power; an environment, whose power depends on the scene's size, gets as much as all others together.
+/// Lights by their power. The sky, whose power depends on the scene's size, gets as much as all others together, divided
+/// by the irradiance of its parts.
 fn probabilities(lights: &[Light<Table>]) -> Vec<f64> {
-    let aimed_at = |light: &Light<Table>| light.is_aimed_at() && light.emission().range().1 > 0.0;
-    let powers: Vec<f64> = lights.iter().map(|light| if aimed_at(light) { light.power() } else { 0.0 }).collect();
-    let finite: f64 = powers.iter().filter(|power| power.is_finite()).sum();
-    let sky = if finite > 0.0 { finite } else { 1.0 };
-    let shares = powers.iter().map(|&power| if power.is_finite() { power } else { sky });
-    let total: f64 = shares.clone().sum();
-    shares.map(|share| if total > 0.0 { share / total } else { 0.0 }).collect()
+    let strength = |light: &Light<Table>| if light.is_aimed_at() { light.strength().max(0.0) } else { 0.0 };
+    let sum = |sky: bool| lights.iter().filter(|light| light.is_sky() == sky).map(strength).sum::<f64>();
+    let (near, sky) = (sum(false), sum(true));
+    let half = if near > 0.0 && sky > 0.0 { 0.5 } else { 1.0 };
+    let share = |light: &Light<Table>| {
+        let total = if light.is_sky() { sky } else { near };
+        if total > 0.0 { half * strength(light) / total } else { 0.0 }
+    };
+    lights.iter().map(share).collect()
 }

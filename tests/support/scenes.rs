@@ -42,7 +42,7 @@ pub fn environment(radiance: f64) -> String {
 /// How the scene asks to be rendered, by a given transport.
 pub fn method(scene: &Scene<Curve>, transport: Transport) -> Method {
     Method {
-        basis: Basis::rgb(),
+        basis: Basis::rgb(scene.film.color_space),
         transport,
         samples: scene.render.samples.unwrap_or(1),
         seed: scene.render.seed,

@@ -1,0 +1,86 @@
+use std::f64::consts::PI;
+
+use serde::Deserialize;
+
+use super::View;
+use crate::math::{DVec3, Frame, Ray, cone, one_minus_cos_of_cone, unit};
+use crate::shape::Sighting;
+use crate::spectrum::Quantity;
+
+/// A disc in the sky, the same from everywhere: light from a small cone of directions.
+///
+/// ```toml
+/// [[light]]
+/// sun = { toward = [1, 2, 1], irradiance = 3 }     # angular_diameter = 0.533 degrees, the sun's; 0: parallel light
+/// ```
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Sun<S> {
+    /// Direction from the scene to the sun, of any length.
+    pub toward: [f64; 3],
+    /// Full angle across the disc, in degrees, 0 to 180.
+    #[serde(default = "apparent")]
+    pub angular_diameter: f64,
+    /// Irradiance on a surface that faces the sun: radiance times the disc's projected solid angle.
+    pub irradiance: S,
+}
+
+fn apparent() -> f64 {
+    0.533
+}
+
+impl<S> Sun<S> {
+    pub(super) fn map<T>(&self, convert: &mut impl FnMut(Quantity, &S) -> T) -> Sun<T> {
+        let Self { toward, angular_diameter, irradiance } = self;
+        Sun {
+            toward: *toward,
+            angular_diameter: *angular_diameter,
+            irradiance: convert(Quantity::Emission, irradiance),
+        }
+    }
+
+    fn axis(&self) -> DVec3 {
+        unit(DVec3::from(self.toward).normalize())
+    }
+
+    /// sin^2 of the disc's half angle.
+    fn sin_squared(&self) -> f64 {
+        let sin = libm::sin(0.5 * self.angular_diameter.to_radians());
+        sin * sin
+    }
+
+    fn one_minus_cos(&self) -> f64 {
+        one_minus_cos_of_cone(self.sin_squared())
+    }
+
+    /// Uniform over the disc's solid angle.
+    pub(super) fn aim(&self, u: [f64; 2]) -> Sighting {
+        let axis = self.axis();
+        let direction = match self.angular_diameter {
+            0.0 => axis,
+            _ => unit(Frame::about(axis).to_world(cone(self.one_minus_cos(), u).0)),
+        };
+        Sighting { direction, part: None }
+    }
+
+    /// The density with which a ray's direction is aimed at; none beside the disc and for parallel light.
+    pub fn pdf(&self, ray: &Ray) -> Option<f64> {
+        let one_minus_cos = self.one_minus_cos();
+        // For unit vectors |d - axis|^2 = 2 (1 - cos), without the rounding of 1 - cos.
+        let inside = (ray.direction - self.axis()).length_squared() <= 2.0 * one_minus_cos * (1.0 + 1e-12);
+        (inside && one_minus_cos > 0.0).then(|| 1.0 / (2.0 * PI * one_minus_cos))
+    }
+
+    /// The factor on the irradiance that makes the disc's radiance of it.
+    pub fn radiance_factor(&self) -> f64 {
+        1.0 / (PI * self.sin_squared())
+    }
+
+    pub(super) fn view(&self, ray: &Ray) -> Option<View> {
+        let (pdf, factor) = match self.angular_diameter {
+            0.0 => (None, 1.0),
+            _ => (Some(self.pdf(ray)?), self.radiance_factor()),
+        };
+        Some(View { distance: f64::INFINITY, object: None, pdf, factor })
+    }
+}

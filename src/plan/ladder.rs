@@ -1,0 +1,138 @@
+//! How much color each model of a spectrum would miss in a scene.
+
+use super::survey::{Survey, Tint};
+use crate::spectrum::{Basis, Curve, Draw, Emission, MAX_LANES, visible};
+
+/// One model with the largest error of a color that it is predicted to make.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Rung {
+    pub(super) basis: Basis,
+    /// Relative to the strongest channel, before the safety factor.
+    pub(super) error: f64,
+    /// Factor that covers nineteen of twenty scenes: measured on random rooms, see `tests/planning.rs`.
+    pub(super) safety: f64,
+}
+
+impl Rung {
+    /// What the color error is promised to stay below.
+    pub(super) fn bound(&self) -> f64 {
+        self.error * self.safety
+    }
+}
+
+/// What a path from a light by way of two diffuse surfaces and one or two smooth ones shows, on every grid that is looked at.
+struct Colors {
+    /// Each color that light can take on, at the wavelengths of the visible grid and the light's lines.
+    paths: Vec<Vec<f64>>,
+}
+
+/// Most diffuse and smooth colors that are combined; of more, those farthest from gray.
+const MOST: [usize; 2] = [20, 6];
+
+/// The largest relative error of a color that a basis makes in a scene, over its lights and over all pairs of surfaces.
+pub(super) fn error(survey: &Survey, basis: &Basis) -> f64 {
+    let draw = Draw::<MAX_LANES>::fixed(basis.fixed_lanes());
+    let scattering = survey.scattering(MOST[0]);
+    let smooth = survey.smooth(MOST[1]);
+    let read = |tints: &[&Tint]| tints.iter().map(|tint| tint.on(basis)).collect::<Vec<_>>();
+    let in_lanes = Colors::of(&read(&scattering), &read(&smooth));
+    let mut worst: f64 = 0.0;
+    for curve in &survey.lights {
+        let light = Emission::new(curve, basis.color_space());
+        let exact = exact_colors(&light, &scattering, &smooth, basis);
+        let (table, response) = (basis.tabulate(crate::spectrum::Quantity::Emission, curve), basis.response(curve));
+        let emission = draw.read(&table);
+        for (true_color, lanes) in exact.iter().zip(&in_lanes.paths) {
+            let filter = crate::spectrum::Lanes::from_fn(|i| lanes.get(i).copied().unwrap_or(0.0) as f32);
+            let color = response.sensor(&draw, emission * filter, false);
+            let strongest = true_color.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+            let missed = (0..3).fold(0.0, |most: f64, c| most.max((color[c] - true_color[c]).abs()));
+            if strongest > 0.0 {
+                worst = worst.max(missed / strongest);
+            }
+        }
+    }
+    worst
+}
+
+/// The film colors of all paths, by sums over 1 nm.
+fn exact_colors(light: &Emission, scattering: &[&Tint], smooth: &[&Tint], basis: &Basis) -> Vec<[f64; 3]> {
+    let wavelengths: Vec<f64> = visible::wavelengths().chain(light.lines().iter().map(|line| line[0])).collect();
+    let of_line = |&[nm, power]: &[f64; 2]| light.film(nm).map(|x| x * power);
+    let columns: Vec<[f64; 3]> = light.columns().chain(light.lines().iter().map(of_line)).collect();
+    let read = |tints: &[&Tint]| tints.iter().map(|tint| tint.at(&wavelengths, basis)).collect::<Vec<_>>();
+    let sum = |path: &Vec<f64>| {
+        let mut color = [0.0; 3];
+        for (value, column) in path.iter().zip(&columns) {
+            (0..3).for_each(|c| color[c] += value * column[c]);
+        }
+        color
+    };
+    Colors::of(&read(scattering), &read(smooth)).paths.iter().map(sum).collect()
+}
+
+impl Colors {
+    /// Every surface i lit straight and by way of every surface j, q = r_i (1 + r_j / (1 - mean r)), alone and seen by way of
+    /// every smooth surface; and the lights, seen straight and by way of one or two smooth surfaces.
+    fn of(scattering: &[Vec<f64>], smooth: &[Vec<f64>]) -> Self {
+        let length = scattering.iter().chain(smooth).next().map_or(0, Vec::len);
+        let count = scattering.len().max(1) as f64;
+        let mean: Vec<f64> = (0..length).map(|i| scattering.iter().map(|r| r[i]).sum::<f64>() / count).collect();
+        let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).collect::<Vec<_>>();
+        let mut paths = Vec::new();
+        for first in scattering {
+            for second in scattering {
+                let lit = |i: usize| first[i] * (1.0 + second[i] / (1.0 - mean[i].min(BRIGHTEST)));
+                let path: Vec<f64> = (0..length).map(lit).collect();
+                paths.extend(smooth.iter().map(|filter| product(filter, &path)));
+                paths.push(path);
+            }
+        }
+        for (number, first) in smooth.iter().enumerate() {
+            paths.extend(smooth[number..].iter().map(|second| product(first, second)));
+            paths.push(first.clone());
+        }
+        Self { paths }
+    }
+}
+
+/// Mean reflectance beyond which a closed room is not followed.
+const BRIGHTEST: f64 = 0.95;
+
+/// The models that could render a scene, from few lanes to many, each with its predicted error.
+pub(super) fn ladder(survey: &Survey, heroes: usize) -> Vec<Rung> {
+    let space = survey.color_space;
+    let rung = |basis: Basis, safety: f64| Rung { error: error(survey, &basis), basis, safety };
+    let mut rungs = Vec::new();
+    if survey.is_plain() {
+        rungs.push(Rung { basis: Basis::rgb(space), error: 0.0, safety: 1.0 });
+        if heroes == 0 {
+            return rungs;
+        }
+    } else if let Some(light) = survey.common_light() {
+        rungs.push(rung(Basis::prefiltered(space, &light), PREFILTERED_SAFETY));
+    }
+    let lines = survey.lines(MAX_LANES - heroes - FEWEST);
+    for bands in [8, 12, 16, 32] {
+        let bands = bands.min(MAX_LANES - heroes - lines.len());
+        rungs.push(rung(Basis::bands(space, bands, &lines), LANES_SAFETY));
+    }
+    rungs
+}
+
+/// Fewest interpolated wavelengths beside the lanes of emission lines.
+const FEWEST: usize = 8;
+const LANES_SAFETY: f64 = 1.2;
+const PREFILTERED_SAFETY: f64 = 1.9;
+
+/// The spectra of different lights.
+pub(super) fn different<'a>(curves: impl Iterator<Item = &'a Curve>, space: crate::spectrum::ColorSpace) -> Vec<Curve> {
+    let mut known: Vec<(Emission, Curve)> = Vec::new();
+    for curve in curves {
+        let emission = Emission::new(curve, space);
+        if !known.iter().any(|(other, _)| other.looks_like(&emission)) {
+            known.push((emission, curve.clone()));
+        }
+    }
+    known.into_iter().map(|(_, curve)| curve).collect()
+}

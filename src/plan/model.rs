@@ -1,0 +1,179 @@
+//! Which lanes carry the light, and whether they part.
+
+use super::ladder::{Rung, error, ladder};
+use super::survey::{Survey, disperses};
+use crate::material::Material;
+use crate::scene::{ModelText, Scene};
+use crate::spectrum::{Basis, Curve, CurveKind, Emission, MAX_LANES, provenance};
+use crate::trace::{COLORS_NM, Method, Spread, Transport, World, spread};
+
+/// The relative error of an image that is aimed at where the scene does not say.
+const ERROR: f64 = 0.03;
+/// The share of the error that the model of color may make; noise may make the rest.
+const SHARE: f64 = 1.0 / 3.0;
+/// Dispersion over fewer pixels is not seen.
+const SEEN_PIXELS: f64 = 0.2;
+/// Share of the camera rays on dispersive surfaces from which twice the wavelengths are carried.
+const FILLED: f64 = 0.5;
+/// Fixed wavelengths and heroes where dispersion is seen, and where it fills the image.
+const HERO: [[usize; 2]; 2] = [[12, 4], [24, 8]];
+
+/// What the lanes stand for, why, and a basis to compare its cost with.
+pub(super) struct Model {
+    pub(super) basis: Basis,
+    pub(super) because: Vec<String>,
+    /// The model beside it that would cost more or less.
+    pub(super) next: Option<Basis>,
+}
+
+/// The least model that a scene needs, or the one it asks for.
+pub(super) fn model(scene: &Scene<Curve>) -> Model {
+    let survey = Survey::new(scene);
+    let dispersion = dispersion(scene);
+    let visible = dispersion.is_some_and(|d| d.seen_pixels.max(d.lit_pixels) >= SEEN_PIXELS);
+    let asks_hero = scene.render.model == ModelText::Hero;
+    let hero = asks_hero || (scene.render.model == ModelText::Auto && visible);
+    let filled = dispersion.is_some_and(|d| d.seen > FILLED);
+    let [bands, heroes] = HERO[usize::from(filled)];
+    let rungs = ladder(&survey, if hero { heroes } else { 0 });
+    let tolerance = SHARE * scene.render.error.unwrap_or(ERROR);
+    let chosen = rungs.iter().position(|rung| rung.bound() <= tolerance).unwrap_or(rungs.len() - 1);
+
+    let lines = survey.lines(MAX_LANES - heroes - 8);
+    let with_heroes = |bands: usize| {
+        let bands = bands.min(MAX_LANES - heroes - lines.len());
+        Basis::bands(survey.color_space, bands, &lines).with_heroes(heroes, &survey.emissions())
+    };
+    let (basis, why) = match scene.render.model {
+        _ if hero && asks_hero => (with_heroes(bands), "the scene asks for it".to_owned()),
+        _ if hero => {
+            let least = rungs[chosen].basis.fixed_lanes() - lines.len();
+            (with_heroes(bands.max(least)), "dispersion is seen".to_owned())
+        }
+        ModelText::Rgb => (three_bands(&survey), "the scene asks for it".to_owned()),
+        ModelText::Bands(count) => {
+            let lines = survey.lines(MAX_LANES - 8);
+            let bands = (count as usize).min(MAX_LANES - lines.len());
+            (Basis::bands(survey.color_space, bands, &lines), "the scene asks for it".to_owned())
+        }
+        _ => (rungs[chosen].basis.clone(), least(&rungs, chosen, tolerance, survey.is_plain())),
+    };
+    let next = if hero { rungs.get(chosen) } else { rungs.get(chosen + 1) }.map(|rung| rung.basis.clone());
+    let next = next.filter(|_| hero || !survey.is_plain());
+    let mut because = vec![format!("model {}: {why}", basis.name())];
+    if !survey.is_plain() || basis.fixed_lanes() > 3 {
+        because.push(missed(&rungs, &basis, &survey, tolerance));
+    }
+    because.extend(dispersion.map(|d| spoken(&d, visible, hero)));
+    let together = dispersion.is_some() && !visible && !asks_hero;
+    let basis = if together { basis.kept_together() } else { basis };
+    because.extend(desaturated(scene, &basis));
+    because.extend(materials(scene, &basis));
+    Model { basis, because, next: next.map(|next| if together || hero { next.kept_together() } else { next }) }
+}
+
+/// Three bands, whatever they miss.
+fn three_bands(survey: &Survey) -> Basis {
+    let space = survey.color_space;
+    match (survey.is_plain(), survey.common_light()) {
+        (true, _) => Basis::rgb(space),
+        (false, Some(light)) => Basis::prefiltered(space, &light),
+        (false, None) => Basis::prefiltered(space, &Emission::new(&1.0.into(), space)),
+    }
+}
+
+fn least(rungs: &[Rung], chosen: usize, tolerance: f64, plain: bool) -> String {
+    match rungs[chosen].bound() {
+        _ if plain => {
+            "every color is a number or rgb under the film's white, so more lanes would show nothing more".into()
+        }
+        bound if bound <= tolerance => "the fewest lanes that miss no color by more than is tolerated".into(),
+        _ => "the most lanes there are; some color may be missed by more than is tolerated".into(),
+    }
+}
+
+/// The whole ladder in one line.
+fn missed(rungs: &[Rung], basis: &Basis, survey: &Survey, tolerance: f64) -> String {
+    let percent = |error: f64| match 100.0 * error {
+        p if p < 0.095 => format!("{p:.2} %"),
+        p if p < 9.95 => format!("{p:.1} %"),
+        p => format!("{p:.0} %"),
+    };
+    let mut steps: Vec<String> =
+        rungs.iter().map(|rung| format!("{} {}", rung.basis.name(), percent(rung.bound()))).collect();
+    if !rungs.iter().any(|rung| rung.basis.name() == basis.name()) && !basis.draws_wavelengths() {
+        steps.push(format!("{} {}", basis.name(), percent(error(survey, basis))));
+    }
+    format!("color missed at most, by model (tolerated {}): {}", percent(tolerance), steps.join(", "))
+}
+
+/// How far dispersive glass pulls colors apart; none if there is none.
+fn dispersion(scene: &Scene<Curve>) -> Option<Spread> {
+    scene.materials.iter().find(|m| m.material.medium().is_some_and(disperses))?;
+    let basis = Basis::wavelengths(scene.film.color_space, COLORS_NM.into(), &[]);
+    let transport = Transport::Random { split: 1.0, roulette: 0.0 };
+    let diffuse_bounces = scene.render.diffuse_bounces.unwrap_or(u32::MAX);
+    Some(spread(&World::new(scene, Method { basis, transport, samples: 1, seed: scene.render.seed, diffuse_bounces })))
+}
+
+fn spoken(spread: &Spread, visible: bool, hero: bool) -> String {
+    let [from, to] = COLORS_NM;
+    let pixels = |x: f64| if x < 9.95 { format!("{x:.2}") } else { format!("{x:.0}") };
+    let seen = format!(
+        "{:.0} % of the view is on dispersive glass, which shows {from} and {to} nm {} pixels apart",
+        100.0 * spread.seen,
+        pixels(spread.seen_pixels)
+    );
+    let lit = format!("light through it is spread over {}", pixels(spread.lit_pixels));
+    let what = match (visible, hero) {
+        (true, true) => "so wavelengths part",
+        (true, false) => "so lanes part",
+        (false, true) => "less than can be seen, but the scene asks for it",
+        (false, false) => "less than 0.2 can be seen, so lanes stay together",
+    };
+    format!("dispersion: {seen}; {lit}: {what}")
+}
+
+/// Colors that no reflectance has.
+fn desaturated(scene: &Scene<Curve>, basis: &Basis) -> Option<String> {
+    if basis.fixed_lanes() <= 3 {
+        return None;
+    }
+    let mut count = 0;
+    for named in &scene.materials {
+        let counted: Result<(), ()> = named.material.each(|quantity, _, curve| {
+            use crate::spectrum::Quantity::{Reflectance, Transmittance};
+            if let (CurveKind::Rgb(rgb), Reflectance | Transmittance) = (&curve.kind, quantity) {
+                count += u32::from(basis.upsampler().fit(rgb.map(|x| x * curve.scale)).saturation < 1.0);
+            }
+            Ok(())
+        });
+        counted.unwrap_or_default();
+    }
+    let colors = if count == 1 { "1 rgb color is" } else { &format!("{count} rgb colors are") };
+    (count > 0).then(|| format!("{colors} more saturated than a smooth reflectance can be, and moved toward gray"))
+}
+
+/// Where the numbers of clear bodies and metals come from.
+fn materials(scene: &Scene<Curve>, basis: &Basis) -> Vec<String> {
+    let mut lines = Vec::new();
+    for named in &scene.materials {
+        match &named.material {
+            Material::Dielectric(glass) => {
+                let table = basis.tabulate(crate::spectrum::Quantity::Index, &glass.index);
+                let (low, high) = table.range();
+                let source = provenance(&glass.index).map_or(String::new(), |source| format!(" ({source})"));
+                lines.push(match table.is_flat() {
+                    true => format!("material {}: index {low:.4} in every lane{source}", named.name),
+                    false => format!("material {}: index {low:.4} to {high:.4}{source}", named.name),
+                });
+            }
+            Material::Conductor(metal) => {
+                lines
+                    .extend(provenance(&metal.n).map(|source| format!("material {}: n and k of {source}", named.name)));
+            }
+            _ => {}
+        }
+    }
+    lines
+}

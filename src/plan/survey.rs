@@ -1,0 +1,174 @@
+//! What of a scene decides how its spectra must be carried.
+
+use super::ladder::different;
+use crate::material::{Dielectric, Material};
+use crate::scene::Scene;
+use crate::spectrum::{
+    Basis, ColorSpace, Curve, CurveKind, Emission, Quantity, Upsampler, normal_reflectance, visible,
+};
+
+/// The colors of a scene: what shines and what tints.
+pub(super) struct Survey<'a> {
+    pub(super) color_space: ColorSpace,
+    upsampler: Upsampler,
+    /// The light of each different spectrum.
+    pub(super) lights: Vec<Curve>,
+    tints: Vec<Tint<'a>>,
+}
+
+/// Something that tints light.
+pub(super) enum Tint<'a> {
+    /// Light leaves a diffuse surface.
+    Diffuse(&'a Curve),
+    /// A factor on light that a smooth surface reflects or lets through.
+    Filter(Quantity, &'a Curve),
+    /// A metal's reflection at normal incidence.
+    Metal(&'a Curve, &'a Curve),
+    /// Light goes a distance through an absorbing body.
+    Depth(&'a Curve, f64),
+}
+
+impl<'a> Survey<'a> {
+    pub(super) fn new(scene: &'a Scene<Curve>) -> Self {
+        let space = scene.film.color_space;
+        let lights = different(scene.lights.iter().map(|light| light.emission()), space);
+        let mut tints = Vec::new();
+        for (id, named) in scene.materials.iter().enumerate() {
+            match &named.material {
+                Material::Diffuse(diffuse) => tints.push(Tint::Diffuse(&diffuse.reflectance)),
+                Material::Mirror(mirror) => tints.push(Tint::Filter(Quantity::Reflectance, &mirror.reflectance)),
+                Material::Conductor(metal) => tints.push(Tint::Metal(&metal.n, &metal.k)),
+                Material::Dielectric(glass) => {
+                    tints.push(Tint::Filter(Quantity::Reflectance, &glass.reflectance));
+                    tints.push(Tint::Filter(Quantity::Transmittance, &glass.transmittance));
+                    tints.push(Tint::Depth(&glass.absorption, thickness(scene, id as u32)));
+                }
+                Material::Emissive(_) => {}
+            }
+        }
+        Self { color_space: space, upsampler: Upsampler::new(space), lights, tints }
+    }
+
+    /// Whether three numbers say all that is known of every color: numbers and `rgb` under the film's own white.
+    pub(super) fn is_plain(&self) -> bool {
+        let white: Curve = CurveKind::Illuminant(self.color_space.white_illuminant().into()).into();
+        let white = Emission::new(&white, self.color_space);
+        let is_white = |curve: &Curve| Emission::new(curve, self.color_space).has_shape_of(&white);
+        self.tints.iter().all(|tint| tint.curves().iter().all(|curve| !curve.is_measured()))
+            && self.lights.iter().all(|curve| !curve.is_measured() || is_white(curve))
+    }
+
+    /// The light of the whole scene, if all lights have the same spectrum.
+    pub(super) fn common_light(&self) -> Option<Emission> {
+        match self.lights.as_slice() {
+            [] => Some(Emission::new(&1.0.into(), self.color_space)),
+            [light] => Some(Emission::new(light, self.color_space)),
+            _ => None,
+        }
+    }
+
+    /// The emissions of all different lights.
+    pub(super) fn emissions(&self) -> Vec<Emission> {
+        self.lights.iter().map(|light| Emission::new(light, self.color_space)).collect()
+    }
+
+    /// The brightest ideal lines, ascending in nm, and how many there are in all.
+    pub(super) fn lines(&self, most: usize) -> Vec<f64> {
+        let emissions = self.emissions();
+        let brightness = |nm: f64, power: f64| power * visible::color_matching(nm).iter().sum::<f64>();
+        let mut lines: Vec<[f64; 2]> = emissions.iter().flat_map(|light| light.lines()).copied().collect();
+        lines.sort_by(|a, b| brightness(b[0], b[1]).total_cmp(&brightness(a[0], a[1])));
+        let mut chosen: Vec<f64> = Vec::new();
+        for [nm, _] in lines {
+            if chosen.len() < most && !chosen.contains(&nm) {
+                chosen.push(nm);
+            }
+        }
+        chosen.sort_by(f64::total_cmp);
+        chosen
+    }
+
+    pub(super) fn scattering(&self, most: usize) -> Vec<&Tint<'a>> {
+        self.farthest_from_gray(most, |tint| matches!(tint, Tint::Diffuse(_)))
+    }
+
+    pub(super) fn smooth(&self, most: usize) -> Vec<&Tint<'a>> {
+        self.farthest_from_gray(most, |tint| !matches!(tint, Tint::Diffuse(_)) && !tint.is_flat())
+    }
+
+    fn farthest_from_gray(&self, most: usize, which: impl Fn(&Tint) -> bool) -> Vec<&Tint<'a>> {
+        let mut chosen: Vec<(f64, &Tint)> = self
+            .tints
+            .iter()
+            .filter(|tint| which(tint))
+            .map(|tint| {
+                let values =
+                    tint.read(&[420.0, 450.0, 480.0, 510.0, 540.0, 570.0, 600.0, 630.0, 660.0], &self.upsampler);
+                let (low, high) = values.iter().fold((f64::INFINITY, 0.0_f64), |(l, h), &x| (l.min(x), h.max(x)));
+                ((high - low) / high.max(1e-9), tint)
+            })
+            .collect();
+        chosen.sort_by(|a, b| b.0.total_cmp(&a.0));
+        chosen.into_iter().take(most).map(|(_, tint)| tint).collect()
+    }
+}
+
+/// The longest straight way through the largest body of a material.
+fn thickness(scene: &Scene<Curve>, material: u32) -> f64 {
+    let bodies = scene.objects.iter().filter(|object| object.material == material);
+    let sizes = bodies.filter_map(|object| object.shape.bounds()).map(|bounds| (bounds.max - bounds.min).min_element());
+    sizes.fold(0.0, f64::max)
+}
+
+impl Tint<'_> {
+    fn curves(&self) -> Vec<&Curve> {
+        match self {
+            Self::Diffuse(curve) | Self::Filter(_, curve) | Self::Depth(curve, _) => vec![curve],
+            Self::Metal(n, k) => vec![n, k],
+        }
+    }
+
+    fn is_flat(&self) -> bool {
+        self.curves().iter().all(|curve| matches!(curve.kind, CurveKind::Number(_)))
+    }
+
+    /// What is left of the light at wavelengths in nm.
+    pub(super) fn at(&self, wavelengths_nm: &[f64], basis: &Basis) -> Vec<f64> {
+        self.read(wavelengths_nm, basis.upsampler())
+    }
+
+    fn read(&self, wavelengths_nm: &[f64], upsampler: &Upsampler) -> Vec<f64> {
+        self.combine(|quantity, curve| {
+            let reader = curve.reader(quantity, upsampler);
+            wavelengths_nm.iter().map(|&nm| reader(nm)).collect()
+        })
+    }
+
+    /// What is left of the light in the lanes of a basis.
+    pub(super) fn on(&self, basis: &Basis) -> Vec<f64> {
+        self.combine(|quantity, curve| basis.tabulate(quantity, curve).bins().to_vec())
+    }
+
+    fn combine(&self, read: impl Fn(Quantity, &Curve) -> Vec<f64>) -> Vec<f64> {
+        match self {
+            Self::Diffuse(curve) => read(Quantity::Reflectance, curve),
+            Self::Filter(quantity, curve) => read(*quantity, curve),
+            Self::Metal(n, k) => {
+                let (n, k) = (read(Quantity::MetalIndex, n), read(Quantity::MetalExtinction, k));
+                n.into_iter().zip(k).map(|(n, k)| normal_reflectance(n, k)).collect()
+            }
+            Self::Depth(curve, depth) => {
+                read(Quantity::Absorption, curve).into_iter().map(|a| libm::exp(-a * depth)).collect()
+            }
+        }
+    }
+}
+
+/// Whether rays of different colors go different ways in a glass.
+pub(super) fn disperses(glass: &Dielectric<Curve>) -> bool {
+    match &glass.index.kind {
+        CurveKind::Number(_) | CurveKind::Rgb(_) => false,
+        CurveKind::Cauchy([_, b]) => *b != 0.0,
+        _ => true,
+    }
+}

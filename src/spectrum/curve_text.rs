@@ -1,0 +1,101 @@
+//! How a spectrum is read from a scene file.
+
+use std::fmt;
+
+use serde::Deserialize;
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{Deserializer, Error as _, MapAccess, Visitor};
+
+use super::{Curve, CurveKind};
+
+const EXPECTED: &str = "a number, a catalog name in quotes, or a table such as { rgb = [r, g, b] }";
+const NEEDS: &str = "a spectrum needs one of `rgb`, `samples`, `file`, `cauchy`, `sellmeier`, `abbe`, `illuminant`, `blackbody`, `lines`";
+
+impl<'de> Deserialize<'de> for Curve {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(CurveVisitor)
+    }
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct CurveTable {
+    rgb: Option<[f64; 3]>,
+    samples: Option<Vec<[f64; 2]>>,
+    cauchy: Option<[f64; 2]>,
+    sellmeier: Option<Sellmeier>,
+    abbe: Option<Abbe>,
+    file: Option<String>,
+    column: Option<usize>,
+    illuminant: Option<String>,
+    blackbody: Option<f64>,
+    lines: Option<Vec<[f64; 2]>>,
+    scale: Option<f64>,
+    luminance: Option<f64>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Sellmeier {
+    b: Vec<f64>,
+    c: Vec<f64>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Abbe {
+    nd: f64,
+    vd: f64,
+}
+
+struct CurveVisitor;
+
+impl<'de> Visitor<'de> for CurveVisitor {
+    type Value = Curve;
+
+    fn expecting(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
+        formatter.write_str(EXPECTED)
+    }
+
+    fn visit_f64<E>(self, value: f64) -> Result<Curve, E> {
+        Ok(value.into())
+    }
+
+    fn visit_i64<E>(self, value: i64) -> Result<Curve, E> {
+        Ok((value as f64).into())
+    }
+
+    fn visit_str<E>(self, name: &str) -> Result<Curve, E> {
+        Ok(CurveKind::Name(name.to_owned()).into())
+    }
+
+    fn visit_map<M: MapAccess<'de>>(self, map: M) -> Result<Curve, M::Error> {
+        let table = CurveTable::deserialize(MapAccessDeserializer::new(map))?;
+        let mut kinds = [
+            table.rgb.map(CurveKind::Rgb),
+            table.samples.map(CurveKind::Samples),
+            table.cauchy.map(CurveKind::Cauchy),
+            table.sellmeier.map(|s| CurveKind::Sellmeier { b: s.b, c: s.c }),
+            table.abbe.map(|a| CurveKind::Abbe { nd: a.nd, vd: a.vd }),
+            table.file.map(|file| CurveKind::File { file, column: table.column.unwrap_or(2) }),
+            table.illuminant.map(CurveKind::Illuminant),
+            table.blackbody.map(CurveKind::Blackbody),
+            table.lines.map(CurveKind::Lines),
+        ]
+        .into_iter()
+        .flatten();
+        let Some(kind) = kinds.next() else {
+            return Err(M::Error::custom(NEEDS));
+        };
+        if kinds.next().is_some() {
+            return Err(M::Error::custom("a spectrum has exactly one kind"));
+        }
+        if table.column.is_some() && !matches!(kind, CurveKind::File { .. }) {
+            return Err(M::Error::custom("`column` goes with `file`"));
+        }
+        if table.scale.is_some() && table.luminance.is_some() {
+            return Err(M::Error::custom("a spectrum has a `scale` or a `luminance`, not both"));
+        }
+        Ok(Curve { kind, scale: table.scale.unwrap_or(1.0), luminance: table.luminance })
+    }
+}

@@ -1,0 +1,158 @@
+//! What a light shines, with its true colors: a spectrum on the visible grid and ideal lines.
+
+use super::color::{ColorSpace, Matrix, apply, product};
+use super::curve::interpolate;
+use super::visible::{self, color_matching};
+use super::{Curve, CurveKind, Upsampler, data};
+
+/// The light of one curve, scaled so that sums with the color matching functions give film values.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Emission {
+    /// Per nm, on the visible grid.
+    spectrum: Vec<f64>,
+    /// (wavelength in nm, power).
+    lines: Vec<[f64; 2]>,
+    /// Factors on XYZ, which make the white of numbers and `rgb` exactly the film's.
+    correction: [f64; 3],
+    film_of_xyz: Matrix,
+}
+
+impl Emission {
+    /// The emission of a curve that was checked, on a film.
+    ///
+    /// A flat spectrum of 1, and an illuminant or a blackbody alone, have Y = 1; numbers and `rgb` are multiples of the
+    /// film's white.
+    pub fn new(curve: &Curve, space: ColorSpace) -> Self {
+        let (mut spectrum, mut lines, mut correction) = (vec![0.0; visible::COUNT], Vec::new(), [1.0; 3]);
+        let mut fill = |value: &dyn Fn(f64) -> f64| {
+            spectrum.iter_mut().zip(visible::wavelengths()).for_each(|(power, nm)| *power = value(nm));
+        };
+        let mut normalized = true;
+        match &curve.kind {
+            CurveKind::Number(_) | CurveKind::Rgb(_) => {
+                let white = data::illuminant(space.white_illuminant()).expect("the whites are in the catalog");
+                fill(&|nm| white.at(nm));
+                correction = toward(visible::xyz(&spectrum), space.white());
+                let [r, g, b] = curve.kind.rgb().expect("both kinds are three numbers");
+                let brightest = 2.0 * r.max(g).max(b);
+                if r == g && g == b {
+                    spectrum.iter_mut().for_each(|power| *power *= r);
+                } else {
+                    let tint = Upsampler::new(space).fit([r, g, b].map(|x| x / brightest));
+                    let wavelengths = visible::wavelengths();
+                    spectrum.iter_mut().zip(wavelengths).for_each(|(power, nm)| *power *= brightest * tint.at(nm));
+                }
+                normalized = false;
+            }
+            CurveKind::Illuminant(name) => {
+                let illuminant = data::illuminant(name).expect("the compiler checked the illuminant's name");
+                fill(&|nm| illuminant.at(nm));
+            }
+            CurveKind::Blackbody(kelvin) => fill(&|nm| planck(*kelvin, nm)),
+            CurveKind::Lines(pairs) => {
+                let unit = 1.0 / visible::luminous();
+                lines = pairs.iter().map(|&[nm, power]| [nm, power * unit]).collect();
+                normalized = false;
+            }
+            _ => {
+                let unit = 1.0 / visible::luminous();
+                fill(&|nm| unit * within(curve, nm));
+                normalized = false;
+            }
+        }
+        let film_of_xyz = product(&space.of_xyz(), &diagonal(correction));
+        let mut emission = Self { spectrum, lines, correction, film_of_xyz };
+        let luminance = emission.xyz()[1];
+        let factor = match curve.luminance {
+            Some(wanted) if luminance > 0.0 => wanted / luminance,
+            _ if normalized && luminance > 0.0 => curve.scale / luminance,
+            _ => curve.scale,
+        };
+        emission.spectrum.iter_mut().for_each(|power| *power *= factor);
+        emission.lines.iter_mut().for_each(|line| line[1] *= factor);
+        emission
+    }
+
+    /// The spectrum, per nm on the visible grid, without the lines.
+    pub fn spectrum(&self) -> &[f64] {
+        &self.spectrum
+    }
+
+    /// Ideal lines: (wavelength in nm, power).
+    pub fn lines(&self) -> &[[f64; 2]] {
+        &self.lines
+    }
+
+    /// CIE XYZ.
+    pub fn xyz(&self) -> [f64; 3] {
+        let sum = self.uncorrected();
+        std::array::from_fn(|i| sum[i] * self.correction[i])
+    }
+
+    /// Film color.
+    pub fn color(&self) -> [f64; 3] {
+        apply(&self.film_of_xyz, self.uncorrected())
+    }
+
+    fn uncorrected(&self) -> [f64; 3] {
+        self.lines.iter().fold(visible::xyz(&self.spectrum), |mut sum, &[nm, power]| {
+            let cmf = color_matching(nm);
+            (0..3).for_each(|i| sum[i] += power * cmf[i]);
+            sum
+        })
+    }
+
+    /// Film color of a power of 1 at a wavelength.
+    pub fn film(&self, wavelength_nm: f64) -> [f64; 3] {
+        apply(&self.film_of_xyz, color_matching(wavelength_nm))
+    }
+
+    /// Film color per nm at each wavelength of the visible grid, without the lines.
+    pub fn columns(&self) -> impl Iterator<Item = [f64; 3]> {
+        let cmfs = data::color_matching().iter();
+        self.spectrum.iter().zip(cmfs).map(|(power, cmf)| apply(&self.film_of_xyz, cmf.map(|x| power * x)))
+    }
+
+    /// Whether two lights differ by a factor at most, to a part in a million.
+    pub fn looks_like(&self, other: &Self) -> bool {
+        self.film_of_xyz == other.film_of_xyz && self.has_shape_of(other)
+    }
+
+    /// Whether two spectra differ by a factor at most, whatever is made of them.
+    pub fn has_shape_of(&self, other: &Self) -> bool {
+        let total = |emission: &Self| {
+            emission.spectrum.iter().sum::<f64>() + emission.lines.iter().map(|line| line[1]).sum::<f64>()
+        };
+        let (a, b) = (total(self), total(other));
+        let same = |x: f64, y: f64| (x / a - y / b).abs() <= 1e-6;
+        self.lines.len() == other.lines.len()
+            && self.lines.iter().zip(&other.lines).all(|(x, y)| x[0] == y[0] && same(x[1], y[1]))
+            && self.spectrum.iter().zip(&other.spectrum).all(|(&x, &y)| same(x, y))
+    }
+}
+
+/// A sampled emission: 0 beyond its ends.
+fn within(curve: &Curve, wavelength_nm: f64) -> f64 {
+    let CurveKind::Samples(samples) = &curve.kind else { panic!("the compiler lets no other kind shine") };
+    let ends = samples[0][0]..=samples[samples.len() - 1][0];
+    if ends.contains(&wavelength_nm) { interpolate(samples, wavelength_nm) } else { 0.0 }
+}
+
+/// Factors that make one XYZ another.
+pub(super) fn toward(from: [f64; 3], to: [f64; 3]) -> [f64; 3] {
+    std::array::from_fn(|i| to[i] / from[i])
+}
+
+fn diagonal([x, y, z]: [f64; 3]) -> Matrix {
+    [[x, 0.0, 0.0], [0.0, y, 0.0], [0.0, 0.0, z]]
+}
+
+/// Radiance of a blackbody per wavelength, relative to that at 560 nm (Planck 1901), with c2 = 1.438776877e-2 m K
+/// (CODATA 2018).
+fn planck(kelvin: f64, wavelength_nm: f64) -> f64 {
+    const SECOND_RADIATION_CONSTANT: f64 = 1.438_776_877e7; // nm K
+    const REFERENCE_NM: f64 = 560.0;
+    let exponent = |nm: f64| SECOND_RADIATION_CONSTANT / (nm * kelvin);
+    let ratio = libm::expm1(exponent(REFERENCE_NM)) / libm::expm1(exponent(wavelength_nm));
+    libm::pow(REFERENCE_NM / wavelength_nm, 5.0) * ratio
+}

@@ -1,0 +1,80 @@
+//! The wavelengths that matter: from where heroes are drawn.
+
+use super::draw::Hero;
+use super::visible::{self, COUNT};
+use super::{Emission, data};
+
+/// A distribution of wavelengths: a density, constant over each nm, and ideal lines, which are drawn as they are.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Mixture {
+    /// Probability of each step of the visible grid, then of each line, summed up.
+    cumulative: Vec<f64>,
+    /// The ideal lines, in nm.
+    lines: Vec<f64>,
+}
+
+/// Share of the wavelengths drawn by what lights send; the others are drawn by what the eye sees of an even spectrum.
+const BY_LIGHT: f64 = 0.9;
+
+impl Mixture {
+    /// Nine tenths light times color matching functions, an equal share for every different light, one tenth color
+    /// matching functions alone. Where all light is in ideal lines, only they are drawn.
+    pub(super) fn new(lights: &[Emission]) -> Self {
+        let eye: Vec<f64> = data::color_matching().iter().map(|cmf| cmf.iter().sum()).collect();
+        let mut lines: Vec<f64> = lights.iter().flat_map(|light| light.lines()).map(|line| line[0]).collect();
+        lines.sort_by(f64::total_cmp);
+        lines.dedup();
+        let steps = COUNT - 1;
+        let mut probabilities = vec![0.0; steps + lines.len()];
+        let mut add = |share: f64, density: &[f64], line: &dyn Fn(f64) -> f64| {
+            let mut part: Vec<f64> = density.windows(2).map(|ends| 0.5 * (ends[0] + ends[1])).collect();
+            part.extend(lines.iter().map(|&nm| line(nm)));
+            let total: f64 = part.iter().sum();
+            if total > 0.0 {
+                probabilities.iter_mut().zip(part).for_each(|(sum, x)| *sum += share * x / total);
+            }
+        };
+        let mut even = lights.is_empty();
+        for light in lights {
+            let density: Vec<f64> = light.spectrum().iter().zip(&eye).map(|(power, eye)| power * eye).collect();
+            even |= density.iter().any(|&x| x > 0.0);
+            add(BY_LIGHT / lights.len() as f64, &density, &|nm| {
+                let here = light.lines().iter().filter(|line| line[0] == nm);
+                here.map(|line| line[1] * visible::color_matching(nm).iter().sum::<f64>()).sum()
+            });
+        }
+        if even {
+            add(1.0 - BY_LIGHT, &eye, &|_| 0.0);
+        }
+        let mut sum = 0.0;
+        let mut cumulative: Vec<f64> = probabilities
+            .iter()
+            .map(|p| {
+                sum += p;
+                sum
+            })
+            .collect();
+        cumulative.iter_mut().for_each(|x| *x /= sum);
+        Self { cumulative, lines }
+    }
+
+    /// The ideal lines, in nm, as they follow the visible grid on the fine grid of every table.
+    pub(super) fn lines(&self) -> &[f64] {
+        &self.lines
+    }
+
+    /// The wavelength for a random number, as one of `heroes`.
+    pub(super) fn draw(&self, u: f64, heroes: usize) -> Hero {
+        let last = self.cumulative.len() - 1;
+        let entry = self.cumulative.partition_point(|&sum| sum <= u).min(last);
+        let before = if entry == 0 { 0.0 } else { self.cumulative[entry - 1] };
+        let probability = self.cumulative[entry] - before;
+        let factor = 1.0 / (heroes as f64 * probability);
+        if entry < COUNT - 1 {
+            Hero { below: entry, fraction: ((u - before) / probability).clamp(0.0, 1.0), factor }
+        } else {
+            // Lines follow the last wavelength of the grid.
+            Hero { below: entry + 1, fraction: 0.0, factor }
+        }
+    }
+}

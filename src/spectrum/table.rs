@@ -1,0 +1,98 @@
+/// What a curve describes, which decides how it is read onto the lanes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quantity {
+    /// Share of light that leaves a surface again, 0 to 1.
+    Reflectance,
+    /// Share of light that crosses a surface, 0 to 1.
+    Transmittance,
+    /// Radiance, or for a point light intensity; not negative.
+    Emission,
+    /// Real refractive index of a dielectric; above 1.
+    Index,
+    /// Absorption coefficient per scene unit, base e; not negative.
+    Absorption,
+    /// Real part of a metal's refractive index; above 0.
+    MetalIndex,
+    /// Extinction coefficient of a metal: imaginary part of its index; not negative.
+    MetalExtinction,
+}
+
+/// Most lanes that travel together.
+pub const MAX_LANES: usize = 32;
+
+/// A spectrum on the bins of one render's basis, in the unit of its quantity: one number per fixed lane and, where a basis
+/// has heroes, a fine grid for wavelengths that are drawn.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Table {
+    bins: usize,
+    /// The fixed lanes' numbers; beyond the last bin its number again, so that empty lanes divide by no 0.
+    fixed: Box<[f64; MAX_LANES]>,
+    weights: Box<[f32; MAX_LANES]>,
+    fine: Box<[f64]>,
+    flat: bool,
+}
+
+impl Table {
+    /// A table of the given bins, one for each fixed lane.
+    ///
+    /// # Panics
+    /// If there are none, or more than [`MAX_LANES`].
+    pub fn new(bins: impl AsRef<[f64]>) -> Self {
+        Self::with_fine(bins.as_ref(), Vec::new())
+    }
+
+    /// A table with a fine grid for drawn wavelengths.
+    pub(super) fn with_fine(bins: &[f64], fine: Vec<f64>) -> Self {
+        assert!((1..=MAX_LANES).contains(&bins.len()), "{} bins do not fit", bins.len());
+        let fixed: [f64; MAX_LANES] = std::array::from_fn(|i| bins[i.min(bins.len() - 1)]);
+        let flat = fixed.iter().chain(&fine).all(|&x| x == fixed[0]);
+        let weights = fixed.map(|x| x as f32);
+        Self { bins: bins.len(), fixed: Box::new(fixed), weights: Box::new(weights), fine: fine.into(), flat }
+    }
+
+    /// The number in each bin of the fixed lanes.
+    pub fn bins(&self) -> &[f64] {
+        &self.fixed[..self.bins]
+    }
+
+    /// Smallest and largest number.
+    pub fn range(&self) -> (f64, f64) {
+        let all = self.bins().iter().chain(&*self.fine);
+        all.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| (low.min(x), high.max(x)))
+    }
+
+    /// Whether all bins hold the same number: a surface with this index keeps lanes together.
+    pub fn is_flat(&self) -> bool {
+        self.flat
+    }
+
+    /// The numbers of the first N fixed lanes.
+    pub(super) fn fixed<const N: usize>(&self) -> &[f64; N] {
+        self.fixed.first_chunk().expect("no more lanes are compiled than fit")
+    }
+
+    /// The same as weights.
+    pub(super) fn weights<const N: usize>(&self) -> &[f32; N] {
+        self.weights.first_chunk().expect("no more lanes are compiled than fit")
+    }
+
+    /// The number between two entries of the fine grid.
+    pub(super) fn between(&self, below: usize, fraction: f64) -> f64 {
+        let (a, b) = (self.fine[below], self.fine[below + 1]);
+        a + fraction * (b - a)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::spectrum::{Draw, Lanes};
+
+    #[test]
+    fn lanes_beyond_the_last_bin_repeat_it() {
+        let table = Table::new([1.5, 1.6]);
+        assert_eq!(table.bins(), [1.5, 1.6]);
+        assert_eq!(Draw::<4>::fixed(2).read(&table), Lanes([1.5, 1.6, 1.6, 1.6]));
+        assert!(!table.is_flat() && Table::new([2.0, 2.0]).is_flat());
+    }
+}

@@ -1,0 +1,145 @@
+//! From three color numbers to a smooth spectrum within 0..1.
+
+use super::color::{ColorSpace, Matrix, adaptation, apply, inverse, product};
+use super::visible::{self, COUNT};
+use super::{data, emission};
+
+/// A spectrum S(w) = 1/2 + x / (2 sqrt(1 + x^2)), x = (a t + b) t + c, where t runs from 0 at 360 to 1 at 830 nm.
+///
+/// Jakob & Hanika 2019, *A Low-Dimensional Function Space for Efficient Spectral Upsampling*, equations 4 and 5.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sigmoid {
+    coefficients: [f64; 3],
+    /// How much of the color's distance from gray was kept: 1 unless no smooth reflectance has the color.
+    pub saturation: f64,
+}
+
+impl Sigmoid {
+    /// The value at a wavelength, within 0..1.
+    pub fn at(&self, wavelength_nm: f64) -> f64 {
+        let [a, b, c] = self.coefficients;
+        let t = (wavelength_nm - visible::FIRST_NM) / (visible::LAST_NM - visible::FIRST_NM);
+        sigmoid((a * t + b) * t + c)
+    }
+}
+
+fn sigmoid(x: f64) -> f64 {
+    if x.is_infinite() { 0.5 + 0.5 * x.signum() } else { 0.5 + 0.5 * x / (1.0 + x * x).sqrt() }
+}
+
+/// Finds the sigmoid spectra that look like linear Rec.709 colors under a film's white.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Upsampler {
+    /// Rec.709 red, green and blue of a reflectance of 1 within one step of the visible range; each sums to 1.
+    steps: Vec<[f64; 3]>,
+}
+
+/// Largest residual of a fit, in linear Rec.709.
+const CLOSE: f64 = 1e-4;
+
+impl Upsampler {
+    /// For a film: a reflectance of 1 has the color (1, 1, 1) under its white.
+    pub fn new(space: ColorSpace) -> Self {
+        let white = data::illuminant(space.white_illuminant()).expect("the whites are in the catalog");
+        let spectrum: Vec<f64> = visible::wavelengths().map(|nm| white.at(nm)).collect();
+        let correction = emission::toward(visible::xyz(&spectrum), space.white());
+        let adapted = adaptation(space.white(), ColorSpace::Rec709.white());
+        let to_rec709 = product(&ColorSpace::Rec709.of_xyz(), &adapted);
+        let steps = spectrum.iter().zip(data::color_matching());
+        let color = |(power, cmf): (&f64, &[f64; 3])| std::array::from_fn(|c| power * cmf[c] * correction[c]);
+        Self { steps: steps.map(|step| apply(&to_rec709, color(step))).collect() }
+    }
+
+    /// The spectrum of a reflectance, each number within 0..1. A color that no sigmoid has is moved toward gray until one
+    /// has it.
+    pub fn fit(&self, rgb: [f64; 3]) -> Sigmoid {
+        let gray = (rgb.iter().sum::<f64>() / 3.0).clamp(0.0, 1.0);
+        if rgb.iter().all(|&x| x == gray) {
+            return Sigmoid { coefficients: [0.0, 0.0, inverse_sigmoid(gray)], saturation: 1.0 };
+        }
+        let toward = |saturation: f64| rgb.map(|x| gray + saturation * (x - gray));
+        let solved = |saturation: f64| {
+            let (coefficients, residual) = self.solve(toward(saturation), gray);
+            (residual < CLOSE).then_some(Sigmoid { coefficients, saturation })
+        };
+        if let Some(sigmoid) = solved(1.0) {
+            return sigmoid;
+        }
+        let (mut low, mut high) = (0.0, 1.0);
+        let mut best = Sigmoid { coefficients: [0.0, 0.0, inverse_sigmoid(gray)], saturation: 0.0 };
+        for _ in 0..12 {
+            let middle = 0.5 * (low + high);
+            match solved(middle) {
+                Some(sigmoid) => (best, low) = (sigmoid, middle),
+                None => high = middle,
+            }
+        }
+        best
+    }
+
+    /// Damped Gauss-Newton (Levenberg 1944) from gray outward, so that saturated colors start near their solution.
+    fn solve(&self, target: [f64; 3], gray: f64) -> ([f64; 3], f64) {
+        let mut k = [0.0, 0.0, inverse_sigmoid(gray.clamp(0.002, 0.998))];
+        let mut worst = f64::INFINITY;
+        for part in [0.5, 0.9, 1.0] {
+            let goal = target.map(|x| gray + part * (x - gray));
+            let (mut residual, mut slopes) = self.evaluate(k, goal);
+            let mut error = squared(residual);
+            let mut damping = 1e-3;
+            for _ in 0..60 {
+                if error < if part == 1.0 { 1e-20 } else { 1e-6 } {
+                    break;
+                }
+                let step = gauss_newton_step(&slopes, residual, damping);
+                let next: [f64; 3] = std::array::from_fn(|i| k[i] - step[i]);
+                let (next_residual, next_slopes) = self.evaluate(next, goal);
+                let next_error = squared(next_residual);
+                if next_error < error {
+                    (k, residual, slopes, error) = (next, next_residual, next_slopes, next_error);
+                    damping *= 0.2;
+                } else {
+                    damping = (damping * 4.0).min(1e8);
+                }
+            }
+            worst = residual.iter().fold(0.0, |worst: f64, r| worst.max(r.abs()));
+        }
+        (k, worst)
+    }
+
+    /// Color minus goal, and its derivatives by the coefficients.
+    fn evaluate(&self, [a, b, c]: [f64; 3], goal: [f64; 3]) -> ([f64; 3], Matrix) {
+        let (mut residual, mut slopes) = (goal.map(|x| -x), [[0.0; 3]; 3]);
+        for (i, step) in self.steps.iter().enumerate() {
+            let t = i as f64 / (COUNT - 1) as f64;
+            let x = (a * t + b) * t + c;
+            let q = 1.0 / (1.0 + x * x).sqrt();
+            let (value, slope) = (0.5 + 0.5 * x * q, 0.5 * q * q * q);
+            for channel in 0..3 {
+                residual[channel] += step[channel] * value;
+                let weight = step[channel] * slope;
+                (0..3).for_each(|power| slopes[channel][power] += weight * [t * t, t, 1.0][power]);
+            }
+        }
+        (residual, slopes)
+    }
+}
+
+fn squared(v: [f64; 3]) -> f64 {
+    v.iter().map(|x| x * x).sum()
+}
+
+/// The step (J^T J + damping) s = J^T r.
+fn gauss_newton_step(slopes: &Matrix, residual: [f64; 3], damping: f64) -> [f64; 3] {
+    let mut normal: Matrix =
+        std::array::from_fn(|i| std::array::from_fn(|j| (0..3).map(|c| slopes[c][i] * slopes[c][j]).sum()));
+    let right: [f64; 3] = std::array::from_fn(|i| (0..3).map(|c| slopes[c][i] * residual[c]).sum());
+    let trace: f64 = (0..3).map(|i| normal[i][i]).sum();
+    (0..3).for_each(|i| normal[i][i] += damping * trace + 1e-14);
+    apply(&inverse(&normal), right)
+}
+
+/// The x at which the sigmoid has a value; infinite at 0 and 1.
+fn inverse_sigmoid(value: f64) -> f64 {
+    let y = 2.0 * value - 1.0;
+    y / (1.0 - y * y).sqrt()
+}

@@ -1,0 +1,46 @@
+//! The visible range, 360 to 830 nm, in steps of 1 nm: the grid on which color is integrated.
+
+use super::data;
+
+/// The first wavelength, in nm.
+pub const FIRST_NM: f64 = 360.0;
+/// The last wavelength, in nm.
+pub const LAST_NM: f64 = 830.0;
+/// Wavelengths on the grid.
+pub const COUNT: usize = 471;
+
+/// The wavelengths of the grid, in nm.
+pub fn wavelengths() -> impl Iterator<Item = f64> {
+    (0..COUNT).map(|i| FIRST_NM + i as f64)
+}
+
+/// Where a wavelength lies on the grid: the entry at or below it, and the fraction of the step to the next one.
+pub fn place(wavelength_nm: f64) -> (usize, f64) {
+    let at = (wavelength_nm - FIRST_NM).clamp(0.0, (COUNT - 1) as f64);
+    let below = (at as usize).min(COUNT - 2);
+    (below, at - below as f64)
+}
+
+/// The CIE 1931 2 degree color matching functions at a wavelength, linear within a step; 0 outside the visible range.
+pub fn color_matching(wavelength_nm: f64) -> [f64; 3] {
+    if !(FIRST_NM..=LAST_NM).contains(&wavelength_nm) {
+        return [0.0; 3];
+    }
+    let (below, fraction) = place(wavelength_nm);
+    let [a, b] = [0, 1].map(|step| data::color_matching()[below + step]);
+    std::array::from_fn(|i| a[i] + fraction * (b[i] - a[i]))
+}
+
+/// CIE XYZ of a spectrum on the grid: the sum over 1 nm steps (CIE 15:2018, equation 7.1) with k = 1.
+pub fn xyz(spectrum: &[f64]) -> [f64; 3] {
+    let mut sum = [0.0; 3];
+    for (value, cmf) in spectrum.iter().zip(data::color_matching()) {
+        (0..3).for_each(|i| sum[i] += value * cmf[i]);
+    }
+    sum
+}
+
+/// The integral of y-bar over the visible range: Y of a flat spectrum of 1 before it is scaled.
+pub fn luminous() -> f64 {
+    data::color_matching().iter().map(|cmf| cmf[1]).sum()
+}
