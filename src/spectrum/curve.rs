@@ -9,7 +9,7 @@ use serde::de::{Deserializer, Error as _, MapAccess, Visitor};
 use super::Quantity;
 use super::basis::BAND_WAVELENGTHS_NM;
 use super::curve_check::Refusal;
-use super::data::{self, Glass};
+use super::data;
 
 /// A spectrum as it stands in a scene file: a number, a catalog name, or a table with one kind and maybe a `scale`.
 ///
@@ -97,11 +97,9 @@ impl Curve {
                 CurveKind::Name(name) => match quantity {
                     Quantity::MetalIndex | Quantity::MetalExtinction => {
                         let metal = data::metal(name).expect("the compiler checked the metal's name");
-                        let value = if quantity == Quantity::MetalIndex { 1 } else { 2 };
-                        let samples = metal.samples.iter().map(|s| [s.0, [s.0, s.1, s.2][value]]);
-                        interpolate(&samples.collect::<Vec<_>>(), wavelength_nm)
+                        metal.nk(wavelength_nm)[usize::from(quantity == Quantity::MetalExtinction)]
                     }
-                    _ => glass_index(data::glass(name).expect("the compiler checked the glass's name"), wavelength_nm),
+                    _ => data::glass(name).expect("the compiler checked the glass's name").index(wavelength_nm),
                 },
             }
     }
@@ -138,12 +136,6 @@ fn interpolate(samples: &[[f64; 2]], x: f64) -> f64 {
 pub(super) fn sellmeier_squared(b: &[f64], c: &[f64], um: f64) -> f64 {
     let w2 = um * um;
     1.0 + b.iter().zip(c).map(|(b, c)| b * w2 / (w2 - c)).sum::<f64>()
-}
-
-/// A catalog glass; beyond its measured range, the value at the range's end.
-fn glass_index(glass: &Glass, wavelength_nm: f64) -> f64 {
-    let nm = wavelength_nm.clamp(glass.range_nm.0, glass.range_nm.1);
-    sellmeier_squared(glass.b, glass.c, nm * 1e-3).sqrt()
 }
 
 /// Cauchy's A and B (um^2) from n_d and V_d, with the lines C 656.27, d 587.56 and F 486.13 nm.

@@ -63,14 +63,13 @@ fn kind_fits(curve: &Curve, quantity: Quantity) -> Result<(), Refusal> {
         (CurveKind::Name(name), MetalIndex | MetalExtinction) if data::metal(name).is_some() => Ok(()),
         (CurveKind::Name(name), Index) => {
             let other = data::metal(name).map(|metal| format!("a metal: conductor = {{ metal = \"{}\" }}", metal.name));
-            let aliases = data::GLASSES.iter().flat_map(|glass| glass.aliases);
-            Err(unknown(name, "glass", data::glass_names().collect(), aliases, other))
+            Err(unknown(name, "glass", data::known_as(), other))
         }
         (CurveKind::Name(name), MetalIndex | MetalExtinction) => {
             let other =
-                data::glass(name).map(|glass| format!("a glass: dielectric = {{ index = \"{}\" }}", glass.name));
-            let aliases = data::METALS.iter().flat_map(|metal| metal.aliases);
-            Err(unknown(name, "metal", data::metal_names().collect(), aliases, other))
+                data::glass(name).map(|glass| format!("a glass: dielectric = {{ index = \"{}\" }}", glass.name()));
+            let names = data::metals().flat_map(|metal| [vec![metal.name], metal.aliases].concat());
+            Err(unknown(name, "metal", names, other))
         }
         (kind, _) => {
             let message = format!("{} cannot be given by {}", article(quantity), form(kind));
@@ -79,18 +78,12 @@ fn kind_fits(curve: &Curve, quantity: Quantity) -> Result<(), Refusal> {
     }
 }
 
-fn unknown<'a>(
-    name: &str,
-    what: &str,
-    names: Vec<&'a str>,
-    aliases: impl Iterator<Item = &'a &'a str>,
-    other: Option<String>,
-) -> Refusal {
-    let near = crate::error::nearest(name, names.iter().copied().chain(aliases.copied()));
+fn unknown<'a>(name: &str, what: &str, names: impl Iterator<Item = &'a str>, other: Option<String>) -> Refusal {
+    let near = crate::error::nearest(name, names);
     let help = match (other, near) {
         (Some(other), _) => format!("it is {other}"),
         (None, Some(near)) => format!("did you mean \"{near}\"?"),
-        (None, None) => format!("known names: {}", names.join(", ")),
+        (None, None) => format!("`render catalog {what}` lists the known names"),
     };
     Refusal::new(format!("there is no {what} named {name:?}")).help(help)
 }

@@ -4,7 +4,7 @@ mod basis;
 mod color;
 mod curve;
 mod curve_check;
-mod data;
+pub mod data;
 mod draw;
 mod lanes;
 mod response;

@@ -1,31 +1,26 @@
-//! Measured optical data, looked up by name.
+//! Measured optical data, looked up by name. Written by `tools/tabulate.py`.
 
-mod glasses;
-mod metals;
+mod color;
+mod glass;
+mod metal;
+mod rows;
+#[cfg(test)]
+mod tests;
 
-pub use glasses::{GLASSES, Glass};
-pub use metals::{METALS, Metal};
+pub use color::{Illuminant, Reflectance, color_matching, illuminant, illuminants, reflectance, reflectances};
+pub use glass::{Formula, GLASS_MAKERS, Glass, glass, glass_makers, glass_names, glasses, known_as};
+pub use metal::{Metal, metal, metal_names, metals};
 
-/// The glass of that name or alias, whatever the case of its letters.
-pub fn glass(name: &str) -> Option<&'static Glass> {
-    GLASSES.iter().find(|glass| is_called(name, glass.name, glass.aliases))
-}
-
-/// The metal of that name or alias, whatever the case of its letters.
-pub fn metal(name: &str) -> Option<&'static Metal> {
-    METALS.iter().find(|metal| is_called(name, metal.name, metal.aliases))
-}
-
-/// The names of all glasses.
-pub fn glass_names() -> impl Iterator<Item = &'static str> {
-    GLASSES.iter().map(|glass| glass.name)
-}
-
-/// The names of all metals.
-pub fn metal_names() -> impl Iterator<Item = &'static str> {
-    METALS.iter().map(|metal| metal.name)
-}
-
-fn is_called(asked: &str, name: &str, aliases: &[&str]) -> bool {
-    name.eq_ignore_ascii_case(asked) || aliases.iter().any(|alias| alias.eq_ignore_ascii_case(asked))
+/// Linear between samples (x, values), flat beyond the ends.
+fn interpolate<const N: usize>(samples: &[[f64; N]], x: f64) -> [f64; N] {
+    let after = samples.partition_point(|sample| sample[0] < x);
+    if after == 0 {
+        return samples[0];
+    }
+    let Some(high) = samples.get(after) else {
+        return samples[samples.len() - 1];
+    };
+    let low = samples[after - 1];
+    let t = (x - low[0]) / (high[0] - low[0]);
+    std::array::from_fn(|i| low[i] + (high[i] - low[i]) * t)
 }

@@ -1,0 +1,185 @@
+//! Clear materials: glasses of the makers, crystals, gems, liquids, plastics and gases.
+
+use super::interpolate;
+use super::rows::{Row, Rows, fields, has_alias, key_of, names, number, numbers, samples};
+
+const ROWS: Rows = Rows::new(include_str!("glasses.txt"));
+
+/// What is not sold as an optical glass: what the keys begin with, in the order in which a bare name is looked up.
+const COMMON: [&str; 6] = ["crystal", "gem", "liquid", "glass", "plastic", "gas"];
+/// Who makes optical glass: what the keys begin with, in the order in which a bare name is looked up.
+pub const GLASS_MAKERS: [&str; 6] = ["schott", "ohara", "hoya", "cdgm", "hikari", "sumita"];
+
+/// Fraunhofer's lines F, d and C in nm.
+const LINES_NM: [f64; 3] = [486.1327, 587.5618, 656.2725];
+
+/// A clear material.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Glass {
+    /// Its full name: `maker/NAME`, or `liquid/water`.
+    pub key: &'static str,
+    /// Other names of the same data.
+    pub aliases: Vec<&'static str>,
+    /// Who published the index.
+    pub source: &'static str,
+    /// The wavelengths in nm between which the index is known.
+    pub range_nm: (f64, f64),
+    /// The index.
+    pub formula: Formula,
+    /// (wavelength in nm, k), ascending; empty if not known.
+    pub extinction: Vec<[f64; 2]>,
+    /// The index at 587.56 nm that the maker states.
+    pub stated_nd: Option<f64>,
+    /// The Abbe number that the maker states.
+    pub stated_vd: Option<f64>,
+}
+
+/// A dispersion formula of refractiveindex.info with its coefficients C1, C2, ...; w is the wavelength in um.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Formula {
+    /// 1: n^2 - 1 = C1 + sum of C2 w^2 / (w^2 - C3^2).
+    Sellmeier(Vec<f64>),
+    /// 2: n^2 - 1 = C1 + sum of C2 w^2 / (w^2 - C3).
+    SellmeierSquared(Vec<f64>),
+    /// 3: n^2 = C1 + sum of C2 w^C3.
+    Polynomial(Vec<f64>),
+    /// 4: n^2 = C1 + C2 w^C3 / (w^2 - C4^C5) + C6 w^C7 / (w^2 - C8^C9) + sum of C10 w^C11.
+    Poles(Vec<f64>),
+    /// 5: n = C1 + sum of C2 w^C3.
+    Cauchy(Vec<f64>),
+    /// 6: n - 1 = C1 + sum of C2 / (C3 - w^-2).
+    Gas(Vec<f64>),
+    /// (wavelength in nm, n), ascending; linear between, flat beyond the ends.
+    Tabulated(Vec<[f64; 2]>),
+}
+
+impl Formula {
+    fn read(kind: &str, text: &str) -> Self {
+        match kind {
+            "1" => Self::Sellmeier(numbers(text)),
+            "2" => Self::SellmeierSquared(numbers(text)),
+            "3" => Self::Polynomial(numbers(text)),
+            "4" => Self::Poles(numbers(text)),
+            "5" => Self::Cauchy(numbers(text)),
+            "6" => Self::Gas(numbers(text)),
+            _ => Self::Tabulated(samples(text)),
+        }
+    }
+
+    /// The index at a wavelength.
+    pub fn index(&self, nm: f64) -> f64 {
+        let w = nm * 1e-3;
+        let w2 = w * w;
+        let sum = |c: &[f64], term: &dyn Fn(f64, f64) -> f64| {
+            c[0] + c[1..].chunks_exact(2).map(|pair| term(pair[0], pair[1])).sum::<f64>()
+        };
+        match self {
+            Self::Sellmeier(c) => (1.0 + sum(c, &|b, c| b * w2 / (w2 - c * c))).sqrt(),
+            Self::SellmeierSquared(c) => (1.0 + sum(c, &|b, c| b * w2 / (w2 - c))).sqrt(),
+            Self::Polynomial(c) => sum(c, &|b, power| b * w.powf(power)).sqrt(),
+            Self::Poles(c) => {
+                let (poles, powers) = c[1..].split_at((c.len() - 1).min(8));
+                let pole = |p: &[f64]| p[0] * w.powf(p[1]) / (w2 - p[2].powf(p[3]));
+                let powers = powers.chunks_exact(2).map(|p| p[0] * w.powf(p[1])).sum::<f64>();
+                (c[0] + poles.chunks_exact(4).map(pole).sum::<f64>() + powers).sqrt()
+            }
+            Self::Cauchy(c) => sum(c, &|b, power| b * w.powf(power)),
+            Self::Gas(c) => 1.0 + sum(c, &|b, c| b / (c - 1.0 / w2)),
+            Self::Tabulated(samples) => interpolate(samples, nm)[1],
+        }
+    }
+}
+
+impl Glass {
+    fn read(row: Row) -> Self {
+        let mut rest = fields(row);
+        let mut field = || rest.next().unwrap_or_default();
+        let (key, aliases, kind, range, formula) = (field(), names(field()).collect(), field(), field(), field());
+        let (extinction, stated_nd, stated_vd) = (samples(field()), field(), field());
+        let (low, high) = range.split_once(' ').unwrap_or_default();
+        let stated = |text: &str| (!text.is_empty()).then(|| number(text));
+        Self {
+            key,
+            aliases,
+            range_nm: (number(low), number(high)),
+            formula: Formula::read(kind, formula),
+            extinction,
+            stated_nd: stated(stated_nd),
+            stated_vd: stated(stated_vd),
+            source: field(),
+        }
+    }
+
+    /// Its name without the maker.
+    pub fn name(&self) -> &'static str {
+        bare(self.key)
+    }
+
+    /// The index; beyond the known wavelengths, the value at their end.
+    pub fn index(&self, nm: f64) -> f64 {
+        self.formula.index(nm.clamp(self.range_nm.0, self.range_nm.1))
+    }
+
+    /// The extinction k, if it is known; linear between its samples, flat beyond the ends.
+    pub fn extinction(&self, nm: f64) -> Option<f64> {
+        (!self.extinction.is_empty()).then(|| interpolate(&self.extinction, nm)[1])
+    }
+
+    /// The index at 587.56 nm.
+    pub fn n_d(&self) -> f64 {
+        self.index(LINES_NM[1])
+    }
+
+    /// The Abbe number (n_d - 1) / (n_F - n_C).
+    pub fn v_d(&self) -> f64 {
+        let [f, d, c] = LINES_NM.map(|nm| self.index(nm));
+        (d - 1.0) / (f - c)
+    }
+}
+
+/// The glass of that name, whatever the case of its letters.
+///
+/// `maker/NAME` is one glass. A bare name is looked up among crystals, gems, liquids, common glasses, plastics and
+/// gases, then among their aliases, then at Schott, Ohara, Hoya, CDGM, Hikari and Sumita, and is the first found.
+pub fn glass(name: &str) -> Option<Glass> {
+    rows_called(name).next().map(Glass::read)
+}
+
+/// The keys of all glasses that a name stands for, in the order in which they are looked up.
+pub fn glass_makers(name: &str) -> Vec<&'static str> {
+    rows_called(name).map(key_of).collect()
+}
+
+fn rows_called(name: &str) -> impl Iterator<Item = Row> {
+    let exact = ROWS.find(name);
+    let keyed = move |group: &&str| ROWS.find(&format!("{group}/{name}"));
+    let aliased = || common_rows().find(|row| has_alias(row, name));
+    let common = COMMON.iter().find_map(|group| keyed(&group)).or_else(aliased);
+    exact.into_iter().chain(common).chain(GLASS_MAKERS.iter().filter_map(move |maker| keyed(&maker)))
+}
+
+fn common_rows() -> impl Iterator<Item = Row> {
+    COMMON.iter().flat_map(|group| ROWS.starting_with(group))
+}
+
+/// Every glass, in the order of the keys.
+pub fn glasses() -> impl Iterator<Item = Glass> {
+    ROWS.all().map(Glass::read)
+}
+
+/// The keys of all glasses.
+pub fn glass_names() -> impl Iterator<Item = &'static str> {
+    ROWS.all().map(key_of)
+}
+
+/// Every name that stands for a glass: bare names and aliases first, then keys.
+pub fn known_as() -> impl Iterator<Item = &'static str> {
+    let aliases = common_rows().flat_map(|row| names(fields(row).nth(1).unwrap_or_default()));
+    let makers = GLASS_MAKERS.iter().flat_map(|maker| ROWS.starting_with(maker));
+    aliases.chain(common_rows().chain(makers).map(|row| bare(key_of(row)))).chain(glass_names())
+}
+
+/// A key without its maker.
+pub fn bare(key: &str) -> &str {
+    key.split_once('/').map_or(key, |(_, name)| name)
+}
