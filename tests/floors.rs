@@ -10,7 +10,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Modules of the command, which stands above all floors.
-const COMMAND: [&str; 4] = ["main", "cli", "messages", "progress"];
+const COMMAND: [&str; 5] = ["main", "catalog", "cli", "messages", "progress"];
 /// What `lib.rs` hands on from the room `error`.
 const ERRORS: [&str; 5] = ["Diagnostic", "Error", "Result", "nearest", "error"];
 /// Most lines of a file, but for tables of data.

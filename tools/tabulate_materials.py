@@ -4,16 +4,20 @@ from typing import NamedTuple
 
 
 class Material(NamedTuple):
-    """A material: its key, its page in the database, its other names; its source, where the page has none to cite."""
+    """A material: its key, its page in the database, its other names; its source, where the page has none to cite.
+
+    A second page may give the absorption that the first lacks.
+    """
 
     key: str
     page: str
     aliases: tuple[str, ...] = ()
     source: str = ""
+    absorption: str = ""
 
 
-def material(key, page, *aliases, source=""):
-    return Material(key, page, aliases, source)
+def material(key, page, *aliases, source="", absorption=""):
+    return Material(key, page, aliases, source, absorption)
 
 
 def axes(key, page, *aliases, first="o", rest="e"):
@@ -113,7 +117,6 @@ CLEAR = [
     material("glass/soda-lime grey", "glass/misc/soda-lime/nk/Rubin-grey"),
     material("glass/soda-lime low-iron", "glass/misc/soda-lime/nk/Rubin-lowiron"),
     material("glass/ZBLAN", "glass/misc/ZBLAN/nk/Gan"),
-    material("liquid/absorbing water", "main/H2O/nk/Hale"),
     material("liquid/acetic acid", "organic/C2H4O2 - acetic acid/nk/El-Kashef"),
     material("liquid/acetone", "organic/C3H6O - acetone/nk/Rheims"),
     material("liquid/acetonitrile", "organic/C2H3N - acetonitrile/nk/Moutzouris"),
@@ -153,7 +156,7 @@ CLEAR = [
     material("liquid/styrene", "organic/C8H8 - styrene/nk/Sultanova"),
     material("liquid/tetrahydrofuran", "organic/C4H8O - tetrahydrofuran/nk/Li"),
     material("liquid/toluene", "organic/C7H8 - toluene/nk/Moutzouris"),
-    material("liquid/water", "main/H2O/nk/Daimon-20.0C", "H2O", source=WATER),
+    material("liquid/water", "main/H2O/nk/Daimon-20.0C", "H2O", source=WATER, absorption="main/H2O/nk/Hale"),
     material("liquid/xylene", "organic/C8H10 - xylene/nk/Chang"),
     material("plastic/cellulose", "organic/(C6H10O5)n - cellulose/nk/Sultanova"),
     material("plastic/NAS-21", "other/commercial polymers/NAS-21/nk/Sultanova"),

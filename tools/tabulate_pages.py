@@ -112,8 +112,11 @@ def clear_line(entry):
         return None
     properties = page(entry.page).get("PROPERTIES", {})
     stated = [number(properties[name]) if name in properties else "" for name in ("nd", "Vd")]
-    named = [entry.key, ",".join(entry.aliases)]
-    return "|".join([*named, *index_of(blocks[0]), extinction_of(blocks), *stated, source(entry.page, entry.source)])
+    named, credits = [entry.key, ",".join(entry.aliases)], source(entry.page, entry.source)
+    if entry.absorption:
+        blocks = [blocks[0], *page(entry.absorption)["DATA"]]
+        credits += f"; absorption: {source(entry.absorption)}"
+    return "|".join([*named, *index_of(blocks[0]), extinction_of(blocks), *stated, credits])
 
 
 def metal_line(entry):
