@@ -7,6 +7,8 @@ use abbe::scene::RenderText;
 use abbe::{Error, Result};
 use clap::Parser;
 
+use crate::catalog::Query;
+
 const EXAMPLES: &str = "\
 Examples:
   render --exr scenes/prism.toml                  write ./prism.exr
@@ -15,6 +17,7 @@ Examples:
   render --plan scenes/prism.toml                 say what it would do, and why
   render --check scenes/prism.toml                find mistakes in the scene
   render --samples 16 --exr scenes/prism.toml     take a quick look
+  render catalog --help                           see which glasses it knows
 
 Exit codes: 0 done, 1 the render or a file failed, 2 bad arguments or scene.";
 
@@ -66,7 +69,7 @@ fn seed(text: &str) -> std::result::Result<u64, String> {
     text.parse().map_err(|_| format!("a seed is a whole number from 0 to {}", u64::MAX))
 }
 
-/// What the command line asks for.
+/// A scene and what is wanted of it.
 pub struct Job {
     pub scene: PathBuf,
     pub output: Output,
@@ -83,9 +86,21 @@ pub enum Output {
     Check,
 }
 
+/// What is asked for.
+pub enum Request {
+    Render(Job),
+    Catalog(Query),
+}
+
 /// Reads the command line; prints help, version and clap's own errors by itself and exits.
-pub fn parse() -> Result<Job> {
-    let arguments = Arguments::parse();
+pub fn parse() -> Result<Request> {
+    if std::env::args_os().nth(1).is_some_and(|first| first == "catalog") {
+        return Ok(Request::Catalog(Query::parse_from(std::env::args_os().skip(1))));
+    }
+    job(Arguments::parse()).map(Request::Render)
+}
+
+fn job(arguments: Arguments) -> Result<Job> {
     let idle = [("--plan", arguments.plan), ("--check", arguments.check)].into_iter().find(|(_, asked)| *asked);
     let (scene, exr) = scene_and_image(arguments.scene, arguments.exr, idle.map(|(flag, _)| flag))?;
     if !arguments.exposure.is_finite() {

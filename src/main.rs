@@ -1,5 +1,6 @@
 //! The `render` command: read, compile, plan, render, write.
 
+mod catalog;
 mod cli;
 mod messages;
 mod progress;
@@ -14,11 +15,14 @@ use abbe::scene::{Scene, Source, compile};
 use abbe::spectrum::Curve;
 use abbe::trace::{World, render};
 
-use cli::{Job, Output};
+use cli::{Job, Output, Request};
 
 fn main() -> ExitCode {
-    let job = cli::parse();
-    match job.and_then(|job| run(&job)) {
+    let answered = cli::parse().and_then(|request| match request {
+        Request::Render(job) => run(&job),
+        Request::Catalog(query) => catalog::lines(&query).map(|lines| messages::answer(&lines)),
+    });
+    match answered {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             messages::print_error(&error);

@@ -1,0 +1,142 @@
+//! `render catalog`: which glasses, metals, illuminants and reflectances a scene can name.
+
+use abbe::spectrum::data::{self, GLASS_MAKERS, Glass};
+use abbe::{Error, Result};
+use clap::Parser;
+
+const HELP: &str = "\
+Words are looked for in names, other names and makers, whatever their case; all of them must be found. \
+Among the glasses of the makers, flint finds those with V_d below 50, crown the others.
+
+A line holds, of a glass: name, n_d, V_d, known wavelengths, whether absorption is known, source; \
+of a metal: name, other names, measured wavelengths, source; of the others: name, tabulated wavelengths, source.
+
+Examples:
+  render catalog glass                 list every glass
+  render catalog glass schott flint    the flints of one maker
+  render catalog metal silver          one metal
+  render catalog d65                   whatever is called that
+
+Exit codes: 0 something was found, 2 nothing was.";
+
+/// List or search the glasses, metals, illuminants and reflectances that a scene can name.
+#[derive(Parser)]
+#[command(name = "render catalog", bin_name = "render catalog", after_help = HELP)]
+pub struct Query {
+    /// One of glass, metal, illuminant, reflectance, to list only those; then words to search for
+    words: Vec<String>,
+}
+
+/// A kind of entry: what it is called, its lines, and the names of all that it has.
+type Kind = (&'static str, fn(&[String]) -> Vec<Vec<String>>, fn() -> Vec<&'static str>);
+
+const KINDS: [Kind; 4] = [
+    ("glass", glass_lines, || data::known_as().collect()),
+    ("metal", metal_lines, || data::metals().flat_map(|metal| [vec![metal.name], metal.aliases].concat()).collect()),
+    ("illuminant", illuminant_lines, || data::illuminants().map(|light| light.name).collect()),
+    ("reflectance", reflectance_lines, || data::reflectances().map(|chip| chip.name).collect()),
+];
+
+/// The lines that answer a query.
+///
+/// # Errors
+/// Nothing is found; the help holds the nearest names.
+pub fn lines(query: &Query) -> Result<Vec<String>> {
+    let mut words: Vec<_> = query.words.iter().map(|word| word.to_lowercase()).collect();
+    let one = words.first().and_then(|word| KINDS.iter().position(|(kind, ..)| kind == word));
+    let kinds = one.map_or(&KINDS[..], |i| &KINDS[i..=i]);
+    words.drain(..usize::from(one.is_some()));
+    let found: Vec<_> = kinds.iter().flat_map(|(_, lines, _)| aligned(&lines(&words))).collect();
+    if !found.is_empty() {
+        return Ok(found);
+    }
+    let what = one.map_or("entry", |i| KINDS[i].0);
+    let wanted = words.join(" ");
+    let near = nearest(&wanted, kinds.iter().flat_map(|(_, _, names)| names()).collect());
+    let message = format!("the catalog has no {what} that matches {wanted:?}");
+    Err(Error::Arguments { message, help: Some(format!("the nearest names are {near}")) })
+}
+
+/// The three names that differ least from what is wanted.
+fn nearest(wanted: &str, mut names: Vec<&str>) -> String {
+    names.sort_by_cached_key(|name| (strsim::damerau_levenshtein(wanted, &name.to_lowercase()), *name));
+    names.dedup();
+    names[..names.len().min(3)].join(", ")
+}
+
+/// Whether every word is in one of the names, or is said of the entry.
+fn matches(words: &[String], names: &[&str], said: &str) -> bool {
+    let names: Vec<_> = names.iter().map(|name| name.to_lowercase()).collect();
+    words.iter().all(|word| word == said || names.iter().any(|name| name.contains(word)))
+}
+
+/// What opticians call the glass of a maker.
+fn family(glass: &Glass) -> &'static str {
+    let maker = glass.key.split('/').next().unwrap_or_default();
+    match glass.v_d() < 50.0 {
+        _ if !GLASS_MAKERS.contains(&maker) => "",
+        true => "flint",
+        false => "crown",
+    }
+}
+
+fn glass_lines(words: &[String]) -> Vec<Vec<String>> {
+    let found = data::glasses().filter(|glass| {
+        let names = [vec![glass.key], glass.aliases.clone()].concat();
+        matches(words, &names, family(glass))
+    });
+    let line = |glass: Glass| {
+        let absorption = if glass.extinction.is_empty() { "-" } else { "absorption" };
+        vec![
+            glass.key.into(),
+            format!("{:.5}", glass.n_d()),
+            format!("{:6.2}", glass.v_d()),
+            range(glass.range_nm.0, glass.range_nm.1),
+            absorption.into(),
+            glass.source.into(),
+        ]
+    };
+    found.map(line).collect()
+}
+
+fn metal_lines(words: &[String]) -> Vec<Vec<String>> {
+    let found = data::metals().filter(|metal| matches(words, &[vec![metal.name], metal.aliases.clone()].concat(), ""));
+    let line = |metal: data::Metal| {
+        let (first, last) = (metal.samples[0][0], metal.samples[metal.samples.len() - 1][0]);
+        vec![metal.name.into(), metal.aliases.join(", "), range(first, last), metal.source.into()]
+    };
+    found.map(line).collect()
+}
+
+fn illuminant_lines(words: &[String]) -> Vec<Vec<String>> {
+    let found = data::illuminants().filter(|light| matches(words, &[light.name], ""));
+    let line = |light: data::Illuminant| {
+        let last = light.start_nm + light.step_nm * (light.values.len() - 1) as f64;
+        vec![light.name.into(), range(light.start_nm, last), light.source.into()]
+    };
+    found.map(line).collect()
+}
+
+fn reflectance_lines(words: &[String]) -> Vec<Vec<String>> {
+    let found = data::reflectances().filter(|chip| matches(words, &[chip.name], ""));
+    let line = |chip: data::Reflectance| {
+        let last = chip.start_nm + chip.step_nm * (chip.values.len() - 1) as f64;
+        vec![chip.name.into(), range(chip.start_nm, last), chip.source.into()]
+    };
+    found.map(line).collect()
+}
+
+fn range(low: f64, high: f64) -> String {
+    format!("{low:.0}-{high:.0} nm")
+}
+
+/// The cells of each line as one text, every column as wide as its widest cell.
+fn aligned(lines: &[Vec<String>]) -> Vec<String> {
+    let width = |column: usize| lines.iter().map(|cells| cells[column].chars().count()).max().unwrap_or(0);
+    let widths: Vec<_> = (0..lines.first().map_or(0, Vec::len)).map(width).collect();
+    let line = |cells: &Vec<String>| {
+        let padded: Vec<_> = cells.iter().zip(&widths).map(|(cell, &width)| format!("{cell:width$}")).collect();
+        padded.join("  ").trim_end().to_owned()
+    };
+    lines.iter().map(line).collect()
+}
