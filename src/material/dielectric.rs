@@ -63,25 +63,37 @@ impl Dielectric<Table> {
         let pairs: [(f64, f64); N] = std::array::from_fn(|i| (arrival.incident[i], arrival.beyond[i]));
         let cos = arrival.wo.dot(arrival.normal);
         let (tint, reflectance) = (arrival.read(&self.transmittance), arrival.read(&self.reflectance));
-        let tint = if arrival.is_dispersive() { tint * arrival.draw.parting() } else { tint };
+        let parts = arrival.parts();
+        let tint = if parts { tint * arrival.draw.parting() } else { tint };
         let (mut reflected, mut polarization) = (Lanes::ZERO, 0.0);
+        let mut crossed: Option<Branch<N>> = None;
         for ((n1, n2), lanes) in arrival.present.groups_by(pairs) {
             let crosses = lanes * tint;
-            if n1 == n2 {
+            let branch = if n1 == n2 {
                 // Nothing happens at all: the direction keeps its bits.
-                branches.push(crossing(-arrival.wo, crosses, 1.0, 0.0));
-                continue;
-            }
-            let interface = Interface::new(n1, n2, cos);
-            reflected += lanes * reflectance * interface.reflectance as f32;
-            polarization = interface.polarization_reflected;
-            if interface.transmittance > 0.0 && !crosses.is_zero() {
+                crossing(-arrival.wo, crosses, 1.0, 0.0)
+            } else {
+                let interface = Interface::new(n1, n2, cos);
+                reflected += lanes * reflectance * interface.reflectance as f32;
+                polarization = interface.polarization_reflected;
+                if interface.transmittance == 0.0 || crosses.is_zero() {
+                    continue;
+                }
                 let eta_scale = (n1 / n2) * (n1 / n2);
                 let share = crosses * (interface.transmittance * eta_scale) as f32;
-                let wi = interface.refract(arrival.wo, arrival.normal);
-                branches.push(crossing(wi, share, eta_scale, interface.polarization_refracted));
+                crossing(
+                    interface.refract(arrival.wo, arrival.normal),
+                    share,
+                    eta_scale,
+                    interface.polarization_refracted,
+                )
+            };
+            match &mut crossed {
+                Some(first) if !parts => first.share += branch.share,
+                _ => branches.extend(crossed.replace(branch)),
             }
         }
+        branches.extend(crossed);
         if !reflected.is_zero() {
             let wi = reflect(arrival.wo, arrival.normal);
             let polarization = polarization as f32;

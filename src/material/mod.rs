@@ -54,6 +54,8 @@ pub struct Arrival<'a, const N: usize> {
     pub incident: [f64; N],
     /// Refractive index beyond the surface, per lane; the same as `incident` where no medium begins or ends.
     pub beyond: [f64; N],
+    /// Lanes whose refracted rays lie within this angle of each other, in radians, go on as one.
+    pub together: f64,
 }
 
 impl<const N: usize> Arrival<'_, N> {
@@ -63,8 +65,23 @@ impl<const N: usize> Arrival<'_, N> {
     }
 
     /// Whether light that crosses the surface goes different ways in different lanes.
-    pub fn is_dispersive(&self) -> bool {
-        (1..N).any(|i| self.incident[i] != self.incident[0] || self.beyond[i] != self.beyond[0])
+    pub fn parts(&self) -> bool {
+        let same = |i: usize| self.incident[i] == self.incident[0] && self.beyond[i] == self.beyond[0];
+        !(1..N).all(same) && !(self.together > 0.0 && self.is_one_way())
+    }
+
+    /// Whether the outermost refracted rays lie within `together`. All lanes of a draw are asked, on this ray or not, so
+    /// that what becomes of a surface does not depend on what was absorbed before.
+    fn is_one_way(&self) -> bool {
+        let cos = self.wo.dot(self.normal).clamp(0.0, 1.0);
+        let ratio = |i: usize| self.incident[i] / self.beyond[i];
+        let (least, most) = (0..N).map(ratio).fold((f64::INFINITY, 0.0_f64), |(l, m), x| (l.min(x), m.max(x)));
+        let [a, b] = [least, most].map(|eta| {
+            let sin = eta * (1.0 - cos * cos).sqrt();
+            [sin, (1.0 - sin * sin).max(0.0).sqrt()]
+        });
+        // sin(a - b), for rays that cross.
+        a[1] > 0.0 && b[1] > 0.0 && (b[0] * a[1] - a[0] * b[1]).abs() <= self.together
     }
 }
 

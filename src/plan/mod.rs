@@ -30,6 +30,10 @@ const SPLIT: f64 = 0.05;
 /// Weight below which paths are ended at random.
 const ROULETTE: f64 = 0.05;
 
+/// Refracted rays that lie nearer to each other, in pixels, go on as one where wavelengths are drawn: a twentieth of the
+/// dispersion that can be seen, so that several surfaces in a row stay below it.
+const TOGETHER_PIXELS: f64 = 0.01;
+
 /// Decides how to render a scene.
 pub fn plan(scene: &Scene<Curve>) -> Plan {
     let Model { basis, mut because, next } = model::model(scene);
@@ -42,7 +46,8 @@ pub fn plan(scene: &Scene<Curve>) -> Plan {
     };
     because.extend(lights(scene));
     let diffuse_bounces = scene.render.diffuse_bounces.unwrap_or(u32::MAX);
-    let method = Method { basis, transport, samples, seed: scene.render.seed, diffuse_bounces };
+    let together = if basis.draws_wavelengths() { TOGETHER_PIXELS * scene.camera.pixel_angle() } else { 0.0 };
+    let method = Method { basis, transport, together, samples, seed: scene.render.seed, diffuse_bounces };
     because.extend(cost(scene, &method, next));
     Plan { method, because }
 }

@@ -113,7 +113,8 @@ fn dispersion(scene: &Scene<Curve>) -> Option<Spread> {
     let basis = Basis::wavelengths(scene.film.color_space, COLORS_NM.into(), &[]);
     let transport = Transport::Random { split: 1.0, roulette: 0.0 };
     let diffuse_bounces = scene.render.diffuse_bounces.unwrap_or(u32::MAX);
-    Some(spread(&World::new(scene, Method { basis, transport, samples: 1, seed: scene.render.seed, diffuse_bounces })))
+    let seed = scene.render.seed;
+    Some(spread(&World::new(scene, Method { basis, transport, together: 0.0, samples: 1, seed, diffuse_bounces })))
 }
 
 fn spoken(spread: &Spread, visible: bool, hero: bool) -> String {

@@ -75,6 +75,11 @@ impl Camera {
         [[x.x, y.x, z.x, 0.0], [x.y, y.y, z.y, 0.0], [x.z, y.z, z.z, 0.0], [shift[0], shift[1], shift[2], 1.0]]
     }
 
+    /// The angle of a pixel in the middle of the image, in radians.
+    pub fn pixel_angle(&self) -> f64 {
+        2.0 * self.half.x / self.size.x
+    }
+
     /// Width of the image in the plane one unit before the camera.
     pub fn screen_window_width(&self) -> f64 {
         2.0 * self.half.x

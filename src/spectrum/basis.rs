@@ -20,6 +20,7 @@ pub struct Basis {
     /// Where the fixed lanes read an index, in nm, one per bin.
     wavelengths_nm: Vec<f64>,
     heroes: Option<(usize, Arc<Mixture>)>,
+    collapses: bool,
     keeps_together: bool,
 }
 
@@ -85,6 +86,13 @@ impl Basis {
         Self { heroes: Some((heroes, Arc::new(Mixture::new(lights)))), ..self }
     }
 
+    /// For comparison only: four wavelengths drawn independently from sample to sample, of which one goes on where lanes
+    /// part. Pharr, Jakob & Humphreys 2023, *Physically Based Rendering*, sections 4.5.4 and 9.5.
+    pub fn collapsing(space: ColorSpace) -> Self {
+        let heroes = Some((4, Arc::new(Mixture::visible())));
+        Self { heroes, collapses: true, ..Self::wavelengths(space, vec![550.0], &[]) }
+    }
+
     /// The same lanes, read at one wavelength by every index, but for those that are written as `rgb`.
     pub fn kept_together(self) -> Self {
         Self { keeps_together: true, ..self }
@@ -92,7 +100,7 @@ impl Basis {
 
     fn new(space: ColorSpace, lanes: LaneKind, wavelengths_nm: Vec<f64>) -> Self {
         let upsampler = Arc::new(Upsampler::new(space));
-        Self { space, upsampler, lanes, wavelengths_nm, heroes: None, keeps_together: false }
+        Self { space, upsampler, lanes, wavelengths_nm, heroes: None, collapses: false, keeps_together: false }
     }
 
     /// The model's name, as it is recorded in a file.
@@ -102,6 +110,9 @@ impl Basis {
             (LaneKind::Rgb, _) => "rgb".into(),
             (LaneKind::Prefiltered(_), _) => "rgb, Rec.2020 prefiltered by the light".into(),
             (LaneKind::Wavelengths(_), None) => format!("bands {lanes}"),
+            (LaneKind::Wavelengths(_), Some((heroes, _))) if self.collapses => {
+                format!("{heroes} wavelengths that collapse")
+            }
             (LaneKind::Wavelengths(_), Some((heroes, _))) => format!("hero {lanes} + {heroes}"),
         }
     }
@@ -139,13 +150,20 @@ impl Basis {
     /// The lanes of a camera sample, for a random number in 0..1.
     pub fn draw<const N: usize>(&self, u: f64) -> Draw<N> {
         let Some((count, mixture)) = &self.heroes else { return Draw::fixed(self.fixed_lanes()) };
+        // The last digits of a well spread number are not spread at all.
+        let u = if self.collapses { (u * 4096.0).fract() } else { u };
         // Rotated by equal steps (Wilkie et al. 2014, *Hero Wavelength Spectral Sampling*, equation 13).
         let mut heroes = [Default::default(); MAX_HEROES];
         for (i, hero) in heroes[..*count].iter_mut().enumerate() {
             let rotated = u + i as f64 / *count as f64;
             *hero = mixture.draw(if rotated < 1.0 { rotated } else { rotated - 1.0 }, *count);
         }
-        Draw::with_heroes(self.fixed_lanes(), &heroes[..*count])
+        let heroes = &heroes[..*count];
+        if self.collapses {
+            Draw::collapsing(self.fixed_lanes(), heroes)
+        } else {
+            Draw::with_heroes(self.fixed_lanes(), heroes)
+        }
     }
 
     /// A checked curve, read onto the bins. An emission of wavelengths is an even table: its colors are in its response.

@@ -58,6 +58,19 @@ impl Mixture {
         Self { cumulative, lines }
     }
 
+    /// The density of pbrt-v4, sech^2(0.0072 (w - 538)) (Radziszewski, Boryczko & Alda 2009, *An Improved Technique for
+    /// Full Spectral Rendering*).
+    pub(super) fn visible() -> Self {
+        let density = |nm: f64| libm::pow(libm::cosh(0.0072 * (nm + 0.5 - 538.0)), -2.0);
+        let mut cumulative: Vec<f64> = visible::wavelengths().take(COUNT - 1).map(density).collect();
+        for i in 1..cumulative.len() {
+            cumulative[i] += cumulative[i - 1];
+        }
+        let total = cumulative[COUNT - 2];
+        cumulative.iter_mut().for_each(|x| *x /= total);
+        Self { cumulative, lines: Vec::new() }
+    }
+
     /// The ideal lines, in nm, as they follow the visible grid on the fine grid of every table.
     pub(super) fn lines(&self) -> &[f64] {
         &self.lines

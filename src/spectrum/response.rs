@@ -33,8 +33,8 @@ impl Response {
 
     /// The film's red, green and blue of light that arrives in lanes; `parted` says whether they parted on the way.
     pub fn sensor<const N: usize>(&self, draw: &Draw<N>, lanes: Lanes<N>, parted: bool) -> [f64; 3] {
-        if parted && draw.heroes().next().is_some() {
-            return self.heroes(draw, lanes);
+        if let Some(factor) = draw.hero_factor(parted) {
+            return self.heroes(draw, lanes, factor);
         }
         // Four sums side by side, so that the processor need not wait for each addition.
         std::array::from_fn(|channel| {
@@ -47,10 +47,10 @@ impl Response {
         })
     }
 
-    fn heroes<const N: usize>(&self, draw: &Draw<N>, lanes: Lanes<N>) -> [f64; 3] {
+    fn heroes<const N: usize>(&self, draw: &Draw<N>, lanes: Lanes<N>, factor: f64) -> [f64; 3] {
         let mut sensor = [0.0; 3];
         for (hero, lane) in draw.heroes().zip(draw.fixed_lanes()..) {
-            let weight = hero.factor * f64::from(lanes[lane]);
+            let weight = factor * hero.factor * f64::from(lanes[lane]);
             if weight != 0.0 {
                 let (a, b) = (self.fine[hero.below], self.fine[hero.below + 1]);
                 (0..3).for_each(|c| sensor[c] += weight * (a[c] + hero.fraction * (b[c] - a[c])));

@@ -7,6 +7,8 @@ pub struct Method {
     pub basis: Basis,
     /// Which branches are followed.
     pub transport: Transport,
+    /// Lanes whose refracted rays lie within this angle of each other, in radians, stay together.
+    pub together: f64,
     /// Camera samples per pixel.
     pub samples: u32,
     /// Chooses the set of random numbers.

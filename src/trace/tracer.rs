@@ -161,6 +161,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
             present: path.throughput.present(),
             incident: media::index(world, draw, here),
             beyond: media::index(world, draw, beyond),
+            together: world.method.together,
         };
 
         // Gather light from the lights where light scatters widely.
@@ -194,7 +195,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
         // Send the path on.
         self.branches.clear();
         material.scatter(&arrival, [u[2], u[3]], &mut self.branches);
-        let parts = arrival.is_dispersive();
+        let parts = arrival.parts();
         self.tally.partings += u64::from(self.branches.iter().filter(|branch| branch.crosses).count() > 1);
         self.follow(path, draw, sampler, parts, |number, branch, factor| Path {
             ray: point.leave(branch.wi),

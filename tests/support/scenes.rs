@@ -44,6 +44,7 @@ pub fn method(scene: &Scene<Curve>, transport: Transport) -> Method {
     Method {
         basis: Basis::rgb(scene.film.color_space),
         transport,
+        together: 0.0,
         samples: scene.render.samples.unwrap_or(1),
         seed: scene.render.seed,
         diffuse_bounces: scene.render.diffuse_bounces.unwrap_or(u32::MAX),
