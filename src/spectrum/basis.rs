@@ -195,7 +195,7 @@ impl Basis {
 
     /// The bins, and the fine grid if wavelengths are drawn.
     fn table(&self, bins: Vec<f64>, value: &dyn Fn(f64) -> f64) -> Table {
-        Table::with_fine(&bins, self.fine(|nm| value(nm), |nm| value(nm)))
+        Table::with_fine(&bins, self.fine(value, value))
     }
 
     /// The visible grid and the lines behind it; empty if no wavelengths are drawn.

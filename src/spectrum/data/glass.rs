@@ -154,8 +154,8 @@ fn rows_called(name: &str) -> impl Iterator<Item = Row> {
     let exact = ROWS.find(name);
     let keyed = move |group: &&str| ROWS.find(&format!("{group}/{name}"));
     let aliased = || common_rows().find(|row| has_alias(row, name));
-    let common = COMMON.iter().find_map(|group| keyed(&group)).or_else(aliased);
-    exact.into_iter().chain(common).chain(GLASS_MAKERS.iter().filter_map(move |maker| keyed(&maker)))
+    let common = COMMON.iter().find_map(keyed).or_else(aliased);
+    exact.into_iter().chain(common).chain(GLASS_MAKERS.iter().filter_map(keyed))
 }
 
 fn common_rows() -> impl Iterator<Item = Row> {

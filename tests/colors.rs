@@ -1,0 +1,235 @@
+//! Color spaces are views of the same light, blackbodies have their published colors, and `rgb` survives being a spectrum.
+//!
+//! ```text
+//! cargo test --release --test colors
+//! ```
+
+mod support;
+
+use abbe::film::Film;
+use abbe::plan::plan;
+use abbe::spectrum::{Basis, ColorSpace, Curve, CurveKind, Draw, Emission, MAX_LANES, Quantity, apply, visible};
+use abbe::trace::{Method, Transport, World, render};
+
+use support::random::Random;
+use support::scenes::scene;
+
+const SPACES: [ColorSpace; 6] = [
+    ColorSpace::Rec709,
+    ColorSpace::AcesCg,
+    ColorSpace::Aces2065,
+    ColorSpace::Rec2020,
+    ColorSpace::P3D65,
+    ColorSpace::Xyz,
+];
+const MODELS: [&str; 6] =
+    ["\"rgb\"", "{ bands = 8 }", "{ bands = 12 }", "{ bands = 16 }", "{ bands = 32 }", "\"hero\""];
+/// No light is chosen by its brightness, which is measured in film colors, so that all films share their random numbers.
+const ALL_LIGHTS: Transport = Transport::Deterministic { cutoff: 1e-4 };
+
+/// The film of a scene in a color space, under a model.
+fn film(body: &str, space: ColorSpace, model: &str) -> Film {
+    let text = format!(
+        "film = {{ width = 16, height = 12, color_space = \"{}\" }}\n\
+         render = {{ model = {model}, samples = 2, diffuse_bounces = 1 }}\n\
+         camera = {{ position = [0, 1, 6], look_at = [0, 0.8, 0], vertical_fov = 35 }}\n{body}",
+        space.interop_id()
+    );
+    let scene = scene(&text);
+    let method = Method { transport: ALL_LIGHTS, ..plan(&scene).method };
+    render(&World::new(&scene, method), &|_| ()).0
+}
+
+/// Measured lights and surfaces of every kind, but nothing that is relative to the film's white.
+const MEASURED: &str = r#"
+material.floor.diffuse.reflectance = "blue sky"
+material.red.mirror.reflectance = "red"
+material.glass.dielectric.index = "N-SF11"
+material.gold.conductor.metal = "Au"
+material.lamp.emissive.radiance = { illuminant = "FL11", scale = 3 }
+[[object]]
+shape.plane = { point = [0, 0, 0], normal = [0, 1, 0] }
+material = "floor"
+[[object]]
+shape.sphere = { center = [-0.9, 0.7, 0.5], radius = 0.7 }
+material = "glass"
+[[object]]
+shape.disc = { center = [0.3, 1, -1], normal = [-0.1, 0.1, 1], radius = 1 }
+material = "red"
+[[object]]
+shape.sphere = { center = [1.4, 0.6, 0.2], radius = 0.6 }
+material = "gold"
+[[object]]
+shape.quad = { center = [0, 3, 0], u = [1, 0, 0], v = [0, 0, 1] }
+material = "lamp"
+"#;
+const OTHER_LIGHTS: &str = r#"
+[[light]]
+environment.radiance = { blackbody = 3000, luminance = 0.2 }
+[[light]]
+sun = { toward = [1, 2, 3], irradiance = { lines = [[445, 1], [532, 2], [638, 3]] } }
+"#;
+const SAME_LIGHT: &str = r#"
+[[light]]
+environment.radiance = { illuminant = "FL11", luminance = 0.2 }
+"#;
+
+#[test]
+fn a_measured_scene_is_the_same_xyz_in_every_color_space() {
+    for model in MODELS {
+        // Three bands hold surfaces as they look under the one light there is, or else under the film's own white.
+        let lights = if model == "\"rgb\"" { SAME_LIGHT } else { OTHER_LIGHTS };
+        let films = SPACES.map(|space| film(&format!("{MEASURED}{lights}"), space, model));
+        let mut worst = 0.0_f64;
+        for at in 0..films[0].pixels.len() {
+            let [expected, others @ ..] = SPACES.map(|space| {
+                let film = films.iter().find(|film| film.color_space == space).expect("one film for each space");
+                apply(&space.to_xyz(), film.pixels[at].rgb.map(f64::from))
+            });
+            let most = expected.iter().fold(0.0, |most: f64, x| most.max(*x));
+            assert!(most > 1e-3, "{model}: pixel {at} is dark");
+            for (space, xyz) in SPACES[1..].iter().zip(others) {
+                let off = (0..3).fold(0.0, |off: f64, c| off.max((xyz[c] - expected[c]).abs())) / most;
+                worst = worst.max(off);
+                assert!(off <= 1e-6, "{model}, {space:?}, pixel {at}: {xyz:?} for {expected:?}, off by {off:.2e}");
+            }
+        }
+        println!("{model}: off by {worst:.1e} at most");
+    }
+}
+
+/// A bare number and `rgb` are relative to the film's white: not the XYZ stays, but Rec.709 adapted to that white.
+#[test]
+fn rgb_lights_and_surfaces_have_their_rec709_color_in_every_color_space_adapted_to_its_white() {
+    let color = [0.2, 0.5, 0.7];
+    let sky = format!("[[light]]\nenvironment.radiance.rgb = {color:?}\n");
+    let wall = format!(
+        "material.wall.diffuse.reflectance.rgb = {color:?}\n[[object]]\nmaterial = \"wall\"\n\
+         shape.plane = {{ point = [0, 0, 0], normal = [0, 0, 1] }}\n[[light]]\nenvironment.radiance = 1\n"
+    );
+    for space in SPACES {
+        for model in MODELS {
+            for (body, limit) in [(&sky, 1e-7), (&wall, missed(model))] {
+                for pixel in &film(body, space, model).pixels {
+                    let found = apply(&space.to_rec709(), pixel.rgb.map(f64::from));
+                    assert_near(found, color, limit, &format!("{model}, {space:?}, {body}"));
+                }
+            }
+        }
+    }
+}
+
+/// What a model may miss of a smooth reflectance: `rgb` and lights nothing but rounding.
+fn missed(model: &str) -> f64 {
+    match model {
+        "\"rgb\"" => 1e-7,
+        "{ bands = 8 }" => 2e-3,
+        _ => 1e-4,
+    }
+}
+
+fn xy([x, y, z]: [f64; 3]) -> [f64; 2] {
+    [x / (x + y + z), y / (x + y + z)]
+}
+
+fn xy_of_blackbody(kelvin: f64) -> [f64; 2] {
+    xy(Emission::new(&CurveKind::Blackbody(kelvin).into(), ColorSpace::Xyz).xyz())
+}
+
+fn assert_near<const N: usize>(found: [f64; N], expected: [f64; N], tolerance: f64, what: &str) {
+    for i in 0..N {
+        assert!((found[i] - expected[i]).abs() <= tolerance, "{what}: {found:?} for {expected:?}");
+    }
+}
+
+#[test]
+fn blackbodies_have_their_published_chromaticities() {
+    // CIE 15:2018, illuminant A, a blackbody at 2848 K for c2 = 0.01435, which is 2855.5 K for today's c2.
+    assert_near(xy_of_blackbody(2855.5), [0.4476, 0.4074], 5e-5, "2855.5 K");
+    // Wyszecki & Stiles 1982, *Color Science*, table 1(3.11).
+    assert_near(xy_of_blackbody(3000.0), [0.4369, 0.4041], 5e-5, "3000 K");
+    // The infinitely hot body, of radiance wavelength^-4.
+    assert_near(xy_of_blackbody(1e9), [0.2399, 0.2340], 5e-5, "1e9 K");
+}
+
+/// For a blackbody of 6504 K, (0.3135, 0.3237) is often printed. It is the sum over steps of 10 nm; steps of 1 nm, on which
+/// color is integrated here, give (0.3135, 0.3236).
+#[test]
+fn the_printed_chromaticity_of_6504_kelvin_is_that_of_coarse_steps() {
+    assert_near(xy_of_blackbody(6504.0), [0.3135, 0.3236], 5e-5, "6504 K");
+    let emission = Emission::new(&CurveKind::Blackbody(6504.0).into(), ColorSpace::Xyz);
+    let coarse = visible::wavelengths().zip(emission.spectrum()).filter(|(nm, _)| nm % 10.0 == 0.0);
+    let xyz = coarse.fold([0.0; 3], |sum, (nm, power)| {
+        let cmf = visible::color_matching(nm);
+        std::array::from_fn(|c| sum[c] + power * cmf[c])
+    });
+    assert_near(xy(xyz), [0.3135, 0.3237], 5e-5, "6504 K in steps of 10 nm");
+}
+
+/// (1.2048, 0.9483, 0.9089) is printed for XYZ = (1, 1, 1) and a white of (0.95047, 1, 1.08883). The white of Rec.709 is
+/// (0.3127, 0.3290), 0.0002 more in Z, and over 1 nm the CIE's own functions sum to (1.00008, 1, 1.00033).
+#[test]
+fn the_equal_energy_spectrum_is_pink_in_rec709_however_it_is_written() {
+    let expected =
+        apply(&ColorSpace::Rec709.of_xyz(), visible::xyz(&[1.0; visible::COUNT]).map(|x| x / visible::luminous()));
+    assert_near(expected, [1.2048, 0.9483, 0.9089], 4e-4, "equal energy");
+    for light in ["{ illuminant = \"E\" }", "{ samples = [[360, 1], [830, 1]] }", "{ samples = [[300, 1], [900, 1]] }"]
+    {
+        for model in MODELS {
+            let film = film(&format!("[[light]]\nenvironment.radiance = {light}\n"), ColorSpace::Rec709, model);
+            for pixel in &film.pixels {
+                assert_near(pixel.rgb.map(f64::from), expected, 1e-6, &format!("{light}, {model}"));
+            }
+        }
+    }
+}
+
+/// What a surface looks like under a light, of one sample that carries all fixed lanes.
+fn seen(basis: &Basis, surface: &Curve, light: &Curve) -> [f64; 3] {
+    let draw = Draw::<MAX_LANES>::fixed(basis.fixed_lanes());
+    let reflectance = draw.read(&basis.tabulate(Quantity::Reflectance, surface));
+    let emission = draw.read(&basis.tabulate(Quantity::Emission, light));
+    basis.response(light).sensor(&draw, reflectance * emission, false)
+}
+
+/// The color of a spectrum under the film's white, nm by nm.
+fn integrated(space: ColorSpace, reflectance: impl Fn(f64) -> f64) -> [f64; 3] {
+    let white = Emission::new(&1.0.into(), space);
+    visible::wavelengths()
+        .zip(white.columns())
+        .fold([0.0; 3], |sum, (nm, color)| std::array::from_fn(|c| sum[c] + reflectance(nm) * color[c]))
+}
+
+fn largest(found: [f64; 3], expected: [f64; 3]) -> f64 {
+    (0..3).fold(0.0, |most: f64, c| most.max((found[c] - expected[c]).abs()))
+}
+
+/// Random colors all have a smooth spectrum. That of a nearly pure color is nearly a step, or bends beyond the
+/// last band, which 32 bands miss by some 1e-4.
+#[test]
+fn rgb_reflectances_come_back_as_themselves_under_the_films_white() {
+    const COLORS: usize = 4096;
+    let mut random = Random::new(5);
+    for space in SPACES {
+        let basis = Basis::bands(space, 32, &[]);
+        let (mut worst, mut missed) = (0.0_f64, 0);
+        for _ in 0..COLORS {
+            let rgb = [(); 3].map(|()| random.number());
+            let surface = Curve::from(CurveKind::Rgb(rgb));
+            let sigmoid = basis.upsampler().fit(rgb);
+            assert_eq!(sigmoid.saturation, 1.0, "{space:?}: {rgb:?}");
+            assert!(visible::wavelengths().all(|nm| (0.0..=1.0).contains(&sigmoid.at(nm))), "{rgb:?}");
+            let smooth = apply(&space.to_rec709(), integrated(space, |nm| sigmoid.at(nm)));
+            assert!(largest(smooth, rgb) < 1e-4, "{space:?}: {smooth:?} for {rgb:?}");
+
+            let table = basis.tabulate(Quantity::Reflectance, &surface);
+            assert!(table.bins().iter().all(|x| (0.0..=1.0).contains(x)), "{rgb:?}: {:?}", table.bins());
+            let found = apply(&space.to_rec709(), seen(&basis, &surface, &1.0.into()));
+            let off = largest(found, rgb);
+            worst = worst.max(off);
+            missed += usize::from(off > 1e-4);
+        }
+        println!("{space:?}: {missed} of {COLORS} are off by more than 1e-4, {worst:.1e} at most");
+        assert!(missed <= COLORS / 20, "{space:?}: {missed} of {COLORS} are off by more than 1e-4");
+    }
+}

@@ -1,0 +1,117 @@
+//! The rainbow: a drop of water turns parallel sunlight back most strongly where Descartes found it.
+//!
+//! ```text
+//! cargo test --release --test rainbow
+//! ```
+
+mod support;
+
+use abbe::spectrum::{Basis, ColorSpace, data, visible};
+use abbe::trace::{Method, Transport, World, render};
+
+use support::scenes::{method, scene};
+
+const CAMERA: f64 = 1e6;
+const SUN_DEGREES: f64 = 0.2;
+/// All ways inside the drop are followed while they carry more than this: the secondary bow carries some thousandths.
+const FAINT: Transport = Transport::Deterministic { cutoff: 1e-6 };
+
+/// Light that is reflected inside the drop a number of times before it leaves.
+struct Bow {
+    reflections: i32,
+    /// Where on the drop's disc, of radius 1, light of this order is looked for.
+    impact: [f64; 2],
+    /// Deviations in degrees, of which no light of this order has the first and some has the second.
+    dark_and_lit: [f64; 2],
+}
+
+const PRIMARY: Bow = Bow { reflections: 1, impact: [0.74, 0.94], dark_and_lit: [134.0, 140.0] };
+const SECONDARY: Bow = Bow { reflections: 2, impact: [0.90, 0.99], dark_and_lit: [226.0, 234.5] };
+
+impl Bow {
+    /// Descartes's ray, the one that is least deviated: its incidence and deviation in radians.
+    fn descartes(&self, index: f64) -> [f64; 2] {
+        let k = f64::from(self.reflections);
+        let incidence = ((index * index - 1.0) / (k * (k + 2.0))).sqrt().acos();
+        let refraction = (incidence.sin() / index).asin();
+        [incidence, k * std::f64::consts::PI + 2.0 * incidence - 2.0 * (k + 1.0) * refraction]
+    }
+
+    /// The angle from the point opposite to the sun, in degrees.
+    fn angle(deviation: f64) -> f64 {
+        (deviation - 180.0).abs()
+    }
+
+    /// Share of the light that is left after two crossings and the reflections between.
+    fn share(&self, index: f64) -> f64 {
+        let [incidence, _] = self.descartes(index);
+        let refraction = (incidence.sin() / index).asin();
+        let (difference, sum) = (incidence - refraction, incidence + refraction);
+        let reflectance = 0.5 * ((difference.sin() / sum.sin()).powi(2) + (difference.tan() / sum.tan()).powi(2));
+        (1.0 - reflectance).powi(2) * reflectance.powi(self.reflections)
+    }
+
+    /// Whether light of this order reaches the camera from a sun at a deviation, in degrees.
+    fn is_lit(&self, nm: f64, index: f64, deviation: f64) -> bool {
+        const PIXELS: u32 = 600;
+        let [low, high] = self.impact;
+        let pixel = (high - low) / f64::from(PIXELS);
+        let fov = 2.0 * (0.5 * pixel / CAMERA).atan().to_degrees();
+        let (sin, cos) = deviation.to_radians().sin_cos();
+        // The drop bends rays that meet it on the right to the left.
+        let text = format!(
+            "[camera]\nposition = [{x:?}, 0, {CAMERA:?}]\nlook_at = [{x:?}, 0, 0]\nvertical_fov = {fov:?}\n\
+             [film]\nwidth = {PIXELS}\nheight = 1\nfilter = \"center\"\ncolor_space = \"lin_ciexyzd65_scene\"\n\
+             [material.water]\ndielectric = {{ index = \"water\" }}\n\
+             [[object]]\nmaterial = \"water\"\nshape.sphere = {{ center = [0, 0, 0], radius = 1 }}\n\
+             [[light]]\nsun = {{ toward = [{:?}, 0, {:?}], angular_diameter = {SUN_DEGREES:?}, \
+             irradiance = {{ lines = [[{nm:?}, 1]] }} }}\n",
+            -sin,
+            -cos,
+            x = 0.5 * (low + high),
+        );
+        let scene = scene(&text);
+        let basis = Basis::wavelengths(ColorSpace::Xyz, vec![550.0], &[nm]);
+        let (film, _) = render(&World::new(&scene, Method { basis, ..method(&scene, FAINT) }), &|_| ());
+        let half = (0.5 * SUN_DEGREES).to_radians();
+        let disc = visible::color_matching(nm)[0] / visible::luminous() / (std::f64::consts::PI * half.sin().powi(2));
+        // Higher orders that pass here are fainter by a hundred times and more.
+        film.pixels.iter().any(|pixel| f64::from(pixel.rgb[0]) > 0.2 * disc * self.share(index))
+    }
+
+    /// The least deviation in degrees: where the edge of a sun that comes nearer begins to reach the camera.
+    fn least_deviation(&self, nm: f64, index: f64) -> f64 {
+        let [mut dark, mut lit] = self.dark_and_lit;
+        assert!(!self.is_lit(nm, index, dark) && self.is_lit(nm, index, lit), "{dark} is not dark or {lit} not lit");
+        while lit - dark > 1e-3 {
+            let middle = 0.5 * (dark + lit);
+            if self.is_lit(nm, index, middle) { lit = middle } else { dark = middle }
+        }
+        0.5 * (dark + lit) + 0.5 * SUN_DEGREES
+    }
+}
+
+/// Descartes 1637, *Les Météores*, discours VIII: 41 degrees 30 minutes and 51 degrees 54 minutes for 250 : 187, before
+/// he allows for the width of the sun.
+#[test]
+fn the_formula_gives_the_angles_that_descartes_printed() {
+    let [primary, secondary] =
+        [PRIMARY, SECONDARY].map(|bow| Bow::angle(bow.descartes(250.0 / 187.0)[1].to_degrees()) * 60.0);
+    assert!((primary - (41.0 * 60.0 + 30.0)).abs() < 1.0, "{primary} minutes");
+    assert!((secondary - (51.0 * 60.0 + 54.0)).abs() < 1.0, "{secondary} minutes");
+}
+
+#[test]
+fn both_bows_stand_where_descartes_found_them_in_every_color() {
+    let water = data::glass("water").expect("water is in the catalog");
+    for bow in [PRIMARY, SECONDARY] {
+        for nm in [400.0, 589.0, 700.0] {
+            let index = water.index(nm);
+            let expected = bow.descartes(index)[1].to_degrees();
+            let found = bow.least_deviation(nm, index);
+            println!("k = {}, {nm} nm: {:.4} for {:.4}", bow.reflections, Bow::angle(found), Bow::angle(expected));
+            // Half of the last interval, and the angle between neighboring pixels at the turning point.
+            assert!((found - expected).abs() < 1e-3, "k = {}, {nm} nm: {found} for {expected}", bow.reflections);
+        }
+    }
+}
