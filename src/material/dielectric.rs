@@ -1,7 +1,6 @@
 use serde::Deserialize;
 
 use super::{Arrival, Branch, Interface, reflect};
-use crate::math::DVec3;
 use crate::spectrum::{Draw, Lanes, Quantity, Table};
 
 /// A smooth clear body: light is reflected and refracted by Snell's law and Fresnel's equations.
@@ -60,40 +59,43 @@ impl Dielectric<Table> {
     /// One reflected branch with all lanes, and one refracted branch per distinct pair of indices: here lanes part, and
     /// only those go on that are there for it.
     pub(super) fn scatter<const N: usize>(&self, arrival: &Arrival<N>, branches: &mut Vec<Branch<N>>) {
-        let pairs: [(f64, f64); N] = std::array::from_fn(|i| (arrival.incident[i], arrival.beyond[i]));
-        let cos = arrival.wo.dot(arrival.normal);
         let (tint, reflectance) = (arrival.read(&self.transmittance), arrival.read(&self.reflectance));
         let parts = arrival.parts();
-        let tint = if parts { tint * arrival.draw.parting() } else { tint };
+        let crossing = if parts { tint * arrival.draw.parting() } else { tint };
+        let cos = arrival.wo.dot(arrival.normal);
+        let first = branches.len();
         let (mut reflected, mut polarization) = (Lanes::ZERO, 0.0);
-        let mut crossed: Option<Branch<N>> = None;
-        for ((n1, n2), lanes) in arrival.present.groups_by(pairs) {
-            let crosses = lanes * tint;
-            let branch = if n1 == n2 {
-                // Nothing happens at all: the direction keeps its bits.
-                crossing(-arrival.wo, crosses, 1.0, 0.0)
-            } else {
-                let interface = Interface::new(n1, n2, cos);
-                reflected += lanes * reflectance * interface.reflectance as f32;
-                polarization = interface.polarization_reflected;
-                if interface.transmittance == 0.0 || crosses.is_zero() {
-                    continue;
-                }
-                let eta_scale = (n1 / n2) * (n1 / n2);
-                let share = crosses * (interface.transmittance * eta_scale) as f32;
-                crossing(
-                    interface.refract(arrival.wo, arrival.normal),
-                    share,
-                    eta_scale,
-                    interface.polarization_refracted,
-                )
+        let mut last: Option<([f64; 2], Interface)> = None;
+        let mut pair_of_branch = [[0.0; 2]; N];
+        for lane in (0..N).filter(|&lane| arrival.present[lane] != 0.0) {
+            let pair @ [n1, n2] = [arrival.incident[lane], arrival.beyond[lane]];
+            let interface = match last {
+                Some((of, interface)) if of == pair => interface,
+                _ => Interface::new(n1, n2, cos),
             };
-            match &mut crossed {
-                Some(first) if !parts => first.share += branch.share,
-                _ => branches.extend(crossed.replace(branch)),
+            last = Some((pair, interface));
+            let weight = arrival.present[lane];
+            // Between equal indices nothing happens at all, even along the surface.
+            let same = n1 == n2;
+            if !same {
+                reflected.0[lane] = weight * reflectance[lane] * interface.reflectance as f32;
+                polarization = interface.polarization_reflected;
             }
+            let (crosses, transmittance) = (weight * crossing[lane], if same { 1.0 } else { interface.transmittance });
+            if transmittance == 0.0 || crosses == 0.0 {
+                continue;
+            }
+            let known = branches[first..].iter().zip(pair_of_branch).position(|(_, of)| !parts || of == pair);
+            let eta_scale = (n1 / n2) * (n1 / n2);
+            let branch = known.unwrap_or_else(|| {
+                let wi = if same { -arrival.wo } else { interface.refract(arrival.wo, arrival.normal) };
+                let polarization = interface.polarization_refracted as f32;
+                pair_of_branch[branches.len() - first] = pair;
+                branches.push(Branch { wi, share: Lanes::ZERO, pdf: None, crosses: true, eta_scale, polarization });
+                branches.len() - first - 1
+            });
+            branches[first + branch].share.0[lane] = crosses * (transmittance * eta_scale) as f32;
         }
-        branches.extend(crossed);
         if !reflected.is_zero() {
             let wi = reflect(arrival.wo, arrival.normal);
             let polarization = polarization as f32;
@@ -113,8 +115,4 @@ impl Dielectric<Table> {
         let absorption = draw.read_exact(&self.absorption);
         Lanes::from_fn(|i| if absorption[i] == 0.0 { 1.0 } else { libm::exp(-absorption[i] * distance) as f32 })
     }
-}
-
-fn crossing<const N: usize>(wi: DVec3, share: Lanes<N>, eta_scale: f64, polarization: f64) -> Branch<N> {
-    Branch { wi, share, pdf: None, crosses: true, eta_scale, polarization: polarization as f32 }
 }
