@@ -12,4 +12,5 @@ mod lanes {
     mod furnaces;
     mod nested_bodies;
     mod parting;
+    mod wavelengths;
 }

@@ -5,17 +5,18 @@ use crate::spectrum::{Basis, Curve, Draw, Emission, MAX_LANES, visible};
 
 /// One model with the largest error of a color that it is predicted to make.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Rung {
-    pub(super) basis: Basis,
+pub struct Rung {
+    /// What its lanes stand for.
+    pub basis: Basis,
     /// Relative to the strongest channel, before the safety factor.
-    pub(super) error: f64,
+    pub error: f64,
     /// Factor that covers nineteen of twenty scenes: measured on random rooms, see `tests/planning.rs`.
-    pub(super) safety: f64,
+    pub safety: f64,
 }
 
 impl Rung {
     /// What the color error is promised to stay below.
-    pub(super) fn bound(&self) -> f64 {
+    pub fn bound(&self) -> f64 {
         self.error * self.safety
     }
 }

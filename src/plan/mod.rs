@@ -12,6 +12,8 @@ use crate::spectrum::{Basis, Curve};
 use crate::trace::{Method, Transport, World, probe};
 use model::Model;
 
+pub use ladder::Rung;
+
 /// How to render a scene and, in words, why.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
@@ -19,6 +21,8 @@ pub struct Plan {
     pub method: Method,
     /// One decision a line, each with its numbers.
     pub because: Vec<String>,
+    /// The models of color that were weighed, from few lanes to many.
+    pub rungs: Vec<Rung>,
 }
 
 /// Samples where the scene does not say.
@@ -36,7 +40,7 @@ const TOGETHER_PIXELS: f64 = 0.01;
 
 /// Decides how to render a scene.
 pub fn plan(scene: &Scene<Curve>) -> Plan {
-    let Model { basis, mut because, next } = model::model(scene);
+    let Model { basis, mut because, next, rungs } = model::model(scene);
     let (transport, reason) = transport(scene, &basis);
     because.push(reason);
     let samples = match (transport, scene.render.samples) {
@@ -49,7 +53,7 @@ pub fn plan(scene: &Scene<Curve>) -> Plan {
     let together = if basis.draws_wavelengths() { TOGETHER_PIXELS * scene.camera.pixel_angle() } else { 0.0 };
     let method = Method { basis, transport, together, samples, seed: scene.render.seed, diffuse_bounces };
     because.extend(cost(scene, &method, next));
-    Plan { method, because }
+    Plan { method, because, rungs }
 }
 
 /// Whether anything is left to chance.

@@ -24,6 +24,8 @@ pub(super) struct Model {
     pub(super) because: Vec<String>,
     /// The model beside it that would cost more or less.
     pub(super) next: Option<Basis>,
+    /// The models it was chosen from.
+    pub(super) rungs: Vec<Rung>,
 }
 
 /// The least model that a scene needs, or the one it asks for.
@@ -69,7 +71,7 @@ pub(super) fn model(scene: &Scene<Curve>) -> Model {
     let basis = if together { basis.kept_together() } else { basis };
     because.extend(desaturated(scene, &basis));
     because.extend(materials(scene, &basis));
-    Model { basis, because, next: next.map(|next| if together || hero { next.kept_together() } else { next }) }
+    Model { basis, because, rungs, next: next.map(|next| if together || hero { next.kept_together() } else { next }) }
 }
 
 /// Three bands, whatever they miss.

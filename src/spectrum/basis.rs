@@ -86,6 +86,16 @@ impl Basis {
         Self { heroes: Some((heroes, Arc::new(Mixture::new(lights)))), ..self }
     }
 
+    /// One of the interpolated wavelengths alone, worth to the sensor what it is worth among the others.
+    ///
+    /// # Panics
+    /// If the lane is no interpolated wavelength.
+    pub fn alone(&self, lane: usize) -> Self {
+        let LaneKind::Wavelengths(functions) = &self.lanes else { panic!("bands have no wavelengths") };
+        let lanes = LaneKind::Wavelengths(Arc::new(vec![functions[lane].clone()]));
+        Self { lanes, wavelengths_nm: vec![self.wavelengths_nm[lane]], heroes: None, ..self.clone() }
+    }
+
     /// For comparison only: four wavelengths drawn independently from sample to sample, of which one goes on where lanes
     /// part. Pharr, Jakob & Humphreys 2023, *Physically Based Rendering*, sections 4.5.4 and 9.5.
     pub fn collapsing(space: ColorSpace) -> Self {

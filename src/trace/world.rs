@@ -37,6 +37,12 @@ impl World {
         world
     }
 
+    /// The same world with what each light's lanes are worth replaced, for tests that look at single lanes.
+    pub fn with_responses(mut self, replace: impl Fn(&Response) -> Response) -> Self {
+        self.responses = self.responses.iter().map(replace).collect();
+        self
+    }
+
     /// The scene as the tracer sees it.
     pub fn scene(&self) -> &Scene<Table> {
         &self.scene
