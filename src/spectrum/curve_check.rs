@@ -42,7 +42,14 @@ pub(super) fn check(curve: &Curve, quantity: Quantity) -> Result<(), Refusal> {
     kind_fits(curve, quantity)?;
     finite(curve)?;
     match &curve.kind {
-        CurveKind::Samples(samples) => ascending(samples)?,
+        CurveKind::Samples(samples) => {
+            ascending(samples)?;
+            if let ([[nm, power]], Quantity::Emission) = (samples.as_slice(), quantity) {
+                let refusal = Refusal::new("an emission of one sample is dark: it is 0 beyond its ends");
+                let help = format!("for one wavelength write {{ lines = [[{nm}, {power}]] }}");
+                return Err(refusal.help(help).at(&["samples"], 0));
+            }
+        }
         CurveKind::Lines(lines) => visible_lines(lines)?,
         CurveKind::Blackbody(kelvin) => blackbody(*kelvin)?,
         CurveKind::Sellmeier { b, c } => sellmeier(b, c)?,
