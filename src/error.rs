@@ -88,13 +88,28 @@ impl fmt::Display for Diagnostic {
 
 /// The candidate that a misspelt word most likely meant, if one is near enough.
 ///
-/// Near: at most a third of the letters changed, counting a swap of neighbors as one change.
+/// Near: at most a third of the letters changed, counting a swap of neighbors as one change; of equally near ones, the one
+/// made of the most of the same letters.
 pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let lower = word.to_lowercase();
     candidates
         .into_iter()
         .map(|candidate| (strsim::damerau_levenshtein(&lower, &candidate.to_lowercase()), candidate))
         .filter(|(changes, candidate)| *changes <= candidate.chars().count().max(3) / 3)
-        .min_by_key(|(changes, _)| *changes)
+        .min_by_key(|(changes, candidate)| (*changes, foreign_letters(&lower, &candidate.to_lowercase())))
         .map(|(_, candidate)| candidate)
+}
+
+/// The letters that only one of two words has.
+fn foreign_letters(a: &str, b: &str) -> usize {
+    let mut rest: Vec<char> = b.chars().collect();
+    let missing = a.chars().filter(|letter| match rest.iter().position(|other| other == letter) {
+        Some(at) => {
+            rest.remove(at);
+            false
+        }
+        None => true,
+    });
+    let missing = missing.count();
+    missing + rest.len()
 }

@@ -51,8 +51,8 @@ impl<'a> Case<'a> {
         Self { title, scene: patched(title, &taken, &put), files, expected: expected.trim_end() }
     }
 
-    /// What is wrong with the answer to this case, if anything.
-    fn failure(&self) -> Option<String> {
+    /// A folder with the scene and its files.
+    fn folder(&self) -> Folder {
         let folder = Folder::new();
         for (name, text) in &self.files {
             let path = folder.path().join(name);
@@ -60,6 +60,12 @@ impl<'a> Case<'a> {
             fs::write(path, text).expect("files can be written");
         }
         folder.write("scene.toml", &self.scene);
+        folder
+    }
+
+    /// What is wrong with the answer to a scene that is refused, if anything.
+    fn failure(&self) -> Option<String> {
+        let folder = self.folder();
         let before = folder.listing();
         // A check and a render refuse a scene with the same words, and neither leaves anything behind.
         for flag in ["--check", "--exr"] {
@@ -74,6 +80,22 @@ impl<'a> Case<'a> {
             }
         }
         None
+    }
+
+    /// What is wrong with the answer to a scene that is accepted with warnings, if anything.
+    fn unwarned(&self) -> Option<String> {
+        let folder = self.folder();
+        let answer = render(&folder, &["--check", "scene.toml"]);
+        if answer.code != Some(0) || answer.stderr.trim_end() != self.expected {
+            return Some(format!("## {}\n\n{}\n(exit code {:?})", self.title, answer.stderr, answer.code));
+        }
+        // A render warns with the same words, each once.
+        let warnings = |text: &str| -> Vec<String> {
+            text.lines().filter(|line| line.starts_with("warning: ")).map(str::to_owned).collect()
+        };
+        let rendered = render(&folder, &["--exr", "scene.toml"]);
+        let same = rendered.code == Some(0) && warnings(&rendered.stderr) == warnings(self.expected);
+        (!same).then(|| format!("## {}, rendered\n\n{}", self.title, rendered.stderr))
     }
 }
 
@@ -90,10 +112,14 @@ fn patched(title: &str, taken: &[&str], put: &[&str]) -> String {
 }
 
 fn check(table: &str, at_least: usize) {
+    check_with(table, at_least, |case| case.failure());
+}
+
+fn check_with(table: &str, at_least: usize, failure: fn(&Case) -> Option<String>) {
     let table = format!("\n{}", fs::read_to_string(Path::new("tests/messages").join(table)).expect("the table exists"));
     let cases: Vec<Case> = table.split("\n## ").skip(1).map(Case::new).collect();
     assert!(cases.len() >= at_least, "only {} cases were read", cases.len());
-    let failures: Vec<String> = cases.iter().filter_map(Case::failure).collect();
+    let failures: Vec<String> = cases.iter().filter_map(failure).collect();
     assert!(failures.is_empty(), "{} answers differ; they are now:\n\n{}", failures.len(), failures.join("\n\n"));
 }
 
@@ -107,7 +133,7 @@ fn the_base_scene_itself_is_valid() {
 
 #[test]
 fn unknown_keys_names_and_kinds_are_told_with_the_nearest_right_one() {
-    check("keys.txt", 40);
+    check("keys.txt", 65);
 }
 
 #[test]
@@ -117,22 +143,50 @@ fn what_is_missing_is_told_where_it_is_missing() {
 
 #[test]
 fn two_kinds_in_one_place_are_refused() {
-    check("kinds.txt", 8);
+    check("kinds.txt", 12);
 }
 
 #[test]
 fn values_of_the_wrong_type_are_told_with_what_belongs_there() {
-    check("types.txt", 40);
+    check("types.txt", 65);
 }
 
 #[test]
 fn impossible_numbers_and_shapes_are_refused() {
-    check("values.txt", 45);
+    check("values.txt", 65);
 }
 
 #[test]
 fn impossible_spectra_are_refused() {
-    check("spectra.txt", 40);
+    check("spectra.txt", 125);
+}
+
+#[test]
+fn files_of_spectra_are_refused_with_the_line_that_is_wrong() {
+    check("spectrum_files.txt", 35);
+}
+
+#[test]
+fn warnings_are_told_once_and_stop_nothing() {
+    check_with("warnings.txt", 10, |case| case.unwarned());
+}
+
+#[test]
+fn a_file_of_a_spectrum_that_is_not_text_is_refused() {
+    let folder = Folder::new();
+    fs::write(folder.path().join("paint.csv"), b"\xff\xfe4\x000\x000\x00").expect("written");
+    folder.write("scene.toml", &BASE.replace("reflectance = 0.7", "reflectance = { file = \"paint.csv\" }"));
+    let expected = "\
+error: paint.csv is not text in UTF-8
+  --> scene.toml:14:36
+   |
+14 | diffuse = { reflectance = { file = \"paint.csv\" } }
+   |                                    ^^^^^^^^^^^
+   |
+   = help: save the table as CSV in UTF-8
+";
+    let answer = render(&folder, &["--check", "scene.toml"]);
+    assert_eq!((answer.code, &*answer.stderr), (Some(2), expected));
 }
 
 #[test]

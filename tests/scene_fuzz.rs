@@ -3,6 +3,9 @@
 //! The cases are the same in every run. For a longer hunt: `PROPTEST_CASES=100000 PROPTEST_RNG_SEED=5 cargo test --test
 //! scene_fuzz`.
 
+#[path = "scene_fuzz/edits.rs"]
+mod edits;
+
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -13,6 +16,8 @@ use abbe::spectrum::Curve;
 use abbe::trace::{World, render};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
+
+use edits::{change, edit, edited};
 
 fn cases(cases: u32) -> ProptestConfig {
     let given = ProptestConfig::default();
@@ -56,111 +61,6 @@ fn read(path: &Path, text: String) -> Option<Scene<Curve>> {
             None
         }
         Err(other) => panic!("a text is refused with its place, not with {other:?}"),
-    }
-}
-
-/// A change to a text; numbers choose what is changed, modulo how much there is.
-#[derive(Clone, Debug)]
-enum Edit {
-    DropLine(usize),
-    RepeatLine(usize, usize),
-    SwapLines(usize, usize),
-    DropCharacter(usize),
-    InsertText(usize, String),
-    ReplaceNumber(usize, String),
-    SwapWords(usize, usize),
-}
-
-const NUMBERS: [&str; 24] = [
-    "nan",
-    "inf",
-    "-inf",
-    "0",
-    "-0.0",
-    "1",
-    "-1",
-    "2.5",
-    "1e-320",
-    "1e-200",
-    "1e-31",
-    "1e-29",
-    "1e-15",
-    "1e15",
-    "1e29",
-    "1e31",
-    "1e200",
-    "-1e308",
-    "1e999",
-    "4294967296",
-    "-9223372036854775808",
-    "99999999999999999999",
-    "0x7f",
-    "true",
-];
-
-fn edit() -> impl Strategy<Value = Edit> {
-    let number = || prop::sample::select(NUMBERS.as_slice()).prop_map(str::to_owned);
-    let at = any::<usize>;
-    prop_oneof![
-        1 => at().prop_map(Edit::DropLine),
-        1 => (at(), at()).prop_map(|(from, to)| Edit::RepeatLine(from, to)),
-        1 => (at(), at()).prop_map(|(a, b)| Edit::SwapLines(a, b)),
-        1 => at().prop_map(Edit::DropCharacter),
-        1 => (at(), "[\\[\\]{}=,.\"#a-z0-9é色\u{202e} \n]{1,3}").prop_map(|(at, text)| Edit::InsertText(at, text)),
-        6 => (at(), number()).prop_map(|(at, number)| Edit::ReplaceNumber(at, number)),
-        1 => (at(), at()).prop_map(|(a, b)| Edit::SwapWords(a, b)),
-    ]
-}
-
-fn edited(text: &str, edit: &Edit) -> String {
-    let mut lines: Vec<&str> = text.lines().collect();
-    let starts: Vec<usize> = text.char_indices().map(|(at, _)| at).collect();
-    if lines.is_empty() || starts.is_empty() {
-        return text.to_owned();
-    }
-    let (line, place) = (|n: usize| n % text.lines().count(), |n: usize| starts[n % starts.len()]);
-    match edit {
-        Edit::DropLine(at) => drop(lines.remove(line(*at))),
-        Edit::RepeatLine(from, to) => lines.insert(line(*to), lines[line(*from)]),
-        Edit::SwapLines(a, b) => lines.swap(line(*a), line(*b)),
-        Edit::DropCharacter(at) => {
-            let mut text = text.to_owned();
-            text.remove(place(*at));
-            return text;
-        }
-        Edit::InsertText(at, inserted) => {
-            let (before, after) = text.split_at(place(*at));
-            return format!("{before}{inserted}{after}");
-        }
-        Edit::ReplaceNumber(at, number) => {
-            let numbers = words(text, |c| c.is_ascii_digit() || "+-.".contains(c));
-            return replaced(text, &numbers, *at, number);
-        }
-        Edit::SwapWords(a, b) => {
-            let words = words(text, |c| c.is_ascii_alphabetic() || c == '_');
-            let Some((start, end)) = words.get(*b % words.len().max(1)) else { return text.to_owned() };
-            return replaced(text, &words, *a, &text[*start..*end]);
-        }
-    }
-    lines.join("\n")
-}
-
-/// Start and end of the runs of such characters.
-fn words(text: &str, belongs: impl Fn(char) -> bool) -> Vec<(usize, usize)> {
-    let mut words: Vec<(usize, usize)> = Vec::new();
-    for (at, c) in text.char_indices().filter(|(_, c)| belongs(*c)) {
-        match words.last_mut() {
-            Some((_, end)) if *end == at => *end = at + c.len_utf8(),
-            _ => words.push((at, at + c.len_utf8())),
-        }
-    }
-    words
-}
-
-fn replaced(text: &str, words: &[(usize, usize)], at: usize, by: &str) -> String {
-    match words.get(at % words.len().max(1)) {
-        Some((start, end)) => format!("{}{by}{}", &text[..*start], &text[*end..]),
-        None => text.to_owned(),
     }
 }
 
@@ -221,6 +121,12 @@ fn piece() -> impl Strategy<Value = &'static str> {
             "width",
             "scale",
             "rgb",
+            "sun",
+            "model",
+            "bands",
+            "lines",
+            "illuminant",
+            "luminance",
             "[camera]\n",
             "[[object]]\n",
             "[material.a]\n",
@@ -247,19 +153,16 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(cases(500))]
+    #![proptest_config(cases(150))]
 
     #[test]
     fn what_is_accepted_renders_to_finite_light(
         scene in any::<prop::sample::Index>(),
-        changes in prop::collection::vec((any::<usize>(), prop::sample::select(NUMBERS.as_slice())), 1..3),
+        changes in prop::collection::vec(change(), 1..3),
     ) {
         let scenes = scenes();
         let (path, text) = scene.get(&scenes);
-        let change = |text: String, (at, number): &(usize, &str)| {
-            edited(&text, &Edit::ReplaceNumber(*at, (*number).into()))
-        };
-        if let Some(scene) = read(path, changes.iter().fold(text.clone(), change)) {
+        if let Some(scene) = read(path, changes.iter().fold(text.clone(), |text, change| edited(&text, change))) {
             let (_, report) = render(&World::new(&scene, plan(&scene).method), &|_| {});
             prop_assert_eq!(report.non_finite, 0);
         }

@@ -133,7 +133,8 @@ impl Compiler<'_> {
         }
         match render.model {
             ModelText::Bands(bands) if !BANDS.contains(&bands) => {
-                refuse("model", format!("the model has 8, 12, 16 or 32 bands, not {bands}"), None)
+                let message = format!("the model has 8, 12, 16 or 32 bands, not {bands}");
+                Err(self.source.mistake_at(&at.key("model").key("bands"), message, None))
             }
             _ => Ok(()),
         }
@@ -247,15 +248,16 @@ impl Compiler<'_> {
     }
 
     fn not_one_kind(&self, at: &At, text: &LightText) -> Error {
-        let given =
+        let kinds =
             [("environment", text.environment.is_some()), ("point", text.point.is_some()), ("sun", text.sun.is_some())];
-        match given.iter().filter(|kind| kind.1).nth(1) {
-            None => self.source.mistake_at(at, "a light is an `environment`, a `point` or a `sun`", None),
-            Some((second, _)) => {
-                let help = Some("start another [[light]] for the second".into());
-                self.source.mistake_at(&at.key(second), "a light has exactly one kind", help)
+        let given = kinds.iter().filter(|kind| kind.1).map(|(kind, _)| at.key(kind));
+        let (message, place, help) = match given.max_by_key(|place| self.source.span(place).start) {
+            None => {
+                ("a light needs a kind: `environment`, `point` or `sun`", *at, "such as environment = { radiance = 1 }")
             }
-        }
+            Some(last) => ("a light has exactly one kind", last, "start another [[light]] for the second"),
+        };
+        self.source.mistake_at(&place, message, Some(help.into()))
     }
 
     /// The only kind of light that an entry has.

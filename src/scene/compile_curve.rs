@@ -1,5 +1,7 @@
 //! Spectra as they are meant: files read, names looked up, everything checked.
 
+use std::io::ErrorKind;
+
 use sha2::Digest;
 
 use super::compile::Compiler;
@@ -39,31 +41,44 @@ impl Compiler<'_> {
         column: usize,
         quantity: Quantity,
     ) -> Result<Curve> {
-        let path = self.source.path.parent().unwrap_or(std::path::Path::new("")).join(file);
-        let refuse =
-            |message: String, help: Option<String>| Err(self.source.mistake_at(&at.key("file"), message, help));
+        let here = at.key("file");
         if column < 2 {
             let message = "the values stand in column 2 or later: column 1 holds the wavelengths";
             return Err(self.source.mistake_at(&at.key("column"), message, None));
         }
-        let text = match std::fs::read_to_string(&path) {
-            Ok(text) => text,
-            Err(error) => return refuse(format!("cannot read {}: {error}", path.display()), None),
-        };
-        let samples = match read_columns(&text, column) {
-            Ok(samples) => samples,
-            Err((line, message)) => return refuse(format!("{}, line {line}: {message}", path.display()), None),
-        };
+        let text = self.text_of(&here, file)?;
+        let samples = read_columns(&text, column).map_err(|fault| {
+            // The second column is taken where none is named.
+            let place = if fault.is_column && column != 2 { at.key("column") } else { here };
+            self.source.mistake_at(&place, format!("{file}{}", fault.message), fault.help)
+        })?;
         self.hash.update(text.as_bytes());
         let curve = Curve { kind: CurveKind::Samples(samples.iter().map(|row| row.1).collect()), ..curve.clone() };
         match curve.check(quantity) {
             Ok(()) => Ok(curve),
-            Err(Refusal { message, help, entry, .. }) => {
-                let line = entry.and_then(|entry| samples.get(entry)).map(|row| row.0);
-                let line = line.map_or(String::new(), |line| format!(", line {line}"));
-                refuse(format!("{}{line}: {message}", path.display()), help)
+            Err(Refusal { message, help, entry: Some(entry), .. }) => {
+                let message = format!("{file}, line {}: {message}", samples[entry].0);
+                Err(self.source.mistake_at(&here, message, help))
             }
+            Err(refusal) => Err(self.refuse_curve(at, refusal.keys, refusal)),
         }
+    }
+
+    fn text_of(&self, at: &At, file: &str) -> Result<String> {
+        let path = self.source.folder().join(file);
+        std::fs::read_to_string(&path).map_err(|error| {
+            let refuse =
+                |message: String, help: Option<&str>| self.source.mistake_at(at, message, help.map(str::to_owned));
+            match error.kind() {
+                _ if file.is_empty() => refuse("a file of samples needs a name".into(), None),
+                _ if path.is_dir() => refuse(format!("{file} is a folder"), None),
+                ErrorKind::NotFound | ErrorKind::NotADirectory => self.source.missing_file(at, file),
+                ErrorKind::InvalidData => {
+                    refuse(format!("{file} is not text in UTF-8"), Some("save the table as CSV in UTF-8"))
+                }
+                _ => refuse(format!("cannot read {file}: {error}"), None),
+            }
+        })
     }
 
     /// The absorption per scene unit of a glass of the catalog.

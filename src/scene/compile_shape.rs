@@ -1,13 +1,11 @@
 //! From a shape as written to a shape that rays can meet.
 
-use std::path::Path;
-
 use sha2::Digest;
 
 use super::compile::Compiler;
 use super::description::{MeshText, ObjectText, ShapeText, StepText};
-use super::source::{At, nearest_file};
-use crate::error::{Error, Result};
+use super::source::At;
+use crate::error::Result;
 use crate::math::{DVec3, Transform};
 use crate::shape::{Cube, Disc, Mesh, Plane, Quad, Shape, Sphere, Triangle, Vertices, read_mesh};
 
@@ -180,7 +178,7 @@ impl ShapeCompiler<'_, '_> {
         let mesh = read_mesh(&path).map_err(|message| match path.try_exists() {
             _ if file.is_empty() => refuse("a mesh file needs a name".into()),
             _ if path.is_dir() => refuse(format!("{file} is a folder")),
-            Ok(false) => self.missing(at, file, &path),
+            Ok(false) => self.compiler.source.missing_file(at, file),
             _ => refuse(format!("{file}: {message}")),
         })?;
         let is_far = |&vertex: &u32| mesh.vertices.at(vertex).abs().max_element() > MAX_LENGTH;
@@ -194,16 +192,6 @@ impl ShapeCompiler<'_, '_> {
             self.compiler.warnings.push(warning);
         }
         Ok((mesh.vertices, mesh.faces))
-    }
-
-    fn missing(&self, at: &At, file: &str, path: &Path) -> Error {
-        let near =
-            nearest_file(path).and_then(|near| near.file_name().map(|name| Path::new(file).with_file_name(name)));
-        let help = match near {
-            Some(near) => format!("did you mean \"{}\"?", near.display()),
-            None => "the path starts at the folder of the scene".into(),
-        };
-        self.compiler.source.mistake_at(at, format!("there is no file {file}"), Some(help))
     }
 
     fn transform(&self, at: &At, steps: &[StepText]) -> Result<Transform> {

@@ -12,6 +12,7 @@ mod index;
 mod source;
 mod spectrum_file;
 mod structure;
+mod suggest;
 mod syntax;
 mod wording;
 

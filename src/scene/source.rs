@@ -58,8 +58,13 @@ impl Source {
         let document = document.get_ref();
         let right = |mistake: Option<Mistake>| mistake.map_or(Ok(()), |mistake| Err(refuse(mistake)));
         right(structure::misplaced(document))?;
-        let description = toml::from_str(&self.text);
-        let description = description.map_err(|error| refuse(wording::explain(&self.text, document, &error)))?;
+        let description = toml::from_str(&self.text).map_err(|error: toml::de::Error| {
+            let span = error.span().unwrap_or(0..0);
+            let listed =
+                structure::listed(document).filter(|(list, ..)| list.start <= span.start && span.end <= list.end);
+            refuse(listed.unwrap_or_else(|| wording::explain(&self.text, document, &error)))
+        })?;
+        right(structure::listed(document))?;
         right(structure::surplus(document))?;
         Ok(description)
     }
@@ -74,12 +79,26 @@ impl Source {
         self.mistake(self.span(place), message.into(), help)
     }
 
+    /// The error of a file that the scene names and that is not there.
+    pub(super) fn missing_file(&self, place: &At, file: &str) -> Error {
+        let near = nearest_file(&self.folder().join(file));
+        let near = near.and_then(|near| near.file_name().map(|name| Path::new(file).with_file_name(name)));
+        let help = match near {
+            Some(near) => format!("did you mean \"{}\"?", near.display()),
+            None => "the path starts at the folder of the scene".into(),
+        };
+        self.mistake_at(place, format!("there is no file {file}"), Some(help))
+    }
+
     fn mistake(&self, span: Range<usize>, message: String, help: Option<String>) -> Error {
+        // Names in a scene may hold anything, even the end of a line.
+        let one_line = |text: String| text.replace(char::is_control, " ");
+        let (message, help) = (one_line(message), help.map(one_line));
         Error::Scene(Diagnostic { file: self.path.clone(), text: self.text.clone(), span, message, help })
     }
 
     /// The bytes of the value at a place, or of the nearest value around it that is written down.
-    fn span(&self, place: &At) -> Range<usize> {
+    pub(super) fn span(&self, place: &At) -> Range<usize> {
         let Ok(document) = DeTable::parse(&self.text) else { return 0..0 };
         let mut span = 0..0;
         let mut table = Some(document.get_ref());
@@ -146,7 +165,7 @@ impl std::fmt::Display for At<'_> {
 }
 
 /// The file beside a missing one that was most likely meant.
-pub(super) fn nearest_file(missing: &Path) -> Option<PathBuf> {
+fn nearest_file(missing: &Path) -> Option<PathBuf> {
     let folder = missing.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let files = std::fs::read_dir(folder).ok()?.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
     let mut names: Vec<String> = files.collect();

@@ -3,12 +3,22 @@
 /// A row: the number of its line, from 1, and (wavelength in nm, value).
 type Row = (usize, [f64; 2]);
 
+/// What is wrong with a file.
+#[derive(Debug, PartialEq)]
+pub(super) struct Fault {
+    /// What follows the name of the file.
+    pub(super) message: String,
+    pub(super) help: Option<String>,
+    /// Whether there is no such column.
+    pub(super) is_column: bool,
+}
+
 /// The rows of a column of a text file, counted from 1; columns stand apart by commas, semicolons, tabs or blanks. Lines
 /// that are empty or begin with # are passed over, and so is a first line of titles.
 ///
 /// # Errors
 /// The line and what is wrong with it.
-pub(super) fn read_columns(text: &str, column: usize) -> Result<Vec<Row>, (usize, String)> {
+pub(super) fn read_columns(text: &str, column: usize) -> Result<Vec<Row>, Fault> {
     let (mut rows, mut titles) = (Vec::new(), true);
     for (number, line) in text.trim_start_matches('\u{feff}').lines().enumerate() {
         let line = line.trim();
@@ -16,22 +26,36 @@ pub(super) fn read_columns(text: &str, column: usize) -> Result<Vec<Row>, (usize
             continue;
         }
         let cells = cells(line);
-        let numbers: Result<Vec<f64>, &str> = [0, column - 1]
-            .into_iter()
-            .map(|at| {
-                let cell = cells.get(at).copied().unwrap_or("");
-                cell.parse().map_err(|_| cell)
-            })
-            .collect();
-        match numbers {
-            Ok(pair) => rows.push((number + 1, [pair[0], pair[1]])),
-            Err(_) if titles && cells[0].parse::<f64>().is_err() => {}
-            Err("") => return Err((number + 1, format!("there is no column {column}, only {}", cells.len()))),
-            Err(cell) => return Err((number + 1, format!("{cell:?} is not a number"))),
+        let number_in = |at: usize| cells.get(at).map(|cell| cell.parse::<f64>().map_err(|_| *cell));
+        match (number_in(0), number_in(column - 1)) {
+            (Some(Err(_)), _) if titles => {}
+            (Some(Ok(nm)), Some(Ok(value))) => rows.push((number + 1, [nm, value])),
+            (Some(Err(cell)), _) | (_, Some(Err(cell))) => return Err(no_number(number + 1, cell, rows.is_empty())),
+            _ => {
+                let message = format!(", line {}: there is no column {column}, only {}", number + 1, cells.len());
+                return Err(Fault { message, help: None, is_column: true });
+            }
         }
         titles = false;
     }
-    if rows.is_empty() { Err((1, "there are no numbers".into())) } else { Ok(rows) }
+    match rows.is_empty() {
+        true => Err(Fault { message: " holds no numbers".into(), help: None, is_column: false }),
+        false => Ok(rows),
+    }
+}
+
+fn no_number(line: usize, cell: &str, first: bool) -> Fault {
+    let message = match cell {
+        "" => format!(", line {line}: a number is missing"),
+        _ => format!(", line {line}: {cell:?} is not a number"),
+    };
+    let decimal = cell.split_once(',').is_some_and(|(whole, rest)| format!("{whole}.{rest}").parse::<f64>().is_ok());
+    let help = match decimal {
+        true => Some("a decimal point is written `.`"),
+        false if first => Some("one line of titles may come first; a line that begins with # is passed over"),
+        false => None,
+    };
+    Fault { message, help: help.map(str::to_owned), is_column: false }
 }
 
 /// Blanks separate cells only where nothing else does.
@@ -57,8 +81,10 @@ mod tests {
 
     #[test]
     fn a_mistake_is_told_with_its_line() {
-        assert_eq!(read_columns("400, 0.1\n500, red", 2), Err((2, "\"red\" is not a number".into())));
-        assert_eq!(read_columns("nm, v\n400, 0.1", 3), Err((2, "there is no column 3, only 2".into())));
-        assert_eq!(read_columns("# nothing", 2), Err((1, "there are no numbers".into())));
+        let told = |text, column| read_columns(text, column).unwrap_err().message;
+        assert_eq!(told("400, 0.1\n500, red", 2), ", line 2: \"red\" is not a number");
+        assert_eq!(told("nm, v\n400, 0.1", 3), ", line 2: there is no column 3, only 2");
+        assert_eq!(told("400;0,5", 2), ", line 1: \"0,5\" is not a number");
+        assert_eq!(told("# nothing", 2), " holds no numbers");
     }
 }

@@ -5,6 +5,8 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
+use crate::error::nearest;
+
 /// A mistake: the bytes that are wrong, what is wrong with them, and what to do.
 pub(super) type Mistake = (Range<usize>, String, Option<String>);
 
@@ -21,6 +23,7 @@ pub(super) fn misplaced(document: &DeTable) -> Option<Mistake> {
             mistake(value, format!("`{key}` is a list of tables"), format!("write [[{key}]] for each"))
         }
         ("material", DeValue::Table(materials)) => materials.values().find_map(|material| one_of(material, &MATERIAL)),
+        ("render", DeValue::Table(render)) => render.get("model").and_then(unknown_model),
         ("object", DeValue::Array(objects)) => objects.iter().find_map(|object| misplaced_in_object(object.get_ref())),
         _ => None,
     })
@@ -35,6 +38,36 @@ fn misplaced_in_object(object: &DeValue) -> Option<Mistake> {
     let shape = object.get("shape").and_then(|shape| one_of(shape, &SHAPE));
     let steps = || object.get("transform").and_then(|steps| steps.get_ref().as_array());
     shape.or_else(|| steps()?.iter().find_map(|step| one_of(step, &STEP)))
+}
+
+/// A `render.model` that there is not.
+fn unknown_model(value: &Spanned<DeValue>) -> Option<Mistake> {
+    const WORDS: [&str; 3] = ["auto", "rgb", "hero"];
+    const FORMS: &str = "`model` is a word in quotes or { bands = .. }";
+    const KNOWN: &str = "known here: \"auto\", \"rgb\", \"hero\" or { bands = 16 }";
+    match value.get_ref() {
+        DeValue::String(word) if WORDS.contains(&word.as_ref()) => None,
+        DeValue::String(word) => {
+            let help = match nearest(word, WORDS.into_iter().chain(["bands"])) {
+                Some("bands") => "write { bands = 16 }".into(),
+                Some(near) => format!("did you mean \"{near}\"?"),
+                None => KNOWN.into(),
+            };
+            mistake(value, format!("`model` cannot be \"{word}\""), help)
+        }
+        DeValue::Table(table) if table.is_empty() => mistake(value, FORMS, KNOWN),
+        DeValue::Table(table) => {
+            let (key, _) = table.iter().find(|(key, _)| key.get_ref() != "bands")?;
+            let word = key.get_ref();
+            let help = match nearest(word, WORDS.into_iter().chain(["bands"])) {
+                Some("bands") => "did you mean `bands`?".into(),
+                Some(near) => format!("write model = \"{near}\""),
+                None => KNOWN.into(),
+            };
+            Some((key.span(), format!("unknown key `{word}`"), Some(help)))
+        }
+        _ => mistake(value, FORMS, KNOWN),
+    }
 }
 
 /// A table with one key, its kind.
@@ -77,49 +110,67 @@ fn one_of(value: &Spanned<DeValue>, choice: &OneOf) -> Option<Mistake> {
     }
 }
 
-/// A list in place of a table, or with more entries than are read.
-///
-/// The reader fills a table from a list by position, and drops what comes after the last entry it wants.
-pub(super) fn surplus(document: &DeTable) -> Option<Mistake> {
-    surplus_in(document, &mut Vec::new())
+/// A list in place of a table, which the reader fills from a list by position.
+pub(super) fn listed(document: &DeTable) -> Option<Mistake> {
+    find_in(document, &mut Vec::new(), &|path, value, _| {
+        let is_table = match path {
+            ["material", _, _] | ["object", "shape", _] | ["object", "transform", "rotate"] => true,
+            ["light", "environment" | "point" | "sun"] => true,
+            [.., key] => matches!(*key, "sellmeier" | "abbe"),
+            [] => false,
+        };
+        let key = path.last().filter(|_| is_table)?;
+        Some((value.span(), format!("`{key}` is a table, {{ .. }}, not a list"), None))
+    })
 }
 
-fn surplus_in<'t>(table: &'t DeTable, path: &mut Vec<&'t str>) -> Option<Mistake> {
+/// A list with more entries than are read: the reader drops what comes after the last entry it wants.
+pub(super) fn surplus(document: &DeTable) -> Option<Mistake> {
+    find_in(document, &mut Vec::new(), &|path, value, entries| {
+        let key = *path.last()?;
+        let (one, wanted, help) = match key {
+            "b" | "c" => return None,
+            "samples" => ("an entry of `samples`", 2, Some("write [wavelength in nm, value]")),
+            "lines" => ("an entry of `lines`", 2, Some("write [wavelength in nm, power]")),
+            "cauchy" => ("`cauchy`", 2, Some("write [A, B] of n = A + B / wavelength^2")),
+            "faces" => ("a face", 3, Some("cut faces with more corners into triangles")),
+            "points" => ("a point", 3, None),
+            key => (&*format!("`{key}`"), 3, None),
+        };
+        let numbers = entries.iter().all(|entry| matches!(entry.get_ref(), DeValue::Integer(_) | DeValue::Float(_)));
+        (numbers && entries.len() > wanted).then(|| {
+            let message = format!("{one} is a list of {wanted} numbers, not one of {}", entries.len());
+            (value.span(), message, help.map(str::to_owned))
+        })
+    })
+}
+
+type Entries<'t> = [Spanned<DeValue<'t>>];
+
+/// The first mistake in a list of the document; `look` is told the keys that lead to it.
+fn find_in<'t>(
+    table: &'t DeTable,
+    path: &mut Vec<&'t str>,
+    look: &impl Fn(&[&str], &Spanned<DeValue>, &Entries) -> Option<Mistake>,
+) -> Option<Mistake> {
     table.iter().find_map(|(key, value)| {
         path.push(key.get_ref());
-        let found = surplus_at(value, path);
+        let found = find_at(value, path, look);
         path.pop();
         found
     })
 }
 
-fn surplus_at<'t>(value: &'t Spanned<DeValue>, path: &mut Vec<&'t str>) -> Option<Mistake> {
-    let entries = match value.get_ref() {
-        DeValue::Table(table) => return surplus_in(table, path),
-        DeValue::Array(entries) => entries,
-        _ => return None,
-    };
-    let is_table = match path.as_slice() {
-        ["material", _, _] | ["object", "shape", _] | ["object", "transform", "rotate"] | ["light", _] => true,
-        [.., key] => matches!(*key, "sellmeier" | "abbe"),
-        [] => false,
-    };
-    let key = *path.last()?;
-    if is_table {
-        return Some((value.span(), format!("`{key}` is a table, {{ .. }}, not a list"), None));
+fn find_at<'t>(
+    value: &'t Spanned<DeValue>,
+    path: &mut Vec<&'t str>,
+    look: &impl Fn(&[&str], &Spanned<DeValue>, &Entries) -> Option<Mistake>,
+) -> Option<Mistake> {
+    match value.get_ref() {
+        DeValue::Table(table) => find_in(table, path, look),
+        DeValue::Array(entries) => {
+            look(path, value, entries).or_else(|| entries.iter().find_map(|entry| find_at(entry, path, look)))
+        }
+        _ => None,
     }
-    let (one, wanted, help) = match key {
-        "b" | "c" => return None,
-        "samples" => ("an entry of `samples`", 2, Some("write [wavelength in nm, value]")),
-        "cauchy" => ("`cauchy`", 2, Some("write [A, B] of n = A + B / wavelength^2")),
-        "faces" => ("a face", 3, Some("cut faces with more corners into triangles")),
-        "points" => ("a point", 3, None),
-        key => (&*format!("`{key}`"), 3, None),
-    };
-    let numbers = entries.iter().all(|entry| matches!(entry.get_ref(), DeValue::Integer(_) | DeValue::Float(_)));
-    if numbers && entries.len() > wanted {
-        let message = format!("{one} is a list of {wanted} numbers, not one of {}", entries.len());
-        return Some((value.span(), message, help.map(str::to_owned)));
-    }
-    entries.iter().find_map(|entry| surplus_at(entry, path))
 }

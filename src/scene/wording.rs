@@ -7,7 +7,10 @@ use toml::de::{DeTable, DeValue};
 
 use super::description::ShapeText;
 use super::structure::Mistake;
-use crate::error::nearest;
+use super::suggest::{remedy, suggestion};
+
+/// How the message begins that refuses a spectrum without a kind.
+const NO_KIND: &str = "a spectrum needs one of";
 
 type Words = (String, Option<String>);
 
@@ -19,7 +22,7 @@ pub(super) fn explain(text: &str, document: &DeTable, error: &toml::de::Error) -
     let said = error.message().lines().next().unwrap_or("this is no scene");
     match place.unknown(said).or_else(|| place.wrong_type(said, written)) {
         Some((message, help)) => (span, message, help),
-        None => (place.kind_span().unwrap_or(span), said.to_owned(), None),
+        None => (place.told_span(said).unwrap_or(span), said.to_owned(), place.example(said)),
     }
 }
 
@@ -62,12 +65,28 @@ impl<'t> Place<'t> {
         }
     }
 
-    /// The value of a material's only kind: what the material's own checks refuse.
-    fn kind_span(&self) -> Option<Range<usize>> {
-        match (self.path.as_slice(), self.value) {
-            (["material", _], Some(DeValue::Table(kinds))) => kinds.values().next().map(Spanned::span),
-            _ => None,
+    /// What a check of Abbe's own refuses: the value of a material's only kind, or the last key of a spectrum that it
+    /// names.
+    fn told_span(&self, said: &str) -> Option<Range<usize>> {
+        let Some(DeValue::Table(table)) = self.value else { return None };
+        match self.path.as_slice() {
+            ["material", _] => table.values().next().map(Spanned::span),
+            _ if said.starts_with(NO_KIND) => None,
+            _ => {
+                let named = table.keys().filter(|key| said.contains(&format!("`{}`", key.get_ref())));
+                named.map(Spanned::span).max_by_key(|span| span.start)
+            }
         }
+    }
+
+    /// A spectrum that could stand where one has no kind.
+    fn example(&self, said: &str) -> Option<String> {
+        let example = match *self.path.last().filter(|_| said.starts_with(NO_KIND))? {
+            "index" => "\"N-BK7\" or { cauchy = [1.5046, 0.0042] }",
+            "radiance" | "intensity" | "irradiance" | "emission" => "{ illuminant = \"D65\" }",
+            _ => "{ rgb = [0.7, 0.5, 0.3] }",
+        };
+        Some(format!("such as {example}"))
     }
 
     /// A name that is unknown or missing: serde's "unknown field `x`, expected `a` or `b`" and the like.
@@ -96,7 +115,7 @@ impl<'t> Place<'t> {
             ["object", "transform", _] => format!("unknown step of a transform `{word}`"),
             _ => format!("`{key}` cannot be \"{word}\""),
         };
-        Some((message, Some(suggestion(word, known))))
+        Some((message, Some(suggestion(key, word, known))))
     }
 
     /// A value of the wrong type: serde's "invalid type: map, expected f64" and the like.
@@ -113,7 +132,7 @@ impl<'t> Place<'t> {
             "f64" => "a number",
             "u32" if too_large => "at most 4294967295",
             "u64" if too_large => "at most 18446744073709551615",
-            "u32" | "u64" => "a whole number of 0 or more",
+            "u32" | "u64" | "usize" => "a whole number of 0 or more",
             "i32" => "a whole number",
             "a string" => "a text in quotes",
             "a sequence" => "a list",
@@ -138,39 +157,8 @@ impl<'t> Place<'t> {
     }
 }
 
-/// The known name that was meant, or all of them.
-fn suggestion(word: &str, known: &[&str]) -> String {
-    let part_of =
-        || known.iter().copied().find(|name| name.starts_with(word) || name.split('_').any(|part| part == word));
-    match nearest(word, known.iter().copied()).or_else(part_of) {
-        Some(near) => format!("did you mean `{near}`?"),
-        None => format!("known here: {}", known.join(", ")),
-    }
-}
-
 /// Whether a word names a shape: the reader looks at a shape's values only after it has recognized its name.
 fn is_shape(word: &str) -> bool {
     let read = toml::from_str::<ShapeText>(&format!("{word} = 0"));
     read.is_err_and(|error| error.message().starts_with("invalid type"))
-}
-
-/// How to write what a value of the wrong type seems to mean.
-fn remedy(key: &str, value: &DeValue, expected: &str, written: &str) -> Option<String> {
-    let number = matches!(expected, "f64" | "u32" | "u64" | "i32");
-    match value {
-        DeValue::String(text) if number && text.parse::<f64>().is_ok_and(f64::is_finite) => {
-            Some(format!("write it without quotes: {text}"))
-        }
-        DeValue::Float(float) if number => {
-            let float: f64 = float.as_str().parse().ok()?;
-            (float >= 0.0 && float.fract() == 0.0).then(|| format!("write {float}"))
-        }
-        DeValue::Integer(_) if expected == "f64" => Some(format!("write it with a decimal point: {written}.0")),
-        DeValue::Array(_) if expected.starts_with("a number, a catalog name") => {
-            Some(format!("write {{ rgb = {written} }} for a color"))
-        }
-        DeValue::Table(_) if key == "material" => Some("define it as [material.NAME] and write \"NAME\" here".into()),
-        DeValue::Table(_) if expected == "a sequence" => Some("put it in brackets: [{ .. }]".into()),
-        _ => None,
-    }
 }

@@ -1,7 +1,8 @@
 //! What an author should know of an index: how far its formula reaches, and which glass it imitates badly.
 
 use super::curve::cauchy_through;
-use super::curve_check::{Refusal, unknown_glass};
+use super::curve_check::Refusal;
+use super::curve_name::unknown_glass;
 use super::data::{self, Glass};
 use super::{Curve, CurveKind};
 
@@ -28,7 +29,7 @@ pub fn absorption_of(name: &str) -> Result<Vec<[f64; 2]>, Refusal> {
     if glass.extinction.is_empty() {
         let message = format!("the catalog does not know the absorption of {}", glass.key);
         return Err(Refusal::new(message)
-            .help("render catalog glass lists who has it; or write { samples = [[nm, per unit], ..] }"));
+            .help("`render catalog glass` lists who has it; or write { samples = [[nm, per unit], ..] }"));
     }
     let per_meter = |k: f64, nm: f64| 4.0 * std::f64::consts::PI * k / (nm * 1e-9);
     Ok(glass.extinction.iter().map(|&[nm, k]| [nm, per_meter(k, nm)]).collect())

@@ -63,6 +63,23 @@ impl ColorSpace {
         }
     }
 
+    /// The space that people call by a name such as "sRGB", "ACEScg" or "Rec.2020".
+    pub fn called(name: &str) -> Option<Self> {
+        const NAMES: [(&str, ColorSpace); 9] = [
+            ("acescg", ColorSpace::AcesCg),
+            ("ap1", ColorSpace::AcesCg),
+            ("aces", ColorSpace::Aces2065),
+            ("ap0", ColorSpace::Aces2065),
+            ("2020", ColorSpace::Rec2020),
+            ("p3", ColorSpace::P3D65),
+            ("xyz", ColorSpace::Xyz),
+            ("709", ColorSpace::Rec709),
+            ("srgb", ColorSpace::Rec709),
+        ];
+        let name = name.to_lowercase();
+        NAMES.iter().find(|(part, _)| name.contains(part)).map(|(_, space)| *space)
+    }
+
     /// Primaries and white: ITU-R BT.709-6 table 1, ITU-R BT.2020-2 table 3, SMPTE RP 431-2 with the white of
     /// BT.709, AMPAS S-2014-004 (AP1) and SMPTE ST 2065-1 (AP0).
     pub fn primaries(self) -> Primaries {

@@ -1,9 +1,9 @@
 //! Whether a curve can be what it is used as.
 
 use super::curve::sellmeier_squared;
+use super::curve_name::{illuminant_called, unknown_glass, unknown_illuminant, unknown_metal, unknown_reflectance};
 use super::curve_range::{article, in_range, shown};
-use super::data;
-use super::{Curve, CurveKind, Quantity};
+use super::{ColorSpace, Curve, CurveKind, Emission, Quantity, data};
 
 /// Why a curve cannot be what it is used as.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,25 +33,41 @@ impl Refusal {
 }
 
 pub(super) const CAUCHY: &str = "for a glass, A is about 1.5 and B about 0.004 um^2";
+pub(super) const SELLMEIER: &str =
+    "c holds squared wavelengths in um^2: square the coefficients if they are wavelengths";
+pub(super) const ABBE: &str = "for a glass, nd is about 1.4 to 2.1 and vd 18 to 95";
 
 /// Everything that makes a curve unusable as a quantity, found before a ray is shot.
 pub(super) fn check(curve: &Curve, quantity: Quantity) -> Result<(), Refusal> {
     kind_fits(curve, quantity)?;
     finite(curve)?;
     match &curve.kind {
-        CurveKind::Samples(samples) => ascending(samples)?,
-        CurveKind::Lines(lines) => visible_lines(lines)?,
-        CurveKind::Blackbody(kelvin) if !(100.0..=1e9).contains(kelvin) => {
-            let refusal = Refusal::new(format!("a blackbody has 100 to 1e9 kelvin, not {}", shown(*kelvin)));
-            return Err(refusal.help("a candle has 1900, the sun 5772").at(&["blackbody"], None));
+        CurveKind::Samples(samples) => {
+            ascending(samples)?;
+            if let ([[nm, power]], Quantity::Emission) = (samples.as_slice(), quantity) {
+                let refusal = Refusal::new("an emission of one sample is dark: it is 0 beyond its ends");
+                let help = format!("for one wavelength write {{ lines = [[{nm}, {power}]] }}");
+                return Err(refusal.help(help).at(&["samples"], 0));
+            }
         }
+        CurveKind::Lines(lines) => visible_lines(lines)?,
+        CurveKind::Blackbody(kelvin) => blackbody(*kelvin)?,
         CurveKind::Sellmeier { b, c } => sellmeier(b, c)?,
         CurveKind::Abbe { vd, .. } if *vd <= 0.0 => {
             return Err(Refusal::new("an Abbe number is above 0").at(&["abbe", "vd"], None));
         }
+        CurveKind::Abbe { nd, .. } if *nd <= 1.0 => {
+            let refusal = Refusal::new(format!("a refractive index is above 1, not {}", shown(*nd)));
+            return Err(refusal.help(ABBE).at(&["abbe", "nd"], None));
+        }
         _ => {}
     }
-    in_range(curve, quantity)
+    in_range(curve, quantity)?;
+    let dark = |curve: &Curve| !Emission::new(curve, ColorSpace::default()).xyz()[1].is_normal();
+    if curve.luminance.is_some_and(|luminance| luminance > 0.0) && dark(curve) {
+        return Err(Refusal::new("a light without power has no luminance").at(&["luminance"], None));
+    }
+    Ok(())
 }
 
 fn kind_fits(curve: &Curve, quantity: Quantity) -> Result<(), Refusal> {
@@ -69,50 +85,28 @@ fn kind_fits(curve: &Curve, quantity: Quantity) -> Result<(), Refusal> {
         (Name(name), Index) if data::glass(name).is_some() => Ok(()),
         (Name(name), MetalIndex | MetalExtinction) if data::metal(name).is_some() => Ok(()),
         (Name(name), Reflectance | Transmittance) if data::reflectance(name).is_some() => Ok(()),
-        (Illuminant(name), Emission) => {
-            let names = data::illuminants().map(|illuminant| illuminant.name);
-            Err(unknown(name, "illuminant", names, None).at(&["illuminant"], None))
-        }
+        (Illuminant(name), Emission) => Err(unknown_illuminant(name).at(&["illuminant"], None)),
         (Name(name), Index) => Err(unknown_glass(name)),
-        (Name(name), MetalIndex | MetalExtinction) => {
-            let other =
-                data::glass(name).map(|glass| format!("a glass: dielectric = {{ index = \"{}\" }}", glass.name()));
-            let names = data::metals().flat_map(|metal| [vec![metal.name], metal.aliases].concat());
-            Err(unknown(name, "metal", names, other))
-        }
-        (Name(name), Reflectance | Transmittance) => {
-            let other = data::metal(name).map(|metal| format!("a metal: conductor = {{ metal = \"{}\" }}", metal.name));
-            Err(unknown(name, "reflectance", data::reflectances().map(|patch| patch.name), other))
-        }
-        (Name(name), Emission) if data::illuminant(name).is_some() => {
-            let refusal = Refusal::new(format!("{} cannot be given by {}", article(quantity), form(&curve.kind)));
-            Err(refusal.help(format!("it is an illuminant: write {{ illuminant = \"{name}\" }}")))
-        }
-        (kind, Emission) => {
-            let message = format!("{} cannot be given by {}", article(quantity), form(kind));
-            Err(Refusal::new(message).help("write a number, { rgb = [red, green, blue] } or { illuminant = \"D65\" }"))
-        }
+        (Name(name), MetalIndex | MetalExtinction) => Err(unknown_metal(name)),
+        (Name(name), Reflectance | Transmittance) => Err(unknown_reflectance(name)),
         (kind, _) => {
-            let message = format!("{} cannot be given by {}", article(quantity), form(kind));
-            Err(Refusal::new(message).help("write a number or { rgb = [red, green, blue] }"))
+            let refusal = Refusal::new(format!("{} cannot be given by {}", article(quantity), form(kind)));
+            let light = if let (Name(name), Emission) = (kind, quantity) { illuminant_called(name) } else { None };
+            Err(refusal.help(light.unwrap_or_else(|| forms(quantity).into())))
         }
     }
 }
 
-/// A name that no glass has.
-pub(super) fn unknown_glass(name: &str) -> Refusal {
-    let metal = data::metal(name).map(|metal| format!("a metal: conductor = {{ metal = \"{}\" }}", metal.name));
-    unknown(name, "glass", data::known_as(), metal)
-}
-
-fn unknown<'a>(name: &str, what: &str, names: impl Iterator<Item = &'a str>, other: Option<String>) -> Refusal {
-    let near = crate::error::nearest(name, names);
-    let help = match (other, near) {
-        (Some(other), _) => format!("it is {other}"),
-        (None, Some(near)) => format!("did you mean \"{near}\"?"),
-        (None, None) => format!("`render catalog {what}` lists the known names"),
-    };
-    Refusal::new(format!("there is no {what} named {name:?}")).help(help)
+/// How a quantity may be written.
+fn forms(quantity: Quantity) -> &'static str {
+    match quantity {
+        Quantity::Emission => "write a number, { rgb = [red, green, blue] } or { illuminant = \"D65\" }",
+        Quantity::Index => "write a number, a glass such as \"N-BK7\" or { samples = [[nm, n], ..] }",
+        Quantity::MetalIndex | Quantity::MetalExtinction => "write a number or { samples = [[nm, value], ..] }",
+        Quantity::Reflectance | Quantity::Transmittance | Quantity::Absorption => {
+            "write a number, { rgb = [red, green, blue] } or { samples = [[nm, value], ..] }"
+        }
+    }
 }
 
 fn finite(curve: &Curve) -> Result<(), Refusal> {
@@ -148,19 +142,23 @@ fn ascending(samples: &[[f64; 2]]) -> Result<(), Refusal> {
     if let Some(i) = samples.windows(2).position(|pair| pair[1][0] <= pair[0][0]) {
         let message =
             format!("wavelengths increase from sample to sample ({} after {})", samples[i + 1][0], samples[i][0]);
-        return Err(Refusal::new(message).at(&["samples"], i + 1));
+        let refusal = Refusal::new(message).at(&["samples"], i + 1);
+        let descending = samples[i + 1][0] < samples[i][0];
+        return Err(if descending { refusal.help("sort them, the shortest first") } else { refusal });
     }
     if (100.0..=830.0).contains(first) {
         return Ok(());
     }
-    let refusal =
-        Refusal::new(format!("a first wavelength of {first} nm is far from visible light")).at(&["samples"], 0);
-    let other_units = [("um", 1e3), ("Angstrom", 0.1)].into_iter();
-    let meant = other_units.map(|(unit, nm)| (unit, first * nm)).find(|(_, nm)| (100.0..=830.0).contains(nm));
-    Err(match meant {
-        Some((unit, nm)) => refusal.help(format!("in {unit}? Wavelengths are in nm: then write {}", shown(nm))),
-        None => refusal.help("wavelengths are in nm"),
-    })
+    let refusal = Refusal::new(format!("a first wavelength of {first} nm is far from visible light"));
+    let help = unit_of_wavelength(*first, 100.0).unwrap_or("wavelengths are in nm".into());
+    Err(refusal.help(help).at(&["samples"], 0))
+}
+
+/// The unit that a wavelength seems to be in, if it would be `least` to 830 nm in that.
+fn unit_of_wavelength(given: f64, least: f64) -> Option<String> {
+    let units = [("um", 1e3), ("Angstrom", 0.1), ("m", 1e9)].map(|(unit, nm)| (unit, given * nm));
+    let (unit, nm) = units.into_iter().find(|(_, nm)| (least..=830.0).contains(nm))?;
+    Some(format!("in {unit}? Wavelengths are in nm: then write {}", shown(nm)))
 }
 
 fn visible_lines(lines: &[[f64; 2]]) -> Result<(), Refusal> {
@@ -169,11 +167,26 @@ fn visible_lines(lines: &[[f64; 2]]) -> Result<(), Refusal> {
     }
     match lines.iter().position(|[nm, _]| !(360.0..=830.0).contains(nm)) {
         Some(entry) => {
-            let message = format!("a line lies within 360 to 830 nm, not at {}", shown(lines[entry][0]));
-            Err(Refusal::new(message).at(&["lines"], entry))
+            let nm = lines[entry][0];
+            let help = unit_of_wavelength(nm, 360.0).unwrap_or("leave it out: it cannot be seen".into());
+            let message = format!("a line lies within 360 to 830 nm, not at {}", shown(nm));
+            Err(Refusal::new(message).help(help).at(&["lines"], entry))
         }
         None => Ok(()),
     }
+}
+
+fn blackbody(kelvin: f64) -> Result<(), Refusal> {
+    if (100.0..=1e9).contains(&kelvin) {
+        return Ok(());
+    }
+    let refusal = Refusal::new(format!("a blackbody has 100 to 1e9 kelvin, not {}", shown(kelvin)));
+    let units = [("kK", 1e3), ("MK", 1e6)].map(|(unit, factor)| (unit, kelvin * factor));
+    let help = match units.into_iter().find(|(_, kelvin)| (1000.0..=40_000.0).contains(kelvin)) {
+        Some((unit, kelvin)) => format!("in {unit}? Temperatures are in kelvin: then write {}", shown(kelvin)),
+        None => "a candle has 1900, the sun 5772".into(),
+    };
+    Err(refusal.help(help).at(&["blackbody"], None))
 }
 
 fn sellmeier(b: &[f64], c: &[f64]) -> Result<(), Refusal> {
@@ -181,16 +194,15 @@ fn sellmeier(b: &[f64], c: &[f64]) -> Result<(), Refusal> {
         let message = format!("a Sellmeier curve has as many b as c, here {} and {}", b.len(), c.len());
         return Err(Refusal::new(message).at(&["sellmeier"], None));
     }
-    let help = "c holds squared wavelengths in um^2: square the coefficients if they are wavelengths";
     if let Some(pole) = c.iter().position(|&c| c > 0.0 && (0.36..=0.83).contains(&c.sqrt())) {
         let message = format!("this Sellmeier curve has a pole at {:.0} nm, in visible light", c[pole].sqrt() * 1e3);
-        return Err(Refusal::new(message).help(help).at(&["sellmeier", "c"], pole));
+        return Err(Refusal::new(message).help(SELLMEIER).at(&["sellmeier", "c"], pole));
     }
     for nm in 360..=830 {
         let squared = sellmeier_squared(b, c, f64::from(nm) * 1e-3);
         if squared.is_nan() || squared <= 0.0 {
             let message = format!("this Sellmeier curve gives n^2 = {} at {nm} nm", shown(squared));
-            return Err(Refusal::new(message).help(help).at(&["sellmeier"], None));
+            return Err(Refusal::new(message).help(SELLMEIER).at(&["sellmeier"], None));
         }
     }
     Ok(())

@@ -1,10 +1,11 @@
 //! Whether every value of a curve is possible for what it describes.
 
-use super::curve_check::{CAUCHY, Refusal};
+use super::curve_check::{ABBE, CAUCHY, Refusal, SELLMEIER};
 use super::{Curve, CurveKind, Quantity};
 
 /// Largest emission: far within f32, which film and lanes hold.
 const MAX_EMISSION: f64 = 1e30;
+const PERCENT: &str = "in percent?";
 /// Largest n and k: several times those of any metal in visible light.
 const MAX_METAL: f64 = 100.0;
 
@@ -19,9 +20,17 @@ pub(super) fn in_range(curve: &Curve, quantity: Quantity) -> Result<(), Refusal>
     match &curve.kind {
         CurveKind::Number(x) => possible(quantity, x * curve.scale, ""),
         CurveKind::Rgb(rgb) => list(&["rgb"], rgb),
-        CurveKind::Samples(samples) => list(&["samples"], &samples.iter().map(|pair| pair[1]).collect::<Vec<_>>()),
+        CurveKind::Samples(samples) => {
+            let values: Vec<f64> = samples.iter().map(|pair| pair[1]).collect();
+            list(&["samples"], &values).map_err(|refusal| match &refusal.help {
+                Some(help) if help.starts_with(PERCENT) && curve.scale == 1.0 => {
+                    refusal.help(format!("{PERCENT} Then add scale = 0.01"))
+                }
+                _ => refusal,
+            })
+        }
         CurveKind::Lines(lines) => list(&["lines"], &lines.iter().map(|pair| pair[1]).collect::<Vec<_>>()),
-        CurveKind::Illuminant(_) | CurveKind::Blackbody(_) => possible(quantity, curve.scale, " as `scale`"),
+        CurveKind::Illuminant(_) | CurveKind::Blackbody(_) => factor("a scale", curve.scale, &["scale"]),
         kind => {
             let value = curve.plain_reader(quantity);
             (360..=830).try_for_each(|nm| {
@@ -30,21 +39,40 @@ pub(super) fn in_range(curve: &Curve, quantity: Quantity) -> Result<(), Refusal>
                 let formula = !matches!(kind, CurveKind::Name(_));
                 let below = if formula && value == 1.0 { Err(nothing_bends(&place)) } else { Ok(()) };
                 below.and_then(|()| possible(quantity, value, &place)).map_err(|refusal| match kind {
+                    CurveKind::Cauchy([_, b]) if (500.0..100_000.0).contains(b) => {
+                        let help = format!("B in nm^2? It is in um^2: then write {}", shown(b * 1e-6));
+                        refusal.help(help).at(&["cauchy"], 1)
+                    }
                     CurveKind::Cauchy(_) => refusal.help(CAUCHY).at(&["cauchy"], None),
+                    CurveKind::Sellmeier { c, .. } if c.iter().all(|&c| c > 1e3) => {
+                        refusal.help("c in nm^2? It is in um^2: divide it by 1e6").at(&["sellmeier", "c"], None)
+                    }
+                    CurveKind::Sellmeier { .. } => refusal.help(SELLMEIER).at(&["sellmeier"], None),
+                    CurveKind::Abbe { .. } => refusal.help(ABBE).at(&["abbe"], None),
                     _ => refusal,
                 })
             })
         }
     }?;
     match curve.luminance {
-        Some(luminance) => possible(quantity, luminance, " as `luminance`").map_err(|r| r.at(&["luminance"], None)),
+        Some(luminance) => factor("a luminance", luminance, &["luminance"]),
         None => Ok(()),
     }
 }
 
 /// An index of exactly 1 from a formula: its coefficients are 0 or in another unit.
 fn nothing_bends(place: &str) -> Refusal {
-    Refusal::new(format!("a refractive index is above 1, not 1{place}")).help("are all coefficients in um?")
+    Refusal::new(format!("a refractive index is above 1, not 1{place}"))
+}
+
+/// A number by which a whole light is made brighter or darker.
+fn factor(name: &str, value: f64, keys: &'static [&'static str]) -> Result<(), Refusal> {
+    let bound = match value {
+        _ if value < 0.0 => "at least 0".to_owned(),
+        _ if value > MAX_EMISSION => format!("at most {}", shown(MAX_EMISSION)),
+        _ => return Ok(()),
+    };
+    Err(Refusal::new(format!("{name} is {bound}, not {}", shown(value))).at(keys, None))
 }
 
 fn possible(quantity: Quantity, value: f64, place: &str) -> Result<(), Refusal> {
@@ -68,7 +96,7 @@ fn possible(quantity: Quantity, value: f64, place: &str) -> Result<(), Refusal> 
     });
     Err(match quantity {
         Quantity::Reflectance | Quantity::Transmittance if (2.0..=100.0).contains(&value) => {
-            refusal.help(format!("in percent? Then write {}", shown(value / 100.0)))
+            refusal.help(format!("{PERCENT} Then write {}", shown(value / 100.0)))
         }
         Quantity::Reflectance | Quantity::Transmittance if (100.0..=255.0).contains(&value) => {
             refusal.help("a color from 0 to 255 is sRGB: its linear value is about (v / 255)^2.2")

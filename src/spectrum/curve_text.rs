@@ -9,7 +9,7 @@ use serde::de::{Deserializer, Error as _, MapAccess, Visitor};
 use super::{Curve, CurveKind};
 
 const EXPECTED: &str = "a number, a catalog name in quotes, or a table such as { rgb = [r, g, b] }";
-const NEEDS: &str = "a spectrum needs one of `rgb`, `samples`, `file`, `cauchy`, `sellmeier`, `abbe`, `illuminant`, `blackbody`, `lines`";
+const NEEDS: &str = "a spectrum needs one of `rgb`, `samples`, `file`, `cauchy`, `sellmeier`, `abbe`, `illuminant`, `blackbody` or `lines`";
 
 impl<'de> Deserialize<'de> for Curve {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
@@ -72,23 +72,23 @@ impl<'de> Visitor<'de> for CurveVisitor {
     fn visit_map<M: MapAccess<'de>>(self, map: M) -> Result<Curve, M::Error> {
         let table = CurveTable::deserialize(MapAccessDeserializer::new(map))?;
         let mut kinds = [
-            table.rgb.map(CurveKind::Rgb),
-            table.samples.map(CurveKind::Samples),
-            table.cauchy.map(CurveKind::Cauchy),
-            table.sellmeier.map(|s| CurveKind::Sellmeier { b: s.b, c: s.c }),
-            table.abbe.map(|a| CurveKind::Abbe { nd: a.nd, vd: a.vd }),
-            table.file.map(|file| CurveKind::File { file, column: table.column.unwrap_or(2) }),
-            table.illuminant.map(CurveKind::Illuminant),
-            table.blackbody.map(CurveKind::Blackbody),
-            table.lines.map(CurveKind::Lines),
+            ("rgb", table.rgb.map(CurveKind::Rgb)),
+            ("samples", table.samples.map(CurveKind::Samples)),
+            ("cauchy", table.cauchy.map(CurveKind::Cauchy)),
+            ("sellmeier", table.sellmeier.map(|s| CurveKind::Sellmeier { b: s.b, c: s.c })),
+            ("abbe", table.abbe.map(|a| CurveKind::Abbe { nd: a.nd, vd: a.vd })),
+            ("file", table.file.map(|file| CurveKind::File { file, column: table.column.unwrap_or(2) })),
+            ("illuminant", table.illuminant.map(CurveKind::Illuminant)),
+            ("blackbody", table.blackbody.map(CurveKind::Blackbody)),
+            ("lines", table.lines.map(CurveKind::Lines)),
         ]
         .into_iter()
-        .flatten();
-        let Some(kind) = kinds.next() else {
+        .filter_map(|(key, kind)| Some((key, kind?)));
+        let Some((key, kind)) = kinds.next() else {
             return Err(M::Error::custom(NEEDS));
         };
-        if kinds.next().is_some() {
-            return Err(M::Error::custom("a spectrum has exactly one kind"));
+        if let Some((other, _)) = kinds.next() {
+            return Err(M::Error::custom(format!("a spectrum has exactly one kind, not `{key}` and `{other}`")));
         }
         if table.column.is_some() && !matches!(kind, CurveKind::File { .. }) {
             return Err(M::Error::custom("`column` goes with `file`"));

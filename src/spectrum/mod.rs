@@ -7,6 +7,7 @@ mod cardinals;
 mod color;
 mod curve;
 mod curve_check;
+mod curve_name;
 mod curve_range;
 mod curve_text;
 pub mod data;

@@ -179,7 +179,7 @@ pub fn known_as() -> impl Iterator<Item = &'static str> {
     aliases.chain(common_rows().chain(makers).map(|row| bare(key_of(row)))).chain(glass_names())
 }
 
-/// A key without its maker.
+/// A key without its maker or its chart.
 pub fn bare(key: &str) -> &str {
     key.split_once('/').map_or(key, |(_, name)| name)
 }

@@ -8,7 +8,7 @@ mod rows;
 mod tests;
 
 pub use color::{Illuminant, Reflectance, color_matching, illuminant, illuminants, reflectance, reflectances};
-pub use glass::{Formula, GLASS_MAKERS, Glass, glass, glass_makers, glass_names, glasses, known_as};
+pub use glass::{Formula, GLASS_MAKERS, Glass, bare, glass, glass_makers, glass_names, glasses, known_as};
 pub use metal::{Metal, metal, metal_names, metals};
 
 /// Linear between samples (x, values), flat beyond the ends.
