@@ -1,0 +1,12 @@
+//! The plan models no more than a scene needs, and what it says of the error of a model holds.
+//!
+//! ```text
+//! cargo test --release --test planning -- --nocapture     # prints predicted and true errors
+//! ```
+
+mod support;
+
+mod planning {
+    mod choices;
+    mod rooms;
+}

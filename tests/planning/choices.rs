@@ -1,0 +1,113 @@
+//! What the plan chooses for scenes whose needs are known.
+
+use abbe::plan::{Plan, plan};
+
+use crate::support::scenes::{scene, view};
+
+/// A thing of glass before a painted wall, by default lit by a lamp of plain white.
+fn behind(glass: &str, shape: &str, wall: &str, light: &str, render: &str) -> Plan {
+    let view = view([0.0, 0.0, 6.0], [0.0, 0.0, 0.0], 40.0, 200);
+    plan(&scene(&format!(
+        "{view}\n[render]\n{render}\n\
+         [material.glass]\ndielectric = {{ index = {glass} }}\n\
+         [material.wall]\ndiffuse = {{ reflectance = {wall} }}\n\
+         [material.stripe]\ndiffuse = {{ reflectance = 0.1 }}\n\
+         [material.lamp]\nemissive = {{ radiance = {light} }}\n\
+         [[object]]\n{shape}\nmaterial = \"glass\"\n\
+         [[object]]\nshape.quad = {{ center = [0, 0, -3], u = [9, 0, 0], v = [0, 9, 0] }}\nmaterial = \"wall\"\n\
+         [[object]]\nshape.quad = {{ center = [0, 0, -2.9], u = [0.1, 0, 0], v = [0, 9, 0] }}\nmaterial = \"stripe\"\n\
+         [[object]]\nshape.sphere = {{ center = [0, 8, 5], radius = 1 }}\nmaterial = \"lamp\"\n"
+    )))
+}
+
+const PANE: &str = "shape.cube = { center = [0, 0, 3], size = [4, 4, 0.02] }\n\
+                    transform = [{ rotate = { axis = [0, 1, 0], degrees = 20 } }]";
+const BALL: &str = "shape.sphere = { center = [0, 0, 1], radius = 1 }";
+const PRISM: &str = "shape.mesh.points = [[-1, -1, 0], [1, -1, 0], [0, -1, -1.7], [-1, 1, 0], [1, 1, 0], [0, 1, -1.7]]\n\
+                     shape.mesh.faces = [[0, 2, 1], [3, 4, 5], [0, 1, 4], [0, 4, 3], [1, 2, 5], [1, 5, 4], [2, 0, 3], [2, 3, 5]]\n\
+                     transform = [{ rotate = { axis = [0, 1, 0], degrees = 40 } }]";
+const RGB: &str = "{ rgb = [0.7, 0.5, 0.3] }";
+
+#[test]
+fn a_scene_of_rgb_colors_under_its_own_white_stays_in_rgb() {
+    for light in ["10", "{ rgb = [9, 5, 2] }", "{ illuminant = \"D65\" }"] {
+        let plan = behind("1.5", BALL, RGB, light, "");
+        assert_eq!(plan.method.basis.name(), "rgb", "{light}: {:?}", plan.because);
+    }
+}
+
+#[test]
+fn a_pane_of_window_glass_keeps_lanes_together() {
+    for glass in ["\"N-BK7\"", "\"N-SF11\""] {
+        let plan = behind(glass, PANE, RGB, "10", "");
+        assert_eq!(plan.method.basis.name(), "rgb", "{:?}", plan.because);
+        assert!(plan.because.iter().any(|line| line.contains("lanes stay together")), "{:?}", plan.because);
+    }
+}
+
+#[test]
+fn a_prism_and_a_ball_let_wavelengths_part() {
+    for (shape, glass) in [(PRISM, "\"N-SF11\""), (PRISM, "\"N-BK7\""), (BALL, "\"N-BK7\"")] {
+        let plan = behind(glass, shape, RGB, "10", "");
+        assert!(plan.method.basis.draws_wavelengths(), "{shape} {glass}: {:?}", plan.because);
+    }
+}
+
+#[test]
+fn dispersion_too_small_to_be_seen_is_not_modelled() {
+    for shape in [PRISM, BALL] {
+        let plan = behind("{ cauchy = [1.5168, 1e-6] }", shape, RGB, "10", "");
+        assert!(!plan.method.basis.draws_wavelengths(), "{:?}", plan.because);
+        assert!(plan.because.iter().any(|line| line.contains("lanes stay together")), "{:?}", plan.because);
+    }
+    let forced = behind("{ cauchy = [1.5168, 1e-6] }", BALL, RGB, "10", "model = \"hero\"");
+    assert!(forced.method.basis.draws_wavelengths());
+}
+
+#[test]
+fn an_rgb_index_never_asks_for_heroes() {
+    let plan = behind("{ rgb = [1.5, 1.55, 1.6] }", PRISM, RGB, "10", "");
+    assert_eq!(plan.method.basis.name(), "rgb");
+}
+
+#[test]
+fn a_prism_out_of_sight_that_lamps_shine_through_is_noticed() {
+    let view = view([0.0, 0.3, 3.0], [0.0, 0.0, 0.0], 30.0, 200);
+    let plan = plan(&scene(&format!(
+        "{view}[material.glass]\ndielectric = {{ index = \"N-SF11\" }}\n\
+         [material.floor]\ndiffuse = {{ reflectance = 0.7 }}\n[material.lamp]\nemissive = {{ radiance = 10 }}\n\
+         [[object]]\nshape.plane = {{ point = [0, -0.5, 0], normal = [0, 1, 0] }}\nmaterial = \"floor\"\n\
+         [[object]]\n{PRISM}\nmaterial = \"glass\"\n[[object]]\nshape.sphere = {{ center = [0, 9, 0], radius = 1 }}\nmaterial = \"lamp\"\n"
+    ).replace("degrees = 40 } }]", "degrees = 40 } }, { translate = [0, 2.5, 0] }]")));
+    assert!(plan.method.basis.draws_wavelengths(), "{:?}", plan.because);
+}
+
+#[test]
+fn measured_colors_get_as_many_lanes_as_the_tolerance_asks() {
+    let lanes = |error: &str| {
+        let plan = behind("1.5", BALL, "\"orange\"", "{ illuminant = \"FL11\" }", error);
+        plan.method.basis.fixed_lanes()
+    };
+    let found = ["error = 0.5", "error = 0.03", "error = 0.003"].map(lanes);
+    assert!(found[0] <= found[1] && found[1] < found[2], "{found:?}");
+    assert_eq!(found[0], 3, "half of everything may be missed");
+}
+
+#[test]
+fn every_line_of_a_lamp_has_a_lane_of_its_own() {
+    let sodium = "{ lines = [[589.0, 2], [589.6, 1]] }";
+    let plan = behind("1.5", BALL, "\"orange\"", sodium, "model = { bands = 12 }");
+    assert_eq!(plan.method.basis.wavelengths_nm()[12..], [589.0, 589.6]);
+    let many: Vec<String> = (0..40).map(|i| format!("[{}, 1]", 400 + 7 * i)).collect();
+    let plan = behind("\"N-BK7\"", BALL, "\"orange\"", &format!("{{ lines = [{}] }}", many.join(", ")), "");
+    assert!(plan.method.basis.lanes() <= 32);
+}
+
+#[test]
+fn what_the_scene_asks_for_is_done() {
+    for (model, name) in [("\"rgb\"", "rgb"), ("{ bands = 16 }", "bands 16"), ("\"hero\"", "hero 12 + 4")] {
+        let plan = behind("1.5", BALL, RGB, "10", &format!("model = {model}"));
+        assert_eq!(plan.method.basis.name(), name);
+        assert!(plan.because[0].contains("asks for it"), "{:?}", plan.because);
+    }
+}
