@@ -67,7 +67,7 @@ impl<const N: usize> Arrival<'_, N> {
     /// Whether light that crosses the surface goes different ways in different lanes.
     pub fn parts(&self) -> bool {
         let same = |i: usize| self.incident[i] == self.incident[0] && self.beyond[i] == self.beyond[0];
-        !(1..N).all(same) && !(self.together > 0.0 && self.is_one_way())
+        !((1..N).all(same) || (self.together > 0.0 && self.is_one_way()))
     }
 
     /// Whether the outermost refracted rays lie within `together`. All lanes of a draw are asked, on this ray or not, so

@@ -54,11 +54,12 @@ impl Emission {
                 lines = pairs.iter().map(|&[nm, power]| [nm, power * unit]).collect();
                 normalized = false;
             }
-            _ => {
+            CurveKind::Samples(samples) => {
                 let unit = 1.0 / visible::luminous();
-                fill(&|nm| unit * within(curve, nm));
+                fill(&|nm| unit * on_grid(samples, nm));
                 normalized = false;
             }
+            _ => panic!("the compiler lets no other kind shine"),
         }
         let film_of_xyz = product(&space.of_xyz(), &diagonal(correction));
         let mut emission = Self { spectrum, lines, correction, film_of_xyz };
@@ -131,11 +132,27 @@ impl Emission {
     }
 }
 
-/// A sampled emission: 0 beyond its ends.
-fn within(curve: &Curve, wavelength_nm: f64) -> f64 {
-    let CurveKind::Samples(samples) = &curve.kind else { panic!("the compiler lets no other kind shine") };
-    let ends = samples[0][0]..=samples[samples.len() - 1][0];
-    if ends.contains(&wavelength_nm) { interpolate(samples, wavelength_nm) } else { 0.0 }
+/// A sampled emission on the grid: 0 beyond its ends. Where samples lie closer than the grid each step gets the light
+/// around it, weighed by the hat function of its step, so that no narrow line is lost.
+fn on_grid(samples: &[[f64; 2]], wavelength_nm: f64) -> f64 {
+    let [first, last] = [samples[0][0], samples[samples.len() - 1][0]];
+    let at = |nm: f64| if (first..=last).contains(&nm) { interpolate(samples, nm) } else { 0.0 };
+    if samples.windows(2).all(|pair| pair[1][0] - pair[0][0] >= 1.0) {
+        return at(wavelength_nm);
+    }
+    let (from, to) = (wavelength_nm - 1.0, wavelength_nm + 1.0);
+    let mut ends = vec![from, wavelength_nm, to];
+    let begin = samples.partition_point(|sample| sample[0] <= from);
+    ends.extend(samples[begin..].iter().map(|sample| sample[0]).take_while(|&nm| nm < to));
+    ends.sort_by(f64::total_cmp);
+    let weighed = |nm: f64| at(nm) * (1.0 - (nm - wavelength_nm).abs());
+    // Simpson's rule is exact: between two ends the light is linear and so is the hat.
+    let part = |a: f64, b: f64| {
+        let inside = |t: f64| weighed(a + t * (b - a));
+        // Just inside the ends, where an emission may begin or stop at once.
+        (b - a) / 6.0 * (inside(1e-9) + 4.0 * inside(0.5) + inside(1.0 - 1e-9))
+    };
+    ends.windows(2).map(|pair| part(pair[0], pair[1])).sum()
 }
 
 /// Factors that make one XYZ another.
