@@ -95,12 +95,12 @@ fn relative_error(images: &[Film], chosen: impl Fn(usize) -> bool) -> (f64, [f64
     let (mut variance, mut square, mut mean, mut pixels) = (0.0, 0.0, [0.0; 3], 0.0);
     for pixel in (0..images[0].pixels.len()).filter(|&pixel| chosen(pixel)) {
         pixels += 1.0;
-        for channel in 0..3 {
+        for (channel, mean) in mean.iter_mut().enumerate() {
             let values = images.iter().map(|image| f64::from(image.pixels[pixel].rgb[channel]));
             let average = values.clone().sum::<f64>() / count;
             variance += values.map(|x| (x - average) * (x - average)).sum::<f64>() / (count - 1.0);
             square += average * average;
-            mean[channel] += average;
+            *mean += average;
         }
     }
     (variance / square, mean.map(|x| x / pixels))

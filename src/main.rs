@@ -12,7 +12,7 @@ use abbe::Result;
 use abbe::film::{Fact, Provenance, View, check_writable, write_exr, write_png};
 use abbe::plan::{Plan, plan};
 use abbe::scene::{Scene, Source, compile};
-use abbe::spectrum::Curve;
+use abbe::spectrum::{Basis, Curve};
 use abbe::trace::{World, render};
 
 use cli::{Job, Output, Request};
@@ -72,6 +72,12 @@ fn view(scene: &Scene<Curve>) -> View {
     View { world_to_camera: scene.camera.world_to_camera(), screen_window_width: scene.camera.screen_window_width() }
 }
 
+/// Where the fixed lanes read spectra, in nm.
+fn wavelengths(basis: &Basis) -> String {
+    let shown: Vec<String> = basis.wavelengths_nm().iter().map(f64::to_string).collect();
+    shown.join(" ")
+}
+
 fn provenance(scene: &Scene<Curve>, plan: &Plan, non_finite: u64) -> Provenance {
     let text = |text: &str| Fact::Text(text.to_owned());
     Provenance {
@@ -79,6 +85,7 @@ fn provenance(scene: &Scene<Curve>, plan: &Plan, non_finite: u64) -> Provenance 
             ("version", text(env!("CARGO_PKG_VERSION"))),
             ("sceneHash", text(&scene.hash)),
             ("model", text(&plan.method.basis.name())),
+            ("wavelengths", text(&wavelengths(&plan.method.basis))),
             ("transport", text(plan.method.transport.name())),
             ("filter", text(scene.film.filter.name())),
             ("samples", Fact::Count(plan.method.samples.into())),

@@ -181,8 +181,8 @@ fn d15_a_blackbody_keeps_its_digits_from_embers_to_the_hottest_stars() {
         let light = Emission::new(&CurveKind::Blackbody(kelvin).into(), SPACE);
         let at = |nm: f64| light.spectrum()[(nm - visible::FIRST_NM) as usize];
         let c2 = 1.438_776_877e7 / kelvin;
-        let (a, b) = (450.0, 700.0);
-        let expected = (b / a as f64).powi(5) * ((c2 / b).exp_m1() / (c2 / a).exp_m1());
+        let (a, b) = (450.0_f64, 700.0_f64);
+        let expected = (b / a).powi(5) * ((c2 / b).exp_m1() / (c2 / a).exp_m1());
         let found = at(a) / at(b);
         assert!((found / expected - 1.0).abs() <= 1e-12, "{kelvin} K: {found} for {expected}");
         assert!((light.xyz()[1] - 1.0).abs() < 1e-12, "{kelvin} K has Y = {}", light.xyz()[1]);

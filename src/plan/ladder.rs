@@ -123,7 +123,7 @@ pub(super) fn ladder(survey: &Survey, heroes: usize) -> Vec<Rung> {
 
 /// Fewest interpolated wavelengths beside the lanes of emission lines.
 const FEWEST: usize = 8;
-const LANES_SAFETY: f64 = 1.2;
+pub(super) const LANES_SAFETY: f64 = 1.2;
 const PREFILTERED_SAFETY: f64 = 1.9;
 
 /// The spectra of different lights.

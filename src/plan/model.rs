@@ -1,6 +1,6 @@
 //! Which lanes carry the light, and whether they part.
 
-use super::ladder::{Rung, error, ladder};
+use super::ladder::{LANES_SAFETY, Rung, error, ladder};
 use super::survey::{Survey, disperses};
 use crate::material::Material;
 use crate::scene::{ModelText, Scene};
@@ -66,6 +66,7 @@ pub(super) fn model(scene: &Scene<Curve>) -> Model {
     if !survey.is_plain() || basis.fixed_lanes() > 3 {
         because.push(missed(&rungs, &basis, &survey, tolerance));
     }
+    because.extend(lines_without_lane(&survey, &basis));
     because.extend(dispersion.map(|d| spoken(&d, visible, hero)));
     let together = dispersion.is_some() && !visible && !asks_hero;
     let basis = if together { basis.kept_together() } else { basis };
@@ -94,19 +95,36 @@ fn least(rungs: &[Rung], chosen: usize, tolerance: f64, plain: bool) -> String {
     }
 }
 
-/// The whole ladder in one line.
+/// The whole ladder in one line; for heroes, what their fixed lanes miss.
 fn missed(rungs: &[Rung], basis: &Basis, survey: &Survey, tolerance: f64) -> String {
     let percent = |error: f64| match 100.0 * error {
         p if p < 0.095 => format!("{p:.2} %"),
         p if p < 9.95 => format!("{p:.1} %"),
         p => format!("{p:.0} %"),
     };
+    if basis.draws_wavelengths() {
+        let bound = LANES_SAFETY * error(survey, basis);
+        return format!("color missed at most {} (tolerated {})", percent(bound), percent(tolerance));
+    }
     let mut steps: Vec<String> =
         rungs.iter().map(|rung| format!("{} {}", rung.basis.name(), percent(rung.bound()))).collect();
-    if !rungs.iter().any(|rung| rung.basis.name() == basis.name()) && !basis.draws_wavelengths() {
-        steps.push(format!("{} {}", basis.name(), percent(error(survey, basis))));
+    if !rungs.iter().any(|rung| rung.basis.name() == basis.name()) {
+        steps.push(format!("{} {}", basis.name(), percent(LANES_SAFETY * error(survey, basis))));
     }
     format!("color missed at most, by model (tolerated {}): {}", percent(tolerance), steps.join(", "))
+}
+
+/// Emission lines that share the interpolated lanes.
+fn lines_without_lane(survey: &Survey, basis: &Basis) -> Option<String> {
+    let lines = survey.lines(usize::MAX);
+    let own = lines.iter().filter(|nm| basis.wavelengths_nm().contains(nm)).count();
+    (own < lines.len()).then(|| match own {
+        0 => format!("{} emission lines are interpolated between the lanes", lines.len()),
+        _ => format!(
+            "of {} emission lines the {own} brightest have lanes of their own, the others are interpolated",
+            lines.len()
+        ),
+    })
 }
 
 /// How far dispersive glass pulls colors apart; none if there is none.

@@ -94,6 +94,11 @@ impl<const N: usize> Draw<N> {
         &self.shares[usize::from(parted)]
     }
 
+    /// How many rays together stand for one path.
+    pub fn siblings(&self, parted: bool) -> f64 {
+        f64::from(self.shares(parted).sum())
+    }
+
     /// The lanes that cross a surface at which lanes part: the heroes, or all where there are none.
     pub fn parting(&self) -> Lanes<N> {
         Lanes::from_fn(|i| if self.shares[1][i] == 0.0 { 0.0 } else { 1.0 })

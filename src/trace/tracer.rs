@@ -220,13 +220,16 @@ impl<'a, const N: usize> Tracer<'a, N> {
         parts: bool,
         child: impl Fn(usize, &Branch<N>, f64) -> Path<N>,
     ) -> Option<Path<N>> {
+        let parted = |branch: &Branch<N>| path.parted || (parts && branch.crosses);
         let weight_of = |branch: &Branch<N>| {
-            let shares = draw.shares(path.parted || (parts && branch.crosses));
+            let shares = draw.shares(parted(branch));
             path.throughput.through(branch.share).weight(shares) / (path.eta_scale * branch.eta_scale)
         };
         if path.polarization != 0.0 {
-            let moved =
-                |branch: &Branch<N>| weight_of(branch) * f64::from(path.polarization * branch.polarization).abs();
+            let moved = |branch: &Branch<N>| {
+                let degree = f64::from(path.polarization * branch.polarization).abs();
+                weight_of(branch) * degree / draw.siblings(parted(branch))
+            };
             self.tally.polarization += self.branches.iter().map(moved).sum::<f64>();
         }
         match self.world.method.transport {
