@@ -84,3 +84,26 @@ impl<S> Sun<S> {
         Some(View { distance: f64::INFINITY, object: None, pdf, factor })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_sun_is_aimed_at_within_its_disc_and_met_nowhere_else() {
+        let toward = [0.3, 0.8, -0.2];
+        for angular_diameter in [1e-6, 0.533, 20.0, 120.0, 180.0] {
+            let sun = Sun { toward, angular_diameter, irradiance: () };
+            let half = 0.5 * angular_diameter.to_radians();
+            let density = 1.0 / (2.0 * PI * 2.0 * libm::pow(libm::sin(0.5 * half), 2.0));
+            let pdf = |direction: DVec3| sun.pdf(&Ray { origin: DVec3::ZERO, direction });
+            for u in (0..64).flat_map(|i| (0..64).map(move |j| [f64::from(i) / 63.001, f64::from(j) / 63.001])) {
+                let found = pdf(sun.aim(u).direction).unwrap_or_else(|| panic!("{angular_diameter} degrees, {u:?}"));
+                assert!((found / density - 1.0).abs() < 1e-9, "{angular_diameter} degrees: {found} for {density}");
+            }
+            let frame = Frame::about(sun.axis());
+            let beside = |angle: f64| frame.to_world(DVec3::new(libm::sin(angle), 0.0, libm::cos(angle)));
+            assert!(pdf(beside(half * 0.999)).is_some() && pdf(beside(half * 1.001)).is_none());
+        }
+    }
+}

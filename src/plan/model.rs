@@ -62,7 +62,7 @@ pub(super) fn model(scene: &Scene<Curve>) -> Model {
     };
     let next = if hero { rungs.get(chosen) } else { rungs.get(chosen + 1) }.map(|rung| rung.basis.clone());
     let next = next.filter(|_| hero || !survey.is_plain());
-    let mut because = vec![format!("model {}: {why}", basis.name())];
+    let mut because = vec![format!("model {}: {} lanes; {why}", basis.name(), basis.lanes())];
     if !survey.is_plain() || basis.fixed_lanes() > 3 {
         because.push(missed(&rungs, &basis, &survey, tolerance));
     }
@@ -185,8 +185,10 @@ fn materials(scene: &Scene<Curve>, basis: &Basis) -> Vec<String> {
                 let (low, high) = table.range();
                 let source = provenance(&glass.index).map_or(String::new(), |source| format!(" ({source})"));
                 lines.push(match table.is_flat() {
-                    true => format!("material {}: index {low:.4} in every lane{source}", named.name),
-                    false => format!("material {}: index {low:.4} to {high:.4}{source}", named.name),
+                    true => {
+                        format!("material {}: index {low:.4} in every lane{source}, so lanes stay together", named.name)
+                    }
+                    false => format!("material {}: index {low:.4} to {high:.4}{source}, so lanes part", named.name),
                 });
             }
             Material::Conductor(metal) => {

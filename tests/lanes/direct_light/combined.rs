@@ -30,6 +30,16 @@ fn combined_lights() -> Vec<Case> {
         .collect();
     let quads: Vec<&str> = quads.iter().map(String::as_str).collect();
     let by_ring: f64 = ring.iter().map(|&(c, u, v)| by_quad([0.0; 3], c, u, v)).sum();
+    // A disc wholly above the floor sends its irradiance times the cosine of its middle, however wide it is.
+    let sun = |name, others: &str, diameter: f64, irradiance| {
+        let (sin, cos) = libm::sincos(0.7);
+        let scene = if others.contains("quad") { others.to_owned() } else { lamp("", &[]) + others };
+        let light = format!(
+            "[[light]]\nsun = {{ toward = [{sin}, {cos}, 0], angular_diameter = {diameter:?}, irradiance = {{ rgb = {:?} }} }}\n",
+            BANDS.map(|x| 3.0 * x)
+        );
+        Case { scene: scene + &light, ..case(name, &[], irradiance) }
+    };
     let sky = format!("[[light]]\nenvironment = {{ radiance = {{ rgb = {:?} }} }}\n", BANDS.map(|x| 0.7 * x));
     vec![
         front("front that faces the floor", &[down], irradiance),
@@ -49,6 +59,10 @@ fn combined_lights() -> Vec<Case> {
             ..case("ten squares before a sky", &[], by_ring + 0.7 * (PI - by_ring))
         },
         Case { scene: lamp("", &[]) + &sky, ..case("sky alone", &[], 0.7 * PI) },
+        sun("parallel sun", "", 0.0, 3.0 * libm::cos(0.7)),
+        sun("sun as we see it", "", 0.533, 3.0 * libm::cos(0.7)),
+        sun("wide sun before a sky", &sky, 80.0, 3.0 * libm::cos(0.7) + 0.7 * PI),
+        sun("sun hidden by a lamp", &lamp("", &[square]), 10.0, irradiance),
         Case {
             scene: lamp("", &[square])
                 + &format!("[[light]]\npoint = {{ position = [0.3, 0.8, 0], intensity = {{ rgb = {BANDS:?} }} }}\n"),
