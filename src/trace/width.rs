@@ -14,8 +14,7 @@ pub(super) trait InLanes {
 pub(super) fn in_lanes<W: InLanes>(basis: &Basis, work: W) -> W::Output {
     match basis.lanes() {
         0..=4 => work.run::<4>(),
-        5..=8 => work.run::<8>(),
-        9..=16 => work.run::<16>(),
+        5..=16 => work.run::<16>(),
         17..=MAX_LANES => work.run::<MAX_LANES>(),
         lanes => unreachable!("no basis has {lanes} lanes"),
     }
