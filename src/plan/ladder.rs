@@ -1,7 +1,7 @@
 //! How much color each model of a spectrum would miss in a scene.
 
 use super::survey::{Survey, Tint};
-use crate::spectrum::{Basis, Curve, Draw, Emission, MAX_LANES, visible};
+use crate::spectrum::{Basis, Draw, Emission, Lanes, MAX_LANES, Quantity, visible};
 
 /// One model with the largest error of a color that it is predicted to make.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,12 +21,6 @@ impl Rung {
     }
 }
 
-/// What a path from a light by way of two diffuse surfaces and one or two smooth ones shows, on every grid that is looked at.
-struct Colors {
-    /// Each color that light can take on, at the wavelengths of the visible grid and the light's lines.
-    paths: Vec<Vec<f64>>,
-}
-
 /// Most diffuse and smooth colors that are combined; of more, those farthest from gray.
 const MOST: [usize; 2] = [20, 6];
 
@@ -36,15 +30,15 @@ pub(super) fn error(survey: &Survey, basis: &Basis) -> f64 {
     let scattering = survey.scattering(MOST[0]);
     let smooth = survey.smooth(MOST[1]);
     let read = |tints: &[&Tint]| tints.iter().map(|tint| tint.on(basis)).collect::<Vec<_>>();
-    let in_lanes = Colors::of(&read(&scattering), &read(&smooth));
+    let in_lanes = paths(&read(&scattering), &read(&smooth));
     let mut worst: f64 = 0.0;
     for curve in &survey.lights {
         let light = Emission::new(curve, basis.color_space());
         let exact = exact_colors(&light, &scattering, &smooth, basis);
-        let (table, response) = (basis.tabulate(crate::spectrum::Quantity::Emission, curve), basis.response(curve));
+        let (table, response) = (basis.tabulate(Quantity::Emission, curve), basis.response(curve));
         let emission = draw.read(&table);
-        for (true_color, lanes) in exact.iter().zip(&in_lanes.paths) {
-            let filter = crate::spectrum::Lanes::from_fn(|i| lanes.get(i).copied().unwrap_or(0.0) as f32);
+        for (true_color, lanes) in exact.iter().zip(&in_lanes) {
+            let filter = Lanes::from_fn(|i| lanes.get(i).copied().unwrap_or(0.0) as f32);
             let color = response.sensor(&draw, emission * filter, false);
             let strongest = true_color.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
             let missed = (0..3).fold(0.0, |most: f64, c| most.max((color[c] - true_color[c]).abs()));
@@ -69,32 +63,30 @@ fn exact_colors(light: &Emission, scattering: &[&Tint], smooth: &[&Tint], basis:
         }
         color
     };
-    Colors::of(&read(scattering), &read(smooth)).paths.iter().map(sum).collect()
+    paths(&read(scattering), &read(smooth)).iter().map(sum).collect()
 }
 
-impl Colors {
-    /// Every surface i lit straight and by way of every surface j, q = r_i (1 + r_j / (1 - mean r)), alone and seen by way of
-    /// every smooth surface; and the lights, seen straight and by way of one or two smooth surfaces.
-    fn of(scattering: &[Vec<f64>], smooth: &[Vec<f64>]) -> Self {
-        let length = scattering.iter().chain(smooth).next().map_or(0, Vec::len);
-        let count = scattering.len().max(1) as f64;
-        let mean: Vec<f64> = (0..length).map(|i| scattering.iter().map(|r| r[i]).sum::<f64>() / count).collect();
-        let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).collect::<Vec<_>>();
-        let mut paths = Vec::new();
-        for first in scattering {
-            for second in scattering {
-                let lit = |i: usize| first[i] * (1.0 + second[i] / (1.0 - mean[i].min(BRIGHTEST)));
-                let path: Vec<f64> = (0..length).map(lit).collect();
-                paths.extend(smooth.iter().map(|filter| product(filter, &path)));
-                paths.push(path);
-            }
+/// Every surface i lit straight and by way of every surface j, q = r_i (1 + r_j / (1 - mean r)), alone and seen by way of
+/// every smooth surface; and the lights, seen straight and by way of one or two smooth surfaces.
+fn paths(scattering: &[Vec<f64>], smooth: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let length = scattering.iter().chain(smooth).next().map_or(0, Vec::len);
+    let count = scattering.len().max(1) as f64;
+    let mean: Vec<f64> = (0..length).map(|i| scattering.iter().map(|r| r[i]).sum::<f64>() / count).collect();
+    let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).collect::<Vec<_>>();
+    let mut paths = Vec::new();
+    for first in scattering {
+        for second in scattering {
+            let lit = |i: usize| first[i] * (1.0 + second[i] / (1.0 - mean[i].min(BRIGHTEST)));
+            let path: Vec<f64> = (0..length).map(lit).collect();
+            paths.extend(smooth.iter().map(|filter| product(filter, &path)));
+            paths.push(path);
         }
-        for (number, first) in smooth.iter().enumerate() {
-            paths.extend(smooth[number..].iter().map(|second| product(first, second)));
-            paths.push(first.clone());
-        }
-        Self { paths }
     }
+    for (number, first) in smooth.iter().enumerate() {
+        paths.extend(smooth[number..].iter().map(|second| product(first, second)));
+        paths.push(first.clone());
+    }
+    paths
 }
 
 /// Mean reflectance beyond which a closed room is not followed.
@@ -125,15 +117,3 @@ pub(super) fn ladder(survey: &Survey, heroes: usize) -> Vec<Rung> {
 const FEWEST: usize = 8;
 pub(super) const LANES_SAFETY: f64 = 1.2;
 const PREFILTERED_SAFETY: f64 = 1.9;
-
-/// The spectra of different lights.
-pub(super) fn different<'a>(curves: impl Iterator<Item = &'a Curve>, space: crate::spectrum::ColorSpace) -> Vec<Curve> {
-    let mut known: Vec<(Emission, Curve)> = Vec::new();
-    for curve in curves {
-        let emission = Emission::new(curve, space);
-        if !known.iter().any(|(other, _)| other.looks_like(&emission)) {
-            known.push((emission, curve.clone()));
-        }
-    }
-    known.into_iter().map(|(_, curve)| curve).collect()
-}

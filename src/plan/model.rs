@@ -4,7 +4,7 @@ use super::ladder::{LANES_SAFETY, Rung, error, ladder};
 use super::survey::{Survey, disperses};
 use crate::material::Material;
 use crate::scene::{ModelText, Scene};
-use crate::spectrum::{Basis, Curve, CurveKind, Emission, MAX_LANES, provenance};
+use crate::spectrum::{Basis, Curve, CurveKind, Emission, MAX_LANES, Quantity, provenance};
 use crate::trace::{COLORS_NM, Method, Spread, Transport, World, spread};
 
 /// The relative error of an image that is aimed at where the scene does not say.
@@ -49,7 +49,7 @@ pub(super) fn model(scene: &Scene<Curve>) -> Model {
     let (basis, why) = match scene.render.model {
         _ if hero && asks_hero => (with_heroes(bands), "the scene asks for it".to_owned()),
         _ if hero => {
-            let least = rungs[chosen].basis.fixed_lanes() - lines.len();
+            let least = rungs[chosen].basis.fixed_lanes().saturating_sub(lines.len());
             (with_heroes(bands.max(least)), "dispersion is seen".to_owned())
         }
         ModelText::Rgb => (three_bands(&survey), "the scene asks for it".to_owned()),
@@ -163,8 +163,7 @@ fn desaturated(scene: &Scene<Curve>, basis: &Basis) -> Option<String> {
     let mut count = 0;
     for named in &scene.materials {
         let counted: Result<(), ()> = named.material.each(|quantity, _, curve| {
-            use crate::spectrum::Quantity::{Reflectance, Transmittance};
-            if let (CurveKind::Rgb(rgb), Reflectance | Transmittance) = (&curve.kind, quantity) {
+            if let (CurveKind::Rgb(rgb), Quantity::Reflectance | Quantity::Transmittance) = (&curve.kind, quantity) {
                 count += u32::from(basis.upsampler().fit(rgb.map(|x| x * curve.scale)).saturation < 1.0);
             }
             Ok(())
@@ -181,7 +180,7 @@ fn materials(scene: &Scene<Curve>, basis: &Basis) -> Vec<String> {
     for named in &scene.materials {
         match &named.material {
             Material::Dielectric(glass) => {
-                let table = basis.tabulate(crate::spectrum::Quantity::Index, &glass.index);
+                let table = basis.tabulate(Quantity::Index, &glass.index);
                 let (low, high) = table.range();
                 let source = provenance(&glass.index).map_or(String::new(), |source| format!(" ({source})"));
                 lines.push(match table.is_flat() {

@@ -1,6 +1,5 @@
 //! What of a scene decides how its spectra must be carried.
 
-use super::ladder::different;
 use crate::material::{Dielectric, Material};
 use crate::scene::Scene;
 use crate::spectrum::{
@@ -171,4 +170,16 @@ pub(super) fn disperses(glass: &Dielectric<Curve>) -> bool {
         CurveKind::Cauchy([_, b]) => *b != 0.0,
         _ => true,
     }
+}
+
+/// The lights of different spectra.
+fn different<'a>(curves: impl Iterator<Item = &'a Curve>, space: ColorSpace) -> Vec<Curve> {
+    let mut known: Vec<(Emission, Curve)> = Vec::new();
+    for curve in curves {
+        let emission = Emission::new(curve, space);
+        if !known.iter().any(|(other, _)| other.looks_like(&emission)) {
+            known.push((emission, curve.clone()));
+        }
+    }
+    known.into_iter().map(|(_, curve)| curve).collect()
 }
