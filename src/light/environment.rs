@@ -1,42 +1,111 @@
 use std::f64::consts::PI;
+use std::sync::Arc;
 
-use serde::Deserialize;
-
-use super::View;
-use crate::math::{DVec3, Frame, Ray, cosine_hemisphere, unit};
+use super::{Panorama, View};
+use crate::math::{DMat3, DVec3, Frame, Ray, cosine_hemisphere, unit};
 use crate::shape::Sighting;
-use crate::spectrum::Quantity;
+use crate::spectrum::{Curve, CurveKind, Draw, Lanes, Quantity, Table};
 
-/// The same radiance from all directions, where rays miss everything.
+/// Light from all directions, where rays miss everything: the same from everywhere, or an image.
 ///
 /// ```toml
 /// [[light]]
 /// environment = { radiance = 1 }
+/// [[light]]
+/// environment = { radiance = { image = "sky.exr", scale = 2 }, transform = [{ rotate = { axis = [0, 1, 0], degrees = 90 } }] }
 /// ```
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug)]
 pub struct Environment<S> {
-    /// What rays show that miss everything.
+    /// What rays show that miss everything; a factor on the image, where there is one.
     pub radiance: S,
+    /// The image.
+    pub image: Option<Sky<S>>,
+}
+
+/// An image around the scene.
+#[derive(Clone, Debug)]
+pub struct Sky<S> {
+    panorama: Arc<Panorama>,
+    /// World to image.
+    turn: DMat3,
+    /// Factors on white that make red, green, blue, cyan, magenta and yellow of it.
+    tints: [S; 6],
+}
+
+impl Sky<Curve> {
+    /// An image, turned from its own directions into the world's by a rotation.
+    pub fn new(panorama: Panorama, rotation: DMat3) -> Self {
+        let tints = [[1., 0., 0.], [0., 1., 0.], [0., 0., 1.], [0., 1., 1.], [1., 0., 1.], [1., 1., 0.]];
+        let tints = tints.map(|rgb| CurveKind::Rgb(rgb).into());
+        Self { panorama: Arc::new(panorama), turn: rotation.transpose(), tints }
+    }
 }
 
 impl<S> Environment<S> {
     pub(super) fn map<T>(&self, convert: &mut impl FnMut(Quantity, &S) -> T) -> Environment<T> {
-        Environment { radiance: convert(Quantity::Emission, &self.radiance) }
+        let image = self.image.as_ref().map(|sky| Sky {
+            panorama: sky.panorama.clone(),
+            turn: sky.turn,
+            tints: std::array::from_fn(|i| convert(Quantity::Transmittance, &sky.tints[i])),
+        });
+        Environment { radiance: convert(Quantity::Emission, &self.radiance), image }
     }
 
-    /// Draws directions by their cosine to the normal, as the irradiance of an even sky weighs them.
+    /// Draws directions by the image's brightness; without one by their cosine to the normal, as the irradiance of an even
+    /// sky weighs them.
     pub(super) fn aim(&self, normal: DVec3, u: [f64; 2]) -> Sighting {
-        let direction = unit(Frame::about(normal).to_world(cosine_hemisphere(u)));
-        Sighting { direction, part: None }
+        let direction = match &self.image {
+            Some(sky) => sky.turn.transpose() * sky.panorama.aim(u),
+            None => Frame::about(normal).to_world(cosine_hemisphere(u)),
+        };
+        Sighting { direction: unit(direction), part: None }
     }
 
     /// Density with which `aim` draws the direction of a ray, at a surface of the given normal.
     pub fn pdf(&self, ray: &Ray, normal: DVec3) -> f64 {
-        ray.direction.dot(normal).max(0.0) / PI
+        match &self.image {
+            Some(sky) => sky.panorama.pdf(sky.turn * ray.direction),
+            None => ray.direction.dot(normal).max(0.0) / PI,
+        }
     }
 
-    pub(super) fn view(&self, ray: &Ray, normal: DVec3) -> View {
-        View { distance: f64::INFINITY, object: None, pdf: Some(self.pdf(ray, normal)), factor: 1.0 }
+    pub(super) fn view(&self, ray: &Ray, normal: DVec3) -> Option<View> {
+        let pdf = Some(self.pdf(ray, normal)).filter(|pdf| *pdf > 0.0)?;
+        Some(View { distance: f64::INFINITY, object: None, pdf: Some(pdf), factor: 1.0 })
+    }
+
+    /// The mean over all directions of the factor on `radiance`.
+    pub fn mean(&self) -> f64 {
+        self.image.as_ref().map_or(1.0, |sky| sky.panorama.mean())
+    }
+}
+
+impl Environment<Table> {
+    /// The radiance along a direction.
+    pub(super) fn toward<const N: usize>(&self, draw: &Draw<N>, direction: DVec3) -> Lanes<N> {
+        let level = draw.read(&self.radiance);
+        let Some(sky) = &self.image else { return level };
+        let [red, green, blue] = sky.panorama.color(sky.turn * direction);
+        let tint = |number: usize, amount: f32| draw.read(&sky.tints[number]) * amount;
+        // White as far as all three go, one of cyan, magenta and yellow as far as two go, the rest of one: Smits 1999,
+        // *An RGB-to-Spectrum Conversion for Reflectances*, with sigmoid spectra that have exactly these colors.
+        let least = red.min(green).min(blue);
+        let white = Lanes::ONE * least;
+        let (two, one) = if least == red {
+            if green < blue { ((3, green - red), (2, blue - green)) } else { ((3, blue - red), (1, green - blue)) }
+        } else if least == green {
+            if red < blue { ((4, red - green), (2, blue - red)) } else { ((4, blue - green), (0, red - blue)) }
+        } else if red < green {
+            ((5, red - blue), (1, green - red))
+        } else {
+            ((5, green - blue), (0, red - green))
+        };
+        let mut filter = white;
+        for (number, amount) in [two, one] {
+            if amount > 0.0 {
+                filter += tint(number, amount);
+            }
+        }
+        level * filter
     }
 }

@@ -5,17 +5,19 @@
 
 mod area;
 mod environment;
+mod panorama;
 mod point;
 mod sun;
 
 pub use area::Area;
-pub use environment::Environment;
+pub use environment::{Environment, Sky};
+pub use panorama::Panorama;
 pub use point::Point;
 pub use sun::Sun;
 
 use crate::math::{DVec3, Ray};
 use crate::shape::Sighting;
-use crate::spectrum::{Quantity, Table};
+use crate::spectrum::{Draw, Lanes, Quantity, Table};
 
 /// Number of a light in its scene.
 pub type LightId = usize;
@@ -92,7 +94,7 @@ impl<S> Light<S> {
         match self {
             Self::Area(area) => area.view(ray, part),
             Self::Point(point) => Some(point.view(ray)),
-            Self::Environment(environment) => Some(environment.view(ray, normal)),
+            Self::Environment(environment) => environment.view(ray, normal),
             Self::Sun(sun) => sun.view(ray),
         }
     }
@@ -100,6 +102,11 @@ impl<S> Light<S> {
     /// Whether it is met by rays that meet nothing else.
     pub fn is_sky(&self) -> bool {
         matches!(self, Self::Environment(_) | Self::Sun(_))
+    }
+
+    /// Whether it is a sky that looks the same in all directions.
+    pub fn is_even_sky(&self) -> bool {
+        matches!(self, Self::Environment(environment) if environment.image.is_none())
     }
 
     /// Whether it has an extent, so that what it sends to a point comes from many directions.
@@ -113,6 +120,14 @@ impl<S> Light<S> {
 }
 
 impl Light<Table> {
+    /// What the light sends along a direction toward it: its emission, lane by lane.
+    pub fn toward<const N: usize>(&self, draw: &Draw<N>, direction: DVec3) -> Lanes<N> {
+        match self {
+            Self::Environment(environment) => environment.toward(draw, direction),
+            _ => draw.read(self.emission()),
+        }
+    }
+
     /// A rough measure of the light it sheds, by which one light is chosen among many: its power, or the irradiance a sky
     /// gives, whose power depends on the scene's size.
     pub fn strength(&self) -> f64 {
@@ -121,7 +136,7 @@ impl Light<Table> {
         match self {
             Self::Area(area) => brightest * PI * area.shape.area(),
             Self::Point(_) => brightest * 4.0 * PI,
-            Self::Environment(_) => brightest * PI,
+            Self::Environment(environment) => brightest * environment.mean() * PI,
             Self::Sun(_) => brightest,
         }
     }

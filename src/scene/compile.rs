@@ -6,12 +6,12 @@ use std::sync::Arc;
 use sha2::{Digest, Sha256};
 
 use super::compile_shape::{MAX_LENGTH, ShapeCompiler};
-use super::description::{CameraText, Description, FilmText, LightText, ModelText, ObjectText, RenderText};
+use super::description::{CameraText, Description, FilmText, ModelText, ObjectText, RenderText};
 use super::index::Index;
 use super::source::{At, Source};
 use super::{Camera, FilmSettings, NamedMaterial, Object, Scene};
 use crate::error::{Error, Result, nearest};
-use crate::light::{Area, Environment, Light, LightId, Point, Sun};
+use crate::light::{Area, Light, LightId};
 use crate::material::Material;
 use crate::shape::Sides;
 use crate::spectrum::{Curve, CurveKind, Quantity};
@@ -224,64 +224,6 @@ impl Compiler<'_> {
             }));
             scene.objects[number].light = Some(light);
         }
-    }
-
-    fn lights(&mut self, lights: &[LightText], scene: &mut Scene<Curve>) -> Result<()> {
-        for (number, text) in lights.iter().enumerate() {
-            let top = At::top("light");
-            let at = top.index(number);
-            let kinds = [text.environment.is_some(), text.point.is_some(), text.sun.is_some()];
-            if kinds.iter().filter(|given| **given).count() != 1 {
-                return Err(self.not_one_kind(&at, text));
-            }
-            let light = self.light(&at, text)?;
-            if let (Light::Environment(_), Some(_)) = (&light, scene.environment()) {
-                let message = "a scene has at most one environment";
-                return Err(self.source.mistake_at(&at.key("environment"), message, None));
-            }
-            if light.is_sky() {
-                scene.skies.push(scene.lights.len());
-            }
-            scene.lights.push(light);
-        }
-        Ok(())
-    }
-
-    fn not_one_kind(&self, at: &At, text: &LightText) -> Error {
-        let kinds =
-            [("environment", text.environment.is_some()), ("point", text.point.is_some()), ("sun", text.sun.is_some())];
-        let given = kinds.iter().filter(|kind| kind.1).map(|(kind, _)| at.key(kind));
-        let (message, place, help) = match given.max_by_key(|place| self.source.span(place).start) {
-            None => {
-                ("a light needs a kind: `environment`, `point` or `sun`", *at, "such as environment = { radiance = 1 }")
-            }
-            Some(last) => ("a light has exactly one kind", last, "start another [[light]] for the second"),
-        };
-        self.source.mistake_at(&place, message, Some(help.into()))
-    }
-
-    /// The only kind of light that an entry has.
-    fn light(&mut self, at: &At, text: &LightText) -> Result<Light<Curve>> {
-        if let Some(environment) = &text.environment {
-            let radiance =
-                self.curve(&at.key("environment").key("radiance"), &environment.radiance, Quantity::Emission)?;
-            return Ok(Light::Environment(Environment { radiance }));
-        }
-        if let Some(point) = &text.point {
-            let here = at.key("point");
-            self.point(&here.key("position"), point.position)?;
-            let intensity = self.curve(&here.key("intensity"), &point.intensity, Quantity::Emission)?;
-            return Ok(Light::Point(Point { intensity, ..point.clone() }));
-        }
-        let sun = text.sun.as_ref().expect("one kind was counted");
-        let here = at.key("sun");
-        self.direction(&here.key("toward"), sun.toward)?;
-        if !(0.0..=180.0).contains(&sun.angular_diameter) {
-            let message = format!("a sun is 0 to 180 degrees across, not {}", sun.angular_diameter);
-            return Err(self.source.mistake_at(&here.key("angular_diameter"), message, None));
-        }
-        let irradiance = self.curve(&here.key("irradiance"), &sun.irradiance, Quantity::Emission)?;
-        Ok(Light::Sun(Sun { irradiance, ..sun.clone() }))
     }
 }
 

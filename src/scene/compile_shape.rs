@@ -118,7 +118,7 @@ impl ShapeCompiler<'_, '_> {
             }
             ShapeText::Mesh(mesh) => self.mesh(&at.key("mesh"), mesh)?,
         };
-        let map = self.transform(&object.key("transform"), &text.transform)?;
+        let map = self.compiler.transform(&object.key("transform"), &text.transform)?;
         if self.filled && !shape.is_closed() && matches!(shape, Shape::Mesh(_)) {
             let warning = format!("{}: a dielectric on an open mesh: light may enter it and never leave", self.name);
             self.compiler.warnings.push(warning);
@@ -193,27 +193,31 @@ impl ShapeCompiler<'_, '_> {
         }
         Ok((mesh.vertices, mesh.faces))
     }
+}
 
-    fn transform(&self, at: &At, steps: &[StepText]) -> Result<Transform> {
+impl Compiler<'_> {
+    /// The map that the steps make, one after another.
+    pub(super) fn transform(&self, at: &At, steps: &[StepText]) -> Result<Transform> {
         let mut map = Transform::IDENTITY;
         for (number, step) in steps.iter().enumerate() {
             let here = at.index(number);
             let next = match step {
-                StepText::Scale(factors) => Transform::scale(self.compiler.point(&here.key("scale"), *factors)?),
-                StepText::Translate(by) => Transform::translate(self.compiler.point(&here.key("translate"), *by)?),
+                StepText::Scale(factors) => Transform::scale(self.point(&here.key("scale"), *factors)?),
+                StepText::Translate(by) => Transform::translate(self.point(&here.key("translate"), *by)?),
                 StepText::Rotate(rotate) => {
                     let here = here.key("rotate");
-                    let axis = self.compiler.direction(&here.key("axis"), rotate.axis)?;
+                    let axis = self.direction(&here.key("axis"), rotate.axis)?;
                     if !rotate.degrees.is_finite() {
                         let message = format!("an angle is a finite number, not {}", rotate.degrees);
-                        return self.refuse(&here.key("degrees"), &message);
+                        return Err(self.source.mistake_at(&here.key("degrees"), message, None));
                     }
                     Transform::rotate(axis, rotate.degrees)
                 }
             };
             map = map.then(&next);
             if !map.is_invertible() {
-                return self.refuse(&here, "this step flattens the shape or sends it to infinity");
+                let message = "this step flattens the shape or sends it to infinity";
+                return Err(self.source.mistake_at(&here, message, None));
             }
         }
         Ok(map)

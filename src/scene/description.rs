@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Deserializer};
 
 use crate::film::Filter;
-use crate::light::{Environment, Point, Sun};
+use crate::light::{Point, Sun};
 use crate::material::Material;
 use crate::spectrum::{ColorSpace, Curve};
 
@@ -251,11 +251,22 @@ pub struct LightText {
     /// For messages.
     pub name: Option<String>,
     /// What rays meet that miss everything.
-    pub environment: Option<Environment<Curve>>,
+    pub environment: Option<EnvironmentText>,
     /// A point that shines.
     pub point: Option<Point<Curve>>,
     /// A disc in the sky.
     pub sun: Option<Sun<Curve>>,
+}
+
+/// `environment = { radiance, transform }`
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct EnvironmentText {
+    /// What rays show that miss everything.
+    pub radiance: Curve,
+    /// Turns of an image.
+    #[serde(default)]
+    pub transform: Vec<StepText>,
 }
 
 /// A number that stands for all three axes, or three numbers.

@@ -6,8 +6,10 @@
 mod camera;
 mod compile;
 mod compile_curve;
+mod compile_light;
 mod compile_shape;
 mod description;
+mod image_file;
 mod index;
 mod source;
 mod spectrum_file;

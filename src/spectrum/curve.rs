@@ -72,6 +72,8 @@ pub enum CurveKind {
     Blackbody(f64),
     /// Ideal lines: (wavelength in nm, power).
     Lines(Vec<[f64; 2]>),
+    /// An image file, relative to the scene: the radiance of an environment.
+    Image(String),
 }
 
 impl From<f64> for Curve {
@@ -154,6 +156,7 @@ impl Curve {
                 }
             },
             CurveKind::File { .. } => panic!("the compiler reads files into samples"),
+            CurveKind::Image(_) => panic!("the compiler reads images into environments"),
             CurveKind::Illuminant(_) | CurveKind::Blackbody(_) | CurveKind::Lines(_) => {
                 panic!("lights are read by Emission")
             }

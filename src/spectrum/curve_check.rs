@@ -121,7 +121,7 @@ fn finite(curve: &Curve) -> Result<(), Refusal> {
         }
         CurveKind::Lines(lines) => lines.iter().map(|pair| (&["lines"] as _, pair.as_slice())).collect(),
         CurveKind::Blackbody(kelvin) => vec![(&["blackbody"], std::slice::from_ref(kelvin))],
-        CurveKind::Name(_) | CurveKind::File { .. } | CurveKind::Illuminant(_) => Vec::new(),
+        CurveKind::Name(_) | CurveKind::File { .. } | CurveKind::Illuminant(_) | CurveKind::Image(_) => Vec::new(),
     };
     let scale: (&[&str], &[f64]) = (&["scale"], std::slice::from_ref(&curve.scale));
     let luminance: (&[&str], &[f64]) = (&["luminance"], curve.luminance.as_slice());
@@ -220,6 +220,7 @@ fn form(kind: &CurveKind) -> String {
         CurveKind::Illuminant(_) => "`illuminant`".into(),
         CurveKind::Blackbody(_) => "`blackbody`".into(),
         CurveKind::Lines(_) => "`lines`".into(),
+        CurveKind::Image(_) => "`image`".into(),
         CurveKind::Name(name) => format!("the name {name:?}"),
     }
 }

@@ -30,6 +30,7 @@ struct CurveTable {
     illuminant: Option<String>,
     blackbody: Option<f64>,
     lines: Option<Vec<[f64; 2]>>,
+    image: Option<String>,
     scale: Option<f64>,
     luminance: Option<f64>,
 }
@@ -81,6 +82,7 @@ impl<'de> Visitor<'de> for CurveVisitor {
             ("illuminant", table.illuminant.map(CurveKind::Illuminant)),
             ("blackbody", table.blackbody.map(CurveKind::Blackbody)),
             ("lines", table.lines.map(CurveKind::Lines)),
+            ("image", table.image.map(CurveKind::Image)),
         ]
         .into_iter()
         .filter_map(|(key, kind)| Some((key, kind?)));

@@ -35,7 +35,7 @@ pub fn spread(world: &World) -> Spread {
     let film = world.scene.film;
     let (mut seen, mut lit, mut rays) = (Vec::new(), Vec::new(), 0_u32);
     let alone = nothing_behind(world);
-    let shines_from_somewhere = world.scene.lights.iter().any(|light| !matches!(light, Light::Environment(_)));
+    let shines_from_somewhere = world.scene.lights.iter().any(|light| !light.is_even_sky());
     for place in 0..SIDE * SIDE {
         let spread = |i: u32, size: u32| (f64::from(i) + 0.5) * f64::from(size) / f64::from(SIDE);
         let at = DVec2::new(spread(place % SIDE, film.width), spread(place / SIDE, film.height));
@@ -146,7 +146,7 @@ fn apart(ends: &[End; 2], beside: &End) -> f64 {
 fn nothing_behind(world: &World) -> bool {
     let clear = |object: u32| world.scene.material_of(object).medium().is_some();
     (0..world.scene.objects.len()).all(|object| clear(object as u32))
-        && world.scene.lights.iter().all(|light| matches!(light, Light::Environment(_)))
+        && world.scene.lights.iter().all(Light::is_even_sky)
 }
 
 fn angle(a: DVec3, b: DVec3) -> f64 {

@@ -106,7 +106,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
                 _ => 1.0,
             };
             let weight = weight_of_meeting(self.world, id, path.drawn.as_ref(), &path.ray, None);
-            let arriving = path.throughput.scaled(weight * factor).of(draw.read(light.emission()));
+            let arriving = path.throughput.scaled(weight * factor).of(light.toward(draw, path.ray.direction));
             add(&mut sum, self.world.responses[id].sensor(draw, arriving, path.parted));
         }
         sum

@@ -1,0 +1,223 @@
+//! Light from all around as an image, drawn where it is bright.
+
+use std::f64::consts::{PI, TAU};
+
+use crate::math::DVec3;
+
+/// An image of all directions: latitude and longitude, +y on top, +z in the center, +x at the left quarter.
+///
+/// Between the middles of its texels it is linear. Directions are drawn by texel, each by its mean brightness and the exact
+/// solid angle of its row, and evenly within it.
+#[derive(Clone, Debug)]
+pub struct Panorama {
+    width: usize,
+    height: usize,
+    /// Linear Rec.709, rows from the top.
+    texels: Vec<[f32; 3]>,
+    /// The probabilities of all rows, summed up; the last is 1.
+    rows: Vec<f64>,
+    /// The probabilities of the texels within each row, summed up; the last of each row is 1.
+    columns: Vec<f64>,
+    mean: f64,
+}
+
+impl Panorama {
+    /// An image of `width` texels a row; no texel is negative or not finite.
+    ///
+    /// # Panics
+    /// If it has no texels or a row that is not full.
+    pub fn new(width: usize, texels: Vec<[f32; 3]>) -> Self {
+        assert!(width > 0 && !texels.is_empty() && texels.len() % width == 0, "{} texels, {width} a row", texels.len());
+        let height = texels.len() / width;
+        let mut panorama =
+            Self { width, height, texels, rows: Vec::new(), columns: vec![0.0; width * height], mean: 0.0 };
+        let mut total = 0.0;
+        for row in 0..height {
+            let mut sum = 0.0;
+            for column in 0..width {
+                sum += panorama.brightness(column, row);
+                panorama.columns[row * width + column] = sum;
+            }
+            let columns = &mut panorama.columns[row * width..(row + 1) * width];
+            if sum > 0.0 {
+                columns.iter_mut().for_each(|x| *x /= sum);
+            } else {
+                columns.iter_mut().enumerate().for_each(|(i, x)| *x = (i + 1) as f64 / width as f64);
+            }
+            columns[width - 1] = 1.0;
+            total += sum * (panorama.cos_of_edge(row) - panorama.cos_of_edge(row + 1));
+            panorama.rows.push(total);
+        }
+        panorama.mean = total / (2 * width) as f64;
+        if total > 0.0 {
+            panorama.rows.iter_mut().for_each(|x| *x /= total);
+        } else {
+            panorama.rows = (0..height).map(|row| 0.5 * (1.0 - panorama.cos_of_edge(row + 1))).collect();
+        }
+        panorama.rows[height - 1] = 1.0;
+        panorama
+    }
+
+    /// The mean of its brightness, a third of red, green and blue, over all directions.
+    pub fn mean(&self) -> f64 {
+        self.mean
+    }
+
+    /// The mean over a texel of what is shown there: it and its neighbors, weighed as linear interpolation does.
+    fn brightness(&self, column: usize, row: usize) -> f64 {
+        const SHARES: [f64; 3] = [0.125, 0.75, 0.125];
+        let mut sum = 0.0;
+        for (i, by_row) in SHARES.iter().enumerate() {
+            for (j, by_column) in SHARES.iter().enumerate() {
+                let texel = self.texel(column as isize + j as isize - 1, row as isize + i as isize - 1);
+                sum += by_row * by_column * texel.iter().map(|&x| f64::from(x)).sum::<f64>() / 3.0;
+            }
+        }
+        sum
+    }
+
+    /// A texel; columns go around, and beyond the top and bottom row come those rows again.
+    fn texel(&self, column: isize, row: isize) -> [f32; 3] {
+        let column = column.rem_euclid(self.width as isize) as usize;
+        let row = row.clamp(0, self.height as isize - 1) as usize;
+        self.texels[row * self.width + column]
+    }
+
+    /// Cosine of the angle from the top to the upper edge of a row.
+    fn cos_of_edge(&self, row: usize) -> f64 {
+        libm::cos(PI * row as f64 / self.height as f64)
+    }
+
+    /// Where a direction lies in the image, in texels from its upper left corner.
+    fn place(&self, direction: DVec3) -> [f64; 2] {
+        let DVec3 { x, y, z } = direction;
+        let u = 0.5 - libm::atan2(x, z) / TAU;
+        // The polar angle by its tangent keeps its digits at the poles.
+        let v = libm::atan2((x * x + z * z).sqrt(), y) / PI;
+        [u * self.width as f64, v * self.height as f64]
+    }
+
+    /// What is seen in a direction, linear Rec.709.
+    pub fn color(&self, direction: DVec3) -> [f32; 3] {
+        let [x, y] = self.place(direction).map(|x| x - 0.5);
+        let (left, above) = (x.floor(), y.floor());
+        let (right, below) = ((x - left) as f32, (y - above) as f32);
+        let texel = |i: isize, j: isize| self.texel(left as isize + i, above as isize + j);
+        let [a, b, c, d] = [texel(0, 0), texel(1, 0), texel(0, 1), texel(1, 1)];
+        std::array::from_fn(|i| {
+            let (upper, lower) = (a[i] + right * (b[i] - a[i]), c[i] + right * (d[i] - c[i]));
+            upper + below * (lower - upper)
+        })
+    }
+
+    /// A direction for two random numbers.
+    pub fn aim(&self, [u, v]: [f64; 2]) -> DVec3 {
+        let (row, down) = choose(&self.rows, v);
+        let (column, across) = choose(&self.columns[row * self.width..(row + 1) * self.width], u);
+        let (top, bottom) = (self.cos_of_edge(row), self.cos_of_edge(row + 1));
+        let y = top + down * (bottom - top);
+        let angle = TAU * (0.5 - (column as f64 + across) / self.width as f64);
+        let radius = (1.0 - y * y).max(0.0).sqrt();
+        let (sin, cos) = libm::sincos(angle);
+        DVec3::new(radius * sin, y, radius * cos)
+    }
+
+    /// Density per steradian with which `aim` draws a direction.
+    pub fn pdf(&self, direction: DVec3) -> f64 {
+        let [x, y] = self.place(direction);
+        let (column, row) = ((x as usize).min(self.width - 1), (y as usize).min(self.height - 1));
+        let by_row = probability(&self.rows, row);
+        let by_column = probability(&self.columns[row * self.width..(row + 1) * self.width], column);
+        let solid_angle = TAU / self.width as f64 * (self.cos_of_edge(row) - self.cos_of_edge(row + 1));
+        by_row * by_column / solid_angle
+    }
+}
+
+/// The entry of a list of summed probabilities in which a number falls, and where in it.
+fn choose(sums: &[f64], u: f64) -> (usize, f64) {
+    let entry = sums.partition_point(|&sum| sum <= u).min(sums.len() - 1);
+    let before = if entry == 0 { 0.0 } else { sums[entry - 1] };
+    (entry, ((u - before) / (sums[entry] - before)).clamp(0.0, 1.0))
+}
+
+fn probability(sums: &[f64], entry: usize) -> f64 {
+    sums[entry] - if entry == 0 { 0.0 } else { sums[entry - 1] }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn grid(n: u32) -> impl Iterator<Item = [f64; 2]> {
+        let at = move |i: u32| (f64::from(i) + 0.5) / f64::from(n);
+        (0..n).flat_map(move |i| (0..n).map(move |j| [at(i), at(j)]))
+    }
+
+    #[test]
+    fn directions_lie_where_the_convention_says() {
+        let panorama = Panorama::new(4, vec![[1.0; 3]; 8]);
+        let near = |direction: DVec3, expected: [f64; 2]| {
+            let [x, y] = panorama.place(direction);
+            assert!((x - expected[0]).abs() < 1e-12 && (y - expected[1]).abs() < 1e-12, "{direction}: {x} {y}");
+        };
+        near(DVec3::Z, [2.0, 1.0]);
+        near(DVec3::X, [1.0, 1.0]);
+        near(-DVec3::X, [3.0, 1.0]);
+        near(DVec3::Y, [2.0, 0.0]);
+    }
+
+    /// Row G3 of the stability catalog.
+    #[test]
+    fn g3_every_sample_of_an_even_image_stands_for_the_whole_sphere() {
+        let panorama = Panorama::new(64, vec![[1.0; 3]; 64 * 32]);
+        for u in grid(200).chain([[0.0, 0.0], [1.0 - 1e-16, 1.0 - 1e-16], [0.5, 1e-18]]) {
+            let direction = panorama.aim(u);
+            let weight = f64::from(panorama.color(direction)[0]) / panorama.pdf(direction);
+            assert!((weight / (4.0 * PI) - 1.0).abs() < 1e-6, "{u:?}: {weight}");
+        }
+    }
+
+    /// Row G2 of the stability catalog.
+    #[test]
+    fn g2_the_seam_and_the_poles_are_within_the_image() {
+        let panorama = Panorama::new(7, (0..21_u8).map(|i| [f32::from(i) + 1.0; 3]).collect());
+        for tiny in [0.0, -0.0, 1e-300, -1e-300, 1e-17, -1e-17, 1e-8, -1e-8] {
+            for direction in [DVec3::new(tiny, 0.0, -1.0), DVec3::new(tiny, 1.0, 0.0), DVec3::new(0.0, -1.0, tiny)] {
+                assert!(panorama.pdf(direction) > 0.0 && panorama.color(direction)[0] >= 1.0, "{direction}");
+            }
+        }
+    }
+
+    /// The density is that of the drawn directions: sums over solid angle, and each texel's share of the draws.
+    #[test]
+    fn directions_follow_their_density() {
+        let (width, height) = (12, 6);
+        let texels: Vec<[f32; 3]> =
+            (0..width * height).map(|i| if i == 17 { [90.0, 20.0, 5.0] } else { [(i % 5) as f32; 3] }).collect();
+        let panorama = Panorama::new(width, texels);
+        let mut total = 0.0;
+        for at in 0..width * height {
+            let (row, column) = (at / width, at % width);
+            let (top, bottom) = (panorama.cos_of_edge(row), panorama.cos_of_edge(row + 1));
+            for [u, v] in grid(3) {
+                let (y, angle) = (top + v * (bottom - top), TAU * (0.5 - (column as f64 + u) / width as f64));
+                let radius = (1.0 - y * y).sqrt();
+                let direction = DVec3::new(radius * libm::sin(angle), y, radius * libm::cos(angle));
+                total += panorama.pdf(direction) * (top - bottom) * TAU / (9 * width) as f64;
+            }
+        }
+        assert!((total - 1.0).abs() < 1e-12, "the density sums to {total}");
+        // Draws on a fine grid fall into each texel as often as its probability says.
+        let mut counts = vec![0_u32; width * height];
+        for u in grid(1000) {
+            let [x, y] = panorama.place(panorama.aim(u));
+            counts[(y as usize).min(height - 1) * width + (x as usize).min(width - 1)] += 1;
+        }
+        for (at, &count) in counts.iter().enumerate() {
+            let (row, column) = (at / width, at % width);
+            let columns = &panorama.columns[row * width..(row + 1) * width];
+            let expected = probability(&panorama.rows, row) * probability(columns, column);
+            assert!((f64::from(count) / 1e6 - expected).abs() < 1.5e-3, "texel {at}: {count} for {expected}");
+        }
+    }
+}
