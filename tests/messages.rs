@@ -167,6 +167,11 @@ fn files_of_spectra_are_refused_with_the_line_that_is_wrong() {
 }
 
 #[test]
+fn images_that_cannot_light_a_scene_are_refused() {
+    check("images.txt", 15);
+}
+
+#[test]
 fn warnings_are_told_once_and_stop_nothing() {
     check_with("warnings.txt", 10, |case| case.unwarned());
 }

@@ -14,9 +14,9 @@ pub(super) struct LinearImage {
 /// What is wrong with it, and what to do.
 pub(super) fn read_image(path: &Path, bytes: &[u8]) -> Result<LinearImage, (String, Option<String>)> {
     let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase();
-    let image = match ending.as_str() {
-        "exr" => read_exr(bytes),
-        "hdr" => read_radiance(bytes),
+    let (kind, image) = match ending.as_str() {
+        "exr" => ("OpenEXR", read_exr(bytes)),
+        "hdr" => ("Radiance", read_radiance(bytes)),
         "png" | "jpg" | "jpeg" => {
             let help = "use an OpenEXR (.exr) or Radiance (.hdr) image";
             return Err((format!("a .{ending} image holds no light brighter than white"), Some(help.into())));
@@ -26,7 +26,10 @@ pub(super) fn read_image(path: &Path, bytes: &[u8]) -> Result<LinearImage, (Stri
             return Err((format!("the kind of image cannot be told from {:?}", path.display()), Some(help.into())));
         }
     };
-    let image = image.map_err(|message| (format!("cannot read {}: {message}", path.display()), None))?;
+    let unreadable = |said: String| {
+        (format!("{} is no {kind} image ({said})", path.display()), Some("is the file complete?".to_owned()))
+    };
+    let image = image.map_err(unreadable)?;
     let wrong = image.texels.iter().position(|texel| texel.iter().any(|x| !x.is_finite() || *x < 0.0));
     match wrong {
         Some(at) => {
