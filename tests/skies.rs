@@ -141,3 +141,43 @@ fn an_image_is_seen_where_the_convention_says() {
         }
     }
 }
+
+/// Files that were cut off or damaged are refused in words, whatever byte is hit.
+#[test]
+fn a_damaged_image_never_stops_the_program() {
+    let folder = tempfile::tempdir().unwrap();
+    write_sky(folder.path());
+    let texels: Vec<image::Rgb<f32>> =
+        (0..WIDTH * WIDTH / 2).map(|i| image::Rgb(texel(i % WIDTH, i / WIDTH))).collect();
+    let mut radiance = Vec::new();
+    image::codecs::hdr::HdrEncoder::new(&mut radiance).encode(&texels, WIDTH, WIDTH / 2).unwrap();
+    let openexr = std::fs::read(folder.path().join("sky.exr")).unwrap();
+    let mut random = support::random::Random::new(5);
+    for (name, whole) in [("sky.exr", openexr), ("sky.hdr", radiance)] {
+        let text = format!(
+            "{}[[light]]\nenvironment = {{ radiance = {{ image = \"{name}\" }} }}\n",
+            view([0.0; 3], [0.0, 0.0, 1.0], 30.0, 4)
+        );
+        let source = Source { path: folder.path().join("scene.toml"), text };
+        let description = source.parse().unwrap();
+        let mut readable = 0;
+        for round in 0..1500 {
+            let mut bytes = whole.clone();
+            let within = |random: &mut support::random::Random, most: usize| (random.number() * most as f64) as usize;
+            match round % 3 {
+                0 => bytes.truncate(within(&mut random, whole.len())),
+                1 => {
+                    let at = within(&mut random, whole.len().min(600));
+                    bytes[at] = within(&mut random, 256) as u8;
+                }
+                _ => (0..4).for_each(|_| {
+                    let at = within(&mut random, whole.len());
+                    bytes[at] ^= 1 << within(&mut random, 8);
+                }),
+            }
+            std::fs::write(folder.path().join(name), &bytes).unwrap();
+            readable += usize::from(compile(&description, &source).is_ok());
+        }
+        assert!((1..1500).contains(&readable), "{name}: {readable} of 1500 damaged files were read");
+    }
+}

@@ -41,9 +41,18 @@ pub(super) fn read_image(path: &Path, bytes: &[u8]) -> Result<LinearImage, (Stri
     }
 }
 
+/// Most texels of an image: 16384 x 8192.
+const MOST_TEXELS: usize = 1 << 27;
+
 fn read_exr(bytes: &[u8]) -> Result<LinearImage, String> {
     use exr::prelude::{ReadChannels, ReadLayers, read};
     type Pixels = (usize, Vec<[f32; 3]>);
+    let described = exr::meta::MetaData::read_from_buffered(std::io::Cursor::new(bytes), false);
+    let headers = described.map_err(|error| error.to_string())?.headers;
+    if let Some(header) = headers.iter().find(|header| header.layer_size.area() > MOST_TEXELS) {
+        let size = header.layer_size;
+        return Err(format!("{} x {} pixels are more than {MOST_TEXELS}", size.width(), size.height()));
+    }
     let image = read()
         .no_deep_data()
         .largest_resolution_level()
@@ -63,8 +72,10 @@ fn read_exr(bytes: &[u8]) -> Result<LinearImage, String> {
 }
 
 fn read_radiance(bytes: &[u8]) -> Result<LinearImage, String> {
-    let decoded =
-        image::load_from_memory_with_format(bytes, image::ImageFormat::Hdr).map_err(|error| error.to_string())?;
-    let image = decoded.into_rgb32f();
+    let mut reader = image::ImageReader::with_format(std::io::Cursor::new(bytes), image::ImageFormat::Hdr);
+    let mut limits = image::Limits::default();
+    limits.max_alloc = Some(12 * MOST_TEXELS as u64);
+    reader.limits(limits);
+    let image = reader.decode().map_err(|error| error.to_string())?.into_rgb32f();
     Ok(LinearImage { width: image.width() as usize, texels: image.pixels().map(|pixel| pixel.0).collect() })
 }
