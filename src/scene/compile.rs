@@ -6,6 +6,7 @@ use std::sync::Arc;
 use sha2::{Digest, Sha256};
 
 use super::compile_shape::{MAX_LENGTH, ShapeCompiler};
+use super::contact::coinciding;
 use super::description::{CameraText, Description, FilmText, ModelText, ObjectText, RenderText};
 use super::index::Index;
 use super::source::{At, Source};
@@ -37,6 +38,7 @@ pub fn compile(description: &Description, source: &Source) -> Result<Scene<Curve
     compiler.render(&description.render)?;
     let materials = compiler.materials(&description.material)?;
     let (objects, materials) = compiler.objects(description, &materials)?;
+    compiler.contacts(&objects, &materials)?;
     let mut scene = Scene {
         camera,
         film,
@@ -189,6 +191,26 @@ impl Compiler<'_> {
             }
         }
         Ok((objects, materials))
+    }
+
+    /// Clear bodies may overlap but not share a surface: rounding would decide which of the two a ray meets.
+    fn contacts(&mut self, objects: &[Object], materials: &[NamedMaterial<Curve>]) -> Result<()> {
+        let is_clear = |object: &Object| materials[object.material as usize].material.medium().is_some();
+        for (first, second) in coinciding(objects, is_clear) {
+            let (later, top) = (first.max(second), At::top("object"));
+            let [body, other] = [first, second].map(|number| &objects[number].name);
+            if is_clear(&objects[second]) {
+                let message = format!("a part of the surfaces of {body} and {other} lies in one place");
+                let help =
+                    "let one reach a little into the other: there the one of higher `priority` is; or leave a gap";
+                return Err(self.source.mistake_at(&top.index(later).key("shape"), message, Some(help.into())));
+            }
+            self.warnings.push(format!(
+                "a part of the surface of {body} lies exactly in {other}, where light may pass by it: move it a little, \
+                 apart or into the other"
+            ));
+        }
+        Ok(())
     }
 
     fn unknown_material(&self, at: &At, text: &ObjectText, description: &Description) -> Error {

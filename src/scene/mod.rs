@@ -8,6 +8,7 @@ mod compile;
 mod compile_curve;
 mod compile_light;
 mod compile_shape;
+mod contact;
 mod description;
 mod image_file;
 mod index;
