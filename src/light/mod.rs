@@ -7,12 +7,14 @@ mod area;
 mod environment;
 mod panorama;
 mod point;
+mod spot;
 mod sun;
 
 pub use area::Area;
 pub use environment::{Environment, Sky};
 pub use panorama::Panorama;
 pub use point::Point;
+pub use spot::Spot;
 pub use sun::Sun;
 
 use crate::math::{DVec3, Ray};
@@ -29,6 +31,8 @@ pub enum Light<S> {
     Area(Area<S>),
     /// A point that shines evenly.
     Point(Point<S>),
+    /// A point that shines into a cone.
+    Spot(Spot<S>),
     /// What rays meet that miss everything.
     Environment(Environment<S>),
     /// A disc in the sky.
@@ -54,16 +58,18 @@ impl<S> Light<S> {
         match self {
             Self::Area(area) => Light::Area(area.map(convert)),
             Self::Point(point) => Light::Point(point.map(convert)),
+            Self::Spot(spot) => Light::Spot(spot.map(convert)),
             Self::Environment(environment) => Light::Environment(environment.map(convert)),
             Self::Sun(sun) => Light::Sun(sun.map(convert)),
         }
     }
 
-    /// The radiance, intensity of a point or irradiance of a sun.
+    /// The radiance, intensity of a point or a spot, or irradiance of a sun.
     pub fn emission(&self) -> &S {
         match self {
             Self::Area(area) => &area.radiance,
             Self::Point(point) => &point.intensity,
+            Self::Spot(spot) => &spot.intensity,
             Self::Environment(environment) => &environment.radiance,
             Self::Sun(sun) => &sun.irradiance,
         }
@@ -73,7 +79,7 @@ impl<S> Light<S> {
     pub fn is_aimed_at(&self) -> bool {
         match self {
             Self::Area(area) => area.aimed_at,
-            Self::Point(_) | Self::Environment(_) | Self::Sun(_) => true,
+            Self::Point(_) | Self::Spot(_) | Self::Environment(_) | Self::Sun(_) => true,
         }
     }
 
@@ -82,6 +88,7 @@ impl<S> Light<S> {
         match self {
             Self::Area(area) => area.shape.aim(from, u),
             Self::Point(point) => point.aim(from),
+            Self::Spot(spot) => spot.aim(from),
             Self::Environment(environment) => Some(environment.aim(normal, u)),
             Self::Sun(sun) => Some(sun.aim(u)),
         }
@@ -94,6 +101,7 @@ impl<S> Light<S> {
         match self {
             Self::Area(area) => area.view(ray, part),
             Self::Point(point) => Some(point.view(ray)),
+            Self::Spot(spot) => Some(spot.view(ray)),
             Self::Environment(environment) => environment.view(ray, normal),
             Self::Sun(sun) => sun.view(ray),
         }
@@ -113,7 +121,7 @@ impl<S> Light<S> {
     pub fn is_extended(&self) -> bool {
         match self {
             Self::Area(_) | Self::Environment(_) => true,
-            Self::Point(_) => false,
+            Self::Point(_) | Self::Spot(_) => false,
             Self::Sun(sun) => sun.angular_diameter > 0.0,
         }
     }
@@ -136,6 +144,7 @@ impl Light<Table> {
         match self {
             Self::Area(area) => brightest * PI * area.shape.area(),
             Self::Point(_) => brightest * 4.0 * PI,
+            Self::Spot(spot) => brightest * spot.solid_angle(),
             Self::Environment(environment) => brightest * environment.mean() * PI,
             Self::Sun(_) => brightest,
         }

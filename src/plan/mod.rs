@@ -101,7 +101,7 @@ fn extended_light(scene: &Scene<Curve>) -> Option<String> {
 fn lights(scene: &Scene<Curve>) -> Vec<String> {
     let mut lines = Vec::new();
     let wide = scene.materials.iter().any(|m| m.material.scatters_widely());
-    let points = scene.lights.iter().filter(|light| matches!(light, Light::Point(_))).count();
+    let points = scene.lights.iter().filter(|light| !light.is_extended()).count();
     let bends = scene
         .materials
         .iter()

@@ -10,7 +10,7 @@ use super::description::{EnvironmentText, LightText, StepText};
 use super::image_file::read_image;
 use super::source::At;
 use crate::error::{Error, Result};
-use crate::light::{Environment, Light, Panorama, Point, Sky, Sun};
+use crate::light::{Environment, Light, Panorama, Point, Sky, Spot, Sun};
 use crate::math::{DMat3, DVec3};
 use crate::spectrum::{Curve, CurveKind, Quantity};
 
@@ -19,8 +19,7 @@ impl Compiler<'_> {
         for (number, text) in lights.iter().enumerate() {
             let top = At::top("light");
             let at = top.index(number);
-            let kinds = [text.environment.is_some(), text.point.is_some(), text.sun.is_some()];
-            if kinds.iter().filter(|given| **given).count() != 1 {
+            if kinds(text).iter().filter(|kind| kind.1).count() != 1 {
                 return Err(self.not_one_kind(&at, text));
             }
             let light = self.light(&at, text)?;
@@ -37,13 +36,14 @@ impl Compiler<'_> {
     }
 
     fn not_one_kind(&self, at: &At, text: &LightText) -> Error {
-        let kinds =
-            [("environment", text.environment.is_some()), ("point", text.point.is_some()), ("sun", text.sun.is_some())];
+        let kinds = kinds(text);
         let given = kinds.iter().filter(|kind| kind.1).map(|(kind, _)| at.key(kind));
         let (message, place, help) = match given.max_by_key(|place| self.source.span(place).start) {
-            None => {
-                ("a light needs a kind: `environment`, `point` or `sun`", *at, "such as environment = { radiance = 1 }")
-            }
+            None => (
+                "a light needs a kind: `environment`, `point`, `spot` or `sun`",
+                *at,
+                "such as environment = { radiance = 1 }",
+            ),
             Some(last) => ("a light has exactly one kind", last, "start another [[light]] for the second"),
         };
         self.source.mistake_at(&place, message, Some(help.into()))
@@ -59,6 +59,20 @@ impl Compiler<'_> {
             self.point(&here.key("position"), point.position)?;
             let intensity = self.curve(&here.key("intensity"), &point.intensity, Quantity::Emission)?;
             return Ok(Light::Point(Point { intensity, ..point.clone() }));
+        }
+        if let Some(spot) = &text.spot {
+            let here = at.key("spot");
+            self.point(&here.key("position"), spot.position)?;
+            self.direction(&here.key("toward"), spot.toward)?;
+            let refuse = |key, message| Err(self.source.mistake_at(&here.key(key), message, None));
+            if !(spot.cone_angle > 0.0 && spot.cone_angle <= 180.0) {
+                return refuse("cone_angle", format!("a cone is above 0 to 180 degrees wide, not {}", spot.cone_angle));
+            }
+            if !(0.0..=1.0).contains(&spot.blend) {
+                return refuse("blend", format!("blend is a part of the cone, 0 to 1, not {}", spot.blend));
+            }
+            let intensity = self.curve(&here.key("intensity"), &spot.intensity, Quantity::Emission)?;
+            return Ok(Light::Spot(Spot { intensity, ..spot.clone() }));
         }
         let sun = text.sun.as_ref().expect("one kind was counted");
         let here = at.key("sun");
@@ -122,4 +136,15 @@ impl Compiler<'_> {
         }
         Ok(Panorama::new(image.width, image.texels))
     }
+}
+
+/// The kinds a light may have, and which of them are given.
+fn kinds(text: &LightText) -> [(&'static str, bool); 4] {
+    let LightText { environment, point, spot, sun, .. } = text;
+    [
+        ("environment", environment.is_some()),
+        ("point", point.is_some()),
+        ("spot", spot.is_some()),
+        ("sun", sun.is_some()),
+    ]
 }

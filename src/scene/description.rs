@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Deserializer};
 
 use crate::film::Filter;
-use crate::light::{Point, Sun};
+use crate::light::{Point, Spot, Sun};
 use crate::material::Material;
 use crate::spectrum::{ColorSpace, Curve};
 
@@ -254,6 +254,8 @@ pub struct LightText {
     pub environment: Option<EnvironmentText>,
     /// A point that shines.
     pub point: Option<Point<Curve>>,
+    /// A point that shines into a cone.
+    pub spot: Option<Spot<Curve>>,
     /// A disc in the sky.
     pub sun: Option<Sun<Curve>>,
 }

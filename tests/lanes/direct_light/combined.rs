@@ -59,6 +59,15 @@ fn combined_lights() -> Vec<Case> {
             ..case("ten squares before a sky", &[], by_ring + 0.7 * (PI - by_ring))
         },
         Case { scene: lamp("", &[]) + &sky, ..case("sky alone", &[], 0.7 * PI) },
+        // Straight above at height 2, tilted by 20 degrees: within the full part of its cone.
+        Case {
+            scene: lamp("", &[])
+                + &format!(
+                    "[[light]]\nspot = {{ position = [0, 2, 0], toward = [0.36397, -1, 0], cone_angle = 80, blend = 0.3, \
+                     intensity = {{ rgb = {BANDS:?} }} }}\n"
+                ),
+            ..case("spot", &[], 0.25)
+        },
         sun("parallel sun", "", 0.0, 3.0 * libm::cos(0.7)),
         sun("sun as we see it", "", 0.533, 3.0 * libm::cos(0.7)),
         sun("wide sun before a sky", &sky, 80.0, 3.0 * libm::cos(0.7) + 0.7 * PI),

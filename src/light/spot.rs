@@ -1,0 +1,100 @@
+use std::f64::consts::PI;
+
+use serde::Deserialize;
+
+use super::View;
+use crate::math::{DVec3, Ray};
+use crate::shape::Sighting;
+use crate::spectrum::Quantity;
+
+/// A point that shines into a cone, dimmer toward its edge; rays never meet it.
+///
+/// ```toml
+/// [[light]]
+/// spot = { position = [0, 3, 0], toward = [0, -1, 0], cone_angle = 40, intensity = 10 }     # blend = 0.15
+/// ```
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Spot<S> {
+    /// Where it is.
+    pub position: [f64; 3],
+    /// The direction in the middle of the cone, of any length.
+    pub toward: [f64; 3],
+    /// Full angle of the cone, in degrees, above 0 to 180.
+    pub cone_angle: f64,
+    /// The outer part of the cone's half angle over which the light fades, 0 to 1.
+    #[serde(default = "soft")]
+    pub blend: f64,
+    /// Radiance times area in the middle, in scene units.
+    pub intensity: S,
+}
+
+fn soft() -> f64 {
+    0.15
+}
+
+impl<S> Spot<S> {
+    pub(super) fn map<T>(&self, convert: &mut impl FnMut(Quantity, &S) -> T) -> Spot<T> {
+        let Self { position, toward, cone_angle, blend, intensity } = self;
+        Spot {
+            position: *position,
+            toward: *toward,
+            cone_angle: *cone_angle,
+            blend: *blend,
+            intensity: convert(Quantity::Emission, intensity),
+        }
+    }
+
+    /// The part of the intensity that leaves in a direction: 1 within the cone's inner part, 0 beyond the cone, between them
+    /// 3 t^2 - 2 t^3 of the angle.
+    fn part(&self, direction: DVec3) -> f64 {
+        let axis = DVec3::from(self.toward).normalize();
+        let angle = libm::atan2(axis.cross(direction).length(), axis.dot(direction));
+        let outer = 0.5 * self.cone_angle.to_radians();
+        let inner = outer * (1.0 - self.blend);
+        if angle <= inner {
+            return 1.0;
+        }
+        let t = ((outer - angle) / (outer - inner)).max(0.0);
+        if angle >= outer { 0.0 } else { t * t * (3.0 - 2.0 * t) }
+    }
+
+    /// The solid angle of the cone.
+    pub(super) fn solid_angle(&self) -> f64 {
+        let sin = libm::sin(0.25 * self.cone_angle.to_radians());
+        4.0 * PI * sin * sin
+    }
+
+    pub(super) fn aim(&self, from: DVec3) -> Option<Sighting> {
+        let direction = (DVec3::from(self.position) - from).try_normalize()?;
+        (self.part(-direction) > 0.0).then_some(Sighting { direction, part: None })
+    }
+
+    pub(super) fn view(&self, ray: &Ray) -> View {
+        let squared = (DVec3::from(self.position) - ray.origin).length_squared();
+        let factor = self.part(-ray.direction) / squared;
+        View { distance: squared.sqrt(), object: None, pdf: None, factor }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn light_is_full_in_the_middle_and_fades_to_the_edge() {
+        let spot = Spot { position: [0.0; 3], toward: [0.0, -2.0, 0.0], cone_angle: 60.0, blend: 0.5, intensity: () };
+        let at = |degrees: f64| {
+            let (sin, cos) = libm::sincos(degrees.to_radians());
+            spot.part(DVec3::new(sin, -cos, 0.0))
+        };
+        assert_eq!([at(0.0), at(14.9), at(30.1), at(90.0), at(180.0)], [1.0, 1.0, 0.0, 0.0, 0.0]);
+        assert!((at(22.5) - 0.5).abs() < 1e-12 && at(16.0) > at(20.0) && at(20.0) > at(29.0));
+        let sharp = Spot { blend: 0.0, ..spot };
+        let edge = |degrees: f64| {
+            let (sin, cos) = libm::sincos(f64::to_radians(degrees));
+            sharp.part(DVec3::new(sin, -cos, 0.0))
+        };
+        assert_eq!([edge(29.99), edge(30.01)], [1.0, 0.0]);
+    }
+}
