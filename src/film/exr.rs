@@ -83,18 +83,15 @@ pub fn write_exr(film: &Film, view: &View, provenance: &Provenance, path: &Path)
 fn attributes(film: &Film, view: &View, provenance: &Provenance) -> LayerAttributes {
     let mut attributes = LayerAttributes {
         software_name: Some(Text::from(concat!("Abbe ", env!("CARGO_PKG_VERSION")))),
+        // Readers take the data window of an environment for the full sphere, which a crop is not.
+        environment_map: (view.latlong && film.full == [film.width, film.height])
+            .then_some(EnvironmentMap::LatitudeLongitude),
         layer_position: Vec2(film.corner[0] as i32, film.corner[1] as i32),
         screen_window_width: view.screen_window_width as f32,
         screen_window_center: Vec2(view.screen_window_center[0] as f32, view.screen_window_center[1] as f32),
         world_to_camera: Some(std::array::from_fn(|i| view.world_to_camera[i / 4][i % 4] as f32)),
         ..LayerAttributes::default()
     };
-    // Readers take the data window of an environment for the full sphere, which a crop is not.
-    if view.latlong && film.full == [film.width, film.height] {
-        attributes
-            .other
-            .insert(Text::from("envmap"), AttributeValue::EnvironmentMap(EnvironmentMap::LatitudeLongitude));
-    }
     let text = |value: &str| AttributeValue::Text(Text::new_or_panic(value));
     attributes.other.insert(Text::from("colorInteropID"), text(film.color_space.interop_id()));
     for (key, fact) in &provenance.facts {

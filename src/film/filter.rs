@@ -28,7 +28,7 @@ pub enum Filter {
         /// Distance from the pixel's middle where it is 0; 1 in the plain filter.
         radius: f64,
     },
-    /// A normal distribution, cut off at [`CUT`] standard deviations from the middle.
+    /// A normal distribution, cut off at 4 standard deviations from the middle.
     Gaussian {
         /// Its standard deviation on each axis before the cut; 0.5 in the plain filter.
         sigma: f64,
@@ -42,7 +42,7 @@ pub enum Filter {
 }
 
 /// Where the normal distribution ends, in standard deviations: 0.03 % of it lie beyond.
-pub const CUT: f64 = 4.0;
+const CUT: f64 = 4.0;
 /// Farthest that a sample falls from the middle of its pixel, on one axis.
 const FARTHEST: f64 = 16.0;
 /// The coefficients of the window of Blackman and Harris.
