@@ -32,10 +32,10 @@ fn variances(film: &Film) -> [f64; 2] {
 
 #[test]
 fn a_point_out_of_focus_becomes_a_disc_of_the_size_that_the_thin_lens_gives() {
-    let (radius, depth, spot, side) = (0.2, 4.0, 0.04, 60);
+    let (radius, depth, spot, side) = (0.2, 4.0_f64, 0.04, 60);
     for (focus, written) in [(2.0, "2"), (f64::INFINITY, "inf"), (40.0, "40")] {
         // Light of depth d through the lens point l falls on l (1/F - 1/d) in the plane one unit ahead.
-        let blur: f64 = 2.0 * radius * (1.0 / focus - 1.0 / depth as f64).abs();
+        let blur: f64 = 2.0 * radius * (1.0 / focus - 1.0 / depth).abs();
         // The image is three times as wide as the blur is in radius.
         let fov = 2.0 * libm::atan(0.75 * blur).to_degrees();
         let lens = format!("vertical_fov = {fov:?}\nlens = {{ radius = {radius}, focus_distance = {written} }}");

@@ -18,7 +18,9 @@ fn samples_of_a_tent_fall_in_a_straight_line() {
         let below = |x: f64| if x < 0.0 { 0.5 * (1.0 + x) * (1.0 + x) } else { 1.0 - 0.5 * (1.0 - x) * (1.0 - x) };
         let between = |low: f64, high: f64| below(2.0 * high - 1.0) - below(2.0 * low - 1.0);
         let warp = |u| about(Filter::Tent { radius }, u).map(|x| 0.5 + 0.5 * x / radius);
-        check_warp("tent filter", warp, |x0, x1, y0, y1| between(x0, x1) * between(y0, y1));
+        check_warp(&format!("tent filter of radius {radius}"), warp, |x0, x1, y0, y1| {
+            between(x0, x1) * between(y0, y1)
+        });
     }
 }
 
