@@ -3,7 +3,8 @@
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
-use abbe::scene::RenderText;
+use abbe::film::Window;
+use abbe::scene::{FilmSettings, RenderText};
 use abbe::{Error, Result};
 use clap::Parser;
 
@@ -56,6 +57,10 @@ struct Arguments {
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = seed)]
     seed: Option<u64>,
 
+    /// Render this part of the image alone, instead of the scene's crop: first column, first row, width, height
+    #[arg(long, value_name = "X,Y,W,H", allow_negative_numbers = true, value_parser = crop)]
+    crop: Option<Window>,
+
     /// Processor threads; all if absent. The image is the same for any number
     #[arg(long, value_name = "N", allow_negative_numbers = true,
           value_parser = clap::value_parser!(u16).range(1..=MAX_THREADS))]
@@ -69,6 +74,14 @@ fn seed(text: &str) -> std::result::Result<u64, String> {
     text.parse().map_err(|_| format!("a seed is a whole number from 0 to {}", u64::MAX))
 }
 
+fn crop(text: &str) -> std::result::Result<Window, String> {
+    let numbers: Option<Vec<u32>> = text.split(',').map(|part| part.trim().parse().ok()).collect();
+    match numbers.as_deref() {
+        Some(&[left, top, width, height]) => Ok(Window { left, top, width, height }),
+        _ => Err("a crop is four whole numbers of pixels, such as 100,50,320,180".into()),
+    }
+}
+
 /// A scene and what is wanted of it.
 pub struct Job {
     pub scene: PathBuf,
@@ -76,6 +89,7 @@ pub struct Job {
     pub exposure: f64,
     samples: Option<u32>,
     seed: Option<u64>,
+    crop: Option<Window>,
     pool: rayon::ThreadPool,
 }
 
@@ -121,8 +135,8 @@ fn job(arguments: Arguments) -> Result<Job> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     let pool =
         pool.map_err(|error| Error::Arguments { message: format!("cannot start threads: {error}"), help: None })?;
-    let Arguments { exposure, samples, seed, .. } = arguments;
-    Ok(Job { scene, output, exposure, samples, seed, pool })
+    let Arguments { exposure, samples, seed, crop, .. } = arguments;
+    Ok(Job { scene, output, exposure, samples, seed, crop, pool })
 }
 
 impl Job {
@@ -130,6 +144,15 @@ impl Job {
     pub fn apply(&self, render: &mut RenderText) {
         render.samples = self.samples.or(render.samples);
         render.seed = self.seed.unwrap_or(render.seed);
+    }
+
+    /// Lets a flag replace the part of the image that the scene asks for.
+    pub fn crop(&self, film: &mut FilmSettings) -> Result<()> {
+        film.crop = self.crop.or(film.crop);
+        match self.crop.and_then(|crop| film.objection(crop)) {
+            Some(message) => refuse(&message, Some("--crop takes first column, first row, width and height")),
+            None => Ok(()),
+        }
     }
 
     /// Runs work on the threads that were asked for.

@@ -11,7 +11,7 @@ use std::process::ExitCode;
 use abbe::Result;
 use abbe::film::{Fact, Provenance, View, check_writable, write_exr, write_png};
 use abbe::plan::{Plan, plan};
-use abbe::scene::{Scene, Source, compile};
+use abbe::scene::{Projection, Scene, Source, compile};
 use abbe::spectrum::{Basis, Curve};
 use abbe::trace::{World, render};
 
@@ -35,7 +35,8 @@ fn run(job: &Job) -> Result<()> {
     let source = Source::read(&job.scene)?;
     let mut description = source.parse()?;
     job.apply(&mut description.render);
-    let scene = compile(&description, &source)?;
+    let mut scene = compile(&description, &source)?;
+    job.crop(&mut scene.film)?;
     scene.warnings.iter().for_each(|warning| messages::warn(warning));
     match &job.output {
         Output::Check => {
@@ -57,7 +58,8 @@ fn image(job: &Job, scene: &Scene<Curve>, exr: &Path, png: Option<&Path>) -> Res
     let plan = job.on_threads(|| plan(scene));
     plan.because.iter().for_each(|line| messages::say(line));
     let world = World::new(scene, plan.method.clone());
-    let progress = progress::Progress::new(scene.film.width, scene.film.height);
+    let window = scene.film.window();
+    let progress = progress::Progress::new(window.width, window.height);
     let (film, report) = job.on_threads(|| render(&world, &|pixels| progress.advance(pixels)));
     progress.finish();
     write_exr(&film, &view(scene), &provenance(scene, &plan, report.non_finite), exr)?;
@@ -69,7 +71,13 @@ fn image(job: &Job, scene: &Scene<Curve>, exr: &Path, png: Option<&Path>) -> Res
 }
 
 fn view(scene: &Scene<Curve>) -> View {
-    View { world_to_camera: scene.camera.world_to_camera(), screen_window_width: scene.camera.screen_window_width() }
+    let camera = &scene.camera;
+    View {
+        world_to_camera: camera.world_to_camera(),
+        screen_window_width: camera.screen_window_width(),
+        screen_window_center: camera.screen_window_center(),
+        latlong: camera.projection() == Projection::Equirectangular,
+    }
 }
 
 /// Where the fixed lanes read spectra, in nm.
@@ -80,14 +88,16 @@ fn wavelengths(basis: &Basis) -> String {
 
 fn provenance(scene: &Scene<Curve>, plan: &Plan, non_finite: u64) -> Provenance {
     let text = |text: &str| Fact::Text(text.to_owned());
+    let projection = scene.camera.projection().name();
     Provenance {
         facts: vec![
             ("version", text(env!("CARGO_PKG_VERSION"))),
             ("sceneHash", text(&scene.hash)),
             ("model", text(&plan.method.basis.name())),
             ("wavelengths", text(&wavelengths(&plan.method.basis))),
+            ("projection", text(projection)),
             ("transport", text(plan.method.transport.name())),
-            ("filter", text(scene.film.filter.name())),
+            ("filter", text(&scene.film.filter.described())),
             ("samples", Fact::Count(plan.method.samples.into())),
             ("seed", text(&plan.method.seed.to_string())),
             ("nonFinite", Fact::Count(non_finite)),

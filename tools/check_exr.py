@@ -31,7 +31,8 @@ PROVENANCE = {
     "render/sceneHash": r"[0-9a-f]{64}",
     "render/seed": r"[0-9]{1,20}",
     "render/samples": range(1, 2**31),
-    "render/filter": r"box|center",
+    "render/filter": r"box|center|(tent|blackman-harris) radius [0-9.]+(e-[0-9]+)?|gaussian sigma [0-9.]+(e-[0-9]+)?",
+    "render/projection": r"perspective|orthographic|equirectangular",
     "render/model": r"\S.*",
     "render/transport": r"\S.*",
     "render/nonFinite": range(2**31),
@@ -39,7 +40,7 @@ PROVENANCE = {
 
 
 def layout(header, channels):
-    """One scanline image, lossless, top to bottom, windows equal and at the origin."""
+    """One scanline image, lossless, top to bottom; the display window at the origin, the data window all or a part of it."""
     if header.get("type", OpenEXR.scanlineimage) != OpenEXR.scanlineimage:
         yield f"type is {header['type']}, not a scanline image"
     if header["compression"] != OpenEXR.ZIP_COMPRESSION:
@@ -47,8 +48,10 @@ def layout(header, channels):
     if header["lineOrder"] != OpenEXR.INCREASING_Y:
         yield f"line order is {header['lineOrder']}, not increasing y"
     data, display = (np.array(header[name]) for name in ("dataWindow", "displayWindow"))
-    if not np.array_equal(data, display):
-        yield f"data window {data.tolist()} differs from display window {display.tolist()}"
+    if (data[0] < display[0]).any() or (data[1] > display[1]).any() or (data[0] > data[1]).any():
+        yield f"data window {data.tolist()} is no part of display window {display.tolist()}"
+    if "envmap" in header and not np.array_equal(data, display):
+        yield f"data window {data.tolist()} of an environment differs from display window {display.tolist()}"
     if display[0].any():
         yield f"display window begins at {display[0].tolist()}, not at the origin"
     if header["pixelAspectRatio"] != 1:
@@ -105,8 +108,14 @@ def camera(header, channels):
     """worldToCamera acts on row vectors, from a right-handed world to a left-handed camera that looks along +z."""
     if not header.get("screenWindowWidth", 0) > 0:
         yield "screenWindowWidth is not positive"
-    if np.any(header.get("screenWindowCenter", (1, 1)) != np.zeros(2)):
-        yield "screenWindowCenter is not (0, 0)"
+    center = np.asarray(header.get("screenWindowCenter", (np.nan, np.nan)), np.float64)
+    equirectangular = header.get("render/projection") == "equirectangular"
+    if not np.isfinite(center).all():
+        yield f"screenWindowCenter is {center.tolist()}, not finite"
+    elif equirectangular and (center.any() or header.get("screenWindowWidth") != 1):
+        yield "screenWindowCenter and screenWindowWidth are not (0, 0) and 1, as where nothing is projected in perspective"
+    if "envmap" in header and (not equirectangular or header["envmap"] != OpenEXR.ENVMAP_LATLONG):
+        yield f"envmap is {header['envmap']} in a view of projection {header.get('render/projection')!r}"
     matrix = header.get("worldToCamera")
     if matrix is None:
         yield "worldToCamera is missing"

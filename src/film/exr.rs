@@ -3,10 +3,10 @@
 use std::io::Cursor;
 use std::path::Path;
 
-use exr::meta::attribute::Chromaticities;
+use exr::meta::attribute::{Chromaticities, EnvironmentMap};
 use exr::prelude::{
-    AnyChannel, AnyChannels, AttributeValue, Compression, Encoding, FlatSamples, Image, Layer, LayerAttributes,
-    LineOrder, SmallVec, Text, Vec2, WritableImage,
+    AnyChannel, AnyChannels, AttributeValue, Compression, Encoding, FlatSamples, Image, IntegerBounds, Layer,
+    LayerAttributes, LineOrder, SmallVec, Text, Vec2, WritableImage,
 };
 
 use super::Film;
@@ -20,6 +20,10 @@ pub struct View {
     pub world_to_camera: [[f64; 4]; 4],
     /// Width of the image in the plane one unit before the camera.
     pub screen_window_width: f64,
+    /// The middle of the image there, to the right and up.
+    pub screen_window_center: [f64; 2],
+    /// Whether the image shows all directions by longitude and latitude.
+    pub latlong: bool,
 }
 
 /// Where the image comes from: everything that another run needs to make the same bytes, and no time of day.
@@ -39,6 +43,9 @@ pub enum Fact {
 }
 
 /// Writes channels R, G, B, A, Z and samples.V, linear, in 32-bit float.
+///
+/// A crop is the data window, the full image the display window, which is also what the screen window spans: compositors
+/// lay the crop over the image at its place.
 ///
 /// # Errors
 /// If the file cannot be encoded or written; a file that was there before is then untouched.
@@ -61,6 +68,7 @@ pub fn write_exr(film: &Film, view: &View, provenance: &Provenance, path: &Path)
         Encoding { compression: Compression::ZIP16, line_order: LineOrder::Increasing, ..Encoding::UNCOMPRESSED };
     let layer = Layer::new(size, attributes(film, view, provenance), encoding, AnyChannels::sort(list));
     let mut image = Image::from_layer(layer);
+    image.attributes.display_window = IntegerBounds::from_dimensions((film.full[0] as usize, film.full[1] as usize));
     let primaries = film.color_space.primaries();
     let [red, green, blue, white] =
         [primaries.red, primaries.green, primaries.blue, primaries.white].map(|[x, y]| Vec2(x as f32, y as f32));
@@ -75,7 +83,12 @@ pub fn write_exr(film: &Film, view: &View, provenance: &Provenance, path: &Path)
 fn attributes(film: &Film, view: &View, provenance: &Provenance) -> LayerAttributes {
     let mut attributes = LayerAttributes {
         software_name: Some(Text::from(concat!("Abbe ", env!("CARGO_PKG_VERSION")))),
+        // Readers take the data window of an environment for the full sphere, which a crop is not.
+        environment_map: (view.latlong && film.full == [film.width, film.height])
+            .then_some(EnvironmentMap::LatitudeLongitude),
+        layer_position: Vec2(film.corner[0] as i32, film.corner[1] as i32),
         screen_window_width: view.screen_window_width as f32,
+        screen_window_center: Vec2(view.screen_window_center[0] as f32, view.screen_window_center[1] as f32),
         world_to_camera: Some(std::array::from_fn(|i| view.world_to_camera[i / 4][i % 4] as f32)),
         ..LayerAttributes::default()
     };

@@ -1,28 +1,73 @@
-use serde::Deserialize;
+use std::f64::consts::TAU;
+use std::fmt;
 
-use crate::math::DVec2;
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{Error, MapAccess, Visitor};
+use serde::{Deserialize, Deserializer};
 
-/// Where in its pixel a camera sample falls.
+use crate::math::{DVec2, disk};
+
+/// Where in its pixel, or around it, a camera sample falls.
+///
+/// The filter is the density of the samples, which all weigh the same: a sample counts for one pixel alone, and pixels
+/// share no noise (Ernst, Stamminger & Greiner 2006, *Filter Importance Sampling*). Widths are in pixels.
 ///
 /// ```toml
-/// film.filter = "box"        # or "center"
+/// film.filter = "box"        # or "center", "tent", "gaussian", "blackman-harris"
+/// film.filter = { gaussian = { sigma = 0.5 } }       # or { tent = { radius = 1 } }, { blackman-harris = { radius = 1.5 } }
 /// ```
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Filter {
     /// Anywhere in the pixel, evenly.
     #[default]
     Box,
     /// In the middle, always.
     Center,
+    /// On each axis, a density that falls in a straight line to 0.
+    Tent {
+        /// Distance from the pixel's middle where it is 0; 1 in the plain filter.
+        radius: f64,
+    },
+    /// A normal distribution, cut off at 4 standard deviations from the middle.
+    Gaussian {
+        /// Its standard deviation on each axis before the cut; 0.5 in the plain filter.
+        sigma: f64,
+    },
+    /// On each axis, the window of four terms that Harris 1978, *On the Use of Windows for Harmonic Analysis with the
+    /// Discrete Fourier Transform*, gives for side lobes of -92 dB.
+    BlackmanHarris {
+        /// Half of the window's length; 1.5 in the plain filter.
+        radius: f64,
+    },
 }
 
+/// Where the normal distribution ends, in standard deviations: 0.03 % of it lie beyond.
+const CUT: f64 = 4.0;
+/// Farthest that a sample falls from the middle of its pixel, on one axis.
+const FARTHEST: f64 = 16.0;
+/// The coefficients of the window of Blackman and Harris.
+const WINDOW: [f64; 4] = [0.35875, 0.48829, 0.14128, 0.01168];
+
 impl Filter {
-    /// A position within the unit pixel, y down. A sample counts for one pixel alone.
+    /// The filters that have a name and no width of their own.
+    const PLAIN: [Self; 5] = [
+        Self::Box,
+        Self::Center,
+        Self::Tent { radius: 1.0 },
+        Self::Gaussian { sigma: 0.5 },
+        Self::BlackmanHarris { radius: 1.5 },
+    ];
+    const NAMES: &'static [&'static str] = &["box", "center", "tent", "gaussian", "blackman-harris"];
+
+    /// A position about the unit pixel, y down. A sample counts for one pixel alone.
     pub fn place(self, u: [f64; 2]) -> DVec2 {
+        let middle = DVec2::splat(0.5);
         match self {
             Self::Box => u.into(),
-            Self::Center => DVec2::splat(0.5),
+            Self::Center => middle,
+            Self::Tent { radius } => middle + DVec2::from(u.map(tent)) * radius,
+            Self::Gaussian { sigma } => middle + normal(u) * sigma,
+            Self::BlackmanHarris { radius } => middle + DVec2::from(u.map(blackman_harris)) * radius,
         }
     }
 
@@ -31,6 +76,109 @@ impl Filter {
         match self {
             Self::Box => "box",
             Self::Center => "center",
+            Self::Tent { .. } => "tent",
+            Self::Gaussian { .. } => "gaussian",
+            Self::BlackmanHarris { .. } => "blackman-harris",
         }
+    }
+
+    /// Name and width, as a file records them.
+    pub fn described(self) -> String {
+        let name = self.name();
+        self.width().map_or(name.to_owned(), |(key, width, _)| format!("{name} {key} {width}"))
+    }
+
+    /// The key, value and greatest value of a width that cannot be.
+    pub fn too_wide(self) -> Option<(&'static str, f64, f64)> {
+        self.width().filter(|(_, width, most)| !(*width > 0.0 && width <= most))
+    }
+
+    fn width(self) -> Option<(&'static str, f64, f64)> {
+        match self {
+            Self::Box | Self::Center => None,
+            Self::Tent { radius } | Self::BlackmanHarris { radius } => Some(("radius", radius, FARTHEST)),
+            Self::Gaussian { sigma } => Some(("sigma", sigma, FARTHEST / CUT)),
+        }
+    }
+}
+
+/// Density 1 - |x| within -1 and 1, by its inverse.
+fn tent(u: f64) -> f64 {
+    if u < 0.5 { (2.0 * u).sqrt() - 1.0 } else { 1.0 - (2.0 * (1.0 - u)).sqrt() }
+}
+
+/// The normal distribution of the plane within [`CUT`]: a disk whose radii are stretched so that strata stay compact.
+///
+/// Of the disk, the share rho^2 lies within rho; of the distribution, 1 - exp(-r^2 / 2) within r.
+fn normal(u: [f64; 2]) -> DVec2 {
+    let point = disk(u);
+    let squared = point.length_squared();
+    if squared == 0.0 {
+        return DVec2::ZERO;
+    }
+    let within = -libm::expm1(-0.5 * CUT * CUT);
+    let stretched = -2.0 * libm::log1p(-within * squared.min(1.0));
+    point * (stretched / squared).sqrt()
+}
+
+/// Density of the window within -1 and 1, by Newton's method on its integral, kept between bounds that halve.
+fn blackman_harris(u: f64) -> f64 {
+    let [a, b, c, d] = WINDOW;
+    // Of the half above 0, whose window falls from the middle to the end.
+    let wanted = (2.0 * u - 1.0).abs();
+    let (mut low, mut high, mut x) = (0.0, 1.0, 0.5 * wanted);
+    for _ in 0..60 {
+        let (sin, cos) = libm::sincos(0.5 * TAU * x);
+        let (sin2, cos2) = (2.0 * sin * cos, 2.0 * cos * cos - 1.0);
+        let (sin3, cos3) = (sin2 * cos + cos2 * sin, cos2 * cos - sin2 * sin);
+        let share = x + (b * sin + c * sin2 / 2.0 + d * sin3 / 3.0) / (0.5 * TAU * a);
+        let density = 1.0 + (b * cos + c * cos2 + d * cos3) / a;
+        let error = share - wanted;
+        if error > 0.0 {
+            high = x
+        } else {
+            low = x
+        }
+        let next = x - error / density;
+        let next = if next > low && next < high { next } else { 0.5 * (low + high) };
+        let step = (next - x).abs();
+        x = next;
+        if step <= 1e-12 {
+            break;
+        }
+    }
+    if u < 0.5 { -x } else { x }
+}
+
+/// A filter as a table: its kind with its width.
+#[derive(Deserialize)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+enum Wide {
+    Tent { radius: f64 },
+    Gaussian { sigma: f64 },
+    BlackmanHarris { radius: f64 },
+}
+
+impl<'de> Deserialize<'de> for Filter {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Either;
+        impl<'de> Visitor<'de> for Either {
+            type Value = Filter;
+            fn expecting(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
+                formatter.write_str("a name in quotes or a table such as { gaussian = { sigma = 0.5 } }")
+            }
+            fn visit_str<E: Error>(self, word: &str) -> Result<Filter, E> {
+                let known = Filter::PLAIN.into_iter().find(|filter| filter.name() == word);
+                known.ok_or_else(|| E::unknown_variant(word, Filter::NAMES))
+            }
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Filter, A::Error> {
+                Ok(match Wide::deserialize(MapAccessDeserializer::new(map))? {
+                    Wide::Tent { radius } => Filter::Tent { radius },
+                    Wide::Gaussian { sigma } => Filter::Gaussian { sigma },
+                    Wide::BlackmanHarris { radius } => Filter::BlackmanHarris { radius },
+                })
+            }
+        }
+        deserializer.deserialize_any(Either)
     }
 }

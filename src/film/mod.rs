@@ -22,7 +22,7 @@ pub const DEPTH_OF_NOTHING: f32 = 1e10;
 pub struct Sample {
     /// Film red, green and blue, linear.
     pub rgb: [f64; 3],
-    /// Distance along the viewing direction of what the camera ray met, if it met anything.
+    /// Depth of what the camera ray met, if it met anything.
     pub depth: Option<f64>,
 }
 
@@ -39,13 +39,30 @@ pub struct Pixel {
     pub samples: f32,
 }
 
-/// A finished image, rows from the top.
+/// A part of an image, in pixels from its top left corner.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Window {
+    /// Its first column.
+    pub left: u32,
+    /// Its first row.
+    pub top: u32,
+    /// Pixels per row.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+}
+
+/// A finished image or part of one, rows from the top.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Film {
     /// Pixels per row.
     pub width: u32,
     /// Rows.
     pub height: u32,
+    /// Column and row of the first pixel in the full image.
+    pub corner: [u32; 2],
+    /// Pixels per row and rows of the full image.
+    pub full: [u32; 2],
     /// What red, green and blue mean.
     pub color_space: ColorSpace,
     /// `width * height` pixels, row by row.
@@ -53,7 +70,7 @@ pub struct Film {
 }
 
 impl Film {
-    /// The pixel in column x, row y.
+    /// The pixel in column x, row y of the part that is there.
     pub fn at(&self, x: u32, y: u32) -> &Pixel {
         &self.pixels[(y as usize) * self.width as usize + x as usize]
     }

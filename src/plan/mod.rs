@@ -61,13 +61,18 @@ fn transport(scene: &Scene<Curve>, basis: &Basis) -> (Transport, String) {
     let random = Transport::Random { split: SPLIT, roulette: ROULETTE };
     let scattering =
         scene.objects.iter().find(|object| scene.materials[object.material as usize].material.scatters_widely());
+    let anywhere = || {
+        let filter = scene.film.filter;
+        let place = if filter == Filter::Box { "anywhere in" } else { "somewhere about" };
+        (filter != Filter::Center)
+            .then(|| format!("each sample falls {place} its pixel (filter \"{}\")", filter.name()))
+    };
     let why = match scattering {
         _ if basis.draws_wavelengths() => Some("each sample carries other wavelengths".to_owned()),
-        None if scene.film.filter == Filter::Center => None,
-        None => Some("each sample falls anywhere in its pixel (filter \"box\")".to_owned()),
+        _ if scene.camera.has_lens() => Some("each sample sees through another point of the lens".to_owned()),
+        None => anywhere(),
         Some(object) => match (scene.render.diffuse_bounces, extended_light(scene)) {
-            (Some(0), None) if scene.film.filter == Filter::Center => None,
-            (Some(0), None) => Some("each sample falls anywhere in its pixel (filter \"box\")".to_owned()),
+            (Some(0), None) => anywhere(),
             (Some(0), Some(light)) => Some(format!("{} is lit by {light}, which has many points", object.name)),
             _ => Some(format!("light leaves {} in every direction", object.name)),
         },
@@ -123,7 +128,8 @@ fn cost(scene: &Scene<Curve>, method: &Method, next: Option<Basis>) -> Vec<Strin
     let found = probe(&World::new(scene, method.clone()));
     let next = next.map(|basis| (basis.name(), probe(&World::new(scene, Method { basis, ..method.clone() }))));
     let probe = found;
-    let samples = f64::from(scene.film.width) * f64::from(scene.film.height) * f64::from(method.samples);
+    let window = scene.film.window();
+    let samples = f64::from(window.width) * f64::from(window.height) * f64::from(method.samples);
     let mut lines = Vec::new();
     if probe.parted > 0.0 {
         lines.push(format!("lanes part in {:.0} % of the camera samples", 100.0 * probe.parted));

@@ -1,56 +1,169 @@
-use crate::math::{DVec2, DVec3, Frame, Ray, unit};
+use std::f64::consts::{PI, TAU};
 
-/// A pinhole camera.
+use crate::math::{DVec2, DVec3, Frame, Ray, disk, unit};
+
+/// From where the scene is seen, and how directions become places in the image.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Camera {
     position: DVec3,
     right: DVec3,
     up: DVec3,
     forward: DVec3,
-    /// Half of the image in the plane one unit before the camera.
+    projection: Projection,
+    /// Half of the image in the plane one unit before the camera, or half of an orthographic view.
     half: DVec2,
+    /// The middle of the image there.
+    center: DVec2,
     size: DVec2,
     near: f64,
+    lens: Option<Lens>,
+    /// Distance of the point looked at.
+    reach: f64,
+}
+
+/// How directions become places in the image.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Projection {
+    /// Rays from one point through a window.
+    Perspective {
+        /// Full angle from the bottom to the top of the image, in degrees.
+        vertical_fov: f64,
+    },
+    /// Parallel rays.
+    Orthographic {
+        /// Height of the view in scene units.
+        height: f64,
+    },
+    /// Rays of the full sphere: longitude falls from half a turn at the left edge to minus half a turn at the right one,
+    /// latitude from a quarter turn at the top. The viewing direction is in the middle, the camera's left at the left
+    /// quarter: looking along +z, that is +x (OpenEXR, `ImfEnvmap.h`, `ENVMAP_LATLONG`).
+    Equirectangular,
+}
+
+impl Projection {
+    /// The name in a scene file.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Perspective { .. } => "perspective",
+            Self::Orthographic { .. } => "orthographic",
+            Self::Equirectangular => "equirectangular",
+        }
+    }
+}
+
+/// A thin lens, on which the rays of a pixel start and behind which they meet again where it is focused.
+///
+/// Potmesil & Chakravarty 1981, *A Lens and Aperture Camera Model for Synthetic Image Generation*.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lens {
+    radius: f64,
+    /// One over the distance of the plane in focus: 0 where that is infinitely far away.
+    inverse_focus: f64,
+}
+
+impl Lens {
+    /// A lens of a radius, in focus at a distance along the viewing direction, which may be infinite.
+    pub fn new(radius: f64, focus_distance: f64) -> Self {
+        Self { radius, inverse_focus: 1.0 / focus_distance }
+    }
 }
 
 /// Angle in radians below which `up` and the viewing direction count as parallel.
 const PARALLEL: f64 = 1e-4;
 
 impl Camera {
-    /// The camera at `position` that sees the point `target` in the middle of an image of `size` pixels.
+    /// The pinhole camera at `position` that sees the point `target` in the middle of an image of `size` pixels.
     ///
-    /// `vertical_fov` is in degrees; rays start where their distance along the viewing direction is `near`. The second
-    /// answer says whether `up` was so nearly parallel to the viewing direction that another was taken.
-    pub fn new(
-        position: DVec3,
-        target: DVec3,
-        up: DVec3,
-        vertical_fov: f64,
-        near: f64,
-        size: [u32; 2],
-    ) -> (Self, bool) {
+    /// The second answer says whether `up` was so nearly parallel to the viewing direction that another was taken.
+    pub fn new(position: DVec3, target: DVec3, up: DVec3, projection: Projection, size: [u32; 2]) -> (Self, bool) {
         let forward = (target - position).normalize();
         let across = forward.cross(up.normalize());
         let parallel = across.length() < PARALLEL;
         let right = if parallel { Frame::about(forward).to_world(DVec3::X) } else { across.normalize() };
         let size = DVec2::new(f64::from(size[0]), f64::from(size[1]));
-        let half_height = libm::tan(vertical_fov.to_radians() / 2.0);
-        let half = DVec2::new(half_height * size.x / size.y, half_height);
-        let camera = Self { position, right, up: right.cross(forward), forward, half, size, near };
+        let half_height = match projection {
+            Projection::Perspective { vertical_fov } => libm::tan(vertical_fov.to_radians() / 2.0),
+            Projection::Orthographic { height } => height / 2.0,
+            Projection::Equirectangular => 0.5,
+        };
+        let camera = Self {
+            position,
+            right,
+            up: right.cross(forward),
+            forward,
+            projection,
+            half: DVec2::new(half_height * size.x / size.y, half_height),
+            center: DVec2::ZERO,
+            size,
+            near: 0.0,
+            lens: None,
+            reach: (target - position).length(),
+        };
         (camera, parallel)
     }
 
-    /// The ray through a point of the film, in pixels from the top left corner.
-    pub fn ray(&self, film: DVec2) -> Ray {
-        let x = (2.0 * film.x / self.size.x - 1.0) * self.half.x;
-        let y = (1.0 - 2.0 * film.y / self.size.y) * self.half.y;
-        let along = self.forward + self.right * x + self.up * y;
-        Ray { origin: self.position + along * self.near, direction: unit(along) }
+    /// The same camera with rays that start where their distance along the viewing direction is `near`; in an
+    /// equirectangular image, at that distance.
+    #[must_use]
+    pub fn starting_at(self, near: f64) -> Self {
+        Self { near, ..self }
     }
 
-    /// Distance of a point along the viewing direction.
+    /// The same camera with the window onto the world moved to the right and up by fractions of the image's height.
+    #[must_use]
+    pub fn shifted(self, [right, up]: [f64; 2]) -> Self {
+        Self { center: DVec2::new(right, up) * (2.0 * self.half.y), ..self }
+    }
+
+    /// The same camera with a lens; one without extent is a pinhole.
+    #[must_use]
+    pub fn with_lens(self, lens: Option<Lens>) -> Self {
+        Self { lens: lens.filter(|lens| lens.radius > 0.0), ..self }
+    }
+
+    /// The ray through a point of the film, in pixels from the top left corner, and the middle of the lens.
+    pub fn ray(&self, film: DVec2) -> Ray {
+        let (start, along) = self.axis(film);
+        Ray { origin: start + along * self.near, direction: unit(along) }
+    }
+
+    /// The ray through a point of the film and the point of the lens that belongs to a point of the unit square.
+    ///
+    /// A ray that starts at a point of the lens runs along (x, y, 1) - point / F: so all rays of one point of the film
+    /// meet at distance F, and none is lost where 1 / F is 0.
+    pub fn lens_ray(&self, film: DVec2, u: [f64; 2]) -> Ray {
+        let Some(lens) = self.lens else { return self.ray(film) };
+        let (start, along) = self.axis(film);
+        let place = disk(u) * lens.radius;
+        let place = self.right * place.x + self.up * place.y;
+        let along = along - place * lens.inverse_focus;
+        Ray { origin: start + place + along * self.near, direction: unit(along) }
+    }
+
+    /// Where the ray through the middle of the lens starts, but for the near plane, and where to: one unit forward, or
+    /// one unit in all in an equirectangular image.
+    fn axis(&self, film: DVec2) -> (DVec3, DVec3) {
+        let x = (2.0 * film.x / self.size.x - 1.0) * self.half.x + self.center.x;
+        let y = (1.0 - 2.0 * film.y / self.size.y) * self.half.y + self.center.y;
+        match self.projection {
+            Projection::Perspective { .. } => (self.position, self.forward + self.right * x + self.up * y),
+            Projection::Orthographic { .. } => (self.position + self.right * x + self.up * y, self.forward),
+            Projection::Equirectangular => {
+                let (sin, cos) = libm::sincos(TAU * (0.5 - film.x / self.size.x));
+                let (sin_latitude, cos_latitude) = libm::sincos(PI * (0.5 - film.y / self.size.y));
+                let level = self.forward * cos - self.right * sin;
+                (self.position, level * cos_latitude + self.up * sin_latitude)
+            }
+        }
+    }
+
+    /// What the image records as the depth of a point: its distance along the viewing direction, or its distance in an
+    /// equirectangular image.
     pub fn depth(&self, point: DVec3) -> f64 {
-        (point - self.position).dot(self.forward)
+        match self.projection {
+            Projection::Equirectangular => (point - self.position).length(),
+            _ => (point - self.position).dot(self.forward),
+        }
     }
 
     /// Where the camera is.
@@ -58,14 +171,24 @@ impl Camera {
         self.position
     }
 
-    /// The unit vector toward the middle of the image.
+    /// The unit vector along the camera's axis, toward the middle of an image without shift.
     pub fn forward(&self) -> DVec3 {
         self.forward
     }
 
-    /// Whether rays start away from the camera.
+    /// How directions become places in the image.
+    pub fn projection(&self) -> Projection {
+        self.projection
+    }
+
+    /// Whether the rays of a point of the film start on a lens with an extent.
+    pub fn has_lens(&self) -> bool {
+        self.lens.is_some()
+    }
+
+    /// Whether rays start away from the camera's position.
     pub fn starts_away(&self) -> bool {
-        self.near > 0.0
+        self.near > 0.0 || self.has_lens() || matches!(self.projection, Projection::Orthographic { .. })
     }
 
     /// World to camera for row vectors: +x right, +y up, +z forward.
@@ -76,19 +199,38 @@ impl Camera {
     }
 
     /// The angle of a pixel in the middle of the image, in radians.
+    ///
+    /// Pixels of an orthographic view have none; it is the angle under which one appears from as far away as the point
+    /// looked at, or as the view is wide if that is more.
     pub fn pixel_angle(&self) -> f64 {
-        2.0 * self.half.x / self.size.x
+        let pixel = 2.0 * self.half.x / self.size.x;
+        match self.projection {
+            Projection::Perspective { .. } => pixel,
+            Projection::Orthographic { .. } => pixel / self.reach.max(2.0 * self.half.length()),
+            Projection::Equirectangular => (TAU / self.size.x).min(PI / self.size.y),
+        }
     }
 
-    /// Width of the image in the plane one unit before the camera.
+    /// Width of the image in the plane one unit before the camera; 1 in an equirectangular image, which has no such
+    /// width (OpenEXR, *Technical Introduction*).
     pub fn screen_window_width(&self) -> f64 {
-        2.0 * self.half.x
+        match self.projection {
+            Projection::Equirectangular => 1.0,
+            _ => 2.0 * self.half.x,
+        }
+    }
+
+    /// The middle of the image in the plane one unit before the camera, to the right and up.
+    pub fn screen_window_center(&self) -> [f64; 2] {
+        self.center.into()
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    const PROJECTION: Projection = Projection::Perspective { vertical_fov: 40.0 };
 
     /// Row C1 of the stability catalog.
     #[test]
@@ -97,7 +239,7 @@ mod tests {
         let side = Frame::about(target.normalize()).to_world(DVec3::X);
         for angle in [1.0, 1e-2, 1e-3, 1.01e-4, 1e-5, 1e-8, 0.0] {
             let up = target.normalize() * libm::cos(angle) + side * libm::sin(angle);
-            let (camera, parallel) = Camera::new(DVec3::ZERO, target, up, 40.0, 0.0, [4, 3]);
+            let (camera, parallel) = Camera::new(DVec3::ZERO, target, up, PROJECTION, [4, 3]);
             assert_eq!(parallel, angle < 1e-4, "angle {angle}");
             let (r, u, f) = (camera.right, camera.up, camera.forward);
             for error in [r.dot(u), u.dot(f), f.dot(r), r.length() - 1.0, u.length() - 1.0, f.length() - 1.0] {

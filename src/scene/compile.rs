@@ -5,12 +5,12 @@ use std::sync::Arc;
 
 use sha2::{Digest, Sha256};
 
-use super::compile_shape::{MAX_LENGTH, ShapeCompiler};
+use super::compile_shape::ShapeCompiler;
 use super::contact::coinciding;
-use super::description::{CameraText, Description, FilmText, ModelText, ObjectText, RenderText};
+use super::description::{Description, ModelText, ObjectText, RenderText};
 use super::index::Index;
 use super::source::{At, Source};
-use super::{Camera, FilmSettings, NamedMaterial, Object, Scene};
+use super::{NamedMaterial, Object, Scene};
 use crate::error::{Error, Result, nearest};
 use crate::light::{Area, Light, LightId};
 use crate::material::Material;
@@ -19,10 +19,6 @@ use crate::spectrum::{Curve, CurveKind, Quantity};
 
 /// The numbers of wavelengths that `render.model` may ask for.
 const BANDS: [u32; 4] = [8, 12, 16, 32];
-/// Most pixels in a row or column.
-const MAX_SIDE: u32 = 65_536;
-/// Most pixels in an image: at 20 bytes each, and as many again while the file is written, 10 GB.
-const MAX_PIXELS: u64 = 1 << 28;
 
 /// The world that a scene file describes.
 ///
@@ -71,48 +67,6 @@ pub(super) struct Compiler<'a> {
 type Materials = BTreeMap<String, Material<Curve>>;
 
 impl Compiler<'_> {
-    fn film(&mut self, film: &FilmText) -> Result<FilmSettings> {
-        let at = At::top("film");
-        for (key, size) in [("width", film.width), ("height", film.height)] {
-            if size == 0 || size > MAX_SIDE {
-                let message = format!("an image has 1 to {MAX_SIDE} pixels along each side, not {size}");
-                return Err(self.source.mistake_at(&at.key(key), message, None));
-            }
-        }
-        let pixels = u64::from(film.width) * u64::from(film.height);
-        if pixels > MAX_PIXELS {
-            let message = format!("{} x {} pixels are {pixels}; at most {MAX_PIXELS} fit", film.width, film.height);
-            return Err(self.source.mistake_at(&at.key("height"), message, None));
-        }
-        let FilmText { width, height, filter, color_space } = *film;
-        Ok(FilmSettings { width, height, filter, color_space })
-    }
-
-    fn camera(&mut self, camera: &CameraText, film: FilmSettings) -> Result<Camera> {
-        let at = At::top("camera");
-        let position = self.point(&at.key("position"), camera.position)?;
-        let target = self.point(&at.key("look_at"), camera.look_at)?;
-        if (target - position).try_normalize().is_none() {
-            let message = "the camera looks at the very point where it stands";
-            return Err(self.source.mistake_at(&at.key("look_at"), message, None));
-        }
-        let up = self.direction(&at.key("up"), camera.up)?;
-        if !(camera.vertical_fov > 0.0 && camera.vertical_fov < 180.0) {
-            let message = format!("a field of view lies between 0 and 180 degrees, not {}", camera.vertical_fov);
-            return Err(self.source.mistake_at(&at.key("vertical_fov"), message, None));
-        }
-        if !(0.0..=MAX_LENGTH).contains(&camera.near) {
-            let message = format!("near is a distance from 0 to {MAX_LENGTH:e}, not {}", camera.near);
-            return Err(self.source.mistake_at(&at.key("near"), message, None));
-        }
-        let size = [film.width, film.height];
-        let (camera, parallel) = Camera::new(position, target, up, camera.vertical_fov, camera.near, size);
-        if parallel {
-            self.warnings.push("camera.up is parallel to the viewing direction; another direction is taken".into());
-        }
-        Ok(camera)
-    }
-
     fn render(&self, render: &RenderText) -> Result<()> {
         let at = At::top("render");
         let refuse = |key, message: String, help: Option<&str>| {

@@ -48,7 +48,7 @@ impl Compiler<'_> {
         }
     }
 
-    fn length(&self, at: &At, what: &str, length: f64) -> Result<f64> {
+    pub(super) fn length(&self, at: &At, what: &str, length: f64) -> Result<f64> {
         if (MIN_LENGTH..=MAX_LENGTH).contains(&length) {
             return Ok(length);
         }

@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Deserializer};
 
-use crate::film::Filter;
+use super::description_view::{CameraText, FilmText};
 use crate::light::{Point, Spot, Sun};
 use crate::material::Material;
-use crate::spectrum::{ColorSpace, Curve};
+use crate::spectrum::Curve;
 
 /// A whole scene file.
 #[derive(Clone, Debug, Deserialize)]
@@ -29,53 +29,6 @@ pub struct Description {
     /// Light that no surface gives.
     #[serde(default)]
     pub light: Vec<LightText>,
-}
-
-/// ```toml
-/// [camera]
-/// position = [0, 1.2, 6]
-/// look_at = [0, 1, 0]
-/// vertical_fov = 35          # degrees
-/// ```
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct CameraText {
-    /// Where the camera is.
-    pub position: [f64; 3],
-    /// The point in the middle of the image.
-    pub look_at: [f64; 3],
-    /// The direction that is up in the image.
-    #[serde(default = "up")]
-    pub up: [f64; 3],
-    /// Full angle from the bottom to the top of the image, in degrees.
-    pub vertical_fov: f64,
-    /// Rays start at this distance along the viewing direction.
-    #[serde(default)]
-    pub near: f64,
-}
-
-fn up() -> [f64; 3] {
-    [0.0, 1.0, 0.0]
-}
-
-/// ```toml
-/// [film]
-/// width = 960
-/// height = 540
-/// ```
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct FilmText {
-    /// Pixels per row.
-    pub width: u32,
-    /// Rows.
-    pub height: u32,
-    /// Where in its pixel a sample falls.
-    #[serde(default)]
-    pub filter: Filter,
-    /// What the numbers of the file mean.
-    #[serde(default)]
-    pub color_space: ColorSpace,
 }
 
 /// ```toml

@@ -8,8 +8,10 @@ mod compile;
 mod compile_curve;
 mod compile_light;
 mod compile_shape;
+mod compile_view;
 mod contact;
 mod description;
+mod description_view;
 mod image_file;
 mod index;
 mod source;
@@ -19,7 +21,7 @@ mod suggest;
 mod syntax;
 mod wording;
 
-pub use camera::Camera;
+pub use camera::{Camera, Lens, Projection};
 pub use compile::compile;
 pub use description::{Description, ModelText, RenderText};
 pub use source::Source;
@@ -27,7 +29,7 @@ pub use source::Source;
 use std::cell::Cell;
 use std::sync::Arc;
 
-use crate::film::Filter;
+use crate::film::{Filter, Window};
 use crate::light::{Light, LightId};
 use crate::material::Material;
 use crate::math::Ray;
@@ -63,7 +65,7 @@ pub struct Scene<S> {
 }
 
 /// Size and meaning of the image.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FilmSettings {
     /// Pixels per row.
     pub width: u32,
@@ -73,6 +75,29 @@ pub struct FilmSettings {
     pub filter: Filter,
     /// What the numbers mean.
     pub color_space: ColorSpace,
+    /// The part of the image that is made; all of it if absent.
+    pub crop: Option<Window>,
+}
+
+impl FilmSettings {
+    /// The part of the image that is made.
+    pub fn window(&self) -> Window {
+        self.crop.unwrap_or(Window { left: 0, top: 0, width: self.width, height: self.height })
+    }
+
+    /// What is wrong with a crop, if anything.
+    pub fn objection(&self, crop: Window) -> Option<String> {
+        let Window { left, top, width, height } = crop;
+        if width == 0 || height == 0 {
+            return Some(format!("a crop has at least 1 pixel along each side, not {width} x {height}"));
+        }
+        let inside = |from: u32, size: u32, whole: u32| u64::from(from) + u64::from(size) <= u64::from(whole);
+        (!inside(left, width, self.width) || !inside(top, height, self.height)).then(|| {
+            let (right, bottom) = (u64::from(left) + u64::from(width), u64::from(top) + u64::from(height));
+            let whole = format!("the image has {} x {} pixels", self.width, self.height);
+            format!("this crop ends at column {right}, row {bottom}, but {whole}")
+        })
+    }
 }
 
 /// A surface with its material.

@@ -23,6 +23,9 @@ pub(super) fn misplaced(document: &DeTable) -> Option<Mistake> {
             mistake(value, format!("`{key}` is a list of tables"), format!("write [[{key}]] for each"))
         }
         ("material", DeValue::Table(materials)) => materials.values().find_map(|material| one_of(material, &MATERIAL)),
+        ("film", DeValue::Table(film)) => {
+            film.get("filter").filter(|filter| filter.get_ref().is_table()).and_then(|filter| one_of(filter, &FILTER))
+        }
         ("render", DeValue::Table(render)) => render.get("model").and_then(unknown_model),
         ("object", DeValue::Array(objects)) => objects.iter().find_map(|object| misplaced_in_object(object.get_ref())),
         _ => None,
@@ -94,6 +97,9 @@ const STEP: OneOf = OneOf {
     apart: "write one step after the other: [{ scale = 2 }, { translate = [0, 1, 0] }]",
 };
 
+const FILTER: OneOf =
+    OneOf { name: "a filter", example: "{ gaussian = { sigma = 0.5 } }", apart: "leave one of them out" };
+
 fn one_of(value: &Spanned<DeValue>, choice: &OneOf) -> Option<Mistake> {
     let example = || format!("such as {}", choice.example);
     let DeValue::Table(table) = value.get_ref() else {
@@ -116,6 +122,7 @@ pub(super) fn listed(document: &DeTable) -> Option<Mistake> {
         let is_table = match path {
             ["material", _, _] | ["object", "shape", _] | ["object", "transform", "rotate"] => true,
             ["light", "environment" | "point" | "sun"] => true,
+            ["camera", "lens"] | ["film", "filter", _] => true,
             [.., key] => matches!(*key, "sellmeier" | "abbe"),
             [] => false,
         };
@@ -135,6 +142,8 @@ pub(super) fn surplus(document: &DeTable) -> Option<Mistake> {
             "cauchy" => ("`cauchy`", 2, Some("write [A, B] of n = A + B / wavelength^2")),
             "faces" => ("a face", 3, Some("cut faces with more corners into triangles")),
             "points" => ("a point", 3, None),
+            "shift" => ("`shift`", 2, Some("write [right, up] in heights of the image")),
+            "crop" => ("`crop`", 4, Some("write [first column, first row, width, height]")),
             key => (&*format!("`{key}`"), 3, None),
         };
         let numbers = entries.iter().all(|entry| matches!(entry.get_ref(), DeValue::Integer(_) | DeValue::Float(_)));

@@ -106,6 +106,13 @@ impl<'t> Place<'t> {
             }
             _ if said.starts_with("unknown field ") => format!("unknown key `{word}`"),
             _ if !said.starts_with("unknown variant ") => return None,
+            ["film", "filter", plain @ ("box" | "center")] => {
+                return Some((
+                    format!("the filter `{plain}` has no width"),
+                    Some(format!("write filter = \"{plain}\"")),
+                ));
+            }
+            ["film", "filter", _] => format!("unknown filter `{word}`"),
             ["material", kind, _] if known.contains(kind) => {
                 let help = format!("write [material.NAME] above {kind} = {{ .. }}");
                 return Some(("this material has no name".into(), Some(help)));
@@ -137,6 +144,7 @@ impl<'t> Place<'t> {
             "a string" => "a text in quotes",
             "a sequence" => "a list",
             "an array of length 2" => "a list of 2 numbers",
+            "an array of length 4" => "a list of 4 numbers",
             "an array of length 3" => "a list of 3 numbers",
             "a map" => "a table",
             other if other.starts_with("struct ") => "a table, { .. }",

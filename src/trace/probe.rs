@@ -28,7 +28,7 @@ const SIDE: u32 = 24;
 /// Time after which the probe has seen enough.
 const ENOUGH: Duration = Duration::from_millis(300);
 
-/// Traces single samples of pixels spread over the image.
+/// Traces single samples of pixels spread over the part of the image that is made.
 pub fn probe(world: &World) -> Probe {
     in_lanes(&world.method.basis, Probing { world })
 }
@@ -47,13 +47,14 @@ impl InLanes for Probing<'_> {
 fn probe_lanes<const N: usize>(world: &World) -> Probe {
     let mut tracer = Tracer::<N>::new(world);
     let (mut samples, mut parted) = (0, 0);
-    let film = world.scene.film;
+    let window = world.scene.film.window();
     let start = Instant::now();
     // A stride that is coprime to the number of places visits them all, far ones first.
     let places = SIDE * SIDE;
     for place in (0..places).map(|i| (i * 229) % places) {
         let spread = |i: u32, size: u32| ((u64::from(2 * i + 1) * u64::from(size)) / u64::from(2 * SIDE)) as u32;
-        let (x, y) = (spread(place % SIDE, film.width), spread(place / SIDE, film.height));
+        let (x, y) = (spread(place % SIDE, window.width), spread(place / SIDE, window.height));
+        let (x, y) = (window.left + x, window.top + y);
         let before = tracer.tally.partings;
         sample(world, &mut tracer, &Sampler::new(world.method.seed, [x, y], 0), x, y);
         samples += 1;

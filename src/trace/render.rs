@@ -12,6 +12,8 @@ use crate::math::{BranchKey, DVec2, Sampler};
 const TILE: u32 = 16;
 /// Use of the camera's random numbers: where in the pixel the sample falls.
 const PLACE: u32 = 0;
+/// Another: where on the lens its ray starts. The path's first vertex has 1, 2 and those from 16.
+const LENS: u32 = 3;
 
 /// What rendering noticed.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -34,7 +36,7 @@ pub struct Report {
     pub polarization: f64,
 }
 
-/// Renders the world's image. `progress` is told how many pixels are done, from any thread.
+/// Renders the world's image, or the part of it that is asked for. `progress` is told how many pixels are done, from any thread.
 pub fn render(world: &World, progress: &(dyn Fn(u64) + Sync)) -> (Film, Report) {
     in_lanes(&world.method.basis, Render { world, progress })
 }
@@ -53,20 +55,21 @@ impl InLanes for Render<'_> {
 
 fn render_lanes<const N: usize>(world: &World, progress: &(dyn Fn(u64) + Sync)) -> (Film, Report) {
     let settings = world.scene.film;
-    let (columns, rows) = (settings.width.div_ceil(TILE), settings.height.div_ceil(TILE));
+    let window = settings.window();
+    let (columns, rows) = (window.width.div_ceil(TILE), window.height.div_ceil(TILE));
     let bands: Vec<(Vec<Pixel>, Report)> = (0..rows)
         .into_par_iter()
         .map(|row| {
-            let height = TILE.min(settings.height - row * TILE);
+            let height = TILE.min(window.height - row * TILE);
             let tiles: Vec<_> =
                 (0..columns).into_par_iter().map(|column| tile::<N>(world, column, row, progress)).collect();
-            let mut pixels = vec![BLANK; (settings.width * height) as usize];
+            let mut pixels = vec![BLANK; (window.width * height) as usize];
             let mut report = Report::default();
             for (column, (tile, noted)) in tiles.iter().enumerate() {
                 let left = column * TILE as usize;
                 let width = tile.len() / height as usize;
                 for y in 0..height as usize {
-                    let start = y * settings.width as usize + left;
+                    let start = y * window.width as usize + left;
                     pixels[start..start + width].copy_from_slice(&tile[y * width..(y + 1) * width]);
                 }
                 report.add(noted);
@@ -75,7 +78,7 @@ fn render_lanes<const N: usize>(world: &World, progress: &(dyn Fn(u64) + Sync)) 
         })
         .collect();
     let mut report = Report::default();
-    let mut pixels = Vec::with_capacity((settings.width as usize) * settings.height as usize);
+    let mut pixels = Vec::with_capacity((window.width as usize) * window.height as usize);
     for (band, noted) in bands {
         pixels.extend(band);
         report.add(&noted);
@@ -84,7 +87,14 @@ fn render_lanes<const N: usize>(world: &World, progress: &(dyn Fn(u64) + Sync)) 
     report.dropped /= samples;
     report.stopped /= samples;
     report.polarization /= samples;
-    let film = Film { width: settings.width, height: settings.height, color_space: settings.color_space, pixels };
+    let film = Film {
+        width: window.width,
+        height: window.height,
+        corner: [window.left, window.top],
+        full: [settings.width, settings.height],
+        color_space: settings.color_space,
+        pixels,
+    };
     (film, report)
 }
 
@@ -92,11 +102,13 @@ const BLANK: Pixel = Pixel { rgb: [0.0; 3], alpha: 0.0, depth: 0.0, samples: 0.0
 
 /// The pixels of one tile, row by row.
 fn tile<const N: usize>(world: &World, column: u32, row: u32, progress: &(dyn Fn(u64) + Sync)) -> (Vec<Pixel>, Report) {
-    let settings = world.scene.film;
+    let window = world.scene.film.window();
     let mut tracer = Tracer::<N>::new(world);
     let (mut pixels, mut report) = (Vec::new(), Report::default());
-    for y in row * TILE..settings.height.min((row + 1) * TILE) {
-        for x in column * TILE..settings.width.min((column + 1) * TILE) {
+    for y in row * TILE..window.height.min((row + 1) * TILE) {
+        for x in column * TILE..window.width.min((column + 1) * TILE) {
+            // Random numbers and rays belong to the full image's pixel, whatever part of it is made.
+            let (x, y) = (window.left + x, window.top + y);
             let mut sum = PixelSum::default();
             for number in 0..world.method.samples {
                 let sampler = Sampler::new(world.method.seed, [x, y], number);
@@ -130,14 +142,22 @@ pub(super) fn sample<const N: usize>(
     x: u32,
     y: u32,
 ) -> Sample {
-    let [u, v, wavelength, _] = match world.method.transport {
+    let camera = &world.scene.camera;
+    let numbers = |purpose: u32| match world.method.transport {
         Transport::Deterministic { .. } => [0.5; 4],
-        Transport::Random { .. } => sampler.four(BranchKey::CAMERA, PLACE),
+        Transport::Random { .. } => sampler.four(BranchKey::CAMERA, purpose),
     };
+    let [u, v, wavelength, _] = numbers(PLACE);
     let film = DVec2::new(f64::from(x), f64::from(y)) + world.scene.film.filter.place([u, v]);
     let draw = world.method.basis.draw(wavelength);
-    let (rgb, first) = tracer.radiance(world.scene.camera.ray(film), &draw, sampler);
-    Sample { rgb, depth: first.map(|point| world.scene.camera.depth(point.position)) }
+    let ray = if camera.has_lens() {
+        let [u, v, ..] = numbers(LENS);
+        camera.lens_ray(film, [u, v])
+    } else {
+        camera.ray(film)
+    };
+    let (rgb, first) = tracer.radiance(ray, &draw, sampler);
+    Sample { rgb, depth: first.map(|point| camera.depth(point.position)) }
 }
 
 impl Report {

@@ -49,7 +49,7 @@ pub fn spread(world: &World) -> Spread {
         let beside = walk(DVec2::new(STEP, 0.0), 0);
         rays += 1;
         if from_camera[0].dispersive {
-            seen.push(if alone { 0.0 } else { apart(&from_camera, &beside) });
+            seen.push(if alone { 0.0 } else { apart(&from_camera, &beside, world.scene.camera.pixel_angle()) });
         }
         let (Some(start), Some(neighbor)) = (from_camera[0].point, beside.point) else { continue };
         if !from_camera[0].diffuse || world.method.diffuse_bounces == 0 || !shines_from_somewhere {
@@ -134,11 +134,13 @@ fn follow(world: &World, draw: &Draw<4>, lane: usize, ray: Ray, media: Media, sa
 }
 
 /// How many pixels lie between the ends of two colors, where the first one's neighbor shows how far a pixel goes.
-fn apart(ends: &[End; 2], beside: &End) -> f64 {
+fn apart(ends: &[End; 2], beside: &End, pixel_angle: f64) -> f64 {
     let pixels = |apart: f64, step: f64| if step > 0.0 { apart / (step / STEP) } else { 0.0 };
+    // Parallel rays stay parallel behind flat glass: there a pixel has the angle that the camera gives it.
+    let turn = |neighbor: f64| if neighbor > 0.0 { neighbor } else { pixel_angle * STEP };
     match [&ends[0], &ends[1], beside].map(|end| end.point.map(|point| point.position)) {
         [Some(a), Some(b), Some(neighbor)] => pixels((a - b).length(), (a - neighbor).length()),
-        _ => pixels(angle(ends[0].direction, ends[1].direction), angle(ends[0].direction, beside.direction)),
+        _ => pixels(angle(ends[0].direction, ends[1].direction), turn(angle(ends[0].direction, beside.direction))),
     }
 }
 

@@ -7,14 +7,14 @@ use abbe::math::{DVec3, ball_surface, cone, cosine_hemisphere, disk, one_minus_c
 use crate::chi_squared;
 use crate::random::Random;
 
-/// Calls of `check_warp` in this file.
-const TESTS: u32 = 8;
+/// Calls of `check_warp`, those for filters included.
+const TESTS: u32 = 12;
 const DRAWS: usize = 400_000;
 const ROWS: usize = 16;
 const COLUMNS: usize = 16;
 
 /// Tests a map whose results have coordinates in the unit square with a known probability for every cell of a grid.
-fn check_warp(name: &str, warp: impl Fn([f64; 2]) -> [f64; 2], probability: impl Fn(f64, f64, f64, f64) -> f64) {
+pub fn check_warp(name: &str, warp: impl Fn([f64; 2]) -> [f64; 2], probability: impl Fn(f64, f64, f64, f64) -> f64) {
     let mut random = Random::new(name.bytes().map(u64::from).sum());
     let mut counts = vec![0; ROWS * COLUMNS];
     for _ in 0..DRAWS {
@@ -35,7 +35,7 @@ fn check_warp(name: &str, warp: impl Fn([f64; 2]) -> [f64; 2], probability: impl
 }
 
 /// Azimuth as a share of the full turn.
-fn around(x: f64, y: f64) -> f64 {
+pub fn around(x: f64, y: f64) -> f64 {
     (libm::atan2(y, x) / TAU + 0.5).clamp(0.0, 1.0)
 }
 

@@ -25,6 +25,7 @@ def header(**changes):
         "render/seed": "18446744073709551615",
         "render/samples": 4,
         "render/filter": "box",
+        "render/projection": "perspective",
         "render/model": "rgb",
         "render/transport": "deterministic",
         "render/nonFinite": 0,
@@ -89,6 +90,23 @@ def projective():
 WINDOW = (np.array([0, 0], np.int32), np.array([WIDTH - 1, HEIGHT - 1], np.int32))
 SHIFTED = (np.array([1, 1], np.int32), np.array([WIDTH, HEIGHT], np.int32))
 LARGER = (np.array([0, 0], np.int32), np.array([WIDTH, HEIGHT], np.int32))
+SMALLER = (np.array([0, 0], np.int32), np.array([WIDTH - 1, HEIGHT - 2], np.int32))
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"dataWindow": WINDOW, "displayWindow": LARGER},
+        {"dataWindow": SHIFTED, "displayWindow": LARGER},
+        {"screenWindowCenter": np.array([0.1, -0.4], np.float32)},
+        {"render/filter": "gaussian sigma 0.5"},
+        {"render/filter": "blackman-harris radius 1.5"},
+        {"render/projection": "orthographic"},
+        {"render/projection": "equirectangular", "screenWindowWidth": 1.0, "envmap": OpenEXR.ENVMAP_LATLONG},
+    ],
+)
+def test_crops_shifts_filters_and_projections_break_no_rule(found, changes):
+    assert found(header(**changes), channels()) == []
 
 
 @pytest.mark.parametrize(
@@ -97,7 +115,8 @@ LARGER = (np.array([0, 0], np.int32), np.array([WIDTH, HEIGHT], np.int32))
         ({"type": OpenEXR.tiledimage, "tiles": OpenEXR.TileDescription()}, "not a scanline image"),
         ({"compression": OpenEXR.PIZ_COMPRESSION}, "not ZIP"),
         ({"lineOrder": OpenEXR.DECREASING_Y}, "not increasing y"),
-        ({"dataWindow": WINDOW, "displayWindow": LARGER}, "differs from display window"),
+        ({"dataWindow": WINDOW, "displayWindow": SMALLER}, "is no part of display window"),
+        ({"dataWindow": SHIFTED, "displayWindow": WINDOW}, "is no part of display window"),
         ({"dataWindow": SHIFTED, "displayWindow": SHIFTED}, "not at the origin"),
         ({"pixelAspectRatio": 2.0}, "pixel aspect ratio"),
         ({"colorInteropID": None}, "colorInteropID is None"),
@@ -106,7 +125,10 @@ LARGER = (np.array([0, 0], np.int32), np.array([WIDTH, HEIGHT], np.int32))
         ({"chromaticities": check_exr.CHROMATICITIES["lin_ap1_scene"]}, "not those of lin_rec709_scene"),
         ({"acesImageContainerFlag": 1}, "OpenEXR warns of the color metadata"),
         ({"screenWindowWidth": 0.0}, "screenWindowWidth"),
-        ({"screenWindowCenter": np.array([0.1, 0], np.float32)}, "screenWindowCenter"),
+        ({"screenWindowCenter": np.array([np.nan, 0], np.float32)}, "screenWindowCenter"),
+        ({"render/projection": "equirectangular"}, "screenWindowCenter and screenWindowWidth"),
+        ({"envmap": OpenEXR.ENVMAP_LATLONG}, "envmap is"),
+        ({"render/projection": "fisheye"}, "render/projection"),
         ({"worldToCamera": None}, "worldToCamera is missing"),
         ({"worldToCamera": mirrored()}, "left-handed"),
         ({"worldToCamera": stretched()}, "orthonormal"),
@@ -119,6 +141,7 @@ LARGER = (np.array([0, 0], np.int32), np.array([WIDTH, HEIGHT], np.int32))
         ({"render/samples": 0}, "render/samples"),
         ({"render/samples": "4"}, "render/samples"),
         ({"render/filter": "gaussian"}, "render/filter"),
+        ({"render/filter": "tent radius -1"}, "render/filter"),
         ({"render/model": " "}, "render/model"),
         ({"render/transport": None}, "render/transport is missing"),
         ({"render/nonFinite": -1}, "render/nonFinite"),

@@ -1,0 +1,111 @@
+//! What files say of the camera, and the flag that crops.
+
+use exr::image::{AnyChannels, FlatSamples, Image, Layer};
+use exr::meta::attribute::{AttributeValue, EnvironmentMap, Text};
+use exr::prelude::{IntegerBounds, Vec2, read_first_flat_layer_from_file};
+
+use crate::run::{Folder, render};
+
+const SCENE: &str = r#"
+[camera]
+position = [0, 0, 0]
+look_at = [0, 0, 1]
+vertical_fov = 90
+[film]
+width = 8
+height = 4
+[render]
+samples = 2
+[[light]]
+environment = { radiance = 1 }
+"#;
+
+fn written(folder: &Folder, scene: &str, flags: &[&str]) -> Image<Layer<AnyChannels<FlatSamples>>> {
+    folder.write("scene.toml", scene);
+    let answer = render(folder, &[&["scene.toml", "--exr", "image.exr", "--png", "image.png"], flags].concat());
+    assert_eq!((answer.code, &*answer.stdout), (Some(0), ""), "{}", answer.stderr);
+    read_first_flat_layer_from_file(folder.path().join("image.exr")).expect("an EXR")
+}
+
+#[test]
+fn a_crop_is_the_data_window_of_the_full_display_window() {
+    let folder = Folder::new();
+    let cropped = SCENE.replace("height = 4", "height = 4\ncrop = [3, 1, 4, 2]");
+    for (scene, flags) in
+        [(cropped.as_str(), &[][..]), (SCENE, &["--crop", "3,1,4,2"]), (&cropped, &["--crop", "3, 1, 4, 2"])]
+    {
+        let image = written(&folder, scene, flags);
+        assert_eq!(image.attributes.display_window, IntegerBounds::from_dimensions((8, 4)));
+        assert_eq!(image.layer_data.attributes.layer_position, Vec2(3, 1));
+        assert_eq!(image.layer_data.size, Vec2(4, 2));
+        assert_eq!(image.layer_data.attributes.screen_window_width, 4.0);
+        let picture = std::fs::read(folder.path().join("image.png")).expect("a picture");
+        // The size of a PNG stands in its first chunk.
+        assert_eq!(picture[16..24], [0, 0, 0, 4, 0, 0, 0, 2]);
+    }
+}
+
+#[test]
+fn a_crop_that_cannot_be_is_refused() {
+    let folder = Folder::new();
+    folder.write("scene.toml", SCENE);
+    let beyond = render(&folder, &["scene.toml", "--crop", "5,0,4,4"]);
+    let told = "error: this crop ends at column 9, row 4, but the image has 8 x 4 pixels\n\
+                help: --crop takes first column, first row, width and height\n";
+    assert_eq!((beyond.code, beyond.stderr.as_str()), (Some(2), told));
+    for wrong in ["1,2,3", "1,2,3,4,5", "a,b,c,d", "0,0,-1,2", "0.5,0,1,1"] {
+        let answer = render(&folder, &["scene.toml", "--crop", wrong]);
+        let told = "a crop is four whole numbers of pixels, such as 100,50,320,180";
+        assert!(answer.code == Some(2) && answer.stderr.contains(told), "{wrong}: {}", answer.stderr);
+    }
+    assert_eq!(folder.listing(), ["scene.toml"]);
+}
+
+#[test]
+fn a_shift_moves_the_screen_window() {
+    let folder = Folder::new();
+    let image = written(&folder, &SCENE.replace("= 90", "= 90\nshift = [0.25, -0.5]"), &[]);
+    // A quarter and a half of the window's height, which is 2 at 90 degrees.
+    let attributes = image.layer_data.attributes;
+    let near = |a: f32, b: f32| (a - b).abs() <= 1e-6;
+    let Vec2(x, y) = attributes.screen_window_center;
+    assert!(near(x, 0.5) && near(y, -1.0) && near(attributes.screen_window_width, 4.0), "{x}, {y}");
+}
+
+#[test]
+fn files_say_how_the_world_was_projected() {
+    let folder = Folder::new();
+    let text = |name: &str| Some(AttributeValue::Text(Text::from(name)));
+    let image = written(&folder, SCENE, &[]);
+    let attributes = &image.layer_data.attributes;
+    assert_eq!(attributes.other.get(&Text::from("render/projection")).cloned(), text("perspective"));
+    assert_eq!(attributes.environment_map, None);
+
+    let full = SCENE.replace("vertical_fov = 90", "projection = \"equirectangular\"");
+    let image = written(&folder, &full, &[]);
+    let attributes = &image.layer_data.attributes;
+    assert_eq!(attributes.other.get(&Text::from("render/projection")).cloned(), text("equirectangular"));
+    assert_eq!(attributes.environment_map, Some(EnvironmentMap::LatitudeLongitude));
+    assert_eq!((attributes.screen_window_width, attributes.screen_window_center), (1.0, Vec2(0.0, 0.0)));
+    // Readers take the data window for the sphere, so a crop is no environment.
+    assert_eq!(written(&folder, &full, &["--crop", "0,0,2,2"]).layer_data.attributes.environment_map, None);
+
+    let flat = SCENE.replace("vertical_fov = 90", "projection = \"orthographic\"\nheight = 3\nshift = [0, 1]");
+    let attributes = written(&folder, &flat, &[]).layer_data.attributes;
+    assert_eq!((attributes.screen_window_width, attributes.screen_window_center), (6.0, Vec2(0.0, 3.0)));
+}
+
+#[test]
+fn files_say_the_filter_with_its_width() {
+    let folder = Folder::new();
+    for (written_as, recorded) in [
+        ("\"center\"", "center"),
+        ("\"tent\"", "tent radius 1"),
+        ("\"blackman-harris\"", "blackman-harris radius 1.5"),
+        ("{ gaussian = { sigma = 0.4 } }", "gaussian sigma 0.4"),
+    ] {
+        let image = written(&folder, &SCENE.replace("height = 4", &format!("height = 4\nfilter = {written_as}")), &[]);
+        let found = image.layer_data.attributes.other.get(&Text::from("render/filter")).cloned();
+        assert_eq!(found, Some(AttributeValue::Text(Text::from(recorded))));
+    }
+}
