@@ -6,6 +6,7 @@
 mod camera;
 mod compile;
 mod compile_curve;
+mod compile_material;
 mod compile_shape;
 mod description;
 mod index;
