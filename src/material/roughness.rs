@@ -1,8 +1,8 @@
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 use std::sync::{Arc, OnceLock};
 
 use super::{Facets, reflect};
-use crate::math::{DVec3, cosine_hemisphere};
+use crate::math::DVec3;
 
 /// How rough a surface is, from 0 (smooth) to 1, and what follows from it.
 #[derive(Clone, Debug, Default)]
@@ -40,17 +40,26 @@ impl Roughness {
     }
 }
 
-/// Facets that reflect once or more often: what light loses that meets a second facet is given back by a wide lobe.
+/// Facets that reflect once or more often: what light loses that meets a second facet is given back by a lobe of its own.
 ///
 /// Kulla & Conty 2017, *Revisiting Physically Based Shading at Imageworks*: the lobe is reciprocal, and perfect mirrors
 /// reflect all light. Vectors are unit vectors in the frame in which +z is the normal.
+///
+/// The tables have evenly spaced places w in 0..1, with z = alpha ((1 + 1 / alpha)^(w w) - 1) for the cosine z: what is
+/// blocked changes as z log z near 0, most where z is about alpha, and as 1 / z^2 beyond.
 #[derive(Clone, Debug)]
 pub struct RoughSurface {
     facets: Facets,
-    /// The share of light that meets a second facet, at evenly spaced places of [`RoughSurface::place`].
+    /// ln(1 + 1 / alpha).
+    span: f64,
+    /// The share of light that meets a second facet.
     blocked: Vec<f64>,
     /// Its mean over the hemisphere, by cosine.
     mean_blocked: f64,
+    /// Density of the lobe's places, linear between them.
+    lobe: Vec<f64>,
+    /// The part of the lobe below each place.
+    below: Vec<f64>,
 }
 
 /// Directions of light at a rough surface, and what is reflected between them.
@@ -76,13 +85,36 @@ const UP: usize = 96;
 
 impl RoughSurface {
     fn new(alpha: f64) -> Self {
-        let mut surface = Self { facets: Facets::new(alpha), blocked: vec![0.0; STEPS + 1], mean_blocked: 0.0 };
+        let (facets, span, zeros) = (Facets::new(alpha), libm::log1p(1.0 / alpha), vec![0.0; STEPS + 1]);
+        let mut surface =
+            Self { facets, span, blocked: zeros.clone(), mean_blocked: 0.0, lobe: zeros.clone(), below: zeros };
         for step in 1..=STEPS {
-            let t = step as f64 / STEPS as f64;
-            surface.blocked[step] = surface.quadrature((alpha * t / (1.0 + alpha - t)).min(1.0));
+            let place = step as f64 / STEPS as f64;
+            let z = surface.cosine(place);
+            surface.blocked[step] = surface.quadrature(z);
+            surface.lobe[step] = surface.blocked[step] * z * surface.slope(place, z);
+            let area = 0.5 * (surface.lobe[step - 1] + surface.lobe[step]) / STEPS as f64;
+            surface.below[step] = surface.below[step - 1] + area;
         }
+        let all = surface.below[STEPS];
+        surface.lobe.iter_mut().chain(&mut surface.below).for_each(|x| *x /= all);
         surface.mean_blocked = surface.mean();
         surface
+    }
+
+    /// The cosine at a place of the tables.
+    fn cosine(&self, place: f64) -> f64 {
+        (self.facets.alpha() * libm::expm1(self.span * place * place)).min(1.0)
+    }
+
+    /// The place of a cosine.
+    fn place(&self, z: f64) -> f64 {
+        (libm::log1p(z / self.facets.alpha()) / self.span).clamp(0.0, 1.0).sqrt()
+    }
+
+    /// How fast the cosine grows with the place.
+    fn slope(&self, place: f64, z: f64) -> f64 {
+        2.0 * self.span * place * (z + self.facets.alpha())
     }
 
     /// The share of light from the cosine `z` that meets a second facet: the mean of `blocked` over the visible facets.
@@ -106,13 +138,12 @@ impl RoughSurface {
         /// Places and half weights of the Gauss-Legendre rule of order 6.
         const GAUSS: [[f64; 2]; 3] =
             [[0.112_701_665_379_258_3, 5.0 / 18.0], [0.5, 8.0 / 18.0], [0.887_298_334_620_741_7, 5.0 / 18.0]];
-        let alpha = self.facets.alpha();
         let mut sum = 0.0;
         for (step, pair) in self.blocked.windows(2).enumerate() {
             for [x, weight] in GAUSS {
-                let left = 1.0 + alpha - (step as f64 + x) / STEPS as f64;
-                let (z, slope) = (alpha * (1.0 + alpha - left) / left, alpha * (1.0 + alpha) / (left * left));
-                sum += weight * (pair[0] + x * (pair[1] - pair[0])) * 2.0 * z * slope;
+                let place = (step as f64 + x) / STEPS as f64;
+                let z = self.cosine(place);
+                sum += weight * (pair[0] + x * (pair[1] - pair[0])) * 2.0 * z * self.slope(place, z);
             }
         }
         sum / STEPS as f64
@@ -129,45 +160,59 @@ impl RoughSurface {
     }
 
     /// The share of light from the cosine `z` that perfect mirrors would reflect more than once.
-    ///
-    /// The table is dense where shares change: z (1 + alpha) / (z + alpha) goes from 0 to 1.
     pub fn blocked(&self, z: f64) -> f64 {
-        let alpha = self.facets.alpha();
-        let place = (z * (1.0 + alpha) / (z + alpha)).clamp(0.0, 1.0) * STEPS as f64;
-        let below = (place as usize).min(STEPS - 1);
-        let [low, high] = [self.blocked[below], self.blocked[below + 1]];
-        low + (place - below as f64) * (high - low)
+        between(&self.blocked, self.place(z))
     }
 
     /// Draws a direction of light for the viewer's direction `wo`; none if it lies below the surface.
     ///
-    /// Light is as often drawn from the wide lobe as perfect mirrors reflect it more than once.
+    /// It is drawn from the lobe as often as perfect mirrors would reflect light more than once.
     pub fn scatter(&self, wo: DVec3, u: [f64; 2]) -> Option<RoughReflection> {
-        let wide = self.blocked(wo.z);
-        if u[0] < wide {
-            return self.evaluate(wo, cosine_hemisphere([u[0] / wide, u[1]]));
+        let again = self.blocked(wo.z);
+        if u[0] < again {
+            return self.evaluate(wo, self.draw_from_lobe([u[0] / again, u[1]]));
         }
-        let h = self.facets.visible_normal(wo, [(u[0] - wide) / (1.0 - wide), u[1]]);
-        self.between(wo, reflect(wo, h), h)
+        let h = self.facets.visible_normal(wo, [(u[0] - again) / (1.0 - again), u[1]]);
+        self.reflection(wo, reflect(wo, h), h)
+    }
+
+    /// A direction of the lobe: its place is drawn from a density that is linear between the places of the table.
+    fn draw_from_lobe(&self, u: [f64; 2]) -> DVec3 {
+        let step = self.below.partition_point(|&below| below <= u[1]).clamp(1, STEPS) - 1;
+        let [low, high] = [self.lobe[step], self.lobe[step + 1]];
+        let area = (u[1] - self.below[step]).max(0.0) * STEPS as f64;
+        // The root of low x + (high - low) x^2 / 2 = area that does not cancel.
+        let root = (low * low + 2.0 * (high - low) * area).max(0.0).sqrt();
+        let x = if area > 0.0 { (2.0 * area / (low + root)).min(1.0) } else { 0.0 };
+        let z = self.cosine((step as f64 + x) / STEPS as f64);
+        let (sin, (y, x)) = ((1.0 - z * z).max(0.0).sqrt(), libm::sincos(TAU * u[0]));
+        DVec3::new(sin * x, sin * y, z)
     }
 
     /// What is reflected from `wi` to `wo`; none if `wi` lies below the surface.
     pub fn evaluate(&self, wo: DVec3, wi: DVec3) -> Option<RoughReflection> {
-        self.between(wo, wi, (wo + wi).try_normalize()?)
+        self.reflection(wo, wi, (wo + wi).try_normalize()?)
     }
 
-    fn between(&self, wo: DVec3, wi: DVec3, h: DVec3) -> Option<RoughReflection> {
+    fn reflection(&self, wo: DVec3, wi: DVec3, h: DVec3) -> Option<RoughReflection> {
         if wi.z <= 0.0 {
             return None;
         }
-        let wide = self.blocked(wo.z);
-        let lambert = wi.z / PI;
+        let (again, place) = (self.blocked(wo.z), self.place(wi.z).max(f64::MIN_POSITIVE));
+        let lobe = between(&self.lobe, place) / (TAU * self.slope(place, wi.z));
         Some(RoughReflection {
             wi,
             once: self.facets.reflection(wo, wi, h),
-            again: wide * self.blocked(wi.z) / self.mean_blocked * lambert,
+            again: again * between(&self.blocked, place) / self.mean_blocked * wi.z / PI,
             cos: wo.dot(h).clamp(0.0, 1.0),
-            pdf: (1.0 - wide) * self.facets.pdf(wo, h) + wide * lambert,
+            pdf: (1.0 - again) * self.facets.pdf(wo, h) + again * lobe,
         })
     }
+}
+
+/// A table, linear between its places.
+fn between(table: &[f64], place: f64) -> f64 {
+    let place = place * STEPS as f64;
+    let step = (place as usize).min(STEPS - 1);
+    table[step] + (place - step as f64) * (table[step + 1] - table[step])
 }
