@@ -106,7 +106,6 @@ impl Conductor<Table> {
         factor: f64,
     ) -> Lanes<N> {
         let (n, k) = (arrival.draw.read_exact(&self.n), arrival.draw.read_exact(&self.k));
-        let once = surface.mean_reflected_once();
         let (mut last, mut reflected) = (None, 0.0);
         Lanes::from_fn(|i| {
             if arrival.present[i] == 0.0 {
@@ -115,8 +114,7 @@ impl Conductor<Table> {
             let metal = [arrival.incident[i], n[i], k[i]];
             if last != Some(metal) {
                 let [n1, n, k] = metal;
-                let mean = mean_reflectance(n1, n, k);
-                let again = mean * mean * once / (1.0 - mean * (1.0 - once));
+                let again = surface.reflected_again(mean_reflectance(n1, n, k));
                 let [s, p] = conductor_reflectance(n1, n, k, reflection.cos);
                 (last, reflected) =
                     (Some(metal), factor * (0.5 * (s + p) * reflection.once + again * reflection.again));

@@ -154,9 +154,16 @@ impl RoughSurface {
         &self.facets
     }
 
-    /// The mean over the hemisphere, by cosine, of the share of light that is reflected once, by perfect mirrors.
-    pub fn mean_reflected_once(&self) -> f64 {
-        1.0 - self.mean_blocked
+    /// The share of light from all around that perfect mirrors would reflect more than once.
+    pub fn mean_blocked(&self) -> f64 {
+        self.mean_blocked
+    }
+
+    /// What is left, beside perfect mirrors, of light that is reflected more than once by facets of reflectance `mean`.
+    ///
+    /// A geometric series over further reflections: Hill 2018, *A Multi-Faceted Exploration*, part 3.
+    pub fn reflected_again(&self, mean: f64) -> f64 {
+        mean * mean * (1.0 - self.mean_blocked) / (1.0 - mean * self.mean_blocked)
     }
 
     /// The share of light from the cosine `z` that perfect mirrors would reflect more than once.

@@ -127,3 +127,30 @@ fn a_lossless_ball_is_invisible_in_an_even_environment() {
         }
     }
 }
+
+#[test]
+fn lossless_metals_stay_invisible_beside_each_other_and_inside_glass() {
+    let metal = format!("conductor = {{ {LOSSLESS}, roughness = 0.5 }}");
+    let pair = ["sphere = { center = [0, 0, 0], radius = 1 }", "sphere = { center = [1.5, 0.5, 0.8], radius = 0.8 }"];
+    let glass = body(
+        "glass",
+        "dielectric = { index = { rgb = [1.3, 1.5, 1.8] } }",
+        &["cube = { center = [0, 0, 0], size = 2.4 }"],
+    );
+    let scenes = [("two metals", body("metal", &metal, &pair)), ("in glass", body("metal", &metal, &[BALL]) + &glass)];
+    for (name, bodies) in scenes {
+        for transport in [SINGLE_PATH, SPLITTING] {
+            let text = view([2.0, 3.0, 8.0], [0.5, 0.2, 0.3], 8.0, 32)
+                + "[render]\nsamples = 256\n"
+                + &bodies
+                + &environment(1.0);
+            let mean = Mean::of(&image(&text, transport).0);
+            println!("{name}: {mean:.5?}");
+            for band in 0..3 {
+                let off = (mean.value[band] - 1.0).abs();
+                assert!(off <= 0.001 + 4.0 * mean.error[band], "{name}: {mean:?}");
+                assert!(mean.error[band] < 0.003, "{name}: {mean:?}");
+            }
+        }
+    }
+}
