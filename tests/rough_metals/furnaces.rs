@@ -141,7 +141,7 @@ fn lossless_metals_stay_invisible_beside_each_other_and_inside_glass() {
     for (name, bodies) in scenes {
         for transport in [SINGLE_PATH, SPLITTING] {
             let text = view([2.0, 3.0, 8.0], [0.5, 0.2, 0.3], 8.0, 32)
-                + "[render]\nsamples = 256\n"
+                + "[render]\nsamples = 600\n"
                 + &bodies
                 + &environment(1.0);
             let mean = Mean::of(&image(&text, transport).0);
