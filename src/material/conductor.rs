@@ -16,7 +16,7 @@ pub struct Conductor<S> {
     pub n: S,
     /// Extinction coefficient.
     pub k: S,
-    /// How rough its surface is.
+    /// How rough its surface is; below 0.01 it is taken as smooth.
     pub roughness: Roughness,
 }
 
