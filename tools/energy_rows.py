@@ -124,6 +124,14 @@ def metal(degrees):
     return Row(f"metal plane, {degrees} degrees", [view], expected)
 
 
+def rough_metal(name, body, roughness, size):
+    """A metal that takes nothing, however rough, cannot be told from an even sky of 1: what meets a second facet is given
+    back (Kulla & Conty 2017)."""
+    lossless = {"conductor": {"n": 1e-6, "k": 100, "roughness": roughness}}
+    view = scene({"metal": lossless}, [("metal", body)], [WHITE_SKY], eye=(1.7, 1.3, 3.1), fov=38, size=size, samples=256)
+    return Row(f"lossless metal {name} of roughness {roughness} under a sky of 1", [view], 1.0, every_pixel=False)
+
+
 def lit(name, lamp, irradiance, size):
     """One point of a diffuse floor of reflectance 1, straight under a lamp of radiance 1: irradiance / pi."""
     materials = {"floor": {"diffuse": {"reflectance": 1}}, "lamp": {"emissive": {"radiance": 1}}}
@@ -168,6 +176,8 @@ def rows(quick):
     table += [plate(kind, 60, surfaces=two_discs()) for kind in "RT"]
     table += [plate(kind, degrees, (1.5,) * 3, 1.0) for degrees in (0, 60) for kind in ("R", "T", "R+T")]
     table += [metal(degrees) for degrees in (0, 60)]
+    roughnesses = [0.4] if quick else [0.05, 0.2, 0.4, 0.7, 1.0]
+    table += [rough_metal(*body, roughness, size) for body in BODIES.items() for roughness in roughnesses]
     table += [diffuse(name, body, size) for name, body in BODIES.items()]
     table += [inside_lamp("diffuse ball", {"diffuse": {"reflectance": 0.5}}, 0.5, size)]
     table += [inside_lamp("glass ball", {"dielectric": {"index": rgb(SPREAD)}}, 1.0, size)]

@@ -1,13 +1,14 @@
 use serde::{Deserialize, Deserializer};
 
-use super::{Arrival, Branch, conductor_reflectance, reflect};
+use super::{Arrival, Branch, RoughReflection, RoughSurface, Roughness, conductor_reflectance, reflect};
+use crate::math::{DVec3, Frame, unit};
 use crate::spectrum::{Curve, CurveKind, Lanes, Quantity, Table};
 
-/// A smooth metal.
+/// A metal, smooth or rough.
 ///
 /// ```toml
 /// conductor = { metal = "Au" }
-/// conductor = { n = 0.2, k = 3.9 }
+/// conductor = { n = 0.2, k = 3.9, roughness = 0.3 }     # 0 to 1; 0, smooth, if absent
 /// ```
 #[derive(Clone, Debug)]
 pub struct Conductor<S> {
@@ -15,6 +16,8 @@ pub struct Conductor<S> {
     pub n: S,
     /// Extinction coefficient.
     pub k: S,
+    /// How rough its surface is; below 0.01 it is taken as smooth.
+    pub roughness: Roughness,
 }
 
 #[derive(Deserialize)]
@@ -23,16 +26,20 @@ struct ConductorText {
     metal: Option<String>,
     n: Option<Curve>,
     k: Option<Curve>,
+    #[serde(default)]
+    roughness: f64,
 }
 
 impl<'de> Deserialize<'de> for Conductor<Curve> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        match ConductorText::deserialize(deserializer)? {
-            ConductorText { metal: Some(name), n: None, k: None } => {
+        let text = ConductorText::deserialize(deserializer)?;
+        let roughness = Roughness::new(text.roughness);
+        match text {
+            ConductorText { metal: Some(name), n: None, k: None, .. } => {
                 let named: Curve = CurveKind::Name(name).into();
-                Ok(Self { n: named.clone(), k: named })
+                Ok(Self { n: named.clone(), k: named, roughness })
             }
-            ConductorText { metal: None, n: Some(n), k: Some(k) } => Ok(Self { n, k }),
+            ConductorText { metal: None, n: Some(n), k: Some(k), .. } => Ok(Self { n, k, roughness }),
             _ => Err(serde::de::Error::custom("a conductor needs either `metal`, or both `n` and `k`")),
         }
     }
@@ -40,12 +47,32 @@ impl<'de> Deserialize<'de> for Conductor<Curve> {
 
 impl<S> Conductor<S> {
     pub(super) fn map<T>(&self, convert: &mut impl FnMut(Quantity, &S) -> T) -> Conductor<T> {
-        Conductor { n: convert(Quantity::MetalIndex, &self.n), k: convert(Quantity::MetalExtinction, &self.k) }
+        Conductor {
+            n: convert(Quantity::MetalIndex, &self.n),
+            k: convert(Quantity::MetalExtinction, &self.k),
+            roughness: self.roughness.clone(),
+        }
     }
 }
 
 impl Conductor<Table> {
-    pub(super) fn scatter<const N: usize>(&self, arrival: &Arrival<N>) -> Branch<N> {
+    /// The way on, backward; none where it leads into the metal.
+    pub(super) fn scatter<const N: usize>(&self, arrival: &Arrival<N>, u: [f64; 2]) -> Option<Branch<N>> {
+        let Some(surface) = self.roughness.surface() else { return Some(self.mirror(arrival)) };
+        let frame = Frame::about(arrival.normal);
+        let reflection = surface.scatter(above(&frame, arrival.wo), u)?;
+        Some(Branch {
+            wi: unit(frame.to_world(reflection.wi)),
+            share: self.reflected(arrival, surface, &reflection, 1.0 / reflection.pdf),
+            pdf: Some(reflection.pdf),
+            crosses: false,
+            eta_scale: 1.0,
+            polarization: 0.0,
+        })
+    }
+
+    /// Of a smooth metal.
+    fn mirror<const N: usize>(&self, arrival: &Arrival<N>) -> Branch<N> {
         let (n, k) = (arrival.draw.read_exact(&self.n), arrival.draw.read_exact(&self.k));
         let cos = arrival.wo.dot(arrival.normal);
         let reflected: [[f64; 2]; N] = std::array::from_fn(|i| match arrival.present[i] {
@@ -60,6 +87,81 @@ impl Conductor<Table> {
             crosses: false,
             eta_scale: 1.0,
             polarization: if s + p > 0.0 { ((s - p) / (s + p)) as f32 } else { 0.0 },
+        }
+    }
+
+    pub(super) fn evaluate<const N: usize>(&self, arrival: &Arrival<N>, wi: DVec3) -> Option<(Lanes<N>, f64)> {
+        let surface = self.roughness.surface()?;
+        let frame = Frame::about(arrival.normal);
+        let reflection = surface.evaluate(above(&frame, arrival.wo), frame.to_local(wi))?;
+        Some((self.reflected(arrival, surface, &reflection, 1.0), reflection.pdf))
+    }
+
+    /// The BRDF times cosine of each lane, times a factor.
+    fn reflected<const N: usize>(
+        &self,
+        arrival: &Arrival<N>,
+        surface: &RoughSurface,
+        reflection: &RoughReflection,
+        factor: f64,
+    ) -> Lanes<N> {
+        let (n, k) = (arrival.draw.read_exact(&self.n), arrival.draw.read_exact(&self.k));
+        let (mut last, mut reflected) = (None, 0.0);
+        Lanes::from_fn(|i| {
+            if arrival.present[i] == 0.0 {
+                return 0.0;
+            }
+            let metal = [arrival.incident[i], n[i], k[i]];
+            if last != Some(metal) {
+                let [n1, n, k] = metal;
+                let again = surface.reflected_again(mean_reflectance(n1, n, k));
+                let [s, p] = conductor_reflectance(n1, n, k, reflection.cos);
+                (last, reflected) =
+                    (Some(metal), factor * (0.5 * (s + p) * reflection.once + again * reflection.again));
+            }
+            reflected as f32
+        })
+    }
+}
+
+/// The viewer's direction in the surface's frame, on its side where rounding has put it behind.
+fn above(frame: &Frame, wo: DVec3) -> DVec3 {
+    let local = frame.to_local(wo);
+    DVec3 { z: local.z.max(0.0), ..local }
+}
+
+/// A metal's reflectance of diffuse light: twice the integral of reflectance times cosine over the cosine.
+///
+/// The Gauss rule of order 10 for this weight.
+fn mean_reflectance(n1: f64, n: f64, k: f64) -> f64 {
+    const RULE: [[f64; 2]; 5] = [
+        [0.098_535_085_798_826_43, 0.031_495_829_043_383_45],
+        [0.304_535_726_646_363_9, 0.147_817_740_145_233_22],
+        [0.562_025_189_752_613_8, 0.292_773_974_169_339_6],
+        [0.801_986_582_126_391_8, 0.334_349_276_188_739_1],
+        [0.960_190_142_948_531_2, 0.193_563_180_453_303_37],
+    ];
+    let reflected = RULE.map(|[cos, weight]| {
+        let [s, p] = conductor_reflectance(n1, n, k, cos);
+        0.5 * weight * (s + p)
+    });
+    reflected.iter().sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn five_places_give_a_metals_mean_reflectance() {
+        const STEPS: u32 = 20_000;
+        for (n, k) in [(0.05, 3.0), (0.2, 3.9), (1.5, 1.9), (1.2, 7.3), (3.1, 3.3), (6.0, 6.0), (0.02, 0.5), (1.0, 0.1)]
+        {
+            let at = |i| (f64::from(i) + 0.5) / f64::from(STEPS);
+            let reflected = |cos: f64| conductor_reflectance(1.0, n, k, cos).iter().sum::<f64>() * cos;
+            let exact = (0..STEPS).map(|i| reflected(at(i))).sum::<f64>() / f64::from(STEPS);
+            let mean = mean_reflectance(1.0, n, k);
+            assert!((mean - exact).abs() < 1e-3, "{n}, {k}: {mean} for {exact}");
         }
     }
 }

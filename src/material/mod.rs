@@ -7,15 +7,19 @@ mod conductor;
 mod dielectric;
 mod diffuse;
 mod emissive;
+mod facets;
 mod fresnel;
 mod mirror;
+mod roughness;
 
 pub use conductor::Conductor;
 pub use dielectric::Dielectric;
 pub use diffuse::Diffuse;
 pub use emissive::Emissive;
+pub use facets::Facets;
 pub use fresnel::{Interface, conductor_reflectance};
 pub use mirror::{Mirror, reflect};
+pub use roughness::{RoughReflection, RoughSurface, Roughness};
 
 use serde::Deserialize;
 
@@ -31,7 +35,7 @@ pub enum Material<S> {
     Diffuse(Diffuse<S>),
     /// Reflects like an ideal mirror.
     Mirror(Mirror<S>),
-    /// Reflects like a smooth metal.
+    /// Reflects like a metal, smooth or rough.
     Conductor(Conductor<S>),
     /// Reflects and refracts like glass.
     Dielectric(Dielectric<S>),
@@ -156,7 +160,24 @@ impl<S> Material<S> {
 
     /// Whether light leaves in every direction, so that lights can be aimed at.
     pub fn scatters_widely(&self) -> bool {
+        match self {
+            Self::Diffuse(_) => true,
+            Self::Conductor(conductor) => !conductor.roughness.is_smooth(),
+            _ => false,
+        }
+    }
+
+    /// Whether light leaves with no memory of where it came from: `diffuse_bounces` counts these surfaces.
+    pub fn is_diffuse(&self) -> bool {
         matches!(self, Self::Diffuse(_))
+    }
+
+    /// How rough it is, where it can be.
+    pub fn roughness(&self) -> Option<f64> {
+        match self {
+            Self::Conductor(conductor) => Some(conductor.roughness.value()),
+            _ => None,
+        }
     }
 }
 
@@ -166,7 +187,7 @@ impl Material<Table> {
         match self {
             Self::Diffuse(diffuse) => branches.push(diffuse.scatter(arrival, u)),
             Self::Mirror(mirror) => branches.push(mirror.scatter(arrival)),
-            Self::Conductor(conductor) => branches.push(conductor.scatter(arrival)),
+            Self::Conductor(conductor) => branches.extend(conductor.scatter(arrival, u)),
             Self::Dielectric(dielectric) => dielectric.scatter(arrival, branches),
             Self::Emissive(_) => {}
         }
@@ -178,6 +199,7 @@ impl Material<Table> {
     pub fn evaluate<const N: usize>(&self, arrival: &Arrival<N>, wi: DVec3) -> Option<(Lanes<N>, f64)> {
         match self {
             Self::Diffuse(diffuse) => diffuse.evaluate(arrival, wi),
+            Self::Conductor(conductor) => conductor.evaluate(arrival, wi),
             _ => None,
         }
     }

@@ -27,6 +27,11 @@ impl Frame {
     pub fn to_world(&self, local: DVec3) -> DVec3 {
         self.tangent * local.x + self.bitangent * local.y + self.normal * local.z
     }
+
+    /// A vector given in the world's coordinates, expressed in the frame's.
+    pub fn to_local(&self, world: DVec3) -> DVec3 {
+        DVec3::new(self.tangent.dot(world), self.bitangent.dot(world), self.normal.dot(world))
+    }
 }
 
 #[cfg(test)]

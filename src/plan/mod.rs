@@ -7,7 +7,7 @@ mod survey;
 use crate::film::Filter;
 use crate::light::Light;
 use crate::material::Material;
-use crate::scene::Scene;
+use crate::scene::{Object, Scene};
 use crate::spectrum::{Basis, Curve};
 use crate::trace::{Method, Transport, World, probe};
 use model::Model;
@@ -59,8 +59,10 @@ pub fn plan(scene: &Scene<Curve>) -> Plan {
 /// Whether anything is left to chance.
 fn transport(scene: &Scene<Curve>, basis: &Basis) -> (Transport, String) {
     let random = Transport::Random { split: SPLIT, roulette: ROULETTE };
-    let scattering =
-        scene.objects.iter().find(|object| scene.materials[object.material as usize].material.scatters_widely());
+    let material = |object: &&Object| &scene.materials[object.material as usize].material;
+    let rough =
+        scene.objects.iter().find(|object| material(object).scatters_widely() && !material(object).is_diffuse());
+    let scattering = scene.objects.iter().find(|object| material(object).scatters_widely());
     let anywhere = || {
         let filter = scene.film.filter;
         let place = if filter == Filter::Box { "anywhere in" } else { "somewhere about" };
@@ -71,7 +73,7 @@ fn transport(scene: &Scene<Curve>, basis: &Basis) -> (Transport, String) {
         _ if basis.draws_wavelengths() => Some("each sample carries other wavelengths".to_owned()),
         _ if scene.camera.has_lens() => Some("each sample sees through another point of the lens".to_owned()),
         None => anywhere(),
-        Some(object) => match (scene.render.diffuse_bounces, extended_light(scene)) {
+        Some(object) => match (scene.render.diffuse_bounces.filter(|_| rough.is_none()), extended_light(scene)) {
             (Some(0), None) => anywhere(),
             (Some(0), Some(light)) => Some(format!("{} is lit by {light}, which has many points", object.name)),
             _ => Some(format!("light leaves {} in every direction", object.name)),
@@ -105,19 +107,27 @@ fn extended_light(scene: &Scene<Curve>) -> Option<String> {
 /// What lights cannot do.
 fn lights(scene: &Scene<Curve>) -> Vec<String> {
     let mut lines = Vec::new();
-    let wide = scene.materials.iter().any(|m| m.material.scatters_widely());
+    let wide =
+        |diffuse| scene.materials.iter().any(|m| m.material.scatters_widely() && m.material.is_diffuse() == diffuse);
+    let lit = match [wide(true), wide(false)] {
+        [false, false] => None,
+        [true, false] => Some("diffuse"),
+        [false, true] => Some("rough"),
+        [true, true] => Some("diffuse or rough"),
+    };
     let points = scene.lights.iter().filter(|light| !light.is_extended()).count();
-    let bends = scene
-        .materials
-        .iter()
-        .find(|m| matches!(m.material, Material::Dielectric(_) | Material::Mirror(_) | Material::Conductor(_)));
-    if let (true, true, Some(bends)) = (wide, points > 0, bends) {
+    let bends = scene.materials.iter().find(|m| match &m.material {
+        Material::Dielectric(_) | Material::Mirror(_) => true,
+        Material::Conductor(metal) => metal.roughness.is_smooth(),
+        _ => false,
+    });
+    if let (Some(lit), true, Some(bends)) = (lit, points > 0, bends) {
         lines.push(format!(
-            "left out: light of point lights that reaches a diffuse surface by way of smooth ones ({})",
+            "left out: light of point lights that reaches a {lit} surface by way of smooth ones ({})",
             bends.name
         ));
     }
-    if scene.render.diffuse_bounces == Some(0) && wide {
+    if scene.render.diffuse_bounces == Some(0) && wide(true) {
         lines.push("diffuse_bounces 0: diffuse surfaces are lit straight from the lights alone".into());
     }
     lines

@@ -1,6 +1,6 @@
 //! What of a scene decides how its spectra must be carried.
 
-use crate::material::{Dielectric, Material};
+use crate::material::{Conductor, Dielectric, Material};
 use crate::scene::Scene;
 use crate::spectrum::{
     Basis, ColorSpace, Curve, CurveKind, Emission, Quantity, Upsampler, normal_reflectance, visible,
@@ -21,8 +21,8 @@ pub(super) enum Tint<'a> {
     Diffuse(&'a Curve),
     /// A factor on light that a smooth surface reflects or lets through.
     Filter(Quantity, &'a Curve),
-    /// A metal's reflection at normal incidence.
-    Metal(&'a Curve, &'a Curve),
+    /// A metal's reflection at normal incidence, once or, where it is rough, more often.
+    Metal(&'a Conductor<Curve>),
     /// Light goes a distance through an absorbing body.
     Depth(&'a Curve, f64),
 }
@@ -36,7 +36,7 @@ impl<'a> Survey<'a> {
             match &named.material {
                 Material::Diffuse(diffuse) => tints.push(Tint::Diffuse(&diffuse.reflectance)),
                 Material::Mirror(mirror) => tints.push(Tint::Filter(Quantity::Reflectance, &mirror.reflectance)),
-                Material::Conductor(metal) => tints.push(Tint::Metal(&metal.n, &metal.k)),
+                Material::Conductor(metal) => tints.push(Tint::Metal(metal)),
                 Material::Dielectric(glass) => {
                     tints.push(Tint::Filter(Quantity::Reflectance, &glass.reflectance));
                     tints.push(Tint::Filter(Quantity::Transmittance, &glass.transmittance));
@@ -123,7 +123,7 @@ impl Tint<'_> {
     fn curves(&self) -> Vec<&Curve> {
         match self {
             Self::Diffuse(curve) | Self::Filter(_, curve) | Self::Depth(curve, _) => vec![curve],
-            Self::Metal(n, k) => vec![n, k],
+            Self::Metal(metal) => vec![&metal.n, &metal.k],
         }
     }
 
@@ -152,9 +152,16 @@ impl Tint<'_> {
         match self {
             Self::Diffuse(curve) => read(Quantity::Reflectance, curve),
             Self::Filter(quantity, curve) => read(*quantity, curve),
-            Self::Metal(n, k) => {
-                let (n, k) = (read(Quantity::MetalIndex, n), read(Quantity::MetalExtinction, k));
-                n.into_iter().zip(k).map(|(n, k)| normal_reflectance(n, k)).collect()
+            Self::Metal(metal) => {
+                let (n, k) = (read(Quantity::MetalIndex, &metal.n), read(Quantity::MetalExtinction, &metal.k));
+                let reflected = n.into_iter().zip(k).map(|(n, k)| normal_reflectance(n, k));
+                match metal.roughness.surface() {
+                    None => reflected.collect(),
+                    Some(surface) => {
+                        let blocked = surface.mean_blocked();
+                        reflected.map(|r| r + blocked * (surface.reflected_again(r) - r)).collect()
+                    }
+                }
             }
             Self::Depth(curve, depth) => {
                 read(Quantity::Absorption, curve).into_iter().map(|a| libm::exp(-a * depth)).collect()

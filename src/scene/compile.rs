@@ -15,7 +15,7 @@ use crate::error::{Error, Result, nearest};
 use crate::light::{Area, Light, LightId};
 use crate::material::Material;
 use crate::shape::Sides;
-use crate::spectrum::{Curve, CurveKind, Quantity};
+use crate::spectrum::{Curve, CurveKind};
 
 /// The numbers of wavelengths that `render.model` may ask for.
 const BANDS: [u32; 4] = [8, 12, 16, 32];
@@ -64,7 +64,7 @@ pub(super) struct Compiler<'a> {
     pub(super) meters_per_unit: Option<f64>,
 }
 
-type Materials = BTreeMap<String, Material<Curve>>;
+pub(super) type Materials = BTreeMap<String, Material<Curve>>;
 
 impl Compiler<'_> {
     fn render(&self, render: &RenderText) -> Result<()> {
@@ -94,26 +94,6 @@ impl Compiler<'_> {
             }
             _ => Ok(()),
         }
-    }
-
-    fn materials(&mut self, texts: &Materials) -> Result<Materials> {
-        let mut materials = Materials::new();
-        for (name, material) in texts {
-            let (top, kind) = (At::top("material"), material.kind());
-            let named = top.key(name);
-            let at = named.key(kind);
-            let mut curves = Vec::new();
-            material.each(|quantity, key, curve| {
-                // A conductor given by name has its mistake where the name stands.
-                let metal = matches!(curve.kind, CurveKind::Name(_)) && quantity == Quantity::MetalIndex;
-                curves.push(self.curve(&at.key(if metal { "metal" } else { key }), curve, quantity)?);
-                Ok(())
-            })?;
-            let mut curves = curves.into_iter();
-            let next = &mut |_, _: &Curve| curves.next().expect("each and map visit the same spectra");
-            materials.insert(name.clone(), material.map(next));
-        }
-        Ok(materials)
     }
 
     fn objects(

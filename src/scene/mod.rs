@@ -7,6 +7,7 @@ mod camera;
 mod compile;
 mod compile_curve;
 mod compile_light;
+mod compile_material;
 mod compile_shape;
 mod compile_view;
 mod contact;

@@ -4,7 +4,7 @@ use super::World;
 use super::media::{self, Media};
 use super::path::Path;
 use crate::light::Light;
-use crate::material::{Interface, Material, reflect};
+use crate::material::{Interface, Material, RoughSurface, reflect};
 use crate::math::{BranchKey, DVec2, DVec3, Frame, Ray, Sampler, cosine_hemisphere, unit};
 use crate::shape::SurfacePoint;
 use crate::spectrum::Draw;
@@ -121,7 +121,18 @@ fn follow(world: &World, draw: &Draw<4>, lane: usize, ray: Ray, media: Media, sa
                     if n1 == n2 { ray.direction } else { interface.refract(wo, normal) }
                 }
             }
-            Material::Mirror(_) | Material::Conductor(_) => reflect(wo, normal),
+            Material::Mirror(_) => reflect(wo, normal),
+            Material::Conductor(metal) => match metal.roughness.surface() {
+                None => reflect(wo, normal),
+                // The same facet for both colors, as if it were all there is.
+                Some(surface) => {
+                    let [.., u, v] = sampler.four_plain(key, 7);
+                    match mirrored(surface, wo, normal, [u, v]) {
+                        Some(direction) => direction,
+                        None => return end,
+                    }
+                }
+            },
             material => {
                 end.diffuse = material.scatters_widely();
                 end.point = Some(point);
@@ -131,6 +142,14 @@ fn follow(world: &World, draw: &Draw<4>, lane: usize, ray: Ray, media: Media, sa
         ray = point.leave(direction);
     }
     end
+}
+
+/// The mirror image of `wo` about a visible facet; none if it lies below the surface.
+fn mirrored(surface: &RoughSurface, wo: DVec3, normal: DVec3, u: [f64; 2]) -> Option<DVec3> {
+    let frame = Frame::about(normal);
+    let local = frame.to_local(wo);
+    let wi = reflect(local, surface.facets().visible_normal(local, u));
+    (wi.z > 0.0).then(|| unit(frame.to_world(wi)))
 }
 
 /// How many pixels lie between the ends of two colors, where the first one's neighbor shows how far a pixel goes.

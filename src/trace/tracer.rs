@@ -166,12 +166,12 @@ impl<'a, const N: usize> Tracer<'a, N> {
 
         // Gather light from the lights where light scatters widely.
         let (mut u, mut drawn) = ([0.0; 4], None);
-        let wide = material.scatters_widely();
+        let (wide, diffuse) = (material.scatters_widely(), material.is_diffuse());
         if wide {
             let spread = path.vertices <= SPREAD;
             u = if spread { sampler.four(path.key, SCATTER) } else { sampler.four_plain(path.key, SCATTER) };
             let aims_at_all = world.aims_at_all(path.weight(draw));
-            let goes_on = path.diffuse_left > 0;
+            let goes_on = !diffuse || path.diffuse_left > 0;
             let gathering = Gathering {
                 world,
                 material,
@@ -197,7 +197,8 @@ impl<'a, const N: usize> Tracer<'a, N> {
         material.scatter(&arrival, [u[2], u[3]], &mut self.branches);
         let parts = arrival.parts();
         self.tally.partings += u64::from(self.branches.iter().filter(|branch| branch.crosses).count() > 1);
-        self.follow(path, draw, sampler, parts, |number, branch, factor| Path {
+        let sooner = if diffuse { SOONER } else { 1.0 };
+        self.follow(path, draw, sampler, (parts, sooner), |number, branch, factor| Path {
             ray: point.leave(branch.wi),
             throughput: path.throughput.through(branch.share).scaled(factor),
             eta_scale: path.eta_scale * branch.eta_scale,
@@ -205,7 +206,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
             parted: path.parted || (parts && branch.crosses),
             key: path.key.child(number),
             vertices: path.vertices,
-            diffuse_left: path.diffuse_left - u32::from(wide),
+            diffuse_left: path.diffuse_left - u32::from(diffuse),
             drawn: branch.pdf.and_then(|pdf| drawn.map(|drawn| Drawn { pdf, ..drawn })),
             polarization: branch.polarization,
         })
@@ -217,7 +218,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
         path: &Path<N>,
         draw: &Draw<N>,
         sampler: &Sampler,
-        parts: bool,
+        (parts, sooner): (bool, f64),
         child: impl Fn(usize, &Branch<N>, f64) -> Path<N>,
     ) -> Option<Path<N>> {
         let parted = |branch: &Branch<N>| path.parted || (parts && branch.crosses);
@@ -262,9 +263,8 @@ impl<'a, const N: usize> Tracer<'a, N> {
                 for (number, branch) in self.branches.iter().enumerate() {
                     let u = || sampler.four_plain(path.key.child(number), CHOICE)[2];
                     let weight = weight_of(branch);
-                    let roulette = if branch.pdf.is_some() { roulette * SOONER } else { roulette };
                     if weight != 0.0
-                        && let Some(factor) = survival(weight, roulette, path.vertices, u)
+                        && let Some(factor) = survival(weight, roulette * sooner, path.vertices, u)
                     {
                         self.pending.extend(next.replace(child(number, branch, factor)));
                     }

@@ -66,7 +66,7 @@ pub fn images(text: &str, transport: Transport, seeds: u64) -> Vec<(Film, Report
 }
 
 /// A mean of each band with its standard error.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mean {
     pub value: [f64; 3],
     pub error: [f64; 3],

@@ -1,0 +1,81 @@
+use std::f64::consts::{PI, TAU};
+
+use crate::math::DVec3;
+
+/// Microscopic mirrors whose slopes are distributed as GGX, in the frame in which +z is the surface's normal.
+///
+/// Walter et al. 2007, *Microfacet Models for Refraction through Rough Surfaces*; masking and shadowing as correlated by
+/// height, Heitz 2014, *Understanding the Masking-Shadowing Function*, equation 99. Where a direction meets them is told
+/// by [`Facets::slant`], never by a tangent: nothing overflows along the surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Facets {
+    alpha: f64,
+}
+
+impl Facets {
+    /// Facets whose slopes spread as wide as `alpha`, above 0 and up to 1.
+    pub fn new(alpha: f64) -> Self {
+        Self { alpha }
+    }
+
+    /// How wide the slopes are.
+    pub fn alpha(&self) -> f64 {
+        self.alpha
+    }
+
+    /// Area of the facets of unit normal `h`, per steradian and per area of the surface.
+    ///
+    /// Walter et al. 2007, equation 33, divided by cos^4: both terms are squares, and nothing cancels.
+    pub fn density(&self, h: DVec3) -> f64 {
+        let a2 = self.alpha * self.alpha;
+        let stretched = (h.x * h.x + h.y * h.y) / a2 + h.z * h.z;
+        1.0 / (PI * a2 * stretched * stretched)
+    }
+
+    /// S = sqrt(alpha^2 (x^2 + y^2) + z^2), of which Smith's masking is G1 = 2 z / (z + S).
+    pub fn slant(&self, w: DVec3) -> f64 {
+        (self.alpha * self.alpha * (w.x * w.x + w.y * w.y) + w.z * w.z).sqrt()
+    }
+
+    /// Density per steradian of `wi`, the mirror image of `wo` about a visible facet of normal `h`: D G1 / (4 cos).
+    pub fn pdf(&self, wo: DVec3, h: DVec3) -> f64 {
+        self.density(h) / (2.0 * (wo.z + self.slant(wo)))
+    }
+
+    /// BRDF of perfect mirrors times the cosine: D G2 / (4 cos cos) cos, for `wi` above the surface.
+    pub fn reflection(&self, wo: DVec3, wi: DVec3, h: DVec3) -> f64 {
+        self.density(h) / (2.0 * (wo.z * self.slant(wi) / wi.z + self.slant(wo)))
+    }
+
+    /// 1 - G2 / G1: the share of the light from a visible facet toward `wi` that meets another facet.
+    ///
+    /// From S^2 - z^2 = alpha^2 (x^2 + y^2), so that it keeps its digits where nearly nothing does.
+    pub fn blocked(&self, wo: DVec3, wi: DVec3) -> f64 {
+        if wi.z <= 0.0 {
+            return 1.0;
+        }
+        let slant = self.slant(wi);
+        let excess = self.alpha * self.alpha * (wi.x * wi.x + wi.y * wi.y) / (slant + wi.z);
+        wo.z * excess / (wo.z * slant + wi.z * self.slant(wo))
+    }
+
+    /// The normal of a facet that is visible from `wo`.
+    ///
+    /// Dupuy & Benyoub 2023, *Sampling Visible GGX Normals with Spherical Caps*. `u[1]` goes from facets that mirror
+    /// straight up, after stretching to a hemisphere, down to upright ones.
+    pub fn visible_normal(&self, wo: DVec3, u: [f64; 2]) -> DVec3 {
+        self.visible_normal_from_end(wo, u[0], 1.0 - u[1])
+    }
+
+    /// The same for `left` = 1 - `u[1]`, with all its digits where few facets are left.
+    pub(super) fn visible_normal_from_end(&self, wo: DVec3, around: f64, left: f64) -> DVec3 {
+        let slant = self.slant(wo);
+        let stretched = DVec3::new(self.alpha * wo.x, self.alpha * wo.y, wo.z) / slant;
+        let height = 1.0 + stretched.z;
+        let (down, up) = ((1.0 - left) * height, 1.0 - stretched.z + left * height);
+        let sin = (down * up).max(0.0).sqrt();
+        let (y, x) = libm::sincos(TAU * around);
+        let cap = DVec3::new(stretched.x + sin * x, stretched.y + sin * y, left * height);
+        DVec3::new(self.alpha * cap.x, self.alpha * cap.y, cap.z).normalize()
+    }
+}
