@@ -11,6 +11,7 @@ mod lanes {
     mod direct_light;
     mod furnaces;
     mod nested_bodies;
+    mod panes;
     mod parting;
     mod wavelengths;
 }

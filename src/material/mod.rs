@@ -11,6 +11,7 @@ mod facets;
 mod fresnel;
 mod mirror;
 mod roughness;
+mod thin;
 
 pub use conductor::Conductor;
 pub use dielectric::Dielectric;
@@ -20,6 +21,7 @@ pub use facets::Facets;
 pub use fresnel::{Interface, conductor_reflectance};
 pub use mirror::{Mirror, reflect};
 pub use roughness::{RoughReflection, RoughSurface, Roughness};
+pub use thin::Thin;
 
 use serde::Deserialize;
 
@@ -39,6 +41,8 @@ pub enum Material<S> {
     Conductor(Conductor<S>),
     /// Reflects and refracts like glass.
     Dielectric(Dielectric<S>),
+    /// Reflects and lets through like a window pane.
+    Thin(Thin<S>),
     /// Shines and absorbs.
     Emissive(Emissive<S>),
 }
@@ -112,6 +116,7 @@ impl<S> Material<S> {
         match self {
             Self::Diffuse(diffuse) => Material::Diffuse(diffuse.map(convert)),
             Self::Mirror(mirror) => Material::Mirror(mirror.map(convert)),
+            Self::Thin(thin) => Material::Thin(thin.map(convert)),
             Self::Conductor(conductor) => Material::Conductor(conductor.map(convert)),
             Self::Dielectric(dielectric) => Material::Dielectric(dielectric.map(convert)),
             Self::Emissive(emissive) => Material::Emissive(emissive.map(convert)),
@@ -124,6 +129,10 @@ impl<S> Material<S> {
         match self {
             Self::Diffuse(diffuse) => visit(Reflectance, "reflectance", &diffuse.reflectance),
             Self::Mirror(mirror) => visit(Reflectance, "reflectance", &mirror.reflectance),
+            Self::Thin(thin) => {
+                visit(Index, "index", &thin.index)?;
+                visit(Transmittance, "transmittance", &thin.transmittance)
+            }
             Self::Conductor(conductor) => {
                 visit(MetalIndex, "n", &conductor.n)?;
                 visit(MetalExtinction, "k", &conductor.k)
@@ -144,6 +153,7 @@ impl<S> Material<S> {
         match self {
             Self::Diffuse(_) => "diffuse",
             Self::Mirror(_) => "mirror",
+            Self::Thin(_) => "thin",
             Self::Conductor(_) => "conductor",
             Self::Dielectric(_) => "dielectric",
             Self::Emissive(_) => "emissive",
@@ -187,6 +197,7 @@ impl Material<Table> {
         match self {
             Self::Diffuse(diffuse) => branches.push(diffuse.scatter(arrival, u)),
             Self::Mirror(mirror) => branches.push(mirror.scatter(arrival)),
+            Self::Thin(thin) => thin.scatter(arrival, branches),
             Self::Conductor(conductor) => branches.extend(conductor.scatter(arrival, u)),
             Self::Dielectric(dielectric) => dielectric.scatter(arrival, branches),
             Self::Emissive(_) => {}

@@ -117,7 +117,7 @@ fn lights(scene: &Scene<Curve>) -> Vec<String> {
     };
     let points = scene.lights.iter().filter(|light| !light.is_extended()).count();
     let bends = scene.materials.iter().find(|m| match &m.material {
-        Material::Dielectric(_) | Material::Mirror(_) => true,
+        Material::Dielectric(_) | Material::Mirror(_) | Material::Thin(_) => true,
         Material::Conductor(metal) => metal.roughness.is_smooth(),
         _ => false,
     });

@@ -35,6 +35,7 @@ impl<'a> Survey<'a> {
         for (id, named) in scene.materials.iter().enumerate() {
             match &named.material {
                 Material::Diffuse(diffuse) => tints.push(Tint::Diffuse(&diffuse.reflectance)),
+                Material::Thin(thin) => tints.push(Tint::Filter(Quantity::Transmittance, &thin.transmittance)),
                 Material::Mirror(mirror) => tints.push(Tint::Filter(Quantity::Reflectance, &mirror.reflectance)),
                 Material::Conductor(metal) => tints.push(Tint::Metal(metal)),
                 Material::Dielectric(glass) => {

@@ -122,6 +122,7 @@ fn follow(world: &World, draw: &Draw<4>, lane: usize, ray: Ray, media: Media, sa
                 }
             }
             Material::Mirror(_) => reflect(wo, normal),
+            Material::Thin(_) => ray.direction,
             Material::Conductor(metal) => match metal.roughness.surface() {
                 None => reflect(wo, normal),
                 // The same facet for both colors, as if it were all there is.
