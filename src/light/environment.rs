@@ -28,7 +28,7 @@ impl<S> Environment<S> {
     /// Draws directions by their cosine to the normal, as the irradiance of an even sky weighs them.
     pub(super) fn aim(&self, normal: DVec3, u: [f64; 2]) -> Sighting {
         let direction = unit(Frame::about(normal).to_world(cosine_hemisphere(u)));
-        Sighting { direction, part: None }
+        Sighting { direction, part: None, density: None }
     }
 
     /// Density with which `aim` draws the direction of a ray, at a surface of the given normal.
