@@ -12,6 +12,8 @@ mod chi_squared;
 #[path = "support/random.rs"]
 mod random;
 
+#[path = "densities/emitters.rs"]
+mod emitters;
 #[path = "densities/shapes.rs"]
 mod shapes;
 #[path = "densities/stay_in_range.rs"]

@@ -36,6 +36,11 @@ impl Facing {
         Self { axis: normal, angle: 0.0 }
     }
 
+    /// The middle of the directions.
+    pub fn axis(&self) -> DVec3 {
+        self.axis
+    }
+
     /// The narrowest cone around both that contains their axes' great circle: algorithm 1 of the paper.
     pub fn union(self, other: Self) -> Self {
         let (wide, narrow) = if self.angle >= other.angle { (self, other) } else { (other, self) };
