@@ -40,6 +40,10 @@ impl<const N: usize> Gathering<'_, N> {
     pub(super) fn direct(&self, sampler: &Sampler, key: BranchKey) -> [f64; 3] {
         let targets = &self.world.targets;
         let mut sum = [0.0; 3];
+        let digits = |target: LightId, u: [f64; 2]| match &self.world.scene.lights[target] {
+            Light::Area(area) if area.has_parts() => [finer(u[0], sampler.four_plain(key, MORE_DIGITS)[1]), u[1]],
+            _ => u,
+        };
         if self.aims_at_all {
             for (number, &target) in targets.iter().enumerate() {
                 let u = match number {
@@ -49,14 +53,13 @@ impl<const N: usize> Gathering<'_, N> {
                         if number % 2 == 0 { [u[0], u[1]] } else { [u[2], u[3]] }
                     }
                 };
-                add(&mut sum, self.from(target, 1.0, u));
+                add(&mut sum, self.from(target, 1.0, digits(target, u)));
             }
         } else {
             let more = sampler.four_plain(key, MORE_DIGITS);
             let (from, normal) = (self.point.position, self.arrival.normal);
             if let Some((target, probability)) = self.world.choice.choose(from, normal, finer(self.u[3], more[0])) {
-                let u = [self.u[0], self.u[1]];
-                add(&mut sum, self.from(target, probability, u));
+                add(&mut sum, self.from(target, probability, digits(target, [self.u[0], self.u[1]])));
             }
         }
         sum

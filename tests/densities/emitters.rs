@@ -13,7 +13,7 @@ fn crowd(random: &mut Random, count: u32, size: f64) -> Vec<Emitter> {
         let mut place = || random.between(-1.0, 1.0);
         let center = DVec3::new(4.0 * place(), 4.0 * place(), 4.0 * place());
         let half = DVec3::new(place(), place(), place()).abs() * size;
-        let facing = if number % 4 == 0 { Facing::ALL } else { Facing::one(random.direction()) };
+        let facing = if number.is_multiple_of(4) { Facing::ALL } else { Facing::one(random.direction()) };
         let bounds = Bounds { min: center - half, max: center + half };
         Emitter { bounds, facing, both: number % 4 == 1, intensity: random.number() }
     };
