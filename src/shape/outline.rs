@@ -106,16 +106,21 @@ mod tests {
 
     #[test]
     fn l4_solid_angles_keep_six_digits_in_any_position() {
-        // The square's share of the half sphere: Eriksson 1990, four equal corners.
+        // A pyramid over a square of side s and height h: 4 atan(s^2 / (4 h sqrt(s^2 / 2 + h^2))).
+        for side in [1.0f64, 1e-2, 1e-4] {
+            let exact = 4.0 * libm::atan(0.25 * side * side / (0.5 * side * side + 1.0).sqrt());
+            let outline = square(side, DVec3::Z).expect("it is wide enough");
+            assert!((outline.solid_angle / exact - 1.0).abs() < 1e-12, "{side}: {} {exact}", outline.solid_angle);
+        }
         for height in [1e-7f64, 1e-4, 0.1, 1.0, 3.0] {
             let exact = 4.0 * libm::atan(0.25 / (height * (0.5 + height * height).sqrt()));
             let outline = square(1.0, DVec3::Z * height).expect("it is near");
             assert!((outline.solid_angle / exact - 1.0).abs() < 1e-8, "{height}: {} {exact}", outline.solid_angle);
         }
-        // Seen along its plane: a quarter of corner differences of atan(x y / (z r)).
+        // Seen along its plane: the difference of two rectangles that begin below the point, by corners as above.
         for height in [1e-1f64, 1e-2, 1e-4, 1e-6, 1e-7] {
             let outline = square(1.0, DVec3::new(1.0, 0.0, height)).expect("it is near and wide enough");
-            // Integral of z / r^3 over x in [1/2, 3/2], y in [-1/2, 1/2], where z is small against r: its first two terms.
+            // Nearly half of all directions each: their complements keep the digits.
             let corner = |x: f64| 2.0 * libm::atan2(x * 0.5, height * (x * x + 0.25 + height * height).sqrt());
             let flat = |x: f64| 2.0 * libm::atan2(height * (x * x + 0.25 + height * height).sqrt(), x * 0.5);
             let exact = if height > 0.05 { corner(1.5) - corner(0.5) } else { flat(0.5) - flat(1.5) };
