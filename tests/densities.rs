@@ -12,6 +12,8 @@ mod chi_squared;
 #[path = "support/random.rs"]
 mod random;
 
+#[path = "densities/emitters.rs"]
+mod emitters;
 #[path = "densities/filters.rs"]
 mod filters;
 #[path = "densities/shapes.rs"]

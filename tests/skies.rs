@@ -110,10 +110,10 @@ fn an_image_lights_a_floor_as_its_pixels_say() {
             assert!(error < 0.01, "{model}: noise {error}");
             // Sixteen wavelengths miss an rgb color by half a percent at most.
             let bias = if model.contains("bands") { 5e-3 } else { 0.0 };
-            for c in 0..3 {
-                let off = (mean.value[c] - expected[c]).abs();
-                let limit = 3.5 * mean.error[c] + (bias + 1e-3) * expected[c];
-                assert!(off <= limit, "{model}, {turn} degrees, channel {c}: {} for {}", mean.value[c], expected[c]);
+            for (c, &expected) in expected.iter().enumerate() {
+                let off = (mean.value[c] - expected).abs();
+                let limit = 3.5 * mean.error[c] + (bias + 1e-3) * expected;
+                assert!(off <= limit, "{model}, {turn} degrees, channel {c}: {} for {expected}", mean.value[c]);
             }
         }
     }

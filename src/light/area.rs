@@ -1,8 +1,8 @@
 use std::sync::Arc;
 
 use super::View;
-use crate::math::Ray;
-use crate::shape::{Crossing, Shape, Sides};
+use crate::math::{Bounds, DVec3, Ray};
+use crate::shape::{Choice, Crossing, Emitters, Shape, Sides, Sighting};
 use crate::spectrum::Quantity;
 
 /// A surface that shines: an object whose material emits.
@@ -18,9 +18,21 @@ pub struct Area<S> {
     pub sides: Sides,
     /// Whether next-event estimation aims at it: finite `emissive` surfaces. Planes and glowing glass are only met.
     pub aimed_at: bool,
+    /// The parts of a shape of several, one of which is aimed at.
+    parts: Option<Arc<Emitters>>,
+    /// The box from whose outside no backs are seen.
+    closed: Option<Bounds>,
 }
 
 impl<S> Area<S> {
+    /// The light that an object is.
+    pub fn new(shape: Arc<Shape>, object: u32, radiance: S, sides: Sides, aimed_at: bool) -> Self {
+        let parts = if aimed_at { shape.parts() } else { Vec::new() };
+        let parts = (parts.len() > 1).then(|| Arc::new(Emitters::new(&parts)));
+        let closed = if shape.is_closed() { shape.bounds() } else { None };
+        Self { shape, object, radiance, sides, aimed_at, parts, closed }
+    }
+
     pub(super) fn map<T>(&self, convert: &mut impl FnMut(Quantity, &S) -> T) -> Area<T> {
         Area {
             shape: self.shape.clone(),
@@ -28,23 +40,58 @@ impl<S> Area<S> {
             radiance: convert(Quantity::Emission, &self.radiance),
             sides: self.sides,
             aimed_at: self.aimed_at,
+            parts: self.parts.clone(),
+            closed: self.closed,
         }
+    }
+
+    /// Whether one of several parts is chosen to be aimed at, which uses up digits of a random number.
+    pub fn has_parts(&self) -> bool {
+        self.parts.is_some()
+    }
+
+    /// Whether the backs of parts may be met first: never from outside of a closed body.
+    fn shows_backs(&self, from: DVec3) -> bool {
+        let outside = |bounds: Bounds| from.cmplt(bounds.min).any() || from.cmpgt(bounds.max).any();
+        self.sides == Sides::Both && !self.closed.is_some_and(outside)
+    }
+
+    pub(super) fn aim(&self, from: DVec3, normal: DVec3, u: [f64; 2]) -> Option<Sighting> {
+        let Some(parts) = &self.parts else { return self.shape.aim(from, u) };
+        let Choice { emitter, probability, u: along } = parts.choose(from, normal, self.shows_backs(from), u[0])?;
+        let sighting = self.shape.aim_at_part(emitter, from, [along, u[1]])?;
+        Some(Sighting { density: sighting.density.map(|density| density.times(probability)), ..sighting })
     }
 
     /// Looks for the light exactly as a ray that happens to meet it would: no distance needs a tolerance.
-    pub(super) fn view(&self, ray: &Ray, part: Option<u32>) -> Option<View> {
+    pub(super) fn view(&self, ray: &Ray, normal: DVec3, sighting: &Sighting) -> Option<View> {
         let crossing = self.shape.intersect(ray, f64::INFINITY)?;
-        if part.is_some_and(|part| part != crossing.part) {
+        if sighting.part.is_some_and(|part| part != crossing.part) {
             return None;
         }
-        let front = self.shape.point(ray, &crossing).normal.dot(ray.direction) < 0.0;
-        let pdf = self.pdf(ray, &crossing)?;
+        let cos = self.shape.point(ray, &crossing).normal.dot(ray.direction);
+        let pdf = match sighting.density {
+            Some(density) => usable(density.toward(crossing.t, cos.abs()))?,
+            None => self.pdf(ray, normal, &crossing)?,
+        };
         let view = View { distance: crossing.t, object: Some(self.object), pdf: Some(pdf), factor: 1.0 };
-        self.sides.shine(front).then_some(view)
+        self.sides.shine(cos < 0.0).then_some(view)
     }
 
-    /// Density with which the light is aimed at along a ray that meets it, none where it is seen exactly edge-on.
-    pub fn pdf(&self, ray: &Ray, crossing: &Crossing) -> Option<f64> {
-        Some(self.shape.pdf_toward(ray, crossing)).filter(|pdf| pdf.is_finite() && *pdf > 0.0)
+    /// Density with which the light is aimed at, from a surface of the given normal, along a ray that meets it; none where
+    /// it is seen exactly edge-on.
+    pub fn pdf(&self, ray: &Ray, normal: DVec3, crossing: &Crossing) -> Option<f64> {
+        usable(match &self.parts {
+            None => self.shape.pdf_toward(ray, crossing),
+            Some(parts) => {
+                let both = self.shows_backs(ray.origin);
+                let probability = parts.probability(crossing.part as usize, ray.origin, normal, both);
+                if probability == 0.0 { 0.0 } else { probability * self.shape.pdf_of_part(ray, crossing) }
+            }
+        })
     }
+}
+
+fn usable(pdf: f64) -> Option<f64> {
+    Some(pdf).filter(|pdf| pdf.is_finite() && *pdf > 0.0)
 }

@@ -58,7 +58,7 @@ impl<S> Environment<S> {
             Some(sky) => sky.turn.transpose() * sky.panorama.aim(u),
             None => Frame::about(normal).to_world(cosine_hemisphere(u)),
         };
-        Sighting { direction: unit(direction), part: None }
+        Sighting { direction: unit(direction), part: None, density: None }
     }
 
     /// Density with which `aim` draws the direction of a ray, at a surface of the given normal.

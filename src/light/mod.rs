@@ -17,8 +17,8 @@ pub use point::Point;
 pub use spot::Spot;
 pub use sun::Sun;
 
-use crate::math::{DVec3, Ray};
-use crate::shape::Sighting;
+use crate::math::{Bounds, DVec3, Ray};
+use crate::shape::{Emitter, Facing, Sides, Sighting};
 use crate::spectrum::{Draw, Lanes, Quantity, Table};
 
 /// Number of a light in its scene.
@@ -86,7 +86,7 @@ impl<S> Light<S> {
     /// A direction from a surface toward the light; `normal` is the surface's unit normal on the lit side.
     pub fn aim(&self, from: DVec3, normal: DVec3, u: [f64; 2]) -> Option<Sighting> {
         match self {
-            Self::Area(area) => area.shape.aim(from, u),
+            Self::Area(area) => area.aim(from, normal, u),
             Self::Point(point) => point.aim(from),
             Self::Spot(spot) => spot.aim(from),
             Self::Environment(environment) => Some(environment.aim(normal, u)),
@@ -96,10 +96,10 @@ impl<S> Light<S> {
 
     /// The light along a ray that leaves a surface of the given normal, if it shines that way.
     ///
-    /// `part` is what `aim` drew; without one, any part will do.
-    pub fn view(&self, ray: &Ray, normal: DVec3, part: Option<u32>) -> Option<View> {
+    /// `sighting` is what `aim` drew.
+    pub fn view(&self, ray: &Ray, normal: DVec3, sighting: &Sighting) -> Option<View> {
         match self {
-            Self::Area(area) => area.view(ray, part),
+            Self::Area(area) => area.view(ray, normal, sighting),
             Self::Point(point) => Some(point.view(ray)),
             Self::Spot(spot) => Some(spot.view(ray)),
             Self::Environment(environment) => environment.view(ray, normal),
@@ -136,17 +136,31 @@ impl Light<Table> {
         }
     }
 
-    /// A rough measure of the light it sheds, by which one light is chosen among many: its power, or the irradiance a sky
-    /// gives, whose power depends on the scene's size.
-    pub fn strength(&self) -> f64 {
-        use std::f64::consts::PI;
-        let brightest = self.emission().range().1;
+    /// The largest irradiance that a sky gives; 0 of other lights.
+    pub fn irradiance(&self) -> f64 {
+        let brightest = self.emission().range().1.max(0.0);
         match self {
-            Self::Area(area) => brightest * PI * area.shape.area(),
-            Self::Point(_) => brightest * 4.0 * PI,
-            Self::Spot(spot) => brightest * spot.solid_angle(),
-            Self::Environment(environment) => brightest * environment.mean() * PI,
+            Self::Area(_) | Self::Point(_) | Self::Spot(_) => 0.0,
+            Self::Environment(environment) => brightest * environment.mean() * std::f64::consts::PI,
             Self::Sun(_) => brightest,
         }
+    }
+
+    /// The light as one of many that may be aimed at; none if it is a sky, or infinite.
+    pub fn emitter(&self) -> Option<Emitter> {
+        let emitter = match self {
+            Self::Area(area) => area.shape.emitter(area.sides == Sides::Both)?,
+            Self::Point(point) => {
+                let bounds = Bounds::around([DVec3::from(point.position)]);
+                Emitter { bounds, facing: Facing::ALL, both: false, intensity: 1.0 }
+            }
+            // A spot that shines elsewhere is found dark when it is aimed at.
+            Self::Spot(spot) => {
+                let bounds = Bounds::around([DVec3::from(spot.position)]);
+                Emitter { bounds, facing: Facing::ALL, both: false, intensity: 1.0 }
+            }
+            Self::Environment(_) | Self::Sun(_) => return None,
+        };
+        Some(Emitter { intensity: emitter.intensity * self.emission().range().1.max(0.0), ..emitter })
     }
 }

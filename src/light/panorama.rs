@@ -27,7 +27,11 @@ impl Panorama {
     /// # Panics
     /// If it has no texels or a row that is not full.
     pub fn new(width: usize, texels: Vec<[f32; 3]>) -> Self {
-        assert!(width > 0 && !texels.is_empty() && texels.len() % width == 0, "{} texels, {width} a row", texels.len());
+        assert!(
+            width > 0 && !texels.is_empty() && texels.len().is_multiple_of(width),
+            "{} texels, {width} a row",
+            texels.len()
+        );
         let height = texels.len() / width;
         let mut panorama =
             Self { width, height, texels, rows: Vec::new(), columns: vec![0.0; width * height], mean: 0.0 };

@@ -27,7 +27,7 @@ impl<S> Point<S> {
 
     pub(super) fn aim(&self, from: DVec3) -> Option<Sighting> {
         let direction = (DVec3::from(self.position) - from).try_normalize()?;
-        Some(Sighting { direction, part: None })
+        Some(Sighting { direction, part: None, density: None })
     }
 
     pub(super) fn view(&self, ray: &Ray) -> View {

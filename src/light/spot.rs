@@ -1,5 +1,3 @@
-use std::f64::consts::PI;
-
 use serde::Deserialize;
 
 use super::View;
@@ -59,15 +57,9 @@ impl<S> Spot<S> {
         if angle >= outer { 0.0 } else { t * t * (3.0 - 2.0 * t) }
     }
 
-    /// The solid angle of the cone.
-    pub(super) fn solid_angle(&self) -> f64 {
-        let sin = libm::sin(0.25 * self.cone_angle.to_radians());
-        4.0 * PI * sin * sin
-    }
-
     pub(super) fn aim(&self, from: DVec3) -> Option<Sighting> {
         let direction = (DVec3::from(self.position) - from).try_normalize()?;
-        (self.part(-direction) > 0.0).then_some(Sighting { direction, part: None })
+        (self.part(-direction) > 0.0).then_some(Sighting { direction, part: None, density: None })
     }
 
     pub(super) fn view(&self, ray: &Ray) -> View {

@@ -60,7 +60,7 @@ impl<S> Sun<S> {
             0.0 => axis,
             _ => unit(Frame::about(axis).to_world(cone(self.one_minus_cos(), u).0)),
         };
-        Sighting { direction, part: None }
+        Sighting { direction, part: None, density: None }
     }
 
     /// The density with which a ray's direction is aimed at; none beside the disc and for parallel light.

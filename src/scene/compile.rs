@@ -171,13 +171,9 @@ impl Compiler<'_> {
                 continue;
             }
             let light: LightId = scene.lights.len();
-            scene.lights.push(Light::Area(Area {
-                shape: object.shape.clone(),
-                object: number as u32,
-                radiance: radiance.clone(),
-                sides,
-                aimed_at: lamp && object.shape.bounds().is_some(),
-            }));
+            let aimed_at = lamp && object.shape.bounds().is_some();
+            let area = Area::new(object.shape.clone(), number as u32, radiance.clone(), sides, aimed_at);
+            scene.lights.push(Light::Area(area));
             scene.objects[number].light = Some(light);
         }
     }

@@ -1,6 +1,7 @@
+use super::outline::{Outline, is_near};
 use super::triangle::difference_of_products;
 use super::{Crossing, SurfacePoint};
-use crate::math::{DVec3, Ray, Transform, gamma};
+use crate::math::{Bounds, DVec3, Ray, Transform, gamma};
 
 /// A plane with affine coordinates (a, b): the points `center + a u + b v`. Disc and quad are regions of it.
 #[derive(Clone, Debug)]
@@ -57,6 +58,31 @@ impl AffinePlane {
 
     pub(super) fn at(&self, [a, b]: [f64; 2]) -> DVec3 {
         self.center + self.u * a + self.v * b
+    }
+
+    /// The parallelogram |a| <= 1, |b| <= 1 as seen from a point, if it is near.
+    pub(super) fn outline(&self, from: DVec3) -> Option<Outline> {
+        let Self { center, u, v, .. } = *self;
+        if !is_near(center - from, u.length_squared() + v.length_squared()) {
+            return None;
+        }
+        Outline::seen(from, &[center - u - v, center + u - v, center + u + v, center - u + v], 4.0 * u.cross(v))
+    }
+
+    /// Area of that parallelogram.
+    pub(super) fn area(&self) -> f64 {
+        4.0 * self.u.cross(self.v).length()
+    }
+
+    /// A point of it, uniform by area.
+    pub(super) fn sample(&self, u: [f64; 2]) -> DVec3 {
+        self.at([2.0 * u[0] - 1.0, 2.0 * u[1] - 1.0])
+    }
+
+    /// Its box.
+    pub(super) fn bounds(&self) -> Bounds {
+        let corners = [[-1.0, -1.0], [-1.0, 1.0], [1.0, -1.0], [1.0, 1.0]];
+        Bounds::around(corners.map(|uv| self.at(uv))).padded(8)
     }
 
     pub(super) fn normal(&self) -> DVec3 {

@@ -106,6 +106,11 @@ impl Cube {
         (0..3).map(|axis| 2.0 * self.face_area(axis)).sum()
     }
 
+    /// The plane of a face, which fills its unit square.
+    pub(super) fn face(&self, index: u32) -> &AffinePlane {
+        &self.faces[index as usize]
+    }
+
     fn face_area(&self, axis: usize) -> f64 {
         4.0 * self.half_edges[(axis + 1) % 3].cross(self.half_edges[(axis + 2) % 3]).length()
     }

@@ -45,6 +45,10 @@ impl Disc {
         Bounds::of_ellipsoid(self.plane.center, DMat3::from_cols(self.plane.u, self.plane.v, DVec3::ZERO)).padded(8)
     }
 
+    pub(super) fn normal(&self) -> DVec3 {
+        self.plane.normal()
+    }
+
     pub(super) fn transformed(&self, map: &Transform) -> Self {
         Self { plane: self.plane.transformed(map) }
     }

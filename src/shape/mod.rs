@@ -4,22 +4,27 @@
 //! light, in which directions it is seen. Every answer carries the error bound that lets a new ray leave the surface.
 
 mod affine_plane;
+mod aim;
 mod bvh;
 mod cube;
 mod disc;
 mod ellipsoid;
+mod emitters;
 mod mesh;
 mod mesh_file;
+mod outline;
 mod plane;
 mod quad;
 mod sides;
 mod sphere;
 mod triangle;
 
+pub use aim::{Density, Sighting};
 pub use bvh::Bvh;
 pub use cube::Cube;
 pub use disc::Disc;
 pub use ellipsoid::Ellipsoid;
+pub use emitters::{Choice, Emitter, Emitters, Facing};
 pub use mesh::{Mesh, MeshReport, Vertices};
 pub use mesh_file::read as read_mesh;
 pub use plane::Plane;
@@ -85,15 +90,6 @@ impl SurfacePoint {
         let origin = crate::math::offset_origin(self.position, self.error, self.normal, direction);
         Ray { origin, direction }
     }
-}
-
-/// A direction in which a shape is seen from a point, drawn at random.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sighting {
-    /// Unit vector from the point to the shape.
-    pub direction: DVec3,
-    /// The part that was drawn, on shapes of several: seen only if the nearest crossing lies on it.
-    pub part: Option<u32>,
 }
 
 impl Shape {
@@ -176,44 +172,6 @@ impl Shape {
             Self::Quad(quad) => quad.area(),
             Self::Cube(cube) => cube.area(),
             Self::Mesh(mesh) => mesh.area(),
-        }
-    }
-
-    /// A direction from a point toward the shape; none where the draw sees it exactly edge-on.
-    ///
-    /// `pdf_toward` gives its density. Spheres are drawn by the cone they fill, other shapes by their area.
-    pub fn aim(&self, from: DVec3, u: [f64; 2]) -> Option<Sighting> {
-        let (target, part) = match self {
-            Self::Plane(_) => return None,
-            Self::Sphere(sphere) => {
-                return sphere.aim(from, u).map(|direction| Sighting { direction, part: None });
-            }
-            Self::Triangle(triangle) => (triangle.sample(u), None),
-            Self::Ellipsoid(ellipsoid) => (ellipsoid.sample(u), None),
-            Self::Disc(disc) => (disc.sample(u), None),
-            Self::Quad(quad) => (quad.sample(u), None),
-            Self::Cube(cube) => {
-                let (target, face) = cube.sample(u);
-                (target, Some(face))
-            }
-            Self::Mesh(mesh) => {
-                let (target, triangle) = mesh.sample(u);
-                (target, Some(triangle))
-            }
-        };
-        Some(Sighting { direction: (target - from).try_normalize()?, part })
-    }
-
-    /// Density per steradian with which `aim` draws the direction of a ray that first meets the shape at a crossing.
-    pub fn pdf_toward(&self, ray: &Ray, crossing: &Crossing) -> f64 {
-        match self {
-            Self::Plane(_) => 0.0,
-            Self::Sphere(sphere) => sphere.pdf_toward(ray),
-            Self::Ellipsoid(ellipsoid) => ellipsoid.pdf_toward(ray),
-            _ => {
-                let cos = self.point(ray, crossing).normal.dot(ray.direction).abs();
-                crossing.t * crossing.t / (cos * self.area())
-            }
         }
     }
 }

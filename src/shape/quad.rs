@@ -1,4 +1,5 @@
 use super::affine_plane::AffinePlane;
+use super::outline::Outline;
 use super::{Crossing, SurfacePoint};
 use crate::math::{Bounds, DVec3, Ray, Transform};
 
@@ -27,8 +28,11 @@ impl Quad {
     }
 
     pub(super) fn bounds(&self) -> Bounds {
-        let corners = [[-1.0, -1.0], [-1.0, 1.0], [1.0, -1.0], [1.0, 1.0]];
-        Bounds::around(corners.map(|uv| self.plane.at(uv))).padded(8)
+        self.plane.bounds()
+    }
+
+    pub(super) fn normal(&self) -> DVec3 {
+        self.plane.normal()
     }
 
     pub(super) fn transformed(&self, map: &Transform) -> Self {
@@ -36,10 +40,15 @@ impl Quad {
     }
 
     pub(super) fn area(&self) -> f64 {
-        4.0 * self.plane.u.cross(self.plane.v).length()
+        self.plane.area()
+    }
+
+    /// The outline seen from a point, if it is near.
+    pub(super) fn outline(&self, from: DVec3) -> Option<Outline> {
+        self.plane.outline(from)
     }
 
     pub(super) fn sample(&self, u: [f64; 2]) -> DVec3 {
-        self.plane.at([2.0 * u[0] - 1.0, 2.0 * u[1] - 1.0])
+        self.plane.sample(u)
     }
 }

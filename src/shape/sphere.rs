@@ -71,11 +71,14 @@ impl Sphere {
         4.0 * PI * self.radius * self.radius
     }
 
-    /// From outside: uniform in the cone the sphere fills. From inside or on it: every direction alike.
-    pub(super) fn aim(&self, from: DVec3, u: [f64; 2]) -> Option<DVec3> {
+    /// From outside: uniform in the cone the sphere fills. From inside or on it: every direction alike. With its density.
+    pub(super) fn aim(&self, from: DVec3, u: [f64; 2]) -> (DVec3, f64) {
         match self.cone_from(from) {
-            Some((axis, one_minus_cos)) => Some(Frame::about(axis).to_world(cone(one_minus_cos, u).0)),
-            None => Some(ball_surface(u)),
+            Some((axis, one_minus_cos)) => {
+                let (direction, pdf) = cone(one_minus_cos, u);
+                (Frame::about(axis).to_world(direction), pdf)
+            }
+            None => (ball_surface(u), 1.0 / (4.0 * PI)),
         }
     }
 

@@ -1,3 +1,4 @@
+use super::outline::{Outline, is_near};
 use super::{Crossing, SurfacePoint};
 use crate::math::{Bounds, DVec3, Ray, Transform, gamma, triangle_coordinates};
 
@@ -56,6 +57,16 @@ impl Triangle {
     pub(super) fn area(&self) -> f64 {
         let [p1, p2, p3] = self.points;
         0.5 * (p2 - p1).cross(p3 - p1).length()
+    }
+
+    /// The outline seen from a point, if it is near.
+    pub(super) fn outline(&self, from: DVec3) -> Option<Outline> {
+        let [p1, p2, p3] = self.points;
+        let longest = (p2 - p1).length_squared().max((p3 - p1).length_squared()).max((p3 - p2).length_squared());
+        if !is_near((p1 + p2 + p3) / 3.0 - from, 0.25 * longest) {
+            return None;
+        }
+        Outline::seen(from, &self.points, (p2 - p1).cross(p3 - p1))
     }
 
     pub(super) fn sample(&self, u: [f64; 2]) -> DVec3 {

@@ -32,12 +32,18 @@ pub(super) struct Gathering<'a, const N: usize> {
 
 /// Random numbers for the second light and those after it.
 const FURTHER_LIGHTS: u32 = 16;
+/// Random digits for choices among many.
+const MORE_DIGITS: u32 = 3;
 
 impl<const N: usize> Gathering<'_, N> {
     /// What the sensor gets of the light that lights send straight to the surface.
     pub(super) fn direct(&self, sampler: &Sampler, key: BranchKey) -> [f64; 3] {
         let targets = &self.world.targets;
         let mut sum = [0.0; 3];
+        let digits = |target: LightId, u: [f64; 2]| match &self.world.scene.lights[target] {
+            Light::Area(area) if area.has_parts() => [finer(u[0], sampler.four_plain(key, MORE_DIGITS)[1]), u[1]],
+            _ => u,
+        };
         if self.aims_at_all {
             for (number, &target) in targets.iter().enumerate() {
                 let u = match number {
@@ -47,10 +53,14 @@ impl<const N: usize> Gathering<'_, N> {
                         if number % 2 == 0 { [u[0], u[1]] } else { [u[2], u[3]] }
                     }
                 };
-                add(&mut sum, self.from(target, 1.0, u));
+                add(&mut sum, self.from(target, 1.0, digits(target, u)));
             }
-        } else if let Some(target) = self.choose() {
-            add(&mut sum, self.from(target, self.world.probabilities[target], [self.u[0], self.u[1]]));
+        } else {
+            let more = sampler.four_plain(key, MORE_DIGITS);
+            let (from, normal) = (self.point.position, self.arrival.normal);
+            if let Some((target, probability)) = self.world.choice.choose(from, normal, finer(self.u[3], more[0])) {
+                add(&mut sum, self.from(target, probability, digits(target, [self.u[0], self.u[1]])));
+            }
         }
         sum
     }
@@ -63,7 +73,7 @@ impl<const N: usize> Gathering<'_, N> {
             let sighting = light.aim(self.point.position, normal, u)?;
             let (bsdf_cos, bsdf_pdf) = self.material.evaluate(self.arrival, sighting.direction)?;
             let ray = self.point.leave(sighting.direction);
-            let view = light.view(&ray, normal, sighting.part)?;
+            let view = light.view(&ray, normal, &sighting)?;
             let factor = match view.pdf {
                 None => view.factor / probability,
                 Some(pdf) => {
@@ -85,16 +95,12 @@ impl<const N: usize> Gathering<'_, N> {
         };
         lit().unwrap_or([0.0; 3])
     }
+}
 
-    /// One light, by its probability.
-    fn choose(&self) -> Option<LightId> {
-        let mut left = self.u[3];
-        let chosen = self.world.targets.iter().find(|&&light| {
-            left -= self.world.probabilities[light];
-            left < 0.0
-        });
-        chosen.or(self.world.targets.last()).copied()
-    }
+/// A random number with more digits: choosing among many lights uses up those of the sequences, 24 bits.
+fn finer(u: f64, more: f64) -> f64 {
+    const STEPS: f64 = (1 << 24) as f64;
+    ((u * STEPS).floor() + more) / STEPS
 }
 
 /// The weight of a light that a path met by itself, beside next-event estimation at the path's last surface.
@@ -107,13 +113,14 @@ pub(super) fn weight_of_meeting(
 ) -> f64 {
     let Some(drawn) = drawn else { return 1.0 };
     let pdf = match (&world.scene.lights[light], crossing) {
-        (Light::Area(area), Some(crossing)) if area.aimed_at => area.pdf(ray, crossing),
+        (Light::Area(area), Some(crossing)) if area.aimed_at => area.pdf(ray, drawn.normal, crossing),
         (Light::Environment(environment), None) => Some(environment.pdf(ray, drawn.normal)),
         (Light::Sun(sun), None) => sun.pdf(ray),
         _ => None,
     };
-    let probability = if drawn.aimed_at_all { 1.0 } else { world.probabilities[light] };
-    pdf.map_or(1.0, |pdf| power_heuristic(drawn.pdf, pdf * probability))
+    let Some(pdf) = pdf else { return 1.0 };
+    let probability = if drawn.aimed_at_all { 1.0 } else { world.choice.probability(light, drawn.from, drawn.normal) };
+    power_heuristic(drawn.pdf, pdf * probability)
 }
 
 /// Veach & Guibas 1995, *Optimally Combining Sampling Techniques for Monte Carlo Rendering*, power heuristic, beta = 2.

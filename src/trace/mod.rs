@@ -9,6 +9,7 @@
 //!    roulette. A weight is the mean throughput over the lanes, without the factor of radiance between media.
 //! 5. Random numbers are a pure function of seed, pixel, sample, branch and use; sums have a fixed order.
 
+mod choice;
 mod direct;
 mod media;
 mod method;

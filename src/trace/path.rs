@@ -31,6 +31,8 @@ pub(super) struct Path<const N: usize> {
 pub(super) struct Drawn {
     /// Density per steradian.
     pub(super) pdf: f64,
+    /// The point from which the lights were aimed at.
+    pub(super) from: DVec3,
     /// The surface's unit normal on the viewer's side.
     pub(super) normal: DVec3,
     /// Whether every light was aimed at there, or one.

@@ -186,7 +186,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
                 u,
             };
             add(sum, gathering.direct(sampler, path.key));
-            drawn = Some(Drawn { pdf: 0.0, normal, aimed_at_all: aims_at_all });
+            drawn = Some(Drawn { pdf: 0.0, from: point.position, normal, aimed_at_all: aims_at_all });
             if !goes_on {
                 return None;
             }

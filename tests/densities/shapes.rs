@@ -1,16 +1,18 @@
 //! Directions drawn toward a shape against the density it claims, integrated over bins of directions.
 
 use std::f64::consts::{PI, TAU};
+use std::sync::Arc;
 
+use abbe::light::{Area, Light};
 use abbe::math::{DMat3, DVec3, Frame, Ray, Transform};
-use abbe::shape::{Cube, Disc, Ellipsoid, Quad, Shape, Sphere, Triangle};
+use abbe::shape::{Crossing, Cube, Disc, Ellipsoid, Quad, Shape, Sides, Sighting, Sphere, Triangle};
 
 use crate::bodies::{ball, closed_mesh};
 use crate::chi_squared;
 use crate::random::Random;
 
-/// Calls of `check_shape` by the tests of this file.
-const TESTS: u32 = 20;
+/// Calls of `check_aim` by the tests of this file.
+const TESTS: u32 = 29;
 const DRAWS: usize = 100_000;
 /// Bins by height, and around.
 const BINS: [usize; 2] = [12, 24];
@@ -90,20 +92,50 @@ impl Bins {
 
 /// Tests what `aim` draws from a point against `pdf_toward`; what does not lie on the drawn part is not seen.
 fn check_shape(name: &str, shape: &Shape, from: DVec3, bins: &Bins) {
+    let pdf = |ray: &Ray, crossing: &Crossing| shape.pdf_toward(ray, crossing);
+    check_aim(name, shape, from, bins, |u| shape.aim(from, u), pdf);
+}
+
+/// Tests how a shape is aimed at as a lamp, by its parts, from a surface of some normal.
+fn check_lamp(name: &str, shape: &Shape, from: DVec3, axis: DVec3, half_angle: f64) {
+    let normal = (axis.normalize() + DVec3::new(0.5, -0.3, 0.4)).normalize();
+    let area = Area::new(Arc::new(shape.clone()), 0, (), Sides::Both, true);
+    assert!(area.has_parts(), "{name}");
+    let pdf = |ray: &Ray, crossing: &Crossing| area.pdf(ray, normal, crossing).unwrap_or(0.0);
+    let light = Light::Area(area.clone());
+    check_aim(name, shape, from, &Bins::new(axis, half_angle), |u| light.aim(from, normal, u), pdf);
+}
+
+fn check_aim(
+    name: &str,
+    shape: &Shape,
+    from: DVec3,
+    bins: &Bins,
+    aim: impl Fn([f64; 2]) -> Option<Sighting>,
+    pdf: impl Fn(&Ray, &Crossing) -> f64,
+) {
     let mut random = Random::new(name.bytes().map(u64::from).sum());
     let ray = |direction| Ray { origin: from, direction };
     let mut counts = vec![0; BINS[0] * BINS[1]];
     for _ in 0..DRAWS {
-        let Some(sighting) = shape.aim(from, random.pair()) else { panic!("{name}: nothing drawn") };
+        // Nothing drawn is nothing seen.
+        let Some(sighting) = aim(random.pair()) else { continue };
         let crossing = shape.intersect(&ray(sighting.direction), f64::INFINITY);
         let bin = bins.index(sighting.direction).unwrap_or_else(|| panic!("{name}: drawn beside the shape"));
-        if crossing.is_some_and(|crossing| sighting.part.is_none_or(|part| part == crossing.part)) {
+        if let Some(crossing) = crossing.filter(|crossing| sighting.part.is_none_or(|part| part == crossing.part)) {
             counts[bin] += 1;
+            // What the draw says of its density is what is found of a direction met by chance.
+            if let Some(density) = sighting.density {
+                let ray = ray(sighting.direction);
+                let cos = shape.point(&ray, &crossing).normal.dot(ray.direction).abs();
+                let (drawn, met) = (density.toward(crossing.t, cos), pdf(&ray, &crossing));
+                assert!((drawn / met - 1.0).abs() < 1e-9, "{name}: drawn with {drawn}, met with {met}");
+            }
         }
     }
     let mut probabilities = bins.integrate(&mut random, |direction| {
         let ray = ray(direction);
-        shape.intersect(&ray, f64::INFINITY).map_or(0.0, |crossing| shape.pdf_toward(&ray, &crossing))
+        shape.intersect(&ray, f64::INFINITY).map_or(0.0, |crossing| pdf(&ray, &crossing))
     });
     let integral: f64 = probabilities.iter().sum();
     let seen = counts.iter().sum::<u64>() as f64 / DRAWS as f64;
@@ -175,6 +207,9 @@ fn directions_toward_a_disc_follow_their_density() {
 fn directions_toward_a_quad_follow_their_density() {
     let quad = Shape::Quad(Quad::new(DVec3::ZERO, DVec3::new(1.0, 0.0, 0.2), DVec3::new(0.4, 0.1, -0.7)));
     check("quad from nearby", &quad, DVec3::new(0.2, 0.3, 0.1), -DVec3::Y, 0.5 * PI);
+    check("quad from very near", &quad, DVec3::new(0.2, -1e-3, 0.1), DVec3::new(0.0, 1.0, 0.1), PI);
+    check("quad nearly edge-on", &quad, DVec3::new(1.7, 0.05, -0.4), DVec3::new(-1.7, -0.05, 0.4), 1.1);
+    check("quad from far away", &quad, DVec3::new(9.0, 8.0, 7.0), DVec3::new(-9.0, -8.0, -7.0), 0.15);
     check("quad from the side", &quad, DVec3::new(2.6, 1.1, 1.0), DVec3::new(-2.6, -1.1, -1.0), 0.55);
 }
 
@@ -183,6 +218,8 @@ fn directions_toward_a_triangle_follow_their_density() {
     let points = [DVec3::new(0.0, 0.0, 1.0), DVec3::new(1.0, 0.2, 0.0), DVec3::new(-0.5, 0.4, -0.6)];
     let triangle = Shape::Triangle(Triangle::new(points));
     check("triangle", &triangle, DVec3::new(0.2, 1.2, 0.3), DVec3::new(0.0, -1.0, -0.1), 1.1);
+    check("triangle from very near", &triangle, DVec3::new(0.1, 0.26, 0.2), DVec3::new(0.0, -1.0, -0.1), PI);
+    check("triangle from far away", &triangle, DVec3::new(5.0, 9.0, 4.0), DVec3::new(-5.0, -9.0, -4.0), 0.2);
     check("triangle from below", &triangle, DVec3::new(-1.0, -0.4, 0.5), DVec3::new(1.0, 0.5, -0.4), 0.8);
 }
 
@@ -192,6 +229,8 @@ fn directions_toward_a_cube_follow_their_density() {
     let from = DVec3::new(1.2, 0.9, 1.4);
     check("cube from outside", &cube, from, -from, 0.6);
     check("cube from inside", &cube, DVec3::new(0.3, -0.1, 0.5), DVec3::Y, PI);
+    check_lamp("faces of a cube from outside", &cube, from, -from, 0.6);
+    check_lamp("faces of a cube from inside", &cube, DVec3::new(0.3, -0.1, 0.5), DVec3::Y, PI);
 }
 
 #[test]
@@ -207,4 +246,6 @@ fn directions_toward_a_mesh_follow_their_density() {
     let from = DVec3::new(1.0, 1.2, 0.9);
     check("mesh from outside", &mesh, from, -from, 1.0);
     check("mesh from inside", &mesh, DVec3::new(0.1, 0.05, 0.1), DVec3::Y, PI);
+    check_lamp("triangles of a mesh from outside", &mesh, from, -from, 1.0);
+    check_lamp("triangles of a mesh from inside", &mesh, DVec3::new(0.1, 0.05, 0.1), DVec3::Y, PI);
 }

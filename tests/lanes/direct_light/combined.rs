@@ -71,13 +71,53 @@ fn combined_lights() -> Vec<Case> {
         sun("parallel sun", "", 0.0, 3.0 * libm::cos(0.7)),
         sun("sun as we see it", "", 0.533, 3.0 * libm::cos(0.7)),
         sun("wide sun before a sky", &sky, 80.0, 3.0 * libm::cos(0.7) + 0.7 * PI),
-        sun("sun hidden by a lamp", &lamp("", &[square]), 10.0, irradiance),
+        // The lamp reaches as far as 45 degrees, the sun to 44.1; at 10 across, its rim would shine past the lamp.
+        sun("sun hidden by a lamp", &lamp("", &[square]), 8.0, irradiance),
         Case {
             scene: lamp("", &[square])
                 + &format!("[[light]]\npoint = {{ position = [0.3, 0.8, 0], intensity = {{ rgb = {BANDS:?} }} }}\n"),
             ..case("square and point", &[], irradiance + 0.8 / libm::pow(0.73, 1.5))
         },
     ]
+}
+
+/// Squares in one plane, which do not hide each other, and points below them, which hide nothing.
+fn crowds() -> Vec<Case> {
+    let crowd = |name, rows: i32, others: &str, more: f64| {
+        let (mut squares, mut points, mut irradiance) = (Vec::new(), String::new(), more);
+        for (i, j) in (0..rows).flat_map(|i| (0..rows).map(move |j| (i, j))) {
+            let [x, z] = [i, j].map(|k| 1.3 * f64::from(k) - 0.8 * f64::from(rows) + 0.37);
+            let (center, u, v) = (DVec3::new(x, 2.0, z), DVec3::X * 0.2, DVec3::Z * 0.1);
+            squares.push(format!("quad = {{ center = [{x:?}, 2, {z:?}], u = [0.2, 0, 0], v = [0, 0, 0.1] }}"));
+            irradiance += by_quad([0.0; 3], center, u, v);
+            if (i + 2 * j) % 3 == 0 {
+                let (way, intensity) = (DVec3::new(x + 0.3, 1.0 + 0.1 * f64::from(j % 5), z), 0.01 * f64::from(1 + i));
+                points += &format!(
+                    "[[light]]\npoint = {{ position = {:?}, intensity = {{ rgb = {:?} }} }}\n",
+                    way.to_array(),
+                    BANDS.map(|x| intensity * x)
+                );
+                irradiance += intensity * way.y / libm::pow(way.length(), 3.0);
+            }
+        }
+        let squares: Vec<&str> = squares.iter().map(String::as_str).collect();
+        Case { scene: lamp("", &squares) + &points + others, ..case(name, &[], irradiance) }
+    };
+    let (sin, cos) = libm::sincos(0.7);
+    // Behind the squares: what of it they hide is part of what they send.
+    let sun = format!(
+        "[[light]]\nsun = {{ toward = [0, {cos}, {sin}], angular_diameter = 0, irradiance = {{ rgb = {BANDS:?} }} }}\n"
+    );
+    vec![
+        crowd("forty lamps", 5, "", 0.0),
+        crowd("five hundred lamps", 20, "", 0.0),
+        crowd("lamps and a sun", 6, &sun, cos),
+    ]
+}
+
+#[test]
+fn one_of_many_lamps_stands_for_all() {
+    assert_closed_forms(&crowds());
 }
 
 #[test]

@@ -34,7 +34,7 @@ fn flat_lights() -> Vec<Case> {
         case("G2 square", &["quad = { center = [0, 1, 0], u = [1, 0, 0], v = [0, 0, 1] }"], square),
         case("tilted square", &[&tilted_quad], by_quad([0.0; 3], tilted.0, tilted.1, tilted.2)),
         case("triangle", &[&format!("triangle = {{ points = [{points}] }}")], by_polygon([0.0; 3], &triangle)),
-        Case { touches: true, ..case("L3 wall that touches the floor", &[&near], by_near) },
+        case("L3 wall that touches the floor", &[&near], by_near),
         case("wall that goes on below the floor", &[&sunk], by_sunk),
         case(
             "square mesh",

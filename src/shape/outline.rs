@@ -1,0 +1,152 @@
+use crate::math::{DVec3, unit};
+
+/// A triangle or parallelogram as it is seen from a point: drawn with the same density from every direction within.
+///
+/// Peters 2021, *BRDF Importance Sampling for Polygonal Lights*, section 4.1: a fan of spherical triangles about the first
+/// corner, whose far side is swept by the first number, and an arc from the corner to it, divided by the second.
+pub(super) struct Outline {
+    corners: [DVec3; 4],
+    parts: [Part; 2],
+    solid_angle: f64,
+}
+
+/// Terms of one spherical triangle's solid angle, 2 atan2(volume, across + along).
+///
+/// Van Oosterom & Strackee 1983, *The Solid Angle of a Plane Triangle*: for the unit vectors a, b, c to the corners, the
+/// volume is a . (b x c) and the other term 1 + a . b + b . c + c . a; `along` is 1 + a . b, `across` the rest.
+#[derive(Clone, Copy, Default)]
+struct Part {
+    volume: f64,
+    across: f64,
+    along: f64,
+}
+
+/// Least solid angle that is divided evenly: directions are right to 2^-51, so that beside an outline at most 2 pi long
+/// lies less than a millionth of what is drawn. Also the least length of a complex number whose argument is taken: its
+/// terms are right to a few 2^-52, and both vanish only where the point lies on the fan's diagonal.
+const LEAST: f64 = 1.0 / (1u64 << 28) as f64;
+
+/// Distance, in half diagonals, beyond which drawing by area does as well: benches/README.md.
+const NEAR: f64 = 4.0;
+
+/// Whether solid angles are worth their cost, at the far end of a vector from a shape of this squared half diagonal.
+pub(super) fn is_near(way: DVec3, squared: f64) -> bool {
+    way.length_squared() < NEAR * NEAR * squared
+}
+
+impl Outline {
+    /// The outline of flat corners, three or four in order, whose first two edges span twice a triangle's area `spanned`,
+    /// a vector; none where it is too narrow to be divided.
+    pub(super) fn seen(from: DVec3, corners: &[DVec3], spanned: DVec3) -> Option<Self> {
+        let ways: [DVec3; 4] = std::array::from_fn(|i| corners[i.min(corners.len() - 1)] - from);
+        let lengths = ways.map(|way| way.length());
+        let units: [DVec3; 4] = std::array::from_fn(|i| ways[i] / lengths[i]);
+        let height = (0.5 * (ways[0] + ways[2])).dot(spanned).abs();
+        let mut parts = [Part::default(); 2];
+        let (mut real, mut imaginary) = (1.0, 0.0);
+        for (i, part) in parts.iter_mut().enumerate().take(corners.len() - 2) {
+            let [apex, a, b] = [0, i + 1, i + 2];
+            let volume = height / (lengths[apex] * lengths[a] * lengths[b]);
+            let across = units[a].dot(units[b]) + units[apex].dot(units[b]);
+            *part = Part { volume, across, along: 1.0 + units[apex].dot(units[a]) };
+            // Half solid angles add up as the arguments of complex numbers.
+            let sum = part.across + part.along;
+            if volume.max(sum.abs()) < LEAST {
+                return None;
+            }
+            (real, imaginary) = (real * sum - imaginary * volume, real * volume + imaginary * sum);
+        }
+        let solid_angle = 2.0 * libm::atan2(imaginary, real);
+        (solid_angle >= LEAST).then_some(Self { corners: units, parts, solid_angle })
+    }
+
+    /// Steradians within.
+    pub(super) fn solid_angle(&self) -> f64 {
+        self.solid_angle
+    }
+
+    /// A direction within, with density 1 / `solid_angle`.
+    pub(super) fn aim(&self, u: [f64; 2]) -> DVec3 {
+        let (mut sin, mut cos) = libm::sincos(0.5 * u[0] * self.solid_angle);
+        let (mut part, mut number) = (self.parts[0], 0);
+        if self.parts[1].volume > 0.0 {
+            // What is left behind the first triangle, by the sine and cosine of the difference of the angles.
+            let sum = part.across + part.along;
+            let left = sin * sum - cos * part.volume;
+            if left > 0.0 {
+                let length = (sum * sum + part.volume * part.volume).sqrt();
+                (sin, cos) = (left / length, (cos * sum + sin * part.volume) / length);
+                (part, number) = (self.parts[1], 1);
+            }
+        }
+        let [apex, a, b] = [self.corners[0], self.corners[number + 1], self.corners[number + 2]];
+        // The direction m = x a + y b for which a, the apex and a's mirror image behind m enclose what is asked for: the
+        // formula's two terms are linear in m.
+        let middle = a * (part.volume * cos - part.across * sin) + b * (part.along * sin);
+        let far = middle * (2.0 * a.dot(middle) / middle.length_squared()) - a;
+        // Heights above the apex are drawn evenly; 1 - cos by the chord keeps its digits on short arcs.
+        let end = 0.5 * (far - apex).length_squared();
+        let x = u[1] * end;
+        let across = far - apex * (1.0 - end);
+        let stretch = ((x * (2.0 - x)) / (end * (2.0 - end))).max(0.0).sqrt();
+        unit(apex * (1.0 - x) + across * if stretch.is_finite() { stretch } else { 0.0 })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::PI;
+
+    use super::*;
+
+    fn square(side: f64, center: DVec3) -> Option<Outline> {
+        let (u, v) = (DVec3::X * 0.5 * side, DVec3::Y * 0.5 * side);
+        Outline::seen(DVec3::ZERO, &[center - u - v, center + u - v, center + u + v, center - u + v], 4.0 * u.cross(v))
+    }
+
+    #[test]
+    fn l4_solid_angles_keep_six_digits_in_any_position() {
+        // A pyramid over a square of side s and height h: 4 atan(s^2 / (4 h sqrt(s^2 / 2 + h^2))).
+        for side in [1.0f64, 1e-2, 1e-4] {
+            let exact = 4.0 * libm::atan(0.25 * side * side / (0.5 * side * side + 1.0).sqrt());
+            let outline = square(side, DVec3::Z).expect("it is wide enough");
+            assert!((outline.solid_angle / exact - 1.0).abs() < 1e-12, "{side}: {} {exact}", outline.solid_angle);
+        }
+        for height in [1e-7f64, 1e-4, 0.1, 1.0, 3.0] {
+            let exact = 4.0 * libm::atan(0.25 / (height * (0.5 + height * height).sqrt()));
+            let outline = square(1.0, DVec3::Z * height).expect("it is near");
+            assert!((outline.solid_angle / exact - 1.0).abs() < 1e-8, "{height}: {} {exact}", outline.solid_angle);
+        }
+        // Seen along its plane: the difference of two rectangles that begin below the point, by corners as above.
+        for height in [1e-1f64, 1e-2, 1e-4, 1e-6, 1e-7] {
+            let outline = square(1.0, DVec3::new(1.0, 0.0, height)).expect("it is near and wide enough");
+            // Nearly half of all directions each: their complements keep the digits.
+            let corner = |x: f64| 2.0 * libm::atan2(x * 0.5, height * (x * x + 0.25 + height * height).sqrt());
+            let flat = |x: f64| 2.0 * libm::atan2(height * (x * x + 0.25 + height * height).sqrt(), x * 0.5);
+            let exact = if height > 0.05 { corner(1.5) - corner(0.5) } else { flat(0.5) - flat(1.5) };
+            assert!((outline.solid_angle / exact - 1.0).abs() < 1e-6, "{height}: {} {exact}", outline.solid_angle);
+        }
+    }
+
+    #[test]
+    fn l5_outlines_seen_edge_on_are_left_to_their_area() {
+        assert!(square(1.0, DVec3::X).is_none() && square(1.0, DVec3::new(0.5, 0.5, 0.0)).is_none());
+        assert!(square(1.0, DVec3::X + DVec3::Z * 1e-12).is_none());
+        assert!(square(1.0, DVec3::ZERO).is_none() && square(1.0, DVec3::Z * 1e-300).is_none());
+        let around = square(1.0, DVec3::new(0.1, 0.2, 1e-300)).expect("it fills half of all directions");
+        assert!((around.solid_angle / (2.0 * PI) - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn directions_lie_within_the_outline_at_the_ends_of_the_unit_square() {
+        for center in [DVec3::Z, DVec3::Z * 1e-4, DVec3::new(0.5, 0.2, 1e-3), DVec3::new(2.0, 0.0, 0.3)] {
+            let outline = square(1.0, center).expect("it is near");
+            for u in (0..9).flat_map(|i| (0..9).map(move |j| [i, j].map(|k| f64::from(k) * 0.124_999_99))) {
+                let direction = outline.aim(u);
+                let at = direction * (center.z / direction.z) - center;
+                let out = (at.abs().max_element() - 0.5).max(0.0);
+                assert!(direction.is_finite() && out < 1e-6, "{center} {u:?}: {direction} is {out} beside");
+            }
+        }
+    }
+}
