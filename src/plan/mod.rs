@@ -51,7 +51,9 @@ pub fn plan(scene: &Scene<Curve>) -> Plan {
     because.extend(lights(scene));
     let diffuse_bounces = scene.render.diffuse_bounces.unwrap_or(u32::MAX);
     let together = if basis.draws_wavelengths() { TOGETHER_PIXELS * scene.camera.pixel_angle() } else { 0.0 };
-    let method = Method { basis, transport, together, samples, seed: scene.render.seed, diffuse_bounces };
+    let max_bounces = scene.render.max_bounces.unwrap_or(u32::MAX);
+    let seed = scene.render.seed;
+    let method = Method { basis, transport, together, samples, seed, diffuse_bounces, max_bounces };
     because.extend(cost(scene, &method, next));
     Plan { method, because, rungs }
 }
@@ -126,6 +128,9 @@ fn lights(scene: &Scene<Curve>) -> Vec<String> {
             "left out: light of point lights that reaches a {lit} surface by way of smooth ones ({})",
             bends.name
         ));
+    }
+    if let Some(bounces) = scene.render.max_bounces {
+        lines.push(format!("max_bounces {bounces}: light of longer paths is left out; the report says how much"));
     }
     if scene.render.diffuse_bounces == Some(0) && wide(true) {
         lines.push("diffuse_bounces 0: diffuse surfaces are lit straight from the lights alone".into());

@@ -134,7 +134,8 @@ fn dispersion(scene: &Scene<Curve>) -> Option<Spread> {
     let transport = Transport::Random { split: 1.0, roulette: 0.0 };
     let diffuse_bounces = scene.render.diffuse_bounces.unwrap_or(u32::MAX);
     let seed = scene.render.seed;
-    Some(spread(&World::new(scene, Method { basis, transport, together: 0.0, samples: 1, seed, diffuse_bounces })))
+    let method = Method { basis, transport, together: 0.0, samples: 1, seed, diffuse_bounces, max_bounces: u32::MAX };
+    Some(spread(&World::new(scene, method)))
 }
 
 fn spoken(spread: &Spread, visible: bool, hero: bool) -> String {

@@ -15,6 +15,8 @@ pub struct Method {
     pub seed: u64,
     /// How often light may leave a diffuse surface for another before it is gathered from the lights.
     pub diffuse_bounces: u32,
+    /// How often light may leave any surface; what longer paths would have carried is reported.
+    pub max_bounces: u32,
 }
 
 /// Which of a surface's branches are followed.

@@ -7,7 +7,7 @@ use super::media;
 use super::path::{Drawn, Path};
 use super::{Transport, World};
 use crate::light::Light;
-use crate::material::{Arrival, Branch};
+use crate::material::{Arrival, Branch, Material};
 use crate::math::{Ray, Sampler};
 use crate::scene::Hit;
 use crate::shape::SurfacePoint;
@@ -90,6 +90,13 @@ impl<'a, const N: usize> Tracer<'a, N> {
             }
             path.vertices += 1;
             add(&mut sum, self.emission(&path, draw, &hit, &point));
+            if path.vertices > self.world.method.max_bounces {
+                if !matches!(self.world.scene.material_of(hit.object), Material::Emissive(_)) {
+                    self.tally.stopped += path.weight(draw) / draw.siblings(path.parted);
+                }
+                next = None;
+                continue;
+            }
             next = self.scatter(&path, draw, sampler, &hit, &point, &mut sum);
         }
         (sum, first)

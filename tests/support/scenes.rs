@@ -48,6 +48,7 @@ pub fn method(scene: &Scene<Curve>, transport: Transport) -> Method {
         samples: scene.render.samples.unwrap_or(1),
         seed: scene.render.seed,
         diffuse_bounces: scene.render.diffuse_bounces.unwrap_or(u32::MAX),
+        max_bounces: scene.render.max_bounces.unwrap_or(u32::MAX),
     }
 }
 

@@ -1,6 +1,6 @@
 use std::f64::consts::PI;
 
-use crate::support::scenes::{Mean, SINGLE_PATH, SPLITTING, body, environment, image, view};
+use crate::support::scenes::{EVERY_BRANCH, Mean, SINGLE_PATH, SPLITTING, body, environment, image, view};
 
 #[test]
 fn each_diffuse_bounce_adds_its_own_share() {
@@ -12,16 +12,18 @@ fn each_diffuse_bounce_adds_its_own_share() {
     let ball = body("lamp", "emissive = { radiance = 5 }", &["sphere = { center = [0, 0, 0], radius = 0.8 }"]);
     let lost = 0.8 * 0.8 / 4.0;
     for (light, irradiance, kept) in [(point, 3.0 / 4.0, 0.6), (ball, PI * 5.0 * lost, 0.6 * (1.0 - lost))] {
-        for bounces in [0, 1, 2, 5] {
+        // Light that is gathered after so many bounces leaves one more surface than it bounced off.
+        let limits = [0, 1, 2, 5].into_iter().flat_map(|n| [(n, "diffuse_bounces", n), (n, "max_bounces", n + 1)]);
+        for (bounces, key, limit) in limits {
             // From beside the middle, away from it.
             let text = view([1.2, 0.3, 0.2], [2.4, 0.6, 0.4], 20.0, 60)
-                + &format!("[render]\nsamples = 8\ndiffuse_bounces = {bounces}\n")
+                + &format!("[render]\nsamples = 8\n{key} = {limit}\n")
                 + &white
                 + &light;
             let sum: f64 = (0..=bounces).map(|bounce| libm::pow(kept, f64::from(bounce))).sum();
             let expected = 0.6 / PI * irradiance * sum;
             let mean = Mean::of(&image(&text, SPLITTING).0);
-            mean.assert_near([expected; 3], 8, &format!("{bounces} bounces"));
+            mean.assert_near([expected; 3], 16, &format!("{key} = {limit}"));
             assert!(mean.worst_error([expected; 3]) <= 0.01, "{mean:?}");
         }
     }
@@ -60,5 +62,24 @@ fn light_in_an_absorbing_medium_is_absorbed_on_its_way_to_a_surface() {
         let expected = 0.6 / PI * irradiance * libm::exp(-0.5 * way) * libm::exp(-0.5 * 1.9);
         let mean = Mean::of(&image(&text, SPLITTING).0);
         assert!((mean.value[0] / expected - 1.0).abs() <= 0.01, "{mean:?} for {expected}");
+    }
+}
+
+#[test]
+fn longer_paths_through_glass_are_left_out_and_reported() {
+    // Straight through a plate of n = 1.5 onto an even sky: (1 - R)^2 by two surfaces, the rest of what crosses by more;
+    // what the front reflects leaves one surface.
+    let plate = body("glass", "dielectric = { index = 1.5 }", &["cube = { center = [0, 0, 0], size = [90, 90, 1] }"]);
+    let (r, t) = (0.04, 0.96);
+    for (limit, expected) in [(0, 0.0), (1, r), (2, r + t * t), (3, r + t * t + t * r * t), (40, 1.0)] {
+        let text = view([0.0, 0.0, 5.0], [0.0; 3], 1.0, 1)
+            + "filter = \"center\"\n"
+            + &format!("[render]\nmax_bounces = {limit}\n")
+            + &plate
+            + &environment(1.0);
+        let (film, report) = image(&text, EVERY_BRANCH);
+        let found = f64::from(film.pixels[0].rgb[0]);
+        assert!((found - expected).abs() < 1e-5, "{limit} bounces: {found} for {expected}");
+        assert!((report.stopped - (1.0 - expected)).abs() < 1e-5, "{limit} bounces: {} stopped", report.stopped);
     }
 }
