@@ -262,3 +262,18 @@ fn a_mesh_is_looked_for_beside_its_scene() {
     folder.write("scenes/cup.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     assert_eq!(render(&folder, &["--check", "scenes/scene.toml"]).code, Some(0));
 }
+
+#[cfg(unix)]
+#[test]
+fn a_device_in_place_of_a_file_is_refused() {
+    for (whole, device) in [
+        ("reflectance = 0.7", "reflectance = { file = \"/dev/zero\" }"),
+        ("environment = { radiance = 1 }", "environment = { radiance = { image = \"/dev/zero\" } }"),
+    ] {
+        let folder = Folder::new();
+        folder.write("scene.toml", &BASE.replace(whole, device));
+        let answer = render(&folder, &["--check", "scene.toml"]);
+        assert_eq!(answer.code, Some(2));
+        assert!(answer.stderr.starts_with("error: /dev/zero is no file but a device\n"), "{}", answer.stderr);
+    }
+}

@@ -1,6 +1,7 @@
 //! Spectra as they are meant: files read, names looked up, everything checked.
 
 use std::io::ErrorKind;
+use std::path::Path;
 
 use sha2::Digest;
 
@@ -9,6 +10,9 @@ use super::source::At;
 use super::spectrum_file::read_columns;
 use crate::error::{Error, Result};
 use crate::spectrum::{Curve, CurveKind, Quantity, Refusal, absorption_of, imitation, reach};
+
+/// Most bytes of a table of samples.
+const MOST_TEXT: u64 = 1 << 26;
 
 impl Compiler<'_> {
     /// The curve with its file read and its absorption looked up, checked.
@@ -64,8 +68,21 @@ impl Compiler<'_> {
         }
     }
 
+    /// Refuses what is there but no file that could be read whole: a device never ends.
+    pub(super) fn file_of_size(&self, at: &At, path: &Path, file: &str, most: u64) -> Result<()> {
+        let refuse = |message: String| Err(self.source.mistake_at(at, message, None));
+        match std::fs::metadata(path) {
+            Ok(found) if found.is_file() && found.len() > most => {
+                refuse(format!("{file} has {} bytes, more than {most}", found.len()))
+            }
+            Ok(found) if !found.is_file() && !found.is_dir() => refuse(format!("{file} is no file but a device")),
+            _ => Ok(()),
+        }
+    }
+
     fn text_of(&self, at: &At, file: &str) -> Result<String> {
         let path = self.source.folder().join(file);
+        self.file_of_size(at, &path, file, MOST_TEXT)?;
         std::fs::read_to_string(&path).map_err(|error| {
             let refuse =
                 |message: String, help: Option<&str>| self.source.mistake_at(at, message, help.map(str::to_owned));

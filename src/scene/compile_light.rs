@@ -14,6 +14,9 @@ use crate::light::{Environment, Light, Panorama, Point, Sky, Spot, Sun};
 use crate::math::{DMat3, DVec3};
 use crate::spectrum::{Curve, CurveKind, Quantity};
 
+/// Most bytes of an image.
+const MOST_IMAGE: u64 = 1 << 32;
+
 impl Compiler<'_> {
     pub(super) fn lights(&mut self, lights: &[LightText], scene: &mut Scene<Curve>) -> Result<()> {
         for (number, text) in lights.iter().enumerate() {
@@ -117,6 +120,7 @@ impl Compiler<'_> {
 
     fn panorama(&mut self, at: &At, file: &str) -> Result<Panorama> {
         let path = self.source.folder().join(file);
+        self.file_of_size(at, &path, file, MOST_IMAGE)?;
         let bytes = match std::fs::read(&path) {
             Ok(bytes) => bytes,
             Err(error) => {
