@@ -32,9 +32,8 @@ pub(super) fn error(survey: &Survey, basis: &Basis) -> f64 {
     let read = |tints: &[&Tint]| tints.iter().map(|tint| tint.on(basis)).collect::<Vec<_>>();
     let in_lanes = paths(&read(&scattering), &read(&smooth));
     let mut worst: f64 = 0.0;
-    for curve in &survey.lights {
-        let light = Emission::new(curve, basis.color_space());
-        let exact = exact_colors(&light, &scattering, &smooth, basis);
+    for (curve, light) in &survey.lights {
+        let exact = exact_colors(light, &scattering, &smooth, basis);
         let (table, response) = (basis.tabulate(Quantity::Emission, curve), basis.response(curve));
         let emission = draw.read(&table);
         for (true_color, lanes) in exact.iter().zip(&in_lanes) {
@@ -105,12 +104,19 @@ pub(super) fn ladder(survey: &Survey, heroes: usize) -> Vec<Rung> {
     } else if let Some(light) = survey.common_light() {
         rungs.push(rung(Basis::prefiltered(space, &light), PREFILTERED_SAFETY));
     }
-    let lines = survey.lines(MAX_LANES - heroes - FEWEST);
-    for bands in [8, 12, 16, 32] {
-        let bands = bands.min(MAX_LANES - heroes - lines.len());
-        rungs.push(rung(Basis::bands(space, bands, &lines), LANES_SAFETY));
-    }
+    rungs.extend([8, 12, 16, 32].map(|bands| rung(bands_beside(survey, bands, heroes), LANES_SAFETY)));
     rungs
+}
+
+/// The emission lines that have lanes of their own beside heroes.
+pub(super) fn own_lines(survey: &Survey, heroes: usize) -> Vec<f64> {
+    survey.lines(MAX_LANES - heroes - FEWEST)
+}
+
+/// Fixed lanes that leave room for heroes: a scene's emission lines, and as many wavelengths as fit beside them.
+pub(super) fn bands_beside(survey: &Survey, bands: usize, heroes: usize) -> Basis {
+    let lines = own_lines(survey, heroes);
+    Basis::bands(survey.color_space, bands.min(MAX_LANES - heroes - lines.len()), &lines)
 }
 
 /// Fewest interpolated wavelengths beside the lanes of emission lines.

@@ -1,10 +1,10 @@
 //! Which lanes carry the light, and whether they part.
 
-use super::ladder::{LANES_SAFETY, Rung, error, ladder};
+use super::ladder::{LANES_SAFETY, Rung, bands_beside, error, ladder, own_lines};
 use super::survey::{Survey, disperses};
 use crate::material::Material;
 use crate::scene::{ModelText, Scene};
-use crate::spectrum::{Basis, Curve, CurveKind, Emission, MAX_LANES, Quantity, provenance};
+use crate::spectrum::{Basis, Curve, CurveKind, Emission, Quantity, provenance};
 use crate::trace::{COLORS_NM, Method, Spread, Transport, World, spread};
 
 /// The relative error of an image that is aimed at where the scene does not say.
@@ -41,23 +41,15 @@ pub(super) fn model(scene: &Scene<Curve>) -> Model {
     let tolerance = SHARE * scene.render.error.unwrap_or(ERROR);
     let chosen = rungs.iter().position(|rung| rung.bound() <= tolerance).unwrap_or(rungs.len() - 1);
 
-    let lines = survey.lines(MAX_LANES - heroes - 8);
-    let with_heroes = |bands: usize| {
-        let bands = bands.min(MAX_LANES - heroes - lines.len());
-        Basis::bands(survey.color_space, bands, &lines).with_heroes(heroes, &survey.emissions())
-    };
+    let with_heroes = |bands| bands_beside(&survey, bands, heroes).with_heroes(heroes, &survey.emissions());
     let (basis, why) = match scene.render.model {
         _ if hero && asks_hero => (with_heroes(bands), "the scene asks for it".to_owned()),
         _ if hero => {
-            let least = rungs[chosen].basis.fixed_lanes().saturating_sub(lines.len());
+            let least = rungs[chosen].basis.fixed_lanes().saturating_sub(own_lines(&survey, heroes).len());
             (with_heroes(bands.max(least)), "dispersion is seen".to_owned())
         }
         ModelText::Rgb => (three_bands(&survey), "the scene asks for it".to_owned()),
-        ModelText::Bands(count) => {
-            let lines = survey.lines(MAX_LANES - 8);
-            let bands = (count as usize).min(MAX_LANES - lines.len());
-            (Basis::bands(survey.color_space, bands, &lines), "the scene asks for it".to_owned())
-        }
+        ModelText::Bands(count) => (bands_beside(&survey, count as usize, 0), "the scene asks for it".to_owned()),
         _ => (rungs[chosen].basis.clone(), least(&rungs, chosen, tolerance, survey.is_plain())),
     };
     let next = if hero { rungs.get(chosen) } else { rungs.get(chosen + 1) }.map(|rung| rung.basis.clone());

@@ -10,8 +10,8 @@ use crate::spectrum::{
 pub(super) struct Survey<'a> {
     pub(super) color_space: ColorSpace,
     upsampler: Upsampler,
-    /// The light of each different spectrum.
-    pub(super) lights: Vec<Curve>,
+    /// The light of each different spectrum, as it is written and as it shines.
+    pub(super) lights: Vec<(Curve, Emission)>,
     tints: Vec<Tint<'a>>,
 }
 
@@ -53,30 +53,28 @@ impl<'a> Survey<'a> {
     pub(super) fn is_plain(&self) -> bool {
         let white: Curve = CurveKind::Illuminant(self.color_space.white_illuminant().into()).into();
         let white = Emission::new(&white, self.color_space);
-        let is_white = |curve: &Curve| Emission::new(curve, self.color_space).has_shape_of(&white);
         self.tints.iter().all(|tint| tint.curves().iter().all(|curve| !curve.is_measured()))
-            && self.lights.iter().all(|curve| !curve.is_measured() || is_white(curve))
+            && self.lights.iter().all(|(curve, light)| !curve.is_measured() || light.has_shape_of(&white))
     }
 
     /// The light of the whole scene, if all lights have the same spectrum.
     pub(super) fn common_light(&self) -> Option<Emission> {
         match self.lights.as_slice() {
             [] => Some(Emission::new(&1.0.into(), self.color_space)),
-            [light] => Some(Emission::new(light, self.color_space)),
+            [(_, light)] => Some(light.clone()),
             _ => None,
         }
     }
 
     /// The emissions of all different lights.
     pub(super) fn emissions(&self) -> Vec<Emission> {
-        self.lights.iter().map(|light| Emission::new(light, self.color_space)).collect()
+        self.lights.iter().map(|(_, light)| light.clone()).collect()
     }
 
     /// The brightest ideal lines, ascending in nm, and how many there are in all.
     pub(super) fn lines(&self, most: usize) -> Vec<f64> {
-        let emissions = self.emissions();
         let brightness = |nm: f64, power: f64| power * visible::color_matching(nm).iter().sum::<f64>();
-        let mut lines: Vec<[f64; 2]> = emissions.iter().flat_map(|light| light.lines()).copied().collect();
+        let mut lines: Vec<[f64; 2]> = self.lights.iter().flat_map(|(_, light)| light.lines()).copied().collect();
         lines.sort_by(|a, b| brightness(b[0], b[1]).total_cmp(&brightness(a[0], a[1])));
         let mut chosen: Vec<f64> = Vec::new();
         for [nm, _] in lines {
@@ -181,13 +179,17 @@ pub(super) fn disperses(glass: &Dielectric<Curve>) -> bool {
 }
 
 /// The lights of different spectra.
-fn different<'a>(curves: impl Iterator<Item = &'a Curve>, space: ColorSpace) -> Vec<Curve> {
-    let mut known: Vec<(Emission, Curve)> = Vec::new();
+fn different<'a>(curves: impl Iterator<Item = &'a Curve>, space: ColorSpace) -> Vec<(Curve, Emission)> {
+    let mut known: Vec<(Curve, Emission)> = Vec::new();
     for curve in curves {
+        // Thousands of lamps are often written alike: no spectrum need be made to see that.
+        if known.iter().any(|(other, _)| other == curve) {
+            continue;
+        }
         let emission = Emission::new(curve, space);
-        if !known.iter().any(|(other, _)| other.looks_like(&emission)) {
-            known.push((emission, curve.clone()));
+        if !known.iter().any(|(_, other)| other.looks_like(&emission)) {
+            known.push((curve.clone(), emission));
         }
     }
-    known.into_iter().map(|(_, curve)| curve).collect()
+    known
 }

@@ -179,7 +179,7 @@ impl Basis {
     /// A checked curve, read onto the bins. An emission of wavelengths is an even table: its colors are in its response.
     pub fn tabulate(&self, quantity: Quantity, curve: &Curve) -> Table {
         if quantity == Quantity::Emission {
-            return self.emission(&Emission::new(curve, self.space), curve);
+            return self.emission(curve);
         }
         let reader = match quantity {
             Quantity::Index if self.keeps_together && !matches!(curve.kind, CurveKind::Rgb(_)) => {
@@ -218,13 +218,14 @@ impl Basis {
         fine
     }
 
-    fn emission(&self, emission: &Emission, curve: &Curve) -> Table {
+    fn emission(&self, curve: &Curve) -> Table {
+        let emission = || Emission::new(curve, self.space);
         match (&self.lanes, curve.kind.rgb()) {
             (LaneKind::Rgb, Some(rgb)) if curve.luminance.is_none() => Table::new(rgb.map(|x| x * curve.scale)),
-            (LaneKind::Rgb, _) => Table::new(apply(&ColorSpace::Rec709.of_xyz(), emission.xyz())),
-            (LaneKind::Prefiltered(_), _) => Table::new(apply(&ColorSpace::Rec2020.of_xyz(), emission.xyz())),
+            (LaneKind::Rgb, _) => Table::new(apply(&ColorSpace::Rec709.of_xyz(), emission().xyz())),
+            (LaneKind::Prefiltered(_), _) => Table::new(apply(&ColorSpace::Rec2020.of_xyz(), emission().xyz())),
             (LaneKind::Wavelengths(_), _) => {
-                let level = level(emission);
+                let level = level(&emission());
                 self.table(vec![level; self.fixed_lanes()], &|_| level)
             }
         }

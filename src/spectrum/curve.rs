@@ -185,15 +185,7 @@ impl Curve {
 
 /// Linear between samples, flat beyond the ends.
 pub(super) fn interpolate(samples: &[[f64; 2]], x: f64) -> f64 {
-    let after = samples.partition_point(|s| s[0] < x);
-    if after == 0 {
-        return samples[0][1];
-    }
-    let Some([x1, y1]) = samples.get(after) else {
-        return samples[samples.len() - 1][1];
-    };
-    let [x0, y0] = samples[after - 1];
-    y0 + (y1 - y0) * ((x - x0) / (x1 - x0))
+    data::interpolate(samples, x)[1]
 }
 
 /// The squared index of a Sellmeier curve at a wavelength in um.

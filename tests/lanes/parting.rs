@@ -5,6 +5,34 @@ use abbe::trace::Transport;
 
 use crate::support::scenes::{EVERY_BRANCH, Mean, SINGLE_PATH, SPLITTING, image, images, standard_errors, view};
 
+/// A ball and a prism of some glass among other things: what the scenes of this folder share.
+pub const BALL_AND_PRISM: &str = r#"[[object]]
+shape.plane = { point = [0, 0, 0], normal = [0, 1, 0] }
+material = "floor"
+[[object]]
+shape.plane = { point = [0, 0, -9], normal = [0.1, 0.2, 1] }
+material = "sky"
+[[object]]
+shape.sphere = { center = [-0.5, 0.8, 0.4], radius = 0.75 }
+material = "glass"
+[[object]]
+material = "glass"
+[object.shape.mesh]
+points = [[0.5, 0.1, 0.9], [1.5, 0.1, 0.6], [0.9, 0.1, -0.2], [0.9, 1.3, 0.5]]
+faces = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]
+[[object]]
+shape.sphere = { center = [1.6, 1.1, -2], radius = 1 }
+material = "silver"
+[[object]]
+shape.disc = { center = [-1.8, 1, -2], normal = [0.6, 0, 1], radius = 1 }
+material = "gold"
+[[object]]
+shape.quad = { center = [0, 3, -3], u = [1.5, 0, 0], v = [0, 0.3, 0.3] }
+material = "lamp"
+[[light]]
+environment.radiance = 0.01
+"#;
+
 const INDICES: [f64; 3] = [1.5, 1.57, 1.66];
 
 /// A ball and a prism of some glass among glowing, reflecting and, if asked for, diffuse things.
@@ -19,32 +47,7 @@ silver.mirror.reflectance.rgb = [0.9, 0.8, 0.7]
 gold.conductor.metal = "Au"
 lamp.emissive.radiance.rgb = [5, 4, 3]
 sky.emissive = {{ radiance.rgb = [0.2, 0.3, 0.5], sides = "front" }}
-[[object]]
-shape.plane = {{ point = [0, 0, 0], normal = [0, 1, 0] }}
-material = "floor"
-[[object]]
-shape.plane = {{ point = [0, 0, -9], normal = [0.1, 0.2, 1] }}
-material = "sky"
-[[object]]
-shape.sphere = {{ center = [-0.5, 0.8, 0.4], radius = 0.75 }}
-material = "glass"
-[[object]]
-material = "glass"
-[object.shape.mesh]
-points = [[0.5, 0.1, 0.9], [1.5, 0.1, 0.6], [0.9, 0.1, -0.2], [0.9, 1.3, 0.5]]
-faces = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]
-[[object]]
-shape.sphere = {{ center = [1.6, 1.1, -2], radius = 1 }}
-material = "silver"
-[[object]]
-shape.disc = {{ center = [-1.8, 1, -2], normal = [0.6, 0, 1], radius = 1 }}
-material = "gold"
-[[object]]
-shape.quad = {{ center = [0, 3, -3], u = [1.5, 0, 0], v = [0, 0.3, 0.3] }}
-material = "lamp"
-[[light]]
-environment.radiance = 0.01
-"#
+{BALL_AND_PRISM}"#
     )
 }
 
@@ -71,13 +74,13 @@ fn parted_lanes_equal_one_render_for_each_index_bit_for_bit() {
 }
 
 /// One of the blocks of pixels that a film is cut into.
-fn block(film: &Film, column: u32, row: u32) -> Film {
+pub fn block(film: &Film, column: u32, row: u32) -> Film {
     let places = (0..BLOCK * BLOCK).map(|i| (column * BLOCK + i % BLOCK, row * BLOCK + i / BLOCK));
     let pixels = places.map(|(x, y)| *film.at(x, y)).collect();
     Film { width: BLOCK, height: BLOCK, pixels, ..*film }
 }
 
-const BLOCK: u32 = 8;
+pub const BLOCK: u32 = 8;
 
 #[test]
 fn parted_lanes_equal_one_render_for_each_index_in_the_mean() {

@@ -6,6 +6,7 @@ use abbe::scene::Scene;
 use abbe::spectrum::{Basis, Curve, Emission, Response};
 use abbe::trace::{Method, Transport, World, render};
 
+use super::parting::{BALL_AND_PRISM, BLOCK, block};
 use crate::support::scenes::{EVERY_BRANCH, Mean, SPLITTING, method, scene, standard_errors, view};
 
 /// A ball and a prism of glass among colored things, on a floor.
@@ -22,32 +23,7 @@ silver.mirror.reflectance = "blue sky"
 gold.conductor.metal = "Au"
 lamp.emissive.radiance = {{ blackbody = 3200, luminance = 5 }}
 sky.emissive = {{ radiance = {{ illuminant = "FL11", scale = 0.3 }}, sides = "front" }}
-[[object]]
-shape.plane = {{ point = [0, 0, 0], normal = [0, 1, 0] }}
-material = "floor"
-[[object]]
-shape.plane = {{ point = [0, 0, -9], normal = [0.1, 0.2, 1] }}
-material = "sky"
-[[object]]
-shape.sphere = {{ center = [-0.5, 0.8, 0.4], radius = 0.75 }}
-material = "glass"
-[[object]]
-material = "glass"
-[object.shape.mesh]
-points = [[0.5, 0.1, 0.9], [1.5, 0.1, 0.6], [0.9, 0.1, -0.2], [0.9, 1.3, 0.5]]
-faces = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]
-[[object]]
-shape.sphere = {{ center = [1.6, 1.1, -2], radius = 1 }}
-material = "silver"
-[[object]]
-shape.disc = {{ center = [-1.8, 1, -2], normal = [0.6, 0, 1], radius = 1 }}
-material = "gold"
-[[object]]
-shape.quad = {{ center = [0, 3, -3], u = [1.5, 0, 0], v = [0, 0.3, 0.3] }}
-material = "lamp"
-[[light]]
-environment.radiance = 0.01
-"#
+{BALL_AND_PRISM}"#
     )
 }
 
@@ -76,15 +52,6 @@ fn each_of_many_lanes_has_the_bits_it_has_alone() {
     }
 }
 
-/// One of the blocks of pixels that a film is cut into.
-fn block(film: &Film, place: u32) -> Film {
-    let (column, row) = (place % BLOCKS, place / BLOCKS);
-    let places = (0..BLOCK * BLOCK).map(|i| (column * BLOCK + i % BLOCK, row * BLOCK + i / BLOCK));
-    let pixels = places.map(|(x, y)| *film.at(x, y)).collect();
-    Film { width: BLOCK, height: BLOCK, pixels, ..*film }
-}
-
-const BLOCK: u32 = 8;
 const BLOCKS: u32 = 4;
 
 /// Two ways to render a scene agree in the mean of every block and channel.
@@ -92,7 +59,7 @@ fn assert_alike(first: &[Film], second: &[Film], what: &str) {
     let limit = standard_errors((BLOCKS * BLOCKS * 3) as usize);
     for place in 0..BLOCKS * BLOCKS {
         let [a, b] = [first, second].map(|films| {
-            let blocks: Vec<Film> = films.iter().map(|film| block(film, place)).collect();
+            let blocks: Vec<Film> = films.iter().map(|film| block(film, place % BLOCKS, place / BLOCKS)).collect();
             Mean::over_seeds(blocks.iter())
         });
         for band in 0..3 {

@@ -12,7 +12,7 @@ pub use glass::{Formula, GLASS_MAKERS, Glass, bare, glass, glass_makers, glass_n
 pub use metal::{Metal, metal, metal_names, metals};
 
 /// Linear between samples (x, values), flat beyond the ends.
-fn interpolate<const N: usize>(samples: &[[f64; N]], x: f64) -> [f64; N] {
+pub(super) fn interpolate<const N: usize>(samples: &[[f64; N]], x: f64) -> [f64; N] {
     let after = samples.partition_point(|sample| sample[0] < x);
     if after == 0 {
         return samples[0];
