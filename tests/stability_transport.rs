@@ -199,3 +199,28 @@ fn a_surface_that_passes_no_light_on_shows_its_own_and_nothing_else() {
 fn mean_of_pixels(film: &Film) -> f64 {
     film.pixels.iter().map(|pixel| f64::from(pixel.rgb[0])).sum::<f64>() / film.pixels.len() as f64
 }
+
+/// The lamp of smallpt: the tip of a sphere of radius 600 comes 0.27 through the ceiling. From the floor it fills the cone
+/// through its rim, and of the cone in which the whole sphere is seen 1 / 20.
+#[test]
+fn a_lamp_of_which_the_tip_is_seen_costs_no_more_than_the_tip() {
+    let (radius, tip, height, samples) = (600.0_f64, 0.27_f64, 81.33, 16);
+    let rim = tip * (2.0 * radius - tip);
+    let expected = 0.5 * 12.0 * rim / (rim + height * height);
+    let lamp = format!("sphere = {{ center = [0, {:?}, 0], radius = {radius:?} }}", height + radius - tip);
+    let ceiling = format!("plane = {{ point = [0, {height:?}, 0], normal = [0, -1, 0] }}");
+    let text = view([0.0, 40.0, 0.1], [0.0; 3], 0.01, 32)
+        + "[render]\ndiffuse_bounces = 0\nsamples = 16\n"
+        + &body(
+            "floor",
+            "diffuse = { reflectance = 0.5 }",
+            &["quad = { center = [0, 0, 0], u = [50, 0, 0], v = [0, 0, -50] }"],
+        )
+        + &body("ceiling", "diffuse = { reflectance = 0 }", &[&ceiling])
+        + &body("lamp", "emissive = { radiance = 12 }", &[&lamp]);
+    let mean = Mean::of(&image(&text, SPLITTING).0);
+    mean.assert_near([expected; 3], 1, "floor below the tip");
+    // Aimed at by the whole cone, 19 of 20 samples see nothing: a deviation of 4 times the mean.
+    let deviation = mean.worst_error([expected; 3]) * f64::from(32 * 32 * samples).sqrt();
+    assert!(deviation < 0.5, "a sample deviates by {deviation}");
+}

@@ -2,7 +2,7 @@ use std::sync::Arc;
 
 use super::View;
 use crate::math::{Bounds, DVec3, Ray};
-use crate::shape::{Choice, Crossing, Emitters, Shape, Sides, Sighting};
+use crate::shape::{Cap, Choice, Crossing, Emitters, Shape, Sides, Sighting};
 use crate::spectrum::Quantity;
 
 /// A surface that shines: an object whose material emits.
@@ -22,7 +22,12 @@ pub struct Area<S> {
     parts: Option<Arc<Emitters>>,
     /// The box from whose outside no backs are seen.
     closed: Option<Bounds>,
+    /// All that is seen of a sphere, if that is a small part.
+    seen: Option<Cap>,
 }
+
+/// The part of a sphere below which that part is aimed at, and not the cone in which the whole is seen.
+const SMALL: f64 = 0.125;
 
 impl<S> Area<S> {
     /// The light that an object is.
@@ -30,7 +35,7 @@ impl<S> Area<S> {
         let parts = if aimed_at { shape.parts() } else { Vec::new() };
         let parts = (parts.len() > 1).then(|| Arc::new(Emitters::new(&parts)));
         let closed = if shape.is_closed() { shape.bounds() } else { None };
-        Self { shape, object, radiance, sides, aimed_at, parts, closed }
+        Self { shape, object, radiance, sides, aimed_at, parts, closed, seen: None }
     }
 
     pub(super) fn map<T>(&self, convert: &mut impl FnMut(Quantity, &S) -> T) -> Area<T> {
@@ -42,7 +47,18 @@ impl<S> Area<S> {
             aimed_at: self.aimed_at,
             parts: self.parts.clone(),
             closed: self.closed,
+            seen: self.seen,
         }
+    }
+
+    /// Whether knowing where it is really seen could help: of a sphere that may be a tip.
+    pub fn may_hide(&self) -> bool {
+        self.aimed_at && matches!(*self.shape, Shape::Sphere(_))
+    }
+
+    /// Tells the light the unit normals at which paths met it by chance: if they lie close together, it is aimed at there.
+    pub fn remember(&mut self, normals: &[DVec3]) {
+        self.seen = Cap::around(normals).filter(|cap| cap.share() < SMALL);
     }
 
     /// Whether one of several parts is chosen to be aimed at, which uses up digits of a random number.
@@ -57,6 +73,9 @@ impl<S> Area<S> {
     }
 
     pub(super) fn aim(&self, from: DVec3, normal: DVec3, u: [f64; 2]) -> Option<Sighting> {
+        if let Some(cap) = &self.seen {
+            return self.shape.aim_at_cap(cap, from, u);
+        }
         let Some(parts) = &self.parts else { return self.shape.aim(from, u) };
         let Choice { emitter, probability, u: along } = parts.choose(from, normal, self.shows_backs(from), u[0])?;
         let sighting = self.shape.aim_at_part(emitter, from, [along, u[1]])?;
@@ -81,9 +100,10 @@ impl<S> Area<S> {
     /// Density with which the light is aimed at, from a surface of the given normal, along a ray that meets it; none where
     /// it is seen exactly edge-on.
     pub fn pdf(&self, ray: &Ray, normal: DVec3, crossing: &Crossing) -> Option<f64> {
-        usable(match &self.parts {
-            None => self.shape.pdf_toward(ray, crossing),
-            Some(parts) => {
+        usable(match (&self.seen, &self.parts) {
+            (Some(cap), _) => self.shape.pdf_at_cap(cap, ray, crossing),
+            (None, None) => self.shape.pdf_toward(ray, crossing),
+            (None, Some(parts)) => {
                 let both = self.shows_backs(ray.origin);
                 let probability = parts.probability(crossing.part as usize, ray.origin, normal, both);
                 if probability == 0.0 { 0.0 } else { probability * self.shape.pdf_of_part(ray, crossing) }

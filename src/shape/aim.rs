@@ -2,7 +2,7 @@
 
 use super::emitters::{Emitter, Facing};
 use super::outline::Outline;
-use super::{Crossing, Shape};
+use super::{Cap, Crossing, Shape};
 use crate::math::{DVec3, Ray};
 
 /// A direction in which a shape is seen from a point, drawn at random.
@@ -92,6 +92,20 @@ impl Shape {
             Self::Disc(_) | Self::Cube(_) | Self::Mesh(_) => Density::Area(1.0 / self.area()),
         };
         self.pdf(density, ray, crossing)
+    }
+
+    /// A direction like `aim`'s, most often toward the cap of a sphere that is likely to be seen; `pdf_at_cap` gives its density.
+    pub fn aim_at_cap(&self, cap: &Cap, from: DVec3, u: [f64; 2]) -> Option<Sighting> {
+        let Self::Sphere(sphere) = self else { return self.aim(from, u) };
+        Some(Sighting { direction: sphere.aim_at_cap(cap, from, u)?, part: None, density: None })
+    }
+
+    /// Density per steradian with which `aim_at_cap` draws the direction of a ray that first meets the shape at a crossing.
+    pub fn pdf_at_cap(&self, cap: &Cap, ray: &Ray, crossing: &Crossing) -> f64 {
+        match self {
+            Self::Sphere(sphere) => sphere.pdf_at_cap(cap, ray, crossing.t),
+            _ => self.pdf_toward(ray, crossing),
+        }
     }
 
     fn pdf(&self, density: Density, ray: &Ray, crossing: &Crossing) -> f64 {

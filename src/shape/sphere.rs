@@ -1,6 +1,6 @@
 use std::f64::consts::PI;
 
-use super::{Crossing, Ellipsoid, Shape, SurfacePoint};
+use super::{Cap, Crossing, Ellipsoid, Shape, SurfacePoint};
 use crate::math::{Bounds, DMat3, DVec3, Frame, Ray, Transform, ball_surface, cone, gamma, one_minus_cos_of_cone};
 
 /// A sphere; its front is the outside.
@@ -13,6 +13,9 @@ pub struct Sphere {
     center: DVec3,
     radius: f64,
 }
+
+/// How often a sphere of which a cap is seen is aimed at as a whole.
+const ELSEWHERE: f64 = 0.05;
 
 impl Sphere {
     /// The sphere of a radius above 0.
@@ -87,6 +90,34 @@ impl Sphere {
             Some((_, one_minus_cos)) => 1.0 / (2.0 * PI * one_minus_cos),
             None => 1.0 / (4.0 * PI),
         }
+    }
+
+    /// The same where only a cap is likely to be seen: most directions from outside lead to points of it, uniform by area. The
+    /// others keep the estimate right where more is seen.
+    pub(super) fn aim_at_cap(&self, cap: &Cap, from: DVec3, [u, v]: [f64; 2]) -> Option<DVec3> {
+        if u < ELSEWHERE || self.cone_from(from).is_none() {
+            let u = if self.cone_from(from).is_none() { u } else { u / ELSEWHERE };
+            return Some(self.aim(from, [u, v]).0);
+        }
+        let normal = cap.draw([(u - ELSEWHERE) / (1.0 - ELSEWHERE), v]);
+        let direction = self.center + normal * self.radius - from;
+        // A point behind the horizon is hidden by one in front, whose own density counts.
+        if normal.dot(direction) < 0.0 { direction.try_normalize() } else { None }
+    }
+
+    /// Density per steradian with which `aim_at_cap` draws the direction of a ray that first meets the sphere at a distance.
+    pub(super) fn pdf_at_cap(&self, cap: &Cap, ray: &Ray, t: f64) -> f64 {
+        let everywhere = self.pdf_toward(ray);
+        if self.cone_from(ray.origin).is_none() {
+            return everywhere;
+        }
+        let normal = (ray.at(t) - self.center).normalize();
+        let of_cap = if cap.contains(normal) {
+            t * t / (cap.share() * self.area() * normal.dot(ray.direction).abs())
+        } else {
+            0.0
+        };
+        ELSEWHERE * everywhere + (1.0 - ELSEWHERE) * of_cap
     }
 
     /// Axis and 1 - cos of the half angle of the cone in which the sphere is seen from outside.

@@ -11,12 +11,14 @@
 
 mod choice;
 mod direct;
+mod lamps;
 mod media;
 mod method;
 mod path;
 mod probe;
 
 mod render;
+mod roulette;
 mod spread;
 mod tracer;
 mod width;

@@ -5,10 +5,11 @@ use std::cell::Cell;
 use super::direct::{Gathering, add, weight_of_meeting};
 use super::media;
 use super::path::{Drawn, Path};
+use super::roulette::survival;
 use super::{Transport, World};
-use crate::light::Light;
+use crate::light::{Light, LightId};
 use crate::material::{Arrival, Branch, Material};
-use crate::math::{Ray, Sampler};
+use crate::math::{DVec3, Ray, Sampler};
 use crate::scene::Hit;
 use crate::shape::SurfacePoint;
 use crate::spectrum::Draw;
@@ -21,6 +22,8 @@ pub(super) struct Tracer<'a, const N: usize> {
     /// The object that hid the last light that was hidden: the first to ask about the next one.
     hider: Cell<u32>,
     pub(super) tally: Tally,
+    /// Lights that paths from widely scattering surfaces met, with the unit normal there, if somebody wants to know.
+    pub(super) met: Option<Vec<(LightId, DVec3)>>,
 }
 
 /// What happened to the rays of many samples.
@@ -40,14 +43,6 @@ pub(super) struct Tally {
     pub(super) polarization: f64,
 }
 
-/// Surfaces after which roulette ends even a path that loses nothing, one time in a thousand.
-const LONG: u32 = 64;
-/// The most certain that a long path is to go on: nearer to 1 than light caught in a clear body needs to find its way out,
-/// so that none comes out much brighter than it went in.
-const SURE: f64 = 0.999;
-/// The least likely that a faint path goes on, so that none comes back brighter than ten times.
-const UNLIKELY: f64 = 0.1;
-
 /// How much sooner roulette ends paths that leave a diffuse surface than those that leave a smooth one: what they still
 /// gather varies little. Measured on the smallpt scene, where 1 takes 1.17 times as long to an equal error.
 const SOONER: f64 = 5.0;
@@ -62,7 +57,7 @@ const SPREAD: u32 = 4;
 impl<'a, const N: usize> Tracer<'a, N> {
     pub(super) fn new(world: &'a World) -> Self {
         let (pending, branches) = (Vec::new(), Vec::new());
-        Self { world, pending, branches, hider: Cell::new(0), tally: Tally::default() }
+        Self { world, pending, branches, hider: Cell::new(0), tally: Tally::default(), met: None }
     }
 
     /// What the sensor receives along a camera ray, and what the ray met first.
@@ -120,11 +115,14 @@ impl<'a, const N: usize> Tracer<'a, N> {
     }
 
     /// The light of a surface that shines by itself.
-    fn emission(&self, path: &Path<N>, draw: &Draw<N>, hit: &Hit, point: &SurfacePoint) -> [f64; 3] {
+    fn emission(&mut self, path: &Path<N>, draw: &Draw<N>, hit: &Hit, point: &SurfacePoint) -> [f64; 3] {
         let Some(id) = self.world.scene.objects[hit.object as usize].light else { return [0.0; 3] };
         let Light::Area(area) = &self.world.scene.lights[id] else { return [0.0; 3] };
         if !area.sides.shine(point.normal.dot(path.ray.direction) < 0.0) {
             return [0.0; 3];
+        }
+        if let (Some(met), Some(_)) = (&mut self.met, &path.drawn) {
+            met.push((id, point.normal));
         }
         let weight = weight_of_meeting(self.world, id, path.drawn.as_ref(), &path.ray, Some(&hit.crossing));
         let light = path.throughput.scaled(weight).of(draw.read(&area.radiance));
@@ -280,15 +278,4 @@ impl<'a, const N: usize> Tracer<'a, N> {
             }
         }
     }
-}
-
-/// Russian roulette on the weight (Arvo & Kirk 1990): the factor that makes up for the paths that end, or none.
-///
-/// `u` is asked for a random number only where something is left to chance.
-fn survival(weight: f64, roulette: f64, vertices: u32, u: impl FnOnce() -> f64) -> Option<f64> {
-    let mut chance = if weight < roulette { (weight / roulette).max(UNLIKELY) } else { 1.0 };
-    if vertices >= LONG {
-        chance = chance.min(SURE);
-    }
-    (chance >= 1.0 || u() < chance).then_some(1.0 / chance)
 }

@@ -1,7 +1,9 @@
 use super::choice::Choice;
+use super::lamps::met_lamps;
 use super::media::Media;
 use super::{Method, Transport};
-use crate::light::LightId;
+use crate::light::{Light, LightId};
+use crate::math::DVec3;
 use crate::scene::Scene;
 use crate::spectrum::{Curve, Response, Table};
 
@@ -35,7 +37,27 @@ impl World {
             let (position, forward) = (world.scene.camera.position(), world.scene.camera.forward());
             world.camera_media = Media::around(&world, position, forward);
         }
+        world.look_for_lamps();
         world
+    }
+
+    /// Finds out where lamps are seen that may be hidden for the most part.
+    fn look_for_lamps(&mut self) {
+        if !self.scene.lights.iter().any(|light| matches!(light, Light::Area(area) if area.may_hide())) {
+            return;
+        }
+        // Paths meet lamps behind a diffuse surface, also where the image has no such paths.
+        let asked = std::mem::replace(&mut self.method.diffuse_bounces, u32::MAX);
+        let met = met_lamps(self);
+        self.method.diffuse_bounces = asked;
+        for (id, light) in self.scene.lights.iter_mut().enumerate() {
+            if let Light::Area(area) = light
+                && area.may_hide()
+            {
+                let normals: Vec<DVec3> = met.iter().filter(|(light, _)| *light == id).map(|(_, n)| *n).collect();
+                area.remember(&normals);
+            }
+        }
     }
 
     /// The same world with what each light's lanes are worth replaced, for tests that look at single lanes.

@@ -12,7 +12,7 @@ use crate::chi_squared;
 use crate::random::Random;
 
 /// Calls of `check_aim` by the tests of this file.
-const TESTS: u32 = 29;
+const TESTS: u32 = 33;
 const DRAWS: usize = 100_000;
 /// Bins by height, and around.
 const BINS: [usize; 2] = [12, 24];
@@ -176,6 +176,31 @@ fn directions_toward_a_sphere_follow_their_density() {
     ] {
         let away = random.direction();
         check(name, &sphere, center + away * radius * distance, -away, half_angle);
+    }
+}
+
+#[test]
+fn directions_toward_a_sphere_that_shows_a_cap_follow_their_density() {
+    let (center, radius) = (DVec3::new(0.4, -0.2, 1.0), 0.7);
+    let mut random = Random::new(62);
+    let axis = random.direction();
+    for (name, width, distance, toward, half_angle) in [
+        ("cap before the eye", 0.3, 3.0, 0.0, 0.4),
+        ("cap at the horizon", 0.3, 2.0, 1.2, 0.6),
+        ("cap from nearby", 0.6, 1.05, 0.1, 0.5 * PI),
+        ("cap from inside", 0.3, 0.5, 0.0, PI),
+    ] {
+        let sideways = axis.cross(random.direction()).normalize();
+        let away = axis * libm::cos(toward) + sideways * libm::sin(toward);
+        let from = center + away * radius * distance;
+        let mut near = || axis + width * random.number().sqrt() * random.direction().cross(axis).normalize();
+        let normals: Vec<DVec3> = (0..2000).map(|_| near().normalize()).collect();
+        let shape = Shape::Sphere(Sphere::new(center, radius));
+        let mut area = Area::new(Arc::new(shape.clone()), 0, (), Sides::Both, true);
+        area.remember(&normals);
+        let pdf = |ray: &Ray, crossing: &Crossing| area.pdf(ray, -away, crossing).unwrap_or(0.0);
+        let light = Light::Area(area.clone());
+        check_aim(name, &shape, from, &Bins::new(-away, half_angle), |u| light.aim(from, -away, u), pdf);
     }
 }
 
