@@ -9,5 +9,6 @@ mod support;
 
 mod meshes {
     mod files;
+    mod instances;
     mod nearest;
 }

@@ -91,6 +91,8 @@ pub struct ObjectText {
     /// Steps applied to the shape in this order.
     #[serde(default)]
     pub transform: Vec<StepText>,
+    /// Further steps for each of many such shapes, after `transform`; one shape if absent.
+    pub instances: Option<Vec<Vec<StepText>>>,
 }
 
 /// The shapes, each documented where it is implemented, in `shape`.

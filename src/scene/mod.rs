@@ -8,6 +8,7 @@ mod compile;
 mod compile_curve;
 mod compile_light;
 mod compile_material;
+mod compile_mesh;
 mod compile_shape;
 mod compile_view;
 mod contact;

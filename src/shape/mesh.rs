@@ -1,7 +1,7 @@
 use std::collections::HashMap;
 
 use super::triangle::Sheared;
-use super::{Bvh, Crossing, Triangle};
+use super::{Bvh, Crossing, SurfacePoint, Triangle};
 use crate::math::{Bounds, DVec3, Ray, Transform};
 
 /// Triangles over shared vertices, with a tree of boxes.
@@ -119,6 +119,14 @@ impl Mesh {
             Some(limit)
         });
         nearest
+    }
+
+    pub(super) fn point(&self, crossing: &Crossing) -> SurfacePoint {
+        self.triangle(crossing.part).point(crossing.uv)
+    }
+
+    pub(super) fn vertices(&self) -> impl Iterator<Item = DVec3> + '_ {
+        (0..self.vertices.count() as u32).map(|index| self.vertices.at(index))
     }
 
     pub(super) fn bounds(&self) -> Bounds {

@@ -10,6 +10,7 @@ mod cube;
 mod disc;
 mod ellipsoid;
 mod emitters;
+mod instance;
 mod mesh;
 mod mesh_file;
 mod outline;
@@ -25,6 +26,7 @@ pub use cube::Cube;
 pub use disc::Disc;
 pub use ellipsoid::Ellipsoid;
 pub use emitters::{Choice, Emitter, Emitters, Facing};
+pub use instance::Instance;
 pub use mesh::{Mesh, MeshReport, Vertices};
 pub use mesh_file::read as read_mesh;
 pub use plane::Plane;
@@ -32,6 +34,8 @@ pub use quad::Quad;
 pub use sides::Sides;
 pub use sphere::Sphere;
 pub use triangle::Triangle;
+
+use std::sync::Arc;
 
 use crate::math::{Bounds, DVec3, Ray, Transform};
 
@@ -53,7 +57,9 @@ pub enum Shape {
     /// A box or parallelepiped.
     Cube(Cube),
     /// Many triangles.
-    Mesh(Box<Mesh>),
+    Mesh(Arc<Mesh>),
+    /// Many triangles that other places share.
+    Instance(Box<Instance>),
 }
 
 /// Where a ray crosses one shape.
@@ -104,6 +110,7 @@ impl Shape {
             Self::Quad(quad) => quad.intersect(ray, t_max),
             Self::Cube(cube) => cube.intersect(ray, t_max),
             Self::Mesh(mesh) => mesh.intersect(ray, t_max),
+            Self::Instance(instance) => instance.intersect(ray, t_max),
         }
     }
 
@@ -117,7 +124,8 @@ impl Shape {
             Self::Disc(disc) => disc.point(crossing.uv),
             Self::Quad(quad) => quad.point(crossing.uv),
             Self::Cube(cube) => cube.point(crossing),
-            Self::Mesh(mesh) => mesh.triangle(crossing.part).point(crossing.uv),
+            Self::Mesh(mesh) => mesh.point(crossing),
+            Self::Instance(instance) => instance.point(crossing),
         }
     }
 
@@ -132,6 +140,7 @@ impl Shape {
             Self::Quad(quad) => Some(quad.bounds()),
             Self::Cube(cube) => Some(cube.bounds()),
             Self::Mesh(mesh) => Some(mesh.bounds()),
+            Self::Instance(instance) => Some(instance.bounds()),
         }
     }
 
@@ -148,8 +157,21 @@ impl Shape {
             Self::Disc(disc) => Self::Disc(disc.transformed(map)),
             Self::Quad(quad) => Self::Quad(quad.transformed(map)),
             Self::Cube(cube) => Self::Cube(cube.transformed(map)),
-            Self::Mesh(mesh) => Self::Mesh(Box::new(mesh.transformed(map))),
+            Self::Mesh(mesh) => Self::Mesh(Arc::new(mesh.transformed(map))),
+            Self::Instance(instance) => match instance.transformed(map) {
+                Some(instance) => Self::Instance(Box::new(instance)),
+                None => Self::Mesh(Arc::new(instance.baked().transformed(map))),
+            },
         }
+    }
+
+    /// Another one of many such shapes, after an invertible affine map; they share the triangles of a mesh.
+    pub fn copied(&self, map: &Transform) -> Self {
+        let shared = match self {
+            Self::Mesh(mesh) if *map != Transform::IDENTITY => Instance::new(mesh.clone(), *map),
+            _ => None,
+        };
+        shared.map_or_else(|| self.clone().transformed(map), |instance| Self::Instance(Box::new(instance)))
     }
 
     /// Whether the shape has an inside: a dielectric on it fills that, or the half space behind a plane.
@@ -158,6 +180,7 @@ impl Shape {
             Self::Plane(_) | Self::Sphere(_) | Self::Ellipsoid(_) | Self::Cube(_) => true,
             Self::Triangle(_) | Self::Disc(_) | Self::Quad(_) => false,
             Self::Mesh(mesh) => mesh.is_closed(),
+            Self::Instance(instance) => instance.is_closed(),
         }
     }
 
@@ -172,6 +195,7 @@ impl Shape {
             Self::Quad(quad) => quad.area(),
             Self::Cube(cube) => cube.area(),
             Self::Mesh(mesh) => mesh.area(),
+            Self::Instance(instance) => instance.area(),
         }
     }
 }

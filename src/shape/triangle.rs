@@ -1,5 +1,5 @@
 use super::outline::{Outline, is_near};
-use super::{Crossing, SurfacePoint};
+use super::{Crossing, Emitter, Facing, SurfacePoint};
 use crate::math::{Bounds, DVec3, Ray, Transform, gamma, triangle_coordinates};
 
 /// A triangle; its front is the side from which the points run counterclockwise.
@@ -57,6 +57,12 @@ impl Triangle {
     pub(super) fn area(&self) -> f64 {
         let [p1, p2, p3] = self.points;
         0.5 * (p2 - p1).cross(p3 - p1).length()
+    }
+
+    /// The triangle as one of many that shine from their fronts.
+    pub(super) fn emitter(&self) -> Emitter {
+        let facing = Facing::one(self.normal());
+        Emitter { bounds: self.bounds(), facing, both: false, intensity: self.area() }
     }
 
     /// The outline seen from a point, if it is near.

@@ -109,7 +109,7 @@ fn b3_the_largest_vertices_a_file_can_hold_build_a_mesh_that_is_hit() {
     let points = vec![[-most, -most, -most], [most, -most, -most], [0.0, most, -most], [1.0, 2.0, 3.0]];
     let (mesh, report) = Mesh::new(Vertices::Single(points), vec![[0, 1, 2], [0, 1, 3]]).expect("they have areas");
     assert_eq!(report.degenerate, 0);
-    let shape = Shape::Mesh(Box::new(mesh));
+    let shape = Shape::Mesh(mesh.into());
     let ray = Ray::new(DVec3::new(0.0, 0.0, -10.0 * f64::from(most)), DVec3::Z);
     let crossing = shape.intersect(&ray, f64::INFINITY).expect("the ray runs through the first triangle");
     assert!((crossing.t / (9.0 * f64::from(most)) - 1.0).abs() < 1e-15 && crossing.part == 0, "{crossing:?}");
