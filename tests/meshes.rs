@@ -9,6 +9,7 @@ mod support;
 
 mod meshes {
     mod files;
+    mod gltf;
     mod instances;
     mod nearest;
 }

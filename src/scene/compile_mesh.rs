@@ -88,6 +88,13 @@ impl ShapeCompiler<'_, '_> {
         }
         let bytes = std::fs::read(&path).map_err(|error| refuse(format!("cannot read {file}: {error}")))?;
         self.compiler.hash.update(&bytes);
+        for other in &mesh.others {
+            let bytes = std::fs::read(other).map_err(|error| refuse(format!("{}: {error}", other.display())))?;
+            self.compiler.hash.update(&bytes);
+        }
+        for what in mesh.ignored {
+            self.compiler.warnings.push(format!("{}: the {what} of {file} are ignored", self.name));
+        }
         if mesh.names_materials {
             let warning = format!("{}: the materials of {file} are ignored; the scene gives them", self.name);
             self.compiler.warnings.push(warning);

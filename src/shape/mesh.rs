@@ -7,7 +7,7 @@ use crate::math::{Bounds, DVec3, Ray, Transform};
 /// Triangles over shared vertices, with a tree of boxes.
 ///
 /// ```toml
-/// shape.mesh = { file = "bunny.ply" }                          # PLY or OBJ, relative to the scene file
+/// shape.mesh = { file = "bunny.ply" }                          # PLY, OBJ or glTF, relative to the scene file
 /// shape.mesh = { points = [[0, 0, 0], ..], faces = [[0, 1, 2], ..] }
 /// ```
 #[derive(Clone, Debug)]

@@ -1,9 +1,9 @@
-//! Triangles from PLY and OBJ files.
+//! Triangles from PLY, OBJ and glTF files.
 
 use std::cell::Cell;
 use std::fs::File;
 use std::io::BufReader;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use ply_rs_bw::parser::{Parser, Reader};
 use ply_rs_bw::ply::{Property, PropertyAccess, PropertyAccessResult, PropertyType, ScalarType};
@@ -20,9 +20,13 @@ pub struct MeshFile {
     pub faces: Vec<[u32; 3]>,
     /// Whether the file asks for materials, which Abbe takes from the scene instead.
     pub names_materials: bool,
+    /// What else the file holds that moves its points, which are taken as they stand.
+    pub ignored: Vec<&'static str>,
+    /// Other files that it was read from.
+    pub others: Vec<PathBuf>,
 }
 
-/// Reads a mesh file by its ending, `.ply` or `.obj`; checks that corners exist and vertices are finite.
+/// Reads a mesh file by its ending, `.ply`, `.obj`, `.gltf` or `.glb`; checks that corners exist and vertices are finite.
 ///
 /// # Errors
 /// A sentence that says what is wrong with the file.
@@ -31,7 +35,8 @@ pub fn read(path: &Path) -> Result<MeshFile, String> {
     let file = match ending.as_str() {
         "ply" => read_ply(path)?,
         "obj" => read_obj(path)?,
-        _ => return Err("a mesh file ends in .ply or .obj".into()),
+        "gltf" | "glb" => super::gltf::read(path)?,
+        _ => return Err("a mesh file ends in .ply, .obj, .gltf or .glb".into()),
     };
     let count = file.vertices.count();
     if let Some(vertex) = (0..count as u32).find(|&index| !file.vertices.at(index).is_finite()) {
@@ -133,7 +138,7 @@ fn read_ply(path: &Path) -> Result<MeshFile, String> {
         Vertices::Single(points.iter().map(|p| p.0.map(|x| x as f32)).collect())
     };
     let faces = polygons.iter().flat_map(|polygon| fan(&polygon.0)).collect();
-    Ok(MeshFile { vertices, faces, names_materials: false })
+    Ok(MeshFile { vertices, faces, names_materials: false, ignored: Vec::new(), others: Vec::new() })
 }
 
 fn ply_error(error: ply_rs_bw::parser::ParseError) -> String {
@@ -176,5 +181,6 @@ fn read_obj(path: &Path) -> Result<MeshFile, String> {
         let corners = model.mesh.indices.chunks_exact(3);
         faces.extend(corners.map(|c| [c[0] + first, c[1] + first, c[2] + first]));
     }
-    Ok(MeshFile { vertices: Vertices::Single(points), faces, names_materials: names_materials.get() })
+    let (vertices, names_materials) = (Vertices::Single(points), names_materials.get());
+    Ok(MeshFile { vertices, faces, names_materials, ignored: Vec::new(), others: Vec::new() })
 }

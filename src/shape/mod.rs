@@ -10,6 +10,8 @@ mod cube;
 mod disc;
 mod ellipsoid;
 mod emitters;
+mod gltf;
+mod gltf_buffer;
 mod instance;
 mod mesh;
 mod mesh_file;
