@@ -49,8 +49,16 @@ impl Instance {
     }
 
     pub(super) fn intersect(&self, ray: &Ray, t_max: f64) -> Option<Crossing> {
-        let (origin, direction) = (self.to_object.point(ray.origin), self.to_object.vector(ray.direction));
-        self.mesh.intersect(&Ray { origin, direction }, t_max)
+        self.mesh.intersect(&self.own(ray), t_max)
+    }
+
+    pub(super) fn is_crossed(&self, ray: &Ray, t_max: f64) -> bool {
+        self.mesh.is_crossed(&self.own(ray), t_max)
+    }
+
+    /// The ray in the mesh's space.
+    fn own(&self, ray: &Ray) -> Ray {
+        Ray { origin: self.to_object.point(ray.origin), direction: self.to_object.vector(ray.direction) }
     }
 
     /// The point, its normal by the inverse transpose, which keeps the front in front in mirror images too.

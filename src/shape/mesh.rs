@@ -1,6 +1,6 @@
 use std::collections::HashMap;
 
-use super::triangle::Sheared;
+use super::packed::Packed;
 use super::{Bvh, Crossing, SurfacePoint, Triangle};
 use crate::math::{Bounds, DVec3, Ray, Transform};
 
@@ -15,6 +15,7 @@ pub struct Mesh {
     vertices: Vertices,
     triangles: Vec<[u32; 3]>,
     bvh: Bvh,
+    packed: Packed,
     /// Running sum of the triangles' areas, for drawing one by its area.
     areas: Vec<f64>,
     closed: bool,
@@ -73,14 +74,15 @@ impl Mesh {
 
     fn built(vertices: Vertices, triangles: Vec<[u32; 3]>, closed: bool) -> Self {
         let shapes = || triangles.iter().map(|face| Triangle::new(face.map(|corner| vertices.at(corner))));
-        let bounds: Vec<Bounds> = shapes().map(|triangle| triangle.bounds()).collect();
+        let bvh = Bvh::new::<{ Packed::GROUP }>(shapes().map(|triangle| triangle.bounds()));
+        let packed = Packed::new(&vertices, &triangles, bvh.items());
         let mut total = 0.0;
         let areas = shapes().map(|triangle| {
             total += triangle.area();
             total
         });
         let areas = areas.collect();
-        Self { bvh: Bvh::new(&bounds), vertices, triangles, areas, closed }
+        Self { bvh, packed, vertices, triangles, areas, closed }
     }
 
     /// How many triangles there are.
@@ -107,18 +109,12 @@ impl Mesh {
 
     /// The nearest crossing; of equally near ones, that of the triangle listed first.
     pub(super) fn intersect(&self, ray: &Ray, t_max: f64) -> Option<Crossing> {
-        let sheared = Sheared::new(ray);
-        let mut nearest: Option<Crossing> = None;
-        self.bvh.walk(ray, t_max, |index, limit| {
-            if let Some(crossing) = sheared.intersect(self.corners(index), limit) {
-                if nearest.is_none_or(|n| crossing.t < n.t || index < n.part) {
-                    nearest = Some(Crossing { part: index, ..crossing });
-                }
-                return Some(crossing.t);
-            }
-            Some(limit)
-        });
-        nearest
+        self.packed.nearest(&self.bvh, ray, t_max)
+    }
+
+    /// Whether there is a crossing with 0 < t <= `t_max`.
+    pub(super) fn is_crossed(&self, ray: &Ray, t_max: f64) -> bool {
+        self.packed.any(&self.bvh, ray, t_max)
     }
 
     pub(super) fn point(&self, crossing: &Crossing) -> SurfacePoint {

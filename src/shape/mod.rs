@@ -16,6 +16,7 @@ mod instance;
 mod mesh;
 mod mesh_file;
 mod outline;
+mod packed;
 mod plane;
 mod quad;
 mod sides;
@@ -23,7 +24,7 @@ mod sphere;
 mod triangle;
 
 pub use aim::{Density, Sighting};
-pub use bvh::Bvh;
+pub use bvh::{Bvh, Visitor};
 pub use cube::Cube;
 pub use disc::Disc;
 pub use ellipsoid::Ellipsoid;
@@ -113,6 +114,15 @@ impl Shape {
             Self::Cube(cube) => cube.intersect(ray, t_max),
             Self::Mesh(mesh) => mesh.intersect(ray, t_max),
             Self::Instance(instance) => instance.intersect(ray, t_max),
+        }
+    }
+
+    /// Whether there is a crossing with 0 < t <= `t_max`.
+    pub fn is_crossed(&self, ray: &Ray, t_max: f64) -> bool {
+        match self {
+            Self::Mesh(mesh) => mesh.is_crossed(ray, t_max),
+            Self::Instance(instance) => instance.is_crossed(ray, t_max),
+            _ => self.intersect(ray, t_max).is_some(),
         }
     }
 

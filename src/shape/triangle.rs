@@ -92,9 +92,10 @@ fn scaled_normal([p1, p2, p3]: [DVec3; 3]) -> DVec3 {
 /// Woop, Benthin & Wald 2013, *Watertight Ray/Triangle Intersection*; here in 64 bits, with edge functions that round
 /// to zero decided by their exact sign, so that of two triangles sharing an edge at least one is hit.
 pub(super) struct Sheared {
-    origin: DVec3,
-    order: [usize; 3],
-    shear: DVec3,
+    pub(super) origin: DVec3,
+    /// The axes that become x, y and z.
+    pub(super) order: [usize; 3],
+    pub(super) shear: DVec3,
 }
 
 impl Sheared {
