@@ -67,6 +67,8 @@ pub(super) struct Compiler<'a> {
     pub(super) meshes: Meshes,
 }
 
+/// Objects, the entry of the file that each comes from, and their materials.
+type Objects = (Vec<Object>, Vec<usize>, Vec<NamedMaterial<Curve>>);
 pub(super) type Materials = BTreeMap<String, Material<Curve>>;
 
 impl Compiler<'_> {
@@ -100,11 +102,7 @@ impl Compiler<'_> {
     }
 
     /// The objects, the entry of the file that each comes from, and their materials.
-    fn objects(
-        &mut self,
-        description: &Description,
-        compiled: &Materials,
-    ) -> Result<(Vec<Object>, Vec<usize>, Vec<NamedMaterial<Curve>>)> {
+    fn objects(&mut self, description: &Description, compiled: &Materials) -> Result<Objects> {
         let (mut objects, mut entries, mut materials) = (Vec::new(), Vec::new(), Vec::<NamedMaterial<Curve>>::new());
         for (number, text) in description.object.iter().enumerate() {
             let top = At::top("object");

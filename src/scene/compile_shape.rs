@@ -72,7 +72,7 @@ impl ShapeCompiler<'_, '_> {
         let Some(instances) = &text.instances else {
             let shared = self.compiler.meshes.is_shared(&text.shape);
             let placed = if shared { shape.copied(&map) } else { shape.transformed(&map) };
-            self.check_size(object, &place, (&placed, &text.shape), &map)?;
+            self.check_size([&place, &object.key("shape")], (&placed, &text.shape), &map)?;
             return Ok(vec![placed]);
         };
         let list = object.key("instances");
@@ -83,14 +83,14 @@ impl ShapeCompiler<'_, '_> {
             let at = list.index(number);
             let map = self.compiler.transform(&at, steps, map)?;
             let placed = shape.copied(&map);
-            self.check_size(object, &at, (&placed, &text.shape), &map)?;
+            self.check_size([&at; 2], (&placed, &text.shape), &map)?;
             Ok(placed)
         };
         instances.iter().enumerate().map(place).collect()
     }
 
     /// Refuses a shape whose size or place numbers do not hold.
-    fn check_size(&self, object: &At, steps: &At, (shape, text): (&Shape, &ShapeText), map: &Transform) -> Result<()> {
+    fn check_size(&self, [steps, whole]: [&At; 2], (shape, text): (&Shape, &ShapeText), map: &Transform) -> Result<()> {
         let Some(bounds) = shape.bounds() else { return Ok(()) };
         let (far, wide) = (bounds.min.abs().max(bounds.max.abs()).max_element(), bounds.max - bounds.min);
         let thin = thickness(text, map).unwrap_or(wide.max_element());
@@ -99,7 +99,7 @@ impl ShapeCompiler<'_, '_> {
         }
         if thin < RESOLVED * far {
             let message = "this is so small or thin that the rounding of its coordinates would distort it";
-            return self.refuse(&object.key("shape"), message);
+            return self.refuse(whole, message);
         }
         Ok(())
     }

@@ -147,6 +147,8 @@ pub(super) fn surplus(document: &DeTable) -> Option<Mistake> {
             "cauchy" => ("`cauchy`", 2, Some("write [A, B] of n = A + B / wavelength^2")),
             "faces" => ("a face", 3, Some("cut faces with more corners into triangles")),
             "points" => ("a point", 3, None),
+            "normals" => ("a normal", 3, None),
+            "uv" => ("an entry of `uv`", 2, None),
             "shift" => ("`shift`", 2, Some("write [right, up] in heights of the image")),
             "crop" => ("`crop`", 4, Some("write [first column, first row, width, height]")),
             key => (&*format!("`{key}`"), 3, None),

@@ -6,9 +6,9 @@ use std::path::Path;
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 
-use super::Vertices;
 use super::gltf_buffer::{Accessor, Buffer, BufferView, Store};
 use super::mesh_file::MeshFile;
+use super::{Attributes, Vertices};
 use crate::math::{DMat3, DVec3, Transform};
 
 /// What Abbe reads of a file. Indices refer to lists of the same document.
@@ -61,7 +61,7 @@ struct MeshText {
 
 #[derive(Deserialize)]
 struct Primitive {
-    attributes: Attributes,
+    attributes: AttributesText,
     indices: Option<usize>,
     #[serde(default = "triangles")]
     mode: u32,
@@ -71,8 +71,11 @@ struct Primitive {
 
 #[derive(Deserialize)]
 #[serde(rename_all = "UPPERCASE")]
-struct Attributes {
+struct AttributesText {
     position: Option<usize>,
+    normal: Option<usize>,
+    #[serde(rename = "TEXCOORD_0")]
+    coordinates: Option<usize>,
 }
 
 /// The value of `mode` that means separate triangles.
@@ -86,7 +89,7 @@ const HARMLESS: [&str; 4] = ["KHR_materials_", "KHR_texture_", "EXT_texture_", "
 const MOST: usize = 1 << 27;
 
 /// Reads the triangles of a file's default scene, placed by its nodes.
-pub(super) fn read(path: &Path) -> Result<MeshFile, String> {
+pub(super) fn read(path: &Path, smooth: bool) -> Result<MeshFile, String> {
     let bytes = fs::read(path).map_err(|error| error.to_string())?;
     let (json, binary) = if bytes.starts_with(b"glTF") { chunks(&bytes)? } else { (&bytes[..], None) };
     let document: Document =
@@ -101,7 +104,7 @@ pub(super) fn read(path: &Path) -> Result<MeshFile, String> {
     let placed = document.placed()?;
     let folder = path.parent().unwrap_or(Path::new(""));
     let store = Store::open(&document.buffers, folder, binary)?;
-    let mut file = document.read(&placed, &store)?;
+    let mut file = document.read(&placed, &store, smooth)?;
     file.names_materials = !document.materials.is_empty();
     let has_morphs = document.meshes.iter().flat_map(|mesh| &mesh.primitives).any(|p| !p.targets.is_empty());
     for (what, there) in [
@@ -167,12 +170,13 @@ impl Document {
         Ok(placed)
     }
 
-    fn read(&self, placed: &[(&MeshText, Transform)], store: &Store) -> Result<MeshFile, String> {
+    fn read(&self, placed: &[(&MeshText, Transform)], store: &Store, smooth: bool) -> Result<MeshFile, String> {
         let accessor = |number: usize| {
             let found = self.accessors.get(number).ok_or_else(|| format!("there is no accessor {number}"))?;
             Ok::<_, String>(found.data(number, &self.buffer_views, store))
         };
         let as_written = placed.iter().all(|(_, map)| *map == Transform::IDENTITY);
+        let (mut attributes, mut has_normals, mut has_coordinates) = (Attributes::default(), false, false);
         let (mut single, mut double, mut faces) = (Vec::new(), Vec::new(), Vec::<[u32; 3]>::new());
         for (mesh, map) in placed {
             for primitive in mesh.primitives.iter().filter(|primitive| (4..=6).contains(&primitive.mode)) {
@@ -190,6 +194,25 @@ impl Document {
                 if faces.len() + corners.len() > MOST || single.len() + double.len() + count > MOST {
                     return Err(format!("its nodes place more than {MOST} triangles"));
                 }
+                let mut own = Attributes::default();
+                if let Some(normals) = primitive.attributes.normal.filter(|_| smooth) {
+                    own.normals = accessor(normals)?.floats()?;
+                    has_normals = true;
+                }
+                if let Some(coordinates) = primitive.attributes.coordinates {
+                    // Images begin at their top in glTF.
+                    let flipped = |[u, v]: [f32; 2]| [u, 1.0 - v];
+                    own.coordinates = accessor(coordinates)?.floats()?.into_iter().map(flipped).collect();
+                    has_coordinates = true;
+                }
+                let fits = |own: usize| own == 0 || own == count;
+                if !fits(own.normals.len()) || !fits(own.coordinates.len()) {
+                    return Err(format!("a primitive has {count} places, but not as many normals or coordinates"));
+                }
+                own.normals.resize(count, [0.0; 3]);
+                own.coordinates.resize(count, [0.0; 2]);
+                attributes.normals.extend(own.transformed(map).normals);
+                attributes.coordinates.extend(own.coordinates);
                 let first = (single.len() + double.len()) as u32;
                 if as_written {
                     single.extend(points);
@@ -200,8 +223,14 @@ impl Document {
                 faces.extend(cut(&corners, primitive.mode).map(|face| turned(face.map(|corner| corner + first))));
             }
         }
+        if !has_normals {
+            attributes.normals = Vec::new();
+        }
+        if !has_coordinates {
+            attributes.coordinates = Vec::new();
+        }
         let vertices = if as_written { Vertices::Single(single) } else { Vertices::Double(double) };
-        Ok(MeshFile { vertices, faces, names_materials: false, ignored: Vec::new(), others: Vec::new() })
+        Ok(MeshFile { vertices, faces, attributes, names_materials: false, ignored: Vec::new(), others: Vec::new() })
     }
 }
 

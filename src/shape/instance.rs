@@ -63,11 +63,16 @@ impl Instance {
 
     /// The point, its normal by the inverse transpose, which keeps the front in front in mirror images too.
     pub(super) fn point(&self, crossing: &Crossing) -> SurfacePoint {
-        let SurfacePoint { position, error, normal } = self.mesh.point(crossing);
+        let SurfacePoint { position, error, normal, shading } = self.mesh.point(crossing);
         let placed = self.to_world.point(position);
-        let turned = self.to_object.transposed(normal);
-        let normal = unit(turned / turned.abs().max_element());
-        SurfacePoint { position: placed, error: self.error(position.abs(), placed.abs(), error), normal }
+        let turned = |normal: DVec3| {
+            let turned = self.to_object.transposed(normal);
+            unit(turned / turned.abs().max_element())
+        };
+        let error = self.error(position.abs(), placed.abs(), error);
+        let (flat, is_flat) = (turned(normal), shading == normal);
+        let shading = if is_flat { flat } else { turned(shading) };
+        SurfacePoint { position: placed, error, normal: flat, shading }
     }
 
     /// Bound in the world of a point's distance to the surface.

@@ -1,7 +1,7 @@
 use std::collections::HashMap;
 
 use super::packed::Packed;
-use super::{Bvh, Crossing, SurfacePoint, Triangle};
+use super::{Attributes, Bvh, Crossing, SurfacePoint, Triangle};
 use crate::math::{Bounds, DVec3, Ray, Transform};
 
 /// Triangles over shared vertices, with a tree of boxes.
@@ -9,6 +9,7 @@ use crate::math::{Bounds, DVec3, Ray, Transform};
 /// ```toml
 /// shape.mesh = { file = "bunny.ply" }                          # PLY, OBJ or glTF, relative to the scene file
 /// shape.mesh = { points = [[0, 0, 0], ..], faces = [[0, 1, 2], ..] }
+/// # smooth = true: looks as round as the file's normals say; normals = [[0, 0, 1], ..], uv = [[0, 0], ..] for each point
 /// ```
 #[derive(Clone, Debug)]
 pub struct Mesh {
@@ -19,6 +20,7 @@ pub struct Mesh {
     /// Running sum of the triangles' areas, for drawing one by its area.
     areas: Vec<f64>,
     closed: bool,
+    attributes: Attributes,
 }
 
 /// Vertices as exactly as they were given: files hold f32, scene files and transforms f64.
@@ -82,7 +84,7 @@ impl Mesh {
             total
         });
         let areas = areas.collect();
-        Self { bvh, packed, vertices, triangles, areas, closed }
+        Self { bvh, packed, vertices, triangles, areas, closed, attributes: Attributes::default() }
     }
 
     /// How many triangles there are.
@@ -118,7 +120,19 @@ impl Mesh {
     }
 
     pub(super) fn point(&self, crossing: &Crossing) -> SurfacePoint {
-        self.triangle(crossing.part).point(crossing.uv)
+        let point = self.triangle(crossing.part).point(crossing.uv);
+        let shading = self.attributes.shading(self.triangles[crossing.part as usize], crossing.uv, point.normal);
+        SurfacePoint { shading, ..point }
+    }
+
+    /// The mesh with what its vertices carry; lists that are not empty have an entry for each vertex.
+    pub fn with(self, attributes: Attributes) -> Self {
+        Self { attributes, ..self }
+    }
+
+    /// Texture coordinates at affine coordinates of a triangle; none if the mesh has none.
+    pub fn coordinates(&self, part: u32, uv: [f64; 2]) -> Option<[f64; 2]> {
+        self.attributes.coordinates(self.triangles[part as usize], uv)
     }
 
     pub(super) fn vertices(&self) -> impl Iterator<Item = DVec3> + '_ {
@@ -133,7 +147,7 @@ impl Mesh {
         let points = (0..self.vertices.count() as u32).map(|index| map.point(self.vertices.at(index))).collect();
         let turned = |[a, b, c]: [u32; 3]| if map.mirrors() { [a, c, b] } else { [a, b, c] };
         let triangles = self.triangles.iter().copied().map(turned).collect();
-        Self::built(Vertices::Double(points), triangles, self.closed)
+        Self::built(Vertices::Double(points), triangles, self.closed).with(self.attributes.transformed(map))
     }
 
     pub(super) fn area(&self) -> f64 {

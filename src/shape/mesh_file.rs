@@ -1,15 +1,13 @@
 //! Triangles from PLY, OBJ and glTF files.
 
-use std::cell::Cell;
 use std::fs::File;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
 use ply_rs_bw::parser::{Parser, Reader};
 use ply_rs_bw::ply::{Property, PropertyAccess, PropertyAccessResult, PropertyType, ScalarType};
-use tobj::LoadError;
 
-use super::Vertices;
+use super::{Attributes, Vertices};
 use crate::math::DVec3;
 
 /// What a mesh file holds.
@@ -18,6 +16,8 @@ pub struct MeshFile {
     pub vertices: Vertices,
     /// Corners of its triangles; polygons are cut into fans.
     pub faces: Vec<[u32; 3]>,
+    /// What its vertices carry.
+    pub attributes: Attributes,
     /// Whether the file asks for materials, which Abbe takes from the scene instead.
     pub names_materials: bool,
     /// What else the file holds that moves its points, which are taken as they stand.
@@ -31,11 +31,23 @@ pub struct MeshFile {
 /// # Errors
 /// A sentence that says what is wrong with the file.
 pub fn read(path: &Path) -> Result<MeshFile, String> {
+    read_with(path, false)
+}
+
+/// The same with the normals of the file's vertices, if it has any.
+///
+/// # Errors
+/// A sentence that says what is wrong with the file.
+pub fn read_smooth(path: &Path) -> Result<MeshFile, String> {
+    read_with(path, true)
+}
+
+fn read_with(path: &Path, smooth: bool) -> Result<MeshFile, String> {
     let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_lowercase();
     let file = match ending.as_str() {
-        "ply" => read_ply(path)?,
-        "obj" => read_obj(path)?,
-        "gltf" | "glb" => super::gltf::read(path)?,
+        "ply" => read_ply(path, smooth)?,
+        "obj" => super::obj::read(path, smooth)?,
+        "gltf" | "glb" => super::gltf::read(path, smooth)?,
         _ => return Err("a mesh file ends in .ply, .obj, .gltf or .glb".into()),
     };
     let count = file.vertices.count();
@@ -56,7 +68,14 @@ pub fn read(path: &Path) -> Result<MeshFile, String> {
 const NO_VERTEX: u32 = u32::MAX;
 
 #[derive(Default)]
-struct PlyVertex([f64; 3]);
+struct PlyVertex {
+    place: [f64; 3],
+    normal: [f32; 3],
+    coordinates: [f32; 2],
+}
+
+/// Names of a vertex's texture coordinates in use.
+const COORDINATES: [[&str; 2]; 4] = [["u", "v"], ["s", "t"], ["texture_u", "texture_v"], ["texture_s", "texture_t"]];
 
 impl PropertyAccess for PlyVertex {
     fn new() -> Self {
@@ -64,13 +83,7 @@ impl PropertyAccess for PlyVertex {
     }
 
     fn set_property(&mut self, name: &str, property: Property) -> PropertyAccessResult {
-        let axis = match name {
-            "x" => 0,
-            "y" => 1,
-            "z" => 2,
-            _ => return PropertyAccessResult::Ignored,
-        };
-        self.0[axis] = match property {
+        let value = match property {
             Property::Float(x) => f64::from(x),
             Property::Double(x) => x,
             Property::Char(x) => f64::from(x),
@@ -81,6 +94,18 @@ impl PropertyAccess for PlyVertex {
             Property::UInt(x) => f64::from(x),
             _ => return PropertyAccessResult::Ignored,
         };
+        match name {
+            "x" => self.place[0] = value,
+            "y" => self.place[1] = value,
+            "z" => self.place[2] = value,
+            "nx" => self.normal[0] = value as f32,
+            "ny" => self.normal[1] = value as f32,
+            "nz" => self.normal[2] = value as f32,
+            _ => match COORDINATES.iter().find_map(|names| names.iter().position(|known| *known == name)) {
+                Some(axis) => self.coordinates[axis] = value as f32,
+                None => return PropertyAccessResult::Ignored,
+            },
+        }
         PropertyAccessResult::Set
     }
 }
@@ -111,12 +136,13 @@ impl PropertyAccess for PlyFace {
     }
 }
 
-fn read_ply(path: &Path) -> Result<MeshFile, String> {
+fn read_ply(path: &Path, smooth: bool) -> Result<MeshFile, String> {
     let file = File::open(path).map_err(|error| error.to_string())?;
     let mut reader = Reader::new(BufReader::new(file));
     let (vertex_parser, face_parser) = (Parser::<PlyVertex>::new(), Parser::<PlyFace>::new());
     let header = vertex_parser.read_header(&mut reader).map_err(ply_error)?;
     let (mut points, mut polygons, mut double) = (Vec::new(), Vec::new(), false);
+    let (mut has_normals, mut has_coordinates) = (false, false);
     for element in header.elements.values() {
         if element.name == "face" {
             polygons = face_parser.read_payload_for_element(&mut reader, element, &header).map_err(ply_error)?;
@@ -127,18 +153,28 @@ fn read_ply(path: &Path) -> Result<MeshFile, String> {
                     _ => return Err(format!("its vertices have no {axis}")),
                 }
             }
+            let has = |names: &[&str]| names.iter().all(|name| element.properties.contains_key(*name));
+            has_normals = smooth && has(&["nx", "ny", "nz"]);
+            has_coordinates = COORDINATES.iter().any(|names| has(names));
             points = vertex_parser.read_payload_for_element(&mut reader, element, &header).map_err(ply_error)?;
         } else {
             vertex_parser.read_payload_for_element(&mut reader, element, &header).map_err(ply_error)?;
         }
     }
     let vertices = if double {
-        Vertices::Double(points.iter().map(|p| DVec3::from(p.0)).collect())
+        Vertices::Double(points.iter().map(|p| DVec3::from(p.place)).collect())
     } else {
-        Vertices::Single(points.iter().map(|p| p.0.map(|x| x as f32)).collect())
+        Vertices::Single(points.iter().map(|p| p.place.map(|x| x as f32)).collect())
     };
+    let mut attributes = Attributes::default();
+    if has_normals {
+        attributes.normals = points.iter().map(|p| p.normal).collect();
+    }
+    if has_coordinates {
+        attributes.coordinates = points.iter().map(|p| p.coordinates).collect();
+    }
     let faces = polygons.iter().flat_map(|polygon| fan(&polygon.0)).collect();
-    Ok(MeshFile { vertices, faces, names_materials: false, ignored: Vec::new(), others: Vec::new() })
+    Ok(MeshFile { vertices, faces, attributes, names_materials: false, ignored: Vec::new(), others: Vec::new() })
 }
 
 fn ply_error(error: ply_rs_bw::parser::ParseError) -> String {
@@ -156,31 +192,4 @@ fn ply_error(error: ply_rs_bw::parser::ParseError) -> String {
 fn fan(polygon: &[u32]) -> impl Iterator<Item = [u32; 3]> + '_ {
     let rest = polygon.get(1..).unwrap_or_default();
     rest.windows(2).map(move |pair| [polygon[0], pair[0], pair[1]])
-}
-
-fn read_obj(path: &Path) -> Result<MeshFile, String> {
-    let options = tobj::LoadOptions { triangulate: true, ..Default::default() };
-    let bytes = std::fs::read(path).map_err(|error| error.to_string())?;
-    // Names and comments may be in any encoding.
-    let text = String::from_utf8_lossy(&bytes);
-    let names_materials = Cell::new(false);
-    let models = tobj::load_obj_buf(&mut text.as_bytes(), &options, |_| {
-        names_materials.set(true);
-        Ok(Default::default())
-    });
-    let (models, _) = models.map_err(|error| match error {
-        LoadError::PositionParseError => "a vertex, v, is not made of numbers".into(),
-        LoadError::FaceParseError => "a face, f, is not made of whole numbers".into(),
-        LoadError::FaceVertexOutOfBounds => "a face, f, asks for a vertex that the file does not have".into(),
-        other => other.to_string(),
-    })?;
-    let (mut points, mut faces) = (Vec::new(), Vec::new());
-    for model in models {
-        let first = points.len() as u32;
-        points.extend(model.mesh.positions.chunks_exact(3).map(|p| [p[0], p[1], p[2]]));
-        let corners = model.mesh.indices.chunks_exact(3);
-        faces.extend(corners.map(|c| [c[0] + first, c[1] + first, c[2] + first]));
-    }
-    let (vertices, names_materials) = (Vertices::Single(points), names_materials.get());
-    Ok(MeshFile { vertices, faces, names_materials, ignored: Vec::new(), others: Vec::new() })
 }

@@ -5,6 +5,7 @@
 
 mod affine_plane;
 mod aim;
+mod attributes;
 mod bvh;
 mod cube;
 mod disc;
@@ -15,6 +16,7 @@ mod gltf_buffer;
 mod instance;
 mod mesh;
 mod mesh_file;
+mod obj;
 mod outline;
 mod packed;
 mod plane;
@@ -24,6 +26,7 @@ mod sphere;
 mod triangle;
 
 pub use aim::{Density, Sighting};
+pub use attributes::{Attributes, vertex_normals};
 pub use bvh::{Bvh, Visitor};
 pub use cube::Cube;
 pub use disc::Disc;
@@ -31,7 +34,7 @@ pub use ellipsoid::Ellipsoid;
 pub use emitters::{Choice, Emitter, Emitters, Facing};
 pub use instance::Instance;
 pub use mesh::{Mesh, MeshReport, Vertices};
-pub use mesh_file::read as read_mesh;
+pub use mesh_file::{read as read_mesh, read_smooth as read_smooth_mesh};
 pub use plane::Plane;
 pub use quad::Quad;
 pub use sides::Sides;
@@ -91,6 +94,8 @@ pub struct SurfacePoint {
     pub error: DVec3,
     /// Geometric unit normal on the front side.
     pub normal: DVec3,
+    /// Unit normal by which materials scatter, on the front side: `normal` but on smooth meshes.
+    pub shading: DVec3,
 }
 
 impl SurfacePoint {

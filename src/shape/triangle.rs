@@ -36,7 +36,8 @@ impl Triangle {
         // The test forms differences as long as the triangle in every coordinate, also in one that is 0 at all corners.
         let extent = p1.max(p2).max(p3) - p1.min(p2).min(p3);
         let error = (largest + DVec3::splat(extent.max_element())) * gamma(7);
-        SurfacePoint { position, error, normal: self.normal() }
+        let normal = self.normal();
+        SurfacePoint { position, error, normal, shading: normal }
     }
 
     /// Unit normal by the right-hand rule.

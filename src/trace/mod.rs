@@ -17,6 +17,7 @@ mod path;
 mod probe;
 
 mod render;
+mod shading;
 mod spread;
 mod tracer;
 mod width;
