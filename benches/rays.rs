@@ -116,7 +116,9 @@ fn room() -> (Vec<[f32; 3]>, Vec<[u32; 3]>) {
         };
         grid(&mut points, &mut faces, [164, 82], ball);
     }
-    let corner = |i: u32| DVec3::new(f64::from(i & 1) * 10.0 - 5.0, f64::from(i >> 1 & 1) * 7.0 - 1.0, f64::from(i >> 2) * 10.0 - 5.0);
+    let corner = |i: u32| {
+        DVec3::new(f64::from(i & 1) * 10.0 - 5.0, f64::from(i >> 1 & 1) * 7.0 - 1.0, f64::from(i >> 2) * 10.0 - 5.0)
+    };
     for wall in [[0, 2, 4, 6], [1, 3, 5, 7], [0, 1, 2, 3], [4, 5, 6, 7], [2, 3, 6, 7]] {
         let side = |u: f64, v: f64| corner(wall[usize::from(u > 0.5) + 2 * usize::from(v > 0.5)]);
         grid(&mut points, &mut faces, [1, 1], side);

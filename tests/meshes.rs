@@ -10,4 +10,5 @@ mod support;
 mod meshes {
     mod files;
     mod nearest;
+    mod trees;
 }

@@ -8,6 +8,7 @@ mod aim;
 mod bvh;
 mod cube;
 mod disc;
+mod edges;
 mod ellipsoid;
 mod emitters;
 mod mesh;
@@ -21,7 +22,7 @@ mod sphere;
 mod triangle;
 
 pub use aim::{Density, Sighting};
-pub use bvh::{Bvh, Visitor};
+pub use bvh::{Bvh, Vectors, Visitor};
 pub use cube::Cube;
 pub use disc::Disc;
 pub use ellipsoid::Ellipsoid;
