@@ -64,19 +64,36 @@ fn blocks<P: Copy + Into<[T; 3]>, T: Copy>(
 }
 
 fn nearest<T: Number>(blocks: &[Block<T>], bvh: &Bvh, ray: &Ray, t_max: f64) -> Option<Crossing> {
-    let visitor = Nearest { blocks, items: bvh.items(), sheared: Sheared::new(ray), found: None };
+    let visitor = Nearest { blocks, items: bvh.items(), line: Line::new(ray), found: None };
     let found = bvh.walk_in_order(ray, t_max, visitor).found;
     found.map(|found| Crossing { part: bvh.items()[found.part as usize], ..found })
 }
 
 fn any<T: Number>(blocks: &[Block<T>], bvh: &Bvh, ray: &Ray, t_max: f64) -> bool {
-    bvh.walk(ray, t_max, Any { blocks, sheared: Sheared::new(ray), found: false }).found
+    bvh.walk(ray, t_max, Any { blocks, line: Line::new(ray), found: false }).found
+}
+
+/// A ray as the tests of four triangles take it.
+struct Line {
+    sheared: Sheared,
+    /// Its origin in the order of the sheared axes.
+    origin: [f64; 3],
+    shear: [f64; 2],
+}
+
+impl Line {
+    #[inline(always)]
+    fn new(ray: &Ray) -> Self {
+        let sheared = Sheared::new(ray);
+        let origin = sheared.order.map(|axis| ray.origin[axis]);
+        Self { origin, shear: [sheared.shear.x, sheared.shear.y], sheared }
+    }
 }
 
 struct Nearest<'a, T> {
     blocks: &'a [Block<T>],
     items: &'a [u32],
-    sheared: Sheared,
+    line: Line,
     /// Its part is the place in `items`.
     found: Option<Crossing>,
 }
@@ -86,11 +103,11 @@ impl<T: Number> Visitor for Nearest<'_, T> {
     fn visit(&mut self, vectors: impl Vectors, first: usize, groups: usize, mut t_max: f64) -> Option<f64> {
         for group in first..first + groups {
             let block = &self.blocks[group];
-            let mut inside = block.inside(vectors, &self.sheared);
+            let mut inside = block.inside(vectors, &self.line);
             while inside != 0 {
                 let lane = (inside.trailing_zeros() & 3) as usize;
                 inside &= inside - 1;
-                if let Some(crossing) = block.crossing(lane, &self.sheared, t_max) {
+                if let Some(crossing) = block.crossing(lane, &self.line.sheared, t_max) {
                     let place = (group * GROUP + lane) as u32;
                     let item = |place: u32| self.items[place as usize];
                     if self.found.is_none_or(|found| crossing.t < found.t || item(place) < item(found.part)) {
@@ -111,7 +128,7 @@ impl<T: Number> Visitor for Nearest<'_, T> {
 
 struct Any<'a, T> {
     blocks: &'a [Block<T>],
-    sheared: Sheared,
+    line: Line,
     found: bool,
 }
 
@@ -119,11 +136,11 @@ impl<T: Number> Visitor for Any<'_, T> {
     #[inline(always)]
     fn visit(&mut self, vectors: impl Vectors, first: usize, groups: usize, t_max: f64) -> Option<f64> {
         for block in &self.blocks[first..first + groups] {
-            let mut inside = block.inside(vectors, &self.sheared);
+            let mut inside = block.inside(vectors, &self.line);
             while inside != 0 {
                 let lane = (inside.trailing_zeros() & 3) as usize;
                 inside &= inside - 1;
-                if block.crossing(lane, &self.sheared, t_max).is_some() {
+                if block.crossing(lane, &self.line.sheared, t_max).is_some() {
                     self.found = true;
                     return None;
                 }
@@ -144,11 +161,10 @@ impl<T: Number> Block<T> {
     /// The edge functions are rounded as in `Sheared::intersect`. One that is not 0 has the right sign, for rounding
     /// keeps the order of products; so what has two of opposite signs is refused there as well, and nothing else is here.
     #[inline(always)]
-    fn inside(&self, vectors: impl Vectors, sheared: &Sheared) -> u32 {
-        let [x, y, z] = sheared.order;
+    fn inside(&self, vectors: impl Vectors, line: &Line) -> u32 {
+        let [x, y, z] = line.sheared.order;
         let corners = self.0.each_ref().map(|corner| [&corner[x], &corner[y], &corner[z]]);
-        let origin = [x, y, z].map(|axis| sheared.origin[axis]);
-        vectors.inside(corners, origin, [sheared.shear.x, sheared.shear.y])
+        vectors.inside(corners, line.origin, line.shear)
     }
 
     /// The crossing of one of the triangles with 0 < t <= `t_max`.

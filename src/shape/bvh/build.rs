@@ -13,7 +13,7 @@ use super::walk::STACK;
 use crate::math::DVec3;
 
 /// Most items of a cluster: building one takes some 200 bytes for each of its items.
-const CLUSTER: usize = 1 << 18;
+const CLUSTER: usize = 1 << 17;
 /// Slices along an axis between which items are split into clusters.
 const SLICES: usize = 32;
 /// Depth below which items are split into clusters by halves.
