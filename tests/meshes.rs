@@ -12,4 +12,5 @@ mod meshes {
     mod gltf;
     mod instances;
     mod nearest;
+    mod trees;
 }

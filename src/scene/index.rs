@@ -1,8 +1,8 @@
 use crate::math::Ray;
-use crate::shape::{Bvh, Shape, Visitor};
+use crate::shape::{Bvh, Shape, Vectors, Visitor};
 
 /// Objects up to this many are tried one by one: a tree saves nothing there.
-const FEW: usize = 12;
+const FEW: usize = 6;
 
 /// Finds the objects a ray may meet.
 #[derive(Clone, Debug)]
@@ -67,7 +67,7 @@ struct Objects<'a, F> {
 
 impl<F: FnMut(u32, f64) -> Option<f64>> Visitor for Objects<'_, F> {
     #[inline]
-    fn visit(&mut self, first: usize, groups: usize, mut t_max: f64) -> Option<f64> {
+    fn visit(&mut self, _: impl Vectors, first: usize, groups: usize, mut t_max: f64) -> Option<f64> {
         for &item in &self.index.tree.items()[first..first + groups] {
             t_max = (self.test)(self.index.bounded[item as usize], t_max)?;
         }

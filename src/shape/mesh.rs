@@ -1,5 +1,7 @@
-use std::collections::HashMap;
+use std::sync::OnceLock;
 
+use super::bvh::GROUP;
+use super::edges::open_edges;
 use super::packed::Packed;
 use super::{Attributes, Bvh, Crossing, SurfacePoint, Triangle};
 use crate::math::{Bounds, DVec3, Ray, Transform};
@@ -17,8 +19,8 @@ pub struct Mesh {
     triangles: Vec<[u32; 3]>,
     bvh: Bvh,
     packed: Packed,
-    /// Running sum of the triangles' areas, for drawing one by its area.
-    areas: Vec<f64>,
+    /// Running sum of the triangles' areas, for drawing one by its area; only lights ask for it.
+    areas: OnceLock<Vec<f64>>,
     closed: bool,
     attributes: Attributes,
 }
@@ -76,15 +78,9 @@ impl Mesh {
 
     fn built(vertices: Vertices, triangles: Vec<[u32; 3]>, closed: bool) -> Self {
         let shapes = || triangles.iter().map(|face| Triangle::new(face.map(|corner| vertices.at(corner))));
-        let bvh = Bvh::new::<{ Packed::GROUP }>(shapes().map(|triangle| triangle.bounds()));
+        let bvh = Bvh::new::<GROUP>(shapes().map(|triangle| triangle.bounds()));
         let packed = Packed::new(&vertices, &triangles, bvh.items());
-        let mut total = 0.0;
-        let areas = shapes().map(|triangle| {
-            total += triangle.area();
-            total
-        });
-        let areas = areas.collect();
-        Self { bvh, packed, vertices, triangles, areas, closed, attributes: Attributes::default() }
+        Self { bvh, packed, vertices, triangles, areas: OnceLock::new(), closed, attributes: Attributes::default() }
     }
 
     /// How many triangles there are.
@@ -150,36 +146,28 @@ impl Mesh {
         Self::built(Vertices::Double(points), triangles, self.closed).with(self.attributes.transformed(map))
     }
 
+    fn areas(&self) -> &[f64] {
+        self.areas.get_or_init(|| {
+            let mut total = 0.0;
+            let areas = (0..self.triangles.len() as u32).map(|index| {
+                total += self.triangle(index).area();
+                total
+            });
+            areas.collect()
+        })
+    }
+
     pub(super) fn area(&self) -> f64 {
-        self.areas[self.areas.len() - 1]
+        self.areas()[self.triangles.len() - 1]
     }
 
     /// A point uniform by area, and the triangle it lies on.
     pub(super) fn sample(&self, u: [f64; 2]) -> (DVec3, u32) {
+        let areas = self.areas();
         let target = u[0] * self.area();
-        let index = self.areas.partition_point(|&sum| sum <= target).min(self.areas.len() - 1);
-        let before = if index == 0 { 0.0 } else { self.areas[index - 1] };
-        let along = ((target - before) / (self.areas[index] - before)).clamp(0.0, 1.0);
+        let index = areas.partition_point(|&sum| sum <= target).min(areas.len() - 1);
+        let before = if index == 0 { 0.0 } else { areas[index - 1] };
+        let along = ((target - before) / (areas[index] - before)).clamp(0.0, 1.0);
         (self.triangle(index as u32).sample([along, u[1]]), index as u32)
     }
-}
-
-/// Edges that keep the mesh from enclosing a volume, vertices at the same place counting as one.
-fn open_edges(vertices: &Vertices, triangles: &[[u32; 3]]) -> usize {
-    let mut places: HashMap<[u64; 3], u32> = HashMap::new();
-    let merged: Vec<u32> = (0..vertices.count() as u32)
-        .map(|index| {
-            // Adding 0 makes -0 and 0 the same place.
-            let key = vertices.at(index).to_array().map(|x| (x + 0.0).to_bits());
-            *places.entry(key).or_insert(index)
-        })
-        .collect();
-    let mut balance: HashMap<(u32, u32), [u32; 2]> = HashMap::new();
-    for triangle in triangles {
-        let corners = triangle.map(|corner| merged[corner as usize]);
-        for (a, b) in [(0, 1), (1, 2), (2, 0)].map(|(i, j)| (corners[i], corners[j])) {
-            balance.entry((a.min(b), a.max(b))).or_default()[usize::from(a > b)] += 1;
-        }
-    }
-    balance.values().filter(|ways| ways[0] != ways[1]).count()
 }

@@ -5,10 +5,9 @@ use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
 use ply_rs_bw::parser::{Parser, Reader};
-use ply_rs_bw::ply::{Property, PropertyAccess, PropertyAccessResult, PropertyType, ScalarType};
+use ply_rs_bw::ply::{ElementDef, Header, Property, PropertyAccess, PropertyAccessResult, PropertyType, ScalarType};
 
 use super::{Attributes, Vertices};
-use crate::math::DVec3;
 
 /// What a mesh file holds.
 pub struct MeshFile {
@@ -139,42 +138,71 @@ impl PropertyAccess for PlyFace {
 fn read_ply(path: &Path, smooth: bool) -> Result<MeshFile, String> {
     let file = File::open(path).map_err(|error| error.to_string())?;
     let mut reader = Reader::new(BufReader::new(file));
-    let (vertex_parser, face_parser) = (Parser::<PlyVertex>::new(), Parser::<PlyFace>::new());
-    let header = vertex_parser.read_header(&mut reader).map_err(ply_error)?;
-    let (mut points, mut polygons, mut double) = (Vec::new(), Vec::new(), false);
-    let (mut has_normals, mut has_coordinates) = (false, false);
+    let header = Parser::<PlyVertex>::new().read_header(&mut reader).map_err(ply_error)?;
+    let (mut vertices, mut faces) = (Vertices::Single(Vec::new()), Vec::new());
+    let mut attributes = Attributes::default();
     for element in header.elements.values() {
         if element.name == "face" {
-            polygons = face_parser.read_payload_for_element(&mut reader, element, &header).map_err(ply_error)?;
+            let keep = |polygon: PlyFace| faces.extend(fan(&polygon.0));
+            in_batches(&mut reader, element, &header, keep)?;
         } else if element.name == "vertex" {
             for axis in ["x", "y", "z"] {
                 match element.properties.get(axis).map(|property| &property.data_type) {
-                    Some(PropertyType::Scalar(scalar)) => double |= *scalar != ScalarType::Float,
+                    Some(PropertyType::Scalar(ScalarType::Float)) => {}
+                    Some(PropertyType::Scalar(_)) => vertices = Vertices::Double(Vec::new()),
                     _ => return Err(format!("its vertices have no {axis}")),
                 }
             }
             let has = |names: &[&str]| names.iter().all(|name| element.properties.contains_key(*name));
-            has_normals = smooth && has(&["nx", "ny", "nz"]);
-            has_coordinates = COORDINATES.iter().any(|names| has(names));
-            points = vertex_parser.read_payload_for_element(&mut reader, element, &header).map_err(ply_error)?;
+            let has_normals = smooth && has(&["nx", "ny", "nz"]);
+            let has_coordinates = COORDINATES.iter().any(|names| has(names));
+            let keep = |point: PlyVertex| {
+                match &mut vertices {
+                    Vertices::Single(points) => points.push(point.place.map(|x| x as f32)),
+                    Vertices::Double(points) => points.push(point.place.into()),
+                }
+                attributes.normals.extend(has_normals.then_some(point.normal));
+                attributes.coordinates.extend(has_coordinates.then_some(point.coordinates));
+            };
+            in_batches(&mut reader, element, &header, keep)?;
         } else {
-            vertex_parser.read_payload_for_element(&mut reader, element, &header).map_err(ply_error)?;
+            in_batches(&mut reader, element, &header, |_: PlyVertex| ())?;
         }
     }
-    let vertices = if double {
-        Vertices::Double(points.iter().map(|p| DVec3::from(p.place)).collect())
-    } else {
-        Vertices::Single(points.iter().map(|p| p.place.map(|x| x as f32)).collect())
-    };
-    let mut attributes = Attributes::default();
-    if has_normals {
-        attributes.normals = points.iter().map(|p| p.normal).collect();
-    }
-    if has_coordinates {
-        attributes.coordinates = points.iter().map(|p| p.coordinates).collect();
-    }
-    let faces = polygons.iter().flat_map(|polygon| fan(&polygon.0)).collect();
     Ok(MeshFile { vertices, faces, attributes, names_materials: false, ignored: Vec::new(), others: Vec::new() })
+}
+
+/// Elements that are read at once: each takes several times the memory of what is kept of it.
+const BATCH: usize = 4096;
+
+/// Hands all elements of one kind over, one after the other.
+fn in_batches<E: PropertyAccess>(
+    reader: &mut Reader<BufReader<File>>,
+    element: &ElementDef,
+    header: &Header,
+    mut keep: impl FnMut(E),
+) -> Result<(), String> {
+    let (parser, mut batch) = (Parser::<E>::new(), element.clone());
+    for done in (0..element.count).step_by(BATCH) {
+        batch.count = BATCH.min(element.count - done);
+        let read = parser.read_payload_for_element(reader, &batch, header);
+        let of_all = |error| count_from(&ply_error(error), batch.count, done, element.count);
+        read.map_err(of_all)?.into_iter().for_each(&mut keep);
+    }
+    Ok(())
+}
+
+/// A message about the end of a file with the numbers of all elements instead of those of a batch.
+fn count_from(message: &str, batch: usize, done: usize, all: usize) -> String {
+    let numbers = message.split_once(&format!("(expected {batch}, got "));
+    let numbers = numbers.and_then(|(before, rest)| Some((before, rest.split_once(')')?)));
+    match numbers {
+        Some((before, (got, after))) => match got.parse::<usize>() {
+            Ok(got) => format!("{before}(expected {all}, got {}){after}", done + got),
+            Err(_) => message.to_owned(),
+        },
+        None => message.to_owned(),
+    }
 }
 
 fn ply_error(error: ply_rs_bw::parser::ParseError) -> String {

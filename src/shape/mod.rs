@@ -9,6 +9,7 @@ mod attributes;
 mod bvh;
 mod cube;
 mod disc;
+mod edges;
 mod ellipsoid;
 mod emitters;
 mod gltf;
@@ -27,7 +28,7 @@ mod triangle;
 
 pub use aim::{Density, Sighting};
 pub use attributes::{Attributes, vertex_normals};
-pub use bvh::{Bvh, Visitor};
+pub use bvh::{Bvh, Vectors, Visitor};
 pub use cube::Cube;
 pub use disc::Disc;
 pub use ellipsoid::Ellipsoid;

@@ -7,13 +7,13 @@ use obvhs::aabb::Aabb;
 use obvhs::bvh2::builder::build_bvh2;
 use obvhs::{Boundable, BvhBuildParams};
 
-use super::collapse::{Below, Pair};
+use super::collapse::Pair;
 use super::node::{Child, Node, Outer, WIDTH};
 use super::walk::STACK;
 use crate::math::DVec3;
 
 /// Most items of a cluster: building one takes some 200 bytes for each of its items.
-const CLUSTER: usize = 1 << 16;
+const CLUSTER: usize = 1 << 17;
 /// Slices along an axis between which items are split into clusters.
 const SLICES: usize = 32;
 /// Depth below which items are split into clusters by halves.
@@ -62,22 +62,22 @@ impl<'a> Builder<'a> {
     /// A tree whose upper part splits the items into clusters where that costs the fewest tests.
     fn clusters(&mut self) -> Child {
         let whole = 0..self.order.len();
-        let mut pairs = vec![Pair { outer: self.around(whole.clone()), below: Below::Items(0, whole.end) }];
+        let mut pairs = vec![Pair::leaf(&whole)];
         let mut open = vec![(0, whole, 0)];
         while let Some((index, range, depth)) = open.pop() {
             if range.len() <= CLUSTER {
-                let cluster = self.by_surface_area(range);
-                pairs[index].below = Below::Done(self.collapse(&cluster));
+                self.by_surface_area(range, index, &mut pairs);
                 continue;
             }
             let middle = range.start + if depth < DEEP { self.split(range.clone()) } else { self.halve(range.clone()) };
             let first = pairs.len();
-            pairs[index].below = Below::Two(first);
+            pairs[index] = Pair::two(first);
             for (child, half) in [range.start..middle, middle..range.end].into_iter().enumerate() {
-                pairs.push(Pair { outer: self.around(half.clone()), below: Below::Items(half.start, half.len()) });
+                pairs.push(Pair::leaf(&half));
                 open.push((first + child, half, depth + 1));
             }
         }
+        self.fit(&mut pairs);
         self.collapse(&pairs)
     }
 
@@ -151,10 +151,10 @@ impl<'a> Builder<'a> {
         half
     }
 
-    /// The binary tree over a range that costs the fewest tests, built on boxes scaled to the unit cube.
+    /// Replaces a leaf by the tree over its range that costs the fewest tests, built on boxes scaled to the unit cube.
     ///
     /// The scale is a power of two, so that a scene of any size gets the same tree and no area over- or underflows.
-    fn by_surface_area(&mut self, range: Range<usize>) -> Vec<Pair> {
+    fn by_surface_area(&mut self, range: Range<usize>, root: usize, pairs: &mut Vec<Pair>) {
         let all = self.around(range.clone());
         let low = DVec3::from(all.min.map(f64::from));
         let size = (DVec3::from(all.max.map(f64::from)) - low).max_element().max(f64::MIN_POSITIVE);
@@ -173,23 +173,20 @@ impl<'a> Builder<'a> {
         for (place, &index) in self.order[range.clone()].iter_mut().zip(&tree.primitive_indices) {
             *place = items[index as usize];
         }
-        let pairs = tree.nodes.iter().map(|node| {
-            let first = node.first_index as usize;
-            let below = match node.prim_count as usize {
-                0 => Below::Two(first),
-                count => Below::Items(range.start + first, count),
-            };
-            Pair { outer: Outer::EMPTY, below }
+        // Behind its root, the cluster's nodes follow those that are there.
+        let shift = pairs.len() - 1;
+        let mut nodes = tree.nodes.iter().map(|node| match node.prim_count {
+            0 => Pair::two(shift + node.first_index as usize),
+            count => Pair { first: range.start as u32 + node.first_index, ..Pair::leaf(&(0..count as usize)) },
         });
-        let mut pairs: Vec<Pair> = pairs.collect();
-        self.fit(&mut pairs);
-        pairs
+        pairs[root] = nodes.next().expect("a tree has a root");
+        pairs.extend(nodes);
     }
 
     /// A tree whose depth is the logarithm of the number of items, whatever the boxes.
     fn by_halves(&mut self) -> Child {
         let whole = 0..self.order.len();
-        let mut pairs = vec![Pair { outer: Outer::EMPTY, below: Below::Items(0, whole.end) }];
+        let mut pairs = vec![Pair::leaf(&whole)];
         let mut open = vec![(0, whole)];
         while let Some((index, range)) = open.pop() {
             if range.len() <= self.group {
@@ -197,9 +194,9 @@ impl<'a> Builder<'a> {
             }
             let middle = range.start + self.halve(range.clone());
             let first = pairs.len();
-            pairs[index].below = Below::Two(first);
+            pairs[index] = Pair::two(first);
             for (child, half) in [range.start..middle, middle..range.end].into_iter().enumerate() {
-                pairs.push(Pair { outer: Outer::EMPTY, below: Below::Items(half.start, half.len()) });
+                pairs.push(Pair::leaf(&half));
                 open.push((first + child, half));
             }
         }
@@ -209,21 +206,33 @@ impl<'a> Builder<'a> {
 
     /// Gives every node of a binary tree the box of its items.
     fn fit(&self, pairs: &mut [Pair]) {
-        let mut order = vec![0];
+        let mut order = vec![0u32];
         let mut next = 0;
         while next < order.len() {
-            if let Below::Two(first) = pairs[order[next]].below {
-                order.extend([first, first + 1]);
+            let pair = pairs[order[next] as usize];
+            if pair.count == 0 {
+                order.extend([pair.first, pair.first + 1]);
             }
             next += 1;
         }
         for &index in order.iter().rev() {
-            pairs[index].outer = match pairs[index].below {
-                Below::Two(first) => pairs[first].outer.union(pairs[first + 1].outer),
-                Below::Items(first, count) => self.around(first..first + count),
-                Below::Done(_) => pairs[index].outer,
+            let Pair { first, count, .. } = pairs[index as usize];
+            let first = first as usize;
+            pairs[index as usize].outer = match count as usize {
+                0 => pairs[first].outer.union(pairs[first + 1].outer),
+                count => self.around(first..first + count),
             };
         }
+    }
+}
+
+impl Pair {
+    fn leaf(range: &Range<usize>) -> Self {
+        Self { outer: Outer::EMPTY, first: range.start as u32, count: range.len() as u32 }
+    }
+
+    fn two(first: usize) -> Self {
+        Self { outer: Outer::EMPTY, first: first as u32, count: 0 }
     }
 }
 

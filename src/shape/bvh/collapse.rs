@@ -1,7 +1,5 @@
 //! From a binary tree to nodes of eight.
 
-use std::ops::Range;
-
 use super::Bvh;
 use super::build::Builder;
 use super::node::{Child, Node, Outer, WIDTH};
@@ -10,59 +8,49 @@ use super::node::{Child, Node, Outer, WIDTH};
 #[derive(Clone, Copy)]
 pub struct Pair {
     pub outer: Outer,
-    pub below: Below,
-}
-
-#[derive(Clone, Copy)]
-pub enum Below {
-    /// First of two neighboring nodes.
-    Two(usize),
-    /// A range of `order`.
-    Items(usize, usize),
-    /// A subtree that is done.
-    Done(Child),
+    /// First of two neighboring nodes, or of a range of `Builder::order`.
+    pub first: u32,
+    /// Number of items of a leaf, 0 for an inner node.
+    pub count: u32,
 }
 
 impl Builder<'_> {
     /// Turns a binary tree into nodes of eight: the children of the largest child take its place until there are eight.
+    ///
+    /// What is below one node lies side by side, for it is often looked at together.
     pub fn collapse(&mut self, pairs: &[Pair]) -> Child {
-        let mut root = Child::inner(self.nodes.len());
-        // Each binary node becomes a child of a node, the first one the root.
-        let mut open = vec![(0, None)];
-        while let Some((index, slot)) = open.pop() {
-            let child = match pairs[index].below {
-                Below::Done(child) => child,
-                Below::Items(first, count) => self.leaf(first..first + count),
-                Below::Two(first) => {
-                    let node = self.nodes.len();
-                    let mut parts = vec![first, first + 1];
-                    while parts.len() < WIDTH {
-                        let divisible = (0..parts.len()).filter(|&i| matches!(pairs[parts[i]].below, Below::Two(_)));
-                        let area = |i: usize| pairs[parts[i]].outer.half_area();
-                        let Some(largest) = divisible.max_by(|&a, &b| area(a).total_cmp(&area(b))) else { break };
-                        let Below::Two(first) = pairs[parts[largest]].below else { break };
-                        parts[largest] = first;
-                        parts.push(first + 1);
-                    }
+        if pairs[0].count > 0 {
+            return self.leaf(&pairs[0]);
+        }
+        self.nodes.push(Node::EMPTY);
+        let mut open = vec![(pairs[0].first, 0)];
+        while let Some((first, node)) = open.pop() {
+            let mut parts = vec![first as usize, first as usize + 1];
+            while parts.len() < WIDTH {
+                let divisible = (0..parts.len()).filter(|&i| pairs[parts[i]].count == 0);
+                let area = |i: usize| pairs[parts[i]].outer.half_area();
+                let Some(largest) = divisible.max_by(|&a, &b| area(a).total_cmp(&area(b))) else { break };
+                let first = pairs[parts[largest]].first as usize;
+                parts[largest] = first;
+                parts.push(first + 1);
+            }
+            for (slot, pair) in parts.iter().map(|&part| &pairs[part]).enumerate() {
+                let child = if pair.count > 0 {
+                    self.leaf(pair)
+                } else {
+                    open.push((pair.first, self.nodes.len()));
                     self.nodes.push(Node::EMPTY);
-                    for (slot, &part) in parts.iter().enumerate() {
-                        self.nodes[node].set(slot, &pairs[part].outer, Child(0));
-                        open.push((part, Some((node, slot))));
-                    }
-                    Child::inner(node)
-                }
-            };
-            match slot {
-                None => root = child,
-                Some((node, slot)) => self.nodes[node].children[slot] = child,
+                    Child::inner(self.nodes.len() - 1)
+                };
+                self.nodes[node].set(slot, &pair.outer, child);
             }
         }
-        root
+        Child::inner(0)
     }
 
-    fn leaf(&mut self, range: Range<usize>) -> Child {
+    fn leaf(&mut self, pair: &Pair) -> Child {
         let first = self.items.len();
-        self.items.extend_from_slice(&self.order[range]);
+        self.items.extend_from_slice(&self.order[pair.first as usize..(pair.first + pair.count) as usize]);
         let full = self.items.len().next_multiple_of(self.group);
         self.items.resize(full, Bvh::NONE);
         Child::leaf(first / self.group, (full - first) / self.group)

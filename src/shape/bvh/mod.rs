@@ -2,16 +2,17 @@
 
 mod build;
 mod collapse;
-mod instructions;
 mod node;
+mod vectors;
 mod walk;
 
+pub use vectors::{GROUP, Number, Vectors, prefetch};
 pub use walk::Visitor;
 
 use crate::math::{Bounds, Ray};
 use build::Builder;
-use instructions::Instructions;
 use node::{Child, Node, Outer};
+use vectors::Instructions;
 use walk::Walk;
 
 /// A bounding volume hierarchy over numbered items, eight children to a node.

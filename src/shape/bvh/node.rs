@@ -1,5 +1,6 @@
 //! Nodes with eight children, and the test of a ray against eight boxes at once.
 
+use super::vectors::{Keys, Vectors};
 use crate::math::{Bounds, Ray};
 
 /// Children of a node.
@@ -7,6 +8,7 @@ pub const WIDTH: usize = 8;
 
 /// A child: an inner node by its index, or a leaf by its first group of items and the number of its groups.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(transparent)]
 pub struct Child(pub u32);
 
 impl Child {
@@ -88,10 +90,10 @@ impl Outer {
 /// entering and infinite for leaving, which is again on the safe side.
 pub struct Slabs {
     backward: [bool; 3],
-    entry: [f32; 3],
-    exit: [f32; 3],
-    entry_inverse: [f32; 3],
-    exit_inverse: [f32; 3],
+    pub entry: [f32; 3],
+    pub exit: [f32; 3],
+    pub entry_inverse: [f32; 3],
+    pub exit_inverse: [f32; 3],
 }
 
 /// 1 + 12 u.
@@ -145,29 +147,16 @@ impl Node {
         (0..WIDTH).filter(|&slot| self.min[0][slot] <= self.max[0][slot]).map(|slot| self.children[slot])
     }
 
-    /// A bit for each child whose box the ray may enter before `reach`, and the distances at which it does.
+    /// A bit for each child whose box the ray may enter before `reach`, and the keys of all children.
     ///
     /// Comparisons ignore the NaN of 0 * infinity, which a ray within a side's plane produces.
     #[inline(always)]
-    pub fn enter(&self, slabs: &Slabs, reach: f32) -> (u32, [f32; WIDTH]) {
-        let (mut near, mut far) = ([0.0; WIDTH], [reach; WIDTH]);
-        for axis in 0..3 {
-            let (min, max) = (&self.min[axis], &self.max[axis]);
-            let (first, last) = if slabs.backward[axis] { (max, min) } else { (min, max) };
-            for i in 0..WIDTH {
-                let enter = (first[i] - slabs.entry[axis]) * slabs.entry_inverse[axis];
-                near[i] = if enter > near[i] { enter } else { near[i] };
-            }
-            for i in 0..WIDTH {
-                let leave = (last[i] - slabs.exit[axis]) * slabs.exit_inverse[axis];
-                far[i] = if leave < far[i] { leave } else { far[i] };
-            }
-        }
-        let mut entered = 0;
-        for i in 0..WIDTH {
-            entered |= u32::from(near[i] <= far[i]) << i;
-        }
-        (entered, near)
+    pub fn enter(&self, vectors: impl Vectors, slabs: &Slabs, reach: f32) -> (u32, Keys) {
+        let side = |axis: usize, max: bool| if max { &self.max[axis] } else { &self.min[axis] };
+        let [x, y, z] = slabs.backward;
+        let first = [side(0, x), side(1, y), side(2, z)];
+        let last = [side(0, !x), side(1, !y), side(2, !z)];
+        vectors.enter(first, last, &self.children, slabs, reach)
     }
 }
 

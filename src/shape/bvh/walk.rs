@@ -1,8 +1,8 @@
 //! The way of a ray through the tree.
 
 use super::Bvh;
-use super::instructions::Computation;
 use super::node::{Child, Slabs, reach};
+use super::vectors::{Computation, Vectors, prefetch};
 use crate::math::Ray;
 
 /// Entries of the stack, which no tree needs more of.
@@ -13,22 +13,26 @@ pub trait Visitor {
     /// Looks at some groups of items, and answers the new `t_max`, or none to end the walk.
     ///
     /// Implementations that use vectors are `#[inline(always)]`.
-    fn visit(&mut self, first: usize, groups: usize, t_max: f64) -> Option<f64>;
+    fn visit(&mut self, vectors: impl Vectors, first: usize, groups: usize, t_max: f64) -> Option<f64>;
+
+    /// Asks for the memory of a group that is visited soon.
+    #[inline(always)]
+    fn prefetch(&self, _group: usize) {}
 }
 
 /// A walk that looks into nearer boxes first if `ORDERED`, and into any otherwise.
-pub struct Walk<'a, const ORDERED: bool, V> {
+pub struct Walk<'a, const ORDERED: bool, T> {
     pub bvh: &'a Bvh,
     pub ray: &'a Ray,
     pub t_max: f64,
-    pub visitor: V,
+    pub visitor: T,
 }
 
-impl<const ORDERED: bool, V: Visitor> Computation for Walk<'_, ORDERED, V> {
-    type Output = V;
+impl<const ORDERED: bool, T: Visitor> Computation for Walk<'_, ORDERED, T> {
+    type Output = T;
 
     #[inline(always)]
-    fn run(mut self) -> V {
+    fn run<V: Vectors>(mut self, vectors: V) -> T {
         let Some(root) = self.bvh.root else { return self.visitor };
         let slabs = Slabs::new(self.ray);
         let mut limit = reach(self.t_max);
@@ -38,7 +42,7 @@ impl<const ORDERED: bool, V: Visitor> Computation for Walk<'_, ORDERED, V> {
         let mut current = root;
         loop {
             match current.open() {
-                Ok((first, groups)) => match self.visitor.visit(first, groups, self.t_max) {
+                Ok((first, groups)) => match self.visitor.visit(vectors, first, groups, self.t_max) {
                     Some(t_max) => {
                         self.t_max = t_max;
                         limit = reach(t_max);
@@ -47,13 +51,16 @@ impl<const ORDERED: bool, V: Visitor> Computation for Walk<'_, ORDERED, V> {
                 },
                 Err(index) => {
                     let node = &self.bvh.nodes[index];
-                    let (mut entered, near) = node.enter(&slabs, limit);
+                    let (mut entered, keys) = node.enter(vectors, &slabs, limit);
                     let base = height;
                     while entered != 0 {
                         let slot = (entered.trailing_zeros() & 7) as usize;
                         entered &= entered - 1;
-                        // Distances are not negative: their bits are in their order.
-                        let key = u64::from(near[slot].to_bits()) << 32 | u64::from(node.children[slot].0);
+                        let key = keys[slot];
+                        match Child(key as u32).open() {
+                            Ok((first, _)) => self.visitor.prefetch(first),
+                            Err(index) => prefetch(&self.bvh.nodes[index]),
+                        }
                         let mut at = height;
                         if ORDERED {
                             while at > base && stack[(at - 1) % STACK] < key {
