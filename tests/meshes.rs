@@ -9,5 +9,8 @@ mod support;
 
 mod meshes {
     mod files;
+    mod gltf;
+    mod instances;
     mod nearest;
+    mod trees;
 }

@@ -200,6 +200,11 @@ fn text_that_is_not_toml_is_told_in_plain_words() {
 }
 
 #[test]
+fn impossible_instances_and_broken_gltf_files_are_refused() {
+    check("instances.txt", 11);
+}
+
+#[test]
 fn broken_mesh_files_are_refused_with_the_place_in_the_scene() {
     check("meshes.txt", 25);
 }

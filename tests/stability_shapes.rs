@@ -16,6 +16,8 @@ mod random;
 mod boxes;
 #[path = "stability_shapes/glass.rs"]
 mod glass;
+#[path = "stability_shapes/instances.rs"]
+mod instances;
 #[path = "stability_shapes/leaving.rs"]
 mod leaving;
 #[path = "stability_shapes/planes.rs"]

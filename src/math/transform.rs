@@ -33,6 +33,21 @@ impl Transform {
         Self { linear: DMat3::IDENTITY * cos + cross * sin + outer * (1.0 - cos), ..Self::IDENTITY }
     }
 
+    /// Turns as the quaternion x i + y j + z k + w does, scaled to length 1; one of length 0 changes nothing.
+    pub fn quaternion(vector: DVec3, w: f64) -> Self {
+        let length = vector.length_squared() + w * w;
+        if length == 0.0 {
+            return Self::IDENTITY;
+        }
+        let column = |axis: DVec3| axis + vector.cross(vector.cross(axis) + axis * w) * (2.0 / length);
+        Self { linear: DMat3::from_cols(column(DVec3::X), column(DVec3::Y), column(DVec3::Z)), ..Self::IDENTITY }
+    }
+
+    /// The map x -> linear * x + translation.
+    pub fn affine(linear: DMat3, translation: DVec3) -> Self {
+        Self { linear, translation }
+    }
+
     /// Moves every point by a vector.
     pub fn translate(by: DVec3) -> Self {
         Self { translation: by, ..Self::IDENTITY }
@@ -51,6 +66,50 @@ impl Transform {
     /// Where a difference of points goes.
     pub fn vector(&self, v: DVec3) -> DVec3 {
         self.linear * v
+    }
+
+    /// The map back, right to a few roundings times the map's condition; none if a number of it is not finite.
+    ///
+    /// A map with all lengths scaled by a power of two gives the same digits.
+    pub fn inverse(&self) -> Option<Self> {
+        let size = self.size();
+        let [a, b, c] = [self.linear.x_axis, self.linear.y_axis, self.linear.z_axis].map(|v| v / size);
+        let cofactors = DMat3::from_cols(b.cross(c), c.cross(a), a.cross(b));
+        let volume = a.dot(cofactors.x_axis) * size;
+        let linear = DMat3::from_cols(cofactors.x_axis / volume, cofactors.y_axis / volume, cofactors.z_axis / volume);
+        let linear = linear.transpose();
+        let back = Self { linear, translation: -(linear * self.translation) };
+        (back.linear.is_finite() && back.translation.is_finite()).then_some(back)
+    }
+
+    /// The linear part with every entry positive: |M| of the error bounds of `point` and `vector`.
+    pub fn magnitudes(&self) -> DMat3 {
+        let [a, b, c] = [self.linear.x_axis, self.linear.y_axis, self.linear.z_axis];
+        DMat3::from_cols(a.abs(), b.abs(), c.abs())
+    }
+
+    /// Bound of the rounding of `point(p)` for |p| up to `reach`, coordinate by coordinate: gamma(4) (|M| |p| + |t|).
+    ///
+    /// Three products, their two sums and the shift chain up to 4 roundings.
+    pub fn rounding(&self, reach: DVec3) -> DVec3 {
+        (self.magnitudes() * reach + self.translation.abs()) * super::gamma(4)
+    }
+
+    /// How far `then(back)` is from changing nothing, as a bound for |p| up to `reach`, coordinate by coordinate.
+    ///
+    /// The products as computed, and the roundings of computing them: gamma(4) (|N| |M| + 1) and gamma(5) (|N| |t| + |s|).
+    pub fn mismatch(&self, back: &Self, reach: DVec3) -> DVec3 {
+        let both = self.then(back);
+        let left = both.linear - DMat3::IDENTITY;
+        let left = DMat3::from_cols(left.x_axis.abs(), left.y_axis.abs(), left.z_axis.abs());
+        let rounded = back.magnitudes() * (self.magnitudes() * reach) + reach;
+        let shifted = back.magnitudes() * self.translation.abs() + back.translation.abs();
+        left * reach + both.translation.abs() + rounded * super::gamma(4) + shifted * super::gamma(5)
+    }
+
+    /// The product of the linear part, turned over, with a vector: how normals go the other way.
+    pub fn transposed(&self, v: DVec3) -> DVec3 {
+        DVec3::new(self.linear.x_axis.dot(v), self.linear.y_axis.dot(v), self.linear.z_axis.dot(v))
     }
 
     /// The unit normal of a transformed surface whose unit normal was `normal`; the front stays the front.

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use sha2::{Digest, Sha256};
 
+use super::compile_mesh::Meshes;
 use super::compile_shape::ShapeCompiler;
 use super::contact::coinciding;
 use super::description::{Description, ModelText, ObjectText, RenderText};
@@ -28,13 +29,14 @@ pub fn compile(description: &Description, source: &Source) -> Result<Scene<Curve
     let mut hash = Sha256::new();
     hash.update(source.text.as_bytes());
     let meters_per_unit = description.render.meters_per_unit;
-    let mut compiler = Compiler { source, warnings: Vec::new(), hash, meters_per_unit };
+    let mut compiler =
+        Compiler { source, warnings: Vec::new(), hash, meters_per_unit, meshes: Meshes::of(description) };
     let film = compiler.film(&description.film)?;
     let camera = compiler.camera(&description.camera, film)?;
     compiler.render(&description.render)?;
     let materials = compiler.materials(&description.material)?;
-    let (objects, materials) = compiler.objects(description, &materials)?;
-    compiler.contacts(&objects, &materials)?;
+    let (objects, entries, materials) = compiler.objects(description, &materials)?;
+    compiler.contacts(&objects, &entries, &materials)?;
     let mut scene = Scene {
         camera,
         film,
@@ -62,8 +64,11 @@ pub(super) struct Compiler<'a> {
     pub(super) warnings: Vec<String>,
     pub(super) hash: Sha256,
     pub(super) meters_per_unit: Option<f64>,
+    pub(super) meshes: Meshes,
 }
 
+/// Objects, the entry of the file that each comes from, and their materials.
+type Objects = (Vec<Object>, Vec<usize>, Vec<NamedMaterial<Curve>>);
 pub(super) type Materials = BTreeMap<String, Material<Curve>>;
 
 impl Compiler<'_> {
@@ -96,12 +101,9 @@ impl Compiler<'_> {
         }
     }
 
-    fn objects(
-        &mut self,
-        description: &Description,
-        compiled: &Materials,
-    ) -> Result<(Vec<Object>, Vec<NamedMaterial<Curve>>)> {
-        let (mut objects, mut materials) = (Vec::new(), Vec::<NamedMaterial<Curve>>::new());
+    /// The objects, the entry of the file that each comes from, and their materials.
+    fn objects(&mut self, description: &Description, compiled: &Materials) -> Result<Objects> {
+        let (mut objects, mut entries, mut materials) = (Vec::new(), Vec::new(), Vec::<NamedMaterial<Curve>>::new());
         for (number, text) in description.object.iter().enumerate() {
             let top = At::top("object");
             let at = top.index(number);
@@ -116,22 +118,29 @@ impl Compiler<'_> {
             };
             let name = text.name.clone().unwrap_or_else(|| format!("object {}", number + 1));
             let filled = materials[material].material.medium().is_some();
-            let shape = Arc::new(ShapeCompiler { compiler: self, name: &name, filled }.shape(&at, text)?);
-            objects.push(Object { name, shape, material: material as u32, light: None });
+            let mut compiler = ShapeCompiler { compiler: self, name: &name, filled };
+            for (instance, shape) in compiler.shapes(&at, text)?.into_iter().enumerate() {
+                let name = match text.instances {
+                    Some(_) => format!("{name} [{}]", instance + 1),
+                    None => name.clone(),
+                };
+                objects.push(Object { name, shape: Arc::new(shape), material: material as u32, light: None });
+                entries.push(number);
+            }
         }
         for name in description.material.keys() {
             if !materials.iter().any(|material| &material.name == name) {
                 self.warnings.push(format!("material {name} is not used by any object"));
             }
         }
-        Ok((objects, materials))
+        Ok((objects, entries, materials))
     }
 
     /// Clear bodies may overlap but not share a surface: rounding would decide which of the two a ray meets.
-    fn contacts(&mut self, objects: &[Object], materials: &[NamedMaterial<Curve>]) -> Result<()> {
+    fn contacts(&mut self, objects: &[Object], entries: &[usize], materials: &[NamedMaterial<Curve>]) -> Result<()> {
         let is_clear = |object: &Object| materials[object.material as usize].material.medium().is_some();
         for (first, second) in coinciding(objects, is_clear) {
-            let (later, top) = (first.max(second), At::top("object"));
+            let (later, top) = (entries[first.max(second)], At::top("object"));
             let [body, other] = [first, second].map(|number| &objects[number].name);
             if is_clear(&objects[second]) {
                 let message = format!("a part of the surfaces of {body} and {other} lies in one place");

@@ -11,7 +11,7 @@ use super::image_file::read_image;
 use super::source::At;
 use crate::error::{Error, Result};
 use crate::light::{Environment, Light, Panorama, Point, Sky, Spot, Sun};
-use crate::math::{DMat3, DVec3};
+use crate::math::{DMat3, DVec3, Transform};
 use crate::spectrum::{Curve, CurveKind, Quantity};
 
 /// Most bytes of an image.
@@ -112,7 +112,7 @@ impl Compiler<'_> {
             let help = Some("write { rotate = { axis = [0, 1, 0], degrees = 90 } }".into());
             return Err(self.source.mistake_at(&place.index(step), message, help));
         }
-        let turn = self.transform(&place, &text.transform)?;
+        let turn = self.transform(&place, &text.transform, Transform::IDENTITY)?;
         let rotation = DMat3::from_cols(turn.vector(DVec3::X), turn.vector(DVec3::Y), turn.vector(DVec3::Z));
         let panorama = self.panorama(&here.key("image"), file)?;
         Ok(Environment { radiance, image: Some(Sky::new(panorama, rotation)) })

@@ -1,13 +1,11 @@
 //! From a shape as written to a shape that rays can meet.
 
-use sha2::Digest;
-
 use super::compile::Compiler;
-use super::description::{MeshText, ObjectText, ShapeText, StepText};
+use super::description::{ObjectText, ShapeText, StepText};
 use super::source::At;
 use crate::error::Result;
 use crate::math::{DVec3, Transform};
-use crate::shape::{Cube, Disc, Mesh, Plane, Quad, Shape, Sphere, Triangle, Vertices, read_mesh};
+use crate::shape::{Cube, Disc, Plane, Quad, Shape, Sphere, Triangle};
 
 /// Largest length and coordinate: products of a few of them stay far within f64 and f32.
 pub(super) const MAX_LENGTH: f64 = 1e30;
@@ -62,9 +60,52 @@ impl Compiler<'_> {
 }
 
 impl ShapeCompiler<'_, '_> {
-    pub(super) fn shape(&mut self, object: &At, text: &ObjectText) -> Result<Shape> {
-        let at = object.key("shape");
-        let shape = match &text.shape {
+    /// The shape of an object, or each of its instances.
+    pub(super) fn shapes(&mut self, object: &At, text: &ObjectText) -> Result<Vec<Shape>> {
+        let shape = self.shape(&object.key("shape"), &text.shape)?;
+        if self.filled && !shape.is_closed() && matches!(shape, Shape::Mesh(_)) {
+            let warning = format!("{}: a dielectric on an open mesh: light may enter it and never leave", self.name);
+            self.compiler.warnings.push(warning);
+        }
+        let place = object.key("transform");
+        let map = self.compiler.transform(&place, &text.transform, Transform::IDENTITY)?;
+        let Some(instances) = &text.instances else {
+            let shared = self.compiler.meshes.is_shared(&text.shape);
+            let placed = if shared { shape.copied(&map) } else { shape.transformed(&map) };
+            self.check_size([&place, &object.key("shape")], (&placed, &text.shape), &map)?;
+            return Ok(vec![placed]);
+        };
+        let list = object.key("instances");
+        if instances.is_empty() {
+            return self.refuse(&list, "a list without instances leaves nothing of the object");
+        }
+        let place = |(number, steps): (usize, &Vec<StepText>)| {
+            let at = list.index(number);
+            let map = self.compiler.transform(&at, steps, map)?;
+            let placed = shape.copied(&map);
+            self.check_size([&at; 2], (&placed, &text.shape), &map)?;
+            Ok(placed)
+        };
+        instances.iter().enumerate().map(place).collect()
+    }
+
+    /// Refuses a shape whose size or place numbers do not hold.
+    fn check_size(&self, [steps, whole]: [&At; 2], (shape, text): (&Shape, &ShapeText), map: &Transform) -> Result<()> {
+        let Some(bounds) = shape.bounds() else { return Ok(()) };
+        let (far, wide) = (bounds.min.abs().max(bounds.max.abs()).max_element(), bounds.max - bounds.min);
+        let thin = thickness(text, map).unwrap_or(wide.max_element());
+        if !(thin >= MIN_LENGTH && far <= 2.0 * MAX_LENGTH) {
+            return self.refuse(steps, "this makes the shape too small, too large or too far");
+        }
+        if thin < RESOLVED * far {
+            let message = "this is so small or thin that the rounding of its coordinates would distort it";
+            return self.refuse(whole, message);
+        }
+        Ok(())
+    }
+
+    fn shape(&mut self, at: &At, text: &ShapeText) -> Result<Shape> {
+        Ok(match text {
             ShapeText::Plane(plane) => {
                 let at = at.key("plane");
                 let point = self.compiler.point(&at.key("point"), plane.point)?;
@@ -116,89 +157,23 @@ impl ShapeCompiler<'_, '_> {
                 }
                 Shape::Cube(Cube::new(center, cube.size.into()))
             }
-            ShapeText::Mesh(mesh) => self.mesh(&at.key("mesh"), mesh)?,
-        };
-        let map = self.compiler.transform(&object.key("transform"), &text.transform)?;
-        if self.filled && !shape.is_closed() && matches!(shape, Shape::Mesh(_)) {
-            let warning = format!("{}: a dielectric on an open mesh: light may enter it and never leave", self.name);
-            self.compiler.warnings.push(warning);
-        }
-        let shape = shape.transformed(&map);
-        if let Some(bounds) = shape.bounds() {
-            let (far, wide) = (bounds.min.abs().max(bounds.max.abs()).max_element(), bounds.max - bounds.min);
-            let thin = thickness(&text.shape, &map).unwrap_or(wide.max_element());
-            if !(thin >= MIN_LENGTH && far <= 2.0 * MAX_LENGTH) {
-                return self.refuse(&object.key("transform"), "this makes the shape too small, too large or too far");
-            }
-            if thin < RESOLVED * far {
-                return self
-                    .refuse(&at, "this is so small or thin that the rounding of its coordinates would distort it");
-            }
-        }
-        Ok(shape)
+            ShapeText::Mesh(mesh) => Shape::Mesh(self.mesh(&at.key("mesh"), mesh)?),
+        })
     }
 
-    fn refuse<T>(&self, at: &At, message: &str) -> Result<T> {
+    pub(super) fn refuse<T>(&self, at: &At, message: &str) -> Result<T> {
         Err(self.compiler.source.mistake_at(at, message, None))
     }
 
-    fn points(&self, at: &At, points: &[[f64; 3]]) -> Result<Vec<DVec3>> {
+    pub(super) fn points(&self, at: &At, points: &[[f64; 3]]) -> Result<Vec<DVec3>> {
         points.iter().enumerate().map(|(i, &point)| self.compiler.point(&at.index(i), point)).collect()
-    }
-
-    fn mesh(&mut self, at: &At, text: &MeshText) -> Result<Shape> {
-        let (vertices, faces) = match text {
-            MeshText { file: Some(file), points: None, faces: None } => self.mesh_file(&at.key("file"), file)?,
-            MeshText { file: None, points: Some(points), faces: Some(faces) } => {
-                let vertices = self.points(&at.key("points"), points)?;
-                let count = vertices.len();
-                for (number, face) in faces.iter().enumerate() {
-                    if let Some(corner) = face.iter().position(|&corner| corner as usize >= count) {
-                        let message = format!("there is no point {}: the {count} points count from 0", face[corner]);
-                        return self.refuse(&at.key("faces").index(number).index(corner), &message);
-                    }
-                }
-                (Vertices::Double(vertices), faces.clone())
-            }
-            _ => return self.refuse(at, "a mesh has either a `file`, or `points` and `faces`"),
-        };
-        let Some((mesh, report)) = Mesh::new(vertices, faces) else {
-            return self.refuse(at, "no triangle of this mesh has an area");
-        };
-        if report.degenerate > 0 {
-            let warning = format!("{}: {} triangles without area were dropped", self.name, report.degenerate);
-            self.compiler.warnings.push(warning);
-        }
-        Ok(Shape::Mesh(Box::new(mesh)))
-    }
-
-    fn mesh_file(&mut self, at: &At, file: &str) -> Result<(Vertices, Vec<[u32; 3]>)> {
-        let path = self.compiler.source.folder().join(file);
-        let refuse = |message: String| self.compiler.source.mistake_at(at, message, None);
-        let mesh = read_mesh(&path).map_err(|message| match path.try_exists() {
-            _ if file.is_empty() => refuse("a mesh file needs a name".into()),
-            _ if path.is_dir() => refuse(format!("{file} is a folder")),
-            Ok(false) => self.compiler.source.missing_file(at, file),
-            _ => refuse(format!("{file}: {message}")),
-        })?;
-        let is_far = |&vertex: &u32| mesh.vertices.at(vertex).abs().max_element() > MAX_LENGTH;
-        if let Some(vertex) = (0..mesh.vertices.count() as u32).find(is_far) {
-            return Err(refuse(format!("{file}: vertex {vertex} (counted from 0) is beyond {MAX_LENGTH:e}")));
-        }
-        let bytes = std::fs::read(&path).map_err(|error| refuse(format!("cannot read {file}: {error}")))?;
-        self.compiler.hash.update(&bytes);
-        if mesh.names_materials {
-            let warning = format!("{}: the materials of {file} are ignored; the scene gives them", self.name);
-            self.compiler.warnings.push(warning);
-        }
-        Ok((mesh.vertices, mesh.faces))
     }
 }
 
 impl Compiler<'_> {
-    /// The map that the steps make, one after another.
-    pub(super) fn transform(&self, at: &At, steps: &[StepText]) -> Result<Transform> {
-        let mut map = Transform::IDENTITY;
+    /// The map that the steps make, one after another, behind a first one.
+    pub(super) fn transform(&self, at: &At, steps: &[StepText], first: Transform) -> Result<Transform> {
+        let mut map = first;
         for (number, step) in steps.iter().enumerate() {
             let here = at.index(number);
             let next = match step {

@@ -1,7 +1,7 @@
 //! Clear bodies that share a part of their surface with something else.
 
 use super::Object;
-use crate::math::{BranchKey, DVec3, Ray, Sampler, ball_surface};
+use crate::math::{Bounds, BranchKey, DVec3, Ray, Sampler, ball_surface};
 
 /// Rays by which two bodies are compared: enough to find one that shares a fiftieth of what is seen of it.
 const RAYS: u32 = 256;
@@ -16,11 +16,12 @@ const MOST_PAIRS: usize = 20_000;
 ///
 /// A ray that leaves one of them starts beyond the other and never meets it (row M2 of the stability catalog).
 pub(super) fn coinciding(objects: &[Object], clear: impl Fn(&Object) -> bool) -> Vec<(usize, usize)> {
+    let boxes: Vec<Option<Bounds>> = objects.iter().map(|object| object.shape.bounds()).collect();
     let mut compared = 0;
     let mut found = Vec::new();
     for (first, body) in objects.iter().enumerate().filter(|(_, object)| clear(object)) {
         for (second, other) in objects.iter().enumerate() {
-            if first == second || (clear(other) && second < first) || !may_touch(body, other) {
+            if first == second || (clear(other) && second < first) || !may_touch(boxes[first], boxes[second]) {
                 continue;
             }
             compared += 1;
@@ -35,10 +36,10 @@ pub(super) fn coinciding(objects: &[Object], clear: impl Fn(&Object) -> bool) ->
     found
 }
 
-/// Whether the boxes around two objects meet.
-fn may_touch(a: &Object, b: &Object) -> bool {
-    let Some(a) = a.shape.bounds() else { return false };
-    let Some(b) = b.shape.bounds() else { return true };
+/// Whether a body's box and another's meet; infinite ones have none.
+fn may_touch(a: Option<Bounds>, b: Option<Bounds>) -> bool {
+    let Some(a) = a else { return false };
+    let Some(b) = b else { return true };
     let reach = (a.max - a.min).max_element() * NEAR;
     (a.min - reach).cmple(b.max).all() && (b.min - reach).cmple(a.max).all()
 }

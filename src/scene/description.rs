@@ -91,6 +91,8 @@ pub struct ObjectText {
     /// Steps applied to the shape in this order.
     #[serde(default)]
     pub transform: Vec<StepText>,
+    /// Further steps for each of many such shapes, after `transform`; one shape if absent.
+    pub instances: Option<Vec<Vec<StepText>>>,
 }
 
 /// The shapes, each documented where it is implemented, in `shape`.
@@ -164,7 +166,7 @@ pub struct CubeText {
     pub size: [f64; 3],
 }
 
-/// `mesh = { file }` or `mesh = { points, faces }`
+/// `mesh = { file, smooth }` or `mesh = { points, faces, normals, uv, smooth }`
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[allow(missing_docs)]
@@ -172,6 +174,10 @@ pub struct MeshText {
     pub file: Option<String>,
     pub points: Option<Vec<[f64; 3]>>,
     pub faces: Option<Vec<[u32; 3]>>,
+    pub normals: Option<Vec<[f64; 3]>>,
+    pub uv: Option<Vec<[f64; 2]>>,
+    #[serde(default)]
+    pub smooth: bool,
 }
 
 /// One step of a transform: `{ scale = 2 }`, `{ rotate = { axis = [0, 1, 0], degrees = 30 } }`, `{ translate = [0, 1, 0] }`.

@@ -1,8 +1,8 @@
 use crate::math::Ray;
-use crate::shape::{Bvh, Shape};
+use crate::shape::{Bvh, Shape, Vectors, Visitor};
 
 /// Objects up to this many are tried one by one: a tree saves nothing there.
-const FEW: usize = 12;
+const FEW: usize = 6;
 
 /// Finds the objects a ray may meet.
 #[derive(Clone, Debug)]
@@ -31,20 +31,46 @@ impl Index {
             always.sort_unstable();
             bounds.clear();
         }
-        Self { always, tree: Bvh::new(&bounds), bounded }
+        Self { always, tree: Bvh::new::<1>(bounds.into_iter()), bounded }
     }
 
-    /// Calls `test(object, t_max)` for every object the ray may meet before `t_max`.
+    /// Calls `test(object, t_max)` for every object the ray may meet before `t_max`, nearer ones first.
     ///
-    /// `test` answers the new `t_max`, or none to end the walk.
+    /// `test` answers the new `t_max`.
     #[inline]
-    pub(super) fn walk(&self, ray: &Ray, mut t_max: f64, mut test: impl FnMut(u32, f64) -> Option<f64>) {
+    pub(super) fn nearest(&self, ray: &Ray, mut t_max: f64, mut test: impl FnMut(u32, f64) -> f64) {
         for &object in &self.always {
-            match test(object, t_max) {
-                Some(nearer) => t_max = nearer,
-                None => return,
-            }
+            t_max = test(object, t_max);
         }
-        self.tree.walk(ray, t_max, |item, limit| test(self.bounded[item as usize], limit));
+        if !self.bounded.is_empty() {
+            let test = |object, t_max| Some(test(object, t_max));
+            self.tree.walk_in_order(ray, t_max, Objects { index: self, test });
+        }
+    }
+
+    /// Calls `test(object)` for objects the ray may meet before `t_max`, in any order, until one passes.
+    #[inline]
+    pub(super) fn any(&self, ray: &Ray, t_max: f64, mut test: impl FnMut(u32) -> bool) {
+        if self.always.iter().any(|&object| test(object)) || self.bounded.is_empty() {
+            return;
+        }
+        let test = |object, t_max| (!test(object)).then_some(t_max);
+        self.tree.walk(ray, t_max, Objects { index: self, test });
+    }
+}
+
+/// Shows the objects of a leaf to a test, which answers the new `t_max`, or none to end the walk.
+struct Objects<'a, F> {
+    index: &'a Index,
+    test: F,
+}
+
+impl<F: FnMut(u32, f64) -> Option<f64>> Visitor for Objects<'_, F> {
+    #[inline]
+    fn visit(&mut self, _: impl Vectors, first: usize, groups: usize, mut t_max: f64) -> Option<f64> {
+        for &item in &self.index.tree.items()[first..first + groups] {
+            t_max = (self.test)(self.index.bounded[item as usize], t_max)?;
+        }
+        Some(t_max)
     }
 }

@@ -8,6 +8,7 @@ mod compile;
 mod compile_curve;
 mod compile_light;
 mod compile_material;
+mod compile_mesh;
 mod compile_shape;
 mod compile_view;
 mod contact;
@@ -165,14 +166,14 @@ impl<S> Scene<S> {
     /// The nearest surface along a ray; of equally near ones, that of the object listed first.
     pub fn intersect(&self, ray: &Ray) -> Option<Hit> {
         let mut nearest: Option<Hit> = None;
-        self.index.walk(ray, f64::INFINITY, |object, limit| {
+        self.index.nearest(ray, f64::INFINITY, |object, limit| {
             if let Some(crossing) = self.objects[object as usize].shape.intersect(ray, limit) {
                 if nearest.is_none_or(|n| crossing.t < n.crossing.t || object < n.object) {
                     nearest = Some(Hit { object, crossing });
                 }
-                return Some(crossing.t);
+                return crossing.t;
             }
-            Some(limit)
+            limit
         });
         nearest
     }
@@ -181,25 +182,28 @@ impl<S> Scene<S> {
     ///
     /// `hider` remembers what hid a light last: it is asked first, for it often hides the next one as well.
     pub fn is_hidden(&self, ray: &Ray, distance: f64, light: Option<u32>, hider: &Cell<u32>) -> bool {
-        let hides = |object: u32| {
-            light != Some(object)
-                && self.objects[object as usize]
-                    .shape
-                    .intersect(ray, distance)
-                    .is_some_and(|crossing| crossing.t < distance || light.is_none_or(|light| object < light))
+        // An object listed after the light's own does not hide it by an equal distance.
+        let hides = |object: u32| match light {
+            Some(light) if light == object => false,
+            Some(light) if light < object => self.is_crossed(object, ray, distance.next_down()),
+            _ => self.is_crossed(object, ray, distance),
         };
         let last = hider.get();
         if hides(last) {
             return true;
         }
         let mut hidden = false;
-        self.index.walk(ray, distance, |object, limit| {
+        self.index.any(ray, distance, |object| {
             hidden = object != last && hides(object);
             if hidden {
                 hider.set(object);
             }
-            (!hidden).then_some(limit)
+            hidden
         });
         hidden
+    }
+
+    fn is_crossed(&self, object: u32, ray: &Ray, t_max: f64) -> bool {
+        self.objects[object as usize].shape.is_crossed(ray, t_max)
     }
 }

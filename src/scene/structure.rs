@@ -40,7 +40,12 @@ fn misplaced_in_object(object: &DeValue) -> Option<Mistake> {
     let DeValue::Table(object) = object else { return None };
     let shape = object.get("shape").and_then(|shape| one_of(shape, &SHAPE));
     let steps = || object.get("transform").and_then(|steps| steps.get_ref().as_array());
-    shape.or_else(|| steps()?.iter().find_map(|step| one_of(step, &STEP)))
+    let of_instances = || {
+        let instances = object.get("instances")?.get_ref().as_array()?;
+        Some(instances.iter().filter_map(|steps| steps.get_ref().as_array()).flat_map(|steps| steps.iter()))
+    };
+    let steps = steps().into_iter().flat_map(|steps| steps.iter()).chain(of_instances().into_iter().flatten());
+    shape.or_else(|| steps.into_iter().find_map(|step| one_of(step, &STEP)))
 }
 
 /// A `render.model` that there is not.
@@ -120,7 +125,7 @@ fn one_of(value: &Spanned<DeValue>, choice: &OneOf) -> Option<Mistake> {
 pub(super) fn listed(document: &DeTable) -> Option<Mistake> {
     find_in(document, &mut Vec::new(), &|path, value, _| {
         let is_table = match path {
-            ["material", _, _] | ["object", "shape", _] | ["object", "transform", "rotate"] => true,
+            ["material", _, _] | ["object", "shape", _] | ["object", "transform" | "instances", "rotate"] => true,
             ["light", "environment" | "point" | "sun"] => true,
             ["camera", "lens"] | ["film", "filter", _] => true,
             [.., key] => matches!(*key, "sellmeier" | "abbe"),
@@ -142,6 +147,8 @@ pub(super) fn surplus(document: &DeTable) -> Option<Mistake> {
             "cauchy" => ("`cauchy`", 2, Some("write [A, B] of n = A + B / wavelength^2")),
             "faces" => ("a face", 3, Some("cut faces with more corners into triangles")),
             "points" => ("a point", 3, None),
+            "normals" => ("a normal", 3, None),
+            "uv" => ("an entry of `uv`", 2, None),
             "shift" => ("`shift`", 2, Some("write [right, up] in heights of the image")),
             "crop" => ("`crop`", 4, Some("write [first column, first row, width, height]")),
             key => (&*format!("`{key}`"), 3, None),

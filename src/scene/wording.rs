@@ -119,7 +119,7 @@ impl<'t> Place<'t> {
             }
             ["material", _, _] => format!("unknown kind of material `{word}`"),
             ["object", "shape", _] => format!("unknown shape `{word}`"),
-            ["object", "transform", _] => format!("unknown step of a transform `{word}`"),
+            ["object", "transform" | "instances", _] => format!("unknown step of a transform `{word}`"),
             _ => format!("`{key}` cannot be \"{word}\""),
         };
         Some((message, Some(suggestion(key, word, known))))

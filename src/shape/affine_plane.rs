@@ -53,7 +53,7 @@ impl AffinePlane {
     pub(super) fn point(&self, [a, b]: [f64; 2]) -> SurfacePoint {
         let position = self.at([a, b]);
         // Two products and two sums, and 3 roundings of the normal: 7 on the largest terms.
-        SurfacePoint { position, error: self.terms * gamma(7), normal: self.normal }
+        SurfacePoint { position, error: self.terms * gamma(7), normal: self.normal, shading: self.normal }
     }
 
     pub(super) fn at(&self, [a, b]: [f64; 2]) -> DVec3 {

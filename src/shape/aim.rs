@@ -2,7 +2,7 @@
 
 use super::emitters::{Emitter, Facing};
 use super::outline::Outline;
-use super::{Cap, Crossing, Shape};
+use super::{Cap, Crossing, Shape, Triangle};
 use crate::math::{DVec3, Ray};
 
 /// A direction in which a shape is seen from a point, drawn at random.
@@ -76,6 +76,11 @@ impl Shape {
                 let (target, triangle) = mesh.sample(u);
                 (target, Some(triangle))
             }
+            Self::Instance(instance) => {
+                let (target, triangle) = instance.sample(u);
+                let density = Some(Density::Area(instance.density(triangle)));
+                return Some(Sighting { direction: (target - from).try_normalize()?, part: Some(triangle), density });
+            }
         };
         let density = Some(Density::Area(1.0 / self.area()));
         Some(Sighting { direction: (target - from).try_normalize()?, part, density })
@@ -90,6 +95,7 @@ impl Shape {
             Self::Triangle(shape) => Density::of(shape.outline(ray.origin).as_ref(), || shape.area()),
             Self::Quad(shape) => Density::of(shape.outline(ray.origin).as_ref(), || shape.area()),
             Self::Disc(_) | Self::Cube(_) | Self::Mesh(_) => Density::Area(1.0 / self.area()),
+            Self::Instance(instance) => Density::Area(instance.density(crossing.part)),
         };
         self.pdf(density, ray, crossing)
     }
@@ -119,10 +125,8 @@ impl Shape {
             Self::Cube(cube) => {
                 (0..6).map(|i| cube.face(i)).map(|face| part(face.bounds(), face.normal(), face.area())).collect()
             }
-            Self::Mesh(mesh) => {
-                let triangles = (0..mesh.len() as u32).map(|i| mesh.triangle(i));
-                triangles.map(|shape| part(shape.bounds(), shape.normal(), shape.area())).collect()
-            }
+            Self::Mesh(mesh) => (0..mesh.len() as u32).map(|i| mesh.triangle(i).emitter()).collect(),
+            Self::Instance(instance) => instance.parts(),
             _ => Vec::new(),
         }
     }
@@ -134,11 +138,10 @@ impl Shape {
                 let face = cube.face(part);
                 sighting(face.outline(from), || face.area(), |u| face.sample(u), from, u)
             }
-            Self::Mesh(mesh) => {
-                let shape = mesh.triangle(part);
+            _ => {
+                let shape = self.triangle(part)?;
                 sighting(shape.outline(from), || shape.area(), |u| shape.sample(u), from, u)
             }
-            _ => None,
         };
         found.map(|found| Sighting { part: Some(part), ..found })
     }
@@ -150,13 +153,21 @@ impl Shape {
                 let face = cube.face(crossing.part);
                 Density::of(face.outline(ray.origin).as_ref(), || face.area())
             }
-            Self::Mesh(mesh) => {
-                let shape = mesh.triangle(crossing.part);
-                Density::of(shape.outline(ray.origin).as_ref(), || shape.area())
-            }
-            _ => return 0.0,
+            _ => match self.triangle(crossing.part) {
+                Some(shape) => Density::of(shape.outline(ray.origin).as_ref(), || shape.area()),
+                None => return 0.0,
+            },
         };
         self.pdf(density, ray, crossing)
+    }
+
+    /// A triangle of a mesh, where it stands in the world.
+    fn triangle(&self, part: u32) -> Option<Triangle> {
+        match self {
+            Self::Mesh(mesh) => Some(mesh.triangle(part)),
+            Self::Instance(instance) => Some(instance.triangle(part)),
+            _ => None,
+        }
     }
 
     /// The shape as one of many that may be aimed at, with its intensity at radiance 1; none if it is infinite.

@@ -56,7 +56,7 @@ impl Ellipsoid {
         // of the inverse matrix; a step along the normal changes the height over that sphere by the gradient's length.
         let height = unit.abs().dot(terms_of(self.inverse) * terms) / length;
         let error = terms * gamma(12) + position.abs() * gamma(6) + normal.abs() * height * gamma(24);
-        SurfacePoint { position, error, normal }
+        SurfacePoint { position, error, normal, shading: normal }
     }
 
     pub(super) fn bounds(&self) -> Bounds {

@@ -1,23 +1,28 @@
-use std::collections::HashMap;
+use std::sync::OnceLock;
 
-use super::triangle::Sheared;
-use super::{Bvh, Crossing, Triangle};
+use super::bvh::GROUP;
+use super::edges::open_edges;
+use super::packed::Packed;
+use super::{Attributes, Bvh, Crossing, SurfacePoint, Triangle};
 use crate::math::{Bounds, DVec3, Ray, Transform};
 
 /// Triangles over shared vertices, with a tree of boxes.
 ///
 /// ```toml
-/// shape.mesh = { file = "bunny.ply" }                          # PLY or OBJ, relative to the scene file
+/// shape.mesh = { file = "bunny.ply" }                          # PLY, OBJ or glTF, relative to the scene file
 /// shape.mesh = { points = [[0, 0, 0], ..], faces = [[0, 1, 2], ..] }
+/// # smooth = true: looks as round as the file's normals say; normals = [[0, 0, 1], ..], uv = [[0, 0], ..] for each point
 /// ```
 #[derive(Clone, Debug)]
 pub struct Mesh {
     vertices: Vertices,
     triangles: Vec<[u32; 3]>,
     bvh: Bvh,
-    /// Running sum of the triangles' areas, for drawing one by its area.
-    areas: Vec<f64>,
+    packed: Packed,
+    /// Running sum of the triangles' areas, for drawing one by its area; only lights ask for it.
+    areas: OnceLock<Vec<f64>>,
     closed: bool,
+    attributes: Attributes,
 }
 
 /// Vertices as exactly as they were given: files hold f32, scene files and transforms f64.
@@ -73,14 +78,9 @@ impl Mesh {
 
     fn built(vertices: Vertices, triangles: Vec<[u32; 3]>, closed: bool) -> Self {
         let shapes = || triangles.iter().map(|face| Triangle::new(face.map(|corner| vertices.at(corner))));
-        let bounds: Vec<Bounds> = shapes().map(|triangle| triangle.bounds()).collect();
-        let mut total = 0.0;
-        let areas = shapes().map(|triangle| {
-            total += triangle.area();
-            total
-        });
-        let areas = areas.collect();
-        Self { bvh: Bvh::new(&bounds), vertices, triangles, areas, closed }
+        let bvh = Bvh::new::<GROUP>(shapes().map(|triangle| triangle.bounds()));
+        let packed = Packed::new(&vertices, &triangles, bvh.items());
+        Self { bvh, packed, vertices, triangles, areas: OnceLock::new(), closed, attributes: Attributes::default() }
     }
 
     /// How many triangles there are.
@@ -107,18 +107,32 @@ impl Mesh {
 
     /// The nearest crossing; of equally near ones, that of the triangle listed first.
     pub(super) fn intersect(&self, ray: &Ray, t_max: f64) -> Option<Crossing> {
-        let sheared = Sheared::new(ray);
-        let mut nearest: Option<Crossing> = None;
-        self.bvh.walk(ray, t_max, |index, limit| {
-            if let Some(crossing) = sheared.intersect(self.corners(index), limit) {
-                if nearest.is_none_or(|n| crossing.t < n.t || index < n.part) {
-                    nearest = Some(Crossing { part: index, ..crossing });
-                }
-                return Some(crossing.t);
-            }
-            Some(limit)
-        });
-        nearest
+        self.packed.nearest(&self.bvh, ray, t_max)
+    }
+
+    /// Whether there is a crossing with 0 < t <= `t_max`.
+    pub(super) fn is_crossed(&self, ray: &Ray, t_max: f64) -> bool {
+        self.packed.any(&self.bvh, ray, t_max)
+    }
+
+    pub(super) fn point(&self, crossing: &Crossing) -> SurfacePoint {
+        let point = self.triangle(crossing.part).point(crossing.uv);
+        let shading = self.attributes.shading(self.triangles[crossing.part as usize], crossing.uv, point.normal);
+        SurfacePoint { shading, ..point }
+    }
+
+    /// The mesh with what its vertices carry; lists that are not empty have an entry for each vertex.
+    pub fn with(self, attributes: Attributes) -> Self {
+        Self { attributes, ..self }
+    }
+
+    /// Texture coordinates at affine coordinates of a triangle; none if the mesh has none.
+    pub fn coordinates(&self, part: u32, uv: [f64; 2]) -> Option<[f64; 2]> {
+        self.attributes.coordinates(self.triangles[part as usize], uv)
+    }
+
+    pub(super) fn vertices(&self) -> impl Iterator<Item = DVec3> + '_ {
+        (0..self.vertices.count() as u32).map(|index| self.vertices.at(index))
     }
 
     pub(super) fn bounds(&self) -> Bounds {
@@ -129,39 +143,31 @@ impl Mesh {
         let points = (0..self.vertices.count() as u32).map(|index| map.point(self.vertices.at(index))).collect();
         let turned = |[a, b, c]: [u32; 3]| if map.mirrors() { [a, c, b] } else { [a, b, c] };
         let triangles = self.triangles.iter().copied().map(turned).collect();
-        Self::built(Vertices::Double(points), triangles, self.closed)
+        Self::built(Vertices::Double(points), triangles, self.closed).with(self.attributes.transformed(map))
+    }
+
+    fn areas(&self) -> &[f64] {
+        self.areas.get_or_init(|| {
+            let mut total = 0.0;
+            let areas = (0..self.triangles.len() as u32).map(|index| {
+                total += self.triangle(index).area();
+                total
+            });
+            areas.collect()
+        })
     }
 
     pub(super) fn area(&self) -> f64 {
-        self.areas[self.areas.len() - 1]
+        self.areas()[self.triangles.len() - 1]
     }
 
     /// A point uniform by area, and the triangle it lies on.
     pub(super) fn sample(&self, u: [f64; 2]) -> (DVec3, u32) {
+        let areas = self.areas();
         let target = u[0] * self.area();
-        let index = self.areas.partition_point(|&sum| sum <= target).min(self.areas.len() - 1);
-        let before = if index == 0 { 0.0 } else { self.areas[index - 1] };
-        let along = ((target - before) / (self.areas[index] - before)).clamp(0.0, 1.0);
+        let index = areas.partition_point(|&sum| sum <= target).min(areas.len() - 1);
+        let before = if index == 0 { 0.0 } else { areas[index - 1] };
+        let along = ((target - before) / (areas[index] - before)).clamp(0.0, 1.0);
         (self.triangle(index as u32).sample([along, u[1]]), index as u32)
     }
-}
-
-/// Edges that keep the mesh from enclosing a volume, vertices at the same place counting as one.
-fn open_edges(vertices: &Vertices, triangles: &[[u32; 3]]) -> usize {
-    let mut places: HashMap<[u64; 3], u32> = HashMap::new();
-    let merged: Vec<u32> = (0..vertices.count() as u32)
-        .map(|index| {
-            // Adding 0 makes -0 and 0 the same place.
-            let key = vertices.at(index).to_array().map(|x| (x + 0.0).to_bits());
-            *places.entry(key).or_insert(index)
-        })
-        .collect();
-    let mut balance: HashMap<(u32, u32), [u32; 2]> = HashMap::new();
-    for triangle in triangles {
-        let corners = triangle.map(|corner| merged[corner as usize]);
-        for (a, b) in [(0, 1), (1, 2), (2, 0)].map(|(i, j)| (corners[i], corners[j])) {
-            balance.entry((a.min(b), a.max(b))).or_default()[usize::from(a > b)] += 1;
-        }
-    }
-    balance.values().filter(|ways| ways[0] != ways[1]).count()
 }

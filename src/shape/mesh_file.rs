@@ -1,16 +1,13 @@
-//! Triangles from PLY and OBJ files.
+//! Triangles from PLY, OBJ and glTF files.
 
-use std::cell::Cell;
 use std::fs::File;
 use std::io::BufReader;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use ply_rs_bw::parser::{Parser, Reader};
-use ply_rs_bw::ply::{Property, PropertyAccess, PropertyAccessResult, PropertyType, ScalarType};
-use tobj::LoadError;
+use ply_rs_bw::ply::{ElementDef, Header, Property, PropertyAccess, PropertyAccessResult, PropertyType, ScalarType};
 
-use super::Vertices;
-use crate::math::DVec3;
+use super::{Attributes, Vertices};
 
 /// What a mesh file holds.
 pub struct MeshFile {
@@ -18,20 +15,39 @@ pub struct MeshFile {
     pub vertices: Vertices,
     /// Corners of its triangles; polygons are cut into fans.
     pub faces: Vec<[u32; 3]>,
+    /// What its vertices carry.
+    pub attributes: Attributes,
     /// Whether the file asks for materials, which Abbe takes from the scene instead.
     pub names_materials: bool,
+    /// What else the file holds that moves its points, which are taken as they stand.
+    pub ignored: Vec<&'static str>,
+    /// Other files that it was read from.
+    pub others: Vec<PathBuf>,
 }
 
-/// Reads a mesh file by its ending, `.ply` or `.obj`; checks that corners exist and vertices are finite.
+/// Reads a mesh file by its ending, `.ply`, `.obj`, `.gltf` or `.glb`; checks that corners exist and vertices are finite.
 ///
 /// # Errors
 /// A sentence that says what is wrong with the file.
 pub fn read(path: &Path) -> Result<MeshFile, String> {
+    read_with(path, false)
+}
+
+/// The same with the normals of the file's vertices, if it has any.
+///
+/// # Errors
+/// A sentence that says what is wrong with the file.
+pub fn read_smooth(path: &Path) -> Result<MeshFile, String> {
+    read_with(path, true)
+}
+
+fn read_with(path: &Path, smooth: bool) -> Result<MeshFile, String> {
     let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_lowercase();
     let file = match ending.as_str() {
-        "ply" => read_ply(path)?,
-        "obj" => read_obj(path)?,
-        _ => return Err("a mesh file ends in .ply or .obj".into()),
+        "ply" => read_ply(path, smooth)?,
+        "obj" => super::obj::read(path, smooth)?,
+        "gltf" | "glb" => super::gltf::read(path, smooth)?,
+        _ => return Err("a mesh file ends in .ply, .obj, .gltf or .glb".into()),
     };
     let count = file.vertices.count();
     if let Some(vertex) = (0..count as u32).find(|&index| !file.vertices.at(index).is_finite()) {
@@ -51,7 +67,14 @@ pub fn read(path: &Path) -> Result<MeshFile, String> {
 const NO_VERTEX: u32 = u32::MAX;
 
 #[derive(Default)]
-struct PlyVertex([f64; 3]);
+struct PlyVertex {
+    place: [f64; 3],
+    normal: [f32; 3],
+    coordinates: [f32; 2],
+}
+
+/// Names of a vertex's texture coordinates in use.
+const COORDINATES: [[&str; 2]; 4] = [["u", "v"], ["s", "t"], ["texture_u", "texture_v"], ["texture_s", "texture_t"]];
 
 impl PropertyAccess for PlyVertex {
     fn new() -> Self {
@@ -59,13 +82,7 @@ impl PropertyAccess for PlyVertex {
     }
 
     fn set_property(&mut self, name: &str, property: Property) -> PropertyAccessResult {
-        let axis = match name {
-            "x" => 0,
-            "y" => 1,
-            "z" => 2,
-            _ => return PropertyAccessResult::Ignored,
-        };
-        self.0[axis] = match property {
+        let value = match property {
             Property::Float(x) => f64::from(x),
             Property::Double(x) => x,
             Property::Char(x) => f64::from(x),
@@ -76,6 +93,18 @@ impl PropertyAccess for PlyVertex {
             Property::UInt(x) => f64::from(x),
             _ => return PropertyAccessResult::Ignored,
         };
+        match name {
+            "x" => self.place[0] = value,
+            "y" => self.place[1] = value,
+            "z" => self.place[2] = value,
+            "nx" => self.normal[0] = value as f32,
+            "ny" => self.normal[1] = value as f32,
+            "nz" => self.normal[2] = value as f32,
+            _ => match COORDINATES.iter().find_map(|names| names.iter().position(|known| *known == name)) {
+                Some(axis) => self.coordinates[axis] = value as f32,
+                None => return PropertyAccessResult::Ignored,
+            },
+        }
         PropertyAccessResult::Set
     }
 }
@@ -106,34 +135,74 @@ impl PropertyAccess for PlyFace {
     }
 }
 
-fn read_ply(path: &Path) -> Result<MeshFile, String> {
+fn read_ply(path: &Path, smooth: bool) -> Result<MeshFile, String> {
     let file = File::open(path).map_err(|error| error.to_string())?;
     let mut reader = Reader::new(BufReader::new(file));
-    let (vertex_parser, face_parser) = (Parser::<PlyVertex>::new(), Parser::<PlyFace>::new());
-    let header = vertex_parser.read_header(&mut reader).map_err(ply_error)?;
-    let (mut points, mut polygons, mut double) = (Vec::new(), Vec::new(), false);
+    let header = Parser::<PlyVertex>::new().read_header(&mut reader).map_err(ply_error)?;
+    let (mut vertices, mut faces) = (Vertices::Single(Vec::new()), Vec::new());
+    let mut attributes = Attributes::default();
     for element in header.elements.values() {
         if element.name == "face" {
-            polygons = face_parser.read_payload_for_element(&mut reader, element, &header).map_err(ply_error)?;
+            let keep = |polygon: PlyFace| faces.extend(fan(&polygon.0));
+            in_batches(&mut reader, element, &header, keep)?;
         } else if element.name == "vertex" {
             for axis in ["x", "y", "z"] {
                 match element.properties.get(axis).map(|property| &property.data_type) {
-                    Some(PropertyType::Scalar(scalar)) => double |= *scalar != ScalarType::Float,
+                    Some(PropertyType::Scalar(ScalarType::Float)) => {}
+                    Some(PropertyType::Scalar(_)) => vertices = Vertices::Double(Vec::new()),
                     _ => return Err(format!("its vertices have no {axis}")),
                 }
             }
-            points = vertex_parser.read_payload_for_element(&mut reader, element, &header).map_err(ply_error)?;
+            let has = |names: &[&str]| names.iter().all(|name| element.properties.contains_key(*name));
+            let has_normals = smooth && has(&["nx", "ny", "nz"]);
+            let has_coordinates = COORDINATES.iter().any(|names| has(names));
+            let keep = |point: PlyVertex| {
+                match &mut vertices {
+                    Vertices::Single(points) => points.push(point.place.map(|x| x as f32)),
+                    Vertices::Double(points) => points.push(point.place.into()),
+                }
+                attributes.normals.extend(has_normals.then_some(point.normal));
+                attributes.coordinates.extend(has_coordinates.then_some(point.coordinates));
+            };
+            in_batches(&mut reader, element, &header, keep)?;
         } else {
-            vertex_parser.read_payload_for_element(&mut reader, element, &header).map_err(ply_error)?;
+            in_batches(&mut reader, element, &header, |_: PlyVertex| ())?;
         }
     }
-    let vertices = if double {
-        Vertices::Double(points.iter().map(|p| DVec3::from(p.0)).collect())
-    } else {
-        Vertices::Single(points.iter().map(|p| p.0.map(|x| x as f32)).collect())
-    };
-    let faces = polygons.iter().flat_map(|polygon| fan(&polygon.0)).collect();
-    Ok(MeshFile { vertices, faces, names_materials: false })
+    Ok(MeshFile { vertices, faces, attributes, names_materials: false, ignored: Vec::new(), others: Vec::new() })
+}
+
+/// Elements that are read at once: each takes several times the memory of what is kept of it.
+const BATCH: usize = 4096;
+
+/// Hands all elements of one kind over, one after the other.
+fn in_batches<E: PropertyAccess>(
+    reader: &mut Reader<BufReader<File>>,
+    element: &ElementDef,
+    header: &Header,
+    mut keep: impl FnMut(E),
+) -> Result<(), String> {
+    let (parser, mut batch) = (Parser::<E>::new(), element.clone());
+    for done in (0..element.count).step_by(BATCH) {
+        batch.count = BATCH.min(element.count - done);
+        let read = parser.read_payload_for_element(reader, &batch, header);
+        let of_all = |error| count_from(&ply_error(error), batch.count, done, element.count);
+        read.map_err(of_all)?.into_iter().for_each(&mut keep);
+    }
+    Ok(())
+}
+
+/// A message about the end of a file with the numbers of all elements instead of those of a batch.
+fn count_from(message: &str, batch: usize, done: usize, all: usize) -> String {
+    let numbers = message.split_once(&format!("(expected {batch}, got "));
+    let numbers = numbers.and_then(|(before, rest)| Some((before, rest.split_once(')')?)));
+    match numbers {
+        Some((before, (got, after))) => match got.parse::<usize>() {
+            Ok(got) => format!("{before}(expected {all}, got {}){after}", done + got),
+            Err(_) => message.to_owned(),
+        },
+        None => message.to_owned(),
+    }
 }
 
 fn ply_error(error: ply_rs_bw::parser::ParseError) -> String {
@@ -151,30 +220,4 @@ fn ply_error(error: ply_rs_bw::parser::ParseError) -> String {
 fn fan(polygon: &[u32]) -> impl Iterator<Item = [u32; 3]> + '_ {
     let rest = polygon.get(1..).unwrap_or_default();
     rest.windows(2).map(move |pair| [polygon[0], pair[0], pair[1]])
-}
-
-fn read_obj(path: &Path) -> Result<MeshFile, String> {
-    let options = tobj::LoadOptions { triangulate: true, ..Default::default() };
-    let bytes = std::fs::read(path).map_err(|error| error.to_string())?;
-    // Names and comments may be in any encoding.
-    let text = String::from_utf8_lossy(&bytes);
-    let names_materials = Cell::new(false);
-    let models = tobj::load_obj_buf(&mut text.as_bytes(), &options, |_| {
-        names_materials.set(true);
-        Ok(Default::default())
-    });
-    let (models, _) = models.map_err(|error| match error {
-        LoadError::PositionParseError => "a vertex, v, is not made of numbers".into(),
-        LoadError::FaceParseError => "a face, f, is not made of whole numbers".into(),
-        LoadError::FaceVertexOutOfBounds => "a face, f, asks for a vertex that the file does not have".into(),
-        other => other.to_string(),
-    })?;
-    let (mut points, mut faces) = (Vec::new(), Vec::new());
-    for model in models {
-        let first = points.len() as u32;
-        points.extend(model.mesh.positions.chunks_exact(3).map(|p| [p[0], p[1], p[2]]));
-        let corners = model.mesh.indices.chunks_exact(3);
-        faces.extend(corners.map(|c| [c[0] + first, c[1] + first, c[2] + first]));
-    }
-    Ok(MeshFile { vertices: Vertices::Single(points), faces, names_materials: names_materials.get() })
 }

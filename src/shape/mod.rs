@@ -5,15 +5,22 @@
 
 mod affine_plane;
 mod aim;
+mod attributes;
 mod bvh;
 mod cap;
 mod cube;
 mod disc;
+mod edges;
 mod ellipsoid;
 mod emitters;
+mod gltf;
+mod gltf_buffer;
+mod instance;
 mod mesh;
 mod mesh_file;
+mod obj;
 mod outline;
+mod packed;
 mod plane;
 mod quad;
 mod sides;
@@ -21,19 +28,22 @@ mod sphere;
 mod triangle;
 
 pub use aim::{Density, Sighting};
-pub use bvh::Bvh;
+pub use bvh::{Bvh, Visitor};
 pub use cap::Cap;
 pub use cube::Cube;
 pub use disc::Disc;
 pub use ellipsoid::Ellipsoid;
 pub use emitters::{Choice, Emitter, Emitters, Facing};
+pub use instance::Instance;
 pub use mesh::{Mesh, MeshReport, Vertices};
-pub use mesh_file::read as read_mesh;
+pub use mesh_file::{read as read_mesh, read_smooth as read_smooth_mesh};
 pub use plane::Plane;
 pub use quad::Quad;
 pub use sides::Sides;
 pub use sphere::Sphere;
 pub use triangle::Triangle;
+
+use std::sync::Arc;
 
 use crate::math::{Bounds, DVec3, Ray, Transform};
 
@@ -55,7 +65,9 @@ pub enum Shape {
     /// A box or parallelepiped.
     Cube(Cube),
     /// Many triangles.
-    Mesh(Box<Mesh>),
+    Mesh(Arc<Mesh>),
+    /// Many triangles that other places share.
+    Instance(Box<Instance>),
 }
 
 /// Where a ray crosses one shape.
@@ -84,6 +96,8 @@ pub struct SurfacePoint {
     pub error: DVec3,
     /// Geometric unit normal on the front side.
     pub normal: DVec3,
+    /// Unit normal by which materials scatter, on the front side: `normal` but on smooth meshes.
+    pub shading: DVec3,
 }
 
 impl SurfacePoint {
@@ -106,6 +120,16 @@ impl Shape {
             Self::Quad(quad) => quad.intersect(ray, t_max),
             Self::Cube(cube) => cube.intersect(ray, t_max),
             Self::Mesh(mesh) => mesh.intersect(ray, t_max),
+            Self::Instance(instance) => instance.intersect(ray, t_max),
+        }
+    }
+
+    /// Whether there is a crossing with 0 < t <= `t_max`.
+    pub fn is_crossed(&self, ray: &Ray, t_max: f64) -> bool {
+        match self {
+            Self::Mesh(mesh) => mesh.is_crossed(ray, t_max),
+            Self::Instance(instance) => instance.is_crossed(ray, t_max),
+            _ => self.intersect(ray, t_max).is_some(),
         }
     }
 
@@ -119,7 +143,8 @@ impl Shape {
             Self::Disc(disc) => disc.point(crossing.uv),
             Self::Quad(quad) => quad.point(crossing.uv),
             Self::Cube(cube) => cube.point(crossing),
-            Self::Mesh(mesh) => mesh.triangle(crossing.part).point(crossing.uv),
+            Self::Mesh(mesh) => mesh.point(crossing),
+            Self::Instance(instance) => instance.point(crossing),
         }
     }
 
@@ -134,6 +159,7 @@ impl Shape {
             Self::Quad(quad) => Some(quad.bounds()),
             Self::Cube(cube) => Some(cube.bounds()),
             Self::Mesh(mesh) => Some(mesh.bounds()),
+            Self::Instance(instance) => Some(instance.bounds()),
         }
     }
 
@@ -150,8 +176,21 @@ impl Shape {
             Self::Disc(disc) => Self::Disc(disc.transformed(map)),
             Self::Quad(quad) => Self::Quad(quad.transformed(map)),
             Self::Cube(cube) => Self::Cube(cube.transformed(map)),
-            Self::Mesh(mesh) => Self::Mesh(Box::new(mesh.transformed(map))),
+            Self::Mesh(mesh) => Self::Mesh(Arc::new(mesh.transformed(map))),
+            Self::Instance(instance) => match instance.transformed(map) {
+                Some(instance) => Self::Instance(Box::new(instance)),
+                None => Self::Mesh(Arc::new(instance.baked().transformed(map))),
+            },
         }
+    }
+
+    /// Another one of many such shapes, after an invertible affine map; they share the triangles of a mesh.
+    pub fn copied(&self, map: &Transform) -> Self {
+        let shared = match self {
+            Self::Mesh(mesh) if *map != Transform::IDENTITY => Instance::new(mesh.clone(), *map),
+            _ => None,
+        };
+        shared.map_or_else(|| self.clone().transformed(map), |instance| Self::Instance(Box::new(instance)))
     }
 
     /// Whether the shape has an inside: a dielectric on it fills that, or the half space behind a plane.
@@ -160,6 +199,7 @@ impl Shape {
             Self::Plane(_) | Self::Sphere(_) | Self::Ellipsoid(_) | Self::Cube(_) => true,
             Self::Triangle(_) | Self::Disc(_) | Self::Quad(_) => false,
             Self::Mesh(mesh) => mesh.is_closed(),
+            Self::Instance(instance) => instance.is_closed(),
         }
     }
 
@@ -174,6 +214,7 @@ impl Shape {
             Self::Quad(quad) => quad.area(),
             Self::Cube(cube) => cube.area(),
             Self::Mesh(mesh) => mesh.area(),
+            Self::Instance(instance) => instance.area(),
         }
     }
 }

@@ -32,7 +32,7 @@ impl Plane {
         // |away|; then 2 of the projection on terms of size |hit|.
         let reach = away.abs().dot(DVec3::ONE);
         let error = (hit.abs() + DVec3::splat(reach)) * gamma(8);
-        SurfacePoint { position, error, normal: self.normal }
+        SurfacePoint { position, error, normal: self.normal, shading: self.normal }
     }
 
     pub(super) fn transformed(&self, map: &Transform) -> Self {

@@ -52,7 +52,7 @@ impl Sphere {
         // that leaves are off by up to 13 more on terms of size R, which do not shrink where the coordinates of center
         // and arm cancel.
         let error = arm.abs() * gamma(18) + position.abs() * gamma(6);
-        SurfacePoint { position, error, normal }
+        SurfacePoint { position, error, normal, shading: normal }
     }
 
     pub(super) fn bounds(&self) -> Bounds {

@@ -1,5 +1,5 @@
 use super::outline::{Outline, is_near};
-use super::{Crossing, SurfacePoint};
+use super::{Crossing, Emitter, Facing, SurfacePoint};
 use crate::math::{Bounds, DVec3, Ray, Transform, gamma, triangle_coordinates};
 
 /// A triangle; its front is the side from which the points run counterclockwise.
@@ -36,7 +36,8 @@ impl Triangle {
         // The test forms differences as long as the triangle in every coordinate, also in one that is 0 at all corners.
         let extent = p1.max(p2).max(p3) - p1.min(p2).min(p3);
         let error = (largest + DVec3::splat(extent.max_element())) * gamma(7);
-        SurfacePoint { position, error, normal: self.normal() }
+        let normal = self.normal();
+        SurfacePoint { position, error, normal, shading: normal }
     }
 
     /// Unit normal by the right-hand rule.
@@ -57,6 +58,12 @@ impl Triangle {
     pub(super) fn area(&self) -> f64 {
         let [p1, p2, p3] = self.points;
         0.5 * (p2 - p1).cross(p3 - p1).length()
+    }
+
+    /// The triangle as one of many that shine from their fronts.
+    pub(super) fn emitter(&self) -> Emitter {
+        let facing = Facing::one(self.normal());
+        Emitter { bounds: self.bounds(), facing, both: false, intensity: self.area() }
     }
 
     /// The outline seen from a point, if it is near.
@@ -86,9 +93,10 @@ fn scaled_normal([p1, p2, p3]: [DVec3; 3]) -> DVec3 {
 /// Woop, Benthin & Wald 2013, *Watertight Ray/Triangle Intersection*; here in 64 bits, with edge functions that round
 /// to zero decided by their exact sign, so that of two triangles sharing an edge at least one is hit.
 pub(super) struct Sheared {
-    origin: DVec3,
-    order: [usize; 3],
-    shear: DVec3,
+    pub(super) origin: DVec3,
+    /// The axes that become x, y and z.
+    pub(super) order: [usize; 3],
+    pub(super) shear: DVec3,
 }
 
 impl Sheared {

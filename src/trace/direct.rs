@@ -3,10 +3,10 @@
 use std::cell::Cell;
 
 use super::path::Drawn;
-use super::{World, media};
+use super::{World, media, shading};
 use crate::light::{Light, LightId};
 use crate::material::{Arrival, Material};
-use crate::math::{BranchKey, Ray, Sampler};
+use crate::math::{BranchKey, DVec3, Ray, Sampler};
 use crate::scene::MaterialId;
 use crate::shape::{Crossing, SurfacePoint};
 use crate::spectrum::{Table, Throughput};
@@ -16,6 +16,8 @@ pub(super) struct Gathering<'a, const N: usize> {
     pub(super) world: &'a World,
     pub(super) material: &'a Material<Table>,
     pub(super) arrival: &'a Arrival<'a, N>,
+    /// The surface's normal on the viewer's side, by which lights are chosen.
+    pub(super) normal: DVec3,
     pub(super) point: &'a SurfacePoint,
     pub(super) throughput: Throughput<N>,
     pub(super) parted: bool,
@@ -57,7 +59,7 @@ impl<const N: usize> Gathering<'_, N> {
             }
         } else {
             let more = sampler.four_plain(key, MORE_DIGITS);
-            let (from, normal) = (self.point.position, self.arrival.normal);
+            let (from, normal) = (self.point.position, self.normal);
             if let Some((target, probability)) = self.world.choice.choose(from, normal, finer(self.u[3], more[0])) {
                 add(&mut sum, self.from(target, probability, digits(target, [self.u[0], self.u[1]])));
             }
@@ -68,10 +70,10 @@ impl<const N: usize> Gathering<'_, N> {
     /// The share of one light, aimed at with a probability.
     fn from(&self, target: LightId, probability: f64, u: [f64; 2]) -> [f64; 3] {
         let light = &self.world.scene.lights[target];
-        let normal = self.arrival.normal;
+        let normal = self.normal;
         let lit = || {
             let sighting = light.aim(self.point.position, normal, u)?;
-            let (bsdf_cos, bsdf_pdf) = self.material.evaluate(self.arrival, sighting.direction)?;
+            let (bsdf_cos, bsdf_pdf) = shading::evaluate(self.material, self.arrival, normal, sighting.direction)?;
             let ray = self.point.leave(sighting.direction);
             let view = light.view(&ray, normal, &sighting)?;
             let factor = match view.pdf {

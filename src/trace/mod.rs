@@ -19,6 +19,7 @@ mod probe;
 
 mod render;
 mod roulette;
+mod shading;
 mod spread;
 mod tracer;
 mod width;

@@ -3,6 +3,7 @@
 use super::World;
 use super::media::{self, Media};
 use super::path::Path;
+use super::shading;
 use crate::light::Light;
 use crate::material::{Interface, Material, RoughSurface, reflect};
 use crate::math::{BranchKey, DVec2, DVec3, Frame, Ray, Sampler, cosine_hemisphere, unit};
@@ -99,8 +100,8 @@ fn follow(world: &World, draw: &Draw<4>, lane: usize, ray: Ray, media: Media, sa
             end.first_step = hit.crossing.t;
         }
         let front = point.normal.dot(ray.direction) < 0.0;
-        let normal = if front { point.normal } else { -point.normal };
         let wo = -ray.direction;
+        let [_, normal] = shading::normals(&point, wo);
         key = key.child(0);
         let direction = match world.scene.material_of(hit.object) {
             Material::Dielectric(_) => {

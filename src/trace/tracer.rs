@@ -6,6 +6,7 @@ use super::direct::{Gathering, add, weight_of_meeting};
 use super::media;
 use super::path::{Drawn, Path};
 use super::roulette::survival;
+use super::shading;
 use super::{Transport, World};
 use crate::light::{Light, LightId};
 use crate::material::{Arrival, Branch, Material};
@@ -143,7 +144,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
         let object = &world.scene.objects[hit.object as usize];
         let material = world.scene.material_of(hit.object);
         let front = point.normal.dot(path.ray.direction) < 0.0;
-        let normal = if front { point.normal } else { -point.normal };
+        let [normal, shading] = shading::normals(point, -path.ray.direction);
 
         // Find the media on both sides; a body hidden inside another of higher priority has no surface there.
         let (mut here, mut crossed) = (path.media.inside(world), path.media);
@@ -161,7 +162,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
         }
         let arrival = Arrival {
             wo: -path.ray.direction,
-            normal,
+            normal: shading,
             draw,
             present: path.throughput.present(),
             incident: media::index(world, draw, here),
@@ -181,6 +182,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
                 world,
                 material,
                 arrival: &arrival,
+                normal,
                 point,
                 throughput: path.throughput,
                 parted: path.parted,
@@ -199,7 +201,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
 
         // Send the path on.
         self.branches.clear();
-        material.scatter(&arrival, [u[2], u[3]], &mut self.branches);
+        shading::scatter(material, &arrival, normal, [u[2], u[3]], &mut self.branches);
         let parts = arrival.parts();
         self.tally.partings += u64::from(self.branches.iter().filter(|branch| branch.crosses).count() > 1);
         let sooner = if diffuse { SOONER } else { 1.0 };

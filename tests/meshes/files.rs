@@ -9,19 +9,19 @@ use abbe::shape::{Mesh, Shape, Vertices, read_mesh};
 use crate::support::random::Random;
 
 /// A pyramid over a square, its base cut into two triangles. No coordinate is exact in 32 bits.
-const POINTS: [[f64; 3]; 5] =
+pub const POINTS: [[f64; 3]; 5] =
     [[-0.9, 0.1, 0.7], [0.8, 0.1, 0.7], [0.8, 0.1, -1.1], [-0.9, 0.1, -1.1], [0.05, 1.3, -0.2]];
-const FACES: [[u32; 3]; 6] = [[0, 3, 2], [0, 2, 1], [0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]];
+pub const FACES: [[u32; 3]; 6] = [[0, 3, 2], [0, 2, 1], [0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]];
 const INSIDE: DVec3 = DVec3::new(0.0, 0.4, -0.2);
 
 /// The pyramid's corners, as exactly as 32 bits or 64 hold them.
-fn triangles(single: bool) -> Vec<[DVec3; 3]> {
+pub fn triangles(single: bool) -> Vec<[DVec3; 3]> {
     let round = |x: f64| if single { f64::from(x as f32) } else { x };
     FACES.map(|face| face.map(|corner| DVec3::from(POINTS[corner as usize].map(round)))).to_vec()
 }
 
 /// A folder with one file in it.
-fn file(name: &str, bytes: &[u8]) -> (tempfile::TempDir, PathBuf) {
+pub fn file(name: &str, bytes: &[u8]) -> (tempfile::TempDir, PathBuf) {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join(name);
     std::fs::write(&path, bytes).expect("the file can be written");
@@ -29,7 +29,7 @@ fn file(name: &str, bytes: &[u8]) -> (tempfile::TempDir, PathBuf) {
 }
 
 /// The triangles of a file, and whether it names materials.
-fn read(name: &str, bytes: &[u8]) -> (Vec<[DVec3; 3]>, bool) {
+pub fn read(name: &str, bytes: &[u8]) -> (Vec<[DVec3; 3]>, bool) {
     let (_folder, path) = file(name, bytes);
     let mesh = read_mesh(&path).unwrap_or_else(|message| panic!("{name}: {message}"));
     (mesh.faces.iter().map(|face| face.map(|corner| mesh.vertices.at(corner))).collect(), mesh.names_materials)
@@ -154,7 +154,7 @@ fn a_dielectric_on_an_open_mesh_is_warned_of_and_on_a_closed_one_is_not() {
 fn report(faces: &[[u32; 3]]) -> (usize, usize) {
     let points = POINTS.map(DVec3::from).to_vec();
     let (mesh, report) = Mesh::new(Vertices::Double(points), faces.to_vec()).expect("faces with area");
-    assert_eq!(Shape::Mesh(Box::new(mesh)).is_closed(), report.open_edges == 0);
+    assert_eq!(Shape::Mesh(mesh.into()).is_closed(), report.open_edges == 0);
     (report.open_edges, report.degenerate)
 }
 
@@ -194,7 +194,7 @@ fn a_mesh_keeps_its_front_and_its_points_under_every_transform() {
     let mut random = Random::new(9);
     for map in maps {
         let (mesh, _) = Mesh::new(Vertices::Double(points.to_vec()), FACES.to_vec()).expect("faces with area");
-        let mesh = Shape::Mesh(Box::new(mesh)).transformed(&map);
+        let mesh = Shape::Mesh(mesh.into()).transformed(&map);
         assert!(mesh.is_closed());
         for _ in 0..2000 {
             // From inside every ray leaves once, through the back of a face, where the map puts that face.
@@ -215,5 +215,5 @@ fn a_mesh_keeps_its_front_and_its_points_under_every_transform() {
 fn a_missing_file_and_another_ending_are_refused() {
     assert!(read_mesh(Path::new("no/such/file.ply")).is_err());
     let (_folder, path) = file("a.stl", b"solid");
-    assert_eq!(read_mesh(&path).err().as_deref(), Some("a mesh file ends in .ply or .obj"));
+    assert_eq!(read_mesh(&path).err().as_deref(), Some("a mesh file ends in .ply, .obj, .gltf or .glb"));
 }

@@ -144,7 +144,7 @@ fn assert_mesh_finds(points: &[DVec3], faces: &[[u32; 3]], rays: u32, half: f64,
     let triangle = |face: &[u32; 3]| Shape::Triangle(Triangle::new(face.map(|corner| points[corner as usize])));
     let triangles: Vec<Shape> = faces.iter().map(triangle).collect();
     let (mesh, _) = Mesh::new(Vertices::Double(points.to_vec()), faces.to_vec()).expect("faces with area");
-    let mesh = Shape::Mesh(Box::new(mesh));
+    let mesh = Shape::Mesh(mesh.into());
     let mut met = 0;
     for _ in 0..rays {
         let ray = ray(random, half);

@@ -5,18 +5,31 @@ use std::fs;
 use std::path::Path;
 
 use abbe::math::{Bounds, DVec3, Ray};
-use abbe::shape::{Bvh, Mesh, Shape, Triangle, Vertices, read_mesh};
+use abbe::shape::{Bvh, Mesh, Shape, Triangle, Vectors, Vertices, Visitor, read_mesh};
 
 use crate::OFFSET;
 use crate::random::Random;
 
-fn reaches(bvh: &Bvh, ray: &Ray, item: u32) -> bool {
-    let mut reached = false;
-    bvh.walk(ray, f64::INFINITY, |index, limit| {
-        reached |= index == item;
-        Some(limit)
-    });
-    reached
+/// Whether a walk shows an item.
+struct Reached<'a> {
+    bvh: &'a Bvh,
+    item: u32,
+    reached: bool,
+}
+
+impl Visitor for Reached<'_> {
+    fn visit(&mut self, _: impl Vectors, first: usize, groups: usize, t_max: f64) -> Option<f64> {
+        self.reached |= self.bvh.items()[first..first + groups].contains(&self.item);
+        Some(t_max)
+    }
+}
+
+fn reaches(boxes: &[Bounds], ray: &Ray, item: u32) -> bool {
+    let bvh = &Bvh::new::<1>(boxes.iter().copied());
+    let visitor = || Reached { bvh, item, reached: false };
+    let reached = [bvh.walk(ray, f64::INFINITY, visitor()), bvh.walk_in_order(ray, f64::INFINITY, visitor())];
+    assert_eq!(reached[0].reached, reached[1].reached);
+    reached[0].reached
 }
 
 /// A point whose coordinates f32 holds, so that its box is not rounded outward.
@@ -42,7 +55,7 @@ fn b1_a_ray_within_a_side_of_a_box_reaches_it() {
         let mut direction = (target - origin).normalize();
         direction[axis] = if random.number() < 0.5 { 0.0 } else { -0.0 };
         let far_away = Bounds { min: DVec3::splat(100.0), max: DVec3::splat(101.0) };
-        assert!(reaches(&Bvh::new(&[far_away, bounds]), &Ray { origin, direction }, 1), "{bounds:?}, {origin}");
+        assert!(reaches(&[far_away, bounds], &Ray { origin, direction }, 1), "{bounds:?}, {origin}");
     }
 }
 
@@ -64,7 +77,7 @@ fn b2_a_ray_that_hits_a_triangle_on_the_rim_of_its_box_reaches_the_box() {
             let bounds = Bounds::around(points);
             if Shape::Triangle(triangle).intersect(&ray, f64::INFINITY).is_some() {
                 hits += 1;
-                missed += usize::from(!reaches(&Bvh::new(&[bounds]), &ray, 0));
+                missed += usize::from(!reaches(&[bounds], &ray, 0));
             }
         }
         assert!(hits > 50_000, "only {hits} rays hit");
@@ -109,7 +122,7 @@ fn b3_the_largest_vertices_a_file_can_hold_build_a_mesh_that_is_hit() {
     let points = vec![[-most, -most, -most], [most, -most, -most], [0.0, most, -most], [1.0, 2.0, 3.0]];
     let (mesh, report) = Mesh::new(Vertices::Single(points), vec![[0, 1, 2], [0, 1, 3]]).expect("they have areas");
     assert_eq!(report.degenerate, 0);
-    let shape = Shape::Mesh(Box::new(mesh));
+    let shape = Shape::Mesh(mesh.into());
     let ray = Ray::new(DVec3::new(0.0, 0.0, -10.0 * f64::from(most)), DVec3::Z);
     let crossing = shape.intersect(&ray, f64::INFINITY).expect("the ray runs through the first triangle");
     assert!((crossing.t / (9.0 * f64::from(most)) - 1.0).abs() < 1e-15 && crossing.part == 0, "{crossing:?}");

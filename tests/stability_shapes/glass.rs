@@ -8,15 +8,15 @@ use crate::bodies::{ball, closed_mesh};
 use crate::random::Random;
 
 const INDEX: f64 = 1.5;
-const EVENTS: u64 = 200_000;
+pub const EVENTS: u64 = 200_000;
 /// Crossings after which a ray that total reflection traps is left alone.
 const MOST: u32 = 40;
 
 /// What happened to the rays.
 #[derive(Clone, Copy, Default, PartialEq, Debug)]
-struct Tally {
-    events: u64,
-    wrong: u64,
+pub struct Tally {
+    pub events: u64,
+    pub wrong: u64,
     /// Of every crossing's part and distance in units of the body's size.
     hash: u64,
 }
@@ -39,7 +39,7 @@ fn scatter(direction: DVec3, normal: DVec3, leaving: bool, random: &mut Random) 
 }
 
 /// Follows a ray from outside until it goes for good. A convex body is entered once.
-fn follow(body: &Shape, mut ray: Ray, size: f64, random: &mut Random, tally: &mut Tally) {
+pub fn follow(body: &Shape, mut ray: Ray, size: f64, random: &mut Random, tally: &mut Tally) {
     let mut inside = false;
     for event in 0..MOST {
         let Some(crossing) = body.intersect(&ray, f64::INFINITY) else {
@@ -89,14 +89,14 @@ fn tally(
 }
 
 /// The least steepness that leaves nothing out.
-const ALL: f64 = -2.0;
+pub const ALL: f64 = -2.0;
 
 /// Size, and coordinate offset in sizes.
 const PLACES: [(f64, f64); 6] = [(1.0, 0.0), (1e-3, 0.0), (1e3, 0.0), (1.0, 100.0), (1e-6, 0.0), (1.0, 1e4)];
 
 /// A point of a face: anywhere inside the body near it, on an edge, or a corner.
 #[derive(Clone, Copy, Debug)]
-enum Aim {
+pub enum Aim {
     Anywhere,
     Edge,
     Corner,
@@ -142,7 +142,7 @@ fn turn(degrees: f64) -> Transform {
 }
 
 /// Maps of the unit body: as it is, turned, thin, thin and turned, sheared.
-fn maps() -> [Transform; 5] {
+pub fn maps() -> [Transform; 5] {
     let thin = Transform::scale(DVec3::new(1.0, 1e-3, 0.7));
     let sheared = turn(40.0).then(&Transform::scale(DVec3::new(1.0, 0.2, 0.6))).then(&turn(75.0));
     [Transform::IDENTITY, turn(33.0), thin, thin.then(&turn(33.0)), sheared]

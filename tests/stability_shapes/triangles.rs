@@ -78,7 +78,7 @@ fn t2_of_coincident_triangles_the_one_listed_first_is_hit() {
     let rays = rays_at(&points, &faces, 0.0);
     let twice: Vec<[u32; 3]> = faces.iter().chain(&faces).copied().collect();
     let (mesh, _) = Mesh::new(Vertices::Double(points), twice).expect("the faces have areas");
-    let shape = Shape::Mesh(Box::new(mesh));
+    let shape = Shape::Mesh(mesh.into());
     for ray in rays.iter().flatten() {
         let crossing = shape.intersect(ray, f64::INFINITY).expect("the ball is closed");
         assert!(crossing.part < count, "{crossing:?}");

@@ -37,5 +37,5 @@ pub fn ball() -> (Vec<DVec3>, Vec<[u32; 3]>) {
 pub fn closed_mesh(points: Vec<DVec3>, faces: Vec<[u32; 3]>) -> Shape {
     let (mesh, report) = Mesh::new(Vertices::Double(points), faces).expect("the faces have areas");
     assert_eq!((report.degenerate, report.open_edges), (0, 0));
-    Shape::Mesh(Box::new(mesh))
+    Shape::Mesh(mesh.into())
 }

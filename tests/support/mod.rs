@@ -2,6 +2,7 @@
 
 #![allow(dead_code)]
 
+pub mod bodies;
 pub mod exact;
 pub mod random;
 pub mod scenes;

@@ -1,0 +1,77 @@
+//! What a mesh's vertices carry besides their places.
+
+use std::collections::HashMap;
+
+use super::Vertices;
+use crate::math::{DVec3, Transform};
+
+/// Numbers of each vertex, interpolated over the triangles; lists are empty where a mesh has none.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Attributes {
+    /// Normals of the surface that the triangles stand for, of any length; one of length 0 stands for none.
+    pub normals: Vec<[f32; 3]>,
+    /// Texture coordinates, v up.
+    pub coordinates: Vec<[f32; 2]>,
+}
+
+impl Attributes {
+    /// The unit normal at affine coordinates of a triangle whose own normal is `flat`.
+    ///
+    /// Of no use are interpolated normals that vanish or look away from the triangle's front.
+    pub(super) fn shading(&self, corners: [u32; 3], uv: [f64; 2], flat: DVec3) -> DVec3 {
+        if self.normals.is_empty() {
+            return flat;
+        }
+        let interpolated: [f64; 3] = interpolated(&self.normals, corners, uv);
+        DVec3::from(interpolated).try_normalize().filter(|normal| normal.dot(flat) > 0.0).unwrap_or(flat)
+    }
+
+    /// The texture coordinates at affine coordinates of a triangle.
+    pub(super) fn coordinates(&self, corners: [u32; 3], uv: [f64; 2]) -> Option<[f64; 2]> {
+        (!self.coordinates.is_empty()).then(|| interpolated(&self.coordinates, corners, uv))
+    }
+
+    pub(super) fn transformed(&self, map: &Transform) -> Self {
+        // Not normalized, so that they are interpolated as before the map; the largest number of the map is made 1.
+        let Some(back) = map.inverse() else { return self.clone() };
+        let [a, b, c] = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| back.transposed(axis).abs().max_element());
+        let size = a.max(b).max(c);
+        let turned =
+            |normal: &[f32; 3]| (back.transposed(normal.map(f64::from).into()) / size).to_array().map(|x| x as f32);
+        Self { normals: self.normals.iter().map(turned).collect(), coordinates: self.coordinates.clone() }
+    }
+}
+
+fn interpolated<const K: usize>(numbers: &[[f32; K]], corners: [u32; 3], [u, v]: [f64; 2]) -> [f64; K] {
+    let [a, b, c] = corners.map(|corner| numbers[corner as usize]);
+    std::array::from_fn(|i| f64::from(a[i]) * (1.0 - u - v) + f64::from(b[i]) * u + f64::from(c[i]) * v)
+}
+
+/// Normals of vertices, from the triangles around each, weighted by their angles there; vertices at the same place have one.
+///
+/// Thuermer & Wuethrich 1998, *Computing Vertex Normals from Polygonal Facets*.
+pub fn vertex_normals(vertices: &Vertices, faces: &[[u32; 3]]) -> Vec<[f32; 3]> {
+    let mut places: HashMap<[u64; 3], usize> = HashMap::new();
+    // Adding 0 makes -0 and 0 the same place.
+    let place = |index: u32| vertices.at(index).to_array().map(|x| (x + 0.0).to_bits());
+    let mut sums: Vec<DVec3> = Vec::new();
+    for face in faces {
+        let points = face.map(|corner| vertices.at(corner));
+        for i in 0..3 {
+            let [along, back] = [1, 2].map(|step| points[(i + step) % 3] - points[i]);
+            let size = along.abs().max(back.abs()).max_element();
+            let (along, back) = (along / size, back / size);
+            let across = along.cross(back);
+            let angle = libm::atan2(across.length(), along.dot(back));
+            let number = *places.entry(place(face[i])).or_insert_with(|| {
+                sums.push(DVec3::ZERO);
+                sums.len() - 1
+            });
+            if let Some(normal) = across.try_normalize() {
+                sums[number] += normal * angle;
+            }
+        }
+    }
+    let normal = |index| places.get(&place(index)).map_or(DVec3::ZERO, |&number| sums[number].normalize_or_zero());
+    (0..vertices.count() as u32).map(|index| normal(index).to_array().map(|x| x as f32)).collect()
+}

@@ -1,0 +1,273 @@
+//! Builds the tree: split into clusters from above, each cluster by obvhs, then eight children to a node.
+
+use std::ops::Range;
+use std::time::Duration;
+
+use obvhs::aabb::Aabb;
+use obvhs::bvh2::builder::build_bvh2;
+use obvhs::{Boundable, BvhBuildParams};
+
+use super::collapse::Pair;
+use super::node::{Child, Node, Outer, WIDTH};
+use super::walk::STACK;
+use crate::math::DVec3;
+
+/// Most items of a cluster: building one takes some 200 bytes for each of its items.
+const CLUSTER: usize = 1 << 17;
+/// Slices along an axis between which items are split into clusters.
+const SLICES: usize = 32;
+/// Depth below which items are split into clusters by halves.
+const DEEP: u32 = 24;
+/// Levels of nodes that the stack of a walk is enough for: each leaves all but one of its children on it.
+const MAX_LEVELS: usize = (STACK - 1) / (WIDTH - 1);
+/// What visiting an inner node costs, in tests of an item.
+const NODE_COST: f32 = 3.0;
+
+/// A tree in the making.
+pub struct Builder<'a> {
+    boxes: &'a [Outer],
+    pub(super) group: usize,
+    /// Items, reordered in place.
+    pub(super) order: Vec<u32>,
+    pub(super) nodes: Vec<Node>,
+    pub(super) items: Vec<u32>,
+}
+
+impl<'a> Builder<'a> {
+    /// The root, the nodes and the items of a tree, leaves filled up to whole groups.
+    pub fn build(boxes: &'a [Outer], group: usize) -> (Option<Child>, Vec<Node>, Vec<u32>) {
+        if boxes.is_empty() {
+            return (None, Vec::new(), Vec::new());
+        }
+        let mut built = Self::started(boxes, group);
+        let mut root = built.clusters();
+        if built.levels(root) > MAX_LEVELS {
+            built = Self::started(boxes, group);
+            root = built.by_halves();
+        }
+        built.nodes.shrink_to_fit();
+        built.items.shrink_to_fit();
+        (Some(root), built.nodes, built.items)
+    }
+
+    fn started(boxes: &'a [Outer], group: usize) -> Self {
+        let order = (0..boxes.len() as u32).collect();
+        Self { boxes, group, order, nodes: Vec::new(), items: Vec::new() }
+    }
+
+    fn around(&self, range: Range<usize>) -> Outer {
+        self.order[range].iter().fold(Outer::EMPTY, |all, &item| all.union(self.boxes[item as usize]))
+    }
+
+    /// A tree whose upper part splits the items into clusters where that costs the fewest tests.
+    fn clusters(&mut self) -> Child {
+        let whole = 0..self.order.len();
+        let mut pairs = vec![Pair::leaf(&whole)];
+        let mut open = vec![(0, whole, 0)];
+        while let Some((index, range, depth)) = open.pop() {
+            if range.len() <= CLUSTER {
+                self.by_surface_area(range, index, &mut pairs);
+                continue;
+            }
+            let middle = range.start + if depth < DEEP { self.split(range.clone()) } else { self.halve(range.clone()) };
+            let first = pairs.len();
+            pairs[index] = Pair::two(first);
+            for (child, half) in [range.start..middle, middle..range.end].into_iter().enumerate() {
+                pairs.push(Pair::leaf(&half));
+                open.push((first + child, half, depth + 1));
+            }
+        }
+        self.fit(&mut pairs);
+        self.collapse(&pairs)
+    }
+
+    /// Reorders a range so that the first of two groups comes first, and tells how many it has.
+    ///
+    /// The split is where the surfaces of both groups, times their numbers of items, are least: Wald 2007, *On fast
+    /// Construction of SAH-based Bounding Volume Hierarchies*.
+    fn split(&mut self, range: Range<usize>) -> usize {
+        let mut centers = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
+        for &item in &self.order[range.clone()] {
+            for (axis, [low, high]) in centers.iter_mut().enumerate() {
+                let middle = self.boxes[item as usize].middle(axis);
+                (*low, *high) = (low.min(middle), high.max(middle));
+            }
+        }
+        let mut best: Option<(f64, usize, usize)> = None;
+        let slice = |outer: &Outer, axis: usize| {
+            let [low, high] = centers[axis];
+            (((outer.middle(axis) - low) / (high - low) * SLICES as f64) as usize).min(SLICES - 1)
+        };
+        let mut slices = [[(Outer::EMPTY, 0usize); SLICES]; 3];
+        for &item in &self.order[range.clone()] {
+            let outer = &self.boxes[item as usize];
+            for axis in 0..3 {
+                let (all, count) = &mut slices[axis][slice(outer, axis)];
+                (*all, *count) = (all.union(*outer), *count + 1);
+            }
+        }
+        for (axis, slices) in slices.iter().enumerate() {
+            let cost =
+                |&(outer, count): &(Outer, usize)| if count == 0 { 0.0 } else { outer.half_area() * count as f64 };
+            let join = |a: &(Outer, usize), b: &(Outer, usize)| (a.0.union(b.0), a.1 + b.1);
+            let mut after = [(Outer::EMPTY, 0); SLICES + 1];
+            (0..SLICES).rev().for_each(|i| after[i] = join(&slices[i], &after[i + 1]));
+            let mut before = (Outer::EMPTY, 0);
+            for i in 0..SLICES - 1 {
+                before = join(&before, &slices[i]);
+                let total = cost(&before) + cost(&after[i + 1]);
+                if before.1 > 0 && after[i + 1].1 > 0 && best.is_none_or(|best| total < best.0) {
+                    best = Some((total, axis, i));
+                }
+            }
+        }
+        let Some((_, axis, last)) = best else { return self.halve(range) };
+        let items = &mut self.order[range];
+        let (mut low, mut high) = (0, items.len());
+        while low < high {
+            if slice(&self.boxes[items[low] as usize], axis) <= last {
+                low += 1;
+            } else {
+                high -= 1;
+                items.swap(low, high);
+            }
+        }
+        low
+    }
+
+    /// Reorders a range so that half the items come first, along the axis where their middles spread most.
+    fn halve(&mut self, range: Range<usize>) -> usize {
+        let boxes = self.boxes;
+        let items = &mut self.order[range];
+        let spread = |axis: usize| {
+            let middles = items.iter().map(|&item| boxes[item as usize].middle(axis));
+            let (low, high) = middles.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
+            high - low
+        };
+        let axis = DVec3::from(std::array::from_fn(spread)).max_position();
+        let key = |item: &u32| boxes[*item as usize].middle(axis);
+        let half = items.len() / 2;
+        items.select_nth_unstable_by(half, |a, b| key(a).total_cmp(&key(b)).then(a.cmp(b)));
+        half
+    }
+
+    /// Replaces a leaf by the tree over its range that costs the fewest tests, built on boxes scaled to the unit cube.
+    ///
+    /// The scale is a power of two, so that a scene of any size gets the same tree and no area over- or underflows.
+    fn by_surface_area(&mut self, range: Range<usize>, root: usize, pairs: &mut Vec<Pair>) {
+        let all = self.around(range.clone());
+        let low = DVec3::from(all.min.map(f64::from));
+        let size = (DVec3::from(all.max.map(f64::from)) - low).max_element().max(f64::MIN_POSITIVE);
+        let shrink = libm::exp2(-libm::floor(libm::log2(size)));
+        let items = self.order[range.clone()].to_vec();
+        let place = |corner: [f32; 3]| ((DVec3::from(corner.map(f64::from)) - low) * shrink).as_vec3a();
+        let scaled = items.iter().map(|&item| &self.boxes[item as usize]);
+        let scaled: Vec<Scaled> = scaled.map(|outer| Scaled(Aabb::new(place(outer.min), place(outer.max)))).collect();
+        let params = BvhBuildParams {
+            max_prims_per_leaf: (self.group * 2).min(8) as u32,
+            collapse_traversal_cost: NODE_COST,
+            ..BvhBuildParams::medium_build()
+        };
+        let mut time = Duration::ZERO;
+        let tree = build_bvh2(&scaled, params, &mut time);
+        for (place, &index) in self.order[range.clone()].iter_mut().zip(&tree.primitive_indices) {
+            *place = items[index as usize];
+        }
+        // Behind its root, the cluster's nodes follow those that are there.
+        let shift = pairs.len() - 1;
+        let mut nodes = tree.nodes.iter().map(|node| match node.prim_count {
+            0 => Pair::two(shift + node.first_index as usize),
+            count => Pair { first: range.start as u32 + node.first_index, ..Pair::leaf(&(0..count as usize)) },
+        });
+        pairs[root] = nodes.next().expect("a tree has a root");
+        pairs.extend(nodes);
+    }
+
+    /// A tree whose depth is the logarithm of the number of items, whatever the boxes.
+    fn by_halves(&mut self) -> Child {
+        let whole = 0..self.order.len();
+        let mut pairs = vec![Pair::leaf(&whole)];
+        let mut open = vec![(0, whole)];
+        while let Some((index, range)) = open.pop() {
+            if range.len() <= self.group {
+                continue;
+            }
+            let middle = range.start + self.halve(range.clone());
+            let first = pairs.len();
+            pairs[index] = Pair::two(first);
+            for (child, half) in [range.start..middle, middle..range.end].into_iter().enumerate() {
+                pairs.push(Pair::leaf(&half));
+                open.push((first + child, half));
+            }
+        }
+        self.fit(&mut pairs);
+        self.collapse(&pairs)
+    }
+
+    /// Gives every node of a binary tree the box of its items.
+    fn fit(&self, pairs: &mut [Pair]) {
+        let mut order = vec![0u32];
+        let mut next = 0;
+        while next < order.len() {
+            let pair = pairs[order[next] as usize];
+            if pair.count == 0 {
+                order.extend([pair.first, pair.first + 1]);
+            }
+            next += 1;
+        }
+        for &index in order.iter().rev() {
+            let Pair { first, count, .. } = pairs[index as usize];
+            let first = first as usize;
+            pairs[index as usize].outer = match count as usize {
+                0 => pairs[first].outer.union(pairs[first + 1].outer),
+                count => self.around(first..first + count),
+            };
+        }
+    }
+}
+
+impl Pair {
+    fn leaf(range: &Range<usize>) -> Self {
+        Self { outer: Outer::EMPTY, first: range.start as u32, count: range.len() as u32 }
+    }
+
+    fn two(first: usize) -> Self {
+        Self { outer: Outer::EMPTY, first: first as u32, count: 0 }
+    }
+}
+
+struct Scaled(Aabb);
+
+impl Boundable for Scaled {
+    fn aabb(&self) -> Aabb {
+        self.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Bounds;
+
+    #[test]
+    fn equal_and_geometric_boxes_give_trees_no_deeper_than_the_stack() {
+        let unit = Outer { min: [0.0; 3], max: [1.0; 3] };
+        let equal = vec![unit; 4096];
+        let geometric: Vec<Outer> = (0..4096)
+            .map(|i| {
+                let x = libm::pow(1.02, f64::from(i));
+                Outer::of(&Bounds { min: DVec3::splat(x), max: DVec3::splat(x * 1.1) })
+            })
+            .collect();
+        for boxes in [equal, geometric] {
+            for group in [1, 4] {
+                let mut clustered = Builder::started(&boxes, group);
+                let root = clustered.clusters();
+                assert!(clustered.levels(root) <= MAX_LEVELS);
+                let mut halved = Builder::started(&boxes, group);
+                let root = halved.by_halves();
+                assert!(halved.levels(root) <= 12);
+            }
+        }
+    }
+}

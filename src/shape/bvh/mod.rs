@@ -1,0 +1,64 @@
+//! A tree of boxes over anything that has bounds; it never names a shape.
+
+mod build;
+mod collapse;
+mod node;
+mod vectors;
+mod walk;
+
+pub use vectors::{GROUP, Number, Vectors, prefetch};
+pub use walk::Visitor;
+
+use crate::math::{Bounds, Ray};
+use build::Builder;
+use node::{Child, Node, Outer};
+use vectors::Instructions;
+use walk::Walk;
+
+/// A bounding volume hierarchy over numbered items, eight children to a node.
+///
+/// Boxes are f32 rounded outward and tested so that a ray that hits an item always reaches it. Boxes never decide a
+/// result, they only save work.
+#[derive(Clone, Debug)]
+pub struct Bvh {
+    root: Option<Child>,
+    nodes: Vec<Node>,
+    /// Items in the order of the leaves. A leaf has whole groups of them, the last one filled up with `Bvh::NONE`.
+    items: Vec<u32>,
+    instructions: Instructions,
+}
+
+impl Bvh {
+    /// Stands for no item, where a group is not full.
+    pub const NONE: u32 = u32::MAX;
+
+    /// The tree over items 0, 1, 2, .. with the given finite boxes, in groups of `GROUP`.
+    pub fn new<const GROUP: usize>(bounds: impl Iterator<Item = Bounds>) -> Self {
+        let boxes: Vec<Outer> = bounds.map(|bounds| Outer::of(&bounds)).collect();
+        let (root, nodes, items) = Builder::build(&boxes, GROUP);
+        Self { root, nodes, items, instructions: Instructions::best() }
+    }
+
+    /// The items in the order of the leaves, with `NONE` where groups are not full.
+    pub fn items(&self) -> &[u32] {
+        &self.items
+    }
+
+    /// Shows a visitor the leaves whose boxes the ray may meet before `t_max`, nearer ones first.
+    #[inline]
+    pub fn walk_in_order<V: Visitor>(&self, ray: &Ray, t_max: f64, visitor: V) -> V {
+        self.instructions.run(Walk::<true, V> { bvh: self, ray, t_max, visitor })
+    }
+
+    /// Shows a visitor the leaves whose boxes the ray may meet before `t_max`, in any order.
+    #[inline]
+    pub fn walk<V: Visitor>(&self, ray: &Ray, t_max: f64, visitor: V) -> V {
+        self.instructions.run(Walk::<false, V> { bvh: self, ray, t_max, visitor })
+    }
+
+    /// The same tree, walked without the instructions that only some machines have.
+    #[cfg(test)]
+    pub(super) fn plain(self) -> Self {
+        Self { instructions: Instructions::Plain, ..self }
+    }
+}

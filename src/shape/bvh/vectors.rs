@@ -1,0 +1,246 @@
+//! Arithmetic on several numbers at once, with the widest instructions that the machine has.
+//!
+//! The only unsafe code of the crate is here: it tells the compiler that instructions are there. Each function does the
+//! same operations in the same order in both versions, none of them fused, so that they answer the same bits.
+#![allow(unsafe_code)]
+
+use super::node::{Child, Slabs, WIDTH};
+
+/// Triangles that are tested together.
+pub const GROUP: usize = 4;
+
+/// What a walk through a tree does in vectors.
+pub trait Vectors: Copy {
+    /// A bit for each of eight boxes that a ray may enter before `reach`, and the keys of all.
+    ///
+    /// `first` and `last` are the sides where it enters and leaves. A key has the bits of the distance at which the ray
+    /// enters, and below them those of the child: keys are in the order of distances, for these are not negative.
+    fn enter(self, first: Sides, last: Sides, children: &[Child; WIDTH], slabs: &Slabs, reach: f32) -> (u32, Keys);
+
+    /// A bit for each of four triangles whose edge functions are not of two signs.
+    ///
+    /// `corners` are rows of x, y and z for each of three corners, `origin` and `shear` in the same order.
+    fn inside<T: Number>(self, corners: [[&[T; GROUP]; 3]; 3], origin: [f64; 3], shear: [f64; 2]) -> u32;
+}
+
+/// A computation that is compiled once for each kind of instructions.
+pub trait Computation {
+    /// What it results in.
+    type Output;
+
+    /// Does it; implementations are `#[inline(always)]`.
+    fn run<V: Vectors>(self, vectors: V) -> Self::Output;
+}
+
+/// One side of eight boxes on each axis.
+pub type Sides<'a> = [&'a [f32; WIDTH]; 3];
+
+/// Distances of eight boxes and their children.
+pub type Keys = [u64; WIDTH];
+
+/// A coordinate as it is stored.
+pub trait Number: Copy + Into<f64> {
+    /// Four of them, widened.
+    #[cfg(target_arch = "x86_64")]
+    fn widened(_: avx2::Avx2, numbers: &[Self; GROUP]) -> std::arch::x86_64::__m256d;
+}
+
+/// What every machine of the architecture has.
+#[derive(Clone, Copy, Debug)]
+pub struct Plain;
+
+impl Vectors for Plain {
+    #[inline(always)]
+    fn enter(self, first: Sides, last: Sides, children: &[Child; WIDTH], slabs: &Slabs, reach: f32) -> (u32, Keys) {
+        let (mut near, mut far) = ([0.0; WIDTH], [reach; WIDTH]);
+        for axis in 0..3 {
+            for i in 0..WIDTH {
+                let enter = (first[axis][i] - slabs.entry[axis]) * slabs.entry_inverse[axis];
+                near[i] = if enter > near[i] { enter } else { near[i] };
+                let leave = (last[axis][i] - slabs.exit[axis]) * slabs.exit_inverse[axis];
+                far[i] = if leave < far[i] { leave } else { far[i] };
+            }
+        }
+        let entered = (0..WIDTH).fold(0, |entered, i| entered | u32::from(near[i] <= far[i]) << i);
+        (entered, std::array::from_fn(|i| u64::from(near[i].to_bits()) << 32 | u64::from(children[i].0)))
+    }
+
+    #[inline(always)]
+    fn inside<T: Number>(self, corners: [[&[T; GROUP]; 3]; 3], origin: [f64; 3], shear: [f64; 2]) -> u32 {
+        let mut inside = 0;
+        for i in 0..GROUP {
+            let [a, b, c] = corners.map(|[x, y, z]| {
+                let along = z[i].into() - origin[2];
+                [(x[i].into() - origin[0]) - shear[0] * along, (y[i].into() - origin[1]) - shear[1] * along]
+            });
+            let u = c[0] * b[1] - c[1] * b[0];
+            let v = a[0] * c[1] - a[1] * c[0];
+            let w = b[0] * a[1] - b[1] * a[0];
+            let none_below = u >= 0.0 && v >= 0.0 && w >= 0.0;
+            let none_above = u <= 0.0 && v <= 0.0 && w <= 0.0;
+            inside |= u32::from(none_below || none_above) << i;
+        }
+        inside
+    }
+}
+
+/// Asks for the memory of a value that is looked at soon: a walk mostly waits for memory.
+#[inline(always)]
+pub fn prefetch<T>(value: &T) {
+    #[cfg(target_arch = "x86_64")]
+    for line in 0..size_of::<T>().div_ceil(64) {
+        use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
+        // SAFETY: every machine of the architecture has SSE; a prefetch reads nothing and cannot fail.
+        unsafe { _mm_prefetch::<_MM_HINT_T0>(std::ptr::from_ref(value).cast::<i8>().wrapping_add(64 * line)) }
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    let _ = value;
+}
+
+/// Instructions chosen while running.
+#[derive(Clone, Copy, Debug)]
+pub enum Instructions {
+    Plain,
+    #[cfg(target_arch = "x86_64")]
+    Avx2(avx2::Avx2),
+}
+
+impl Instructions {
+    /// The best that this machine has.
+    pub fn best() -> Self {
+        #[cfg(target_arch = "x86_64")]
+        if let Some(avx2) = avx2::Avx2::detect() {
+            return Self::Avx2(avx2);
+        }
+        Self::Plain
+    }
+
+    /// Does a computation with these instructions.
+    #[inline]
+    pub fn run<C: Computation>(self, computation: C) -> C::Output {
+        match self {
+            Self::Plain => computation.run(Plain),
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2(avx2) => avx2.run(computation),
+        }
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+impl Number for f32 {
+    #[inline(always)]
+    fn widened(_: avx2::Avx2, numbers: &[Self; GROUP]) -> std::arch::x86_64::__m256d {
+        use std::arch::x86_64::{_mm_loadu_ps, _mm256_cvtps_pd};
+        // SAFETY: an `Avx2` exists only where its instructions do; the load reads the four numbers of the array.
+        unsafe { _mm256_cvtps_pd(_mm_loadu_ps(numbers.as_ptr())) }
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+impl Number for f64 {
+    #[inline(always)]
+    fn widened(_: avx2::Avx2, numbers: &[Self; GROUP]) -> std::arch::x86_64::__m256d {
+        // SAFETY: an `Avx2` exists only where its instructions do; the load reads the four numbers of the array.
+        unsafe { std::arch::x86_64::_mm256_loadu_pd(numbers.as_ptr()) }
+    }
+}
+
+#[cfg(not(target_arch = "x86_64"))]
+impl Number for f32 {}
+
+#[cfg(not(target_arch = "x86_64"))]
+impl Number for f64 {}
+
+#[cfg(target_arch = "x86_64")]
+pub mod avx2 {
+    use std::arch::x86_64::*;
+
+    use super::{Child, Computation, GROUP, Keys, Number, Sides, Slabs, Vectors, WIDTH};
+
+    /// A proof that the machine has AVX2: 256-bit registers.
+    #[derive(Clone, Copy, Debug)]
+    pub struct Avx2(());
+
+    impl Avx2 {
+        pub fn detect() -> Option<Self> {
+            std::arch::is_x86_feature_detected!("avx2").then_some(Self(()))
+        }
+
+        #[inline]
+        pub fn run<C: Computation>(self, computation: C) -> C::Output {
+            // SAFETY: an `Avx2` exists only where its instructions do.
+            unsafe { run(self, computation) }
+        }
+    }
+
+    #[target_feature(enable = "avx2")]
+    fn run<C: Computation>(avx2: Avx2, computation: C) -> C::Output {
+        computation.run(avx2)
+    }
+
+    impl Vectors for Avx2 {
+        #[inline(always)]
+        fn enter(self, first: Sides, last: Sides, children: &[Child; WIDTH], slabs: &Slabs, reach: f32) -> (u32, Keys) {
+            // SAFETY: an `Avx2` exists only where its instructions do.
+            unsafe { enter(first, last, children, slabs, reach) }
+        }
+
+        #[inline(always)]
+        fn inside<T: Number>(self, corners: [[&[T; GROUP]; 3]; 3], origin: [f64; 3], shear: [f64; 2]) -> u32 {
+            // SAFETY: an `Avx2` exists only where its instructions do.
+            unsafe { inside(self, corners, origin, shear) }
+        }
+    }
+
+    #[inline]
+    #[target_feature(enable = "avx2")]
+    fn enter(first: Sides, last: Sides, children: &[Child; WIDTH], slabs: &Slabs, reach: f32) -> (u32, Keys) {
+        // SAFETY: a child is a u32; the load reads all eight.
+        let children = unsafe { _mm256_loadu_si256(children.as_ptr().cast()) };
+        let (mut near, mut far) = (_mm256_setzero_ps(), _mm256_set1_ps(reach));
+        for axis in 0..3 {
+            // SAFETY: the loads read the eight numbers of an array each.
+            let (first, last) =
+                unsafe { (_mm256_loadu_ps(first[axis].as_ptr()), _mm256_loadu_ps(last[axis].as_ptr())) };
+            let enter = _mm256_sub_ps(first, _mm256_set1_ps(slabs.entry[axis]));
+            // Of a NaN and a number, both keep the second.
+            near = _mm256_max_ps(_mm256_mul_ps(enter, _mm256_set1_ps(slabs.entry_inverse[axis])), near);
+            let leave = _mm256_sub_ps(last, _mm256_set1_ps(slabs.exit[axis]));
+            far = _mm256_min_ps(_mm256_mul_ps(leave, _mm256_set1_ps(slabs.exit_inverse[axis])), far);
+        }
+        let entered = _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(near, far));
+        let near = _mm256_castps_si256(near);
+        let (even, odd) = (_mm256_unpacklo_epi32(children, near), _mm256_unpackhi_epi32(children, near));
+        let mut keys = [0; WIDTH];
+        let (low, high) = keys.split_at_mut(WIDTH / 2);
+        // SAFETY: each store writes the four keys of a half.
+        unsafe {
+            _mm256_storeu_si256(low.as_mut_ptr().cast(), _mm256_permute2x128_si256::<0x20>(even, odd));
+            _mm256_storeu_si256(high.as_mut_ptr().cast(), _mm256_permute2x128_si256::<0x31>(even, odd));
+        }
+        (entered as u32, keys)
+    }
+
+    #[inline]
+    #[target_feature(enable = "avx2")]
+    fn inside<T: Number>(avx2: Avx2, corners: [[&[T; GROUP]; 3]; 3], origin: [f64; 3], shear: [f64; 2]) -> u32 {
+        let [ox, oy, oz] = [0, 1, 2].map(|axis| _mm256_set1_pd(origin[axis]));
+        let [sx, sy] = [0, 1].map(|axis| _mm256_set1_pd(shear[axis]));
+        let mut sheared = [[_mm256_setzero_pd(); 2]; 3];
+        for ([x, y, z], [across, up]) in corners.iter().zip(&mut sheared) {
+            let along = _mm256_sub_pd(T::widened(avx2, z), oz);
+            *across = _mm256_sub_pd(_mm256_sub_pd(T::widened(avx2, x), ox), _mm256_mul_pd(sx, along));
+            *up = _mm256_sub_pd(_mm256_sub_pd(T::widened(avx2, y), oy), _mm256_mul_pd(sy, along));
+        }
+        let [a, b, c] = sheared;
+        let u = _mm256_sub_pd(_mm256_mul_pd(c[0], b[1]), _mm256_mul_pd(c[1], b[0]));
+        let v = _mm256_sub_pd(_mm256_mul_pd(a[0], c[1]), _mm256_mul_pd(a[1], c[0]));
+        let w = _mm256_sub_pd(_mm256_mul_pd(b[0], a[1]), _mm256_mul_pd(b[1], a[0]));
+        let zero = _mm256_setzero_pd();
+        let below = [u, v, w].map(|x| _mm256_cmp_pd::<_CMP_NGE_UQ>(x, zero));
+        let above = [u, v, w].map(|x| _mm256_cmp_pd::<_CMP_NLE_UQ>(x, zero));
+        let below = _mm256_or_pd(_mm256_or_pd(below[0], below[1]), below[2]);
+        let above = _mm256_or_pd(_mm256_or_pd(above[0], above[1]), above[2]);
+        !_mm256_movemask_pd(_mm256_and_pd(below, above)) as u32 & ((1 << GROUP) - 1)
+    }
+}

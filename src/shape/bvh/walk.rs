@@ -1,0 +1,89 @@
+//! The way of a ray through the tree.
+
+use super::Bvh;
+use super::node::{Child, Slabs, reach};
+use super::vectors::{Computation, Vectors, prefetch};
+use crate::math::Ray;
+
+/// Entries of the stack, which no tree needs more of.
+pub const STACK: usize = 256;
+
+/// What is done in a leaf.
+pub trait Visitor {
+    /// Looks at some groups of items, and answers the new `t_max`, or none to end the walk.
+    ///
+    /// Implementations that use vectors are `#[inline(always)]`.
+    fn visit(&mut self, vectors: impl Vectors, first: usize, groups: usize, t_max: f64) -> Option<f64>;
+
+    /// Asks for the memory of a group that is visited soon.
+    #[inline(always)]
+    fn prefetch(&self, _group: usize) {}
+}
+
+/// A walk that looks into nearer boxes first if `ORDERED`, and into any otherwise.
+pub struct Walk<'a, const ORDERED: bool, T> {
+    pub bvh: &'a Bvh,
+    pub ray: &'a Ray,
+    pub t_max: f64,
+    pub visitor: T,
+}
+
+impl<const ORDERED: bool, T: Visitor> Computation for Walk<'_, ORDERED, T> {
+    type Output = T;
+
+    #[inline(always)]
+    fn run<V: Vectors>(mut self, vectors: V) -> T {
+        let Some(root) = self.bvh.root else { return self.visitor };
+        let slabs = Slabs::new(self.ray);
+        let mut limit = reach(self.t_max);
+        // Children to look at, each under the distance at which its box begins.
+        let mut stack = [0u64; STACK];
+        let mut height = 0;
+        let mut current = root;
+        loop {
+            match current.open() {
+                Ok((first, groups)) => match self.visitor.visit(vectors, first, groups, self.t_max) {
+                    Some(t_max) => {
+                        self.t_max = t_max;
+                        limit = reach(t_max);
+                    }
+                    None => return self.visitor,
+                },
+                Err(index) => {
+                    let node = &self.bvh.nodes[index];
+                    let (mut entered, keys) = node.enter(vectors, &slabs, limit);
+                    let base = height;
+                    while entered != 0 {
+                        let slot = (entered.trailing_zeros() & 7) as usize;
+                        entered &= entered - 1;
+                        let key = keys[slot];
+                        match Child(key as u32).open() {
+                            Ok((first, _)) => self.visitor.prefetch(first),
+                            Err(index) => prefetch(&self.bvh.nodes[index]),
+                        }
+                        let mut at = height;
+                        if ORDERED {
+                            while at > base && stack[(at - 1) % STACK] < key {
+                                stack[at % STACK] = stack[(at - 1) % STACK];
+                                at -= 1;
+                            }
+                        }
+                        stack[at % STACK] = key;
+                        height += 1;
+                    }
+                }
+            }
+            loop {
+                if height == 0 {
+                    return self.visitor;
+                }
+                height -= 1;
+                let key = stack[height % STACK];
+                if f32::from_bits((key >> 32) as u32) <= limit {
+                    current = Child(key as u32);
+                    break;
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,265 @@
+//! Triangles from glTF 2.0 files, `.gltf` and `.glb` (Khronos Group 2021, *glTF 2.0 Specification*).
+
+use std::fs;
+use std::path::Path;
+
+use serde::Deserialize;
+use serde::de::IgnoredAny;
+
+use super::gltf_buffer::{Accessor, Buffer, BufferView, Store};
+use super::mesh_file::MeshFile;
+use super::{Attributes, Vertices};
+use crate::math::{DMat3, DVec3, Transform};
+
+/// What Abbe reads of a file. Indices refer to lists of the same document.
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase", default)]
+#[derive(Default)]
+struct Document {
+    asset: Asset,
+    scene: Option<usize>,
+    scenes: Vec<SceneText>,
+    nodes: Vec<Node>,
+    meshes: Vec<MeshText>,
+    accessors: Vec<Accessor>,
+    buffer_views: Vec<BufferView>,
+    buffers: Vec<Buffer>,
+    extensions_required: Vec<String>,
+    materials: Vec<IgnoredAny>,
+    animations: Vec<IgnoredAny>,
+    skins: Vec<IgnoredAny>,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(default)]
+struct Asset {
+    version: String,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(default)]
+struct SceneText {
+    nodes: Vec<usize>,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(default)]
+struct Node {
+    children: Vec<usize>,
+    mesh: Option<usize>,
+    matrix: Option<[f64; 16]>,
+    translation: Option<[f64; 3]>,
+    rotation: Option<[f64; 4]>,
+    scale: Option<[f64; 3]>,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(default)]
+struct MeshText {
+    primitives: Vec<Primitive>,
+}
+
+#[derive(Deserialize)]
+struct Primitive {
+    attributes: AttributesText,
+    indices: Option<usize>,
+    #[serde(default = "triangles")]
+    mode: u32,
+    #[serde(default)]
+    targets: Vec<IgnoredAny>,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "UPPERCASE")]
+struct AttributesText {
+    position: Option<usize>,
+    normal: Option<usize>,
+    #[serde(rename = "TEXCOORD_0")]
+    coordinates: Option<usize>,
+}
+
+/// The value of `mode` that means separate triangles.
+fn triangles() -> u32 {
+    4
+}
+
+/// Beginnings of the names of required extensions that change nothing but looks.
+const HARMLESS: [&str; 4] = ["KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_punctual"];
+/// Most triangles of a file: a small one may place a large mesh as often as it likes.
+const MOST: usize = 1 << 27;
+
+/// Reads the triangles of a file's default scene, placed by its nodes.
+pub(super) fn read(path: &Path, smooth: bool) -> Result<MeshFile, String> {
+    let bytes = fs::read(path).map_err(|error| error.to_string())?;
+    let (json, binary) = if bytes.starts_with(b"glTF") { chunks(&bytes)? } else { (&bytes[..], None) };
+    let document: Document =
+        serde_json::from_slice(json).map_err(|error| format!("its JSON is not that of glTF: {error}"))?;
+    if !document.asset.version.starts_with("2.") {
+        return Err(format!("it is glTF {:?}, not 2.0", document.asset.version));
+    }
+    let refused = |name: &&String| !HARMLESS.iter().any(|start| name.starts_with(start));
+    if let Some(name) = document.extensions_required.iter().find(refused) {
+        return Err(format!("it needs the extension {name}, which Abbe does not read"));
+    }
+    let placed = document.placed()?;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let store = Store::open(&document.buffers, folder, binary)?;
+    let mut file = document.read(&placed, &store, smooth)?;
+    file.names_materials = !document.materials.is_empty();
+    let has_morphs = document.meshes.iter().flat_map(|mesh| &mesh.primitives).any(|p| !p.targets.is_empty());
+    for (what, there) in [
+        ("animations", !document.animations.is_empty()),
+        ("skins", !document.skins.is_empty()),
+        ("morph targets", has_morphs),
+    ] {
+        file.ignored.extend(there.then_some(what));
+    }
+    file.others = store.files;
+    Ok(file)
+}
+
+/// The JSON and the binary chunk of a .glb file (section 4 of the specification).
+fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), String> {
+    let number = |at: usize| bytes.get(at..at + 4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]) as usize);
+    let chunk = |at: usize, kind: &[u8]| {
+        let named = bytes.get(at + 4..at + 8)? == kind;
+        bytes.get(at + 8..(at + 8).checked_add(number(at)?)?).filter(|_| named)
+    };
+    if number(4) != Some(2) {
+        return Err("it is not version 2 of a binary glTF".into());
+    }
+    let json = chunk(12, b"JSON").ok_or("its first chunk is not whole, or not JSON")?;
+    let after = 20 + json.len().next_multiple_of(4);
+    match bytes.len() > after {
+        true => Ok((json, Some(chunk(after, b"BIN\0").ok_or("its second chunk is not whole, or not BIN")?))),
+        false => Ok((json, None)),
+    }
+}
+
+impl Document {
+    /// The meshes of the default scene, each with the map from its node's space to the scene's.
+    fn placed(&self) -> Result<Vec<(&MeshText, Transform)>, String> {
+        let roots = match self.scene.map(|scene| self.scenes.get(scene).ok_or(scene)) {
+            Some(Err(scene)) => return Err(format!("there is no scene {scene}")),
+            Some(Ok(scene)) => scene.nodes.clone(),
+            None => match self.scenes.first() {
+                Some(scene) => scene.nodes.clone(),
+                None => {
+                    let mut is_root = vec![true; self.nodes.len()];
+                    for &child in self.nodes.iter().flat_map(|node| &node.children) {
+                        is_root.get_mut(child).into_iter().for_each(|root| *root = false);
+                    }
+                    (0..self.nodes.len()).filter(|&node| is_root[node]).collect()
+                }
+            },
+        };
+        let mut seen = vec![false; self.nodes.len()];
+        let mut placed = Vec::new();
+        let mut open: Vec<(usize, Transform)> = roots.iter().rev().map(|&node| (node, Transform::IDENTITY)).collect();
+        while let Some((number, above)) = open.pop() {
+            let node = self.nodes.get(number).ok_or_else(|| format!("there is no node {number}"))?;
+            if std::mem::replace(&mut seen[number], true) {
+                return Err(format!("node {number} is reached twice: nodes must form a tree"));
+            }
+            let map = node.map().ok_or_else(|| format!("the matrix of node {number} is not affine"))?.then(&above);
+            if let Some(mesh) = node.mesh {
+                placed.push((self.meshes.get(mesh).ok_or_else(|| format!("there is no mesh {mesh}"))?, map));
+            }
+            open.extend(node.children.iter().rev().map(|&child| (child, map)));
+        }
+        Ok(placed)
+    }
+
+    fn read(&self, placed: &[(&MeshText, Transform)], store: &Store, smooth: bool) -> Result<MeshFile, String> {
+        let accessor = |number: usize| {
+            let found = self.accessors.get(number).ok_or_else(|| format!("there is no accessor {number}"))?;
+            Ok::<_, String>(found.data(number, &self.buffer_views, store))
+        };
+        let as_written = placed.iter().all(|(_, map)| *map == Transform::IDENTITY);
+        let (mut attributes, mut has_normals, mut has_coordinates) = (Attributes::default(), false, false);
+        let (mut single, mut double, mut faces) = (Vec::new(), Vec::new(), Vec::<[u32; 3]>::new());
+        for (mesh, map) in placed {
+            for primitive in mesh.primitives.iter().filter(|primitive| (4..=6).contains(&primitive.mode)) {
+                let Some(position) = primitive.attributes.position else { continue };
+                let data = accessor(position)?;
+                let points: Vec<[f32; 3]> = data.floats()?;
+                let corners = match primitive.indices {
+                    Some(indices) => accessor(indices)?.whole_numbers()?,
+                    None => (0..points.len() as u32).collect(),
+                };
+                let count = points.len();
+                if let Some(corner) = corners.iter().find(|&&corner| corner as usize >= count) {
+                    return Err(format!("a face asks for vertex {corner}, but its {count} vertices count from 0"));
+                }
+                if faces.len() + corners.len() > MOST || single.len() + double.len() + count > MOST {
+                    return Err(format!("its nodes place more than {MOST} triangles"));
+                }
+                let mut own = Attributes::default();
+                if let Some(normals) = primitive.attributes.normal.filter(|_| smooth) {
+                    own.normals = accessor(normals)?.floats()?;
+                    has_normals = true;
+                }
+                if let Some(coordinates) = primitive.attributes.coordinates {
+                    // Images begin at their top in glTF.
+                    let flipped = |[u, v]: [f32; 2]| [u, 1.0 - v];
+                    own.coordinates = accessor(coordinates)?.floats()?.into_iter().map(flipped).collect();
+                    has_coordinates = true;
+                }
+                let fits = |own: usize| own == 0 || own == count;
+                if !fits(own.normals.len()) || !fits(own.coordinates.len()) {
+                    return Err(format!("a primitive has {count} places, but not as many normals or coordinates"));
+                }
+                own.normals.resize(count, [0.0; 3]);
+                own.coordinates.resize(count, [0.0; 2]);
+                attributes.normals.extend(own.transformed(map).normals);
+                attributes.coordinates.extend(own.coordinates);
+                let first = (single.len() + double.len()) as u32;
+                if as_written {
+                    single.extend(points);
+                } else {
+                    double.extend(points.iter().map(|p| map.point(p.map(f64::from).into())));
+                }
+                let turned = |[a, b, c]: [u32; 3]| if map.mirrors() { [a, c, b] } else { [a, b, c] };
+                faces.extend(cut(&corners, primitive.mode).map(|face| turned(face.map(|corner| corner + first))));
+            }
+        }
+        if !has_normals {
+            attributes.normals = Vec::new();
+        }
+        if !has_coordinates {
+            attributes.coordinates = Vec::new();
+        }
+        let vertices = if as_written { Vertices::Single(single) } else { Vertices::Double(double) };
+        Ok(MeshFile { vertices, faces, attributes, names_materials: false, ignored: Vec::new(), others: Vec::new() })
+    }
+}
+
+/// The triangles of a list, a strip or a fan of corners (section 3.7.2.1 of the specification).
+fn cut(corners: &[u32], mode: u32) -> impl Iterator<Item = [u32; 3]> + '_ {
+    let count = if mode == triangles() { corners.len() / 3 } else { corners.len().saturating_sub(2) };
+    (0..count).map(move |i| {
+        match mode {
+            4 => [3 * i, 3 * i + 1, 3 * i + 2],
+            5 => [i, i + 1 + i % 2, i + 2 - i % 2],
+            _ => [i + 1, i + 2, 0],
+        }
+        .map(|at| corners[at])
+    })
+}
+
+impl Node {
+    /// The map to the space of the node above; none if the matrix does more than an affine map.
+    fn map(&self) -> Option<Transform> {
+        if let Some(m) = self.matrix {
+            let column = |i: usize| DVec3::new(m[4 * i], m[4 * i + 1], m[4 * i + 2]);
+            let is_affine = [m[3], m[7], m[11], m[15]] == [0.0, 0.0, 0.0, 1.0];
+            let linear = DMat3::from_cols(column(0), column(1), column(2));
+            return is_affine.then(|| Transform::affine(linear, column(3)));
+        }
+        let scale = self.scale.map_or(Transform::IDENTITY, |scale| Transform::scale(scale.into()));
+        let turn =
+            self.rotation.map_or(Transform::IDENTITY, |[x, y, z, w]| Transform::quaternion(DVec3::new(x, y, z), w));
+        let shift = self.translation.map_or(Transform::IDENTITY, |by| Transform::translate(by.into()));
+        Some(scale.then(&turn).then(&shift))
+    }
+}

@@ -1,0 +1,240 @@
+//! The numbers of glTF files: buffers, the views of them, and what accessors read there.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use serde::Deserialize;
+
+/// A block of bytes: in a file beside, in the text of its address, or in the binary chunk.
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct Buffer {
+    uri: Option<String>,
+    byte_length: usize,
+}
+
+/// A part of a buffer.
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct BufferView {
+    buffer: usize,
+    #[serde(default)]
+    byte_offset: usize,
+    byte_length: usize,
+    byte_stride: Option<usize>,
+}
+
+/// Typed entries of a view.
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct Accessor {
+    buffer_view: Option<usize>,
+    #[serde(default)]
+    byte_offset: usize,
+    component_type: u32,
+    #[serde(default)]
+    normalized: bool,
+    count: usize,
+    #[serde(rename = "type")]
+    kind: String,
+    sparse: Option<Sparse>,
+}
+
+/// Entries that differ from those of the view.
+#[derive(Deserialize)]
+struct Sparse {
+    count: usize,
+    indices: Place,
+    values: Place,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+struct Place {
+    buffer_view: usize,
+    #[serde(default)]
+    byte_offset: usize,
+    #[serde(default)]
+    component_type: u32,
+}
+
+/// The bytes of all buffers.
+pub(super) struct Store {
+    buffers: Vec<Vec<u8>>,
+    /// The files beside that they were read from.
+    pub(super) files: Vec<PathBuf>,
+}
+
+impl Store {
+    pub(super) fn open(buffers: &[Buffer], folder: &Path, binary: Option<&[u8]>) -> Result<Self, String> {
+        let mut store = Self { buffers: Vec::new(), files: Vec::new() };
+        for (number, buffer) in buffers.iter().enumerate() {
+            let bytes = match (&buffer.uri, binary) {
+                (None, Some(binary)) if number == 0 => binary.to_vec(),
+                (None, _) => return Err(format!("buffer {number} has no bytes")),
+                (Some(uri), _) => match uri.strip_prefix("data:") {
+                    Some(data) => {
+                        let text = data.split_once(";base64,").map(|(_, text)| text);
+                        text.and_then(base64).ok_or_else(|| format!("buffer {number} is not text in base 64"))?
+                    }
+                    None => {
+                        let path = folder.join(unescaped(uri));
+                        if !path.is_file() {
+                            return Err(format!("there is no file {uri} beside it"));
+                        }
+                        let bytes = fs::read(&path).map_err(|error| format!("cannot read {uri}: {error}"))?;
+                        store.files.push(path);
+                        bytes
+                    }
+                },
+            };
+            if bytes.len() < buffer.byte_length {
+                let (has, wanted) = (bytes.len(), buffer.byte_length);
+                return Err(format!("buffer {number} has {has} bytes, not {wanted}"));
+            }
+            store.buffers.push(bytes);
+        }
+        Ok(store)
+    }
+}
+
+/// An accessor with what it reads from.
+pub(super) struct Data<'a> {
+    accessor: &'a Accessor,
+    number: usize,
+    views: &'a [BufferView],
+    store: &'a Store,
+}
+
+impl Accessor {
+    pub(super) fn data<'a>(&'a self, number: usize, views: &'a [BufferView], store: &'a Store) -> Data<'a> {
+        Data { accessor: self, number, views, store }
+    }
+}
+
+const UNSIGNED_BYTE: u32 = 5121;
+const UNSIGNED_SHORT: u32 = 5123;
+const UNSIGNED_INT: u32 = 5125;
+const FLOAT: u32 = 5126;
+
+/// Bytes of a component.
+fn size(component_type: u32) -> usize {
+    match component_type {
+        UNSIGNED_BYTE => 1,
+        UNSIGNED_SHORT => 2,
+        _ => 4,
+    }
+}
+
+impl<'a> Data<'a> {
+    /// Entries of K numbers; whole ones stand for 0 to 1 where they are normalized.
+    pub(super) fn floats<const K: usize>(&self) -> Result<Vec<[f32; K]>, String> {
+        let Accessor { component_type, normalized, kind, .. } = self.accessor;
+        let read: fn(&[u8]) -> f32 = match (*component_type, normalized) {
+            (FLOAT, _) => |b| f32::from_le_bytes([b[0], b[1], b[2], b[3]]),
+            (UNSIGNED_BYTE, true) => |b| f32::from(b[0]) / 255.0,
+            (UNSIGNED_SHORT, true) => |b| f32::from(u16::from_le_bytes([b[0], b[1]])) / 65535.0,
+            _ => return Err(format!("accessor {} has components of type {component_type}", self.number)),
+        };
+        if *kind != format!("VEC{K}") {
+            return Err(format!("accessor {} is of type {kind:?}, not VEC{K}", self.number));
+        }
+        let step = size(*component_type);
+        self.entries(K * step, |entry| std::array::from_fn(|i| read(&entry[i * step..])))
+    }
+
+    /// Whole numbers of any width.
+    pub(super) fn whole_numbers(&self) -> Result<Vec<u32>, String> {
+        let Accessor { component_type, kind, .. } = self.accessor;
+        let (true, Some(read)) = (kind == "SCALAR", whole_number(*component_type)) else {
+            return Err(format!("accessor {} does not hold whole numbers", self.number));
+        };
+        self.entries(size(*component_type), read)
+    }
+
+    fn entries<T>(&self, width: usize, read: impl Fn(&[u8]) -> T) -> Result<Vec<T>, String> {
+        let Accessor { buffer_view, byte_offset, count, sparse, .. } = self.accessor;
+        let view = buffer_view.ok_or_else(|| format!("accessor {} has no buffer view", self.number))?;
+        let mut entries: Vec<T> = self.view(view, *byte_offset, *count, width)?.map(&read).collect();
+        if let Some(Sparse { count, indices, values }) = sparse {
+            let index = whole_number(indices.component_type)
+                .ok_or_else(|| format!("accessor {} has no whole indices", self.number))?;
+            let places = self.view(indices.buffer_view, indices.byte_offset, *count, size(indices.component_type))?;
+            for (place, value) in places.zip(self.view(values.buffer_view, values.byte_offset, *count, width)?) {
+                let place = index(place) as usize;
+                *entries.get_mut(place).ok_or_else(|| format!("accessor {} has no entry {place}", self.number))? =
+                    read(value);
+            }
+        }
+        Ok(entries)
+    }
+
+    /// The bytes of each entry that a view holds from an offset on.
+    fn view(
+        &self,
+        number: usize,
+        offset: usize,
+        count: usize,
+        width: usize,
+    ) -> Result<impl Iterator<Item = &'a [u8]> + use<'a>, String> {
+        let view = self.views.get(number).ok_or_else(|| format!("there is no buffer view {number}"))?;
+        let buffer =
+            self.store.buffers.get(view.buffer).ok_or_else(|| format!("there is no buffer {}", view.buffer))?;
+        let end = view.byte_offset.checked_add(view.byte_length);
+        let bytes = end.and_then(|end| buffer.get(view.byte_offset..end));
+        let bytes = bytes.ok_or_else(|| format!("buffer view {number} reaches beyond buffer {}", view.buffer))?;
+        let stride = view.byte_stride.unwrap_or(width);
+        let last = count.checked_sub(1).map_or(Some(0), |steps| steps.checked_mul(stride)?.checked_add(width));
+        let within =
+            stride > 0 && last.and_then(|last| last.checked_add(offset)).is_some_and(|last| last <= bytes.len());
+        if !within {
+            return Err(format!("accessor {} reaches beyond buffer view {number}", self.number));
+        }
+        Ok((0..count).map(move |i| &bytes[offset + i * stride..][..width]))
+    }
+}
+
+fn whole_number(component_type: u32) -> Option<fn(&[u8]) -> u32> {
+    match component_type {
+        UNSIGNED_BYTE => Some(|b| u32::from(b[0])),
+        UNSIGNED_SHORT => Some(|b| u32::from(u16::from_le_bytes([b[0], b[1]]))),
+        UNSIGNED_INT => Some(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]])),
+        _ => None,
+    }
+}
+
+/// The bytes of a text in base 64 (RFC 4648, section 4); none if it is not.
+fn base64(text: &str) -> Option<Vec<u8>> {
+    let text = text.trim_end_matches('=');
+    let mut bytes = Vec::with_capacity(text.len() / 4 * 3 + 2);
+    let (mut bits, mut held) = (0_u32, 0);
+    for letter in text.bytes() {
+        let digit = match letter {
+            b'A'..=b'Z' => letter - b'A',
+            b'a'..=b'z' => letter - b'a' + 26,
+            b'0'..=b'9' => letter - b'0' + 52,
+            b'+' => 62,
+            b'/' => 63,
+            _ => return None,
+        };
+        (bits, held) = (bits << 6 | u32::from(digit), held + 6);
+        if held >= 8 {
+            held -= 8;
+            bytes.push((bits >> held) as u8);
+        }
+    }
+    Some(bytes)
+}
+
+/// An address with its %20 and the like as the bytes they stand for (RFC 3986, section 2.1).
+fn unescaped(uri: &str) -> String {
+    let (mut bytes, mut rest) = (Vec::new(), uri.as_bytes());
+    while let Some((&first, after)) = rest.split_first() {
+        let digits = after.get(..2).and_then(|digits| std::str::from_utf8(digits).ok());
+        match digits.filter(|_| first == b'%').and_then(|digits| u8::from_str_radix(digits, 16).ok()) {
+            Some(byte) => (bytes.push(byte), rest = &after[2..]).1,
+            None => (bytes.push(first), rest = after).1,
+        }
+    }
+    String::from_utf8_lossy(&bytes).into_owned()
+}

@@ -1,0 +1,239 @@
+//! A mesh's triangles in the order of its tree's leaves, tested against a ray four at a time.
+
+use super::bvh::{GROUP, Number, prefetch};
+use super::triangle::Sheared;
+use super::{Bvh, Crossing, Vectors, Vertices, Visitor};
+use crate::math::{DVec3, Ray};
+
+/// Copies of all corners, in the precision of the vertices.
+#[derive(Clone, Debug)]
+pub(super) enum Packed {
+    Single(Vec<Block<f32>>),
+    Double(Vec<Block<f64>>),
+}
+
+/// Four triangles side by side: for each corner and coordinate, four numbers. Absent triangles have NaN.
+#[derive(Clone, Debug)]
+pub(super) struct Block<T>([[[T; GROUP]; 3]; 3]);
+
+impl Packed {
+    /// The blocks of triangles listed in the order of a tree.
+    pub fn new(vertices: &Vertices, triangles: &[[u32; 3]], items: &[u32]) -> Self {
+        match vertices {
+            Vertices::Single(points) => Self::Single(blocks(points, triangles, items, f32::NAN)),
+            Vertices::Double(points) => Self::Double(blocks(points, triangles, items, f64::NAN)),
+        }
+    }
+
+    /// The nearest crossing with 0 < t <= `t_max`; of equally near ones, that of the triangle listed first.
+    pub fn nearest(&self, bvh: &Bvh, ray: &Ray, t_max: f64) -> Option<Crossing> {
+        match self {
+            Self::Single(blocks) => nearest(blocks, bvh, ray, t_max),
+            Self::Double(blocks) => nearest(blocks, bvh, ray, t_max),
+        }
+    }
+
+    /// Whether there is a crossing with 0 < t <= `t_max`.
+    pub fn any(&self, bvh: &Bvh, ray: &Ray, t_max: f64) -> bool {
+        match self {
+            Self::Single(blocks) => any(blocks, bvh, ray, t_max),
+            Self::Double(blocks) => any(blocks, bvh, ray, t_max),
+        }
+    }
+}
+
+fn blocks<P: Copy + Into<[T; 3]>, T: Copy>(
+    points: &[P],
+    triangles: &[[u32; 3]],
+    items: &[u32],
+    absent: T,
+) -> Vec<Block<T>> {
+    let block = |items: &[u32]| {
+        let mut block = Block([[[absent; GROUP]; 3]; 3]);
+        for (lane, &item) in items.iter().enumerate().filter(|&(_, &item)| item != Bvh::NONE) {
+            for (corner, &vertex) in triangles[item as usize].iter().enumerate() {
+                let point: [T; 3] = points[vertex as usize].into();
+                for (axis, &x) in point.iter().enumerate() {
+                    block.0[corner][axis][lane] = x;
+                }
+            }
+        }
+        block
+    };
+    items.chunks_exact(GROUP).map(block).collect()
+}
+
+fn nearest<T: Number>(blocks: &[Block<T>], bvh: &Bvh, ray: &Ray, t_max: f64) -> Option<Crossing> {
+    let visitor = Nearest { blocks, items: bvh.items(), line: Line::new(ray), found: None };
+    let found = bvh.walk_in_order(ray, t_max, visitor).found;
+    found.map(|found| Crossing { part: bvh.items()[found.part as usize], ..found })
+}
+
+fn any<T: Number>(blocks: &[Block<T>], bvh: &Bvh, ray: &Ray, t_max: f64) -> bool {
+    bvh.walk(ray, t_max, Any { blocks, line: Line::new(ray), found: false }).found
+}
+
+/// A ray as the tests of four triangles take it.
+struct Line {
+    sheared: Sheared,
+    /// Its origin in the order of the sheared axes.
+    origin: [f64; 3],
+    shear: [f64; 2],
+}
+
+impl Line {
+    #[inline(always)]
+    fn new(ray: &Ray) -> Self {
+        let sheared = Sheared::new(ray);
+        let origin = sheared.order.map(|axis| ray.origin[axis]);
+        Self { origin, shear: [sheared.shear.x, sheared.shear.y], sheared }
+    }
+}
+
+struct Nearest<'a, T> {
+    blocks: &'a [Block<T>],
+    items: &'a [u32],
+    line: Line,
+    /// Its part is the place in `items`.
+    found: Option<Crossing>,
+}
+
+impl<T: Number> Visitor for Nearest<'_, T> {
+    #[inline(always)]
+    fn visit(&mut self, vectors: impl Vectors, first: usize, groups: usize, mut t_max: f64) -> Option<f64> {
+        for group in first..first + groups {
+            let block = &self.blocks[group];
+            let mut inside = block.inside(vectors, &self.line);
+            while inside != 0 {
+                let lane = (inside.trailing_zeros() & 3) as usize;
+                inside &= inside - 1;
+                if let Some(crossing) = block.crossing(lane, &self.line.sheared, t_max) {
+                    let place = (group * GROUP + lane) as u32;
+                    let item = |place: u32| self.items[place as usize];
+                    if self.found.is_none_or(|found| crossing.t < found.t || item(place) < item(found.part)) {
+                        self.found = Some(Crossing { part: place, ..crossing });
+                    }
+                    t_max = crossing.t;
+                }
+            }
+        }
+        Some(t_max)
+    }
+
+    #[inline(always)]
+    fn prefetch(&self, group: usize) {
+        prefetch(&self.blocks[group]);
+    }
+}
+
+struct Any<'a, T> {
+    blocks: &'a [Block<T>],
+    line: Line,
+    found: bool,
+}
+
+impl<T: Number> Visitor for Any<'_, T> {
+    #[inline(always)]
+    fn visit(&mut self, vectors: impl Vectors, first: usize, groups: usize, t_max: f64) -> Option<f64> {
+        for block in &self.blocks[first..first + groups] {
+            let mut inside = block.inside(vectors, &self.line);
+            while inside != 0 {
+                let lane = (inside.trailing_zeros() & 3) as usize;
+                inside &= inside - 1;
+                if block.crossing(lane, &self.line.sheared, t_max).is_some() {
+                    self.found = true;
+                    return None;
+                }
+            }
+        }
+        Some(t_max)
+    }
+
+    #[inline(always)]
+    fn prefetch(&self, group: usize) {
+        prefetch(&self.blocks[group]);
+    }
+}
+
+impl<T: Number> Block<T> {
+    /// A bit for each triangle that the line of a ray may run through, edges and corners included.
+    ///
+    /// The edge functions are rounded as in `Sheared::intersect`. One that is not 0 has the right sign, for rounding
+    /// keeps the order of products; so what has two of opposite signs is refused there as well, and nothing else is here.
+    #[inline(always)]
+    fn inside(&self, vectors: impl Vectors, line: &Line) -> u32 {
+        let [x, y, z] = line.sheared.order;
+        let corners = self.0.each_ref().map(|corner| [&corner[x], &corner[y], &corner[z]]);
+        vectors.inside(corners, line.origin, line.shear)
+    }
+
+    /// The crossing of one of the triangles with 0 < t <= `t_max`.
+    #[inline]
+    fn crossing(&self, lane: usize, sheared: &Sheared, t_max: f64) -> Option<Crossing> {
+        let corner = |corner: &[[T; GROUP]; 3]| DVec3::from(corner.map(|x| x[lane].into()));
+        sheared.intersect([corner(&self.0[0]), corner(&self.0[1]), corner(&self.0[2])], t_max)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Triangle;
+    use super::*;
+    use crate::math::ball_surface;
+
+    /// Numbers of a multiplicative congruential generator, in [0, 1).
+    fn numbers() -> impl FnMut() -> f64 {
+        let mut state = 1u64;
+        move || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1u64 << 53) as f64
+        }
+    }
+
+    #[test]
+    fn plain_and_wide_instructions_answer_the_same_bits() {
+        let mut number = numbers();
+        // On a lattice, so that many rays meet edges, corners and several triangles at once.
+        let mut coordinate = || ((number() * 16.0) as i32 - 8) as f32 * 0.25;
+        let points: Vec<[f32; 3]> = (0..3000).map(|_| [(); 3].map(|()| coordinate())).collect();
+        let mut faces: Vec<[u32; 3]> = (0..1000).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        let corner = |corner: u32| DVec3::from(points[corner as usize].map(f64::from));
+        faces.retain(|face| !Triangle::is_degenerate(face.map(corner)));
+        let double = points.iter().map(|p| DVec3::from(p.map(f64::from))).collect();
+        for vertices in [Vertices::Single(points.clone()), Vertices::Double(double)] {
+            let bounds = faces.iter().map(|face| Triangle::new(face.map(corner)).bounds());
+            let wide = Bvh::new::<GROUP>(bounds);
+            let packed = Packed::new(&vertices, &faces, wide.items());
+            let plain = wide.clone().plain();
+            let mut met = 0;
+            for i in 0..60_000 {
+                let mut place = || ((number() * 16.0) as i32 - 8) as f64 * 0.25;
+                let mut origin = DVec3::new(place(), place(), place());
+                let direction = match i % 4 {
+                    0 => ball_surface([number(), number()]),
+                    // Along an axis, with a 0 of either sign in the others.
+                    1 => DVec3::from([[0.0, -0.0, 1.0], [-1.0, 0.0, -0.0], [-0.0, 1.0, 0.0]][i / 4 % 3]),
+                    2 => (DVec3::new(place(), place(), place()) - origin).normalize_or(DVec3::X),
+                    // So small a component that its reciprocal does not fit into 32 bits.
+                    _ => DVec3::new(1e-42 * (number() - 0.5), 1.0, 1e-300),
+                };
+                if i % 3 == 0 {
+                    origin += ball_surface([number(), number()]);
+                }
+                let ray = Ray { origin, direction };
+                let t_max = if i % 5 == 0 { number() } else { f64::INFINITY };
+                let found = packed.nearest(&wide, &ray, t_max);
+                assert_eq!(found, packed.nearest(&plain, &ray, t_max), "{ray:?}");
+                assert_eq!(found.is_some(), packed.any(&wide, &ray, t_max), "{ray:?}");
+                assert_eq!(found.is_some(), packed.any(&plain, &ray, t_max), "{ray:?}");
+                let each = faces.iter().filter_map(|face| Triangle::new(face.map(corner)).intersect(&ray, t_max));
+                if i % 16 < 4 {
+                    let nearest = each.map(|crossing| crossing.t).min_by(f64::total_cmp);
+                    assert_eq!(found.map(|crossing| crossing.t), nearest, "{ray:?}");
+                }
+                met += usize::from(found.is_some());
+            }
+            assert!(met > 30_000, "only {met} rays meet anything");
+        }
+    }
+}
