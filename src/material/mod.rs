@@ -3,6 +3,7 @@
 //! `Material<S>` is written once and read twice: with `S = Curve` it is the scene file's vocabulary, with `S = Table` what
 //! the tracer reads; [`Material::map`] is the bridge. A material answers an [`Arrival`] with [`Branch`]es.
 
+mod by_cosine;
 mod conductor;
 mod dielectric;
 mod diffuse;
@@ -10,6 +11,7 @@ mod emissive;
 mod facets;
 mod fresnel;
 mod mirror;
+mod rough_interface;
 mod roughness;
 mod thin;
 
@@ -20,6 +22,7 @@ pub use emissive::Emissive;
 pub use facets::Facets;
 pub use fresnel::{Interface, conductor_reflectance};
 pub use mirror::{Mirror, reflect};
+pub use rough_interface::{Flow, RoughInterface, Side, Sides, Ways};
 pub use roughness::{RoughReflection, RoughSurface, Roughness};
 pub use thin::Thin;
 
