@@ -6,7 +6,7 @@ use super::path::Drawn;
 use super::{World, media};
 use crate::light::{Light, LightId};
 use crate::material::{Arrival, Material};
-use crate::math::{BranchKey, Ray, Sampler};
+use crate::math::{BranchKey, DVec3, Ray, Sampler};
 use crate::scene::MaterialId;
 use crate::shape::{Crossing, SurfacePoint};
 use crate::spectrum::{Table, Throughput};
@@ -19,6 +19,10 @@ pub(super) struct Gathering<'a, const N: usize> {
     pub(super) point: &'a SurfacePoint,
     pub(super) throughput: Throughput<N>,
     pub(super) parted: bool,
+    /// The surface's unit normal on the side the light arrives at.
+    pub(super) normal: DVec3,
+    /// How likely that side is looked at, where light may arrive at both: then light from the other side is left to it.
+    pub(super) side: Option<f64>,
     /// The medium the light arrives through.
     pub(super) inside: Option<MaterialId>,
     /// Whether the path goes on from here and may meet a light by itself.
@@ -32,7 +36,7 @@ pub(super) struct Gathering<'a, const N: usize> {
 
 /// Random numbers for the second light and those after it.
 const FURTHER_LIGHTS: u32 = 16;
-/// Random digits for choices among many.
+/// Random digits for choices among many, and the choice of a side.
 const MORE_DIGITS: u32 = 3;
 
 impl<const N: usize> Gathering<'_, N> {
@@ -57,7 +61,7 @@ impl<const N: usize> Gathering<'_, N> {
             }
         } else {
             let more = sampler.four_plain(key, MORE_DIGITS);
-            let (from, normal) = (self.point.position, self.arrival.normal);
+            let (from, normal) = (self.point.position, self.normal);
             if let Some((target, probability)) = self.world.choice.choose(from, normal, finer(self.u[3], more[0])) {
                 add(&mut sum, self.from(target, probability, digits(target, [self.u[0], self.u[1]])));
             }
@@ -65,12 +69,30 @@ impl<const N: usize> Gathering<'_, N> {
         sum
     }
 
+    /// Gathers light on both sides of a surface or, where only one light is aimed at, on one of them chosen by chance.
+    ///
+    /// Adds it to a sum, and answers how likely it was to look at a side.
+    pub(super) fn both_sides(self, far: Self, sampler: &Sampler, key: BranchKey, sum: &mut [f64; 3]) -> f64 {
+        let chance = if self.aims_at_all { 1.0 } else { 0.5 };
+        let u = sampler.four_plain(key, MORE_DIGITS)[2];
+        for (gathering, looks) in [(self, u < chance), (far, 1.0 - u <= chance)] {
+            if looks {
+                add(sum, Self { side: Some(chance), ..gathering }.direct(sampler, key));
+            }
+        }
+        chance
+    }
+
     /// The share of one light, aimed at with a probability.
     fn from(&self, target: LightId, probability: f64, u: [f64; 2]) -> [f64; 3] {
         let light = &self.world.scene.lights[target];
-        let normal = self.arrival.normal;
+        let normal = self.normal;
+        let probability = probability * self.side.unwrap_or(1.0);
         let lit = || {
             let sighting = light.aim(self.point.position, normal, u)?;
+            if self.side.is_some() && sighting.direction.dot(normal) <= 0.0 {
+                return None;
+            }
             let (bsdf_cos, bsdf_pdf) = self.material.evaluate(self.arrival, sighting.direction)?;
             let ray = self.point.leave(sighting.direction);
             let view = light.view(&ray, normal, &sighting)?;
@@ -120,7 +142,7 @@ pub(super) fn weight_of_meeting(
     };
     let Some(pdf) = pdf else { return 1.0 };
     let probability = if drawn.aimed_at_all { 1.0 } else { world.choice.probability(light, drawn.from, drawn.normal) };
-    power_heuristic(drawn.pdf, pdf * probability)
+    power_heuristic(drawn.pdf, pdf * (probability * drawn.chance))
 }
 
 /// Veach & Guibas 1995, *Optimally Combining Sampling Techniques for Monte Carlo Rendering*, power heuristic, beta = 2.

@@ -172,7 +172,8 @@ impl<'a, const N: usize> Tracer<'a, N> {
         };
 
         // Gather light from the lights where light scatters widely.
-        let (mut u, mut drawn) = ([0.0; 4], None);
+        let (mut u, mut drawn, mut chance) = ([0.0; 4], None, 1.0);
+        let parts = material.parts(&arrival);
         let (wide, diffuse) = (material.scatters_widely(), material.is_diffuse());
         if wide {
             let spread = path.vertices <= SPREAD;
@@ -186,14 +187,21 @@ impl<'a, const N: usize> Tracer<'a, N> {
                 point,
                 throughput: path.throughput,
                 parted: path.parted,
+                normal,
+                side: None,
                 inside: here,
                 goes_on,
                 aims_at_all,
                 hider: &self.hider,
                 u,
             };
-            add(sum, gathering.direct(sampler, path.key));
-            drawn = Some(Drawn { pdf: 0.0, from: point.position, normal, aimed_at_all: aims_at_all });
+            if material.scatters_through() {
+                let far = Gathering { normal: -normal, parted: path.parted || parts, inside: beyond, ..gathering };
+                chance = gathering.both_sides(far, sampler, path.key, sum);
+            } else {
+                add(sum, gathering.direct(sampler, path.key));
+            }
+            drawn = Some(Drawn { pdf: 0.0, from: point.position, normal, chance, aimed_at_all: aims_at_all });
             if !goes_on {
                 return None;
             }
@@ -202,7 +210,6 @@ impl<'a, const N: usize> Tracer<'a, N> {
         // Send the path on.
         self.branches.clear();
         material.scatter(&arrival, [u[2], u[3]], &mut self.branches);
-        let parts = arrival.parts();
         self.tally.partings += u64::from(self.branches.iter().filter(|branch| branch.crosses).count() > 1);
         let sooner = if diffuse { SOONER } else { 1.0 };
         self.follow(path, draw, sampler, (parts, sooner), |number, branch, factor| Path {
@@ -214,7 +221,10 @@ impl<'a, const N: usize> Tracer<'a, N> {
             key: path.key.child(number),
             vertices: path.vertices,
             diffuse_left: path.diffuse_left - u32::from(diffuse),
-            drawn: branch.pdf.and_then(|pdf| drawn.map(|drawn| Drawn { pdf, ..drawn })),
+            drawn: branch.pdf.and_then(|pdf| {
+                let normal = if branch.crosses { -normal } else { normal };
+                drawn.map(|drawn| Drawn { pdf, normal, ..drawn })
+            }),
             polarization: branch.polarization,
         })
     }
