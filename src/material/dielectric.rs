@@ -6,6 +6,8 @@ use crate::spectrum::{Draw, Lanes, Quantity, Table};
 
 /// A clear body, smooth or rough: light is reflected and refracted by Snell's law and Fresnel's equations.
 ///
+/// Rough, its facets do so: see [`RoughInterface`](super::RoughInterface).
+///
 /// It fills the space behind its surface's front. The classic tracer's {r, t, g, n} are its reflectance, transmittance,
 /// emission and index. Its emission shines from both sides of the surface by being met, never by being aimed at: a lamp
 /// is `emissive`.

@@ -43,7 +43,14 @@ impl<'a, 'b, const N: usize> Meeting<'a, 'b, N> {
             }
             let known = kinds.iter().position(|kind| kind.indices == indices).unwrap_or_else(|| {
                 let sides = interface.between(n1, n2);
-                kinds.push(Kind { indices, sides, present: Lanes::ZERO, count: 0.0, crossing: 0.0, flow: Flow::default() });
+                kinds.push(Kind {
+                    indices,
+                    sides,
+                    present: Lanes::ZERO,
+                    count: 0.0,
+                    crossing: 0.0,
+                    flow: Flow::default(),
+                });
                 kinds.len() - 1
             });
             let kind = &mut kinds[known];
@@ -194,12 +201,7 @@ impl Dielectric<Table> {
     }
 
     /// Between equal indices nothing happens at all.
-    fn pass_equal_indices<const N: usize>(
-        &self,
-        arrival: &Arrival<N>,
-        tint: Lanes<N>,
-        branches: &mut Vec<Branch<N>>,
-    ) {
+    fn pass_equal_indices<const N: usize>(&self, arrival: &Arrival<N>, tint: Lanes<N>, branches: &mut Vec<Branch<N>>) {
         let same = Lanes::from_fn(|i| if arrival.incident[i] == arrival.beyond[i] { arrival.present[i] } else { 0.0 });
         if same.is_zero() {
             return;

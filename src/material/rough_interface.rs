@@ -1,4 +1,4 @@
-use std::f64::consts::PI;
+use std::f64::consts::{LN_10, PI};
 use std::sync::OnceLock;
 
 use super::by_cosine::ByCosine;
@@ -27,10 +27,11 @@ struct Row {
     transmittance: f64,
 }
 
-/// Rows for ratios above 1, and as many below. Their places are the roots of ln(n2 / n1), as reflectance grows from 1.
-const RATIOS: usize = 24;
-/// The largest ratio of the tables: of the largest index there is, to vacuum.
-const LARGEST: f64 = 10.0;
+/// Steps between rows for ratios above 1, and as many below.
+const RATIOS: usize = 56;
+/// The smallest |ln(n2 / n1)| of the rows and the largest, of the largest index there is to vacuum. Between them it grows by
+/// a fifth from row to row: light that grazes nearly equal indices is reflected below a cosine of about its root.
+const SPAN: [f64; 2] = [1e-4, LN_10];
 /// Steps of the quadrature over the visible facets: around the normal's half turn, and up.
 const AROUND: usize = 32;
 const UP: usize = 64;
@@ -38,7 +39,7 @@ const UP: usize = 64;
 impl RoughInterface {
     /// The boundary whose facets have slopes as wide as `alpha`.
     pub fn new(alpha: f64) -> Self {
-        Self { facets: Facets::new(alpha), rows: (0..=2 * RATIOS).map(|_| OnceLock::new()).collect() }
+        Self { facets: Facets::new(alpha), rows: (0..2 * (RATIOS + 1)).map(|_| OnceLock::new()).collect() }
     }
 
     /// The facets themselves.
@@ -49,31 +50,33 @@ impl RoughInterface {
     /// The boundary as light meets it that comes from index `n1` and finds a different index `n2` beyond.
     pub fn between(&self, n1: f64, n2: f64) -> Sides<'_> {
         let ratio = libm::log(n2 / n1);
-        let place = (ratio.abs() / libm::log(LARGEST)).sqrt().min(1.0).copysign(ratio);
-        let [near, far] = [place, -place].map(|place| self.side(place));
+        let denser = ratio > 0.0;
+        let [least, most] = SPAN;
+        let place = libm::log(ratio.abs().clamp(least, most) / least) / libm::log(most / least) * RATIOS as f64;
+        let [near, far] = [denser, !denser].map(|denser| self.side(denser, place));
         // Light meets a boundary evenly as often from both sides if n^2 of it comes: what crosses is the same both ways.
         let square = (n1 / n2) * (n1 / n2);
-        let enters = if place >= 0.0 { near.transmittance() } else { far.transmittance() / square };
+        let enters = if denser { near.transmittance() } else { far.transmittance() / square };
         let leaves = enters * square;
         let most = near.mean_blocked().max(far.mean_blocked());
         let crossing = [enters * far.mean_blocked() / most, leaves * near.mean_blocked() / most];
         Sides { facets: &self.facets, indices: [n1, n2], near, far, crossing }
     }
 
-    /// The tables at a place in -1..1.
-    fn side(&self, place: f64) -> Side<'_> {
-        let at = (place + 1.0) * RATIOS as f64;
-        let below = (at as usize).min(2 * RATIOS - 1);
-        Side { rows: [below, below + 1].map(|row| self.row(row)), part: at - below as f64 }
+    /// The tables at a place in 0..RATIOS, of light that meets the denser medium or the rarer.
+    fn side(&self, denser: bool, place: f64) -> Side<'_> {
+        let below = (place as usize).min(RATIOS - 1);
+        Side { rows: [below, below + 1].map(|row| self.row(denser, row)), part: place - below as f64 }
     }
 
-    fn row(&self, row: usize) -> &Row {
-        self.rows[row].get_or_init(|| {
-            let place = row as f64 / RATIOS as f64 - 1.0;
-            let ratio = libm::exp((place * place).copysign(place) * libm::log(LARGEST));
+    fn row(&self, denser: bool, row: usize) -> &Row {
+        self.rows[row + if denser { RATIOS + 1 } else { 0 }].get_or_init(|| {
+            let [least, most] = SPAN;
+            let size = least * libm::pow(most / least, row as f64 / RATIOS as f64);
+            let ratio = libm::exp(if denser { size } else { -size });
             let part = |which: usize| move |z: f64| quadrature(&self.facets, z, ratio)[which];
-            let alpha = self.facets.alpha();
-            let [reflected, blocked] = [0, 1].map(|which| ByCosine::new(alpha, part(which)));
+            // Fresnel's reflectance changes with the cosine itself, however smooth the surface.
+            let (reflected, blocked) = (ByCosine::new(1.0, part(0)), ByCosine::new(self.facets.alpha(), part(1)));
             Row { reflected, blocked, transmittance: mean_transmittance(ratio) }
         })
     }
@@ -214,8 +217,8 @@ impl Sides<'_> {
         let again = self.near.blocked(wo.z);
         if u[0] < again {
             let u = [u[0] / again, u[1]];
-            let beyond = self.far.draw(u);
-            return [Some((self.near.draw(u), None)), Some((DVec3 { z: -beyond.z, ..beyond }, None))];
+            let [above, beyond] = [self.near.draw(u), self.far.draw(u)];
+            return [above, DVec3 { z: -beyond.z, ..beyond }].map(|wi| (wi.z != 0.0).then_some((wi, None)));
         }
         let h = self.facets.visible_normal(wo, [(u[0] - again) / (1.0 - again), u[1]]);
         let [n1, n2] = self.indices;
