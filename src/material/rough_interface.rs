@@ -21,10 +21,20 @@ pub struct RoughInterface {
 /// What becomes of light that meets a boundary from one side, for one ratio of indices.
 #[derive(Clone, Debug)]
 struct Row {
-    reflected: ByCosine,
+    ratio: f64,
+    /// Computed when first asked for: only a surface under this one needs it.
+    reflected: OnceLock<ByCosine>,
     blocked: ByCosine,
     /// The mean Fresnel transmittance of light from all around.
     transmittance: f64,
+}
+
+impl Row {
+    /// The share of light that is reflected once. Fresnel's reflectance changes with the cosine itself, however smooth the
+    /// surface.
+    fn reflected(&self, facets: &Facets) -> &ByCosine {
+        self.reflected.get_or_init(|| ByCosine::new(1.0, |z| quadrature(facets, z, self.ratio)[0]))
+    }
 }
 
 /// Steps between rows for ratios above 1, and as many below.
@@ -33,8 +43,8 @@ const RATIOS: usize = 56;
 /// a fifth from row to row: light that grazes nearly equal indices is reflected below a cosine of about its root.
 const SPAN: [f64; 2] = [1e-4, LN_10];
 /// Steps of the quadrature over the visible facets: around the normal's half turn, and up.
-const AROUND: usize = 32;
-const UP: usize = 64;
+const AROUND: usize = 24;
+const UP: usize = 48;
 
 impl RoughInterface {
     /// The boundary whose facets have slopes as wide as `alpha`.
@@ -66,7 +76,8 @@ impl RoughInterface {
     /// The tables at a place in 0..RATIOS, of light that meets the denser medium or the rarer.
     fn side(&self, denser: bool, place: f64) -> Side<'_> {
         let below = (place as usize).min(RATIOS - 1);
-        Side { rows: [below, below + 1].map(|row| self.row(denser, row)), part: place - below as f64 }
+        let rows = [below, below + 1].map(|row| self.row(denser, row));
+        Side { facets: &self.facets, rows, part: place - below as f64 }
     }
 
     fn row(&self, denser: bool, row: usize) -> &Row {
@@ -74,10 +85,8 @@ impl RoughInterface {
             let [least, most] = SPAN;
             let size = least * libm::pow(most / least, row as f64 / RATIOS as f64);
             let ratio = libm::exp(if denser { size } else { -size });
-            let part = |which: usize| move |z: f64| quadrature(&self.facets, z, ratio)[which];
-            // Fresnel's reflectance changes with the cosine itself, however smooth the surface.
-            let (reflected, blocked) = (ByCosine::new(1.0, part(0)), ByCosine::new(self.facets.alpha(), part(1)));
-            Row { reflected, blocked, transmittance: mean_transmittance(ratio) }
+            let blocked = ByCosine::new(self.facets.alpha(), |z| quadrature(&self.facets, z, ratio)[1]);
+            Row { ratio, reflected: OnceLock::new(), blocked, transmittance: mean_transmittance(ratio) }
         })
     }
 }
@@ -121,6 +130,7 @@ fn mean_transmittance(ratio: f64) -> f64 {
 /// A rough boundary as it is met from one side, between two rows of the tables.
 #[derive(Clone, Copy, Debug)]
 pub struct Side<'a> {
+    facets: &'a Facets,
     rows: [&'a Row; 2],
     part: f64,
 }
@@ -133,7 +143,7 @@ impl Side<'_> {
 
     /// The share of light from the cosine `z` that is reflected once, and no facet blocks.
     pub fn reflected_once(&self, z: f64) -> f64 {
-        self.mix(|row| row.reflected.value(z))
+        self.mix(|row| row.reflected(self.facets).value(z))
     }
 
     /// The share of light from the cosine `z` that meets a second facet.
@@ -208,7 +218,7 @@ impl Sides<'_> {
 
     /// The same of light from all around.
     pub fn mean_reflectance(&self) -> f64 {
-        self.near.mix(|row| row.reflected.mean()) + (1.0 - self.crossing[0]) * self.near.mean_blocked()
+        self.near.mix(|row| row.reflected(self.facets).mean()) + (1.0 - self.crossing[0]) * self.near.mean_blocked()
     }
 
     /// A direction above the surface and one beyond it for the viewer's direction `wo`: from the lobes as often as light

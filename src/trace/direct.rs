@@ -41,7 +41,7 @@ const MORE_DIGITS: u32 = 3;
 
 impl<const N: usize> Gathering<'_, N> {
     /// What the sensor gets of the light that lights send straight to the surface.
-    pub(super) fn direct(&self, sampler: &Sampler, key: BranchKey) -> [f64; 3] {
+    fn direct(&self, sampler: &Sampler, key: BranchKey) -> [f64; 3] {
         let targets = &self.world.targets;
         let mut sum = [0.0; 3];
         let digits = |target: LightId, u: [f64; 2]| match &self.world.scene.lights[target] {
@@ -69,16 +69,30 @@ impl<const N: usize> Gathering<'_, N> {
         sum
     }
 
-    /// Gathers light on both sides of a surface or, where only one light is aimed at, on one of them chosen by chance.
+    /// Adds the light of the lights to a sum, and answers how likely it was to look at a side.
     ///
-    /// Adds it to a sum, and answers how likely it was to look at a side.
-    pub(super) fn both_sides(self, far: Self, sampler: &Sampler, key: BranchKey, sum: &mut [f64; 3]) -> f64 {
+    /// Where light also comes from beyond the surface, `far` is the medium there and whether lanes part on the way. Both
+    /// sides are looked at or, where only one light is aimed at, one of them chosen by chance.
+    pub(super) fn gather(
+        self,
+        far: Option<(Option<MaterialId>, bool)>,
+        sampler: &Sampler,
+        key: BranchKey,
+        sum: &mut [f64; 3],
+    ) -> f64 {
+        let Some((inside, parts)) = far else {
+            add(sum, self.direct(sampler, key));
+            return 1.0;
+        };
         let chance = if self.aims_at_all { 1.0 } else { 0.5 };
         let u = sampler.four_plain(key, MORE_DIGITS)[2];
-        for (gathering, looks) in [(self, u < chance), (far, 1.0 - u <= chance)] {
-            if looks {
-                add(sum, Self { side: Some(chance), ..gathering }.direct(sampler, key));
-            }
+        let near = Self { side: Some(chance), ..self };
+        if u < chance {
+            add(sum, near.direct(sampler, key));
+        }
+        if 1.0 - u <= chance {
+            let parted = near.parted || parts;
+            add(sum, Self { normal: -near.normal, parted, inside, ..near }.direct(sampler, key));
         }
         chance
     }

@@ -41,6 +41,13 @@ pub(super) struct Drawn {
     pub(super) aimed_at_all: bool,
 }
 
+impl Drawn {
+    /// The same of a direction drawn with a density, which may lead beyond the surface.
+    pub(super) fn toward(self, pdf: f64, crosses: bool) -> Self {
+        Self { pdf, normal: if crosses { -self.normal } else { self.normal }, ..self }
+    }
+}
+
 impl<const N: usize> Path<N> {
     /// The path of a camera ray.
     pub(super) fn from_camera(world: &World, draw: &Draw<N>, ray: Ray) -> Self {

@@ -172,7 +172,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
         };
 
         // Gather light from the lights where light scatters widely.
-        let (mut u, mut drawn, mut chance) = ([0.0; 4], None, 1.0);
+        let (mut u, mut drawn) = ([0.0; 4], None);
         let parts = material.parts(&arrival);
         let (wide, diffuse) = (material.scatters_widely(), material.is_diffuse());
         if wide {
@@ -195,12 +195,8 @@ impl<'a, const N: usize> Tracer<'a, N> {
                 hider: &self.hider,
                 u,
             };
-            if material.scatters_through() {
-                let far = Gathering { normal: -normal, parted: path.parted || parts, inside: beyond, ..gathering };
-                chance = gathering.both_sides(far, sampler, path.key, sum);
-            } else {
-                add(sum, gathering.direct(sampler, path.key));
-            }
+            let far = material.scatters_through().then_some((beyond, parts));
+            let chance = gathering.gather(far, sampler, path.key, sum);
             drawn = Some(Drawn { pdf: 0.0, from: point.position, normal, chance, aimed_at_all: aims_at_all });
             if !goes_on {
                 return None;
@@ -221,10 +217,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
             key: path.key.child(number),
             vertices: path.vertices,
             diffuse_left: path.diffuse_left - u32::from(diffuse),
-            drawn: branch.pdf.and_then(|pdf| {
-                let normal = if branch.crosses { -normal } else { normal };
-                drawn.map(|drawn| Drawn { pdf, normal, ..drawn })
-            }),
+            drawn: branch.pdf.and_then(|pdf| drawn.map(|drawn: Drawn| drawn.toward(pdf, branch.crosses))),
             polarization: branch.polarization,
         })
     }
