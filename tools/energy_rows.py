@@ -132,6 +132,13 @@ def rough_metal(name, body, roughness, size):
     return Row(f"lossless metal {name} of roughness {roughness} under a sky of 1", [view], 1.0, every_pixel=False)
 
 
+def rough_glass(name, body, index, roughness, size):
+    """Clear glass, however rough, cannot be told from an even sky of 1: what its facets block is given back."""
+    glass = {"dielectric": {"index": index, "roughness": roughness}}
+    view = scene({"glass": glass}, [("glass", body)], [WHITE_SKY], eye=(1.7, 1.3, 3.1), fov=38, size=size, samples=512)
+    return Row(f"lossless {name} of roughness {roughness}, {label(index)}", [view], 1.0, every_pixel=False)
+
+
 def lit(name, lamp, irradiance, size):
     """One point of a diffuse floor of reflectance 1, straight under a lamp of radiance 1: irradiance / pi."""
     materials = {"floor": {"diffuse": {"reflectance": 1}}, "lamp": {"emissive": {"radiance": 1}}}
@@ -178,6 +185,7 @@ def rows(quick):
     table += [metal(degrees) for degrees in (0, 60)]
     roughnesses = [0.4] if quick else [0.05, 0.2, 0.4, 0.7, 1.0]
     table += [rough_metal(*body, roughness, size) for body in BODIES.items() for roughness in roughnesses]
+    table += [rough_glass(*body, 1.5, roughness, size) for body in BODIES.items() for roughness in roughnesses[:3]]
     table += [diffuse(name, body, size) for name, body in BODIES.items()]
     table += [inside_lamp("diffuse ball", {"diffuse": {"reflectance": 0.5}}, 0.5, size)]
     table += [inside_lamp("glass ball", {"dielectric": {"index": rgb(SPREAD)}}, 1.0, size)]

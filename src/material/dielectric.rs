@@ -1,9 +1,12 @@
 use serde::Deserialize;
 
-use super::{Arrival, Branch, Interface, reflect};
+use super::{Arrival, Branch, Interface, Roughness, reflect};
+use crate::math::DVec3;
 use crate::spectrum::{Draw, Lanes, Quantity, Table};
 
-/// A smooth clear body: light is reflected and refracted by Snell's law and Fresnel's equations.
+/// A clear body, smooth or rough: light is reflected and refracted by Snell's law and Fresnel's equations.
+///
+/// Rough, its facets do so: see [`RoughInterface`](super::RoughInterface).
 ///
 /// It fills the space behind its surface's front. The classic tracer's {r, t, g, n} are its reflectance, transmittance,
 /// emission and index. Its emission shines from both sides of the surface by being met, never by being aimed at: a lamp
@@ -12,6 +15,7 @@ use crate::spectrum::{Draw, Lanes, Quantity, Table};
 /// ```toml
 /// dielectric = { index = "N-SF11" }
 /// dielectric = { index = { rgb = [1.513, 1.517, 1.523] }, transmittance = { rgb = [0.9, 1, 0.9] }, absorption = 0.2 }
+/// dielectric = { index = "N-BK7", roughness = 0.3 }     # 0 to 1; 0, smooth, if absent
 /// ```
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -35,6 +39,9 @@ pub struct Dielectric<S> {
     /// the file. Bodies of one material merge.
     #[serde(default)]
     pub priority: i32,
+    /// How rough its surface is; below 0.01 it is taken as smooth.
+    #[serde(default)]
+    pub roughness: Roughness,
 }
 
 /// The default of an optional spectrum.
@@ -51,14 +58,27 @@ impl<S> Dielectric<S> {
             emission: convert(Quantity::Emission, &self.emission),
             absorption: convert(Quantity::Absorption, &self.absorption),
             priority: self.priority,
+            roughness: self.roughness.clone(),
         }
     }
 }
 
 impl Dielectric<Table> {
+    /// The ways on, backward.
+    pub(super) fn scatter<const N: usize>(&self, arrival: &Arrival<N>, u: [f64; 2], branches: &mut Vec<Branch<N>>) {
+        match self.roughness.interface() {
+            Some(interface) => self.scatter_rough(interface, arrival, u, branches),
+            None => self.scatter_smooth(arrival, branches),
+        }
+    }
+
+    pub(super) fn evaluate<const N: usize>(&self, arrival: &Arrival<N>, wi: DVec3) -> Option<(Lanes<N>, f64)> {
+        self.evaluate_rough(self.roughness.interface()?, arrival, wi)
+    }
+
     /// One reflected branch with all lanes, and one refracted branch per distinct pair of indices: here lanes part, and
     /// only those go on that are there for it.
-    pub(super) fn scatter<const N: usize>(&self, arrival: &Arrival<N>, branches: &mut Vec<Branch<N>>) {
+    fn scatter_smooth<const N: usize>(&self, arrival: &Arrival<N>, branches: &mut Vec<Branch<N>>) {
         let (tint, reflectance) = (arrival.read(&self.transmittance), arrival.read(&self.reflectance));
         let parts = arrival.parts();
         let crossing = if parts { tint * arrival.draw.parting() } else { tint };

@@ -47,6 +47,24 @@ impl Facets {
         self.density(h) / (2.0 * (wo.z * self.slant(wi) / wi.z + self.slant(wo)))
     }
 
+    /// Density per steradian of `wi`, into which a visible facet of normal `h` refracts `wo` from index `n1` to a different
+    /// index `n2`; `cos` are those of both directions to the facet.
+    ///
+    /// D G1 cos / z, times the steradians of facets per steradian of directions: Walter et al. 2007, equation 17, without
+    /// the difference n1 cos - n2 cos, which keeps its digits for nearly equal indices.
+    pub fn refraction_pdf(&self, wo: DVec3, h: DVec3, [n1, n2]: [f64; 2], cos: [f64; 2]) -> f64 {
+        let turn = (n1 * cos[0] + n2 * cos[1]) / ((n2 - n1) * (n2 + n1));
+        let visible = self.density(h) * 2.0 * cos[0] / (wo.z + self.slant(wo));
+        visible * n2 * n2 * cos[1] * turn * turn
+    }
+
+    /// Smith's masking G1 of a direction above or below the surface, and 1 - G1 with all its digits.
+    pub fn masking(&self, w: DVec3) -> [f64; 2] {
+        let (z, slant) = (w.z.abs(), self.slant(w));
+        let excess = self.alpha * self.alpha * (w.x * w.x + w.y * w.y) / (slant + z);
+        [2.0 * z / (z + slant), excess / (z + slant)]
+    }
+
     /// 1 - G2 / G1: the share of the light from a visible facet toward `wi` that meets another facet.
     ///
     /// From S^2 - z^2 = alpha^2 (x^2 + y^2), so that it keeps its digits where nearly nothing does.

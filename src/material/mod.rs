@@ -3,6 +3,7 @@
 //! `Material<S>` is written once and read twice: with `S = Curve` it is the scene file's vocabulary, with `S = Table` what
 //! the tracer reads; [`Material::map`] is the bridge. A material answers an [`Arrival`] with [`Branch`]es.
 
+mod by_cosine;
 mod conductor;
 mod dielectric;
 mod diffuse;
@@ -10,6 +11,8 @@ mod emissive;
 mod facets;
 mod fresnel;
 mod mirror;
+mod rough_dielectric;
+mod rough_interface;
 mod roughness;
 mod thin;
 
@@ -20,6 +23,7 @@ pub use emissive::Emissive;
 pub use facets::Facets;
 pub use fresnel::{Interface, conductor_reflectance};
 pub use mirror::{Mirror, reflect};
+pub use rough_interface::{Flow, RoughInterface, Side, Sides, Ways};
 pub use roughness::{RoughReflection, RoughSurface, Roughness};
 pub use thin::Thin;
 
@@ -173,8 +177,14 @@ impl<S> Material<S> {
         match self {
             Self::Diffuse(_) => true,
             Self::Conductor(conductor) => !conductor.roughness.is_smooth(),
+            Self::Dielectric(dielectric) => !dielectric.roughness.is_smooth(),
             _ => false,
         }
+    }
+
+    /// Whether light also comes from beyond the surface in every direction.
+    pub fn scatters_through(&self) -> bool {
+        matches!(self, Self::Dielectric(dielectric) if !dielectric.roughness.is_smooth())
     }
 
     /// Whether light leaves with no memory of where it came from: `diffuse_bounces` counts these surfaces.
@@ -186,6 +196,7 @@ impl<S> Material<S> {
     pub fn roughness(&self) -> Option<f64> {
         match self {
             Self::Conductor(conductor) => Some(conductor.roughness.value()),
+            Self::Dielectric(dielectric) => Some(dielectric.roughness.value()),
             _ => None,
         }
     }
@@ -199,8 +210,16 @@ impl Material<Table> {
             Self::Mirror(mirror) => branches.push(mirror.scatter(arrival)),
             Self::Thin(thin) => thin.scatter(arrival, branches),
             Self::Conductor(conductor) => branches.extend(conductor.scatter(arrival, u)),
-            Self::Dielectric(dielectric) => dielectric.scatter(arrival, branches),
+            Self::Dielectric(dielectric) => dielectric.scatter(arrival, u, branches),
             Self::Emissive(_) => {}
+        }
+    }
+
+    /// Whether lanes part that cross the surface.
+    pub fn parts<const N: usize>(&self, arrival: &Arrival<N>) -> bool {
+        match self {
+            Self::Dielectric(dielectric) => dielectric.parts(arrival),
+            _ => arrival.parts(),
         }
     }
 
@@ -211,6 +230,7 @@ impl Material<Table> {
         match self {
             Self::Diffuse(diffuse) => diffuse.evaluate(arrival, wi),
             Self::Conductor(conductor) => conductor.evaluate(arrival, wi),
+            Self::Dielectric(dielectric) => dielectric.evaluate(arrival, wi),
             _ => None,
         }
     }

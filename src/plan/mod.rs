@@ -119,7 +119,8 @@ fn lights(scene: &Scene<Curve>) -> Vec<String> {
     };
     let points = scene.lights.iter().filter(|light| !light.is_extended()).count();
     let bends = scene.materials.iter().find(|m| match &m.material {
-        Material::Dielectric(_) | Material::Mirror(_) | Material::Thin(_) => true,
+        Material::Mirror(_) | Material::Thin(_) => true,
+        Material::Dielectric(glass) => glass.roughness.is_smooth(),
         Material::Conductor(metal) => metal.roughness.is_smooth(),
         _ => false,
     });

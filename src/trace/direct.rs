@@ -16,11 +16,13 @@ pub(super) struct Gathering<'a, const N: usize> {
     pub(super) world: &'a World,
     pub(super) material: &'a Material<Table>,
     pub(super) arrival: &'a Arrival<'a, N>,
-    /// The surface's normal on the viewer's side, by which lights are chosen.
-    pub(super) normal: DVec3,
     pub(super) point: &'a SurfacePoint,
     pub(super) throughput: Throughput<N>,
     pub(super) parted: bool,
+    /// The surface's unit normal, of the triangle where it is smooth, on the side the light arrives at.
+    pub(super) normal: DVec3,
+    /// How likely that side is looked at, where light may arrive at both: then light from the other side is left to it.
+    pub(super) side: Option<f64>,
     /// The medium the light arrives through.
     pub(super) inside: Option<MaterialId>,
     /// Whether the path goes on from here and may meet a light by itself.
@@ -34,12 +36,12 @@ pub(super) struct Gathering<'a, const N: usize> {
 
 /// Random numbers for the second light and those after it.
 const FURTHER_LIGHTS: u32 = 16;
-/// Random digits for choices among many.
+/// Random digits for choices among many, and the choice of a side.
 const MORE_DIGITS: u32 = 3;
 
 impl<const N: usize> Gathering<'_, N> {
     /// What the sensor gets of the light that lights send straight to the surface.
-    pub(super) fn direct(&self, sampler: &Sampler, key: BranchKey) -> [f64; 3] {
+    fn direct(&self, sampler: &Sampler, key: BranchKey) -> [f64; 3] {
         let targets = &self.world.targets;
         let mut sum = [0.0; 3];
         let digits = |target: LightId, u: [f64; 2]| match &self.world.scene.lights[target] {
@@ -67,13 +69,46 @@ impl<const N: usize> Gathering<'_, N> {
         sum
     }
 
+    /// Adds the light of the lights to a sum, and answers how likely it was to look at a side.
+    ///
+    /// Where light also comes from beyond the surface, `far` is the medium there and whether lanes part on the way. Both
+    /// sides are looked at or, where only one light is aimed at, one of them chosen by chance.
+    pub(super) fn gather(
+        self,
+        far: Option<(Option<MaterialId>, bool)>,
+        sampler: &Sampler,
+        key: BranchKey,
+        sum: &mut [f64; 3],
+    ) -> f64 {
+        let Some((inside, parts)) = far else {
+            add(sum, self.direct(sampler, key));
+            return 1.0;
+        };
+        let chance = if self.aims_at_all { 1.0 } else { 0.5 };
+        let u = sampler.four_plain(key, MORE_DIGITS)[2];
+        let near = Self { side: Some(chance), ..self };
+        if u < chance {
+            add(sum, near.direct(sampler, key));
+        }
+        if 1.0 - u <= chance {
+            let parted = near.parted || parts;
+            add(sum, Self { normal: -near.normal, parted, inside, ..near }.direct(sampler, key));
+        }
+        chance
+    }
+
     /// The share of one light, aimed at with a probability.
     fn from(&self, target: LightId, probability: f64, u: [f64; 2]) -> [f64; 3] {
         let light = &self.world.scene.lights[target];
         let normal = self.normal;
+        let probability = probability * self.side.unwrap_or(1.0);
         let lit = || {
             let sighting = light.aim(self.point.position, normal, u)?;
-            let (bsdf_cos, bsdf_pdf) = shading::evaluate(self.material, self.arrival, normal, sighting.direction)?;
+            if self.side.is_some() && sighting.direction.dot(normal) <= 0.0 {
+                return None;
+            }
+            let flat = if normal.dot(self.arrival.wo) < 0.0 { -normal } else { normal };
+            let (bsdf_cos, bsdf_pdf) = shading::evaluate(self.material, self.arrival, flat, sighting.direction)?;
             let ray = self.point.leave(sighting.direction);
             let view = light.view(&ray, normal, &sighting)?;
             let factor = match view.pdf {
@@ -122,7 +157,7 @@ pub(super) fn weight_of_meeting(
     };
     let Some(pdf) = pdf else { return 1.0 };
     let probability = if drawn.aimed_at_all { 1.0 } else { world.choice.probability(light, drawn.from, drawn.normal) };
-    power_heuristic(drawn.pdf, pdf * probability)
+    power_heuristic(drawn.pdf, pdf * (probability * drawn.chance))
 }
 
 /// Veach & Guibas 1995, *Optimally Combining Sampling Techniques for Monte Carlo Rendering*, power heuristic, beta = 2.

@@ -33,10 +33,19 @@ pub(super) struct Drawn {
     pub(super) pdf: f64,
     /// The point from which the lights were aimed at.
     pub(super) from: DVec3,
-    /// The surface's unit normal on the viewer's side.
+    /// The surface's unit normal on the side that the direction leads to.
     pub(super) normal: DVec3,
+    /// How likely lights were aimed at on this side of the surface.
+    pub(super) chance: f64,
     /// Whether every light was aimed at there, or one.
     pub(super) aimed_at_all: bool,
+}
+
+impl Drawn {
+    /// The same of a direction drawn with a density, which may lead beyond the surface.
+    pub(super) fn toward(self, pdf: f64, crosses: bool) -> Self {
+        Self { pdf, normal: if crosses { -self.normal } else { self.normal }, ..self }
+    }
 }
 
 impl<const N: usize> Path<N> {

@@ -45,6 +45,18 @@ impl InLanes for Probing<'_> {
 }
 
 fn probe_lanes<const N: usize>(world: &World) -> Probe {
+    // Tables that are computed when first needed are no part of a sample's time.
+    let rough = |id: u32| world.scene.material_of(id).roughness().is_some_and(|roughness| roughness > 0.0);
+    if (0..world.scene.objects.len()).any(|object| rough(object as u32)) {
+        let mut tracer = Tracer::<N>::new(world);
+        let window = world.scene.film.window();
+        for place in 0..SIDE {
+            let at = |place: u32, size: u32| (u64::from(place) * u64::from(size) / u64::from(SIDE)) as u32;
+            let (x, y) = (at(place * 7 % SIDE, window.width), at(place, window.height));
+            let (x, y) = (window.left + x, window.top + y);
+            sample(world, &mut tracer, &Sampler::new(world.method.seed, [x, y], 0), x, y);
+        }
+    }
     let mut tracer = Tracer::<N>::new(world);
     let (mut samples, mut parted) = (0, 0);
     let window = world.scene.film.window();

@@ -5,7 +5,7 @@ use super::media::{self, Media};
 use super::path::Path;
 use super::shading;
 use crate::light::Light;
-use crate::material::{Interface, Material, RoughSurface, reflect};
+use crate::material::{Facets, Interface, Material, RoughSurface, reflect};
 use crate::math::{BranchKey, DVec2, DVec3, Frame, Ray, Sampler, cosine_hemisphere, unit};
 use crate::shape::SurfacePoint;
 use crate::spectrum::Draw;
@@ -104,7 +104,7 @@ fn follow(world: &World, draw: &Draw<4>, lane: usize, ray: Ray, media: Media, sa
         let [_, normal] = shading::normals(&point, wo);
         key = key.child(0);
         let direction = match world.scene.material_of(hit.object) {
-            Material::Dielectric(_) => {
+            Material::Dielectric(glass) => {
                 let Some(boundary) = end.media.boundary(world, object.material, front) else {
                     ray = point.leave(ray.direction);
                     continue;
@@ -112,15 +112,23 @@ fn follow(world: &World, draw: &Draw<4>, lane: usize, ray: Ray, media: Media, sa
                 let indices = [boundary.here, boundary.beyond].map(|inside| media::index(world, draw, inside));
                 end.dispersive |= indices.iter().any(|index| index[0] != index[1]);
                 let [n1, n2] = indices.map(|index| index[lane]);
-                let interface = Interface::new(n1, n2, wo.dot(normal));
+                let [u, _, across @ ..] = sampler.four_plain(key, 7);
+                // The same facet for both colors.
+                let facets = glass.roughness.interface().map(|rough| rough.facets());
+                let facet = facets.map_or(normal, |facets| visible(facets, wo, normal, across));
+                let interface = Interface::new(n1, n2, wo.dot(facet));
                 // The first color's reflectance decides for both.
-                let chance = Interface::new(indices[0][0], indices[1][0], wo.dot(normal)).reflectance;
-                if n1 != n2 && (interface.transmittance == 0.0 || sampler.four_plain(key, 7)[0] < chance) {
-                    reflect(wo, normal)
+                let chance = Interface::new(indices[0][0], indices[1][0], wo.dot(facet)).reflectance;
+                let (direction, side) = if n1 != n2 && (interface.transmittance == 0.0 || u < chance) {
+                    (reflect(wo, facet), 1.0)
                 } else {
                     end.media = boundary.crossed;
-                    if n1 == n2 { ray.direction } else { interface.refract(wo, normal) }
+                    (if n1 == n2 { ray.direction } else { interface.refract(wo, facet) }, -1.0)
+                };
+                if facets.is_some() && direction.dot(normal) * side <= 0.0 {
+                    return end;
                 }
+                direction
             }
             Material::Mirror(_) => reflect(wo, normal),
             Material::Thin(_) => ray.direction,
@@ -144,6 +152,13 @@ fn follow(world: &World, draw: &Draw<4>, lane: usize, ray: Ray, media: Media, sa
         ray = point.leave(direction);
     }
     end
+}
+
+/// The normal of a facet that is visible from `wo`.
+fn visible(facets: &Facets, wo: DVec3, normal: DVec3, u: [f64; 2]) -> DVec3 {
+    let frame = Frame::about(normal);
+    let local = frame.to_local(wo);
+    frame.to_world(facets.visible_normal(DVec3 { z: local.z.max(0.0), ..local }, u))
 }
 
 /// The mirror image of `wo` about a visible facet; none if it lies below the surface.

@@ -172,6 +172,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
 
         // Gather light from the lights where light scatters widely.
         let (mut u, mut drawn) = ([0.0; 4], None);
+        let parts = material.parts(&arrival);
         let (wide, diffuse) = (material.scatters_widely(), material.is_diffuse());
         if wide {
             let spread = path.vertices <= SPREAD;
@@ -182,18 +183,20 @@ impl<'a, const N: usize> Tracer<'a, N> {
                 world,
                 material,
                 arrival: &arrival,
-                normal,
                 point,
                 throughput: path.throughput,
                 parted: path.parted,
+                normal,
+                side: None,
                 inside: here,
                 goes_on,
                 aims_at_all,
                 hider: &self.hider,
                 u,
             };
-            add(sum, gathering.direct(sampler, path.key));
-            drawn = Some(Drawn { pdf: 0.0, from: point.position, normal, aimed_at_all: aims_at_all });
+            let far = material.scatters_through().then_some((beyond, parts));
+            let chance = gathering.gather(far, sampler, path.key, sum);
+            drawn = Some(Drawn { pdf: 0.0, from: point.position, normal, chance, aimed_at_all: aims_at_all });
             if !goes_on {
                 return None;
             }
@@ -202,7 +205,6 @@ impl<'a, const N: usize> Tracer<'a, N> {
         // Send the path on.
         self.branches.clear();
         shading::scatter(material, &arrival, normal, [u[2], u[3]], &mut self.branches);
-        let parts = arrival.parts();
         self.tally.partings += u64::from(self.branches.iter().filter(|branch| branch.crosses).count() > 1);
         let sooner = if diffuse { SOONER } else { 1.0 };
         self.follow(path, draw, sampler, (parts, sooner), |number, branch, factor| Path {
@@ -214,7 +216,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
             key: path.key.child(number),
             vertices: path.vertices,
             diffuse_left: path.diffuse_left - u32::from(diffuse),
-            drawn: branch.pdf.and_then(|pdf| drawn.map(|drawn| Drawn { pdf, ..drawn })),
+            drawn: branch.pdf.and_then(|pdf| drawn.map(|drawn: Drawn| drawn.toward(pdf, branch.crosses))),
             polarization: branch.polarization,
         })
     }

@@ -1,0 +1,231 @@
+//! A rough clear body, lane by lane.
+
+use super::conductor::above;
+use super::{Arrival, Branch, Dielectric, Flow, RoughInterface, Sides};
+use crate::math::{DVec3, Frame, unit};
+use crate::spectrum::{Lanes, Table};
+
+/// Lanes whose refracted rays lie apart by more than this many widths of the facets' slopes, as far as the slopes turn
+/// them, part; see [`parts`]. Measured by noise at equal time.
+const WIDTHS: f64 = 2.0;
+
+/// A rough surface met by a ray: each lane's boundary, once for all lanes of the same indices.
+struct Meeting<'a, 'b, const N: usize> {
+    arrival: &'a Arrival<'b, N>,
+    frame: Frame,
+    wo: DVec3,
+    /// Each different boundary, and the lanes that meet it.
+    kinds: Vec<Kind<'a, N>>,
+    parts: bool,
+}
+
+/// Lanes between the same two indices.
+struct Kind<'a, const N: usize> {
+    indices: [f64; 2],
+    sides: Sides<'a>,
+    present: Lanes<N>,
+    count: f64,
+    /// What light of these lanes does in the direction that was asked for last.
+    flow: Flow,
+    /// How many of them count beyond the surface.
+    crossing: f64,
+}
+
+impl<'a, 'b, const N: usize> Meeting<'a, 'b, N> {
+    fn new(interface: &'a RoughInterface, arrival: &'a Arrival<'b, N>) -> Self {
+        let parts = parts(interface, arrival);
+        let goes_on = if parts { arrival.draw.parting() } else { Lanes::ONE };
+        let mut kinds: Vec<Kind<N>> = Vec::new();
+        for lane in (0..N).filter(|&lane| arrival.present[lane] != 0.0) {
+            let indices @ [n1, n2] = [arrival.incident[lane], arrival.beyond[lane]];
+            if n1 == n2 {
+                continue;
+            }
+            let known = kinds.iter().position(|kind| kind.indices == indices).unwrap_or_else(|| {
+                let sides = interface.between(n1, n2);
+                kinds.push(Kind {
+                    indices,
+                    sides,
+                    present: Lanes::ZERO,
+                    count: 0.0,
+                    crossing: 0.0,
+                    flow: Flow::default(),
+                });
+                kinds.len() - 1
+            });
+            let kind = &mut kinds[known];
+            kind.present.0[lane] = 1.0;
+            kind.count += 1.0;
+            kind.crossing += f64::from(goes_on[lane]);
+        }
+        let frame = Frame::about(arrival.normal);
+        Self { arrival, wo: above(&frame, arrival.wo), frame, kinds, parts }
+    }
+
+    /// The lanes of a kind that cross the surface.
+    fn across(&self, kind: &Kind<N>) -> Lanes<N> {
+        if self.parts { kind.present * self.arrival.draw.parting() } else { kind.present }
+    }
+
+    /// Asks every kind of lanes about a direction above the surface, for the mean of the densities with which they draw it.
+    fn reflect(&mut self, wi: DVec3, h: Option<DVec3>) -> f64 {
+        let Some(h) = h.or_else(|| (self.wo + wi).try_normalize()) else { return 0.0 };
+        let (mut pdf, mut lanes) = (0.0, 0.0);
+        for kind in &mut self.kinds {
+            kind.flow = kind.sides.reflected(self.wo, wi, h);
+            pdf += kind.count * kind.flow.pdf;
+            lanes += kind.count;
+        }
+        if lanes > 0.0 { pdf / lanes } else { 0.0 }
+    }
+
+    /// The same of a direction beyond it. `drawn` is the kind that drew it, and the facet.
+    fn cross(&mut self, wi: DVec3, drawn: Option<(usize, DVec3)>) -> f64 {
+        let (mut pdf, mut lanes) = (0.0, 0.0);
+        for (number, kind) in self.kinds.iter_mut().enumerate().filter(|(_, kind)| kind.crossing > 0.0) {
+            let h = drawn.filter(|drawn| drawn.0 == number).map(|drawn| drawn.1);
+            kind.flow = kind.sides.crossed(self.wo, wi, h);
+            pdf += kind.crossing * kind.flow.pdf;
+            lanes += kind.crossing;
+        }
+        if lanes > 0.0 { pdf / lanes } else { 0.0 }
+    }
+
+    /// What the lanes do that were asked last, the BSDF times the cosine, times a factor.
+    fn reflected(&self, factor: f64) -> Lanes<N> {
+        self.kinds.iter().fold(Lanes::ZERO, |sum, kind| sum + kind.present * (kind.flow.value * factor) as f32)
+    }
+
+    /// The same beyond the surface.
+    fn crossed(&self, factor: f64) -> Lanes<N> {
+        let crossing = self.kinds.iter().filter(|kind| kind.crossing > 0.0);
+        crossing.fold(Lanes::ZERO, |sum, kind| sum + self.across(kind) * (kind.flow.value * factor) as f32)
+    }
+
+    /// The direction in the world; none where rounding has put it on the wrong side.
+    fn to_world(&self, wi: DVec3) -> Option<DVec3> {
+        let world = unit(self.frame.to_world(wi));
+        (world.dot(self.arrival.normal) * wi.z > 0.0).then_some(world)
+    }
+}
+
+/// Whether lanes that cross a rough surface go different ways. While their lobes overlap they go on together.
+///
+/// The refracted ray turns by sin t dr / (r cos t) where the ratio of the indices, r, changes by dr, and by
+/// |r cos i - cos t| / cos t of what a facet is turned by. All lanes of a draw are asked, as in [`Arrival::parts`].
+fn parts<const N: usize>(interface: &RoughInterface, arrival: &Arrival<N>) -> bool {
+    if !arrival.parts() {
+        return false;
+    }
+    let ratio = |i: usize| arrival.incident[i] / arrival.beyond[i];
+    let (least, most) = (0..N).map(ratio).fold((f64::INFINITY, 0.0_f64), |(l, m), x| (l.min(x), m.max(x)));
+    let (cos, middle) = (arrival.wo.dot(arrival.normal).clamp(0.0, 1.0), 0.5 * (least + most));
+    let sin = (middle * (1.0 - cos * cos).sqrt()).min(1.0);
+    let turned = (middle * cos - (1.0 - sin * sin).sqrt()).abs();
+    sin * (most - least) / middle > WIDTHS * interface.facets().alpha() * turned
+}
+
+impl Dielectric<Table> {
+    /// Whether lanes that cross the surface part there: a pure function of the surface and the arriving light.
+    pub(super) fn parts<const N: usize>(&self, arrival: &Arrival<N>) -> bool {
+        match self.roughness.interface() {
+            Some(interface) => parts(interface, arrival),
+            None => arrival.parts(),
+        }
+    }
+
+    /// One branch by reflection, and one by refraction: where lanes part, one for each kind of lanes.
+    ///
+    /// Lanes that are together share a direction drawn for one of them, chosen evenly, and each is divided by the mean of
+    /// all their densities (the balance heuristic, Veach & Guibas 1995; Wilkie et al. 2014). Each branch has a density of
+    /// its own, whose integral is what it is drawn as often as. Next-event estimation weighs a direction by the same
+    /// function, [`Dielectric::evaluate_rough`]: the two weights sum to 1 in every direction, however many branches
+    /// the tracer follows, as one that is chosen with a probability is divided by it.
+    pub(super) fn scatter_rough<const N: usize>(
+        &self,
+        interface: &RoughInterface,
+        arrival: &Arrival<N>,
+        u: [f64; 2],
+        branches: &mut Vec<Branch<N>>,
+    ) {
+        let (tint, reflectance) = (arrival.read(&self.transmittance), arrival.read(&self.reflectance));
+        self.pass_equal_indices(arrival, tint, branches);
+        let mut meeting = Meeting::new(interface, arrival);
+        let total: f64 = meeting.kinds.iter().map(|kind| kind.count).sum();
+        let mut at = u[0] * total;
+        let chosen = meeting.kinds.iter().position(|kind| {
+            let here = at < kind.count;
+            at -= if here { 0.0 } else { kind.count };
+            here
+        });
+        let Some(chosen) = chosen.or(meeting.kinds.len().checked_sub(1)) else { return };
+        let kind = &meeting.kinds[chosen];
+        let u = [(at / kind.count).min(1.0 - f64::EPSILON), u[1]];
+        let [reflected, crossed] = kind.sides.draw(meeting.wo, u);
+        let branch = |wi, share, pdf, crosses, eta_scale| Branch {
+            wi,
+            share,
+            pdf: Some(pdf),
+            crosses,
+            eta_scale,
+            polarization: 0.0,
+        };
+        let square = |[n1, n2]: [f64; 2]| (n1 / n2) * (n1 / n2);
+        let drawn = if meeting.parts { 0..meeting.kinds.len() } else { chosen..chosen + 1 };
+        for number in drawn {
+            let kind = &meeting.kinds[number];
+            let (sides, indices) = (kind.sides, kind.indices);
+            let way = if number == chosen { crossed } else { sides.draw(meeting.wo, u)[1] };
+            let (Some((wi, h)), true) = (way, kind.crossing > 0.0) else { continue };
+            let Some(world) = meeting.to_world(wi) else { continue };
+            let pdf = meeting.cross(wi, h.map(|h| (number, h)));
+            let share = if meeting.parts {
+                let kind = &meeting.kinds[number];
+                meeting.across(kind) * (kind.flow.value / kind.flow.pdf) as f32
+            } else {
+                meeting.crossed(1.0 / pdf)
+            };
+            if pdf > 0.0 && !(share * tint).is_zero() {
+                branches.push(branch(world, share * tint, pdf, true, square(indices)));
+            }
+        }
+        if let Some((wi, h)) = reflected
+            && let Some(world) = meeting.to_world(wi)
+        {
+            let pdf = meeting.reflect(wi, h);
+            let share = meeting.reflected(1.0 / pdf) * reflectance;
+            if pdf > 0.0 && !share.is_zero() {
+                branches.push(branch(world, share, pdf, false, 1.0));
+            }
+        }
+    }
+
+    /// Between equal indices nothing happens at all.
+    fn pass_equal_indices<const N: usize>(&self, arrival: &Arrival<N>, tint: Lanes<N>, branches: &mut Vec<Branch<N>>) {
+        let same = Lanes::from_fn(|i| if arrival.incident[i] == arrival.beyond[i] { arrival.present[i] } else { 0.0 });
+        if same.is_zero() {
+            return;
+        }
+        let parting = if self.parts(arrival) { arrival.draw.parting() } else { Lanes::ONE };
+        let share = same * tint * parting;
+        let wi = -arrival.wo;
+        branches.push(Branch { wi, share, pdf: None, crosses: true, eta_scale: 1.0, polarization: 0.0 });
+    }
+
+    /// BSDF times cosine of each lane, and the density of `wi` among the branches on its side.
+    pub(super) fn evaluate_rough<const N: usize>(
+        &self,
+        interface: &RoughInterface,
+        arrival: &Arrival<N>,
+        wi: DVec3,
+    ) -> Option<(Lanes<N>, f64)> {
+        let mut meeting = Meeting::new(interface, arrival);
+        let local = meeting.frame.to_local(wi);
+        if local.z > 0.0 {
+            let pdf = meeting.reflect(local, None);
+            return (pdf > 0.0).then(|| (meeting.reflected(1.0) * arrival.read(&self.reflectance), pdf));
+        }
+        let pdf = if local.z < 0.0 { meeting.cross(local, None) } else { 0.0 };
+        (pdf > 0.0).then(|| (meeting.crossed(1.0) * arrival.read(&self.transmittance), pdf))
+    }
+}

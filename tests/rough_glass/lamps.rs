@@ -1,0 +1,109 @@
+//! Lamps behind and inside rough glass: aiming at them and meeting them agree, in every transport.
+
+use abbe::plan::plan;
+use abbe::spectrum::{Basis, Emission};
+use abbe::trace::{Method, Transport, World, render};
+
+use crate::support::scenes::{Mean, SINGLE_PATH, SPLITTING, body, environment, images, scene, view};
+
+const RADIANCE: &str = "{ rgb = [10, 20, 5] }";
+const LAMP: &str = "sphere = { center = [0.4, 0.3, -1.5], radius = 0.5 }";
+
+/// The same lamp, aimed at, or as glass that shines by being met.
+fn lamps(shapes: &[&str]) -> [String; 2] {
+    let dark = "index = 1.5, reflectance = 0, transmittance = 0, priority = 9";
+    [
+        body("lamp", &format!("emissive = {{ radiance = {RADIANCE} }}"), shapes),
+        body("lamp", &format!("dielectric = {{ {dark}, emission = {RADIANCE} }}"), shapes),
+    ]
+}
+
+fn glass(index: &str, roughness: f64, extra: &str, shapes: &[&str]) -> String {
+    body("glass", &format!("dielectric = {{ index = {index}, roughness = {roughness:?}{extra} }}"), shapes)
+}
+
+const PANE: &str = "cube = { center = [0, 0, 0], size = [6, 6, 0.2] }";
+const BALL: &str = "sphere = { center = [0.2, 0.1, -1.2], radius = 1.6 }";
+
+fn picture(bodies: &str, samples: u32) -> String {
+    view([0.5, 0.4, 5.0], [0.1, 0.0, 0.0], 25.0, 8) + &format!("[render]\nsamples = {samples}\n") + bodies
+}
+
+#[test]
+fn aiming_at_a_lamp_behind_inside_or_before_rough_glass_and_meeting_it_show_the_same() {
+    let before = "sphere = { center = [2, 2, 3], radius = 0.5 }";
+    let further = "sphere = { center = [-2, 1, -2], radius = 0.3 }";
+    let cases = [
+        ("behind a pane", glass("1.5", 0.4, "", &[PANE]), vec![LAMP]),
+        ("behind a very rough pane", glass("1.5", 0.9, "", &[PANE]), vec![LAMP, further]),
+        ("behind a pane that absorbs", glass("1.7", 0.5, ", absorption = { rgb = [0.5, 1, 3] }", &[PANE]), vec![LAMP]),
+        ("inside a ball", glass("1.5", 0.5, ", absorption = { rgb = [0.2, 0.1, 0.4] }", &[BALL]), vec![LAMP]),
+        ("before a pane", glass("1.5", 0.5, "", &[PANE]), vec![before]),
+        ("inside a dispersive ball", glass("{ rgb = [1.4, 1.5, 1.7] }", 0.5, "", &[BALL]), vec![LAMP]),
+        ("behind a dispersive pane", glass("{ rgb = [1.4, 1.5, 1.7] }", 0.25, "", &[PANE]), vec![LAMP]),
+    ];
+    for (name, glass, shapes) in &cases {
+        let [aimed_at, met] = lamps(shapes);
+        let by_chance = images(&picture(&(glass.clone() + &met), 8192), SINGLE_PATH, 6);
+        let by_chance = Mean::over_seeds(by_chance.iter().map(|(film, _)| film));
+        for transport in [SINGLE_PATH, SPLITTING] {
+            let aimed = images(&picture(&(glass.clone() + &aimed_at), 1024), transport, 6);
+            let mut aimed = Mean::over_seeds(aimed.iter().map(|(film, _)| film));
+            println!("{name}: {aimed:.5?} for {by_chance:.5?}");
+            for band in 0..3 {
+                aimed.error[band] = libm::hypot(aimed.error[band], by_chance.error[band]);
+            }
+            assert!(aimed.worst_error(by_chance.value) < 0.02, "{name}: {aimed:?}");
+            aimed.assert_near(by_chance.value, 2 * cases.len(), name);
+        }
+    }
+}
+
+#[test]
+fn fixed_lanes_and_heroes_show_the_same_lamp_behind_dispersive_rough_glass() {
+    let [aimed_at, _] = lamps(&[LAMP]);
+    for roughness in [0.1, 0.3, 0.6] {
+        let text = picture(&(glass("\"N-SF11\"", roughness, "", &[PANE]) + &aimed_at), 1024);
+        let scene = scene(&text);
+        let emission = Emission::new(scene.lights[0].emission(), scene.film.color_space);
+        let bands = Basis::bands(scene.film.color_space, 12, &[]);
+        // Fixed wavelengths alone all count wherever they go.
+        let shown = [bands.clone(), bands.with_heroes(4, &[emission])].map(|basis| {
+            let films: Vec<_> = (0..6)
+                .map(|seed| {
+                    let transport = Transport::Random { split: 0.05, roulette: 0.05 };
+                    let base = crate::support::scenes::method(&scene, transport);
+                    render(&World::new(&scene, Method { basis: basis.clone(), seed, ..base }), &|_| ()).0
+                })
+                .collect();
+            Mean::over_seeds(films.iter())
+        });
+        let [fixed, mut heroes] = shown;
+        println!("roughness {roughness}: {heroes:.4?} for {fixed:.4?}");
+        for band in 0..3 {
+            // Twelve wavelengths miss the color by less than 1 %.
+            heroes.error[band] = libm::hypot(heroes.error[band], fixed.error[band]) + 0.003 * fixed.value[band];
+        }
+        heroes.assert_near(fixed.value, 3, &format!("roughness {roughness}"));
+    }
+}
+
+#[test]
+fn a_scene_with_rough_glass_is_left_to_chance_and_smooth_glass_is_not() {
+    for (roughness, random) in [(0.0, false), (0.009, false), (0.02, true), (1.0, true)] {
+        let text = picture(&(glass("1.5", roughness, "", &[PANE]) + &environment(1.0)), 1)
+            .replace("samples = 1\n", "")
+            .replace("height = 8\n", "height = 8\nfilter = \"center\"\n");
+        let plan = plan(&scene(&text));
+        assert_eq!(matches!(plan.method.transport, Transport::Random { .. }), random, "{:?}", plan.because);
+    }
+}
+
+#[test]
+fn below_the_least_roughness_glass_is_smooth_to_the_last_bit() {
+    let [lamp, _] = lamps(&[LAMP]);
+    let shown =
+        |roughness| images(&picture(&(glass("1.5", roughness, "", &[PANE]) + &lamp), 16), SPLITTING, 1)[0].0.clone();
+    assert_eq!(shown(0.0).pixels, shown(0.009).pixels);
+    assert_ne!(shown(0.0).pixels, shown(0.1).pixels);
+}

@@ -1,0 +1,204 @@
+//! The boundary of two media: furnaces of its BSDF, its directions against their density, and light that goes back.
+
+use std::f64::consts::TAU;
+
+use abbe::material::{RoughInterface, Sides};
+use abbe::math::DVec3;
+
+use crate::chi_squared;
+use crate::support::random::Random;
+
+const ROUGHNESSES: [f64; 9] = [0.01, 0.02, 0.05, 0.1, 0.2, 0.4, 0.6, 0.8, 1.0];
+const COSINES: [f64; 12] = [1e-6, 0.001, 0.01, 0.03, 0.1, 0.2, 0.3, 0.5, 0.66, 0.75, 0.9, 1.0];
+/// From outside and from inside, next to each other and far apart.
+const INDICES: [f64; 9] = [1.001, 1.01, 1.1, 1.33, 1.52, 1.6, 1.9, 2.17, 2.5];
+const DRAWS: u32 = 1 << 14;
+
+/// A unit vector at a cosine to the normal.
+fn at(cos: f64, azimuth: f64) -> DVec3 {
+    let sin = (1.0 - cos * cos).max(0.0).sqrt();
+    let (y, x) = libm::sincos(azimuth);
+    DVec3::new(sin * x, sin * y, cos)
+}
+
+/// The points of Hammersley in the unit square.
+fn points(draws: u32) -> impl Iterator<Item = [f64; 2]> {
+    (0..draws).map(move |i| [(f64::from(i) + 0.5) / f64::from(draws), f64::from(i.reverse_bits()) / 4_294_967_296.0])
+}
+
+/// The light that comes back and the light that crosses, of an even environment: radiance over n^2 is 1 everywhere.
+fn furnace(sides: &Sides, [n1, n2]: [f64; 2], cos: f64) -> [f64; 2] {
+    let (wo, mut sum) = (at(cos, 0.3), [0.0; 2]);
+    for u in points(DRAWS) {
+        let [reflected, crossed] = sides.draw(wo, u);
+        let reflected = reflected.map(|(wi, h)| sides.reflected(wo, wi, h.unwrap_or_else(|| (wo + wi).normalize())));
+        let crossed = crossed.map(|(wi, h)| sides.crossed(wo, wi, h));
+        for ((sum, flow), square) in sum.iter_mut().zip([reflected, crossed]).zip([1.0, n2 * n2 / (n1 * n1)]) {
+            *sum += flow.map_or(0.0, |flow| flow.value / flow.pdf * square / f64::from(DRAWS));
+        }
+    }
+    sum
+}
+
+#[test]
+fn a_lossless_boundary_sends_on_all_light_at_every_roughness_ratio_and_angle() {
+    let mut worst = [1.0f64, 1.0];
+    for roughness in ROUGHNESSES {
+        let interface = RoughInterface::new(roughness * roughness);
+        for index in INDICES {
+            for indices in [[1.0, index], [index, 1.0]] {
+                let sides = interface.between(indices[0], indices[1]);
+                for cos in COSINES {
+                    let [reflected, crossed] = furnace(&sides, indices, cos);
+                    let all = reflected + crossed;
+                    let what = format!("roughness {roughness}, {indices:?}, cos {cos}");
+                    assert!((0.995..=1.001).contains(&all), "{what}: {reflected} + {crossed} = {all}");
+                    let told = sides.reflectance(cos);
+                    assert!((told - reflected).abs() < 5e-3, "{what}: {reflected} is reflected, not {told}");
+                    worst = [worst[0].min(all), worst[1].max(all)];
+                }
+            }
+        }
+    }
+    println!("furnaces of the BSDF: {worst:.5?}");
+}
+
+#[test]
+fn the_smoother_a_boundary_the_more_it_reflects_as_a_smooth_one() {
+    for indices in [[1.0, 1.5], [1.5, 1.0], [1.5, 1.33]] {
+        let interface = RoughInterface::new(1e-4);
+        // Off the critical angles, whose edges tables round.
+        for cos in [0.2, 0.65, 0.9, 1.0] {
+            let smooth = abbe::material::Interface::new(indices[0], indices[1], cos).reflectance;
+            let rough = interface.between(indices[0], indices[1]).reflectance(cos);
+            assert!((rough - smooth).abs() < 2e-3, "{indices:?}, cos {cos}: {rough} for {smooth}");
+        }
+    }
+}
+
+#[test]
+fn what_is_reflected_of_light_from_all_around_is_the_mean_over_cosines() {
+    for roughness in [0.1, 0.5, 1.0] {
+        let interface = RoughInterface::new(roughness * roughness);
+        for indices in [[1.0, 1.5], [1.5, 1.0]] {
+            let sides = interface.between(indices[0], indices[1]);
+            let steps = 20_000;
+            let cosine = |i| (f64::from(i) + 0.5) / f64::from(steps);
+            let mean =
+                (0..steps).map(|i| 2.0 * cosine(i) * sides.reflectance(cosine(i))).sum::<f64>() / f64::from(steps);
+            let told = sides.mean_reflectance();
+            assert!((told - mean).abs() < 1e-5, "{roughness}, {indices:?}: {told} for {mean}");
+        }
+    }
+}
+
+#[test]
+fn light_goes_the_same_way_back_through_and_off_a_rough_boundary() {
+    let mut random = Random::new(9);
+    for roughness in [0.05, 0.3, 0.6, 1.0] {
+        let interface = RoughInterface::new(roughness * roughness);
+        for [n1, n2] in [[1.0, 1.5], [1.33, 1.2], [2.4, 1.0]] {
+            let (there, back) = (interface.between(n1, n2), interface.between(n2, n1));
+            for _ in 0..5_000 {
+                let [a, b] = [0; 2].map(|_| random.direction()).map(|w| DVec3 { z: w.z.abs(), ..w });
+                let h = (a + b).normalize();
+                let [x, y] = [(a, b), (b, a)].map(|(wo, wi)| there.reflected(wo, wi, h).value / wi.z);
+                assert!((x - y).abs() <= 1e-10 * x.max(y), "{roughness}: {a} {b}: {x} and {y}");
+                // Beyond the surface the axis points down: both ways are seen from above, turned about x.
+                let turn = |w: DVec3| DVec3::new(w.x, -w.y, -w.z);
+                // Veach 1997, section 5.2: f / n^2 of the side that light goes to is the same both ways.
+                let x = there.crossed(a, -b, None).value / b.z / (n1 * n1);
+                let y = back.crossed(turn(-b), turn(a), None).value / a.z / (n2 * n2);
+                assert!((x - y).abs() <= 1e-9 * x.max(y) + 1e-300, "{roughness}, {n1} {n2}: {a} {b}: {x} and {y}");
+            }
+        }
+    }
+}
+
+/// Cells by height and by azimuth, and places along each side of one.
+const CELLS: usize = 12;
+const FINER: usize = 64;
+
+/// Where a direction lies on its half sphere: all cells are as large.
+fn cell(wi: DVec3) -> usize {
+    let (up, around) = (wi.z.abs(), libm::atan2(wi.y, wi.x) / TAU + 0.5);
+    let place = |x: f64| ((x * CELLS as f64) as usize).min(CELLS - 1);
+    place(up) * CELLS + place(around)
+}
+
+#[test]
+fn directions_on_both_sides_follow_their_density_and_the_rest_leads_nowhere() {
+    const COUNT: u64 = 200_000;
+    let cases: Vec<([f64; 2], f64, f64)> = [[1.0, 1.5], [1.5, 1.0], [1.33, 2.4]]
+        .iter()
+        .flat_map(|&n| [0.4, 0.7, 1.0].iter().flat_map(move |&r| [0.95, 0.5, 0.1].map(|cos| (n, r, cos))))
+        .collect();
+    for &(indices, roughness, cos) in &cases {
+        let interface = RoughInterface::new(roughness * roughness);
+        let sides = interface.between(indices[0], indices[1]);
+        let wo = at(cos, 0.7);
+        let what = format!("{indices:?}, roughness {roughness}, cos {cos}");
+        let mut random = Random::new((roughness * 1000.0 + cos * 1e6 + indices[0] * 1e7) as u64);
+        let mut counts = [0, 1].map(|_| vec![0; CELLS * CELLS + 1]);
+        for _ in 0..COUNT {
+            for (counts, way) in counts.iter_mut().zip(sides.draw(wo, random.pair())) {
+                counts[way.map_or(CELLS * CELLS, |(wi, _)| cell(wi))] += 1;
+            }
+        }
+        for (side, counts) in counts.iter().enumerate() {
+            let mut cells = vec![0.0; CELLS * CELLS];
+            let finer = CELLS * FINER;
+            for (i, j) in (0..finer).flat_map(|i| (0..finer).map(move |j| (i, j))) {
+                let up = (i as f64 + 0.5) / finer as f64;
+                let around = (j as f64 + (i as f64 * 0.618_033_988_75).fract()) / finer as f64;
+                let wi = at(up, TAU * (around - 0.5));
+                let pdf = match side {
+                    0 => sides.reflected(wo, wi, (wo + wi).normalize()).pdf,
+                    _ => sides.crossed(wo, DVec3 { z: -wi.z, ..wi }, None).pdf,
+                };
+                cells[i / FINER * CELLS + j / FINER] += pdf * TAU / (finer * finer) as f64;
+            }
+            let inside: f64 = cells.iter().sum();
+            assert!(inside <= 1.0 + 1e-3, "{what}: the density sums to {inside}");
+            let drawn = 1.0 - counts[CELLS * CELLS] as f64 / COUNT as f64;
+            assert!(
+                (inside - drawn).abs() < 1e-3 + 4.0 * (0.25 / COUNT as f64).sqrt(),
+                "{what}: {inside}, drawn {drawn}"
+            );
+            // What leads nowhere is judged above: at the edge of what facets can send, the sums are good to 5e-4.
+            cells.iter_mut().for_each(|cell| *cell /= inside);
+            let name = format!("{what}, side {side}");
+            chi_squared::check(&name, &counts[..CELLS * CELLS], &cells, 2 * cases.len() as u32);
+        }
+    }
+}
+
+#[test]
+fn no_draw_is_not_a_number_along_the_surface_and_between_nearly_equal_indices() {
+    const MOST: f64 = 1.0 - 1.0 / (1 << 24) as f64;
+    let ends = [0.0, f64::MIN_POSITIVE, 0.25, 0.5, MOST];
+    for roughness in [0.01, 0.1, 0.5, 1.0] {
+        let interface = RoughInterface::new(roughness * roughness);
+        for [n1, n2] in [[1.0, 1.0f64.next_up()], [1.5, 1.5 + 1e-9], [1.0, 10.0], [10.0, 1.0], [1.5, 1.33]] {
+            let sides = interface.between(n1, n2);
+            let mut random = Random::new(3);
+            for cos in [0.0, 1e-300, 1e-20, 1e-8, 1e-3, 0.1, 0.5, 1.0f64.next_down(), 1.0] {
+                let wo = at(cos, 0.3);
+                let corners = ends.iter().flat_map(|&a| ends.map(|b| [a, b])).collect::<Vec<_>>();
+                for u in corners.into_iter().chain((0..2_000).map(|_| random.pair())) {
+                    let [reflected, crossed] = sides.draw(wo, u);
+                    let flows = [
+                        reflected.map(|(wi, h)| sides.reflected(wo, wi, h.unwrap_or_else(|| (wo + wi).normalize()))),
+                        crossed.map(|(wi, h)| sides.crossed(wo, wi, h)),
+                    ];
+                    for flow in flows.into_iter().flatten() {
+                        let weight = flow.value / flow.pdf * (n2 / n1).powi(2).min(1.0);
+                        let what = format!("roughness {roughness}, {n1} {n2}, cos {cos:e}, {u:?}: {flow:?}");
+                        assert!(flow.value.is_finite() && flow.pdf > 0.0 && flow.pdf.is_finite(), "{what}");
+                        assert!((0.0..=5.0).contains(&weight), "{what}: {weight}");
+                    }
+                }
+            }
+        }
+    }
+}
