@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use sha2::{Digest, Sha256};
 
+use super::compile_image::Images;
 use super::compile_shape::ShapeCompiler;
 use super::contact::coinciding;
 use super::description::{Description, ModelText, ObjectText, RenderText};
@@ -15,7 +16,7 @@ use crate::error::{Error, Result, nearest};
 use crate::light::{Area, Light, LightId};
 use crate::material::Material;
 use crate::shape::Sides;
-use crate::spectrum::{Curve, CurveKind};
+use crate::spectrum::Curve;
 
 /// The numbers of wavelengths that `render.model` may ask for.
 const BANDS: [u32; 4] = [8, 12, 16, 32];
@@ -28,7 +29,8 @@ pub fn compile(description: &Description, source: &Source) -> Result<Scene<Curve
     let mut hash = Sha256::new();
     hash.update(source.text.as_bytes());
     let meters_per_unit = description.render.meters_per_unit;
-    let mut compiler = Compiler { source, warnings: Vec::new(), hash, meters_per_unit };
+    let images = BTreeMap::new();
+    let mut compiler = Compiler { source, warnings: Vec::new(), hash, meters_per_unit, images };
     let film = compiler.film(&description.film)?;
     let camera = compiler.camera(&description.camera, film)?;
     compiler.render(&description.render)?;
@@ -62,6 +64,8 @@ pub(super) struct Compiler<'a> {
     pub(super) warnings: Vec<String>,
     pub(super) hash: Sha256,
     pub(super) meters_per_unit: Option<f64>,
+    /// What was read already.
+    pub(super) images: Images,
 }
 
 pub(super) type Materials = BTreeMap<String, Material<Curve>>;
@@ -116,8 +120,13 @@ impl Compiler<'_> {
             };
             let name = text.name.clone().unwrap_or_else(|| format!("object {}", number + 1));
             let filled = materials[material].material.medium().is_some();
-            let shape = Arc::new(ShapeCompiler { compiler: self, name: &name, filled }.shape(&at, text)?);
-            objects.push(Object { name, shape, material: material as u32, light: None });
+            let varies = materials[material].material.varies();
+            let (shape, coordinates) = ShapeCompiler { compiler: self, name: &name, filled }.shape(&at, text)?;
+            if varies && coordinates.is_none() {
+                return Err(self.no_coordinates(&at, &text.material));
+            }
+            let coordinates = coordinates.filter(|_| varies);
+            objects.push(Object { name, shape: Arc::new(shape), material: material as u32, light: None, coordinates });
         }
         for name in description.material.keys() {
             if !materials.iter().any(|material| &material.name == name) {
@@ -147,6 +156,12 @@ impl Compiler<'_> {
         Ok(())
     }
 
+    fn no_coordinates(&self, at: &At, material: &str) -> Error {
+        let message = format!("this mesh has no texture coordinates, by which {material} would lie on it");
+        let help = "give it a material without `image` and `checker`";
+        self.source.mistake_at(&at.key("shape"), message, Some(help.into()))
+    }
+
     fn unknown_material(&self, at: &At, text: &ObjectText, description: &Description) -> Error {
         let names = || description.material.keys().map(String::as_str);
         let help = match nearest(&text.material, names()) {
@@ -167,23 +182,15 @@ impl Compiler<'_> {
                 Material::Dielectric(dielectric) => (&dielectric.emission, Sides::Both, false),
                 _ => continue,
             };
-            if is_dark(radiance) {
+            if radiance.is_dark() {
                 continue;
             }
             let light: LightId = scene.lights.len();
             let aimed_at = lamp && object.shape.bounds().is_some();
-            let area = Area::new(object.shape.clone(), number as u32, radiance.clone(), sides, aimed_at);
+            let mut area = Area::new(object.shape.clone(), number as u32, radiance.clone(), sides, aimed_at);
+            area.coordinates = object.coordinates.filter(|_| radiance.varies());
             scene.lights.push(Light::Area(area));
             scene.objects[number].light = Some(light);
         }
     }
-}
-
-fn is_dark(radiance: &Curve) -> bool {
-    let dark = match &radiance.kind {
-        CurveKind::Number(value) => *value == 0.0,
-        CurveKind::Rgb(rgb) => rgb.iter().all(|x| *x == 0.0),
-        _ => false,
-    };
-    dark || radiance.scale == 0.0 || radiance.luminance == Some(0.0)
 }

@@ -7,7 +7,7 @@ use super::description::{MeshText, ObjectText, ShapeText, StepText};
 use super::source::At;
 use crate::error::Result;
 use crate::math::{DVec3, Transform};
-use crate::shape::{Cube, Disc, Mesh, Plane, Quad, Shape, Sphere, Triangle, Vertices, read_mesh};
+use crate::shape::{Coordinates, Cube, Disc, Mesh, Plane, Quad, Shape, Sphere, Triangle, Vertices, read_mesh};
 
 /// Largest length and coordinate: products of a few of them stay far within f64 and f32.
 pub(super) const MAX_LENGTH: f64 = 1e30;
@@ -62,7 +62,8 @@ impl Compiler<'_> {
 }
 
 impl ShapeCompiler<'_, '_> {
-    pub(super) fn shape(&mut self, object: &At, text: &ObjectText) -> Result<Shape> {
+    /// The shape, and where its points lie in images.
+    pub(super) fn shape(&mut self, object: &At, text: &ObjectText) -> Result<(Shape, Option<Coordinates>)> {
         let at = object.key("shape");
         let shape = match &text.shape {
             ShapeText::Plane(plane) => {
@@ -123,6 +124,7 @@ impl ShapeCompiler<'_, '_> {
             let warning = format!("{}: a dielectric on an open mesh: light may enter it and never leave", self.name);
             self.compiler.warnings.push(warning);
         }
+        let coordinates = Coordinates::new(&shape, &map);
         let shape = shape.transformed(&map);
         if let Some(bounds) = shape.bounds() {
             let (far, wide) = (bounds.min.abs().max(bounds.max.abs()).max_element(), bounds.max - bounds.min);
@@ -135,7 +137,7 @@ impl ShapeCompiler<'_, '_> {
                     .refuse(&at, "this is so small or thin that the rounding of its coordinates would distort it");
             }
         }
-        Ok(shape)
+        Ok((shape, coordinates))
     }
 
     fn refuse<T>(&self, at: &At, message: &str) -> Result<T> {

@@ -6,6 +6,7 @@
 mod affine_plane;
 mod aim;
 mod bvh;
+mod coordinates;
 mod cube;
 mod disc;
 mod ellipsoid;
@@ -21,6 +22,7 @@ mod triangle;
 
 pub use aim::{Density, Sighting};
 pub use bvh::Bvh;
+pub use coordinates::Coordinates;
 pub use cube::Cube;
 pub use disc::Disc;
 pub use ellipsoid::Ellipsoid;
