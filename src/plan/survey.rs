@@ -34,7 +34,8 @@ impl<'a> Survey<'a> {
         let space = scene.film.color_space;
         let lights = different(scene.lights.iter().map(|light| light.emission()), space);
         let mut tints = Vec::new();
-        let filters = |quantity, curve: &'a Curve| curve.shades().into_iter().map(move |shade| Tint::Filter(quantity, shade));
+        let filters =
+            |quantity, curve: &'a Curve| curve.shades().into_iter().map(move |shade| Tint::Filter(quantity, shade));
         for (id, named) in scene.materials.iter().enumerate() {
             match &named.material {
                 Material::Diffuse(diffuse) => {

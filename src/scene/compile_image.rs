@@ -44,8 +44,12 @@ impl Compiler<'_> {
         let ([x, y], brightest) = image.brightest();
         let most = f64::from(brightest) * curve.scale;
         if quantity != Quantity::Emission && most > 1.0 {
-            let scaled = if curve.scale == 1.0 { String::new() } else { format!(" times its scale of {}", curve.scale) };
-            let message = format!("{}: pixel ({x}, {y}) is {brightest}{scaled}, and no surface gives back more than 1", text.file);
+            let scaled =
+                if curve.scale == 1.0 { String::new() } else { format!(" times its scale of {}", curve.scale) };
+            let message = format!(
+                "{}: pixel ({x}, {y}) is {brightest}{scaled}, and no surface gives back more than 1",
+                text.file
+            );
             let help = format!("scale = {:.4} makes it 1", (1e4 / f64::from(brightest)).floor() / 1e4);
             return Err(self.source.mistake_at(&here, message, (brightest < 1e4).then_some(help)));
         }
@@ -102,7 +106,11 @@ impl Compiler<'_> {
             let luminance = cell.luminance.filter(|_| quantity == Quantity::Emission);
             if luminance.is_some() {
                 let help = Some("use `scale`".into());
-                return Err(self.source.mistake_at(&here.key("luminance"), "the squares of a lamp have no luminance", help));
+                return Err(self.source.mistake_at(
+                    &here.key("luminance"),
+                    "the squares of a lamp have no luminance",
+                    help,
+                ));
             }
             let scaled = Curve { scale: cell.scale * curve.scale, ..cell.clone() };
             checked.push(self.surface_curve(&here, &scaled, quantity)?);
@@ -110,7 +118,8 @@ impl Compiler<'_> {
         let [mut first, mut second] = <[Curve; 2]>::try_from(checked).expect("two squares were checked");
         let mut scale = 1.0;
         if quantity == Quantity::Emission {
-            let brightest = |cell: &Curve| cell.kind.rgb().map_or(0.0, |rgb| rgb.into_iter().fold(0.0, f64::max) * cell.scale);
+            let brightest =
+                |cell: &Curve| cell.kind.rgb().map_or(0.0, |rgb| rgb.into_iter().fold(0.0, f64::max) * cell.scale);
             scale = brightest(&first).max(brightest(&second));
             let filter = |cell: &mut Curve| cell.scale = if scale > 0.0 { cell.scale / scale } else { 0.0 };
             filter(&mut first);

@@ -92,9 +92,11 @@ impl Compiler<'_> {
             }
             return Ok(Environment { radiance: self.curve(&here, &text.radiance, Quantity::Emission)?, image: None });
         };
-        if *image != (ImageText { file: image.file.clone(), encoding: None, channel: None, placement: Placement::default() })
+        if *image
+            != (ImageText { file: image.file.clone(), encoding: None, channel: None, placement: Placement::default() })
         {
-            let message = "the image of an environment fills all directions once, in linear light: only its `scale` is free";
+            let message =
+                "the image of an environment fills all directions once, in linear light: only its `scale` is free";
             return Err(self.source.mistake_at(&here, message, None));
         }
         self.factor_on_image(&here, &text.radiance)?;

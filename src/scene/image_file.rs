@@ -70,7 +70,7 @@ pub(super) fn read_texture(
         let image = decode(bytes, format).map_err(fault)?;
         let width = image.width() as usize;
         let (count, has_alpha) = (usize::from(image.color().channel_count()), image.color().has_alpha());
-        let picked = Picked::new(path, channel, count - usize::from(has_alpha), has_alpha)?;
+        let picked = Picked::new(path, channel, count, has_alpha)?;
         let wide = image.color().bytes_per_pixel() as usize > count;
         return Ok(if wide {
             let (numbers, even) = (words(image), |word: u16| f64::from(word) / 65535.0);
@@ -88,9 +88,9 @@ pub(super) fn read_texture(
     }
     let radiance = kind == "Radiance";
     let image = if radiance { read_radiance(bytes) } else { read_exr(bytes) }.map_err(fault)?;
-    let picked = Picked::new(path, channel, 3, !radiance)?;
+    let picked = Picked::new(path, channel, 4, !radiance)?;
     let numbers = image.texels.as_flattened();
-    let ignores_alpha = !radiance && picked.ignores(numbers, 1.0);
+    let ignores_alpha = picked.ignores(numbers, 1.0);
     let mut floats: Vec<f32> = picked.of(numbers).collect();
     possible(path, image.width, &floats, picked.channels())?;
     if srgb {
@@ -109,9 +109,9 @@ struct Picked {
 }
 
 impl Picked {
-    /// Of texels of 1 or 3 colors and maybe alpha behind them.
-    fn new(path: &Path, channel: Option<Channel>, colors: usize, has_alpha: bool) -> Result<Self, Fault> {
-        let stride = colors + usize::from(has_alpha);
+    /// Of texels of 1 to 4 numbers: 1 or 3 colors, and maybe alpha behind them.
+    fn new(path: &Path, channel: Option<Channel>, stride: usize, has_alpha: bool) -> Result<Self, Fault> {
+        let colors = if stride < 3 { 1 } else { 3 };
         let one = |at: usize| (at.min(colors - 1), at.min(colors - 1));
         let (first, last) = match channel {
             None => (0, colors - 1),

@@ -66,7 +66,13 @@ impl Coordinates {
         let unit = |[x, y]: [f64; 2]| [0.5 + 0.5 * x, 0.5 + 0.5 * y];
         match self {
             Self::Square => unit([a, b]),
-            Self::Triangle { swapped } => if *swapped { [b, a] } else { [a, b] },
+            Self::Triangle { swapped } => {
+                if *swapped {
+                    [b, a]
+                } else {
+                    [a, b]
+                }
+            }
             // Faces -x, +x, -y, +y, -z, +z, whose own coordinates run along the next two axes.
             Self::Cube => unit(match crossing.part {
                 0 => [b, a],
@@ -120,7 +126,10 @@ mod tests {
             ),
             (Shape::Cube(Cube::new(DVec3::new(0.1, 0.2, 0.3), DVec3::splat(2.0))), DVec3::new(0.4, 0.1, 1.3)),
             (Shape::Sphere(Sphere::new(DVec3::new(0.0, 0.5, 0.0), 1.0)), DVec3::new(0.48, 1.1, 0.64)),
-            (Shape::Plane(Plane::new(DVec3::new(0.0, 1.0, 0.0), DVec3::new(0.0, 1.0, 3.0))), DVec3::new(5.0, 4.0, -1.0)),
+            (
+                Shape::Plane(Plane::new(DVec3::new(0.0, 1.0, 0.0), DVec3::new(0.0, 1.0, 3.0))),
+                DVec3::new(5.0, 4.0, -1.0),
+            ),
         ];
         let maps = [
             Transform::translate(DVec3::new(3.0, -2.0, 1.0)),

@@ -206,6 +206,11 @@ impl Basis {
         }
     }
 
+    /// Whether the lanes are the red, green and blue of colors as they are written.
+    pub(super) fn has_rgb_lanes(&self) -> bool {
+        matches!(self.lanes, LaneKind::Rgb)
+    }
+
     /// The same number everywhere.
     pub(super) fn even(&self, value: f64) -> Table {
         self.table(vec![value; self.fixed_lanes()], &|_| value)

@@ -50,7 +50,8 @@ impl Image {
             "{length} numbers, {channels} a texel, {width} texels a row"
         );
         let (height, none) = (length / (width * channels), [0.0; 3]);
-        let mut image = Self { width, height, channels, texels, mean: none, brightest: (0, 0.0), most_colorful: [0.0; 3] };
+        let mut image =
+            Self { width, height, channels, texels, mean: none, brightest: (0, 0.0), most_colorful: [0.0; 3] };
         let (mut sum, mut farthest) = ([0.0; 3], -1.0);
         for at in 0..width * height {
             let texel = image.at(at);

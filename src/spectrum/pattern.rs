@@ -2,8 +2,9 @@
 
 use std::borrow::Cow;
 
+use super::palette::Palette;
 use super::texture::square;
-use super::{Basis, Curve, CurveKind, Draw, Lanes, Quantity, Table, Texture, Tints};
+use super::{Basis, Curve, CurveKind, Draw, Lanes, Quantity, Table, Texture};
 
 /// How a table varies over a surface: a factor on its numbers.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,8 +18,12 @@ pub(super) struct Pattern {
 
 #[derive(Clone, Debug, PartialEq)]
 enum PatternKind {
-    Image(Texture, Tints<Table>),
-    Checker { cells: [Table; 2], repeat: [f64; 2] },
+    /// With the palette of its colors, unless red, green and blue are the lanes.
+    Image(Texture, Option<Palette>),
+    Checker {
+        cells: [Table; 2],
+        repeat: [f64; 2],
+    },
 }
 
 impl<const N: usize> Draw<N> {
@@ -34,7 +39,11 @@ impl<const N: usize> Draw<N> {
     #[inline(never)]
     fn read_pattern(&self, table: &Table, pattern: &Pattern, uv: [f64; 2]) -> Lanes<N> {
         let filter = match &pattern.kind {
-            PatternKind::Image(texture, tints) => tints.filter(self, texture.color(uv)),
+            PatternKind::Image(texture, None) => {
+                let color = texture.color(uv);
+                Lanes::from_fn(|i| color[i.min(2)])
+            }
+            PatternKind::Image(texture, Some(palette)) => palette.filter(self, texture.color(uv), pattern.most == 1.0),
             PatternKind::Checker { cells, repeat } => self.read_at(&cells[square(*repeat, uv)], uv),
         };
         let product = self.read(table) * filter;
@@ -60,7 +69,10 @@ impl Basis {
         };
         let of_filter = |curve: &Curve| self.tabulate(Quantity::Transmittance, curve);
         let kind = match &curve.kind {
-            CurveKind::Texture(texture) => PatternKind::Image(texture.clone(), Tints::new().map(of_filter)),
+            CurveKind::Texture(texture) => {
+                let palette = (!self.has_rgb_lanes()).then(|| Palette::new(self));
+                PatternKind::Image(texture.clone(), palette)
+            }
             CurveKind::Checker { cells, repeat } => {
                 PatternKind::Checker { cells: cells.each_ref().map(of_filter), repeat: *repeat }
             }

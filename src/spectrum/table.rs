@@ -51,7 +51,14 @@ impl Table {
         let fixed: [f64; MAX_LANES] = std::array::from_fn(|i| bins[i.min(bins.len() - 1)]);
         let flat = fixed.iter().chain(&fine).all(|&x| x == fixed[0]);
         let weights = fixed.map(|x| x as f32);
-        Self { bins: bins.len(), fixed: Box::new(fixed), weights: Box::new(weights), fine: fine.into(), flat, pattern: None }
+        Self {
+            bins: bins.len(),
+            fixed: Box::new(fixed),
+            weights: Box::new(weights),
+            fine: fine.into(),
+            flat,
+            pattern: None,
+        }
     }
 
     /// The same table, varied over the surface.
