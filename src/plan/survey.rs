@@ -49,7 +49,7 @@ impl<'a> Survey<'a> {
                     tints.extend(filters(Quantity::Transmittance, &glass.transmittance));
                     tints.push(Tint::Depth(&glass.absorption, thickness(scene, id as u32)));
                 }
-                Material::Emissive(_) => {}
+                Material::Emissive(lamp) => tints.extend(shown(&lamp.radiance)),
             }
         }
         Self { color_space: space, upsampler: Upsampler::new(space), lights, tints }
@@ -174,6 +174,17 @@ impl Tint<'_> {
             }
         }
     }
+}
+
+/// The colors of an image or a pattern that shines, as filters of its white, half as bright as that.
+fn shown(radiance: &Curve) -> Vec<Tint<'_>> {
+    let colors = radiance.shades().into_iter().filter(|_| radiance.varies()).filter_map(|shade| shade.kind.rgb());
+    let filter = |rgb: [f64; 3]| {
+        let most = 2.0 * rgb.into_iter().fold(0.0, f64::max);
+        let half = CurveKind::Rgb(rgb.map(|x| x / most));
+        (most > 0.0).then(|| Tint::Filter(Quantity::Transmittance, Cow::Owned(half.into())))
+    };
+    colors.filter_map(filter).collect()
 }
 
 /// Whether rays of different colors go different ways in a glass.

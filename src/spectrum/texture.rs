@@ -174,3 +174,76 @@ pub(super) fn number_or_two<'de, D: Deserializer<'de>>(deserializer: D) -> Resul
     }
     deserializer.deserialize_any(Two).map(Some)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two rows of three texels, each its own number.
+    fn texture(wrap: Wrap, filter: TexelFilter, repeat: f64) -> Texture {
+        let image = Arc::new(Image::of_floats(3, 1, vec![0.0, 1.0, 2.0, 10.0, 11.0, 12.0]));
+        Texture { image, placement: Placement { repeat: [repeat; 2], wrap, filter } }
+    }
+
+    #[test]
+    fn the_first_row_is_on_top_and_every_texel_has_its_value_in_its_middle() {
+        for wrap in [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror] {
+            for filter in [TexelFilter::Linear, TexelFilter::Nearest] {
+                let texture = texture(wrap, filter, 2.0);
+                for (i, v) in [0.375, 0.125].into_iter().enumerate() {
+                    for j in 0..3 {
+                        let found = texture.color([(j as f64 + 0.5) / 6.0, v])[0];
+                        assert!((found - (10 * i + j) as f32).abs() < 1e-5, "{wrap:?} {filter:?} {i} {j}: {found}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn beyond_its_edges_an_image_goes_on_as_it_is_told() {
+        let at = |wrap, filter, u: f64| texture(wrap, filter, 1.0).color([u, 0.75])[0];
+        let nearest = |wrap, u| at(wrap, TexelFilter::Nearest, u);
+        assert_eq!([-0.9, -0.1, 1.1, 7.5].map(|u| nearest(Wrap::Repeat, u)), [0.0, 2.0, 0.0, 1.0]);
+        assert_eq!([-0.9, -0.1, 1.1, 7.5].map(|u| nearest(Wrap::Clamp, u)), [0.0, 0.0, 2.0, 2.0]);
+        assert_eq!([-0.9, -0.1, 1.1, 1.9].map(|u| nearest(Wrap::Mirror, u)), [2.0, 0.0, 2.0, 0.0]);
+        // At a seam the neighbors are averaged: the last and the first texel, or one with itself.
+        let seam = |wrap| at(wrap, TexelFilter::Linear, 1.0);
+        assert_eq!([Wrap::Repeat, Wrap::Clamp, Wrap::Mirror].map(seam), [1.0, 2.0, 2.0]);
+    }
+
+    #[test]
+    fn the_image_is_continuous_but_for_its_nearest_texels() {
+        for wrap in [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror] {
+            let texture = texture(wrap, TexelFilter::Linear, 1.5);
+            // No two neighbors differ by more than 12, and 3 x 1.5 of them fill a unit.
+            let mut last = texture.color([-2.0, -2.0])[0];
+            for i in 1..40_000 {
+                let place = -2.0 + 1e-4 * f64::from(i);
+                let next = texture.color([place, place])[0];
+                assert!((next - last).abs() <= 24.0 * 4.5 * 1.1e-4, "{wrap:?} at {place}: {last} to {next}");
+                last = next;
+            }
+        }
+    }
+
+    #[test]
+    fn far_away_places_lie_within_the_image() {
+        for wrap in [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror] {
+            for filter in [TexelFilter::Linear, TexelFilter::Nearest] {
+                for u in [-1e300, 1e300, -1e-300, 1e16, -5e-17, f64::MAX, f64::MIN_POSITIVE] {
+                    let found = texture(wrap, filter, 1.0).color([u, -u])[0];
+                    assert!((0.0..=12.0).contains(&found), "{wrap:?} {filter:?} at {u}: {found}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn every_8_bit_srgb_value_is_decoded_to_the_light_that_encodes_to_it() {
+        let image = Image::of_bytes(256, 1, (0..=255).collect(), true);
+        for byte in 0..=255_u8 {
+            assert_eq!(crate::spectrum::encode_srgb(image.texel(usize::from(byte), 0)), [byte; 3]);
+        }
+    }
+}
