@@ -168,7 +168,12 @@ fn files_of_spectra_are_refused_with_the_line_that_is_wrong() {
 
 #[test]
 fn images_that_cannot_light_a_scene_are_refused() {
-    check("images.txt", 15);
+    check("images.txt", 13);
+}
+
+#[test]
+fn images_and_patterns_that_cannot_lie_on_a_surface_are_refused() {
+    check("textures.txt", 30);
 }
 
 #[test]

@@ -2,7 +2,7 @@ use std::sync::Arc;
 
 use super::View;
 use crate::math::{Bounds, DVec3, Ray};
-use crate::shape::{Cap, Choice, Crossing, Emitters, Shape, Sides, Sighting};
+use crate::shape::{Cap, Choice, Coordinates, Crossing, Emitters, Shape, Sides, Sighting};
 use crate::spectrum::Quantity;
 
 /// A surface that shines: an object whose material emits.
@@ -18,6 +18,8 @@ pub struct Area<S> {
     pub sides: Sides,
     /// Whether next-event estimation aims at it: finite `emissive` surfaces. Planes and glowing glass are only met.
     pub aimed_at: bool,
+    /// Where its points lie in the image that it shows, if it shows one.
+    pub coordinates: Option<Coordinates>,
     /// The parts of a shape of several, one of which is aimed at.
     parts: Option<Arc<Emitters>>,
     /// The box from whose outside no backs are seen.
@@ -35,7 +37,7 @@ impl<S> Area<S> {
         let parts = if aimed_at { shape.parts() } else { Vec::new() };
         let parts = (parts.len() > 1).then(|| Arc::new(Emitters::new(&parts)));
         let closed = if shape.is_closed() { shape.bounds() } else { None };
-        Self { shape, object, radiance, sides, aimed_at, parts, closed, seen: None }
+        Self { shape, object, radiance, sides, aimed_at, coordinates: None, parts, closed, seen: None }
     }
 
     pub(super) fn map<T>(&self, convert: &mut impl FnMut(Quantity, &S) -> T) -> Area<T> {
@@ -45,6 +47,7 @@ impl<S> Area<S> {
             radiance: convert(Quantity::Emission, &self.radiance),
             sides: self.sides,
             aimed_at: self.aimed_at,
+            coordinates: self.coordinates,
             parts: self.parts.clone(),
             closed: self.closed,
             seen: self.seen,
@@ -88,12 +91,15 @@ impl<S> Area<S> {
         if sighting.part.is_some_and(|part| part != crossing.part) {
             return None;
         }
-        let cos = self.shape.point(ray, &crossing).normal.dot(ray.direction);
+        let point = self.shape.point(ray, &crossing);
+        let cos = point.normal.dot(ray.direction);
         let pdf = match sighting.density {
             Some(density) => usable(density.toward(crossing.t, cos.abs()))?,
             None => self.pdf(ray, normal, &crossing)?,
         };
-        let view = View { distance: crossing.t, object: Some(self.object), pdf: Some(pdf), factor: 1.0 };
+        let uv =
+            self.coordinates.map_or([0.0; 2], |coordinates| coordinates.at(&self.shape, &crossing, point.position));
+        let view = View { distance: crossing.t, object: Some(self.object), pdf: Some(pdf), factor: 1.0, uv };
         self.sides.shine(cos < 0.0).then_some(view)
     }
 

@@ -71,7 +71,7 @@ impl<S> Environment<S> {
 
     pub(super) fn view(&self, ray: &Ray, normal: DVec3) -> Option<View> {
         let pdf = Some(self.pdf(ray, normal)).filter(|pdf| *pdf > 0.0)?;
-        Some(View { distance: f64::INFINITY, object: None, pdf: Some(pdf), factor: 1.0 })
+        Some(View { distance: f64::INFINITY, object: None, pdf: Some(pdf), factor: 1.0, uv: [0.0; 2] })
     }
 
     /// The mean over all directions of the factor on `radiance`.

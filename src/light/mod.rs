@@ -50,6 +50,8 @@ pub struct View {
     pub pdf: Option<f64>,
     /// Factor on the light's table that makes radiance (or, without a pdf, irradiance at right angles) of it.
     pub factor: f64,
+    /// Where it is seen on the image that a surface shows, if it shows one.
+    pub uv: [f64; 2],
 }
 
 impl<S> Light<S> {
@@ -128,11 +130,11 @@ impl<S> Light<S> {
 }
 
 impl Light<Table> {
-    /// What the light sends along a direction toward it: its emission, lane by lane.
-    pub fn toward<const N: usize>(&self, draw: &Draw<N>, direction: DVec3) -> Lanes<N> {
+    /// What the light sends along a direction toward it, which meets it at `uv`: its emission, lane by lane.
+    pub fn toward<const N: usize>(&self, draw: &Draw<N>, direction: DVec3, uv: [f64; 2]) -> Lanes<N> {
         match self {
             Self::Environment(environment) => environment.toward(draw, direction),
-            _ => draw.read(self.emission()),
+            _ => draw.read_at(self.emission(), uv),
         }
     }
 
@@ -161,6 +163,6 @@ impl Light<Table> {
             }
             Self::Environment(_) | Self::Sun(_) => return None,
         };
-        Some(Emitter { intensity: emitter.intensity * self.emission().range().1.max(0.0), ..emitter })
+        Some(Emitter { intensity: emitter.intensity * self.emission().brightness(), ..emitter })
     }
 }

@@ -32,6 +32,6 @@ impl<S> Point<S> {
 
     pub(super) fn view(&self, ray: &Ray) -> View {
         let squared = (DVec3::from(self.position) - ray.origin).length_squared();
-        View { distance: squared.sqrt(), object: None, pdf: None, factor: 1.0 / squared }
+        View { distance: squared.sqrt(), object: None, pdf: None, factor: 1.0 / squared, uv: [0.0; 2] }
     }
 }

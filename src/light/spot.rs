@@ -65,7 +65,7 @@ impl<S> Spot<S> {
     pub(super) fn view(&self, ray: &Ray) -> View {
         let squared = (DVec3::from(self.position) - ray.origin).length_squared();
         let factor = self.part(-ray.direction) / squared;
-        View { distance: squared.sqrt(), object: None, pdf: None, factor }
+        View { distance: squared.sqrt(), object: None, pdf: None, factor, uv: [0.0; 2] }
     }
 }
 

@@ -81,7 +81,7 @@ impl<S> Sun<S> {
             0.0 => (None, 1.0),
             _ => (Some(self.pdf(ray)?), self.radiance_factor()),
         };
-        Some(View { distance: f64::INFINITY, object: None, pdf, factor })
+        Some(View { distance: f64::INFINITY, object: None, pdf, factor, uv: [0.0; 2] })
     }
 }
 

@@ -7,6 +7,7 @@ use crate::spectrum::Quantity;
 ///
 /// ```toml
 /// emissive = { radiance = 10, sides = "both" }     # or "front"; "both" if absent
+/// emissive = { radiance = { image = "screen.png", scale = 5 } }
 /// ```
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]

@@ -30,7 +30,7 @@ pub use thin::Thin;
 use serde::Deserialize;
 
 use crate::math::DVec3;
-use crate::spectrum::{Draw, Lanes, Quantity, Table};
+use crate::spectrum::{Curve, Draw, Lanes, Quantity, Table};
 
 /// What a surface does with light.
 #[derive(Clone, Debug, Deserialize)]
@@ -58,6 +58,8 @@ pub struct Arrival<'a, const N: usize> {
     pub wo: DVec3,
     /// Geometric unit normal on the viewer's side.
     pub normal: DVec3,
+    /// Where the surface is met, for what varies over it.
+    pub uv: [f64; 2],
     /// Which bin each lane reads.
     pub draw: &'a Draw<N>,
     /// The lanes on the ray, each 1, the others 0.
@@ -73,7 +75,7 @@ pub struct Arrival<'a, const N: usize> {
 impl<const N: usize> Arrival<'_, N> {
     /// A table of the material, read for this ray.
     pub fn read(&self, table: &Table) -> Lanes<N> {
-        self.draw.read(table)
+        self.draw.read_at(table, self.uv)
     }
 
     /// Whether light that crosses the surface goes different ways in different lanes.
@@ -199,6 +201,13 @@ impl<S> Material<S> {
             Self::Dielectric(dielectric) => Some(dielectric.roughness.value()),
             _ => None,
         }
+    }
+}
+
+impl Material<Curve> {
+    /// Whether any of its spectra is different at different places of a surface.
+    pub fn varies(&self) -> bool {
+        self.each(|_, _, curve| if curve.varies() { Err(()) } else { Ok(()) }).is_err()
     }
 }
 

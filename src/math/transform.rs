@@ -121,6 +121,11 @@ impl Transform {
         unit(cofactors * normal) * 1f64.copysign(a.cross(b).dot(c))
     }
 
+    /// What takes differences of points back to what they were.
+    pub fn inverse_linear(&self) -> DMat3 {
+        self.linear.inverse()
+    }
+
     /// Whether the map turns left hands into right hands.
     pub fn mirrors(&self) -> bool {
         self.linear.determinant() < 0.0

@@ -1,5 +1,7 @@
 //! What of a scene decides how its spectra must be carried.
 
+use std::borrow::Cow;
+
 use crate::material::{Conductor, Dielectric, Material};
 use crate::scene::Scene;
 use crate::spectrum::{
@@ -18,9 +20,9 @@ pub(super) struct Survey<'a> {
 /// Something that tints light.
 pub(super) enum Tint<'a> {
     /// Light leaves a diffuse surface.
-    Diffuse(&'a Curve),
+    Diffuse(Cow<'a, Curve>),
     /// A factor on light that a smooth surface reflects or lets through.
-    Filter(Quantity, &'a Curve),
+    Filter(Quantity, Cow<'a, Curve>),
     /// A metal's reflection at normal incidence, once or, where it is rough, more often.
     Metal(&'a Conductor<Curve>),
     /// Light goes a distance through an absorbing body.
@@ -32,18 +34,22 @@ impl<'a> Survey<'a> {
         let space = scene.film.color_space;
         let lights = different(scene.lights.iter().map(|light| light.emission()), space);
         let mut tints = Vec::new();
+        let filters =
+            |quantity, curve: &'a Curve| curve.shades().into_iter().map(move |shade| Tint::Filter(quantity, shade));
         for (id, named) in scene.materials.iter().enumerate() {
             match &named.material {
-                Material::Diffuse(diffuse) => tints.push(Tint::Diffuse(&diffuse.reflectance)),
-                Material::Thin(thin) => tints.push(Tint::Filter(Quantity::Transmittance, &thin.transmittance)),
-                Material::Mirror(mirror) => tints.push(Tint::Filter(Quantity::Reflectance, &mirror.reflectance)),
+                Material::Diffuse(diffuse) => {
+                    tints.extend(diffuse.reflectance.shades().into_iter().map(Tint::Diffuse));
+                }
+                Material::Thin(thin) => tints.extend(filters(Quantity::Transmittance, &thin.transmittance)),
+                Material::Mirror(mirror) => tints.extend(filters(Quantity::Reflectance, &mirror.reflectance)),
                 Material::Conductor(metal) => tints.push(Tint::Metal(metal)),
                 Material::Dielectric(glass) => {
-                    tints.push(Tint::Filter(Quantity::Reflectance, &glass.reflectance));
-                    tints.push(Tint::Filter(Quantity::Transmittance, &glass.transmittance));
+                    tints.extend(filters(Quantity::Reflectance, &glass.reflectance));
+                    tints.extend(filters(Quantity::Transmittance, &glass.transmittance));
                     tints.push(Tint::Depth(&glass.absorption, thickness(scene, id as u32)));
                 }
-                Material::Emissive(_) => {}
+                Material::Emissive(lamp) => tints.extend(shown(&lamp.radiance)),
             }
         }
         Self { color_space: space, upsampler: Upsampler::new(space), lights, tints }
@@ -121,7 +127,8 @@ fn thickness(scene: &Scene<Curve>, material: u32) -> f64 {
 impl Tint<'_> {
     fn curves(&self) -> Vec<&Curve> {
         match self {
-            Self::Diffuse(curve) | Self::Filter(_, curve) | Self::Depth(curve, _) => vec![curve],
+            Self::Diffuse(curve) | Self::Filter(_, curve) => vec![curve],
+            Self::Depth(curve, _) => vec![curve],
             Self::Metal(metal) => vec![&metal.n, &metal.k],
         }
     }
@@ -167,6 +174,17 @@ impl Tint<'_> {
             }
         }
     }
+}
+
+/// The colors of an image or a pattern that shines, as filters of its white, half as bright as that.
+fn shown(radiance: &Curve) -> Vec<Tint<'_>> {
+    let colors = radiance.shades().into_iter().filter(|_| radiance.varies()).filter_map(|shade| shade.kind.rgb());
+    let filter = |rgb: [f64; 3]| {
+        let most = 2.0 * rgb.into_iter().fold(0.0, f64::max);
+        let half = CurveKind::Rgb(rgb.map(|x| x / most));
+        (most > 0.0).then(|| Tint::Filter(Quantity::Transmittance, Cow::Owned(half.into())))
+    };
+    colors.filter_map(filter).collect()
 }
 
 /// Whether rays of different colors go different ways in a glass.

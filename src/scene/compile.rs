@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use sha2::{Digest, Sha256};
 
+use super::compile_image::Images;
 use super::compile_mesh::Meshes;
 use super::compile_shape::ShapeCompiler;
 use super::contact::coinciding;
@@ -16,7 +17,7 @@ use crate::error::{Error, Result, nearest};
 use crate::light::{Area, Light, LightId};
 use crate::material::Material;
 use crate::shape::Sides;
-use crate::spectrum::{Curve, CurveKind};
+use crate::spectrum::Curve;
 
 /// The numbers of wavelengths that `render.model` may ask for.
 const BANDS: [u32; 4] = [8, 12, 16, 32];
@@ -29,8 +30,8 @@ pub fn compile(description: &Description, source: &Source) -> Result<Scene<Curve
     let mut hash = Sha256::new();
     hash.update(source.text.as_bytes());
     let meters_per_unit = description.render.meters_per_unit;
-    let mut compiler =
-        Compiler { source, warnings: Vec::new(), hash, meters_per_unit, meshes: Meshes::of(description) };
+    let (meshes, images) = (Meshes::of(description), Images::new());
+    let mut compiler = Compiler { source, warnings: Vec::new(), hash, meters_per_unit, meshes, images };
     let film = compiler.film(&description.film)?;
     let camera = compiler.camera(&description.camera, film)?;
     compiler.render(&description.render)?;
@@ -65,6 +66,8 @@ pub(super) struct Compiler<'a> {
     pub(super) hash: Sha256,
     pub(super) meters_per_unit: Option<f64>,
     pub(super) meshes: Meshes,
+    /// What was read already.
+    pub(super) images: Images,
 }
 
 /// Objects, the entry of the file that each comes from, and their materials.
@@ -118,13 +121,18 @@ impl Compiler<'_> {
             };
             let name = text.name.clone().unwrap_or_else(|| format!("object {}", number + 1));
             let filled = materials[material].material.medium().is_some();
+            let varies = materials[material].material.varies();
             let mut compiler = ShapeCompiler { compiler: self, name: &name, filled };
-            for (instance, shape) in compiler.shapes(&at, text)?.into_iter().enumerate() {
+            for (instance, (shape, coordinates)) in compiler.shapes(&at, text)?.into_iter().enumerate() {
                 let name = match text.instances {
                     Some(_) => format!("{name} [{}]", instance + 1),
                     None => name.clone(),
                 };
-                objects.push(Object { name, shape: Arc::new(shape), material: material as u32, light: None });
+                if varies && coordinates.is_none() {
+                    return Err(self.no_coordinates(&at, &text.material));
+                }
+                let (shape, coordinates) = (Arc::new(shape), coordinates.filter(|_| varies));
+                objects.push(Object { name, shape, material: material as u32, light: None, coordinates });
                 entries.push(number);
             }
         }
@@ -156,6 +164,12 @@ impl Compiler<'_> {
         Ok(())
     }
 
+    fn no_coordinates(&self, at: &At, material: &str) -> Error {
+        let message = format!("this mesh has no texture coordinates, by which {material} would lie on it");
+        let help = "give it a material without `image` and `checker`";
+        self.source.mistake_at(&at.key("shape"), message, Some(help.into()))
+    }
+
     fn unknown_material(&self, at: &At, text: &ObjectText, description: &Description) -> Error {
         let names = || description.material.keys().map(String::as_str);
         let help = match nearest(&text.material, names()) {
@@ -176,23 +190,15 @@ impl Compiler<'_> {
                 Material::Dielectric(dielectric) => (&dielectric.emission, Sides::Both, false),
                 _ => continue,
             };
-            if is_dark(radiance) {
+            if radiance.is_dark() {
                 continue;
             }
             let light: LightId = scene.lights.len();
             let aimed_at = lamp && object.shape.bounds().is_some();
-            let area = Area::new(object.shape.clone(), number as u32, radiance.clone(), sides, aimed_at);
+            let mut area = Area::new(object.shape.clone(), number as u32, radiance.clone(), sides, aimed_at);
+            area.coordinates = object.coordinates.filter(|_| radiance.varies());
             scene.lights.push(Light::Area(area));
             scene.objects[number].light = Some(light);
         }
     }
-}
-
-fn is_dark(radiance: &Curve) -> bool {
-    let dark = match &radiance.kind {
-        CurveKind::Number(value) => *value == 0.0,
-        CurveKind::Rgb(rgb) => rgb.iter().all(|x| *x == 0.0),
-        _ => false,
-    };
-    dark || radiance.scale == 0.0 || radiance.luminance == Some(0.0)
 }

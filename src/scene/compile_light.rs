@@ -1,7 +1,5 @@
 //! The lights that no surface gives.
 
-use std::io::ErrorKind;
-
 use sha2::Digest;
 
 use super::Scene;
@@ -12,10 +10,7 @@ use super::source::At;
 use crate::error::{Error, Result};
 use crate::light::{Environment, Light, Panorama, Point, Sky, Spot, Sun};
 use crate::math::{DMat3, DVec3, Transform};
-use crate::spectrum::{Curve, CurveKind, Quantity};
-
-/// Most bytes of an image.
-const MOST_IMAGE: u64 = 1 << 32;
+use crate::spectrum::{Curve, CurveKind, ImageText, Placement, Quantity};
 
 impl Compiler<'_> {
     pub(super) fn lights(&mut self, lights: &[LightText], scene: &mut Scene<Curve>) -> Result<()> {
@@ -90,22 +85,22 @@ impl Compiler<'_> {
 
     fn environment(&mut self, at: &At, text: &EnvironmentText) -> Result<Environment<Curve>> {
         let here = at.key("radiance");
-        let CurveKind::Image(file) = &text.radiance.kind else {
+        let CurveKind::Image(image) = &text.radiance.kind else {
             if !text.transform.is_empty() {
                 let message = "an even environment looks the same after every turn";
                 return Err(self.source.mistake_at(&at.key("transform"), message, Some("leave it out".into())));
             }
             return Ok(Environment { radiance: self.curve(&here, &text.radiance, Quantity::Emission)?, image: None });
         };
-        if text.radiance.luminance.is_some() {
-            let help = Some("use `scale`".into());
-            return Err(self.source.mistake_at(&here.key("luminance"), "an image has no single luminance", help));
+        if *image
+            != (ImageText { file: image.file.clone(), encoding: None, channel: None, placement: Placement::default() })
+        {
+            let message =
+                "the image of an environment fills all directions once, in linear light: only its `scale` is free";
+            return Err(self.source.mistake_at(&here, message, None));
         }
-        let radiance = self.curve(&here, &text.radiance.scale.into(), Quantity::Emission);
-        let radiance = radiance.map_err(|_| {
-            let message = format!("a factor on an image is finite and at least 0, not {}", text.radiance.scale);
-            self.source.mistake_at(&here.key("scale"), message, None)
-        })?;
+        self.factor_on_image(&here, &text.radiance)?;
+        let radiance = text.radiance.scale.into();
         let place = at.key("transform");
         if let Some(step) = text.transform.iter().position(|step| !matches!(step, StepText::Rotate(_))) {
             let message = "an environment has no place and no size: it can be turned only";
@@ -114,23 +109,12 @@ impl Compiler<'_> {
         }
         let turn = self.transform(&place, &text.transform, Transform::IDENTITY)?;
         let rotation = DMat3::from_cols(turn.vector(DVec3::X), turn.vector(DVec3::Y), turn.vector(DVec3::Z));
-        let panorama = self.panorama(&here.key("image"), file)?;
+        let panorama = self.panorama(&here.key("image"), &image.file)?;
         Ok(Environment { radiance, image: Some(Sky::new(panorama, rotation)) })
     }
 
     fn panorama(&mut self, at: &At, file: &str) -> Result<Panorama> {
-        let path = self.source.folder().join(file);
-        self.file_of_size(at, &path, file, MOST_IMAGE)?;
-        let bytes = match std::fs::read(&path) {
-            Ok(bytes) => bytes,
-            Err(error) => {
-                return Err(match error.kind() {
-                    ErrorKind::NotFound | ErrorKind::NotADirectory => self.source.missing_file(at, file),
-                    _ if path.is_dir() => self.source.mistake_at(at, format!("{file} is a folder"), None),
-                    _ => self.source.mistake_at(at, format!("cannot read {file}: {error}"), None),
-                });
-            }
-        };
+        let bytes = self.bytes_of_image(at, file)?;
         let image = read_image(std::path::Path::new(file), &bytes);
         let image = image.map_err(|(message, help)| self.source.mistake_at(at, message, help))?;
         self.hash.update(&bytes);

@@ -21,7 +21,7 @@ impl Compiler<'_> {
             material.each(|quantity, key, curve| {
                 // A conductor given by name has its mistake where the name stands.
                 let metal = matches!(curve.kind, CurveKind::Name(_)) && quantity == Quantity::MetalIndex;
-                curves.push(self.curve(&at.key(if metal { "metal" } else { key }), curve, quantity)?);
+                curves.push(self.surface_curve(&at.key(if metal { "metal" } else { key }), curve, quantity)?);
                 Ok(())
             })?;
             let mut curves = curves.into_iter();

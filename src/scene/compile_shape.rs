@@ -5,7 +5,7 @@ use super::description::{ObjectText, ShapeText, StepText};
 use super::source::At;
 use crate::error::Result;
 use crate::math::{DVec3, Transform};
-use crate::shape::{Cube, Disc, Plane, Quad, Shape, Sphere, Triangle};
+use crate::shape::{Coordinates, Cube, Disc, Plane, Quad, Shape, Sphere, Triangle};
 
 /// Largest length and coordinate: products of a few of them stay far within f64 and f32.
 pub(super) const MAX_LENGTH: f64 = 1e30;
@@ -60,8 +60,8 @@ impl Compiler<'_> {
 }
 
 impl ShapeCompiler<'_, '_> {
-    /// The shape of an object, or each of its instances.
-    pub(super) fn shapes(&mut self, object: &At, text: &ObjectText) -> Result<Vec<Shape>> {
+    /// The shape of an object, or each of its instances, and where its points lie in images.
+    pub(super) fn shapes(&mut self, object: &At, text: &ObjectText) -> Result<Vec<(Shape, Option<Coordinates>)>> {
         let shape = self.shape(&object.key("shape"), &text.shape)?;
         if self.filled && !shape.is_closed() && matches!(shape, Shape::Mesh(_)) {
             let warning = format!("{}: a dielectric on an open mesh: light may enter it and never leave", self.name);
@@ -71,9 +71,10 @@ impl ShapeCompiler<'_, '_> {
         let map = self.compiler.transform(&place, &text.transform, Transform::IDENTITY)?;
         let Some(instances) = &text.instances else {
             let shared = self.compiler.meshes.is_shared(&text.shape);
+            let coordinates = Coordinates::new(&shape, &map);
             let placed = if shared { shape.copied(&map) } else { shape.transformed(&map) };
             self.check_size([&place, &object.key("shape")], (&placed, &text.shape), &map)?;
-            return Ok(vec![placed]);
+            return Ok(vec![(placed, coordinates)]);
         };
         let list = object.key("instances");
         if instances.is_empty() {
@@ -84,7 +85,7 @@ impl ShapeCompiler<'_, '_> {
             let map = self.compiler.transform(&at, steps, map)?;
             let placed = shape.copied(&map);
             self.check_size([&at; 2], (&placed, &text.shape), &map)?;
-            Ok(placed)
+            Ok((placed, Coordinates::new(&shape, &map)))
         };
         instances.iter().enumerate().map(place).collect()
     }

@@ -1,6 +1,11 @@
-//! Images that light or color a scene.
+//! Files of images that light or color a scene.
 
+use std::io::Cursor;
 use std::path::Path;
+
+use image::{DynamicImage, ImageDecoder, ImageFormat};
+
+use crate::spectrum::{Channel, Encoding, Image, decode_srgb};
 
 /// An image of linear Rec.709 numbers, rows from the top.
 pub(super) struct LinearImage {
@@ -8,74 +13,222 @@ pub(super) struct LinearImage {
     pub(super) texels: Vec<[f32; 3]>,
 }
 
+/// What is wrong with a file, and what to do.
+type Fault = (String, Option<String>);
+
 /// Reads an OpenEXR or Radiance file from its bytes; the ending of its name says which it is.
 ///
 /// # Errors
 /// What is wrong with it, and what to do.
-pub(super) fn read_image(path: &Path, bytes: &[u8]) -> Result<LinearImage, (String, Option<String>)> {
-    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase();
-    let (kind, image) = match ending.as_str() {
+pub(super) fn read_image(path: &Path, bytes: &[u8]) -> Result<LinearImage, Fault> {
+    let (kind, image) = match ending(path).as_str() {
         "exr" => ("OpenEXR", read_exr(bytes)),
         "hdr" => ("Radiance", read_radiance(bytes)),
-        "png" | "jpg" | "jpeg" => {
+        ending @ ("png" | "jpg" | "jpeg") => {
             let help = "use an OpenEXR (.exr) or Radiance (.hdr) image";
             return Err((format!("a .{ending} image holds no light brighter than white"), Some(help.into())));
         }
-        _ => {
-            let help = "images end in .exr (OpenEXR) or .hdr (Radiance)";
-            return Err((format!("the kind of image cannot be told from {:?}", path.display()), Some(help.into())));
-        }
+        _ => return Err(unknown(path, "images end in .exr (OpenEXR) or .hdr (Radiance)")),
     };
-    let unreadable = |said: String| {
-        (format!("{} is no {kind} image ({said})", path.display()), Some("is the file complete?".to_owned()))
+    let image = image.map_err(|said| unreadable(path, kind, &said))?;
+    let texels = image.texels.iter().map(|[red, green, blue, _]| [*red, *green, *blue]).collect();
+    let image = LinearImage { width: image.width, texels };
+    possible(path, image.width, image.texels.as_flattened(), 3)?;
+    Ok(image)
+}
+
+/// An image for a surface.
+pub(super) struct TextureFile {
+    pub(super) image: Image,
+    /// Whether it has transparent places of which nothing was read.
+    pub(super) ignores_alpha: bool,
+}
+
+/// Reads a PNG, JPEG, OpenEXR or Radiance file from its bytes; the ending of its name says which it is.
+///
+/// # Errors
+/// What is wrong with it, and what to do.
+pub(super) fn read_texture(
+    path: &Path,
+    bytes: &[u8],
+    encoding: Option<Encoding>,
+    channel: Option<Channel>,
+) -> Result<TextureFile, Fault> {
+    let (kind, format) = match ending(path).as_str() {
+        "exr" => ("OpenEXR", None),
+        "hdr" => ("Radiance", None),
+        "png" => ("PNG", Some(ImageFormat::Png)),
+        "jpg" | "jpeg" => ("JPEG", Some(ImageFormat::Jpeg)),
+        _ => return Err(unknown(path, "images end in .png, .jpg, .exr (OpenEXR) or .hdr (Radiance)")),
     };
-    let image = image.map_err(unreadable)?;
-    let wrong = image.texels.iter().position(|texel| texel.iter().any(|x| !x.is_finite() || *x < 0.0));
-    match wrong {
+    let fault = |said: String| unreadable(path, kind, &said);
+    let srgb = match (channel, encoding) {
+        (Some(Channel::Alpha), _) => false,
+        (_, encoding) => encoding.map_or(format.is_some(), |encoding| encoding == Encoding::Srgb),
+    };
+    if let Some(format) = format {
+        let image = decode(bytes, format).map_err(fault)?;
+        let width = image.width() as usize;
+        let (count, has_alpha) = (usize::from(image.color().channel_count()), image.color().has_alpha());
+        let picked = Picked::new(path, channel, count, has_alpha)?;
+        let wide = image.color().bytes_per_pixel() as usize > count;
+        return Ok(if wide {
+            let (numbers, even) = (words(image), |word: u16| f64::from(word) / 65535.0);
+            let table: Vec<f32> =
+                (0..=u16::MAX).map(|word| if srgb { decode_srgb(even(word)) } else { even(word) } as f32).collect();
+            let ignores_alpha = picked.ignores(&numbers, u16::MAX);
+            let floats = picked.of(&numbers).map(|word| table[usize::from(word)]).collect();
+            TextureFile { image: Image::of_floats(width, picked.channels(), floats), ignores_alpha }
+        } else {
+            let numbers = image.into_bytes();
+            let ignores_alpha = picked.ignores(&numbers, u8::MAX);
+            let bytes = picked.of(&numbers).collect();
+            TextureFile { image: Image::of_bytes(width, picked.channels(), bytes, srgb), ignores_alpha }
+        });
+    }
+    let radiance = kind == "Radiance";
+    let image = if radiance { read_radiance(bytes) } else { read_exr(bytes) }.map_err(fault)?;
+    let picked = Picked::new(path, channel, 4, !radiance)?;
+    let numbers = image.texels.as_flattened();
+    let ignores_alpha = picked.ignores(numbers, 1.0);
+    let mut floats: Vec<f32> = picked.of(numbers).collect();
+    possible(path, image.width, &floats, picked.channels())?;
+    if srgb {
+        floats.iter_mut().for_each(|x| *x = decode_srgb(f64::from(*x)) as f32);
+    }
+    Ok(TextureFile { image: Image::of_floats(image.width, picked.channels(), floats), ignores_alpha })
+}
+
+/// Which numbers of a texel are read.
+struct Picked {
+    /// Numbers of a texel in the file.
+    stride: usize,
+    first: usize,
+    last: usize,
+    alpha: Option<usize>,
+}
+
+impl Picked {
+    /// Of texels of 1 to 4 numbers: 1 or 3 colors, and maybe alpha behind them.
+    fn new(path: &Path, channel: Option<Channel>, stride: usize, has_alpha: bool) -> Result<Self, Fault> {
+        let colors = if stride < 3 { 1 } else { 3 };
+        let one = |at: usize| (at.min(colors - 1), at.min(colors - 1));
+        let (first, last) = match channel {
+            None => (0, colors - 1),
+            Some(Channel::Red) => one(0),
+            Some(Channel::Green) => one(1),
+            Some(Channel::Blue) => one(2),
+            Some(Channel::Alpha) if has_alpha => (colors, colors),
+            Some(Channel::Alpha) => return Err((format!("{} has no alpha", path.display()), None)),
+        };
+        let alpha = (has_alpha && channel.is_none()).then_some(colors);
+        Ok(Self { stride, first, last, alpha })
+    }
+
+    fn channels(&self) -> usize {
+        self.last - self.first + 1
+    }
+
+    fn of<'a, T: Copy>(&'a self, numbers: &'a [T]) -> impl Iterator<Item = T> + 'a {
+        numbers.chunks_exact(self.stride).flat_map(|texel| texel[self.first..=self.last].iter().copied())
+    }
+
+    /// Whether some alpha that is not read is less than `full`.
+    fn ignores<T: Copy + PartialOrd>(&self, numbers: &[T], full: T) -> bool {
+        self.alpha.is_some_and(|alpha| numbers.chunks_exact(self.stride).any(|texel| texel[alpha] < full))
+    }
+}
+
+fn ending(path: &Path) -> String {
+    path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase()
+}
+
+fn unknown(path: &Path, help: &str) -> Fault {
+    (format!("the kind of image cannot be told from {:?}", path.display()), Some(help.into()))
+}
+
+fn unreadable(path: &Path, kind: &str, said: &str) -> Fault {
+    (format!("{} is no {kind} image ({said})", path.display()), Some("is the file complete?".to_owned()))
+}
+
+/// Refuses numbers that no light and no surface has.
+fn possible(path: &Path, width: usize, numbers: &[f32], channels: usize) -> Result<(), Fault> {
+    let mut texels = numbers.chunks_exact(channels);
+    match texels.position(|texel| texel.iter().any(|x| !x.is_finite() || *x < 0.0)) {
         Some(at) => {
-            let (x, y) = (at % image.width, at / image.width);
-            let message = format!("{}: pixel ({x}, {y}) is {:?}", path.display(), image.texels[at]);
+            let (x, y) = (at % width, at / width);
+            let texel = &numbers[at * channels..(at + 1) * channels];
+            let message = format!("{}: pixel ({x}, {y}) is {texel:?}", path.display());
             Err((message, Some("light is finite and not negative".into())))
         }
-        None => Ok(image),
+        None => Ok(()),
     }
 }
 
 /// Most texels of an image: 16384 x 8192.
 const MOST_TEXELS: usize = 1 << 27;
 
-fn read_exr(bytes: &[u8]) -> Result<LinearImage, String> {
-    use exr::prelude::{ReadChannels, ReadLayers, read};
-    type Pixels = (usize, Vec<[f32; 3]>);
-    let described = exr::meta::MetaData::read_from_buffered(std::io::Cursor::new(bytes), false);
-    let headers = described.map_err(|error| error.to_string())?.headers;
-    if let Some(header) = headers.iter().find(|header| header.layer_size.area() > MOST_TEXELS) {
-        let size = header.layer_size;
-        return Err(format!("{} x {} pixels are more than {MOST_TEXELS}", size.width(), size.height()));
+fn too_many(width: usize, height: usize) -> Result<(), String> {
+    match width.saturating_mul(height) > MOST_TEXELS {
+        true => Err(format!("{width} x {height} pixels are more than {MOST_TEXELS}")),
+        false => Ok(()),
     }
+}
+
+/// Red, green, blue and alpha, rows from the top.
+struct Rgba {
+    width: usize,
+    texels: Vec<[f32; 4]>,
+}
+
+fn read_exr(bytes: &[u8]) -> Result<Rgba, String> {
+    use exr::prelude::{ReadChannels, ReadLayers, read};
+    type Pixels = (usize, Vec<[f32; 4]>);
+    let described = exr::meta::MetaData::read_from_buffered(Cursor::new(bytes), false);
+    let headers = described.map_err(|error| error.to_string())?.headers;
+    headers.iter().try_for_each(|header| too_many(header.layer_size.width(), header.layer_size.height()))?;
     let image = read()
         .no_deep_data()
         .largest_resolution_level()
         .rgba_channels(
-            |size, _| -> Pixels { (size.width(), vec![[0.0; 3]; size.area()]) },
-            |(width, texels): &mut Pixels, at, (r, g, b, _): (f32, f32, f32, f32)| {
-                texels[at.y() * *width + at.x()] = [r, g, b];
+            |size, _| -> Pixels { (size.width(), vec![[0.0; 4]; size.area()]) },
+            |(width, texels): &mut Pixels, at, (r, g, b, a): (f32, f32, f32, f32)| {
+                texels[at.y() * *width + at.x()] = [r, g, b, a];
             },
         )
         .first_valid_layer()
         .all_attributes()
         .non_parallel()
-        .from_buffered(std::io::Cursor::new(bytes))
+        .from_buffered(Cursor::new(bytes))
         .map_err(|error| error.to_string())?;
     let (width, texels) = image.layer_data.channel_data.pixels;
-    Ok(LinearImage { width, texels })
+    Ok(Rgba { width, texels })
 }
 
-fn read_radiance(bytes: &[u8]) -> Result<LinearImage, String> {
-    let mut reader = image::ImageReader::with_format(std::io::Cursor::new(bytes), image::ImageFormat::Hdr);
+fn read_radiance(bytes: &[u8]) -> Result<Rgba, String> {
+    let image = decode(bytes, ImageFormat::Hdr)?.into_rgba32f();
+    Ok(Rgba { width: image.width() as usize, texels: image.pixels().map(|pixel| pixel.0).collect() })
+}
+
+/// The numbers of an image of at most `MOST_TEXELS`.
+fn decode(bytes: &[u8], format: ImageFormat) -> Result<DynamicImage, String> {
+    let mut reader = image::ImageReader::with_format(Cursor::new(bytes), format);
     let mut limits = image::Limits::default();
     limits.max_alloc = Some(12 * MOST_TEXELS as u64);
     reader.limits(limits);
-    let image = reader.decode().map_err(|error| error.to_string())?.into_rgb32f();
-    Ok(LinearImage { width: image.width() as usize, texels: image.pixels().map(|pixel| pixel.0).collect() })
+    let decoder = reader.into_decoder().map_err(|error| error.to_string())?;
+    let (width, height) = decoder.dimensions();
+    too_many(width as usize, height as usize)?;
+    DynamicImage::from_decoder(decoder).map_err(|error| error.to_string())
+}
+
+/// The numbers of an image of 16 bits.
+fn words(image: DynamicImage) -> Vec<u16> {
+    match image {
+        DynamicImage::ImageLuma16(image) => image.into_raw(),
+        DynamicImage::ImageLumaA16(image) => image.into_raw(),
+        DynamicImage::ImageRgb16(image) => image.into_raw(),
+        DynamicImage::ImageRgba16(image) => image.into_raw(),
+        other => other.into_rgb16().into_raw(),
+    }
 }

@@ -6,6 +6,7 @@
 mod camera;
 mod compile;
 mod compile_curve;
+mod compile_image;
 mod compile_light;
 mod compile_material;
 mod compile_mesh;
@@ -35,7 +36,7 @@ use crate::film::{Filter, Window};
 use crate::light::{Light, LightId};
 use crate::material::Material;
 use crate::math::Ray;
-use crate::shape::{Crossing, Shape};
+use crate::shape::{Coordinates, Crossing, Shape, SurfacePoint};
 use crate::spectrum::{ColorSpace, Quantity};
 use index::Index;
 
@@ -113,6 +114,15 @@ pub struct Object {
     pub material: MaterialId,
     /// The light it is, if it shines.
     pub light: Option<LightId>,
+    /// Where its points lie in images, if its material varies over the surface.
+    pub coordinates: Option<Coordinates>,
+}
+
+impl Object {
+    /// Where a point of its surface lies in images on it; (0, 0) if there are none.
+    pub fn uv(&self, crossing: &Crossing, point: &SurfacePoint) -> [f64; 2] {
+        self.coordinates.map_or([0.0; 2], |coordinates| coordinates.at(&self.shape, crossing, point.position))
+    }
 }
 
 /// A material and the name its author gave it.

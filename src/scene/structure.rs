@@ -141,9 +141,10 @@ pub(super) fn surplus(document: &DeTable) -> Option<Mistake> {
     find_in(document, &mut Vec::new(), &|path, value, entries| {
         let key = *path.last()?;
         let (one, wanted, help) = match key {
-            "b" | "c" => return None,
+            "b" | "c" | "checker" => return None,
             "samples" => ("an entry of `samples`", 2, Some("write [wavelength in nm, value]")),
             "lines" => ("an entry of `lines`", 2, Some("write [wavelength in nm, power]")),
+            "repeat" => ("`repeat`", 2, Some("write [along u, along v]")),
             "cauchy" => ("`cauchy`", 2, Some("write [A, B] of n = A + B / wavelength^2")),
             "faces" => ("a face", 3, Some("cut faces with more corners into triangles")),
             "points" => ("a point", 3, None),

@@ -126,6 +126,11 @@ impl Mesh {
         Self { attributes, ..self }
     }
 
+    /// Whether it has texture coordinates.
+    pub fn has_coordinates(&self) -> bool {
+        !self.attributes.coordinates.is_empty()
+    }
+
     /// Texture coordinates at affine coordinates of a triangle; none if the mesh has none.
     pub fn coordinates(&self, part: u32, uv: [f64; 2]) -> Option<[f64; 2]> {
         self.attributes.coordinates(self.triangles[part as usize], uv)

@@ -18,6 +18,14 @@ impl Plane {
         Self { point, normal: normal.normalize() }
     }
 
+    pub(super) fn origin(&self) -> DVec3 {
+        self.point
+    }
+
+    pub(super) fn normal(&self) -> DVec3 {
+        self.normal
+    }
+
     /// t = (q - p0).n_p / (n.n_p): the difference is formed first, so that distance from the world's origin costs nothing.
     pub(super) fn intersect(&self, ray: &Ray, t_max: f64) -> Option<Crossing> {
         let t = (self.point - ray.origin).dot(self.normal) / ray.direction.dot(self.normal);

@@ -23,6 +23,10 @@ impl Sphere {
         Self { center, radius }
     }
 
+    pub(super) fn center(&self) -> DVec3 {
+        self.center
+    }
+
     /// Both roots t = n.d -+ s with s^2 = R^2 - |d x n|^2, d = center - origin.
     ///
     /// The cross product keeps the distance to the center out of the discriminant: the error of the hit is a few

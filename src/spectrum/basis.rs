@@ -178,6 +178,9 @@ impl Basis {
 
     /// A checked curve, read onto the bins. An emission of wavelengths is an even table: its colors are in its response.
     pub fn tabulate(&self, quantity: Quantity, curve: &Curve) -> Table {
+        if curve.varies() {
+            return self.patterned(quantity, curve);
+        }
         if quantity == Quantity::Emission {
             return self.emission(curve);
         }
@@ -203,6 +206,16 @@ impl Basis {
         }
     }
 
+    /// Whether the lanes are the red, green and blue of colors as they are written.
+    pub(super) fn has_rgb_lanes(&self) -> bool {
+        matches!(self.lanes, LaneKind::Rgb)
+    }
+
+    /// The same number everywhere.
+    pub(super) fn even(&self, value: f64) -> Table {
+        self.table(vec![value; self.fixed_lanes()], &|_| value)
+    }
+
     /// The bins, and the fine grid if wavelengths are drawn.
     fn table(&self, bins: Vec<f64>, value: &dyn Fn(f64) -> f64) -> Table {
         Table::with_fine(&bins, self.fine(value, value))
@@ -224,15 +237,13 @@ impl Basis {
             (LaneKind::Rgb, Some(rgb)) if curve.luminance.is_none() => Table::new(rgb.map(|x| x * curve.scale)),
             (LaneKind::Rgb, _) => Table::new(apply(&ColorSpace::Rec709.of_xyz(), emission().xyz())),
             (LaneKind::Prefiltered(_), _) => Table::new(apply(&ColorSpace::Rec2020.of_xyz(), emission().xyz())),
-            (LaneKind::Wavelengths(_), _) => {
-                let level = level(&emission());
-                self.table(vec![level; self.fixed_lanes()], &|_| level)
-            }
+            (LaneKind::Wavelengths(_), _) => self.even(level(&emission())),
         }
     }
 
     /// What the lanes are worth to the sensor when a path ends in a light of this emission.
     pub fn response(&self, curve: &Curve) -> Response {
+        let curve = &*curve.level();
         let of_matrix = |matrix: &Matrix| Response::new(&[0, 1, 2].map(|lane| matrix.map(|row| row[lane])), Vec::new());
         match &self.lanes {
             LaneKind::Rgb if curve.is_measured() || curve.luminance.is_some() => {

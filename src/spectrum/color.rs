@@ -189,6 +189,11 @@ pub fn encode_srgb(linear: [f32; 3]) -> [u8; 3] {
     Srgb::<u8>::from_linear(LinSrgb::new(red, green, blue)).into()
 }
 
+/// The linear value of an sRGB value, both 0 to 1: IEC 61966-2-1, equations 5 and 6.
+pub fn decode_srgb(encoded: f64) -> f64 {
+    if encoded <= 0.04045 { encoded / 12.92 } else { libm::pow((encoded + 0.055) / 1.055, 2.4) }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -2,7 +2,7 @@
 
 use super::basis::BAND_WAVELENGTHS_NM;
 use super::curve_check::Refusal;
-use super::{Quantity, Upsampler, data};
+use super::{ImageText, Quantity, Texture, Upsampler, data};
 
 /// A spectrum as it stands in a scene file: a number, a catalog name, or a table with one kind and maybe a `scale`.
 ///
@@ -11,6 +11,8 @@ use super::{Quantity, Upsampler, data};
 /// reflectance = { rgb = [0.7, 0.5, 0.3] }
 /// reflectance = "dark skin"
 /// reflectance = { file = "paint.csv", column = 2 }
+/// reflectance = { image = "wood.png", repeat = 4 }     # encoding = "srgb", channel, wrap = "repeat", filter = "linear", scale
+/// reflectance = { checker = [0.1, "dark skin"], repeat = [8, 8] }
 /// index = "N-SF11"
 /// index = { rgb = [1.513, 1.517, 1.523] }
 /// index = { samples = [[486.1, 1.522], [656.3, 1.514]] }
@@ -72,8 +74,17 @@ pub enum CurveKind {
     Blackbody(f64),
     /// Ideal lines: (wavelength in nm, power).
     Lines(Vec<[f64; 2]>),
-    /// An image file, relative to the scene: the radiance of an environment.
-    Image(String),
+    /// An image file.
+    Image(ImageText),
+    /// An image that was read.
+    Texture(Texture),
+    /// A checkerboard of two spectra.
+    Checker {
+        /// What is on its squares, first on the one that begins at (0, 0).
+        cells: Box<[Curve; 2]>,
+        /// Squares in a unit of u and of v.
+        repeat: [f64; 2],
+    },
 }
 
 impl From<f64> for Curve {
@@ -156,7 +167,8 @@ impl Curve {
                 }
             },
             CurveKind::File { .. } => panic!("the compiler reads files into samples"),
-            CurveKind::Image(_) => panic!("the compiler reads images into environments"),
+            CurveKind::Image(_) => panic!("the compiler reads images into textures"),
+            CurveKind::Texture(_) | CurveKind::Checker { .. } => panic!("no single value stands for a surface"),
             CurveKind::Illuminant(_) | CurveKind::Blackbody(_) | CurveKind::Lines(_) => {
                 panic!("lights are read by Emission")
             }
@@ -165,7 +177,11 @@ impl Curve {
 
     /// Whether the curve is made of wavelengths, so that three numbers cannot hold it.
     pub fn is_measured(&self) -> bool {
-        self.kind.rgb().is_none()
+        match &self.kind {
+            CurveKind::Texture(_) => false,
+            CurveKind::Checker { cells, .. } => cells.iter().any(Self::is_measured),
+            kind => kind.rgb().is_none(),
+        }
     }
 
     /// Who published the curve, if it is one of the catalog.

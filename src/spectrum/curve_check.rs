@@ -89,12 +89,24 @@ fn kind_fits(curve: &Curve, quantity: Quantity) -> Result<(), Refusal> {
         (Name(name), Index) => Err(unknown_glass(name)),
         (Name(name), MetalIndex | MetalExtinction) => Err(unknown_metal(name)),
         (Name(name), Reflectance | Transmittance) => Err(unknown_reflectance(name)),
+        (kind @ (Image(_) | Checker { .. }), _) => Err(no_surface(kind, quantity)),
         (kind, _) => {
             let refusal = Refusal::new(format!("{} cannot be given by {}", article(quantity), form(kind)));
             let light = if let (Name(name), Emission) = (kind, quantity) { illuminant_called(name) } else { None };
             Err(refusal.help(light.unwrap_or_else(|| forms(quantity).into())))
         }
     }
+}
+
+/// Why something cannot vary over a surface.
+fn no_surface(kind: &CurveKind, quantity: Quantity) -> Refusal {
+    let message = format!("{} cannot be given by {}", article(quantity), form(kind));
+    let why = match quantity {
+        Quantity::Emission => "only a surface can show it: give an object an `emissive` material",
+        Quantity::Index | Quantity::Absorption => "it belongs to the whole body, not to places on its surface",
+        _ => "a metal is the same all over: give its parts materials of their own",
+    };
+    Refusal::new(message).help(why)
 }
 
 /// How a quantity may be written.
@@ -121,7 +133,8 @@ fn finite(curve: &Curve) -> Result<(), Refusal> {
         }
         CurveKind::Lines(lines) => lines.iter().map(|pair| (&["lines"] as _, pair.as_slice())).collect(),
         CurveKind::Blackbody(kelvin) => vec![(&["blackbody"], std::slice::from_ref(kelvin))],
-        CurveKind::Name(_) | CurveKind::File { .. } | CurveKind::Illuminant(_) | CurveKind::Image(_) => Vec::new(),
+        CurveKind::Name(_) | CurveKind::File { .. } | CurveKind::Illuminant(_) => Vec::new(),
+        CurveKind::Image(_) | CurveKind::Texture(_) | CurveKind::Checker { .. } => Vec::new(),
     };
     let scale: (&[&str], &[f64]) = (&["scale"], std::slice::from_ref(&curve.scale));
     let luminance: (&[&str], &[f64]) = (&["luminance"], curve.luminance.as_slice());
@@ -220,7 +233,8 @@ fn form(kind: &CurveKind) -> String {
         CurveKind::Illuminant(_) => "`illuminant`".into(),
         CurveKind::Blackbody(_) => "`blackbody`".into(),
         CurveKind::Lines(_) => "`lines`".into(),
-        CurveKind::Image(_) => "`image`".into(),
+        CurveKind::Image(_) | CurveKind::Texture(_) => "`image`".into(),
+        CurveKind::Checker { .. } => "`checker`".into(),
         CurveKind::Name(name) => format!("the name {name:?}"),
     }
 }

@@ -23,6 +23,7 @@ impl Emission {
     /// A flat spectrum of 1, and an illuminant or a blackbody alone, have Y = 1; numbers and `rgb` are multiples of the
     /// film's white.
     pub fn new(curve: &Curve, space: ColorSpace) -> Self {
+        let curve = &*curve.level();
         let (mut spectrum, mut lines, mut correction) = (vec![0.0; visible::COUNT], Vec::new(), [1.0; 3]);
         let mut fill = |value: &dyn Fn(f64) -> f64| {
             spectrum.iter_mut().zip(visible::wavelengths()).for_each(|(power, nm)| *power = value(nm));

@@ -1,3 +1,5 @@
+use super::pattern::Pattern;
+
 /// What a curve describes, which decides how it is read onto the lanes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
@@ -30,6 +32,8 @@ pub struct Table {
     weights: Box<[f32; MAX_LANES]>,
     fine: Box<[f64]>,
     flat: bool,
+    /// A factor that varies over the surface.
+    pattern: Option<Box<Pattern>>,
 }
 
 impl Table {
@@ -47,7 +51,28 @@ impl Table {
         let fixed: [f64; MAX_LANES] = std::array::from_fn(|i| bins[i.min(bins.len() - 1)]);
         let flat = fixed.iter().chain(&fine).all(|&x| x == fixed[0]);
         let weights = fixed.map(|x| x as f32);
-        Self { bins: bins.len(), fixed: Box::new(fixed), weights: Box::new(weights), fine: fine.into(), flat }
+        Self {
+            bins: bins.len(),
+            fixed: Box::new(fixed),
+            weights: Box::new(weights),
+            fine: fine.into(),
+            flat,
+            pattern: None,
+        }
+    }
+
+    /// The same table, varied over the surface.
+    pub(super) fn varied(self, pattern: Pattern) -> Self {
+        Self { pattern: Some(Box::new(pattern)), ..self }
+    }
+
+    pub(super) fn pattern(&self) -> Option<&Pattern> {
+        self.pattern.as_deref()
+    }
+
+    /// Whether it is different at different places of a surface, so that `Draw::read_at` must be told the place.
+    pub fn varies(&self) -> bool {
+        self.pattern.is_some()
     }
 
     /// The number in each bin of the fixed lanes.

@@ -122,7 +122,7 @@ impl<const N: usize> Gathering<'_, N> {
             if !factor.is_finite() || self.world.scene.is_hidden(&ray, view.distance, view.object, self.hider) {
                 return None;
             }
-            let mut arriving = light.toward(self.arrival.draw, sighting.direction);
+            let mut arriving = light.toward(self.arrival.draw, sighting.direction, view.uv);
             if let Some(material) = self.inside {
                 arriving =
                     arriving * media::medium(self.world, material).transmission(self.arrival.draw, view.distance);

@@ -109,7 +109,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
                 _ => 1.0,
             };
             let weight = weight_of_meeting(self.world, id, path.drawn.as_ref(), &path.ray, None);
-            let arriving = path.throughput.scaled(weight * factor).of(light.toward(draw, path.ray.direction));
+            let arriving = path.throughput.scaled(weight * factor).of(light.toward(draw, path.ray.direction, [0.0; 2]));
             add(&mut sum, self.world.responses[id].sensor(draw, arriving, path.parted));
         }
         sum
@@ -126,7 +126,8 @@ impl<'a, const N: usize> Tracer<'a, N> {
             met.push((id, point.normal));
         }
         let weight = weight_of_meeting(self.world, id, path.drawn.as_ref(), &path.ray, Some(&hit.crossing));
-        let light = path.throughput.scaled(weight).of(draw.read(&area.radiance));
+        let uv = self.world.scene.objects[hit.object as usize].uv(&hit.crossing, point);
+        let light = path.throughput.scaled(weight).of(draw.read_at(&area.radiance, uv));
         self.world.responses[id].sensor(draw, light, path.parted)
     }
 
@@ -163,6 +164,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
         let arrival = Arrival {
             wo: -path.ray.direction,
             normal: shading,
+            uv: object.uv(&hit.crossing, point),
             draw,
             present: path.throughput.present(),
             incident: media::index(world, draw, here),

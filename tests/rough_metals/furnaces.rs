@@ -35,6 +35,7 @@ fn furnace(material: &Material<Table>, cos: f64, index: f64) -> [f64; 3] {
     let arrival = Arrival {
         wo,
         normal,
+        uv: [0.0; 2],
         draw: &draw,
         present: draw.start(),
         incident: [index; 4],

@@ -56,8 +56,16 @@ fn a_point_light_shows_the_brdf_itself() {
         let here = DVec3::new(0.5, 0.0, 0.0);
         let (wo, to_light) = ((DVec3::new(4.0, 3.0, 0.5) - here).normalize(), DVec3::new(-1.0, 2.0, 0.3) - here);
         let (incident, beyond) = ([1.0; 4], [1.0; 4]);
-        let arrival =
-            Arrival { wo, normal: DVec3::Y, draw: &draw, present: draw.start(), incident, beyond, together: 0.0 };
+        let arrival = Arrival {
+            wo,
+            normal: DVec3::Y,
+            uv: [0.0; 2],
+            draw: &draw,
+            present: draw.start(),
+            incident,
+            beyond,
+            together: 0.0,
+        };
         let evaluated = world.scene().material_of(0).evaluate(&arrival, to_light.normalize());
         let (brdf_cos, _) = evaluated.expect("the light is above the floor");
         let shown = image(&text, SINGLE_PATH).0.pixels[0].rgb;

@@ -73,7 +73,16 @@ fn s5_every_material_sends_light_on_along_unit_vectors() {
             let wo = random.direction().normalize();
             let normal = normal_toward(wo, &mut random);
             let (incident, beyond) = ([1.7, 1.73, 1.79, 1.0], [1.0; 4]);
-            let arrival = Arrival { wo, normal, draw: &draw, present: draw.start(), incident, beyond, together: 0.0 };
+            let arrival = Arrival {
+                wo,
+                normal,
+                uv: [0.0; 2],
+                draw: &draw,
+                present: draw.start(),
+                incident,
+                beyond,
+                together: 0.0,
+            };
             material.scatter(&arrival, random.pair(), &mut branches);
             assert!(!branches.is_empty());
             worst = branches.drain(..).map(|branch| off_unit(branch.wi)).fold(worst, f64::max);

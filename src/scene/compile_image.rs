@@ -1,0 +1,159 @@
+//! Images and patterns on surfaces: files read once, everything checked.
+
+use std::collections::BTreeMap;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use sha2::Digest;
+
+use super::compile::Compiler;
+use super::image_file::read_texture;
+use super::source::At;
+use crate::error::Result;
+use crate::spectrum::{Channel, Curve, CurveKind, Encoding, Image, ImageText, Quantity, Texture};
+
+/// Most bytes of an image.
+const MOST_IMAGE: u64 = 1 << 32;
+/// Most and, as one over it, least repetitions in a unit.
+const MOST_REPEAT: f64 = 1e6;
+
+/// Images by their path and by what was read of them.
+pub(super) type Images = BTreeMap<(PathBuf, Option<Encoding>, Option<Channel>), Arc<Image>>;
+
+impl Compiler<'_> {
+    /// The spectrum of a surface, which may vary over it, checked.
+    pub(super) fn surface_curve(&mut self, at: &At, curve: &Curve, quantity: Quantity) -> Result<Curve> {
+        let on_surface = matches!(quantity, Quantity::Reflectance | Quantity::Transmittance | Quantity::Emission);
+        match &curve.kind {
+            CurveKind::Image(image) if on_surface => self.image_curve(at, curve, image, quantity),
+            CurveKind::Checker { cells, repeat } if on_surface => self.checker(at, curve, cells, *repeat, quantity),
+            _ => self.curve(at, curve, quantity),
+        }
+    }
+
+    fn image_curve(&mut self, at: &At, curve: &Curve, text: &ImageText, quantity: Quantity) -> Result<Curve> {
+        self.factor_on_image(at, curve)?;
+        self.repeat(at, text.placement.repeat)?;
+        if let (Some(Channel::Alpha), Some(Encoding::Srgb)) = (text.channel, text.encoding) {
+            let message = "alpha is a share, which no kind of file encodes as sRGB";
+            return Err(self.source.mistake_at(&at.key("encoding"), message, Some("leave `encoding` out".into())));
+        }
+        let here = at.key("image");
+        let image = self.image(&here, text)?;
+        let ([x, y], brightest) = image.brightest();
+        let most = f64::from(brightest) * curve.scale;
+        if quantity != Quantity::Emission && most > 1.0 {
+            let scaled =
+                if curve.scale == 1.0 { String::new() } else { format!(" times its scale of {}", curve.scale) };
+            let message = format!(
+                "{}: pixel ({x}, {y}) is {brightest}{scaled}, and no surface gives back more than 1",
+                text.file
+            );
+            let help = format!("scale = {:.4} makes it 1", (1e4 / f64::from(brightest)).floor() / 1e4);
+            return Err(self.source.mistake_at(&here, message, (brightest < 1e4).then_some(help)));
+        }
+        let texture = Texture { image, placement: text.placement };
+        Ok(Curve { kind: CurveKind::Texture(texture), ..curve.clone() })
+    }
+
+    fn repeat(&self, at: &At, repeat: [f64; 2]) -> Result<()> {
+        let possible = |x: &f64| (1.0 / MOST_REPEAT..=MOST_REPEAT).contains(x);
+        match repeat.iter().find(|x| !possible(x)) {
+            Some(wrong) => {
+                let message = format!("`repeat` counts copies in a unit, above 0 to {MOST_REPEAT:e}, not {wrong}");
+                Err(self.source.mistake_at(&at.key("repeat"), message, None))
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// That the factor on an image is one, and no luminance stands in its place.
+    pub(super) fn factor_on_image(&mut self, at: &At, curve: &Curve) -> Result<()> {
+        if curve.luminance.is_some() {
+            let help = Some("use `scale`".into());
+            return Err(self.source.mistake_at(&at.key("luminance"), "an image has no single luminance", help));
+        }
+        let factor = self.curve(at, &curve.scale.into(), Quantity::Emission);
+        factor.map(|_| ()).map_err(|_| {
+            let message = format!("a factor on an image is finite and at least 0, not {}", curve.scale);
+            self.source.mistake_at(&at.key("scale"), message, None)
+        })
+    }
+
+    fn checker(
+        &mut self,
+        at: &At,
+        curve: &Curve,
+        cells: &[Curve; 2],
+        repeat: [f64; 2],
+        quantity: Quantity,
+    ) -> Result<Curve> {
+        self.repeat(at, repeat)?;
+        if curve.luminance.is_some() {
+            let help = Some("give its squares a `scale`".into());
+            return Err(self.source.mistake_at(&at.key("luminance"), "a checker has no single luminance", help));
+        }
+        let list = at.key("checker");
+        let mut checked = Vec::new();
+        for (number, cell) in cells.iter().enumerate() {
+            let here = list.index(number);
+            // A lamp has one spectrum, the white that colors are filters of.
+            if quantity == Quantity::Emission && cell.kind.rgb().is_none() {
+                let message = "the squares of a lamp are numbers or `rgb`: it shines in one white";
+                return Err(self.source.mistake_at(&here, message, Some("make it of several lamps".into())));
+            }
+            let luminance = cell.luminance.filter(|_| quantity == Quantity::Emission);
+            if luminance.is_some() {
+                let help = Some("use `scale`".into());
+                return Err(self.source.mistake_at(
+                    &here.key("luminance"),
+                    "the squares of a lamp have no luminance",
+                    help,
+                ));
+            }
+            let scaled = Curve { scale: cell.scale * curve.scale, ..cell.clone() };
+            checked.push(self.surface_curve(&here, &scaled, quantity)?);
+        }
+        let [mut first, mut second] = <[Curve; 2]>::try_from(checked).expect("two squares were checked");
+        let mut scale = 1.0;
+        if quantity == Quantity::Emission {
+            let brightest =
+                |cell: &Curve| cell.kind.rgb().map_or(0.0, |rgb| rgb.into_iter().fold(0.0, f64::max) * cell.scale);
+            scale = brightest(&first).max(brightest(&second));
+            let filter = |cell: &mut Curve| cell.scale = if scale > 0.0 { cell.scale / scale } else { 0.0 };
+            filter(&mut first);
+            filter(&mut second);
+        }
+        Ok(Curve { kind: CurveKind::Checker { cells: Box::new([first, second]), repeat }, scale, luminance: None })
+    }
+
+    fn image(&mut self, at: &At, text: &ImageText) -> Result<Arc<Image>> {
+        let key = (self.source.folder().join(&text.file), text.encoding, text.channel);
+        if let Some(image) = self.images.get(&key) {
+            return Ok(image.clone());
+        }
+        let bytes = self.bytes_of_image(at, &text.file)?;
+        let read = read_texture(Path::new(&text.file), &bytes, text.encoding, text.channel);
+        let read = read.map_err(|(message, help)| self.source.mistake_at(at, message, help))?;
+        self.hash.update(&bytes);
+        if read.ignores_alpha {
+            let warning = format!("{at}: the alpha of {} is ignored; channel = \"alpha\" reads it", text.file);
+            self.warnings.push(warning);
+        }
+        let image = Arc::new(read.image);
+        self.images.insert(key, image.clone());
+        Ok(image)
+    }
+
+    pub(super) fn bytes_of_image(&self, at: &At, file: &str) -> Result<Vec<u8>> {
+        let path = self.source.folder().join(file);
+        self.file_of_size(at, &path, file, MOST_IMAGE)?;
+        std::fs::read(&path).map_err(|error| match error.kind() {
+            _ if file.is_empty() => self.source.mistake_at(at, "an image needs the name of its file", None),
+            ErrorKind::NotFound | ErrorKind::NotADirectory => self.source.missing_file(at, file),
+            _ if path.is_dir() => self.source.mistake_at(at, format!("{file} is a folder"), None),
+            _ => self.source.mistake_at(at, format!("cannot read {file}: {error}"), None),
+        })
+    }
+}

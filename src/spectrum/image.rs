@@ -1,0 +1,115 @@
+use super::color::decode_srgb;
+
+/// An image of linear Rec.709 colors or of single numbers, none of them negative.
+#[derive(Clone, Debug)]
+pub struct Image {
+    width: usize,
+    height: usize,
+    /// 3, or 1 where all three are the same.
+    channels: usize,
+    texels: Texels,
+    mean: [f64; 3],
+    brightest: (usize, f32),
+    most_colorful: [f32; 3],
+}
+
+/// Rows from the top, the numbers of a texel side by side.
+#[derive(Clone, Debug)]
+enum Texels {
+    /// Of 8 bits, and what each of the 256 stands for.
+    Bytes(Vec<u8>, Box<[f32; 256]>),
+    Floats(Vec<f32>),
+}
+
+impl Image {
+    /// An image of 8 bits a number, which stand for sRGB or for 256 even steps from 0 to 1.
+    ///
+    /// # Panics
+    /// If it has no texels, a row that is not full, or neither 1 nor 3 channels.
+    pub fn of_bytes(width: usize, channels: usize, bytes: Vec<u8>, srgb: bool) -> Self {
+        let value = |byte: usize| {
+            let even = byte as f64 / 255.0;
+            (if srgb { decode_srgb(even) } else { even }) as f32
+        };
+        let length = bytes.len();
+        Self::new(width, channels, length, Texels::Bytes(bytes, Box::new(std::array::from_fn(value))))
+    }
+
+    /// An image of linear numbers, finite and not negative.
+    ///
+    /// # Panics
+    /// As [`Image::of_bytes`].
+    pub fn of_floats(width: usize, channels: usize, floats: Vec<f32>) -> Self {
+        let length = floats.len();
+        Self::new(width, channels, length, Texels::Floats(floats))
+    }
+
+    fn new(width: usize, channels: usize, length: usize, texels: Texels) -> Self {
+        assert!(
+            width > 0 && length > 0 && (channels == 1 || channels == 3) && length.is_multiple_of(width * channels),
+            "{length} numbers, {channels} a texel, {width} texels a row"
+        );
+        let (height, none) = (length / (width * channels), [0.0; 3]);
+        let mut image =
+            Self { width, height, channels, texels, mean: none, brightest: (0, 0.0), most_colorful: [0.0; 3] };
+        let (mut sum, mut farthest) = ([0.0; 3], -1.0);
+        for at in 0..width * height {
+            let texel = image.at(at);
+            let [low, high] = [texel.into_iter().fold(f32::MAX, f32::min), texel.into_iter().fold(0.0, f32::max)];
+            (0..3).for_each(|c| sum[c] += f64::from(texel[c]));
+            if high > image.brightest.1 {
+                image.brightest = (at, high);
+            }
+            let from_gray = (high - low) / high.max(f32::MIN_POSITIVE);
+            if from_gray > farthest {
+                (farthest, image.most_colorful) = (from_gray, texel);
+            }
+        }
+        image.mean = sum.map(|x| x / (width * height) as f64);
+        image
+    }
+
+    /// Texels of a row.
+    pub fn width(&self) -> usize {
+        self.width
+    }
+
+    /// Rows.
+    pub fn height(&self) -> usize {
+        self.height
+    }
+
+    /// A texel, counted from the upper left corner.
+    pub fn texel(&self, column: usize, row: usize) -> [f32; 3] {
+        self.at(row * self.width + column)
+    }
+
+    #[inline]
+    fn at(&self, at: usize) -> [f32; 3] {
+        match (&self.texels, self.channels) {
+            (Texels::Bytes(bytes, values), 1) => [values[usize::from(bytes[at])]; 3],
+            (Texels::Bytes(bytes, values), _) => {
+                let texel: &[u8; 3] = bytes[3 * at..].first_chunk().expect("rows are full");
+                texel.map(|byte| values[usize::from(byte)])
+            }
+            (Texels::Floats(floats), 1) => [floats[at]; 3],
+            (Texels::Floats(floats), _) => *floats[3 * at..].first_chunk().expect("rows are full"),
+        }
+    }
+
+    /// The mean of all texels.
+    pub fn mean(&self) -> [f64; 3] {
+        self.mean
+    }
+
+    /// The largest number, with the column and row of the first texel that has it.
+    pub fn brightest(&self) -> ([usize; 2], f32) {
+        let (at, value) = self.brightest;
+        ([at % self.width, at / self.width], value)
+    }
+
+    /// The first of the texels that are farthest from gray, in proportion to their brightness.
+    pub fn most_colorful(&self) -> [f32; 3] {
+        self.most_colorful
+    }
+}

@@ -1,0 +1,225 @@
+//! The kinds of image files, what is read of them, and damaged ones.
+
+use abbe::material::Material;
+use image::ExtendedColorType::{L8, L16, La8, La16, Rgb8, Rgb16, Rgba8, Rgba16};
+
+use super::*;
+
+/// A scene with a material for every reflectance, and its warnings.
+fn materials(folder: &Path, reflectances: &[&str]) -> Scene<Curve> {
+    let materials: String = (reflectances.iter().enumerate())
+        .map(|(i, reflectance)| {
+            format!(
+                "[material.m{i}]\ndiffuse = {{ reflectance = {reflectance} }}\n\
+                 [[object]]\nshape.sphere = {{ center = [{i}, 0, 0], radius = 0.4 }}\nmaterial = \"m{i}\"\n"
+            )
+        })
+        .collect();
+    let text = format!("{}{materials}", view([0.0, 0.0, 9.0], [0.0; 3], 30.0, 4));
+    scene(folder, &format!("{text}[[light]]\nenvironment = {{ radiance = 1 }}\n"))
+}
+
+fn image_of(scene: &Scene<Curve>, material: usize) -> Arc<Image> {
+    let Material::Diffuse(diffuse) = &scene.materials[material].material else { panic!("all are diffuse") };
+    let CurveKind::Texture(texture) = &diffuse.reflectance.kind else { panic!("all are images") };
+    texture.image.clone()
+}
+
+fn assert_near(found: [f32; 3], expected: [f64; 3], tolerance: f64, what: &str) {
+    let near = (0..3).all(|c| (f64::from(found[c]) - expected[c]).abs() <= tolerance);
+    assert!(near, "{what}: {found:?} for {expected:?}");
+}
+
+/// IEC 61966-2-1, written another way than the renderer does.
+fn from_srgb(x: f64) -> f64 {
+    if x < 0.0405 { x / 12.92 } else { (2.4 * ((x + 0.055) / 1.055).ln()).exp() }
+}
+
+#[test]
+fn every_kind_of_png_is_read_as_it_is_meant() {
+    let folder = tempfile::tempdir().unwrap();
+    let [red, green, blue, alpha] = [0.2, 0.5, 0.9, 0.6];
+    let [bytes, words] = [255.0, 65535.0];
+    let as_bytes = |list: &[f64]| -> Vec<u8> { list.iter().map(|x| (x * bytes).round() as u8).collect() };
+    let as_words =
+        |list: &[f64]| -> Vec<u8> { list.iter().flat_map(|x| ((x * words).round() as u16).to_ne_bytes()).collect() };
+    let color = [red, green, blue];
+    let gray = [green; 3];
+    let kinds: [(&str, _, Vec<u8>, [f64; 3], f64); 8] = [
+        ("l8.png", L8, as_bytes(&[green]), gray, bytes),
+        ("la8.png", La8, as_bytes(&[green, alpha]), gray, bytes),
+        ("rgb8.png", Rgb8, as_bytes(&color), color, bytes),
+        ("rgba8.png", Rgba8, as_bytes(&[red, green, blue, alpha]), color, bytes),
+        ("l16.png", L16, as_words(&[green]), gray, words),
+        ("la16.png", La16, as_words(&[green, alpha]), gray, words),
+        ("rgb16.png", Rgb16, as_words(&color), color, words),
+        ("rgba16.png", Rgba16, as_words(&[red, green, blue, alpha]), color, words),
+    ];
+    for (name, kind, numbers, color, steps) in kinds {
+        image::save_buffer(folder.path().join(name), &numbers, 1, 1, kind).unwrap();
+        let has_alpha = name.contains('a');
+        let image = |options: &str| format!("{{ image = \"{name}\"{options} }}");
+        let mut options =
+            vec![image(""), image(", encoding = \"linear\""), image(", channel = \"blue\", encoding = \"linear\"")];
+        options.extend(has_alpha.then(|| image(", channel = \"alpha\"")));
+        let scene = materials(folder.path(), &options.iter().map(String::as_str).collect::<Vec<_>>());
+        // Half a step, as sRGB at most 2.3 times as wide where it is steepest, and the rounding to f32.
+        let tolerance = 0.5 / steps + 1e-7;
+        assert_near(image_of(&scene, 0).texel(0, 0), color.map(from_srgb), 2.3 * tolerance, name);
+        assert_near(image_of(&scene, 1).texel(0, 0), color, tolerance, name);
+        assert_near(image_of(&scene, 2).texel(0, 0), [color[2]; 3], tolerance, name);
+        if has_alpha {
+            assert_near(image_of(&scene, 3).texel(0, 0), [alpha; 3], tolerance, name);
+        }
+        let told = scene.warnings.iter().filter(|warning| warning.contains("alpha")).count();
+        // Once for each way of reading the file that leaves alpha out, but for single channels.
+        assert_eq!(told, if has_alpha { 2 } else { 0 }, "{name}: {:?}", scene.warnings);
+    }
+}
+
+#[test]
+fn a_jpeg_and_images_of_floats_are_read() {
+    let folder = tempfile::tempdir().unwrap();
+    image::save_buffer(folder.path().join("gray.jpg"), &[100; 3 * 64], 8, 8, Rgb8).unwrap();
+    exr::prelude::write_rgba_file(folder.path().join("a.exr"), 2, 1, |x, _| (0.1 + x as f32, 0.5, 0.25, 0.75)).unwrap();
+    let texels = vec![image::Rgb([0.5_f32, 0.25, 0.125]); 4];
+    let mut radiance = Vec::new();
+    image::codecs::hdr::HdrEncoder::new(&mut radiance).encode(&texels, 2, 2).unwrap();
+    std::fs::write(folder.path().join("b.hdr"), radiance).unwrap();
+    let reflectances = [
+        "{ image = \"gray.jpg\" }",
+        "{ image = \"a.exr\", scale = 0.9 }",
+        "{ image = \"a.exr\", channel = \"alpha\" }",
+        "{ image = \"b.hdr\" }",
+        "{ image = \"b.hdr\", encoding = \"srgb\" }",
+    ];
+    let scene = materials(folder.path(), &reflectances);
+    // JPEG may be a step off.
+    assert_near(image_of(&scene, 0).texel(5, 3), [from_srgb(100.0 / 255.0); 3], 4e-3, "jpeg");
+    assert_near(image_of(&scene, 1).texel(1, 0), [1.1, 0.5, 0.25], 1e-6, "exr");
+    assert_near(image_of(&scene, 2).texel(1, 0), [0.75; 3], 0.0, "alpha of exr");
+    assert_near(image_of(&scene, 3).texel(1, 1), [0.5, 0.25, 0.125], 0.0, "hdr");
+    assert_near(image_of(&scene, 4).texel(0, 0), [0.5, 0.25, 0.125].map(from_srgb), 1e-7, "encoded hdr");
+}
+
+#[test]
+fn an_image_of_many_materials_is_read_once_and_belongs_to_the_hash() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |number| write_png(folder.path(), "a.png", 1, Rgb8, &[number; 6]);
+    write(9);
+    let image = "{ image = \"a.png\", repeat = 3 }";
+    let first =
+        materials(folder.path(), &["{ image = \"a.png\" }", image, "{ checker = [0.2, { image = \"a.png\" }] }"]);
+    assert!(Arc::ptr_eq(&image_of(&first, 0), &image_of(&first, 1)));
+    let hash = || materials(folder.path(), &[image]).hash;
+    let before = hash();
+    assert_eq!(before, hash());
+    write(10);
+    assert_ne!(before, hash());
+}
+
+/// What a scene whose only reflectance is an image is refused with.
+fn refusal(folder: &Path, reflectance: &str) -> String {
+    let text = format!(
+        "{}[material.a]\ndiffuse = {{ reflectance = {reflectance} }}\n[[object]]\nmaterial = \"a\"\n\
+         shape.sphere = {{ center = [0, 0, 0], radius = 1 }}\n",
+        view([0.0, 0.0, 9.0], [0.0; 3], 30.0, 4)
+    );
+    let source = Source { path: folder.join("scene.toml"), text };
+    let read = source.parse().and_then(|description| compile(&description, &source));
+    match read {
+        Err(abbe::Error::Scene(mistake)) => mistake.message,
+        other => panic!("{reflectance}: {other:?}"),
+    }
+}
+
+#[test]
+fn impossible_texels_are_refused_with_their_place() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, bad: f32| {
+        let at = |x: usize, y: usize| if (x, y) == (2, 1) { (0.5, bad, 0.1) } else { (0.5, 0.5, 0.5) };
+        exr::prelude::write_rgb_file(folder.path().join(name), 4, 3, at).unwrap();
+    };
+    write("hole.exr", f32::NAN);
+    write("dark.exr", -0.25);
+    write("bright.exr", 1.5);
+    let refused = |reflectance| refusal(folder.path(), reflectance);
+    assert_eq!(refused("{ image = \"hole.exr\" }"), "hole.exr: pixel (2, 1) is [0.5, NaN, 0.1]");
+    assert_eq!(refused("{ image = \"dark.exr\", channel = \"green\" }"), "dark.exr: pixel (2, 1) is [-0.25]");
+    let more = "and no surface gives back more than 1";
+    assert_eq!(refused("{ image = \"bright.exr\" }"), format!("bright.exr: pixel (2, 1) is 1.5, {more}"));
+    let scaled = refused("{ image = \"bright.exr\", scale = 0.7 }");
+    assert_eq!(scaled, format!("bright.exr: pixel (2, 1) is 1.5 times its scale of 0.7, {more}"));
+    // A number that is not read may be anything.
+    materials(
+        folder.path(),
+        &["{ image = \"hole.exr\", channel = \"red\" }", "{ image = \"bright.exr\", scale = 0.6 }"],
+    );
+    // A picture that would fill the memory: its header alone says so.
+    let mut png = Vec::new();
+    image::codecs::png::PngEncoder::new(&mut png);
+    write_png(folder.path(), "huge.png", 1, L8, &[7]);
+    let mut huge = std::fs::read(folder.path().join("huge.png")).unwrap();
+    huge[16..24].copy_from_slice(&[0, 1, 0, 0, 0, 1, 0, 0]);
+    let sum = checksum(&huge[12..29]);
+    huge[29..33].copy_from_slice(&sum.to_be_bytes());
+    std::fs::write(folder.path().join("huge.png"), huge).unwrap();
+    let told = refused("{ image = \"huge.png\" }");
+    assert_eq!(told, "huge.png is no PNG image (65536 x 65536 pixels are more than 134217728)");
+}
+
+/// CRC-32 of ISO 3309, as PNG has it.
+fn checksum(bytes: &[u8]) -> u32 {
+    !bytes.iter().fold(!0, |sum, &byte| {
+        (0..8).fold(sum ^ u32::from(byte), |sum: u32, _| (sum >> 1) ^ if sum & 1 == 1 { 0xedb8_8320 } else { 0 })
+    })
+}
+
+/// Files that were cut off or damaged are refused in words, whatever byte is hit.
+#[test]
+fn a_damaged_image_never_stops_the_program() {
+    let folder = tempfile::tempdir().unwrap();
+    let numbers: Vec<u8> = (0..8 * 8 * 3).map(|i| (i * 37 % 251) as u8).collect();
+    write_png(folder.path(), "a.png", 8, Rgb8, &numbers);
+    image::save_buffer(folder.path().join("a.jpg"), &numbers, 8, 8, Rgb8).unwrap();
+    let at = |x: usize, y: usize| (x as f32 / 8.0, y as f32 / 8.0, 0.5, 1.0);
+    exr::prelude::write_rgba_file(folder.path().join("a.exr"), 8, 8, at).unwrap();
+    let mut random = Random::new(5);
+    for name in ["a.png", "a.jpg", "a.exr"] {
+        let whole = std::fs::read(folder.path().join(name)).unwrap();
+        let text = format!(
+            "{}[material.a]\ndiffuse = {{ reflectance = {{ image = \"{name}\" }} }}\n[[object]]\nmaterial = \"a\"\n\
+             shape.sphere = {{ center = [0, 0, 0], radius = 1 }}\n",
+            view([0.0, 0.0, 9.0], [0.0; 3], 30.0, 4)
+        );
+        let source = Source { path: folder.path().join("scene.toml"), text };
+        let description = source.parse().unwrap();
+        let (mut readable, mut refused) = (0, 0);
+        for round in 0..900 {
+            let mut bytes = whole.clone();
+            let mut within = |most: usize| (random.number() * most as f64) as usize;
+            match round % 3 {
+                0 => bytes.truncate(within(whole.len())),
+                1 => {
+                    let at = within(whole.len().min(600));
+                    bytes[at] = within(256) as u8;
+                }
+                _ => (0..4).for_each(|_| {
+                    let at = within(whole.len());
+                    bytes[at] ^= 1 << within(8);
+                }),
+            }
+            std::fs::write(folder.path().join(name), &bytes).unwrap();
+            match compile(&description, &source) {
+                Ok(_) => readable += 1,
+                Err(abbe::Error::Scene(mistake)) => {
+                    assert!(!mistake.message.contains('\n'), "{mistake:?}");
+                    refused += 1;
+                }
+                Err(other) => panic!("{name}, round {round}: {other:?}"),
+            }
+        }
+        // Some damage is not seen, most is.
+        assert!(readable > 0 && refused > 200, "{name}: {readable} read, {refused} refused");
+    }
+}

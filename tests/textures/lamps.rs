@@ -1,0 +1,164 @@
+//! Surfaces that show an image light the scene as its texels say.
+
+use abbe::math::DVec3;
+use abbe::trace::Method;
+
+use super::support::scenes::{Mean, SPLITTING};
+use super::*;
+
+const WIDTH: usize = 4;
+/// Rows from the top: nothing is symmetric.
+const TEXELS: [[f32; 3]; 12] = [
+    [1.0, 0.0, 0.1],
+    [0.2, 0.9, 0.0],
+    [0.0, 0.3, 2.5],
+    [0.0, 0.0, 0.0],
+    [0.5, 0.5, 0.5],
+    [3.0, 0.2, 0.0],
+    [0.1, 0.0, 0.0],
+    [0.0, 1.5, 0.4],
+    [0.3, 0.1, 0.0],
+    [0.0, 0.0, 0.6],
+    [0.9, 0.9, 0.1],
+    [0.1, 4.0, 0.2],
+];
+
+fn write_lamp(folder: &Path) {
+    let at = |x: usize, y: usize| {
+        let [r, g, b] = TEXELS[y * WIDTH + x];
+        (r, g, b)
+    };
+    exr::prelude::write_rgb_file(folder.join("lamp.exr"), WIDTH, TEXELS.len() / WIDTH, at).unwrap();
+}
+
+/// The color at (u, v), by the formula of bilinear interpolation between clamped texels.
+fn color([u, v]: [f64; 2]) -> [f64; 3] {
+    let height = TEXELS.len() / WIDTH;
+    let (x, y) = (u * WIDTH as f64 - 0.5, (1.0 - v) * height as f64 - 0.5);
+    let mut sum = [0.0; 3];
+    for (row, column) in (0..height).flat_map(|row| (0..WIDTH).map(move |column| (row, column))) {
+        // The hat of a texel, which at the edges goes on.
+        let hat =
+            |at: f64, i: usize, count: usize| (1.0 - (at.clamp(0.0, count as f64 - 1.0) - i as f64).abs()).max(0.0);
+        let weight = hat(x, column, WIDTH) * hat(y, row, height);
+        (0..3).for_each(|c| sum[c] += weight * f64::from(TEXELS[row * WIDTH + column][c]));
+    }
+    sum
+}
+
+const LAMP: &str = "emissive = { radiance = { image = \"lamp.exr\", wrap = \"clamp\", scale = 2 } }";
+
+/// A small white floor below a lamp whose image faces down, seen from above; u runs along +x and v along +z.
+fn floor(model: &str) -> String {
+    format!(
+        "{}up = [0, 0, -1]\n[film]\nwidth = 6\nheight = 6\n[render]\nmodel = {model}\nsamples = 64\n\
+         [material.white]\ndiffuse = {{ reflectance = 0.5 }}\n[material.lamp]\n{LAMP}\n\
+         [[object]]\nshape.quad = {{ center = [0, 0, 0], u = [0, 0, 0.01], v = [0.01, 0, 0] }}\nmaterial = \"white\"\n\
+         [[object]]\nshape.quad = {{ center = [0.2, 1, 0.1], u = [1, 0, 0], v = [0, 0, 0.8] }}\nmaterial = \"lamp\"\n",
+        view([0.0, 0.5, 0.0], [0.0, 0.0, 0.0], 1.0, 6).split_once("[film]").unwrap().0
+    )
+}
+
+/// The film color of the floor's middle: reflectance / pi times the sum of L cos cos / r^2 over the lamp, whose radiance
+/// in each lane is read from its table.
+fn expected(scene: &Scene<Curve>, basis: &Basis) -> [f64; 3] {
+    const STEPS: usize = 300;
+    let emission = scene.lights[0].emission();
+    let (table, response) = (basis.tabulate(Quantity::Emission, emission), basis.response(emission));
+    let draw: Draw<MAX_LANES> = basis.draw(0.5);
+    let mut sum = [0.0; 3];
+    for (i, j) in (0..STEPS).flat_map(|i| (0..STEPS).map(move |j| (i, j))) {
+        let uv = [i, j].map(|i| (i as f64 + 0.5) / STEPS as f64);
+        let point = DVec3::new(0.2 + 2.0 * uv[0] - 1.0, 1.0, 0.1 + 0.8 * (2.0 * uv[1] - 1.0));
+        let form = 1.0 / (point.length_squared() * point.length_squared());
+        let area = 2.0 * 1.6 / (STEPS * STEPS) as f64;
+        let seen = response.sensor(&draw, draw.read_at(&table, uv), false);
+        (0..3).for_each(|c| sum[c] += 0.5 / std::f64::consts::PI * seen[c] * form * area);
+    }
+    sum
+}
+
+#[test]
+fn a_lamp_that_shows_an_image_lights_a_floor_as_its_texels_say() {
+    let folder = tempfile::tempdir().unwrap();
+    write_lamp(folder.path());
+    for model in ["\"rgb\"", "{ bands = 16 }", "\"hero\""] {
+        let scene = scene(folder.path(), &floor(model));
+        let expected = expected(&scene, &plan(&scene).method.basis);
+        let films: Vec<Film> = (0..16)
+            .map(|seed| {
+                let method = Method { seed, transport: SPLITTING, ..plan(&scene).method };
+                render(&World::new(&scene, method), &|_| ()).0
+            })
+            .collect();
+        let mean = Mean::over_seeds(films.iter());
+        let error = mean.worst_error(expected);
+        assert!(error < 0.01, "{model}: noise {error}");
+        // The floor is no point: over 0.01 to each side the form factor changes by 1e-4, in squares of the distance.
+        let bias = 2e-4;
+        for (c, &expected) in expected.iter().enumerate() {
+            let (off, limit) = ((mean.value[c] - expected).abs(), 3.5 * mean.error[c] + bias * expected);
+            assert!(off <= limit, "{model}, channel {c}: {} +- {} for {expected}", mean.value[c], mean.error[c]);
+        }
+    }
+}
+
+/// Every light is aimed at, or one chosen: a lamp of dark and bright images beside each other.
+#[test]
+fn a_checkered_lamp_shines_like_its_two_halves() {
+    let folder = tempfile::tempdir().unwrap();
+    let lit = |lamps: &str| {
+        let text = floor("\"rgb\"").replace(
+            LAMP,
+            "emissive = { radiance = { checker = [0, { rgb = [3, 2, 1] }], repeat = [2, 1], scale = 2 } }",
+        );
+        let text = match lamps {
+            "" => text,
+            _ => text
+                .replace("{ checker = [0, { rgb = [3, 2, 1] }], repeat = [2, 1], scale = 2 }", lamps)
+                .replace("center = [0.2, 1, 0.1], u = [1, 0, 0]", "center = [0.7, 1, 0.1], u = [0.5, 0, 0]"),
+        };
+        let scene = scene(folder.path(), &text);
+        let films: Vec<Film> = (0..16)
+            .map(|seed| {
+                let method = Method { seed, transport: SPLITTING, ..plan(&scene).method };
+                render(&World::new(&scene, method), &|_| ()).0
+            })
+            .collect();
+        Mean::over_seeds(films.iter())
+    };
+    let (checker, half) = (lit(""), lit("{ rgb = [6, 4, 2] }"));
+    for c in 0..3 {
+        let error = (checker.error[c].powi(2) + half.error[c].powi(2)).sqrt();
+        assert!(error < 0.01 * half.value[c], "noise {error}");
+        let off = (checker.value[c] - half.value[c]).abs();
+        assert!(off <= 3.5 * error + 1e-6, "channel {c}: {} for {}", checker.value[c], half.value[c]);
+    }
+}
+
+/// A sphere that was turned and stretched shows its image where the turned point lies.
+#[test]
+fn an_image_turns_with_its_sphere() {
+    let folder = tempfile::tempdir().unwrap();
+    write_lamp(folder.path());
+    for (direction, stretch) in [([0.1, 0.2, 1.0], 1.0), ([-0.7, 0.3, 0.4], 1.0), ([0.6, -0.5, 0.7], 2.5)] {
+        let own = DVec3::from(direction).normalize();
+        // First stretched along y, then turned by a quarter about z: x becomes y, y becomes -x.
+        let stretched = DVec3::new(own.x, stretch * own.y, own.z);
+        let point = DVec3::new(-stretched.y, stretched.x, stretched.z);
+        let camera = point + DVec3::new(point.x / (stretch * stretch), point.y, point.z) * 0.5;
+        let text = format!(
+            "{}filter = \"center\"\n[render]\nmodel = \"rgb\"\n[material.lamp]\n{LAMP}\n\
+             [[object]]\nshape.sphere = {{ center = [0, 0, 0], radius = 1 }}\nmaterial = \"lamp\"\n\
+             transform = [{{ scale = [1, {stretch:?}, 1] }}, {{ rotate = {{ axis = [0, 0, 1], degrees = 90 }} }}]\n",
+            view(camera.into(), point.into(), 1.0, 1)
+        );
+        let found = film(&scene(folder.path(), &text)).pixels[0].rgb;
+        let uv = [0.5 + own.x.atan2(own.z) / std::f64::consts::TAU, 0.5 + own.y.asin() / std::f64::consts::PI];
+        let expected = color(uv).map(|x| 2.0 * x);
+        for c in 0..3 {
+            let off = (f64::from(found[c]) - expected[c]).abs();
+            assert!(off < 1e-5 * (1.0 + expected[c]), "{direction:?}: {found:?} for {expected:?}");
+        }
+    }
+}
