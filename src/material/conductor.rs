@@ -125,7 +125,7 @@ impl Conductor<Table> {
 }
 
 /// The viewer's direction in the surface's frame, on its side where rounding has put it behind.
-fn above(frame: &Frame, wo: DVec3) -> DVec3 {
+pub(super) fn above(frame: &Frame, wo: DVec3) -> DVec3 {
     let local = frame.to_local(wo);
     DVec3 { z: local.z.max(0.0), ..local }
 }

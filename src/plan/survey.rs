@@ -1,6 +1,6 @@
 //! What of a scene decides how its spectra must be carried.
 
-use crate::material::{Conductor, Dielectric, Material};
+use crate::material::{Conductor, Dielectric, Material, Plastic, diffuse_transmittance};
 use crate::scene::Scene;
 use crate::spectrum::{
     Basis, ColorSpace, Curve, CurveKind, Emission, Quantity, Upsampler, normal_reflectance, visible,
@@ -19,6 +19,8 @@ pub(super) struct Survey<'a> {
 pub(super) enum Tint<'a> {
     /// Light leaves a diffuse surface.
     Diffuse(&'a Curve),
+    /// Light leaves the base of a plastic through its coat.
+    Coated(&'a Plastic<Curve>),
     /// A factor on light that a smooth surface reflects or lets through.
     Filter(Quantity, &'a Curve),
     /// A metal's reflection at normal incidence, once or, where it is rough, more often.
@@ -33,17 +35,22 @@ impl<'a> Survey<'a> {
         let lights = different(scene.lights.iter().map(|light| light.emission()), space);
         let mut tints = Vec::new();
         for (id, named) in scene.materials.iter().enumerate() {
-            match &named.material {
-                Material::Diffuse(diffuse) => tints.push(Tint::Diffuse(&diffuse.reflectance)),
-                Material::Thin(thin) => tints.push(Tint::Filter(Quantity::Transmittance, &thin.transmittance)),
-                Material::Mirror(mirror) => tints.push(Tint::Filter(Quantity::Reflectance, &mirror.reflectance)),
-                Material::Conductor(metal) => tints.push(Tint::Metal(metal)),
-                Material::Dielectric(glass) => {
-                    tints.push(Tint::Filter(Quantity::Reflectance, &glass.reflectance));
-                    tints.push(Tint::Filter(Quantity::Transmittance, &glass.transmittance));
-                    tints.push(Tint::Depth(&glass.absorption, thickness(scene, id as u32)));
+            for material in named.material.with_parts() {
+                match material {
+                    Material::Diffuse(diffuse) => tints.push(Tint::Diffuse(&diffuse.reflectance)),
+                    Material::Plastic(plastic) => tints.push(Tint::Coated(plastic)),
+                    Material::Thin(thin) => tints.push(Tint::Filter(Quantity::Transmittance, &thin.transmittance)),
+                    Material::Mirror(mirror) => tints.push(Tint::Filter(Quantity::Reflectance, &mirror.reflectance)),
+                    Material::Conductor(metal) => tints.push(Tint::Metal(metal)),
+                    Material::Dielectric(glass) => {
+                        tints.push(Tint::Filter(Quantity::Reflectance, &glass.reflectance));
+                        tints.push(Tint::Filter(Quantity::Transmittance, &glass.transmittance));
+                        tints.push(Tint::Depth(&glass.absorption, thickness(scene, id as u32)));
+                    }
+                    Material::Mix(mix) => tints.push(Tint::Filter(Quantity::Share, &mix.amount)),
+                    Material::Mask(mask) => tints.push(Tint::Filter(Quantity::Share, &mask.opacity)),
+                    Material::Emissive(_) => {}
                 }
-                Material::Emissive(_) => {}
             }
         }
         Self { color_space: space, upsampler: Upsampler::new(space), lights, tints }
@@ -87,11 +94,11 @@ impl<'a> Survey<'a> {
     }
 
     pub(super) fn scattering(&self, most: usize) -> Vec<&Tint<'a>> {
-        self.farthest_from_gray(most, |tint| matches!(tint, Tint::Diffuse(_)))
+        self.farthest_from_gray(most, |tint| tint.is_scattering())
     }
 
     pub(super) fn smooth(&self, most: usize) -> Vec<&Tint<'a>> {
-        self.farthest_from_gray(most, |tint| !matches!(tint, Tint::Diffuse(_)) && !tint.is_flat())
+        self.farthest_from_gray(most, |tint| !tint.is_scattering() && !tint.is_flat())
     }
 
     fn farthest_from_gray(&self, most: usize, which: impl Fn(&Tint) -> bool) -> Vec<&Tint<'a>> {
@@ -123,7 +130,12 @@ impl Tint<'_> {
         match self {
             Self::Diffuse(curve) | Self::Filter(_, curve) | Self::Depth(curve, _) => vec![curve],
             Self::Metal(metal) => vec![&metal.n, &metal.k],
+            Self::Coated(plastic) => vec![&plastic.reflectance],
         }
+    }
+
+    fn is_scattering(&self) -> bool {
+        matches!(self, Self::Diffuse(_) | Self::Coated(_))
     }
 
     fn is_flat(&self) -> bool {
@@ -150,6 +162,14 @@ impl Tint<'_> {
     fn combine(&self, read: impl Fn(Quantity, &Curve) -> Vec<f64>) -> Vec<f64> {
         match self {
             Self::Diffuse(curve) => read(Quantity::Reflectance, curve),
+            Self::Coated(plastic) => {
+                let index = read(Quantity::Index, &plastic.index);
+                let coated = |(r, n): (f64, f64)| {
+                    let kept = 1.0 - diffuse_transmittance(n) / (n * n);
+                    r * (1.0 - kept) / (1.0 - r * kept)
+                };
+                read(Quantity::Reflectance, &plastic.reflectance).into_iter().zip(index).map(coated).collect()
+            }
             Self::Filter(quantity, curve) => read(*quantity, curve),
             Self::Metal(metal) => {
                 let (n, k) = (read(Quantity::MetalIndex, &metal.n), read(Quantity::MetalExtinction, &metal.k));

@@ -120,7 +120,8 @@ impl Compiler<'_> {
             objects.push(Object { name, shape, material: material as u32, light: None });
         }
         for name in description.material.keys() {
-            if !materials.iter().any(|material| &material.name == name) {
+            let used = |used: &NamedMaterial<Curve>| &used.name == name || used.material.is_made_of(name);
+            if !materials.iter().any(used) {
                 self.warnings.push(format!("material {name} is not used by any object"));
             }
         }

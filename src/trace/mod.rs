@@ -11,6 +11,7 @@
 
 mod choice;
 mod direct;
+mod holes;
 mod media;
 mod method;
 mod path;
@@ -18,6 +19,7 @@ mod probe;
 
 mod render;
 mod spread;
+mod tally;
 mod tracer;
 mod width;
 mod world;
