@@ -16,7 +16,7 @@ pub struct Coat {
 }
 
 /// Rows of the table on each side of a relative index of 1.
-const SIDE: usize = 38;
+const SIDE: usize = 76;
 const ROWS: usize = 2 * SIDE + 1;
 /// Square root of the logarithm of a relative index of 10.1, more than any two indices of a scene have.
 const WIDEST: f64 = 1.52;

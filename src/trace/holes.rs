@@ -11,7 +11,7 @@ use crate::spectrum::{Draw, Lanes};
 /// Use of the random numbers of a ray from the camera that meets a surface with holes.
 const COVER: u32 = 4;
 
-/// The share of each lane of a path that passes straight on where it meets a surface; none if that has no holes.
+/// The share of each lane of a path that passes straight on where it meets a surface; none if nothing does.
 pub(super) fn passing<const N: usize>(
     world: &World,
     draw: &Draw<N>,
@@ -23,7 +23,8 @@ pub(super) fn passing<const N: usize>(
         return None;
     }
     let present = path.throughput.present();
-    passing_at(world, draw, (&path.ray, present), path.media.inside(world), (hit, point))
+    let share = passing_at(world, draw, (&path.ray, present), path.media.inside(world), (hit, point))?;
+    (!(share * present).is_zero()).then_some(share)
 }
 
 /// Whether a ray from the camera counts as having met a surface, of which a share may let it pass.
