@@ -87,19 +87,22 @@ def inside_lamp(name, material, expected, size):
 def white_plastic(name, body, roughness, index, size):
     """A white base gives back all that its clear coat lets in."""
     plastic = {"plastic": {"reflectance": 1, "index": index, "roughness": roughness}}
-    view = scene({"white": plastic}, [("white", body)], [WHITE_SKY], eye=(1.7, 1.3, 3.1), fov=38, size=size, samples=256)
-    return Row(f"white plastic {name} of roughness {roughness}, {label(index)} under a sky of 1", [view], 1.0, every_pixel=False)
+    looking = {"eye": (1.7, 1.3, 3.1), "fov": 38, "size": size, "samples": 256}
+    view = scene({"white": plastic}, [("white", body)], [WHITE_SKY], **looking)
+    what = f"white plastic {name} of roughness {roughness}, {label(index)} under a sky of 1"
+    return Row(what, [view], 1.0, every_pixel=False)
 
 
 def plastic_in_lamp(size):
-    """A smooth coat over a base of reflectance r in an even sky: F + (1 - F) r (1 - R) / (1 - r R), where R is the coat's
-    reflectance of diffuse light from inside (Duntley 1942); seen along the normal."""
+    """A smooth coat over a base of reflectance r in an even sky shows F + (1 - F) r (1 - R) / (1 - r R), where R is
+    what the coat reflects of diffuse light from inside (Duntley 1942); seen along the normal."""
     index, reflectance = 1.5, 0.5
     kept = optics.inner_diffuse_reflectance(index)
     fresnel = ((index - 1) / (index + 1)) ** 2
     seen = fresnel + (1 - fresnel) * reflectance * (1 - kept) / (1 - reflectance * kept)
     materials = {"paint": {"plastic": {"reflectance": reflectance}}}
-    view = scene(materials, [("paint", plane((0, 0, 0), (0, 1, 0)))], [WHITE_SKY], eye=(0, 3, 0), up=(0, 0, 1), size=size, samples=256)
+    floor = [("paint", plane((0, 0, 0), (0, 1, 0)))]
+    view = scene(materials, floor, [WHITE_SKY], eye=(0, 3, 0), up=(0, 0, 1), size=size, samples=256)
     return Row("plastic of reflectance 0.5 under a sky of 1, along its normal", [view], seen)
 
 

@@ -25,15 +25,16 @@ def fresnel(index, degrees):
 
 
 def inner_diffuse_reflectance(index):
-    """Reflectance for diffuse light of the boundary between `index` and air, from inside: 1 - T / index^2, where T is what
-    of diffuse light gets in; the integral over sin^2 = 1 - cos^2, with cos = v^3 dense near grazing angles.
+    """Share of diffuse light inside `index` that its boundary to air reflects: 1 - T / index^2, where T of the diffuse
+    light outside gets in. Places of the sum are cosines v^3, dense near grazing angles.
 
     Duntley 1942, The Optical Properties of Diffusing Materials.
     """
     v = (np.arange(20000) + 0.5) / 20000
     cosine = v**3
     cosine_t = np.sqrt(1 - (1 - cosine**2) / index**2)
-    s, p = (cosine - index * cosine_t) / (cosine + index * cosine_t), (index * cosine - cosine_t) / (index * cosine + cosine_t)
+    s = (cosine - index * cosine_t) / (cosine + index * cosine_t)
+    p = (index * cosine - cosine_t) / (index * cosine + cosine_t)
     entering = np.mean(6 * v**5 * (1 - (s**2 + p**2) / 2))
     return 1 - entering / index**2
 
