@@ -1,7 +1,6 @@
 use std::array;
 use std::sync::{Arc, OnceLock};
 
-use super::roughness::{AROUND, STEPS, UP, between};
 use super::{Interface, RoughSurface, Roughness, reflect};
 use crate::math::DVec3;
 
@@ -21,10 +20,16 @@ const ROWS: usize = 2 * SIDE + 1;
 /// Square root of the logarithm of a relative index of 10.1, more than any two indices of a scene have.
 const WIDEST: f64 = 1.52;
 
+/// Steps of a row over the cosine.
+const STEPS: usize = 64;
+/// Steps of the quadrature over the visible facets: around the normal's half turn, and up.
+const AROUND: usize = 48;
+const UP: usize = 96;
+
 /// What a rough surface reflects once, beyond a smooth one of the same index.
 #[derive(Clone, Debug)]
 struct Row {
-    /// At the places of the surface's own tables.
+    /// At places evenly spaced in 0..1.
     more: Vec<f64>,
     /// Of light from all around.
     mean: f64,
@@ -86,8 +91,8 @@ impl Coat {
         let again = surface.reflected_again(1.0 - around);
         let rows = self.rows(surface, m);
         let rough = |smooth: f64, cos: f64| {
-            let place = surface.place(cos);
-            let more: f64 = rows.iter().map(|(part, row)| part * between(&row.more, place)).sum();
+            let place = Places::new(surface).of(cos);
+            let more: f64 = rows.iter().map(|(part, row)| part * row.at(place)).sum();
             (smooth - more - again * surface.blocked(cos)).clamp(0.0, 1.0)
         };
         let more: f64 = rows.iter().map(|(part, row)| part * row.mean).sum();
@@ -118,14 +123,59 @@ impl Coat {
 
 impl Row {
     fn new(surface: &RoughSurface, m: f64) -> Self {
-        let mut more = vec![0.0; STEPS + 1];
+        let (places, mut more) = (Places::new(surface), vec![0.0; STEPS + 1]);
         for (step, more) in more.iter_mut().enumerate() {
             // At the very horizon a rough surface still lets light in, which a smooth one does not.
-            let z = surface.cosine(step as f64 / STEPS as f64).max(HORIZON);
+            let z = places.cosine(step as f64 / STEPS as f64).max(HORIZON);
             *more = reflected_once(surface, m, z) - (1.0 - transmittance(1.0, m, z));
         }
-        let mean = surface.mean_of(&more);
-        Self { more, mean }
+        Self { mean: places.mean(&more), more }
+    }
+
+    /// The difference at a place, linear between those of the row.
+    fn at(&self, place: f64) -> f64 {
+        let place = place * STEPS as f64;
+        let step = (place as usize).min(STEPS - 1);
+        self.more[step] + (place - step as f64) * (self.more[step + 1] - self.more[step])
+    }
+}
+
+/// Where a row has its places w: at the cosines alpha ((1 + 1 / alpha)^(w w) - 1), as [`RoughSurface`] has its own.
+struct Places {
+    alpha: f64,
+    /// ln(1 + 1 / alpha).
+    span: f64,
+}
+
+impl Places {
+    fn new(surface: &RoughSurface) -> Self {
+        let alpha = surface.facets().alpha();
+        Self { alpha, span: libm::log1p(1.0 / alpha) }
+    }
+
+    fn cosine(&self, place: f64) -> f64 {
+        (self.alpha * libm::expm1(self.span * place * place)).min(1.0)
+    }
+
+    fn of(&self, cos: f64) -> f64 {
+        (libm::log1p(cos / self.alpha) / self.span).clamp(0.0, 1.0).sqrt()
+    }
+
+    /// Twice the integral of a row times cosine over the cosine, exact for its linear pieces but for 1e-8.
+    fn mean(&self, row: &[f64]) -> f64 {
+        /// Places and half weights of the Gauss-Legendre rule of order 6.
+        const GAUSS: [[f64; 2]; 3] =
+            [[0.112_701_665_379_258_3, 5.0 / 18.0], [0.5, 8.0 / 18.0], [0.887_298_334_620_741_7, 5.0 / 18.0]];
+        let mut sum = 0.0;
+        for (step, pair) in row.windows(2).enumerate() {
+            for [x, weight] in GAUSS {
+                let place = (step as f64 + x) / STEPS as f64;
+                let z = self.cosine(place);
+                let slope = 2.0 * self.span * place * (z + self.alpha);
+                sum += weight * (pair[0] + x * (pair[1] - pair[0])) * 2.0 * z * slope;
+            }
+        }
+        sum / STEPS as f64
     }
 }
 

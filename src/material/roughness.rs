@@ -78,10 +78,10 @@ pub struct RoughReflection {
 }
 
 /// Steps of the table over the cosine.
-pub(super) const STEPS: usize = 64;
+const STEPS: usize = 64;
 /// Steps of the quadrature over the visible facets: around the normal's half turn, and up.
-pub(super) const AROUND: usize = 48;
-pub(super) const UP: usize = 96;
+const AROUND: usize = 48;
+const UP: usize = 96;
 
 impl RoughSurface {
     fn new(alpha: f64) -> Self {
@@ -98,17 +98,17 @@ impl RoughSurface {
         }
         let all = surface.below[STEPS];
         surface.lobe.iter_mut().chain(&mut surface.below).for_each(|x| *x /= all);
-        surface.mean_blocked = surface.mean_of(&surface.blocked);
+        surface.mean_blocked = surface.mean();
         surface
     }
 
     /// The cosine at a place of the tables.
-    pub(super) fn cosine(&self, place: f64) -> f64 {
+    fn cosine(&self, place: f64) -> f64 {
         (self.facets.alpha() * libm::expm1(self.span * place * place)).min(1.0)
     }
 
     /// The place of a cosine.
-    pub(super) fn place(&self, z: f64) -> f64 {
+    fn place(&self, z: f64) -> f64 {
         (libm::log1p(z / self.facets.alpha()) / self.span).clamp(0.0, 1.0).sqrt()
     }
 
@@ -133,13 +133,13 @@ impl RoughSurface {
         sum / (UP * AROUND) as f64
     }
 
-    /// Twice the integral of a table times cosine over the cosine, exact for its linear pieces but for 1e-8.
-    pub(super) fn mean_of(&self, table: &[f64]) -> f64 {
+    /// Twice the integral of the table times cosine over the cosine, exact for its linear pieces but for 1e-8.
+    fn mean(&self) -> f64 {
         /// Places and half weights of the Gauss-Legendre rule of order 6.
         const GAUSS: [[f64; 2]; 3] =
             [[0.112_701_665_379_258_3, 5.0 / 18.0], [0.5, 8.0 / 18.0], [0.887_298_334_620_741_7, 5.0 / 18.0]];
         let mut sum = 0.0;
-        for (step, pair) in table.windows(2).enumerate() {
+        for (step, pair) in self.blocked.windows(2).enumerate() {
             for [x, weight] in GAUSS {
                 let place = (step as f64 + x) / STEPS as f64;
                 let z = self.cosine(place);
@@ -218,7 +218,7 @@ impl RoughSurface {
 }
 
 /// A table, linear between its places.
-pub(super) fn between(table: &[f64], place: f64) -> f64 {
+fn between(table: &[f64], place: f64) -> f64 {
     let place = place * STEPS as f64;
     let step = (place as usize).min(STEPS - 1);
     table[step] + (place - step as f64) * (table[step + 1] - table[step])
