@@ -84,6 +84,40 @@ def inside_lamp(name, material, expected, size):
     return Row(f"{name} in a glowing cube", [view], expected)
 
 
+def white_plastic(name, body, roughness, index, size):
+    """A white base gives back all that its clear coat lets in."""
+    plastic = {"plastic": {"reflectance": 1, "index": index, "roughness": roughness}}
+    looking = {"eye": (1.7, 1.3, 3.1), "fov": 38, "size": size, "samples": 256}
+    view = scene({"white": plastic}, [("white", body)], [WHITE_SKY], **looking)
+    what = f"white plastic {name} of roughness {roughness}, {label(index)} under a sky of 1"
+    return Row(what, [view], 1.0, every_pixel=False)
+
+
+def plastic_in_lamp(size):
+    """A smooth coat over a base of reflectance r in an even sky shows F + (1 - F) r (1 - R) / (1 - r R), where R is
+    what the coat reflects of diffuse light from inside (Duntley 1942); seen along the normal."""
+    index, reflectance = 1.5, 0.5
+    kept = optics.inner_diffuse_reflectance(index)
+    fresnel = ((index - 1) / (index + 1)) ** 2
+    seen = fresnel + (1 - fresnel) * reflectance * (1 - kept) / (1 - reflectance * kept)
+    materials = {"paint": {"plastic": {"reflectance": reflectance}}}
+    floor = [("paint", plane((0, 0, 0), (0, 1, 0)))]
+    view = scene(materials, floor, [WHITE_SKY], eye=(0, 3, 0), up=(0, 0, 1), size=size, samples=256)
+    return Row("plastic of reflectance 0.5 under a sky of 1, along its normal", [view], seen)
+
+
+def lossless_mix(name, body, size):
+    """White and a perfect mirror on shares of one surface, and holes in a mirror."""
+    materials = {
+        "white": {"diffuse": {"reflectance": 1}},
+        "mirror": {"mirror": {"reflectance": 1}},
+        "both": {"mix": {"materials": ["white", "mirror"], "amount": rgb((0.2, 0.5, 0.9))}},
+        "net": {"mask": {"material": "both", "opacity": 0.6}},
+    }
+    view = scene(materials, [("net", body)], [WHITE_SKY], eye=(1.7, 1.3, 3.1), fov=38, size=size, samples=256)
+    return Row(f"mask over a mix of white and mirror, {name} under a sky of 1", [view], 1.0, every_pixel=False)
+
+
 def diffuse(name, body, size):
     """A convex Lambertian body under a uniform sky of 1 shows its reflectance."""
     reflectance = (0.5, 0.2, 0.9)
@@ -186,6 +220,10 @@ def rows(quick):
     roughnesses = [0.4] if quick else [0.05, 0.2, 0.4, 0.7, 1.0]
     table += [rough_metal(*body, roughness, size) for body in BODIES.items() for roughness in roughnesses]
     table += [rough_glass(*body, 1.5, roughness, size) for body in BODIES.items() for roughness in roughnesses[:3]]
+    coats = [(0.4, rgb(SPREAD))] if quick else [(0, 1.5), (0.1, rgb(SPREAD)), (0.4, rgb(SPREAD)), (1, rgb(SPREAD))]
+    table += [white_plastic(*body, *coat, size) for body in BODIES.items() for coat in coats]
+    table += [plastic_in_lamp(size)]
+    table += [lossless_mix(name, body, size) for name, body in BODIES.items()]
     table += [diffuse(name, body, size) for name, body in BODIES.items()]
     table += [inside_lamp("diffuse ball", {"diffuse": {"reflectance": 0.5}}, 0.5, size)]
     table += [inside_lamp("glass ball", {"dielectric": {"index": rgb(SPREAD)}}, 1.0, size)]

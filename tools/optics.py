@@ -24,6 +24,21 @@ def fresnel(index, degrees):
     return (np.abs(s) ** 2 + np.abs(p) ** 2) / 2
 
 
+def inner_diffuse_reflectance(index):
+    """Share of diffuse light inside `index` that its boundary to air reflects: 1 - T / index^2, where T of the diffuse
+    light outside gets in. Places of the sum are cosines v^3, dense near grazing angles.
+
+    Duntley 1942, The Optical Properties of Diffusing Materials.
+    """
+    v = (np.arange(20000) + 0.5) / 20000
+    cosine = v**3
+    cosine_t = np.sqrt(1 - (1 - cosine**2) / index**2)
+    s = (cosine - index * cosine_t) / (cosine + index * cosine_t)
+    p = (index * cosine - cosine_t) / (index * cosine + cosine_t)
+    entering = np.mean(6 * v**5 * (1 - (s**2 + p**2) / 2))
+    return 1 - entering / index**2
+
+
 def slab(index, degrees, optical_depth=0):
     """Reflectance and transmittance of a plate in air, all orders summed: the geometric series of Stokes (1862).
 

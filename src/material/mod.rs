@@ -4,25 +4,35 @@
 //! the tracer reads; [`Material::map`] is the bridge. A material answers an [`Arrival`] with [`Branch`]es.
 
 mod by_cosine;
+mod coat;
 mod conductor;
 mod dielectric;
 mod diffuse;
 mod emissive;
 mod facets;
 mod fresnel;
+mod mask;
 mod mirror;
+mod mix;
+mod part;
+mod plastic;
 mod rough_dielectric;
 mod rough_interface;
 mod roughness;
 mod thin;
 
+pub use coat::{Coat, diffuse_transmittance};
 pub use conductor::Conductor;
 pub use dielectric::Dielectric;
 pub use diffuse::Diffuse;
 pub use emissive::Emissive;
 pub use facets::Facets;
 pub use fresnel::{Interface, conductor_reflectance};
+pub use mask::Mask;
 pub use mirror::{Mirror, reflect};
+pub use mix::Mix;
+pub use part::Part;
+pub use plastic::Plastic;
 pub use rough_interface::{Flow, RoughInterface, Side, Sides, Ways};
 pub use roughness::{RoughReflection, RoughSurface, Roughness};
 pub use thin::Thin;
@@ -49,6 +59,12 @@ pub enum Material<S> {
     Thin(Thin<S>),
     /// Shines and absorbs.
     Emissive(Emissive<S>),
+    /// Scatters evenly under a clear coat.
+    Plastic(Plastic<S>),
+    /// Does what two other materials do, each on a share of the surface.
+    Mix(Mix<S>),
+    /// Does what another material does, and lets the rest straight through.
+    Mask(Mask<S>),
 }
 
 /// What a material may know of the light that arrives, followed backward from the viewer.
@@ -126,10 +142,13 @@ impl<S> Material<S> {
             Self::Conductor(conductor) => Material::Conductor(conductor.map(convert)),
             Self::Dielectric(dielectric) => Material::Dielectric(dielectric.map(convert)),
             Self::Emissive(emissive) => Material::Emissive(emissive.map(convert)),
+            Self::Plastic(plastic) => Material::Plastic(plastic.map(convert)),
+            Self::Mix(mix) => Material::Mix(mix.map(convert)),
+            Self::Mask(mask) => Material::Mask(mask.map(convert)),
         }
     }
 
-    /// Calls `visit` with every spectrum, what it describes and its key in the scene file.
+    /// Calls `visit` with every spectrum but those of parts, what it describes and its key in the scene file.
     pub fn each<E>(&self, mut visit: impl FnMut(Quantity, &'static str, &S) -> Result<(), E>) -> Result<(), E> {
         use Quantity::*;
         match self {
@@ -151,6 +170,12 @@ impl<S> Material<S> {
                 visit(Absorption, "absorption", &dielectric.absorption)
             }
             Self::Emissive(emissive) => visit(Emission, "radiance", &emissive.radiance),
+            Self::Plastic(plastic) => {
+                visit(Index, "index", &plastic.index)?;
+                visit(Reflectance, "reflectance", &plastic.reflectance)
+            }
+            Self::Mix(mix) => visit(Share, "amount", &mix.amount),
+            Self::Mask(mask) => visit(Share, "opacity", &mask.opacity),
         }
     }
 
@@ -163,6 +188,9 @@ impl<S> Material<S> {
             Self::Conductor(_) => "conductor",
             Self::Dielectric(_) => "dielectric",
             Self::Emissive(_) => "emissive",
+            Self::Plastic(_) => "plastic",
+            Self::Mix(_) => "mix",
+            Self::Mask(_) => "mask",
         }
     }
 
@@ -180,6 +208,8 @@ impl<S> Material<S> {
             Self::Diffuse(_) => true,
             Self::Conductor(conductor) => !conductor.roughness.is_smooth(),
             Self::Dielectric(dielectric) => !dielectric.roughness.is_smooth(),
+            Self::Plastic(_) => true,
+            Self::Mix(_) | Self::Mask(_) => self.parts().iter().any(|part| part.material().scatters_widely()),
             _ => false,
         }
     }
@@ -189,9 +219,17 @@ impl<S> Material<S> {
         matches!(self, Self::Dielectric(dielectric) if !dielectric.roughness.is_smooth())
     }
 
-    /// Whether light leaves with no memory of where it came from: `diffuse_bounces` counts these surfaces.
+    /// Whether what leaves in every direction has no memory of where it came from: `diffuse_bounces` counts it.
     pub fn is_diffuse(&self) -> bool {
-        matches!(self, Self::Diffuse(_))
+        match self {
+            Self::Diffuse(_) => true,
+            Self::Plastic(plastic) => plastic.coat.roughness().is_smooth(),
+            Self::Mix(_) | Self::Mask(_) => {
+                let mut wide = self.parts().iter().map(Part::material).filter(|part| part.scatters_widely()).peekable();
+                wide.peek().is_some() && wide.all(Self::is_diffuse)
+            }
+            _ => false,
+        }
     }
 
     /// How rough it is, where it can be.
@@ -199,6 +237,7 @@ impl<S> Material<S> {
         match self {
             Self::Conductor(conductor) => Some(conductor.roughness.value()),
             Self::Dielectric(dielectric) => Some(dielectric.roughness.value()),
+            Self::Plastic(plastic) => Some(plastic.coat.roughness().value()),
             _ => None,
         }
     }
@@ -207,7 +246,8 @@ impl<S> Material<S> {
 impl Material<Curve> {
     /// Whether any of its spectra is different at different places of a surface.
     pub fn varies(&self) -> bool {
-        self.each(|_, _, curve| if curve.varies() { Err(()) } else { Ok(()) }).is_err()
+        let varies = |part: &Self| part.each(|_, _, curve| if curve.varies() { Err(()) } else { Ok(()) }).is_err();
+        self.with_parts().into_iter().any(varies)
     }
 }
 
@@ -221,11 +261,14 @@ impl Material<Table> {
             Self::Conductor(conductor) => branches.extend(conductor.scatter(arrival, u)),
             Self::Dielectric(dielectric) => dielectric.scatter(arrival, u, branches),
             Self::Emissive(_) => {}
+            Self::Plastic(plastic) => plastic.scatter(arrival, u, branches),
+            Self::Mix(mix) => mix.scatter(arrival, u, branches),
+            Self::Mask(mask) => mask.scatter(arrival, u, branches),
         }
     }
 
     /// Whether lanes part that cross the surface.
-    pub fn parts<const N: usize>(&self, arrival: &Arrival<N>) -> bool {
+    pub fn parts_lanes<const N: usize>(&self, arrival: &Arrival<N>) -> bool {
         match self {
             Self::Dielectric(dielectric) => dielectric.parts(arrival),
             _ => arrival.parts(),
@@ -240,6 +283,9 @@ impl Material<Table> {
             Self::Diffuse(diffuse) => diffuse.evaluate(arrival, wi),
             Self::Conductor(conductor) => conductor.evaluate(arrival, wi),
             Self::Dielectric(dielectric) => dielectric.evaluate(arrival, wi),
+            Self::Plastic(plastic) => plastic.evaluate(arrival, wi),
+            Self::Mix(mix) => mix.evaluate(arrival, wi),
+            Self::Mask(mask) => mask.evaluate(arrival, wi),
             _ => None,
         }
     }

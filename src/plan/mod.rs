@@ -6,7 +6,6 @@ mod survey;
 
 use crate::film::Filter;
 use crate::light::Light;
-use crate::material::Material;
 use crate::scene::{Object, Scene};
 use crate::spectrum::{Basis, Curve};
 use crate::trace::{Method, Transport, World, probe};
@@ -118,12 +117,7 @@ fn lights(scene: &Scene<Curve>) -> Vec<String> {
         [true, true] => Some("diffuse or rough"),
     };
     let points = scene.lights.iter().filter(|light| !light.is_extended()).count();
-    let bends = scene.materials.iter().find(|m| match &m.material {
-        Material::Mirror(_) | Material::Thin(_) => true,
-        Material::Dielectric(glass) => glass.roughness.is_smooth(),
-        Material::Conductor(metal) => metal.roughness.is_smooth(),
-        _ => false,
-    });
+    let bends = scene.materials.iter().find(|m| m.material.has_single_directions());
     if let (Some(lit), true, Some(bends)) = (lit, points > 0, bends) {
         lines.push(format!(
             "left out: light of point lights that reaches a {lit} surface by way of smooth ones ({})",

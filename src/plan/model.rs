@@ -154,9 +154,10 @@ fn desaturated(scene: &Scene<Curve>, basis: &Basis) -> Option<String> {
         return None;
     }
     let mut count = 0;
-    for named in &scene.materials {
-        let counted: Result<(), ()> = named.material.each(|quantity, _, curve| {
-            if let (CurveKind::Rgb(rgb), Quantity::Reflectance | Quantity::Transmittance) = (&curve.kind, quantity) {
+    for material in scene.materials.iter().flat_map(|named| named.material.with_parts()) {
+        let counted: Result<(), ()> = material.each(|quantity, _, curve| {
+            let is_color = matches!(quantity, Quantity::Reflectance | Quantity::Transmittance | Quantity::Share);
+            if let (CurveKind::Rgb(rgb), true) = (&curve.kind, is_color) {
                 count += u32::from(basis.upsampler().fit(rgb.map(|x| x * curve.scale)).saturation < 1.0);
             }
             Ok(())

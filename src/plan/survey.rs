@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use crate::material::{Conductor, Dielectric, Material};
+use crate::material::{Conductor, Dielectric, Material, Plastic, diffuse_transmittance};
 use crate::scene::Scene;
 use crate::spectrum::{
     Basis, ColorSpace, Curve, CurveKind, Emission, Quantity, Upsampler, normal_reflectance, visible,
@@ -21,6 +21,8 @@ pub(super) struct Survey<'a> {
 pub(super) enum Tint<'a> {
     /// Light leaves a diffuse surface.
     Diffuse(Cow<'a, Curve>),
+    /// Light leaves the base of a plastic, of some reflectance, through its coat.
+    Coated(&'a Plastic<Curve>, Cow<'a, Curve>),
     /// A factor on light that a smooth surface reflects or lets through.
     Filter(Quantity, Cow<'a, Curve>),
     /// A metal's reflection at normal incidence, once or, where it is rough, more often.
@@ -37,19 +39,27 @@ impl<'a> Survey<'a> {
         let filters =
             |quantity, curve: &'a Curve| curve.shades().into_iter().map(move |shade| Tint::Filter(quantity, shade));
         for (id, named) in scene.materials.iter().enumerate() {
-            match &named.material {
-                Material::Diffuse(diffuse) => {
-                    tints.extend(diffuse.reflectance.shades().into_iter().map(Tint::Diffuse));
+            for material in named.material.with_parts() {
+                match material {
+                    Material::Diffuse(diffuse) => {
+                        tints.extend(diffuse.reflectance.shades().into_iter().map(Tint::Diffuse));
+                    }
+                    Material::Plastic(plastic) => {
+                        let shades = plastic.reflectance.shades().into_iter();
+                        tints.extend(shades.map(|shade| Tint::Coated(plastic, shade)));
+                    }
+                    Material::Thin(thin) => tints.extend(filters(Quantity::Transmittance, &thin.transmittance)),
+                    Material::Mirror(mirror) => tints.extend(filters(Quantity::Reflectance, &mirror.reflectance)),
+                    Material::Conductor(metal) => tints.push(Tint::Metal(metal)),
+                    Material::Dielectric(glass) => {
+                        tints.extend(filters(Quantity::Reflectance, &glass.reflectance));
+                        tints.extend(filters(Quantity::Transmittance, &glass.transmittance));
+                        tints.push(Tint::Depth(&glass.absorption, thickness(scene, id as u32)));
+                    }
+                    Material::Mix(mix) => tints.extend(filters(Quantity::Share, &mix.amount)),
+                    Material::Mask(mask) => tints.extend(filters(Quantity::Share, &mask.opacity)),
+                    Material::Emissive(lamp) => tints.extend(shown(&lamp.radiance)),
                 }
-                Material::Thin(thin) => tints.extend(filters(Quantity::Transmittance, &thin.transmittance)),
-                Material::Mirror(mirror) => tints.extend(filters(Quantity::Reflectance, &mirror.reflectance)),
-                Material::Conductor(metal) => tints.push(Tint::Metal(metal)),
-                Material::Dielectric(glass) => {
-                    tints.extend(filters(Quantity::Reflectance, &glass.reflectance));
-                    tints.extend(filters(Quantity::Transmittance, &glass.transmittance));
-                    tints.push(Tint::Depth(&glass.absorption, thickness(scene, id as u32)));
-                }
-                Material::Emissive(lamp) => tints.extend(shown(&lamp.radiance)),
             }
         }
         Self { color_space: space, upsampler: Upsampler::new(space), lights, tints }
@@ -93,11 +103,11 @@ impl<'a> Survey<'a> {
     }
 
     pub(super) fn scattering(&self, most: usize) -> Vec<&Tint<'a>> {
-        self.farthest_from_gray(most, |tint| matches!(tint, Tint::Diffuse(_)))
+        self.farthest_from_gray(most, |tint| tint.is_scattering())
     }
 
     pub(super) fn smooth(&self, most: usize) -> Vec<&Tint<'a>> {
-        self.farthest_from_gray(most, |tint| !matches!(tint, Tint::Diffuse(_)) && !tint.is_flat())
+        self.farthest_from_gray(most, |tint| !tint.is_scattering() && !tint.is_flat())
     }
 
     fn farthest_from_gray(&self, most: usize, which: impl Fn(&Tint) -> bool) -> Vec<&Tint<'a>> {
@@ -130,7 +140,12 @@ impl Tint<'_> {
             Self::Diffuse(curve) | Self::Filter(_, curve) => vec![curve],
             Self::Depth(curve, _) => vec![curve],
             Self::Metal(metal) => vec![&metal.n, &metal.k],
+            Self::Coated(_, reflectance) => vec![reflectance],
         }
+    }
+
+    fn is_scattering(&self) -> bool {
+        matches!(self, Self::Diffuse(_) | Self::Coated(..))
     }
 
     fn is_flat(&self) -> bool {
@@ -157,6 +172,14 @@ impl Tint<'_> {
     fn combine(&self, read: impl Fn(Quantity, &Curve) -> Vec<f64>) -> Vec<f64> {
         match self {
             Self::Diffuse(curve) => read(Quantity::Reflectance, curve),
+            Self::Coated(plastic, reflectance) => {
+                let index = read(Quantity::Index, &plastic.index);
+                let coated = |(r, n): (f64, f64)| {
+                    let kept = 1.0 - diffuse_transmittance(n) / (n * n);
+                    r * (1.0 - kept) / (1.0 - r * kept)
+                };
+                read(Quantity::Reflectance, reflectance).into_iter().zip(index).map(coated).collect()
+            }
             Self::Filter(quantity, curve) => read(*quantity, curve),
             Self::Metal(metal) => {
                 let (n, k) = (read(Quantity::MetalIndex, &metal.n), read(Quantity::MetalExtinction, &metal.k));

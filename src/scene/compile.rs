@@ -137,7 +137,8 @@ impl Compiler<'_> {
             }
         }
         for name in description.material.keys() {
-            if !materials.iter().any(|material| &material.name == name) {
+            let used = |used: &NamedMaterial<Curve>| &used.name == name || used.material.is_made_of(name);
+            if !materials.iter().any(used) {
                 self.warnings.push(format!("material {name} is not used by any object"));
             }
         }

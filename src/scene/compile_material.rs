@@ -6,7 +6,7 @@ use crate::error::Result;
 use crate::spectrum::{Curve, CurveKind, Quantity};
 
 impl Compiler<'_> {
-    /// Every material with its spectra checked.
+    /// Every material with its spectra checked, and with those it is made of.
     pub(super) fn materials(&mut self, texts: &Materials) -> Result<Materials> {
         let mut materials = Materials::new();
         for (name, material) in texts {
@@ -28,6 +28,6 @@ impl Compiler<'_> {
             let next = &mut |_, _: &Curve| curves.next().expect("each and map visit the same spectra");
             materials.insert(name.clone(), material.map(next));
         }
-        Ok(materials)
+        self.with_parts(&materials)
     }
 }

@@ -10,6 +10,7 @@ mod compile_image;
 mod compile_light;
 mod compile_material;
 mod compile_mesh;
+mod compile_parts;
 mod compile_shape;
 mod compile_view;
 mod contact;
@@ -175,8 +176,17 @@ impl<S> Scene<S> {
 
     /// The nearest surface along a ray; of equally near ones, that of the object listed first.
     pub fn intersect(&self, ray: &Ray) -> Option<Hit> {
+        self.nearest(ray, f64::INFINITY, |_| true)
+    }
+
+    /// The nearest surface along a ray up to a distance, of those objects that count.
+    #[inline]
+    pub fn nearest(&self, ray: &Ray, distance: f64, counts: impl Fn(u32) -> bool) -> Option<Hit> {
         let mut nearest: Option<Hit> = None;
-        self.index.nearest(ray, f64::INFINITY, |object, limit| {
+        self.index.nearest(ray, distance, |object, limit| {
+            if !counts(object) {
+                return limit;
+            }
             if let Some(crossing) = self.objects[object as usize].shape.intersect(ray, limit) {
                 if nearest.is_none_or(|n| crossing.t < n.crossing.t || object < n.object) {
                     nearest = Some(Hit { object, crossing });
@@ -188,12 +198,21 @@ impl<S> Scene<S> {
         nearest
     }
 
-    /// Whether anything lies before a light at `distance`; the light's own object does not hide it.
+    /// Whether anything that counts lies before a light at `distance`; the light's own object does not hide it.
     ///
     /// `hider` remembers what hid a light last: it is asked first, for it often hides the next one as well.
-    pub fn is_hidden(&self, ray: &Ray, distance: f64, light: Option<u32>, hider: &Cell<u32>) -> bool {
+    #[inline]
+    pub fn is_hidden(
+        &self,
+        ray: &Ray,
+        distance: f64,
+        light: Option<u32>,
+        hider: &Cell<u32>,
+        counts: impl Fn(u32) -> bool,
+    ) -> bool {
         // An object listed after the light's own does not hide it by an equal distance.
         let hides = |object: u32| match light {
+            _ if !counts(object) => false,
             Some(light) if light == object => false,
             Some(light) if light < object => self.is_crossed(object, ray, distance.next_down()),
             _ => self.is_crossed(object, ray, distance),

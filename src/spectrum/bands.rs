@@ -53,7 +53,9 @@ impl Bands {
     pub(super) fn filter(&self, quantity: Quantity, curve: &Curve, value: &dyn Fn(f64) -> f64) -> [f64; 3] {
         let named = matches!(curve.kind, CurveKind::Name(_));
         match quantity {
-            Quantity::Reflectance | Quantity::Transmittance => self.mean(value).map(|x| x.clamp(0.0, 1.0)),
+            Quantity::Reflectance | Quantity::Transmittance | Quantity::Share => {
+                self.mean(value).map(|x| x.clamp(0.0, 1.0))
+            }
             Quantity::MetalIndex => self.mean(value).map(|x| x.max(1e-3)),
             Quantity::MetalExtinction if named => {
                 let index = curve.plain_reader(Quantity::MetalIndex);

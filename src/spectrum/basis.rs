@@ -193,12 +193,13 @@ impl Basis {
         };
         let read = |nm: &f64| reader(*nm);
         match (&self.lanes, quantity) {
-            (LaneKind::Rgb, Quantity::Reflectance | Quantity::Transmittance | Quantity::Absorption) => {
-                match curve.kind.rgb() {
-                    Some(rgb) => Table::new(rgb.map(|x| x * curve.scale)),
-                    None => Table::new(self.wavelengths_nm.iter().map(read).collect::<Vec<_>>()),
-                }
-            }
+            (
+                LaneKind::Rgb,
+                Quantity::Reflectance | Quantity::Transmittance | Quantity::Share | Quantity::Absorption,
+            ) => match curve.kind.rgb() {
+                Some(rgb) => Table::new(rgb.map(|x| x * curve.scale)),
+                None => Table::new(self.wavelengths_nm.iter().map(read).collect::<Vec<_>>()),
+            },
             (LaneKind::Prefiltered(bands), _) if quantity != Quantity::Index => {
                 Table::new(bands.filter(quantity, curve, &*reader))
             }

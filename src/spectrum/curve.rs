@@ -121,7 +121,7 @@ impl Curve {
     pub fn reader(&self, quantity: Quantity, upsampler: &Upsampler) -> Box<dyn Fn(f64) -> f64 + '_> {
         let scale = self.scale;
         match (&self.kind, quantity) {
-            (CurveKind::Rgb(rgb), Quantity::Reflectance | Quantity::Transmittance) => {
+            (CurveKind::Rgb(rgb), Quantity::Reflectance | Quantity::Transmittance | Quantity::Share) => {
                 let sigmoid = upsampler.fit(rgb.map(|x| x * scale));
                 Box::new(move |nm| sigmoid.at(nm))
             }

@@ -72,7 +72,7 @@ pub(super) fn check(curve: &Curve, quantity: Quantity) -> Result<(), Refusal> {
 
 fn kind_fits(curve: &Curve, quantity: Quantity) -> Result<(), Refusal> {
     use CurveKind::*;
-    use Quantity::{Emission, Index, MetalExtinction, MetalIndex, Reflectance, Transmittance};
+    use Quantity::{Emission, Index, MetalExtinction, MetalIndex, Reflectance, Share, Transmittance};
     if curve.luminance.is_some() && quantity != Emission {
         let refusal = Refusal::new(format!("{} has no luminance", article(quantity)));
         return Err(refusal.help("use `scale`").at(&["luminance"], None));
@@ -84,11 +84,11 @@ fn kind_fits(curve: &Curve, quantity: Quantity) -> Result<(), Refusal> {
         (Blackbody(_) | Lines(_), Emission) => Ok(()),
         (Name(name), Index) if data::glass(name).is_some() => Ok(()),
         (Name(name), MetalIndex | MetalExtinction) if data::metal(name).is_some() => Ok(()),
-        (Name(name), Reflectance | Transmittance) if data::reflectance(name).is_some() => Ok(()),
+        (Name(name), Reflectance | Transmittance | Share) if data::reflectance(name).is_some() => Ok(()),
         (Illuminant(name), Emission) => Err(unknown_illuminant(name).at(&["illuminant"], None)),
         (Name(name), Index) => Err(unknown_glass(name)),
         (Name(name), MetalIndex | MetalExtinction) => Err(unknown_metal(name)),
-        (Name(name), Reflectance | Transmittance) => Err(unknown_reflectance(name)),
+        (Name(name), Reflectance | Transmittance | Share) => Err(unknown_reflectance(name)),
         (kind @ (Image(_) | Checker { .. }), _) => Err(no_surface(kind, quantity)),
         (kind, _) => {
             let refusal = Refusal::new(format!("{} cannot be given by {}", article(quantity), form(kind)));
@@ -115,7 +115,7 @@ fn forms(quantity: Quantity) -> &'static str {
         Quantity::Emission => "write a number, { rgb = [red, green, blue] } or { illuminant = \"D65\" }",
         Quantity::Index => "write a number, a glass such as \"N-BK7\" or { samples = [[nm, n], ..] }",
         Quantity::MetalIndex | Quantity::MetalExtinction => "write a number or { samples = [[nm, value], ..] }",
-        Quantity::Reflectance | Quantity::Transmittance | Quantity::Absorption => {
+        Quantity::Reflectance | Quantity::Transmittance | Quantity::Share | Quantity::Absorption => {
             "write a number, { rgb = [red, green, blue] } or { samples = [[nm, value], ..] }"
         }
     }

@@ -78,7 +78,7 @@ fn factor(name: &str, value: f64, keys: &'static [&'static str]) -> Result<(), R
 fn possible(quantity: Quantity, value: f64, place: &str) -> Result<(), Refusal> {
     let name = article(quantity);
     let (least, most) = match quantity {
-        Quantity::Reflectance | Quantity::Transmittance => (0.0, 1.0),
+        Quantity::Reflectance | Quantity::Transmittance | Quantity::Share => (0.0, 1.0),
         Quantity::Emission => (0.0, MAX_EMISSION),
         Quantity::Index => (1.0, 10.0),
         Quantity::Absorption => (0.0, f64::MAX),
@@ -95,10 +95,10 @@ fn possible(quantity: Quantity, value: f64, place: &str) -> Result<(), Refusal> 
         _ => format!("{name} is at most {}, not {shown_value}{place}", shown(most)),
     });
     Err(match quantity {
-        Quantity::Reflectance | Quantity::Transmittance if (2.0..=100.0).contains(&value) => {
+        Quantity::Reflectance | Quantity::Transmittance | Quantity::Share if (2.0..=100.0).contains(&value) => {
             refusal.help(format!("{PERCENT} Then write {}", shown(value / 100.0)))
         }
-        Quantity::Reflectance | Quantity::Transmittance if (100.0..=255.0).contains(&value) => {
+        Quantity::Reflectance | Quantity::Transmittance | Quantity::Share if (100.0..=255.0).contains(&value) => {
             refusal.help("a color from 0 to 255 is sRGB: its linear value is about (v / 255)^2.2")
         }
         _ => refusal,
@@ -115,6 +115,7 @@ pub(super) fn article(quantity: Quantity) -> &'static str {
     match quantity {
         Quantity::Reflectance => "a reflectance",
         Quantity::Transmittance => "a transmittance",
+        Quantity::Share => "a share",
         Quantity::Emission => "an emission",
         Quantity::Index => "a refractive index",
         Quantity::Absorption => "an absorption",

@@ -7,6 +7,8 @@ pub enum Quantity {
     Reflectance,
     /// Share of light that crosses a surface, 0 to 1.
     Transmittance,
+    /// How much of a whole is one of its parts, 0 to 1: an opacity, an amount in a mix.
+    Share,
     /// Radiance, or for a point light intensity; not negative.
     Emission,
     /// Real refractive index of a dielectric; above 1.

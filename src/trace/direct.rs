@@ -2,6 +2,7 @@
 
 use std::cell::Cell;
 
+use super::holes::through_holes;
 use super::path::Drawn;
 use super::{World, media, shading};
 use crate::light::{Light, LightId};
@@ -9,7 +10,7 @@ use crate::material::{Arrival, Material};
 use crate::math::{BranchKey, DVec3, Ray, Sampler};
 use crate::scene::MaterialId;
 use crate::shape::{Crossing, SurfacePoint};
-use crate::spectrum::{Table, Throughput};
+use crate::spectrum::{Lanes, Table, Throughput};
 
 /// A place where light is gathered.
 pub(super) struct Gathering<'a, const N: usize> {
@@ -119,10 +120,14 @@ impl<const N: usize> Gathering<'_, N> {
                     view.factor * weight / pdf
                 }
             };
-            if !factor.is_finite() || self.world.scene.is_hidden(&ray, view.distance, view.object, self.hider) {
+            if !factor.is_finite() {
                 return None;
             }
+            let passing = self.unhidden(&ray, view.distance, view.object)?;
             let mut arriving = light.toward(self.arrival.draw, sighting.direction, view.uv);
+            if let Some(passing) = passing {
+                arriving = arriving * passing;
+            }
             if let Some(material) = self.inside {
                 arriving =
                     arriving * media::medium(self.world, material).transmission(self.arrival.draw, view.distance);
@@ -131,6 +136,18 @@ impl<const N: usize> Gathering<'_, N> {
             Some(self.world.responses[target].sensor(self.arrival.draw, reflected, self.parted))
         };
         lit().unwrap_or([0.0; 3])
+    }
+
+    /// The share of a light that holes before it let through, where there are any in the scene; none if it is hidden.
+    fn unhidden(&self, ray: &Ray, distance: f64, light: Option<u32>) -> Option<Option<Lanes<N>>> {
+        let (world, scene) = (self.world, &self.world.scene);
+        if !world.has_any_holes() {
+            return (!scene.is_hidden(ray, distance, light, self.hider, |_| true)).then_some(None);
+        }
+        if scene.is_hidden(ray, distance, light, self.hider, |object| !world.has_holes(object)) {
+            return None;
+        }
+        through_holes(world, self.arrival.draw, ray, distance, self.inside).map(Some)
     }
 }
 
@@ -150,6 +167,11 @@ pub(super) fn weight_of_meeting(
 ) -> f64 {
     let Some(drawn) = drawn else { return 1.0 };
     let pdf = match (&world.scene.lights[light], crossing) {
+        (Light::Area(area), Some(_)) if area.aimed_at && drawn.passed => {
+            // The light was aimed at from before the holes that the path has passed since.
+            let ray = Ray { origin: drawn.from, direction: ray.direction };
+            area.shape.intersect(&ray, f64::INFINITY).and_then(|crossing| area.pdf(&ray, drawn.normal, &crossing))
+        }
         (Light::Area(area), Some(crossing)) if area.aimed_at => area.pdf(ray, drawn.normal, crossing),
         (Light::Environment(environment), None) => Some(environment.pdf(ray, drawn.normal)),
         (Light::Sun(sun), None) => sun.pdf(ray),

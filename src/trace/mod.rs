@@ -11,6 +11,7 @@
 
 mod choice;
 mod direct;
+mod holes;
 mod lamps;
 mod media;
 mod method;
@@ -21,6 +22,7 @@ mod render;
 mod roulette;
 mod shading;
 mod spread;
+mod tally;
 mod tracer;
 mod width;
 mod world;

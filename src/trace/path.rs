@@ -1,7 +1,8 @@
 use super::World;
 use super::media::{self, Media};
 use crate::math::{BranchKey, DVec3, Ray};
-use crate::spectrum::{Draw, Throughput};
+use crate::shape::SurfacePoint;
+use crate::spectrum::{Draw, Lanes, Throughput};
 
 /// A ray on its way back from the camera.
 #[derive(Clone, Copy, Debug)]
@@ -39,6 +40,8 @@ pub(super) struct Drawn {
     pub(super) chance: f64,
     /// Whether every light was aimed at there, or one.
     pub(super) aimed_at_all: bool,
+    /// Whether the path has passed holes since.
+    pub(super) passed: bool,
 }
 
 impl Drawn {
@@ -69,6 +72,20 @@ impl<const N: usize> Path<N> {
             drawn: None,
             polarization: 0.0,
         }
+    }
+
+    /// The path beyond a surface that it passes as if nothing were there.
+    ///
+    /// What it meets beyond may have been aimed at through the hole, from where its direction was drawn.
+    pub(super) fn passed(&self, point: &SurfacePoint) -> Self {
+        let drawn = self.drawn.map(|drawn| Drawn { passed: true, ..drawn });
+        Self { ray: point.leave(self.ray.direction), drawn, ..*self }
+    }
+
+    /// The path beyond a surface that it has met and passes in part.
+    pub(super) fn passed_in_part(&self, point: &SurfacePoint, passing: Lanes<N>) -> Self {
+        let throughput = self.throughput.through(passing);
+        Self { throughput, vertices: self.vertices - 1, ..self.passed(point) }
     }
 
     /// How much the path can still matter: its mean throughput, without the factor of radiance between media.

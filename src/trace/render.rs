@@ -2,7 +2,8 @@
 
 use rayon::prelude::*;
 
-use super::tracer::{Tally, Tracer};
+use super::tally::Tally;
+use super::tracer::Tracer;
 use super::width::{InLanes, in_lanes};
 use super::{Transport, World};
 use crate::film::{Film, Pixel, PixelSum, Sample};

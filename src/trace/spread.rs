@@ -1,6 +1,7 @@
 //! How far dispersion pulls colors apart, measured by rays of two colors that are sent the same way.
 
 use super::World;
+use super::holes;
 use super::media::{self, Media};
 use super::path::Path;
 use super::shading;
@@ -103,6 +104,14 @@ fn follow(world: &World, draw: &Draw<4>, lane: usize, ray: Ray, media: Media, sa
         let wo = -ray.direction;
         let [_, normal] = shading::normals(&point, wo);
         key = key.child(0);
+        let passing =
+            |ray| holes::passing_at(world, draw, (ray, draw.start()), end.media.inside(world), (&hit, &point));
+        if world.has_holes(hit.object)
+            && passing(&ray).is_some_and(|share| sampler.four_plain(key, 7)[1] < f64::from(share[0]))
+        {
+            ray = point.leave(ray.direction);
+            continue;
+        }
         let direction = match world.scene.material_of(hit.object) {
             Material::Dielectric(glass) => {
                 let Some(boundary) = end.media.boundary(world, object.material, front) else {

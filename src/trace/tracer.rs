@@ -3,17 +3,19 @@
 use std::cell::Cell;
 
 use super::direct::{Gathering, add, weight_of_meeting};
+use super::holes;
 use super::media;
 use super::path::{Drawn, Path};
 use super::roulette::survival;
 use super::shading;
+use super::tally::Tally;
 use super::{Transport, World};
 use crate::light::{Light, LightId};
 use crate::material::{Arrival, Branch, Material};
 use crate::math::{DVec3, Ray, Sampler};
 use crate::scene::Hit;
 use crate::shape::SurfacePoint;
-use crate::spectrum::Draw;
+use crate::spectrum::{Draw, Lanes};
 
 /// Follows the rays of camera samples, one sample after another; its buffers live as long as it does.
 pub(super) struct Tracer<'a, const N: usize> {
@@ -25,23 +27,6 @@ pub(super) struct Tracer<'a, const N: usize> {
     pub(super) tally: Tally,
     /// Lights that paths from widely scattering surfaces met, with the unit normal there, if somebody wants to know.
     pub(super) met: Option<Vec<(LightId, DVec3)>>,
-}
-
-/// What happened to the rays of many samples.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Tally {
-    /// Rays followed, without those to lights.
-    pub(super) rays: u64,
-    /// Weight of the branches that deterministic transport did not follow.
-    pub(super) dropped: f64,
-    /// Weight of paths that met more surfaces than any path should.
-    pub(super) stopped: f64,
-    /// Surfaces of bodies that were left without having been entered.
-    pub(super) unmatched: u64,
-    /// Surfaces at which lanes parted.
-    pub(super) partings: u64,
-    /// Bound of the weight that polarization would move: the sum of weight x |P_A P_B| over consecutive smooth surfaces.
-    pub(super) polarization: f64,
 }
 
 /// How much sooner roulette ends paths that leave a diffuse surface than those that leave a smooth one: what they still
@@ -81,7 +66,14 @@ impl<'a, const N: usize> Tracer<'a, N> {
             };
             path.absorb(self.world, draw, hit.crossing.t);
             let point = self.world.scene.objects[hit.object as usize].shape.point(&path.ray, &hit.crossing);
-            if path.vertices == 0 {
+            let passing = holes::passing(self.world, draw, &path, &hit, &point);
+            if let Some(passing) = passing
+                && path.throughput.through(passing) == path.throughput
+            {
+                next = Some(path.passed(&point));
+                continue;
+            }
+            if path.vertices == 0 && first.is_none() && holes::is_met(self.world, draw, sampler, &path, passing) {
                 first = Some(point);
             }
             path.vertices += 1;
@@ -90,10 +82,10 @@ impl<'a, const N: usize> Tracer<'a, N> {
                 if !matches!(self.world.scene.material_of(hit.object), Material::Emissive(_)) {
                     self.tally.stopped += path.weight(draw) / draw.siblings(path.parted);
                 }
-                next = None;
+                next = passing.map(|passing| path.passed_in_part(&point, passing));
                 continue;
             }
-            next = self.scatter(&path, draw, sampler, &hit, &point, &mut sum);
+            next = self.scatter(&path, draw, sampler, (&hit, &point, passing), &mut sum);
         }
         (sum, first)
     }
@@ -137,8 +129,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
         path: &Path<N>,
         draw: &Draw<N>,
         sampler: &Sampler,
-        hit: &Hit,
-        point: &SurfacePoint,
+        (hit, point, passing): (&Hit, &SurfacePoint, Option<Lanes<N>>),
         sum: &mut [f64; 3],
     ) -> Option<Path<N>> {
         let world = self.world;
@@ -174,7 +165,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
 
         // Gather light from the lights where light scatters widely.
         let (mut u, mut drawn) = ([0.0; 4], None);
-        let parts = material.parts(&arrival);
+        let parts = material.parts_lanes(&arrival);
         let (wide, diffuse) = (material.scatters_widely(), material.is_diffuse());
         if wide {
             let spread = path.vertices <= SPREAD;
@@ -198,8 +189,9 @@ impl<'a, const N: usize> Tracer<'a, N> {
             };
             let far = material.scatters_through().then_some((beyond, parts));
             let chance = gathering.gather(far, sampler, path.key, sum);
-            drawn = Some(Drawn { pdf: 0.0, from: point.position, normal, chance, aimed_at_all: aims_at_all });
-            if !goes_on {
+            let (pdf, from, aimed_at_all, passed) = (0.0, point.position, aims_at_all, false);
+            drawn = Some(Drawn { pdf, from, normal, chance, aimed_at_all, passed });
+            if !goes_on && passing.is_none() && !material.has_single_directions() {
                 return None;
             }
         }
@@ -207,19 +199,32 @@ impl<'a, const N: usize> Tracer<'a, N> {
         // Send the path on.
         self.branches.clear();
         shading::scatter(material, &arrival, normal, [u[2], u[3]], &mut self.branches);
+        if diffuse && path.diffuse_left == 0 {
+            self.branches.retain(|branch| branch.pdf.is_none());
+        }
+        let onward = passing.map(|passing| {
+            self.branches.push(Branch::onward(&path.ray, passing));
+            self.branches.len() - 1
+        });
         self.tally.partings += u64::from(self.branches.iter().filter(|branch| branch.crosses).count() > 1);
         let sooner = if diffuse { SOONER } else { 1.0 };
-        self.follow(path, draw, sampler, (parts, sooner), |number, branch, factor| Path {
-            ray: point.leave(branch.wi),
-            throughput: path.throughput.through(branch.share).scaled(factor),
-            eta_scale: path.eta_scale * branch.eta_scale,
-            media: if branch.crosses { crossed } else { path.media },
-            parted: path.parted || (parts && branch.crosses),
-            key: path.key.child(number),
-            vertices: path.vertices,
-            diffuse_left: path.diffuse_left - u32::from(diffuse),
-            drawn: branch.pdf.and_then(|pdf| drawn.map(|drawn: Drawn| drawn.toward(pdf, branch.crosses))),
-            polarization: branch.polarization,
+        self.follow(path, draw, sampler, (parts, sooner), |number, branch, factor| {
+            if onward == Some(number) {
+                let onward = path.passed_in_part(point, branch.share);
+                return Path { throughput: onward.throughput.scaled(factor), key: path.key.child(number), ..onward };
+            }
+            Path {
+                ray: point.leave(branch.wi),
+                throughput: path.throughput.through(branch.share).scaled(factor),
+                eta_scale: path.eta_scale * branch.eta_scale,
+                media: if branch.crosses { crossed } else { path.media },
+                parted: path.parted || (parts && branch.crosses),
+                key: path.key.child(number),
+                vertices: path.vertices,
+                diffuse_left: path.diffuse_left - u32::from(diffuse && branch.pdf.is_some()),
+                drawn: branch.pdf.and_then(|pdf| drawn.map(|drawn: Drawn| drawn.toward(pdf, branch.crosses))),
+                polarization: branch.polarization,
+            }
         })
     }
 
@@ -232,6 +237,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
         (parts, sooner): (bool, f64),
         child: impl Fn(usize, &Branch<N>, f64) -> Path<N>,
     ) -> Option<Path<N>> {
+        let sooner = |branch: &Branch<N>| if branch.pdf.is_some() { sooner } else { 1.0 };
         let parted = |branch: &Branch<N>| path.parted || (parts && branch.crosses);
         let weight_of = |branch: &Branch<N>| {
             let shares = draw.shares(parted(branch));
@@ -275,7 +281,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
                     let u = || sampler.four_plain(path.key.child(number), CHOICE)[2];
                     let weight = weight_of(branch);
                     if weight != 0.0
-                        && let Some(factor) = survival(weight, roulette * sooner, path.vertices, u)
+                        && let Some(factor) = survival(weight, roulette * sooner(branch), path.vertices, u)
                     {
                         self.pending.extend(next.replace(child(number, branch, factor)));
                     }

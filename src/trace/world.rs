@@ -21,6 +21,8 @@ pub struct World {
     /// The bodies around the camera.
     pub(super) camera_media: Media,
     pub(super) has_media: bool,
+    /// Whether each object lets light through holes; empty where none does.
+    holes: Vec<bool>,
 }
 
 impl World {
@@ -29,10 +31,13 @@ impl World {
         let responses = scene.lights.iter().map(|light| method.basis.response(light.emission())).collect();
         let has_media = scene.materials.iter().any(|m| m.material.medium().is_some());
         let scene = scene.map(|quantity, curve| method.basis.tabulate(quantity, curve));
+        let has_holes = |object: u32| scene.material_of(object).has_holes();
+        let holes: Vec<bool> = (0..scene.objects.len() as u32).map(has_holes).collect();
+        let holes = if holes.contains(&true) { holes } else { Vec::new() };
         let choice = Choice::new(&scene.lights);
         let targets = choice.targets();
         let camera_media = Media::default();
-        let mut world = Self { responses, targets, choice, scene, method, camera_media, has_media };
+        let mut world = Self { responses, targets, choice, scene, method, camera_media, has_media, holes };
         if has_media {
             let (position, forward) = (world.scene.camera.position(), world.scene.camera.forward());
             world.camera_media = Media::around(&world, position, forward);
@@ -74,6 +79,16 @@ impl World {
     /// How it is rendered.
     pub fn method(&self) -> &Method {
         &self.method
+    }
+
+    /// Whether any object lets light through holes.
+    pub(super) fn has_any_holes(&self) -> bool {
+        !self.holes.is_empty()
+    }
+
+    /// Whether an object lets light through holes.
+    pub(super) fn has_holes(&self, object: u32) -> bool {
+        self.holes.get(object as usize).is_some_and(|&holes| holes)
     }
 
     /// Whether next-event estimation at a vertex of the given weight aims at every light, or at one.

@@ -1,0 +1,47 @@
+use serde::Deserialize;
+
+use super::{Arrival, Branch, Part};
+use crate::math::DVec3;
+use crate::spectrum::{Lanes, Quantity, Table};
+
+/// A material with holes, or one that is thinly spread: what it does not cover lets light go straight on, as if nothing
+/// were there.
+///
+/// ```toml
+/// mask = { material = "leaf", opacity = 0.5 }
+/// ```
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Mask<S> {
+    /// The material where it is opaque, by name: one that reflects or lets through.
+    pub material: Part<S>,
+    /// Share of the light that meets the material, 0 to 1.
+    pub opacity: S,
+}
+
+impl<S> Mask<S> {
+    pub(super) fn map<T>(&self, convert: &mut impl FnMut(Quantity, &S) -> T) -> Mask<T> {
+        let opacity = convert(Quantity::Share, &self.opacity);
+        Mask { material: self.material.map(convert), opacity }
+    }
+}
+
+impl Mask<Table> {
+    pub(super) fn scatter<const N: usize>(&self, arrival: &Arrival<N>, u: [f64; 2], branches: &mut Vec<Branch<N>>) {
+        let (opacity, first) = (arrival.read(&self.opacity), branches.len());
+        self.material.material().scatter(arrival, u, branches);
+        branches[first..].iter_mut().for_each(|branch| *branch = branch.scaled(opacity));
+    }
+
+    pub(super) fn evaluate<const N: usize>(&self, arrival: &Arrival<N>, wi: DVec3) -> Option<(Lanes<N>, f64)> {
+        let (light, pdf) = self.material.material().evaluate(arrival, wi)?;
+        Some((light * arrival.read(&self.opacity), pdf))
+    }
+
+    /// The share that goes straight on.
+    pub(super) fn passing<const N: usize>(&self, arrival: &Arrival<N>) -> Lanes<N> {
+        let (opacity, within) = (arrival.read(&self.opacity), self.material.material().passing(arrival));
+        let within = within.unwrap_or(Lanes::ZERO);
+        Lanes::from_fn(|i| 1.0 - opacity[i] * (1.0 - within[i]))
+    }
+}

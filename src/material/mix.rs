@@ -1,0 +1,163 @@
+use serde::{Deserialize, Deserializer};
+
+use super::{Arrival, Branch, Part};
+use crate::math::{DVec3, Ray};
+use crate::spectrum::{Lanes, Quantity, Table};
+
+/// Two materials in one place, finer than can be seen: patches of the second cover a share of the first.
+///
+/// ```toml
+/// mix = { materials = ["steel", "rust"], amount = 0.3 }     # three tenths of rust
+/// ```
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Mix<S> {
+    /// The materials, by name: surfaces that reflect or let through, other mixes and masks among them.
+    #[serde(deserialize_with = "two")]
+    pub materials: [Part<S>; 2],
+    /// Share of the surface that the second covers, 0 to 1.
+    pub amount: S,
+}
+
+fn two<'de, D: Deserializer<'de>, S>(deserializer: D) -> Result<[Part<S>; 2], D::Error> {
+    let names = Vec::<String>::deserialize(deserializer)?;
+    let two: Result<[String; 2], _> = names.try_into();
+    let wrong = |names: Vec<_>| serde::de::Error::custom(format!("a mix is made of 2 materials, not {}", names.len()));
+    two.map(|names| names.map(Part::from)).map_err(wrong)
+}
+
+impl<S> Mix<S> {
+    pub(super) fn map<T>(&self, convert: &mut impl FnMut(Quantity, &S) -> T) -> Mix<T> {
+        let amount = convert(Quantity::Share, &self.amount);
+        Mix { materials: self.materials.each_ref().map(|part| part.map(convert)), amount }
+    }
+}
+
+impl Mix<Table> {
+    /// The share of each material, per lane.
+    fn shares<const N: usize>(&self, arrival: &Arrival<N>) -> [Lanes<N>; 2] {
+        let second = arrival.read(&self.amount);
+        [Lanes::from_fn(|i| 1.0 - second[i]), second]
+    }
+
+    /// How often a direction is drawn from the second one, of those drawn from the two: its mean share.
+    fn chance_of_second<const N: usize>(&self, arrival: &Arrival<N>) -> f64 {
+        match self.materials.each_ref().map(|part| part.material().scatters_widely()) {
+            [_, false] => 0.0,
+            [false, true] => 1.0,
+            [true, true] => {
+                let share = arrival.present * arrival.read(&self.amount);
+                f64::from(share.sum() / arrival.present.sum()).clamp(0.0, 1.0)
+            }
+        }
+    }
+
+    /// One branch for all that scatters widely, drawn from the materials' densities together, and one for each single
+    /// direction in which either of them sends light.
+    pub(super) fn scatter<const N: usize>(&self, arrival: &Arrival<N>, u: [f64; 2], branches: &mut Vec<Branch<N>>) {
+        let (shares, second, first) = (self.shares(arrival), self.chance_of_second(arrival), branches.len());
+        let chosen = usize::from(u[0] < second);
+        let u = [[(u[0] - second) / (1.0 - second), u[0] / second][chosen], u[1]];
+        for (number, part) in self.materials.iter().enumerate() {
+            let (material, share, start) = (part.material(), shares[number], branches.len());
+            if share.is_zero() || (number != chosen && !material.has_single_directions()) {
+                continue;
+            }
+            material.scatter(arrival, u, branches);
+            let mut at = start;
+            while at < branches.len() {
+                let branch = branches[at].scaled(share);
+                let (before, rest) = branches.split_at_mut(start);
+                let same = |other: &&mut Branch<N>| other.is_same_way(&branch);
+                match (branch.pdf, before[first..].iter_mut().find(same)) {
+                    (Some(pdf), _) if number == chosen => {
+                        let chance = [1.0 - second, second];
+                        rest[at - start] = self.beside_other(arrival, branch, pdf, number, (shares, chance));
+                        at += 1;
+                    }
+                    (None, None) => {
+                        rest[at - start] = branch;
+                        at += 1;
+                    }
+                    (Some(_), _) => {
+                        branches.remove(at);
+                    }
+                    (None, Some(other)) => {
+                        other.join(&branch);
+                        branches.remove(at);
+                    }
+                }
+            }
+        }
+    }
+
+    /// A branch that was drawn from one material, as if drawn from both, with what the other one sends the same way.
+    fn beside_other<const N: usize>(
+        &self,
+        arrival: &Arrival<N>,
+        drawn: Branch<N>,
+        pdf: f64,
+        number: usize,
+        (shares, chances): ([Lanes<N>; 2], [f64; 2]),
+    ) -> Branch<N> {
+        let other = 1 - number;
+        let Some((light, other_pdf)) = self.materials[other].material().evaluate(arrival, drawn.wi) else {
+            // Where only one scatters widely, it is drawn for certain.
+            return Branch {
+                share: drawn.share * (1.0 / chances[number]) as f32,
+                pdf: Some(chances[number] * pdf),
+                ..drawn
+            };
+        };
+        let both = chances[number] * pdf + chances[other] * other_pdf;
+        let share = drawn.share * (pdf / both) as f32 + light * shares[other] * (1.0 / both) as f32;
+        Branch { share, pdf: Some(both), ..drawn }
+    }
+
+    pub(super) fn evaluate<const N: usize>(&self, arrival: &Arrival<N>, wi: DVec3) -> Option<(Lanes<N>, f64)> {
+        let (shares, second) = (self.shares(arrival), self.chance_of_second(arrival));
+        let [a, b] = self.materials.each_ref().map(|part| part.material().evaluate(arrival, wi));
+        if a.is_none() && b.is_none() {
+            return None;
+        }
+        let (a, b) = (a.unwrap_or((Lanes::ZERO, 0.0)), b.unwrap_or((Lanes::ZERO, 0.0)));
+        Some((a.0 * shares[0] + b.0 * shares[1], (1.0 - second) * a.1 + second * b.1))
+    }
+
+    /// The share that goes straight on through the holes of masks.
+    pub(super) fn passing<const N: usize>(&self, arrival: &Arrival<N>) -> Option<Lanes<N>> {
+        let [a, b] = self.materials.each_ref().map(|part| part.material().passing(arrival));
+        if a.is_none() && b.is_none() {
+            return None;
+        }
+        let shares = self.shares(arrival);
+        Some(a.unwrap_or(Lanes::ZERO) * shares[0] + b.unwrap_or(Lanes::ZERO) * shares[1])
+    }
+}
+
+impl<const N: usize> Branch<N> {
+    /// The way of a ray that passes through holes, with the light that comes by it.
+    pub fn onward(ray: &Ray, share: Lanes<N>) -> Self {
+        Self { wi: ray.direction, share, pdf: None, crosses: false, eta_scale: 1.0, polarization: 0.0 }
+    }
+
+    /// The same way with a share of its light.
+    pub(super) fn scaled(&self, share: Lanes<N>) -> Self {
+        Self { share: self.share * share, ..*self }
+    }
+
+    /// Whether both are the same single direction.
+    fn is_same_way(&self, other: &Self) -> bool {
+        let single = self.pdf.is_none() && other.pdf.is_none();
+        single && self.wi == other.wi && self.crosses == other.crosses
+    }
+
+    /// Takes in the light of another branch that goes the same way.
+    fn join(&mut self, other: &Self) {
+        let (this, more) = (self.share.sum(), other.share.sum());
+        if this + more > 0.0 {
+            self.polarization = (this * self.polarization + more * other.polarization) / (this + more);
+        }
+        self.share += other.share;
+    }
+}

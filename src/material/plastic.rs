@@ -1,0 +1,167 @@
+use std::f64::consts::FRAC_1_PI;
+
+use serde::{Deserialize, Deserializer};
+
+use super::coat::{Coat, Crossing};
+use super::conductor::above;
+use super::{Arrival, Branch, Interface, RoughSurface, reflect};
+use crate::math::{DVec3, Frame, cosine_hemisphere, unit};
+use crate::spectrum::{Lanes, Quantity, Table};
+
+/// A matte body under a clear coat, smooth or rough: plastic, glazed earthenware, varnish.
+///
+/// What the coat does not reflect is scattered by the base, in part sent back to it by the coat from inside, and leaves
+/// through the coat. A white one reflects all light.
+///
+/// ```toml
+/// plastic = { reflectance = { rgb = [0.7, 0.1, 0.1] }, roughness = 0.2 }     # index = 1.5, roughness = 0 if absent
+/// ```
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[serde(bound(deserialize = "S: Deserialize<'de> + From<f64>"))]
+pub struct Plastic<S> {
+    /// Share of the light in the base that it scatters, before the coat sends any of it back.
+    pub reflectance: S,
+    /// Refractive index of the coat.
+    #[serde(default = "usual_index")]
+    pub index: S,
+    /// The coat; below a roughness of 0.01 it is taken as smooth.
+    #[serde(rename = "roughness", default = "smooth", deserialize_with = "rough")]
+    pub coat: Coat,
+}
+
+fn usual_index<S: From<f64>>() -> S {
+    1.5.into()
+}
+
+fn smooth() -> Coat {
+    Coat::new(0.0)
+}
+
+fn rough<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Coat, D::Error> {
+    f64::deserialize(deserializer).map(Coat::new)
+}
+
+impl<S> Plastic<S> {
+    pub(super) fn map<T>(&self, convert: &mut impl FnMut(Quantity, &S) -> T) -> Plastic<T> {
+        Plastic {
+            index: convert(Quantity::Index, &self.index),
+            reflectance: convert(Quantity::Reflectance, &self.reflectance),
+            coat: self.coat.clone(),
+        }
+    }
+}
+
+impl Plastic<Table> {
+    /// The mirror image in a smooth coat, and one branch for all other light.
+    pub(super) fn scatter<const N: usize>(&self, arrival: &Arrival<N>, u: [f64; 2], branches: &mut Vec<Branch<N>>) {
+        let Some(surface) = self.coat.roughness().surface() else {
+            branches.extend(self.mirrored(arrival));
+            let wi = cosine_hemisphere(u);
+            let base = self.lanes(arrival, [arrival.wo.dot(arrival.normal), wi.z], |crossing, r, _| crossing.base(r));
+            branches.push(branch(arrival, wi, base, wi.z * FRAC_1_PI));
+            return;
+        };
+        let wo = above(&Frame::about(arrival.normal), arrival.wo);
+        let chance = chance_of_coat(&self.lanes(arrival, [wo.z; 2], |crossing, r, _| crossing.reflected(r)));
+        let wi = if u[0] < chance {
+            surface.scatter(wo, [u[0] / chance, u[1]]).map(|reflection| reflection.wi)
+        } else {
+            Some(cosine_hemisphere([(u[0] - chance) / (1.0 - chance), u[1]]))
+        };
+        if let Some(wi) = wi
+            && let Some((light, pdf)) = self.rough(arrival, surface, [wo, wi])
+        {
+            branches.push(branch(arrival, wi, light.map(|x| x / pdf), pdf));
+        }
+    }
+
+    pub(super) fn evaluate<const N: usize>(&self, arrival: &Arrival<N>, wi: DVec3) -> Option<(Lanes<N>, f64)> {
+        let (light, pdf) = match self.coat.roughness().surface() {
+            None => {
+                let cos = wi.dot(arrival.normal);
+                if cos <= 0.0 {
+                    return None;
+                }
+                let (cosines, pdf) = ([arrival.wo.dot(arrival.normal), cos], cos * FRAC_1_PI);
+                (self.lanes(arrival, cosines, |crossing, r, _| crossing.base(r) * pdf), pdf)
+            }
+            Some(surface) => {
+                let frame = Frame::about(arrival.normal);
+                self.rough(arrival, surface, [above(&frame, arrival.wo), frame.to_local(wi)])?
+            }
+        };
+        Some((Lanes::from_fn(|i| light[i] as f32), pdf))
+    }
+
+    /// What a smooth coat reflects.
+    fn mirrored<const N: usize>(&self, arrival: &Arrival<N>) -> Option<Branch<N>> {
+        let (index, cos) = (arrival.draw.read_exact(&self.index), arrival.wo.dot(arrival.normal));
+        let (mut share, mut polarization) = (Lanes::ZERO, 0.0);
+        for lane in (0..N).filter(|&i| arrival.present[i] != 0.0 && index[i] != arrival.incident[i]) {
+            let interface = Interface::new(arrival.incident[lane], index[lane], cos);
+            share.0[lane] = interface.reflectance as f32;
+            polarization = interface.polarization_reflected as f32;
+        }
+        let wi = reflect(arrival.wo, arrival.normal);
+        (!share.is_zero()).then_some(Branch { wi, share, pdf: None, crosses: false, eta_scale: 1.0, polarization })
+    }
+
+    /// BRDF times cosine of a rough coat and its base, and the density with which `scatter` draws the light's direction.
+    fn rough<const N: usize>(
+        &self,
+        arrival: &Arrival<N>,
+        surface: &RoughSurface,
+        [wo, wi]: [DVec3; 2],
+    ) -> Option<([f64; N], f64)> {
+        let reflection = surface.evaluate(wo, wi)?;
+        let base_pdf = wi.z * FRAC_1_PI;
+        let of_lane = |crossing: &Crossing, r: f64, [n1, n2]: [f64; 2]| {
+            let once = if n1 == n2 { 0.0 } else { Interface::new(n1, n2, reflection.cos).reflectance };
+            let again = Coat::reflected_again(surface, n1, n2);
+            let light = once * reflection.once + again * reflection.again + crossing.base(r) * base_pdf;
+            (light, crossing.reflected(r))
+        };
+        let lanes = self.lanes(arrival, [wo.z, wi.z], of_lane);
+        let chance = chance_of_coat(&lanes.map(|lane| lane.1));
+        let pdf = chance * reflection.pdf + (1.0 - chance) * base_pdf;
+        (pdf > 0.0).then(|| (lanes.map(|lane| lane.0), pdf))
+    }
+
+    /// Something of each lane on the ray, from what crosses the coat in two directions, the base's reflectance and the
+    /// indices on both sides.
+    fn lanes<T: Default, const N: usize>(
+        &self,
+        arrival: &Arrival<N>,
+        [from, to]: [f64; 2],
+        of_lane: impl Fn(&Crossing, f64, [f64; 2]) -> T,
+    ) -> [T; N] {
+        let (index, base) = (arrival.draw.read_exact(&self.index), arrival.read(&self.reflectance));
+        let mut last: Option<([f64; 2], Crossing)> = None;
+        std::array::from_fn(|i| {
+            if arrival.present[i] == 0.0 {
+                return T::default();
+            }
+            let pair = [arrival.incident[i], index[i]];
+            let crossing = match last {
+                Some((of, crossing)) if of == pair => crossing,
+                _ => self.coat.crossing(pair[0], pair[1], from, to),
+            };
+            last = Some((pair, crossing));
+            of_lane(&crossing, f64::from(base[i]), pair)
+        })
+    }
+}
+
+/// How often a direction is drawn from the coat, and else from the base: by what each reflects of all lanes.
+fn chance_of_coat(reflected: &[[f64; 2]]) -> f64 {
+    let [coat, base] = [0, 1].map(|part| reflected.iter().map(|lane| lane[part]).sum::<f64>());
+    if coat > 0.0 { coat / (coat + base) } else { 0.0 }
+}
+
+/// The branch of a direction in the surface's frame.
+fn branch<const N: usize>(arrival: &Arrival<N>, wi: DVec3, share: [f64; N], pdf: f64) -> Branch<N> {
+    let wi = unit(Frame::about(arrival.normal).to_world(wi));
+    let share = Lanes::from_fn(|i| share[i] as f32);
+    Branch { wi, share, pdf: Some(pdf), crosses: false, eta_scale: 1.0, polarization: 0.0 }
+}

@@ -1,0 +1,84 @@
+//! Directions against the density with which they are said to be drawn.
+
+use std::f64::consts::TAU;
+
+use abbe::material::Material;
+use abbe::math::Frame;
+use abbe::spectrum::{Draw, Table};
+
+use super::arrivals::{NORMAL, arrival, material, toward};
+use crate::chi_squared;
+use crate::support::random::Random;
+
+const TEXTS: [&str; 6] = [
+    "plastic = { reflectance = 0.6 }",
+    "plastic = { reflectance = 0.6, roughness = 0.4 }",
+    "plastic = { reflectance = { rgb = [0.9, 0.1, 0.5] }, index = { rgb = [1.1, 1.5, 2.5] }, roughness = 0.7 }",
+    "plastic = { reflectance = 0, roughness = 1 }",
+    "mix = { materials = [\"rough\", \"silver\"], amount = { rgb = [0.1, 0.5, 0.6] } }",
+    "mask = { material = \"rough\", opacity = 0.3 }",
+];
+const VIEWS: [f64; 3] = [0.95, 0.5, 0.1];
+const CELLS: [usize; 2] = [12, 16];
+const FINER: usize = 24;
+const DRAWS: u64 = 100_000;
+
+/// The share of directions in every cell of cosine and azimuth by their density.
+fn probabilities(material: &Material<Table>, cos: f64) -> Vec<f64> {
+    let draw = Draw::<4>::fixed(3);
+    let arrival = arrival(&draw, toward(cos, 0.0), 1.0);
+    let [up, around] = CELLS.map(|cells| cells * FINER);
+    let mut cells = vec![0.0; CELLS[0] * CELLS[1]];
+    for (i, j) in (0..up).flat_map(|i| (0..around).map(move |j| (i, j))) {
+        let (z, azimuth) = ((i as f64 + 0.5) / up as f64, TAU * (j as f64 + 0.5) / around as f64);
+        let pdf = material.evaluate(&arrival, toward(z, azimuth)).map_or(0.0, |(_, pdf)| pdf);
+        cells[i / FINER * CELLS[1] + j / FINER] += pdf * TAU / (up * around) as f64;
+    }
+    cells
+}
+
+#[test]
+fn directions_follow_their_density_and_bring_what_is_sent_along_them() {
+    let frame = Frame::about(NORMAL);
+    for (number, text) in TEXTS.into_iter().enumerate() {
+        let material = material(text);
+        for cos in VIEWS {
+            let draw = Draw::<4>::fixed(3);
+            let arrival = arrival(&draw, toward(cos, 0.0), 1.0);
+            let (mut random, mut counts, mut missed) = (Random::new(number as u64), vec![0; CELLS[0] * CELLS[1]], 0);
+            let mut branches = Vec::new();
+            for _ in 0..DRAWS {
+                material.scatter(&arrival, [random.number(), random.number()], &mut branches);
+                let wide: Vec<_> = branches.drain(..).filter(|branch| branch.pdf.is_some()).collect();
+                assert!(wide.len() <= 1, "{text}: one direction for all that scatters widely");
+                let Some(branch) = wide.first() else {
+                    missed += 1;
+                    continue;
+                };
+                let local = frame.to_local(branch.wi);
+                let azimuth = (libm::atan2(local.y, local.x) / TAU).rem_euclid(1.0);
+                let place = |x: f64, cells: usize| ((x * cells as f64) as usize).min(cells - 1);
+                counts[place(local.z, CELLS[0]) * CELLS[1] + place(azimuth, CELLS[1])] += 1;
+                let (light, pdf) = material.evaluate(&arrival, branch.wi).expect("it was drawn");
+                let drawn = branch.pdf.expect("it is wide");
+                // Near a mirror image the density keeps the digits of the direction, less the facets' narrowness.
+                assert!((pdf / drawn - 1.0).abs() < 1e-6, "{text}: {pdf}, {drawn}");
+                for lane in 0..3 {
+                    let [one, other] = [f64::from(branch.share[lane]) * drawn, f64::from(light[lane])];
+                    assert!((one - other).abs() <= 3e-6 * (one + other), "{text}: {one}, {other}");
+                }
+            }
+            // What lies below the surface is the last cell.
+            let mut expected = probabilities(&material, cos);
+            let sum: f64 = expected.iter().sum();
+            assert!(sum < 1.0 + 1e-3, "{text}, cos {cos}: the density sums to {sum}");
+            if missed == 0 {
+                assert!((sum - 1.0).abs() < 1e-3, "{text}, cos {cos}: the density sums to {sum}");
+            }
+            expected.push((1.0 - sum).max(0.0));
+            counts.push(missed);
+            let tests = (TEXTS.len() * VIEWS.len()) as u32;
+            chi_squared::check(&format!("{text}, cos {cos}"), &counts, &expected, tests);
+        }
+    }
+}

@@ -1,0 +1,143 @@
+//! What masks let through: rays from the camera, light from lamps, and paths between surfaces.
+
+use abbe::film::Film;
+use abbe::trace::Transport;
+
+use crate::support::scenes::{EVERY_BRANCH, Mean, SINGLE_PATH, SPLITTING, body, image, images, view};
+
+const FLOOR: &str = "plane = { point = [0, 0, 0], normal = [0, 1, 0] }";
+const SHEET: &str = "quad = { center = [0, 1, 0], u = [40, 0, 0], v = [0, 0, 40] }";
+const POINT: &str = "[[light]]\npoint = { position = [0.3, 3, 0.2], intensity = 10 }\n";
+const SUN: &str = "[[light]]\nsun = { toward = [0.2, 1, 0.1], irradiance = 3 }\n";
+const LAMP: &str = "[material.lamp]\nemissive = { radiance = { rgb = [10, 20, 5] } }\n\
+    [[object]]\nshape.quad = { center = [0, 2, 0], u = [0.5, 0, 0], v = [0, 0, 0.5] }\nmaterial = \"lamp\"\n";
+const SKY: &str = "[[light]]\nenvironment = { radiance = 2 }\n";
+
+/// A floor under a sheet, seen from below the sheet.
+fn under(sheet: &str, lights: &str, samples: u32) -> String {
+    view([3.0, 0.8, 0.5], [0.0, 0.0, 0.0], 20.0, 12)
+        + &format!("[render]\nsamples = {samples}\n[material.black]\ndiffuse = {{ reflectance = 0 }}\n")
+        + &body("floor", "diffuse = { reflectance = { rgb = [0.8, 0.5, 0.3] } }", &[FLOOR])
+        + sheet
+        + lights
+}
+
+fn masked(material: &str, opacity: &str) -> String {
+    body("sheet", &format!("mask = {{ material = \"{material}\", opacity = {opacity} }}"), &[SHEET])
+}
+
+fn mean(text: &str, transport: Transport) -> Mean {
+    Mean::over_seeds(images(text, transport, 8).iter().map(|(film, _)| film))
+}
+
+/// Largest difference of two films, relative to their brightest number.
+fn apart(a: &Film, b: &Film) -> f32 {
+    let numbers = |film: &Film| film.pixels.iter().flat_map(|pixel| pixel.rgb).collect::<Vec<_>>();
+    let (a, b) = (numbers(a), numbers(b));
+    let most = a.iter().chain(&b).fold(f32::MIN_POSITIVE, |most, x| most.max(*x));
+    a.iter().zip(&b).fold(0f32, |worst, (a, b)| worst.max((a - b).abs())) / most
+}
+
+#[test]
+fn a_sheet_of_opacity_0_is_not_there_and_one_of_opacity_1_is_its_material() {
+    for lights in [POINT, SUN, LAMP, SKY] {
+        for transport in [SINGLE_PATH, SPLITTING] {
+            let without = image(&under("", lights, 16), transport).0;
+            let clear = image(&under(&masked("black", "0"), lights, 16), transport).0;
+            // The same random numbers: only where a ray starts anew beyond a hole is rounded differently.
+            assert!(apart(&without, &clear) < 1e-5, "{lights}: {}", apart(&without, &clear));
+            let white = body("sheet", "diffuse = { reflectance = 0.7 }", &[SHEET]);
+            let inner = "[material.inner]\ndiffuse = { reflectance = 0.7 }\n".to_owned() + &masked("inner", "1");
+            let opaque = image(&under(&white, lights, 16), transport).0;
+            let covered = image(&under(&inner, lights, 16), transport).0;
+            assert_eq!(apart(&opaque, &covered), 0.0, "{lights}");
+        }
+    }
+}
+
+#[test]
+fn lights_shine_through_holes_in_the_share_that_is_open() {
+    let opacity = "{ rgb = [0.25, 0.5, 0.9] }";
+    for (name, lights) in [("point", POINT), ("sun", SUN), ("lamp", LAMP)] {
+        for transport in [SINGLE_PATH, SPLITTING] {
+            let open = mean(&under("", lights, 64), transport);
+            let mut through = mean(&under(&masked("black", opacity), lights, 256), transport);
+            let expected = [0, 1, 2].map(|band| open.value[band] * [0.75, 0.5, 0.1][band]);
+            for (band, share) in [0.75, 0.5, 0.1].into_iter().enumerate() {
+                through.error[band] = libm::hypot(through.error[band], share * open.error[band]);
+            }
+            println!("{name}: {through:.5?} for {expected:.5?}");
+            assert!(through.worst_error(expected) < 0.02, "{name}: {through:?}");
+            through.assert_near(expected, 6, name);
+        }
+    }
+}
+
+#[test]
+fn two_sheets_let_through_the_product() {
+    let second =
+        "[[object]]\nshape.quad = { center = [0, 1.5, 0], u = [40, 0, 0], v = [0, 0, 40] }\nmaterial = \"sheet\"\n";
+    let open = mean(&under("", POINT, 16), SPLITTING);
+    let mut through = mean(&under(&(masked("black", "0.4") + second), POINT, 64), SPLITTING);
+    let expected = open.value.map(|x| 0.36 * x);
+    (0..3).for_each(|band| through.error[band] = libm::hypot(through.error[band], 0.36 * open.error[band]));
+    through.assert_near(expected, 1, "two sheets");
+}
+
+#[test]
+fn aiming_through_a_mask_and_meeting_the_lamp_beyond_show_the_same() {
+    // The mask scatters light itself, and the floor is rough: both ways of finding the lamp count.
+    let sheet = |lamp: &str| {
+        let rough = "[material.gold]\nconductor = { metal = \"Au\", roughness = 0.4 }\n\
+            [material.inner]\ndiffuse = { reflectance = 0.7 }\n";
+        under(&(rough.to_owned() + &masked("inner", "0.5")), lamp, 1024).replace("\"floor\"\n", "\"gold\"\n")
+    };
+    let met = LAMP.replace(
+        "emissive = { radiance = { rgb = [10, 20, 5] } }",
+        "dielectric = { index = 1.5, reflectance = 0, transmittance = 0, emission = { rgb = [10, 20, 5] } }",
+    );
+    let met = met.replace("quad = { center = [0, 2, 0], u = [0.5, 0, 0], v = [0, 0, 0.5] }", BALL);
+    let aimed = LAMP.replace("quad = { center = [0, 2, 0], u = [0.5, 0, 0], v = [0, 0, 0.5] }", BALL);
+    let by_chance = mean(&sheet(&met), SINGLE_PATH);
+    for transport in [SINGLE_PATH, SPLITTING] {
+        let mut aimed = mean(&sheet(&aimed), transport);
+        println!("{aimed:.5?} for {by_chance:.5?}");
+        for band in 0..3 {
+            aimed.error[band] = libm::hypot(aimed.error[band], by_chance.error[band]);
+        }
+        assert!(aimed.worst_error(by_chance.value) < 0.02, "{aimed:?}");
+        aimed.assert_near(by_chance.value, 2, "through a mask");
+    }
+}
+
+const BALL: &str = "sphere = { center = [0, 2.2, 0], radius = 0.8 }";
+
+#[test]
+fn a_hole_before_the_camera_leaves_no_trace_in_alpha_and_depth() {
+    let ball = "sphere = { center = [0, 0, 0], radius = 1 }";
+    let alpha = |opacity: f64, transport| {
+        let text = view([0.0, 0.0, 9.0], [0.0; 3], 4.0, 8)
+            + "[render]\nsamples = 64\n[material.black]\ndiffuse = { reflectance = 0 }\n"
+            + &body("holes", &format!("mask = {{ material = \"black\", opacity = {opacity:?} }}"), &[ball])
+            + SKY;
+        let film = image(&text, transport).0;
+        (film.pixels.iter().map(|pixel| f64::from(pixel.alpha)).sum::<f64>() / film.pixels.len() as f64, film)
+    };
+    for transport in [SINGLE_PATH, SPLITTING, EVERY_BRANCH] {
+        assert_eq!([0.0, 1.0].map(|opacity| alpha(opacity, transport).0), [0.0, 1.0]);
+    }
+    // Both walls of the ball have to be passed: 1 - 0.7^2. Of 4096 samples a standard error is 0.008.
+    assert!((alpha(0.3, SINGLE_PATH).0 - 0.51).abs() < 0.03);
+    // Nothing but two holes is left of the sky, however few bounces there may be.
+    let (_, film) = alpha(0.3, EVERY_BRANCH);
+    assert!(film.pixels.iter().all(|pixel| (pixel.rgb[0] / 2.0 - 0.49).abs() < 1e-6), "{:?}", film.pixels[0]);
+}
+
+#[test]
+fn holes_are_no_bounces() {
+    let text = under(&masked("black", "0.5"), LAMP, 64).replace("[render]\n", "[render]\nmax_bounces = 1\n");
+    let all = mean(&under(&masked("black", "0.5"), LAMP, 64), SPLITTING);
+    let mut one = mean(&text, SPLITTING);
+    (0..3).for_each(|band| one.error[band] = libm::hypot(one.error[band], all.error[band]));
+    one.assert_near(all.value, 1, "one bounce lights the floor through the sheet");
+}
