@@ -4,24 +4,25 @@
     python tools/peers.py                               # every scene: half an hour on two cores
     python tools/peers.py --scene glass --pictures      # also write what each renderer sees, to look at side by side
 
-All read the same scene file: Abbe itself, the others by way of peers_scene.py. Needs the packages mitsuba and pyluxcore, and
-for Mitsuba's llvm variants the library LLVM 16 or newer (DRJIT_LIBLLVM_PATH if it is in an unusual place); a renderer
-that is missing is named and left out.
+All read the same scene file, Abbe itself and the others by way of peers_scene.py. Needs the packages mitsuba and
+pyluxcore, and for Mitsuba's llvm variants the library LLVM 16 or newer (DRJIT_LIBLLVM_PATH if it is in an unusual
+place); a package that is missing is named, and its renderers are left out.
 
-The error is the mean of (x - r)^2 / (r^2 + 0.01) over pixels and channels of linear Rec.709, unclamped, box filter. r is the
-renderer's own converged picture at the same resolution, of two halves of other seeds whose difference tells its noise, which
-is subtracted. Processor seconds are user and system time of all cores. What a renderer takes before its first sample (reading,
-trees, compiling) is found from runs of two lengths and told apart. At the errors asked for, seconds are read off between the
-measured points; beyond them the error of independent samples falls as one over their number.
+The error is the mean of (x - r)^2 / (r^2 + 0.01) over pixels and channels of linear Rec.709, unclamped, box filter. r is
+the renderer's own converged picture at the same resolution, of two halves of other seeds whose difference tells its
+noise, which is subtracted. CPU seconds are user and system time of all cores. What a renderer takes before its first
+sample (reading, trees, compiling) is found from runs of two lengths and told apart. Seconds to an error are read off
+between the measured points; beyond them the error of independent samples falls as one over their number.
 """
 
 import argparse
-import csv
+import atexit
 import importlib.util
 import os
 import platform
 import resource
 import subprocess
+import sys
 import tempfile
 import tomllib
 from pathlib import Path
@@ -38,9 +39,9 @@ ERRORS = (1e-2, 1e-3)
 
 
 class Comparison(NamedTuple):
-    """A scene, and who renders it: each with the samples whose errors are measured, and how many runs of the most make half a reference.
+    """A scene and who renders it: the samples whose errors are measured, and how many runs of the most make half a reference.
 
-    `shrink` divides the sides of the picture, so that a converged one can be had; seconds are told for the full picture."""
+    `shrink` divides the picture's sides, so that a converged one can be had; seconds are told for the full picture."""
 
     scene: Path
     shrink: int
@@ -62,19 +63,24 @@ COMPARISONS = {
     "smallpt": Comparison(
         render.SCENES / "smallpt.toml",
         8,
-        {"abbe": ((8, 32, 128), 8), "llvm_ad_rgb": ((16, 64, 256), 16), "smallpt": ((64, 256), 6)},
-        {"llvm_ad_rgb": 0.5, "smallpt": 0.05},
+        {
+            "abbe": ((8, 32, 128), 8),
+            "llvm_ad_rgb": ((16, 64, 256), 16),
+            "llvm_ad_rgb/disc": ((16, 64, 256), 8),
+            "smallpt": ((64, 256), 6),
+        },
+        {"llvm_ad_rgb": 0.5, "llvm_ad_rgb/disc": 0.5, "smallpt": 0.05},
     ),
     "glass": Comparison(
         FOLDER / "glass.toml",
         4,
-        {"abbe": ((8, 32, 128), 6), "luxcore": ((64, 256, 1024), 4)},
+        {"abbe": ((8, 32, 128), 3), "luxcore": ((64, 256), 4)},
         {"luxcore": 0.05},
     ),
     "mesh": Comparison(
         FOLDER / "mesh.toml",
-        4,
-        {"abbe": ((2, 8, 32), 4), "llvm_ad_spectral": ((2, 8, 32), 4), "scalar_spectral": ((4, 16), 6)},
+        2,
+        {"abbe": ((4, 36), 2), "llvm_ad_spectral": ((4, 36), 2), "scalar_spectral": ((4, 36), 2)},
         {"llvm_ad_spectral": 1.0, "scalar_spectral": 0.15},
     ),
 }
@@ -127,14 +133,14 @@ class Smallpt(Program):
 
 
 class Mitsuba:
-    """A variant of Mitsuba 3, which stays in this process."""
+    """A variant of Mitsuba 3 in this process; `/disc` makes the tip of a huge lamp flat, so that it is aimed at well."""
 
     def __init__(self, name: str, scene: Path, folder: Path):
         import mitsuba
 
-        self.mitsuba, self.variant = mitsuba, name
-        mitsuba.set_variant(name)
-        self.scene = mitsuba.load_dict(peers_scene.mitsuba_scene(mitsuba, scene))
+        self.mitsuba, self.variant = mitsuba, name.split("/")[0]
+        mitsuba.set_variant(self.variant)
+        self.scene = mitsuba.load_dict(peers_scene.mitsuba_scene(mitsuba, scene, name.endswith("/disc")))
         self.version = f"Mitsuba {mitsuba.__version__} {name}"
 
     def run(self, samples: int, seed: int) -> tuple[np.ndarray, float]:
@@ -150,7 +156,8 @@ class LuxCore:
     def __init__(self, name: str, scene: Path, folder: Path):
         import pyluxcore
 
-        pyluxcore.Init()
+        pyluxcore.Init(lambda message: None)
+        atexit.register(pyluxcore.SetLogHandler, None)  # else its threads call a handler that is gone
         self.luxcore, self.scene = pyluxcore, scene
         self.version = f"LuxCore {pyluxcore.Version()} PATHCPU"
 
@@ -160,21 +167,20 @@ class LuxCore:
         return picture, seconds_used(resource.RUSAGE_SELF) - before
 
 
-def renderer_class(name: str) -> type:
-    return {"abbe": Abbe, "smallpt": Smallpt, "luxcore": LuxCore}.get(name, Mitsuba)
+OTHERS = {"abbe": Abbe, "smallpt": Smallpt, "luxcore": LuxCore}
+PACKAGES = {"abbe": None, "smallpt": None, "luxcore": "pyluxcore"}
 
 
 class Point(NamedTuple):
     """Medians at a number of samples."""
 
-    renderer: str
     samples: int
     seconds: float
     error: float
 
 
 class Measured(NamedTuple):
-    """A renderer's points; their seconds are without the start."""
+    """A renderer's points, whose seconds are without the start, and its reference."""
 
     points: list[Point]
     start: float
@@ -201,25 +207,21 @@ def measure(renderers: dict, comparison: Comparison, repeats: int) -> dict[str, 
                 results.append((seconds, (((picture - mean) ** 2 - noise) / (mean**2 + 0.01)).mean()))
     measured = {}
     for name, own in runs.items():
-        points = [Point(name, samples, *np.median(results, axis=0)) for samples, results in own.items()]
+        points = [Point(samples, *np.median(results, axis=0)) for samples, results in own.items()]
         rate = (points[-1].seconds - points[0].seconds) / (points[-1].samples - points[0].samples)
         start = max(points[0].seconds - rate * points[0].samples, 0.0)
-        points = [point._replace(seconds=rate * point.samples) for point in points]
-        measured[name] = Measured(points, start, references[name][0])
+        measured[name] = Measured([p._replace(seconds=rate * p.samples) for p in points], start, references[name][0])
     return measured
 
 
 def seconds_to(error: float, points: list[Point]) -> float:
     """Linear in log-log between the points, as one over the seconds beyond the ends."""
     x, y = (np.log([getattr(point, key) for point in points][::-1]) for key in ("error", "seconds"))
-    wanted = np.log(error)
-    if wanted <= x[0] or wanted >= x[-1]:
-        end = 0 if wanted <= x[0] else -1
-        return float(np.exp(y[end] + x[end] - wanted))
-    return float(np.exp(np.interp(wanted, x, y)))
+    wanted = np.clip(np.log(error), x[0], x[-1])
+    return float(np.exp(np.interp(wanted, x, y) + wanted - np.log(error)))
 
 
-def report(name: str, comparison: Comparison, measured: dict[str, Measured], scale: float) -> None:
+def report(comparison: Comparison, measured: dict[str, Measured], scale: float) -> None:
     """Points, seconds to the errors for the full picture, and whether the bars are met."""
     print(f"{'renderer':<18}{'samples':>8}{'CPU s':>9}{'error':>11}    start, CPU s")
     for renderer, result in measured.items():
@@ -248,14 +250,6 @@ def scene_at(comparison: Comparison, shrink: int, folder: Path) -> tuple[Path, f
     return path, float(shrink**2)
 
 
-def missing(name: str) -> str | None:
-    """What a renderer needs and does not find."""
-    module = {"abbe": None, "smallpt": None, "luxcore": "pyluxcore"}.get(name, "mitsuba")
-    if module and importlib.util.find_spec(module) is None:
-        return f"the Python package {module}"
-    return None
-
-
 def compare(name: str, arguments: argparse.Namespace) -> None:
     comparison = COMPARISONS[name]
     shrink = comparison.shrink * (2 if arguments.quick else 1)
@@ -268,22 +262,19 @@ def compare(name: str, arguments: argparse.Namespace) -> None:
         for key in comparison.renderers:
             if arguments.only and key not in arguments.only:
                 continue
-            if what := missing(key):
-                print(f"{key} is left out: {what} is missing")
+            package = PACKAGES.get(key, "mitsuba")
+            if package and importlib.util.find_spec(package) is None:
+                print(f"{key} is left out: the Python package {package} is missing")
                 continue
-            renderers[key] = renderer_class(key)(key, scene, folder)
-        film = tomllib.loads(scene.read_text())["film"]
-        print(f"\n== {name}, {film['width']} x {film['height']}, full picture {scale:.0f} times the pixels")
+            renderers[key] = OTHERS.get(key, Mitsuba)(key, scene, folder)
+        print(f"\n== {name}, the picture's sides divided by {shrink}, seconds of the full one {scale:.0f} times as many")
         for renderer in renderers.values():
             print(renderer.version)
         measured = measure(renderers, comparison, 1 if arguments.quick else arguments.repeats)
-    report(name, comparison, measured, scale)
+    report(comparison, measured, scale)
     arguments.out.mkdir(parents=True, exist_ok=True)
-    with (arguments.out / f"{name}.csv").open("w", newline="") as file:
-        csv.writer(file).writerows([Point._fields, *(point for result in measured.values() for point in result.points)])
-    if arguments.pictures:
-        for key, result in measured.items():
-            peers_scene.write_png(arguments.out / f"{name}-{key}.png", result.mean)
+    for key, result in measured.items() if arguments.pictures else ():
+        peers_scene.write_png(arguments.out / f"{name}-{key.replace('/', '-')}.png", result.mean)
 
 
 def main() -> None:
@@ -293,11 +284,16 @@ def main() -> None:
     parser.add_argument("--quick", action="store_true", help="half the side of the picture again, and one repeat")
     parser.add_argument("--repeats", type=int, default=3, help="runs whose median counts")
     parser.add_argument("--pictures", action="store_true", help="write a PNG of every renderer's reference")
-    parser.add_argument("--out", type=Path, default=render.ROOT / "target/peers", help="folder for CSV and PNG")
+    parser.add_argument("--out", type=Path, default=render.ROOT / "target/peers", help="folder for the pictures")
     arguments = parser.parse_args()
-    print(f"{platform.machine()}, {os.cpu_count()} cores")
-    for name in arguments.scene or COMPARISONS:
-        compare(name, arguments)
+    scenes = arguments.scene or list(COMPARISONS)
+    if len(scenes) == 1:
+        print(f"{platform.machine()}, {os.cpu_count()} cores")
+        return compare(scenes[0], arguments)
+    # A process for each scene: Mitsuba and LuxCore bring libraries that do not share one.
+    rest = [word for word in sys.argv[1:] if word != "--scene" and word not in scenes]
+    for name in scenes:
+        subprocess.run([sys.executable, __file__, "--scene", name, *rest], check=True)
 
 
 if __name__ == "__main__":

@@ -4,7 +4,8 @@
     picture = peers_scene.luxcore_picture(pyluxcore, "scene.toml", samples=64, seed=1)
 
 Knows what the scenes of tools/peers.py hold: perspective cameras; quads, spheres and meshes; diffuse, mirror, dielectric and
-emissive materials; an even sky. Spheres above a radius of 1e4, the walls of smallpt, become the squares they stand for.
+emissive materials; an even sky. Spheres above a radius of 1e4, the walls of smallpt, become the squares they stand for;
+`flat_lamp` lets a disc stand for the tip of a huge lamp as well.
 """
 
 import time
@@ -14,8 +15,9 @@ from pathlib import Path
 
 import numpy as np
 
-WALL = 1e4
+WALL, LAMP = 1e4, 100.0
 BALL = (256, 512)  # rings and sectors of a sphere made of triangles
+BUMPY = (810, 810)  # those of the bumpy ball
 
 
 def read(path: Path) -> dict:
@@ -51,8 +53,8 @@ def wall(center: np.ndarray, radius: float, room: np.ndarray) -> dict:
     return {"center": at, "u": u, "v": v}
 
 
-def shapes(scene: dict) -> list[tuple[str, dict, str]]:
-    """Kind, values and material of each object; huge spheres have become quads."""
+def shapes(scene: dict, flat_lamp: bool = False) -> list[tuple[str, dict, str]]:
+    """Kind, values and material of each object; huge spheres have become quads, and a huge lamp the disc of its rim."""
     found = [(*parts(entry["shape"]), entry["material"]) for entry in scene["object"]]
     huge = [values for kind, values, _ in found if kind == "sphere" and values["radius"] > WALL]
     if huge:
@@ -61,11 +63,15 @@ def shapes(scene: dict) -> list[tuple[str, dict, str]]:
         for values in huge:
             axis = int(np.abs(values["center"] - anchor).argmax())
             sign = np.sign(values["center"][axis] - anchor[axis])
-            room[int(sign > 0), axis] = values["center"][axis] - sign * values["radius"]
+            room[int(sign < 0), axis] = values["center"][axis] - sign * values["radius"]  # the room is inside of it
     result = []
     for kind, values, material in found:
         if kind == "sphere" and values["radius"] > WALL:
             kind, values = "quad", wall(np.array(values["center"], float), values["radius"], room)
+        elif kind == "sphere" and values["radius"] > LAMP and flat_lamp:
+            (x, y, z), radius = values["center"], values["radius"]
+            rim = float(np.sqrt(radius**2 - (y - room[1, 1]) ** 2))
+            kind, values = "disc", {"center": [x, y - radius, z], "normal": [0, -1, 0], "radius": rim}
         result.append((kind, values, material))
     return result
 
@@ -97,6 +103,10 @@ def mitsuba_shape(mitsuba, kind: str, values: dict, folder: Path) -> dict:
         return {"type": "rectangle", "to_world": transform(matrix)}
     if kind == "sphere":
         return {"type": "sphere", "center": [float(x) for x in values["center"]], "radius": float(values["radius"])}
+    if kind == "disc":
+        center, normal = np.array(values["center"], float), np.array(values["normal"], float)
+        look = transform().look_at(origin=center, target=center + normal, up=np.roll(normal, 1))
+        return {"type": "disk", "to_world": look.scale(values["radius"])}
     if "file" in values:
         return {"type": "ply", "filename": str(folder / values["file"]), "face_normals": True}
     path = folder / f"mesh{zlib.crc32(repr(values).encode())}.obj"
@@ -106,7 +116,7 @@ def mitsuba_shape(mitsuba, kind: str, values: dict, folder: Path) -> dict:
     return {"type": "obj", "filename": str(path), "face_normals": True}
 
 
-def mitsuba_scene(mitsuba, path: Path) -> dict:
+def mitsuba_scene(mitsuba, path: Path, flat_lamp: bool = False) -> dict:
     """The scene as mitsuba.load_dict reads it, with the multijitter sampler and the path integrator's defaults."""
     scene = read(path)
     camera, film = scene["camera"], scene["film"]
@@ -127,7 +137,7 @@ def mitsuba_scene(mitsuba, path: Path) -> dict:
             "sampler": {"type": "multijitter"},
         },
     }
-    for number, (kind, values, material) in enumerate(shapes(scene)):
+    for number, (kind, values, material) in enumerate(shapes(scene, flat_lamp)):
         shape = mitsuba_shape(mitsuba, kind, values, Path(path).parent)
         result[f"object{number}"] = {**shape, **mitsuba_material(scene["material"][material])}
     for number, light in enumerate(scene.get("light", [])):
@@ -136,9 +146,8 @@ def mitsuba_scene(mitsuba, path: Path) -> dict:
     return result
 
 
-def write_bumpy_ball(path: Path) -> None:
-    """A ball with bumps of 1.3 million triangles."""
-    rings, sectors = 810, 810
+def bumpy_ball(rings: int, sectors: int) -> tuple[np.ndarray, np.ndarray]:
+    """Points and triangles of a ball with bumps, closed and facing outward."""
     theta = np.pi * (np.arange(1, rings) / rings)[:, None]
     phi = 2 * np.pi * (np.arange(sectors) / sectors)[None]
     bumps = np.sin(9 * theta) * np.sin(12 * phi) + 0.3 * np.sin(61 * theta) * np.sin(80 * phi)
@@ -147,11 +156,16 @@ def write_bumpy_ball(path: Path) -> None:
     points = np.concatenate([[[0, 1, 0]], (radius[..., None] * directions).reshape(-1, 3), [[0, -1, 0]]])
     ring, sector = np.mgrid[0 : rings - 2, 0:sectors]
     a, b = (1 + ring * sectors + place for place in (sector, (sector + 1) % sectors))
-    faces = [np.stack([a, b, b + sectors], -1).reshape(-1, 3), np.stack([a, b + sectors, a + sectors], -1).reshape(-1, 3)]
+    quads = [np.stack(corners, -1).reshape(-1, 3) for corners in ((a, b, b + sectors), (a, b + sectors, a + sectors))]
     here, there, last = np.arange(sectors), (np.arange(sectors) + 1) % sectors, len(points) - 1
     low = 1 + (rings - 2) * sectors
-    faces += [np.stack([0 * here, 1 + there, 1 + here], -1), np.stack([last + 0 * here, low + here, low + there], -1)]
-    faces = np.concatenate(faces)
+    poles = [np.stack([0 * here, 1 + there, 1 + here], -1), np.stack([last + 0 * here, low + here, low + there], -1)]
+    return points, np.concatenate(quads + poles)
+
+
+def write_bumpy_ball(path: Path) -> None:
+    """A bumpy ball of 1.3 million triangles as a PLY file."""
+    points, faces = bumpy_ball(*BUMPY)
     records = np.zeros(len(faces), [("count", "u1"), ("corners", "<i4", 3)])
     records["count"], records["corners"] = 3, faces
     header = ["ply", "format binary_little_endian 1.0", f"element vertex {len(points)}"]
