@@ -267,7 +267,7 @@ def compare(name: str, arguments: argparse.Namespace) -> None:
                 print(f"{key} is left out: the Python package {package} is missing")
                 continue
             renderers[key] = OTHERS.get(key, Mitsuba)(key, scene, folder)
-        print(f"\n== {name}, the picture's sides divided by {shrink}, seconds of the full one {scale:.0f} times as many")
+        print(f"\n== {name}, the picture's sides divided by {shrink}, seconds of the full one {scale:.0f}-fold")
         for renderer in renderers.values():
             print(renderer.version)
         measured = measure(renderers, comparison, 1 if arguments.quick else arguments.repeats)
