@@ -134,7 +134,7 @@ fn instances_that_touch_are_refused_by_their_names() {
         + &object("ball.obj", "glass", "{ scale = 0.5 }").replace("[[object]]", "[[object]]\nname = \"bead\"")
         + "instances = [[], [{ translate = [3, 0, 0] }], [{ translate = [3, 0, 0] }]]\n";
     let folder = folder();
-    let source = Source { path: PathBuf::from(folder.path().join("scene.toml")), text };
+    let source = Source { path: folder.path().join("scene.toml"), text };
     let error = source.parse().and_then(|description| compile(&description, &source)).expect_err("they coincide");
     assert!(error.to_string().contains("bead [2] and bead [3] lies in one place"), "{error}");
 }
