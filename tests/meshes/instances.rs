@@ -1,6 +1,5 @@
 //! Meshes that are placed many times and kept once.
 
-use std::path::PathBuf;
 use std::sync::Arc;
 
 use abbe::film::Film;
