@@ -2,7 +2,7 @@ use crate::math::Ray;
 use crate::shape::{Bvh, Shape, Vectors, Visitor};
 
 /// Objects up to this many are tried one by one: a tree saves nothing there.
-const FEW: usize = 6;
+const FEW: usize = 12;
 
 /// Finds the objects a ray may meet.
 #[derive(Clone, Debug)]

@@ -221,3 +221,19 @@ fn fan(polygon: &[u32]) -> impl Iterator<Item = [u32; 3]> + '_ {
     let rest = polygon.get(1..).unwrap_or_default();
     rest.windows(2).map(move |pair| [polygon[0], pair[0], pair[1]])
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_that_ends_in_a_later_batch_says_how_many_elements_it_has_of_all() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("cut.ply");
+        let header =
+            "ply\nformat ascii 1.0\nelement vertex 10000\nproperty float x\nproperty float y\nproperty float z\n";
+        std::fs::write(&path, header.to_owned() + "end_header\n" + &"0 0 0\n".repeat(5000)).expect("a file");
+        let message = read(&path).err().expect("vertices are missing");
+        assert_eq!(message, "the file ends too early, while reading element 'vertex' (expected 10000, got 5000)");
+    }
+}

@@ -177,9 +177,9 @@ impl<T: Number> Block<T> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::Triangle;
     use super::*;
     use crate::math::ball_surface;
+    use crate::shape::Triangle;
 
     /// Numbers of a multiplicative congruential generator, in [0, 1).
     fn numbers() -> impl FnMut() -> f64 {

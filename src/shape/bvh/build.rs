@@ -261,9 +261,9 @@ mod tests {
             .collect();
         for boxes in [equal, geometric] {
             for group in [1, 4] {
-                let mut clustered = Builder::started(&boxes, group);
-                let root = clustered.clusters();
-                assert!(clustered.levels(root) <= MAX_LEVELS);
+                let (root, nodes, items) = Builder::build(&boxes, group);
+                let built = Builder { nodes, items, ..Builder::started(&boxes, group) };
+                assert!(built.levels(root.expect("a tree")) <= MAX_LEVELS);
                 let mut halved = Builder::started(&boxes, group);
                 let root = halved.by_halves();
                 assert!(halved.levels(root) <= 12);
