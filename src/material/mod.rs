@@ -72,7 +72,7 @@ pub enum Material<S> {
 pub struct Arrival<'a, const N: usize> {
     /// Unit vector to the viewer.
     pub wo: DVec3,
-    /// Geometric unit normal on the viewer's side.
+    /// Unit normal by which the surface scatters, on the viewer's side: on smooth meshes not that of the triangle.
     pub normal: DVec3,
     /// Where the surface is met, for what varies over it.
     pub uv: [f64; 2],

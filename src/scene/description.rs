@@ -78,6 +78,8 @@ pub enum ModelText {
 /// [[object]]
 /// shape.sphere = { center = [0, 1, 0], radius = 1 }
 /// material = "glass"
+/// # transform = [{ scale = 2 }]
+/// # instances = [[{ translate = [1, 0, 0] }], [{ translate = [3, 0, 0] }, { scale = [-1, 1, 1] }]]
 /// ```
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
