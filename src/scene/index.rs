@@ -1,5 +1,5 @@
 use crate::math::Ray;
-use crate::shape::{Bvh, Shape, Vectors, Visitor};
+use crate::shape::{Bvh, Pool, Shape, Vectors, Visitor};
 
 /// Objects up to this many are tried one by one: a tree saves nothing there.
 const FEW: usize = 12;
@@ -12,12 +12,16 @@ pub(super) struct Index {
     tree: Bvh,
     /// Object of each item of the tree.
     bounded: Vec<u32>,
+    /// The triangles of small objects, if there are several.
+    pool: Option<Pool>,
 }
 
 impl Index {
-    pub(super) fn new<'a>(shapes: impl Iterator<Item = &'a Shape>) -> Self {
+    pub(super) fn new<'a>(shapes: impl Iterator<Item = &'a Shape> + Clone) -> Self {
+        let pools = shapes.clone().filter(|shape| Pool::takes(shape)).count() > 1;
+        let pool = pools.then(|| Pool::new((0..).zip(shapes.clone())));
         let (mut always, mut bounded, mut bounds) = (Vec::new(), Vec::new(), Vec::new());
-        for (object, shape) in shapes.enumerate() {
+        for (object, shape) in shapes.enumerate().filter(|(_, shape)| !(pools && Pool::takes(shape))) {
             match shape.bounds() {
                 Some(boxed) => {
                     bounded.push(object as u32);
@@ -31,10 +35,16 @@ impl Index {
             always.sort_unstable();
             bounds.clear();
         }
-        Self { always, tree: Bvh::new::<1>(bounds.into_iter()), bounded }
+        Self { always, tree: Bvh::new::<1>(bounds.into_iter()), bounded, pool }
     }
 
-    /// Calls `test(object, t_max)` for every object the ray may meet before `t_max`, nearer ones first.
+    /// The pool of small objects.
+    #[inline]
+    pub(super) fn pool(&self) -> Option<&Pool> {
+        self.pool.as_ref()
+    }
+
+    /// Calls `test(object, t_max)` for every object beside the pool that the ray may meet before `t_max`, nearer ones first.
     ///
     /// `test` answers the new `t_max`.
     #[inline]
@@ -48,7 +58,7 @@ impl Index {
         }
     }
 
-    /// Calls `test(object)` for objects the ray may meet before `t_max`, in any order, until one passes.
+    /// Calls `test(object)` for objects beside the pool that the ray may meet before `t_max`, in any order, until one passes.
     #[inline]
     pub(super) fn any(&self, ray: &Ray, t_max: f64, mut test: impl FnMut(u32) -> bool) {
         if self.always.iter().any(|&object| test(object)) || self.bounded.is_empty() {

@@ -182,8 +182,10 @@ impl<S> Scene<S> {
     /// The nearest surface along a ray up to a distance, of those objects that count.
     #[inline]
     pub fn nearest(&self, ray: &Ray, distance: f64, counts: impl Fn(u32) -> bool) -> Option<Hit> {
-        let mut nearest: Option<Hit> = None;
-        self.index.nearest(ray, distance, |object, limit| {
+        let pooled = self.index.pool().and_then(|pool| pool.nearest(ray, distance, &counts));
+        let mut nearest = pooled.map(|(object, crossing)| Hit { object, crossing });
+        let limit = nearest.map_or(distance, |hit| hit.crossing.t);
+        self.index.nearest(ray, limit, |object, limit| {
             if !counts(object) {
                 return limit;
             }
@@ -211,6 +213,15 @@ impl<S> Scene<S> {
         counts: impl Fn(u32) -> bool,
     ) -> bool {
         // An object listed after the light's own does not hide it by an equal distance.
+        let hides_at = |object: u32, t: f64| match light {
+            _ if !counts(object) => false,
+            Some(light) if light == object => false,
+            Some(light) if light < object => t < distance,
+            _ => true,
+        };
+        if self.index.pool().is_some_and(|pool| pool.any(ray, distance, hides_at)) {
+            return true;
+        }
         let hides = |object: u32| match light {
             _ if !counts(object) => false,
             Some(light) if light == object => false,

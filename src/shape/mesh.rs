@@ -108,12 +108,12 @@ impl Mesh {
 
     /// The nearest crossing; of equally near ones, that of the triangle listed first.
     pub(super) fn intersect(&self, ray: &Ray, t_max: f64) -> Option<Crossing> {
-        self.packed.nearest(&self.bvh, ray, t_max)
+        self.packed.nearest(&self.bvh, ray, t_max, |_| true)
     }
 
     /// Whether there is a crossing with 0 < t <= `t_max`.
     pub(super) fn is_crossed(&self, ray: &Ray, t_max: f64) -> bool {
-        self.packed.any(&self.bvh, ray, t_max)
+        self.packed.any(&self.bvh, ray, t_max, |_, _| true)
     }
 
     pub(super) fn point(&self, crossing: &Crossing) -> SurfacePoint {

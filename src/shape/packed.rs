@@ -25,19 +25,22 @@ impl Packed {
         }
     }
 
-    /// The nearest crossing with 0 < t <= `t_max`; of equally near ones, that of the triangle listed first.
-    pub fn nearest(&self, bvh: &Bvh, ray: &Ray, t_max: f64) -> Option<Crossing> {
+    /// The nearest crossing with 0 < t <= `t_max` of a triangle that counts; of equally near ones, that of the one listed
+    /// first.
+    #[inline]
+    pub fn nearest(&self, bvh: &Bvh, ray: &Ray, t_max: f64, counts: impl Fn(u32) -> bool) -> Option<Crossing> {
         match self {
-            Self::Single(blocks) => nearest(blocks, bvh, ray, t_max),
-            Self::Double(blocks) => nearest(blocks, bvh, ray, t_max),
+            Self::Single(blocks) => nearest(blocks, bvh, ray, t_max, counts),
+            Self::Double(blocks) => nearest(blocks, bvh, ray, t_max, counts),
         }
     }
 
-    /// Whether there is a crossing with 0 < t <= `t_max`.
-    pub fn any(&self, bvh: &Bvh, ray: &Ray, t_max: f64) -> bool {
+    /// Whether there is a crossing with 0 < t <= `t_max` that counts, told its triangle and t.
+    #[inline]
+    pub fn any(&self, bvh: &Bvh, ray: &Ray, t_max: f64, counts: impl Fn(u32, f64) -> bool) -> bool {
         match self {
-            Self::Single(blocks) => any(blocks, bvh, ray, t_max),
-            Self::Double(blocks) => any(blocks, bvh, ray, t_max),
+            Self::Single(blocks) => any(blocks, bvh, ray, t_max, counts),
+            Self::Double(blocks) => any(blocks, bvh, ray, t_max, counts),
         }
     }
 }
@@ -63,14 +66,22 @@ fn blocks<P: Copy + Into<[T; 3]>, T: Copy>(
     items.chunks_exact(GROUP).map(block).collect()
 }
 
-fn nearest<T: Number>(blocks: &[Block<T>], bvh: &Bvh, ray: &Ray, t_max: f64) -> Option<Crossing> {
-    let visitor = Nearest { blocks, items: bvh.items(), line: Line::new(ray), found: None };
+#[inline]
+fn nearest<T: Number>(
+    blocks: &[Block<T>],
+    bvh: &Bvh,
+    ray: &Ray,
+    t_max: f64,
+    counts: impl Fn(u32) -> bool,
+) -> Option<Crossing> {
+    let visitor = Nearest { blocks, items: bvh.items(), line: Line::new(ray), counts, found: None };
     let found = bvh.walk_in_order(ray, t_max, visitor).found;
     found.map(|found| Crossing { part: bvh.items()[found.part as usize], ..found })
 }
 
-fn any<T: Number>(blocks: &[Block<T>], bvh: &Bvh, ray: &Ray, t_max: f64) -> bool {
-    bvh.walk(ray, t_max, Any { blocks, line: Line::new(ray), found: false }).found
+#[inline]
+fn any<T: Number>(blocks: &[Block<T>], bvh: &Bvh, ray: &Ray, t_max: f64, counts: impl Fn(u32, f64) -> bool) -> bool {
+    bvh.walk(ray, t_max, Any { blocks, items: bvh.items(), line: Line::new(ray), counts, found: false }).found
 }
 
 /// A ray as the tests of four triangles take it.
@@ -90,15 +101,16 @@ impl Line {
     }
 }
 
-struct Nearest<'a, T> {
+struct Nearest<'a, T, F> {
     blocks: &'a [Block<T>],
     items: &'a [u32],
     line: Line,
+    counts: F,
     /// Its part is the place in `items`.
     found: Option<Crossing>,
 }
 
-impl<T: Number> Visitor for Nearest<'_, T> {
+impl<T: Number, F: Fn(u32) -> bool> Visitor for Nearest<'_, T, F> {
     #[inline(always)]
     fn visit(&mut self, vectors: impl Vectors, first: usize, groups: usize, mut t_max: f64) -> Option<f64> {
         for group in first..first + groups {
@@ -110,6 +122,9 @@ impl<T: Number> Visitor for Nearest<'_, T> {
                 if let Some(crossing) = block.crossing(lane, &self.line.sheared, t_max) {
                     let place = (group * GROUP + lane) as u32;
                     let item = |place: u32| self.items[place as usize];
+                    if !(self.counts)(item(place)) {
+                        continue;
+                    }
                     if self.found.is_none_or(|found| crossing.t < found.t || item(place) < item(found.part)) {
                         self.found = Some(Crossing { part: place, ..crossing });
                     }
@@ -126,21 +141,26 @@ impl<T: Number> Visitor for Nearest<'_, T> {
     }
 }
 
-struct Any<'a, T> {
+struct Any<'a, T, F> {
     blocks: &'a [Block<T>],
+    items: &'a [u32],
     line: Line,
+    counts: F,
     found: bool,
 }
 
-impl<T: Number> Visitor for Any<'_, T> {
+impl<T: Number, F: Fn(u32, f64) -> bool> Visitor for Any<'_, T, F> {
     #[inline(always)]
     fn visit(&mut self, vectors: impl Vectors, first: usize, groups: usize, t_max: f64) -> Option<f64> {
-        for block in &self.blocks[first..first + groups] {
+        for group in first..first + groups {
+            let block = &self.blocks[group];
             let mut inside = block.inside(vectors, &self.line);
             while inside != 0 {
                 let lane = (inside.trailing_zeros() & 3) as usize;
                 inside &= inside - 1;
-                if block.crossing(lane, &self.line.sheared, t_max).is_some() {
+                if let Some(crossing) = block.crossing(lane, &self.line.sheared, t_max)
+                    && (self.counts)(self.items[group * GROUP + lane], crossing.t)
+                {
                     self.found = true;
                     return None;
                 }

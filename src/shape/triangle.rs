@@ -25,6 +25,10 @@ impl Triangle {
         scaled_normal(points).length_squared() == 0.0
     }
 
+    pub(super) fn points(&self) -> [DVec3; 3] {
+        self.points
+    }
+
     pub(super) fn intersect(&self, ray: &Ray, t_max: f64) -> Option<Crossing> {
         Sheared::new(ray).intersect(self.points, t_max)
     }

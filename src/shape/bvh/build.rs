@@ -9,7 +9,7 @@ use obvhs::{Boundable, BvhBuildParams};
 
 use super::collapse::Pair;
 use super::node::{Child, Node, Outer, WIDTH};
-use super::walk::STACK;
+use super::stack::STACK;
 use crate::math::DVec3;
 
 /// Most items of a cluster: building one takes some 200 bytes for each of its items.

@@ -3,6 +3,7 @@
 mod build;
 mod collapse;
 mod node;
+mod stack;
 mod vectors;
 mod walk;
 

@@ -2,11 +2,9 @@
 
 use super::Bvh;
 use super::node::{Child, Slabs, reach};
+use super::stack::Stack;
 use super::vectors::{Computation, Vectors, prefetch};
 use crate::math::Ray;
-
-/// Entries of the stack, which no tree needs more of.
-pub const STACK: usize = 256;
 
 /// What is done in a leaf.
 pub trait Visitor {
@@ -37,8 +35,7 @@ impl<const ORDERED: bool, T: Visitor> Computation for Walk<'_, ORDERED, T> {
         let slabs = Slabs::new(self.ray);
         let mut limit = reach(self.t_max);
         // Children to look at, each under the distance at which its box begins.
-        let mut stack = [0u64; STACK];
-        let mut height = 0;
+        let mut stack = Stack::new();
         let mut current = root;
         loop {
             match current.open() {
@@ -52,7 +49,7 @@ impl<const ORDERED: bool, T: Visitor> Computation for Walk<'_, ORDERED, T> {
                 Err(index) => {
                     let node = &self.bvh.nodes[index];
                     let (mut entered, keys) = node.enter(vectors, &slabs, limit);
-                    let base = height;
+                    let base = stack.height();
                     while entered != 0 {
                         let slot = (entered.trailing_zeros() & 7) as usize;
                         entered &= entered - 1;
@@ -61,24 +58,16 @@ impl<const ORDERED: bool, T: Visitor> Computation for Walk<'_, ORDERED, T> {
                             Ok((first, _)) => self.visitor.prefetch(first),
                             Err(index) => prefetch(&self.bvh.nodes[index]),
                         }
-                        let mut at = height;
                         if ORDERED {
-                            while at > base && stack[(at - 1) % STACK] < key {
-                                stack[at % STACK] = stack[(at - 1) % STACK];
-                                at -= 1;
-                            }
+                            stack.push_in_order(key, base);
+                        } else {
+                            stack.push(key);
                         }
-                        stack[at % STACK] = key;
-                        height += 1;
                     }
                 }
             }
             loop {
-                if height == 0 {
-                    return self.visitor;
-                }
-                height -= 1;
-                let key = stack[height % STACK];
+                let Some(key) = stack.pop() else { return self.visitor };
                 if f32::from_bits((key >> 32) as u32) <= limit {
                     current = Child(key as u32);
                     break;

@@ -1,0 +1,66 @@
+use super::bvh::GROUP;
+use super::packed::Packed;
+use super::{Bvh, Crossing, Shape, Triangle, Vertices};
+use crate::math::{DVec3, Ray};
+
+/// The triangles of several small shapes in one tree, which a ray goes through once.
+#[derive(Clone, Debug)]
+pub struct Pool {
+    bvh: Bvh,
+    packed: Packed,
+    /// Number of the shape, and the triangle's in the shape.
+    owners: Vec<[u32; 2]>,
+}
+
+/// Triangles of a mesh above which it is better left alone.
+const SMALL: usize = 1024;
+
+impl Pool {
+    /// Whether a shape may go into a pool.
+    pub fn takes(shape: &Shape) -> bool {
+        match shape {
+            Shape::Triangle(_) => true,
+            Shape::Mesh(mesh) => mesh.len() <= SMALL,
+            _ => false,
+        }
+    }
+
+    /// The triangles of those numbered shapes that it takes, in ascending order.
+    pub fn new<'a>(shapes: impl Iterator<Item = (u32, &'a Shape)>) -> Self {
+        let (mut points, mut owners) = (Vec::<DVec3>::new(), Vec::new());
+        for (number, shape) in shapes {
+            let mut add = |triangle: &Triangle, part: u32| {
+                points.extend(triangle.points());
+                owners.push([number, part]);
+            };
+            match shape {
+                Shape::Triangle(triangle) => add(triangle, 0),
+                Shape::Mesh(mesh) if Self::takes(shape) => {
+                    (0..mesh.len() as u32).for_each(|part| add(&mesh.triangle(part), part));
+                }
+                _ => {}
+            }
+        }
+        let triangles: Vec<[u32; 3]> = (0..owners.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        let boxes = points.chunks_exact(3).map(|p| Triangle::new([p[0], p[1], p[2]]).bounds());
+        let bvh = Bvh::new::<GROUP>(boxes);
+        let packed = Packed::new(&Vertices::Double(points), &triangles, bvh.items());
+        Self { bvh, packed, owners }
+    }
+
+    /// The nearest crossing with 0 < t <= `t_max` of a shape that counts, and the shape's number. Of equally near ones, that of
+    /// the lowest number.
+    #[inline]
+    pub fn nearest(&self, ray: &Ray, t_max: f64, counts: impl Fn(u32) -> bool) -> Option<(u32, Crossing)> {
+        let owner = |item: u32| self.owners[item as usize];
+        let crossing = self.packed.nearest(&self.bvh, ray, t_max, |item| counts(owner(item)[0]))?;
+        let [number, part] = owner(crossing.part);
+        Some((number, Crossing { part, ..crossing }))
+    }
+
+    /// Whether there is a crossing with 0 < t <= `t_max` that counts, told the shape's number and t.
+    #[inline]
+    pub fn any(&self, ray: &Ray, t_max: f64, counts: impl Fn(u32, f64) -> bool) -> bool {
+        self.packed.any(&self.bvh, ray, t_max, |item, t| counts(self.owners[item as usize][0], t))
+    }
+}
