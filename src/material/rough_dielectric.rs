@@ -5,8 +5,8 @@ use super::{Arrival, Branch, Dielectric, Flow, RoughInterface, Sides};
 use crate::math::{DVec3, Frame, unit};
 use crate::spectrum::{Lanes, Table};
 
-/// Lanes whose refracted rays lie apart by more than this many widths of the facets' slopes, as far as the slopes turn
-/// them, part; see [`parts`]. Measured by noise at equal time.
+/// Lanes part whose refracted rays lie apart by more than this many times what a facet as steep as alpha turns them: the
+/// lobe is as wide to both sides. Together or apart, each lane gets its own light; only the noise differs.
 const WIDTHS: f64 = 2.0;
 
 /// A rough surface met by a ray: each lane's boundary, once for all lanes of the same indices.

@@ -115,7 +115,7 @@ fn quadrature(facets: &Facets, z: f64, ratio: f64) -> [f64; 2] {
     sum.map(|sum| sum / (UP * AROUND) as f64)
 }
 
-/// The share of refracted light that meets another facet, by far side's masking.
+/// The share of refracted light that meets another facet, by the far side's masking.
 fn blocked_beyond(facets: &Facets, wi: DVec3) -> f64 {
     if wi.z < 0.0 { facets.masking(wi)[1] } else { 1.0 }
 }
