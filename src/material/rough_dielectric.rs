@@ -112,13 +112,16 @@ impl<'a, 'b, const N: usize> Meeting<'a, 'b, N> {
 /// Whether lanes that cross a rough surface go different ways. While their lobes overlap they go on together.
 ///
 /// The refracted ray turns by sin t dr / (r cos t) where the ratio of the indices, r, changes by dr, and by
-/// |r cos i - cos t| / cos t of what a facet is turned by. All lanes of a draw are asked, as in [`Arrival::parts`].
+/// |r cos i - cos t| / cos t of what a facet is turned by. The lanes are asked that count while they are together: beside heroes the fixed ones,
+/// for if wavelengths drawn at random decided whether they count, some would count more often than others.
 fn parts<const N: usize>(interface: &RoughInterface, arrival: &Arrival<N>) -> bool {
     if !arrival.parts() {
         return false;
     }
     let ratio = |i: usize| arrival.incident[i] / arrival.beyond[i];
-    let (least, most) = (0..N).map(ratio).fold((f64::INFINITY, 0.0_f64), |(l, m), x| (l.min(x), m.max(x)));
+    let counts = |&i: &usize| arrival.draw.shares(false)[i] != 0.0;
+    let (least, most) =
+        (0..N).filter(counts).map(ratio).fold((f64::INFINITY, 0.0_f64), |(l, m), x| (l.min(x), m.max(x)));
     let (cos, middle) = (arrival.wo.dot(arrival.normal).clamp(0.0, 1.0), 0.5 * (least + most));
     let sin = (middle * (1.0 - cos * cos).sqrt()).min(1.0);
     let turned = (middle * cos - (1.0 - sin * sin).sqrt()).abs();
