@@ -212,6 +212,8 @@ pub type Ways = [Option<(DVec3, Option<DVec3>)>; 2];
 
 impl Sides<'_> {
     /// The share of light from the viewer's side at the cosine `z` that comes back there: all else crosses.
+    ///
+    /// Inside the denser medium tables round the edge of total reflection, where the surface is nearly smooth.
     pub fn reflectance(&self, z: f64) -> f64 {
         self.near.reflected_once(z) + (1.0 - self.crossing[0]) * self.near.blocked(z)
     }
