@@ -38,13 +38,13 @@ impl Row {
 }
 
 /// Steps between rows for ratios above 1, and as many below.
-const RATIOS: usize = 56;
+const RATIOS: usize = 80;
 /// The smallest |ln(n2 / n1)| of the rows and the largest, of the largest index there is to vacuum. Between them it grows by
-/// a fifth from row to row: light that grazes nearly equal indices is reflected below a cosine of about its root.
+/// an eighth from row to row: light that grazes nearly equal indices is reflected below a cosine of about its root.
 const SPAN: [f64; 2] = [1e-4, LN_10];
 /// Steps of the quadrature over the visible facets: around the normal's half turn, and up.
-const AROUND: usize = 24;
-const UP: usize = 48;
+const AROUND: usize = 32;
+const UP: usize = 64;
 
 impl RoughInterface {
     /// The boundary whose facets have slopes as wide as `alpha`.
