@@ -5,8 +5,8 @@ use super::{Arrival, Branch, Dielectric, Flow, RoughInterface, Sides};
 use crate::math::{DVec3, Frame, unit};
 use crate::spectrum::{Lanes, Table};
 
-/// Lanes whose refracted rays lie apart by more than this many widths of the facets' slopes, as far as the slopes turn
-/// them, part; see [`parts`]. Measured by noise at equal time.
+/// Lanes part whose refracted rays lie apart by more than this many times what a facet as steep as alpha turns them: the
+/// lobe is as wide to both sides. Together or apart, each lane gets its own light; only the noise differs.
 const WIDTHS: f64 = 2.0;
 
 /// A rough surface met by a ray: each lane's boundary, once for all lanes of the same indices.
@@ -112,13 +112,16 @@ impl<'a, 'b, const N: usize> Meeting<'a, 'b, N> {
 /// Whether lanes that cross a rough surface go different ways. While their lobes overlap they go on together.
 ///
 /// The refracted ray turns by sin t dr / (r cos t) where the ratio of the indices, r, changes by dr, and by
-/// |r cos i - cos t| / cos t of what a facet is turned by. All lanes of a draw are asked, as in [`Arrival::parts`].
+/// |r cos i - cos t| / cos t of what a facet is turned by. The lanes are asked that count while they are together: beside heroes the fixed ones,
+/// for if wavelengths drawn at random decided whether they count, some would count more often than others.
 fn parts<const N: usize>(interface: &RoughInterface, arrival: &Arrival<N>) -> bool {
     if !arrival.parts() {
         return false;
     }
     let ratio = |i: usize| arrival.incident[i] / arrival.beyond[i];
-    let (least, most) = (0..N).map(ratio).fold((f64::INFINITY, 0.0_f64), |(l, m), x| (l.min(x), m.max(x)));
+    let counts = |&i: &usize| arrival.draw.shares(false)[i] != 0.0;
+    let (least, most) =
+        (0..N).filter(counts).map(ratio).fold((f64::INFINITY, 0.0_f64), |(l, m), x| (l.min(x), m.max(x)));
     let (cos, middle) = (arrival.wo.dot(arrival.normal).clamp(0.0, 1.0), 0.5 * (least + most));
     let sin = (middle * (1.0 - cos * cos).sqrt()).min(1.0);
     let turned = (middle * cos - (1.0 - sin * sin).sqrt()).abs();

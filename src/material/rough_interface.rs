@@ -38,13 +38,13 @@ impl Row {
 }
 
 /// Steps between rows for ratios above 1, and as many below.
-const RATIOS: usize = 56;
+const RATIOS: usize = 80;
 /// The smallest |ln(n2 / n1)| of the rows and the largest, of the largest index there is to vacuum. Between them it grows by
-/// a fifth from row to row: light that grazes nearly equal indices is reflected below a cosine of about its root.
+/// an eighth from row to row: light that grazes nearly equal indices is reflected below a cosine of about its root.
 const SPAN: [f64; 2] = [1e-4, LN_10];
 /// Steps of the quadrature over the visible facets: around the normal's half turn, and up.
-const AROUND: usize = 24;
-const UP: usize = 48;
+const AROUND: usize = 32;
+const UP: usize = 64;
 
 impl RoughInterface {
     /// The boundary whose facets have slopes as wide as `alpha`.
@@ -115,7 +115,7 @@ fn quadrature(facets: &Facets, z: f64, ratio: f64) -> [f64; 2] {
     sum.map(|sum| sum / (UP * AROUND) as f64)
 }
 
-/// The share of refracted light that meets another facet, by far side's masking.
+/// The share of refracted light that meets another facet, by the far side's masking.
 fn blocked_beyond(facets: &Facets, wi: DVec3) -> f64 {
     if wi.z < 0.0 { facets.masking(wi)[1] } else { 1.0 }
 }
@@ -212,6 +212,8 @@ pub type Ways = [Option<(DVec3, Option<DVec3>)>; 2];
 
 impl Sides<'_> {
     /// The share of light from the viewer's side at the cosine `z` that comes back there: all else crosses.
+    ///
+    /// Inside the denser medium tables round the edge of total reflection, where the surface is nearly smooth.
     pub fn reflectance(&self, z: f64) -> f64 {
         self.near.reflected_once(z) + (1.0 - self.crossing[0]) * self.near.blocked(z)
     }

@@ -32,7 +32,7 @@ fn scenes() -> Vec<(String, String, u32)> {
 fn rough_glass_is_invisible_in_an_even_environment() {
     let scenes = scenes();
     for (name, bodies, samples) in &scenes {
-        for (transport, times) in [(SPLITTING, 1.0), (SINGLE_PATH, 2.0)] {
+        for (transport, times) in [(SPLITTING, 1.0), (SINGLE_PATH, 2.5)] {
             let text = view([1.3, 0.9, 4.1], [0.05, 0.02, 0.1], 14.0, 32)
                 + &format!("[render]\nsamples = {samples}\n")
                 + bodies

@@ -44,16 +44,16 @@ fn aiming_at_a_lamp_behind_inside_or_before_rough_glass_and_meeting_it_show_the_
     ];
     for (name, glass, shapes) in &cases {
         let [aimed_at, met] = lamps(shapes);
-        let by_chance = images(&picture(&(glass.clone() + &met), 8192), SINGLE_PATH, 6);
+        let by_chance = images(&picture(&(glass.clone() + &met), 2048), SINGLE_PATH, 6);
         let by_chance = Mean::over_seeds(by_chance.iter().map(|(film, _)| film));
         for transport in [SINGLE_PATH, SPLITTING] {
-            let aimed = images(&picture(&(glass.clone() + &aimed_at), 1024), transport, 6);
+            let aimed = images(&picture(&(glass.clone() + &aimed_at), 256), transport, 6);
             let mut aimed = Mean::over_seeds(aimed.iter().map(|(film, _)| film));
             println!("{name}: {aimed:.5?} for {by_chance:.5?}");
             for band in 0..3 {
                 aimed.error[band] = libm::hypot(aimed.error[band], by_chance.error[band]);
             }
-            assert!(aimed.worst_error(by_chance.value) < 0.02, "{name}: {aimed:?}");
+            assert!(aimed.worst_error(by_chance.value) < 0.04, "{name}: {aimed:?}");
             aimed.assert_near(by_chance.value, 2 * cases.len(), name);
         }
     }
@@ -63,7 +63,7 @@ fn aiming_at_a_lamp_behind_inside_or_before_rough_glass_and_meeting_it_show_the_
 fn fixed_lanes_and_heroes_show_the_same_lamp_behind_dispersive_rough_glass() {
     let [aimed_at, _] = lamps(&[LAMP]);
     for roughness in [0.1, 0.3, 0.6] {
-        let text = picture(&(glass("\"N-SF11\"", roughness, "", &[PANE]) + &aimed_at), 1024);
+        let text = picture(&(glass("\"N-SF11\"", roughness, "", &[PANE]) + &aimed_at), 256);
         let scene = scene(&text);
         let emission = Emission::new(scene.lights[0].emission(), scene.film.color_space);
         let bands = Basis::bands(scene.film.color_space, 12, &[]);
