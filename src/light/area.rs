@@ -19,7 +19,7 @@ pub struct Area<S> {
     /// Whether next-event estimation aims at it: finite `emissive` surfaces. Planes and glowing glass are only met.
     pub aimed_at: bool,
     /// Where its points lie in the image that it shows, if it shows one.
-    pub coordinates: Option<Coordinates>,
+    pub coordinates: Option<Arc<Coordinates>>,
     /// The parts of a shape of several, one of which is aimed at.
     parts: Option<Arc<Emitters>>,
     /// The box from whose outside no backs are seen.
@@ -47,7 +47,7 @@ impl<S> Area<S> {
             radiance: convert(Quantity::Emission, &self.radiance),
             sides: self.sides,
             aimed_at: self.aimed_at,
-            coordinates: self.coordinates,
+            coordinates: self.coordinates.clone(),
             parts: self.parts.clone(),
             closed: self.closed,
             seen: self.seen,
@@ -97,8 +97,10 @@ impl<S> Area<S> {
             Some(density) => usable(density.toward(crossing.t, cos.abs()))?,
             None => self.pdf(ray, normal, &crossing)?,
         };
-        let uv =
-            self.coordinates.map_or([0.0; 2], |coordinates| coordinates.at(&self.shape, &crossing, point.position));
+        let uv = self
+            .coordinates
+            .as_ref()
+            .map_or([0.0; 2], |coordinates| coordinates.at(&self.shape, &crossing, point.position));
         let view = View { distance: crossing.t, object: Some(self.object), pdf: Some(pdf), factor: 1.0, uv };
         self.sides.shine(cos < 0.0).then_some(view)
     }

@@ -131,7 +131,7 @@ impl Compiler<'_> {
                 if varies && coordinates.is_none() {
                     return Err(self.no_coordinates(&at, &text.material));
                 }
-                let (shape, coordinates) = (Arc::new(shape), coordinates.filter(|_| varies));
+                let (shape, coordinates) = (Arc::new(shape), coordinates.filter(|_| varies).map(Arc::new));
                 objects.push(Object { name, shape, material: material as u32, light: None, coordinates });
                 entries.push(number);
             }
@@ -197,7 +197,7 @@ impl Compiler<'_> {
             let light: LightId = scene.lights.len();
             let aimed_at = lamp && object.shape.bounds().is_some();
             let mut area = Area::new(object.shape.clone(), number as u32, radiance.clone(), sides, aimed_at);
-            area.coordinates = object.coordinates.filter(|_| radiance.varies());
+            area.coordinates = object.coordinates.clone().filter(|_| radiance.varies());
             scene.lights.push(Light::Area(area));
             scene.objects[number].light = Some(light);
         }

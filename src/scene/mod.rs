@@ -116,13 +116,14 @@ pub struct Object {
     /// The light it is, if it shines.
     pub light: Option<LightId>,
     /// Where its points lie in images, if its material varies over the surface.
-    pub coordinates: Option<Coordinates>,
+    pub coordinates: Option<Arc<Coordinates>>,
 }
 
 impl Object {
     /// Where a point of its surface lies in images on it; (0, 0) if there are none.
     pub fn uv(&self, crossing: &Crossing, point: &SurfacePoint) -> [f64; 2] {
-        self.coordinates.map_or([0.0; 2], |coordinates| coordinates.at(&self.shape, crossing, point.position))
+        let coordinates = self.coordinates.as_ref();
+        coordinates.map_or([0.0; 2], |coordinates| coordinates.at(&self.shape, crossing, point.position))
     }
 }
 
