@@ -187,11 +187,16 @@ impl<S> Scene<S> {
         nearest
     }
 
-    /// Whether anything that counts lies before a light at `distance`; the light's own object does not hide it.
+    /// Whether anything lies before a light at `distance`; the light's own object does not hide it.
     ///
     /// `hider` remembers what hid a light last: it is asked first, for it often hides the next one as well.
+    pub fn is_hidden(&self, ray: &Ray, distance: f64, light: Option<u32>, hider: &Cell<u32>) -> bool {
+        self.is_hidden_by(ray, distance, light, hider, |_| true)
+    }
+
+    /// The same by those objects that count.
     #[inline]
-    pub fn is_hidden(
+    pub fn is_hidden_by(
         &self,
         ray: &Ray,
         distance: f64,

@@ -86,11 +86,15 @@ impl<const N: usize> Gathering<'_, N> {
             if !factor.is_finite() {
                 return None;
             }
-            let passing = self.unhidden(&ray, view.distance, view.object)?;
-            let mut arriving = light.toward(self.arrival.draw, sighting.direction);
-            if let Some(passing) = passing {
-                arriving = arriving * passing;
+            let mut arriving = Lanes::ONE;
+            let holes = self.world.has_any_holes();
+            if holes {
+                arriving = self.through_holes(&ray, view.distance, view.object)?;
+            } else if self.world.scene.is_hidden(&ray, view.distance, view.object, self.hider) {
+                return None;
             }
+            let toward = light.toward(self.arrival.draw, sighting.direction);
+            arriving = if holes { arriving * toward } else { toward };
             if let Some(material) = self.inside {
                 arriving =
                     arriving * media::medium(self.world, material).transmission(self.arrival.draw, view.distance);
@@ -101,16 +105,15 @@ impl<const N: usize> Gathering<'_, N> {
         lit().unwrap_or([0.0; 3])
     }
 
-    /// The share of a light that holes before it let through, where there are any in the scene; none if it is hidden.
-    fn unhidden(&self, ray: &Ray, distance: f64, light: Option<u32>) -> Option<Option<Lanes<N>>> {
-        let (world, scene) = (self.world, &self.world.scene);
-        if !world.has_any_holes() {
-            return (!scene.is_hidden(ray, distance, light, self.hider, |_| true)).then_some(None);
-        }
-        if scene.is_hidden(ray, distance, light, self.hider, |object| !world.has_holes(object)) {
+    /// The share of a light that holes before it let through; none if something hides it.
+    #[cold]
+    #[inline(never)]
+    fn through_holes(&self, ray: &Ray, distance: f64, light: Option<u32>) -> Option<Lanes<N>> {
+        let world = self.world;
+        if world.scene.is_hidden_by(ray, distance, light, self.hider, |object| !world.has_holes(object)) {
             return None;
         }
-        through_holes(world, self.arrival.draw, ray, distance, self.inside).map(Some)
+        through_holes(world, self.arrival.draw, ray, distance, self.inside)
     }
 }
 

@@ -12,6 +12,8 @@ use crate::spectrum::{Draw, Lanes};
 const COVER: u32 = 4;
 
 /// The share of each lane of a path that passes straight on where it meets a surface; none if nothing does.
+#[cold]
+#[inline(never)]
 pub(super) fn passing<const N: usize>(
     world: &World,
     draw: &Draw<N>,
