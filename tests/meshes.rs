@@ -12,5 +12,6 @@ mod meshes {
     mod gltf;
     mod instances;
     mod nearest;
+    mod pools;
     mod trees;
 }

@@ -14,6 +14,7 @@ mod fresnel;
 mod mask;
 mod mirror;
 mod mix;
+mod nature;
 mod part;
 mod plastic;
 mod rough_dielectric;
@@ -198,46 +199,6 @@ impl<S> Material<S> {
     pub fn medium(&self) -> Option<&Dielectric<S>> {
         match self {
             Self::Dielectric(dielectric) => Some(dielectric),
-            _ => None,
-        }
-    }
-
-    /// Whether light leaves in every direction, so that lights can be aimed at.
-    pub fn scatters_widely(&self) -> bool {
-        match self {
-            Self::Diffuse(_) => true,
-            Self::Conductor(conductor) => !conductor.roughness.is_smooth(),
-            Self::Dielectric(dielectric) => !dielectric.roughness.is_smooth(),
-            Self::Plastic(_) => true,
-            Self::Mix(_) | Self::Mask(_) => self.parts().iter().any(|part| part.material().scatters_widely()),
-            _ => false,
-        }
-    }
-
-    /// Whether light also comes from beyond the surface in every direction.
-    pub fn scatters_through(&self) -> bool {
-        matches!(self, Self::Dielectric(dielectric) if !dielectric.roughness.is_smooth())
-    }
-
-    /// Whether what leaves in every direction has no memory of where it came from: `diffuse_bounces` counts it.
-    pub fn is_diffuse(&self) -> bool {
-        match self {
-            Self::Diffuse(_) => true,
-            Self::Plastic(plastic) => plastic.coat.roughness().is_smooth(),
-            Self::Mix(_) | Self::Mask(_) => {
-                let mut wide = self.parts().iter().map(Part::material).filter(|part| part.scatters_widely()).peekable();
-                wide.peek().is_some() && wide.all(Self::is_diffuse)
-            }
-            _ => false,
-        }
-    }
-
-    /// How rough it is, where it can be.
-    pub fn roughness(&self) -> Option<f64> {
-        match self {
-            Self::Conductor(conductor) => Some(conductor.roughness.value()),
-            Self::Dielectric(dielectric) => Some(dielectric.roughness.value()),
-            Self::Plastic(plastic) => Some(plastic.coat.roughness().value()),
             _ => None,
         }
     }

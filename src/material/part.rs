@@ -39,17 +39,6 @@ impl<S> Part<S> {
 }
 
 impl<S> Material<S> {
-    /// Whether light leaves in single directions, all of it or some: the mirror images and refractions of smooth surfaces.
-    pub fn has_single_directions(&self) -> bool {
-        match self {
-            Self::Diffuse(_) | Self::Emissive(_) => false,
-            Self::Mirror(_) | Self::Thin(_) | Self::Dielectric(_) => true,
-            Self::Conductor(conductor) => conductor.roughness.is_smooth(),
-            Self::Plastic(plastic) => plastic.coat.roughness().is_smooth(),
-            Self::Mix(_) | Self::Mask(_) => self.parts().iter().any(|part| part.material().has_single_directions()),
-        }
-    }
-
     /// The materials it is made of.
     pub fn parts(&self) -> &[Part<S>] {
         match self {
@@ -74,11 +63,6 @@ impl<S> Material<S> {
             }
             whole => whole.clone(),
         })
-    }
-
-    /// Whether light passes through holes of it, as if nothing were there.
-    pub fn has_holes(&self) -> bool {
-        matches!(self, Self::Mask(_)) || self.parts().iter().any(|part| part.material().has_holes())
     }
 
     /// The material and all that it is made of.

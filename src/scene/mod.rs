@@ -201,16 +201,21 @@ impl<S> Scene<S> {
         nearest
     }
 
-    /// Whether anything that counts lies before a light at `distance`; the light's own object does not hide it.
+    /// Whether anything lies before a light at `distance`; the light's own object does not hide it.
     ///
     /// `hider` remembers what hid a light last: it is asked first, for it often hides the next one as well.
+    pub fn is_hidden(&self, ray: &Ray, distance: f64, light: Option<u32>, hider: &Cell<Option<u32>>) -> bool {
+        self.is_hidden_by(ray, distance, light, hider, |_| true)
+    }
+
+    /// The same by those objects that count.
     #[inline]
-    pub fn is_hidden(
+    pub fn is_hidden_by(
         &self,
         ray: &Ray,
         distance: f64,
         light: Option<u32>,
-        hider: &Cell<u32>,
+        hider: &Cell<Option<u32>>,
         counts: impl Fn(u32) -> bool,
     ) -> bool {
         // An object listed after the light's own does not hide it by an equal distance.
@@ -230,14 +235,14 @@ impl<S> Scene<S> {
             _ => self.is_crossed(object, ray, distance),
         };
         let last = hider.get();
-        if hides(last) {
+        if last.is_some_and(hides) {
             return true;
         }
         let mut hidden = false;
         self.index.any(ray, distance, |object| {
-            hidden = object != last && hides(object);
+            hidden = Some(object) != last && hides(object);
             if hidden {
-                hider.set(object);
+                hider.set(Some(object));
             }
             hidden
         });

@@ -242,10 +242,10 @@ mod tests {
                 }
                 let ray = Ray { origin, direction };
                 let t_max = if i % 5 == 0 { number() } else { f64::INFINITY };
-                let found = packed.nearest(&wide, &ray, t_max);
-                assert_eq!(found, packed.nearest(&plain, &ray, t_max), "{ray:?}");
-                assert_eq!(found.is_some(), packed.any(&wide, &ray, t_max), "{ray:?}");
-                assert_eq!(found.is_some(), packed.any(&plain, &ray, t_max), "{ray:?}");
+                let found = packed.nearest(&wide, &ray, t_max, |_| true);
+                assert_eq!(found, packed.nearest(&plain, &ray, t_max, |_| true), "{ray:?}");
+                assert_eq!(found.is_some(), packed.any(&wide, &ray, t_max, |_, _| true), "{ray:?}");
+                assert_eq!(found.is_some(), packed.any(&plain, &ray, t_max, |_, _| true), "{ray:?}");
                 let each = faces.iter().filter_map(|face| Triangle::new(face.map(corner)).intersect(&ray, t_max));
                 if i % 16 < 4 {
                     let nearest = each.map(|crossing| crossing.t).min_by(f64::total_cmp);

@@ -30,7 +30,7 @@ pub(super) struct Gathering<'a, const N: usize> {
     pub(super) goes_on: bool,
     pub(super) aims_at_all: bool,
     /// The object that hid a light last.
-    pub(super) hider: &'a Cell<u32>,
+    pub(super) hider: &'a Cell<Option<u32>>,
     /// Four random numbers of the vertex; the first light uses the first two, the choice of one light the last.
     pub(super) u: [f64; 4],
 }
@@ -123,10 +123,16 @@ impl<const N: usize> Gathering<'_, N> {
             if !factor.is_finite() {
                 return None;
             }
-            let passing = self.unhidden(&ray, view.distance, view.object)?;
+            let holes = if self.world.has_any_holes() {
+                Some(self.through_holes(&ray, view.distance, view.object)?)
+            } else if self.world.scene.is_hidden(&ray, view.distance, view.object, self.hider) {
+                return None;
+            } else {
+                None
+            };
             let mut arriving = light.toward(self.arrival.draw, sighting.direction, view.uv);
-            if let Some(passing) = passing {
-                arriving = arriving * passing;
+            if let Some(share) = holes {
+                arriving = arriving * share;
             }
             if let Some(material) = self.inside {
                 arriving =
@@ -138,16 +144,15 @@ impl<const N: usize> Gathering<'_, N> {
         lit().unwrap_or([0.0; 3])
     }
 
-    /// The share of a light that holes before it let through, where there are any in the scene; none if it is hidden.
-    fn unhidden(&self, ray: &Ray, distance: f64, light: Option<u32>) -> Option<Option<Lanes<N>>> {
-        let (world, scene) = (self.world, &self.world.scene);
-        if !world.has_any_holes() {
-            return (!scene.is_hidden(ray, distance, light, self.hider, |_| true)).then_some(None);
-        }
-        if scene.is_hidden(ray, distance, light, self.hider, |object| !world.has_holes(object)) {
+    /// The share of a light that holes before it let through; none if something hides it.
+    #[cold]
+    #[inline(never)]
+    fn through_holes(&self, ray: &Ray, distance: f64, light: Option<u32>) -> Option<Lanes<N>> {
+        let world = self.world;
+        if world.scene.is_hidden_by(ray, distance, light, self.hider, |object| !world.has_holes(object)) {
             return None;
         }
-        through_holes(world, self.arrival.draw, ray, distance, self.inside).map(Some)
+        through_holes(world, self.arrival.draw, ray, distance, self.inside)
     }
 }
 

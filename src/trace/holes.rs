@@ -12,6 +12,7 @@ use crate::spectrum::{Draw, Lanes};
 const COVER: u32 = 4;
 
 /// The share of each lane of a path that passes straight on where it meets a surface; none if nothing does.
+#[inline]
 pub(super) fn passing<const N: usize>(
     world: &World,
     draw: &Draw<N>,
@@ -19,9 +20,19 @@ pub(super) fn passing<const N: usize>(
     hit: &Hit,
     point: &SurfacePoint,
 ) -> Option<Lanes<N>> {
-    if !world.has_holes(hit.object) {
-        return None;
-    }
+    if world.has_holes(hit.object) { passing_in_part(world, draw, path, hit, point) } else { None }
+}
+
+/// The same of a surface with holes.
+#[cold]
+#[inline(never)]
+fn passing_in_part<const N: usize>(
+    world: &World,
+    draw: &Draw<N>,
+    path: &Path<N>,
+    hit: &Hit,
+    point: &SurfacePoint,
+) -> Option<Lanes<N>> {
     let present = path.throughput.present();
     let share = passing_at(world, draw, (&path.ray, present), path.media.inside(world), (hit, point))?;
     (!(share * present).is_zero()).then_some(share)

@@ -83,6 +83,8 @@ impl<const N: usize> Path<N> {
     }
 
     /// The path beyond a surface that it has met and passes in part.
+    #[cold]
+    #[inline(never)]
     pub(super) fn passed_in_part(&self, point: &SurfacePoint, passing: Lanes<N>) -> Self {
         let throughput = self.throughput.through(passing);
         Self { throughput, vertices: self.vertices - 1, ..self.passed(point) }

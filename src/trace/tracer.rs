@@ -23,7 +23,7 @@ pub(super) struct Tracer<'a, const N: usize> {
     pending: Vec<Path<N>>,
     branches: Vec<Branch<N>>,
     /// The object that hid the last light that was hidden: the first to ask about the next one.
-    hider: Cell<u32>,
+    hider: Cell<Option<u32>>,
     pub(super) tally: Tally,
     /// Lights that paths from widely scattering surfaces met, with the unit normal there, if somebody wants to know.
     pub(super) met: Option<Vec<(LightId, DVec3)>>,
@@ -43,7 +43,7 @@ const SPREAD: u32 = 4;
 impl<'a, const N: usize> Tracer<'a, N> {
     pub(super) fn new(world: &'a World) -> Self {
         let (pending, branches) = (Vec::new(), Vec::new());
-        Self { world, pending, branches, hider: Cell::new(0), tally: Tally::default(), met: None }
+        Self { world, pending, branches, hider: Cell::new(None), tally: Tally::default(), met: None }
     }
 
     /// What the sensor receives along a camera ray, and what the ray met first.
@@ -165,7 +165,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
 
         // Gather light from the lights where light scatters widely.
         let (mut u, mut drawn) = ([0.0; 4], None);
-        let parts = material.parts_lanes(&arrival);
+        let parts = material.lets_through() && material.parts_lanes(&arrival);
         let (wide, diffuse) = (material.scatters_widely(), material.is_diffuse());
         if wide {
             let spread = path.vertices <= SPREAD;

@@ -1,0 +1,74 @@
+//! Small objects share a tree, and rays find in it what they find object by object.
+
+use std::cell::Cell;
+
+use abbe::math::{DVec3, Ray};
+use abbe::scene::Hit;
+
+use crate::support::random::Random;
+use crate::support::scenes::{body, environment, scene, view};
+
+/// Blocks that touch, a roof of single triangles, a lamp, a ball and a floor, on whole numbers so that many crossings tie.
+fn village() -> String {
+    let block = |x: i32, z: i32| {
+        let corner = |i: i32| format!("[{}, {}, {}]", x + (i & 1), i >> 1 & 1, z + (i >> 2));
+        let points: Vec<String> = (0..8).map(corner).collect();
+        format!(
+            "mesh = {{ points = [{}], faces = [[0, 2, 1], [1, 2, 3], [4, 5, 6], [5, 7, 6], [0, 1, 4], [1, 5, 4], [2, 6, 3], \
+             [3, 6, 7], [0, 4, 2], [2, 4, 6], [1, 3, 5], [3, 7, 5]] }}",
+            points.join(", ")
+        )
+    };
+    let blocks = [block(-1, 0), block(0, 0), block(0, 1), block(-1, 0)];
+    let triangles = ["[[-1, 1, 0], [0, 2, 0], [0, 1, 0]]", "[[0, 1, 0], [0, 2, 0], [1, 1, 0]]"];
+    let triangles = triangles.map(|points| format!("triangle = {{ points = {points} }}"));
+    let mut shapes: Vec<&str> = blocks.iter().map(String::as_str).collect();
+    shapes.insert(2, "sphere = { center = [0, 1, 1], radius = 1 }");
+    shapes.insert(3, "quad = { center = [0, 0, 0], u = [4, 0, 0], v = [0, 0, -4] }");
+    shapes.extend(triangles.iter().map(String::as_str));
+    view([0.0, 3.0, 9.0], [0.0; 3], 40.0, 4)
+        + &body("stone", "diffuse = { reflectance = 0.5 }", &shapes)
+        + &environment(1.0)
+}
+
+#[test]
+fn rays_find_in_a_shared_tree_what_they_find_object_by_object() {
+    let scene = scene(&village());
+    let mut random = Random::new(31);
+    let (mut met, mut ties) = (0, 0);
+    for i in 0..40_000 {
+        // Every other ray starts on whole and half numbers and aims at such, through edges and corners.
+        let mut place = || {
+            let x = random.between(-3.0, 3.0);
+            if i % 2 == 0 { (2.0 * x).round() / 2.0 } else { x }
+        };
+        let [origin, target] = [(); 2].map(|()| DVec3::new(place(), place(), place()));
+        let Some(direction) = (target - origin).try_normalize() else { continue };
+        let ray = Ray { origin, direction };
+        let crossings = || {
+            let crossing = |object: usize| scene.objects[object].shape.intersect(&ray, f64::INFINITY);
+            (0..scene.objects.len()).filter_map(move |i| crossing(i).map(|crossing| Hit { object: i as u32, crossing }))
+        };
+        let nearest = crossings().min_by(|a, b| a.crossing.t.total_cmp(&b.crossing.t).then(a.object.cmp(&b.object)));
+        assert_eq!(scene.intersect(&ray), nearest, "{ray:?}");
+        let Some(hit) = nearest else { continue };
+        met += 1;
+        ties += usize::from(crossings().filter(|other| other.crossing.t == hit.crossing.t).count() > 1);
+        // A light at the distance of a crossing, as an object of its own or none.
+        let distance = if i % 3 == 0 { hit.crossing.t } else { random.between(0.0, 5.0) };
+        for light in [None, Some(hit.object), Some(0), Some(5), Some(7)] {
+            let hides = |other: &Hit| {
+                light.is_none_or(|light| light != other.object)
+                    && (other.crossing.t < distance
+                        || other.crossing.t == distance && light.is_none_or(|light| other.object < light))
+            };
+            let expected = crossings().any(|other| hides(&other));
+            assert_eq!(
+                scene.is_hidden(&ray, distance, light, &Cell::new(None)),
+                expected,
+                "{ray:?} {light:?} {distance}"
+            );
+        }
+    }
+    assert!(met > 20_000 && ties > 1000, "{met} rays meet something, {ties} two things at once");
+}
