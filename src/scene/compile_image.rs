@@ -24,7 +24,8 @@ pub(super) type Images = BTreeMap<(PathBuf, Option<Encoding>, Option<Channel>), 
 impl Compiler<'_> {
     /// The spectrum of a surface, which may vary over it, checked.
     pub(super) fn surface_curve(&mut self, at: &At, curve: &Curve, quantity: Quantity) -> Result<Curve> {
-        let on_surface = matches!(quantity, Quantity::Reflectance | Quantity::Transmittance | Quantity::Emission);
+        let on_surface =
+            matches!(quantity, Quantity::Reflectance | Quantity::Transmittance | Quantity::Share | Quantity::Emission);
         match &curve.kind {
             CurveKind::Image(image) if on_surface => self.image_curve(at, curve, image, quantity),
             CurveKind::Checker { cells, repeat } if on_surface => self.checker(at, curve, cells, *repeat, quantity),

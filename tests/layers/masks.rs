@@ -141,3 +141,16 @@ fn holes_are_no_bounces() {
     (0..3).for_each(|band| one.error[band] = libm::hypot(one.error[band], all.error[band]));
     one.assert_near(all.value, 1, "one bounce lights the floor through the sheet");
 }
+
+#[test]
+fn holes_that_vary_over_a_sheet_let_light_through_where_they_are() {
+    let center =
+        |sheet: &str| under(sheet, POINT, 1).replace("[render]", "filter = \"center\"\n[render]\ndiffuse_bounces = 0");
+    let (open, checkered) = (center(""), center(&masked("black", "{ checker = [0, 1], repeat = 300 }")));
+    let [open, checkered] = [open, checkered].map(|text| image(&text, SPLITTING).0);
+    let shares: Vec<f32> = open.pixels.iter().zip(&checkered.pixels).map(|(a, b)| b.rgb[1] / a.rgb[1]).collect();
+    let lit = shares.iter().filter(|share| (*share - 1.0).abs() < 1e-6).count();
+    let dark = shares.iter().filter(|share| **share == 0.0).count();
+    assert_eq!(lit + dark, shares.len(), "{shares:?}");
+    assert!(lit > shares.len() / 4 && dark > shares.len() / 4, "{lit} lit, {dark} dark");
+}
