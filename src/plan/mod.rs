@@ -53,7 +53,7 @@ pub fn plan(scene: &Scene<Curve>) -> Plan {
     let together = if basis.draws_wavelengths() { TOGETHER_PIXELS * scene.camera.pixel_angle() } else { 0.0 };
     let max_bounces = scene.render.max_bounces.unwrap_or(u32::MAX);
     let seed = scene.render.seed;
-    let method = Method { basis, transport, together, samples, seed, diffuse_bounces, max_bounces };
+    let method = Method { basis, transport, together, samples, seed, diffuse_bounces, max_bounces, light_pass: None };
     because.extend(cost(scene, &method, next));
     Plan { method, because, rungs }
 }

@@ -4,6 +4,7 @@
 //! spectrum on the lanes; the tracer reads it.
 
 mod camera;
+mod camera_sees;
 mod compile;
 mod compile_curve;
 mod compile_light;
@@ -23,6 +24,7 @@ mod syntax;
 mod wording;
 
 pub use camera::{Camera, Lens, Projection};
+pub use camera_sees::Seen;
 pub use compile::compile;
 pub use description::{Description, ModelText, RenderText};
 pub use source::Source;

@@ -138,11 +138,16 @@ impl Mesh {
 
     /// A point uniform by area, and the triangle it lies on.
     pub(super) fn sample(&self, u: [f64; 2]) -> (DVec3, u32) {
-        let target = u[0] * self.area();
+        let (index, along) = self.choose(u[0]);
+        (self.triangle(index).sample([along, u[1]]), index)
+    }
+
+    /// A triangle by its area, and what is left of the random number.
+    pub(super) fn choose(&self, u: f64) -> (u32, f64) {
+        let target = u * self.area();
         let index = self.areas.partition_point(|&sum| sum <= target).min(self.areas.len() - 1);
         let before = if index == 0 { 0.0 } else { self.areas[index - 1] };
-        let along = ((target - before) / (self.areas[index] - before)).clamp(0.0, 1.0);
-        (self.triangle(index as u32).sample([along, u[1]]), index as u32)
+        (index as u32, ((target - before) / (self.areas[index] - before)).clamp(0.0, 1.0))
     }
 }
 

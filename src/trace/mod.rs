@@ -9,12 +9,15 @@
 //!    roulette. A weight is the mean throughput over the lanes, without the factor of radiance between media.
 //! 5. Random numbers are a pure function of seed, pixel, sample, branch and use; sums have a fixed order.
 
+mod aims;
 mod choice;
 mod direct;
 mod lamps;
+mod light_pass;
 mod media;
 mod method;
 mod path;
+mod photon;
 mod probe;
 
 mod render;
@@ -24,7 +27,7 @@ mod tracer;
 mod width;
 mod world;
 
-pub use method::{Method, Transport};
+pub use method::{LightPass, Method, Transport};
 pub use probe::{Probe, probe};
 
 pub use render::{Report, render};

@@ -4,7 +4,7 @@ use std::cell::Cell;
 
 use super::direct::{Gathering, add, weight_of_meeting};
 use super::media;
-use super::path::{Drawn, Path};
+use super::path::{Drawn, Leg, Path};
 use super::roulette::survival;
 use super::{Transport, World};
 use crate::light::{Light, LightId};
@@ -16,11 +16,12 @@ use crate::spectrum::Draw;
 
 /// Follows the rays of camera samples, one sample after another; its buffers live as long as it does.
 pub(super) struct Tracer<'a, const N: usize> {
-    world: &'a World,
-    pending: Vec<Path<N>>,
-    branches: Vec<Branch<N>>,
+    pub(super) world: &'a World,
+    pub(super) transport: Transport,
+    pub(super) pending: Vec<Path<N>>,
+    pub(super) branches: Vec<Branch<N>>,
     /// The object that hid the last light that was hidden: the first to ask about the next one.
-    hider: Cell<u32>,
+    pub(super) hider: Cell<u32>,
     pub(super) tally: Tally,
     /// Lights that paths from widely scattering surfaces met, with the unit normal there, if somebody wants to know.
     pub(super) met: Option<Vec<(LightId, DVec3)>>,
@@ -57,7 +58,12 @@ const SPREAD: u32 = 4;
 impl<'a, const N: usize> Tracer<'a, N> {
     pub(super) fn new(world: &'a World) -> Self {
         let (pending, branches) = (Vec::new(), Vec::new());
-        Self { world, pending, branches, hider: Cell::new(0), tally: Tally::default(), met: None }
+        let (transport, tally) = (world.method.transport, Tally::default());
+        Self { world, transport, pending, branches, hider: Cell::new(0), tally, met: None }
+    }
+
+    pub(super) fn with_transport(self, transport: Transport) -> Self {
+        Self { transport, ..self }
     }
 
     /// What the sensor receives along a camera ray, and what the ray met first.
@@ -102,6 +108,9 @@ impl<'a, const N: usize> Tracer<'a, N> {
         let mut sum = [0.0; 3];
         for &id in &self.world.scene.skies {
             let light = &self.world.scene.lights[id];
+            if self.is_found_by_photons(path, id) {
+                continue;
+            }
             let factor = match light {
                 Light::Sun(sun) if sun.pdf(&path.ray).is_some() => sun.radiance_factor(),
                 Light::Sun(_) => continue,
@@ -118,7 +127,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
     fn emission(&mut self, path: &Path<N>, draw: &Draw<N>, hit: &Hit, point: &SurfacePoint) -> [f64; 3] {
         let Some(id) = self.world.scene.objects[hit.object as usize].light else { return [0.0; 3] };
         let Light::Area(area) = &self.world.scene.lights[id] else { return [0.0; 3] };
-        if !area.sides.shine(point.normal.dot(path.ray.direction) < 0.0) {
+        if !area.sides.shine(point.normal.dot(path.ray.direction) < 0.0) || self.is_found_by_photons(path, id) {
             return [0.0; 3];
         }
         if let (Some(met), Some(_)) = (&mut self.met, &path.drawn) {
@@ -156,7 +165,8 @@ impl<'a, const N: usize> Tracer<'a, N> {
             if here == beyond {
                 // No light was aimed at through this surface, so what the path meets beyond counts in full.
                 let (ray, key) = (point.leave(path.ray.direction), path.key.child(0));
-                return Some(Path { ray, media: crossed, key, drawn: None, ..*path });
+                let leg = path.leg.then(false, world.is_photon_target(hit.object));
+                return Some(Path { ray, media: crossed, key, drawn: None, leg, ..*path });
             }
         }
         let arrival = Arrival {
@@ -211,14 +221,20 @@ impl<'a, const N: usize> Tracer<'a, N> {
             parted: path.parted || (parts && branch.crosses),
             key: path.key.child(number),
             vertices: path.vertices,
+            leg: path.leg.then(branch.pdf.is_some(), world.is_photon_target(hit.object)),
             diffuse_left: path.diffuse_left - u32::from(diffuse),
             drawn: branch.pdf.and_then(|pdf| drawn.map(|drawn| Drawn { pdf, ..drawn })),
             polarization: branch.polarization,
         })
     }
 
+    /// Whether the path's way to a light is one that photons find.
+    fn is_found_by_photons(&self, path: &Path<N>, light: LightId) -> bool {
+        path.leg == Leg::Smooth { aimed: true } && self.world.sends_photons(light)
+    }
+
     /// Decides which branches are followed; `child(number, branch, factor)` makes the path of one.
-    fn follow(
+    pub(super) fn follow(
         &mut self,
         path: &Path<N>,
         draw: &Draw<N>,
@@ -238,7 +254,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
             };
             self.tally.polarization += self.branches.iter().map(moved).sum::<f64>();
         }
-        match self.world.method.transport {
+        match self.transport {
             Transport::Deterministic { cutoff } => {
                 for (number, branch) in self.branches.iter().enumerate() {
                     match weight_of(branch) {

@@ -1,3 +1,4 @@
+use super::aims::Aims;
 use super::choice::Choice;
 use super::lamps::met_lamps;
 use super::media::Media;
@@ -21,6 +22,8 @@ pub struct World {
     /// The bodies around the camera.
     pub(super) camera_media: Media,
     pub(super) has_media: bool,
+    /// Where photons are sent, if the method has a light pass.
+    pub(super) aims: Option<Aims>,
 }
 
 impl World {
@@ -32,7 +35,8 @@ impl World {
         let choice = Choice::new(&scene.lights);
         let targets = choice.targets();
         let camera_media = Media::default();
-        let mut world = Self { responses, targets, choice, scene, method, camera_media, has_media };
+        let aims = Self::aims_of(&scene, method.light_pass.as_ref());
+        let mut world = Self { responses, targets, choice, scene, method, camera_media, has_media, aims };
         if has_media {
             let (position, forward) = (world.scene.camera.position(), world.scene.camera.forward());
             world.camera_media = Media::around(&world, position, forward);
