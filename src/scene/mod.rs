@@ -26,7 +26,7 @@ mod wording;
 pub use camera::{Camera, Lens, Projection};
 pub use camera_sees::Seen;
 pub use compile::compile;
-pub use description::{Description, ModelText, RenderText};
+pub use description::{CausticsText, Description, ModelText, RenderText};
 pub use source::Source;
 
 use std::cell::Cell;

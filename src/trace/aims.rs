@@ -1,24 +1,31 @@
-//! Where photons start and where they are sent.
+//! Where photons are sent.
 
 use std::f64::consts::{PI, TAU};
 
 use super::LightPass;
-use crate::light::{Area, Light, LightId};
+use super::guide::Guide;
+use crate::light::{Light, LightId};
 use crate::material::Material;
-use crate::math::{DVec3, Frame, Ray, cone, cosine_hemisphere, disk, unit};
+use crate::math::DVec3;
 use crate::scene::Scene;
 use crate::shape::{Ball, Sides};
 use crate::spectrum::Table;
 
 /// Photons of one light toward one ball of smooth objects.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Aim {
     pub(super) light: LightId,
     /// How many photons are sent.
     pub(super) photons: u64,
-    ball: Ball,
+    pub(super) ball: Ball,
     /// Of a light that is a point: axis and 1 - cos of the cone that is shone into.
-    lobe: (DVec3, f64),
+    pub(super) lobe: (DVec3, f64),
+    /// Which places of the cone, or of the ball's disc, are worth it.
+    pub(super) guide: Guide,
+    /// The flux it sends, about.
+    flux: f64,
+    /// Whether the light is apart from the ball, so that a place stands for a way to it.
+    apart: bool,
 }
 
 /// All the ways photons are sent, and to what.
@@ -31,26 +38,18 @@ pub(super) struct Aims {
     /// Which objects they are sent to.
     pub(super) objects: Vec<bool>,
     /// A ball around all that is finite.
-    world: Ball,
-}
-
-/// A photon on its way.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Emitted {
-    pub(super) ray: Ray,
-    /// The factor on the light's emission that makes the photon's flux of it.
-    pub(super) factor: f64,
+    pub(super) world: Ball,
+    /// Photons asked for.
+    photons: u64,
 }
 
 /// Most balls of objects that photons are sent to: of more objects, neighbors share one.
 const MOST: usize = 32;
 /// Share of the photons that all aims get alike; the others go by flux.
 const EVENLY: f64 = 0.1;
-/// How often the outer side of a closed lamp around which an object is built sends a photon, and not the inner one.
-const OUTWARD: f64 = 0.875;
 
 /// Whether photons can be sent to an object: finite, and smooth where light goes on.
-pub(super) fn is_target(scene: &Scene<Table>, object: usize) -> bool {
+pub fn is_photon_target<S>(scene: &Scene<S>, object: usize) -> bool {
     let material = scene.material_of(object as u32);
     let smooth = !material.scatters_widely() && !matches!(material, Material::Emissive(_));
     smooth && scene.objects[object].shape.bounds().is_some()
@@ -59,105 +58,47 @@ pub(super) fn is_target(scene: &Scene<Table>, object: usize) -> bool {
 impl Aims {
     /// Aims at all objects that photons can be sent to; none if there is none, or none of the lights shines there.
     pub(super) fn new(scene: &Scene<Table>, pass: &LightPass) -> Option<Self> {
-        let objects: Vec<bool> = (0..scene.objects.len()).map(|object| is_target(scene, object)).collect();
+        let objects: Vec<bool> = (0..scene.objects.len()).map(|object| is_photon_target(scene, object)).collect();
         let shapes = || scene.objects.iter().map(|object| &object.shape);
         let balls = shapes().zip(&objects).filter(|(_, target)| **target).filter_map(|(shape, _)| shape.ball());
         let balls = gathered(balls.collect());
         let world = shapes().filter_map(|shape| shape.ball()).reduce(Ball::around)?;
-        let mut flux = Vec::new();
         let mut aims = Vec::new();
-        for &light in &pass.lights {
-            let brightness = scene.lights[light].emission().range().1;
-            for ball in &balls {
-                let (lobe, size) = reach(&scene.lights[light], ball);
-                if size * brightness > 0.0 {
-                    flux.push(size * brightness);
-                    aims.push(Aim { light, photons: 0, ball: *ball, lobe });
-                }
+        for (&light, ball) in pass.lights.iter().flat_map(|light| balls.iter().map(move |ball| (light, ball))) {
+            let (lobe, size) = reach(&scene.lights[light], ball);
+            let flux = size * scene.lights[light].emission().range().1;
+            if flux > 0.0 {
+                let apart = is_apart(&scene.lights[light], ball);
+                let guide = if apart { Guide::disc() } else { Guide::even() };
+                aims.push(Aim { light, photons: 0, ball: *ball, lobe, guide, flux, apart });
             }
-        }
-        let (total, count) = (flux.iter().sum::<f64>(), flux.len() as f64);
-        for (aim, flux) in aims.iter_mut().zip(flux) {
-            let share = EVENLY / count + (1.0 - EVENLY) * flux / total;
-            aim.photons = (share * pass.photons as f64).round().max(1.0) as u64;
         }
         let lights = (0..scene.lights.len()).map(|light| aims.iter().any(|aim| aim.light == light)).collect();
-        (!aims.is_empty()).then_some(Self { aims, lights, objects, world })
+        let mut aims = Self { aims, lights, objects, world, photons: pass.photons };
+        aims.share_out();
+        (!aims.aims.is_empty()).then_some(aims)
     }
 
-    /// How many balls are aimed at.
-    pub(super) fn balls(&self) -> usize {
-        let light = self.aims[0].light;
-        self.aims.iter().filter(|aim| aim.light == light).count()
+    /// Lets each aim have its part of the photons, most of them by flux.
+    fn share_out(&mut self) {
+        let (total, count) = (self.aims.iter().map(|aim| aim.flux).sum::<f64>(), self.aims.len() as f64);
+        for aim in &mut self.aims {
+            let by_flux = if total > 0.0 { aim.flux / total } else { 1.0 / count };
+            let share = EVENLY / count + (1.0 - EVENLY) * by_flux;
+            aim.photons = (share * self.photons as f64).round().max(1.0) as u64;
+        }
     }
 
-    /// A photon of an aim for four random numbers; none where the light does not shine.
-    ///
-    /// Its flux is divided by how many photons all aims of the light send along the same line: their cones may overlap.
-    pub(super) fn emit(&self, scene: &Scene<Table>, number: usize, u: [f64; 4]) -> Option<Emitted> {
-        let aim = &self.aims[number];
-        let light = &scene.lights[aim.light];
-        let of_light = || self.aims.iter().enumerate().filter(|(_, other)| other.light == aim.light);
-        let sent = |density: &dyn Fn(&Aim) -> Option<f64>, own: f64| -> f64 {
-            let by = |(other, aim): (usize, &Aim)| {
-                // Rounding may put a photon just outside of its own cone.
-                let density = if other == number { density(aim).unwrap_or(own) } else { density(aim).unwrap_or(0.0) };
-                aim.photons as f64 * density
-            };
-            of_light().map(by).sum()
-        };
-        let (ray, flux, sent) = match light {
-            Light::Point(_) | Light::Spot(_) => {
-                let (axis, one_minus_cos) = aim.lobe;
-                let (local, own) = cone(one_minus_cos, [u[0], u[1]]);
-                let direction = unit(Frame::about(axis).to_world(local));
-                let (origin, part) = match light {
-                    Light::Spot(spot) => (spot.position, spot.part(direction)),
-                    Light::Point(point) => (point.position, 1.0),
-                    _ => return None,
-                };
-                let density = |aim: &Aim| within(aim.lobe, direction).then(|| 1.0 / (TAU * aim.lobe.1));
-                (Ray { origin: origin.into(), direction }, part, sent(&density, own))
+    /// Follows what was learned: of some photons of each aim, their places and whether the camera saw them.
+    pub(super) fn learn(&mut self, found: &[Vec<([f64; 2], bool)>]) {
+        for (aim, photons) in self.aims.iter_mut().zip(found) {
+            let seen = photons.iter().filter(|photon| photon.1).count();
+            aim.flux *= seen as f64 / photons.len().max(1) as f64;
+            if aim.apart {
+                aim.guide = Guide::learned(photons);
             }
-            Light::Area(area) => {
-                let (point, _) = area.shape.emit(&aim.ball, [u[2], u[3]])?;
-                let direction = toward(area, &aim.ball, point.position, point.normal, [u[0], u[1]]);
-                let cos = point.normal.dot(direction);
-                if !area.sides.shine(cos > 0.0) {
-                    return None;
-                }
-                let density = |aim: &Aim| {
-                    let along = density_toward(area, &aim.ball, point.position, direction, cos)?;
-                    Some(along * area.shape.emit_density(&aim.ball, &point))
-                };
-                let own = 1.0 / (TAU * aim.ball.cone_from(point.position).1 * area.shape.area());
-                (point.leave(direction), cos.abs(), sent(&density, own))
-            }
-            Light::Sun(_) => {
-                let sighting = light.aim(aim.ball.center, DVec3::Y, [u[0], u[1]])?;
-                let sky = sighting.direction;
-                let place = disk([u[2], u[3]]) * aim.ball.radius;
-                let point = aim.ball.center + Frame::about(sky).to_world(place.extend(0.0));
-                let view = light.view(&Ray { origin: point, direction: sky }, DVec3::Y, &sighting)?;
-                let area = |ball: &Ball| PI * ball.radius * ball.radius;
-                let density = |aim: &Aim| {
-                    let beside = sky.cross(point - aim.ball.center).length_squared();
-                    (beside <= aim.ball.radius * aim.ball.radius).then(|| 1.0 / area(&aim.ball))
-                };
-                // From outside of all that is finite; only a plane can hide the sun there.
-                let out = (self.world.center - point).dot(sky) + 2.0 * self.world.radius;
-                let start = point + sky * out;
-                let hidden = scene.is_hidden(&Ray { origin: start, direction: sky }, f64::INFINITY, None, &0.into());
-                if hidden {
-                    return None;
-                }
-                let flux = view.factor / view.pdf.unwrap_or(1.0);
-                (Ray { origin: start, direction: -sky }, flux, sent(&density, 1.0 / area(&aim.ball)))
-            }
-            Light::Environment(_) => return None,
-        };
-        let factor = flux / sent;
-        (factor > 0.0 && factor.is_finite()).then_some(Emitted { ray, factor })
+        }
+        self.share_out();
     }
 }
 
@@ -170,10 +111,9 @@ fn reach(light: &Light<Table>, ball: &Ball) -> ((DVec3, f64), f64) {
             (lobe, TAU * lobe.1)
         }
         Light::Spot(spot) => {
-            let lobe = ball.cone_from(spot.position.into());
-            let own = spot.cone();
-            let apart = libm::acos(lobe.0.dot(own.0).clamp(-1.0, 1.0));
+            let (lobe, own) = (ball.cone_from(spot.position.into()), spot.cone());
             let half = |one_minus_cos: f64| libm::acos((1.0 - one_minus_cos).clamp(-1.0, 1.0));
+            let apart = libm::acos(lobe.0.dot(own.0).clamp(-1.0, 1.0));
             let misses = lobe.1 < 2.0 && apart > half(lobe.1) + half(own.1);
             let lobe = if own.1 < lobe.1 { own } else { lobe };
             (lobe, if misses { 0.0 } else { TAU * lobe.1 })
@@ -188,38 +128,11 @@ fn reach(light: &Light<Table>, ball: &Ball) -> ((DVec3, f64), f64) {
     }
 }
 
-fn within((axis, one_minus_cos): (DVec3, f64), direction: DVec3) -> bool {
-    0.5 * (direction - axis).length_squared() <= one_minus_cos
-}
-
-/// A direction from a point of a lamp: even in the cone that a ball fills; by its cosine where the lamp is inside the ball.
-fn toward(area: &Area<Table>, ball: &Ball, from: DVec3, normal: DVec3, [u, v]: [f64; 2]) -> DVec3 {
-    let (axis, one_minus_cos) = ball.cone_from(from);
-    if one_minus_cos < 2.0 {
-        return unit(Frame::about(axis).to_world(cone(one_minus_cos, [u, v]).0));
-    }
-    let front = front(area);
-    let (side, u) = if u < front { (normal, u / front) } else { (-normal, (u - front) / (1.0 - front)) };
-    unit(Frame::about(side).to_world(cosine_hemisphere([u, v])))
-}
-
-/// The density of that direction; none where it does not lead to the ball.
-fn density_toward(area: &Area<Table>, ball: &Ball, from: DVec3, direction: DVec3, cos: f64) -> Option<f64> {
-    let cone = ball.cone_from(from);
-    if cone.1 < 2.0 {
-        return within(cone, direction).then(|| 1.0 / (TAU * cone.1));
-    }
-    let front = front(area);
-    Some(if cos > 0.0 { front } else { 1.0 - front } * cos.abs() / PI)
-}
-
-/// How often a lamp inside a ball shines from its front.
-fn front(area: &Area<Table>) -> f64 {
-    match (area.sides, area.shape.is_closed()) {
-        (Sides::Front, _) => 1.0,
-        (Sides::Both, true) => OUTWARD,
-        (Sides::Both, false) => 0.5,
-    }
+/// Whether no point of a lamp lies in a ball.
+fn is_apart(light: &Light<Table>, ball: &Ball) -> bool {
+    let Light::Area(area) = light else { return true };
+    let lamp = area.shape.ball();
+    lamp.is_some_and(|lamp| (lamp.center - ball.center).length() > lamp.radius + ball.radius)
 }
 
 /// Balls of which none lies in another; of more than are wanted, neighbors as one.

@@ -12,6 +12,8 @@
 mod aims;
 mod choice;
 mod direct;
+mod emission;
+mod guide;
 mod lamps;
 mod light_pass;
 mod media;
@@ -27,6 +29,8 @@ mod tracer;
 mod width;
 mod world;
 
+pub use aims::is_photon_target;
+pub use light_pass::seen_photons;
 pub use method::{LightPass, Method, Transport};
 pub use probe::{Probe, probe};
 

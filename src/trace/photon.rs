@@ -1,6 +1,6 @@
 //! Photons: light followed forward over smooth surfaces, to where the camera sees it.
 
-use super::aims::Emitted;
+use super::emission::Emitted;
 use super::media::{self, Media};
 use super::path::{Leg, Path};
 use super::tracer::Tracer;

@@ -35,13 +35,14 @@ impl World {
         let choice = Choice::new(&scene.lights);
         let targets = choice.targets();
         let camera_media = Media::default();
-        let aims = Self::aims_of(&scene, method.light_pass.as_ref());
+        let aims = method.light_pass.as_ref().and_then(|pass| Aims::new(&scene, pass));
         let mut world = Self { responses, targets, choice, scene, method, camera_media, has_media, aims };
         if has_media {
             let (position, forward) = (world.scene.camera.position(), world.scene.camera.forward());
             world.camera_media = Media::around(&world, position, forward);
         }
         world.look_for_lamps();
+        world.learn_where_to_send();
         world
     }
 

@@ -35,9 +35,8 @@ fn blocks(text: &str, pass: bool, samples: u32) -> Vec<(f64, f64)> {
     let lights = (0..scene.lights.len()).collect();
     let light_pass = pass.then_some(LightPass { photons: u64::from(samples) * (SIDE * SIDE) as u64, lights });
     let asked = Method { samples, transport: SPLITTING, light_pass, ..plan(&scene).method };
-    let films: Vec<Film> = (0..SEEDS)
-        .map(|seed| render(&World::new(&scene, Method { seed, ..asked.clone() }), &|_| ()).0)
-        .collect();
+    let films: Vec<Film> =
+        (0..SEEDS).map(|seed| render(&World::new(&scene, Method { seed, ..asked.clone() }), &|_| ()).0).collect();
     let mut found = Vec::new();
     for (block, band) in (0..BLOCKS * BLOCKS).flat_map(|block| (0..3).map(move |band| (block, band))) {
         let wide = SIDE / BLOCKS;
@@ -84,7 +83,10 @@ fn agree(what: &str, text: &str, samples: u32) {
 
 #[test]
 fn a_glass_ball_under_a_round_lamp() {
-    let text = seen_by(ABOVE, "") + FLOOR + LAMP + &glass("index = 1.5")
+    let text = seen_by(ABOVE, "")
+        + FLOOR
+        + LAMP
+        + &glass("index = 1.5")
         + &object("glass", "sphere = { center = [0, 1.5, 0], radius = 1 }")
         + &object("lamp", "sphere = { center = [0, 7, 0], radius = 1 }");
     agree("ball", &text, 64);
