@@ -8,3 +8,5 @@ mod support;
 
 #[path = "caustics/agreement.rs"]
 mod agreement;
+#[path = "caustics/known.rs"]
+mod known;

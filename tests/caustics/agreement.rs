@@ -81,13 +81,106 @@ fn agree(what: &str, text: &str, samples: u32) {
     assert!(with != without, "{what}: the light pass did nothing");
 }
 
+const BALL: &str = "sphere = { center = [0, 1.5, 0], radius = 1 }";
+
 #[test]
 fn a_glass_ball_under_a_round_lamp() {
     let text = seen_by(ABOVE, "")
         + FLOOR
         + LAMP
         + &glass("index = 1.5")
-        + &object("glass", "sphere = { center = [0, 1.5, 0], radius = 1 }")
+        + &object("glass", BALL)
         + &object("lamp", "sphere = { center = [0, 7, 0], radius = 1 }");
     agree("ball", &text, 64);
+}
+
+#[test]
+fn a_mirror_beside_a_lamp_that_lights_the_floor_as_well() {
+    let text = seen_by(ABOVE, "filter = \"tent\"")
+        + FLOOR
+        + LAMP
+        + "[material.mirror]\nmirror = { reflectance = { rgb = [0.9, 0.8, 0.5] } }\n\
+           [material.silver]\nconductor = { metal = \"Ag\" }\n"
+        + &object("mirror", "quad = { center = [-1, 0.7, 0], u = [0.2, 0.6, 0], v = [0, 0, 0.8] }")
+        + &object("silver", "sphere = { center = [0.6, 0.4, -0.9], radius = 0.4 }")
+        + &object("lamp", "quad = { center = [1.5, 2, 0], u = [0.4, 0, 0], v = [0, 0, 0.4] }");
+    agree("mirror", &text, 64);
+}
+
+#[test]
+fn a_prism_whose_wavelengths_part() {
+    let prism = "mesh = { points = [[-0.6, 0.4, -0.6], [0.6, 0.4, -0.6], [0, 1.4, -0.6], [-0.6, 0.4, 0.6], [0.6, 0.4, 0.6], \
+                 [0, 1.4, 0.6]], faces = [[0, 2, 1], [3, 4, 5], [0, 1, 4], [0, 4, 3], [1, 2, 5], [1, 5, 4], [2, 0, 3], [2, 3, 5]] }";
+    let text = seen_by(ABOVE, "")
+        + "[render]\nmodel = \"hero\"\n"
+        + FLOOR
+        + LAMP
+        + &glass("index = \"N-SF11\"")
+        + &object("glass", prism)
+        + &object("lamp", "disc = { center = [-2, 2.5, 0], normal = [2, -2, 0], radius = 0.6 }");
+    agree("prism", &text, 64);
+}
+
+#[test]
+fn absorbing_water_in_a_glass_with_a_lamp_in_the_sky() {
+    let text =
+        seen_by("position = [2.5, 3.5, 2.5]\nlook_at = [0, 0, 0]\nprojection = \"orthographic\"\nheight = 2.4", "")
+            + FLOOR
+            + &glass("index = 1.5, priority = 1")
+            + "[material.water]\ndielectric = { index = 1.33, absorption = { rgb = [1.5, 0.4, 0.2] } }\n\
+           [material.hollow]\ndielectric = { index = 1.0, priority = 2 }\n"
+            + &object("glass", "sphere = { center = [0, 0.9, 0], radius = 0.8 }")
+            + &object("hollow", "sphere = { center = [0, 0.9, 0], radius = 0.7 }")
+            + &object("water", "cube = { center = [0.3, 0.9, 0], size = [1.4, 0.5, 0.5] }")
+            + "[[light]]\nsun = { toward = [0.3, 1, 0.2], angular_diameter = 30, irradiance = 3 }\n";
+    agree("water", &text, 64);
+}
+
+#[test]
+fn panes_and_boxes_seen_through_a_lens() {
+    let lens = "lens = { radius = 0.2, focus_distance = 4 }\nshift = [0.1, -0.2]\nnear = 0.5";
+    let text = seen_by(&format!("{ABOVE}\n{lens}"), "filter = { gaussian = { sigma = 0.7 } }")
+        + FLOOR
+        + LAMP
+        + &glass("index = { rgb = [1.5, 1.55, 1.6] }")
+        + "[material.pane]\nthin = { index = 1.5, transmittance = 0.8 }\n"
+        + &object("pane", "quad = { center = [-0.5, 1, 0], u = [0.5, 0.2, 0], v = [0, 0, 0.6] }")
+        + &object("glass", "cube = { center = [0.6, 0.5, 0.2], size = [0.5, 0.4, 0.7] }")
+        + &object("lamp", "cube = { center = [0, 3, 0], size = 0.8 }");
+    agree("panes", &text, 64);
+}
+
+#[test]
+fn a_bulb_whose_lamp_is_inside_and_a_camera_that_sees_all_around() {
+    let text = seen_by(
+        "position = [0.2, 1.1, 0.9]\nlook_at = [0, 1, 0]\nprojection = \"equirectangular\"",
+        "filter = { tent = { radius = 1.5 } }",
+    ) + FLOOR
+        + LAMP
+        + "[material.wall]\ndiffuse = { reflectance = 0.5 }\n[material.ceiling]\nconductor = { metal = \"Al\", roughness = 0.5 }\n"
+        + &object("wall", "quad = { center = [0, 1, -1.5], u = [2, 0, 0], v = [0, 2, 0] }")
+        + &object("ceiling", "quad = { center = [0, 2.5, 0], u = [2, 0, 0], v = [0, 0, 2] }")
+        + &glass("index = 1.5")
+        + "[material.hollow]\ndielectric = { index = 1.0, priority = 1 }\n"
+        + &object("glass", "sphere = { center = [0, 1, 0], radius = 0.5 }")
+        + &object("hollow", "sphere = { center = [0, 1, 0], radius = 0.42 }")
+        + &object("glass", "sphere = { center = [1, 0.5, 0.4], radius = 0.3 }")
+        + &object("lamp", "sphere = { center = [0, 1, 0], radius = 0.25 }");
+    agree("bulb", &text, 64);
+}
+
+#[test]
+fn a_camera_under_water_and_a_lamp_out_of_round() {
+    let lamp = "[[object]]\nmaterial = \"lamp\"\nshape.sphere = { center = [0, 0, 0], radius = 0.4 }\n\
+                transform = [{ scale = [1, 0.4, 2] }, { translate = [0.5, 3, 0] }]\n";
+    let text = seen_by("position = [0.8, 0.8, 1.5]\nlook_at = [0, 0, 0]\nvertical_fov = 50", "")
+        + "[render]\nmax_bounces = 5\n"
+        + FLOOR
+        + LAMP
+        + "[material.water]\ndielectric = { index = 1.33, absorption = 0.3 }\n\
+           [material.air]\ndielectric = { index = 1.0, priority = 1 }\n"
+        + &object("water", "cube = { center = [0, 0.5, 0], size = [5, 1.6, 5] }")
+        + &object("air", "sphere = { center = [-0.2, 0.7, 0], radius = 0.3 }")
+        + lamp;
+    agree("under water", &text, 64);
 }
