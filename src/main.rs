@@ -89,8 +89,9 @@ fn wavelengths(basis: &Basis) -> String {
 fn provenance(scene: &Scene<Curve>, plan: &Plan, non_finite: u64) -> Provenance {
     let text = |text: &str| Fact::Text(text.to_owned());
     let projection = scene.camera.projection().name();
+    let photons = plan.method.light_pass.as_ref().map(|pass| ("photons", Fact::Count(pass.photons)));
     Provenance {
-        facts: vec![
+        facts: [
             ("version", text(env!("CARGO_PKG_VERSION"))),
             ("sceneHash", text(&scene.hash)),
             ("model", text(&plan.method.basis.name())),
@@ -101,6 +102,9 @@ fn provenance(scene: &Scene<Curve>, plan: &Plan, non_finite: u64) -> Provenance 
             ("samples", Fact::Count(plan.method.samples.into())),
             ("seed", text(&plan.method.seed.to_string())),
             ("nonFinite", Fact::Count(non_finite)),
-        ],
+        ]
+        .into_iter()
+        .chain(photons)
+        .collect(),
     }
 }

@@ -71,6 +71,39 @@ impl Filter {
         }
     }
 
+    /// The density of samples at an offset from the middle of their pixel, in pixels; its integral is 1.
+    ///
+    /// A filter without a width has none: what cannot be drawn there, but only found, is spread over the pixel.
+    pub fn density(self, offset: DVec2) -> f64 {
+        let each = |density: &dyn Fn(f64) -> f64| density(offset.x) * density(offset.y);
+        match self {
+            Self::Box | Self::Center => each(&|x| if (-0.5..0.5).contains(&x) { 1.0 } else { 0.0 }),
+            Self::Tent { radius } => each(&|x| (1.0 - x.abs() / radius).max(0.0) / radius),
+            Self::Gaussian { sigma } => {
+                let squared = offset.length_squared() / (sigma * sigma);
+                let within = -libm::expm1(-0.5 * CUT * CUT);
+                if squared < CUT * CUT { libm::exp(-0.5 * squared) / (TAU * sigma * sigma * within) } else { 0.0 }
+            }
+            Self::BlackmanHarris { radius } => each(&|x| {
+                if x.abs() >= radius {
+                    return 0.0;
+                }
+                let [a, b, c, d] = WINDOW;
+                let cos = |times: f64| libm::cos(0.5 * TAU * times * x / radius);
+                (a + b * cos(1.0) + c * cos(2.0) + d * cos(3.0)) / (2.0 * a * radius)
+            }),
+        }
+    }
+
+    /// The largest offset of a sample from the middle of its pixel on each axis, in pixels.
+    pub fn reach(self) -> f64 {
+        match self {
+            Self::Box | Self::Center => 0.5,
+            Self::Tent { radius } | Self::BlackmanHarris { radius } => radius,
+            Self::Gaussian { sigma } => CUT * sigma,
+        }
+    }
+
     /// The filter's name in a scene file.
     pub fn name(self) -> &'static str {
         match self {

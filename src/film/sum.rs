@@ -68,14 +68,14 @@ impl PixelSum {
         self.tree.push(Some(sum));
     }
 
-    /// The mean over the samples that were kept.
-    pub fn pixel(&self) -> Pixel {
+    /// The mean over the samples that were kept, and light beside them that is a mean already.
+    pub fn pixel(&self, beside: [f64; 3]) -> Pixel {
         let total = self.tree.iter().flatten().fold(self.block, |sum, entry| entry.plus(sum));
         let kept = f64::from((self.taken - self.rejected).max(1));
         // A value beyond f32 becomes the largest finite one: EXR readers choke on infinities.
         let store = |x: f64| (x as f32).clamp(f32::MIN, f32::MAX);
         Pixel {
-            rgb: total.rgb.map(|sum| store(sum / kept)),
+            rgb: std::array::from_fn(|i| store(total.rgb[i] / kept + beside[i])),
             alpha: (f64::from(total.met) / kept) as f32,
             depth: if self.nearest.is_finite() { store(self.nearest) } else { DEPTH_OF_NOTHING },
             samples: (self.taken - self.rejected) as f32,
@@ -106,7 +106,7 @@ mod tests {
         }
         let total = sum.tree.iter().flatten().fold(sum.block, |sum, entry| entry.plus(sum));
         assert!((total.rgb[0] / exact - 1.0).abs() <= 1e-9);
-        assert!((f64::from(sum.pixel().rgb[0]) / (exact / f64::from(count)) - 1.0).abs() <= 1e-7);
+        assert!((f64::from(sum.pixel([0.0; 3]).rgb[0]) / (exact / f64::from(count)) - 1.0).abs() <= 1e-7);
     }
 
     /// Row A2 of the stability catalog.
@@ -129,7 +129,7 @@ mod tests {
         assert!(!sum.add(&sample(f64::NAN)));
         assert!(!sum.add(&sample(f64::INFINITY)));
         assert!(sum.add(&sample(3.0)));
-        assert_eq!(sum.pixel().rgb, [2.0; 3]);
+        assert_eq!(sum.pixel([0.0; 3]).rgb, [2.0; 3]);
         assert_eq!(sum.rejected, 2);
     }
 }

@@ -1,7 +1,7 @@
 use serde::Deserialize;
 
 use super::View;
-use crate::math::{DVec3, Ray};
+use crate::math::{DVec3, Ray, unit};
 use crate::shape::Sighting;
 use crate::spectrum::Quantity;
 
@@ -45,7 +45,7 @@ impl<S> Spot<S> {
 
     /// The part of the intensity that leaves in a direction: 1 within the cone's inner part, 0 beyond the cone, between them
     /// 3 t^2 - 2 t^3 of the angle.
-    fn part(&self, direction: DVec3) -> f64 {
+    pub fn part(&self, direction: DVec3) -> f64 {
         let axis = DVec3::from(self.toward).normalize();
         let angle = libm::atan2(axis.cross(direction).length(), axis.dot(direction));
         let outer = 0.5 * self.cone_angle.to_radians();
@@ -55,6 +55,12 @@ impl<S> Spot<S> {
         }
         let t = ((outer - angle) / (outer - inner)).max(0.0);
         if angle >= outer { 0.0 } else { t * t * (3.0 - 2.0 * t) }
+    }
+
+    /// Axis and 1 - cos of the half angle of the cone.
+    pub fn cone(&self) -> (DVec3, f64) {
+        let sin = libm::sin(0.25 * self.cone_angle.to_radians());
+        (unit(DVec3::from(self.toward).normalize()), 2.0 * sin * sin)
     }
 
     pub(super) fn aim(&self, from: DVec3) -> Option<Sighting> {

@@ -1,5 +1,6 @@
 //! Floor 5: looks at a scene, decides how little of the world must be modelled to render it, and says why.
 
+mod caustics;
 mod ladder;
 mod model;
 mod survey;
@@ -47,12 +48,15 @@ pub fn plan(scene: &Scene<Curve>) -> Plan {
         (Transport::Deterministic { .. }, None) => 1,
         (Transport::Random { .. }, None) => SAMPLES,
     };
-    because.extend(lights(scene));
     let diffuse_bounces = scene.render.diffuse_bounces.unwrap_or(u32::MAX);
     let together = if basis.draws_wavelengths() { TOGETHER_PIXELS * scene.camera.pixel_angle() } else { 0.0 };
     let max_bounces = scene.render.max_bounces.unwrap_or(u32::MAX);
     let seed = scene.render.seed;
-    let method = Method { basis, transport, together, samples, seed, diffuse_bounces, max_bounces };
+    let method = Method { basis, transport, together, samples, seed, diffuse_bounces, max_bounces, light_pass: None };
+    let (light_pass, reasons) = caustics::light_pass(scene, &method);
+    because.extend(reasons);
+    let method = Method { light_pass, ..method };
+    because.extend(lights(scene, method.light_pass.is_some()));
     because.extend(cost(scene, &method, next));
     Plan { method, because, rungs }
 }
@@ -106,7 +110,7 @@ fn extended_light(scene: &Scene<Curve>) -> Option<String> {
 }
 
 /// What lights cannot do.
-fn lights(scene: &Scene<Curve>) -> Vec<String> {
+fn lights(scene: &Scene<Curve>, light_pass: bool) -> Vec<String> {
     let mut lines = Vec::new();
     let wide =
         |diffuse| scene.materials.iter().any(|m| m.material.scatters_widely() && m.material.is_diffuse() == diffuse);
@@ -119,8 +123,10 @@ fn lights(scene: &Scene<Curve>) -> Vec<String> {
     let points = scene.lights.iter().filter(|light| !light.is_extended()).count();
     let bends = scene.materials.iter().find(|m| m.material.has_single_directions());
     if let (Some(lit), true, Some(bends)) = (lit, points > 0, bends) {
+        let where_seen =
+            if light_pass { ", seen in a mirror or through glass or by way of another surface" } else { "" };
         lines.push(format!(
-            "left out: light of point lights that reaches a {lit} surface by way of smooth ones ({})",
+            "left out: light of point lights that reaches a {lit} surface by way of smooth ones ({}){where_seen}",
             bends.name
         ));
     }
@@ -161,6 +167,15 @@ fn cost(scene: &Scene<Curve>, method: &Method, next: Option<Basis>) -> Vec<Strin
         in_words(seconds)
     ));
     lines
+}
+
+/// A count as people say it.
+fn in_number(count: u64) -> String {
+    match count as f64 {
+        n if n < 1e4 => format!("{count}"),
+        n if n < 1e6 => format!("{:.0} thousand", n / 1e3),
+        n => format!("{:.1} million", n / 1e6),
+    }
 }
 
 /// A time as people say it.

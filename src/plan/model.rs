@@ -126,7 +126,16 @@ fn dispersion(scene: &Scene<Curve>) -> Option<Spread> {
     let transport = Transport::Random { split: 1.0, roulette: 0.0 };
     let diffuse_bounces = scene.render.diffuse_bounces.unwrap_or(u32::MAX);
     let seed = scene.render.seed;
-    let method = Method { basis, transport, together: 0.0, samples: 1, seed, diffuse_bounces, max_bounces: u32::MAX };
+    let method = Method {
+        basis,
+        transport,
+        together: 0.0,
+        samples: 1,
+        seed,
+        diffuse_bounces,
+        max_bounces: u32::MAX,
+        light_pass: None,
+    };
     Some(spread(&World::new(scene, method)))
 }
 

@@ -5,18 +5,18 @@ use crate::math::{DVec2, DVec3, Frame, Ray, disk, unit};
 /// From where the scene is seen, and how directions become places in the image.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Camera {
-    position: DVec3,
-    right: DVec3,
-    up: DVec3,
-    forward: DVec3,
-    projection: Projection,
+    pub(super) position: DVec3,
+    pub(super) right: DVec3,
+    pub(super) up: DVec3,
+    pub(super) forward: DVec3,
+    pub(super) projection: Projection,
     /// Half of the image in the plane one unit before the camera, or half of an orthographic view.
-    half: DVec2,
+    pub(super) half: DVec2,
     /// The middle of the image there.
-    center: DVec2,
-    size: DVec2,
-    near: f64,
-    lens: Option<Lens>,
+    pub(super) center: DVec2,
+    pub(super) size: DVec2,
+    pub(super) near: f64,
+    pub(super) lens: Option<Lens>,
     /// Distance of the point looked at.
     reach: f64,
 }
@@ -56,9 +56,9 @@ impl Projection {
 /// Potmesil & Chakravarty 1981, *A Lens and Aperture Camera Model for Synthetic Image Generation*.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lens {
-    radius: f64,
+    pub(super) radius: f64,
     /// One over the distance of the plane in focus: 0 where that is infinitely far away.
-    inverse_focus: f64,
+    pub(super) inverse_focus: f64,
 }
 
 impl Lens {

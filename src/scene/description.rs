@@ -55,6 +55,22 @@ pub struct RenderText {
     pub diffuse_bounces: Option<u32>,
     /// How often light may leave any surface, glass and mirrors included; no limit if absent.
     pub max_bounces: Option<u32>,
+    /// Whether caustics may have a light pass of their own.
+    #[serde(default)]
+    pub caustics: CausticsText,
+}
+
+/// ```toml
+/// render.caustics = "auto"     # "off"
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum CausticsText {
+    /// Photons, where the scene needs them.
+    #[default]
+    Auto,
+    /// Left to chance.
+    Off,
 }
 
 /// ```toml

@@ -4,6 +4,7 @@
 //! spectrum on the lanes; the tracer reads it.
 
 mod camera;
+mod camera_sees;
 mod compile;
 mod compile_curve;
 mod compile_image;
@@ -26,8 +27,9 @@ mod syntax;
 mod wording;
 
 pub use camera::{Camera, Lens, Projection};
+pub use camera_sees::Seen;
 pub use compile::compile;
-pub use description::{Description, ModelText, RenderText};
+pub use description::{CausticsText, Description, ModelText, RenderText};
 pub use source::Source;
 
 use std::cell::Cell;
@@ -120,6 +122,11 @@ pub struct Object {
 }
 
 impl Object {
+    /// Whether it is shaded by other normals than its own.
+    pub fn is_bent(&self) -> bool {
+        self.shape.has_vertex_normals()
+    }
+
     /// Where a point of its surface lies in images on it; (0, 0) if there are none.
     pub fn uv(&self, crossing: &Crossing, point: &SurfacePoint) -> [f64; 2] {
         let coordinates = self.coordinates.as_ref();

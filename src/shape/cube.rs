@@ -117,12 +117,17 @@ impl Cube {
 
     /// A point uniform by area, and the face it lies on.
     pub(super) fn sample(&self, u: [f64; 2]) -> (DVec3, u32) {
-        let mut left = u[0] * self.area();
+        let (face, along) = self.choose(u[0]);
+        (self.face(face).at([2.0 * along - 1.0, 2.0 * u[1] - 1.0]), face)
+    }
+
+    /// A face by its area, and what is left of the random number.
+    pub(super) fn choose(&self, u: f64) -> (u32, f64) {
+        let mut left = u * self.area();
         for face in 0..6 {
             let area = self.face_area(face / 2);
             if left < area || face == 5 {
-                let along = (left / area).min(1.0);
-                return (self.faces[face].at([2.0 * along - 1.0, 2.0 * u[1] - 1.0]), face as u32);
+                return (face as u32, (left / area).min(1.0));
             }
             left -= area;
         }

@@ -38,12 +38,16 @@ impl Ellipsoid {
     }
 
     pub(super) fn point(&self, hit: DVec3) -> SurfacePoint {
-        let unit = (self.inverse * (hit - self.center)).normalize();
-        self.point_at(unit)
+        self.point_at(self.unit_of(hit))
+    }
+
+    /// The point of the unit sphere under a point of the surface.
+    pub(super) fn unit_of(&self, point: DVec3) -> DVec3 {
+        (self.inverse * (point - self.center)).normalize()
     }
 
     /// The surface over a point of the unit sphere.
-    fn point_at(&self, unit: DVec3) -> SurfacePoint {
+    pub(super) fn point_at(&self, unit: DVec3) -> SurfacePoint {
         let arm = self.axes * unit;
         let position = self.center + arm;
         let gradient = self.inverse.transpose() * unit;
@@ -88,12 +92,20 @@ impl Ellipsoid {
         roots.filter(|&t| t > 0.0).map(|t| self.density_at(ray, t)).sum()
     }
 
-    /// Density per steradian of one crossing: uniform on the unit sphere, by the map's growth of area there.
+    /// Density per steradian of one crossing.
     fn density_at(&self, ray: &Ray, t: f64) -> f64 {
-        let unit = (self.inverse * (ray.at(t) - self.center)).normalize();
-        // Nanson's relation: area grows by |det A| |A^-T n|, along the normal A^-T n.
-        let area_normal = self.inverse.transpose() * unit * self.axes.determinant().abs();
-        t * t / (4.0 * PI * area_normal.dot(ray.direction).abs())
+        let unit = self.unit_of(ray.at(t));
+        t * t / (4.0 * PI * self.area_normal(unit).dot(ray.direction).abs())
+    }
+
+    /// Density per unit of area of points uniform on the unit sphere.
+    pub(super) fn density_over(&self, unit: DVec3) -> f64 {
+        1.0 / (4.0 * PI * self.area_normal(unit).length())
+    }
+
+    /// How much area grows from the unit sphere, along the normal: Nanson's relation, |det A| A^-T n.
+    fn area_normal(&self, unit: DVec3) -> DVec3 {
+        self.inverse.transpose() * unit * self.axes.determinant().abs()
     }
 }
 

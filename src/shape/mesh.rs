@@ -127,6 +127,11 @@ impl Mesh {
         Self { attributes, ..self }
     }
 
+    /// Whether it is shaded by normals of its vertices.
+    pub fn has_normals(&self) -> bool {
+        self.attributes.has_normals()
+    }
+
     /// Whether it has texture coordinates.
     pub fn has_coordinates(&self) -> bool {
         !self.attributes.coordinates.is_empty()
@@ -169,11 +174,15 @@ impl Mesh {
 
     /// A point uniform by area, and the triangle it lies on.
     pub(super) fn sample(&self, u: [f64; 2]) -> (DVec3, u32) {
-        let areas = self.areas();
-        let target = u[0] * self.area();
+        let (index, along) = self.choose(u[0]);
+        (self.triangle(index).sample([along, u[1]]), index)
+    }
+
+    /// A triangle by its area, and what is left of the random number.
+    pub(super) fn choose(&self, u: f64) -> (u32, f64) {
+        let (areas, target) = (self.areas(), u * self.area());
         let index = areas.partition_point(|&sum| sum <= target).min(areas.len() - 1);
         let before = if index == 0 { 0.0 } else { areas[index - 1] };
-        let along = ((target - before) / (areas[index] - before)).clamp(0.0, 1.0);
-        (self.triangle(index as u32).sample([along, u[1]]), index as u32)
+        (index as u32, ((target - before) / (areas[index] - before)).clamp(0.0, 1.0))
     }
 }

@@ -13,6 +13,7 @@ mod cube;
 mod disc;
 mod edges;
 mod ellipsoid;
+mod emit;
 mod emitters;
 mod gltf;
 mod gltf_buffer;
@@ -37,6 +38,7 @@ pub use coordinates::Coordinates;
 pub use cube::Cube;
 pub use disc::Disc;
 pub use ellipsoid::Ellipsoid;
+pub use emit::Ball;
 pub use emitters::{Choice, Emitter, Emitters, Facing};
 pub use instance::Instance;
 pub use mesh::{Mesh, MeshReport, Vertices};
@@ -196,6 +198,15 @@ impl Shape {
             _ => None,
         };
         shared.map_or_else(|| self.clone().transformed(map), |instance| Self::Instance(Box::new(instance)))
+    }
+
+    /// Whether it is shaded by normals of vertices.
+    pub fn has_vertex_normals(&self) -> bool {
+        match self {
+            Self::Mesh(mesh) => mesh.has_normals(),
+            Self::Instance(instance) => instance.mesh().has_normals(),
+            _ => false,
+        }
     }
 
     /// Whether the shape has an inside: a dielectric on it fills that, or the half space behind a plane.

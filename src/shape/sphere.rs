@@ -59,6 +59,11 @@ impl Sphere {
         SurfacePoint { position, error, normal, shading: normal }
     }
 
+    /// The point of the sphere with a unit normal, rounded.
+    pub(super) fn over(&self, normal: DVec3) -> DVec3 {
+        self.center + normal * self.radius
+    }
+
     pub(super) fn bounds(&self) -> Bounds {
         let reach = DVec3::splat(self.radius);
         Bounds { min: self.center - reach, max: self.center + reach }.padded(8)

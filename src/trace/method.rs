@@ -1,3 +1,4 @@
+use crate::light::LightId;
 use crate::spectrum::Basis;
 
 /// How to render, as plain data: what the plan decides and the tracer obeys.
@@ -17,6 +18,17 @@ pub struct Method {
     pub diffuse_bounces: u32,
     /// How often light may leave any surface; what longer paths would have carried is reported.
     pub max_bounces: u32,
+    /// Caustics by photons; none leaves them to the camera's rays and chance.
+    pub light_pass: Option<LightPass>,
+}
+
+/// Photons that are sent to all finite smooth objects, for the light that these throw onto what the camera sees.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LightPass {
+    /// How many, about.
+    pub photons: u64,
+    /// The lights that send them: points, spots, suns and finite `emissive` surfaces.
+    pub lights: Vec<LightId>,
 }
 
 /// Which of a surface's branches are followed.

@@ -9,13 +9,19 @@
 //!    roulette. A weight is the mean throughput over the lanes, without the factor of radiance between media.
 //! 5. Random numbers are a pure function of seed, pixel, sample, branch and use; sums have a fixed order.
 
+mod aims;
 mod choice;
 mod direct;
+mod emission;
+mod follow;
+mod guide;
 mod holes;
 mod lamps;
+mod light_pass;
 mod media;
 mod method;
 mod path;
+mod photon;
 mod probe;
 
 mod render;
@@ -27,7 +33,9 @@ mod tracer;
 mod width;
 mod world;
 
-pub use method::{Method, Transport};
+pub use aims::{is_photon_source, is_photon_target};
+pub use light_pass::seen_photons;
+pub use method::{LightPass, Method, Transport};
 pub use probe::{Probe, probe};
 
 pub use render::{Report, render};

@@ -19,12 +19,39 @@ pub(super) struct Path<const N: usize> {
     pub(super) key: BranchKey,
     /// Surfaces met so far.
     pub(super) vertices: u32,
+    /// What kind of path it is so far.
+    pub(super) leg: Leg,
     /// How often the path may still leave a diffuse surface.
     pub(super) diffuse_left: u32,
     /// How the last direction was drawn; none after the camera or a smooth surface.
     pub(super) drawn: Option<Drawn>,
     /// Degree to which the last smooth surface would have polarized the light.
     pub(super) polarization: f32,
+}
+
+/// How a path that photons may find as well goes on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Leg {
+    /// Straight from the camera.
+    Camera,
+    /// Scattered widely by the first surface, and none other.
+    Wide,
+    /// After that over smooth surfaces alone; `aimed` says whether photons are sent to the last one.
+    Smooth { aimed: bool },
+    /// Another way.
+    Other,
+}
+
+impl Leg {
+    /// After one more surface; `wide` says whether light left it by a density of directions, `aimed` whether photons are sent
+    /// to its object; none if they do not follow light over it.
+    pub(super) fn then(self, wide: bool, aimed: Option<bool>) -> Self {
+        match (self, wide, aimed) {
+            (Self::Camera, true, _) => Self::Wide,
+            (Self::Wide | Self::Smooth { .. }, false, Some(aimed)) => Self::Smooth { aimed },
+            _ => Self::Other,
+        }
+    }
 }
 
 /// How a direction was drawn at a surface whose lights were aimed at as well.
@@ -68,6 +95,7 @@ impl<const N: usize> Path<N> {
             parted: false,
             key: BranchKey::CAMERA,
             vertices: 0,
+            leg: Leg::Camera,
             diffuse_left: world.method.diffuse_bounces,
             drawn: None,
             polarization: 0.0,

@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use super::light_pass::{self, Shown};
 use super::tally::Tally;
 use super::tracer::Tracer;
 use super::width::{InLanes, in_lanes};
@@ -35,6 +36,8 @@ pub struct Report {
     pub unmatched: u64,
     /// Bound of the mean weight per camera sample that polarization would move.
     pub polarization: f64,
+    /// Photons sent by the light pass.
+    pub photons: u64,
 }
 
 /// Renders the world's image, or the part of it that is asked for. `progress` is told how many pixels are done, from any thread.
@@ -57,13 +60,14 @@ impl InLanes for Render<'_> {
 fn render_lanes<const N: usize>(world: &World, progress: &(dyn Fn(u64) + Sync)) -> (Film, Report) {
     let settings = world.scene.film;
     let window = settings.window();
+    let shown = light_pass::show::<N>(world);
     let (columns, rows) = (window.width.div_ceil(TILE), window.height.div_ceil(TILE));
     let bands: Vec<(Vec<Pixel>, Report)> = (0..rows)
         .into_par_iter()
         .map(|row| {
             let height = TILE.min(window.height - row * TILE);
             let tiles: Vec<_> =
-                (0..columns).into_par_iter().map(|column| tile::<N>(world, column, row, progress)).collect();
+                (0..columns).into_par_iter().map(|column| tile::<N>(world, &shown, column, row, progress)).collect();
             let mut pixels = vec![BLANK; (window.width * height) as usize];
             let mut report = Report::default();
             for (column, (tile, noted)) in tiles.iter().enumerate() {
@@ -88,6 +92,10 @@ fn render_lanes<const N: usize>(world: &World, progress: &(dyn Fn(u64) + Sync)) 
     report.dropped /= samples;
     report.stopped /= samples;
     report.polarization /= samples;
+    report.photons = shown.photons;
+    report.rays += shown.rays;
+    report.non_finite += shown.non_finite;
+    report.unmatched += shown.unmatched;
     let film = Film {
         width: window.width,
         height: window.height,
@@ -102,12 +110,19 @@ fn render_lanes<const N: usize>(world: &World, progress: &(dyn Fn(u64) + Sync)) 
 const BLANK: Pixel = Pixel { rgb: [0.0; 3], alpha: 0.0, depth: 0.0, samples: 0.0 };
 
 /// The pixels of one tile, row by row.
-fn tile<const N: usize>(world: &World, column: u32, row: u32, progress: &(dyn Fn(u64) + Sync)) -> (Vec<Pixel>, Report) {
+fn tile<const N: usize>(
+    world: &World,
+    shown: &Shown,
+    column: u32,
+    row: u32,
+    progress: &(dyn Fn(u64) + Sync),
+) -> (Vec<Pixel>, Report) {
     let window = world.scene.film.window();
     let mut tracer = Tracer::<N>::new(world);
     let (mut pixels, mut report) = (Vec::new(), Report::default());
     for y in row * TILE..window.height.min((row + 1) * TILE) {
         for x in column * TILE..window.width.min((column + 1) * TILE) {
+            let by_photons = shown.pixels.get((y * window.width + x) as usize).copied().unwrap_or_default();
             // Random numbers and rays belong to the full image's pixel, whatever part of it is made.
             let (x, y) = (window.left + x, window.top + y);
             let mut sum = PixelSum::default();
@@ -118,7 +133,7 @@ fn tile<const N: usize>(world: &World, column: u32, row: u32, progress: &(dyn Fn
                     report.first_non_finite.get_or_insert([x, y, number]);
                 }
             }
-            pixels.push(sum.pixel());
+            pixels.push(sum.pixel(by_photons));
         }
     }
     let Tally { rays, dropped, stopped, unmatched, polarization, .. } = tracer.tally;

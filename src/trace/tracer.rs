@@ -5,8 +5,7 @@ use std::cell::Cell;
 use super::direct::{Gathering, add, weight_of_meeting};
 use super::holes;
 use super::media;
-use super::path::{Drawn, Path};
-use super::roulette::survival;
+use super::path::{Drawn, Leg, Path};
 use super::shading;
 use super::tally::Tally;
 use super::{Transport, World};
@@ -19,11 +18,12 @@ use crate::spectrum::{Draw, Lanes};
 
 /// Follows the rays of camera samples, one sample after another; its buffers live as long as it does.
 pub(super) struct Tracer<'a, const N: usize> {
-    world: &'a World,
-    pending: Vec<Path<N>>,
-    branches: Vec<Branch<N>>,
+    pub(super) world: &'a World,
+    pub(super) transport: Transport,
+    pub(super) pending: Vec<Path<N>>,
+    pub(super) branches: Vec<Branch<N>>,
     /// The object that hid the last light that was hidden: the first to ask about the next one.
-    hider: Cell<Option<u32>>,
+    pub(super) hider: Cell<Option<u32>>,
     pub(super) tally: Tally,
     /// Lights that paths from widely scattering surfaces met, with the unit normal there, if somebody wants to know.
     pub(super) met: Option<Vec<(LightId, DVec3)>>,
@@ -35,7 +35,6 @@ const SOONER: f64 = 5.0;
 
 /// Uses of the random numbers at a vertex.
 const SCATTER: u32 = 1;
-const CHOICE: u32 = 2;
 /// Surfaces of a path whose directions are drawn from a sequence spread over the pixel's samples. Behind them the samples
 /// see so many different places that plain random numbers, which cost less, are taken.
 const SPREAD: u32 = 4;
@@ -43,7 +42,12 @@ const SPREAD: u32 = 4;
 impl<'a, const N: usize> Tracer<'a, N> {
     pub(super) fn new(world: &'a World) -> Self {
         let (pending, branches) = (Vec::new(), Vec::new());
-        Self { world, pending, branches, hider: Cell::new(None), tally: Tally::default(), met: None }
+        let (transport, tally) = (world.method.transport, Tally::default());
+        Self { world, transport, pending, branches, hider: Cell::new(None), tally, met: None }
+    }
+
+    pub(super) fn with_transport(self, transport: Transport) -> Self {
+        Self { transport, ..self }
     }
 
     /// What the sensor receives along a camera ray, and what the ray met first.
@@ -95,6 +99,9 @@ impl<'a, const N: usize> Tracer<'a, N> {
         let mut sum = [0.0; 3];
         for &id in &self.world.scene.skies {
             let light = &self.world.scene.lights[id];
+            if self.is_found_by_photons(path, id) {
+                continue;
+            }
             let factor = match light {
                 Light::Sun(sun) if sun.pdf(&path.ray).is_some() => sun.radiance_factor(),
                 Light::Sun(_) => continue,
@@ -111,7 +118,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
     fn emission(&mut self, path: &Path<N>, draw: &Draw<N>, hit: &Hit, point: &SurfacePoint) -> [f64; 3] {
         let Some(id) = self.world.scene.objects[hit.object as usize].light else { return [0.0; 3] };
         let Light::Area(area) = &self.world.scene.lights[id] else { return [0.0; 3] };
-        if !area.sides.shine(point.normal.dot(path.ray.direction) < 0.0) {
+        if !area.sides.shine(point.normal.dot(path.ray.direction) < 0.0) || self.is_found_by_photons(path, id) {
             return [0.0; 3];
         }
         if let (Some(met), Some(_)) = (&mut self.met, &path.drawn) {
@@ -149,7 +156,8 @@ impl<'a, const N: usize> Tracer<'a, N> {
             if here == beyond {
                 // No light was aimed at through this surface, so what the path meets beyond counts in full.
                 let (ray, key) = (point.leave(path.ray.direction), path.key.child(0));
-                return Some(Path { ray, media: crossed, key, drawn: None, ..*path });
+                let leg = path.leg.then(false, Some(world.is_photon_target(hit.object)));
+                return Some(Path { ray, media: crossed, key, drawn: None, leg, ..*path });
             }
         }
         let arrival = Arrival {
@@ -221,6 +229,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
                 parted: path.parted || (parts && branch.crosses),
                 key: path.key.child(number),
                 vertices: path.vertices,
+                leg: path.leg.then(branch.pdf.is_some(), world.photons_over(hit.object)),
                 diffuse_left: path.diffuse_left - u32::from(diffuse && branch.pdf.is_some()),
                 drawn: branch.pdf.and_then(|pdf| drawn.map(|drawn: Drawn| drawn.toward(pdf, branch.crosses))),
                 polarization: branch.polarization,
@@ -228,66 +237,8 @@ impl<'a, const N: usize> Tracer<'a, N> {
         })
     }
 
-    /// Decides which branches are followed; `child(number, branch, factor)` makes the path of one.
-    fn follow(
-        &mut self,
-        path: &Path<N>,
-        draw: &Draw<N>,
-        sampler: &Sampler,
-        (parts, sooner): (bool, f64),
-        child: impl Fn(usize, &Branch<N>, f64) -> Path<N>,
-    ) -> Option<Path<N>> {
-        let sooner = |branch: &Branch<N>| if branch.pdf.is_some() { sooner } else { 1.0 };
-        let parted = |branch: &Branch<N>| path.parted || (parts && branch.crosses);
-        let weight_of = |branch: &Branch<N>| {
-            let shares = draw.shares(parted(branch));
-            path.throughput.through(branch.share).weight(shares) / (path.eta_scale * branch.eta_scale)
-        };
-        if path.polarization != 0.0 {
-            let moved = |branch: &Branch<N>| {
-                let degree = f64::from(path.polarization * branch.polarization).abs();
-                weight_of(branch) * degree / draw.siblings(parted(branch))
-            };
-            self.tally.polarization += self.branches.iter().map(moved).sum::<f64>();
-        }
-        match self.world.method.transport {
-            Transport::Deterministic { cutoff } => {
-                for (number, branch) in self.branches.iter().enumerate() {
-                    match weight_of(branch) {
-                        weight if weight < cutoff => self.tally.dropped += weight,
-                        _ => self.pending.push(child(number, branch, 1.0)),
-                    }
-                }
-                None
-            }
-            Transport::Random { split, roulette } => {
-                if self.branches.len() > 1 && path.weight(draw) <= split {
-                    let u = sampler.four_plain(path.key, CHOICE);
-                    let total: f64 = self.branches.iter().map(weight_of).sum();
-                    let mut left = u[0] * total;
-                    let mut bright = (0..self.branches.len()).filter(|&i| weight_of(&self.branches[i]) != 0.0);
-                    let last = bright.clone().next_back()?;
-                    let chosen = bright.find(|&i| {
-                        left -= weight_of(&self.branches[i]);
-                        left < 0.0
-                    });
-                    let number = chosen.unwrap_or(last);
-                    let branch = &self.branches[number];
-                    let factor = survival(total, roulette, path.vertices, || u[1])?;
-                    return Some(child(number, branch, factor * total / weight_of(branch)));
-                }
-                let mut next = None;
-                for (number, branch) in self.branches.iter().enumerate() {
-                    let u = || sampler.four_plain(path.key.child(number), CHOICE)[2];
-                    let weight = weight_of(branch);
-                    if weight != 0.0
-                        && let Some(factor) = survival(weight, roulette * sooner(branch), path.vertices, u)
-                    {
-                        self.pending.extend(next.replace(child(number, branch, factor)));
-                    }
-                }
-                next
-            }
-        }
+    /// Whether the path's way to a light is one that photons find.
+    fn is_found_by_photons(&self, path: &Path<N>, light: LightId) -> bool {
+        path.leg == Leg::Smooth { aimed: true } && self.world.sends_photons(light)
     }
 }

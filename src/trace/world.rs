@@ -1,3 +1,4 @@
+use super::aims::Aims;
 use super::choice::Choice;
 use super::lamps::met_lamps;
 use super::media::Media;
@@ -23,6 +24,8 @@ pub struct World {
     pub(super) has_media: bool,
     /// Whether each object lets light through holes; empty where none does.
     holes: Vec<bool>,
+    /// Where photons are sent, if the method has a light pass.
+    pub(super) aims: Option<Aims>,
 }
 
 impl World {
@@ -37,12 +40,14 @@ impl World {
         let choice = Choice::new(&scene.lights);
         let targets = choice.targets();
         let camera_media = Media::default();
-        let mut world = Self { responses, targets, choice, scene, method, camera_media, has_media, holes };
+        let aims = method.light_pass.as_ref().and_then(|pass| Aims::new(&scene, pass));
+        let mut world = Self { responses, targets, choice, scene, method, camera_media, has_media, holes, aims };
         if has_media {
             let (position, forward) = (world.scene.camera.position(), world.scene.camera.forward());
             world.camera_media = Media::around(&world, position, forward);
         }
         world.look_for_lamps();
+        world.learn_where_to_send();
         world
     }
 

@@ -1,0 +1,160 @@
+//! Whether caustics need a light pass of their own.
+
+use std::f64::consts::TAU;
+
+use super::in_number;
+use crate::light::{Light, LightId};
+use crate::material::Material;
+use crate::math::{DVec2, DVec3, one_minus_cos_of_cone};
+use crate::scene::{CausticsText, Scene};
+use crate::shape::Sides;
+use crate::spectrum::Curve;
+use crate::trace::{LightPass, Method, Transport, World, is_photon_source, is_photon_target, seen_photons};
+
+/// Solid angle in steradians below which rays meet a lamp too rarely: a tenth measured as the place where path tracing and
+/// light tracing cost the same.
+const SMALL: f64 = 0.1;
+/// Photons per camera sample.
+const PHOTONS: f64 = 1.0;
+/// Camera rays along each side of the image that look for surfaces on which caustics may lie.
+const SIDE: u32 = 24;
+
+/// The light pass that a scene needs, if any, and why.
+pub(super) fn light_pass(scene: &Scene<Curve>, method: &Method) -> (Option<LightPass>, Vec<String>) {
+    let none = |why: String| (None, vec![why]);
+    let spread = |material: &Material<Curve>| {
+        material.scatters_widely() && !(material.is_diffuse() && scene.render.diffuse_bounces == Some(0))
+    };
+    let is_smooth =
+        |material: &Material<Curve>| !material.scatters_widely() && !matches!(material, Material::Emissive(_));
+    let objects = || 0..scene.objects.len();
+    let Some(bends) = objects().find(|&object| is_smooth(scene.material_of(object as u32))) else {
+        return (None, Vec::new());
+    };
+    if matches!(method.transport, Transport::Deterministic { .. })
+        || !scene.materials.iter().any(|named| spread(&named.material))
+    {
+        return (None, Vec::new());
+    }
+    if scene.render.caustics == CausticsText::Off {
+        return none(format!("caustics \"off\": no light pass{}", missing(scene)));
+    }
+    let targets: Vec<usize> = objects().filter(|&object| is_photon_target(scene, object)).collect();
+    if targets.is_empty() {
+        let name = &scene.objects[bends].name;
+        return none(format!("no light pass: {name} has no end, so photons cannot be aimed at it{}", missing(scene)));
+    }
+    let places = lit_places(scene, spread);
+    if places.is_empty() {
+        let why = "the camera sees no diffuse or rough surface but through glass or in mirrors, where caustics";
+        return none(format!("no light pass: {why} are left to chance{}", missing(scene)));
+    }
+    let mut small = Vec::new();
+    let mut large = Vec::new();
+    for (id, light) in scene.lights.iter().enumerate().filter(|(_, light)| light.is_aimed_at()) {
+        match solid_angle(light, &places) {
+            Some(size) if size < SMALL && is_photon_source(light) => small.push((id, size)),
+            Some(size) => large.push((id, size)),
+            None => {}
+        }
+    }
+    let mut lines = Vec::new();
+    if small.is_empty() {
+        let why = match large.as_slice() {
+            [] => "rays find the sky by chance often enough".into(),
+            lights => format!("{} large enough for rays to meet by chance", named(scene, lights)),
+        };
+        return none(format!("no light pass: {why}"));
+    }
+    let film = scene.film;
+    let samples = f64::from(film.width) * f64::from(film.height) * f64::from(method.samples);
+    let photons = (PHOTONS * samples).ceil() as u64;
+    let pass = |lights: Vec<LightId>| LightPass { photons, lights };
+    let asked = pass(small.iter().map(|light| light.0).collect());
+    let share = seen_photons(&World::new(scene, Method { light_pass: Some(asked), ..method.clone() }));
+    let (seen, unseen): (Vec<_>, Vec<_>) = small.into_iter().partition(|&(id, _)| share[id] > 0.0);
+    let to = match targets.as_slice() {
+        [one] => scene.objects[*one].name.clone(),
+        many => format!("{} smooth objects", many.len()),
+    };
+    if !unseen.is_empty() {
+        lines.push(format!(
+            "no caustic of {} in sight: none of some thousand photons toward {to} was seen",
+            named(scene, &unseen)
+        ));
+    }
+    if !large.is_empty() && !seen.is_empty() {
+        lines.push(format!("left to chance: caustics of {}", named(scene, &large)));
+    }
+    if seen.is_empty() {
+        return (None, lines);
+    }
+    let most = seen.iter().map(|&(id, _)| share[id]).fold(0.0, f64::max);
+    lines.push(format!(
+        "light pass: {} photons from {} toward {to}; {} are seen",
+        in_number(photons),
+        named(scene, &seen),
+        if most < 0.095 { format!("{:.1} %", 100.0 * most) } else { format!("{:.0} %", 100.0 * most) }
+    ));
+    (Some(pass(seen.iter().map(|light| light.0).collect())), lines)
+}
+
+/// What cannot be met by chance at all.
+fn missing(scene: &Scene<Curve>) -> &'static str {
+    if scene.lights.iter().all(Light::is_extended) { "" } else { "; those of points are left out" }
+}
+
+/// Lights with the solid angle under which they are seen.
+fn named(scene: &Scene<Curve>, lights: &[(LightId, f64)]) -> String {
+    let name = |&(id, size): &(LightId, f64)| {
+        let name = match &scene.lights[id] {
+            Light::Area(area) => scene.objects[area.object as usize].name.clone(),
+            Light::Point(_) => "a point".into(),
+            Light::Spot(_) => "a spot".into(),
+            Light::Sun(_) => "the sun".into(),
+            Light::Environment(_) => "the environment".into(),
+        };
+        if size > 0.0 { format!("{name} ({size:.1e} sr)") } else { name }
+    };
+    match lights {
+        [one] => name(one),
+        [first, ..] => format!("{} lights such as {}", lights.len(), name(first)),
+        [] => "no light".into(),
+    }
+}
+
+/// Points that the camera sees on surfaces that scatter widely; the same whatever part of the image is made.
+fn lit_places(scene: &Scene<Curve>, spread: impl Fn(&Material<Curve>) -> bool) -> Vec<DVec3> {
+    let film = scene.film;
+    let at = |i: u32, size: u32| (f64::from(i) + 0.5) * f64::from(size) / f64::from(SIDE);
+    let rays =
+        (0..SIDE * SIDE).map(|i| scene.camera.ray(DVec2::new(at(i % SIDE, film.width), at(i / SIDE, film.height))));
+    let place = |ray| {
+        let hit = scene.intersect(&ray).filter(|hit| spread(scene.material_of(hit.object)))?;
+        Some(ray.at(hit.crossing.t))
+    };
+    rays.filter_map(place).collect()
+}
+
+/// Under which solid angle, in steradians, a light is seen from half of some places or more; none of one that fills the sky.
+fn solid_angle(light: &Light<Curve>, places: &[DVec3]) -> Option<f64> {
+    match light {
+        Light::Point(_) | Light::Spot(_) => Some(0.0),
+        Light::Sun(sun) => {
+            let sin = libm::sin(0.5 * sun.angular_diameter.to_radians());
+            Some(TAU * one_minus_cos_of_cone(sin * sin))
+        }
+        Light::Environment(_) => None,
+        Light::Area(area) => {
+            let ball = area.shape.ball()?;
+            let size = area.shape.emitter(area.sides == Sides::Both)?.intensity;
+            let from = |place: &DVec3| {
+                let distance_squared = (ball.center - *place).length_squared();
+                (TAU * ball.cone_from(*place).1).min(size / distance_squared)
+            };
+            let mut angles: Vec<f64> = places.iter().map(from).collect();
+            angles.sort_by(f64::total_cmp);
+            angles.get(angles.len() / 2).copied()
+        }
+    }
+}

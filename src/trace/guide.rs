@@ -1,0 +1,146 @@
+//! Which photons are worth sending.
+
+/// Cells along each side of the square.
+const SIDE: usize = 64;
+/// Share of the photons that is sent everywhere, whatever was learned: what was missed must not come back much too bright.
+const EVERYWHERE: f64 = 0.2;
+
+/// A density on the unit square, constant in each of its cells.
+///
+/// Jensen 1995, *Importance Driven Path Tracing Using the Photon Map*, learned where to send light in the same way.
+#[derive(Clone, Debug)]
+pub(super) struct Guide {
+    /// Probabilities of the rows, summed up, and of the cells within each row.
+    rows: Vec<f64>,
+    cells: Vec<f64>,
+}
+
+impl Guide {
+    /// The same density everywhere.
+    pub(super) fn even() -> Self {
+        Self::of(|_| 1.0)
+    }
+
+    /// The density that follows which of some photons were seen: their places, and whether they were.
+    pub(super) fn learned(photons: &[([f64; 2], bool)]) -> Self {
+        let (mut sent, mut seen) = (vec![0.0; SIDE * SIDE], vec![0.0; SIDE * SIDE]);
+        for &(place, was_seen) in photons {
+            let cell = cell_of(place);
+            sent[cell] += 1.0;
+            seen[cell] += f64::from(u8::from(was_seen));
+        }
+        let share: Vec<f64> = sent.iter().zip(&seen).map(|(sent, seen)| seen / f64::max(*sent, 1.0)).collect();
+        // What begins in a cell may reach into the next one.
+        let spread = |cell: usize| {
+            let (row, column) = (cell / SIDE, cell % SIDE);
+            let near = |x: usize| x.saturating_sub(1)..=(x + 1).min(SIDE - 1);
+            near(row).flat_map(|i| near(column).map(move |j| i * SIDE + j)).map(|i| share[i]).fold(0.0, f64::max)
+        };
+        let wanted: Vec<f64> = (0..SIDE * SIDE).map(|cell| share[cell] + 0.25 * spread(cell)).collect();
+        let total: f64 = wanted.iter().sum();
+        if total == 0.0 {
+            return Self::disc();
+        }
+        let everywhere = (0..SIDE * SIDE).filter(|&cell| touches_disc(cell)).count() as f64 / EVERYWHERE;
+        Self::of(|cell| {
+            f64::from(u8::from(touches_disc(cell))) / everywhere + (1.0 - EVERYWHERE) * wanted[cell] / total
+        })
+    }
+
+    /// The same density in all cells that the largest disc of the square reaches into.
+    pub(super) fn disc() -> Self {
+        Self::of(|cell| f64::from(u8::from(touches_disc(cell))))
+    }
+
+    /// A density with probabilities of the cells, up to a factor.
+    fn of(probability: impl Fn(usize) -> f64) -> Self {
+        let (mut rows, mut cells, mut all) = (Vec::new(), Vec::new(), 0.0);
+        for row in 0..SIDE {
+            let mut sum = 0.0;
+            let start = cells.len();
+            for column in 0..SIDE {
+                sum += probability(row * SIDE + column);
+                cells.push(sum);
+            }
+            if sum > 0.0 {
+                cells[start..].iter_mut().for_each(|cell| *cell /= sum);
+            }
+            cells[start + SIDE - 1] = 1.0;
+            all += sum;
+            rows.push(all);
+        }
+        rows.iter_mut().for_each(|row| *row /= all);
+        rows[SIDE - 1] = 1.0;
+        Self { rows, cells }
+    }
+
+    /// A place of the square for two random numbers.
+    pub(super) fn draw(&self, [u, v]: [f64; 2]) -> [f64; 2] {
+        let (row, down) = choose(&self.rows, v);
+        let (column, across) = choose(&self.cells[row * SIDE..(row + 1) * SIDE], u);
+        [(column as f64 + across) / SIDE as f64, (row as f64 + down) / SIDE as f64]
+    }
+
+    /// The density of places drawn.
+    pub(super) fn density(&self, place: [f64; 2]) -> f64 {
+        let cell = cell_of(place);
+        let row = cell / SIDE;
+        let within = probability(&self.cells[row * SIDE..(row + 1) * SIDE], cell % SIDE);
+        probability(&self.rows, row) * within * (SIDE * SIDE) as f64
+    }
+}
+
+/// Whether the largest disc of the square reaches into a cell.
+fn touches_disc(cell: usize) -> bool {
+    let nearest = |at: usize| {
+        let (low, high) = (2.0 * at as f64 / SIDE as f64 - 1.0, 2.0 * (at + 1) as f64 / SIDE as f64 - 1.0);
+        f64::clamp(0.0, low, high)
+    };
+    let [x, y] = [cell % SIDE, cell / SIDE].map(nearest);
+    x * x + y * y < 1.0
+}
+
+fn cell_of(place: [f64; 2]) -> usize {
+    let [column, row] = place.map(|x| ((x * SIDE as f64) as usize).min(SIDE - 1));
+    row * SIDE + column
+}
+
+/// The entry of a list of summed probabilities in which a number falls, and where in it.
+fn choose(sums: &[f64], u: f64) -> (usize, f64) {
+    let entry = sums.partition_point(|&sum| sum <= u).min(sums.len() - 1);
+    let before = if entry == 0 { 0.0 } else { sums[entry - 1] };
+    (entry, ((u - before) / (sums[entry] - before)).clamp(0.0, 1.0 - f64::EPSILON))
+}
+
+fn probability(sums: &[f64], entry: usize) -> f64 {
+    sums[entry] - if entry == 0 { 0.0 } else { sums[entry - 1] }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn grid(n: u32) -> impl Iterator<Item = [f64; 2]> {
+        let at = move |i: u32| (f64::from(i) + 0.5) / f64::from(n);
+        (0..n).flat_map(move |i| (0..n).map(move |j| [at(i), at(j)]))
+    }
+
+    #[test]
+    fn photons_go_where_they_are_seen_as_often_as_the_density_says() {
+        let seen = |[x, y]: [f64; 2]| (x - 0.3).abs() < 0.02 && y > 0.4;
+        let learned = Guide::learned(&grid(256).map(|place| (place, seen(place))).collect::<Vec<_>>());
+        for guide in [Guide::even(), Guide::disc(), learned.clone()] {
+            let total: f64 = grid(SIDE as u32).map(|place| guide.density(place)).sum::<f64>() / (SIDE * SIDE) as f64;
+            assert!((total - 1.0).abs() < 1e-12, "the density sums to {total}");
+            // An integral over the disc by drawing places: pi / 4 for its area, a sixteenth of it for (x - 1 / 2)^2.
+            let inside = |p: [f64; 2]| (p[0] - 0.5) * (p[0] - 0.5) + (p[1] - 0.5) * (p[1] - 0.5) < 0.25;
+            let square = |p: [f64; 2]| if inside(p) { (p[0] - 0.5) * (p[0] - 0.5) } else { 0.0 };
+            let draws = grid(1000).map(|u| guide.draw(u)).map(|p| square(p) / guide.density(p));
+            let mean = draws.sum::<f64>() / 1e6;
+            let exact = std::f64::consts::PI / 64.0;
+            assert!((mean / exact - 1.0).abs() < 2e-3, "{mean} for {exact}");
+        }
+        let hits = grid(200).filter(|&u| seen(learned.draw(u))).count() as f64 / 40_000.0;
+        assert!(hits > 0.5, "{hits} of the photons are seen where 0.024 of all would be");
+    }
+}

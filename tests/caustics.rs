@@ -1,0 +1,14 @@
+//! Caustics by photons: the light pass and the camera's rays find the same light, each its own part of it.
+//!
+//! ```text
+//! cargo test --release --test caustics
+//! ```
+
+mod support;
+
+#[path = "caustics/agreement.rs"]
+mod agreement;
+#[path = "caustics/known.rs"]
+mod known;
+#[path = "caustics/materials.rs"]
+mod materials;

@@ -1,0 +1,186 @@
+//! The same image with the light pass and without it, where lamps are large enough to be met by chance.
+
+use abbe::film::Film;
+use abbe::plan::plan;
+use abbe::trace::{LightPass, Method, World, render};
+
+use crate::support::scenes::{SPLITTING, moments, scene, standard_errors};
+
+/// Pixels along each side of the images, and blocks that are compared.
+const SIDE: usize = 24;
+const BLOCKS: usize = 4;
+const SEEDS: u64 = 16;
+
+/// Camera and film; `film` may add a filter.
+pub fn seen_by(camera: &str, film: &str) -> String {
+    format!("[camera]\n{camera}\n[film]\nwidth = {SIDE}\nheight = {SIDE}\n{film}\n")
+}
+
+pub const ABOVE: &str = "position = [2.5, 3.5, 2.5]\nlook_at = [0, 0, 0]\nvertical_fov = 30";
+pub const FLOOR: &str = "[material.floor]\ndiffuse = { reflectance = 0.8 }\n[[object]]\nmaterial = \"floor\"\n\
+                     shape.plane = { point = [0, 0, 0], normal = [0, 1, 0] }\n";
+pub const LAMP: &str = "[material.lamp]\nemissive = { radiance = 5 }\n";
+
+pub fn object(material: &str, shape: &str) -> String {
+    format!("[[object]]\nmaterial = \"{material}\"\nshape.{shape}\n")
+}
+
+pub fn glass(text: &str) -> String {
+    format!("[material.glass]\ndielectric = {{ {text} }}\n")
+}
+
+/// Mean and variance of the mean of every block and band.
+fn blocks(text: &str, pass: bool, samples: u32) -> Vec<(f64, f64)> {
+    let scene = scene(text);
+    let lights = (0..scene.lights.len()).collect();
+    let light_pass = pass.then_some(LightPass { photons: u64::from(samples) * (SIDE * SIDE) as u64, lights });
+    let asked = Method { samples, transport: SPLITTING, light_pass, ..plan(&scene).method };
+    let films: Vec<Film> =
+        (0..SEEDS).map(|seed| render(&World::new(&scene, Method { seed, ..asked.clone() }), &|_| ()).0).collect();
+    let mut found = Vec::new();
+    for (block, band) in (0..BLOCKS * BLOCKS).flat_map(|block| (0..3).map(move |band| (block, band))) {
+        let wide = SIDE / BLOCKS;
+        let corner = [block % BLOCKS * wide, block / BLOCKS * wide];
+        let inside = |i: usize| (corner[1] + i / wide) * SIDE + corner[0] + i % wide;
+        let of_film = |film: &Film| {
+            (0..wide * wide).map(|i| f64::from(film.pixels[inside(i)].rgb[band])).sum::<f64>() / (wide * wide) as f64
+        };
+        let (mean, variance) = moments(films.iter().map(of_film));
+        found.push((mean, variance / SEEDS as f64));
+    }
+    found
+}
+
+/// Compares all blocks, and says that the light pass changed something: most of it is quieter.
+pub fn agree(what: &str, text: &str, samples: u32) {
+    let (with, without) = (blocks(text, true, samples), blocks(text, false, samples));
+    // Means of 16 films have the tails of Student's t with 30 degrees of freedom: 1.25 times those of the normal one so
+    // far out.
+    let limit = 1.25 * standard_errors(with.len());
+    let (mut worst, mut squares, mut quieter) = (0.0_f64, 0.0, 0);
+    for (a, b) in with.iter().zip(&without) {
+        let rounding = 1e-6 * (a.0 + b.0);
+        let z = (a.0 - b.0).abs() / ((a.1 + b.1).sqrt() + rounding);
+        worst = worst.max(z);
+        squares += z * z;
+        quieter += i32::from(a.1 < b.1);
+    }
+    let sums = [&with, &without].map(|found| found.iter().map(|x| x.0).sum::<f64>());
+    let error = with.iter().zip(&without).map(|(a, b)| a.1 + b.1).sum::<f64>().sqrt();
+    let whole = (sums[0] - sums[1]) / error;
+    let gain = without.iter().map(|x| x.1).sum::<f64>() / with.iter().map(|x| x.1).sum::<f64>();
+    println!(
+        "{what}: worst z {worst:.2} of {limit:.2}, mean square {:.2}, whole {whole:.2}, variance {gain:.2} x, quieter {quieter}, mean {:.5} {:.5}",
+        squares / with.len() as f64,
+        sums[0] / with.len() as f64,
+        sums[1] / with.len() as f64
+    );
+    assert!(worst < limit, "{what}: {worst} standard errors apart");
+    // Bands of a block move together, so the sum of all has a few times the error of independent ones.
+    assert!(whole.abs() < 3.0 * 3.0_f64.sqrt(), "{what}: the whole is {whole} standard errors apart");
+    assert!(with != without, "{what}: the light pass did nothing");
+}
+
+pub const BALL: &str = "sphere = { center = [0, 1.5, 0], radius = 1 }";
+
+#[test]
+fn a_glass_ball_under_a_round_lamp() {
+    let text = seen_by(ABOVE, "")
+        + FLOOR
+        + LAMP
+        + &glass("index = 1.5")
+        + &object("glass", BALL)
+        + &object("lamp", "sphere = { center = [0, 7, 0], radius = 1 }");
+    agree("ball", &text, 64);
+}
+
+#[test]
+fn a_mirror_beside_a_lamp_that_lights_the_floor_as_well() {
+    let text = seen_by(ABOVE, "filter = \"tent\"")
+        + FLOOR
+        + LAMP
+        + "[material.mirror]\nmirror = { reflectance = { rgb = [0.9, 0.8, 0.5] } }\n\
+           [material.silver]\nconductor = { metal = \"Ag\" }\n"
+        + &object("mirror", "quad = { center = [-1, 0.7, 0], u = [0.2, 0.6, 0], v = [0, 0, 0.8] }")
+        + &object("silver", "sphere = { center = [0.6, 0.4, -0.9], radius = 0.4 }")
+        + &object("lamp", "quad = { center = [1.5, 2, 0], u = [0.4, 0, 0], v = [0, 0, 0.4] }");
+    agree("mirror", &text, 64);
+}
+
+#[test]
+fn a_prism_whose_wavelengths_part() {
+    let prism = "mesh = { points = [[-0.6, 0.4, -0.6], [0.6, 0.4, -0.6], [0, 1.4, -0.6], [-0.6, 0.4, 0.6], [0.6, 0.4, 0.6], \
+                 [0, 1.4, 0.6]], faces = [[0, 2, 1], [3, 4, 5], [0, 1, 4], [0, 4, 3], [1, 2, 5], [1, 5, 4], [2, 0, 3], [2, 3, 5]] }";
+    let text = seen_by(ABOVE, "")
+        + "[render]\nmodel = \"hero\"\n"
+        + FLOOR
+        + LAMP
+        + &glass("index = \"N-SF11\"")
+        + &object("glass", prism)
+        + &object("lamp", "disc = { center = [-2, 2.5, 0], normal = [2, -2, 0], radius = 0.6 }");
+    agree("prism", &text, 64);
+}
+
+#[test]
+fn absorbing_water_in_a_glass_with_a_lamp_in_the_sky() {
+    let text =
+        seen_by("position = [2.5, 3.5, 2.5]\nlook_at = [0, 0, 0]\nprojection = \"orthographic\"\nheight = 2.4", "")
+            + FLOOR
+            + &glass("index = 1.5, priority = 1")
+            + "[material.water]\ndielectric = { index = 1.33, absorption = { rgb = [1.5, 0.4, 0.2] } }\n\
+           [material.hollow]\ndielectric = { index = 1.0, priority = 2 }\n"
+            + &object("glass", "sphere = { center = [0, 0.9, 0], radius = 0.8 }")
+            + &object("hollow", "sphere = { center = [0, 0.9, 0], radius = 0.7 }")
+            + &object("water", "cube = { center = [0.3, 0.9, 0], size = [1.4, 0.5, 0.5] }")
+            + "[[light]]\nsun = { toward = [0.3, 1, 0.2], angular_diameter = 30, irradiance = 3 }\n";
+    agree("water", &text, 64);
+}
+
+#[test]
+fn panes_and_boxes_seen_through_a_lens() {
+    let lens = "lens = { radius = 0.2, focus_distance = 4 }\nshift = [0.1, -0.2]\nnear = 0.5";
+    let text = seen_by(&format!("{ABOVE}\n{lens}"), "filter = { gaussian = { sigma = 0.7 } }")
+        + FLOOR
+        + LAMP
+        + &glass("index = { rgb = [1.5, 1.55, 1.6] }")
+        + "[material.pane]\nthin = { index = 1.5, transmittance = 0.8 }\n"
+        + &object("pane", "quad = { center = [-0.5, 1, 0], u = [0.5, 0.2, 0], v = [0, 0, 0.6] }")
+        + &object("glass", "cube = { center = [0.6, 0.5, 0.2], size = [0.5, 0.4, 0.7] }")
+        + &object("lamp", "cube = { center = [0, 3, 0], size = 0.8 }");
+    agree("panes", &text, 64);
+}
+
+#[test]
+fn a_bulb_whose_lamp_is_inside_and_a_camera_that_sees_all_around() {
+    let text = seen_by(
+        "position = [0.2, 1.1, 0.9]\nlook_at = [0, 1, 0]\nprojection = \"equirectangular\"",
+        "filter = { tent = { radius = 1.5 } }",
+    ) + FLOOR
+        + LAMP
+        + "[material.wall]\ndiffuse = { reflectance = 0.5 }\n[material.ceiling]\nconductor = { metal = \"Al\", roughness = 0.5 }\n"
+        + &object("wall", "quad = { center = [0, 1, -1.5], u = [2, 0, 0], v = [0, 2, 0] }")
+        + &object("ceiling", "quad = { center = [0, 2.5, 0], u = [2, 0, 0], v = [0, 0, 2] }")
+        + &glass("index = 1.5")
+        + "[material.hollow]\ndielectric = { index = 1.0, priority = 1 }\n"
+        + &object("glass", "sphere = { center = [0, 1, 0], radius = 0.5 }")
+        + &object("hollow", "sphere = { center = [0, 1, 0], radius = 0.42 }")
+        + &object("glass", "sphere = { center = [1, 0.5, 0.4], radius = 0.3 }")
+        + &object("lamp", "sphere = { center = [0, 1, 0], radius = 0.25 }");
+    agree("bulb", &text, 64);
+}
+
+#[test]
+fn a_camera_under_water_and_a_lamp_out_of_round() {
+    let lamp = "[[object]]\nmaterial = \"lamp\"\nshape.sphere = { center = [0, 0, 0], radius = 0.4 }\n\
+                transform = [{ scale = [1, 0.4, 2] }, { translate = [0.5, 3, 0] }]\n";
+    let text = seen_by("position = [0.8, 0.8, 1.5]\nlook_at = [0, 0, 0]\nvertical_fov = 50", "")
+        + "[render]\nmax_bounces = 5\n"
+        + FLOOR
+        + LAMP
+        + "[material.water]\ndielectric = { index = 1.33, absorption = 0.3 }\n\
+           [material.air]\ndielectric = { index = 1.0, priority = 1 }\n"
+        + &object("water", "cube = { center = [0, 0.5, 0], size = [5, 1.6, 5] }")
+        + &object("air", "sphere = { center = [-0.2, 0.7, 0], radius = 0.3 }")
+        + lamp;
+    agree("under water", &text, 64);
+}

@@ -1,0 +1,275 @@
+//! Caustics whose light is known: by other programs, by hand, or because nothing may change it.
+
+use std::path::Path;
+use std::process::Command;
+
+use abbe::film::Film;
+use abbe::plan::{Plan, plan};
+use abbe::trace::{LightPass, Method, World, render};
+
+use crate::support::scenes::{SPLITTING, scene};
+
+/// The method of a scene's plan with all lights and so many photons.
+fn with_photons(text: &str, photons: u64, samples: u32) -> Film {
+    let scene = scene(text);
+    let light_pass = Some(LightPass { photons, lights: (0..scene.lights.len()).collect() });
+    let method = Method { samples, transport: SPLITTING, light_pass, ..plan(&scene).method };
+    render(&World::new(&scene, method), &|_| ()).0
+}
+
+/// The caustic A of the light tracing lab: a ball of index 1.5 and radius 1, its center 1.5 above the floor, a lamp of power
+/// pi at a height of 7. Seen by parallel rays that start below the ball, so that it hides nothing.
+fn patch(light: &str) -> String {
+    format!(
+        "[camera]\nposition = [0, 0.4, 0]\nlook_at = [0, 0, 0]\nup = [0, 0, 1]\nprojection = \"orthographic\"\nheight = 1.6\n\
+         [film]\nwidth = 24\nheight = 24\n\
+         [material.floor]\ndiffuse = {{ reflectance = 0.001 }}\n[material.glass]\ndielectric = {{ index = 1.5 }}\n\
+         [[object]]\nmaterial = \"floor\"\nshape.quad = {{ center = [0, 0, 0], u = [0, 0, 2], v = [2, 0, 0] }}\n\
+         [[object]]\nmaterial = \"glass\"\nshape.sphere = {{ center = [0, 1.5, 0], radius = 1 }}\n{light}"
+    )
+}
+
+fn lamp(radius: f64) -> String {
+    let radiance = 1.0 / (4.0 * std::f64::consts::PI * radius * radius);
+    format!(
+        "[material.lamp]\nemissive = {{ radiance = {radiance:?} }}\n\
+         [[object]]\nmaterial = \"lamp\"\nshape.sphere = {{ center = [0, 7, 0], radius = {radius:?} }}\n"
+    )
+}
+
+/// Row T1 of the closed forms: mean irradiance .0084 over the patch of 1.6 by 1.6 for radii up to 0.3 and .0085 for 1.
+#[test]
+fn t1_the_caustic_of_a_ball_has_the_irradiance_that_another_program_found() {
+    let point = "[[light]]\npoint = { position = [0, 7, 0], intensity = 0.25 }\n".to_owned();
+    for (what, light, expected) in [
+        ("1", lamp(1.0), 0.0085),
+        ("0.3", lamp(0.3), 0.0084),
+        ("0.003", lamp(0.003), 0.0084),
+        ("a point", point, 0.0084),
+    ] {
+        let mean = |film: &Film| {
+            film.pixels.iter().map(|pixel| f64::from(pixel.rgb[1])).sum::<f64>() / film.pixels.len() as f64
+        };
+        // Straight light, past the ball, is no part of the caustic; the camera's samples are the same.
+        let straight = scene(&patch(&light));
+        let method = Method { samples: 16, light_pass: None, diffuse_bounces: 0, ..plan(&straight).method };
+        let straight = mean(&render(&World::new(&straight, Method { transport: SPLITTING, ..method }), &|_| ()).0);
+        // The floor is so dark that none of its light comes back from the ball: what is seen is irradiance / 1000 pi.
+        let irradiance = (mean(&with_photons(&patch(&light), 400_000, 16)) - straight) * 1e3 * std::f64::consts::PI;
+        println!("T1, radius {what}: {irradiance:.6}");
+        // Two digits are given; every photon of these carries at most a part in 10 000.
+        assert!((irradiance - expected).abs() < 0.5e-4 + 0.01 * expected, "radius {what}: {irradiance} for {expected}");
+    }
+}
+
+/// A beam of parallel light through a prism onto a screen: what falls on the screen is what Fresnel's equations let through.
+#[test]
+fn a_beam_through_a_prism_brings_the_screen_the_light_that_fresnel_lets_through() {
+    // The beam meets the left face at 45 degrees to its normal; apex up. Everything in the plane z = 0.
+    let (apex, index) = (30.0_f64.to_radians(), 1.5_f64);
+    let incidence = 0.6_f64;
+    // Faces meet in the apex at the origin, symmetric about -y.
+    let (left, right) = ([-(apex.cos()), apex.sin()], [apex.cos(), apex.sin()]);
+    let inside = (incidence.sin() / index).asin();
+    let second = 2.0 * apex - inside;
+    let out = (index * second.sin()).asin();
+    let share = |a: f64, b: f64| {
+        let (s, p) = ((a - b).sin() / (a + b).sin(), (a - b).tan() / (a + b).tan());
+        1.0 - 0.5 * (s * s + p * p)
+    };
+    let exact = share(incidence, inside) * share(second, out);
+    // The sun stands where light meets the left face at the incidence, from below its normal.
+    let angle = left[1].atan2(left[0]) + incidence;
+    let sun = [angle.cos(), angle.sin()];
+    let outward = right[1].atan2(right[0]) - out;
+    let way = [outward.cos(), outward.sin()];
+    let (depth, half) = (2.0, 0.1);
+    let bottom = depth * apex.tan();
+    // A slit just before the left face, in the middle of it, and a screen that the beam meets head-on.
+    let middle = [-0.5 * bottom, -0.5 * depth];
+    let slit = [middle[0] + 0.8 * sun[0], middle[1] + 0.8 * sun[1]];
+    let across = [-sun[1], sun[0]];
+    let blind = |side: f64| {
+        let reach = 3.0;
+        let center = [0, 1].map(|i| slit[i] + side * across[i] * (half + reach));
+        format!(
+            "[[object]]\nmaterial = \"black\"\nshape.quad = {{ center = [{:?}, {:?}, 0], u = [{:?}, {:?}, 0], v = [0, 0, 3] }}\n",
+            center[0],
+            center[1],
+            across[0] * reach,
+            across[1] * reach
+        )
+    };
+    let caps = [1.0, -1.0].map(|side: f64| {
+        format!(
+            "[[object]]\nmaterial = \"black\"\nshape.quad = {{ center = [{:?}, {:?}, {:?}], u = [{:?}, {:?}, 0], v = [0, 0, 3] }}\n",
+            slit[0], slit[1], side * (half + 3.0), across[0] * half * 1.01, across[1] * half * 1.01
+        )
+    });
+    // From the right face's middle on.
+    let screen = [0.5 * bottom + 3.0 * way[0], -0.5 * depth + 3.0 * way[1]];
+    let camera = [screen[0] - 0.8 * way[0], screen[1] - 0.8 * way[1]];
+    let wide = [-way[1], way[0]];
+    let text = format!(
+        "[camera]\nposition = [{:?}, {:?}, 0]\nlook_at = [{:?}, {:?}, 0]\nup = [0, 0, 1]\nprojection = \"orthographic\"\nheight = 1.5\n\
+         [film]\nwidth = 16\nheight = 16\n[material.black]\ndiffuse = {{ reflectance = 0 }}\n\
+         [material.white]\ndiffuse = {{ reflectance = 1 }}\n[material.glass]\ndielectric = {{ index = {index:?} }}\n\
+         [[object]]\nmaterial = \"white\"\nshape.quad = {{ center = [{:?}, {:?}, 0], u = [{:?}, {:?}, 0], v = [0, 0, 3] }}\n\
+         [[object]]\nmaterial = \"glass\"\nshape.mesh.points = [[0, 0, -1], [{b:?}, {d:?}, -1], [{c:?}, {d:?}, -1], [0, 0, 1], [{b:?}, {d:?}, 1], [{c:?}, {d:?}, 1]]\n\
+         shape.mesh.faces = [[0, 2, 1], [3, 4, 5], [0, 1, 4], [0, 4, 3], [1, 2, 5], [1, 5, 4], [2, 0, 3], [2, 3, 5]]\n\
+         {}{}{}{}[[light]]\nsun = {{ toward = [{:?}, {:?}, 0], angular_diameter = 0, irradiance = 1 }}\n",
+        camera[0],
+        camera[1],
+        screen[0],
+        screen[1],
+        screen[0],
+        screen[1],
+        wide[0] * 3.0,
+        wide[1] * 3.0,
+        blind(1.0),
+        blind(-1.0),
+        caps[0],
+        caps[1],
+        sun[0],
+        sun[1],
+        b = -bottom,
+        c = bottom,
+        d = -depth,
+    );
+    let film = with_photons(&text, 2_000_000, 1);
+    let pixel_area = (1.5 / 16.0) * (1.5 / 16.0);
+    let landed: f64 = film.pixels.iter().map(|pixel| f64::from(pixel.rgb[1]) * std::f64::consts::PI * pixel_area).sum();
+    let sent = 4.0 * half * half;
+    println!("prism: {:.5} of the beam for {exact:.5}", landed / sent);
+    assert!((landed / sent / exact - 1.0).abs() < 0.005, "{} of the beam arrives for {exact}", landed / sent);
+}
+
+/// Two balls in one line with a point and a sun between two mirrors: cones overlap, photons are sent to several objects.
+const CROWD: &str = "[render]\nseed = 5\n\
+    [material.floor]\ndiffuse = { reflectance = 0.7 }\n[material.glass]\ndielectric = { index = \"N-SF11\" }\n\
+    [material.mirror]\nmirror = { reflectance = 0.9 }\n\
+    [[object]]\nmaterial = \"floor\"\nshape.plane = { point = [0, 0, 0], normal = [0, 1, 0] }\n\
+    [[object]]\nmaterial = \"glass\"\nshape.sphere = { center = [0, 0.6, 0], radius = 0.5 }\n\
+    [[object]]\nmaterial = \"glass\"\nshape.sphere = { center = [0.3, 1.9, 0], radius = 0.4 }\n\
+    [[object]]\nmaterial = \"mirror\"\nshape.quad = { center = [-1, 0.6, 0], u = [0.1, 0.5, 0], v = [0, 0, 0.5] }\n\
+    [[light]]\npoint = { position = [0.5, 3.5, 0.2], intensity = 9 }\n\
+    [[light]]\nsun = { toward = [1, 1.2, 0.1], irradiance = 2 }\n";
+
+fn crowd(film: &str) -> String {
+    format!(
+        "[camera]\nposition = [1.5, 2.5, 3]\nlook_at = [0, 0.2, 0]\nvertical_fov = 40\n\
+         [film]\nwidth = 48\nheight = 36\n{film}\n{CROWD}"
+    )
+}
+
+fn because(plan: &Plan) -> String {
+    plan.because.join("\n")
+}
+
+#[test]
+fn a_part_of_an_image_has_the_bits_that_it_has_in_the_whole() {
+    for filter in ["", "filter = { tent = { radius = 1.5 } }\n"] {
+        let whole = scene(&crowd(filter));
+        let method = Method { samples: 24, ..plan(&whole).method };
+        assert!(method.light_pass.is_some());
+        let render = |scene| render(&World::new(scene, method.clone()), &|_| ()).0;
+        let full = render(&whole);
+        let part = scene(&crowd(&format!("{filter}crop = [7, 11, 22, 19]")));
+        assert_eq!(plan(&part).method.light_pass, method.light_pass);
+        let part = render(&part);
+        for (x, y) in (0..22).flat_map(|x| (0..19).map(move |y| (x, y))) {
+            assert_eq!(part.at(x, y), full.at(7 + x, 11 + y), "{x} {y}");
+        }
+    }
+}
+
+#[test]
+fn any_number_of_threads_writes_the_same_bytes_of_a_caustic() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let rendered = |threads: &str| {
+        std::fs::write(folder.path().join("scene.toml"), crowd("filter = \"gaussian\""))
+            .expect("the scene can be written");
+        let output = Command::new(env!("CARGO_BIN_EXE_render"))
+            .args(["scene.toml", "--exr", "image.exr", "--samples", "24", "--threads", threads])
+            .current_dir(folder.path())
+            .output()
+            .expect("the command runs");
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.success() && said.contains("light pass"), "{said}");
+        std::fs::read(Path::new(folder.path()).join("image.exr")).expect("the image was written")
+    };
+    let first = rendered("1");
+    for threads in ["2", "3"] {
+        assert!(rendered(threads) == first, "{threads} threads write other bytes");
+    }
+}
+
+/// All ways that could have sent a photon count: each light alone with each object alone sums to all of them together.
+#[test]
+fn photons_toward_objects_whose_cones_overlap_count_once() {
+    let together = scene(&crowd(""));
+    let photons = 1_000_000;
+    let image = |lights: Vec<usize>| {
+        let pass = LightPass { photons, lights };
+        let with = Method { samples: 4, light_pass: Some(pass), ..plan(&together).method };
+        let film = render(&World::new(&together, with), &|_| ()).0;
+        film.pixels.iter().map(|pixel| f64::from(pixel.rgb[1])).sum::<f64>() / film.pixels.len() as f64
+    };
+    let [none, point, sun, both] = [vec![], vec![0], vec![1], vec![0, 1]].map(image);
+    println!("floor alone {none:.5}, with the point {point:.5}, the sun {sun:.5}, both {both:.5}");
+    // Camera samples are the same in all of them; photons have errors of a thousandth.
+    let sum = point + sun - none;
+    assert!(point > 1.01 * none && (both / sum - 1.0).abs() < 0.003, "{both} for {sum}");
+}
+
+#[test]
+fn the_plan_asks_for_photons_where_they_are_needed_and_says_why_where_not() {
+    let room = |extra: &str| {
+        plan(&scene(&format!(
+            "[camera]\nposition = [0, 2, 5]\nlook_at = [0, 0.5, 0]\nvertical_fov = 40\n[film]\nwidth = 64\nheight = 48\n\
+             [material.floor]\ndiffuse = {{ reflectance = 0.7 }}\n[material.lamp]\nemissive = {{ radiance = 5 }}\n\
+             [material.glass]\ndielectric = {{ index = 1.5 }}\n[material.mirror]\nmirror = {{ reflectance = 0.9 }}\n\
+             [[object]]\nname = \"floor\"\nmaterial = \"floor\"\nshape.plane = {{ point = [0, 0, 0], normal = [0, 1, 0] }}\n{extra}"
+        )))
+    };
+    let ball =
+        "[[object]]\nname = \"ball\"\nmaterial = \"glass\"\nshape.sphere = { center = [0, 0.8, 0], radius = 0.5 }\n";
+    let point = "[[light]]\npoint = { position = [1, 3, 0], intensity = 3 }\n";
+    let lamp = |radius: f64| {
+        format!(
+            "[[object]]\nname = \"bulb\"\nmaterial = \"lamp\"\nshape.sphere = {{ center = [-1, 3.5, 0], radius = {radius} }}\n"
+        )
+    };
+    let asks = |extra: String, words: &str| {
+        let plan = room(&extra);
+        assert!(plan.method.light_pass.is_some() && because(&plan).contains(words), "{extra}{}", because(&plan));
+    };
+    let leaves = |extra: String, words: &str| {
+        let plan = room(&extra);
+        assert!(plan.method.light_pass.is_none() && because(&plan).contains(words), "{extra}{}", because(&plan));
+        if words.is_empty() {
+            assert!(!because(&plan).contains("light pass"), "{}", because(&plan));
+        }
+    };
+    asks(format!("{ball}{point}"), "photons from a point toward ball");
+    asks(format!("{ball}{}", lamp(0.1)), "photons from bulb (");
+    asks(
+        format!("{ball}[[light]]\nsun = {{ toward = [1, 2, 0], irradiance = 1 }}\n"),
+        "photons from the sun (6.8e-5 sr)",
+    );
+    asks(format!("{ball}{point}{}", lamp(1.0)), "left to chance: caustics of bulb");
+    leaves(point.into(), "");
+    leaves(format!("{ball}{}", lamp(1.0)), "large enough for rays to meet by chance");
+    leaves(format!("{ball}[[light]]\nenvironment = {{ radiance = 1 }}\n"), "rays find the sky by chance");
+    leaves(
+        format!(
+            "[[object]]\nname = \"wall\"\nmaterial = \"mirror\"\nshape.plane = {{ point = [0, 0, -3], normal = [0, 0, 1] }}\n{point}"
+        ),
+        "wall has no end, so photons cannot be aimed at it; those of points are left out",
+    );
+    leaves(format!("{ball}{point}").replace("0.8, 0]", "-0.8, 0]"), "in sight");
+    leaves(format!("[render]\ncaustics = \"off\"\n{ball}{point}"), "caustics \"off\"");
+    leaves(format!("[render]\ndiffuse_bounces = 0\n{ball}{point}"), "");
+    let pane = "[[object]]\nmaterial = \"glass\"\nshape.cube = { center = [0, 2, 4.5], size = [9, 9, 0.1] }\n";
+    leaves(format!("{ball}{pane}{point}"), "sees no diffuse or rough surface but through glass");
+}
