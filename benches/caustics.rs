@@ -1,7 +1,7 @@
 //! Caustics: processor time to a relative error, by the light pass and by chance, for lamps from large to none at all.
 //!
 //! ```text
-//! cargo bench --bench caustics
+//! cargo bench --bench caustics [-- point]
 //! ```
 //!
 //! A ball of N-SF11, radius 1, its middle 1.5 above a floor, under a lamp of power pi at a height of 7: the floor's patch
@@ -32,6 +32,10 @@ fn main() {
     };
     let point = ("a point".to_owned(), "[[light]]\npoint = { position = [0, 7, 0], intensity = 0.25 }\n".to_owned());
     for (name, light) in [radius(1.0), radius(0.3), radius(0.03), radius(0.003), point] {
+        // `-- point` measures that lamp alone.
+        if !std::env::args().skip(1).all(|word| word.starts_with("--") || name.contains(&word)) {
+            continue;
+        }
         let scene = scene(ball(&light));
         let plan = plan(&scene).method;
         let photons = |samples: u32, each: f64| {

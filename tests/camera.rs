@@ -15,3 +15,5 @@ mod files;
 mod images;
 #[path = "camera/rays.rs"]
 mod rays;
+#[path = "camera/seen.rs"]
+mod seen;

@@ -114,3 +114,10 @@ fn the_prism_scene_is_said_to_let_wavelengths_part() {
     assert_says(&because, "so wavelengths part");
     assert_says(&because, "lanes part in ");
 }
+
+#[test]
+fn the_rainbow_scene_is_planned_with_photons_that_part() {
+    let (plan, because) = planned("rainbow");
+    assert!(plan.method.light_pass.is_some() && plan.method.basis.draws_wavelengths(), "{because}");
+    assert_says(&because, "photons from the sun toward prism");
+}

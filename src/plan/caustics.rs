@@ -61,6 +61,9 @@ pub(super) fn light_pass(scene: &Scene<Curve>, method: &Method) -> (Option<Light
     let mut lines = Vec::new();
     if small.is_empty() {
         let why = match large.as_slice() {
+            [] if scene.lights.iter().any(|light| light.is_sky() && !light.is_even_sky()) => {
+                "caustics of an image of the sky are left to chance".into()
+            }
             [] => "rays find the sky by chance often enough".into(),
             lights => format!("{} large enough for rays to meet by chance", named(scene, lights)),
         };

@@ -62,6 +62,31 @@ fn t1_the_caustic_of_a_ball_has_the_irradiance_that_another_program_found() {
     }
 }
 
+/// A spot that shines everywhere to where a point does throws the same caustic, and one that shines into a part of the ball
+/// a part of it.
+#[test]
+fn a_wide_spot_throws_the_caustic_of_a_point_and_a_narrow_one_a_part_of_it() {
+    let image = |light: &str| {
+        let text = patch(&format!("[[light]]\n{light}\n"));
+        with_photons(&text, 400_000, 1)
+    };
+    let point = image("point = { position = [0, 7, 0], intensity = 0.25 }");
+    let spot = |degrees: f64| {
+        image(&format!(
+            "spot = {{ position = [0, 7, 0], toward = [0, -1, 0], cone_angle = {degrees}, blend = 0, intensity = 0.25 }}"
+        ))
+    };
+    let mean = |film: &Film| film.pixels.iter().map(|pixel| f64::from(pixel.rgb[1])).sum::<f64>() / 576.0;
+    let (all, wide, narrow) = (mean(&point), mean(&spot(120.0)), mean(&spot(6.0)));
+    println!("point {all:.4e}, wide spot {wide:.4e}, narrow spot {narrow:.4e}");
+    assert!((wide / all - 1.0).abs() < 0.01, "{wide} for {all}");
+    // All light of a cone of half angle 3 degrees meets the ball within its inner third, where nearly (2 sqrt(n) / (n + 1))^4
+    // goes through, as at normal incidence, and lands on the patch: flux over its area, over pi.
+    let flux = 0.25 * std::f64::consts::TAU * (1.0 - 3.0_f64.to_radians().cos());
+    let exact = flux * 0.96 * 0.96 / (1.6 * 1.6) * 1e-3 / std::f64::consts::PI;
+    assert!((narrow / exact - 1.0).abs() < 0.01, "{narrow} for {exact}");
+}
+
 /// A beam of parallel light through a prism onto a screen: what falls on the screen is what Fresnel's equations let through.
 #[test]
 fn a_beam_through_a_prism_brings_the_screen_the_light_that_fresnel_lets_through() {
