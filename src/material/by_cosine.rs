@@ -3,7 +3,7 @@ use std::f64::consts::TAU;
 use crate::math::DVec3;
 
 /// A share of the light that meets a rough surface, as a table over the cosine to the normal, from which directions can be
-/// drawn.
+/// drawn if it is nowhere negative.
 ///
 /// The table has evenly spaced places w in 0..1, with z = alpha ((1 + 1 / alpha)^(w w) - 1) for the cosine z: what facets
 /// whose slopes are as wide as alpha block changes as z log z near 0, most where z is about alpha, and as 1 / z^2 beyond.
@@ -21,29 +21,30 @@ pub(crate) struct ByCosine {
     below: Vec<f64>,
 }
 
-/// Steps of the table.
-const STEPS: usize = 64;
-
 impl ByCosine {
-    /// The table of `value`, for facets as wide as `alpha`.
-    pub(crate) fn new(alpha: f64, value: impl Fn(f64) -> f64) -> Self {
-        let zeros = vec![0.0; STEPS + 1];
+    /// The table of `value` in a number of steps, for facets as wide as `alpha`.
+    pub(crate) fn new(alpha: f64, steps: usize, value: impl Fn(f64) -> f64) -> Self {
+        let zeros = vec![0.0; steps + 1];
         let span = libm::log1p(1.0 / alpha);
         let mut table = Self { alpha, span, values: zeros.clone(), mean: 0.0, lobe: zeros.clone(), below: zeros };
         table.values[0] = value(0.0);
-        for step in 1..=STEPS {
-            let place = step as f64 / STEPS as f64;
+        for step in 1..=steps {
+            let place = step as f64 / steps as f64;
             let z = table.cosine(place);
             table.values[step] = value(z);
             table.lobe[step] = table.values[step] * z * table.slope(place, z);
-            let area = 0.5 * (table.lobe[step - 1] + table.lobe[step]) / STEPS as f64;
+            let area = 0.5 * (table.lobe[step - 1] + table.lobe[step]) / steps as f64;
             table.below[step] = table.below[step - 1] + area;
         }
         // Of a share that is 0 everywhere, no direction is ever drawn.
-        let all = if table.below[STEPS] > 0.0 { table.below[STEPS] } else { 1.0 };
+        let all = if table.below[steps] > 0.0 { table.below[steps] } else { 1.0 };
         table.lobe.iter_mut().chain(&mut table.below).for_each(|x| *x /= all);
         table.mean = table.integral();
         table
+    }
+
+    fn steps(&self) -> usize {
+        self.values.len() - 1
     }
 
     /// The cosine at a place of the table.
@@ -51,8 +52,8 @@ impl ByCosine {
         (self.alpha * libm::expm1(self.span * place * place)).min(1.0)
     }
 
-    /// The place of a cosine.
-    fn place(&self, z: f64) -> f64 {
+    /// The place of a cosine in 0..1, the same in all tables of as wide facets.
+    pub(crate) fn place(&self, z: f64) -> f64 {
         (libm::log1p(z / self.alpha) / self.span).clamp(0.0, 1.0).sqrt()
     }
 
@@ -66,15 +67,15 @@ impl ByCosine {
         /// Places and half weights of the Gauss-Legendre rule of order 6.
         const GAUSS: [[f64; 2]; 3] =
             [[0.112_701_665_379_258_3, 5.0 / 18.0], [0.5, 8.0 / 18.0], [0.887_298_334_620_741_7, 5.0 / 18.0]];
-        let mut sum = 0.0;
+        let (mut sum, steps) = (0.0, self.steps() as f64);
         for (step, pair) in self.values.windows(2).enumerate() {
             for [x, weight] in GAUSS {
-                let place = (step as f64 + x) / STEPS as f64;
+                let place = (step as f64 + x) / steps;
                 let z = self.cosine(place);
                 sum += weight * (pair[0] + x * (pair[1] - pair[0])) * 2.0 * z * self.slope(place, z);
             }
         }
-        sum / STEPS as f64
+        sum / steps
     }
 
     /// The mean over the hemisphere, by cosine: the share of light that comes evenly from all around.
@@ -84,25 +85,31 @@ impl ByCosine {
 
     /// The share at the cosine `z`.
     pub(crate) fn value(&self, z: f64) -> f64 {
-        between(&self.values, self.place(z))
+        self.at(self.place(z))
+    }
+
+    /// The share at a place.
+    pub(crate) fn at(&self, place: f64) -> f64 {
+        between(&self.values, place)
     }
 
     /// The share at the cosine `z`, and the density per steradian with which [`ByCosine::draw`] draws directions there.
     pub(crate) fn value_and_density(&self, z: f64) -> (f64, f64) {
         let place = self.place(z).max(f64::MIN_POSITIVE);
-        (between(&self.values, place), between(&self.lobe, place) / (TAU * self.slope(place, z)))
+        (self.at(place), between(&self.lobe, place) / (TAU * self.slope(place, z)))
     }
 
     /// A direction in the frame in which +z is the normal, drawn by nearly the share times the cosine: its place is drawn
     /// from a density that is linear between the places of the table.
     pub(crate) fn draw(&self, u: [f64; 2]) -> DVec3 {
-        let step = self.below.partition_point(|&below| below <= u[1]).clamp(1, STEPS) - 1;
+        let steps = self.steps();
+        let step = self.below.partition_point(|&below| below <= u[1]).clamp(1, steps) - 1;
         let [low, high] = [self.lobe[step], self.lobe[step + 1]];
-        let area = (u[1] - self.below[step]).max(0.0) * STEPS as f64;
+        let area = (u[1] - self.below[step]).max(0.0) * steps as f64;
         // The root of low x + (high - low) x^2 / 2 = area that does not cancel.
         let root = (low * low + 2.0 * (high - low) * area).max(0.0).sqrt();
         let x = if area > 0.0 { (2.0 * area / (low + root)).min(1.0) } else { 0.0 };
-        let z = self.cosine((step as f64 + x) / STEPS as f64);
+        let z = self.cosine((step as f64 + x) / steps as f64);
         let (sin, (y, x)) = ((1.0 - z * z).max(0.0).sqrt(), libm::sincos(TAU * u[0]));
         DVec3::new(sin * x, sin * y, z)
     }
@@ -110,7 +117,8 @@ impl ByCosine {
 
 /// A table, linear between its places.
 fn between(table: &[f64], place: f64) -> f64 {
-    let place = place * STEPS as f64;
-    let step = (place as usize).min(STEPS - 1);
+    let steps = table.len() - 1;
+    let place = place * steps as f64;
+    let step = (place as usize).min(steps - 1);
     table[step] + (place - step as f64) * (table[step + 1] - table[step])
 }

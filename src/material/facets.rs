@@ -65,6 +65,18 @@ impl Facets {
         [2.0 * z / (z + slant), excess / (z + slant)]
     }
 
+    /// The share of the light that a visible facet refracts from `wo` toward `wi`, beyond the surface, that leaves that way;
+    /// and what is left of it, with all its digits.
+    ///
+    /// Both directions see a facet as often as G1 G1 if they do so by chance each, and as often as min(G1, G1) if what one
+    /// sees the other does as far as it can (the two ends between which Ashikhmin, Premoze & Shirley 2000, *A
+    /// Microfacet-Based BRDF Generator*, blend). `straight` is the share of the latter.
+    pub fn passed(&self, wo: DVec3, wi: DVec3, straight: f64) -> [f64; 2] {
+        let ([seen, hidden], [from, _]) = (self.masking(wi), self.masking(wo));
+        let [most, least] = if seen < from { [seen / from, 1.0 - seen / from] } else { [1.0, 0.0] };
+        [seen + straight * (most - seen), hidden + straight * (least - hidden)]
+    }
+
     /// 1 - G2 / G1: the share of the light from a visible facet toward `wi` that meets another facet.
     ///
     /// From S^2 - z^2 = alpha^2 (x^2 + y^2), so that it keeps its digits where nearly nothing does.

@@ -68,6 +68,28 @@ impl Interface {
     }
 }
 
+/// Share of diffuse light that crosses a smooth boundary to a relative index m.
+///
+/// 1 - R for the closed form of R by Walsh 1926, in Duntley 1942, equation 49. It cancels near 1, where R is
+/// (m - 1) / 3 - 3 (m - 1)^2 to 1e-8. Below 1, T(m) = m^2 T(1 / m), for light takes the same ways in and out.
+pub fn diffuse_transmittance(m: f64) -> f64 {
+    if m < 1.0 {
+        return m * m * diffuse_transmittance(1.0 / m);
+    }
+    let over = m - 1.0;
+    if over < 1e-3 {
+        return 1.0 - over / 3.0 + 3.0 * over * over;
+    }
+    let (m2, m4) = (m * m, m * m * m * m);
+    let (sum, difference) = (m2 + 1.0, m4 - 1.0);
+    let reflected = 0.5
+        + over * (3.0 * m + 1.0) / (6.0 * (m + 1.0) * (m + 1.0))
+        + m2 * (m2 - 1.0) * (m2 - 1.0) / (sum * sum * sum) * libm::log(over / (m + 1.0))
+        - 2.0 * m2 * m * (m2 + 2.0 * m - 1.0) / (sum * difference)
+        + 8.0 * m4 * (m4 + 1.0) / (sum * difference * difference) * libm::log(m);
+    1.0 - reflected
+}
+
 /// Reflectances (s, p) of a metal n - i k under a medium of index `n1`, met at an angle with cosine `c`.
 ///
 /// Born & Wolf 1999, section 14.4, in the real form of Lagarde 2013, *Memo on Fresnel equations*.

@@ -22,13 +22,13 @@ mod rough_interface;
 mod roughness;
 mod thin;
 
-pub use coat::{Coat, diffuse_transmittance};
+pub use coat::Coat;
 pub use conductor::Conductor;
 pub use dielectric::Dielectric;
 pub use diffuse::Diffuse;
 pub use emissive::Emissive;
 pub use facets::Facets;
-pub use fresnel::{Interface, conductor_reflectance};
+pub use fresnel::{Interface, conductor_reflectance, diffuse_transmittance};
 pub use mask::Mask;
 pub use mirror::{Mirror, reflect};
 pub use mix::Mix;

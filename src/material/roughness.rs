@@ -84,6 +84,8 @@ pub struct RoughReflection {
     pub pdf: f64,
 }
 
+/// Steps of the table over the cosine.
+const STEPS: usize = 64;
 /// Steps of the quadrature over the visible facets: around the normal's half turn, and up.
 const AROUND: usize = 48;
 const UP: usize = 96;
@@ -91,7 +93,7 @@ const UP: usize = 96;
 impl RoughSurface {
     fn new(alpha: f64) -> Self {
         let facets = Facets::new(alpha);
-        Self { facets, blocked: ByCosine::new(alpha, |z| quadrature(&facets, z)) }
+        Self { facets, blocked: ByCosine::new(alpha, STEPS, |z| quadrature(&facets, z)) }
     }
 
     /// The facets themselves.

@@ -3,9 +3,12 @@
 use abbe::spectrum::Basis;
 use abbe::trace::{Method, Transport, World, render};
 
-use crate::support::scenes::{Mean, SINGLE_PATH, SPLITTING, body, environment, image, method, scene, view};
+use crate::support::scenes::{
+    EVERY_BRANCH, Mean, SINGLE_PATH, SPLITTING, body, environment, image, method, scene, view,
+};
 
 const BALL: &str = "sphere = { center = [0, 0, 0], radius = 1 }";
+const SKY: &str = "[[light]]\nenvironment = { radiance = 0.1 }\n";
 const WATER: &str = "dielectric = { index = 1.333, priority = -1 }";
 
 /// Bodies, and what they show within a view that sees nothing else.
@@ -13,18 +16,18 @@ fn scenes() -> Vec<(String, String, u32)> {
     let glass = |index: &str, roughness: f64| format!("dielectric = {{ index = {index}, roughness = {roughness:?} }}");
     let mut scenes = Vec::new();
     for (index, roughness, samples) in
-        [("1.5", 0.1, 64), ("1.5", 0.4, 64), ("1.5", 1.0, 400), ("2.4", 0.6, 500), ("1.1", 0.5, 100)]
+        [("1.5", 0.1, 16), ("1.5", 0.4, 32), ("1.5", 1.0, 128), ("2.4", 0.6, 128), ("1.1", 0.5, 32)]
     {
         let ball = body("glass", &glass(index, roughness), &[BALL]);
         scenes.push((format!("ball of {index}, roughness {roughness}"), ball, samples));
     }
     for roughness in [0.15, 0.7] {
         let ball = body("glass", &glass("{ rgb = [1.3, 1.5, 1.8] }", roughness), &[BALL]);
-        scenes.push((format!("dispersive ball, roughness {roughness}"), ball, 300));
+        scenes.push((format!("dispersive ball, roughness {roughness}"), ball, 128));
     }
     let pool = body("water", WATER, &["cube = { center = [0, 0, 0], size = 2.4 }"]);
     let ball = body("glass", &glass("1.6", 0.5), &[BALL]) + &pool;
-    scenes.push(("ball in water".to_owned(), ball, 256));
+    scenes.push(("ball in water".to_owned(), ball, 64));
     scenes
 }
 
@@ -32,8 +35,8 @@ fn scenes() -> Vec<(String, String, u32)> {
 fn rough_glass_is_invisible_in_an_even_environment() {
     let scenes = scenes();
     for (name, bodies, samples) in &scenes {
-        for (transport, times) in [(SPLITTING, 1.0), (SINGLE_PATH, 2.5)] {
-            let text = view([1.3, 0.9, 4.1], [0.05, 0.02, 0.1], 14.0, 32)
+        for (transport, times) in [(SPLITTING, 1.0), (SINGLE_PATH, 2.0)] {
+            let text = view([1.3, 0.9, 4.1], [0.05, 0.02, 0.1], 14.0, 16)
                 + &format!("[render]\nsamples = {samples}\n")
                 + bodies
                 + &environment(1.0);
@@ -41,11 +44,11 @@ fn rough_glass_is_invisible_in_an_even_environment() {
             assert_eq!((report.non_finite, report.unmatched), (0, 0), "{name}");
             let mean = Mean::of(&film);
             println!("{name}: {:.5?} +- {:.1e}", mean.value, mean.worst_error([1.0; 3]));
-            // The tables are linear between their places: at each of a few surfaces 3e-4 is lost or won.
+            // At each of a few surfaces 3e-4 is lost or won by the tables: see `sides`. Whole surfaces or lanes are judged here.
             for band in 0..3 {
                 let off = (mean.value[band] - 1.0).abs();
                 assert!(off <= 1e-3 + 3.5 * mean.error[band], "{name}: {mean:?}");
-                assert!(mean.error[band] <= times * 1e-3, "{name}: {mean:?}");
+                assert!(mean.error[band] <= times * 6e-3, "{name}: {mean:?}");
             }
         }
     }
@@ -54,10 +57,10 @@ fn rough_glass_is_invisible_in_an_even_environment() {
 #[test]
 fn lanes_that_part_or_stay_together_at_rough_glass_lose_nothing() {
     // N-SF11 parts at low roughness, and stays together at high roughness; heroes count where it parts.
-    for roughness in [0.03, 0.1, 0.3, 0.8] {
+    for roughness in [0.03, 0.3, 0.8] {
         let glass = format!("dielectric = {{ index = \"N-SF11\", roughness = {roughness:?} }}");
-        let text = view([1.3, 0.9, 4.1], [0.05, 0.02, 0.1], 14.0, 32)
-            + "[render]\nsamples = 256\n"
+        let text = view([1.3, 0.9, 4.1], [0.05, 0.02, 0.1], 14.0, 16)
+            + "[render]\nsamples = 64\n"
             + &body("glass", &glass, &[BALL])
             + &environment(1.0);
         let scene = scene(&text);
@@ -72,24 +75,28 @@ fn lanes_that_part_or_stay_together_at_rough_glass_lose_nothing() {
             for band in 0..3 {
                 let off = (mean.value[band] - 1.0).abs();
                 assert!(off <= 1.5e-3 + 4.0 * mean.error[band], "roughness {roughness}: {mean:?}");
-                assert!(mean.error[band] < 0.01, "roughness {roughness}: {mean:?}");
+                assert!(mean.error[band] < 0.02, "roughness {roughness}: {mean:?}");
             }
         }
     }
 }
 
 #[test]
-fn between_equal_indices_rough_glass_is_not_there_to_the_last_bit() {
+fn between_equal_indices_rough_glass_is_not_there() {
     let lamp = body(
         "lamp",
         "emissive = { radiance = { rgb = [3, 2, 1] } }",
         &["quad = { center = [0, 0, -4], u = [3, 0, 0], v = [0, 3, 0] }"],
     );
-    let text = |bodies: &str| view([0.3, 0.2, 4.0], [0.0; 3], 30.0, 16) + "[render]\nsamples = 4\n" + bodies + &lamp;
+    let text =
+        |bodies: &str| view([0.3, 0.2, 4.0], [0.0; 3], 30.0, 32) + "filter = \"center\"\n" + bodies + &lamp + SKY;
     let pool = body("water", WATER, &["cube = { center = [0, 0, 0], size = 2.4 }"]);
     let ball = body("ball", "dielectric = { index = 1.333, roughness = 0.6 }", &[BALL]);
-    let (with, without) = (image(&text(&(pool.clone() + &ball)), SPLITTING).0, image(&text(&pool), SPLITTING).0);
-    // The ball takes a vertex and so other random numbers, but no light and no direction.
-    let sums = [&with, &without].map(|film| film.pixels.iter().map(|p| f64::from(p.rgb[0])).sum::<f64>());
-    assert!((sums[0] / sums[1] - 1.0).abs() < 0.02, "{sums:?}");
+    let [with, without] = [pool.clone() + &ball, pool].map(|bodies| image(&text(&bodies), EVERY_BRANCH).0);
+    // No ray turns, and none is lost: only the order of roundings may differ.
+    for (with, without) in with.pixels.iter().zip(&without.pixels) {
+        for (a, b) in with.rgb.into_iter().zip(without.rgb) {
+            assert!((a - b).abs() < 32.0 * f32::EPSILON * b, "{a} for {b}");
+        }
+    }
 }

@@ -31,7 +31,7 @@ fn picture(bodies: &str, samples: u32) -> String {
 
 #[test]
 fn aiming_at_a_lamp_behind_inside_or_before_rough_glass_and_meeting_it_show_the_same() {
-    let before = "sphere = { center = [2, 2, 3], radius = 0.5 }";
+    let before = "sphere = { center = [2, 2, 3], radius = 1.2 }";
     let further = "sphere = { center = [-2, 1, -2], radius = 0.3 }";
     let cases = [
         ("behind a pane", glass("1.5", 0.4, "", &[PANE]), vec![LAMP]),
@@ -44,10 +44,10 @@ fn aiming_at_a_lamp_behind_inside_or_before_rough_glass_and_meeting_it_show_the_
     ];
     for (name, glass, shapes) in &cases {
         let [aimed_at, met] = lamps(shapes);
-        let by_chance = images(&picture(&(glass.clone() + &met), 2048), SINGLE_PATH, 6);
+        let by_chance = images(&picture(&(glass.clone() + &met), 600), SINGLE_PATH, 4);
         let by_chance = Mean::over_seeds(by_chance.iter().map(|(film, _)| film));
         for transport in [SINGLE_PATH, SPLITTING] {
-            let aimed = images(&picture(&(glass.clone() + &aimed_at), 256), transport, 6);
+            let aimed = images(&picture(&(glass.clone() + &aimed_at), 64), transport, 4);
             let mut aimed = Mean::over_seeds(aimed.iter().map(|(film, _)| film));
             println!("{name}: {aimed:.5?} for {by_chance:.5?}");
             for band in 0..3 {
@@ -62,14 +62,14 @@ fn aiming_at_a_lamp_behind_inside_or_before_rough_glass_and_meeting_it_show_the_
 #[test]
 fn fixed_lanes_and_heroes_show_the_same_lamp_behind_dispersive_rough_glass() {
     let [aimed_at, _] = lamps(&[LAMP]);
-    for roughness in [0.1, 0.3, 0.6] {
-        let text = picture(&(glass("\"N-SF11\"", roughness, "", &[PANE]) + &aimed_at), 256);
+    for roughness in [0.1, 0.5] {
+        let text = picture(&(glass("\"N-SF11\"", roughness, "", &[PANE]) + &aimed_at), 64);
         let scene = scene(&text);
         let emission = Emission::new(scene.lights[0].emission(), scene.film.color_space);
         let bands = Basis::bands(scene.film.color_space, 12, &[]);
         // Fixed wavelengths alone all count wherever they go.
         let shown = [bands.clone(), bands.with_heroes(4, &[emission])].map(|basis| {
-            let films: Vec<_> = (0..6)
+            let films: Vec<_> = (0..4)
                 .map(|seed| {
                     let transport = Transport::Random { split: 0.05, roulette: 0.05 };
                     let base = crate::support::scenes::method(&scene, transport);
@@ -84,7 +84,7 @@ fn fixed_lanes_and_heroes_show_the_same_lamp_behind_dispersive_rough_glass() {
             // Twelve wavelengths miss the color by less than 1 %.
             heroes.error[band] = libm::hypot(heroes.error[band], fixed.error[band]) + 0.003 * fixed.value[band];
         }
-        heroes.assert_near(fixed.value, 3, &format!("roughness {roughness}"));
+        heroes.assert_near(fixed.value, 2, &format!("roughness {roughness}"));
     }
 }
 

@@ -8,11 +8,12 @@ use abbe::math::DVec3;
 use crate::chi_squared;
 use crate::support::random::Random;
 
-const ROUGHNESSES: [f64; 9] = [0.01, 0.02, 0.05, 0.1, 0.2, 0.4, 0.6, 0.8, 1.0];
-const COSINES: [f64; 12] = [1e-6, 0.001, 0.01, 0.03, 0.1, 0.2, 0.3, 0.5, 0.66, 0.75, 0.9, 1.0];
-/// From outside and from inside, next to each other and far apart.
-const INDICES: [f64; 9] = [1.001, 1.01, 1.1, 1.33, 1.52, 1.6, 1.9, 2.17, 2.5];
-const DRAWS: u32 = 1 << 14;
+const ROUGHNESSES: [f64; 5] = [0.02, 0.1, 0.3, 0.8, 1.0];
+const COSINES: [f64; 6] = [1e-6, 0.001, 0.05, 0.3, 0.66, 1.0];
+/// From outside and from inside, next to each other and far apart; `tests/white_furnace.rs` has others.
+const INDICES: [f64; 4] = [1.001, 1.05, 1.33, 2.2];
+/// With 2^14, the furnaces of nearly equal indices seen along the surface are off by 1 %.
+const DRAWS: u32 = 1 << 17;
 
 /// A unit vector at a cosine to the normal.
 fn at(cos: f64, azimuth: f64) -> DVec3 {
@@ -52,7 +53,7 @@ fn a_lossless_boundary_sends_on_all_light_at_every_roughness_ratio_and_angle() {
                     let [reflected, crossed] = furnace(&sides, indices, cos);
                     let all = reflected + crossed;
                     let what = format!("roughness {roughness}, {indices:?}, cos {cos}");
-                    assert!((0.995..=1.005).contains(&all), "{what}: {reflected} + {crossed} = {all}");
+                    assert!((0.998..=1.001).contains(&all), "{what}: {reflected} + {crossed} = {all}");
                     worst = [worst[0].min(all), worst[1].max(all)];
                 }
             }
@@ -62,30 +63,30 @@ fn a_lossless_boundary_sends_on_all_light_at_every_roughness_ratio_and_angle() {
 }
 
 #[test]
-fn the_smoother_a_boundary_the_more_it_reflects_as_a_smooth_one() {
-    for indices in [[1.0, 1.5], [1.5, 1.0], [1.5, 1.33]] {
-        let interface = RoughInterface::new(1e-4);
-        // Off the critical angles, whose edges tables round.
-        for cos in [0.2, 0.65, 0.9, 1.0] {
-            let smooth = abbe::material::Interface::new(indices[0], indices[1], cos).reflectance;
-            let rough = interface.between(indices[0], indices[1]).reflectance(cos);
-            assert!((rough - smooth).abs() < 2e-3, "{indices:?}, cos {cos}: {rough} for {smooth}");
-        }
-    }
-}
-
-#[test]
-fn what_is_reflected_of_light_from_all_around_is_the_mean_over_cosines() {
-    for roughness in [0.1, 0.5, 1.0] {
+fn the_closer_two_indices_the_less_a_rough_boundary_turns_any_light() {
+    for roughness in [0.3, 1.0] {
         let interface = RoughInterface::new(roughness * roughness);
-        for indices in [[1.0, 1.5], [1.5, 1.0]] {
-            let sides = interface.between(indices[0], indices[1]);
-            let steps = 20_000;
-            let cosine = |i| (f64::from(i) + 0.5) / f64::from(steps);
-            let mean =
-                (0..steps).map(|i| 2.0 * cosine(i) * sides.reflectance(cosine(i))).sum::<f64>() / f64::from(steps);
-            let told = sides.mean_reflectance();
-            assert!((told - mean).abs() < 1e-5, "{roughness}, {indices:?}: {told} for {mean}");
+        for step in [1e-2, 1e-3, 1e-4] {
+            for indices in [[1.5, 1.5 + step], [1.5 + step, 1.5]] {
+                let sides = interface.between(indices[0], indices[1]);
+                let square = (indices[1] / indices[0]) * (indices[1] / indices[0]);
+                for cos in [0.2, 0.5, 1.0] {
+                    let wo = at(cos, 0.3);
+                    let mut kept = 0.0;
+                    for u in points(1 << 14) {
+                        if let [_, Some((wi, h))] = sides.draw(wo, u)
+                            && (wo + wi).length() < step.sqrt()
+                        {
+                            let flow = sides.crossed(wo, wi, h);
+                            kept += flow.value / flow.pdf * square / f64::from(1 << 14);
+                        }
+                    }
+                    // Facets reflect all light below a cosine of sqrt(2 step / n), and turn it more than that a little above.
+                    let what = format!("roughness {roughness}, {indices:?}, cos {cos}");
+                    println!("{what}: {kept:.5} goes nearly straight on");
+                    assert!(kept > 1.0 - step.sqrt(), "{what}: only {kept} goes nearly straight on");
+                }
+            }
         }
     }
 }
@@ -93,7 +94,7 @@ fn what_is_reflected_of_light_from_all_around_is_the_mean_over_cosines() {
 #[test]
 fn light_goes_the_same_way_back_through_and_off_a_rough_boundary() {
     let mut random = Random::new(9);
-    for roughness in [0.05, 0.3, 0.6, 1.0] {
+    for roughness in [0.05, 0.4, 1.0] {
         let interface = RoughInterface::new(roughness * roughness);
         for [n1, n2] in [[1.0, 1.5], [1.33, 1.2], [2.4, 1.0]] {
             let (there, back) = (interface.between(n1, n2), interface.between(n2, n1));
@@ -127,10 +128,13 @@ fn cell(wi: DVec3) -> usize {
 #[test]
 fn directions_on_both_sides_follow_their_density_and_the_rest_leads_nowhere() {
     const COUNT: u64 = 200_000;
-    let cases: Vec<([f64; 2], f64, f64)> = [[1.0, 1.5], [1.5, 1.0], [1.33, 2.4]]
-        .iter()
-        .flat_map(|&n| [0.4, 0.7, 1.0].iter().flat_map(move |&r| [0.95, 0.5, 0.1].map(|cos| (n, r, cos))))
-        .collect();
+    // Each roughness with each cosine, and each of them with all indices.
+    let cases = [
+        ([1.0, 1.5], [(0.4, 0.95), (0.7, 0.5), (1.0, 0.1)]),
+        ([1.5, 1.0], [(0.4, 0.5), (0.7, 0.1), (1.0, 0.95)]),
+        ([1.33, 2.4], [(0.4, 0.1), (0.7, 0.95), (1.0, 0.5)]),
+    ];
+    let cases: Vec<_> = cases.iter().flat_map(|&(n, cases)| cases.map(|(r, cos)| (n, r, cos))).collect();
     for &(indices, roughness, cos) in &cases {
         let interface = RoughInterface::new(roughness * roughness);
         let sides = interface.between(indices[0], indices[1]);
@@ -175,7 +179,7 @@ fn directions_on_both_sides_follow_their_density_and_the_rest_leads_nowhere() {
 fn no_draw_is_not_a_number_along_the_surface_and_between_nearly_equal_indices() {
     const MOST: f64 = 1.0 - 1.0 / (1 << 24) as f64;
     let ends = [0.0, f64::MIN_POSITIVE, 0.25, 0.5, MOST];
-    for roughness in [0.01, 0.1, 0.5, 1.0] {
+    for roughness in [0.01, 0.5, 1.0] {
         let interface = RoughInterface::new(roughness * roughness);
         for [n1, n2] in [[1.0, 1.0f64.next_up()], [1.5, 1.5 + 1e-9], [1.0, 10.0], [10.0, 1.0], [1.5, 1.33]] {
             let sides = interface.between(n1, n2);
@@ -183,7 +187,7 @@ fn no_draw_is_not_a_number_along_the_surface_and_between_nearly_equal_indices() 
             for cos in [0.0, 1e-300, 1e-20, 1e-8, 1e-3, 0.1, 0.5, 1.0f64.next_down(), 1.0] {
                 let wo = at(cos, 0.3);
                 let corners = ends.iter().flat_map(|&a| ends.map(|b| [a, b])).collect::<Vec<_>>();
-                for u in corners.into_iter().chain((0..2_000).map(|_| random.pair())) {
+                for u in corners.into_iter().chain((0..1_000).map(|_| random.pair())) {
                     let [reflected, crossed] = sides.draw(wo, u);
                     let flows = [
                         reflected.map(|(wi, h)| sides.reflected(wo, wi, h.unwrap_or_else(|| (wo + wi).normalize()))),

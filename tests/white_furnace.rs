@@ -1,0 +1,81 @@
+//! The white furnace: under a sky of 1, whatever reflects or lets through all light shows 1, at every roughness, index and
+//! angle. Prints a table of the least and the most that each material shows.
+//!
+//! ```text
+//! cargo test --release --test white_furnace -- --nocapture
+//! ```
+
+#[path = "layers/arrivals.rs"]
+mod arrivals;
+mod support;
+
+use abbe::material::{Arrival, Material};
+use abbe::spectrum::{Draw, Table};
+use arrivals::{arrival, material, points, toward};
+
+const ROUGHNESSES: [f64; 7] = [0.0, 0.05, 0.2, 0.4, 0.6, 0.8, 1.0];
+const INDICES: [f64; 5] = [1.1, 1.33, 1.52, 1.9, 2.5];
+const COSINES: [f64; 10] = [0.001, 0.01, 0.04, 0.1, 0.2, 0.35, 0.5, 0.7, 0.9, 1.0];
+const DRAWS: u32 = 1 << 15;
+/// A metal that takes less than 1e-9 of the light at right angles.
+const LOSSLESS: &str = "n = 1e-6, k = 100";
+
+/// What a surface between two media shows of an even sky, whose radiance over n^2 is 1 everywhere.
+fn furnace(material: &Material<Table>, indices: [f64; 2], cos: f64) -> f64 {
+    let draw = Draw::<4>::fixed(3);
+    let arrival = Arrival { beyond: [indices[1]; 4], ..arrival(&draw, toward(cos, 0.4), indices[0]) };
+    let (mut sum, mut branches) = (0.0, Vec::new());
+    for u in points(DRAWS) {
+        material.scatter(&arrival, u, &mut branches);
+        for branch in branches.drain(..) {
+            sum += f64::from(branch.share[0]) / branch.eta_scale / f64::from(DRAWS);
+        }
+    }
+    sum + material.passing(&arrival).map_or(0.0, |passing| f64::from(passing[0]))
+}
+
+/// A material of one roughness, the indices it is met between, and its name in the table.
+type Row = (String, String, Vec<[f64; 2]>);
+
+fn rows() -> Vec<Row> {
+    let (air, mut rows) = (vec![[1.0; 2]], Vec::new());
+    for text in [
+        "diffuse = { reflectance = 1 }",
+        "mirror = { reflectance = 1 }",
+        "thin = { index = 1.5 }",
+        "mix = { materials = [\"white\", \"mirror\"], amount = 0.3 }",
+        "mix = { materials = [\"rough\", \"silver\"], amount = 0.7 }",
+        "mask = { material = \"rough\", opacity = 0.4 }",
+    ] {
+        rows.push((text.to_owned(), text.to_owned(), air.clone()));
+    }
+    for roughness in ROUGHNESSES {
+        let metal = format!("conductor = {{ {LOSSLESS}, roughness = {roughness:?} }}");
+        rows.push((format!("conductor, roughness {roughness}"), metal, air.clone()));
+        for index in INDICES {
+            let plastic = format!("plastic = {{ reflectance = 1, index = {index:?}, roughness = {roughness:?} }}");
+            rows.push((format!("plastic of {index}, roughness {roughness}"), plastic, air.clone()));
+            let glass = format!("dielectric = {{ index = {index:?}, roughness = {roughness:?} }}");
+            let sides = vec![[1.0, index], [index, 1.0]];
+            rows.push((format!("dielectric of {index}, roughness {roughness}"), glass, sides));
+        }
+    }
+    rows
+}
+
+#[test]
+fn nothing_is_lost_beyond_half_a_percent_nor_won_beyond_a_thousandth() {
+    let mut worst = [1.0f64; 2];
+    for (name, text, sides) in rows() {
+        let material = material(&text);
+        let [mut least, mut most] = [f64::INFINITY, 0.0f64];
+        for (&indices, cos) in sides.iter().flat_map(|indices| COSINES.map(|cos| (indices, cos))) {
+            let shown = furnace(&material, indices, cos);
+            [least, most] = [least.min(shown), most.max(shown)];
+            assert!((0.995..=1.001).contains(&shown), "{name}: {shown} between {indices:?} at the cosine {cos}");
+        }
+        println!("{name:<64} {least:.5} to {most:.5}");
+        worst = [worst[0].min(least), worst[1].max(most)];
+    }
+    println!("{:<64} {:.5} to {:.5}", "all", worst[0], worst[1]);
+}
