@@ -1,4 +1,7 @@
 //! Images that bend an object's normal, as the file says.
+//!
+//! They belong to the object and not to its material: a depth is a length on it, one material serves flat and dented things,
+//! and of a mix or a mask it is clear which normal counts.
 
 use serde::Deserialize;
 

@@ -13,12 +13,15 @@ impl Texture {
         let (width, height) = (self.image.width(), self.image.height());
         let across = Stencil::new(wrap, u * repeat[0], width, false);
         let down = Stencil::new(wrap, v * repeat[1], height, true);
+        let level = |column, row| self.image.texel(column, row).into_iter().map(f64::from).sum::<f64>() / 3.0;
+        // Heights count from the middle one, so that the slope of an even image is exactly 0.
+        let middle = level(across.entries[1], down.entries[1]);
         let mut slope = [0.0; 2];
         for (j, row) in down.entries.into_iter().enumerate() {
             for (i, column) in across.entries.into_iter().enumerate() {
-                let level = self.image.texel(column, row).into_iter().map(f64::from).sum::<f64>() / 3.0;
-                slope[0] += across.slopes[i] * down.shares[j] * level;
-                slope[1] += across.shares[i] * down.slopes[j] * level;
+                let over = level(column, row) - middle;
+                slope[0] += across.slopes[i] * down.shares[j] * over;
+                slope[1] += across.shares[i] * down.slopes[j] * over;
             }
         }
         [slope[0] * repeat[0], slope[1] * repeat[1]]
