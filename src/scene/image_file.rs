@@ -3,15 +3,11 @@
 use std::io::Cursor;
 use std::path::Path;
 
+use exr::math::Vec2;
+use exr::prelude::{ReadChannels, ReadLayers, read};
 use image::{DynamicImage, ImageDecoder, ImageFormat};
 
 use crate::spectrum::{Channel, Encoding, Image, decode_srgb};
-
-/// An image of linear Rec.709 numbers, rows from the top.
-pub(super) struct LinearImage {
-    pub(super) width: usize,
-    pub(super) texels: Vec<[f32; 3]>,
-}
 
 /// What is wrong with a file, and what to do.
 type Fault = (String, Option<String>);
@@ -20,9 +16,9 @@ type Fault = (String, Option<String>);
 ///
 /// # Errors
 /// What is wrong with it, and what to do.
-pub(super) fn read_image(path: &Path, bytes: &[u8]) -> Result<LinearImage, Fault> {
+pub(super) fn read_image(path: &Path, bytes: &[u8]) -> Result<Image, Fault> {
     let (kind, image) = match ending(path).as_str() {
-        "exr" => ("OpenEXR", read_exr(bytes)),
+        "exr" => ("OpenEXR", read_exr(bytes, false)),
         "hdr" => ("Radiance", read_radiance(bytes)),
         ending @ ("png" | "jpg" | "jpeg") => {
             let help = "use an OpenEXR (.exr) or Radiance (.hdr) image";
@@ -31,10 +27,8 @@ pub(super) fn read_image(path: &Path, bytes: &[u8]) -> Result<LinearImage, Fault
         _ => return Err(unknown(path, "images end in .exr (OpenEXR) or .hdr (Radiance)")),
     };
     let image = image.map_err(|said| unreadable(path, kind, &said))?;
-    let texels = image.texels.iter().map(|[red, green, blue, _]| [*red, *green, *blue]).collect();
-    let image = LinearImage { width: image.width, texels };
-    possible(path, image.width, image.texels.as_flattened(), (3, Meaning::Light(None)))?;
-    Ok(image)
+    possible(path, image.width, &image.numbers, (3, Meaning::Light(None)))?;
+    Ok(Image::of_floats(image.width, 3, image.numbers))
 }
 
 /// What the numbers of an image on a surface stand for.
@@ -113,9 +107,9 @@ pub(super) fn read_texture(
         });
     }
     let radiance = kind == "Radiance";
-    let image = if radiance { read_radiance(bytes) } else { read_exr(bytes) }.map_err(fault)?;
-    let picked = Picked::new(path, channel, 4, !radiance)?;
-    let numbers = image.texels.as_flattened();
+    let image = if radiance { read_radiance(bytes) } else { read_exr(bytes, true) }.map_err(fault)?;
+    let picked = Picked::new(path, channel, image.channels, !radiance)?;
+    let numbers = &image.numbers[..];
     let ignores_alpha = ignores(picked.ignores(numbers, 1.0));
     let mut floats: Vec<f32> = picked.of(numbers).collect();
     possible(path, image.width, &floats, (picked.channels(), meaning))?;
@@ -209,39 +203,46 @@ fn too_many(width: usize, height: usize) -> Result<(), String> {
     }
 }
 
-/// Red, green, blue and alpha, rows from the top.
-struct Rgba {
+/// Red, green, blue and maybe alpha of each texel, rows from the top.
+struct Floats {
     width: usize,
-    texels: Vec<[f32; 4]>,
+    channels: usize,
+    numbers: Vec<f32>,
 }
 
-fn read_exr(bytes: &[u8]) -> Result<Rgba, String> {
-    use exr::prelude::{ReadChannels, ReadLayers, read};
-    type Pixels = (usize, Vec<[f32; 4]>);
+impl Floats {
+    fn new(size: Vec2<usize>, channels: usize) -> Self {
+        Self { width: size.width(), channels, numbers: vec![0.0; channels * size.area()] }
+    }
+
+    fn put<const K: usize>(&mut self, at: Vec2<usize>, texel: [f32; K]) {
+        let from = K * (at.y() * self.width + at.x());
+        self.numbers[from..from + K].copy_from_slice(&texel);
+    }
+}
+
+fn read_exr(bytes: &[u8], alpha: bool) -> Result<Floats, String> {
     let described = exr::meta::MetaData::read_from_buffered(Cursor::new(bytes), false);
     let headers = described.map_err(|error| error.to_string())?.headers;
     headers.iter().try_for_each(|header| too_many(header.layer_size.width(), header.layer_size.height()))?;
-    let image = read()
-        .no_deep_data()
-        .largest_resolution_level()
-        .rgba_channels(
-            |size, _| -> Pixels { (size.width(), vec![[0.0; 4]; size.area()]) },
-            |(width, texels): &mut Pixels, at, (r, g, b, a): (f32, f32, f32, f32)| {
-                texels[at.y() * *width + at.x()] = [r, g, b, a];
-            },
-        )
-        .first_valid_layer()
-        .all_attributes()
-        .non_parallel()
-        .from_buffered(Cursor::new(bytes))
-        .map_err(|error| error.to_string())?;
-    let (width, texels) = image.layer_data.channel_data.pixels;
-    Ok(Rgba { width, texels })
+    let (layers, bytes) = (read().no_deep_data().largest_resolution_level(), Cursor::new(bytes));
+    let floats = if alpha {
+        let put = |image: &mut Floats, at, (r, g, b, a): (f32, f32, f32, f32)| image.put(at, [r, g, b, a]);
+        let layers = layers.rgba_channels(|size, _| Floats::new(size, 4), put).first_valid_layer();
+        let image = layers.all_attributes().non_parallel().from_buffered(bytes);
+        image.map(|image| image.layer_data.channel_data.pixels)
+    } else {
+        let put = |image: &mut Floats, at, (r, g, b): (f32, f32, f32)| image.put(at, [r, g, b]);
+        let layers = layers.rgb_channels(|size, _| Floats::new(size, 3), put).first_valid_layer();
+        let image = layers.all_attributes().non_parallel().from_buffered(bytes);
+        image.map(|image| image.layer_data.channel_data.pixels)
+    };
+    floats.map_err(|error| error.to_string())
 }
 
-fn read_radiance(bytes: &[u8]) -> Result<Rgba, String> {
-    let image = decode(bytes, ImageFormat::Hdr)?.into_rgba32f();
-    Ok(Rgba { width: image.width() as usize, texels: image.pixels().map(|pixel| pixel.0).collect() })
+fn read_radiance(bytes: &[u8]) -> Result<Floats, String> {
+    let image = decode(bytes, ImageFormat::Hdr)?.into_rgb32f();
+    Ok(Floats { width: image.width() as usize, channels: 3, numbers: image.into_raw() })
 }
 
 /// The numbers of an image of at most `MOST_TEXELS`.
