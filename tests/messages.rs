@@ -177,6 +177,11 @@ fn images_and_patterns_that_cannot_lie_on_a_surface_are_refused() {
 }
 
 #[test]
+fn images_that_cannot_bend_normals_are_refused() {
+    check("relief.txt", 12);
+}
+
+#[test]
 fn warnings_are_told_once_and_stop_nothing() {
     check_with("warnings.txt", 10, |case| case.unwarned());
 }

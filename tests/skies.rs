@@ -142,6 +142,42 @@ fn an_image_is_seen_where_the_convention_says() {
     }
 }
 
+/// A sky of one color is that color's emission, by itself and in a gray mirror, however bright it is.
+#[test]
+fn an_even_image_is_the_sky_of_its_color() {
+    let folder = tempfile::tempdir().unwrap();
+    // Moderate colors, which sums of fully saturated ones would miss by up to 3 %, and such themselves.
+    for rgb in [[0.5, 0.3, 0.15], [3.0, 4.5, 9.0], [0.2, 0.6, 0.35], [0.8, 0.3, 0.6], [0.0, 40.0, 0.0], [0.7, 0.7, 0.1]]
+    {
+        let [r, g, b] = rgb.map(|x| x as f32);
+        write_rgb_file(folder.path().join("even.exr"), 8, 4, |_, _| (r, g, b)).unwrap();
+        // What wavelengths were measured to miss is 4e-4 of the brightest number.
+        for (model, tolerance) in [("{ bands = 16 }", 1e-3), ("{ bands = 32 }", 1e-3), ("\"rgb\"", 1e-6)] {
+            let see = |radiance: &str| {
+                let text = format!(
+                    "{}[render]\nmodel = {model}\nsamples = 4\n[material.paint]\n\
+                     mirror = {{ reflectance = 0.5 }}\n[[object]]\n\
+                     shape.sphere = {{ center = [0, 0, 0], radius = 1 }}\nmaterial = \"paint\"\n\
+                     [[light]]\nenvironment = {{ radiance = {radiance} }}\n",
+                    view([0.0, 0.0, 6.0], [0.0; 3], 25.0, 8)
+                );
+                let scene = read(folder.path(), &text);
+                let film = render(&World::new(&scene, plan(&scene).method), &|_| ()).0;
+                // A corner shows the sky, the middle its mirror image. Colored ones would show that spectra of one color differ.
+                [film.pixels[0].rgb, film.pixels[36].rgb].map(|rgb| rgb.map(f64::from))
+            };
+            let [found, expected] = [see("{ image = \"even.exr\" }"), see(&format!("{{ rgb = {rgb:?} }}"))];
+            for (found, expected) in [(found[0], expected[0]), (found[1], expected[1])] {
+                let brightest = expected.into_iter().fold(0.0, f64::max);
+                for c in 0..3 {
+                    let off = (found[c] - expected[c]).abs() / brightest;
+                    assert!(off <= tolerance, "{rgb:?} in {model}: {found:?}, not {expected:?}");
+                }
+            }
+        }
+    }
+}
+
 /// Files that were cut off or damaged are refused in words, whatever byte is hit.
 #[test]
 fn a_damaged_image_never_stops_the_program() {

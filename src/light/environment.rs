@@ -4,7 +4,7 @@ use std::sync::Arc;
 use super::{Panorama, View};
 use crate::math::{DMat3, DVec3, Frame, Ray, cosine_hemisphere, unit};
 use crate::shape::Sighting;
-use crate::spectrum::{Curve, CurveKind, Draw, Lanes, Quantity, Table};
+use crate::spectrum::{Curve, CurveKind, Draw, Lanes, Placement, Quantity, Table, Texture};
 
 /// Light from all directions, where rays miss everything: the same from everywhere, or an image.
 ///
@@ -28,16 +28,16 @@ pub struct Sky<S> {
     panorama: Arc<Panorama>,
     /// World to image.
     turn: DMat3,
-    /// Factors on white that make red, green, blue, cyan, magenta and yellow of it.
-    tints: [S; 6],
+    /// The image's colors as factors on white.
+    colors: S,
 }
 
 impl Sky<Curve> {
     /// An image, turned from its own directions into the world's by a rotation.
     pub fn new(panorama: Panorama, rotation: DMat3) -> Self {
-        let tints = [[1., 0., 0.], [0., 1., 0.], [0., 0., 1.], [0., 1., 1.], [1., 0., 1.], [1., 1., 0.]];
-        let tints = tints.map(|rgb| CurveKind::Rgb(rgb).into());
-        Self { panorama: Arc::new(panorama), turn: rotation.transpose(), tints }
+        let texture = Texture { image: panorama.image().clone(), placement: Placement::default() };
+        let colors = CurveKind::Texture(texture).into();
+        Self { panorama: Arc::new(panorama), turn: rotation.transpose(), colors }
     }
 }
 
@@ -46,7 +46,7 @@ impl<S> Environment<S> {
         let image = self.image.as_ref().map(|sky| Sky {
             panorama: sky.panorama.clone(),
             turn: sky.turn,
-            tints: std::array::from_fn(|i| convert(Quantity::Transmittance, &sky.tints[i])),
+            colors: convert(Quantity::Emission, &sky.colors),
         });
         Environment { radiance: convert(Quantity::Emission, &self.radiance), image }
     }
@@ -85,27 +85,17 @@ impl Environment<Table> {
     pub(super) fn toward<const N: usize>(&self, draw: &Draw<N>, direction: DVec3) -> Lanes<N> {
         let level = draw.read(&self.radiance);
         let Some(sky) = &self.image else { return level };
-        let [red, green, blue] = sky.panorama.color(sky.turn * direction);
-        let tint = |number: usize, amount: f32| draw.read(&sky.tints[number]) * amount;
-        // White as far as all three go, one of cyan, magenta and yellow as far as two go, the rest of one: Smits 1999,
-        // *An RGB-to-Spectrum Conversion for Reflectances*, with sigmoid spectra that have exactly these colors.
-        let least = red.min(green).min(blue);
-        let white = Lanes::ONE * least;
-        let (two, one) = if least == red {
-            if green < blue { ((3, green - red), (2, blue - green)) } else { ((3, blue - red), (1, green - blue)) }
-        } else if least == green {
-            if red < blue { ((4, red - green), (2, blue - red)) } else { ((4, blue - green), (0, red - blue)) }
-        } else if red < green {
-            ((5, red - blue), (1, green - red))
-        } else {
-            ((5, green - blue), (0, red - green))
-        };
-        let mut filter = white;
-        for (number, amount) in [two, one] {
-            if amount > 0.0 {
-                filter += tint(number, amount);
-            }
-        }
-        level * filter
+        level * draw.tint(&sky.colors, summed(sky.panorama.color(sky.turn * direction)))
     }
+}
+
+/// A color whose numbers are sums, each beginning with the next smaller one: so they are rounded in all three bands.
+fn summed(color: [f32; 3]) -> [f32; 3] {
+    let mut order = [0, 1, 2];
+    order.sort_by(|&a, &b| color[a].total_cmp(&color[b]));
+    let [least, middle, most] = order.map(|channel| color[channel]);
+    let second = least + (middle - least);
+    let mut sums = color;
+    (sums[order[1]], sums[order[2]]) = (second, second + (most - middle));
+    sums
 }

@@ -1,8 +1,10 @@
 //! Light from all around as an image, drawn where it is bright.
 
 use std::f64::consts::{PI, TAU};
+use std::sync::Arc;
 
 use crate::math::DVec3;
+use crate::spectrum::Image;
 
 /// An image of all directions: latitude and longitude, +y on top, +z in the center, +x at the left quarter.
 ///
@@ -12,8 +14,7 @@ use crate::math::DVec3;
 pub struct Panorama {
     width: usize,
     height: usize,
-    /// Linear Rec.709, rows from the top.
-    texels: Vec<[f32; 3]>,
+    image: Arc<Image>,
     /// The probabilities of all rows, summed up; the last is 1.
     rows: Vec<f64>,
     /// The probabilities of the texels within each row, summed up; the last of each row is 1.
@@ -22,19 +23,11 @@ pub struct Panorama {
 }
 
 impl Panorama {
-    /// An image of `width` texels a row; no texel is negative or not finite.
-    ///
-    /// # Panics
-    /// If it has no texels or a row that is not full.
-    pub fn new(width: usize, texels: Vec<[f32; 3]>) -> Self {
-        assert!(
-            width > 0 && !texels.is_empty() && texels.len().is_multiple_of(width),
-            "{} texels, {width} a row",
-            texels.len()
-        );
-        let height = texels.len() / width;
+    /// Of an image in which no number is negative or not finite.
+    pub fn new(image: Arc<Image>) -> Self {
+        let (width, height) = (image.width(), image.height());
         let mut panorama =
-            Self { width, height, texels, rows: Vec::new(), columns: vec![0.0; width * height], mean: 0.0 };
+            Self { width, height, image, rows: Vec::new(), columns: vec![0.0; width * height], mean: 0.0 };
         let mut total = 0.0;
         for row in 0..height {
             let mut sum = 0.0;
@@ -62,6 +55,11 @@ impl Panorama {
         panorama
     }
 
+    /// The image.
+    pub fn image(&self) -> &Arc<Image> {
+        &self.image
+    }
+
     /// The mean of its brightness, a third of red, green and blue, over all directions.
     pub fn mean(&self) -> f64 {
         self.mean
@@ -84,7 +82,7 @@ impl Panorama {
     fn texel(&self, column: isize, row: isize) -> [f32; 3] {
         let column = column.rem_euclid(self.width as isize) as usize;
         let row = row.clamp(0, self.height as isize - 1) as usize;
-        self.texels[row * self.width + column]
+        self.image.texel(column, row)
     }
 
     /// Cosine of the angle from the top to the upper edge of a row.
@@ -152,6 +150,10 @@ fn probability(sums: &[f64], entry: usize) -> f64 {
 mod tests {
     use super::*;
 
+    fn panorama(width: usize, texels: &[[f32; 3]]) -> Panorama {
+        Panorama::new(Arc::new(Image::of_floats(width, 3, texels.as_flattened().to_vec())))
+    }
+
     fn grid(n: u32) -> impl Iterator<Item = [f64; 2]> {
         let at = move |i: u32| (f64::from(i) + 0.5) / f64::from(n);
         (0..n).flat_map(move |i| (0..n).map(move |j| [at(i), at(j)]))
@@ -159,7 +161,7 @@ mod tests {
 
     #[test]
     fn directions_lie_where_the_convention_says() {
-        let panorama = Panorama::new(4, vec![[1.0; 3]; 8]);
+        let panorama = panorama(4, &[[1.0; 3]; 8]);
         let near = |direction: DVec3, expected: [f64; 2]| {
             let [x, y] = panorama.place(direction);
             assert!((x - expected[0]).abs() < 1e-12 && (y - expected[1]).abs() < 1e-12, "{direction}: {x} {y}");
@@ -173,7 +175,7 @@ mod tests {
     /// Row G3 of the stability catalog.
     #[test]
     fn g3_every_sample_of_an_even_image_stands_for_the_whole_sphere() {
-        let panorama = Panorama::new(64, vec![[1.0; 3]; 64 * 32]);
+        let panorama = panorama(64, &[[1.0; 3]; 64 * 32]);
         for u in grid(200).chain([[0.0, 0.0], [1.0 - 1e-16, 1.0 - 1e-16], [0.5, 1e-18]]) {
             let direction = panorama.aim(u);
             let weight = f64::from(panorama.color(direction)[0]) / panorama.pdf(direction);
@@ -184,7 +186,7 @@ mod tests {
     /// Row G2 of the stability catalog.
     #[test]
     fn g2_the_seam_and_the_poles_are_within_the_image() {
-        let panorama = Panorama::new(7, (0..21_u8).map(|i| [f32::from(i) + 1.0; 3]).collect());
+        let panorama = panorama(7, &(0..21_u8).map(|i| [f32::from(i) + 1.0; 3]).collect::<Vec<_>>());
         for tiny in [0.0, -0.0, 1e-300, -1e-300, 1e-17, -1e-17, 1e-8, -1e-8] {
             for direction in [DVec3::new(tiny, 0.0, -1.0), DVec3::new(tiny, 1.0, 0.0), DVec3::new(0.0, -1.0, tiny)] {
                 assert!(panorama.pdf(direction) > 0.0 && panorama.color(direction)[0] >= 1.0, "{direction}");
@@ -198,7 +200,7 @@ mod tests {
         let (width, height) = (12, 6);
         let texels: Vec<[f32; 3]> =
             (0..width * height).map(|i| if i == 17 { [90.0, 20.0, 5.0] } else { [(i % 5) as f32; 3] }).collect();
-        let panorama = Panorama::new(width, texels);
+        let panorama = panorama(width, &texels);
         let mut total = 0.0;
         for at in 0..width * height {
             let (row, column) = (at / width, at % width);

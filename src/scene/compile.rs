@@ -122,6 +122,7 @@ impl Compiler<'_> {
             let name = text.name.clone().unwrap_or_else(|| format!("object {}", number + 1));
             let filled = materials[material].material.medium().is_some();
             let varies = materials[material].material.varies();
+            let relief = self.relief(&at, text)?;
             let mut compiler = ShapeCompiler { compiler: self, name: &name, filled };
             for (instance, (shape, coordinates)) in compiler.shapes(&at, text)?.into_iter().enumerate() {
                 let name = match text.instances {
@@ -131,8 +132,10 @@ impl Compiler<'_> {
                 if varies && coordinates.is_none() {
                     return Err(self.no_coordinates(&at, &text.material));
                 }
-                let (shape, coordinates) = (Arc::new(shape), coordinates.filter(|_| varies).map(Arc::new));
-                objects.push(Object { name, shape, material: material as u32, light: None, coordinates });
+                let (shape, coordinates) = (Arc::new(shape), coordinates.map(Arc::new));
+                let relief = relief.as_ref().map(|relief| self.relief_on(&at, relief, coordinates.as_ref()));
+                let (relief, coordinates) = (relief.transpose()?, coordinates.filter(|_| varies));
+                objects.push(Object { name, shape, material: material as u32, light: None, coordinates, relief });
                 entries.push(number);
             }
         }

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use sha2::Digest;
 
 use super::compile::Compiler;
-use super::image_file::read_texture;
+use super::image_file::{Meaning, read_texture};
 use super::source::At;
 use crate::error::Result;
 use crate::spectrum::{Channel, Curve, CurveKind, Encoding, Image, ImageText, Quantity, Texture};
@@ -19,7 +19,7 @@ const MOST_IMAGE: u64 = 1 << 32;
 const MOST_REPEAT: f64 = 1e6;
 
 /// Images by their path and by what was read of them.
-pub(super) type Images = BTreeMap<(PathBuf, Option<Encoding>, Option<Channel>), Arc<Image>>;
+pub(super) type Images = BTreeMap<(PathBuf, Meaning, Option<Channel>), Arc<Image>>;
 
 impl Compiler<'_> {
     /// The spectrum of a surface, which may vary over it, checked.
@@ -41,7 +41,7 @@ impl Compiler<'_> {
             return Err(self.source.mistake_at(&at.key("encoding"), message, Some("leave `encoding` out".into())));
         }
         let here = at.key("image");
-        let image = self.image(&here, text)?;
+        let image = self.image(&here, &text.file, Meaning::Light(text.encoding), text.channel)?;
         let ([x, y], brightest) = image.brightest();
         let most = f64::from(brightest) * curve.scale;
         if quantity != Quantity::Emission && most > 1.0 {
@@ -58,7 +58,7 @@ impl Compiler<'_> {
         Ok(Curve { kind: CurveKind::Texture(texture), ..curve.clone() })
     }
 
-    fn repeat(&self, at: &At, repeat: [f64; 2]) -> Result<()> {
+    pub(super) fn repeat(&self, at: &At, repeat: [f64; 2]) -> Result<()> {
         let possible = |x: &f64| (1.0 / MOST_REPEAT..=MOST_REPEAT).contains(x);
         match repeat.iter().find(|x| !possible(x)) {
             Some(wrong) => {
@@ -129,17 +129,24 @@ impl Compiler<'_> {
         Ok(Curve { kind: CurveKind::Checker { cells: Box::new([first, second]), repeat }, scale, luminance: None })
     }
 
-    fn image(&mut self, at: &At, text: &ImageText) -> Result<Arc<Image>> {
-        let key = (self.source.folder().join(&text.file), text.encoding, text.channel);
+    /// An image, read once for each meaning of its numbers.
+    pub(super) fn image(
+        &mut self,
+        at: &At,
+        file: &str,
+        meaning: Meaning,
+        channel: Option<Channel>,
+    ) -> Result<Arc<Image>> {
+        let key = (self.source.folder().join(file), meaning, channel);
         if let Some(image) = self.images.get(&key) {
             return Ok(image.clone());
         }
-        let bytes = self.bytes_of_image(at, &text.file)?;
-        let read = read_texture(Path::new(&text.file), &bytes, text.encoding, text.channel);
+        let bytes = self.bytes_of_image(at, file)?;
+        let read = read_texture(Path::new(file), &bytes, meaning, channel);
         let read = read.map_err(|(message, help)| self.source.mistake_at(at, message, help))?;
         self.hash.update(&bytes);
         if read.ignores_alpha {
-            let warning = format!("{at}: the alpha of {} is ignored; channel = \"alpha\" reads it", text.file);
+            let warning = format!("{at}: the alpha of {file} is ignored; channel = \"alpha\" reads it");
             self.warnings.push(warning);
         }
         let image = Arc::new(read.image);

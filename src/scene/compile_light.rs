@@ -1,5 +1,7 @@
 //! The lights that no surface gives.
 
+use std::sync::Arc;
+
 use sha2::Digest;
 
 use super::Scene;
@@ -118,11 +120,12 @@ impl Compiler<'_> {
         let image = read_image(std::path::Path::new(file), &bytes);
         let image = image.map_err(|(message, help)| self.source.mistake_at(at, message, help))?;
         self.hash.update(&bytes);
-        if image.texels.len() != 2 * (image.texels.len() / image.width).pow(2) {
-            let size = format!("{} x {}", image.width, image.texels.len() / image.width);
+        let (width, height) = (image.width(), image.height());
+        if width != 2 * height {
+            let size = format!("{width} x {height}");
             self.warnings.push(format!("{at}: {file} is {size}; an image of all directions is twice as wide as high"));
         }
-        Ok(Panorama::new(image.width, image.texels))
+        Ok(Panorama::new(Arc::new(image)))
     }
 }
 

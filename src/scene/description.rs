@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Deserializer};
 
+use super::description_relief::{BumpMapText, NormalMapText};
 use super::description_view::{CameraText, FilmText};
 use crate::light::{Point, Spot, Sun};
 use crate::material::Material;
@@ -95,6 +96,7 @@ pub enum ModelText {
 /// shape.sphere = { center = [0, 1, 0], radius = 1 }
 /// material = "glass"
 /// # transform = [{ scale = 2 }]
+/// # bump_map = { image = "dents.png", depth = 0.02 }
 /// # instances = [[{ translate = [1, 0, 0] }], [{ translate = [3, 0, 0] }, { scale = [-1, 1, 1] }]]
 /// ```
 #[derive(Clone, Debug, Deserialize)]
@@ -111,6 +113,10 @@ pub struct ObjectText {
     pub transform: Vec<StepText>,
     /// Further steps for each of many such shapes, after `transform`; one shape if absent.
     pub instances: Option<Vec<Vec<StepText>>>,
+    /// An image of directions that bends its normal.
+    pub normal_map: Option<NormalMapText>,
+    /// An image of heights that bends its normal.
+    pub bump_map: Option<BumpMapText>,
 }
 
 /// The shapes, each documented where it is implemented, in `shape`.

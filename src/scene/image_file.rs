@@ -3,15 +3,11 @@
 use std::io::Cursor;
 use std::path::Path;
 
+use exr::math::Vec2;
+use exr::prelude::{ReadChannels, ReadLayers, read};
 use image::{DynamicImage, ImageDecoder, ImageFormat};
 
 use crate::spectrum::{Channel, Encoding, Image, decode_srgb};
-
-/// An image of linear Rec.709 numbers, rows from the top.
-pub(super) struct LinearImage {
-    pub(super) width: usize,
-    pub(super) texels: Vec<[f32; 3]>,
-}
 
 /// What is wrong with a file, and what to do.
 type Fault = (String, Option<String>);
@@ -20,9 +16,9 @@ type Fault = (String, Option<String>);
 ///
 /// # Errors
 /// What is wrong with it, and what to do.
-pub(super) fn read_image(path: &Path, bytes: &[u8]) -> Result<LinearImage, Fault> {
+pub(super) fn read_image(path: &Path, bytes: &[u8]) -> Result<Image, Fault> {
     let (kind, image) = match ending(path).as_str() {
-        "exr" => ("OpenEXR", read_exr(bytes)),
+        "exr" => ("OpenEXR", read_exr(bytes, false)),
         "hdr" => ("Radiance", read_radiance(bytes)),
         ending @ ("png" | "jpg" | "jpeg") => {
             let help = "use an OpenEXR (.exr) or Radiance (.hdr) image";
@@ -31,10 +27,19 @@ pub(super) fn read_image(path: &Path, bytes: &[u8]) -> Result<LinearImage, Fault
         _ => return Err(unknown(path, "images end in .exr (OpenEXR) or .hdr (Radiance)")),
     };
     let image = image.map_err(|said| unreadable(path, kind, &said))?;
-    let texels = image.texels.iter().map(|[red, green, blue, _]| [*red, *green, *blue]).collect();
-    let image = LinearImage { width: image.width, texels };
-    possible(path, image.width, image.texels.as_flattened(), 3)?;
-    Ok(image)
+    possible(path, image.width, &image.numbers, (3, Meaning::Light(None)))?;
+    Ok(Image::of_floats(image.width, 3, image.numbers))
+}
+
+/// What the numbers of an image on a surface stand for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Meaning {
+    /// Light or shares of it, encoded as told or else as the kind of file implies.
+    Light(Option<Encoding>),
+    /// Heights, just as they are.
+    Heights,
+    /// Directions: the middle of the range of whole numbers is 0, of others one half.
+    Directions,
 }
 
 /// An image for a surface.
@@ -51,7 +56,7 @@ pub(super) struct TextureFile {
 pub(super) fn read_texture(
     path: &Path,
     bytes: &[u8],
-    encoding: Option<Encoding>,
+    meaning: Meaning,
     channel: Option<Channel>,
 ) -> Result<TextureFile, Fault> {
     let (kind, format) = match ending(path).as_str() {
@@ -62,37 +67,55 @@ pub(super) fn read_texture(
         _ => return Err(unknown(path, "images end in .png, .jpg, .exr (OpenEXR) or .hdr (Radiance)")),
     };
     let fault = |said: String| unreadable(path, kind, &said);
-    let srgb = match (channel, encoding) {
+    let srgb = match (channel, meaning) {
         (Some(Channel::Alpha), _) => false,
-        (_, encoding) => encoding.map_or(format.is_some(), |encoding| encoding == Encoding::Srgb),
+        (_, Meaning::Light(encoding)) => encoding.map_or(format.is_some(), |encoding| encoding == Encoding::Srgb),
+        _ => false,
     };
+    let directions = meaning == Meaning::Directions;
+    let ignores = |ignores: bool| ignores && !directions;
     if let Some(format) = format {
         let image = decode(bytes, format).map_err(fault)?;
         let width = image.width() as usize;
         let (count, has_alpha) = (usize::from(image.color().channel_count()), image.color().has_alpha());
         let picked = Picked::new(path, channel, count, has_alpha)?;
+        if directions && picked.channels() == 1 {
+            let message = format!("{} is gray, and a normal map has red, green and blue", path.display());
+            return Err((message, Some("heights are a `bump_map`".into())));
+        }
         let wide = image.color().bytes_per_pixel() as usize > count;
         return Ok(if wide {
             let (numbers, even) = (words(image), |word: u16| f64::from(word) / 65535.0);
-            let table: Vec<f32> =
-                (0..=u16::MAX).map(|word| if srgb { decode_srgb(even(word)) } else { even(word) } as f32).collect();
-            let ignores_alpha = picked.ignores(&numbers, u16::MAX);
+            let value = |word: u16| match directions {
+                true => (f64::from(word) - 32768.0) / 32767.0,
+                false if srgb => decode_srgb(even(word)),
+                false => even(word),
+            };
+            let table: Vec<f32> = (0..=u16::MAX).map(|word| value(word) as f32).collect();
+            let ignores_alpha = ignores(picked.ignores(&numbers, u16::MAX));
             let floats = picked.of(&numbers).map(|word| table[usize::from(word)]).collect();
             TextureFile { image: Image::of_floats(width, picked.channels(), floats), ignores_alpha }
         } else {
             let numbers = image.into_bytes();
-            let ignores_alpha = picked.ignores(&numbers, u8::MAX);
-            let bytes = picked.of(&numbers).collect();
-            TextureFile { image: Image::of_bytes(width, picked.channels(), bytes, srgb), ignores_alpha }
+            let ignores_alpha = ignores(picked.ignores(&numbers, u8::MAX));
+            let (channels, bytes) = (picked.channels(), picked.of(&numbers).collect());
+            let image = match directions {
+                true => Image::of_signed_bytes(width, channels, bytes),
+                false => Image::of_bytes(width, channels, bytes, srgb),
+            };
+            TextureFile { image, ignores_alpha }
         });
     }
     let radiance = kind == "Radiance";
-    let image = if radiance { read_radiance(bytes) } else { read_exr(bytes) }.map_err(fault)?;
-    let picked = Picked::new(path, channel, 4, !radiance)?;
-    let numbers = image.texels.as_flattened();
-    let ignores_alpha = picked.ignores(numbers, 1.0);
+    let image = if radiance { read_radiance(bytes) } else { read_exr(bytes, true) }.map_err(fault)?;
+    let picked = Picked::new(path, channel, image.channels, !radiance)?;
+    let numbers = &image.numbers[..];
+    let ignores_alpha = ignores(picked.ignores(numbers, 1.0));
     let mut floats: Vec<f32> = picked.of(numbers).collect();
-    possible(path, image.width, &floats, picked.channels())?;
+    possible(path, image.width, &floats, (picked.channels(), meaning))?;
+    if directions {
+        floats.iter_mut().for_each(|x| *x = 2.0 * *x - 1.0);
+    }
     if srgb {
         floats.iter_mut().for_each(|x| *x = decode_srgb(f64::from(*x)) as f32);
     }
@@ -152,14 +175,19 @@ fn unreadable(path: &Path, kind: &str, said: &str) -> Fault {
 }
 
 /// Refuses numbers that no light and no surface has.
-fn possible(path: &Path, width: usize, numbers: &[f32], channels: usize) -> Result<(), Fault> {
+fn possible(path: &Path, width: usize, numbers: &[f32], (channels, meaning): (usize, Meaning)) -> Result<(), Fault> {
+    let (allowed, help) = match meaning {
+        Meaning::Light(_) => (0.0..=f32::MAX, "light is finite and not negative"),
+        Meaning::Heights => (f32::MIN..=f32::MAX, "heights are finite"),
+        Meaning::Directions => (0.0..=1.0, "directions are written as numbers from 0 to 1, one half being none"),
+    };
     let mut texels = numbers.chunks_exact(channels);
-    match texels.position(|texel| texel.iter().any(|x| !x.is_finite() || *x < 0.0)) {
+    match texels.position(|texel| texel.iter().any(|x| !allowed.contains(x))) {
         Some(at) => {
             let (x, y) = (at % width, at / width);
             let texel = &numbers[at * channels..(at + 1) * channels];
             let message = format!("{}: pixel ({x}, {y}) is {texel:?}", path.display());
-            Err((message, Some("light is finite and not negative".into())))
+            Err((message, Some(help.into())))
         }
         None => Ok(()),
     }
@@ -175,39 +203,46 @@ fn too_many(width: usize, height: usize) -> Result<(), String> {
     }
 }
 
-/// Red, green, blue and alpha, rows from the top.
-struct Rgba {
+/// Red, green, blue and maybe alpha of each texel, rows from the top.
+struct Floats {
     width: usize,
-    texels: Vec<[f32; 4]>,
+    channels: usize,
+    numbers: Vec<f32>,
 }
 
-fn read_exr(bytes: &[u8]) -> Result<Rgba, String> {
-    use exr::prelude::{ReadChannels, ReadLayers, read};
-    type Pixels = (usize, Vec<[f32; 4]>);
+impl Floats {
+    fn new(size: Vec2<usize>, channels: usize) -> Self {
+        Self { width: size.width(), channels, numbers: vec![0.0; channels * size.area()] }
+    }
+
+    fn put<const K: usize>(&mut self, at: Vec2<usize>, texel: [f32; K]) {
+        let from = K * (at.y() * self.width + at.x());
+        self.numbers[from..from + K].copy_from_slice(&texel);
+    }
+}
+
+fn read_exr(bytes: &[u8], alpha: bool) -> Result<Floats, String> {
     let described = exr::meta::MetaData::read_from_buffered(Cursor::new(bytes), false);
     let headers = described.map_err(|error| error.to_string())?.headers;
     headers.iter().try_for_each(|header| too_many(header.layer_size.width(), header.layer_size.height()))?;
-    let image = read()
-        .no_deep_data()
-        .largest_resolution_level()
-        .rgba_channels(
-            |size, _| -> Pixels { (size.width(), vec![[0.0; 4]; size.area()]) },
-            |(width, texels): &mut Pixels, at, (r, g, b, a): (f32, f32, f32, f32)| {
-                texels[at.y() * *width + at.x()] = [r, g, b, a];
-            },
-        )
-        .first_valid_layer()
-        .all_attributes()
-        .non_parallel()
-        .from_buffered(Cursor::new(bytes))
-        .map_err(|error| error.to_string())?;
-    let (width, texels) = image.layer_data.channel_data.pixels;
-    Ok(Rgba { width, texels })
+    let (layers, bytes) = (read().no_deep_data().largest_resolution_level(), Cursor::new(bytes));
+    let floats = if alpha {
+        let put = |image: &mut Floats, at, (r, g, b, a): (f32, f32, f32, f32)| image.put(at, [r, g, b, a]);
+        let layers = layers.rgba_channels(|size, _| Floats::new(size, 4), put).first_valid_layer();
+        let image = layers.all_attributes().non_parallel().from_buffered(bytes);
+        image.map(|image| image.layer_data.channel_data.pixels)
+    } else {
+        let put = |image: &mut Floats, at, (r, g, b): (f32, f32, f32)| image.put(at, [r, g, b]);
+        let layers = layers.rgb_channels(|size, _| Floats::new(size, 3), put).first_valid_layer();
+        let image = layers.all_attributes().non_parallel().from_buffered(bytes);
+        image.map(|image| image.layer_data.channel_data.pixels)
+    };
+    floats.map_err(|error| error.to_string())
 }
 
-fn read_radiance(bytes: &[u8]) -> Result<Rgba, String> {
-    let image = decode(bytes, ImageFormat::Hdr)?.into_rgba32f();
-    Ok(Rgba { width: image.width() as usize, texels: image.pixels().map(|pixel| pixel.0).collect() })
+fn read_radiance(bytes: &[u8]) -> Result<Floats, String> {
+    let image = decode(bytes, ImageFormat::Hdr)?.into_rgb32f();
+    Ok(Floats { width: image.width() as usize, channels: 3, numbers: image.into_raw() })
 }
 
 /// The numbers of an image of at most `MOST_TEXELS`.

@@ -12,13 +12,16 @@ mod compile_light;
 mod compile_material;
 mod compile_mesh;
 mod compile_parts;
+mod compile_relief;
 mod compile_shape;
 mod compile_view;
 mod contact;
 mod description;
+mod description_relief;
 mod description_view;
 mod image_file;
 mod index;
+mod relief;
 mod source;
 mod spectrum_file;
 mod structure;
@@ -30,6 +33,7 @@ pub use camera::{Camera, Lens, Projection};
 pub use camera_sees::Seen;
 pub use compile::compile;
 pub use description::{CausticsText, Description, ModelText, RenderText};
+pub use relief::{Relief, ReliefKind};
 pub use source::Source;
 
 use std::cell::Cell;
@@ -119,12 +123,24 @@ pub struct Object {
     pub light: Option<LightId>,
     /// Where its points lie in images, if its material varies over the surface.
     pub coordinates: Option<Arc<Coordinates>>,
+    /// The image that bends its normal, if there is one.
+    pub relief: Option<Arc<Relief>>,
 }
 
 impl Object {
     /// Whether it is shaded by other normals than its own.
     pub fn is_bent(&self) -> bool {
-        self.shape.has_vertex_normals()
+        self.relief.is_some() || self.shape.has_vertex_normals()
+    }
+
+    /// The surface at a crossing, with the normal that its relief gives it.
+    #[inline]
+    pub fn point(&self, ray: &Ray, crossing: &Crossing) -> SurfacePoint {
+        let point = self.shape.point(ray, crossing);
+        match &self.relief {
+            None => point,
+            Some(relief) => SurfacePoint { shading: relief.normal(&self.shape, crossing, &point), ..point },
+        }
     }
 
     /// Where a point of its surface lies in images on it; (0, 0) if there are none.

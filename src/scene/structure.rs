@@ -126,6 +126,7 @@ pub(super) fn listed(document: &DeTable) -> Option<Mistake> {
     find_in(document, &mut Vec::new(), &|path, value, _| {
         let is_table = match path {
             ["material", _, _] | ["object", "shape", _] | ["object", "transform" | "instances", "rotate"] => true,
+            ["object", "normal_map" | "bump_map"] => true,
             ["light", "environment" | "point" | "sun"] => true,
             ["camera", "lens"] | ["film", "filter", _] => true,
             [.., key] => matches!(*key, "sellmeier" | "abbe"),

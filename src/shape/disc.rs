@@ -37,6 +37,11 @@ impl Disc {
         self.plane.intersect(ray, t_max).filter(|c| c.uv[0] * c.uv[0] + c.uv[1] * c.uv[1] < 1.0)
     }
 
+    /// The plane it lies in, whose unit circle it fills.
+    pub(super) fn plane(&self) -> &AffinePlane {
+        &self.plane
+    }
+
     pub(super) fn point(&self, uv: [f64; 2]) -> SurfacePoint {
         self.plane.point(uv)
     }

@@ -99,6 +99,11 @@ impl Instance {
         self.mesh.triangle(part).transformed(&self.to_world)
     }
 
+    pub(super) fn tangents(&self, part: u32) -> Option<[DVec3; 2]> {
+        let own = self.mesh.tangents(part)?;
+        Some(own.map(|tangent| self.to_world.vector(tangent)))
+    }
+
     fn triangles(&self) -> impl Iterator<Item = Triangle> + '_ {
         (0..self.mesh.len() as u32).map(|part| self.triangle(part))
     }

@@ -3,6 +3,7 @@ use std::sync::OnceLock;
 use super::bvh::GROUP;
 use super::edges::open_edges;
 use super::packed::Packed;
+use super::tangents::over_triangle;
 use super::{Attributes, Bvh, Crossing, SurfacePoint, Triangle};
 use crate::math::{Bounds, DVec3, Ray, Transform};
 
@@ -140,6 +141,13 @@ impl Mesh {
     /// Texture coordinates at affine coordinates of a triangle; none if the mesh has none.
     pub fn coordinates(&self, part: u32, uv: [f64; 2]) -> Option<[f64; 2]> {
         self.attributes.coordinates(self.triangles[part as usize], uv)
+    }
+
+    /// The derivatives of the points of a triangle by its texture coordinates.
+    pub(super) fn tangents(&self, part: u32) -> Option<[DVec3; 2]> {
+        let corners = self.triangles[part as usize];
+        let at = |corner: u32| self.attributes.coordinates[corner as usize];
+        if self.has_coordinates() { over_triangle(self.corners(part), corners.map(at)) } else { None }
     }
 
     pub(super) fn vertices(&self) -> impl Iterator<Item = DVec3> + '_ {

@@ -28,6 +28,7 @@ mod pool;
 mod quad;
 mod sides;
 mod sphere;
+mod tangents;
 mod triangle;
 
 pub use aim::{Density, Sighting};
@@ -103,7 +104,7 @@ pub struct SurfacePoint {
     pub error: DVec3,
     /// Geometric unit normal on the front side.
     pub normal: DVec3,
-    /// Unit normal by which materials scatter, on the front side: `normal` but on smooth meshes.
+    /// Unit normal by which materials scatter, on the front side: `normal` but on smooth meshes and under maps of relief.
     pub shading: DVec3,
 }
 

@@ -23,6 +23,11 @@ impl Quad {
         self.plane.intersect(ray, t_max).filter(|c| c.uv[0].abs() <= 1.0 && c.uv[1].abs() <= 1.0)
     }
 
+    /// The plane it lies in, whose unit square it is.
+    pub(super) fn plane(&self) -> &AffinePlane {
+        &self.plane
+    }
+
     pub(super) fn point(&self, uv: [f64; 2]) -> SurfacePoint {
         self.plane.point(uv)
     }

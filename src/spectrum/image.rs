@@ -1,6 +1,6 @@
 use super::color::decode_srgb;
 
-/// An image of linear Rec.709 colors or of single numbers, none of them negative.
+/// An image of linear Rec.709 colors or of single numbers, none of them negative; or of heights or directions.
 #[derive(Clone, Debug)]
 pub struct Image {
     width: usize,
@@ -35,7 +35,17 @@ impl Image {
         Self::new(width, channels, length, Texels::Bytes(bytes, Box::new(std::array::from_fn(value))))
     }
 
-    /// An image of linear numbers, finite and not negative.
+    /// An image of 8 bits a number, which stand for -128/127 to 1 so that 128 is exactly 0: the directions of a normal map.
+    ///
+    /// # Panics
+    /// As [`Image::of_bytes`].
+    pub fn of_signed_bytes(width: usize, channels: usize, bytes: Vec<u8>) -> Self {
+        let value = |byte: usize| ((byte as f64 - 128.0) / 127.0) as f32;
+        let length = bytes.len();
+        Self::new(width, channels, length, Texels::Bytes(bytes, Box::new(std::array::from_fn(value))))
+    }
+
+    /// An image of linear numbers: finite, and not negative where they are light.
     ///
     /// # Panics
     /// As [`Image::of_bytes`].

@@ -36,14 +36,28 @@ impl<const N: usize> Draw<N> {
         }
     }
 
+    /// A color, of numbers as large as they may be, as a factor on white light; the table is that of an image.
+    pub fn tint(&self, table: &Table, color: [f32; 3]) -> Lanes<N> {
+        match table.pattern().map(|pattern| &pattern.kind) {
+            Some(PatternKind::Image(_, palette)) => self.tint_by(palette.as_ref(), color, false),
+            _ => panic!("only images have colors"),
+        }
+    }
+
+    #[inline]
+    fn tint_by(&self, palette: Option<&Palette>, color: [f32; 3], bounded: bool) -> Lanes<N> {
+        match palette {
+            Some(palette) => palette.filter(self, color, bounded),
+            None => Lanes::from_fn(|i| color[i.min(2)]),
+        }
+    }
+
     #[inline(never)]
     fn read_pattern(&self, table: &Table, pattern: &Pattern, uv: [f64; 2]) -> Lanes<N> {
         let filter = match &pattern.kind {
-            PatternKind::Image(texture, None) => {
-                let color = texture.color(uv);
-                Lanes::from_fn(|i| color[i.min(2)])
+            PatternKind::Image(texture, palette) => {
+                self.tint_by(palette.as_ref(), texture.color(uv), pattern.most == 1.0)
             }
-            PatternKind::Image(texture, Some(palette)) => palette.filter(self, texture.color(uv), pattern.most == 1.0),
             PatternKind::Checker { cells, repeat } => self.read_at(&cells[square(*repeat, uv)], uv),
         };
         let product = self.read(table) * filter;

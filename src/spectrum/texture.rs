@@ -128,7 +128,7 @@ impl Texture {
 
 impl Wrap {
     /// Where in the image a place lies, 0 to 1.
-    fn place(self, x: f64) -> f64 {
+    pub(super) fn place(self, x: f64) -> f64 {
         match self {
             Self::Repeat => x - x.floor(),
             Self::Clamp => x.clamp(0.0, 1.0),
@@ -140,7 +140,7 @@ impl Wrap {
     }
 
     /// The texel at a position, which may lie one beyond either end.
-    fn entry(self, at: isize, count: usize) -> usize {
+    pub(super) fn entry(self, at: isize, count: usize) -> usize {
         match self {
             Self::Repeat => at.rem_euclid(count as isize) as usize,
             Self::Clamp | Self::Mirror => at.clamp(0, count as isize - 1) as usize,
@@ -154,8 +154,11 @@ pub(super) fn square(repeat: [f64; 2], uv: [f64; 2]) -> usize {
     usize::from(x != y)
 }
 
-/// A number that stands for both axes, or two numbers.
-pub(super) fn number_or_two<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<[f64; 2]>, D::Error> {
+/// Reads a number that stands for both axes, or two numbers.
+///
+/// # Errors
+/// If it is neither.
+pub fn number_or_two<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<[f64; 2]>, D::Error> {
     struct Two;
     impl<'de> serde::de::Visitor<'de> for Two {
         type Value = [f64; 2];

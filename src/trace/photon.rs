@@ -73,7 +73,7 @@ impl<const N: usize> Tracer<'_, N> {
             self.tally.rays += 1;
             let Some(hit) = world.scene.intersect(&path.ray) else { continue };
             path.absorb(world, draw, hit.crossing.t);
-            let point = world.scene.objects[hit.object as usize].shape.point(&path.ray, &hit.crossing);
+            let point = world.scene.objects[hit.object as usize].point(&path.ray, &hit.crossing);
             if let Some(passing) = holes::passing(world, draw, &path, &hit, &point) {
                 let (throughput, key) = (path.throughput.through(passing), path.key.child(BEYOND));
                 let all = throughput == path.throughput;

@@ -1,4 +1,4 @@
-//! Surfaces that look smoother than they are: materials are asked with the shading normal, and no light is lost where its
+//! Surfaces that look smoother or rougher than they are: materials are asked with the shading normal, and no light is lost where its
 //! directions and those of the triangle disagree.
 //!
 //! Two things make up for the difference (Veach 1997, *Robust Monte Carlo Methods for Light Transport Simulation*, section

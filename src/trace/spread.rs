@@ -96,7 +96,7 @@ fn follow(world: &World, draw: &Draw<4>, lane: usize, ray: Ray, media: Media, sa
         end.direction = ray.direction;
         let Some(hit) = world.scene.intersect(&ray) else { return end };
         let object = &world.scene.objects[hit.object as usize];
-        let point = object.shape.point(&ray, &hit.crossing);
+        let point = object.point(&ray, &hit.crossing);
         if number == 0 {
             end.first_step = hit.crossing.t;
         }

@@ -69,7 +69,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
                 continue;
             };
             path.absorb(self.world, draw, hit.crossing.t);
-            let point = self.world.scene.objects[hit.object as usize].shape.point(&path.ray, &hit.crossing);
+            let point = self.world.scene.objects[hit.object as usize].point(&path.ray, &hit.crossing);
             let passing = holes::passing(self.world, draw, &path, &hit, &point);
             if let Some(passing) = passing
                 && path.throughput.through(passing) == path.throughput
