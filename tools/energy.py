@@ -36,7 +36,8 @@ class Measurement(NamedTuple):
 def measure(row):
     """Pixels of both seeds, and from their differences an error that holds whatever the pixels' own means are."""
     pairs = [[render.render(toml_file(view), seed=seed) for seed in (1, 2)] for view in row.views]
-    covered = [np.minimum(*(image.channels["A"] for image in pair)) == 1 for pair in pairs]
+    shares = [np.minimum(*(image.channels["A"] for image in pair)) for pair in pairs]
+    covered = [share > 0 if row.holes else share == 1 for share in shares]
     views = list(zip(pairs, covered, strict=True))
     first, second = (np.concatenate([pair[i].rgb[rows] for pair, rows in views]) for i in (0, 1))
     pixels = (first + second) / 2

@@ -22,6 +22,7 @@ class Row(NamedTuple):
     views: list  # scenes; their pixels count together
     expected: np.ndarray  # per band, or one number
     every_pixel: bool = True  # each pixel has the expected value, not only their mean
+    holes: bool = False  # pixels count that are covered in part, too
 
 
 def rgb(values):
@@ -115,7 +116,7 @@ def lossless_mix(name, body, size):
         "net": {"mask": {"material": "both", "opacity": 0.6}},
     }
     view = scene(materials, [("net", body)], [WHITE_SKY], eye=(1.7, 1.3, 3.1), fov=38, size=size, samples=256)
-    return Row(f"mask over a mix of white and mirror, {name} under a sky of 1", [view], 1.0, every_pixel=False)
+    return Row(f"mask over a mix of white and mirror, {name} under a sky of 1", [view], 1.0, every_pixel=False, holes=True)
 
 
 def diffuse(name, body, size):

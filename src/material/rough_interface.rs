@@ -10,9 +10,12 @@ use crate::math::DVec3;
 /// block, as tables by the cosine and by the ratio of the indices.
 ///
 /// Walter et al. 2007, *Microfacet Models for Refraction through Rough Surfaces*: a facet reflects and refracts by Fresnel's
-/// equations; reflected light is masked as correlated by height, refracted light on each side by itself. Light that meets
-/// a second facet is given back after Kulla & Conty 2017, *Revisiting Physically Based Shading at Imageworks*: see
-/// [`Sides`]. One row of the tables is computed when a ratio near it is first asked for.
+/// equations; reflected light is masked as correlated by height, refracted light on each side by itself. What is blocked
+/// beyond the surface meets the boundary again, from the other side: as much as crosses both there and back from all around,
+/// T T', goes on as if it were not blocked ([`Facets::passed`]), for facets turn it there as little as here. So glass in a
+/// liquid of nearly its index is as invisible rough as smooth. All other light that meets a second facet is given back
+/// after Kulla & Conty 2017, *Revisiting Physically Based Shading at Imageworks*: see [`Sides`]. One row of the tables is
+/// computed when a ratio near it is first asked for.
 #[derive(Clone, Debug)]
 pub struct RoughInterface {
     facets: Facets,

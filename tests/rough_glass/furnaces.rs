@@ -16,14 +16,14 @@ fn scenes() -> Vec<(String, String, u32)> {
     let glass = |index: &str, roughness: f64| format!("dielectric = {{ index = {index}, roughness = {roughness:?} }}");
     let mut scenes = Vec::new();
     for (index, roughness, samples) in
-        [("1.5", 0.1, 16), ("1.5", 0.4, 32), ("1.5", 1.0, 128), ("2.4", 0.6, 128), ("1.1", 0.5, 32)]
+        [("1.5", 0.1, 16), ("1.5", 0.4, 32), ("1.5", 1.0, 64), ("2.4", 0.6, 128), ("1.1", 0.5, 32)]
     {
         let ball = body("glass", &glass(index, roughness), &[BALL]);
         scenes.push((format!("ball of {index}, roughness {roughness}"), ball, samples));
     }
     for roughness in [0.15, 0.7] {
         let ball = body("glass", &glass("{ rgb = [1.3, 1.5, 1.8] }", roughness), &[BALL]);
-        scenes.push((format!("dispersive ball, roughness {roughness}"), ball, 128));
+        scenes.push((format!("dispersive ball, roughness {roughness}"), ball, 64));
     }
     let pool = body("water", WATER, &["cube = { center = [0, 0, 0], size = 2.4 }"]);
     let ball = body("glass", &glass("1.6", 0.5), &[BALL]) + &pool;

@@ -44,7 +44,7 @@ fn aiming_at_a_lamp_behind_inside_or_before_rough_glass_and_meeting_it_show_the_
     ];
     for (name, glass, shapes) in &cases {
         let [aimed_at, met] = lamps(shapes);
-        let by_chance = images(&picture(&(glass.clone() + &met), 600), SINGLE_PATH, 4);
+        let by_chance = images(&picture(&(glass.clone() + &met), 400), SINGLE_PATH, 4);
         let by_chance = Mean::over_seeds(by_chance.iter().map(|(film, _)| film));
         for transport in [SINGLE_PATH, SPLITTING] {
             let aimed = images(&picture(&(glass.clone() + &aimed_at), 64), transport, 4);

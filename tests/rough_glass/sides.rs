@@ -8,10 +8,10 @@ use abbe::math::DVec3;
 use crate::chi_squared;
 use crate::support::random::Random;
 
-const ROUGHNESSES: [f64; 5] = [0.02, 0.1, 0.3, 0.8, 1.0];
+const ROUGHNESSES: [f64; 4] = [0.02, 0.3, 0.8, 1.0];
 const COSINES: [f64; 6] = [1e-6, 0.001, 0.05, 0.3, 0.66, 1.0];
 /// From outside and from inside, next to each other and far apart; `tests/white_furnace.rs` has others.
-const INDICES: [f64; 4] = [1.001, 1.05, 1.33, 2.2];
+const INDICES: [f64; 3] = [1.001, 1.05, 2.2];
 /// With 2^14, the furnaces of nearly equal indices seen along the surface are off by 1 %.
 const DRAWS: u32 = 1 << 17;
 
@@ -92,9 +92,36 @@ fn the_closer_two_indices_the_less_a_rough_boundary_turns_any_light() {
 }
 
 #[test]
+fn what_facets_refract_once_is_what_mitsuba_refracts() {
+    // The indices, alpha, the viewer's cosine at the azimuth 0.3, the direction below the surface, and the BSDF times cosine
+    // that `roughdielectric` of Mitsuba 3.9.1 has there: GGX with masking on each side by itself, in f32.
+    let rows = [
+        ([1.0, 1.5], 0.1, 0.8, [-0.351531973, -0.118821055], 28.6894),
+        ([1.0, 1.5], 0.1, 0.2, [-0.559467540, -0.208458706], 1.57772),
+        ([1.5, 1.0], 0.1, 0.8, [-0.895268516, -0.254047558], 18.5557),
+        ([1.5, 1.0], 0.1, 0.2, [-0.629682660, -0.747473661], 0.00957135),
+        ([1.0, 1.1], 0.1, 0.8, [-0.512082836, -0.161331022], 573.594),
+        ([1.1, 1.0], 0.1, 0.8, [-0.678723392, -0.193613442], 6.75358),
+        ([1.0, 1.5], 0.7, 0.8, [-0.292957042, -0.147944487], 0.936854),
+        ([1.0, 1.5], 0.7, 0.2, [-0.657888682, -0.326477929], 0.314159),
+        ([1.5, 1.0], 0.7, 0.8, [-0.837814358, -0.034982887], 0.979944),
+        ([1.5, 1.0], 0.7, 0.2, [-0.988028272, -0.004622800], 0.454703),
+        ([1.0, 1.1], 0.7, 0.2, [-0.788993366, -0.506995265], 0.140634),
+        ([1.1, 1.0], 0.7, 0.2, [-0.980924027, -0.187857316], 0.445115),
+    ];
+    for (indices, alpha, cos, [x, y], expected) in rows {
+        let interface = RoughInterface::new(alpha);
+        let mut once = interface.between(indices[0], indices[1]);
+        (once.crossing, once.straight) = ([0.0; 2], 0.0);
+        let value = once.crossed(at(cos, 0.3), DVec3::new(x, y, -(1.0 - x * x - y * y).sqrt()), None).value;
+        assert!((value / expected - 1.0).abs() < 3e-5, "{indices:?}, alpha {alpha}, cos {cos}: {value} for {expected}");
+    }
+}
+
+#[test]
 fn light_goes_the_same_way_back_through_and_off_a_rough_boundary() {
     let mut random = Random::new(9);
-    for roughness in [0.05, 0.4, 1.0] {
+    for roughness in [0.2, 1.0] {
         let interface = RoughInterface::new(roughness * roughness);
         for [n1, n2] in [[1.0, 1.5], [1.33, 1.2], [2.4, 1.0]] {
             let (there, back) = (interface.between(n1, n2), interface.between(n2, n1));
@@ -179,7 +206,7 @@ fn directions_on_both_sides_follow_their_density_and_the_rest_leads_nowhere() {
 fn no_draw_is_not_a_number_along_the_surface_and_between_nearly_equal_indices() {
     const MOST: f64 = 1.0 - 1.0 / (1 << 24) as f64;
     let ends = [0.0, f64::MIN_POSITIVE, 0.25, 0.5, MOST];
-    for roughness in [0.01, 0.5, 1.0] {
+    for roughness in [0.01, 1.0] {
         let interface = RoughInterface::new(roughness * roughness);
         for [n1, n2] in [[1.0, 1.0f64.next_up()], [1.5, 1.5 + 1e-9], [1.0, 10.0], [10.0, 1.0], [1.5, 1.33]] {
             let sides = interface.between(n1, n2);
