@@ -89,7 +89,8 @@ impl Environment<Table> {
     }
 }
 
-/// A color whose numbers are sums, each beginning with the next smaller one: so they are rounded in all three bands.
+/// A color made up as white, what two channels have beyond it, and what one has beyond those: the bits of images in three
+/// bands are those of such sums.
 fn summed(color: [f32; 3]) -> [f32; 3] {
     let mut order = [0, 1, 2];
     order.sort_by(|&a, &b| color[a].total_cmp(&color[b]));

@@ -45,7 +45,7 @@ impl Compiler<'_> {
             (None, Some(map)) => {
                 let at = at.key("bump_map");
                 let depth = map.depth;
-                if depth.is_nan() || depth.abs() > MAX_LENGTH {
+                if !(-MAX_LENGTH..=MAX_LENGTH).contains(&depth) {
                     let message = format!("the depth of a bump map is a length up to {MAX_LENGTH:e}, not {depth}");
                     return Err(self.source.mistake_at(&at.key("depth"), message, None));
                 }

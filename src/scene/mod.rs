@@ -136,11 +136,11 @@ impl Object {
     /// The surface at a crossing, with the normal that its relief gives it.
     #[inline]
     pub fn point(&self, ray: &Ray, crossing: &Crossing) -> SurfacePoint {
-        let point = self.shape.point(ray, crossing);
-        match &self.relief {
-            None => point,
-            Some(relief) => SurfacePoint { shading: relief.normal(&self.shape, crossing, &point), ..point },
+        let mut point = self.shape.point(ray, crossing);
+        if let Some(relief) = &self.relief {
+            point.shading = relief.normal(&self.shape, crossing, &point);
         }
+        point
     }
 
     /// Where a point of its surface lies in images on it; (0, 0) if there are none.
