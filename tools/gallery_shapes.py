@@ -208,3 +208,14 @@ def sweep(width=30, front=14, back=-4, radius=3, height=14):
     normals = np.array([(0, np.cos(a), np.sin(a)) for _, _, a in outline for _ in range(2)])
     faces = [face for n in range(0, len(points) - 2, 2) for face in ((n, n + 1, n + 2), (n + 2, n + 1, n + 3))]
     return points, faces, normals
+
+
+def landscape():
+    """Heights of a lake among mountains, 1025 x 1025: the mountains rise to the north (-z), the lake lies before them."""
+    heights = ridges()
+    size = heights.shape[0]
+    x, z = np.meshgrid(np.linspace(-1, 1, size), np.linspace(-1, 1, size))
+    z = z + 0.12 * np.sin(3 * x + 1)
+    rise = np.clip((0.42 - z) / 1.1, 0, 1)
+    sides = np.clip(np.abs(x + 0.1) - 0.32, 0, 1) * 1.1
+    return heights * (0.35 + 2.8 * rise**1.3 + sides) + 0.55 * rise
