@@ -9,6 +9,7 @@ import tomllib
 from pathlib import Path
 
 import check_exr
+import gallery
 import numpy as np
 import pytest
 import render
@@ -19,6 +20,8 @@ SCENES = sorted(render.SCENES.rglob("*.toml"))
 @pytest.fixture(scope="module", params=SCENES, ids=[str(path.relative_to(render.SCENES)) for path in SCENES])
 def rendered(request, tmp_path_factory):
     """A scene file as a dictionary, and the EXR of one sample per pixel."""
+    if gallery.needs_making(request.param.relative_to(render.SCENES).with_suffix("")):
+        gallery.make_landscape()
     exr = tmp_path_factory.mktemp("scenes") / "scene.exr"
     render.write(request.param, exr, samples=1, timeout=300)
     return tomllib.loads(request.param.read_text("utf-8")), exr

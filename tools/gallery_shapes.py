@@ -1,0 +1,221 @@
+"""The meshes of the gallery: everything in scenes/meshes, and the landscape, which is too large to keep.
+
+Points are numpy arrays n x 3, faces lists of indices, counterclockwise seen from outside. Heights go along +y.
+"""
+
+import itertools
+
+import numpy as np
+
+
+def write_ply(path, points, faces, normals=None, uv=None):
+    """A binary PLY file of triangles."""
+    columns = [("x y z", points), ("nx ny nz", normals), ("s t", uv)]
+    columns = [(names.split(), np.asarray(values)) for names, values in columns if values is not None]
+    header = ["ply", "format binary_little_endian 1.0", f"element vertex {len(points)}"]
+    header += [f"property float {name}" for names, _ in columns for name in names]
+    header += [f"element face {len(faces)}", "property list uchar int vertex_indices", "end_header"]
+    corners = np.empty(len(faces), [("count", "u1"), ("corners", "<i4", 3)])
+    corners["count"], corners["corners"] = 3, faces
+    vertices = np.concatenate([values for _, values in columns], axis=1).astype("<f4")
+    path.parent.mkdir(exist_ok=True)
+    path.write_bytes("\n".join([*header, ""]).encode() + vertices.tobytes() + corners.tobytes())
+
+
+def convex(normals, offsets):
+    """The polyhedron normals . p <= offsets: points and triangles, each face a fan. Planes pass through at most a few corners."""
+    triples = np.array(list(itertools.combinations(range(len(normals)), 3)))
+    determinants = np.linalg.det(normals[triples])
+    triples = triples[np.abs(determinants) > 1e-9]
+    corners = np.linalg.solve(normals[triples], offsets[triples][..., None])[..., 0]
+    corners = corners[np.all(corners @ normals.T <= offsets + 1e-9, axis=1)]
+    corners = np.unique(np.round(corners, 8) + 0.0, axis=0)
+    faces = []
+    for normal, offset in zip(normals, offsets):
+        (on,) = np.nonzero(np.abs(corners @ normal - offset) < 1e-6)
+        if len(on) < 3:
+            continue
+        u = np.cross(normal, [0.3, 0.5, 0.8])
+        v = np.cross(normal, u)
+        around = corners[on] - corners[on].mean(axis=0)
+        on = on[np.argsort(np.arctan2(around @ v, around @ u))]
+        faces += [(on[0], on[i], on[i + 1]) for i in range(1, len(on) - 1)]
+    return corners, faces
+
+
+def brilliant(table=0.53, crown=34.5, pavilion=40.75, star=0.5, lower=0.77, girdle=0.05, sides=96):
+    """A round brilliant of 57 facets, radius 1, its axis +y, the middle of its girdle in y = 0.
+
+    Proportions of Marcel Tolkowsky, Diamond Design (1919): table, as a share of the diameter, crown and pavilion angle in
+    degrees. Star facets reach `star` of the way to the girdle, lower halves `lower` of the way to the culet."""
+    crown, pavilion = np.tan(np.radians([crown, pavilion]))
+    between = np.cos(np.pi / 8)
+    half = girdle / 2
+
+    def at(radius, y, degrees):
+        angle = np.radians(degrees)
+        return np.array([radius * np.cos(angle), y, radius * np.sin(angle)])
+
+    top = half + (1 - table) * crown
+    tip = table * between + star * (1 - table * between)
+    tip = (tip, half + (1 - tip * between) * crown)
+    deep = (1 - lower, -half - (1 - (1 - lower) * between) * pavilion)
+    planes = [(at(0, top, 0), at(1, top, 0), at(1, top, 90))]
+    for k in range(8):
+        a, b, c = 45 * k, 45 * k + 22.5, 45 * k + 45
+        planes.append((at(1, half, a), at(table, top, a), at(1, half, a) + at(1, 0, a + 90)))
+        planes.append((at(table, top, a), at(table, top, c), at(*tip, b)))
+        planes.append((at(1, -half, a), at(0, -half - pavilion, a), at(1, -half, a) + at(1, 0, a + 90)))
+        for corner in (a, c):
+            planes.append((at(*tip, b), at(1, half, corner), at(1, half, b)))
+            planes.append((at(*deep, b), at(1, -half, corner), at(1, -half, b)))
+    normals = [np.cross(q - p, r - p) for p, q, r in planes] + [at(1, 0, 360 * k / sides) for k in range(sides)]
+    through = [p for p, _, _ in planes] + [at(1, 0, 360 * k / sides) for k in range(sides)]
+    normals = np.array([normal / np.linalg.norm(normal) for normal in normals])
+    offsets = np.einsum("ij,ij->i", normals, through)
+    normals[offsets < 0] *= -1
+    return convex(normals, np.abs(offsets))
+
+
+def lathe(profile, segments=96):
+    """A surface of revolution about y with smooth normals. `profile` is a list of (radius, y), from the axis to the axis or
+    closed, the outside at its right hand."""
+    profile = np.array(profile, float)
+    closed = np.allclose(profile[0], profile[-1])
+    steps = np.diff(profile, axis=0)
+    sides = np.stack([steps[:, 1], -steps[:, 0]], axis=1) / np.linalg.norm(steps, axis=1)[:, None]
+    before, after = np.vstack([sides[-1:] if closed else [[0, -1]], sides]), np.vstack([sides, sides[:1] if closed else [[0, 1]]])
+    slopes = before + after
+    if not closed:
+        slopes[0], slopes[-1] = [0, np.sign(slopes[0, 1])], [0, np.sign(slopes[-1, 1])]
+    slopes /= np.linalg.norm(slopes, axis=1)[:, None]
+    angles = np.arange(segments) * 2 * np.pi / segments
+    ring = np.stack([np.cos(angles), np.ones(segments), np.sin(angles)], axis=1)
+    points, normals, first = [], [], []
+    for (radius, y), (out, up) in zip(profile, slopes):
+        first.append(len(points))
+        copies = ring if radius > 0 else ring[:1]
+        points += list(copies * [radius, y, radius])
+        normals += list(copies * [out, up, out])
+    if closed:
+        first[-1] = first[0]
+        points, normals = points[:-segments], normals[:-segments]
+    faces = []
+    for i in range(len(profile) - 1):
+        here = [first[i] + (k % segments if profile[i, 0] > 0 else 0) for k in range(segments + 1)]
+        there = [first[i + 1] + (k % segments if profile[i + 1, 0] > 0 else 0) for k in range(segments + 1)]
+        for k in range(segments):
+            if profile[i, 0] > 0:
+                faces.append((here[k], there[k], here[k + 1]))
+            if profile[i + 1, 0] > 0:
+                faces.append((here[k + 1], there[k], there[k + 1]))
+    return np.array(points), faces, np.array(normals)
+
+
+def arc(center, radius, start, end, steps=8):
+    """Points of a circle in a profile, from `start` to `end` degrees, counterclockwise if `end` is larger."""
+    angles = np.radians(np.linspace(start, end, steps))
+    return [(center[0] + radius * np.cos(a), center[1] + radius * np.sin(a)) for a in angles]
+
+
+def lens(front, back, thickness, radius, steps=24):
+    """A lens about y between two spheres of radii `front` (top, convex if positive) and `back` (bottom), `thickness` on the
+    axis and its middle in the origin; its edge is round with the radius of what is left there."""
+
+    def cap(r, way):
+        heights = [*np.linspace(0, radius - 0.004, steps), radius]
+        return [(h, way * (thickness / 2 - (np.sign(r) * (abs(r) - np.sqrt(r * r - h * h))))) for h in heights]
+
+    return cap(back, -1) + cap(front, 1)[::-1]
+
+
+def flint(back, thickness, radius, bottom, top, steps=24):
+    """What a crown of the bottom `bottom` lacks to an achromat: `thickness` of flint behind it on the axis, its back of radius
+    `back`; its top is flat and lies within the crown, at the height `top`."""
+    heights = np.array([*np.linspace(0, radius - 0.004, steps), radius])
+    return [(h, bottom - thickness + back - np.sqrt(back * back - h * h)) for h in heights] + [(radius, top), (radius - 0.004, top), (0, top)]
+
+
+def tumbler():
+    """A drinking glass: radius 0.38 at the foot to 0.46 at the rim, height 1.25, a wall of 0.035 and a thick bottom."""
+    outside = [(0, 0), (0.3, 0), *arc((0.34, 0.045), 0.045, -90, -4), *[(0.385 + 0.075 * t, 0.045 + 1.19 * t) for t in (0.3, 0.65, 0.98)]]
+    rim = arc((0.4425, 1.23), 0.0185, 0, 180, 9)
+    inside = [(0.349 + 0.075 * t, 0.045 + 1.19 * t) for t in (0.98, 0.65, 0.3)]
+    return outside + rim + inside + [*arc((0.305, 0.175), 0.05, 0, -90), (0.2, 0.118), (0, 0.115)]
+
+
+def water(level=0.86, overlap=0.012):
+    """What stands in the tumbler, reaching into its wall by `overlap`, with a meniscus."""
+    wall = lambda y: 0.349 + 0.075 * (y - 0.045) / 1.19 + overlap
+    bottom = [(0, 0.115 - overlap), (0.2, 0.118 - overlap), *arc((0.305, 0.175), 0.05 + overlap, -90, 0)]
+    rise = [(wall(level) - 0.06 * t, level + 0.022 * (1 - t) ** 3) for t in np.linspace(0.1, 1, 8)]
+    return bottom + [(wall(y), y) for y in (0.35, 0.6, level)] + rise + [(0, level)]
+
+
+def tube(radius=0.04, wall=0.006, length=1.9):
+    """A drinking straw along +y, with texture coordinates: round it and along it."""
+    outline = [(radius, 0), (radius, length), (radius - wall, length), (radius - wall, 0), (radius, 0)]
+    points, faces, uv, segments = [], [], [], 48
+    for (r0, y0), (r1, y1) in itertools.pairwise(outline):
+        for k in range(segments + 1):
+            a = 2 * np.pi * k / segments
+            for r, y in ((r0, y0), (r1, y1)):
+                points.append((r * np.cos(a), y, r * np.sin(a)))
+                uv.append((k / segments, y))
+            if k < segments:
+                n = len(points) - 2
+                faces += [(n, n + 1, n + 2), (n + 2, n + 1, n + 3)]
+    return np.array(points), faces, np.array(uv)
+
+
+def noise(size, cells, seed):
+    """Smooth noise of a few cells on a square of size x size, within -1 and 1."""
+    values = np.random.default_rng(seed).uniform(-1, 1, (cells + 2, cells + 2))
+    place = np.linspace(0, cells, size, endpoint=False)
+    i = place.astype(int)
+    f = place - i
+    f = f * f * f * (f * (6 * f - 15) + 10)
+    rows = values[i] * (1 - f)[:, None] + values[i + 1] * f[:, None]
+    return rows[:, i] * (1 - f) + rows[:, i + 1] * f
+
+
+def ridges(size=1025):
+    """Heights of mountains by ridged noise (Musgrave, in Texturing and Modeling, 1994): every octave is roughest on the crests."""
+    heights, weight, amplitude = np.zeros((size, size)), np.ones((size, size)), 1.0
+    for octave in range(9):
+        crest = (1 - np.abs(noise(size, 4 * 2**octave, 41 + octave))) ** 2
+        heights += amplitude * weight * crest
+        weight = np.clip(2.0 * crest * weight, 0, 1)
+        amplitude *= 0.5
+    return heights
+
+
+def sheet(heights, width, depth):
+    """A grid of heights as a mesh around the origin, with texture coordinates 0 to 1."""
+    rows, columns = heights.shape
+    s, t = np.meshgrid(np.linspace(0, 1, columns), np.linspace(0, 1, rows))
+    points = np.stack([(s - 0.5) * width, heights, (t - 0.5) * depth], axis=-1).reshape(-1, 3)
+    corner = (np.arange(rows - 1)[:, None] * columns + np.arange(columns - 1)).reshape(-1)
+    faces = np.concatenate([np.stack([corner, corner + columns, corner + 1], 1), np.stack([corner + 1, corner + columns, corner + columns + 1], 1)])
+    return points, faces, np.stack([s, 1 - t], axis=-1).reshape(-1, 2)
+
+
+def sweep(width=30, front=14, back=-4, radius=3, height=14):
+    """A studio's paper: a floor that bends up into a wall behind."""
+    bend = [(back - radius * np.sin(a), radius - radius * np.cos(a), a) for a in np.linspace(0, np.pi / 2, 25)]
+    outline = [(front, 0.0, 0.0), *bend, (back - radius, height, np.pi / 2)]
+    points = np.array([(x, y, z) for z, y, _ in outline for x in (-width / 2, width / 2)])
+    normals = np.array([(0, np.cos(a), np.sin(a)) for _, _, a in outline for _ in range(2)])
+    faces = [face for n in range(0, len(points) - 2, 2) for face in ((n, n + 1, n + 2), (n + 2, n + 1, n + 3))]
+    return points, faces, normals
+
+
+def landscape():
+    """Heights of a lake among mountains, 1025 x 1025: the mountains rise to the north (-z), the lake lies before them."""
+    heights = ridges()
+    size = heights.shape[0]
+    x, z = np.meshgrid(np.linspace(-1, 1, size), np.linspace(-1, 1, size))
+    z = z + 0.12 * np.sin(3 * x + 1)
+    rise = np.clip((0.42 - z) / 1.1, 0, 1)
+    sides = np.clip(np.abs(x + 0.1) - 0.32, 0, 1) * 1.1
+    return heights * (0.35 + 2.8 * rise**1.3 + sides) + 0.55 * rise

@@ -1,0 +1,92 @@
+"""The gallery shows every scene, and what its scripts make is what the repository holds.
+
+    pytest tools/tests/test_gallery.py
+"""
+
+from collections import Counter
+
+import gallery
+import gallery_shapes as shapes
+import numpy as np
+import pytest
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """A copy of scenes/ in which everything has been made anew."""
+    kept, copy = gallery.SCENES, tmp_path_factory.mktemp("gallery")
+    (copy / "large").mkdir()
+    (copy / "large/instances.toml").write_bytes((kept / "large/instances.toml").read_bytes())
+    gallery.SCENES = copy
+    try:
+        gallery.make()
+    finally:
+        gallery.SCENES = kept
+    return copy
+
+
+def test_the_page_lists_every_scene_with_its_first_line_and_picture():
+    page = (gallery.SCENES / "README.md").read_text("utf-8")
+    assert page == gallery.readme(), "run python tools/gallery.py write"
+    for name in gallery.scenes():
+        assert f"]({name}.toml)" in page and f"render --exr scenes/{name}.toml" in page
+        assert page.count(gallery.first_line(name)) == 2, name
+
+
+def test_every_scene_has_a_small_picture():
+    for name in gallery.scenes():
+        assert 0 < (gallery.SCENES / f"pictures/{name.split('/')[-1]}.png").stat().st_size <= 150_000, name
+
+
+def test_what_is_made_is_what_is_kept(made):
+    kept = [path for folder in ("meshes", "textures", "large") for path in (made / folder).glob("*")]
+    assert len(kept) >= 15
+    for path in kept:
+        if path.suffix in (".ply", ".toml"):
+            there = gallery.SCENES / path.relative_to(made)
+            assert there.read_bytes() == path.read_bytes(), f"{there}: run python tools/gallery.py make"
+
+
+def test_the_landscape_has_two_million_triangles(made):
+    head = (made / "generated/landscape.ply").open("rb").read(400).decode("ascii", "replace")
+    assert "element face 2097152" in head
+
+
+def edges(faces):
+    return Counter((face[i], face[(i + 1) % 3]) for face in faces for i in range(3))
+
+
+def lathed():
+    profiles = dict(gallery.make_lenses()) | {"tumbler": shapes.tumbler(), "water": shapes.water()}
+    return [(name, *shapes.lathe(profile, 24)[:2]) for name, profile in profiles.items()]
+
+
+BODIES = [("brilliant", *shapes.brilliant()), ("straw", *shapes.tube()[:2]), *lathed()]
+
+
+@pytest.mark.parametrize(("points", "faces"), [body[1:] for body in BODIES], ids=[body[0] for body in BODIES])
+def test_bodies_are_closed_and_face_outward(points, faces):
+    places = np.unique(np.round(points, 9), axis=0, return_inverse=True)[1].reshape(-1)
+    count = edges([[places[corner] for corner in face] for face in faces])
+    assert all(count[b, a] == number for (a, b), number in count.items())
+    a, b, c = (points[[face[i] for face in faces]] for i in range(3))
+    assert np.einsum("ij,ij->", a, np.cross(b, c)) > 0
+
+
+def test_the_brilliant_has_57_facets_and_a_round_girdle():
+    points, faces = shapes.brilliant()
+    a, b, c = (points[[face[i] for face in faces]] for i in range(3))
+    normals = np.cross(b - a, c - a)
+    normals /= np.linalg.norm(normals, axis=1)[:, None]
+    different = []
+    for normal in normals:
+        if not any(np.allclose(normal, other, atol=1e-3) for other in different):
+            different.append(normal)
+    facets = [normal for normal in different if abs(normal[1]) > 0.01]
+    crown = [normal for normal in facets if normal[1] > 0]
+    assert (len(facets), len(crown)) == (57, 33)
+    steep = np.degrees(np.arccos([abs(normal[1]) for normal in facets]))
+    for angle, number in ((0, 1), (34.5, 8), (40.75, 8)):
+        assert np.sum(np.abs(steep - angle) < 0.01) == number
+    flat = np.abs(points[:, 1] - points[:, 1].max()) < 1e-6
+    assert np.hypot(*points[flat][:, [0, 2]].T).max() == pytest.approx(0.53, abs=1e-6)
