@@ -27,10 +27,9 @@ ORDER = "gem lens prism water metals illuminants still_life large/instances larg
 
 HEAD = """# The gallery
 
-Written by `tools/gallery.py`. Times are processor time divided by two, for two cores, at the scene's own size and samples (where a
-picture shows fewer, in proportion); the plan's
-words are the first line of `render --plan`. `--samples 16` is enough for a quick look. Meshes and images come from `python tools/gallery.py make`;
-only those of the landscape have to be made before rendering.
+Written by `tools/gallery.py`. Times are processor time divided by two, for two cores, at the scene's own size and samples (in proportion,
+where a picture shows fewer); the plan's words are the first line of `render --plan`. `--samples 16` is enough for a quick look. Meshes and
+images come from `python tools/gallery.py make`; only those of the landscape have to be made before rendering.
 """
 
 

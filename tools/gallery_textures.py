@@ -11,7 +11,6 @@ def write_png(path, image):
     """An 8-bit PNG: height x width (gray), x 3 (color) or x 4 (with alpha), bytes or shares of 1."""
     pixels = image if image.dtype == np.uint8 else np.round(np.clip(image, 0, 1) * 255).astype(np.uint8)
     height, width = pixels.shape[:2]
-    kind = {2: 0, 3: 2, 4: 6}[pixels.ndim if pixels.ndim == 2 else pixels.shape[2] if pixels.shape[2] == 4 else 3]
     kind = 0 if pixels.ndim == 2 else {3: 2, 4: 6}[pixels.shape[2]]
     # Each row minus the one above it (filter 2) packs best for pictures and patterns alike.
     rows = pixels.reshape(height, -1)
@@ -52,7 +51,7 @@ def wood(size=256):
     fibre = noise(size, 96, 3)[:, :1] + 0.4 * noise(size, 40, 4)
     tone = 0.72 + 0.10 * grain + 0.06 * fibre + np.array([0.0, -0.09, 0.05, -0.04])[board]
     tone = np.where((cross * 4) % 1 < 0.02, 0.35, tone)
-    return np.round(tone[..., None] * [0.56, 0.38, 0.25] * 128) / 128 
+    return np.round(tone[..., None] * [0.56, 0.38, 0.25] * 128) / 128
 
 
 def chart(size=512):
