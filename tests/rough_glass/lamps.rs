@@ -63,7 +63,7 @@ fn aiming_at_a_lamp_behind_inside_or_before_rough_glass_and_meeting_it_show_the_
 fn fixed_lanes_and_heroes_show_the_same_lamp_behind_dispersive_rough_glass() {
     let [aimed_at, _] = lamps(&[LAMP]);
     for roughness in [0.1, 0.5] {
-        let text = picture(&(glass("\"N-SF11\"", roughness, "", &[PANE]) + &aimed_at), 64);
+        let text = picture(&(glass("\"N-SF11\"", roughness, "", &[PANE]) + &aimed_at), 32);
         let scene = scene(&text);
         let emission = Emission::new(scene.lights[0].emission(), scene.film.color_space);
         let bands = Basis::bands(scene.film.color_space, 12, &[]);

@@ -9,7 +9,7 @@ use crate::chi_squared;
 use crate::support::random::Random;
 
 const ROUGHNESSES: [f64; 4] = [0.02, 0.3, 0.8, 1.0];
-const COSINES: [f64; 6] = [1e-6, 0.001, 0.05, 0.3, 0.66, 1.0];
+const COSINES: [f64; 5] = [1e-6, 0.001, 0.05, 0.3, 1.0];
 /// From outside and from inside, next to each other and far apart; `tests/white_furnace.rs` has others.
 const INDICES: [f64; 3] = [1.001, 1.05, 2.2];
 /// With 2^14, the furnaces of nearly equal indices seen along the surface are off by 1 %.
