@@ -23,7 +23,7 @@ import numpy as np
 
 SCENES = Path(__file__).resolve().parent.parent / "scenes"
 MEASURED = SCENES / "pictures/measured.json"
-ORDER = "gem lens prism water metals illuminants still_life large/instances large/landscape cornell smallpt classic spheres".split()
+ORDER = "gem rainbow lens prism water metals illuminants still_life large/instances large/landscape cornell smallpt classic spheres".split()
 
 HEAD = """# The gallery
 
