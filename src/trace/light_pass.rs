@@ -35,7 +35,7 @@ const TOO_FEW: u64 = 4096;
 const ENOUGH: u64 = 1 << 16;
 
 /// Photons are followed like camera paths: in all branches while they carry much, then in one. Splitting at 0.05 took as much
-/// time for as much noise, never splitting 8 to 25 times as much (`benches/caustics.rs`).
+/// time for as much noise, never splitting 2 to 15 times as much (`benches/caustics.rs`).
 const PHOTONS: Transport = Transport::Random { split: 0.25, roulette: 0.05 };
 
 /// What the light pass found.

@@ -1,6 +1,6 @@
 //! Arithmetic on several numbers at once, with the widest instructions that the machine has.
 //!
-//! The only unsafe code of the crate is here: it tells the compiler that instructions are there. Each function does the
+//! Unsafe code here tells the compiler that instructions are there. Each function does the
 //! same operations in the same order in both versions, none of them fused, so that they answer the same bits.
 #![allow(unsafe_code)]
 
