@@ -87,6 +87,16 @@ impl Media {
         Some(Boundary { here: self.inside(world), beyond: crossed.inside(world), crossed })
     }
 
+    /// The same at a surface of any material, which may bound no medium; and whether the bodies around the ray fit to it.
+    pub(super) fn at_surface(&self, world: &World, material: MaterialId, enters: bool) -> (Boundary, bool) {
+        let here = self.inside(world);
+        let same = Boundary { here, beyond: here, crossed: *self };
+        if world.scene.materials[material as usize].material.medium().is_none() {
+            return (same, true);
+        }
+        self.boundary(world, material, enters).map_or((same, false), |boundary| (boundary, true))
+    }
+
     fn entered(mut self, material: MaterialId) -> Option<Self> {
         let len = self.len as usize;
         match self.entries[..len].iter_mut().find(|entry| entry.0 == material) {

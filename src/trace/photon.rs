@@ -2,7 +2,7 @@
 
 use super::emission::Emitted;
 use super::holes;
-use super::media::{self, Media};
+use super::media::{self, Boundary, Media};
 use super::path::{Leg, Path};
 use super::shading;
 use super::tracer::Tracer;
@@ -103,17 +103,12 @@ impl<const N: usize> Tracer<'_, N> {
         let world = self.world;
         let material = world.scene.material_of(hit.object);
         let front = point.normal.dot(path.ray.direction) < 0.0;
-        let (mut here, mut crossed) = (path.media.inside(world), path.media);
-        let mut beyond = here;
-        if material.medium().is_some() {
-            match path.media.boundary(world, world.scene.objects[hit.object as usize].material, front) {
-                Some(boundary) => (here, beyond, crossed) = (boundary.here, boundary.beyond, boundary.crossed),
-                None => self.tally.unmatched += 1,
-            }
-            if here == beyond {
-                let (ray, key) = (point.leave(path.ray.direction), path.key.child(0));
-                return Some(Path { ray, media: crossed, key, ..*path });
-            }
+        let (Boundary { here, beyond, crossed }, fits) =
+            path.media.at_surface(world, world.scene.objects[hit.object as usize].material, front);
+        self.tally.unmatched += u64::from(!fits);
+        if here == beyond && material.medium().is_some() {
+            let (ray, key) = (point.leave(path.ray.direction), path.key.child(0));
+            return Some(Path { ray, media: crossed, key, ..*path });
         }
         let [flat, normal] = shading::normals(point, -path.ray.direction);
         let arrival = Arrival {

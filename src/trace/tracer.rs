@@ -4,7 +4,7 @@ use std::cell::Cell;
 
 use super::direct::{Gathering, add, weight_of_meeting};
 use super::holes;
-use super::media;
+use super::media::{self, Boundary};
 use super::path::{Drawn, Leg, Path};
 use super::shading;
 use super::tally::Tally;
@@ -146,19 +146,13 @@ impl<'a, const N: usize> Tracer<'a, N> {
         let [normal, shading] = shading::normals(point, -path.ray.direction);
 
         // Find the media on both sides; a body hidden inside another of higher priority has no surface there.
-        let (mut here, mut crossed) = (path.media.inside(world), path.media);
-        let mut beyond = here;
-        if material.medium().is_some() {
-            match path.media.boundary(world, object.material, front) {
-                Some(boundary) => (here, beyond, crossed) = (boundary.here, boundary.beyond, boundary.crossed),
-                None => self.tally.unmatched += 1,
-            }
-            if here == beyond {
-                // No light was aimed at through this surface, so what the path meets beyond counts in full.
-                let (ray, key) = (point.leave(path.ray.direction), path.key.child(0));
-                let leg = path.leg.then(false, Some(world.is_photon_target(hit.object)));
-                return Some(Path { ray, media: crossed, key, drawn: None, leg, ..*path });
-            }
+        let (Boundary { here, beyond, crossed }, fits) = path.media.at_surface(world, object.material, front);
+        self.tally.unmatched += u64::from(!fits);
+        if here == beyond && material.medium().is_some() {
+            // No light was aimed at through this surface, so what the path meets beyond counts in full.
+            let (ray, key) = (point.leave(path.ray.direction), path.key.child(0));
+            let leg = path.leg.then(false, Some(world.is_photon_target(hit.object)));
+            return Some(Path { ray, media: crossed, key, drawn: None, leg, ..*path });
         }
         let arrival = Arrival {
             wo: -path.ray.direction,
