@@ -59,8 +59,9 @@ fn image(job: &Job, scene: &Scene<Curve>, exr: &Path, png: Option<&Path>) -> Res
     plan.because.iter().for_each(|line| messages::say(line));
     let world = World::new(scene, plan.method.clone());
     let window = scene.film.window();
-    let progress = progress::Progress::new(window.width, window.height);
-    let (film, report) = job.on_threads(|| render(&world, &|pixels| progress.advance(pixels)));
+    let progress =
+        progress::Progress::new(u64::from(window.width) * u64::from(window.height) * u64::from(world.method().samples));
+    let (film, report) = job.on_threads(|| render(&world, &|samples| progress.advance(samples)));
     progress.finish();
     write_exr(&film, &view(scene), &provenance(scene, &plan, report.non_finite), exr)?;
     if let Some(png) = png {

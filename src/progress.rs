@@ -9,7 +9,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 /// How far a render is.
 pub struct Progress {
     bar: Option<ProgressBar>,
-    pixels: u64,
+    samples: u64,
     done: AtomicU64,
     start: Instant,
 }
@@ -18,23 +18,23 @@ pub struct Progress {
 const QUIET: Duration = Duration::from_secs(5);
 
 impl Progress {
-    pub fn new(width: u32, height: u32) -> Self {
-        let pixels = u64::from(width) * u64::from(height);
+    /// Of a render of so many camera samples.
+    pub fn new(samples: u64) -> Self {
         let bar = std::io::stderr().is_terminal().then(|| {
             let style = ProgressStyle::with_template("{wide_bar} {percent:>3} %  {elapsed} passed, {eta} left");
-            ProgressBar::new(pixels).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+            ProgressBar::new(samples).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
         });
-        Self { bar, pixels, done: AtomicU64::new(0), start: Instant::now() }
+        Self { bar, samples, done: AtomicU64::new(0), start: Instant::now() }
     }
 
-    /// Counts finished pixels; may be called from any thread.
-    pub fn advance(&self, pixels: u64) {
+    /// Counts finished samples; may be called from any thread.
+    pub fn advance(&self, samples: u64) {
         if let Some(bar) = &self.bar {
-            bar.inc(pixels);
+            bar.inc(samples);
             return;
         }
-        let before = self.done.fetch_add(pixels, Ordering::Relaxed);
-        let (tenth, next) = (before * 10 / self.pixels, (before + pixels) * 10 / self.pixels);
+        let before = self.done.fetch_add(samples, Ordering::Relaxed);
+        let (tenth, next) = (before * 10 / self.samples, (before + samples) * 10 / self.samples);
         let passed = self.start.elapsed();
         if next > tenth && next < 10 && passed > QUIET {
             let left = passed.as_secs_f64() * (10 - next) as f64 / next as f64;

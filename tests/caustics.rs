@@ -8,6 +8,8 @@ mod support;
 
 #[path = "caustics/agreement.rs"]
 mod agreement;
+#[path = "caustics/gathered.rs"]
+mod gathered;
 #[path = "caustics/known.rs"]
 mod known;
 #[path = "caustics/materials.rs"]

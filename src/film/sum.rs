@@ -68,6 +68,12 @@ impl PixelSum {
         self.tree.push(Some(sum));
     }
 
+    /// Folds all blocks into one, which takes little memory while other pixels are summed.
+    pub fn settle(&mut self) {
+        let tree = std::mem::take(&mut self.tree);
+        self.block = tree.into_iter().flatten().fold(self.block, |sum, entry| entry.plus(sum));
+    }
+
     /// The mean over the samples that were kept, and light beside them that is a mean already.
     pub fn pixel(&self, beside: [f64; 3]) -> Pixel {
         let total = self.tree.iter().flatten().fold(self.block, |sum, entry| entry.plus(sum));

@@ -72,7 +72,7 @@ pub(super) fn light_pass(scene: &Scene<Curve>, method: &Method) -> (Option<Light
     let film = scene.film;
     let samples = f64::from(film.width) * f64::from(film.height) * f64::from(method.samples);
     let photons = (PHOTONS * samples).ceil() as u64;
-    let pass = |lights: Vec<LightId>| LightPass { photons, lights };
+    let pass = |lights: Vec<LightId>| LightPass { photons, lights, map: None };
     let asked = pass(small.iter().map(|light| light.0).collect());
     let share = seen_photons(&World::new(scene, Method { light_pass: Some(asked), ..method.clone() }));
     let (seen, unseen): (Vec<_>, Vec<_>) = small.into_iter().partition(|&(id, _)| share[id] > 0.0);

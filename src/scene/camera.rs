@@ -211,6 +211,14 @@ impl Camera {
         }
     }
 
+    /// How wide a pixel in the middle of the image is at a distance.
+    pub fn pixel_width(&self, distance: f64) -> f64 {
+        match self.projection {
+            Projection::Orthographic { .. } => 2.0 * self.half.x / self.size.x,
+            _ => self.pixel_angle() * distance,
+        }
+    }
+
     /// Width of the image in the plane one unit before the camera; 1 in an equirectangular image, which has no such
     /// width (OpenEXR, *Technical Introduction*).
     pub fn screen_window_width(&self) -> f64 {

@@ -2,7 +2,6 @@
 
 use std::f64::consts::{PI, TAU};
 
-use super::LightPass;
 use super::guide::Guide;
 use crate::light::{Light, LightId};
 use crate::material::Material;
@@ -68,14 +67,14 @@ pub fn is_photon_target<S>(scene: &Scene<S>, object: usize) -> bool {
 
 impl Aims {
     /// Aims at all objects that photons can be sent to; none if there is none, or none of the lights shines there.
-    pub(super) fn new(scene: &Scene<Table>, pass: &LightPass) -> Option<Self> {
+    pub(super) fn new(scene: &Scene<Table>, lights: &[LightId], photons: u64) -> Option<Self> {
         let objects: Vec<bool> = (0..scene.objects.len()).map(|object| is_photon_target(scene, object)).collect();
         let shapes = || scene.objects.iter().map(|object| &object.shape);
         let balls = shapes().zip(&objects).filter(|(_, target)| **target).filter_map(|(shape, _)| shape.ball());
         let balls = gathered(balls.collect());
         let world = shapes().filter_map(|shape| shape.ball()).reduce(Ball::around)?;
         let mut aims = Vec::new();
-        for (&light, ball) in pass.lights.iter().flat_map(|light| balls.iter().map(move |ball| (light, ball))) {
+        for (&light, ball) in lights.iter().flat_map(|light| balls.iter().map(move |ball| (light, ball))) {
             let (lobe, size) = reach(&scene.lights[light], ball);
             let flux = size * scene.lights[light].emission().range().1;
             if flux > 0.0 {
@@ -84,8 +83,9 @@ impl Aims {
                 aims.push(Aim { light, photons: 0, ball: *ball, lobe, guide, flux, apart });
             }
         }
-        let lights = (0..scene.lights.len()).map(|light| aims.iter().any(|aim| aim.light == light)).collect();
-        let mut aims = Self { aims, lights, objects, world, photons: pass.photons };
+        let lights: Vec<bool> =
+            (0..scene.lights.len()).map(|light| aims.iter().any(|aim| aim.light == light)).collect();
+        let mut aims = Self { aims, lights, objects, world, photons };
         aims.share_out();
         (!aims.aims.is_empty()).then_some(aims)
     }

@@ -29,6 +29,22 @@ pub struct LightPass {
     pub photons: u64,
     /// The lights that send them: points, spots, suns and finite `emissive` surfaces.
     pub lights: Vec<LightId>,
+    /// How those caustics are found that the camera does not see straight; none leaves them to the camera's rays and chance.
+    pub map: Option<MapPasses>,
+}
+
+/// Caustics in mirrors, behind glass and lit surfaces: each pass keeps where its photons land, and the camera's paths gather them.
+///
+/// Hachisuka & Jensen 2009, *Stochastic Progressive Photon Mapping*; Knaus & Zwicker 2011, *Progressive Photon Mapping: A
+/// Probabilistic Approach*, for passes that know nothing of each other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MapPasses {
+    /// How many, at most one for each camera sample of a pixel.
+    pub count: u32,
+    /// Photons of each, about.
+    pub photons: u64,
+    /// Photons are gathered within this radius, in pixels as wide as the path from the camera is long.
+    pub radius: f64,
 }
 
 /// Which of a surface's branches are followed.

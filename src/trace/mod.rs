@@ -20,14 +20,16 @@ mod guide;
 mod holes;
 mod lamps;
 mod light_pass;
+mod map;
 mod media;
+mod merge;
 mod method;
 mod path;
 mod photon;
 mod probe;
-
 mod render;
 mod roulette;
+mod sending;
 mod shading;
 mod spread;
 mod tally;
@@ -37,9 +39,8 @@ mod world;
 
 pub use aims::{is_photon_source, is_photon_target};
 pub use light_pass::seen_photons;
-pub use method::{LightPass, Method, Transport};
+pub use method::{LightPass, MapPasses, Method, Transport};
 pub use probe::{Probe, probe};
-
 pub use render::{Report, render};
 pub use spread::{COLORS_NM, Spread, spread};
 pub use world::World;

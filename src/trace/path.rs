@@ -19,6 +19,8 @@ pub(super) struct Path<const N: usize> {
     pub(super) key: BranchKey,
     /// Surfaces met so far.
     pub(super) vertices: u32,
+    /// How far the light has to go along it.
+    pub(super) length: f64,
     /// What kind of path it is so far.
     pub(super) leg: Leg,
     /// How often the path may still leave a diffuse surface.
@@ -34,7 +36,7 @@ pub(super) struct Path<const N: usize> {
 pub(super) enum Leg {
     /// Straight from the camera.
     Camera,
-    /// Scattered widely by the first surface, and none other.
+    /// Scattered widely by a surface from which photons are shown to the camera or gathered.
     Wide,
     /// After that over smooth surfaces alone; `aimed` says whether photons are sent to the last one.
     Smooth { aimed: bool },
@@ -44,10 +46,12 @@ pub(super) enum Leg {
 
 impl Leg {
     /// After one more surface; `wide` says whether light left it by a density of directions, `aimed` whether photons are sent
-    /// to its object; none if they do not follow light over it.
-    pub(super) fn then(self, wide: bool, aimed: Option<bool>) -> Self {
+    /// to its object; none if they do not follow light over it. Photons are shown from the first surface alone, and gathered
+    /// from all others if they are at all.
+    pub(super) fn then(self, gathers: bool, wide: bool, aimed: Option<bool>) -> Self {
         match (self, wide, aimed) {
             (Self::Camera, true, _) => Self::Wide,
+            (_, true, _) if gathers => Self::Wide,
             (Self::Wide | Self::Smooth { .. }, false, Some(aimed)) => Self::Smooth { aimed },
             _ => Self::Other,
         }
@@ -95,6 +99,7 @@ impl<const N: usize> Path<N> {
             parted: false,
             key: BranchKey::CAMERA,
             vertices: 0,
+            length: 0.0,
             leg: Leg::Camera,
             diffuse_left: world.method.diffuse_bounces,
             drawn: None,
@@ -123,8 +128,9 @@ impl<const N: usize> Path<N> {
         self.throughput.weight(draw.shares(self.parted)) / self.eta_scale
     }
 
-    /// Lets the medium around the ray absorb along a distance.
-    pub(super) fn absorb(&mut self, world: &World, draw: &Draw<N>, distance: f64) {
+    /// Follows the ray along a distance, on which the medium around it absorbs.
+    pub(super) fn advance(&mut self, world: &World, draw: &Draw<N>, distance: f64) {
+        self.length += distance;
         if let Some(material) = self.media.inside(world) {
             let transmission = media::medium(world, material).transmission(draw, distance);
             self.throughput = self.throughput.through(transmission);

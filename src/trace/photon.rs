@@ -1,5 +1,6 @@
 //! Photons: light followed forward over smooth surfaces, to where the camera sees it.
 
+use super::World;
 use super::emission::Emitted;
 use super::holes;
 use super::media::{self, Boundary, Media};
@@ -11,7 +12,7 @@ use crate::material::Arrival;
 use crate::math::{BranchKey, DVec3, Sampler};
 use crate::scene::{Hit, MaterialId};
 use crate::shape::SurfacePoint;
-use crate::spectrum::{Draw, Throughput};
+use crate::spectrum::{Draw, Lanes, Throughput};
 
 /// Use of the random numbers where a photon is seen: the point of the lens.
 const LENS: u32 = 3;
@@ -24,21 +25,33 @@ pub(super) struct Splat {
 }
 
 /// Where a photon lands: the surface, both media and the light's way there.
-struct Landing<'a, const N: usize> {
-    path: &'a Path<N>,
-    arrival: &'a Arrival<'a, N>,
+pub(super) struct Landing<'a, const N: usize> {
+    pub(super) path: &'a Path<N>,
+    pub(super) arrival: &'a Arrival<'a, N>,
     /// The surface's own normal, on the side of the light.
-    flat: DVec3,
-    point: &'a SurfacePoint,
-    hit: &'a Hit,
+    pub(super) flat: DVec3,
+    pub(super) point: &'a SurfacePoint,
+    pub(super) hit: &'a Hit,
     media: [Option<MaterialId>; 2],
-    light: LightId,
+    pub(super) light: LightId,
     /// Flux per emission.
     factor: f64,
 }
 
+impl<const N: usize> Landing<'_, N> {
+    /// What the light shines on the photon's way, per emission.
+    fn shone(&self, world: &World) -> Lanes<N> {
+        world.scene.lights[self.light].toward(self.arrival.draw, -self.path.ray.direction, [0.0; 2])
+    }
+
+    /// What the photon brings: its flux, lane by lane.
+    pub(super) fn flux(&self, world: &World) -> Lanes<N> {
+        self.path.throughput.scaled(self.factor / self.path.eta_scale).of(self.shone(world))
+    }
+}
+
 impl<const N: usize> Tracer<'_, N> {
-    /// Follows a photon over smooth surfaces and adds what the camera sees of it where it lands on others.
+    /// Follows a photon over smooth surfaces; `land` is told where it lands on others.
     ///
     /// The first surface must be one that photons are sent to: paths by way of others are left to the camera's rays.
     /// Throughput is followed as if the light were the viewer; flux is what is left of it without the factor of radiance
@@ -50,7 +63,7 @@ impl<const N: usize> Tracer<'_, N> {
         media: Media,
         draw: &Draw<N>,
         sampler: &Sampler,
-        splats: &mut Vec<Splat>,
+        land: &mut impl FnMut(&Self, &Landing<N>),
     ) {
         let world = self.world;
         let mut next = Some(Path {
@@ -61,6 +74,7 @@ impl<const N: usize> Tracer<'_, N> {
             parted: false,
             key: BranchKey::CAMERA,
             vertices: 0,
+            length: 0.0,
             leg: Leg::Other,
             diffuse_left: 0,
             drawn: None,
@@ -72,7 +86,7 @@ impl<const N: usize> Tracer<'_, N> {
             }
             self.tally.rays += 1;
             let Some(hit) = world.scene.intersect(&path.ray) else { continue };
-            path.absorb(world, draw, hit.crossing.t);
+            path.advance(world, draw, hit.crossing.t);
             let point = world.scene.objects[hit.object as usize].point(&path.ray, &hit.crossing);
             if let Some(passing) = holes::passing(world, draw, &path, &hit, &point) {
                 let (throughput, key) = (path.throughput.through(passing), path.key.child(BEYOND));
@@ -86,11 +100,11 @@ impl<const N: usize> Tracer<'_, N> {
                 continue;
             }
             path.vertices += 1;
-            next = self.bounce(&path, draw, sampler, (&hit, &point), (light, emitted.factor), splats);
+            next = self.bounce(&path, draw, sampler, (&hit, &point), (light, emitted.factor), land);
         }
     }
 
-    /// Shows a photon to the camera where it lands, and answers how it goes on over smooth surfaces.
+    /// Lets a photon land on a surface that scatters widely, and answers how it goes on over smooth ones.
     fn bounce(
         &mut self,
         path: &Path<N>,
@@ -98,7 +112,7 @@ impl<const N: usize> Tracer<'_, N> {
         sampler: &Sampler,
         (hit, point): (&Hit, &SurfacePoint),
         (light, factor): (LightId, f64),
-        splats: &mut Vec<Splat>,
+        land: &mut impl FnMut(&Self, &Landing<N>),
     ) -> Option<Path<N>> {
         let world = self.world;
         let material = world.scene.material_of(hit.object);
@@ -127,7 +141,7 @@ impl<const N: usize> Tracer<'_, N> {
             let allowed = path.vertices <= world.method.max_bounces && !(diffuse && world.method.diffuse_bounces == 0);
             let landing = Landing { path, arrival: &arrival, flat, point, hit, media: [here, beyond], light, factor };
             if allowed && path.vertices > 1 {
-                self.show(&landing, sampler, splats);
+                land(self, &landing);
             }
         }
         let goes_on = material.has_single_directions() && world.photons_over(hit.object).is_some();
@@ -151,7 +165,7 @@ impl<const N: usize> Tracer<'_, N> {
     }
 
     /// Adds what the camera sees of a photon.
-    fn show(&self, landing: &Landing<N>, sampler: &Sampler, splats: &mut Vec<Splat>) {
+    pub(super) fn show(&self, landing: &Landing<N>, sampler: &Sampler, splats: &mut Vec<Splat>) {
         let Landing { path, arrival, flat, point, hit, media, light, factor } = landing;
         let world = self.world;
         let (camera, film) = (&world.scene.camera, world.scene.film);
@@ -180,7 +194,7 @@ impl<const N: usize> Tracer<'_, N> {
         let ray = point.leave(seen.direction);
         let distance = (seen.start - ray.origin).length();
         let inside = media[usize::from(!same)];
-        let mut shone = world.scene.lights[*light].toward(arrival.draw, -path.ray.direction, [0.0; 2]);
+        let mut shone = landing.shone(world);
         if world.has_any_holes() {
             let closed = |object| !world.has_holes(object);
             if world.scene.is_hidden_by(&ray, distance, None, &self.hider, closed) {

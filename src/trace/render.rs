@@ -1,13 +1,16 @@
 //! The loop over tiles.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 
 use super::light_pass::{self, Shown};
+use super::merge::{self, Photons};
 use super::tally::Tally;
 use super::tracer::Tracer;
 use super::width::{InLanes, in_lanes};
 use super::{Transport, World};
-use crate::film::{Film, Pixel, PixelSum, Sample};
+use crate::film::{Film, Pixel, PixelSum, Sample, Window};
 use crate::math::{BranchKey, DVec2, Sampler};
 
 /// Side of a tile in pixels.
@@ -40,7 +43,8 @@ pub struct Report {
     pub photons: u64,
 }
 
-/// Renders the world's image, or the part of it that is asked for. `progress` is told how many pixels are done, from any thread.
+/// Renders the world's image, or the part of it that is asked for. `progress` is told how many camera samples
+/// are done, from any thread.
 pub fn render(world: &World, progress: &(dyn Fn(u64) + Sync)) -> (Film, Report) {
     in_lanes(&world.method.basis, Render { world, progress })
 }
@@ -61,41 +65,43 @@ fn render_lanes<const N: usize>(world: &World, progress: &(dyn Fn(u64) + Sync)) 
     let settings = world.scene.film;
     let window = settings.window();
     let shown = light_pass::show::<N>(world);
-    let (columns, rows) = (window.width.div_ceil(TILE), window.height.div_ceil(TILE));
-    let bands: Vec<(Vec<Pixel>, Report)> = (0..rows)
-        .into_par_iter()
-        .map(|row| {
-            let height = TILE.min(window.height - row * TILE);
-            let tiles: Vec<_> =
-                (0..columns).into_par_iter().map(|column| tile::<N>(world, &shown, column, row, progress)).collect();
-            let mut pixels = vec![BLANK; (window.width * height) as usize];
-            let mut report = Report::default();
-            for (column, (tile, noted)) in tiles.iter().enumerate() {
-                let left = column * TILE as usize;
-                let width = tile.len() / height as usize;
-                for y in 0..height as usize {
-                    let start = y * window.width as usize + left;
-                    pixels[start..start + width].copy_from_slice(&tile[y * width..(y + 1) * width]);
-                }
-                report.add(noted);
+    let corners = (0..window.height)
+        .step_by(TILE as usize)
+        .flat_map(|y| (0..window.width).step_by(TILE as usize).map(move |x| [x, y]));
+    let mut tiles: Vec<Tile> = corners.map(|corner| Tile::new(window, corner)).collect();
+    let mut report = Report { photons: shown.photons, rays: shown.rays, ..Report::default() };
+    report.non_finite += shown.non_finite;
+    report.unmatched += shown.unmatched;
+    let map = world.method.light_pass.as_ref().and_then(|pass| pass.map).filter(|_| world.has_map());
+    let passes = map.map_or(1, |map| map.count);
+    for pass in 0..passes {
+        let photons = merge::photons::<N>(world, pass);
+        if let Some(photons) = &photons {
+            report.add_photons(photons);
+        }
+        let [first, end] =
+            [pass, pass + 1].map(|pass| (u64::from(pass) * u64::from(world.method.samples) / u64::from(passes)) as u32);
+        let last = pass + 1 == passes;
+        tiles.par_iter_mut().for_each(|tile| {
+            tile.take::<N>(world, photons.as_ref(), first..end);
+            if last {
+                tile.finish(&shown, window.width);
             }
-            (pixels, report)
-        })
-        .collect();
-    let mut report = Report::default();
-    let mut pixels = Vec::with_capacity((window.width as usize) * window.height as usize);
-    for (band, noted) in bands {
-        pixels.extend(band);
-        report.add(&noted);
+            progress(u64::from(tile.width) * u64::from(tile.height) * u64::from(end - first));
+        });
+    }
+    let mut pixels = vec![BLANK; window.width as usize * window.height as usize];
+    for tile in &tiles {
+        report.add(&tile.report);
+        for (row, line) in tile.pixels.chunks_exact(tile.width as usize).enumerate() {
+            let start = (tile.corner[1] as usize + row) * window.width as usize + tile.corner[0] as usize;
+            pixels[start..start + line.len()].copy_from_slice(line);
+        }
     }
     let samples = report.samples.max(1) as f64;
     report.dropped /= samples;
     report.stopped /= samples;
     report.polarization /= samples;
-    report.photons = shown.photons;
-    report.rays += shown.rays;
-    report.non_finite += shown.non_finite;
-    report.unmatched += shown.unmatched;
     let film = Film {
         width: window.width,
         height: window.height,
@@ -109,45 +115,58 @@ fn render_lanes<const N: usize>(world: &World, progress: &(dyn Fn(u64) + Sync)) 
 
 const BLANK: Pixel = Pixel { rgb: [0.0; 3], alpha: 0.0, depth: 0.0, samples: 0.0 };
 
-/// The pixels of one tile, row by row.
-fn tile<const N: usize>(
-    world: &World,
-    shown: &Shown,
-    column: u32,
-    row: u32,
-    progress: &(dyn Fn(u64) + Sync),
-) -> (Vec<Pixel>, Report) {
-    let window = world.scene.film.window();
-    let mut tracer = Tracer::<N>::new(world);
-    let (mut pixels, mut report) = (Vec::new(), Report::default());
-    for y in row * TILE..window.height.min((row + 1) * TILE) {
-        for x in column * TILE..window.width.min((column + 1) * TILE) {
-            let by_photons = shown.pixels.get((y * window.width + x) as usize).copied().unwrap_or_default();
+/// A small part of the image.
+struct Tile {
+    /// Its first column and row in the window.
+    corner: [u32; 2],
+    width: u32,
+    height: u32,
+    /// Sums of its pixels, row by row; empty before the first samples and when the pixels are finished.
+    sums: Vec<PixelSum>,
+    pixels: Vec<Pixel>,
+    report: Report,
+}
+
+impl Tile {
+    fn new(window: Window, corner: [u32; 2]) -> Self {
+        let [width, height] = [window.width - corner[0], window.height - corner[1]].map(|left| left.min(TILE));
+        Self { corner, width, height, sums: Vec::new(), pixels: Vec::new(), report: Report::default() }
+    }
+
+    /// Takes samples of all pixels.
+    fn take<const N: usize>(&mut self, world: &World, photons: Option<&Photons<N>>, numbers: Range<u32>) {
+        let window = world.scene.film.window();
+        let mut tracer = Tracer::<N>::new(world);
+        tracer.photons = photons;
+        let report = &mut self.report;
+        self.sums.resize_with(self.width as usize * self.height as usize, PixelSum::default);
+        for (place, sum) in (0..).zip(&mut self.sums) {
             // Random numbers and rays belong to the full image's pixel, whatever part of it is made.
-            let (x, y) = (window.left + x, window.top + y);
-            let mut sum = PixelSum::default();
-            for number in 0..world.method.samples {
+            let x = window.left + self.corner[0] + place % self.width;
+            let y = window.top + self.corner[1] + place / self.width;
+            for number in numbers.clone() {
                 let sampler = Sampler::new(world.method.seed, [x, y], number);
                 if !sum.add(&sample(world, &mut tracer, &sampler, x, y)) {
                     report.non_finite += 1;
                     report.first_non_finite.get_or_insert([x, y, number]);
                 }
             }
-            pixels.push(sum.pixel(by_photons));
+            sum.settle();
         }
+        let Tally { rays, dropped, stopped, unmatched, polarization, .. } = tracer.tally;
+        let samples = self.sums.len() as u64 * numbers.len() as u64;
+        report.add(&Report { samples, rays, dropped, stopped, unmatched, polarization, ..Report::default() });
     }
-    let Tally { rays, dropped, stopped, unmatched, polarization, .. } = tracer.tally;
-    report.add(&Report {
-        samples: pixels.len() as u64 * u64::from(world.method.samples),
-        rays,
-        dropped,
-        stopped,
-        unmatched,
-        polarization,
-        ..Report::default()
-    });
-    progress(pixels.len() as u64);
-    (pixels, report)
+
+    /// Makes the pixels of their sums, and what photons show there.
+    fn finish(&mut self, shown: &Shown, width: u32) {
+        let by_photons = |place: u32| {
+            let [x, y] = [self.corner[0] + place % self.width, self.corner[1] + place / self.width];
+            shown.pixels.get((y * width + x) as usize).copied().unwrap_or_default()
+        };
+        self.pixels =
+            (0..).zip(std::mem::take(&mut self.sums)).map(|(place, sum)| sum.pixel(by_photons(place))).collect();
+    }
 }
 
 /// One camera sample.
@@ -164,6 +183,7 @@ pub(super) fn sample<const N: usize>(
         Transport::Random { .. } => sampler.four(BranchKey::CAMERA, purpose),
     };
     let [u, v, wavelength, _] = numbers(PLACE);
+    let wavelength = tracer.photons.map_or(wavelength, |photons| photons.wavelength);
     let film = DVec2::new(f64::from(x), f64::from(y)) + world.scene.film.filter.place([u, v]);
     let draw = world.method.basis.draw(wavelength);
     let ray = if camera.has_lens() {
@@ -177,6 +197,13 @@ pub(super) fn sample<const N: usize>(
 }
 
 impl Report {
+    fn add_photons<const N: usize>(&mut self, photons: &Photons<N>) {
+        self.photons += photons.sent;
+        self.rays += photons.rays;
+        self.unmatched += photons.unmatched;
+        self.non_finite += photons.non_finite;
+    }
+
     fn add(&mut self, other: &Self) {
         self.samples += other.samples;
         self.rays += other.rays;

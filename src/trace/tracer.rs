@@ -5,6 +5,7 @@ use std::cell::Cell;
 use super::direct::{Gathering, add, weight_of_meeting};
 use super::holes;
 use super::media::{self, Boundary};
+use super::merge::Photons;
 use super::path::{Drawn, Leg, Path};
 use super::shading;
 use super::tally::Tally;
@@ -27,6 +28,8 @@ pub(super) struct Tracer<'a, const N: usize> {
     pub(super) tally: Tally,
     /// Lights that paths from widely scattering surfaces met, with the unit normal there, if somebody wants to know.
     pub(super) met: Option<Vec<(LightId, DVec3)>>,
+    /// Photons that are gathered, if any are.
+    pub(super) photons: Option<&'a Photons<N>>,
 }
 
 /// How much sooner roulette ends paths that leave a diffuse surface than those that leave a smooth one: what they still
@@ -43,7 +46,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
     pub(super) fn new(world: &'a World) -> Self {
         let (pending, branches) = (Vec::new(), Vec::new());
         let (transport, tally) = (world.method.transport, Tally::default());
-        Self { world, transport, pending, branches, hider: Cell::new(None), tally, met: None }
+        Self { world, transport, pending, branches, hider: Cell::new(None), tally, met: None, photons: None }
     }
 
     pub(super) fn with_transport(self, transport: Transport) -> Self {
@@ -63,12 +66,12 @@ impl<'a, const N: usize> Tracer<'a, N> {
             }
             self.tally.rays += 1;
             let Some(hit) = self.world.scene.intersect(&path.ray) else {
-                path.absorb(self.world, draw, f64::INFINITY);
+                path.advance(self.world, draw, f64::INFINITY);
                 add(&mut sum, self.background(&path, draw));
                 next = None;
                 continue;
             };
-            path.absorb(self.world, draw, hit.crossing.t);
+            path.advance(self.world, draw, hit.crossing.t);
             let point = self.world.scene.objects[hit.object as usize].point(&path.ray, &hit.crossing);
             let passing = holes::passing(self.world, draw, &path, &hit, &point);
             if let Some(passing) = passing
@@ -151,7 +154,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
         if here == beyond && material.medium().is_some() {
             // No light was aimed at through this surface, so what the path meets beyond counts in full.
             let (ray, key) = (point.leave(path.ray.direction), path.key.child(0));
-            let leg = path.leg.then(false, Some(world.is_photon_target(hit.object)));
+            let leg = path.leg.then(world.has_map(), false, Some(world.is_photon_target(hit.object)));
             return Some(Path { ray, media: crossed, key, drawn: None, leg, ..*path });
         }
         let arrival = Arrival {
@@ -191,6 +194,12 @@ impl<'a, const N: usize> Tracer<'a, N> {
             };
             let far = material.scatters_through().then_some((beyond, parts));
             let chance = gathering.gather(far, sampler, path.key, sum);
+            if let Some(photons) = self.photons
+                && goes_on
+                && path.leg != Leg::Camera
+            {
+                add(sum, photons.gather(world, path, &arrival, (hit, point, normal), (material, parts)));
+            }
             let (pdf, from, aimed_at_all, passed) = (0.0, point.position, aims_at_all, false);
             drawn = Some(Drawn { pdf, from, normal, chance, aimed_at_all, passed });
             if !goes_on && passing.is_none() && !material.has_single_directions() {
@@ -223,7 +232,8 @@ impl<'a, const N: usize> Tracer<'a, N> {
                 parted: path.parted || (parts && branch.crosses),
                 key: path.key.child(number),
                 vertices: path.vertices,
-                leg: path.leg.then(branch.pdf.is_some(), world.photons_over(hit.object)),
+                length: path.length,
+                leg: path.leg.then(world.has_map(), branch.pdf.is_some(), world.photons_over(hit.object)),
                 diffuse_left: path.diffuse_left - u32::from(diffuse && branch.pdf.is_some()),
                 drawn: branch.pdf.and_then(|pdf| drawn.map(|drawn: Drawn| drawn.toward(pdf, branch.crosses))),
                 polarization: branch.polarization,

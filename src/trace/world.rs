@@ -2,6 +2,7 @@ use super::aims::Aims;
 use super::choice::Choice;
 use super::lamps::met_lamps;
 use super::media::Media;
+use super::sending::media_of_lights;
 use super::{Method, Transport};
 use crate::light::{Light, LightId};
 use crate::math::DVec3;
@@ -26,6 +27,10 @@ pub struct World {
     holes: Vec<bool>,
     /// Where photons are sent, if the method has a light pass.
     pub(super) aims: Option<Aims>,
+    /// The same of each pass of its map.
+    pub(super) map_aims: Option<Aims>,
+    /// The bodies around each light; none where they may differ from point to point.
+    pub(super) light_media: Vec<Option<Media>>,
 }
 
 impl World {
@@ -40,11 +45,30 @@ impl World {
         let choice = Choice::new(&scene.lights);
         let targets = choice.targets();
         let camera_media = Media::default();
-        let aims = method.light_pass.as_ref().and_then(|pass| Aims::new(&scene, pass));
-        let mut world = Self { responses, targets, choice, scene, method, camera_media, has_media, holes, aims };
+        let pass = method.light_pass.as_ref();
+        let aims_of = |photons: u64| pass.and_then(|pass| Aims::new(&scene, &pass.lights, photons));
+        let aims = pass.and_then(|pass| aims_of(pass.photons));
+        let map_aims = pass.and_then(|pass| pass.map).and_then(|map| aims_of(map.photons));
+        let light_media = Vec::new();
+        let mut world = Self {
+            responses,
+            targets,
+            choice,
+            scene,
+            method,
+            camera_media,
+            has_media,
+            holes,
+            aims,
+            map_aims,
+            light_media,
+        };
         if has_media {
             let (position, forward) = (world.scene.camera.position(), world.scene.camera.forward());
             world.camera_media = Media::around(&world, position, forward);
+        }
+        if world.aims.is_some() {
+            world.light_media = media_of_lights(&world);
         }
         world.look_for_lamps();
         world.learn_where_to_send();

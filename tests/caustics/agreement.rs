@@ -2,7 +2,7 @@
 
 use abbe::film::Film;
 use abbe::plan::plan;
-use abbe::trace::{LightPass, Method, World, render};
+use abbe::trace::{LightPass, MapPasses, Method, World, render};
 
 use crate::support::scenes::{SPLITTING, moments, scene, standard_errors};
 
@@ -30,10 +30,10 @@ pub fn glass(text: &str) -> String {
 }
 
 /// Mean and variance of the mean of every block and band.
-fn blocks(text: &str, pass: bool, samples: u32) -> Vec<(f64, f64)> {
+fn blocks(text: &str, pass: bool, map: Option<MapPasses>, samples: u32) -> Vec<(f64, f64)> {
     let scene = scene(text);
     let lights = (0..scene.lights.len()).collect();
-    let light_pass = pass.then_some(LightPass { photons: u64::from(samples) * (SIDE * SIDE) as u64, lights });
+    let light_pass = pass.then_some(LightPass { photons: u64::from(samples) * (SIDE * SIDE) as u64, lights, map });
     let asked = Method { samples, transport: SPLITTING, light_pass, ..plan(&scene).method };
     let films: Vec<Film> =
         (0..SEEDS).map(|seed| render(&World::new(&scene, Method { seed, ..asked.clone() }), &|_| ()).0).collect();
@@ -53,7 +53,12 @@ fn blocks(text: &str, pass: bool, samples: u32) -> Vec<(f64, f64)> {
 
 /// Compares all blocks, and says that the light pass changed something: most of it is quieter.
 pub fn agree(what: &str, text: &str, samples: u32) {
-    let (with, without) = (blocks(text, true, samples), blocks(text, false, samples));
+    agree_with(what, text, samples, None);
+}
+
+/// The same, where the light pass has a map as well.
+pub fn agree_with(what: &str, text: &str, samples: u32, map: Option<MapPasses>) {
+    let (with, without) = (blocks(text, true, map, samples), blocks(text, false, None, samples));
     // Means of 16 films have the tails of Student's t with 30 degrees of freedom: 1.25 times those of the normal one so
     // far out.
     let limit = 1.25 * standard_errors(with.len());

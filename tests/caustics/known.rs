@@ -12,7 +12,7 @@ use crate::support::scenes::{SPLITTING, scene};
 /// The method of a scene's plan with all lights and so many photons.
 fn with_photons(text: &str, photons: u64, samples: u32) -> Film {
     let scene = scene(text);
-    let light_pass = Some(LightPass { photons, lights: (0..scene.lights.len()).collect() });
+    let light_pass = Some(LightPass { photons, lights: (0..scene.lights.len()).collect(), map: None });
     let method = Method { samples, transport: SPLITTING, light_pass, ..plan(&scene).method };
     render(&World::new(&scene, method), &|_| ()).0
 }
@@ -235,7 +235,7 @@ fn photons_toward_objects_whose_cones_overlap_count_once() {
     let together = scene(&crowd(""));
     let photons = 1_000_000;
     let image = |lights: Vec<usize>| {
-        let pass = LightPass { photons, lights };
+        let pass = LightPass { photons, lights, map: None };
         let with = Method { samples: 4, light_pass: Some(pass), ..plan(&together).method };
         let film = render(&World::new(&together, with), &|_| ()).0;
         film.pixels.iter().map(|pixel| f64::from(pixel.rgb[1])).sum::<f64>() / film.pixels.len() as f64

@@ -1,0 +1,118 @@
+//! Photons are sent in batches.
+
+use super::Transport;
+use super::World;
+use super::aims::{Aim, Aims};
+use super::media::Media;
+use super::photon::Landing;
+use super::tracer::Tracer;
+use crate::light::{Light, LightId};
+use crate::math::{BranchKey, DVec3, Sampler};
+use crate::spectrum::Draw;
+
+/// Photons that are followed one after another; what they leave is added in the order of the batches.
+const BATCH: u64 = 4096;
+/// Uses of a photon's random numbers: its first ray, and what does not fit there.
+const RAY: u32 = 0;
+const MORE: u32 = 1;
+
+/// Photons are followed like camera paths: in all branches while they carry much, then in one. Splitting at 0.05 took as much
+/// time for as much noise, never splitting 2 to 15 times as much (`benches/caustics.rs`).
+const PHOTONS: Transport = Transport::Random { split: 0.25, roulette: 0.05 };
+
+/// A part of an aim's photons.
+#[derive(Clone, Copy)]
+pub(super) struct Batch {
+    pub(super) aim: usize,
+    first: u64,
+    pub(super) count: u64,
+    seed: u64,
+}
+
+/// What became of a batch.
+pub(super) struct Sent<T> {
+    pub(super) kept: Vec<T>,
+    /// Where each photon was sent and whether anything was kept of it.
+    pub(super) places: Vec<([f64; 2], bool)>,
+    pub(super) rays: u64,
+    pub(super) unmatched: u64,
+}
+
+/// The photons of some aims from number `first` on, batch by batch.
+pub(super) fn batches(aims: &Aims, first: impl Fn(&Aim) -> u64, count: impl Fn(&Aim) -> u64, seed: u64) -> Vec<Batch> {
+    let of_aim = |(number, aim): (usize, &Aim)| {
+        let (start, end) = (first(aim), first(aim) + count(aim));
+        let batch = move |first: u64| Batch { aim: number, first, count: BATCH.min(end - first), seed };
+        (start..end).step_by(BATCH as usize).map(batch)
+    };
+    aims.aims.iter().enumerate().flat_map(of_aim).collect()
+}
+
+/// Follows the photons of one batch, of the given draw or each of its own; `land` says what is kept of one that
+/// lands. What is learned is only of which photons something would be kept.
+pub(super) fn send<const N: usize, T>(
+    world: &World,
+    aims: &Aims,
+    batch: Batch,
+    shared: Option<&Draw<N>>,
+    learns: bool,
+    land: impl Fn(&Tracer<N>, &Landing<N>, &Sampler, &mut Vec<T>),
+) -> Sent<T> {
+    let mut tracer = Tracer::<N>::new(world).with_transport(PHOTONS);
+    let (mut kept, mut places) = (Vec::new(), Vec::new());
+    let light = aims.aims[batch.aim].light;
+    // Of four numbers that are spread together, a point needs two for the ray.
+    let extended = !matches!(world.scene.lights[light], Light::Point(_) | Light::Spot(_));
+    for photon in batch.first..batch.first + batch.count {
+        let key = [batch.aim as u32, (photon >> 32) as u32];
+        let sampler = Sampler::new(batch.seed, key, photon as u32);
+        let u = sampler.four(BranchKey::CAMERA, RAY);
+        let wavelength = if extended && world.method.basis.draws_wavelengths() && shared.is_none() {
+            sampler.four(BranchKey::CAMERA, MORE)[0]
+        } else {
+            u[2]
+        };
+        let place = aims.place(batch.aim, [u[0], u[1]]);
+        let before = kept.len();
+        if let Some(emitted) = aims.emit(&world.scene, batch.aim, place, [u[2], u[3]]) {
+            let own = || world.method.basis.draw(wavelength);
+            let draw = shared.cloned().unwrap_or_else(own);
+            let around = || Media::around(world, emitted.ray.origin, emitted.ray.direction);
+            let media = world.light_media[light].unwrap_or_else(around);
+            tracer.photon(&emitted, light, media, &draw, &sampler, &mut |tracer, landing| {
+                land(tracer, landing, &sampler, &mut kept);
+            });
+        }
+        if learns {
+            places.push((place, kept.len() > before));
+            kept.clear();
+        }
+    }
+    Sent { kept, places, rays: tracer.tally.rays, unmatched: tracer.tally.unmatched }
+}
+
+/// The bodies around each light; none where they may differ from point to point.
+pub(super) fn media_of_lights(world: &World) -> Vec<Option<Media>> {
+    (0..world.scene.lights.len()).map(|light| media_of(world, light)).collect()
+}
+
+/// The bodies around a light; none where they may differ from point to point.
+fn media_of(world: &World, light: LightId) -> Option<Media> {
+    let scene = &world.scene;
+    if !world.has_media {
+        return Some(Media::default());
+    }
+    match &scene.lights[light] {
+        Light::Point(point) => Some(Media::around(world, point.position.into(), DVec3::Y)),
+        Light::Spot(spot) => Some(Media::around(world, spot.position.into(), DVec3::Y)),
+        Light::Area(area) => {
+            let own = area.shape.bounds()?;
+            let clear = (0..scene.objects.len()).filter(|&i| scene.material_of(i as u32).medium().is_some());
+            let apart = clear.map(|i| scene.objects[i].shape.bounds()).all(|other| {
+                other.is_some_and(|other| own.max.cmplt(other.min).any() || own.min.cmpgt(other.max).any())
+            });
+            apart.then(Media::default)
+        }
+        Light::Sun(_) | Light::Environment(_) => Some(Media::default()),
+    }
+}

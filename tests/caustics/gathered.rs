@@ -1,0 +1,94 @@
+//! The same for caustics that are seen in mirrors, through glass or by way of lit surfaces: photons that land are gathered.
+
+use abbe::trace::MapPasses;
+
+use crate::agreement::{ABOVE, BALL, FLOOR, LAMP, agree_with, glass, object, seen_by};
+
+/// A radius so small that blurring moves nothing between blocks that these samples could tell.
+const NARROW: MapPasses = MapPasses { count: 16, photons: 8192, radius: 0.1 };
+
+fn agree(what: &str, text: &str) {
+    agree_with(what, text, 64, Some(NARROW));
+}
+
+#[test]
+fn the_caustic_of_a_ball_seen_in_a_mirror() {
+    let text = seen_by("position = [0, 1.2, 2.5]\nlook_at = [0, 0.8, -2]\nvertical_fov = 40", "")
+        + FLOOR
+        + LAMP
+        + &glass("index = 1.5")
+        + "[material.mirror]\nmirror = { reflectance = 0.9 }\n"
+        + &object("mirror", "quad = { center = [0, 2, -2], u = [3, 0, 0], v = [0, 2, 0.3] }")
+        + &object("glass", BALL)
+        + &object("lamp", "sphere = { center = [0.5, 5, 0], radius = 0.6 }");
+    agree("mirror", &text);
+}
+
+#[test]
+fn the_floor_of_a_pool_seen_through_its_water() {
+    let text = seen_by(ABOVE, "filter = \"tent\"")
+        + FLOOR
+        + LAMP
+        + "[material.water]\ndielectric = { index = 1.33, absorption = { rgb = [0.5, 0.2, 0.1] } }\n\
+           [material.stone]\nplastic = { reflectance = 0.5, roughness = 0.3 }\n"
+        + &object("water", "cube = { center = [0, 0.5, 0], size = [4, 1.2, 4] }")
+        + &object("stone", "sphere = { center = [0.3, 0.3, 0.2], radius = 0.3 }")
+        + &object("lamp", "disc = { center = [0.5, 4, 0], normal = [0, -1, 0], radius = 0.7 }");
+    agree("pool", &text);
+}
+
+#[test]
+fn a_spectrum_thrown_by_a_prism_and_seen_through_another() {
+    let prism = |x: f64| {
+        format!(
+            "mesh = {{ points = [[{0}, 0.4, -0.6], [{1}, 0.4, -0.6], [{x}, 1.4, -0.6], [{0}, 0.4, 0.6], [{1}, 0.4, 0.6], \
+             [{x}, 1.4, 0.6]], faces = [[0, 2, 1], [3, 4, 5], [0, 1, 4], [0, 4, 3], [1, 2, 5], [1, 5, 4], [2, 0, 3], [2, 3, 5]] }}",
+            x - 0.6,
+            x + 0.6
+        )
+    };
+    let text = seen_by(ABOVE, "")
+        + "[render]\nmodel = \"hero\"\n"
+        + FLOOR
+        + LAMP
+        + &glass("index = \"N-SF11\"")
+        + &object("glass", &prism(0.0))
+        + &object("glass", &prism(1.4))
+        + &object("lamp", "disc = { center = [-2, 2.5, 0], normal = [2, -2, 0], radius = 0.6 }");
+    agree("prisms", &text);
+}
+
+#[test]
+fn a_caustic_that_lights_a_wall() {
+    let text = seen_by("position = [0, 1, 3]\nlook_at = [0, 1, -2]\nvertical_fov = 40", "")
+        + "[render]\ndiffuse_bounces = 2\n"
+        + FLOOR
+        + LAMP
+        + &glass("index = { rgb = [1.5, 1.6, 1.7] }")
+        + "[material.wall]\ndiffuse = { reflectance = { rgb = [0.9, 0.5, 0.3] } }\n\
+           [material.veil]\nmask = { material = \"wall\", opacity = 0.3 }\n"
+        + &object("wall", "quad = { center = [0, 2, -1.3], u = [3, 0, 0], v = [0, 2, 0] }")
+        + &object("veil", "quad = { center = [0.9, 0.5, 0], u = [0, 0.5, 0], v = [0, 0, 0.8] }")
+        + &object("glass", BALL)
+        + &object("lamp", "cube = { center = [0, 4, 0], size = 0.8 }");
+    agree("wall", &text);
+}
+
+#[test]
+fn a_body_of_many_materials_under_a_dome_of_glass() {
+    let text = seen_by(&format!("{ABOVE}\nlens = {{ radius = 0.1, focus_distance = 4 }}"), "")
+        + "[render]\nmax_bounces = 6\n"
+        + FLOOR
+        + &glass("index = 1.5, priority = 1")
+        + "[material.hollow]\ndielectric = { index = 1.0, priority = 2 }\n\
+           [material.frost]\ndielectric = { index = 1.4, roughness = 0.4, priority = 3 }\n\
+           [material.gold]\nconductor = { metal = \"Au\", roughness = 0.3 }\n\
+           [material.matte]\ndiffuse = { reflectance = 0.7 }\n\
+           [material.both]\nmix = { materials = [\"matte\", \"gold\"], amount = 0.5 }\n"
+        + &object("glass", "sphere = { center = [0, 0.2, 0], radius = 1.2 }")
+        + &object("hollow", "sphere = { center = [0, 0.2, 0], radius = 1.1 }")
+        + &object("frost", "sphere = { center = [0.4, 0.5, 0], radius = 0.3 }")
+        + &object("both", "cube = { center = [-0.4, 0.4, 0], size = 0.5 }")
+        + "[[light]]\nsun = { toward = [0.3, 1, 0.2], angular_diameter = 30, irradiance = 3 }\n";
+    agree("dome", &text);
+}
