@@ -39,7 +39,7 @@ pub(super) fn light_pass(scene: &Scene<Curve>, method: &Method) -> (Option<Light
     if scene.render.caustics == CausticsText::Off {
         return none(format!("caustics \"off\": no light pass{}", missing(scene)));
     }
-    let targets: Vec<usize> = objects().filter(|&object| is_photon_target(scene, object)).collect();
+    let targets = targets(scene);
     if targets.is_empty() {
         let name = &scene.objects[bends].name;
         return none(format!("no light pass: {name} has no end, so photons cannot be aimed at it{}", missing(scene)));
@@ -100,6 +100,19 @@ pub(super) fn light_pass(scene: &Scene<Curve>, method: &Method) -> (Option<Light
         if most < 0.095 { format!("{:.1} %", 100.0 * most) } else { format!("{:.0} %", 100.0 * most) }
     ));
     (Some(pass(seen.iter().map(|light| light.0).collect())), lines)
+}
+
+/// Objects that photons can be sent to.
+pub(super) fn targets(scene: &Scene<Curve>) -> Vec<usize> {
+    (0..scene.objects.len()).filter(|&object| is_photon_target(scene, object)).collect()
+}
+
+/// Lights that photons can be sent from and that rays from the places given meet too rarely.
+pub(super) fn small_lights(scene: &Scene<Curve>, places: &[DVec3]) -> Vec<LightId> {
+    let is_small = |light: &Light<Curve>| solid_angle(light, places).is_some_and(|size| size < SMALL);
+    let lights = scene.lights.iter().enumerate();
+    let wanted = lights.filter(|(_, light)| light.is_aimed_at() && is_photon_source(light) && is_small(light));
+    wanted.map(|(id, _)| id).collect()
 }
 
 /// What cannot be met by chance at all.

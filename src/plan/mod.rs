@@ -1,5 +1,6 @@
 //! Floor 5: looks at a scene, decides how little of the world must be modelled to render it, and says why.
 
+mod beyond;
 mod caustics;
 mod ladder;
 mod model;
@@ -9,7 +10,7 @@ use crate::film::Filter;
 use crate::light::Light;
 use crate::scene::{Object, Scene};
 use crate::spectrum::{Basis, Curve};
-use crate::trace::{Method, Transport, World, probe};
+use crate::trace::{LightPass, Method, Transport, World, probe};
 use model::Model;
 
 pub use ladder::Rung;
@@ -53,10 +54,13 @@ pub fn plan(scene: &Scene<Curve>) -> Plan {
     let max_bounces = scene.render.max_bounces.unwrap_or(u32::MAX);
     let seed = scene.render.seed;
     let method = Method { basis, transport, together, samples, seed, diffuse_bounces, max_bounces, light_pass: None };
-    let (light_pass, reasons) = caustics::light_pass(scene, &method);
-    because.extend(reasons);
+    let (shown, why_shown) = caustics::light_pass(scene, &method);
+    let (light_pass, why_gathered) = beyond::with_map(scene, &method, shown.as_ref());
+    // Why nothing is shown matters only where nothing is gathered either.
+    because.extend(why_shown.into_iter().filter(|_| shown.is_some() || light_pass.is_none()));
+    because.extend(why_gathered);
     let method = Method { light_pass, ..method };
-    because.extend(lights(scene, method.light_pass.is_some()));
+    because.extend(lights(scene, method.light_pass.as_ref()));
     because.extend(cost(scene, &method, next));
     Plan { method, because, rungs }
 }
@@ -110,7 +114,7 @@ fn extended_light(scene: &Scene<Curve>) -> Option<String> {
 }
 
 /// What lights cannot do.
-fn lights(scene: &Scene<Curve>, light_pass: bool) -> Vec<String> {
+fn lights(scene: &Scene<Curve>, light_pass: Option<&LightPass>) -> Vec<String> {
     let mut lines = Vec::new();
     let wide =
         |diffuse| scene.materials.iter().any(|m| m.material.scatters_widely() && m.material.is_diffuse() == diffuse);
@@ -122,9 +126,10 @@ fn lights(scene: &Scene<Curve>, light_pass: bool) -> Vec<String> {
     };
     let points = scene.lights.iter().filter(|light| !light.is_extended()).count();
     let bends = scene.materials.iter().find(|m| m.material.has_single_directions());
-    if let (Some(lit), true, Some(bends)) = (lit, points > 0, bends) {
+    let all_found = light_pass.is_some_and(|pass| pass.map.is_some());
+    if let (Some(lit), true, Some(bends), false) = (lit, points > 0, bends, all_found) {
         let where_seen =
-            if light_pass { ", seen in a mirror or through glass or by way of another surface" } else { "" };
+            if light_pass.is_some() { ", seen in a mirror or through glass or by way of another surface" } else { "" };
         lines.push(format!(
             "left out: light of point lights that reaches a {lit} surface by way of smooth ones ({}){where_seen}",
             bends.name

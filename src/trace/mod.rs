@@ -7,8 +7,8 @@
 //! 3. A surface answers with branches, a direction and the lanes that came by it; dispersive lanes part there.
 //! 4. The tracer is a loop over pending rays: it follows all branches while the weight is large, then one, then plays
 //!    roulette. A weight is the mean throughput over the lanes, without the factor of radiance between media.
-//! 5. Paths light, smooth surfaces, one that scatters widely, camera may be found by photons; paths from the camera then leave
-//!    exactly those out.
+//! 5. Paths light, smooth surfaces, one that scatters widely, camera may be found by photons, and those with more surfaces before
+//!    the camera by gathering photons; paths from the camera then leave exactly those out.
 //! 6. Random numbers are a pure function of seed, pixel, sample, branch and use; sums have a fixed order.
 
 mod aims;
@@ -39,6 +39,7 @@ mod world;
 
 pub use aims::{is_photon_source, is_photon_target};
 pub use light_pass::seen_photons;
+pub use merge::{gathered_photons, reached_places};
 pub use method::{LightPass, MapPasses, Method, Transport};
 pub use probe::{Probe, probe};
 pub use render::{Report, render};

@@ -30,6 +30,8 @@ pub(super) struct Tracer<'a, const N: usize> {
     pub(super) met: Option<Vec<(LightId, DVec3)>>,
     /// Photons that are gathered, if any are.
     pub(super) photons: Option<&'a Photons<N>>,
+    /// Places that scatter widely and are not seen straight, if somebody wants to know.
+    pub(super) reached: Option<Vec<DVec3>>,
 }
 
 /// How much sooner roulette ends paths that leave a diffuse surface than those that leave a smooth one: what they still
@@ -46,7 +48,17 @@ impl<'a, const N: usize> Tracer<'a, N> {
     pub(super) fn new(world: &'a World) -> Self {
         let (pending, branches) = (Vec::new(), Vec::new());
         let (transport, tally) = (world.method.transport, Tally::default());
-        Self { world, transport, pending, branches, hider: Cell::new(None), tally, met: None, photons: None }
+        Self {
+            world,
+            transport,
+            pending,
+            branches,
+            hider: Cell::new(None),
+            tally,
+            met: None,
+            photons: None,
+            reached: None,
+        }
     }
 
     pub(super) fn with_transport(self, transport: Transport) -> Self {
@@ -194,11 +206,13 @@ impl<'a, const N: usize> Tracer<'a, N> {
             };
             let far = material.scatters_through().then_some((beyond, parts));
             let chance = gathering.gather(far, sampler, path.key, sum);
-            if let Some(photons) = self.photons
-                && goes_on
-                && path.leg != Leg::Camera
-            {
-                add(sum, photons.gather(world, path, &arrival, (hit, point, normal), (material, parts)));
+            if goes_on && path.leg != Leg::Camera {
+                if let Some(photons) = self.photons {
+                    add(sum, photons.gather(world, path, &arrival, (hit, point, normal), (material, parts)));
+                }
+                if let Some(reached) = &mut self.reached {
+                    reached.push(point.position);
+                }
             }
             let (pdf, from, aimed_at_all, passed) = (0.0, point.position, aims_at_all, false);
             drawn = Some(Drawn { pdf, from, normal, chance, aimed_at_all, passed });

@@ -30,7 +30,7 @@ pub fn glass(text: &str) -> String {
 }
 
 /// Mean and variance of the mean of every block and band.
-fn blocks(text: &str, pass: bool, map: Option<MapPasses>, samples: u32) -> Vec<(f64, f64)> {
+pub fn blocks(text: &str, pass: bool, map: Option<MapPasses>, samples: u32) -> Vec<(f64, f64)> {
     let scene = scene(text);
     let lights = (0..scene.lights.len()).collect();
     let light_pass = pass.then_some(LightPass { photons: u64::from(samples) * (SIDE * SIDE) as u64, lights, map });

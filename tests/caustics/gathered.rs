@@ -2,7 +2,8 @@
 
 use abbe::trace::MapPasses;
 
-use crate::agreement::{ABOVE, BALL, FLOOR, LAMP, agree_with, glass, object, seen_by};
+use crate::agreement::{ABOVE, BALL, FLOOR, LAMP, agree_with, blocks, glass, object, seen_by};
+use crate::support::scenes::standard_errors;
 
 /// A radius so small that blurring moves nothing between blocks that these samples could tell.
 const NARROW: MapPasses = MapPasses { count: 16, photons: 8192, radius: 0.1 };
@@ -11,32 +12,61 @@ fn agree(what: &str, text: &str) {
     agree_with(what, text, 64, Some(NARROW));
 }
 
-#[test]
-fn the_caustic_of_a_ball_seen_in_a_mirror() {
-    let text = seen_by("position = [0, 1.2, 2.5]\nlook_at = [0, 0.8, -2]\nvertical_fov = 40", "")
+/// A ball before a leaning mirror.
+fn mirror() -> String {
+    seen_by("position = [0, 1.2, 2.5]\nlook_at = [0, 0.8, -2]\nvertical_fov = 40", "")
         + FLOOR
         + LAMP
         + &glass("index = 1.5")
         + "[material.mirror]\nmirror = { reflectance = 0.9 }\n"
         + &object("mirror", "quad = { center = [0, 2, -2], u = [3, 0, 0], v = [0, 2, 0.3] }")
         + &object("glass", BALL)
-        + &object("lamp", "sphere = { center = [0.5, 5, 0], radius = 0.6 }");
-    agree("mirror", &text);
+        + &object("lamp", "sphere = { center = [0.5, 5, 0], radius = 0.6 }")
 }
 
 #[test]
-fn the_floor_of_a_pool_seen_through_its_water() {
-    let text = seen_by(ABOVE, "filter = \"tent\"")
+fn the_caustic_of_a_ball_seen_in_a_mirror() {
+    agree("mirror", &mirror());
+}
+
+/// Under water, lit by a lamp beside it.
+fn pool(film: &str) -> String {
+    seen_by(ABOVE, film)
         + FLOOR
         + LAMP
         + "[material.water]\ndielectric = { index = 1.33, absorption = { rgb = [0.5, 0.2, 0.1] } }\n\
            [material.stone]\nplastic = { reflectance = 0.5, roughness = 0.3 }\n"
         + &object("water", "cube = { center = [0, 0.5, 0], size = [4, 1.2, 4] }")
         + &object("stone", "sphere = { center = [0.3, 0.3, 0.2], radius = 0.3 }")
-        + &object("lamp", "disc = { center = [0.5, 4, 0], normal = [0, -1, 0], radius = 0.7 }");
-    agree("pool", &text);
+        + &object("lamp", "disc = { center = [0.5, 4, 0], normal = [0, -1, 0], radius = 0.7 }")
 }
 
+#[test]
+fn the_floor_of_a_pool_seen_through_its_water() {
+    agree("pool", &pool("filter = \"tent\""));
+}
+
+/// The plan's own radius on an image whose pixels are as wide as they can be: nowhere does blurring move a hundredth.
+#[test]
+fn the_bias_of_the_plans_radius_is_less_than_a_hundredth() {
+    for (what, text) in [("pool", pool("")), ("mirror", mirror())] {
+        let wide = MapPasses { radius: 1.0, ..NARROW };
+        let [narrow, wide] = [NARROW, wide].map(|map| blocks(&text, true, Some(map), 256));
+        let limit = 1.25 * standard_errors(narrow.len());
+        let (mut moved, mut whole, mut variance) = (0.0, 0.0, 0.0);
+        for (a, b) in narrow.iter().zip(&wide) {
+            let error = (a.1 + b.1).sqrt();
+            assert!((a.0 - b.0).abs() < 0.01 * a.0 + limit * error, "{what}: {} for {}, error {error}", b.0, a.0);
+            moved += b.0 - a.0;
+            whole += a.0;
+            variance += error * error;
+        }
+        // The three bands of a block move together.
+        let error = (3.0 * variance).sqrt() / whole;
+        println!("{what}: the whole is moved by {:.5}, error {error:.5}", moved / whole);
+        assert!(3.0 * error < 0.01 && moved.abs() < 0.01 * whole, "{what}: bias {}, error {error}", moved / whole);
+    }
+}
 #[test]
 fn a_spectrum_thrown_by_a_prism_and_seen_through_another() {
     let prism = |x: f64| {
