@@ -61,6 +61,7 @@ class Plot:
     linear: bool = False  # the vertical axis
     source: str = ""  # where the naive method is from
     bound: float = 0.0  # what our values stay below
+    least: float = 0.0  # values below it are drawn as 0
     notes: list[str] = field(default_factory=list)
 
     @property
@@ -75,9 +76,9 @@ class Plot:
 
 
 def floor_of(plot: Plot) -> float:
-    """Where zeros are drawn: a third of the smallest value above 0, in whole decades."""
+    """Where zeros are drawn: below a third of the smallest value above 0, at a whole decade."""
     values = np.concatenate([one.y[one.y > 0] for one in plot.series] or [np.ones(1)])
-    return float(10.0 ** np.floor(np.log10(values.min() / 3)))
+    return max(plot.least, float(10.0 ** np.floor(np.log10(values.min() / 3))))
 
 
 def spread_apart(places: list[float], gap: float, low: float, high: float) -> list[float]:
@@ -107,7 +108,7 @@ def draw(plot: Plot, path: Path) -> None:
             y = np.maximum(one.y, floor)
             width = 2.4 if one.ours else 1.6
             axes.plot(one.x, y, "-", color=color, linewidth=width, zorder=3 if one.ours else 2)
-            zero = (one.y <= 0) & (not plot.linear)
+            zero = (one.y <= floor) & (not plot.linear)
             axes.plot(one.x[~zero], y[~zero], mark, color=color, markersize=5, zorder=4)
             axes.plot(one.x[zero], y[zero], mark, color=color, markersize=5, markerfacecolor="white", zorder=4, clip_on=False)
             last = np.argmax(one.x)

@@ -5,7 +5,6 @@
 """
 
 import resource
-import time
 
 import numpy as np
 import render
@@ -67,7 +66,7 @@ def green(text: str, **flags) -> np.ndarray:
     return photograph(text, **flags).channels["G"].astype(np.float64)
 
 
-def mean_and_error(text: str, seeds=4, **flags) -> tuple[float, float]:
+def mean_and_error(text: str, seeds=8, **flags) -> tuple[float, float]:
     """Mean of all pixels, and its standard error from independent seeds."""
     means = [green(text, seed=seed, **flags).mean() for seed in range(1, seeds + 1)]
     return float(np.mean(means)), float(np.std(means, ddof=1) / np.sqrt(seeds))
@@ -84,7 +83,3 @@ def plane(point, normal) -> dict:
 def slab(top: float, bottom: float, side=40.0) -> dict:
     """A wide box between two heights."""
     return {"cube": {"center": [0, (top + bottom) / 2, 0], "size": [side, top - bottom, side]}}
-
-
-def since(start: float) -> str:
-    return f"{time.monotonic() - start:.1f} s"
