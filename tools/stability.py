@@ -19,6 +19,7 @@ from pathlib import Path
 
 import render
 import stability_geometry
+import stability_lights
 import stability_optics
 import stability_transport
 from stability_plot import Plot, draw, write_csv
@@ -35,10 +36,10 @@ ROWS = {
     "W4": stability_transport.w4,
     "W6": stability_transport.w6,
     "A1": stability_transport.a1,
-    "A6": stability_transport.a6,
-    "L1": stability_transport.l1,
-    "L3": stability_transport.l3,
-    "L4": stability_transport.l4,
+    "A6": stability_lights.a6,
+    "L1": stability_lights.l1,
+    "L3": stability_lights.l3,
+    "L4": stability_lights.l4,
     "G4": stability_optics.g4,
     "G6": stability_optics.g6,
 }
@@ -50,7 +51,12 @@ def catalog(text: str) -> list[dict]:
     for line in text.splitlines():
         cells = [cell.strip().replace("\\|", "|") for cell in line.strip().strip("|").replace("\\|", "\0").split("|")]
         cells = [cell.replace("\0", "|") for cell in cells]
-        if not line.lstrip().startswith("|") or len(cells) != 4 or cells[0] in ("row", "") or set(cells[0]) <= set("-: "):
+        if (
+            not line.lstrip().startswith("|")
+            or len(cells) != 4
+            or cells[0] in ("row", "")
+            or set(cells[0]) <= set("-: ")
+        ):
             continue
         row, name, remedy, test = cells
         rows.append({"row": row, "name": name, "remedy": remedy, "test": test.replace("`", "")})
@@ -62,7 +68,8 @@ def keep(plot: Plot, folder: Path) -> dict:
     names = {"svg": f"{plot.row}.svg", "csv": f"{plot.row}.csv"}
     draw(plot, folder / names["svg"])
     write_csv(plot, folder / names["csv"])
-    return {"row": plot.row, "title": plot.title, "words": plot.words, "source": plot.source, **names}
+    axes = {"xlabel": plot.xlabel, "ylabel": plot.ylabel, "linear": plot.linear, "least": plot.least}
+    return {"row": plot.row, "title": plot.title, "words": plot.words, "source": plot.source, **names, **axes}
 
 
 def merge(folder: Path, entries: list[dict], made_by: str) -> None:
@@ -81,7 +88,9 @@ def main(arguments=None) -> None:
     parser.add_argument("--row", action="append", choices=ROWS, metavar="ROW", help="this row alone; may be repeated")
     parser.add_argument("--quick", action="store_true", help="fewer points and samples")
     parser.add_argument("--list", action="store_true", help="say which rows there are and draw nothing")
-    parser.add_argument("--out", type=Path, default=render.ROOT / "target/stability", help="folder for SVG, CSV and JSON")
+    parser.add_argument(
+        "--out", type=Path, default=render.ROOT / "target/stability", help="folder for SVG, CSV and JSON"
+    )
     given = parser.parse_args(arguments)
     if given.list:
         for row, function in ROWS.items():
@@ -94,7 +103,11 @@ def main(arguments=None) -> None:
         plot = ROWS[row](given.quick)
         entries.append(keep(plot, given.out))
         print(f"{row}  {plot.title} ({time.monotonic() - start:.1f} s)\n    {plot.words}", flush=True)
-    words = ["python tools/stability.py", *(f"--row {row}" for row in given.row or []), *(["--quick"] if given.quick else [])]
+    words = [
+        "python tools/stability.py",
+        *(f"--row {row}" for row in given.row or []),
+        *(["--quick"] if given.quick else []),
+    ]
     merge(given.out, entries, " ".join(words))
     print(f"wrote {len(entries)} plots and stability.json into {given.out}")
 

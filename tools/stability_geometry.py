@@ -77,21 +77,46 @@ def s1(quick: bool) -> Plot:
         f"{found['expanded, f64'][-1, 0]:.0%}; Abbe's images, cross product in f64, are right within {max(ours):.1g} at every distance "
         "(the 32-bit numbers of the file carry 6e-8)."
     )
-    return Plot("S1", "A ball seen from afar", "distance / radius", "RMS relative error of its reflectance",
-                [*series, Series("Abbe, rendered", distances, ours, True)], words, bound=3e-6,
-                source="Haines, Gunther & Akenine-Moller 2019; pbrt-v4 6.8")
+    return Plot(
+        "S1",
+        "A ball seen from afar",
+        "distance / radius",
+        "RMS relative error of its reflectance",
+        [*series, Series("Abbe, rendered", distances, ours, True)],
+        words,
+        bound=3e-6,
+        source="Haines, Gunther & Akenine-Moller 2019; pbrt-v4 6.8",
+    )
 
 
 def scaled_scene(size: float) -> str:
     """Glass ball, metal ball, lamp and floor, every length times `size`."""
-    materials = {"glass": {"dielectric": {"index": 1.5}}, "metal": {"conductor": {"metal": "Au", "roughness": 0.3}},
-                 "gray": {"diffuse": {"reflectance": 0.6}}, "bright": {"emissive": {"radiance": 5}}}
+    materials = {
+        "glass": {"dielectric": {"index": 1.5}},
+        "metal": {"conductor": {"metal": "Au", "roughness": 0.3}},
+        "gray": {"diffuse": {"reflectance": 0.6}},
+        "bright": {"emissive": {"radiance": 5}},
+    }
     quad = {"quad": {"center": [0, 4 * size, 0], "u": [size, 0, 0], "v": [0, 0, size]}}
-    objects = [("glass", sphere((0, size, 0), size)), ("metal", sphere((2 * size, size, -size), size)),
-               ("gray", plane((0, 0, 0), (0, 1, 0))), ("bright", quad)]
+    objects = [
+        ("glass", sphere((0, size, 0), size)),
+        ("metal", sphere((2 * size, size, -size), size)),
+        ("gray", plane((0, 0, 0), (0, 1, 0))),
+        ("bright", quad),
+    ]
     lights = [{"environment": {"radiance": 0.2}}]
-    return view(objects, lights, materials, eye=(0, 1.25 * size, 6 * size), target=(0, size, 0), fov=50, columns=32, rows=24,
-                samples=4, caustics="off")
+    return view(
+        objects,
+        lights,
+        materials,
+        eye=(0, 1.25 * size, 6 * size),
+        target=(0, size, 0),
+        fov=50,
+        columns=32,
+        rows=24,
+        samples=4,
+        caustics="off",
+    )
 
 
 def lost_chords(size: float, precision, count: int, epsilon=1e-4) -> float:
@@ -115,16 +140,26 @@ def s6(quick: bool) -> Plot:
     """The same scene in other units."""
     powers = np.arange(-40, 41, 20 if quick else 8)
     sizes = 2.0**powers
-    naive = [Series(f"t > 1e-4, {name}", sizes, [lost_chords(s, kind, 20000) for s in sizes])
-             for name, kind in (("f32", np.float32), ("f64", np.float64))]
+    naive = [
+        Series(f"t > 1e-4, {name}", sizes, [lost_chords(s, kind, 20000) for s in sizes])
+        for name, kind in (("f32", np.float32), ("f64", np.float64))
+    ]
     base = photograph(scaled_scene(1.0)).rgb
     ours = [float(np.mean(np.any(photograph(scaled_scene(float(s))).rgb != base, axis=-1))) for s in sizes]
     words = (
         f"With a fixed epsilon of 1e-4, {naive[1].y[0]:.0%} of the rays inside a ball of size 2^-40 are lost; Abbe's image of a scene times 2^k "
         f"differs from the unscaled one in {sum(ours) * base.shape[0] * base.shape[1]:.0f} pixels of {base.shape[0] * base.shape[1] * len(sizes)}, to the last bit."
     )
-    return Plot("S6", "The same scene in other units", "size of the scene", "share of wrong rays; of pixels that differ",
-                [*naive, Series("Abbe, rendered:\npixels that differ", sizes, ours, True)], words, linear=True, source="smallpt")
+    return Plot(
+        "S6",
+        "The same scene in other units",
+        "size of the scene",
+        "share of wrong rays; of pixels that differ",
+        [*naive, Series("Abbe, rendered:\npixels that differ", sizes, ours, True)],
+        words,
+        linear=True,
+        source="smallpt",
+    )
 
 
 def ball_mesh(rings=12, around=24):
@@ -166,7 +201,9 @@ def t1(quick: bool) -> Plot:
     points, faces = ball_mesh()
     edges = sorted({tuple(sorted((int(f[i]), int(f[i - 1])))) for f in faces for i in range(3)})
     chosen = np.random.default_rng(3).permutation(len(edges))[: 16 if quick else 64]
-    aims = np.array([1e-1, 1e-8, 1e-16] if quick else [1e-1, 1e-3, 1e-5, 1e-6, 1e-7, 1e-8, 1e-10, 1e-12, 1e-14, 1e-15, 1e-16, 1e-17])
+    aims = np.array(
+        [1e-1, 1e-8, 1e-16] if quick else [1e-1, 1e-3, 1e-5, 1e-6, 1e-7, 1e-8, 1e-10, 1e-12, 1e-14, 1e-15, 1e-16, 1e-17]
+    )
     rows = 64
     mesh = {"mesh": {"points": points, "faces": faces}}
     leaks = np.zeros((len(aims), 3))
@@ -191,5 +228,13 @@ def t1(quick: bool) -> Plot:
     )
     labels = ("Moller-Trumbore, f32", "Moller-Trumbore, f64", "Abbe, rendered")
     series = [Series(label, 1 / aims, share[:, j], j == 2) for j, label in enumerate(labels)]
-    return Plot("T1", "Leaks through a closed mesh", "edge length / distance of the aim from the edge", "share of rays that leak", series, words,
-                linear=True, source="Moller & Trumbore 1997; Woop, Benthin & Wald 2013")
+    return Plot(
+        "T1",
+        "Leaks through a closed mesh",
+        "edge length / distance of the aim from the edge",
+        "share of rays that leak",
+        series,
+        words,
+        linear=True,
+        source="Moller & Trumbore 1997; Woop, Benthin & Wald 2013",
+    )

@@ -1,5 +1,7 @@
 """Stability rows D5, D13, G4, G6, M3: materials and spectra. Naive methods in numpy, ours on rendered images."""
 
+from itertools import pairwise
+
 import numpy as np
 import optics
 from stability_plot import Plot, Series
@@ -20,7 +22,9 @@ def d5(quick: bool) -> Plot:
         r0 = ((index - 1) / (index + 1)) ** 2
         schlick.append(abs(float(np.sum((r0 + (1 - r0) * (1 - cosine) ** 5) * impact)) / exact - 1))
         black = {"black": {"dielectric": {"index": index, "absorption": 1e6}}}
-        scene = view([("black", sphere())], [WHITE_SKY], black, eye=(0, 0.5, 3), target=(0, 0.5, 0), height=1, rows=rows)
+        scene = view(
+            [("black", sphere())], [WHITE_SKY], black, eye=(0, 0.5, 3), target=(0, 0.5, 0), height=1, rows=rows
+        )
         shown = green(scene)[::-1, 0]
         ours.append(abs(float(np.sum(shown * impact)) / exact - 1))
     near = int(np.argmin(abs(excess - 1e-2)))
@@ -29,8 +33,16 @@ def d5(quick: bool) -> Plot:
         f"times at {1 + excess[0]:g}: it never falls below 1/21. Abbe's balls show the exact Fresnel mean within {max(ours):.1g}."
     )
     series = [Series("Schlick 1994", excess, schlick), Series("Abbe, rendered", excess, ours, True)]
-    return Plot("D5", "Reflection at a small step of index", "index - 1", "relative error of the mean reflectance", series, words,
-                bound=1e-6, source="Schlick 1994; Fresnel")
+    return Plot(
+        "D5",
+        "Reflection at a small step of index",
+        "index - 1",
+        "relative error of the mean reflectance",
+        series,
+        words,
+        bound=1e-6,
+        source="Schlick 1994; Fresnel",
+    )
 
 
 def d13(quick: bool) -> Plot:
@@ -38,7 +50,14 @@ def d13(quick: bool) -> Plot:
     widths = np.array([10, 0.1] if quick else [30, 10, 3, 1, 0.3, 0.1, 0.03, 0.01])
     plate = [("prism", slab(0, -0.5))]
     glass = {"prism": {"dielectric": {"index": "N-SF11"}}}
-    looking = {"eye": (0, 3, 0), "up": (0, 0, 1), "materials": glass, "model": "hero", "space": "lin_ciexyzd65_scene", "samples": 1}
+    looking = {
+        "eye": (0, 3, 0),
+        "up": (0, 0, 1),
+        "materials": glass,
+        "model": "hero",
+        "space": "lin_ciexyzd65_scene",
+        "samples": 1,
+    }
 
     def luminances(radiance, side):
         scene = view(plate, [{"environment": {"radiance": radiance}}], columns=side, rows=side, fov=1, **looking)
@@ -59,17 +78,27 @@ def d13(quick: bool) -> Plot:
         share = widths * lanes / span
         return span / widths / lanes * np.sqrt(share * (1 - share)) / 2
 
-    series = [Series("1 wavelength a sample,\nuniform (closed form)", widths[::-1], naive(1)[::-1]),
-              Series("4 stratified\n(closed form)", widths[::-1], naive(4)[::-1]),
-              Series("Abbe, rendered (hero)", widths[::-1], np.array(ours)[::-1], True)]
+    series = [
+        Series("1 wavelength a sample,\nuniform (closed form)", widths[::-1], naive(1)[::-1]),
+        Series("4 stratified\n(closed form)", widths[::-1], naive(4)[::-1]),
+        Series("Abbe, rendered (hero)", widths[::-1], np.array(ours)[::-1], True),
+    ]
     for one in series:
         one.x = 1 / one.x
     words = (
         f"A line {widths[-1]:g} nm wide and as strong as the continuum makes uniformly drawn wavelengths vary by {naive(4)[-1]:.0f} times their mean, four "
         f"lanes and all; Abbe's heroes, seen through N-SF11, vary by {ours[-1]:.2f} at that width and at most {max(ours):.2f} at any."
     )
-    return Plot("D13", "Narrow emission lines", "1 / width of the line, in 1/nm", "deviation / mean of one sample", series, words,
-                bound=1.1, source="Wilkie et al. 2014 for the stratified lanes")
+    return Plot(
+        "D13",
+        "Narrow emission lines",
+        "1 / width of the line, in 1/nm",
+        "deviation / mean of one sample",
+        series,
+        words,
+        bound=1.1,
+        source="Wilkie et al. 2014 for the stratified lanes",
+    )
 
 
 def ggx_f32(cosine, alpha):
@@ -114,7 +143,16 @@ def g6(quick: bool) -> Plot:
     ours, errors = [], []
     for value in roughness:
         metal = {"metal": {"conductor": {"n": 1e-6, "k": 100, "roughness": float(value)}}}
-        scene = view([("metal", sphere(radius=2.0))], [WHITE_SKY], metal, eye=(0, 0, 9), height=4 / np.sqrt(2), columns=32, rows=32, samples=64)
+        scene = view(
+            [("metal", sphere(radius=2.0))],
+            [WHITE_SKY],
+            metal,
+            eye=(0, 0, 9),
+            height=4 / np.sqrt(2),
+            columns=32,
+            rows=32,
+            samples=64,
+        )
         mean, error = mean_and_error(scene)
         ours.append(abs(mean - 1))
         errors.append(error)
@@ -123,13 +161,21 @@ def g6(quick: bool) -> Plot:
         f"{max(ours):.1g} (standard error {max(errors):.0e})."
     )
     series = [Series("single scattering", alphas, naive), Series("Abbe, rendered", alphas, ours, True)]
-    return Plot("G6", "Energy of rough metals", "width of the facets' slopes, alpha", "share of light lost or won", series, words,
-                bound=5e-3, source="Heitz 2018; Kulla & Conty 2017")
+    return Plot(
+        "G6",
+        "Energy of rough metals",
+        "width of the facets' slopes, alpha",
+        "share of light lost or won",
+        series,
+        words,
+        bound=5e-3,
+        source="Heitz 2018; Kulla & Conty 2017",
+    )
 
 
 def through(indices) -> float:
     """Transmittance of a stack of boundaries at normal incidence, all orders summed: reflectance over transmittance adds up."""
-    r = [((a - b) / (a + b)) ** 2 for a, b in zip(indices, indices[1:], strict=False)]
+    r = [((a - b) / (a + b)) ** 2 for a, b in pairwise(indices)]
     return 1 / (1 + sum(one / (1 - one) for one in r))
 
 
@@ -140,8 +186,15 @@ def m3(quick: bool) -> Plot:
     gap, ours = [], []
     for depth in depths:
         for shift, found in ((-depth, gap), (depth, ours)):
-            materials = {"glass": {"dielectric": {"index": GLASS, "priority": 1}}, "water": {"dielectric": {"index": WATER}}}
-            objects = [("glass", slab(1, 0)), ("water", slab(float(shift), -1, side=39.0)), ("lamp", plane((0, -3, 0), (0, 1, 0)))]
+            materials = {
+                "glass": {"dielectric": {"index": GLASS, "priority": 1}},
+                "water": {"dielectric": {"index": WATER}},
+            }
+            objects = [
+                ("glass", slab(1, 0)),
+                ("water", slab(float(shift), -1, side=39.0)),
+                ("lamp", plane((0, -3, 0), (0, 1, 0))),
+            ]
             scene = view(objects, materials=materials, eye=(0, 5, 0), up=(0, 0, 1))
             found.append(abs(float(green(scene)[0, 0]) / exact - 1))
     alone = abs(through([1, GLASS, 1, WATER, 1]) / exact - 1)
@@ -149,10 +202,21 @@ def m3(quick: bool) -> Plot:
         f"Water drawn a hair below its glass loses {gap[-1]:.1%} of the light however thin the gap of air, and bodies that overlap without a rule as "
         f"much; Abbe's priorities let them overlap and keep the transmittance within {max(ours):.1g}, whatever the overlap."
     )
-    series = [Series("gap of air (rendered)", 1 / depths, gap), Series("overlap, each boundary\nby itself (closed form)", 1 / depths, [alone] * len(depths)),
-              Series("Abbe, rendered:\noverlap by priority", 1 / depths, ours, True)]
-    return Plot("M3", "Water in glass", "thickness of the glass / gap or overlap", "relative error of the transmittance", series, words,
-                bound=1e-6, source="Schmidt & Budge 2002")
+    series = [
+        Series("gap of air (rendered)", 1 / depths, gap),
+        Series("overlap, each boundary\nby itself (closed form)", 1 / depths, [alone] * len(depths)),
+        Series("Abbe, rendered:\noverlap by priority", 1 / depths, ours, True),
+    ]
+    return Plot(
+        "M3",
+        "Water in glass",
+        "thickness of the glass / gap or overlap",
+        "relative error of the transmittance",
+        series,
+        words,
+        bound=1e-6,
+        source="Schmidt & Budge 2002",
+    )
 
 
 def g4(quick: bool) -> Plot:
@@ -181,6 +245,17 @@ def g4(quick: bool) -> Plot:
         f"Written as c^2 (alpha^2 - 1) + 1 in f32, the density of facets is off by {naive[near]:.1%} at alpha {alphas[near]:g}, and "
         f"{'infinite' if np.isinf(naive[-1]) else f'off by {naive[-1]:.0%}'} at {alphas[-1]:g}; Abbe's highlights of a point light are right within {max(ours):.1g}, and below 1e-4 metal counts as smooth."
     )
-    series = [Series("c^2 (alpha^2 - 1) + 1,\nf32", 1 / alphas, np.minimum(naive, 1e3)), Series("Abbe, rendered", 1 / alphas, ours, True)]
-    return Plot("G4", "Highlights on polished metal", "1 / alpha", "worst relative error of the radiance", series, words,
-                bound=1e-5, source="Walter et al. 2007 for the distribution")
+    series = [
+        Series("c^2 (alpha^2 - 1) + 1,\nf32", 1 / alphas, np.minimum(naive, 1e3)),
+        Series("Abbe, rendered", 1 / alphas, ours, True),
+    ]
+    return Plot(
+        "G4",
+        "Highlights on polished metal",
+        "1 / alpha",
+        "worst relative error of the radiance",
+        series,
+        words,
+        bound=1e-5,
+        source="Walter et al. 2007 for the distribution",
+    )

@@ -110,7 +110,9 @@ def draw(plot: Plot, path: Path) -> None:
             axes.plot(one.x, y, "-", color=color, linewidth=width, zorder=3 if one.ours else 2)
             zero = (one.y <= floor) & (not plot.linear)
             axes.plot(one.x[~zero], y[~zero], mark, color=color, markersize=5, zorder=4)
-            axes.plot(one.x[zero], y[zero], mark, color=color, markersize=5, markerfacecolor="white", zorder=4, clip_on=False)
+            axes.plot(
+                one.x[zero], y[zero], mark, color=color, markersize=5, markerfacecolor="white", zorder=4, clip_on=False
+            )
             last = np.argmax(one.x)
             ends.append((y[last], color, one.label + (" (0)" if one.y[last] <= 0 and not plot.linear else "")))
         axes.set_xscale("log")

@@ -1,7 +1,7 @@
 """Scenes for the stability plots, as TOML text made from numbers, and what is read from their images.
 
-    from stability_scenes import photograph, view
-    image = photograph(view([...], eye=(0, 0, 3), rows=64, height=2))
+from stability_scenes import photograph, view
+image = photograph(view([...], eye=(0, 0, 3), rows=64, height=2))
 """
 
 import resource
@@ -30,8 +30,21 @@ def toml(value) -> str:
     return repr(int(value) if isinstance(value, (int, np.integer)) else float(value))
 
 
-def view(objects, lights=(), materials=None, *, eye, target=(0, 0, 0), up=(0, 1, 0), fov=None, height=None, columns=1,
-         rows=1, space=None, **settings) -> str:
+def view(
+    objects,
+    lights=(),
+    materials=None,
+    *,
+    eye,
+    target=(0, 0, 0),
+    up=(0, 1, 0),
+    fov=None,
+    height=None,
+    columns=1,
+    rows=1,
+    space=None,
+    **settings,
+) -> str:
     """A scene's text. `objects` pairs materials with shapes; `fov` in degrees, or the `height` of an orthographic view.
 
     Without `samples`, rays go through the centers of pixels, and nothing is left to chance where surfaces are smooth."""

@@ -1,6 +1,6 @@
 """The stability plots' naive methods fail and Abbe's images stay within their bounds; the plots and the table are kept as promised.
 
-    pytest tools/tests/test_stability.py
+pytest tools/tests/test_stability.py
 """
 
 import csv
@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 import stability
 import stability_geometry as geometry
+import stability_lights as lights
 import stability_optics as optics_rows
 import stability_transport as transport
 
@@ -72,7 +73,7 @@ def test_every_path_through_a_stack_sums_to_the_closed_form():
 
 
 def test_photons_find_a_caustic_sooner_than_chance():
-    plot = transport.a6(quick=True)
+    plot = lights.a6(quick=True)
     expected, _, ours = (one.y for one in plot.series)
     assert (expected > 10 * ours).all()
     assert expected[-1] > 30 * expected[0], "by chance, cost grows as the lamp shrinks"
@@ -83,9 +84,9 @@ def test_the_sum_of_many_floats_stops_growing():
 
 
 def test_reference_integrals_meet_their_closed_forms():
-    assert transport.wall_share(1e-9) == pytest.approx(0.5)
+    assert lights.wall_share(1e-9) == pytest.approx(0.5)
     area = np.sqrt(3) / 4 * 1e-6
-    assert transport.triangle_integral(1e-3, 1) == pytest.approx(area, rel=1e-6)
+    assert lights.triangle_integral(1e-3, 1) == pytest.approx(area, rel=1e-6)
     assert optics_rows.single_scattering(1e-4, 1000) == pytest.approx(1, abs=1e-6)
     points, faces = geometry.ball_mesh()
     corners = points[faces]

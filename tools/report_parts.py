@@ -1,0 +1,234 @@
+"""The parts of the report as HTML: scenes, charts, the validation book, stability plots, how all was made.
+
+Each function takes what report.gather found and returns a piece of the page; charts are drawn by page/page.js from `charts`.
+"""
+
+import base64
+import csv
+import html
+from pathlib import Path
+
+OURS = ("--a0", "--a1", "--a2", "--a3", "--a4")
+OTHERS = ("--n0", "--n1", "--n2", "--n3", "--n4", "--n5")
+
+
+def text(value) -> str:
+    """Safe inside an element or an attribute."""
+    return html.escape(str(value), quote=True)
+
+
+def missing(what: str, command: str) -> str:
+    return f'<p class="missing">{text(what)}: run <code>{text(command)}</code> and make this page again.</p>'
+
+
+def picture(path: Path) -> str:
+    """A PNG as a data URI."""
+    return "data:image/png;base64," + base64.b64encode(path.read_bytes()).decode("ascii")
+
+
+def duration(seconds: float) -> str:
+    return "less than a second" if seconds < 0.5 else f"about {max(1, round(seconds))} s"
+
+
+def card(scene: dict) -> str:
+    """One scene: picture, what to look for, command, time, the plan's words."""
+    parts = []
+    if scene["picture"]:
+        parts.append(f'<img src="{picture(scene["picture"])}" alt="{text(scene["line"])}">')
+    parts.append(f'<div class="text"><h3>{text(scene["name"])}</h3><p>{text(scene["line"])}</p>')
+    parts.append(f"<pre><code>{text(scene['command'])}</code></pre>")
+    if scene["seconds"] is not None:
+        parts.append(f'<p class="small">{duration(scene["seconds"]).capitalize()} on two cores.</p>')
+    if scene["plan"]:
+        first, rest = scene["plan"][0], scene["plan"][1:]
+        parts.append(f'<p class="small">{text(first)}</p>')
+        if rest:
+            lines = "".join(f"<p>{text(line)}</p>" for line in rest)
+            parts.append(f'<details class="small"><summary>The rest of the plan</summary>{lines}</details>')
+    return f'<li class="card">{"".join(parts)}</div></li>'
+
+
+def scenes(found: list[dict]) -> str:
+    words = "What to look for, the line that renders it, how long that takes, and what <code>render --plan</code> says."
+    return f"<p>{words}</p>" + f'<ul class="cards">{"".join(map(card, found))}</ul>'
+
+
+def colored(series: list[dict]) -> list[dict]:
+    """Ours in blue and green, others in warm colors, one after the other."""
+    counts = {True: 0, False: 0}
+    for one in series:
+        palette = OURS if one["ours"] else OTHERS
+        one["color"] = palette[counts[one["ours"]] % len(palette)]
+        counts[one["ours"]] += 1
+    return series
+
+
+def speed_chart(scene: dict) -> dict:
+    """A scene of chart.json as page.js draws it."""
+    series = []
+    for one in scene["series"]:
+        points = [
+            {
+                "x": point["cpu_seconds"],
+                "y": point["error"],
+                "words": f"{point['samples']} samples: error {point['error']:.3g} in {point['cpu_seconds']:.3g} s",
+            }
+            for point in one["points"]
+            if point["cpu_seconds"] > 0 and point["error"] > 0
+        ]
+        if points:
+            series.append({"label": one["label"], "ours": one["kind"] == "abbe", "points": points})
+    axes = {"xlabel": "CPU seconds", "ylabel": "error", "linear": False, "least": 0}
+    return {"title": scene["title"], "series": colored(series), **axes}
+
+
+def stability_chart(plot: dict, folder: Path) -> dict:
+    """A plot of stability.json and its CSV as page.js draws it."""
+    series: dict = {}
+    with (folder / plot["csv"]).open(newline="", encoding="utf-8") as file:
+        xlabel, ylabel = next(csv.reader([next(file)]))[2:4]
+        for label, kind, x, y in csv.reader(file):
+            one = series.setdefault(label, {"label": label, "ours": kind == "abbe", "points": []})
+            one["points"].append({"x": float(x), "y": float(y)})
+    for one in series.values():
+        one["points"].sort(key=lambda point: point["x"])
+    axes = {"xlabel": xlabel, "ylabel": ylabel, "linear": plot.get("linear", False), "least": plot.get("least", 0)}
+    return {"title": plot["title"], "series": colored(list(series.values())), **axes}
+
+
+def figure(chart: dict, key: str) -> str:
+    """The place of a chart, and which color is which."""
+    names = "".join(
+        f'<li class="{"ours" if one["ours"] else "other"}"><i style="background:var({one["color"]})"></i>{text(one["label"])}</li>'
+        for one in chart["series"]
+    )
+    name = f'tabindex="0" role="group" aria-label="Chart: {text(chart["title"])}"'
+    tip = '<div class="tip" role="status" hidden></div>'
+    return f'<div class="chart" data-chart="{text(key)}" {name}>{tip}</div><ul class="legend">{names}</ul>'
+
+
+def points_table(chart: dict, heads: tuple[str, str]) -> str:
+    rows = "".join(
+        f'<tr><th scope="row">{text(one["label"])}</th><td class="number">{point["x"]:.3g}</td>'
+        f'<td class="number">{point["y"]:.3g}</td></tr>'
+        for one in chart["series"]
+        for point in one["points"]
+    )
+    head = "".join(f'<th scope="col">{text(name)}</th>' for name in ("series", *heads))
+    label = f"Figures of the chart: {chart['title']}"
+    return (
+        f'<details class="small"><summary>The figures as a table</summary><div class="scroll" tabindex="0" role="region" '
+        f'aria-label="{text(label)}"><table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table></div></details>'
+    )
+
+
+def speed(found: list[dict], charts: dict) -> str:
+    parts = [
+        "<p>Error against a converged reference, over processor time; both axes are logarithmic, and lower and further left is "
+        "better. Point at a chart, touch it, or use the arrow keys.</p>"
+    ]
+    for scene in found:
+        chart = charts[f"chart {scene['name']}"]
+        words = "".join(f"<p>{text(line)}</p>" for line in scene["words"])
+        table = points_table(chart, ("CPU seconds", "error"))
+        parts.append(f"<h3>{text(scene['title'])}</h3>{words}{figure(chart, 'chart ' + scene['name'])}{table}")
+    return "".join(parts)
+
+
+def numbers(value) -> list[float]:
+    return [float(one) for one in value] if isinstance(value, (list, tuple)) else [] if value is None else [float(value)]
+
+
+def shown(value) -> str:
+    """A number or a list of them, at most six of a long one."""
+    values = numbers(value) if not isinstance(value, str) else None
+    if values is None:
+        return text(value)
+    words = [f"{one:.5g}" for one in values[:6]]
+    return text(", ".join(words) + (f" .. ({len(values)} values)" if len(values) > 6 else "")) or "-"
+
+
+def z_bar(value, limit: float) -> str:
+    """The z that is furthest from 0, as a bar to the left or right of the middle."""
+    values = [one for one in numbers(value) if one == one] if not isinstance(value, str) else []
+    if not values:
+        return '<span class="small">exact</span>'
+    z = max(values, key=abs)
+    width = min(abs(z) / limit, 1) * 50
+    left = 50 if z >= 0 else 50 - width
+    bar = f'<span class="bar" aria-hidden="true"><i style="left:{left:.1f}%;width:{width:.1f}%"></i></span>'
+    return f'<span class="z">{bar}<span>{z:.2f}</span></span>'
+
+
+def passes(row: dict) -> bool:
+    return str(row["verdict"]).lower().split()[:1] in (["pass"], ["passes"], ["passed"], ["ok"], ["true"])
+
+
+def validation(book: dict) -> str:
+    """The book as a table that can be searched."""
+    rows = book["rows"]
+    groups = list(dict.fromkeys(row["group"] for row in rows))
+    options = "".join(f"<option>{text(group)}</option>" for group in groups)
+    lines = []
+    for row in rows:
+        good = passes(row)
+        verdict = f'<span class="{"pass" if good else "fail"}">{text(row["verdict"])}</span>'
+        why = [row.get("formula"), row.get("guards_against") and f"guards against {row['guards_against']}"]
+        why = "".join(f'<span class="why">{text(line)}</span>' for line in why if line)
+        lines.append(
+            f'<tr data-group="{text(row["group"])}" data-verdict="{"pass" if good else "fail"}"><th scope="row">{text(row["name"])}'
+            f'{why}</th><td>{text(row["group"])}</td><td class="number">{shown(row["expected"])}</td>'
+            f'<td class="number">{shown(row["measured"])}</td><td class="number">{shown(row["standard_error"])}</td>'
+            f"<td>{z_bar(row.get('z'), 4)}</td><td>{verdict}</td></tr>"
+        )
+    head = "".join(f'<th scope="col">{name}</th>' for name in ("row", "group", "expected", "measured", "standard error", "z", "verdict"))
+    good = sum(map(passes, rows))
+    return (
+        f"<p>Scenes whose answer is known, rendered and judged: {good} of {len(rows)} rows pass. z is the miss in standard errors; the "
+        "bar is full at 4.</p>"
+        '<form class="filters" aria-label="Choose rows"><label>Search<input type="search" name="words" autocomplete="off"></label>'
+        f'<label>Group<select name="group"><option value="">all</option>{options}</select></label><label>Verdict<select name="verdict">'
+        '<option value="">all</option><option value="pass">passes</option><option value="fail">fails</option></select></label>'
+        '<p id="count" role="status"></p></form><div class="scroll tall" tabindex="0" role="region" aria-label="Validation rows">'
+        f'<table id="book"><thead><tr>{head}</tr></thead><tbody>{"".join(lines)}</tbody></table></div>'
+    )
+
+
+def stability(book: dict, charts: dict) -> str:
+    """Plots with their words, and which test holds which row."""
+    cards = []
+    for plot in book["plots"]:
+        key = f"stability {plot['row']}"
+        source = f'<p class="small">After {text(plot["source"])}.</p>' if plot.get("source") else ""
+        cards.append(
+            f'<li class="card"><div class="text"><h3>{text(plot["row"])}: {text(plot["title"])}</h3><p>{text(plot["words"])}</p>'
+            f"{figure(charts[key], key)}{source}</div></li>"
+        )
+    intro = (
+        "<p>Where methods fail: common ways of computing beside Abbe, as what is hard about a scene grows. The failing ones are small "
+        "programs or closed forms; Abbe's values are measured on images that it rendered. An open mark is a value of 0, or below the axis.</p>"
+    )
+    parts = [intro, f'<ul class="cards plots">{"".join(cards)}</ul>']
+    if book.get("rows"):
+        lines = "".join(
+            f'<tr><td>{text(row["row"])}</td><th scope="row">{text(row["name"])}<span class="why">{text(row.get("remedy", ""))}</span></th>'
+            f"<td><code>{text(row['test'])}</code></td></tr>"
+            for row in book["rows"]
+        )
+        head = "".join(f'<th scope="col">{name}</th>' for name in ("row", "what fails, and what Abbe does", "test"))
+        parts.append(
+            '<h3 style="margin-top:2rem">Which test holds which row</h3><div class="scroll tall" tabindex="0" role="region" '
+            f'aria-label="Rows and tests"><table><thead><tr>{head}</tr></thead><tbody>{lines}</tbody></table></div>'
+        )
+    return "".join(parts)
+
+
+def making(parts: list[tuple[str, str, str]], versions: dict) -> str:
+    """Commands and versions."""
+    rows = "".join(
+        f'<tr><th scope="row">{text(name)}</th><td><code>{text(command)}</code></td><td>{text(when)}</td></tr>' for name, command, when in parts
+    )
+    head = "".join(f'<th scope="col">{name}</th>' for name in ("part", "command", "made"))
+    table = f'<div class="scroll" tabindex="0" role="region" aria-label="Commands"><table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table></div>'
+    listed = "".join(f"<dt>{text(name)}</dt><dd>{text(value)}</dd>" for name, value in versions.items())
+    return f"<p>Each part by itself, with what made it:</p>{table}<h3 style=\"margin-top:2rem\">Versions</h3><dl>{listed}</dl>"
