@@ -172,8 +172,9 @@ def validation(book: dict) -> str:
     lines = []
     for row in rows:
         good = passes(row)
-        verdict = f'<span class="{"pass" if good else "fail"}">{text(row["verdict"])}</span>'
-        why = [row.get("formula"), row.get("guards_against") and f"guards against {row['guards_against']}"]
+        word, _, reason = str(row["verdict"]).partition(": ")
+        verdict = f'<span class="{"pass" if good else "fail"}">{text(word)}</span>'
+        why = [row.get("formula"), reason, row.get("guards_against") and f"guards against {row['guards_against']}"]
         why = "".join(f'<span class="why">{text(line)}</span>' for line in why if line)
         lines.append(
             f'<tr data-group="{text(row["group"])}" data-verdict="{"pass" if good else "fail"}"><th scope="row">{text(row["name"])}'
