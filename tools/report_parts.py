@@ -10,6 +10,8 @@ from pathlib import Path
 
 OURS = ("--a0", "--a1", "--a2", "--a3", "--a4")
 OTHERS = ("--n0", "--n1", "--n2", "--n3", "--n4", "--n5")
+DASHES = ("none", "7 4", "2 3")  # when the colors have been used up
+BORDERS = {"none": "solid", "7 4": "dashed", "2 3": "dotted"}
 
 
 def text(value) -> str:
@@ -54,11 +56,12 @@ def scenes(found: list[dict]) -> str:
 
 
 def colored(series: list[dict]) -> list[dict]:
-    """Ours in blue and green, others in warm colors, one after the other."""
+    """Ours in cool colors, others in warm ones, one after the other; then dashed."""
     counts = {True: 0, False: 0}
     for one in series:
         palette = OURS if one["ours"] else OTHERS
-        one["color"] = palette[counts[one["ours"]] % len(palette)]
+        turn, place = divmod(counts[one["ours"]], len(palette))
+        one["color"], one["dash"] = palette[place], DASHES[turn % len(DASHES)]
         counts[one["ours"]] += 1
     return series
 
@@ -99,7 +102,7 @@ def stability_chart(plot: dict, folder: Path) -> dict:
 def figure(chart: dict, key: str) -> str:
     """The place of a chart, and which color is which."""
     names = "".join(
-        f'<li class="{"ours" if one["ours"] else "other"}"><i style="background:var({one["color"]})"></i>{text(one["label"])}</li>'
+        f'<li class="{"ours" if one["ours"] else "other"}"><i style="border-top-color:var({one["color"]});border-top-style:{BORDERS[one["dash"]]}"></i>{text(one["label"])}</li>'
         for one in chart["series"]
     )
     name = f'tabindex="0" role="group" aria-label="Chart: {text(chart["title"])}"'
@@ -140,12 +143,15 @@ def numbers(value) -> list[float]:
 
 
 def shown(value) -> str:
-    """A number or a list of them, at most six of a long one."""
-    values = numbers(value) if not isinstance(value, str) else None
-    if values is None:
+    """A number or a list of them: of equal ones one, of a long list its range."""
+    if isinstance(value, str):
         return text(value)
-    words = [f"{one:.5g}" for one in values[:6]]
-    return text(", ".join(words) + (f" .. ({len(values)} values)" if len(values) > 6 else "")) or "-"
+    values = numbers(value)
+    if len(values) > 4 and len(set(values)) > 1:
+        return f"<span>{min(values):.5g}</span> to <span>{max(values):.5g}</span> ({len(values)} values)"
+    words = list(dict.fromkeys(f"{one:.5g}" for one in values)) if len(values) > 4 else [f"{one:.5g}" for one in values]
+    words = words[:1] if len(set(words)) == 1 else words
+    return ", ".join(f"<span>{text(word)}</span>" for word in words) or "-"
 
 
 def z_bar(value, limit: float) -> str:
@@ -178,11 +184,11 @@ def validation(book: dict) -> str:
         why = "".join(f'<span class="why">{text(line)}</span>' for line in why if line)
         lines.append(
             f'<tr data-group="{text(row["group"])}" data-verdict="{"pass" if good else "fail"}"><th scope="row">{text(row["name"])}'
-            f'{why}</th><td>{text(row["group"])}</td><td class="number">{shown(row["expected"])}</td>'
+            f'{why}</th><td>{verdict}</td><td>{z_bar(row.get("z"), 4)}</td><td class="number">{shown(row["expected"])}</td>'
             f'<td class="number">{shown(row["measured"])}</td><td class="number">{shown(row["standard_error"])}</td>'
-            f"<td>{z_bar(row.get('z'), 4)}</td><td>{verdict}</td></tr>"
+            f"<td>{text(row['group'])}</td></tr>"
         )
-    head = "".join(f'<th scope="col">{name}</th>' for name in ("row", "group", "expected", "measured", "standard error", "z", "verdict"))
+    head = "".join(f'<th scope="col">{name}</th>' for name in ("row", "verdict", "z", "expected", "measured", "standard error", "group"))
     good = sum(map(passes, rows))
     return (
         f"<p>Scenes whose answer is known, rendered and judged: {good} of {len(rows)} rows pass. z is the miss in standard errors; the "
@@ -218,7 +224,7 @@ def stability(book: dict, charts: dict) -> str:
         )
         head = "".join(f'<th scope="col">{name}</th>' for name in ("row", "what fails, and what Abbe does", "test"))
         parts.append(
-            '<h3 style="margin-top:2rem">Which test holds which row</h3><div class="scroll tall" tabindex="0" role="region" '
+            '<h3>Which test holds which row</h3><div class="scroll tall" tabindex="0" role="region" '
             f'aria-label="Rows and tests"><table><thead><tr>{head}</tr></thead><tbody>{lines}</tbody></table></div>'
         )
     return "".join(parts)
@@ -232,4 +238,4 @@ def making(parts: list[tuple[str, str, str]], versions: dict) -> str:
     head = "".join(f'<th scope="col">{name}</th>' for name in ("part", "command", "made"))
     table = f'<div class="scroll" tabindex="0" role="region" aria-label="Commands"><table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table></div>'
     listed = "".join(f"<dt>{text(name)}</dt><dd>{text(value)}</dd>" for name, value in versions.items())
-    return f"<p>Each part by itself, with what made it:</p>{table}<h3 style=\"margin-top:2rem\">Versions</h3><dl>{listed}</dl>"
+    return f"<p>Each part by itself, with what made it:</p>{table}<h3>Versions</h3><dl>{listed}</dl>"

@@ -1,7 +1,7 @@
 """Stability rows A6, L1, L3, L4: lights that are small, far or close. Naive methods in numpy, ours on rendered images."""
 
 import numpy as np
-from stability_plot import Plot, Series
+from stability_plot import Plot, Series, times
 from stability_scenes import green, plane, sphere, timed, view
 
 
@@ -51,8 +51,8 @@ def a6(quick: bool) -> Plot:
                 costs["expected"].append(variance / samples * seconds / square)
     ratio = np.array(costs["expected"]) / np.array(costs["auto"])
     words = (
-        f"Paths that must meet the lamp by chance need {ratio[0]:.1g} times Abbe's processor time for the same error at a lamp of radius {radii[0]:g} and "
-        f"{ratio[-1]:.1g} times at {radii[-1]:g}; with photons from the lamp 1 % takes {costs['auto'][0]:.2g} s and {costs['auto'][-1]:.2g} s. A single "
+        f"Paths that must meet the lamp by chance need {times(ratio[0])} times Abbe's processor time for the same error at a lamp of radius {radii[0]:g} and "
+        f"{times(ratio[-1])} times at {radii[-1]:g}; with photons from the lamp 1 % takes {costs['auto'][0]:.2g} s and {costs['auto'][-1]:.2g} s. A single "
         "picture by chance looks better than it is, since it shows few of the rare paths."
     )
     series = [
@@ -155,7 +155,7 @@ def l3(quick: bool) -> Plot:
         ours.append(shown.std() / exact)
         misses.append(abs(shown.mean() / exact - 1) / (shown.std() / exact / 64))
     words = (
-        f"At {heights[-1]:g} of a standing lamp's half side, points drawn evenly on it vary by {naive[-1]:.0f} times their mean and find {biases[-1]:.0%} of the light in {count} samples; Abbe's samples "
+        f"At {heights[-1]:g} of a standing lamp's half side, points drawn evenly on it vary by {times(naive[-1])} times their mean and find {biases[-1]:.0%} of the light in {count} samples; Abbe's samples "
         f"deviate by at most {max(ours):.2f} of the mean at any distance, and the mean is within {max(misses):.1f} standard errors."
     )
     plot = Plot(

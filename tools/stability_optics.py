@@ -4,7 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 import optics
-from stability_plot import Plot, Series
+from stability_plot import Plot, Series, times
 from stability_scenes import WHITE_SKY, green, mean_and_error, plane, slab, sphere, view
 
 GLASS, WATER = 1.5168, 1.333
@@ -29,7 +29,7 @@ def d5(quick: bool) -> Plot:
         ours.append(abs(float(np.sum(shown * impact)) / exact - 1))
     near = int(np.argmin(abs(excess - 1e-2)))
     words = (
-        f"Schlick's approximation reflects {1 + schlick[near]:.0f} times too much diffuse light at an index of {1 + excess[near]:.2f}, and {schlick[0]:.0e} "
+        f"Schlick's approximation reflects {times(1 + schlick[near])} times too much diffuse light at an index of {1 + excess[near]:.2f}, and {times(schlick[0])} "
         f"times at {1 + excess[0]:g}: it never falls below 1/21. Abbe's balls show the exact Fresnel mean within {max(ours):.1g}."
     )
     series = [Series("Schlick 1994", excess, schlick), Series("Abbe, rendered", excess, ours, True)]

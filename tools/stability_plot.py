@@ -64,6 +64,9 @@ class Plot:
     least: float = 0.0  # values below it are drawn as 0
     notes: list[str] = field(default_factory=list)
 
+    def __post_init__(self):
+        self.words = self.words.replace("%", " %").replace("  %", " %")
+
     @property
     def abbe(self) -> np.ndarray:
         """All of our values."""
@@ -73,6 +76,11 @@ class Plot:
     def naive(self) -> np.ndarray:
         """All values of the methods that fail."""
         return np.concatenate([one.y for one in self.series if not one.ours])
+
+
+def times(value: float) -> str:
+    """A factor in words: two digits, and no powers of ten."""
+    return f"{float(f'{value:.2g}'):,.10g}"
 
 
 def floor_of(plot: Plot) -> float:

@@ -82,7 +82,7 @@ def stack_plot(row, title, quick, methods, source):
     z = float(np.max(abs(found[:, 0] - exact) / np.maximum(found[:, 1], 1e-7)))
     ten = int(np.argmin(abs(panes - 10)))
     words = (
-        f"Before ten panes, {naive[0].label} loses {naive[0].y[ten]:.0%} of the light and {naive[-1].label} {naive[-1].y[ten]:.1%}; Abbe renders "
+        f"Before ten panes, {naive[0].label} loses {naive[0].y[ten]:.0%} of the light and {naive[-1].label} still {naive[-1].y[ten]:.1%}; Abbe renders "
         f"{found[ten, 0]:.4f} +- {found[ten, 1]:.4f} for {exact[ten]:.4f}, at most {z:.1f} standard errors off at any number of panes."
     )
     series = [*naive, Series("Abbe, rendered", panes, ours, True)]

@@ -39,7 +39,7 @@ function marks(low, high, linear, most) {
     }
     return found;
   }
-  for (let p = first; p <= last; p += step) found.push([10 ** p, name(10 ** p, p)]);
+  for (let p = Math.ceil(first / step) * step; p <= last; p += step) found.push([10 ** p, name(10 ** p, p)]);
   return found;
 }
 
@@ -73,7 +73,7 @@ function draw(box, chart) {
   chart.series.forEach((series) => {
     const color = `var(${series.color})`, group = element("g", { class: "series" }, svg);
     const line = series.points.map((p) => `${toX(p.x).toFixed(1)},${toY(p.y).toFixed(1)}`).join(" ");
-    element("polyline", { points: line, fill: "none", stroke: color, "stroke-width": series.ours ? 2.6 : 1.6, "stroke-linejoin": "round" }, group);
+    element("polyline", { points: line, fill: "none", stroke: color, "stroke-width": series.ours ? 2.6 : 1.6, "stroke-dasharray": series.dash, "stroke-linejoin": "round" }, group);
     for (const p of series.points) {
       const none = !chart.linear && p.y <= y0;
       element("circle", { class: "point", cx: toX(p.x).toFixed(1), cy: toY(p.y).toFixed(1), r: series.ours ? 4 : 3.2, fill: none ? "var(--card)" : color, stroke: color, "stroke-width": 1.5 }, group);
