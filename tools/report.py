@@ -157,14 +157,18 @@ def page(scenes: list, results: dict, folder: Path) -> str:
     return Template((PAGE / "page.html").read_text("utf-8")).substitute(
         css=(PAGE / "page.css").read_text("utf-8"),
         script=(PAGE / "page.js").read_text("utf-8"),
-        data=json.dumps(charts).replace("</", "<\\/"),
+        data=json.dumps(charts, allow_nan=False).replace("</", "<\\/"),
         facts=facts(scenes, results),
         scenes=parts.scenes(scenes),
         chart=told["chart"],
         validation=told["validate"],
         stability=told["stability"],
         making=parts.making(
-            [pictures, *(made(folder, tool, results[tool]) for tool in TOOLS), ("This page", "python tools/report.py", f"{datetime.datetime.now():%Y-%m-%d %H:%M}")],
+            [
+                pictures,
+                *(made(folder, tool, results[tool]) for tool in TOOLS),
+                ("This page", "python tools/report.py", f"{datetime.datetime.now():%Y-%m-%d %H:%M}"),
+            ],
             versions(results),
         ),
     )
@@ -182,7 +186,9 @@ def main(arguments=None) -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--run", action="store_true", help="run validate, chart and stability first")
     parser.add_argument("--quick", action="store_true", help="run them at a reduced size")
-    parser.add_argument("--results", type=Path, default=render.ROOT / "target", help="folder that holds the tools' folders")
+    parser.add_argument(
+        "--results", type=Path, default=render.ROOT / "target", help="folder that holds the tools' folders"
+    )
     parser.add_argument("--out", type=Path, default=render.ROOT / "target/report/index.html", help="the page")
     given = parser.parse_args(arguments)
     failed = run_tools(given.quick) if given.run or given.quick else []

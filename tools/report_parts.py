@@ -6,6 +6,7 @@ Each function takes what report.gather found and returns a piece of the page; ch
 import base64
 import csv
 import html
+import math
 from pathlib import Path
 
 OURS = ("--a0", "--a1", "--a2", "--a3", "--a4")
@@ -66,6 +67,11 @@ def colored(series: list[dict]) -> list[dict]:
     return series
 
 
+def drawable(value) -> bool:
+    """Whether a value has a place on a logarithmic axis."""
+    return value is not None and math.isfinite(value) and value > 0
+
+
 def speed_chart(scene: dict) -> dict:
     """A scene of chart.json as page.js draws it."""
     series = []
@@ -77,7 +83,7 @@ def speed_chart(scene: dict) -> dict:
                 "words": f"{point['samples']} samples: error {point['error']:.3g} in {point['cpu_seconds']:.3g} s",
             }
             for point in one["points"]
-            if point["cpu_seconds"] > 0 and point["error"] > 0
+            if drawable(point["cpu_seconds"]) and drawable(point["error"])
         ]
         if points:
             series.append({"label": one["label"], "ours": one["kind"] == "abbe", "points": points})
@@ -92,7 +98,8 @@ def stability_chart(plot: dict, folder: Path) -> dict:
         xlabel, ylabel = next(csv.reader([next(file)]))[2:4]
         for label, kind, x, y in csv.reader(file):
             one = series.setdefault(label, {"label": label, "ours": kind == "abbe", "points": []})
-            one["points"].append({"x": float(x), "y": float(y)})
+            if drawable(float(x)) and math.isfinite(float(y)):
+                one["points"].append({"x": float(x), "y": float(y)})
     for one in series.values():
         one["points"].sort(key=lambda point: point["x"])
     axes = {"xlabel": xlabel, "ylabel": ylabel, "linear": plot.get("linear", False), "least": plot.get("least", 0)}
@@ -125,6 +132,17 @@ def points_table(chart: dict, heads: tuple[str, str]) -> str:
     )
 
 
+def told(words: list[str], most=8) -> str:
+    """Sentences as a list; what is beyond `most` of them has to be asked for."""
+    first, rest = (
+        f'<ul class="told">{"".join(f"<li>{text(line)}</li>" for line in lines)}</ul>'
+        for lines in (words[:most], words[most:])
+    )
+    return first + (
+        f'<details class="small"><summary>What else is to be said</summary>{rest}</details>' if words[most:] else ""
+    )
+
+
 def speed(found: list[dict], charts: dict) -> str:
     parts = [
         "<p>Error against a converged reference, over processor time; both axes are logarithmic, and lower and further left is "
@@ -132,14 +150,17 @@ def speed(found: list[dict], charts: dict) -> str:
     ]
     for scene in found:
         chart = charts[f"chart {scene['name']}"]
-        words = "".join(f"<p>{text(line)}</p>" for line in scene["words"])
         table = points_table(chart, ("CPU seconds", "error"))
-        parts.append(f"<h3>{text(scene['title'])}</h3>{words}{figure(chart, 'chart ' + scene['name'])}{table}")
+        parts.append(
+            f"<h3>{text(scene['title'])}</h3>{figure(chart, 'chart ' + scene['name'])}{told(scene['words'])}{table}"
+        )
     return "".join(parts)
 
 
 def numbers(value) -> list[float]:
-    return [float(one) for one in value] if isinstance(value, (list, tuple)) else [] if value is None else [float(value)]
+    """The numbers of a value that is one, a list of them, or nothing."""
+    listed = value if isinstance(value, (list, tuple)) else [value]
+    return [float(one) for one in listed if one is not None]
 
 
 def shown(value) -> str:
@@ -159,11 +180,11 @@ def z_bar(value, limit: float) -> str:
     values = [one for one in numbers(value) if one == one] if not isinstance(value, str) else []
     if not values:
         return '<span class="small">exact</span>'
-    z = max(values, key=abs)
+    z = round(max(values, key=abs), 2)
     width = min(abs(z) / limit, 1) * 50
     left = 50 if z >= 0 else 50 - width
     bar = f'<span class="bar" aria-hidden="true"><i style="left:{left:.1f}%;width:{width:.1f}%"></i></span>'
-    return f'<span class="z">{bar}<span>{z:.2f}</span></span>'
+    return f'<span class="z">{bar}<span>{z + 0:.2f}</span></span>'
 
 
 def passes(row: dict) -> bool:
@@ -188,7 +209,10 @@ def validation(book: dict) -> str:
             f'<td class="number">{shown(row["measured"])}</td><td class="number">{shown(row["standard_error"])}</td>'
             f"<td>{text(row['group'])}</td></tr>"
         )
-    head = "".join(f'<th scope="col">{name}</th>' for name in ("row", "verdict", "z", "expected", "measured", "standard error", "group"))
+    head = "".join(
+        f'<th scope="col">{name}</th>'
+        for name in ("row", "verdict", "z", "expected", "measured", "standard error", "group")
+    )
     good = sum(map(passes, rows))
     return (
         f"<p>Scenes whose answer is known, rendered and judged: {good} of {len(rows)} rows pass. z is the miss in standard errors; the "
@@ -233,7 +257,8 @@ def stability(book: dict, charts: dict) -> str:
 def making(parts: list[tuple[str, str, str]], versions: dict) -> str:
     """Commands and versions."""
     rows = "".join(
-        f'<tr><th scope="row">{text(name)}</th><td><code>{text(command)}</code></td><td>{text(when)}</td></tr>' for name, command, when in parts
+        f'<tr><th scope="row">{text(name)}</th><td><code>{text(command)}</code></td><td>{text(when)}</td></tr>'
+        for name, command, when in parts
     )
     head = "".join(f'<th scope="col">{name}</th>' for name in ("part", "command", "made"))
     table = f'<div class="scroll" tabindex="0" role="region" aria-label="Commands"><table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table></div>'

@@ -3,7 +3,8 @@
     python3 tools/test.py                # everything
     python3 tools/test.py --only pytest  # one step
 
-Needs cargo and Python 3.11 or newer; the Python packages go into .venv, by the hashes of tools/requirements.txt.
+Needs cargo and Python 3.11 or newer; the Python packages go into .venv, by the hashes of tools/requirements.txt, and so does
+the Chromium that opens the report.
 """
 
 import argparse
@@ -57,7 +58,7 @@ def packages():
 
 
 def packages_and_browser():
-    """A machine that no browser can be installed on runs the other tests: the browser's then says why it does not."""
+    """On a machine where no browser can be installed, the tests that need it are skipped and say why."""
     packages()
     run(PYTHON, "tools/browser.py")
 

@@ -43,10 +43,31 @@ function marks(low, high, linear, most) {
   return found;
 }
 
+/** Writes each line's name right of the chart, in the order of their last points, and no closer than can be read. */
+function label(svg, chart, frame, toX, toY) {
+  const ends = chart.series.map((series) => {
+    const last = series.points.reduce((a, b) => (b.x >= a.x ? b : a));
+    return { series, x: toX(last.x), y: toY(last.y) };
+  }).sort((a, b) => a.y - b.y);
+  const gap = Math.min(20, (frame.bottom - frame.top) / ends.length);
+  ends.forEach((end, i) => { end.at = Math.max(end.y, i ? ends[i - 1].at + gap : frame.top); });
+  for (let i = ends.length - 1, below = frame.bottom; i >= 0; i--) {
+    ends[i].at = Math.min(ends[i].at, below);
+    below = ends[i].at - gap;
+  }
+  for (const { series, x, y, at } of ends) {
+    const color = `var(${series.color})`;
+    element("polyline", { points: `${x + 7},${y} ${frame.right + 2},${at} ${frame.right + 10},${at}`, fill: "none", stroke: color, "stroke-width": 0.8, opacity: 0.6 }, svg);
+    element("text", { x: frame.right + 14, y: at + 4, style: `fill:${color};font-weight:${series.ours ? 650 : 400}` }, svg, series.label);
+  }
+}
+
 /** Draws a chart into its box at the box's own width; one stop for the keyboard, arrows move from point to point. */
 function draw(box, chart) {
   const width = Math.max(box.clientWidth, 240), height = Math.round(Math.min(400, Math.max(260, width * 0.55)));
-  const frame = { left: 62, right: width - 14, top: 30, bottom: height - 46 };
+  const labelled = width >= 700;
+  box.classList.toggle("labelled", labelled);
+  const frame = { left: 62, right: width - (labelled ? 210 : 14), top: 30, bottom: height - 46 };
   const points = chart.series.flatMap((series, s) => series.points.map((point, i) => ({ ...point, series, s, i })));
   const xs = points.map((p) => p.x), positive = points.map((p) => p.y).filter((y) => y > 0);
   const pad = (low, high) => (low === high ? [low / 2, high * 2] : [low / (high / low) ** 0.04, high * (high / low) ** 0.04]);
@@ -79,6 +100,7 @@ function draw(box, chart) {
       element("circle", { class: "point", cx: toX(p.x).toFixed(1), cy: toY(p.y).toFixed(1), r: series.ours ? 4 : 3.2, fill: none ? "var(--card)" : color, stroke: color, "stroke-width": 1.5 }, group);
     }
   });
+  if (labelled) label(svg, chart, frame, toX, toY);
   const ring = element("circle", { r: 8, fill: "none", stroke: "var(--ink)", "stroke-width": 2, visibility: "hidden" }, svg);
   const tip = box.querySelector(".tip");
   const groups = svg.querySelectorAll(".series");

@@ -45,7 +45,10 @@ LEGIBLE = """() => {
 
 def plot(row):
     x = 10.0 ** np.arange(5)
-    series = [Series("a method that\nfails", x, x * 1e-6), Series("Abbe, rendered", x, np.array([0, 1e-8, 1e-8, 2e-8, 0]), True)]
+    series = [
+        Series("a method that\nfails", x, x * 1e-6),
+        Series("Abbe, rendered", x, np.array([0, 1e-8, 1e-8, 2e-8, 0]), True),
+    ]
     return Plot(row, f"Something hard of row {row}", "how hard", "error", series, f"It fails & <fails> by row {row}.")
 
 
@@ -71,13 +74,31 @@ def sample_results(folder):
             }
         )
     book = {"version": "render 0.1.0", "made_by": "python tools/validate.py", "rows": rows}
-    kinds = [("Abbe, bands 8", "abbe", 1.0), ("Abbe, hero", "abbe", 2.0), ("Mitsuba 3, LLVM", "other", 0.8), ("smallpt", "other", 5.0)]
+    kinds = [
+        ("Abbe, bands 8", "abbe", 1.0),
+        ("Abbe, hero", "abbe", 2.0),
+        ("Mitsuba 3, LLVM", "other", 0.8),
+        ("smallpt", "other", 5.0),
+    ]
     series = [
-        {"label": label, "kind": kind, "points": [{"samples": n, "cpu_seconds": 0.05 * cost * n, "error": 0.3 / np.sqrt(n)} for n in (1, 4, 16, 64)]}
+        {
+            "label": label,
+            "kind": kind,
+            "points": [
+                {"samples": n, "cpu_seconds": 0.05 * cost * n, "error": 0.3 / np.sqrt(n)} for n in (1, 4, 16, 64)
+            ],
+        }
         for label, kind, cost in kinds
     ]
     scenes = [
-        {"name": name, "title": f"Spheres of {name}", "words": ["To 1 % Abbe needs 0.8 x the time of smallpt."], "series": series, "svg": "", "png": ""}
+        {
+            "name": name,
+            "title": f"Spheres of {name}",
+            "words": ["To 1 % Abbe needs 0.8 x the time of smallpt."],
+            "series": series,
+            "svg": "",
+            "png": "",
+        }
         for name in ("cornell", "smallpt")
     ]
     for tool, value in (("validate", book), ("chart", {"versions": {"Mitsuba": "3.7"}, "scenes": scenes})):
@@ -85,7 +106,15 @@ def sample_results(folder):
         (folder / tool / report.FILES[tool]).write_text(json.dumps(value))
     (folder / "stability").mkdir()
     plots = [stability.keep(plot(row), folder / "stability") for row in ("S1", "W2")]
-    table = [{"row": f"S{i}", "name": "what fails", "remedy": "what helps", "test": f"shapes.rs::s{i}_a_very_long_test_name_without_a_break"} for i in range(30)]
+    table = [
+        {
+            "row": f"S{i}",
+            "name": "what fails",
+            "remedy": "what helps",
+            "test": f"shapes.rs::s{i}_a_very_long_test_name_without_a_break",
+        }
+        for i in range(30)
+    ]
     (folder / "stability/stability.json").write_text(json.dumps({"plots": plots, "rows": table}))
 
 
@@ -205,10 +234,10 @@ def test_the_book_can_be_searched_by_words_group_and_verdict(opened):
 def test_a_part_that_was_not_made_is_said_with_its_command(tmp_path, capsys):
     out = tmp_path / "page.html"
     assert report.main(["--results", str(tmp_path), "--out", str(out)]) == 0
-    text = out.read_text("utf-8")
+    text, printed = out.read_text("utf-8"), capsys.readouterr().out
     for tool in report.TOOLS:
         assert f"<code>python tools/{tool}.py</code> and make this page again" in text
-        assert f"python tools/{tool}.py" in capsys.readouterr().out or tool != "validate"
+        assert f"python tools/{tool}.py" in printed
 
 
 def test_the_page_holds_no_address_and_no_mark_of_the_template(samples):
@@ -225,8 +254,27 @@ def test_what_is_broken_is_said_in_one_sentence(tmp_path):
 
 
 def test_the_bar_of_a_row_shows_the_z_that_is_furthest_from_0():
-    assert "-3.00" in report_parts.z_bar([1, -3, 2], 4) and "left:12.5%;width:37.5%" in report_parts.z_bar([1, -3, 2], 4)
+    assert "-3.00" in report_parts.z_bar([1, -3, 2], 4) and "left:12.5%;width:37.5%" in report_parts.z_bar(
+        [1, -3, 2], 4
+    )
     assert "exact" in report_parts.z_bar(None, 4)
+
+
+def test_points_without_a_place_on_the_axes_are_left_out():
+    nowhere = [(0, 1.0), (1.0, None), (1.0, 0.0), (1.0, float("inf"))]
+    points = [{"samples": 1, "cpu_seconds": x, "error": y} for x, y in [*nowhere, (2.0, 0.1)]]
+    series = [
+        {"label": "one", "kind": "abbe", "points": points},
+        {"label": "none", "kind": "other", "points": points[:4]},
+    ]
+    chart = report_parts.speed_chart({"title": "t", "series": series})
+    assert [[(point["x"], point["y"]) for point in one["points"]] for one in chart["series"]] == [[(2.0, 0.1)]]
+
+
+def test_colors_come_back_dashed():
+    series = report_parts.colored([{"ours": False} for _ in range(8)])
+    looks = [(one["color"], one["dash"]) for one in series]
+    assert len(set(looks)) == 8 and looks[7][1] != "none"
 
 
 def test_a_verdict_with_a_reason_fails():
