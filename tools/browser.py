@@ -1,4 +1,4 @@
-"""Installs a headless Chromium into .venv/browser, from npm by the hashes of tools/browser/package-lock.json, and starts it.
+"""Installs a headless Chromium into .venv/browser, from npm by the hashes of tools/browser/package-lock.json.
 
     python tools/browser.py     # installs it, or says that it is installed, or in one line why it cannot be
 
@@ -6,8 +6,9 @@
     with chromium() as browser:
         page = browser.new_page()
 
-$CHROMIUM names another one. The npm package holds one program for 64-bit Intel and AMD Linux and the libraries that it needs,
-so nothing has to be installed with the system. npm comes from PyPI, as does Playwright, which drives the browser.
+$CHROMIUM names another one. The npm package holds one program for 64-bit Intel and AMD Linux and the libraries that
+it needs, so nothing has to be installed with the system. npm comes from PyPI, as does Playwright, which drives the
+browser.
 """
 
 import contextlib
@@ -25,7 +26,9 @@ UNPACK = """
 const { brotliDecompressSync } = require("zlib"), { readFileSync, writeFileSync } = require("fs");
 const from = "node_modules/@sparticuz/chromium/bin/";
 writeFileSync("chromium", brotliDecompressSync(readFileSync(from + "chromium.br")), { mode: 0o755 });
-for (const name of ["al2023", "fonts"]) writeFileSync(name + ".tar", brotliDecompressSync(readFileSync(from + name + ".tar.br")));
+for (const name of ["al2023", "fonts"]) {
+  writeFileSync(name + ".tar", brotliDecompressSync(readFileSync(from + name + ".tar.br")));
+}
 """
 FONTS = """<?xml version="1.0"?>
 <!DOCTYPE fontconfig SYSTEM "fonts.dtd">

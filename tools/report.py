@@ -4,8 +4,8 @@
     python tools/report.py --run            # runs the tools first: up to an hour
     python tools/report.py --run --quick    # runs them at a reduced size
 
-Pictures are inside the page and nothing is requested from elsewhere. A part whose tool has not been run is said in one line,
-with the command that makes it. Prints where the page is, and which parts are missing.
+Pictures are inside the page and nothing is requested from elsewhere. A part whose tool has not been run is said in one
+line, with the command that makes it. Prints where the page is, and which parts are missing.
 """
 
 import argparse

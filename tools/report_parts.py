@@ -1,6 +1,6 @@
 """The parts of the report as HTML: scenes, charts, the validation book, stability plots, how all was made.
 
-Each function takes what report.gather found and returns a piece of the page; charts are drawn by page/page.js from `charts`.
+Each function takes what report.py has found and returns a piece of the page; page/page.js draws the charts.
 """
 
 import base64
@@ -22,6 +22,14 @@ def text(value) -> str:
 
 def missing(what: str, command: str) -> str:
     return f'<p class="missing">{text(what)}: run <code>{text(command)}</code> and make this page again.</p>'
+
+
+def table(label: str, heads: tuple, rows: list[str], tall=False, identity="") -> str:
+    """A table in a box of its own that scrolls, by the mouse as by the keyboard."""
+    head = "".join(f'<th scope="col">{text(name)}</th>' for name in heads)
+    box = f'<div class="scroll{" tall" if tall else ""}" tabindex="0" role="region" aria-label="{text(label)}">'
+    named = f' id="{identity}"' if identity else ""
+    return f"{box}<table{named}><thead><tr>{head}</tr></thead><tbody>{''.join(rows)}</tbody></table></div>"
 
 
 def picture(path: Path) -> str:
@@ -108,28 +116,24 @@ def stability_chart(plot: dict, folder: Path) -> dict:
 
 def figure(chart: dict, key: str) -> str:
     """The place of a chart, and which color is which."""
-    names = "".join(
-        f'<li class="{"ours" if one["ours"] else "other"}"><i style="border-top-color:var({one["color"]});border-top-style:{BORDERS[one["dash"]]}"></i>{text(one["label"])}</li>'
-        for one in chart["series"]
-    )
+    names = ""
+    for one in chart["series"]:
+        line = f"border-top-color:var({one['color']});border-top-style:{BORDERS[one['dash']]}"
+        names += f'<li class="{"ours" if one["ours"] else "other"}"><i style="{line}"></i>{text(one["label"])}</li>'
     name = f'tabindex="0" role="group" aria-label="Chart: {text(chart["title"])}"'
     tip = '<div class="tip" role="status" hidden></div>'
     return f'<div class="chart" data-chart="{text(key)}" {name}>{tip}</div><ul class="legend">{names}</ul>'
 
 
 def points_table(chart: dict, heads: tuple[str, str]) -> str:
-    rows = "".join(
+    rows = [
         f'<tr><th scope="row">{text(one["label"])}</th><td class="number">{point["x"]:.3g}</td>'
         f'<td class="number">{point["y"]:.3g}</td></tr>'
         for one in chart["series"]
         for point in one["points"]
-    )
-    head = "".join(f'<th scope="col">{text(name)}</th>' for name in ("series", *heads))
-    label = f"Figures of the chart: {chart['title']}"
-    return (
-        f'<details class="small"><summary>The figures as a table</summary><div class="scroll" tabindex="0" role="region" '
-        f'aria-label="{text(label)}"><table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table></div></details>'
-    )
+    ]
+    found = table(f"Figures of the chart: {chart['title']}", ("series", *heads), rows)
+    return f'<details class="small"><summary>The figures as a table</summary>{found}</details>'
 
 
 def told(words: list[str], most=8) -> str:
@@ -145,15 +149,15 @@ def told(words: list[str], most=8) -> str:
 
 def speed(found: list[dict], charts: dict) -> str:
     parts = [
-        "<p>Error against a converged reference, over processor time; both axes are logarithmic, and lower and further left is "
+        "<p>Error against a converged reference, over processor time; both axes are logarithmic, and lower and "
+        "further left is "
         "better. Point at a chart, touch it, or use the arrow keys.</p>"
     ]
     for scene in found:
         chart = charts[f"chart {scene['name']}"]
-        table = points_table(chart, ("CPU seconds", "error"))
-        parts.append(
-            f"<h3>{text(scene['title'])}</h3>{figure(chart, 'chart ' + scene['name'])}{told(scene['words'])}{table}"
-        )
+        figures = points_table(chart, ("CPU seconds", "error"))
+        drawn = figure(chart, f"chart {scene['name']}")
+        parts.append(f"<h3>{text(scene['title'])}</h3>{drawn}{told(scene['words'])}{figures}")
     return "".join(parts)
 
 
@@ -191,37 +195,41 @@ def passes(row: dict) -> bool:
     return str(row["verdict"]).lower().split()[:1] in (["pass"], ["passes"], ["passed"], ["ok"], ["true"])
 
 
+def book_row(row: dict) -> str:
+    good = "pass" if passes(row) else "fail"
+    word, _, reason = str(row["verdict"]).partition(": ")
+    why = [row.get("formula"), reason, row.get("guards_against") and f"guards against {row['guards_against']}"]
+    why = "".join(f'<span class="why">{text(line)}</span>' for line in why if line)
+    figures = "".join(
+        f'<td class="number">{shown(row[name])}</td>' for name in ("expected", "measured", "standard_error")
+    )
+    return (
+        f'<tr data-group="{text(row["group"])}" data-verdict="{good}"><th scope="row">{text(row["name"])}{why}</th>'
+        f'<td><span class="{good}">{text(word)}</span></td><td>{z_bar(row.get("z"), 4)}</td>{figures}'
+        f"<td>{text(row['group'])}</td></tr>"
+    )
+
+
+FILTERS = """<form class="filters" aria-label="Choose rows">
+<label>Search<input type="search" name="words" autocomplete="off"></label>
+<label>Group<select name="group"><option value="">all</option>GROUPS</select></label>
+<label>Verdict<select name="verdict"><option value="">all</option><option value="pass">passes</option>
+<option value="fail">fails</option></select></label>
+<p id="count" role="status"></p></form>"""
+
+
 def validation(book: dict) -> str:
     """The book as a table that can be searched."""
     rows = book["rows"]
-    groups = list(dict.fromkeys(row["group"] for row in rows))
+    groups = dict.fromkeys(row["group"] for row in rows)
     options = "".join(f"<option>{text(group)}</option>" for group in groups)
-    lines = []
-    for row in rows:
-        good = passes(row)
-        word, _, reason = str(row["verdict"]).partition(": ")
-        verdict = f'<span class="{"pass" if good else "fail"}">{text(word)}</span>'
-        why = [row.get("formula"), reason, row.get("guards_against") and f"guards against {row['guards_against']}"]
-        why = "".join(f'<span class="why">{text(line)}</span>' for line in why if line)
-        lines.append(
-            f'<tr data-group="{text(row["group"])}" data-verdict="{"pass" if good else "fail"}"><th scope="row">{text(row["name"])}'
-            f'{why}</th><td>{verdict}</td><td>{z_bar(row.get("z"), 4)}</td><td class="number">{shown(row["expected"])}</td>'
-            f'<td class="number">{shown(row["measured"])}</td><td class="number">{shown(row["standard_error"])}</td>'
-            f"<td>{text(row['group'])}</td></tr>"
-        )
-    head = "".join(
-        f'<th scope="col">{name}</th>'
-        for name in ("row", "verdict", "z", "expected", "measured", "standard error", "group")
-    )
+    heads = ("row", "verdict", "z", "expected", "measured", "standard error", "group")
     good = sum(map(passes, rows))
     return (
-        f"<p>Scenes whose answer is known, rendered and judged: {good} of {len(rows)} rows pass. z is the miss in standard errors; the "
-        "bar is full at 4.</p>"
-        '<form class="filters" aria-label="Choose rows"><label>Search<input type="search" name="words" autocomplete="off"></label>'
-        f'<label>Group<select name="group"><option value="">all</option>{options}</select></label><label>Verdict<select name="verdict">'
-        '<option value="">all</option><option value="pass">passes</option><option value="fail">fails</option></select></label>'
-        '<p id="count" role="status"></p></form><div class="scroll tall" tabindex="0" role="region" aria-label="Validation rows">'
-        f'<table id="book"><thead><tr>{head}</tr></thead><tbody>{"".join(lines)}</tbody></table></div>'
+        f"<p>Scenes whose answer is known, rendered and judged: {good} of {len(rows)} rows pass. z is the miss in "
+        "standard errors, of several the largest; the bar is full at 4.</p>"
+        + FILTERS.replace("GROUPS", options)
+        + table("Validation rows", heads, list(map(book_row, rows)), tall=True, identity="book")
     )
 
 
@@ -232,35 +240,31 @@ def stability(book: dict, charts: dict) -> str:
         key = f"stability {plot['row']}"
         source = f'<p class="small">After {text(plot["source"])}.</p>' if plot.get("source") else ""
         cards.append(
-            f'<li class="card"><div class="text"><h3>{text(plot["row"])}: {text(plot["title"])}</h3><p>{text(plot["words"])}</p>'
-            f"{figure(charts[key], key)}{source}</div></li>"
+            f'<li class="card"><div class="text"><h3>{text(plot["row"])}: {text(plot["title"])}</h3>'
+            f"<p>{text(plot['words'])}</p>{figure(charts[key], key)}{source}</div></li>"
         )
-    intro = (
-        "<p>Where methods fail: common ways of computing beside Abbe, as what is hard about a scene grows. The failing ones are small "
-        "programs or closed forms; Abbe's values are measured on images that it rendered. An open mark is a value of 0, or below the axis.</p>"
-    )
-    parts = [intro, f'<ul class="cards plots">{"".join(cards)}</ul>']
+    parts = [
+        "<p>Where methods fail: common ways of computing beside Abbe, as what is hard about a scene grows. The failing "
+        "ones are small programs or closed forms; Abbe's values are measured on images that it rendered. An open mark "
+        f'is a value of 0, or below the axis.</p><ul class="cards plots">{"".join(cards)}</ul>'
+    ]
     if book.get("rows"):
-        lines = "".join(
-            f'<tr><td>{text(row["row"])}</td><th scope="row">{text(row["name"])}<span class="why">{text(row.get("remedy", ""))}</span></th>'
-            f"<td><code>{text(row['test'])}</code></td></tr>"
+        lines = [
+            f'<tr><td>{text(row["row"])}</td><th scope="row">{text(row["name"])}'
+            f'<span class="why">{text(row.get("remedy", ""))}</span></th><td><code>{text(row["test"])}</code></td></tr>'
             for row in book["rows"]
-        )
-        head = "".join(f'<th scope="col">{name}</th>' for name in ("row", "what fails, and what Abbe does", "test"))
-        parts.append(
-            '<h3>Which test holds which row</h3><div class="scroll tall" tabindex="0" role="region" '
-            f'aria-label="Rows and tests"><table><thead><tr>{head}</tr></thead><tbody>{lines}</tbody></table></div>'
-        )
+        ]
+        parts.append("<h3>Which test holds which row</h3>")
+        parts.append(table("Rows and tests", ("row", "what fails, and what Abbe does", "test"), lines, tall=True))
     return "".join(parts)
 
 
-def making(parts: list[tuple[str, str, str]], versions: dict) -> str:
+def making(made: list[tuple[str, str, str]], versions: dict) -> str:
     """Commands and versions."""
-    rows = "".join(
+    rows = [
         f'<tr><th scope="row">{text(name)}</th><td><code>{text(command)}</code></td><td>{text(when)}</td></tr>'
-        for name, command, when in parts
-    )
-    head = "".join(f'<th scope="col">{name}</th>' for name in ("part", "command", "made"))
-    table = f'<div class="scroll" tabindex="0" role="region" aria-label="Commands"><table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table></div>'
+        for name, command, when in made
+    ]
+    commands = table("Commands", ("part", "command", "made"), rows)
     listed = "".join(f"<dt>{text(name)}</dt><dd>{text(value)}</dd>" for name, value in versions.items())
-    return f"<p>Each part by itself, with what made it:</p>{table}<h3>Versions</h3><dl>{listed}</dl>"
+    return f"<p>Each part by itself, with what made it:</p>{commands}<h3>Versions</h3><dl>{listed}</dl>"

@@ -1,12 +1,13 @@
-"""Draws where methods fail: for telling rows of the stability catalog, the failing method beside Abbe as the hard parameter grows.
+"""Draws where methods fail: the failing method beside Abbe, as what is hard about a scene grows.
 
-    python tools/stability.py               # every row: target/stability/*.svg, *.csv, stability.json; about two minutes
+    python tools/stability.py               # all rows, two minutes: target/stability/*.svg, *.csv, stability.json
     python tools/stability.py --quick       # fewer points and samples: about 20 seconds
     python tools/stability.py --row S1      # one row
     python tools/stability.py --list        # which rows there are
 
-The failing methods are small numpy programs in f32 and f64, after the sources named beside them, or closed forms where a label
-says so. What is called "Abbe, rendered" is measured on images: a scene is written, rendered by `render`, and its EXR read back.
+The failing methods are small numpy programs in f32 and f64, after the sources named beside them, or closed forms where
+a label says so. What is called "Abbe, rendered" is measured on images: a scene is written, rendered by `render`, and
+its EXR read back.
 Prints a sentence with its numbers for each row.
 """
 

@@ -14,7 +14,8 @@ def ball_reflectance(cosine):
 
 
 def ball_rays(distance: float, count: int, precision):
-    """Origin and unit directions from `distance` along z, across 0.999 of a ball of radius 1, rounded to a precision."""
+    """Origin and unit directions from `distance` along z, across 0.999 of a ball of radius 1, rounded to a "
+    "precision."""
     slope = 0.999 / distance * (2 * np.arange(count) + 1 - count) / count
     length = np.hypot(1, slope)
     zero = np.zeros(count)
@@ -73,8 +74,10 @@ def s1(quick: bool) -> Plot:
     series = [Series(label, distances, values[:, 0]) for label, values in found.items()]
     wrong = found["expanded, f32"][np.argmin(abs(distances - 1e3)), 0]
     words = (
-        f"From 1000 radii away the textbook discriminant in f32 shows a ball wrong by {wrong:.0%}, and in f64 from 1e8 radii away by "
-        f"{found['expanded, f64'][-1, 0]:.0%}; Abbe's images, cross product in f64, are right within {max(ours):.1g} at every distance "
+        f"From 1000 radii away the textbook discriminant in f32 shows a ball wrong by {wrong:.0%}, and in f64 from "
+        "1e8 radii away by "
+        f"{found['expanded, f64'][-1, 0]:.0%}; Abbe's images, cross product in f64, are right within {max(ours):.1g} "
+        "at every distance "
         "(the 32-bit numbers of the file carry 6e-8)."
     )
     return Plot(
@@ -147,8 +150,10 @@ def s6(quick: bool) -> Plot:
     base = photograph(scaled_scene(1.0)).rgb
     ours = [float(np.mean(np.any(photograph(scaled_scene(float(s))).rgb != base, axis=-1))) for s in sizes]
     words = (
-        f"With a fixed epsilon of 1e-4, {naive[1].y[0]:.0%} of the rays inside a ball of size 2^-40 are lost; Abbe's image of a scene times 2^k "
-        f"differs from the unscaled one in {sum(ours) * base.shape[0] * base.shape[1]:.0f} pixels of {base.shape[0] * base.shape[1] * len(sizes)}, to the last bit."
+        f"With a fixed epsilon of 1e-4, {naive[1].y[0]:.0%} of the rays inside a ball of size 2^-40 are lost; Abbe's "
+        "image of a scene times 2^k "
+        f"differs from the unscaled one in {sum(ours) * base.shape[0] * base.shape[1]:.0f} pixels of "
+        f"{base.shape[0] * base.shape[1] * len(sizes)}, to the last bit."
     )
     return Plot(
         "S6",
@@ -168,7 +173,10 @@ def ball_mesh(rings=12, around=24):
     angle = 2 * np.pi * np.arange(around) / around
     band = [(np.sin(p) * np.cos(a), np.sin(p) * np.sin(a), np.cos(p)) for p in polar for a in angle]
     points = np.array([(0, 0, 1), *band, (0, 0, -1)])
-    at = lambda ring, k: 1 + ring * around + k % around
+
+    def at(ring, k):
+        return 1 + ring * around + k % around
+
     faces = [(0, at(0, k), at(0, k + 1)) for k in range(around)]
     for ring in range(rings - 2):
         for k in range(around):
@@ -223,8 +231,10 @@ def t1(quick: bool) -> Plot:
             leaks[i, 2] += np.sum(photograph(scene).channels["A"] < 1)
     share = leaks / (rows * len(chosen))
     words = (
-        f"Aimed at the edges of a closed mesh within rounding, Moller-Trumbore lets {share[-1, 0]:.1%} of the rays out in f32 and still "
-        f"{share[-1, 1]:.1%} in f64; Abbe's rendered ball leaks {int(leaks[:, 2].sum())} of {rows * len(chosen) * len(aims)} rays (Woop's test with exact ties)."
+        f"Aimed at the edges of a closed mesh within rounding, Moller-Trumbore lets {share[-1, 0]:.1%} of the rays "
+        "out in f32 and still "
+        f"{share[-1, 1]:.1%} in f64; Abbe's rendered ball leaks {int(leaks[:, 2].sum())} of "
+        f"{rows * len(chosen) * len(aims)} rays (Woop's test with exact ties)."
     )
     labels = ("Moller-Trumbore, f32", "Moller-Trumbore, f64", "Abbe, rendered")
     series = [Series(label, 1 / aims, share[:, j], j == 2) for j, label in enumerate(labels)]

@@ -1,4 +1,4 @@
-"""Stability rows A6, L1, L3, L4: lights that are small, far or close. Naive methods in numpy, ours on rendered images."""
+"""Stability rows A6, L1, L3, L4: lights that are small, far or close. Naive methods in numpy, ours on images."""
 
 import numpy as np
 from stability_plot import Plot, Series, times
@@ -34,8 +34,8 @@ def caustic_scene(radius: float, samples: int, caustics: str, **settings) -> str
 def a6(quick: bool) -> Plot:
     """A caustic, met by chance or by photons: error times processor time.
 
-    By chance a path brings reflectance x radiance x transmittance or nothing, so its variance is that product times what it
-    brings on average, which the converged picture tells; rare paths make what a single picture shows of it far too small."""
+    By chance a path brings reflectance x radiance x transmittance or nothing, so its variance is that product times
+    what it brings on average, which the converged picture tells; one picture shows far too few of the rare paths."""
     radii = np.array([0.3, 0.03] if quick else [1.0, 0.3, 0.1, 0.03, 0.01, 0.003])
     many, tries = (64, {"off": 64, "auto": 16}) if quick else (1024, {"off": 512, "auto": 64})
     costs: dict = {"off": [], "auto": [], "expected": []}
@@ -51,8 +51,10 @@ def a6(quick: bool) -> Plot:
                 costs["expected"].append(variance / samples * seconds / square)
     ratio = np.array(costs["expected"]) / np.array(costs["auto"])
     words = (
-        f"Paths that must meet the lamp by chance need {times(ratio[0])} times Abbe's processor time for the same error at a lamp of radius {radii[0]:g} and "
-        f"{times(ratio[-1])} times at {radii[-1]:g}; with photons from the lamp 1 % takes {costs['auto'][0]:.2g} s and {costs['auto'][-1]:.2g} s. A single "
+        f"Paths that must meet the lamp by chance need {times(ratio[0])} times Abbe's processor time for the same "
+        f"error at a lamp of radius {radii[0]:g} and "
+        f"{times(ratio[-1])} times at {radii[-1]:g}; with photons from the lamp 1 % takes {costs['auto'][0]:.2g} s "
+        f"and {costs['auto'][-1]:.2g} s. A single "
         "picture by chance looks better than it is, since it shows few of the rare paths."
     )
     series = [
@@ -94,7 +96,8 @@ def l1(quick: bool) -> Plot:
     naive = abs(cone.astype(float) / truth - 1)
     bad = int(np.argmin(abs(sizes - 1e-3)))
     words = (
-        f"1 - cos of the cone in f32 is off by {naive[bad]:.0%} at a radius of {sizes[bad]:g} of the distance and 0 at {sizes[naive >= 1][0]:.0e}, a density of infinity; "
+        f"1 - cos of the cone in f32 is off by {naive[bad]:.0%} at a radius of {sizes[bad]:g} of the distance and 0 "
+        f"at {sizes[naive >= 1][0]:.0e}, a density of infinity; "
         f"Abbe's floors get the right irradiance within {max(ours):.1g} down to {sizes[-1]:.0e}."
     )
     return Plot(
@@ -119,7 +122,8 @@ def wall_share(h):
 
 
 def area_deviation(h):
-    """Standard deviation over the mean of one point drawn evenly on that lamp, by the trapezoid rule over the logarithms."""
+    """Standard deviation over the mean of one point drawn evenly on that lamp, by the trapezoid rule over the "
+    "logarithms."""
     y = np.geomspace(1e-9, 2, 1500)[:, None]
     z = np.geomspace(1e-9, 1, 1500)
     square = (4 * h * y / (np.pi * (h * h + y * y + z * z) ** 2)) ** 2 * y * z / 2
@@ -155,8 +159,10 @@ def l3(quick: bool) -> Plot:
         ours.append(shown.std() / exact)
         misses.append(abs(shown.mean() / exact - 1) / (shown.std() / exact / 64))
     words = (
-        f"At {heights[-1]:g} of a standing lamp's half side, points drawn evenly on it vary by {times(naive[-1])} times their mean and find {biases[-1]:.0%} of the light in {count} samples; Abbe's samples "
-        f"deviate by at most {max(ours):.2f} of the mean at any distance, and the mean is within {max(misses):.1f} standard errors."
+        f"At {heights[-1]:g} of a standing lamp's half side, points drawn evenly on it vary by {times(naive[-1])} "
+        f"times their mean and find {biases[-1]:.0%} of the light in {count} samples; Abbe's samples "
+        f"deviate by at most {max(ours):.2f} of the mean at any distance, and the mean is within {max(misses):.1f} "
+        "standard errors."
     )
     plot = Plot(
         "L3",
@@ -195,7 +201,8 @@ def triangle_points(size: float):
 
 
 def triangle_integral(size: float, power: float) -> float:
-    """Integral of cos^power / r^2 over the triangle seen from the origin, 8 x 8 Gauss points: power 1 for the solid angle."""
+    """Integral of cos^power / r^2 over the triangle seen from the origin, 8 x 8 Gauss points: power 1 for the solid "
+    "angle."""
     nodes, weights = np.polynomial.legendre.leggauss(8)
     u, v = np.meshgrid((nodes + 1) / 2, (nodes + 1) / 2)
     w = np.outer(weights, weights).T / 4 * u
@@ -226,7 +233,8 @@ def l4(quick: bool) -> Plot:
         ours.append(abs(float(green(scene).mean()) - 1))
     bad = int(np.argmin(abs(sizes - 1e-3)))
     words = (
-        f"The solid angle of a triangle of edge {sizes[bad]:.1g} by the excess of its angles in f32 is off by {naive[bad]:.0%}; Abbe's floors under such lamps are "
+        f"The solid angle of a triangle of edge {sizes[bad]:.1g} by the excess of its angles in f32 is off by "
+        f"{naive[bad]:.0%}; Abbe's floors under such lamps are "
         f"right within {max(ours):.1g} down to an edge of {sizes[-1]:.0e}."
     )
     return Plot(

@@ -29,8 +29,10 @@ def d5(quick: bool) -> Plot:
         ours.append(abs(float(np.sum(shown * impact)) / exact - 1))
     near = int(np.argmin(abs(excess - 1e-2)))
     words = (
-        f"Schlick's approximation reflects {times(1 + schlick[near])} times too much diffuse light at an index of {1 + excess[near]:.2f}, and {times(schlick[0])} "
-        f"times at {1 + excess[0]:g}: it never falls below 1/21. Abbe's balls show the exact Fresnel mean within {max(ours):.1g}."
+        f"Schlick's approximation reflects {times(1 + schlick[near])} times too much diffuse light at an index of "
+        f"{1 + excess[near]:.2f}, and {times(schlick[0])} "
+        f"times at {1 + excess[0]:g}: it never falls below 1/21. Abbe's balls show the exact Fresnel mean within "
+        f"{max(ours):.1g}."
     )
     series = [Series("Schlick 1994", excess, schlick), Series("Abbe, rendered", excess, ours, True)]
     return Plot(
@@ -86,8 +88,10 @@ def d13(quick: bool) -> Plot:
     for one in series:
         one.x = 1 / one.x
     words = (
-        f"A line {widths[-1]:g} nm wide and as strong as the continuum makes uniformly drawn wavelengths vary by {naive(4)[-1]:.0f} times their mean, four "
-        f"lanes and all; Abbe's heroes, seen through N-SF11, vary by {ours[-1]:.2f} at that width and at most {max(ours):.2f} at any."
+        f"A line {widths[-1]:g} nm wide and as strong as the continuum makes uniformly drawn wavelengths vary by "
+        f"{naive(4)[-1]:.0f} times their mean, four "
+        f"lanes and all; Abbe's heroes, seen through N-SF11, vary by {ours[-1]:.2f} at that width and at most "
+        f"{max(ours):.2f} at any."
     )
     return Plot(
         "D13",
@@ -157,7 +161,8 @@ def g6(quick: bool) -> Plot:
         ours.append(abs(mean - 1))
         errors.append(error)
     words = (
-        f"With single scattering a lossless metal of alpha 1 loses {naive[-1]:.0%} of the light; Abbe's balls give back all of it but "
+        f"With single scattering a lossless metal of alpha 1 loses {naive[-1]:.0%} of the light; Abbe's balls give "
+        "back all of it but "
         f"{max(ours):.1g} (standard error {max(errors):.0e})."
     )
     series = [Series("single scattering", alphas, naive), Series("Abbe, rendered", alphas, ours, True)]
@@ -174,7 +179,8 @@ def g6(quick: bool) -> Plot:
 
 
 def through(indices) -> float:
-    """Transmittance of a stack of boundaries at normal incidence, all orders summed: reflectance over transmittance adds up."""
+    """Transmittance of a stack of boundaries at normal incidence, all orders summed: reflectance over transmittance "
+    "adds up."""
     r = [((a - b) / (a + b)) ** 2 for a, b in pairwise(indices)]
     return 1 / (1 + sum(one / (1 - one) for one in r))
 
@@ -199,8 +205,10 @@ def m3(quick: bool) -> Plot:
             found.append(abs(float(green(scene)[0, 0]) / exact - 1))
     alone = abs(through([1, GLASS, 1, WATER, 1]) / exact - 1)
     words = (
-        f"Water drawn a hair below its glass loses {gap[-1]:.1%} of the light however thin the gap of air, and bodies that overlap without a rule as "
-        f"much; Abbe's priorities let them overlap and keep the transmittance within {max(ours):.1g}, whatever the overlap."
+        f"Water drawn a hair below its glass loses {gap[-1]:.1%} of the light however thin the gap of air, and bodies "
+        "that overlap without a rule as "
+        f"much; Abbe's priorities let them overlap and keep the transmittance within {max(ours):.1g}, whatever the "
+        "overlap."
     )
     series = [
         Series("gap of air (rendered)", 1 / depths, gap),
@@ -242,8 +250,10 @@ def g4(quick: bool) -> Plot:
         ours.append(missed)
     near = int(np.argmin(abs(alphas - 1e-3)))
     words = (
-        f"Written as c^2 (alpha^2 - 1) + 1 in f32, the density of facets is off by {naive[near]:.1%} at alpha {alphas[near]:g}, and "
-        f"{'infinite' if np.isinf(naive[-1]) else f'off by {naive[-1]:.0%}'} at {alphas[-1]:g}; Abbe's highlights of a point light are right within {max(ours):.1g}, and below 1e-4 metal counts as smooth."
+        f"Written as c^2 (alpha^2 - 1) + 1 in f32, the density of facets is off by {naive[near]:.1%} at alpha "
+        f"{alphas[near]:g}, and "
+        f"{'infinite' if np.isinf(naive[-1]) else f'off by {naive[-1]:.0%}'} at {alphas[-1]:g}; Abbe's highlights of "
+        f"a point light are right within {max(ours):.1g}, and below 1e-4 metal counts as smooth."
     )
     series = [
         Series("c^2 (alpha^2 - 1) + 1,\nf32", 1 / alphas, np.minimum(naive, 1e3)),

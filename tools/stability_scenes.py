@@ -45,9 +45,9 @@ def view(
     space=None,
     **settings,
 ) -> str:
-    """A scene's text. `objects` pairs materials with shapes; `fov` in degrees, or the `height` of an orthographic view.
+    """A scene's text. `objects` pairs materials with shapes; `fov` is in degrees; or the `height` of a parallel view.
 
-    Without `samples`, rays go through the centers of pixels, and nothing is left to chance where surfaces are smooth."""
+    Without `samples`, rays go through the centers of pixels, and smooth surfaces leave nothing to chance."""
     lens = {"projection": "orthographic", "height": height} if height else {"vertical_fov": fov or 1e-4}
     film = {"width": columns, "height": rows, "filter": "box" if "samples" in settings else "center"}
     tables = {

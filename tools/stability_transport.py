@@ -1,4 +1,4 @@
-"""Stability rows W2, W4, W6, A1: trees of paths and sums of samples. Naive methods in numpy, ours on rendered images."""
+"""Stability rows W2, W4, W6, A1: trees of paths and sums of samples. Naive methods in numpy, ours on images."""
 
 import numpy as np
 from stability_plot import Plot, Series
@@ -82,8 +82,10 @@ def stack_plot(row, title, quick, methods, source):
     z = float(np.max(abs(found[:, 0] - exact) / np.maximum(found[:, 1], 1e-7)))
     ten = int(np.argmin(abs(panes - 10)))
     words = (
-        f"Before ten panes, {naive[0].label} loses {naive[0].y[ten]:.0%} of the light and {naive[-1].label} still {naive[-1].y[ten]:.1%}; Abbe renders "
-        f"{found[ten, 0]:.4f} +- {found[ten, 1]:.4f} for {exact[ten]:.4f}, at most {z:.1f} standard errors off at any number of panes."
+        f"Before ten panes, {naive[0].label} loses {naive[0].y[ten]:.0%} of the light and {naive[-1].label} still "
+        f"{naive[-1].y[ten]:.1%}; Abbe renders "
+        f"{found[ten, 0]:.4f} +- {found[ten, 1]:.4f} for {exact[ten]:.4f}, at most {z:.1f} standard errors off at any "
+        "number of panes."
     )
     series = [*naive, Series("Abbe, rendered", panes, ours, True)]
     plot = Plot(
@@ -130,7 +132,8 @@ def w6(quick: bool) -> Plot:
     z = float(np.max(np.array(ours) / np.array(errors)))
     naive = [Series(f"depth limit {depth}", 1 / absorbed, (1 - absorbed) ** depth) for depth in (5, 20, 100)]
     words = (
-        f"Where a wall keeps {absorbed[-1]:.1%} of the light, a limit of 100 bounces misses {naive[-1].y[-1]:.0%} of a closed room's; Abbe's roulette on the "
+        f"Where a wall keeps {absorbed[-1]:.1%} of the light, a limit of 100 bounces misses {naive[-1].y[-1]:.0%} of "
+        "a closed room's; Abbe's roulette on the "
         f"throughput is off by at most {max(ours):.1%}, {z:.1f} standard errors."
     )
     plot = Plot(
@@ -170,7 +173,8 @@ def a1(quick: bool) -> Plot:
     scene = view([], [{"environment": {"radiance": 0.1}}], eye=(0, 0, 3), samples=1)
     ours = [abs(float(green(scene, samples=int(n))[0, 0]) / 0.1 - 1) for n in counts]
     words = (
-        f"A pixel summed in f32 is off by {naive[-1]:.1%} after {counts[-1]:,} samples; Abbe's film, summed in f64, shows a sky of 0.1 "
+        f"A pixel summed in f32 is off by {naive[-1]:.1%} after {counts[-1]:,} samples; Abbe's film, summed in f64, "
+        "shows a sky of 0.1 "
         f"within {max(ours):.1g} after any number (the 32-bit numbers of the file carry 6e-8)."
     )
     return Plot(

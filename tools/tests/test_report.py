@@ -1,4 +1,4 @@
-"""The report in a real headless Chromium: nothing requested, nothing overflows, all is legible and loaded, charts tell their figures.
+"""The report in a real headless Chromium: it asks for nothing, fits, is legible, and its charts tell their figures.
 
     pytest tools/tests/test_report.py       # screenshots in target/report/
 
