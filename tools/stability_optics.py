@@ -255,8 +255,9 @@ def g4(quick: bool) -> Plot:
         f"{'infinite' if np.isinf(naive[-1]) else f'off by {naive[-1]:.0%}'} at {alphas[-1]:g}; Abbe's highlights of "
         f"a point light are right within {max(ours):.1g}, and below 1e-4 metal counts as smooth."
     )
+    last = " (last: infinite)" if np.isinf(naive[-1]) else ""
     series = [
-        Series("c^2 (alpha^2 - 1) + 1,\nf32", 1 / alphas, np.minimum(naive, 1e3)),
+        Series(f"c^2 (alpha^2 - 1) + 1,\nf32{last}", 1 / alphas, np.minimum(naive, 1e3)),
         Series("Abbe, rendered", 1 / alphas, ours, True),
     ]
     return Plot(

@@ -87,7 +87,7 @@ def stack_plot(row, title, quick, methods, source):
         f"{found[ten, 0]:.4f} +- {found[ten, 1]:.4f} for {exact[ten]:.4f}, at most {z:.1f} standard errors off at any "
         "number of panes."
     )
-    series = [*naive, Series("Abbe, rendered", panes, ours, True)]
+    series = [*naive, Series("Abbe, rendered\n(noise)", panes, ours, True)]
     plot = Plot(
         row, title, "panes", "share of the light that is missed", series, words, bound=5e-3, least=1e-6, source=source
     )
@@ -98,13 +98,13 @@ def stack_plot(row, title, quick, methods, source):
 def w2(quick: bool) -> Plot:
     """Depth limits."""
     methods = [(f"a depth limit of {depth}", {"depth": depth}) for depth in (10, 20, 40)]
-    return stack_plot("W2", "Panes of glass and a depth limit", quick, methods, "closed form: every path counted")
+    return stack_plot("W2", "Panes of glass and a depth limit", quick, methods, "Whitted 1980")
 
 
 def w4(quick: bool) -> Plot:
     """Weight cuts."""
     methods = [(f"a cut at weight {cut:g}", {"weight": cut}) for cut in (1e-2, 1e-3, 1e-4)]
-    return stack_plot("W4", "Panes of glass and a weight cut", quick, methods, "closed form: every path counted")
+    return stack_plot("W4", "Panes of glass and a weight cut", quick, methods, "Hall & Greenberg 1983")
 
 
 def w6(quick: bool) -> Plot:
@@ -141,11 +141,11 @@ def w6(quick: bool) -> Plot:
         "Light in a closed white room",
         "1 / share that a wall absorbs",
         "share of the light that is missed",
-        [*naive, Series("Abbe, rendered", 1 / absorbed, ours, True)],
+        [*naive, Series("Abbe, rendered\n(noise)", 1 / absorbed, ours, True)],
         words,
         bound=0.05,
         least=1e-6,
-        source="geometric series",
+        source="Arvo & Kirk 1990",
     )
     plot.notes.append(f"z {z:.3f}")
     return plot

@@ -7,6 +7,8 @@ Skipped, with the reason, where no Chromium can be installed.
 
 import json
 import re
+import subprocess
+from pathlib import Path
 
 import browser
 import numpy as np
@@ -244,6 +246,22 @@ def test_the_page_holds_no_address_and_no_mark_of_the_template(samples):
     text = re.sub(r"data:image/png;base64,[A-Za-z0-9+/=]+", "", samples.read_text("utf-8"))
     assert set(re.findall(r"https?://[^\"' <]+", text)) <= {"http://www.w3.org/2000/svg"}
     assert "@@" not in text and "<fails>" not in text
+
+
+def test_tools_are_run_first_and_those_that_fail_are_named(monkeypatch, tmp_path, capsys):
+    commands = []
+
+    def run(command, **_):
+        commands.append(command[1:])
+        return subprocess.CompletedProcess(command, int("chart" in command[1]))
+
+    monkeypatch.setattr(report, "write", lambda folder, out: out.write_text("page") and [])
+    monkeypatch.setattr(report.subprocess, "run", run)
+    assert report.main(["--quick", "--out", str(tmp_path / "page.html")]) == 1
+    assert [(Path(script).name, *flags) for script, *flags in commands] == [
+        (f"{t}.py", "--quick") for t in report.TOOLS
+    ]
+    assert "failed: python tools/chart.py" in capsys.readouterr().out
 
 
 def test_what_is_broken_is_said_in_one_sentence(tmp_path):
