@@ -1,16 +1,15 @@
 """Stability rows S1, S6, T1: where rays meet surfaces. Naive methods in numpy, ours on rendered images."""
 
 import numpy as np
-import optics
 from stability_plot import Plot, Series
-from stability_scenes import WHITE_SKY, photograph, plane, sphere, view
+from stability_scenes import WHITE_SKY, fresnel, photograph, plane, sphere, view
 
 INDEX = 1.5
 
 
 def ball_reflectance(cosine):
     """What a ball of black glass shows of a sky of 1 at an angle of incidence."""
-    return optics.fresnel(INDEX, np.degrees(np.arccos(np.clip(cosine, 0, 1))))
+    return fresnel(INDEX, cosine)
 
 
 def ball_rays(distance: float, count: int, precision):

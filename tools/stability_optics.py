@@ -3,9 +3,8 @@
 from itertools import pairwise
 
 import numpy as np
-import optics
 from stability_plot import Plot, Series, times
-from stability_scenes import WHITE_SKY, green, mean_and_error, plane, slab, sphere, view
+from stability_scenes import WHITE_SKY, fresnel, green, mean_and_error, plane, slab, sphere, view
 
 GLASS, WATER = 1.5168, 1.333
 
@@ -18,7 +17,7 @@ def d5(quick: bool) -> Plot:
     cosine = np.sqrt(1 - impact**2)
     schlick, ours = [], []
     for index in 1 + excess:
-        exact = float(np.sum(optics.fresnel(index, np.degrees(np.arccos(cosine))) * impact))
+        exact = float(np.sum(fresnel(index, cosine) * impact))
         r0 = ((index - 1) / (index + 1)) ** 2
         schlick.append(abs(float(np.sum((r0 + (1 - r0) * (1 - cosine) ** 5) * impact)) / exact - 1))
         black = {"black": {"dielectric": {"index": index, "absorption": 1e6}}}

@@ -85,6 +85,15 @@ def mean_and_error(text: str, seeds=8, **flags) -> tuple[float, float]:
     return float(np.mean(means)), float(np.std(means, ddof=1) / np.sqrt(seeds))
 
 
+def fresnel(index: float, cosine):
+    """Reflectance of unpolarized light at a dielectric, by the cosine of its angle of incidence (Born & Wolf, 1.5.2)."""
+    cosine = np.clip(cosine, 0, 1)
+    beyond = np.sqrt(index**2 - 1 + cosine**2)
+    s = (cosine - beyond) / (cosine + beyond)
+    p = (index**2 * cosine - beyond) / (index**2 * cosine + beyond)
+    return (s**2 + p**2) / 2
+
+
 def sphere(center=(0.0, 0.0, 0.0), radius=1.0) -> dict:
     return {"sphere": {"center": list(center), "radius": radius}}
 

@@ -12,6 +12,7 @@ import stability
 import stability_geometry as geometry
 import stability_lights as lights
 import stability_optics as optics_rows
+import stability_scenes
 import stability_transport as transport
 
 
@@ -84,6 +85,7 @@ def test_the_sum_of_many_floats_stops_growing():
 
 
 def test_reference_integrals_meet_their_closed_forms():
+    assert stability_scenes.fresnel(1.5, np.array([1, 0.5, 0])) == pytest.approx([0.04, 0.0891867, 1], abs=1e-7)
     assert lights.wall_share(1e-9) == pytest.approx(0.5)
     area = np.sqrt(3) / 4 * 1e-6
     assert lights.triangle_integral(1e-3, 1) == pytest.approx(area, rel=1e-6)
