@@ -233,6 +233,12 @@ def validation(book: dict) -> str:
     )
 
 
+def test_names(names: str) -> str:
+    """Each on lines of its own, broken between words."""
+    lines = (text(name).replace("_", "_<wbr>").replace("::", "::<wbr>") for name in names.splitlines())
+    return "".join(f"<code>{line}</code>" for line in lines)
+
+
 def stability(book: dict, charts: dict) -> str:
     """Plots with their words, and which test holds which row."""
     cards = []
@@ -251,7 +257,7 @@ def stability(book: dict, charts: dict) -> str:
     if book.get("rows"):
         lines = [
             f'<tr><td>{text(row["row"])}</td><th scope="row">{text(row["name"])}'
-            f'<span class="why">{text(row.get("remedy", ""))}</span></th><td><code>{text(row["test"])}</code></td></tr>'
+            f'<span class="why">{text(row.get("remedy", ""))}</span></th><td>{test_names(row["test"])}</td></tr>'
             for row in book["rows"]
         ]
         parts.append("<h3>Which test holds which row</h3>")

@@ -47,7 +47,9 @@ ROWS = {
 
 
 def catalog(text: str) -> list[dict]:
-    """The rows of a Markdown table `| row | what fails | what Abbe does | test |`; other lines do not count."""
+    """The rows of a Markdown table `| row | what fails | what Abbe does | test |`; other lines do not count.
+
+    Several tests of a row stand on lines of their own."""
     rows = []
     for line in text.splitlines():
         cells = [cell.strip().replace("\\|", "|") for cell in line.strip().strip("|").replace("\\|", "\0").split("|")]
@@ -60,7 +62,7 @@ def catalog(text: str) -> list[dict]:
         ):
             continue
         row, name, remedy, test = cells
-        rows.append({"row": row, "name": name, "remedy": remedy, "test": test.replace("`", "")})
+        rows.append({"row": row, "name": name, "remedy": remedy, "test": test.replace("`", "").replace("<br>", "\n")})
     return rows
 
 

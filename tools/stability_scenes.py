@@ -86,7 +86,7 @@ def mean_and_error(text: str, seeds=8, **flags) -> tuple[float, float]:
 
 
 def fresnel(index: float, cosine):
-    """Reflectance of unpolarized light at a dielectric, by the cosine of its angle of incidence (Born & Wolf, 1.5.2)."""
+    """Reflectance of unpolarized light at a dielectric, by the cosine of the angle of incidence (Born & Wolf 1.5.2)."""
     cosine = np.clip(cosine, 0, 1)
     beyond = np.sqrt(index**2 - 1 + cosine**2)
     s = (cosine - beyond) / (cosine + beyond)

@@ -111,5 +111,7 @@ def test_plots_are_kept_as_svg_csv_and_json(tmp_path, capsys):
 
 def test_the_table_of_rows_is_read_and_other_lines_are_not():
     text = "# Title\n\n| row | what fails | what Abbe does | test |\n|---|:--|---|---|\n"
-    text += "| S1 | a \\| b | far | `shapes.rs::s1_far` |\n| broken |\n"
-    assert stability.catalog(text) == [{"row": "S1", "name": "a | b", "remedy": "far", "test": "shapes.rs::s1_far"}]
+    text += "| S1 | a \\| b | far | `shapes.rs::s1_far`<br>`b.rs::s1` |\n| broken |\n"
+    assert stability.catalog(text) == [
+        {"row": "S1", "name": "a | b", "remedy": "far", "test": "shapes.rs::s1_far\nb.rs::s1"}
+    ]
