@@ -3,7 +3,8 @@
     python3 tools/test.py                # everything
     python3 tools/test.py --only pytest  # one step
 
-Needs cargo and Python 3.11 or newer; the Python packages go into .venv, by the hashes of tools/requirements.txt.
+Needs cargo and Python 3.11 or newer; the Python packages go into .venv, by the hashes of tools/requirements.txt, and so does
+the Chromium that opens the report.
 """
 
 import argparse
@@ -56,13 +57,19 @@ def packages():
     stamp.write_text(wanted)
 
 
+def packages_and_browser():
+    """On a machine where no browser can be installed, the tests that need it are skipped and say why."""
+    packages()
+    run(PYTHON, "tools/browser.py")
+
+
 STEPS = {
     "format": lambda: run("cargo", "fmt", "--all", "--check"),
     "clippy": lambda: run("cargo", "clippy", "--all-targets", "--", "-D", "warnings"),
     "doc": lambda: run("cargo", "doc", "--no-deps", RUSTDOCFLAGS="-D warnings"),
     "test": lambda: run("cargo", "test", "--release"),
     "build": lambda: run("cargo", "build", "--release"),
-    "packages": packages,
+    "packages": packages_and_browser,
     "pytest": lambda: run(PYTHON, "-m", "pytest", "tools/tests", RENDER=str(RENDER)),
 }
 
