@@ -128,11 +128,6 @@ pub struct Object {
 }
 
 impl Object {
-    /// Whether it is shaded by other normals than its own.
-    pub fn is_bent(&self) -> bool {
-        self.relief.is_some() || self.shape.has_vertex_normals()
-    }
-
     /// The surface at a crossing, with the normal that its relief gives it.
     #[inline]
     pub fn point(&self, ray: &Ray, crossing: &Crossing) -> SurfacePoint {

@@ -26,11 +26,6 @@ impl Attributes {
         DVec3::from(interpolated).try_normalize().filter(|normal| normal.dot(flat) > 0.0).unwrap_or(flat)
     }
 
-    /// Whether there are normals.
-    pub(super) fn has_normals(&self) -> bool {
-        !self.normals.is_empty()
-    }
-
     /// The texture coordinates at affine coordinates of a triangle.
     pub(super) fn coordinates(&self, corners: [u32; 3], uv: [f64; 2]) -> Option<[f64; 2]> {
         (!self.coordinates.is_empty()).then(|| interpolated(&self.coordinates, corners, uv))

@@ -128,11 +128,6 @@ impl Mesh {
         Self { attributes, ..self }
     }
 
-    /// Whether it is shaded by normals of its vertices.
-    pub fn has_normals(&self) -> bool {
-        self.attributes.has_normals()
-    }
-
     /// Whether it has texture coordinates.
     pub fn has_coordinates(&self) -> bool {
         !self.attributes.coordinates.is_empty()

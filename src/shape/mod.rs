@@ -201,15 +201,6 @@ impl Shape {
         shared.map_or_else(|| self.clone().transformed(map), |instance| Self::Instance(Box::new(instance)))
     }
 
-    /// Whether it is shaded by normals of vertices.
-    pub fn has_vertex_normals(&self) -> bool {
-        match self {
-            Self::Mesh(mesh) => mesh.has_normals(),
-            Self::Instance(instance) => instance.mesh().has_normals(),
-            _ => false,
-        }
-    }
-
     /// Whether the shape has an inside: a dielectric on it fills that, or the half space behind a plane.
     pub fn is_closed(&self) -> bool {
         match self {

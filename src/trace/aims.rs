@@ -57,12 +57,11 @@ const MOST: usize = 32;
 /// Share of the photons that all aims get alike; the others go by flux.
 const EVENLY: f64 = 0.1;
 
-/// Whether photons can be sent to an object: finite, smooth where light goes on, and shaded as it is shaped.
+/// Whether photons can be sent to an object: finite, and smooth where light goes on.
 pub fn is_photon_target<S>(scene: &Scene<S>, object: usize) -> bool {
     let material = scene.material_of(object as u32);
     let smooth = !material.scatters_widely() && !matches!(material, Material::Emissive(_));
-    let object = &scene.objects[object];
-    smooth && object.shape.bounds().is_some() && !object.is_bent()
+    smooth && scene.objects[object].shape.bounds().is_some()
 }
 
 impl Aims {

@@ -125,13 +125,6 @@ impl World {
         }
     }
 
-    /// Whether photons are sent to an object; none if they do not follow light over it: where normals are bent, light goes
-    /// one way from the lamp and another from the camera.
-    pub(super) fn photons_over(&self, object: u32) -> Option<bool> {
-        let aims = self.aims.as_ref()?;
-        (!self.scene.objects[object as usize].is_bent()).then_some(aims.objects[object as usize])
-    }
-
     /// Whether photons are sent to an object.
     pub(super) fn is_photon_target(&self, object: u32) -> bool {
         self.aims.as_ref().is_some_and(|aims| aims.objects[object as usize])

@@ -46,7 +46,7 @@ pub(super) enum Leg {
 
 impl Leg {
     /// After one more surface; `wide` says whether light left it by a density of directions, `aimed` whether photons are sent
-    /// to its object; none if they do not follow light over it. Photons are shown from the first surface alone, and gathered
+    /// to its object; none if light cannot be followed forward the same way. Photons are shown from the first surface alone, and gathered
     /// from all others if they are at all.
     pub(super) fn then(self, gathers: bool, wide: bool, aimed: Option<bool>) -> Self {
         match (self, wide, aimed) {

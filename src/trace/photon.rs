@@ -144,14 +144,20 @@ impl<const N: usize> Tracer<'_, N> {
                 land(self, &landing);
             }
         }
-        let goes_on = material.has_single_directions() && world.photons_over(hit.object).is_some();
+        let arrival = Arrival { normal: shading::plain_normal(point, arrival.wo), ..arrival };
+        let goes_on = material.has_single_directions() && arrival.wo.dot(arrival.normal) > 0.0;
         if !goes_on || path.vertices >= world.method.max_bounces {
             return None;
         }
         self.branches.clear();
         let u = sampler.four_plain(path.key, SCATTER);
         material.scatter(&arrival, [u[0], u[1]], &mut self.branches);
-        self.branches.retain(|branch| branch.pdf.is_none());
+        let back = arrival.wo;
+        self.branches
+            .retain(|branch| branch.pdf.is_none() && shading::is_plain(point, branch.wi, back, branch.crosses));
+        for branch in &mut self.branches {
+            branch.share = branch.share * shading::forward_factor(point, branch.wi, back) as f32;
+        }
         let parts = material.lets_through() && material.parts_lanes(&arrival);
         self.follow(path, draw, sampler, (parts, 1.0), |number, branch, factor| Path {
             ray: point.leave(branch.wi),

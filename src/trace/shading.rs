@@ -19,6 +19,32 @@ pub(super) fn normals(point: &SurfacePoint, wo: DVec3) -> [DVec3; 2] {
     if flat == smooth { [flat; 2] } else { [flat, bent(wo, flat, smooth)] }
 }
 
+/// The shading normal on the side of the unit vector `wo`, as it is.
+pub(super) fn plain_normal(point: &SurfacePoint, wo: DVec3) -> DVec3 {
+    if point.normal.dot(wo) > 0.0 { point.shading } else { -point.shading }
+}
+
+/// Whether light goes from `wi` to the viewer at `wo` by the shading normal as it is, so that it can be followed either way.
+pub(super) fn is_plain(point: &SurfacePoint, wo: DVec3, wi: DVec3, crosses: bool) -> bool {
+    if point.shading == point.normal {
+        return true;
+    }
+    let smooth = plain_normal(point, wo);
+    let (wo_above, wi_above) = (wo.dot(point.normal), wi.dot(point.normal));
+    let mirrored = reflect(wo, smooth).dot(point.normal);
+    wo.dot(smooth) > 0.0 && mirrored * wo_above > 0.0 && crosses == (wi_above * wo_above < 0.0)
+}
+
+/// What light gains that is followed forward from `wi` to `wo`: the shading normal makes of a beam's width another than
+/// the surface's own. Veach 1997, equation 5.19.
+pub(super) fn forward_factor(point: &SurfacePoint, wo: DVec3, wi: DVec3) -> f64 {
+    if point.shading == point.normal {
+        return 1.0;
+    }
+    let [flat, smooth] = [point.normal, point.shading];
+    ((wo.dot(flat) * wi.dot(smooth)) / (wo.dot(smooth) * wi.dot(flat))).abs()
+}
+
 /// The shading normal, or, where it would mirror `wo` below the triangle, the one that mirrors it as far above.
 fn bent(wo: DVec3, flat: DVec3, smooth: DVec3) -> DVec3 {
     let mirrored = reflect(wo, smooth);

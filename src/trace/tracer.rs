@@ -238,6 +238,8 @@ impl<'a, const N: usize> Tracer<'a, N> {
                 let onward = path.passed_in_part(point, branch.share);
                 return Path { throughput: onward.throughput.scaled(factor), key: path.key.child(number), ..onward };
             }
+            let followed = shading::is_plain(point, arrival.wo, branch.wi, branch.crosses);
+            let aimed = followed.then(|| world.is_photon_target(hit.object));
             Path {
                 ray: point.leave(branch.wi),
                 throughput: path.throughput.through(branch.share).scaled(factor),
@@ -247,7 +249,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
                 key: path.key.child(number),
                 vertices: path.vertices,
                 length: path.length,
-                leg: path.leg.then(world.has_map(), branch.pdf.is_some(), world.photons_over(hit.object)),
+                leg: path.leg.then(world.has_map(), branch.pdf.is_some(), aimed),
                 diffuse_left: path.diffuse_left - u32::from(diffuse && branch.pdf.is_some()),
                 drawn: branch.pdf.and_then(|pdf| drawn.map(|drawn: Drawn| drawn.toward(pdf, branch.crosses))),
                 polarization: branch.polarization,
