@@ -196,11 +196,21 @@ fn possible(path: &Path, width: usize, numbers: &[f32], (channels, meaning): (us
 /// Most texels of an image: 16384 x 8192.
 const MOST_TEXELS: usize = 1 << 27;
 
-fn too_many(width: usize, height: usize) -> Result<(), String> {
-    match width.saturating_mul(height) > MOST_TEXELS {
-        true => Err(format!("{width} x {height} pixels are more than {MOST_TEXELS}")),
-        false => Ok(()),
+/// Bytes of texels that a file of any length may ask for.
+const ALWAYS: u64 = 1 << 27;
+/// Bytes of texels that one byte of a file can stand for: deflate packs 1032 into one at best (RFC 1951: 258 by 2 bits), and
+/// of a palette of two colors each bit is a texel of 3 bytes. Nothing else in these formats is as dense.
+const DENSEST: u64 = 1032 * 24;
+
+/// Refuses sizes that would fill the memory before it shows that the file has no such texels.
+fn too_many(width: usize, height: usize, texels: u64, file: &[u8]) -> Result<(), String> {
+    if width.saturating_mul(height) > MOST_TEXELS {
+        return Err(format!("{width} x {height} pixels are more than {MOST_TEXELS}"));
     }
+    if texels > ALWAYS.max(DENSEST * file.len() as u64) {
+        return Err(format!("its {} bytes cannot hold {width} x {height} pixels", file.len()));
+    }
+    Ok(())
 }
 
 /// Red, green, blue and maybe alpha of each texel, rows from the top.
@@ -224,7 +234,10 @@ impl Floats {
 fn read_exr(bytes: &[u8], alpha: bool) -> Result<Floats, String> {
     let described = exr::meta::MetaData::read_from_buffered(Cursor::new(bytes), false);
     let headers = described.map_err(|error| error.to_string())?.headers;
-    headers.iter().try_for_each(|header| too_many(header.layer_size.width(), header.layer_size.height()))?;
+    for size in headers.iter().map(|header| header.layer_size) {
+        let texel = 4 * if alpha { 4 } else { 3 };
+        too_many(size.width(), size.height(), texel * size.width() as u64 * size.height() as u64, bytes)?;
+    }
     let (layers, bytes) = (read().no_deep_data().largest_resolution_level(), Cursor::new(bytes));
     let floats = if alpha {
         let put = |image: &mut Floats, at, (r, g, b, a): (f32, f32, f32, f32)| image.put(at, [r, g, b, a]);
@@ -253,7 +266,7 @@ fn decode(bytes: &[u8], format: ImageFormat) -> Result<DynamicImage, String> {
     reader.limits(limits);
     let decoder = reader.into_decoder().map_err(|error| error.to_string())?;
     let (width, height) = decoder.dimensions();
-    too_many(width as usize, height as usize)?;
+    too_many(width as usize, height as usize, decoder.total_bytes(), bytes)?;
     DynamicImage::from_decoder(decoder).map_err(|error| error.to_string())
 }
 

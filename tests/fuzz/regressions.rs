@@ -1,0 +1,1 @@
+//! Files that did harm once, and what is said of them now.
