@@ -7,6 +7,7 @@ use exr::math::Vec2;
 use exr::prelude::{ReadChannels, ReadLayers, read};
 use image::{DynamicImage, ImageDecoder, ImageFormat};
 
+use super::guard::guarded;
 use crate::spectrum::{Channel, Encoding, Image, decode_srgb};
 
 /// What is wrong with a file, and what to do.
@@ -18,8 +19,8 @@ type Fault = (String, Option<String>);
 /// What is wrong with it, and what to do.
 pub(super) fn read_image(path: &Path, bytes: &[u8]) -> Result<Image, Fault> {
     let (kind, image) = match ending(path).as_str() {
-        "exr" => ("OpenEXR", read_exr(bytes, false)),
-        "hdr" => ("Radiance", read_radiance(bytes)),
+        "exr" => ("OpenEXR", guarded(|| read_exr(bytes, false))),
+        "hdr" => ("Radiance", guarded(|| read_radiance(bytes))),
         ending @ ("png" | "jpg" | "jpeg") => {
             let help = "use an OpenEXR (.exr) or Radiance (.hdr) image";
             return Err((format!("a .{ending} image holds no light brighter than white"), Some(help.into())));
@@ -75,7 +76,7 @@ pub(super) fn read_texture(
     let directions = meaning == Meaning::Directions;
     let ignores = |ignores: bool| ignores && !directions;
     if let Some(format) = format {
-        let image = decode(bytes, format).map_err(fault)?;
+        let image = guarded(|| decode(bytes, format)).map_err(fault)?;
         let width = image.width() as usize;
         let (count, has_alpha) = (usize::from(image.color().channel_count()), image.color().has_alpha());
         let picked = Picked::new(path, channel, count, has_alpha)?;
@@ -107,7 +108,7 @@ pub(super) fn read_texture(
         });
     }
     let radiance = kind == "Radiance";
-    let image = if radiance { read_radiance(bytes) } else { read_exr(bytes, true) }.map_err(fault)?;
+    let image = guarded(|| if radiance { read_radiance(bytes) } else { read_exr(bytes, true) }).map_err(fault)?;
     let picked = Picked::new(path, channel, image.channels, !radiance)?;
     let numbers = &image.numbers[..];
     let ignores_alpha = ignores(picked.ignores(numbers, 1.0));

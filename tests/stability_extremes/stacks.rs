@@ -1,0 +1,76 @@
+//! Row H5: a thousand bodies one behind the other and one in the other.
+
+use abbe::plan::plan;
+use abbe::trace::Transport;
+
+use crate::support::scenes::{EVERY_BRANCH, Mean, body, image, scene, standard_errors, view};
+
+const COUNT: u32 = 1000;
+/// Reflectance of one surface of index 1.5.
+const R: f64 = 0.04;
+
+fn lit(bodies: &str, side: u32, samples: u32) -> String {
+    let far = "plane = { point = [0, 0, -20], normal = [0, 0, 1] }";
+    view([0.31, 0.17, 10.0], [0.31, 0.17, 0.0], 1e-7, side)
+        + &format!("[render]\nsamples = {samples}\n")
+        + bodies
+        + &body("lamp", "emissive = { radiance = 1, sides = \"front\" }", &[far])
+}
+
+/// Panes of reflectance r at each surface let through (1 - r) / (1 + (2 N - 1) r), all ways counted (Stokes 1862).
+#[test]
+fn h5_a_stack_of_a_thousand_panes_lets_through_what_the_closed_form_says() {
+    let panes: Vec<String> = (0..COUNT)
+        .map(|i| format!("cube = {{ center = [0, 0, {:?}], size = [200, 200, 0.005] }}", -0.01 * f64::from(i)))
+        .collect();
+    let panes: Vec<&str> = panes.iter().map(String::as_str).collect();
+    let text = lit(&body("glass", "dielectric = { index = 1.5 }", &panes), 32, 4);
+    let transport = plan(&scene(&text)).method.transport;
+    assert!(matches!(transport, Transport::Random { .. }), "{transport:?}");
+    let expected = (1.0 - R) / (1.0 + (2.0 * f64::from(COUNT) - 1.0) * R);
+    let (film, report) = image(&text, transport);
+    let mean = Mean::of(&film);
+    let rays = report.rays as f64 / report.samples as f64;
+    println!(
+        "H5: {:.6} +- {:.1e} for {expected:.6}, {rays:.0} rays for each of the camera",
+        mean.value[0], mean.error[0]
+    );
+    assert_eq!((report.unmatched, report.non_finite, report.stopped), (0, 0, 0.0));
+    mean.assert_near([expected; 3], 1, "a thousand panes");
+    assert!(mean.worst_error([expected; 3]) < 0.1, "{mean:?}");
+}
+
+/// Balls within balls of one glass are one ball: their media are counted, and the 999 inner surfaces are not there.
+#[test]
+fn h5_a_thousand_bodies_in_each_other_are_one() {
+    let nested: Vec<String> = (0..COUNT)
+        .map(|i| format!("cube = {{ center = [0, 0, 0], size = {:?} }}", 2.0 - 0.0015 * f64::from(i)))
+        .collect();
+    let nested: Vec<&str> = nested.iter().map(String::as_str).collect();
+    let (film, report) = image(&lit(&body("glass", "dielectric = { index = 1.5 }", &nested), 1, 1), EVERY_BRANCH);
+    let expected = (1.0 - R) / (1.0 + R);
+    assert_eq!((report.unmatched, report.stopped), (0, 0.0));
+    let off = (f64::from(film.pixels[0].rgb[1]) - expected).abs();
+    assert!(off < 32.0 * f64::from(f32::EPSILON), "{} for {expected}", film.pixels[0].rgb[1]);
+}
+
+/// A thousand stacked panes that are found by chance from within a closed white room end: no stack grows, no path is lost.
+#[test]
+fn h5_light_that_wanders_in_a_stack_keeps_its_energy() {
+    let panes: Vec<String> = (0..COUNT)
+        .map(|i| format!("cube = {{ center = [0, 0, {:?}], size = [2, 2, 0.001] }}", 0.002 * f64::from(i) - 1.0))
+        .collect();
+    let panes: Vec<&str> = panes.iter().map(String::as_str).collect();
+    let text = view([0.3, 0.4, 8.0], [0.0; 3], 14.0, 12)
+        + "[render]\nsamples = 4\n"
+        + &body("glass", "dielectric = { index = 1.5 }", &panes)
+        + "[[light]]\nenvironment.radiance = 1\n";
+    let transport = plan(&scene(&text)).method.transport;
+    let (film, report) = image(&text, transport);
+    assert_eq!((report.unmatched, report.non_finite), (0, 0));
+    let mean = Mean::of(&film);
+    let off = (mean.value[1] - 1.0).abs();
+    // What the safety stop took from paths caught for good by total reflection is counted.
+    assert!(off <= standard_errors(1) * mean.error[1] + report.stopped * 2.25 + 1e-5, "{mean:?}, {}", report.stopped);
+    assert!(mean.error[1] < 0.1 && report.stopped < 0.01, "{mean:?}, {} stopped", report.stopped);
+}
