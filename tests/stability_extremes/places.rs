@@ -67,9 +67,12 @@ fn h8_a_camera_on_a_surface_sees_what_there_is_and_no_nan() {
             + &environment(1.0);
         let (film, report) = image(&text, SPLITTING);
         assert_eq!(report.non_finite, 0, "{shape} from {position:?}");
-        // The start lies on either side; what is seen from within glass is as bright as n^2 tells, and nothing is brighter.
-        let bright = film.pixels.iter().all(|pixel| (0.0..=2.2501).contains(&pixel.rgb[1]));
-        assert!(bright, "{shape} from {position:?}");
+        // The start lies on either side: from within glass a sky of 1 is n^2. Roulette may raise a pixel beyond.
+        let mean = Mean::of(&film);
+        let (least, most) = if material == glass { (1.0, 2.25) } else { (0.0, 1.0) };
+        let room = standard_errors(7) * mean.error[1] + 1e-5;
+        assert!((least - room..=most + room).contains(&mean.value[1]), "{shape} from {position:?}: {mean:?}");
+        assert!(film.pixels.iter().all(|pixel| (0.0..=2.0 * most as f32).contains(&pixel.rgb[1])), "{shape}");
     }
 }
 
