@@ -203,8 +203,11 @@ const ALWAYS: u64 = 1 << 27;
 /// of a palette of two colors each bit is a texel of 3 bytes. Nothing else in these formats is as dense.
 const DENSEST: u64 = 1032 * 24;
 
-/// Refuses sizes that would fill the memory before it shows that the file has no such texels.
-fn too_many(width: usize, height: usize, texels: u64, file: &[u8]) -> Result<(), String> {
+/// Refuses images without texels, and sizes that would fill the memory before it shows that the file has no such texels.
+fn fits(width: usize, height: usize, texels: u64, file: &[u8]) -> Result<(), String> {
+    if width == 0 || height == 0 {
+        return Err("it has no pixels".into());
+    }
     if width.saturating_mul(height) > MOST_TEXELS {
         return Err(format!("{width} x {height} pixels are more than {MOST_TEXELS}"));
     }
@@ -237,7 +240,7 @@ fn read_exr(bytes: &[u8], alpha: bool) -> Result<Floats, String> {
     let headers = described.map_err(|error| error.to_string())?.headers;
     for size in headers.iter().map(|header| header.layer_size) {
         let texel = 4 * if alpha { 4 } else { 3 };
-        too_many(size.width(), size.height(), texel * size.width() as u64 * size.height() as u64, bytes)?;
+        fits(size.width(), size.height(), texel * size.width() as u64 * size.height() as u64, bytes)?;
     }
     let (layers, bytes) = (read().no_deep_data().largest_resolution_level(), Cursor::new(bytes));
     let floats = if alpha {
@@ -267,7 +270,7 @@ fn decode(bytes: &[u8], format: ImageFormat) -> Result<DynamicImage, String> {
     reader.limits(limits);
     let decoder = reader.into_decoder().map_err(|error| error.to_string())?;
     let (width, height) = decoder.dimensions();
-    too_many(width as usize, height as usize, decoder.total_bytes(), bytes)?;
+    fits(width as usize, height as usize, decoder.total_bytes(), bytes)?;
     DynamicImage::from_decoder(decoder).map_err(|error| error.to_string())
 }
 

@@ -78,6 +78,18 @@ fn a_header_alone_gets_no_memory() {
     }
 }
 
+/// Nothing checked that there is a first texel.
+#[test]
+fn an_image_without_texels_is_refused() {
+    let _alone = alone();
+    for (from, to) in [("-Y 2", "-Y 0"), ("+X 6", "+X 0")] {
+        let bytes = replaced(corpus::hdr().last().expect("a file"), from, to);
+        for refusal in refusals(&kind("hdr"), &bytes) {
+            assert!(refusal.starts_with("case.hdr is no Radiance image ("), "{refusal}");
+        }
+    }
+}
+
 /// Packed 16-bit floats that end too early: the decoder panics, and the program does not.
 #[test]
 fn a_decoder_that_panics_refuses_the_file() {
