@@ -45,7 +45,8 @@ fn h5_stacks_of_a_hundred_and_of_a_thousand_panes_let_through_what_the_closed_fo
     }
 }
 
-/// Balls within balls of one glass are one ball: their media are counted, and the 999 inner surfaces are not there.
+/// Cubes within cubes of one glass are one cube: their media are counted, and the 1998 inner surfaces are not there: a loss of a
+/// part in 30 000 at each would show.
 #[test]
 fn h5_a_thousand_bodies_in_each_other_are_one() {
     let nested: Vec<String> = (0..COUNT)
@@ -56,9 +57,11 @@ fn h5_a_thousand_bodies_in_each_other_are_one() {
     let (film, report) = image(&text, plan(&scene(&text)).method.transport);
     let expected = 0.96 / 1.04;
     assert_eq!((report.unmatched, report.stopped), (0, 0.0));
-    let mean = Mean::of(&film);
-    mean.assert_near([expected; 3], 1, "nested");
-    assert!(mean.worst_error([expected; 3]) < 0.02, "{mean:?}");
+    // Roulette ends one long path in a thousand, and light that is reflected inside comes back one time in 33 with a weight of
+    // 0.05: too seldom for sixteen paths to tell their own deviation.
+    let deviation = (0.001 * expected * expected + 0.03 * 0.05f64.powi(2)).sqrt();
+    let mean = Mean::of(&film).value[1];
+    assert!((mean - expected).abs() <= 3.0 * deviation / 4.0, "{mean} for {expected}");
 }
 
 /// A thousand stacked panes that are found by chance from within a closed white room end: no stack grows, no path is lost.
