@@ -38,8 +38,9 @@ impl Frame {
 mod tests {
     use super::*;
 
+    /// Row G1 of the stability catalog.
     #[test]
-    fn frames_are_orthonormal_at_the_poles_and_signed_zeros() {
+    fn g1_frames_are_orthonormal_at_the_poles_and_signed_zeros() {
         let normals = [
             DVec3::Z,
             -DVec3::Z,
@@ -49,7 +50,12 @@ mod tests {
             -DVec3::Y,
             DVec3::new(1e-9, -1e-9, -1.0).normalize(),
         ];
-        for normal in normals {
+        let anywhere = (0..100_000).map(|i| {
+            // The points of Hammersley in the unit square.
+            let u = [(f64::from(i) + 0.5) / 1e5, f64::from((i as u32).reverse_bits()) / 4_294_967_296.0];
+            crate::math::ball_surface(u)
+        });
+        for normal in normals.into_iter().chain(anywhere) {
             let frame = Frame::about(normal);
             let (t, b, n) = (frame.tangent, frame.bitangent, frame.normal);
             for error in [t.dot(b), t.dot(n), b.dot(n), t.length() - 1.0, b.length() - 1.0] {

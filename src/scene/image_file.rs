@@ -7,6 +7,7 @@ use exr::math::Vec2;
 use exr::prelude::{ReadChannels, ReadLayers, read};
 use image::{DynamicImage, ImageDecoder, ImageFormat};
 
+use super::guard::guarded;
 use crate::spectrum::{Channel, Encoding, Image, decode_srgb};
 
 /// What is wrong with a file, and what to do.
@@ -18,8 +19,8 @@ type Fault = (String, Option<String>);
 /// What is wrong with it, and what to do.
 pub(super) fn read_image(path: &Path, bytes: &[u8]) -> Result<Image, Fault> {
     let (kind, image) = match ending(path).as_str() {
-        "exr" => ("OpenEXR", read_exr(bytes, false)),
-        "hdr" => ("Radiance", read_radiance(bytes)),
+        "exr" => ("OpenEXR", guarded(|| read_exr(bytes, false))),
+        "hdr" => ("Radiance", guarded(|| read_radiance(bytes))),
         ending @ ("png" | "jpg" | "jpeg") => {
             let help = "use an OpenEXR (.exr) or Radiance (.hdr) image";
             return Err((format!("a .{ending} image holds no light brighter than white"), Some(help.into())));
@@ -75,7 +76,7 @@ pub(super) fn read_texture(
     let directions = meaning == Meaning::Directions;
     let ignores = |ignores: bool| ignores && !directions;
     if let Some(format) = format {
-        let image = decode(bytes, format).map_err(fault)?;
+        let image = guarded(|| decode(bytes, format)).map_err(fault)?;
         let width = image.width() as usize;
         let (count, has_alpha) = (usize::from(image.color().channel_count()), image.color().has_alpha());
         let picked = Picked::new(path, channel, count, has_alpha)?;
@@ -107,7 +108,7 @@ pub(super) fn read_texture(
         });
     }
     let radiance = kind == "Radiance";
-    let image = if radiance { read_radiance(bytes) } else { read_exr(bytes, true) }.map_err(fault)?;
+    let image = guarded(|| if radiance { read_radiance(bytes) } else { read_exr(bytes, true) }).map_err(fault)?;
     let picked = Picked::new(path, channel, image.channels, !radiance)?;
     let numbers = &image.numbers[..];
     let ignores_alpha = ignores(picked.ignores(numbers, 1.0));
@@ -196,11 +197,24 @@ fn possible(path: &Path, width: usize, numbers: &[f32], (channels, meaning): (us
 /// Most texels of an image: 16384 x 8192.
 const MOST_TEXELS: usize = 1 << 27;
 
-fn too_many(width: usize, height: usize) -> Result<(), String> {
-    match width.saturating_mul(height) > MOST_TEXELS {
-        true => Err(format!("{width} x {height} pixels are more than {MOST_TEXELS}")),
-        false => Ok(()),
+/// Bytes of texels that a file of any length may ask for.
+const ALWAYS: u64 = 1 << 27;
+/// Bytes of texels that one byte of a file can stand for: deflate packs 1032 into one at best (RFC 1951: 258 by 2 bits), and
+/// of a palette of two colors each bit is a texel of 3 bytes. Nothing else in these formats is as dense.
+const DENSEST: u64 = 1032 * 24;
+
+/// Refuses images without texels, and sizes that would fill the memory before it shows that the file has no such texels.
+fn fits(width: usize, height: usize, texels: u64, file: &[u8]) -> Result<(), String> {
+    if width == 0 || height == 0 {
+        return Err("it has no pixels".into());
     }
+    if width.saturating_mul(height) > MOST_TEXELS {
+        return Err(format!("{width} x {height} pixels are more than {MOST_TEXELS}"));
+    }
+    if texels > ALWAYS.max(DENSEST * file.len() as u64) {
+        return Err(format!("its {} bytes cannot hold {width} x {height} pixels", file.len()));
+    }
+    Ok(())
 }
 
 /// Red, green, blue and maybe alpha of each texel, rows from the top.
@@ -224,7 +238,10 @@ impl Floats {
 fn read_exr(bytes: &[u8], alpha: bool) -> Result<Floats, String> {
     let described = exr::meta::MetaData::read_from_buffered(Cursor::new(bytes), false);
     let headers = described.map_err(|error| error.to_string())?.headers;
-    headers.iter().try_for_each(|header| too_many(header.layer_size.width(), header.layer_size.height()))?;
+    for size in headers.iter().map(|header| header.layer_size) {
+        let texel = 4 * if alpha { 4 } else { 3 };
+        fits(size.width(), size.height(), texel * size.width() as u64 * size.height() as u64, bytes)?;
+    }
     let (layers, bytes) = (read().no_deep_data().largest_resolution_level(), Cursor::new(bytes));
     let floats = if alpha {
         let put = |image: &mut Floats, at, (r, g, b, a): (f32, f32, f32, f32)| image.put(at, [r, g, b, a]);
@@ -253,7 +270,7 @@ fn decode(bytes: &[u8], format: ImageFormat) -> Result<DynamicImage, String> {
     reader.limits(limits);
     let decoder = reader.into_decoder().map_err(|error| error.to_string())?;
     let (width, height) = decoder.dimensions();
-    too_many(width as usize, height as usize)?;
+    fits(width as usize, height as usize, decoder.total_bytes(), bytes)?;
     DynamicImage::from_decoder(decoder).map_err(|error| error.to_string())
 }
 

@@ -19,6 +19,7 @@ mod contact;
 mod description;
 mod description_relief;
 mod description_view;
+mod guard;
 mod image_file;
 mod index;
 mod relief;

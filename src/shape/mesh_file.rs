@@ -5,7 +5,9 @@ use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
 use ply_rs_bw::parser::{Parser, Reader};
-use ply_rs_bw::ply::{ElementDef, Header, Property, PropertyAccess, PropertyAccessResult, PropertyType, ScalarType};
+use ply_rs_bw::ply::{
+    ElementDef, Encoding, Header, Property, PropertyAccess, PropertyAccessResult, PropertyType, ScalarType,
+};
 
 use super::{Attributes, Vertices};
 
@@ -141,7 +143,12 @@ fn read_ply(path: &Path, smooth: bool) -> Result<MeshFile, String> {
     let header = Parser::<PlyVertex>::new().read_header(&mut reader).map_err(ply_error)?;
     let (mut vertices, mut faces) = (Vertices::Single(Vec::new()), Vec::new());
     let mut attributes = Attributes::default();
+    // Elements without properties are lines of a text, but nothing at all in a binary file, however many there are.
+    let takes_no_bytes = |e: &ElementDef| e.properties.is_empty() && header.encoding != Encoding::Ascii;
     for element in header.elements.values() {
+        if element.name != "vertex" && takes_no_bytes(element) {
+            continue;
+        }
         if element.name == "face" {
             let keep = |polygon: PlyFace| faces.extend(fan(&polygon.0));
             in_batches(&mut reader, element, &header, keep)?;

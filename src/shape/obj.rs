@@ -15,8 +15,8 @@ pub(super) fn read(path: &Path, smooth: bool) -> Result<MeshFile, String> {
     let bytes = std::fs::read(path).map_err(|error| error.to_string())?;
     // Names and comments may be in any encoding.
     let text = String::from_utf8_lossy(&bytes);
-    let has = |word: &str| text.lines().any(|line| line.split_whitespace().next() == Some(word));
-    let (has_normals, has_coordinates) = (smooth && has("vn"), has("vt"));
+    let [_, coordinates, normals] = counted(&text)?;
+    let (has_normals, has_coordinates) = (smooth && normals > 0, coordinates > 0);
     let single_index = has_normals || has_coordinates;
     let options = tobj::LoadOptions { triangulate: true, single_index, ..Default::default() };
     let names_materials = Cell::new(false);
@@ -27,7 +27,9 @@ pub(super) fn read(path: &Path, smooth: bool) -> Result<MeshFile, String> {
     let (models, _) = models.map_err(|error| match error {
         LoadError::PositionParseError => "a vertex, v, is not made of numbers".into(),
         LoadError::FaceParseError => "a face, f, is not made of whole numbers".into(),
-        LoadError::FaceVertexOutOfBounds => "a face, f, asks for a vertex that the file does not have".into(),
+        LoadError::FaceVertexOutOfBounds => no_such("vertex"),
+        LoadError::FaceTexCoordOutOfBounds => no_such("texture coordinate"),
+        LoadError::FaceNormalOutOfBounds => no_such("normal"),
         other => other.to_string(),
     })?;
     let (mut points, mut faces, mut attributes) = (Vec::new(), Vec::new(), Attributes::default());
@@ -46,6 +48,39 @@ pub(super) fn read(path: &Path, smooth: bool) -> Result<MeshFile, String> {
     }
     let (vertices, names_materials) = (Vertices::Single(points), names_materials.get());
     Ok(MeshFile { vertices, faces, attributes, names_materials, ignored: Vec::new(), others: Vec::new() })
+}
+
+fn no_such(what: &str) -> String {
+    format!("a face, f, asks for a {what} that the file does not have")
+}
+
+/// How many vertices, texture coordinates and normals a text lists.
+///
+/// # Errors
+/// A face counts further back than there are any, or to a number that no file has: tobj multiplies both before it looks.
+fn counted(text: &str) -> Result<[u64; 3], String> {
+    let mut counts = [0; 3];
+    for line in text.lines() {
+        let mut words = line.split_whitespace();
+        match words.next() {
+            Some("v") => counts[0] += 1,
+            Some("vt") => counts[1] += 1,
+            Some("vn") => counts[2] += 1,
+            Some("f" | "l") => {
+                for (kind, number) in words.flat_map(|corner| corner.split('/').enumerate().take(3)) {
+                    let is_plain = !number.starts_with('-') && number.len() < 10;
+                    // What is no number is refused as that later.
+                    let Some(index) = (if is_plain { None } else { number.parse::<i64>().ok() }) else { continue };
+                    let most = if index < 0 { counts[kind] } else { u64::from(u32::MAX) };
+                    if index.unsigned_abs() > most {
+                        return Err(no_such(["vertex", "texture coordinate", "normal"][kind]));
+                    }
+                }
+            }
+            _ => {}
+        }
+    }
+    Ok(counts)
 }
 
 /// Numbers in groups, one group for each of `count` vertices; zeros if they are not as many.

@@ -39,7 +39,7 @@ fn lamp(radius: f64) -> String {
 
 /// Row T1 of the closed forms: mean irradiance .0084 over the patch of 1.6 by 1.6 for radii up to 0.3 and .0085 for 1.
 #[test]
-fn t1_the_caustic_of_a_ball_has_the_irradiance_that_another_program_found() {
+fn the_caustic_of_a_ball_has_the_irradiance_that_another_program_found() {
     let point = "[[light]]\npoint = { position = [0, 7, 0], intensity = 0.25 }\n".to_owned();
     for (what, light, expected) in [
         ("1", lamp(1.0), 0.0085),

@@ -249,8 +249,9 @@ mod tests {
     use super::*;
     use crate::math::Bounds;
 
+    /// Row B4 of the stability catalog.
     #[test]
-    fn equal_and_geometric_boxes_give_trees_no_deeper_than_the_stack() {
+    fn b4_equal_and_geometric_boxes_give_trees_no_deeper_than_the_stack() {
         let unit = Outer { min: [0.0; 3], max: [1.0; 3] };
         let equal = vec![unit; 4096];
         let geometric: Vec<Outer> = (0..4096)

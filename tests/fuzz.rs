@@ -1,0 +1,19 @@
+//! No file stops the program that reads it: scenes, meshes, images and spectra, damaged at random, are read or refused in
+//! one sentence, without a panic, in a time and a memory that fit their size.
+//!
+//! The cases are the same in every run. All of them, a million and more, take some minutes:
+//!
+//! ```text
+//! ABBE_FUZZ_CASES=1000000 cargo test --release --test fuzz -- --nocapture
+//! ```
+//!
+//! `ABBE_FUZZ_KINDS=hdr,csv` takes only the cases of some endings. The cases that did harm once are kept in `fuzz/regressions.rs`.
+
+mod fuzz {
+    mod allocator;
+    mod corpus;
+    mod mutate;
+    mod readers;
+    mod regressions;
+    mod run;
+}

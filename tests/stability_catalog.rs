@@ -1,0 +1,128 @@
+//! The table of `tests/STABILITY.md` is true: its tests exist, and the tests that are named after a row stand in it.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// The rows that there must be, by letter: how many of each.
+const ROWS: [(&str, u32); 15] = [
+    ("S", 7),
+    ("P", 4),
+    ("T", 6),
+    ("B", 4),
+    ("X", 8),
+    ("D", 15),
+    ("M", 5),
+    ("W", 6),
+    ("A", 7),
+    ("O", 1),
+    ("L", 5),
+    ("G", 6),
+    ("C", 2),
+    ("H", 12),
+    ("F", 2),
+];
+
+fn home() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// What a row of the table says: what is done, and the tests as `file::name`.
+fn table() -> BTreeMap<String, (String, Vec<String>)> {
+    let text = fs::read_to_string(home().join("tests/STABILITY.md")).expect("the table");
+    let mut rows = BTreeMap::new();
+    for line in text.lines().filter(|line| line.starts_with("| ") && !line.starts_with("| row")) {
+        let cells: Vec<&str> = line.trim_matches('|').split('|').map(str::trim).collect();
+        let [id, fails, does, tests] = cells[..] else { panic!("four cells: {line}") };
+        assert!(!fails.is_empty() && !does.is_empty(), "{line}");
+        let tests = tests.split("<br>").map(|test| test.trim_matches('`').to_owned()).filter(|test| test != "-");
+        let before = rows.insert(id.to_owned(), (does.to_owned(), tests.collect()));
+        assert!(before.is_none(), "{id} stands there twice");
+    }
+    rows
+}
+
+fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(folder).expect("a folder") {
+        let path = entry.expect("an entry").path();
+        if path.is_dir() {
+            sources(&path, found);
+        } else if path.extension().is_some_and(|ending| ending == "rs") {
+            found.push(path);
+        }
+    }
+}
+
+/// The names of the tests in a file.
+fn tests_in(text: &str) -> Vec<&str> {
+    let mut names = Vec::new();
+    let mut is_test = false;
+    for line in text.lines().map(str::trim) {
+        match line.strip_prefix("fn ") {
+            Some(rest) if is_test => names.extend(rest.split('(').next()),
+            _ => {}
+        }
+        is_test = line == "#[test]" || (is_test && line.starts_with("#["));
+    }
+    names
+}
+
+/// The rows that a test is named after: `a3_and_a4_...` after two.
+fn rows_of(name: &str) -> Vec<String> {
+    let is_row = |word: &&str| {
+        let digits = word.get(1..).unwrap_or_default();
+        word.starts_with(|c: char| c.is_ascii_lowercase())
+            && !digits.is_empty()
+            && digits.chars().all(|c| c.is_ascii_digit())
+    };
+    let words = name.split('_').take_while(|word| is_row(word) || *word == "and");
+    words.filter(is_row).map(str::to_uppercase).collect()
+}
+
+#[test]
+fn every_row_of_the_stability_catalog_names_tests_that_exist_or_says_why_there_is_none() {
+    for (id, (does, tests)) in table() {
+        assert!(!tests.is_empty() || does.starts_with("does not apply: "), "{id} has no test");
+        for test in tests {
+            let (file, name) = test.split_once("::").unwrap_or_else(|| panic!("{id}: {test} is no file::name"));
+            let path = home().join("tests").join(file);
+            let text = fs::read_to_string(&path).unwrap_or_else(|error| panic!("{id}: {file}: {error}"));
+            assert!(tests_in(&text).contains(&name), "{id}: there is no test {name} in {file}");
+        }
+    }
+}
+
+#[test]
+fn no_row_of_the_stability_catalog_is_missing() {
+    let expected: BTreeSet<String> =
+        ROWS.iter().flat_map(|(letter, count)| (1..=*count).map(move |number| format!("{letter}{number}"))).collect();
+    let found: BTreeSet<String> = table().into_keys().collect();
+    assert_eq!(found, expected);
+}
+
+#[test]
+fn every_test_that_is_named_after_a_row_stands_in_the_stability_catalog() {
+    let table = table();
+    let mut files = Vec::new();
+    sources(&home().join("tests"), &mut files);
+    sources(&home().join("src"), &mut files);
+    let mut count = 0;
+    for path in files {
+        let text = fs::read_to_string(&path).expect("a source");
+        for name in tests_in(&text) {
+            for row in rows_of(name) {
+                let listed = table.get(&row).map_or(&[][..], |(_, tests)| tests);
+                let ending = format!("::{name}");
+                let is_listed = listed.iter().any(|test| {
+                    let file = test.strip_suffix(&ending).map(|file| home().join("tests").join(file));
+                    file.is_some_and(|file| file.canonicalize().ok() == path.canonicalize().ok())
+                });
+                // A test may hold two rows at once: it stands in one that it is not named after, too.
+                let elsewhere = table.values().flat_map(|(_, tests)| tests).any(|test| test.ends_with(&ending));
+                assert!(is_listed || elsewhere, "{row}: {name} of {} is not in the table", path.display());
+                count += 1;
+            }
+        }
+    }
+    assert!(count > 90, "{count} tests are named after rows");
+}

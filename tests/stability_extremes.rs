@@ -1,0 +1,16 @@
+//! The rows of the stability catalog about scenes at the ends of what can be said: sizes, radiances, indices, images and
+//! stacks that nobody would make but by mistake, and somebody does.
+//!
+//! ```text
+//! cargo test --release --test stability_extremes
+//! ```
+
+mod support;
+
+mod stability_extremes {
+    mod glasses;
+    mod images;
+    mod places;
+    mod radiances;
+    mod stacks;
+}

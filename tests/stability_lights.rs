@@ -1,0 +1,13 @@
+//! The rows of the stability catalog about lights and the media between them: lamps far away, around, beside and within
+//! the plane of what they light, and surfaces that lie in one place.
+//!
+//! ```text
+//! cargo test --test stability_lights
+//! ```
+
+mod support;
+
+mod stability_lights {
+    mod lamps;
+    mod media;
+}

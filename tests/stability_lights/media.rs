@@ -1,0 +1,106 @@
+//! Rows D6, M2, M5 and T6: media whose indices are near each other, and surfaces that lie in one place.
+
+use std::path::PathBuf;
+
+use abbe::material::Interface;
+use abbe::scene::{Source, compile};
+
+use crate::support::scenes::{EVERY_BRANCH, SPLITTING, body, environment, image, scene, view};
+
+/// Reflectance of even light from outside of an index: Walsh 1926, *The Reflection Factor of a Polished Glass Surface for
+/// Diffused Light*.
+fn walsh(n: f64) -> f64 {
+    let (n2, n4) = (n * n, n * n * n * n);
+    0.5 + (n - 1.0) * (3.0 * n + 1.0) / (6.0 * (n + 1.0) * (n + 1.0))
+        + n2 * (n2 - 1.0) * (n2 - 1.0) / ((n2 + 1.0) * (n2 + 1.0) * (n2 + 1.0)) * libm::log((n - 1.0) / (n + 1.0))
+        - 2.0 * n * n2 * (n2 + 2.0 * n - 1.0) / ((n2 + 1.0) * (n4 - 1.0))
+        + 8.0 * n4 * (n4 + 1.0) / ((n2 + 1.0) * (n4 - 1.0) * (n4 - 1.0)) * libm::log(n)
+}
+
+/// Schlick's approximation reflects 1 / 21 of even light however near two indices are; the truth goes to 0.
+#[test]
+fn d6_even_light_between_glass_and_water_is_reflected_as_the_closed_form_says() {
+    const STEPS: u32 = 1_000_000;
+    // 2 c dc = d(c^2), so the mean is even over the squared cosine.
+    let cosine = |step: u32| ((f64::from(step) + 0.5) / f64::from(STEPS)).sqrt();
+    for (n1, n2) in [(1.333, 1.5168), (1.0, 1.1), (1.0, 1.5)] {
+        let sum: f64 = (0..STEPS).map(|step| Interface::new(n1, n2, cosine(step)).reflectance).sum();
+        let (found, expected) = (sum / f64::from(STEPS), walsh(n2 / n1));
+        println!("D6: {n1} to {n2}: {found:.7} for {expected:.7}");
+        assert!((found - expected).abs() <= 2e-6, "{n1} to {n2}: {found} for {expected}");
+        assert!(n2 / n1 > 1.2 || (found - 1.0 / 21.0).abs() > 0.01, "as Schlick has it");
+    }
+}
+
+fn refusal(text: &str) -> String {
+    let source = Source { path: PathBuf::from("test.toml"), text: text.to_owned() };
+    match source.parse().and_then(|description| compile(&description, &source)) {
+        Err(abbe::Error::Scene(mistake)) => mistake.message,
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn m2_clear_bodies_that_share_a_surface_are_refused_and_those_that_overlap_are_not() {
+    let text = |half: f64| {
+        let hollow = "sphere = { center = [0, 0, 0], radius = 1 }";
+        let water = format!("sphere = {{ center = [0, 0, 0], radius = {half:?} }}");
+        view([0.0, 0.0, 5.0], [0.0; 3], 30.0, 4)
+            + &body("glass", "dielectric = { index = 1.5168, priority = 1 }", &[hollow])
+            + &body("water", "dielectric = { index = 1.333 }", &[&water])
+            + &environment(1.0)
+    };
+    assert!(refusal(&text(1.0)).contains("lies in one place"));
+    for half in [0.99, 1.01] {
+        let (_, report) = image(&text(half), EVERY_BRANCH);
+        assert_eq!(report.unmatched, 0, "{half}");
+    }
+}
+
+/// One side of a glass block and a table below it lie in one plane, cut into triangles in two ways: rounding would decide, ray
+/// by ray, which is met first.
+#[test]
+fn t6_sheets_in_one_plane_are_told_of_where_light_must_cross_them_in_order() {
+    let block = |y: f64| {
+        format!(
+            "mesh = {{ points = [[-1, {y:?}, -1], [1, {y:?}, -1], [1, {y:?}, 1], [-1, {y:?}, 1], [0, 2, 0]], faces = \
+             [[0, 1, 2], [0, 2, 3], [1, 0, 4], [2, 1, 4], [3, 2, 4], [0, 3, 4]] }}"
+        )
+    };
+    let table = "mesh = { points = [[-2, 0, -2], [2, 0, -2], [2, 0, 2], [-2, 0, 2]], faces = [[0, 3, 1], [3, 2, 1]] }";
+    let text = |y: f64| {
+        view([0.0, 3.0, 5.0], [0.0; 3], 30.0, 4)
+            + &body("glass", "dielectric = { index = 1.5 }", &[&block(y)])
+            + &body("table", "diffuse = { reflectance = 0.5 }", &[table])
+            + &environment(1.0)
+    };
+    assert!(scene(&text(0.0)).warnings.iter().any(|warning| warning.contains("lies exactly in")));
+    for y in [1e-6, -1e-6] {
+        assert_eq!(scene(&text(y)).warnings, [""; 0]);
+        let (_, report) = image(&text(y), SPLITTING);
+        assert_eq!((report.unmatched, report.non_finite), (0, 0), "{y}");
+    }
+}
+
+/// Closed bodies are left as often as they are entered, to the last ray; an open one is counted, and no light is made of it.
+#[test]
+fn m5_a_medium_that_was_never_entered_is_counted_and_left_as_if_nothing_were_there() {
+    let (points, faces) = crate::support::bodies::ball();
+    let points: Vec<[f64; 3]> = points.iter().map(|point| point.to_array()).collect();
+    let text = |faces: &[[u32; 3]]| {
+        let mesh = format!("mesh = {{ points = {points:?}, faces = {faces:?} }}");
+        view([0.2, 0.3, 5.0], [0.0; 3], 26.0, 48)
+            + "[render]\nsamples = 16\n"
+            + &body("glass", "dielectric = { index = 1.5 }", &[&mesh])
+            + &environment(1.0)
+    };
+    let (film, closed) = image(&text(&faces), SPLITTING);
+    assert_eq!((closed.unmatched, closed.non_finite), (0, 0));
+    assert!(closed.rays > 100_000, "{} rays", closed.rays);
+    let lightless = |film: &abbe::film::Film| film.pixels.iter().filter(|pixel| pixel.rgb[0] < 0.5).count();
+    assert_eq!(lightless(&film), 0);
+    let (film, open) = image(&text(&faces[..faces.len() * 3 / 4]), SPLITTING);
+    assert!(open.unmatched > 100, "{} rays leave what they never entered", open.unmatched);
+    assert_eq!(open.non_finite, 0);
+    assert!(film.pixels.iter().all(|pixel| pixel.rgb.iter().all(|x| (0.0..=16.0).contains(x))));
+}
