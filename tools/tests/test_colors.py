@@ -7,8 +7,7 @@ import colors
 import numpy as np
 import pytest
 import render
-from energy import toml_file
-from energy_rows import WHITE_SKY, scene
+from validation.scenes import SKY as WHITE_SKY, toml_file
 
 MODELS = ["auto", "rgb", *({"bands": bands} for bands in (8, 12, 16, 32)), "hero"]
 SPACES = [f"lin_{name}_scene" for name in ("rec709", "ap1", "ap0", "rec2020", "p3d65", "ciexyzd65")]
