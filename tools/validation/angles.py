@@ -3,11 +3,11 @@
 import numpy as np
 
 from . import formulas
-from .bench import FINE, Experiment, Screen, bench, drop, extrude, middles, prism, ratios
+from .bench import FINE, THICK, Experiment, Screen, bench, drop, middles, prism, ratios
 from .color import line_powers
 from .formulas import C_LINE, D_LINE, F_LINE, RED_GREEN_BLUE
 from .row import Row
-from .scenes import glass, sphere
+from .scenes import extrude, glass, sphere
 
 FAR = 1000.0
 COATED = {"reflectance": 0}
@@ -136,7 +136,7 @@ def shift(index, degrees, thickness=0.01):
     normal, side = np.array([-np.sin(angle), np.cos(angle)]), np.array([np.cos(angle), np.sin(angle)])
     polygon = [10 * thickness * s * side - depth * normal for s, depth in ((-1, 0), (1, 0), (1, thickness), (-1, thickness))]
     screen = Screen(0.0, 1.0, 4 * thickness)
-    scene = bench([Experiment(lambda y: extrude(polygon, y), (0, 0))], screen, glass(index, **COATED))
+    scene = bench([Experiment(lambda y: extrude(polygon, y, THICK), (0, 0))], screen, glass(index, **COATED))
     words = BENCH + f"A plate of index {index}, {thickness} thick, tilted by {degrees} degrees; the screens are {4 * thickness} half wide."
     return Row("optics", f"shift by a plate of index {index} at {degrees} degrees", "d sin t (1 - cos t / sqrt(n^2 - sin^2 t))", scene,
                lambda image: screen.place(ratios(image)[:, 1:2]), expected, "refraction by the angle instead of its sine",
@@ -185,8 +185,8 @@ def rows(quick):
     for index in (1.331, 1.333, 1.3435):
         yield rainbow(1, index)
         yield rainbow(2, index)
-    yield colored_bow(1, (450.0, 546.07, 656.27), "primary")
-    yield colored_bow(2, (450.0, 546.07, 656.27), "secondary")
+    yield colored_bow(1, (435.83, 546.07, 656.27), "primary")
+    yield colored_bow(1, (404.66, 501.57, 700.0), "primary, from violet to deep red")
     for index, degrees in ((1.5168, 45), (1.5168, 60), (1.78472, 30), (2.4175, 75)):
         yield shift(index, degrees)
     for height in (0.02, 0.3, 0.6):

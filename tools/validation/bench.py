@@ -9,12 +9,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .scenes import diffuse, quad, view
+from .scenes import diffuse, extrude, quad, view
 
 PITCH = 0.02  # distance of the two rays of a pair
 FINE = 33  # pixels across that distance, an odd number: the one in the middle holds the ray
 LOW, HIGH, EVEN = 0.1, 0.9, 0.5
 RISING = diffuse({"image": "bench.exr", "wrap": "clamp"})
+THICK = 0.4 * PITCH  # half the height of a body around its ray's plane
 
 
 class Experiment(NamedTuple):
@@ -78,22 +79,6 @@ def ratios(image):
     return pixels[0::2] / pixels[1::2]
 
 
-def extrude(polygon, y, half_height=0.4 * PITCH):
-    """A mesh over a convex polygon of (x, z), its faces outward."""
-    low, high = ([[x, y + side * half_height, z] for x, z in polygon] for side in (-1, 1))
-    points, n = np.array(low + high, float), len(polygon)
-    faces = [[0, i, i + 1] for i in range(1, n - 1)] + [[n, n + i, n + i + 1] for i in range(1, n - 1)]
-    for i in range(n):
-        j = (i + 1) % n
-        faces += [[i, j, n + j], [i, n + j, n + i]]
-    center = points.mean(axis=0)
-    for face in faces:
-        a, b, c = points[face]
-        if np.dot(np.cross(b - a, c - a), a - center) < 0:
-            face[1], face[2] = face[2], face[1]
-    return {"mesh": {"points": points.tolist(), "faces": faces}}
-
-
 def prism(index, apex, incidence, face=0.01):
     """A prism whose first face the ray meets in its middle."""
     steep, inside = np.radians(incidence), np.arcsin(np.sin(np.radians(incidence)) / index)
@@ -104,7 +89,7 @@ def prism(index, apex, incidence, face=0.01):
     ray = np.array([np.sin(steep - inside), -np.cos(steep - inside)])
     # edge + t second = s ray
     t, _ = np.linalg.solve(np.stack([second, -ray], axis=1), -edge)
-    return Experiment(lambda y: extrude(polygon, y), tuple(edge + t * second))
+    return Experiment(lambda y: extrude(polygon, y, THICK), tuple(edge + t * second))
 
 
 def drop(index, incidence, reflections, radius=0.005):

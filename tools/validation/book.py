@@ -3,9 +3,9 @@
 import numpy as np
 import OpenEXR
 
-from . import angles, color, energy
+from . import caustics, color, energy, optics, transport
 
-GROUPS = {"energy": energy, "optics": angles, "color": color}
+GROUPS = {"energy": energy, "optics": optics, "transport": transport, "color": color, "caustics": caustics}
 
 
 def rows(quick, group=None):

@@ -18,10 +18,15 @@ def fresnel(index, degrees):
 
     Born and Wolf, Principles of Optics, 1.5.2 (20), 1.5.3 (30) and 14.2.
     """
+    return sum(both_polarizations(index, degrees)) / 2
+
+
+def both_polarizations(index, degrees):
+    """Reflectances of s and p."""
     cosine, cosine_t = np.cos(np.radians(degrees)), refracted_cosine(index, degrees)
     s = (cosine - index * cosine_t) / (cosine + index * cosine_t)
     p = (index * cosine - cosine_t) / (index * cosine + cosine_t)
-    return (np.abs(s) ** 2 + np.abs(p) ** 2) / 2
+    return np.abs(s) ** 2, np.abs(p) ** 2
 
 
 def inner_diffuse_reflectance(index):
@@ -155,3 +160,60 @@ def ball_focus(index, height):
     By symmetry the ray leaves as far from the center as it came, turned by 2 (i - r)."""
     turned = np.radians(drop_deviation(index, np.degrees(np.arcsin(height)), 0))
     return height / np.sin(turned)
+
+
+def parallel_squares(side, distance):
+    """View factor of two opposite squares: configuration C-11 of Howell's catalog, as written by Hottel (1931)."""
+    x = side / distance
+    root = np.sqrt(1 + x * x)
+    return 2 / (np.pi * x * x) * (np.log((1 + x * x) / np.sqrt(1 + 2 * x * x)) + 2 * x * root * np.arctan(x / root) - 2 * x * np.arctan(x))
+
+
+def perpendicular_rectangles(width, length, height):
+    """From a rectangle width x length to one width x height that shares its width: configuration C-14 of Howell's catalog."""
+    h, w = height / width, length / width
+    a, b, c = 1 + w * w, 1 + h * h, 1 + w * w + h * h
+    s = h * h + w * w
+    angles = w * np.arctan(1 / w) + h * np.arctan(1 / h) - np.sqrt(s) * np.arctan(1 / np.sqrt(s))
+    logs = np.log(a * b / c) + w * w * np.log(w * w * c / (a * s)) + h * h * np.log(h * h * c / (b * s))
+    return (angles + logs / 4) / (np.pi * w)
+
+
+def coaxial_discs(first, second, distance):
+    """From the first of two parallel discs to the second: configuration C-41 of Howell's catalog."""
+    a, b = first / distance, second / distance
+    x = 1 + (1 + b * b) / (a * a)
+    return (x - np.sqrt(x * x - 4 * (b / a) ** 2)) / 2
+
+
+def point_beside_rectangle(width, distance, height):
+    """From a point to a rectangle that stands on its plane at a distance, the point before its middle: twice B-4 of Howell."""
+    half, far = width / 2, np.hypot(height, distance)
+    return (np.arctan(half / distance) - distance / far * np.arctan(half / far)) / np.pi
+
+
+def through_ball(index, center, light, half_side, count=400_000):
+    """Mean irradiance of a square of the floor under a clear ball of radius 1 whose center is `center` above it, from a point
+    light of intensity 1 on the same axis at height `light`; the ball shades the square.
+
+    A sum over the directions of the light within the cone of the ball: Snell and Fresnel, up to 8 reflections inside; a ring on the
+    floor counts by the part of it that lies in the square."""
+    sine = (np.arange(count) + 0.5) / count / (light - center)  # of the angle to the axis, evenly spaced
+    step = 1 / count / (light - center)
+    incidence = np.arcsin(sine * (light - center))
+    inside = np.arcsin(np.sin(incidence) / index)
+    r = fresnel(index, np.degrees(incidence))
+    angle, total = np.arcsin(sine), 0.0
+    for reflections in range(9):
+        # Directions turn toward the axis: from angle outward to angle - turned.
+        turned = 2 * (incidence - inside) + reflections * (np.pi - 2 * inside)
+        leaving = angle - turned
+        # Where it leaves the ball: the first point, and a chord further for each passage.
+        at = np.pi / 2 - (incidence - angle) - (reflections + 1) * (np.pi - 2 * inside)
+        x, y = np.cos(at), np.sin(at)
+        down = np.cos(leaving) > 1e-9
+        place = np.abs(x + (center + y) * np.tan(leaving))
+        share = np.clip(1 - 4 / np.pi * np.arccos(np.clip(half_side / np.maximum(place, 1e-12), 0, 1)), 0, 1)
+        weight = (1 - r) ** 2 * r**reflections
+        total += np.sum(np.where(down, weight * share * 2 * np.pi * sine / np.cos(angle), 0)) * step
+    return total / (2 * half_side) ** 2

@@ -3,6 +3,8 @@
     text = toml_file(view({}, [], [SKY], eye=(0, 0, 1)))
 """
 
+import numpy as np
+
 SKY = {"environment": {"radiance": 1}}
 
 
@@ -78,3 +80,19 @@ def glow(radiance=1, **more):
 
 def glass(index, **more):
     return {"dielectric": {"index": index, **more}}
+
+
+def extrude(polygon, y, half_height):
+    """A mesh over a convex polygon of (x, z), its faces outward."""
+    low, high = ([[x, y + side * half_height, z] for x, z in polygon] for side in (-1, 1))
+    points, n = np.array(low + high, float), len(polygon)
+    faces = [[0, i, i + 1] for i in range(1, n - 1)] + [[n, n + i, n + i + 1] for i in range(1, n - 1)]
+    for i in range(n):
+        j = (i + 1) % n
+        faces += [[i, j, n + j], [i, n + j, n + i]]
+    center = points.mean(axis=0)
+    for face in faces:
+        a, b, c = points[face]
+        if np.dot(np.cross(b - a, c - a), a - center) < 0:
+            face[1], face[2] = face[2], face[1]
+    return {"mesh": {"points": points.tolist(), "faces": faces}}
