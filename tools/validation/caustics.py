@@ -82,7 +82,9 @@ def beam(quick):
     place = exit_middle + 6 * along
     side = 2.0
     patch = quad((place[0], 0, place[1]), side * np.array([across[0], 0, across[1]]), (0, side, 0))
-    through = (1 - formulas.fresnel(index, np.degrees(incidence))) ** 2
+    r = formulas.fresnel(index, np.degrees(incidence))
+    # What all three faces reflect, each at 30 degrees, leaves again in the same direction.
+    through = (1 - r) ** 2 / (1 - r**3)
     power = face * np.cos(incidence) * 1.0 * through
     direct, area = np.cos(deviation), side**2
     light = {"sun": {"toward": [0.0, 0.0, 1.0], "angular_diameter": 0, "irradiance": 1}}
@@ -98,7 +100,7 @@ def beam(quick):
     reach = (ends[1] - ends[0]) / 2
     black = quad((base[0], 0, base[1]), (reach[0], 0, reach[1]), (0, 0.5, 0))
     yield lit("beam of a prism", [("floor", patch), ("glass", prism), ("black", black)], {"glass": glass(index), "black": diffuse(0)}, [light], side,
-              direct + power / area, "E cos d + E A cos i (1 - r)^2 / S", "reflection at its faces left out",
+              direct + power / area, "E cos d + E A cos i (1 - r)^2 / (1 - r^3) / S", "reflection at its faces left out",
               direct + power / through / area, words, quick, eye=(start[0], 0, start[1]), target=(place[0], 0, place[1]), up=(0, 1, 0))  # fmt: skip
 
 

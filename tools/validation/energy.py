@@ -146,7 +146,7 @@ def plates(quick):
 def cavities(quick):
     """Closed rooms, where every bounce counts."""
     size, samples = (12, 512) if quick else (20, 1024)
-    for reflectance in (0.5, 0.8, 0.95):
+    for reflectance in (0.65, 0.8, 0.95):
         fraction = 0.05
         # A disc across a sphere is seen from every point of the wall as the cap behind it would be.
         depth = 1 - 2 * fraction
@@ -159,7 +159,7 @@ def cavities(quick):
         words = f"The inside of a sphere of reflectance {reflectance}; a disc across it that glows by 1 stands for a cap of 5 %."
         yield Row("energy", f"integrating sphere of reflectance {reflectance}, port of 5 %", "rho f / (1 - rho (1 - f))", scene,
                   readers.gray, expected, "paths that end after 8 bounces", expected * (1 - bounced**8), words, 2)  # fmt: skip
-    for reflectance in ((0.2, 0.5, 0.8), (0.3, 0.6, 0.9)):
+    for reflectance in ((0.5, 0.7, 0.8), (0.55, 0.75, 0.9)):
         yield from box(np.array(reflectance), quick)
     for name, material, expected, mistake in (
         ("diffuse ball", diffuse(0.5), 0.5, 0.51),

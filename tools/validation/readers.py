@@ -21,17 +21,17 @@ def need(image, name):
 
 
 def covered(image):
-    """Red, green and blue of the pixels that a body covers wholly."""
-    return image.rgb[need(image, "A") == 1]
+    """Red, green and blue of the pixels that a body covers wholly; the others are no numbers and do not count."""
+    return np.where((need(image, "A") == 1)[..., None], image.rgb, np.nan).reshape(-1, 3)
 
 
 def touched(image):
     """Red, green and blue of the pixels that a body covers at least in part."""
-    return image.rgb[need(image, "A") > 0]
+    return np.where((need(image, "A") > 0)[..., None], image.rgb, np.nan).reshape(-1, 3)
 
 
 def per_coverage(image):
-    """Green of what is covered: its mean over all pixels by their mean coverage, in eight bands of rows."""
+    """Green of what is covered: its mean over all pixels by their mean coverage,"""
     green, alpha = image.rgb[..., 1], need(image, "A").astype(float)
     return np.array([[green.mean() / alpha.mean()]])
 

@@ -52,8 +52,7 @@ class Judged(NamedTuple):
 
 def statistics(estimates):
     """Mean, its standard error, and the standard deviation of one estimate, of the estimates of every image."""
-    same = len({one.shape for one in estimates}) == 1
-    if len(estimates) == 2 and same:
+    if len(estimates) == 2:
         first, second = estimates
         deviation = np.sqrt(np.mean((first - second) ** 2, axis=0) / 4)
         return (first + second).mean(axis=0) / 2, deviation / np.sqrt(len(first)), deviation
@@ -69,7 +68,11 @@ def statistics(estimates):
 def judge(row, images):
     """What the images say of the row."""
     estimates = [np.asarray(row.read(image), float) for image in images]
-    estimates = [one.reshape(len(one), -1) for one in estimates]
+    # What is no number in one image is left out in all: pixels that a body does not cover.
+    estimates = np.array([one.reshape(len(one), -1) for one in estimates])
+    estimates = estimates[:, ~np.isnan(estimates).any(axis=(0, 2))]
+    if not estimates.size:
+        raise ValueError("no pixel is covered")
     measured, statistical, deviation = statistics(estimates)
     expected = np.broadcast_to(np.asarray(row.expected, float), measured.shape)
     mistake = np.broadcast_to(np.asarray(row.mistake, float), measured.shape)
