@@ -1,6 +1,6 @@
 """Patches look as colour-science says under every illuminant, seen straight and in colored mirrors; white is white.
 
-    pytest tools/tests/test_colors.py
+pytest tools/tests/test_colors.py
 """
 
 import colors

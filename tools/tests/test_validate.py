@@ -1,6 +1,6 @@
 """The book's formulas give published numbers, its verdicts can fail and say why, and the renderer passes every row.
 
-    pytest tools/tests/test_validate.py
+pytest tools/tests/test_validate.py
 """
 
 import json
@@ -38,8 +38,16 @@ def test_plates_transmit_the_known_shares_without_polarization():
 
 
 def test_the_indices_are_those_of_the_data_sheets():
-    known = {"N-BK7": (1.52238, 1.51680, 1.51432), "N-SF11": (1.80651, 1.78472, 1.77596), "fused silica": (1.46313, 1.45846, 1.45637)}
-    known |= {"schott/F2": (1.63208, 1.62004, 1.61503), "N-FK51A": (1.49056, 1.48656, 1.48480), "N-LASF9": (1.86898, 1.85025, 1.84255)}
+    known = {
+        "N-BK7": (1.52238, 1.51680, 1.51432),
+        "N-SF11": (1.80651, 1.78472, 1.77596),
+        "fused silica": (1.46313, 1.45846, 1.45637),
+    }
+    known |= {
+        "schott/F2": (1.63208, 1.62004, 1.61503),
+        "N-FK51A": (1.49056, 1.48656, 1.48480),
+        "N-LASF9": (1.86898, 1.85025, 1.84255),
+    }
     for name, indices in known.items():
         lines = np.array([formulas.F_LINE, formulas.D_LINE, formulas.C_LINE])
         assert formulas.index(name, lines) == pytest.approx(indices, abs=1.5e-5), name
@@ -85,7 +93,19 @@ def judged(bias=0.0, noise=0.0, speck=0.0, effect=0.01):
     pair = [1 + bias + noise * random.standard_normal((32, 32, 3)) for _ in range(2)]
     for values in pair:
         values[5, 5] += speck
-    made_up = Row("energy", "made up", "1", {}, lambda image: image.rgb.reshape(-1, 3), 1.0, "a mistake", 1 + effect, "", 2, every_pixel=True)
+    made_up = Row(
+        "energy",
+        "made up",
+        "1",
+        {},
+        lambda image: image.rgb.reshape(-1, 3),
+        1.0,
+        "a mistake",
+        1 + effect,
+        "",
+        2,
+        every_pixel=True,
+    )
     return judge(made_up, [picture(values) for values in pair])
 
 
@@ -121,7 +141,9 @@ def find(name):
 
 def write(path, values):
     header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
-    channels = {name: np.ascontiguousarray(values[..., i], np.float32) for i, name in enumerate("RGBA"[: values.shape[-1]])}
+    channels = {
+        name: np.ascontiguousarray(values[..., i], np.float32) for i, name in enumerate("RGBA"[: values.shape[-1]])
+    }
     with OpenEXR.File(header, channels) as file:
         file.write(str(path))
     return path
@@ -194,6 +216,16 @@ def test_the_renderer_passes_every_row_of_the_quick_book(tmp_path, capsys):
     assert code == 0, "\n".join(line for line in capsys.readouterr().out.splitlines() if not line.endswith("ok"))
     content = json.loads((tmp_path / "validation.json").read_text())
     assert set(content) == {"version", "made_by", "rows"} and len(content["rows"]) == len(book.rows(True))
-    keys = {"group", "name", "formula", "expected", "measured", "standard_error", "z", "guards_against", "effect", "verdict"}
+    keys = {
+        "group",
+        "name",
+        "formula",
+        "expected",
+        "measured",
+        "standard_error",
+        "z",
+        "guards_against",
+        "effect",
+        "verdict",
+    }
     assert all(set(entry) == keys and entry["verdict"] == "pass" for entry in content["rows"])
-

@@ -1,8 +1,8 @@
 """An optical bench: where a ray goes is read off a screen whose brightness tells the place.
 
-Every ray is doubled: one pixel's ray lands on a screen whose reflectance rises linearly from 0.1 to 0.9, the pixel below
-sends the same ray through the same glass to an even screen of 0.5. The ratio tells the place, whatever the glass took.
-Rays run along -z in planes of constant y, one pair of planes above the other, and are bent toward +x.
+Every ray is doubled: one pixel's ray lands on a screen whose reflectance rises linearly from 0.1 to 0.9, the pixel
+below sends the same ray through the same glass to an even screen of 0.5. The ratio tells the place, whatever the
+glass took. Rays run along -z in planes of constant y, one pair of planes above the other, and are bent toward +x.
 """
 
 from typing import NamedTuple
@@ -61,15 +61,26 @@ def bench(experiments, screen, material, light=1.0, fine=FINE, **settings):
                 objects.append(("glass", experiment.body(y)))
     materials = {"rising": RISING, "even": diffuse(EVEN), "glass": material}
     sun = {"sun": {"toward": (across / 2 - along).tolist(), "angular_diameter": 0, "irradiance": light}}
-    return view(materials, objects, [sun], eye=(0, 0, 1), height=2 * count * PITCH, size=(fine, 2 * count * fine), diffuse_bounces=0,
-                caustics="off", **settings)  # fmt: skip
+    return view(
+        materials,
+        objects,
+        [sun],
+        eye=(0, 0, 1),
+        height=2 * count * PITCH,
+        size=(fine, 2 * count * fine),
+        diffuse_bounces=0,
+        caustics="off",
+        **settings,
+    )
 
 
 def middles(image):
     """The pixels of the rays, from the top: (rays, 3)."""
     height, width = image.rgb.shape[:2]
     if width % 2 == 0 or height % (2 * width):
-        raise ValueError(f"the picture has {width} x {height} pixels; an odd width, and a height of 2 widths or more, is needed")
+        raise ValueError(
+            f"the picture has {width} x {height} pixels; an odd width, and a height of 2 widths or more, is needed"
+        )
     return image.rgb[width // 2 :: width, width // 2]
 
 
@@ -77,6 +88,14 @@ def ratios(image):
     """Rising by even screen, of every experiment and channel."""
     pixels = middles(image)
     return pixels[0::2] / pixels[1::2]
+
+
+def column_ratios(image):
+    """The same of one experiment whose rays all go the same way, wherever they start: one estimate per column of
+    pixels."""
+    upper, lower = np.split(image.rgb, [len(image.rgb) // 2])
+    middle = slice(len(upper) // 4, len(upper) - len(upper) // 4)
+    return upper[middle].mean(axis=0) / lower[middle].mean(axis=0)
 
 
 def prism(index, apex, incidence, face=0.01):

@@ -12,7 +12,21 @@ DARK = 1e-4
 FLOOR = quad((0, 0, 0), (6, 0, 0), (0, 0, -6))
 
 
-def lit(name, objects, materials, lights, patch, expected, formula, guards, mistake, words, quick, reader=readers.gray, **camera):
+def lit(
+    name,
+    objects,
+    materials,
+    lights,
+    patch,
+    expected,
+    formula,
+    guards,
+    mistake,
+    words,
+    quick,
+    reader=readers.gray,
+    **camera,
+):
     """The mean irradiance of a square of the floor, by its radiance."""
     samples, seeds, size = (256, 6, 12) if quick else (1024, 8, 16)
     camera = {"eye": (0, 0.5, 0), "target": (0, 0, 0), "up": (0, 0, -1), "height": patch} | camera
@@ -39,21 +53,51 @@ def slabs(quick):
         roof = cube((0, 0.22, 0), [1.4, 0.04, 1.4])
         transmitted = formulas.slab(np.array(indices), degrees)[1]
         once = 1 - formulas.fresnel(np.array(indices), degrees)
-        words = f"A roof of glass 1.4 x 0.04 x 1.4 at height 0.2 over a floor of reflectance {DARK}, parallel light at {degrees} degrees."
-        yield lit(f"sun through a glass roof at {degrees} degrees", [("floor", FLOOR), ("glass", roof)], {"glass": glass(rgb(indices))},
-                  [sun(degrees)], 0.3, transmitted * cosine, "E cos t (1 - r) / (1 + r)", "Fresnel at one face alone", once * cosine,
-                  words, quick, readers.colors, eye=(0, 0.1, 0))  # fmt: skip
+        words = (
+            f"A roof of glass 1.4 x 0.04 x 1.4 at height 0.2 over a floor of reflectance {DARK}, parallel light "
+            f"at {degrees} degrees."
+        )
+        yield lit(
+            f"sun through a glass roof at {degrees} degrees",
+            [("floor", FLOOR), ("glass", roof)],
+            {"glass": glass(rgb(indices))},
+            [sun(degrees)],
+            0.3,
+            transmitted * cosine,
+            "E cos t (1 - r) / (1 + r)",
+            "Fresnel at one face alone",
+            once * cosine,
+            words,
+            quick,
+            readers.colors,
+            eye=(0, 0.1, 0),
+        )
 
 
 def mirrors(quick):
-    """The sun by way of a mirror, which stands upright beside the floor: as if a second one shone from the other side."""
+    """The sun by way of a mirror, which stands upright beside the floor: as if a second one shone from the other
+    side."""
     for degrees, reflectance in ((30, 0.8), (60, 0.5)):
         angle = np.radians(degrees)
         expected = np.cos(angle) * (1 + reflectance)
         objects = [("floor", FLOOR), ("mirror", quad((-1, 2, 0), (0, 2, 0), (0, 0, 2)))]
-        words = f"A floor of reflectance {DARK}; a mirror of {reflectance} upright at x = -1, 4 high; parallel light at {degrees} degrees."
-        yield lit(f"sun by a mirror at {degrees} degrees", objects, {"mirror": {"mirror": {"reflectance": reflectance}}}, [sun(degrees)],
-                  0.5, expected, "E cos t (1 + R)", "a mirror that throws no light", np.cos(angle), words, quick)  # fmt: skip
+        words = (
+            f"A floor of reflectance {DARK}; a mirror of {reflectance} upright at x = -1, 4 high; parallel light "
+            f"at {degrees} degrees."
+        )
+        yield lit(
+            f"sun by a mirror at {degrees} degrees",
+            objects,
+            {"mirror": {"mirror": {"reflectance": reflectance}}},
+            [sun(degrees)],
+            0.5,
+            expected,
+            "E cos t (1 + R)",
+            "a mirror that throws no light",
+            np.cos(angle),
+            words,
+            quick,
+        )
 
 
 def balls(quick):
@@ -61,10 +105,23 @@ def balls(quick):
     for index, half_side in ((1.5, 0.8), (1.5, 0.2), (1.333, 0.5)):
         expected = formulas.through_ball(index, 1.5, 7.0, half_side)
         light = {"point": {"position": [0.0, 7.0, 0.0], "intensity": 1}}
-        words = f"A ball of radius 1 and index {index}, its center 1.5 above a floor, a point light of intensity 1 at height 7."
-        yield lit(f"ball of index {index} under a point, square of {2 * half_side}", [("floor", FLOOR), ("glass", sphere((0, 1.5, 0), 1))],
-                  {"glass": glass(index)}, [light], 2 * half_side, expected, "integral of I (1 - r)^2 r^k over the cone of the ball",
-                  "reflection at its faces left out", expected / (1 - formulas.fresnel(index, 0)) ** 2, words, quick)  # fmt: skip
+        words = (
+            f"A ball of radius 1 and index {index}, its center 1.5 above a floor, a point light of intensity 1 "
+            f"at height 7."
+        )
+        yield lit(
+            f"ball of index {index} under a point, square of {2 * half_side}",
+            [("floor", FLOOR), ("glass", sphere((0, 1.5, 0), 1))],
+            {"glass": glass(index)},
+            [light],
+            2 * half_side,
+            expected,
+            "integral of I (1 - r)^2 r^k over the cone of the ball",
+            "reflection at its faces left out",
+            expected / (1 - formulas.fresnel(index, 0)) ** 2,
+            words,
+            quick,
+        )
 
 
 def beam(quick):
@@ -90,7 +147,8 @@ def beam(quick):
     light = {"sun": {"toward": [0.0, 0.0, 1.0], "angular_diameter": 0, "irradiance": 1}}
     start = place - 1.0 * along
     words = (
-        "A 60 degree prism of index 1.5168, faces of 1 x 1, its third one black, at least deviation in parallel light of irradiance 1; the mean over a "
+        "A 60 degree prism of index 1.5168, faces of 1 x 1, its third one black, at least deviation in parallel "
+        "light of irradiance 1; the mean over a "
         f"square of {side:g} across its beam, 6 behind it, which the sun lights straight as well."
     )
     # The third face is black: the sun would shine through it as well.
@@ -99,9 +157,22 @@ def beam(quick):
     base = (ends[0] + ends[1]) / 2 + 1e-3 * normal * np.sign(normal @ (ends[0] - polygon[0]))
     reach = (ends[1] - ends[0]) / 2
     black = quad((base[0], 0, base[1]), (reach[0], 0, reach[1]), (0, 0.5, 0))
-    yield lit("beam of a prism", [("floor", patch), ("glass", prism), ("black", black)], {"glass": glass(index), "black": diffuse(0)}, [light], side,
-              direct + power / area, "E cos d + E A cos i (1 - r)^2 / (1 - r^3) / S", "reflection at its faces left out",
-              direct + power / through / area, words, quick, eye=(start[0], 0, start[1]), target=(place[0], 0, place[1]), up=(0, 1, 0))  # fmt: skip
+    yield lit(
+        "beam of a prism",
+        [("floor", patch), ("glass", prism), ("black", black)],
+        {"glass": glass(index), "black": diffuse(0)},
+        [light],
+        side,
+        direct + power / area,
+        "E cos d + E A cos i (1 - r)^2 / (1 - r^3) / S",
+        "reflection at its faces left out",
+        direct + power / through / area,
+        words,
+        quick,
+        eye=(start[0], 0, start[1]),
+        target=(place[0], 0, place[1]),
+        up=(0, 1, 0),
+    )
 
 
 def rows(quick):

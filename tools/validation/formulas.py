@@ -1,8 +1,8 @@
 """Closed-form optics and transport, from first principles: what the rendered numbers are held against.
 
-    from optics import fresnel, slab
-    fresnel(1.5, 45)                 # 0.0502..., unpolarized
-    slab(1.5, 0, optical_depth=1)    # (R, T) of a plate with all its reflections
+from optics import fresnel, slab
+fresnel(1.5, 45)                 # 0.0502..., unpolarized
+slab(1.5, 0, optical_depth=1)    # (R, T) of a plate with all its reflections
 """
 
 import numpy as np
@@ -155,7 +155,8 @@ def slab_shift(index, degrees, thickness):
 
 
 def ball_focus(index, height):
-    """Where a ray parallel to the axis of a ball of radius 1 crosses the axis, from the center; n / (2 (n - 1)) near it.
+    """Where a ray parallel to the axis of a ball of radius 1 crosses the axis, from the center; n / (2 (n - 1)) near
+    it.
 
     By symmetry the ray leaves as far from the center as it came, turned by 2 (i - r)."""
     turned = np.radians(drop_deviation(index, np.degrees(np.arcsin(height)), 0))
@@ -166,11 +167,16 @@ def parallel_squares(side, distance):
     """View factor of two opposite squares: configuration C-11 of Howell's catalog, as written by Hottel (1931)."""
     x = side / distance
     root = np.sqrt(1 + x * x)
-    return 2 / (np.pi * x * x) * (np.log((1 + x * x) / np.sqrt(1 + 2 * x * x)) + 2 * x * root * np.arctan(x / root) - 2 * x * np.arctan(x))
+    return (
+        2
+        / (np.pi * x * x)
+        * (np.log((1 + x * x) / np.sqrt(1 + 2 * x * x)) + 2 * x * root * np.arctan(x / root) - 2 * x * np.arctan(x))
+    )
 
 
 def perpendicular_rectangles(width, length, height):
-    """From a rectangle width x length to one width x height that shares its width: configuration C-14 of Howell's catalog."""
+    """From a rectangle width x length to one width x height that shares its width: configuration C-14 of Howell's
+    catalog."""
     h, w = height / width, length / width
     a, b, c = 1 + w * w, 1 + h * h, 1 + w * w + h * h
     s = h * h + w * w
@@ -187,17 +193,18 @@ def coaxial_discs(first, second, distance):
 
 
 def point_beside_rectangle(width, distance, height):
-    """From a point to a rectangle that stands on its plane at a distance, the point before its middle: twice B-4 of Howell."""
+    """From a point to a rectangle that stands on its plane at a distance, the point before its middle: twice B-4 of
+    Howell."""
     half, far = width / 2, np.hypot(height, distance)
     return (np.arctan(half / distance) - distance / far * np.arctan(half / far)) / np.pi
 
 
 def through_ball(index, center, light, half_side, count=400_000):
-    """Mean irradiance of a square of the floor under a clear ball of radius 1 whose center is `center` above it, from a point
-    light of intensity 1 on the same axis at height `light`; the ball shades the square.
+    """Mean irradiance of a square of the floor under a clear ball of radius 1 whose center is `center` above it, from
+    a point light of intensity 1 on the same axis at height `light`; the ball shades the square.
 
-    A sum over the directions of the light within the cone of the ball: Snell and Fresnel, up to 8 reflections inside; a ring on the
-    floor counts by the part of it that lies in the square."""
+    A sum over the directions of the light within the cone of the ball: Snell and Fresnel, up to 8 reflections inside;
+    a ring on the floor counts by the part of it that lies in the square."""
     sine = (np.arange(count) + 0.5) / count / (light - center)  # of the angle to the axis, evenly spaced
     step = 1 / count / (light - center)
     incidence = np.arcsin(sine * (light - center))

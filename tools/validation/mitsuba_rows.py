@@ -2,19 +2,21 @@
 
     python tools/validate.py --with-mitsuba       # pip install mitsuba==3.9.1
 
-Both render the same scene from eight seeds. A pixel's z is the difference of the two means by the standard errors of both,
-from the spread of the seeds: Student's t with 14 degrees of freedom, of which one in twenty is beyond 2.145. A scene passes
-if its mean agrees in every channel within 4 standard errors, and if of the pixels that have noise no more than 8 % are beyond
-2.145; pixels without noise must agree to rounding. Counted separately, and not part of the tests.
+Both render the same scene from eight seeds. A pixel's z is the difference of the two means by the standard errors of
+both, from the spread of the seeds: Student's t with 14 degrees of freedom, of which one in twenty is beyond 2.145. A
+scene passes if its mean agrees in every channel within 4 standard errors, and if of the pixels that have noise no
+more than 8 % are beyond 2.145; pixels without noise must agree to rounding. Counted separately, and not part of the
+tests.
 
-Rough glass is nearly smooth here: Mitsuba gives up what meets a second facet, 3 % of the light at a roughness of 0.3, which Abbe
-gives back, as its furnaces show.
+Rough glass is nearly smooth here: Mitsuba gives up what meets a second facet, 3 % of the light at a roughness of 0.3,
+which Abbe gives back, as its furnaces show.
 """
 
 import tempfile
 from pathlib import Path
 
 import numpy as np
+
 import render
 
 from .scenes import SKY, cube, diffuse, glass, glow, quad, rgb, sphere, toml_file, view
@@ -30,13 +32,26 @@ def scenes(samples, size):
     whites = {"white": diffuse(0.7), "lamp": glow(10)}
     metal = {"conductor": {"n": rgb((0.43, 0.2, 1.4)), "k": rgb((2.455, 3.9, 7.6))}}
     yield "furnace cube, diffuse", view({"b": diffuse(rgb((0.5, 0.2, 0.9)))}, [("b", cube())], [SKY], **common)
-    yield "diffuse cube on a floor", view(whites | {"b": diffuse(rgb((0.5, 0.2, 0.9)))}, [("b", cube()), *room], **common)
+    yield (
+        "diffuse cube on a floor",
+        view(whites | {"b": diffuse(rgb((0.5, 0.2, 0.9)))}, [("b", cube()), *room], **common),
+    )
     yield "diffuse ball on a floor", view(whites | {"b": diffuse(0.5)}, [("b", sphere()), *room], **common)
-    yield "smooth metal ball on a floor", view(whites | {"b": metal}, [("b", sphere()), *room], caustics="off", **common)
+    yield (
+        "smooth metal ball on a floor",
+        view(whites | {"b": metal}, [("b", sphere()), *room], caustics="off", **common),
+    )
     yield "smooth glass ball in a sky", view({"b": glass(1.5)}, [("b", sphere())], [SKY], **common)
     yield "metal ball in a sky", view({"b": metal}, [("b", sphere())], [SKY], **common)
-    yield "clear rough ball over a lit floor", view(
-        {"b": glass(1.5, roughness=0.1), "white": diffuse(0.7)}, [("b", sphere()), room[0]], [SKY], caustics="off", **common
+    yield (
+        "clear rough ball over a lit floor",
+        view(
+            {"b": glass(1.5, roughness=0.1), "white": diffuse(0.7)},
+            [("b", sphere()), room[0]],
+            [SKY],
+            caustics="off",
+            **common,
+        ),
     )
 
 
@@ -58,7 +73,13 @@ def material(name, values):
         return {"type": "conductor", "eta": color(values["n"]), "k": color(values["k"])}
     if name == "dielectric" and "roughness" in values:
         alpha = values["roughness"] ** 2
-        return {"type": "roughdielectric", "distribution": "ggx", "alpha": alpha, "int_ior": values["index"], "ext_ior": 1.0}
+        return {
+            "type": "roughdielectric",
+            "distribution": "ggx",
+            "alpha": alpha,
+            "int_ior": values["index"],
+            "ext_ior": 1.0,
+        }
     return {"type": "dielectric", "int_ior": values["index"], "ext_ior": 1.0}
 
 
@@ -86,7 +107,8 @@ def translated(mitsuba, scene):
         ((kind, values),) = scene["material"][entry["material"]].items()
         one = shape(mitsuba, entry["shape"])
         if kind == "emissive":
-            # Ours shines from both sides; of a lamp at the ceiling only the lower one is seen, toward which its front turns.
+            # Ours shines from both sides; of a lamp at the ceiling only the lower one is seen, toward which its front
+            # turns.
             one |= {"emitter": {"type": "area", "radiance": color(values["radiance"])}}
             one |= {"bsdf": {"type": "diffuse", "reflectance": color(0)}}
         else:
@@ -98,7 +120,8 @@ def translated(mitsuba, scene):
 
 
 def compare(first, second):
-    """Means of both, their difference in standard errors, the share of noisy pixels beyond 2.145, the worst of the others."""
+    """Means of both, their difference in standard errors, the share of noisy pixels beyond 2.145, the worst of the
+    others."""
     mean = [np.mean(pictures, axis=0) for pictures in (first, second)]
     variance = sum(np.var(pictures, axis=0, ddof=1) / len(pictures) for pictures in (first, second))
     totals = [np.mean(pictures, axis=(1, 2)) for pictures in (first, second)]
@@ -123,13 +146,17 @@ def main(quick):
     with tempfile.TemporaryDirectory() as folder:
         for name, scene in scenes(samples, size):
             loaded = mitsuba.load_dict(translated(mitsuba, scene))
-            theirs = [np.array(mitsuba.render(loaded, spp=samples, seed=seed), float)[..., :3] for seed in range(1, SEEDS + 1)]
+            theirs = [
+                np.array(mitsuba.render(loaded, spp=samples, seed=seed), float)[..., :3] for seed in range(1, SEEDS + 1)
+            ]
             pictures = [ours(scene, Path(folder), seed) for seed in range(1, SEEDS + 1)]
             means, overall, beyond, exact = compare(np.array(pictures), np.array(theirs))
             passes = np.abs(overall).max() <= 4 and beyond <= MOST and exact <= 4
             failed += [] if passes else [name]
-            print(f"{name:36} Abbe {means[0]:.6f}  Mitsuba {means[1]:.6f}  z of the means {np.round(overall, 2)}  "
-                  f"pixels beyond {BEYOND}: {100 * beyond:.1f} %  {'ok' if passes else 'FAIL'}")  # fmt: skip
+            print(
+                f"{name:36} Abbe {means[0]:.6f}  Mitsuba {means[1]:.6f}  z of the means {np.round(overall, 2)}  "
+                f"pixels beyond {BEYOND}: {100 * beyond:.1f} %  {'ok' if passes else 'FAIL'}"
+            )
     print("all agree" if not failed else "", *failed, sep="\n  FAILED: ")
     return int(bool(failed))
 

@@ -1,8 +1,8 @@
 """A row of the book, and how the images of its scene are judged.
 
-The standard error is honest: of two seeds' differences pixel by pixel, of the spread of more seeds' means where a photon
-lights many pixels, of the spread of the pixels where there is one image. To it comes the bound of rounding: a stored
-value is a product of up to 32 factors in 32 bits, each off by at most 2^-24.
+The standard error is honest: of two seeds' differences pixel by pixel, of the spread of more seeds' means where a
+photon lights many pixels, of the spread of the pixels where there is one image. To it comes the bound of rounding: a
+stored value is a product of up to 32 factors in 32 bits, each off by at most 2^-24.
 """
 
 from collections.abc import Callable
@@ -16,7 +16,8 @@ LIMIT = 4.0
 SHARE = 0.25
 # The most of a row's values, of ten or more, in which the mistake may by accident change less.
 ALIKE = 0.1
-# How far one pixel may be off where all show the same, in standard deviations of the pixels: behind glass they are not alike.
+# How far one pixel may be off where all show the same, in standard deviations of the pixels: behind glass they are
+# not alike.
 WORST_PIXEL = 30
 
 
@@ -43,6 +44,7 @@ class Judged(NamedTuple):
     standard_error: np.ndarray
     z: np.ndarray
     effect: np.ndarray
+    estimates: int  # how many measurements of each value an image holds
     reasons: list[str]  # why it fails; empty if it passes
 
     @property
@@ -84,18 +86,25 @@ def judge(row, images):
     if not np.isfinite(measured).all():
         reasons.append("the file has values that are not finite")
     elif (np.abs(z) > LIMIT).any():
-        reasons.append((row.explain and row.explain(measured, expected)) or why(row, measured, expected, mistake, error))
-    # Where the mistake changes nothing, as the Y of white, there is nothing to tell; among many colors a few come out alike.
+        reasons.append(
+            (row.explain and row.explain(measured, expected)) or why(row, measured, expected, mistake, error)
+        )
+    # Where the mistake changes nothing, as the Y of white, there is nothing to tell; among many colors a few come out
+    # alike.
     touched = effect > 1e-12 * np.abs(expected)
     if not touched.any() or (error > SHARE * effect)[touched].mean() > ALIKE:
-        reasons.append(f"too noisy to tell: the standard error {most(error, effect):.2g} is wider than a quarter of what "
-                       f"the mistake does ({row.guards_against})")  # fmt: skip
+        reasons.append(
+            f"too noisy to tell: the standard error {most(error, effect):.2g} is wider than a quarter of what "
+            f"the mistake does ({row.guards_against})"
+        )
     if row.every_pixel and not reasons:
         pixels = np.mean(estimates, axis=0)
         worst = np.abs(pixels - expected) / (WORST_PIXEL * deviation + np.maximum(rounding, 1e-30))
         if worst.max() > 1:
-            reasons.append(f"one pixel has {numbers(pixels[worst.max(axis=1).argmax()])}, all should have {numbers(expected)}")
-    return Judged(row, expected, measured, error, z, effect, reasons)
+            reasons.append(
+                f"one pixel has {numbers(pixels[worst.max(axis=1).argmax()])}, all should have {numbers(expected)}"
+            )
+    return Judged(row, expected, measured, error, z, effect, estimates.shape[1], reasons)
 
 
 def most(error, effect):

@@ -1,6 +1,6 @@
 """Scenes as dictionaries, and how they become the TOML that the renderer reads.
 
-    text = toml_file(view({}, [], [SKY], eye=(0, 0, 1)))
+text = toml_file(view({}, [], [SKY], eye=(0, 0, 1)))
 """
 
 import numpy as np
@@ -31,9 +31,23 @@ def vector(values):
     return [float(value) for value in values]
 
 
-def view(materials, objects, lights=(), *, eye, target=(0, 0, 0), up=(0, 1, 0), fov=1e-4, height=None, size=(1, 1), near=0,
-         space=None, **settings):  # fmt: skip
-    """A scene; `objects` pairs each material's name with a shape. Parallel rays where a `height` is given, else a pinhole.
+def view(
+    materials,
+    objects,
+    lights=(),
+    *,
+    eye,
+    target=(0, 0, 0),
+    up=(0, 1, 0),
+    fov=1e-4,
+    height=None,
+    size=(1, 1),
+    near=0,
+    space=None,
+    **settings,
+):
+    """A scene; `objects` pairs each material's name with a shape. Parallel rays where a `height` is given, else a
+    pinhole.
 
     No `samples`: one ray through each pixel's center, which leaves nothing to chance where all surfaces are smooth."""
     size = (size, size) if isinstance(size, int) else size
