@@ -16,6 +16,7 @@ standard error is at most a quarter of what the mistake would change. Exit code 
 
 import argparse
 import json
+import math
 import re
 import subprocess
 import sys
@@ -24,7 +25,7 @@ from pathlib import Path
 
 import render
 from validation import book
-from validation.row import LIMIT, judge, numbers
+from validation.row import LIMIT, judge, numbers, unmeasured
 from validation.scenes import toml_file
 
 OUT = render.ROOT / "target/validate"
@@ -47,7 +48,10 @@ def images(row, folder):
 
 
 def measure(row, folder):
-    return judge(row, list(images(row, folder)))
+    try:
+        return judge(row, list(images(row, folder)))
+    except (ValueError, RuntimeError) as error:
+        return unmeasured(row, str(error))
 
 
 def show(judged):
@@ -64,11 +68,16 @@ def show(judged):
         print(f"          {judged.row.name}: {reason}")
 
 
+def finite(value):
+    """A number, or null, for JSON has no others."""
+    return float(value) if math.isfinite(value) else None
+
+
 def entry(judged):
     """The row as it stands in validation.json."""
     row = judged.row
     listed = [judged.expected, judged.measured, judged.standard_error, judged.z, judged.effect]
-    expected, measured, error, z, effect = ([float(x) for x in values] for values in listed)
+    expected, measured, error, z, effect = ([finite(x) for x in values] for values in listed)
     return {
         "group": row.group,
         "name": row.name,

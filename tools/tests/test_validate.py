@@ -134,6 +134,15 @@ def test_a_single_speck_fails():
     assert not judged(noise=0.02, speck=1.0).passes
 
 
+def test_an_image_of_nothing_but_infinities_fails_and_stays_json(tmp_path, monkeypatch):
+    monkeypatch.setattr(render, "write", lambda *arguments, **flags: None)
+    monkeypatch.setattr(render, "read", lambda path: picture(np.full((66, 33, 3), np.inf)))
+    (judged_row,) = validate.run([find("prism N-BK7 rgb")], tmp_path)
+    assert not judged_row.passes
+    (entry,) = json.loads((tmp_path / "validation.json").read_text(), parse_constant=pytest.fail)["rows"]
+    assert entry["verdict"].startswith("fail: ")
+
+
 def find(name):
     (found,) = validate.chosen(book.rows(True), name)
     return found

@@ -1,5 +1,7 @@
 """All rows of the book, by group."""
 
+import functools
+
 import numpy as np
 import OpenEXR
 
@@ -8,6 +10,7 @@ from . import caustics, color, energy, optics, transport
 GROUPS = {"energy": energy, "optics": optics, "transport": transport, "color": color, "caustics": caustics}
 
 
+@functools.cache
 def rows(quick, group=None):
     """The rows of one group, or of all."""
     modules = [GROUPS[group]] if group else GROUPS.values()

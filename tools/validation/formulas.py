@@ -1,8 +1,8 @@
 """Closed-form optics and transport, from first principles: what the rendered numbers are held against.
 
-    from validation.formulas import fresnel, slab
-    fresnel(1.5, 45)                 # 0.0502..., unpolarized
-    slab(1.5, 0, optical_depth=1)    # (R, T) of a plate with all its reflections
+from validation.formulas import fresnel, slab
+fresnel(1.5, 45)                 # 0.0502..., unpolarized
+slab(1.5, 0, optical_depth=1)    # (R, T) of a plate with all its reflections
 """
 
 import numpy as np

@@ -69,12 +69,15 @@ def statistics(estimates):
 
 def judge(row, images):
     """What the images say of the row."""
-    estimates = [np.asarray(row.read(image), float) for image in images]
+    if not all(np.isfinite(image.rgb).all() for image in images):
+        return unmeasured(row, "the file has values that are not finite")
+    with np.errstate(all="ignore"):  # what is no number is told as such
+        estimates = [np.asarray(row.read(image), float) for image in images]
     # What is no number in one image is left out in all: pixels that a body does not cover.
     estimates = np.array([one.reshape(len(one), -1) for one in estimates])
     estimates = estimates[:, ~np.isnan(estimates).any(axis=(0, 2))]
     if not estimates.size:
-        raise ValueError("no pixel is covered")
+        raise ValueError("no pixel holds a number that this row could be read from")
     measured, statistical, deviation = statistics(estimates)
     expected = np.broadcast_to(np.asarray(row.expected, float), measured.shape)
     mistake = np.broadcast_to(np.asarray(row.mistake, float), measured.shape)
@@ -83,9 +86,7 @@ def judge(row, images):
     effect = np.abs(mistake - expected)
     z = (measured - expected) / error
     reasons = []
-    if not np.isfinite(measured).all():
-        reasons.append("the file has values that are not finite")
-    elif (np.abs(z) > LIMIT).any():
+    if (np.abs(z) > LIMIT).any():
         reasons.append(
             (row.explain and row.explain(measured, expected)) or why(row, measured, expected, mistake, error)
         )
@@ -105,6 +106,13 @@ def judge(row, images):
                 f"one pixel has {numbers(pixels[worst.max(axis=1).argmax()])}, all should have {numbers(expected)}"
             )
     return Judged(row, expected, measured, error, z, effect, estimates.shape[1], reasons)
+
+
+def unmeasured(row, reason):
+    """The row fails, for nothing could be measured."""
+    expected = np.atleast_1d(np.asarray(row.expected, float))
+    nothing = np.full(expected.shape, np.nan)
+    return Judged(row, expected, nothing, nothing, nothing, nothing, 0, [reason])
 
 
 def most(error, effect):
