@@ -25,6 +25,7 @@ WORK = render.ROOT / "target/planted"
 # Builds that take less time; what they compute is the same.
 QUICK_BUILD = [
     "--config=profile.release.package.abbe.codegen-units=16",
+    "--config=profile.release.package.abbe.opt-level=1",
     "--config=profile.release.incremental=true",
     "--config=profile.release.debug=false",
 ]
