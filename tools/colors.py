@@ -12,13 +12,15 @@ its table an illuminant is 0 and a reflectance is flat.
 import math
 import subprocess
 import sys
+import warnings
 from typing import NamedTuple
 
 import numpy as np
 import render
-from energy import colour_science, toml_file
+from validation.scenes import toml_file
 
-colour = colour_science()
+with warnings.catch_warnings(action="ignore"):  # that SciPy is not there: nothing here needs it
+    import colour
 
 OBSERVER = colour.MSDS_CMFS["CIE 1931 2 Degree Standard Observer"]
 WAVELENGTHS = np.arange(360.0, 831.0)
@@ -101,24 +103,27 @@ def quad(center, u, v):
     return {"quad": {"center": center, "u": u, "v": v}}
 
 
-def chart_scene(radiance, model, color_space="lin_ciexyzd65_scene"):
-    """The patches side by side, then white, then the sky itself, under an even sky.
+def patches_scene(reflectances, radiance, model, color_space, sky=0):
+    """Diffuse patches side by side, then as many pixels of the sky itself, under an even sky.
 
     A lone flat patch sees nothing but sky, which is aimed at by the cosine: each sample is exactly reflectance x sky."""
-    camera, places, film = row_of(len(PATCHES) + 2)
-    names = [f"m{i}" for i in range(len(PATCHES) + 1)]
-    material = {name: {"diffuse": {"reflectance": what}} for name, what in zip(names, (*PATCHES, 1), strict=True)}
-    shapes = [quad([x, 0, 0], [0.4, 0, 0], [0, 0.4, 0]) for x in places[:-1]]
-    return toml_file(
-        {
-            "camera": camera,
-            "film": {**film, "color_space": color_space},
-            "render": {"model": model, **STRAIGHT},
-            "material": material,
-            "object": [{"material": name, "shape": shape} for name, shape in zip(names, shapes, strict=True)],
-            "light": [{"environment": {"radiance": radiance}}],
-        }
-    )
+    camera, places, film = row_of(len(reflectances) + sky)
+    names = [f"m{i}" for i in range(len(reflectances))]
+    material = {name: {"diffuse": {"reflectance": what}} for name, what in zip(names, reflectances, strict=True)}
+    shapes = [quad([x, 0, 0], [0.4, 0, 0], [0, 0.4, 0]) for x in places[: len(names)]]
+    return {
+        "camera": camera,
+        "film": {**film, "color_space": color_space},
+        "render": {"model": model, **STRAIGHT},
+        "material": material,
+        "object": [{"material": name, "shape": shape} for name, shape in zip(names, shapes, strict=True)],
+        "light": [{"environment": {"radiance": radiance}}],
+    }
+
+
+def chart_scene(radiance, model, color_space="lin_ciexyzd65_scene"):
+    """The patches side by side, then white, then the sky itself."""
+    return patches_scene([*PATCHES, 1], radiance, model, color_space, sky=1)
 
 
 class Chart(NamedTuple):
@@ -130,7 +135,7 @@ class Chart(NamedTuple):
 
 def chart(light, bands):
     """Renders and judges the chart under a light."""
-    pixels = render.render(chart_scene(light.curve, {"bands": bands}), samples=1).rgb[0]
+    pixels = render.render(toml_file(chart_scene(light.curve, {"bands": bands})), samples=1).rgb[0]
     white = light.xyz()
     expected = np.array([light.xyz(patch) for patch in PATCHES])
     found = lab(pixels[: len(PATCHES)], white)

@@ -1,14 +1,13 @@
 """Patches look as colour-science says under every illuminant, seen straight and in colored mirrors; white is white.
 
-    pytest tools/tests/test_colors.py
+pytest tools/tests/test_colors.py
 """
 
 import colors
 import numpy as np
 import pytest
 import render
-from energy import toml_file
-from energy_rows import WHITE_SKY, scene
+from validation.scenes import SKY, toml_file, view
 
 MODELS = ["auto", "rgb", *({"bands": bands} for bands in (8, 12, 16, 32)), "hero"]
 SPACES = [f"lin_{name}_scene" for name in ("rec709", "ap1", "ap0", "rec2020", "p3d65", "ciexyzd65")]
@@ -53,7 +52,7 @@ def test_a_bar_that_is_missed_fails(capsys):
 
 
 def test_every_sample_of_a_lone_patch_is_its_reflectance_times_the_sky():
-    text = colors.chart_scene({"illuminant": "FL11"}, {"bands": 12})
+    text = toml_file(colors.chart_scene({"illuminant": "FL11"}, {"bands": 12}))
     one, many = (render.render(text, samples=samples, seed=samples).rgb for samples in (1, 64))
     assert np.max(np.abs(one / many - 1)) < 1e-6
 
@@ -71,7 +70,6 @@ def test_patches_in_colored_mirrors_have_their_colors_under_spikes_and_ideal_lin
 @pytest.mark.parametrize("space", SPACES)
 @pytest.mark.parametrize("model", MODELS, ids=str)
 def test_a_radiance_of_1_is_the_white_of_the_film_in_every_model(model, space):
-    view = scene({}, [], [WHITE_SKY], eye=(0, 0, 1), samples=4, model=model)
-    view["film"]["color_space"] = space
+    scene = view({}, [], [SKY], eye=(0, 0, 1), samples=4, model=model, space=space)
     expected = D65 if "xyz" in space else 1
-    assert render.render(toml_file(view)).rgb[0, 0] == pytest.approx(expected * np.ones(3), rel=1e-6)
+    assert render.render(toml_file(scene)).rgb[0, 0] == pytest.approx(expected * np.ones(3), rel=1e-6)

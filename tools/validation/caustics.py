@@ -1,0 +1,180 @@
+"""Caustics: the light that glass and mirrors throw, found by photons, has the energy that it had before."""
+
+import numpy as np
+
+from . import formulas, readers
+from .row import Row
+from .scenes import cube, diffuse, extrude, glass, quad, rgb, sphere, view
+
+GROUP = "caustics"
+# So dark that what it sends back up and down again through the glass, some tenth of it, is no part of any answer.
+DARK = 1e-4
+FLOOR = quad((0, 0, 0), (6, 0, 0), (0, 0, -6))
+
+
+def lit(
+    name,
+    objects,
+    materials,
+    lights,
+    patch,
+    expected,
+    formula,
+    guards,
+    mistake,
+    words,
+    quick,
+    reader=readers.gray,
+    **camera,
+):
+    """The mean irradiance of a square of the floor, by its radiance."""
+    samples, seeds, size = (256, 6, 12) if quick else (1024, 8, 16)
+    camera = {"eye": (0, 0.5, 0), "target": (0, 0, 0), "up": (0, 0, -1), "height": patch} | camera
+    scene = view(materials | {"floor": diffuse(DARK)}, objects, lights, size=size, samples=samples, **camera)
+    factor = DARK / np.pi
+
+    def read(image):
+        return reader(image).mean(axis=0, keepdims=True) / factor
+
+    return Row(GROUP, name, formula, scene, read, expected, guards, mistake, words, seeds)
+
+
+def sun(degrees, irradiance=1.0):
+    angle = np.radians(degrees)
+    toward = [float(np.sin(angle)), float(np.cos(angle)), 0.0]
+    return {"sun": {"toward": toward, "angular_diameter": 0, "irradiance": irradiance}}
+
+
+def slabs(quick):
+    """A floor under a glass roof: the sun comes through as through a plate, with all reflections between its faces."""
+    indices = (1.333, 1.52, 2.42)
+    for degrees in (0, 45, 60):
+        cosine = np.cos(np.radians(degrees))
+        roof = cube((0, 0.22, 0), [1.4, 0.04, 1.4])
+        transmitted = formulas.slab(np.array(indices), degrees)[1]
+        once = 1 - formulas.fresnel(np.array(indices), degrees)
+        words = (
+            f"A roof of glass 1.4 x 0.04 x 1.4 at height 0.2 over a floor of reflectance {DARK}, parallel light "
+            f"at {degrees} degrees."
+        )
+        yield lit(
+            f"sun through a glass roof at {degrees} degrees",
+            [("floor", FLOOR), ("glass", roof)],
+            {"glass": glass(rgb(indices))},
+            [sun(degrees)],
+            0.3,
+            transmitted * cosine,
+            "E cos t (1 - r) / (1 + r)",
+            "Fresnel at one face alone",
+            once * cosine,
+            words,
+            quick,
+            readers.colors,
+            eye=(0, 0.1, 0),
+        )
+
+
+def mirrors(quick):
+    """The sun by way of a mirror, which stands upright beside the floor: as if a second one shone from the other
+    side."""
+    for degrees, reflectance in ((30, 0.8), (60, 0.5)):
+        angle = np.radians(degrees)
+        expected = np.cos(angle) * (1 + reflectance)
+        objects = [("floor", FLOOR), ("mirror", quad((-1, 2, 0), (0, 2, 0), (0, 0, 2)))]
+        words = (
+            f"A floor of reflectance {DARK}; a mirror of {reflectance} upright at x = -1, 4 high; parallel light "
+            f"at {degrees} degrees."
+        )
+        yield lit(
+            f"sun by a mirror at {degrees} degrees",
+            objects,
+            {"mirror": {"mirror": {"reflectance": reflectance}}},
+            [sun(degrees)],
+            0.5,
+            expected,
+            "E cos t (1 + R)",
+            "a mirror that throws no light",
+            np.cos(angle),
+            words,
+            quick,
+        )
+
+
+def balls(quick):
+    """Row T1 of the literature of light tracing: a ball under a lamp."""
+    for index, half_side in ((1.5, 0.8), (1.5, 0.2), (1.333, 0.5)):
+        expected = formulas.through_ball(index, 1.5, 7.0, half_side)
+        light = {"point": {"position": [0.0, 7.0, 0.0], "intensity": 1}}
+        words = (
+            f"A ball of radius 1 and index {index}, its center 1.5 above a floor, a point light of intensity 1 "
+            f"at height 7."
+        )
+        yield lit(
+            f"ball of index {index} under a point, square of {2 * half_side}",
+            [("floor", FLOOR), ("glass", sphere((0, 1.5, 0), 1))],
+            {"glass": glass(index)},
+            [light],
+            2 * half_side,
+            expected,
+            "integral of I (1 - r)^2 r^k over the cone of the ball",
+            "reflection at its faces left out",
+            expected / (1 - formulas.fresnel(index, 0)) ** 2,
+            words,
+            quick,
+        )
+
+
+def beam(quick):
+    """All that leaves a prism, beside what the sun sends straight."""
+    index, apex, face = 1.5168, np.radians(60), 1.0
+    incidence = np.radians(formulas.least_incidence(index, 60))
+    deviation = 2 * incidence - apex
+    first = np.array([np.cos(incidence), np.sin(incidence)])
+    second = np.array([np.cos(incidence - apex), np.sin(incidence - apex)])
+    middle = (first + second) / 2 * face
+    polygon = [face * 0 * first - middle, face * first - middle, face * second - middle]
+    prism = extrude(polygon, 0.0, 0.5)
+    along, across = np.array([np.sin(deviation), -np.cos(deviation)]), np.array([np.cos(deviation), np.sin(deviation)])
+    exit_middle = 0.5 * face * second - middle
+    place = exit_middle + 6 * along
+    side = 2.0
+    patch = quad((place[0], 0, place[1]), side * np.array([across[0], 0, across[1]]), (0, side, 0))
+    r = formulas.fresnel(index, np.degrees(incidence))
+    # What all three faces reflect, each at 30 degrees, leaves again in the same direction.
+    through = (1 - r) ** 2 / (1 - r**3)
+    power = face * np.cos(incidence) * 1.0 * through
+    direct, area = np.cos(deviation), side**2
+    light = {"sun": {"toward": [0.0, 0.0, 1.0], "angular_diameter": 0, "irradiance": 1}}
+    start = place - 1.0 * along
+    words = (
+        "A 60 degree prism of index 1.5168, faces of 1 x 1, its third one black, at least deviation in parallel "
+        "light of irradiance 1; the mean over a "
+        f"square of {side:g} across its beam, 6 behind it, which the sun lights straight as well."
+    )
+    # The third face is black: the sun would shine through it as well.
+    ends = [polygon[1], polygon[2]]
+    normal = np.array([ends[1][1] - ends[0][1], ends[0][0] - ends[1][0]])
+    base = (ends[0] + ends[1]) / 2 + 1e-3 * normal * np.sign(normal @ (ends[0] - polygon[0]))
+    reach = (ends[1] - ends[0]) / 2
+    black = quad((base[0], 0, base[1]), (reach[0], 0, reach[1]), (0, 0.5, 0))
+    yield lit(
+        "beam of a prism",
+        [("floor", patch), ("glass", prism), ("black", black)],
+        {"glass": glass(index), "black": diffuse(0)},
+        [light],
+        side,
+        direct + power / area,
+        "E cos d + E A cos i (1 - r)^2 / (1 - r^3) / S",
+        "reflection at its faces left out",
+        direct + power / through / area,
+        words,
+        quick,
+        eye=(start[0], 0, start[1]),
+        target=(place[0], 0, place[1]),
+        up=(0, 1, 0),
+    )
+
+
+def rows(quick):
+    for part in (slabs, mirrors, balls, beam):
+        yield from part(quick)

@@ -1,0 +1,170 @@
+"""Cross-checks with Mitsuba 3 where it models the same thing: every pixel of both pictures, each with its own noise.
+
+    python tools/validate.py --with-mitsuba       # pip install mitsuba==3.9.1
+
+Both render the same scene from eight seeds. A pixel's z is the difference of the two means by the standard errors of
+both, from the spread of the seeds: Student's t with 14 degrees of freedom, of which one in twenty is beyond 2.145. A
+scene passes if its mean agrees in every channel within 4 standard errors, and if of the pixels that have noise no
+more than 8 % are beyond 2.145; pixels without noise must agree to rounding. Counted separately, and not part of the
+tests.
+
+Rough glass is nearly smooth here: Mitsuba gives up what meets a second facet, 3 % of the light at a roughness of 0.3,
+which Abbe gives back, as its furnaces show.
+"""
+
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+import render
+
+from .scenes import SKY, cube, diffuse, glass, glow, quad, rgb, sphere, toml_file, view
+
+SEEDS, BEYOND, MOST = 8, 2.145, 0.08
+EYE = {"eye": (1.7, 1.3, 3.1), "fov": 38}
+
+
+def scenes(samples, size):
+    """Name and scene; materials and shapes that both know."""
+    common = EYE | {"samples": samples, "size": size}
+    room = [("white", quad((0, -1, 0), (3, 0, 0), (0, 0, -3))), ("lamp", quad((0, 3, 0), (0.6, 0, 0), (0, 0, 0.6)))]
+    whites = {"white": diffuse(0.7), "lamp": glow(10)}
+    metal = {"conductor": {"n": rgb((0.43, 0.2, 1.4)), "k": rgb((2.455, 3.9, 7.6))}}
+    yield "furnace cube, diffuse", view({"b": diffuse(rgb((0.5, 0.2, 0.9)))}, [("b", cube())], [SKY], **common)
+    yield (
+        "diffuse cube on a floor",
+        view(whites | {"b": diffuse(rgb((0.5, 0.2, 0.9)))}, [("b", cube()), *room], **common),
+    )
+    yield "diffuse ball on a floor", view(whites | {"b": diffuse(0.5)}, [("b", sphere()), *room], **common)
+    yield (
+        "smooth metal ball on a floor",
+        view(whites | {"b": metal}, [("b", sphere()), *room], caustics="off", **common),
+    )
+    yield "smooth glass ball in a sky", view({"b": glass(1.5)}, [("b", sphere())], [SKY], **common)
+    yield "metal ball in a sky", view({"b": metal}, [("b", sphere())], [SKY], **common)
+    yield (
+        "clear rough ball over a lit floor",
+        view(
+            {"b": glass(1.5, roughness=0.1), "white": diffuse(0.7)},
+            [("b", sphere()), room[0]],
+            [SKY],
+            caustics="off",
+            **common,
+        ),
+    )
+
+
+def ours(scene, folder, seed):
+    (folder / "scene.toml").write_text(toml_file(scene), "utf-8")
+    render.write(folder / "scene.toml", folder / "scene.exr", seed=seed)
+    return render.read(folder / "scene.exr").rgb
+
+
+def color(value, kind="rgb"):
+    return {"type": kind, "value": [float(x) for x in value["rgb"]] if isinstance(value, dict) else [float(value)] * 3}
+
+
+def material(name, values):
+    """A material of ours as Mitsuba's; alpha is the square of our roughness."""
+    if name == "diffuse":
+        return {"type": "twosided", "bsdf": {"type": "diffuse", "reflectance": color(values["reflectance"])}}
+    if name == "conductor":
+        return {"type": "conductor", "eta": color(values["n"]), "k": color(values["k"])}
+    if name == "dielectric" and "roughness" in values:
+        alpha = values["roughness"] ** 2
+        return {
+            "type": "roughdielectric",
+            "distribution": "ggx",
+            "alpha": alpha,
+            "int_ior": values["index"],
+            "ext_ior": 1.0,
+        }
+    return {"type": "dielectric", "int_ior": values["index"], "ext_ior": 1.0}
+
+
+def shape(mitsuba, entry):
+    transform = mitsuba.ScalarTransform4f
+    ((kind, values),) = entry.items()
+    if kind == "sphere":
+        return {"type": "sphere", "center": values["center"], "radius": values["radius"]}
+    if kind == "cube":
+        half = values["size"] / 2
+        return {"type": "cube", "to_world": transform().translate(values["center"]).scale([half] * 3)}
+    u, v = np.array(values["u"]), np.array(values["v"])
+    axes = np.column_stack([u, v, np.cross(u, v) / np.linalg.norm(np.cross(u, v)), values["center"]])
+    return {"type": "rectangle", "to_world": transform(np.vstack([axes, [0, 0, 0, 1]]))}
+
+
+def translated(mitsuba, scene):
+    """The scene for mitsuba.load_dict: field of view, film and lights as they are in ours."""
+    camera, film = scene["camera"], scene["film"]
+    look = mitsuba.ScalarTransform4f().look_at(camera["position"], camera["look_at"], camera["up"])
+    picture = {"type": "hdrfilm", "width": film["width"], "height": film["height"], "rfilter": {"type": "box"}}
+    sensor = {"type": "perspective", "fov": camera["vertical_fov"], "fov_axis": "y", "to_world": look, "film": picture}
+    result = {"type": "scene", "integrator": {"type": "path", "max_depth": -1, "rr_depth": 100}, "sensor": sensor}
+    for number, entry in enumerate(scene["object"]):
+        ((kind, values),) = scene["material"][entry["material"]].items()
+        one = shape(mitsuba, entry["shape"])
+        if kind == "emissive":
+            # Ours shines from both sides; of a lamp at the ceiling only the lower one is seen, toward which its front
+            # turns.
+            one |= {"emitter": {"type": "area", "radiance": color(values["radiance"])}}
+            one |= {"bsdf": {"type": "diffuse", "reflectance": color(0)}}
+        else:
+            one["bsdf"] = material(kind, values)
+        result[f"object{number}"] = one
+    if scene["light"]:
+        result["sky"] = {"type": "constant", "radiance": color(scene["light"][0]["environment"]["radiance"])}
+    return result
+
+
+def compare(first, second):
+    """Means of both, their difference in standard errors, the share of noisy pixels beyond 2.145, the worst of the
+    others."""
+    mean = [np.mean(pictures, axis=0) for pictures in (first, second)]
+    variance = sum(np.var(pictures, axis=0, ddof=1) / len(pictures) for pictures in (first, second))
+    totals = [np.mean(pictures, axis=(1, 2)) for pictures in (first, second)]
+    error = np.sqrt(sum(total.var(axis=0, ddof=1) / len(total) for total in totals))
+    rounding = 32 * 2.0**-24 * np.abs(mean[1])  # of what both store in 32 bits
+    z = (mean[0] - mean[1]) / np.sqrt(variance + rounding**2 + 1e-60)
+    noisy = variance > rounding**2
+    overall = (totals[0].mean(axis=0) - totals[1].mean(axis=0)) / np.hypot(error, rounding.mean(axis=(0, 1)))
+    beyond = np.mean(np.abs(z[noisy]) > BEYOND) if noisy.any() else 0.0
+    return [picture.mean() for picture in mean], overall, beyond, np.abs(z[~noisy]).max(initial=0)
+
+
+def main(quick):
+    try:
+        import mitsuba
+    except ImportError:
+        raise SystemExit("the Python package mitsuba is missing: pip install mitsuba==3.9.1") from None
+    mitsuba.set_variant("llvm_ad_rgb" if "llvm_ad_rgb" in mitsuba.variants() and has_llvm(mitsuba) else "scalar_rgb")
+    print(f"Mitsuba {mitsuba.__version__} {mitsuba.variant()}")
+    samples, size = (64, 32) if quick else (256, 64)
+    failed = []
+    with tempfile.TemporaryDirectory() as folder:
+        for name, scene in scenes(samples, size):
+            loaded = mitsuba.load_dict(translated(mitsuba, scene))
+            theirs = [
+                np.array(mitsuba.render(loaded, spp=samples, seed=seed), float)[..., :3] for seed in range(1, SEEDS + 1)
+            ]
+            pictures = [ours(scene, Path(folder), seed) for seed in range(1, SEEDS + 1)]
+            means, overall, beyond, exact = compare(np.array(pictures), np.array(theirs))
+            passes = np.abs(overall).max() <= 4 and beyond <= MOST and exact <= 4
+            failed += [] if passes else [name]
+            print(
+                f"{name:36} Abbe {means[0]:.6f}  Mitsuba {means[1]:.6f}  z of the means {np.round(overall, 2)}  "
+                f"pixels beyond {BEYOND}: {100 * beyond:.1f} %  {'ok' if passes else 'FAIL'}"
+            )
+    print("all agree" if not failed else "", *failed, sep="\n  FAILED: ")
+    return int(bool(failed))
+
+
+def has_llvm(mitsuba):
+    try:
+        mitsuba.set_variant("llvm_ad_rgb")
+        mitsuba.load_dict({"type": "sphere"})
+        return True
+    except Exception:  # the library reports a missing LLVM by more than one kind of error
+        return False

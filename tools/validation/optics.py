@@ -1,0 +1,245 @@
+"""Optics: how much light surfaces reflect and let through. Where it goes is in angles.py.
+
+Abbe averages s and p at every surface, and so do these formulas. In truth light that has met one surface at an angle is
+polarized in part, and a second surface in the same plane takes more or less of it: a plate of index 1.5 at 60 degrees
+lets through 0.8481 of unpolarized light (the mean of both polarizations), where the average at each surface gives
+0.8362.
+"""
+
+import numpy as np
+
+from . import angles, formulas, readers
+from .plates import BANDS, looking_down
+from .row import ROUNDING, Row
+from .scenes import cube, glass, glow, plane, rgb, view
+
+GROUP = "optics"
+CEILING = plane((0, 30, 0), (0, -1, 0))
+FLOOR = plane((0, 0, 0), (0, 1, 0))
+
+
+def reflection(name, material, degrees, expected, formula, guards, mistake, what, reader=readers.colors):
+    scene = view(
+        {"surface": material, "glow": glow()},
+        [("surface", FLOOR), ("glow", CEILING)],
+        eye=looking_down(degrees),
+        up=(0, 0, 1),
+    )
+    words = (
+        f"The flat surface of a half space of {what}, seen at {degrees:.6g} degrees; above it a plane of "
+        f"radiance 1, below black."
+    )
+    return Row(GROUP, name, formula, scene, reader, expected, guards, mistake, words)
+
+
+def fresnel(quick):
+    """One surface: the mean of s and p."""
+    indices = np.array(BANDS)
+    for degrees in (0, 15, 30, 45, 60, 75, 85, 89):
+        expected = formulas.fresnel(indices, degrees)
+        guards, mistake = "Schlick's approximation", formulas.schlick(indices, degrees)
+        if degrees == 0:
+            guards, mistake = "the square of n - 1 alone, without n + 1", (indices - 1) ** 2
+        yield reflection(
+            f"Fresnel at {degrees} degrees",
+            glass(rgb(BANDS)),
+            degrees,
+            expected,
+            "(r_s^2 + r_p^2) / 2",
+            guards,
+            mistake,
+            f"indices {BANDS}",
+        )
+    for degrees in (30, 60, 75):
+        s, p = formulas.both_polarizations(1.5, degrees)
+        yield reflection(
+            f"Fresnel of index 1.5 at {degrees} degrees",
+            glass(1.5),
+            degrees,
+            (s + p) / 2,
+            "(r_s^2 + r_p^2) / 2",
+            "s alone, or s for p",
+            s,
+            "index 1.5",
+            readers.gray,
+        )
+    for name in ("water", "N-BK7", "N-SF11", "diamond", "fused silica", "sapphire"):
+        n = float(np.round(formulas.index(name, formulas.D_LINE), 6))
+        expected = 0.5 * ((n**2 - 1) / (n**2 + 1)) ** 2
+        degrees = float(np.degrees(np.arctan(n)))
+        yield reflection(
+            f"Brewster angle of {name}",
+            glass(n),
+            degrees,
+            expected,
+            "((n^2 - 1) / (n^2 + 1))^2 / 2 at tan i = n",
+            "Schlick's approximation",
+            formulas.schlick(n, degrees),
+            f"index {n}",
+            readers.gray,
+        )
+    for name in ("water", "N-BK7", "N-SF11", "diamond"):
+        yield normal(name)
+
+
+def normal(name):
+    """The index of the d line, where nothing disperses and lanes stay together."""
+    n = float(formulas.index(name, formulas.D_LINE))
+    near = float(formulas.index(name, formulas.E_LINE))
+    return reflection(
+        f"normal reflection of {name}",
+        glass(name),
+        0,
+        ((n - 1) / (n + 1)) ** 2,
+        "((n - 1) / (n + 1))^2, d line",
+        "the index at another line (e)",
+        ((near - 1) / (near + 1)) ** 2,
+        f"{name} (n_d = {n:.6f})",
+        readers.gray,
+    )
+
+
+def inside(quick):
+    """From inside: n^2 (1 - R), and nothing beyond the critical angle."""
+    index = 1.5
+    for degrees in (0, 25, 40, 41.8, 42, 60, 85):
+        reflected = formulas.inside_fresnel(index, degrees)
+        angle = np.radians(degrees)
+        scene = view(
+            {"glass": glass(index), "glow": glow()},
+            [("glass", FLOOR), ("glow", CEILING)],
+            eye=(-np.sin(angle), -np.cos(angle), 0),
+            up=(0, 0, 1),
+        )
+        words = (
+            f"A camera in a half space of index {index} looks up at its surface at {degrees} degrees; above it a "
+            f"plane of radiance 1."
+        )
+        total = reflected == 1
+        yield Row(
+            GROUP,
+            f"through the surface from inside at {degrees} degrees",
+            "0" if total else "n^2 (1 - R)",
+            scene,
+            readers.gray,
+            index**2 * (1 - reflected),
+            "light that leaves at any angle" if total else "the forgotten factor n^2",
+            0.5 if total else 1 - reflected,
+            words,
+            rounding=ROUNDING * index**2,
+        )
+
+
+def critical(name):
+    """Where total reflection begins, in a fan of rays, for three lanes."""
+    indices = formulas.index(name, np.array(formulas.RED_GREEN_BLUE))
+    expected = np.degrees(np.arcsin(1 / indices))
+    middle, count, fov = float(np.round(expected.mean(), 1)), 4001, 4.0
+    angle, half = np.radians(middle), np.tan(np.radians(fov / 2))
+    scene = view(
+        {"glass": glass(name), "glow": glow()},
+        [("glass", FLOOR), ("glow", CEILING)],
+        eye=(-np.sin(angle), -np.cos(angle), 0),
+        fov=fov,
+        size=(1, count),
+    )
+
+    def read(image):
+        lit = np.count_nonzero(image.rgb[:, :1] > 0, axis=0) / len(image.rgb)
+        return middle - np.degrees(np.arctan(half * (1 - 2 * lit)))
+
+    words = (
+        f"A camera in a half space of {name} looks up at its surface at {middle} degrees, {fov} degrees from top to "
+        f"bottom in {count} "
+        "rows; above it a plane of radiance 1. The rows that are not black tell the angle to half a row."
+    )
+    return Row(
+        GROUP,
+        f"critical angle of {name}",
+        "asin(1 / n) at C, e, F",
+        scene,
+        read,
+        expected,
+        "one index for all lanes",
+        np.degrees(np.arcsin(1 / formulas.index(name, formulas.D_LINE))),
+        words,
+        rounding=fov / count / 2,
+    )
+
+
+def metals(quick):
+    n, k = np.array([0.43, 0.2, 1.4]), np.array([2.455, 3.9, 7.6])
+    material = {"conductor": {"n": rgb(n), "k": rgb(k)}}
+    for degrees in (0, 30, 60, 75, 85):
+        schlick = formulas.schlick(n + 1j * k, degrees)
+        guards, mistake = (
+            ("the absorption k left out", ((n - 1) / (n + 1)) ** 2)
+            if degrees == 0
+            else ("Schlick's approximation", schlick)
+        )
+        yield reflection(
+            f"metal at {degrees} degrees",
+            material,
+            degrees,
+            formulas.fresnel(n + 1j * k, degrees),
+            "|r|^2 of n + ik, mean of s and p",
+            guards,
+            mistake,
+            f"a metal of n = {n}, k = {k}",
+        )
+
+
+def piles(quick):
+    """Plates in a row, all reflections between them."""
+    for plates, degrees in ((1, 45), (2, 45), (4, 45), (4, 0), (3, 60)):
+        index, gap = 1.5168, 0.02
+        objects = [("glass", cube((0, -gap * number - 0.005, 0), [40.0, 0.01, 40.0])) for number in range(plates)]
+        objects.append(("glow", plane((0, -5, 0), (0, 1, 0))))
+        scene = view({"glass": glass(index), "glow": glow()}, objects, eye=looking_down(degrees), up=(0, 0, 1))
+        r = formulas.fresnel(index, degrees)
+        words = (
+            f"{plates} plates of index {index}, 0.01 thick and 0.01 apart, at {degrees} degrees before a plane "
+            f"of radiance 1."
+        )
+        yield Row(
+            GROUP,
+            f"pile of {plates} plates at {degrees} degrees",
+            "(1 - r) / (1 + (2 m - 1) r), unpolarized at each surface",
+            scene,
+            readers.gray,
+            formulas.pile(index, degrees, plates),
+            "reflections between the plates left out",
+            (1 - r) ** (2 * plates),
+            words,
+        )._replace(rounding=4 * ROUNDING)
+
+
+def panes(quick):
+    """The thin pane has the light of all reflections between its faces, at no thickness."""
+    indices = np.array(BANDS)
+    for degrees in (0, 45, 60, 80):
+        objects = [("pane", {"quad": {"center": [0.0, 0.0, 0.0], "u": [20.0, 0.0, 0.0], "v": [0.0, 0.0, -20.0]}})]
+        objects.append(("glow", plane((0, -5, 0), (0, 1, 0))))
+        scene = view(
+            {"pane": {"thin": {"index": rgb(BANDS)}}, "glow": glow()}, objects, eye=looking_down(degrees), up=(0, 0, 1)
+        )
+        r = formulas.fresnel(indices, degrees)
+        yield Row(
+            GROUP,
+            f"thin pane at {degrees} degrees",
+            "(1 - r) / (1 + r)",
+            scene,
+            readers.colors,
+            (1 - r) / (1 + r),
+            "one passage through both faces",
+            (1 - r) ** 2,
+            f"A pane without thickness of indices {BANDS} at {degrees} degrees before a plane of radiance 1.",
+        )
+
+
+def rows(quick):
+    for part in (fresnel, inside, metals, piles, panes):
+        yield from part(quick)
+    for name in ("water", "N-BK7", "N-SF11", "diamond"):
+        yield critical(name)
+    yield from angles.rows(quick)

@@ -1,0 +1,58 @@
+"""What is measured in an image: estimates, each of all values of a row."""
+
+import numpy as np
+
+
+def colors(image):
+    """Red, green and blue of every pixel."""
+    return image.rgb.reshape(-1, 3)
+
+
+def gray(image):
+    """Green of every pixel, where all channels are alike."""
+    return image.rgb[..., 1].reshape(-1, 1)
+
+
+def need(image, name):
+    """A channel other than color; a clear word where another renderer's file has none."""
+    if name not in image.channels:
+        raise ValueError(f"the file has no channel {name}, by which this row tells the pixels that the body covers")
+    return image.channels[name]
+
+
+def covered(image):
+    """Red, green and blue of the pixels that a body covers wholly; the others are no numbers and do not count."""
+    return np.where((need(image, "A") == 1)[..., None], image.rgb, np.nan).reshape(-1, 3)
+
+
+def touched(image):
+    """Red, green and blue of the pixels that a body covers at least in part."""
+    return np.where((need(image, "A") > 0)[..., None], image.rgb, np.nan).reshape(-1, 3)
+
+
+def per_coverage(image):
+    """Green of what is covered: its mean over all pixels by their mean coverage,"""
+    green, alpha = image.rgb[..., 1], need(image, "A").astype(float)
+    return np.array([[green.mean() / alpha.mean()]])
+
+
+def rows(count, channel=1):
+    """The mean of each of `count` equal bands of rows, from the top: one estimate per column."""
+
+    def read(image):
+        pixels = image.rgb[..., channel]
+        if len(pixels) % count:
+            raise ValueError(f"the picture has {len(pixels)} rows, no multiple of {count}")
+        return pixels.reshape(count, -1, pixels.shape[1]).mean(axis=1).T
+
+    return read
+
+
+def columns(channels=(0, 1, 2)):
+    """Every pixel of the first row, channel by channel: one estimate."""
+    return lambda image: image.rgb[:1, :, list(channels)].reshape(1, -1)
+
+
+def flat(image):
+    """Every pixel's green, in reading order: one estimate."""
+    return image.rgb[..., 1].reshape(1, -1)

@@ -1,0 +1,133 @@
+"""A row of the book, and how the images of its scene are judged.
+
+The standard error is honest: of two seeds' differences pixel by pixel, of the spread of more seeds' means where a
+photon lights many pixels, of the spread of the pixels where there is one image. To it comes the bound of rounding: a
+stored value is a product of up to 32 factors in 32 bits, each off by at most 2^-24.
+"""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+ROUNDING = 32 * 2.0**-24
+LIMIT = 4.0
+# A standard error tells a value from the one that the mistake would give if it is at most this share of the difference.
+SHARE = 0.25
+# The most of a row's values, of ten or more, in which the mistake may by accident change less.
+ALIKE = 0.1
+# How far one pixel may be off where all show the same, in standard deviations of the pixels: behind glass they are
+# not alike.
+WORST_PIXEL = 30
+
+
+class Row(NamedTuple):
+    group: str
+    name: str
+    formula: str
+    scene: dict
+    read: Callable  # image -> estimates (how many, values); each is one measurement of all values
+    expected: object  # a number, or one for each value
+    guards_against: str  # a plausible mistake ..
+    mistake: object  # .. and what it would measure
+    words: str  # the scene in a sentence, for who builds it elsewhere
+    seeds: int = 1  # 1: nothing is left to chance
+    rounding: object = None  # bound of what rounding does to each value, if it is not ROUNDING of the value
+    every_pixel: bool = False  # each pixel has the expected value, not only their mean
+    explain: Callable | None = None  # (measured, expected) -> why, in words, or none
+
+
+class Judged(NamedTuple):
+    row: Row
+    expected: np.ndarray
+    measured: np.ndarray
+    standard_error: np.ndarray
+    z: np.ndarray
+    effect: np.ndarray
+    estimates: int  # how many measurements of each value an image holds
+    reasons: list[str]  # why it fails; empty if it passes
+
+    @property
+    def passes(self):
+        return not self.reasons
+
+
+def statistics(estimates):
+    """Mean, its standard error, and the standard deviation of one estimate, of the estimates of every image."""
+    if len(estimates) == 2:
+        first, second = estimates
+        deviation = np.sqrt(np.mean((first - second) ** 2, axis=0) / 4)
+        return (first + second).mean(axis=0) / 2, deviation / np.sqrt(len(first)), deviation
+    if len(estimates) > 1:
+        means = np.array([one.mean(axis=0) for one in estimates])
+        deviation = means.std(axis=0, ddof=1)
+        return means.mean(axis=0), deviation / np.sqrt(len(means)), deviation
+    (only,) = estimates
+    deviation = only.std(axis=0, ddof=1) if len(only) > 1 else np.zeros(only.shape[1])
+    return only.mean(axis=0), deviation / np.sqrt(len(only)), deviation
+
+
+def judge(row, images):
+    """What the images say of the row."""
+    if not all(np.isfinite(image.rgb).all() for image in images):
+        return unmeasured(row, "the file has values that are not finite")
+    with np.errstate(all="ignore"):  # what is no number is told as such
+        estimates = [np.asarray(row.read(image), float) for image in images]
+    # What is no number in one image is left out in all: pixels that a body does not cover.
+    estimates = np.array([one.reshape(len(one), -1) for one in estimates])
+    estimates = estimates[:, ~np.isnan(estimates).any(axis=(0, 2))]
+    if not estimates.size:
+        raise ValueError("no pixel holds a number that this row could be read from")
+    measured, statistical, deviation = statistics(estimates)
+    expected = np.broadcast_to(np.asarray(row.expected, float), measured.shape)
+    mistake = np.broadcast_to(np.asarray(row.mistake, float), measured.shape)
+    rounding = ROUNDING * np.abs(expected) if row.rounding is None else np.broadcast_to(row.rounding, measured.shape)
+    error = np.hypot(statistical, np.maximum(rounding, 1e-30))
+    effect = np.abs(mistake - expected)
+    z = (measured - expected) / error
+    reasons = []
+    if (np.abs(z) > LIMIT).any():
+        reasons.append(
+            (row.explain and row.explain(measured, expected)) or why(row, measured, expected, mistake, error)
+        )
+    # Where the mistake changes nothing, as the Y of white, there is nothing to tell; among many colors a few come out
+    # alike.
+    touched = effect > 1e-12 * np.abs(expected)
+    if not touched.any() or (error > SHARE * effect)[touched].mean() > ALIKE:
+        reasons.append(
+            f"too noisy to tell: the standard error {most(error, effect):.2g} is wider than a quarter of what "
+            f"the mistake does ({row.guards_against})"
+        )
+    if row.every_pixel and not reasons:
+        pixels = np.mean(estimates, axis=0)
+        worst = np.abs(pixels - expected) / (WORST_PIXEL * deviation + np.maximum(rounding, 1e-30))
+        if worst.max() > 1:
+            reasons.append(
+                f"one pixel has {numbers(pixels[worst.max(axis=1).argmax()])}, all should have {numbers(expected)}"
+            )
+    return Judged(row, expected, measured, error, z, effect, estimates.shape[1], reasons)
+
+
+def unmeasured(row, reason):
+    """The row fails, for nothing could be measured."""
+    expected = np.atleast_1d(np.asarray(row.expected, float))
+    nothing = np.full(expected.shape, np.nan)
+    return Judged(row, expected, nothing, nothing, nothing, nothing, 0, [reason])
+
+
+def most(error, effect):
+    """The standard error of the value in which the mistake is least seen."""
+    return error[np.argmax(error / np.where(effect > 0, effect, np.inf))]
+
+
+def why(row, measured, expected, mistake, error):
+    """What is wrong, and whether it is the mistake that the row guards against."""
+    text = f"{numbers(measured)} was measured; expected {numbers(expected)}"
+    nearer = np.linalg.norm((measured - mistake) / error) < 0.5 * np.linalg.norm((measured - expected) / error)
+    return f"{text}: as if by {row.guards_against}" if nearer else text
+
+
+def numbers(values):
+    """A few numbers as people read them."""
+    values = np.unique(np.round(np.atleast_1d(values), 10)) if np.ptp(values) == 0 else np.atleast_1d(values)
+    return ", ".join(f"{value:.7g}" for value in values)
