@@ -24,9 +24,8 @@ const AT_ONCE: usize = 64;
 /// Sets these random numbers apart from those of the camera, and those of photons sent ahead from both.
 const SEED: u64 = 0x7068_6f74;
 const AHEAD_SEED: u64 = 0x6168_6561;
-/// Uses of a photon's random numbers: its first ray, and what does not fit there.
+/// Use of a photon's random numbers: its first ray.
 const RAY: u32 = 0;
-const MORE: u32 = 1;
 
 /// Of an aim's photons, one in so many is sent ahead to learn which ones are seen, unless those are too few to tell, and as
 /// many as tell enough.
@@ -118,7 +117,7 @@ fn send<const N: usize>(world: &World, aims: &Aims, starts: &[Option<Media>], ba
         let sampler = Sampler::new(batch.seed, key, photon as u32);
         let u = sampler.four(BranchKey::CAMERA, RAY);
         let wavelength = if extended && world.method.basis.draws_wavelengths() {
-            sampler.four(BranchKey::CAMERA, MORE)[0]
+            sampler.four_more(BranchKey::CAMERA, RAY)[0]
         } else {
             u[2]
         };

@@ -24,6 +24,7 @@ mod media;
 mod method;
 mod path;
 mod photon;
+mod pilot;
 mod probe;
 
 mod render;
@@ -38,6 +39,7 @@ mod world;
 pub use aims::{is_photon_source, is_photon_target};
 pub use light_pass::seen_photons;
 pub use method::{LightPass, Method, Transport};
+pub use pilot::{PhotonWorth, SampleWorth, photons_worth, samples_worth};
 pub use probe::{Probe, probe};
 
 pub use render::{Report, render};
