@@ -60,7 +60,7 @@ fn probe_lanes<const N: usize>(world: &World) -> Probe {
         }
     }
     let mut tracer = Tracer::<N>::new(world);
-    let (mut samples, mut parted) = (0, 0);
+    let (mut samples, mut parted) = (0_u32, 0);
     let window = world.scene.film.window();
     let start = Instant::now();
     let (mut before_batch, mut per_ray) = ((start, 0), Vec::new());
