@@ -15,7 +15,7 @@ import render
 from colors import OBSERVER, WAVELENGTHS, colour, illuminant, lab
 from energy import toml_file
 
-POINTS, ROWS, SEEDS, SAMPLES = 81, 5, 4, 800
+POINTS, ROWS, SEEDS, SAMPLES = 81, 5, 4, 200
 HALF_APEX, EDGE = math.radians(30), 0.5
 # The beam: 0.01 wide where it meets the prism. The screen stands a few times the prism's size behind it.
 BEAM, DISTANCE, SCREEN = 0.01, 4.0, 3.0
