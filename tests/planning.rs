@@ -7,6 +7,8 @@
 mod support;
 
 mod planning {
+    mod caustics;
     mod choices;
     mod rooms;
+    mod twenty;
 }

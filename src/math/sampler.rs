@@ -46,6 +46,12 @@ impl Sampler {
         sample_4d(self.index, 0, (seed >> 32) as u32).map(f64::from)
     }
 
+    /// Four more numbers for the same use at the same vertex: with those of [`four`](Self::four), points in eight dimensions.
+    pub fn four_more(&self, branch: BranchKey, purpose: u32) -> [f64; 4] {
+        let seed = mix(self.pixel ^ branch.0.wrapping_add(u64::from(purpose)));
+        sample_4d(self.index, 1, (seed >> 32) as u32).map(f64::from)
+    }
+
     /// Four numbers in [0, 1) for one use at one vertex, independent from sample to sample.
     pub fn four_plain(&self, branch: BranchKey, purpose: u32) -> [f64; 4] {
         let sample = mix(self.pixel ^ u64::from(self.index).wrapping_mul(0xd134_2543_de82_ef95));

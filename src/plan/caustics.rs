@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 
 use super::in_number;
+use super::worth::{Worth, weigh};
 use crate::light::{Light, LightId};
 use crate::material::Material;
 use crate::math::{DVec2, DVec3, one_minus_cos_of_cone};
@@ -11,11 +12,10 @@ use crate::shape::Sides;
 use crate::spectrum::Curve;
 use crate::trace::{LightPass, Method, Transport, World, is_photon_source, is_photon_target, seen_photons};
 
-/// Solid angle in steradians below which rays meet a lamp too rarely: a tenth measured as the place where path tracing and
-/// light tracing cost the same.
-const SMALL: f64 = 0.1;
-/// Photons per camera sample.
-const PHOTONS: f64 = 1.0;
+/// Solid angle in steradians from which on rays meet a lamp often enough: there photons and chance cost the same (`benches/rooms.rs`).
+const SMALL: f64 = 0.5;
+/// Fewest photons of a light pass: from fewer it does not learn where to send them.
+const FEWEST: f64 = 65_536.0;
 /// Camera rays along each side of the image that look for surfaces on which caustics may lie.
 const SIDE: u32 = 24;
 
@@ -29,11 +29,20 @@ pub(super) fn light_pass(scene: &Scene<Curve>, method: &Method) -> (Option<Light
         |material: &Material<Curve>| !material.scatters_widely() && !matches!(material, Material::Emissive(_));
     let objects = || 0..scene.objects.len();
     let Some(bends) = objects().find(|&object| is_smooth(scene.material_of(object as u32))) else {
-        return (None, Vec::new());
+        return none("no caustics: no surface is smooth glass, a mirror or polished metal".into());
     };
-    if matches!(method.transport, Transport::Deterministic { .. })
-        || !scene.materials.iter().any(|named| spread(&named.material))
-    {
+    if !scene.materials.iter().any(|named| spread(&named.material)) {
+        let why = if scene.materials.iter().any(|named| named.material.is_diffuse()) {
+            "with diffuse_bounces 0, diffuse surfaces are lit straight from the lights alone"
+        } else {
+            "no surface is diffuse or rough, on which one could lie"
+        };
+        return none(format!("no caustics: {why}"));
+    }
+    if scene.lights.is_empty() {
+        return none("no caustics: nothing shines".into());
+    }
+    if matches!(method.transport, Transport::Deterministic { .. }) {
         return (None, Vec::new());
     }
     if scene.render.caustics == CausticsText::Off {
@@ -71,10 +80,13 @@ pub(super) fn light_pass(scene: &Scene<Curve>, method: &Method) -> (Option<Light
     }
     let film = scene.film;
     let samples = f64::from(film.width) * f64::from(film.height) * f64::from(method.samples);
-    let photons = (PHOTONS * samples).ceil() as u64;
-    let pass = |lights: Vec<LightId>| LightPass { photons, lights, map: None };
-    let asked = pass(small.iter().map(|light| light.0).collect());
-    let share = seen_photons(&World::new(scene, Method { light_pass: Some(asked), ..method.clone() }));
+    let pass = |photons: f64, lights| {
+        let photons = (photons * samples).max(FEWEST).ceil() as u64;
+        LightPass { photons, lights, map: None }
+    };
+    let asked = pass(1.0, small.iter().map(|light| light.0).collect());
+    let world = World::new(scene, Method { light_pass: Some(asked), ..method.clone() });
+    let share = seen_photons(&world);
     let (seen, unseen): (Vec<_>, Vec<_>) = small.into_iter().partition(|&(id, _)| share[id] > 0.0);
     let to = match targets.as_slice() {
         [one] => scene.objects[*one].name.clone(),
@@ -86,20 +98,37 @@ pub(super) fn light_pass(scene: &Scene<Curve>, method: &Method) -> (Option<Light
             named(scene, &unseen)
         ));
     }
-    if !large.is_empty() && !seen.is_empty() {
-        lines.push(format!("left to chance: caustics of {}", named(scene, &large)));
-    }
     if seen.is_empty() {
         return (None, lines);
     }
-    let most = seen.iter().map(|&(id, _)| share[id]).fold(0.0, f64::max);
+    let Worth { lights, photons, gain } = weigh(scene, &world);
+    let (sending, left): (Vec<_>, Vec<_>) = seen.into_iter().partition(|(id, _)| lights.contains(id));
+    large.extend(left);
+    if sending.is_empty() {
+        let why = match gain {
+            Some(gain) => format!("to the same error they would take {:.2} times as long as chance", 1.0 / gain),
+            None => "what they land on is black".into(),
+        };
+        lines.push(format!("no light pass: photons from {} toward {to} are seen, but {why}", named(scene, &large)));
+        return (None, lines);
+    }
+    if !large.is_empty() {
+        lines.push(format!("left to chance: caustics of {}", named(scene, &large)));
+    }
+    let most = sending.iter().map(|&(id, _)| share[id]).fold(0.0, f64::max);
+    let pass = pass(photons, sending.iter().map(|light| light.0).collect());
     lines.push(format!(
-        "light pass: {} photons from {} toward {to}; {} are seen",
-        in_number(photons),
-        named(scene, &seen),
-        if most < 0.095 { format!("{:.1} %", 100.0 * most) } else { format!("{:.0} %", 100.0 * most) }
+        "light pass: {} photons from {} toward {to}; {} are seen; {:.2} for each camera sample{}",
+        in_number(pass.photons),
+        named(scene, &sending),
+        if most < 0.095 { format!("{:.1} %", 100.0 * most) } else { format!("{:.0} %", 100.0 * most) },
+        pass.photons as f64 / samples,
+        gain.map_or(String::new(), |gain| format!(
+            ": an error takes chance about {} times as long",
+            in_number(gain.round() as u64)
+        ))
     ));
-    (Some(pass(seen.iter().map(|light| light.0).collect())), lines)
+    (Some(pass), lines)
 }
 
 /// Objects that photons can be sent to.

@@ -5,6 +5,7 @@ mod caustics;
 mod ladder;
 mod model;
 mod survey;
+mod worth;
 
 use crate::film::Filter;
 use crate::light::Light;

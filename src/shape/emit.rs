@@ -52,8 +52,8 @@ impl Shape {
 
     /// A point from which light may reach a ball, and its density per unit of area, which `emit_density` gives as well.
     ///
-    /// Of a sphere, the cap that sees some of the ball; of other shapes, all of the surface. None of an infinite shape and of
-    /// an instance.
+    /// Of a sphere, the cap that sees some of the ball, denser toward its middle as much as it sends more there; of other shapes,
+    /// all of the surface. None of an infinite shape and of an instance.
     pub fn emit(&self, toward: &Ball, u: [f64; 2]) -> Option<(SurfacePoint, f64)> {
         let uniform = |point| Some((point, 1.0 / self.area()));
         match self {
@@ -75,8 +75,10 @@ impl Shape {
             }
             Self::Sphere(sphere) => {
                 let (axis, one_minus_cos) = cap(self.ball()?, toward);
+                let u = if one_minus_cos < 2.0 { [1.0 - u[0].sqrt(), u[1]] } else { u };
                 let normal = Frame::about(axis).to_world(cone(one_minus_cos, u).0);
-                Some((sphere.point(sphere.over(normal)), 2.0 / (one_minus_cos * self.area())))
+                let point = sphere.point(sphere.over(normal));
+                Some((point, self.emit_density(toward, &point)))
             }
         }
     }
@@ -86,8 +88,10 @@ impl Shape {
         match self {
             Self::Sphere(_) => {
                 let Some((axis, one_minus_cos)) = self.ball().map(|own| cap(own, toward)) else { return 0.0 };
-                let inside = 0.5 * (point.normal - axis).length_squared() <= one_minus_cos;
-                if inside { 2.0 / (one_minus_cos * self.area()) } else { 0.0 }
+                // 1 - cos of the angle from the middle; a far ball gets light by the cosine, which is 0 at the rim.
+                let here = 0.5 * (point.normal - axis).length_squared();
+                let share = if one_minus_cos < 2.0 { 2.0 * (1.0 - here / one_minus_cos).max(0.0) } else { 1.0 };
+                share * 2.0 / (one_minus_cos * self.area())
             }
             Self::Ellipsoid(ellipsoid) => ellipsoid.density_over(ellipsoid.unit_of(point.position)),
             _ => 1.0 / self.area(),
@@ -131,9 +135,17 @@ mod tests {
             assert_eq!(inside, sees(normal), "{normal}");
             within += i32::from(inside);
         }
-        let (point, density) = sphere.emit(&toward, [0.3, 0.8]).expect("a sphere has points");
         assert!((f64::from(within) / 1e4 - 0.5 * one_minus_cos).abs() < 1e-3);
-        assert!((density * 4.0 * PI * radius * radius * 0.5 * one_minus_cos - 1.0).abs() < 1e-12);
-        assert_eq!(sphere.emit_density(&toward, &point), density);
+        // Points drawn, each over its density, measure the cap: its area, and that of its inner half.
+        let (mut all, mut inner) = (0.0, 0.0);
+        for i in 0..10_000 {
+            let u = [(f64::from(i) + 0.5) / 1e4, (f64::from(i) * 0.618_034).fract()];
+            let (point, density) = sphere.emit(&toward, u).expect("a sphere has points");
+            assert_eq!(sphere.emit_density(&toward, &point), density);
+            all += 1e-4 / density;
+            inner += if (point.normal - axis).length_squared() < one_minus_cos { 1e-4 / density } else { 0.0 };
+        }
+        let area = 2.0 * PI * radius * radius * one_minus_cos;
+        assert!((all / area - 1.0).abs() < 0.01 && (inner / area - 0.5).abs() < 0.01, "{all} {inner} for {area}");
     }
 }

@@ -12,9 +12,8 @@ use crate::spectrum::Draw;
 
 /// Photons that are followed one after another; what they leave is added in the order of the batches.
 const BATCH: u64 = 4096;
-/// Uses of a photon's random numbers: its first ray, and what does not fit there.
+/// Use of a photon's random numbers: its first ray.
 const RAY: u32 = 0;
-const MORE: u32 = 1;
 
 /// Photons are followed like camera paths: in all branches while they carry much, then in one. Splitting at 0.05 took as much
 /// time for as much noise, never splitting 2 to 15 times as much (`benches/caustics.rs`).
@@ -68,7 +67,7 @@ pub(super) fn send<const N: usize, T>(
         let sampler = Sampler::new(batch.seed, key, photon as u32);
         let u = sampler.four(BranchKey::CAMERA, RAY);
         let wavelength = if extended && world.method.basis.draws_wavelengths() && shared.is_none() {
-            sampler.four(BranchKey::CAMERA, MORE)[0]
+            sampler.four_more(BranchKey::CAMERA, RAY)[0]
         } else {
             u[2]
         };

@@ -1,0 +1,82 @@
+//! Whether photons are worth their time, and how many.
+
+use std::f64::consts::PI;
+
+use crate::light::{Light, LightId};
+use crate::scene::Scene;
+use crate::spectrum::{Curve, Emission};
+use crate::trace::{PhotonWorth, SampleWorth, World, photons_worth, samples_worth};
+
+/// Of a lamp's radiance, what the camera sees of it by way of a smooth surface and one that scatters: about half.
+const LEFT: f64 = 0.5;
+/// Photons that are fewer than one in so many camera samples, or more than so many for each, were learned of too badly.
+const FEWEST: f64 = 1.0 / 16.0;
+const MOST: f64 = 4.0;
+/// A gain below this is none: a pilot does not know better.
+const CLEARLY: f64 = 1.1;
+
+/// What photons of some lights are worth beside camera samples.
+pub(super) struct Worth {
+    /// The lights whose photons lower the time to an error.
+    pub(super) lights: Vec<LightId>,
+    /// How many photons of them for each camera sample make the time to an error least.
+    pub(super) photons: f64,
+    /// How many times as long chance takes to the same error; none where it misses light for good, or there is no light.
+    pub(super) gain: Option<f64>,
+}
+
+/// Weighs photons of some lights, which the world sends, against chance.
+///
+/// An image of n_p camera samples and n_l photons has the variance A / n_p + sum B_i / n_i in the time C_p n_p + sum C_i n_i; their
+/// product is least for n_i / n_p = sqrt(B_i C_p / (A C_i)), where it is (sqrt(A C_p) + sum sqrt(B_i C_i))^2. A light that is
+/// left to chance adds K to A: a camera sample that meets the lamp sees f of its radiance, and does so as often as makes the mean
+/// right, so that its second moment is f times the mean. How many photons there are goes by an A without the worst hundredth of the
+/// pixels: else one edge or rare bright path, which no photon mends, leaves the caustic noisier than all around it. Rays followed stand for time, so that the plan is the same everywhere.
+pub(super) fn weigh(scene: &Scene<Curve>, world: &World) -> Worth {
+    let samples = samples_worth(world);
+    let film = scene.film;
+    let pixels = f64::from(film.width) * f64::from(film.height);
+    let by_chance = |photons: &PhotonWorth| match radiance(scene, photons.light) {
+        Some(radiance) => (0..3).map(|i| LEFT * radiance[i] * photons.brings[i]).sum::<f64>().abs() * pixels,
+        None => f64::INFINITY,
+    };
+    let mut known: Vec<(PhotonWorth, f64)> =
+        photons_worth(world).into_iter().map(|photons| (photons, by_chance(&photons))).collect();
+    // Those first whose photons save most.
+    known.sort_by(|(a, of_a), (b, of_b)| (of_b * a.variance * a.rays).total_cmp(&(of_a * b.variance * b.rays)));
+    let total = |sent: usize| product(&samples, &known, sent);
+    let best = (0..=known.len()).min_by(|&a, &b| total(a).total_cmp(&total(b))).unwrap_or(0);
+    let best = if total(0) > CLEARLY * total(best) { best } else { 0 };
+    let left: f64 = known[best..].iter().map(|light| light.1).sum();
+    let of_light = |(photons, _): &(PhotonWorth, f64)| {
+        (photons.variance * samples.rays / ((samples.common_variance + left) * photons.rays)).sqrt()
+    };
+    let gain = total(0) / total(if best == 0 { known.len() } else { best });
+    Worth {
+        lights: known[..best].iter().map(|(photons, _)| photons.light).collect(),
+        photons: known[..best].iter().map(of_light).sum::<f64>().clamp(FEWEST, MOST),
+        gain: (gain.is_finite() && !known.is_empty()).then_some(gain),
+    }
+}
+
+/// The least product of time and variance where the first lights send photons.
+fn product(samples: &SampleWorth, known: &[(PhotonWorth, f64)], sent: usize) -> f64 {
+    let left: f64 = known[sent..].iter().map(|light| light.1).sum();
+    let photons: f64 = known[..sent].iter().map(|(photons, _)| (photons.variance * photons.rays).sqrt()).sum();
+    let root = ((samples.variance + left) * samples.rays).sqrt() + photons;
+    root * root
+}
+
+/// The film color of a light's radiance; none of one that has no extent.
+fn radiance(scene: &Scene<Curve>, light: LightId) -> Option<[f64; 3]> {
+    let light = &scene.lights[light];
+    let factor = match light {
+        Light::Area(_) => 1.0,
+        Light::Sun(sun) if sun.angular_diameter > 0.0 => {
+            let sin = libm::sin(0.5 * sun.angular_diameter.to_radians());
+            1.0 / (PI * sin * sin)
+        }
+        _ => return None,
+    };
+    Some(Emission::new(light.emission(), scene.film.color_space).color().map(|x| x * factor))
+}

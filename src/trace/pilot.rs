@@ -1,0 +1,134 @@
+//! What photons and camera samples are worth, learned from a few of both.
+
+use super::World;
+use super::light_pass;
+use super::render::sample;
+use super::tracer::Tracer;
+use super::width::{InLanes, in_lanes};
+use crate::light::LightId;
+use crate::math::Sampler;
+
+/// What one light's photons bring to the whole image.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PhotonWorth {
+    /// The light that sends them.
+    pub light: LightId,
+    /// Film values, summed over all pixels, of all light that they bring.
+    pub brings: [f64; 3],
+    /// Variance of an image by n photons, summed over pixels and channels, times n.
+    pub variance: f64,
+    /// Rays that one follows.
+    pub rays: f64,
+}
+
+/// What camera samples bring beside photons.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SampleWorth {
+    /// Variance of an image of n camera samples in all, summed over pixels and channels, times n.
+    pub variance: f64,
+    /// The same without the hundredth of the pixels that has most of it.
+    pub common_variance: f64,
+    /// Rays that one follows, without those to lights.
+    pub rays: f64,
+}
+
+/// Photons of one image of a pilot, and how many images there are.
+const PHOTONS: u64 = 4096;
+const IMAGES: u64 = 4;
+/// Pixels along each side of the image whose samples are compared, and how many of each.
+const SIDE: u32 = 24;
+const SAMPLES: u32 = 4;
+/// Sets these random numbers apart from those of the image.
+const SEED: u64 = 0x7069_6c6f;
+
+/// What photons of each of the pass's lights are worth, where photons of the light are seen.
+///
+/// All of the image counts, also where only a part of it is made, so that all parts are made alike.
+pub fn photons_worth(world: &World) -> Vec<PhotonWorth> {
+    let Some(pass) = &world.method.light_pass else { return Vec::new() };
+    pass.lights.iter().filter_map(|&light| in_lanes(&world.method.basis, Sending { world, light })).collect()
+}
+
+struct Sending<'a> {
+    world: &'a World,
+    light: LightId,
+}
+
+impl InLanes for Sending<'_> {
+    type Output = Option<PhotonWorth>;
+    fn run<const N: usize>(self) -> Self::Output {
+        let mut world = self.world.clone();
+        world.scene.film.crop = None;
+        let aims = &mut world.aims.as_mut()?.aims;
+        aims.retain(|aim| aim.light == self.light);
+        let all: u64 = aims.iter().map(|aim| aim.photons).sum();
+        for aim in aims.iter_mut() {
+            aim.photons = (aim.photons as f64 * PHOTONS as f64 / all as f64).round().max(1.0) as u64;
+        }
+        let (mut sum, mut squares) = (Vec::new(), Vec::new());
+        let (mut photons, mut rays) = (0, 0);
+        for image in 0..IMAGES {
+            world.method.seed = (self.world.method.seed ^ SEED).wrapping_add(image);
+            let shown = light_pass::show::<N>(&world);
+            (photons, rays) = (photons + shown.photons, rays + shown.rays);
+            let values = || shown.pixels.iter().flatten().copied().enumerate();
+            sum.resize(3 * shown.pixels.len(), 0.0);
+            squares.resize(3 * shown.pixels.len(), 0.0);
+            values().for_each(|(i, x)| sum[i] += x);
+            values().for_each(|(i, x)| squares[i] += x * x);
+        }
+        let images = IMAGES as f64;
+        let of_value = |(sum, squares): (&f64, &f64)| ((squares - sum * sum / images) / (images - 1.0)).max(0.0);
+        let variance: f64 = sum.iter().zip(&squares).map(of_value).sum();
+        let brings = [0, 1, 2].map(|channel| sum.iter().skip(channel).step_by(3).sum::<f64>() / images);
+        let each = photons as f64 / images;
+        let worth =
+            PhotonWorth { light: self.light, brings, variance: variance * each, rays: rays as f64 / photons as f64 };
+        brings.iter().any(|&x| x != 0.0).then_some(worth)
+    }
+}
+
+/// What camera samples are worth.
+pub fn samples_worth(world: &World) -> SampleWorth {
+    in_lanes(&world.method.basis, Sampling { world })
+}
+
+struct Sampling<'a> {
+    world: &'a World,
+}
+
+impl InLanes for Sampling<'_> {
+    type Output = SampleWorth;
+    fn run<const N: usize>(self) -> SampleWorth {
+        let world = self.world;
+        let mut tracer = Tracer::<N>::new(world);
+        let film = world.scene.film;
+        let seed = world.method.seed ^ SEED;
+        let mut variances = Vec::new();
+        for place in 0..SIDE * SIDE {
+            let spread = |i: u32, size: u32| ((u64::from(2 * i + 1) * u64::from(size)) / u64::from(2 * SIDE)) as u32;
+            let (x, y) = (spread(place % SIDE, film.width), spread(place / SIDE, film.height));
+            let taken = (0..SAMPLES).map(|number| {
+                let sampler = Sampler::new(seed.wrapping_add(u64::from(number)), [x, y], 0);
+                sample(world, &mut tracer, &sampler, x, y).rgb
+            });
+            let taken: Vec<[f64; 3]> = taken.filter(|rgb| rgb.iter().all(|x| x.is_finite())).collect();
+            let count = taken.len().max(2) as f64;
+            let mut variance = 0.0;
+            for channel in 0..3 {
+                let mean = taken.iter().map(|rgb| rgb[channel]).sum::<f64>() / count;
+                let squares = taken.iter().map(|rgb| (rgb[channel] - mean) * (rgb[channel] - mean));
+                variance += squares.sum::<f64>() / (count - 1.0);
+            }
+            variances.push(variance);
+        }
+        variances.sort_by(f64::total_cmp);
+        let places = f64::from(SIDE * SIDE);
+        let pixels = f64::from(film.width) * f64::from(film.height);
+        // Of n samples, each pixel has n / pixels.
+        let of_image = |variances: &[f64]| variances.iter().sum::<f64>() / places * pixels * pixels;
+        let common = variances.len() - variances.len().div_ceil(100);
+        let (variance, common_variance) = (of_image(&variances), of_image(&variances[..common]));
+        SampleWorth { variance, common_variance, rays: tracer.tally.rays as f64 / (places * f64::from(SAMPLES)) }
+    }
+}

@@ -1,0 +1,39 @@
+//! The plan asks for a light pass where that lowers the time to an error, and says why where not.
+
+use abbe::plan::plan;
+
+use super::twenty::{Room, rooms};
+use crate::support::scenes::scene;
+
+/// What is right for each was measured: `cargo bench --bench rooms`, the table in `benches/README.md`.
+#[test]
+fn of_twenty_rooms_the_plan_asks_for_photons_in_those_that_gain_and_says_why_not_in_the_others() {
+    let rooms = rooms();
+    assert_eq!([true, false].map(|asks| rooms.iter().filter(|room| room.asks == asks).count()), [10, 10]);
+    let mut wrong = Vec::new();
+    for Room { name, text, asks, words } in rooms {
+        let plan = plan(&scene(&text));
+        let said = plan.because.iter().filter(|line| line.contains("caustic") || line.contains("light pass"));
+        let said: Vec<&str> = said.map(String::as_str).collect();
+        println!("{name}: {}", said.join("; "));
+        if plan.method.light_pass.is_some() != asks || !said.iter().any(|line| line.contains(words)) {
+            wrong.push(format!("{name}: wants {words:?}, says {:?}", plan.because));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// Numbers of photons come from counts of rays and values of pixels, never from a clock.
+#[test]
+fn the_plan_asks_for_the_same_photons_every_time_and_on_any_number_of_threads() {
+    for room in rooms().into_iter().filter(|room| room.asks).step_by(4) {
+        let scene = scene(&room.text);
+        let on = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads can be started");
+            pool.install(|| plan(&scene)).method.light_pass
+        };
+        let first = on(1);
+        assert!(first.is_some(), "{}", room.name);
+        assert!(first == on(3), "{}", room.name);
+    }
+}
