@@ -1,6 +1,6 @@
 //! Whether caustics that are not seen straight need a map of photons.
 
-use super::caustics::{small_lights, targets};
+use super::caustics::{sees_receivers, small_lights, targets};
 use super::in_number;
 use crate::scene::{CausticsText, Scene};
 use crate::spectrum::Curve;
@@ -8,6 +8,8 @@ use crate::trace::{LightPass, MapPasses, Method, Transport, World, gathered_phot
 
 /// Photons per camera sample: between 0.25 and 1 the error for the time hardly changes, where glass is seen through glass.
 const PHOTONS: f64 = 0.5;
+/// Solid angle in steradians of lights that rays meet too rarely from where nothing is shown.
+const SMALL: f64 = 0.1;
 /// Radius in pixels of a map of one sample per pixel.
 const RADIUS: f64 = 2.0;
 /// Fewest passes, whose wavelengths all paths of a pass share, and fewest photons of a pass that is worth its while.
@@ -23,7 +25,8 @@ pub(super) fn with_map(
     let as_shown = || (shown.cloned(), Vec::new());
     let is_off =
         matches!(method.transport, Transport::Deterministic { .. }) || scene.render.caustics == CausticsText::Off;
-    if is_off || targets(scene).is_empty() {
+    // What is seen straight was weighed: where photons do not pay there, they are not sent for the sake of what is not.
+    if is_off || targets(scene).is_empty() || (shown.is_none() && sees_receivers(scene)) {
         return as_shown();
     }
     let places = reached_places(&World::new(scene, method.clone()));
@@ -37,7 +40,7 @@ pub(super) fn with_map(
     let map = MapPasses { count: count as u32, photons: (all / count).ceil() as u64, radius };
     let pass = shown.cloned().unwrap_or_else(|| LightPass {
         photons: all as u64,
-        lights: small_lights(scene, &places),
+        lights: small_lights(scene, &places, SMALL),
         map: None,
     });
     if pass.lights.is_empty() {

@@ -22,9 +22,7 @@ const SIDE: u32 = 24;
 /// The light pass that a scene needs, if any, and why.
 pub(super) fn light_pass(scene: &Scene<Curve>, method: &Method) -> (Option<LightPass>, Vec<String>) {
     let none = |why: String| (None, vec![why]);
-    let spread = |material: &Material<Curve>| {
-        material.scatters_widely() && !(material.is_diffuse() && scene.render.diffuse_bounces == Some(0))
-    };
+    let spread = |material: &Material<Curve>| may_receive(scene, material);
     let is_smooth =
         |material: &Material<Curve>| !material.scatters_widely() && !matches!(material, Material::Emissive(_));
     let objects = || 0..scene.objects.len();
@@ -136,9 +134,19 @@ pub(super) fn targets(scene: &Scene<Curve>) -> Vec<usize> {
     (0..scene.objects.len()).filter(|&object| is_photon_target(scene, object)).collect()
 }
 
-/// Lights that photons can be sent from and that rays from the places given meet too rarely.
-pub(super) fn small_lights(scene: &Scene<Curve>, places: &[DVec3]) -> Vec<LightId> {
-    let is_small = |light: &Light<Curve>| solid_angle(light, places).is_some_and(|size| size < SMALL);
+/// Whether the camera sees any surface straight on which a caustic may lie.
+pub(super) fn sees_receivers(scene: &Scene<Curve>) -> bool {
+    !lit_places(scene, |material| may_receive(scene, material)).is_empty()
+}
+
+/// Whether caustics can be seen on a material.
+fn may_receive(scene: &Scene<Curve>, material: &Material<Curve>) -> bool {
+    material.scatters_widely() && !(material.is_diffuse() && scene.render.diffuse_bounces == Some(0))
+}
+
+/// Lights that photons can be sent from and that are seen from the places given under less than a solid angle.
+pub(super) fn small_lights(scene: &Scene<Curve>, places: &[DVec3], small: f64) -> Vec<LightId> {
+    let is_small = |light: &Light<Curve>| solid_angle(light, places).is_some_and(|size| size < small);
     let lights = scene.lights.iter().enumerate();
     let wanted = lights.filter(|(_, light)| light.is_aimed_at() && is_photon_source(light) && is_small(light));
     wanted.map(|(id, _)| id).collect()
