@@ -1,0 +1,103 @@
+"""Errors and processor seconds of the series of a chart.
+
+    measured = measure(renderers, chart, profile)       # label -> Measured
+
+The error is the root of the mean of (x - r)^2 / (r^2 + 0.01) over pixels and channels of linear Rec.709, unclamped, box
+filter; RMS is that of x - r. r is a converged picture of two halves of other seeds, whose difference tells its noise,
+which is subtracted. What a renderer takes before its first sample is found from its shortest and its longest run and told apart.
+"""
+
+import os
+from concurrent.futures import ThreadPoolExecutor
+from typing import NamedTuple
+
+import numpy as np
+from chart_scenes import Chart, Profile
+
+HALVES = (10_000, 20_000)
+
+
+class Point(NamedTuple):
+    """Medians of the repeats at a number of samples. `common` is the error against the common reference."""
+
+    samples: int
+    cpu_seconds: float
+    error: float
+    rms: float
+    common: float
+
+
+class Reference(NamedTuple):
+    """A converged picture and the square of its noise, each (height, width, 3)."""
+
+    mean: np.ndarray
+    noise: np.ndarray
+
+
+class Measured(NamedTuple):
+    """A series: seconds are without `start`; how its converged picture differs from the common one, and its brightness."""
+
+    points: list[Point]
+    start: float
+    reference: Reference | None
+    difference: float
+    brightness: float
+
+
+def reference_of(halves: list[np.ndarray]) -> Reference:
+    first, second = halves
+    return Reference((first + second) / 2, (first - second) ** 2 / 4)
+
+
+def error(picture: np.ndarray, reference: Reference, noise: np.ndarray | float = 0.0) -> tuple[float, float]:
+    """Relative and absolute RMS error against a reference; `noise` is the square of what the picture's own counts for."""
+    squared = (picture - reference.mean) ** 2 - reference.noise - noise
+    relative = squared / (reference.mean**2 + 0.01)
+    return float(np.sqrt(max(relative.mean(), 0))), float(np.sqrt(max(squared.mean(), 0)))
+
+
+def start_of(samples: list[int], seconds: list[float]) -> float:
+    """Seconds of no samples, on the line through the shortest and the longest run."""
+    rate = (seconds[-1] - seconds[0]) / (samples[-1] - samples[0]) if len(samples) > 1 else 0.0
+    return float(np.clip(seconds[0] - rate * samples[0], 0.0, seconds[0] / 1.01)) if rate > 0 else 0.0
+
+
+def converged(renderer, samples: int) -> Reference:
+    return reference_of([renderer.run(samples, seed)[0] for seed in HALVES])
+
+
+def measure(renderers: dict, chart: Chart, profile: Profile) -> dict[str, Measured]:
+    """Every series at every number of samples, in turn so that all meet the same machine.
+
+    The converged pictures, whose time does not count, are rendered side by side."""
+    series = {one.label: one for one in chart.series if one.label in renderers}
+    seeded = [label for label, one in series.items() if one.renderer != "povray"]
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        longest = [profile.reference * series[label].samples[-1] for label in seeded]
+        found = pool.map(converged, (renderers[label] for label in seeded), longest)
+        references = dict(zip(seeded, found, strict=True))
+    common = references[chart.common or next(iter(series))]
+    runs = {label: {samples: [] for samples in one.samples} for label, one in series.items()}
+    for label, one in series.items():
+        if one.renderer == "mitsuba":
+            for samples in one.samples:
+                renderers[label].run(samples, 1000)  # compiles what is compiled for this length
+    for seed in range(1, profile.repeats + 1):
+        for label, own in runs.items():
+            judge = common if chart.common else references.get(label, common)
+            for samples, results in own.items():
+                picture, seconds = renderers[label].run(samples, seed)
+                results.append((seconds, *error(picture, judge), error(picture, common)[0]))
+    return {label: summary(own, references.get(label), common, label in seeded) for label, own in runs.items()}
+
+
+def summary(runs: dict[int, list], reference: Reference | None, common: Reference, counts: bool) -> Measured:
+    """The medians of a series; `counts` says whether its seconds grow with its samples, so that a start can be found."""
+    medians = {samples: np.median(results, axis=0).tolist() for samples, results in runs.items()}
+    start = start_of(list(medians), [row[0] for row in medians.values()]) if counts else 0.0
+    points = [Point(samples, row[0] - start, *row[1:]) for samples, row in medians.items()]
+    if reference is None:
+        return Measured(points, start, None, float("nan"), float("nan"))
+    same = reference is common
+    difference = 0.0 if same else error(reference.mean, common, reference.noise)[0]
+    return Measured(points, start, reference, difference, float(reference.mean.mean() / common.mean.mean()))
