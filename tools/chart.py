@@ -75,19 +75,27 @@ def physics_words(label: str, measured: Measured, against: str, ours: Measured) 
     if measured.reference is None:
         best = min(point.common for point in measured.points)
         return f"{label} takes no seed and is judged by the converged picture of {against}; its best point is {chart_words.percent(best)} off."
-    words = f"The converged picture of {label} differs from that of {against} by {chart_words.percent(measured.difference)}"
+    words = f"The converged picture of {label} differs from that of {against} by {floor(measured)}"
     if measured.difference > SAME:
         return f"{words} (brightness {measured.brightness:.3f} x), so only its own picture judges it."
     theirs, mine = curve(measured, "common"), curve(ours, "common")
-    error = chart_words.level_for(mine, theirs)
+    error = chart_words.levels_for(mine, theirs)[0]
     ratio, sure = chart_words.ratio_at(error, mine, theirs)
     note = "" if sure == "measured" else ", extrapolated"
     return f"{words}; judged by the latter alone: {chart_words.times(ratio)} to {chart_words.percent(error)}{note}."
 
 
+def short(label: str) -> str:
+    return label.removeprefix("Abbe, ")
+
+
+def floor(measured: Measured) -> str:
+    return chart_words.percent(measured.difference) if measured.difference > 0.0005 else "less than 0.05 %"
+
+
 def model_words(label: str, measured: Measured, against: str) -> str:
-    floor = chart_words.percent(measured.difference) if measured.difference > 0.0005 else "less than 0.05 %"
-    return f"{label}: converged, it is {floor} off {against}; its best point is {chart_words.percent(min(p.error for p in measured.points))} off."
+    best = chart_words.percent(min(point.error for point in measured.points))
+    return f"{label}: converged, it is {floor(measured)} off {against}; its best point is {best} off."
 
 
 def words_for(chart: Chart, found: dict[str, Measured]) -> list[str]:
@@ -96,8 +104,7 @@ def words_for(chart: Chart, found: dict[str, Measured]) -> list[str]:
     ours = found[first]
     words = []
     for label in others:
-        biased = bool(chart.common) or found[label].reference is None
-        words.append(chart_words.compare(first, curve(ours), label, curve(found[label]), unbiased=not biased))
+        words.append(chart_words.compare(first, curve(ours), label, curve(found[label])))
     for label in others:
         if chart.common:
             words.append(model_words(label, found[label], first))
@@ -109,8 +116,12 @@ def words_for(chart: Chart, found: dict[str, Measured]) -> list[str]:
 def panel_for(chart: Chart, found: dict[str, Measured]) -> chart_draw.Panel:
     renderers = {one.label: one.renderer for one in chart.series}
     first, *others = found
-    curves = {label: curve(found[label]) for label in others if found[label].reference is not None}
-    finding = chart_words.title_for(first, curve(found[first]), curves, unbiased=not chart.common)
+    own = all(renderers[label] == "abbe" for label in others)
+    judged = [label for label in others if found[label].reference is not None and (own or renderers[label] != "abbe")]
+    curves = {label: curve(found[label]) for label in judged}
+    finding = chart_words.title_for(first, curve(found[first]), curves)
+    if chart.common and len(others) > 1:
+        finding = "Converged, off by: " + ", ".join(f"{short(label)} {floor(found[label])}" for label in others)
     lines = [chart_draw.Line(label, renderers[label], curve(measured)) for label, measured in found.items()]
     return chart_draw.Panel(chart.title, finding, lines)
 
@@ -175,7 +186,6 @@ def main() -> None:
     arguments = parser.parse_args()
     profile = chart_scenes.QUICK if arguments.quick else chart_scenes.FULL
     charts = [chart for chart in chart_scenes.CHARTS if not arguments.scene or chart.name in arguments.scene]
-    charts = [chart for chart in charts if not arguments.only or arguments.only != ["abbe"] or len(chart.series) > 1]
     versions, missing = found_versions(charts)
     for name, words in versions.items():
         print(f"{name}: {words}")

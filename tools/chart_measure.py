@@ -53,7 +53,7 @@ def error(picture: np.ndarray, reference: Reference, noise: np.ndarray | float =
     """Relative and absolute RMS error against a reference; `noise` is the square of what the picture's own counts for."""
     squared = (picture - reference.mean) ** 2 - reference.noise - noise
     relative = squared / (reference.mean**2 + 0.01)
-    return float(np.sqrt(max(relative.mean(), 0))), float(np.sqrt(max(squared.mean(), 0)))
+    return float(np.sqrt(max(np.nanmean(relative), 0))), float(np.sqrt(max(np.nanmean(squared), 0)))
 
 
 def start_of(samples: list[int], seconds: list[float]) -> float:
@@ -100,4 +100,4 @@ def summary(runs: dict[int, list], reference: Reference | None, common: Referenc
         return Measured(points, start, None, float("nan"), float("nan"))
     same = reference is common
     difference = 0.0 if same else error(reference.mean, common, reference.noise)[0]
-    return Measured(points, start, reference, difference, float(reference.mean.mean() / common.mean.mean()))
+    return Measured(points, start, reference, difference, float(np.nanmean(reference.mean) / np.nanmean(common.mean)))

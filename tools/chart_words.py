@@ -26,11 +26,9 @@ def falling(curve: Curve) -> Curve:
     return kept
 
 
-def seconds_to(error: float, curve: Curve, unbiased: bool = True) -> tuple[float, str]:
-    """Seconds to an error and whether that is measured, extrapolated or never reached."""
+def seconds_to(error: float, curve: Curve) -> tuple[float, str]:
+    """Seconds to an error and whether that is measured or extrapolated."""
     curve = falling(curve)
-    if not curve:
-        return math.nan, "never"
     for (t0, e0), (t1, e1) in pairwise(curve):
         if e1 <= error <= e0:
             share = math.log(error / e0) / math.log(e1 / e0)
@@ -38,25 +36,31 @@ def seconds_to(error: float, curve: Curve, unbiased: bool = True) -> tuple[float
     end = curve[0] if error >= curve[0][1] else curve[-1]
     if math.isclose(error, end[1]):
         return end[0], "measured"
-    if error < end[1] and not unbiased:
-        return math.inf, "never"
     return end[0] * (end[1] / error) ** 2, "extrapolated"
 
 
 def crossings(first: Curve, second: Curve) -> list[tuple[float, float]]:
-    """Errors and seconds at which both take equally long, where both are measured; the largest error first."""
+    """Errors and seconds at which one overtakes the other, where both are measured; the largest error first.
+
+    Lines that only touch do not count: on either side each must take more than a tie longer than the other somewhere."""
     first, second = falling(first), falling(second)
     if min(len(first), len(second)) < 2:
         return []
     low, high = max(first[-1][1], second[-1][1]), min(first[0][1], second[0][1])
     knots = sorted({low, high, *(e for _, e in first + second if low < e < high)}, reverse=True)
     gap = lambda e: math.log(seconds_to(e, first)[0] / seconds_to(e, second)[0])  # noqa: E731
+    clear = [(error, gap(error)) for error in knots if abs(gap(error)) > math.log(TIE)]
     found = []
-    for high, low in pairwise(knots):
-        a, b = gap(high), gap(low)
-        if a * b < 0:
-            error = math.exp(math.log(high) + a / (a - b) * math.log(low / high))
-            found.append((error, seconds_to(error, first)[0]))
+    for (early, before), (late, after) in pairwise(clear):
+        if before * after > 0:
+            continue
+        inside = [error for error in knots if late <= error <= early]
+        for high, low in pairwise(inside):
+            a, b = gap(high), gap(low)
+            if a * after <= 0 <= b * after:
+                error = math.exp(math.log(high) + a / (a - b) * math.log(low / high)) if a != b else low
+                found.append((error, seconds_to(error, first)[0]))
+                break
     return found
 
 
@@ -72,55 +76,52 @@ def rank(ratio: float) -> str:
     return "ahead" if ratio < 1 / TIE else "behind" if ratio > TIE else "a tie"
 
 
-def level_for(first: Curve, second: Curve) -> float:
-    """The smallest round error that both reach in what was measured; else the one just above what one of them reaches."""
+def levels_for(first: Curve, second: Curve) -> list[float]:
+    """The smallest and the largest round error that both reach in what was measured; without one, where they come closest."""
     ends = [falling(curve) for curve in (first, second)]
     low, high = max(curve[-1][1] for curve in ends), min(curve[0][1] for curve in ends)
     if both := [level for level in LEVELS if low <= level <= high]:
-        return min(both)
+        return sorted({min(both), max(both)})
     if low <= high:
-        return low
-    return min((level for level in LEVELS if level >= low), default=low)
+        return [low]
+    return [min((level for level in LEVELS if level >= low), default=low)]
 
 
-def ratio_at(error: float, first: Curve, second: Curve, unbiased: bool = True) -> tuple[float, str]:
+def ratio_at(error: float, first: Curve, second: Curve) -> tuple[float, str]:
     """How many times the second's seconds the first takes, and how sure that is."""
-    (ours, sure), (theirs, also) = seconds_to(error, first, unbiased), seconds_to(error, second, unbiased)
-    if "never" in (sure, also):
-        return math.nan, "never"
+    (ours, sure), (theirs, also) = seconds_to(error, first), seconds_to(error, second)
     return ours / theirs, "extrapolated" if "extrapolated" in (sure, also) else "measured"
 
 
-def compare(name: str, ours: Curve, other: str, theirs: Curve, unbiased: bool = True) -> str:
+def compare(name: str, ours: Curve, other: str, theirs: Curve) -> str:
     """Times to an equal error, and where one overtakes the other."""
     if not falling(ours) or not falling(theirs):
         return f"{name} and {other} cannot be compared: the error of one is below the noise of the reference."
-    error = level_for(ours, theirs)
-    seconds = [seconds_to(error, curve, unbiased) for curve in (ours, theirs)]
-    for (_, sure), slower in zip(seconds, (name, other), strict=True):
-        if sure == "never":
-            return f"{slower} does not come down to {percent(error)}."
-    ratio, sure = ratio_at(error, ours, theirs, unbiased)
+    error, *coarser = levels_for(ours, theirs)
+    seconds = [seconds_to(error, curve) for curve in (ours, theirs)]
+    ratio, sure = ratio_at(error, ours, theirs)
     figures = " for ".join(f"{value:.2g} s" for value, _ in seconds)
     note = "" if sure == "measured" else ", extrapolated"
-    words = f"To {percent(error)} {name} takes {times(ratio)} the CPU time of {other} ({figures}{note}): {rank(ratio)}."
+    words = f"To {percent(error)} {name} takes {times(ratio)} the CPU time of {other} ({figures}{note}): {rank(ratio)}"
+    for level in coarser:
+        words += f"; to {percent(level)} {times(ratio_at(level, ours, theirs)[0])}"
+    words += "."
     for at, when in crossings(ours, theirs):
         better = name if ratio_at(at * 0.98, ours, theirs)[0] < 1 else other
         words += f" They cross at {percent(at)} and {when:.2g} s; below that error {better} is faster."
     return words
 
 
-def title_for(name: str, ours: Curve, others: dict[str, Curve], unbiased: bool = True) -> str:
+def title_for(name: str, ours: Curve, others: dict[str, Curve]) -> str:
     """One line: the most and the least of the time of the others that the first takes."""
     ratios = {}
     for other, curve in others.items():
         if falling(ours) and falling(curve):
-            error = level_for(ours, curve)
-            ratio, sure = ratio_at(error, ours, curve, unbiased)
-            if sure != "never":
-                ratios[other] = (ratio, error)
+            error = levels_for(ours, curve)[0]
+            ratios[other] = ratio_at(error, ours, curve)[0], error
     if not ratios:
         return f"{name} alone"
     ends = sorted(ratios, key=lambda other: ratios[other][0])
-    said = [f"{times(ratios[end][0])} the time of {end} to {percent(ratios[end][1])}" for end in dict.fromkeys((ends[0], ends[-1]))]
-    return f"{name} takes " + " and ".join(said)
+    said = (f"{times(ratio)} the time of {other} to {percent(error)}" for other, (ratio, error) in
+            ((other, ratios[other]) for other in dict.fromkeys((ends[0], ends[-1]))))  # fmt: skip
+    return f"{name} takes " + ", ".join(said)

@@ -50,7 +50,14 @@ class Renderer:
         session.Stop()
         picture = np.zeros((film["height"], film["width"], 3), np.float32)
         session.GetFilm().GetOutputFloat(self.luxcore.FilmOutputType.RGB, picture)
-        return np.roll(picture[::-1], -1, axis=0).astype(np.float64)  # without a filter its rows lie one too low
+        return upright(picture)
+
+
+def upright(picture: np.ndarray) -> np.ndarray:
+    """The top row first. LuxCore's rows lie one too high without a filter; the last one, which it lacks, holds no numbers."""
+    result = np.roll(picture[::-1], -1, axis=0).astype(np.float64)
+    result[-1] = np.nan
+    return result
 
 
 def properties(luxcore, values: dict):
@@ -80,13 +87,15 @@ def luxcore_material(name: str, entry: dict) -> dict:
 
 def luxcore_scene(luxcore, path: Path, flat_lamp: bool):
     scene = read(path)
-    camera = scene["camera"]
+    camera, film = scene["camera"], scene["film"]
+    wider = max(film["width"] / film["height"], 1.0)  # it measures the view along the longer side
+    half = np.tan(np.radians(camera["vertical_fov"]) / 2) * wider
     values = {
         "scene.camera.type": "perspective",
         "scene.camera.lookat.orig": camera["position"],
         "scene.camera.lookat.target": camera["look_at"],
         "scene.camera.up": camera.get("up", [0, 1, 0]),
-        "scene.camera.fieldofview": camera["vertical_fov"],
+        "scene.camera.fieldofview": float(2 * np.degrees(np.arctan(half))),
         "scene.camera.autofocus.enable": False,
     }
     if "near" in camera:
