@@ -6,9 +6,10 @@
     python tools/chart.py --scene cornell --quick
     python tools/chart.py --only abbe --quick    # Abbe's own series alone
 
-Writes into target/chart a PNG and an SVG for each chart, overview.png of the field, chart.csv and chart.json, and prints what
-the charts say in words. tools/chart_scenes.py says what is charted, tools/chart_measure.py what the error is and what counts
-as time. Every renderer runs on one thread; those of Python packages are read from the same scene file by tools/peers_*.py.
+Writes into target/chart a PNG and an SVG for each chart, overview.png of the field, chart.csv and chart.json, and
+prints what the charts say in words. tools/chart_scenes.py says what is charted, tools/chart_measure.py what the error
+is and what counts as time. Every renderer runs on one thread and reads the same scene file, the others by way of
+tools/peers_*.py.
 """
 
 import argparse
@@ -27,7 +28,7 @@ import chart_scenes
 import chart_words
 import render
 from chart_measure import Measured, measure
-from chart_scenes import Chart, Profile, Series
+from chart_scenes import Chart, Profile
 
 SAME = 0.02  # converged pictures that differ by less show the same physics
 OVERVIEW = ("cornell", "smallpt", "caustic", "mesh")
@@ -73,8 +74,8 @@ def curve(measured: Measured, key: str = "error") -> chart_words.Curve:
 def physics_words(label: str, measured: Measured, against: str, ours: Measured) -> str:
     """How a converged picture differs from the common one, and what the common one would say."""
     if measured.reference is None:
-        best = min(point.common for point in measured.points)
-        return f"{label} takes no seed and is judged by the converged picture of {against}; its best point is {chart_words.percent(best)} off."
+        best = chart_words.percent(min(point.common for point in measured.points))
+        return f"{label} takes no seed and is judged by the picture of {against}; its best point is {best} off."
     words = f"The converged picture of {label} differs from that of {against} by {floor(measured)}"
     if measured.difference > SAME:
         return f"{words} (brightness {measured.brightness:.3f} x), so only its own picture judges it."
@@ -155,7 +156,9 @@ def write_data(out: Path, versions: dict, made_by: str, records: list[dict]) -> 
         rows.writerow(("chart", "series", "samples", "cpu_seconds", "error", "rms", "error_against_common"))
         for one in records:
             for series in one["series"]:
-                rows.writerows((one["name"], series["label"], *map(rounded, point.values())) for point in series["points"])
+                rows.writerows(
+                    (one["name"], series["label"], *map(rounded, point.values())) for point in series["points"]
+                )
     data = {"versions": versions, "made_by": made_by, "scenes": records}
     (out / "chart.json").write_text(json.dumps(data, indent=1, default=str) + "\n", "utf-8")
 
@@ -178,10 +181,10 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     names = [chart.name for chart in chart_scenes.CHARTS]
     parser.add_argument("--scene", choices=names, action="append", help="only this chart; may be repeated")
-    parser.add_argument("--only", choices=chart_renderers.NAMES, action="append", help="only this renderer; may be repeated")
+    parser.add_argument("--only", choices=chart_renderers.NAMES, action="append", help="only this one; may be repeated")
     parser.add_argument("--quick", action="store_true", help="small pictures, fewer samples, three repeats")
-    parser.add_argument("--list", action="store_true", help="say which renderers are installed, and how to get the others")
-    parser.add_argument("--pictures", action="store_true", help="also write each converged picture, to look at side by side")
+    parser.add_argument("--list", action="store_true", help="say what is installed, and how to get the rest")
+    parser.add_argument("--pictures", action="store_true", help="also write each converged picture")
     parser.add_argument("--out", type=Path, default=render.ROOT / "target/chart", help="folder for what is written")
     arguments = parser.parse_args()
     profile = chart_scenes.QUICK if arguments.quick else chart_scenes.FULL
@@ -212,7 +215,8 @@ def main() -> None:
     if wanted := [panels[name] for name in OVERVIEW if name in panels]:
         chart_draw.draw(wanted, arguments.out / "overview", note, columns=min(2, len(wanted)), dpi=80, svg=False)
     write_data(arguments.out, versions, made_by, records)
-    print(f"\nwrote {len(records)} charts, chart.csv and chart.json into {arguments.out} in {time.monotonic() - begun:.0f} s")
+    took = time.monotonic() - begun
+    print(f"\nwrote {len(records)} charts, chart.csv and chart.json into {arguments.out} in {took:.0f} s")
 
 
 if __name__ == "__main__":

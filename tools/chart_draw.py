@@ -100,7 +100,9 @@ def paint(axes, panel: Panel, size: float) -> None:
         axes.spines[side].set_visible(False)
     slope = np.array([low[0] / 1.4, high[0] * 1.4])
     for start in np.geomspace(low[1] / 30, high[1] * 30, 14):
-        axes.plot(slope, start * np.sqrt(slope[0] / slope), color="0.72", linewidth=0.6, linestyle=(0, (1, 3)), zorder=1)
+        axes.plot(
+            slope, start * np.sqrt(slope[0] / slope), color="0.72", linewidth=0.6, linestyle=(0, (1, 3)), zorder=1
+        )
     to_axes = lambda point: axes.transAxes.inverted().transform(axes.transData.transform(point))  # noqa: E731
     lines, looks = panel.lines, styles(panel.lines)
     ends = []
@@ -112,7 +114,15 @@ def paint(axes, panel: Panel, size: float) -> None:
     right = 1.03
     heights = spread([float(y) for _, y in ends], gap, gap / 2, 1 - gap / 2)
     for line, look, (x, y), height in zip(lines, looks, ends, heights, strict=True):
-        axes.plot([x + 0.008, right - 0.012], [y, height], color=look["color"], linewidth=0.6, alpha=0.7, transform=axes.transAxes, clip_on=False)
+        axes.plot(
+            [x + 0.008, right - 0.012],
+            [y, height],
+            color=look["color"],
+            linewidth=0.6,
+            alpha=0.7,
+            transform=axes.transAxes,
+            clip_on=False,
+        )
         weight = "bold" if look["linewidth"] > 2 else "normal"
         words = {"color": look["color"], "fontsize": size, "va": "center", "fontweight": weight}
         axes.text(right, height, line.label, transform=axes.transAxes, **words)
@@ -125,7 +135,9 @@ def draw(panels: list[Panel], out: Path, note: str, columns: int = 1, dpi: int =
     rows = -(-len(panels) // columns)
     size = 10 if columns == 1 else 8.5
     figure = Figure(figsize=(8.6 if columns == 1 else 6.0 * columns, (5.4 if columns == 1 else 4.1) * rows))
-    figure.subplots_adjust(*((0.09, 0.13, 0.75, 0.87) if columns == 1 else (0.06, 0.085, 0.885, 0.93)), wspace=0.46, hspace=0.36)
+    figure.subplots_adjust(
+        *((0.09, 0.13, 0.75, 0.87) if columns == 1 else (0.06, 0.085, 0.885, 0.93)), wspace=0.46, hspace=0.36
+    )
     for number, panel in enumerate(panels):
         axes = figure.add_subplot(rows, columns, number + 1)
         paint(axes, panel, size)

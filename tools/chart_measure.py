@@ -2,9 +2,11 @@
 
     measured = measure(renderers, chart, profile)       # label -> Measured
 
-The error is the root of the mean of (x - r)^2 / (r^2 + 0.01) over pixels and channels of linear Rec.709, unclamped, box
-filter; RMS is that of x - r. r is a converged picture of two halves of other seeds, whose difference tells its noise,
-which is subtracted. What a renderer takes before its first sample is found from its shortest and its longest run and told apart.
+The error is the root of the mean of (x - r)^2 / (r^2 + 0.01) over pixels and channels of linear Rec.709, unclamped,
+box filter; RMS is that of x - r. r is a converged picture of two halves of other seeds, whose difference tells its
+noise, which is subtracted. Seconds are user and system time: of the whole process, or, where a renderer lives in a
+Python process, of rendering there. What is taken before the first sample is found from the shortest and the longest
+run and told apart.
 """
 
 import os
@@ -12,6 +14,7 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import NamedTuple
 
 import numpy as np
+
 from chart_scenes import Chart, Profile
 
 HALVES = (10_000, 20_000)
@@ -35,7 +38,7 @@ class Reference(NamedTuple):
 
 
 class Measured(NamedTuple):
-    """A series: seconds are without `start`; how its converged picture differs from the common one, and its brightness."""
+    """A series: seconds are without `start`; how its converged picture differs from the common one."""
 
     points: list[Point]
     start: float
@@ -50,7 +53,7 @@ def reference_of(halves: list[np.ndarray]) -> Reference:
 
 
 def error(picture: np.ndarray, reference: Reference, noise: np.ndarray | float = 0.0) -> tuple[float, float]:
-    """Relative and absolute RMS error against a reference; `noise` is the square of what the picture's own counts for."""
+    """Relative and absolute RMS error against a reference; `noise` is the square of the picture's own."""
     squared = (picture - reference.mean) ** 2 - reference.noise - noise
     relative = squared / (reference.mean**2 + 0.01)
     return float(np.sqrt(max(np.nanmean(relative), 0))), float(np.sqrt(max(np.nanmean(squared), 0)))
@@ -92,7 +95,7 @@ def measure(renderers: dict, chart: Chart, profile: Profile) -> dict[str, Measur
 
 
 def summary(runs: dict[int, list], reference: Reference | None, common: Reference, counts: bool) -> Measured:
-    """The medians of a series; `counts` says whether its seconds grow with its samples, so that a start can be found."""
+    """The medians of a series; `counts`: its seconds grow with its samples, so that a start can be found."""
     medians = {samples: np.median(results, axis=0).tolist() for samples, results in runs.items()}
     start = start_of(list(medians), [row[0] for row in medians.values()]) if counts else 0.0
     points = [Point(samples, row[0] - start, *row[1:]) for samples, row in medians.items()]

@@ -1,4 +1,4 @@
-"""The renderers that tools/chart.py compares: what is installed, and a picture with its processor seconds from any of them.
+"""The renderers that tools/chart.py compares: what is installed, and a picture and its processor seconds from any.
 
     renderer = open_renderer(series, Path("scene.toml"), folder)
     picture, seconds = renderer.run(samples=64, seed=1)
@@ -8,24 +8,29 @@ import glob
 import importlib.metadata
 import importlib.util
 import os
-import resource
+import re
 import shutil
 import subprocess
 import sys
-import threading
 import tomllib
 from pathlib import Path
 
 import numpy as np
+
 import peers_povray
 import render
 import smallpt_reference
 
 TOOLS = Path(__file__).resolve().parent
 PACKAGES = {"mitsuba": "mitsuba", "luxcore": "pyluxcore", "cycles": "bpy"}
-NAMES = {"abbe": "Abbe", "smallpt": "smallpt", "mitsuba": "Mitsuba 3", "luxcore": "LuxCore", "cycles": "Blender Cycles"}
-NAMES["povray"] = "POV-Ray"
-LLVM = ("/usr/lib/*/libLLVM*.so*", "/usr/lib/libLLVM*.so*", "/usr/lib/llvm-*/lib/libLLVM*.so*", "/opt/homebrew/opt/llvm/lib/libLLVM.dylib")
+NAMES = {"abbe": "Abbe", "smallpt": "smallpt", "mitsuba": "Mitsuba 3", "luxcore": "LuxCore"}
+NAMES |= {"cycles": "Blender Cycles", "povray": "POV-Ray"}
+LLVM = (
+    "/usr/lib/*/libLLVM*.so*",
+    "/usr/lib/libLLVM*.so*",
+    "/usr/lib/llvm-*/lib/libLLVM*.so*",
+    "/opt/homebrew/opt/llvm/lib/libLLVM.dylib",
+)
 
 
 class Missing(Exception):
@@ -41,7 +46,7 @@ def llvm_library() -> str:
     """The file that Mitsuba's llvm variants load: $DRJIT_LIBLLVM_PATH, or the newest that is found."""
     if given := os.environ.get("DRJIT_LIBLLVM_PATH"):
         return given
-    number = lambda path: [int(digits) for digits in "".join(c if c.isdigit() else " " for c in Path(path).name).split()]  # noqa: E731
+    number = lambda path: [int(digits) for digits in re.findall(r"\d+", Path(path).name)]  # noqa: E731
     found = [path for pattern in LLVM for path in glob.glob(pattern) if number(path)]
     if not found:
         raise Missing("Mitsuba's llvm variants need the library LLVM: apt install libllvm19, or set DRJIT_LIBLLVM_PATH")

@@ -1,10 +1,10 @@
 """What a chart says, in words computed from its points: who takes how much of the other's time, and where they cross.
 
     seconds_to(0.02, curve)                     # (0.8, "measured")
-    compare("Abbe", ours, "LuxCore", theirs)    # "To 5 % Abbe takes 0.52 x the CPU time of LuxCore (0.21 s for 0.40 s): ahead."
+    compare("Abbe", ours, "LuxCore", theirs)    # "To 5 % Abbe takes 0.52 x the CPU time of LuxCore (..): ahead."
 
-A curve is a list of (seconds, error), seconds ascending. Between the points it is a line in log-log. Beyond the last one
-an unbiased error falls as one over the root of the time, which is called extrapolated.
+A curve is a list of (seconds, error), seconds ascending. Between the points it is a line in log-log. Beyond the ends an
+error falls as one over the root of the time, which is called extrapolated. Within a factor of 1.2 it is a tie.
 """
 
 import math
@@ -42,7 +42,7 @@ def seconds_to(error: float, curve: Curve) -> tuple[float, str]:
 def crossings(first: Curve, second: Curve) -> list[tuple[float, float]]:
     """Errors and seconds at which one overtakes the other, where both are measured; the largest error first.
 
-    Lines that only touch do not count: on either side each must take more than a tie longer than the other somewhere."""
+    Lines that only touch do not count: on either side one must somewhere take longer by more than a tie."""
     first, second = falling(first), falling(second)
     if min(len(first), len(second)) < 2:
         return []
@@ -77,7 +77,7 @@ def rank(ratio: float) -> str:
 
 
 def levels_for(first: Curve, second: Curve) -> list[float]:
-    """The smallest and the largest round error that both reach in what was measured; without one, where they come closest."""
+    """The smallest and the largest round error that both reach as measured; without one, where they come closest."""
     ends = [falling(curve) for curve in (first, second)]
     low, high = max(curve[-1][1] for curve in ends), min(curve[0][1] for curve in ends)
     if both := [level for level in LEVELS if low <= level <= high]:

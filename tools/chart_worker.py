@@ -1,10 +1,10 @@
 """One renderer that lives in a Python process, in a process of its own: tools/chart_renderers.py starts it.
 
-    python tools/chart_worker.py mitsuba llvm_ad_rgb scene.toml        # then lines `SAMPLES SEED OUT.npy` on standard input
+    python tools/chart_worker.py mitsuba llvm_ad_rgb scene.toml     # then lines `SAMPLES SEED OUT.npy` on its input
 
-Answers each line with the processor seconds that rendering took, user and system, of all threads; loading the scene does
-not count. What the renderer itself prints goes to standard error. Packages of renderers bring libraries that cannot share
-a process, hence one for each.
+Answers each line with the processor seconds that rendering took, user and system, of all threads; loading the scene
+does not count. What the renderer itself prints goes to standard error. Packages of renderers bring libraries that
+cannot share a process, hence one for each.
 """
 
 import importlib

@@ -10,6 +10,7 @@ import time
 from pathlib import Path
 
 import numpy as np
+
 from peers_scene import parts, read, rgb, shapes, triangles
 
 DEPTH = 64
@@ -54,7 +55,7 @@ class Renderer:
 
 
 def upright(picture: np.ndarray) -> np.ndarray:
-    """The top row first. LuxCore's rows lie one too high without a filter; the last one, which it lacks, holds no numbers."""
+    """The top row first. Without a filter LuxCore's rows lie one too high; the last, which it lacks, is no number."""
     result = np.roll(picture[::-1], -1, axis=0).astype(np.float64)
     result[-1] = np.nan
     return result

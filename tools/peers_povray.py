@@ -2,16 +2,18 @@
 
     command = peers_povray.command(Path("scene.toml"), quality=2, seed=1, folder=Path("out"))
 
-POV-Ray has no path tracer. Lamps become area lights of many points, whose beams fall off as the cosine and the squared distance;
-light between matte surfaces is radiosity, samples of it interpolated, to a limited depth. It takes no seed, so that its
-noise cannot be told from its bias, and only a common reference can judge it. Quality 1 to 4 raises the points of the lamp,
-the rays and density of radiosity and the samples of a pixel. Scenes of quads and meshes, diffuse and emissive, are known.
+POV-Ray has no path tracer. Lamps become area lights of many points, whose beams fall off as the cosine and the
+squared distance; light between matte surfaces is radiosity, samples of it interpolated, to a limited depth. It takes
+no seed, so that its noise cannot be told from its bias, and only a common reference can judge it. Quality, 1 to 4,
+raises the points of the lamp, the rays and the density of radiosity and the samples of a pixel. Only scenes of quads
+and meshes, diffuse and emissive, are written: its photons for caustics are another approximation, left out here.
 """
 
 import subprocess
 from pathlib import Path
 
 import numpy as np
+
 from peers_scene import parts, read, rgb, shapes, triangles
 
 

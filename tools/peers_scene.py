@@ -2,9 +2,9 @@
 
     peers_scene.shapes(peers_scene.read("scene.toml"))      # [(kind, values, material), ..]
 
-Knows what the scenes of tools/chart_scenes.py hold: perspective cameras; quads, spheres and meshes; diffuse, mirror, dielectric
-and emissive materials; an even sky. Spheres above a radius of 1e4, the walls of smallpt, become the squares they stand for;
-`flat_lamp` lets a disc stand for the tip of a huge lamp as well, which every renderer can aim at.
+Knows what the scenes of tools/chart_scenes.py hold: perspective cameras; quads, spheres and meshes; diffuse, mirror,
+dielectric and emissive materials; an even sky. Spheres above a radius of 1e4, the walls of smallpt, become the squares
+they stand for; `flat_lamp` lets a disc stand for the tip of a huge lamp as well, which every renderer can aim at.
 """
 
 import tomllib

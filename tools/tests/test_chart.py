@@ -1,18 +1,23 @@
-"""The chart of speed against accuracy: what it says of curves with known answers, and a tiny one of Abbe and smallpt."""
+"""The chart of speed against accuracy: what it says of curves with known answers, and a tiny one, of Abbe and smallpt.
+
+    python -m pytest tools/tests/test_chart.py      # 3 seconds of one core
+"""
 
 import csv
 import json
 import shutil
+import subprocess
+
+import numpy as np
+import pytest
 
 import chart
 import chart_draw
 import chart_measure
 import chart_scenes
 import chart_words
-import numpy as np
 import peers_povray
 import peers_scene
-import pytest
 import render
 
 
@@ -35,7 +40,9 @@ def test_beyond_the_points_half_the_error_takes_four_times_the_time():
 def test_a_biased_curve_is_compared_no_further_down_than_it_comes():
     ours, stuck = unbiased(0.01, (1, 16, 256, 4096)), [(1.0, 0.3), (4.0, 0.12), (16.0, 0.121)]
     assert chart_words.falling(stuck) == stuck[:2]
-    assert chart_words.compare("A", ours, "B", stuck).startswith("To 20 % A takes 0.12 x")
+    assert chart_words.compare("A", ours, "B", stuck).startswith(
+        "To 20 % A takes 0.14 x the CPU time of B (0.25 s for 1.8 s)"
+    )
 
 
 def test_a_curve_twice_as_slow_is_said_to_take_twice_the_time_at_both_ends():
@@ -91,9 +98,8 @@ def test_every_series_of_ours_is_a_scene_that_the_renderer_accepts(one, tmp_path
         scene = chart_scenes.write_scene(one._replace(bumps=one.bumps and (6, 6)), series, tmp_path / f"{number}.toml")
         size = peers_scene.read(scene)["film"]
         assert (size["width"], size["height"]) == one.size
-        run = chart.chart_renderers.Program.__new__(chart.chart_renderers.Abbe)
-        run.label, run.command, run.picture = series.label, lambda *_, path=scene: [render.binary(), "--check", path], int
-        run.run(1, 1)
+        run = subprocess.run([render.binary(), "--check", scene], capture_output=True, text=True, check=False)
+        assert run.returncode == 0, f"{series.label}: {run.stderr}"
 
 
 def test_the_lamp_of_pov_ray_sends_what_ours_sends():
