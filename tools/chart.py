@@ -17,6 +17,7 @@ import csv
 import json
 import os
 import platform
+import resource
 import sys
 import tempfile
 import time
@@ -177,6 +178,12 @@ def write_picture(out: Path, chart: Chart, found: dict[str, Measured]) -> None:
             imsave(out / f"{chart.name}-{name}.png", linear ** (1 / 2.2))
 
 
+def processor_seconds() -> float:
+    """Of this process and of the renderers that have ended."""
+    usages = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
+    return sum(usage.ru_utime + usage.ru_stime for usage in usages)
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     names = [chart.name for chart in chart_scenes.CHARTS]
@@ -215,8 +222,8 @@ def main() -> None:
     if wanted := [panels[name] for name in OVERVIEW if name in panels]:
         chart_draw.draw(wanted, arguments.out / "overview", note, columns=min(2, len(wanted)), dpi=80, svg=False)
     write_data(arguments.out, versions, made_by, records)
-    took = time.monotonic() - begun
-    print(f"\nwrote {len(records)} charts, chart.csv and chart.json into {arguments.out} in {took:.0f} s")
+    took = f"{time.monotonic() - begun:.0f} s, {processor_seconds():.0f} s of processor time"
+    print(f"\nwrote {len(records)} charts, chart.csv and chart.json into {arguments.out} in {took}")
 
 
 if __name__ == "__main__":

@@ -14,7 +14,6 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import NamedTuple
 
 import numpy as np
-
 from chart_scenes import Chart, Profile
 
 HALVES = (10_000, 20_000)

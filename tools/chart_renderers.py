@@ -16,7 +16,6 @@ import tomllib
 from pathlib import Path
 
 import numpy as np
-
 import peers_povray
 import render
 import smallpt_reference

@@ -9,7 +9,6 @@ import tempfile
 from pathlib import Path
 
 import numpy as np
-
 from peers_scene import parts, read, rgb, shapes, triangles
 
 DEPTH = 1024

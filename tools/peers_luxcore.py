@@ -10,7 +10,6 @@ import time
 from pathlib import Path
 
 import numpy as np
-
 from peers_scene import parts, read, rgb, shapes, triangles
 
 DEPTH = 64

@@ -7,7 +7,6 @@ import zlib
 from pathlib import Path
 
 import numpy as np
-
 from peers_scene import parts, read, rgb, shapes
 
 

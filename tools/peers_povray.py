@@ -13,7 +13,6 @@ import subprocess
 from pathlib import Path
 
 import numpy as np
-
 from peers_scene import parts, read, rgb, shapes, triangles
 
 

@@ -8,16 +8,15 @@ import json
 import shutil
 import subprocess
 
-import numpy as np
-import pytest
-
 import chart
 import chart_draw
 import chart_measure
 import chart_scenes
 import chart_words
+import numpy as np
 import peers_povray
 import peers_scene
+import pytest
 import render
 
 
