@@ -124,7 +124,8 @@ def panel_for(chart: Chart, found: dict[str, Measured]) -> chart_draw.Panel:
     finding = chart_words.title_for(first, curve(found[first]), curves)
     if chart.common and len(others) > 1:
         finding = "Converged, off by: " + ", ".join(f"{short(label)} {floor(found[label])}" for label in others)
-    lines = [chart_draw.Line(label, renderers[label], curve(measured)) for label, measured in found.items()]
+    name = short if set(renderers.values()) == {"abbe"} else str
+    lines = [chart_draw.Line(name(label), renderers[label], curve(measured)) for label, measured in found.items()]
     return chart_draw.Panel(chart.title, finding, lines)
 
 

@@ -3,10 +3,10 @@
     measured = measure(renderers, chart, profile)       # label -> Measured
 
 The error is the root of the mean of (x - r)^2 / (r^2 + 0.01) over pixels and channels of linear Rec.709, unclamped,
-box filter; RMS is that of x - r. r is a converged picture of two halves of other seeds, whose difference tells its
-noise, which is subtracted. Seconds are user and system time: of the whole process, or, where a renderer lives in a
-Python process, of rendering there. What is taken before the first sample is found from the shortest and the longest
-run and told apart.
+box filter; RMS is that of x - r. r is a converged picture of two halves of other seeds; (x - r)^2 is the product of
+the distances from both, which their noise does not raise. Seconds are user and system time: of the whole process, or,
+where a renderer lives in a Python process, of rendering there. What is taken before the first sample is found from
+the shortest and the longest run and told apart.
 """
 
 import os
@@ -30,10 +30,14 @@ class Point(NamedTuple):
 
 
 class Reference(NamedTuple):
-    """A converged picture and the square of its noise, each (height, width, 3)."""
+    """A converged picture as its two halves of other seeds, each (height, width, 3)."""
 
-    mean: np.ndarray
-    noise: np.ndarray
+    first: np.ndarray
+    second: np.ndarray
+
+    @property
+    def mean(self) -> np.ndarray:
+        return (self.first + self.second) / 2
 
 
 class Measured(NamedTuple):
@@ -46,16 +50,23 @@ class Measured(NamedTuple):
     brightness: float
 
 
-def reference_of(halves: list[np.ndarray]) -> Reference:
-    first, second = halves
-    return Reference((first + second) / 2, (first - second) ** 2 / 4)
+def root_mean(squared: np.ndarray) -> float:
+    return float(np.sqrt(max(np.nanmean(squared), 0)))
 
 
-def error(picture: np.ndarray, reference: Reference, noise: np.ndarray | float = 0.0) -> tuple[float, float]:
-    """Relative and absolute RMS error against a reference; `noise` is the square of the picture's own."""
-    squared = (picture - reference.mean) ** 2 - reference.noise - noise
-    relative = squared / (reference.mean**2 + 0.01)
-    return float(np.sqrt(max(np.nanmean(relative), 0))), float(np.sqrt(max(np.nanmean(squared), 0)))
+def weight(reference: Reference) -> np.ndarray:
+    return 1 / (reference.mean**2 + 0.01)
+
+
+def error(picture: np.ndarray, reference: Reference) -> tuple[float, float]:
+    """Relative and absolute RMS error: the product of the distances from both halves, whose noise has nothing in common."""
+    squared = (picture - reference.first) * (picture - reference.second)
+    return root_mean(squared * weight(reference)), root_mean(squared)
+
+
+def difference(one: Reference, common: Reference) -> float:
+    """How far two converged pictures are apart, relative RMS; the halves' noise cancels, also where both share seeds."""
+    return root_mean((one.first - common.first) * (one.second - common.second) * weight(common))
 
 
 def start_of(samples: list[int], seconds: list[float]) -> float:
@@ -65,7 +76,7 @@ def start_of(samples: list[int], seconds: list[float]) -> float:
 
 
 def converged(renderer, samples: int) -> Reference:
-    return reference_of([renderer.run(samples, seed)[0] for seed in HALVES])
+    return Reference(*(renderer.run(samples, seed)[0] for seed in HALVES))
 
 
 def measure(renderers: dict, chart: Chart, profile: Profile) -> dict[str, Measured]:
@@ -100,6 +111,4 @@ def summary(runs: dict[int, list], reference: Reference | None, common: Referenc
     points = [Point(samples, row[0] - start, *row[1:]) for samples, row in medians.items()]
     if reference is None:
         return Measured(points, start, None, float("nan"), float("nan"))
-    same = reference is common
-    difference = 0.0 if same else error(reference.mean, common, reference.noise)[0]
-    return Measured(points, start, reference, difference, float(np.nanmean(reference.mean) / np.nanmean(common.mean)))
+    return Measured(points, start, reference, difference(reference, common), float(np.nanmean(reference.mean) / np.nanmean(common.mean)))

@@ -83,15 +83,15 @@ def cycles(*samples: int, flat_lamp: bool = False) -> Series:
 CHARTS = (
     Chart(
         "models",
-        "Models of color, in the Cornell box with its measured spectra",
-        render.SCENES / "cornell.toml",
-        (32, 32),
+        "Models of color: paint of measured spectra under D65, FL11 and sodium",
+        render.SCENES / "illuminants.toml",
+        (48, 20),
         models(4, 16, 64, 256, first="32 bands"),
         common="Abbe, 32 bands",
     ),
     Chart(
         "dispersion",
-        "Models of color, lamps seen through a prism of N-SF11",
+        "Models of color: white lamps through a prism of N-SF11",
         render.SCENES / "prism.toml",
         (64, 36),
         models(4, 16, 64, first="heroes"),
@@ -206,9 +206,9 @@ def scene_text(chart: Chart, series: Series) -> str:
 def write_scene(chart: Chart, series: Series, path: Path) -> Path:
     """The scene file of a series and what it reads."""
     path.write_text(scene_text(chart, series), "utf-8")
-    textures = path.with_name("textures")
-    if not textures.exists():
-        textures.symlink_to(render.SCENES / "textures")
+    for name in ("textures", "meshes"):
+        if not path.with_name(name).exists():
+            path.with_name(name).symlink_to(render.SCENES / name)
     if chart.bumps and not path.with_name("bumpy.ply").exists():
         peers_scene.write_bumpy_ball(path.with_name("bumpy.ply"), *chart.bumps)
     return path

@@ -74,15 +74,16 @@ def test_the_start_is_found_from_runs_of_two_lengths():
     assert chart_measure.start_of([4, 16], [0.4, 1.7]) == 0
 
 
-def test_the_noise_of_the_reference_and_of_the_picture_is_taken_off_the_error():
+def test_the_noise_of_the_reference_does_not_raise_the_error():
     random = np.random.default_rng(1)
     truth = np.ones((200, 200, 3))
     noisy = lambda sigma: truth + random.normal(0, sigma, truth.shape)  # noqa: E731
-    reference = chart_measure.reference_of([noisy(0.1), noisy(0.1)])
+    reference = chart_measure.Reference(noisy(0.1), noisy(0.1))
     _, rms = chart_measure.error(noisy(0.2), reference)
     assert rms == pytest.approx(0.2, rel=0.02)  # 120 000 samples: 0.3 % for one standard error
-    _, rms = chart_measure.error(noisy(0.2) + 0.05, reference, noise=0.2**2)
-    assert rms == pytest.approx(0.05, rel=0.1)
+    shared = noisy(0.1) - truth
+    brighter = chart_measure.Reference(reference.first + 0.05 + shared, noisy(0.2) + 0.05)
+    assert chart_measure.difference(brighter, reference) == pytest.approx(0.05 / 1.01**0.5, rel=0.05)
 
 
 def test_labels_keep_their_order_and_their_distance_inside_of_the_axes():
