@@ -15,7 +15,8 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 BLUES = ("#0072B2", "#56B4E9", "#004066")
 COLORS = {"mitsuba": ("#D55E00", "#E69F00", "#8c3d00"), "luxcore": ("#009E73",), "cycles": ("#CC79A7",)}
 COLORS |= {"smallpt": ("#000000",), "povray": ("#7a6a00",)}
-MODELS = ("#D55E00", "#E69F00", "#56B4E9", "#009E73", "#0072B2", "#CC79A7")
+MODELS = {"rgb": "#E69F00", "8 bands": "#56B4E9", "12 bands": "#009E73", "16 bands": "#0072B2", "32 bands": "#CC79A7"}
+MODELS |= {"heroes": "#D55E00"}
 MARKERS = ("o", "s", "^", "D", "v", "P")
 
 
@@ -41,12 +42,12 @@ def styles(lines: list[Line]) -> list[dict]:
     seen: dict[str, int] = {}
     result = []
     for number, line in enumerate(lines):
-        palette = MODELS if ours else BLUES if line.renderer == "abbe" else COLORS[line.renderer]
+        palette = BLUES if line.renderer == "abbe" else COLORS[line.renderer]
         place = seen.setdefault(line.renderer, 0)
         seen[line.renderer] += 1
-        first = line.renderer == "abbe" and not ours and place == 0
+        first = line.renderer == "abbe" and place == 0
         result.append({
-            "color": palette[place % len(palette)],
+            "color": MODELS.get(line.label, palette[place % len(palette)]),
             "marker": MARKERS[(number if ours else place) % len(MARKERS)],
             "linewidth": 2.6 if first else 1.5,
             "markersize": 6 if first else 4.5,

@@ -78,11 +78,11 @@ def test_the_noise_of_the_reference_does_not_raise_the_error():
     random = np.random.default_rng(1)
     truth = np.ones((200, 200, 3))
     noisy = lambda sigma: truth + random.normal(0, sigma, truth.shape)  # noqa: E731
-    reference = chart_measure.Reference(noisy(0.1), noisy(0.1))
+    reference = chart_measure.Reference(noisy(0.03), noisy(0.03))
     _, rms = chart_measure.error(noisy(0.2), reference)
     assert rms == pytest.approx(0.2, rel=0.02)  # 120 000 samples: 0.3 % for one standard error
-    shared = noisy(0.1) - truth
-    brighter = chart_measure.Reference(reference.first + 0.05 + shared, noisy(0.2) + 0.05)
+    shared = noisy(0.03) - truth  # as of the same seeds
+    brighter = chart_measure.Reference(reference.first + 0.05 + shared, noisy(0.03) + 0.05)
     assert chart_measure.difference(brighter, reference) == pytest.approx(0.05 / 1.01**0.5, rel=0.05)
 
 
