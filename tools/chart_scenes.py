@@ -123,7 +123,7 @@ CHARTS = (
             abbe("Abbe", 4, 16, 64),
             mitsuba("llvm_ad_rgb", 16, 64, 256, flat_lamp=True),
             mitsuba("scalar_rgb", 4, 16, 64, flat_lamp=True),
-            luxcore(4, 16, 64, flat_lamp=True),
+            luxcore(2, 8, 32, flat_lamp=True),
             cycles(4, 16, 64, flat_lamp=True),
             Series("smallpt", "smallpt", (16, 64, 256)),
         ),
