@@ -72,14 +72,15 @@ def curve(measured: Measured, key: str = "error") -> chart_words.Curve:
     return [(point.cpu_seconds, getattr(point, key)) for point in measured.points]
 
 
-def physics_words(label: str, measured: Measured, against: str, ours: Measured) -> str:
+def physics_words(label: str, measured: Measured, against: str, ours: Measured, flat_lamp: bool) -> str:
     """How a converged picture differs from the common one, and what the common one would say."""
     if measured.reference is None:
         best = chart_words.percent(min(point.common for point in measured.points))
         return f"{label} takes no seed and is judged by the picture of {against}; its best point is {best} off."
     words = f"The converged picture of {label} differs from that of {against} by {floor(measured)}"
     if measured.difference > SAME:
-        return f"{words} (brightness {measured.brightness:.3f} x), so only its own picture judges it."
+        lamp = ", its lamp being a flat disc in place of a sphere's tip" if flat_lamp else ""
+        return f"{words} (brightness {measured.brightness:.3f} x){lamp}, so only its own picture judges it."
     theirs, mine = curve(measured, "common"), curve(ours, "common")
     error = chart_words.levels_for(mine, theirs)[0]
     ratio, sure = chart_words.ratio_at(error, mine, theirs)
@@ -104,6 +105,7 @@ def words_for(chart: Chart, found: dict[str, Measured]) -> list[str]:
     """The chart in sentences: first the comparisons, then what judges them."""
     first, *others = found
     ours = found[first]
+    flat = {one.label for one in chart.series if one.flat_lamp}
     words = []
     for label in others:
         words.append(chart_words.compare(first, curve(ours), label, curve(found[label])))
@@ -111,7 +113,7 @@ def words_for(chart: Chart, found: dict[str, Measured]) -> list[str]:
         if chart.common:
             words.append(model_words(label, found[label], first))
         else:
-            words.append(physics_words(label, found[label], first, ours))
+            words.append(physics_words(label, found[label], first, ours, label in flat))
     return words
 
 
