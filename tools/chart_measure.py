@@ -59,13 +59,13 @@ def weight(reference: Reference) -> np.ndarray:
 
 
 def error(picture: np.ndarray, reference: Reference) -> tuple[float, float]:
-    """Relative and absolute RMS error: the product of the distances from both halves, whose noise has nothing in common."""
+    """Relative and absolute RMS error, by the distances from both halves, whose noise has nothing in common."""
     squared = (picture - reference.first) * (picture - reference.second)
     return root_mean(squared * weight(reference)), root_mean(squared)
 
 
 def difference(one: Reference, common: Reference) -> float:
-    """How far two converged pictures are apart, relative RMS; the halves' noise cancels, also where both share seeds."""
+    """How far two converged pictures are apart, relative RMS; noise cancels, also where both share seeds."""
     return root_mean((one.first - common.first) * (one.second - common.second) * weight(common))
 
 
@@ -111,4 +111,5 @@ def summary(runs: dict[int, list], reference: Reference | None, common: Referenc
     points = [Point(samples, row[0] - start, *row[1:]) for samples, row in medians.items()]
     if reference is None:
         return Measured(points, start, None, float("nan"), float("nan"))
-    return Measured(points, start, reference, difference(reference, common), float(np.nanmean(reference.mean) / np.nanmean(common.mean)))
+    brightness = float(np.nanmean(reference.mean) / np.nanmean(common.mean))
+    return Measured(points, start, reference, difference(reference, common), brightness)
