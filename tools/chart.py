@@ -48,7 +48,7 @@ def found_versions(charts: list[Chart]) -> tuple[dict[str, str], dict[str, str]]
 
 
 def run(chart: Chart, profile: Profile, only: list[str] | None = None) -> dict[str, Measured]:
-    """Every series that can be had; one that fails is told and left out."""
+    """Every series that can be had; one that cannot be opened is told and left out."""
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(temporary)
         renderers = {}
@@ -61,6 +61,9 @@ def run(chart: Chart, profile: Profile, only: list[str] | None = None) -> dict[s
                 renderers[series.label] = chart_renderers.open_renderer(series, scene, folder / str(number))
             except (chart_renderers.Missing, RuntimeError) as words:
                 print(f"{series.label} is left out: {words}", flush=True)
+        if all(isinstance(renderer, chart_renderers.PovRay) for renderer in renderers.values()):
+            print("nothing is left that could be judged by its own converged picture")
+            return {}
         try:
             return measure(renderers, chart, profile)
         finally:

@@ -89,7 +89,7 @@ def measure(renderers: dict, chart: Chart, profile: Profile) -> dict[str, Measur
         longest = [profile.reference * series[label].samples[-1] for label in seeded]
         found = pool.map(converged, (renderers[label] for label in seeded), longest)
         references = dict(zip(seeded, found, strict=True))
-    common = references[chart.common or next(iter(series))]
+    common = references[chart.common if chart.common in references else next(iter(references))]
     runs = {label: {samples: [] for samples in one.samples} for label, one in series.items()}
     for label, one in series.items():
         if one.renderer == "mitsuba":

@@ -22,6 +22,7 @@ import smallpt_reference
 
 TOOLS = Path(__file__).resolve().parent
 PACKAGES = {"mitsuba": "mitsuba", "luxcore": "pyluxcore", "cycles": "bpy"}
+INSTALL = {"mitsuba": "mitsuba==3.9.1", "luxcore": "pyluxcore==2.11.2", "cycles": "bpy==5.0.1 (for Python 3.11)"}
 NAMES = {"abbe": "Abbe", "smallpt": "smallpt", "mitsuba": "Mitsuba 3", "luxcore": "LuxCore"}
 NAMES |= {"cycles": "Blender Cycles", "povray": "POV-Ray"}
 LLVM = (
@@ -67,7 +68,7 @@ def version(renderer: str, variant: str = "") -> str:
         return peers_povray.version()
     package = PACKAGES[renderer]
     if importlib.util.find_spec(package) is None:
-        raise Missing(f"{NAMES[renderer]} is not installed: pip install {package}, into the environment that runs this")
+        raise Missing(f"{NAMES[renderer]} is not installed: pip install {INSTALL[renderer]}")
     number = f"{package} {importlib.metadata.version(package)}"
     return f"{number} with {Path(llvm_library()).name}" if variant.startswith("llvm") else number
 
