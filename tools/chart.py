@@ -128,7 +128,7 @@ def panel_for(chart: Chart, found: dict[str, Measured]) -> chart_draw.Panel:
     curves = {label: curve(found[label]) for label in judged}
     finding = chart_words.title_for(first, curve(found[first]), curves)
     if chart.common and len(others) > 1:
-        finding = "Converged, off by: " + ", ".join(f"{short(label)} {floor(found[label])}" for label in others)
+        finding = f"Converged, off {short(first)} by: " + ", ".join(f"{short(label)} {floor(found[label])}" for label in others)
     name = short if set(renderers.values()) == {"abbe"} else str
     lines = [chart_draw.Line(name(label), renderers[label], curve(measured)) for label, measured in found.items()]
     return chart_draw.Panel(chart.title, finding, lines)
@@ -184,6 +184,11 @@ def write_picture(out: Path, chart: Chart, found: dict[str, Measured]) -> None:
             imsave(out / f"{chart.name}-{name}.png", linear ** (1 / 2.2))
 
 
+def load() -> str:
+    """How busy the machine is before the chart adds its own work."""
+    return f"load average {os.getloadavg()[0]:.1f} before"
+
+
 def processor_seconds() -> float:
     """Of this process and of the renderers that have ended."""
     usages = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
@@ -211,7 +216,7 @@ def main() -> None:
         return
     arguments.out.mkdir(parents=True, exist_ok=True)
     made_by = f"python tools/chart.py {' '.join(sys.argv[1:])}".strip()
-    note = f"{made_by}, medians of {profile.repeats}, {platform.machine()}, {os.cpu_count()} cores, others at work"
+    note = f"{made_by}, medians of {profile.repeats}, {platform.machine()}, {os.cpu_count()} cores, {load()}"
     begun, records, panels = time.monotonic(), [], {}
     for chart in (chart_scenes.scaled(one, profile) for one in charts):
         print(f"\n== {chart.name}: {chart.title}, {chart.size[0]} x {chart.size[1]}", flush=True)
