@@ -81,7 +81,7 @@ def physics_words(label: str, measured: Measured, against: str, ours: Measured, 
         best = chart_words.percent(min(point.common for point in measured.points))
         return f"{label} takes no seed and is judged by the picture of {against}; its best point is {best} off."
     words = f"The converged picture of {label} differs from that of {against} by {floor(measured)}"
-    if measured.difference > SAME:
+    if measured.difference > max(SAME, measured.unseen):
         lamp = ", its lamp being a flat disc in place of a sphere's tip" if flat_lamp else ""
         return f"{words} (brightness {measured.brightness:.3f} x){lamp}, so only its own picture judges it."
     theirs, mine = curve(measured, "common"), curve(ours, "common")
@@ -96,7 +96,10 @@ def short(label: str) -> str:
 
 
 def floor(measured: Measured) -> str:
-    return chart_words.percent(measured.difference) if measured.difference > 0.0005 else "less than 0.05 %"
+    """What a converged picture differs by, or what it could differ by without our seeing it."""
+    if measured.difference > measured.unseen:
+        return chart_words.percent(measured.difference)
+    return f"less than {chart_words.percent(measured.unseen)}"
 
 
 def model_words(label: str, measured: Measured, against: str) -> str:
@@ -128,7 +131,8 @@ def panel_for(chart: Chart, found: dict[str, Measured]) -> chart_draw.Panel:
     curves = {label: curve(found[label]) for label in judged}
     finding = chart_words.title_for(first, curve(found[first]), curves)
     if chart.common and len(others) > 1:
-        finding = f"Converged, off {short(first)} by: " + ", ".join(f"{short(label)} {floor(found[label])}" for label in others)
+        floors = (f"{short(label)} {floor(found[label])}" for label in others)
+        finding = f"Converged, off {short(first)} by: {', '.join(floors)}".replace("less than", "<")
     name = short if set(renderers.values()) == {"abbe"} else str
     lines = [chart_draw.Line(name(label), renderers[label], curve(measured)) for label, measured in found.items()]
     return chart_draw.Panel(chart.title, finding, lines)
@@ -140,8 +144,9 @@ def record(chart: Chart, found: dict[str, Measured], words: list[str]) -> dict:
     series = []
     for label, measured in found.items():
         points = [point._asdict() for point in measured.points]
-        difference = None if measured.reference is None else measured.difference
-        extra = {"start_seconds": measured.start, "difference_of_converged": difference}
+        extra = {"start_seconds": measured.start}
+        if measured.reference is not None:
+            extra |= {"difference_of_converged": measured.difference, "unseen_difference": measured.unseen}
         series.append({"label": label, "kind": kinds[label], **extra, "points": points})
     pictures = {"svg": f"{chart.name}.svg", "png": f"{chart.name}.png"}
     return {"name": chart.name, "title": chart.title, "words": words, "series": series, **pictures}
@@ -228,11 +233,11 @@ def main() -> None:
         panels[chart.name] = panel_for(chart, found)
         chart_draw.draw([panels[chart.name]], arguments.out / chart.name, note)
         records.append(record(chart, found, words))
+        write_data(arguments.out, versions, made_by, records)
         if arguments.pictures:
             write_picture(arguments.out, chart, found)
     if wanted := [panels[name] for name in OVERVIEW if name in panels]:
         chart_draw.draw(wanted, arguments.out / "overview", note, columns=min(2, len(wanted)), dpi=80, svg=False)
-    write_data(arguments.out, versions, made_by, records)
     took = f"{time.monotonic() - begun:.0f} s, {processor_seconds():.0f} s of processor time"
     print(f"\nwrote {len(records)} charts, chart.csv and chart.json into {arguments.out} in {took}")
 

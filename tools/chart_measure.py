@@ -47,6 +47,7 @@ class Measured(NamedTuple):
     start: float
     reference: Reference | None
     difference: float
+    unseen: float  # a difference that noise could show where there is none
     brightness: float
 
 
@@ -64,9 +65,13 @@ def error(picture: np.ndarray, reference: Reference) -> tuple[float, float]:
     return root_mean(squared * weight(reference)), root_mean(squared)
 
 
-def difference(one: Reference, common: Reference) -> float:
-    """How far two converged pictures are apart, relative RMS; noise cancels, also where both share seeds."""
-    return root_mean((one.first - common.first) * (one.second - common.second) * weight(common))
+def difference(one: Reference, common: Reference) -> tuple[float, float]:
+    """How far two converged pictures are apart, relative RMS, and the most that noise alone could show of it.
+
+    The noise of the halves cancels in the mean, also where both pictures share seeds; two standard errors are left."""
+    squared = np.nanmean((one.first - common.first) * (one.second - common.second) * weight(common), axis=-1)
+    pixels = squared[np.isfinite(squared)]
+    return root_mean(pixels), float(np.sqrt(2 * pixels.std() / np.sqrt(pixels.size)))
 
 
 def start_of(samples: list[int], seconds: list[float]) -> float:
@@ -110,6 +115,6 @@ def summary(runs: dict[int, list], reference: Reference | None, common: Referenc
     start = start_of(list(medians), [row[0] for row in medians.values()]) if counts else 0.0
     points = [Point(samples, row[0] - start, *row[1:]) for samples, row in medians.items()]
     if reference is None:
-        return Measured(points, start, None, float("nan"), float("nan"))
+        return Measured(points, start, None, float("nan"), float("nan"), float("nan"))
     brightness = float(np.nanmean(reference.mean) / np.nanmean(common.mean))
-    return Measured(points, start, reference, difference(reference, common), brightness)
+    return Measured(points, start, reference, *difference(reference, common), brightness)

@@ -83,7 +83,10 @@ def test_the_noise_of_the_reference_does_not_raise_the_error():
     assert rms == pytest.approx(0.2, rel=0.02)  # 120 000 samples: 0.3 % for one standard error
     shared = noisy(0.03) - truth  # as of the same seeds
     brighter = chart_measure.Reference(reference.first + 0.05 + shared, noisy(0.03) + 0.05)
-    assert chart_measure.difference(brighter, reference) == pytest.approx(0.05 / 1.01**0.5, rel=0.05)
+    difference, unseen = chart_measure.difference(brighter, reference)
+    assert difference == pytest.approx(0.05 / 1.01**0.5, rel=0.05) and unseen < 0.01
+    difference, unseen = chart_measure.difference(chart_measure.Reference(noisy(0.3), noisy(0.3)), reference)
+    assert difference < 1.5 * unseen < 0.06  # 0.3^2 over the root of 120 000 values, twice, under a root: 2 %
 
 
 def test_labels_keep_their_order_and_their_distance_inside_of_the_axes():
