@@ -237,7 +237,7 @@ def main() -> None:
         if arguments.pictures:
             write_picture(arguments.out, chart, found)
     if wanted := [panels[name] for name in OVERVIEW if name in panels]:
-        chart_draw.draw(wanted, arguments.out / "overview", note, columns=min(2, len(wanted)), dpi=80, svg=False)
+        chart_draw.draw_overview(wanted, arguments.out / "overview", note)
     took = f"{time.monotonic() - begun:.0f} s, {processor_seconds():.0f} s of processor time"
     print(f"\nwrote {len(records)} charts, chart.csv and chart.json into {arguments.out} in {took}")
 

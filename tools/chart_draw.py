@@ -10,6 +10,7 @@ import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+from PIL import Image
 
 # Okabe and Ito 2008, whose colors color-blind eyes tell apart; Abbe's own series are blue.
 BLUES = ("#0072B2", "#56B4E9", "#004066")
@@ -89,8 +90,8 @@ def paint(axes, panel: Panel, size: float) -> None:
     axes.set_yscale("log")
     axes.set_xlim(low[0] / 1.4, high[0] * 1.4)
     axes.set_ylim(low[1] / 1.4, high[1] * 1.4)
-    for axis, words in ((axes.xaxis, seconds), (axes.yaxis, percent)):
-        axis.set_major_locator(LogLocator(10, (1, 2, 5), numticks=30))
+    for axis, words, span in ((axes.xaxis, seconds, high[0] / low[0]), (axes.yaxis, percent, high[1] / low[1])):
+        axis.set_major_locator(LogLocator(10, (1, 2, 5) if span < 100 else (1, 3), numticks=30))
         axis.set_minor_locator(LogLocator(10, range(1, 10), numticks=100))
         axis.set_major_formatter(FuncFormatter(words))
         axis.set_minor_formatter(NullFormatter())
@@ -127,18 +128,36 @@ def paint(axes, panel: Panel, size: float) -> None:
         weight = "bold" if look["linewidth"] > 2 else "normal"
         words = {"color": look["color"], "fontsize": size, "va": "center", "fontweight": weight}
         axes.text(right, height, line.label, transform=axes.transAxes, **words)
-    axes.set_title(f"{panel.title}\n", loc="left", fontsize=size + 2, fontweight="bold")
-    axes.text(0, 1.02, panel.finding, transform=axes.transAxes, fontsize=size - 0.5, color="0.25", va="bottom")
+    above = {"xy": (0, 1), "xycoords": "axes fraction", "textcoords": "offset points", "va": "bottom"}
+    axes.annotate(panel.finding, xytext=(0, 5), fontsize=size - 0.5, color="0.25", **above)
+    height = 8 + 1.25 * size * (panel.finding.count("\n") + 1)
+    axes.annotate(panel.title, xytext=(0, height), fontsize=size + 2, fontweight="bold", **above)
 
 
-def draw(panels: list[Panel], out: Path, note: str, columns: int = 1, dpi: int = 110, svg: bool = True) -> None:
+def draw(panels: list[Panel], out: Path, note: str) -> None:
     """Writes `out` as PNG and SVG."""
+    figure = Figure(figsize=(8.6, 5.4))
+    figure.subplots_adjust(0.09, 0.13, 0.75, 0.87)
+    arrange(figure, panels, 1, 10, note)
+    figure.savefig(out.with_suffix(".png"), dpi=110)
+    with matplotlib.rc_context({"svg.fonttype": "none", "svg.hashsalt": "chart"}):
+        figure.savefig(out.with_suffix(".svg"), metadata={"Date": None})
+
+
+def draw_overview(panels: list[Panel], out: Path, note: str) -> None:
+    """Several panels in two columns as a PNG of few colors, below 150 kB."""
+    rows = -(-len(panels) // 2)
+    figure = Figure(figsize=(12.6, 4.5 * rows))
+    figure.subplots_adjust(0.055, 0.055 + 0.05 / rows, 0.855, 1 - 0.17 / rows, wspace=0.56, hspace=0.45)
+    arrange(figure, [one._replace(finding=one.finding.replace(" %, ", " %,\n")) for one in panels], 2, 9, note)
+    figure.savefig(out.with_suffix(".png"), dpi=80)
+    with Image.open(out.with_suffix(".png")) as image:
+        small = image.convert("RGB").quantize(96)
+    small.save(out.with_suffix(".png"), optimize=True)
+
+
+def arrange(figure: Figure, panels: list[Panel], columns: int, size: float, note: str) -> None:
     rows = -(-len(panels) // columns)
-    size = 10 if columns == 1 else 8.5
-    figure = Figure(figsize=(8.6 if columns == 1 else 6.0 * columns, (5.4 if columns == 1 else 4.1) * rows))
-    figure.subplots_adjust(
-        *((0.09, 0.13, 0.75, 0.87) if columns == 1 else (0.06, 0.085, 0.885, 0.93)), wspace=0.46, hspace=0.36
-    )
     for number, panel in enumerate(panels):
         axes = figure.add_subplot(rows, columns, number + 1)
         paint(axes, panel, size)
@@ -146,7 +165,3 @@ def draw(panels: list[Panel], out: Path, note: str, columns: int = 1, dpi: int =
         if number % columns == 0:
             axes.set_ylabel("relative RMS error", fontsize=size)
     figure.text(0.99, 0.008, note, ha="right", va="bottom", fontsize=size - 2, color="0.45")
-    figure.savefig(out.with_suffix(".png"), dpi=dpi)
-    if svg:
-        with matplotlib.rc_context({"svg.fonttype": "none", "svg.hashsalt": "chart"}):
-            figure.savefig(out.with_suffix(".svg"), metadata={"Date": None})
