@@ -5,6 +5,7 @@
     python tools/chart.py                        # twice the side, four times the samples, five repeats: two hours
     python tools/chart.py --scene cornell --quick
     python tools/chart.py --only abbe --quick    # Abbe's own series alone
+    python tools/chart.py --redraw               # pictures and words of what was measured last
 
 Writes into target/chart a PNG and an SVG for each chart, overview.png of the field, chart.csv and chart.json, and
 prints what the charts say in words. tools/chart_scenes.py says what is charted, tools/chart_measure.py what the error
@@ -15,6 +16,7 @@ tools/peers_*.py.
 import argparse
 import csv
 import json
+import math
 import os
 import platform
 import resource
@@ -28,10 +30,11 @@ import chart_renderers
 import chart_scenes
 import chart_words
 import render
-from chart_measure import Measured, measure
+from chart_measure import Measured, Point, measure
 from chart_scenes import Chart, Profile
 
 SAME = 0.02  # converged pictures that differ by less show the same physics
+CONVERGED = ("difference", "unseen", "brightness")  # what chart.json keeps of a converged picture
 OVERVIEW = ("cornell", "smallpt", "caustic", "mesh")
 
 
@@ -71,19 +74,29 @@ def run(chart: Chart, profile: Profile, only: list[str] | None = None) -> dict[s
                 renderer.close()
 
 
+def takes_no_seed(measured: Measured) -> bool:
+    return math.isnan(measured.difference)
+
+
+def recorded(series: dict) -> Measured:
+    """A series as `record` wrote it."""
+    points = [Point(**point) for point in series["points"]]
+    return Measured(points, series["start_seconds"], None, *(series.get(name, math.nan) for name in CONVERGED))
+
+
 def curve(measured: Measured, key: str = "error") -> chart_words.Curve:
     return [(point.cpu_seconds, getattr(point, key)) for point in measured.points]
 
 
 def physics_words(label: str, measured: Measured, against: str, ours: Measured, flat_lamp: bool) -> str:
     """How a converged picture differs from the common one, and what the common one would say."""
-    if measured.reference is None:
+    if takes_no_seed(measured):
         best = chart_words.percent(min(point.common for point in measured.points))
         return f"{label} takes no seed and is judged by the picture of {against}; its best point is {best} off."
     words = f"The converged picture of {label} differs from that of {against} by {floor(measured)}"
-    if measured.difference > max(SAME, measured.unseen):
+    if measured.difference > SAME:
         lamp = ", its lamp being a flat disc in place of a sphere's tip" if flat_lamp else ""
-        return f"{words} (brightness {measured.brightness:.3f} x){lamp}, so only its own picture judges it."
+        return f"{words}{lamp}, so only its own picture judges it."
     theirs, mine = curve(measured, "common"), curve(ours, "common")
     error = chart_words.levels_for(mine, theirs)[0]
     ratio, sure = chart_words.ratio_at(error, mine, theirs)
@@ -99,6 +112,8 @@ def floor(measured: Measured) -> str:
     """What a converged picture differs by, or what it could differ by without our seeing it."""
     if measured.difference > measured.unseen:
         return chart_words.percent(measured.difference)
+    if measured.difference > SAME:
+        return f"{chart_words.percent(measured.difference)}, which few pixels decide"
     return f"less than {chart_words.percent(measured.unseen)}"
 
 
@@ -127,7 +142,7 @@ def panel_for(chart: Chart, found: dict[str, Measured]) -> chart_draw.Panel:
     renderers = {one.label: one.renderer for one in chart.series}
     first, *others = found
     own = all(renderers[label] == "abbe" for label in others)
-    judged = [label for label in others if found[label].reference is not None and (own or renderers[label] != "abbe")]
+    judged = [label for label in others if not takes_no_seed(found[label]) and (own or renderers[label] != "abbe")]
     curves = {label: curve(found[label]) for label in judged}
     finding = chart_words.title_for(first, curve(found[first]), curves)
     if chart.common and len(others) > 1:
@@ -145,8 +160,8 @@ def record(chart: Chart, found: dict[str, Measured], words: list[str]) -> dict:
     for label, measured in found.items():
         points = [point._asdict() for point in measured.points]
         extra = {"start_seconds": measured.start}
-        if measured.reference is not None:
-            extra |= {"difference_of_converged": measured.difference, "unseen_difference": measured.unseen}
+        if not takes_no_seed(measured):
+            extra |= {name: getattr(measured, name) for name in CONVERGED}
         series.append({"label": label, "kind": kinds[label], **extra, "points": points})
     pictures = {"svg": f"{chart.name}.svg", "png": f"{chart.name}.png"}
     return {"name": chart.name, "title": chart.title, "words": words, "series": series, **pictures}
@@ -189,6 +204,26 @@ def write_picture(out: Path, chart: Chart, found: dict[str, Measured]) -> None:
             imsave(out / f"{chart.name}-{name}.png", linear ** (1 / 2.2))
 
 
+def overview(out: Path, panels: dict[str, chart_draw.Panel], note: str) -> None:
+    if wanted := [panels[name] for name in OVERVIEW if name in panels]:
+        chart_draw.draw_overview(wanted, out / "overview", note)
+
+
+def redraw(out: Path) -> None:
+    """Pictures and words from what was measured before."""
+    data = json.loads((out / "chart.json").read_text("utf-8"))
+    charts = {chart.name: chart for chart in chart_scenes.CHARTS}
+    records, panels = [], {}
+    for one in data["scenes"]:
+        chart, found = charts[one["name"]], {series["label"]: recorded(series) for series in one["series"]}
+        panels[chart.name] = panel_for(chart, found)
+        records.append(record(chart, found, words_for(chart, found)))
+        print(f"\n== {chart.name}: {chart.title}", *records[-1]["words"], sep="\n")
+        chart_draw.draw([panels[chart.name]], out / chart.name, data["made_by"])
+    overview(out, panels, data["made_by"])
+    write_data(out, data["versions"], data["made_by"], records)
+
+
 def load() -> str:
     """How busy the machine is before the chart adds its own work."""
     return f"load average {os.getloadavg()[0]:.1f} before"
@@ -207,6 +242,7 @@ def main() -> None:
     parser.add_argument("--only", choices=chart_renderers.NAMES, action="append", help="only this one; may be repeated")
     parser.add_argument("--quick", action="store_true", help="small pictures, fewer samples, three repeats")
     parser.add_argument("--list", action="store_true", help="say what is installed, and how to get the rest")
+    parser.add_argument("--redraw", action="store_true", help="draw and say chart.json anew; measure nothing")
     parser.add_argument("--pictures", action="store_true", help="also write each converged picture")
     parser.add_argument("--out", type=Path, default=render.ROOT / "target/chart", help="folder for what is written")
     arguments = parser.parse_args()
@@ -219,6 +255,8 @@ def main() -> None:
         print(f"left out: {words}")
     if arguments.list:
         return
+    if arguments.redraw:
+        return redraw(arguments.out)
     arguments.out.mkdir(parents=True, exist_ok=True)
     made_by = f"python tools/chart.py {' '.join(sys.argv[1:])}".strip()
     note = f"{made_by}, medians of {profile.repeats}, {platform.machine()}, {os.cpu_count()} cores, {load()}"
@@ -233,11 +271,10 @@ def main() -> None:
         panels[chart.name] = panel_for(chart, found)
         chart_draw.draw([panels[chart.name]], arguments.out / chart.name, note)
         records.append(record(chart, found, words))
-        write_data(arguments.out, versions, made_by, records)
+        write_data(arguments.out, versions, note, records)
         if arguments.pictures:
             write_picture(arguments.out, chart, found)
-    if wanted := [panels[name] for name in OVERVIEW if name in panels]:
-        chart_draw.draw_overview(wanted, arguments.out / "overview", note)
+    overview(arguments.out, panels, note)
     took = f"{time.monotonic() - begun:.0f} s, {processor_seconds():.0f} s of processor time"
     print(f"\nwrote {len(records)} charts, chart.csv and chart.json into {arguments.out} in {took}")
 

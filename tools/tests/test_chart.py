@@ -133,4 +133,7 @@ def test_a_tiny_chart_is_measured_drawn_and_written(tmp_path, monkeypatch, capsy
     with (tmp_path / "chart.csv").open() as file:
         assert len(list(csv.DictReader(file))) == sum(len(one.samples) for one in series if one.label in names)
     assert (tmp_path / scene["png"]).read_bytes().startswith(b"\x89PNG")
+    monkeypatch.setattr("sys.argv", ["chart.py", "--redraw", "--out", str(tmp_path)])
+    chart.main()
+    assert json.loads((tmp_path / "chart.json").read_text()) == data
     assert "Abbe" in (tmp_path / scene["svg"]).read_text() and (tmp_path / "overview.png").is_file()
