@@ -35,7 +35,7 @@ from chart_scenes import Chart, Profile
 
 SAME = 0.02  # converged pictures that differ by less show the same physics
 CONVERGED = ("difference", "unseen", "brightness")  # what chart.json keeps of a converged picture
-OVERVIEW = ("cornell", "smallpt", "caustic", "mesh")
+OVERVIEW = ("cornell", "smallpt", "mesh", "dispersion")
 
 
 def found_versions(charts: list[Chart]) -> tuple[dict[str, str], dict[str, str]]:
@@ -78,6 +78,10 @@ def takes_no_seed(measured: Measured) -> bool:
     return math.isnan(measured.difference)
 
 
+def wavers(measured: Measured) -> bool:
+    return not takes_no_seed(measured) and not chart_words.steady(curve(measured))
+
+
 def recorded(series: dict) -> Measured:
     """A series as `record` wrote it."""
     points = [Point(**point) for point in series["points"]]
@@ -97,6 +101,8 @@ def physics_words(label: str, measured: Measured, against: str, ours: Measured, 
     if measured.difference > SAME:
         lamp = ", its lamp being a flat disc in place of a sphere's tip" if flat_lamp else ""
         return f"{words}{lamp}, so only its own picture judges it."
+    if wavers(measured) or wavers(ours):
+        return f"{words}."
     theirs, mine = curve(measured, "common"), curve(ours, "common")
     error = chart_words.levels_for(mine, theirs)[0]
     ratio, sure = chart_words.ratio_at(error, mine, theirs)
@@ -129,7 +135,11 @@ def words_for(chart: Chart, found: dict[str, Measured]) -> list[str]:
     flat = {one.label for one in chart.series if one.flat_lamp}
     words = []
     for label in others:
-        words.append(chart_words.compare(first, curve(ours), label, curve(found[label])))
+        unsteady = [] if chart.common else [name for name in (first, label) if wavers(found[name])]
+        if unsteady:
+            words.append(f"{chart_words.unsteady_words(unsteady[0])}, so that nothing is said of {first} and {label}.")
+        else:
+            words.append(chart_words.compare(first, curve(ours), label, curve(found[label])))
     for label in others:
         if chart.common:
             words.append(model_words(label, found[label], first))
@@ -143,8 +153,10 @@ def panel_for(chart: Chart, found: dict[str, Measured]) -> chart_draw.Panel:
     first, *others = found
     own = all(renderers[label] == "abbe" for label in others)
     judged = [label for label in others if not takes_no_seed(found[label]) and (own or renderers[label] != "abbe")]
-    curves = {label: curve(found[label]) for label in judged}
+    curves = {label: curve(found[label]) for label in judged if not wavers(found[label])}
     finding = chart_words.title_for(first, curve(found[first]), curves)
+    if wavers(found[first]):
+        finding = chart_words.unsteady_words(first)
     if chart.common and len(others) > 1:
         floors = (f"{short(label)} {floor(found[label])}" for label in others)
         finding = f"Converged, off {short(first)} by: {', '.join(floors)}".replace("less than", "<")

@@ -69,7 +69,7 @@ def difference(one: Reference, common: Reference) -> tuple[float, float]:
     """How far two converged pictures are apart, relative RMS, and the most that noise alone could show of it.
 
     The noise of the halves cancels in the mean, also where both pictures share seeds; two standard errors are left."""
-    squared = np.nanmean((one.first - common.first) * (one.second - common.second) * weight(common), axis=-1)
+    squared = np.mean((one.first - common.first) * (one.second - common.second) * weight(common), axis=-1)
     pixels = squared[np.isfinite(squared)]
     return root_mean(pixels), float(np.sqrt(2 * pixels.std() / np.sqrt(pixels.size)))
 

@@ -26,6 +26,16 @@ def falling(curve: Curve) -> Curve:
     return kept
 
 
+def steady(curve: Curve) -> bool:
+    """Whether the error falls at least as the fourth root of the time; decided by rare paths it does not."""
+    (t0, e0), (t1, e1) = curve[0], curve[-1]
+    return len(curve) > 1 and min(e0, e1) > 0 and math.log(e1 / e0) <= -0.25 * math.log(t1 / t0)
+
+
+def unsteady_words(name: str) -> str:
+    return f"The error of {name} does not fall steadily with its time here: rare bright paths decide it"
+
+
 def seconds_to(error: float, curve: Curve) -> tuple[float, str]:
     """Seconds to an error and whether that is measured or extrapolated."""
     curve = falling(curve)

@@ -69,6 +69,11 @@ def test_lines_that_weave_within_a_tie_do_not_cross():
     assert chart_words.compare("A", unbiased(1), "B", weaving).count("a tie") == 1
 
 
+def test_an_error_that_rare_paths_decide_is_not_steady():
+    assert chart_words.steady(unbiased(1)) and chart_words.steady([(1.0, 0.5), (16.0, 0.2)])
+    assert not chart_words.steady([(1.0, 0.071), (4.0, 0.085), (16.0, 0.076)])
+
+
 def test_the_start_is_found_from_runs_of_two_lengths():
     assert chart_measure.start_of([4, 16, 64], [0.5 + 4 * 0.1, 2.1, 0.5 + 64 * 0.1]) == pytest.approx(0.5)
     assert chart_measure.start_of([4, 16], [0.4, 1.7]) == 0
