@@ -119,7 +119,7 @@ def floor(measured: Measured) -> str:
     if measured.difference > measured.unseen:
         return chart_words.percent(measured.difference)
     if measured.difference > SAME:
-        return f"{chart_words.percent(measured.difference)}, which few pixels decide"
+        return f"{chart_words.percent(measured.difference)}, which few pixels or noise decide"
     return f"less than {chart_words.percent(measured.unseen)}"
 
 

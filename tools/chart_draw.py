@@ -3,6 +3,7 @@
     draw([panel], Path("cornell"))      # cornell.png and cornell.svg
 """
 
+import textwrap
 from pathlib import Path
 from typing import NamedTuple
 
@@ -15,7 +16,7 @@ from PIL import Image
 # Okabe and Ito 2008, whose colors color-blind eyes tell apart; Abbe's own series are blue.
 BLUES = ("#0072B2", "#56B4E9", "#004066")
 COLORS = {"mitsuba": ("#D55E00", "#E69F00", "#8c3d00"), "luxcore": ("#009E73",), "cycles": ("#CC79A7",)}
-COLORS |= {"smallpt": ("#000000",), "povray": ("#7a6a00",)}
+COLORS |= {"smallpt": ("#000000",), "povray": ("#6b6b6b",)}
 MODELS = {"rgb": "#E69F00", "8 bands": "#56B4E9", "12 bands": "#009E73", "16 bands": "#0072B2", "32 bands": "#CC79A7"}
 MODELS |= {"heroes": "#D55E00"}
 MARKERS = ("o", "s", "^", "D", "v", "P")
@@ -149,10 +150,10 @@ def draw_overview(panels: list[Panel], out: Path, note: str) -> None:
     rows = -(-len(panels) // 2)
     figure = Figure(figsize=(12.6, 4.5 * rows))
     figure.subplots_adjust(0.055, 0.055 + 0.05 / rows, 0.855, 1 - 0.17 / rows, wspace=0.56, hspace=0.45)
-    arrange(figure, [one._replace(finding=one.finding.replace(" %, ", " %,\n")) for one in panels], 2, 9, note)
+    arrange(figure, [one._replace(finding=textwrap.fill(one.finding, 60)) for one in panels], 2, 9, note)
     figure.savefig(out.with_suffix(".png"), dpi=80)
     with Image.open(out.with_suffix(".png")) as image:
-        small = image.convert("RGB").quantize(96)
+        small = image.convert("RGB").quantize(128)
     small.save(out.with_suffix(".png"), optimize=True)
 
 
