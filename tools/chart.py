@@ -1,231 +1,294 @@
-"""Charts error against CPU time on scenes/smallpt.toml: Abbe beside the 99-line program smallpt.
+"""Charts speed against accuracy: Abbe's models and methods, and the renderers that anyone can install beside it.
 
-    python tools/chart.py                  # at most 10 minutes on one core; target/chart/smallpt.png and smallpt.csv
-    python tools/chart.py --quick          # under 90 seconds: a smaller picture, fewer samples
+    python tools/chart.py --list                 # which renderers are there, and how to install the others
+    python tools/chart.py --quick                # every chart, small: under 10 minutes on two cores
+    python tools/chart.py                        # twice the side, four times the samples, five repeats: two hours
+    python tools/chart.py --scene cornell --quick
+    python tools/chart.py --only abbe --quick    # Abbe's own series alone
+    python tools/chart.py --redraw               # pictures and words of what was measured last
 
-Both run on one thread. Each is judged against its own converged picture, rendered with other seeds under the same box
-filter, linear and unclamped, on the pixels that do not see the glass ball; that picture's noise is subtracted. CPU time
-is user and system time of the whole process: starting, reading the scene and writing the file count as well, and the
-run of one sample shows how much that is.
+Writes into target/chart a PNG and an SVG for each chart, overview.png of the field, chart.csv and chart.json, and
+prints what the charts say in words. tools/chart_scenes.py says what is charted, tools/chart_measure.py what the error
+is and what counts as time. Every renderer runs on one thread and reads the same scene file, the others by way of
+tools/peers_*.py.
 """
 
 import argparse
 import csv
+import json
+import math
+import os
+import platform
 import resource
-import subprocess
+import sys
 import tempfile
+import time
 from pathlib import Path
-from typing import NamedTuple
 
-import numpy as np
+import chart_draw
+import chart_renderers
+import chart_scenes
+import chart_words
 import render
-import smallpt_reference
-from matplotlib.figure import Figure
-from smallpt_regions import scene_text, sees_glass
+from chart_measure import Measured, Point, measure
+from chart_scenes import Chart, Profile
 
-REPEATS = 3
-REFERENCE_SEEDS = (101, 102)
-COMPARED = 64
-
-
-class Setting(NamedTuple):
-    """How large the pictures are, and how many samples they take."""
-
-    size: tuple[int, int]
-    samples: tuple[int, ...]
-    half_reference: int
+SAME = 0.02  # converged pictures that differ by less show the same physics
+CONVERGED = ("difference", "unseen", "brightness")  # what chart.json keeps of a converged picture
+OVERVIEW = ("cornell", "smallpt", "mesh", "dispersion")
 
 
-FULL = Setting((256, 192), (4, 16, 64, 256), 256)
-QUICK = Setting((128, 96), (4, 16, 64), 256)
+def found_versions(charts: list[Chart]) -> tuple[dict[str, str], dict[str, str]]:
+    """Versions of what is there, and lines on what is not, by renderer and variant."""
+    versions, missing = {}, {}
+    for renderer, variant in dict.fromkeys((one.renderer, one.variant) for chart in charts for one in chart.series):
+        key = f"{chart_renderers.NAMES[renderer]} {variant}".strip()
+        try:
+            versions[key] = chart_renderers.version(renderer, variant)
+        except chart_renderers.Missing as words:
+            missing[key] = str(words)
+    return versions, missing
 
 
-class Abbe:
-    """Our renderer: one process for each picture."""
-
-    name = "Abbe"
-    color = "#1b6ca8"
-    label_offset = (4, 6)
-
-    def __init__(self, folder: Path, size: tuple[int, int]):
-        self.scene = folder / "scene.toml"
-        self.scene.write_text(scene_text(*size))
-        self.out = folder / "abbe.exr"
-
-    def command(self, samples: int, seed: int) -> list:
-        flags = ["--samples", samples, "--seed", seed, "--threads", 1]
-        return [render.binary(), self.scene, "--exr", self.out, *flags]
-
-    def picture(self) -> np.ndarray:
-        return render.read(self.out).rgb
-
-    def version(self) -> str:
-        return first_line([render.binary(), "--version"])
-
-
-class Smallpt:
-    """The 99-line program."""
-
-    name = "smallpt"
-    color = "#c4572b"
-    label_offset = (-14, -12)
-
-    def __init__(self, folder: Path, size: tuple[int, int]):
-        self.binary = smallpt_reference.compile_program(folder)
-        self.size = size
-        self.out = folder / "smallpt.pfm"
-
-    def command(self, samples: int, seed: int) -> list:
-        return [self.binary, samples, *self.size, seed, self.out, *smallpt_reference.EXACT_FLAGS]
-
-    def picture(self) -> np.ndarray:
-        return smallpt_reference.read_pfm(self.out).astype(np.float64)
-
-    def version(self) -> str:
-        flags = " ".join(("g++ -O3 -march=native, run with", *smallpt_reference.EXACT_FLAGS))
-        return f"tools/smallpt.cpp, {flags}; {first_line(['g++', '--version'])}"
+def run(chart: Chart, profile: Profile, only: list[str] | None = None) -> dict[str, Measured]:
+    """Every series that can be had; one that cannot be opened is told and left out."""
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = Path(temporary)
+        renderers = {}
+        for number, series in enumerate(chart.series):
+            if only and series.renderer not in only:
+                continue
+            try:
+                chart_renderers.version(series.renderer, series.variant)
+                scene = chart_scenes.write_scene(chart, series, folder / f"scene{number}.toml")
+                renderers[series.label] = chart_renderers.open_renderer(series, scene, folder / str(number))
+            except (chart_renderers.Missing, RuntimeError) as words:
+                print(f"{series.label} is left out: {words}", flush=True)
+        if all(isinstance(renderer, chart_renderers.PovRay) for renderer in renderers.values()):
+            print("nothing is left that could be judged by its own converged picture")
+            return {}
+        try:
+            return measure(renderers, chart, profile)
+        finally:
+            for renderer in renderers.values():
+                renderer.close()
 
 
-class Run(NamedTuple):
-    """One picture: what it took and how far it is off."""
-
-    renderer: str
-    samples: int
-    seed: int
-    cpu_seconds: float
-    rms: float
-    relative: float
+def takes_no_seed(measured: Measured) -> bool:
+    return math.isnan(measured.difference)
 
 
-def first_line(command: list) -> str:
-    return subprocess.run(command, capture_output=True, text=True, check=True).stdout.splitlines()[0]
+def wavers(measured: Measured) -> bool:
+    return not takes_no_seed(measured) and not chart_words.steady(curve(measured))
 
 
-def cpu_seconds(command: list) -> float:
-    """Runs a command and counts its user and system time."""
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    subprocess.run([str(word) for word in command], check=True, capture_output=True)
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime
+def recorded(series: dict) -> Measured:
+    """A series as `record` wrote it."""
+    points = [Point(**point) for point in series["points"]]
+    return Measured(points, series["start_seconds"], None, *(series.get(name, math.nan) for name in CONVERGED))
 
 
-class Reference:
-    """A renderer's converged picture, of two halves whose difference tells its noise."""
-
-    def __init__(self, renderer, setting: Setting):
-        halves = []
-        for seed in REFERENCE_SEEDS:
-            cpu_seconds(renderer.command(setting.half_reference, seed))
-            halves.append(renderer.picture())
-        self.judged = ~sees_glass(*setting.size)
-        self.mean = (halves[0] + halves[1]) / 2
-        self.noise = (halves[0] - halves[1]) ** 2 / 4
-
-    def errors(self, picture: np.ndarray) -> tuple[float, float]:
-        """Root of the mean squared error, and the mean of (x - r)^2 / (r^2 + 0.01)."""
-        squared = ((picture - self.mean) ** 2 - self.noise)[self.judged]
-        relative = squared / (self.mean**2 + 0.01)[self.judged]
-        return float(np.sqrt(max(squared.mean(), 0))), float(max(relative.mean(), 0))
+def curve(measured: Measured, key: str = "error") -> chart_words.Curve:
+    return [(point.cpu_seconds, getattr(point, key)) for point in measured.points]
 
 
-def measure(renderers: list, setting: Setting) -> list[Run]:
-    """Every renderer at every number of samples, the renderers in turn so that both meet the same machine."""
-    references = [Reference(renderer, setting) for renderer in renderers]
-    runs = []
-    for seed in range(1, REPEATS + 1):
-        for samples in setting.samples:
-            for renderer, reference in zip(renderers, references, strict=True):
-                seconds = cpu_seconds(renderer.command(samples, seed))
-                runs.append(Run(renderer.name, samples, seed, seconds, *reference.errors(renderer.picture())))
-    return runs
+def physics_words(label: str, measured: Measured, against: str, ours: Measured, flat_lamp: bool) -> str:
+    """How a converged picture differs from the common one, and what the common one would say."""
+    if takes_no_seed(measured):
+        best = chart_words.percent(min(point.common for point in measured.points))
+        return f"{label} takes no seed and is judged by the picture of {against}; its best point is {best} off."
+    words = f"The converged picture of {label} differs from that of {against} by {floor(measured)}"
+    if measured.difference > SAME:
+        lamp = ", its lamp being a flat disc in place of a sphere's tip" if flat_lamp else ""
+        return f"{words}{lamp}, so only its own picture judges it."
+    if wavers(measured) or wavers(ours):
+        return f"{words}."
+    theirs, mine = curve(measured, "common"), curve(ours, "common")
+    error = chart_words.levels_for(mine, theirs)[0]
+    ratio, sure = chart_words.ratio_at(error, mine, theirs)
+    note = "" if sure == "measured" else ", extrapolated"
+    return f"{words}; judged by the latter alone: {chart_words.times(ratio)} to {chart_words.percent(error)}{note}."
 
 
-def medians(runs: list[Run], renderer: str) -> list[Run]:
-    """The median of the repeats at each number of samples."""
-    own = [run for run in runs if run.renderer == renderer]
-    result = []
-    for samples in sorted({run.samples for run in own}):
-        columns = zip(*(run[3:] for run in own if run.samples == samples), strict=True)
-        result.append(Run(renderer, samples, 0, *(float(np.median(column)) for column in columns)))
-    return result
+def short(label: str) -> str:
+    return label.removeprefix("Abbe, ")
 
 
-def time_to(error: float, points: list[Run], measure_name: str) -> float:
-    """CPU seconds to an error, linear in log-log between the points and beyond the ends."""
-    x = np.log([getattr(point, measure_name) for point in points])[::-1]
-    y = np.log([point.cpu_seconds for point in points])[::-1]
-    i = int(np.clip(np.searchsorted(x, np.log(error)), 1, len(x) - 1))
-    slope = (y[i] - y[i - 1]) / (x[i] - x[i - 1])
-    return float(np.exp(y[i] + slope * (np.log(error) - x[i])))
+def floor(measured: Measured) -> str:
+    """What a converged picture differs by, or what it could differ by without our seeing it."""
+    if measured.difference > measured.unseen:
+        return chart_words.percent(measured.difference)
+    if measured.difference > SAME:
+        return f"{chart_words.percent(measured.difference)}, which few pixels or noise decide"
+    return f"less than {chart_words.percent(measured.unseen)}"
 
 
-def verdict(ours: list[Run], target: Run, measure_name: str, title: str) -> str:
-    """The ratio of CPU times at equal error in words."""
-    error = getattr(target, measure_name)
-    seconds = time_to(error, ours, measure_name)
-    return (
-        f"to {title} {error:.4g}, which smallpt reaches with {target.samples} samples in {target.cpu_seconds:.2f} s, "
-        f"Abbe needs {seconds:.2f} s: {seconds / target.cpu_seconds:.2f} x the CPU time"
-    )
+def model_words(label: str, measured: Measured, against: str) -> str:
+    best = chart_words.percent(min(point.error for point in measured.points))
+    return f"{label}: converged, it is {floor(measured)} off {against}; its best point is {best} off."
 
 
-def draw(points: dict[str, list[Run]], renderers: list, note: str, path: Path) -> None:
-    """Both measures of error against CPU time."""
-    figure = Figure(figsize=(11, 4.8), layout="constrained")
-    panels = figure.subplots(1, 2)
-    titles = {"rms": "RMS error", "relative": "mean of (x - r)² / (r² + 0.01)"}
-    for panel, (measure_name, title) in zip(panels, titles.items(), strict=True):
-        for renderer in renderers:
-            own = points[renderer.name]
-            places = [(point.cpu_seconds, getattr(point, measure_name)) for point in own]
-            panel.loglog(*zip(*places, strict=True), "o-", color=renderer.color, label=renderer.name)
-            beside = {"xytext": renderer.label_offset, "textcoords": "offset points", "fontsize": 8}
-            for point, place in zip(own, places, strict=True):
-                panel.annotate(str(point.samples), place, color=renderer.color, **beside)
-        panel.margins(0.08)
-        panel.set(xlabel="CPU seconds, one thread", ylabel=title)
-        panel.grid(which="both", color="0.9")
-        panel.legend()
-    figure.suptitle(f"scenes/smallpt.toml without the glass ball: error against CPU time\n{note}", fontsize=10)
-    figure.savefig(path, dpi=150)
+def words_for(chart: Chart, found: dict[str, Measured]) -> list[str]:
+    """The chart in sentences: first the comparisons, then what judges them."""
+    first, *others = found
+    ours = found[first]
+    flat = {one.label for one in chart.series if one.flat_lamp}
+    words = []
+    for label in others:
+        unsteady = [] if chart.common else [name for name in (first, label) if wavers(found[name])]
+        if unsteady:
+            words.append(f"{chart_words.unsteady_words(unsteady[0])}, so that nothing is said of {first} and {label}.")
+        else:
+            words.append(chart_words.compare(first, curve(ours), label, curve(found[label])))
+    for label in others:
+        if chart.common:
+            words.append(model_words(label, found[label], first))
+        else:
+            words.append(physics_words(label, found[label], first, ours, label in flat))
+    return words
 
 
-def report(points: dict[str, list[Run]], start: float, setting: Setting) -> None:
-    """The medians as a table, and what they mean in words."""
-    print(f"\n{setting.size[0]} x {setting.size[1]}, one thread, medians of {REPEATS}")
-    print(f"{'renderer':<10}{'samples':>8}{'CPU s':>9}{'RMS':>10}{'relative':>11}")
-    for point in (point for own in points.values() for point in own):
-        figures = f"{point.cpu_seconds:>9.2f}{point.rms:>10.4f}{point.relative:>11.5f}"
-        print(f"{point.renderer:<10}{point.samples:>8}{figures}")
-    print(f"\nAbbe's run of one sample, starting and writing the EXR included: {start:.2f} s")
-    for measure_name, title in {"rms": "an RMS error of", "relative": "a relative squared error of"}.items():
-        for target in points[Smallpt.name]:
-            if target.samples >= COMPARED:
-                print(verdict(points[Abbe.name], target, measure_name, title))
+def panel_for(chart: Chart, found: dict[str, Measured]) -> chart_draw.Panel:
+    renderers = {one.label: one.renderer for one in chart.series}
+    first, *others = found
+    own = all(renderers[label] == "abbe" for label in others)
+    judged = [label for label in others if not takes_no_seed(found[label]) and (own or renderers[label] != "abbe")]
+    curves = {label: curve(found[label]) for label in judged if not wavers(found[label])}
+    finding = chart_words.title_for(first, curve(found[first]), curves)
+    if wavers(found[first]):
+        finding = chart_words.unsteady_words(first)
+    if chart.common and len(others) > 1:
+        floors = (f"{short(label)} {floor(found[label])}" for label in others)
+        finding = f"Converged, off {short(first)} by: {', '.join(floors)}".replace("less than", "<")
+    name = short if set(renderers.values()) == {"abbe"} else str
+    lines = [chart_draw.Line(name(label), renderers[label], curve(measured)) for label, measured in found.items()]
+    return chart_draw.Panel(chart.title, finding, lines)
+
+
+def record(chart: Chart, found: dict[str, Measured], words: list[str]) -> dict:
+    """The chart as it stands in chart.json."""
+    kinds = {one.label: "abbe" if one.renderer == "abbe" else "other" for one in chart.series}
+    series = []
+    for label, measured in found.items():
+        points = [point._asdict() for point in measured.points]
+        extra = {"start_seconds": measured.start}
+        if not takes_no_seed(measured):
+            extra |= {name: getattr(measured, name) for name in CONVERGED}
+        series.append({"label": label, "kind": kinds[label], **extra, "points": points})
+    pictures = {"svg": f"{chart.name}.svg", "png": f"{chart.name}.png"}
+    return {"name": chart.name, "title": chart.title, "words": words, "series": series, **pictures}
+
+
+def table(found: dict[str, Measured]) -> str:
+    lines = [f"{'series':<28}{'samples':>8}{'CPU s':>9}{'error':>9}{'RMS':>9}    start, CPU s"]
+    for label, measured in found.items():
+        for point in measured.points:
+            start = f"{measured.start:>12.2f}" if point is measured.points[0] else ""
+            figures = f"{point.cpu_seconds:>9.3f}{point.error:>9.4f}{point.rms:>9.4f}"
+            lines.append(f"{label:<28}{point.samples:>8}{figures}{start}")
+    return "\n".join(lines)
+
+
+def write_data(out: Path, versions: dict, made_by: str, records: list[dict]) -> None:
+    with (out / "chart.csv").open("w", newline="") as file:
+        rows = csv.writer(file, lineterminator="\n")
+        rows.writerow(("chart", "series", "samples", "cpu_seconds", "error", "rms", "error_against_common"))
+        for one in records:
+            for series in one["series"]:
+                rows.writerows(
+                    (one["name"], series["label"], *map(rounded, point.values())) for point in series["points"]
+                )
+    data = {"versions": versions, "made_by": made_by, "scenes": records}
+    (out / "chart.json").write_text(json.dumps(data, indent=1, default=str) + "\n", "utf-8")
+
+
+def rounded(value: float) -> float:
+    return float(f"{value:.5g}")
+
+
+def write_picture(out: Path, chart: Chart, found: dict[str, Measured]) -> None:
+    from matplotlib.image import imsave
+
+    for label, measured in found.items():
+        if measured.reference is not None:
+            linear = measured.reference.mean.clip(0, 1)
+            name = "".join(c if c.isalnum() else "-" for c in label.lower())
+            imsave(out / f"{chart.name}-{name}.png", linear ** (1 / 2.2))
+
+
+def overview(out: Path, panels: dict[str, chart_draw.Panel], note: str) -> None:
+    if wanted := [panels[name] for name in OVERVIEW if name in panels]:
+        chart_draw.draw_overview(wanted, out / "overview", note)
+
+
+def redraw(out: Path) -> None:
+    """Pictures and words from what was measured before."""
+    data = json.loads((out / "chart.json").read_text("utf-8"))
+    charts = {chart.name: chart for chart in chart_scenes.CHARTS}
+    records, panels = [], {}
+    for one in data["scenes"]:
+        chart, found = charts[one["name"]], {series["label"]: recorded(series) for series in one["series"]}
+        panels[chart.name] = panel_for(chart, found)
+        records.append(record(chart, found, words_for(chart, found)))
+        print(f"\n== {chart.name}: {chart.title}", *records[-1]["words"], sep="\n")
+        chart_draw.draw([panels[chart.name]], out / chart.name, data["made_by"])
+    overview(out, panels, data["made_by"])
+    write_data(out, data["versions"], data["made_by"], records)
+
+
+def load() -> str:
+    """How busy the machine is before the chart adds its own work."""
+    return f"load average {os.getloadavg()[0]:.1f} before"
+
+
+def processor_seconds() -> float:
+    """Of this process and of the renderers that have ended."""
+    usages = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
+    return sum(usage.ru_utime + usage.ru_stime for usage in usages)
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--quick", action="store_true", help="a smaller picture and fewer samples, under 90 seconds")
-    parser.add_argument("--out", type=Path, default=render.ROOT / "target/chart", help="folder for PNG and CSV")
+    names = [chart.name for chart in chart_scenes.CHARTS]
+    parser.add_argument("--scene", choices=names, action="append", help="only this chart; may be repeated")
+    parser.add_argument("--only", choices=chart_renderers.NAMES, action="append", help="only this one; may be repeated")
+    parser.add_argument("--quick", action="store_true", help="small pictures, fewer samples, three repeats")
+    parser.add_argument("--list", action="store_true", help="say what is installed, and how to get the rest")
+    parser.add_argument("--redraw", action="store_true", help="draw and say chart.json anew; measure nothing")
+    parser.add_argument("--pictures", action="store_true", help="also write each converged picture")
+    parser.add_argument("--out", type=Path, default=render.ROOT / "target/chart", help="folder for what is written")
     arguments = parser.parse_args()
+    profile = chart_scenes.QUICK if arguments.quick else chart_scenes.FULL
+    charts = [chart for chart in chart_scenes.CHARTS if not arguments.scene or chart.name in arguments.scene]
+    versions, missing = found_versions(charts)
+    for name, words in versions.items():
+        print(f"{name}: {words}")
+    for words in dict.fromkeys(missing.values()):
+        print(f"left out: {words}")
+    if arguments.list:
+        return
+    if arguments.redraw:
+        return redraw(arguments.out)
     arguments.out.mkdir(parents=True, exist_ok=True)
-    setting = QUICK if arguments.quick else FULL
-    with tempfile.TemporaryDirectory() as folder:
-        renderers = [Abbe(Path(folder), setting.size), Smallpt(Path(folder), setting.size)]
-        for renderer in renderers:
-            print(f"{renderer.name}: {renderer.version()}")
-        start = float(np.median([cpu_seconds(renderers[0].command(1, seed)) for seed in range(REPEATS)]))
-        runs = measure(renderers, setting)
-    with (arguments.out / "smallpt.csv").open("w", newline="") as file:
-        table = csv.writer(file)
-        table.writerow(Run._fields)
-        table.writerows(runs)
-    points = {renderer.name: medians(runs, renderer.name) for renderer in renderers}
-    report(points, start, setting)
-    note = f"{setting.size[0]} x {setting.size[1]}, medians of {REPEATS}, samples per pixel beside the points"
-    draw(points, renderers, note, arguments.out / "smallpt.png")
-    print(f"wrote smallpt.png and smallpt.csv into {arguments.out}")
+    made_by = f"python tools/chart.py {' '.join(sys.argv[1:])}".strip()
+    note = f"{made_by}, medians of {profile.repeats}, {platform.machine()}, {os.cpu_count()} cores, {load()}"
+    begun, records, panels = time.monotonic(), [], {}
+    for chart in (chart_scenes.scaled(one, profile) for one in charts):
+        print(f"\n== {chart.name}: {chart.title}, {chart.size[0]} x {chart.size[1]}", flush=True)
+        found = run(chart, profile, arguments.only)
+        if not found:
+            continue
+        words = words_for(chart, found)
+        print(table(found), *words, f"({time.monotonic() - begun:.0f} s so far)", sep="\n", flush=True)
+        panels[chart.name] = panel_for(chart, found)
+        chart_draw.draw([panels[chart.name]], arguments.out / chart.name, note)
+        records.append(record(chart, found, words))
+        write_data(arguments.out, versions, note, records)
+        if arguments.pictures:
+            write_picture(arguments.out, chart, found)
+    overview(arguments.out, panels, note)
+    took = f"{time.monotonic() - begun:.0f} s, {processor_seconds():.0f} s of processor time"
+    print(f"\nwrote {len(records)} charts, chart.csv and chart.json into {arguments.out} in {took}")
 
 
 if __name__ == "__main__":

@@ -1,16 +1,13 @@
-"""A scene file of Abbe for Mitsuba and LuxCore: the same camera, shapes, materials and lights.
+"""A scene file of Abbe as other renderers take it: its camera, shapes, materials and lights, and spheres as triangles.
 
-    scene = mitsuba.load_dict(peers_scene.mitsuba_scene(mitsuba, "scene.toml"))
-    picture = peers_scene.luxcore_picture(pyluxcore, "scene.toml", samples=64, seed=1)
+    peers_scene.shapes(peers_scene.read("scene.toml"))      # [(kind, values, material), ..]
 
-Knows what the scenes of tools/peers.py hold: perspective cameras; quads, spheres and meshes; diffuse, mirror, dielectric and
-emissive materials; an even sky. Spheres above a radius of 1e4, the walls of smallpt, become the squares they stand for;
-`flat_lamp` lets a disc stand for the tip of a huge lamp as well.
+Knows what the scenes of tools/chart_scenes.py hold: perspective cameras; quads, spheres and meshes; diffuse, mirror,
+dielectric and emissive materials; an even sky. Spheres above a radius of 1e4, the walls of smallpt, become the squares
+they stand for; `flat_lamp` lets a disc stand for the tip of a huge lamp as well, which every renderer can aim at.
 """
 
-import time
 import tomllib
-import zlib
 from pathlib import Path
 
 import numpy as np
@@ -76,76 +73,6 @@ def shapes(scene: dict, flat_lamp: bool = False) -> list[tuple[str, dict, str]]:
     return result
 
 
-def mitsuba_material(entry: dict) -> dict:
-    """The BSDF, with `emitter` beside it where the material shines."""
-    kind, values = parts(entry)
-    color = lambda value: {"type": "rgb", "value": rgb(value)}  # noqa: E731
-    if kind == "diffuse":
-        inside = {"type": "diffuse", "reflectance": color(values["reflectance"])}
-        return {"bsdf": {"type": "twosided", "inside": inside}}
-    if kind == "mirror":
-        metal = {"type": "conductor", "material": "none", "specular_reflectance": color(values["reflectance"])}
-        return {"bsdf": {"type": "twosided", "inside": metal}}
-    if kind == "dielectric":
-        ways = {f"specular_{way}": color(values.get(way, 1.0)) for way in ("reflectance", "transmittance")}
-        return {"bsdf": {"type": "dielectric", "int_ior": values["index"], "ext_ior": 1.0, **ways}}
-    black = {"type": "diffuse", "reflectance": color(0.0)}
-    return {"bsdf": black, "emitter": {"type": "area", "radiance": color(values["radiance"])}}
-
-
-def mitsuba_shape(mitsuba, kind: str, values: dict, folder: Path) -> dict:
-    transform = mitsuba.ScalarTransform4f
-    if kind == "quad":
-        center, u, v = (np.array(values[key], float) for key in ("center", "u", "v"))
-        normal = np.cross(u, v)
-        matrix = np.eye(4)
-        matrix[:3] = np.stack([u, v, normal / np.linalg.norm(normal), center], axis=1)
-        return {"type": "rectangle", "to_world": transform(matrix)}
-    if kind == "sphere":
-        return {"type": "sphere", "center": [float(x) for x in values["center"]], "radius": float(values["radius"])}
-    if kind == "disc":
-        center, normal = np.array(values["center"], float), np.array(values["normal"], float)
-        look = transform().look_at(origin=center, target=center + normal, up=np.roll(normal, 1))
-        return {"type": "disk", "to_world": look.scale(values["radius"])}
-    if "file" in values:
-        return {"type": "ply", "filename": str(folder / values["file"]), "face_normals": True}
-    path = folder / f"mesh{zlib.crc32(repr(values).encode())}.obj"
-    points = (f"v {x} {y} {z}" for x, y, z in values["points"])
-    faces = (f"f {a + 1} {b + 1} {c + 1}" for a, b, c in values["faces"])
-    path.write_text("\n".join([*points, *faces]) + "\n")
-    return {"type": "obj", "filename": str(path), "face_normals": True}
-
-
-def mitsuba_scene(mitsuba, path: Path, flat_lamp: bool = False) -> dict:
-    """The scene as mitsuba.load_dict reads it, with the multijitter sampler and the path integrator's defaults."""
-    scene = read(path)
-    camera, film = scene["camera"], scene["film"]
-    look = mitsuba.ScalarTransform4f().look_at(
-        origin=camera["position"], target=camera["look_at"], up=camera.get("up", [0, 1, 0])
-    )
-    picture = {"width": film["width"], "height": film["height"], "pixel_format": "rgb"}
-    result = {
-        "type": "scene",
-        "integrator": {"type": "path", "max_depth": -1},
-        "sensor": {
-            "type": "perspective",
-            "fov": camera["vertical_fov"],
-            "fov_axis": "y",
-            "near_clip": camera.get("near", 1e-2),
-            "to_world": look,
-            "film": {"type": "hdrfilm", **picture, "rfilter": {"type": "box"}, "component_format": "float32"},
-            "sampler": {"type": "multijitter"},
-        },
-    }
-    for number, (kind, values, material) in enumerate(shapes(scene, flat_lamp)):
-        shape = mitsuba_shape(mitsuba, kind, values, Path(path).parent)
-        result[f"object{number}"] = {**shape, **mitsuba_material(scene["material"][material])}
-    for number, light in enumerate(scene.get("light", [])):
-        radiance = {"type": "rgb", "value": rgb(light["environment"]["radiance"])}
-        result[f"light{number}"] = {"type": "constant", "radiance": radiance}
-    return result
-
-
 def bumpy_ball(rings: int, sectors: int) -> tuple[np.ndarray, np.ndarray]:
     """Points and triangles of a ball with bumps, closed and facing outward."""
     theta = np.pi * (np.arange(1, rings) / rings)[:, None]
@@ -163,9 +90,9 @@ def bumpy_ball(rings: int, sectors: int) -> tuple[np.ndarray, np.ndarray]:
     return points, np.concatenate(quads + poles)
 
 
-def write_bumpy_ball(path: Path) -> None:
-    """A bumpy ball of 1.3 million triangles as a PLY file."""
-    points, faces = bumpy_ball(*BUMPY)
+def write_bumpy_ball(path: Path, rings: int = BUMPY[0], sectors: int = BUMPY[1]) -> None:
+    """A bumpy ball, of 1.3 million triangles unless told otherwise, as a PLY file."""
+    points, faces = bumpy_ball(rings, sectors)
     records = np.zeros(len(faces), [("count", "u1"), ("corners", "<i4", 3)])
     records["count"], records["corners"] = 3, faces
     header = ["ply", "format binary_little_endian 1.0", f"element vertex {len(points)}"]
@@ -187,103 +114,36 @@ def ball(center, radius: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return np.array(center) + radius * normals.reshape(-1, 3), faces, normals.reshape(-1, 3)
 
 
-def luxcore_mesh(kind: str, values: dict) -> tuple:
-    """Points, triangles and normals (or None) as LuxCore takes them."""
-    normals = None
+def read_ply(path: Path) -> tuple[np.ndarray, np.ndarray]:
+    """Points and triangles of a file of write_bumpy_ball."""
+    header, body = path.read_bytes().split(b"end_header\n", 1)
+    count = int(header.split(b"element vertex ")[1].split()[0])
+    points = np.frombuffer(body[: 12 * count], "<f4").reshape(-1, 3)
+    faces = np.frombuffer(body[12 * count :], [("count", "u1"), ("corners", "<i4", 3)])["corners"]
+    return points.astype(float), faces
+
+
+def disc_triangles(center, normal, radius: float, sectors: int = 256) -> tuple[np.ndarray, np.ndarray]:
+    """A fan that faces along the normal, of the disc's area."""
+    normal = np.array(normal, float) / np.linalg.norm(normal)
+    u = np.cross(normal, np.roll(normal, 1))
+    u /= np.linalg.norm(u)
+    angle = 2 * np.pi / sectors * np.arange(sectors)[:, None]
+    outer = radius * np.sqrt(2 * np.pi / sectors / np.sin(2 * np.pi / sectors))
+    rim = np.array(center) + outer * (np.cos(angle) * u + np.sin(angle) * np.cross(normal, u))
+    number = np.arange(sectors)
+    faces = np.stack([0 * number, 1 + number, 1 + (number + 1) % sectors], -1)
+    return np.concatenate([[np.array(center, float)], rim]), faces
+
+
+def triangles(kind: str, values: dict, folder: Path) -> tuple[np.ndarray, np.ndarray, np.ndarray | None]:
+    """Points, faces and, where it is smooth, normals of any shape."""
+    if kind == "sphere":
+        return ball(**values)
+    if kind == "disc":
+        return *disc_triangles(**values), None
     if kind == "quad":
-        points, faces = quad_triangles(**values)
-    elif kind == "sphere":
-        points, faces, normals = ball(**values)
-    else:
-        points, faces = values["points"], values["faces"]
-    rows = lambda array, of: [tuple(map(of, row)) for row in array]  # noqa: E731
-    return rows(points, float), rows(faces, int), None if normals is None else rows(normals, float)
-
-
-def luxcore_material(name: str, entry: dict) -> dict:
-    kind, values = parts(entry)
-    key = f"scene.materials.{name}"
-    if kind == "diffuse":
-        return {f"{key}.type": "matte", f"{key}.kd": rgb(values["reflectance"])}
-    if kind == "dielectric":
-        a, b = values["index"]["cauchy"]
-        clear = {f"{key}.type": "glass", f"{key}.kr": [1.0] * 3, f"{key}.kt": [1.0] * 3}
-        return {**clear, f"{key}.interiorior": a, f"{key}.cauchyb": b}
-    black = {f"{key}.type": "matte", f"{key}.kd": [0.0] * 3}
-    return {**black, f"{key}.emission": rgb(values["radiance"]), f"{key}.emission.gain": [1.0] * 3}
-
-
-def luxcore_scene(luxcore, path: Path):
-    scene = read(path)
-    camera = scene["camera"]
-    values = {
-        "scene.camera.type": "perspective",
-        "scene.camera.lookat.orig": camera["position"],
-        "scene.camera.lookat.target": camera["look_at"],
-        "scene.camera.up": camera.get("up", [0, 1, 0]),
-        "scene.camera.fieldofview": camera["vertical_fov"],
-        "scene.camera.autofocus.enable": False,
-    }
-    for number, light in enumerate(scene.get("light", [])):
-        key = f"scene.lights.light{number}"
-        sky = {".type": "constantinfinite", ".color": rgb(light["environment"]["radiance"]), ".gain": [1.0] * 3}
-        values.update({key + name: value for name, value in sky.items()})
-    for name, entry in scene["material"].items():
-        values.update(luxcore_material(name, entry))
-    result = luxcore.Scene()
-    for number, (kind, shape, material) in enumerate(shapes(scene)):
-        points, faces, normals = luxcore_mesh(kind, shape)
-        result.DefineMesh(f"mesh{number}", points, faces, normals, None, None, None)
-        values[f"scene.objects.object{number}.shape"] = f"mesh{number}"
-        values[f"scene.objects.object{number}.material"] = material
-    result.Parse(properties(luxcore, values))
-    return result
-
-
-def properties(luxcore, values: dict):
-    result = luxcore.Properties()
-    for key, value in values.items():
-        result.Set(luxcore.Property(key, value))
-    return result
-
-
-def luxcore_picture(luxcore, path: Path, samples: int, seed: int) -> np.ndarray:
-    """The picture of LuxCore's path tracer with its Sobol sampler and without a limit to brightness; paths of up to 64 surfaces."""
-    film = read(path)["film"]
-    depth = {f"path.pathdepth.{kind}": 64 for kind in ("total", "diffuse", "glossy", "specular")}
-    values = {
-        "renderengine.type": "PATHCPU",
-        "renderengine.seed": seed,
-        "sampler.type": "SOBOL",
-        "sampler.sobol.adaptive.strength": 0.0,
-        "film.width": film["width"],
-        "film.height": film["height"],
-        "film.filter.type": "NONE",
-        "film.outputs.0.type": "RGB",
-        "film.outputs.0.filename": "unused.exr",
-        "batch.haltspp": samples,
-        **depth,
-    }
-    session = luxcore.RenderSession(luxcore.RenderConfig(properties(luxcore, values), luxcore_scene(luxcore, path)))
-    session.Start()
-    while not session.HasDone():
-        time.sleep(0.02)
-        session.UpdateStats()
-    session.Stop()
-    picture = np.zeros((film["height"], film["width"], 3), np.float32)
-    session.GetFilm().GetOutputFloat(luxcore.FilmOutputType.RGB, picture)
-    return picture[::-1].astype(np.float64)
-
-
-def write_png(path: Path, picture: np.ndarray) -> None:
-    """An 8-bit sRGB picture to look at."""
-    x = np.clip(picture, 0, 1)
-    encoded = np.where(x <= 0.0031308, 12.92 * x, 1.055 * x ** (1 / 2.4) - 0.055)
-    rows = (255 * encoded + 0.5).astype(np.uint8)
-    packed = b"".join(b"\0" + row.tobytes() for row in rows)
-    chunk = lambda kind, data: (  # noqa: E731
-        len(data).to_bytes(4, "big") + kind + data + zlib.crc32(kind + data).to_bytes(4, "big")
-    )
-    size = rows.shape[1].to_bytes(4, "big") + rows.shape[0].to_bytes(4, "big") + bytes([8, 2, 0, 0, 0])
-    content = chunk(b"IHDR", size) + chunk(b"IDAT", zlib.compress(packed)) + chunk(b"IEND", b"")
-    path.write_bytes(b"\x89PNG\r\n\x1a\n" + content)
+        return *quad_triangles(**values), None
+    if "file" in values:
+        return *read_ply(folder / values["file"]), None
+    return np.array(values["points"], float), np.array(values["faces"]), None

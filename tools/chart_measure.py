@@ -1,0 +1,120 @@
+"""Errors and processor seconds of the series of a chart.
+
+    measured = measure(renderers, chart, profile)       # label -> Measured
+
+The error is the root of the mean of (x - r)^2 / (r^2 + 0.01) over pixels and channels of linear Rec.709, unclamped,
+box filter; RMS is that of x - r. r is a converged picture of two halves of other seeds; (x - r)^2 is the product of
+the distances from both, which their noise does not raise. Seconds are user and system time: of the whole process, or,
+where a renderer lives in a Python process, of rendering there. What is taken before the first sample is found from
+the shortest and the longest run and told apart.
+"""
+
+import os
+from concurrent.futures import ThreadPoolExecutor
+from typing import NamedTuple
+
+import numpy as np
+from chart_scenes import Chart, Profile
+
+HALVES = (10_000, 20_000)
+
+
+class Point(NamedTuple):
+    """Medians of the repeats at a number of samples. `common` is the error against the common reference."""
+
+    samples: int
+    cpu_seconds: float
+    error: float
+    rms: float
+    common: float
+
+
+class Reference(NamedTuple):
+    """A converged picture as its two halves of other seeds, each (height, width, 3)."""
+
+    first: np.ndarray
+    second: np.ndarray
+
+    @property
+    def mean(self) -> np.ndarray:
+        return (self.first + self.second) / 2
+
+
+class Measured(NamedTuple):
+    """A series: seconds are without `start`; how its converged picture differs from the common one."""
+
+    points: list[Point]
+    start: float
+    reference: Reference | None
+    difference: float
+    unseen: float  # a difference that noise could show where there is none
+    brightness: float
+
+
+def root_mean(squared: np.ndarray) -> float:
+    return float(np.sqrt(max(np.nanmean(squared), 0)))
+
+
+def weight(reference: Reference) -> np.ndarray:
+    return 1 / (reference.mean**2 + 0.01)
+
+
+def error(picture: np.ndarray, reference: Reference) -> tuple[float, float]:
+    """Relative and absolute RMS error, by the distances from both halves, whose noise has nothing in common."""
+    squared = (picture - reference.first) * (picture - reference.second)
+    return root_mean(squared * weight(reference)), root_mean(squared)
+
+
+def difference(one: Reference, common: Reference) -> tuple[float, float]:
+    """How far two converged pictures are apart, relative RMS, and the most that noise alone could show of it.
+
+    The noise of the halves cancels in the mean, also where both pictures share seeds; two standard errors are left."""
+    squared = np.mean((one.first - common.first) * (one.second - common.second) * weight(common), axis=-1)
+    pixels = squared[np.isfinite(squared)]
+    return root_mean(pixels), float(np.sqrt(2 * pixels.std() / np.sqrt(pixels.size)))
+
+
+def start_of(samples: list[int], seconds: list[float]) -> float:
+    """Seconds of no samples, on the line through the shortest and the longest run."""
+    rate = (seconds[-1] - seconds[0]) / (samples[-1] - samples[0]) if len(samples) > 1 else 0.0
+    return float(np.clip(seconds[0] - rate * samples[0], 0.0, seconds[0] / 1.01)) if rate > 0 else 0.0
+
+
+def converged(renderer, samples: int) -> Reference:
+    return Reference(*(renderer.run(samples, seed)[0] for seed in HALVES))
+
+
+def measure(renderers: dict, chart: Chart, profile: Profile) -> dict[str, Measured]:
+    """Every series at every number of samples, in turn so that all meet the same machine.
+
+    The converged pictures, whose time does not count, are rendered side by side."""
+    series = {one.label: one for one in chart.series if one.label in renderers}
+    seeded = [label for label, one in series.items() if one.renderer != "povray"]
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        longest = [profile.reference * series[label].samples[-1] for label in seeded]
+        found = pool.map(converged, (renderers[label] for label in seeded), longest)
+        references = dict(zip(seeded, found, strict=True))
+    common = references[chart.common if chart.common in references else next(iter(references))]
+    runs = {label: {samples: [] for samples in one.samples} for label, one in series.items()}
+    for label, one in series.items():
+        if one.renderer == "mitsuba":
+            for samples in one.samples:
+                renderers[label].run(samples, 1000)  # compiles what is compiled for this length
+    for seed in range(1, profile.repeats + 1):
+        for label, own in runs.items():
+            judge = common if chart.common else references.get(label, common)
+            for samples, results in own.items():
+                picture, seconds = renderers[label].run(samples, seed)
+                results.append((seconds, *error(picture, judge), error(picture, common)[0]))
+    return {label: summary(own, references.get(label), common, label in seeded) for label, own in runs.items()}
+
+
+def summary(runs: dict[int, list], reference: Reference | None, common: Reference, counts: bool) -> Measured:
+    """The medians of a series; `counts`: its seconds grow with its samples, so that a start can be found."""
+    medians = {samples: np.median(results, axis=0).tolist() for samples, results in runs.items()}
+    start = start_of(list(medians), [row[0] for row in medians.values()]) if counts else 0.0
+    points = [Point(samples, row[0] - start, *row[1:]) for samples, row in medians.items()]
+    if reference is None:
+        return Measured(points, start, None, float("nan"), float("nan"), float("nan"))
+    brightness = float(np.nanmean(reference.mean) / np.nanmean(common.mean))
+    return Measured(points, start, reference, *difference(reference, common), brightness)

@@ -1,0 +1,144 @@
+"""The chart of speed against accuracy: what it says of curves with known answers, and a tiny one, of Abbe and smallpt.
+
+    python -m pytest tools/tests/test_chart.py      # 3 seconds of one core
+"""
+
+import csv
+import json
+import shutil
+import subprocess
+
+import chart
+import chart_draw
+import chart_measure
+import chart_scenes
+import chart_words
+import numpy as np
+import peers_povray
+import peers_scene
+import pytest
+import render
+
+
+def unbiased(seconds_at_one: float, times=(1, 4, 16, 64)):
+    """A curve whose error is the root of seconds_at_one over the time."""
+    return [(seconds_at_one * t, t**-0.5) for t in times]
+
+
+def test_between_the_points_time_is_read_off_in_log_log():
+    curve = [(1.0, 0.4), (100.0, 0.04)]
+    assert chart_words.seconds_to(0.4 / 10**0.5, curve) == (pytest.approx(10), "measured")
+    assert chart_words.seconds_to(0.04, curve) == (100, "measured")
+
+
+def test_beyond_the_points_half_the_error_takes_four_times_the_time():
+    assert chart_words.seconds_to(0.02, [(1.0, 0.4), (100.0, 0.04)]) == (pytest.approx(400), "extrapolated")
+    assert chart_words.seconds_to(0.8, [(1.0, 0.4), (100.0, 0.04)]) == (pytest.approx(0.25), "extrapolated")
+
+
+def test_a_biased_curve_is_compared_no_further_down_than_it_comes():
+    ours, stuck = unbiased(0.01, (1, 16, 256, 4096)), [(1.0, 0.3), (4.0, 0.12), (16.0, 0.121)]
+    assert chart_words.falling(stuck) == stuck[:2]
+    assert chart_words.compare("A", ours, "B", stuck).startswith(
+        "To 20 % A takes 0.14 x the CPU time of B (0.25 s for 1.8 s)"
+    )
+
+
+def test_a_curve_twice_as_slow_is_said_to_take_twice_the_time_at_both_ends():
+    words = chart_words.compare("A", unbiased(2), "B", unbiased(1))
+    assert words == "To 20 % A takes 2 x the CPU time of B (50 s for 25 s): behind; to 50 % 2 x."
+    assert chart_words.compare("B", unbiased(1), "A", unbiased(2)).startswith("To 20 % B takes 0.5 x")
+
+
+def test_curves_that_do_not_meet_in_error_are_extrapolated_and_say_so():
+    words = chart_words.compare("A", [(1.0, 0.02), (4.0, 0.01)], "B", [(1.0, 0.4), (4.0, 0.2)])
+    assert words == "To 20 % A takes 0.0025 x the CPU time of B (0.01 s for 4 s, extrapolated): ahead."
+
+
+def test_a_crossing_is_found_where_two_power_laws_meet():
+    slow, fast = [(t, t**-0.5) for t in (1, 4, 16, 64)], [(t, 2 * t**-1.0) for t in (1.5, 4, 16, 64)]
+    ((error, seconds),) = chart_words.crossings(slow, fast)
+    assert (error, seconds) == (pytest.approx(0.5), pytest.approx(4))
+    words = chart_words.compare("Slow", slow, "Fast", fast)
+    assert "They cross at 50 % and 4 s; below that error Fast is faster." in words
+
+
+def test_lines_that_weave_within_a_tie_do_not_cross():
+    weaving = [(t * factor, t**-0.5) for t, factor in zip((1, 4, 16, 64), (1.1, 0.9, 1.1, 0.9), strict=True)]
+    assert chart_words.crossings(weaving, unbiased(1)) == []
+    assert chart_words.compare("A", unbiased(1), "B", weaving).count("a tie") == 1
+
+
+def test_an_error_that_rare_paths_decide_is_not_steady():
+    assert chart_words.steady(unbiased(1)) and chart_words.steady([(1.0, 0.5), (16.0, 0.2)])
+    assert not chart_words.steady([(1.0, 0.071), (4.0, 0.085), (16.0, 0.076)])
+
+
+def test_the_start_is_found_from_runs_of_two_lengths():
+    assert chart_measure.start_of([4, 16, 64], [0.5 + 4 * 0.1, 2.1, 0.5 + 64 * 0.1]) == pytest.approx(0.5)
+    assert chart_measure.start_of([4, 16], [0.4, 1.7]) == 0
+
+
+def test_the_noise_of_the_reference_does_not_raise_the_error():
+    random = np.random.default_rng(1)
+    truth = np.ones((200, 200, 3))
+    noisy = lambda sigma: truth + random.normal(0, sigma, truth.shape)  # noqa: E731
+    reference = chart_measure.Reference(noisy(0.03), noisy(0.03))
+    _, rms = chart_measure.error(noisy(0.2), reference)
+    assert rms == pytest.approx(0.2, rel=0.02)  # 120 000 samples: 0.3 % for one standard error
+    shared = noisy(0.03) - truth  # as of the same seeds
+    brighter = chart_measure.Reference(reference.first + 0.05 + shared, noisy(0.03) + 0.05)
+    difference, unseen = chart_measure.difference(brighter, reference)
+    assert difference == pytest.approx(0.05 / 1.01**0.5, rel=0.05) and unseen < 0.01
+    difference, unseen = chart_measure.difference(chart_measure.Reference(noisy(0.3), noisy(0.3)), reference)
+    assert difference < 1.5 * unseen < 0.06  # 0.3^2 over the root of 120 000 values, twice, under a root: 2 %
+
+
+def test_labels_keep_their_order_and_their_distance_inside_of_the_axes():
+    heights = chart_draw.spread([0.5, 0.52, 0.51, 0.0], 0.1, 0.05, 0.95)
+    assert np.argsort(heights).tolist() == [3, 0, 2, 1]
+    assert (np.diff(np.sort(heights)) > 0.099).all() and min(heights) >= 0.05
+
+
+@pytest.mark.parametrize("one", chart_scenes.CHARTS, ids=lambda one: one.name)
+def test_every_series_of_ours_is_a_scene_that_the_renderer_accepts(one, tmp_path):
+    for number, series in enumerate(series for series in one.series if series.renderer == "abbe"):
+        scene = chart_scenes.write_scene(one._replace(bumps=one.bumps and (6, 6)), series, tmp_path / f"{number}.toml")
+        size = peers_scene.read(scene)["film"]
+        assert (size["width"], size["height"]) == one.size
+        run = subprocess.run([render.binary(), "--check", scene], capture_output=True, text=True, check=False)
+        assert run.returncode == 0, f"{series.label}: {run.stderr}"
+
+
+def test_the_lamp_of_pov_ray_sends_what_ours_sends():
+    """Irradiance straight below a small lamp by the formulas of POV-Ray's manual: color x 2 / (1 + (d / fade)^2)."""
+    text = peers_povray.lamp_text({"center": [0, 2, 0], "u": [0.01, 0, 0], "v": [0, 0, 0.01]}, [5, 5, 5], 4)
+    color = float(text.split("rgb <")[1].split(",")[0])
+    fade = float(text.split("fade_distance ")[1].split()[0])
+    assert color * 2 / (1 + (2 / fade) ** 2) == pytest.approx(5 * 0.02**2 / 2**2 / np.pi, rel=1e-3)
+
+
+def test_a_tiny_chart_is_measured_drawn_and_written(tmp_path, monkeypatch, capsys):
+    (whole,) = (one for one in chart_scenes.CHARTS if one.name == "smallpt")
+    series = tuple(one._replace(samples=one.samples[:2]) for one in whole.series if one.renderer in ("abbe", "smallpt"))
+    names = [one.label for one in series if one.renderer == "abbe" or shutil.which("g++")]
+    monkeypatch.setattr(chart_scenes, "CHARTS", (whole._replace(size=(24, 18), series=series),))
+    monkeypatch.setattr(chart_scenes, "QUICK", chart_scenes.Profile(1, 0, 4, 3))
+    monkeypatch.setattr("sys.argv", ["chart.py", "--quick", "--out", str(tmp_path)])
+    chart.main()
+    said = capsys.readouterr().out
+    data = json.loads((tmp_path / "chart.json").read_text())
+    (scene,) = data["scenes"]
+    assert [one["label"] for one in scene["series"]] == names and data["versions"]["Abbe"].startswith("render")
+    for one in scene["series"]:
+        errors = [point["error"] for point in one["points"]]
+        assert errors[0] > errors[1] > 0 and all(point["cpu_seconds"] > 0 for point in one["points"])
+        assert one["kind"] == ("abbe" if one["label"] == "Abbe" else "other")
+    assert all(words in said for words in scene["words"]) and len(scene["words"]) == 2 * (len(names) - 1)
+    with (tmp_path / "chart.csv").open() as file:
+        assert len(list(csv.DictReader(file))) == sum(len(one.samples) for one in series if one.label in names)
+    assert (tmp_path / scene["png"]).read_bytes().startswith(b"\x89PNG")
+    monkeypatch.setattr("sys.argv", ["chart.py", "--redraw", "--out", str(tmp_path)])
+    chart.main()
+    assert json.loads((tmp_path / "chart.json").read_text()) == data
+    assert "Abbe" in (tmp_path / scene["svg"]).read_text() and (tmp_path / "overview.png").is_file()
