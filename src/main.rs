@@ -13,7 +13,7 @@ use abbe::film::{Fact, Provenance, View, check_writable, write_exr, write_png};
 use abbe::plan::{Plan, plan};
 use abbe::scene::{Projection, Scene, Source, compile};
 use abbe::spectrum::{Basis, Curve};
-use abbe::trace::{World, render};
+use abbe::trace::{World, render, work};
 
 use cli::{Job, Output, Request};
 
@@ -58,10 +58,8 @@ fn image(job: &Job, scene: &Scene<Curve>, exr: &Path, png: Option<&Path>) -> Res
     let plan = job.on_threads(|| plan(scene));
     plan.because.iter().for_each(|line| messages::say(line));
     let world = World::new(scene, plan.method.clone());
-    let window = scene.film.window();
-    let progress =
-        progress::Progress::new(u64::from(window.width) * u64::from(window.height) * u64::from(world.method().samples));
-    let (film, report) = job.on_threads(|| render(&world, &|samples| progress.advance(samples)));
+    let progress = progress::Progress::new(work(&world));
+    let (film, report) = job.on_threads(|| render(&world, &|done| progress.advance(done)));
     progress.finish();
     write_exr(&film, &view(scene), &provenance(scene, &plan, report.non_finite), exr)?;
     if let Some(png) = png {

@@ -9,7 +9,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 /// How far a render is.
 pub struct Progress {
     bar: Option<ProgressBar>,
-    samples: u64,
+    work: u64,
     done: AtomicU64,
     start: Instant,
 }
@@ -18,23 +18,23 @@ pub struct Progress {
 const QUIET: Duration = Duration::from_secs(5);
 
 impl Progress {
-    /// Of a render of so many camera samples.
-    pub fn new(samples: u64) -> Self {
+    /// Of a render of so many camera samples and photons.
+    pub fn new(work: u64) -> Self {
         let bar = std::io::stderr().is_terminal().then(|| {
             let style = ProgressStyle::with_template("{wide_bar} {percent:>3} %  {elapsed} passed, {eta} left");
-            ProgressBar::new(samples).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+            ProgressBar::new(work).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
         });
-        Self { bar, samples, done: AtomicU64::new(0), start: Instant::now() }
+        Self { bar, work, done: AtomicU64::new(0), start: Instant::now() }
     }
 
-    /// Counts finished samples; may be called from any thread.
-    pub fn advance(&self, samples: u64) {
+    /// Counts those that are done; may be called from any thread.
+    pub fn advance(&self, work: u64) {
         if let Some(bar) = &self.bar {
-            bar.inc(samples);
+            bar.inc(work);
             return;
         }
-        let before = self.done.fetch_add(samples, Ordering::Relaxed);
-        let (tenth, next) = (before * 10 / self.samples, (before + samples) * 10 / self.samples);
+        let before = self.done.fetch_add(work, Ordering::Relaxed);
+        let (tenth, next) = (before * 10 / self.work, (before + work) * 10 / self.work);
         let passed = self.start.elapsed();
         if next > tenth && next < 10 && passed > QUIET {
             let left = passed.as_secs_f64() * (10 - next) as f64 / next as f64;

@@ -89,6 +89,11 @@ impl Aims {
         (!aims.aims.is_empty()).then_some(aims)
     }
 
+    /// How many photons are sent in all.
+    pub(super) fn photons(&self) -> u64 {
+        self.aims.iter().map(|aim| aim.photons).sum()
+    }
+
     /// Lets each aim have its part of the photons, most of them by flux.
     fn share_out(&mut self) {
         let (total, count) = (self.aims.iter().map(|aim| aim.flux).sum::<f64>(), self.aims.len() as f64);

@@ -43,8 +43,8 @@ pub(super) struct Shown {
     pub(super) unmatched: u64,
 }
 
-/// Sends all photons of a world's light pass.
-pub(super) fn show<const N: usize>(world: &World) -> Shown {
+/// Sends all photons of a world's light pass; `progress` is told how many are done.
+pub(super) fn show<const N: usize>(world: &World, progress: &(dyn Fn(u64) + Sync)) -> Shown {
     let mut shown = Shown::default();
     let Some(aims) = &world.aims else { return shown };
     let window = world.scene.film.window();
@@ -53,6 +53,7 @@ pub(super) fn show<const N: usize>(world: &World) -> Shown {
     for group in batches.chunks(AT_ONCE) {
         let done: Vec<Sent<Splat>> =
             group.par_iter().map(|batch| send::<N, _>(world, aims, *batch, None, false, show_one)).collect();
+        progress(group.iter().map(|batch| batch.count).sum());
         for sent in done {
             shown.rays += sent.rays;
             shown.unmatched += sent.unmatched;

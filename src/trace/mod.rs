@@ -44,6 +44,6 @@ pub use merge::{gathered_photons, reached_places};
 pub use method::{LightPass, MapPasses, Method, Transport};
 pub use pilot::{PhotonWorth, SampleWorth, photons_worth, samples_worth};
 pub use probe::{Probe, probe};
-pub use render::{Report, render};
+pub use render::{Report, render, work};
 pub use spread::{COLORS_NM, Spread, spread};
 pub use world::World;

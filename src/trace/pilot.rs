@@ -69,7 +69,7 @@ impl InLanes for Sending<'_> {
         let (mut photons, mut rays) = (0, 0);
         for image in 0..IMAGES {
             world.method.seed = (self.world.method.seed ^ SEED).wrapping_add(image);
-            let shown = light_pass::show::<N>(&world);
+            let shown = light_pass::show::<N>(&world, &|_| ());
             (photons, rays) = (photons + shown.photons, rays + shown.rays);
             let values = || shown.pixels.iter().flatten().copied().enumerate();
             sum.resize(3 * shown.pixels.len(), 0.0);

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
+use super::aims::Aims;
 use super::light_pass::{self, Shown};
 use super::merge::{self, Photons};
 use super::tally::Tally;
@@ -43,10 +44,19 @@ pub struct Report {
     pub photons: u64,
 }
 
-/// Renders the world's image, or the part of it that is asked for. `progress` is told how many camera samples
-/// are done, from any thread.
+/// Renders the world's image, or the part of it that is asked for. `progress` is told how many camera samples and photons are
+/// done, from any thread; in the end they are [`work`].
 pub fn render(world: &World, progress: &(dyn Fn(u64) + Sync)) -> (Film, Report) {
     in_lanes(&world.method.basis, Render { world, progress })
+}
+
+/// How many camera samples and photons an image takes.
+pub fn work(world: &World) -> u64 {
+    let window = world.scene.film.window();
+    let samples = u64::from(window.width) * u64::from(window.height) * u64::from(world.method.samples);
+    let passes = world.method.light_pass.as_ref().and_then(|pass| pass.map).map_or(0, |map| u64::from(map.count));
+    let photons = |aims: &Option<Aims>| aims.as_ref().map_or(0, Aims::photons);
+    samples + photons(&world.aims) + passes * photons(&world.map_aims)
 }
 
 struct Render<'a> {
@@ -64,7 +74,7 @@ impl InLanes for Render<'_> {
 fn render_lanes<const N: usize>(world: &World, progress: &(dyn Fn(u64) + Sync)) -> (Film, Report) {
     let settings = world.scene.film;
     let window = settings.window();
-    let shown = light_pass::show::<N>(world);
+    let shown = light_pass::show::<N>(world, progress);
     let corners = (0..window.height)
         .step_by(TILE as usize)
         .flat_map(|y| (0..window.width).step_by(TILE as usize).map(move |x| [x, y]));
@@ -78,6 +88,7 @@ fn render_lanes<const N: usize>(world: &World, progress: &(dyn Fn(u64) + Sync)) 
         let photons = merge::photons::<N>(world, pass);
         if let Some(photons) = &photons {
             report.add_photons(photons);
+            progress(photons.sent);
         }
         let [first, end] =
             [pass, pass + 1].map(|pass| (u64::from(pass) * u64::from(world.method.samples) / u64::from(passes)) as u32);
