@@ -4,8 +4,8 @@
     python tools/planted.py --only schlick  # one
     python tools/planted.py --check         # only whether every patch of tools/planted still applies
 
-Copies the source to a folder below target/planted, applies a patch, builds and runs tools/validate.py --quick; where the
-book cannot see a bug, because no scene file reaches that code, the named Rust test. Prints bug -> the rows and tests
+Copies the source to a folder below target/planted, applies a patch, builds and runs tools/validate.py --quick; where
+the book cannot see a bug, because no scene file reaches that code, the named Rust test. Prints bug -> the rows and tests
 that turned red. Exit code 1 if a bug stays unseen or a patch does not apply.
 """
 
