@@ -4,8 +4,8 @@
     python tools/planted.py --only schlick  # one
     python tools/planted.py --check         # only whether every patch of tools/planted still applies
 
-Copies the source to a folder below target/planted, applies a patch, builds and runs tools/validate.py --quick; where the
-book cannot see a bug, because no scene file reaches that code, the named Rust test. Prints bug -> the rows and tests
+Copies the source to a folder below target/planted, applies a patch, builds and runs tools/validate.py --quick; where
+the book cannot see a bug, because no scene file reaches that code, the named Rust test. Prints bug -> the rows and tests
 that turned red. Exit code 1 if a bug stays unseen or a patch does not apply.
 """
 
@@ -145,11 +145,8 @@ def main(words=None):
         except RuntimeError as error:
             red, problems = [], [*problems, f"{name}: {error}"]
         unseen += [] if red else [name]
-        more = f", and {len(red) - 3} more" if len(red) > 3 else ""
-        print(
-            f"{name:30} {BUGS[name].words}\n{'':30}   {len(red)} red: {'; '.join(red[:3]) or 'NOTHING'}{more}",
-            flush=True,
-        )
+        told = red[:: -(-len(red) // 3)] if red else ["NOTHING"]  # three from all over the book
+        print(f"{name:30} {BUGS[name].words}\n{'':30}   {len(red)} red, such as {'; '.join(told)}", flush=True)
     print("every bug is seen" if not unseen else "", *problems, *unseen, sep="\n  UNSEEN: ")
     return int(bool(unseen or problems))
 

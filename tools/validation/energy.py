@@ -80,6 +80,23 @@ def lossless(quick):
             )
 
 
+def heroes(quick):
+    """Dispersive glass whose wavelengths part: fixed lanes and drawn ones share no path, and together they see all."""
+    for name, body in (("N-SF11", "sphere"), ("diamond", "sphere"), ("N-BK7", "cube")):
+        yield furnace(
+            f"clear {body} of {name}, drawn wavelengths",
+            glass(name),
+            body,
+            1.0,
+            "L = 1 in every channel",
+            0.95,
+            "wavelengths that go on alone without the weight of those that end",
+            quick,
+            samples=1024,
+            model="hero",
+        )
+
+
 def inside_glass(quick):
     """The radiance inside a body is n^2 times that outside."""
     for index in (1.333, 1.5, 2.42):
@@ -221,5 +238,5 @@ def rough_glasses(quick):
 
 
 def rows(quick):
-    for part in (lossless, inside_glass, matte, plastics, metals, rough_glasses, plates.rows, rooms.rows):
+    for part in (lossless, heroes, inside_glass, matte, plastics, metals, rough_glasses, plates.rows, rooms.rows):
         yield from part(quick)
