@@ -60,21 +60,17 @@ pub(super) fn send<const N: usize, T>(
     let mut tracer = Tracer::<N>::new(world).with_transport(PHOTONS);
     let (mut kept, mut places) = (Vec::new(), Vec::new());
     let light = aims.aims[batch.aim].light;
-    // Of four numbers that are spread together, a point needs two for the ray.
+    // Ways and wavelengths matter more than where on a small lamp they begin, so theirs are the numbers spread best.
     let extended = !matches!(world.scene.lights[light], Light::Point(_) | Light::Spot(_));
     for photon in batch.first..batch.first + batch.count {
         let key = [batch.aim as u32, (photon >> 32) as u32];
         let sampler = Sampler::new(batch.seed, key, photon as u32);
         let u = sampler.four(BranchKey::CAMERA, RAY);
-        let wavelength = if extended && world.method.basis.draws_wavelengths() && shared.is_none() {
-            sampler.four_more(BranchKey::CAMERA, RAY)[0]
-        } else {
-            u[2]
-        };
+        let more = if extended { sampler.four_more(BranchKey::CAMERA, RAY)[0] } else { 0.0 };
         let place = aims.place(batch.aim, [u[0], u[1]]);
         let before = kept.len();
-        if let Some(emitted) = aims.emit(&world.scene, batch.aim, place, [u[2], u[3]]) {
-            let own = || world.method.basis.draw(wavelength);
+        if let Some(emitted) = aims.emit(&world.scene, batch.aim, place, [u[3], more]) {
+            let own = || world.method.basis.draw(u[2]);
             let draw = shared.cloned().unwrap_or_else(own);
             let around = || Media::around(world, emitted.ray.origin, emitted.ray.direction);
             let media = world.light_media[light].unwrap_or_else(around);

@@ -126,8 +126,9 @@ fn follow(world: &World, draw: &Draw<4>, lane: usize, ray: Ray, media: Media, sa
                 let facets = glass.roughness.interface().map(|rough| rough.facets());
                 let facet = facets.map_or(normal, |facets| visible(facets, wo, normal, across));
                 let interface = Interface::new(n1, n2, wo.dot(facet));
-                // The first color's reflectance decides for both.
-                let chance = Interface::new(indices[0][0], indices[1][0], wo.dot(facet)).reflectance;
+                // The first color's reflectance decides for both, but where it is reflected totally: there the edge has colors.
+                let first = Interface::new(indices[0][0], indices[1][0], wo.dot(facet));
+                let chance = if first.transmittance == 0.0 { interface.reflectance } else { first.reflectance };
                 let (direction, side) = if n1 != n2 && (interface.transmittance == 0.0 || u < chance) {
                     (reflect(wo, facet), 1.0)
                 } else {
