@@ -88,7 +88,9 @@ fn wavelengths(basis: &Basis) -> String {
 fn provenance(scene: &Scene<Curve>, plan: &Plan, non_finite: u64) -> Provenance {
     let text = |text: &str| Fact::Text(text.to_owned());
     let projection = scene.camera.projection().name();
-    let photons = plan.method.light_pass.as_ref().map(|pass| ("photons", Fact::Count(pass.photons)));
+    let pass = plan.method.light_pass.as_ref();
+    let photons = pass.map(|pass| ("photons", Fact::Count(pass.photons)));
+    let blur = pass.and_then(|pass| pass.map).map(|map| ("photonRadius", text(&format!("{:.3} pixels", map.radius))));
     Provenance {
         facts: [
             ("version", text(env!("CARGO_PKG_VERSION"))),
@@ -104,6 +106,7 @@ fn provenance(scene: &Scene<Curve>, plan: &Plan, non_finite: u64) -> Provenance 
         ]
         .into_iter()
         .chain(photons)
+        .chain(blur)
         .collect(),
     }
 }

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use crate::light::{Light, LightId};
 use crate::scene::Scene;
-use crate::spectrum::{Curve, Emission};
+use crate::spectrum::{Curve, Emission, apply};
 use crate::trace::{PhotonWorth, SampleWorth, World, photons_worth, samples_worth};
 
 /// Of a lamp's radiance, what the camera sees of it by way of a smooth surface and one that scatters: about half.
@@ -54,9 +54,14 @@ pub(super) fn weigh(scene: &Scene<Curve>, world: &World) -> Worth {
     let gain = total(0) / total(if best == 0 { known.len() } else { best });
     Worth {
         lights: known[..best].iter().map(|(photons, _)| photons.light).collect(),
-        photons: known[..best].iter().map(of_light).sum::<f64>().clamp(FEWEST, MOST),
+        photons: rounded(known[..best].iter().map(of_light).sum::<f64>().clamp(FEWEST, MOST)),
         gain: (gain.is_finite() && !known.is_empty()).then_some(gain),
     }
+}
+
+/// The nearest power of the square root of 2: the least of time x variance is flat, and rounding must not change an image.
+fn rounded(photons: f64) -> f64 {
+    libm::exp2(0.5 * (2.0 * libm::log2(photons)).round())
 }
 
 /// The least product of time and variance where the first lights send photons.
@@ -67,7 +72,7 @@ fn product(samples: &SampleWorth, known: &[(PhotonWorth, f64)], sent: usize) -> 
     root * root
 }
 
-/// The film color of a light's radiance; none of one that has no extent.
+/// XYZ of a light's radiance; none of one that has no extent.
 fn radiance(scene: &Scene<Curve>, light: LightId) -> Option<[f64; 3]> {
     let light = &scene.lights[light];
     let factor = match light {
@@ -78,5 +83,7 @@ fn radiance(scene: &Scene<Curve>, light: LightId) -> Option<[f64; 3]> {
         }
         _ => return None,
     };
-    Some(Emission::new(light.emission(), scene.film.color_space).color().map(|x| x * factor))
+    let space = scene.film.color_space;
+    let color = Emission::new(light.emission(), space).color().map(|x| x * factor);
+    Some(apply(&space.to_xyz(), color))
 }

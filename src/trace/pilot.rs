@@ -1,4 +1,4 @@
-//! What photons and camera samples are worth, learned from a few of both.
+//! What photons and camera samples are worth, learned from a few of both; in XYZ, so that it is the same in every color space.
 
 use super::World;
 use super::light_pass;
@@ -7,13 +7,14 @@ use super::tracer::Tracer;
 use super::width::{InLanes, in_lanes};
 use crate::light::LightId;
 use crate::math::Sampler;
+use crate::spectrum::apply;
 
 /// What one light's photons bring to the whole image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PhotonWorth {
     /// The light that sends them.
     pub light: LightId,
-    /// Film values, summed over all pixels, of all light that they bring.
+    /// XYZ, summed over all pixels, of all light that they bring.
     pub brings: [f64; 3],
     /// Variance of an image by n photons, summed over pixels and channels, times n.
     pub variance: f64,
@@ -65,13 +66,14 @@ impl InLanes for Sending<'_> {
         for aim in aims.iter_mut() {
             aim.photons = (aim.photons as f64 * PHOTONS as f64 / all as f64).round().max(1.0) as u64;
         }
+        let to_xyz = world.scene.film.color_space.to_xyz();
         let (mut sum, mut squares) = (Vec::new(), Vec::new());
         let (mut photons, mut rays) = (0, 0);
         for image in 0..IMAGES {
             world.method.seed = (self.world.method.seed ^ SEED).wrapping_add(image);
             let shown = light_pass::show::<N>(&world, &|_| ());
             (photons, rays) = (photons + shown.photons, rays + shown.rays);
-            let values = || shown.pixels.iter().flatten().copied().enumerate();
+            let values = || shown.pixels.iter().flat_map(|rgb| apply(&to_xyz, *rgb)).enumerate();
             sum.resize(3 * shown.pixels.len(), 0.0);
             squares.resize(3 * shown.pixels.len(), 0.0);
             values().for_each(|(i, x)| sum[i] += x);
@@ -103,6 +105,7 @@ impl InLanes for Sampling<'_> {
         let world = self.world;
         let mut tracer = Tracer::<N>::new(world);
         let film = world.scene.film;
+        let to_xyz = film.color_space.to_xyz();
         let seed = world.method.seed ^ SEED;
         let mut variances = Vec::new();
         for place in 0..SIDE * SIDE {
@@ -110,14 +113,14 @@ impl InLanes for Sampling<'_> {
             let (x, y) = (spread(place % SIDE, film.width), spread(place / SIDE, film.height));
             let taken = (0..SAMPLES).map(|number| {
                 let sampler = Sampler::new(seed.wrapping_add(u64::from(number)), [x, y], 0);
-                sample(world, &mut tracer, &sampler, x, y).rgb
+                apply(&to_xyz, sample(world, &mut tracer, &sampler, x, y).rgb)
             });
-            let taken: Vec<[f64; 3]> = taken.filter(|rgb| rgb.iter().all(|x| x.is_finite())).collect();
+            let taken: Vec<[f64; 3]> = taken.filter(|xyz| xyz.iter().all(|x| x.is_finite())).collect();
             let count = taken.len().max(2) as f64;
             let mut variance = 0.0;
             for channel in 0..3 {
-                let mean = taken.iter().map(|rgb| rgb[channel]).sum::<f64>() / count;
-                let squares = taken.iter().map(|rgb| (rgb[channel] - mean) * (rgb[channel] - mean));
+                let mean = taken.iter().map(|xyz| xyz[channel]).sum::<f64>() / count;
+                let squares = taken.iter().map(|xyz| (xyz[channel] - mean) * (xyz[channel] - mean));
                 variance += squares.sum::<f64>() / (count - 1.0);
             }
             variances.push(variance);
