@@ -23,7 +23,7 @@ import numpy as np
 
 SCENES = Path(__file__).resolve().parent.parent / "scenes"
 MEASURED = SCENES / "pictures/measured.json"
-ORDER = "gem rainbow lens prism water metals illuminants still_life large/instances large/landscape cornell smallpt classic spheres".split()
+ORDER = "gem rainbow water pool lens prism metals illuminants still_life large/instances large/landscape cornell smallpt classic spheres".split()
 
 HEAD = """# The gallery
 
@@ -66,8 +66,10 @@ def make():
     points, faces, uv = shapes.tube()
     shapes.write_ply(meshes / "straw.ply", points, faces, uv=uv)
     shapes.write_ply(meshes / "sweep.ply", *shapes.sweep())
+    shapes.write_ply(meshes / "waves.ply", *shapes.block(shapes.waves(), 5.2, 5.2, -1.5))
     textures.write_png(images / "stripes.png", textures.stripes())
     textures.write_png(images / "wood.png", textures.wood())
+    textures.write_png(images / "tiles.png", textures.tiles())
     textures.write_png(images / "chart.png", textures.chart())
     textures.write_png(images / "painting.png", textures.painting())
     textures.write_hdr(images / "evening.hdr", textures.sky())

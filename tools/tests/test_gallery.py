@@ -61,7 +61,8 @@ def lathed():
     return [(name, *shapes.lathe(profile, 24)[:2]) for name, profile in profiles.items()]
 
 
-BODIES = [("brilliant", *shapes.brilliant()), ("straw", *shapes.tube()[:2]), *lathed()]
+WAVES = shapes.block(shapes.waves(9), 5.2, 5.2, -1.5)
+BODIES = [("waves", *WAVES[:2]), ("brilliant", *shapes.brilliant()), ("straw", *shapes.tube()[:2]), *lathed()]
 
 
 @pytest.mark.parametrize(("points", "faces"), [body[1:] for body in BODIES], ids=[body[0] for body in BODIES])
