@@ -206,7 +206,7 @@ def waves(size=65, width=5.2):
     random, heights = np.random.default_rng(5), np.zeros((size, size))
     for length in np.geomspace(1.1, 0.4, 12):
         turn, phase = random.uniform(0, 2 * np.pi, 2)
-        heights += 0.006 * length * np.sin(2 * np.pi * (x * np.cos(turn) + z * np.sin(turn)) / length + phase)
+        heights += 0.007 * length * np.sin(2 * np.pi * (x * np.cos(turn) + z * np.sin(turn)) / length + phase)
     return heights
 
 
