@@ -210,7 +210,7 @@ def readme():
         if needs_making(name):
             text += "python tools/gallery.py make\n"
         text += f"render --exr scenes/{name}.toml\n```\n"
-        if name in measured:
+        if "plan" in measured.get(name, {}):
             samples, seconds, plan = (measured[name][key] for key in ("samples", "seconds", "plan"))
             text += f"\nAbout {max(1, round(seconds))} s; the picture shows {samples} samples. The plan: {plan}.\n"
     return text
