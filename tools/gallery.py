@@ -25,6 +25,7 @@ import numpy as np
 
 SCENES = Path(__file__).resolve().parent.parent / "scenes"
 MEASURED = SCENES / "pictures/measured.json"
+FIRST = "rainbow"  # the picture on top of README.md, scenes/rainbow.png
 ORDER = "gem rainbow water pool lens prism metals illuminants still_life large/instances large/landscape cornell smallpt classic spheres".split()
 
 HEAD = """# The gallery
@@ -150,6 +151,8 @@ def render_picture(name, quick):
         render.write(scene, Path(folder) / "scene.exr", threads=2, samples=share)
         seconds = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
         rgb = render.read(Path(folder) / "scene.exr").rgb
+    if name == FIRST and not quick:
+        textures.write_png(SCENES / f"{name}.png", shrink(rgb, 720))
     picture = SCENES / f"pictures/{Path(name).name}.png"
     for width in (480, 440, 400, 360, 320, 280):
         textures.write_png(picture, shrink(rgb, width))
