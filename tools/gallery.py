@@ -31,7 +31,7 @@ ORDER = "gem rainbow water pool lens prism metals illuminants still_life large/i
 HEAD = """# The gallery
 
 Written by `tools/gallery.py`. Times are processor time divided by two, for two cores, at the scene's own size and samples (in proportion,
-where a picture shows fewer); the plan's words are the first line of `render --plan`. `--samples 16` is enough for a quick look. Meshes and
+where a picture shows fewer); the plan's words are those of `render --plan` on color and photons. `--samples 16` is enough for a quick look. Meshes and
 images come from `python tools/gallery.py make`; only those of the landscape have to be made before rendering.
 
 The error is the relMSE of noise, the mean of (x - mean)^2 / (mean^2 + 0.01) over pixels and channels, from two renders with different seeds of
@@ -158,7 +158,12 @@ def render_picture(name, quick):
         textures.write_png(picture, shrink(rgb, width))
         if picture.stat().st_size <= 150_000:
             break
-    return {"samples": share, "seconds": round(seconds / 2 * samples / share, 1), "plan": plan.splitlines()[0]}
+    return {"samples": share, "seconds": round(seconds / 2 * samples / share, 1), "plan": words(plan)}
+
+
+def words(plan):
+    """What the page says of a plan: the model of color, and the photons if there are any."""
+    return ". ".join(line for line in plan.splitlines() if line.startswith(("model ", "light pass: ", "photon map: ")))
 
 
 def reduced(name, share=5):

@@ -152,7 +152,7 @@ def water(level=0.86, overlap=0.012):
     return bottom + [(wall(y), y) for y in (0.35, 0.6, level)] + rise + [(0, level)]
 
 
-def tube(radius=0.04, wall=0.006, length=1.9):
+def tube(radius=0.04, wall=0.006, length=1.5):
     """A drinking straw along +y, with texture coordinates: round it and along it."""
     outline = [(radius, 0), (radius, length), (radius - wall, length), (radius - wall, 0), (radius, 0)]
     points, faces, uv, segments = [], [], [], 48
