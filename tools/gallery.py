@@ -31,8 +31,8 @@ ORDER = "gem rainbow water pool lens prism metals illuminants still_life large/i
 HEAD = """# The gallery
 
 Written by `tools/gallery.py`. Times are processor time divided by two, for two cores, at the scene's own size and samples (in proportion,
-where a picture shows fewer); the plan's words are those of `render --plan` on color and photons. `--samples 16` is enough for a quick look. Meshes and
-images come from `python tools/gallery.py make`; only those of the landscape have to be made before rendering.
+where a picture shows fewer); the plan's words are those of `render --plan` on color and photons. `--samples 16` is enough for a quick look.
+Meshes and images come from `python tools/gallery.py make`; only those of the landscape have to be made before rendering.
 
 The error is the relMSE of noise, the mean of (x - mean)^2 / (mean^2 + 0.01) over pixels and channels, from two renders with different seeds of
 a fifth of the width. The last column is the time that 640 x 360 pixels take to an error of 0.01, were both in proportion to the samples.
