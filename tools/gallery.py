@@ -35,7 +35,8 @@ where a picture shows fewer); the plan's words are those of `render --plan` on c
 Meshes and images come from `python tools/gallery.py make`; only those of the landscape have to be made before rendering.
 
 The error is the relMSE of noise, the mean of (x - mean)^2 / (mean^2 + 0.01) over pixels and channels, from two renders with different seeds of
-a fifth of the width, or half where photons are kept in a map. The last column is the time that 640 x 360 pixels take to an error of 0.01, were both in proportion to the samples.
+a fifth of the width, or half where photons are kept in a map. The last column is the time that 640 x 360 pixels take to an error of 0.01, were
+both in proportion to the samples.
 """
 
 
