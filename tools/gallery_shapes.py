@@ -152,7 +152,7 @@ def water(level=0.86, overlap=0.012):
     return bottom + [(wall(y), y) for y in (0.35, 0.6, level)] + rise + [(0, level)]
 
 
-def tube(radius=0.04, wall=0.006, length=1.9):
+def tube(radius=0.04, wall=0.006, length=1.5):
     """A drinking straw along +y, with texture coordinates: round it and along it."""
     outline = [(radius, 0), (radius, length), (radius - wall, length), (radius - wall, 0), (radius, 0)]
     points, faces, uv, segments = [], [], [], 48
@@ -198,6 +198,39 @@ def sheet(heights, width, depth):
     corner = (np.arange(rows - 1)[:, None] * columns + np.arange(columns - 1)).reshape(-1)
     faces = np.concatenate([np.stack([corner, corner + columns, corner + 1], 1), np.stack([corner + 1, corner + columns, corner + columns + 1], 1)])
     return points, faces, np.stack([s, 1 - t], axis=-1).reshape(-1, 2)
+
+
+def waves(size=65, width=5.2):
+    """Heights of water in a pool, `width` x `width`: twelve waves that cross, all equally steep, from 1.1 to 0.4 long."""
+    x, z = np.meshgrid(np.linspace(0, width, size), np.linspace(0, width, size))
+    random, heights = np.random.default_rng(5), np.zeros((size, size))
+    for length in np.geomspace(1.1, 0.4, 12):
+        turn, phase = random.uniform(0, 2 * np.pi, 2)
+        heights += 0.007 * length * np.sin(2 * np.pi * (x * np.cos(turn) + z * np.sin(turn)) / length + phase)
+    return heights
+
+
+def block(heights, width, depth, bottom):
+    """A sheet of heights as the top of a body with upright sides and a flat bottom, and its normals, smooth on top."""
+    points, faces, _ = sheet(heights, width, depth)
+    down, along = np.gradient(heights, depth / (heights.shape[0] - 1), width / (heights.shape[1] - 1))
+    normals = np.stack([-along, np.ones_like(heights), -down], axis=-1).reshape(-1, 3)
+    normals /= np.linalg.norm(normals, axis=1)[:, None]
+    place = np.arange(heights.size).reshape(heights.shape)
+    sides = [(place[-1], (0, 0, 1)), (place[::-1, -1], (1, 0, 0)), (place[0, ::-1], (0, 0, -1)), (place[:, 0], (-1, 0, 0))]
+    points, faces, normals = list(points), [tuple(face) for face in faces], list(normals)
+    middle = len(points)
+    points.append(np.array([0, bottom, 0]))
+    normals.append((0, -1, 0))
+    for edge, outward in sides:
+        first, count = len(points), len(edge)
+        upper = [points[k] for k in edge]
+        lower = [np.array([x, bottom, z]) for x, _, z in upper]
+        points += upper + lower + lower
+        normals += [outward] * (2 * count) + [(0, -1, 0)] * count
+        for k in range(first, first + count - 1):
+            faces += [(k, k + count, k + 1), (k + 1, k + count, k + count + 1), (k + 2 * count, middle, k + 2 * count + 1)]
+    return np.array(points), faces, np.array(normals)
 
 
 def sweep(width=30, front=14, back=-4, radius=3, height=14):

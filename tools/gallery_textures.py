@@ -54,6 +54,15 @@ def wood(size=256):
     return np.round(tone[..., None] * [0.56, 0.38, 0.25] * 128) / 128
 
 
+def tiles(size=256, count=8):
+    """Tiles of a pool with their joints, no two of the same blue; colors as sRGB."""
+    s, t = np.meshgrid(np.linspace(0, count, size, endpoint=False), np.linspace(0, count, size, endpoint=False))
+    shade = np.random.default_rng(11).uniform(-1, 1, (count, count))[t.astype(int), s.astype(int)]
+    image = np.array([0.55, 0.77, 0.80]) + shade[..., None] * [0.06, 0.045, 0.03]
+    joint = np.minimum(s % 1, t % 1) < 0.09
+    return np.where(joint[..., None], [0.86, 0.87, 0.84], image)
+
+
 def chart(size=512):
     """A test chart, white on black: a checkerboard and two dartboards; gray."""
     x, y = np.meshgrid(np.linspace(-2, 2, 2 * size), np.linspace(1, -1, size))

@@ -3,6 +3,8 @@
     pytest tools/tests/test_gallery.py
 """
 
+import json
+import tomllib
 from collections import Counter
 
 import gallery
@@ -38,6 +40,27 @@ def test_every_scene_has_a_small_picture():
         assert 0 < (gallery.SCENES / f"pictures/{name.split('/')[-1]}.png").stat().st_size <= 150_000, name
 
 
+def test_every_scene_reaches_an_error_of_a_hundredth_within_three_minutes_at_640_x_360():
+    measured = json.loads(gallery.MEASURED.read_text("utf-8"))
+    for name in gallery.scenes():
+        assert measured[name]["error"] <= 0.01, f"{name}: more samples, or run python tools/gallery.py errors {name}"
+        assert gallery.seconds_to_bar(name, measured[name]) <= 180, name
+
+
+def test_the_noise_of_two_renders_is_their_variance_over_the_square_of_what_they_show():
+    random = np.random.default_rng(1)
+    first, second = (3 + random.normal(0, 0.2, (200, 200, 3)) for _ in range(2))
+    # The mean of 120 000 squares is uncertain by sqrt(2 / 120 000) = 0.4 %; that the mean is noisy too (0.02 / 9) adds 3 x 0.02 / 9 = 0.7 %.
+    assert gallery.noise(first, second) == pytest.approx(0.04 / 9.01, rel=0.03)
+
+
+def test_a_reduced_scene_keeps_its_shape_and_finds_its_files():
+    for name in gallery.scenes():
+        film = [tomllib.loads(text)["film"] for text in ((gallery.SCENES / f"{name}.toml").read_text("utf-8"), gallery.reduced(name))]
+        assert film[0]["width"] // 5 == film[1]["width"] and film[0]["height"] // 5 == film[1]["height"], name
+    assert str(gallery.SCENES / "meshes/waves.ply") in gallery.reduced("pool")
+
+
 def test_what_is_made_is_what_is_kept(made):
     kept = [path for folder in ("meshes", "textures", "large") for path in (made / folder).glob("*")]
     assert len(kept) >= 15
@@ -61,7 +84,8 @@ def lathed():
     return [(name, *shapes.lathe(profile, 24)[:2]) for name, profile in profiles.items()]
 
 
-BODIES = [("brilliant", *shapes.brilliant()), ("straw", *shapes.tube()[:2]), *lathed()]
+WAVES = shapes.block(shapes.waves(9), 5.2, 5.2, -1.5)
+BODIES = [("waves", *WAVES[:2]), ("brilliant", *shapes.brilliant()), ("straw", *shapes.tube()[:2]), *lathed()]
 
 
 @pytest.mark.parametrize(("points", "faces"), [body[1:] for body in BODIES], ids=[body[0] for body in BODIES])
