@@ -14,7 +14,7 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import NamedTuple
 
 import numpy as np
-from chart_scenes import Chart, Profile
+from chart_scenes import Chart, Profile, Series
 
 HALVES = (10_000, 20_000)
 
@@ -84,27 +84,47 @@ def converged(renderer, samples: int) -> Reference:
     return Reference(*(renderer.run(samples, seed)[0] for seed in HALVES))
 
 
+def or_none(label: str, render, *arguments):
+    """What a renderer makes, or nothing, with one line of what it said, where it fails: the others go on."""
+    try:
+        return render(*arguments)
+    except (RuntimeError, OSError, ValueError) as words:
+        last = (str(words).strip().splitlines() or [type(words).__name__])[-1]
+        print(f"{label} is left out, as it failed: {last.removeprefix(f'{label} failed: ')}", flush=True)
+        return None
+
+
+def repeat(renderer, one: Series, seed: int) -> list[tuple[np.ndarray, float]]:
+    """A picture and its seconds for every number of samples."""
+    return [renderer.run(samples, seed) for samples in one.samples]
+
+
 def measure(renderers: dict, chart: Chart, profile: Profile) -> dict[str, Measured]:
-    """Every series at every number of samples, in turn so that all meet the same machine.
+    """Every series at every number of samples, in turn so that all meet the same machine; none of one that fails.
 
     The converged pictures, whose time does not count, are rendered side by side."""
     series = {one.label: one for one in chart.series if one.label in renderers}
     seeded = [label for label, one in series.items() if one.renderer != "povray"]
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         longest = [profile.reference * series[label].samples[-1] for label in seeded]
-        found = pool.map(converged, (renderers[label] for label in seeded), longest)
-        references = dict(zip(seeded, found, strict=True))
+        found = pool.map(or_none, seeded, [converged] * len(seeded), (renderers[label] for label in seeded), longest)
+        references = {label: one for label, one in zip(seeded, found, strict=True) if one is not None}
+    if not references:
+        return {}
     common = references[chart.common if chart.common in references else next(iter(references))]
-    runs = {label: {samples: [] for samples in one.samples} for label, one in series.items()}
+    runs = {label: {n: [] for n in one.samples} for label, one in series.items()
+            if label in references or label not in seeded}  # fmt: skip
     for label, one in series.items():
-        if one.renderer == "mitsuba":
-            for samples in one.samples:
-                renderers[label].run(samples, 1000)  # compiles what is compiled for this length
+        if one.renderer == "mitsuba" and label in runs:
+            or_none(label, repeat, renderers[label], one, 1000) or runs.pop(label)  # compiles for each length
     for seed in range(1, profile.repeats + 1):
-        for label, own in runs.items():
+        for label, own in list(runs.items()):
             judge = common if chart.common else references.get(label, common)
-            for samples, results in own.items():
-                picture, seconds = renderers[label].run(samples, seed)
+            pictures = or_none(label, repeat, renderers[label], series[label], seed)
+            if pictures is None:
+                del runs[label]
+                continue
+            for results, (picture, seconds) in zip(own.values(), pictures, strict=True):
                 results.append((seconds, *error(picture, judge), error(picture, common)[0]))
     return {label: summary(own, references.get(label), common, label in seeded) for label, own in runs.items()}
 

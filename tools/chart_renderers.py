@@ -4,6 +4,7 @@
     picture, seconds = renderer.run(samples=64, seed=1)
 """
 
+import contextlib
 import glob
 import importlib.metadata
 import importlib.util
@@ -156,14 +157,16 @@ class Worker:
         return line
 
     def run(self, samples: int, seed: int) -> tuple[np.ndarray, float]:
-        self.process.stdin.write(f"{samples} {seed} {self.out}\n")
-        self.process.stdin.flush()
+        with contextlib.suppress(BrokenPipeError):  # one that has ended: its log says why
+            self.process.stdin.write(f"{samples} {seed} {self.out}\n")
+            self.process.stdin.flush()
         seconds = float(self.answer())
         return np.load(self.out), seconds
 
     def close(self) -> None:
         """Ends the process; one that does not end by itself is ended after some seconds."""
-        self.process.stdin.close()
+        with contextlib.suppress(BrokenPipeError):
+            self.process.stdin.close()
         try:
             self.process.wait(5)
         except subprocess.TimeoutExpired:
