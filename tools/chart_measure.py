@@ -115,8 +115,9 @@ def measure(renderers: dict, chart: Chart, profile: Profile) -> dict[str, Measur
     runs = {label: {n: [] for n in one.samples} for label, one in series.items()
             if label in references or label not in seeded}  # fmt: skip
     for label, one in series.items():
-        if one.renderer == "mitsuba" and label in runs:
-            or_none(label, repeat, renderers[label], one, 1000) or runs.pop(label)  # compiles for each length
+        if one.renderer == "mitsuba" and label in runs:  # which compiles what it runs for each length
+            if or_none(label, repeat, renderers[label], one, 1000) is None:
+                del runs[label]
     for seed in range(1, profile.repeats + 1):
         for label, own in list(runs.items()):
             judge = common if chart.common else references.get(label, common)

@@ -1,0 +1,105 @@
+"""What the measurements of a chart say in sentences: first the comparisons, then what judges them.
+
+    words_for(chart, {"Abbe": measured, "LuxCore": measured})
+"""
+
+import math
+
+import chart_words
+from chart_measure import Measured
+from chart_scenes import Chart
+
+SAME = 0.02  # converged pictures that differ by less show the same physics
+LOADS = ("abbe", "luxcore", "smallpt")  # renderers whose start is loading the scene and what they find ahead
+
+
+def takes_no_seed(measured: Measured) -> bool:
+    return math.isnan(measured.difference)
+
+
+def wavers(measured: Measured) -> bool:
+    return not takes_no_seed(measured) and not chart_words.steady(curve(measured))
+
+
+def curve(measured: Measured, key: str = "error") -> chart_words.Curve:
+    return [(point.cpu_seconds, getattr(point, key)) for point in measured.points]
+
+
+def floor(measured: Measured) -> str:
+    """What a converged picture differs by, or what it could differ by without our seeing it."""
+    if measured.difference > measured.unseen:
+        return chart_words.percent(measured.difference)
+    if measured.difference > SAME:
+        return f"{chart_words.percent(measured.difference)}, which few pixels or noise decide"
+    return f"less than {chart_words.percent(measured.unseen)}"
+
+
+def physics_words(label: str, measured: Measured, against: str, ours: Measured, flat_lamp: bool) -> str:
+    """How a converged picture differs from the common one, and what the common one would say."""
+    if takes_no_seed(measured):
+        best = chart_words.percent(min(point.common for point in measured.points))
+        return f"{label} takes no seed and is judged by the picture of {against}; its best point is {best} off."
+    words = f"The converged picture of {label} differs from that of {against} by {floor(measured)}"
+    if measured.difference > SAME:
+        lamp = ", its lamp being a flat disc in place of a sphere's tip" if flat_lamp else ""
+        return f"{words}{lamp}, so only its own picture judges it."
+    if wavers(measured) or wavers(ours):
+        return f"{words}."
+    theirs, mine = curve(measured, "common"), curve(ours, "common")
+    error = chart_words.levels_for(mine, theirs)[0]
+    ratio, sure = chart_words.ratio_at(error, mine, theirs)
+    note = "" if sure == "measured" else ", extrapolated"
+    return f"{words}; judged by the latter alone: {chart_words.times(ratio)} to {chart_words.percent(error)}{note}."
+
+
+def model_words(label: str, measured: Measured, against: str) -> str:
+    best = chart_words.percent(min(point.error for point in measured.points))
+    return f"{label}: converged, it is {floor(measured)} off {against}; its best point is {best} off."
+
+
+def start_words(name: str, ours: Measured, theirs: Measured) -> str:
+    """The ratio with the time before the first sample, where it is another one."""
+    error = chart_words.levels_for(curve(ours), curve(theirs))[0]
+    ratio = chart_words.ratio_at(error, curve(ours), curve(theirs))[0]
+    seconds = [chart_words.seconds_to(error, curve(one))[0] + one.start for one in (ours, theirs)]
+    whole = seconds[0] / seconds[1]
+    if max(ratio / whole, whole / ratio) < chart_words.TIE:
+        return ""
+    figures = " for ".join(f"{value:.2g} s" for value in seconds)
+    return f" With the start of both {name} takes {chart_words.times(whole)} ({figures})."
+
+
+def unsteady_words(name: str, ours: Measured, other: str, theirs: Measured) -> str:
+    """Where rare paths decide an error only what was met is told: who is better in less time."""
+    words = chart_words.unsteady_words(name if wavers(ours) else other)
+    if not wavers(ours):
+        seconds, best = min(curve(theirs), key=lambda point: point[1])
+        for when, error in curve(ours):
+            if error <= best and when <= seconds:
+                found = f"{chart_words.percent(best)} in {seconds:.2g} s; {name} has {chart_words.percent(error)}"
+                return f"{words}: no ratio is told. Its best is {found} in {when:.2g} s."
+    return f"{words}, so that nothing is said of {name} and {other}."
+
+
+def words_for(chart: Chart, found: dict[str, Measured]) -> list[str]:
+    """The chart in sentences: first the comparisons, then what judges them."""
+    first, *others = found
+    ours = found[first]
+    flat = {one.label for one in chart.series if one.flat_lamp}
+    renderers = {one.label: one.renderer for one in chart.series}
+    words = []
+    for label in others:
+        theirs = found[label]
+        if not chart.common and (wavers(ours) or wavers(theirs)):
+            words.append(unsteady_words(first, ours, label, theirs))
+            continue
+        words.append(chart_words.compare(first, curve(ours), label, curve(theirs)))
+        falls = chart_words.falling(curve(ours)) and chart_words.falling(curve(theirs))
+        if falls and not chart.common and renderers[label] in LOADS:
+            words[-1] += start_words(first, ours, theirs)
+    for label in others:
+        if chart.common:
+            words.append(model_words(label, found[label], first))
+        else:
+            words.append(physics_words(label, found[label], first, ours, label in flat))
+    return words
