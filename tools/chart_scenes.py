@@ -159,10 +159,10 @@ CHARTS = (
         PEERS / "beam.toml",
         (24, 48),
         (
-            abbe("Abbe", 16, 32, 64),
-            luxcore(64, 256, 1024, variant="BIDIRCPU", label="LuxCore, bidirectional"),
-            luxcore(64, 256, 1024, variant="PATHCPU hybrid", label="LuxCore, hybrid"),
-            luxcore(4, 16, 64, variant="PATHCPU photons", label="LuxCore, photon cache"),
+            abbe("Abbe", 16, 32),
+            luxcore(64, 256, variant="BIDIRCPU", label="LuxCore, bidirectional"),
+            luxcore(64, 256, variant="PATHCPU hybrid", label="LuxCore, hybrid"),
+            luxcore(4, 16, variant="PATHCPU photons", label="LuxCore, photon cache"),
         ),
     ),
     Chart(
