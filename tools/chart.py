@@ -7,10 +7,11 @@
     python tools/chart.py --only abbe --quick    # Abbe's own series alone
     python tools/chart.py --redraw               # pictures and words of what was measured last
 
-Writes into target/chart a PNG and an SVG for each chart, overview.png of the field, chart.csv and chart.json, and
-prints what the charts say in words. tools/chart_scenes.py says what is charted, tools/chart_measure.py what the error
-is and what counts as time. Every renderer runs on one thread and reads the same scene file, the others by way of
-tools/peers_*.py.
+Writes into target/chart a PNG and an SVG for each chart, overview.png of the field, chart.csv, chart.json and table.md,
+the table of benches/README.md, and prints what the charts say in words. A renderer that fails is told in a line and
+left out. tools/chart_scenes.py says what is charted, tools/chart_measure.py what the error is and what counts as time,
+tools/chart_findings.py what the words mean. Every renderer runs on one thread and reads the same scene file, the others
+by way of tools/peers_*.py.
 """
 
 import argparse
@@ -30,7 +31,7 @@ import chart_renderers
 import chart_scenes
 import chart_words
 import render
-from chart_findings import curve, floor, takes_no_seed, wavers, words_for
+from chart_findings import curve, floor, short, table_rows, takes_no_seed, wavers, words_for
 from chart_measure import Measured, Point, measure
 from chart_scenes import Chart, Profile
 
@@ -78,10 +79,6 @@ def recorded(series: dict) -> Measured:
     """A series as `record` wrote it."""
     points = [Point(**point) for point in series["points"]]
     return Measured(points, series["start_seconds"], None, *(series.get(name, math.nan) for name in CONVERGED))
-
-
-def short(label: str) -> str:
-    return label.removeprefix("Abbe, ")
 
 
 def panel_for(chart: Chart, found: dict[str, Measured]) -> chart_draw.Panel:
@@ -157,18 +154,25 @@ def overview(out: Path, panels: dict[str, chart_draw.Panel], note: str) -> None:
         chart_draw.draw_overview(wanted, out / "overview", note)
 
 
+def write_table(out: Path, rows: list[str]) -> None:
+    head = ["| scene | beside | time that Abbe takes | pictures apart |", "|---|---|---|---|"]
+    (out / "table.md").write_text("\n".join(head + rows) + "\n", "utf-8")
+
+
 def redraw(out: Path) -> None:
     """Pictures and words from what was measured before."""
     data = json.loads((out / "chart.json").read_text("utf-8"))
     charts = {chart.name: chart for chart in chart_scenes.CHARTS}
-    records, panels = [], {}
+    records, panels, rows = [], {}, []
     for one in data["scenes"]:
         chart, found = charts[one["name"]], {series["label"]: recorded(series) for series in one["series"]}
         panels[chart.name] = panel_for(chart, found)
         records.append(record(chart, found, words_for(chart, found)))
+        rows += table_rows(chart, found)
         print(f"\n== {chart.name}: {chart.title}", *records[-1]["words"], sep="\n")
         chart_draw.draw([panels[chart.name]], out / chart.name, data["made_by"])
     overview(out, panels, data["made_by"])
+    write_table(out, rows)
     write_data(out, data["versions"], data["made_by"], records)
 
 
@@ -208,7 +212,7 @@ def main() -> None:
     arguments.out.mkdir(parents=True, exist_ok=True)
     made_by = f"python tools/chart.py {' '.join(sys.argv[1:])}".strip()
     note = f"{made_by}, medians of {profile.repeats}, {platform.machine()}, {os.cpu_count()} cores, {load()}"
-    begun, records, panels = time.monotonic(), [], {}
+    begun, records, panels, rows = time.monotonic(), [], {}, []
     for chart in (chart_scenes.scaled(one, profile) for one in charts):
         print(f"\n== {chart.name}: {chart.title}, {chart.size[0]} x {chart.size[1]}", flush=True)
         found = run(chart, profile, arguments.only)
@@ -219,10 +223,12 @@ def main() -> None:
         panels[chart.name] = panel_for(chart, found)
         chart_draw.draw([panels[chart.name]], arguments.out / chart.name, note)
         records.append(record(chart, found, words))
+        rows += table_rows(chart, found)
         write_data(arguments.out, versions, note, records)
         if arguments.pictures:
             write_picture(arguments.out, chart, found)
     overview(arguments.out, panels, note)
+    write_table(arguments.out, rows)
     took = f"{time.monotonic() - begun:.0f} s, {processor_seconds():.0f} s of processor time"
     print(f"\nwrote {len(records)} charts, chart.csv and chart.json into {arguments.out} in {took}")
 

@@ -81,6 +81,41 @@ def unsteady_words(name: str, ours: Measured, other: str, theirs: Measured) -> s
     return f"{words}, so that nothing is said of {name} and {other}."
 
 
+def short(label: str) -> str:
+    return label.removeprefix("Abbe, ")
+
+
+def table_cell(ours: Measured, theirs: Measured) -> str:
+    """What of the other's time ours takes."""
+    mine, other = curve(ours), curve(theirs)
+    times = []
+    for error in chart_words.levels_for(mine, other):
+        ratio, sure = chart_words.ratio_at(error, mine, other)
+        note = "" if sure == "measured" else " (extrapolated)"
+        times.append((ratio, f"{chart_words.times(ratio)} to {chart_words.percent(error)}{note}"))
+    at = [error for error, _ in chart_words.crossings(mine, other)]
+    crossed = "".join(f"; they cross at {chart_words.percent(error)}" for error in at)
+    return f"{', '.join(words for _, words in times)}: {chart_words.rank(times[0][0])}{crossed}"
+
+
+def table_rows(chart: Chart, found: dict[str, Measured]) -> list[str]:
+    """The chart as rows of the table of benches/README.md: scene, beside whom, time that ours takes, pictures apart."""
+    first, *others = found
+    ours, rows = found[first], []
+    name = chart.title + (f": {short(first)}" if chart.common else "")
+    for label in others:
+        theirs = found[label]
+        if not chart.common and (wavers(ours) or wavers(theirs)):
+            said = unsteady_words(first, ours, label, theirs).partition(": no ratio is told. ")[2]
+            cell = "no ratio: rare bright paths" + (f". {said.removesuffix('.')}" if said else "")
+        else:
+            cell = table_cell(ours, theirs)
+        apart = "" if takes_no_seed(theirs) else floor(theirs).replace(", which few pixels or noise decide", " (noise)")
+        rows.append(f"| {name} | {short(label) if chart.common else label} | {cell} | {apart} |")
+        name = ""
+    return rows
+
+
 def words_for(chart: Chart, found: dict[str, Measured]) -> list[str]:
     """The chart in sentences: first the comparisons, then what judges them."""
     first, *others = found

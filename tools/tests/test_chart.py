@@ -146,6 +146,14 @@ def test_of_an_error_that_rare_paths_decide_only_what_was_met_is_told():
     assert chart_findings.unsteady_words("B", theirs, "A", ours).endswith("so that nothing is said of B and A.")
 
 
+def test_a_row_of_the_table_says_what_the_words_say():
+    one = chart_scenes.CHARTS[2]._replace(common=None)
+    found = {"A": measured_as(unbiased(2)), "B": measured_as(unbiased(1)), "C": measured_as([(1, 0.6), (4, 0.7)])}
+    first, second = chart_findings.table_rows(one, found)
+    assert first == "| Cornell box | B | 2 x to 20 %, 2 x to 50 %: behind | less than 1 % |"
+    assert second == "|  | C | no ratio: rare bright paths | less than 1 % |"
+
+
 def test_the_time_before_the_first_sample_is_told_where_it_changes_the_ratio():
     slow, fast = measured_as(unbiased(2), 10.0), measured_as(unbiased(1), 5.0)
     assert chart_findings.start_words("A", slow, fast) == ""
@@ -201,3 +209,5 @@ def test_a_tiny_chart_is_measured_drawn_and_written(tmp_path, monkeypatch, capsy
     chart.main()
     assert json.loads((tmp_path / "chart.json").read_text()) == data
     assert "Abbe" in (tmp_path / scene["svg"]).read_text() and (tmp_path / "overview.png").is_file()
+    table = (tmp_path / "table.md").read_text().splitlines()[2:]
+    assert len(table) == len(names) - 1 and all(row.count("|") == 5 for row in table)
