@@ -211,7 +211,7 @@ def main() -> None:
         return redraw(arguments.out)
     arguments.out.mkdir(parents=True, exist_ok=True)
     made_by = f"python tools/chart.py {' '.join(sys.argv[1:])}".strip()
-    note = f"{made_by}, medians of {profile.repeats}, {platform.machine()}, {os.cpu_count()} cores, {load()}"
+    note = f"{made_by}, {profile.repeats} repeats, {platform.machine()}, {os.cpu_count()} cores, {load()}"
     begun, records, panels, rows = time.monotonic(), [], {}, []
     for chart in (chart_scenes.scaled(one, profile) for one in charts):
         print(f"\n== {chart.name}: {chart.title}, {chart.size[0]} x {chart.size[1]}", flush=True)

@@ -57,16 +57,20 @@ def model_words(label: str, measured: Measured, against: str) -> str:
     return f"{label}: converged, it is {floor(measured)} off {against}; its best point is {best} off."
 
 
-def start_words(name: str, ours: Measured, theirs: Measured) -> str:
-    """The ratio with the time before the first sample, where it is another one."""
+def with_start(ours: Measured, theirs: Measured) -> tuple[float, float] | None:
+    """Seconds of both to an equal error with those before the first sample, where they change the ratio."""
     error = chart_words.levels_for(curve(ours), curve(theirs))[0]
     ratio = chart_words.ratio_at(error, curve(ours), curve(theirs))[0]
-    seconds = [chart_words.seconds_to(error, curve(one))[0] + one.start for one in (ours, theirs)]
-    whole = seconds[0] / seconds[1]
-    if max(ratio / whole, whole / ratio) < chart_words.TIE:
-        return ""
-    figures = " for ".join(f"{value:.2g} s" for value in seconds)
-    return f" With the start of both {name} takes {chart_words.times(whole)} ({figures})."
+    mine, other = (chart_words.seconds_to(error, curve(one))[0] + one.start for one in (ours, theirs))
+    change = mine / other / ratio
+    return (mine, other) if max(change, 1 / change) >= chart_words.TIE else None
+
+
+def start_words(name: str, ours: Measured, theirs: Measured) -> str:
+    if seconds := with_start(ours, theirs):
+        figures = " for ".join(f"{value:.2g} s" for value in seconds)
+        return f" With the start of both {name} takes {chart_words.times(seconds[0] / seconds[1])} ({figures})."
+    return ""
 
 
 def unsteady_words(name: str, ours: Measured, other: str, theirs: Measured) -> str:
@@ -102,6 +106,7 @@ def table_rows(chart: Chart, found: dict[str, Measured]) -> list[str]:
     """The chart as rows of the table of benches/README.md: scene, beside whom, time that ours takes, pictures apart."""
     first, *others = found
     ours, rows = found[first], []
+    renderers = {one.label: one.renderer for one in chart.series}
     name = chart.title + (f": {short(first)}" if chart.common else "")
     for label in others:
         theirs = found[label]
@@ -110,6 +115,8 @@ def table_rows(chart: Chart, found: dict[str, Measured]) -> list[str]:
             cell = "no ratio: rare bright paths" + (f". {said.removesuffix('.')}" if said else "")
         else:
             cell = table_cell(ours, theirs)
+            if not chart.common and renderers.get(label) in LOADS and (seconds := with_start(ours, theirs)):
+                cell += f"; with the start {chart_words.times(seconds[0] / seconds[1])}"
         apart = "" if takes_no_seed(theirs) else floor(theirs).replace(", which few pixels or noise decide", " (noise)")
         rows.append(f"| {name} | {short(label) if chart.common else label} | {cell} | {apart} |")
         name = ""

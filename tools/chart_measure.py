@@ -5,8 +5,8 @@
 The error is the root of the mean of (x - r)^2 / (r^2 + 0.01) over pixels and channels of linear Rec.709, unclamped,
 box filter; RMS is that of x - r. r is a converged picture of two halves of other seeds; (x - r)^2 is the product of
 the distances from both, which their noise does not raise. Seconds are user and system time: of the whole process, or,
-where a renderer lives in a Python process, of rendering there. What is taken before the first sample is found from
-the shortest and the longest run and told apart.
+where a renderer lives in a Python process, of rendering there. Of the repeats the
+least seconds count. What is taken before the first sample is found from the shortest and the longest run and told apart.
 """
 
 import os
@@ -20,7 +20,9 @@ HALVES = (10_000, 20_000)
 
 
 class Point(NamedTuple):
-    """Medians of the repeats at a number of samples. `common` is the error against the common reference."""
+    """The least seconds of the repeats at a number of samples, and medians of their errors.
+
+    `common` is the error against the common reference."""
 
     samples: int
     cpu_seconds: float
@@ -131,10 +133,14 @@ def measure(renderers: dict, chart: Chart, profile: Profile) -> dict[str, Measur
 
 
 def summary(runs: dict[int, list], reference: Reference | None, common: Reference, counts: bool) -> Measured:
-    """The medians of a series; `counts`: its seconds grow with its samples, so that a start can be found."""
+    """The points of a series; `counts`: its seconds grow with its samples, so that a start can be found."""
     medians = {samples: np.median(results, axis=0).tolist() for samples, results in runs.items()}
-    start = start_of(list(medians), [row[0] for row in medians.values()]) if counts else 0.0
-    points = [Point(samples, row[0] - start, *row[1:]) for samples, row in medians.items()]
+    least = [min(seconds for seconds, *_ in results) for results in runs.values()]  # other programs only add to them
+    start = start_of(list(runs), least) if counts else 0.0
+    points = [
+        Point(samples, seconds - start, *row[1:])
+        for (samples, row), seconds in zip(medians.items(), least, strict=True)
+    ]
     if reference is None:
         return Measured(points, start, None, float("nan"), float("nan"), float("nan"))
     brightness = float(np.nanmean(reference.mean) / np.nanmean(common.mean))

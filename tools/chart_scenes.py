@@ -160,7 +160,7 @@ CHARTS = (
         (24, 48),
         (
             abbe("Abbe", 16, 32),
-            luxcore(64, 256, variant="BIDIRCPU", label="LuxCore, bidirectional"),
+            luxcore(256, 1024, variant="BIDIRCPU", label="LuxCore, bidirectional"),
             luxcore(64, 256, variant="PATHCPU hybrid", label="LuxCore, hybrid"),
             luxcore(4, 16, variant="PATHCPU photons", label="LuxCore, photon cache"),
         ),
@@ -171,7 +171,7 @@ CHARTS = (
         PEERS / "mesh.toml",
         (64, 64),
         (
-            abbe("Abbe", 4, 16, 64, model='"rgb"'),
+            abbe("Abbe", 8, 32, 128, model='"rgb"'),
             mitsuba("llvm_ad_rgb", 16, 64, 256),
             mitsuba("scalar_rgb", 4, 16, 64),
             luxcore(4, 16, 64),

@@ -53,7 +53,7 @@ def test_a_curve_twice_as_slow_is_said_to_take_twice_the_time_at_both_ends():
 
 def test_curves_that_do_not_meet_in_error_are_extrapolated_and_say_so():
     words = chart_words.compare("A", [(1.0, 0.02), (4.0, 0.01)], "B", [(1.0, 0.4), (4.0, 0.2)])
-    assert words == "To 20 % A takes 0.0025 x the CPU time of B (0.01 s for 4 s, extrapolated): ahead."
+    assert words == "To 2 % A takes 0.0025 x the CPU time of B (1 s for 4e+02 s, extrapolated): ahead."
 
 
 def test_a_crossing_is_found_where_two_power_laws_meet():
