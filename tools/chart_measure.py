@@ -5,8 +5,8 @@
 The error is the root of the mean of (x - r)^2 / (r^2 + 0.01) over pixels and channels of linear Rec.709, unclamped,
 box filter; RMS is that of x - r. r is a converged picture of two halves of other seeds; (x - r)^2 is the product of
 the distances from both, which their noise does not raise. Seconds are user and system time: of the whole process, or,
-where a renderer lives in a Python process, of rendering there. Of the repeats the
-least seconds count. What is taken before the first sample is found from the shortest and the longest run and told apart.
+where a renderer lives in a Python process, of rendering there; the least of
+the repeats. What is taken before the first sample is found from the shortest and the longest run and told apart.
 """
 
 import os
