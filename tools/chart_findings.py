@@ -57,6 +57,12 @@ def model_words(label: str, measured: Measured, against: str) -> str:
     return f"{label}: converged, it is {floor(measured)} off {against}; its best point is {best} off."
 
 
+def out_of_reach(ours: Measured, theirs: Measured) -> float | None:
+    """Our largest error, where a biased series does not come to it: no time could be extrapolated."""
+    largest = max(error for _, error in curve(ours))
+    return largest if largest < min(error for _, error in curve(theirs)) else None
+
+
 def with_start(ours: Measured, theirs: Measured) -> tuple[float, float] | None:
     """Seconds of both to an equal error with those before the first sample, where they change the ratio."""
     error = chart_words.levels_for(curve(ours), curve(theirs))[0]
@@ -113,6 +119,8 @@ def table_rows(chart: Chart, found: dict[str, Measured]) -> list[str]:
         if not chart.common and (wavers(ours) or wavers(theirs)):
             said = unsteady_words(first, ours, label, theirs).partition(": no ratio is told. ")[2]
             cell = "no ratio: rare bright paths" + (f". {said.removesuffix('.')}" if said else "")
+        elif chart.common and (error := out_of_reach(ours, theirs)):
+            cell = f"it does not come to {chart_words.percent(error)}: ahead"
         else:
             cell = table_cell(ours, theirs)
             if not chart.common and renderers.get(label) in LOADS and (seconds := with_start(ours, theirs)):
@@ -134,6 +142,9 @@ def words_for(chart: Chart, found: dict[str, Measured]) -> list[str]:
         theirs = found[label]
         if not chart.common and (wavers(ours) or wavers(theirs)):
             words.append(unsteady_words(first, ours, label, theirs))
+            continue
+        if chart.common and (error := out_of_reach(ours, theirs)):
+            words.append(f"{label} does not come to {chart_words.percent(error)}, where {first} begins.")
             continue
         words.append(chart_words.compare(first, curve(ours), label, curve(theirs)))
         falls = chart_words.falling(curve(ours)) and chart_words.falling(curve(theirs))

@@ -154,6 +154,13 @@ def test_a_row_of_the_table_says_what_the_words_say():
     assert second == "|  | C | no ratio: rare bright paths | less than 1 % |"
 
 
+def test_a_biased_model_that_does_not_come_to_an_error_is_not_extrapolated():
+    one = chart_scenes.CHARTS[2]._replace(common="A")
+    found = {"A": measured_as([(1, 0.15), (4, 0.07)]), "B": measured_as([(1, 0.19), (4, 0.16)])}
+    assert chart_findings.words_for(one, found)[0] == "B does not come to 15 %, where A begins."
+    assert "it does not come to 15 %: ahead" in chart_findings.table_rows(one, found)[0]
+
+
 def test_the_time_before_the_first_sample_is_told_where_it_changes_the_ratio():
     slow, fast = measured_as(unbiased(2), 10.0), measured_as(unbiased(1), 5.0)
     assert chart_findings.start_words("A", slow, fast) == ""
