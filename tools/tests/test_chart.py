@@ -1,6 +1,6 @@
 """The chart of speed against accuracy: what it says of curves with known answers, and a tiny one, of Abbe and smallpt.
 
-    python -m pytest tools/tests/test_chart.py      # 3 seconds of one core
+    python -m pytest tools/tests/test_chart.py      # 4 seconds of one core
 """
 
 import csv
