@@ -91,9 +91,15 @@ def or_none(label: str, render, *arguments):
     try:
         return render(*arguments)
     except (RuntimeError, OSError, ValueError) as words:
-        last = (str(words).strip().splitlines() or [type(words).__name__])[-1]
-        print(f"{label} is left out, as it failed: {last.removeprefix(f'{label} failed: ')}", flush=True)
+        print(f"{label} is left out, as it failed: {reason(str(words).removeprefix(f'{label} failed: '))}", flush=True)
         return None
+
+
+def reason(said: str) -> str:
+    """The line that says why: the last one that speaks of an error, unless a signal came after; else the last one."""
+    lines = [line.strip() for line in said.splitlines() if line.strip()] or ["it said nothing"]
+    errors = [line for line in lines if "error" in line.lower()]
+    return errors[-1] if errors and "signal" not in lines[-1] else lines[-1]
 
 
 def repeat(renderer, one: Series, seed: int) -> list[tuple[np.ndarray, float]]:

@@ -153,7 +153,9 @@ class Worker:
     def answer(self) -> str:
         line = self.process.stdout.readline().strip()
         if not line:
-            raise RuntimeError(f"{self.label} failed: {self.log.read_text(errors='replace').strip()[-2000:]}")
+            code = self.process.wait()
+            ended = f"\nits process was ended by signal {-code}" if code < 0 else ""
+            raise RuntimeError(f"{self.label} failed: {self.log.read_text(errors='replace').strip()[-2000:]}{ended}")
         return line
 
     def run(self, samples: int, seed: int) -> tuple[np.ndarray, float]:

@@ -127,6 +127,13 @@ def test_a_renderer_that_fails_in_the_middle_is_told_in_a_line_and_the_others_go
     assert [one.points for one in found.values()] == [whole[name].points for name in found]
 
 
+def test_the_line_of_a_failure_is_the_one_that_says_why():
+    assert chart_measure.reason("loaded\nTraceback\nValueError: no such shape\n") == "ValueError: no such shape"
+    assert chart_measure.reason("error: no scene\nhelp: a scene is a file") == "error: no scene"
+    assert chart_measure.reason("error 1\nits process was ended by signal 9") == "its process was ended by signal 9"
+    assert chart_measure.reason("") == "it said nothing"
+
+
 def test_a_chart_whose_first_series_fails_is_still_made_and_one_without_any_is_empty(capsys):
     assert list(measured_with({"Abbe": 2})) == ["LuxCore", "Blender Cycles", "Mitsuba scalar, rgb"]
     labels = ("Abbe", "LuxCore", "Blender Cycles", "Mitsuba scalar, rgb")
