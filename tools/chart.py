@@ -7,10 +7,11 @@
     python tools/chart.py --only abbe --quick    # Abbe's own series alone
     python tools/chart.py --redraw               # pictures and words of what was measured last
 
-Writes into target/chart a PNG and an SVG for each chart, overview.png of the field, chart.csv and chart.json, and
-prints what the charts say in words. tools/chart_scenes.py says what is charted, tools/chart_measure.py what the error
-is and what counts as time. Every renderer runs on one thread and reads the same scene file, the others by way of
-tools/peers_*.py.
+Writes into target/chart a PNG and an SVG for each chart, overview.png of the field, chart.csv, chart.json and table.md,
+the table of benches/README.md, and prints what the charts say in words. A renderer that fails is told in a line and
+left out. tools/chart_scenes.py says what is charted, tools/chart_measure.py what the error is and what counts as time,
+tools/chart_findings.py what the words mean. Every renderer runs on one thread and reads the same scene file, the others
+by way of tools/peers_*.py.
 """
 
 import argparse
@@ -30,12 +31,12 @@ import chart_renderers
 import chart_scenes
 import chart_words
 import render
+from chart_findings import curve, floor, short, table_rows, takes_no_seed, wavers, words_for
 from chart_measure import Measured, Point, measure
 from chart_scenes import Chart, Profile
 
-SAME = 0.02  # converged pictures that differ by less show the same physics
 CONVERGED = ("difference", "unseen", "brightness")  # what chart.json keeps of a converged picture
-OVERVIEW = ("cornell", "smallpt", "mesh", "dispersion")
+OVERVIEW = ("cornell", "smallpt", "mesh", "caustic", "beam", "dispersion")
 
 
 def found_versions(charts: list[Chart]) -> tuple[dict[str, str], dict[str, str]]:
@@ -74,78 +75,10 @@ def run(chart: Chart, profile: Profile, only: list[str] | None = None) -> dict[s
                 renderer.close()
 
 
-def takes_no_seed(measured: Measured) -> bool:
-    return math.isnan(measured.difference)
-
-
-def wavers(measured: Measured) -> bool:
-    return not takes_no_seed(measured) and not chart_words.steady(curve(measured))
-
-
 def recorded(series: dict) -> Measured:
     """A series as `record` wrote it."""
     points = [Point(**point) for point in series["points"]]
     return Measured(points, series["start_seconds"], None, *(series.get(name, math.nan) for name in CONVERGED))
-
-
-def curve(measured: Measured, key: str = "error") -> chart_words.Curve:
-    return [(point.cpu_seconds, getattr(point, key)) for point in measured.points]
-
-
-def physics_words(label: str, measured: Measured, against: str, ours: Measured, flat_lamp: bool) -> str:
-    """How a converged picture differs from the common one, and what the common one would say."""
-    if takes_no_seed(measured):
-        best = chart_words.percent(min(point.common for point in measured.points))
-        return f"{label} takes no seed and is judged by the picture of {against}; its best point is {best} off."
-    words = f"The converged picture of {label} differs from that of {against} by {floor(measured)}"
-    if measured.difference > SAME:
-        lamp = ", its lamp being a flat disc in place of a sphere's tip" if flat_lamp else ""
-        return f"{words}{lamp}, so only its own picture judges it."
-    if wavers(measured) or wavers(ours):
-        return f"{words}."
-    theirs, mine = curve(measured, "common"), curve(ours, "common")
-    error = chart_words.levels_for(mine, theirs)[0]
-    ratio, sure = chart_words.ratio_at(error, mine, theirs)
-    note = "" if sure == "measured" else ", extrapolated"
-    return f"{words}; judged by the latter alone: {chart_words.times(ratio)} to {chart_words.percent(error)}{note}."
-
-
-def short(label: str) -> str:
-    return label.removeprefix("Abbe, ")
-
-
-def floor(measured: Measured) -> str:
-    """What a converged picture differs by, or what it could differ by without our seeing it."""
-    if measured.difference > measured.unseen:
-        return chart_words.percent(measured.difference)
-    if measured.difference > SAME:
-        return f"{chart_words.percent(measured.difference)}, which few pixels or noise decide"
-    return f"less than {chart_words.percent(measured.unseen)}"
-
-
-def model_words(label: str, measured: Measured, against: str) -> str:
-    best = chart_words.percent(min(point.error for point in measured.points))
-    return f"{label}: converged, it is {floor(measured)} off {against}; its best point is {best} off."
-
-
-def words_for(chart: Chart, found: dict[str, Measured]) -> list[str]:
-    """The chart in sentences: first the comparisons, then what judges them."""
-    first, *others = found
-    ours = found[first]
-    flat = {one.label for one in chart.series if one.flat_lamp}
-    words = []
-    for label in others:
-        unsteady = [] if chart.common else [name for name in (first, label) if wavers(found[name])]
-        if unsteady:
-            words.append(f"{chart_words.unsteady_words(unsteady[0])}, so that nothing is said of {first} and {label}.")
-        else:
-            words.append(chart_words.compare(first, curve(ours), label, curve(found[label])))
-    for label in others:
-        if chart.common:
-            words.append(model_words(label, found[label], first))
-        else:
-            words.append(physics_words(label, found[label], first, ours, label in flat))
-    return words
 
 
 def panel_for(chart: Chart, found: dict[str, Measured]) -> chart_draw.Panel:
@@ -221,18 +154,25 @@ def overview(out: Path, panels: dict[str, chart_draw.Panel], note: str) -> None:
         chart_draw.draw_overview(wanted, out / "overview", note)
 
 
+def write_table(out: Path, rows: list[str]) -> None:
+    head = ["| scene | beside | time that Abbe takes | pictures apart |", "|---|---|---|---|"]
+    (out / "table.md").write_text("\n".join(head + rows) + "\n", "utf-8")
+
+
 def redraw(out: Path) -> None:
     """Pictures and words from what was measured before."""
     data = json.loads((out / "chart.json").read_text("utf-8"))
     charts = {chart.name: chart for chart in chart_scenes.CHARTS}
-    records, panels = [], {}
+    records, panels, rows = [], {}, []
     for one in data["scenes"]:
         chart, found = charts[one["name"]], {series["label"]: recorded(series) for series in one["series"]}
         panels[chart.name] = panel_for(chart, found)
         records.append(record(chart, found, words_for(chart, found)))
+        rows += table_rows(chart, found)
         print(f"\n== {chart.name}: {chart.title}", *records[-1]["words"], sep="\n")
         chart_draw.draw([panels[chart.name]], out / chart.name, data["made_by"])
     overview(out, panels, data["made_by"])
+    write_table(out, rows)
     write_data(out, data["versions"], data["made_by"], records)
 
 
@@ -271,8 +211,8 @@ def main() -> None:
         return redraw(arguments.out)
     arguments.out.mkdir(parents=True, exist_ok=True)
     made_by = f"python tools/chart.py {' '.join(sys.argv[1:])}".strip()
-    note = f"{made_by}, medians of {profile.repeats}, {platform.machine()}, {os.cpu_count()} cores, {load()}"
-    begun, records, panels = time.monotonic(), [], {}
+    note = f"{made_by}, {profile.repeats} repeats, {platform.machine()}, {os.cpu_count()} cores, {load()}"
+    begun, records, panels, rows = time.monotonic(), [], {}, []
     for chart in (chart_scenes.scaled(one, profile) for one in charts):
         print(f"\n== {chart.name}: {chart.title}, {chart.size[0]} x {chart.size[1]}", flush=True)
         found = run(chart, profile, arguments.only)
@@ -283,10 +223,12 @@ def main() -> None:
         panels[chart.name] = panel_for(chart, found)
         chart_draw.draw([panels[chart.name]], arguments.out / chart.name, note)
         records.append(record(chart, found, words))
+        rows += table_rows(chart, found)
         write_data(arguments.out, versions, note, records)
         if arguments.pictures:
             write_picture(arguments.out, chart, found)
     overview(arguments.out, panels, note)
+    write_table(arguments.out, rows)
     took = f"{time.monotonic() - begun:.0f} s, {processor_seconds():.0f} s of processor time"
     print(f"\nwrote {len(records)} charts, chart.csv and chart.json into {arguments.out} in {took}")
 

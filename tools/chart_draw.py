@@ -15,8 +15,8 @@ from PIL import Image
 
 # Okabe and Ito 2008, whose colors color-blind eyes tell apart; Abbe's own series are blue.
 BLUES = ("#0072B2", "#56B4E9", "#004066")
-COLORS = {"mitsuba": ("#D55E00", "#E69F00", "#8c3d00"), "luxcore": ("#009E73",), "cycles": ("#CC79A7",)}
-COLORS |= {"smallpt": ("#000000",), "povray": ("#6b6b6b",)}
+COLORS = {"mitsuba": ("#D55E00", "#E69F00", "#8c3d00"), "luxcore": ("#009E73", "#00553D", "#5BC4A3")}
+COLORS |= {"cycles": ("#CC79A7",), "smallpt": ("#000000",), "povray": ("#6b6b6b",)}
 MODELS = {"rgb": "#E69F00", "8 bands": "#56B4E9", "12 bands": "#009E73", "16 bands": "#0072B2", "32 bands": "#CC79A7"}
 MODELS |= {"heroes": "#D55E00"}
 MARKERS = ("o", "s", "^", "D", "v", "P")

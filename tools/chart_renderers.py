@@ -4,6 +4,7 @@
     picture, seconds = renderer.run(samples=64, seed=1)
 """
 
+import contextlib
 import glob
 import importlib.metadata
 import importlib.util
@@ -152,18 +153,22 @@ class Worker:
     def answer(self) -> str:
         line = self.process.stdout.readline().strip()
         if not line:
-            raise RuntimeError(f"{self.label} failed: {self.log.read_text(errors='replace').strip()[-2000:]}")
+            code = self.process.wait()
+            ended = f"\nits process was ended by signal {-code}" if code < 0 else ""
+            raise RuntimeError(f"{self.label} failed: {self.log.read_text(errors='replace').strip()[-2000:]}{ended}")
         return line
 
     def run(self, samples: int, seed: int) -> tuple[np.ndarray, float]:
-        self.process.stdin.write(f"{samples} {seed} {self.out}\n")
-        self.process.stdin.flush()
+        with contextlib.suppress(BrokenPipeError):  # one that has ended: its log says why
+            self.process.stdin.write(f"{samples} {seed} {self.out}\n")
+            self.process.stdin.flush()
         seconds = float(self.answer())
         return np.load(self.out), seconds
 
     def close(self) -> None:
         """Ends the process; one that does not end by itself is ended after some seconds."""
-        self.process.stdin.close()
+        with contextlib.suppress(BrokenPipeError):
+            self.process.stdin.close()
         try:
             self.process.wait(5)
         except subprocess.TimeoutExpired:

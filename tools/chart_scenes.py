@@ -72,8 +72,8 @@ def mitsuba(variant: str, *samples: int, flat_lamp: bool = False) -> Series:
     return Series(label, "mitsuba", samples, variant, flat_lamp=flat_lamp)
 
 
-def luxcore(*samples: int, flat_lamp: bool = False) -> Series:
-    return Series("LuxCore", "luxcore", samples, "PATHCPU", flat_lamp=flat_lamp)
+def luxcore(*samples: int, variant: str = "PATHCPU", label: str = "LuxCore", flat_lamp: bool = False) -> Series:
+    return Series(label, "luxcore", samples, variant, flat_lamp=flat_lamp)
 
 
 def cycles(*samples: int, flat_lamp: bool = False) -> Series:
@@ -137,9 +137,9 @@ CHARTS = (
             abbe("Abbe", 4, 16, 64),
             abbe("Abbe, caustics by chance", 4, 16, 64, caustics='"off"'),
             mitsuba("llvm_ad_rgb", 16, 64, 256),
-            mitsuba("scalar_rgb", 4, 16, 64),
-            luxcore(4, 16, 64),
-            cycles(4, 16, 64),
+            mitsuba("scalar_rgb", 16, 64, 256),
+            luxcore(16, 64, 256),
+            cycles(16, 64, 256),
         ),
     ),
     Chart(
@@ -150,7 +150,19 @@ CHARTS = (
         (
             abbe("Abbe", 4, 16, 64),
             abbe("Abbe, caustics by chance", 4, 16, 64, caustics='"off"'),
-            luxcore(4, 16, 64),
+            luxcore(16, 64, 256),
+        ),
+    ),
+    Chart(
+        "beam",
+        "A beam 0.01 wide through a prism of N-SF11",
+        PEERS / "beam.toml",
+        (24, 48),
+        (
+            abbe("Abbe", 16, 32),
+            luxcore(256, 1024, variant="BIDIRCPU", label="LuxCore, bidirectional"),
+            luxcore(64, 256, variant="PATHCPU hybrid", label="LuxCore, hybrid"),
+            luxcore(4, 16, variant="PATHCPU photons", label="LuxCore, photon cache"),
         ),
     ),
     Chart(
@@ -159,7 +171,7 @@ CHARTS = (
         PEERS / "mesh.toml",
         (64, 64),
         (
-            abbe("Abbe", 4, 16, 64, model='"rgb"'),
+            abbe("Abbe", 8, 32, 128, model='"rgb"'),
             mitsuba("llvm_ad_rgb", 16, 64, 256),
             mitsuba("scalar_rgb", 4, 16, 64),
             luxcore(4, 16, 64),

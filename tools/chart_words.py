@@ -87,14 +87,16 @@ def rank(ratio: float) -> str:
 
 
 def levels_for(first: Curve, second: Curve) -> list[float]:
-    """The smallest and the largest round error that both reach as measured; without one, where they come closest."""
+    """The smallest and the largest round error that both reach as measured; without one, where they come closest.
+
+    That is the better one's first point: from it backward nothing follows, as little work may cost the same start."""
     ends = [falling(curve) for curve in (first, second)]
     low, high = max(curve[-1][1] for curve in ends), min(curve[0][1] for curve in ends)
     if both := [level for level in LEVELS if low <= level <= high]:
         return sorted({min(both), max(both)})
     if low <= high:
         return [low]
-    return [min((level for level in LEVELS if level >= low), default=low)]
+    return [high]
 
 
 def ratio_at(error: float, first: Curve, second: Curve) -> tuple[float, str]:

@@ -1,8 +1,10 @@
-"""A scene file of Abbe in LuxCore's path tracer, on one thread.
+"""A scene file of Abbe in LuxCore, on one thread.
 
     picture = peers_luxcore.Renderer("PATHCPU", Path("scene.toml")).picture(samples=64, seed=1)
 
-Its Sobol sampler, no limit to brightness, paths of up to 64 surfaces.
+Its Sobol sampler, no limit to brightness, paths of up to 64 surfaces. The variants: PATHCPU, its path tracer; BIDIRCPU,
+paths from both ends; "PATHCPU hybrid", its path tracer with half of the paths from the lights, for caustics; "PATHCPU
+photons", its path tracer with its cache of caustic photons, whose radius shrinks.
 """
 
 import atexit
@@ -13,6 +15,20 @@ import numpy as np
 from peers_scene import parts, read, rgb, shapes, triangles
 
 DEPTH = 64
+WAYS = {
+    "": {},
+    "hybrid": {"path.hybridbackforward.enable": True, "path.hybridbackforward.partition": 0.5},
+    "photons": {
+        "path.photongi.sampler.type": "RANDOM",
+        "path.photongi.photon.maxcount": 1_000_000,
+        "path.photongi.photon.maxdepth": 16,
+        "path.photongi.caustic.enabled": True,
+        "path.photongi.caustic.maxsize": 100_000,
+        "path.photongi.caustic.lookup.radius": 0.01,
+        "path.photongi.caustic.updatespp": 8,
+        "path.photongi.caustic.updatespp.radiusreduction": 0.96,
+    },
+}
 
 
 class Renderer:
@@ -23,7 +39,8 @@ class Renderer:
 
         pyluxcore.Init(lambda message: None)
         atexit.register(pyluxcore.SetLogHandler, None)  # else its threads call a handler that is gone
-        self.luxcore, self.engine, self.path, self.flat_lamp = pyluxcore, engine, path, flat_lamp
+        self.luxcore, self.path, self.flat_lamp = pyluxcore, path, flat_lamp
+        self.engine, _, self.way = engine.partition(" ")
 
     def picture(self, samples: int, seed: int) -> np.ndarray:
         film = read(self.path)["film"]
@@ -40,6 +57,9 @@ class Renderer:
             "film.outputs.0.filename": "unused.exr",
             "batch.haltspp": samples,
             **{f"path.pathdepth.{kind}": DEPTH for kind in ("total", "diffuse", "glossy", "specular")},
+            "path.maxdepth": DEPTH,
+            "light.maxdepth": DEPTH,
+            **WAYS[self.way],
         }
         scene = luxcore_scene(self.luxcore, self.path, self.flat_lamp)
         session = self.luxcore.RenderSession(self.luxcore.RenderConfig(properties(self.luxcore, values), scene))
@@ -85,6 +105,21 @@ def luxcore_material(name: str, entry: dict) -> dict:
     return {**black, f"{key}.emission": rgb(values["radiance"]), f"{key}.emission.gain": [1.0] * 3}
 
 
+def luxcore_light(light: dict) -> dict:
+    if "environment" in light:
+        return {".type": "constantinfinite", ".color": rgb(light["environment"]["radiance"]), ".gain": [1.0] * 3}
+    spot = light["spot"]
+    return {
+        ".type": "spot",
+        ".position": spot["position"],
+        ".target": [place + way for place, way in zip(spot["position"], spot["toward"], strict=True)],
+        ".coneangle": spot["cone_angle"] / 2,
+        ".conedeltaangle": 0.0,
+        ".color": rgb(spot["intensity"]),
+        ".gain": [1.0] * 3,
+    }
+
+
 def luxcore_scene(luxcore, path: Path, flat_lamp: bool):
     scene = read(path)
     camera, film = scene["camera"], scene["film"]
@@ -102,8 +137,7 @@ def luxcore_scene(luxcore, path: Path, flat_lamp: bool):
         values |= {"scene.camera.cliphither": float(camera["near"])}
     for number, light in enumerate(scene.get("light", [])):
         key = f"scene.lights.light{number}"
-        sky = {".type": "constantinfinite", ".color": rgb(light["environment"]["radiance"]), ".gain": [1.0] * 3}
-        values.update({key + name: value for name, value in sky.items()})
+        values.update({key + name: value for name, value in luxcore_light(light).items()})
     for name, entry in scene["material"].items():
         values.update(luxcore_material(name, entry))
     result = luxcore.Scene()

@@ -1,6 +1,6 @@
 """The chart of speed against accuracy: what it says of curves with known answers, and a tiny one, of Abbe and smallpt.
 
-    python -m pytest tools/tests/test_chart.py      # 3 seconds of one core
+    python -m pytest tools/tests/test_chart.py      # 4 seconds of one core
 """
 
 import csv
@@ -10,6 +10,7 @@ import subprocess
 
 import chart
 import chart_draw
+import chart_findings
 import chart_measure
 import chart_scenes
 import chart_words
@@ -52,7 +53,7 @@ def test_a_curve_twice_as_slow_is_said_to_take_twice_the_time_at_both_ends():
 
 def test_curves_that_do_not_meet_in_error_are_extrapolated_and_say_so():
     words = chart_words.compare("A", [(1.0, 0.02), (4.0, 0.01)], "B", [(1.0, 0.4), (4.0, 0.2)])
-    assert words == "To 20 % A takes 0.0025 x the CPU time of B (0.01 s for 4 s, extrapolated): ahead."
+    assert words == "To 2 % A takes 0.0025 x the CPU time of B (1 s for 4e+02 s, extrapolated): ahead."
 
 
 def test_a_crossing_is_found_where_two_power_laws_meet():
@@ -92,6 +93,86 @@ def test_the_noise_of_the_reference_does_not_raise_the_error():
     assert difference == pytest.approx(0.05 / 1.01**0.5, rel=0.05) and unseen < 0.01
     difference, unseen = chart_measure.difference(chart_measure.Reference(noisy(0.3), noisy(0.3)), reference)
     assert difference < 1.5 * unseen < 0.06  # 0.3^2 over the root of 120 000 values, twice, under a root: 2 %
+
+
+def measured_with(fails_at: dict[str, int]) -> dict:
+    """A chart of Abbe, LuxCore and Cycles, made of noise; each fails at the seed that is given."""
+
+    class Noise:
+        def __init__(self, label: str):
+            self.label = label
+
+        def run(self, samples: int, seed: int):
+            if seed == fails_at.get(self.label):
+                raise RuntimeError(f"{self.label} failed: Traceback\n  in a file\nout of memory")
+            random = np.random.default_rng(100 * seed + samples)
+            return 1 + random.normal(0, samples**-0.5, (8, 8, 3)), 0.1 * samples
+
+    series = (
+        chart_scenes.abbe("Abbe", 4, 16),
+        chart_scenes.luxcore(4, 16),
+        chart_scenes.cycles(4, 16),
+        chart_scenes.mitsuba("scalar_rgb", 4, 16),
+    )
+    one = chart_scenes.Chart("noise", "Noise", None, (8, 8), series)
+    return chart_measure.measure({s.label: Noise(s.label) for s in series}, one, chart_scenes.QUICK)
+
+
+@pytest.mark.parametrize("seed", [1, 3, *chart_measure.HALVES, 1000])
+def test_a_renderer_that_fails_in_the_middle_is_told_in_a_line_and_the_others_go_on(seed, capsys):
+    label = "Mitsuba scalar, rgb" if seed == 1000 else "LuxCore"
+    whole, found = measured_with({}), measured_with({label: seed})
+    assert capsys.readouterr().out == f"{label} is left out, as it failed: out of memory\n"
+    assert list(found) == [name for name in whole if name != label]
+    assert [one.points for one in found.values()] == [whole[name].points for name in found]
+
+
+def test_the_line_of_a_failure_is_the_one_that_says_why():
+    assert chart_measure.reason("loaded\nTraceback\nValueError: no such shape\n") == "ValueError: no such shape"
+    assert chart_measure.reason("error: no scene\nhelp: a scene is a file") == "error: no scene"
+    assert chart_measure.reason("error 1\nits process was ended by signal 9") == "its process was ended by signal 9"
+    assert chart_measure.reason("") == "it said nothing"
+
+
+def test_a_chart_whose_first_series_fails_is_still_made_and_one_without_any_is_empty(capsys):
+    assert list(measured_with({"Abbe": 2})) == ["LuxCore", "Blender Cycles", "Mitsuba scalar, rgb"]
+    labels = ("Abbe", "LuxCore", "Blender Cycles", "Mitsuba scalar, rgb")
+    assert measured_with(dict.fromkeys(labels, 10_000)) == {}
+    assert capsys.readouterr().out.count("\n") == 5
+
+
+def measured_as(points, start: float = 0.0):
+    points = [chart_measure.Point(1, seconds, error, error, error) for seconds, error in points]
+    return chart_measure.Measured(points, start, None, 0.0, 0.01, 1.0)
+
+
+def test_of_an_error_that_rare_paths_decide_only_what_was_met_is_told():
+    ours, theirs = measured_as([(0.1, 0.08), (0.4, 0.04)]), measured_as([(0.1, 0.5), (0.4, 0.3), (1.6, 0.6)])
+    said = chart_findings.unsteady_words("A", ours, "B", theirs)
+    assert said.endswith("no ratio is told. Its best is 30 % in 0.4 s; A has 8 % in 0.1 s.")
+    assert chart_findings.unsteady_words("B", theirs, "A", ours).endswith("so that nothing is said of B and A.")
+
+
+def test_a_row_of_the_table_says_what_the_words_say():
+    one = chart_scenes.CHARTS[2]._replace(common=None)
+    found = {"A": measured_as(unbiased(2)), "B": measured_as(unbiased(1)), "C": measured_as([(1, 0.6), (4, 0.7)])}
+    first, second = chart_findings.table_rows(one, found)
+    assert first == "| Cornell box | B | 2 x to 20 %, 2 x to 50 %: behind | less than 1 % |"
+    assert second == "|  | C | no ratio: rare bright paths | less than 1 % |"
+
+
+def test_a_biased_model_that_does_not_come_to_an_error_is_not_extrapolated():
+    one = chart_scenes.CHARTS[2]._replace(common="A")
+    found = {"A": measured_as([(1, 0.15), (4, 0.07)]), "B": measured_as([(1, 0.19), (4, 0.16)])}
+    assert chart_findings.words_for(one, found)[0] == "B does not come to 15 %, where A begins."
+    assert "it does not come to 15 %: ahead" in chart_findings.table_rows(one, found)[0]
+
+
+def test_the_time_before_the_first_sample_is_told_where_it_changes_the_ratio():
+    slow, fast = measured_as(unbiased(2), 10.0), measured_as(unbiased(1), 5.0)
+    assert chart_findings.start_words("A", slow, fast) == ""
+    slow = measured_as(unbiased(2), 50.0)
+    assert chart_findings.start_words("A", slow, fast) == " With the start of both A takes 3.3 x (1e+02 s for 30 s)."
 
 
 def test_labels_keep_their_order_and_their_distance_inside_of_the_axes():
@@ -142,3 +223,5 @@ def test_a_tiny_chart_is_measured_drawn_and_written(tmp_path, monkeypatch, capsy
     chart.main()
     assert json.loads((tmp_path / "chart.json").read_text()) == data
     assert "Abbe" in (tmp_path / scene["svg"]).read_text() and (tmp_path / "overview.png").is_file()
+    table = (tmp_path / "table.md").read_text().splitlines()[2:]
+    assert len(table) == len(names) - 1 and all(row.count("|") == 5 for row in table)
