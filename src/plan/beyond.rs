@@ -29,7 +29,7 @@ pub(super) fn with_map(
     if is_off || targets(scene).is_empty() || (shown.is_none() && sees_receivers(scene)) {
         return as_shown();
     }
-    let places = reached_places(&World::new(scene, method.clone()));
+    let places = reached_places(&World::untaught(scene, method.clone()));
     let film = scene.film;
     let samples = f64::from(film.width) * f64::from(film.height) * f64::from(method.samples);
     let all = (PHOTONS * samples).ceil();
@@ -48,7 +48,7 @@ pub(super) fn with_map(
     }
     let pass = LightPass { map: Some(map), ..pass };
     let share =
-        gathered_photons(&World::new(scene, Method { light_pass: Some(pass.clone()), ..method.clone() }), &places);
+        gathered_photons(&World::untaught(scene, Method { light_pass: Some(pass.clone()), ..method.clone() }), &places);
     if share == 0.0 {
         return as_shown();
     }

@@ -147,8 +147,8 @@ fn lights(scene: &Scene<Curve>, light_pass: Option<&LightPass>) -> Vec<String> {
 
 /// What a few hundred samples say of the whole.
 fn cost(scene: &Scene<Curve>, method: &Method, next: Option<Basis>) -> Vec<String> {
-    let found = probe(&World::new(scene, method.clone()));
-    let next = next.map(|basis| (basis.name(), probe(&World::new(scene, Method { basis, ..method.clone() }))));
+    let found = probe(&World::untaught(scene, method.clone()));
+    let next = next.map(|basis| (basis.name(), probe(&World::untaught(scene, Method { basis, ..method.clone() }))));
     let probe = found;
     let window = scene.film.window();
     let samples = f64::from(window.width) * f64::from(window.height) * f64::from(method.samples);
@@ -161,15 +161,19 @@ fn cost(scene: &Scene<Curve>, method: &Method, next: Option<Basis>) -> Vec<Strin
         lines
             .push(format!("polarization is left out: it would move at most {bound:.2} % of the light (P_A P_B bound)"));
     }
-    let seconds = probe.time.as_secs_f64() * samples;
+    let pass = method.light_pass.as_ref();
+    let of_map = pass.and_then(|pass| pass.map).map_or(0, |map| u64::from(map.count) * map.photons);
+    let photons = pass.map_or(0, |pass| pass.photons) + of_map;
+    let seconds = probe.time.as_secs_f64() * samples + probe.photon.as_secs_f64() * photons as f64;
     let beside = next.map_or(String::new(), |(name, other)| {
         format!("; a sample of {name} takes {:.1} times as long", other.time.as_secs_f64() / probe.time.as_secs_f64())
     });
     lines.push(format!(
-        "cost: {} sample{} per pixel, {:.1} rays each, about {} of processor time{beside}",
+        "cost: {} sample{} per pixel, {:.1} rays each{}, about {} of processor time{beside}",
         method.samples,
         if method.samples == 1 { "" } else { "s" },
         probe.rays,
+        if photons > 0 { format!(", and {} photons", in_number(photons)) } else { String::new() },
         in_words(seconds)
     ));
     lines

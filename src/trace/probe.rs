@@ -3,7 +3,9 @@
 use std::time::{Duration, Instant};
 
 use super::World;
+use super::photon::Landing;
 use super::render::sample;
+use super::sending::{batches, send};
 use super::tracer::Tracer;
 use super::width::{InLanes, in_lanes};
 use crate::math::Sampler;
@@ -21,12 +23,16 @@ pub struct Probe {
     pub polarization: f64,
     /// Processor time: of the median ray, times the rays of a mean sample, so that what else the processor did does not count.
     pub time: Duration,
+    /// The same of a photon, if any are sent.
+    pub photon: Duration,
 }
 
 /// Camera samples along each side of the image.
 const SIDE: u32 = 24;
 /// Samples that are timed together.
 const BATCH: u32 = 16;
+/// Photons of each aim.
+const FEW: u64 = 512;
 /// Time after which the probe has seen enough.
 const ENOUGH: Duration = Duration::from_millis(300);
 
@@ -92,5 +98,19 @@ fn probe_lanes<const N: usize>(world: &World) -> Probe {
         parted: f64::from(parted) * per_sample,
         polarization: tracer.tally.polarization * per_sample,
         time: Duration::from_secs_f64(per_ray[per_ray.len() / 2] * rays),
+        photon: photon_time::<N>(world),
     }
+}
+
+/// The time that a photon takes: the median of the aims, most photons of a light being alike.
+fn photon_time<const N: usize>(world: &World) -> Duration {
+    let Some(aims) = &world.aims else { return Duration::ZERO };
+    let time = |batch| {
+        let start = Instant::now();
+        send(world, aims, batch, None, true, |_: &Tracer<N>, _: &Landing<N>, _: &Sampler, kept| kept.push(()));
+        start.elapsed().div_f64(FEW as f64)
+    };
+    let mut times: Vec<Duration> = batches(aims, |_| 0, |_| FEW, world.method.seed).into_iter().map(time).collect();
+    times.sort();
+    times[times.len() / 2]
 }

@@ -34,8 +34,15 @@ pub struct World {
 }
 
 impl World {
-    /// The scene, tabulated for the method.
+    /// The scene, tabulated for the method, with photons sent ahead to learn where to send the others.
     pub fn new(scene: &Scene<Curve>, method: Method) -> Self {
+        let mut world = Self::untaught(scene, method);
+        world.learn_where_to_send();
+        world
+    }
+
+    /// The same without photons sent ahead: enough for camera samples.
+    pub fn untaught(scene: &Scene<Curve>, method: Method) -> Self {
         let responses = scene.lights.iter().map(|light| method.basis.response(light.emission())).collect();
         let has_media = scene.materials.iter().any(|m| m.material.medium().is_some());
         let scene = scene.map(|quantity, curve| method.basis.tabulate(quantity, curve));
@@ -71,7 +78,6 @@ impl World {
             world.light_media = media_of_lights(&world);
         }
         world.look_for_lamps();
-        world.learn_where_to_send();
         world
     }
 
