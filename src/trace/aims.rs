@@ -65,17 +65,17 @@ pub fn is_photon_target<S>(scene: &Scene<S>, object: usize) -> bool {
 }
 
 impl Aims {
-    /// Aims at all objects that photons can be sent to; none if there is none, or none of the lights shines there.
-    pub(super) fn new(scene: &Scene<Table>, lights: &[LightId], photons: u64) -> Option<Self> {
+    /// Aims some lights, given with their luminances, at all objects that photons can be sent to; none if there is none, or none of the lights shines there.
+    pub(super) fn new(scene: &Scene<Table>, lights: &[(LightId, f64)], photons: u64) -> Option<Self> {
         let objects: Vec<bool> = (0..scene.objects.len()).map(|object| is_photon_target(scene, object)).collect();
         let shapes = || scene.objects.iter().map(|object| &object.shape);
         let balls = shapes().zip(&objects).filter(|(_, target)| **target).filter_map(|(shape, _)| shape.ball());
         let balls = gathered(balls.collect());
         let world = shapes().filter_map(|shape| shape.ball()).reduce(Ball::around)?;
         let mut aims = Vec::new();
-        for (&light, ball) in lights.iter().flat_map(|light| balls.iter().map(move |ball| (light, ball))) {
+        for (&(light, luminance), ball) in lights.iter().flat_map(|light| balls.iter().map(move |ball| (light, ball))) {
             let (lobe, size) = reach(&scene.lights[light], ball);
-            let flux = size * scene.lights[light].emission().range().1;
+            let flux = size * luminance;
             if flux > 0.0 {
                 let apart = is_apart(&scene.lights[light], ball);
                 let guide = if apart { Guide::disc() } else { Guide::even() };

@@ -1,4 +1,4 @@
-use super::aims::Aims;
+use super::aims::{Aims, is_photon_source};
 use super::choice::Choice;
 use super::lamps::met_lamps;
 use super::media::Media;
@@ -7,7 +7,7 @@ use super::{Method, Transport};
 use crate::light::{Light, LightId};
 use crate::math::DVec3;
 use crate::scene::Scene;
-use crate::spectrum::{Curve, Response, Table};
+use crate::spectrum::{Curve, Emission, Response, Table};
 
 /// A scene on the lanes of one method: everything the tracer reads.
 #[derive(Clone, Debug)]
@@ -45,6 +45,12 @@ impl World {
     pub fn untaught(scene: &Scene<Curve>, method: Method) -> Self {
         let responses = scene.lights.iter().map(|light| method.basis.response(light.emission())).collect();
         let has_media = scene.materials.iter().any(|m| m.material.medium().is_some());
+        let luminance = |&light: &LightId| {
+            let of = &scene.lights[light];
+            is_photon_source(of).then(|| (light, Emission::new(of.emission(), scene.film.color_space).xyz()[1]))
+        };
+        let pass = method.light_pass.as_ref();
+        let senders: Vec<_> = pass.map_or(Vec::new(), |pass| pass.lights.iter().filter_map(luminance).collect());
         let scene = scene.map(|quantity, curve| method.basis.tabulate(quantity, curve));
         let has_holes = |object: u32| scene.material_of(object).has_holes();
         let holes: Vec<bool> = (0..scene.objects.len() as u32).map(has_holes).collect();
@@ -53,7 +59,7 @@ impl World {
         let targets = choice.targets();
         let camera_media = Media::default();
         let pass = method.light_pass.as_ref();
-        let aims_of = |photons: u64| pass.and_then(|pass| Aims::new(&scene, &pass.lights, photons));
+        let aims_of = |photons: u64| Aims::new(&scene, &senders, photons);
         let aims = pass.and_then(|pass| aims_of(pass.photons));
         let map_aims = pass.and_then(|pass| pass.map).and_then(|map| aims_of(map.photons));
         let light_media = Vec::new();
