@@ -13,7 +13,7 @@ from functools import cache
 import numpy as np
 import render
 from colors import OBSERVER, WAVELENGTHS, colour, illuminant, lab
-from energy import toml_file
+from validation.scenes import toml_file
 
 POINTS, ROWS, SEEDS, SAMPLES = 81, 5, 4, 200
 HALF_APEX, EDGE = math.radians(30), 0.5
