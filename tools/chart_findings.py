@@ -22,7 +22,8 @@ def wavers(measured: Measured) -> bool:
 
 
 def curve(measured: Measured, key: str = "error") -> chart_words.Curve:
-    return [(point.cpu_seconds, getattr(point, key)) for point in measured.points]
+    """The points of a series, without those that took no longer than the start: jitter, which no curve can tell of."""
+    return [(point.cpu_seconds, getattr(point, key)) for point in measured.points if point.cpu_seconds > 0]
 
 
 def floor(measured: Measured) -> str:

@@ -28,8 +28,10 @@ def falling(curve: Curve) -> Curve:
 
 def steady(curve: Curve) -> bool:
     """Whether the error falls at least as the fourth root of the time; decided by rare paths it does not."""
+    if len(curve) < 2:
+        return False
     (t0, e0), (t1, e1) = curve[0], curve[-1]
-    return len(curve) > 1 and min(e0, e1) > 0 and math.log(e1 / e0) <= -0.25 * math.log(t1 / t0)
+    return min(e0, e1) > 0 and math.log(e1 / e0) <= -0.25 * math.log(t1 / t0)
 
 
 def unsteady_words(name: str) -> str:
