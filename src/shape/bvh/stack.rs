@@ -6,18 +6,30 @@ use std::mem::MaybeUninit;
 /// Entries of the stack, which no tree needs more of.
 pub const STACK: usize = 256;
 
-/// Numbers of which the last comes first; its memory is not filled in advance, which would take longer than a walk through
-/// a small tree.
-pub struct Stack {
-    entries: [MaybeUninit<u64>; STACK],
+/// Room for a stack, not filled in advance: that would take longer than a walk through a small tree.
+///
+/// It stands apart from the stack's height. A value in which only some bytes are known is copied whole from a constant.
+pub struct Room([MaybeUninit<u64>; STACK]);
+
+impl Room {
+    /// Room in which nothing has been written.
+    #[inline(always)]
+    pub fn new() -> Self {
+        Self([MaybeUninit::uninit(); STACK])
+    }
+}
+
+/// Numbers of which the last comes first.
+pub struct Stack<'a> {
+    entries: &'a mut [MaybeUninit<u64>; STACK],
     height: usize,
 }
 
-impl Stack {
-    /// An empty one.
+impl<'a> Stack<'a> {
+    /// An empty stack in some room.
     #[inline(always)]
-    pub fn new() -> Self {
-        Self { entries: [MaybeUninit::uninit(); STACK], height: 0 }
+    pub fn new(room: &'a mut Room) -> Self {
+        Self { entries: &mut room.0, height: 0 }
     }
 
     /// Entries that it has.

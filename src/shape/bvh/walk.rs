@@ -2,7 +2,7 @@
 
 use super::Bvh;
 use super::node::{Child, Slabs, reach};
-use super::stack::Stack;
+use super::stack::{Room, Stack};
 use super::vectors::{Computation, Vectors, prefetch};
 use crate::math::Ray;
 
@@ -35,7 +35,8 @@ impl<const ORDERED: bool, T: Visitor> Computation for Walk<'_, ORDERED, T> {
         let slabs = Slabs::new(self.ray);
         let mut limit = reach(self.t_max);
         // Children to look at, each under the distance at which its box begins.
-        let mut stack = Stack::new();
+        let mut room = Room::new();
+        let mut stack = Stack::new(&mut room);
         let mut current = root;
         loop {
             match current.open() {
