@@ -10,4 +10,5 @@ mod support;
 mod stability_lights {
     mod lamps;
     mod media;
+    mod unlit;
 }

@@ -11,7 +11,9 @@ use super::compile_shape::ShapeCompiler;
 use super::contact::coinciding;
 use super::description::{Description, ModelText, ObjectText, RenderText};
 use super::index::Index;
+use super::inside_out::inside_out;
 use super::source::{At, Source};
+use super::unlit::unlit;
 use super::{NamedMaterial, Object, Scene};
 use crate::error::{Error, Result, nearest};
 use crate::light::{Area, Light, LightId};
@@ -38,6 +40,7 @@ pub fn compile(description: &Description, source: &Source) -> Result<Scene<Curve
     let materials = compiler.materials(&description.material)?;
     let (objects, entries, materials) = compiler.objects(description, &materials)?;
     compiler.contacts(&objects, &entries, &materials)?;
+    compiler.faces_inward(&objects, &materials);
     let mut scene = Scene {
         camera,
         film,
@@ -55,6 +58,7 @@ pub fn compile(description: &Description, source: &Source) -> Result<Scene<Curve
     if scene.lights.is_empty() {
         compiler.warnings.push("nothing shines, so the image will be black".into());
     }
+    compiler.warnings.extend(unlit(&scene));
     scene.warnings = compiler.warnings;
     scene.hash = compiler.hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
     Ok(scene)
@@ -166,6 +170,19 @@ impl Compiler<'_> {
             ));
         }
         Ok(())
+    }
+
+    /// A clear body whose faces look inward fills all that is outside of it, and light that meets it is lost.
+    fn faces_inward(&mut self, objects: &[Object], materials: &[NamedMaterial<Curve>]) {
+        let is_clear = |object: &Object| materials[object.material as usize].material.medium().is_some();
+        let found = inside_out(objects, is_clear);
+        let Some(&first) = found.first() else { return };
+        let others = if found.len() > 1 { format!(" and {} more", found.len() - 1) } else { String::new() };
+        self.warnings.push(format!(
+            "{}{others}: the faces of this closed mesh look inward, so its outside is taken for its inside: reverse the order of \
+             each face's corners",
+            objects[first].name
+        ));
     }
 
     fn no_coordinates(&self, at: &At, material: &str) -> Error {

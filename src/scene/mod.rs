@@ -22,12 +22,15 @@ mod description_view;
 mod guard;
 mod image_file;
 mod index;
+mod inside_out;
 mod relief;
+mod sight;
 mod source;
 mod spectrum_file;
 mod structure;
 mod suggest;
 mod syntax;
+mod unlit;
 mod wording;
 
 pub use camera::{Camera, Lens, Projection};

@@ -1,0 +1,124 @@
+//! Rows L6 and M6: scenes that look right in their file and in which a light lights nothing, or a body is inside out.
+
+use crate::support::scenes::{body, environment, scene, view};
+
+const FLOOR: &str = "plane = { point = [0, 0, 0], normal = [0, 1, 0] }";
+const BALL: &str = "sphere = { center = [0, 1, 0], radius = 1 }";
+const LAMP: &str = "emissive = { radiance = 5, sides = \"front\" }";
+
+/// A ball on a floor, seen from before it, and what is added to them.
+fn stage(more: &str) -> String {
+    view([0.0, 2.0, 8.0], [0.0, 1.0, 0.0], 40.0, 16)
+        + &body("white", "diffuse = { reflectance = 0.7 }", &[FLOOR, BALL])
+        + more
+}
+
+/// The faces of a tetrahedron, outward or inward.
+fn tetrahedron(outward: bool) -> String {
+    let faces = if outward {
+        "[[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]"
+    } else {
+        "[[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]]"
+    };
+    format!("mesh = {{ points = [[2, 0.5, 0], [3, 0.5, 0], [2, 1.5, 0], [2, 0.5, 1]], faces = {faces} }}")
+}
+
+fn assert_warns(text: &str, wanted: &[&str]) {
+    let warnings = scene(text).warnings;
+    assert_eq!(warnings.len(), wanted.len(), "{warnings:?} in\n{text}");
+    for (warning, wanted) in warnings.iter().zip(wanted) {
+        assert!(warning.contains(wanted), "{warning}\ndoes not say\n{wanted}\nin\n{text}");
+    }
+}
+
+#[test]
+fn l6_lights_that_light_nothing_in_sight_are_told_of_with_the_cure() {
+    let quad = |v: i32| format!("quad = {{ center = [0, 5, 0], u = [1, 0, 0], v = [0, 0, {v}] }}");
+    let housing = body("gray", "diffuse = { reflectance = 0.5 }", &["cube = { center = [0, 6, 0], size = 4 }"]);
+    let light = |light: &str| format!("[[light]]\n{light}\n");
+    let closed = "mesh = { points = [[-9, -1, -9], [9, -1, -9], [0, -1, 9], [0, 19, 0]], faces = [[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]] }";
+    for (more, wanted) in [
+        (body("lamp", LAMP, &[&quad(-1)]), "shines away from every object"),
+        (body("lamp", LAMP, &[&quad(-1)]) + &housing, "lights nothing that the camera sees"),
+        (body("lamp", LAMP, &[&tetrahedron(false)]), "shines only into its own inside"),
+        (
+            light("spot = { position = [0, 5, 0], toward = [0, 1, 0], cone_angle = 30, intensity = 9 }"),
+            "shines past every object",
+        ),
+        (
+            light("spot = { position = [0, -1, 0], toward = [0, -1, 0], cone_angle = 30, intensity = 9 }"),
+            "shines past every object",
+        ),
+        (
+            light("point = { position = [0, 1, 0], intensity = 9 }"),
+            "light 1 (point) lights nothing that the camera sees",
+        ),
+        (light("point = { position = [0, -1, 0], intensity = 9 }"), "lights nothing that the camera sees"),
+        (light("sun = { toward = [0, -1, 0], irradiance = 9 }"), "`toward` points from the scene to the sun"),
+        (
+            environment(1.0) + &body("wall", "diffuse = { reflectance = 0.5 }", &[closed]),
+            "light 1 (environment) lights nothing",
+        ),
+    ] {
+        assert_warns(&stage(&more), &[wanted]);
+    }
+}
+
+/// What lights little, or by a detour, is left alone.
+#[test]
+fn l6_lights_of_which_something_may_be_seen_are_not_told_of() {
+    let light = |light: &str| format!("[[light]]\n{light}\n");
+    let spot = |toward: &str, angle: f64| {
+        light(&format!("spot = {{ position = [0, 5, 0], toward = {toward}, cone_angle = {angle:?}, intensity = 9 }}"))
+    };
+    let lamp = |quad: &str| body("lamp", LAMP, &[quad]);
+    let mirror = body("mirror", "mirror = {}", &["quad = { center = [0, 8, 0], u = [2, 0, 0], v = [0, 0, 2] }"]);
+    let prism = body("glass", "dielectric = { index = 1.6 }", &["cube = { center = [0, 6, 0], size = 1 }"]);
+    for more in [
+        lamp("quad = { center = [0, 5, 0], u = [1, 0, 0], v = [0, 0, 1] }"),
+        // Straight down, by a mirror, into glass, far outside of the picture.
+        spot("[0, -1, 0]", 0.5),
+        spot("[0, 1, 0]", 3.0) + &mirror,
+        spot("[0, 1, 0]", 3.0) + &prism,
+        spot("[1, -0.01, 0]", 1.0),
+        // Turned away, but seen; turned to a wall behind the camera.
+        lamp("quad = { center = [0, 5, -20], u = [9, 0, 0], v = [0, 9, 0] }"),
+        lamp("quad = { center = [0, 3, 12], u = [1, 0, 0], v = [0, 1, 0] }")
+            + &body(
+                "gray",
+                "diffuse = { reflectance = 0.5 }",
+                &["quad = { center = [0, 3, 30], u = [9, 0, 0], v = [0, 9, 0] }"],
+            ),
+        // Behind a pane and through a cutout.
+        light("point = { position = [0, 6, 0], intensity = 9 }")
+            + &body(
+                "pane",
+                "thin = { index = 1.5 }",
+                &["quad = { center = [0, 5, 0], u = [50, 0, 0], v = [0, 0, 50] }"],
+            ),
+        body(
+            "net",
+            "mask = { material = \"white\", opacity = 0.5 }",
+            &["sphere = { center = [0, 6, 0], radius = 0.5 }"],
+        ) + &light("point = { position = [0, 6, 0], intensity = 9 }"),
+        light("sun = { toward = [0, 1, -0.2], irradiance = 9 }"),
+        environment(1.0),
+    ] {
+        assert_warns(&stage(&more), &[]);
+    }
+}
+
+#[test]
+fn m6_a_clear_mesh_that_is_inside_out_is_told_of_and_a_bubble_is_not() {
+    let glass = |shapes: &[&str]| body("glass", "dielectric = { index = 1.5 }", shapes) + &environment(1.0);
+    let larger = "sphere = { center = [2.2, 2.7, 0.2], radius = 2.5 }";
+    assert_warns(&stage(&glass(&[&tetrahedron(true)])), &[]);
+    assert_warns(&stage(&glass(&[&tetrahedron(false)])), &["look inward"]);
+    assert_warns(&stage(&glass(&[&tetrahedron(false), larger])), &[]);
+    let many =
+        format!("{}\ninstances = [[{{ translate = [0, 0, 0] }}], [{{ translate = [0, 3, 0] }}]]", tetrahedron(false));
+    assert_warns(&stage(&glass(&[&many])), &["[1] and 1 more: the faces"]);
+    // A mirror image in a transform turns no faces around.
+    let mirrored = format!("{}\ntransform = [{{ scale = [-1, 1, 1] }}]", tetrahedron(true));
+    assert_warns(&stage(&glass(&[&mirrored])), &[]);
+}
