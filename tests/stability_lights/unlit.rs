@@ -36,7 +36,7 @@ fn l6_lights_that_light_nothing_in_sight_are_told_of_with_the_cure() {
     let quad = |v: i32| format!("quad = {{ center = [0, 5, 0], u = [1, 0, 0], v = [0, 0, {v}] }}");
     let housing = body("gray", "diffuse = { reflectance = 0.5 }", &["cube = { center = [0, 6, 0], size = 4 }"]);
     let light = |light: &str| format!("[[light]]\n{light}\n");
-    let closed = "mesh = { points = [[-9, -1, -9], [9, -1, -9], [0, -1, 9], [0, 19, 0]], faces = [[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]] }";
+    let closed = "sphere = { center = [0, 0, 0], radius = 30 }";
     for (more, wanted) in [
         (body("lamp", LAMP, &[&quad(-1)]), "shines away from every object"),
         (body("lamp", LAMP, &[&quad(-1)]) + &housing, "lights nothing that the camera sees"),
