@@ -1,35 +1,32 @@
-//! The scene file, verbatim: holding a [`Description`] means the text was well formed, nothing more.
+//! The scene file, verbatim: what of a [`Description`] is there was well formed, nothing more.
 
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Deserializer};
 
+use super::description_light::LightText;
 use super::description_relief::{BumpMapText, NormalMapText};
 use super::description_view::{CameraText, FilmText};
-use crate::light::{Point, Spot, Sun};
+use super::structure::Mistake;
 use crate::material::Material;
 use crate::spectrum::Curve;
 
-/// A whole scene file.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
+/// A whole scene file, and what is wrong with its words.
+#[derive(Clone, Debug)]
 pub struct Description {
-    /// From where and how the scene is seen.
-    pub camera: CameraText,
-    /// The image to make.
-    pub film: FilmText,
+    /// From where and how the scene is seen; absent if that is missing or wrong.
+    pub camera: Option<CameraText>,
+    /// The image to make; absent if that is missing or wrong.
+    pub film: Option<FilmText>,
     /// How to make it; everything optional.
-    #[serde(default)]
     pub render: RenderText,
-    /// Materials by name.
-    #[serde(default)]
-    pub material: BTreeMap<String, Material<Curve>>,
-    /// Surfaces.
-    #[serde(default)]
-    pub object: Vec<ObjectText>,
-    /// Light that no surface gives.
-    #[serde(default)]
-    pub light: Vec<LightText>,
+    /// Materials by name, without those that are wrong.
+    pub material: BTreeMap<String, Option<Material<Curve>>>,
+    /// Surfaces, without those that are wrong.
+    pub object: Vec<Option<ObjectText>>,
+    /// Light that no surface gives, without what is wrong.
+    pub light: Vec<Option<LightText>>,
+    pub(super) mistakes: Vec<Mistake>,
 }
 
 /// ```toml
@@ -224,36 +221,6 @@ pub enum StepText {
 pub struct RotateText {
     pub axis: [f64; 3],
     pub degrees: f64,
-}
-
-/// ```toml
-/// [[light]]
-/// environment = { radiance = 1 }
-/// ```
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct LightText {
-    /// For messages.
-    pub name: Option<String>,
-    /// What rays meet that miss everything.
-    pub environment: Option<EnvironmentText>,
-    /// A point that shines.
-    pub point: Option<Point<Curve>>,
-    /// A point that shines into a cone.
-    pub spot: Option<Spot<Curve>>,
-    /// A disc in the sky.
-    pub sun: Option<Sun<Curve>>,
-}
-
-/// `environment = { radiance, transform }`
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct EnvironmentText {
-    /// What rays show that miss everything.
-    pub radiance: Curve,
-    /// Turns of an image.
-    #[serde(default)]
-    pub transform: Vec<StepText>,
 }
 
 /// A number that stands for all three axes, or three numbers.
