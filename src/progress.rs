@@ -125,8 +125,8 @@ mod tests {
         let lines = Lines::new(Duration::from_millis(1), Duration::from_millis(1), move || drop(tell.send(())));
         assert_eq!(told.iter().take(5).count(), 5);
         drop(lines);
-        // What speaks is gone with the thread, so nothing comes anymore.
-        assert!(told.iter().count() < usize::MAX);
+        // This ends because what speaks is gone with the thread.
+        told.iter().for_each(drop);
         let (tell, told) = channel();
         drop(Lines::new(Duration::from_secs(3600), PERIOD, move || drop(tell.send(()))));
         assert_eq!(told.iter().count(), 0);

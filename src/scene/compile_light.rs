@@ -104,9 +104,8 @@ impl Compiler<'_> {
     /// The direction of a light that stands somewhere, given as such or by a point to look at.
     fn aim(&self, at: &At, text: &SpotText) -> Result<[f64; 3]> {
         let position = self.point(&at.key("position"), text.position);
-        let refuse = |place: &At, message: &str, help: &str| {
-            Err(self.source.mistake_at(place, message, Some(help.into())))
-        };
+        let refuse =
+            |place: &At, message: &str, help: &str| Err(self.source.mistake_at(place, message, Some(help.into())));
         let toward = match (text.toward, text.look_at) {
             (Some(toward), None) => self.direction(&at.key("toward"), toward).map(|_| toward),
             (None, Some(target)) => {
@@ -114,7 +113,11 @@ impl Compiler<'_> {
                 let (position, target) = (position, target).gather()?;
                 return match (target - position).try_normalize() {
                     Some(toward) => Ok(toward.to_array()),
-                    None => refuse(&at.key("look_at"), "the spot looks at the very point where it stands", "name another point"),
+                    None => refuse(
+                        &at.key("look_at"),
+                        "the spot looks at the very point where it stands",
+                        "name another point",
+                    ),
                 };
             }
             (None, None) => {

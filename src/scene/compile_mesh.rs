@@ -60,7 +60,8 @@ impl ShapeCompiler<'_, '_> {
                 let corners = all(faces.iter().enumerate().map(|(number, face)| {
                     match face.iter().position(|&corner| corner as usize >= count) {
                         Some(corner) => {
-                            let message = format!("there is no point {}: the {count} points count from 0", face[corner]);
+                            let message =
+                                format!("there is no point {}: the {count} points count from 0", face[corner]);
                             self.refuse(&list.index(number).index(corner), &message)
                         }
                         None => Ok(()),

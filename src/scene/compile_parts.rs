@@ -77,7 +77,9 @@ impl Compiler<'_> {
         let kind = material.kind();
         match found {
             Some(Material::Dielectric(_)) => refuse(
-                format!("a {kind} is made of surfaces, and {known:?} is a dielectric, which fills the space behind its own"),
+                format!(
+                    "a {kind} is made of surfaces, and {known:?} is a dielectric, which fills the space behind its own"
+                ),
                 Some("a pane has no inside: thin = { index = 1.52 }".into()),
             ),
             Some(Material::Emissive(_)) => refuse(

@@ -62,13 +62,14 @@ impl Compiler<'_> {
         let at = At::top("camera");
         let position = self.point(&at.key("position"), camera.position);
         let target = self.point(&at.key("look_at"), camera.look_at);
-        let view = (position, target).gather().and_then(|(position, target)| match (target - position).try_normalize() {
-            Some(_) => Ok((position, target)),
-            None => {
-                let message = "the camera looks at the very point where it stands";
-                Err(self.source.mistake_at(&at.key("look_at"), message, None))
-            }
-        });
+        let view =
+            (position, target).gather().and_then(|(position, target)| match (target - position).try_normalize() {
+                Some(_) => Ok((position, target)),
+                None => {
+                    let message = "the camera looks at the very point where it stands";
+                    Err(self.source.mistake_at(&at.key("look_at"), message, None))
+                }
+            });
         let up = self.direction(&at.key("up"), camera.up);
         let projection = self.projection(&at, camera);
         let near = match camera.near {

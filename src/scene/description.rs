@@ -130,7 +130,7 @@ pub enum ShapeText {
     Mesh(MeshText),
 }
 
-/// `plane = { point, normal }`
+/// `plane = { point = [0, 0, 0], normal = [0, 1, 0] }`
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[allow(missing_docs)]
@@ -139,7 +139,7 @@ pub struct PlaneText {
     pub normal: [f64; 3],
 }
 
-/// `triangle = { points = [p1, p2, p3] }`
+/// `triangle = { points = [[0, 0, 0], [1, 0, 0], [0, 1, 0]] }`
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[allow(missing_docs)]
@@ -147,7 +147,7 @@ pub struct TriangleText {
     pub points: Vec<[f64; 3]>,
 }
 
-/// `sphere = { center, radius }`
+/// `sphere = { center = [0, 1, 0], radius = 1 }`
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[allow(missing_docs)]
@@ -156,7 +156,7 @@ pub struct SphereText {
     pub radius: f64,
 }
 
-/// `disc = { center, normal, radius, u }`, `u` optional
+/// `disc = { center = [0, 1, 0], normal = [0, 1, 0], radius = 1, u = [1, 0, 0] }`, `u` optional
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[allow(missing_docs)]
@@ -167,7 +167,7 @@ pub struct DiscText {
     pub u: Option<[f64; 3]>,
 }
 
-/// `quad = { center, u, v }`
+/// `quad = { center = [0, 4, 0], u = [1, 0, 0], v = [0, 0, 1] }`
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[allow(missing_docs)]
@@ -177,7 +177,7 @@ pub struct QuadText {
     pub v: [f64; 3],
 }
 
-/// `cube = { center, size }`
+/// `cube = { center = [0, 1, 0], size = 2 }`
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[allow(missing_docs)]
@@ -187,7 +187,7 @@ pub struct CubeText {
     pub size: [f64; 3],
 }
 
-/// `mesh = { file, smooth }` or `mesh = { points, faces, normals, uv, smooth }`
+/// `mesh = { file = "cup.ply", smooth = true }`, or in place of the file `points`, `faces`, `normals` and `uv`
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[allow(missing_docs)]
@@ -214,7 +214,7 @@ pub enum StepText {
     Translate([f64; 3]),
 }
 
-/// `rotate = { axis, degrees }`
+/// `rotate = { axis = [0, 1, 0], degrees = 30 }`
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[allow(missing_docs)]

@@ -46,7 +46,8 @@ struct Reader<'t> {
 impl<'t> Reader<'t> {
     /// That all tables are known, and those there that every scene has.
     fn sections_there(&mut self, document: &Spanned<DeTable>) {
-        let mut missing: Vec<&str> = ["camera", "film"].into_iter().filter(|key| !self.document.contains_key(*key)).collect();
+        let mut missing: Vec<&str> =
+            ["camera", "film"].into_iter().filter(|key| !self.document.contains_key(*key)).collect();
         for key in self.document.keys().filter(|key| !SECTIONS.contains(&key.get_ref().as_ref())) {
             let word = key.get_ref().as_ref();
             let help = Some(suggestion(word, word, &SECTIONS));
@@ -72,7 +73,9 @@ impl<'t> Reader<'t> {
                 named.collect()
             }
             DeValue::Array(_) => BTreeMap::new(),
-            _ => self.section::<BTreeMap<String, IgnoredAny>>(&["material"], value).map_or_else(BTreeMap::new, |_| BTreeMap::new()),
+            _ => self
+                .section::<BTreeMap<String, IgnoredAny>>(&["material"], value)
+                .map_or_else(BTreeMap::new, |_| BTreeMap::new()),
         }
     }
 

@@ -145,9 +145,9 @@ fn find(value: &Spanned<DeValue>, span: &Range<usize>, path: &mut Vec<Step>) -> 
         found
     };
     match value.get_ref() {
-        DeValue::Table(table) => {
-            table.iter().find_map(|(key, value)| below(Step::Key(key.get_ref().to_string()), key.span() == *span, value))
-        }
+        DeValue::Table(table) => table
+            .iter()
+            .find_map(|(key, value)| below(Step::Key(key.get_ref().to_string()), key.span() == *span, value)),
         DeValue::Array(entries) => {
             entries.iter().enumerate().find_map(|(index, value)| below(Step::Index(index), false, value))
         }
@@ -168,7 +168,8 @@ fn unplaced(value: Spanned<DeValue<'static>>) -> Spanned<DeValue<'static>> {
     let inner = match value.into_inner() {
         DeValue::Array(entries) => DeValue::Array(entries.into_iter().map(unplaced).collect()),
         DeValue::Table(table) => {
-            let keys = table.into_iter().map(|(key, value)| (Spanned::new(STAND_IN, key.into_inner()), unplaced(value)));
+            let keys =
+                table.into_iter().map(|(key, value)| (Spanned::new(STAND_IN, key.into_inner()), unplaced(value)));
             DeValue::Table(keys.collect::<DeTable>())
         }
         other => other,
