@@ -1,7 +1,6 @@
 //! The command line.
 
 use std::ffi::OsStr;
-use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 
 use abbe::film::Window;
@@ -10,6 +9,7 @@ use abbe::{Error, Result};
 use clap::Parser;
 
 use crate::catalog::Query;
+use crate::messages::is_colored;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -126,7 +126,7 @@ fn told(said: clap::Error) -> Result<Request> {
         said.exit();
     }
     let styled = said.render();
-    let text = if std::io::stdout().is_terminal() { styled.ansi().to_string() } else { styled.to_string() };
+    let text = if is_colored(&std::io::stdout()) { styled.ansi().to_string() } else { styled.to_string() };
     Ok(Request::Answer(text))
 }
 

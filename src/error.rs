@@ -101,14 +101,18 @@ impl fmt::Display for Diagnostic {
 
 /// The candidate that a misspelt word most likely meant, if one is near enough.
 ///
-/// Near: at most a third of its letters changed, counting a swap of neighbors as one change, so none of two; of equally near
-/// ones, the one made of the most of the same letters.
+/// Near: at most a third of its letters changed, or one where one of both has two letters and the other more, counting a swap
+/// of neighbors as one change; of equally near ones, the one made of the most of the same letters.
 pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let lower = word.to_lowercase();
+    let most_changes = |candidate: &str| {
+        let [a, b] = [&lower, candidate].map(|word| word.chars().count());
+        (b / 3).max(usize::from(a.min(b) >= 2 && a.max(b) >= 3))
+    };
     candidates
         .into_iter()
         .map(|candidate| (strsim::damerau_levenshtein(&lower, &candidate.to_lowercase()), candidate))
-        .filter(|(changes, candidate)| *changes <= candidate.chars().count() / 3)
+        .filter(|(changes, candidate)| *changes <= most_changes(candidate))
         .min_by_key(|(changes, candidate)| (*changes, foreign_letters(&lower, &candidate.to_lowercase())))
         .map(|(_, candidate)| candidate)
 }

@@ -91,12 +91,13 @@ fn underlined(diagnostic: &Diagnostic) -> String {
     if let Some(help) = &diagnostic.help {
         group = group.element(Level::HELP.message(help.as_str()));
     }
-    let renderer = if std::io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none() {
-        Renderer::styled()
-    } else {
-        Renderer::plain()
-    };
+    let renderer = if is_colored(&std::io::stderr()) { Renderer::styled() } else { Renderer::plain() };
     renderer.render(&[group])
+}
+
+/// Whether what is written there may have colors.
+pub fn is_colored(stream: &impl IsTerminal) -> bool {
+    stream.is_terminal() && std::env::var_os("NO_COLOR").is_none()
 }
 
 /// What the render noticed and where the image is.

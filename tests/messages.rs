@@ -255,7 +255,7 @@ error: the scene has no [camera] and no [film]
 #[test]
 fn lines_that_end_as_on_windows_are_counted_and_shown_alike() {
     let folder = Folder::new();
-    folder.write("scene.toml", &BASE.replace("radius = 1 }", "radius = 0 }").replace('\n', "\r\n"));
+    folder.write("scene.toml", &BASE.replacen("radius = 1 }", "radius = 0 }", 1).replace('\n', "\r\n"));
     let expected = "\
 error: a radius is a length above 0, not 0
   --> scene.toml:31:47

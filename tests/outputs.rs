@@ -140,11 +140,11 @@ fn a_link_that_leads_nowhere_is_refused_before_anything_is_rendered() {
         ("here.exr", 1, "error: cannot write here.exr: it is a folder\n"),
     ] {
         let answer = render(&folder, &["ball.toml", "--exr", output]);
-        assert_eq!((answer.code, &*answer.stderr), (Some(code), told));
+        assert_eq!((answer.code, &*answer.stdout, &*answer.stderr), (Some(code), "", told));
     }
     let answer = render(&folder, &["ball.toml", "--exr", "scene.exr"]);
     assert_eq!(answer.code, Some(2));
-    assert!(answer.stderr.ends_with("ball.toml is the scene itself\nhelp: name another file\n"), "{}", answer.stderr);
+    assert!(answer.stderr.ends_with("scene.exr is the scene itself\nhelp: name another file\n"), "{}", answer.stderr);
     assert_eq!(folder.listing(), ["a.exr", "b.exr", "ball.toml", "here.exr", "scene.exr"]);
     assert_eq!(fs::read_to_string(folder.path().join("ball.toml")).expect("the scene is there"), SCENE);
 }

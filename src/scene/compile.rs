@@ -1,6 +1,6 @@
 //! From the file as written to a world that can be rendered: all names are looked up and all numbers checked here.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use sha2::{Digest, Sha256};
@@ -152,10 +152,16 @@ impl Compiler<'_> {
     /// The objects that are right, the entry of the file that each comes from, and their materials.
     fn objects(&mut self, description: &Description, compiled: &Materials) -> Objects {
         let (mut objects, mut entries, mut materials) = (Vec::new(), Vec::new(), Vec::<NamedMaterial<Curve>>::new());
+        // Of a material that is not there it is told where it is named first.
+        let mut unknown = BTreeSet::new();
         for (number, text) in description.object.iter().enumerate() {
             let Some(text) = text else { continue };
             let top = At::top("object");
-            let material = self.material_of(&top.index(number), text, compiled);
+            let known = compiled.contains_key(&text.material);
+            let material = match known || !description.nameless && unknown.insert(&text.material) {
+                true => self.material_of(&top.index(number), text, compiled),
+                false => told_elsewhere(),
+            };
             let known = material.as_ref().ok().map(|material| {
                 let known = materials.iter().position(|known| known.name == text.material);
                 known.unwrap_or_else(|| {

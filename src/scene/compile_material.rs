@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::compile::{Compiler, Materials};
-use super::gather::{Gather, all};
+use super::gather::{Gather, all, told_elsewhere};
 use super::source::At;
 use crate::error::Result;
 use crate::material::Material;
@@ -34,11 +34,23 @@ impl Compiler<'_> {
             }
             None => Ok(()),
         };
-        let mut curves = Vec::new();
+        let mut curves: Vec<Result<Curve>> = Vec::new();
+        let mut unknown_metal = None;
         let visited: Result<()> = material.each(|quantity, key, curve| {
             // A conductor given by name has its mistake where the name stands.
             let metal = matches!(curve.kind, CurveKind::Name(_)) && quantity == Quantity::MetalIndex;
-            curves.push(self.surface_curve(&at.key(if metal { "metal" } else { key }), curve, quantity));
+            // A metal gives both n and k: of one that is unknown it is told once.
+            if let CurveKind::Name(name) = &curve.kind
+                && unknown_metal.as_ref() == Some(name)
+            {
+                curves.push(told_elsewhere());
+                return Ok(());
+            }
+            let checked = self.surface_curve(&at.key(if metal { "metal" } else { key }), curve, quantity);
+            if let (CurveKind::Name(name), true) = (&curve.kind, metal && checked.is_err()) {
+                unknown_metal = Some(name.clone());
+            }
+            curves.push(checked);
             Ok(())
         });
         let (_, _, curves) = (roughness, visited, all(curves)).gather()?;

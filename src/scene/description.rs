@@ -26,6 +26,8 @@ pub struct Description {
     pub object: Vec<Option<ObjectText>>,
     /// Light that no surface gives, without what is wrong.
     pub light: Vec<Option<LightText>>,
+    /// Whether there are materials of which the name is not known.
+    pub(super) nameless: bool,
     pub(super) mistakes: Vec<Mistake>,
 }
 

@@ -10,7 +10,7 @@ use super::description::{Description, RenderText};
 use super::repair::{Repair, STAND_IN};
 use super::structure::{self, Mistake};
 use super::suggest::{meant, suggestion};
-use super::wording;
+use super::wording::{self, NAMELESS};
 use crate::material::Material;
 use crate::spectrum::Curve;
 
@@ -22,8 +22,8 @@ const MOST_REPAIRS: usize = 200;
 /// What a document says, and all that is wrong with its words.
 pub(super) fn read(text: &str, document: &Spanned<DeTable>) -> Description {
     let table = document.get_ref();
-    let mut reader = Reader { text, document: table, mistakes: Vec::new() };
-    reader.sections_there(document);
+    let mut reader = Reader { text, document: table, nameless: false, mistakes: Vec::new() };
+    reader.sections_there();
     let render = table.get("render").map_or(Some(RenderText::default()), |value| reader.section(&["render"], value));
     Description {
         camera: table.get("camera").and_then(|value| reader.section(&["camera"], value)),
@@ -33,6 +33,7 @@ pub(super) fn read(text: &str, document: &Spanned<DeTable>) -> Description {
         material: table.get("material").map_or_else(BTreeMap::new, |value| reader.materials(value)),
         object: table.get("object").map_or_else(Vec::new, |value| reader.list("object", value)),
         light: table.get("light").map_or_else(Vec::new, |value| reader.list("light", value)),
+        nameless: reader.nameless,
         mistakes: reader.mistakes,
     }
 }
@@ -40,12 +41,13 @@ pub(super) fn read(text: &str, document: &Spanned<DeTable>) -> Description {
 struct Reader<'t> {
     text: &'t str,
     document: &'t DeTable<'t>,
+    nameless: bool,
     mistakes: Vec<Mistake>,
 }
 
 impl<'t> Reader<'t> {
     /// That all tables are known, and those there that every scene has.
-    fn sections_there(&mut self, document: &Spanned<DeTable>) {
+    fn sections_there(&mut self) {
         let mut missing: Vec<&str> =
             ["camera", "film"].into_iter().filter(|key| !self.document.contains_key(*key)).collect();
         for key in self.document.keys().filter(|key| !SECTIONS.contains(&key.get_ref().as_ref())) {
@@ -57,12 +59,20 @@ impl<'t> Reader<'t> {
         if !missing.is_empty() {
             let missing: Vec<_> = missing.into_iter().map(|section| format!("no [{section}]")).collect();
             let message = format!("the scene has {}", missing.join(" and "));
-            self.mistakes.push((document.span(), message, Some("every scene has [camera] and [film]".into())));
+            self.mistakes.push((0..0, message, Some("every scene has [camera] and [film]".into())));
         }
     }
 
     fn materials(&mut self, value: &Spanned<DeValue<'t>>) -> BTreeMap<String, Option<Material<Curve>>> {
-        self.mistakes.extend(structure::misplaced_whole("material", value));
+        let (before, misplaced) = (self.mistakes.len(), structure::misplaced_whole("material", value));
+        self.mistakes.extend(misplaced);
+        let materials = self.named(value);
+        self.nameless =
+            !value.get_ref().is_table() || self.mistakes[before..].iter().any(|mistake| mistake.1 == NAMELESS);
+        materials
+    }
+
+    fn named(&mut self, value: &Spanned<DeValue<'t>>) -> BTreeMap<String, Option<Material<Curve>>> {
         match value.get_ref() {
             DeValue::Table(table) => {
                 let named = table.iter().map(|(name, value)| {
@@ -92,13 +102,15 @@ impl<'t> Reader<'t> {
     fn section<T: DeserializeOwned>(&mut self, path: &[&str], value: &Spanned<DeValue<'t>>) -> Option<T> {
         let before = self.mistakes.len();
         let mut repair = Repair::of(value.clone());
-        for mistake in structure::misplaced(path, value) {
-            repair.clear(&mistake.0);
-            self.mistakes.push(mistake);
+        let misplaced = structure::misplaced(path, value);
+        let cleared = misplaced.iter().all(|mistake| repair.clear(&mistake.0));
+        self.mistakes.extend(misplaced);
+        if !cleared {
+            return None;
         }
         let read = self.repaired(path, &mut repair)?;
-        self.mistakes.extend(structure::listed(path, &repair.value));
-        self.mistakes.extend(structure::surplus(path, &repair.value));
+        let lists = [structure::listed(path, &repair.value), structure::surplus(path, &repair.value)].concat();
+        self.mistakes.extend(lists.into_iter().filter(|mistake| mistake.0 != STAND_IN));
         Some(read).filter(|_| self.mistakes.len() == before)
     }
 

@@ -6,7 +6,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::suggest::meant;
-use super::wording::{NO_KIND, quoted};
+use super::wording::quoted;
 
 /// Where no text is: the place of what was put in.
 pub(super) const STAND_IN: Range<usize> = usize::MAX - 1..usize::MAX;
@@ -50,7 +50,7 @@ impl<'t> Repair<'t> {
     pub(super) fn follows(&self, span: &Range<usize>, said: &str) -> bool {
         let misspelt = |meant: &Option<String>| match said.strip_prefix("missing field ") {
             Some(key) => meant.as_ref().is_none_or(|meant| key.trim_matches('`') == meant),
-            None => said.starts_with(NO_KIND),
+            None => said.contains(" needs "),
         };
         self.lacking.contains(span) || self.unknown.iter().any(|(table, meant)| table == span && misspelt(meant))
     }
@@ -74,21 +74,24 @@ impl<'t> Repair<'t> {
             path.pop();
         } else if said.starts_with("unknown variant ") {
             return self.leave_out(&path);
+        } else if let Some(Step::Index(_)) = path.last() {
+            // What is wrong with one entry of a list is mostly wrong with all.
+            path.pop();
         }
         self.last.0 = path;
         self.put(0)
     }
 
-    /// Replaces a value, or takes out a key, of which a mistake was told.
-    pub(super) fn clear(&mut self, span: &Range<usize>) {
+    /// Replaces a value, or takes out a key, of which a mistake was told; says whether that was possible.
+    pub(super) fn clear(&mut self, span: &Range<usize>) -> bool {
         let mut path = Vec::new();
         match find(&self.value, span, &mut path) {
-            Some(true) => drop(self.leave_out(&path)),
+            Some(true) => self.leave_out(&path),
             Some(false) => {
                 self.last.0 = path;
-                self.put(0);
+                self.put(0)
             }
-            None => {}
+            None => true,
         }
     }
 

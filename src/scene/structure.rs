@@ -52,6 +52,9 @@ fn misplaced_in_object(object: &DeTable) -> Vec<Mistake> {
         Some(instances.iter().filter_map(|steps| steps.get_ref().as_array()).flat_map(|steps| steps.iter()))
     };
     let steps = steps().into_iter().flat_map(|steps| steps.iter()).chain(of_instances().into_iter().flatten());
+    // What is wrong with one step that is no table is mostly wrong with all.
+    let mut no_table = false;
+    let steps = steps.filter(|step| step.get_ref().is_table() || !std::mem::replace(&mut no_table, true));
     shape.into_iter().chain(steps.filter_map(|step| one_of(step, &STEP))).collect()
 }
 

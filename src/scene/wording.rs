@@ -10,7 +10,10 @@ use super::structure::Mistake;
 use super::suggest::{remedy, suggestion};
 
 /// How the message begins that refuses a spectrum without a kind.
-pub(super) const NO_KIND: &str = "a spectrum needs one of";
+const NO_KIND: &str = "a spectrum needs one of";
+
+/// What is told of a material whose kind stands where its name should.
+pub(super) const NAMELESS: &str = "this material has no name";
 
 type Words = (String, Option<String>);
 
@@ -121,7 +124,7 @@ impl<'t> Place<'t> {
             ["film", "filter", _] => format!("unknown filter `{word}`"),
             ["material", kind, _] if known.contains(kind) => {
                 let help = format!("write [material.NAME] above {kind} = {{ .. }}");
-                return Some(("this material has no name".into(), Some(help)));
+                return Some((NAMELESS.into(), Some(help)));
             }
             ["material", _, _] => format!("unknown kind of material `{word}`"),
             ["object", "shape", _] => format!("unknown shape `{word}`"),
