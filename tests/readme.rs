@@ -109,9 +109,12 @@ fn every_block_of_toml_in_the_documentation_of_a_type_parses() {
     let mut count = 0;
     for (path, text) in sources(Path::new("src")) {
         for block in text.split("/// ```toml\n").skip(1).filter_map(|rest| rest.split("/// ```").next()) {
-            let lines: Vec<&str> = block.lines().map(|line| line.trim_start().trim_start_matches("///")).collect();
-            let toml = toml::from_str::<toml::Table>(&lines.join("\n"));
-            toml.unwrap_or_else(|error| panic!("{}: {error}\n{block}", path.display()));
+            let lines: Vec<&str> =
+                block.lines().map(|line| line.trim_start().trim_start_matches("///").trim()).collect();
+            let parses = |text: &str| text.parse::<toml::Table>().is_ok();
+            // Lines that give one key in several ways stand for one each.
+            let is_toml = parses(&lines.join("\n")) || lines.iter().all(|line| parses(line));
+            assert!(is_toml, "{}:\n{block}", path.display());
             count += 1;
         }
     }

@@ -50,8 +50,12 @@ impl<'t> Repair<'t> {
     pub(super) fn follows(&self, span: &Range<usize>, said: &str) -> bool {
         let misspelt = |meant: &Option<String>| match said.strip_prefix("missing field ") {
             Some(key) => meant.as_ref().is_none_or(|meant| key.trim_matches('`') == meant),
-            None => said.contains(" needs "),
+            None => false,
         };
+        // Some checks tell of a table by the one around it.
+        if said.contains(" needs ") && !self.unknown.is_empty() {
+            return true;
+        }
         self.lacking.contains(span) || self.unknown.iter().any(|(table, meant)| table == span && misspelt(meant))
     }
 
@@ -88,6 +92,10 @@ impl<'t> Repair<'t> {
         match find(&self.value, span, &mut path) {
             Some(true) => self.leave_out(&path),
             Some(false) => {
+                let is_table = at(&mut self.value, &path).is_some_and(|value| value.get_ref().is_table());
+                if !is_table && matches!(path.last(), Some(Step::Index(_))) {
+                    path.pop();
+                }
                 self.last.0 = path;
                 self.put(0)
             }
