@@ -54,12 +54,19 @@ pub fn lines(query: &Query) -> Result<Vec<String>> {
     let wanted = words.join(" ");
     let near = nearest(&wanted, kinds.iter().flat_map(|(_, _, names)| names()).collect());
     let message = format!("the catalog has no {what} that matches {wanted:?}");
-    Err(Error::Arguments { message, help: Some(format!("the nearest names are {near}")) })
+    let help = match near.as_str() {
+        "" => "render catalog --help says how to search".into(),
+        near if !near.contains(',') => format!("the nearest name is {near}"),
+        near => format!("the nearest names are {near}"),
+    };
+    Err(Error::Arguments { message, help: Some(help) })
 }
 
-/// The three names that differ least from what is wanted.
+/// The three names that differ least from what is wanted, of those that share half their letters with it.
 fn nearest(wanted: &str, mut names: Vec<&str>) -> String {
-    names.sort_by_cached_key(|name| (strsim::damerau_levenshtein(wanted, &name.to_lowercase()), *name));
+    let changes = |name: &str| strsim::damerau_levenshtein(wanted, &name.to_lowercase());
+    names.retain(|name| 2 * changes(name) <= name.chars().count().min(wanted.chars().count()));
+    names.sort_by_cached_key(|name| (changes(name), *name));
     names.dedup();
     names[..names.len().min(3)].join(", ")
 }

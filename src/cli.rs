@@ -9,12 +9,14 @@ use abbe::{Error, Result};
 use clap::Parser;
 
 use crate::catalog::Query;
+use crate::messages::is_colored;
 
 const EXAMPLES: &str = "\
 Examples:
   render --exr scenes/prism.toml                  write ./prism.exr
   render scenes/prism.toml --exr out/frame.exr    name the file
-  render scenes/prism.toml --png look.png         write a picture as well
+  render scenes/prism.toml --png look.png         write a picture alone
+  render --exr scenes/prism.toml --png look.png   write both
   render --plan scenes/prism.toml                 say what it would do, and why
   render --check scenes/prism.toml                find mistakes in the scene
   render --samples 16 --exr scenes/prism.toml     take a quick look
@@ -29,17 +31,17 @@ struct Arguments {
     /// The scene, a TOML file
     scene: Option<PathBuf>,
 
-    /// The image to write; without a path, the scene's name in the current folder
+    /// The image to write; without a path, the scene's name in the current folder. It is written unless --png alone is given
     #[arg(long, value_name = "FILE.exr", num_args = 0..=1)]
     exr: Option<Option<PathBuf>>,
 
-    /// Also write an 8-bit sRGB picture for looking
+    /// Write an 8-bit sRGB picture for looking; no EXR then, unless --exr asks for it
     #[arg(long, value_name = "FILE.png")]
     png: Option<PathBuf>,
 
-    /// Brighten the picture by 2^STOPS (the EXR never changes)
-    #[arg(long, value_name = "STOPS", default_value_t = 0.0, allow_negative_numbers = true)]
-    exposure: f64,
+    /// Brighten the picture of --png by 2^STOPS (the EXR never changes)
+    #[arg(long, value_name = "STOPS", allow_negative_numbers = true)]
+    exposure: Option<f64>,
 
     /// Say what would be modelled, why, and at what cost; render nothing
     #[arg(long, conflicts_with_all = ["check", "png"])]
@@ -95,7 +97,7 @@ pub struct Job {
 
 /// What is wanted of the scene.
 pub enum Output {
-    Image { exr: PathBuf, png: Option<PathBuf> },
+    Image { exr: Option<PathBuf>, png: Option<PathBuf> },
     Plan,
     Check,
 }
@@ -104,21 +106,40 @@ pub enum Output {
 pub enum Request {
     Render(Job),
     Catalog(Query),
+    /// Help or the version.
+    Answer(String),
 }
 
-/// Reads the command line; prints help, version and clap's own errors by itself and exits.
+/// Reads the command line; prints clap's own errors by itself and exits.
 pub fn parse() -> Result<Request> {
+    let mut words = std::env::args_os();
     if std::env::args_os().nth(1).is_some_and(|first| first == "catalog") {
-        return Ok(Request::Catalog(Query::parse_from(std::env::args_os().skip(1))));
+        words.next();
+        return Query::try_parse_from(words).map_or_else(told, |query| Ok(Request::Catalog(query)));
     }
-    job(Arguments::parse()).map(Request::Render)
+    Arguments::try_parse_from(words).map_or_else(told, |arguments| job(arguments).map(Request::Render))
+}
+
+/// What clap has to say: help and version are an answer like any other, a mistake ends the command.
+fn told(said: clap::Error) -> Result<Request> {
+    if said.use_stderr() {
+        said.exit();
+    }
+    let styled = said.render();
+    let text = if is_colored(&std::io::stdout()) { styled.ansi().to_string() } else { styled.to_string() };
+    Ok(Request::Answer(text))
 }
 
 fn job(arguments: Arguments) -> Result<Job> {
     let idle = [("--plan", arguments.plan), ("--check", arguments.check)].into_iter().find(|(_, asked)| *asked);
+    let with_exr = arguments.exr.is_some() || arguments.png.is_none();
     let (scene, exr) = scene_and_image(arguments.scene, arguments.exr, idle.map(|(flag, _)| flag))?;
-    if !arguments.exposure.is_finite() {
+    if arguments.exposure.is_some_and(|stops| !stops.is_finite()) {
         return refuse("an exposure is a finite number of stops", Some("for instance: --exposure 1"));
+    }
+    if arguments.exposure.is_some() && arguments.png.is_none() {
+        let help = "add --png look.png, or leave --exposure out";
+        return refuse("--exposure brightens the picture of --png alone, and none is asked for", Some(help));
     }
     if let Some(png) = arguments.png.as_deref().filter(|png| !ends_in(png, "png")) {
         let message = format!("--png writes a file that ends in .png, not {}", png.display());
@@ -129,13 +150,14 @@ fn job(arguments: Arguments) -> Result<Job> {
     } else if arguments.check {
         Output::Check
     } else {
-        Output::Image { exr, png: arguments.png }
+        Output::Image { exr: Some(exr).filter(|_| with_exr), png: arguments.png }
     };
     let threads = arguments.threads.map_or(0, usize::from);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     let pool =
         pool.map_err(|error| Error::Arguments { message: format!("cannot start threads: {error}"), help: None })?;
-    let Arguments { exposure, samples, seed, crop, .. } = arguments;
+    let Arguments { samples, seed, crop, .. } = arguments;
+    let exposure = arguments.exposure.unwrap_or(0.0);
     Ok(Job { scene, output, exposure, samples, seed, crop, pool })
 }
 
@@ -151,6 +173,15 @@ impl Job {
         film.crop = self.crop.or(film.crop);
         match self.crop.and_then(|crop| film.objection(crop)) {
             Some(message) => refuse(&message, Some("--crop takes first column, first row, width and height")),
+            None => Ok(()),
+        }
+    }
+
+    /// Refuses an output that is the scene itself, by another name or a link.
+    pub fn spares_scene(&self, output: &Path) -> Result<()> {
+        let real = |path: &Path| std::fs::canonicalize(path).ok();
+        match real(output).filter(|output| real(&self.scene).as_ref() == Some(output)) {
+            Some(_) => refuse(&format!("{} is the scene itself", output.display()), Some("name another file")),
             None => Ok(()),
         }
     }

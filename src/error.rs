@@ -3,13 +3,14 @@
 use std::fmt;
 use std::ops::Range;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 /// A failure, as it is told to the person who ran the command.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
-    /// The scene does not mean anything that could be rendered.
-    #[error("{0}")]
-    Scene(Diagnostic),
+    /// The scene does not mean anything that could be rendered: its mistakes, in the order of the file.
+    #[error("{}", .0.iter().map(Diagnostic::to_string).collect::<Vec<_>>().join("\n"))]
+    Scene(Vec<Diagnostic>),
     /// The command line asks for something impossible.
     #[error("{message}")]
     Arguments {
@@ -49,6 +50,18 @@ impl Error {
             Self::Io { .. } | Self::Encode { .. } => 1,
         }
     }
+
+    /// Both failures: all their mistakes if they are of a scene, else the first failure that is none.
+    pub(crate) fn and(self, other: Self) -> Self {
+        match (self, other) {
+            (Self::Scene(mut mistakes), Self::Scene(more)) => {
+                mistakes.extend(more);
+                Self::Scene(mistakes)
+            }
+            (Self::Scene(_), other) => other,
+            (first, _) => first,
+        }
+    }
 }
 
 /// A mistake in a scene file, with the place where it stands.
@@ -57,7 +70,7 @@ pub struct Diagnostic {
     /// The scene file as it was named.
     pub file: PathBuf,
     /// Its text.
-    pub text: String,
+    pub text: Arc<str>,
     /// The bytes of the text that are wrong.
     pub span: Range<usize>,
     /// What is wrong.
@@ -88,14 +101,18 @@ impl fmt::Display for Diagnostic {
 
 /// The candidate that a misspelt word most likely meant, if one is near enough.
 ///
-/// Near: at most a third of the letters changed, counting a swap of neighbors as one change; of equally near ones, the one
-/// made of the most of the same letters.
+/// Near: at most a third of its letters changed, or one where one of both has two letters and the other more, counting a swap
+/// of neighbors as one change; of equally near ones, the one made of the most of the same letters.
 pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let lower = word.to_lowercase();
+    let most_changes = |candidate: &str| {
+        let [a, b] = [&lower, candidate].map(|word| word.chars().count());
+        (b / 3).max(usize::from(a.min(b) >= 2 && a.max(b) >= 3))
+    };
     candidates
         .into_iter()
         .map(|candidate| (strsim::damerau_levenshtein(&lower, &candidate.to_lowercase()), candidate))
-        .filter(|(changes, candidate)| *changes <= candidate.chars().count().max(3) / 3)
+        .filter(|(changes, candidate)| *changes <= most_changes(candidate))
         .min_by_key(|(changes, candidate)| (*changes, foreign_letters(&lower, &candidate.to_lowercase())))
         .map(|(_, candidate)| candidate)
 }

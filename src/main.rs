@@ -20,7 +20,8 @@ use cli::{Job, Output, Request};
 fn main() -> ExitCode {
     let answered = cli::parse().and_then(|request| match request {
         Request::Render(job) => run(&job),
-        Request::Catalog(query) => catalog::lines(&query).map(|lines| messages::answer(&lines)),
+        Request::Answer(text) => messages::answer(&text),
+        Request::Catalog(query) => catalog::lines(&query).and_then(|lines| messages::answer_lines(&lines)),
     });
     match answered {
         Ok(()) => ExitCode::SUCCESS,
@@ -45,23 +46,24 @@ fn run(job: &Job) -> Result<()> {
             messages::say(&format!("{} is a valid scene: {count} {objects}", job.scene.display()));
             Ok(())
         }
-        Output::Plan => {
-            messages::answer(&plan(&scene).because);
-            Ok(())
-        }
-        Output::Image { exr, png } => image(job, &scene, exr, png.as_deref()),
+        Output::Plan => messages::answer_lines(&plan(&scene).because),
+        Output::Image { exr, png } => image(job, &scene, exr.as_deref(), png.as_deref()),
     }
 }
 
-fn image(job: &Job, scene: &Scene<Curve>, exr: &Path, png: Option<&Path>) -> Result<()> {
-    [Some(exr), png].into_iter().flatten().try_for_each(check_writable)?;
+fn image(job: &Job, scene: &Scene<Curve>, exr: Option<&Path>, png: Option<&Path>) -> Result<()> {
+    let outputs = || [exr, png].into_iter().flatten();
+    outputs().try_for_each(|output| job.spares_scene(output))?;
+    outputs().try_for_each(check_writable)?;
     let plan = job.on_threads(|| plan(scene));
     plan.because.iter().for_each(|line| messages::say(line));
     let world = World::new(scene, plan.method.clone());
     let progress = progress::Progress::new(work(&world));
     let (film, report) = job.on_threads(|| render(&world, &|done| progress.advance(done)));
     progress.finish();
-    write_exr(&film, &view(scene), &provenance(scene, &plan, report.non_finite), exr)?;
+    if let Some(exr) = exr {
+        write_exr(&film, &view(scene), &provenance(scene, &plan, report.non_finite), exr)?;
+    }
     if let Some(png) = png {
         write_png(&film, job.exposure, png)?;
     }

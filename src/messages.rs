@@ -1,39 +1,72 @@
 //! What the command says to the person who runs it, on stderr.
+//!
+//! Where nobody can be told, as where stderr is a closed pipe or a full disk, nothing is said and the work goes on.
 
 use std::io::{ErrorKind, IsTerminal, Write};
 use std::path::Path;
 
 use abbe::trace::Report;
-use abbe::{Diagnostic, Error};
+use abbe::{Diagnostic, Error, Result};
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 
-/// One plain line.
+/// Most mistakes of a scene that are shown.
+const MOST_SHOWN: usize = 20;
+
+/// One plain line, or several.
 pub fn say(line: &str) {
-    eprintln!("{line}");
+    let _ = writeln!(std::io::stderr().lock(), "{line}");
 }
 
-/// What was asked for, a line each, on stdout. A reader that stops listening ends it without a word.
-pub fn answer(lines: &[String]) {
+/// What was asked for, on stdout. A reader that stops listening ends it without a word.
+///
+/// # Errors
+/// If it cannot be written for another reason.
+pub fn answer(text: &str) -> Result<()> {
     let mut stdout = std::io::stdout().lock();
-    let _ = lines.iter().try_for_each(|line| writeln!(stdout, "{line}"));
+    match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
+        Err(source) if source.kind() != ErrorKind::BrokenPipe => {
+            Err(Error::Io { doing: "write", path: "the answer to stdout".into(), source })
+        }
+        _ => Ok(()),
+    }
+}
+
+/// The same of lines.
+///
+/// # Errors
+/// As of a text.
+pub fn answer_lines(lines: &[String]) -> Result<()> {
+    answer(&lines.iter().flat_map(|line| [line, "\n"]).collect::<String>())
 }
 
 /// Something to know that stops nothing.
 pub fn warn(message: &str) {
-    eprintln!("warning: {message}");
+    say(&format!("warning: {message}"));
 }
 
 /// What went wrong, where, and what to do.
 pub fn print_error(error: &Error) {
     match error {
-        Error::Scene(diagnostic) => eprintln!("{}", underlined(diagnostic)),
+        Error::Scene(mistakes) => print_mistakes(mistakes),
         Error::Arguments { message, help } => {
-            eprintln!("error: {message}");
-            help.iter().for_each(|help| eprintln!("help: {help}"));
+            say(&format!("error: {message}"));
+            help.iter().for_each(|help| say(&format!("help: {help}")));
         }
-        Error::Io { doing, path, source } => eprintln!("error: cannot {doing} {}: {}", path.display(), reason(source)),
-        other => eprintln!("error: {other}"),
+        Error::Io { doing, path, source } => {
+            say(&format!("error: cannot {doing} {}: {}", path.display(), reason(source)));
+        }
+        other => say(&format!("error: {other}")),
     }
+}
+
+/// All that is wrong with a scene, in the order of the file, and how much that is.
+fn print_mistakes(mistakes: &[Diagnostic]) {
+    let shown = &mistakes[..mistakes.len().min(MOST_SHOWN)];
+    say(&shown.iter().map(underlined).collect::<Vec<_>>().join("\n\n"));
+    let (count, more) = (mistakes.len(), mistakes.len() - shown.len());
+    let Some(file) = mistakes.get(1).map(|mistake| mistake.file.display()) else { return };
+    let more = if more > 0 { format!(": these and {more} more") } else { String::new() };
+    say(&format!("\n{count} mistakes in {file}{more}"));
 }
 
 /// What the system said, in plain words where it is terse.
@@ -53,21 +86,22 @@ fn underlined(diagnostic: &Diagnostic) -> String {
     // An empty span, as at the end of a file, is shown as one column.
     let end = diagnostic.span.end.max(diagnostic.span.start).min(diagnostic.text.len());
     let start = diagnostic.span.start.min(end);
-    let snippet = Snippet::source(&diagnostic.text).path(path).annotation(AnnotationKind::Primary.span(start..end));
+    let snippet = Snippet::source(&*diagnostic.text).path(path).annotation(AnnotationKind::Primary.span(start..end));
     let mut group = Level::ERROR.primary_title(diagnostic.message.as_str()).element(snippet);
     if let Some(help) = &diagnostic.help {
         group = group.element(Level::HELP.message(help.as_str()));
     }
-    let renderer = if std::io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none() {
-        Renderer::styled()
-    } else {
-        Renderer::plain()
-    };
+    let renderer = if is_colored(&std::io::stderr()) { Renderer::styled() } else { Renderer::plain() };
     renderer.render(&[group])
 }
 
+/// Whether what is written there may have colors.
+pub fn is_colored(stream: &impl IsTerminal) -> bool {
+    stream.is_terminal() && std::env::var_os("NO_COLOR").is_none()
+}
+
 /// What the render noticed and where the image is.
-pub fn print_report(report: &Report, exr: &Path, png: Option<&Path>) {
+pub fn print_report(report: &Report, exr: Option<&Path>, png: Option<&Path>) {
     if let Some([x, y, sample]) = report.first_non_finite {
         warn(&format!(
             "{} samples were not finite and are left out; the first is sample {sample} of pixel ({x}, {y})",
@@ -83,7 +117,7 @@ pub fn print_report(report: &Report, exr: &Path, png: Option<&Path>) {
     if report.dropped + report.stopped > 0.0 {
         say(&format!("branches that were not followed: {:.1e} of the weight", report.dropped + report.stopped));
     }
-    for path in [Some(exr), png].into_iter().flatten() {
+    for path in [exr, png].into_iter().flatten() {
         say(&format!("wrote {}", path.display()));
     }
 }

@@ -1,52 +1,139 @@
-//! Progress with time left: a bar on a terminal, a plain line for every tenth elsewhere.
+//! Progress with time left: a bar on a terminal, a plain line now and then elsewhere.
 
 use std::io::IsTerminal;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
+use std::thread::{JoinHandle, spawn};
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
+use crate::messages::say;
+
 /// How far a render is.
 pub struct Progress {
     bar: Option<ProgressBar>,
-    work: u64,
-    done: AtomicU64,
+    lines: Option<Lines>,
+    done: Arc<AtomicU64>,
     start: Instant,
 }
 
 /// Renders shorter than this say nothing where there is no terminal.
-const QUIET: Duration = Duration::from_secs(5);
+const QUIET: Duration = Duration::from_secs(10);
+/// The time between two lines.
+const PERIOD: Duration = Duration::from_secs(30);
 
 impl Progress {
     /// Of a render of so many camera samples and photons.
     pub fn new(work: u64) -> Self {
+        let (done, start) = (Arc::new(AtomicU64::new(0)), Instant::now());
         let bar = std::io::stderr().is_terminal().then(|| {
             let style = ProgressStyle::with_template("{wide_bar} {percent:>3} %  {elapsed} passed, {eta} left");
             ProgressBar::new(work).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
         });
-        Self { bar, work, done: AtomicU64::new(0), start: Instant::now() }
+        let lines = bar.is_none().then(|| {
+            let done = done.clone();
+            Lines::new(QUIET, PERIOD, move || {
+                let passed = start.elapsed().as_secs_f64();
+                say(&line(done.load(Ordering::Relaxed) as f64 / work.max(1) as f64, passed));
+            })
+        });
+        Self { bar, lines, done, start }
     }
 
     /// Counts those that are done; may be called from any thread.
     pub fn advance(&self, work: u64) {
+        self.done.fetch_add(work, Ordering::Relaxed);
         if let Some(bar) = &self.bar {
             bar.inc(work);
-            return;
-        }
-        let before = self.done.fetch_add(work, Ordering::Relaxed);
-        let (tenth, next) = (before * 10 / self.work, (before + work) * 10 / self.work);
-        let passed = self.start.elapsed();
-        if next > tenth && next < 10 && passed > QUIET {
-            let left = passed.as_secs_f64() * (10 - next) as f64 / next as f64;
-            eprintln!("{next}0 %, {:.0} s passed, about {left:.0} s left", passed.as_secs_f64());
         }
     }
 
     /// Removes the bar and says how long it took.
-    pub fn finish(&self) {
+    pub fn finish(self) {
+        drop(self.lines);
         if let Some(bar) = &self.bar {
             bar.finish_and_clear();
         }
-        eprintln!("rendered in {:.1} s", self.start.elapsed().as_secs_f64());
+        say(&format!("rendered in {:.1} s", self.start.elapsed().as_secs_f64()));
+    }
+}
+
+/// A thread that speaks from time to time until it is dropped.
+struct Lines {
+    stop: Option<Sender<()>>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Lines {
+    fn new(first: Duration, then: Duration, speak: impl Fn() + Send + 'static) -> Self {
+        let (stop, stopped) = channel::<()>();
+        let thread = spawn(move || {
+            let mut wait = first;
+            while stopped.recv_timeout(wait) == Err(RecvTimeoutError::Timeout) {
+                speak();
+                wait = then;
+            }
+        });
+        Self { stop: Some(stop), thread: Some(thread) }
+    }
+}
+
+impl Drop for Lines {
+    fn drop(&mut self) {
+        drop(self.stop.take());
+        // A thread that could not speak has nothing more to say.
+        let _ = self.thread.take().map(JoinHandle::join);
+    }
+}
+
+/// How far a part of the work is after so many seconds.
+fn line(part: f64, passed: f64) -> String {
+    let percent = (100.0 * part).floor().min(99.0);
+    let left = match part {
+        0.0 => String::new(),
+        part => format!(", about {} left", spoken(passed * (1.0 - part).max(0.0) / part)),
+    };
+    format!("{percent} %, {} passed{left}", spoken(passed))
+}
+
+/// A time in the unit in which people would say it.
+fn spoken(seconds: f64) -> String {
+    match seconds {
+        seconds if seconds < 99.5 => format!("{seconds:.0} s"),
+        seconds if seconds < 99.5 * 60.0 => format!("{:.0} min", seconds / 60.0),
+        seconds => format!("{:.1} h", seconds / 3600.0),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_says_the_part_that_is_done_and_the_time_passed_and_left() {
+        assert_eq!(line(0.0, 10.0), "0 %, 10 s passed");
+        assert_eq!(line(0.25, 40.0), "25 %, 40 s passed, about 2 min left");
+        assert_eq!(line(0.999, 3000.0), "99 %, 50 min passed, about 3 s left");
+        assert_eq!(line(0.1, 7200.0), "10 %, 2.0 h passed, about 18.0 h left");
+    }
+
+    #[test]
+    fn a_long_render_speaks_again_and_again_even_where_no_work_is_done_and_a_short_one_never() {
+        let (tell, told) = channel();
+        let lines = Lines::new(Duration::from_millis(1), Duration::from_millis(1), move || tell.send(()).unwrap_or(()));
+        assert_eq!(told.iter().take(5).count(), 5);
+        drop(lines);
+        // This ends because what speaks is gone with the thread.
+        told.iter().for_each(drop);
+        let (tell, told) = channel();
+        drop(Lines::new(Duration::from_secs(3600), PERIOD, move || tell.send(()).unwrap_or(())));
+        assert_eq!(told.iter().count(), 0);
+    }
+
+    #[test]
+    fn there_is_a_line_a_minute_at_least() {
+        assert!(QUIET.max(PERIOD) <= Duration::from_secs(60));
     }
 }

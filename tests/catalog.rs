@@ -63,11 +63,14 @@ fn all_words_are_found_in_names_other_names_makers_and_families() {
 #[test]
 fn what_is_not_found_is_told_with_the_nearest_names() {
     let answer = catalog(&["metal", "golt"]);
-    let expected = "error: the catalog has no metal that matches \"golt\"\nhelp: the nearest names are gold, Al, Co\n";
+    let expected = "error: the catalog has no metal that matches \"golt\"\nhelp: the nearest name is gold\n";
     assert_eq!((answer.code, &*answer.stdout, &*answer.stderr), (Some(2), "", expected));
     let answer = catalog(&["glass", "N-BK8"]);
     assert!(answer.stderr.starts_with("error: the catalog has no glass that matches \"n-bk8\"\nhelp: "));
     assert!(answer.stderr.contains("N-BK7"), "{}", answer.stderr);
+    // Names that share no letters with what is wanted are not near.
+    let answer = catalog(&["-"]);
+    assert_eq!(answer.stderr.lines().last(), Some("help: render catalog --help says how to search"));
 }
 
 #[test]

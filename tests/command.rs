@@ -126,6 +126,7 @@ fn a_scene_that_cannot_be_read_is_refused_with_the_nearest_file() {
     let missing = "error: there is no scene file bal.toml\nhelp: did you mean ball.toml?\n";
     assert_refuses(&["bal.toml"], 2, missing);
     assert_refuses(&["--exr", "bal.toml"], 2, missing);
+    assert_refuses(&["-"], 2, &format!("error: there is no scene file -\n{example}"));
     assert_refuses(&["cup"], 2, &format!("error: there is no scene file cup\n{example}"));
     assert_refuses(&["no/ball.toml"], 2, &format!("error: there is no scene file no/ball.toml\n{example}"));
     assert_refuses(&["ball.toml/x.toml"], 2, &format!("error: there is no scene file ball.toml/x.toml\n{example}"));
@@ -219,7 +220,7 @@ fn a_plan_or_a_check_together_with_an_image_is_refused() {
 fn a_picture_is_8_bit_rgb_of_the_film_s_size() {
     let folder = folder();
     assert_eq!(render(&folder, &["ball.toml", "--png", "look.png"]).code, Some(0));
-    assert_eq!(folder.listing(), ["ball.exr", "ball.toml", "look.png"]);
+    assert_eq!(folder.listing(), ["ball.toml", "look.png"]);
     let picture = image::open(folder.path().join("look.png")).expect("the picture can be read");
     let image::DynamicImage::ImageRgb8(picture) = picture else { panic!("the picture is {:?}", picture.color()) };
     assert_eq!(picture.dimensions(), (6, 4));
@@ -230,13 +231,33 @@ fn a_picture_is_8_bit_rgb_of_the_film_s_size() {
 #[test]
 fn an_exposure_of_minus_one_halves_the_light_of_the_picture_alone() {
     let folder = folder();
-    assert_eq!(render(&folder, &["ball.toml", "--png", "a.png"]).code, Some(0));
+    assert_eq!(render(&folder, &["ball.toml", "--exr", "--png", "a.png"]).code, Some(0));
     let image = fs::read(folder.path().join("ball.exr")).expect("the image is there");
-    assert_eq!(render(&folder, &["ball.toml", "--png", "b.png", "--exposure", "-1"]).code, Some(0));
+    assert_eq!(render(&folder, &["--exr", "ball.toml", "--png", "b.png", "--exposure", "-1"]).code, Some(0));
     assert!(fs::read(folder.path().join("ball.exr")).expect("the image is there") == image);
     let picture = image::open(folder.path().join("b.png")).expect("the picture can be read").into_rgb8();
     // sRGB of 0.5: 255 (1.055 * 0.5^(1/2.4) - 0.055) = 187.5 (IEC 61966-2-1).
     assert_eq!(picture.get_pixel(0, 0).0, [188; 3]);
+}
+
+#[test]
+fn a_picture_alone_leaves_an_image_of_the_same_scene_as_it_is() {
+    assert_leaves(&["ball.toml", "--png", "look.png"], &["ball.toml", "look.png"]);
+    assert_leaves(&["--exr", "ball.toml", "--png", "look.png"], &["ball.exr", "ball.toml", "look.png"]);
+    assert_leaves(&["ball.toml", "--exr", "a.exr", "--png", "look.png"], &["a.exr", "ball.toml", "look.png"]);
+    let folder = folder();
+    folder.write("ball.exr", "an older image");
+    assert_eq!(render(&folder, &["ball.toml", "--png", "look.png"]).code, Some(0));
+    assert_eq!(fs::read(folder.path().join("ball.exr")).expect("it is there"), b"an older image");
+}
+
+#[test]
+fn an_exposure_without_a_picture_is_refused() {
+    let refusal = "error: --exposure brightens the picture of --png alone, and none is asked for\n\
+                   help: add --png look.png, or leave --exposure out\n";
+    assert_refuses(&["ball.toml", "--exposure", "1"], 2, refusal);
+    assert_refuses(&["--exr", "ball.toml", "--exposure", "0"], 2, refusal);
+    assert_refuses(&["--plan", "ball.toml", "--exposure", "1"], 2, refusal);
 }
 
 #[test]
@@ -247,7 +268,7 @@ fn an_existing_image_survives_a_failing_run_and_is_replaced_by_a_good_one() {
     folder.write("bad.toml", &SCENE.replace("radius = 1 ", "radius = -1 "));
     assert_eq!(render(&folder, &["bad.toml", "--exr", "ball.exr"]).code, Some(2));
     assert!(older());
-    assert_eq!(render(&folder, &["ball.toml", "--png", "ball.toml/a.png"]).code, Some(1));
+    assert_eq!(render(&folder, &["--exr", "ball.toml", "--png", "ball.toml/a.png"]).code, Some(1));
     assert!(older());
     assert_eq!(render(&folder, &["ball.toml", "--samples", "0"]).code, Some(2));
     assert!(older());

@@ -220,11 +220,27 @@ fn broken_mesh_files_are_refused_with_the_place_in_the_scene() {
 }
 
 #[test]
+fn several_mistakes_are_told_at_once_in_the_order_of_the_file_and_counted() {
+    check("several.txt", 14);
+}
+
+#[test]
+fn of_many_mistakes_the_first_twenty_are_shown_and_all_are_counted() {
+    let folder = Folder::new();
+    let ball = "[[object]]\nshape.sphere = { center = [0, 1, 0], radius = 0 }\nmaterial = \"white\"\n";
+    folder.write("scene.toml", &format!("{BASE}{}", ball.repeat(27)));
+    let answer = render(&folder, &["--check", "scene.toml"]);
+    let told = answer.stderr.matches("error: a radius is a length above 0, not 0\n").count();
+    assert_eq!((answer.code, told), (Some(2), 20), "{}", answer.stderr);
+    assert!(answer.stderr.ends_with("\n\n27 mistakes in scene.toml: these and 7 more\n"), "{}", answer.stderr);
+}
+
+#[test]
 fn an_empty_scene_asks_for_a_camera_and_a_film() {
     let folder = Folder::new();
     folder.write("scene.toml", "");
     let expected = "\
-error: the scene has no [camera]
+error: the scene has no [camera] and no [film]
  --> scene.toml:1:1
   |
 1 |
@@ -239,7 +255,7 @@ error: the scene has no [camera]
 #[test]
 fn lines_that_end_as_on_windows_are_counted_and_shown_alike() {
     let folder = Folder::new();
-    folder.write("scene.toml", &BASE.replace("radius = 1 }", "radius = 0 }").replace('\n', "\r\n"));
+    folder.write("scene.toml", &BASE.replacen("radius = 1 }", "radius = 0 }", 1).replace('\n', "\r\n"));
     let expected = "\
 error: a radius is a length above 0, not 0
   --> scene.toml:31:47

@@ -44,20 +44,24 @@ fn read(path: &Path, text: String) -> Option<Scene<Curve>> {
     let source = Source { path: path.to_owned(), text };
     // The image is made small: its size decides nothing but the time it takes.
     let scene = source.parse().and_then(|mut description| {
-        (description.film.width, description.film.height) =
-            (description.film.width.min(4), description.film.height.min(3));
+        if let Some(film) = &mut description.film {
+            (film.width, film.height) = (film.width.min(4), film.height.min(3));
+        }
         description.render.samples = description.render.samples.map(|samples| samples.min(1));
         compile(&description, &source)
     });
     match scene {
         Ok(scene) => Some(scene),
-        Err(Error::Scene(mistake)) => {
-            assert!(!mistake.message.is_empty() && !mistake.message.contains('\n'), "{mistake:?}");
-            assert!(mistake.span.start <= mistake.span.end && mistake.span.end <= source.text.len(), "{mistake:?}");
-            let whole = |at| source.text.is_char_boundary(at);
-            assert!(whole(mistake.span.start) && whole(mistake.span.end), "{mistake:?}");
-            let (line, column) = mistake.line_and_column();
-            assert!(line >= 1 && column >= 1 && line <= source.text.lines().count() + 1, "{mistake:?}");
+        Err(Error::Scene(mistakes)) => {
+            assert!(!mistakes.is_empty() && mistakes.is_sorted_by_key(|mistake| mistake.span.start), "{mistakes:?}");
+            for mistake in mistakes {
+                assert!(!mistake.message.is_empty() && !mistake.message.contains('\n'), "{mistake:?}");
+                assert!(mistake.span.start <= mistake.span.end && mistake.span.end <= source.text.len(), "{mistake:?}");
+                let whole = |at| source.text.is_char_boundary(at);
+                assert!(whole(mistake.span.start) && whole(mistake.span.end), "{mistake:?}");
+                let (line, column) = mistake.line_and_column();
+                assert!(line >= 1 && column >= 1 && line <= source.text.lines().count() + 1, "{mistake:?}");
+            }
             None
         }
         Err(other) => panic!("a text is refused with its place, not with {other:?}"),

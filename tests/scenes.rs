@@ -29,7 +29,7 @@ fn compiled(path: &Path, width: Option<u32>) -> Scene<Curve> {
     let source = Source::read(path).expect("a scene");
     let mut description = source.parse().unwrap_or_else(|error| panic!("{error}"));
     if let Some(width) = width {
-        let film = &mut description.film;
+        let film = description.film.as_mut().expect("a scene has a film");
         (film.width, film.height) = (width, (film.height * width).div_ceil(film.width));
         description.render.samples = Some(1);
     }

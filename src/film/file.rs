@@ -1,46 +1,125 @@
 //! Files that appear whole or not at all.
 
-use std::ffi::OsString;
 use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use crate::error::{Error, Result};
 
+/// Most links that are followed, as Linux has it.
+const MOST_LINKS: u32 = 40;
+/// Most temporary files of a run that died and was followed by one of the same process id.
+const MOST_LEFT_BEHIND: u32 = 1000;
+
 /// Writes a file under a temporary name beside the target, then renames it: a reader never sees half of it.
+///
+/// A symbolic link stays and its target is replaced; permissions are kept, and other names of the same file (hard links)
+/// keep what they had. What is there but no file, such as a pipe, is written to as it is.
 ///
 /// # Errors
 /// If it cannot be written; a file that was there before is then untouched, and nothing else is left behind.
 pub(super) fn replace_file(path: &Path, bytes: &[u8]) -> Result<()> {
-    let temporary = temporary(path);
-    let written = File::create(&temporary)
-        .and_then(|mut file| file.write_all(bytes).and_then(|()| file.sync_all()))
-        .and_then(|()| fs::rename(&temporary, path));
-    written.map_err(|source| {
-        // The write's error is the one to report; a temporary file that cannot be removed either changes nothing.
-        let _ = fs::remove_file(&temporary);
-        Error::Io { doing: "write", path: path.to_owned(), source }
-    })
+    let written = Target::of(path).and_then(|target| match target {
+        Target::Device => File::options().write(true).open(path)?.write_all(bytes),
+        Target::File(target) => {
+            let (mut file, temporary) = Temporary::beside(&target)?;
+            file.write_all(bytes)?;
+            if let Ok(before) = fs::metadata(&target) {
+                file.set_permissions(before.permissions())?;
+            }
+            file.sync_all()?;
+            temporary.become_file(&target)
+        }
+    });
+    written.map_err(|source| Error::Io { doing: "write", path: path.to_owned(), source })
 }
 
 /// Finds out before a long render whether its image can be written; creates the folder if it is missing.
 ///
 /// # Errors
-/// If the folder cannot be made or written to, or the path is a folder.
+/// If the folder cannot be made or written to, the path is a folder or leads nowhere, or its file is write-protected.
 pub fn check_writable(path: &Path) -> Result<()> {
-    let error = |source: io::Error| Error::Io { doing: "write", path: path.to_owned(), source };
-    if path.is_dir() {
-        return Err(error(io::Error::new(io::ErrorKind::IsADirectory, "it is a folder")));
-    }
-    if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) {
-        fs::create_dir_all(folder).map_err(error)?;
-    }
-    let temporary = temporary(path);
-    File::create(&temporary).and_then(|_| fs::remove_file(&temporary)).map_err(error)
+    let tried = Target::of(path).and_then(|target| match target {
+        // A reader of a pipe would take opening and closing it for the end of the image.
+        Target::Device if is_pipe(path) => Ok(()),
+        Target::Device => File::options().write(true).open(path).map(drop),
+        Target::File(target) => {
+            if let Some(folder) = target.parent().filter(|folder| !folder.as_os_str().is_empty()) {
+                fs::create_dir_all(folder)?;
+            }
+            Temporary::beside(&target).map(drop)
+        }
+    });
+    tried.map_err(|source| Error::Io { doing: "write", path: path.to_owned(), source })
 }
 
-fn temporary(path: &Path) -> PathBuf {
-    let mut name = OsString::from(path);
-    name.push(format!(".tmp-{}", std::process::id()));
-    name.into()
+/// What a path stands for.
+enum Target {
+    /// A file, perhaps yet to be made; no link.
+    File(PathBuf),
+    /// Something else that takes bytes.
+    Device,
+}
+
+impl Target {
+    fn of(path: &Path) -> io::Result<Self> {
+        match fs::metadata(path) {
+            Ok(found) if found.is_dir() => return Err(io::Error::new(io::ErrorKind::IsADirectory, "it is a folder")),
+            Ok(found) if !found.is_file() => return Ok(Self::Device),
+            Ok(found) if found.permissions().readonly() => return Err(io::ErrorKind::PermissionDenied.into()),
+            _ => {}
+        }
+        let mut target = path.to_owned();
+        for _ in 0..MOST_LINKS {
+            match fs::read_link(&target) {
+                Ok(next) => target = target.parent().unwrap_or(Path::new("")).join(next),
+                Err(_) => return Ok(Self::File(target)),
+            }
+        }
+        Err(io::Error::other("it is a link that leads back to itself"))
+    }
+}
+
+#[cfg(unix)]
+fn is_pipe(path: &Path) -> bool {
+    use std::os::unix::fs::FileTypeExt;
+    fs::metadata(path).is_ok_and(|found| found.file_type().is_fifo())
+}
+
+#[cfg(not(unix))]
+fn is_pipe(_: &Path) -> bool {
+    false
+}
+
+/// A file of a short name of its own, which is removed unless it becomes another.
+struct Temporary(PathBuf);
+
+impl Temporary {
+    /// In the folder of the target.
+    fn beside(target: &Path) -> io::Result<(File, Self)> {
+        let mut number = 0;
+        loop {
+            let path = target.with_file_name(format!(".abbe-{}-{number}", std::process::id()));
+            match File::create_new(&path) {
+                Ok(file) => return Ok((file, Self(path))),
+                Err(error) if error.kind() == io::ErrorKind::AlreadyExists && number < MOST_LEFT_BEHIND => number += 1,
+                Err(error) => return Err(error),
+            }
+        }
+    }
+
+    fn become_file(mut self, target: &Path) -> io::Result<()> {
+        fs::rename(&self.0, target)?;
+        self.0 = PathBuf::new();
+        Ok(())
+    }
+}
+
+impl Drop for Temporary {
+    fn drop(&mut self) {
+        // The error before is the one to report; a temporary file that cannot be removed either changes nothing.
+        if !self.0.as_os_str().is_empty() {
+            let _ = fs::remove_file(&self.0);
+        }
+    }
 }

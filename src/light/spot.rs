@@ -1,5 +1,3 @@
-use serde::Deserialize;
-
 use super::View;
 use crate::math::{DVec3, Ray, unit};
 use crate::shape::Sighting;
@@ -11,8 +9,7 @@ use crate::spectrum::Quantity;
 /// [[light]]
 /// spot = { position = [0, 3, 0], toward = [0, -1, 0], cone_angle = 40, intensity = 10 }     # blend = 0.15
 /// ```
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug)]
 pub struct Spot<S> {
     /// Where it is.
     pub position: [f64; 3],
@@ -21,14 +18,9 @@ pub struct Spot<S> {
     /// Full angle of the cone, in degrees, above 0 to 180.
     pub cone_angle: f64,
     /// The outer part of the cone's half angle over which the light fades, 0 to 1.
-    #[serde(default = "soft")]
     pub blend: f64,
     /// Radiance times area in the middle, in scene units.
     pub intensity: S,
-}
-
-fn soft() -> f64 {
-    0.15
 }
 
 impl<S> Spot<S> {

@@ -1,6 +1,6 @@
 //! From the file as written to a world that can be rendered: all names are looked up and all numbers checked here.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use sha2::{Digest, Sha256};
@@ -10,9 +10,10 @@ use super::compile_mesh::Meshes;
 use super::compile_shape::ShapeCompiler;
 use super::contact::coinciding;
 use super::description::{Description, ModelText, ObjectText, RenderText};
+use super::gather::{Gather, told_elsewhere};
 use super::index::Index;
 use super::inside_out::inside_out;
-use super::source::{At, Source};
+use super::source::{At, Located, Source};
 use super::unlit::unlit;
 use super::{NamedMaterial, Object, Scene};
 use crate::error::{Error, Result, nearest};
@@ -27,46 +28,39 @@ const BANDS: [u32; 4] = [8, 12, 16, 32];
 /// The world that a scene file describes.
 ///
 /// # Errors
-/// The first mistake found, with its place in the file.
+/// All mistakes that can be found, in the order of the file, each with its place.
 pub fn compile(description: &Description, source: &Source) -> Result<Scene<Curve>> {
     let mut hash = Sha256::new();
     hash.update(source.text.as_bytes());
     let meters_per_unit = description.render.meters_per_unit;
     let (meshes, images) = (Meshes::of(description), Images::new());
-    let mut compiler = Compiler { source, warnings: Vec::new(), hash, meters_per_unit, meshes, images };
-    let film = compiler.film(&description.film)?;
-    let camera = compiler.camera(&description.camera, film)?;
-    compiler.render(&description.render)?;
-    let materials = compiler.materials(&description.material)?;
-    let (objects, entries, materials) = compiler.objects(description, &materials)?;
-    compiler.contacts(&objects, &entries, &materials)?;
-    compiler.faces_inward(&objects, &materials);
-    let mut scene = Scene {
-        camera,
-        film,
-        render: description.render.clone(),
-        index: Index::new(objects.iter().map(|object| &*object.shape)),
-        objects,
-        materials,
-        lights: Vec::new(),
-        skies: Vec::new(),
-        warnings: Vec::new(),
-        hash: String::new(),
-    };
-    compiler.surfaces_that_shine(&mut scene);
-    compiler.lights(&description.light, &mut scene)?;
-    if scene.lights.is_empty() {
-        compiler.warnings.push("nothing shines, so the image will be black".into());
+    let source = Located::new(source);
+    let mut compiler =
+        Compiler { source: &source, warnings: Vec::new(), mistakes: Vec::new(), hash, meters_per_unit, meshes, images };
+    compiler.mistakes = description.mistakes.iter().map(|mistake| source.mistake(mistake.clone())).collect();
+    match compiler.scene(description) {
+        Some(scene) if compiler.mistakes.is_empty() => Ok(scene),
+        _ => Err(in_order(compiler.mistakes)),
     }
-    compiler.warnings.extend(unlit(&scene));
-    scene.warnings = compiler.warnings;
-    scene.hash = compiler.hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
-    Ok(scene)
+}
+
+/// All mistakes as one error, in the order of the file, none twice.
+fn in_order(mistakes: Vec<Error>) -> Error {
+    let told = Error::Scene(Vec::new());
+    match mistakes.into_iter().fold(told, Error::and) {
+        Error::Scene(mut mistakes) => {
+            mistakes.sort_by_key(|mistake| mistake.span.start);
+            mistakes.dedup_by(|a, b| (&a.span, &a.message) == (&b.span, &b.message));
+            Error::Scene(mistakes)
+        }
+        other => other,
+    }
 }
 
 pub(super) struct Compiler<'a> {
-    pub(super) source: &'a Source,
+    pub(super) source: &'a Located<'a>,
     pub(super) warnings: Vec<String>,
+    mistakes: Vec<Error>,
     pub(super) hash: Sha256,
     pub(super) meters_per_unit: Option<f64>,
     pub(super) meshes: Meshes,
@@ -76,71 +70,115 @@ pub(super) struct Compiler<'a> {
 
 /// Objects, the entry of the file that each comes from, and their materials.
 type Objects = (Vec<Object>, Vec<usize>, Vec<NamedMaterial<Curve>>);
-pub(super) type Materials = BTreeMap<String, Material<Curve>>;
+/// Materials by name; those that are wrong are known but not there.
+pub(super) type Materials = BTreeMap<String, Option<Material<Curve>>>;
 
 impl Compiler<'_> {
+    /// What was checked, if it is right; its mistakes are kept if not.
+    pub(super) fn kept<T>(&mut self, checked: Result<T>) -> Option<T> {
+        checked.map_err(|error| self.mistakes.push(error)).ok()
+    }
+
+    /// The scene, if nothing that it is made of is wrong.
+    fn scene(&mut self, description: &Description) -> Option<Scene<Curve>> {
+        let film = description.film.as_ref().and_then(|film| {
+            let film = self.film(film);
+            self.kept(film)
+        });
+        let camera = description.camera.as_ref().and_then(|camera| {
+            let camera = self.camera(camera, film.as_ref());
+            self.kept(camera)
+        });
+        let render = self.render(&description.render);
+        self.kept(render);
+        let materials = self.materials(&description.material);
+        let (objects, entries, materials) = self.objects(description, &materials);
+        self.contacts(&objects, &entries, &materials);
+        self.faces_inward(&objects, &materials);
+        let (lights, skies) = self.lights(&description.light);
+        let mut scene = Scene {
+            camera: camera?,
+            film: film?,
+            render: description.render.clone(),
+            index: Index::new(objects.iter().map(|object| &*object.shape)),
+            objects,
+            materials,
+            lights: Vec::new(),
+            skies: Vec::new(),
+            warnings: Vec::new(),
+            hash: String::new(),
+        };
+        self.surfaces_that_shine(&mut scene);
+        scene.skies = skies.into_iter().map(|sky| sky + scene.lights.len()).collect();
+        scene.lights.extend(lights);
+        if scene.lights.is_empty() {
+            self.warnings.push("nothing shines, so the image will be black".into());
+        }
+        if self.mistakes.is_empty() {
+            self.warnings.extend(unlit(&scene));
+        }
+        scene.warnings = std::mem::take(&mut self.warnings);
+        scene.hash = self.hash.finalize_reset().iter().map(|byte| format!("{byte:02x}")).collect();
+        Some(scene)
+    }
+
     fn render(&self, render: &RenderText) -> Result<()> {
         let at = At::top("render");
         let refuse = |key, message: String, help: Option<&str>| {
             Err(self.source.mistake_at(&at.key(key), message, help.map(str::to_owned)))
         };
-        if let Some(0) = render.samples {
-            return refuse("samples", "a pixel needs at least 1 sample".into(), None);
-        }
-        if let Some(error) = render.error.filter(|error| !(1e-6..=1.0).contains(error)) {
-            let help = "0.01 asks for one percent";
-            return refuse("error", format!("a relative error lies between 0.000001 and 1, not {error}"), Some(help));
-        }
-        if let Some(meters) = render.meters_per_unit.filter(|meters| !(1e-12..=1e12).contains(meters)) {
-            let help = "0.01 if the scene is in centimeters";
-            return refuse(
-                "meters_per_unit",
-                format!("a scene unit is 1e-12 to 1e12 meters, not {meters}"),
-                Some(help),
-            );
-        }
-        match render.model {
+        let samples = match render.samples {
+            Some(0) => refuse("samples", "a pixel needs at least 1 sample".into(), None),
+            _ => Ok(()),
+        };
+        let error = match render.error.filter(|error| !(1e-6..=1.0).contains(error)) {
+            Some(error) => {
+                let help = "0.01 asks for one percent";
+                refuse("error", format!("a relative error lies between 0.000001 and 1, not {error}"), Some(help))
+            }
+            None => Ok(()),
+        };
+        let meters = match render.meters_per_unit.filter(|meters| !(1e-12..=1e12).contains(meters)) {
+            Some(meters) => {
+                let help = "0.01 if the scene is in centimeters";
+                refuse("meters_per_unit", format!("a scene unit is 1e-12 to 1e12 meters, not {meters}"), Some(help))
+            }
+            None => Ok(()),
+        };
+        let model = match render.model {
             ModelText::Bands(bands) if !BANDS.contains(&bands) => {
                 let message = format!("the model has 8, 12, 16 or 32 bands, not {bands}");
                 Err(self.source.mistake_at(&at.key("model").key("bands"), message, None))
             }
             _ => Ok(()),
-        }
+        };
+        (samples, error, meters, model).gather().map(|_| ())
     }
 
-    /// The objects, the entry of the file that each comes from, and their materials.
-    fn objects(&mut self, description: &Description, compiled: &Materials) -> Result<Objects> {
+    /// The objects that are right, the entry of the file that each comes from, and their materials.
+    fn objects(&mut self, description: &Description, compiled: &Materials) -> Objects {
         let (mut objects, mut entries, mut materials) = (Vec::new(), Vec::new(), Vec::<NamedMaterial<Curve>>::new());
+        // Of a material that is not there it is told where it is named first.
+        let mut unknown = BTreeSet::new();
         for (number, text) in description.object.iter().enumerate() {
+            let Some(text) = text else { continue };
             let top = At::top("object");
-            let at = top.index(number);
-            let known = materials.iter().position(|material| material.name == text.material);
-            let material = match (known, compiled.get(&text.material)) {
-                (Some(id), _) => id,
-                (None, Some(material)) => {
-                    materials.push(NamedMaterial { name: text.material.clone(), material: material.clone() });
-                    materials.len() - 1
-                }
-                (None, None) => return Err(self.unknown_material(&at, text, description)),
+            let known = compiled.contains_key(&text.material);
+            let material = match known || !description.nameless && unknown.insert(&text.material) {
+                true => self.material_of(&top.index(number), text, compiled),
+                false => told_elsewhere(),
             };
-            let name = text.name.clone().unwrap_or_else(|| format!("object {}", number + 1));
-            let filled = materials[material].material.medium().is_some();
-            let varies = materials[material].material.varies();
-            let relief = self.relief(&at, text)?;
-            let mut compiler = ShapeCompiler { compiler: self, name: &name, filled };
-            for (instance, (shape, coordinates)) in compiler.shapes(&at, text)?.into_iter().enumerate() {
-                let name = match text.instances {
-                    Some(_) => format!("{name} [{}]", instance + 1),
-                    None => name.clone(),
-                };
-                if varies && coordinates.is_none() {
-                    return Err(self.no_coordinates(&at, &text.material));
-                }
-                let (shape, coordinates) = (Arc::new(shape), coordinates.map(Arc::new));
-                let relief = relief.as_ref().map(|relief| self.relief_on(&at, relief, coordinates.as_ref()));
-                let (relief, coordinates) = (relief.transpose()?, coordinates.filter(|_| varies));
-                objects.push(Object { name, shape, material: material as u32, light: None, coordinates, relief });
-                entries.push(number);
+            let known = material.as_ref().ok().map(|material| {
+                let known = materials.iter().position(|known| known.name == text.material);
+                known.unwrap_or_else(|| {
+                    materials.push(NamedMaterial { name: text.material.clone(), material: (*material).clone() });
+                    materials.len() - 1
+                })
+            });
+            let placed = self.object(number, text, material);
+            if let (Some(placed), Some(material)) = (self.kept(placed), known) {
+                entries.extend(placed.iter().map(|_| number));
+                objects.extend(placed.into_iter().map(|object| Object { material: material as u32, ..object }));
             }
         }
         for name in description.material.keys() {
@@ -149,11 +187,46 @@ impl Compiler<'_> {
                 self.warnings.push(format!("material {name} is not used by any object"));
             }
         }
-        Ok((objects, entries, materials))
+        (objects, entries, materials)
+    }
+
+    /// The material that an object names.
+    fn material_of<'m>(&self, at: &At, text: &ObjectText, materials: &'m Materials) -> Result<&'m Material<Curve>> {
+        match materials.get(&text.material) {
+            Some(Some(material)) => Ok(material),
+            Some(None) => told_elsewhere(),
+            None => Err(self.unknown_material(at, text, materials)),
+        }
+    }
+
+    /// An object, or each of its instances; which material is theirs is not yet said.
+    fn object(&mut self, number: usize, text: &ObjectText, material: Result<&Material<Curve>>) -> Result<Vec<Object>> {
+        let top = At::top("object");
+        let at = top.index(number);
+        let name = text.name.clone().unwrap_or_else(|| format!("object {}", number + 1));
+        let filled = material.as_ref().is_ok_and(|material| material.medium().is_some());
+        let varies = material.as_ref().is_ok_and(|material| material.varies());
+        let relief = self.relief(&at, text);
+        let shapes = ShapeCompiler { compiler: self, name: &name, filled }.shapes(&at, text);
+        let (_, relief, shapes) = (material, relief, shapes).gather()?;
+        let placed = shapes.into_iter().enumerate().map(|(instance, (shape, coordinates))| {
+            let name = match text.instances {
+                Some(_) => format!("{name} [{}]", instance + 1),
+                None => name.clone(),
+            };
+            if varies && coordinates.is_none() {
+                return Err(self.no_coordinates(&at, &text.material));
+            }
+            let (shape, coordinates) = (Arc::new(shape), coordinates.map(Arc::new));
+            let relief = relief.as_ref().map(|relief| self.relief_on(&at, relief, coordinates.as_ref()));
+            let (relief, coordinates) = (relief.transpose()?, coordinates.filter(|_| varies));
+            Ok(Object { name, shape, material: 0, light: None, coordinates, relief })
+        });
+        placed.collect()
     }
 
     /// Clear bodies may overlap but not share a surface: rounding would decide which of the two a ray meets.
-    fn contacts(&mut self, objects: &[Object], entries: &[usize], materials: &[NamedMaterial<Curve>]) -> Result<()> {
+    fn contacts(&mut self, objects: &[Object], entries: &[usize], materials: &[NamedMaterial<Curve>]) {
         let is_clear = |object: &Object| materials[object.material as usize].material.medium().is_some();
         for (first, second) in coinciding(objects, is_clear) {
             let (later, top) = (entries[first.max(second)], At::top("object"));
@@ -162,14 +235,15 @@ impl Compiler<'_> {
                 let message = format!("a part of the surfaces of {body} and {other} lies in one place");
                 let help =
                     "let one reach a little into the other: there the one of higher `priority` is; or leave a gap";
-                return Err(self.source.mistake_at(&top.index(later).key("shape"), message, Some(help.into())));
+                let place = top.index(later);
+                self.mistakes.push(self.source.mistake_at(&place.key("shape"), message, Some(help.into())));
+                continue;
             }
             self.warnings.push(format!(
                 "a part of the surface of {body} lies exactly in {other}, where light may pass by it: move it a little, \
                  apart or into the other"
             ));
         }
-        Ok(())
     }
 
     /// A clear body whose faces look inward fills all that is outside of it, and light that meets it is lost.
@@ -191,11 +265,11 @@ impl Compiler<'_> {
         self.source.mistake_at(&at.key("shape"), message, Some(help.into()))
     }
 
-    fn unknown_material(&self, at: &At, text: &ObjectText, description: &Description) -> Error {
-        let names = || description.material.keys().map(String::as_str);
+    fn unknown_material(&self, at: &At, text: &ObjectText, materials: &Materials) -> Error {
+        let names = || materials.keys().map(String::as_str);
         let help = match nearest(&text.material, names()) {
             Some(near) => format!("did you mean {near:?}?"),
-            None if description.material.is_empty() => format!("define it: [material.{}]", text.material),
+            None if materials.is_empty() => format!("define it: [material.{}]", text.material),
             None => format!("the scene defines {}", names().collect::<Vec<_>>().join(", ")),
         };
         let message = format!("there is no material named {:?}", text.material);

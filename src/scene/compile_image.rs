@@ -8,6 +8,7 @@ use std::sync::Arc;
 use sha2::Digest;
 
 use super::compile::Compiler;
+use super::gather::{Gather, all};
 use super::image_file::{Meaning, read_texture};
 use super::source::At;
 use crate::error::Result;
@@ -34,14 +35,17 @@ impl Compiler<'_> {
     }
 
     fn image_curve(&mut self, at: &At, curve: &Curve, text: &ImageText, quantity: Quantity) -> Result<Curve> {
-        self.factor_on_image(at, curve)?;
-        self.repeat(at, text.placement.repeat)?;
-        if let (Some(Channel::Alpha), Some(Encoding::Srgb)) = (text.channel, text.encoding) {
-            let message = "alpha is a share, which no kind of file encodes as sRGB";
-            return Err(self.source.mistake_at(&at.key("encoding"), message, Some("leave `encoding` out".into())));
-        }
+        let factor = self.factor_on_image(at, curve);
+        let repeat = self.repeat(at, text.placement.repeat);
         let here = at.key("image");
-        let image = self.image(&here, &text.file, Meaning::Light(text.encoding), text.channel)?;
+        let image = match (text.channel, text.encoding) {
+            (Some(Channel::Alpha), Some(Encoding::Srgb)) => {
+                let message = "alpha is a share, which no kind of file encodes as sRGB";
+                Err(self.source.mistake_at(&at.key("encoding"), message, Some("leave `encoding` out".into())))
+            }
+            _ => self.image(&here, &text.file, Meaning::Light(text.encoding), text.channel),
+        };
+        let (_, _, image) = (factor, repeat, image).gather()?;
         let ([x, y], brightest) = image.brightest();
         let most = f64::from(brightest) * curve.scale;
         if quantity != Quantity::Emission && most > 1.0 {
@@ -90,33 +94,19 @@ impl Compiler<'_> {
         repeat: [f64; 2],
         quantity: Quantity,
     ) -> Result<Curve> {
-        self.repeat(at, repeat)?;
+        let repeated = self.repeat(at, repeat);
         if curve.luminance.is_some() {
             let help = Some("give its squares a `scale`".into());
             return Err(self.source.mistake_at(&at.key("luminance"), "a checker has no single luminance", help));
         }
         let list = at.key("checker");
-        let mut checked = Vec::new();
-        for (number, cell) in cells.iter().enumerate() {
-            let here = list.index(number);
-            // A lamp has one spectrum, the white that colors are filters of.
-            if quantity == Quantity::Emission && cell.kind.rgb().is_none() {
-                let message = "the squares of a lamp are numbers or `rgb`: it shines in one white";
-                return Err(self.source.mistake_at(&here, message, Some("make it of several lamps".into())));
-            }
-            let luminance = cell.luminance.filter(|_| quantity == Quantity::Emission);
-            if luminance.is_some() {
-                let help = Some("use `scale`".into());
-                return Err(self.source.mistake_at(
-                    &here.key("luminance"),
-                    "the squares of a lamp have no luminance",
-                    help,
-                ));
-            }
+        let squares = cells.iter().enumerate().map(|(number, cell)| {
             let scaled = Curve { scale: cell.scale * curve.scale, ..cell.clone() };
-            checked.push(self.surface_curve(&here, &scaled, quantity)?);
-        }
-        let [mut first, mut second] = <[Curve; 2]>::try_from(checked).expect("two squares were checked");
+            self.square(&list.index(number), &scaled, quantity)
+        });
+        let squares = all(squares);
+        let (_, squares) = (repeated, squares).gather()?;
+        let [mut first, mut second] = <[Curve; 2]>::try_from(squares).expect("two squares were checked");
         let mut scale = 1.0;
         if quantity == Quantity::Emission {
             let brightest =
@@ -127,6 +117,19 @@ impl Compiler<'_> {
             filter(&mut second);
         }
         Ok(Curve { kind: CurveKind::Checker { cells: Box::new([first, second]), repeat }, scale, luminance: None })
+    }
+
+    fn square(&mut self, at: &At, cell: &Curve, quantity: Quantity) -> Result<Curve> {
+        // A lamp has one spectrum, the white that colors are filters of.
+        if quantity == Quantity::Emission && cell.kind.rgb().is_none() {
+            let message = "the squares of a lamp are numbers or `rgb`: it shines in one white";
+            return Err(self.source.mistake_at(at, message, Some("make it of several lamps".into())));
+        }
+        if quantity == Quantity::Emission && cell.luminance.is_some() {
+            let (message, help) = ("the squares of a lamp have no luminance", "use `scale`");
+            return Err(self.source.mistake_at(&at.key("luminance"), message, Some(help.into())));
+        }
+        self.surface_curve(at, cell, quantity)
     }
 
     /// An image, read once for each meaning of its numbers.

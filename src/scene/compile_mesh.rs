@@ -7,6 +7,7 @@ use sha2::Digest;
 
 use super::compile_shape::{MAX_LENGTH, ShapeCompiler};
 use super::description::{Description, MeshText, ShapeText};
+use super::gather::{Gather, all};
 use super::source::At;
 use crate::error::Result;
 use crate::shape::{Attributes, Mesh, Vertices, read_mesh, read_smooth_mesh, vertex_normals};
@@ -23,7 +24,7 @@ impl Meshes {
     /// Counts the files that a scene names.
     pub(super) fn of(description: &Description) -> Self {
         let mut places = HashMap::new();
-        for object in &description.object {
+        for object in description.object.iter().flatten() {
             if let ShapeText::Mesh(MeshText { file: Some(file), .. }) = &object.shape {
                 *places.entry(file.clone()).or_default() += object.instances.as_ref().map_or(1, Vec::len);
             }
@@ -53,15 +54,21 @@ impl ShapeCompiler<'_, '_> {
                 self.mesh_file(&at.key("file"), file, text.smooth)?
             }
             MeshText { file: None, points: Some(points), faces: Some(faces), .. } => {
-                let vertices = self.points(&at.key("points"), points)?;
-                let count = vertices.len();
-                for (number, face) in faces.iter().enumerate() {
-                    if let Some(corner) = face.iter().position(|&corner| corner as usize >= count) {
-                        let message = format!("there is no point {}: the {count} points count from 0", face[corner]);
-                        return self.refuse(&at.key("faces").index(number).index(corner), &message);
+                let count = points.len();
+                let vertices = self.points(&at.key("points"), points);
+                let list = at.key("faces");
+                let corners = all(faces.iter().enumerate().map(|(number, face)| {
+                    match face.iter().position(|&corner| corner as usize >= count) {
+                        Some(corner) => {
+                            let message =
+                                format!("there is no point {}: the {count} points count from 0", face[corner]);
+                            self.refuse(&list.index(number).index(corner), &message)
+                        }
+                        None => Ok(()),
                     }
-                }
-                (Vertices::Double(vertices), faces.clone(), self.attributes(at, text, count)?)
+                }));
+                let (vertices, _, attributes) = (vertices, corners, self.attributes(at, text, count)).gather()?;
+                (Vertices::Double(vertices), faces.clone(), attributes)
             }
             _ => return self.refuse(at, "a mesh has either a `file`, or `points` and `faces`"),
         };

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::compile::Compiler;
 use super::compile_shape::MAX_LENGTH;
 use super::description::ObjectText;
+use super::gather::Gather;
 use super::image_file::Meaning;
 use super::relief::{Relief, ReliefKind};
 use super::source::At;
@@ -27,14 +28,18 @@ impl Compiler<'_> {
             (Some(map), None) => {
                 let at = at.key("normal_map");
                 let strength = map.strength.unwrap_or(1.0);
-                if !(0.0..=MOST_STRENGTH).contains(&strength) {
-                    let message =
-                        format!("the strength of a normal map lies between 0 and {MOST_STRENGTH}, not {strength}");
-                    return Err(self.source.mistake_at(&at.key("strength"), message, None));
-                }
-                self.linear(&at, map.encoding, "directions")?;
-                let placement = self.placement(&at, map.repeat, map.wrap)?;
-                let image = self.image(&at.key("image"), &map.image, Meaning::Directions, None)?;
+                let bounded = match strength {
+                    0.0..=MOST_STRENGTH => Ok(()),
+                    _ => {
+                        let message =
+                            format!("the strength of a normal map lies between 0 and {MOST_STRENGTH}, not {strength}");
+                        Err(self.source.mistake_at(&at.key("strength"), message, None))
+                    }
+                };
+                let linear = self.linear(&at, map.encoding, "directions");
+                let placement = self.placement(&at, map.repeat, map.wrap);
+                let image = self.image(&at.key("image"), &map.image, Meaning::Directions, None);
+                let (_, _, placement, image) = (bounded, linear, placement, image).gather()?;
                 if image.mean()[2] <= 0.0 {
                     let message = format!("{} is no normal map: its mean normal looks into the surface", map.image);
                     let help = "blue is out of the surface and 128 of 255 or more; heights are a `bump_map`";
@@ -45,13 +50,17 @@ impl Compiler<'_> {
             (None, Some(map)) => {
                 let at = at.key("bump_map");
                 let depth = map.depth;
-                if !(-MAX_LENGTH..=MAX_LENGTH).contains(&depth) {
-                    let message = format!("the depth of a bump map is a length up to {MAX_LENGTH:e}, not {depth}");
-                    return Err(self.source.mistake_at(&at.key("depth"), message, None));
-                }
-                self.linear(&at, map.encoding, "heights")?;
-                let placement = self.placement(&at, map.repeat, map.wrap)?;
-                let image = self.image(&at.key("image"), &map.image, Meaning::Heights, map.channel)?;
+                let bounded = match depth.abs() {
+                    0.0..=MAX_LENGTH => Ok(()),
+                    _ => {
+                        let message = format!("the depth of a bump map is a length up to {MAX_LENGTH:e}, not {depth}");
+                        Err(self.source.mistake_at(&at.key("depth"), message, None))
+                    }
+                };
+                let linear = self.linear(&at, map.encoding, "heights");
+                let placement = self.placement(&at, map.repeat, map.wrap);
+                let image = self.image(&at.key("image"), &map.image, Meaning::Heights, map.channel);
+                let (_, _, placement, image) = (bounded, linear, placement, image).gather()?;
                 Ok(Some((Texture { image, placement }, ReliefKind::Heights { depth })))
             }
         }

@@ -2,6 +2,7 @@
 
 use super::compile::Compiler;
 use super::description::{ObjectText, ShapeText, StepText};
+use super::gather::{Gather, all};
 use super::source::At;
 use crate::error::Result;
 use crate::math::{DVec3, Transform};
@@ -62,13 +63,14 @@ impl Compiler<'_> {
 impl ShapeCompiler<'_, '_> {
     /// The shape of an object, or each of its instances, and where its points lie in images.
     pub(super) fn shapes(&mut self, object: &At, text: &ObjectText) -> Result<Vec<(Shape, Option<Coordinates>)>> {
-        let shape = self.shape(&object.key("shape"), &text.shape)?;
+        let place = object.key("transform");
+        let shape = self.shape(&object.key("shape"), &text.shape);
+        let map = self.compiler.transform(&place, &text.transform, Transform::IDENTITY);
+        let (shape, map) = (shape, map).gather()?;
         if self.filled && !shape.is_closed() && matches!(shape, Shape::Mesh(_)) {
             let warning = format!("{}: a dielectric on an open mesh: light may enter it and never leave", self.name);
             self.compiler.warnings.push(warning);
         }
-        let place = object.key("transform");
-        let map = self.compiler.transform(&place, &text.transform, Transform::IDENTITY)?;
         let Some(instances) = &text.instances else {
             let shared = self.compiler.meshes.is_shared(&text.shape);
             let coordinates = Coordinates::new(&shape, &map);
@@ -87,7 +89,7 @@ impl ShapeCompiler<'_, '_> {
             self.check_size([&at; 2], (&placed, &text.shape), &map)?;
             Ok((placed, Coordinates::new(&shape, &map)))
         };
-        instances.iter().enumerate().map(place).collect()
+        all(instances.iter().enumerate().map(place))
     }
 
     /// Refuses a shape whose size or place numbers do not hold.
@@ -109,8 +111,10 @@ impl ShapeCompiler<'_, '_> {
         Ok(match text {
             ShapeText::Plane(plane) => {
                 let at = at.key("plane");
-                let point = self.compiler.point(&at.key("point"), plane.point)?;
-                Shape::Plane(Plane::new(point, self.compiler.direction(&at.key("normal"), plane.normal)?))
+                let point = self.compiler.point(&at.key("point"), plane.point);
+                let normal = self.compiler.direction(&at.key("normal"), plane.normal);
+                let (point, normal) = (point, normal).gather()?;
+                Shape::Plane(Plane::new(point, normal))
             }
             ShapeText::Triangle(triangle) => {
                 let at = at.key("triangle");
@@ -126,15 +130,18 @@ impl ShapeCompiler<'_, '_> {
             }
             ShapeText::Sphere(sphere) => {
                 let at = at.key("sphere");
-                let center = self.compiler.point(&at.key("center"), sphere.center)?;
-                Shape::Sphere(Sphere::new(center, self.compiler.length(&at.key("radius"), "a radius", sphere.radius)?))
+                let center = self.compiler.point(&at.key("center"), sphere.center);
+                let radius = self.compiler.length(&at.key("radius"), "a radius", sphere.radius);
+                let (center, radius) = (center, radius).gather()?;
+                Shape::Sphere(Sphere::new(center, radius))
             }
             ShapeText::Disc(disc) => {
                 let at = at.key("disc");
-                let center = self.compiler.point(&at.key("center"), disc.center)?;
-                let normal = self.compiler.direction(&at.key("normal"), disc.normal)?;
-                let radius = self.compiler.length(&at.key("radius"), "a radius", disc.radius)?;
-                let u = disc.u.map(|u| self.compiler.direction(&at.key("u"), u)).transpose()?;
+                let center = self.compiler.point(&at.key("center"), disc.center);
+                let normal = self.compiler.direction(&at.key("normal"), disc.normal);
+                let radius = self.compiler.length(&at.key("radius"), "a radius", disc.radius);
+                let u = disc.u.map(|u| self.compiler.direction(&at.key("u"), u)).transpose();
+                let (center, normal, radius, u) = (center, normal, radius, u).gather()?;
                 match Disc::new(center, normal, radius, u) {
                     Some(disc) => Shape::Disc(disc),
                     None => return self.refuse(&at.key("u"), "a disc's u must not be parallel to its normal"),
@@ -142,9 +149,10 @@ impl ShapeCompiler<'_, '_> {
             }
             ShapeText::Quad(quad) => {
                 let at = at.key("quad");
-                let center = self.compiler.point(&at.key("center"), quad.center)?;
-                let u = self.compiler.direction(&at.key("u"), quad.u)?;
-                let v = self.compiler.direction(&at.key("v"), quad.v)?;
+                let center = self.compiler.point(&at.key("center"), quad.center);
+                let u = self.compiler.direction(&at.key("u"), quad.u);
+                let v = self.compiler.direction(&at.key("v"), quad.v);
+                let (center, u, v) = (center, u, v).gather()?;
                 if u.normalize().cross(v.normalize()) == DVec3::ZERO {
                     return self.refuse(&at.key("v"), "a quad's u and v must not be parallel");
                 }
@@ -152,10 +160,10 @@ impl ShapeCompiler<'_, '_> {
             }
             ShapeText::Cube(cube) => {
                 let at = at.key("cube");
-                let center = self.compiler.point(&at.key("center"), cube.center)?;
-                for edge in cube.size {
-                    self.compiler.length(&at.key("size"), "an edge", edge)?;
-                }
+                let center = self.compiler.point(&at.key("center"), cube.center);
+                let edges = cube.size.iter().map(|&edge| self.compiler.length(&at.key("size"), "an edge", edge));
+                let edges = edges.collect::<Result<Vec<_>>>();
+                let (center, _) = (center, edges).gather()?;
                 Shape::Cube(Cube::new(center, cube.size.into()))
             }
             ShapeText::Mesh(mesh) => Shape::Mesh(self.mesh(&at.key("mesh"), mesh)?),
@@ -167,7 +175,7 @@ impl ShapeCompiler<'_, '_> {
     }
 
     pub(super) fn points(&self, at: &At, points: &[[f64; 3]]) -> Result<Vec<DVec3>> {
-        points.iter().enumerate().map(|(i, &point)| self.compiler.point(&at.index(i), point)).collect()
+        all(points.iter().enumerate().map(|(i, &point)| self.compiler.point(&at.index(i), point)))
     }
 }
 

@@ -3,6 +3,7 @@
 use super::compile::Compiler;
 use super::compile_shape::MAX_LENGTH;
 use super::description_view::{CameraText, FilmText, LensText, ProjectionText};
+use super::gather::{Gather, all, told_elsewhere};
 use super::source::At;
 use super::{Camera, FilmSettings, Lens, Projection};
 use crate::error::Result;
@@ -20,22 +21,30 @@ const MAX_SHIFT: f64 = 1000.0;
 impl Compiler<'_> {
     pub(super) fn film(&mut self, film: &FilmText) -> Result<FilmSettings> {
         let at = At::top("film");
-        for (key, size) in [("width", film.width), ("height", film.height)] {
-            if size == 0 || size > MAX_SIDE {
+        let sides = all([("width", film.width), ("height", film.height)].map(|(key, size)| match size {
+            1..=MAX_SIDE => Ok(size),
+            _ => {
                 let message = format!("an image has 1 to {MAX_SIDE} pixels along each side, not {size}");
-                return Err(self.source.mistake_at(&at.key(key), message, None));
+                Err(self.source.mistake_at(&at.key(key), message, None))
             }
-        }
+        }));
         let pixels = u64::from(film.width) * u64::from(film.height);
-        if pixels > MAX_PIXELS {
-            let message = format!("{} x {} pixels are {pixels}; at most {MAX_PIXELS} fit", film.width, film.height);
-            return Err(self.source.mistake_at(&at.key("height"), message, None));
-        }
-        if let Some((key, width, most)) = film.filter.too_wide() {
-            let message = format!("{key} is a width above 0 and at most {most} pixels, not {width}");
-            let (filter, kind) = (at.key("filter"), film.filter.name());
-            return Err(self.source.mistake_at(&filter.key(kind).key(key), message, None));
-        }
+        let size = sides.and_then(|_| match pixels {
+            ..=MAX_PIXELS => Ok(()),
+            _ => {
+                let message = format!("{} x {} pixels are {pixels}; at most {MAX_PIXELS} fit", film.width, film.height);
+                Err(self.source.mistake_at(&at.key("height"), message, None))
+            }
+        });
+        let filter = match film.filter.too_wide() {
+            Some((key, width, most)) => {
+                let message = format!("{key} is a width above 0 and at most {most} pixels, not {width}");
+                let (filter, kind) = (at.key("filter"), film.filter.name());
+                Err(self.source.mistake_at(&filter.key(kind).key(key), message, None))
+            }
+            None => Ok(()),
+        };
+        (size, filter).gather()?;
         let FilmText { width, height, filter, color_space, crop } = *film;
         let crop = crop.map(|[left, top, width, height]| Window { left, top, width, height });
         let settings = FilmSettings { width, height, filter, color_space, crop };
@@ -48,22 +57,33 @@ impl Compiler<'_> {
         }
     }
 
-    pub(super) fn camera(&mut self, camera: &CameraText, film: FilmSettings) -> Result<Camera> {
+    /// The camera; the film is absent if it is wrong.
+    pub(super) fn camera(&mut self, camera: &CameraText, film: Option<&FilmSettings>) -> Result<Camera> {
         let at = At::top("camera");
-        let position = self.point(&at.key("position"), camera.position)?;
-        let target = self.point(&at.key("look_at"), camera.look_at)?;
-        if (target - position).try_normalize().is_none() {
-            let message = "the camera looks at the very point where it stands";
-            return Err(self.source.mistake_at(&at.key("look_at"), message, None));
-        }
-        let up = self.direction(&at.key("up"), camera.up)?;
-        let projection = self.projection(&at, camera)?;
-        if !(0.0..=MAX_LENGTH).contains(&camera.near) {
-            let message = format!("near is a distance from 0 to {MAX_LENGTH:e}, not {}", camera.near);
-            return Err(self.source.mistake_at(&at.key("near"), message, None));
-        }
-        let shift = self.shift(&at.key("shift"), camera.shift)?;
-        let lens = camera.lens.map(|lens| self.lens(&at.key("lens"), lens)).transpose()?;
+        let position = self.point(&at.key("position"), camera.position);
+        let target = self.point(&at.key("look_at"), camera.look_at);
+        let view =
+            (position, target).gather().and_then(|(position, target)| match (target - position).try_normalize() {
+                Some(_) => Ok((position, target)),
+                None => {
+                    let message = "the camera looks at the very point where it stands";
+                    Err(self.source.mistake_at(&at.key("look_at"), message, None))
+                }
+            });
+        let up = self.direction(&at.key("up"), camera.up);
+        let projection = self.projection(&at, camera);
+        let near = match camera.near {
+            near if (0.0..=MAX_LENGTH).contains(&near) => Ok(near),
+            near => {
+                let message = format!("near is a distance from 0 to {MAX_LENGTH:e}, not {near}");
+                Err(self.source.mistake_at(&at.key("near"), message, None))
+            }
+        };
+        let shift = self.shift(&at.key("shift"), camera.shift);
+        let lens = camera.lens.map(|lens| self.lens(&at.key("lens"), lens)).transpose();
+        let (seen, opened) = ((view, up, projection).gather(), (near, shift, lens).gather()).gather()?;
+        let (((position, target), up, projection), (near, shift, lens)) = (seen, opened);
+        let Some(film) = film else { return told_elsewhere() };
         let (view, parallel) = Camera::new(position, target, up, projection, [film.width, film.height]);
         if parallel {
             self.warnings.push("camera.up is parallel to the viewing direction; another direction is taken".into());
@@ -74,7 +94,7 @@ impl Compiler<'_> {
                 film.width, film.height
             ));
         }
-        Ok(view.starting_at(camera.near).shifted(shift).with_lens(lens))
+        Ok(view.starting_at(near).shifted(shift).with_lens(lens))
     }
 
     /// What the camera projects, if it has the keys for it and no other.
@@ -138,16 +158,23 @@ impl Compiler<'_> {
     }
 
     fn lens(&self, at: &At, lens: LensText) -> Result<Lens> {
-        if !(0.0..=MAX_LENGTH).contains(&lens.radius) {
-            let message = format!("the radius of a lens is a length from 0 to {MAX_LENGTH:e}, not {}", lens.radius);
-            return Err(self.source.mistake_at(&at.key("radius"), message, None));
-        }
-        // An infinite distance is one; NaN is none.
-        if !(NEAREST_FOCUS..=f64::INFINITY).contains(&lens.focus_distance) {
-            let message = format!("a focus lies at least {NEAREST_FOCUS:e} away, not {}", lens.focus_distance);
-            let help = "write inf to see sharply what is far away";
-            return Err(self.source.mistake_at(&at.key("focus_distance"), message, Some(help.into())));
-        }
-        Ok(Lens::new(lens.radius, lens.focus_distance))
+        let radius = match lens.radius {
+            radius if (0.0..=MAX_LENGTH).contains(&radius) => Ok(radius),
+            radius => {
+                let message = format!("the radius of a lens is a length from 0 to {MAX_LENGTH:e}, not {radius}");
+                Err(self.source.mistake_at(&at.key("radius"), message, None))
+            }
+        };
+        let focus = match lens.focus_distance {
+            // An infinite distance is one; NaN is none.
+            focus if (NEAREST_FOCUS..=f64::INFINITY).contains(&focus) => Ok(focus),
+            focus => {
+                let message = format!("a focus lies at least {NEAREST_FOCUS:e} away, not {focus}");
+                let help = "write inf to see sharply what is far away";
+                Err(self.source.mistake_at(&at.key("focus_distance"), message, Some(help.into())))
+            }
+        };
+        let (radius, focus) = (radius, focus).gather()?;
+        Ok(Lens::new(radius, focus))
     }
 }

@@ -1,35 +1,34 @@
-//! The scene file, verbatim: holding a [`Description`] means the text was well formed, nothing more.
+//! The scene file, verbatim: what of a [`Description`] is there was well formed, nothing more.
 
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Deserializer};
 
+use super::description_light::LightText;
 use super::description_relief::{BumpMapText, NormalMapText};
 use super::description_view::{CameraText, FilmText};
-use crate::light::{Point, Spot, Sun};
+use super::structure::Mistake;
 use crate::material::Material;
 use crate::spectrum::Curve;
 
-/// A whole scene file.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
+/// A whole scene file, and what is wrong with its words.
+#[derive(Clone, Debug)]
 pub struct Description {
-    /// From where and how the scene is seen.
-    pub camera: CameraText,
-    /// The image to make.
-    pub film: FilmText,
+    /// From where and how the scene is seen; absent if that is missing or wrong.
+    pub camera: Option<CameraText>,
+    /// The image to make; absent if that is missing or wrong.
+    pub film: Option<FilmText>,
     /// How to make it; everything optional.
-    #[serde(default)]
     pub render: RenderText,
-    /// Materials by name.
-    #[serde(default)]
-    pub material: BTreeMap<String, Material<Curve>>,
-    /// Surfaces.
-    #[serde(default)]
-    pub object: Vec<ObjectText>,
-    /// Light that no surface gives.
-    #[serde(default)]
-    pub light: Vec<LightText>,
+    /// Materials by name, without those that are wrong.
+    pub material: BTreeMap<String, Option<Material<Curve>>>,
+    /// Surfaces, without those that are wrong.
+    pub object: Vec<Option<ObjectText>>,
+    /// Light that no surface gives, without what is wrong.
+    pub light: Vec<Option<LightText>>,
+    /// Whether there are materials of which the name is not known.
+    pub(super) nameless: bool,
+    pub(super) mistakes: Vec<Mistake>,
 }
 
 /// ```toml
@@ -133,7 +132,7 @@ pub enum ShapeText {
     Mesh(MeshText),
 }
 
-/// `plane = { point, normal }`
+/// `plane = { point = [0, 0, 0], normal = [0, 1, 0] }`
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[allow(missing_docs)]
@@ -142,7 +141,7 @@ pub struct PlaneText {
     pub normal: [f64; 3],
 }
 
-/// `triangle = { points = [p1, p2, p3] }`
+/// `triangle = { points = [[0, 0, 0], [1, 0, 0], [0, 1, 0]] }`
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[allow(missing_docs)]
@@ -150,7 +149,7 @@ pub struct TriangleText {
     pub points: Vec<[f64; 3]>,
 }
 
-/// `sphere = { center, radius }`
+/// `sphere = { center = [0, 1, 0], radius = 1 }`
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[allow(missing_docs)]
@@ -159,7 +158,7 @@ pub struct SphereText {
     pub radius: f64,
 }
 
-/// `disc = { center, normal, radius, u }`, `u` optional
+/// `disc = { center = [0, 1, 0], normal = [0, 1, 0], radius = 1, u = [1, 0, 0] }`, `u` optional
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[allow(missing_docs)]
@@ -170,7 +169,7 @@ pub struct DiscText {
     pub u: Option<[f64; 3]>,
 }
 
-/// `quad = { center, u, v }`
+/// `quad = { center = [0, 4, 0], u = [1, 0, 0], v = [0, 0, 1] }`
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[allow(missing_docs)]
@@ -180,7 +179,7 @@ pub struct QuadText {
     pub v: [f64; 3],
 }
 
-/// `cube = { center, size }`
+/// `cube = { center = [0, 1, 0], size = 2 }`
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[allow(missing_docs)]
@@ -190,7 +189,7 @@ pub struct CubeText {
     pub size: [f64; 3],
 }
 
-/// `mesh = { file, smooth }` or `mesh = { points, faces, normals, uv, smooth }`
+/// `mesh = { file = "cup.ply", smooth = true }`, or in place of the file `points`, `faces`, `normals` and `uv`
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[allow(missing_docs)]
@@ -217,43 +216,13 @@ pub enum StepText {
     Translate([f64; 3]),
 }
 
-/// `rotate = { axis, degrees }`
+/// `rotate = { axis = [0, 1, 0], degrees = 30 }`
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[allow(missing_docs)]
 pub struct RotateText {
     pub axis: [f64; 3],
     pub degrees: f64,
-}
-
-/// ```toml
-/// [[light]]
-/// environment = { radiance = 1 }
-/// ```
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct LightText {
-    /// For messages.
-    pub name: Option<String>,
-    /// What rays meet that miss everything.
-    pub environment: Option<EnvironmentText>,
-    /// A point that shines.
-    pub point: Option<Point<Curve>>,
-    /// A point that shines into a cone.
-    pub spot: Option<Spot<Curve>>,
-    /// A disc in the sky.
-    pub sun: Option<Sun<Curve>>,
-}
-
-/// `environment = { radiance, transform }`
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct EnvironmentText {
-    /// What rays show that miss everything.
-    pub radiance: Curve,
-    /// Turns of an image.
-    #[serde(default)]
-    pub transform: Vec<StepText>,
 }
 
 /// A number that stands for all three axes, or three numbers.

@@ -54,7 +54,7 @@ pub enum ProjectionText {
     Equirectangular,
 }
 
-/// `lens = { radius, focus_distance }`
+/// `lens = { radius = 0.02, focus_distance = 6 }`
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LensText {

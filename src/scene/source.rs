@@ -1,13 +1,16 @@
 //! The text of a scene file, and where in it a mistake stands.
 
+use std::cell::OnceCell;
 use std::io::ErrorKind;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
+use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::structure::Mistake;
-use super::{Description, structure, syntax, wording};
+use super::{Description, reader, syntax};
 use crate::error::{Diagnostic, Error, Result, nearest};
 
 const A_SCENE: &str = "a scene is a TOML file, such as scenes/prism.toml";
@@ -48,35 +51,42 @@ impl Source {
         Ok(Self { path: path.to_owned(), text })
     }
 
-    /// The description the text gives.
+    /// What the text says; what is wrong with it is told when it is compiled, together with all that is found then.
     ///
     /// # Errors
-    /// If the text is not TOML or holds a key or value that no scene has.
+    /// If the text is not TOML.
     pub fn parse(&self) -> Result<Description> {
-        let refuse = |(span, message, help): Mistake| self.mistake(span, message, help);
-        let document = DeTable::parse(&self.text).map_err(|error| refuse(syntax::explain(&self.text, &error)))?;
-        let document = document.get_ref();
-        let right = |mistake: Option<Mistake>| mistake.map_or(Ok(()), |mistake| Err(refuse(mistake)));
-        right(structure::misplaced(document))?;
-        let description = toml::from_str(&self.text).map_err(|error: toml::de::Error| {
-            let span = error.span().unwrap_or(0..0);
-            let listed =
-                structure::listed(document).filter(|(list, ..)| list.start <= span.start && span.end <= list.end);
-            refuse(listed.unwrap_or_else(|| wording::explain(&self.text, document, &error)))
-        })?;
-        right(structure::listed(document))?;
-        right(structure::surplus(document))?;
-        Ok(description)
+        match DeTable::parse(&self.text) {
+            Ok(document) => Ok(reader::read(&self.text, &document)),
+            Err(error) => Err(Located::new(self).mistake(syntax::explain(&self.text, &error))),
+        }
     }
 
     /// The folder that file names in the scene are relative to.
     pub fn folder(&self) -> &Path {
         self.path.parent().unwrap_or(Path::new(""))
     }
+}
+
+/// A scene file and where everything in it stands, which is looked for at the first mistake.
+pub(super) struct Located<'a> {
+    source: &'a Source,
+    document: OnceCell<Option<Spanned<DeTable<'a>>>>,
+    text: OnceCell<Arc<str>>,
+}
+
+impl<'a> Located<'a> {
+    pub(super) fn new(source: &'a Source) -> Self {
+        Self { source, document: OnceCell::new(), text: OnceCell::new() }
+    }
+
+    pub(super) fn folder(&self) -> &'a Path {
+        self.source.folder()
+    }
 
     /// The error of a mistake at a place in the scene.
     pub(super) fn mistake_at(&self, place: &At, message: impl Into<String>, help: Option<String>) -> Error {
-        self.mistake(self.span(place), message.into(), help)
+        self.mistake((self.span(place), message.into(), help))
     }
 
     /// The error of a file that the scene names and that is not there.
@@ -90,18 +100,19 @@ impl Source {
         self.mistake_at(place, format!("there is no file {file}"), Some(help))
     }
 
-    fn mistake(&self, span: Range<usize>, message: String, help: Option<String>) -> Error {
+    pub(super) fn mistake(&self, (span, message, help): Mistake) -> Error {
         // Names in a scene may hold anything, even the end of a line.
         let one_line = |text: String| text.replace(char::is_control, " ");
         let (message, help) = (one_line(message), help.map(one_line));
-        Error::Scene(Diagnostic { file: self.path.clone(), text: self.text.clone(), span, message, help })
+        let text = self.text.get_or_init(|| self.source.text.as_str().into()).clone();
+        Error::Scene(vec![Diagnostic { file: self.source.path.clone(), text, span, message, help }])
     }
 
     /// The bytes of the value at a place, or of the nearest value around it that is written down.
     pub(super) fn span(&self, place: &At) -> Range<usize> {
-        let Ok(document) = DeTable::parse(&self.text) else { return 0..0 };
+        let document = self.document.get_or_init(|| DeTable::parse(&self.source.text).ok());
         let mut span = 0..0;
-        let mut table = Some(document.get_ref());
+        let mut table = document.as_ref().map(Spanned::get_ref);
         let mut value: Option<&DeValue> = None;
         for step in place.steps() {
             let next = match (step, table, value) {

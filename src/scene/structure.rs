@@ -10,34 +10,41 @@ use crate::error::nearest;
 /// A mistake: the bytes that are wrong, what is wrong with them, and what to do.
 pub(super) type Mistake = (Range<usize>, String, Option<String>);
 
-/// A list in place of a table or the reverse, or a material, shape or step without exactly one kind.
-pub(super) fn misplaced(document: &DeTable) -> Option<Mistake> {
-    document.iter().find_map(|(key, value)| match (key.get_ref().as_ref(), value.get_ref()) {
-        (key @ ("camera" | "film" | "render"), DeValue::Array(_)) => {
-            mistake(value, format!("`{key}` is a table, not a list"), format!("write [{key}]"))
-        }
+/// A list in place of the table of all materials, or a table in place of the list of all objects or lights.
+pub(super) fn misplaced_whole(key: &str, value: &Spanned<DeValue>) -> Option<Mistake> {
+    match (key, value.get_ref()) {
         ("material", DeValue::Array(_)) => {
             mistake(value, "`material` is a table, not a list", "write [material.NAME] for each")
         }
-        (key @ ("object" | "light"), DeValue::Table(_)) => {
+        ("object" | "light", DeValue::Table(_)) => {
             mistake(value, format!("`{key}` is a list of tables"), format!("write [[{key}]] for each"))
         }
-        ("material", DeValue::Table(materials)) => materials.values().find_map(|material| one_of(material, &MATERIAL)),
-        ("film", DeValue::Table(film)) => {
+        _ => None,
+    }
+}
+
+/// A list in place of a section, or in it a material, shape, step, filter or model without exactly one kind.
+pub(super) fn misplaced(path: &[&str], value: &Spanned<DeValue>) -> Vec<Mistake> {
+    let found = match (path, value.get_ref()) {
+        ([key @ ("camera" | "film" | "render")], DeValue::Array(_)) => {
+            mistake(value, format!("`{key}` is a table, not a list"), format!("write [{key}]"))
+        }
+        (["material", _], _) => one_of(value, &MATERIAL),
+        (["film"], DeValue::Table(film)) => {
             film.get("filter").filter(|filter| filter.get_ref().is_table()).and_then(|filter| one_of(filter, &FILTER))
         }
-        ("render", DeValue::Table(render)) => render.get("model").and_then(unknown_model),
-        ("object", DeValue::Array(objects)) => objects.iter().find_map(|object| misplaced_in_object(object.get_ref())),
+        (["render"], DeValue::Table(render)) => render.get("model").and_then(unknown_model),
+        (["object"], DeValue::Table(object)) => return misplaced_in_object(object),
         _ => None,
-    })
+    };
+    found.into_iter().collect()
 }
 
 fn mistake(value: &Spanned<DeValue>, message: impl Into<String>, help: impl Into<String>) -> Option<Mistake> {
     Some((value.span(), message.into(), Some(help.into())))
 }
 
-fn misplaced_in_object(object: &DeValue) -> Option<Mistake> {
-    let DeValue::Table(object) = object else { return None };
+fn misplaced_in_object(object: &DeTable) -> Vec<Mistake> {
     let shape = object.get("shape").and_then(|shape| one_of(shape, &SHAPE));
     let steps = || object.get("transform").and_then(|steps| steps.get_ref().as_array());
     let of_instances = || {
@@ -45,7 +52,10 @@ fn misplaced_in_object(object: &DeValue) -> Option<Mistake> {
         Some(instances.iter().filter_map(|steps| steps.get_ref().as_array()).flat_map(|steps| steps.iter()))
     };
     let steps = steps().into_iter().flat_map(|steps| steps.iter()).chain(of_instances().into_iter().flatten());
-    shape.or_else(|| steps.into_iter().find_map(|step| one_of(step, &STEP)))
+    // What is wrong with one step that is no table is mostly wrong with all.
+    let mut no_table = false;
+    let steps = steps.filter(|step| step.get_ref().is_table() || !std::mem::replace(&mut no_table, true));
+    shape.into_iter().chain(steps.filter_map(|step| one_of(step, &STEP))).collect()
 }
 
 /// A `render.model` that there is not.
@@ -121,13 +131,13 @@ fn one_of(value: &Spanned<DeValue>, choice: &OneOf) -> Option<Mistake> {
     }
 }
 
-/// A list in place of a table, which the reader fills from a list by position.
-pub(super) fn listed(document: &DeTable) -> Option<Mistake> {
-    find_in(document, &mut Vec::new(), &|path, value, _| {
+/// Every list in place of a table, which the reader fills from a list by position; `path` leads to the section.
+pub(super) fn listed(path: &[&str], section: &Spanned<DeValue>) -> Vec<Mistake> {
+    lists(path, section, &|path, value, _| {
         let is_table = match path {
             ["material", _, _] | ["object", "shape", _] | ["object", "transform" | "instances", "rotate"] => true,
             ["object", "normal_map" | "bump_map"] => true,
-            ["light", "environment" | "point" | "sun"] => true,
+            ["light", "environment" | "point" | "spot" | "sun"] => true,
             ["camera", "lens"] | ["film", "filter", _] => true,
             [.., key] => matches!(*key, "sellmeier" | "abbe"),
             [] => false,
@@ -137,9 +147,9 @@ pub(super) fn listed(document: &DeTable) -> Option<Mistake> {
     })
 }
 
-/// A list with more entries than are read: the reader drops what comes after the last entry it wants.
-pub(super) fn surplus(document: &DeTable) -> Option<Mistake> {
-    find_in(document, &mut Vec::new(), &|path, value, entries| {
+/// Every list with more entries than are read: the reader drops what comes after the last entry it wants.
+pub(super) fn surplus(path: &[&str], section: &Spanned<DeValue>) -> Vec<Mistake> {
+    lists(path, section, &|path, value, entries| {
         let key = *path.last()?;
         let (one, wanted, help) = match key {
             "b" | "c" | "checker" => return None,
@@ -164,31 +174,29 @@ pub(super) fn surplus(document: &DeTable) -> Option<Mistake> {
 }
 
 type Entries<'t> = [Spanned<DeValue<'t>>];
+/// Looks at a list, knowing the keys that lead to it, and its entries.
+type Look<'l> = &'l dyn Fn(&[&str], &Spanned<DeValue>, &Entries) -> Option<Mistake>;
 
-/// The first mistake in a list of the document; `look` is told the keys that lead to it.
-fn find_in<'t>(
-    table: &'t DeTable,
-    path: &mut Vec<&'t str>,
-    look: &impl Fn(&[&str], &Spanned<DeValue>, &Entries) -> Option<Mistake>,
-) -> Option<Mistake> {
-    table.iter().find_map(|(key, value)| {
-        path.push(key.get_ref());
-        let found = find_at(value, path, look);
-        path.pop();
-        found
-    })
+/// The mistakes in the lists of a section.
+fn lists(path: &[&str], section: &Spanned<DeValue>, look: Look) -> Vec<Mistake> {
+    let mut found = Vec::new();
+    look_into(section, &mut path.to_vec(), look, &mut found);
+    found
 }
 
-fn find_at<'t>(
-    value: &'t Spanned<DeValue>,
-    path: &mut Vec<&'t str>,
-    look: &impl Fn(&[&str], &Spanned<DeValue>, &Entries) -> Option<Mistake>,
-) -> Option<Mistake> {
+fn look_into<'t>(value: &'t Spanned<DeValue>, path: &mut Vec<&'t str>, look: Look, found: &mut Vec<Mistake>) {
     match value.get_ref() {
-        DeValue::Table(table) => find_in(table, path, look),
-        DeValue::Array(entries) => {
-            look(path, value, entries).or_else(|| entries.iter().find_map(|entry| find_at(entry, path, look)))
+        DeValue::Table(table) => {
+            for (key, value) in table {
+                path.push(key.get_ref());
+                look_into(value, path, look, found);
+                path.pop();
+            }
         }
-        _ => None,
+        DeValue::Array(entries) => match look(path, value, entries) {
+            Some(mistake) => found.push(mistake),
+            None => entries.iter().for_each(|entry| look_into(entry, path, look, found)),
+        },
+        _ => {}
     }
 }

@@ -22,14 +22,19 @@ const ELSEWHERE: [(&str, &str); 11] = [
 
 /// The known name that was meant by the value or key `word`, or all of them; `key` is the key of a value.
 pub(super) fn suggestion(key: &str, word: &str, known: &[&str]) -> String {
+    match meant(key, word, known) {
+        Some(near) => format!("did you mean `{near}`?"),
+        None => format!("known here: {}", known.join(", ")),
+    }
+}
+
+/// The known name that was meant by the value or key `word`, if any is near.
+pub(super) fn meant<'a>(key: &str, word: &str, known: &[&'a str]) -> Option<&'a str> {
     let part_of =
         || known.iter().copied().find(|name| name.starts_with(word) || name.split('_').any(|part| part == word));
     let elsewhere = || ELSEWHERE.iter().find(|pair| pair.0 == word && known.contains(&pair.1)).map(|pair| pair.1);
     let space = || (key == "color_space").then(|| ColorSpace::called(word)).flatten().map(ColorSpace::interop_id);
-    match nearest(word, known.iter().copied()).or_else(part_of).or_else(elsewhere).or_else(space) {
-        Some(near) => format!("did you mean `{near}`?"),
-        None => format!("known here: {}", known.join(", ")),
-    }
+    nearest(word, known.iter().copied()).or_else(part_of).or_else(elsewhere).or_else(space)
 }
 
 /// How to write what a value of the wrong type seems to mean.

@@ -12,6 +12,9 @@ use super::suggest::{remedy, suggestion};
 /// How the message begins that refuses a spectrum without a kind.
 const NO_KIND: &str = "a spectrum needs one of";
 
+/// What is told of a material whose kind stands where its name should.
+pub(super) const NAMELESS: &str = "this material has no name";
+
 type Words = (String, Option<String>);
 
 /// What the error of reading a document as a scene means.
@@ -24,6 +27,11 @@ pub(super) fn explain(text: &str, document: &DeTable, error: &toml::de::Error) -
         Some((message, help)) => (span, message, help),
         None => (place.told_span(said).unwrap_or(span), said.to_owned(), place.example(said)),
     }
+}
+
+/// The words in backquotes.
+pub(super) fn quoted(said: &str) -> Vec<&str> {
+    said.split('`').skip(1).step_by(2).collect()
 }
 
 /// Where in the document a span lies.
@@ -91,18 +99,19 @@ impl<'t> Place<'t> {
 
     /// A name that is unknown or missing: serde's "unknown field `x`, expected `a` or `b`" and the like.
     fn unknown(&self, said: &str) -> Option<Words> {
-        let quoted: Vec<&str> = said.split('`').skip(1).step_by(2).collect();
+        let quoted = quoted(said);
         let (word, known) = quoted.split_first()?;
         let key = self.path.last().copied().unwrap_or_default();
         if said.starts_with("missing field ") {
-            return Some(match self.path.is_empty() {
-                true => (format!("the scene has no [{word}]"), Some("every scene has [camera] and [film]".into())),
-                false => (format!("`{word}` is missing"), None),
-            });
+            return Some((format!("`{word}` is missing"), None));
         }
         let message = match self.path.as_slice() {
             ["object", word] if is_shape(word) => {
                 return Some((format!("`{word}` is a shape"), Some(format!("write shape.{word} = {{ .. }}"))));
+            }
+            ["light", "sun", "look_at"] => {
+                let help = "toward = [1, 2, 1] is the direction from the scene to the sun";
+                return Some(("a sun is infinitely far away and looks at no point".into(), Some(help.into())));
             }
             _ if said.starts_with("unknown field ") => format!("unknown key `{word}`"),
             _ if !said.starts_with("unknown variant ") => return None,
@@ -115,7 +124,7 @@ impl<'t> Place<'t> {
             ["film", "filter", _] => format!("unknown filter `{word}`"),
             ["material", kind, _] if known.contains(kind) => {
                 let help = format!("write [material.NAME] above {kind} = {{ .. }}");
-                return Some(("this material has no name".into(), Some(help)));
+                return Some((NAMELESS.into(), Some(help)));
             }
             ["material", _, _] => format!("unknown kind of material `{word}`"),
             ["object", "shape", _] => format!("unknown shape `{word}`"),

@@ -88,7 +88,9 @@ impl Kind {
         };
         match answer {
             Ok(_) => Ok(()),
-            Err(Error::Scene(mistake)) => {
+            Err(Error::Scene(mut mistakes)) => {
+                let mistake = mistakes.remove(0);
+                assert!(mistakes.is_empty(), "one file has one mistake, not {mistakes:?}");
                 assert!(!mistake.message.is_empty() && !mistake.message.contains('\n'), "{mistake:?}");
                 let whole = |at: usize| at <= source.text.len() && source.text.is_char_boundary(at);
                 assert!(mistake.span.start <= mistake.span.end, "{mistake:?}");

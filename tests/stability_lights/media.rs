@@ -35,7 +35,7 @@ fn d6_even_light_between_glass_and_water_is_reflected_as_the_closed_form_says() 
 fn refusal(text: &str) -> String {
     let source = Source { path: PathBuf::from("test.toml"), text: text.to_owned() };
     match source.parse().and_then(|description| compile(&description, &source)) {
-        Err(abbe::Error::Scene(mistake)) => mistake.message,
+        Err(abbe::Error::Scene(mistakes)) => mistakes[0].message.clone(),
         other => panic!("{other:?}"),
     }
 }

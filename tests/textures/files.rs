@@ -128,7 +128,7 @@ fn refusal(folder: &Path, reflectance: &str) -> String {
     let source = Source { path: folder.join("scene.toml"), text };
     let read = source.parse().and_then(|description| compile(&description, &source));
     match read {
-        Err(abbe::Error::Scene(mistake)) => mistake.message,
+        Err(abbe::Error::Scene(mistakes)) => mistakes[0].message.clone(),
         other => panic!("{reflectance}: {other:?}"),
     }
 }
@@ -212,7 +212,8 @@ fn a_damaged_image_never_stops_the_program() {
             std::fs::write(folder.path().join(name), &bytes).unwrap();
             match compile(&description, &source) {
                 Ok(_) => readable += 1,
-                Err(abbe::Error::Scene(mistake)) => {
+                Err(abbe::Error::Scene(mistakes)) => {
+                    let mistake = &mistakes[0];
                     assert!(!mistake.message.contains('\n'), "{mistake:?}");
                     refused += 1;
                 }

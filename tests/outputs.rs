@@ -1,0 +1,214 @@
+//! Streams that nobody reads and places where an image is written: the image is made whatever happens to the words.
+
+#![cfg(unix)]
+
+#[path = "messages/run.rs"]
+mod run;
+
+use std::fs::{self, Permissions};
+use std::os::unix::fs::{MetadataExt, PermissionsExt, symlink};
+use std::path::Path;
+use std::process::Command;
+
+use run::{Folder, render};
+
+const SCENE: &str = r#"
+camera = { position = [0, 1, 6], look_at = [0, 1, 0], vertical_fov = 35 }
+film = { width = 6, height = 4 }
+render.samples = 1
+material.white.diffuse = { reflectance = 0.7 }
+
+[[object]]
+shape.sphere = { center = [0, 1, 0], radius = 1 }
+material = "white"
+
+[[light]]
+environment = { radiance = 1 }
+"#;
+
+fn folder() -> Folder {
+    let folder = Folder::new();
+    folder.write("ball.toml", SCENE);
+    folder
+}
+
+/// Runs a line of the shell in which `$RENDER` is the command; its exit code, stdout and stderr.
+fn shell(folder: &Folder, line: &str) -> (Option<i32>, String, String) {
+    let mut command = Command::new("sh");
+    command.env("RENDER", env!("CARGO_BIN_EXE_render")).current_dir(folder.path()).args(["-c", line]);
+    let output = command.output().expect("there is a shell");
+    let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("messages are UTF-8");
+    (output.status.code(), text(output.stdout), text(output.stderr))
+}
+
+fn is_image(path: &Path) -> bool {
+    fs::read(path).expect("the image is there").starts_with(&[0x76, 0x2f, 0x31, 0x01])
+}
+
+#[test]
+fn an_image_is_made_though_stderr_cannot_be_written() {
+    for lost in ["2>/dev/full", "2>&-", "2>&- 1>&- <&-", "2>/dev/full >/dev/full", "2>&1 | true"] {
+        let folder = folder();
+        let (code, out, told) = shell(&folder, &format!("$RENDER --exr ball.toml --png look.png {lost}"));
+        assert_eq!((code, &*out, &*told), (Some(0), "", ""), "{lost}");
+        assert_eq!(folder.listing(), ["ball.exr", "ball.toml", "look.png"], "{lost}");
+        assert!(is_image(&folder.path().join("ball.exr")), "{lost}");
+        // No message strayed into the picture.
+        assert!(image::open(folder.path().join("look.png")).is_ok(), "{lost}");
+    }
+}
+
+#[test]
+fn a_reader_of_stderr_that_has_gone_loses_no_image() {
+    let folder = folder();
+    let line = "{ sleep 0.3; $RENDER --exr ball.toml; echo $? >code; } 2>&1 | true; sleep 0.3; \
+                while [ ! -s code ]; do sleep 0.1; done";
+    shell(&folder, line);
+    assert_eq!(fs::read_to_string(folder.path().join("code")).expect("it ended"), "0\n");
+    assert!(is_image(&folder.path().join("ball.exr")));
+}
+
+#[test]
+fn a_refusal_that_cannot_be_told_keeps_its_exit_code() {
+    let folder = folder();
+    folder.write("bad.toml", "camera = 5\n");
+    for (arguments, expected) in [
+        ("bad.toml", 2),
+        ("ball.toml --samples 0", 2),
+        ("ball.toml --exr ball.toml/a.exr", 1),
+        ("catalog no-such-thing", 2),
+        ("ball.toml --exr /dev/null", 2),
+    ] {
+        for lost in ["2>/dev/full", "2>&-"] {
+            assert_eq!(shell(&folder, &format!("$RENDER {arguments} {lost}")).0, Some(expected), "{arguments} {lost}");
+        }
+    }
+}
+
+#[test]
+fn an_answer_that_nobody_reads_to_the_end_is_no_failure() {
+    let folder = folder();
+    for question in ["--plan ball.toml", "catalog", "--help", "catalog --help", "--version"] {
+        // The reader is gone before the first word.
+        let line = format!("{{ sleep 0.2; $RENDER {question}; echo $? >code; }} | true");
+        let (_, _, told) = shell(&folder, &format!("{line}; while [ ! -s code ]; do sleep 0.1; done"));
+        let code = fs::read_to_string(folder.path().join("code")).expect("it ended");
+        assert_eq!((&*code, &*told), ("0\n", ""), "{question}");
+        fs::remove_file(folder.path().join("code")).expect("it can be removed");
+        assert_eq!(shell(&folder, &format!("$RENDER {question} >&-")).0, Some(0), "{question}");
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn an_answer_that_cannot_be_written_is_a_failure() {
+    let folder = folder();
+    for question in ["--plan ball.toml", "catalog", "--help", "catalog --help", "--version"] {
+        let (code, _, told) = shell(&folder, &format!("$RENDER {question} >/dev/full"));
+        let reason = "error: cannot write the answer to stdout: the disk is full\n";
+        assert_eq!((code, &*told), (Some(1), reason), "{question}");
+        assert_eq!(shell(&folder, &format!("$RENDER {question} >/dev/full 2>/dev/full")).0, Some(1), "{question}");
+    }
+}
+
+#[test]
+fn an_output_that_is_a_link_is_written_through() {
+    for (before, target) in [(Some("an older image"), "store/a.exr"), (None, "store/new.exr"), (None, "new/a.exr")] {
+        let folder = folder();
+        fs::create_dir(folder.path().join("store")).expect("folders can be made");
+        before.inspect(|text| folder.write(target, text));
+        // A link to a link, both relative to where they stand.
+        symlink("links/second.exr", folder.path().join("first.exr")).expect("links can be made");
+        fs::create_dir(folder.path().join("links")).expect("folders can be made");
+        symlink(Path::new("..").join(target), folder.path().join("links/second.exr")).expect("links can be made");
+        let answer = render(&folder, &["ball.toml", "--exr", "first.exr"]);
+        assert_eq!(answer.code, Some(0), "{}", answer.stderr);
+        assert!(folder.path().join("first.exr").is_symlink() && folder.path().join("links/second.exr").is_symlink());
+        assert!(is_image(&folder.path().join(target)), "{target}");
+    }
+}
+
+#[test]
+fn a_link_that_leads_nowhere_is_refused_before_anything_is_rendered() {
+    let folder = folder();
+    symlink("b.exr", folder.path().join("a.exr")).expect("links can be made");
+    symlink("a.exr", folder.path().join("b.exr")).expect("links can be made");
+    symlink(".", folder.path().join("here.exr")).expect("links can be made");
+    symlink("ball.toml", folder.path().join("scene.exr")).expect("links can be made");
+    for (output, code, told) in [
+        ("a.exr", 1, "error: cannot write a.exr: it is a link that leads back to itself\n"),
+        ("here.exr", 1, "error: cannot write here.exr: it is a folder\n"),
+    ] {
+        let answer = render(&folder, &["ball.toml", "--exr", output]);
+        assert_eq!((answer.code, &*answer.stdout, &*answer.stderr), (Some(code), "", told));
+    }
+    let answer = render(&folder, &["ball.toml", "--exr", "scene.exr"]);
+    assert_eq!(answer.code, Some(2));
+    assert!(answer.stderr.ends_with("scene.exr is the scene itself\nhelp: name another file\n"), "{}", answer.stderr);
+    assert_eq!(folder.listing(), ["a.exr", "b.exr", "ball.toml", "here.exr", "scene.exr"]);
+    assert_eq!(fs::read_to_string(folder.path().join("ball.toml")).expect("the scene is there"), SCENE);
+}
+
+#[test]
+fn permissions_of_an_image_survive_and_a_protected_one_is_left_alone() {
+    let folder = folder();
+    let path = folder.path().join("ball.exr");
+    folder.write("ball.exr", "an older image");
+    let mode = |mode| fs::set_permissions(&path, Permissions::from_mode(mode)).expect("permissions can be set");
+    mode(0o640);
+    assert_eq!(render(&folder, &["ball.toml"]).code, Some(0));
+    assert!(is_image(&path));
+    assert_eq!(fs::metadata(&path).expect("it is there").mode() & 0o777, 0o640);
+    folder.write("ball.exr", "an older image");
+    mode(0o444);
+    let answer = render(&folder, &["ball.toml"]);
+    assert_eq!((answer.code, &*answer.stderr), (Some(1), "error: cannot write ball.exr: permission is denied\n"));
+    assert_eq!(fs::read(&path).expect("it is there"), b"an older image");
+    assert_eq!(folder.listing(), ["ball.exr", "ball.toml"]);
+}
+
+#[test]
+fn another_name_of_the_same_file_keeps_the_older_image() {
+    let folder = folder();
+    folder.write("ball.exr", "an older image");
+    fs::hard_link(folder.path().join("ball.exr"), folder.path().join("kept.exr")).expect("links can be made");
+    assert_eq!(render(&folder, &["ball.toml"]).code, Some(0));
+    assert!(is_image(&folder.path().join("ball.exr")));
+    assert_eq!(fs::read(folder.path().join("kept.exr")).expect("it is there"), b"an older image");
+}
+
+#[test]
+fn the_longest_names_can_be_written() {
+    let (folder, name) = (folder(), format!("{}.exr", "a".repeat(251)));
+    let answer = render(&folder, &["ball.toml", "--exr", &name]);
+    assert_eq!(answer.code, Some(0), "{}", answer.stderr);
+    assert_eq!(folder.listing(), [&*name, "ball.toml"]);
+    let answer = render(&folder, &["ball.toml", "--exr", &format!("a{name}")]);
+    assert_eq!((answer.code, folder.listing().len()), (Some(1), 2), "{}", answer.stderr);
+}
+
+#[test]
+fn what_is_no_file_is_written_to_as_it_is() {
+    let folder = folder();
+    for (link, device) in [("null.exr", "/dev/null"), ("stdout.exr", "/dev/stdout")] {
+        symlink(device, folder.path().join(link)).expect("links can be made");
+    }
+    let (code, out, told) = shell(&folder, "$RENDER ball.toml --exr null.exr | cat");
+    assert_eq!((code, &*out), (Some(0), ""), "{told}");
+    let (_, out, told) = shell(&folder, "$RENDER ball.toml --exr stdout.exr | head -c 4 | od -An -tx1");
+    assert_eq!(out.trim(), "76 2f 31 01", "{told}");
+    let (_, out, told) =
+        shell(&folder, "mkfifo pipe.exr; $RENDER ball.toml --exr pipe.exr & head -c 4 pipe.exr | od -An -tx1; wait");
+    assert_eq!(out.trim(), "76 2f 31 01", "{told}");
+    assert_eq!(folder.listing(), ["ball.toml", "null.exr", "pipe.exr", "stdout.exr"]);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_device_that_takes_no_more_is_a_failure() {
+    let folder = folder();
+    symlink("/dev/full", folder.path().join("full.exr")).expect("links can be made");
+    let answer = render(&folder, &["ball.toml", "--exr", "full.exr"]);
+    assert_eq!(answer.code, Some(1));
+    assert!(answer.stderr.ends_with("error: cannot write full.exr: the disk is full\n"), "{}", answer.stderr);
+}
