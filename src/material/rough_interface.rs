@@ -116,7 +116,8 @@ impl Side<'_> {
 
     /// The share of light from the cosine `z` that meets a second facet.
     pub fn blocked(&self, z: f64) -> f64 {
-        self.mix(|row| row.value(z))
+        let place = self.rows[0].place(z);
+        self.mix(|row| row.at(place))
     }
 
     /// The share of light from all around that meets a second facet.
@@ -126,7 +127,8 @@ impl Side<'_> {
 
     /// What is blocked at the cosine `z`, and the density per steradian with which [`Side::draw`] draws directions there.
     pub fn blocked_and_density(&self, z: f64) -> [f64; 2] {
-        let [a, b] = self.rows.map(|row| row.value_and_density(z));
+        let place = self.rows[0].place(z);
+        let [a, b] = self.rows.map(|row| row.value_and_density_at(place, z));
         let often = self.often();
         [a.0 + self.part * (b.0 - a.0), a.1 + often * (b.1 - a.1)]
     }
@@ -189,13 +191,7 @@ pub struct Facet {
 
 impl Facet {
     /// The facet of normal `h` between two indices, seen from `wo`. `known` is one of the two ways, if it is known already.
-    fn new(
-        facets: &Facets,
-        [n1, n2]: [f64; 2],
-        straight: f64,
-        [wo, h]: [DVec3; 2],
-        known: Option<DVec3>,
-    ) -> Self {
+    fn new(facets: &Facets, [n1, n2]: [f64; 2], straight: f64, [wo, h]: [DVec3; 2], known: Option<DVec3>) -> Self {
         let interface = Interface::new(n1, n2, wo.dot(h));
         let (reflected, crossing) = (interface.reflectance, interface.transmittance);
         let above = known.filter(|wi| wi.z > 0.0).unwrap_or_else(|| reflect(wo, h));
@@ -241,7 +237,11 @@ impl Sides<'_> {
             let crossing = self.crossing[0];
             return [lobe(above, 1.0 - crossing), lobe(DVec3 { z: -beyond.z, ..beyond }, crossing)];
         }
-        let way = |i: usize| Way { wi: facet.ways[i], share: facet.once[i] / (facet.once[0] + facet.once[1]), facet: Some(facet) };
+        let way = |i: usize| Way {
+            wi: facet.ways[i],
+            share: facet.once[i] / (facet.once[0] + facet.once[1]),
+            facet: Some(facet),
+        };
         [0, 1].map(|i| (facet.once[i] > 0.0).then(|| way(i)))
     }
 
