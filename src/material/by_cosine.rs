@@ -95,7 +95,12 @@ impl ByCosine {
 
     /// The share at the cosine `z`, and the density per steradian with which [`ByCosine::draw`] draws directions there.
     pub(crate) fn value_and_density(&self, z: f64) -> (f64, f64) {
-        let place = self.place(z).max(f64::MIN_POSITIVE);
+        self.value_and_density_at(self.place(z), z)
+    }
+
+    /// The same where the place of `z` is known.
+    pub(crate) fn value_and_density_at(&self, place: f64, z: f64) -> (f64, f64) {
+        let place = place.max(f64::MIN_POSITIVE);
         (self.at(place), between(&self.lobe, place) / (TAU * self.slope(place, z)))
     }
 

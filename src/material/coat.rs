@@ -137,7 +137,7 @@ fn reflected_once(surface: &RoughSurface, m: f64, z: f64) -> f64 {
         for around in 0..AROUND {
             let h = facets.visible_normal_from_end(wo, 0.5 * (around as f64 + 0.5) / AROUND as f64, v * v);
             let reflected = 1.0 - transmittance(1.0, m, wo.dot(h).clamp(0.0, 1.0));
-            sum += 2.0 * v * reflected * (1.0 - facets.blocked(wo, reflect(wo, h)));
+            sum += 2.0 * v * reflected * facets.left_and_blocked(wo, reflect(wo, h))[0];
         }
     }
     sum / (UP * AROUND) as f64

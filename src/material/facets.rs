@@ -77,16 +77,15 @@ impl Facets {
         [seen + straight * (most - seen), hidden + straight * (least - hidden)]
     }
 
-    /// 1 - G2 / G1: the share of the light from a visible facet toward `wi` that meets another facet.
-    ///
-    /// From S^2 - z^2 = alpha^2 (x^2 + y^2), so that it keeps its digits where nearly nothing does.
-    pub fn blocked(&self, wo: DVec3, wi: DVec3) -> f64 {
+    /// The share of the light from a visible facet toward `wi` that leaves that way, G2 / G1, and the share that meets
+    /// another facet; both with all their digits, by S^2 - z^2 = alpha^2 (x^2 + y^2).
+    pub fn left_and_blocked(&self, wo: DVec3, wi: DVec3) -> [f64; 2] {
         if wi.z <= 0.0 {
-            return 1.0;
+            return [0.0, 1.0];
         }
-        let slant = self.slant(wi);
-        let excess = self.alpha * self.alpha * (wi.x * wi.x + wi.y * wi.y) / (slant + wi.z);
-        wo.z * excess / (wo.z * slant + wi.z * self.slant(wo))
+        let (from, to) = (self.slant(wo), self.slant(wi));
+        let excess = self.alpha * self.alpha * (wi.x * wi.x + wi.y * wi.y) / (to + wi.z);
+        [wi.z * (wo.z + from), wo.z * excess].map(|share| share / (wo.z * to + wi.z * from))
     }
 
     /// The normal of a facet that is visible from `wo`.
@@ -108,4 +107,11 @@ impl Facets {
         let cap = DVec3::new(stretched.x + sin * x, stretched.y + sin * y, left * height);
         DVec3::new(self.alpha * cap.x, self.alpha * cap.y, cap.z).normalize()
     }
+}
+
+/// Two more random numbers, from the later digits of two: for what is decided after these have been used up.
+///
+/// 4096 (sqrt(5) + 1) / 2 is no ratio of whole numbers: evenly spaced numbers stay even.
+pub(super) fn later_digits(u: [f64; 2]) -> [f64; 2] {
+    u.map(|u| (u * 6_627.467_215_575_981).fract())
 }

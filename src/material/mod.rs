@@ -34,7 +34,7 @@ pub use mirror::{Mirror, reflect};
 pub use mix::Mix;
 pub use part::Part;
 pub use plastic::Plastic;
-pub use rough_interface::{Flow, RoughInterface, Side, Sides, Ways};
+pub use rough_interface::{Facet, Flow, RoughInterface, Side, Sides, Way};
 pub use roughness::{RoughReflection, RoughSurface, Roughness};
 pub use thin::Thin;
 

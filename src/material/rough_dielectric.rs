@@ -1,7 +1,7 @@
 //! A rough clear body, lane by lane.
 
 use super::conductor::above;
-use super::{Arrival, Branch, Dielectric, Flow, RoughInterface, Sides};
+use super::{Arrival, Branch, Dielectric, Facet, Flow, RoughInterface, Sides, Way};
 use crate::math::{DVec3, Frame, unit};
 use crate::spectrum::{Lanes, Table};
 
@@ -67,28 +67,25 @@ impl<'a, 'b, const N: usize> Meeting<'a, 'b, N> {
         if self.parts { kind.present * self.arrival.draw.parting() } else { kind.present }
     }
 
-    /// Asks every kind of lanes about a direction above the surface, for the mean of the densities with which they draw it.
-    fn reflect(&mut self, wi: DVec3, h: Option<DVec3>) -> f64 {
-        let Some(h) = h.or_else(|| (self.wo + wi).try_normalize()) else { return 0.0 };
-        let (mut pdf, mut lanes) = (0.0, 0.0);
-        for kind in &mut self.kinds {
-            kind.flow = kind.sides.reflected(self.wo, wi, h);
-            pdf += kind.count * kind.flow.pdf;
-            lanes += kind.count;
-        }
-        if lanes > 0.0 { pdf / lanes } else { 0.0 }
+    /// Asks every kind of lanes about a direction above the surface, for the mean over the lanes. `drawn` is the kind that
+    /// drew it, and the facet.
+    fn reflect(&mut self, wi: DVec3, drawn: Option<(usize, Facet)>) -> Flow {
+        let wo = self.wo;
+        let asked = self.kinds.iter_mut().enumerate().map(|(number, kind)| {
+            kind.flow = kind.sides.reflected(wo, wi, facet_of(number, drawn));
+            (kind.count, kind.flow)
+        });
+        mean(asked)
     }
 
-    /// The same of a direction beyond it. `drawn` is the kind that drew it, and the facet.
-    fn cross(&mut self, wi: DVec3, drawn: Option<(usize, DVec3)>) -> f64 {
-        let (mut pdf, mut lanes) = (0.0, 0.0);
-        for (number, kind) in self.kinds.iter_mut().enumerate().filter(|(_, kind)| kind.crossing > 0.0) {
-            let h = drawn.filter(|drawn| drawn.0 == number).map(|drawn| drawn.1);
-            kind.flow = kind.sides.crossed(self.wo, wi, h);
-            pdf += kind.crossing * kind.flow.pdf;
-            lanes += kind.crossing;
-        }
-        if lanes > 0.0 { pdf / lanes } else { 0.0 }
+    /// The same of a direction beyond it, without the change of radiance between media.
+    fn cross(&mut self, wi: DVec3, drawn: Option<(usize, Facet)>) -> Flow {
+        let wo = self.wo;
+        let crossing = self.kinds.iter_mut().enumerate().filter(|(_, kind)| kind.crossing > 0.0);
+        mean(crossing.map(|(number, kind)| {
+            kind.flow = kind.sides.crossed(wo, wi, facet_of(number, drawn));
+            (kind.crossing, Flow { value: kind.flow.value / square(kind.indices), ..kind.flow })
+        }))
     }
 
     /// What the lanes do that were asked last, the BSDF times the cosine, times a factor.
@@ -107,6 +104,26 @@ impl<'a, 'b, const N: usize> Meeting<'a, 'b, N> {
         let world = unit(self.frame.to_world(wi));
         (world.dot(self.arrival.normal) * wi.z > 0.0).then_some(world)
     }
+}
+
+/// The facet that sent light of a kind of lanes, if it is this kind that was drawn.
+fn facet_of(number: usize, drawn: Option<(usize, Facet)>) -> Option<Facet> {
+    drawn.filter(|drawn| drawn.0 == number).map(|drawn| drawn.1)
+}
+
+/// The mean of what numbers of lanes do.
+fn mean(flows: impl Iterator<Item = (f64, Flow)>) -> Flow {
+    let (mut sum, mut lanes) = (Flow::default(), 0.0);
+    for (count, flow) in flows {
+        sum = Flow { value: sum.value + count * flow.value, pdf: sum.pdf + count * flow.pdf };
+        lanes += count;
+    }
+    if lanes > 0.0 { Flow { value: sum.value / lanes, pdf: sum.pdf / lanes } } else { sum }
+}
+
+/// The change of radiance between two media.
+fn square([n1, n2]: [f64; 2]) -> f64 {
+    (n1 / n2) * (n1 / n2)
 }
 
 /// Whether lanes that cross a rough surface go different ways. While their lobes overlap they go on together.
@@ -139,11 +156,12 @@ impl Dielectric<Table> {
 
     /// One branch by reflection, and one by refraction: where lanes part, one for each kind of lanes.
     ///
-    /// Lanes that are together share a direction drawn for one of them, chosen evenly, and each is divided by the mean of
-    /// all their densities (the balance heuristic, Veach & Guibas 1995; Wilkie et al. 2014). Each branch has a density of
-    /// its own, whose integral is what it is drawn as often as. Next-event estimation weighs a direction by the same
-    /// function, [`Dielectric::evaluate_rough`]: the two weights sum to 1 in every direction, however many branches
-    /// the tracer follows, as one that is chosen with a probability is divided by it.
+    /// Lanes that are together share a direction drawn for one of them, chosen evenly; each takes of its share what light of
+    /// this lane does there beside the mean of all lanes (the balance heuristic, Veach & Guibas 1995; Wilkie et al. 2014). So the
+    /// mean over the lanes of a clear body keeps all its light at each surface. Each branch has a density of its own, whose
+    /// integral is what it is drawn as often as. Next-event estimation weighs a direction by the same function,
+    /// [`Dielectric::evaluate_rough`]: the two weights sum to 1 in every direction, however many branches the tracer
+    /// follows, as one that is chosen with a probability is divided by it.
     pub(super) fn scatter_rough<const N: usize>(
         &self,
         interface: &RoughInterface,
@@ -173,32 +191,30 @@ impl Dielectric<Table> {
             eta_scale,
             polarization: 0.0,
         };
-        let square = |[n1, n2]: [f64; 2]| (n1 / n2) * (n1 / n2);
         let drawn = if meeting.parts { 0..meeting.kinds.len() } else { chosen..chosen + 1 };
         for number in drawn {
             let kind = &meeting.kinds[number];
             let (sides, indices) = (kind.sides, kind.indices);
             let way = if number == chosen { crossed } else { sides.draw(meeting.wo, u)[1] };
-            let (Some((wi, h)), true) = (way, kind.crossing > 0.0) else { continue };
+            let (Some(Way { wi, share, facet }), true) = (way, kind.crossing > 0.0) else { continue };
             let Some(world) = meeting.to_world(wi) else { continue };
-            let pdf = meeting.cross(wi, h.map(|h| (number, h)));
+            let mean = meeting.cross(wi, facet.map(|facet| (number, facet)));
             let share = if meeting.parts {
-                let kind = &meeting.kinds[number];
-                meeting.across(kind) * (kind.flow.value / kind.flow.pdf) as f32
+                meeting.across(&meeting.kinds[number]) * (share * square(indices)) as f32
             } else {
-                meeting.crossed(1.0 / pdf)
+                meeting.crossed(share / mean.value)
             };
-            if pdf > 0.0 && !(share * tint).is_zero() {
-                branches.push(branch(world, share * tint, pdf, true, square(indices)));
+            if mean.pdf > 0.0 && !(share * tint).is_zero() {
+                branches.push(branch(world, share * tint, mean.pdf, true, square(indices)));
             }
         }
-        if let Some((wi, h)) = reflected
+        if let Some(Way { wi, share, facet }) = reflected
             && let Some(world) = meeting.to_world(wi)
         {
-            let pdf = meeting.reflect(wi, h);
-            let share = meeting.reflected(1.0 / pdf) * reflectance;
-            if pdf > 0.0 && !share.is_zero() {
-                branches.push(branch(world, share, pdf, false, 1.0));
+            let mean = meeting.reflect(wi, facet.map(|facet| (chosen, facet)));
+            let share = meeting.reflected(share / mean.value) * reflectance;
+            if mean.pdf > 0.0 && !share.is_zero() {
+                branches.push(branch(world, share, mean.pdf, false, 1.0));
             }
         }
     }
@@ -225,10 +241,10 @@ impl Dielectric<Table> {
         let mut meeting = Meeting::new(interface, arrival);
         let local = meeting.frame.to_local(wi);
         if local.z > 0.0 {
-            let pdf = meeting.reflect(local, None);
+            let pdf = meeting.reflect(local, None).pdf;
             return (pdf > 0.0).then(|| (meeting.reflected(1.0) * arrival.read(&self.reflectance), pdf));
         }
-        let pdf = if local.z < 0.0 { meeting.cross(local, None) } else { 0.0 };
+        let pdf = if local.z < 0.0 { meeting.cross(local, None).pdf } else { 0.0 };
         (pdf > 0.0).then(|| (meeting.crossed(1.0) * arrival.read(&self.transmittance), pdf))
     }
 }

@@ -2,6 +2,7 @@ use std::f64::consts::{LN_10, PI};
 use std::sync::OnceLock;
 
 use super::by_cosine::ByCosine;
+use super::facets::later_digits;
 use super::fresnel::diffuse_transmittance;
 use super::{Facets, Interface, reflect};
 use crate::math::DVec3;
@@ -86,24 +87,13 @@ fn blocked(facets: &Facets, z: f64, ratio: f64) -> f64 {
         // left = v^2: dense among upright facets, which are few and block most.
         let v = (f64::from(i) + 0.5) / f64::from(PLACES);
         let h = facets.visible_normal_from_end(wo, turn, v * v);
-        let interface = Interface::new(1.0, ratio, wo.dot(h));
-        let again = facets.blocked(wo, reflect(wo, h));
-        let lost = match interface.transmittance {
-            0.0 => 0.0,
-            t => t * lost_beyond(facets, wo, interface.refract(wo, h), straight),
-        };
-        sum += 2.0 * v * (interface.reflectance * again + lost);
+        sum += 2.0 * v * Facet::new(facets, [1.0, ratio], straight, [wo, h], None).again;
     }
     sum / f64::from(PLACES)
 }
 
 /// (sqrt(5) - 1) / 2.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
-
-/// The share of refracted light that meets another facet.
-fn lost_beyond(facets: &Facets, wo: DVec3, wi: DVec3, straight: f64) -> f64 {
-    if wi.z < 0.0 { facets.passed(wo, wi, straight)[1] } else { 1.0 }
-}
 
 /// The share of light from all around that crosses a boundary both there and back, the same from either side.
 fn straight(ratio: f64) -> f64 {
@@ -126,7 +116,8 @@ impl Side<'_> {
 
     /// The share of light from the cosine `z` that meets a second facet.
     pub fn blocked(&self, z: f64) -> f64 {
-        self.mix(|row| row.value(z))
+        let place = self.rows[0].place(z);
+        self.mix(|row| row.at(place))
     }
 
     /// The share of light from all around that meets a second facet.
@@ -136,7 +127,8 @@ impl Side<'_> {
 
     /// What is blocked at the cosine `z`, and the density per steradian with which [`Side::draw`] draws directions there.
     pub fn blocked_and_density(&self, z: f64) -> [f64; 2] {
-        let [a, b] = self.rows.map(|row| row.value_and_density(z));
+        let place = self.rows[0].place(z);
+        let [a, b] = self.rows.map(|row| row.value_and_density_at(place, z));
         let often = self.often();
         [a.0 + self.part * (b.0 - a.0), a.1 + often * (b.1 - a.1)]
     }
@@ -174,7 +166,7 @@ pub struct Sides<'a> {
     pub straight: f64,
 }
 
-/// The BSDF times cosine between two directions, and the density with which one is drawn for the other.
+/// The BSDF times cosine between two directions, and the density with which [`Sides::draw`] draws one for the other.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Flow {
     /// BSDF times cosine.
@@ -183,56 +175,109 @@ pub struct Flow {
     pub pdf: f64,
 }
 
-/// Directions drawn for one viewer; each with the facet that sent it there, if one did.
-pub type Ways = [Option<(DVec3, Option<DVec3>)>; 2];
+/// What a visible facet does with light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Facet {
+    h: DVec3,
+    /// Where it reflects and where it refracts light.
+    ways: [DVec3; 2],
+    /// The shares of the light that leave by these.
+    once: [f64; 2],
+    /// The share that meets a second facet.
+    again: f64,
+    /// Cosines of the angles at which light meets it and goes on beyond it.
+    cos: [f64; 2],
+}
+
+impl Facet {
+    /// The facet of normal `h` between two indices, seen from `wo`. `known` is one of the two ways, if it is known already.
+    fn new(facets: &Facets, [n1, n2]: [f64; 2], straight: f64, [wo, h]: [DVec3; 2], known: Option<DVec3>) -> Self {
+        let interface = Interface::new(n1, n2, wo.dot(h));
+        let (reflected, crossing) = (interface.reflectance, interface.transmittance);
+        let above = known.filter(|wi| wi.z > 0.0).unwrap_or_else(|| reflect(wo, h));
+        let beyond = known.filter(|wi| wi.z < 0.0).unwrap_or_else(|| interface.refract(wo, h));
+        let [left, blocked] = facets.left_and_blocked(wo, above);
+        let [passed, lost] =
+            if crossing > 0.0 && beyond.z < 0.0 { facets.passed(wo, beyond, straight) } else { [0.0, 1.0] };
+        Self {
+            h,
+            ways: [above, beyond],
+            once: [reflected * left, crossing * passed],
+            again: reflected * blocked + crossing * lost,
+            cos: [wo.dot(h), interface.cos_beyond],
+        }
+    }
+}
+
+/// A direction drawn for the viewer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Way {
+    /// Unit vector toward where the light came from.
+    pub wi: DVec3,
+    /// The share of the light that came from there, without the change of radiance between media.
+    pub share: f64,
+    /// The facet that sent it, if it met only one.
+    pub facet: Option<Facet>,
+}
 
 impl Sides<'_> {
-    /// A direction above the surface and one beyond it for the viewer's direction `wo`: from the lobes as often as light
-    /// is blocked, else by a visible facet; none where it leads to the wrong side.
-    pub fn draw(&self, wo: DVec3, u: [f64; 2]) -> Ways {
-        let again = self.near.blocked(wo.z);
-        if u[0] < again {
-            let u = [u[0] / again, u[1]];
+    /// A direction above the surface and one beyond it for the viewer's direction `wo`, whose shares sum to 1; none where
+    /// no light comes from.
+    ///
+    /// A visible facet is drawn. As often as its light meets a second facet, both directions are drawn from the lobes;
+    /// else they are its own, with its own Fresnel shares. So the shares follow what light does, and their product along
+    /// a path neither grows nor falls, however long that is.
+    pub fn draw(&self, wo: DVec3, u: [f64; 2]) -> [Option<Way>; 2] {
+        let facet = self.facet([wo, self.facets.visible_normal(wo, u)], None);
+        let [chance, around] = later_digits(u);
+        if chance < facet.again {
+            let u = [around, chance / facet.again];
             let [above, beyond] = [self.near.draw(u), self.far.draw(u)];
-            return [above, DVec3 { z: -beyond.z, ..beyond }].map(|wi| (wi.z != 0.0).then_some((wi, None)));
+            let lobe = |wi: DVec3, share| (wi.z != 0.0).then_some(Way { wi, share, facet: None });
+            let crossing = self.crossing[0];
+            return [lobe(above, 1.0 - crossing), lobe(DVec3 { z: -beyond.z, ..beyond }, crossing)];
         }
-        let h = self.facets.visible_normal(wo, [(u[0] - again) / (1.0 - again), u[1]]);
-        let [n1, n2] = self.indices;
-        let interface = Interface::new(n1, n2, wo.dot(h));
-        let beyond = (interface.transmittance > 0.0).then(|| interface.refract(wo, h));
-        [Some(reflect(wo, h)).filter(|wi| wi.z > 0.0), beyond.filter(|wi| wi.z < 0.0)]
-            .map(|wi| wi.map(|wi| (wi, Some(h))))
+        let way = |i: usize| Way {
+            wi: facet.ways[i],
+            share: facet.once[i] / (facet.once[0] + facet.once[1]),
+            facet: Some(facet),
+        };
+        [0, 1].map(|i| (facet.once[i] > 0.0).then(|| way(i)))
     }
 
-    /// What is reflected from `wi`, above the surface, to `wo`.
-    pub fn reflected(&self, wo: DVec3, wi: DVec3, h: DVec3) -> Flow {
+    fn facet(&self, directions: [DVec3; 2], known: Option<DVec3>) -> Facet {
+        Facet::new(self.facets, self.indices, self.straight, directions, known)
+    }
+
+    /// What is reflected from `wi`, above the surface, to `wo`. The facet is found where it is not given.
+    pub fn reflected(&self, wo: DVec3, wi: DVec3, facet: Option<Facet>) -> Flow {
         let again = self.near.blocked(wo.z);
         let [blocked, lobe] = self.near.blocked_and_density(wi.z);
-        let [n1, n2] = self.indices;
-        let once = Interface::new(n1, n2, wo.dot(h)).reflectance * self.facets.reflection(wo, wi, h);
         let lobes = (1.0 - self.crossing[0]) * again * blocked / self.near.mean_blocked() * wi.z / PI;
-        Flow { value: once + lobes, pdf: (1.0 - again) * self.facets.pdf(wo, h) + again * lobe }
+        let facet = facet.or_else(|| Some(self.facet([wo, (wo + wi).try_normalize()?], Some(wi))));
+        let Some(facet) = facet else { return Flow { value: lobes, pdf: again * lobe } };
+        let pdf = self.facets.pdf(wo, facet.h);
+        Flow { value: pdf * facet.once[0] + lobes, pdf: pdf * (facet.once[0] + facet.once[1]) + again * lobe }
     }
 
-    /// What crosses from `wi`, beyond the surface, to `wo`: radiance, which changes by (n1 / n2)^2. The facet's normal is
-    /// found where it is not given.
-    pub fn crossed(&self, wo: DVec3, wi: DVec3, h: Option<DVec3>) -> Flow {
+    /// What crosses from `wi`, beyond the surface, to `wo`: radiance, which changes by (n1 / n2)^2. The facet is found where
+    /// it is not given.
+    pub fn crossed(&self, wo: DVec3, wi: DVec3, facet: Option<Facet>) -> Flow {
         let again = self.near.blocked(wo.z);
         let [blocked, lobe] = self.far.blocked_and_density(-wi.z);
         let [n1, n2] = self.indices;
         let lobes = self.crossing[0] * again * blocked / self.far.mean_blocked() * -wi.z / PI;
-        let h = h.or_else(|| ((wo * n1 + wi * n2) * (n1 - n2).signum()).try_normalize());
-        let met = h.filter(|h| h.z > 0.0 && wo.dot(*h) > 0.0 && wi.dot(*h) < 0.0);
+        let facet = facet.or_else(|| {
+            let h = ((wo * n1 + wi * n2) * (n1 - n2).signum()).try_normalize()?;
+            let met = h.z > 0.0 && wo.dot(h) > 0.0 && wi.dot(h) < 0.0;
+            met.then(|| self.facet([wo, h], Some(wi)))
+        });
         let (mut once, mut pdf) = (0.0, 0.0);
-        if let Some(h) = met {
-            let cos = wo.dot(h);
-            let interface = Interface::new(n1, n2, cos);
-            if interface.transmittance > 0.0 {
-                pdf = self.facets.refraction_pdf(wo, h, self.indices, [cos, interface.cos_beyond]);
-                once = interface.transmittance * self.facets.passed(wo, wi, self.straight)[0] * pdf;
-            }
+        if let Some(facet) = facet.filter(|facet| facet.cos[1] > 0.0) {
+            let density = self.facets.refraction_pdf(wo, facet.h, self.indices, facet.cos);
+            (once, pdf) = (density * facet.once[1], density * (facet.once[0] + facet.once[1]));
         }
         let square = (n1 / n2) * (n1 / n2);
-        Flow { value: (once + lobes) * square, pdf: (1.0 - again) * pdf + again * lobe }
+        Flow { value: (once + lobes) * square, pdf: pdf + again * lobe }
     }
 }

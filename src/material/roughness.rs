@@ -4,6 +4,7 @@ use std::sync::{Arc, OnceLock};
 use serde::{Deserialize, Deserializer};
 
 use super::by_cosine::ByCosine;
+use super::facets::later_digits;
 use super::{Facets, RoughInterface, reflect};
 use crate::math::DVec3;
 
@@ -118,16 +119,17 @@ impl RoughSurface {
         self.blocked.value(z)
     }
 
-    /// Draws a direction of light for the viewer's direction `wo`; none if it lies below the surface.
+    /// Draws a direction of light for the viewer's direction `wo`, as often as perfect mirrors would send light there.
     ///
-    /// It is drawn from the lobe as often as perfect mirrors would reflect light more than once.
+    /// A visible facet is drawn, and a direction from the lobe in place of its own if light from there meets a second one.
     pub fn scatter(&self, wo: DVec3, u: [f64; 2]) -> Option<RoughReflection> {
-        let again = self.blocked(wo.z);
-        if u[0] < again {
-            return self.evaluate(wo, self.blocked.draw([u[0] / again, u[1]]));
+        let h = self.facets.visible_normal(wo, u);
+        let wi = reflect(wo, h);
+        let ([_, blocked], [chance, around]) = (self.facets.left_and_blocked(wo, wi), later_digits(u));
+        if chance < blocked {
+            return self.evaluate(wo, self.blocked.draw([around, chance / blocked]));
         }
-        let h = self.facets.visible_normal(wo, [(u[0] - again) / (1.0 - again), u[1]]);
-        self.reflection(wo, reflect(wo, h), h)
+        self.reflection(wo, wi, h)
     }
 
     /// What is reflected from `wi` to `wo`; none if `wi` lies below the surface.
@@ -140,12 +142,13 @@ impl RoughSurface {
             return None;
         }
         let (again, (blocked, lobe)) = (self.blocked(wo.z), self.blocked.value_and_density(wi.z));
+        let once = self.facets.reflection(wo, wi, h);
         Some(RoughReflection {
             wi,
-            once: self.facets.reflection(wo, wi, h),
+            once,
             again: again * blocked / self.mean_blocked() * wi.z / PI,
             cos: wo.dot(h).clamp(0.0, 1.0),
-            pdf: (1.0 - again) * self.facets.pdf(wo, h) + again * lobe,
+            pdf: once + again * lobe,
         })
     }
 }
@@ -160,7 +163,8 @@ fn quadrature(facets: &Facets, z: f64) -> f64 {
         for around in 0..AROUND {
             let turn = 0.5 * (around as f64 + 0.5) / AROUND as f64;
             let h = facets.visible_normal_from_end(wo, turn, v * v);
-            sum += 2.0 * v * facets.blocked(wo, reflect(wo, h));
+            let [_, blocked] = facets.left_and_blocked(wo, reflect(wo, h));
+            sum += 2.0 * v * blocked;
         }
     }
     sum / (UP * AROUND) as f64

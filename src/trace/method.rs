@@ -67,7 +67,7 @@ pub enum Transport {
 impl Transport {
     /// Surfaces after which a path is stopped and counted as lost: light caught in a clear body for good.
     ///
-    /// Without chance nothing else ends it; with chance, roulette lets one path in 10^43 come as far.
+    /// Without chance nothing else ends it; with chance, roulette lets one path in 10^32 come as far.
     pub(super) fn last_vertex(&self) -> u32 {
         match self {
             Self::Deterministic { .. } => 1_000,

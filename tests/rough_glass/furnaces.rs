@@ -1,10 +1,11 @@
 //! Bodies of rough glass in an even environment cannot be told from it.
 
+use abbe::film::Film;
 use abbe::spectrum::Basis;
 use abbe::trace::{Method, Transport, World, render};
 
 use crate::support::scenes::{
-    EVERY_BRANCH, Mean, SINGLE_PATH, SPLITTING, body, environment, image, method, scene, view,
+    EVERY_BRANCH, Mean, SINGLE_PATH, SPLITTING, body, environment, image, method, scene, standard_errors, view,
 };
 
 const BALL: &str = "sphere = { center = [0, 0, 0], radius = 1 }";
@@ -99,4 +100,44 @@ fn between_equal_indices_rough_glass_is_not_there() {
             assert!((a - b).abs() < 32.0 * f32::EPSILON * b, "{a} for {b}");
         }
     }
+}
+
+/// Light leaves a body of n = 9.9 after some 170 surfaces on average. None may gain or lose on the way, and the spread of
+/// the pixels is the noise: no few of them carry it.
+#[test]
+fn very_dense_rough_glass_neither_gains_nor_loses_seen_from_outside_and_from_inside() {
+    let mut cases = Vec::new();
+    for (index, roughnesses, samples) in
+        [(2.4, &[0.3, 0.99][..], 16), (4.0, &[0.1, 0.5, 0.99], 16), (9.9, &[0.1, 0.3, 0.5, 0.65, 0.77, 0.9, 0.99], 8)]
+    {
+        let outside = view([1.3, 0.9, 4.1], [0.05, 0.02, 0.1], 14.0, 16);
+        let inside = view([0.3, -0.1, 0.2], [0.4, 0.9, -0.7], 120.0, 16);
+        for &roughness in roughnesses {
+            let glass = format!("dielectric = {{ index = {index:?}, roughness = {roughness:?} }}");
+            let rest = format!("[render]\nsamples = {samples}\n") + &body("glass", &glass, &[BALL]) + &environment(1.0);
+            let what = format!("n {index}, roughness {roughness}");
+            cases.push((format!("{what}, outside"), outside.clone() + &rest, SPLITTING, 1.0));
+            cases.push((format!("{what}, inside"), inside.clone() + &rest, SINGLE_PATH, index * index));
+        }
+    }
+    for (what, text, transport, expected) in &cases {
+        let (film, report) = image(text, *transport);
+        let mean = Mean::of(&film);
+        let (value, error) = (mean.value[1] / expected, mean.error[1] / expected);
+        let (z, carried, lost) = ((value - 1.0) / error, carried_by(&film), report.stopped);
+        println!("{what}: {value:.5} +- {error:.1e}, z {z:.2}, by {carried:.0} pixels, {lost} stopped");
+        // A few hundred factors in 32 bits.
+        let limit = standard_errors(cases.len()) * error + 256.0 * f64::from(f32::EPSILON);
+        assert!((value - 1.0).abs() <= limit && error < 0.03, "{what}: {mean:?}");
+        assert!(error < 1e-5 || carried >= 10.0, "{what}: {carried} pixels carry the noise");
+    }
+}
+
+/// How many pixels carry the noise, (sum d^2)^2 / sum d^4 for their deviations d: a third of them if it is normal, and few
+/// where a tail is so long that the spread of the pixels does not tell their error.
+fn carried_by(film: &Film) -> f64 {
+    let green = || film.pixels.iter().map(|pixel| f64::from(pixel.rgb[1]));
+    let mean = green().sum::<f64>() / film.pixels.len() as f64;
+    let [squares, fourths] = [2.0, 4.0].map(|power| green().map(|x| libm::pow(x - mean, power)).sum::<f64>());
+    squares * squares / fourths
 }

@@ -32,8 +32,8 @@ fn furnace(sides: &Sides, [n1, n2]: [f64; 2], cos: f64) -> [f64; 2] {
     let (wo, mut sum) = (at(cos, 0.3), [0.0; 2]);
     for u in points(DRAWS) {
         let [reflected, crossed] = sides.draw(wo, u);
-        let reflected = reflected.map(|(wi, h)| sides.reflected(wo, wi, h.unwrap_or_else(|| (wo + wi).normalize())));
-        let crossed = crossed.map(|(wi, h)| sides.crossed(wo, wi, h));
+        let reflected = reflected.map(|way| sides.reflected(wo, way.wi, way.facet));
+        let crossed = crossed.map(|way| sides.crossed(wo, way.wi, way.facet));
         for ((sum, flow), square) in sum.iter_mut().zip([reflected, crossed]).zip([1.0, n2 * n2 / (n1 * n1)]) {
             *sum += flow.map_or(0.0, |flow| flow.value / flow.pdf * square / f64::from(DRAWS));
         }
@@ -69,16 +69,14 @@ fn the_closer_two_indices_the_less_a_rough_boundary_turns_any_light() {
         for step in [1e-2, 1e-3, 1e-4] {
             for indices in [[1.5, 1.5 + step], [1.5 + step, 1.5]] {
                 let sides = interface.between(indices[0], indices[1]);
-                let square = (indices[1] / indices[0]) * (indices[1] / indices[0]);
                 for cos in [0.2, 0.5, 1.0] {
                     let wo = at(cos, 0.3);
                     let mut kept = 0.0;
                     for u in points(1 << 14) {
-                        if let [_, Some((wi, h))] = sides.draw(wo, u)
-                            && (wo + wi).length() < step.sqrt()
+                        if let [_, Some(way)] = sides.draw(wo, u)
+                            && (wo + way.wi).length() < step.sqrt()
                         {
-                            let flow = sides.crossed(wo, wi, h);
-                            kept += flow.value / flow.pdf * square / f64::from(1 << 14);
+                            kept += way.share / f64::from(1 << 14);
                         }
                     }
                     // Facets reflect all light below a cosine of sqrt(2 step / n), and turn it more than that a little above.
@@ -127,8 +125,7 @@ fn light_goes_the_same_way_back_through_and_off_a_rough_boundary() {
             let (there, back) = (interface.between(n1, n2), interface.between(n2, n1));
             for _ in 0..5_000 {
                 let [a, b] = [0; 2].map(|_| random.direction()).map(|w| DVec3 { z: w.z.abs(), ..w });
-                let h = (a + b).normalize();
-                let [x, y] = [(a, b), (b, a)].map(|(wo, wi)| there.reflected(wo, wi, h).value / wi.z);
+                let [x, y] = [(a, b), (b, a)].map(|(wo, wi)| there.reflected(wo, wi, None).value / wi.z);
                 assert!((x - y).abs() <= 1e-10 * x.max(y), "{roughness}: {a} {b}: {x} and {y}");
                 // Beyond the surface the axis points down: both ways are seen from above, turned about x.
                 let turn = |w: DVec3| DVec3::new(w.x, -w.y, -w.z);
@@ -171,7 +168,7 @@ fn directions_on_both_sides_follow_their_density_and_the_rest_leads_nowhere() {
         let mut counts = [0, 1].map(|_| vec![0; CELLS * CELLS + 1]);
         for _ in 0..COUNT {
             for (counts, way) in counts.iter_mut().zip(sides.draw(wo, random.pair())) {
-                counts[way.map_or(CELLS * CELLS, |(wi, _)| cell(wi))] += 1;
+                counts[way.map_or(CELLS * CELLS, |way| cell(way.wi))] += 1;
             }
         }
         for (side, counts) in counts.iter().enumerate() {
@@ -182,7 +179,7 @@ fn directions_on_both_sides_follow_their_density_and_the_rest_leads_nowhere() {
                 let around = (j as f64 + (i as f64 * 0.618_033_988_75).fract()) / finer as f64;
                 let wi = at(up, TAU * (around - 0.5));
                 let pdf = match side {
-                    0 => sides.reflected(wo, wi, (wo + wi).normalize()).pdf,
+                    0 => sides.reflected(wo, wi, None).pdf,
                     _ => sides.crossed(wo, DVec3 { z: -wi.z, ..wi }, None).pdf,
                 };
                 cells[i / FINER * CELLS + j / FINER] += pdf * TAU / (finer * finer) as f64;
@@ -217,8 +214,8 @@ fn no_draw_is_not_a_number_along_the_surface_and_between_nearly_equal_indices() 
                 for u in corners.into_iter().chain((0..1_000).map(|_| random.pair())) {
                     let [reflected, crossed] = sides.draw(wo, u);
                     let flows = [
-                        reflected.map(|(wi, h)| sides.reflected(wo, wi, h.unwrap_or_else(|| (wo + wi).normalize()))),
-                        crossed.map(|(wi, h)| sides.crossed(wo, wi, h)),
+                        reflected.map(|way| sides.reflected(wo, way.wi, way.facet)),
+                        crossed.map(|way| sides.crossed(wo, way.wi, way.facet)),
                     ];
                     for flow in flows.into_iter().flatten() {
                         let weight = flow.value / flow.pdf * (n2 / n1).powi(2).min(1.0);

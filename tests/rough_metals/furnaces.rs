@@ -79,7 +79,7 @@ fn the_table_of_what_is_reflected_once_agrees_with_a_finer_quadrature() {
             let blocked: f64 = points()
                 .map(|[v, around]| {
                     let h = surface.facets().visible_normal(wo, [around, 1.0 - v * v]);
-                    2.0 * v * surface.facets().blocked(wo, h * (2.0 * wo.dot(h)) - wo)
+                    2.0 * v * surface.facets().left_and_blocked(wo, h * (2.0 * wo.dot(h)) - wo)[1]
                 })
                 .sum();
             let exact = blocked / f64::from(DRAWS);

@@ -4,6 +4,7 @@ pytest tools/tests/test_validate.py
 """
 
 import json
+from functools import partial
 
 import numpy as np
 import OpenEXR
@@ -87,10 +88,10 @@ def picture(values):
     return render.Image({}, dict(zip("RGB", np.moveaxis(values, -1, 0), strict=True), A=np.ones(values.shape[:2])))
 
 
-def judged(bias=0.0, noise=0.0, speck=0.0, effect=0.01):
+def judged(bias=0.0, noise=0.0, speck=0.0, effect=0.01, draw=np.random.Generator.standard_normal):
     """A row that expects 1 everywhere, on two made-up images of 32 x 32 pixels."""
     random = np.random.default_rng(7)
-    pair = [1 + bias + noise * random.standard_normal((32, 32, 3)) for _ in range(2)]
+    pair = [1 + bias + noise * draw(random, size=(32, 32, 3)) for _ in range(2)]
     for values in pair:
         values[5, 5] += speck
     made_up = Row(
@@ -112,6 +113,14 @@ def judged(bias=0.0, noise=0.0, speck=0.0, effect=0.01):
 def test_exact_and_evenly_noisy_images_pass():
     assert judged().passes
     assert judged(noise=0.02).passes
+
+
+def test_noise_that_a_few_pixels_carry_is_said_to_be_of_unknown_size():
+    # Skewed, but every pixel knows of it.
+    assert judged(bias=-0.02, noise=0.02, draw=np.random.Generator.standard_exponential).passes
+    # As if each pixel were a product of many factors of mean 1: their mean lies in a tail that few pixels find.
+    tail = judged(bias=-1.0, noise=1.0, effect=10.0, draw=partial(np.random.Generator.lognormal, mean=-8.0, sigma=4.0))
+    assert any("a heavy tail: about" in reason for reason in tail.reasons), tail.reasons
 
 
 def test_a_bias_beyond_rounding_or_beyond_the_noise_fails():

@@ -235,6 +235,18 @@ def rough_glasses(quick):
             quick,
             samples=1024,
         )
+    for index, roughness in ((9.9, 0.77), (9.9, 0.99), (4.0, 0.5), (2.4, 0.99)):
+        yield furnace(
+            f"clear rough sphere of index {index}, roughness {roughness}",
+            glass(index, roughness=roughness),
+            "sphere",
+            1.0,
+            "L = 1",
+            0.85,
+            "weights that spread at each surface, so that their product has its mean in a tail that no sample finds",
+            quick,
+            samples=32,
+        )
 
 
 def rows(quick):

@@ -2,7 +2,8 @@
 
 The standard error is honest: of two seeds' differences pixel by pixel, of the spread of more seeds' means where a
 photon lights many pixels, of the spread of the pixels where there is one image. To it comes the bound of rounding: a
-stored value is a product of up to 32 factors in 32 bits, each off by at most 2^-24.
+stored value is a product of up to 32 factors in 32 bits, each off by at most 2^-24. Where a few pixels hold nearly all
+of the noise, its spread says little of its size, and the row fails for that.
 """
 
 from collections.abc import Callable
@@ -16,6 +17,10 @@ LIMIT = 4.0
 SHARE = 0.25
 # The most of a row's values, of ten or more, in which the mistake may by accident change less.
 ALIKE = 0.1
+# The fewest pixels that may carry the noise: of normal noise a third of them do, of a tail that is hardly sampled one.
+CARRIERS = 10
+# The fewest pixels of which that is asked.
+ASKED = 100
 # How far one pixel may be off where all show the same, in standard deviations of the pixels: behind glass they are
 # not alike.
 WORST_PIXEL = 30
@@ -67,6 +72,14 @@ def statistics(estimates):
     return only.mean(axis=0), deviation / np.sqrt(len(only)), deviation
 
 
+def carriers(first, second):
+    """How many pixels carry the noise of each value, (sum d^2)^2 / sum d^4 of two images' differences d.
+
+    The relative variance of an estimated variance is about the inverse of it."""
+    squares = (first - second) ** 2
+    return squares.sum(axis=0) ** 2 / np.maximum((squares**2).sum(axis=0), 1e-300)
+
+
 def judge(row, images):
     """What the images say of the row."""
     if not all(np.isfinite(image.rgb).all() for image in images):
@@ -98,6 +111,13 @@ def judge(row, images):
             f"too noisy to tell: the standard error {most(error, effect):.2g} is wider than a quarter of what "
             f"the mistake does ({row.guards_against})"
         )
+    if len(estimates) == 2 and len(estimates[0]) >= ASKED:
+        carried = carriers(*estimates)[statistical > rounding].min(initial=np.inf)
+        if carried < CARRIERS:
+            reasons.append(
+                f"a heavy tail: about {carried:.0f} of {len(estimates[0])} pixels carry the noise, so that it may be "
+                f"larger than its standard error says"
+            )
     if row.every_pixel and not reasons:
         pixels = np.mean(estimates, axis=0)
         worst = np.abs(pixels - expected) / (WORST_PIXEL * deviation + np.maximum(rounding, 1e-30))
