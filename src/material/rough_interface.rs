@@ -181,6 +181,10 @@ pub struct Flow {
     pub value: f64,
     /// Density per steradian.
     pub pdf: f64,
+    /// What facets would add to `value` that reflect, or let through, all light.
+    pub facet: f64,
+    /// Cosine of the angle at which light meets them.
+    pub cos: f64,
 }
 
 /// Directions drawn for one viewer; each with the facet that sent it there, if one did.
@@ -209,9 +213,10 @@ impl Sides<'_> {
         let again = self.near.blocked(wo.z);
         let [blocked, lobe] = self.near.blocked_and_density(wi.z);
         let [n1, n2] = self.indices;
-        let once = Interface::new(n1, n2, wo.dot(h)).reflectance * self.facets.reflection(wo, wi, h);
+        let (facet, cos) = (self.facets.reflection(wo, wi, h), wo.dot(h));
+        let once = Interface::new(n1, n2, cos).reflectance * facet;
         let lobes = (1.0 - self.crossing[0]) * again * blocked / self.near.mean_blocked() * wi.z / PI;
-        Flow { value: once + lobes, pdf: (1.0 - again) * self.facets.pdf(wo, h) + again * lobe }
+        Flow { value: once + lobes, pdf: (1.0 - again) * self.facets.pdf(wo, h) + again * lobe, facet, cos }
     }
 
     /// What crosses from `wi`, beyond the surface, to `wo`: radiance, which changes by (n1 / n2)^2. The facet's normal is
@@ -223,16 +228,17 @@ impl Sides<'_> {
         let lobes = self.crossing[0] * again * blocked / self.far.mean_blocked() * -wi.z / PI;
         let h = h.or_else(|| ((wo * n1 + wi * n2) * (n1 - n2).signum()).try_normalize());
         let met = h.filter(|h| h.z > 0.0 && wo.dot(*h) > 0.0 && wi.dot(*h) < 0.0);
-        let (mut once, mut pdf) = (0.0, 0.0);
+        let (mut once, mut pdf, mut facet, mut cos) = (0.0, 0.0, 0.0, 0.0);
         if let Some(h) = met {
-            let cos = wo.dot(h);
+            cos = wo.dot(h);
             let interface = Interface::new(n1, n2, cos);
             if interface.transmittance > 0.0 {
                 pdf = self.facets.refraction_pdf(wo, h, self.indices, [cos, interface.cos_beyond]);
-                once = interface.transmittance * self.facets.passed(wo, wi, self.straight)[0] * pdf;
+                facet = self.facets.passed(wo, wi, self.straight)[0] * pdf;
+                once = interface.transmittance * facet;
             }
         }
         let square = (n1 / n2) * (n1 / n2);
-        Flow { value: (once + lobes) * square, pdf: (1.0 - again) * pdf + again * lobe }
+        Flow { value: (once + lobes) * square, pdf: (1.0 - again) * pdf + again * lobe, facet: facet * square, cos }
     }
 }

@@ -138,3 +138,16 @@ pub(super) fn index<const N: usize>(world: &World, draw: &Draw<N>, inside: Optio
         None => [1.0; N],
     }
 }
+
+/// The indices by which rays are refracted between two media; none where they are the lanes' own.
+pub(super) fn direction_indices<const N: usize>(
+    world: &World,
+    draw: &Draw<N>,
+    sides: [Option<MaterialId>; 2],
+) -> Option<[[f64; N]; 2]> {
+    let direction = |side: Option<MaterialId>| medium(world, side?).index.direction();
+    if sides.iter().all(|&side| direction(side).is_none()) {
+        return None;
+    }
+    Some(sides.map(|side| direction(side).map_or_else(|| index(world, draw, side), |one| [one; N])))
+}
