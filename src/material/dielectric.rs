@@ -1,6 +1,6 @@
 use serde::Deserialize;
 
-use super::{Arrival, Branch, Interface, Roughness, reflect};
+use super::{Arrival, Branch, Interface, Roughness, reflect, shared_transmittance};
 use crate::math::DVec3;
 use crate::spectrum::{Draw, Lanes, Quantity, Table};
 
@@ -68,7 +68,10 @@ impl Dielectric<Table> {
     pub(super) fn scatter<const N: usize>(&self, arrival: &Arrival<N>, u: [f64; 2], branches: &mut Vec<Branch<N>>) {
         match self.roughness.interface() {
             Some(interface) => self.scatter_rough(interface, arrival, u, branches),
-            None => self.scatter_smooth(arrival, branches),
+            None => match arrival.one_direction() {
+                Some(directions) => self.scatter_as_one(arrival, directions, branches),
+                None => self.scatter_smooth(arrival, branches),
+            },
         }
     }
 
@@ -87,16 +90,16 @@ impl Dielectric<Table> {
         let (mut reflected, mut polarization) = (Lanes::ZERO, 0.0);
         let mut last: Option<([f64; 2], Interface)> = None;
         let mut pair_of_branch = [[0.0; 2]; N];
-        let (refracting, own) = (arrival.refracting(), arrival.own_fresnel(cos));
+        let own = arrival.own_transmittance(cos);
         for lane in (0..N).filter(|&lane| arrival.present[lane] != 0.0) {
-            let pair @ [here, beyond] = refracting.map(|side| side[lane]);
+            let pair @ [here, beyond] = arrival.refracting(lane);
             let [n1, n2] = [arrival.incident[lane], arrival.beyond[lane]];
             let interface = match last {
                 Some((of, interface)) if of == pair => interface,
                 _ => Interface::new(here, beyond, cos),
             };
             let [reflects, lets_through] = match &own {
-                Some(own) => own.each_ref().map(|shares| shares[lane]),
+                Some(own) => [1.0 - own[lane], own[lane]],
                 None => [interface.reflectance, interface.transmittance],
             };
             last = Some((pair, interface));
@@ -128,6 +131,42 @@ impl Dielectric<Table> {
             let polarization = polarization as f32;
             branches.push(Branch { wi, share: reflected, pdf: None, crosses: false, eta_scale: 1.0, polarization });
         }
+    }
+
+    /// One reflected and one refracted branch, in which each lane has its own shares.
+    fn scatter_as_one<const N: usize>(
+        &self,
+        arrival: &Arrival<N>,
+        [here, beyond]: [f64; 2],
+        branches: &mut Vec<Branch<N>>,
+    ) {
+        let (tint, reflectance) = (arrival.read(&self.transmittance), arrival.read(&self.reflectance));
+        let cos = arrival.wo.dot(arrival.normal);
+        let (n1, n2) = (&arrival.incident, &arrival.beyond);
+        let mut push = |wi, share: Lanes<N>, crosses, eta_scale, polarization: f64| {
+            let (share, polarization) = (share * arrival.present, polarization as f32);
+            if !share.is_zero() {
+                branches.push(Branch { wi, share, pdf: None, crosses, eta_scale, polarization });
+            }
+        };
+        // Between equal indices nothing happens at all, even along the surface.
+        let straight = here == beyond;
+        if straight && n1 == n2 {
+            push(-arrival.wo, tint, true, 1.0, 0.0);
+            return;
+        }
+        let interface = Interface::new(here, beyond, cos);
+        let crossing = shared_transmittance([n1, n2], [here, beyond], cos);
+        if interface.transmittance > 0.0 {
+            let wi = if straight { -arrival.wo } else { interface.refract(arrival.wo, arrival.normal) };
+            let eta_scale = (here / beyond) * (here / beyond);
+            let square = |i: usize| (n1[i] / n2[i]) * (n1[i] / n2[i]);
+            let share = tint * Lanes::from_fn(|i| (crossing[i] * square(i)) as f32);
+            push(wi, share, true, eta_scale, interface.polarization_refracted);
+        }
+        let share = reflectance * Lanes::from_fn(|i| (1.0 - crossing[i]) as f32);
+        let wi = reflect(arrival.wo, arrival.normal);
+        push(wi, share, false, 1.0, interface.polarization_reflected);
     }
 
     fn is_clear(&self) -> bool {

@@ -3,6 +3,7 @@
 //! `Material<S>` is written once and read twice: with `S = Curve` it is the scene file's vocabulary, with `S = Table` what
 //! the tracer reads; [`Material::map`] is the bridge. A material answers an [`Arrival`] with [`Branch`]es.
 
+mod arrival;
 mod by_cosine;
 mod coat;
 mod conductor;
@@ -28,7 +29,7 @@ pub use dielectric::Dielectric;
 pub use diffuse::Diffuse;
 pub use emissive::Emissive;
 pub use facets::Facets;
-pub use fresnel::{Interface, conductor_reflectance, diffuse_transmittance, shared_fresnel};
+pub use fresnel::{Interface, conductor_reflectance, diffuse_transmittance, shared_transmittance};
 pub use mask::Mask;
 pub use mirror::{Mirror, reflect};
 pub use mix::Mix;
@@ -85,72 +86,10 @@ pub struct Arrival<'a, const N: usize> {
     pub incident: [f64; N],
     /// Refractive index beyond the surface, per lane; the same as `incident` where no medium begins or ends.
     pub beyond: [f64; N],
-    /// The indices by which rays are refracted, on both sides, where lanes go one way though their own indices differ.
-    pub direction_indices: Option<[[f64; N]; 2]>,
+    /// The index by which all rays are refracted on the viewer's side and beyond; none where that is each lane's own.
+    pub direction_indices: [Option<f64>; 2],
     /// Lanes whose refracted rays lie within this angle of each other, in radians, go on as one.
     pub together: f64,
-}
-
-impl<const N: usize> Arrival<'_, N> {
-    /// A table of the material, read for this ray.
-    pub fn read(&self, table: &Table) -> Lanes<N> {
-        self.draw.read_at(table, self.uv)
-    }
-
-    /// The same surface as it is met from beyond.
-    pub fn from_beyond(self) -> Self {
-        let direction_indices = self.direction_indices.map(|[here, beyond]| [beyond, here]);
-        Self { incident: self.beyond, beyond: self.incident, direction_indices, ..self }
-    }
-
-    /// The indices by which each lane's ray is refracted, on both sides.
-    pub fn refracting(&self) -> [&[f64; N]; 2] {
-        match &self.direction_indices {
-            Some([here, beyond]) => [here, beyond],
-            None => [&self.incident, &self.beyond],
-        }
-    }
-
-    /// What each lane has reflected and let through where its ray meets a smooth boundary between the media at an angle of
-    /// some cosine; none where that of the ray's indices is its own.
-    pub fn own_fresnel(&self, cos: f64) -> Option<[[f64; N]; 2]> {
-        let directions = self.direction_indices.as_ref()?;
-        Some(shared_fresnel([&self.incident, &self.beyond], directions.each_ref(), cos))
-    }
-
-    /// What turns the shares of light that crosses, followed from the light as if it were the viewer, into those of flux.
-    ///
-    /// Radiance changes by each lane's own (n_here / n_beyond)^2 and solid angles by that of the rays, d: flux by their
-    /// ratio, which light and viewer see the other way round. None where both are the same.
-    pub fn forward(&self) -> Option<Lanes<N>> {
-        let [here, beyond] = self.direction_indices.as_ref()?;
-        Some(Lanes::from_fn(|i| {
-            let ratio = (self.beyond[i] / self.incident[i]) * (here[i] / beyond[i]);
-            ((ratio * ratio) * (ratio * ratio)) as f32
-        }))
-    }
-
-    /// Whether light that crosses the surface goes different ways in different lanes.
-    pub fn parts(&self) -> bool {
-        let [here, beyond] = self.refracting();
-        let same = |i: usize| here[i] == here[0] && beyond[i] == beyond[0];
-        !((1..N).all(same) || (self.together > 0.0 && self.is_one_way()))
-    }
-
-    /// Whether the outermost refracted rays lie within `together`. All lanes of a draw are asked, on this ray or not, so
-    /// that what becomes of a surface does not depend on what was absorbed before.
-    fn is_one_way(&self) -> bool {
-        let cos = self.wo.dot(self.normal).clamp(0.0, 1.0);
-        let [here, beyond] = self.refracting();
-        let ratio = |i: usize| here[i] / beyond[i];
-        let (least, most) = (0..N).map(ratio).fold((f64::INFINITY, 0.0_f64), |(l, m), x| (l.min(x), m.max(x)));
-        let [a, b] = [least, most].map(|eta| {
-            let sin = eta * (1.0 - cos * cos).sqrt();
-            [sin, (1.0 - sin * sin).max(0.0).sqrt()]
-        });
-        // sin(a - b), for rays that cross.
-        a[1] > 0.0 && b[1] > 0.0 && (b[0] * a[1] - a[0] * b[1]).abs() <= self.together
-    }
 }
 
 /// One way light came to the surface, and the lanes that came by it.

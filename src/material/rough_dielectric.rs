@@ -36,10 +36,9 @@ impl<'a, 'b, const N: usize> Meeting<'a, 'b, N> {
     fn new(interface: &'a RoughInterface, arrival: &'a Arrival<'b, N>) -> Self {
         let parts = parts(interface, arrival);
         let goes_on = if parts { arrival.draw.parting() } else { Lanes::ONE };
-        let refracting = arrival.refracting();
         let mut kinds: Vec<Kind<N>> = Vec::new();
         for lane in (0..N).filter(|&lane| arrival.present[lane] != 0.0) {
-            let indices @ [n1, n2] = refracting.map(|side| side[lane]);
+            let indices @ [n1, n2] = arrival.refracting(lane);
             if n1 == n2 {
                 continue;
             }
@@ -107,17 +106,18 @@ impl<'a, 'b, const N: usize> Meeting<'a, 'b, N> {
     /// What lanes of a kind do in the direction that was asked for last, each by its own indices, times a factor.
     fn flowing(&self, kind: &Kind<N>, factor: f64, crosses: bool) -> Lanes<N> {
         let Flow { value, facet, cos, .. } = kind.flow;
-        let Some(own) = self.arrival.own_fresnel(cos).filter(|_| value > 0.0) else {
+        let Some(own) = self.arrival.own_transmittance(cos).filter(|_| value > 0.0) else {
             return Lanes::from_fn(|_| (value * factor) as f32);
         };
         let [here, beyond] = kind.indices;
         let of_ray = Interface::new(here, beyond, cos);
-        let (of_ray, own) = if crosses { (of_ray.transmittance, &own[1]) } else { (of_ray.reflectance, &own[0]) };
+        // What crosses less is reflected.
+        let facet = if crosses { facet } else { -facet };
         Lanes::from_fn(|i| {
             // Radiance changes by the lane's own indices, and `value` is that of the ray's.
             let ratio = (self.arrival.incident[i] / self.arrival.beyond[i]) * (beyond / here);
             let square = if crosses { ratio * ratio } else { 1.0 };
-            ((value + (own[i] - of_ray) * facet) * square * factor).max(0.0) as f32
+            ((value + (own[i] - of_ray.transmittance) * facet) * square * factor).max(0.0) as f32
         })
     }
 
@@ -137,8 +137,10 @@ fn parts<const N: usize>(interface: &RoughInterface, arrival: &Arrival<N>) -> bo
     if !arrival.parts() {
         return false;
     }
-    let [here, beyond] = arrival.refracting();
-    let ratio = |i: usize| here[i] / beyond[i];
+    let ratio = |i: usize| {
+        let [here, beyond] = arrival.refracting(i);
+        here / beyond
+    };
     let counts = |&i: &usize| arrival.draw.shares(false)[i] != 0.0;
     let (least, most) =
         (0..N).filter(counts).map(ratio).fold((f64::INFINITY, 0.0_f64), |(l, m), x| (l.min(x), m.max(x)));
@@ -225,8 +227,11 @@ impl Dielectric<Table> {
 
     /// Between equal indices nothing happens at all.
     fn pass_equal_indices<const N: usize>(&self, arrival: &Arrival<N>, tint: Lanes<N>, branches: &mut Vec<Branch<N>>) {
-        let [here, beyond] = arrival.refracting();
-        let same = Lanes::from_fn(|i| if here[i] == beyond[i] { arrival.present[i] } else { 0.0 });
+        let is_same = |i: usize| {
+            let [here, beyond] = arrival.refracting(i);
+            here == beyond
+        };
+        let same = Lanes::from_fn(|i| if is_same(i) { arrival.present[i] } else { 0.0 });
         if same.is_zero() {
             return;
         }

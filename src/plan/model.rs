@@ -33,7 +33,7 @@ pub(super) fn model(scene: &Scene<Curve>) -> Model {
     let dispersion = dispersion(scene);
     let visible = dispersion.is_some_and(|d| d.seen_pixels.max(d.lit_pixels) >= SEEN_PIXELS);
     let asks_hero = scene.render.model == ModelText::Hero;
-    let together = dispersion.is_some() && !visible && !asks_hero;
+    let together = !visible && !asks_hero;
     let survey = Survey::new(scene, together);
     let hero = asks_hero || (scene.render.model == ModelText::Auto && visible);
     let filled = dispersion.is_some_and(|d| d.seen > FILLED);

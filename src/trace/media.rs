@@ -139,15 +139,14 @@ pub(super) fn index<const N: usize>(world: &World, draw: &Draw<N>, inside: Optio
     }
 }
 
-/// The indices by which rays are refracted between two media; none where they are the lanes' own.
-pub(super) fn direction_indices<const N: usize>(
-    world: &World,
-    draw: &Draw<N>,
-    sides: [Option<MaterialId>; 2],
-) -> Option<[[f64; N]; 2]> {
-    let direction = |side: Option<MaterialId>| medium(world, side?).index.direction();
-    if sides.iter().all(|&side| direction(side).is_none()) {
-        return None;
+/// The index by which all rays are refracted on each side of a surface; none where that is each lane's own.
+pub(super) fn direction_indices(world: &World, sides: [Option<MaterialId>; 2]) -> [Option<f64>; 2] {
+    let tables = sides.map(|side| side.map(|material| &medium(world, material).index));
+    if tables.iter().flatten().all(|table| table.direction().is_none()) {
+        return [None; 2];
     }
-    Some(sides.map(|side| direction(side).map_or_else(|| index(world, draw, side), |one| [one; N])))
+    tables.map(|table| match table {
+        Some(table) => table.direction().or_else(|| table.is_flat().then(|| table.bins()[0])),
+        None => Some(1.0),
+    })
 }

@@ -133,7 +133,7 @@ impl<const N: usize> Tracer<'_, N> {
             present: path.throughput.present(),
             incident: media::index(world, draw, here),
             beyond: media::index(world, draw, beyond),
-            direction_indices: media::direction_indices(world, draw, [here, beyond]),
+            direction_indices: media::direction_indices(world, [here, beyond]),
             together: world.method.together,
         };
         let diffuse = material.is_diffuse();

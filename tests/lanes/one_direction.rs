@@ -1,7 +1,7 @@
 //! Lanes that stay together share a direction; what a surface reflects and lets through is each lane's own.
 
 use abbe::film::Film;
-use abbe::material::{Arrival, Branch, Dielectric, Material, Roughness, shared_fresnel};
+use abbe::material::{Arrival, Branch, Dielectric, Interface, Material, Roughness, shared_transmittance};
 use abbe::math::{DVec2, DVec3};
 use abbe::plan::plan;
 use abbe::spectrum::{Basis, ColorSpace, Curve, CurveKind, Draw, Emission, MAX_LANES, Quantity, Table, data, visible};
@@ -49,7 +49,7 @@ fn met(material: &Material<Table>, arrival: &Arrival<MAX_LANES>) -> [Option<Bran
 }
 
 #[test]
-fn every_lane_of_every_glass_of_the_catalog_has_its_own_plate() {
+fn d16_every_lane_of_every_glass_of_the_catalog_has_its_own_plate() {
     let (mut worst, mut lanes) = (0.0_f64, 0_u64);
     for basis in bases() {
         let draw: Draws = basis.draw(0.37);
@@ -62,7 +62,7 @@ fn every_lane_of_every_glass_of_the_catalog_has_its_own_plate() {
             for degrees in (0..18).map(|i| f64::from(5 * i)) {
                 let (sin, cos) = libm::sincos(degrees.to_radians());
                 let (wo, normal, present) = (DVec3::new(sin, 0.0, cos), DVec3::Z, draw.start());
-                let (vacuum, glass_way) = ([1.0; MAX_LANES], [direction; MAX_LANES]);
+                let vacuum = [1.0; MAX_LANES];
                 let enters = Arrival {
                     wo,
                     normal,
@@ -71,7 +71,7 @@ fn every_lane_of_every_glass_of_the_catalog_has_its_own_plate() {
                     present,
                     incident: vacuum,
                     beyond: own,
-                    direction_indices: Some([vacuum, glass_way]),
+                    direction_indices: [Some(1.0), Some(direction)],
                     together: 0.0,
                 };
                 let [Some(r), Some(t)] = met(&material, &enters) else { panic!("{} at {degrees}", glass.key) };
@@ -79,7 +79,11 @@ fn every_lane_of_every_glass_of_the_catalog_has_its_own_plate() {
                 let [Some(inner), Some(out)] = met(&material, &leaves) else { panic!("{} at {degrees}", glass.key) };
                 assert!((out.wi + wo).length() < 1e-12, "{} at {degrees} degrees goes on to {}", glass.key, out.wi);
                 assert!((t.eta_scale * out.eta_scale - 1.0).abs() < 1e-14);
+                let Some(forward) = leaves.forward() else { panic!("{} at {degrees}", glass.key) };
                 for lane in (0..MAX_LANES).filter(|&lane| present[lane] != 0.0) {
+                    // A photon out of the glass brings what a path into it would find, solid angle for solid angle.
+                    let photon = f64::from(out.share[lane] * forward[lane]) / out.eta_scale;
+                    assert!((photon / (f64::from(t.share[lane]) / t.eta_scale) - 1.0).abs() < 1e-6);
                     let [r, t, inner, out] = [&r, &t, &inner, &out].map(|branch| f64::from(branch.share[lane]));
                     let through = t * out / (1.0 - inner * inner);
                     let expected = plate(own[lane], cos);
@@ -115,7 +119,7 @@ fn film(world: &World) -> Film {
 }
 
 #[test]
-fn plates_of_glass_are_rendered_as_bright_in_every_lane_as_they_are() {
+fn d16_plates_of_glass_are_rendered_as_bright_in_every_lane_as_they_are() {
     let keys: Vec<&str> = data::glasses().map(|glass| glass.key).step_by(41).collect();
     let mut worst = 0.0_f64;
     for (number, key) in keys.into_iter().enumerate() {
@@ -158,24 +162,24 @@ fn plates_of_glass_are_rendered_as_bright_in_every_lane_as_they_are() {
 
 /// Liquids and glasses within each other, met at any angle: what light finds one way it finds the other, and R + T = 1.
 #[test]
-fn lanes_of_one_direction_lose_nothing_between_any_two_media() {
+fn d16_lanes_of_one_direction_lose_nothing_between_any_two_media() {
     let indices = |name: &str| {
         let glass = data::glass(name).unwrap_or_else(|| panic!("no {name}"));
         let own: [f64; 16] = std::array::from_fn(|i| glass.index(390.0 + 20.0 * i as f64));
-        (own, [glass.n_d(); 16])
+        (own, glass.n_d())
     };
     let media = ["N-BK7", "N-SF66", "N-SF11", "N-FK51A", "N-LAK9"].map(indices);
     for (here, beyond) in media.iter().flat_map(|here| media.iter().map(move |beyond| (here, beyond))) {
         for step in 0..=2000 {
             let cos = f64::from(step) / 2000.0;
-            let [r, t] = shared_fresnel([&here.0, &beyond.0], [&here.1, &beyond.1], cos);
-            let k = here.1[0] * (1.0 - cos * cos).sqrt();
-            let back = (1.0 - (k / beyond.1[0]) * (k / beyond.1[0])).max(0.0).sqrt();
-            let other = shared_fresnel([&beyond.0, &here.0], [&beyond.1, &here.1], back)[1];
+            let t = shared_transmittance([&here.0, &beyond.0], [here.1, beyond.1], cos);
+            let k = here.1 * (1.0 - cos * cos).sqrt();
+            let back = (1.0 - (k / beyond.1) * (k / beyond.1)).max(0.0).sqrt();
+            let other = shared_transmittance([&beyond.0, &here.0], [beyond.1, here.1], back);
             for lane in 0..16 {
-                assert!((r[lane] + t[lane] - 1.0).abs() < 1e-14, "{} + {}", r[lane], t[lane]);
+                assert!((0.0..=1.0 + 1e-15).contains(&t[lane]), "{}", t[lane]);
                 // Where a medium ends at a grazing angle, the angle on the other side has lost digits.
-                let ends = [here.1[0], here.0[lane], beyond.1[0], beyond.0[lane]];
+                let ends = [here.1, here.0[lane], beyond.1, beyond.0[lane]];
                 let near_end = k > 0.999 * ends.into_iter().fold(f64::INFINITY, f64::min);
                 assert!(near_end || (t[lane] - other[lane]).abs() < 1e-9, "{} and {}", t[lane], other[lane]);
             }
@@ -183,10 +187,18 @@ fn lanes_of_one_direction_lose_nothing_between_any_two_media() {
     }
 }
 
-/// Balls and cubes of glass within each other under an even sky of 1, smooth and rough.
+/// A cube of glass within a ball of another under an even sky of 1, smooth and rough; lanes also part at the cube.
 #[test]
-fn glass_whose_lanes_stay_together_is_invisible_in_an_even_sky() {
-    for (roughness, tolerance) in [("", 3e-6), (", roughness = 0.05", 2e-3), (", roughness = 0.5", 5e-3)] {
+fn d16_glass_whose_lanes_stay_together_is_invisible_in_an_even_sky() {
+    const PARTS: &str = "{ rgb = [1.70, 1.72, 1.76] }";
+    const FLINT: &str = "\"N-SF66\"";
+    for (inner, roughness, tolerance) in [
+        (FLINT, "", 0.0),
+        (PARTS, "", 0.0),
+        (FLINT, ", roughness = 0.05", 2e-3),
+        (PARTS, ", roughness = 0.05", 2e-3),
+        (FLINT, ", roughness = 0.5", 5e-3),
+    ] {
         let text = view([0.2, 0.3, 5.0], [0.0; 3], 30.0, 8)
             + &format!("[render]\nsamples = {}\n", if roughness.is_empty() { 1 } else { 256 })
             + &environment(1.0)
@@ -197,20 +209,29 @@ fn glass_whose_lanes_stay_together_is_invisible_in_an_even_sky() {
             )
             + &body(
                 "inner",
-                &format!("dielectric = {{ index = \"N-SF66\", priority = 1{roughness} }}"),
+                &format!("dielectric = {{ index = {inner}, priority = 1{roughness} }}"),
                 &["cube = { center = [0.1, 0, 0], size = [0.8, 0.7, 0.9] }"],
             );
         let scene = scene(&text);
         let transport = if roughness.is_empty() { EVERY_BRANCH } else { SINGLE_PATH };
         for basis in [Basis::rgb(SPACE), Basis::bands(SPACE, 16, &[])] {
+            if inner == PARTS && basis.lanes() > 3 {
+                continue;
+            }
             let basis = basis.kept_together();
             let film = film(&World::new(&scene, Method { basis, ..method(&scene, transport) }));
             let count = film.pixels.len() as f64;
+            if roughness.is_empty() {
+                let worst = film.pixels.iter().flat_map(|p| p.rgb).map(|x| (x - 1.0).abs()).fold(0.0, f32::max);
+                println!("{inner}: an even sky is at most {worst:.1e} off");
+                assert!(worst < 1e-5, "{inner}: {worst}");
+                continue;
+            }
             for band in 0..3 {
                 let of = |pixel: &abbe::film::Pixel| f64::from(pixel.rgb[band]);
                 let mean = film.pixels.iter().map(of).sum::<f64>() / count;
                 let variance = film.pixels.iter().map(|p| (of(p) - mean) * (of(p) - mean)).sum::<f64>() / (count - 1.0);
-                let error = standard_errors(18) * (variance / count).sqrt();
+                let error = standard_errors(15) * (variance / count).sqrt();
                 assert!((mean - 1.0).abs() < tolerance + error, "{roughness}: {mean} +- {error} in band {band}");
             }
         }
@@ -269,7 +290,7 @@ fn difference(first: [f64; 3], second: [f64; 3], white: [f64; 3]) -> f64 {
 }
 
 #[test]
-fn a_ball_of_dense_flint_mirrors_daylight_in_its_color() {
+fn d16_a_ball_of_dense_flint_mirrors_daylight_in_its_color() {
     assert!((difference([0.1, 0.2, 0.3], [0.1, 0.2, 0.3], [0.95, 1.0, 1.09])).abs() < 1e-12);
     let (light, glass) = (Emission::new(&named(CurveKind::Illuminant, "D65"), SPACE), data::glass("N-SF66"));
     let (white, glass) = (light.xyz(), glass.unwrap_or_else(|| panic!("no N-SF66")));
@@ -282,7 +303,7 @@ fn a_ball_of_dense_flint_mirrors_daylight_in_its_color() {
         for (pixel, cos) in film.pixels.iter().zip(cosines).filter(|(_, cos)| *cos > 0.05) {
             let (mut sum, mut total) = ([0.0; 3], [0.0; 3]);
             for (nm, &power) in visible::wavelengths().zip(light.spectrum()) {
-                let r = shared_fresnel([&[1.0], &[glass.index(nm)]], [&[1.0], &[glass.index(nm)]], cos)[0][0];
+                let r = Interface::new(1.0, glass.index(nm), cos).reflectance;
                 for (c, cmf) in visible::color_matching(nm).into_iter().enumerate() {
                     sum[c] += r * power * cmf;
                     total[c] += power * cmf;

@@ -42,7 +42,7 @@ pub fn arrival(draw: &Draw<4>, wo: DVec3, index: f64) -> Arrival<'_, 4> {
         present: draw.start(),
         incident,
         beyond,
-        direction_indices: None,
+        direction_indices: [None; 2],
         together: 0.0,
     }
 }

@@ -83,7 +83,7 @@ def fresnel(quick):
     for name in ("water", "N-BK7", "N-SF11", "diamond"):
         yield normal(name)
     for name in ("N-BK7", "N-SF11", "diamond"):
-        for degrees in (0, 60, 80):
+        for degrees in (0, 30, 60):
             yield daylight(name, degrees, "R")
             yield daylight(name, degrees, "T")
 
@@ -109,7 +109,7 @@ def normal(name):
         "the index of the d line in every band",
         np.full(3, ((at_d - 1) / (at_d + 1)) ** 2),
         name,
-    )._replace(rounding=1e-4 * reflected / white)
+    )._replace(rounding=1e-5 * reflected / white)
 
 
 def daylight(name, degrees, kind):
@@ -146,7 +146,7 @@ def daylight(name, degrees, kind):
 
 
 # What 16 wavelengths leave of a smooth spectrum, measured: relative.
-BANDS_16 = 2e-4
+BANDS_16 = 4e-5
 
 
 def inside(quick):
