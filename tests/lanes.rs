@@ -11,6 +11,7 @@ mod lanes {
     mod direct_light;
     mod furnaces;
     mod nested_bodies;
+    mod one_direction;
     mod panes;
     mod parting;
     mod wavelengths;

@@ -1,6 +1,6 @@
 use serde::Deserialize;
 
-use super::{Arrival, Branch, Interface, Roughness, reflect};
+use super::{Arrival, Branch, Interface, Roughness, reflect, shared_transmittance};
 use crate::math::DVec3;
 use crate::spectrum::{Draw, Lanes, Quantity, Table};
 
@@ -68,7 +68,10 @@ impl Dielectric<Table> {
     pub(super) fn scatter<const N: usize>(&self, arrival: &Arrival<N>, u: [f64; 2], branches: &mut Vec<Branch<N>>) {
         match self.roughness.interface() {
             Some(interface) => self.scatter_rough(interface, arrival, u, branches),
-            None => self.scatter_smooth(arrival, branches),
+            None => match arrival.one_direction() {
+                Some(directions) => self.scatter_as_one(arrival, directions, branches),
+                None => self.scatter_smooth(arrival, branches),
+            },
         }
     }
 
@@ -76,8 +79,8 @@ impl Dielectric<Table> {
         self.evaluate_rough(self.roughness.interface()?, arrival, wi)
     }
 
-    /// One reflected branch with all lanes, and one refracted branch per distinct pair of indices: here lanes part, and
-    /// only those go on that are there for it.
+    /// One reflected branch with all lanes, and one refracted branch per distinct pair of indices that refract: here lanes
+    /// part, and only those go on that are there for it. Lanes that share a direction have their own Fresnel shares.
     fn scatter_smooth<const N: usize>(&self, arrival: &Arrival<N>, branches: &mut Vec<Branch<N>>) {
         let (tint, reflectance) = (arrival.read(&self.transmittance), arrival.read(&self.reflectance));
         let parts = arrival.parts();
@@ -87,40 +90,83 @@ impl Dielectric<Table> {
         let (mut reflected, mut polarization) = (Lanes::ZERO, 0.0);
         let mut last: Option<([f64; 2], Interface)> = None;
         let mut pair_of_branch = [[0.0; 2]; N];
+        let own = arrival.own_transmittance(cos);
         for lane in (0..N).filter(|&lane| arrival.present[lane] != 0.0) {
-            let pair @ [n1, n2] = [arrival.incident[lane], arrival.beyond[lane]];
+            let pair @ [here, beyond] = arrival.refracting(lane);
+            let [n1, n2] = [arrival.incident[lane], arrival.beyond[lane]];
             let interface = match last {
                 Some((of, interface)) if of == pair => interface,
-                _ => Interface::new(n1, n2, cos),
+                _ => Interface::new(here, beyond, cos),
+            };
+            let [reflects, lets_through] = match &own {
+                Some(own) => [1.0 - own[lane], own[lane]],
+                None => [interface.reflectance, interface.transmittance],
             };
             last = Some((pair, interface));
             let weight = arrival.present[lane];
             // Between equal indices nothing happens at all, even along the surface.
-            let same = n1 == n2;
+            let straight = here == beyond;
+            let same = straight && n1 == n2;
             if !same {
-                reflected.0[lane] = weight * reflectance[lane] * interface.reflectance as f32;
+                reflected.0[lane] = weight * reflectance[lane] * reflects as f32;
                 polarization = interface.polarization_reflected;
             }
-            let (crosses, transmittance) = (weight * crossing[lane], if same { 1.0 } else { interface.transmittance });
+            let (crosses, transmittance) = (weight * crossing[lane], if same { 1.0 } else { lets_through });
             if transmittance == 0.0 || crosses == 0.0 {
                 continue;
             }
             let known = branches[first..].iter().zip(pair_of_branch).position(|(_, of)| !parts || of == pair);
-            let eta_scale = (n1 / n2) * (n1 / n2);
             let branch = known.unwrap_or_else(|| {
-                let wi = if same { -arrival.wo } else { interface.refract(arrival.wo, arrival.normal) };
+                let eta_scale = (here / beyond) * (here / beyond);
+                let wi = if straight { -arrival.wo } else { interface.refract(arrival.wo, arrival.normal) };
                 let polarization = interface.polarization_refracted as f32;
                 pair_of_branch[branches.len() - first] = pair;
                 branches.push(Branch { wi, share: Lanes::ZERO, pdf: None, crosses: true, eta_scale, polarization });
                 branches.len() - first - 1
             });
-            branches[first + branch].share.0[lane] = crosses * (transmittance * eta_scale) as f32;
+            branches[first + branch].share.0[lane] = crosses * (transmittance * ((n1 / n2) * (n1 / n2))) as f32;
         }
         if !reflected.is_zero() {
             let wi = reflect(arrival.wo, arrival.normal);
             let polarization = polarization as f32;
             branches.push(Branch { wi, share: reflected, pdf: None, crosses: false, eta_scale: 1.0, polarization });
         }
+    }
+
+    /// One reflected and one refracted branch, in which each lane has its own shares.
+    fn scatter_as_one<const N: usize>(
+        &self,
+        arrival: &Arrival<N>,
+        [here, beyond]: [f64; 2],
+        branches: &mut Vec<Branch<N>>,
+    ) {
+        let (tint, reflectance) = (arrival.read(&self.transmittance), arrival.read(&self.reflectance));
+        let cos = arrival.wo.dot(arrival.normal);
+        let (n1, n2) = (&arrival.incident, &arrival.beyond);
+        let mut push = |wi, share: Lanes<N>, crosses, eta_scale, polarization: f64| {
+            let (share, polarization) = (share * arrival.present, polarization as f32);
+            if !share.is_zero() {
+                branches.push(Branch { wi, share, pdf: None, crosses, eta_scale, polarization });
+            }
+        };
+        // Between equal indices nothing happens at all, even along the surface.
+        let straight = here == beyond;
+        if straight && n1 == n2 {
+            push(-arrival.wo, tint, true, 1.0, 0.0);
+            return;
+        }
+        let interface = Interface::new(here, beyond, cos);
+        let crossing = shared_transmittance([n1, n2], [here, beyond], cos);
+        if interface.transmittance > 0.0 {
+            let wi = if straight { -arrival.wo } else { interface.refract(arrival.wo, arrival.normal) };
+            let eta_scale = (here / beyond) * (here / beyond);
+            let square = |i: usize| (n1[i] / n2[i]) * (n1[i] / n2[i]);
+            let share = tint * Lanes::from_fn(|i| (crossing[i] * square(i)) as f32);
+            push(wi, share, true, eta_scale, interface.polarization_refracted);
+        }
+        let share = reflectance * Lanes::from_fn(|i| (1.0 - crossing[i]) as f32);
+        let wi = reflect(arrival.wo, arrival.normal);
+        push(wi, share, false, 1.0, interface.polarization_reflected);
     }
 
     fn is_clear(&self) -> bool {

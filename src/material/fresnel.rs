@@ -68,6 +68,37 @@ impl Interface {
     }
 }
 
+/// What crosses a smooth boundary of lanes that go one way though their indices differ; the rest is reflected.
+///
+/// `own` are the indices of each lane on both sides, `direction` those by which their ray is refracted, which meets the
+/// boundary at an angle with cosine `cos` in 0..1. Flat surfaces conserve k = n sin i of the ray, so a lane meets each of
+/// them at the angle whose sine is k over its own index: plates have the shares that they would have if the lane went
+/// alone. With q = n cos of the lane on each side and p = q1 q2, T = 2 p ((k^2 + p)^2 + (n1 n2)^2) / ((q1 + q2) (k^2 + p))^2
+/// (Fresnel 1823, with Snell's law put in), in which nothing cancels.
+///
+/// Nothing crosses where the ray is reflected totally, nor where k is no less than either index of the lane: what has no
+/// way on is reflected. The condition is the same from both sides, so that light takes the same ways in and out.
+pub fn shared_transmittance<const N: usize>(own: [&[f64; N]; 2], direction: [f64; 2], cos: f64) -> [f64; N] {
+    let ([d1, d2], c) = (direction, cos.clamp(0.0, 1.0));
+    let (k_squared, along) = (d1 * d1 * (1.0 - c * c), d1 * d1 * c * c);
+    let mut crossing = [0.0; N];
+    if (d2 - d1) * (d2 + d1) + along <= 0.0 {
+        return crossing;
+    }
+    for lane in 0..N {
+        let [n1, n2] = own.map(|side| side[lane]);
+        let q1_squared = (n1 - d1) * (n1 + d1) + along;
+        let q2_squared = q1_squared + (n2 - n1) * (n2 + n1);
+        let (q1, q2) = (q1_squared.sqrt(), q2_squared.sqrt());
+        let (product, both) = (q1 * q2, n1 * n2);
+        let (sum, turned) = (q1 + q2, k_squared + product);
+        let amplitude = sum * turned;
+        let t = 2.0 * product * (turned * turned + both * both) / (amplitude * amplitude);
+        crossing[lane] = if (q1_squared > 0.0) & (q2_squared > 0.0) { t } else { 0.0 };
+    }
+    crossing
+}
+
 /// Share of diffuse light that crosses a smooth boundary to a relative index m.
 ///
 /// 1 - R for the closed form of R by Walsh 1926, in Duntley 1942, equation 49. It cancels near 1, where R is

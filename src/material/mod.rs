@@ -3,6 +3,7 @@
 //! `Material<S>` is written once and read twice: with `S = Curve` it is the scene file's vocabulary, with `S = Table` what
 //! the tracer reads; [`Material::map`] is the bridge. A material answers an [`Arrival`] with [`Branch`]es.
 
+mod arrival;
 mod by_cosine;
 mod coat;
 mod conductor;
@@ -28,7 +29,7 @@ pub use dielectric::Dielectric;
 pub use diffuse::Diffuse;
 pub use emissive::Emissive;
 pub use facets::Facets;
-pub use fresnel::{Interface, conductor_reflectance, diffuse_transmittance};
+pub use fresnel::{Interface, conductor_reflectance, diffuse_transmittance, shared_transmittance};
 pub use mask::Mask;
 pub use mirror::{Mirror, reflect};
 pub use mix::Mix;
@@ -85,35 +86,10 @@ pub struct Arrival<'a, const N: usize> {
     pub incident: [f64; N],
     /// Refractive index beyond the surface, per lane; the same as `incident` where no medium begins or ends.
     pub beyond: [f64; N],
+    /// The index by which all rays are refracted on the viewer's side and beyond; none where that is each lane's own.
+    pub direction_indices: [Option<f64>; 2],
     /// Lanes whose refracted rays lie within this angle of each other, in radians, go on as one.
     pub together: f64,
-}
-
-impl<const N: usize> Arrival<'_, N> {
-    /// A table of the material, read for this ray.
-    pub fn read(&self, table: &Table) -> Lanes<N> {
-        self.draw.read_at(table, self.uv)
-    }
-
-    /// Whether light that crosses the surface goes different ways in different lanes.
-    pub fn parts(&self) -> bool {
-        let same = |i: usize| self.incident[i] == self.incident[0] && self.beyond[i] == self.beyond[0];
-        !((1..N).all(same) || (self.together > 0.0 && self.is_one_way()))
-    }
-
-    /// Whether the outermost refracted rays lie within `together`. All lanes of a draw are asked, on this ray or not, so
-    /// that what becomes of a surface does not depend on what was absorbed before.
-    fn is_one_way(&self) -> bool {
-        let cos = self.wo.dot(self.normal).clamp(0.0, 1.0);
-        let ratio = |i: usize| self.incident[i] / self.beyond[i];
-        let (least, most) = (0..N).map(ratio).fold((f64::INFINITY, 0.0_f64), |(l, m), x| (l.min(x), m.max(x)));
-        let [a, b] = [least, most].map(|eta| {
-            let sin = eta * (1.0 - cos * cos).sqrt();
-            [sin, (1.0 - sin * sin).max(0.0).sqrt()]
-        });
-        // sin(a - b), for rays that cross.
-        a[1] > 0.0 && b[1] > 0.0 && (b[0] * a[1] - a[0] * b[1]).abs() <= self.together
-    }
 }
 
 /// One way light came to the surface, and the lanes that came by it.
@@ -127,7 +103,7 @@ pub struct Branch<const N: usize> {
     pub pdf: Option<f64>,
     /// Whether the light came from beyond the surface.
     pub crosses: bool,
-    /// The part of `share` that only converts radiance between media, (n_incident / n_beyond)^2.
+    /// The part of `share` that only converts radiance between media, (n_incident / n_beyond)^2 of the ray's indices.
     pub eta_scale: f64,
     /// Degree of polarization that this way would give to unpolarized light, (s - p) / (s + p); 0 where none is modelled.
     pub polarization: f32,
@@ -192,6 +168,16 @@ impl<S> Material<S> {
             Self::Plastic(_) => "plastic",
             Self::Mix(_) => "mix",
             Self::Mask(_) => "mask",
+        }
+    }
+
+    /// The index of the clear surface that light is reflected at or crosses, where it has one.
+    pub fn clear_index(&self) -> Option<&S> {
+        match self {
+            Self::Dielectric(dielectric) => Some(&dielectric.index),
+            Self::Thin(thin) => Some(&thin.index),
+            Self::Plastic(plastic) => Some(&plastic.index),
+            _ => None,
         }
     }
 

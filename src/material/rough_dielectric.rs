@@ -1,7 +1,7 @@
 //! A rough clear body, lane by lane.
 
 use super::conductor::above;
-use super::{Arrival, Branch, Dielectric, Facet, Flow, RoughInterface, Sides, Way};
+use super::{Arrival, Branch, Dielectric, Facet, Flow, Interface, RoughInterface, Sides, Way};
 use crate::math::{DVec3, Frame, unit};
 use crate::spectrum::{Lanes, Table};
 
@@ -9,7 +9,8 @@ use crate::spectrum::{Lanes, Table};
 /// lobe is as wide to both sides. Together or apart, each lane gets its own light; only the noise differs.
 const WIDTHS: f64 = 2.0;
 
-/// A rough surface met by a ray: each lane's boundary, once for all lanes of the same indices.
+/// A rough surface met by a ray: each lane's boundary, once for all lanes of the same indices that refract. Lanes of one
+/// direction share the facets and what these block, and each has what they reflect and let through by its own indices.
 struct Meeting<'a, 'b, const N: usize> {
     arrival: &'a Arrival<'b, N>,
     frame: Frame,
@@ -19,7 +20,7 @@ struct Meeting<'a, 'b, const N: usize> {
     parts: bool,
 }
 
-/// Lanes between the same two indices.
+/// Lanes that are refracted between the same two indices.
 struct Kind<'a, const N: usize> {
     indices: [f64; 2],
     sides: Sides<'a>,
@@ -37,7 +38,7 @@ impl<'a, 'b, const N: usize> Meeting<'a, 'b, N> {
         let goes_on = if parts { arrival.draw.parting() } else { Lanes::ONE };
         let mut kinds: Vec<Kind<N>> = Vec::new();
         for lane in (0..N).filter(|&lane| arrival.present[lane] != 0.0) {
-            let indices @ [n1, n2] = [arrival.incident[lane], arrival.beyond[lane]];
+            let indices @ [n1, n2] = arrival.refracting(lane);
             if n1 == n2 {
                 continue;
             }
@@ -90,13 +91,31 @@ impl<'a, 'b, const N: usize> Meeting<'a, 'b, N> {
 
     /// What the lanes do that were asked last, the BSDF times the cosine, times a factor.
     fn reflected(&self, factor: f64) -> Lanes<N> {
-        self.kinds.iter().fold(Lanes::ZERO, |sum, kind| sum + kind.present * (kind.flow.value * factor) as f32)
+        self.kinds.iter().fold(Lanes::ZERO, |sum, kind| sum + kind.present * self.flowing(kind, factor, false))
     }
 
     /// The same beyond the surface.
     fn crossed(&self, factor: f64) -> Lanes<N> {
         let crossing = self.kinds.iter().filter(|kind| kind.crossing > 0.0);
-        crossing.fold(Lanes::ZERO, |sum, kind| sum + self.across(kind) * (kind.flow.value * factor) as f32)
+        crossing.fold(Lanes::ZERO, |sum, kind| sum + self.across(kind) * self.flowing(kind, factor, true))
+    }
+
+    /// What lanes of a kind do in the direction that was asked for last, each by its own indices, times a factor.
+    fn flowing(&self, kind: &Kind<N>, factor: f64, crosses: bool) -> Lanes<N> {
+        let Flow { value, facet, cos, .. } = kind.flow;
+        let Some(own) = self.arrival.own_transmittance(cos).filter(|_| value > 0.0) else {
+            return Lanes::from_fn(|_| (value * factor) as f32);
+        };
+        let [here, beyond] = kind.indices;
+        let of_ray = Interface::new(here, beyond, cos);
+        // What crosses less is reflected.
+        let facet = if crosses { facet } else { -facet };
+        Lanes::from_fn(|i| {
+            // Radiance changes by the lane's own indices, and `value` is that of the ray's.
+            let ratio = (self.arrival.incident[i] / self.arrival.beyond[i]) * (beyond / here);
+            let square = if crosses { ratio * ratio } else { 1.0 };
+            ((value + (own[i] - of_ray.transmittance) * facet) * square * factor).max(0.0) as f32
+        })
     }
 
     /// The direction in the world; none where rounding has put it on the wrong side.
@@ -115,10 +134,10 @@ fn facet_of(number: usize, drawn: Option<(usize, Facet)>) -> Option<Facet> {
 fn mean(flows: impl Iterator<Item = (f64, Flow)>) -> Flow {
     let (mut sum, mut lanes) = (Flow::default(), 0.0);
     for (count, flow) in flows {
-        sum = Flow { value: sum.value + count * flow.value, pdf: sum.pdf + count * flow.pdf };
+        (sum.value, sum.pdf) = (sum.value + count * flow.value, sum.pdf + count * flow.pdf);
         lanes += count;
     }
-    if lanes > 0.0 { Flow { value: sum.value / lanes, pdf: sum.pdf / lanes } } else { sum }
+    if lanes > 0.0 { Flow { value: sum.value / lanes, pdf: sum.pdf / lanes, ..sum } } else { sum }
 }
 
 /// The change of radiance between two media.
@@ -135,7 +154,10 @@ fn parts<const N: usize>(interface: &RoughInterface, arrival: &Arrival<N>) -> bo
     if !arrival.parts() {
         return false;
     }
-    let ratio = |i: usize| arrival.incident[i] / arrival.beyond[i];
+    let ratio = |i: usize| {
+        let [here, beyond] = arrival.refracting(i);
+        here / beyond
+    };
     let counts = |&i: &usize| arrival.draw.shares(false)[i] != 0.0;
     let (least, most) =
         (0..N).filter(counts).map(ratio).fold((f64::INFINITY, 0.0_f64), |(l, m), x| (l.min(x), m.max(x)));
@@ -221,7 +243,11 @@ impl Dielectric<Table> {
 
     /// Between equal indices nothing happens at all.
     fn pass_equal_indices<const N: usize>(&self, arrival: &Arrival<N>, tint: Lanes<N>, branches: &mut Vec<Branch<N>>) {
-        let same = Lanes::from_fn(|i| if arrival.incident[i] == arrival.beyond[i] { arrival.present[i] } else { 0.0 });
+        let is_same = |i: usize| {
+            let [here, beyond] = arrival.refracting(i);
+            here == beyond
+        };
+        let same = Lanes::from_fn(|i| if is_same(i) { arrival.present[i] } else { 0.0 });
         if same.is_zero() {
             return;
         }

@@ -173,6 +173,10 @@ pub struct Flow {
     pub value: f64,
     /// Density per steradian.
     pub pdf: f64,
+    /// What facets would add to `value` that reflect, or let through, all light.
+    pub facet: f64,
+    /// Cosine of the angle at which light meets them.
+    pub cos: f64,
 }
 
 /// What a visible facet does with light.
@@ -183,6 +187,8 @@ pub struct Facet {
     ways: [DVec3; 2],
     /// The shares of the light that leave by these.
     once: [f64; 2],
+    /// The same if it reflected, or let through, all light.
+    all: [f64; 2],
     /// The share that meets a second facet.
     again: f64,
     /// Cosines of the angles at which light meets it and goes on beyond it.
@@ -203,6 +209,7 @@ impl Facet {
             h,
             ways: [above, beyond],
             once: [reflected * left, crossing * passed],
+            all: [left, passed],
             again: reflected * blocked + crossing * lost,
             cos: [wo.dot(h), interface.cos_beyond],
         }
@@ -255,9 +262,14 @@ impl Sides<'_> {
         let [blocked, lobe] = self.near.blocked_and_density(wi.z);
         let lobes = (1.0 - self.crossing[0]) * again * blocked / self.near.mean_blocked() * wi.z / PI;
         let facet = facet.or_else(|| Some(self.facet([wo, (wo + wi).try_normalize()?], Some(wi))));
-        let Some(facet) = facet else { return Flow { value: lobes, pdf: again * lobe } };
+        let Some(facet) = facet else { return Flow { value: lobes, pdf: again * lobe, ..Flow::default() } };
         let pdf = self.facets.pdf(wo, facet.h);
-        Flow { value: pdf * facet.once[0] + lobes, pdf: pdf * (facet.once[0] + facet.once[1]) + again * lobe }
+        Flow {
+            value: pdf * facet.once[0] + lobes,
+            pdf: pdf * (facet.once[0] + facet.once[1]) + again * lobe,
+            facet: pdf * facet.all[0],
+            cos: facet.cos[0],
+        }
     }
 
     /// What crosses from `wi`, beyond the surface, to `wo`: radiance, which changes by (n1 / n2)^2. The facet is found where
@@ -272,12 +284,13 @@ impl Sides<'_> {
             let met = h.z > 0.0 && wo.dot(h) > 0.0 && wi.dot(h) < 0.0;
             met.then(|| self.facet([wo, h], Some(wi)))
         });
-        let (mut once, mut pdf) = (0.0, 0.0);
+        let (mut once, mut pdf, mut all, mut cos) = (0.0, 0.0, 0.0, 0.0);
         if let Some(facet) = facet.filter(|facet| facet.cos[1] > 0.0) {
             let density = self.facets.refraction_pdf(wo, facet.h, self.indices, facet.cos);
             (once, pdf) = (density * facet.once[1], density * (facet.once[0] + facet.once[1]));
+            (all, cos) = (density * facet.all[1], facet.cos[0]);
         }
         let square = (n1 / n2) * (n1 / n2);
-        Flow { value: (once + lobes) * square, pdf: pdf + again * lobe }
+        Flow { value: (once + lobes) * square, pdf: pdf + again * lobe, facet: all * square, cos }
     }
 }

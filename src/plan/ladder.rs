@@ -26,14 +26,17 @@ const MOST: [usize; 2] = [20, 6];
 
 /// The largest relative error of a color that a basis makes in a scene, over its lights and over all pairs of surfaces.
 pub(super) fn error(survey: &Survey, basis: &Basis) -> f64 {
+    missed(survey, basis, &survey.scattering(MOST[0]), &survey.smooth(MOST[1]))
+}
+
+/// The same over paths of chosen tints.
+fn missed(survey: &Survey, basis: &Basis, scattering: &[&Tint], smooth: &[&Tint]) -> f64 {
     let draw = Draw::<MAX_LANES>::fixed(basis.fixed_lanes());
-    let scattering = survey.scattering(MOST[0]);
-    let smooth = survey.smooth(MOST[1]);
     let read = |tints: &[&Tint]| tints.iter().map(|tint| tint.on(basis)).collect::<Vec<_>>();
-    let in_lanes = paths(&read(&scattering), &read(&smooth));
+    let in_lanes = paths(&read(scattering), &read(smooth));
     let mut worst: f64 = 0.0;
     for (curve, light) in &survey.lights {
-        let exact = exact_colors(light, &scattering, &smooth, basis);
+        let exact = exact_colors(light, scattering, smooth, basis);
         let (table, response) = (basis.tabulate(Quantity::Emission, curve), basis.response(curve));
         let emission = draw.read(&table);
         for (true_color, lanes) in exact.iter().zip(&in_lanes) {
@@ -97,8 +100,11 @@ pub(super) fn ladder(survey: &Survey, heroes: usize) -> Vec<Rung> {
     let rung = |basis: Basis, safety: f64| Rung { error: error(survey, &basis), basis, safety };
     let mut rungs = Vec::new();
     if survey.is_plain() {
-        rungs.push(Rung { basis: Basis::rgb(space), error: 0.0, safety: 1.0 });
-        if heroes == 0 {
+        // Colors of three numbers are what they are; only what glass reflects is measured.
+        let basis = Basis::rgb(space);
+        let error = missed(survey, &basis, &[], &survey.surfaces(MOST[1]));
+        rungs.push(Rung { basis, error, safety: PREFILTERED_SAFETY });
+        if heroes == 0 && error == 0.0 {
             return rungs;
         }
     } else if let Some(light) = survey.common_light() {

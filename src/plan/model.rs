@@ -30,10 +30,11 @@ pub(super) struct Model {
 
 /// The least model that a scene needs, or the one it asks for.
 pub(super) fn model(scene: &Scene<Curve>) -> Model {
-    let survey = Survey::new(scene);
     let dispersion = dispersion(scene);
     let visible = dispersion.is_some_and(|d| d.seen_pixels.max(d.lit_pixels) >= SEEN_PIXELS);
     let asks_hero = scene.render.model == ModelText::Hero;
+    let together = !visible && !asks_hero;
+    let survey = Survey::new(scene, together);
     let hero = asks_hero || (scene.render.model == ModelText::Auto && visible);
     let filled = dispersion.is_some_and(|d| d.seen > FILLED);
     let [bands, heroes] = HERO[usize::from(filled)];
@@ -41,6 +42,7 @@ pub(super) fn model(scene: &Scene<Curve>) -> Model {
     let tolerance = SHARE * scene.render.error.unwrap_or(ERROR);
     let chosen = rungs.iter().position(|rung| rung.bound() <= tolerance).unwrap_or(rungs.len() - 1);
 
+    let is_exact = survey.is_plain() && rungs[0].error == 0.0;
     let with_heroes = |bands| bands_beside(&survey, bands, heroes).with_heroes(heroes, &survey.emissions());
     let (basis, why) = match scene.render.model {
         _ if hero && asks_hero => (with_heroes(bands), "the scene asks for it".to_owned()),
@@ -50,17 +52,16 @@ pub(super) fn model(scene: &Scene<Curve>) -> Model {
         }
         ModelText::Rgb => (three_bands(&survey), "the scene asks for it".to_owned()),
         ModelText::Bands(count) => (bands_beside(&survey, count as usize, 0), "the scene asks for it".to_owned()),
-        _ => (rungs[chosen].basis.clone(), least(&rungs, chosen, tolerance, survey.is_plain())),
+        _ => (rungs[chosen].basis.clone(), least(&rungs, chosen, tolerance, is_exact)),
     };
     let next = if hero { rungs.get(chosen) } else { rungs.get(chosen + 1) }.map(|rung| rung.basis.clone());
     let next = next.filter(|_| hero || !survey.is_plain());
     let mut because = vec![format!("model {}: {} lanes; {why}", basis.name(), basis.lanes())];
-    if !survey.is_plain() || basis.fixed_lanes() > 3 {
+    if !is_exact || basis.fixed_lanes() > 3 {
         because.push(missed(&rungs, &basis, &survey, tolerance));
     }
     because.extend(lines_without_lane(&survey, &basis));
     because.extend(dispersion.map(|d| spoken(&d, visible, hero)));
-    let together = dispersion.is_some() && !visible && !asks_hero;
     let basis = if together { basis.kept_together() } else { basis };
     because.extend(desaturated(scene, &basis));
     because.extend(materials(scene, &basis));
@@ -186,12 +187,14 @@ fn materials(scene: &Scene<Curve>, basis: &Basis) -> Vec<String> {
                 let table = basis.tabulate(Quantity::Index, &glass.index);
                 let (low, high) = table.range();
                 let source = provenance(&glass.index).map_or(String::new(), |source| format!(" ({source})"));
-                lines.push(match table.is_flat() {
-                    true => {
-                        format!("material {}: index {low:.4} in every lane{source}, so lanes stay together", named.name)
-                    }
-                    false => format!("material {}: index {low:.4} to {high:.4}{source}, so lanes part", named.name),
-                });
+                let index = match (table.is_flat(), table.direction()) {
+                    (true, _) => format!("index {low:.4} in every lane{source}, so lanes stay together"),
+                    (_, Some(one)) => format!(
+                        "index {low:.4} to {high:.4}{source}; all lanes are refracted by {one:.4}, so lanes stay together"
+                    ),
+                    _ => format!("index {low:.4} to {high:.4}{source}, so lanes part"),
+                };
+                lines.push(format!("material {}: {index}", named.name));
             }
             Material::Conductor(metal) => {
                 lines

@@ -29,10 +29,13 @@ pub(super) enum Tint<'a> {
     Metal(&'a Conductor<Curve>),
     /// Light goes a distance through an absorbing body.
     Depth(&'a Curve, f64),
+    /// Light meets a clear surface of a measured index at right angles, and is reflected or crosses it.
+    Surface { index: &'a Curve, crosses: bool, together: bool },
 }
 
 impl<'a> Survey<'a> {
-    pub(super) fn new(scene: &'a Scene<Curve>) -> Self {
+    /// `together`: all lanes are refracted by one index.
+    pub(super) fn new(scene: &'a Scene<Curve>, together: bool) -> Self {
         let space = scene.film.color_space;
         let lights = different(scene.lights.iter().map(|light| light.emission()), space);
         let mut tints = Vec::new();
@@ -40,6 +43,12 @@ impl<'a> Survey<'a> {
             |quantity, curve: &'a Curve| curve.shades().into_iter().map(move |shade| Tint::Filter(quantity, shade));
         for (id, named) in scene.materials.iter().enumerate() {
             for material in named.material.with_parts() {
+                let index = material.clear_index().filter(|index| index.is_measured());
+                tints.extend(
+                    index
+                        .into_iter()
+                        .flat_map(|index| [false, true].map(|crosses| Tint::Surface { index, crosses, together })),
+                );
                 match material {
                     Material::Diffuse(diffuse) => {
                         tints.extend(diffuse.reflectance.shades().into_iter().map(Tint::Diffuse));
@@ -110,6 +119,11 @@ impl<'a> Survey<'a> {
         self.farthest_from_gray(most, |tint| !tint.is_scattering() && !tint.is_flat())
     }
 
+    /// The clear surfaces alone.
+    pub(super) fn surfaces(&self, most: usize) -> Vec<&Tint<'a>> {
+        self.farthest_from_gray(most, |tint| matches!(tint, Tint::Surface { .. }))
+    }
+
     fn farthest_from_gray(&self, most: usize, which: impl Fn(&Tint) -> bool) -> Vec<&Tint<'a>> {
         let mut chosen: Vec<(f64, &Tint)> = self
             .tints
@@ -135,12 +149,14 @@ fn thickness(scene: &Scene<Curve>, material: u32) -> f64 {
 }
 
 impl Tint<'_> {
+    /// The spectra that say how lanes must be carried: what an index makes of white is nearly white.
     fn curves(&self) -> Vec<&Curve> {
         match self {
             Self::Diffuse(curve) | Self::Filter(_, curve) => vec![curve],
             Self::Depth(curve, _) => vec![curve],
             Self::Metal(metal) => vec![&metal.n, &metal.k],
             Self::Coated(_, reflectance) => vec![reflectance],
+            Self::Surface { .. } => Vec::new(),
         }
     }
 
@@ -149,7 +165,8 @@ impl Tint<'_> {
     }
 
     fn is_flat(&self) -> bool {
-        self.curves().iter().all(|curve| matches!(curve.kind, CurveKind::Number(_)))
+        !matches!(self, Self::Surface { .. })
+            && self.curves().iter().all(|curve| matches!(curve.kind, CurveKind::Number(_)))
     }
 
     /// What is left of the light at wavelengths in nm.
@@ -166,6 +183,10 @@ impl Tint<'_> {
 
     /// What is left of the light in the lanes of a basis.
     pub(super) fn on(&self, basis: &Basis) -> Vec<f64> {
+        let basis = match self {
+            Self::Surface { together: true, .. } => Cow::Owned(basis.clone().kept_together()),
+            _ => Cow::Borrowed(basis),
+        };
         self.combine(|quantity, curve| basis.tabulate(quantity, curve).bins().to_vec())
     }
 
@@ -194,6 +215,10 @@ impl Tint<'_> {
             }
             Self::Depth(curve, depth) => {
                 read(Quantity::Absorption, curve).into_iter().map(|a| libm::exp(-a * depth)).collect()
+            }
+            Self::Surface { index, crosses, .. } => {
+                let reflected = read(Quantity::Index, index).into_iter().map(|n| normal_reflectance(n, 0.0));
+                reflected.map(|r| if *crosses { 1.0 - r } else { r }).collect()
             }
         }
     }

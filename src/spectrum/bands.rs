@@ -4,7 +4,7 @@ use super::color::{ColorSpace, apply};
 use super::visible::{self, color_matching};
 use super::{Curve, CurveKind, Emission, Quantity};
 
-/// The Rec.2020 color that a light gives to each wavelength; each channel sums to 1.
+/// The color that a light gives to each wavelength in some primaries; each channel sums to 1.
 ///
 /// Ward & Eydelberg-Vileshin 2002, *Picture Perfect RGB Rendering Using Spectral Prefiltering and Sharp Color Primaries*.
 #[derive(Clone, Debug, PartialEq)]
@@ -14,8 +14,8 @@ pub(super) struct Bands {
 }
 
 impl Bands {
-    pub(super) fn new(light: &Emission) -> Self {
-        let to_bands = ColorSpace::Rec2020.of_xyz();
+    pub(super) fn new(primaries: ColorSpace, light: &Emission) -> Self {
+        let to_bands = primaries.of_xyz();
         let smooth = visible::wavelengths().zip(light.spectrum()).map(|(nm, &power)| (nm, power));
         let lines = light.lines().iter().map(|&[nm, power]| (nm, power));
         let mut parts: Vec<_> = smooth
@@ -65,6 +65,17 @@ impl Bands {
             }
             _ => self.mean(value).map(|x| x.max(0.0)),
         }
+    }
+}
+
+impl Bands {
+    /// The index of each band that reflects at normal incidence as the light shows it: ((n - 1) / (n + 1))^2 is the mean
+    /// over the band.
+    pub(super) fn index(&self, value: &dyn Fn(f64) -> f64) -> [f64; 3] {
+        self.mean(&|nm| normal_reflectance(value(nm), 0.0)).map(|reflectance| {
+            let amplitude = reflectance.clamp(0.0, 0.9999).sqrt();
+            (1.0 + amplitude) / (1.0 - amplitude)
+        })
     }
 }
 

@@ -27,8 +27,8 @@ pub struct Basis {
 /// What the fixed lanes are.
 #[derive(Clone, Debug, PartialEq)]
 enum LaneKind {
-    /// Linear Rec.709.
-    Rgb,
+    /// Linear Rec.709, and what the film's white shows in it.
+    Rgb(Arc<Bands>),
     /// Linear Rec.2020 under one light.
     Prefiltered(Arc<Bands>),
     /// Wavelengths: interpolated between the first ones, each with its function; ideal lines by the others.
@@ -37,18 +37,21 @@ enum LaneKind {
 
 /// Where the bands of the `rgb` basis read an index, in nm: the hydrogen C, mercury e and hydrogen F lines.
 pub const BAND_WAVELENGTHS_NM: [f64; 3] = [656.27, 546.07, 486.13];
-/// Where an index is read if lanes are to stay together, in nm: the helium d line.
-const ONE_WAVELENGTH_NM: f64 = 587.5618;
+/// The wavelength by whose index lanes are refracted that stay together, in nm: the helium d line.
+const DIRECTION_NM: f64 = 587.5618;
 
 impl Basis {
     /// Three bands: red, green and blue, linear Rec.709.
     pub fn rgb(space: ColorSpace) -> Self {
-        Self::new(space, LaneKind::Rgb, BAND_WAVELENGTHS_NM.into())
+        let white: Curve = CurveKind::Illuminant(space.white_illuminant().into()).into();
+        let bands = Bands::new(ColorSpace::Rec709, &Emission::new(&white, space));
+        Self::new(space, LaneKind::Rgb(Arc::new(bands)), BAND_WAVELENGTHS_NM.into())
     }
 
     /// Three bands: red, green and blue of Rec.2020, in which every measured spectrum has the color it has under one light.
     pub fn prefiltered(space: ColorSpace, light: &Emission) -> Self {
-        Self::new(space, LaneKind::Prefiltered(Arc::new(Bands::new(light))), BAND_WAVELENGTHS_NM.into())
+        let bands = Bands::new(ColorSpace::Rec2020, light);
+        Self::new(space, LaneKind::Prefiltered(Arc::new(bands)), BAND_WAVELENGTHS_NM.into())
     }
 
     /// As many wavelengths in equal steps over the part of the spectrum that measured best for their number, and a lane of
@@ -103,7 +106,8 @@ impl Basis {
         Self { heroes, collapses: true, ..Self::wavelengths(space, vec![550.0], &[]) }
     }
 
-    /// The same lanes, read at one wavelength by every index, but for those that are written as `rgb`.
+    /// The same lanes, refracted by every index as by that of the d line, but for those that are written as `rgb`. What is
+    /// reflected and let through is each lane's own; of three bands, as the mean over the band is at normal incidence.
     pub fn kept_together(self) -> Self {
         Self { keeps_together: true, ..self }
     }
@@ -117,7 +121,7 @@ impl Basis {
     pub fn name(&self) -> String {
         let lanes = self.wavelengths_nm.len();
         match (&self.lanes, &self.heroes) {
-            (LaneKind::Rgb, _) => "rgb".into(),
+            (LaneKind::Rgb(_), _) => "rgb".into(),
             (LaneKind::Prefiltered(_), _) => "rgb, Rec.2020 prefiltered by the light".into(),
             (LaneKind::Wavelengths(_), None) => format!("bands {lanes}"),
             (LaneKind::Wavelengths(_), Some((heroes, _))) if self.collapses => {
@@ -184,17 +188,11 @@ impl Basis {
         if quantity == Quantity::Emission {
             return self.emission(curve);
         }
-        let reader = match quantity {
-            Quantity::Index if self.keeps_together && !matches!(curve.kind, CurveKind::Rgb(_)) => {
-                let index = curve.reader(quantity, &self.upsampler)(ONE_WAVELENGTH_NM);
-                Box::new(move |_| index)
-            }
-            _ => curve.reader(quantity, &self.upsampler),
-        };
+        let reader = curve.reader(quantity, &self.upsampler);
         let read = |nm: &f64| reader(*nm);
-        match (&self.lanes, quantity) {
+        let table = match (&self.lanes, quantity) {
             (
-                LaneKind::Rgb,
+                LaneKind::Rgb(_),
                 Quantity::Reflectance | Quantity::Transmittance | Quantity::Share | Quantity::Absorption,
             ) => match curve.kind.rgb() {
                 Some(rgb) => Table::new(rgb.map(|x| x * curve.scale)),
@@ -204,12 +202,20 @@ impl Basis {
                 Table::new(bands.filter(quantity, curve, &*reader))
             }
             _ => self.table(self.wavelengths_nm.iter().map(read).collect(), &*reader),
+        };
+        let refracts = quantity == Quantity::Index && !matches!(curve.kind, CurveKind::Rgb(_));
+        match &self.lanes {
+            _ if !(self.keeps_together && refracts) || table.is_flat() => table,
+            LaneKind::Wavelengths(_) => table.refracting_as(reader(DIRECTION_NM)),
+            LaneKind::Rgb(bands) | LaneKind::Prefiltered(bands) => {
+                self.table(bands.index(&*reader).into(), &*reader).refracting_as(reader(DIRECTION_NM))
+            }
         }
     }
 
     /// Whether the lanes are the red, green and blue of colors as they are written.
     pub(super) fn has_rgb_lanes(&self) -> bool {
-        matches!(self.lanes, LaneKind::Rgb)
+        matches!(self.lanes, LaneKind::Rgb(_))
     }
 
     /// The same number everywhere.
@@ -235,10 +241,10 @@ impl Basis {
     fn emission(&self, curve: &Curve) -> Table {
         let emission = || Emission::new(curve, self.space);
         match (&self.lanes, curve.kind.rgb()) {
-            (LaneKind::Rgb, Some(rgb)) if curve.luminance.is_none() => Table::new(rgb.map(|x| x * curve.scale)),
-            (LaneKind::Rgb, _) => Table::new(apply(&ColorSpace::Rec709.of_xyz(), emission().xyz())),
+            (LaneKind::Rgb(_), Some(rgb)) if curve.luminance.is_none() => Table::new(rgb.map(|x| x * curve.scale)),
+            (LaneKind::Rgb(_), _) => Table::new(apply(&ColorSpace::Rec709.of_xyz(), emission().xyz())),
             (LaneKind::Prefiltered(_), _) => Table::new(apply(&ColorSpace::Rec2020.of_xyz(), emission().xyz())),
-            (LaneKind::Wavelengths(_), _) => self.even(level(&emission())),
+            (LaneKind::Wavelengths(_), _) => self.even(emission().level()),
         }
     }
 
@@ -247,11 +253,11 @@ impl Basis {
         let curve = &*curve.level();
         let of_matrix = |matrix: &Matrix| Response::new(&[0, 1, 2].map(|lane| matrix.map(|row| row[lane])), Vec::new());
         match &self.lanes {
-            LaneKind::Rgb if curve.is_measured() || curve.luminance.is_some() => {
+            LaneKind::Rgb(_) if curve.is_measured() || curve.luminance.is_some() => {
                 of_matrix(&product(&self.space.of_xyz(), &ColorSpace::Rec709.to_xyz()))
             }
-            LaneKind::Rgb if self.space == ColorSpace::Rec709 => of_matrix(&IDENTITY),
-            LaneKind::Rgb => of_matrix(&self.space.of_rec709()),
+            LaneKind::Rgb(_) if self.space == ColorSpace::Rec709 => of_matrix(&IDENTITY),
+            LaneKind::Rgb(_) => of_matrix(&self.space.of_rec709()),
             LaneKind::Prefiltered(_) => of_matrix(&product(&self.space.of_xyz(), &ColorSpace::Rec2020.to_xyz())),
             LaneKind::Wavelengths(functions) => self.light_matrix(&Emission::new(curve, self.space), functions),
         }
@@ -259,7 +265,7 @@ impl Basis {
 
     /// Light times color matching functions, integrated with the function of each lane.
     fn light_matrix(&self, emission: &Emission, functions: &[Vec<f64>]) -> Response {
-        let level = level(emission);
+        let level = emission.level();
         let per_level = |color: [f64; 3]| if level == 0.0 { [0.0; 3] } else { color.map(|x| x / level) };
         let mut columns = vec![[0.0; 3]; self.fixed_lanes()];
         let mut add = |lane: usize, weight: f64, color: [f64; 3]| {
@@ -289,10 +295,4 @@ impl Basis {
         debug_assert_eq!(light.len(), COUNT);
         Response::new(&columns, self.fine(at, line))
     }
-}
-
-/// The number that stands for a light's brightness in every lane: its strongest film channel.
-fn level(emission: &Emission) -> f64 {
-    let color = emission.color();
-    f64::from(color.iter().fold(0.0, |most: f64, x| most.max(x.abs())) as f32)
 }

@@ -91,6 +91,11 @@ impl Emission {
         std::array::from_fn(|i| sum[i] * self.correction[i])
     }
 
+    /// The number that stands for its brightness in every lane: its strongest film channel.
+    pub(super) fn level(&self) -> f64 {
+        f64::from(self.color().iter().fold(0.0, |most: f64, x| most.max(x.abs())) as f32)
+    }
+
     /// Film color.
     pub fn color(&self) -> [f64; 3] {
         apply(&self.film_of_xyz, self.uncorrected())

@@ -34,6 +34,8 @@ pub struct Table {
     weights: Box<[f32; MAX_LANES]>,
     fine: Box<[f64]>,
     flat: bool,
+    /// Of an index: the one by which all lanes are refracted.
+    direction: Option<f64>,
     /// A factor that varies over the surface.
     pattern: Option<Box<Pattern>>,
 }
@@ -59,6 +61,7 @@ impl Table {
             weights: Box::new(weights),
             fine: fine.into(),
             flat,
+            direction: None,
             pattern: None,
         }
     }
@@ -66,6 +69,16 @@ impl Table {
     /// The same table, varied over the surface.
     pub(super) fn varied(self, pattern: Pattern) -> Self {
         Self { pattern: Some(Box::new(pattern)), ..self }
+    }
+
+    /// The same index, where all lanes are refracted as by one.
+    pub(super) fn refracting_as(self, direction: f64) -> Self {
+        Self { direction: Some(direction), ..self }
+    }
+
+    /// The index by which all lanes are refracted, where their own differ and they go one way.
+    pub fn direction(&self) -> Option<f64> {
+        self.direction
     }
 
     pub(super) fn pattern(&self) -> Option<&Pattern> {
@@ -88,7 +101,7 @@ impl Table {
         all.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| (low.min(x), high.max(x)))
     }
 
-    /// Whether all bins hold the same number: a surface with this index keeps lanes together.
+    /// Whether all bins hold the same number.
     pub fn is_flat(&self) -> bool {
         self.flat
     }

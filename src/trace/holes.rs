@@ -90,6 +90,7 @@ pub(super) fn passing_at<const N: usize>(
     let normal = if point.normal.dot(ray.direction) < 0.0 { point.normal } else { -point.normal };
     let (wo, together) = (-ray.direction, world.method.together);
     let uv = world.scene.objects[hit.object as usize].uv(&hit.crossing, point);
-    let arrival = Arrival { wo, normal, uv, draw, present, incident: index, beyond: index, together };
+    let (incident, beyond, direction_indices) = (index, index, [None; 2]);
+    let arrival = Arrival { wo, normal, uv, draw, present, incident, beyond, direction_indices, together };
     world.scene.material_of(hit.object).passing(&arrival)
 }

@@ -138,3 +138,15 @@ pub(super) fn index<const N: usize>(world: &World, draw: &Draw<N>, inside: Optio
         None => [1.0; N],
     }
 }
+
+/// The index by which all rays are refracted on each side of a surface; none where that is each lane's own.
+pub(super) fn direction_indices(world: &World, sides: [Option<MaterialId>; 2]) -> [Option<f64>; 2] {
+    let tables = sides.map(|side| side.map(|material| &medium(world, material).index));
+    if tables.iter().flatten().all(|table| table.direction().is_none()) {
+        return [None; 2];
+    }
+    tables.map(|table| match table {
+        Some(table) => table.direction().or_else(|| table.is_flat().then(|| table.bins()[0])),
+        None => Some(1.0),
+    })
+}

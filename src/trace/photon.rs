@@ -133,6 +133,7 @@ impl<const N: usize> Tracer<'_, N> {
             present: path.throughput.present(),
             incident: media::index(world, draw, here),
             beyond: media::index(world, draw, beyond),
+            direction_indices: media::direction_indices(world, [here, beyond]),
             together: world.method.together,
         };
         let diffuse = material.is_diffuse();
@@ -152,11 +153,14 @@ impl<const N: usize> Tracer<'_, N> {
         self.branches.clear();
         let u = sampler.four_plain(path.key, SCATTER);
         material.scatter(&arrival, [u[0], u[1]], &mut self.branches);
-        let back = arrival.wo;
+        let (back, forward) = (arrival.wo, arrival.forward());
         self.branches
             .retain(|branch| branch.pdf.is_none() && shading::is_plain(point, branch.wi, back, branch.crosses));
         for branch in &mut self.branches {
             branch.share = branch.share * shading::forward_factor(point, branch.wi, back) as f32;
+            if let (Some(forward), true) = (&forward, branch.crosses) {
+                branch.share = branch.share * *forward;
+            }
         }
         let parts = material.lets_through() && material.parts_lanes(&arrival);
         self.follow(path, draw, sampler, (parts, 1.0), |number, branch, factor| Path {
@@ -191,8 +195,7 @@ impl<const N: usize> Tracer<'_, N> {
         let same = seen.direction.dot(*flat) > 0.0;
         let [side, normal] = shading::normals(point, seen.direction);
         let turned = Arrival { wo: seen.direction, normal, ..**arrival };
-        let viewed =
-            if same { turned } else { Arrival { incident: arrival.beyond, beyond: arrival.incident, ..turned } };
+        let viewed = if same { turned } else { turned.from_beyond() };
         let material = world.scene.material_of(hit.object);
         let Some((bsdf_cos, _)) = shading::evaluate(material, &viewed, side, arrival.wo) else { return };
         let parted = path.parted || (!same && material.lets_through() && material.parts_lanes(&viewed));

@@ -177,6 +177,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
             present: path.throughput.present(),
             incident: media::index(world, draw, here),
             beyond: media::index(world, draw, beyond),
+            direction_indices: media::direction_indices(world, [here, beyond]),
             together: world.method.together,
         };
 

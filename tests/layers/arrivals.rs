@@ -34,7 +34,17 @@ pub fn toward(cos: f64, azimuth: f64) -> DVec3 {
 /// Light from a surface under a medium of an index, toward `wo`.
 pub fn arrival(draw: &Draw<4>, wo: DVec3, index: f64) -> Arrival<'_, 4> {
     let (incident, beyond) = ([index; 4], [index; 4]);
-    Arrival { wo, normal: NORMAL, uv: [0.0; 2], draw, present: draw.start(), incident, beyond, together: 0.0 }
+    Arrival {
+        wo,
+        normal: NORMAL,
+        uv: [0.0; 2],
+        draw,
+        present: draw.start(),
+        incident,
+        beyond,
+        direction_indices: [None; 2],
+        together: 0.0,
+    }
 }
 
 /// The points of Hammersley in the unit square.

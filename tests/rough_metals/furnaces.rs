@@ -40,6 +40,7 @@ fn furnace(material: &Material<Table>, cos: f64, index: f64) -> [f64; 3] {
         present: draw.start(),
         incident: [index; 4],
         beyond: [index; 4],
+        direction_indices: [None; 2],
         together: 0.0,
     };
     let (mut sum, mut branches) = ([0.0; 3], Vec::new());

@@ -64,6 +64,7 @@ fn a_point_light_shows_the_brdf_itself() {
             present: draw.start(),
             incident,
             beyond,
+            direction_indices: [None; 2],
             together: 0.0,
         };
         let evaluated = world.scene().material_of(0).evaluate(&arrival, to_light.normalize());

@@ -81,6 +81,7 @@ fn s5_every_material_sends_light_on_along_unit_vectors() {
                 present: draw.start(),
                 incident,
                 beyond,
+                direction_indices: [None; 2],
                 together: 0.0,
             };
             material.scatter(&arrival, random.pair(), &mut branches);

@@ -238,7 +238,17 @@ fn branches(material: &Material<Table>, wo: DVec3, normal: DVec3, incident: f64,
     let (incident, beyond) = ([incident; 4], [beyond; 4]);
     let mut branches = Vec::new();
     material.scatter(
-        &Arrival { wo, normal, uv: [0.0; 2], draw: &draw, present: draw.start(), incident, beyond, together: 0.0 },
+        &Arrival {
+            wo,
+            normal,
+            uv: [0.0; 2],
+            draw: &draw,
+            present: draw.start(),
+            incident,
+            beyond,
+            direction_indices: [None; 2],
+            together: 0.0,
+        },
         [0.5; 2],
         &mut branches,
     );

@@ -1,12 +1,14 @@
 """Optics: how much light surfaces reflect and let through. Where it goes is in angles.py.
 
-Abbe averages s and p at every surface, and so do these formulas. In truth light that has met one surface at an angle is
-polarized in part, and a second surface in the same plane takes more or less of it: a plate of index 1.5 at 60 degrees
-lets through 0.8481 of unpolarized light (the mean of both polarizations), where the average at each surface gives
-0.8362.
+Abbe averages s and p at every surface, and so do these formulas, but for the thin pane, whose surfaces it sums for each
+polarization. In truth light that has met one surface at an angle is polarized in part, and a second surface in the same
+plane takes more or less of it: a plate of index 1.5 at 60 degrees lets through 0.8481 of unpolarized light (the mean of
+both polarizations), as the pane does, where the average at each surface gives 0.8362.
 """
 
 import numpy as np
+
+import colors
 
 from . import angles, formulas, readers
 from .plates import BANDS, looking_down
@@ -80,23 +82,71 @@ def fresnel(quick):
         )
     for name in ("water", "N-BK7", "N-SF11", "diamond"):
         yield normal(name)
+    for name in ("N-BK7", "N-SF11", "diamond"):
+        for degrees in (0, 30, 60):
+            yield daylight(name, degrees, "R")
+            yield daylight(name, degrees, "T")
+
+
+def by_wavelength(name, degrees, share):
+    """CIE XYZ of what a share of the light of D65 (of its reflectance at each wavelength) looks like, and of D65."""
+    light = colors.illuminant("D65")
+    power = np.stack([light.power * share(formulas.fresnel(formulas.index(name, light.nm), degrees)), light.power])
+    return power @ colors.OBSERVER.values
 
 
 def normal(name):
-    """The index of the d line, where nothing disperses and lanes stay together."""
-    n = float(formulas.index(name, formulas.D_LINE))
-    near = float(formulas.index(name, formulas.E_LINE))
+    """Where nothing disperses lanes share a direction, and each band reflects what it does under white."""
+    space = colors.colour.RGB_COLOURSPACES["ITU-R BT.709"]
+    reflected, white = by_wavelength(name, 0, lambda r: r) @ space.matrix_XYZ_to_RGB.T
+    at_d = float(formulas.index(name, formulas.D_LINE))
     return reflection(
         f"normal reflection of {name}",
         glass(name),
         0,
-        ((n - 1) / (n + 1)) ** 2,
-        "((n - 1) / (n + 1))^2, d line",
-        "the index at another line (e)",
-        ((near - 1) / (near + 1)) ** 2,
-        f"{name} (n_d = {n:.6f})",
-        readers.gray,
+        reflected / white,
+        "((n - 1) / (n + 1))^2, the mean over each band of white",
+        "the index of the d line in every band",
+        np.full(3, ((at_d - 1) / (at_d + 1)) ** 2),
+        name,
+    )._replace(rounding=1e-5 * reflected / white)
+
+
+def daylight(name, degrees, kind):
+    """A plate of glass whose lanes stay together: each wavelength has its own share, whatever its direction."""
+    share = (lambda r: (1 - r) / (1 + r)) if kind == "T" else (lambda r: 2 * r / (1 + r))
+    expected, _ = by_wavelength(name, degrees, share)
+    n = formulas.index(name, formulas.D_LINE)
+    mistake = colors.illuminant("D65").xyz() * share(formulas.fresnel(n, degrees))
+    shines = {"R": plane((0, 30, 0), (0, -1, 0)), "T": plane((0, -5, 0), (0, 1, 0))}[kind]
+    scene = view(
+        {"glass": glass(name), "glow": glow({"illuminant": "D65"})},
+        [("glass", cube((0, -0.005, 0), [400.0, 0.01, 400.0])), ("glow", shines)],
+        eye=looking_down(degrees),
+        up=(0, 0, 1),
+        model={"bands": 16},
+        space="lin_ciexyzd65_scene",
     )
+    words = (
+        f"A plate of {name} 0.01 thick, seen at {degrees} degrees, in 16 bands; a plane of D65 "
+        f"{'before' if kind == 'R' else 'behind'} it, else black; in CIE XYZ."
+    )
+    return Row(
+        GROUP,
+        f"{kind} of a plate of {name} at {degrees} degrees in daylight",
+        {"T": "(1 - r) / (1 + r)", "R": "2 r / (1 + r)"}[kind] + " at each wavelength, unpolarized at each surface",
+        scene,
+        readers.colors,
+        expected,
+        "the index of the d line in every lane",
+        mistake,
+        words,
+        rounding=BANDS_16 * expected,
+    )
+
+
+# What 16 wavelengths leave of a smooth spectrum, measured: relative.
+BANDS_16 = 4e-5
 
 
 def inside(quick):
@@ -223,16 +273,18 @@ def panes(quick):
         scene = view(
             {"pane": {"thin": {"index": rgb(BANDS)}}, "glow": glow()}, objects, eye=looking_down(degrees), up=(0, 0, 1)
         )
-        r = formulas.fresnel(indices, degrees)
+        s, p = formulas.both_polarizations(indices, degrees)
+        average = (s + p) / 2
+        at_right_angles = degrees == 0
         yield Row(
             GROUP,
             f"thin pane at {degrees} degrees",
-            "(1 - r) / (1 + r)",
+            "the mean of (1 - r) / (1 + r) over s and p",
             scene,
             readers.colors,
-            (1 - r) / (1 + r),
-            "one passage through both faces",
-            (1 - r) ** 2,
+            ((1 - s) / (1 + s) + (1 - p) / (1 + p)) / 2,
+            "one passage through both faces" if at_right_angles else "the series of the averaged reflectance",
+            (1 - average) ** 2 if at_right_angles else (1 - average) / (1 + average),
             f"A pane without thickness of indices {BANDS} at {degrees} degrees before a plane of radiance 1.",
         )
 

@@ -1,0 +1,85 @@
+//! What follows from the indices on both sides of a surface, where light arrives.
+
+use super::{Arrival, shared_transmittance};
+use crate::spectrum::{Lanes, Table};
+
+impl<const N: usize> Arrival<'_, N> {
+    /// A table of the material, read for this ray.
+    pub fn read(&self, table: &Table) -> Lanes<N> {
+        self.draw.read_at(table, self.uv)
+    }
+
+    /// The same surface as it is met from beyond.
+    pub fn from_beyond(self) -> Self {
+        let [here, beyond] = self.direction_indices;
+        Self { incident: self.beyond, beyond: self.incident, direction_indices: [beyond, here], ..self }
+    }
+
+    /// The indices by which a lane's ray is refracted, on both sides.
+    pub fn refracting(&self, lane: usize) -> [f64; 2] {
+        let [here, beyond] = self.direction_indices;
+        [here.unwrap_or(self.incident[lane]), beyond.unwrap_or(self.beyond[lane])]
+    }
+
+    /// The indices by which the rays of all lanes are refracted, where they are given.
+    pub fn one_direction(&self) -> Option<[f64; 2]> {
+        let [here, beyond] = self.direction_indices;
+        Some([here?, beyond?])
+    }
+
+    /// What of each lane crosses a smooth boundary between the media that its ray meets at an angle of some cosine; none
+    /// where all rays are refracted by the lanes' own indices.
+    pub fn own_transmittance(&self, cos: f64) -> Option<[f64; N]> {
+        if self.direction_indices == [None; 2] {
+            return None;
+        }
+        Some(match self.one_direction() {
+            Some(directions) => shared_transmittance([&self.incident, &self.beyond], directions, cos),
+            None => std::array::from_fn(|i| {
+                let own = [&[self.incident[i]], &[self.beyond[i]]];
+                shared_transmittance::<1>(own, self.refracting(i), cos)[0]
+            }),
+        })
+    }
+
+    /// What turns the shares of light that crosses, followed from the light as if it were the viewer, into those of flux.
+    ///
+    /// Radiance changes by each lane's own (n_here / n_beyond)^2 and solid angles by that of the rays: flux by their
+    /// ratio, which light and viewer see the other way round. None where both are the same.
+    pub fn forward(&self) -> Option<Lanes<N>> {
+        (self.direction_indices != [None; 2]).then(|| {
+            Lanes::from_fn(|i| {
+                let [here, beyond] = self.refracting(i);
+                let ratio = (self.beyond[i] / self.incident[i]) * (here / beyond);
+                ((ratio * ratio) * (ratio * ratio)) as f32
+            })
+        })
+    }
+
+    /// Whether light that crosses the surface goes different ways in different lanes.
+    pub fn parts(&self) -> bool {
+        if self.one_direction().is_some() {
+            return false;
+        }
+        let first = self.refracting(0);
+        let same = |i: usize| self.refracting(i) == first;
+        !((1..N).all(same) || (self.together > 0.0 && self.is_one_way()))
+    }
+
+    /// Whether the outermost refracted rays lie within `together`. All lanes of a draw are asked, on this ray or not, so
+    /// that what becomes of a surface does not depend on what was absorbed before.
+    fn is_one_way(&self) -> bool {
+        let cos = self.wo.dot(self.normal).clamp(0.0, 1.0);
+        let ratio = |i: usize| {
+            let [here, beyond] = self.refracting(i);
+            here / beyond
+        };
+        let (least, most) = (0..N).map(ratio).fold((f64::INFINITY, 0.0_f64), |(l, m), x| (l.min(x), m.max(x)));
+        let [a, b] = [least, most].map(|eta| {
+            let sin = eta * (1.0 - cos * cos).sqrt();
+            [sin, (1.0 - sin * sin).max(0.0).sqrt()]
+        });
+        // sin(a - b), for rays that cross.
+        a[1] > 0.0 && b[1] > 0.0 && (b[0] * a[1] - a[0] * b[1]).abs() <= self.together
+    }
+}

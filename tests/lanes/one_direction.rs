@@ -1,0 +1,344 @@
+//! Lanes that stay together share a direction; what a surface reflects and lets through is each lane's own.
+
+use abbe::film::Film;
+use abbe::material::{Arrival, Branch, Dielectric, Interface, Material, Roughness, shared_transmittance};
+use abbe::math::{DVec2, DVec3};
+use abbe::plan::plan;
+use abbe::spectrum::{Basis, ColorSpace, Curve, CurveKind, Draw, Emission, MAX_LANES, Quantity, Table, data, visible};
+use abbe::trace::{Method, World, render};
+
+use crate::support::scenes::{EVERY_BRANCH, SINGLE_PATH, body, environment, method, scene, standard_errors, view};
+
+const SPACE: ColorSpace = ColorSpace::Rec709;
+
+fn named(kind: fn(String) -> CurveKind, name: &str) -> Curve {
+    kind(name.to_owned()).into()
+}
+
+/// R and T of a plate in vacuum with all reflections inside, unpolarized at every surface, from Fresnel's equations.
+fn plate(n: f64, cos: f64) -> [f64; 2] {
+    let beyond = (n * n - 1.0 + cos * cos).sqrt() / n;
+    let (s, p) = ((cos - n * beyond) / (cos + n * beyond), (n * cos - beyond) / (n * cos + beyond));
+    let r = 0.5 * (s * s + p * p);
+    [2.0 * r / (1.0 + r), (1.0 - r) / (1.0 + r)]
+}
+
+fn bases() -> Vec<Basis> {
+    let light = Emission::new(&named(CurveKind::Illuminant, "D65"), SPACE);
+    let mut bases = vec![Basis::rgb(SPACE), Basis::prefiltered(SPACE, &light)];
+    bases.extend([8, 12, 16, 32].map(|bands| Basis::bands(SPACE, bands, &[])));
+    bases.push(Basis::bands(SPACE, 12, &[]).with_heroes(4, &[light]));
+    bases.into_iter().map(Basis::kept_together).collect()
+}
+
+fn clear(basis: &Basis, index: Table) -> Material<Table> {
+    let even = |x: f64| basis.tabulate(Quantity::Transmittance, &x.into());
+    let [reflectance, transmittance, emission, absorption] = [1.0, 1.0, 0.0, 0.0].map(even);
+    let (priority, roughness) = (0, Roughness::default());
+    Material::Dielectric(Dielectric { index, reflectance, transmittance, emission, absorption, priority, roughness })
+}
+
+type Draws = Draw<MAX_LANES>;
+
+/// What a smooth surface sends on, by reflection and across: each lane's shares, and the direction.
+fn met(material: &Material<Table>, arrival: &Arrival<MAX_LANES>) -> [Option<Branch<MAX_LANES>>; 2] {
+    let mut branches = Vec::new();
+    material.scatter(arrival, [0.5; 2], &mut branches);
+    assert!(branches.len() <= 2, "lanes part");
+    [false, true].map(|crosses| branches.iter().find(|branch| branch.crosses == crosses).copied())
+}
+
+#[test]
+fn d16_every_lane_of_every_glass_of_the_catalog_has_its_own_plate() {
+    let (mut worst, mut lanes) = (0.0_f64, 0_u64);
+    for basis in bases() {
+        let draw: Draws = basis.draw(0.37);
+        for glass in data::glasses() {
+            let table = basis.tabulate(Quantity::Index, &named(CurveKind::Name, glass.key));
+            let own = draw.read_exact(&table);
+            let Some(direction) = table.direction() else { panic!("{} does not disperse", glass.key) };
+            assert!((direction - glass.n_d()).abs() < 1e-9, "{}: {direction}", glass.key);
+            let material = clear(&basis, table);
+            for degrees in (0..18).map(|i| f64::from(5 * i)) {
+                let (sin, cos) = libm::sincos(degrees.to_radians());
+                let (wo, normal, present) = (DVec3::new(sin, 0.0, cos), DVec3::Z, draw.start());
+                let vacuum = [1.0; MAX_LANES];
+                let enters = Arrival {
+                    wo,
+                    normal,
+                    uv: [0.0; 2],
+                    draw: &draw,
+                    present,
+                    incident: vacuum,
+                    beyond: own,
+                    direction_indices: [Some(1.0), Some(direction)],
+                    together: 0.0,
+                };
+                let [Some(r), Some(t)] = met(&material, &enters) else { panic!("{} at {degrees}", glass.key) };
+                let leaves = Arrival { wo: -t.wi, ..enters.from_beyond() };
+                let [Some(inner), Some(out)] = met(&material, &leaves) else { panic!("{} at {degrees}", glass.key) };
+                assert!((out.wi + wo).length() < 1e-12, "{} at {degrees} degrees goes on to {}", glass.key, out.wi);
+                assert!((t.eta_scale * out.eta_scale - 1.0).abs() < 1e-14);
+                let Some(forward) = leaves.forward() else { panic!("{} at {degrees}", glass.key) };
+                for lane in (0..MAX_LANES).filter(|&lane| present[lane] != 0.0) {
+                    // A photon out of the glass brings what a path into it would find, solid angle for solid angle.
+                    let photon = f64::from(out.share[lane] * forward[lane]) / out.eta_scale;
+                    assert!((photon / (f64::from(t.share[lane]) / t.eta_scale) - 1.0).abs() < 1e-6);
+                    let [r, t, inner, out] = [&r, &t, &inner, &out].map(|branch| f64::from(branch.share[lane]));
+                    let through = t * out / (1.0 - inner * inner);
+                    let expected = plate(own[lane], cos);
+                    for (found, expected) in [r + inner * through, through].into_iter().zip(expected) {
+                        worst = worst.max((found - expected).abs());
+                        lanes += 1;
+                    }
+                }
+            }
+        }
+    }
+    println!("{lanes} shares of plates, at most {worst:.1e} off");
+    assert!(worst < 1e-6, "{worst}");
+}
+
+/// Rays at 0 to 85 degrees onto a plate, a plane of radiance 1 before or behind it.
+fn before_or_behind(glass: &str, reflected: bool) -> String {
+    let (sin, cos) = libm::sincos(42.5_f64.to_radians());
+    let (y, facing) = if reflected { (30, -1) } else { (-5, 1) };
+    let plane = format!("plane = {{ point = [0, {y}, 0], normal = [0, {facing}, 0] }}");
+    view([0.0, 10.0, 0.0], [0.0, 10.0 - cos, -sin], 85.0, 5)
+        + "filter = \"center\"\n"
+        + &body("glow", "emissive = { radiance = 1, sides = \"front\" }", &[&plane])
+        + &body(
+            "glass",
+            &format!("dielectric = {{ index = \"{glass}\" }}"),
+            &["cube = { center = [0, -0.005, 0], size = [4000, 0.01, 4000] }"],
+        )
+}
+
+fn film(world: &World) -> Film {
+    render(world, &|_| ()).0
+}
+
+#[test]
+fn d16_plates_of_glass_are_rendered_as_bright_in_every_lane_as_they_are() {
+    let keys: Vec<&str> = data::glasses().map(|glass| glass.key).step_by(41).collect();
+    let mut worst = 0.0_f64;
+    for (number, key) in keys.into_iter().enumerate() {
+        let basis = &bases()[number % 6];
+        let index = basis.tabulate(Quantity::Index, &named(CurveKind::Name, key));
+        for reflected in [true, false] {
+            let scene = scene(&before_or_behind(key, reflected));
+            let world = || {
+                let method = Method { basis: basis.clone(), ..method(&scene, EVERY_BRANCH) };
+                World::new(&scene, method)
+            };
+            for lane in (0..basis.lanes()).step_by(if basis.lanes() > 12 { 5 } else { 1 }) {
+                let own = index.bins()[lane];
+                let film = film(&world().with_responses(|response| response.only(lane)));
+                // What the lane is worth: the channel that has most of it, before nothing.
+                let light = Curve::from(1.0);
+                let alone = {
+                    let draw = Draw::<MAX_LANES>::fixed(basis.fixed_lanes());
+                    let table = basis.tabulate(Quantity::Emission, &light);
+                    basis.response(&light).only(lane).sensor(&draw, draw.read(&table), false)
+                };
+                let channel = (0..3).fold(0, |most, c| if alone[c].abs() > alone[most].abs() { c } else { most });
+                for (at, pixel) in film.pixels.iter().enumerate() {
+                    let place = DVec2::new((at % 5) as f64 + 0.5, (at / 5) as f64 + 0.5);
+                    let cos = -scene.camera.ray(place).direction.y;
+                    if cos < libm::cos(85.5_f64.to_radians()) {
+                        continue;
+                    }
+                    let [r, t] = plate(own, cos);
+                    let found = f64::from(pixel.rgb[channel]) / alone[channel];
+                    let off = (found - if reflected { r } else { t }).abs();
+                    assert!(off < 1e-5, "{key} in {}, lane {lane}: {found} for R {r}, T {t}", basis.name());
+                    worst = worst.max(off);
+                }
+            }
+        }
+    }
+    println!("rendered plates are at most {worst:.1e} off");
+}
+
+/// Liquids and glasses within each other, met at any angle: what light finds one way it finds the other, and R + T = 1.
+#[test]
+fn d16_lanes_of_one_direction_lose_nothing_between_any_two_media() {
+    let indices = |name: &str| {
+        let glass = data::glass(name).unwrap_or_else(|| panic!("no {name}"));
+        let own: [f64; 16] = std::array::from_fn(|i| glass.index(390.0 + 20.0 * i as f64));
+        (own, glass.n_d())
+    };
+    let media = ["N-BK7", "N-SF66", "N-SF11", "N-FK51A", "N-LAK9"].map(indices);
+    for (here, beyond) in media.iter().flat_map(|here| media.iter().map(move |beyond| (here, beyond))) {
+        for step in 0..=2000 {
+            let cos = f64::from(step) / 2000.0;
+            let t = shared_transmittance([&here.0, &beyond.0], [here.1, beyond.1], cos);
+            let k = here.1 * (1.0 - cos * cos).sqrt();
+            let back = (1.0 - (k / beyond.1) * (k / beyond.1)).max(0.0).sqrt();
+            let other = shared_transmittance([&beyond.0, &here.0], [beyond.1, here.1], back);
+            for lane in 0..16 {
+                assert!((0.0..=1.0 + 1e-15).contains(&t[lane]), "{}", t[lane]);
+                // Where a medium ends at a grazing angle, the angle on the other side has lost digits.
+                let ends = [here.1, here.0[lane], beyond.1, beyond.0[lane]];
+                let near_end = k > 0.999 * ends.into_iter().fold(f64::INFINITY, f64::min);
+                assert!(near_end || (t[lane] - other[lane]).abs() < 1e-9, "{} and {}", t[lane], other[lane]);
+            }
+        }
+    }
+}
+
+/// A cube of glass within a ball of another under an even sky of 1, smooth and rough; lanes also part at the cube.
+#[test]
+fn d16_glass_whose_lanes_stay_together_is_invisible_in_an_even_sky() {
+    const PARTS: &str = "{ rgb = [1.70, 1.72, 1.76] }";
+    const FLINT: &str = "\"N-SF66\"";
+    for (inner, roughness, tolerance) in [
+        (FLINT, "", 0.0),
+        (PARTS, "", 0.0),
+        (FLINT, ", roughness = 0.05", 2e-3),
+        (PARTS, ", roughness = 0.05", 2e-3),
+        (FLINT, ", roughness = 0.5", 5e-3),
+    ] {
+        let text = view([0.2, 0.3, 5.0], [0.0; 3], 30.0, 8)
+            + &format!("[render]\nsamples = {}\n", if roughness.is_empty() { 1 } else { 256 })
+            + &environment(1.0)
+            + &body(
+                "outer",
+                &format!("dielectric = {{ index = \"N-BK7\"{roughness} }}"),
+                &["sphere = { center = [0, 0, 0], radius = 1.2 }"],
+            )
+            + &body(
+                "inner",
+                &format!("dielectric = {{ index = {inner}, priority = 1{roughness} }}"),
+                &["cube = { center = [0.1, 0, 0], size = [0.8, 0.7, 0.9] }"],
+            );
+        let scene = scene(&text);
+        let transport = if roughness.is_empty() { EVERY_BRANCH } else { SINGLE_PATH };
+        for basis in [Basis::rgb(SPACE), Basis::bands(SPACE, 16, &[])] {
+            if inner == PARTS && basis.lanes() > 3 {
+                continue;
+            }
+            let basis = basis.kept_together();
+            let film = film(&World::new(&scene, Method { basis, ..method(&scene, transport) }));
+            let count = film.pixels.len() as f64;
+            if roughness.is_empty() {
+                let worst = film.pixels.iter().flat_map(|p| p.rgb).map(|x| (x - 1.0).abs()).fold(0.0, f32::max);
+                println!("{inner}: an even sky is at most {worst:.1e} off");
+                assert!(worst < 1e-5, "{inner}: {worst}");
+                continue;
+            }
+            for band in 0..3 {
+                let of = |pixel: &abbe::film::Pixel| f64::from(pixel.rgb[band]);
+                let mean = film.pixels.iter().map(of).sum::<f64>() / count;
+                let variance = film.pixels.iter().map(|p| (of(p) - mean) * (of(p) - mean)).sum::<f64>() / (count - 1.0);
+                let error = standard_errors(15) * (variance / count).sqrt();
+                assert!((mean - 1.0).abs() < tolerance + error, "{roughness}: {mean} +- {error} in band {band}");
+            }
+        }
+    }
+}
+
+/// A ball of glass that swallows what enters it, under a sky of D65: each pixel's CIE XYZ.
+fn mirror_ball(model: &str) -> (abbe::plan::Plan, Film, Vec<f64>) {
+    let text = view([0.0, 0.0, 8.0], [0.0; 3], 14.0, 9)
+        + &format!(
+            "color_space = \"lin_ciexyzd65_scene\"\nfilter = \"center\"\n[render]\nmodel = {model}\n\
+             [[light]]\nenvironment = {{ radiance = {{ illuminant = \"D65\" }} }}\n"
+        )
+        + &body(
+            "glass",
+            "dielectric = { index = \"N-SF66\", absorption = 1e4 }",
+            &["sphere = { center = [0, 0, 0], radius = 1.5 }"],
+        );
+    let scene = scene(&text);
+    let plan = plan(&scene);
+    let film = film(&World::new(&scene, plan.method.clone()));
+    let cosines = (0..81).map(|at| {
+        let ray = scene.camera.ray(DVec2::new(f64::from(at % 9) + 0.5, f64::from(at / 9) + 0.5));
+        let along = -ray.origin.dot(ray.direction);
+        let off = (ray.origin.length_squared() - along * along) / 2.25;
+        (1.0 - off).sqrt()
+    });
+    (plan, film, cosines.collect())
+}
+
+/// CIEDE2000 of two XYZ under the white of D65 (Sharma, Wu & Dalal 2005).
+fn difference(first: [f64; 3], second: [f64; 3], white: [f64; 3]) -> f64 {
+    let lab = |xyz: [f64; 3]| {
+        let f = |i: usize| libm::cbrt(xyz[i] / white[i]);
+        [116.0 * f(1) - 16.0, 500.0 * (f(0) - f(1)), 200.0 * (f(1) - f(2))]
+    };
+    let ([l1, a1, b1], [l2, a2, b2]) = (lab(first), lab(second));
+    let seventh = |c: f64| (libm::pow(c, 7.0) / (libm::pow(c, 7.0) + libm::pow(25.0, 7.0))).sqrt();
+    let g = 1.5 - 0.5 * seventh(0.5 * (a1.hypot(b1) + a2.hypot(b2)));
+    let polar = |a: f64, b: f64| ((g * a).hypot(b), libm::atan2(b, g * a).to_degrees().rem_euclid(360.0));
+    let ((c1, h1), (c2, h2)) = (polar(a1, b1), polar(a2, b2));
+    let mut turn = h2 - h1;
+    turn -= if turn > 180.0 { 360.0 } else { 0.0 };
+    turn += if turn < -180.0 { 360.0 } else { 0.0 };
+    let hue = 2.0 * (c1 * c2).sqrt() * libm::sin((0.5 * turn).to_radians());
+    let (l, c, h) = (0.5 * (l1 + l2), 0.5 * (c1 + c2), h1 + 0.5 * turn);
+    let cosine = |degrees: f64| libm::cos(degrees.to_radians());
+    let t = 1.0 - 0.17 * cosine(h - 30.0) + 0.24 * cosine(2.0 * h) + 0.32 * cosine(3.0 * h + 6.0)
+        - 0.20 * cosine(4.0 * h - 63.0);
+    let off = (l - 50.0) * (l - 50.0);
+    let (s_l, s_c, s_h) = (1.0 + 0.015 * off / (20.0 + off).sqrt(), 1.0 + 0.045 * c, 1.0 + 0.015 * c * t);
+    let bend = 60.0 * libm::exp(-((h - 275.0) / 25.0) * ((h - 275.0) / 25.0));
+    let rotation = -2.0 * seventh(c) * libm::sin(bend.to_radians());
+    let (dl, dc, dh) = ((l2 - l1) / s_l, (c2 - c1) / s_c, hue / s_h);
+    (dl * dl + dc * dc + dh * dh + rotation * dc * dh).sqrt()
+}
+
+#[test]
+fn d16_a_ball_of_dense_flint_mirrors_daylight_in_its_color() {
+    assert!((difference([0.1, 0.2, 0.3], [0.1, 0.2, 0.3], [0.95, 1.0, 1.09])).abs() < 1e-12);
+    let (light, glass) = (Emission::new(&named(CurveKind::Illuminant, "D65"), SPACE), data::glass("N-SF66"));
+    let (white, glass) = (light.xyz(), glass.unwrap_or_else(|| panic!("no N-SF66")));
+    for (model, bound) in [("\"rgb\"", 0.1), ("{ bands = 8 }", 0.3), ("{ bands = 16 }", 0.05), ("{ bands = 32 }", 0.05)]
+    {
+        let (plan, film, cosines) = mirror_ball(model);
+        let said = plan.because.join("\n");
+        assert!(said.contains("lanes stay together"), "{said}");
+        let mut worst = 0.0_f64;
+        for (pixel, cos) in film.pixels.iter().zip(cosines).filter(|(_, cos)| *cos > 0.05) {
+            let (mut sum, mut total) = ([0.0; 3], [0.0; 3]);
+            for (nm, &power) in visible::wavelengths().zip(light.spectrum()) {
+                let r = Interface::new(1.0, glass.index(nm), cos).reflectance;
+                for (c, cmf) in visible::color_matching(nm).into_iter().enumerate() {
+                    sum[c] += r * power * cmf;
+                    total[c] += power * cmf;
+                }
+            }
+            let expected = [0, 1, 2].map(|c| white[c] * sum[c] / total[c]);
+            worst = worst.max(difference(pixel.rgb.map(f64::from), expected, white));
+        }
+        println!("{model}: dE2000 at most {worst:.4}");
+        assert!(worst < bound, "{model}: {worst}");
+    }
+}
+
+#[test]
+fn the_plan_counts_the_color_of_glass_and_keeps_three_lanes_where_they_do() {
+    let ball = |glass: &str, render: &str| {
+        let text = view([0.0, 0.0, 8.0], [0.0; 3], 14.0, 9)
+            + render
+            + &environment(1.0)
+            + &body(
+                "glass",
+                &format!("dielectric = {{ index = {glass} }}"),
+                &["cube = { center = [0, 0, 0], size = [9, 9, 0.1] }"],
+            );
+        plan(&scene(&text))
+    };
+    for glass in ["\"N-BK7\"", "\"N-SF66\""] {
+        let plan = ball(glass, "");
+        assert_eq!(plan.method.basis.name(), "rgb", "{glass}: {:?}", plan.because);
+        let stated = plan.rungs[0].bound();
+        assert!(stated > 0.0 && stated < 0.01, "{glass}: {stated}");
+        assert!(plan.because.iter().any(|line| line.contains("color missed at most")), "{:?}", plan.because);
+    }
+    let plain = ball("1.5", "");
+    assert!(plain.rungs[0].error == 0.0 && plain.rungs.len() == 1);
+    let words = ball("\"N-BK7\"", "").because.join("\n");
+    assert!(words.contains("all lanes are refracted by 1.5168, so lanes stay together"), "{words}");
+}
