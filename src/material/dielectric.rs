@@ -99,7 +99,7 @@ impl Dielectric<Table> {
             let same = n1 == n2;
             if !same {
                 reflected.0[lane] = weight * reflectance[lane] * interface.reflectance as f32;
-                polarization = interface.polarization_reflected;
+                polarization = interface.polarization_reflected.abs().max(polarization);
             }
             let (crosses, transmittance) = (weight * crossing[lane], if same { 1.0 } else { interface.transmittance });
             if transmittance == 0.0 || crosses == 0.0 {
@@ -109,12 +109,15 @@ impl Dielectric<Table> {
             let eta_scale = (n1 / n2) * (n1 / n2);
             let branch = known.unwrap_or_else(|| {
                 let wi = if same { -arrival.wo } else { interface.refract(arrival.wo, arrival.normal) };
-                let polarization = interface.polarization_refracted as f32;
+                let polarization = 0.0;
                 pair_of_branch[branches.len() - first] = pair;
                 branches.push(Branch { wi, share: Lanes::ZERO, pdf: None, crosses: true, eta_scale, polarization });
                 branches.len() - first - 1
             });
-            branches[first + branch].share.0[lane] = crosses * (transmittance * eta_scale) as f32;
+            let degree = if same { 0.0 } else { interface.polarization_refracted.abs() as f32 };
+            let branch = &mut branches[first + branch];
+            branch.polarization = branch.polarization.max(degree);
+            branch.share.0[lane] = crosses * (transmittance * eta_scale) as f32;
         }
         if !reflected.is_zero() {
             let wi = reflect(arrival.wo, arrival.normal);

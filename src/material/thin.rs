@@ -1,5 +1,6 @@
 use serde::Deserialize;
 
+use super::degree::degree;
 use super::dielectric::flat;
 use super::{Arrival, Branch, Interface, reflect};
 use crate::spectrum::{Lanes, Quantity, Table};
@@ -37,7 +38,7 @@ impl Thin<Table> {
         let (index, way) = (arrival.draw.read_exact(&self.index), arrival.read(&self.transmittance));
         let cos = arrival.wo.dot(arrival.normal);
         let (mut crossed, mut reflected) = (Lanes::ZERO, Lanes::ZERO);
-        let (mut through, mut back) = (0.0, 0.0);
+        let (mut through, mut back) = (0.0_f64, 0.0_f64);
         for lane in (0..N).filter(|&lane| arrival.present[lane] != 0.0) {
             if index[lane] == arrival.incident[lane] {
                 crossed.0[lane] = way[lane];
@@ -50,7 +51,8 @@ impl Thin<Table> {
             let transmitted = if surface.transmittance == 0.0 { 0.0 } else { transmitted };
             crossed.0[lane] = transmitted as f32;
             reflected.0[lane] = (r + r * t * transmitted) as f32;
-            (through, back) = (surface.polarization_refracted, surface.polarization_reflected);
+            let [s, p] = [1.0, -1.0].map(|sign| series(r * (1.0 + sign * surface.polarization_reflected), t));
+            (through, back) = (through.max(degree([s[0], p[0]])), back.max(degree([s[1], p[1]])));
         }
         let branch = |wi, share, crosses, polarization: f64| Branch {
             wi,
@@ -67,4 +69,10 @@ impl Thin<Table> {
             branches.push(branch(reflect(arrival.wo, arrival.normal), reflected, false, back));
         }
     }
+}
+
+/// Transmittance and reflectance of a pane for one polarization, of which a surface reflects `r`.
+fn series(r: f64, t: f64) -> [f64; 2] {
+    let transmitted = if r < 1.0 { (1.0 - r) * (1.0 - r) * t / (1.0 - r * r * t * t) } else { 0.0 };
+    [transmitted, r + r * t * transmitted]
 }

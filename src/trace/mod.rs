@@ -12,6 +12,7 @@
 //! 6. Random numbers are a pure function of seed, pixel, sample, branch and use; sums have a fixed order.
 
 mod aims;
+mod branching;
 mod choice;
 mod direct;
 mod emission;
@@ -27,6 +28,7 @@ mod method;
 mod path;
 mod photon;
 mod pilot;
+mod polarization;
 mod probe;
 mod render;
 mod roulette;
@@ -39,6 +41,7 @@ mod width;
 mod world;
 
 pub use aims::{is_photon_source, is_photon_target};
+pub use branching::{Branching, branching};
 pub use light_pass::seen_photons;
 pub use merge::{gathered_photons, reached_places};
 pub use method::{LightPass, MapPasses, Method, Transport};
