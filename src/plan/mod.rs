@@ -5,6 +5,7 @@ mod caustics;
 mod ladder;
 mod model;
 mod polarization;
+mod seen;
 mod survey;
 mod transport;
 mod worth;

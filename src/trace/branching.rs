@@ -4,7 +4,9 @@ use super::World;
 use super::render::sample;
 use super::tracer::Tracer;
 use super::width::{InLanes, in_lanes};
+use crate::material::Material;
 use crate::math::{DVec2, DVec3, Sampler};
+use crate::spectrum::Table;
 
 /// What following all branches takes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,18 +60,19 @@ impl InLanes for Asking<'_> {
                 return Branching::Beyond(pixel);
             }
         }
-        match objects(world).into_iter().find(|&pixel| ask(pixel).1) {
+        match pixels_of_objects(world, Material::lets_through).into_iter().find(|&pixel| ask(pixel).1) {
             Some(pixel) => Branching::Beyond(pixel),
             None => Branching::Affordable(met as f64 / f64::from(places)),
         }
     }
 }
 
-/// Pixels in which bodies and panes lie: their middles, and places toward their corners.
-fn objects(world: &World) -> Vec<[u32; 2]> {
+/// Pixels in which the camera would see objects of some materials if nothing were before them: their middles, and places
+/// toward their corners.
+pub(super) fn pixels_of_objects(world: &World, counts: impl Fn(&Material<Table>) -> bool) -> Vec<[u32; 2]> {
     let scene = &world.scene;
-    let branches = |object: &u32| scene.material_of(*object).lets_through();
-    let several: Vec<u32> = (0..scene.objects.len() as u32).filter(branches).collect();
+    let wanted = |object: &u32| counts(scene.material_of(*object));
+    let several: Vec<u32> = (0..scene.objects.len() as u32).filter(wanted).collect();
     let stride = several.len().div_ceil(OBJECTS).max(1);
     let mut pixels = Vec::new();
     for &object in several.iter().step_by(stride) {
