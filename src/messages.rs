@@ -117,7 +117,21 @@ pub fn print_report(report: &Report, exr: Option<&Path>, png: Option<&Path>) {
     if report.dropped + report.stopped > 0.0 {
         say(&format!("branches that were not followed: {:.1e} of the weight", report.dropped + report.stopped));
     }
+    if report.by_chance > 0 {
+        warn(&format!(
+            "in {} of {} camera samples light had too many ways to follow all, and went on by chance: these pixels have noise",
+            report.by_chance, report.samples
+        ));
+    }
+    if report.polarization_of_tile > TOLD {
+        let [all, tile] = [report.polarization, report.polarization_of_tile].map(|share| 100.0 * share);
+        let tile = if tile > 1.05 * all { format!(", up to {tile:.1} % in 16 x 16 pixels") } else { String::new() };
+        say(&format!("polarization may change up to {all:.1} % of the light seen{tile}: it is not traced"));
+    }
     for path in [exr, png].into_iter().flatten() {
         say(&format!("wrote {}", path.display()));
     }
 }
+
+/// The share of the light from which on it is said what polarization may change.
+const TOLD: f64 = 0.01;

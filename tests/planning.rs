@@ -8,7 +8,9 @@ mod support;
 
 mod planning {
     mod caustics;
+    mod chains;
     mod choices;
     mod rooms;
+    mod stokes;
     mod twenty;
 }

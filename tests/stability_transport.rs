@@ -12,7 +12,7 @@ use std::f64::consts::PI;
 use abbe::film::Film;
 use abbe::math::DVec3;
 use abbe::plan::plan;
-use abbe::trace::Transport;
+use abbe::trace::{Transport, World, render};
 
 use support::random::Random;
 use support::scenes::{Mean, SINGLE_PATH, SPLITTING, body, environment, image, images, moments, scene, view};
@@ -194,6 +194,76 @@ fn a_surface_that_passes_no_light_on_shows_its_own_and_nothing_else() {
         assert_eq!(report.non_finite, 0, "{transport:?}");
         assert!(film.pixels.iter().all(|pixel| pixel.rgb == [0.5; 3]), "{transport:?}");
     }
+}
+
+/// Bodies and panes in which light has ever more ways, and how many there are.
+fn ways(kind: &str, count: i32) -> String {
+    let mirror = body("mirror", "mirror = {}", &["quad = { center = [0, 0, -6], u = [9, 1, 0], v = [0, 9, 0] }"]);
+    let of = |material: &str, shape: &dyn Fn(i32) -> String| {
+        let shapes: Vec<String> = (0..count).map(shape).collect();
+        body("glass", material, &shapes.iter().map(String::as_str).collect::<Vec<_>>())
+    };
+    let pane = |i: i32| format!("quad = {{ center = [0, 0, {}], u = [9, 0, 0], v = [0, 9, 0] }}", -0.5 * f64::from(i));
+    let slab = |i: i32| format!("cube = {{ center = [0, 0, {}], size = [18, 18, 0.2] }}", -0.5 * f64::from(i));
+    let ball = |i: i32| format!("sphere = {{ center = [0, 0, 0], radius = {} }}", 1.0 + 0.2 * f64::from(i));
+    let glass = "dielectric = { index = 1.5 }";
+    view([0.0, 0.0, 9.0], [0.0; 3], 20.0, 4)
+        + "filter = \"center\"\n"
+        + &environment(1.0)
+        + &match kind {
+            "thin" => of("thin = { index = 1.5 }", &pane),
+            "slabs" => of(glass, &slab),
+            "slabs before a mirror" => of(glass, &slab) + &mirror,
+            _ => (0..count)
+                .map(|i| {
+                    let material =
+                        format!("dielectric = {{ index = {}, priority = {} }}", [1.8, 1.2][i as usize % 2], -i);
+                    body(&format!("shell{i}"), &material, &[&ball(i)])
+                })
+                .collect(),
+        }
+}
+
+#[test]
+fn w7_where_light_has_too_many_ways_the_plan_leaves_them_to_chance_and_says_so() {
+    for kind in ["thin", "slabs", "slabs before a mirror", "shells"] {
+        let mut by_chance = 0;
+        for count in 2..=10 {
+            let scene = scene(&ways(kind, count));
+            let mut plan = plan(&scene);
+            let says = plan.because.iter().any(|line| line.contains("light has too many ways"));
+            let random = matches!(plan.method.transport, Transport::Random { .. });
+            assert_eq!(says, random, "{count} {kind}: {:?}", plan.because);
+            by_chance += u32::from(random);
+            plan.method.samples = if random { 16 } else { 1 };
+            let (_, report) = render(&World::new(&scene, plan.method), &|_| ());
+            let rays = report.rays as f64 / report.samples as f64;
+            println!(
+                "W7: {count} {kind}: {rays:.1} rays a sample, {}",
+                if random { "random" } else { "deterministic" }
+            );
+            assert!(rays <= if random { 32.0 * f64::from(count) } else { 4096.0 }, "{count} {kind}: {rays} rays");
+            assert_eq!(report.by_chance, 0, "{count} {kind}");
+        }
+        assert!(by_chance >= 3, "{kind}: all ways followed where they are too many");
+    }
+}
+
+#[test]
+fn w7_a_camera_sample_that_meets_too_many_surfaces_goes_on_by_chance_to_the_same_mean() {
+    let rendered = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+        pool.install(|| image(&panes(true, 20), Transport::Deterministic { cutoff: 1e-9 }))
+    };
+    let (film, report) = rendered(1);
+    assert_eq!(report.by_chance, report.samples);
+    let rays = report.rays as f64 / report.samples as f64;
+    let mean = Mean::of(&film);
+    println!("W7: {} +- {:.1e}, {rays:.0} rays a sample", mean.value[0], mean.error[0]);
+    assert!(rays < 20_000.0, "{rays} rays");
+    mean.assert_near([1.0 - REFLECTED; 3], 1, "ten panes");
+    assert!(mean.error[0] < 0.005, "{mean:?}");
+    assert_eq!(rendered(3).0.pixels, film.pixels, "the same bits for any number of threads");
 }
 
 fn mean_of_pixels(film: &Film) -> f64 {

@@ -1,5 +1,6 @@
 use serde::{Deserialize, Deserializer};
 
+use super::degree::degree;
 use super::{Arrival, Branch, RoughReflection, RoughSurface, Roughness, conductor_reflectance, reflect};
 use crate::math::{DVec3, Frame, unit};
 use crate::spectrum::{Curve, CurveKind, Lanes, Quantity, Table};
@@ -79,14 +80,13 @@ impl Conductor<Table> {
             0.0 => [0.0; 2],
             _ => conductor_reflectance(arrival.incident[i], n[i], k[i], cos),
         });
-        let (s, p) = reflected.iter().fold((0.0, 0.0), |sum, r| (sum.0 + r[0], sum.1 + r[1]));
         Branch {
             wi: reflect(arrival.wo, arrival.normal),
             share: Lanes::from_fn(|i| (0.5 * (reflected[i][0] + reflected[i][1])) as f32),
             pdf: None,
             crosses: false,
             eta_scale: 1.0,
-            polarization: if s + p > 0.0 { ((s - p) / (s + p)) as f32 } else { 0.0 },
+            polarization: reflected.into_iter().map(degree).fold(0.0, f64::max) as f32,
         }
     }
 

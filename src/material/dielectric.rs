@@ -109,7 +109,7 @@ impl Dielectric<Table> {
             let same = straight && n1 == n2;
             if !same {
                 reflected.0[lane] = weight * reflectance[lane] * reflects as f32;
-                polarization = interface.polarization_reflected;
+                polarization = interface.polarization_reflected.abs().max(polarization);
             }
             let (crosses, transmittance) = (weight * crossing[lane], if same { 1.0 } else { lets_through });
             if transmittance == 0.0 || crosses == 0.0 {
@@ -119,12 +119,15 @@ impl Dielectric<Table> {
             let branch = known.unwrap_or_else(|| {
                 let eta_scale = (here / beyond) * (here / beyond);
                 let wi = if straight { -arrival.wo } else { interface.refract(arrival.wo, arrival.normal) };
-                let polarization = interface.polarization_refracted as f32;
+                let polarization = 0.0;
                 pair_of_branch[branches.len() - first] = pair;
                 branches.push(Branch { wi, share: Lanes::ZERO, pdf: None, crosses: true, eta_scale, polarization });
                 branches.len() - first - 1
             });
-            branches[first + branch].share.0[lane] = crosses * (transmittance * ((n1 / n2) * (n1 / n2))) as f32;
+            let degree = if same { 0.0 } else { interface.polarization_refracted.abs() as f32 };
+            let branch = &mut branches[first + branch];
+            branch.polarization = branch.polarization.max(degree);
+            branch.share.0[lane] = crosses * (transmittance * ((n1 / n2) * (n1 / n2))) as f32;
         }
         if !reflected.is_zero() {
             let wi = reflect(arrival.wo, arrival.normal);
@@ -144,7 +147,7 @@ impl Dielectric<Table> {
         let cos = arrival.wo.dot(arrival.normal);
         let (n1, n2) = (&arrival.incident, &arrival.beyond);
         let mut push = |wi, share: Lanes<N>, crosses, eta_scale, polarization: f64| {
-            let (share, polarization) = (share * arrival.present, polarization as f32);
+            let (share, polarization) = (share * arrival.present, polarization.abs() as f32);
             if !share.is_zero() {
                 branches.push(Branch { wi, share, pdf: None, crosses, eta_scale, polarization });
             }

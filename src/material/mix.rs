@@ -154,10 +154,7 @@ impl<const N: usize> Branch<N> {
 
     /// Takes in the light of another branch that goes the same way.
     fn join(&mut self, other: &Self) {
-        let (this, more) = (self.share.sum(), other.share.sum());
-        if this + more > 0.0 {
-            self.polarization = (this * self.polarization + more * other.polarization) / (this + more);
-        }
+        self.polarization = self.polarization.max(other.polarization);
         self.share += other.share;
     }
 }

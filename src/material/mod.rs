@@ -7,6 +7,7 @@ mod arrival;
 mod by_cosine;
 mod coat;
 mod conductor;
+mod degree;
 mod dielectric;
 mod diffuse;
 mod emissive;
@@ -105,7 +106,8 @@ pub struct Branch<const N: usize> {
     pub crosses: bool,
     /// The part of `share` that only converts radiance between media, (n_incident / n_beyond)^2 of the ray's indices.
     pub eta_scale: f64,
-    /// Degree of polarization that this way would give to unpolarized light, (s - p) / (s + p); 0 where none is modelled.
+    /// Largest degree |s - p| / (s + p), of any lane, to which unpolarized light that comes by this one direction leaves polarized;
+    /// 0 where it does not, and of directions that were drawn: see [`Material::degree_of_scattered`].
     pub polarization: f32,
 }
 

@@ -101,7 +101,7 @@ impl Plastic<Table> {
         for lane in (0..N).filter(|&i| arrival.present[i] != 0.0 && index[i] != arrival.incident[i]) {
             let interface = Interface::new(arrival.incident[lane], index[lane], cos);
             share.0[lane] = interface.reflectance as f32;
-            polarization = interface.polarization_reflected as f32;
+            polarization = interface.polarization_reflected.abs().max(f64::from(polarization)) as f32;
         }
         let wi = reflect(arrival.wo, arrival.normal);
         (!share.is_zero()).then_some(Branch { wi, share, pdf: None, crosses: false, eta_scale: 1.0, polarization })

@@ -1,5 +1,6 @@
 use serde::Deserialize;
 
+use super::degree::degree;
 use super::dielectric::flat;
 use super::{Arrival, Branch, Interface, reflect};
 use crate::spectrum::{Lanes, Quantity, Table};
@@ -49,12 +50,12 @@ impl Thin<Table> {
         }
     }
 
-    /// What of each lane goes straight on and what is mirrored, and the degrees of polarization that this gives to
-    /// unpolarized light.
+    /// What of each lane goes straight on and what is mirrored, and the largest degree of polarization that this gives
+    /// to unpolarized light.
     pub(super) fn shares<const N: usize>(&self, arrival: &Arrival<N>) -> (Lanes<N>, Lanes<N>, [f64; 2]) {
         let (index, way) = (arrival.draw.read_exact(&self.index), arrival.read(&self.transmittance));
         let cos = arrival.wo.dot(arrival.normal);
-        let (mut through, mut back, mut degrees) = (Lanes::ZERO, Lanes::ZERO, [0.0; 2]);
+        let (mut through, mut back, mut degrees) = (Lanes::ZERO, Lanes::ZERO, [0.0_f64; 2]);
         let mut last: Option<([f64; 3], [[f64; 2]; 2])> = None;
         for lane in (0..N).filter(|&lane| arrival.present[lane] != 0.0) {
             if index[lane] == arrival.incident[lane] {
@@ -68,7 +69,7 @@ impl Thin<Table> {
             };
             last = Some((pane, summed));
             [through.0[lane], back.0[lane]] = summed.map(|[s, p]| (0.5 * (s + p)) as f32);
-            degrees = summed.map(|[s, p]| if s + p > 0.0 { (s - p) / (s + p) } else { 0.0 });
+            (0..2).for_each(|way| degrees[way] = degree(summed[way]).max(degrees[way]));
         }
         (through, back, degrees)
     }

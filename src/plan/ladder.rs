@@ -24,7 +24,8 @@ impl Rung {
 /// Most diffuse and smooth colors that are combined; of more, those farthest from gray.
 const MOST: [usize; 2] = [20, 6];
 
-/// The largest relative error of a color that a basis makes in a scene, over its lights and over all pairs of surfaces.
+/// The largest relative error of a color that a basis makes in a scene: over its lights and all pairs of surfaces, and over
+/// what light of a probe meets, however many smooth surfaces those are.
 pub(super) fn error(survey: &Survey, basis: &Basis) -> f64 {
     missed(survey, basis, &survey.scattering(MOST[0]), &survey.smooth(MOST[1]))
 }
@@ -49,7 +50,7 @@ fn missed(survey: &Survey, basis: &Basis, scattering: &[&Tint], smooth: &[&Tint]
             }
         }
     }
-    worst
+    worst.max(survey.seen.error(survey, basis))
 }
 
 /// The film colors of all paths, by sums over 1 nm.

@@ -4,12 +4,13 @@ mod beyond;
 mod caustics;
 mod ladder;
 mod model;
+mod polarization;
+mod seen;
 mod survey;
+mod transport;
 mod worth;
 
-use crate::film::Filter;
-use crate::light::Light;
-use crate::scene::{Object, Scene};
+use crate::scene::Scene;
 use crate::spectrum::{Basis, Curve};
 use crate::trace::{LightPass, Method, Transport, World, probe};
 use model::Model;
@@ -29,13 +30,6 @@ pub struct Plan {
 
 /// Samples where the scene does not say.
 const SAMPLES: u32 = 256;
-/// Weight below which deterministic transport follows no branch.
-const CUTOFF: f64 = 1e-9;
-/// Weight above which a path splits into all its branches (row W5 of the stability catalog).
-const SPLIT: f64 = 0.05;
-/// Weight below which paths are ended at random.
-const ROULETTE: f64 = 0.05;
-
 /// Refracted rays that lie nearer to each other, in pixels, go on as one where wavelengths are drawn: a twentieth of the
 /// dispersion that can be seen, so that several surfaces in a row stay below it.
 const TOGETHER_PIXELS: f64 = 0.01;
@@ -43,7 +37,8 @@ const TOGETHER_PIXELS: f64 = 0.01;
 /// Decides how to render a scene.
 pub fn plan(scene: &Scene<Curve>) -> Plan {
     let Model { basis, mut because, next, rungs } = model::model(scene);
-    let (transport, reason) = transport(scene, &basis);
+    let together = if basis.draws_wavelengths() { TOGETHER_PIXELS * scene.camera.pixel_angle() } else { 0.0 };
+    let (transport, reason) = transport::transport(scene, &basis, together);
     because.push(reason);
     let samples = match (transport, scene.render.samples) {
         (_, Some(samples)) => samples,
@@ -51,7 +46,6 @@ pub fn plan(scene: &Scene<Curve>) -> Plan {
         (Transport::Random { .. }, None) => SAMPLES,
     };
     let diffuse_bounces = scene.render.diffuse_bounces.unwrap_or(u32::MAX);
-    let together = if basis.draws_wavelengths() { TOGETHER_PIXELS * scene.camera.pixel_angle() } else { 0.0 };
     let max_bounces = scene.render.max_bounces.unwrap_or(u32::MAX);
     let seed = scene.render.seed;
     let method = Method { basis, transport, together, samples, seed, diffuse_bounces, max_bounces, light_pass: None };
@@ -64,54 +58,6 @@ pub fn plan(scene: &Scene<Curve>) -> Plan {
     because.extend(lights(scene, method.light_pass.as_ref()));
     because.extend(cost(scene, &method, next));
     Plan { method, because, rungs }
-}
-
-/// Whether anything is left to chance.
-fn transport(scene: &Scene<Curve>, basis: &Basis) -> (Transport, String) {
-    let random = Transport::Random { split: SPLIT, roulette: ROULETTE };
-    let material = |object: &&Object| &scene.materials[object.material as usize].material;
-    let rough =
-        scene.objects.iter().find(|object| material(object).scatters_widely() && !material(object).is_diffuse());
-    let scattering = scene.objects.iter().find(|object| material(object).scatters_widely());
-    let anywhere = || {
-        let filter = scene.film.filter;
-        let place = if filter == Filter::Box { "anywhere in" } else { "somewhere about" };
-        (filter != Filter::Center)
-            .then(|| format!("each sample falls {place} its pixel (filter \"{}\")", filter.name()))
-    };
-    let why = match scattering {
-        _ if basis.draws_wavelengths() => Some("each sample carries other wavelengths".to_owned()),
-        _ if scene.camera.has_lens() => Some("each sample sees through another point of the lens".to_owned()),
-        None => anywhere(),
-        Some(object) => match (scene.render.diffuse_bounces.filter(|_| rough.is_none()), extended_light(scene)) {
-            (Some(0), None) => anywhere(),
-            (Some(0), Some(light)) => Some(format!("{} is lit by {light}, which has many points", object.name)),
-            _ => Some(format!("light leaves {} in every direction", object.name)),
-        },
-    };
-    match why {
-        None => (
-            Transport::Deterministic { cutoff: CUTOFF },
-            format!(
-                "transport deterministic: no random light path, 1 sample per pixel is exact; branches end below weight {CUTOFF:e}"
-            ),
-        ),
-        Some(why) => (
-            random,
-            format!(
-                "transport random: {why}; paths split above weight {SPLIT}, then follow one branch, roulette below {ROULETTE}"
-            ),
-        ),
-    }
-}
-
-/// A light with an extent that next-event estimation would aim at.
-fn extended_light(scene: &Scene<Curve>) -> Option<String> {
-    scene.lights.iter().find(|light| light.is_aimed_at() && light.is_extended()).map(|light| match light {
-        Light::Area(area) => scene.objects[area.object as usize].name.clone(),
-        Light::Sun(_) => "the sun".into(),
-        _ => "the environment".into(),
-    })
 }
 
 /// What lights cannot do.
@@ -156,11 +102,7 @@ fn cost(scene: &Scene<Curve>, method: &Method, next: Option<Basis>) -> Vec<Strin
     if probe.parted > 0.0 {
         lines.push(format!("lanes part in {:.0} % of the camera samples", 100.0 * probe.parted));
     }
-    if probe.polarization > 1e-4 {
-        let bound = 100.0 * probe.polarization;
-        lines
-            .push(format!("polarization is left out: it would move at most {bound:.2} % of the light (P_A P_B bound)"));
-    }
+    lines.extend(polarization::left_out(scene, method, &probe));
     let pass = method.light_pass.as_ref();
     let of_map = pass.and_then(|pass| pass.map).map_or(0, |map| u64::from(map.count) * map.photons);
     let photons = pass.map_or(0, |pass| pass.photons) + of_map;
@@ -177,6 +119,15 @@ fn cost(scene: &Scene<Curve>, method: &Method, next: Option<Basis>) -> Vec<Strin
         in_words(seconds)
     ));
     lines
+}
+
+/// A share as people say it.
+fn percent(share: f64) -> String {
+    match 100.0 * share {
+        p if p < 0.095 => format!("{p:.2} %"),
+        p if p < 9.95 => format!("{p:.1} %"),
+        p => format!("{p:.0} %"),
+    }
 }
 
 /// A count as people say it.

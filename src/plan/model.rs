@@ -1,6 +1,7 @@
 //! Which lanes carry the light, and whether they part.
 
 use super::ladder::{LANES_SAFETY, Rung, bands_beside, error, ladder, own_lines};
+use super::percent;
 use super::survey::{Survey, disperses};
 use crate::material::Material;
 use crate::scene::{ModelText, Scene};
@@ -39,7 +40,7 @@ pub(super) fn model(scene: &Scene<Curve>) -> Model {
     let filled = dispersion.is_some_and(|d| d.seen > FILLED);
     let [bands, heroes] = HERO[usize::from(filled)];
     let rungs = ladder(&survey, if hero { heroes } else { 0 });
-    let tolerance = SHARE * scene.render.error.unwrap_or(ERROR);
+    let tolerance = tolerance(scene);
     let chosen = rungs.iter().position(|rung| rung.bound() <= tolerance).unwrap_or(rungs.len() - 1);
 
     let is_exact = survey.is_plain() && rungs[0].error == 0.0;
@@ -68,6 +69,11 @@ pub(super) fn model(scene: &Scene<Curve>) -> Model {
     Model { basis, because, rungs, next: next.map(|next| if together || hero { next.kept_together() } else { next }) }
 }
 
+/// The relative error of a color that its model may make.
+pub(super) fn tolerance(scene: &Scene<Curve>) -> f64 {
+    SHARE * scene.render.error.unwrap_or(ERROR)
+}
+
 /// Three bands, whatever they miss.
 fn three_bands(survey: &Survey) -> Basis {
     let space = survey.color_space;
@@ -90,11 +96,6 @@ fn least(rungs: &[Rung], chosen: usize, tolerance: f64, plain: bool) -> String {
 
 /// The whole ladder in one line; for heroes, what their fixed lanes miss.
 fn missed(rungs: &[Rung], basis: &Basis, survey: &Survey, tolerance: f64) -> String {
-    let percent = |error: f64| match 100.0 * error {
-        p if p < 0.095 => format!("{p:.2} %"),
-        p if p < 9.95 => format!("{p:.1} %"),
-        p => format!("{p:.0} %"),
-    };
     if basis.draws_wavelengths() {
         let bound = LANES_SAFETY * error(survey, basis);
         return format!("color missed at most {} (tolerated {})", percent(bound), percent(tolerance));

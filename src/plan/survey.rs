@@ -2,7 +2,8 @@
 
 use std::borrow::Cow;
 
-use crate::material::{Conductor, Dielectric, Material, Plastic, diffuse_transmittance};
+use super::seen::Seen;
+use crate::material::{Conductor, Dielectric, Material, Plastic, conductor_reflectance, diffuse_transmittance};
 use crate::scene::Scene;
 use crate::spectrum::{
     Basis, ColorSpace, Curve, CurveKind, Emission, Quantity, Upsampler, normal_reflectance, visible,
@@ -11,10 +12,12 @@ use crate::spectrum::{
 /// The colors of a scene: what shines and what tints.
 pub(super) struct Survey<'a> {
     pub(super) color_space: ColorSpace,
-    upsampler: Upsampler,
+    pub(super) upsampler: Upsampler,
     /// The light of each different spectrum, as it is written and as it shines.
     pub(super) lights: Vec<(Curve, Emission)>,
     tints: Vec<Tint<'a>>,
+    /// What light of the probe meets, where smooth surfaces tint it.
+    pub(super) seen: Seen<'a>,
 }
 
 /// Something that tints light.
@@ -25,8 +28,8 @@ pub(super) enum Tint<'a> {
     Coated(&'a Plastic<Curve>, Cow<'a, Curve>),
     /// A factor on light that a smooth surface reflects or lets through.
     Filter(Quantity, Cow<'a, Curve>),
-    /// A metal's reflection at normal incidence, once or, where it is rough, more often.
-    Metal(&'a Conductor<Curve>),
+    /// A metal's reflection under an angle of this cosine, once or, where it is rough, more often.
+    Metal(&'a Conductor<Curve>, f64),
     /// Light goes a distance through an absorbing body.
     Depth(&'a Curve, f64),
     /// Light meets a clear surface of a measured index at right angles, and is reflected or crosses it.
@@ -59,7 +62,7 @@ impl<'a> Survey<'a> {
                     }
                     Material::Thin(thin) => tints.extend(filters(Quantity::Transmittance, &thin.transmittance)),
                     Material::Mirror(mirror) => tints.extend(filters(Quantity::Reflectance, &mirror.reflectance)),
-                    Material::Conductor(metal) => tints.push(Tint::Metal(metal)),
+                    Material::Conductor(metal) => tints.push(Tint::Metal(metal, 1.0)),
                     Material::Dielectric(glass) => {
                         tints.extend(filters(Quantity::Reflectance, &glass.reflectance));
                         tints.extend(filters(Quantity::Transmittance, &glass.transmittance));
@@ -71,7 +74,12 @@ impl<'a> Survey<'a> {
                 }
             }
         }
-        Self { color_space: space, upsampler: Upsampler::new(space), lights, tints }
+        let mut survey =
+            Self { color_space: space, upsampler: Upsampler::new(space), lights, tints, seen: Seen::default() };
+        if !survey.is_plain() && !survey.smooth(1).is_empty() {
+            survey.seen = Seen::new(scene, &survey);
+        }
+        survey
     }
 
     /// Whether three numbers say all that is known of every color: numbers and `rgb` under the film's own white.
@@ -94,6 +102,12 @@ impl<'a> Survey<'a> {
     /// The emissions of all different lights.
     pub(super) fn emissions(&self) -> Vec<Emission> {
         self.lights.iter().map(|(_, light)| light.clone()).collect()
+    }
+
+    /// Which of the different lights one is.
+    pub(super) fn number_of_light(&self, curve: &Curve) -> usize {
+        let emission = Emission::new(curve, self.color_space);
+        self.lights.iter().position(|(_, light)| light.looks_like(&emission)).unwrap_or(0)
     }
 
     /// The brightest ideal lines, ascending in nm, and how many there are in all.
@@ -154,7 +168,7 @@ impl Tint<'_> {
         match self {
             Self::Diffuse(curve) | Self::Filter(_, curve) => vec![curve],
             Self::Depth(curve, _) => vec![curve],
-            Self::Metal(metal) => vec![&metal.n, &metal.k],
+            Self::Metal(metal, _) => vec![&metal.n, &metal.k],
             Self::Coated(_, reflectance) => vec![reflectance],
             Self::Surface { .. } => Vec::new(),
         }
@@ -174,7 +188,7 @@ impl Tint<'_> {
         self.read(wavelengths_nm, basis.upsampler())
     }
 
-    fn read(&self, wavelengths_nm: &[f64], upsampler: &Upsampler) -> Vec<f64> {
+    pub(super) fn read(&self, wavelengths_nm: &[f64], upsampler: &Upsampler) -> Vec<f64> {
         self.combine(|quantity, curve| {
             let reader = curve.reader(quantity, upsampler);
             wavelengths_nm.iter().map(|&nm| reader(nm)).collect()
@@ -202,9 +216,12 @@ impl Tint<'_> {
                 read(Quantity::Reflectance, reflectance).into_iter().zip(index).map(coated).collect()
             }
             Self::Filter(quantity, curve) => read(*quantity, curve),
-            Self::Metal(metal) => {
+            Self::Metal(metal, cos) => {
                 let (n, k) = (read(Quantity::MetalIndex, &metal.n), read(Quantity::MetalExtinction, &metal.k));
-                let reflected = n.into_iter().zip(k).map(|(n, k)| normal_reflectance(n, k));
+                let reflected = n.into_iter().zip(k).map(|(n, k)| match *cos {
+                    1.0 => normal_reflectance(n, k),
+                    cos => 0.5 * conductor_reflectance(1.0, n, k, cos).iter().sum::<f64>(),
+                });
                 match metal.roughness.surface() {
                     None => reflected.collect(),
                     Some(surface) => {

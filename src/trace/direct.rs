@@ -4,6 +4,7 @@ use std::cell::Cell;
 
 use super::holes::through_holes;
 use super::path::Drawn;
+use super::polarization::Lit;
 use super::{World, media, shading};
 use crate::light::{Light, LightId};
 use crate::material::{Arrival, Material};
@@ -31,6 +32,8 @@ pub(super) struct Gathering<'a, const N: usize> {
     pub(super) aims_at_all: bool,
     /// The object that hid a light last.
     pub(super) hider: &'a Cell<Option<u32>>,
+    /// What polarization may change of it, where the path is polarized.
+    pub(super) lit: Option<Lit<'a>>,
     /// Four random numbers of the vertex; the first light uses the first two, the choice of one light the last.
     pub(super) u: [f64; 4],
 }
@@ -139,7 +142,11 @@ impl<const N: usize> Gathering<'_, N> {
                     arriving * media::medium(self.world, material).transmission(self.arrival.draw, view.distance);
             }
             let reflected = self.throughput.scaled(factor).of(bsdf_cos * arriving);
-            Some(self.world.responses[target].sensor(self.arrival.draw, reflected, self.parted))
+            let rgb = self.world.responses[target].sensor(self.arrival.draw, reflected, self.parted);
+            if let Some(lit) = &self.lit {
+                lit.count(self.world, (self.material, self.arrival), sighting.direction, rgb);
+            }
+            Some(rgb)
         };
         lit().unwrap_or([0.0; 3])
     }

@@ -11,7 +11,26 @@ use crate::spectrum::Draw;
 /// Use of the random numbers that choose a branch or end one.
 const CHOICE: u32 = 2;
 
+/// Surfaces that one camera sample of deterministic transport may meet before it goes on by chance.
+pub(super) const MOST_SURFACES: u64 = 16_384;
+/// How it goes on then: what is left is mostly faint, and all branches are still followed that are not.
+const BY_CHANCE: Transport = Transport::Random { split: 0.01, roulette: 0.01 };
+
 impl<const N: usize> Tracer<'_, N> {
+    /// Which branches are followed by now. Where light has more ways than can be followed, one is chosen, which leaves the
+    /// mean what it is.
+    fn rule(&self) -> Transport {
+        match self.transport {
+            Transport::Deterministic { .. } if self.surfaces() > MOST_SURFACES => BY_CHANCE,
+            asked => asked,
+        }
+    }
+
+    /// Surfaces met by this camera sample or photon.
+    pub(super) fn surfaces(&self) -> u64 {
+        self.tally.rays - self.started
+    }
+
     /// Decides which branches are followed; `child(number, branch, factor)` makes the path of one.
     pub(super) fn follow(
         &mut self,
@@ -27,14 +46,7 @@ impl<const N: usize> Tracer<'_, N> {
             let shares = draw.shares(parted(branch));
             path.throughput.through(branch.share).weight(shares) / (path.eta_scale * branch.eta_scale)
         };
-        if path.polarization != 0.0 {
-            let moved = |branch: &Branch<N>| {
-                let degree = f64::from(path.polarization * branch.polarization).abs();
-                weight_of(branch) * degree / draw.siblings(parted(branch))
-            };
-            self.tally.polarization += self.branches.iter().map(moved).sum::<f64>();
-        }
-        match self.transport {
+        match self.rule() {
             Transport::Deterministic { cutoff } => {
                 for (number, branch) in self.branches.iter().enumerate() {
                     match weight_of(branch) {

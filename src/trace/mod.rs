@@ -12,6 +12,7 @@
 //! 6. Random numbers are a pure function of seed, pixel, sample, branch and use; sums have a fixed order.
 
 mod aims;
+mod branching;
 mod choice;
 mod direct;
 mod emission;
@@ -27,9 +28,11 @@ mod method;
 mod path;
 mod photon;
 mod pilot;
+mod polarization;
 mod probe;
 mod render;
 mod roulette;
+mod routes;
 mod sending;
 mod shading;
 mod spread;
@@ -39,11 +42,13 @@ mod width;
 mod world;
 
 pub use aims::{is_photon_source, is_photon_target};
+pub use branching::{Branching, branching};
 pub use light_pass::seen_photons;
 pub use merge::{gathered_photons, reached_places};
 pub use method::{LightPass, MapPasses, Method, Transport};
 pub use pilot::{PhotonWorth, SampleWorth, photons_worth, samples_worth};
 pub use probe::{Probe, probe};
 pub use render::{Report, render, work};
+pub use routes::{ROUTES_NM, Route, Step, Way, routes};
 pub use spread::{COLORS_NM, Spread, spread};
 pub use world::World;

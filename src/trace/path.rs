@@ -1,5 +1,6 @@
 use super::World;
 use super::media::{self, Media};
+use super::polarization::Polarized;
 use crate::math::{BranchKey, DVec3, Ray};
 use crate::shape::SurfacePoint;
 use crate::spectrum::{Draw, Lanes, Throughput};
@@ -27,8 +28,8 @@ pub(super) struct Path<const N: usize> {
     pub(super) diffuse_left: u32,
     /// How the last direction was drawn; none after the camera or a smooth surface.
     pub(super) drawn: Option<Drawn>,
-    /// Degree to which the last smooth surface would have polarized the light.
-    pub(super) polarization: f32,
+    /// How far its light may be polarized.
+    pub(super) polarized: Polarized,
 }
 
 /// How a path that photons may find as well goes on.
@@ -103,7 +104,7 @@ impl<const N: usize> Path<N> {
             leg: Leg::Camera,
             diffuse_left: world.method.diffuse_bounces,
             drawn: None,
-            polarization: 0.0,
+            polarized: Polarized::NOT,
         }
     }
 

@@ -5,6 +5,7 @@ use super::emission::Emitted;
 use super::holes;
 use super::media::{self, Boundary, Media};
 use super::path::{Leg, Path};
+use super::polarization::Polarized;
 use super::shading;
 use super::tracer::Tracer;
 use crate::light::LightId;
@@ -78,7 +79,7 @@ impl<const N: usize> Tracer<'_, N> {
             leg: Leg::Other,
             diffuse_left: 0,
             drawn: None,
-            polarization: 0.0,
+            polarized: Polarized::NOT,
         });
         while let Some(mut path) = next.take().or_else(|| self.pending.pop()) {
             if path.vertices >= self.transport.last_vertex() {
@@ -170,6 +171,7 @@ impl<const N: usize> Tracer<'_, N> {
             media: if branch.crosses { crossed } else { path.media },
             parted: path.parted || (parts && branch.crosses),
             key: path.key.child(number),
+            polarized: path.polarized.after(branch.polarization),
             ..*path
         })
     }

@@ -38,8 +38,14 @@ pub struct Report {
     pub stopped: f64,
     /// Surfaces of clear bodies that were left without having been entered: open meshes.
     pub unmatched: u64,
-    /// Bound of the mean weight per camera sample that polarization would move.
+    /// Camera samples of deterministic transport that met so many surfaces that they went on by chance.
+    pub by_chance: u64,
+    /// Most of the light seen, as a share, that polarization, which is not traced, may change.
     pub polarization: f64,
+    /// The same in the tile of 16 x 16 pixels where it is largest.
+    pub polarization_of_tile: f64,
+    /// All light that camera rays found, as X + Y + Z.
+    pub light: f64,
     /// Photons sent by the light pass.
     pub photons: u64,
 }
@@ -104,6 +110,10 @@ fn render_lanes<const N: usize>(world: &World, progress: &(dyn Fn(u64) + Sync)) 
     let mut pixels = vec![BLANK; window.width as usize * window.height as usize];
     for tile in &tiles {
         report.add(&tile.report);
+        if tile.report.light > 0.0 {
+            let of_tile = tile.report.polarization / tile.report.light;
+            report.polarization_of_tile = report.polarization_of_tile.max(of_tile);
+        }
         for (row, line) in tile.pixels.chunks_exact(tile.width as usize).enumerate() {
             let start = (tile.corner[1] as usize + row) * window.width as usize + tile.corner[0] as usize;
             pixels[start..start + line.len()].copy_from_slice(line);
@@ -112,7 +122,7 @@ fn render_lanes<const N: usize>(world: &World, progress: &(dyn Fn(u64) + Sync)) 
     let samples = report.samples.max(1) as f64;
     report.dropped /= samples;
     report.stopped /= samples;
-    report.polarization /= samples;
+    report.polarization = if report.light > 0.0 { report.polarization / report.light } else { 0.0 };
     let film = Film {
         width: window.width,
         height: window.height,
@@ -164,9 +174,10 @@ impl Tile {
             }
             sum.settle();
         }
-        let Tally { rays, dropped, stopped, unmatched, polarization, .. } = tracer.tally;
+        let Tally { rays, dropped, stopped, unmatched, polarization, light, by_chance, .. } = tracer.tally;
         let samples = self.sums.len() as u64 * numbers.len() as u64;
-        report.add(&Report { samples, rays, dropped, stopped, unmatched, polarization, ..Report::default() });
+        let lost = Report { dropped, stopped, unmatched, by_chance, ..Report::default() };
+        report.add(&Report { samples, rays, polarization, light, ..lost });
     }
 
     /// Makes the pixels of their sums, and what photons show there.
@@ -224,5 +235,7 @@ impl Report {
         self.stopped += other.stopped;
         self.unmatched += other.unmatched;
         self.polarization += other.polarization;
+        self.light += other.light;
+        self.by_chance += other.by_chance;
     }
 }

@@ -11,6 +11,10 @@ pub(super) struct Tally {
     pub(super) unmatched: u64,
     /// Surfaces at which lanes parted.
     pub(super) partings: u64,
-    /// Bound of the weight that polarization would move: the sum of weight x |P_A P_B| over consecutive smooth surfaces.
+    /// All light that was seen, as X + Y + Z.
+    pub(super) light: f64,
+    /// Most of it that polarization may have changed.
     pub(super) polarization: f64,
+    /// Camera samples of deterministic transport that met so many surfaces that they went on by chance.
+    pub(super) by_chance: u64,
 }

@@ -3,10 +3,12 @@
 use std::cell::Cell;
 
 use super::direct::{Gathering, add, weight_of_meeting};
+use super::follow::MOST_SURFACES;
 use super::holes;
 use super::media::{self, Boundary};
 use super::merge::Photons;
 use super::path::{Drawn, Leg, Path};
+use super::polarization::{Lit, amount};
 use super::shading;
 use super::tally::Tally;
 use super::{Transport, World};
@@ -26,6 +28,8 @@ pub(super) struct Tracer<'a, const N: usize> {
     /// The object that hid the last light that was hidden: the first to ask about the next one.
     pub(super) hider: Cell<Option<u32>>,
     pub(super) tally: Tally,
+    /// Rays that were followed before this camera sample.
+    pub(super) started: u64,
     /// Lights that paths from widely scattering surfaces met, with the unit normal there, if somebody wants to know.
     pub(super) met: Option<Vec<(LightId, DVec3)>>,
     /// Photons that are gathered, if any are.
@@ -55,6 +59,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
             branches,
             hider: Cell::new(None),
             tally,
+            started: 0,
             met: None,
             photons: None,
             reached: None,
@@ -69,6 +74,8 @@ impl<'a, const N: usize> Tracer<'a, N> {
     pub(super) fn radiance(&mut self, ray: Ray, draw: &Draw<N>, sampler: &Sampler) -> ([f64; 3], Option<SurfacePoint>) {
         let mut sum = [0.0; 3];
         let mut first = None;
+        self.started = self.tally.rays;
+        let moved = self.tally.polarization;
         let mut next = Some(Path::from_camera(self.world, draw, ray));
         while let Some(mut path) = next.or_else(|| self.pending.pop()) {
             if path.vertices >= self.world.method.transport.last_vertex() {
@@ -79,7 +86,8 @@ impl<'a, const N: usize> Tracer<'a, N> {
             self.tally.rays += 1;
             let Some(hit) = self.world.scene.intersect(&path.ray) else {
                 path.advance(self.world, draw, f64::INFINITY);
-                add(&mut sum, self.background(&path, draw));
+                let light = self.background(&path, draw);
+                self.receive(&path, light, &mut sum);
                 next = None;
                 continue;
             };
@@ -96,7 +104,8 @@ impl<'a, const N: usize> Tracer<'a, N> {
                 first = Some(point);
             }
             path.vertices += 1;
-            add(&mut sum, self.emission(&path, draw, &hit, &point));
+            let light = self.emission(&path, draw, &hit, &point);
+            self.receive(&path, light, &mut sum);
             if path.vertices > self.world.method.max_bounces {
                 if !matches!(self.world.scene.material_of(hit.object), Material::Emissive(_)) {
                     self.tally.stopped += path.weight(draw) / draw.siblings(path.parted);
@@ -106,7 +115,23 @@ impl<'a, const N: usize> Tracer<'a, N> {
             }
             next = self.scatter(&path, draw, sampler, (&hit, &point, passing), &mut sum);
         }
+        let deterministic = matches!(self.transport, Transport::Deterministic { .. });
+        self.tally.by_chance += u64::from(deterministic && self.surfaces() > MOST_SURFACES);
+        let light = amount(self.world, sum);
+        if light.is_finite() && self.tally.polarization.is_finite() {
+            self.tally.light += light;
+        } else {
+            self.tally.polarization = moved;
+        }
         (sum, first)
+    }
+
+    /// Adds light of the sensor that came by a path, and what polarization may have changed of it.
+    fn receive(&mut self, path: &Path<N>, light: [f64; 3], sum: &mut [f64; 3]) {
+        if path.polarized.is_any() {
+            self.tally.polarization += path.polarized.change() * amount(self.world, light);
+        }
+        add(sum, light);
     }
 
     /// The light of the sky at the end of a path that meets nothing.
@@ -190,6 +215,8 @@ impl<'a, const N: usize> Tracer<'a, N> {
             u = if spread { sampler.four(path.key, SCATTER) } else { sampler.four_plain(path.key, SCATTER) };
             let aims_at_all = world.aims_at_all(path.weight(draw));
             let goes_on = !diffuse || path.diffuse_left > 0;
+            let moved = Cell::new(0.0);
+            let lit = path.polarized.is_any().then_some(Lit { polarized: path.polarized, moved: &moved });
             let gathering = Gathering {
                 world,
                 material,
@@ -203,13 +230,16 @@ impl<'a, const N: usize> Tracer<'a, N> {
                 goes_on,
                 aims_at_all,
                 hider: &self.hider,
+                lit,
                 u,
             };
             let far = material.scatters_through().then_some((beyond, parts));
             let chance = gathering.gather(far, sampler, path.key, sum);
+            self.tally.polarization += moved.get();
             if goes_on && path.leg != Leg::Camera {
                 if let Some(photons) = self.photons {
-                    add(sum, photons.gather(world, path, &arrival, (hit, point, normal), (material, parts)));
+                    let light = photons.gather(world, path, &arrival, (hit, point, normal), (material, parts));
+                    self.receive(path, light, sum);
                 }
                 if let Some(reached) = &mut self.reached {
                     reached.push(point.position);
@@ -253,7 +283,10 @@ impl<'a, const N: usize> Tracer<'a, N> {
                 leg: path.leg.then(world.has_map(), branch.pdf.is_some(), aimed),
                 diffuse_left: path.diffuse_left - u32::from(diffuse && branch.pdf.is_some()),
                 drawn: branch.pdf.and_then(|pdf| drawn.map(|drawn: Drawn| drawn.toward(pdf, branch.crosses))),
-                polarization: branch.polarization,
+                polarized: match branch.pdf {
+                    Some(_) => path.polarized.scattered(material, &arrival, branch.wi),
+                    None => path.polarized.after(branch.polarization),
+                },
             }
         })
     }

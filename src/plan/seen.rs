@@ -1,0 +1,248 @@
+//! The colors that the camera sees of a scene, as a probe finds them: products of as many tints as light really meets.
+
+use std::collections::BTreeMap;
+
+use super::model::tolerance;
+use super::survey::{Survey, Tint};
+use crate::material::Material;
+use crate::scene::Scene;
+use crate::spectrum::{Basis, Curve, Draw, Lanes, MAX_LANES, Quantity, visible};
+use crate::trace::{Method, ROUTES_NM, Route, Step, Transport, Way, World, routes};
+
+/// Colors that are seen, each light's own.
+#[derive(Default)]
+pub(super) struct Seen<'a> {
+    tints: Vec<Tint<'a>>,
+    /// Tints that light meets one after another, each as often as it is met.
+    products: Vec<Vec<u32>>,
+    colors: Vec<Color>,
+}
+
+/// What a pixel sees of one light, after as many diffuse surfaces.
+struct Color {
+    light: usize,
+    /// Products and their weights.
+    sum: Vec<(usize, f64)>,
+    /// By sums over 1 nm.
+    exact: [f64; 3],
+    /// What an error of it is relative to: its strongest channel. Of colors that are fainter than what is tolerated of the
+    /// brightest that the light makes in the view, it is that.
+    scale: f64,
+}
+
+/// Steps of a distance, a factor, and of a cosine that are told apart.
+const DISTANCE: f64 = 1.05;
+const COSINES: f64 = 32.0;
+/// Weights that are told apart.
+const WEIGHTS: f64 = 100.0;
+
+impl<'a> Seen<'a> {
+    /// Sends a few hundred rays and keeps what they met.
+    pub(super) fn new(scene: &'a Scene<Curve>, survey: &Survey) -> Self {
+        let basis = Basis::wavelengths(survey.color_space, ROUTES_NM.into(), &[]);
+        let method = Method {
+            basis,
+            transport: Transport::Random { split: 1.0, roulette: 0.0 },
+            together: 0.0,
+            samples: 1,
+            seed: scene.render.seed,
+            diffuse_bounces: scene.render.diffuse_bounces.unwrap_or(u32::MAX),
+            max_bounces: u32::MAX,
+            light_pass: None,
+        };
+        let mut keeping = Keeping::new(scene, survey);
+        for of_pixel in routes(&World::untaught(scene, method)) {
+            keeping.keep(&of_pixel);
+        }
+        keeping.finish(survey, tolerance(scene))
+    }
+
+    /// The largest error of a color in the lanes of a basis.
+    pub(super) fn error(&self, survey: &Survey, basis: &Basis) -> f64 {
+        let draw = Draw::<MAX_LANES>::fixed(basis.fixed_lanes());
+        let tints: Vec<Vec<f64>> = self.tints.iter().map(|tint| tint.on(basis)).collect();
+        let products = self.multiply(&tints, basis.fixed_lanes());
+        let lights = survey
+            .lights
+            .iter()
+            .map(|(curve, _)| (draw.read(&basis.tabulate(Quantity::Emission, curve)), basis.response(curve)));
+        let lights: Vec<_> = lights.collect();
+        let missed = |color: &Color| {
+            let mut lanes = [0.0; MAX_LANES];
+            for (product, weight) in &color.sum {
+                lanes.iter_mut().zip(&products[*product]).for_each(|(lane, left)| *lane += weight * left);
+            }
+            let (emission, response) = &lights[color.light];
+            let found = response.sensor(&draw, *emission * Lanes(lanes.map(|x| x as f32)), false);
+            let off = (0..3).fold(0.0_f64, |most, c| most.max((found[c] - color.exact[c]).abs()));
+            off / color.scale
+        };
+        self.colors.iter().map(missed).fold(0.0, f64::max)
+    }
+
+    /// What is left of light after each product, where tints leave some.
+    fn multiply(&self, tints: &[Vec<f64>], length: usize) -> Vec<Vec<f64>> {
+        let product = |numbers: &Vec<u32>| {
+            let mut left = vec![1.0; length];
+            for &number in numbers {
+                left.iter_mut().zip(&tints[number as usize]).for_each(|(left, tint)| *left *= tint);
+            }
+            left
+        };
+        self.products.iter().map(product).collect()
+    }
+}
+
+/// A tint that was met, so that it is known again: material, part, what light does there, and a number.
+type Key = (u32, usize, u8, i64);
+/// A color to be known again: light, diffuse surfaces, products with rounded weights.
+type ColorKey = (usize, u32, Vec<(usize, i64)>);
+
+/// Collects what rays met.
+struct Keeping<'a> {
+    scene: &'a Scene<Curve>,
+    /// The survey's light of each light.
+    lights: Vec<usize>,
+    seen: Seen<'a>,
+    tints: BTreeMap<Key, Vec<u32>>,
+    products: BTreeMap<Vec<u32>, usize>,
+    colors: BTreeMap<ColorKey, Vec<(usize, f64)>>,
+}
+
+impl<'a> Keeping<'a> {
+    fn new(scene: &'a Scene<Curve>, survey: &Survey) -> Self {
+        let light = |curve: &Curve| {
+            let known = survey.lights.iter().position(|(other, _)| other == curve);
+            known.unwrap_or_else(|| survey.number_of_light(curve))
+        };
+        let lights = scene.lights.iter().map(|of| light(of.emission())).collect();
+        let (tints, products, colors) = (BTreeMap::new(), BTreeMap::new(), BTreeMap::new());
+        Self { scene, lights, seen: Seen::default(), tints, products, colors }
+    }
+
+    /// Adds the colors of one pixel.
+    fn keep(&mut self, found: &[Route]) {
+        let mut of_pixel: BTreeMap<(usize, u32), Vec<(usize, f64)>> = BTreeMap::new();
+        for route in found {
+            let product = self.product(route);
+            let sum = of_pixel.entry((route.light, route.scattered)).or_default();
+            match sum.iter_mut().find(|(known, _)| *known == product) {
+                Some((_, weight)) => *weight += route.weight,
+                None => sum.push((product, route.weight)),
+            }
+        }
+        for ((light, scattered), sum) in of_pixel {
+            let rounded = |&(product, weight): &(usize, f64)| (product, (weight * WEIGHTS).round() as i64);
+            let mut key: Vec<_> = sum.iter().map(rounded).collect();
+            key.sort_unstable();
+            self.colors.entry((self.lights[light], scattered, key)).or_insert(sum);
+        }
+    }
+
+    fn product(&mut self, route: &Route) -> usize {
+        let mut numbers: Vec<u32> = route.steps.iter().flat_map(|step| self.met(step)).collect();
+        numbers.sort_unstable();
+        let next = self.products.len();
+        *self.products.entry(numbers).or_insert(next)
+    }
+
+    /// The tints of a step.
+    fn met(&mut self, step: &Step) -> Vec<u32> {
+        let (way, rounded) = match step.way {
+            Way::Reflected(cos) => (0, (cos * COSINES).round().max(1.0) as i64),
+            Way::Crossed => (1, 0),
+            Way::Scattered => (2, 0),
+            Way::Inside(distance) => (3, (libm::log(distance) / libm::log(DISTANCE)).round() as i64),
+        };
+        let material = &self.scene.materials[step.material as usize].material;
+        let whole = material.with_parts();
+        let rounded = if matches!(whole[step.part], Material::Conductor(_)) || way == 3 { rounded } else { 0 };
+        let key = (step.material, step.part, way, rounded);
+        if let Some(known) = self.tints.get(&key) {
+            return known.clone();
+        }
+        let tints = tints(&whole, step, rounded);
+        let first = self.seen.tints.len() as u32;
+        let numbers: Vec<u32> = (first..).take(tints.len()).collect();
+        self.seen.tints.extend(tints);
+        self.tints.insert(key, numbers.clone());
+        numbers
+    }
+
+    fn finish(self, survey: &Survey, tolerated: f64) -> Seen<'a> {
+        let mut seen = self.seen;
+        seen.products = vec![Vec::new(); self.products.len()];
+        self.products.into_iter().for_each(|(numbers, at)| seen.products[at] = numbers);
+        let mut by_light: Vec<Vec<(u32, Vec<(usize, f64)>)>> = survey.lights.iter().map(|_| Vec::new()).collect();
+        for ((light, scattered, _), sum) in self.colors {
+            by_light[light].push((scattered, sum));
+        }
+        for (light, (colors, (_, emission))) in by_light.into_iter().zip(&survey.lights).enumerate() {
+            if colors.is_empty() {
+                continue;
+            }
+            let lines = emission.lines().iter();
+            let wavelengths: Vec<f64> = visible::wavelengths().chain(lines.clone().map(|line| line[0])).collect();
+            let of_line = |&[nm, power]: &[f64; 2]| emission.film(nm).map(|x| x * power);
+            let columns: Vec<[f64; 3]> = emission.columns().chain(lines.map(of_line)).collect();
+            let tints: Vec<Vec<f64>> =
+                seen.tints.iter().map(|tint| tint.read(&wavelengths, &survey.upsampler)).collect();
+            let color = |left: Vec<f64>| {
+                let mut color = [0.0; 3];
+                for (left, column) in left.iter().zip(&columns) {
+                    (0..3).for_each(|c| color[c] += left * column[c]);
+                }
+                color
+            };
+            let products: Vec<[f64; 3]> = seen.multiply(&tints, wavelengths.len()).into_iter().map(color).collect();
+            let strongest = |color: &[f64; 3]| color.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+            let mut brightest: BTreeMap<u32, f64> = BTreeMap::new();
+            let first = seen.colors.len();
+            let mut after = Vec::new();
+            for (scattered, sum) in colors {
+                let exact = [0, 1, 2].map(|c| sum.iter().map(|(product, weight)| weight * products[*product][c]).sum());
+                let scale = strongest(&exact);
+                let most = brightest.entry(scattered).or_default();
+                *most = most.max(scale);
+                after.push(scattered);
+                seen.colors.push(Color { light, sum, exact, scale });
+            }
+            for (color, scattered) in seen.colors[first..].iter_mut().zip(after) {
+                color.scale = color.scale.max(tolerated * brightest[&scattered]);
+            }
+        }
+        seen.colors.retain(|color| color.scale > 0.0);
+        seen
+    }
+}
+
+/// What tints light at a step on one of the parts of a material; `rounded` is what tells its distance or angle.
+fn tints<'a>(whole: &[&'a Material<Curve>], step: &Step, rounded: i64) -> Vec<Tint<'a>> {
+    let filter = |quantity, curve: &'a Curve| vec![Tint::Filter(quantity, farthest_from_gray(curve))];
+    match (whole[step.part], step.way) {
+        (Material::Mirror(mirror), _) => filter(Quantity::Reflectance, &mirror.reflectance),
+        (Material::Thin(pane), Way::Crossed) => filter(Quantity::Transmittance, &pane.transmittance),
+        (Material::Dielectric(glass), Way::Crossed) => filter(Quantity::Transmittance, &glass.transmittance),
+        (Material::Dielectric(glass), Way::Reflected(_)) => filter(Quantity::Reflectance, &glass.reflectance),
+        (Material::Dielectric(glass), Way::Inside(_)) => {
+            vec![Tint::Depth(&glass.absorption, libm::exp(rounded as f64 * libm::log(DISTANCE)))]
+        }
+        (Material::Conductor(metal), _) => vec![Tint::Metal(metal, rounded as f64 / COSINES)],
+        (Material::Diffuse(diffuse), _) => vec![Tint::Diffuse(farthest_from_gray(&diffuse.reflectance))],
+        (Material::Plastic(plastic), Way::Scattered) => {
+            vec![Tint::Coated(plastic, farthest_from_gray(&plastic.reflectance))]
+        }
+        _ => Vec::new(),
+    }
+}
+
+/// Of a curve that varies over a surface, the color that is farthest from gray.
+fn farthest_from_gray(curve: &Curve) -> std::borrow::Cow<'_, Curve> {
+    let spread = |curve: &Curve| {
+        let rgb = curve.kind.rgb().unwrap_or([1.0; 3]);
+        let (low, high) = rgb.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), &x| (low.min(x), high.max(x)));
+        if high > 0.0 { (high - low) / high } else { 0.0 }
+    };
+    let shades = curve.shades().into_iter();
+    shades.max_by(|a, b| spread(a).total_cmp(&spread(b))).expect("a curve has a shade")
+}

@@ -1,0 +1,87 @@
+//! Whether light is followed in all its ways or in some, chosen by chance.
+
+use crate::film::Filter;
+use crate::light::Light;
+use crate::scene::{Object, Scene};
+use crate::spectrum::{Basis, Curve};
+use crate::trace::{Branching, Method, Transport, World, branching};
+
+/// Weight below which deterministic transport follows no branch.
+const CUTOFF: f64 = 1e-9;
+/// Weight above which a path splits into all its branches (row W5 of the stability catalog).
+const SPLIT: f64 = 0.05;
+/// Weight below which paths are ended at random.
+const ROULETTE: f64 = 0.05;
+/// Surfaces that a mean sample may meet where all branches are followed: about as many as 256 samples that choose one.
+const AFFORDABLE: f64 = 2048.0;
+
+/// Whether anything is left to chance, and why. Lanes within the angle `together` go on as one.
+pub(super) fn transport(scene: &Scene<Curve>, basis: &Basis, together: f64) -> (Transport, String) {
+    let random = Transport::Random { split: SPLIT, roulette: ROULETTE };
+    let material = |object: &&Object| &scene.materials[object.material as usize].material;
+    let rough =
+        scene.objects.iter().find(|object| material(object).scatters_widely() && !material(object).is_diffuse());
+    let scattering = scene.objects.iter().find(|object| material(object).scatters_widely());
+    let anywhere = || {
+        let filter = scene.film.filter;
+        let place = if filter == Filter::Box { "anywhere in" } else { "somewhere about" };
+        (filter != Filter::Center)
+            .then(|| format!("each sample falls {place} its pixel (filter \"{}\")", filter.name()))
+    };
+    let why = match scattering {
+        _ if basis.draws_wavelengths() => Some("each sample carries other wavelengths".to_owned()),
+        _ if scene.camera.has_lens() => Some("each sample sees through another point of the lens".to_owned()),
+        None => anywhere(),
+        Some(object) => match (scene.render.diffuse_bounces.filter(|_| rough.is_none()), extended_light(scene)) {
+            (Some(0), None) => anywhere(),
+            (Some(0), Some(light)) => Some(format!("{} is lit by {light}, which has many points", object.name)),
+            _ => Some(format!("light leaves {} in every direction", object.name)),
+        },
+    };
+    match why.or_else(|| too_many_ways(scene, basis, together)) {
+        None => (
+            Transport::Deterministic { cutoff: CUTOFF },
+            format!(
+                "transport deterministic: no random light path, 1 sample per pixel is exact; branches end below weight {CUTOFF:e}"
+            ),
+        ),
+        Some(why) => (
+            random,
+            format!(
+                "transport random: {why}; paths split above weight {SPLIT}, then follow one branch, roulette below {ROULETTE}"
+            ),
+        ),
+    }
+}
+
+/// A light with an extent that next-event estimation would aim at.
+fn extended_light(scene: &Scene<Curve>) -> Option<String> {
+    scene.lights.iter().find(|light| light.is_aimed_at() && light.is_extended()).map(|light| match light {
+        Light::Area(area) => scene.objects[area.object as usize].name.clone(),
+        Light::Sun(_) => "the sun".into(),
+        _ => "the environment".into(),
+    })
+}
+
+/// Why not all ways of light can be followed, where they are too many.
+fn too_many_ways(scene: &Scene<Curve>, basis: &Basis, together: f64) -> Option<String> {
+    if !scene.materials.iter().any(|named| named.material.has_single_directions()) {
+        return None;
+    }
+    let method = Method {
+        basis: basis.clone(),
+        transport: Transport::Deterministic { cutoff: CUTOFF },
+        together,
+        samples: 1,
+        seed: scene.render.seed,
+        diffuse_bounces: scene.render.diffuse_bounces.unwrap_or(u32::MAX),
+        max_bounces: scene.render.max_bounces.unwrap_or(u32::MAX),
+        light_pass: None,
+    };
+    match branching(&World::untaught(scene, method), AFFORDABLE) {
+        Branching::Affordable(_) => None,
+        Branching::Beyond([x, y]) => Some(format!(
+            "light has too many ways through glass and over mirrors to follow all of them, as at pixel ({x}, {y})"
+        )),
+    }
+}
