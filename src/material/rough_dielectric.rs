@@ -226,7 +226,7 @@ impl Dielectric<Table> {
             } else {
                 meeting.crossed(share / mean.value)
             };
-            if mean.pdf > 0.0 && !(share * tint).is_zero() {
+            if mean.value > 0.0 && mean.pdf > 0.0 && !(share * tint).is_zero() {
                 branches.push(branch(world, share * tint, mean.pdf, true, square(indices)));
             }
         }
@@ -235,7 +235,7 @@ impl Dielectric<Table> {
         {
             let mean = meeting.reflect(wi, facet.map(|facet| (chosen, facet)));
             let share = meeting.reflected(share / mean.value) * reflectance;
-            if mean.pdf > 0.0 && !share.is_zero() {
+            if mean.value > 0.0 && mean.pdf > 0.0 && !share.is_zero() {
                 branches.push(branch(world, share, mean.pdf, false, 1.0));
             }
         }

@@ -17,8 +17,9 @@ LIMIT = 4.0
 SHARE = 0.25
 # The most of a row's values, of ten or more, in which the mistake may by accident change less.
 ALIKE = 0.1
-# The fewest pixels that may carry the noise: of normal noise a third of them do, of a tail that is hardly sampled one.
-CARRIERS = 10
+# The fewest pixels that may carry the noise: of normal noise a third of them do, of a tail that is hardly sampled one. With
+# fewer than four, the estimated variance is itself off by half.
+CARRIERS = 4
 # The fewest pixels of which that is asked.
 ASKED = 100
 # How far one pixel may be off where all show the same, in standard deviations of the pixels: behind glass they are
@@ -75,7 +76,7 @@ def statistics(estimates):
 def carriers(first, second):
     """How many pixels carry the noise of each value, (sum d^2)^2 / sum d^4 of two images' differences d.
 
-    The relative variance of an estimated variance is about the inverse of it."""
+    An estimated variance is off by about one over the root of it."""
     squares = (first - second) ** 2
     return squares.sum(axis=0) ** 2 / np.maximum((squares**2).sum(axis=0), 1e-300)
 
