@@ -20,6 +20,7 @@ mod plastic;
 mod rough_dielectric;
 mod rough_interface;
 mod roughness;
+mod straight;
 mod thin;
 
 pub use coat::Coat;
@@ -36,6 +37,7 @@ pub use part::Part;
 pub use plastic::Plastic;
 pub use rough_interface::{Flow, RoughInterface, Side, Sides, Ways};
 pub use roughness::{RoughReflection, RoughSurface, Roughness};
+pub use straight::Straight;
 pub use thin::Thin;
 
 use serde::Deserialize;

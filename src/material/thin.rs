@@ -1,11 +1,11 @@
 use serde::Deserialize;
 
 use super::dielectric::flat;
-use super::{Arrival, Branch, Interface, reflect};
+use super::{Arrival, Branch, Interface, Straight, reflect};
 use crate::spectrum::{Lanes, Quantity, Table};
 
 /// A pane of clear material without thickness: a window of which nothing but its two surfaces is seen. Light goes straight
-/// on or is mirrored; all reflections between the two surfaces are summed.
+/// on, that of lights to the surfaces behind as well, or is mirrored; all reflections between the two surfaces are summed.
 ///
 /// ```toml
 /// thin = { index = 1.52 }     # transmittance = 1: what is left after one way through the pane, straight on
@@ -31,40 +31,58 @@ impl<S> Thin<S> {
 }
 
 impl Thin<Table> {
-    /// With R of one surface and t of one way: T = (1 - R)^2 t / (1 - R^2 t^2), and R + R t T comes back (Born & Wolf 1999,
-    /// section 7.6, without interference).
+    /// What goes straight on.
+    pub(super) fn straight<const N: usize>(&self, arrival: &Arrival<N>) -> Straight<N> {
+        let (panes, _, degrees) = self.pane(arrival);
+        Straight { holes: Lanes::ZERO, panes, polarization: degrees[0] as f32 }
+    }
+
+    /// What is mirrored.
     pub(super) fn scatter<const N: usize>(&self, arrival: &Arrival<N>, branches: &mut Vec<Branch<N>>) {
-        let (index, way) = (arrival.draw.read_exact(&self.index), arrival.read(&self.transmittance));
-        let cos = arrival.wo.dot(arrival.normal);
-        let (mut crossed, mut reflected) = (Lanes::ZERO, Lanes::ZERO);
-        let (mut through, mut back) = (0.0, 0.0);
-        for lane in (0..N).filter(|&lane| arrival.present[lane] != 0.0) {
-            if index[lane] == arrival.incident[lane] {
-                crossed.0[lane] = way[lane];
-                continue;
-            }
-            let surface = Interface::new(arrival.incident[lane], index[lane], cos);
-            let (r, t) = (surface.reflectance, f64::from(way[lane]));
-            let transmitted = surface.transmittance * surface.transmittance * t / (1.0 - r * r * t * t);
-            // Where no light enters at all, 1 - R^2 may be 0 as well.
-            let transmitted = if surface.transmittance == 0.0 { 0.0 } else { transmitted };
-            crossed.0[lane] = transmitted as f32;
-            reflected.0[lane] = (r + r * t * transmitted) as f32;
-            (through, back) = (surface.polarization_refracted, surface.polarization_reflected);
-        }
-        let branch = |wi, share, crosses, polarization: f64| Branch {
-            wi,
-            share,
-            pdf: None,
-            crosses,
-            eta_scale: 1.0,
-            polarization: polarization as f32,
-        };
-        if !crossed.is_zero() {
-            branches.push(branch(-arrival.wo, crossed, true, through));
-        }
-        if !reflected.is_zero() {
-            branches.push(branch(reflect(arrival.wo, arrival.normal), reflected, false, back));
+        let (_, share, degrees) = self.pane(arrival);
+        if !share.is_zero() {
+            let (wi, polarization) = (reflect(arrival.wo, arrival.normal), degrees[1] as f32);
+            branches.push(Branch { wi, share, pdf: None, crosses: false, eta_scale: 1.0, polarization });
         }
     }
+
+    /// The shares, and the degrees of polarization that they give to unpolarized light.
+    fn pane<const N: usize>(&self, arrival: &Arrival<N>) -> (Lanes<N>, Lanes<N>, [f64; 2]) {
+        let (index, way) = (arrival.draw.read_exact(&self.index), arrival.read(&self.transmittance));
+        let cos = arrival.wo.dot(arrival.normal);
+        let (mut through, mut back, mut degrees) = (Lanes::ZERO, Lanes::ZERO, [0.0; 2]);
+        let mut last: Option<([f64; 3], [[f64; 2]; 2])> = None;
+        for lane in (0..N).filter(|&lane| arrival.present[lane] != 0.0) {
+            if index[lane] == arrival.incident[lane] {
+                through.0[lane] = way[lane];
+                continue;
+            }
+            let pane = [arrival.incident[lane], index[lane], f64::from(way[lane])];
+            let summed = match last {
+                Some((of, summed)) if of == pane => summed,
+                _ => all_reflections(&Interface::new(pane[0], pane[1], cos), pane[2]),
+            };
+            last = Some((pane, summed));
+            [through.0[lane], back.0[lane]] = summed.map(|[s, p]| (0.5 * (s + p)) as f32);
+            degrees = summed.map(|[s, p]| if s + p > 0.0 { (s - p) / (s + p) } else { 0.0 });
+        }
+        (through, back, degrees)
+    }
+}
+
+/// What goes through a pane and what comes back, each (s, p), of which one way leaves the share `t`.
+///
+/// With R of one surface T = (1 - R)^2 t / (1 - R^2 t^2), and R + R t T comes back (Stokes 1862, *On the Intensity of the Light
+/// Reflected from or Transmitted through a Pile of Plates*). All surfaces share one plane of incidence, so that s and p
+/// keep to themselves: each has its own series, and unpolarized light has the mean of both.
+fn all_reflections(surface: &Interface, t: f64) -> [[f64; 2]; 2] {
+    let [s, p] = [1.0, -1.0].map(|sign| {
+        let r = surface.reflectance * (1.0 + sign * surface.polarization_reflected);
+        let crosses = surface.transmittance * (1.0 + sign * surface.polarization_refracted);
+        // 1 - R t as a sum of two numbers that are not negative; 0 only where no light enters at all.
+        let left = crosses + r * (1.0 - t);
+        let through = if crosses > 0.0 { crosses * crosses * t / (left * (1.0 + r * t)) } else { 0.0 };
+        [through, r + r * t * through]
+    });
+    [[s[0], p[0]], [s[1], p[1]]]
 }

@@ -3,19 +3,19 @@
 use std::cell::Cell;
 
 use super::direct::{Gathering, add, weight_of_meeting};
-use super::holes;
 use super::media::{self, Boundary};
 use super::merge::Photons;
 use super::path::{Drawn, Leg, Path};
 use super::shading;
+use super::straight;
 use super::tally::Tally;
 use super::{Transport, World};
 use crate::light::{Light, LightId};
-use crate::material::{Arrival, Branch, Material};
+use crate::material::{Arrival, Branch, Material, Straight};
 use crate::math::{DVec3, Ray, Sampler};
 use crate::scene::Hit;
 use crate::shape::SurfacePoint;
-use crate::spectrum::{Draw, Lanes};
+use crate::spectrum::Draw;
 
 /// Follows the rays of camera samples, one sample after another; its buffers live as long as it does.
 pub(super) struct Tracer<'a, const N: usize> {
@@ -30,6 +30,8 @@ pub(super) struct Tracer<'a, const N: usize> {
     pub(super) met: Option<Vec<(LightId, DVec3)>>,
     /// Photons that are gathered, if any are.
     pub(super) photons: Option<&'a Photons<N>>,
+    /// Places that scatter widely, with the unit normal on the side of the path, if somebody wants to know.
+    pub(super) lit: Option<Vec<(SurfacePoint, DVec3)>>,
     /// Places that scatter widely and are not seen straight, if somebody wants to know.
     pub(super) reached: Option<Vec<DVec3>>,
 }
@@ -57,6 +59,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
             tally,
             met: None,
             photons: None,
+            lit: None,
             reached: None,
         }
     }
@@ -85,14 +88,14 @@ impl<'a, const N: usize> Tracer<'a, N> {
             };
             path.advance(self.world, draw, hit.crossing.t);
             let point = self.world.scene.objects[hit.object as usize].point(&path.ray, &hit.crossing);
-            let passing = holes::passing(self.world, draw, &path, &hit, &point);
-            if let Some(passing) = passing
-                && path.throughput.through(passing) == path.throughput
+            let onward = straight::straight_on(self.world, draw, &path, &hit, &point);
+            if let Some(onward) = onward
+                && path.throughput.through(onward.share()) == path.throughput
             {
                 next = Some(path.passed(&point));
                 continue;
             }
-            if path.vertices == 0 && first.is_none() && holes::is_met(self.world, draw, sampler, &path, passing) {
+            if path.vertices == 0 && first.is_none() && straight::is_met(self.world, draw, sampler, &path, onward) {
                 first = Some(point);
             }
             path.vertices += 1;
@@ -101,10 +104,10 @@ impl<'a, const N: usize> Tracer<'a, N> {
                 if !matches!(self.world.scene.material_of(hit.object), Material::Emissive(_)) {
                     self.tally.stopped += path.weight(draw) / draw.siblings(path.parted);
                 }
-                next = passing.map(|passing| path.passed_in_part(&point, passing));
+                next = onward.map(|onward| path.passed_in_part(&point, &onward));
                 continue;
             }
-            next = self.scatter(&path, draw, sampler, (&hit, &point, passing), &mut sum);
+            next = self.scatter(&path, draw, sampler, (&hit, &point, onward), &mut sum);
         }
         (sum, first)
     }
@@ -151,7 +154,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
         path: &Path<N>,
         draw: &Draw<N>,
         sampler: &Sampler,
-        (hit, point, passing): (&Hit, &SurfacePoint, Option<Lanes<N>>),
+        (hit, point, onward): (&Hit, &SurfacePoint, Option<Straight<N>>),
         sum: &mut [f64; 3],
     ) -> Option<Path<N>> {
         let world = self.world;
@@ -206,6 +209,9 @@ impl<'a, const N: usize> Tracer<'a, N> {
             };
             let far = material.scatters_through().then_some((beyond, parts));
             let chance = gathering.gather(far, sampler, path.key, sum);
+            if let Some(lit) = &mut self.lit {
+                lit.push((*point, normal));
+            }
             if goes_on && path.leg != Leg::Camera {
                 if let Some(photons) = self.photons {
                     add(sum, photons.gather(world, path, &arrival, (hit, point, normal), (material, parts)));
@@ -216,7 +222,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
             }
             let (pdf, from, aimed_at_all, passed) = (0.0, point.position, aims_at_all, false);
             drawn = Some(Drawn { pdf, from, normal, chance, aimed_at_all, passed });
-            if !goes_on && passing.is_none() && !material.has_single_directions() {
+            if !goes_on && onward.is_none() && !material.has_single_directions() {
                 return None;
             }
         }
@@ -227,15 +233,15 @@ impl<'a, const N: usize> Tracer<'a, N> {
         if diffuse && path.diffuse_left == 0 {
             self.branches.retain(|branch| branch.pdf.is_none());
         }
-        let onward = passing.map(|passing| {
-            self.branches.push(Branch::onward(&path.ray, passing));
-            self.branches.len() - 1
+        let onward = onward.map(|onward| {
+            self.branches.push(Branch::onward(&path.ray, &onward));
+            (self.branches.len() - 1, onward)
         });
         self.tally.partings += u64::from(self.branches.iter().filter(|branch| branch.crosses).count() > 1);
         let sooner = if diffuse { SOONER } else { 1.0 };
         self.follow(path, draw, sampler, (parts, sooner), |number, branch, factor| {
-            if onward == Some(number) {
-                let onward = path.passed_in_part(point, branch.share);
+            if let Some((_, onward)) = onward.filter(|onward| onward.0 == number) {
+                let onward = path.passed_in_part(point, &onward);
                 return Path { throughput: onward.throughput.scaled(factor), key: path.key.child(number), ..onward };
             }
             let followed = shading::is_plain(point, arrival.wo, branch.wi, branch.crosses);
