@@ -33,21 +33,22 @@ impl<S> Thin<S> {
 impl Thin<Table> {
     /// What goes straight on.
     pub(super) fn straight<const N: usize>(&self, arrival: &Arrival<N>) -> Straight<N> {
-        let (panes, _, degrees) = self.pane(arrival);
+        let (panes, _, degrees) = self.shares(arrival);
         Straight { holes: Lanes::ZERO, panes, polarization: degrees[0] as f32 }
     }
 
     /// What is mirrored.
     pub(super) fn scatter<const N: usize>(&self, arrival: &Arrival<N>, branches: &mut Vec<Branch<N>>) {
-        let (_, share, degrees) = self.pane(arrival);
+        let (_, share, degrees) = self.shares(arrival);
         if !share.is_zero() {
             let (wi, polarization) = (reflect(arrival.wo, arrival.normal), degrees[1] as f32);
             branches.push(Branch { wi, share, pdf: None, crosses: false, eta_scale: 1.0, polarization });
         }
     }
 
-    /// The shares, and the degrees of polarization that they give to unpolarized light.
-    fn pane<const N: usize>(&self, arrival: &Arrival<N>) -> (Lanes<N>, Lanes<N>, [f64; 2]) {
+    /// What of each lane goes straight on and what is mirrored, and the degrees of polarization that this gives to
+    /// unpolarized light.
+    pub(super) fn shares<const N: usize>(&self, arrival: &Arrival<N>) -> (Lanes<N>, Lanes<N>, [f64; 2]) {
         let (index, way) = (arrival.draw.read_exact(&self.index), arrival.read(&self.transmittance));
         let cos = arrival.wo.dot(arrival.normal);
         let (mut through, mut back, mut degrees) = (Lanes::ZERO, Lanes::ZERO, [0.0; 2]);
