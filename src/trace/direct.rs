@@ -2,6 +2,7 @@
 
 use std::cell::Cell;
 
+use super::openings::Leaving;
 use super::path::Drawn;
 use super::straight;
 use super::{World, media, shading};
@@ -28,6 +29,8 @@ pub(super) struct Gathering<'a, const N: usize> {
     pub(super) inside: Option<MaterialId>,
     /// Whether the path goes on from here and may meet a light by itself.
     pub(super) goes_on: bool,
+    /// How the path leaves a diffuse surface, where that was learned.
+    pub(super) leaving: Option<Leaving<'a>>,
     pub(super) aims_at_all: bool,
     /// The object that hid a light last.
     pub(super) hider: &'a Cell<Option<u32>>,
@@ -107,9 +110,9 @@ impl<const N: usize> Gathering<'_, N> {
         let normal = self.normal;
         let probability = probability * self.side.unwrap_or(1.0);
         let lit = || {
-            let learned = self.world.aimed_view(target, self.point.position);
+            let learned = self.world.aimed(target, self.point.position);
             let sighting = match learned {
-                Some((view, sky)) => view.aim(sky, normal, u),
+                Some(aimed) => aimed.aim(normal, u),
                 None => light.aim(self.point.position, normal, u)?,
             };
             if self.side.is_some() && sighting.direction.dot(normal) <= 0.0 {
@@ -119,14 +122,15 @@ impl<const N: usize> Gathering<'_, N> {
             let (bsdf_cos, bsdf_pdf) = shading::evaluate(self.material, self.arrival, flat, sighting.direction)?;
             let ray = self.point.leave(sighting.direction);
             let mut view = light.view(&ray, normal, &sighting)?;
-            if let Some((learned, sky)) = learned {
-                view.pdf = Some(learned.pdf(sky, &ray, normal));
+            if let Some(aimed) = learned {
+                view.pdf = Some(aimed.pdf(&ray, normal));
             }
             let factor = match view.pdf {
                 None => view.factor / probability,
                 Some(pdf) => {
                     let pdf = pdf * probability;
-                    let weight = if self.goes_on { power_heuristic(pdf, bsdf_pdf) } else { 1.0 };
+                    let by_path = || self.leaving.map_or(bsdf_pdf, |leaving| leaving.pdf(ray.direction, bsdf_pdf));
+                    let weight = if self.goes_on { power_heuristic(pdf, by_path()) } else { 1.0 };
                     view.factor * weight / pdf
                 }
             };
@@ -188,8 +192,8 @@ pub(super) fn weight_of_meeting(
             area.shape.intersect(&ray, f64::INFINITY).and_then(|crossing| area.pdf(&ray, drawn.normal, &crossing))
         }
         (Light::Area(area), Some(crossing)) if area.aimed_at => area.pdf(ray, drawn.normal, crossing),
-        (Light::Environment(environment), None) => Some(match world.aimed_view(light, drawn.from) {
-            Some((view, sky)) => view.pdf(sky, ray, drawn.normal),
+        (Light::Environment(environment), None) => Some(match world.aimed(light, drawn.from) {
+            Some(aimed) => aimed.pdf(ray, drawn.normal),
             None => environment.pdf(ray, drawn.normal),
         }),
         (Light::Sun(sun), None) => sun.pdf(ray),

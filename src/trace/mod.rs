@@ -14,6 +14,7 @@
 mod aims;
 mod choice;
 mod direct;
+mod directions;
 mod emission;
 mod follow;
 mod guide;

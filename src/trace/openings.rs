@@ -1,18 +1,14 @@
-//! Where the sky is seen from inside: through windows, doors and gaps, as directions that are learned for each place.
+//! Where the sky is seen from inside, through windows, doors and gaps, and what the sun shines on: as directions that are learned
+//! for each place.
 
-use std::f64::consts::{PI, TAU};
-
-use super::World;
+use super::directions::Directions;
+use super::{World, shading};
 use crate::light::{Environment, Light, LightId};
-use crate::math::{Bounds, DVec3, Ray, unit};
+use crate::material::{Arrival, Branch, Material};
+use crate::math::{Bounds, DVec3, Ray};
 use crate::shape::Sighting;
 use crate::spectrum::Table;
 
-/// Cells of all directions: rows of equal height along +y, which are of equal solid angle.
-pub(super) const ROWS: usize = 32;
-/// Cells around each row.
-pub(super) const COLUMNS: usize = 64;
-pub(super) const DIRECTIONS: usize = ROWS * COLUMNS;
 /// How often the sky is aimed at by what was learned; else as without, so that what was not found is at most four times as
 /// bright.
 const LEARNED: f64 = 0.75;
@@ -38,11 +34,13 @@ pub(super) struct Grid {
     pub(super) counts: [usize; 3],
 }
 
-/// The sky as it is seen from around one place.
+/// What is known of the skies and their light around one place.
 #[derive(Clone, Debug)]
 pub(super) struct SkyView {
-    /// Probabilities of the cells of directions, summed up; empty where aiming by them would not pay.
-    sums: Vec<f32>,
+    /// Where the sky is seen; none where aiming by it would not pay.
+    sky: Option<Directions>,
+    /// Where surfaces are seen that the sun shines on, and how often a path leaves a diffuse surface by it.
+    sunlit: Option<(Directions, f64)>,
     /// How often each sky is chosen, of those that are, in the order of the world's choice.
     pub(super) skies: Vec<f64>,
 }
@@ -93,67 +91,95 @@ impl Grid {
 }
 
 impl SkyView {
-    /// Of the light that comes from each cell of directions, up to a factor; `aimed` says whether it is worth aiming by.
-    pub(super) fn new(light: &[f64], aimed: bool, skies: Vec<f64>) -> Self {
-        let total: f64 = light.iter().sum();
-        let mut sums = Vec::new();
-        if aimed && total > 0.0 {
-            let mut sum = 0.0;
-            sums.extend(light.iter().map(|light| {
-                sum += light;
-                (sum / total) as f32
-            }));
-            let last = light.iter().rposition(|&light| light > 0.0).unwrap_or(0);
-            sums[last..].fill(1.0);
-        }
-        Self { sums, skies }
+    /// Of the light that comes from each cell of directions, up to a factor: that of the sky, where it is worth aiming by, and that
+    /// of the sun by way of surfaces, with how often paths follow it.
+    pub(super) fn new(sky: Option<&[f64]>, sunlit: Option<(&[f64], f64)>, skies: Vec<f64>) -> Self {
+        let sunlit = sunlit.and_then(|(light, share)| Some((Directions::new(light)?, share)));
+        Self { sky: sky.and_then(Directions::new), sunlit, skies }
     }
 
-    /// Whether the sky is aimed at by what was learned.
+    /// Whether anything was learned that pays.
     pub(super) fn is_aimed(&self) -> bool {
-        !self.sums.is_empty()
+        self.sky.is_some() || self.sunlit.is_some()
     }
+}
 
-    fn probability(&self, cell: usize) -> f64 {
-        f64::from(self.sums[cell]) - if cell == 0 { 0.0 } else { f64::from(self.sums[cell - 1]) }
-    }
+/// The sky around a place where it was learned.
+#[derive(Clone, Copy)]
+pub(super) struct Aimed<'a> {
+    sky: &'a Environment<Table>,
+    directions: &'a Directions,
+}
 
-    /// A direction for two random numbers.
-    fn draw(&self, u: [f64; 2]) -> DVec3 {
-        let cell = self.sums.partition_point(|&sum| f64::from(sum) <= u[0]).min(DIRECTIONS - 1);
-        let before = if cell == 0 { 0.0 } else { f64::from(self.sums[cell - 1]) };
-        direction(cell, [((u[0] - before) / self.probability(cell)).clamp(0.0, 1.0), u[1]])
-    }
-
+impl Aimed<'_> {
     /// A direction to the sky from a surface of a normal: as it is aimed at by itself, or by what was learned.
-    pub(super) fn aim(&self, sky: &Environment<Table>, normal: DVec3, u: [f64; 2]) -> Sighting {
+    pub(super) fn aim(self, normal: DVec3, u: [f64; 2]) -> Sighting {
         if u[0] >= LEARNED {
-            return sky.aim(normal, [(u[0] - LEARNED) / (1.0 - LEARNED), u[1]]);
+            return self.sky.aim(normal, [(u[0] - LEARNED) / (1.0 - LEARNED), u[1]]);
         }
-        Sighting { direction: self.draw([u[0] / LEARNED, u[1]]), part: None, density: None }
+        Sighting { direction: self.directions.draw([u[0] / LEARNED, u[1]]), part: None, density: None }
     }
 
     /// The density of a ray's direction, which `aim` draws.
-    pub(super) fn pdf(&self, sky: &Environment<Table>, ray: &Ray, normal: DVec3) -> f64 {
-        let learned = self.probability(cell_of(ray.direction)) * DIRECTIONS as f64 / (4.0 * PI);
-        LEARNED * learned + (1.0 - LEARNED) * sky.pdf(ray, normal)
+    pub(super) fn pdf(self, ray: &Ray, normal: DVec3) -> f64 {
+        LEARNED * self.directions.density(ray.direction) + (1.0 - LEARNED) * self.sky.pdf(ray, normal)
     }
 }
 
-/// A unit vector in a cell of directions, at a place of the unit square.
-pub(super) fn direction(cell: usize, [u, v]: [f64; 2]) -> DVec3 {
-    let y = 1.0 - 2.0 * ((cell / COLUMNS) as f64 + v) / ROWS as f64;
-    let radius = (1.0 - y * y).max(0.0).sqrt();
-    let (sin, cos) = libm::sincos(TAU * ((cell % COLUMNS) as f64 + u) / COLUMNS as f64);
-    unit(DVec3::new(radius * cos, y, radius * sin))
+/// How paths leave a diffuse surface: some toward what the sun shines on, the others as the surface scatters.
+#[derive(Clone, Copy)]
+pub(super) struct Leaving<'a> {
+    directions: &'a Directions,
+    share: f64,
 }
 
-/// The cell of a unit vector.
-fn cell_of(direction: DVec3) -> usize {
-    let row = (0.5 * (1.0 - direction.y) * ROWS as f64).clamp(0.0, (ROWS - 1) as f64) as usize;
-    let turn = libm::atan2(direction.z, direction.x) / TAU;
-    let turn = if turn < 0.0 { turn + 1.0 } else { turn };
-    row * COLUMNS + ((turn * COLUMNS as f64) as usize).min(COLUMNS - 1)
+impl Leaving<'_> {
+    /// A direction toward what the sun shines on, or the random numbers for one by the surface.
+    pub(super) fn draw(self, [u, v]: [f64; 2]) -> Result<DVec3, [f64; 2]> {
+        if u < self.share {
+            Ok(self.directions.draw([u / self.share, v]))
+        } else {
+            Err([(u - self.share) / (1.0 - self.share), v])
+        }
+    }
+
+    /// The density of a direction, of which `by_surface` is that by the surface.
+    pub(super) fn pdf(self, direction: DVec3, by_surface: f64) -> f64 {
+        self.share * self.directions.density(direction) + (1.0 - self.share) * by_surface
+    }
+}
+
+/// `shading::scatter` of a diffuse material, whose directions are drawn by what was learned as well.
+///
+/// That a direction is drawn more often is no measure of what its path is worth.
+pub(super) fn scatter_by<const N: usize>(
+    leaving: Leaving,
+    material: &Material<Table>,
+    arrival: &Arrival<N>,
+    flat: DVec3,
+    u: [f64; 2],
+    branches: &mut Vec<Branch<N>>,
+) {
+    let drawn = leaving.draw(u);
+    shading::scatter(material, arrival, flat, drawn.err().unwrap_or(u), branches);
+    branches.retain_mut(|branch| {
+        let Some(pdf) = branch.pdf else { return true };
+        let (by_surface, light) = match drawn {
+            Err(_) => (pdf, branch.share * pdf as f32),
+            Ok(direction) => {
+                let above = direction.dot(flat) > 0.0;
+                let found = if above { shading::evaluate(material, arrival, flat, direction) } else { None };
+                let Some((light, by_surface)) = found.filter(|(_, pdf)| *pdf > 0.0) else { return false };
+                branch.wi = direction;
+                (by_surface, light)
+            }
+        };
+        let pdf = leaving.pdf(branch.wi, by_surface);
+        branch.share = light * (1.0 / pdf) as f32;
+        branch.eta_scale *= by_surface / pdf;
+        branch.pdf = Some(pdf);
+        pdf > 0.0
+    });
 }
 
 impl World {
@@ -163,43 +189,23 @@ impl World {
         self.openings.as_ref()?.at(point)
     }
 
-    /// What a sky is aimed at by from a point, if it was learned there.
-    pub(super) fn aimed_view(&self, light: LightId, point: DVec3) -> Option<(&SkyView, &Environment<Table>)> {
+    /// The sky around a point, if it was learned there.
+    pub(super) fn aimed(&self, light: LightId, point: DVec3) -> Option<Aimed<'_>> {
         let Light::Environment(sky) = &self.scene.lights[light] else { return None };
-        self.sky_view(point).filter(|view| view.is_aimed()).map(|view| (view, sky))
+        let directions = self.sky_view(point)?.sky.as_ref()?;
+        Some(Aimed { sky, directions })
+    }
+
+    /// How paths leave a diffuse surface at a point, if that was learned there.
+    pub(super) fn leaving(&self, point: DVec3) -> Option<Leaving<'_>> {
+        let (directions, share) = self.sky_view(point)?.sunlit.as_ref()?;
+        Some(Leaving { directions, share: *share })
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn directions_are_drawn_as_often_as_their_density_says() {
-        let light: Vec<f64> = (0..DIRECTIONS).map(|cell| if cell % 5 == 0 { (cell % 7) as f64 } else { 0.0 }).collect();
-        let view = SkyView::new(&light, true, Vec::new());
-        let total: f64 = (0..DIRECTIONS).map(|cell| view.probability(cell)).sum();
-        assert!((total - 1.0).abs() < 1e-6, "{total}");
-        let mut counts = vec![0_u32; DIRECTIONS];
-        let draws = 1_000_000;
-        for i in 0..draws {
-            let u = [(f64::from(i) + 0.5) / f64::from(draws), (f64::from(i) * 0.618_034).fract()];
-            counts[cell_of(view.draw(u))] += 1;
-        }
-        for (cell, &count) in counts.iter().enumerate() {
-            let expected = light[cell] / light.iter().sum::<f64>() * f64::from(draws);
-            assert!((f64::from(count) - expected).abs() < 3.0 + 0.01 * expected, "{cell}: {count} for {expected}");
-        }
-    }
-
-    #[test]
-    fn every_cell_of_directions_holds_those_made_in_it() {
-        for cell in 0..DIRECTIONS {
-            for u in [[0.001, 0.001], [0.5, 0.5], [0.999, 0.999], [0.001, 0.999]] {
-                assert_eq!(cell_of(direction(cell, u)), cell, "{u:?}");
-            }
-        }
-    }
 
     #[test]
     fn points_of_a_box_lie_in_its_grid_and_others_do_not() {

@@ -1,10 +1,13 @@
 //! Learns where the sky is seen, by rays from the places that the camera's paths reach.
 
+use std::cell::Cell;
+use std::f64::consts::PI;
 use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::openings::{COLUMNS, DIRECTIONS, Grid, Openings, ROWS, SkyView, direction};
+use super::directions::{DIRECTIONS, around, direction};
+use super::openings::{Grid, Openings, SkyView};
 use super::render::sample;
 use super::straight;
 use super::tracer::Tracer;
@@ -12,7 +15,7 @@ use super::width::{InLanes, in_lanes};
 use super::{Transport, World};
 use crate::light::{Light, LightId};
 use crate::math::{Bounds, BranchKey, DVec3, Frame, Sampler, cosine_hemisphere, unit};
-use crate::shape::SurfacePoint;
+use crate::shape::{Sighting, SurfacePoint};
 use crate::spectrum::{Draw, Lanes};
 
 /// Sets these random numbers apart from those of the image.
@@ -36,6 +39,14 @@ const PLACES: usize = 8;
 const OPEN: f64 = 0.5;
 /// How often a sky is chosen by what arrives; else by what it sends.
 const BY_ARRIVING: f64 = 0.8;
+/// Directions to a sun from each place.
+const EACH: usize = 4;
+/// The reflectance that is taken for that of what the sun shines on.
+const GRAY: f64 = 0.5;
+/// How many of the paths leave diffuse surfaces toward what the sun shines on, at most; fewer where its light is little beside
+/// what comes from all around, which is taken for a share of its mean over all places.
+const FOLLOWED: f64 = 0.5;
+const AMBIENT: f64 = 0.25;
 /// How much of what is seen in a direction, or from a cell, is expected beside it.
 const BESIDE: f64 = 0.25;
 
@@ -72,6 +83,8 @@ struct Found {
     light: Vec<f64>,
     /// The same sum if nothing hid the sky.
     all: f64,
+    /// Irradiance by what the sun shines on in each cell of directions.
+    sunlit: Vec<f64>,
     /// Irradiance by each sky that may be chosen.
     skies: Vec<f64>,
 }
@@ -93,10 +106,13 @@ impl InLanes for Learning<'_> {
             (count > 0).then(|| self.look::<N>(number as u32, &chosen, &radiance, &draw))
         };
         let found: Vec<Option<Found>> = cells.par_iter().enumerate().map(seen).collect();
+        let known = found.iter().flatten();
+        let usual = known.clone().flat_map(|cell| &cell.sunlit).sum::<f64>() / known.count().max(1) as f64;
         let mut openings = Openings { grid, cells: vec![0; cells.len()], views: Vec::new() };
         for (number, cell) in found.iter().enumerate() {
             if let Some(cell) = cell {
-                openings.views.push(self.view(cell, grid.neighbors(number).filter_map(|other| found[other].as_ref())));
+                let neighbors = grid.neighbors(number).filter_map(|other| found[other].as_ref());
+                openings.views.push(self.view(cell, neighbors, AMBIENT * usual));
                 openings.cells[number] = openings.views.len() as u32;
             }
         }
@@ -165,8 +181,9 @@ impl Learning<'_> {
     /// What the places of a cell see of the skies: each direction from one of those that it can light.
     fn look<const N: usize>(&self, cell: u32, places: &[Place], radiance: &[f64], draw: &Draw<N>) -> Found {
         let world = self.world;
-        let mut found = Found { light: vec![0.0; DIRECTIONS], all: 0.0, skies: Vec::new() };
-        for (number, light) in found.light.iter_mut().enumerate() {
+        let mut found =
+            Found { light: vec![0.0; DIRECTIONS], all: 0.0, sunlit: vec![0.0; DIRECTIONS], skies: Vec::new() };
+        for number in 0..DIRECTIONS {
             let u = self.numbers([cell, 1], number as u32);
             let toward = direction(number, [u[0], u[1]]);
             let first = (u[2] * places.len() as f64) as usize;
@@ -175,83 +192,111 @@ impl Learning<'_> {
                 Some((point, normal.dot(toward))).filter(|(_, cos)| *cos > 0.0)
             };
             if let Some((point, cos)) = (0..places.len()).find_map(above) {
-                let whole = radiance[number] * cos * (4.0 * std::f64::consts::PI / DIRECTIONS as f64);
+                let angle = cos * (4.0 * PI / DIRECTIONS as f64);
+                let whole = radiance[number] * angle;
                 found.all += whole;
-                *light = whole * self.arriving(point, toward, draw);
+                match self.opaque(point, toward) {
+                    None => found.light[number] = whole * self.transmitted(point, toward, f64::INFINITY, draw),
+                    Some((distance, lit)) => {
+                        let shining = self.of_suns(([cell, 1], DIRECTIONS + number), &lit, draw);
+                        if shining > 0.0 {
+                            found.sunlit[number] =
+                                GRAY / PI * angle * shining * self.transmitted(point, toward, distance, draw);
+                        }
+                    }
+                }
             }
         }
         for (id, _) in world.choice.skies() {
             let irradiance = match &world.scene.lights[*id] {
                 Light::Environment(_) => found.light.iter().sum(),
-                sun => self.of_sun(sun, *id, cell, places, draw),
+                _ => {
+                    let one = |i: usize| self.of_sun(*id, ([cell, 2 + *id as u32], i), &places[i / EACH], draw);
+                    (0..EACH * places.len()).map(one).sum::<f64>() / (EACH * places.len()) as f64
+                }
             };
             found.skies.push(irradiance);
         }
         found
     }
 
-    /// The mean irradiance by a sun.
-    fn of_sun<const N: usize>(
-        &self,
-        sun: &Light<crate::spectrum::Table>,
-        id: LightId,
-        cell: u32,
-        places: &[Place],
-        draw: &Draw<N>,
-    ) -> f64 {
-        const EACH: usize = 4;
-        let count = EACH * places.len();
-        let one = |number: usize| {
-            let u = self.numbers([cell, 2 + id as u32], number as u32);
-            let (point, normal) = &places[number / EACH];
-            let toward = sun.aim(point.position, *normal, [u[0], u[1]])?.direction;
-            let cos = normal.dot(toward);
-            (cos > 0.0).then(|| cos * self.arriving(point, toward, draw))
-        };
-        let sum: f64 = (0..count).filter_map(one).sum();
-        sum / count as f64 * brightness(draw, sun.toward(draw, DVec3::Y, [0.0; 2]))
+    /// The irradiance by a sun at a place, by one direction to it.
+    fn of_sun<const N: usize>(&self, id: LightId, number: ([u32; 2], usize), place: &Place, draw: &Draw<N>) -> f64 {
+        let (u, (point, normal)) = (self.numbers(number.0, number.1 as u32), place);
+        let sun = &self.world.scene.lights[id];
+        let Some(Sighting { direction, .. }) = sun.aim(point.position, *normal, [u[0], u[1]]) else { return 0.0 };
+        let cos = normal.dot(direction);
+        if cos <= 0.0 {
+            return 0.0;
+        }
+        cos * self.arriving(point, direction, draw) * brightness(draw, sun.toward(draw, direction, [0.0; 2]))
     }
 
-    /// The view from a cell: what was found there and around.
-    fn view<'a>(&self, found: &Found, neighbors: impl Iterator<Item = &'a Found>) -> SkyView {
-        let seen: f64 = found.light.iter().sum();
-        let mut light = found.light.clone();
+    /// The irradiance by all suns at a place.
+    fn of_suns<const N: usize>(&self, number: ([u32; 2], usize), place: &Place, draw: &Draw<N>) -> f64 {
+        let skies = self.world.choice.skies().iter();
+        let suns = skies.filter(|(id, _)| matches!(self.world.scene.lights[*id], Light::Sun(_)));
+        suns.map(|(id, _)| self.of_sun(*id, number, place, draw)).sum()
+    }
+
+    /// The nearest surface in a direction that lets nothing straight on: its distance, and the place with its normal on this side.
+    fn opaque(&self, point: &SurfacePoint, toward: DVec3) -> Option<(f64, Place)> {
+        let (scene, ray) = (&self.world.scene, point.leave(toward));
+        let hit = scene.nearest(&ray, f64::INFINITY, |object| !self.world.is_see_through(object))?;
+        let point = scene.objects[hit.object as usize].point(&ray, &hit.crossing);
+        let normal = if point.normal.dot(toward) < 0.0 { point.normal } else { -point.normal };
+        Some((hit.crossing.t, (point, normal)))
+    }
+
+    /// The view from a cell: what was found there and around. `usual` is what of such light comes from all around.
+    fn view<'a>(&self, found: &Found, neighbors: impl Iterator<Item = &'a Found>, usual: f64) -> SkyView {
+        let [mut light, mut sunlit] = [found.light.clone(), found.sunlit.clone()];
+        let add =
+            |sum: &mut [f64], more: &[f64]| sum.iter_mut().zip(more).for_each(|(sum, more)| *sum += BESIDE * more);
         for neighbor in neighbors {
-            light.iter_mut().zip(&neighbor.light).for_each(|(light, other)| *light += BESIDE * other);
+            add(&mut light, &neighbor.light);
+            add(&mut sunlit, &neighbor.sunlit);
         }
-        let near = |cell: usize| {
-            let (row, column) = (cell / COLUMNS, cell % COLUMNS);
-            let rows = row.saturating_sub(1)..=(row + 1).min(ROWS - 1);
-            rows.flat_map(move |row| [COLUMNS - 1, 0, 1].map(|turn| row * COLUMNS + (column + turn) % COLUMNS))
-        };
-        let spread = |cell: usize| light[cell] + BESIDE * near(cell).map(|near| light[near]).fold(0.0, f64::max);
-        let spread: Vec<f64> = (0..DIRECTIONS).map(spread).collect();
         let all: f64 = found.skies.iter().sum();
         let chosen = |(&arriving, &(_, sent)): (&f64, &(LightId, f64))| {
             if all > 0.0 { BY_ARRIVING * arriving / all + (1.0 - BY_ARRIVING) * sent } else { sent }
         };
         let skies = found.skies.iter().zip(self.world.choice.skies()).map(chosen).collect();
-        SkyView::new(&spread, seen < OPEN * found.all, skies)
+        let sky = (found.light.iter().sum::<f64>() < OPEN * found.all).then(|| spread(&light));
+        let shining: f64 = found.sunlit.iter().sum();
+        let share = if shining > 0.0 { FOLLOWED * shining / (shining + usual) } else { 0.0 };
+        let sunlit = (share > 0.0).then(|| spread(&sunlit));
+        SkyView::new(sky.as_deref(), sunlit.as_deref().map(|sunlit| (sunlit, share)), skies)
     }
 
     /// The share of the light from a direction of the sky that arrives at a place.
     fn arriving<const N: usize>(&self, point: &SurfacePoint, toward: DVec3, draw: &Draw<N>) -> f64 {
         let (world, ray) = (self.world, point.leave(toward));
-        if world
-            .scene
-            .is_hidden_by(&ray, f64::INFINITY, None, &Default::default(), |object| !world.is_see_through(object))
-        {
+        let closed = |object| !world.is_see_through(object);
+        if world.scene.is_hidden_by(&ray, f64::INFINITY, None, &Cell::new(None), closed) {
             return 0.0;
         }
-        if !world.has_see_through() {
+        self.transmitted(point, toward, f64::INFINITY, draw)
+    }
+
+    /// The share of light that goes straight on up to a distance, where nothing hides it.
+    fn transmitted<const N: usize>(&self, point: &SurfacePoint, toward: DVec3, distance: f64, draw: &Draw<N>) -> f64 {
+        if !self.world.has_see_through() {
             return 1.0;
         }
-        straight::transmittance(world, draw, &ray, f64::INFINITY, None).map_or(0.0, |share| brightness(draw, share))
+        let all = straight::transmittance(self.world, draw, &point.leave(toward), distance, None);
+        all.map_or(0.0, |share| brightness(draw, share))
     }
 
     fn numbers(&self, place: [u32; 2], number: u32) -> [f64; 4] {
         Sampler::new(self.world.method.seed ^ SEED, place, number).four_plain(BranchKey::CAMERA, 0)
     }
+}
+
+/// What is expected in each cell of directions, of what was found there and beside it.
+fn spread(light: &[f64]) -> Vec<f64> {
+    let most = |cell: usize| around(cell).map(|near| light[near]).fold(0.0, f64::max);
+    (0..DIRECTIONS).map(|cell| light[cell] + BESIDE * most(cell)).collect()
 }
 
 /// The mean of what the lanes carry.
