@@ -7,9 +7,11 @@
 //! 3. A surface answers with branches, a direction and the lanes that came by it; dispersive lanes part there.
 //! 4. The tracer is a loop over pending rays: it follows all branches while the weight is large, then one, then plays
 //!    roulette. A weight is the mean throughput over the lanes, without the factor of radiance between media.
-//! 5. Paths light, smooth surfaces, one that scatters widely, camera may be found by photons, and those with more surfaces before
+//! 5. Light that goes straight on, through holes and panes, makes no other kind of path: next-event estimation and photons look
+//!    through them.
+//! 6. Paths light, smooth surfaces, one that scatters widely, camera may be found by photons, and those with more surfaces before
 //!    the camera by gathering photons; paths from the camera then leave exactly those out.
-//! 6. Random numbers are a pure function of seed, pixel, sample, branch and use; sums have a fixed order.
+//! 7. Random numbers are a pure function of seed, pixel, sample, branch and use; sums have a fixed order.
 
 mod aims;
 mod choice;

@@ -59,7 +59,7 @@ fn noise(films: &[Film]) -> f64 {
 }
 
 #[test]
-fn a_room_is_as_bright_by_what_was_learned_as_without_and_less_noisy() {
+fn l6_a_room_is_as_bright_by_what_was_learned_as_without_and_less_noisy() {
     let image = "[[light]]\nenvironment = { radiance = { image = \"scenes/textures/evening.hdr\" } }\n";
     let cases = [
         ("an opening", 0.4, SKY.to_owned(), "", 4.0),

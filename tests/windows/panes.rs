@@ -57,7 +57,7 @@ fn mean_by_cosine(value: impl Fn(f64) -> f64) -> f64 {
 const COS_OF_SUN: f64 = 2.0 / 3.0;
 
 #[test]
-fn a_sun_shines_through_panes_as_each_lets_through() {
+fn l6_a_sun_shines_through_panes_as_each_lets_through() {
     let [through, _] = pane(1.52, 1.0, COS_OF_SUN);
     let tinted = [0.9, 0.5, 0.1].map(|t| pane(1.52, t, COS_OF_SUN)[0]);
     let cases = [
