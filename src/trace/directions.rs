@@ -9,6 +9,9 @@ const ROWS: usize = 32;
 /// Cells around each row.
 const COLUMNS: usize = 64;
 pub(super) const DIRECTIONS: usize = ROWS * COLUMNS;
+/// How much of what is seen in a direction, or from a cell, is expected beside it.
+pub(super) const BESIDE: f64 = 0.25;
+
 /// A density of directions, constant in each cell of them.
 #[derive(Clone, Debug)]
 pub(super) struct Directions {
@@ -65,8 +68,14 @@ fn cell_of(direction: DVec3) -> usize {
     row * COLUMNS + ((turn * COLUMNS as f64) as usize).min(COLUMNS - 1)
 }
 
+/// What is expected in each cell of directions, of what was found there and beside it.
+pub(super) fn spread(light: &[f64]) -> Vec<f64> {
+    let most = |cell: usize| around(cell).map(|near| light[near]).fold(0.0, f64::max);
+    (0..DIRECTIONS).map(|cell| light[cell] + BESIDE * most(cell)).collect()
+}
+
 /// Those beside each cell, and the cell itself.
-pub(super) fn around(cell: usize) -> impl Iterator<Item = usize> {
+fn around(cell: usize) -> impl Iterator<Item = usize> {
     let (row, column) = (cell / COLUMNS, cell % COLUMNS);
     let rows = row.saturating_sub(1)..=(row + 1).min(ROWS - 1);
     rows.flat_map(move |row| [COLUMNS - 1, 0, 1].map(|turn| row * COLUMNS + (column + turn) % COLUMNS))

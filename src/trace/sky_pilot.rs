@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::directions::{DIRECTIONS, around, direction};
+use super::directions::{BESIDE, DIRECTIONS, direction, spread};
 use super::openings::{Grid, Openings, SkyView};
 use super::render::sample;
 use super::straight;
@@ -47,8 +47,6 @@ const GRAY: f64 = 0.5;
 /// what comes from all around, which is taken for a share of its mean over all places.
 const FOLLOWED: f64 = 0.5;
 const AMBIENT: f64 = 0.25;
-/// How much of what is seen in a direction, or from a cell, is expected beside it.
-const BESIDE: f64 = 0.25;
 
 /// A place that scatters widely, with its unit normal on the lit side.
 type Place = (SurfacePoint, DVec3);
@@ -291,12 +289,6 @@ impl Learning<'_> {
     fn numbers(&self, place: [u32; 2], number: u32) -> [f64; 4] {
         Sampler::new(self.world.method.seed ^ SEED, place, number).four_plain(BranchKey::CAMERA, 0)
     }
-}
-
-/// What is expected in each cell of directions, of what was found there and beside it.
-fn spread(light: &[f64]) -> Vec<f64> {
-    let most = |cell: usize| around(cell).map(|near| light[near]).fold(0.0, f64::max);
-    (0..DIRECTIONS).map(|cell| light[cell] + BESIDE * most(cell)).collect()
 }
 
 /// The mean of what the lanes carry.

@@ -245,8 +245,8 @@ def window(quick):
         # So dark a floor that what comes back to it from the pane counts for nothing.
         dark = 1e-5
         materials = {"pane": {"thin": {"index": rgb(BANDS)}}, "floor": {"diffuse": {"reflectance": dark}}}
-        scene = view(materials, objects, eye=(0.3, 0.7, 0.2), up=(0, 0, 1))
-        scene["light"] = [{"sun": {"toward": toward, "irradiance": float(np.pi / dark), "angular_diameter": 0.0}}]
+        sun = {"sun": {"toward": toward, "irradiance": float(np.pi / dark), "angular_diameter": 0.0}}
+        scene = view(materials, objects, [sun], eye=(0.3, 0.7, 0.2), up=(0, 0, 1), samples=16)
         index, cos = np.array(BANDS), toward[1]
         beyond = np.sqrt(index**2 - 1 + cos**2) / index
         s = ((cos - index * beyond) / (cos + index * beyond)) ** 2
