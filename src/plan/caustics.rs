@@ -183,7 +183,12 @@ fn lit_places(scene: &Scene<Curve>, spread: impl Fn(&Material<Curve>) -> bool) -
     let rays =
         (0..SIDE * SIDE).map(|i| scene.camera.ray(DVec2::new(at(i % SIDE, film.width), at(i / SIDE, film.height))));
     let place = |ray| {
-        let hit = scene.intersect(&ray).filter(|hit| spread(scene.material_of(hit.object)))?;
+        // What is seen through a pane is lit as well.
+        let counts = |material: &Material<Curve>| spread(material) || !material.is_see_through();
+        let hit = scene.nearest(&ray, f64::INFINITY, |object| counts(scene.material_of(object)))?;
+        if !spread(scene.material_of(hit.object)) {
+            return None;
+        }
         Some(ray.at(hit.crossing.t))
     };
     rays.filter_map(place).collect()
