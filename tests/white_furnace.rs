@@ -31,7 +31,7 @@ fn furnace(material: &Material<Table>, indices: [f64; 2], cos: f64) -> f64 {
             sum += f64::from(branch.share[0]) / branch.eta_scale / f64::from(DRAWS);
         }
     }
-    sum + material.passing(&arrival).map_or(0.0, |passing| f64::from(passing[0]))
+    sum + material.straight(&arrival).map_or(0.0, |straight| f64::from(straight.share()[0]))
 }
 
 /// A material of one roughness, the indices it is met between, and its name in the table.

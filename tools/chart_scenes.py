@@ -166,6 +166,18 @@ CHARTS = (
         ),
     ),
     Chart(
+        "window",
+        "A furnished room behind a window, in sun and sky",
+        PEERS / "window.toml",
+        (48, 48),
+        (
+            abbe("Abbe", 4, 16, 64, model='"rgb"'),
+            mitsuba("llvm_ad_rgb", 16, 64, 256),
+            mitsuba("scalar_rgb", 4, 16, 64),
+            cycles(4, 16, 64),
+        ),
+    ),
+    Chart(
         "mesh",
         "A ball of 180 000 triangles under an even sky",
         PEERS / "mesh.toml",

@@ -26,7 +26,7 @@ import numpy as np
 SCENES = Path(__file__).resolve().parent.parent / "scenes"
 MEASURED = SCENES / "pictures/measured.json"
 FIRST = "rainbow"  # the picture on top of README.md, scenes/rainbow.png
-ORDER = "gem rainbow water pool lens prism metals illuminants still_life large/instances large/landscape cornell smallpt classic spheres".split()
+ORDER = "gem rainbow water pool window lens prism metals illuminants still_life large/instances large/landscape cornell smallpt classic spheres".split()
 
 HEAD = """# The gallery
 
@@ -64,15 +64,21 @@ def make_lenses():
     yield "ring", [*shapes.arc((0.86, 0), 0.085, 0, 360, 17)]
 
 
+def make_pottery():
+    yield "vase", shapes.vase()
+    yield "bowl", shapes.bowl()
+
+
 def make():
     """Every mesh and image that a scene names."""
     meshes, images = SCENES / "meshes", SCENES / "textures"
     shapes.write_ply(meshes / "brilliant.ply", *shapes.brilliant())
-    for name, profile in [("tumbler", shapes.tumbler()), ("water", shapes.water()), *make_lenses()]:
+    for name, profile in [("tumbler", shapes.tumbler()), ("water", shapes.water()), *make_lenses(), *make_pottery()]:
         shapes.write_ply(meshes / f"{name}.ply", *shapes.lathe(profile, 72))
     points, faces, uv = shapes.tube()
     shapes.write_ply(meshes / "straw.ply", points, faces, uv=uv)
     shapes.write_ply(meshes / "sweep.ply", *shapes.sweep())
+    shapes.write_ply(meshes / "curtain.ply", *shapes.curtain())
     shapes.write_ply(meshes / "waves.ply", *shapes.block(shapes.waves(), 5.2, 5.2, -1.5))
     textures.write_png(images / "stripes.png", textures.stripes())
     textures.write_png(images / "wood.png", textures.wood())

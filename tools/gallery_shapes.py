@@ -168,6 +168,36 @@ def tube(radius=0.04, wall=0.006, length=1.5):
     return np.array(points), faces, np.array(uv)
 
 
+def vase():
+    """A vase of clay with a narrow neck, 0.4 high, open at the top."""
+    t = np.linspace(0, 1, 22)
+    outside = 0.055 + 0.075 * np.sin(np.pi * t**0.8) ** 1.4 + 0.02 * t**8
+    wall = [(radius, 0.4 * y) for radius, y in zip(outside, t)]
+    inside = [(radius - 0.008, 0.4 * y) for radius, y in zip(outside[::-1], t[::-1]) if y > 0.05]
+    return [(0, 0), *wall, *inside, (0, 0.03)]
+
+
+def bowl():
+    """A shallow bowl, 0.36 wide, with a foot."""
+    t = np.linspace(0.15, 1, 14)
+    outside = [(0.18 * x, 0.012 + 0.09 * x**2.2) for x in t]
+    inside = [(0.18 * x - 0.004, 0.02 + 0.084 * x**2.2) for x in t[::-1]]
+    return [(0, 0), (0.06, 0), (0.06, 0.008), *outside, *inside, (0, 0.021)]
+
+
+def curtain(width=0.55, height=2.15, folds=5, columns=81, rows=24):
+    """A hanging cloth from the origin down, gathered toward the top, with smooth normals; its folds run along +x and swing in z."""
+    s, t = np.meshgrid(np.linspace(0, 1, columns), np.linspace(0, 1, rows))
+    swing = 0.035 * (0.6 + 0.5 * t) * np.sin(2 * np.pi * folds * s + 0.8 * np.sin(3 * t)) + 0.012 * np.sin(17 * s + 4 * t)
+    points = np.stack([(s - 0.5) * width * (0.9 + 0.12 * t), -height * t, swing], axis=-1)
+    normals = np.cross(np.gradient(points, axis=0), np.gradient(points, axis=1))
+    normals /= np.linalg.norm(normals, axis=-1, keepdims=True)
+    corner = (np.arange(rows - 1)[:, None] * columns + np.arange(columns - 1)).reshape(-1)
+    lower = np.stack([corner, corner + columns, corner + 1], 1)
+    faces = np.concatenate([lower, np.stack([corner + 1, corner + columns, corner + columns + 1], 1)])
+    return points.reshape(-1, 3), faces, normals.reshape(-1, 3)
+
+
 def noise(size, cells, seed):
     """Smooth noise of a few cells on a square of size x size, within -1 and 1."""
     values = np.random.default_rng(seed).uniform(-1, 1, (cells + 2, cells + 2))

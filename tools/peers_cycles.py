@@ -9,7 +9,7 @@ import tempfile
 from pathlib import Path
 
 import numpy as np
-from peers_scene import parts, read, rgb, shapes, triangles
+from peers_scene import lights, parts, read, rgb, shapes, triangles
 
 DEPTH = 1024
 
@@ -26,7 +26,9 @@ class Renderer:
         self.scene = bpy.context.scene
         set_up(self.scene, scene["film"])
         set_camera(bpy, self.scene, scene["camera"], scene["film"])
-        set_sky(bpy, self.scene, scene.get("light", []))
+        set_sky(bpy, self.scene, lights(scene, "environment"))
+        for sun in lights(scene, "sun"):
+            add_sun(bpy, self.scene, sun)
         materials = {name: material(bpy, name, entry) for name, entry in scene["material"].items()}
         for kind, values, name in shapes(scene, flat_lamp):
             add(bpy, self.scene, triangles(kind, values, path.parent), materials[name])
@@ -86,12 +88,52 @@ def set_camera(bpy, scene, values: dict, film: dict) -> None:
     scene.collection.objects.link(scene.camera)
 
 
-def set_sky(bpy, scene, lights: list) -> None:
+def set_sky(bpy, scene, skies: list) -> None:
     scene.world = bpy.data.worlds.new("sky")
     scene.world.use_nodes = True
     background = scene.world.node_tree.nodes["Background"]
-    color = rgb(lights[0]["environment"]["radiance"]) if lights else [0.0] * 3
+    color = rgb(skies[0]["radiance"]) if skies else [0.0] * 3
     background.inputs["Color"].default_value = [*color, 1]
+
+
+def add_sun(bpy, scene, values: dict) -> None:
+    sun = bpy.data.lights.new("sun", "SUN")
+    sun.energy, sun.color = 1.0, rgb(values["irradiance"])
+    sun.angle = np.radians(values.get("angular_diameter", 0.533))
+    light = bpy.data.objects.new("sun", sun)
+    backward = np.array(values["toward"], float) / np.linalg.norm(values["toward"])
+    right = np.cross(np.roll(backward, 1), backward)
+    right /= np.linalg.norm(right)
+    matrix = np.eye(4)
+    matrix[:3, :3] = np.stack([right, np.cross(backward, right), backward], axis=1)
+    light.matrix_world = matrix.T.tolist()
+    scene.collection.objects.link(light)
+
+
+def pane(tree, node, index: float):
+    """A window pane whose shadow is transparent: of both surfaces together 2 R / (1 + R) is reflected."""
+    made = lambda kind, operation: setattr(one := tree.nodes.new(kind), "operation", operation) or one  # noqa: E731
+    # The node of Fresnel's formula takes the inverse index on the back, where a pane has the same.
+    back, inverse, fresnel = tree.nodes.new("ShaderNodeNewGeometry"), made("ShaderNodeMath", "POWER"), node("ShaderNodeFresnel")
+    sign = made("ShaderNodeMath", "MULTIPLY_ADD")
+    tree.links.new(back.outputs["Backfacing"], sign.inputs[0])
+    sign.inputs[1].default_value, sign.inputs[2].default_value = -2.0, 1.0
+    inverse.inputs[0].default_value = index
+    tree.links.new(sign.outputs[0], inverse.inputs[1])
+    tree.links.new(inverse.outputs[0], fresnel.inputs["IOR"])
+    twice, more, share = (made("ShaderNodeMath", operation) for operation in ("MULTIPLY", "ADD", "DIVIDE"))
+    twice.inputs[1].default_value, more.inputs[1].default_value = 2.0, 1.0
+    for sum_ in (twice, more):
+        tree.links.new(fresnel.outputs[0], sum_.inputs[0])
+    tree.links.new(twice.outputs[0], share.inputs[0])
+    tree.links.new(more.outputs[0], share.inputs[1])
+    mix, through = tree.nodes.new("ShaderNodeMixShader"), tree.nodes.new("ShaderNodeBsdfTransparent")
+    mirror = node("ShaderNodeBsdfAnisotropic", Roughness=0.0)
+    mirror.inputs["Color"].default_value = [1, 1, 1, 1]
+    tree.links.new(share.outputs[0], mix.inputs[0])
+    tree.links.new(through.outputs[0], mix.inputs[1])
+    tree.links.new(mirror.outputs[0], mix.inputs[2])
+    return mix
 
 
 def material(bpy, name: str, entry: dict):
@@ -116,6 +158,8 @@ def material(bpy, name: str, entry: dict):
     elif kind == "dielectric":
         color = [*rgb(values.get("transmittance", 1.0)), 1]
         shader = node("ShaderNodeBsdfGlass", Color=color, Roughness=0.0, IOR=float(values["index"]))
+    elif kind == "thin":
+        shader = pane(tree, node, float(values["index"]))
     else:
         shader = node("ShaderNodeEmission", Color=[*rgb(values["radiance"]), 1], Strength=1.0)
         if values.get("sides") == "front":

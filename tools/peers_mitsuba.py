@@ -7,7 +7,7 @@ import zlib
 from pathlib import Path
 
 import numpy as np
-from peers_scene import parts, read, rgb, shapes
+from peers_scene import lights, parts, read, rgb, shapes
 
 
 class Renderer:
@@ -39,6 +39,8 @@ def mitsuba_material(entry: dict) -> dict:
     if kind == "dielectric":
         ways = {f"specular_{way}": color(values.get(way, 1.0)) for way in ("reflectance", "transmittance")}
         return {"bsdf": {"type": "dielectric", "int_ior": values["index"], "ext_ior": 1.0, **ways}}
+    if kind == "thin":
+        return {"bsdf": {"type": "thindielectric", "int_ior": values["index"], "ext_ior": 1.0}}
     black = {"type": "diffuse", "reflectance": color(0.0)}
     return {"bsdf": black, "emitter": {"type": "area", "radiance": color(values["radiance"])}}
 
@@ -66,6 +68,17 @@ def mitsuba_shape(mitsuba, kind: str, values: dict, folder: Path) -> dict:
     return {"type": "obj", "filename": str(path), "face_normals": True}
 
 
+def far_disc(mitsuba, sun: dict, distance: float = 1e4) -> dict:
+    """A sun as a disc far away, which a path may also meet by chance: Mitsuba aims at nothing behind a pane."""
+    toward = np.array(sun["toward"], float) / np.linalg.norm(sun["toward"])
+    half = np.radians(sun.get("angular_diameter", 0.533)) / 2
+    at = toward * distance
+    look = mitsuba.ScalarTransform4f().look_at(origin=at, target=[0, 0, 0], up=np.roll(toward, 1))
+    radiance = [x / (np.pi * np.sin(half) ** 2) for x in rgb(sun["irradiance"])]
+    emitter = {"type": "area", "radiance": {"type": "rgb", "value": radiance}}
+    return {"type": "disk", "to_world": look.scale(distance * np.tan(half)), "emitter": emitter}
+
+
 def mitsuba_scene(mitsuba, path: Path, flat_lamp: bool = False) -> dict:
     """The scene as mitsuba.load_dict reads it, with the multijitter sampler and the path integrator's defaults."""
     scene = read(path)
@@ -90,7 +103,8 @@ def mitsuba_scene(mitsuba, path: Path, flat_lamp: bool = False) -> dict:
     for number, (kind, values, material) in enumerate(shapes(scene, flat_lamp)):
         shape = mitsuba_shape(mitsuba, kind, values, Path(path).parent)
         result[f"object{number}"] = {**shape, **mitsuba_material(scene["material"][material])}
-    for number, light in enumerate(scene.get("light", [])):
-        radiance = {"type": "rgb", "value": rgb(light["environment"]["radiance"])}
-        result[f"light{number}"] = {"type": "constant", "radiance": radiance}
+    for number, sky in enumerate(lights(scene, "environment")):
+        result[f"sky{number}"] = {"type": "constant", "radiance": {"type": "rgb", "value": rgb(sky["radiance"])}}
+    for number, sun in enumerate(lights(scene, "sun")):
+        result[f"sun{number}"] = far_disc(mitsuba, sun)
     return result

@@ -2,8 +2,8 @@
 
     peers_scene.shapes(peers_scene.read("scene.toml"))      # [(kind, values, material), ..]
 
-Knows what the scenes of tools/chart_scenes.py hold: perspective cameras; quads, spheres and meshes; diffuse, mirror,
-dielectric and emissive materials; an even sky. Spheres above a radius of 1e4, the walls of smallpt, become the squares
+Knows what the scenes of tools/chart_scenes.py hold: perspective cameras; quads, cubes, spheres and meshes; diffuse, mirror,
+dielectric, thin and emissive materials; an even sky and a sun. Spheres above a radius of 1e4, the walls of smallpt, become the squares
 they stand for; `flat_lamp` lets a disc stand for the tip of a huge lamp as well, which every renderer can aim at.
 """
 
@@ -35,6 +35,20 @@ def parts(entry: dict) -> tuple[str, dict]:
 def quad_triangles(center, u, v) -> tuple[np.ndarray, np.ndarray]:
     center, u, v = (np.array(x, float) for x in (center, u, v))
     return np.array([center - u - v, center + u - v, center + u + v, center - u + v]), np.array([[0, 1, 2], [0, 2, 3]])
+
+
+def box(center, size) -> dict:
+    """The mesh of a cube, facing outward."""
+    half = np.broadcast_to(np.array(size, float), 3) / 2
+    ends = np.array(center, float) - half, np.array(center, float) + half
+    points = [[float(ends[corner >> axis & 1][axis]) for axis in range(3)] for corner in range(8)]
+    sides = [(0, 4, 6, 2), (1, 3, 7, 5), (0, 1, 5, 4), (2, 6, 7, 3), (0, 2, 3, 1), (4, 5, 7, 6)]
+    return {"points": points, "faces": [face for a, b, c, d in sides for face in ([a, b, c], [a, c, d])]}
+
+
+def lights(scene: dict, kind: str) -> list[dict]:
+    """The values of all lights of a kind that are no objects."""
+    return [light[kind] for light in scene.get("light", []) if kind in light]
 
 
 def wall(center: np.ndarray, radius: float, room: np.ndarray) -> dict:
@@ -69,6 +83,8 @@ def shapes(scene: dict, flat_lamp: bool = False) -> list[tuple[str, dict, str]]:
             (x, y, z), radius = values["center"], values["radius"]
             rim = float(np.sqrt(radius**2 - (y - room[1, 1]) ** 2))
             kind, values = "disc", {"center": [x, y - radius, z], "normal": [0, -1, 0], "radius": rim}
+        elif kind == "cube":
+            kind, values = "mesh", box(values["center"], values["size"])
         result.append((kind, values, material))
     return result
 

@@ -1,6 +1,6 @@
 use serde::Deserialize;
 
-use super::{Arrival, Branch, Part};
+use super::{Arrival, Branch, Part, Straight};
 use crate::math::DVec3;
 use crate::spectrum::{Lanes, Quantity, Table};
 
@@ -39,9 +39,16 @@ impl Mask<Table> {
     }
 
     /// The share that goes straight on.
-    pub(super) fn passing<const N: usize>(&self, arrival: &Arrival<N>) -> Lanes<N> {
-        let (opacity, within) = (arrival.read(&self.opacity), self.material.material().passing(arrival));
-        let within = within.unwrap_or(Lanes::ZERO);
-        Lanes::from_fn(|i| 1.0 - opacity[i] * (1.0 - within[i]))
+    pub(super) fn straight<const N: usize>(&self, arrival: &Arrival<N>) -> Straight<N> {
+        let (opacity, within) = (arrival.read(&self.opacity), self.material.material().straight(arrival));
+        let hole = Lanes::from_fn(|i| 1.0 - opacity[i]);
+        match within {
+            None => Straight { holes: hole, panes: Lanes::ZERO, polarization: 0.0 },
+            // 1 less what is met keeps its digits where all goes on.
+            Some(within) => {
+                let holes = Lanes::from_fn(|i| 1.0 - opacity[i] * (1.0 - within.holes[i]));
+                Straight { holes, panes: within.panes * opacity, ..within }
+            }
+        }
     }
 }

@@ -1,6 +1,6 @@
 use serde::{Deserialize, Deserializer};
 
-use super::{Arrival, Branch, Part};
+use super::{Arrival, Branch, Part, Straight};
 use crate::math::{DVec3, Ray};
 use crate::spectrum::{Lanes, Quantity, Table};
 
@@ -124,21 +124,18 @@ impl Mix<Table> {
         Some((a.0 * shares[0] + b.0 * shares[1], (1.0 - second) * a.1 + second * b.1))
     }
 
-    /// The share that goes straight on through the holes of masks.
-    pub(super) fn passing<const N: usize>(&self, arrival: &Arrival<N>) -> Option<Lanes<N>> {
-        let [a, b] = self.materials.each_ref().map(|part| part.material().passing(arrival));
-        if a.is_none() && b.is_none() {
-            return None;
-        }
-        let shares = self.shares(arrival);
-        Some(a.unwrap_or(Lanes::ZERO) * shares[0] + b.unwrap_or(Lanes::ZERO) * shares[1])
+    /// The share that goes straight on.
+    pub(super) fn straight<const N: usize>(&self, arrival: &Arrival<N>) -> Option<Straight<N>> {
+        let parts = self.materials.each_ref().map(|part| part.material().straight(arrival));
+        Straight::of_both(parts, self.shares(arrival))
     }
 }
 
 impl<const N: usize> Branch<N> {
-    /// The way of a ray that passes through holes, with the light that comes by it.
-    pub fn onward(ray: &Ray, share: Lanes<N>) -> Self {
-        Self { wi: ray.direction, share, pdf: None, crosses: false, eta_scale: 1.0, polarization: 0.0 }
+    /// The way of a ray that goes straight on, with the light that comes by it.
+    pub fn onward(ray: &Ray, straight: &Straight<N>) -> Self {
+        let (share, polarization) = (straight.share(), straight.polarization);
+        Self { wi: ray.direction, share, pdf: None, crosses: false, eta_scale: 1.0, polarization }
     }
 
     /// The same way with a share of its light.

@@ -22,6 +22,7 @@ mod plastic;
 mod rough_dielectric;
 mod rough_interface;
 mod roughness;
+mod straight;
 mod thin;
 
 pub use coat::Coat;
@@ -38,6 +39,7 @@ pub use part::Part;
 pub use plastic::Plastic;
 pub use rough_interface::{Facet, Flow, RoughInterface, Side, Sides, Way};
 pub use roughness::{RoughReflection, RoughSurface, Roughness};
+pub use straight::Straight;
 pub use thin::Thin;
 
 use serde::Deserialize;
@@ -104,7 +106,8 @@ pub struct Branch<const N: usize> {
     pub pdf: Option<f64>,
     /// Whether the light came from beyond the surface.
     pub crosses: bool,
-    /// The part of `share` that only converts radiance between media, (n_incident / n_beyond)^2 of the ray's indices.
+    /// The part of `share` that is no measure of what the way is worth: that converts radiance between media,
+    /// (n_incident / n_beyond)^2 of the ray's indices, or makes up for a density that the material does not have.
     pub eta_scale: f64,
     /// Largest degree |s - p| / (s + p), of any lane, to which unpolarized light that comes by this one direction leaves polarized;
     /// 0 where it does not, and of directions that were drawn: see [`Material::degree_of_scattered`].

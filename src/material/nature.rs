@@ -62,9 +62,4 @@ impl<S> Material<S> {
             Self::Mix(_) | Self::Mask(_) => self.parts().iter().any(|part| part.material().has_single_directions()),
         }
     }
-
-    /// Whether light passes through holes of it, as if nothing were there.
-    pub fn has_holes(&self) -> bool {
-        matches!(self, Self::Mask(_)) || self.parts().iter().any(|part| part.material().has_holes())
-    }
 }

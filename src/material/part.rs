@@ -1,7 +1,7 @@
 use serde::Deserialize;
 
-use super::{Arrival, Mask, Material, Mix};
-use crate::spectrum::{Lanes, Quantity, Table};
+use super::{Mask, Material, Mix};
+use crate::spectrum::Quantity;
 
 /// A material that another one is made of: its name in the scene file, and what stands there under that name.
 #[derive(Clone, Debug, Deserialize)]
@@ -74,17 +74,5 @@ impl<S> Material<S> {
     /// Whether it is made of the material of a name.
     pub fn is_made_of(&self, name: &str) -> bool {
         self.parts().iter().any(|part| part.name == name || part.material().is_made_of(name))
-    }
-}
-
-impl Material<Table> {
-    /// The share of the light that passes through holes, straight on and into the same media; none where there are no
-    /// holes. `scatter` leaves it out.
-    pub fn passing<const N: usize>(&self, arrival: &Arrival<N>) -> Option<Lanes<N>> {
-        match self {
-            Self::Mix(mix) => mix.passing(arrival),
-            Self::Mask(mask) => Some(mask.passing(arrival)),
-            _ => None,
-        }
     }
 }

@@ -2,11 +2,11 @@ use serde::Deserialize;
 
 use super::degree::degree;
 use super::dielectric::flat;
-use super::{Arrival, Branch, Interface, reflect};
+use super::{Arrival, Branch, Interface, Straight, reflect};
 use crate::spectrum::{Lanes, Quantity, Table};
 
 /// A pane of clear material without thickness: a window of which nothing but its two surfaces is seen. Light goes straight
-/// on or is mirrored; all reflections between the two surfaces are summed.
+/// on, that of lights to the surfaces behind as well, or is mirrored; all reflections between the two surfaces are summed.
 ///
 /// ```toml
 /// thin = { index = 1.52 }     # transmittance = 1: what is left after one way through the pane, straight on
@@ -32,21 +32,18 @@ impl<S> Thin<S> {
 }
 
 impl Thin<Table> {
+    /// What goes straight on.
+    pub(super) fn straight<const N: usize>(&self, arrival: &Arrival<N>) -> Straight<N> {
+        let (panes, _, degrees) = self.shares(arrival);
+        Straight { holes: Lanes::ZERO, panes, polarization: degrees[0] as f32 }
+    }
+
+    /// What is mirrored.
     pub(super) fn scatter<const N: usize>(&self, arrival: &Arrival<N>, branches: &mut Vec<Branch<N>>) {
-        let (through, back, degrees) = self.shares(arrival);
-        let branch = |wi, share, crosses, polarization: f64| Branch {
-            wi,
-            share,
-            pdf: None,
-            crosses,
-            eta_scale: 1.0,
-            polarization: polarization as f32,
-        };
-        if !through.is_zero() {
-            branches.push(branch(-arrival.wo, through, true, degrees[0]));
-        }
-        if !back.is_zero() {
-            branches.push(branch(reflect(arrival.wo, arrival.normal), back, false, degrees[1]));
+        let (_, share, degrees) = self.shares(arrival);
+        if !share.is_zero() {
+            let (wi, polarization) = (reflect(arrival.wo, arrival.normal), degrees[1] as f32);
+            branches.push(Branch { wi, share, pdf: None, crosses: false, eta_scale: 1.0, polarization });
         }
     }
 

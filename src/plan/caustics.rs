@@ -83,7 +83,7 @@ pub(super) fn light_pass(scene: &Scene<Curve>, method: &Method) -> (Option<Light
         LightPass { photons, lights, map: None }
     };
     let asked = pass(1.0, small.iter().map(|light| light.0).collect());
-    let world = World::new(scene, Method { light_pass: Some(asked), ..method.clone() });
+    let world = World::with_photons(scene, Method { light_pass: Some(asked), ..method.clone() });
     let share = seen_photons(&world);
     let (seen, unseen): (Vec<_>, Vec<_>) = small.into_iter().partition(|&(id, _)| share[id] > 0.0);
     let to = match targets.as_slice() {
@@ -183,7 +183,12 @@ fn lit_places(scene: &Scene<Curve>, spread: impl Fn(&Material<Curve>) -> bool) -
     let rays =
         (0..SIDE * SIDE).map(|i| scene.camera.ray(DVec2::new(at(i % SIDE, film.width), at(i / SIDE, film.height))));
     let place = |ray| {
-        let hit = scene.intersect(&ray).filter(|hit| spread(scene.material_of(hit.object)))?;
+        // What is seen through a pane is lit as well.
+        let counts = |material: &Material<Curve>| spread(material) || !material.is_see_through();
+        let hit = scene.nearest(&ray, f64::INFINITY, |object| counts(scene.material_of(object)))?;
+        if !spread(scene.material_of(hit.object)) {
+            return None;
+        }
         Some(ray.at(hit.crossing.t))
     };
     rays.filter_map(place).collect()

@@ -97,7 +97,7 @@ impl<'a> Sight<'a> {
     /// Whether light never crosses an object.
     pub(super) fn is_opaque(&self, object: u32) -> bool {
         let material = self.scene.material_of(object);
-        !material.lets_through() && !material.has_holes()
+        !material.lets_through() && !material.is_see_through()
     }
 
     pub(super) fn is_occluded(&self, ray: &Ray, distance: f64, light: Option<u32>) -> bool {

@@ -2,9 +2,10 @@
 
 use std::cell::Cell;
 
-use super::holes::through_holes;
+use super::openings::Leaving;
 use super::path::Drawn;
-use super::polarization::Lit;
+use super::polarization::{Lit, Polarized};
+use super::straight;
 use super::{World, media, shading};
 use crate::light::{Light, LightId};
 use crate::material::{Arrival, Material};
@@ -29,6 +30,8 @@ pub(super) struct Gathering<'a, const N: usize> {
     pub(super) inside: Option<MaterialId>,
     /// Whether the path goes on from here and may meet a light by itself.
     pub(super) goes_on: bool,
+    /// How the path leaves a diffuse surface, where that was learned.
+    pub(super) leaving: Option<Leaving<'a>>,
     pub(super) aims_at_all: bool,
     /// The object that hid a light last.
     pub(super) hider: &'a Cell<Option<u32>>,
@@ -50,6 +53,9 @@ impl<const N: usize> Gathering<'_, N> {
         let mut sum = [0.0; 3];
         let digits = |target: LightId, u: [f64; 2]| match &self.world.scene.lights[target] {
             Light::Area(area) if area.has_parts() => [finer(u[0], sampler.four_plain(key, MORE_DIGITS)[1]), u[1]],
+            Light::Environment(_) if self.world.openings.is_some() => {
+                [finer(u[0], sampler.four_plain(key, MORE_DIGITS)[1]), u[1]]
+            }
             _ => u,
         };
         if self.aims_at_all {
@@ -66,7 +72,7 @@ impl<const N: usize> Gathering<'_, N> {
         } else {
             let more = sampler.four_plain(key, MORE_DIGITS);
             let (from, normal) = (self.point.position, self.normal);
-            if let Some((target, probability)) = self.world.choice.choose(from, normal, finer(self.u[3], more[0])) {
+            if let Some((target, probability)) = self.world.choose(from, normal, finer(self.u[3], more[0])) {
                 add(&mut sum, self.from(target, probability, digits(target, [self.u[0], self.u[1]])));
             }
         }
@@ -107,34 +113,42 @@ impl<const N: usize> Gathering<'_, N> {
         let normal = self.normal;
         let probability = probability * self.side.unwrap_or(1.0);
         let lit = || {
-            let sighting = light.aim(self.point.position, normal, u)?;
+            let learned = self.world.aimed(target, self.point.position);
+            let sighting = match learned {
+                Some(aimed) => aimed.aim(normal, u),
+                None => light.aim(self.point.position, normal, u)?,
+            };
             if self.side.is_some() && sighting.direction.dot(normal) <= 0.0 {
                 return None;
             }
             let flat = if normal.dot(self.arrival.wo) < 0.0 { -normal } else { normal };
             let (bsdf_cos, bsdf_pdf) = shading::evaluate(self.material, self.arrival, flat, sighting.direction)?;
             let ray = self.point.leave(sighting.direction);
-            let view = light.view(&ray, normal, &sighting)?;
+            let mut view = light.view(&ray, normal, &sighting)?;
+            if let Some(aimed) = learned {
+                view.pdf = Some(aimed.pdf(&ray, normal));
+            }
             let factor = match view.pdf {
                 None => view.factor / probability,
                 Some(pdf) => {
                     let pdf = pdf * probability;
-                    let weight = if self.goes_on { power_heuristic(pdf, bsdf_pdf) } else { 1.0 };
+                    let by_path = || self.leaving.map_or(bsdf_pdf, |leaving| leaving.pdf(ray.direction, bsdf_pdf));
+                    let weight = if self.goes_on { power_heuristic(pdf, by_path()) } else { 1.0 };
                     view.factor * weight / pdf
                 }
             };
             if !factor.is_finite() {
                 return None;
             }
-            let holes = if self.world.has_any_holes() {
-                Some(self.through_holes(&ray, view.distance, view.object)?)
+            let transmitted = if self.world.has_see_through() {
+                Some(self.transmittance(&ray, view.distance, view.object)?)
             } else if self.world.scene.is_hidden(&ray, view.distance, view.object, self.hider) {
                 return None;
             } else {
                 None
             };
             let mut arriving = light.toward(self.arrival.draw, sighting.direction, view.uv);
-            if let Some(share) = holes {
+            if let Some((share, _)) = transmitted {
                 arriving = arriving * share;
             }
             if let Some(material) = self.inside {
@@ -144,22 +158,23 @@ impl<const N: usize> Gathering<'_, N> {
             let reflected = self.throughput.scaled(factor).of(bsdf_cos * arriving);
             let rgb = self.world.responses[target].sensor(self.arrival.draw, reflected, self.parted);
             if let Some(lit) = &self.lit {
-                lit.count(self.world, (self.material, self.arrival), sighting.direction, rgb);
+                let on_its_way = transmitted.map_or(Polarized::NOT, |(_, polarized)| polarized);
+                lit.count(self.world, (self.material, self.arrival), (sighting.direction, on_its_way), rgb);
             }
             Some(rgb)
         };
         lit().unwrap_or([0.0; 3])
     }
 
-    /// The share of a light that holes before it let through; none if something hides it.
+    /// The share of a light that goes straight on through what stands before it; none if something hides it.
     #[cold]
     #[inline(never)]
-    fn through_holes(&self, ray: &Ray, distance: f64, light: Option<u32>) -> Option<Lanes<N>> {
+    fn transmittance(&self, ray: &Ray, distance: f64, light: Option<u32>) -> Option<(Lanes<N>, Polarized)> {
         let world = self.world;
-        if world.scene.is_hidden_by(ray, distance, light, self.hider, |object| !world.has_holes(object)) {
+        if world.scene.is_hidden_by(ray, distance, light, self.hider, |object| !world.is_see_through(object)) {
             return None;
         }
-        through_holes(world, self.arrival.draw, ray, distance, self.inside)
+        straight::transmittance(world, self.arrival.draw, ray, distance, self.inside)
     }
 }
 
@@ -180,17 +195,20 @@ pub(super) fn weight_of_meeting(
     let Some(drawn) = drawn else { return 1.0 };
     let pdf = match (&world.scene.lights[light], crossing) {
         (Light::Area(area), Some(_)) if area.aimed_at && drawn.passed => {
-            // The light was aimed at from before the holes that the path has passed since.
+            // The light was aimed at from before the holes and panes that the path has passed since.
             let ray = Ray { origin: drawn.from, direction: ray.direction };
             area.shape.intersect(&ray, f64::INFINITY).and_then(|crossing| area.pdf(&ray, drawn.normal, &crossing))
         }
         (Light::Area(area), Some(crossing)) if area.aimed_at => area.pdf(ray, drawn.normal, crossing),
-        (Light::Environment(environment), None) => Some(environment.pdf(ray, drawn.normal)),
+        (Light::Environment(environment), None) => Some(match world.aimed(light, drawn.from) {
+            Some(aimed) => aimed.pdf(ray, drawn.normal),
+            None => environment.pdf(ray, drawn.normal),
+        }),
         (Light::Sun(sun), None) => sun.pdf(ray),
         _ => None,
     };
     let Some(pdf) = pdf else { return 1.0 };
-    let probability = if drawn.aimed_at_all { 1.0 } else { world.choice.probability(light, drawn.from, drawn.normal) };
+    let probability = if drawn.aimed_at_all { 1.0 } else { world.probability(light, drawn.from, drawn.normal) };
     power_heuristic(drawn.pdf, pdf * (probability * drawn.chance))
 }
 

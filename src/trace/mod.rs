@@ -7,24 +7,27 @@
 //! 3. A surface answers with branches, a direction and the lanes that came by it; dispersive lanes part there.
 //! 4. The tracer is a loop over pending rays: it follows all branches while the weight is large, then one, then plays
 //!    roulette. A weight is the mean throughput over the lanes, without the factor of radiance between media.
-//! 5. Paths light, smooth surfaces, one that scatters widely, camera may be found by photons, and those with more surfaces before
+//! 5. Light that goes straight on, through holes and panes, makes no other kind of path: next-event estimation and photons look
+//!    through them.
+//! 6. Paths light, smooth surfaces, one that scatters widely, camera may be found by photons, and those with more surfaces before
 //!    the camera by gathering photons; paths from the camera then leave exactly those out.
-//! 6. Random numbers are a pure function of seed, pixel, sample, branch and use; sums have a fixed order.
+//! 7. Random numbers are a pure function of seed, pixel, sample, branch and use; sums have a fixed order.
 
 mod aims;
 mod branching;
 mod choice;
 mod direct;
+mod directions;
 mod emission;
 mod follow;
 mod guide;
-mod holes;
 mod lamps;
 mod light_pass;
 mod map;
 mod media;
 mod merge;
 mod method;
+mod openings;
 mod path;
 mod photon;
 mod pilot;
@@ -35,7 +38,9 @@ mod roulette;
 mod routes;
 mod sending;
 mod shading;
+mod sky_pilot;
 mod spread;
+mod straight;
 mod tally;
 mod tracer;
 mod width;

@@ -1,16 +1,18 @@
 use super::World;
 use super::media::{self, Media};
 use super::polarization::Polarized;
+use crate::material::Straight;
 use crate::math::{BranchKey, DVec3, Ray};
 use crate::shape::SurfacePoint;
-use crate::spectrum::{Draw, Lanes, Throughput};
+use crate::spectrum::{Draw, Throughput};
 
 /// A ray on its way back from the camera.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Path<const N: usize> {
     pub(super) ray: Ray,
     pub(super) throughput: Throughput<N>,
-    /// The factor of radiance between the medium at the path's end and the camera's, which is no measure of importance.
+    /// What of the throughput is no measure of importance: the factor of radiance between the medium at the path's end and the
+    /// camera's, and how much more rarely its directions were drawn than the surfaces scatter.
     pub(super) eta_scale: f64,
     /// The bodies the ray is inside of.
     pub(super) media: Media,
@@ -72,7 +74,7 @@ pub(super) struct Drawn {
     pub(super) chance: f64,
     /// Whether every light was aimed at there, or one.
     pub(super) aimed_at_all: bool,
-    /// Whether the path has passed holes since.
+    /// Whether the path has gone straight on through surfaces since.
     pub(super) passed: bool,
 }
 
@@ -108,20 +110,22 @@ impl<const N: usize> Path<N> {
         }
     }
 
-    /// The path beyond a surface that it passes as if nothing were there.
+    /// The path beyond a surface that it goes straight through as if nothing were there.
     ///
-    /// What it meets beyond may have been aimed at through the hole, from where its direction was drawn.
+    /// What it meets beyond was aimed at through the surface, from where its direction was drawn: light that goes straight on
+    /// makes no other kind of path.
     pub(super) fn passed(&self, point: &SurfacePoint) -> Self {
         let drawn = self.drawn.map(|drawn| Drawn { passed: true, ..drawn });
         Self { ray: point.leave(self.ray.direction), drawn, ..*self }
     }
 
-    /// The path beyond a surface that it has met and passes in part.
+    /// The path beyond a surface that it has met and goes straight through in part, which is not counted among its surfaces.
     #[cold]
     #[inline(never)]
-    pub(super) fn passed_in_part(&self, point: &SurfacePoint, passing: Lanes<N>) -> Self {
-        let throughput = self.throughput.through(passing);
-        Self { throughput, vertices: self.vertices - 1, ..self.passed(point) }
+    pub(super) fn passed_in_part(&self, point: &SurfacePoint, straight: &Straight<N>) -> Self {
+        let throughput = self.throughput.through(straight.share());
+        let polarized = self.polarized.after(straight.polarization);
+        Self { throughput, polarized, vertices: self.vertices - 1, ..self.passed(point) }
     }
 
     /// How much the path can still matter: its mean throughput, without the factor of radiance between media.

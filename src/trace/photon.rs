@@ -2,11 +2,11 @@
 
 use super::World;
 use super::emission::Emitted;
-use super::holes;
 use super::media::{self, Boundary, Media};
 use super::path::{Leg, Path};
 use super::polarization::Polarized;
 use super::shading;
+use super::straight;
 use super::tracer::Tracer;
 use crate::light::LightId;
 use crate::material::Arrival;
@@ -89,8 +89,8 @@ impl<const N: usize> Tracer<'_, N> {
             let Some(hit) = world.scene.intersect(&path.ray) else { continue };
             path.advance(world, draw, hit.crossing.t);
             let point = world.scene.objects[hit.object as usize].point(&path.ray, &hit.crossing);
-            if let Some(passing) = holes::passing(world, draw, &path, &hit, &point) {
-                let (throughput, key) = (path.throughput.through(passing), path.key.child(BEYOND));
+            if let Some(onward) = straight::straight_on(world, draw, &path, &hit, &point) {
+                let (throughput, key) = (path.throughput.through(onward.share()), path.key.child(BEYOND));
                 let all = throughput == path.throughput;
                 self.pending.push(Path { throughput, key, ..path.passed(&point) });
                 if all {
@@ -206,13 +206,13 @@ impl<const N: usize> Tracer<'_, N> {
         let distance = (seen.start - ray.origin).length();
         let inside = media[usize::from(!same)];
         let mut shone = landing.shone(world);
-        if world.has_any_holes() {
-            let closed = |object| !world.has_holes(object);
+        if world.has_see_through() {
+            let closed = |object| !world.is_see_through(object);
             if world.scene.is_hidden_by(&ray, distance, None, &self.hider, closed) {
                 return;
             }
-            match holes::through_holes(world, arrival.draw, &ray, distance, inside) {
-                Some(share) => shone = shone * share,
+            match straight::transmittance(world, arrival.draw, &ray, distance, inside) {
+                Some((share, _)) => shone = shone * share,
                 None => return,
             }
         } else if world.scene.is_hidden(&ray, distance, None, &self.hider) {

@@ -34,6 +34,12 @@ impl Polarized {
         Self { degree: ((self.degree + degree) / factor).min(1.0), growth }
     }
 
+    /// After a way on which unpolarized light is polarized as `other` says.
+    pub(super) fn joined(self, other: Self) -> Self {
+        let growth = (other.growth * self.growth).min(f32::MAX);
+        Self { growth, ..self }.after(other.degree)
+    }
+
     /// After light was scattered by a material in a direction that it drew from a density.
     pub(super) fn scattered<const N: usize>(self, material: &Material<Table>, arrival: &Arrival<N>, wi: DVec3) -> Self {
         if let Material::Diffuse(_) = material {
@@ -70,18 +76,20 @@ pub(super) struct Lit<'a> {
 }
 
 impl Lit<'_> {
-    /// Counts light of a film color that came from a direction.
+    /// Counts light of a film color that came from a direction, polarized on its way there.
     #[cold]
     #[inline(never)]
     pub(super) fn count<const N: usize>(
         &self,
         world: &World,
         (material, arrival): (&Material<Table>, &Arrival<N>),
-        wi: DVec3,
+        (wi, on_its_way): (DVec3, Polarized),
         rgb: [f64; 3],
     ) {
-        let change = self.polarized.scattered(material, arrival, wi).change();
-        self.moved.set(self.moved.get() + change * amount(world, rgb));
+        let change = self.polarized.scattered(material, arrival, wi).joined(on_its_way).change();
+        if change != 0.0 {
+            self.moved.set(self.moved.get() + change * amount(world, rgb));
+        }
     }
 }
 

@@ -2,10 +2,10 @@
 
 use super::World;
 use super::branching::pixels_of_objects;
-use super::holes;
 use super::media::{self, Media};
 use super::path::Path;
 use super::shading;
+use super::straight;
 use crate::light::{Light, LightId};
 use crate::material::{Facets, Interface, Material, reflect};
 use crate::math::{BranchKey, DVec2, DVec3, Frame, Ray, Sampler, cosine_hemisphere, unit};
@@ -233,9 +233,9 @@ impl Walker<'_> {
     /// Whether a hole lets the way pass, by chance.
     fn passes(&self, walk: &Walk, hit: &Hit, point: &SurfacePoint, u: f64) -> bool {
         let (draw, media) = (&self.draw, walk.media.inside(self.world));
-        self.world.has_holes(hit.object)
-            && holes::passing_at(self.world, draw, (&walk.ray, Lanes::ONE), media, (hit, point))
-                .is_some_and(|share| u < f64::from(share[1]))
+        self.world.is_see_through(hit.object)
+            && straight::straight_at(self.world, draw, (&walk.ray, Lanes::ONE), media, (hit, point))
+                .is_some_and(|straight| u < f64::from(straight.holes[1]))
     }
 
     /// The material that is met, by chance where there are several.

@@ -1,10 +1,10 @@
 //! How far dispersion pulls colors apart, measured by rays of two colors that are sent the same way.
 
 use super::World;
-use super::holes;
 use super::media::{self, Media};
 use super::path::Path;
 use super::shading;
+use super::straight;
 use crate::light::Light;
 use crate::material::{Facets, Interface, Material, RoughSurface, reflect};
 use crate::math::{BranchKey, DVec2, DVec3, Frame, Ray, Sampler, cosine_hemisphere, unit};
@@ -104,10 +104,10 @@ fn follow(world: &World, draw: &Draw<4>, lane: usize, ray: Ray, media: Media, sa
         let wo = -ray.direction;
         let [_, normal] = shading::normals(&point, wo);
         key = key.child(0);
-        let passing =
-            |ray| holes::passing_at(world, draw, (ray, draw.start()), end.media.inside(world), (&hit, &point));
-        if world.has_holes(hit.object)
-            && passing(&ray).is_some_and(|share| sampler.four_plain(key, 7)[1] < f64::from(share[0]))
+        let straight =
+            |ray| straight::straight_at(world, draw, (ray, draw.start()), end.media.inside(world), (&hit, &point));
+        if world.is_see_through(hit.object)
+            && straight(&ray).is_some_and(|on| sampler.four_plain(key, 7)[1] < f64::from(on.share()[0]))
         {
             ray = point.leave(ray.direction);
             continue;

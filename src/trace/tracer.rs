@@ -4,20 +4,21 @@ use std::cell::Cell;
 
 use super::direct::{Gathering, add, weight_of_meeting};
 use super::follow::MOST_SURFACES;
-use super::holes;
 use super::media::{self, Boundary};
 use super::merge::Photons;
+use super::openings::scatter_by;
 use super::path::{Drawn, Leg, Path};
 use super::polarization::{Lit, amount};
 use super::shading;
+use super::straight;
 use super::tally::Tally;
 use super::{Transport, World};
 use crate::light::{Light, LightId};
-use crate::material::{Arrival, Branch, Material};
+use crate::material::{Arrival, Branch, Material, Straight};
 use crate::math::{DVec3, Ray, Sampler};
 use crate::scene::Hit;
 use crate::shape::SurfacePoint;
-use crate::spectrum::{Draw, Lanes};
+use crate::spectrum::Draw;
 
 /// Follows the rays of camera samples, one sample after another; its buffers live as long as it does.
 pub(super) struct Tracer<'a, const N: usize> {
@@ -34,6 +35,8 @@ pub(super) struct Tracer<'a, const N: usize> {
     pub(super) met: Option<Vec<(LightId, DVec3)>>,
     /// Photons that are gathered, if any are.
     pub(super) photons: Option<&'a Photons<N>>,
+    /// Places that scatter widely, with the unit normal on the side of the path, if somebody wants to know.
+    pub(super) lit: Option<Vec<(SurfacePoint, DVec3)>>,
     /// Places that scatter widely and are not seen straight, if somebody wants to know.
     pub(super) reached: Option<Vec<DVec3>>,
 }
@@ -62,6 +65,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
             started: 0,
             met: None,
             photons: None,
+            lit: None,
             reached: None,
         }
     }
@@ -93,14 +97,14 @@ impl<'a, const N: usize> Tracer<'a, N> {
             };
             path.advance(self.world, draw, hit.crossing.t);
             let point = self.world.scene.objects[hit.object as usize].point(&path.ray, &hit.crossing);
-            let passing = holes::passing(self.world, draw, &path, &hit, &point);
-            if let Some(passing) = passing
-                && path.throughput.through(passing) == path.throughput
+            let onward = straight::straight_on(self.world, draw, &path, &hit, &point);
+            if let Some(onward) = onward
+                && path.throughput.through(onward.share()) == path.throughput
             {
                 next = Some(path.passed(&point));
                 continue;
             }
-            if path.vertices == 0 && first.is_none() && holes::is_met(self.world, draw, sampler, &path, passing) {
+            if path.vertices == 0 && first.is_none() && straight::is_met(self.world, draw, sampler, &path, onward) {
                 first = Some(point);
             }
             path.vertices += 1;
@@ -110,10 +114,10 @@ impl<'a, const N: usize> Tracer<'a, N> {
                 if !matches!(self.world.scene.material_of(hit.object), Material::Emissive(_)) {
                     self.tally.stopped += path.weight(draw) / draw.siblings(path.parted);
                 }
-                next = passing.map(|passing| path.passed_in_part(&point, passing));
+                next = onward.map(|onward| path.passed_in_part(&point, &onward));
                 continue;
             }
-            next = self.scatter(&path, draw, sampler, (&hit, &point, passing), &mut sum);
+            next = self.scatter(&path, draw, sampler, (&hit, &point, onward), &mut sum);
         }
         let deterministic = matches!(self.transport, Transport::Deterministic { .. });
         self.tally.by_chance += u64::from(deterministic && self.surfaces() > MOST_SURFACES);
@@ -176,7 +180,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
         path: &Path<N>,
         draw: &Draw<N>,
         sampler: &Sampler,
-        (hit, point, passing): (&Hit, &SurfacePoint, Option<Lanes<N>>),
+        (hit, point, onward): (&Hit, &SurfacePoint, Option<Straight<N>>),
         sum: &mut [f64; 3],
     ) -> Option<Path<N>> {
         let world = self.world;
@@ -207,7 +211,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
         };
 
         // Gather light from the lights where light scatters widely.
-        let (mut u, mut drawn) = ([0.0; 4], None);
+        let (mut u, mut drawn, mut leaving) = ([0.0; 4], None, None);
         let parts = material.lets_through() && material.parts_lanes(&arrival);
         let (wide, diffuse) = (material.scatters_widely(), material.is_diffuse());
         if wide {
@@ -216,7 +220,9 @@ impl<'a, const N: usize> Tracer<'a, N> {
             let aims_at_all = world.aims_at_all(path.weight(draw));
             let goes_on = !diffuse || path.diffuse_left > 0;
             let moved = Cell::new(0.0);
-            let lit = path.polarized.is_any().then_some(Lit { polarized: path.polarized, moved: &moved });
+            let may_be = path.polarized.is_any() || world.has_see_through();
+            let lit = may_be.then_some(Lit { polarized: path.polarized, moved: &moved });
+            leaving = if diffuse { world.leaving(point.position) } else { None };
             let gathering = Gathering {
                 world,
                 material,
@@ -228,6 +234,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
                 side: None,
                 inside: here,
                 goes_on,
+                leaving,
                 aims_at_all,
                 hider: &self.hider,
                 lit,
@@ -236,6 +243,9 @@ impl<'a, const N: usize> Tracer<'a, N> {
             let far = material.scatters_through().then_some((beyond, parts));
             let chance = gathering.gather(far, sampler, path.key, sum);
             self.tally.polarization += moved.get();
+            if let Some(lit) = &mut self.lit {
+                lit.push((*point, normal));
+            }
             if goes_on && path.leg != Leg::Camera {
                 if let Some(photons) = self.photons {
                     let light = photons.gather(world, path, &arrival, (hit, point, normal), (material, parts));
@@ -247,26 +257,29 @@ impl<'a, const N: usize> Tracer<'a, N> {
             }
             let (pdf, from, aimed_at_all, passed) = (0.0, point.position, aims_at_all, false);
             drawn = Some(Drawn { pdf, from, normal, chance, aimed_at_all, passed });
-            if !goes_on && passing.is_none() && !material.has_single_directions() {
+            if !goes_on && onward.is_none() && !material.has_single_directions() {
                 return None;
             }
         }
 
         // Send the path on.
         self.branches.clear();
-        shading::scatter(material, &arrival, normal, [u[2], u[3]], &mut self.branches);
+        match leaving {
+            None => shading::scatter(material, &arrival, normal, [u[2], u[3]], &mut self.branches),
+            Some(leaving) => scatter_by(leaving, material, &arrival, normal, [u[2], u[3]], &mut self.branches),
+        }
         if diffuse && path.diffuse_left == 0 {
             self.branches.retain(|branch| branch.pdf.is_none());
         }
-        let onward = passing.map(|passing| {
-            self.branches.push(Branch::onward(&path.ray, passing));
-            self.branches.len() - 1
+        let onward = onward.map(|onward| {
+            self.branches.push(Branch::onward(&path.ray, &onward));
+            (self.branches.len() - 1, onward)
         });
         self.tally.partings += u64::from(self.branches.iter().filter(|branch| branch.crosses).count() > 1);
         let sooner = if diffuse { SOONER } else { 1.0 };
         self.follow(path, draw, sampler, (parts, sooner), |number, branch, factor| {
-            if onward == Some(number) {
-                let onward = path.passed_in_part(point, branch.share);
+            if let Some((_, onward)) = onward.filter(|onward| onward.0 == number) {
+                let onward = path.passed_in_part(point, &onward);
                 return Path { throughput: onward.throughput.scaled(factor), key: path.key.child(number), ..onward };
             }
             let followed = shading::is_plain(point, arrival.wo, branch.wi, branch.crosses);

@@ -1,7 +1,10 @@
+use std::sync::Arc;
+
 use super::aims::{Aims, is_photon_source};
 use super::choice::Choice;
 use super::lamps::met_lamps;
 use super::media::Media;
+use super::openings::Openings;
 use super::sending::media_of_lights;
 use super::{Method, Transport};
 use crate::light::{Light, LightId};
@@ -20,11 +23,13 @@ pub struct World {
     pub(super) targets: Vec<LightId>,
     /// Which light is chosen where only one is aimed at.
     pub(super) choice: Choice,
+    /// Where the sky is seen from places inside, if that was worth learning.
+    pub(super) openings: Option<Arc<Openings>>,
     /// The bodies around the camera.
     pub(super) camera_media: Media,
     pub(super) has_media: bool,
-    /// Whether each object lets light through holes; empty where none does.
-    holes: Vec<bool>,
+    /// Whether each object lets light straight on; empty where none does.
+    see_through: Vec<bool>,
     /// Where photons are sent, if the method has a light pass.
     pub(super) aims: Option<Aims>,
     /// The same of each pass of its map.
@@ -34,14 +39,21 @@ pub struct World {
 }
 
 impl World {
-    /// The scene, tabulated for the method, with photons sent ahead to learn where to send the others.
+    /// The scene, tabulated for the method, with rays and photons sent ahead to learn where to send the others.
     pub fn new(scene: &Scene<Curve>, method: Method) -> Self {
+        let mut world = Self::with_photons(scene, method);
+        world.learn_openings();
+        world
+    }
+
+    /// The same with photons sent ahead alone.
+    pub fn with_photons(scene: &Scene<Curve>, method: Method) -> Self {
         let mut world = Self::untaught(scene, method);
         world.learn_where_to_send();
         world
     }
 
-    /// The same without photons sent ahead: enough for camera samples.
+    /// The same with nothing sent ahead: enough for camera samples.
     pub fn untaught(scene: &Scene<Curve>, method: Method) -> Self {
         let responses = scene.lights.iter().map(|light| method.basis.response(light.emission())).collect();
         let has_media = scene.materials.iter().any(|m| m.material.medium().is_some());
@@ -52,9 +64,9 @@ impl World {
         let pass = method.light_pass.as_ref();
         let senders: Vec<_> = pass.map_or(Vec::new(), |pass| pass.lights.iter().filter_map(luminance).collect());
         let scene = scene.map(|quantity, curve| method.basis.tabulate(quantity, curve));
-        let has_holes = |object: u32| scene.material_of(object).has_holes();
-        let holes: Vec<bool> = (0..scene.objects.len() as u32).map(has_holes).collect();
-        let holes = if holes.contains(&true) { holes } else { Vec::new() };
+        let is_see_through = |object: u32| scene.material_of(object).is_see_through();
+        let see_through: Vec<bool> = (0..scene.objects.len() as u32).map(is_see_through).collect();
+        let see_through = if see_through.contains(&true) { see_through } else { Vec::new() };
         let choice = Choice::new(&scene.lights);
         let targets = choice.targets();
         let camera_media = Media::default();
@@ -67,11 +79,12 @@ impl World {
             responses,
             targets,
             choice,
+            openings: None,
             scene,
             method,
             camera_media,
             has_media,
-            holes,
+            see_through,
             aims,
             map_aims,
             light_media,
@@ -122,14 +135,24 @@ impl World {
         &self.method
     }
 
-    /// Whether any object lets light through holes.
-    pub(super) fn has_any_holes(&self) -> bool {
-        !self.holes.is_empty()
+    /// Whether any object lets light straight on.
+    pub(super) fn has_see_through(&self) -> bool {
+        !self.see_through.is_empty()
     }
 
-    /// Whether an object lets light through holes.
-    pub(super) fn has_holes(&self, object: u32) -> bool {
-        self.holes.get(object as usize).is_some_and(|&holes| holes)
+    /// Whether an object lets light straight on.
+    pub(super) fn is_see_through(&self, object: u32) -> bool {
+        self.see_through.get(object as usize).is_some_and(|&on| on)
+    }
+
+    /// A light to aim at from a point on a surface of the given unit normal, and how likely it was.
+    pub(super) fn choose(&self, from: DVec3, normal: DVec3, u: f64) -> Option<(LightId, f64)> {
+        self.choice.choose(from, normal, self.sky_view(from), u)
+    }
+
+    /// How likely `choose` chooses a light.
+    pub(super) fn probability(&self, light: LightId, from: DVec3, normal: DVec3) -> f64 {
+        self.choice.probability(light, from, normal, self.sky_view(from))
     }
 
     /// Whether next-event estimation at a vertex of the given weight aims at every light, or at one.

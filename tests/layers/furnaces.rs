@@ -21,8 +21,8 @@ fn furnace(material: &Material<Table>, cos: f64, index: f64) -> [f64; 3] {
             (0..3).for_each(|lane| sum[lane] += f64::from(branch.share[lane]) / f64::from(DRAWS));
         }
     }
-    let passing = material.passing(&arrival).map_or([0.0; 4], |passing| passing.0.map(f64::from));
-    [0, 1, 2].map(|lane| sum[lane] + passing[lane])
+    let straight = material.straight(&arrival).map_or([0.0; 4], |straight| straight.share().0.map(f64::from));
+    [0, 1, 2].map(|lane| sum[lane] + straight[lane])
 }
 
 #[test]

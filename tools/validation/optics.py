@@ -289,8 +289,35 @@ def panes(quick):
         )
 
 
+def window(quick):
+    """A floor under a pane: parallel sunlight loses what the pane sends back, once."""
+    for degrees in (0, 50, 70):
+        toward = [float(np.sin(np.radians(degrees))), float(np.cos(np.radians(degrees))), 0.0]
+        objects = [("pane", plane((0, 1, 0), (0, -1, 0))), ("floor", plane((0, 0, 0), (0, 1, 0)))]
+        # So dark a floor that what comes back to it from the pane counts for nothing.
+        dark = 1e-5
+        materials = {"pane": {"thin": {"index": rgb(BANDS)}}, "floor": {"diffuse": {"reflectance": dark}}}
+        sun = {"sun": {"toward": toward, "irradiance": float(np.pi / dark), "angular_diameter": 0.0}}
+        scene = view(materials, objects, [sun], eye=(0.3, 0.7, 0.2), up=(0, 0, 1), samples=16)
+        index, cos = np.array(BANDS), toward[1]
+        beyond = np.sqrt(index**2 - 1 + cos**2) / index
+        s = ((cos - index * beyond) / (cos + index * beyond)) ** 2
+        p = ((index * cos - beyond) / (index * cos + beyond)) ** 2
+        yield Row(
+            GROUP,
+            f"sun through a window pane at {degrees} degrees",
+            "cos times the mean of (1 - r) / (1 + r) over s and p",
+            scene,
+            readers.colors,
+            cos * ((1 - s) / (1 + s) + (1 - p) / (1 + p)) / 2,
+            "one passage through both faces",
+            cos * (1 - (s + p) / 2) ** 2,
+            f"Parallel sunlight of irradiance pi at {degrees} degrees on a white floor, behind a pane of indices {BANDS}, once reflected.",
+        )
+
+
 def rows(quick):
-    for part in (fresnel, inside, metals, piles, panes):
+    for part in (fresnel, inside, metals, piles, panes, window):
         yield from part(quick)
     for name in ("water", "N-BK7", "N-SF11", "diamond"):
         yield critical(name)

@@ -1,0 +1,99 @@
+//! Light that goes straight on through the holes of masks and through panes that bend nothing.
+
+use super::path::Path;
+use super::polarization::Polarized;
+use super::{Transport, World, media, shading};
+use crate::material::{Arrival, Straight};
+use crate::math::{Ray, Sampler};
+use crate::scene::{Hit, MaterialId};
+use crate::shape::SurfacePoint;
+use crate::spectrum::{Draw, Lanes};
+
+/// Use of the random numbers of a ray from the camera that meets a surface with holes.
+const COVER: u32 = 4;
+
+/// The share of each lane of a path that goes straight on where it meets a surface; none if nothing does.
+#[inline]
+pub(super) fn straight_on<const N: usize>(
+    world: &World,
+    draw: &Draw<N>,
+    path: &Path<N>,
+    hit: &Hit,
+    point: &SurfacePoint,
+) -> Option<Straight<N>> {
+    if world.is_see_through(hit.object) { through_surface(world, draw, path, hit, point) } else { None }
+}
+
+/// The same of a surface that lets light straight on.
+#[cold]
+#[inline(never)]
+fn through_surface<const N: usize>(
+    world: &World,
+    draw: &Draw<N>,
+    path: &Path<N>,
+    hit: &Hit,
+    point: &SurfacePoint,
+) -> Option<Straight<N>> {
+    let present = path.throughput.present();
+    let straight = straight_at(world, draw, (&path.ray, present), path.media.inside(world), (hit, point))?;
+    (!(straight.share() * present).is_zero()).then_some(straight)
+}
+
+/// Whether a ray from the camera counts as having met a surface, which may have holes: a pane is met, a hole is not.
+pub(super) fn is_met<const N: usize>(
+    world: &World,
+    draw: &Draw<N>,
+    sampler: &Sampler,
+    path: &Path<N>,
+    straight: Option<Straight<N>>,
+) -> bool {
+    let Some(straight) = straight.filter(|straight| !straight.holes.is_zero()) else { return true };
+    let u = match world.method.transport {
+        Transport::Deterministic { .. } => 0.5,
+        Transport::Random { .. } => sampler.four_plain(path.key, COVER)[0],
+    };
+    let shares = draw.shares(path.parted);
+    path.throughput.through(straight.holes).weight(shares) <= u * path.throughput.weight(shares)
+}
+
+/// The share of each lane that goes straight on through all surfaces before a light at a distance that let it, and how far
+/// these polarize it; none if no light does.
+///
+/// `inside` is the medium around the ray.
+pub(super) fn transmittance<const N: usize>(
+    world: &World,
+    draw: &Draw<N>,
+    ray: &Ray,
+    distance: f64,
+    inside: Option<MaterialId>,
+) -> Option<(Lanes<N>, Polarized)> {
+    let (mut ray, mut left, mut all, mut polarized) = (*ray, distance, Lanes::ONE, Polarized::NOT);
+    while let Some(hit) = world.scene.nearest(&ray, left, |object| world.is_see_through(object)) {
+        let point = world.scene.objects[hit.object as usize].point(&ray, &hit.crossing);
+        let straight = straight_at(world, draw, (&ray, Lanes::ONE), inside, (&hit, &point))?;
+        (all, polarized) = (all * straight.share(), polarized.after(straight.polarization));
+        if all.is_zero() {
+            return None;
+        }
+        left -= hit.crossing.t;
+        ray = point.leave(ray.direction);
+    }
+    Some((all, polarized))
+}
+
+/// The share of each lane that a material lets straight on where a ray meets it: what every ray asks.
+pub(super) fn straight_at<const N: usize>(
+    world: &World,
+    draw: &Draw<N>,
+    (ray, present): (&Ray, Lanes<N>),
+    inside: Option<MaterialId>,
+    (hit, point): (&Hit, &SurfacePoint),
+) -> Option<Straight<N>> {
+    let index = media::index(world, draw, inside);
+    let (wo, together) = (-ray.direction, world.method.together);
+    let [_, normal] = shading::normals(point, wo);
+    let uv = world.scene.objects[hit.object as usize].uv(&hit.crossing, point);
+    let (incident, beyond, direction_indices) = (index, index, [None; 2]);
+    let arrival = Arrival { wo, normal, uv, draw, present, incident, beyond, direction_indices, together };
+    world.scene.material_of(hit.object).straight(&arrival)
+}

@@ -1,0 +1,66 @@
+//! Photons and panes: each path is found once, by the light pass or by the camera's paths.
+
+use abbe::film::Film;
+use abbe::trace::{LightPass, MapPasses, Method, World, render};
+
+use crate::support::scenes::{Mean, SPLITTING, body, method, scene, view};
+
+/// A floor with a ball of glass, under a lamp behind a pane; another pane before the camera.
+fn room(camera_pane: bool, more: &str) -> String {
+    let mut panes = vec!["quad = { center = [0, 2.2, 0], u = [3, 0, 0], v = [0, 0, 3] }"];
+    if camera_pane {
+        panes.push("quad = { center = [2, 1.6, 2], u = [1.5, 0, -1.5], v = [0, 1.5, 0] }");
+    }
+    view([3.0, 2.0, 3.0], [0.0, 0.3, 0.0], 30.0, 24)
+        + "[render]\nsamples = 64\n"
+        + &body(
+            "floor",
+            "diffuse = { reflectance = 0.5 }",
+            &["quad = { center = [0, 0, 0], u = [4, 0, 0], v = [0, 0, 4] }"],
+        )
+        + &body("pane", "thin = { index = 1.9 }", &panes)
+        + &body("glass", "dielectric = { index = 1.5 }", &["sphere = { center = [0, 0.6, 0], radius = 0.5 }"])
+        + &body(
+            "lamp",
+            "emissive = { radiance = 9 }",
+            &["quad = { center = [0, 3, 0], u = [0.8, 0, 0], v = [0, 0, 0.8] }"],
+        )
+        + more
+}
+
+fn films(text: &str, light_pass: bool, map: bool) -> Vec<Film> {
+    let scene = scene(text);
+    let map = map.then_some(MapPasses { count: 4, photons: 20_000, radius: 1.0 });
+    let lights = (0..scene.lights.len()).collect();
+    let light_pass = light_pass.then_some(LightPass { photons: 60_000, lights, map });
+    let asked = Method { light_pass, samples: 64, ..method(&scene, SPLITTING) };
+    (0..8).map(|seed| render(&World::new(&scene, Method { seed, ..asked.clone() }), &|_| ()).0).collect()
+}
+
+#[test]
+fn photons_and_paths_from_the_camera_share_out_what_passes_panes() {
+    let mirror = body(
+        "steel",
+        "mirror = { reflectance = 0.8 }",
+        &["quad = { center = [-1.5, 0.8, 0], u = [0, 0, 1], v = [0, 0.8, 0] }"],
+    );
+    for (name, camera_pane, more, map) in [
+        ("panes above and before the camera", true, "", false),
+        ("with a mirror", true, mirror.as_str(), false),
+        ("with a mirror and a map", true, mirror.as_str(), true),
+    ] {
+        let text = room(camera_pane, more);
+        let chance = Mean::over_seeds(films(&text, false, false).iter());
+        let mut photons = Mean::over_seeds(films(&text, true, map).iter());
+        println!("{name}: {photons:.5?} for {chance:.5?}");
+        for band in 0..3 {
+            photons.error[band] = libm::hypot(photons.error[band], chance.error[band]);
+            // A map blurs: by what it spreads over the floor's edge, less than a thousandth here.
+            if map {
+                photons.error[band] += 0.001 * chance.value[band];
+            }
+        }
+        assert!(photons.worst_error(chance.value) < 0.01, "{name}: {photons:?}");
+        photons.assert_near(chance.value, 4, name);
+    }
+}
