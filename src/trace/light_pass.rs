@@ -45,10 +45,24 @@ pub(super) struct Shown {
 
 /// Sends all photons of a world's light pass; `progress` is told how many are done.
 pub(super) fn show<const N: usize>(world: &World, progress: &(dyn Fn(u64) + Sync)) -> Shown {
+    if world.aims.is_none() {
+        return Shown::default();
+    }
+    let window = world.scene.film.window();
+    let mut pixels = vec![[0.0; 3]; window.width as usize * window.height as usize];
+    let add = &mut |Splat { pixel, rgb }: Splat| (0..3).for_each(|i| pixels[pixel as usize][i] += rgb[i]);
+    let shown = splats::<N>(world, progress, add);
+    Shown { pixels, ..shown }
+}
+
+/// Sends them and hands over what they show, in an order that never changes; holds no image.
+pub(super) fn splats<const N: usize>(
+    world: &World,
+    progress: &(dyn Fn(u64) + Sync),
+    take: &mut dyn FnMut(Splat),
+) -> Shown {
     let mut shown = Shown::default();
     let Some(aims) = &world.aims else { return shown };
-    let window = world.scene.film.window();
-    shown.pixels = vec![[0.0; 3]; window.width as usize * window.height as usize];
     let batches = batches(aims, |_| 0, |aim| aim.photons, world.method.seed ^ SEED);
     for group in batches.chunks(AT_ONCE) {
         let done: Vec<Sent<Splat>> =
@@ -57,9 +71,9 @@ pub(super) fn show<const N: usize>(world: &World, progress: &(dyn Fn(u64) + Sync
         for sent in done {
             shown.rays += sent.rays;
             shown.unmatched += sent.unmatched;
-            for Splat { pixel, rgb } in sent.kept {
-                if rgb.iter().all(|x| x.is_finite()) {
-                    (0..3).for_each(|i| shown.pixels[pixel as usize][i] += rgb[i]);
+            for splat in sent.kept {
+                if splat.rgb.iter().all(|x| x.is_finite()) {
+                    take(splat);
                 } else {
                     shown.non_finite += 1;
                 }
