@@ -10,5 +10,6 @@ mod planning {
     mod caustics;
     mod choices;
     mod rooms;
+    mod small;
     mod twenty;
 }

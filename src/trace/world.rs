@@ -37,7 +37,7 @@ impl World {
     /// The scene, tabulated for the method, with photons sent ahead to learn where to send the others.
     pub fn new(scene: &Scene<Curve>, method: Method) -> Self {
         let mut world = Self::untaught(scene, method);
-        world.learn_where_to_send();
+        world.learn_where_to_send(u64::MAX);
         world
     }
 
