@@ -16,8 +16,9 @@ const SIDE: u32 = 24;
 const MOST: usize = 6000;
 /// Cells this small, in pixels, are not divided.
 const SMALLEST: f64 = 0.5;
-/// Of the view, so many pixels count, or this share of an image that has few.
-const PIXELS: f64 = 1.0;
+/// So much of the view counts, in pixels, or this share of an image that has few: it changes one pixel as much as an edge that is
+/// just seen apart changes those along it.
+const PIXELS: f64 = SEEN_PIXELS;
 const SHARE: f64 = 0.005;
 
 /// A place on a diffuse surface that is seen by way of others.
