@@ -11,6 +11,7 @@ mod planning {
     mod chains;
     mod choices;
     mod rooms;
+    mod small;
     mod stokes;
     mod twenty;
 }

@@ -46,9 +46,10 @@ pub(super) fn with_map(
     if pass.lights.is_empty() {
         return as_shown();
     }
-    let pass = LightPass { map: Some(map), ..pass };
-    let share =
-        gathered_photons(&World::untaught(scene, Method { light_pass: Some(pass.clone()), ..method.clone() }), &places);
+    // A few photons tell whether any are gathered, however many the image will take.
+    let few = MapPasses { photons: map.photons.min(OF_A_PASS as u64), ..map };
+    let asked = |map| Some(LightPass { map: Some(map), ..pass.clone() });
+    let share = gathered_photons(&World::untaught(scene, Method { light_pass: asked(few), ..method.clone() }), &places);
     if share == 0.0 {
         return as_shown();
     }
@@ -58,5 +59,5 @@ pub(super) fn with_map(
         map.count,
         in_number(map.photons),
     );
-    (Some(pass), vec![line])
+    (asked(map), vec![line])
 }

@@ -16,6 +16,8 @@ use crate::trace::{LightPass, Method, Transport, World, is_photon_source, is_pho
 const SMALL: f64 = 0.5;
 /// Fewest photons of a light pass: from fewer it does not learn where to send them.
 const FEWEST: f64 = 65_536.0;
+/// Pairs of a light and a place whose solid angles are looked at.
+const PAIRS: usize = 1 << 19;
 /// Camera rays along each side of the image that look for surfaces on which caustics may lie.
 const SIDE: u32 = 24;
 
@@ -51,7 +53,7 @@ pub(super) fn light_pass(scene: &Scene<Curve>, method: &Method) -> (Option<Light
         let name = &scene.objects[bends].name;
         return none(format!("no light pass: {name} has no end, so photons cannot be aimed at it{}", missing(scene)));
     }
-    let places = lit_places(scene, spread);
+    let places = thinned(lit_places(scene, spread), scene.lights.len());
     if places.is_empty() {
         let why = "the camera sees no diffuse or rough surface but through glass or in mirrors, where caustics";
         return none(format!("no light pass: {why} are left to chance{}", missing(scene)));
@@ -83,7 +85,7 @@ pub(super) fn light_pass(scene: &Scene<Curve>, method: &Method) -> (Option<Light
         LightPass { photons, lights, map: None }
     };
     let asked = pass(1.0, small.iter().map(|light| light.0).collect());
-    let world = World::with_photons(scene, Method { light_pass: Some(asked), ..method.clone() });
+    let world = World::piloted(scene, Method { light_pass: Some(asked), ..method.clone() });
     let share = seen_photons(&world);
     let (seen, unseen): (Vec<_>, Vec<_>) = small.into_iter().partition(|&(id, _)| share[id] > 0.0);
     let to = match targets.as_slice() {
@@ -146,10 +148,17 @@ fn may_receive(scene: &Scene<Curve>, material: &Material<Curve>) -> bool {
 
 /// Lights that photons can be sent from and that are seen from the places given under less than a solid angle.
 pub(super) fn small_lights(scene: &Scene<Curve>, places: &[DVec3], small: f64) -> Vec<LightId> {
-    let is_small = |light: &Light<Curve>| solid_angle(light, places).is_some_and(|size| size < small);
+    let places = thinned(places.to_vec(), scene.lights.len());
+    let is_small = |light: &Light<Curve>| solid_angle(light, &places).is_some_and(|size| size < small);
     let lights = scene.lights.iter().enumerate();
     let wanted = lights.filter(|(_, light)| light.is_aimed_at() && is_photon_source(light) && is_small(light));
     wanted.map(|(id, _)| id).collect()
+}
+
+/// Some of the places, so that all of them can be held against all lights.
+fn thinned(places: Vec<DVec3>, lights: usize) -> Vec<DVec3> {
+    let step = places.len() * lights / PAIRS + 1;
+    places.into_iter().step_by(step).collect()
 }
 
 /// What cannot be met by chance at all.

@@ -6,14 +6,12 @@ use super::survey::{Survey, disperses};
 use crate::material::Material;
 use crate::scene::{ModelText, Scene};
 use crate::spectrum::{Basis, Curve, CurveKind, Emission, Quantity, provenance};
-use crate::trace::{COLORS_NM, Method, Spread, Transport, World, spread};
+use crate::trace::{COLORS_NM, Method, SEEN_PIXELS, Spread, Transport, World, spread};
 
 /// The relative error of an image that is aimed at where the scene does not say.
 const ERROR: f64 = 0.03;
 /// The share of the error that the model of color may make; noise may make the rest.
 const SHARE: f64 = 1.0 / 3.0;
-/// Dispersion over fewer pixels is not seen.
-const SEEN_PIXELS: f64 = 0.2;
 /// Share of the camera rays on dispersive surfaces from which twice the wavelengths are carried.
 const FILLED: f64 = 0.5;
 /// Fixed wavelengths and heroes where dispersion is seen, and where it fills the image.
@@ -144,9 +142,12 @@ fn dispersion(scene: &Scene<Curve>) -> Option<Spread> {
 fn spoken(spread: &Spread, visible: bool, hero: bool) -> String {
     let [from, to] = COLORS_NM;
     let pixels = |x: f64| if x < 9.95 { format!("{x:.2}") } else { format!("{x:.0}") };
+    let share = match 100.0 * spread.seen {
+        p if p == 0.0 || p >= 0.5 => format!("{p:.0} %"),
+        p => format!("{p:.1e} %"),
+    };
     let seen = format!(
-        "{:.0} % of the view is on dispersive glass, which shows {from} and {to} nm {} pixels apart",
-        100.0 * spread.seen,
+        "{share} of the view is on dispersive glass, which shows {from} and {to} nm up to {} pixels apart",
         pixels(spread.seen_pixels)
     );
     let lit = format!("light through it is spread over {}", pixels(spread.lit_pixels));

@@ -36,12 +36,15 @@ pub(super) fn weigh(scene: &Scene<Curve>, world: &World) -> Worth {
     let samples = samples_worth(world);
     let film = scene.film;
     let pixels = f64::from(film.width) * f64::from(film.height);
-    let by_chance = |photons: &PhotonWorth| match radiance(scene, photons.light) {
-        Some(radiance) => (0..3).map(|i| LEFT * radiance[i] * photons.brings[i]).sum::<f64>().abs() * pixels,
-        None => f64::INFINITY,
+    let with_chance = |photons: PhotonWorth| {
+        let of_light = |light: &LightId| match radiance(scene, *light) {
+            Some(radiance) => (0..3).map(|i| LEFT * radiance[i] * photons.brings[i]).sum::<f64>().abs() * pixels,
+            None => f64::INFINITY,
+        };
+        let left = photons.lights.iter().map(of_light).sum::<f64>() / photons.lights.len() as f64;
+        (photons, left)
     };
-    let mut known: Vec<(PhotonWorth, f64)> =
-        photons_worth(world).into_iter().map(|photons| (photons, by_chance(&photons))).collect();
+    let mut known: Vec<(PhotonWorth, f64)> = photons_worth(world).into_iter().map(with_chance).collect();
     // Those first whose photons save most.
     known.sort_by(|(a, of_a), (b, of_b)| (of_b * a.variance * a.rays).total_cmp(&(of_a * b.variance * b.rays)));
     let total = |sent: usize| product(&samples, &known, sent);
@@ -53,7 +56,7 @@ pub(super) fn weigh(scene: &Scene<Curve>, world: &World) -> Worth {
     };
     let gain = total(0) / total(if best == 0 { known.len() } else { best });
     Worth {
-        lights: known[..best].iter().map(|(photons, _)| photons.light).collect(),
+        lights: known[..best].iter().flat_map(|(photons, _)| photons.lights.clone()).collect(),
         photons: rounded(known[..best].iter().map(of_light).sum::<f64>().clamp(FEWEST, MOST)),
         gain: (gain.is_finite() && !known.is_empty()).then_some(gain),
     }

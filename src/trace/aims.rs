@@ -1,6 +1,7 @@
 //! Where photons are sent.
 
 use std::f64::consts::{PI, TAU};
+use std::sync::Arc;
 
 use super::guide::Guide;
 use crate::light::{Light, LightId};
@@ -20,7 +21,7 @@ pub(super) struct Aim {
     /// Of a light that is a point: axis and 1 - cos of the cone that is shone into.
     pub(super) lobe: (DVec3, f64),
     /// Which places of the cone, or of the ball's disc, are worth it.
-    pub(super) guide: Guide,
+    pub(super) guide: Arc<Guide>,
     /// The flux it sends, about.
     flux: f64,
     /// Whether the light is apart from the ball, so that a place stands for a way to it.
@@ -52,8 +53,11 @@ pub(super) struct Aims {
     photons: u64,
 }
 
-/// Most balls of objects that photons are sent to: of more objects, neighbors share one.
+/// Most balls of objects that photons are sent to: of more objects, neighbors share one; and most aims of all lights together.
 const MOST: usize = 32;
+const MOST_AIMS: usize = 8192;
+/// Balls that are held against each other.
+const MANY: usize = 4096;
 /// Share of the photons that all aims get alike; the others go by flux.
 const EVENLY: f64 = 0.1;
 
@@ -70,7 +74,8 @@ impl Aims {
         let objects: Vec<bool> = (0..scene.objects.len()).map(|object| is_photon_target(scene, object)).collect();
         let shapes = || scene.objects.iter().map(|object| &object.shape);
         let balls = shapes().zip(&objects).filter(|(_, target)| **target).filter_map(|(shape, _)| shape.ball());
-        let balls = gathered(balls.collect());
+        let balls = gathered(balls.collect(), (MOST_AIMS / lights.len().max(1)).clamp(1, MOST));
+        let [even, disc] = [Guide::even(), Guide::disc()].map(Arc::new);
         let world = shapes().filter_map(|shape| shape.ball()).reduce(Ball::around)?;
         let mut aims = Vec::new();
         for (&(light, luminance), ball) in lights.iter().flat_map(|light| balls.iter().map(move |ball| (light, ball))) {
@@ -78,12 +83,12 @@ impl Aims {
             let flux = size * luminance;
             if flux > 0.0 {
                 let apart = is_apart(&scene.lights[light], ball);
-                let guide = if apart { Guide::disc() } else { Guide::even() };
+                let guide = if apart { disc.clone() } else { even.clone() };
                 aims.push(Aim { light, photons: 0, ball: *ball, lobe, guide, flux, apart });
             }
         }
-        let lights: Vec<bool> =
-            (0..scene.lights.len()).map(|light| aims.iter().any(|aim| aim.light == light)).collect();
+        let mut lights = vec![false; scene.lights.len()];
+        aims.iter().for_each(|aim| lights[aim.light] = true);
         let mut aims = Self { aims, lights, objects, world, photons };
         aims.share_out();
         (!aims.aims.is_empty()).then_some(aims)
@@ -110,7 +115,7 @@ impl Aims {
             let seen = photons.iter().filter(|photon| photon.1).count();
             aim.flux *= seen as f64 / photons.len().max(1) as f64;
             if aim.apart {
-                aim.guide = Guide::learned(photons);
+                aim.guide = Arc::new(Guide::learned(photons));
             }
         }
         self.share_out();
@@ -152,17 +157,22 @@ fn is_apart(light: &Light<Table>, ball: &Ball) -> bool {
 }
 
 /// Balls of which none lies in another; of more than are wanted, neighbors as one.
-fn gathered(balls: Vec<Ball>) -> Vec<Ball> {
+fn gathered(balls: Vec<Ball>, most: usize) -> Vec<Ball> {
     let holds = |a: &Ball, b: &Ball| (a.center - b.center).length() + b.radius <= a.radius;
     let mut outer: Vec<Ball> = Vec::new();
-    for ball in balls {
-        if !outer.iter().any(|other| holds(other, &ball)) {
-            outer.retain(|other| !holds(&ball, other));
-            outer.push(ball);
+    if balls.len() > MANY {
+        // So many are not held against each other.
+        outer = balls;
+    } else {
+        for ball in balls {
+            if !outer.iter().any(|other| holds(other, &ball)) {
+                outer.retain(|other| !holds(&ball, other));
+                outer.push(ball);
+            }
         }
     }
     let mut found = Vec::new();
-    halve(&mut outer, MOST, &mut found);
+    halve(&mut outer, most, &mut found);
     found
 }
 

@@ -88,7 +88,10 @@ impl Aims {
     /// How many photons all aims of a light send along a line, per unit of its measure; `own` is the density of the aim that
     /// did.
     fn sent(&self, number: usize, own: f64, density: impl Fn(&Aim) -> Option<f64>) -> f64 {
-        let aims = self.aims.iter().enumerate().filter(|(_, aim)| aim.light == self.aims[number].light);
+        let light = self.aims[number].light;
+        let of_light = |aim: &Aim| aim.light == light;
+        let first = self.aims[..number].iter().rposition(|aim| !of_light(aim)).map_or(0, |before| before + 1);
+        let aims = (first..).zip(self.aims[first..].iter().take_while(|aim| of_light(aim)));
         let of = |(other, aim): (usize, &Aim)| {
             aim.photons as f64 * if other == number { own } else { density(aim).unwrap_or(0.0) }
         };

@@ -8,13 +8,15 @@
 
 use rayon::prelude::*;
 
-use super::World;
 use super::photon::{Landing, Splat};
 use super::sending::{Sent, batches, send};
 use super::tracer::Tracer;
 use super::width::{InLanes, in_lanes};
+use super::{Method, World};
 use crate::light::LightId;
 use crate::math::Sampler;
+use crate::scene::Scene;
+use crate::spectrum::Curve;
 
 /// Batches whose splats are kept in memory at once.
 const AT_ONCE: usize = 64;
@@ -27,6 +29,10 @@ const AHEAD_SEED: u64 = 0x6168_6561;
 const AHEAD: u64 = 8;
 const TOO_FEW: u64 = 4096;
 const ENOUGH: u64 = 1 << 16;
+/// Photons of all aims that the plan sends ahead: as many whatever the image is.
+const OF_A_PLAN: u64 = 1 << 17;
+/// Lights that are looked at one by one: of more, neighbors in the scene as one.
+const LIGHTS: usize = 16;
 
 /// What the light pass found.
 #[derive(Clone, Debug, Default)]
@@ -45,10 +51,24 @@ pub(super) struct Shown {
 
 /// Sends all photons of a world's light pass; `progress` is told how many are done.
 pub(super) fn show<const N: usize>(world: &World, progress: &(dyn Fn(u64) + Sync)) -> Shown {
+    if world.aims.is_none() {
+        return Shown::default();
+    }
+    let window = world.scene.film.window();
+    let mut pixels = vec![[0.0; 3]; window.width as usize * window.height as usize];
+    let add = &mut |Splat { pixel, rgb }: Splat| (0..3).for_each(|i| pixels[pixel as usize][i] += rgb[i]);
+    let shown = splats::<N>(world, progress, add);
+    Shown { pixels, ..shown }
+}
+
+/// Sends them and hands over what they show, in an order that never changes; holds no image.
+pub(super) fn splats<const N: usize>(
+    world: &World,
+    progress: &(dyn Fn(u64) + Sync),
+    take: &mut dyn FnMut(Splat),
+) -> Shown {
     let mut shown = Shown::default();
     let Some(aims) = &world.aims else { return shown };
-    let window = world.scene.film.window();
-    shown.pixels = vec![[0.0; 3]; window.width as usize * window.height as usize];
     let batches = batches(aims, |_| 0, |aim| aim.photons, world.method.seed ^ SEED);
     for group in batches.chunks(AT_ONCE) {
         let done: Vec<Sent<Splat>> =
@@ -57,9 +77,9 @@ pub(super) fn show<const N: usize>(world: &World, progress: &(dyn Fn(u64) + Sync
         for sent in done {
             shown.rays += sent.rays;
             shown.unmatched += sent.unmatched;
-            for Splat { pixel, rgb } in sent.kept {
-                if rgb.iter().all(|x| x.is_finite()) {
-                    (0..3).for_each(|i| shown.pixels[pixel as usize][i] += rgb[i]);
+            for splat in sent.kept {
+                if splat.rgb.iter().all(|x| x.is_finite()) {
+                    take(splat);
                 } else {
                     shown.non_finite += 1;
                 }
@@ -98,28 +118,53 @@ impl InLanes for Learning<'_> {
     }
 }
 
-/// Of the photons of each light, the share that the camera sees.
+/// Of the photons of each light, the share that the camera sees; of many lights, of a light and its neighbors.
 pub fn seen_photons(world: &World) -> Vec<f64> {
-    let mut counts = vec![[0_u32; 2]; world.scene.lights.len()];
-    let Some(aims) = &world.aims else { return vec![0.0; counts.len()] };
-    let found = in_lanes(&world.method.basis, Learning { world, most: TOO_FEW });
+    let mut shares = vec![0.0; world.scene.lights.len()];
+    let Some(aims) = &world.aims else { return shares };
+    let most = (OF_A_PLAN / aims.aims.len() as u64).clamp(1, TOO_FEW);
+    let found = in_lanes(&world.method.basis, Learning { world, most });
+    let mut counts = vec![[0_u32; 2]; shares.len()];
     for (aim, photons) in aims.aims.iter().zip(found) {
         let [sent, seen] = &mut counts[aim.light];
         *sent += photons.len() as u32;
         *seen += photons.iter().filter(|photon| photon.1).count() as u32;
     }
-    counts.into_iter().map(|[sent, seen]| f64::from(seen) / f64::from(sent.max(1))).collect()
+    for group in world.light_groups() {
+        let of_group = |i: usize| group.iter().map(|&light| counts[light][i]).sum::<u32>();
+        let share = f64::from(of_group(1)) / f64::from(of_group(0).max(1));
+        group.iter().for_each(|&light| shares[light] = share);
+    }
+    shares
 }
 
 impl World {
-    /// Sends photons ahead, and the others where those were seen.
-    pub(super) fn learn_where_to_send(&mut self) {
+    /// The pass's lights, each for itself; of many, neighbors in the scene together.
+    pub(super) fn light_groups(&self) -> Vec<Vec<LightId>> {
+        let Some(pass) = &self.method.light_pass else { return Vec::new() };
+        let mut lights = pass.lights.clone();
+        lights.sort_unstable();
+        let of_group = lights.len().div_ceil(LIGHTS).max(1);
+        lights.chunks(of_group).map(<[LightId]>::to_vec).collect()
+    }
+
+    /// As [`World::new`], for a plan: no more photons are sent ahead for an image of many pixels than for one of few.
+    pub fn piloted(scene: &Scene<Curve>, method: Method) -> Self {
+        let mut world = Self::untaught(scene, method);
+        let aims = world.aims.as_ref().map_or(1, |aims| aims.aims.len() as u64);
+        world.learn_where_to_send(OF_A_PLAN / aims);
+        world
+    }
+
+    /// Sends photons ahead, at most so many of an aim, and the others where those were seen.
+    pub(super) fn learn_where_to_send(&mut self, most: u64) {
         let Some(least) = self.aims.as_ref().and_then(|aims| aims.aims.iter().map(|aim| aim.photons / AHEAD).min())
         else {
             return;
         };
-        if least >= TOO_FEW {
-            let found = in_lanes(&self.method.basis, Learning { world: self, most: least.min(ENOUGH) });
+        let ahead = least.min(ENOUGH).min(most);
+        if ahead >= TOO_FEW {
+            let found = in_lanes(&self.method.basis, Learning { world: self, most: ahead });
             if let Some(aims) = &mut self.aims {
                 aims.learn(&found);
             }

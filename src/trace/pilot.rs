@@ -9,11 +9,11 @@ use crate::light::LightId;
 use crate::math::Sampler;
 use crate::spectrum::apply;
 
-/// What one light's photons bring to the whole image.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// What one light's photons bring to the whole image, or those of several.
+#[derive(Clone, Debug, PartialEq)]
 pub struct PhotonWorth {
-    /// The light that sends them.
-    pub light: LightId,
+    /// The lights that send them.
+    pub lights: Vec<LightId>,
     /// XYZ, summed over all pixels, of all light that they bring.
     pub brings: [f64; 3],
     /// Variance of an image by n photons, summed over pixels and channels, times n.
@@ -42,17 +42,17 @@ const SAMPLES: u32 = 4;
 /// Sets these random numbers apart from those of the image.
 const SEED: u64 = 0x7069_6c6f;
 
-/// What photons of each of the pass's lights are worth, where photons of the light are seen.
+/// What photons of each of the pass's lights are worth, where photons of the light are seen; many lights are weighed in groups.
 ///
 /// All of the image counts, also where only a part of it is made, so that all parts are made alike.
 pub fn photons_worth(world: &World) -> Vec<PhotonWorth> {
-    let Some(pass) = &world.method.light_pass else { return Vec::new() };
-    pass.lights.iter().filter_map(|&light| in_lanes(&world.method.basis, Sending { world, light })).collect()
+    let lights = world.light_groups().into_iter();
+    lights.filter_map(|lights| in_lanes(&world.method.basis, Sending { world, lights })).collect()
 }
 
 struct Sending<'a> {
     world: &'a World,
-    light: LightId,
+    lights: Vec<LightId>,
 }
 
 impl InLanes for Sending<'_> {
@@ -61,33 +61,46 @@ impl InLanes for Sending<'_> {
         let mut world = self.world.clone();
         world.scene.film.crop = None;
         let aims = &mut world.aims.as_mut()?.aims;
-        aims.retain(|aim| aim.light == self.light);
+        aims.retain(|aim| self.lights.binary_search(&aim.light).is_ok());
         let all: u64 = aims.iter().map(|aim| aim.photons).sum();
         for aim in aims.iter_mut() {
             aim.photons = (aim.photons as f64 * PHOTONS as f64 / all as f64).round().max(1.0) as u64;
         }
         let to_xyz = world.scene.film.color_space.to_xyz();
-        let (mut sum, mut squares) = (Vec::new(), Vec::new());
-        let (mut photons, mut rays) = (0, 0);
+        let (mut values, mut photons, mut rays) = (Vec::new(), 0, 0);
         for image in 0..IMAGES {
             world.method.seed = (self.world.method.seed ^ SEED).wrapping_add(image);
-            let shown = light_pass::show::<N>(&world, &|_| ());
+            let mut splats = Vec::new();
+            let shown = light_pass::splats::<N>(&world, &|_| (), &mut |splat| splats.push((splat.pixel, splat.rgb)));
             (photons, rays) = (photons + shown.photons, rays + shown.rays);
-            let values = || shown.pixels.iter().flat_map(|rgb| apply(&to_xyz, *rgb)).enumerate();
-            sum.resize(3 * shown.pixels.len(), 0.0);
-            squares.resize(3 * shown.pixels.len(), 0.0);
-            values().for_each(|(i, x)| sum[i] += x);
-            values().for_each(|(i, x)| squares[i] += x * x);
+            values.extend(summed(splats).into_iter().map(|(pixel, rgb)| (pixel, apply(&to_xyz, rgb))));
         }
         let images = IMAGES as f64;
-        let of_value = |(sum, squares): (&f64, &f64)| ((squares - sum * sum / images) / (images - 1.0)).max(0.0);
-        let variance: f64 = sum.iter().zip(&squares).map(of_value).sum();
-        let brings = [0, 1, 2].map(|channel| sum.iter().skip(channel).step_by(3).sum::<f64>() / images);
+        let squares = values.iter().map(|&(pixel, xyz)| (pixel, xyz.map(|x| x * x))).collect();
+        let (sums, squares) = (summed(values), summed(squares));
+        let of_value = |sum: f64, squares: f64| ((squares - sum * sum / images) / (images - 1.0)).max(0.0);
+        let of_pixel =
+            |(sum, squares): (&[f64; 3], &[f64; 3])| (0..3).map(|i| of_value(sum[i], squares[i])).sum::<f64>();
+        let variance: f64 = sums.iter().map(|sum| &sum.1).zip(squares.iter().map(|sum| &sum.1)).map(of_pixel).sum();
+        let brings = [0, 1, 2].map(|channel| sums.iter().map(|(_, sum)| sum[channel]).sum::<f64>() / images);
         let each = photons as f64 / images;
-        let worth =
-            PhotonWorth { light: self.light, brings, variance: variance * each, rays: rays as f64 / photons as f64 };
+        let (lights, rays) = (self.lights, rays as f64 / photons as f64);
+        let worth = PhotonWorth { lights, brings, variance: variance * each, rays };
         brings.iter().any(|&x| x != 0.0).then_some(worth)
     }
+}
+
+/// The sums of what falls on each pixel, of those pixels that anything falls on: never more than there are values.
+fn summed(mut values: Vec<(u32, [f64; 3])>) -> Vec<(u32, [f64; 3])> {
+    values.sort_by_key(|value| value.0);
+    values.dedup_by(|next, sum| {
+        let same = next.0 == sum.0;
+        if same {
+            (0..3).for_each(|i| sum.1[i] += next.1[i]);
+        }
+        same
+    });
+    values
 }
 
 /// What camera samples are worth.

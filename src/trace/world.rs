@@ -41,15 +41,9 @@ pub struct World {
 impl World {
     /// The scene, tabulated for the method, with rays and photons sent ahead to learn where to send the others.
     pub fn new(scene: &Scene<Curve>, method: Method) -> Self {
-        let mut world = Self::with_photons(scene, method);
-        world.learn_openings();
-        world
-    }
-
-    /// The same with photons sent ahead alone.
-    pub fn with_photons(scene: &Scene<Curve>, method: Method) -> Self {
         let mut world = Self::untaught(scene, method);
-        world.learn_where_to_send();
+        world.learn_where_to_send(u64::MAX);
+        world.learn_openings();
         world
     }
 

@@ -1,0 +1,198 @@
+//! Dispersion is noticed however small it is in the picture, and wherever it is seen.
+
+use abbe::plan::{Plan, plan};
+
+use crate::support::scenes::scene;
+
+/// The picture is so many pixels wide and high, under 40 degrees.
+const SIDE: f64 = 400.0;
+/// How wide a pixel is at a distance of 1.
+fn pixel() -> f64 {
+    2.0 * libm::tan(20.0_f64.to_radians()) / SIDE
+}
+
+const MATERIALS: &str = "[material.flint]\ndielectric = { index = \"N-SF11\", priority = 2 }\n\
+    [material.crown]\ndielectric = { index = \"N-BK7\", priority = 2 }\n[material.diamond]\ndielectric = { index = \"diamond\", priority = 2 }\n\
+    [material.faint]\ndielectric = { index = { cauchy = [1.5168, 1e-7] }, priority = 2 }\n\
+    [material.plain]\ndielectric = { index = 1.5 }\n[material.water]\ndielectric = { index = 1.33, priority = 1 }\n\
+    [material.pane]\nthin = { index = 1.5 }\n[material.mirror]\nmirror = { reflectance = 0.9 }\n\
+    [material.wall]\ndiffuse = { reflectance = { rgb = [0.7, 0.5, 0.3] } }\n[material.stripe]\ndiffuse = { reflectance = 0.1 }\n\
+    [material.lamp]\nemissive = { radiance = 10 }\n";
+
+/// A camera at the origin that looks along -z, a striped wall, a lamp behind the camera.
+fn plan_of(things: &str, width: f64) -> Plan {
+    plan(&scene(&format!(
+        "[camera]\nposition = [0, 0, 0]\nlook_at = [0, 0, -1]\nvertical_fov = 40\n[film]\nwidth = {width}\nheight = {width}\n{MATERIALS}\
+         [[object]]\nshape.quad = {{ center = [0, 0, -20], u = [30, 0, 0], v = [0, 30, 0] }}\nmaterial = \"wall\"\n\
+         [[object]]\nshape.quad = {{ center = [0, 0, -19.9], u = [0.4, 0, 0], v = [0, 30, 0] }}\nmaterial = \"stripe\"\n\
+         [[object]]\nshape.quad = {{ center = [0, 0, 20], u = [30, 0, 0], v = [0, 30, 0] }}\nmaterial = \"wall\"\n\
+         [[object]]\nshape.sphere = {{ center = [0, 8, 5], radius = 1 }}\nmaterial = \"lamp\"\n{things}"
+    )))
+}
+
+fn object(material: &str, shape: &str) -> String {
+    format!("[[object]]\nmaterial = \"{material}\"\n{shape}\n")
+}
+
+/// A wedge of three sides, or an eight-sided gem, of a width around a place.
+fn body(gem: bool, material: &str, width: f64, [x, y, z]: [f64; 3]) -> String {
+    let (points, faces) = if gem {
+        (
+            "[[0.5, 0, 0], [-0.5, 0, 0], [0, 0.5, 0], [0, -0.5, 0], [0, 0, 0.5], [0, 0, -0.5]]",
+            "[[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]]",
+        )
+    } else {
+        (
+            "[[-0.5, -0.5, 0], [0.5, -0.5, 0], [0, -0.5, -0.9], [-0.5, 0.5, 0], [0.5, 0.5, 0], [0, 0.5, -0.9]]",
+            "[[0, 2, 1], [3, 4, 5], [0, 1, 4], [0, 4, 3], [1, 2, 5], [1, 5, 4], [2, 0, 3], [2, 3, 5]]",
+        )
+    };
+    let turn = if gem { "[3, 2, 1], degrees = 25" } else { "[0, 1, 0], degrees = 40" };
+    object(
+        material,
+        &format!(
+            "shape.mesh = {{ points = {points}, faces = {faces} }}\n\
+             transform = [{{ rotate = {{ axis = {turn} }} }}, {{ scale = {width:?} }}, {{ translate = [{x:?}, {y:?}, {z:?}] }}]"
+        ),
+    )
+}
+
+fn parts(plan: &Plan) -> bool {
+    plan.method.basis.draws_wavelengths()
+}
+
+/// Each place: what is around, and the body as many pixels wide as it is to be seen.
+fn placed(place: &str, gem: bool, material: &str, pixels: f64) -> String {
+    let at = |distance: f64| pixels * pixel() * distance;
+    // Off the middle, so that no ray of a grid meets it by luck.
+    let aside = |distance: f64| [0.137 * distance, 0.071 * distance, -distance];
+    let cube = |material: &str, z: f64, size: [f64; 3]| {
+        object(material, &format!("shape.cube = {{ center = [0, 0, {z:?}], size = {size:?} }}"))
+    };
+    let quad = |material: &str, center: [f64; 3], u: [f64; 3], v: [f64; 3]| {
+        object(material, &format!("shape.quad = {{ center = {center:?}, u = {u:?}, v = {v:?} }}"))
+    };
+    let here = |distance: f64| body(gem, material, at(distance), aside(distance));
+    match place {
+        "in the open" => here(10.0),
+        "behind a thin pane" => here(10.0) + &quad("pane", [0.0, 0.0, -4.0], [3.0, 0.0, 0.4], [0.0, 3.0, 0.0]),
+        "behind a slab of plain glass" => here(10.0) + &cube("plain", -4.0, [6.0, 6.0, 0.1]),
+        "behind a slab of N-BK7" => here(10.0) + &cube("crown", -4.0, [6.0, 6.0, 0.1]),
+        "behind two slabs" => {
+            here(10.0) + &cube("plain", -4.0, [6.0, 6.0, 0.1]) + &cube("crown", -5.0, [8.0, 8.0, 0.1])
+        }
+        "in a flat mirror" => {
+            let mirror = quad("mirror", [0.0, 0.0, -6.0], [2.0, 0.0, 2.0], [0.0, 3.0, 0.0]);
+            // The mirror turns -z to -x: as far aside as it would be ahead.
+            body(gem, material, at(12.0), [-6.5, 0.9, -5.5]) + &mirror
+        }
+        "in a mirror ball" => {
+            // A ball of radius 2 shows what is 8 before it some 8.6 times as small as a flat mirror would.
+            let ball = object("mirror", "shape.sphere = { center = [0, 0, -10], radius = 2 }");
+            body(gem, material, at(8.0) * 9.0, [2.5, 1.5, -1.0]) + &ball
+        }
+        "in a body of water" => {
+            here(10.0) + &object("water", "shape.plane = { point = [0, 0, -3], normal = [0.1, 0.2, 1] }")
+        }
+        "in a tank" => here(10.0) + &cube("plain", -10.0, [9.0, 7.0, 6.0]) + &cube("water", -10.0, [8.8, 6.8, 5.8]),
+        "in a mirror behind a pane" => {
+            body(gem, material, at(14.0), [-6.5, 0.9, -7.5])
+                + &quad("mirror", [0.0, 0.0, -7.0], [2.0, 0.0, 2.0], [0.0, 3.0, 0.0])
+                + &object("pane", "shape.quad = { center = [0, 0, -2], u = [4, 0, 0], v = [0, 4, 0] }")
+        }
+        _ => unreachable!("no such place: {place}"),
+    }
+}
+
+const PLACES: [&str; 10] = [
+    "in the open",
+    "behind a thin pane",
+    "behind a slab of plain glass",
+    "behind a slab of N-BK7",
+    "behind two slabs",
+    "in a flat mirror",
+    "in a mirror ball",
+    "in a body of water",
+    "in a tank",
+    "in a mirror behind a pane",
+];
+
+#[test]
+fn w9_prisms_and_gems_of_3_10_and_30_pixels_are_noticed_wherever_they_are() {
+    let mut missed = Vec::new();
+    for place in PLACES {
+        for ((gem, material), pixels) in [(false, "flint"), (true, "flint")]
+            .into_iter()
+            .flat_map(|body| [3.0, 10.0, 30.0].map(|pixels| (body, pixels)))
+        {
+            let plan = plan_of(&placed(place, gem, material, pixels), SIDE);
+            if !parts(&plan) {
+                missed.push(format!("{material} gem {gem} of {pixels} pixels {place}: {:?}", plan.because));
+            }
+        }
+        // What else is there is no reason.
+        let plan = plan_of(&placed(place, true, "faint", 10.0), SIDE);
+        if parts(&plan) {
+            missed.push(format!("nothing {place}: {:?}", plan.because));
+        }
+    }
+    assert!(missed.is_empty(), "{} of {}:\n{}", missed.len(), 7 * PLACES.len(), missed.join("\n"));
+}
+
+#[test]
+fn a_prism_of_3_pixels_is_noticed_in_pictures_of_any_size() {
+    for width in [16.0, 100.0, 4000.0, 30000.0] {
+        let at = 10.0 * 3.0 * pixel() * SIDE / width;
+        let plan = plan_of(&body(false, "flint", at, [1.37, 0.71, -10.0]), width);
+        assert!(parts(&plan), "{width}: {:?}", plan.because);
+    }
+}
+
+#[test]
+fn windows_of_optical_glass_keep_lanes_together_where_their_edges_are_seen() {
+    for glass in ["crown", "flint"] {
+        let pane = "shape.cube = { center = [0.3, 0.2, -8], size = [3, 2, 0.02] }\n\
+                    transform = [{ rotate = { axis = [0, 1, 0], degrees = 2 } }]";
+        let plan = plan_of(&object(glass, pane), SIDE);
+        assert!(!parts(&plan), "{glass}: {:?}", plan.because);
+    }
+}
+
+#[test]
+fn dispersion_before_an_even_sky_with_nothing_behind_keeps_lanes_together() {
+    let text = |sky: &str| {
+        format!(
+            "[camera]\nposition = [0, 0, 0]\nlook_at = [0, 0, -1]\nvertical_fov = 40\n[film]\nwidth = 200\nheight = 200\n{MATERIALS}{sky}{}",
+            body(true, "diamond", 2.0, [0.0, 0.0, -6.0])
+        )
+    };
+    let even = plan(&scene(&text("[[light]]\nenvironment = { radiance = 1 }\n")));
+    assert!(!parts(&even), "{:?}", even.because);
+    let block = object("stripe", "shape.cube = { center = [0, 0, -9], size = [9, 0.4, 0.4] }");
+    let behind = plan(&scene(&(text("[[light]]\nenvironment = { radiance = 1 }\n") + &block)));
+    assert!(parts(&behind), "{:?}", behind.because);
+}
+
+#[test]
+fn light_through_a_small_prism_out_of_sight_or_a_small_gem_near_a_lamp_is_noticed() {
+    let head = format!(
+        "[camera]\nposition = [0, 1, 0]\nlook_at = [0, 0, -6]\nvertical_fov = 40\n[film]\nwidth = 400\nheight = 400\n{MATERIALS}{}",
+        object("wall", "shape.plane = { point = [0, 0, 0], normal = [0, 1, 0] }")
+    );
+    let sun = "[[light]]\nsun = { toward = [0, 1, 0.2], irradiance = 3, angular_diameter = 0.53 }\n";
+    let point = "[[light]]\npoint = { position = [0.3, 3, -6], intensity = 10 }\n";
+    let bulb = object("lamp", "shape.sphere = { center = [0.2, 3.2, -6], radius = 0.03 }");
+    // Above the top of the picture.
+    let place = [0.1, 2.7, -6.0];
+    for (name, light) in [("sun", sun), ("point", point), ("lamp", &bulb)] {
+        for (gem, material, width) in [(false, "flint", 0.05), (true, "diamond", 0.05), (true, "crown", 0.02)] {
+            let found = plan(&scene(&(head.clone() + light + &body(gem, material, width, place))));
+            assert!(parts(&found), "{name}, {material}: {:?}", found.because);
+            let faint = plan(&scene(&(head.clone() + light + &body(gem, "faint", width, place))));
+            assert!(!parts(&faint), "{name}: {:?}", faint.because);
+        }
+        let pane = object("crown", "shape.cube = { center = [0.1, 2.7, -6], size = [1, 0.01, 1] }");
+        let found = plan(&scene(&(head.clone() + light + &pane)));
+        assert!(!parts(&found), "{name} through a pane: {:?}", found.because);
+    }
+}
