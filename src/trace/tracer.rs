@@ -208,7 +208,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
             let chance = gathering.gather(far, sampler, path.key, sum);
             if goes_on && path.leg != Leg::Camera {
                 if let Some(photons) = self.photons {
-                    add(sum, photons.gather(world, path, &arrival, (hit, point, normal), (material, parts)));
+                    add(sum, photons.gather(world, path, &arrival, (point, normal), (material, parts), sampler));
                 }
                 if let Some(reached) = &mut self.reached {
                     reached.push(point.position);
