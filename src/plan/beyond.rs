@@ -52,9 +52,10 @@ pub(super) fn with_map(
         return as_shown();
     }
     let line = format!(
-        "photon map: {} passes of {} photons for caustics in mirrors, through glass and on the way to lit surfaces, gathered within \
+        "photon map: {} pass{} of {} photons for caustics in mirrors, through glass and on the way to lit surfaces, gathered within \
          {radius:.2} pixels, which blurs them by as much; the radius shrinks as samples^(-1/6)",
         map.count,
+        if map.count == 1 { "" } else { "es" },
         in_number(map.photons),
     );
     (Some(pass), vec![line])

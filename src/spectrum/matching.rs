@@ -107,11 +107,6 @@ impl<const N: usize> Matching<N> {
         read
     }
 
-    /// Whether any hero counts as one with a wavelength.
-    pub fn is_shared(&self, draw: &Draw<N>, wavelength: &Wavelength) -> bool {
-        draw.heroes().any(|hero| self.bins[hero.below] == wavelength.bin)
-    }
-
     /// What heroes hold that count as one with a wavelength.
     pub fn shared(&self, draw: &Draw<N>, wavelength: &Wavelength, lanes: Lanes<N>, parted: bool) -> f64 {
         let same = |hero: &Hero| self.bins[hero.below] == wavelength.bin;

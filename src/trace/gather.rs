@@ -20,7 +20,7 @@ use super::shading;
 use crate::material::{Arrival, Material};
 use crate::math::{BranchKey, DVec2, DVec3, Frame, Ray, Sampler, unit};
 use crate::shape::SurfacePoint;
-use crate::spectrum::Table;
+use crate::spectrum::{Lanes, Table};
 
 /// Surfaces whose normals differ by more than 60 degrees belong to different sides or walls.
 const ALIKE: f64 = 0.5;
@@ -30,7 +30,7 @@ const STEP: f64 = 0.25;
 /// How far above the place, in radii, the point lies that sees photons, unless something is in the way: from there a ball of
 /// the same radius shows all that is gathered of it.
 const HIGH: f64 = 4.0;
-/// Points of the disc that are drawn at most: one of a thousandth of its area has no brightness that can be seen.
+/// Points of the disc that are drawn at most: what covers less of it is too small to be seen.
 const MOST: u32 = 1 << 12;
 /// The branch of the random numbers for them, beyond those that a path may take, and that of the photon that is looked at.
 const POINTS: usize = 128;
@@ -72,13 +72,9 @@ impl<const N: usize> Photons<N> {
         let place = Place { world, position: point.position, flat, front, radius };
         let u = sampler.four_plain(path.key.child(CHOICE), 0)[0];
         let mut found = Found { sum: [0.0; 3], weight: 0.0, drawn: None, u };
-        // The kernel of Epanechnikov, which integrates to 1 over the disc.
-        let kernel = |squared: f64| 2.0 * (1.0 - squared / (radius * radius)) / (PI * radius * radius);
         let parted = |back: DVec3| path.parted || (parts && back.dot(flat) < 0.0);
-        self.together.near(point.position, radius, &mut |squared, position, photon| {
-            if !place.takes(path, position, photon) {
-                return;
-            }
+        self.together.near(point.position, radius, &mut |position, photon| {
+            let Some(density) = place.density(path, position, photon) else { return };
             let Some((bsdf_cos, _)) = shading::evaluate(material, arrival, flat, photon.back) else { return };
             let parted = parted(photon.back);
             let carries = &photon.carries;
@@ -86,22 +82,23 @@ impl<const N: usize> Photons<N> {
             let flux = if by_heroes { self.matching.onto_heroes(arrival.draw, carries.flux) } else { carries.flux };
             let arriving = path.throughput.of(bsdf_cos * flux);
             let rgb = world.responses[carries.light].sensor(arrival.draw, arriving, parted);
-            found.add(position, rgb.map(|x| kernel(squared) * x));
+            found.add(position, rgb.map(|x| density * x));
         });
-        self.alone.near(point.position, radius, &mut |squared, position, photon| {
+        self.alone.near(point.position, radius, &mut |position, photon| {
             let (wavelength, parted) = (&photon.carries.wavelength, parted(photon.back));
             let by_heroes = arrival.draw.hero_factor(parted).is_some();
-            if by_heroes && !self.matching.is_shared(arrival.draw, wavelength) || !place.takes(path, position, photon) {
+            let read = |lanes: Lanes<N>| match by_heroes {
+                true => self.matching.shared(arrival.draw, wavelength, lanes, parted),
+                false => self.matching.read(wavelength, lanes),
+            };
+            // Most photons of wavelengths that parted meet others.
+            if by_heroes && read(path.throughput.present()) == 0.0 {
                 return;
             }
+            let Some(density) = place.density(path, position, photon) else { return };
             let Some((bsdf_cos, _)) = shading::evaluate(material, arrival, flat, photon.back) else { return };
-            let held = path.throughput.of(bsdf_cos);
-            let share = if by_heroes {
-                self.matching.shared(arrival.draw, wavelength, held, parted)
-            } else {
-                self.matching.read(wavelength, held)
-            };
-            found.add(position, photon.carries.color.map(|x| kernel(squared) * share * x));
+            let share = density * read(path.throughput.of(bsdf_cos));
+            found.add(position, photon.carries.color.map(|x| share * x));
         });
         place.seen_of(found, point, sampler, path.key)
     }
@@ -127,10 +124,17 @@ impl Found {
 }
 
 impl Place<'_> {
-    /// Whether a photon counts, if it is seen.
-    fn takes<const N: usize, T>(&self, path: &Path<N>, position: DVec3, photon: &Landed<T>) -> bool {
+    /// For how much a photon counts, if it is seen, per area of the plane that touches the surface at the place.
+    fn density<const N: usize, T>(&self, path: &Path<N>, position: DVec3, photon: &Landed<T>) -> Option<f64> {
         let short = path.vertices + photon.vertices - 1 <= self.world.method.max_bounces;
-        short && self.goes_on(position, photon.flat, photon.front)
+        if !short || !self.goes_on(position, photon.flat, photon.front) {
+            return None;
+        }
+        let (way, squared_radius) = (position - self.position, self.radius * self.radius);
+        let beside = way - self.flat * way.dot(self.flat);
+        // The kernel of Epanechnikov, which integrates to 1 over the disc.
+        let kernel = 2.0 * (1.0 - beside.length_squared() / squared_radius) / (PI * squared_radius);
+        Some(kernel * photon.flat.dot(self.flat).abs())
     }
 
     /// Whether a surface continues that of the place; `flat` is its unit normal on the side from where it is reached, and
@@ -171,7 +175,7 @@ impl Place<'_> {
                 }
             }
         }
-        sum.map(|x| x * f64::from(drawn))
+        sum
     }
 
     /// Whether what is met on the way to a point, or so many times as far, continues the surface; none if nothing is met.

@@ -91,7 +91,9 @@ pub(super) fn photons<const N: usize>(world: &World, pass: u32) -> Option<Photon
                 Kept::Together(photon) if photon.carries.flux.0.iter().all(|x| x.is_finite()) => {
                     together.push((place, photon));
                 }
-                Kept::Alone(photon) if photon.carries.color.iter().all(|x| x.is_finite()) => alone.push((place, photon)),
+                Kept::Alone(photon) if photon.carries.color.iter().all(|x| x.is_finite()) => {
+                    alone.push((place, photon))
+                }
                 _ => non_finite += 1,
             }
         }
@@ -102,12 +104,7 @@ pub(super) fn photons<const N: usize>(world: &World, pass: u32) -> Option<Photon
 }
 
 /// Keeps a photon where it lands.
-fn keep<const N: usize>(
-    world: &World,
-    matching: &Matching<N>,
-    landing: &Landing<N>,
-    kept: &mut Vec<(DVec3, Kept<N>)>,
-) {
+fn keep<const N: usize>(world: &World, matching: &Matching<N>, landing: &Landing<N>, kept: &mut Vec<(DVec3, Kept<N>)>) {
     let Landing { path, arrival, flat, point, light, .. } = landing;
     let flux = landing.flux(world) * (1.0 / arrival.wo.dot(*flat).abs()) as f32;
     let photon = Landed {
@@ -137,8 +134,8 @@ impl<const N: usize> Photons<N> {
     /// Whether any photon lies within a radius of a place.
     pub(super) fn any_near(&self, place: DVec3, radius: f64) -> bool {
         let mut any = false;
-        self.together.near(place, radius, &mut |_, _, _| any = true);
-        self.alone.near(place, radius, &mut |_, _, _| any = true);
+        self.together.near(place, radius, &mut |_, _| any = true);
+        self.alone.near(place, radius, &mut |_, _| any = true);
         any
     }
 }
