@@ -8,9 +8,13 @@ mod support;
 
 #[path = "caustics/agreement.rs"]
 mod agreement;
+#[path = "caustics/edges.rs"]
+mod edges;
 #[path = "caustics/gathered.rs"]
 mod gathered;
 #[path = "caustics/known.rs"]
 mod known;
 #[path = "caustics/materials.rs"]
 mod materials;
+#[path = "caustics/wavelengths.rs"]
+mod wavelengths;

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The rows that there must be, by letter: how many of each.
-const ROWS: [(&str, u32); 15] = [
+const ROWS: [(&str, u32); 16] = [
     ("S", 7),
     ("P", 4),
     ("T", 6),
@@ -19,6 +19,7 @@ const ROWS: [(&str, u32); 15] = [
     ("L", 7),
     ("G", 6),
     ("C", 2),
+    ("K", 5),
     ("H", 13),
     ("F", 2),
 ];

@@ -12,8 +12,7 @@ const PHOTONS: f64 = 0.5;
 const SMALL: f64 = 0.1;
 /// Radius in pixels of a map of one sample per pixel.
 const RADIUS: f64 = 2.0;
-/// Fewest passes, whose wavelengths all paths of a pass share, and fewest photons of a pass that is worth its while.
-const PASSES: f64 = 16.0;
+/// Photons of a pass: more would take longer to look through than to send.
 const OF_A_PASS: f64 = 32_768.0;
 
 /// The light pass with a map, if one is needed, and why.
@@ -34,7 +33,7 @@ pub(super) fn with_map(
     let samples = f64::from(film.width) * f64::from(film.height) * f64::from(method.samples);
     let all = (PHOTONS * samples).ceil();
     let most = f64::from(method.samples);
-    let count = (all / OF_A_PASS).floor().clamp(PASSES.min(most), most);
+    let count = (all / OF_A_PASS).round().clamp(1.0, most);
     // Bias falls with the square of the radius, noise with its inverse: both alike fast with this power of the samples.
     let radius = RADIUS * libm::pow(most, -1.0 / 6.0);
     let map = MapPasses { count: count as u32, photons: (all / count).ceil() as u64, radius };
@@ -54,9 +53,10 @@ pub(super) fn with_map(
         return as_shown();
     }
     let line = format!(
-        "photon map: {} passes of {} photons for caustics in mirrors, through glass and on the way to lit surfaces, gathered within \
+        "photon map: {} pass{} of {} photons for caustics in mirrors, through glass and on the way to lit surfaces, gathered within \
          {radius:.2} pixels, which blurs them by as much; the radius shrinks as samples^(-1/6)",
         map.count,
+        if map.count == 1 { "" } else { "es" },
         in_number(map.photons),
     );
     (asked(map), vec![line])

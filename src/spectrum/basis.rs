@@ -16,17 +16,17 @@ use super::{Curve, CurveKind, Draw, Emission, Quantity, Response, Table, Upsampl
 pub struct Basis {
     space: ColorSpace,
     upsampler: Arc<Upsampler>,
-    lanes: LaneKind,
+    pub(super) lanes: LaneKind,
     /// Where the fixed lanes read an index, in nm, one per bin.
     wavelengths_nm: Vec<f64>,
-    heroes: Option<(usize, Arc<Mixture>)>,
+    pub(super) heroes: Option<(usize, Arc<Mixture>)>,
     collapses: bool,
     keeps_together: bool,
 }
 
 /// What the fixed lanes are.
 #[derive(Clone, Debug, PartialEq)]
-enum LaneKind {
+pub(super) enum LaneKind {
     /// Linear Rec.709, and what the film's white shows in it.
     Rgb(Arc<Bands>),
     /// Linear Rec.2020 under one light.
@@ -229,7 +229,7 @@ impl Basis {
     }
 
     /// The visible grid and the lines behind it; empty if no wavelengths are drawn.
-    fn fine<T: Clone>(&self, smooth: impl Fn(f64) -> T, line: impl Fn(f64) -> T) -> Vec<T> {
+    pub(super) fn fine<T: Clone>(&self, smooth: impl Fn(f64) -> T, line: impl Fn(f64) -> T) -> Vec<T> {
         let Some((_, mixture)) = &self.heroes else { return Vec::new() };
         let mut fine: Vec<T> = visible::wavelengths().map(smooth).collect();
         fine.extend(mixture.lines().iter().map(|&nm| line(nm)));

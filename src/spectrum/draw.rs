@@ -61,7 +61,7 @@ impl<const N: usize> Draw<N> {
     }
 
     /// The factor on what a hero is worth, where heroes carry the light; none where the fixed lanes do.
-    pub(super) fn hero_factor(&self, parted: bool) -> Option<f64> {
+    pub fn hero_factor(&self, parted: bool) -> Option<f64> {
         match (self.collapses, parted) {
             (true, true) => Some(self.count as f64),
             (true, false) => Some(1.0),

@@ -76,6 +76,12 @@ impl Mixture {
         &self.lines
     }
 
+    /// Probability of each step of the visible grid, then of each line.
+    pub(super) fn probabilities(&self) -> impl Iterator<Item = f64> {
+        let before = std::iter::once(0.0).chain(self.cumulative.iter().copied());
+        self.cumulative.iter().zip(before).map(|(sum, before)| sum - before)
+    }
+
     /// The wavelength for a random number, as one of `heroes`.
     pub(super) fn draw(&self, u: f64, heroes: usize) -> Hero {
         let last = self.cumulative.len() - 1;

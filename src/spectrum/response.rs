@@ -1,3 +1,4 @@
+use super::draw::Hero;
 use super::table::MAX_LANES;
 use super::{Draw, Lanes};
 
@@ -52,10 +53,16 @@ impl Response {
         for (hero, lane) in draw.heroes().zip(draw.fixed_lanes()..) {
             let weight = factor * hero.factor * f64::from(lanes[lane]);
             if weight != 0.0 {
-                let (a, b) = (self.fine[hero.below], self.fine[hero.below + 1]);
-                (0..3).for_each(|c| sensor[c] += weight * (a[c] + hero.fraction * (b[c] - a[c])));
+                let color = self.hero(hero);
+                (0..3).for_each(|c| sensor[c] += weight * color[c]);
             }
         }
         sensor
+    }
+
+    /// The film's red, green and blue of the light per nm at a hero's wavelength, or of its line.
+    pub(super) fn hero(&self, hero: &Hero) -> [f64; 3] {
+        let (a, b) = (self.fine[hero.below], self.fine[hero.below + 1]);
+        std::array::from_fn(|c| a[c] + hero.fraction * (b[c] - a[c]))
     }
 }

@@ -72,7 +72,7 @@ pub(super) fn splats<const N: usize>(
     let batches = batches(aims, |_| 0, |aim| aim.photons, world.method.seed ^ SEED);
     for group in batches.chunks(AT_ONCE) {
         let done: Vec<Sent<Splat>> =
-            group.par_iter().map(|batch| send::<N, _>(world, aims, *batch, None, false, show_one)).collect();
+            group.par_iter().map(|batch| send::<N, _>(world, aims, *batch, false, show_one)).collect();
         progress(group.iter().map(|batch| batch.count).sum());
         for sent in done {
             shown.rays += sent.rays;
@@ -109,7 +109,7 @@ impl InLanes for Learning<'_> {
         let Some(aims) = &world.aims else { return Vec::new() };
         let batches = batches(aims, |_| 0, |aim| aim.photons.min(self.most), world.method.seed ^ AHEAD_SEED);
         let done: Vec<Sent<Splat>> =
-            batches.par_iter().map(|batch| send::<N, _>(&world, aims, *batch, None, true, show_one)).collect();
+            batches.par_iter().map(|batch| send::<N, _>(&world, aims, *batch, true, show_one)).collect();
         let mut found = vec![Vec::new(); aims.aims.len()];
         for (batch, sent) in batches.iter().zip(done) {
             found[batch.aim].extend(sent.places);

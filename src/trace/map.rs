@@ -29,12 +29,12 @@ impl<T: Send> Map<T> {
 }
 
 impl<T> Map<T> {
-    /// Visits all points nearer to a place than a radius, with the squares of their distances, in an order that never changes.
-    pub(super) fn near(&self, place: DVec3, radius: f64, visit: &mut impl FnMut(f64, &T)) {
+    /// Visits all points nearer to a place than a radius, in an order that never changes.
+    pub(super) fn near(&self, place: DVec3, radius: f64, visit: &mut impl FnMut(DVec3, &T)) {
         self.visit((0, self.points.len()), place, radius, visit);
     }
 
-    fn visit(&self, (start, end): (usize, usize), place: DVec3, radius: f64, visit: &mut impl FnMut(f64, &T)) {
+    fn visit(&self, (start, end): (usize, usize), place: DVec3, radius: f64, visit: &mut impl FnMut(DVec3, &T)) {
         if end - start <= FEW {
             self.look(start..end, place, radius, visit);
             return;
@@ -51,11 +51,10 @@ impl<T> Map<T> {
         }
     }
 
-    fn look(&self, range: Range<usize>, place: DVec3, radius: f64, visit: &mut impl FnMut(f64, &T)) {
+    fn look(&self, range: Range<usize>, place: DVec3, radius: f64, visit: &mut impl FnMut(DVec3, &T)) {
         for (point, found) in &self.points[range] {
-            let squared = (*point - place).length_squared();
-            if squared < radius * radius {
-                visit(squared, found);
+            if (*point - place).length_squared() < radius * radius {
+                visit(*point, found);
             }
         }
     }
@@ -100,8 +99,8 @@ mod tests {
             for (number, radius) in [0.0, 0.01, 0.1, 1.0, 20.0].into_iter().enumerate() {
                 let from = place(1_000_000 + number as u32);
                 let mut found = Vec::new();
-                map.near(from, radius, &mut |squared, &i| {
-                    assert_eq!(squared, (place(i) - from).length_squared());
+                map.near(from, radius, &mut |point, &i| {
+                    assert_eq!(point, place(i));
                     found.push(i);
                 });
                 found.sort_unstable();

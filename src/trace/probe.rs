@@ -118,7 +118,7 @@ fn photon_time<const N: usize>(world: &World) -> Duration {
     let Some(aims) = &world.aims else { return Duration::ZERO };
     let time = |batch| {
         let start = Instant::now();
-        send(world, aims, batch, None, true, |_: &Tracer<N>, _: &Landing<N>, _: &Sampler, kept| kept.push(()));
+        send(world, aims, batch, true, |_: &Tracer<N>, _: &Landing<N>, _: &Sampler, kept| kept.push(()));
         start.elapsed().div_f64(FEW as f64)
     };
     let batches = batches(aims, |_| 0, |_| FEW, world.method.seed);

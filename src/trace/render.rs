@@ -205,7 +205,6 @@ pub(super) fn sample<const N: usize>(
         Transport::Random { .. } => sampler.four(BranchKey::CAMERA, purpose),
     };
     let [u, v, wavelength, _] = numbers(PLACE);
-    let wavelength = tracer.photons.map_or(wavelength, |photons| photons.wavelength);
     let film = DVec2::new(f64::from(x), f64::from(y)) + world.scene.film.filter.place([u, v]);
     let draw = world.method.basis.draw(wavelength);
     let ray = if camera.has_lens() {

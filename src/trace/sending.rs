@@ -8,7 +8,6 @@ use super::photon::Landing;
 use super::tracer::Tracer;
 use crate::light::{Light, LightId};
 use crate::math::{BranchKey, DVec3, Sampler};
-use crate::spectrum::Draw;
 
 /// Photons that are followed one after another; what they leave is added in the order of the batches.
 const BATCH: u64 = 4096;
@@ -47,13 +46,12 @@ pub(super) fn batches(aims: &Aims, first: impl Fn(&Aim) -> u64, count: impl Fn(&
     aims.aims.iter().enumerate().flat_map(of_aim).collect()
 }
 
-/// Follows the photons of one batch, of the given draw or each of its own; `land` says what is kept of one that
-/// lands. What is learned is only of which photons something would be kept.
+/// Follows the photons of one batch; `land` says what is kept of one that lands. What is learned is only of which photons
+/// something would be kept.
 pub(super) fn send<const N: usize, T>(
     world: &World,
     aims: &Aims,
     batch: Batch,
-    shared: Option<&Draw<N>>,
     learns: bool,
     land: impl Fn(&Tracer<N>, &Landing<N>, &Sampler, &mut Vec<T>),
 ) -> Sent<T> {
@@ -70,8 +68,7 @@ pub(super) fn send<const N: usize, T>(
         let place = aims.place(batch.aim, [u[0], u[1]]);
         let before = kept.len();
         if let Some(emitted) = aims.emit(&world.scene, batch.aim, place, [u[3], more]) {
-            let own = || world.method.basis.draw(u[2]);
-            let draw = shared.cloned().unwrap_or_else(own);
+            let draw = world.method.basis.draw(u[2]);
             let around = || Media::around(world, emitted.ray.origin, emitted.ray.direction);
             let media = world.light_media[light].unwrap_or_else(around);
             tracer.photon(&emitted, light, media, &draw, &sampler, &mut |tracer, landing| {

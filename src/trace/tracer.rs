@@ -248,7 +248,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
             }
             if goes_on && path.leg != Leg::Camera {
                 if let Some(photons) = self.photons {
-                    let light = photons.gather(world, path, &arrival, (hit, point, normal), (material, parts));
+                    let light = photons.gather(world, path, &arrival, (point, normal), (material, parts), sampler);
                     self.receive(path, light, sum);
                 }
                 if let Some(reached) = &mut self.reached {

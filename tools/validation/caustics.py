@@ -100,6 +100,35 @@ def mirrors(quick):
         )
 
 
+def pieces(quick):
+    """The same on a floor laid in pieces and seen in a mirror before the camera, so that photons are gathered."""
+    angle, reflectance = np.radians(60), 0.8
+    for count in (40, 400):
+        half = 1 / count
+        laths = [("floor", quad((-1 + (2 * i + 1) * half, 0, 0), (half, 0, 0), (0, 0, 1))) for i in range(count)]
+        mirrors = [quad((-1, 2, 0), (0, 2, 0), (0, 0, 2)), quad((0, 0.5, 0), (0.25, 0, 0), (0, 0.25, 0.25))]
+        words = (
+            f"A floor of reflectance {DARK} in {count} pieces, 2 wide together, seen in a mirror at 45 degrees; a mirror of "
+            f"{reflectance} upright at x = -1, 4 high; parallel light at 60 degrees."
+        )
+        yield lit(
+            f"sun by a mirror onto {count} pieces",
+            laths + [("mirror", mirrors[0]), ("window", mirrors[1])],
+            {"mirror": {"mirror": {"reflectance": reflectance}}, "window": {"mirror": {"reflectance": 1}}},
+            [sun(60)],
+            0.4,
+            np.cos(angle) * (1 + reflectance),
+            "E cos t (1 + R)",
+            "photons that end with their piece",
+            np.cos(angle),
+            words,
+            quick,
+            eye=(0, 0.5, 1),
+            target=(0, 0.5, 0),
+            up=(0, 1, 0),
+        )
+
+
 def balls(quick):
     """Row T1 of the literature of light tracing: a ball under a lamp."""
     for index, half_side in ((1.5, 0.8), (1.5, 0.2), (1.333, 0.5)):
@@ -176,5 +205,5 @@ def beam(quick):
 
 
 def rows(quick):
-    for part in (slabs, mirrors, balls, beam):
+    for part in (slabs, mirrors, pieces, balls, beam):
         yield from part(quick)

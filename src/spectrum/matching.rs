@@ -1,0 +1,123 @@
+//! How the lanes of two paths are brought together that meet, one from the camera and one from a light, each with
+//! wavelengths drawn of its own.
+//!
+//! The fixed lanes of both are the same. Where only one path has parted, what the other carries is smooth and is read at the
+//! parted one's wavelengths between its fixed lanes, by the functions with which responses are integrated. Where both
+//! have parted, two wavelengths count as one that fall into the same bin: like the disc in which photons are gathered, bins
+//! blur where light goes, and keep its color.
+
+use super::basis::LaneKind;
+use super::draw::Hero;
+use super::visible::{self, COUNT};
+use super::{Basis, Draw, Lanes, Response};
+
+/// What connects the lanes of one basis.
+#[derive(Clone, Debug, Default)]
+pub struct Matching<const N: usize> {
+    /// How much each fixed lane counts at each entry of the fine grid; empty if no wavelengths are drawn.
+    weights: Vec<Lanes<N>>,
+    /// The bin of each entry.
+    bins: Vec<u32>,
+    /// How likely a wavelength is drawn from each bin.
+    chances: Vec<f64>,
+}
+
+/// A wavelength that has gone its own way.
+#[derive(Clone, Copy, Debug)]
+pub struct Wavelength {
+    hero: Hero,
+    bin: u32,
+}
+
+impl Basis {
+    /// What connects lanes; a bin holds one part in `parts` of the draws and of the visible range at most, or a single nm or line.
+    pub fn matching<const N: usize>(&self, parts: f64) -> Matching<N> {
+        let (LaneKind::Wavelengths(functions), Some((_, mixture))) = (&self.lanes, &self.heroes) else {
+            return Matching::default();
+        };
+        let own_lines = &self.wavelengths_nm()[functions.len()..];
+        let between = |nm: f64| {
+            let (below, fraction) = visible::place(nm);
+            let at = |f: &Vec<f64>| (f[below] + fraction * (f[below + 1] - f[below])) as f32;
+            Lanes::from_fn(|lane| functions.get(lane).map_or(0.0, at))
+        };
+        let line = |nm: f64| match own_lines.iter().position(|&line| line == nm) {
+            Some(own) => Lanes::from_fn(|lane| if lane == functions.len() + own { 1.0 } else { 0.0 }),
+            None => between(nm),
+        };
+        let (bins, chances) = bins(mixture.probabilities(), parts);
+        Matching { weights: self.fine(between, line), bins, chances }
+    }
+}
+
+/// The bin of each entry of the fine grid, and how likely each is, for the probabilities of steps and lines.
+fn bins(probabilities: impl Iterator<Item = f64>, parts: f64) -> (Vec<u32>, Vec<f64>) {
+    let steps = COUNT - 1;
+    let widest = (steps as f64 / parts).max(1.0);
+    let (mut bins, mut chances, mut width) = (Vec::new(), vec![0.0], 0.0);
+    for (entry, probability) in probabilities.enumerate() {
+        if entry == steps {
+            // Nothing is drawn beyond the last wavelength of the grid; lines follow.
+            bins.push(chances.len() as u32 - 1);
+        }
+        let last = chances.len() - 1;
+        if entry >= steps || (width > 0.0 && (width + 1.0 > widest || (chances[last] + probability) * parts > 1.0)) {
+            chances.push(0.0);
+            width = 0.0;
+        }
+        let last = chances.len() - 1;
+        chances[last] += probability;
+        width += 1.0;
+        bins.push(last as u32);
+    }
+    (bins, chances)
+}
+
+impl<const N: usize> Matching<N> {
+    /// Whether heroes carry light that arrives in lanes; `found` is told the wavelength and the film's color of each.
+    pub fn alone(
+        &self,
+        (draw, response): (&Draw<N>, &Response),
+        lanes: Lanes<N>,
+        parted: bool,
+        mut found: impl FnMut(Wavelength, [f64; 3]),
+    ) -> bool {
+        let Some(factor) = draw.hero_factor(parted) else { return false };
+        for (hero, lane) in draw.heroes().zip(draw.fixed_lanes()..) {
+            let weight = factor * hero.factor * f64::from(lanes[lane]);
+            if weight != 0.0 {
+                let wavelength = Wavelength { hero: *hero, bin: self.bins[hero.below] };
+                found(wavelength, response.hero(hero).map(|x| weight * x));
+            }
+        }
+        true
+    }
+
+    /// What fixed lanes hold, read at a wavelength.
+    pub fn read(&self, wavelength: &Wavelength, lanes: Lanes<N>) -> f64 {
+        f64::from(self.between(&wavelength.hero, lanes))
+    }
+
+    /// What fixed lanes hold, read at the wavelengths of heroes.
+    pub fn onto_heroes(&self, draw: &Draw<N>, lanes: Lanes<N>) -> Lanes<N> {
+        let mut read = Lanes::ZERO;
+        for (hero, lane) in draw.heroes().zip(draw.fixed_lanes()..) {
+            read.0[lane] = self.between(hero, lanes);
+        }
+        read
+    }
+
+    /// What heroes hold that count as one with a wavelength.
+    pub fn shared(&self, draw: &Draw<N>, wavelength: &Wavelength, lanes: Lanes<N>, parted: bool) -> f64 {
+        let same = |hero: &Hero| self.bins[hero.below] == wavelength.bin;
+        let heroes = draw.heroes().zip(draw.fixed_lanes()..);
+        let held: f64 = heroes.filter(|(hero, _)| same(hero)).map(|(_, lane)| f64::from(lanes[lane])).sum();
+        let mean = draw.hero_factor(parted).unwrap_or(0.0) / draw.heroes().count() as f64;
+        held * mean / self.chances[wavelength.bin as usize]
+    }
+
+    fn between(&self, hero: &Hero, lanes: Lanes<N>) -> f32 {
+        let [a, b] = [0, 1].map(|step| (self.weights[hero.below + step] * lanes).sum());
+        a + hero.fraction as f32 * (b - a)
+    }
+}

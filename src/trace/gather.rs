@@ -1,0 +1,200 @@
+//! Photons are gathered around a place that a path from the camera has reached.
+//!
+//! Light that photons bring to a disc of radius r is taken for the light at its middle, which blurs: light that varies by its
+//! Laplacian comes out too bright by r^2 / 12 of that. The radius is one of pixels, seen along the path, and shrinks
+//! with the samples as their number to the power -1 / 6, where bias and noise vanish at the same pace (Silverman 1986, *Density
+//! Estimation for Statistics and Data Analysis*, section 4.3).
+//!
+//! Whatever object they lie on, photons count on surfaces that continue the one around the place and that a point above it
+//! sees. At edges a part of the disc has no such surface, and what is found is divided by the share that has. One over that
+//! share is how often points of the disc must be drawn, on average, until one has (Booth 2007, *Unbiased Monte Carlo
+//! Estimation of the Reciprocal of an Integral*): once, away from edges.
+
+use std::f64::consts::PI;
+
+use super::World;
+use super::direct::add;
+use super::merge::{Landed, Photons};
+use super::path::Path;
+use super::shading;
+use crate::material::{Arrival, Material};
+use crate::math::{BranchKey, DVec2, DVec3, Frame, Ray, Sampler, unit};
+use crate::shape::SurfacePoint;
+use crate::spectrum::{Lanes, Table};
+
+/// Surfaces whose normals differ by more than 60 degrees belong to different sides or walls.
+const ALIKE: f64 = 0.5;
+/// How far, in radii, a surface may lie from where it would continue another smoothly: between flat faces that meet at 30
+/// degrees it is less.
+const STEP: f64 = 0.25;
+/// How far above the place, in radii, the point lies that sees photons, unless something is in the way: from there a ball of
+/// the same radius shows all that is gathered of it.
+const HIGH: f64 = 4.0;
+/// Points of the disc that are drawn at most: what covers less of it is too small to be seen.
+const MOST: u32 = 1 << 12;
+/// The branch of the random numbers for them, beyond those that a path may take, and that of the photon that is looked at.
+const POINTS: usize = 128;
+const CHOICE: usize = 129;
+
+/// Where photons are gathered.
+struct Place<'a> {
+    world: &'a World,
+    position: DVec3,
+    /// The surface's own unit normal on the side of the path.
+    flat: DVec3,
+    /// Whether that is the front.
+    front: bool,
+    radius: f64,
+}
+
+/// What was found, and one photon of it, drawn by what it brings.
+struct Found {
+    sum: [f64; 3],
+    weight: f64,
+    drawn: Option<(DVec3, [f64; 3], f64)>,
+    u: f64,
+}
+
+impl<const N: usize> Photons<N> {
+    /// What the sensor gets of the photons around a place that a path has reached.
+    pub(super) fn gather(
+        &self,
+        world: &World,
+        path: &Path<N>,
+        arrival: &Arrival<N>,
+        (point, flat): (&SurfacePoint, DVec3),
+        (material, parts): (&Material<Table>, bool),
+        sampler: &Sampler,
+    ) -> [f64; 3] {
+        let Some(map) = world.method.light_pass.as_ref().and_then(|pass| pass.map) else { return [0.0; 3] };
+        let radius = map.radius * world.scene.camera.pixel_width(path.length);
+        let front = flat.dot(point.normal) > 0.0;
+        let place = Place { world, position: point.position, flat, front, radius };
+        let u = sampler.four_plain(path.key.child(CHOICE), 0)[0];
+        let mut found = Found { sum: [0.0; 3], weight: 0.0, drawn: None, u };
+        let parted = |back: DVec3| path.parted || (parts && back.dot(flat) < 0.0);
+        self.together.near(point.position, radius, &mut |position, photon| {
+            let Some(density) = place.density(path, position, photon) else { return };
+            let Some((bsdf_cos, _)) = shading::evaluate(material, arrival, flat, photon.back) else { return };
+            let parted = parted(photon.back);
+            let carries = &photon.carries;
+            let by_heroes = arrival.draw.hero_factor(parted).is_some();
+            let flux = if by_heroes { self.matching.onto_heroes(arrival.draw, carries.flux) } else { carries.flux };
+            let arriving = path.throughput.of(bsdf_cos * flux);
+            let rgb = world.responses[carries.light].sensor(arrival.draw, arriving, parted);
+            found.add(position, rgb.map(|x| density * x));
+        });
+        self.alone.near(point.position, radius, &mut |position, photon| {
+            let (wavelength, parted) = (&photon.carries.wavelength, parted(photon.back));
+            let by_heroes = arrival.draw.hero_factor(parted).is_some();
+            let read = |lanes: Lanes<N>| match by_heroes {
+                true => self.matching.shared(arrival.draw, wavelength, lanes, parted),
+                false => self.matching.read(wavelength, lanes),
+            };
+            // Most photons of wavelengths that parted meet others.
+            if by_heroes && read(path.throughput.present()) == 0.0 {
+                return;
+            }
+            let Some(density) = place.density(path, position, photon) else { return };
+            let Some((bsdf_cos, _)) = shading::evaluate(material, arrival, flat, photon.back) else { return };
+            let share = density * read(path.throughput.of(bsdf_cos));
+            found.add(position, photon.carries.color.map(|x| share * x));
+        });
+        place.seen_of(found, point, sampler, path.key)
+    }
+}
+
+impl Found {
+    fn add(&mut self, position: DVec3, rgb: [f64; 3]) {
+        add(&mut self.sum, rgb);
+        let weight: f64 = rgb.iter().map(|x| x.abs()).sum();
+        if weight == 0.0 {
+            return;
+        }
+        self.weight += weight;
+        // What is left of a random number after a choice is one again.
+        let chance = weight / self.weight;
+        if self.u < chance {
+            self.drawn = Some((position, rgb, weight));
+            self.u /= chance;
+        } else {
+            self.u = (self.u - chance) / (1.0 - chance);
+        }
+    }
+}
+
+impl Place<'_> {
+    /// For how much a photon counts, if it is seen, per area of the plane that touches the surface at the place.
+    fn density<const N: usize, T>(&self, path: &Path<N>, position: DVec3, photon: &Landed<T>) -> Option<f64> {
+        let short = path.vertices + photon.vertices - 1 <= self.world.method.max_bounces;
+        if !short || !self.goes_on(position, photon.flat, photon.front) {
+            return None;
+        }
+        let (way, squared_radius) = (position - self.position, self.radius * self.radius);
+        let beside = way - self.flat * way.dot(self.flat);
+        // The kernel of Epanechnikov, which integrates to 1 over the disc.
+        let kernel = 2.0 * (1.0 - beside.length_squared() / squared_radius) / (PI * squared_radius);
+        Some(kernel * photon.flat.dot(self.flat).abs())
+    }
+
+    /// Whether a surface continues that of the place; `flat` is its unit normal on the side from where it is reached, and
+    /// `front` whether that is the front.
+    fn goes_on(&self, position: DVec3, flat: DVec3, front: bool) -> bool {
+        let cos = flat.dot(self.flat);
+        // The far face of a thin body, too, is reached from the other side, but from the front.
+        if cos.abs() < ALIKE || (cos < 0.0 && front == self.front) {
+            return false;
+        }
+        // A chord of a ball is at right angles to the sum of the normals at its ends.
+        let normals = self.flat + flat * cos.signum();
+        0.5 * (position - self.position).dot(normals).abs() <= STEP * self.radius
+    }
+
+    /// What is seen of what was found, over the share of the disc that is seen.
+    fn seen_of(&self, found: Found, point: &SurfacePoint, sampler: &Sampler, key: BranchKey) -> [f64; 3] {
+        let Found { mut sum, weight, drawn, .. } = found;
+        let Some((photon, rgb, of_photon)) = drawn else { return sum };
+        let up = point.leave(self.flat);
+        let far = HIGH * self.radius;
+        let free = self.world.scene.nearest(&up, 2.0 * far, |_| true).map_or(far, |hit| 0.5 * hit.crossing.t);
+        let (height, from) = (far.min(free), up.at(far.min(free)));
+        if !self.sees(from, photon, 1.0).unwrap_or(true) {
+            (0..3).for_each(|i| sum[i] -= rgb[i] * weight / of_photon);
+        }
+        let frame = Frame::about(self.flat);
+        let further = (height + STEP * self.radius) / height;
+        let mut drawn = 0;
+        while drawn < MOST {
+            let [a, b, c, d] = sampler.four_plain(key.child(POINTS), drawn);
+            for u in [[a, b], [c, d]] {
+                drawn += 1;
+                let DVec2 { x, y } = self.radius * by_kernel(u);
+                let at = self.position + frame.to_world(DVec3::new(x, y, 0.0));
+                if self.sees(from, at, further) == Some(true) {
+                    return sum.map(|x| x * f64::from(drawn));
+                }
+            }
+        }
+        sum
+    }
+
+    /// Whether what is met on the way to a point, or so many times as far, continues the surface; none if nothing is met.
+    fn sees(&self, from: DVec3, to: DVec3, further: f64) -> Option<bool> {
+        let scene = &self.world.scene;
+        let way = to - from;
+        let ray = Ray { origin: from, direction: unit(way) };
+        let hit = scene.nearest(&ray, way.length() * further, |_| true)?;
+        let SurfacePoint { position, normal, .. } = scene.objects[hit.object as usize].shape.point(&ray, &hit.crossing);
+        let front = normal.dot(ray.direction) < 0.0;
+        let flat = if front { normal } else { -normal };
+        let goes_on = flat.dot(self.flat) > 0.0 && self.goes_on(position, flat, front);
+        Some(goes_on && scene.material_of(hit.object).scatters_widely())
+    }
+}
+
+/// A point of the unit disc, drawn by the kernel: with q the square of its radius, a share 2 q - q^2 lies within it.
+fn by_kernel([u, v]: [f64; 2]) -> DVec2 {
+    let radius = (1.0 - (1.0 - u).sqrt()).sqrt();
+    let (sin, cos) = libm::sincos(2.0 * PI * v);
+    DVec2::new(radius * cos, radius * sin)
+}

@@ -1,0 +1,167 @@
+//! Caustics that end where surfaces end, meet or are laid in pieces.
+
+use abbe::film::{Film, Window};
+use abbe::plan::plan;
+use abbe::trace::{LightPass, MapPasses, Method, World, render};
+
+use crate::agreement::{blocks, object, seen_by};
+use crate::support::scenes::{SPLITTING, scene, standard_errors};
+
+/// What a mirror before the camera shows, which looks the other way.
+const VIEW: &str = "position = [0, 6, 6]\nlook_at = [0, 6, 5]\nvertical_fov = 25";
+const WINDOW: &str = "quad = { center = [0, 6, 5], u = [0.6, 0, 0], v = [0, 0.216, 0.4608] }";
+/// Nothing that light leaves a surface for is bright enough to be seen.
+const MATERIALS: &str =
+    "[material.matte]\ndiffuse = { reflectance = 0.001 }\n[material.mirror]\nmirror = { reflectance = 1 }\n";
+
+fn point(x: f64, y: f64) -> String {
+    format!("[[light]]\npoint = {{ position = [{x}, {y}, 2], intensity = 8 }}\n")
+}
+
+/// A point light beside a mirror upright at x = 3, as high above the origin as it is below.
+fn by_mirror(bodies: &str, height: f64) -> String {
+    let mirror = format!("quad = {{ center = [3, {}, 1.5], u = [0, 0.8, 0], v = [0, 0, 0.7] }}", height * 2.3 / 3.0);
+    seen_by(VIEW, "")
+        + MATERIALS
+        + &object("mirror", WINDOW)
+        + &object("mirror", &mirror)
+        + bodies
+        + &point(2.0, height)
+}
+
+/// The same light with its mirror image in place of the mirror.
+fn by_image(bodies: &str, height: f64) -> String {
+    seen_by(VIEW, "") + MATERIALS + &object("mirror", WINDOW) + bodies + &point(2.0, height) + &point(4.0, height)
+}
+
+/// Photons are gathered within 1.5 pixels, a sixteenth of the image.
+const WIDE: MapPasses = MapPasses { count: 4, photons: 32_768, radius: 1.5 };
+
+/// Compares the light of a mirror, which photons bring, with that of a lamp at its image, which is known.
+fn agree(what: &str, bodies: &str, map: MapPasses) {
+    let gathered = blocks(&by_mirror(bodies, 3.0), true, Some(map), 64);
+    let known = blocks(&by_image(bodies, 3.0), false, None, 64);
+    let limit = 1.25 * standard_errors(gathered.len());
+    let mut sums = [0.0; 3];
+    for (a, b) in gathered.iter().zip(&known) {
+        let error = (a.1 + b.1).sqrt();
+        assert!((a.0 - b.0).abs() <= 0.01 * b.0 + limit * error, "{what}: {} for {}, error {error}", a.0, b.0);
+        [a.0, b.0, a.1 + b.1].into_iter().zip(&mut sums).for_each(|(x, sum)| *sum += x);
+    }
+    let [gathered, known, variance] = sums;
+    // The three bands of a block move together.
+    let (ratio, error) = (gathered / known, (3.0 * variance).sqrt() / known);
+    println!("{what}: {ratio:.5} of what is known, error {error:.5}");
+    assert!(
+        (ratio - 1.0).abs() < 0.003 + 3.0 * error && error < 0.003,
+        "{what}: {ratio} of what is known, error {error}"
+    );
+}
+
+#[test]
+fn k4_light_is_right_where_a_table_ends_and_where_a_wall_meets_it() {
+    let bodies = object("matte", "quad = { center = [-0.2, 0, 0], u = [1, 0, 0], v = [0, 0, 1] }")
+        + &object("matte", "quad = { center = [-1.2, 0.5, 0], u = [0, 0.5, 0], v = [0, 0, 1] }")
+        + &object("matte", "quad = { center = [-0.2, -0.5, 1], u = [1, 0, 0], v = [0, 0.5, 0] }");
+    agree("table and wall", &bodies, WIDE);
+}
+
+#[test]
+fn k4_light_is_right_on_bodies_that_stand_on_a_floor_and_on_the_floor_around_them() {
+    let bodies = object("matte", "plane = { point = [0, 0, 0], normal = [0, 1, 0] }")
+        + &object("matte", "cube = { center = [-0.2, 0.3, -0.2], size = [0.6, 0.6, 0.6] }")
+        + &object("matte", "cube = { center = [-0.8, 0.05, 0.3], size = [0.2, 0.1, 0.3] }")
+        + &object("matte", "sphere = { center = [0.4, 0.3, 0.2], radius = 0.3 }");
+    // Shadows are blurred from block to block by the square of the radius.
+    agree("bodies", &bodies, MapPasses { radius: 0.75, ..WIDE });
+}
+
+#[test]
+fn k4_light_is_right_on_coins_smaller_than_the_kernel_and_on_laths_with_gaps() {
+    let coin = |x: f64, z: f64, radius: f64| {
+        object("matte", &format!("disc = {{ center = [{x}, 0.3, {z}], normal = [0, 1, 0], radius = {radius} }}"))
+    };
+    let lath = |i: i32| {
+        let x = -1.0 + 0.05 * f64::from(i);
+        object("matte", &format!("quad = {{ center = [{x}, 0, 0.4], u = [0.015, 0, 0], v = [0, 0, 0.4] }}"))
+    };
+    let coins: String = (0..4)
+        .flat_map(|row| (0..6).map(move |column| (row, column)))
+        .map(|(row, column)| {
+            coin(-0.8 + 0.3 * f64::from(column), -0.8 + 0.2 * f64::from(row), 0.03 * f64::from(1 + column % 3))
+        })
+        .collect();
+    agree("coins and laths", &(coins + &(0..36).map(lath).collect::<String>()), WIDE);
+}
+
+/// The mean of an image as it is planned.
+fn planned(text: &str) -> [f64; 3] {
+    let scene = scene(text);
+    let method = plan(&scene).method;
+    assert!(method.light_pass.as_ref().is_some_and(|pass| pass.map.is_some()), "nothing is gathered");
+    mean(&render(&World::new(&scene, method), &|_| ()).0)
+}
+
+fn mean(film: &Film) -> [f64; 3] {
+    let count = film.pixels.len() as f64;
+    [0, 1, 2].map(|band| film.pixels.iter().map(|pixel| f64::from(pixel.rgb[band])).sum::<f64>() / count)
+}
+
+/// A ball of glass above a floor of so many pieces, seen in a mirror above; `turned` turns every other piece over.
+fn pieces(count: u32, turned: bool) -> String {
+    let lath = |i: u32| {
+        let half = 1.6 / f64::from(count);
+        let x = -1.6 + f64::from(2 * i + 1) * half;
+        let along = if turned && i % 2 == 1 { -half } else { half };
+        object("floor", &format!("quad = {{ center = [{x:?}, 0, 0], u = [{along:?}, 0, 0], v = [0, 0, 1.6] }}"))
+    };
+    seen_by("position = [0, 2.8, 1.2]\nlook_at = [0, 4, 0.9]\nvertical_fov = 34", "")
+        + "[render]\nsamples = 64\n[material.floor]\ndiffuse = { reflectance = 0.6 }\n"
+        + "[material.glass]\ndielectric = { index = 1.5 }\n[material.mirror]\nmirror = { reflectance = 1 }\n"
+        + &object("mirror", "quad = { center = [0, 4, 0], u = [3, 0, 0], v = [0, 0, 3] }")
+        + &object("glass", "sphere = { center = [0, 1.2, -0.5], radius = 0.5 }")
+        + "[[light]]\npoint = { position = [0.8, 3.5, -0.5], intensity = 1 }\n"
+        + &(0..count).map(lath).collect::<String>()
+}
+
+#[test]
+fn k3_a_floor_laid_in_two_thousand_pieces_shows_the_caustic_of_one() {
+    let whole = planned(&pieces(1, false));
+    for (count, turned) in [(10, false), (10, true), (200, false), (2000, false), (2000, true)] {
+        let laid = planned(&pieces(count, turned));
+        let ratio = laid[1] / whole[1];
+        println!("{count} pieces: {ratio:.6}");
+        assert!((ratio - 1.0).abs() < 0.002, "a floor of {count} pieces shows {ratio} of the light");
+    }
+}
+
+#[test]
+fn k5_a_thin_table_that_is_lit_from_below_does_not_glow_above() {
+    let table = object("matte", "cube = { center = [-0.2, 0, 0], size = [2, 1e-4, 2] }");
+    let seen = |height: f64| {
+        let scene = scene(&by_mirror(&table, height));
+        let light_pass = Some(LightPass { photons: 32_768, lights: vec![0], map: Some(WIDE) });
+        let method = Method { samples: 4, transport: SPLITTING, light_pass, ..plan(&scene).method };
+        mean(&render(&World::new(&scene, method), &|_| ()).0)[1]
+    };
+    let (above, below) = (seen(3.0), seen(-3.0));
+    assert!(above > 0.0 && below == 0.0, "{above} lit from above, {below} from below");
+}
+
+#[test]
+fn what_is_gathered_is_the_same_on_any_number_of_threads_and_in_any_part_of_the_image() {
+    let whole = scene(&pieces(10, true));
+    let method = Method { samples: 8, ..plan(&whole).method };
+    let on = |threads: usize, crop: Option<Window>| {
+        let mut part = whole.clone();
+        part.film.crop = crop;
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads can be started");
+        pool.install(|| render(&World::new(&part, method.clone()), &|_| ()).0)
+    };
+    let (film, crop) = (on(1, None), Window { left: 5, top: 9, width: 11, height: 7 });
+    assert!(on(3, None) == film, "3 threads make another image");
+    for (i, pixel) in on(2, Some(crop)).pixels.iter().enumerate() {
+        let (x, y) = (crop.left as usize + i % 11, crop.top as usize + i / 11);
+        assert!(film.pixels[y * film.width as usize + x] == *pixel, "the pixel {x}, {y} is another");
+    }
+}
