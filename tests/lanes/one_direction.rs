@@ -75,7 +75,7 @@ fn d16_every_lane_of_every_glass_of_the_catalog_has_its_own_plate() {
                     together: 0.0,
                 };
                 let [Some(r), Some(t)] = met(&material, &enters) else { panic!("{} at {degrees}", glass.key) };
-                let leaves = Arrival { wo: -t.wi, ..enters.from_beyond() };
+                let leaves = Arrival { wo: -t.wi, ..enters.turned_around() };
                 let [Some(inner), Some(out)] = met(&material, &leaves) else { panic!("{} at {degrees}", glass.key) };
                 assert!((out.wi + wo).length() < 1e-12, "{} at {degrees} degrees goes on to {}", glass.key, out.wi);
                 assert!((t.eta_scale * out.eta_scale - 1.0).abs() < 1e-14);
