@@ -10,7 +10,7 @@ impl<const N: usize> Arrival<'_, N> {
     }
 
     /// The same surface as it is met from beyond.
-    pub fn from_beyond(self) -> Self {
+    pub fn turned_around(self) -> Self {
         let [here, beyond] = self.direction_indices;
         Self { incident: self.beyond, beyond: self.incident, direction_indices: [beyond, here], ..self }
     }

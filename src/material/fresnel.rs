@@ -85,7 +85,7 @@ pub fn shared_transmittance<const N: usize>(own: [&[f64; N]; 2], direction: [f64
     if (d2 - d1) * (d2 + d1) + along <= 0.0 {
         return crossing;
     }
-    for lane in 0..N {
+    for (lane, crosses) in crossing.iter_mut().enumerate() {
         let [n1, n2] = own.map(|side| side[lane]);
         let q1_squared = (n1 - d1) * (n1 + d1) + along;
         let q2_squared = q1_squared + (n2 - n1) * (n2 + n1);
@@ -94,7 +94,7 @@ pub fn shared_transmittance<const N: usize>(own: [&[f64; N]; 2], direction: [f64
         let (sum, turned) = (q1 + q2, k_squared + product);
         let amplitude = sum * turned;
         let t = 2.0 * product * (turned * turned + both * both) / (amplitude * amplitude);
-        crossing[lane] = if (q1_squared > 0.0) & (q2_squared > 0.0) { t } else { 0.0 };
+        *crosses = if (q1_squared > 0.0) & (q2_squared > 0.0) { t } else { 0.0 };
     }
     crossing
 }

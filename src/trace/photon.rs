@@ -197,7 +197,7 @@ impl<const N: usize> Tracer<'_, N> {
         let same = seen.direction.dot(*flat) > 0.0;
         let [side, normal] = shading::normals(point, seen.direction);
         let turned = Arrival { wo: seen.direction, normal, ..**arrival };
-        let viewed = if same { turned } else { turned.from_beyond() };
+        let viewed = if same { turned } else { turned.turned_around() };
         let material = world.scene.material_of(hit.object);
         let Some((bsdf_cos, _)) = shading::evaluate(material, &viewed, side, arrival.wo) else { return };
         let parted = path.parted || (!same && material.lets_through() && material.parts_lanes(&viewed));
