@@ -242,7 +242,9 @@ fn w7_where_light_has_too_many_ways_the_plan_leaves_them_to_chance_and_says_so()
                 "W7: {count} {kind}: {rays:.1} rays a sample, {}",
                 if random { "random" } else { "deterministic" }
             );
-            assert!(rays <= if random { 32.0 * f64::from(count) } else { 4096.0 }, "{count} {kind}: {rays} rays");
+            // Light that is not lost wanders: its surfaces grow as the square of their number.
+            let most = if random { 32.0 + 8.0 * f64::from(count * count) } else { 4096.0 };
+            assert!(rays <= most, "{count} {kind}: {rays} rays");
             assert_eq!(report.by_chance, 0, "{count} {kind}");
         }
         assert!(by_chance >= 3, "{kind}: all ways followed where they are too many");

@@ -63,8 +63,7 @@ impl Polarized {
 
 /// How much light there is in a film color: X + Y + Z.
 pub(super) fn amount(world: &World, rgb: [f64; 3]) -> f64 {
-    let to_xyz = world.scene.film.color_space.to_xyz();
-    (0..3).map(|channel| rgb[channel] * to_xyz.iter().map(|row| row[channel]).sum::<f64>()).sum::<f64>().abs()
+    (0..3).map(|channel| rgb[channel] * world.xyz_of_channel[channel]).sum::<f64>().abs()
 }
 
 /// Light that lights send straight to a surface at the end of a polarized path.

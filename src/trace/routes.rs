@@ -54,8 +54,9 @@ pub struct Route {
 pub const ROUTES_NM: [f64; 4] = [450.0, 520.0, 590.0, 650.0];
 /// Pixels along each side of the image.
 const SIDE: u32 = 24;
-/// Surfaces that are met for one pixel.
-const SURFACES: usize = 64;
+/// Surfaces that are met for one pixel, and for all pixels over the image or on objects.
+const SURFACES: usize = 256;
+const ALL_SURFACES: usize = 16_384;
 /// Ways that leave less than this share of the brightest one of a pixel are left.
 const FAINT: f32 = 1e-3;
 /// Diffuse surfaces of a way.
@@ -67,17 +68,26 @@ const LIGHTS: usize = 8;
 pub fn routes(world: &World) -> Vec<Vec<Route>> {
     let film = world.scene.film;
     let spread = |i: u32, size: u32| ((u64::from(2 * i + 1) * u64::from(size)) / u64::from(2 * SIDE)) as u32;
-    let all_over = (0..SIDE * SIDE).map(|place| [spread(place % SIDE, film.width), spread(place / SIDE, film.height)]);
+    // A stride that is coprime to the number of places visits them all, far ones first.
+    let places = (0..SIDE * SIDE).map(|i| (i * 229) % (SIDE * SIDE));
+    let all_over = places.map(|place| [spread(place % SIDE, film.width), spread(place / SIDE, film.height)]);
     let objects = pixels_of_objects(world, |material| material.has_single_directions());
     let of_pixel = |(number, [x, y]): (u32, [u32; 2])| {
         let ray = world.scene.camera.ray(DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5));
         let draw = Draw::fixed(ROUTES_NM.len());
         let sampler = Sampler::new(world.method.seed, [x, y], number);
         let mut walker = Walker { world, draw, sampler, pending: Vec::new(), found: Vec::new() };
-        walker.walk(ray);
-        walker.found
+        let met = walker.walk(ray);
+        (met, walker.found)
     };
-    (0..).zip(all_over.chain(objects)).map(of_pixel).collect()
+    let until_enough = |met: &mut usize, (more, found): (usize, Vec<Route>)| {
+        let before = *met;
+        *met += more;
+        (before < ALL_SURFACES).then_some(found)
+    };
+    let mut routes: Vec<Vec<Route>> = (0..).zip(all_over).map(of_pixel).scan(0, until_enough).collect();
+    routes.extend((SIDE * SIDE..).zip(objects).map(of_pixel).scan(0, until_enough));
+    routes
 }
 
 /// The end of a way that is followed back from the camera.
@@ -116,17 +126,18 @@ struct Walker<'a> {
 }
 
 impl Walker<'_> {
-    fn walk(&mut self, ray: Ray) {
+    /// Answers how many surfaces it met.
+    fn walk(&mut self, ray: Ray) -> usize {
         let media = Path::from_camera(self.world, &self.draw, ray).media;
         let (steps, key) = (Vec::new(), BranchKey::CAMERA);
         self.pending.push(Walk { ray, media, key, steps, weight: 1.0, left: Lanes::ONE, scattered: 0 });
         let mut best = 0.0_f32;
-        for _ in 0..SURFACES {
+        for met in 0..SURFACES {
             let order = |a: &usize, b: &usize| self.pending[*a].brightest().total_cmp(&self.pending[*b].brightest());
-            let Some(next) = (0..self.pending.len()).max_by(order) else { return };
+            let Some(next) = (0..self.pending.len()).max_by(order) else { return met };
             let walk = self.pending.swap_remove(next);
             if walk.brightest() <= FAINT * best {
-                return;
+                return met;
             }
             let (known, left) = (self.found.len(), walk.brightest());
             self.meet(walk);
@@ -134,6 +145,7 @@ impl Walker<'_> {
                 best = best.max(left);
             }
         }
+        SURFACES
     }
 
     fn record(&mut self, walk: &Walk, light: LightId) {

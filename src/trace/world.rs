@@ -17,6 +17,8 @@ use crate::spectrum::{Curve, Emission, Response, Table};
 pub struct World {
     pub(super) scene: Scene<Table>,
     pub(super) method: Method,
+    /// X + Y + Z of each film channel.
+    pub(super) xyz_of_channel: [f64; 3],
     /// What each light's lanes are worth to the sensor.
     pub(super) responses: Vec<Response>,
     /// Lights that next-event estimation aims at.
@@ -50,6 +52,8 @@ impl World {
     /// The same with nothing sent ahead: enough for camera samples.
     pub fn untaught(scene: &Scene<Curve>, method: Method) -> Self {
         let responses = scene.lights.iter().map(|light| method.basis.response(light.emission())).collect();
+        let to_xyz = scene.film.color_space.to_xyz();
+        let xyz_of_channel = [0, 1, 2].map(|channel| to_xyz.iter().map(|row| row[channel]).sum());
         let has_media = scene.materials.iter().any(|m| m.material.medium().is_some());
         let luminance = |&light: &LightId| {
             let of = &scene.lights[light];
@@ -70,6 +74,7 @@ impl World {
         let map_aims = pass.and_then(|pass| pass.map).and_then(|map| aims_of(map.photons));
         let light_media = Vec::new();
         let mut world = Self {
+            xyz_of_channel,
             responses,
             targets,
             choice,
