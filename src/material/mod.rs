@@ -129,8 +129,7 @@ pub struct Branch<const N: usize> {
     pub pdf: Option<f64>,
     /// Whether the light came from beyond the surface.
     pub crosses: bool,
-    /// The part of `share` that is no measure of what the way is worth: that converts radiance between media, (n_incident / n_beyond)^2,
-    /// or makes up for a density that the material does not have.
+    /// The part of `share` that only converts radiance between media, (n_incident / n_beyond)^2.
     pub eta_scale: f64,
     /// Degree of polarization that this way would give to unpolarized light, (s - p) / (s + p); 0 where none is modelled.
     pub polarization: f32,

@@ -5,7 +5,6 @@ use std::cell::Cell;
 use super::direct::{Gathering, add, weight_of_meeting};
 use super::media::{self, Boundary};
 use super::merge::Photons;
-use super::openings::scatter_by;
 use super::path::{Drawn, Leg, Path};
 use super::shading;
 use super::straight;
@@ -185,7 +184,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
         };
 
         // Gather light from the lights where light scatters widely.
-        let (mut u, mut drawn, mut leaving) = ([0.0; 4], None, None);
+        let (mut u, mut drawn) = ([0.0; 4], None);
         let parts = material.lets_through() && material.parts_lanes(&arrival);
         let (wide, diffuse) = (material.scatters_widely(), material.is_diffuse());
         if wide {
@@ -193,7 +192,6 @@ impl<'a, const N: usize> Tracer<'a, N> {
             u = if spread { sampler.four(path.key, SCATTER) } else { sampler.four_plain(path.key, SCATTER) };
             let aims_at_all = world.aims_at_all(path.weight(draw));
             let goes_on = !diffuse || path.diffuse_left > 0;
-            leaving = if diffuse { world.leaving(point.position) } else { None };
             let gathering = Gathering {
                 world,
                 material,
@@ -205,7 +203,6 @@ impl<'a, const N: usize> Tracer<'a, N> {
                 side: None,
                 inside: here,
                 goes_on,
-                leaving,
                 aims_at_all,
                 hider: &self.hider,
                 u,
@@ -232,10 +229,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
 
         // Send the path on.
         self.branches.clear();
-        match leaving {
-            None => shading::scatter(material, &arrival, normal, [u[2], u[3]], &mut self.branches),
-            Some(leaving) => scatter_by(leaving, material, &arrival, normal, [u[2], u[3]], &mut self.branches),
-        }
+        shading::scatter(material, &arrival, normal, [u[2], u[3]], &mut self.branches);
         if diffuse && path.diffuse_left == 0 {
             self.branches.retain(|branch| branch.pdf.is_none());
         }
