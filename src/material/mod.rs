@@ -106,8 +106,7 @@ pub struct Branch<const N: usize> {
     pub pdf: Option<f64>,
     /// Whether the light came from beyond the surface.
     pub crosses: bool,
-    /// The part of `share` that is no measure of what the way is worth: that converts radiance between media,
-    /// (n_incident / n_beyond)^2 of the ray's indices, or makes up for a density that the material does not have.
+    /// The part of `share` that only converts radiance between media, (n_incident / n_beyond)^2 of the ray's indices.
     pub eta_scale: f64,
     /// Largest degree |s - p| / (s + p), of any lane, to which unpolarized light that comes by this one direction leaves polarized;
     /// 0 where it does not, and of directions that were drawn: see [`Material::degree_of_scattered`].

@@ -2,7 +2,6 @@
 
 use std::cell::Cell;
 
-use super::openings::Leaving;
 use super::path::Drawn;
 use super::polarization::{Lit, Polarized};
 use super::straight;
@@ -30,8 +29,6 @@ pub(super) struct Gathering<'a, const N: usize> {
     pub(super) inside: Option<MaterialId>,
     /// Whether the path goes on from here and may meet a light by itself.
     pub(super) goes_on: bool,
-    /// How the path leaves a diffuse surface, where that was learned.
-    pub(super) leaving: Option<Leaving<'a>>,
     pub(super) aims_at_all: bool,
     /// The object that hid a light last.
     pub(super) hider: &'a Cell<Option<u32>>,
@@ -132,8 +129,7 @@ impl<const N: usize> Gathering<'_, N> {
                 None => view.factor / probability,
                 Some(pdf) => {
                     let pdf = pdf * probability;
-                    let by_path = || self.leaving.map_or(bsdf_pdf, |leaving| leaving.pdf(ray.direction, bsdf_pdf));
-                    let weight = if self.goes_on { power_heuristic(pdf, by_path()) } else { 1.0 };
+                    let weight = if self.goes_on { power_heuristic(pdf, bsdf_pdf) } else { 1.0 };
                     view.factor * weight / pdf
                 }
             };

@@ -1,10 +1,8 @@
-//! Where the sky is seen from inside, through windows, doors and gaps, and what the sun shines on: as directions that are learned
-//! for each place.
+//! Where the sky is seen from inside: through windows, doors and gaps, as directions that are learned for each place.
 
+use super::World;
 use super::directions::Directions;
-use super::{World, shading};
 use crate::light::{Environment, Light, LightId};
-use crate::material::{Arrival, Branch, Material};
 use crate::math::{Bounds, DVec3, Ray};
 use crate::shape::Sighting;
 use crate::spectrum::Table;
@@ -34,13 +32,11 @@ pub(super) struct Grid {
     pub(super) counts: [usize; 3],
 }
 
-/// What is known of the skies and their light around one place.
+/// What is known of the skies around one place.
 #[derive(Clone, Debug)]
 pub(super) struct SkyView {
     /// Where the sky is seen; none where aiming by it would not pay.
     sky: Option<Directions>,
-    /// Where surfaces are seen that the sun shines on, and how often a path leaves a diffuse surface by it.
-    sunlit: Option<(Directions, f64)>,
     /// How often each sky is chosen, of those that are, in the order of the world's choice.
     pub(super) skies: Vec<f64>,
 }
@@ -91,16 +87,14 @@ impl Grid {
 }
 
 impl SkyView {
-    /// Of the light that comes from each cell of directions, up to a factor: that of the sky, where it is worth aiming by, and that
-    /// of the sun by way of surfaces, with how often paths follow it.
-    pub(super) fn new(sky: Option<&[f64]>, sunlit: Option<(&[f64], f64)>, skies: Vec<f64>) -> Self {
-        let sunlit = sunlit.and_then(|(light, share)| Some((Directions::new(light)?, share)));
-        Self { sky: sky.and_then(Directions::new), sunlit, skies }
+    /// Of the light that comes from each cell of directions, up to a factor, where the sky is worth aiming by it.
+    pub(super) fn new(sky: Option<&[f64]>, skies: Vec<f64>) -> Self {
+        Self { sky: sky.and_then(Directions::new), skies }
     }
 
     /// Whether anything was learned that pays.
     pub(super) fn is_aimed(&self) -> bool {
-        self.sky.is_some() || self.sunlit.is_some()
+        self.sky.is_some()
     }
 }
 
@@ -126,62 +120,6 @@ impl Aimed<'_> {
     }
 }
 
-/// How paths leave a diffuse surface: some toward what the sun shines on, the others as the surface scatters.
-#[derive(Clone, Copy)]
-pub(super) struct Leaving<'a> {
-    directions: &'a Directions,
-    share: f64,
-}
-
-impl Leaving<'_> {
-    /// A direction toward what the sun shines on, or the random numbers for one by the surface.
-    pub(super) fn draw(self, [u, v]: [f64; 2]) -> Result<DVec3, [f64; 2]> {
-        if u < self.share {
-            Ok(self.directions.draw([u / self.share, v]))
-        } else {
-            Err([(u - self.share) / (1.0 - self.share), v])
-        }
-    }
-
-    /// The density of a direction, of which `by_surface` is that by the surface.
-    pub(super) fn pdf(self, direction: DVec3, by_surface: f64) -> f64 {
-        self.share * self.directions.density(direction) + (1.0 - self.share) * by_surface
-    }
-}
-
-/// `shading::scatter` of a diffuse material, whose directions are drawn by what was learned as well.
-///
-/// That a direction is drawn more often is no measure of what its path is worth.
-pub(super) fn scatter_by<const N: usize>(
-    leaving: Leaving,
-    material: &Material<Table>,
-    arrival: &Arrival<N>,
-    flat: DVec3,
-    u: [f64; 2],
-    branches: &mut Vec<Branch<N>>,
-) {
-    let drawn = leaving.draw(u);
-    shading::scatter(material, arrival, flat, drawn.err().unwrap_or(u), branches);
-    branches.retain_mut(|branch| {
-        let Some(pdf) = branch.pdf else { return true };
-        let (by_surface, light) = match drawn {
-            Err(_) => (pdf, branch.share * pdf as f32),
-            Ok(direction) => {
-                let above = direction.dot(flat) > 0.0;
-                let found = if above { shading::evaluate(material, arrival, flat, direction) } else { None };
-                let Some((light, by_surface)) = found.filter(|(_, pdf)| *pdf > 0.0) else { return false };
-                branch.wi = direction;
-                (by_surface, light)
-            }
-        };
-        let pdf = leaving.pdf(branch.wi, by_surface);
-        branch.share = light * (1.0 / pdf) as f32;
-        branch.eta_scale *= by_surface / pdf;
-        branch.pdf = Some(pdf);
-        pdf > 0.0
-    });
-}
-
 impl World {
     /// What is known of the sky around a point.
     #[inline]
@@ -194,12 +132,6 @@ impl World {
         let Light::Environment(sky) = &self.scene.lights[light] else { return None };
         let directions = self.sky_view(point)?.sky.as_ref()?;
         Some(Aimed { sky, directions })
-    }
-
-    /// How paths leave a diffuse surface at a point, if that was learned there.
-    pub(super) fn leaving(&self, point: DVec3) -> Option<Leaving<'_>> {
-        let (directions, share) = self.sky_view(point)?.sunlit.as_ref()?;
-        Some(Leaving { directions, share: *share })
     }
 }
 

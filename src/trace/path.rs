@@ -11,8 +11,7 @@ use crate::spectrum::{Draw, Throughput};
 pub(super) struct Path<const N: usize> {
     pub(super) ray: Ray,
     pub(super) throughput: Throughput<N>,
-    /// What of the throughput is no measure of importance: the factor of radiance between the medium at the path's end and the
-    /// camera's, and how much more rarely its directions were drawn than the surfaces scatter.
+    /// The factor of radiance between the medium at the path's end and the camera's, which is no measure of importance.
     pub(super) eta_scale: f64,
     /// The bodies the ray is inside of.
     pub(super) media: Media,

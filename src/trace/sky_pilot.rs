@@ -25,9 +25,8 @@ const SEED: u64 = 0x736b_7976;
 const SAMPLES_FOR_A_RAY: u64 = 8;
 const MOST_RAYS: u64 = 1 << 21;
 const FEWEST_RAYS: u64 = 1 << 14;
-/// Part of them that finds out whether the sky is seen at all, and of how many it is enough to see that it is.
+/// Part of them that finds out from which places some of the sky is seen, and not most of it.
 const FIRST: u64 = 16;
-const ENOUGH: u64 = 1024;
 /// Camera samples along each side of the image that look for places, and places that are enough.
 const SIDE: u32 = 64;
 const MANY_PLACES: usize = 1 << 15;
@@ -41,12 +40,6 @@ const OPEN: f64 = 0.5;
 const BY_ARRIVING: f64 = 0.8;
 /// Directions to a sun from each place.
 const EACH: usize = 4;
-/// The reflectance that is taken for that of what the sun shines on.
-const GRAY: f64 = 0.5;
-/// How many of the paths leave diffuse surfaces toward what the sun shines on, at most; fewer where its light is little beside
-/// what comes from all around, which is taken for a share of its mean over all places.
-const FOLLOWED: f64 = 0.5;
-const AMBIENT: f64 = 0.25;
 
 /// A place that scatters widely, with its unit normal on the lit side.
 type Place = (SurfacePoint, DVec3);
@@ -81,8 +74,6 @@ struct Found {
     light: Vec<f64>,
     /// The same sum if nothing hid the sky.
     all: f64,
-    /// Irradiance by what the sun shines on in each cell of directions.
-    sunlit: Vec<f64>,
     /// Irradiance by each sky that may be chosen.
     skies: Vec<f64>,
 }
@@ -90,9 +81,9 @@ struct Found {
 impl InLanes for Learning<'_> {
     type Output = Option<Openings>;
     fn run<const N: usize>(self) -> Option<Openings> {
-        let places = self.places::<N>();
         let draw = self.world.method.basis.draw(0.5);
-        if places.is_empty() || !self.is_seen_through_openings::<N>(&places, &draw) {
+        let places = self.inside::<N>(self.places::<N>(), &draw);
+        if places.is_empty() {
             return None;
         }
         let bounds = Bounds::around(places.iter().map(|(point, _)| point.position));
@@ -104,13 +95,11 @@ impl InLanes for Learning<'_> {
             (count > 0).then(|| self.look::<N>(number as u32, &chosen, &radiance, &draw))
         };
         let found: Vec<Option<Found>> = cells.par_iter().enumerate().map(seen).collect();
-        let known = found.iter().flatten();
-        let usual = known.clone().flat_map(|cell| &cell.sunlit).sum::<f64>() / known.count().max(1) as f64;
         let mut openings = Openings { grid, cells: vec![0; cells.len()], views: Vec::new() };
         for (number, cell) in found.iter().enumerate() {
             if let Some(cell) = cell {
                 let neighbors = grid.neighbors(number).filter_map(|other| found[other].as_ref());
-                openings.views.push(self.view(cell, neighbors, AMBIENT * usual));
+                openings.views.push(self.view(cell, neighbors));
                 openings.cells[number] = openings.views.len() as u32;
             }
         }
@@ -137,19 +126,25 @@ impl Learning<'_> {
         tracer.lit.unwrap_or_default()
     }
 
-    /// Whether some of the sky is seen, but not most of it.
-    fn is_seen_through_openings<const N: usize>(&self, places: &[Place], draw: &Draw<N>) -> bool {
-        let mut seen = 0.0;
-        for number in 0..self.rays / FIRST {
-            let u = self.numbers([u32::MAX, 0], number as u32);
-            let (point, normal) = &places[((u[2] * places.len() as f64) as usize).min(places.len() - 1)];
-            let direction = unit(Frame::about(*normal).to_world(cosine_hemisphere([u[0], u[1]])));
-            seen += self.arriving(point, direction, draw);
-            if number + 1 == ENOUGH && seen > OPEN * ENOUGH as f64 {
-                return false;
-            }
-        }
-        seen > 0.0
+    /// Those places that do not see most of the sky; none if that is most of them, or if nothing of the sky is seen from any.
+    fn inside<const N: usize>(&self, places: Vec<Place>, draw: &Draw<N>) -> Vec<Place> {
+        let (count, mut seen) = (places.len(), 0.0);
+        let each = (self.rays / FIRST / count.max(1) as u64).clamp(4, 64) as u32;
+        let numbered = (0..).zip(places);
+        let inside = |(number, place): (u32, Place)| {
+            let arriving = |i: u32| {
+                let u = self.numbers([number, 0], i);
+                let direction = unit(Frame::about(place.1).to_world(cosine_hemisphere([u[0], u[1]])));
+                self.arriving(&place.0, direction, draw)
+            };
+            let sum: f64 = (0..each).map(arriving).sum();
+            (sum <= OPEN * f64::from(each)).then(|| {
+                seen += sum;
+                place
+            })
+        };
+        let found: Vec<Place> = numbered.filter_map(inside).collect();
+        if seen == 0.0 || 2 * found.len() < count { Vec::new() } else { found }
     }
 
     /// A grid and the places in each of its cells; none if the rays are too few for so many.
@@ -179,8 +174,7 @@ impl Learning<'_> {
     /// What the places of a cell see of the skies: each direction from one of those that it can light.
     fn look<const N: usize>(&self, cell: u32, places: &[Place], radiance: &[f64], draw: &Draw<N>) -> Found {
         let world = self.world;
-        let mut found =
-            Found { light: vec![0.0; DIRECTIONS], all: 0.0, sunlit: vec![0.0; DIRECTIONS], skies: Vec::new() };
+        let mut found = Found { light: vec![0.0; DIRECTIONS], all: 0.0, skies: Vec::new() };
         for number in 0..DIRECTIONS {
             let u = self.numbers([cell, 1], number as u32);
             let toward = direction(number, [u[0], u[1]]);
@@ -193,16 +187,7 @@ impl Learning<'_> {
                 let angle = cos * (4.0 * PI / DIRECTIONS as f64);
                 let whole = radiance[number] * angle;
                 found.all += whole;
-                match self.opaque(point, toward) {
-                    None => found.light[number] = whole * self.transmitted(point, toward, f64::INFINITY, draw),
-                    Some((distance, lit)) => {
-                        let shining = self.of_suns(([cell, 1], DIRECTIONS + number), &lit, draw);
-                        if shining > 0.0 {
-                            found.sunlit[number] =
-                                GRAY / PI * angle * shining * self.transmitted(point, toward, distance, draw);
-                        }
-                    }
-                }
+                found.light[number] = whole * self.arriving(point, toward, draw);
             }
         }
         for (id, _) in world.choice.skies() {
@@ -230,30 +215,11 @@ impl Learning<'_> {
         cos * self.arriving(point, direction, draw) * brightness(draw, sun.toward(draw, direction, [0.0; 2]))
     }
 
-    /// The irradiance by all suns at a place.
-    fn of_suns<const N: usize>(&self, number: ([u32; 2], usize), place: &Place, draw: &Draw<N>) -> f64 {
-        let skies = self.world.choice.skies().iter();
-        let suns = skies.filter(|(id, _)| matches!(self.world.scene.lights[*id], Light::Sun(_)));
-        suns.map(|(id, _)| self.of_sun(*id, number, place, draw)).sum()
-    }
-
-    /// The nearest surface in a direction that lets nothing straight on: its distance, and the place with its normal on this side.
-    fn opaque(&self, point: &SurfacePoint, toward: DVec3) -> Option<(f64, Place)> {
-        let (scene, ray) = (&self.world.scene, point.leave(toward));
-        let hit = scene.nearest(&ray, f64::INFINITY, |object| !self.world.is_see_through(object))?;
-        let point = scene.objects[hit.object as usize].point(&ray, &hit.crossing);
-        let normal = if point.normal.dot(toward) < 0.0 { point.normal } else { -point.normal };
-        Some((hit.crossing.t, (point, normal)))
-    }
-
-    /// The view from a cell: what was found there and around. `usual` is what of such light comes from all around.
-    fn view<'a>(&self, found: &Found, neighbors: impl Iterator<Item = &'a Found>, usual: f64) -> SkyView {
-        let [mut light, mut sunlit] = [found.light.clone(), found.sunlit.clone()];
-        let add =
-            |sum: &mut [f64], more: &[f64]| sum.iter_mut().zip(more).for_each(|(sum, more)| *sum += BESIDE * more);
+    /// The view from a cell: what was found there and around.
+    fn view<'a>(&self, found: &Found, neighbors: impl Iterator<Item = &'a Found>) -> SkyView {
+        let mut light = found.light.clone();
         for neighbor in neighbors {
-            add(&mut light, &neighbor.light);
-            add(&mut sunlit, &neighbor.sunlit);
+            light.iter_mut().zip(&neighbor.light).for_each(|(sum, more)| *sum += BESIDE * more);
         }
         let all: f64 = found.skies.iter().sum();
         let chosen = |(&arriving, &(_, sent)): (&f64, &(LightId, f64))| {
@@ -261,10 +227,7 @@ impl Learning<'_> {
         };
         let skies = found.skies.iter().zip(self.world.choice.skies()).map(chosen).collect();
         let sky = (found.light.iter().sum::<f64>() < OPEN * found.all).then(|| spread(&light));
-        let shining: f64 = found.sunlit.iter().sum();
-        let share = if shining > 0.0 { FOLLOWED * shining / (shining + usual) } else { 0.0 };
-        let sunlit = (share > 0.0).then(|| spread(&sunlit));
-        SkyView::new(sky.as_deref(), sunlit.as_deref().map(|sunlit| (sunlit, share)), skies)
+        SkyView::new(sky.as_deref(), skies)
     }
 
     /// The share of the light from a direction of the sky that arrives at a place.

@@ -6,7 +6,6 @@ use super::direct::{Gathering, add, weight_of_meeting};
 use super::follow::MOST_SURFACES;
 use super::media::{self, Boundary};
 use super::merge::Photons;
-use super::openings::scatter_by;
 use super::path::{Drawn, Leg, Path};
 use super::polarization::{Lit, amount};
 use super::shading;
@@ -211,7 +210,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
         };
 
         // Gather light from the lights where light scatters widely.
-        let (mut u, mut drawn, mut leaving) = ([0.0; 4], None, None);
+        let (mut u, mut drawn) = ([0.0; 4], None);
         let parts = material.lets_through() && material.parts_lanes(&arrival);
         let (wide, diffuse) = (material.scatters_widely(), material.is_diffuse());
         if wide {
@@ -222,7 +221,6 @@ impl<'a, const N: usize> Tracer<'a, N> {
             let moved = Cell::new(0.0);
             let may_be = path.polarized.is_any() || world.has_see_through();
             let lit = may_be.then_some(Lit { polarized: path.polarized, moved: &moved });
-            leaving = if diffuse { world.leaving(point.position) } else { None };
             let gathering = Gathering {
                 world,
                 material,
@@ -234,7 +232,6 @@ impl<'a, const N: usize> Tracer<'a, N> {
                 side: None,
                 inside: here,
                 goes_on,
-                leaving,
                 aims_at_all,
                 hider: &self.hider,
                 lit,
@@ -264,10 +261,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
 
         // Send the path on.
         self.branches.clear();
-        match leaving {
-            None => shading::scatter(material, &arrival, normal, [u[2], u[3]], &mut self.branches),
-            Some(leaving) => scatter_by(leaving, material, &arrival, normal, [u[2], u[3]], &mut self.branches),
-        }
+        shading::scatter(material, &arrival, normal, [u[2], u[3]], &mut self.branches);
         if diffuse && path.diffuse_left == 0 {
             self.branches.retain(|branch| branch.pdf.is_none());
         }
