@@ -25,10 +25,16 @@ struct Kind<'a, const N: usize> {
     sides: Sides<'a>,
     present: Lanes<N>,
     count: f64,
-    /// What light of these lanes does in the direction that was asked for last.
-    flow: Flow,
+    /// What light of these lanes does in the direction that was asked for last: by one facet, and by the lobes.
+    flow: [Flow; 2],
     /// How many of them count beyond the surface.
     crossing: f64,
+}
+
+impl<const N: usize> Kind<'_, N> {
+    fn value(&self, factors: [f64; 2]) -> f32 {
+        (self.flow[0].value * factors[0] + self.flow[1].value * factors[1]) as f32
+    }
 }
 
 impl<'a, 'b, const N: usize> Meeting<'a, 'b, N> {
@@ -49,7 +55,7 @@ impl<'a, 'b, const N: usize> Meeting<'a, 'b, N> {
                     present: Lanes::ZERO,
                     count: 0.0,
                     crossing: 0.0,
-                    flow: Flow::default(),
+                    flow: Default::default(),
                 });
                 kinds.len() - 1
             });
@@ -69,34 +75,34 @@ impl<'a, 'b, const N: usize> Meeting<'a, 'b, N> {
 
     /// Asks every kind of lanes about a direction above the surface, for the mean over the lanes. `drawn` is the kind that
     /// drew it, and the facet.
-    fn reflect(&mut self, wi: DVec3, drawn: Option<(usize, Facet)>) -> Flow {
+    fn reflect(&mut self, wi: DVec3, drawn: Option<(usize, Facet)>) -> [Flow; 2] {
         let wo = self.wo;
         let asked = self.kinds.iter_mut().enumerate().map(|(number, kind)| {
-            kind.flow = kind.sides.reflected(wo, wi, facet_of(number, drawn));
+            kind.flow = kind.sides.reflected_parts(wo, wi, facet_of(number, drawn));
             (kind.count, kind.flow)
         });
         mean(asked)
     }
 
-    /// The same of a direction beyond it, without the change of radiance between media.
-    fn cross(&mut self, wi: DVec3, drawn: Option<(usize, Facet)>) -> Flow {
+    /// The same of a direction beyond it.
+    fn cross(&mut self, wi: DVec3, drawn: Option<(usize, Facet)>) -> [Flow; 2] {
         let wo = self.wo;
         let crossing = self.kinds.iter_mut().enumerate().filter(|(_, kind)| kind.crossing > 0.0);
         mean(crossing.map(|(number, kind)| {
-            kind.flow = kind.sides.crossed(wo, wi, facet_of(number, drawn));
-            (kind.crossing, Flow { value: kind.flow.value / square(kind.indices), ..kind.flow })
+            kind.flow = kind.sides.crossed_parts(wo, wi, facet_of(number, drawn));
+            (kind.crossing, kind.flow)
         }))
     }
 
-    /// What the lanes do that were asked last, the BSDF times the cosine, times a factor.
-    fn reflected(&self, factor: f64) -> Lanes<N> {
-        self.kinds.iter().fold(Lanes::ZERO, |sum, kind| sum + kind.present * (kind.flow.value * factor) as f32)
+    /// What the lanes do that were asked last, the BSDF times the cosine: times a factor for each part of it.
+    fn reflected(&self, factors: [f64; 2]) -> Lanes<N> {
+        self.kinds.iter().fold(Lanes::ZERO, |sum, kind| sum + kind.present * kind.value(factors))
     }
 
     /// The same beyond the surface.
-    fn crossed(&self, factor: f64) -> Lanes<N> {
+    fn crossed(&self, factors: [f64; 2]) -> Lanes<N> {
         let crossing = self.kinds.iter().filter(|kind| kind.crossing > 0.0);
-        crossing.fold(Lanes::ZERO, |sum, kind| sum + self.across(kind) * (kind.flow.value * factor) as f32)
+        crossing.fold(Lanes::ZERO, |sum, kind| sum + self.across(kind) * kind.value(factors))
     }
 
     /// The direction in the world; none where rounding has put it on the wrong side.
@@ -111,14 +117,20 @@ fn facet_of(number: usize, drawn: Option<(usize, Facet)>) -> Option<Facet> {
     drawn.filter(|drawn| drawn.0 == number).map(|drawn| drawn.1)
 }
 
-/// The mean of what numbers of lanes do.
-fn mean(flows: impl Iterator<Item = (f64, Flow)>) -> Flow {
-    let (mut sum, mut lanes) = (Flow::default(), 0.0);
-    for (count, flow) in flows {
-        sum = Flow { value: sum.value + count * flow.value, pdf: sum.pdf + count * flow.pdf };
+/// The mean of what numbers of lanes do, each part by itself.
+fn mean(flows: impl Iterator<Item = (f64, [Flow; 2])>) -> [Flow; 2] {
+    let (mut sum, mut lanes) = ([Flow::default(); 2], 0.0);
+    for (count, flows) in flows {
+        sum = [0, 1].map(|i| sum[i] + Flow { value: count * flows[i].value, pdf: count * flows[i].pdf });
         lanes += count;
     }
-    if lanes > 0.0 { Flow { value: sum.value / lanes, pdf: sum.pdf / lanes } } else { sum }
+    if lanes == 0.0 { sum } else { sum.map(|sum| Flow { value: sum.value / lanes, pdf: sum.pdf / lanes }) }
+}
+
+/// One over the density of the part that drew a direction, which all lanes share.
+fn over_density(mean: [Flow; 2], facet: Option<Facet>) -> [f64; 2] {
+    let over = |flow: Flow| if flow.pdf > 0.0 { 1.0 / flow.pdf } else { 0.0 };
+    if facet.is_some() { [over(mean[0]), 0.0] } else { [0.0, over(mean[1])] }
 }
 
 /// The change of radiance between two media.
@@ -156,9 +168,9 @@ impl Dielectric<Table> {
 
     /// One branch by reflection, and one by refraction: where lanes part, one for each kind of lanes.
     ///
-    /// Lanes that are together share a direction drawn for one of them, chosen evenly; each takes of its share what light of
-    /// this lane does there beside the mean of all lanes (the balance heuristic, Veach & Guibas 1995; Wilkie et al. 2014). So the
-    /// mean over the lanes of a clear body keeps all its light at each surface. Each branch has a density of its own, whose
+    /// Lanes that are together share a direction drawn for one of them, chosen evenly, and each is divided by the mean of
+    /// all their densities (the balance heuristic, Veach & Guibas 1995; Wilkie et al. 2014), of facets and of lobes by
+    /// themselves: lanes that do nearly the same keep their shares, which sum to 1. Each branch has a density of its own, whose
     /// integral is what it is drawn as often as. Next-event estimation weighs a direction by the same function,
     /// [`Dielectric::evaluate_rough`]: the two weights sum to 1 in every direction, however many branches the tracer
     /// follows, as one that is chosen with a probability is divided by it.
@@ -199,22 +211,28 @@ impl Dielectric<Table> {
             let (Some(Way { wi, share, facet }), true) = (way, kind.crossing > 0.0) else { continue };
             let Some(world) = meeting.to_world(wi) else { continue };
             let mean = meeting.cross(wi, facet.map(|facet| (number, facet)));
-            let share = if meeting.parts {
+            let share = if meeting.parts || meeting.kinds.len() == 1 {
                 meeting.across(&meeting.kinds[number]) * (share * square(indices)) as f32
             } else {
-                meeting.crossed(share / mean.value)
+                meeting.crossed(over_density(mean, facet))
             };
-            if mean.value > 0.0 && mean.pdf > 0.0 && !(share * tint).is_zero() {
-                branches.push(branch(world, share * tint, mean.pdf, true, square(indices)));
+            let pdf = mean[0].pdf + mean[1].pdf;
+            if pdf > 0.0 && !(share * tint).is_zero() {
+                branches.push(branch(world, share * tint, pdf, true, square(indices)));
             }
         }
         if let Some(Way { wi, share, facet }) = reflected
             && let Some(world) = meeting.to_world(wi)
         {
             let mean = meeting.reflect(wi, facet.map(|facet| (chosen, facet)));
-            let share = meeting.reflected(share / mean.value) * reflectance;
-            if mean.value > 0.0 && mean.pdf > 0.0 && !share.is_zero() {
-                branches.push(branch(world, share, mean.pdf, false, 1.0));
+            let share = reflectance
+                * match &meeting.kinds[..] {
+                    [kind] => kind.present * share as f32,
+                    _ => meeting.reflected(over_density(mean, facet)),
+                };
+            let pdf = mean[0].pdf + mean[1].pdf;
+            if pdf > 0.0 && !share.is_zero() {
+                branches.push(branch(world, share, pdf, false, 1.0));
             }
         }
     }
@@ -241,10 +259,12 @@ impl Dielectric<Table> {
         let mut meeting = Meeting::new(interface, arrival);
         let local = meeting.frame.to_local(wi);
         if local.z > 0.0 {
-            let pdf = meeting.reflect(local, None).pdf;
-            return (pdf > 0.0).then(|| (meeting.reflected(1.0) * arrival.read(&self.reflectance), pdf));
+            let [once, again] = meeting.reflect(local, None);
+            let pdf = once.pdf + again.pdf;
+            return (pdf > 0.0).then(|| (meeting.reflected([1.0; 2]) * arrival.read(&self.reflectance), pdf));
         }
-        let pdf = if local.z < 0.0 { meeting.cross(local, None).pdf } else { 0.0 };
-        (pdf > 0.0).then(|| (meeting.crossed(1.0) * arrival.read(&self.transmittance), pdf))
+        let [once, again] = if local.z < 0.0 { meeting.cross(local, None) } else { Default::default() };
+        let pdf = once.pdf + again.pdf;
+        (pdf > 0.0).then(|| (meeting.crossed([1.0; 2]) * arrival.read(&self.transmittance), pdf))
     }
 }
