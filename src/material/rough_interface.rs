@@ -4,7 +4,7 @@ use std::sync::OnceLock;
 use super::by_cosine::ByCosine;
 use super::facets::later_digits;
 use super::fresnel::diffuse_transmittance;
-use super::{Facets, Interface, reflect};
+use super::{Facet, Facets, Flow};
 use crate::math::DVec3;
 
 /// A rough boundary between two clear media: what its facets reflect and refract once, and lobes that give back what they
@@ -166,56 +166,6 @@ pub struct Sides<'a> {
     pub straight: f64,
 }
 
-/// The BSDF times cosine between two directions, and the density with which [`Sides::draw`] draws one for the other.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Flow {
-    /// BSDF times cosine.
-    pub value: f64,
-    /// Density per steradian.
-    pub pdf: f64,
-    /// What facets would add to `value` that reflect, or let through, all light.
-    pub facet: f64,
-    /// Cosine of the angle at which light meets them.
-    pub cos: f64,
-}
-
-/// What a visible facet does with light.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Facet {
-    h: DVec3,
-    /// Where it reflects and where it refracts light.
-    ways: [DVec3; 2],
-    /// The shares of the light that leave by these.
-    once: [f64; 2],
-    /// The same if it reflected, or let through, all light.
-    all: [f64; 2],
-    /// The share that meets a second facet.
-    again: f64,
-    /// Cosines of the angles at which light meets it and goes on beyond it.
-    cos: [f64; 2],
-}
-
-impl Facet {
-    /// The facet of normal `h` between two indices, seen from `wo`. `known` is one of the two ways, if it is known already.
-    fn new(facets: &Facets, [n1, n2]: [f64; 2], straight: f64, [wo, h]: [DVec3; 2], known: Option<DVec3>) -> Self {
-        let interface = Interface::new(n1, n2, wo.dot(h));
-        let (reflected, crossing) = (interface.reflectance, interface.transmittance);
-        let above = known.filter(|wi| wi.z > 0.0).unwrap_or_else(|| reflect(wo, h));
-        let beyond = known.filter(|wi| wi.z < 0.0).unwrap_or_else(|| interface.refract(wo, h));
-        let [left, blocked] = facets.left_and_blocked(wo, above);
-        let [passed, lost] =
-            if crossing > 0.0 && beyond.z < 0.0 { facets.passed(wo, beyond, straight) } else { [0.0, 1.0] };
-        Self {
-            h,
-            ways: [above, beyond],
-            once: [reflected * left, crossing * passed],
-            all: [left, passed],
-            again: reflected * blocked + crossing * lost,
-            cos: [wo.dot(h), interface.cos_beyond],
-        }
-    }
-}
-
 /// A direction drawn for the viewer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Way {
@@ -258,39 +208,43 @@ impl Sides<'_> {
 
     /// What is reflected from `wi`, above the surface, to `wo`. The facet is found where it is not given.
     pub fn reflected(&self, wo: DVec3, wi: DVec3, facet: Option<Facet>) -> Flow {
-        let again = self.near.blocked(wo.z);
-        let [blocked, lobe] = self.near.blocked_and_density(wi.z);
-        let lobes = (1.0 - self.crossing[0]) * again * blocked / self.near.mean_blocked() * wi.z / PI;
-        let facet = facet.or_else(|| Some(self.facet([wo, (wo + wi).try_normalize()?], Some(wi))));
-        let Some(facet) = facet else { return Flow { value: lobes, pdf: again * lobe, ..Flow::default() } };
-        let pdf = self.facets.pdf(wo, facet.h);
-        Flow {
-            value: pdf * facet.once[0] + lobes,
-            pdf: pdf * (facet.once[0] + facet.once[1]) + again * lobe,
-            facet: pdf * facet.all[0],
-            cos: facet.cos[0],
-        }
+        let [once, again] = self.reflected_parts(wo, wi, facet);
+        once + again
     }
 
     /// What crosses from `wi`, beyond the surface, to `wo`: radiance, which changes by (n1 / n2)^2. The facet is found where
     /// it is not given.
     pub fn crossed(&self, wo: DVec3, wi: DVec3, facet: Option<Facet>) -> Flow {
+        let [once, again] = self.crossed_parts(wo, wi, facet);
+        once + again
+    }
+
+    /// What is reflected by one facet, and by the lobe.
+    pub(super) fn reflected_parts(&self, wo: DVec3, wi: DVec3, facet: Option<Facet>) -> [Flow; 2] {
+        let again = self.near.blocked(wo.z);
+        let [blocked, lobe] = self.near.blocked_and_density(wi.z);
+        let lobes = (1.0 - self.crossing[0]) * again * blocked / self.near.mean_blocked() * wi.z / PI;
+        let facet = facet.or_else(|| Some(self.facet([wo, (wo + wi).try_normalize()?], Some(wi))));
+        let once = facet.map_or(Flow::default(), |facet| facet.flow(0, self.facets.pdf(wo, facet.h)));
+        [once, Flow { value: lobes, pdf: again * lobe, ..Flow::default() }]
+    }
+
+    /// What crosses by one facet, and by the lobe.
+    pub(super) fn crossed_parts(&self, wo: DVec3, wi: DVec3, facet: Option<Facet>) -> [Flow; 2] {
         let again = self.near.blocked(wo.z);
         let [blocked, lobe] = self.far.blocked_and_density(-wi.z);
         let [n1, n2] = self.indices;
+        let square = (n1 / n2) * (n1 / n2);
         let lobes = self.crossing[0] * again * blocked / self.far.mean_blocked() * -wi.z / PI;
         let facet = facet.or_else(|| {
             let h = ((wo * n1 + wi * n2) * (n1 - n2).signum()).try_normalize()?;
             let met = h.z > 0.0 && wo.dot(h) > 0.0 && wi.dot(h) < 0.0;
             met.then(|| self.facet([wo, h], Some(wi)))
         });
-        let (mut once, mut pdf, mut all, mut cos) = (0.0, 0.0, 0.0, 0.0);
-        if let Some(facet) = facet.filter(|facet| facet.cos[1] > 0.0) {
-            let density = self.facets.refraction_pdf(wo, facet.h, self.indices, facet.cos);
-            (once, pdf) = (density * facet.once[1], density * (facet.once[0] + facet.once[1]));
-            (all, cos) = (density * facet.all[1], facet.cos[0]);
-        }
-        let square = (n1 / n2) * (n1 / n2);
-        Flow { value: (once + lobes) * square, pdf: pdf + again * lobe, facet: all * square, cos }
+        let once = facet.filter(|facet| facet.cos[1] > 0.0).map_or(Flow::default(), |facet| {
+            let flow = facet.flow(1, self.facets.refraction_pdf(wo, facet.h, self.indices, facet.cos));
+            Flow { value: flow.value * square, facet: flow.facet * square, ..flow }
+        });
+        [once, Flow { value: lobes * square, pdf: again * lobe, ..Flow::default() }]
     }
 }

@@ -129,12 +129,12 @@ fn very_dense_rough_glass_neither_gains_nor_loses_seen_from_outside_and_from_ins
         // A few hundred factors in 32 bits.
         let limit = standard_errors(cases.len()) * error + 256.0 * f64::from(f32::EPSILON);
         assert!((value - 1.0).abs() <= limit && error < 0.03, "{what}: {mean:?}");
-        assert!(error < 1e-5 || carried >= 10.0, "{what}: {carried} pixels carry the noise");
+        assert!(error < 1e-5 || carried >= 4.0, "{what}: {carried} pixels carry the noise");
     }
 }
 
 /// How many pixels carry the noise, (sum d^2)^2 / sum d^4 for their deviations d: a third of them if it is normal, and few
-/// where a tail is so long that the spread of the pixels does not tell their error.
+/// where a tail is so long that the spread of the pixels does not tell their error: with fewer than four, that is off by half.
 fn carried_by(film: &Film) -> f64 {
     let green = || film.pixels.iter().map(|pixel| f64::from(pixel.rgb[1]));
     let mean = green().sum::<f64>() / film.pixels.len() as f64;

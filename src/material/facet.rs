@@ -1,0 +1,74 @@
+//! One facet of a rough boundary.
+
+use super::{Facets, Interface, reflect};
+use crate::math::DVec3;
+
+/// The BSDF times cosine between two directions, and the density with which [`Sides::draw`](super::Sides::draw) draws one for the other.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Flow {
+    /// BSDF times cosine.
+    pub value: f64,
+    /// Density per steradian.
+    pub pdf: f64,
+    /// What facets would add to `value` that reflect, or let through, all light.
+    pub facet: f64,
+    /// Cosine of the angle at which light meets them.
+    pub cos: f64,
+}
+
+impl std::ops::Add for Flow {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self { value: self.value + other.value, pdf: self.pdf + other.pdf, ..self }
+    }
+}
+
+/// What a visible facet does with light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Facet {
+    pub(super) h: DVec3,
+    /// Where it reflects and where it refracts light.
+    pub(super) ways: [DVec3; 2],
+    /// The shares of the light that leave by these.
+    pub(super) once: [f64; 2],
+    /// The same if it reflected, or let through, all light.
+    all: [f64; 2],
+    /// The share that meets a second facet.
+    pub(super) again: f64,
+    /// Cosines of the angles at which light meets it and goes on beyond it.
+    pub(super) cos: [f64; 2],
+}
+
+impl Facet {
+    /// The facet of normal `h` between two indices, seen from `wo`. `known` is one of the two ways, if it is known already.
+    pub(super) fn new(
+        facets: &Facets,
+        [n1, n2]: [f64; 2],
+        straight: f64,
+        [wo, h]: [DVec3; 2],
+        known: Option<DVec3>,
+    ) -> Self {
+        let interface = Interface::new(n1, n2, wo.dot(h));
+        let (reflected, crossing) = (interface.reflectance, interface.transmittance);
+        let above = known.filter(|wi| wi.z > 0.0).unwrap_or_else(|| reflect(wo, h));
+        let beyond = known.filter(|wi| wi.z < 0.0).unwrap_or_else(|| interface.refract(wo, h));
+        let [left, blocked] = facets.left_and_blocked(wo, above);
+        let [passed, lost] =
+            if crossing > 0.0 && beyond.z < 0.0 { facets.passed(wo, beyond, straight) } else { [0.0, 1.0] };
+        Self {
+            h,
+            ways: [above, beyond],
+            once: [reflected * left, crossing * passed],
+            all: [left, passed],
+            again: reflected * blocked + crossing * lost,
+            cos: [wo.dot(h), interface.cos_beyond],
+        }
+    }
+
+    /// What it sends one of its two ways, where facets that do so are drawn with a density.
+    pub(super) fn flow(&self, side: usize, pdf: f64) -> Flow {
+        let (value, all) = (pdf * self.once[side], pdf * self.all[side]);
+        Flow { value, pdf: pdf * (self.once[0] + self.once[1]), facet: all, cos: self.cos[0] }
+    }
+}
