@@ -83,7 +83,7 @@ pub(super) fn light_pass(scene: &Scene<Curve>, method: &Method) -> (Option<Light
         LightPass { photons, lights, map: None }
     };
     let asked = pass(1.0, small.iter().map(|light| light.0).collect());
-    let world = World::with_photons(scene, Method { light_pass: Some(asked), ..method.clone() });
+    let world = World::new(scene, Method { light_pass: Some(asked), ..method.clone() });
     let share = seen_photons(&world);
     let (seen, unseen): (Vec<_>, Vec<_>) = small.into_iter().partition(|&(id, _)| share[id] > 0.0);
     let to = match targets.as_slice() {
