@@ -1,11 +1,9 @@
-//! Rooms behind windows: light that panes let straight on, and the sky that is seen through openings.
+//! Rooms behind windows: light that panes let straight on.
 //!
 //! ```text
 //! cargo test --test windows
 //! ```
 
-#[path = "windows/openings.rs"]
-mod openings;
 #[path = "windows/panes.rs"]
 mod panes;
 #[path = "windows/photons.rs"]

@@ -53,7 +53,7 @@ impl<S> Environment<S> {
 
     /// Draws directions by the image's brightness; without one by their cosine to the normal, as the irradiance of an even
     /// sky weighs them.
-    pub fn aim(&self, normal: DVec3, u: [f64; 2]) -> Sighting {
+    pub(super) fn aim(&self, normal: DVec3, u: [f64; 2]) -> Sighting {
         let direction = match &self.image {
             Some(sky) => sky.turn.transpose() * sky.panorama.aim(u),
             None => Frame::about(normal).to_world(cosine_hemisphere(u)),

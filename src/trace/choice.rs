@@ -1,6 +1,5 @@
 //! Which of many lights is aimed at from a point.
 
-use super::openings::SkyView;
 use crate::light::{Light, LightId};
 use crate::math::DVec3;
 use crate::shape::{self, Emitter, Emitters};
@@ -17,7 +16,7 @@ pub(super) struct Choice {
     lights: Vec<LightId>,
     /// Place among `lights`.
     places: Vec<Option<usize>>,
-    /// How often each sky is chosen, of those that are chosen anywhere.
+    /// How often each sky is chosen.
     skies: Vec<(LightId, f64)>,
 }
 
@@ -42,7 +41,7 @@ impl Choice {
             (false, true) => 1.0,
         };
         let all: f64 = skies.iter().map(|sky| sky.1).sum();
-        skies.iter_mut().for_each(|sky| sky.1 /= all);
+        skies.iter_mut().for_each(|sky| sky.1 *= (1.0 - share) / all);
         Self { near: Emitters::new(&emitters), share, lights: near, places, skies }
     }
 
@@ -53,37 +52,25 @@ impl Choice {
         targets
     }
 
-    /// The skies, and how often each is chosen of them where nothing else is known.
-    pub(super) fn skies(&self) -> &[(LightId, f64)] {
-        &self.skies
-    }
-
-    /// A light for a point on a surface of the given unit normal, and how likely it was; `view` is what is known of the skies
-    /// there.
-    pub(super) fn choose(&self, from: DVec3, normal: DVec3, view: Option<&SkyView>, u: f64) -> Option<(LightId, f64)> {
+    /// A light for a point on a surface of the given unit normal, and how likely it was.
+    pub(super) fn choose(&self, from: DVec3, normal: DVec3, u: f64) -> Option<(LightId, f64)> {
         if u < self.share {
             let shape::Choice { emitter, probability, .. } = self.near.choose(from, normal, false, u / self.share)?;
             return Some((self.lights[emitter as usize], probability * self.share));
         }
         let mut left = u - self.share;
-        let of = |number: usize| (self.skies[number].0, self.of_sky(number, view));
-        let chosen = (0..self.skies.len()).map(of).find(|sky| {
+        let chosen = self.skies.iter().find(|sky| {
             left -= sky.1;
             left < 0.0
         });
-        chosen.or_else(|| self.skies.len().checked_sub(1).map(of))
-    }
-
-    /// How likely a sky is chosen.
-    fn of_sky(&self, number: usize, view: Option<&SkyView>) -> f64 {
-        (1.0 - self.share) * view.map_or(self.skies[number].1, |view| view.skies[number])
+        chosen.or(self.skies.last()).copied()
     }
 
     /// How likely `choose` chooses a light.
-    pub(super) fn probability(&self, light: LightId, from: DVec3, normal: DVec3, view: Option<&SkyView>) -> f64 {
+    pub(super) fn probability(&self, light: LightId, from: DVec3, normal: DVec3) -> f64 {
         match self.places[light] {
             Some(place) => self.share * self.near.probability(place, from, normal, false),
-            None => self.skies.iter().position(|sky| sky.0 == light).map_or(0.0, |number| self.of_sky(number, view)),
+            None => self.skies.iter().find(|sky| sky.0 == light).map_or(0.0, |sky| sky.1),
         }
     }
 }

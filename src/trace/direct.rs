@@ -50,9 +50,6 @@ impl<const N: usize> Gathering<'_, N> {
         let mut sum = [0.0; 3];
         let digits = |target: LightId, u: [f64; 2]| match &self.world.scene.lights[target] {
             Light::Area(area) if area.has_parts() => [finer(u[0], sampler.four_plain(key, MORE_DIGITS)[1]), u[1]],
-            Light::Environment(_) if self.world.openings.is_some() => {
-                [finer(u[0], sampler.four_plain(key, MORE_DIGITS)[1]), u[1]]
-            }
             _ => u,
         };
         if self.aims_at_all {
@@ -69,7 +66,7 @@ impl<const N: usize> Gathering<'_, N> {
         } else {
             let more = sampler.four_plain(key, MORE_DIGITS);
             let (from, normal) = (self.point.position, self.normal);
-            if let Some((target, probability)) = self.world.choose(from, normal, finer(self.u[3], more[0])) {
+            if let Some((target, probability)) = self.world.choice.choose(from, normal, finer(self.u[3], more[0])) {
                 add(&mut sum, self.from(target, probability, digits(target, [self.u[0], self.u[1]])));
             }
         }
@@ -110,21 +107,14 @@ impl<const N: usize> Gathering<'_, N> {
         let normal = self.normal;
         let probability = probability * self.side.unwrap_or(1.0);
         let lit = || {
-            let learned = self.world.aimed(target, self.point.position);
-            let sighting = match learned {
-                Some(aimed) => aimed.aim(normal, u),
-                None => light.aim(self.point.position, normal, u)?,
-            };
+            let sighting = light.aim(self.point.position, normal, u)?;
             if self.side.is_some() && sighting.direction.dot(normal) <= 0.0 {
                 return None;
             }
             let flat = if normal.dot(self.arrival.wo) < 0.0 { -normal } else { normal };
             let (bsdf_cos, bsdf_pdf) = shading::evaluate(self.material, self.arrival, flat, sighting.direction)?;
             let ray = self.point.leave(sighting.direction);
-            let mut view = light.view(&ray, normal, &sighting)?;
-            if let Some(aimed) = learned {
-                view.pdf = Some(aimed.pdf(&ray, normal));
-            }
+            let view = light.view(&ray, normal, &sighting)?;
             let factor = match view.pdf {
                 None => view.factor / probability,
                 Some(pdf) => {
@@ -196,15 +186,12 @@ pub(super) fn weight_of_meeting(
             area.shape.intersect(&ray, f64::INFINITY).and_then(|crossing| area.pdf(&ray, drawn.normal, &crossing))
         }
         (Light::Area(area), Some(crossing)) if area.aimed_at => area.pdf(ray, drawn.normal, crossing),
-        (Light::Environment(environment), None) => Some(match world.aimed(light, drawn.from) {
-            Some(aimed) => aimed.pdf(ray, drawn.normal),
-            None => environment.pdf(ray, drawn.normal),
-        }),
+        (Light::Environment(environment), None) => Some(environment.pdf(ray, drawn.normal)),
         (Light::Sun(sun), None) => sun.pdf(ray),
         _ => None,
     };
     let Some(pdf) = pdf else { return 1.0 };
-    let probability = if drawn.aimed_at_all { 1.0 } else { world.probability(light, drawn.from, drawn.normal) };
+    let probability = if drawn.aimed_at_all { 1.0 } else { world.choice.probability(light, drawn.from, drawn.normal) };
     power_heuristic(drawn.pdf, pdf * (probability * drawn.chance))
 }
 

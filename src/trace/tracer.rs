@@ -34,8 +34,6 @@ pub(super) struct Tracer<'a, const N: usize> {
     pub(super) met: Option<Vec<(LightId, DVec3)>>,
     /// Photons that are gathered, if any are.
     pub(super) photons: Option<&'a Photons<N>>,
-    /// Places that scatter widely, with the unit normal on the side of the path, if somebody wants to know.
-    pub(super) lit: Option<Vec<(SurfacePoint, DVec3)>>,
     /// Places that scatter widely and are not seen straight, if somebody wants to know.
     pub(super) reached: Option<Vec<DVec3>>,
 }
@@ -64,7 +62,6 @@ impl<'a, const N: usize> Tracer<'a, N> {
             started: 0,
             met: None,
             photons: None,
-            lit: None,
             reached: None,
         }
     }
@@ -240,9 +237,6 @@ impl<'a, const N: usize> Tracer<'a, N> {
             let far = material.scatters_through().then_some((beyond, parts));
             let chance = gathering.gather(far, sampler, path.key, sum);
             self.tally.polarization += moved.get();
-            if let Some(lit) = &mut self.lit {
-                lit.push((*point, normal));
-            }
             if goes_on && path.leg != Leg::Camera {
                 if let Some(photons) = self.photons {
                     let light = photons.gather(world, path, &arrival, (point, normal), (material, parts), sampler);

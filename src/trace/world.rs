@@ -1,10 +1,7 @@
-use std::sync::Arc;
-
 use super::aims::{Aims, is_photon_source};
 use super::choice::Choice;
 use super::lamps::met_lamps;
 use super::media::Media;
-use super::openings::Openings;
 use super::sending::media_of_lights;
 use super::{Method, Transport};
 use crate::light::{Light, LightId};
@@ -25,8 +22,6 @@ pub struct World {
     pub(super) targets: Vec<LightId>,
     /// Which light is chosen where only one is aimed at.
     pub(super) choice: Choice,
-    /// Where the sky is seen from places inside, if that was worth learning.
-    pub(super) openings: Option<Arc<Openings>>,
     /// The bodies around the camera.
     pub(super) camera_media: Media,
     pub(super) has_media: bool,
@@ -41,15 +36,14 @@ pub struct World {
 }
 
 impl World {
-    /// The scene, tabulated for the method, with rays and photons sent ahead to learn where to send the others.
+    /// The scene, tabulated for the method, with photons sent ahead to learn where to send the others.
     pub fn new(scene: &Scene<Curve>, method: Method) -> Self {
         let mut world = Self::untaught(scene, method);
         world.learn_where_to_send(u64::MAX);
-        world.learn_openings();
         world
     }
 
-    /// The same with nothing sent ahead: enough for camera samples.
+    /// The same without photons sent ahead: enough for camera samples.
     pub fn untaught(scene: &Scene<Curve>, method: Method) -> Self {
         let responses = scene.lights.iter().map(|light| method.basis.response(light.emission())).collect();
         let to_xyz = scene.film.color_space.to_xyz();
@@ -78,7 +72,6 @@ impl World {
             responses,
             targets,
             choice,
-            openings: None,
             scene,
             method,
             camera_media,
@@ -142,16 +135,6 @@ impl World {
     /// Whether an object lets light straight on.
     pub(super) fn is_see_through(&self, object: u32) -> bool {
         self.see_through.get(object as usize).is_some_and(|&on| on)
-    }
-
-    /// A light to aim at from a point on a surface of the given unit normal, and how likely it was.
-    pub(super) fn choose(&self, from: DVec3, normal: DVec3, u: f64) -> Option<(LightId, f64)> {
-        self.choice.choose(from, normal, self.sky_view(from), u)
-    }
-
-    /// How likely `choose` chooses a light.
-    pub(super) fn probability(&self, light: LightId, from: DVec3, normal: DVec3) -> f64 {
-        self.choice.probability(light, from, normal, self.sky_view(from))
     }
 
     /// Whether next-event estimation at a vertex of the given weight aims at every light, or at one.
