@@ -68,7 +68,7 @@ fn k4_light_is_right_where_a_table_ends_and_where_a_wall_meets_it() {
 
 #[test]
 fn k4_light_is_right_on_bodies_that_stand_on_a_floor_and_on_the_floor_around_them() {
-    let bodies = object("matte", "plane = { point = [0, 0, 0], normal = [0, 1, 0] }")
+    let bodies = object("matte", "quad = { center = [-0.2, 0, 0], u = [1, 0, 0], v = [0, 0, 1] }")
         + &object("matte", "cube = { center = [-0.2, 0.3, -0.2], size = [0.6, 0.6, 0.6] }")
         + &object("matte", "cube = { center = [-0.8, 0.05, 0.3], size = [0.2, 0.1, 0.3] }")
         + &object("matte", "sphere = { center = [0.4, 0.3, 0.2], radius = 0.3 }");
