@@ -9,6 +9,9 @@
 use std::cell::Cell;
 
 use super::World;
+use super::direct::add;
+use super::path::Path;
+use super::tracer::Tracer;
 use crate::material::{Arrival, Material};
 use crate::math::DVec3;
 use crate::spectrum::Table;
@@ -88,6 +91,27 @@ impl Lit<'_> {
         let change = self.polarized.scattered(material, arrival, wi).joined(on_its_way).change();
         if change != 0.0 {
             self.moved.set(self.moved.get() + change * amount(world, rgb));
+        }
+    }
+}
+
+impl<const N: usize> Tracer<'_, N> {
+    /// Adds light of the sensor that came by a path, and what polarization may have changed of it.
+    pub(super) fn receive(&mut self, path: &Path<N>, light: [f64; 3], sum: &mut [f64; 3]) {
+        if path.polarized.is_any() {
+            self.tally.polarization += path.polarized.change() * amount(self.world, light);
+        }
+        add(sum, light);
+    }
+
+    /// Counts the light of a camera sample; one that is not finite is left out with all that polarization may have changed
+    /// of it, which was counted after `moved`.
+    pub(super) fn count_light(&mut self, sum: [f64; 3], moved: f64) {
+        let light = amount(self.world, sum);
+        if light.is_finite() && self.tally.polarization.is_finite() {
+            self.tally.light += light;
+        } else {
+            self.tally.polarization = moved;
         }
     }
 }
