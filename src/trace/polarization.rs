@@ -53,6 +53,15 @@ impl Polarized {
         if material.is_diffuse() { Self { degree, ..after } } else { after }
     }
 
+    /// With light that comes to a surface that scatters it, in a direction and polarized on its way there.
+    pub(super) fn brought<const N: usize>(
+        self,
+        (material, arrival): (&Material<Table>, &Arrival<N>),
+        (wi, on_its_way): (DVec3, Self),
+    ) -> Self {
+        self.scattered(material, arrival, wi).joined(on_its_way)
+    }
+
     /// Whether there is anything that polarization may have changed or may change at the next surface.
     pub(super) fn is_any(self) -> bool {
         self.degree != 0.0 || self.growth != 1.0
@@ -84,11 +93,11 @@ impl Lit<'_> {
     pub(super) fn count<const N: usize>(
         &self,
         world: &World,
-        (material, arrival): (&Material<Table>, &Arrival<N>),
-        (wi, on_its_way): (DVec3, Polarized),
+        surface: (&Material<Table>, &Arrival<N>),
+        coming: (DVec3, Polarized),
         rgb: [f64; 3],
     ) {
-        let change = self.polarized.scattered(material, arrival, wi).joined(on_its_way).change();
+        let change = self.polarized.brought(surface, coming).change();
         if change != 0.0 {
             self.moved.set(self.moved.get() + change * amount(world, rgb));
         }

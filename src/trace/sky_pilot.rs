@@ -175,7 +175,7 @@ impl Learning<'_> {
     fn look<const N: usize>(&self, cell: u32, places: &[Place], radiance: &[f64], draw: &Draw<N>) -> Found {
         let world = self.world;
         let mut found = Found { light: vec![0.0; DIRECTIONS], all: 0.0, skies: Vec::new() };
-        for number in 0..DIRECTIONS {
+        for (number, radiance) in radiance.iter().enumerate() {
             let u = self.numbers([cell, 1], number as u32);
             let toward = direction(number, [u[0], u[1]]);
             let first = (u[2] * places.len() as f64) as usize;
@@ -185,7 +185,7 @@ impl Learning<'_> {
             };
             if let Some((point, cos)) = (0..places.len()).find_map(above) {
                 let angle = cos * (4.0 * PI / DIRECTIONS as f64);
-                let whole = radiance[number] * angle;
+                let whole = radiance * angle;
                 found.all += whole;
                 found.light[number] = whole * self.arriving(point, toward, draw);
             }

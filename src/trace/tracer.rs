@@ -232,8 +232,10 @@ impl<'a, const N: usize> Tracer<'a, N> {
             }
             if goes_on && path.leg != Leg::Camera {
                 if let Some(photons) = self.photons {
-                    let light = photons.gather(world, path, &arrival, (point, normal), (material, parts), sampler);
-                    self.receive(path, light, sum);
+                    let (light, moved) =
+                        photons.gather(world, path, &arrival, (point, normal), (material, parts), sampler);
+                    self.tally.polarization += moved;
+                    add(sum, light);
                 }
                 if let Some(reached) = &mut self.reached {
                     reached.push(point.position);
