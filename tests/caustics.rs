@@ -16,5 +16,7 @@ mod gathered;
 mod known;
 #[path = "caustics/materials.rs"]
 mod materials;
+#[path = "caustics/polarization.rs"]
+mod polarization;
 #[path = "caustics/wavelengths.rs"]
 mod wavelengths;

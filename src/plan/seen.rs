@@ -9,6 +9,9 @@ use crate::scene::Scene;
 use crate::spectrum::{Basis, Curve, Draw, Lanes, MAX_LANES, Quantity, visible};
 use crate::trace::{Method, ROUTES_NM, Route, Step, Transport, Way, World, routes};
 
+/// Products of tints by number, with the weight of each.
+type Weighted = Vec<(usize, f64)>;
+
 /// Colors that are seen, each light's own.
 #[derive(Default)]
 pub(super) struct Seen<'a> {
@@ -22,7 +25,7 @@ pub(super) struct Seen<'a> {
 struct Color {
     light: usize,
     /// Products and their weights.
-    sum: Vec<(usize, f64)>,
+    sum: Weighted,
     /// By sums over 1 nm.
     exact: [f64; 3],
     /// What an error of it is relative to: its strongest channel. Of colors that are fainter than what is tolerated of the
@@ -106,7 +109,7 @@ struct Keeping<'a> {
     seen: Seen<'a>,
     tints: BTreeMap<Key, Vec<u32>>,
     products: BTreeMap<Vec<u32>, usize>,
-    colors: BTreeMap<ColorKey, Vec<(usize, f64)>>,
+    colors: BTreeMap<ColorKey, Weighted>,
 }
 
 impl<'a> Keeping<'a> {
@@ -122,7 +125,7 @@ impl<'a> Keeping<'a> {
 
     /// Adds the colors of one pixel.
     fn keep(&mut self, found: &[Route]) {
-        let mut of_pixel: BTreeMap<(usize, u32), Vec<(usize, f64)>> = BTreeMap::new();
+        let mut of_pixel: BTreeMap<(usize, u32), Weighted> = BTreeMap::new();
         for route in found {
             let product = self.product(route);
             let sum = of_pixel.entry((route.light, route.scattered)).or_default();
@@ -173,7 +176,7 @@ impl<'a> Keeping<'a> {
         let mut seen = self.seen;
         seen.products = vec![Vec::new(); self.products.len()];
         self.products.into_iter().for_each(|(numbers, at)| seen.products[at] = numbers);
-        let mut by_light: Vec<Vec<(u32, Vec<(usize, f64)>)>> = survey.lights.iter().map(|_| Vec::new()).collect();
+        let mut by_light: Vec<Vec<(u32, Weighted)>> = survey.lights.iter().map(|_| Vec::new()).collect();
         for ((light, scattered, _), sum) in self.colors {
             by_light[light].push((scattered, sum));
         }

@@ -16,6 +16,7 @@ use super::World;
 use super::direct::add;
 use super::merge::{Landed, Photons};
 use super::path::Path;
+use super::polarization::{Polarized, amount};
 use super::shading;
 use crate::material::{Arrival, Material};
 use crate::math::{BranchKey, DVec2, DVec3, Frame, Ray, Sampler, unit};
@@ -51,12 +52,21 @@ struct Place<'a> {
 struct Found {
     sum: [f64; 3],
     weight: f64,
-    drawn: Option<(DVec3, [f64; 3], f64)>,
+    drawn: Option<Chosen>,
     u: f64,
 }
 
+struct Chosen {
+    position: DVec3,
+    rgb: [f64; 3],
+    weight: f64,
+    /// By what share polarization may change it.
+    change: f64,
+}
+
 impl<const N: usize> Photons<N> {
-    /// What the sensor gets of the photons around a place that a path has reached.
+    /// What the sensor gets of the photons around a place that a path has reached, and how much of it polarization may change:
+    /// an estimate by the photon that is looked at.
     pub(super) fn gather(
         &self,
         world: &World,
@@ -65,14 +75,17 @@ impl<const N: usize> Photons<N> {
         (point, flat): (&SurfacePoint, DVec3),
         (material, parts): (&Material<Table>, bool),
         sampler: &Sampler,
-    ) -> [f64; 3] {
-        let Some(map) = world.method.light_pass.as_ref().and_then(|pass| pass.map) else { return [0.0; 3] };
+    ) -> ([f64; 3], f64) {
+        let Some(map) = world.method.light_pass.as_ref().and_then(|pass| pass.map) else { return ([0.0; 3], 0.0) };
         let radius = map.radius * world.scene.camera.pixel_width(path.length);
         let front = flat.dot(point.normal) > 0.0;
         let place = Place { world, position: point.position, flat, front, radius };
         let u = sampler.four_plain(path.key.child(CHOICE), 0)[0];
         let mut found = Found { sum: [0.0; 3], weight: 0.0, drawn: None, u };
         let parted = |back: DVec3| path.parted || (parts && back.dot(flat) < 0.0);
+        let change = |back: DVec3, on_its_way: Polarized| {
+            path.polarized.brought((material, arrival), (back, on_its_way)).change()
+        };
         self.together.near(point.position, radius, &mut |position, photon| {
             let Some(density) = place.density(path, position, photon) else { return };
             let Some((bsdf_cos, _)) = shading::evaluate(material, arrival, flat, photon.back) else { return };
@@ -82,7 +95,7 @@ impl<const N: usize> Photons<N> {
             let flux = if by_heroes { self.matching.onto_heroes(arrival.draw, carries.flux) } else { carries.flux };
             let arriving = path.throughput.of(bsdf_cos * flux);
             let rgb = world.responses[carries.light].sensor(arrival.draw, arriving, parted);
-            found.add(position, rgb.map(|x| density * x));
+            found.add(position, rgb.map(|x| density * x), || change(photon.back, photon.polarized));
         });
         self.alone.near(point.position, radius, &mut |position, photon| {
             let (wavelength, parted) = (&photon.carries.wavelength, parted(photon.back));
@@ -98,14 +111,14 @@ impl<const N: usize> Photons<N> {
             let Some(density) = place.density(path, position, photon) else { return };
             let Some((bsdf_cos, _)) = shading::evaluate(material, arrival, flat, photon.back) else { return };
             let share = density * read(path.throughput.of(bsdf_cos));
-            found.add(position, photon.carries.color.map(|x| share * x));
+            found.add(position, photon.carries.color.map(|x| share * x), || change(photon.back, photon.polarized));
         });
         place.seen_of(found, point, sampler, path.key)
     }
 }
 
 impl Found {
-    fn add(&mut self, position: DVec3, rgb: [f64; 3]) {
+    fn add(&mut self, position: DVec3, rgb: [f64; 3], change: impl FnOnce() -> f64) {
         add(&mut self.sum, rgb);
         let weight: f64 = rgb.iter().map(|x| x.abs()).sum();
         if weight == 0.0 {
@@ -115,7 +128,7 @@ impl Found {
         // What is left of a random number after a choice is one again.
         let chance = weight / self.weight;
         if self.u < chance {
-            self.drawn = Some((position, rgb, weight));
+            self.drawn = Some(Chosen { position, rgb, weight, change: change() });
             self.u /= chance;
         } else {
             self.u = (self.u - chance) / (1.0 - chance);
@@ -150,16 +163,19 @@ impl Place<'_> {
         0.5 * (position - self.position).dot(normals).abs() <= STEP * self.radius
     }
 
-    /// What is seen of what was found, over the share of the disc that is seen.
-    fn seen_of(&self, found: Found, point: &SurfacePoint, sampler: &Sampler, key: BranchKey) -> [f64; 3] {
-        let Found { mut sum, weight, drawn, .. } = found;
-        let Some((photon, rgb, of_photon)) = drawn else { return sum };
+    /// What is seen of what was found, over the share of the disc that is seen, and how much of it polarization may change.
+    fn seen_of(&self, found: Found, point: &SurfacePoint, sampler: &Sampler, key: BranchKey) -> ([f64; 3], f64) {
+        let Found { mut sum, weight, drawn: chosen, .. } = found;
+        let Some(chosen) = chosen else { return (sum, 0.0) };
+        let many = weight / chosen.weight;
+        let mut moved = many * chosen.change * amount(self.world, chosen.rgb);
         let up = point.leave(self.flat);
         let far = HIGH * self.radius;
         let free = self.world.scene.nearest(&up, 2.0 * far, |_| true).map_or(far, |hit| 0.5 * hit.crossing.t);
         let (height, from) = (far.min(free), up.at(far.min(free)));
-        if !self.sees(from, photon, 1.0).unwrap_or(true) {
-            (0..3).for_each(|i| sum[i] -= rgb[i] * weight / of_photon);
+        if !self.sees(from, chosen.position, 1.0).unwrap_or(true) {
+            (0..3).for_each(|i| sum[i] -= chosen.rgb[i] * many);
+            moved = 0.0;
         }
         let frame = Frame::about(self.flat);
         let further = (height + STEP * self.radius) / height;
@@ -171,11 +187,11 @@ impl Place<'_> {
                 let DVec2 { x, y } = self.radius * by_kernel(u);
                 let at = self.position + frame.to_world(DVec3::new(x, y, 0.0));
                 if self.sees(from, at, further) == Some(true) {
-                    return sum.map(|x| x * f64::from(drawn));
+                    return (sum.map(|x| x * f64::from(drawn)), moved * f64::from(drawn));
                 }
             }
         }
-        sum
+        (sum, moved)
     }
 
     /// Whether what is met on the way to a point, or so many times as far, continues the surface; none if nothing is met.

@@ -9,6 +9,8 @@
 use rayon::prelude::*;
 
 use super::photon::{Landing, Splat};
+use super::polarization::amount;
+use super::render::TILE;
 use super::sending::{Sent, batches, send};
 use super::tracer::Tracer;
 use super::width::{InLanes, in_lanes};
@@ -39,6 +41,8 @@ const LIGHTS: usize = 16;
 pub(super) struct Shown {
     /// Film values of the window's pixels; empty where there is no pass.
     pub(super) pixels: Vec<[f64; 3]>,
+    /// How much of their light polarization may change, of every tile.
+    pub(super) moved: Vec<f64>,
     /// Photons sent.
     pub(super) photons: u64,
     /// Rays followed.
@@ -56,9 +60,17 @@ pub(super) fn show<const N: usize>(world: &World, progress: &(dyn Fn(u64) + Sync
     }
     let window = world.scene.film.window();
     let mut pixels = vec![[0.0; 3]; window.width as usize * window.height as usize];
-    let add = &mut |Splat { pixel, rgb }: Splat| (0..3).for_each(|i| pixels[pixel as usize][i] += rgb[i]);
+    let mut moved = vec![0.0; window.width.div_ceil(TILE) as usize * window.height.div_ceil(TILE) as usize];
+    let add = &mut |Splat { pixel, change, rgb }: Splat| {
+        (0..3).for_each(|i| pixels[pixel as usize][i] += rgb[i]);
+        if change != 0.0 {
+            let [column, row] = [pixel % window.width, pixel / window.width].map(|place| place / TILE);
+            let tile = row * window.width.div_ceil(TILE) + column;
+            moved[tile as usize] += f64::from(change) * amount(world, rgb);
+        }
+    };
     let shown = splats::<N>(world, progress, add);
-    Shown { pixels, ..shown }
+    Shown { pixels, moved, ..shown }
 }
 
 /// Sends them and hands over what they show, in an order that never changes; holds no image.

@@ -9,6 +9,7 @@ use rayon::prelude::*;
 use super::World;
 use super::map::Map;
 use super::photon::Landing;
+use super::polarization::Polarized;
 use super::sending::{Sent, batches, send};
 use super::tracer::Tracer;
 use crate::light::LightId;
@@ -26,6 +27,8 @@ pub(super) struct Landed<T> {
     pub(super) front: bool,
     /// Surfaces it met, the last one included.
     pub(super) vertices: u32,
+    /// How far its light is polarized.
+    pub(super) polarized: Polarized,
     pub(super) carries: T,
 }
 
@@ -112,6 +115,7 @@ fn keep<const N: usize>(world: &World, matching: &Matching<N>, landing: &Landing
         flat: *flat,
         front: flat.dot(point.normal) > 0.0,
         vertices: path.vertices,
+        polarized: path.polarized,
         carries: (),
     };
     let response = &world.responses[*light];
@@ -125,8 +129,8 @@ fn keep<const N: usize>(world: &World, matching: &Matching<N>, landing: &Landing
 
 impl Landed<()> {
     fn with<T>(&self, carries: T) -> Landed<T> {
-        let Self { back, flat, front, vertices, .. } = *self;
-        Landed { back, flat, front, vertices, carries }
+        let Self { back, flat, front, vertices, polarized, .. } = *self;
+        Landed { back, flat, front, vertices, polarized, carries }
     }
 }
 

@@ -36,6 +36,8 @@ mod probe;
 mod reach;
 mod render;
 mod roulette;
+mod route_end;
+mod route_walk;
 mod routes;
 mod search;
 mod sending;

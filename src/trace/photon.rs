@@ -22,6 +22,8 @@ const LENS: u32 = 3;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Splat {
     pub(super) pixel: u32,
+    /// By what share polarization may change it.
+    pub(super) change: f32,
     pub(super) rgb: [f64; 3],
 }
 
@@ -92,7 +94,8 @@ impl<const N: usize> Tracer<'_, N> {
             if let Some(onward) = straight::straight_on(world, draw, &path, &hit, &point) {
                 let (throughput, key) = (path.throughput.through(onward.share()), path.key.child(BEYOND));
                 let all = throughput == path.throughput;
-                self.pending.push(Path { throughput, key, ..path.passed(&point) });
+                let polarized = path.polarized.after(onward.polarization);
+                self.pending.push(Path { throughput, key, polarized, ..path.passed(&point) });
                 if all {
                     continue;
                 }
@@ -205,14 +208,14 @@ impl<const N: usize> Tracer<'_, N> {
         let ray = point.leave(seen.direction);
         let distance = (seen.start - ray.origin).length();
         let inside = media[usize::from(!same)];
-        let mut shone = landing.shone(world);
+        let (mut shone, mut polarized) = (landing.shone(world), Polarized::NOT);
         if world.has_see_through() {
             let closed = |object| !world.is_see_through(object);
             if world.scene.is_hidden_by(&ray, distance, None, &self.hider, closed) {
                 return;
             }
             match straight::transmittance(world, arrival.draw, &ray, distance, inside) {
-                Some((share, _)) => shone = shone * share,
+                Some((share, of_panes)) => (shone, polarized) = (shone * share, of_panes),
                 None => return,
             }
         } else if world.scene.is_hidden(&ray, distance, None, &self.hider) {
@@ -224,6 +227,7 @@ impl<const N: usize> Tracer<'_, N> {
         let arriving = path.throughput.scaled(1.0 / path.eta_scale).of(bsdf_cos * shone);
         let rgb = world.responses[*light].sensor(arrival.draw, arriving, parted);
         let rgb = rgb.map(|x| x * (factor * cosines * seen.importance));
+        let change = polarized.brought((material, &viewed), (arrival.wo, path.polarized)).change() as f32;
         for place in places {
             let first = |x: f64, from: u32| (x - reach - 0.5).floor().max(f64::from(from)) as u32;
             let last = |x: f64, from: u32, size: u32| (x + reach).floor().min(f64::from(from + size - 1)) as u32;
@@ -233,7 +237,7 @@ impl<const N: usize> Tracer<'_, N> {
                     let density = film.filter.density(place - middle);
                     if density > 0.0 {
                         let pixel = (y - window.top) * window.width + (x - window.left);
-                        splats.push(Splat { pixel, rgb: rgb.map(|channel| channel * density) });
+                        splats.push(Splat { pixel, change, rgb: rgb.map(|channel| channel * density) });
                     }
                 }
             }

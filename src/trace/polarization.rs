@@ -9,6 +9,9 @@
 use std::cell::Cell;
 
 use super::World;
+use super::direct::add;
+use super::path::Path;
+use super::tracer::Tracer;
 use crate::material::{Arrival, Material};
 use crate::math::DVec3;
 use crate::spectrum::Table;
@@ -50,6 +53,15 @@ impl Polarized {
         if material.is_diffuse() { Self { degree, ..after } } else { after }
     }
 
+    /// With light that comes to a surface that scatters it, in a direction and polarized on its way there.
+    pub(super) fn brought<const N: usize>(
+        self,
+        (material, arrival): (&Material<Table>, &Arrival<N>),
+        (wi, on_its_way): (DVec3, Self),
+    ) -> Self {
+        self.scattered(material, arrival, wi).joined(on_its_way)
+    }
+
     /// Whether there is anything that polarization may have changed or may change at the next surface.
     pub(super) fn is_any(self) -> bool {
         self.degree != 0.0 || self.growth != 1.0
@@ -81,13 +93,34 @@ impl Lit<'_> {
     pub(super) fn count<const N: usize>(
         &self,
         world: &World,
-        (material, arrival): (&Material<Table>, &Arrival<N>),
-        (wi, on_its_way): (DVec3, Polarized),
+        surface: (&Material<Table>, &Arrival<N>),
+        coming: (DVec3, Polarized),
         rgb: [f64; 3],
     ) {
-        let change = self.polarized.scattered(material, arrival, wi).joined(on_its_way).change();
+        let change = self.polarized.brought(surface, coming).change();
         if change != 0.0 {
             self.moved.set(self.moved.get() + change * amount(world, rgb));
+        }
+    }
+}
+
+impl<const N: usize> Tracer<'_, N> {
+    /// Adds light of the sensor that came by a path, and what polarization may have changed of it.
+    pub(super) fn receive(&mut self, path: &Path<N>, light: [f64; 3], sum: &mut [f64; 3]) {
+        if path.polarized.is_any() {
+            self.tally.polarization += path.polarized.change() * amount(self.world, light);
+        }
+        add(sum, light);
+    }
+
+    /// Counts the light of a camera sample; one that is not finite is left out with all that polarization may have changed
+    /// of it, which was counted after `moved`.
+    pub(super) fn count_light(&mut self, sum: [f64; 3], moved: f64) {
+        let light = amount(self.world, sum);
+        if light.is_finite() && self.tally.polarization.is_finite() {
+            self.tally.light += light;
+        } else {
+            self.tally.polarization = moved;
         }
     }
 }

@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use super::aims::Aims;
 use super::light_pass::{self, Shown};
 use super::merge::{self, Photons};
+use super::polarization::amount;
 use super::tally::Tally;
 use super::tracer::Tracer;
 use super::width::{InLanes, in_lanes};
@@ -15,7 +16,7 @@ use crate::film::{Film, Pixel, PixelSum, Sample, Window};
 use crate::math::{BranchKey, DVec2, Sampler};
 
 /// Side of a tile in pixels.
-const TILE: u32 = 16;
+pub(super) const TILE: u32 = 16;
 /// Use of the camera's random numbers: where in the pixel the sample falls.
 const PLACE: u32 = 0;
 /// Another: where on the lens its ray starts. The path's first vertex has 1, 2 and those from 16.
@@ -44,7 +45,7 @@ pub struct Report {
     pub polarization: f64,
     /// The same in the tile of 16 x 16 pixels where it is largest.
     pub polarization_of_tile: f64,
-    /// All light that camera rays found, as X + Y + Z.
+    /// All light that camera rays and photons found, as X + Y + Z of every camera sample.
     pub light: f64,
     /// Photons sent by the light pass.
     pub photons: u64,
@@ -99,10 +100,10 @@ fn render_lanes<const N: usize>(world: &World, progress: &(dyn Fn(u64) + Sync)) 
         let [first, end] =
             [pass, pass + 1].map(|pass| (u64::from(pass) * u64::from(world.method.samples) / u64::from(passes)) as u32);
         let last = pass + 1 == passes;
-        tiles.par_iter_mut().for_each(|tile| {
+        tiles.par_iter_mut().enumerate().for_each(|(number, tile)| {
             tile.take::<N>(world, photons.as_ref(), first..end);
             if last {
-                tile.finish(&shown, window.width);
+                tile.finish(world, &shown, number);
             }
             progress(u64::from(tile.width) * u64::from(tile.height) * u64::from(end - first));
         });
@@ -181,13 +182,22 @@ impl Tile {
     }
 
     /// Makes the pixels of their sums, and what photons show there.
-    fn finish(&mut self, shown: &Shown, width: u32) {
+    fn finish(&mut self, world: &World, shown: &Shown, number: usize) {
+        let width = world.scene.film.window().width;
+        let samples = f64::from(world.method.samples);
+        self.report.polarization += samples * shown.moved.get(number).copied().unwrap_or_default();
         let by_photons = |place: u32| {
             let [x, y] = [self.corner[0] + place % self.width, self.corner[1] + place / self.width];
             shown.pixels.get((y * width + x) as usize).copied().unwrap_or_default()
         };
-        self.pixels =
-            (0..).zip(std::mem::take(&mut self.sums)).map(|(place, sum)| sum.pixel(by_photons(place))).collect();
+        let mut light = 0.0;
+        let finished = |(place, sum): (u32, PixelSum)| {
+            let rgb = by_photons(place);
+            light += amount(world, rgb);
+            sum.pixel(rgb)
+        };
+        self.pixels = (0..).zip(std::mem::take(&mut self.sums)).map(finished).collect();
+        self.report.light += samples * light;
     }
 }
 

@@ -102,7 +102,7 @@ pub(super) fn search(colors: &Colors, targets: &Targets) -> Found {
 fn look(colors: &Colors, targets: &Targets, cell: Cell, reached: &mut Vec<Reached>, forks: &mut Vec<Cell>) -> Look {
     let middle = cell.corner + cell.size * 0.5;
     let sampler = Sampler::new(colors.world.method.seed, [middle.x as u32, middle.y as u32], 0);
-    let walk = |at| colors.from_camera(at, 0, &sampler, cell.way);
+    let walk = |at| colors.walk_from_camera(at, 0, &sampler, cell.way);
     let at = [DVec2::new(0.5, 0.5), DVec2::ZERO, DVec2::X, DVec2::Y, DVec2::ONE];
     let walks = at.map(|place| walk(cell.corner + cell.size * place));
     let first = &walks[0];

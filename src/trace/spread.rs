@@ -42,7 +42,7 @@ impl Colors<'_> {
     /// The ways of a ray's neighbors show how far a pixel goes. Both colors are compared at one distance, so that an edge behind the
     /// glass, which one of them misses, does not count.
     pub(super) fn pixels_apart(&self, at: DVec2, first: &Walk, sampler: &Sampler, way: Way) -> Option<f64> {
-        let second = self.from_camera(at, 1, sampler, way);
+        let second = self.walk_from_camera(at, 1, sampler, way);
         if first.weight == 0.0
             || second.weight == 0.0
             || (first.is_out() && second.is_out() && shows_nothing(self.world))
@@ -52,7 +52,7 @@ impl Colors<'_> {
         let distance = [first, &second].map(Walk::length).into_iter().find(|length| length.is_finite());
         let apart = between(first, &second, distance);
         let pixels = |step: f64| {
-            let beside = |x: f64, y: f64| self.from_camera(at + DVec2::new(x, y) * step, 0, sampler, way);
+            let beside = |x: f64, y: f64| self.walk_from_camera(at + DVec2::new(x, y) * step, 0, sampler, way);
             let ways = [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)];
             let stretch = ways.map(|(x, y)| between(first, &beside(x, y), distance)).into_iter().fold(0.0, f64::max);
             // Parallel rays stay parallel behind flat glass: there a pixel has the angle that the camera gives it.

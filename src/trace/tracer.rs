@@ -7,7 +7,7 @@ use super::follow::MOST_SURFACES;
 use super::media::{self, Boundary};
 use super::merge::Photons;
 use super::path::{Drawn, Leg, Path};
-use super::polarization::{Lit, amount};
+use super::polarization::Lit;
 use super::shading;
 use super::straight;
 use super::tally::Tally;
@@ -117,21 +117,8 @@ impl<'a, const N: usize> Tracer<'a, N> {
         }
         let deterministic = matches!(self.transport, Transport::Deterministic { .. });
         self.tally.by_chance += u64::from(deterministic && self.surfaces() > MOST_SURFACES);
-        let light = amount(self.world, sum);
-        if light.is_finite() && self.tally.polarization.is_finite() {
-            self.tally.light += light;
-        } else {
-            self.tally.polarization = moved;
-        }
+        self.count_light(sum, moved);
         (sum, first)
-    }
-
-    /// Adds light of the sensor that came by a path, and what polarization may have changed of it.
-    fn receive(&mut self, path: &Path<N>, light: [f64; 3], sum: &mut [f64; 3]) {
-        if path.polarized.is_any() {
-            self.tally.polarization += path.polarized.change() * amount(self.world, light);
-        }
-        add(sum, light);
     }
 
     /// The light of the sky at the end of a path that meets nothing.
@@ -239,8 +226,10 @@ impl<'a, const N: usize> Tracer<'a, N> {
             self.tally.polarization += moved.get();
             if goes_on && path.leg != Leg::Camera {
                 if let Some(photons) = self.photons {
-                    let light = photons.gather(world, path, &arrival, (point, normal), (material, parts), sampler);
-                    self.receive(path, light, sum);
+                    let (light, moved) =
+                        photons.gather(world, path, &arrival, (point, normal), (material, parts), sampler);
+                    self.tally.polarization += moved;
+                    add(sum, light);
                 }
                 if let Some(reached) = &mut self.reached {
                     reached.push(point.position);

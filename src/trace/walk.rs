@@ -102,7 +102,7 @@ impl<'a> Colors<'a> {
     }
 
     /// Follows the ray through a place of the film.
-    pub(super) fn from_camera(&self, at: DVec2, lane: usize, sampler: &Sampler, way: Way) -> Walk {
+    pub(super) fn walk_from_camera(&self, at: DVec2, lane: usize, sampler: &Sampler, way: Way) -> Walk {
         let ray = self.world.scene.camera.ray(at);
         let media = Path::from_camera(self.world, &self.draw, ray).media;
         self.walk(lane, (ray, media), sampler, way)

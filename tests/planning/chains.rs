@@ -84,7 +84,7 @@ fn chain(random: &mut Random, links: &[Link], steepest: f64, in_plane: bool) -> 
             let next = Met { link: link.clone(), coming, normal: aside * sin - coming * cos };
             places.push(at);
             coming = next.going();
-            at = at + coming * STEP;
+            at += coming * STEP;
             met.push(next);
         }
         places.push(at);
@@ -303,7 +303,7 @@ fn a_mirror_between_two_reflections_at_brewsters_angle_hides_nothing() {
         let next = met(link, coming, degrees);
         places.push(at);
         coming = next.going();
-        at = at + coming * STEP;
+        at += coming * STEP;
         all.push(next);
     }
     places.push(at);

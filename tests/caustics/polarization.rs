@@ -1,0 +1,72 @@
+//! What polarization may change of a caustic: photons carry what their surfaces did, and it is counted where they are seen.
+
+use abbe::math::DVec3;
+use abbe::plan::plan;
+use abbe::trace::{LightPass, MapPasses, Method, World, render};
+
+use crate::support::scenes::{SPLITTING, body, scene};
+
+fn quad(center: DVec3, normal: DVec3, half: f64) -> String {
+    let show = |v: DVec3| format!("[{:?}, {:?}, {:?}]", v.x, v.y, v.z);
+    let up = DVec3::new(0.0, 0.0, half);
+    let across = normal.cross(up);
+    format!("quad = {{ center = {}, u = {}, v = {} }}", show(center), show(across), show(up))
+}
+
+/// Light of a small lamp that two glass plates, both at Brewster's angle and in one plane, reflect to a floor, and a view of
+/// that floor, in a mirror or not. A screen keeps the lamp's own light from it.
+fn two_plates(in_a_mirror: bool) -> String {
+    let turn = 180.0 - 2.0 * 1.5_f64.atan().to_degrees();
+    let way = |times: f64| {
+        let (sin, cos) = (-times * turn).to_radians().sin_cos();
+        DVec3::new(cos, sin, 0.0)
+    };
+    let normal = |times: f64| (way(times + 1.0) - way(times)).try_normalize().expect("not straight on");
+    let lamp = DVec3::ZERO;
+    let first = lamp + way(0.0) * 4.0;
+    let second = first + way(1.0) * 4.0;
+    let floor = second + way(2.0) * 4.0;
+    let aside = way(2.0) * -0.8 + DVec3::new(0.0, 0.0, 0.6);
+    let along = way(2.0).cross(DVec3::new(0.0, 0.0, 1.0));
+    let (seen_at, camera) = (floor + aside * 3.0, floor + aside * 3.0 - along * 2.0);
+    let (position, look_at) = if in_a_mirror { (camera, seen_at) } else { (seen_at, floor) };
+    let mut text = format!(
+        "[camera]\nposition = [{:?}, {:?}, {:?}]\nlook_at = [{:?}, {:?}, {:?}]\nvertical_fov = 2\n\
+         [film]\nwidth = 20\nheight = 20\n",
+        position.x, position.y, position.z, look_at.x, look_at.y, look_at.z
+    );
+    let plates = [quad(first, normal(0.0), 0.5), quad(second, normal(1.0), 0.5)];
+    text += &body("plate", "dielectric = { index = 1.5, absorption = 1000 }", &[&plates[0], &plates[1]]);
+    text += &body("floor", "diffuse = { reflectance = 0.5 }", &[&quad(floor, -way(2.0), 0.4)]);
+    let screen = quad(floor + (lamp - floor) * 0.5, (lamp - floor).try_normalize().expect("apart"), 0.7);
+    text += &body("screen", "diffuse = { reflectance = 0 }", &[&screen]);
+    let lamp = format!("sphere = {{ center = [{:?}, {:?}, {:?}], radius = 0.02 }}", lamp.x, lamp.y, lamp.z);
+    text += &body("lamp", "emissive = { radiance = 1000 }", &[&lamp]);
+    if in_a_mirror {
+        // Any two vectors at right angles to the normal.
+        let normal = (-along - aside).try_normalize().expect("not straight on");
+        let u = normal.cross(DVec3::new(0.0, 0.0, 1.0)).try_normalize().expect("not upright");
+        let v = normal.cross(u);
+        let show = |v: DVec3| format!("[{:?}, {:?}, {:?}]", v.x, v.y, v.z);
+        let mirror = format!("quad = {{ center = {}, u = {}, v = {} }}", show(seen_at), show(u * 0.3), show(v * 0.3));
+        text += &body("mirror", "mirror = {}", &[&mirror]);
+    }
+    text
+}
+
+#[test]
+fn what_polarization_may_change_of_a_caustic_is_said_where_photons_are_seen_and_where_they_are_gathered() {
+    for in_a_mirror in [false, true] {
+        let scene = scene(&two_plates(in_a_mirror));
+        let map = in_a_mirror.then_some(MapPasses { count: 2, photons: 50_000, radius: 1.0 });
+        let light_pass = Some(LightPass { photons: 100_000, lights: vec![0], map });
+        let method = Method { samples: 4, transport: SPLITTING, diffuse_bounces: 1, light_pass, ..plan(&scene).method };
+        let (film, report) = render(&World::new(&scene, method), &|_| ());
+        let lit = film.pixels.iter().filter(|pixel| pixel.rgb[1] > 0.0).count();
+        assert!(lit > film.pixels.len() / 2, "in a mirror {in_a_mirror}: {lit} pixels are lit");
+        // All that is seen was reflected by both plates, which reflect one polarization alone: it is twice as much.
+        println!("in a mirror {in_a_mirror}: {:.4}", report.polarization);
+        let stated = [report.polarization, report.polarization_of_tile];
+        assert!(stated.iter().all(|&stated| stated > 0.99 && stated < 1.0 + 1e-6), "{in_a_mirror}: {stated:?}");
+    }
+}
