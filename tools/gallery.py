@@ -73,8 +73,10 @@ def make():
     """Every mesh and image that a scene names."""
     meshes, images = SCENES / "meshes", SCENES / "textures"
     shapes.write_ply(meshes / "brilliant.ply", *shapes.brilliant())
-    for name, profile in [("tumbler", shapes.tumbler()), ("water", shapes.water()), *make_lenses(), *make_pottery()]:
+    for name, profile in [("tumbler", shapes.tumbler()), ("water", shapes.water()), *make_lenses()]:
         shapes.write_ply(meshes / f"{name}.ply", *shapes.lathe(profile, 72))
+    for name, profile in make_pottery():
+        shapes.write_ply(meshes / f"{name}.ply", *shapes.lathe(profile, 48))
     points, faces, uv = shapes.tube()
     shapes.write_ply(meshes / "straw.ply", points, faces, uv=uv)
     shapes.write_ply(meshes / "sweep.ply", *shapes.sweep())

@@ -170,7 +170,7 @@ def tube(radius=0.04, wall=0.006, length=1.5):
 
 def vase():
     """A vase of clay with a narrow neck, 0.4 high, open at the top."""
-    t = np.linspace(0, 1, 22)
+    t = np.linspace(0, 1, 16)
     outside = 0.055 + 0.075 * np.sin(np.pi * t**0.8) ** 1.4 + 0.02 * t**8
     wall = [(radius, 0.4 * y) for radius, y in zip(outside, t)]
     inside = [(radius - 0.008, 0.4 * y) for radius, y in zip(outside[::-1], t[::-1]) if y > 0.05]
@@ -179,13 +179,13 @@ def vase():
 
 def bowl():
     """A shallow bowl, 0.36 wide, with a foot."""
-    t = np.linspace(0.15, 1, 14)
+    t = np.linspace(0.15, 1, 10)
     outside = [(0.18 * x, 0.012 + 0.09 * x**2.2) for x in t]
     inside = [(0.18 * x - 0.004, 0.02 + 0.084 * x**2.2) for x in t[::-1]]
     return [(0, 0), (0.06, 0), (0.06, 0.008), *outside, *inside, (0, 0.021)]
 
 
-def curtain(width=0.55, height=2.15, folds=5, columns=81, rows=24):
+def curtain(width=0.55, height=2.15, folds=5, columns=61, rows=15):
     """A hanging cloth from the origin down, gathered toward the top, with smooth normals; its folds run along +x and swing in z."""
     s, t = np.meshgrid(np.linspace(0, 1, columns), np.linspace(0, 1, rows))
     swing = 0.035 * (0.6 + 0.5 * t) * np.sin(2 * np.pi * folds * s + 0.8 * np.sin(3 * t)) + 0.012 * np.sin(17 * s + 4 * t)
