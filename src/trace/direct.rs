@@ -33,7 +33,7 @@ pub(super) struct Gathering<'a, const N: usize> {
     /// The object that hid a light last.
     pub(super) hider: &'a Cell<Option<u32>>,
     /// What polarization may change of it, where the path is polarized.
-    pub(super) lit: Option<Lit<'a>>,
+    pub(super) lit: Option<&'a Lit>,
     /// Four random numbers of the vertex; the first light uses the first two, the choice of one light the last.
     pub(super) u: [f64; 4],
 }
@@ -143,7 +143,7 @@ impl<const N: usize> Gathering<'_, N> {
             }
             let reflected = self.throughput.scaled(factor).of(bsdf_cos * arriving);
             let rgb = self.world.responses[target].sensor(self.arrival.draw, reflected, self.parted);
-            if let Some(lit) = &self.lit {
+            if let Some(lit) = self.lit {
                 let on_its_way = transmitted.map_or(Polarized::NOT, |(_, polarized)| polarized);
                 lit.count(self.world, (self.material, self.arrival), (sighting.direction, on_its_way), rgb);
             }

@@ -79,14 +79,13 @@ pub(super) fn amount(world: &World, rgb: [f64; 3]) -> f64 {
 }
 
 /// Light that lights send straight to a surface at the end of a polarized path.
-#[derive(Clone, Copy)]
-pub(super) struct Lit<'a> {
+pub(super) struct Lit {
     pub(super) polarized: Polarized,
     /// What polarization may have changed so far.
-    pub(super) moved: &'a Cell<f64>,
+    pub(super) moved: Cell<f64>,
 }
 
-impl Lit<'_> {
+impl Lit {
     /// Counts light of a film color that came from a direction, polarized on its way there.
     #[cold]
     #[inline(never)]

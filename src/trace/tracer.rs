@@ -202,9 +202,9 @@ impl<'a, const N: usize> Tracer<'a, N> {
             u = if spread { sampler.four(path.key, SCATTER) } else { sampler.four_plain(path.key, SCATTER) };
             let aims_at_all = world.aims_at_all(path.weight(draw));
             let goes_on = !diffuse || path.diffuse_left > 0;
-            let moved = Cell::new(0.0);
+            let lit = Lit { polarized: path.polarized, moved: Cell::new(0.0) };
             let may_be = path.polarized.is_any() || world.has_see_through();
-            let lit = may_be.then_some(Lit { polarized: path.polarized, moved: &moved });
+            let counted = may_be.then_some(&lit);
             let gathering = Gathering {
                 world,
                 material,
@@ -218,12 +218,12 @@ impl<'a, const N: usize> Tracer<'a, N> {
                 goes_on,
                 aims_at_all,
                 hider: &self.hider,
-                lit,
+                lit: counted,
                 u,
             };
             let far = material.scatters_through().then_some((beyond, parts));
             let chance = gathering.gather(far, sampler, path.key, sum);
-            self.tally.polarization += moved.get();
+            self.tally.polarization += lit.moved.get();
             if goes_on && path.leg != Leg::Camera {
                 if let Some(photons) = self.photons {
                     let (light, moved) =

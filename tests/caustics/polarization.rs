@@ -10,7 +10,7 @@ fn quad(center: DVec3, normal: DVec3, half: f64) -> String {
     let show = |v: DVec3| format!("[{:?}, {:?}, {:?}]", v.x, v.y, v.z);
     let up = DVec3::new(0.0, 0.0, half);
     let across = normal.cross(up);
-    format!("quad = {{ center = {}, u = {}, v = {} }}", show(center), show(across), show(up))
+    format!("quad = {{ center = {}, u = {}, v = {} }}", show(center), show(up), show(across))
 }
 
 /// Light of a small lamp that two glass plates, both at Brewster's angle and in one plane, reflect to a floor, and a view of
@@ -31,11 +31,11 @@ fn two_plates(in_a_mirror: bool) -> String {
     let (seen_at, camera) = (floor + aside * 3.0, floor + aside * 3.0 - along * 2.0);
     let (position, look_at) = if in_a_mirror { (camera, seen_at) } else { (seen_at, floor) };
     let mut text = format!(
-        "[camera]\nposition = [{:?}, {:?}, {:?}]\nlook_at = [{:?}, {:?}, {:?}]\nvertical_fov = 2\n\
-         [film]\nwidth = 20\nheight = 20\n",
+        "[camera]\nposition = [{:?}, {:?}, {:?}]\nlook_at = [{:?}, {:?}, {:?}]\nvertical_fov = 6\n\
+         [film]\nwidth = 8\nheight = 8\n",
         position.x, position.y, position.z, look_at.x, look_at.y, look_at.z
     );
-    let plates = [quad(first, normal(0.0), 0.5), quad(second, normal(1.0), 0.5)];
+    let plates = [quad(first, normal(0.0), 0.2), quad(second, normal(1.0), 0.3)];
     text += &body("plate", "dielectric = { index = 1.5, absorption = 1000 }", &[&plates[0], &plates[1]]);
     text += &body("floor", "diffuse = { reflectance = 0.5 }", &[&quad(floor, -way(2.0), 0.4)]);
     let screen = quad(floor + (lamp - floor) * 0.5, (lamp - floor).try_normalize().expect("apart"), 0.7);
@@ -59,7 +59,7 @@ fn what_polarization_may_change_of_a_caustic_is_said_where_photons_are_seen_and_
     for in_a_mirror in [false, true] {
         let scene = scene(&two_plates(in_a_mirror));
         let map = in_a_mirror.then_some(MapPasses { count: 2, photons: 50_000, radius: 1.0 });
-        let light_pass = Some(LightPass { photons: 100_000, lights: vec![0], map });
+        let light_pass = Some(LightPass { photons: 200_000, lights: vec![0], map });
         let method = Method { samples: 4, transport: SPLITTING, diffuse_bounces: 1, light_pass, ..plan(&scene).method };
         let (film, report) = render(&World::new(&scene, method), &|_| ());
         let lit = film.pixels.iter().filter(|pixel| pixel.rgb[1] > 0.0).count();

@@ -117,9 +117,7 @@ fn every_light_shines_through_a_pane_as_without_it_times_its_transmittance() {
             for transport in [SPLITTING, SINGLE_PATH] {
                 let mut through = mean(&under(&panes(material, &heights), lights, "0.5", 64), transport);
                 let share = tint.map(|t: f64| t.powi(heights.len() as i32));
-                for band in 0..3 {
-                    through.error[band] = libm::hypot(through.error[band], share[band] * open.error[band]);
-                }
+                through.error = [0, 1, 2].map(|band| libm::hypot(through.error[band], share[band] * open.error[band]));
                 let expected = [0, 1, 2].map(|band| open.value[band] * share[band]);
                 assert!(through.worst_error(expected) < 0.02, "{name}: {through:?}");
                 through.assert_near(expected, 20, name);
