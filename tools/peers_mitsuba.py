@@ -76,7 +76,7 @@ def far_disc(mitsuba, sun: dict, distance: float = 1e4) -> dict:
     look = mitsuba.ScalarTransform4f().look_at(origin=at, target=[0, 0, 0], up=np.roll(toward, 1))
     radiance = [x / (np.pi * np.sin(half) ** 2) for x in rgb(sun["irradiance"])]
     emitter = {"type": "area", "radiance": {"type": "rgb", "value": radiance}}
-    return {"type": "disk", "to_world": look.scale(distance * np.tan(half)), "emitter": emitter}
+    return {"type": "disk", "to_world": look.scale(float(distance * np.tan(half))), "emitter": emitter}
 
 
 def mitsuba_scene(mitsuba, path: Path, flat_lamp: bool = False) -> dict:
