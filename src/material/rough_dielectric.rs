@@ -127,9 +127,10 @@ fn mean(flows: impl Iterator<Item = (f64, [Flow; 2])>) -> [Flow; 2] {
     if lanes == 0.0 { sum } else { sum.map(|sum| Flow { value: sum.value / lanes, pdf: sum.pdf / lanes }) }
 }
 
-/// One over the density of the part that drew a direction, which all lanes share.
-fn over_density(mean: [Flow; 2], facet: Option<Facet>) -> [f64; 2] {
-    let over = |flow: Flow| if flow.pdf > 0.0 { 1.0 / flow.pdf } else { 0.0 };
+/// How often light goes a way that was drawn, over the density of that, which all lanes share; 0 for the part that did not
+/// draw it.
+fn over_density(mean: [Flow; 2], facet: Option<Facet>, often: f64) -> [f64; 2] {
+    let over = |flow: Flow| if flow.pdf > 0.0 { often / flow.pdf } else { 0.0 };
     if facet.is_some() { [over(mean[0]), 0.0] } else { [0.0, over(mean[1])] }
 }
 
@@ -166,7 +167,8 @@ impl Dielectric<Table> {
         }
     }
 
-    /// One branch by reflection, and one by refraction: where lanes part, one for each kind of lanes.
+    /// One branch by reflection, one by refraction, and one of what facets hand to each other: where lanes part, each kind of
+    /// lanes has branches of its own beyond the surface.
     ///
     /// Lanes that are together share a direction drawn for one of them, chosen evenly, and each is divided by the mean of
     /// all their densities (the balance heuristic, Veach & Guibas 1995; Wilkie et al. 2014), of facets and of lobes by
@@ -194,7 +196,7 @@ impl Dielectric<Table> {
         let Some(chosen) = chosen.or(meeting.kinds.len().checked_sub(1)) else { return };
         let kind = &meeting.kinds[chosen];
         let u = [(at / kind.count).min(1.0 - f64::EPSILON), u[1]];
-        let [reflected, crossed] = kind.sides.draw(meeting.wo, u);
+        let ways = kind.sides.draw(meeting.wo, u);
         let branch = |wi, share, pdf, crosses, eta_scale| Branch {
             wi,
             share,
@@ -207,32 +209,34 @@ impl Dielectric<Table> {
         for number in drawn {
             let kind = &meeting.kinds[number];
             let (sides, indices) = (kind.sides, kind.indices);
-            let way = if number == chosen { crossed } else { sides.draw(meeting.wo, u)[1] };
-            let (Some(Way { wi, share, facet }), true) = (way, kind.crossing > 0.0) else { continue };
-            let Some(world) = meeting.to_world(wi) else { continue };
-            let mean = meeting.cross(wi, facet.map(|facet| (number, facet)));
-            let share = if meeting.parts || meeting.kinds.len() == 1 {
-                meeting.across(&meeting.kinds[number]) * (share * square(indices)) as f32
-            } else {
-                meeting.crossed(over_density(mean, facet))
-            };
-            let pdf = mean[0].pdf + mean[1].pdf;
-            if pdf > 0.0 && !(share * tint).is_zero() {
-                branches.push(branch(world, share * tint, pdf, true, square(indices)));
+            if kind.crossing == 0.0 {
+                continue;
+            }
+            let ways = if number == chosen { ways } else { sides.draw(meeting.wo, u) };
+            for Way { wi, share, often, facet } in ways.into_iter().flatten().filter(|way| way.wi.z < 0.0) {
+                let Some(world) = meeting.to_world(wi) else { continue };
+                let mean = meeting.cross(wi, facet.map(|facet| (number, facet)));
+                let share = if meeting.parts || meeting.kinds.len() == 1 {
+                    meeting.across(&meeting.kinds[number]) * (share * square(indices)) as f32
+                } else {
+                    meeting.crossed(over_density(mean, facet, often))
+                };
+                let pdf = mean[0].pdf + mean[1].pdf;
+                if pdf > 0.0 && !(share * tint).is_zero() {
+                    branches.push(branch(world, share * tint, pdf, true, square(indices)));
+                }
             }
         }
-        if let Some(Way { wi, share, facet }) = reflected
-            && let Some(world) = meeting.to_world(wi)
-        {
+        for Way { wi, share, often, facet } in ways.into_iter().flatten().filter(|way| way.wi.z > 0.0) {
+            let Some(world) = meeting.to_world(wi) else { continue };
             let mean = meeting.reflect(wi, facet.map(|facet| (chosen, facet)));
-            let share = reflectance
-                * match &meeting.kinds[..] {
-                    [kind] => kind.present * share as f32,
-                    _ => meeting.reflected(over_density(mean, facet)),
-                };
+            let share = match &meeting.kinds[..] {
+                [kind] => kind.present * share as f32,
+                _ => meeting.reflected(over_density(mean, facet, often)),
+            };
             let pdf = mean[0].pdf + mean[1].pdf;
-            if pdf > 0.0 && !share.is_zero() {
-                branches.push(branch(world, share, pdf, false, 1.0));
+            if pdf > 0.0 && !(share * reflectance).is_zero() {
+                branches.push(branch(world, share * reflectance, pdf, false, 1.0));
             }
         }
     }

@@ -173,33 +173,35 @@ pub struct Way {
     pub wi: DVec3,
     /// The share of the light that came from there, without the change of radiance between media.
     pub share: f64,
+    /// How often light meets as many facets as this, by which the densities are weighted.
+    pub often: f64,
     /// The facet that sent it, if it met only one.
     pub facet: Option<Facet>,
 }
 
+/// Where one facet sends light, above the surface and beyond it, and where light goes that it hands to others.
+pub type Ways = [Option<Way>; 3];
+
 impl Sides<'_> {
-    /// A direction above the surface and one beyond it for the viewer's direction `wo`, whose shares sum to 1; none where
-    /// no light comes from.
+    /// Directions for the viewer's direction `wo`, whose shares sum to 1; none where no light comes from.
     ///
-    /// A visible facet is drawn. As often as its light meets a second facet, both directions are drawn from the lobes;
-    /// else they are its own, with its own Fresnel shares. So the shares follow what light does, and their product along
-    /// a path neither grows nor falls, however long that is.
-    pub fn draw(&self, wo: DVec3, u: [f64; 2]) -> [Option<Way>; 2] {
+    /// A visible facet is drawn, and a direction from the lobe of one side for what it hands to other facets. The shares are
+    /// the facet's own, so that their sum, or what a path carries that follows one of them as often as its share, neither
+    /// grows nor falls, however many surfaces it meets.
+    pub fn draw(&self, wo: DVec3, u: [f64; 2]) -> Ways {
         let facet = self.facet([wo, self.facets.visible_normal(wo, u)], None);
-        let [chance, around] = later_digits(u);
-        if chance < facet.again {
-            let u = [around, chance / facet.again];
-            let [above, beyond] = [self.near.draw(u), self.far.draw(u)];
-            let lobe = |wi: DVec3, share| (wi.z != 0.0).then_some(Way { wi, share, facet: None });
-            let crossing = self.crossing[0];
-            return [lobe(above, 1.0 - crossing), lobe(DVec3 { z: -beyond.z, ..beyond }, crossing)];
-        }
-        let way = |i: usize| Way {
-            wi: facet.ways[i],
-            share: facet.once[i] / (facet.once[0] + facet.once[1]),
-            facet: Some(facet),
+        let often = facet.once[0] + facet.once[1];
+        let way = |i: usize| Way { wi: facet.ways[i], share: facet.once[i], often, facet: Some(facet) };
+        let [above, beyond] = [0, 1].map(|i| (facet.once[i] > 0.0).then(|| way(i)));
+        let ([side, around], crossing) = (later_digits(u), self.crossing[0]);
+        let wi = if side < crossing {
+            let wi = self.far.draw([around, side / crossing]);
+            DVec3 { z: -wi.z, ..wi }
+        } else {
+            self.near.draw([around, (side - crossing) / (1.0 - crossing)])
         };
-        [0, 1].map(|i| (facet.once[i] > 0.0).then(|| way(i)))
+        let lobe = Way { wi, share: facet.again, often: facet.again, facet: None };
+        [above, beyond, Some(lobe).filter(|way| way.share > 0.0 && wi.z != 0.0)]
     }
 
     fn facet(&self, directions: [DVec3; 2], known: Option<DVec3>) -> Facet {
@@ -226,7 +228,7 @@ impl Sides<'_> {
         let lobes = (1.0 - self.crossing[0]) * again * blocked / self.near.mean_blocked() * wi.z / PI;
         let facet = facet.or_else(|| Some(self.facet([wo, (wo + wi).try_normalize()?], Some(wi))));
         let once = facet.map_or(Flow::default(), |facet| facet.flow(0, self.facets.pdf(wo, facet.h)));
-        [once, Flow { value: lobes, pdf: again * lobe }]
+        [once, Flow { value: lobes, pdf: (1.0 - self.crossing[0]) * again * lobe }]
     }
 
     /// What crosses by one facet, and by the lobe.
@@ -245,6 +247,6 @@ impl Sides<'_> {
             let flow = facet.flow(1, self.facets.refraction_pdf(wo, facet.h, self.indices, facet.cos));
             Flow { value: flow.value * square, ..flow }
         });
-        [once, Flow { value: lobes * square, pdf: again * lobe }]
+        [once, Flow { value: lobes * square, pdf: self.crossing[0] * again * lobe }]
     }
 }

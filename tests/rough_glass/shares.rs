@@ -36,16 +36,19 @@ fn each(check: impl Fn(&Sides, [f64; 2], DVec3, &str)) {
 }
 
 #[test]
-fn both_ways_out_take_all_the_light_in_every_draw() {
+fn the_ways_out_take_all_the_light_in_every_draw() {
     each(|sides, _, wo, what| {
         let mut random = Random::new(5);
         for _ in 0..2_000 {
             let ways = sides.draw(wo, random.pair());
             let sum: f64 = ways.iter().flatten().map(|way| way.share).sum();
             assert!((sum - 1.0).abs() < 1e-12, "{what}: {sum} of {ways:?}");
-            for (way, side) in ways.iter().zip([1.0, -1.0]) {
-                assert!(way.is_none_or(|way| way.wi.z * side > 0.0 && way.share >= 0.0), "{what}: {way:?}");
-            }
+            let [above, beyond, _] = ways;
+            assert!(
+                above.is_none_or(|way| way.wi.z > 0.0) && beyond.is_none_or(|way| way.wi.z < 0.0),
+                "{what}: {ways:?}"
+            );
+            assert!(ways.iter().flatten().all(|way| way.share > 0.0), "{what}: {ways:?}");
         }
     });
 }
@@ -58,14 +61,13 @@ fn what_is_drawn_is_worth_what_is_evaluated() {
         let (mut random, mut sums) = (Random::new(6), [[0.0; 2]; 2]);
         const COUNT: u32 = 20_000;
         for _ in 0..COUNT {
-            for (side, way) in sides.draw(wo, random.pair()).into_iter().enumerate() {
-                let Some(way) = way else { continue };
-                let flow = match side {
-                    0 => sides.reflected(wo, way.wi, way.facet),
-                    _ => sides.crossed(wo, way.wi, way.facet),
+            for way in sides.draw(wo, random.pair()).into_iter().flatten() {
+                let (side, flow, square) = if way.wi.z > 0.0 {
+                    (0, sides.reflected(wo, way.wi, way.facet), 1.0)
+                } else {
+                    (1, sides.crossed(wo, way.wi, way.facet), (n2 / n1) * (n2 / n1))
                 };
-                let square = if side == 0 { 1.0 } else { (n2 / n1) * (n2 / n1) };
-                let off = flow.value * square / flow.pdf - way.share;
+                let off = way.often * flow.value * square / flow.pdf - way.share;
                 sums[side][0] += off;
                 sums[side][1] += off * off;
             }
