@@ -36,7 +36,7 @@ pub use mirror::{Mirror, reflect};
 pub use mix::Mix;
 pub use part::Part;
 pub use plastic::Plastic;
-pub use rough_interface::{RoughInterface, Side, Sides, Way, Ways};
+pub use rough_interface::{RoughInterface, Side, Sides, Way};
 pub use roughness::{RoughReflection, RoughSurface, Roughness};
 pub use thin::Thin;
 

@@ -166,42 +166,31 @@ pub struct Sides<'a> {
     pub straight: f64,
 }
 
-/// A direction drawn for the viewer.
+/// A direction drawn for the viewer, and the facet that sent light from there, if it met only one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Way {
     /// Unit vector toward where the light came from.
     pub wi: DVec3,
-    /// The share of the light that came from there, without the change of radiance between media.
-    pub share: f64,
-    /// How often light meets as many facets as this, by which the densities are weighted.
-    pub often: f64,
-    /// The facet that sent it, if it met only one.
+    /// The facet.
     pub facet: Option<Facet>,
 }
 
-/// Where one facet sends light, above the surface and beyond it, and where light goes that it hands to others.
-pub type Ways = [Option<Way>; 3];
-
 impl Sides<'_> {
-    /// Directions for the viewer's direction `wo`, whose shares sum to 1; none where no light comes from.
+    /// A direction above the surface and one beyond it for the viewer's direction `wo`; none where no light comes from.
     ///
-    /// A visible facet is drawn, and a direction from the lobe of one side for what it hands to other facets. The shares are
-    /// the facet's own, so that their sum, or what a path carries that follows one of them as often as its share, neither
-    /// grows nor falls, however many surfaces it meets.
-    pub fn draw(&self, wo: DVec3, u: [f64; 2]) -> Ways {
+    /// A visible facet is drawn. As often as its light meets a second facet, both directions are drawn from the lobes;
+    /// else they are its own. So all that is drawn goes on as light does: what is evaluated there over the density is at most 1
+    /// on each side and nearly 1 for both, and its product stays so along a path, however many surfaces that meets.
+    pub fn draw(&self, wo: DVec3, u: [f64; 2]) -> [Option<Way>; 2] {
         let facet = self.facet([wo, self.facets.visible_normal(wo, u)], None);
-        let often = facet.once[0] + facet.once[1];
-        let way = |i: usize| Way { wi: facet.ways[i], share: facet.once[i], often, facet: Some(facet) };
-        let [above, beyond] = [0, 1].map(|i| (facet.once[i] > 0.0).then(|| way(i)));
-        let ([side, around], crossing) = (later_digits(u), self.crossing[0]);
-        let wi = if side < crossing {
-            let wi = self.far.draw([around, side / crossing]);
-            DVec3 { z: -wi.z, ..wi }
-        } else {
-            self.near.draw([around, (side - crossing) / (1.0 - crossing)])
-        };
-        let lobe = Way { wi, share: facet.again, often: facet.again, facet: None };
-        [above, beyond, Some(lobe).filter(|way| way.share > 0.0 && wi.z != 0.0)]
+        let [chance, around] = later_digits(u);
+        if chance < facet.again {
+            let u = [around, chance / facet.again];
+            let [above, beyond] = [self.near.draw(u), self.far.draw(u)];
+            return [above, DVec3 { z: -beyond.z, ..beyond }]
+                .map(|wi| (wi.z != 0.0).then_some(Way { wi, facet: None }));
+        }
+        [0, 1].map(|i| (facet.once[i] > 0.0).then(|| Way { wi: facet.ways[i], facet: Some(facet) }))
     }
 
     fn facet(&self, directions: [DVec3; 2], known: Option<DVec3>) -> Facet {
@@ -210,29 +199,17 @@ impl Sides<'_> {
 
     /// What is reflected from `wi`, above the surface, to `wo`. The facet is found where it is not given.
     pub fn reflected(&self, wo: DVec3, wi: DVec3, facet: Option<Facet>) -> Flow {
-        let [once, again] = self.reflected_parts(wo, wi, facet);
-        once + again
-    }
-
-    /// What crosses from `wi`, beyond the surface, to `wo`: radiance, which changes by (n1 / n2)^2. The facet is found where
-    /// it is not given.
-    pub fn crossed(&self, wo: DVec3, wi: DVec3, facet: Option<Facet>) -> Flow {
-        let [once, again] = self.crossed_parts(wo, wi, facet);
-        once + again
-    }
-
-    /// What is reflected by one facet, and by the lobe.
-    pub(super) fn reflected_parts(&self, wo: DVec3, wi: DVec3, facet: Option<Facet>) -> [Flow; 2] {
         let again = self.near.blocked(wo.z);
         let [blocked, lobe] = self.near.blocked_and_density(wi.z);
         let lobes = (1.0 - self.crossing[0]) * again * blocked / self.near.mean_blocked() * wi.z / PI;
         let facet = facet.or_else(|| Some(self.facet([wo, (wo + wi).try_normalize()?], Some(wi))));
         let once = facet.map_or(Flow::default(), |facet| facet.flow(0, self.facets.pdf(wo, facet.h)));
-        [once, Flow { value: lobes, pdf: (1.0 - self.crossing[0]) * again * lobe }]
+        once + Flow { value: lobes, pdf: again * lobe }
     }
 
-    /// What crosses by one facet, and by the lobe.
-    pub(super) fn crossed_parts(&self, wo: DVec3, wi: DVec3, facet: Option<Facet>) -> [Flow; 2] {
+    /// What crosses from `wi`, beyond the surface, to `wo`: radiance, which changes by (n1 / n2)^2. The facet is found where
+    /// it is not given.
+    pub fn crossed(&self, wo: DVec3, wi: DVec3, facet: Option<Facet>) -> Flow {
         let again = self.near.blocked(wo.z);
         let [blocked, lobe] = self.far.blocked_and_density(-wi.z);
         let [n1, n2] = self.indices;
@@ -247,6 +224,6 @@ impl Sides<'_> {
             let flow = facet.flow(1, self.facets.refraction_pdf(wo, facet.h, self.indices, facet.cos));
             Flow { value: flow.value * square, ..flow }
         });
-        [once, Flow { value: lobes * square, pdf: self.crossing[0] * again * lobe }]
+        once + Flow { value: lobes * square, pdf: again * lobe }
     }
 }

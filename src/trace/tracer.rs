@@ -231,7 +231,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
             self.branches.push(Branch::onward(&path.ray, passing));
             self.branches.len() - 1
         });
-        self.tally.partings += u64::from(parts && self.branches.iter().filter(|branch| branch.crosses).count() > 1);
+        self.tally.partings += u64::from(self.branches.iter().filter(|branch| branch.crosses).count() > 1);
         let sooner = if diffuse { SOONER } else { 1.0 };
         self.follow(path, draw, sampler, (parts, sooner), |number, branch, factor| {
             if onward == Some(number) {

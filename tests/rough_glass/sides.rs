@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use abbe::material::{Flow, RoughInterface, Sides, Way};
+use abbe::material::{RoughInterface, Sides};
 use abbe::math::DVec3;
 
 use crate::chi_squared;
@@ -27,18 +27,15 @@ fn points(draws: u32) -> impl Iterator<Item = [f64; 2]> {
     (0..draws).map(move |i| [(f64::from(i) + 0.5) / f64::from(draws), f64::from(i.reverse_bits()) / 4_294_967_296.0])
 }
 
-fn flow(sides: &Sides, wo: DVec3, way: &Way) -> Flow {
-    if way.wi.z > 0.0 { sides.reflected(wo, way.wi, way.facet) } else { sides.crossed(wo, way.wi, way.facet) }
-}
-
 /// The light that comes back and the light that crosses, of an even environment: radiance over n^2 is 1 everywhere.
 fn furnace(sides: &Sides, [n1, n2]: [f64; 2], cos: f64) -> [f64; 2] {
     let (wo, mut sum) = (at(cos, 0.3), [0.0; 2]);
     for u in points(DRAWS) {
-        for way in sides.draw(wo, u).into_iter().flatten() {
-            let (side, square) = if way.wi.z > 0.0 { (0, 1.0) } else { (1, n2 * n2 / (n1 * n1)) };
-            let flow = flow(sides, wo, &way);
-            sum[side] += way.often * flow.value / flow.pdf * square / f64::from(DRAWS);
+        let [reflected, crossed] = sides.draw(wo, u);
+        let reflected = reflected.map(|way| sides.reflected(wo, way.wi, way.facet));
+        let crossed = crossed.map(|way| sides.crossed(wo, way.wi, way.facet));
+        for ((sum, flow), square) in sum.iter_mut().zip([reflected, crossed]).zip([1.0, n2 * n2 / (n1 * n1)]) {
+            *sum += flow.map_or(0.0, |flow| flow.value / flow.pdf * square / f64::from(DRAWS));
         }
     }
     sum
@@ -72,13 +69,17 @@ fn the_closer_two_indices_the_less_a_rough_boundary_turns_any_light() {
         for step in [1e-2, 1e-3, 1e-4] {
             for indices in [[1.5, 1.5 + step], [1.5 + step, 1.5]] {
                 let sides = interface.between(indices[0], indices[1]);
+                let square = (indices[1] / indices[0]) * (indices[1] / indices[0]);
                 for cos in [0.2, 0.5, 1.0] {
                     let wo = at(cos, 0.3);
                     let mut kept = 0.0;
                     for u in points(1 << 14) {
-                        let straight = |way: &Way| (wo + way.wi).length() < step.sqrt();
-                        let ways = sides.draw(wo, u).into_iter().flatten().filter(straight);
-                        kept += ways.map(|way| way.share).sum::<f64>() / f64::from(1 << 14);
+                        if let [_, Some(way)] = sides.draw(wo, u)
+                            && (wo + way.wi).length() < step.sqrt()
+                        {
+                            let flow = sides.crossed(wo, way.wi, way.facet);
+                            kept += flow.value / flow.pdf * square / f64::from(1 << 14);
+                        }
                     }
                     // Facets reflect all light below a cosine of sqrt(2 step / n), and turn it more than that a little above.
                     let what = format!("roughness {roughness}, {indices:?}, cos {cos}");
@@ -168,13 +169,7 @@ fn directions_on_both_sides_follow_their_density_and_the_rest_leads_nowhere() {
         let mut random = Random::new((roughness * 1000.0 + cos * 1e6 + indices[0] * 1e7) as u64);
         let mut counts = [0, 1].map(|_| vec![0; CELLS * CELLS + 1]);
         for _ in 0..COUNT {
-            let ([above, beyond, lobe], once) = (sides.draw(wo, random.pair()), random.number());
-            // As often as light goes on from the facet, both ways from there; else the one from the lobes.
-            let often = lobe.map_or(0.0, |lobe| lobe.often);
-            let lobe = lobe.filter(|_| once < often);
-            let of = |side: f64| lobe.filter(|way| way.wi.z * side > 0.0);
-            let ways = if once < often { [of(1.0), of(-1.0)] } else { [above, beyond] };
-            for (counts, way) in counts.iter_mut().zip(ways) {
+            for (counts, way) in counts.iter_mut().zip(sides.draw(wo, random.pair())) {
                 counts[way.map_or(CELLS * CELLS, |way| cell(way.wi))] += 1;
             }
         }
@@ -219,8 +214,12 @@ fn no_draw_is_not_a_number_along_the_surface_and_between_nearly_equal_indices() 
                 let wo = at(cos, 0.3);
                 let corners = ends.iter().flat_map(|&a| ends.map(|b| [a, b])).collect::<Vec<_>>();
                 for u in corners.into_iter().chain((0..1_000).map(|_| random.pair())) {
-                    for way in sides.draw(wo, u).into_iter().flatten() {
-                        let flow = flow(&sides, wo, &way);
+                    let [reflected, crossed] = sides.draw(wo, u);
+                    let flows = [
+                        reflected.map(|way| sides.reflected(wo, way.wi, way.facet)),
+                        crossed.map(|way| sides.crossed(wo, way.wi, way.facet)),
+                    ];
+                    for flow in flows.into_iter().flatten() {
                         let weight = flow.value / flow.pdf * (n2 / n1).powi(2).min(1.0);
                         let what = format!("roughness {roughness}, {n1} {n2}, cos {cos:e}, {u:?}: {flow:?}");
                         assert!(flow.value.is_finite() && flow.pdf > 0.0 && flow.pdf.is_finite(), "{what}");
