@@ -11,6 +11,6 @@ mod support;
 mod rough_glass {
     mod furnaces;
     mod lamps;
-    mod shares;
     mod sides;
+    mod weights;
 }

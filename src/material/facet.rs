@@ -3,7 +3,8 @@
 use super::{Facets, Interface, reflect};
 use crate::math::DVec3;
 
-/// The BSDF times cosine between two directions, and the density with which [`Sides::draw`](super::Sides::draw) draws one for the other.
+/// The BSDF times cosine between two directions, and the density with which [`Sides::draw`](super::Sides::draw) draws one for
+/// the other.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Flow {
     /// BSDF times cosine.

@@ -26,8 +26,8 @@ struct Kind<'a, const N: usize> {
     sides: Sides<'a>,
     present: Lanes<N>,
     count: f64,
-    /// What light of these lanes does in the direction that was asked for last: by one facet, and by the lobes.
-    flow: [Flow; 2],
+    /// What light of these lanes does in the direction that was asked for last.
+    flow: Flow,
     /// How many of them count beyond the surface.
     crossing: f64,
 }
@@ -50,7 +50,7 @@ impl<'a, 'b, const N: usize> Meeting<'a, 'b, N> {
                     present: Lanes::ZERO,
                     count: 0.0,
                     crossing: 0.0,
-                    flow: Default::default(),
+                    flow: Flow::default(),
                 });
                 kinds.len() - 1
             });
@@ -68,53 +68,55 @@ impl<'a, 'b, const N: usize> Meeting<'a, 'b, N> {
         if self.parts { kind.present * self.arrival.draw.parting() } else { kind.present }
     }
 
-    /// Asks every kind of lanes about a direction above the surface, for the mean over the lanes. `drawn` is the kind that
-    /// drew it, and the facet.
-    fn reflect(&mut self, wi: DVec3, drawn: Option<(usize, Facet)>) -> [Flow; 2] {
-        let wo = self.wo;
-        let asked = self.kinds.iter_mut().enumerate().map(|(number, kind)| {
-            kind.flow = kind.sides.reflected_parts(wo, wi, facet_of(number, drawn));
-            (kind.count, kind.flow)
-        });
-        mean(asked)
+    /// Asks every kind of lanes about a direction above the surface, for the mean of the densities with which they draw it.
+    /// `drawn` is the kind that drew it, and the facet.
+    fn reflect(&mut self, wi: DVec3, drawn: Option<(usize, Facet)>) -> f64 {
+        let (mut pdf, mut lanes) = (0.0, 0.0);
+        for (number, kind) in self.kinds.iter_mut().enumerate() {
+            kind.flow = kind.sides.reflected(self.wo, wi, facet_of(number, drawn));
+            pdf += kind.count * kind.flow.pdf;
+            lanes += kind.count;
+        }
+        if lanes > 0.0 { pdf / lanes } else { 0.0 }
     }
 
     /// The same of a direction beyond it.
-    fn cross(&mut self, wi: DVec3, drawn: Option<(usize, Facet)>) -> [Flow; 2] {
-        let wo = self.wo;
-        let crossing = self.kinds.iter_mut().enumerate().filter(|(_, kind)| kind.crossing > 0.0);
-        mean(crossing.map(|(number, kind)| {
-            kind.flow = kind.sides.crossed_parts(wo, wi, facet_of(number, drawn));
-            (kind.crossing, kind.flow)
-        }))
+    fn cross(&mut self, wi: DVec3, drawn: Option<(usize, Facet)>) -> f64 {
+        let (mut pdf, mut lanes) = (0.0, 0.0);
+        for (number, kind) in self.kinds.iter_mut().enumerate().filter(|(_, kind)| kind.crossing > 0.0) {
+            kind.flow = kind.sides.crossed(self.wo, wi, facet_of(number, drawn));
+            pdf += kind.crossing * kind.flow.pdf;
+            lanes += kind.crossing;
+        }
+        if lanes > 0.0 { pdf / lanes } else { 0.0 }
     }
 
-    /// What the lanes do that were asked last, the BSDF times the cosine: times a factor for each part of it.
-    fn reflected(&self, factors: [f64; 2]) -> Lanes<N> {
-        self.kinds.iter().fold(Lanes::ZERO, |sum, kind| sum + kind.present * self.flowing(kind, factors, false))
+    /// What the lanes do that were asked last, the BSDF times the cosine, times a factor.
+    fn reflected(&self, factor: f64) -> Lanes<N> {
+        self.kinds.iter().fold(Lanes::ZERO, |sum, kind| sum + kind.present * self.flowing(kind, factor, false))
     }
 
     /// The same beyond the surface.
-    fn crossed(&self, factors: [f64; 2]) -> Lanes<N> {
+    fn crossed(&self, factor: f64) -> Lanes<N> {
         let crossing = self.kinds.iter().filter(|kind| kind.crossing > 0.0);
-        crossing.fold(Lanes::ZERO, |sum, kind| sum + self.across(kind) * self.flowing(kind, factors, true))
+        crossing.fold(Lanes::ZERO, |sum, kind| sum + self.across(kind) * self.flowing(kind, factor, true))
     }
 
-    /// What lanes of a kind do in the direction that was asked for last, each by its own indices.
-    fn flowing(&self, kind: &Kind<N>, factors: [f64; 2], crosses: bool) -> Lanes<N> {
-        let [once, again] = [0, 1].map(|part| kind.flow[part].value * factors[part]);
-        let Some(own) = self.arrival.own_transmittance(kind.flow[0].cos) else {
-            return Lanes::from_fn(|_| (once + again) as f32);
+    /// What lanes of a kind do in the direction that was asked for last, each by its own indices, times a factor.
+    fn flowing(&self, kind: &Kind<N>, factor: f64, crosses: bool) -> Lanes<N> {
+        let Flow { value, facet, cos, .. } = kind.flow;
+        let Some(own) = self.arrival.own_transmittance(cos) else {
+            return Lanes::from_fn(|_| (value * factor) as f32);
         };
         let [here, beyond] = kind.indices;
-        let of_ray = Interface::new(here, beyond, kind.flow[0].cos);
+        let of_ray = Interface::new(here, beyond, cos);
         // What crosses less is reflected.
-        let facet = kind.flow[0].facet * factors[0] * if crosses { 1.0 } else { -1.0 };
+        let facet = if crosses { facet } else { -facet };
         Lanes::from_fn(|i| {
-            // Radiance changes by the lane's own indices, and the flow is that of the ray's.
+            // Radiance changes by the lane's own indices, and `value` is that of the ray's.
             let ratio = (self.arrival.incident[i] / self.arrival.beyond[i]) * (beyond / here);
             let square = if crosses { ratio * ratio } else { 1.0 };
-            ((once + again + (own[i] - of_ray.transmittance) * facet) * square).max(0.0) as f32
+            ((value + (own[i] - of_ray.transmittance) * facet) * square * factor).max(0.0) as f32
         })
     }
 
@@ -128,33 +130,6 @@ impl<'a, 'b, const N: usize> Meeting<'a, 'b, N> {
 /// The facet that sent light of a kind of lanes, if it is this kind that was drawn.
 fn facet_of(number: usize, drawn: Option<(usize, Facet)>) -> Option<Facet> {
     drawn.filter(|drawn| drawn.0 == number).map(|drawn| drawn.1)
-}
-
-/// The mean of what numbers of lanes do, each part by itself.
-fn mean(flows: impl Iterator<Item = (f64, [Flow; 2])>) -> [Flow; 2] {
-    let (mut sum, mut lanes) = ([Flow::default(); 2], 0.0);
-    for (count, flows) in flows {
-        (0..2).for_each(|i| sum[i].value += count * flows[i].value);
-        (0..2).for_each(|i| sum[i].pdf += count * flows[i].pdf);
-        lanes += count;
-    }
-    if lanes == 0.0 { sum } else { sum.map(|sum| Flow { value: sum.value / lanes, pdf: sum.pdf / lanes, ..sum }) }
-}
-
-/// Factors that make the part which drew a direction the share that it was drawn with.
-fn as_drawn([once, again]: [Flow; 2], facet: Option<Facet>, share: f64) -> [f64; 2] {
-    if facet.is_some() { [share / once.value, 0.0] } else { [0.0, share / again.value] }
-}
-
-/// One over the density of the part that drew a direction, which all lanes share.
-fn over_density(mean: [Flow; 2], facet: Option<Facet>) -> [f64; 2] {
-    let over = |flow: Flow| if flow.pdf > 0.0 { 1.0 / flow.pdf } else { 0.0 };
-    if facet.is_some() { [over(mean[0]), 0.0] } else { [0.0, over(mean[1])] }
-}
-
-/// The change of radiance between two media.
-fn square([n1, n2]: [f64; 2]) -> f64 {
-    (n1 / n2) * (n1 / n2)
 }
 
 /// Whether lanes that cross a rough surface go different ways. While their lobes overlap they go on together.
@@ -191,11 +166,10 @@ impl Dielectric<Table> {
     /// One branch by reflection, and one by refraction: where lanes part, one for each kind of lanes.
     ///
     /// Lanes that are together share a direction drawn for one of them, chosen evenly, and each is divided by the mean of
-    /// all their densities (the balance heuristic, Veach & Guibas 1995; Wilkie et al. 2014), of facets and of lobes by
-    /// themselves: lanes that do nearly the same keep their shares, which sum to 1. Each branch has a density of its own, whose
-    /// integral is what it is drawn as often as. Next-event estimation weighs a direction by the same function,
-    /// [`Dielectric::evaluate_rough`]: the two weights sum to 1 in every direction, however many branches the tracer
-    /// follows, as one that is chosen with a probability is divided by it.
+    /// all their densities (the balance heuristic, Veach & Guibas 1995; Wilkie et al. 2014). Each branch has a density of
+    /// its own, whose integral is what it is drawn as often as. Next-event estimation weighs a direction by the same
+    /// function, [`Dielectric::evaluate_rough`]: the two weights sum to 1 in every direction, however many branches
+    /// the tracer follows, as one that is chosen with a probability is divided by it.
     pub(super) fn scatter_rough<const N: usize>(
         &self,
         interface: &RoughInterface,
@@ -225,36 +199,30 @@ impl Dielectric<Table> {
             eta_scale,
             polarization: 0.0,
         };
+        let square = |[n1, n2]: [f64; 2]| (n1 / n2) * (n1 / n2);
         let drawn = if meeting.parts { 0..meeting.kinds.len() } else { chosen..chosen + 1 };
         for number in drawn {
             let kind = &meeting.kinds[number];
             let (sides, indices) = (kind.sides, kind.indices);
             let way = if number == chosen { crossed } else { sides.draw(meeting.wo, u)[1] };
-            let (Some(Way { wi, share, facet }), true) = (way, kind.crossing > 0.0) else { continue };
+            let (Some(Way { wi, facet }), true) = (way, kind.crossing > 0.0) else { continue };
             let Some(world) = meeting.to_world(wi) else { continue };
-            let mean = meeting.cross(wi, facet.map(|facet| (number, facet)));
-            let share = if meeting.parts || meeting.kinds.len() == 1 {
+            let pdf = meeting.cross(wi, facet.map(|facet| (number, facet)));
+            let share = if meeting.parts {
                 let kind = &meeting.kinds[number];
-                let factors = as_drawn(kind.flow, facet, share * square(indices));
-                meeting.across(kind) * meeting.flowing(kind, factors, true)
+                meeting.across(kind) * meeting.flowing(kind, 1.0 / kind.flow.pdf, true)
             } else {
-                meeting.crossed(over_density(mean, facet))
+                meeting.crossed(1.0 / pdf)
             };
-            let pdf = mean[0].pdf + mean[1].pdf;
             if pdf > 0.0 && !(share * tint).is_zero() {
                 branches.push(branch(world, share * tint, pdf, true, square(indices)));
             }
         }
-        if let Some(Way { wi, share, facet }) = reflected
+        if let Some(Way { wi, facet }) = reflected
             && let Some(world) = meeting.to_world(wi)
         {
-            let mean = meeting.reflect(wi, facet.map(|facet| (chosen, facet)));
-            let share = reflectance
-                * match &meeting.kinds[..] {
-                    [kind] => kind.present * meeting.flowing(kind, as_drawn(kind.flow, facet, share), false),
-                    _ => meeting.reflected(over_density(mean, facet)),
-                };
-            let pdf = mean[0].pdf + mean[1].pdf;
+            let pdf = meeting.reflect(wi, facet.map(|facet| (chosen, facet)));
+            let share = meeting.reflected(1.0 / pdf) * reflectance;
             if pdf > 0.0 && !share.is_zero() {
                 branches.push(branch(world, share, pdf, false, 1.0));
             }
@@ -287,12 +255,10 @@ impl Dielectric<Table> {
         let mut meeting = Meeting::new(interface, arrival);
         let local = meeting.frame.to_local(wi);
         if local.z > 0.0 {
-            let [once, again] = meeting.reflect(local, None);
-            let pdf = once.pdf + again.pdf;
-            return (pdf > 0.0).then(|| (meeting.reflected([1.0; 2]) * arrival.read(&self.reflectance), pdf));
+            let pdf = meeting.reflect(local, None);
+            return (pdf > 0.0).then(|| (meeting.reflected(1.0) * arrival.read(&self.reflectance), pdf));
         }
-        let [once, again] = if local.z < 0.0 { meeting.cross(local, None) } else { Default::default() };
-        let pdf = once.pdf + again.pdf;
-        (pdf > 0.0).then(|| (meeting.crossed([1.0; 2]) * arrival.read(&self.transmittance), pdf))
+        let pdf = if local.z < 0.0 { meeting.cross(local, None) } else { 0.0 };
+        (pdf > 0.0).then(|| (meeting.crossed(1.0) * arrival.read(&self.transmittance), pdf))
     }
 }

@@ -166,40 +166,31 @@ pub struct Sides<'a> {
     pub straight: f64,
 }
 
-/// A direction drawn for the viewer.
+/// A direction drawn for the viewer, and the facet that sent light from there, if it met only one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Way {
     /// Unit vector toward where the light came from.
     pub wi: DVec3,
-    /// The share of the light that came from there, without the change of radiance between media.
-    pub share: f64,
-    /// The facet that sent it, if it met only one.
+    /// The facet.
     pub facet: Option<Facet>,
 }
 
 impl Sides<'_> {
-    /// A direction above the surface and one beyond it for the viewer's direction `wo`, whose shares sum to 1; none where
-    /// no light comes from.
+    /// A direction above the surface and one beyond it for the viewer's direction `wo`; none where no light comes from.
     ///
     /// A visible facet is drawn. As often as its light meets a second facet, both directions are drawn from the lobes;
-    /// else they are its own, with its own Fresnel shares. So the shares follow what light does, and their product along
-    /// a path neither grows nor falls, however long that is.
+    /// else they are its own. So all that is drawn goes on as light does: what is evaluated there over the density is at most 1
+    /// on each side and nearly 1 for both, and its product stays so along a path, however many surfaces that meets.
     pub fn draw(&self, wo: DVec3, u: [f64; 2]) -> [Option<Way>; 2] {
         let facet = self.facet([wo, self.facets.visible_normal(wo, u)], None);
         let [chance, around] = later_digits(u);
         if chance < facet.again {
             let u = [around, chance / facet.again];
             let [above, beyond] = [self.near.draw(u), self.far.draw(u)];
-            let lobe = |wi: DVec3, share| (wi.z != 0.0).then_some(Way { wi, share, facet: None });
-            let crossing = self.crossing[0];
-            return [lobe(above, 1.0 - crossing), lobe(DVec3 { z: -beyond.z, ..beyond }, crossing)];
+            return [above, DVec3 { z: -beyond.z, ..beyond }]
+                .map(|wi| (wi.z != 0.0).then_some(Way { wi, facet: None }));
         }
-        let way = |i: usize| Way {
-            wi: facet.ways[i],
-            share: facet.once[i] / (facet.once[0] + facet.once[1]),
-            facet: Some(facet),
-        };
-        [0, 1].map(|i| (facet.once[i] > 0.0).then(|| way(i)))
+        [0, 1].map(|i| (facet.once[i] > 0.0).then(|| Way { wi: facet.ways[i], facet: Some(facet) }))
     }
 
     fn facet(&self, directions: [DVec3; 2], known: Option<DVec3>) -> Facet {
@@ -208,29 +199,17 @@ impl Sides<'_> {
 
     /// What is reflected from `wi`, above the surface, to `wo`. The facet is found where it is not given.
     pub fn reflected(&self, wo: DVec3, wi: DVec3, facet: Option<Facet>) -> Flow {
-        let [once, again] = self.reflected_parts(wo, wi, facet);
-        once + again
-    }
-
-    /// What crosses from `wi`, beyond the surface, to `wo`: radiance, which changes by (n1 / n2)^2. The facet is found where
-    /// it is not given.
-    pub fn crossed(&self, wo: DVec3, wi: DVec3, facet: Option<Facet>) -> Flow {
-        let [once, again] = self.crossed_parts(wo, wi, facet);
-        once + again
-    }
-
-    /// What is reflected by one facet, and by the lobe.
-    pub(super) fn reflected_parts(&self, wo: DVec3, wi: DVec3, facet: Option<Facet>) -> [Flow; 2] {
         let again = self.near.blocked(wo.z);
         let [blocked, lobe] = self.near.blocked_and_density(wi.z);
         let lobes = (1.0 - self.crossing[0]) * again * blocked / self.near.mean_blocked() * wi.z / PI;
         let facet = facet.or_else(|| Some(self.facet([wo, (wo + wi).try_normalize()?], Some(wi))));
         let once = facet.map_or(Flow::default(), |facet| facet.flow(0, self.facets.pdf(wo, facet.h)));
-        [once, Flow { value: lobes, pdf: again * lobe, ..Flow::default() }]
+        once + Flow { value: lobes, pdf: again * lobe, ..Flow::default() }
     }
 
-    /// What crosses by one facet, and by the lobe.
-    pub(super) fn crossed_parts(&self, wo: DVec3, wi: DVec3, facet: Option<Facet>) -> [Flow; 2] {
+    /// What crosses from `wi`, beyond the surface, to `wo`: radiance, which changes by (n1 / n2)^2. The facet is found where
+    /// it is not given.
+    pub fn crossed(&self, wo: DVec3, wi: DVec3, facet: Option<Facet>) -> Flow {
         let again = self.near.blocked(wo.z);
         let [blocked, lobe] = self.far.blocked_and_density(-wi.z);
         let [n1, n2] = self.indices;
@@ -245,6 +224,6 @@ impl Sides<'_> {
             let flow = facet.flow(1, self.facets.refraction_pdf(wo, facet.h, self.indices, facet.cos));
             Flow { value: flow.value * square, facet: flow.facet * square, ..flow }
         });
-        [once, Flow { value: lobes * square, pdf: again * lobe, ..Flow::default() }]
+        once + Flow { value: lobes * square, pdf: again * lobe, ..Flow::default() }
     }
 }

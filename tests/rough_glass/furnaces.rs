@@ -128,7 +128,7 @@ fn very_dense_rough_glass_neither_gains_nor_loses_seen_from_outside_and_from_ins
         println!("{what}: {value:.5} +- {error:.1e}, z {z:.2}, by {carried:.0} pixels, {lost} stopped");
         // A few hundred factors in 32 bits.
         let limit = standard_errors(cases.len()) * error + 256.0 * f64::from(f32::EPSILON);
-        assert!((value - 1.0).abs() <= limit && error < 0.03, "{what}: {mean:?}");
+        assert!((value - 1.0).abs() <= limit && error < 0.05, "{what}: {mean:?}");
         assert!(error < 1e-5 || carried >= 4.0, "{what}: {carried} pixels carry the noise");
     }
 }

@@ -69,6 +69,7 @@ fn the_closer_two_indices_the_less_a_rough_boundary_turns_any_light() {
         for step in [1e-2, 1e-3, 1e-4] {
             for indices in [[1.5, 1.5 + step], [1.5 + step, 1.5]] {
                 let sides = interface.between(indices[0], indices[1]);
+                let square = (indices[1] / indices[0]) * (indices[1] / indices[0]);
                 for cos in [0.2, 0.5, 1.0] {
                     let wo = at(cos, 0.3);
                     let mut kept = 0.0;
@@ -76,7 +77,8 @@ fn the_closer_two_indices_the_less_a_rough_boundary_turns_any_light() {
                         if let [_, Some(way)] = sides.draw(wo, u)
                             && (wo + way.wi).length() < step.sqrt()
                         {
-                            kept += way.share / f64::from(1 << 14);
+                            let flow = sides.crossed(wo, way.wi, way.facet);
+                            kept += flow.value / flow.pdf * square / f64::from(1 << 14);
                         }
                     }
                     // Facets reflect all light below a cosine of sqrt(2 step / n), and turn it more than that a little above.

@@ -1,8 +1,8 @@
-//! The shares of light by which paths leave a rough boundary: they sum to 1 and follow the BSDF.
+//! The weights with which paths leave a rough boundary: they hardly vary, and their ways follow the BSDF.
 
 use std::f64::consts::TAU;
 
-use abbe::material::{RoughInterface, Sides};
+use abbe::material::{Flow, RoughInterface, Sides, Way};
 use abbe::math::DVec3;
 
 use crate::chi_squared;
@@ -35,45 +35,37 @@ fn each(check: impl Fn(&Sides, [f64; 2], DVec3, &str)) {
     }
 }
 
-#[test]
-fn both_ways_out_take_all_the_light_in_every_draw() {
-    each(|sides, _, wo, what| {
-        let mut random = Random::new(5);
-        for _ in 0..2_000 {
-            let ways = sides.draw(wo, random.pair());
-            let sum: f64 = ways.iter().flatten().map(|way| way.share).sum();
-            assert!((sum - 1.0).abs() < 1e-12, "{what}: {sum} of {ways:?}");
-            for (way, side) in ways.iter().zip([1.0, -1.0]) {
-                assert!(way.is_none_or(|way| way.wi.z * side > 0.0 && way.share >= 0.0), "{what}: {way:?}");
-            }
-        }
-    });
+/// What is evaluated over the density, radiance over n^2, on both sides of one draw.
+fn weights(sides: &Sides, [n1, n2]: [f64; 2], wo: DVec3, ways: [Option<Way>; 2]) -> [f64; 2] {
+    let over = |flow: Flow| flow.value / flow.pdf;
+    let [above, beyond] = ways;
+    [
+        above.map_or(0.0, |way| over(sides.reflected(wo, way.wi, way.facet))),
+        beyond.map_or(0.0, |way| over(sides.crossed(wo, way.wi, way.facet)) * (n2 / n1) * (n2 / n1)),
+    ]
 }
 
-/// The weight that one scattering had if it were what is evaluated over the density: nearly the share, for both are the
-/// same function but for the noise of the lobe's table.
+/// The product of the weights of some 1.7 n^2 surfaces has a tail unless they hardly vary inside of dense glass.
 #[test]
-fn what_is_drawn_is_worth_what_is_evaluated() {
-    each(|sides, [n1, n2], wo, what| {
-        let (mut random, mut sums) = (Random::new(6), [[0.0; 2]; 2]);
+fn no_draw_is_lost_no_way_weighs_more_than_1_and_dense_glass_sends_on_what_it_gets() {
+    each(|sides, indices @ [n1, n2], wo, what| {
         const COUNT: u32 = 20_000;
+        let (mut random, mut sum, mut squares) = (Random::new(5), 0.0, 0.0);
         for _ in 0..COUNT {
-            for (side, way) in sides.draw(wo, random.pair()).into_iter().enumerate() {
-                let Some(way) = way else { continue };
-                let flow = match side {
-                    0 => sides.reflected(wo, way.wi, way.facet),
-                    _ => sides.crossed(wo, way.wi, way.facet),
-                };
-                let square = if side == 0 { 1.0 } else { (n2 / n1) * (n2 / n1) };
-                let off = flow.value * square / flow.pdf - way.share;
-                sums[side][0] += off;
-                sums[side][1] += off * off;
-            }
+            let weights = weights(sides, indices, wo, sides.draw(wo, random.pair()));
+            let all = weights[0] + weights[1];
+            // The lobe is drawn by a table of its own, that is linear between its places.
+            assert!(weights.iter().all(|weight| (0.0..1.02).contains(weight)) && all > 0.0, "{what}: {weights:?}");
+            sum += all;
+            squares += (all - 1.0) * (all - 1.0);
         }
-        for [sum, squares] in sums {
-            let (mean, error) = (sum / f64::from(COUNT), squares.sqrt() / f64::from(COUNT));
-            // What the tables of blocked light are good to: see `sides`.
-            assert!(mean.abs() < 2e-3 + 5.0 * error, "{what}: {mean} +- {error}");
+        let (mean, spread) = (sum / f64::from(COUNT), (squares / f64::from(COUNT)).sqrt());
+        let error = spread / f64::from(COUNT).sqrt();
+        println!("{what}: {mean:.5} +- {error:.1e}, spread {spread:.4}");
+        assert!((mean - 1.0).abs() < 2e-3 + 5.0 * error, "{what}: {mean} +- {error}");
+        // A body of index n holds light for some 1.7 n^2 surfaces: the product's spread is below 1.
+        if n1 > 2.0 {
+            assert!(1.7 * (n1 / n2) * (n1 / n2) * spread * spread < 1.0, "{what}: spread {spread}");
         }
     });
 }
@@ -106,7 +98,7 @@ fn light(sides: &Sides, [n1, n2]: [f64; 2], wo: DVec3) -> Vec<f64> {
 }
 
 #[test]
-fn paths_that_take_a_way_by_its_share_follow_the_bsdf_on_both_sides() {
+fn ways_that_are_kept_by_their_weights_follow_the_bsdf_on_both_sides() {
     const COUNT: u32 = 200_000;
     let cases = [
         ([1.0, 1.5], 0.4, 0.5),
@@ -127,13 +119,13 @@ fn paths_that_take_a_way_by_its_share_follow_the_bsdf_on_both_sides() {
         let mut random = Random::new((roughness * 1000.0 + cos * 1e6 + indices[0] * 1e7) as u64);
         let mut counts = vec![0; 2 * CELLS * CELLS];
         for _ in 0..COUNT {
-            let (ways, mut at) = (sides.draw(wo, random.pair()), random.number());
-            let taken = ways.into_iter().flatten().find(|way| {
-                at -= way.share;
-                at < 0.0
-            });
-            let last = ways.into_iter().flatten().next_back();
-            counts[cell(taken.or(last).expect("light goes on").wi)] += 1;
+            // Directions are kept as often as their weight says.
+            let ways = sides.draw(wo, random.pair());
+            for (way, weight) in ways.into_iter().zip(weights(&sides, indices, wo, ways)) {
+                if let Some(way) = way.filter(|_| random.number() < weight) {
+                    counts[cell(way.wi)] += 1;
+                }
+            }
         }
         let mut cells = light(&sides, indices, wo);
         let all: f64 = cells.iter().sum();
