@@ -160,6 +160,7 @@ impl Compiler<'_> {
         let (mut objects, mut entries, mut materials) = (Vec::new(), Vec::new(), Vec::<NamedMaterial<Curve>>::new());
         // Of a material that is not there it is told where it is named first.
         let mut unknown = BTreeSet::new();
+        let mut numbers = BTreeMap::<&str, usize>::new();
         for (number, text) in description.object.iter().enumerate() {
             let Some(text) = text else { continue };
             let top = At::top("object");
@@ -169,8 +170,7 @@ impl Compiler<'_> {
                 false => told_elsewhere(),
             };
             let known = material.as_ref().ok().map(|material| {
-                let known = materials.iter().position(|known| known.name == text.material);
-                known.unwrap_or_else(|| {
+                *numbers.entry(&text.material).or_insert_with(|| {
                     materials.push(NamedMaterial { name: text.material.clone(), material: (*material).clone() });
                     materials.len() - 1
                 })
@@ -181,9 +181,10 @@ impl Compiler<'_> {
                 objects.extend(placed.into_iter().map(|object| Object { material: material as u32, ..object }));
             }
         }
+        let of_others: Vec<&NamedMaterial<Curve>> =
+            materials.iter().filter(|named| matches!(named.material, Material::Mix(_) | Material::Mask(_))).collect();
         for name in description.material.keys() {
-            let used = |used: &NamedMaterial<Curve>| &used.name == name || used.material.is_made_of(name);
-            if !materials.iter().any(used) {
+            if !numbers.contains_key(name.as_str()) && !of_others.iter().any(|used| used.material.is_made_of(name)) {
                 self.warnings.push(format!("material {name} is not used by any object"));
             }
         }

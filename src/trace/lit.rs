@@ -13,9 +13,9 @@ use crate::math::{BranchKey, DVec2, DVec3, Frame, Ray, Sampler, disk, unit};
 use crate::shape::{Ball, SurfacePoint};
 
 /// Rays in all, and the fewest and most of a light toward a target.
-const RAYS: usize = 2048;
+const RAYS: usize = 4096;
 const FEWEST: usize = 4;
-const OF_A_PAIR: usize = 128;
+const OF_A_PAIR: usize = 1024;
 /// Lights of which rays are sent, the brightest at a target.
 const LIGHTS: usize = 16;
 /// Colors that are apart by less than this part of the lamp's own blur look white.

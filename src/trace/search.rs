@@ -20,6 +20,11 @@ const SMALLEST: f64 = 0.5;
 /// just seen apart changes those along it.
 const PIXELS: f64 = SEEN_PIXELS;
 const SHARE: f64 = 0.005;
+/// Pixels that are looked at closer each time.
+const CLOSER: usize = 32;
+/// A pixel of which this share is pulled apart changes as much as one at an edge that is just seen apart: over such an edge the colors
+/// between the outermost two are moved by half as much.
+const SEEN_SHARE: f64 = 0.5 * SEEN_PIXELS;
 
 /// A place on a diffuse surface that is seen by way of others.
 pub(super) struct Reached {
@@ -72,8 +77,9 @@ pub(super) fn search(colors: &Colors, targets: &Targets) -> Found {
     let (mut settled, mut reached, mut left) = (Vec::new(), Vec::new(), MOST);
     loop {
         let mut forks = Vec::new();
-        let looks: Vec<Look> =
+        let mut looks: Vec<Look> =
             cells.iter().map(|cell| look(colors, targets, *cell, &mut reached, &mut forks)).collect();
+        look_closer(colors, &mut looks);
         let pixels = pixels_apart(settled.iter().chain(&looks), enough);
         if pixels >= SEEN_PIXELS || left == 0 {
             settled.extend(looks);
@@ -100,8 +106,7 @@ pub(super) fn search(colors: &Colors, targets: &Targets) -> Found {
 }
 
 fn look(colors: &Colors, targets: &Targets, cell: Cell, reached: &mut Vec<Reached>, forks: &mut Vec<Cell>) -> Look {
-    let middle = cell.corner + cell.size * 0.5;
-    let sampler = Sampler::new(colors.world.method.seed, [middle.x as u32, middle.y as u32], 0);
+    let (middle, sampler) = cell.middle(colors);
     let walk = |at| colors.walk_from_camera(at, 0, &sampler, cell.way);
     let at = [DVec2::new(0.5, 0.5), DVec2::ZERO, DVec2::X, DVec2::Y, DVec2::ONE];
     let walks = at.map(|place| walk(cell.corner + cell.size * place));
@@ -119,6 +124,23 @@ fn look(colors: &Colors, targets: &Targets, cell: Cell, reached: &mut Vec<Reache
     Look { cell, dispersive, weight: first.weight, apart, touched: targets.touched(&walks, width) }
 }
 
+/// Looks at all of a pixel where it cannot be told from one ray. Between the edges of small gems it hardly ever can, and what can be
+/// told there lies in the largest facets, many of which are parallel.
+fn look_closer(colors: &Colors, looks: &mut [Look]) {
+    let untold: Vec<&mut Look> =
+        looks.iter_mut().filter(|look| look.dispersive > 0.0 && look.apart.is_none()).collect();
+    let step = untold.len().div_ceil(CLOSER).max(1);
+    for look in untold.into_iter().step_by(step) {
+        let (middle, sampler) = look.cell.middle(colors);
+        let share = colors.share_apart(middle, &sampler, look.cell.way);
+        look.apart = Some(if share >= SEEN_SHARE { SEEN_PIXELS } else { 0.0 });
+        if share >= SEEN_SHARE {
+            // It was all of a pixel.
+            (look.dispersive, look.weight) = (look.dispersive.max(1.0), 1.0);
+        }
+    }
+}
+
 /// The place where the first of a cell's walks ends, if that is on a diffuse surface that is seen by way of others.
 fn place(walks: &[Walk; 5], size: DVec2) -> Option<Reached> {
     let of = |walk: &Walk| walk.end.filter(|_| walk.diffuse).map(|end| end.0.position);
@@ -129,6 +151,11 @@ fn place(walks: &[Walk; 5], size: DVec2) -> Option<Reached> {
 }
 
 impl Cell {
+    fn middle(&self, colors: &Colors) -> (DVec2, Sampler) {
+        let middle = self.corner + self.size * 0.5;
+        (middle, Sampler::new(colors.world.method.seed, [middle.x as u32, middle.y as u32], 0))
+    }
+
     fn is_whole(&self, colors: &Colors) -> bool {
         self.size.x * f64::from(SIDE) >= f64::from(colors.world.scene.film.width)
     }

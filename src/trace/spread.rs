@@ -26,6 +26,8 @@ pub const SEEN_PIXELS: f64 = 0.2;
 /// Lengths of the steps to a ray's neighbors, in pixels: by the longer one the neighbors on both sides of an edge are as far apart
 /// as two colors that are not seen apart.
 const STEPS: [f64; 2] = [0.5 * SEEN_PIXELS, 0.1 * SEEN_PIXELS];
+/// Places along each side of a pixel whose light is looked at.
+const PLACES: u32 = 6;
 
 /// Sends some thousand rays through a world of two lanes, those of [`COLORS_NM`]; as many for any number of pixels.
 pub fn spread(world: &World) -> Spread {
@@ -38,30 +40,44 @@ pub fn spread(world: &World) -> Spread {
 
 impl Colors<'_> {
     /// How many pixels apart both colors show what lies behind; none so close to an edge that it cannot be told.
-    ///
-    /// The ways of a ray's neighbors show how far a pixel goes. Both colors are compared at one distance, so that an edge behind the
-    /// glass, which one of them misses, does not count.
     pub(super) fn pixels_apart(&self, at: DVec2, first: &Walk, sampler: &Sampler, way: Way) -> Option<f64> {
         let second = self.walk_from_camera(at, 1, sampler, way);
-        if first.weight == 0.0
-            || second.weight == 0.0
-            || (first.is_out() && second.is_out() && shows_nothing(self.world))
-        {
-            return Some(0.0);
-        }
-        let distance = [first, &second].map(Walk::length).into_iter().find(|length| length.is_finite());
-        let apart = between(first, &second, distance);
-        let pixels = |step: f64| {
-            let beside = |x: f64, y: f64| self.walk_from_camera(at + DVec2::new(x, y) * step, 0, sampler, way);
-            let ways = [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)];
-            let stretch = ways.map(|(x, y)| between(first, &beside(x, y), distance)).into_iter().fold(0.0, f64::max);
-            // Parallel rays stay parallel behind flat glass: there a pixel has the angle that the camera gives it.
-            let least = if distance.is_none() { self.world.scene.camera.pixel_angle() * step } else { 0.0 };
-            let stretch = if stretch > 0.0 { stretch } else { least };
-            if stretch > 0.0 { apart / (stretch / step) } else { 0.0 }
+        let far = self.apart_by(STEPS[0], at, [first, &second], sampler, way);
+        (far >= SEEN_PIXELS || self.apart_by(STEPS[1], at, [first, &second], sampler, way) < SEEN_PIXELS).then_some(far)
+    }
+
+    /// The share of a pixel's light that dispersion pulls apart: facets far smaller than a pixel count as they fill it.
+    pub(super) fn share_apart(&self, middle: DVec2, sampler: &Sampler, way: Way) -> f64 {
+        let place = |i: u32| (f64::from(i) + 0.5) / f64::from(PLACES) - 0.5;
+        let share = |i: u32| {
+            let at = middle + DVec2::new(place(i % PLACES), place(i / PLACES));
+            let walks = [0, 1].map(|lane| self.walk_from_camera(at, lane, sampler, way));
+            let [first, second] = &walks;
+            let parted = first.dispersive && self.apart_by(STEPS[1], at, [first, second], sampler, way) >= SEEN_PIXELS;
+            if parted { first.weight } else { 0.0 }
         };
-        let far = pixels(STEPS[0]);
-        (far >= SEEN_PIXELS || pixels(STEPS[1]) < SEEN_PIXELS).then_some(far)
+        (0..PLACES * PLACES).map(share).sum::<f64>() / f64::from(PLACES * PLACES)
+    }
+
+    /// How many pixels apart both colors show what lies behind.
+    ///
+    /// The ways of a ray's neighbors, a step aside, show how far a pixel goes. Both colors are compared at one distance, so that an
+    /// edge behind the glass, which one of them misses, does not count.
+    fn apart_by(&self, step: f64, at: DVec2, walks: [&Walk; 2], sampler: &Sampler, way: Way) -> f64 {
+        let [first, second] = walks;
+        let lost = walks.iter().any(|walk| walk.weight == 0.0);
+        if lost || (walks.iter().all(|walk| walk.is_out()) && shows_nothing(self.world)) {
+            return 0.0;
+        }
+        let distance = walks.map(Walk::length).into_iter().find(|length| length.is_finite());
+        let apart = between(first, second, distance);
+        let beside = |x: f64, y: f64| self.walk_from_camera(at + DVec2::new(x, y) * step, 0, sampler, way);
+        let ways = [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)];
+        let stretch = ways.map(|(x, y)| between(first, &beside(x, y), distance)).into_iter().fold(0.0, f64::max);
+        // Parallel rays stay parallel behind flat glass: there a pixel has the angle that the camera gives it.
+        let least = if distance.is_none() { self.world.scene.camera.pixel_angle() * step } else { 0.0 };
+        let stretch = if stretch > 0.0 { stretch } else { least };
+        if stretch > 0.0 { apart / (stretch / step) } else { 0.0 }
     }
 }
 
