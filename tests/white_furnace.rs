@@ -17,21 +17,28 @@ const ROUGHNESSES: [f64; 7] = [0.0, 0.05, 0.2, 0.4, 0.6, 0.8, 1.0];
 const INDICES: [f64; 5] = [1.1, 1.33, 1.52, 1.9, 2.5];
 const COSINES: [f64; 10] = [0.001, 0.01, 0.04, 0.1, 0.2, 0.35, 0.5, 0.7, 0.9, 1.0];
 const DRAWS: u32 = 1 << 15;
+/// A rough boundary is drawn by more than the two numbers that are spread evenly: what is left to chance is told by its spread.
+const DRAWS_OF_GLASS: u32 = 1 << 17;
 /// A metal that takes less than 1e-9 of the light at right angles.
 const LOSSLESS: &str = "n = 1e-6, k = 100";
 
-/// What a surface between two media shows of an even sky, whose radiance over n^2 is 1 everywhere.
-fn furnace(material: &Material<Table>, indices: [f64; 2], cos: f64) -> f64 {
+/// What a surface between two media shows of an even sky, whose radiance over n^2 is 1 everywhere; and, for glass, how far
+/// chance may put it off.
+fn furnace(material: &Material<Table>, indices: [f64; 2], cos: f64) -> [f64; 2] {
     let draw = Draw::<4>::fixed(3);
     let arrival = Arrival { beyond: [indices[1]; 4], ..arrival(&draw, toward(cos, 0.4), indices[0]) };
-    let (mut sum, mut branches) = (0.0, Vec::new());
-    for u in points(DRAWS) {
+    let (mut sum, mut squares, mut branches) = (0.0, 0.0, Vec::new());
+    let glass = material.scatters_through();
+    let draws = if glass { DRAWS_OF_GLASS } else { DRAWS };
+    for u in points(draws) {
         material.scatter(&arrival, u, &mut branches);
-        for branch in branches.drain(..) {
-            sum += f64::from(branch.share[0]) / branch.eta_scale / f64::from(DRAWS);
-        }
+        let shown: f64 = branches.drain(..).map(|branch| f64::from(branch.share[0]) / branch.eta_scale).sum();
+        sum += shown / f64::from(draws);
+        squares += shown * shown / f64::from(draws);
     }
-    sum + material.straight(&arrival).map_or(0.0, |straight| f64::from(straight.share()[0]))
+    let error = if glass { ((squares - sum * sum).max(0.0) / f64::from(draws)).sqrt() } else { 0.0 };
+    let straight = material.straight(&arrival).map_or(0.0, |straight| f64::from(straight.share()[0]));
+    [sum + straight, 3.0 * error]
 }
 
 /// A material of one roughness, the indices it is met between, and its name in the table.
@@ -70,9 +77,10 @@ fn nothing_is_lost_beyond_half_a_percent_nor_won_beyond_a_thousandth() {
         let material = material(&text);
         let [mut least, mut most] = [f64::INFINITY, 0.0f64];
         for (&indices, cos) in sides.iter().flat_map(|indices| COSINES.map(|cos| (indices, cos))) {
-            let shown = furnace(&material, indices, cos);
+            let [shown, chance] = furnace(&material, indices, cos);
             [least, most] = [least.min(shown), most.max(shown)];
-            assert!((0.995..=1.001).contains(&shown), "{name}: {shown} between {indices:?} at the cosine {cos}");
+            let allowed = 0.995 - chance..=1.001 + chance;
+            assert!(allowed.contains(&shown), "{name}: {shown} between {indices:?} at the cosine {cos}");
         }
         println!("{name:<64} {least:.5} to {most:.5}");
         worst = [worst[0].min(least), worst[1].max(most)];

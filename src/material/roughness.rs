@@ -4,7 +4,6 @@ use std::sync::{Arc, OnceLock};
 use serde::{Deserialize, Deserializer};
 
 use super::by_cosine::ByCosine;
-use super::facets::later_digits;
 use super::{Facets, RoughInterface, reflect};
 use crate::math::DVec3;
 
@@ -119,17 +118,16 @@ impl RoughSurface {
         self.blocked.value(z)
     }
 
-    /// Draws a direction of light for the viewer's direction `wo`, as often as perfect mirrors would send light there.
+    /// Draws a direction of light for the viewer's direction `wo`; none if it lies below the surface.
     ///
-    /// A visible facet is drawn, and a direction from the lobe in place of its own if light from there meets a second one.
+    /// It is drawn from the lobe as often as perfect mirrors would reflect light more than once.
     pub fn scatter(&self, wo: DVec3, u: [f64; 2]) -> Option<RoughReflection> {
-        let h = self.facets.visible_normal(wo, u);
-        let wi = reflect(wo, h);
-        let ([_, blocked], [chance, around]) = (self.facets.left_and_blocked(wo, wi), later_digits(u));
-        if chance < blocked {
-            return self.evaluate(wo, self.blocked.draw([around, chance / blocked]));
+        let again = self.blocked(wo.z);
+        if u[0] < again {
+            return self.evaluate(wo, self.blocked.draw([u[0] / again, u[1]]));
         }
-        self.reflection(wo, wi, h)
+        let h = self.facets.visible_normal(wo, [(u[0] - again) / (1.0 - again), u[1]]);
+        self.reflection(wo, reflect(wo, h), h)
     }
 
     /// What is reflected from `wi` to `wo`; none if `wi` lies below the surface.
@@ -142,13 +140,12 @@ impl RoughSurface {
             return None;
         }
         let (again, (blocked, lobe)) = (self.blocked(wo.z), self.blocked.value_and_density(wi.z));
-        let once = self.facets.reflection(wo, wi, h);
         Some(RoughReflection {
             wi,
-            once,
+            once: self.facets.reflection(wo, wi, h),
             again: again * blocked / self.mean_blocked() * wi.z / PI,
             cos: wo.dot(h).clamp(0.0, 1.0),
-            pdf: once + again * lobe,
+            pdf: (1.0 - again) * self.facets.pdf(wo, h) + again * lobe,
         })
     }
 }

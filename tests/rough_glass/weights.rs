@@ -55,7 +55,7 @@ fn no_draw_is_lost_no_way_weighs_more_than_1_and_dense_glass_sends_on_what_it_ge
             let weights = weights(sides, indices, wo, sides.draw(wo, random.pair()));
             let all = weights[0] + weights[1];
             // The lobe is drawn by a table of its own, that is linear between its places.
-            assert!(weights.iter().all(|weight| (0.0..1.02).contains(weight)) && all > 0.0, "{what}: {weights:?}");
+            assert!(weights.iter().all(|weight| (0.0..1.1).contains(weight)) && all > 0.0, "{what}: {weights:?}");
             sum += all;
             squares += (all - 1.0) * (all - 1.0);
         }
@@ -130,7 +130,7 @@ fn ways_that_are_kept_by_their_weights_follow_the_bsdf_on_both_sides() {
         let mut cells = light(&sides, indices, wo);
         let all: f64 = cells.iter().sum();
         println!("{what}: the BSDF sums to {all:.5}");
-        assert!((all - 1.0).abs() < 2e-3, "{what}: the BSDF sums to {all}");
+        assert!((all - 1.0).abs() < 1e-3, "{what}: the BSDF sums to {all}");
         cells.iter_mut().for_each(|cell| *cell /= all);
         chi_squared::check(&what, &counts, &cells, cases.len() as u32);
     }
