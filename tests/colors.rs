@@ -25,7 +25,7 @@ const SPACES: [ColorSpace; 6] = [
 const MODELS: [&str; 6] =
     ["\"rgb\"", "{ bands = 8 }", "{ bands = 12 }", "{ bands = 16 }", "{ bands = 32 }", "\"hero\""];
 /// No light is chosen by its brightness, which is measured in film colors, so that all films share their random numbers.
-const ALL_LIGHTS: Transport = Transport::Deterministic { cutoff: 1e-4 };
+const ALL_LIGHTS: Transport = Transport::Deterministic { cutoff: 1e-4, most: u64::MAX };
 
 /// The film of a scene in a color space, under a model.
 fn film(body: &str, space: ColorSpace, model: &str) -> Film {

@@ -14,7 +14,7 @@ use support::scenes::{method, scene};
 const CAMERA: f64 = 1e6;
 const SUN_DEGREES: f64 = 0.2;
 /// All ways inside the drop are followed while they carry more than this: the secondary bow carries some thousandths.
-const FAINT: Transport = Transport::Deterministic { cutoff: 1e-6 };
+const FAINT: Transport = Transport::Deterministic { cutoff: 1e-6, most: u64::MAX };
 
 /// Light that is reflected inside the drop a number of times before it leaves.
 struct Bow {

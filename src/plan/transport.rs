@@ -8,6 +8,8 @@ use crate::trace::{Branching, Method, Transport, World, branching};
 
 /// Weight below which deterministic transport follows no branch.
 const CUTOFF: f64 = 1e-9;
+/// Surfaces that one of its camera samples may meet: eight times what a mean one may.
+const MOST_SURFACES: u64 = 16_384;
 /// Weight above which a path splits into all its branches (row W5 of the stability catalog).
 const SPLIT: f64 = 0.05;
 /// Weight below which paths are ended at random.
@@ -40,7 +42,7 @@ pub(super) fn transport(scene: &Scene<Curve>, basis: &Basis, together: f64) -> (
     };
     match why.or_else(|| too_many_ways(scene, basis, together)) {
         None => (
-            Transport::Deterministic { cutoff: CUTOFF },
+            Transport::Deterministic { cutoff: CUTOFF, most: MOST_SURFACES },
             format!(
                 "transport deterministic: no random light path, 1 sample per pixel is exact; branches end below weight {CUTOFF:e}"
             ),
@@ -70,7 +72,7 @@ fn too_many_ways(scene: &Scene<Curve>, basis: &Basis, together: f64) -> Option<S
     }
     let method = Method {
         basis: basis.clone(),
-        transport: Transport::Deterministic { cutoff: CUTOFF },
+        transport: Transport::Deterministic { cutoff: CUTOFF, most: MOST_SURFACES },
         together,
         samples: 1,
         seed: scene.render.seed,

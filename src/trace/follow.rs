@@ -11,9 +11,7 @@ use crate::spectrum::Draw;
 /// Use of the random numbers that choose a branch or end one.
 const CHOICE: u32 = 2;
 
-/// Surfaces that one camera sample of deterministic transport may meet before it goes on by chance.
-pub(super) const MOST_SURFACES: u64 = 16_384;
-/// How it goes on then: what is left is mostly faint, and all branches are still followed that are not.
+/// How a sample goes on that has met too many surfaces: what is left is mostly faint, and all branches are still followed that are not.
 const BY_CHANCE: Transport = Transport::Random { split: 0.01, roulette: 0.01 };
 
 impl<const N: usize> Tracer<'_, N> {
@@ -21,7 +19,7 @@ impl<const N: usize> Tracer<'_, N> {
     /// mean what it is.
     fn rule(&self) -> Transport {
         match self.transport {
-            Transport::Deterministic { .. } if self.surfaces() > MOST_SURFACES => BY_CHANCE,
+            Transport::Deterministic { most, .. } if self.surfaces() > most => BY_CHANCE,
             asked => asked,
         }
     }
@@ -47,7 +45,7 @@ impl<const N: usize> Tracer<'_, N> {
             path.throughput.through(branch.share).weight(shares) / (path.eta_scale * branch.eta_scale)
         };
         match self.rule() {
-            Transport::Deterministic { cutoff } => {
+            Transport::Deterministic { cutoff, .. } => {
                 for (number, branch) in self.branches.iter().enumerate() {
                     match weight_of(branch) {
                         weight if weight < cutoff => self.tally.dropped += weight,

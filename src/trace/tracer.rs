@@ -3,7 +3,6 @@
 use std::cell::Cell;
 
 use super::direct::{Gathering, add, weight_of_meeting};
-use super::follow::MOST_SURFACES;
 use super::media::{self, Boundary};
 use super::merge::Photons;
 use super::path::{Drawn, Leg, Path};
@@ -115,8 +114,9 @@ impl<'a, const N: usize> Tracer<'a, N> {
             }
             next = self.scatter(&path, draw, sampler, (&hit, &point, onward), &mut sum);
         }
-        let deterministic = matches!(self.transport, Transport::Deterministic { .. });
-        self.tally.by_chance += u64::from(deterministic && self.surfaces() > MOST_SURFACES);
+        if let Transport::Deterministic { most, .. } = self.transport {
+            self.tally.by_chance += u64::from(self.surfaces() > most);
+        }
         self.count_light(sum, moved);
         (sum, first)
     }

@@ -50,7 +50,7 @@ fn seen_through(bodies: &str) -> f64 {
     let lamp = body("lamp", "emissive = { radiance = 1 }", &[plane]);
     // Off the diagonals of the faces; so narrow that its rays count as one.
     let text = view([0.31, 0.17, 5.0], [0.31, 0.17, 0.0], 1e-6, 1) + bodies + &lamp;
-    let (film, report) = image(&text, Transport::Deterministic { cutoff: 1e-12 });
+    let (film, report) = image(&text, Transport::Deterministic { cutoff: 1e-12, most: u64::MAX });
     assert_eq!(report.unmatched, 0);
     f64::from(film.pixels[0].rgb[1])
 }
@@ -91,7 +91,7 @@ fn m3_overlap_and_displacement_bend_light_the_same_way() {
         .collect();
     let pictures = [(vessel() + &water(0.91, 1)), vessel() + &water(0.95, 1)].map(|bodies| {
         let text = view([2.9, 0.4, 4.7], [0.1, 0.05, 0.0], 12.0, 40) + &bodies + &stripes;
-        image(&text, Transport::Deterministic { cutoff: 1e-6 }).0
+        image(&text, Transport::Deterministic { cutoff: 1e-6, most: u64::MAX }).0
     });
     let [a, b] = pictures;
     for (at, (a, b)) in a.pixels.iter().zip(&b.pixels).enumerate() {

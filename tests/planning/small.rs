@@ -147,11 +147,6 @@ fn w9_prisms_of_low_dispersion_are_noticed_wherever_they_are() {
 }
 
 #[test]
-fn w9_diamonds_are_noticed_wherever_they_are() {
-    assert_eq!(missed(true, "diamond"), [""; 0]);
-}
-
-#[test]
 fn gems_of_vanishing_dispersion_keep_lanes_together_wherever_they_are() {
     for place in PLACES {
         let plan = plan_of(&placed(place, true, "faint", 10.0), SIDE);

@@ -8,7 +8,7 @@ use abbe::spectrum::{Basis, Curve};
 use abbe::trace::{Method, Report, Transport, World, render};
 
 /// Follows every branch down to a weight that no pixel can show.
-pub const EVERY_BRANCH: Transport = Transport::Deterministic { cutoff: 1e-20 };
+pub const EVERY_BRANCH: Transport = Transport::Deterministic { cutoff: 1e-20, most: u64::MAX };
 /// What the plan takes where light is left to chance.
 pub const SPLITTING: Transport = Transport::Random { split: 0.05, roulette: 0.05 };
 /// The path tracer: one branch at every surface, one light at every vertex.
