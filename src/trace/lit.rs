@@ -9,8 +9,9 @@ use super::spread::SEEN_PIXELS;
 use super::targets::Targets;
 use super::walk::{Colors, Walk, Way};
 use crate::light::{Light, LightId};
-use crate::math::{BranchKey, DVec2, DVec3, Frame, Ray, Sampler, disk, unit};
+use crate::math::{BranchKey, DVec2, DVec3, Frame, Ray, Sampler, cone, disk, unit};
 use crate::shape::{Ball, SurfacePoint};
+use crate::spectrum::Table;
 
 /// Rays in all, and the fewest and most of a light toward a target.
 const RAYS: usize = 4096;
@@ -91,9 +92,7 @@ impl Pair<'_> {
         let light = &scene.lights[self.light];
         let facing = light.emitter().and_then(|lamp| (lamp.bounds.center() - self.ball.center).try_normalize());
         let normal = facing.unwrap_or(DVec3::Y);
-        let axis = light.aim(self.ball.center, normal, [u[2], u[3]])?.direction;
-        let [x, y] = (disk([u[0], u[1]]) * self.ball.radius).into();
-        let target = self.ball.center + Frame::about(axis).to_world(DVec3::new(x, y, 0.0));
+        let target = self.target(light, normal, u)?;
         let sighting = light.aim(target, normal, [u[2], u[3]])?;
         let back = Ray { origin: target, direction: sighting.direction };
         let view = light.view(&back, normal, &sighting)?;
@@ -126,6 +125,20 @@ impl Pair<'_> {
         });
         let blur = f64::max(blur[0], blur[1]);
         Some(if apart >= CONTRAST * blur { apart } else { 0.0 })
+    }
+
+    /// A point of the ball that the light shines on; of a spot that is narrower than the ball, within its cone.
+    fn target(&self, light: &Light<Table>, normal: DVec3, u: [f64; 4]) -> Option<DVec3> {
+        if let Light::Spot(spot) = light {
+            let position = DVec3::from(spot.position);
+            let (of_ball, own) = (self.ball.cone_from(position), spot.cone());
+            let (axis, size) = if own.1 < of_ball.1 { own } else { of_ball };
+            let direction = unit(Frame::about(axis).to_world(cone(size, [u[0], u[1]]).0));
+            return Some(position + direction * (self.ball.center - position).length());
+        }
+        let axis = light.aim(self.ball.center, normal, [u[2], u[3]])?.direction;
+        let [x, y] = (disk([u[0], u[1]]) * self.ball.radius).into();
+        Some(self.ball.center + Frame::about(axis).to_world(DVec3::new(x, y, 0.0)))
     }
 
     /// The ray from the light.

@@ -9,7 +9,7 @@ use crate::support::scenes::scene;
 #[test]
 fn of_twenty_rooms_the_plan_asks_for_photons_in_those_that_gain_and_says_why_not_in_the_others() {
     let rooms = rooms();
-    assert_eq!([true, false].map(|asks| rooms.iter().filter(|room| room.asks == asks).count()), [10, 10]);
+    assert_eq!([true, false].map(|asks| rooms.iter().filter(|room| room.asks == asks).count()), [9, 11]);
     let mut wrong = Vec::new();
     for Room { name, text, asks, words } in rooms {
         let plan = plan(&scene(&text));
