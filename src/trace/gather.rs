@@ -95,7 +95,8 @@ impl<const N: usize> Photons<N> {
             let flux = if by_heroes { self.matching.onto_heroes(arrival.draw, carries.flux) } else { carries.flux };
             let arriving = path.throughput.of(bsdf_cos * flux);
             let rgb = world.responses[carries.light].sensor(arrival.draw, arriving, parted);
-            found.add(position, rgb.map(|x| density * x), || change(photon.back, photon.polarized));
+            let rgb = rgb.map(|x| density * x);
+            found.add(position, rgb, amount(world, rgb), || change(photon.back, photon.polarized));
         });
         self.alone.near(point.position, radius, &mut |position, photon| {
             let (wavelength, parted) = (&photon.carries.wavelength, parted(photon.back));
@@ -111,16 +112,16 @@ impl<const N: usize> Photons<N> {
             let Some(density) = place.density(path, position, photon) else { return };
             let Some((bsdf_cos, _)) = shading::evaluate(material, arrival, flat, photon.back) else { return };
             let share = density * read(path.throughput.of(bsdf_cos));
-            found.add(position, photon.carries.color.map(|x| share * x), || change(photon.back, photon.polarized));
+            let rgb = photon.carries.color.map(|x| share * x);
+            found.add(position, rgb, amount(world, rgb), || change(photon.back, photon.polarized));
         });
         place.seen_of(found, point, sampler, path.key)
     }
 }
 
 impl Found {
-    fn add(&mut self, position: DVec3, rgb: [f64; 3], change: impl FnOnce() -> f64) {
+    fn add(&mut self, position: DVec3, rgb: [f64; 3], weight: f64, change: impl FnOnce() -> f64) {
         add(&mut self.sum, rgb);
-        let weight: f64 = rgb.iter().map(|x| x.abs()).sum();
         if weight == 0.0 {
             return;
         }
