@@ -6,7 +6,7 @@ use super::seen::Seen;
 use crate::material::{Conductor, Dielectric, Material, Plastic, conductor_reflectance, diffuse_transmittance};
 use crate::scene::Scene;
 use crate::spectrum::{
-    Basis, ColorSpace, Curve, CurveKind, Emission, Quantity, Upsampler, normal_reflectance, visible,
+    Basis, ColorSpace, Curve, CurveKind, Distinct, Emission, Quantity, Upsampler, normal_reflectance, visible,
 };
 
 /// The colors of a scene: what shines and what tints.
@@ -264,15 +264,15 @@ pub(super) fn disperses(glass: &Dielectric<Curve>) -> bool {
 /// The lights of different spectra.
 fn different<'a>(curves: impl Iterator<Item = &'a Curve>, space: ColorSpace) -> Vec<(Curve, Emission)> {
     let mut known: Vec<(Curve, Emission)> = Vec::new();
+    let mut looked_at = Distinct::default();
     for curve in curves {
         // Thousands of lamps are often written alike: no spectrum need be made to see that.
-        if known.iter().any(|(other, _)| other == curve) {
-            continue;
-        }
-        let emission = Emission::new(curve, space);
-        if !known.iter().any(|(_, other)| other.looks_like(&emission)) {
-            known.push((curve.clone(), emission));
-        }
+        looked_at.of(curve, |curve| {
+            let emission = Emission::new(curve, space);
+            if !known.iter().any(|(_, other)| other.looks_like(&emission)) {
+                known.push((curve.clone(), emission));
+            }
+        });
     }
     known
 }

@@ -1,3 +1,5 @@
+use std::sync::Arc;
+
 use super::pattern::Pattern;
 
 /// What a curve describes, which decides how it is read onto the lanes.
@@ -30,9 +32,9 @@ pub const MAX_LANES: usize = 32;
 pub struct Table {
     bins: usize,
     /// The fixed lanes' numbers; beyond the last bin its number again, so that empty lanes divide by no 0.
-    fixed: Box<[f64; MAX_LANES]>,
-    weights: Box<[f32; MAX_LANES]>,
-    fine: Box<[f64]>,
+    fixed: Arc<[f64; MAX_LANES]>,
+    weights: Arc<[f32; MAX_LANES]>,
+    fine: Arc<[f64]>,
     flat: bool,
     /// Of an index: the one by which all lanes are refracted.
     direction: Option<f64>,
@@ -57,8 +59,8 @@ impl Table {
         let weights = fixed.map(|x| x as f32);
         Self {
             bins: bins.len(),
-            fixed: Box::new(fixed),
-            weights: Box::new(weights),
+            fixed: Arc::new(fixed),
+            weights: Arc::new(weights),
             fine: fine.into(),
             flat,
             direction: None,

@@ -33,8 +33,9 @@ pub struct SampleWorth {
     pub rays: f64,
 }
 
-/// Photons of one image of a pilot, and how many images there are.
+/// Photons of some lights in one image of a pilot, of all lights together, and how many images there are.
 const PHOTONS: u64 = 4096;
+const ALL: u64 = 4 * PHOTONS;
 const IMAGES: u64 = 4;
 /// Pixels along each side of the image whose samples are compared, and how many of each.
 const SIDE: u32 = 24;
@@ -46,32 +47,40 @@ const SEED: u64 = 0x7069_6c6f;
 ///
 /// All of the image counts, also where only a part of it is made, so that all parts are made alike.
 pub fn photons_worth(world: &World) -> Vec<PhotonWorth> {
-    let lights = world.light_groups().into_iter();
-    lights.filter_map(|lights| in_lanes(&world.method.basis, Sending { world, lights })).collect()
+    in_lanes(&world.method.basis, Sending { world })
 }
 
 struct Sending<'a> {
     world: &'a World,
-    lights: Vec<LightId>,
 }
 
 impl InLanes for Sending<'_> {
-    type Output = Option<PhotonWorth>;
+    type Output = Vec<PhotonWorth>;
     fn run<const N: usize>(self) -> Self::Output {
         let mut world = self.world.clone();
         world.scene.film.crop = None;
-        let aims = &mut world.aims.as_mut()?.aims;
-        aims.retain(|aim| self.lights.binary_search(&aim.light).is_ok());
-        let all: u64 = aims.iter().map(|aim| aim.photons).sum();
-        for aim in aims.iter_mut() {
-            aim.photons = (aim.photons as f64 * PHOTONS as f64 / all as f64).round().max(1.0) as u64;
+        let groups = self.world.light_groups();
+        let photons = (ALL / groups.len().max(1) as u64).min(PHOTONS);
+        groups.into_iter().filter_map(|lights| self.of::<N>(&mut world, lights, photons)).collect()
+    }
+}
+
+impl Sending<'_> {
+    /// What so many photons of some lights are worth, in a world whose aims are replaced.
+    fn of<const N: usize>(&self, world: &mut World, lights: Vec<LightId>, each: u64) -> Option<PhotonWorth> {
+        let mut sending = self.world.aims.clone()?;
+        sending.aims.retain(|aim| lights.binary_search(&aim.light).is_ok());
+        let all: u64 = sending.aims.iter().map(|aim| aim.photons).sum();
+        for aim in &mut sending.aims {
+            aim.photons = (aim.photons as f64 * each as f64 / all as f64).round().max(1.0) as u64;
         }
+        world.aims = Some(sending);
         let to_xyz = world.scene.film.color_space.to_xyz();
         let (mut values, mut photons, mut rays) = (Vec::new(), 0, 0);
         for image in 0..IMAGES {
             world.method.seed = (self.world.method.seed ^ SEED).wrapping_add(image);
             let mut splats = Vec::new();
-            let shown = light_pass::splats::<N>(&world, &|_| (), &mut |splat| splats.push((splat.pixel, splat.rgb)));
+            let shown = light_pass::splats::<N>(world, &|_| (), &mut |splat| splats.push((splat.pixel, splat.rgb)));
             (photons, rays) = (photons + shown.photons, rays + shown.rays);
             values.extend(summed(splats).into_iter().map(|(pixel, rgb)| (pixel, apply(&to_xyz, rgb))));
         }
@@ -84,7 +93,7 @@ impl InLanes for Sending<'_> {
         let variance: f64 = sums.iter().map(|sum| &sum.1).zip(squares.iter().map(|sum| &sum.1)).map(of_pixel).sum();
         let brings = [0, 1, 2].map(|channel| sums.iter().map(|(_, sum)| sum[channel]).sum::<f64>() / images);
         let each = photons as f64 / images;
-        let (lights, rays) = (self.lights, rays as f64 / photons as f64);
+        let rays = rays as f64 / photons as f64;
         let worth = PhotonWorth { lights, brings, variance: variance * each, rays };
         brings.iter().any(|&x| x != 0.0).then_some(worth)
     }

@@ -7,7 +7,7 @@ use super::{Method, Transport};
 use crate::light::{Light, LightId};
 use crate::math::DVec3;
 use crate::scene::Scene;
-use crate::spectrum::{Curve, Emission, Response, Table};
+use crate::spectrum::{Curve, Distinct, Emission, Quantity, Response, Table};
 
 /// A scene on the lanes of one method: everything the tracer reads.
 #[derive(Clone, Debug)]
@@ -45,17 +45,23 @@ impl World {
 
     /// The same without photons sent ahead: enough for camera samples.
     pub fn untaught(scene: &Scene<Curve>, method: Method) -> Self {
-        let responses = scene.lights.iter().map(|light| method.basis.response(light.emission())).collect();
+        let (mut tables, mut responses, mut luminances) = (Distinct::default(), Distinct::default(), Distinct::default());
+        let response = |light: &Light<Curve>| responses.of(light.emission(), |curve| method.basis.response(curve));
+        let responses = scene.lights.iter().map(response).collect();
         let to_xyz = scene.film.color_space.to_xyz();
         let xyz_of_channel = [0, 1, 2].map(|channel| to_xyz.iter().map(|row| row[channel]).sum());
         let has_media = scene.materials.iter().any(|m| m.material.medium().is_some());
         let luminance = |&light: &LightId| {
             let of = &scene.lights[light];
-            is_photon_source(of).then(|| (light, Emission::new(of.emission(), scene.film.color_space).xyz()[1]))
+            let read = |curve: &Curve| Emission::new(curve, scene.film.color_space).xyz()[1];
+            is_photon_source(of).then(|| (light, luminances.of(of.emission(), read)))
         };
         let pass = method.light_pass.as_ref();
         let senders: Vec<_> = pass.map_or(Vec::new(), |pass| pass.lights.iter().filter_map(luminance).collect());
-        let scene = scene.map(|quantity, curve| method.basis.tabulate(quantity, curve));
+        let scene = scene.map(|quantity, curve| match quantity {
+            Quantity::Emission => tables.of(curve, |curve| method.basis.tabulate(quantity, curve)),
+            _ => method.basis.tabulate(quantity, curve),
+        });
         let is_see_through = |object: u32| scene.material_of(object).is_see_through();
         let see_through: Vec<bool> = (0..scene.objects.len() as u32).map(is_see_through).collect();
         let see_through = if see_through.contains(&true) { see_through } else { Vec::new() };

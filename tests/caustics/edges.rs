@@ -4,7 +4,7 @@ use abbe::film::{Film, Window};
 use abbe::plan::plan;
 use abbe::trace::{LightPass, MapPasses, Method, World, render};
 
-use crate::agreement::{blocks, object, seen_by};
+use crate::agreement::{blocks, object, seen_by, with_method};
 use crate::support::scenes::{SPLITTING, scene, standard_errors};
 
 /// What a mirror before the camera shows, which looks the other way.
@@ -39,8 +39,8 @@ const WIDE: MapPasses = MapPasses { count: 4, photons: 32_768, radius: 1.5 };
 
 /// Compares the light of a mirror, which photons bring, with that of a lamp at its image, which is known.
 fn agree(what: &str, bodies: &str, map: MapPasses) {
-    let gathered = blocks(&by_mirror(bodies, 3.0), true, Some(map), 64);
-    let known = blocks(&by_image(bodies, 3.0), false, None, 64);
+    let gathered = blocks(&with_method(&by_mirror(bodies, 3.0)), true, Some(map), 64);
+    let known = blocks(&with_method(&by_image(bodies, 3.0)), false, None, 64);
     let limit = 1.25 * standard_errors(gathered.len());
     let mut sums = [0.0; 3];
     for (a, b) in gathered.iter().zip(&known) {

@@ -15,7 +15,7 @@ fn a_caustic_on_plastic_that_mirrors_it_onto_a_wall() {
         + &glass("index = 1.5")
         + &object("glass", BALL)
         + &object("lamp", ROUND_LAMP);
-    agree("plastic", &text, 64);
+    agree("plastic", &text, 16);
 }
 
 #[test]
@@ -30,7 +30,7 @@ fn a_caustic_through_the_holes_of_sheets_above_and_below_the_glass() {
         + &glass("index = 1.5")
         + &object("glass", BALL)
         + &object("lamp", ROUND_LAMP);
-    agree("holes", &text, 64);
+    agree("holes", &text, 16);
 }
 
 #[test]
@@ -47,7 +47,7 @@ fn a_caustic_on_a_floor_of_bent_normals_and_by_way_of_smoothed_glass() {
         + &object("glass", gem)
         + &object("glass", "sphere = { center = [-0.5, 1.2, 0.2], radius = 0.5 }")
         + &object("lamp", ROUND_LAMP);
-    agree("bent", &text, 64);
+    agree("bent", &text, 16);
 }
 
 #[test]
@@ -60,5 +60,5 @@ fn a_caustic_on_rough_glass_seen_from_both_sides() {
         + &glass("index = 1.5")
         + &object("glass", BALL)
         + &object("lamp", ROUND_LAMP);
-    agree("frost", &text, 64);
+    agree("frost", &text, 32);
 }

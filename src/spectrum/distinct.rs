@@ -1,0 +1,46 @@
+use std::collections::HashMap;
+use std::hash::{DefaultHasher, Hash, Hasher};
+
+use super::{Curve, CurveKind};
+
+/// What is made of curves, made once for all that are alike: thousands of lamps often are.
+#[derive(Debug)]
+pub struct Distinct<T> {
+    known: HashMap<u64, Vec<(Curve, T)>>,
+}
+
+impl<T> Default for Distinct<T> {
+    fn default() -> Self {
+        Self { known: HashMap::new() }
+    }
+}
+
+impl<T: Clone> Distinct<T> {
+    /// What was made of a curve like this one, or is made now.
+    pub fn of(&mut self, curve: &Curve, make: impl FnOnce(&Curve) -> T) -> T {
+        let alike = self.known.entry(hash(curve)).or_default();
+        if let Some((_, known)) = alike.iter().find(|(other, _)| other == curve) {
+            return known.clone();
+        }
+        let made = make(curve);
+        alike.push((curve.clone(), made.clone()));
+        made
+    }
+}
+
+/// The same number for curves that are alike.
+fn hash(curve: &Curve) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    // 0 and -0 are alike.
+    let mut add = |x: f64| (x + 0.0).to_bits().hash(&mut hasher);
+    add(curve.scale);
+    add(curve.luminance.unwrap_or(-1.0));
+    match &curve.kind {
+        CurveKind::Number(x) | CurveKind::Blackbody(x) => add(*x),
+        CurveKind::Rgb(rgb) => rgb.iter().for_each(|&x| add(x)),
+        CurveKind::Samples(pairs) | CurveKind::Lines(pairs) => pairs.as_flattened().iter().for_each(|&x| add(x)),
+        CurveKind::Illuminant(name) => name.hash(&mut hasher),
+        _ => {}
+    }
+    hasher.finish()
+}
