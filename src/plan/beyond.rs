@@ -4,7 +4,7 @@ use super::caustics::{sees_receivers, small_lights, targets};
 use super::in_number;
 use crate::scene::{CausticsText, Scene};
 use crate::spectrum::Curve;
-use crate::trace::{LightPass, MapPasses, Method, Transport, World, gathered_photons, reached_places};
+use crate::trace::{LightPass, MapPasses, Transport, World, gathered_photons, reached_places};
 
 /// Photons per camera sample: between 0.25 and 1 the error for the time hardly changes, where glass is seen through glass.
 const PHOTONS: f64 = 0.5;
@@ -14,13 +14,16 @@ const SMALL: f64 = 0.1;
 const RADIUS: f64 = 2.0;
 /// Photons of a pass: more would take longer to look through than to send.
 const OF_A_PASS: f64 = 32_768.0;
+/// Photons that tell whether any are gathered.
+const FEW: u64 = 8192;
 
 /// The light pass with a map, if one is needed, and why.
 pub(super) fn with_map(
     scene: &Scene<Curve>,
-    method: &Method,
+    untaught: &World,
     shown: Option<&LightPass>,
 ) -> (Option<LightPass>, Vec<String>) {
+    let method = untaught.method();
     let as_shown = || (shown.cloned(), Vec::new());
     let is_off =
         matches!(method.transport, Transport::Deterministic { .. }) || scene.render.caustics == CausticsText::Off;
@@ -28,7 +31,7 @@ pub(super) fn with_map(
     if is_off || targets(scene).is_empty() || (shown.is_none() && sees_receivers(scene)) {
         return as_shown();
     }
-    let places = reached_places(&World::untaught(scene, method.clone()));
+    let places = reached_places(untaught);
     let film = scene.film;
     let samples = f64::from(film.width) * f64::from(film.height) * f64::from(method.samples);
     let all = (PHOTONS * samples).ceil();
@@ -46,9 +49,9 @@ pub(super) fn with_map(
         return as_shown();
     }
     // A few photons tell whether any are gathered, however many the image will take.
-    let few = MapPasses { photons: map.photons.min(OF_A_PASS as u64), ..map };
+    let few = MapPasses { photons: map.photons.min(FEW), ..map };
     let asked = |map| Some(LightPass { map: Some(map), ..pass.clone() });
-    let share = gathered_photons(&World::untaught(scene, Method { light_pass: asked(few), ..method.clone() }), &places);
+    let share = gathered_photons(&untaught.with_light_pass(asked(few)), &places);
     if share == 0.0 {
         return as_shown();
     }

@@ -10,7 +10,7 @@ use crate::math::{DVec2, DVec3, one_minus_cos_of_cone};
 use crate::scene::{CausticsText, Scene};
 use crate::shape::Sides;
 use crate::spectrum::Curve;
-use crate::trace::{LightPass, Method, Transport, World, is_photon_source, is_photon_target, seen_photons};
+use crate::trace::{LightPass, Transport, World, is_photon_source, is_photon_target, seen_photons};
 
 /// Solid angle in steradians from which on rays meet a lamp often enough: there photons and chance cost the same (`benches/rooms.rs`).
 const SMALL: f64 = 0.5;
@@ -22,7 +22,8 @@ const PAIRS: usize = 1 << 19;
 const SIDE: u32 = 24;
 
 /// The light pass that a scene needs, if any, and why.
-pub(super) fn light_pass(scene: &Scene<Curve>, method: &Method) -> (Option<LightPass>, Vec<String>) {
+pub(super) fn light_pass(scene: &Scene<Curve>, untaught: &World) -> (Option<LightPass>, Vec<String>) {
+    let method = untaught.method();
     let none = |why: String| (None, vec![why]);
     let spread = |material: &Material<Curve>| may_receive(scene, material);
     let is_smooth =
@@ -85,7 +86,7 @@ pub(super) fn light_pass(scene: &Scene<Curve>, method: &Method) -> (Option<Light
         LightPass { photons, lights, map: None }
     };
     let asked = pass(1.0, small.iter().map(|light| light.0).collect());
-    let world = World::piloted(scene, Method { light_pass: Some(asked), ..method.clone() });
+    let world = untaught.piloted(asked);
     let share = seen_photons(&world);
     let (seen, unseen): (Vec<_>, Vec<_>) = small.into_iter().partition(|&(id, _)| share[id] > 0.0);
     let to = match targets.as_slice() {

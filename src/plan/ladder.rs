@@ -36,7 +36,7 @@ fn missed(survey: &Survey, basis: &Basis, scattering: &[&Tint], smooth: &[&Tint]
     let read = |tints: &[&Tint]| tints.iter().map(|tint| tint.on(basis)).collect::<Vec<_>>();
     let in_lanes = paths(&read(scattering), &read(smooth));
     let mut worst: f64 = 0.0;
-    for (curve, light) in &survey.lights {
+    for (curve, light) in survey.judged() {
         let exact = exact_colors(light, scattering, smooth, basis);
         let (table, response) = (basis.tabulate(Quantity::Emission, curve), basis.response(curve));
         let emission = draw.read(&table);

@@ -49,14 +49,15 @@ pub fn plan(scene: &Scene<Curve>) -> Plan {
     let max_bounces = scene.render.max_bounces.unwrap_or(u32::MAX);
     let seed = scene.render.seed;
     let method = Method { basis, transport, together, samples, seed, diffuse_bounces, max_bounces, light_pass: None };
-    let (shown, why_shown) = caustics::light_pass(scene, &method);
-    let (light_pass, why_gathered) = beyond::with_map(scene, &method, shown.as_ref());
+    let world = World::untaught(scene, method.clone());
+    let (shown, why_shown) = caustics::light_pass(scene, &world);
+    let (light_pass, why_gathered) = beyond::with_map(scene, &world, shown.as_ref());
     // Why nothing is shown matters only where nothing is gathered either.
     because.extend(why_shown.into_iter().filter(|_| shown.is_some() || light_pass.is_none()));
     because.extend(why_gathered);
     let method = Method { light_pass, ..method };
     because.extend(lights(scene, method.light_pass.as_ref()));
-    because.extend(cost(scene, &method, next));
+    because.extend(cost(scene, &method, &world, next));
     Plan { method, because, rungs }
 }
 
@@ -92,8 +93,8 @@ fn lights(scene: &Scene<Curve>, light_pass: Option<&LightPass>) -> Vec<String> {
 }
 
 /// What a few hundred samples say of the whole.
-fn cost(scene: &Scene<Curve>, method: &Method, next: Option<Basis>) -> Vec<String> {
-    let found = probe(&World::untaught(scene, method.clone()));
+fn cost(scene: &Scene<Curve>, method: &Method, without_pass: &World, next: Option<Basis>) -> Vec<String> {
+    let found = probe(&without_pass.with_light_pass(method.light_pass.clone()));
     let next = next.map(|basis| (basis.name(), probe(&World::untaught(scene, Method { basis, ..method.clone() }))));
     let probe = found;
     let window = scene.film.window();
@@ -102,7 +103,7 @@ fn cost(scene: &Scene<Curve>, method: &Method, next: Option<Basis>) -> Vec<Strin
     if probe.parted > 0.0 {
         lines.push(format!("lanes part in {:.0} % of the camera samples", 100.0 * probe.parted));
     }
-    lines.extend(polarization::left_out(scene, method, &probe));
+    lines.extend(polarization::left_out(scene, method, without_pass, &probe));
     let pass = method.light_pass.as_ref();
     let of_map = pass.and_then(|pass| pass.map).map_or(0, |map| u64::from(map.count) * map.photons);
     let photons = pass.map_or(0, |pass| pass.photons) + of_map;

@@ -136,7 +136,7 @@ fn dispersion(scene: &Scene<Curve>) -> Option<Spread> {
         max_bounces: u32::MAX,
         light_pass: None,
     };
-    Some(spread(&World::new(scene, method)))
+    Some(spread(&World::unlit(scene, method)))
 }
 
 fn spoken(spread: &Spread, visible: bool, hero: bool) -> String {

@@ -7,10 +7,14 @@ use crate::spectrum::Curve;
 use crate::trace::{Method, Probe, World, probe};
 
 /// How much polarization may change; nothing where it can hardly be told.
-pub(super) fn left_out(scene: &Scene<Curve>, method: &Method, probe_of_method: &Probe) -> Option<String> {
+pub(super) fn left_out(
+    scene: &Scene<Curve>,
+    method: &Method,
+    without_pass: &World,
+    probe_of_method: &Probe,
+) -> Option<String> {
     // Light that photons bring is left out by the camera's rays of the method.
-    let alone = method.light_pass.as_ref().map(|_| Method { light_pass: None, ..method.clone() });
-    let found = alone.map(|method| probe(&World::untaught(scene, method)));
+    let found = method.light_pass.as_ref().map(|_| probe(without_pass));
     let found = found.as_ref().unwrap_or(probe_of_method);
     let (all, part) = (found.polarization, found.polarization_of_part);
     let tolerated = tolerance(scene);

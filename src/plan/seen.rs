@@ -54,7 +54,7 @@ impl<'a> Seen<'a> {
             light_pass: None,
         };
         let mut keeping = Keeping::new(scene, survey);
-        for of_pixel in routes(&World::untaught(scene, method)) {
+        for of_pixel in routes(&World::unlit(scene, method)) {
             keeping.keep(&of_pixel);
         }
         keeping.finish(survey, tolerance(scene))
@@ -65,17 +65,18 @@ impl<'a> Seen<'a> {
         let draw = Draw::<MAX_LANES>::fixed(basis.fixed_lanes());
         let tints: Vec<Vec<f64>> = self.tints.iter().map(|tint| tint.on(basis)).collect();
         let products = self.multiply(&tints, basis.fixed_lanes());
-        let lights = survey
-            .lights
-            .iter()
-            .map(|(curve, _)| (draw.read(&basis.tabulate(Quantity::Emission, curve)), basis.response(curve)));
-        let lights: Vec<_> = lights.collect();
+        let mut lights = BTreeMap::new();
+        for light in self.colors.iter().map(|color| color.light) {
+            let curve = &survey.lights[light].0;
+            let read = || (draw.read(&basis.tabulate(Quantity::Emission, curve)), basis.response(curve));
+            lights.entry(light).or_insert_with(read);
+        }
         let missed = |color: &Color| {
             let mut lanes = [0.0; MAX_LANES];
             for (product, weight) in &color.sum {
                 lanes.iter_mut().zip(&products[*product]).for_each(|(lane, left)| *lane += weight * left);
             }
-            let (emission, response) = &lights[color.light];
+            let (emission, response) = &lights[&color.light];
             let found = response.sensor(&draw, *emission * Lanes(lanes.map(|x| x as f32)), false);
             let off = (0..3).fold(0.0_f64, |most, c| most.max((found[c] - color.exact[c]).abs()));
             off / color.scale
@@ -114,11 +115,7 @@ struct Keeping<'a> {
 
 impl<'a> Keeping<'a> {
     fn new(scene: &'a Scene<Curve>, survey: &Survey) -> Self {
-        let light = |curve: &Curve| {
-            let known = survey.lights.iter().position(|(other, _)| other == curve);
-            known.unwrap_or_else(|| survey.number_of_light(curve))
-        };
-        let lights = scene.lights.iter().map(|of| light(of.emission())).collect();
+        let lights = survey.light_numbers.clone();
         let (tints, products, colors) = (BTreeMap::new(), BTreeMap::new(), BTreeMap::new());
         Self { scene, lights, seen: Seen::default(), tints, products, colors }
     }

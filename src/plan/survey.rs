@@ -1,6 +1,7 @@
 //! What of a scene decides how its spectra must be carried.
 
 use std::borrow::Cow;
+use std::collections::HashMap;
 
 use super::seen::Seen;
 use crate::material::{Conductor, Dielectric, Material, Plastic, conductor_reflectance, diffuse_transmittance};
@@ -15,6 +16,10 @@ pub(super) struct Survey<'a> {
     pub(super) upsampler: Upsampler,
     /// The light of each different spectrum, as it is written and as it shines.
     pub(super) lights: Vec<(Curve, Emission)>,
+    /// Which of those each light of the scene shines.
+    pub(super) light_numbers: Vec<usize>,
+    /// Those of them by whose light models are judged.
+    judged: Vec<usize>,
     tints: Vec<Tint<'a>>,
     /// What light of the probe meets, where smooth surfaces tint it.
     pub(super) seen: Seen<'a>,
@@ -36,11 +41,15 @@ pub(super) enum Tint<'a> {
     Surface { index: &'a Curve, crosses: bool, together: bool },
 }
 
+/// Lights of so many different spectra are judged; of more, those farthest apart.
+const MOST_LIGHTS: usize = 64;
+
 impl<'a> Survey<'a> {
     /// `together`: all lanes are refracted by one index.
     pub(super) fn new(scene: &'a Scene<Curve>, together: bool) -> Self {
         let space = scene.film.color_space;
-        let lights = different(scene.lights.iter().map(|light| light.emission()), space);
+        let (lights, light_numbers) = different(scene.lights.iter().map(|light| light.emission()), space);
+        let judged = farthest_apart(&lights, MOST_LIGHTS);
         let mut tints = Vec::new();
         let filters =
             |quantity, curve: &'a Curve| curve.shades().into_iter().map(move |shade| Tint::Filter(quantity, shade));
@@ -74,8 +83,15 @@ impl<'a> Survey<'a> {
                 }
             }
         }
-        let mut survey =
-            Self { color_space: space, upsampler: Upsampler::new(space), lights, tints, seen: Seen::default() };
+        let mut survey = Self {
+            color_space: space,
+            upsampler: Upsampler::new(space),
+            lights,
+            light_numbers,
+            judged,
+            tints,
+            seen: Seen::default(),
+        };
         if !survey.is_plain() && !survey.smooth(1).is_empty() {
             survey.seen = Seen::new(scene, &survey);
         }
@@ -104,10 +120,9 @@ impl<'a> Survey<'a> {
         self.lights.iter().map(|(_, light)| light.clone()).collect()
     }
 
-    /// Which of the different lights one is.
-    pub(super) fn number_of_light(&self, curve: &Curve) -> usize {
-        let emission = Emission::new(curve, self.color_space);
-        self.lights.iter().position(|(_, light)| light.looks_like(&emission)).unwrap_or(0)
+    /// The lights by which models are judged.
+    pub(super) fn judged(&self) -> impl Iterator<Item = &(Curve, Emission)> {
+        self.judged.iter().map(|&light| &self.lights[light])
     }
 
     /// The brightest ideal lines, ascending in nm, and how many there are in all.
@@ -261,18 +276,57 @@ pub(super) fn disperses(glass: &Dielectric<Curve>) -> bool {
     }
 }
 
-/// The lights of different spectra.
-fn different<'a>(curves: impl Iterator<Item = &'a Curve>, space: ColorSpace) -> Vec<(Curve, Emission)> {
+/// Places of the spectrum by which lights are told apart at a glance.
+const GLANCE: usize = 24;
+
+/// A light's spectrum in coarse steps, of a sum of 1.
+fn glance(emission: &Emission) -> [f64; GLANCE] {
+    let mut steps = [0.0; GLANCE];
+    let count = visible::COUNT as f64;
+    let step = |nm: f64| (((nm - visible::FIRST_NM) / count * GLANCE as f64) as usize).min(GLANCE - 1);
+    visible::wavelengths().zip(emission.spectrum()).for_each(|(nm, power)| steps[step(nm)] += power);
+    emission.lines().iter().for_each(|&[nm, power]| steps[step(nm)] += power);
+    let total: f64 = steps.iter().sum();
+    if total > 0.0 { steps.map(|x| x / total) } else { steps }
+}
+
+/// The lights of different spectra, and which one each curve is.
+fn different<'a>(curves: impl Iterator<Item = &'a Curve>, space: ColorSpace) -> (Vec<(Curve, Emission)>, Vec<usize>) {
     let mut known: Vec<(Curve, Emission)> = Vec::new();
+    let mut alike: HashMap<[i64; GLANCE], Vec<usize>> = HashMap::new();
+    // Thousands of lamps are often written alike: no spectrum need be made to see that.
     let mut looked_at = Distinct::default();
-    for curve in curves {
-        // Thousands of lamps are often written alike: no spectrum need be made to see that.
+    let number = |curve: &'a Curve| {
         looked_at.of(curve, |curve| {
             let emission = Emission::new(curve, space);
-            if !known.iter().any(|(_, other)| other.looks_like(&emission)) {
-                known.push((curve.clone(), emission));
+            let alike = alike.entry(glance(&emission).map(|x| (x * 1e6).round() as i64)).or_default();
+            if let Some(&number) = alike.iter().find(|&&number| known[number].1.looks_like(&emission)) {
+                return number;
             }
-        });
+            alike.push(known.len());
+            known.push((curve.clone(), emission));
+            known.len() - 1
+        })
+    };
+    let numbers = curves.map(number).collect();
+    (known, numbers)
+}
+
+/// So many of the lights, each as far from all before it as any.
+fn farthest_apart(lights: &[(Curve, Emission)], most: usize) -> Vec<usize> {
+    if lights.len() <= most {
+        return (0..lights.len()).collect();
     }
-    known
+    let glances: Vec<[f64; GLANCE]> = lights.iter().map(|(_, emission)| glance(emission)).collect();
+    let mut distances = vec![f64::INFINITY; lights.len()];
+    let (mut chosen, mut next) = (Vec::new(), 0);
+    while chosen.len() < most {
+        chosen.push(next);
+        for (distance, other) in distances.iter_mut().zip(&glances) {
+            let apart = other.iter().zip(&glances[next]).map(|(a, b)| (a - b).abs()).sum();
+            *distance = distance.min(apart);
+        }
+        next = (0..lights.len()).max_by(|&a, &b| distances[a].total_cmp(&distances[b])).unwrap_or(0);
+    }
+    chosen
 }

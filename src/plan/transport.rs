@@ -80,7 +80,7 @@ fn too_many_ways(scene: &Scene<Curve>, basis: &Basis, together: f64) -> Option<S
         max_bounces: scene.render.max_bounces.unwrap_or(u32::MAX),
         light_pass: None,
     };
-    match branching(&World::untaught(scene, method), AFFORDABLE) {
+    match branching(&World::unlit(scene, method), AFFORDABLE) {
         Branching::Affordable(_) => None,
         Branching::Beyond([x, y]) => Some(format!(
             "light has too many ways through glass and over mirrors to follow all of them, as at pixel ({x}, {y})"

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use crate::light::{Light, LightId};
 use crate::scene::Scene;
-use crate::spectrum::{Curve, Emission, apply};
+use crate::spectrum::{Curve, Distinct, Emission, apply};
 use crate::trace::{PhotonWorth, SampleWorth, World, photons_worth, samples_worth};
 
 /// Of a lamp's radiance, what the camera sees of it by way of a smooth surface and one that scatters: about half.
@@ -36,8 +36,9 @@ pub(super) fn weigh(scene: &Scene<Curve>, world: &World) -> Worth {
     let samples = samples_worth(world);
     let film = scene.film;
     let pixels = f64::from(film.width) * f64::from(film.height);
+    let mut colors = Distinct::default();
     let with_chance = |photons: PhotonWorth| {
-        let of_light = |light: &LightId| match radiance(scene, *light) {
+        let of_light = |light: &LightId| match radiance(scene, *light, &mut colors) {
             Some(radiance) => (0..3).map(|i| LEFT * radiance[i] * photons.brings[i]).sum::<f64>().abs() * pixels,
             None => f64::INFINITY,
         };
@@ -76,7 +77,7 @@ fn product(samples: &SampleWorth, known: &[(PhotonWorth, f64)], sent: usize) -> 
 }
 
 /// XYZ of a light's radiance; none of one that has no extent.
-fn radiance(scene: &Scene<Curve>, light: LightId) -> Option<[f64; 3]> {
+fn radiance(scene: &Scene<Curve>, light: LightId, colors: &mut Distinct<[f64; 3]>) -> Option<[f64; 3]> {
     let light = &scene.lights[light];
     let factor = match light {
         Light::Area(_) => 1.0,
@@ -87,6 +88,6 @@ fn radiance(scene: &Scene<Curve>, light: LightId) -> Option<[f64; 3]> {
         _ => return None,
     };
     let space = scene.film.color_space;
-    let color = Emission::new(light.emission(), space).color().map(|x| x * factor);
-    Some(apply(&space.to_xyz(), color))
+    let color = colors.of(light.emission(), |curve| Emission::new(curve, space).color());
+    Some(apply(&space.to_xyz(), color.map(|x| x * factor)))
 }

@@ -14,11 +14,9 @@ use super::render::TILE;
 use super::sending::{Sent, batches, send};
 use super::tracer::Tracer;
 use super::width::{InLanes, in_lanes};
-use super::{Method, World};
+use super::{LightPass, World};
 use crate::light::LightId;
 use crate::math::Sampler;
-use crate::scene::Scene;
-use crate::spectrum::Curve;
 
 /// Batches whose splats are kept in memory at once.
 const AT_ONCE: usize = 64;
@@ -31,8 +29,13 @@ const AHEAD_SEED: u64 = 0x6168_6561;
 const AHEAD: u64 = 8;
 const TOO_FEW: u64 = 4096;
 const ENOUGH: u64 = 1 << 16;
-/// Photons of all aims that the plan sends ahead: as many whatever the image is.
+/// Photons of all aims that the plan sends ahead, as many whatever the image is: no more than these, and than follow so many
+/// rays, if those are not too few to tell; and of all aims those that tell which are seen.
 const OF_A_PLAN: u64 = 1 << 17;
+const RAYS_OF_A_PLAN: f64 = (1 << 18) as f64;
+const SEEN_OF_A_PLAN: u64 = 1 << 16;
+/// Of each aim, photons that tell how many rays one follows.
+const FIRST: u64 = 256;
 /// Lights that are looked at one by one: of more, neighbors in the scene as one.
 const LIGHTS: usize = 16;
 
@@ -106,27 +109,36 @@ fn show_one<const N: usize>(tracer: &Tracer<N>, landing: &Landing<N>, sampler: &
     tracer.show(landing, sampler, splats);
 }
 
-/// What photons sent ahead found: of each aim, the places and whether the camera saw them. The whole image sees, also where
-/// only a part of it is made, so that all parts are made alike.
+/// What photons sent ahead found.
+#[derive(Default)]
+struct Learned {
+    /// Of each aim, the places and whether the camera saw them.
+    found: Vec<Vec<([f64; 2], bool)>>,
+    /// Rays followed.
+    rays: u64,
+}
+
+/// Sends photons ahead. The whole image sees them, also where only a part of it is made, so that all parts are made alike.
 struct Learning<'a> {
     world: &'a World,
     most: u64,
 }
 
 impl InLanes for Learning<'_> {
-    type Output = Vec<Vec<([f64; 2], bool)>>;
-    fn run<const N: usize>(self) -> Self::Output {
+    type Output = Learned;
+    fn run<const N: usize>(self) -> Learned {
         let mut world = self.world.clone();
         world.scene.film.crop = None;
-        let Some(aims) = &world.aims else { return Vec::new() };
+        let Some(aims) = &world.aims else { return Learned::default() };
         let batches = batches(aims, |_| 0, |aim| aim.photons.min(self.most), world.method.seed ^ AHEAD_SEED);
         let done: Vec<Sent<Splat>> =
             batches.par_iter().map(|batch| send::<N, _>(&world, aims, *batch, true, show_one)).collect();
-        let mut found = vec![Vec::new(); aims.aims.len()];
+        let mut learned = Learned { found: vec![Vec::new(); aims.aims.len()], rays: 0 };
         for (batch, sent) in batches.iter().zip(done) {
-            found[batch.aim].extend(sent.places);
+            learned.rays += sent.rays;
+            learned.found[batch.aim].extend(sent.places);
         }
-        found
+        learned
     }
 }
 
@@ -134,8 +146,8 @@ impl InLanes for Learning<'_> {
 pub fn seen_photons(world: &World) -> Vec<f64> {
     let mut shares = vec![0.0; world.scene.lights.len()];
     let Some(aims) = &world.aims else { return shares };
-    let most = (OF_A_PLAN / aims.aims.len() as u64).clamp(1, TOO_FEW);
-    let found = in_lanes(&world.method.basis, Learning { world, most });
+    let most = (SEEN_OF_A_PLAN / aims.aims.len() as u64).clamp(1, TOO_FEW);
+    let found = in_lanes(&world.method.basis, Learning { world, most }).found;
     let mut counts = vec![[0_u32; 2]; shares.len()];
     for (aim, photons) in aims.aims.iter().zip(found) {
         let [sent, seen] = &mut counts[aim.light];
@@ -160,11 +172,18 @@ impl World {
         lights.chunks(of_group).map(<[LightId]>::to_vec).collect()
     }
 
-    /// As [`World::new`], for a plan: no more photons are sent ahead for an image of many pixels than for one of few.
-    pub fn piloted(scene: &Scene<Curve>, method: Method) -> Self {
-        let mut world = Self::untaught(scene, method);
+    /// The same world with a light pass and photons sent ahead, for a plan: no more of them for an image of many pixels than
+    /// for one of few.
+    pub fn piloted(&self, light_pass: LightPass) -> Self {
+        let mut world = self.with_light_pass(Some(light_pass));
         let aims = world.aims.as_ref().map_or(1, |aims| aims.aims.len() as u64);
-        world.learn_where_to_send(OF_A_PLAN / aims);
+        let most = OF_A_PLAN / aims;
+        if most >= TOO_FEW {
+            let first = in_lanes(&world.method.basis, Learning { world: &world, most: FIRST });
+            let sent = first.found.iter().map(Vec::len).sum::<usize>() as f64;
+            let by_rays = RAYS_OF_A_PLAN * sent / (first.rays as f64 * aims as f64);
+            world.learn_where_to_send((by_rays as u64).clamp(TOO_FEW, most));
+        }
         world
     }
 
@@ -176,7 +195,7 @@ impl World {
         };
         let ahead = least.min(ENOUGH).min(most);
         if ahead >= TOO_FEW {
-            let found = in_lanes(&self.method.basis, Learning { world: self, most: ahead });
+            let found = in_lanes(&self.method.basis, Learning { world: self, most: ahead }).found;
             if let Some(aims) = &mut self.aims {
                 aims.learn(&found);
             }

@@ -37,7 +37,7 @@ const PART: u32 = 4;
 const BATCH: u32 = 16;
 /// Photons of an aim, and of how many aims.
 const FEW: u64 = 512;
-const AIMS: usize = 32;
+const AIMS: usize = 8;
 /// Time after which the probe has seen enough.
 const ENOUGH: Duration = Duration::from_millis(300);
 

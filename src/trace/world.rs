@@ -3,7 +3,7 @@ use super::choice::Choice;
 use super::lamps::met_lamps;
 use super::media::Media;
 use super::sending::media_of_lights;
-use super::{Method, Transport};
+use super::{LightPass, Method, Transport};
 use crate::light::{Light, LightId};
 use crate::math::DVec3;
 use crate::scene::Scene;
@@ -18,6 +18,8 @@ pub struct World {
     pub(super) xyz_of_channel: [f64; 3],
     /// What each light's lanes are worth to the sensor.
     pub(super) responses: Vec<Response>,
+    /// CIE Y of each light that photons can be sent from.
+    luminances: Vec<f64>,
     /// Lights that next-event estimation aims at.
     pub(super) targets: Vec<LightId>,
     /// Which light is chosen where only one is aimed at.
@@ -45,19 +47,25 @@ impl World {
 
     /// The same without photons sent ahead: enough for camera samples.
     pub fn untaught(scene: &Scene<Curve>, method: Method) -> Self {
-        let (mut tables, mut responses, mut luminances) = (Distinct::default(), Distinct::default(), Distinct::default());
+        let mut world = Self::unlit(scene, method);
+        world.look_for_lamps();
+        world
+    }
+
+    /// The same without a look at where lamps are seen: enough for ways that end in no light.
+    pub fn unlit(scene: &Scene<Curve>, method: Method) -> Self {
+        let (mut tables, mut responses, mut luminances) =
+            (Distinct::default(), Distinct::default(), Distinct::default());
         let response = |light: &Light<Curve>| responses.of(light.emission(), |curve| method.basis.response(curve));
         let responses = scene.lights.iter().map(response).collect();
         let to_xyz = scene.film.color_space.to_xyz();
         let xyz_of_channel = [0, 1, 2].map(|channel| to_xyz.iter().map(|row| row[channel]).sum());
         let has_media = scene.materials.iter().any(|m| m.material.medium().is_some());
-        let luminance = |&light: &LightId| {
-            let of = &scene.lights[light];
+        let luminance = |of: &Light<Curve>| {
             let read = |curve: &Curve| Emission::new(curve, scene.film.color_space).xyz()[1];
-            is_photon_source(of).then(|| (light, luminances.of(of.emission(), read)))
+            if is_photon_source(of) { luminances.of(of.emission(), read) } else { 0.0 }
         };
-        let pass = method.light_pass.as_ref();
-        let senders: Vec<_> = pass.map_or(Vec::new(), |pass| pass.lights.iter().filter_map(luminance).collect());
+        let luminances = scene.lights.iter().map(luminance).collect();
         let scene = scene.map(|quantity, curve| match quantity {
             Quantity::Emission => tables.of(curve, |curve| method.basis.tabulate(quantity, curve)),
             _ => method.basis.tabulate(quantity, curve),
@@ -67,35 +75,50 @@ impl World {
         let see_through = if see_through.contains(&true) { see_through } else { Vec::new() };
         let choice = Choice::new(&scene.lights);
         let targets = choice.targets();
-        let camera_media = Media::default();
-        let pass = method.light_pass.as_ref();
-        let aims_of = |photons: u64| Aims::new(&scene, &senders, photons);
-        let aims = pass.and_then(|pass| aims_of(pass.photons));
-        let map_aims = pass.and_then(|pass| pass.map).and_then(|map| aims_of(map.photons));
-        let light_media = Vec::new();
         let mut world = Self {
             xyz_of_channel,
             responses,
+            luminances,
             targets,
             choice,
             scene,
             method,
-            camera_media,
+            camera_media: Media::default(),
             has_media,
             see_through,
-            aims,
-            map_aims,
-            light_media,
+            aims: None,
+            map_aims: None,
+            light_media: Vec::new(),
         };
         if has_media {
             let (position, forward) = (world.scene.camera.position(), world.scene.camera.forward());
             world.camera_media = Media::around(&world, position, forward);
         }
-        if world.aims.is_some() {
-            world.light_media = media_of_lights(&world);
-        }
-        world.look_for_lamps();
+        world.aim_photons();
         world
+    }
+
+    /// The same world with another light pass, untaught.
+    pub fn with_light_pass(&self, light_pass: Option<LightPass>) -> Self {
+        let mut world = self.clone();
+        world.method.light_pass = light_pass;
+        world.aim_photons();
+        world
+    }
+
+    /// Aims the photons of the light pass.
+    fn aim_photons(&mut self) {
+        let pass = self.method.light_pass.as_ref();
+        let sends = |&&light: &&LightId| is_photon_source(&self.scene.lights[light]);
+        let senders = pass.map_or(Vec::new(), |pass| pass.lights.iter().filter(sends).copied().collect());
+        let senders: Vec<_> = senders.into_iter().map(|light| (light, self.luminances[light])).collect();
+        let aims_of = |photons: u64| Aims::new(&self.scene, &senders, photons);
+        let aims = pass.and_then(|pass| aims_of(pass.photons));
+        let map_aims = pass.and_then(|pass| pass.map).and_then(|map| aims_of(map.photons));
+        (self.aims, self.map_aims) = (aims, map_aims);
+        if self.aims.is_some() && self.light_media.is_empty() {
+            self.light_media = media_of_lights(self);
+        }
     }
 
     /// Finds out where lamps are seen that may be hidden for the most part.
