@@ -7,7 +7,7 @@ use super::{LightPass, Method, Transport};
 use crate::light::{Light, LightId};
 use crate::math::DVec3;
 use crate::scene::Scene;
-use crate::spectrum::{Curve, Distinct, Emission, Quantity, Response, Table};
+use crate::spectrum::{Curve, Distinct, Draw, MAX_LANES, Quantity, Response, Table, apply};
 
 /// A scene on the lanes of one method: everything the tracer reads.
 #[derive(Clone, Debug)]
@@ -18,8 +18,6 @@ pub struct World {
     pub(super) xyz_of_channel: [f64; 3],
     /// What each light's lanes are worth to the sensor.
     pub(super) responses: Vec<Response>,
-    /// CIE Y of each light that photons can be sent from.
-    luminances: Vec<f64>,
     /// Lights that next-event estimation aims at.
     pub(super) targets: Vec<LightId>,
     /// Which light is chosen where only one is aimed at.
@@ -54,18 +52,12 @@ impl World {
 
     /// The same without a look at where lamps are seen: enough for ways that end in no light.
     pub fn unlit(scene: &Scene<Curve>, method: Method) -> Self {
-        let (mut tables, mut responses, mut luminances) =
-            (Distinct::default(), Distinct::default(), Distinct::default());
+        let (mut tables, mut responses) = (Distinct::default(), Distinct::default());
         let response = |light: &Light<Curve>| responses.of(light.emission(), |curve| method.basis.response(curve));
         let responses = scene.lights.iter().map(response).collect();
         let to_xyz = scene.film.color_space.to_xyz();
         let xyz_of_channel = [0, 1, 2].map(|channel| to_xyz.iter().map(|row| row[channel]).sum());
         let has_media = scene.materials.iter().any(|m| m.material.medium().is_some());
-        let luminance = |of: &Light<Curve>| {
-            let read = |curve: &Curve| Emission::new(curve, scene.film.color_space).xyz()[1];
-            if is_photon_source(of) { luminances.of(of.emission(), read) } else { 0.0 }
-        };
-        let luminances = scene.lights.iter().map(luminance).collect();
         let scene = scene.map(|quantity, curve| match quantity {
             Quantity::Emission => tables.of(curve, |curve| method.basis.tabulate(quantity, curve)),
             _ => method.basis.tabulate(quantity, curve),
@@ -78,7 +70,6 @@ impl World {
         let mut world = Self {
             xyz_of_channel,
             responses,
-            luminances,
             targets,
             choice,
             scene,
@@ -106,12 +97,20 @@ impl World {
         world
     }
 
+    /// CIE Y of what a light shines.
+    fn luminance(&self, light: LightId) -> f64 {
+        let draw = Draw::<MAX_LANES>::fixed(self.method.basis.fixed_lanes());
+        let emission = draw.read(self.scene.lights[light].emission());
+        let rgb = self.responses[light].sensor(&draw, emission, false);
+        apply(&self.scene.film.color_space.to_xyz(), rgb)[1]
+    }
+
     /// Aims the photons of the light pass.
     fn aim_photons(&mut self) {
         let pass = self.method.light_pass.as_ref();
         let sends = |&&light: &&LightId| is_photon_source(&self.scene.lights[light]);
         let senders = pass.map_or(Vec::new(), |pass| pass.lights.iter().filter(sends).copied().collect());
-        let senders: Vec<_> = senders.into_iter().map(|light| (light, self.luminances[light])).collect();
+        let senders: Vec<_> = senders.into_iter().map(|light| (light, self.luminance(light))).collect();
         let aims_of = |photons: u64| Aims::new(&self.scene, &senders, photons);
         let aims = pass.and_then(|pass| aims_of(pass.photons));
         let map_aims = pass.and_then(|pass| pass.map).and_then(|map| aims_of(map.photons));
