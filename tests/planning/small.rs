@@ -189,6 +189,36 @@ fn dispersion_before_an_even_sky_with_nothing_behind_keeps_lanes_together() {
 }
 
 #[test]
+fn dispersion_inside_a_drop_is_noticed_where_only_what_it_mirrors_inside_shows() {
+    let drop = |behind: &str| {
+        plan(&scene(&format!(
+            "[camera]\nposition = [0, 0, 0]\nlook_at = [0, 0, -1]\nvertical_fov = 2\n[film]\nwidth = 100\nheight = 100\n{MATERIALS}\
+             [material.drop]\ndielectric = {{ index = \"water\" }}\n{}{}{behind}",
+            object("drop", "shape.sphere = { center = [0, 0, -9], radius = 0.1 }"),
+            object("wall", "shape.quad = { center = [0, 0, 1], u = [30, 0, 0], v = [0, 30, 0] }"),
+        )))
+    };
+    let alone = drop("");
+    assert!(parts(&alone), "{:?}", alone.because);
+    let before_an_even_sky = drop("[[light]]\nenvironment = { radiance = 1 }\n");
+    assert!(parts(&before_an_even_sky), "{:?}", before_an_even_sky.because);
+}
+
+#[test]
+fn dispersion_is_assumed_where_no_ray_sees_anything_through_the_glass() {
+    let glass = |z: f64| {
+        plan(&scene(&format!(
+            "[camera]\nposition = [0, 0, 0]\nlook_at = [0, 0, -1]\nvertical_fov = 40\n[film]\nwidth = 100\nheight = 100\n{MATERIALS}\
+             [[object]]\nmaterial = \"lamp\"\nshape.sphere = {{ center = [0, 0, {z:?}], radius = 0.001 }}\n{}",
+            body(true, "flint", 1.0, [0.0, 0.0, -6.0])
+        )))
+    };
+    let dark = glass(9e3);
+    assert!(parts(&dark), "{:?}", dark.because);
+    assert!(dark.because.iter().any(|line| line.contains("no ray of the probe saw anything")), "{:?}", dark.because);
+}
+
+#[test]
 fn sunlight_through_a_small_gem_out_of_sight_is_noticed() {
     let head = format!(
         "[camera]\nposition = [0, 1, 0]\nlook_at = [0, 0, -6]\nvertical_fov = 40\n[film]\nwidth = 400\nheight = 400\n{MATERIALS}{}",
