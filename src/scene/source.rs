@@ -72,8 +72,8 @@ impl Scene {
     /// Reads a scene file, and the meshes, images and tables that it names.
     ///
     /// # Errors
-    /// [`Error::Scene`](crate::Error::Scene) with all mistakes that can be found, each with its line and what to do;
-    /// [`Error::Arguments`](crate::Error::Arguments) if there is no such file.
+    /// [`Error::Scene`] with all mistakes that can be found, each with its line and what to do;
+    /// [`Error::Arguments`] if there is no such file.
     pub fn read(path: impl AsRef<Path>) -> Result<Self> {
         let source = Source::read(path.as_ref())?;
         compile(&source.parse()?, &source)
