@@ -239,6 +239,24 @@ fn sunlight_through_a_small_gem_out_of_sight_is_noticed() {
 }
 
 #[test]
+fn the_light_of_a_drop_far_above_the_floor_counts_only_where_it_is_not_outshone() {
+    let plan_of = |height: f64, cone_angle: f64| {
+        plan(&scene(&format!(
+            "[camera]\nposition = [0, 1, 0]\nlook_at = [0, 0, -6]\nvertical_fov = 40\n[film]\nwidth = 400\nheight = 400\n{MATERIALS}\
+             [[light]]\nspot = {{ position = [0, 6, -6], look_at = [0, 0, -6], cone_angle = {cone_angle:?}, blend = 0, intensity = 3 }}\n{}{}",
+            object("wall", "shape.plane = { point = [0, 0, 0], normal = [0, 1, 0] }"),
+            object("flint", &format!("shape.sphere = {{ center = [0, {height:?}, -6], radius = 0.02 }}")),
+        )))
+    };
+    let near = plan_of(0.04, 150.0);
+    assert!(parts(&near), "{:?}", near.because);
+    let far = plan_of(2.7, 150.0);
+    assert!(!parts(&far), "{:?}", far.because);
+    let alone = plan_of(2.7, 0.6);
+    assert!(parts(&alone), "{:?}", alone.because);
+}
+
+#[test]
 fn light_of_small_lamps_through_a_small_gem_out_of_sight_is_noticed() {
     let head = format!(
         "[camera]\nposition = [0, 1, 0]\nlook_at = [0, 0, -6]\nvertical_fov = 40\n[film]\nwidth = 400\nheight = 400\n{MATERIALS}{}",
