@@ -4,8 +4,7 @@ use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 use abbe::film::Window;
-use abbe::scene::{FilmSettings, RenderText};
-use abbe::{Error, Result};
+use abbe::{Error, Options, Result};
 use clap::Parser;
 
 use crate::catalog::Query;
@@ -89,10 +88,7 @@ pub struct Job {
     pub scene: PathBuf,
     pub output: Output,
     pub exposure: f64,
-    samples: Option<u32>,
-    seed: Option<u64>,
-    crop: Option<Window>,
-    pool: rayon::ThreadPool,
+    pub options: Options,
 }
 
 /// What is wanted of the scene.
@@ -152,31 +148,12 @@ fn job(arguments: Arguments) -> Result<Job> {
     } else {
         Output::Image { exr: Some(exr).filter(|_| with_exr), png: arguments.png }
     };
-    let threads = arguments.threads.map_or(0, usize::from);
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-    let pool =
-        pool.map_err(|error| Error::Arguments { message: format!("cannot start threads: {error}"), help: None })?;
-    let Arguments { samples, seed, crop, .. } = arguments;
+    let Arguments { samples, seed, crop, threads, .. } = arguments;
     let exposure = arguments.exposure.unwrap_or(0.0);
-    Ok(Job { scene, output, exposure, samples, seed, crop, pool })
+    Ok(Job { scene, output, exposure, options: Options { samples, seed, crop, threads: threads.map(usize::from) } })
 }
 
 impl Job {
-    /// Lets flags replace what the scene says.
-    pub fn apply(&self, render: &mut RenderText) {
-        render.samples = self.samples.or(render.samples);
-        render.seed = self.seed.unwrap_or(render.seed);
-    }
-
-    /// Lets a flag replace the part of the image that the scene asks for.
-    pub fn crop(&self, film: &mut FilmSettings) -> Result<()> {
-        film.crop = self.crop.or(film.crop);
-        match self.crop.and_then(|crop| film.objection(crop)) {
-            Some(message) => refuse(&message, Some("--crop takes first column, first row, width and height")),
-            None => Ok(()),
-        }
-    }
-
     /// Refuses an output that is the scene itself, by another name or a link.
     pub fn spares_scene(&self, output: &Path) -> Result<()> {
         let real = |path: &Path| std::fs::canonicalize(path).ok();
@@ -184,11 +161,6 @@ impl Job {
             Some(_) => refuse(&format!("{} is the scene itself", output.display()), Some("name another file")),
             None => Ok(()),
         }
-    }
-
-    /// Runs work on the threads that were asked for.
-    pub fn on_threads<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
-        self.pool.install(work)
     }
 }
 

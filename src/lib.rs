@@ -1,8 +1,33 @@
 //! Abbe: a spectral, HDR, offline renderer.
 //!
+//! ```
+//! let scene = abbe::Scene::parse(
+//!     r#"
+//!     camera = { position = [0, 1, 5], look_at = [0, 1, 0], vertical_fov = 40 }
+//!     film = { width = 32, height = 24 }
+//!     light = [{ environment = { radiance = 1 } }]
+//!     [material.glass]
+//!     dielectric = { index = "N-BK7" }
+//!     [[object]]
+//!     shape.sphere = { center = [0, 1, 0], radius = 1 }
+//!     material = "glass"
+//!     "#,
+//!     "",
+//! )?;
+//! let image = abbe::render(&scene, &abbe::Options { samples: Some(4), ..Default::default() })?;
+//! let [red, green, blue] = image.rgb_at(16, 12);
+//! # assert!((red - green).abs() < 1e-3 && (green - blue).abs() < 1e-3);
+//! // image.write_exr("ball.exr")?;
+//! # Ok::<(), abbe::Error>(())
+//! ```
+//!
+//! [`Scene::read`] takes a scene file, [`Scene::from_table`] what a program has built. [`Rendering`] says its plan and its
+//! progress. The rooms below are open as well: a plan without a render, a glass's index, one ray.
+//!
 //! ```text
 //! scene.toml -> Description -> Scene<Curve> -> Plan -> Scene<Table> -> radiance::<N> over tiles -> Film -> EXR
 //!
+//! floor 6   rendering   a scene made into an image
 //! floor 5   plan        looks at a Scene<Curve>; answers a Method and, in words, why
 //! floor 4   trace       how light travels
 //! floor 3   scene       the world, with every reference resolved
@@ -38,4 +63,10 @@ pub mod trace;
 // Floor 5
 pub mod plan;
 
+// Floor 6
+mod rendering;
+
 pub use error::{Diagnostic, Error, Result, nearest};
+pub use rendering::{Image, Options, Rendering, render};
+pub use scene::Scene;
+pub use toml;

@@ -8,12 +8,9 @@ mod progress;
 use std::path::Path;
 use std::process::ExitCode;
 
-use abbe::Result;
-use abbe::film::{Fact, Provenance, View, check_writable, write_exr, write_png};
-use abbe::plan::{Plan, plan};
-use abbe::scene::{Projection, Scene, Source, compile};
-use abbe::spectrum::{Basis, Curve};
-use abbe::trace::{World, render, work};
+use abbe::film::check_writable;
+use abbe::plan::plan;
+use abbe::{Rendering, Result, Scene};
 
 use cli::{Job, Output, Request};
 
@@ -33,11 +30,8 @@ fn main() -> ExitCode {
 }
 
 fn run(job: &Job) -> Result<()> {
-    let source = Source::read(&job.scene)?;
-    let mut description = source.parse()?;
-    job.apply(&mut description.render);
-    let mut scene = compile(&description, &source)?;
-    job.crop(&mut scene.film)?;
+    let mut scene = Scene::read(&job.scene)?;
+    job.options.apply(&mut scene)?;
     scene.warnings.iter().for_each(|warning| messages::warn(warning));
     match &job.output {
         Output::Check => {
@@ -51,64 +45,17 @@ fn run(job: &Job) -> Result<()> {
     }
 }
 
-fn image(job: &Job, scene: &Scene<Curve>, exr: Option<&Path>, png: Option<&Path>) -> Result<()> {
+fn image(job: &Job, scene: &Scene, exr: Option<&Path>, png: Option<&Path>) -> Result<()> {
     let outputs = || [exr, png].into_iter().flatten();
     outputs().try_for_each(|output| job.spares_scene(output))?;
     outputs().try_for_each(check_writable)?;
-    let plan = job.on_threads(|| plan(scene));
-    plan.because.iter().for_each(|line| messages::say(line));
-    let world = World::new(scene, plan.method.clone());
-    let progress = progress::Progress::new(work(&world));
-    let (film, report) = job.on_threads(|| render(&world, &|done| progress.advance(done)));
+    let rendering = Rendering::new(scene, &job.options)?;
+    rendering.plan().because.iter().for_each(|line| messages::say(line));
+    let progress = progress::Progress::new(rendering.work());
+    let image = rendering.run(&|done| progress.advance(done));
     progress.finish();
-    if let Some(exr) = exr {
-        write_exr(&film, &view(scene), &provenance(scene, &plan, report.non_finite), exr)?;
-    }
-    if let Some(png) = png {
-        write_png(&film, job.exposure, png)?;
-    }
-    messages::print_report(&report, exr, png);
+    exr.map_or(Ok(()), |exr| image.write_exr(exr))?;
+    png.map_or(Ok(()), |png| image.write_png(png, job.exposure))?;
+    messages::print_report(image.report(), exr, png);
     Ok(())
-}
-
-fn view(scene: &Scene<Curve>) -> View {
-    let camera = &scene.camera;
-    View {
-        world_to_camera: camera.world_to_camera(),
-        screen_window_width: camera.screen_window_width(),
-        screen_window_center: camera.screen_window_center(),
-        latlong: camera.projection() == Projection::Equirectangular,
-    }
-}
-
-/// Where the fixed lanes read spectra, in nm.
-fn wavelengths(basis: &Basis) -> String {
-    let shown: Vec<String> = basis.wavelengths_nm().iter().map(f64::to_string).collect();
-    shown.join(" ")
-}
-
-fn provenance(scene: &Scene<Curve>, plan: &Plan, non_finite: u64) -> Provenance {
-    let text = |text: &str| Fact::Text(text.to_owned());
-    let projection = scene.camera.projection().name();
-    let pass = plan.method.light_pass.as_ref();
-    let photons = pass.map(|pass| ("photons", Fact::Count(pass.photons)));
-    let blur = pass.and_then(|pass| pass.map).map(|map| ("photonRadius", text(&format!("{:.3} pixels", map.radius))));
-    Provenance {
-        facts: [
-            ("version", text(env!("CARGO_PKG_VERSION"))),
-            ("sceneHash", text(&scene.hash)),
-            ("model", text(&plan.method.basis.name())),
-            ("wavelengths", text(&wavelengths(&plan.method.basis))),
-            ("projection", text(projection)),
-            ("transport", text(plan.method.transport.name())),
-            ("filter", text(&scene.film.filter.described())),
-            ("samples", Fact::Count(plan.method.samples.into())),
-            ("seed", text(&plan.method.seed.to_string())),
-            ("nonFinite", Fact::Count(non_finite)),
-        ]
-        .into_iter()
-        .chain(photons)
-        .chain(blur)
-        .collect(),
-    }
 }

@@ -2,18 +2,10 @@
 //! what compositors read.
 //!
 //! ```text
-//! cargo test --test camera
+//! cargo test --test all camera::
 //! ```
 
-#[path = "messages/run.rs"]
-mod run;
-mod support;
-
-#[path = "camera/files.rs"]
 mod files;
-#[path = "camera/images.rs"]
 mod images;
-#[path = "camera/rays.rs"]
 mod rays;
-#[path = "camera/seen.rs"]
 mod seen;

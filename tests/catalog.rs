@@ -1,11 +1,8 @@
 //! `render catalog`: what it lists, what it finds, what it says if it finds nothing.
 
-#[path = "messages/run.rs"]
-mod run;
-
 use std::process::Stdio;
 
-use run::{Answer, Folder, render};
+use crate::messages::run::{Answer, Folder, render};
 
 fn catalog(arguments: &[&str]) -> Answer {
     let folder = Folder::new();

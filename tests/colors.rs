@@ -1,18 +1,16 @@
 //! Color spaces are views of the same light, blackbodies have their published colors, and `rgb` survives being a spectrum.
 //!
 //! ```text
-//! cargo test --release --test colors
+//! cargo test --release --test all colors::
 //! ```
-
-mod support;
 
 use abbe::film::Film;
 use abbe::plan::plan;
 use abbe::spectrum::{Basis, ColorSpace, Curve, CurveKind, Draw, Emission, MAX_LANES, Quantity, apply, visible};
 use abbe::trace::{Method, Transport, World, render};
 
-use support::random::Random;
-use support::scenes::scene;
+use crate::support::random::Random;
+use crate::support::scenes::scene;
 
 const SPACES: [ColorSpace; 6] = [
     ColorSpace::Rec709,

@@ -279,11 +279,11 @@ fn an_existing_image_survives_a_failing_run_and_is_replaced_by_a_good_one() {
 }
 
 #[test]
-fn flags_replace_what_the_scene_says() {
+fn flags_replace_what_the_scene_says_but_a_mistake_in_it_stays_one() {
     let folder = folder();
     folder.write("none.toml", &SCENE.replace("samples = 1", "samples = 0"));
     assert_eq!(render(&folder, &["--check", "none.toml"]).code, Some(2));
-    assert_eq!(render(&folder, &["--check", "none.toml", "--samples", "3"]).code, Some(0));
+    assert_eq!(render(&folder, &["--check", "none.toml", "--samples", "3"]).code, Some(2));
     let plan = render(&folder, &["--plan", "ball.toml", "--samples", "3"]).stdout;
     assert!(plan.contains("3 samples per pixel"), "{plan}");
 }

@@ -1,7 +1,7 @@
 //! The image depends on the scene and the seed alone: not on the number of threads, nor on the run.
 //!
 //! ```text
-//! cargo test --test determinism
+//! cargo test --test all determinism::
 //! ```
 
 use std::path::Path;

@@ -2,7 +2,7 @@
 //! stay short enough to read.
 //!
 //! ```text
-//! cargo test --test floors
+//! cargo test --test all floors::
 //! ```
 
 use std::collections::BTreeMap;

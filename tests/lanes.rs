@@ -2,17 +2,13 @@
 //! counted once: dispersion, furnaces, nested bodies and direct light against closed forms.
 //!
 //! ```text
-//! cargo test --test lanes
+//! cargo test --test all lanes::
 //! ```
 
-mod support;
-
-mod lanes {
-    mod direct_light;
-    mod furnaces;
-    mod nested_bodies;
-    mod one_direction;
-    mod panes;
-    mod parting;
-    mod wavelengths;
-}
+mod direct_light;
+mod furnaces;
+mod nested_bodies;
+mod one_direction;
+mod panes;
+mod parting;
+mod wavelengths;

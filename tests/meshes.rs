@@ -2,16 +2,12 @@
 //! their trees as a search through all of them would.
 //!
 //! ```text
-//! cargo test --test meshes
+//! cargo test --test all meshes::
 //! ```
 
-mod support;
-
-mod meshes {
-    mod files;
-    mod gltf;
-    mod instances;
-    mod nearest;
-    mod pools;
-    mod trees;
-}
+mod files;
+mod gltf;
+mod instances;
+mod nearest;
+mod pools;
+mod trees;

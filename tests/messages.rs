@@ -14,8 +14,7 @@
 //! ..
 //! ```
 
-#[path = "messages/run.rs"]
-mod run;
+pub mod run;
 
 use std::fs;
 use std::path::Path;

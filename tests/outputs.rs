@@ -2,15 +2,12 @@
 
 #![cfg(unix)]
 
-#[path = "messages/run.rs"]
-mod run;
-
 use std::fs::{self, Permissions};
 use std::os::unix::fs::{MetadataExt, PermissionsExt, symlink};
 use std::path::Path;
 use std::process::Command;
 
-use run::{Folder, render};
+use crate::messages::run::{Folder, render};
 
 const SCENE: &str = r#"
 camera = { position = [0, 1, 6], look_at = [0, 1, 0], vertical_fov = 35 }

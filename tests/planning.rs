@@ -1,17 +1,13 @@
 //! The plan models no more than a scene needs, and what it says of the error of a model holds.
 //!
 //! ```text
-//! cargo test --release --test planning -- --nocapture     # prints predicted and true errors
+//! cargo test --release --test all planning:: -- --nocapture     # prints predicted and true errors
 //! ```
 
-mod support;
-
-mod planning {
-    mod caustics;
-    mod chains;
-    mod choices;
-    mod rooms;
-    mod small;
-    mod stokes;
-    mod twenty;
-}
+mod caustics;
+mod chains;
+mod choices;
+mod rooms;
+mod small;
+mod stokes;
+mod twenty;

@@ -1,10 +1,8 @@
 //! Every maker's glass as a prism: each spectral line leaves where Snell's law sends it, and as bright as Fresnel lets it.
 //!
 //! ```text
-//! cargo test --release --test prisms
+//! cargo test --release --test all prisms::
 //! ```
-
-mod support;
 
 use std::fmt::Write;
 
@@ -12,7 +10,7 @@ use abbe::math::DVec3;
 use abbe::spectrum::{Basis, ColorSpace, data, visible};
 use abbe::trace::{Method, World, render};
 
-use support::scenes::{EVERY_BRANCH, method, scene};
+use crate::support::scenes::{EVERY_BRANCH, method, scene};
 
 /// Fraunhofer's lines and their neighbors, h F d C r, in nm.
 const LINES_NM: [f64; 5] = [404.66, 486.13, 587.56, 656.27, 706.52];

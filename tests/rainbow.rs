@@ -1,15 +1,13 @@
 //! The rainbow: a drop of water turns parallel sunlight back most strongly where Descartes found it.
 //!
 //! ```text
-//! cargo test --release --test rainbow
+//! cargo test --release --test all rainbow::
 //! ```
-
-mod support;
 
 use abbe::spectrum::{Basis, ColorSpace, data, visible};
 use abbe::trace::{Method, Transport, World, render};
 
-use support::scenes::{method, scene};
+use crate::support::scenes::{method, scene};
 
 const CAMERA: f64 = 1e6;
 const SUN_DEGREES: f64 = 0.2;

@@ -1,22 +1,20 @@
 //! Images that bend normals: they are what they say, lose and gain no light, and leave everything else alone.
 //!
 //! ```text
-//! cargo test --test relief
+//! cargo test --test all relief::
 //! ```
-
-mod support;
 
 use std::f64::consts::{PI, TAU};
 use std::path::Path;
 
+use crate::support::random::Random;
+use crate::support::scenes::{EVERY_BRANCH, Mean, SINGLE_PATH, SPLITTING, environment, method, view};
 use abbe::film::Film;
 use abbe::math::{DVec3, Ray};
 use abbe::scene::{Scene, Source, compile};
 use abbe::spectrum::Curve;
 use abbe::trace::{Report, Transport, World, render};
 use image::ExtendedColorType::{L8, Rgb8, Rgb16};
-use support::random::Random;
-use support::scenes::{EVERY_BRANCH, Mean, SINGLE_PATH, SPLITTING, environment, method, view};
 
 /// The scene of a text in a folder.
 fn scene(folder: &Path, text: &str) -> Scene<Curve> {

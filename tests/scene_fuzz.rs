@@ -3,7 +3,6 @@
 //! The cases are the same in every run. For a longer hunt: `PROPTEST_CASES=100000 PROPTEST_RNG_SEED=5 cargo test --test
 //! scene_fuzz`.
 
-#[path = "scene_fuzz/edits.rs"]
 mod edits;
 
 use std::fs;

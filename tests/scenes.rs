@@ -1,7 +1,7 @@
 //! Every scene in `scenes/` compiles without a warning, renders, and is planned as its first lines promise.
 //!
 //! ```text
-//! cargo test --test scenes
+//! cargo test --test all scenes::
 //! ```
 
 use std::fs;

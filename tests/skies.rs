@@ -1,10 +1,8 @@
 //! An image around the scene lights it as its pixels say, in bands and in wavelengths.
 //!
 //! ```text
-//! cargo test --release --test skies
+//! cargo test --release --test all skies::
 //! ```
-
-mod support;
 
 use std::f64::consts::PI;
 use std::path::Path;
@@ -17,7 +15,7 @@ use abbe::spectrum::Curve;
 use abbe::trace::{Method, World, render};
 use exr::prelude::write_rgb_file;
 
-use support::scenes::{Mean, view};
+use crate::support::scenes::{Mean, view};
 
 /// Dim ground, a brighter sky with a little of every color, and a sun of a few texels near the zenith of +x.
 const WIDTH: usize = 32;
@@ -188,7 +186,7 @@ fn a_damaged_image_never_stops_the_program() {
     let mut radiance = Vec::new();
     image::codecs::hdr::HdrEncoder::new(&mut radiance).encode(&texels, WIDTH, WIDTH / 2).unwrap();
     let openexr = std::fs::read(folder.path().join("sky.exr")).unwrap();
-    let mut random = support::random::Random::new(5);
+    let mut random = crate::support::random::Random::new(5);
     for (name, whole) in [("sky.exr", openexr), ("sky.hdr", radiance)] {
         let text = format!(
             "{}[[light]]\nenvironment = {{ radiance = {{ image = \"{name}\" }} }}\n",
@@ -199,7 +197,8 @@ fn a_damaged_image_never_stops_the_program() {
         let mut readable = 0;
         for round in 0..1500 {
             let mut bytes = whole.clone();
-            let within = |random: &mut support::random::Random, most: usize| (random.number() * most as f64) as usize;
+            let within =
+                |random: &mut crate::support::random::Random, most: usize| (random.number() * most as f64) as usize;
             match round % 3 {
                 0 => bytes.truncate(within(&mut random, whole.len())),
                 1 => {

@@ -1,18 +1,16 @@
 //! Meshes that look smoother than they are lose and gain no light: row X8 of the stability catalog.
 //!
 //! ```text
-//! cargo test --test smooth_meshes
+//! cargo test --test all smooth_meshes::
 //! ```
-
-mod support;
 
 use std::f64::consts::{PI, TAU};
 
 use abbe::math::{DVec3, Ray, Transform};
 use abbe::shape::{Attributes, Mesh, Shape, Vertices, read_mesh, read_smooth_mesh, vertex_normals};
 
-use support::random::Random;
-use support::scenes::{EVERY_BRANCH, Mean, SINGLE_PATH, SPLITTING, environment, image, view};
+use crate::support::random::Random;
+use crate::support::scenes::{EVERY_BRANCH, Mean, SINGLE_PATH, SPLITTING, environment, image, view};
 
 /// A ball of radius 1 cut by `around` meridians and `rings` - 1 circles of latitude.
 fn ball(around: u32, rings: u32) -> (Vec<DVec3>, Vec<[u32; 3]>) {

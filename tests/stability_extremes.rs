@@ -2,15 +2,11 @@
 //! stacks that nobody would make but by mistake, and somebody does.
 //!
 //! ```text
-//! cargo test --release --test stability_extremes
+//! cargo test --release --test all stability_extremes::
 //! ```
 
-mod support;
-
-mod stability_extremes {
-    mod glasses;
-    mod images;
-    mod places;
-    mod radiances;
-    mod stacks;
-}
+mod glasses;
+mod images;
+mod places;
+mod radiances;
+mod stacks;

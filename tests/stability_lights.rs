@@ -2,13 +2,9 @@
 //! the plane of what they light, and surfaces that lie in one place.
 //!
 //! ```text
-//! cargo test --test stability_lights
+//! cargo test --test all stability_lights::
 //! ```
 
-mod support;
-
-mod stability_lights {
-    mod lamps;
-    mod media;
-    mod unlit;
-}
+mod lamps;
+mod media;
+mod unlit;

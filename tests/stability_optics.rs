@@ -2,13 +2,9 @@
 //! lanes that disagree. Each test is named after its row.
 //!
 //! ```text
-//! cargo test --test stability_optics
+//! cargo test --test all stability_optics::
 //! ```
 
-mod support;
-
-mod stability_optics {
-    mod directions;
-    mod fresnel;
-    mod lanes_at_the_critical_angle;
-}
+mod directions;
+mod fresnel;
+mod lanes_at_the_critical_angle;

@@ -2,15 +2,13 @@
 //! it gives the identical image: any length that hides in the code shows here.
 //!
 //! ```text
-//! cargo test --test stability_scale
+//! cargo test --test all stability_scale::
 //! ```
-
-mod support;
 
 use abbe::film::{DEPTH_OF_NOTHING, Film};
 use abbe::trace::Transport;
 
-use support::scenes::{SINGLE_PATH, SPLITTING, image, scene};
+use crate::support::scenes::{SINGLE_PATH, SPLITTING, image, scene};
 
 /// Every shape, material and light, with all lengths multiplied by a factor.
 fn text(size: f64) -> String {

@@ -1,10 +1,8 @@
 //! Where spectral renderers fail: rows D10 to D15 of the stability catalog.
 //!
 //! ```text
-//! cargo test --release --test stability_spectra
+//! cargo test --release --test all stability_spectra::
 //! ```
-
-mod support;
 
 use abbe::film::Film;
 use abbe::math::{BranchKey, Sampler};
@@ -12,7 +10,7 @@ use abbe::plan::plan;
 use abbe::spectrum::{Basis, ColorSpace, Curve, CurveKind, Draw, Emission, Lanes, Quantity, Upsampler, data, visible};
 use abbe::trace::{Method, World, render};
 
-use support::scenes::{Mean, SPLITTING, method, scene, standard_errors, view};
+use crate::support::scenes::{Mean, SPLITTING, method, scene, standard_errors, view};
 
 const SPACE: ColorSpace = ColorSpace::Rec709;
 

@@ -2,10 +2,8 @@
 //! forever. Each test is named after its row.
 //!
 //! ```text
-//! cargo test --test stability_transport
+//! cargo test --test all stability_transport::
 //! ```
-
-mod support;
 
 use std::f64::consts::PI;
 
@@ -14,8 +12,8 @@ use abbe::math::DVec3;
 use abbe::plan::plan;
 use abbe::trace::{Transport, World, render};
 
-use support::random::Random;
-use support::scenes::{Mean, SINGLE_PATH, SPLITTING, body, environment, image, images, moments, scene, view};
+use crate::support::random::Random;
+use crate::support::scenes::{Mean, SINGLE_PATH, SPLITTING, body, environment, image, images, moments, scene, view};
 
 /// Twenty glass balls of radius 0.35 to 0.65 in a box of edge 4 that do not touch, under an even sky with a sun.
 fn glass_balls(side: u32, filter: &str, sun_radius: f64, sun_radiance: f64) -> String {

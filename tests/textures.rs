@@ -1,14 +1,13 @@
 //! Images and checkerboards on surfaces: colors in every model, lamps that show them, the kinds of files, damaged ones.
 
-#[path = "textures/files.rs"]
 mod files;
-#[path = "textures/lamps.rs"]
 mod lamps;
-mod support;
 
 use std::path::Path;
 use std::sync::Arc;
 
+use crate::support::random::Random;
+use crate::support::scenes::view;
 use abbe::film::Film;
 use abbe::plan::plan;
 use abbe::scene::{Scene, Source, compile};
@@ -17,8 +16,6 @@ use abbe::spectrum::{
     Texture,
 };
 use abbe::trace::{World, render};
-use support::random::Random;
-use support::scenes::view;
 
 /// The scene of a text in a folder.
 fn scene(folder: &Path, text: &str) -> Scene<Curve> {

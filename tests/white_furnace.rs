@@ -2,16 +2,12 @@
 //! angle. Prints a table of the least and the most that each material shows.
 //!
 //! ```text
-//! cargo test --release --test white_furnace -- --nocapture
+//! cargo test --release --test all white_furnace:: -- --nocapture
 //! ```
 
-#[path = "layers/arrivals.rs"]
-mod arrivals;
-mod support;
-
+use crate::layers::arrivals::{arrival, material, points, toward};
 use abbe::material::{Arrival, Material};
 use abbe::spectrum::{Draw, Table};
-use arrivals::{arrival, material, points, toward};
 
 const ROUGHNESSES: [f64; 7] = [0.0, 0.05, 0.2, 0.4, 0.6, 0.8, 1.0];
 const INDICES: [f64; 5] = [1.1, 1.33, 1.52, 1.9, 2.5];

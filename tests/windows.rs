@@ -1,11 +1,8 @@
 //! Rooms behind windows: light that panes let straight on.
 //!
 //! ```text
-//! cargo test --test windows
+//! cargo test --test all windows::
 //! ```
 
-#[path = "windows/panes.rs"]
 mod panes;
-#[path = "windows/photons.rs"]
 mod photons;
-mod support;

@@ -105,7 +105,7 @@ def red_test(bug, folder, target):
     if bug.test is None:
         return []
     file, name = bug.test
-    run = cargo(folder, target, "test", "--release", *QUICK_BUILD, "--test", file, name)
+    run = cargo(folder, target, "test", "--release", *QUICK_BUILD, "--test", "all", name)
     failed = run.returncode != 0 and f"{name} ... FAILED" in run.stdout
     return [f"tests/{file}.rs: {name}"] if failed else []
 

@@ -6,7 +6,7 @@ use super::survey::{Survey, disperses};
 use crate::material::Material;
 use crate::scene::{ModelText, Scene};
 use crate::spectrum::{Basis, Curve, CurveKind, Emission, Quantity, provenance};
-use crate::trace::{COLORS_NM, Method, SEEN_PIXELS, Spread, Transport, World, spread};
+use crate::trace::{COLORS_NM, Method, Spread, Transport, World, spread};
 
 /// The relative error of an image that is aimed at where the scene does not say.
 const ERROR: f64 = 0.03;
@@ -30,7 +30,7 @@ pub(super) struct Model {
 /// The least model that a scene needs, or the one it asks for.
 pub(super) fn model(scene: &Scene<Curve>) -> Model {
     let dispersion = dispersion(scene);
-    let visible = dispersion.is_some_and(|d| d.seen_pixels.max(d.lit_pixels) >= SEEN_PIXELS);
+    let visible = dispersion.is_some_and(|d| d.is_visible());
     let asks_hero = scene.render.model == ModelText::Hero;
     let together = !visible && !asks_hero;
     let survey = Survey::new(scene, together);
@@ -146,10 +146,12 @@ fn spoken(spread: &Spread, visible: bool, hero: bool) -> String {
         p if p == 0.0 || p >= 0.5 => format!("{p:.0} %"),
         p => format!("{p:.1e} %"),
     };
-    let seen = format!(
-        "{share} of the view is on dispersive glass, which shows {from} and {to} nm up to {} pixels apart",
-        pixels(spread.seen_pixels)
-    );
+    let shows = if spread.dark {
+        "through which no ray of the probe saw anything".to_owned()
+    } else {
+        format!("which shows {from} and {to} nm up to {} pixels apart", pixels(spread.seen_pixels))
+    };
+    let seen = format!("{share} of the view is on dispersive glass, {shows}");
     let lit = format!("light through it is spread over {}", pixels(spread.lit_pixels));
     let what = match (visible, hero) {
         (true, true) => "so wavelengths part",

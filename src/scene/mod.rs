@@ -52,7 +52,7 @@ use crate::light::{Light, LightId};
 use crate::material::Material;
 use crate::math::Ray;
 use crate::shape::{Coordinates, Crossing, Shape, SurfacePoint};
-use crate::spectrum::{ColorSpace, Quantity};
+use crate::spectrum::{ColorSpace, Curve, Quantity};
 use index::Index;
 
 /// Number of a material in its scene.
@@ -60,7 +60,7 @@ pub type MaterialId = u32;
 
 /// A world in which every name has been found and every number checked.
 #[derive(Clone, Debug)]
-pub struct Scene<S> {
+pub struct Scene<S = Curve> {
     /// From where it is seen.
     pub camera: Camera,
     /// The image to make.

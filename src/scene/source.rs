@@ -10,7 +10,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::structure::Mistake;
-use super::{Description, reader, syntax};
+use super::{Description, Scene, compile, reader, syntax};
 use crate::error::{Diagnostic, Error, Result, nearest};
 
 const A_SCENE: &str = "a scene is a TOML file, such as scenes/prism.toml";
@@ -65,6 +65,35 @@ impl Source {
     /// The folder that file names in the scene are relative to.
     pub fn folder(&self) -> &Path {
         self.path.parent().unwrap_or(Path::new(""))
+    }
+}
+
+impl Scene {
+    /// Reads a scene file, and the meshes, images and tables that it names.
+    ///
+    /// # Errors
+    /// [`Error::Scene`] with all mistakes that can be found, each with its line and what to do;
+    /// [`Error::Arguments`] if there is no such file.
+    pub fn read(path: impl AsRef<Path>) -> Result<Self> {
+        let source = Source::read(path.as_ref())?;
+        compile(&source.parse()?, &source)
+    }
+
+    /// Reads a scene from a text of the same form as a scene file. Files that it names are looked for in `folder`.
+    ///
+    /// # Errors
+    /// As [`Scene::read`]; the file is called `scene.toml` in messages.
+    pub fn parse(text: &str, folder: impl AsRef<Path>) -> Result<Self> {
+        let source = Source { path: folder.as_ref().join("scene.toml"), text: text.to_owned() };
+        compile(&source.parse()?, &source)
+    }
+
+    /// Reads a scene that a program has built: a value that means what a scene file with the same keys means.
+    ///
+    /// # Errors
+    /// As [`Scene::parse`]; lines are those of the value as TOML, which is shown.
+    pub fn from_table(table: &toml::Table, folder: impl AsRef<Path>) -> Result<Self> {
+        Self::parse(&table.to_string(), folder)
     }
 }
 

@@ -35,6 +35,10 @@ pub(super) fn misplaced(path: &[&str], value: &Spanned<DeValue>) -> Vec<Mistake>
         }
         (["render"], DeValue::Table(render)) => render.get("model").and_then(unknown_model),
         (["object"], DeValue::Table(object)) => return misplaced_in_object(object),
+        (["light"], DeValue::Table(light)) => {
+            let turned = light.get("environment").and_then(|light| light.get_ref().as_table());
+            return turned.map_or_else(Vec::new, |light| misplaced_steps(light.get("transform")));
+        }
         _ => None,
     };
     found.into_iter().collect()
@@ -46,16 +50,18 @@ fn mistake(value: &Spanned<DeValue>, message: impl Into<String>, help: impl Into
 
 fn misplaced_in_object(object: &DeTable) -> Vec<Mistake> {
     let shape = object.get("shape").and_then(|shape| one_of(shape, &SHAPE));
-    let steps = || object.get("transform").and_then(|steps| steps.get_ref().as_array());
-    let of_instances = || {
-        let instances = object.get("instances")?.get_ref().as_array()?;
-        Some(instances.iter().filter_map(|steps| steps.get_ref().as_array()).flat_map(|steps| steps.iter()))
-    };
-    let steps = steps().into_iter().flat_map(|steps| steps.iter()).chain(of_instances().into_iter().flatten());
+    let instances = object.get("instances").and_then(|instances| instances.get_ref().as_array());
+    let all = object.get("transform").into_iter().chain(instances.into_iter().flat_map(|all| all.iter()));
+    shape.into_iter().chain(misplaced_steps(all)).collect()
+}
+
+/// Steps of transforms without exactly one kind.
+fn misplaced_steps<'a, 't: 'a>(transforms: impl IntoIterator<Item = &'a Spanned<DeValue<'t>>>) -> Vec<Mistake> {
+    let steps = transforms.into_iter().filter_map(|steps| steps.get_ref().as_array()).flat_map(|steps| steps.iter());
     // What is wrong with one step that is no table is mostly wrong with all.
     let mut no_table = false;
     let steps = steps.filter(|step| step.get_ref().is_table() || !std::mem::replace(&mut no_table, true));
-    shape.into_iter().chain(steps.filter_map(|step| one_of(step, &STEP))).collect()
+    steps.filter_map(|step| one_of(step, &STEP)).collect()
 }
 
 /// A `render.model` that there is not.
@@ -135,7 +141,7 @@ fn one_of(value: &Spanned<DeValue>, choice: &OneOf) -> Option<Mistake> {
 pub(super) fn listed(path: &[&str], section: &Spanned<DeValue>) -> Vec<Mistake> {
     lists(path, section, &|path, value, _| {
         let is_table = match path {
-            ["material", _, _] | ["object", "shape", _] | ["object", "transform" | "instances", "rotate"] => true,
+            ["material", _, _] | ["object", "shape", _] | [.., "transform" | "instances", "rotate"] => true,
             ["object", "normal_map" | "bump_map"] => true,
             ["light", "environment" | "point" | "spot" | "sun"] => true,
             ["camera", "lens"] | ["film", "filter", _] => true,

@@ -21,6 +21,10 @@ const OF_A_PAIR: usize = 1024;
 const LIGHTS: usize = 16;
 /// Colors that are apart by less than this part of the lamp's own blur look white.
 const CONTRAST: f64 = 0.05;
+/// Light by way of an object that is less than this share of the lamp's own, beside it, is not seen: a color may miss as much.
+const FAINT: f64 = 0.01;
+/// How far beside a ray its neighbors are, in radii of the object: near enough to go the same way.
+const BESIDE: f64 = 1e-3;
 /// The largest angle in radians by which a ray is turned to see how the lamp's extent blurs.
 const TURN: f64 = 1e-3;
 /// Sets these random numbers apart.
@@ -110,6 +114,9 @@ impl Pair<'_> {
         let (a, b) = (first.end?.0, second.end?.0);
         let scale = self.scale(&a, &first)?;
         let apart = scale * (a.position - b.position).length();
+        if apart >= SEEN_PIXELS && self.share(&start, target, (&first, &a), &walk).is_some_and(|share| share < FAINT) {
+            return Some(0.0);
+        }
         // A cone of even density.
         let radius = view.pdf.map_or(0.0, |pdf| (1.0 / (PI * pdf)).sqrt());
         if radius == 0.0 {
@@ -125,6 +132,44 @@ impl Pair<'_> {
         });
         let blur = f64::max(blur[0], blur[1]);
         Some(if apart >= CONTRAST * blur { apart } else { 0.0 })
+    }
+
+    /// The irradiance by a ray's way as a share of the lamp's own where it lands: the areas that neighbors of the ray span. None where
+    /// they go other ways, or where something keeps the lamp's own light away.
+    fn share(
+        &self,
+        start: &Ray,
+        target: DVec3,
+        (first, end): (&Walk, &SurfacePoint),
+        walk: &impl Fn(usize, Ray) -> Walk,
+    ) -> Option<f64> {
+        let (scene, light) = (&self.colors.world.scene, &self.colors.world.scene.lights[self.light]);
+        let (direction, distance, lamp) = if light.is_sky() {
+            (-start.direction, f64::INFINITY, None)
+        } else {
+            let sighting = light.aim(end.position, end.normal, [0.5; 2])?;
+            let view = light.view(&end.leave(sighting.direction), end.normal, &sighting)?;
+            (sighting.direction, view.distance, view.object)
+        };
+        let (own, from) = (direction.dot(end.normal), -first.last()?.direction.dot(end.normal));
+        let keeps_away = |object| !first.met.contains(&object) && !scene.material_of(object).lets_through();
+        let ray = end.leave(direction);
+        if own * from <= 0.0 || scene.is_hidden_by(&ray, distance, lamp, &Cell::new(None), keeps_away) {
+            return None;
+        }
+        let (frame, step) = (Frame::about(start.direction), BESIDE * self.ball.radius);
+        let [x, y] = [DVec3::X, DVec3::Y].map(|side| {
+            let aside = frame.to_world(side) * step;
+            let beside = if light.is_sky() {
+                Ray { origin: start.origin + aside, ..*start }
+            } else {
+                Ray { direction: unit(target + aside - start.origin), ..*start }
+            };
+            let walk = walk(0, beside);
+            walk.end.filter(|_| walk.met == first.met).map(|beside| beside.0.position - end.position)
+        });
+        let nearer = if light.is_sky() { 1.0 } else { (target - start.origin).length() / distance };
+        Some(first.weight * step * step / (x?.cross(y?).length() * own.abs() * nearer * nearer))
     }
 
     /// A point of the ball that the light shines on; of a spot that is narrower than the ball, within its cone.

@@ -5,7 +5,7 @@
 //! the number of pixels. Amanatides 1984, *Ray Tracing with Cones*, has beams of rays; Heckbert & Hanrahan 1984, *Beam Tracing
 //! Polygonal Objects*.
 
-use super::spread::SEEN_PIXELS;
+use super::spread::{SEEN_PIXELS, is_dark};
 use super::targets::Targets;
 use super::walk::{Colors, Walk, Way};
 use crate::math::{DVec2, DVec3, Sampler};
@@ -40,6 +40,8 @@ pub(super) struct Found {
     pub(super) seen: f64,
     /// How many pixels colors are apart on [`PIXELS`] or more.
     pub(super) pixels: f64,
+    /// Whether no ray that went by a dispersive surface saw anything.
+    pub(super) dark: bool,
     pub(super) reached: Vec<Reached>,
 }
 
@@ -61,6 +63,8 @@ struct Look {
     weight: f64,
     /// How many pixels colors are apart; none where that cannot be told.
     apart: Option<f64>,
+    /// Whether its way leads out of a scene that nothing shines from.
+    dark: bool,
     /// The target it may show a part of.
     touched: Option<usize>,
 }
@@ -92,8 +96,9 @@ pub(super) fn search(colors: &Colors, targets: &Targets) -> Found {
         for look in &divided {
             next.extend(look.cell.parts().into_iter().map(|part| (look.touched.unwrap_or(0), part)));
         }
-        // Faint mirror images are a kind of their own.
-        next.extend(forks.into_iter().map(|cell| (targets.all.len(), cell)));
+        // Faint mirror images are kinds of their own.
+        let kind = |cell: &Cell| targets.all.len() + usize::from(cell.way == Way::FainterInside);
+        next.extend(forks.into_iter().map(|cell| (kind(&cell), cell)));
         if next.is_empty() {
             break;
         }
@@ -102,7 +107,8 @@ pub(super) fn search(colors: &Colors, targets: &Targets) -> Found {
         left -= cells.len();
     }
     let seen = settled.iter().filter(|look| look.cell.way == Way::Brighter).map(|look| look.dispersive).sum::<f64>();
-    Found { seen: (seen / all).min(1.0), pixels: pixels_apart(settled.iter(), enough), reached }
+    let dark = seen > 0.0 && settled.iter().all(|look| look.dark || look.dispersive == 0.0);
+    Found { seen: (seen / all).min(1.0), pixels: pixels_apart(settled.iter(), enough), dark, reached }
 }
 
 fn look(colors: &Colors, targets: &Targets, cell: Cell, reached: &mut Vec<Reached>, forks: &mut Vec<Cell>) -> Look {
@@ -115,13 +121,23 @@ fn look(colors: &Colors, targets: &Targets, cell: Cell, reached: &mut Vec<Reache
         if first.fork > 0.0 {
             forks.push(Cell { way: Way::FainterFirst, ..cell });
         }
+        // Before a sky, or the dark, what is mirrored inside may be all there is to see.
+        if first.fork_inside > 0.0 && first.is_out() {
+            forks.push(Cell { way: Way::FainterInside, ..cell });
+        }
         reached.extend(place(&walks, cell.size));
     }
-    let off = first.weight == 0.0 || (cell.way == Way::FainterFirst && first.fork == 0.0);
+    let forked = match cell.way {
+        Way::Brighter => true,
+        Way::FainterFirst => first.fork > 0.0,
+        Way::FainterInside => first.fork_inside > 0.0,
+    };
+    let off = first.weight == 0.0 || !forked;
     let dispersive = if first.dispersive && !off { cell.size.x * cell.size.y * cell.count } else { 0.0 };
     let apart = if dispersive > 0.0 { colors.pixels_apart(middle, first, &sampler, cell.way) } else { None };
     let width = colors.world.scene.camera.pixel_angle() * cell.size.length();
-    Look { cell, dispersive, weight: first.weight, apart, touched: targets.touched(&walks, width) }
+    let dark = first.is_out() && is_dark(colors.world);
+    Look { cell, dispersive, weight: first.weight, apart, dark, touched: targets.touched(&walks, width) }
 }
 
 /// Looks at all of a pixel where it cannot be told from one ray. Between the edges of small gems it hardly ever can, and what can be

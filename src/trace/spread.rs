@@ -7,6 +7,7 @@ use super::targets::Targets;
 use super::walk::{Colors, Walk, Way};
 use crate::light::Light;
 use crate::math::{DVec2, DVec3, Sampler};
+use crate::spectrum::Table;
 
 /// What rays of two colors found.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,6 +18,15 @@ pub struct Spread {
     pub seen_pixels: f64,
     /// The same for the light that comes through dispersive surfaces to diffuse ones that are seen.
     pub lit_pixels: f64,
+    /// Whether no ray that went by a dispersive surface saw anything, so that nothing is known of what is seen.
+    pub dark: bool,
+}
+
+impl Spread {
+    /// Whether lanes have to part.
+    pub fn is_visible(&self) -> bool {
+        self.dark || self.seen_pixels.max(self.lit_pixels) >= SEEN_PIXELS
+    }
 }
 
 /// The colors whose ways are compared, in nm: between them lies nearly all that is seen.
@@ -35,7 +45,7 @@ pub fn spread(world: &World) -> Spread {
     let targets = Targets::new(&colors);
     let found = search(&colors, &targets);
     let lit_pixels = lit_pixels(&colors, &targets, &found.reached);
-    Spread { seen: found.seen, seen_pixels: found.pixels, lit_pixels }
+    Spread { seen: found.seen, seen_pixels: found.pixels, lit_pixels, dark: found.dark }
 }
 
 impl Colors<'_> {
@@ -92,10 +102,16 @@ fn between(a: &Walk, b: &Walk, distance: Option<f64>) -> f64 {
 
 /// Whether all that leaves the scene sees the same.
 fn shows_nothing(world: &World) -> bool {
-    world.scene.skies.iter().map(|&sky| &world.scene.lights[sky]).all(|sky| match sky {
-        Light::Sun(sun) => sun.angular_diameter == 0.0,
-        sky => sky.is_even_sky(),
-    })
+    skies_seen(world).all(Light::is_even_sky)
+}
+
+/// Whether all that leaves the scene sees nothing.
+pub(super) fn is_dark(world: &World) -> bool {
+    skies_seen(world).next().is_none()
+}
+
+fn skies_seen(world: &World) -> impl Iterator<Item = &Light<Table>> {
+    world.scene.skies.iter().map(|&sky| &world.scene.lights[sky]).filter(|sky| sky.is_extended())
 }
 
 fn angle(a: DVec3, b: DVec3) -> f64 {

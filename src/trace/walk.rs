@@ -27,6 +27,8 @@ pub(super) enum Way {
     Brighter,
     /// The fainter one at the first surface that has one, from there on the brighter one.
     FainterFirst,
+    /// The fainter one where light would first leave a dispersive body, from there on the brighter one: the way of the rainbow.
+    FainterInside,
 }
 
 /// Where a ray of one color went.
@@ -45,6 +47,8 @@ pub(super) struct Walk {
     pub(super) weight: f64,
     /// The share of the fainter way at the first surface that has one.
     pub(super) fork: f64,
+    /// The same at the first such surface that is met inside a dispersive body.
+    pub(super) fork_inside: f64,
     media: Media,
 }
 
@@ -71,7 +75,25 @@ impl Walk {
         if forks {
             self.fork = self.weight * fainter;
         }
-        let turns = forks && way == Way::FainterFirst;
+        self.turns(share, forks && way == Way::FainterFirst)
+    }
+
+    /// The same at a surface that is met inside a dispersive body.
+    fn takes_inside(&mut self, share: f64, way: Way) -> bool {
+        let fainter = share.min(1.0 - share);
+        let forks = self.fork_inside == 0.0 && fainter >= LEAST;
+        if forks {
+            self.fork_inside = self.weight * fainter;
+        }
+        match way {
+            Way::FainterInside => self.turns(share, forks),
+            _ => self.takes(share, way),
+        }
+    }
+
+    /// Goes on with a share of the light, or without it: the brighter way, or the fainter where it turns.
+    fn turns(&mut self, share: f64, turns: bool) -> bool {
+        let fainter = share.min(1.0 - share);
         self.weight *= if turns { fainter } else { 1.0 - fainter };
         (share > 0.5) != turns
     }
@@ -111,7 +133,17 @@ impl<'a> Colors<'a> {
     /// Follows one lane; the first one decides for both where light may go two ways.
     pub(super) fn walk(&self, lane: usize, (mut ray, media): (Ray, Media), sampler: &Sampler, way: Way) -> Walk {
         let (legs, met) = (Vec::with_capacity(4), Vec::with_capacity(4));
-        let mut walk = Walk { legs, met, end: None, diffuse: false, dispersive: false, weight: 1.0, fork: 0.0, media };
+        let mut walk = Walk {
+            legs,
+            met,
+            end: None,
+            diffuse: false,
+            dispersive: false,
+            weight: 1.0,
+            fork: 0.0,
+            fork_inside: 0.0,
+            media,
+        };
         let mut key = BranchKey::CAMERA;
         for _ in 0..LONGEST {
             let hit = self.world.scene.intersect(&ray);
@@ -168,7 +200,10 @@ impl<'a> Colors<'a> {
                 // The first color's reflectance decides for both, but where it is reflected totally: there the edge has colors.
                 let first = Interface::new(indices[0][0], indices[1][0], wo.dot(facet));
                 let chance = if first.transmittance == 0.0 { interface.reflectance } else { first.reflectance };
-                let mirrors = n1 != n2 && (walk.takes(chance, way) || interface.transmittance == 0.0);
+                let inside = indices[0][0] != indices[0][1];
+                let takes =
+                    |walk: &mut Walk| if inside { walk.takes_inside(chance, way) } else { walk.takes(chance, way) };
+                let mirrors = n1 != n2 && (takes(walk) || interface.transmittance == 0.0);
                 let (direction, side) = if mirrors {
                     (reflect(wo, facet), 1.0)
                 } else {

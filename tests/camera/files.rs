@@ -4,7 +4,7 @@ use exr::image::{AnyChannels, FlatSamples, Image, Layer};
 use exr::meta::attribute::{AttributeValue, EnvironmentMap, Text};
 use exr::prelude::{IntegerBounds, Vec2, read_first_flat_layer_from_file};
 
-use crate::run::{Folder, render};
+use crate::messages::run::{Folder, render};
 
 const SCENE: &str = r#"
 [camera]

@@ -4,7 +4,7 @@ use abbe::film::{Film, Window};
 use abbe::plan::plan;
 use abbe::trace::{LightPass, MapPasses, Method, World, render};
 
-use crate::agreement::{blocks, object, seen_by, with_method};
+use super::agreement::{blocks, object, seen_by, with_method};
 use crate::support::scenes::{SPLITTING, scene, standard_errors};
 
 /// What a mirror before the camera shows, which looks the other way.

@@ -2,7 +2,7 @@
 
 use abbe::trace::MapPasses;
 
-use crate::agreement::{ABOVE, BALL, FLOOR, LAMP, agree_with, blocks, glass, object, seen_by, with_method};
+use super::agreement::{ABOVE, BALL, FLOOR, LAMP, agree_with, blocks, glass, object, seen_by, with_method};
 use crate::support::scenes::standard_errors;
 
 /// A radius so small that blurring moves nothing between blocks that these samples could tell.

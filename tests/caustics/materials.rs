@@ -1,6 +1,6 @@
 //! Photons and camera rays agree on surfaces of every kind: layers, holes, images, bent normals, rough glass.
 
-use crate::agreement::{ABOVE, BALL, FLOOR, LAMP, agree, glass, object, seen_by};
+use super::agreement::{ABOVE, BALL, FLOOR, LAMP, agree, glass, object, seen_by};
 
 const ROUND_LAMP: &str = "sphere = { center = [0, 7, 0], radius = 1 }";
 

@@ -3,7 +3,7 @@
 use abbe::plan::plan;
 use abbe::trace::{LightPass, MapPasses, Method, World, render};
 
-use crate::agreement::{ABOVE, FLOOR, agree_with, glass, object, seen_by};
+use super::agreement::{ABOVE, FLOOR, agree_with, glass, object, seen_by};
 use crate::support::scenes::{SPLITTING, scene};
 
 /// All that is seen through dispersive glass had one wrong color while paths of a pass shared their wavelengths.

@@ -3,8 +3,8 @@
 use abbe::math::{Bounds, DVec3};
 use abbe::shape::{Emitter, Emitters, Facing};
 
-use crate::chi_squared;
-use crate::random::Random;
+use crate::support::chi_squared;
+use crate::support::random::Random;
 
 const DRAWS: u32 = 200_000;
 

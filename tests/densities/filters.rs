@@ -2,8 +2,8 @@
 
 use abbe::film::Filter;
 
-use crate::random::Random;
-use crate::warps::{around, check_warp};
+use super::warps::{around, check_warp};
+use crate::support::random::Random;
 
 /// A sample's place about the middle of its pixel.
 fn about(filter: Filter, u: [f64; 2]) -> [f64; 2] {

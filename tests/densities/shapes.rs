@@ -7,9 +7,9 @@ use abbe::light::{Area, Light};
 use abbe::math::{DMat3, DVec3, Frame, Ray, Transform};
 use abbe::shape::{Crossing, Cube, Disc, Ellipsoid, Quad, Shape, Sides, Sighting, Sphere, Triangle};
 
-use crate::bodies::{ball, closed_mesh};
-use crate::chi_squared;
-use crate::random::Random;
+use crate::support::bodies::{ball, closed_mesh};
+use crate::support::chi_squared;
+use crate::support::random::Random;
 
 /// Calls of `check_aim` by the tests of this file.
 const TESTS: u32 = 33;

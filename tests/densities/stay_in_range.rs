@@ -4,8 +4,8 @@
 use abbe::math::{BranchKey, DVec3, Sampler, ball_surface, cosine_hemisphere, disk, triangle_coordinates};
 use abbe::shape::{Cube, Shape};
 
-use crate::bodies::{ball, closed_mesh};
-use crate::random::Random;
+use crate::support::bodies::{ball, closed_mesh};
+use crate::support::random::Random;
 
 /// The largest number that 24 bits hold below 1: the most that a sampler of f32 may give.
 const MOST: f64 = 1.0 - 1.0 / (1 << 24) as f64;

@@ -4,8 +4,8 @@ use std::f64::consts::{PI, TAU};
 
 use abbe::math::{DVec3, ball_surface, cone, cosine_hemisphere, disk, one_minus_cos_of_cone, triangle_coordinates};
 
-use crate::chi_squared;
-use crate::random::Random;
+use crate::support::chi_squared;
+use crate::support::random::Random;
 
 /// Calls of `check_warp`, those for filters included.
 const TESTS: u32 = 12;

@@ -7,7 +7,7 @@ use abbe::math::Frame;
 use abbe::spectrum::{Draw, Table};
 
 use super::arrivals::{NORMAL, arrival, material, toward};
-use crate::chi_squared;
+use crate::support::chi_squared;
 use crate::support::random::Random;
 
 const TEXTS: [&str; 6] = [

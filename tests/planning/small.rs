@@ -174,6 +174,11 @@ fn windows_of_optical_glass_keep_lanes_together_where_their_edges_are_seen() {
 }
 
 #[test]
+fn w9_diamonds_are_noticed_wherever_they_are() {
+    assert_eq!(missed(true, "diamond"), [""; 0]);
+}
+
+#[test]
 fn dispersion_before_an_even_sky_with_nothing_behind_keeps_lanes_together() {
     let text = |sky: &str| {
         format!(
@@ -186,6 +191,36 @@ fn dispersion_before_an_even_sky_with_nothing_behind_keeps_lanes_together() {
     let block = object("stripe", "shape.cube = { center = [0, 0, -9], size = [9, 0.4, 0.4] }");
     let behind = plan(&scene(&(text("[[light]]\nenvironment = { radiance = 1 }\n") + &block)));
     assert!(parts(&behind), "{:?}", behind.because);
+}
+
+#[test]
+fn dispersion_inside_a_drop_is_noticed_where_only_what_it_mirrors_inside_shows() {
+    let drop = |behind: &str| {
+        plan(&scene(&format!(
+            "[camera]\nposition = [0, 0, 0]\nlook_at = [0, 0, -1]\nvertical_fov = 2\n[film]\nwidth = 100\nheight = 100\n{MATERIALS}\
+             [material.drop]\ndielectric = {{ index = \"water\" }}\n{}{}{behind}",
+            object("drop", "shape.sphere = { center = [0, 0, -9], radius = 0.1 }"),
+            object("wall", "shape.quad = { center = [0, 0, 1], u = [30, 0, 0], v = [0, 30, 0] }"),
+        )))
+    };
+    let alone = drop("");
+    assert!(parts(&alone), "{:?}", alone.because);
+    let before_an_even_sky = drop("[[light]]\nenvironment = { radiance = 1 }\n");
+    assert!(parts(&before_an_even_sky), "{:?}", before_an_even_sky.because);
+}
+
+#[test]
+fn dispersion_is_assumed_where_no_ray_sees_anything_through_the_glass() {
+    let glass = |z: f64| {
+        plan(&scene(&format!(
+            "[camera]\nposition = [0, 0, 0]\nlook_at = [0, 0, -1]\nvertical_fov = 40\n[film]\nwidth = 100\nheight = 100\n{MATERIALS}\
+             [[object]]\nmaterial = \"lamp\"\nshape.sphere = {{ center = [0, 0, {z:?}], radius = 0.001 }}\n{}",
+            body(true, "flint", 1.0, [0.0, 0.0, -6.0])
+        )))
+    };
+    let dark = glass(9e3);
+    assert!(parts(&dark), "{:?}", dark.because);
+    assert!(dark.because.iter().any(|line| line.contains("no ray of the probe saw anything")), "{:?}", dark.because);
 }
 
 #[test]
@@ -206,6 +241,24 @@ fn sunlight_through_a_small_gem_out_of_sight_is_noticed() {
     let pane = object("crown", "shape.cube = { center = [0.1, 2.7, -6], size = [1, 0.01, 1] }");
     let found = plan(&scene(&(head + sun + &pane)));
     assert!(!parts(&found), "through a pane: {:?}", found.because);
+}
+
+#[test]
+fn the_light_of_a_drop_far_above_the_floor_counts_only_where_it_is_not_outshone() {
+    let plan_of = |height: f64, cone_angle: f64| {
+        plan(&scene(&format!(
+            "[camera]\nposition = [0, 1, 0]\nlook_at = [0, 0, -6]\nvertical_fov = 40\n[film]\nwidth = 400\nheight = 400\n{MATERIALS}\
+             [[light]]\nspot = {{ position = [0, 6, -6], look_at = [0, 0, -6], cone_angle = {cone_angle:?}, blend = 0, intensity = 3 }}\n{}{}",
+            object("wall", "shape.plane = { point = [0, 0, 0], normal = [0, 1, 0] }"),
+            object("flint", &format!("shape.sphere = {{ center = [0, {height:?}, -6], radius = 0.02 }}")),
+        )))
+    };
+    let near = plan_of(0.04, 150.0);
+    assert!(parts(&near), "{:?}", near.because);
+    let far = plan_of(2.7, 150.0);
+    assert!(!parts(&far), "{:?}", far.because);
+    let alone = plan_of(2.7, 0.6);
+    assert!(parts(&alone), "{:?}", alone.because);
 }
 
 #[test]

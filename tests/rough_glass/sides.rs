@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use abbe::material::{RoughInterface, Sides};
 use abbe::math::DVec3;
 
-use crate::chi_squared;
+use crate::support::chi_squared;
 use crate::support::random::Random;
 
 const ROUGHNESSES: [f64; 4] = [0.02, 0.3, 0.8, 1.0];

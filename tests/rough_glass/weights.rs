@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use abbe::material::{Flow, RoughInterface, Sides, Way};
 use abbe::math::DVec3;
 
-use crate::chi_squared;
+use crate::support::chi_squared;
 use crate::support::random::Random;
 
 const ROUGHNESSES: [f64; 5] = [0.02, 0.3, 0.77, 0.99, 1.0];

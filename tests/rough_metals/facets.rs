@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 use abbe::material::{Facets, RoughSurface, Roughness};
 use abbe::math::{DVec3, ball_surface};
 
-use crate::chi_squared;
+use crate::support::chi_squared;
 use crate::support::exact::Exact;
 use crate::support::random::Random;
 

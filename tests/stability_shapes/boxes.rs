@@ -7,8 +7,8 @@ use std::path::Path;
 use abbe::math::{Bounds, DVec3, Ray};
 use abbe::shape::{Bvh, Mesh, Shape, Triangle, Vectors, Vertices, Visitor, read_mesh};
 
-use crate::OFFSET;
-use crate::random::Random;
+use super::OFFSET;
+use crate::support::random::Random;
 
 /// Whether a walk shows an item.
 struct Reached<'a> {

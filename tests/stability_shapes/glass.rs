@@ -3,9 +3,9 @@
 use abbe::math::{DMat3, DVec3, Ray, Transform};
 use abbe::shape::{Cube, Ellipsoid, Shape, Sphere};
 
-use crate::OFFSET;
-use crate::bodies::{ball, closed_mesh};
-use crate::random::Random;
+use super::OFFSET;
+use crate::support::bodies::{ball, closed_mesh};
+use crate::support::random::Random;
 
 const INDEX: f64 = 1.5;
 pub const EVENTS: u64 = 200_000;

@@ -6,10 +6,10 @@ use std::sync::Arc;
 use abbe::math::{DVec3, Ray, Transform};
 use abbe::shape::{Instance, Shape};
 
-use crate::OFFSET;
-use crate::bodies::{ball, closed_mesh};
-use crate::glass::{Aim, EVENTS, Tally, follow, maps};
-use crate::random::Random;
+use super::OFFSET;
+use super::glass::{Aim, EVENTS, Tally, follow, maps};
+use crate::support::bodies::{ball, closed_mesh};
+use crate::support::random::Random;
 
 /// The ball of `bodies`, placed.
 fn instance(map: &Transform) -> Shape {

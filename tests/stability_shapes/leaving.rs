@@ -4,9 +4,9 @@
 use abbe::math::{DVec3, Frame, Ray, UNIT_ROUNDOFF};
 use abbe::shape::{Disc, Plane, Quad, Shape, SurfacePoint, Triangle};
 
-use crate::OFFSET;
-use crate::exact::ExactVector;
-use crate::random::Random;
+use super::OFFSET;
+use crate::support::exact::ExactVector;
+use crate::support::random::Random;
 
 /// Size of the surface, its coordinate offset and the distance of the ray's origin, both in sizes.
 const SETTINGS: [(f64, f64, f64); 12] = [

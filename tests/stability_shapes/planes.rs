@@ -3,9 +3,9 @@
 use abbe::math::{DVec3, Frame, Ray, UNIT_ROUNDOFF};
 use abbe::shape::{Cube, Disc, Plane, Quad, Shape, Triangle};
 
-use crate::OFFSET;
-use crate::exact::{Exact, ExactVector};
-use crate::random::Random;
+use super::OFFSET;
+use crate::support::exact::{Exact, ExactVector};
+use crate::support::random::Random;
 
 /// How far rays start from where they hit; no number of few digits, which would hide roundings of t.
 const DISTANCE: f64 = 9.870_123_456_789;

@@ -3,7 +3,7 @@
 use abbe::math::{DMat3, DVec3, Frame, Ray, Transform};
 use abbe::shape::{Cube, Ellipsoid, Quad, Shape, Sphere, Triangle};
 
-use crate::random::Random;
+use crate::support::random::Random;
 
 /// How many of the rays that leave a shape at targets on it hit it again: on either side, or outside a closed one.
 fn returns(rays: usize, mut draw: impl FnMut(&mut Random) -> (Shape, DVec3)) -> usize {

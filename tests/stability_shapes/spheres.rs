@@ -3,9 +3,9 @@
 use abbe::math::{DVec3, Frame, Ray, Transform, UNIT_ROUNDOFF};
 use abbe::shape::{Shape, Sphere, SurfacePoint};
 
-use crate::OFFSET;
-use crate::exact::{Exact, ExactVector};
-use crate::random::Random;
+use super::OFFSET;
+use crate::support::exact::{Exact, ExactVector};
+use crate::support::random::Random;
 
 const RAYS: usize = 20_000;
 

@@ -5,10 +5,10 @@ use std::fs;
 use abbe::math::{DVec3, Frame, Ray, UNIT_ROUNDOFF};
 use abbe::shape::{Crossing, Mesh, Shape, Triangle, Vertices, read_mesh};
 
-use crate::OFFSET;
-use crate::bodies::{ball, closed_mesh};
-use crate::exact::{Exact, ExactVector};
-use crate::random::Random;
+use super::OFFSET;
+use crate::support::bodies::{ball, closed_mesh};
+use crate::support::exact::{Exact, ExactVector};
+use crate::support::random::Random;
 
 const RAYS: usize = 20_000;
 

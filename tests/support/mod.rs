@@ -3,6 +3,7 @@
 #![allow(dead_code)]
 
 pub mod bodies;
+pub mod chi_squared;
 pub mod exact;
 pub mod random;
 pub mod scenes;

@@ -3,8 +3,8 @@
 use abbe::math::DVec3;
 use abbe::trace::Method;
 
-use super::support::scenes::{Mean, SPLITTING};
 use super::*;
+use crate::support::scenes::{Mean, SPLITTING};
 
 const WIDTH: usize = 4;
 /// Rows from the top: nothing is symmetric.

@@ -252,6 +252,8 @@ def ball(name, height):
         f"its "
         f"center and {screen.half_width} half wide.",
         lambda ratio: focus(screen.place(ratio)),
+        # Near the axis colors are little apart, and what is less than a fifth of a pixel is not modelled.
+        FINE if far else 3 * FINE,
     )
     return row._replace(rounding=np.abs(focus(place + row.rounding) - focus(place)))
 

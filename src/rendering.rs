@@ -1,0 +1,252 @@
+//! Floor 6: a scene made into an image, for programs; the `render` command is one of them.
+
+use std::borrow::Cow;
+use std::path::Path;
+
+use crate::error::{Error, Result};
+use crate::film::{Fact, Film, Pixel, Provenance, View, Window, write_exr, write_png};
+use crate::plan::{Plan, plan};
+use crate::scene::{Projection, Scene};
+use crate::trace::{self, Report, World};
+
+/// What replaces the scene's own settings. By default nothing does.
+///
+/// ```
+/// let quick = abbe::Options { samples: Some(4), ..abbe::Options::default() };
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Options {
+    /// Camera samples per pixel, 1 or more.
+    pub samples: Option<u32>,
+    /// Chooses another set of random numbers.
+    pub seed: Option<u64>,
+    /// The part of the image that is made, in pixels of the full image.
+    pub crop: Option<Window>,
+    /// Processor threads; one for each processor if absent. The image is the same for any number.
+    pub threads: Option<usize>,
+}
+
+impl Options {
+    /// Puts these settings in place of the scene's own.
+    ///
+    /// # Errors
+    /// [`Error::Arguments`] if there are no samples, or the crop lies outside the image.
+    pub fn apply(&self, scene: &mut Scene) -> Result<()> {
+        let refuse = |message: String, help: &str| Err(Error::Arguments { message, help: Some(help.to_owned()) });
+        if self.samples == Some(0) {
+            return refuse("a pixel needs at least 1 sample".into(), "leave the samples out to take the scene's own");
+        }
+        if let Some(message) = self.crop.and_then(|crop| scene.film.objection(crop)) {
+            return refuse(message, "--crop takes first column, first row, width and height");
+        }
+        scene.render.samples = self.samples.or(scene.render.samples);
+        scene.render.seed = self.seed.unwrap_or(scene.render.seed);
+        scene.film.crop = self.crop.or(scene.film.crop);
+        Ok(())
+    }
+
+    /// Whether the scene has these settings.
+    fn fit(&self, scene: &Scene) -> bool {
+        let fits = |asked: bool, same: bool| !asked || same;
+        fits(self.samples.is_some(), self.samples == scene.render.samples)
+            && fits(self.seed.is_some(), self.seed == Some(scene.render.seed))
+            && fits(self.crop.is_some(), self.crop == scene.film.crop)
+    }
+}
+
+/// Renders a scene.
+///
+/// # Errors
+/// As [`Rendering::new`].
+pub fn render(scene: &Scene, options: &Options) -> Result<Image> {
+    Ok(Rendering::new(scene, options)?.run(&|_| ()))
+}
+
+/// A render that is planned and has not begun.
+///
+/// ```
+/// # let scene = abbe::Scene::parse("camera = { position = [0, 0, 4], look_at = [0, 0, 0], vertical_fov = 40 }
+/// # film = { width = 8, height = 8 }
+/// # light = [{ environment = { radiance = 1 } }]", "")?;
+/// let rendering = abbe::Rendering::new(&scene, &abbe::Options::default())?;
+/// println!("{}", rendering.plan().because.join("\n"));
+/// let all = rendering.work();
+/// let done = std::sync::atomic::AtomicU64::new(0);
+/// let image = rendering.run(&|more| {
+///     let before = done.fetch_add(more, std::sync::atomic::Ordering::Relaxed);
+///     println!("{} %", 100 * (before + more) / all);
+/// });
+/// assert_eq!(done.into_inner(), all);
+/// # assert_eq!(image.rgb_at(3, 4), [1.0; 3]);
+/// # Ok::<(), abbe::Error>(())
+/// ```
+pub struct Rendering {
+    plan: Plan,
+    world: World,
+    view: View,
+    /// The scene file's hash, the projection and the filter.
+    origin: Origin,
+    threads: rayon::ThreadPool,
+}
+
+struct Origin {
+    hash: String,
+    projection: Projection,
+    filter: String,
+}
+
+impl Rendering {
+    /// Decides how to render a scene, and prepares it.
+    ///
+    /// # Errors
+    /// [`Error::Arguments`] if the options do not fit the scene, or threads cannot be started.
+    pub fn new(scene: &Scene, options: &Options) -> Result<Self> {
+        let mut scene = Cow::Borrowed(scene);
+        if !options.fit(&scene) {
+            options.apply(scene.to_mut())?;
+        }
+        let threads = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build();
+        let threads = threads
+            .map_err(|error| Error::Arguments { message: format!("cannot start threads: {error}"), help: None })?;
+        let plan = threads.install(|| plan(&scene));
+        let world = World::new(&scene, plan.method.clone());
+        let camera = &scene.camera;
+        let view = View {
+            world_to_camera: camera.world_to_camera(),
+            screen_window_width: camera.screen_window_width(),
+            screen_window_center: camera.screen_window_center(),
+            latlong: camera.projection() == Projection::Equirectangular,
+        };
+        let (hash, filter) = (scene.hash.clone(), scene.film.filter.described());
+        Ok(Self { plan, world, view, origin: Origin { hash, projection: camera.projection(), filter }, threads })
+    }
+
+    /// How it will be rendered, and why.
+    pub fn plan(&self) -> &Plan {
+        &self.plan
+    }
+
+    /// How much there is to do: camera samples and photons.
+    pub fn work(&self) -> u64 {
+        trace::work(&self.world)
+    }
+
+    /// Renders the image. `progress` is told how much of the [`work`](Self::work) was done since it was last told, from
+    /// any thread.
+    pub fn run(self, progress: &(dyn Fn(u64) + Sync)) -> Image {
+        let (film, report) = self.threads.install(|| trace::render(&self.world, progress));
+        let provenance = provenance(&self.origin, &self.plan, report.non_finite);
+        Image { film, report, because: self.plan.because, view: self.view, provenance }
+    }
+}
+
+/// A rendered image, and all that is known of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Image {
+    film: Film,
+    report: Report,
+    because: Vec<String>,
+    view: View,
+    provenance: Provenance,
+}
+
+impl Image {
+    /// Pixels per row; of a crop, those that were made.
+    pub fn width(&self) -> u32 {
+        self.film.width
+    }
+
+    /// Rows.
+    pub fn height(&self) -> u32 {
+        self.film.height
+    }
+
+    /// Linear red, green and blue of all pixels in the film's color space, row by row from the top left.
+    pub fn rgb(&self) -> Vec<[f32; 3]> {
+        self.film.pixels.iter().map(|pixel| pixel.rgb).collect()
+    }
+
+    /// Linear red, green and blue of the pixel in column `x`, row `y`, counted from 0 at the top left.
+    ///
+    /// # Panics
+    /// If there is no such pixel.
+    pub fn rgb_at(&self, x: u32, y: u32) -> [f32; 3] {
+        assert!(x < self.width(), "there is no column {x} in an image of {} pixels per row", self.width());
+        self.film.at(x, y).rgb
+    }
+
+    /// All values of a layer by its name in the file, row by row from the top left; none if there is no such layer.
+    ///
+    /// | name | value |
+    /// |---|---|
+    /// | `R`, `G`, `B` | linear color |
+    /// | `A` | share of the camera rays that met something, 0 to 1 |
+    /// | `Z` | nearest depth in scene units, 1e10 where nothing is met |
+    /// | `samples.V` | camera samples |
+    pub fn layer(&self, name: &str) -> Option<Vec<f32>> {
+        let value: fn(&Pixel) -> f32 = match name {
+            "R" => |pixel| pixel.rgb[0],
+            "G" => |pixel| pixel.rgb[1],
+            "B" => |pixel| pixel.rgb[2],
+            "A" => |pixel| pixel.alpha,
+            "Z" => |pixel| pixel.depth,
+            "samples.V" => |pixel| pixel.samples,
+            _ => return None,
+        };
+        Some(self.film.pixels.iter().map(value).collect())
+    }
+
+    /// The pixels as they are, with what they mean.
+    pub fn film(&self) -> &Film {
+        &self.film
+    }
+
+    /// What rendering noticed: samples, rays, light that was left out.
+    pub fn report(&self) -> &Report {
+        &self.report
+    }
+
+    /// How it was rendered and why, one decision a line.
+    pub fn because(&self) -> &[String] {
+        &self.because
+    }
+
+    /// Writes a linear OpenEXR file of 32-bit floats with all layers, the camera, and everything that another run needs
+    /// to make the same bytes.
+    ///
+    /// # Errors
+    /// If it cannot be written; a file that was there before is then untouched.
+    pub fn write_exr(&self, path: impl AsRef<Path>) -> Result<()> {
+        write_exr(&self.film, &self.view, &self.provenance, path.as_ref())
+    }
+
+    /// Writes an 8-bit sRGB picture for looking, brightened by 2^`exposure`.
+    ///
+    /// # Errors
+    /// If it cannot be written; a file that was there before is then untouched.
+    pub fn write_png(&self, path: impl AsRef<Path>, exposure: f64) -> Result<()> {
+        write_png(&self.film, exposure, path.as_ref())
+    }
+}
+
+fn provenance(origin: &Origin, plan: &Plan, non_finite: u64) -> Provenance {
+    let text = |text: &str| Fact::Text(text.to_owned());
+    let method = &plan.method;
+    let wavelengths: Vec<String> = method.basis.wavelengths_nm().iter().map(f64::to_string).collect();
+    let pass = method.light_pass.as_ref();
+    let photons = pass.map(|pass| ("photons", Fact::Count(pass.photons)));
+    let blur = pass.and_then(|pass| pass.map).map(|map| ("photonRadius", text(&format!("{:.3} pixels", map.radius))));
+    let facts = [
+        ("version", text(env!("CARGO_PKG_VERSION"))),
+        ("sceneHash", text(&origin.hash)),
+        ("model", text(&method.basis.name())),
+        ("wavelengths", text(&wavelengths.join(" "))),
+        ("projection", text(origin.projection.name())),
+        ("transport", text(method.transport.name())),
+        ("filter", text(&origin.filter)),
+        ("samples", Fact::Count(method.samples.into())),
+        ("seed", text(&method.seed.to_string())),
+        ("nonFinite", Fact::Count(non_finite)),
+    ];
+    Provenance { facts: facts.into_iter().chain(photons).chain(blur).collect() }
+}

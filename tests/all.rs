@@ -1,0 +1,44 @@
+//! All tests but those that need a process of their own: `command`, `fuzz` and `plan_memory`. One program, so that the renderer is
+//! linked once and no processor waits for the last test of a file.
+//!
+//! ```text
+//! cargo test --test all              # all of them
+//! cargo test --test all windows::    # those of tests/windows.rs
+//! ```
+
+mod support;
+
+mod camera;
+mod catalog;
+mod caustics;
+mod colors;
+mod densities;
+mod determinism;
+mod floors;
+mod lanes;
+mod layers;
+mod meshes;
+mod messages;
+mod outputs;
+mod planning;
+mod prisms;
+mod rainbow;
+mod readme;
+mod relief;
+mod rough_glass;
+mod rough_metals;
+mod scene_fuzz;
+mod scenes;
+mod skies;
+mod smooth_meshes;
+mod stability_catalog;
+mod stability_extremes;
+mod stability_lights;
+mod stability_optics;
+mod stability_scale;
+mod stability_shapes;
+mod stability_spectra;
+mod stability_transport;
+mod textures;
+mod white_furnace;
+mod windows;
