@@ -14,10 +14,10 @@ mod emissive;
 mod facet;
 mod facets;
 mod fresnel;
+mod lobes;
 mod mask;
 mod mirror;
 mod mix;
-mod nature;
 mod part;
 mod plastic;
 mod rough_dielectric;
@@ -34,6 +34,7 @@ pub use emissive::Emissive;
 pub use facet::{Facet, Flow};
 pub use facets::Facets;
 pub use fresnel::{Interface, conductor_reflectance, diffuse_transmittance, shared_transmittance};
+pub use lobes::Lobes;
 pub use mask::Mask;
 pub use mirror::{Mirror, reflect};
 pub use mix::Mix;
@@ -183,7 +184,8 @@ impl<S> Material<S> {
             Self::Dielectric(dielectric) => Some(&dielectric.index),
             Self::Thin(thin) => Some(&thin.index),
             Self::Plastic(plastic) => Some(&plastic.index),
-            _ => None,
+            Self::Diffuse(_) | Self::Mirror(_) | Self::Conductor(_) | Self::Emissive(_) => None,
+            Self::Mix(_) | Self::Mask(_) => None,
         }
     }
 
@@ -224,7 +226,8 @@ impl Material<Table> {
     pub fn parts_lanes<const N: usize>(&self, arrival: &Arrival<N>) -> bool {
         match self {
             Self::Dielectric(dielectric) => dielectric.parts(arrival),
-            _ => arrival.parts(),
+            Self::Diffuse(_) | Self::Mirror(_) | Self::Conductor(_) | Self::Thin(_) => arrival.parts(),
+            Self::Emissive(_) | Self::Plastic(_) | Self::Mix(_) | Self::Mask(_) => arrival.parts(),
         }
     }
 
@@ -239,7 +242,7 @@ impl Material<Table> {
             Self::Plastic(plastic) => plastic.evaluate(arrival, wi),
             Self::Mix(mix) => mix.evaluate(arrival, wi),
             Self::Mask(mask) => mask.evaluate(arrival, wi),
-            _ => None,
+            Self::Mirror(_) | Self::Thin(_) | Self::Emissive(_) => None,
         }
     }
 }

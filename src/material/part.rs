@@ -44,7 +44,8 @@ impl<S> Material<S> {
         match self {
             Self::Mix(mix) => &mix.materials,
             Self::Mask(mask) => std::slice::from_ref(&mask.material),
-            _ => &[],
+            Self::Diffuse(_) | Self::Mirror(_) | Self::Conductor(_) | Self::Dielectric(_) => &[],
+            Self::Thin(_) | Self::Emissive(_) | Self::Plastic(_) => &[],
         }
     }
 

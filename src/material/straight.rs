@@ -53,7 +53,8 @@ impl Material<Table> {
             Self::Thin(thin) => Some(thin.straight(arrival)),
             Self::Mix(mix) => mix.straight(arrival),
             Self::Mask(mask) => Some(mask.straight(arrival)),
-            _ => None,
+            Self::Diffuse(_) | Self::Mirror(_) | Self::Conductor(_) | Self::Dielectric(_) => None,
+            Self::Emissive(_) | Self::Plastic(_) => None,
         }
     }
 }

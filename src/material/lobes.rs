@@ -1,0 +1,106 @@
+//! In which ways light leaves a material.
+
+use super::Material;
+
+/// The lobes of a material's BSDF: a set of kinds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Lobes(u8);
+
+impl Lobes {
+    /// Nothing leaves.
+    pub const NONE: Self = Self(0);
+    /// Light is reflected in every direction, without memory of where it came from.
+    pub const DIFFUSE_REFLECTION: Self = Self(1);
+    /// Light is reflected in every direction, mostly near the mirror image.
+    pub const GLOSSY_REFLECTION: Self = Self(2);
+    /// Light is reflected in one direction.
+    pub const DELTA_REFLECTION: Self = Self(4);
+    /// Light crosses the surface in every direction, mostly near the refracted one.
+    pub const GLOSSY_TRANSMISSION: Self = Self(8);
+    /// Light crosses the surface in one direction.
+    pub const DELTA_TRANSMISSION: Self = Self(16);
+
+    /// All that leaves in single directions.
+    pub const DELTA: Self = Self::DELTA_REFLECTION.union(Self::DELTA_TRANSMISSION);
+    /// All that leaves in every direction.
+    pub const NON_DELTA: Self =
+        Self::DIFFUSE_REFLECTION.union(Self::GLOSSY_REFLECTION).union(Self::GLOSSY_TRANSMISSION);
+    /// All that crosses the surface.
+    pub const TRANSMISSION: Self = Self::GLOSSY_TRANSMISSION.union(Self::DELTA_TRANSMISSION);
+
+    /// The kinds of both.
+    pub const fn union(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+
+    /// The kinds that are in both.
+    pub const fn intersection(self, kinds: Self) -> Self {
+        Self(self.0 & kinds.0)
+    }
+
+    /// Whether any of these kinds is among them.
+    pub const fn intersects(self, kinds: Self) -> bool {
+        self.intersection(kinds).0 != 0
+    }
+}
+
+impl<S> Material<S> {
+    /// Its lobes; of what is made of other materials, those of all of them.
+    #[inline]
+    pub fn lobes(&self) -> Lobes {
+        let smooth_or = |is_smooth: bool, glossy: Lobes| if is_smooth { Lobes::DELTA_REFLECTION } else { glossy };
+        match self {
+            Self::Diffuse(_) => Lobes::DIFFUSE_REFLECTION,
+            Self::Mirror(_) => Lobes::DELTA_REFLECTION,
+            Self::Thin(_) => Lobes::DELTA,
+            Self::Conductor(conductor) => smooth_or(conductor.roughness.is_smooth(), Lobes::GLOSSY_REFLECTION),
+            Self::Dielectric(dielectric) if dielectric.roughness.is_smooth() => Lobes::DELTA,
+            // Between equal indices light goes straight on, however rough the surface is.
+            Self::Dielectric(_) => Lobes::GLOSSY_REFLECTION.union(Lobes::GLOSSY_TRANSMISSION).union(Lobes::DELTA),
+            Self::Emissive(_) => Lobes::NONE,
+            Self::Plastic(plastic) => {
+                let coat = smooth_or(plastic.coat.roughness().is_smooth(), Lobes::GLOSSY_REFLECTION);
+                Lobes::DIFFUSE_REFLECTION.union(coat)
+            }
+            Self::Mix(_) | Self::Mask(_) => {
+                self.parts().iter().map(|part| part.material().lobes()).fold(Lobes::NONE, Lobes::union)
+            }
+        }
+    }
+
+    /// Whether light leaves in every direction, so that lights can be aimed at.
+    pub fn scatters_widely(&self) -> bool {
+        self.lobes().intersects(Lobes::NON_DELTA)
+    }
+
+    /// Whether light crosses the surface in some way.
+    pub fn lets_through(&self) -> bool {
+        self.lobes().intersects(Lobes::TRANSMISSION)
+    }
+
+    /// Whether light also comes from beyond the surface in every direction.
+    pub fn scatters_through(&self) -> bool {
+        self.lobes().intersects(Lobes::GLOSSY_TRANSMISSION)
+    }
+
+    /// Whether what leaves in every direction has no memory of where it came from: `diffuse_bounces` counts it.
+    pub fn is_diffuse(&self) -> bool {
+        self.lobes().intersection(Lobes::NON_DELTA) == Lobes::DIFFUSE_REFLECTION
+    }
+
+    /// Whether light leaves in single directions, all of it or some: the mirror images and refractions of smooth surfaces.
+    pub fn has_single_directions(&self) -> bool {
+        self.lobes().intersects(Lobes::DELTA)
+    }
+
+    /// How rough it is, where it can be.
+    pub fn roughness(&self) -> Option<f64> {
+        match self {
+            Self::Conductor(conductor) => Some(conductor.roughness.value()),
+            Self::Dielectric(dielectric) => Some(dielectric.roughness.value()),
+            Self::Plastic(plastic) => Some(plastic.coat.roughness().value()),
+            Self::Diffuse(_) | Self::Mirror(_) | Self::Thin(_) | Self::Emissive(_) => None,
+            Self::Mix(_) | Self::Mask(_) => None,
+        }
+    }
+}
