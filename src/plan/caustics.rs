@@ -107,7 +107,7 @@ pub(super) fn light_pass(scene: &Scene<Curve>, untaught: &World) -> (Option<Ligh
     large.extend(left);
     if sending.is_empty() {
         let why = match gain {
-            Some(gain) => format!("to the same error they would take {:.2} times as long as chance", 1.0 / gain),
+            Some(gain) => format!("with them, the same error would take {:.2} times as long", 1.0 / gain),
             None => "what they land on is black".into(),
         };
         lines.push(format!("no light pass: photons from {} toward {to} are seen, but {why}", named(scene, &large)));
@@ -119,13 +119,13 @@ pub(super) fn light_pass(scene: &Scene<Curve>, untaught: &World) -> (Option<Ligh
     let most = sending.iter().map(|&(id, _)| share[id]).fold(0.0, f64::max);
     let pass = pass(photons, sending.iter().map(|light| light.0).collect());
     lines.push(format!(
-        "light pass: {} photons from {} toward {to}; {} are seen; {:.2} for each camera sample{}",
+        "light pass: {} photons from {} toward {to}, {:.2} for each camera sample; {} of them are seen{}",
         in_number(pass.photons),
         named(scene, &sending),
-        if most < 0.095 { format!("{:.1} %", 100.0 * most) } else { format!("{:.0} %", 100.0 * most) },
         pass.photons as f64 / samples,
+        if most < 0.095 { format!("{:.1} %", 100.0 * most) } else { format!("{:.0} %", 100.0 * most) },
         gain.map_or(String::new(), |gain| format!(
-            ": an error takes chance about {} times as long",
+            "; without them, the same error would take about {} times as long",
             in_number(gain.round() as u64)
         ))
     ));

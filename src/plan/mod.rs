@@ -12,7 +12,7 @@ mod worth;
 
 use crate::scene::Scene;
 use crate::spectrum::{Basis, Curve};
-use crate::trace::{LightPass, Method, Transport, World, probe};
+use crate::trace::{LightPass, Method, Probe, Transport, World, probe};
 use model::Model;
 
 pub use ladder::Rung;
@@ -22,7 +22,7 @@ pub use ladder::Rung;
 pub struct Plan {
     /// What the tracer is to do.
     pub method: Method,
-    /// One decision a line, each with its numbers.
+    /// What it will cost, how far colors may be off and what is left out; then one decision a line, each with its numbers.
     pub because: Vec<String>,
     /// The models of color that were weighed, from few lanes to many.
     pub rungs: Vec<Rung>,
@@ -36,10 +36,10 @@ const TOGETHER_PIXELS: f64 = 0.01;
 
 /// Decides how to render a scene.
 pub fn plan(scene: &Scene<Curve>) -> Plan {
-    let Model { basis, mut because, next, rungs } = model::model(scene);
+    let Model { basis, missed, because: mut decisions, next, rungs } = model::model(scene);
     let together = if basis.draws_wavelengths() { TOGETHER_PIXELS * scene.camera.pixel_angle() } else { 0.0 };
     let (transport, reason) = transport::transport(scene, &basis, together);
-    because.push(reason);
+    decisions.push(reason);
     let samples = match (transport, scene.render.samples) {
         (_, Some(samples)) => samples,
         (Transport::Deterministic { .. }, None) => 1,
@@ -53,11 +53,19 @@ pub fn plan(scene: &Scene<Curve>) -> Plan {
     let (shown, why_shown) = caustics::light_pass(scene, &world);
     let (light_pass, why_gathered) = beyond::with_map(scene, &world, shown.as_ref());
     // Why nothing is shown matters only where nothing is gathered either.
-    because.extend(why_shown.into_iter().filter(|_| shown.is_some() || light_pass.is_none()));
-    because.extend(why_gathered);
+    decisions.extend(why_shown.into_iter().filter(|_| shown.is_some() || light_pass.is_none()));
+    decisions.extend(why_gathered);
     let method = Method { light_pass, ..method };
+    let probe = probe(&world.with_light_pass(method.light_pass.clone()));
+    let mut because = vec![cost(scene, &method, &probe)];
+    because.extend(missed);
+    because.extend(polarization::left_out(scene, &method, &world, &probe));
     because.extend(lights(scene, method.light_pass.as_ref()));
-    because.extend(cost(scene, &method, &world, next));
+    because.extend(decisions);
+    if probe.parted > 0.0 {
+        because.push(format!("lanes part in {:.0} % of the camera samples", 100.0 * probe.parted));
+    }
+    because.extend(next.map(|basis| beside(scene, &method, &probe, basis)));
     Plan { method, because, rungs }
 }
 
@@ -93,33 +101,29 @@ fn lights(scene: &Scene<Curve>, light_pass: Option<&LightPass>) -> Vec<String> {
 }
 
 /// What a few hundred samples say of the whole.
-fn cost(scene: &Scene<Curve>, method: &Method, without_pass: &World, next: Option<Basis>) -> Vec<String> {
-    let found = probe(&without_pass.with_light_pass(method.light_pass.clone()));
-    let next = next.map(|basis| (basis.name(), probe(&World::untaught(scene, Method { basis, ..method.clone() }))));
-    let probe = found;
+fn cost(scene: &Scene<Curve>, method: &Method, probe: &Probe) -> String {
     let window = scene.film.window();
     let samples = f64::from(window.width) * f64::from(window.height) * f64::from(method.samples);
-    let mut lines = Vec::new();
-    if probe.parted > 0.0 {
-        lines.push(format!("lanes part in {:.0} % of the camera samples", 100.0 * probe.parted));
-    }
-    lines.extend(polarization::left_out(scene, method, without_pass, &probe));
     let pass = method.light_pass.as_ref();
     let of_map = pass.and_then(|pass| pass.map).map_or(0, |map| u64::from(map.count) * map.photons);
     let photons = pass.map_or(0, |pass| pass.photons) + of_map;
     let seconds = probe.time.as_secs_f64() * samples + probe.photon.as_secs_f64() * photons as f64;
-    let beside = next.map_or(String::new(), |(name, other)| {
-        format!("; a sample of {name} takes {:.1} times as long", other.time.as_secs_f64() / probe.time.as_secs_f64())
-    });
-    lines.push(format!(
-        "cost: {} sample{} per pixel, {:.1} rays each{}, about {} of processor time{beside}",
+    format!(
+        "cost: about {} of processor time: {} sample{} per pixel, {:.1} rays each{}",
+        in_words(seconds),
         method.samples,
         if method.samples == 1 { "" } else { "s" },
         probe.rays,
         if photons > 0 { format!(", and {} photons", in_number(photons)) } else { String::new() },
-        in_words(seconds)
-    ));
-    lines
+    )
+}
+
+/// What another model of color would cost.
+fn beside(scene: &Scene<Curve>, method: &Method, probe_of_method: &Probe, basis: Basis) -> String {
+    let name = basis.name();
+    let other = probe(&World::untaught(scene, Method { basis, ..method.clone() }));
+    let times = other.time.as_secs_f64() / probe_of_method.time.as_secs_f64();
+    format!("a sample of {name} would take {times:.1} times as long")
 }
 
 /// A share as people say it.

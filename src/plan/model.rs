@@ -20,6 +20,8 @@ const HERO: [[usize; 2]; 2] = [[12, 4], [24, 8]];
 /// What the lanes stand for, why, and a basis to compare its cost with.
 pub(super) struct Model {
     pub(super) basis: Basis,
+    /// How far colors may be off.
+    pub(super) missed: Option<String>,
     pub(super) because: Vec<String>,
     /// The model beside it that would cost more or less.
     pub(super) next: Option<Basis>,
@@ -56,15 +58,14 @@ pub(super) fn model(scene: &Scene<Curve>) -> Model {
     let next = if hero { rungs.get(chosen) } else { rungs.get(chosen + 1) }.map(|rung| rung.basis.clone());
     let next = next.filter(|_| hero || !survey.is_plain());
     let mut because = vec![format!("model {}: {} lanes; {why}", basis.name(), basis.lanes())];
-    if !is_exact || basis.fixed_lanes() > 3 {
-        because.push(missed(&rungs, &basis, &survey, tolerance));
-    }
+    let missed = (!is_exact || basis.fixed_lanes() > 3).then(|| missed(&rungs, &basis, &survey, tolerance));
     because.extend(lines_without_lane(&survey, &basis));
     because.extend(dispersion.map(|d| spoken(&d, visible, hero)));
     let basis = if together { basis.kept_together() } else { basis };
     because.extend(desaturated(scene, &basis));
     because.extend(materials(scene, &basis));
-    Model { basis, because, rungs, next: next.map(|next| if together || hero { next.kept_together() } else { next }) }
+    let next = next.map(|next| if together || hero { next.kept_together() } else { next });
+    Model { basis, missed, because, next, rungs }
 }
 
 /// The relative error of a color that its model may make.
@@ -96,14 +97,14 @@ fn least(rungs: &[Rung], chosen: usize, tolerance: f64, plain: bool) -> String {
 fn missed(rungs: &[Rung], basis: &Basis, survey: &Survey, tolerance: f64) -> String {
     if basis.draws_wavelengths() {
         let bound = LANES_SAFETY * error(survey, basis);
-        return format!("color missed at most {} (tolerated {})", percent(bound), percent(tolerance));
+        return format!("colors are off by at most {} ({} is tolerated)", percent(bound), percent(tolerance));
     }
     let mut steps: Vec<String> =
         rungs.iter().map(|rung| format!("{} {}", rung.basis.name(), percent(rung.bound()))).collect();
     if !rungs.iter().any(|rung| rung.basis.name() == basis.name()) {
         steps.push(format!("{} {}", basis.name(), percent(LANES_SAFETY * error(survey, basis))));
     }
-    format!("color missed at most, by model (tolerated {}): {}", percent(tolerance), steps.join(", "))
+    format!("colors are off by at most ({} is tolerated): {}", percent(tolerance), steps.join(", "))
 }
 
 /// Emission lines that share the interpolated lanes.
@@ -146,20 +147,26 @@ fn spoken(spread: &Spread, visible: bool, hero: bool) -> String {
         p if p == 0.0 || p >= 0.5 => format!("{p:.0} %"),
         p => format!("{p:.1e} %"),
     };
-    let shows = if spread.dark {
-        "through which no ray of the probe saw anything".to_owned()
+    let lit = format!("{} pixels", pixels(spread.lit_pixels));
+    let shown = if spread.dark {
+        format!(
+            "no ray of the probe saw anything through the dispersive glass in {share} of the view, which pulls {from} and {to} nm up to \
+             {lit} apart where it lights surfaces"
+        )
     } else {
-        format!("which shows {from} and {to} nm up to {} pixels apart", pixels(spread.seen_pixels))
+        let seen = pixels(spread.seen_pixels);
+        format!(
+            "dispersive glass in {share} of the view pulls {from} and {to} nm up to {seen} pixels apart, and up to {lit} where it lights \
+             surfaces"
+        )
     };
-    let seen = format!("{share} of the view is on dispersive glass, {shows}");
-    let lit = format!("light through it is spread over {}", pixels(spread.lit_pixels));
     let what = match (visible, hero) {
         (true, true) => "so wavelengths part",
         (true, false) => "so lanes part",
         (false, true) => "less than can be seen, but the scene asks for it",
-        (false, false) => "less than 0.2 can be seen, so lanes stay together",
+        (false, false) => "less than 0.2 cannot be seen, so lanes stay together",
     };
-    format!("dispersion: {seen}; {lit}: {what}")
+    format!("dispersion: {shown}; {what}")
 }
 
 /// Colors that no reflectance has.

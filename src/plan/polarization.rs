@@ -19,10 +19,13 @@ pub(super) fn left_out(
     let (all, part) = (found.polarization, found.polarization_of_part);
     let tolerated = tolerance(scene);
     if part > tolerated {
-        let part =
-            if part > 1.05 * all { format!(", up to {} in a part of the view", percent(part)) } else { String::new() };
+        let part = if part > 1.05 * all {
+            format!(", and up to {} in a part of the view", percent(part))
+        } else {
+            String::new()
+        };
         return Some(format!(
-            "polarization may change up to {} of the light seen{part}, where {} is tolerated: it is not traced",
+            "polarization may change up to {} of the light seen{part}; it is not traced ({} is tolerated)",
             percent(all),
             percent(tolerated)
         ));

@@ -335,7 +335,7 @@ fn the_plan_counts_the_color_of_glass_and_keeps_three_lanes_where_they_do() {
         assert_eq!(plan.method.basis.name(), "rgb", "{glass}: {:?}", plan.because);
         let stated = plan.rungs[0].bound();
         assert!(stated > 0.0 && stated < 0.01, "{glass}: {stated}");
-        assert!(plan.because.iter().any(|line| line.contains("color missed at most")), "{:?}", plan.because);
+        assert!(plan.because.iter().any(|line| line.contains("colors are off by at most")), "{:?}", plan.because);
     }
     let plain = ball("1.5", "");
     assert!(plain.rungs[0].error == 0.0 && plain.rungs.len() == 1);

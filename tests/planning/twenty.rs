@@ -128,7 +128,7 @@ pub fn rooms() -> Vec<Room> {
         "a tilted mirror that shows a small lamp",
         on("white", &[&tilted, &small]),
         false,
-        "to the same error they would take",
+        "with them, the same error would take",
     );
     rooms
 }
