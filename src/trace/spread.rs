@@ -76,7 +76,8 @@ impl Colors<'_> {
     /// Whether no walk is lost, and what they show may differ.
     fn see_something(&self, walks: [&Walk; 2]) -> bool {
         let lost = walks.iter().any(|walk| walk.weight == 0.0);
-        !lost && !(walks.iter().all(|walk| walk.is_out()) && shows_nothing(self.world))
+        let out = walks.iter().all(|walk| walk.is_out());
+        !(lost || out && shows_nothing(self.world))
     }
 
     /// How many pixels apart both colors show what lies behind.
