@@ -3,6 +3,7 @@
 mod beyond;
 mod caustics;
 mod ladder;
+mod lights;
 mod model;
 mod polarization;
 mod seen;

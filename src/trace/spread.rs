@@ -63,10 +63,21 @@ impl Colors<'_> {
             let at = middle + DVec2::new(place(i % PLACES), place(i / PLACES));
             let walks = [0, 1].map(|lane| self.walk_from_camera(at, lane, sampler, way));
             let [first, second] = &walks;
-            let parted = first.dispersive && self.apart_by(STEPS[1], at, [first, second], sampler, way) >= SEEN_PIXELS;
-            if parted { first.weight } else { 0.0 }
+            let part = || {
+                // After other surfaces, light comes from elsewhere: between facets so small the ways of neighbors tell nothing.
+                self.see_something([first, second]) && first.legs.len() != second.legs.len()
+                    || self.apart_by(STEPS[1], at, [first, second], sampler, way) >= SEEN_PIXELS
+            };
+            if first.dispersive && part() { first.weight } else { 0.0 }
         };
         (0..PLACES * PLACES).map(share).sum::<f64>() / f64::from(PLACES * PLACES)
+    }
+
+    /// Whether no walk is lost, and what they show may differ.
+    fn see_something(&self, walks: [&Walk; 2]) -> bool {
+        let lost = walks.iter().any(|walk| walk.weight == 0.0);
+        let out = walks.iter().all(|walk| walk.is_out());
+        !(lost || out && shows_nothing(self.world))
     }
 
     /// How many pixels apart both colors show what lies behind.
@@ -75,8 +86,7 @@ impl Colors<'_> {
     /// edge behind the glass, which one of them misses, does not count.
     fn apart_by(&self, step: f64, at: DVec2, walks: [&Walk; 2], sampler: &Sampler, way: Way) -> f64 {
         let [first, second] = walks;
-        let lost = walks.iter().any(|walk| walk.weight == 0.0);
-        if lost || (walks.iter().all(|walk| walk.is_out()) && shows_nothing(self.world)) {
+        if !self.see_something(walks) {
             return 0.0;
         }
         let distance = walks.map(Walk::length).into_iter().find(|length| length.is_finite());

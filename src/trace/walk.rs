@@ -11,8 +11,8 @@ use crate::scene::Hit;
 use crate::shape::SurfacePoint;
 use crate::spectrum::{Draw, Table};
 
-/// Surfaces after which a ray is given up.
-const LONGEST: usize = 24;
+/// Surfaces after which a ray is given up: total reflection keeps one in six of those in a diamond for more than 24.
+const LONGEST: usize = 64;
 /// Share of the light from which on a fainter way counts as one: half of what glass mirrors.
 const LEAST: f64 = 0.02;
 /// The share that a glossy surface mirrors, about.
