@@ -57,10 +57,11 @@ pub fn plan(scene: &Scene<Curve>) -> Plan {
     decisions.extend(why_shown.into_iter().filter(|_| shown.is_some() || light_pass.is_none()));
     decisions.extend(why_gathered);
     let method = Method { light_pass, ..method };
-    let probe = probe(&world.with_light_pass(method.light_pass.clone()));
+    let world = world.with_light_pass(method.light_pass.clone());
+    let probe = probe(&world);
     let mut because = vec![cost(scene, &method, &probe)];
     because.extend(missed);
-    because.extend(polarization::left_out(scene, &method, &world, &probe));
+    because.extend(polarization::left_out(scene, &world));
     because.extend(lights(scene, method.light_pass.as_ref()));
     because.extend(decisions);
     if probe.parted > 0.0 {

@@ -4,19 +4,12 @@ use super::model::tolerance;
 use super::percent;
 use crate::scene::Scene;
 use crate::spectrum::Curve;
-use crate::trace::{Method, Probe, World, probe};
+use crate::trace::{World, seen_light};
 
 /// How much polarization may change; nothing where it can hardly be told.
-pub(super) fn left_out(
-    scene: &Scene<Curve>,
-    method: &Method,
-    without_pass: &World,
-    probe_of_method: &Probe,
-) -> Option<String> {
-    // Light that photons bring is left out by the camera's rays of the method.
-    let found = method.light_pass.as_ref().map(|_| probe(without_pass));
-    let found = found.as_ref().unwrap_or(probe_of_method);
-    let (all, part) = (found.polarization, found.polarization_of_part);
+pub(super) fn left_out(scene: &Scene<Curve>, world: &World) -> Option<String> {
+    let light = seen_light(world);
+    let (all, part) = (light.change(), light.change_of_part());
     let tolerated = tolerance(scene);
     if part > tolerated {
         let part = if part > 1.05 * all {

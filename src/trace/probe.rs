@@ -19,10 +19,6 @@ pub struct Probe {
     pub rays: f64,
     /// Share of the samples whose lanes parted.
     pub parted: f64,
-    /// Most of the light seen, as a share, that polarization, which is not traced, may change.
-    pub polarization: f64,
-    /// The same in the 36th of the view where it is largest.
-    pub polarization_of_part: f64,
     /// Processor time: of the median ray, times the rays of a mean sample, so that what else the processor did does not count.
     pub time: Duration,
     /// The same of a photon, if any are sent.
@@ -31,8 +27,6 @@ pub struct Probe {
 
 /// Camera samples along each side of the image.
 const SIDE: u32 = 24;
-/// Samples along each side of a part of the view.
-const PART: u32 = 4;
 /// Samples that are timed together.
 const BATCH: u32 = 16;
 /// Photons of an aim, and of how many aims.
@@ -72,7 +66,6 @@ fn probe_lanes<const N: usize>(world: &World) -> Probe {
     }
     let mut tracer = Tracer::<N>::new(world);
     let (mut samples, mut parted) = (0_u32, 0);
-    let mut parts = [[0.0; 2]; ((SIDE / PART) * (SIDE / PART)) as usize];
     let window = world.scene.film.window();
     let start = Instant::now();
     let (mut before_batch, mut per_ray) = ((start, 0), Vec::new());
@@ -82,13 +75,10 @@ fn probe_lanes<const N: usize>(world: &World) -> Probe {
         let spread = |i: u32, size: u32| ((u64::from(2 * i + 1) * u64::from(size)) / u64::from(2 * SIDE)) as u32;
         let (x, y) = (spread(place % SIDE, window.width), spread(place / SIDE, window.height));
         let (x, y) = (window.left + x, window.top + y);
-        let before = tracer.tally;
+        let before = tracer.tally.partings;
         sample(world, &mut tracer, &Sampler::new(world.method.seed, [x, y], 0), x, y);
         samples += 1;
-        parted += u32::from(tracer.tally.partings > before.partings);
-        let part = &mut parts[(place / SIDE / PART * (SIDE / PART) + place % SIDE / PART) as usize];
-        part[0] += tracer.tally.polarization - before.polarization;
-        part[1] += tracer.tally.light - before.light;
+        parted += u32::from(tracer.tally.partings > before);
         if samples.is_multiple_of(BATCH) || start.elapsed() > ENOUGH {
             let (then, rays) = before_batch;
             before_batch = (Instant::now(), tracer.tally.rays);
@@ -101,13 +91,10 @@ fn probe_lanes<const N: usize>(world: &World) -> Probe {
     per_ray.sort_by(f64::total_cmp);
     let per_sample = 1.0 / f64::from(samples);
     let rays = tracer.tally.rays as f64 * per_sample;
-    let share = |[moved, light]: [f64; 2]| if light > 0.0 { moved / light } else { 0.0 };
     Probe {
         samples,
         rays,
         parted: f64::from(parted) * per_sample,
-        polarization: share([tracer.tally.polarization, tracer.tally.light]),
-        polarization_of_part: parts.into_iter().map(share).fold(0.0, f64::max),
         time: Duration::from_secs_f64(per_ray[per_ray.len() / 2] * rays),
         photon: photon_time::<N>(world),
     }

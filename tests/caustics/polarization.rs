@@ -68,5 +68,9 @@ fn what_polarization_may_change_of_a_caustic_is_said_where_photons_are_seen_and_
         println!("in a mirror {in_a_mirror}: {:.4}", report.polarization);
         let stated = [report.polarization, report.polarization_of_tile];
         assert!(stated.iter().all(|&stated| stated > 0.99 && stated < 1.0 + 1e-6), "{in_a_mirror}: {stated:?}");
+        let planned = plan(&scene);
+        assert!(planned.method.light_pass.is_some(), "{:?}", planned.because);
+        let said = |line: &String| line.starts_with("polarization may change up to 100 % of the light seen");
+        assert!(planned.because.iter().any(said), "{in_a_mirror}: {:?}", planned.because);
     }
 }

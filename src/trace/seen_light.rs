@@ -1,0 +1,95 @@
+//! How much of the light seen polarization may change, learned from some hundred camera samples and some thousand photons.
+
+use super::light_pass::splats;
+use super::merge;
+use super::polarization::amount;
+use super::render::sample;
+use super::tracer::Tracer;
+use super::width::{InLanes, in_lanes};
+use super::{LightPass, MapPasses, World};
+use crate::film::Window;
+use crate::math::Sampler;
+
+/// Camera samples along each side of the image.
+const SIDE: u32 = 24;
+/// Parts of the view along each side.
+const PARTS: u32 = 6;
+/// Most photons that are shown, and most that are gathered.
+const SHOWN: u64 = 8192;
+const GATHERED: u64 = 8192;
+
+/// Light that was seen, X + Y + Z summed, and by how much polarization may change it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SeenLight {
+    /// Both of each 36th of the view.
+    parts: [[f64; 2]; (PARTS * PARTS) as usize],
+}
+
+impl SeenLight {
+    /// The share of all light by which polarization may change it.
+    pub fn change(&self) -> f64 {
+        share(self.parts.iter().fold([0.0; 2], |sum, part| [sum[0] + part[0], sum[1] + part[1]]))
+    }
+
+    /// The same of the 36th of the view where it is largest.
+    pub fn change_of_part(&self) -> f64 {
+        self.parts.into_iter().map(share).fold(0.0, f64::max)
+    }
+}
+
+fn share([light, change]: [f64; 2]) -> f64 {
+    if light > 0.0 { change / light } else { 0.0 }
+}
+
+/// Looks at the part of the image that is made, with fewer photons than the world's method asks for.
+pub fn seen_light(world: &World) -> SeenLight {
+    let fewer = |pass: &LightPass| LightPass {
+        photons: pass.photons.min(SHOWN),
+        map: pass.map.map(|map| MapPasses { photons: map.photons.min(GATHERED), ..map }),
+        ..pass.clone()
+    };
+    let world = world.with_light_pass(world.method.light_pass.as_ref().map(fewer));
+    in_lanes(&world.method.basis, Looking { world: &world })
+}
+
+struct Looking<'a> {
+    world: &'a World,
+}
+
+impl InLanes for Looking<'_> {
+    type Output = SeenLight;
+    fn run<const N: usize>(self) -> SeenLight {
+        let world = self.world;
+        let window = world.scene.film.window();
+        let mut seen = SeenLight { parts: [[0.0; 2]; (PARTS * PARTS) as usize] };
+        let photons = merge::photons::<N>(world, 0);
+        let mut tracer = Tracer::<N>::new(world);
+        tracer.photons = photons.as_ref();
+        for place in 0..SIDE * SIDE {
+            let spread = |i: u32, size: u32| ((u64::from(2 * i + 1) * u64::from(size)) / u64::from(2 * SIDE)) as u32;
+            let [x, y] = [spread(place % SIDE, window.width), spread(place / SIDE, window.height)];
+            let before = tracer.tally;
+            let [column, row] = [window.left + x, window.top + y];
+            sample(world, &mut tracer, &Sampler::new(world.method.seed, [column, row], 0), column, row);
+            let part = &mut seen.parts[part_of(window, [x, y])];
+            part[0] += tracer.tally.light - before.light;
+            part[1] += tracer.tally.polarization - before.polarization;
+        }
+        // Photons light all pixels, of which so many were looked at.
+        let pixels = f64::from(window.width) * f64::from(window.height);
+        let looked_at = f64::from(SIDE * SIDE) / pixels;
+        splats::<N>(world, &|_| (), &mut |splat| {
+            let light = looked_at * amount(world, splat.rgb);
+            let part = &mut seen.parts[part_of(window, [splat.pixel % window.width, splat.pixel / window.width])];
+            part[0] += light;
+            part[1] += light * f64::from(splat.change);
+        });
+        seen
+    }
+}
+
+/// The part of the view that a pixel of the window lies in.
+fn part_of(window: Window, [x, y]: [u32; 2]) -> usize {
+    let part = |at: u32, size: u32| (u64::from(at) * u64::from(PARTS) / u64::from(size)) as usize;
+    part(y, window.height) * PARTS as usize + part(x, window.width)
+}
