@@ -1,6 +1,7 @@
 //! Floor 5: looks at a scene, decides how little of the world must be modelled to render it, and says why.
 
 mod beyond;
+mod bright;
 mod caustics;
 mod ladder;
 mod model;
@@ -48,13 +49,15 @@ pub fn plan(scene: &Scene<Curve>) -> Plan {
     let diffuse_bounces = scene.render.diffuse_bounces.unwrap_or(u32::MAX);
     let max_bounces = scene.render.max_bounces.unwrap_or(u32::MAX);
     let seed = scene.render.seed;
-    let method = Method { basis, transport, together, samples, seed, diffuse_bounces, max_bounces, light_pass: None };
+    let method = Method { basis, transport, together, samples, seed, diffuse_bounces, max_bounces, light_pass: None, bright: None };
     let (shown, why_shown) = caustics::light_pass(scene, &method);
     let (light_pass, why_gathered) = beyond::with_map(scene, &method, shown.as_ref());
     // Why nothing is shown matters only where nothing is gathered either.
     because.extend(why_shown.into_iter().filter(|_| shown.is_some() || light_pass.is_none()));
     because.extend(why_gathered);
-    let method = Method { light_pass, ..method };
+    let (bright, why_aimed) = bright::aimed(scene, &method);
+    because.extend(why_aimed);
+    let method = Method { light_pass, bright, ..method };
     because.extend(lights(scene, method.light_pass.as_ref()));
     because.extend(cost(scene, &method, next));
     Plan { method, because, rungs }

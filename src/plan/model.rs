@@ -135,6 +135,7 @@ fn dispersion(scene: &Scene<Curve>) -> Option<Spread> {
         diffuse_bounces,
         max_bounces: u32::MAX,
         light_pass: None,
+        bright: None,
     };
     Some(spread(&World::new(scene, method)))
 }

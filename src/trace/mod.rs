@@ -15,7 +15,10 @@
 
 mod aims;
 mod branching;
+mod bright;
+mod brightness;
 mod choice;
+mod clusters;
 mod direct;
 mod emission;
 mod follow;
@@ -53,6 +56,8 @@ mod world;
 
 pub use aims::{is_photon_source, is_photon_target};
 pub use branching::{Branching, branching};
+pub use bright::{BrightPlace, BrightPlaces};
+pub use brightness::bright_places;
 pub use light_pass::seen_photons;
 pub use method::{LightPass, MapPasses, Method, Transport};
 pub use pilot::{PhotonWorth, SampleWorth, photons_worth, samples_worth};

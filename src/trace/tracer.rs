@@ -2,6 +2,8 @@
 
 use std::cell::Cell;
 
+use super::bright::may_aim;
+use super::brightness::Bounce;
 use super::direct::{Gathering, add, weight_of_meeting};
 use super::media::{self, Boundary};
 use super::merge::Photons;
@@ -35,6 +37,8 @@ pub(super) struct Tracer<'a, const N: usize> {
     pub(super) photons: Option<&'a Photons<N>>,
     /// Places that scatter widely and are not seen straight, if somebody wants to know.
     pub(super) reached: Option<Vec<DVec3>>,
+    /// What bounces found, if somebody wants to know.
+    pub(super) bounces: Option<Vec<Bounce>>,
 }
 
 /// How much sooner roulette ends paths that leave a diffuse surface than those that leave a smooth one: what they still
@@ -62,6 +66,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
             met: None,
             photons: None,
             reached: None,
+            bounces: None,
         }
     }
 
@@ -86,6 +91,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
             let Some(hit) = self.world.scene.intersect(&path.ray) else {
                 path.advance(self.world, draw, f64::INFINITY);
                 let light = self.background(&path, draw);
+                self.note(&path, draw, f64::INFINITY, light);
                 self.receive(&path, light, &mut sum);
                 next = None;
                 continue;
@@ -112,7 +118,11 @@ impl<'a, const N: usize> Tracer<'a, N> {
                 next = onward.map(|onward| path.passed_in_part(&point, &onward));
                 continue;
             }
+            let before = sum;
             next = self.scatter(&path, draw, sampler, (&hit, &point, onward), &mut sum);
+            if onward.is_none() {
+                self.note(&path, draw, hit.crossing.t, std::array::from_fn(|i| light[i] + sum[i] - before[i]));
+            }
         }
         if let Transport::Deterministic { most, .. } = self.transport {
             self.tally.by_chance += u64::from(self.surfaces() > most);
@@ -197,6 +207,8 @@ impl<'a, const N: usize> Tracer<'a, N> {
         let (mut u, mut drawn) = ([0.0; 4], None);
         let parts = material.lets_through() && material.parts_lanes(&arrival);
         let (wide, diffuse) = (material.scatters_widely(), material.is_diffuse());
+        let aiming = world.bright.as_ref().filter(|_| may_aim(material) && path.vertices <= *VMAX);
+        let aiming = aiming.and_then(|bright| bright.at(point.position, normal));
         if wide {
             let spread = path.vertices <= SPREAD;
             u = if spread { sampler.four(path.key, SCATTER) } else { sampler.four_plain(path.key, SCATTER) };
@@ -220,6 +232,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
                 hider: &self.hider,
                 lit: counted,
                 u,
+                aiming: aiming.as_ref(),
             };
             let far = material.scatters_through().then_some((beyond, parts));
             let chance = gathering.gather(far, sampler, path.key, sum);
@@ -244,7 +257,10 @@ impl<'a, const N: usize> Tracer<'a, N> {
 
         // Send the path on.
         self.branches.clear();
-        shading::scatter(material, &arrival, normal, [u[2], u[3]], &mut self.branches);
+        match &aiming {
+            Some(aiming) => self.scatter_aimed(aiming, (material, &arrival), normal, [u[2], u[3]]),
+            None => shading::scatter(material, &arrival, normal, [u[2], u[3]], &mut self.branches),
+        }
         if diffuse && path.diffuse_left == 0 {
             self.branches.retain(|branch| branch.pdf.is_none());
         }
@@ -286,3 +302,5 @@ impl<'a, const N: usize> Tracer<'a, N> {
         path.leg == Leg::Smooth { aimed: true } && self.world.sends_photons(light)
     }
 }
+
+static VMAX: std::sync::LazyLock<u32> = std::sync::LazyLock::new(|| std::env::var("VMAX").map_or(1000, |t| t.parse().unwrap()));

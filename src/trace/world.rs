@@ -1,4 +1,5 @@
 use super::aims::{Aims, is_photon_source};
+use super::bright::Bright;
 use super::choice::Choice;
 use super::lamps::met_lamps;
 use super::media::Media;
@@ -27,6 +28,8 @@ pub struct World {
     pub(super) has_media: bool,
     /// Whether each object lets light straight on; empty where none does.
     see_through: Vec<bool>,
+    /// What bounces are aimed at.
+    pub(super) bright: Option<Bright>,
     /// Where photons are sent, if the method has a light pass.
     pub(super) aims: Option<Aims>,
     /// The same of each pass of its map.
@@ -67,6 +70,7 @@ impl World {
         let aims = pass.and_then(|pass| aims_of(pass.photons));
         let map_aims = pass.and_then(|pass| pass.map).and_then(|map| aims_of(map.photons));
         let light_media = Vec::new();
+        let bright = method.bright.as_ref().map(Bright::new);
         let mut world = Self {
             xyz_of_channel,
             responses,
@@ -77,6 +81,7 @@ impl World {
             camera_media,
             has_media,
             see_through,
+            bright,
             aims,
             map_aims,
             light_media,
