@@ -49,7 +49,17 @@ pub fn plan(scene: &Scene<Curve>) -> Plan {
     let diffuse_bounces = scene.render.diffuse_bounces.unwrap_or(u32::MAX);
     let max_bounces = scene.render.max_bounces.unwrap_or(u32::MAX);
     let seed = scene.render.seed;
-    let method = Method { basis, transport, together, samples, seed, diffuse_bounces, max_bounces, light_pass: None, bright: None };
+    let method = Method {
+        basis,
+        transport,
+        together,
+        samples,
+        seed,
+        diffuse_bounces,
+        max_bounces,
+        light_pass: None,
+        bright: None,
+    };
     let (shown, why_shown) = caustics::light_pass(scene, &method);
     let (light_pass, why_gathered) = beyond::with_map(scene, &method, shown.as_ref());
     // Why nothing is shown matters only where nothing is gathered either.

@@ -15,13 +15,16 @@ use super::shading;
 use super::tracer::Tracer;
 use crate::material::{Arrival, Branch, Material};
 use crate::math::{Bounds, DVec3, Ray};
-use crate::shape::{Quad, Shape};
+use crate::shape::{Density, Quad, Shape};
 use crate::spectrum::{Draw, Table};
 
 /// Places at most: each takes its time at every bounce.
-pub(super) const MOST: usize = 8;
+pub(super) const MOST: usize = 6;
 /// The largest share of the directions that is aimed: the noise of all other light is at most doubled.
 const LARGEST: f64 = 0.5;
+/// How much more light from elsewhere counts than that of the places, which others may see as well: in rooms with a window, 2 to
+/// 6 make hardly a difference.
+const ELSEWHERE: f64 = 3.0;
 /// Distance from a place's plane, in its half diagonals, below which it is not aimed at: its outline has no certain extent.
 const FLAT: f64 = 1e-3;
 
@@ -41,7 +44,7 @@ pub struct BrightPlace {
 pub struct BrightPlaces {
     /// Where they are aimed at from.
     pub within: Bounds,
-    /// The places, at most eight.
+    /// The places, at most six.
     pub places: Vec<BrightPlace>,
     /// Root of the mean square of the radiance from elsewhere.
     pub elsewhere: f64,
@@ -65,7 +68,6 @@ pub(super) struct Bright {
     within: Bounds,
     targets: Vec<Target>,
     elsewhere: f64,
-    largest: f64,
 }
 
 /// How bounces are drawn at one point.
@@ -81,7 +83,6 @@ pub(super) struct Aiming<'a> {
 
 impl Bright {
     pub(super) fn new(found: &BrightPlaces) -> Self {
-        let env = |name: &str, x: f64| std::env::var(name).map_or(x, |t| t.parse().unwrap());
         let target = |place: &BrightPlace| {
             let BrightPlace { center, half: [u, v], radiance } = *place;
             Target {
@@ -94,7 +95,7 @@ impl Bright {
             }
         };
         let targets = found.places.iter().take(MOST).map(target).collect();
-        Self { within: found.within, targets, elsewhere: env("ELSE", 1.0) * found.elsewhere, largest: env("LARGEST", 0.5) }
+        Self { within: found.within, targets, elsewhere: ELSEWHERE * found.elsewhere }
     }
 
     /// How bounces are drawn at a point of a surface of the given unit normal; none where they are not aimed.
@@ -122,7 +123,7 @@ impl Bright {
             return None;
         }
         chances.iter_mut().for_each(|chance| *chance /= all);
-        let share = (all / (all + PI * self.elsewhere)).min(self.largest);
+        let share = (all / (all + PI * self.elsewhere)).min(LARGEST);
         Some(Aiming { bright: self, from, chances, share })
     }
 }
@@ -133,28 +134,43 @@ impl Aiming<'_> {
         if u < self.share { Ok(u / self.share) } else { Err((u - self.share) / (1.0 - self.share)) }
     }
 
-    fn draw(&self, [u, v]: [f64; 2]) -> Option<DVec3> {
-        let mut left = u;
-        let mut chosen = None;
-        for (target, &chance) in self.bright.targets.iter().zip(&self.chances).filter(|(_, chance)| **chance > 0.0) {
-            chosen = Some((target, (left / chance).min(1.0 - f64::EPSILON)));
+    /// An aimed direction, the place it was aimed at and its density there.
+    fn draw(&self, [u, v]: [f64; 2]) -> Option<(DVec3, Option<(usize, f64)>)> {
+        let (mut left, mut chosen) = (u, None);
+        for (number, &chance) in self.chances.iter().enumerate().filter(|(_, chance)| **chance > 0.0) {
+            chosen = Some((number, (left / chance).min(1.0 - f64::EPSILON)));
             if left < chance {
                 break;
             }
             left -= chance;
         }
-        let (target, u) = chosen?;
-        target.shape.aim(self.from, [u, v]).map(|sighting| sighting.direction)
+        let (number, u) = chosen?;
+        let sighting = self.bright.targets[number].shape.aim(self.from, [u, v])?;
+        let known = match sighting.density {
+            Some(Density::Angle(density)) => Some((number, density)),
+            _ => None,
+        };
+        Some((sighting.direction, known))
     }
 
     /// The density of a direction that the material draws with another.
     pub(super) fn pdf(&self, direction: DVec3, own: f64) -> f64 {
+        self.pdf_knowing(direction, own, None)
+    }
+
+    /// The same where the density is known with which one of the places is aimed at.
+    fn pdf_knowing(&self, direction: DVec3, own: f64, known: Option<(usize, f64)>) -> f64 {
         let ray = Ray { origin: self.from, direction };
         let mut sum = 0.0;
-        for (target, &chance) in self.bright.targets.iter().zip(&self.chances).filter(|(_, chance)| **chance > 0.0) {
-            if let Some(crossing) = target.shape.intersect(&ray, f64::INFINITY) {
-                sum += chance * target.shape.pdf_toward(&ray, &crossing);
-            }
+        for (number, &chance) in self.chances.iter().enumerate().filter(|(_, chance)| **chance > 0.0) {
+            sum += match known {
+                Some((place, density)) if place == number => chance * density,
+                _ => {
+                    let shape = &self.bright.targets[number].shape;
+                    let crossing = shape.intersect(&ray, f64::INFINITY);
+                    crossing.map_or(0.0, |crossing| chance * shape.pdf_toward(&ray, &crossing))
+                }
+            };
         }
         self.share * sum + (1.0 - self.share) * own
     }
@@ -191,9 +207,9 @@ impl<const N: usize> Tracer<'_, N> {
         shading::scatter(material, arrival, flat, [divided.err().unwrap_or(0.5), u[1]], &mut self.branches);
         if let Ok(aimed) = divided {
             self.branches.retain(|branch| branch.pdf.is_none());
-            let Some(wi) = aiming.draw([aimed, u[1]]).filter(|wi| wi.dot(flat) > 0.0) else { return };
+            let Some((wi, known)) = aiming.draw([aimed, u[1]]).filter(|(wi, _)| wi.dot(flat) > 0.0) else { return };
             let Some((bsdf_cos, own)) = shading::evaluate(material, arrival, flat, wi) else { return };
-            let pdf = aiming.pdf(wi, own);
+            let pdf = aiming.pdf_knowing(wi, own, known);
             if !(own > 0.0 && pdf.is_finite()) {
                 return;
             }

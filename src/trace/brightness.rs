@@ -25,16 +25,16 @@ pub(super) struct Bounce {
 }
 
 /// Camera samples along each side of the image.
-const SIDE: u32 = 64;
-/// Rays that look for the sky from where a bounce began, and how many may see it from inside a room.
-const LOOKS: u32 = 8;
-const INSIDE: usize = 2;
+const SIDE: u32 = 48;
+/// Rays that look for the sky from where a bounce began, and how many may see it from inside a room: a quarter.
+const LOOKS: u32 = 4;
+const INSIDE: usize = 1;
 /// Share of the bounces' weight inside rooms from which on it is a picture of a room.
 const ENOUGH: f64 = 0.25;
 /// Share of the weight that may lie beyond each side of the room.
 const BEYOND: f64 = 0.01;
 /// Points that are gathered into places.
-const POINTS: usize = 1024;
+const POINTS: usize = 2048;
 /// Sets these random numbers apart from those of the image.
 const SEED: u64 = 0x6272_6967;
 
@@ -83,10 +83,10 @@ fn learned(world: &World, bounces: Vec<Bounce>) -> Option<BrightPlaces> {
     let room = room_of(&inside);
     inside.retain(|bounce| !(bounce.from.cmplt(room.min).any() || bounce.from.cmpgt(room.max).any()));
     let lit = inside.iter().filter(|bounce| bounce.light > 0.0);
-    let mut points: Vec<(DVec3, f64)> = lit.map(|bounce| (end_of(bounce, room), bounce.light * (bounce.light / bounce.weight).powf(std::env::var("EXPO").map_or(0.0, |k| k.parse().unwrap())))).collect();
+    let mut points: Vec<(DVec3, f64)> = lit.map(|bounce| (end_of(bounce, room), bounce.light)).collect();
     let step = points.len().div_ceil(POINTS).max(1);
     points = points.into_iter().step_by(step).collect();
-    let found = clusters(points, std::env::var("K").map_or(MOST, |k| k.parse().unwrap()));
+    let found = clusters(points, MOST);
     let mut places: Vec<Place> = found.iter().filter_map(Place::of).collect();
     let mut elsewhere = Squares::default();
     for bounce in &inside {

@@ -2,11 +2,11 @@
 
 use crate::math::{DVec3, Frame};
 
-/// A rectangle about weighted points, and how far they lie off its plane.
+/// A rectangle about weighted points.
 #[derive(Clone, Debug)]
 pub(super) struct Cluster {
     points: Vec<(DVec3, f64)>,
-    weight: f64,
+    cost: f64,
     pub(super) center: DVec3,
     /// Half edges at right angles, and half of the thickness.
     pub(super) half: [DVec3; 3],
@@ -30,9 +30,9 @@ pub(super) fn clusters(points: Vec<(DVec3, f64)>, most: usize) -> Vec<Cluster> {
     let Some(first) = Cluster::around(points) else { return Vec::new() };
     let mut found = vec![(first.split(), first)];
     while found.len() < most {
-        let total: f64 = found.iter().map(|(_, cluster)| cluster.cost()).sum();
+        let total: f64 = found.iter().map(|(_, cluster)| cluster.cost).sum();
         let saves = |split: &Option<[Cluster; 2]>, cluster: &Cluster| {
-            split.as_ref().map_or(0.0, |[a, b]| cluster.cost() - a.cost() - b.cost())
+            split.as_ref().map_or(0.0, |[a, b]| cluster.cost - a.cost - b.cost)
         };
         let saved: Vec<f64> = found.iter().map(|(split, cluster)| saves(split, cluster)).collect();
         let best = (0..found.len()).max_by(|&a, &b| saved[a].total_cmp(&saved[b])).unwrap_or(0);
@@ -68,31 +68,71 @@ impl Cluster {
             }
         }
         let (_, center, half) = best?;
-        Some(Self { points, weight, center, half })
-    }
-
-    /// Weight times area: how much of what is aimed is aimed in vain.
-    fn cost(&self) -> f64 {
-        let [x, y, z] = self.half.map(|half| half.length());
-        self.weight * (x + z) * (y + z)
+        let cost = Spread::of(&points).cost();
+        Some(Self { points, cost, center, half })
     }
 
     /// The best two parts.
     fn split(&self) -> Option<[Self; 2]> {
-        let mut best: Option<(f64, [Self; 2])> = None;
+        let mut best: Option<(f64, DVec3, f64)> = None;
         for axis in self.half {
             for cut in 0..CUTS {
                 let place = 2.0 * (cut as f64 + 1.0) / (CUTS as f64 + 1.0) - 1.0;
                 let level = axis.dot(self.center) + place * axis.length_squared();
-                let (above, below) = self.points.iter().partition(|point| point.0.dot(axis) > level);
-                let (Some(above), Some(below)) = (Self::around(above), Self::around(below)) else { continue };
-                let cost = above.cost() + below.cost();
-                if best.as_ref().is_none_or(|best| cost < best.0) {
-                    best = Some((cost, [above, below]));
+                let mut sides = [Spread::default(); 2];
+                self.points.iter().for_each(|point| sides[usize::from(point.0.dot(axis) > level)].add(point));
+                let cost = sides[0].cost() + sides[1].cost();
+                let enough = sides.iter().all(|side| side.count >= FEWEST);
+                if enough && best.is_none_or(|best| cost < best.0) {
+                    best = Some((cost, axis, level));
                 }
             }
         }
-        best.map(|best| best.1)
+        let (_, axis, level) = best?;
+        let (above, below) = self.points.iter().partition(|point| point.0.dot(axis) > level);
+        Some([Self::around(above)?, Self::around(below)?])
+    }
+}
+
+/// How far weighted points are spread.
+#[derive(Clone, Copy, Default)]
+struct Spread {
+    count: usize,
+    weight: f64,
+    sum: DVec3,
+    squares: DVec3,
+    /// Sums of y z, z x and x y.
+    products: DVec3,
+}
+
+impl Spread {
+    fn of(points: &[(DVec3, f64)]) -> Self {
+        let mut all = Self::default();
+        points.iter().for_each(|point| all.add(point));
+        all
+    }
+
+    fn add(&mut self, (point, weight): &(DVec3, f64)) {
+        self.count += 1;
+        self.weight += weight;
+        self.sum += *point * *weight;
+        self.squares += *point * *point * *weight;
+        self.products += DVec3::new(point.y * point.z, point.z * point.x, point.x * point.y) * *weight;
+    }
+
+    /// Weight times area: how much of what is aimed is aimed in vain.
+    ///
+    /// The sum of the products of two eigenvalues of the covariance, its second invariant, goes with the square of the area.
+    fn cost(&self) -> f64 {
+        if self.weight <= 0.0 {
+            return 0.0;
+        }
+        let mean = self.sum / self.weight;
+        let squares = self.squares / self.weight - mean * mean;
+        let crossed = DVec3::new(mean.y * mean.z, mean.z * mean.x, mean.x * mean.y);
+        let products = self.products / self.weight - crossed;
+        let DVec3 { x, y, z } = squares;
+        self.weight * (x * y + y * z + z * x - products.length_squared()).max(0.0).sqrt()
     }
 }
 

@@ -35,6 +35,8 @@ pub(super) struct Tracer<'a, const N: usize> {
     pub(super) met: Option<Vec<(LightId, DVec3)>>,
     /// Photons that are gathered, if any are.
     pub(super) photons: Option<&'a Photons<N>>,
+    /// What gathered photons brought to the sensor.
+    pub(super) gathered: [f64; 3],
     /// Places that scatter widely and are not seen straight, if somebody wants to know.
     pub(super) reached: Option<Vec<DVec3>>,
     /// What bounces found, if somebody wants to know.
@@ -53,21 +55,10 @@ const SPREAD: u32 = 4;
 
 impl<'a, const N: usize> Tracer<'a, N> {
     pub(super) fn new(world: &'a World) -> Self {
-        let (pending, branches) = (Vec::new(), Vec::new());
-        let (transport, tally) = (world.method.transport, Tally::default());
-        Self {
-            world,
-            transport,
-            pending,
-            branches,
-            hider: Cell::new(None),
-            tally,
-            started: 0,
-            met: None,
-            photons: None,
-            reached: None,
-            bounces: None,
-        }
+        let (pending, branches, hider) = (Vec::new(), Vec::new(), Cell::new(None));
+        let (transport, tally, started, gathered) = (world.method.transport, Tally::default(), 0, [0.0; 3]);
+        let (met, photons, reached, bounces) = (None, None, None, None);
+        Self { world, transport, pending, branches, hider, tally, started, met, photons, gathered, reached, bounces }
     }
 
     pub(super) fn with_transport(self, transport: Transport) -> Self {
@@ -207,7 +198,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
         let (mut u, mut drawn) = ([0.0; 4], None);
         let parts = material.lets_through() && material.parts_lanes(&arrival);
         let (wide, diffuse) = (material.scatters_widely(), material.is_diffuse());
-        let aiming = world.bright.as_ref().filter(|_| may_aim(material) && path.vertices <= *VMAX);
+        let aiming = world.bright.as_ref().filter(|_| may_aim(material));
         let aiming = aiming.and_then(|bright| bright.at(point.position, normal));
         if wide {
             let spread = path.vertices <= SPREAD;
@@ -243,6 +234,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
                         photons.gather(world, path, &arrival, (point, normal), (material, parts), sampler);
                     self.tally.polarization += moved;
                     add(sum, light);
+                    add(&mut self.gathered, light);
                 }
                 if let Some(reached) = &mut self.reached {
                     reached.push(point.position);
@@ -302,5 +294,3 @@ impl<'a, const N: usize> Tracer<'a, N> {
         path.leg == Leg::Smooth { aimed: true } && self.world.sends_photons(light)
     }
 }
-
-static VMAX: std::sync::LazyLock<u32> = std::sync::LazyLock::new(|| std::env::var("VMAX").map_or(1000, |t| t.parse().unwrap()));
