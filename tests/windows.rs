@@ -4,6 +4,8 @@
 //! cargo test --test windows
 //! ```
 
+#[path = "windows/bright.rs"]
+mod bright;
 #[path = "windows/panes.rs"]
 mod panes;
 #[path = "windows/photons.rs"]

@@ -8,15 +8,8 @@
 
 use std::f64::consts::PI;
 
-use super::brightness::Bounce;
-use super::path::Path;
-use super::polarization::amount;
-use super::shading;
-use super::tracer::Tracer;
-use crate::material::{Arrival, Branch, Material};
 use crate::math::{Bounds, DVec3, Ray};
 use crate::shape::{Density, Quad, Shape};
-use crate::spectrum::{Draw, Table};
 
 /// Places at most: each takes its time at every bounce.
 pub(super) const MOST: usize = 6;
@@ -135,7 +128,7 @@ impl Aiming<'_> {
     }
 
     /// An aimed direction, the place it was aimed at and its density there.
-    fn draw(&self, [u, v]: [f64; 2]) -> Option<(DVec3, Option<(usize, f64)>)> {
+    pub(super) fn draw(&self, [u, v]: [f64; 2]) -> Option<(DVec3, Option<(usize, f64)>)> {
         let (mut left, mut chosen) = (u, None);
         for (number, &chance) in self.chances.iter().enumerate().filter(|(_, chance)| **chance > 0.0) {
             chosen = Some((number, (left / chance).min(1.0 - f64::EPSILON)));
@@ -159,7 +152,7 @@ impl Aiming<'_> {
     }
 
     /// The same where the density is known with which one of the places is aimed at.
-    fn pdf_knowing(&self, direction: DVec3, own: f64, known: Option<(usize, f64)>) -> f64 {
+    pub(super) fn pdf_knowing(&self, direction: DVec3, own: f64, known: Option<(usize, f64)>) -> f64 {
         let ray = Ray { origin: self.from, direction };
         let mut sum = 0.0;
         for (number, &chance) in self.chances.iter().enumerate().filter(|(_, chance)| **chance > 0.0) {
@@ -176,56 +169,89 @@ impl Aiming<'_> {
     }
 }
 
-/// Whether bounces from a material may be aimed: it scatters nearly alike in all directions of one side.
-pub(super) fn may_aim(material: &Material<Table>) -> bool {
-    matches!(material, Material::Diffuse(_) | Material::Plastic(_))
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::{Frame, cosine_hemisphere, unit};
 
-impl<const N: usize> Tracer<'_, N> {
-    /// Keeps what a bounce found, if somebody wants to know.
-    #[inline]
-    pub(super) fn note(&mut self, path: &Path<N>, draw: &Draw<N>, distance: f64, light: [f64; 3]) {
-        if let (Some(bounces), Some(drawn)) = (&mut self.bounces, &path.drawn) {
-            let distance = distance + (path.ray.origin - drawn.from).length();
-            let (light, weight) = (amount(self.world, light), path.weight(draw));
-            let (from, normal, direction) = (drawn.from, drawn.normal, path.ray.direction);
-            bounces.push(Bounce { from, normal, direction, distance, light, weight });
+    /// Three places: upright, lying, tilted; all of them, but where a point lies in their plane, are aimed at.
+    fn bright() -> Bright {
+        let place = |center: [f64; 3], u: [f64; 3], v: [f64; 3], radiance| BrightPlace {
+            center: center.into(),
+            half: [u.into(), v.into()],
+            radiance,
+        };
+        let places = vec![
+            place([-2.0, 1.5, 0.0], [0.0, 0.0, 1.0], [0.0, 0.7, 0.0], 1.0),
+            place([0.0, 0.0, -1.0], [0.9, 0.0, 0.0], [0.0, 0.0, 0.6], 2.0),
+            place([1.0, 1.0, 1.0], [0.2, 0.1, 0.0], [-0.05, 0.1, 0.3], 5.0),
+        ];
+        let within = Bounds { min: DVec3::splat(-3.0), max: DVec3::splat(3.0) };
+        Bright::new(&BrightPlaces { within, places, elsewhere: 0.05 })
+    }
+
+    const ROWS: usize = 12;
+    const COLUMNS: usize = 24;
+
+    /// Cell of a direction: rows of equal cosine over the hemisphere, and one more for all directions below.
+    fn cell(frame: &Frame, direction: DVec3) -> usize {
+        let local = frame.to_local(direction);
+        if local.z <= 0.0 {
+            return ROWS * COLUMNS;
+        }
+        let column = (libm::atan2(local.y, local.x) / (2.0 * PI) + 0.5) * COLUMNS as f64;
+        ((local.z * ROWS as f64) as usize).min(ROWS - 1) * COLUMNS + (column as usize).min(COLUMNS - 1)
+    }
+
+    /// Directions drawn, from the middle of things and from a point that lies in the plane of a place, follow their density.
+    #[test]
+    fn aimed_directions_follow_their_density() {
+        let bright = bright();
+        for (from, normal) in [
+            (DVec3::new(0.3, 0.9, 0.2), DVec3::NEG_X),
+            (DVec3::new(0.5, 2.5, -0.5), DVec3::NEG_Y),
+            (DVec3::new(0.5, 0.0, 1.0), DVec3::Y),
+            (DVec3::new(2.9, 1.4, -2.0), unit(DVec3::new(-1.0, 0.3, 0.5))),
+        ] {
+            let aiming = bright.at(from, normal).expect("it lies within");
+            let frame = Frame::about(normal);
+            // The density by the middles of a fine grid of all directions.
+            let (rows, columns) = (ROWS * 100, COLUMNS * 100);
+            let mut expected = vec![0.0; ROWS * COLUMNS + 1];
+            for row in 0..2 * rows {
+                let z = (row as f64 + 0.5) / rows as f64 - 1.0;
+                for column in 0..columns {
+                    let angle = ((column as f64 + 0.5) / columns as f64 - 0.5) * 2.0 * PI;
+                    let radius = (1.0 - z * z).sqrt();
+                    let direction = frame.to_world(DVec3::new(radius * angle.cos(), radius * angle.sin(), z));
+                    let density = aiming.pdf(direction, z.max(0.0) / PI);
+                    expected[cell(&frame, direction)] += density * 2.0 * PI / (rows * columns) as f64;
+                }
+            }
+            let sum = expected.iter().sum::<f64>();
+            assert!((sum - 1.0).abs() < 1e-3, "the density sums to {sum}");
+            let (mut counts, total) = (vec![0.0; expected.len()], 1 << 18);
+            for number in 0..total {
+                // Points of two additive sequences and one of their mixture: spread, but without the structure of cells.
+                let u = |step: f64| (0.5 + f64::from(number) * step).fract();
+                let [a, b] = [u(0.754_877_666_246_692_8), u(0.569_840_290_998_053_3)];
+                let direction = match aiming.divided(a) {
+                    Ok(aimed) => aiming.draw([aimed, b]).expect("places are seen").0,
+                    Err(own) => unit(frame.to_world(cosine_hemisphere([own, b]))),
+                };
+                counts[cell(&frame, direction)] += 1.0;
+            }
+            // Sums over cells err by the grid; draws by less than independent ones would.
+            for (i, (count, share)) in counts.iter().zip(&expected).enumerate() {
+                let due = share * f64::from(total);
+                let limit = 4.5 * due.max(1.0).sqrt() + 2e-3 * due + 5.0;
+                assert!((count - due).abs() < limit, "{from} cell {i}: {count} for {due}");
+            }
         }
     }
 
-    /// The ways on from a surface whose bounces are aimed.
-    ///
-    /// Roulette is to end aimed paths as often as others: what their density takes from the weight is no measure of importance.
-    pub(super) fn scatter_aimed(
-        &mut self,
-        aiming: &Aiming,
-        (material, arrival): (&Material<Table>, &Arrival<N>),
-        flat: DVec3,
-        u: [f64; 2],
-    ) {
-        let divided = aiming.divided(u[0]);
-        shading::scatter(material, arrival, flat, [divided.err().unwrap_or(0.5), u[1]], &mut self.branches);
-        if let Ok(aimed) = divided {
-            self.branches.retain(|branch| branch.pdf.is_none());
-            let Some((wi, known)) = aiming.draw([aimed, u[1]]).filter(|(wi, _)| wi.dot(flat) > 0.0) else { return };
-            let Some((bsdf_cos, own)) = shading::evaluate(material, arrival, flat, wi) else { return };
-            let pdf = aiming.pdf_knowing(wi, own, known);
-            if !(own > 0.0 && pdf.is_finite()) {
-                return;
-            }
-            let share = bsdf_cos * (1.0 / pdf) as f32;
-            let eta_scale = own / pdf;
-            self.branches.push(Branch { wi, share, pdf: Some(pdf), crosses: false, eta_scale, polarization: 0.0 });
-            return;
-        }
-        for branch in &mut self.branches {
-            if let Some(own) = branch.pdf.filter(|own| *own > 0.0) {
-                let pdf = aiming.pdf(branch.wi, own);
-                let factor = own / pdf;
-                branch.share = branch.share * factor as f32;
-                branch.eta_scale *= factor;
-                branch.pdf = Some(pdf);
-            }
-        }
+    #[test]
+    fn nothing_is_aimed_from_outside_of_the_room() {
+        assert!(bright().at(DVec3::new(0.0, 3.5, 0.0), DVec3::Y).is_none());
     }
 }

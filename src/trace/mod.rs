@@ -13,6 +13,7 @@
 //!    the camera by gathering photons; paths from the camera then leave exactly those out.
 //! 7. Random numbers are a pure function of seed, pixel, sample, branch and use; sums have a fixed order.
 
+mod aimed;
 mod aims;
 mod branching;
 mod bright;

@@ -2,7 +2,7 @@
 
 use std::cell::Cell;
 
-use super::bright::may_aim;
+use super::aimed::may_aim;
 use super::brightness::Bounce;
 use super::direct::{Gathering, add, weight_of_meeting};
 use super::media::{self, Boundary};
