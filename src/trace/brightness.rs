@@ -24,8 +24,11 @@ pub(super) struct Bounce {
     pub(super) weight: f64,
 }
 
-/// Camera samples along each side of the image.
+/// Camera samples along each side of the image: few that look for a room, and those that look what lights it.
+const FEW: u32 = 24;
 const SIDE: u32 = 48;
+/// Of the way to a place, how far a bounce must go to have found what is there.
+const NEARLY: f64 = 0.9;
 /// Rays that look for the sky from where a bounce began, and how many may see it from inside a room: a quarter.
 const LOOKS: u32 = 4;
 const INSIDE: usize = 1;
@@ -56,20 +59,31 @@ struct Looking<'a> {
 impl InLanes for Looking<'_> {
     type Output = Option<BrightPlaces>;
     fn run<const N: usize>(self) -> Self::Output {
-        let (world, film) = (self.world, self.world.scene.film);
-        let mut tracer = Tracer::<N>::new(world);
-        tracer.bounces = Some(Vec::new());
-        for place in 0..SIDE * SIDE {
-            let spread = |i: u32, size: u32| ((u64::from(2 * i + 1) * u64::from(size)) / u64::from(2 * SIDE)) as u32;
-            let (x, y) = (spread(place % SIDE, film.width), spread(place / SIDE, film.height));
-            sample(world, &mut tracer, &Sampler::new(world.method.seed ^ SEED, [x, y], place), x, y);
-        }
-        learned(world, tracer.bounces.unwrap_or_default())
+        // A few tell whether there is a room at all.
+        inside_of(self.world, bounces::<N>(self.world, FEW))?;
+        learned(inside_of(self.world, bounces::<N>(self.world, SIDE))?)
     }
 }
 
-fn learned(world: &World, bounces: Vec<Bounce>) -> Option<BrightPlaces> {
-    let weight = |bounces: &[Bounce]| bounces.iter().map(|bounce| bounce.weight).sum::<f64>();
+/// What the bounces of so many camera samples along each side of the image found.
+fn bounces<const N: usize>(world: &World, side: u32) -> Vec<Bounce> {
+    let film = world.scene.film;
+    let mut tracer = Tracer::<N>::new(world);
+    tracer.bounces = Some(Vec::new());
+    for place in 0..side * side {
+        let spread = |i: u32, size: u32| ((u64::from(2 * i + 1) * u64::from(size)) / u64::from(2 * side)) as u32;
+        let (x, y) = (spread(place % side, film.width), spread(place / side, film.height));
+        sample(world, &mut tracer, &Sampler::new(world.method.seed ^ SEED, [x, y], place), x, y);
+    }
+    tracer.bounces.unwrap_or_default()
+}
+
+fn weight(bounces: &[Bounce]) -> f64 {
+    bounces.iter().map(|bounce| bounce.weight).sum()
+}
+
+/// The bounces that began inside a room, if they are many.
+fn inside_of(world: &World, bounces: Vec<Bounce>) -> Option<Vec<Bounce>> {
     let all = weight(&bounces);
     let mut inside = Vec::new();
     for (number, bounce) in (0..).zip(bounces) {
@@ -77,16 +91,16 @@ fn learned(world: &World, bounces: Vec<Bounce>) -> Option<BrightPlaces> {
             inside.push(bounce);
         }
     }
-    if weight(&inside) < ENOUGH * all || inside.is_empty() {
-        return None;
-    }
+    (!inside.is_empty() && weight(&inside) >= ENOUGH * all).then_some(inside)
+}
+
+fn learned(mut inside: Vec<Bounce>) -> Option<BrightPlaces> {
     let room = room_of(&inside);
     inside.retain(|bounce| !(bounce.from.cmplt(room.min).any() || bounce.from.cmpgt(room.max).any()));
     let lit = inside.iter().filter(|bounce| bounce.light > 0.0);
-    let mut points: Vec<(DVec3, f64)> = lit.map(|bounce| (end_of(bounce, room), bounce.light)).collect();
+    let points: Vec<(DVec3, f64)> = lit.map(|bounce| (end_of(bounce, room), bounce.light)).collect();
     let step = points.len().div_ceil(POINTS).max(1);
-    points = points.into_iter().step_by(step).collect();
-    let found = clusters(points, MOST);
+    let found = clusters(points.into_iter().step_by(step).collect(), MOST);
     let mut places: Vec<Place> = found.iter().filter_map(Place::of).collect();
     let mut elsewhere = Squares::default();
     for bounce in &inside {
@@ -96,7 +110,7 @@ fn learned(world: &World, bounces: Vec<Bounce>) -> Option<BrightPlaces> {
             let Some(crossing) = place.shape.intersect(&ray, f64::INFINITY) else { continue };
             // What is hidden before the place is as much its own as what lies beyond it.
             place.squares.add(bounce);
-            any |= bounce.distance > 0.9 * crossing.t;
+            any |= bounce.distance > NEARLY * crossing.t;
         }
         if !any {
             elsewhere.add(bounce);
