@@ -54,9 +54,12 @@ fn learned(text: &str) -> Option<BrightPlaces> {
     bright_places(&World::untaught(&scene, method(&scene, SPLITTING)))
 }
 
-/// The places of a list, each a middle, two half edges and a radiance, aimed at from all of the room.
-fn places(list: &[([f64; 3], [f64; 3], [f64; 3], f64)]) -> BrightPlaces {
-    let place = |&(center, u, v, radiance): &([f64; 3], [f64; 3], [f64; 3], f64)| {
+/// A middle, two half edges and a radiance.
+type Listed = ([f64; 3], [f64; 3], [f64; 3], f64);
+
+/// The places of a list, aimed at from all of the room.
+fn places(list: &[Listed]) -> BrightPlaces {
+    let place = |&(center, u, v, radiance): &Listed| {
         let (center, half) = (DVec3::from(center), [DVec3::from(u), DVec3::from(v)]);
         BrightPlace { center, half, radiance }
     };
