@@ -4,5 +4,6 @@
 //! cargo test --test all windows::
 //! ```
 
+mod bright;
 mod panes;
 mod photons;

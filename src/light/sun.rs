@@ -1,4 +1,5 @@
 use std::f64::consts::PI;
+use std::sync::OnceLock;
 
 use serde::Deserialize;
 
@@ -23,6 +24,20 @@ pub struct Sun<S> {
     pub angular_diameter: f64,
     /// Irradiance on a surface that faces the sun: radiance times the disc's projected solid angle.
     pub irradiance: S,
+    /// What every ray asks of it.
+    #[serde(skip)]
+    pub(crate) disc: OnceLock<Disc>,
+}
+
+/// The disc as rays ask for it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Disc {
+    axis: DVec3,
+    one_minus_cos: f64,
+    /// Density of directions within.
+    density: f64,
+    /// The factor on the irradiance that makes the disc's radiance of it.
+    radiance_factor: f64,
 }
 
 fn apparent() -> f64 {
@@ -31,49 +46,49 @@ fn apparent() -> f64 {
 
 impl<S> Sun<S> {
     pub(super) fn map<T>(&self, convert: &mut impl FnMut(Quantity, &S) -> T) -> Sun<T> {
-        let Self { toward, angular_diameter, irradiance } = self;
+        let Self { toward, angular_diameter, irradiance, .. } = self;
         Sun {
             toward: *toward,
             angular_diameter: *angular_diameter,
             irradiance: convert(Quantity::Emission, irradiance),
+            disc: OnceLock::new(),
         }
     }
 
-    fn axis(&self) -> DVec3 {
-        unit(DVec3::from(self.toward).normalize())
-    }
-
-    /// sin^2 of the disc's half angle.
-    fn sin_squared(&self) -> f64 {
-        let sin = libm::sin(0.5 * self.angular_diameter.to_radians());
-        sin * sin
-    }
-
-    fn one_minus_cos(&self) -> f64 {
-        one_minus_cos_of_cone(self.sin_squared())
+    fn disc(&self) -> &Disc {
+        self.disc.get_or_init(|| {
+            let sin = libm::sin(0.5 * self.angular_diameter.to_radians());
+            let one_minus_cos = one_minus_cos_of_cone(sin * sin);
+            Disc {
+                axis: unit(DVec3::from(self.toward).normalize()),
+                one_minus_cos,
+                density: 1.0 / (2.0 * PI * one_minus_cos),
+                radiance_factor: 1.0 / (PI * (sin * sin)),
+            }
+        })
     }
 
     /// Uniform over the disc's solid angle.
     pub(super) fn aim(&self, u: [f64; 2]) -> Sighting {
-        let axis = self.axis();
+        let Disc { axis, one_minus_cos, .. } = *self.disc();
         let direction = match self.angular_diameter {
             0.0 => axis,
-            _ => unit(Frame::about(axis).to_world(cone(self.one_minus_cos(), u).0)),
+            _ => unit(Frame::about(axis).to_world(cone(one_minus_cos, u).0)),
         };
         Sighting { direction, part: None, density: None }
     }
 
     /// The density with which a ray's direction is aimed at; none beside the disc and for parallel light.
     pub fn pdf(&self, ray: &Ray) -> Option<f64> {
-        let one_minus_cos = self.one_minus_cos();
+        let Disc { axis, one_minus_cos, density, .. } = *self.disc();
         // For unit vectors |d - axis|^2 = 2 (1 - cos), without the rounding of 1 - cos.
-        let inside = (ray.direction - self.axis()).length_squared() <= 2.0 * one_minus_cos * (1.0 + 1e-12);
-        (inside && one_minus_cos > 0.0).then(|| 1.0 / (2.0 * PI * one_minus_cos))
+        let inside = (ray.direction - axis).length_squared() <= 2.0 * one_minus_cos * (1.0 + 1e-12);
+        (inside && one_minus_cos > 0.0).then_some(density)
     }
 
     /// The factor on the irradiance that makes the disc's radiance of it.
     pub fn radiance_factor(&self) -> f64 {
-        1.0 / (PI * self.sin_squared())
+        self.disc().radiance_factor
     }
 
     pub(super) fn view(&self, ray: &Ray) -> Option<View> {
@@ -93,7 +108,7 @@ mod tests {
     fn a_sun_is_aimed_at_within_its_disc_and_met_nowhere_else() {
         let toward = [0.3, 0.8, -0.2];
         for angular_diameter in [1e-6, 0.533, 20.0, 120.0, 180.0] {
-            let sun = Sun { toward, angular_diameter, irradiance: () };
+            let sun = Sun { toward, angular_diameter, irradiance: (), disc: OnceLock::new() };
             let half = 0.5 * angular_diameter.to_radians();
             let density = 1.0 / (2.0 * PI * 2.0 * libm::pow(libm::sin(0.5 * half), 2.0));
             let pdf = |direction: DVec3| sun.pdf(&Ray { origin: DVec3::ZERO, direction });
@@ -101,7 +116,7 @@ mod tests {
                 let found = pdf(sun.aim(u).direction).unwrap_or_else(|| panic!("{angular_diameter} degrees, {u:?}"));
                 assert!((found / density - 1.0).abs() < 1e-9, "{angular_diameter} degrees: {found} for {density}");
             }
-            let frame = Frame::about(sun.axis());
+            let frame = Frame::about(sun.disc().axis);
             let beside = |angle: f64| frame.to_world(DVec3::new(libm::sin(angle), 0.0, libm::cos(angle)));
             assert!(pdf(beside(half * 0.999)).is_some() && pdf(beside(half * 1.001)).is_none());
         }

@@ -2,19 +2,22 @@
 
 use super::caustics::{sees_receivers, small_lights, targets};
 use super::in_number;
+use super::worth::rounded;
 use crate::scene::{CausticsText, Scene};
 use crate::spectrum::Curve;
-use crate::trace::{LightPass, MapPasses, Transport, World, gathered_photons, reached_places};
+use crate::trace::{LightPass, MapPasses, Transport, World, gathered_photons, gathered_worth, reached_places};
 
-/// Photons per camera sample: between 0.25 and 1 the error for the time hardly changes, where glass is seen through glass.
+/// Most photons per camera sample: between 0.25 and 1 the error for the time hardly changes, where glass is seen through glass.
 const PHOTONS: f64 = 0.5;
+/// Fewest: of fewer a pilot does not know enough.
+const FEWEST: f64 = 1.0 / 64.0;
 /// Solid angle in steradians of lights that rays meet too rarely from where nothing is shown.
 const SMALL: f64 = 0.1;
 /// Radius in pixels of a map of one sample per pixel.
 const RADIUS: f64 = 2.0;
 /// Photons of a pass: more would take longer to look through than to send.
 const OF_A_PASS: f64 = 32_768.0;
-/// Photons that tell whether any are gathered.
+/// Photons of a map that tells whether any are gathered, and what they are worth.
 const FEW: u64 = 8192;
 
 /// The light pass with a map, if one is needed, and why.
@@ -34,14 +37,17 @@ pub(super) fn with_map(
     let places = reached_places(untaught);
     let film = scene.film;
     let samples = f64::from(film.width) * f64::from(film.height) * f64::from(method.samples);
-    let all = (PHOTONS * samples).ceil();
     let most = f64::from(method.samples);
-    let count = (all / OF_A_PASS).round().clamp(1.0, most);
     // Bias falls with the square of the radius, noise with its inverse: both alike fast with this power of the samples.
     let radius = RADIUS * libm::pow(most, -1.0 / 6.0);
-    let map = MapPasses { count: count as u32, photons: (all / count).ceil() as u64, radius };
+    let passes = |photons: f64| {
+        let all = (photons * samples).ceil();
+        let count = (all / OF_A_PASS).round().clamp(1.0, most);
+        MapPasses { count: count as u32, photons: (all / count).ceil() as u64, radius }
+    };
+    let map = passes(PHOTONS);
     let pass = shown.cloned().unwrap_or_else(|| LightPass {
-        photons: all as u64,
+        photons: (PHOTONS * samples).ceil() as u64,
         lights: small_lights(scene, &places, SMALL),
         map: None,
     });
@@ -51,16 +57,28 @@ pub(super) fn with_map(
     // A few photons tell whether any are gathered, however many the image will take.
     let few = MapPasses { photons: map.photons.min(FEW), ..map };
     let asked = |map| Some(LightPass { map: Some(map), ..pass.clone() });
-    let share = gathered_photons(&untaught.with_light_pass(asked(few)), &places);
-    if share == 0.0 {
+    let with_few = untaught.with_light_pass(asked(few));
+    if gathered_photons(&with_few, &places) == 0.0 {
         return as_shown();
     }
+    let map = passes(photons(&with_few));
     let line = format!(
-        "photon map: {} pass{} of {} photons for caustics in mirrors, through glass and on the way to lit surfaces, gathered within \
-         {radius:.2} pixels, which blurs them by as much; the radius shrinks as samples^(-1/6)",
+        "photon map: {} pass{} of {} photons, for caustics that are seen in mirrors or through glass or light other surfaces; it blurs them by \
+         {radius:.2} pixels, less with more samples",
         map.count,
         if map.count == 1 { "" } else { "es" },
         in_number(map.photons),
     );
     (asked(map), vec![line])
+}
+
+/// How many photons for each camera sample make the time to an error least.
+///
+/// An image of n_p camera samples and n_l photons has the variance A / n_p + B / n_l in the time C_p n_p + C_l n_l; their product is
+/// least for n_l / n_p = sqrt(B C_p / (A C_l)). Rays followed stand for time, so that the plan is the same everywhere.
+fn photons(world: &World) -> f64 {
+    let Some(photons) = gathered_worth(world) else { return PHOTONS };
+    let samples = photons.samples;
+    let best = (photons.variance * samples.rays / (samples.common_variance * photons.rays)).sqrt();
+    if best.is_nan() { PHOTONS } else { rounded(best.clamp(FEWEST, PHOTONS)) }
 }

@@ -1,6 +1,7 @@
 //! Floor 5: looks at a scene, decides how little of the world must be modelled to render it, and says why.
 
 mod beyond;
+mod bright;
 mod caustics;
 mod ladder;
 mod lights;
@@ -49,15 +50,27 @@ pub fn plan(scene: &Scene<Curve>) -> Plan {
     let diffuse_bounces = scene.render.diffuse_bounces.unwrap_or(u32::MAX);
     let max_bounces = scene.render.max_bounces.unwrap_or(u32::MAX);
     let seed = scene.render.seed;
-    let method = Method { basis, transport, together, samples, seed, diffuse_bounces, max_bounces, light_pass: None };
+    let method = Method {
+        basis,
+        transport,
+        together,
+        samples,
+        seed,
+        diffuse_bounces,
+        max_bounces,
+        light_pass: None,
+        bright: None,
+    };
     let world = World::untaught(scene, method.clone());
     let (shown, why_shown) = caustics::light_pass(scene, &world);
     let (light_pass, why_gathered) = beyond::with_map(scene, &world, shown.as_ref());
     // Why nothing is shown matters only where nothing is gathered either.
     decisions.extend(why_shown.into_iter().filter(|_| shown.is_some() || light_pass.is_none()));
     decisions.extend(why_gathered);
-    let method = Method { light_pass, ..method };
-    let world = world.with_light_pass(method.light_pass.clone());
+    let (bright, why_aimed) = bright::aimed(&world);
+    decisions.extend(why_aimed);
+    let world = world.with_light_pass(light_pass.clone()).with_bright(bright.clone());
+    let method = Method { light_pass, bright, ..method };
     let probe = probe(&world);
     let mut because = vec![cost(scene, &method, &probe)];
     because.extend(missed);

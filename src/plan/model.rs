@@ -136,6 +136,7 @@ fn dispersion(scene: &Scene<Curve>) -> Option<Spread> {
         diffuse_bounces,
         max_bounces: u32::MAX,
         light_pass: None,
+        bright: None,
     };
     Some(spread(&World::unlit(scene, method)))
 }

@@ -52,6 +52,7 @@ impl<'a> Seen<'a> {
             diffuse_bounces: scene.render.diffuse_bounces.unwrap_or(u32::MAX),
             max_bounces: u32::MAX,
             light_pass: None,
+            bright: None,
         };
         let mut keeping = Keeping::new(scene, survey);
         for of_pixel in routes(&World::unlit(scene, method)) {

@@ -79,6 +79,7 @@ fn too_many_ways(scene: &Scene<Curve>, basis: &Basis, together: f64) -> Option<S
         diffuse_bounces: scene.render.diffuse_bounces.unwrap_or(u32::MAX),
         max_bounces: scene.render.max_bounces.unwrap_or(u32::MAX),
         light_pass: None,
+        bright: None,
     };
     match branching(&World::unlit(scene, method), AFFORDABLE) {
         Branching::Affordable(_) => None,

@@ -64,7 +64,7 @@ pub(super) fn weigh(scene: &Scene<Curve>, world: &World) -> Worth {
 }
 
 /// The nearest power of the square root of 2: the least of time x variance is flat, and rounding must not change an image.
-fn rounded(photons: f64) -> f64 {
+pub(super) fn rounded(photons: f64) -> f64 {
     libm::exp2(0.5 * (2.0 * libm::log2(photons)).round())
 }
 

@@ -2,6 +2,7 @@
 
 use std::cell::Cell;
 
+use super::bright::Aiming;
 use super::path::Drawn;
 use super::polarization::{Lit, Polarized};
 use super::straight;
@@ -36,6 +37,8 @@ pub(super) struct Gathering<'a, const N: usize> {
     pub(super) lit: Option<&'a Lit>,
     /// Four random numbers of the vertex; the first light uses the first two, the choice of one light the last.
     pub(super) u: [f64; 4],
+    /// How bounces are aimed from here, if they are.
+    pub(super) aiming: Option<&'a Aiming<'a>>,
 }
 
 /// Random numbers for the second light and those after it.
@@ -132,6 +135,13 @@ impl<const N: usize> Gathering<'_, N> {
                 return None;
             } else {
                 None
+            };
+            let factor = match (self.aiming, view.pdf) {
+                (Some(aiming), Some(pdf)) if self.goes_on => {
+                    let pdf = pdf * probability;
+                    view.factor * power_heuristic(pdf, aiming.pdf(sighting.direction, bsdf_pdf)) / pdf
+                }
+                _ => factor,
             };
             let mut arriving = light.toward(self.arrival.draw, sighting.direction, view.uv);
             if let Some((share, _)) = transmitted {

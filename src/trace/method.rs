@@ -1,3 +1,4 @@
+use super::BrightPlaces;
 use crate::light::LightId;
 use crate::spectrum::Basis;
 
@@ -20,6 +21,8 @@ pub struct Method {
     pub max_bounces: u32,
     /// Caustics by photons; none leaves them to the camera's rays and chance.
     pub light_pass: Option<LightPass>,
+    /// What bounces inside a room are aimed at; none leaves their directions to the materials.
+    pub bright: Option<BrightPlaces>,
 }
 
 /// Photons that are sent to all finite smooth objects, for the light that these throw onto what the camera sees.

@@ -13,13 +13,18 @@
 //!    the camera by gathering photons; paths from the camera then leave exactly those out.
 //! 7. Random numbers are a pure function of seed, pixel, sample, branch and use; sums have a fixed order.
 
+mod aimed;
 mod aims;
 mod branching;
+mod bright;
+mod brightness;
 mod choice;
+mod clusters;
 mod direct;
 mod emission;
 mod follow;
 mod gather;
+mod gathered;
 mod guide;
 mod lamps;
 mod light_pass;
@@ -54,6 +59,9 @@ mod world;
 
 pub use aims::{is_photon_source, is_photon_target};
 pub use branching::{Branching, branching};
+pub use bright::{BrightPlace, BrightPlaces};
+pub use brightness::bright_places;
+pub use gathered::{GatheredWorth, gathered_worth};
 pub use light_pass::seen_photons;
 pub use method::{LightPass, MapPasses, Method, Transport};
 pub use pilot::{PhotonWorth, SampleWorth, photons_worth, samples_worth};

@@ -2,6 +2,8 @@
 
 use std::cell::Cell;
 
+use super::aimed::may_aim;
+use super::brightness::Bounce;
 use super::direct::{Gathering, add, weight_of_meeting};
 use super::media::{self, Boundary};
 use super::merge::Photons;
@@ -33,8 +35,12 @@ pub(super) struct Tracer<'a, const N: usize> {
     pub(super) met: Option<Vec<(LightId, DVec3)>>,
     /// Photons that are gathered, if any are.
     pub(super) photons: Option<&'a Photons<N>>,
+    /// What gathered photons brought to the sensor.
+    pub(super) gathered: [f64; 3],
     /// Places that scatter widely and are not seen straight, if somebody wants to know.
     pub(super) reached: Option<Vec<DVec3>>,
+    /// What bounces found, if somebody wants to know.
+    pub(super) bounces: Option<Vec<Bounce>>,
 }
 
 /// How much sooner roulette ends paths that leave a diffuse surface than those that leave a smooth one: what they still
@@ -49,20 +55,10 @@ const SPREAD: u32 = 4;
 
 impl<'a, const N: usize> Tracer<'a, N> {
     pub(super) fn new(world: &'a World) -> Self {
-        let (pending, branches) = (Vec::new(), Vec::new());
-        let (transport, tally) = (world.method.transport, Tally::default());
-        Self {
-            world,
-            transport,
-            pending,
-            branches,
-            hider: Cell::new(None),
-            tally,
-            started: 0,
-            met: None,
-            photons: None,
-            reached: None,
-        }
+        let (pending, branches, hider) = (Vec::new(), Vec::new(), Cell::new(None));
+        let (transport, tally, started, gathered) = (world.method.transport, Tally::default(), 0, [0.0; 3]);
+        let (met, photons, reached, bounces) = (None, None, None, None);
+        Self { world, transport, pending, branches, hider, tally, started, met, photons, gathered, reached, bounces }
     }
 
     pub(super) fn with_transport(self, transport: Transport) -> Self {
@@ -86,6 +82,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
             let Some(hit) = self.world.scene.intersect(&path.ray) else {
                 path.advance(self.world, draw, f64::INFINITY);
                 let light = self.background(&path, draw);
+                self.note(&path, draw, f64::INFINITY, light);
                 self.receive(&path, light, &mut sum);
                 next = None;
                 continue;
@@ -112,7 +109,11 @@ impl<'a, const N: usize> Tracer<'a, N> {
                 next = onward.map(|onward| path.passed_in_part(&point, &onward));
                 continue;
             }
+            let before = sum;
             next = self.scatter(&path, draw, sampler, (&hit, &point, onward), &mut sum);
+            if onward.is_none() {
+                self.note(&path, draw, hit.crossing.t, std::array::from_fn(|i| light[i] + sum[i] - before[i]));
+            }
         }
         if let Transport::Deterministic { most, .. } = self.transport {
             self.tally.by_chance += u64::from(self.surfaces() > most);
@@ -197,6 +198,8 @@ impl<'a, const N: usize> Tracer<'a, N> {
         let (mut u, mut drawn) = ([0.0; 4], None);
         let parts = material.lets_through() && material.parts_lanes(&arrival);
         let (wide, diffuse) = (material.scatters_widely(), material.is_diffuse());
+        let aiming = world.bright.as_ref().filter(|_| may_aim(material));
+        let aiming = aiming.and_then(|bright| bright.at(point.position, normal));
         if wide {
             let spread = path.vertices <= SPREAD;
             u = if spread { sampler.four(path.key, SCATTER) } else { sampler.four_plain(path.key, SCATTER) };
@@ -220,6 +223,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
                 hider: &self.hider,
                 lit: counted,
                 u,
+                aiming: aiming.as_ref(),
             };
             let far = material.scatters_through().then_some((beyond, parts));
             let chance = gathering.gather(far, sampler, path.key, sum);
@@ -230,6 +234,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
                         photons.gather(world, path, &arrival, (point, normal), (material, parts), sampler);
                     self.tally.polarization += moved;
                     add(sum, light);
+                    add(&mut self.gathered, light);
                 }
                 if let Some(reached) = &mut self.reached {
                     reached.push(point.position);
@@ -244,7 +249,10 @@ impl<'a, const N: usize> Tracer<'a, N> {
 
         // Send the path on.
         self.branches.clear();
-        shading::scatter(material, &arrival, normal, [u[2], u[3]], &mut self.branches);
+        match &aiming {
+            Some(aiming) => self.scatter_aimed(aiming, (material, &arrival), normal, [u[2], u[3]]),
+            None => shading::scatter(material, &arrival, normal, [u[2], u[3]], &mut self.branches),
+        }
         if diffuse && path.diffuse_left == 0 {
             self.branches.retain(|branch| branch.pdf.is_none());
         }

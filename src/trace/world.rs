@@ -1,4 +1,5 @@
 use super::aims::{Aims, is_photon_source};
+use super::bright::{Bright, BrightPlaces};
 use super::choice::Choice;
 use super::lamps::met_lamps;
 use super::media::Media;
@@ -27,6 +28,8 @@ pub struct World {
     pub(super) has_media: bool,
     /// Whether each object lets light straight on; empty where none does.
     see_through: Vec<bool>,
+    /// What bounces are aimed at.
+    pub(super) bright: Option<Bright>,
     /// Where photons are sent, if the method has a light pass.
     pub(super) aims: Option<Aims>,
     /// The same of each pass of its map.
@@ -67,6 +70,7 @@ impl World {
         let see_through = if see_through.contains(&true) { see_through } else { Vec::new() };
         let choice = Choice::new(&scene.lights);
         let targets = choice.targets();
+        let bright = method.bright.as_ref().map(Bright::new);
         let mut world = Self {
             xyz_of_channel,
             responses,
@@ -77,6 +81,7 @@ impl World {
             camera_media: Media::default(),
             has_media,
             see_through,
+            bright,
             aims: None,
             map_aims: None,
             light_media: Vec::new(),
@@ -94,6 +99,14 @@ impl World {
         let mut world = self.clone();
         world.method.light_pass = light_pass;
         world.aim_photons();
+        world
+    }
+
+    /// The same world with other bright places that bounces are aimed at.
+    pub fn with_bright(&self, bright: Option<BrightPlaces>) -> Self {
+        let mut world = self.clone();
+        world.bright = bright.as_ref().map(Bright::new);
+        world.method.bright = bright;
         world
     }
 

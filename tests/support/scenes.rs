@@ -50,6 +50,7 @@ pub fn method(scene: &Scene<Curve>, transport: Transport) -> Method {
         diffuse_bounces: scene.render.diffuse_bounces.unwrap_or(u32::MAX),
         max_bounces: scene.render.max_bounces.unwrap_or(u32::MAX),
         light_pass: None,
+        bright: None,
     }
 }
 

@@ -1,0 +1,257 @@
+//! Bounces inside rooms aim at what lights them: sunlit patches, and openings through which the sky is seen.
+//!
+//! A direction is drawn by the material or, as often as bright places are expected to bring light, evenly from the solid angle of
+//! one of them. Its density is that of both ways together, a one-sample balance heuristic (Veach & Guibas 1995, *Optimally
+//! Combining Sampling Techniques for Monte Carlo Rendering*): what the places miss, and where they are in vain, changes the
+//! noise alone. Jensen 1995, *Importance Driven Path Tracing Using the Photon Map*, guides bounces so by histograms of
+//! directions; places in space also hold where the path goes next.
+
+use std::f64::consts::PI;
+
+use crate::math::{Bounds, DVec3, Ray};
+use crate::shape::{Density, Quad, Shape};
+
+/// Places at most: each takes its time at every bounce.
+pub(super) const MOST: usize = 6;
+/// The largest share of the directions that is aimed: the noise of all other light is at most doubled.
+const LARGEST: f64 = 0.5;
+/// How much more light from elsewhere counts than that of the places, which others may see as well: in rooms with a window, 2 to
+/// 6 make hardly a difference.
+const ELSEWHERE: f64 = 3.0;
+/// Distance from a place's plane, in its half diagonals, below which it is not aimed at: its outline has no certain extent.
+const FLAT: f64 = 1e-3;
+
+/// A rectangle from which or through which much light comes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BrightPlace {
+    /// Its middle.
+    pub center: DVec3,
+    /// Half edges at right angles.
+    pub half: [DVec3; 2],
+    /// Root of the mean square of the radiance that bounces found there.
+    pub radiance: f64,
+}
+
+/// What lights a room, as bounces found it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BrightPlaces {
+    /// Where they are aimed at from.
+    pub within: Bounds,
+    /// The places, at most six.
+    pub places: Vec<BrightPlace>,
+    /// Root of the mean square of the radiance from elsewhere.
+    pub elsewhere: f64,
+}
+
+/// A place, ready to be aimed at.
+#[derive(Clone, Debug)]
+struct Target {
+    shape: Shape,
+    center: DVec3,
+    normal: DVec3,
+    area: f64,
+    /// Height above its plane below which it is not aimed at.
+    flat: f64,
+    radiance: f64,
+}
+
+/// Bright places as the tracer reads them.
+#[derive(Clone, Debug)]
+pub(super) struct Bright {
+    within: Bounds,
+    targets: Vec<Target>,
+    elsewhere: f64,
+}
+
+/// How bounces are drawn at one point.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Aiming<'a> {
+    bright: &'a Bright,
+    from: DVec3,
+    /// How likely each place is, of all aimed directions.
+    chances: [f64; MOST],
+    /// How likely a direction is aimed.
+    share: f64,
+}
+
+impl Bright {
+    pub(super) fn new(found: &BrightPlaces) -> Self {
+        let target = |place: &BrightPlace| {
+            let BrightPlace { center, half: [u, v], radiance } = *place;
+            Target {
+                shape: Shape::Quad(Quad::new(center, u, v)),
+                center,
+                normal: u.cross(v).normalize(),
+                area: 4.0 * u.cross(v).length(),
+                flat: FLAT * (u.length_squared() + v.length_squared()).sqrt(),
+                radiance,
+            }
+        };
+        let targets = found.places.iter().take(MOST).map(target).collect();
+        Self { within: found.within, targets, elsewhere: ELSEWHERE * found.elsewhere }
+    }
+
+    /// How bounces are drawn at a point of a surface of the given unit normal; none where they are not aimed.
+    pub(super) fn at(&self, from: DVec3, normal: DVec3) -> Option<Aiming<'_>> {
+        let Bounds { min, max } = self.within;
+        if from.cmplt(min).any() || from.cmpgt(max).any() {
+            return None;
+        }
+        // About what each brings: radiance x solid angle x cosine, bounded nearby.
+        let (mut chances, mut all) = ([0.0; MOST], 0.0);
+        for (chance, target) in chances.iter_mut().zip(&self.targets) {
+            let way = target.center - from;
+            let height = way.dot(target.normal).abs();
+            if height < target.flat {
+                continue;
+            }
+            let squared = way.length_squared();
+            let length = squared.sqrt();
+            let here = 0.1 + (way.dot(normal) / length).max(0.0);
+            let there = 0.05 + height / length;
+            *chance = target.radiance * target.area * here * there / (squared + 0.3 * target.area);
+            all += *chance;
+        }
+        if all == 0.0 {
+            return None;
+        }
+        chances.iter_mut().for_each(|chance| *chance /= all);
+        let share = (all / (all + PI * self.elsewhere)).min(LARGEST);
+        Some(Aiming { bright: self, from, chances, share })
+    }
+}
+
+impl Aiming<'_> {
+    /// Divides a random number: that of an aimed direction, or that of the material's.
+    pub(super) fn divided(&self, u: f64) -> Result<f64, f64> {
+        if u < self.share { Ok(u / self.share) } else { Err((u - self.share) / (1.0 - self.share)) }
+    }
+
+    /// An aimed direction, the place it was aimed at and its density there.
+    pub(super) fn draw(&self, [u, v]: [f64; 2]) -> Option<(DVec3, Option<(usize, f64)>)> {
+        let (mut left, mut chosen) = (u, None);
+        for (number, &chance) in self.chances.iter().enumerate().filter(|(_, chance)| **chance > 0.0) {
+            chosen = Some((number, (left / chance).min(1.0 - f64::EPSILON)));
+            if left < chance {
+                break;
+            }
+            left -= chance;
+        }
+        let (number, u) = chosen?;
+        let sighting = self.bright.targets[number].shape.aim(self.from, [u, v])?;
+        let known = match sighting.density {
+            Some(Density::Angle(density)) => Some((number, density)),
+            _ => None,
+        };
+        Some((sighting.direction, known))
+    }
+
+    /// The density of a direction that the material draws with another.
+    pub(super) fn pdf(&self, direction: DVec3, own: f64) -> f64 {
+        self.pdf_knowing(direction, own, None)
+    }
+
+    /// The same where the density is known with which one of the places is aimed at.
+    pub(super) fn pdf_knowing(&self, direction: DVec3, own: f64, known: Option<(usize, f64)>) -> f64 {
+        let ray = Ray { origin: self.from, direction };
+        let mut sum = 0.0;
+        for (number, &chance) in self.chances.iter().enumerate().filter(|(_, chance)| **chance > 0.0) {
+            sum += match known {
+                Some((place, density)) if place == number => chance * density,
+                _ => {
+                    let shape = &self.bright.targets[number].shape;
+                    let crossing = shape.intersect(&ray, f64::INFINITY);
+                    crossing.map_or(0.0, |crossing| chance * shape.pdf_toward(&ray, &crossing))
+                }
+            };
+        }
+        self.share * sum + (1.0 - self.share) * own
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::{Frame, cosine_hemisphere, unit};
+
+    /// Three places: upright, lying, tilted; all of them, but where a point lies in their plane, are aimed at.
+    fn bright() -> Bright {
+        let place = |center: [f64; 3], u: [f64; 3], v: [f64; 3], radiance| BrightPlace {
+            center: center.into(),
+            half: [u.into(), v.into()],
+            radiance,
+        };
+        let places = vec![
+            place([-2.0, 1.5, 0.0], [0.0, 0.0, 1.0], [0.0, 0.7, 0.0], 1.0),
+            place([0.0, 0.0, -1.0], [0.9, 0.0, 0.0], [0.0, 0.0, 0.6], 2.0),
+            place([1.0, 1.0, 1.0], [0.2, 0.1, 0.0], [-0.05, 0.1, 0.3], 5.0),
+        ];
+        let within = Bounds { min: DVec3::splat(-3.0), max: DVec3::splat(3.0) };
+        Bright::new(&BrightPlaces { within, places, elsewhere: 0.05 })
+    }
+
+    const ROWS: usize = 12;
+    const COLUMNS: usize = 24;
+
+    /// Cell of a direction: rows of equal cosine over the hemisphere, and one more for all directions below.
+    fn cell(frame: &Frame, direction: DVec3) -> usize {
+        let local = frame.to_local(direction);
+        if local.z <= 0.0 {
+            return ROWS * COLUMNS;
+        }
+        let column = (libm::atan2(local.y, local.x) / (2.0 * PI) + 0.5) * COLUMNS as f64;
+        ((local.z * ROWS as f64) as usize).min(ROWS - 1) * COLUMNS + (column as usize).min(COLUMNS - 1)
+    }
+
+    /// Directions drawn, from the middle of things and from a point that lies in the plane of a place, follow their density.
+    #[test]
+    fn aimed_directions_follow_their_density() {
+        let bright = bright();
+        for (from, normal) in [
+            (DVec3::new(0.3, 0.9, 0.2), DVec3::NEG_X),
+            (DVec3::new(0.5, 2.5, -0.5), DVec3::NEG_Y),
+            (DVec3::new(0.5, 0.0, 1.0), DVec3::Y),
+            (DVec3::new(2.9, 1.4, -2.0), unit(DVec3::new(-1.0, 0.3, 0.5))),
+        ] {
+            let aiming = bright.at(from, normal).expect("it lies within");
+            let frame = Frame::about(normal);
+            // The density by the middles of a fine grid of all directions.
+            let (rows, columns) = (ROWS * 100, COLUMNS * 100);
+            let mut expected = vec![0.0; ROWS * COLUMNS + 1];
+            for row in 0..2 * rows {
+                let z = (row as f64 + 0.5) / rows as f64 - 1.0;
+                for column in 0..columns {
+                    let angle = ((column as f64 + 0.5) / columns as f64 - 0.5) * 2.0 * PI;
+                    let radius = (1.0 - z * z).sqrt();
+                    let direction = frame.to_world(DVec3::new(radius * angle.cos(), radius * angle.sin(), z));
+                    let density = aiming.pdf(direction, z.max(0.0) / PI);
+                    expected[cell(&frame, direction)] += density * 2.0 * PI / (rows * columns) as f64;
+                }
+            }
+            let sum = expected.iter().sum::<f64>();
+            assert!((sum - 1.0).abs() < 1e-3, "the density sums to {sum}");
+            let (mut counts, total) = (vec![0.0; expected.len()], 1 << 18);
+            for number in 0..total {
+                // Points of two additive sequences and one of their mixture: spread, but without the structure of cells.
+                let u = |step: f64| (0.5 + f64::from(number) * step).fract();
+                let [a, b] = [u(0.754_877_666_246_692_8), u(0.569_840_290_998_053_3)];
+                let direction = match aiming.divided(a) {
+                    Ok(aimed) => aiming.draw([aimed, b]).expect("places are seen").0,
+                    Err(own) => unit(frame.to_world(cosine_hemisphere([own, b]))),
+                };
+                counts[cell(&frame, direction)] += 1.0;
+            }
+            // Sums over cells err by the grid; draws by less than independent ones would.
+            for (i, (count, share)) in counts.iter().zip(&expected).enumerate() {
+                let due = share * f64::from(total);
+                let limit = 4.5 * due.max(1.0).sqrt() + 2e-3 * due + 5.0;
+                assert!((count - due).abs() < limit, "{from} cell {i}: {count} for {due}");
+            }
+        }
+    }
+
+    #[test]
+    fn nothing_is_aimed_from_outside_of_the_room() {
+        assert!(bright().at(DVec3::new(0.0, 3.5, 0.0), DVec3::Y).is_none());
+    }
+}

@@ -1,0 +1,109 @@
+//! What the photons of a map are worth, learned from a few.
+
+use super::World;
+use super::merge::photons;
+use super::pilot::SampleWorth;
+use super::render::sample;
+use super::tracer::Tracer;
+use super::width::{InLanes, in_lanes};
+use crate::math::Sampler;
+use crate::spectrum::apply;
+
+/// What a map's photons add to the noise, and the camera samples that gather them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GatheredWorth {
+    /// Variance of an image by n photons, summed over pixels and channels of XYZ, times n.
+    pub variance: f64,
+    /// Rays that a photon follows.
+    pub rays: f64,
+    /// What else camera samples bring.
+    pub samples: SampleWorth,
+}
+
+/// Maps that are compared.
+const MAPS: u64 = 2;
+/// Pixels along each side of the image that gather from them, and how many samples of each.
+const SIDE: u32 = 20;
+const SAMPLES: u32 = 4;
+/// Sets these random numbers apart from those of the image.
+const SEED: u64 = 0x6761_7468;
+
+/// Gathers photons of two maps by the same paths: what differs is noise of the photons. It is overestimated where a pixel of
+/// many samples gathers at more places than these few, so that too many photons are sent rather than too few.
+///
+/// All of the image counts, also where only a part of it is made, so that all parts are made alike.
+pub fn gathered_worth(world: &World) -> Option<GatheredWorth> {
+    in_lanes(&world.method.basis, Gathering { world })
+}
+
+struct Gathering<'a> {
+    world: &'a World,
+}
+
+/// Sums of some values and of their squares.
+#[derive(Clone, Copy, Default)]
+struct Sums([[f64; 2]; 3]);
+
+impl Sums {
+    fn add(&mut self, values: [f64; 3]) {
+        if values.iter().all(|x| x.is_finite()) {
+            self.0.iter_mut().zip(values).for_each(|(sum, x)| *sum = [sum[0] + x, sum[1] + x * x]);
+        }
+    }
+
+    /// Variances of so many values, summed over channels.
+    fn variance(&self, count: f64) -> f64 {
+        self.0.iter().map(|[sum, squares]| ((squares - sum * sum / count) / (count - 1.0)).max(0.0)).sum()
+    }
+}
+
+impl InLanes for Gathering<'_> {
+    type Output = Option<GatheredWorth>;
+    fn run<const N: usize>(self) -> Self::Output {
+        let (world, film) = (self.world, self.world.scene.film);
+        let to_xyz = film.color_space.to_xyz();
+        let places = SIDE * SIDE;
+        let mut by_photons = vec![Sums::default(); places as usize];
+        let mut by_samples = by_photons.clone();
+        let (mut sent, mut rays, mut of_samples) = (0, 0, 0);
+        for map in 0..MAPS {
+            let photons = photons::<N>(world, map as u32)?;
+            (sent, rays) = (sent + photons.sent, rays + photons.rays);
+            let mut tracer = Tracer::<N>::new(world);
+            tracer.photons = Some(&photons);
+            for place in 0..places {
+                let spread =
+                    |i: u32, size: u32| ((u64::from(2 * i + 1) * u64::from(size)) / u64::from(2 * SIDE)) as u32;
+                let (x, y) = (spread(place % SIDE, film.width), spread(place / SIDE, film.height));
+                let before = tracer.gathered;
+                for number in 0..SAMPLES {
+                    let so_far = tracer.gathered;
+                    let sampler = Sampler::new((world.method.seed ^ SEED).wrapping_add(u64::from(number)), [x, y], 0);
+                    let found = sample(world, &mut tracer, &sampler, x, y).rgb;
+                    let gathered = tracer.gathered;
+                    let others = std::array::from_fn(|i| found[i] - (gathered[i] - so_far[i]));
+                    if map == 0 {
+                        by_samples[place as usize].add(apply(&to_xyz, others));
+                    }
+                }
+                let gathered = tracer.gathered;
+                let mean = std::array::from_fn(|i| (gathered[i] - before[i]) / f64::from(SAMPLES));
+                by_photons[place as usize].add(apply(&to_xyz, mean));
+            }
+            of_samples += tracer.tally.rays;
+        }
+        let pixels = f64::from(film.width) * f64::from(film.height);
+        let mean = |variances: &[f64]| variances.iter().sum::<f64>() / f64::from(places);
+        let of_maps: Vec<f64> = by_photons.iter().map(|sums| sums.variance(MAPS as f64)).collect();
+        let mut variances: Vec<f64> = by_samples.iter().map(|sums| sums.variance(f64::from(SAMPLES))).collect();
+        variances.sort_by(f64::total_cmp);
+        let variance = mean(&variances) * pixels * pixels;
+        let common_variance = mean(&variances[..variances.len() - variances.len().div_ceil(100)]) * pixels * pixels;
+        let taken = MAPS as f64 * f64::from(places * SAMPLES);
+        Some(GatheredWorth {
+            variance: mean(&of_maps) * pixels * sent as f64 / MAPS as f64,
+            rays: rays as f64 / sent as f64,
+            samples: SampleWorth { variance, common_variance, rays: of_samples as f64 / taken },
+        })
+    }
+}

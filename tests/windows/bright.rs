@@ -1,0 +1,205 @@
+//! Bounces that aim at what lights a room, against closed forms and against bounces that do not.
+
+use std::f64::consts::PI;
+
+use abbe::film::Film;
+use abbe::math::{Bounds, DVec3};
+use abbe::plan::plan;
+use abbe::trace::{BrightPlace, BrightPlaces, Method, World, bright_places, render};
+
+use crate::support::scenes::{Mean, SPLITTING, body, environment, method, moments, scene, view};
+
+/// A closed box, 4 x 3 x 5, with holes in the wall at x = -2: each from z to z, all from y = 1 to 2.2.
+fn walls(holes: &[[f64; 2]]) -> Vec<String> {
+    let quad =
+        |center: [f64; 3], u: [f64; 3], v: [f64; 3]| format!("quad = {{ center = {center:?}, u = {u:?}, v = {v:?} }}");
+    let mut quads = vec![
+        quad([0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 0.0, -2.5]),
+        quad([0.0, 3.0, 0.0], [2.0, 0.0, 0.0], [0.0, 0.0, 2.5]),
+        quad([2.0, 1.5, 0.0], [0.0, 0.0, 2.5], [0.0, 1.5, 0.0]),
+        quad([0.0, 1.5, -2.5], [2.0, 0.0, 0.0], [0.0, 1.5, 0.0]),
+        quad([0.0, 1.5, 2.5], [2.0, 0.0, 0.0], [0.0, 1.5, 0.0]),
+        quad([-2.0, 0.5, 0.0], [0.0, 0.0, 2.5], [0.0, 0.5, 0.0]),
+        quad([-2.0, 2.6, 0.0], [0.0, 0.0, 2.5], [0.0, 0.4, 0.0]),
+    ];
+    let mut from = -2.5;
+    for &[low, high] in holes.iter().chain(&[[2.5, 2.5]]) {
+        quads.push(quad([-2.0, 1.6, 0.5 * (from + low)], [0.0, 0.0, 0.5 * (low - from)], [0.0, 0.6, 0.0]));
+        from = high;
+    }
+    quads
+}
+
+/// A room seen from inside.
+fn room(holes: &[[f64; 2]], wall: &str, samples: u32, more: &str) -> String {
+    let walls = walls(holes);
+    view([1.6, 1.5, 2.0], [-1.0, 0.8, -0.8], 60.0, 16)
+        + &format!("[render]\nsamples = {samples}\n")
+        + &body("wall", wall, &walls.iter().map(String::as_str).collect::<Vec<_>>())
+        + more
+}
+
+const WHITE: &str = "diffuse = { reflectance = 0.7 }";
+const SUN: &str = "[[light]]\nsun = { toward = [-1, 0.7, 0.2], irradiance = 12 }\n";
+
+/// Images of a scene by bounces that aim at places, or at nothing.
+fn films(text: &str, bright: Option<&BrightPlaces>, seeds: u64) -> Vec<Film> {
+    let scene = scene(text);
+    let asked = Method { bright: bright.cloned(), ..method(&scene, SPLITTING) };
+    (0..seeds).map(|seed| render(&World::new(&scene, Method { seed, ..asked.clone() }), &|_| ()).0).collect()
+}
+
+fn learned(text: &str) -> Option<BrightPlaces> {
+    let scene = scene(text);
+    bright_places(&World::untaught(&scene, method(&scene, SPLITTING)))
+}
+
+/// A middle, two half edges and a radiance.
+type Listed = ([f64; 3], [f64; 3], [f64; 3], f64);
+
+/// The places of a list, aimed at from all of the room.
+fn places(list: &[Listed]) -> BrightPlaces {
+    let place = |&(center, u, v, radiance): &Listed| {
+        let (center, half) = (DVec3::from(center), [DVec3::from(u), DVec3::from(v)]);
+        BrightPlace { center, half, radiance }
+    };
+    let within = Bounds { min: DVec3::new(-2.1, -0.1, -2.6), max: DVec3::new(2.1, 3.1, 2.6) };
+    BrightPlaces { within, places: list.iter().map(place).collect(), elsewhere: 0.05 }
+}
+
+/// Sum of the variances of all pixels.
+fn variance(films: &[Film]) -> f64 {
+    let of_pixel = |i: usize| moments(films.iter().map(move |film| f64::from(film.pixels[i].rgb[1]))).1;
+    (0..films[0].pixels.len()).map(of_pixel).sum()
+}
+
+fn assert_same(one: &[Film], other: &[Film], claims: usize, what: &str) {
+    let (mut one, other) = (Mean::over_seeds(one.iter()), Mean::over_seeds(other.iter()));
+    println!("{what}: {one:.5?} for {other:.5?}");
+    one.error = std::array::from_fn(|band| libm::hypot(one.error[band], other.error[band]));
+    one.assert_near(other.value, claims, what);
+}
+
+/// A point of a floor that a rectangle lights which stands at right angles to it, by the irradiance over the radiance times
+/// pi: Howell, *A Catalog of Radiation Heat Transfer Configuration Factors*, B-4: a corner of the rectangle, `width` x
+/// `height`, at the foot of the perpendicular from the point, at a distance.
+fn upright(distance: f64, width: f64, height: f64) -> f64 {
+    let (x, y) = (height / width, distance / width);
+    let root = (x * x + y * y).sqrt();
+    ((1.0 / y).atan() - y / root * (1.0 / root).atan()) / (2.0 * PI)
+}
+
+/// The sky above and below the horizon, through one hole, at a point of a black room's floor; and with places that are right,
+/// beside what is bright, tilted, in the floor's own plane, or all of these.
+#[test]
+fn an_even_sky_through_an_opening_gives_its_form_factor_wherever_bounces_aim() {
+    let text = view([0.5, 2.0, 0.0], [0.500_01, 0.0, 0.0], 0.05, 8)
+        + "[render]\nsamples = 256\n"
+        + &body(
+            "wall",
+            "diffuse = { reflectance = 0.001 }",
+            &walls(&[[-1.0, 1.0]]).iter().skip(1).map(String::as_str).collect::<Vec<_>>(),
+        )
+        + &body("floor", "diffuse = { reflectance = 0.5 }", &[walls(&[])[0].as_str()])
+        + &environment(2.0);
+    let of = |height: f64| 2.0 * upright(2.5, 1.0, height);
+    // What the black walls send on is less than a thousandth of it.
+    let expected = 0.5 * 2.0 * (of(2.2) - of(1.0));
+    let right = ([-2.0, 1.6, 0.0], [0.0, 0.0, 1.0], [0.0, 0.6, 0.0], 2.0);
+    let beside = ([-2.0, 1.6, 1.4], [0.0, 0.0, 0.7], [0.0, 0.5, 0.0], 2.0);
+    let tilted = ([-1.5, 1.5, 0.3], [0.3, 0.1, 0.8], [-0.2, 0.5, 0.1], 2.0);
+    let floor = ([0.4, 0.0, 0.1], [0.5, 0.0, 0.0], [0.0, 0.0, 0.5], 2.0);
+    let cases = [vec![right], vec![beside], vec![tilted], vec![floor], vec![right, beside, tilted, floor], Vec::new()];
+    for case in &cases {
+        let found = Mean::over_seeds(films(&text, Some(&places(case)), 8).iter());
+        println!("{found:.6?} for {expected:.6}");
+        // Of the light that came in, the walls send on at most a thousandth of the room's mean.
+        let mut wider = found;
+        wider.error = found.error.map(|error| error + 3e-4 * expected);
+        wider.assert_near([expected; 3], cases.len(), &format!("{case:?}"));
+        assert!(found.worst_error([expected; 3]) < 0.01, "{found:?}");
+    }
+}
+
+#[test]
+fn aimed_bounces_show_the_same_rooms_as_others() {
+    let pane =
+        body("pane", "thin = { index = 1.5 }", &["quad = { center = [-2, 1.6, 0], u = [0, 0, 2.5], v = [0, 0.6, 0] }"]);
+    let lawn = body(
+        "lawn",
+        "diffuse = { reflectance = 0.3 }",
+        &["quad = { center = [0, -0.5, 0], u = [30, 0, 0], v = [0, 0, -30] }"],
+    );
+    let table = body(
+        "table",
+        "plastic = { reflectance = 0.5, roughness = 0.3 }",
+        &["cube = { center = [-0.5, 0.7, 0], size = [1, 0.1, 1.5] }"],
+    );
+    let vase = body("vase", "plastic = { reflectance = 0.5 }", &["sphere = { center = [-0.5, 1, 0], radius = 0.25 }"]);
+    let sky = environment(1.0);
+    let two = [[-2.0, -0.8], [0.2, 1.4]];
+    let cases = [
+        ("a hole under an even sky", room(&[[-1.0, 1.0]], WHITE, 64, &sky)),
+        ("two holes, sun and sky", room(&two, WHITE, 64, &[SUN, &sky, &lawn].concat())),
+        ("a pane, sun and sky", room(&two, WHITE, 64, &[&pane, SUN, &sky, &lawn].concat())),
+        ("varnish and glaze", room(&two, WHITE, 64, &[&table, &vase, SUN, &sky].concat())),
+        ("varnished walls", room(&two, "plastic = { reflectance = 0.7, roughness = 0.4 }", 64, &[SUN, &sky].concat())),
+        (
+            "one bounce",
+            room(&two, WHITE, 64, &[SUN, &sky].concat()).replace("[render]\n", "[render]\ndiffuse_bounces = 1\n"),
+        ),
+        (
+            "a lamp besides",
+            room(
+                &two,
+                WHITE,
+                64,
+                &[
+                    SUN,
+                    &sky,
+                    &body("lamp", "emissive = { radiance = 3 }", &["sphere = { center = [1, 2, -1], radius = 0.2 }"]),
+                ]
+                .concat(),
+            ),
+        ),
+    ];
+    for (name, text) in &cases {
+        let found = learned(text).unwrap_or_else(|| panic!("{name}: nothing is bright"));
+        assert!(!found.places.is_empty() && found.places.len() <= 6, "{found:?}");
+        assert_same(&films(text, Some(&found), 8), &films(text, None, 8), cases.len(), name);
+    }
+}
+
+#[test]
+fn a_room_that_sun_and_sky_light_through_windows_is_calmer_and_the_plan_says_so() {
+    let sky = environment(1.0);
+    let text = room(&[[-2.0, -0.8], [0.2, 1.4]], WHITE, 16, &[SUN, &sky].concat());
+    let decided = plan(&scene(&text));
+    assert!(decided.because.iter().any(|line| line.contains("bright place")), "{:?}", decided.because);
+    let bright = decided.method.bright.expect("the room is learned");
+    let [aimed, plain] = [Some(&bright), None].map(|bright| variance(&films(&text, bright, 8)));
+    println!("variance {aimed:.5} for {plain:.5}");
+    assert!(aimed < 0.8 * plain, "{aimed} for {plain}");
+}
+
+#[test]
+fn what_no_room_encloses_is_left_as_it_is() {
+    let open = view([3.0, 2.0, 3.0], [0.0, 0.5, 0.0], 40.0, 16)
+        + "[render]\nsamples = 4\n"
+        + &body("floor", WHITE, &["quad = { center = [0, 0, 0], u = [9, 0, 0], v = [0, 0, -9] }"])
+        + &body("ball", WHITE, &["sphere = { center = [0, 1, 0], radius = 1 }"])
+        + SUN
+        + &environment(1.0);
+    assert_eq!(plan(&scene(&open)).method.bright, None);
+    // A room without a sky has nothing to open to.
+    let lamp = body("lamp", "emissive = { radiance = 9 }", &["sphere = { center = [0, 2, 0], radius = 0.2 }"]);
+    assert_eq!(plan(&scene(&room(&[], WHITE, 4, &lamp))).method.bright, None);
+}
+
+#[test]
+fn the_same_places_are_learned_whatever_part_of_the_image_is_made() {
+    let text = room(&[[-2.0, -0.8], [0.2, 1.4]], WHITE, 4, &[SUN, &environment(1.0)].concat());
+    let part = text.replace("[film]\n", "[film]\ncrop = [3, 4, 5, 6]\n");
+    assert_ne!(part, text);
+    assert_eq!(plan(&scene(&part)).method.bright, plan(&scene(&text)).method.bright);
+}
