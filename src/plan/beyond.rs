@@ -18,7 +18,7 @@ const RADIUS: f64 = 2.0;
 /// Photons of a pass: more would take longer to look through than to send.
 const OF_A_PASS: f64 = 32_768.0;
 /// Photons of a map that tells whether any are gathered, and what they are worth.
-const FEW: u64 = 8192;
+const FEW: u64 = 4096;
 
 /// The light pass with a map, if one is needed, and why.
 pub(super) fn with_map(

@@ -15,8 +15,8 @@ const SIDE: u32 = 24;
 /// Parts of the view along each side.
 const PARTS: u32 = 6;
 /// Most photons that are shown, and most that are gathered.
-const SHOWN: u64 = 8192;
-const GATHERED: u64 = 8192;
+const SHOWN: u64 = 2048;
+const GATHERED: u64 = 2048;
 
 /// Light that was seen, X + Y + Z summed, and by how much polarization may change it.
 #[derive(Clone, Copy, Debug, PartialEq)]
