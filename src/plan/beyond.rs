@@ -1,16 +1,23 @@
 //! Whether caustics that are not seen straight need a map of photons.
 
 use super::caustics::{sees_receivers, small_lights, targets};
-use super::in_number;
 use super::worth::rounded;
+use super::{in_number, percent};
 use crate::scene::{CausticsText, Scene};
 use crate::spectrum::Curve;
-use crate::trace::{LightPass, MapPasses, Transport, World, gathered_photons, gathered_worth, reached_places};
+use crate::trace::{
+    GatheredWorth, LightPass, MapPasses, Transport, World, gathered_photons, gathered_worth, reached_places,
+};
 
 /// Most photons per camera sample: between 0.25 and 1 the error for the time hardly changes, where glass is seen through glass.
 const PHOTONS: f64 = 0.5;
 /// Fewest: of fewer a pilot does not know enough.
 const FEWEST: f64 = 1.0 / 64.0;
+/// The time of a camera sample that gathers wherever it can, as a share of one that gathers nowhere, is this much more: measured in
+/// a room by a window.
+const GATHERING: f64 = 0.5;
+/// Least chance that photons are gathered: of what is rarer a pilot does not know enough.
+const RAREST: f64 = 1.0 / 16.0;
 /// Solid angle in steradians of lights that rays meet too rarely from where nothing is shown.
 const SMALL: f64 = 0.1;
 /// Radius in pixels of a map of one sample per pixel.
@@ -43,7 +50,7 @@ pub(super) fn with_map(
     let passes = |photons: f64| {
         let all = (photons * samples).ceil();
         let count = (all / OF_A_PASS).round().clamp(1.0, most);
-        MapPasses { count: count as u32, photons: (all / count).ceil() as u64, radius }
+        MapPasses { count: count as u32, photons: (all / count).ceil() as u64, radius, chance: 1.0 }
     };
     let map = passes(PHOTONS);
     let pass = shown.cloned().unwrap_or_else(|| LightPass {
@@ -61,13 +68,15 @@ pub(super) fn with_map(
     if gathered_photons(&with_few, &places) == 0.0 {
         return as_shown();
     }
-    let map = passes(photons(&with_few));
+    let map =
+        gathered_worth(&with_few).map_or(map, |worth| MapPasses { chance: chance(&worth), ..passes(photons(&worth)) });
     let line = format!(
         "photon map: {} pass{} of {} photons, for caustics that are seen in mirrors or through glass or light other surfaces; it blurs them by \
-         {radius:.2} pixels, less with more samples",
+         {radius:.2} pixels, less with more samples{}",
         map.count,
         if map.count == 1 { "" } else { "es" },
         in_number(map.photons),
+        if map.chance < 1.0 { format!("; {} of the places look for them", percent(map.chance)) } else { String::new() },
     );
     (asked(map), vec![line])
 }
@@ -76,9 +85,17 @@ pub(super) fn with_map(
 ///
 /// An image of n_p camera samples and n_l photons has the variance A / n_p + B / n_l in the time C_p n_p + C_l n_l; their product is
 /// least for n_l / n_p = sqrt(B C_p / (A C_l)). Rays followed stand for time, so that the plan is the same everywhere.
-fn photons(world: &World) -> f64 {
-    let Some(photons) = gathered_worth(world) else { return PHOTONS };
-    let samples = photons.samples;
-    let best = (photons.variance * samples.rays / (samples.common_variance * photons.rays)).sqrt();
+fn photons(worth: &GatheredWorth) -> f64 {
+    let samples = worth.samples;
+    let best = (worth.variance * samples.rays / (samples.common_variance * worth.rays)).sqrt();
     if best.is_nan() { PHOTONS } else { rounded(best.clamp(FEWEST, PHOTONS)) }
+}
+
+/// At how many of the places that paths reach photons are gathered.
+///
+/// Where a share q gathers, the second moment M of what a sample gathers adds at most M / q to its variance A, and the time is
+/// 1 + q t of one that gathers nowhere; the product is least for q = sqrt(M / (A t)).
+fn chance(worth: &GatheredWorth) -> f64 {
+    let best = (worth.second_moment / (worth.samples.common_variance * GATHERING)).sqrt();
+    if best.is_nan() { 1.0 } else { rounded(best.clamp(RAREST, 1.0)) }
 }

@@ -77,10 +77,13 @@ impl<const N: usize> Photons<N> {
         sampler: &Sampler,
     ) -> ([f64; 3], f64) {
         let Some(map) = world.method.light_pass.as_ref().and_then(|pass| pass.map) else { return ([0.0; 3], 0.0) };
+        let [u, whether, ..] = sampler.four_plain(path.key.child(CHOICE), 0);
+        if whether >= map.chance {
+            return ([0.0; 3], 0.0);
+        }
         let radius = map.radius * world.scene.camera.pixel_width(path.length);
         let front = flat.dot(point.normal) > 0.0;
         let place = Place { world, position: point.position, flat, front, radius };
-        let u = sampler.four_plain(path.key.child(CHOICE), 0)[0];
         let mut found = Found { sum: [0.0; 3], weight: 0.0, drawn: None, u };
         let parted = |back: DVec3| path.parted || (parts && back.dot(flat) < 0.0);
         let change = |back: DVec3, on_its_way: Polarized| {
@@ -115,7 +118,8 @@ impl<const N: usize> Photons<N> {
             let rgb = photon.carries.color.map(|x| share * x);
             found.add(position, rgb, amount(world, rgb), || change(photon.back, photon.polarized));
         });
-        place.seen_of(found, point, sampler, path.key)
+        let (light, moved) = place.seen_of(found, point, sampler, path.key);
+        (light.map(|x| x / map.chance), moved / map.chance)
     }
 }
 

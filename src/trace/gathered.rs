@@ -16,6 +16,8 @@ pub struct GatheredWorth {
     pub variance: f64,
     /// Rays that a photon follows.
     pub rays: f64,
+    /// Second moment of what a camera sample gathers, scaled as the variance of camera samples is.
+    pub second_moment: f64,
     /// What else camera samples bring.
     pub samples: SampleWorth,
 }
@@ -65,7 +67,7 @@ impl InLanes for Gathering<'_> {
         let places = SIDE * SIDE;
         let mut by_photons = vec![Sums::default(); places as usize];
         let mut by_samples = by_photons.clone();
-        let (mut sent, mut rays, mut of_samples) = (0, 0, 0);
+        let (mut sent, mut rays, mut of_samples, mut second_moment) = (0, 0, 0, 0.0);
         for map in 0..MAPS {
             let photons = photons::<N>(world, map as u32)?;
             (sent, rays) = (sent + photons.sent, rays + photons.rays);
@@ -82,6 +84,8 @@ impl InLanes for Gathering<'_> {
                     let found = sample(world, &mut tracer, &sampler, x, y).rgb;
                     let gathered = tracer.gathered;
                     let others = std::array::from_fn(|i| found[i] - (gathered[i] - so_far[i]));
+                    let here = apply(&to_xyz, std::array::from_fn(|i| gathered[i] - so_far[i]));
+                    second_moment += here.iter().filter(|x| x.is_finite()).map(|x| x * x).sum::<f64>();
                     if map == 0 {
                         by_samples[place as usize].add(apply(&to_xyz, others));
                     }
@@ -103,6 +107,7 @@ impl InLanes for Gathering<'_> {
         Some(GatheredWorth {
             variance: mean(&of_maps) * pixels * sent as f64 / MAPS as f64,
             rays: rays as f64 / sent as f64,
+            second_moment: second_moment / taken * pixels * pixels,
             samples: SampleWorth { variance, common_variance, rays: of_samples as f64 / taken },
         })
     }

@@ -48,6 +48,8 @@ pub struct MapPasses {
     pub photons: u64,
     /// Photons are gathered within this radius, in pixels as wide as the path from the camera is long.
     pub radius: f64,
+    /// The chance of each place that a path reaches that photons are gathered there, above 0 to 1; what is found counts for the others.
+    pub chance: f64,
 }
 
 /// Which of a surface's branches are followed.

@@ -35,7 +35,7 @@ fn by_image(bodies: &str, height: f64) -> String {
 }
 
 /// Photons are gathered within 1.5 pixels, a sixteenth of the image.
-const WIDE: MapPasses = MapPasses { count: 4, photons: 32_768, radius: 1.5 };
+const WIDE: MapPasses = MapPasses { count: 4, photons: 32_768, radius: 1.5, chance: 1.0 };
 
 /// Compares the light of a mirror, which photons bring, with that of a lamp at its image, which is known.
 fn agree(what: &str, bodies: &str, map: MapPasses) {

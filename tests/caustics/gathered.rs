@@ -6,7 +6,7 @@ use super::agreement::{ABOVE, BALL, FLOOR, LAMP, agree_with, blocks, glass, obje
 use crate::support::scenes::standard_errors;
 
 /// A radius so small that blurring moves nothing between blocks that these samples could tell.
-const NARROW: MapPasses = MapPasses { count: 16, photons: 8192, radius: 0.1 };
+const NARROW: MapPasses = MapPasses { count: 16, photons: 8192, radius: 0.1, chance: 1.0 };
 
 fn agree(what: &str, text: &str, samples: u32) {
     agree_with(what, text, samples, Some(NARROW));
@@ -27,6 +27,11 @@ fn mirror() -> String {
 #[test]
 fn the_caustic_of_a_ball_seen_in_a_mirror() {
     agree("mirror", &mirror(), 32);
+}
+
+#[test]
+fn a_caustic_is_as_bright_where_few_places_look_for_photons() {
+    agree_with("few places", &mirror(), 64, Some(MapPasses { chance: 0.25, ..NARROW }));
 }
 
 /// Under water, lit by a lamp beside it.

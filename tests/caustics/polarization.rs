@@ -58,7 +58,7 @@ fn two_plates(in_a_mirror: bool) -> String {
 fn what_polarization_may_change_of_a_caustic_is_said_where_photons_are_seen_and_where_they_are_gathered() {
     for in_a_mirror in [false, true] {
         let scene = scene(&two_plates(in_a_mirror));
-        let map = in_a_mirror.then_some(MapPasses { count: 2, photons: 50_000, radius: 1.0 });
+        let map = in_a_mirror.then_some(MapPasses { count: 2, photons: 50_000, radius: 1.0, chance: 1.0 });
         let light_pass = Some(LightPass { photons: 200_000, lights: vec![0], map });
         let method = Method { samples: 4, transport: SPLITTING, diffuse_bounces: 1, light_pass, ..plan(&scene).method };
         let (film, report) = render(&World::new(&scene, method), &|_| ());

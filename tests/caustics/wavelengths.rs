@@ -21,7 +21,7 @@ fn k1_glass_that_no_photon_lights_is_the_same_to_the_last_bit_with_a_map_and_wit
             let method = Method { samples, transport: SPLITTING, light_pass, ..plan(&scene).method };
             render(&World::new(&scene, method), &|_| ()).0.pixels
         };
-        let map = MapPasses { count: samples.div_ceil(4), photons: 4096, radius: 1.0 };
+        let map = MapPasses { count: samples.div_ceil(4), photons: 4096, radius: 1.0, chance: 1.0 };
         assert!(image(Some(map)) == image(None), "{samples} samples differ");
     }
 }
@@ -54,6 +54,6 @@ fn k2_lines_and_smooth_spectra_thrown_by_a_prism_and_a_mirror_are_seen_through_a
             + &object("mirror", "quad = { center = [0.2, 0.7, -1.1], u = [0.8, 0, 0], v = [0, 0.6, 0.1] }")
             + &object("frost", "cube = { center = [0.7, 0.15, 0.6], size = [0.8, 0.3, 0.5] }")
             + &object("lamp", "disc = { center = [-2, 2.5, 0], normal = [2, -2, 0], radius = 0.6 }");
-        agree_with(what, &text, 8, Some(MapPasses { count: 4, photons: 4096, radius: 0.15 }));
+        agree_with(what, &text, 8, Some(MapPasses { count: 4, photons: 4096, radius: 0.15, chance: 1.0 }));
     }
 }
