@@ -22,7 +22,8 @@ const SPACES: [ColorSpace; 6] = [
 ];
 const MODELS: [&str; 6] =
     ["\"rgb\"", "{ bands = 8 }", "{ bands = 12 }", "{ bands = 16 }", "{ bands = 32 }", "\"hero\""];
-/// No light is chosen by its brightness, which is measured in film colors, so that all films share their random numbers.
+/// No light is chosen by its brightness, which is measured in film colors, so that all films share their random numbers. How many
+/// photons there are is learned from samples that do choose lights: it is asked once.
 const ALL_LIGHTS: Transport = Transport::Deterministic { cutoff: 1e-4, most: u64::MAX };
 
 /// The film of a scene in a color space, under a model.
@@ -33,9 +34,10 @@ fn film(body: &str, space: ColorSpace, model: &str) -> Film {
          camera = {{ position = [0, 1, 6], look_at = [0, 0.8, 0], vertical_fov = 35 }}\n{body}",
         space.interop_id()
     );
-    let scene = scene(&text);
-    let method = Method { transport: ALL_LIGHTS, ..plan(&scene).method };
-    render(&World::new(&scene, method), &|_| ()).0
+    let planned = |text: &str| plan(&scene(text)).method;
+    let light_pass = planned(&text.replace(space.interop_id(), SPACES[0].interop_id())).light_pass;
+    let method = Method { transport: ALL_LIGHTS, light_pass, ..planned(&text) };
+    render(&World::new(&scene(&text), method), &|_| ()).0
 }
 
 /// Measured lights and surfaces of every kind, but nothing that is relative to the film's white.
