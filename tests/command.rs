@@ -191,7 +191,11 @@ fn a_plan_goes_to_stdout_and_writes_nothing() {
         let folder = folder();
         let answer = render(&folder, arguments);
         assert_eq!((answer.code, &*answer.stderr), (Some(0), ""));
-        assert!(answer.stdout.starts_with("model rgb"), "{}", answer.stdout);
+        assert!(
+            answer.stdout.starts_with("cost: about ") && answer.stdout.contains("\nmodel rgb"),
+            "{}",
+            answer.stdout
+        );
         assert_eq!(folder.listing(), ["ball.toml"]);
     }
 }
