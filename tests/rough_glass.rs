@@ -8,3 +8,28 @@ mod furnaces;
 mod lamps;
 mod sides;
 mod weights;
+
+use abbe::material::{RoughInterface, Sides};
+use abbe::math::DVec3;
+
+/// A unit vector at a cosine to the normal.
+fn at(cos: f64, azimuth: f64) -> DVec3 {
+    let sin = (1.0 - cos * cos).max(0.0).sqrt();
+    let (y, x) = libm::sincos(azimuth);
+    DVec3::new(sin * x, sin * y, cos)
+}
+
+/// Each index from outside and from inside, at each roughness and cosine.
+fn each(roughnesses: &[f64], indices: &[f64], cosines: &[f64], mut check: impl FnMut(&Sides, [f64; 2], f64, &str)) {
+    for roughness in roughnesses {
+        let interface = RoughInterface::new(roughness * roughness);
+        for &index in indices {
+            for indices in [[1.0, index], [index, 1.0]] {
+                let sides = interface.between(indices[0], indices[1]);
+                for &cos in cosines {
+                    check(&sides, indices, cos, &format!("{indices:?}, roughness {roughness}, cos {cos}"));
+                }
+            }
+        }
+    }
+}

@@ -13,8 +13,8 @@ use crate::trace::{
 const PHOTONS: f64 = 0.5;
 /// Fewest: of fewer a pilot does not know enough.
 const FEWEST: f64 = 1.0 / 64.0;
-/// The time of a camera sample that gathers wherever it can, as a share of one that gathers nowhere, is this much more: measured in
-/// a room by a window.
+/// How much longer a camera sample takes that gathers wherever it can than one that gathers nowhere, as a share: measured in a room
+/// by a window.
 const GATHERING: f64 = 0.5;
 /// Least chance that photons are gathered: of what is rarer a pilot does not know enough.
 const RAREST: f64 = 1.0 / 16.0;
@@ -76,7 +76,11 @@ pub(super) fn with_map(
         map.count,
         if map.count == 1 { "" } else { "es" },
         in_number(map.photons),
-        if map.chance < 1.0 { format!("; {} of the places look for them", percent(map.chance)) } else { String::new() },
+        if map.chance < 1.0 {
+            format!("; paths look for photons at {} of the surfaces they reach", percent(map.chance))
+        } else {
+            String::new()
+        },
     );
     (asked(map), vec![line])
 }

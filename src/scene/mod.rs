@@ -100,7 +100,12 @@ pub struct FilmSettings {
 impl FilmSettings {
     /// The part of the image that is made.
     pub fn window(&self) -> Window {
-        self.crop.unwrap_or(Window { left: 0, top: 0, width: self.width, height: self.height })
+        self.crop.unwrap_or(self.whole())
+    }
+
+    /// The full image.
+    pub fn whole(&self) -> Window {
+        Window { left: 0, top: 0, width: self.width, height: self.height }
     }
 
     /// What is wrong with a crop, if anything.

@@ -28,7 +28,7 @@ impl<T: Clone> Distinct<T> {
     }
 }
 
-/// The same number for curves that are alike.
+/// A number for a curve, equal for curves that are alike.
 fn hash(curve: &Curve) -> u64 {
     let mut hasher = DefaultHasher::new();
     // 0 and -0 are alike.

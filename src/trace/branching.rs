@@ -39,13 +39,11 @@ impl InLanes for Asking<'_> {
     fn run<const N: usize>(self) -> Branching {
         let Self { world, most } = self;
         let mut tracer = Tracer::<N>::new(world);
-        let film = world.scene.film;
-        let spread = |i: u32, size: u32| ((u64::from(2 * i + 1) * u64::from(size)) / u64::from(2 * SIDE)) as u32;
+        let film = world.scene.film.whole();
         // A stride that is coprime to the number of places visits them all, far ones first.
         let places = SIDE * SIDE;
         let all_over = (0..places).map(|i| (i * 101) % places);
-        let all_over: Vec<[u32; 2]> =
-            all_over.map(|place| [spread(place % SIDE, film.width), spread(place / SIDE, film.height)]).collect();
+        let all_over: Vec<[u32; 2]> = all_over.map(|place| film.middle_of_cell(SIDE, place)).collect();
         let mut ask = |[x, y]: [u32; 2]| {
             let before = tracer.tally.rays;
             sample(world, &mut tracer, &Sampler::new(world.method.seed, [x, y], 0), x, y);

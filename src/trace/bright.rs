@@ -151,7 +151,7 @@ impl Aiming<'_> {
         self.pdf_knowing(direction, own, None)
     }
 
-    /// The same where the density is known with which one of the places is aimed at.
+    /// The density of a direction, where that of one of the places is known already.
     pub(super) fn pdf_knowing(&self, direction: DVec3, own: f64, known: Option<(usize, f64)>) -> f64 {
         let ray = Ray { origin: self.from, direction };
         let mut sum = 0.0;

@@ -71,8 +71,7 @@ fn bounces<const N: usize>(world: &World, side: u32) -> Vec<Bounce> {
     let mut tracer = Tracer::<N>::new(world);
     tracer.bounces = Some(Vec::new());
     for place in 0..side * side {
-        let spread = |i: u32, size: u32| ((u64::from(2 * i + 1) * u64::from(size)) / u64::from(2 * side)) as u32;
-        let (x, y) = (spread(place % side, film.width), spread(place / side, film.height));
+        let [x, y] = film.whole().middle_of_cell(side, place);
         sample(world, &mut tracer, &Sampler::new(world.method.seed ^ SEED, [x, y], place), x, y);
     }
     tracer.bounces.unwrap_or_default()

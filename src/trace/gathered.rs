@@ -74,9 +74,7 @@ impl InLanes for Gathering<'_> {
             let mut tracer = Tracer::<N>::new(world);
             tracer.photons = Some(&photons);
             for place in 0..places {
-                let spread =
-                    |i: u32, size: u32| ((u64::from(2 * i + 1) * u64::from(size)) / u64::from(2 * SIDE)) as u32;
-                let (x, y) = (spread(place % SIDE, film.width), spread(place / SIDE, film.height));
+                let [x, y] = film.whole().middle_of_cell(SIDE, place);
                 let before = tracer.gathered;
                 for number in 0..SAMPLES {
                     let so_far = tracer.gathered;
@@ -99,16 +97,13 @@ impl InLanes for Gathering<'_> {
         let pixels = f64::from(film.width) * f64::from(film.height);
         let mean = |variances: &[f64]| variances.iter().sum::<f64>() / f64::from(places);
         let of_maps: Vec<f64> = by_photons.iter().map(|sums| sums.variance(MAPS as f64)).collect();
-        let mut variances: Vec<f64> = by_samples.iter().map(|sums| sums.variance(f64::from(SAMPLES))).collect();
-        variances.sort_by(f64::total_cmp);
-        let variance = mean(&variances) * pixels * pixels;
-        let common_variance = mean(&variances[..variances.len() - variances.len().div_ceil(100)]) * pixels * pixels;
+        let variances = by_samples.iter().map(|sums| sums.variance(f64::from(SAMPLES))).collect();
         let taken = MAPS as f64 * f64::from(places * SAMPLES);
         Some(GatheredWorth {
             variance: mean(&of_maps) * pixels * sent as f64 / MAPS as f64,
             rays: rays as f64 / sent as f64,
             second_moment: second_moment / taken * pixels * pixels,
-            samples: SampleWorth { variance, common_variance, rays: of_samples as f64 / taken },
+            samples: SampleWorth::of(variances, pixels, of_samples as f64 / taken),
         })
     }
 }

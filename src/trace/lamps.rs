@@ -33,8 +33,7 @@ impl InLanes for Meeting<'_> {
         // A stride that is coprime to the number of places visits them all, far ones first.
         let places = SIDE * SIDE;
         for place in (0..places).map(|i| (i * 1597) % places) {
-            let spread = |i: u32, size: u32| ((u64::from(2 * i + 1) * u64::from(size)) / u64::from(2 * SIDE)) as u32;
-            let (x, y) = (spread(place % SIDE, film.width), spread(place / SIDE, film.height));
+            let [x, y] = film.whole().middle_of_cell(SIDE, place);
             sample(world, &mut tracer, &Sampler::new(world.method.seed ^ SEED, [x, y], place), x, y);
             if tracer.met.as_ref().is_some_and(|met| met.len() >= ENOUGH) {
                 break;

@@ -172,7 +172,7 @@ impl World {
         lights.chunks(of_group).map(<[LightId]>::to_vec).collect()
     }
 
-    /// The same world with a light pass and photons sent ahead, for a plan: no more of them for an image of many pixels than
+    /// This world with a light pass and photons sent ahead, for a plan: no more of them for an image of many pixels than
     /// for one of few.
     pub fn piloted(&self, light_pass: LightPass) -> Self {
         let mut world = self.with_light_pass(Some(light_pass));

@@ -131,8 +131,7 @@ impl InLanes for Sampling<'_> {
         let seed = world.method.seed ^ SEED;
         let mut variances = Vec::new();
         for place in 0..SIDE * SIDE {
-            let spread = |i: u32, size: u32| ((u64::from(2 * i + 1) * u64::from(size)) / u64::from(2 * SIDE)) as u32;
-            let (x, y) = (spread(place % SIDE, film.width), spread(place / SIDE, film.height));
+            let [x, y] = film.whole().middle_of_cell(SIDE, place);
             let taken = (0..SAMPLES).map(|number| {
                 let sampler = Sampler::new(seed.wrapping_add(u64::from(number)), [x, y], 0);
                 apply(&to_xyz, sample(world, &mut tracer, &sampler, x, y).rgb)
@@ -147,13 +146,20 @@ impl InLanes for Sampling<'_> {
             }
             variances.push(variance);
         }
+        let rays = tracer.tally.rays as f64 / f64::from(SIDE * SIDE * SAMPLES);
+        SampleWorth::of(variances, f64::from(film.width) * f64::from(film.height), rays)
+    }
+}
+
+impl SampleWorth {
+    /// Of the variances of single samples in some of an image's pixels, summed over channels.
+    pub(super) fn of(mut variances: Vec<f64>, pixels: f64, rays: f64) -> Self {
         variances.sort_by(f64::total_cmp);
-        let places = f64::from(SIDE * SIDE);
-        let pixels = f64::from(film.width) * f64::from(film.height);
+        let places = variances.len() as f64;
         // Of n samples, each pixel has n / pixels.
         let of_image = |variances: &[f64]| variances.iter().sum::<f64>() / places * pixels * pixels;
         let common = variances.len() - variances.len().div_ceil(100);
         let (variance, common_variance) = (of_image(&variances), of_image(&variances[..common]));
-        SampleWorth { variance, common_variance, rays: tracer.tally.rays as f64 / (places * f64::from(SAMPLES)) }
+        Self { variance, common_variance, rays }
     }
 }

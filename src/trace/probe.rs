@@ -72,9 +72,7 @@ fn probe_lanes<const N: usize>(world: &World) -> Probe {
     // A stride that is coprime to the number of places visits them all, far ones first.
     let places = SIDE * SIDE;
     for place in (0..places).map(|i| (i * 229) % places) {
-        let spread = |i: u32, size: u32| ((u64::from(2 * i + 1) * u64::from(size)) / u64::from(2 * SIDE)) as u32;
-        let (x, y) = (spread(place % SIDE, window.width), spread(place / SIDE, window.height));
-        let (x, y) = (window.left + x, window.top + y);
+        let [x, y] = window.middle_of_cell(SIDE, place);
         let before = tracer.tally.partings;
         sample(world, &mut tracer, &Sampler::new(world.method.seed, [x, y], 0), x, y);
         samples += 1;

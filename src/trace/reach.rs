@@ -35,8 +35,7 @@ impl InLanes for Looking<'_> {
 fn look<const N: usize>(world: &World, tracer: &mut Tracer<N>) {
     let film = world.scene.film;
     for place in 0..SIDE * SIDE {
-        let spread = |i: u32, size: u32| ((u64::from(2 * i + 1) * u64::from(size)) / u64::from(2 * SIDE)) as u32;
-        let (x, y) = (spread(place % SIDE, film.width), spread(place / SIDE, film.height));
+        let [x, y] = film.whole().middle_of_cell(SIDE, place);
         sample(world, tracer, &Sampler::new(world.method.seed ^ LOOKING, [x, y], place), x, y);
     }
 }

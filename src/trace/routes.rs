@@ -53,11 +53,10 @@ const ALL_SURFACES: usize = 16_384;
 
 /// The routes to a few hundred pixels, those of each together, in a world of the lanes [`ROUTES_NM`].
 pub fn routes(world: &World) -> Vec<Vec<Route>> {
-    let film = world.scene.film;
-    let spread = |i: u32, size: u32| ((u64::from(2 * i + 1) * u64::from(size)) / u64::from(2 * SIDE)) as u32;
+    let film = world.scene.film.whole();
     // A stride that is coprime to the number of places visits them all, far ones first.
     let places = (0..SIDE * SIDE).map(|i| (i * 229) % (SIDE * SIDE));
-    let all_over = places.map(|place| [spread(place % SIDE, film.width), spread(place / SIDE, film.height)]);
+    let all_over = places.map(|place| film.middle_of_cell(SIDE, place));
     let objects = pixels_of_objects(world, |material| material.has_single_directions());
     let of_pixel = |(number, [x, y]): (u32, [u32; 2])| {
         let ray = world.scene.camera.ray(DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5));

@@ -31,7 +31,7 @@ impl SeenLight {
         share(self.parts.iter().fold([0.0; 2], |sum, part| [sum[0] + part[0], sum[1] + part[1]]))
     }
 
-    /// The same of the 36th of the view where it is largest.
+    /// The share of the light of a 36th of the view by which polarization may change it, where that is largest.
     pub fn change_of_part(&self) -> f64 {
         self.parts.into_iter().map(share).fold(0.0, f64::max)
     }
@@ -66,12 +66,10 @@ impl InLanes for Looking<'_> {
         let mut tracer = Tracer::<N>::new(world);
         tracer.photons = photons.as_ref();
         for place in 0..SIDE * SIDE {
-            let spread = |i: u32, size: u32| ((u64::from(2 * i + 1) * u64::from(size)) / u64::from(2 * SIDE)) as u32;
-            let [x, y] = [spread(place % SIDE, window.width), spread(place / SIDE, window.height)];
+            let [x, y] = window.middle_of_cell(SIDE, place);
             let before = tracer.tally;
-            let [column, row] = [window.left + x, window.top + y];
-            sample(world, &mut tracer, &Sampler::new(world.method.seed, [column, row], 0), column, row);
-            let part = &mut seen.parts[part_of(window, [x, y])];
+            sample(world, &mut tracer, &Sampler::new(world.method.seed, [x, y], 0), x, y);
+            let part = &mut seen.parts[part_of(window, [x - window.left, y - window.top])];
             part[0] += tracer.tally.light - before.light;
             part[1] += tracer.tally.polarization - before.polarization;
         }

@@ -47,7 +47,7 @@ pub(super) struct Walk {
     pub(super) weight: f64,
     /// The share of the fainter way at the first surface that has one.
     pub(super) fork: f64,
-    /// The same at the first such surface that is met inside a dispersive body.
+    /// The share of the fainter way at the first surface that has one and is met inside a dispersive body.
     pub(super) fork_inside: f64,
     media: Media,
 }
@@ -78,7 +78,7 @@ impl Walk {
         self.turns(share, forks && way == Way::FainterFirst)
     }
 
-    /// The same at a surface that is met inside a dispersive body.
+    /// Whether the way on with a share of the light is taken at a surface that is met inside a dispersive body.
     fn takes_inside(&mut self, share: f64, way: Way) -> bool {
         let fainter = share.min(1.0 - share);
         let forks = self.fork_inside == 0.0 && fainter >= LEAST;

@@ -53,7 +53,7 @@ impl World {
         world
     }
 
-    /// The same without a look at where lamps are seen: enough for ways that end in no light.
+    /// The scene, tabulated for the method, without a look at where lamps are seen: enough for paths that end in no light.
     pub fn unlit(scene: &Scene<Curve>, method: Method) -> Self {
         let (mut tables, mut responses) = (Distinct::default(), Distinct::default());
         let response = |light: &Light<Curve>| responses.of(light.emission(), |curve| method.basis.response(curve));
@@ -94,7 +94,7 @@ impl World {
         world
     }
 
-    /// The same world with another light pass, untaught.
+    /// This world with another light pass, before any photons are sent ahead.
     pub fn with_light_pass(&self, light_pass: Option<LightPass>) -> Self {
         let mut world = self.clone();
         world.method.light_pass = light_pass;
@@ -102,7 +102,7 @@ impl World {
         world
     }
 
-    /// The same world with other bright places that bounces are aimed at.
+    /// This world with other bright places that bounces are aimed at.
     pub fn with_bright(&self, bright: Option<BrightPlaces>) -> Self {
         let mut world = self.clone();
         world.bright = bright.as_ref().map(Bright::new);

@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use abbe::material::{RoughInterface, Sides};
 use abbe::math::DVec3;
 
+use super::{at, each};
 use crate::support::chi_squared;
 use crate::support::random::Random;
 
@@ -14,13 +15,6 @@ const COSINES: [f64; 5] = [1e-6, 0.001, 0.05, 0.3, 1.0];
 const INDICES: [f64; 3] = [1.001, 1.05, 2.2];
 /// With 2^14, the furnaces of nearly equal indices seen along the surface are off by 1 %.
 const DRAWS: u32 = 1 << 17;
-
-/// A unit vector at a cosine to the normal.
-fn at(cos: f64, azimuth: f64) -> DVec3 {
-    let sin = (1.0 - cos * cos).max(0.0).sqrt();
-    let (y, x) = libm::sincos(azimuth);
-    DVec3::new(sin * x, sin * y, cos)
-}
 
 /// The points of Hammersley in the unit square.
 fn points(draws: u32) -> impl Iterator<Item = [f64; 2]> {
@@ -44,21 +38,12 @@ fn furnace(sides: &Sides, [n1, n2]: [f64; 2], cos: f64) -> [f64; 2] {
 #[test]
 fn a_lossless_boundary_sends_on_all_light_at_every_roughness_ratio_and_angle() {
     let mut worst = [1.0f64, 1.0];
-    for roughness in ROUGHNESSES {
-        let interface = RoughInterface::new(roughness * roughness);
-        for index in INDICES {
-            for indices in [[1.0, index], [index, 1.0]] {
-                let sides = interface.between(indices[0], indices[1]);
-                for cos in COSINES {
-                    let [reflected, crossed] = furnace(&sides, indices, cos);
-                    let all = reflected + crossed;
-                    let what = format!("roughness {roughness}, {indices:?}, cos {cos}");
-                    assert!((0.998..=1.001).contains(&all), "{what}: {reflected} + {crossed} = {all}");
-                    worst = [worst[0].min(all), worst[1].max(all)];
-                }
-            }
-        }
-    }
+    each(&ROUGHNESSES, &INDICES, &COSINES, |sides, indices, cos, what| {
+        let [reflected, crossed] = furnace(sides, indices, cos);
+        let all = reflected + crossed;
+        assert!((0.998..=1.001).contains(&all), "{what}: {reflected} + {crossed} = {all}");
+        worst = [worst[0].min(all), worst[1].max(all)];
+    });
     println!("furnaces of the BSDF: {worst:.5?}");
 }
 

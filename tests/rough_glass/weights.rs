@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use abbe::material::{Flow, RoughInterface, Sides, Way};
 use abbe::math::DVec3;
 
+use super::at;
 use crate::support::chi_squared;
 use crate::support::random::Random;
 
@@ -12,27 +13,11 @@ const ROUGHNESSES: [f64; 5] = [0.02, 0.3, 0.77, 0.99, 1.0];
 const INDICES: [f64; 6] = [1.001, 1.1, 1.5, 2.4, 4.0, 9.9];
 const COSINES: [f64; 7] = [1e-12, 1e-3, 0.05, 0.3, 0.6, 0.9, 1.0];
 
-/// A unit vector at a cosine to the normal.
-fn at(cos: f64, azimuth: f64) -> DVec3 {
-    let sin = (1.0 - cos * cos).max(0.0).sqrt();
-    let (y, x) = libm::sincos(azimuth);
-    DVec3::new(sin * x, sin * y, cos)
-}
-
-/// Each index from outside and from inside, at each roughness and angle.
+/// All of these, seen from a direction.
 fn each(check: impl Fn(&Sides, [f64; 2], DVec3, &str)) {
-    for roughness in ROUGHNESSES {
-        let interface = RoughInterface::new(roughness * roughness);
-        for index in INDICES {
-            for indices in [[1.0, index], [index, 1.0]] {
-                let sides = interface.between(indices[0], indices[1]);
-                for cos in COSINES {
-                    let what = format!("{indices:?}, roughness {roughness}, cos {cos}");
-                    check(&sides, indices, at(cos, 0.7), &what);
-                }
-            }
-        }
-    }
+    super::each(&ROUGHNESSES, &INDICES, &COSINES, |sides, indices, cos, what| {
+        check(sides, indices, at(cos, 0.7), what)
+    });
 }
 
 /// What is evaluated over the density, radiance over n^2, on both sides of one draw.
