@@ -14,7 +14,7 @@ const COMMAND: [&str; 5] = ["main", "catalog", "cli", "messages", "progress"];
 /// What `lib.rs` hands on from the room `error`.
 const ERRORS: [&str; 5] = ["Diagnostic", "Error", "Result", "nearest", "error"];
 /// Most lines of a file, but for tables of data.
-const LONGEST: usize = 300;
+const LONGEST: usize = 500;
 
 fn source() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("src")
