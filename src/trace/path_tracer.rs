@@ -14,7 +14,7 @@ use super::straight;
 use super::walker::{Departure, Walker};
 use super::{Transport, World};
 use crate::light::{Light, LightId};
-use crate::material::Material;
+use crate::material::{Lobes, Material};
 use crate::math::{DVec3, Ray, Sampler};
 use crate::shape::SurfacePoint;
 use crate::spectrum::Draw;
@@ -52,8 +52,8 @@ impl<'a, const N: usize> PathTracer<'a, N> {
         let (mut sum, mut first) = ([0.0; 3], None);
         self.walker.started = self.walker.stats.rays;
         let moved = self.walker.stats.polarization;
-        let mut next = Some(Path::from_camera(world, draw, ray));
-        while let Some(mut path) = next.take().or_else(|| self.walker.pending.pop()) {
+        self.walker.pending.push(Path::from_camera(world, draw, ray));
+        while let Some(mut path) = self.walker.pending.pop() {
             if path.vertices >= self.walker.transport.last_vertex() {
                 self.walker.stats.stopped += path.weight(draw);
                 continue;
@@ -68,7 +68,7 @@ impl<'a, const N: usize> PathTracer<'a, N> {
             if let Some(straight) = straight
                 && path.throughput.through(straight.share()) == path.throughput
             {
-                next = Some(path.passed(point));
+                self.walker.pending.push(path.passed(point));
                 continue;
             }
             if path.vertices == 0 && first.is_none() && straight::is_met(world, draw, sampler, &path, *straight) {
@@ -81,11 +81,11 @@ impl<'a, const N: usize> PathTracer<'a, N> {
                 if !matches!(world.scene.material_of(meeting.hit.object), Material::Emissive(_)) {
                     self.walker.stats.stopped += path.weight(draw) / draw.siblings(path.parted);
                 }
-                next = straight.map(|straight| path.passed_in_part(point, &straight));
+                self.walker.pending.extend(straight.map(|straight| path.passed_in_part(point, &straight)));
                 continue;
             }
             let before = sum;
-            next = self.scatter(&path, draw, sampler, &meeting, &mut sum);
+            self.scatter(&path, draw, sampler, &meeting, &mut sum);
             if straight.is_none() {
                 self.note(&path, draw, meeting.hit.crossing.t, std::array::from_fn(|i| light[i] + sum[i] - before[i]));
             }
@@ -136,28 +136,21 @@ impl<'a, const N: usize> PathTracer<'a, N> {
         world.responses[id].sensor(draw, light, path.parted)
     }
 
-    /// Adds what lights send straight to a surface, and answers how the path goes on; further ways on become pending.
-    fn scatter(
-        &mut self,
-        path: &Path<N>,
-        draw: &Draw<N>,
-        sampler: &Sampler,
-        meeting: &Meeting<N>,
-        sum: &mut [f64; 3],
-    ) -> Option<Path<N>> {
+    /// Adds what lights send straight to a surface, and lets the path go on: its ways on become pending.
+    fn scatter(&mut self, path: &Path<N>, draw: &Draw<N>, sampler: &Sampler, meeting: &Meeting<N>, sum: &mut [f64; 3]) {
         let world = self.walker.world;
         let boundary = self.walker.boundary(path, meeting);
         let material = world.scene.material_of(meeting.hit.object);
         if boundary.here == boundary.beyond && material.medium().is_some() {
-            return Some(self.walker.pass_hidden(path, meeting, &boundary));
+            return self.walker.pass_hidden(path, meeting, &boundary);
         }
         let at = Interaction::new(world, draw, path, meeting, boundary);
-        let diffuse = material.is_diffuse();
+        let diffuse = at.lobes.is_diffuse();
         let goes_on = !diffuse || path.diffuse_left > 0;
         let bright = world.bright.as_ref().filter(|_| may_aim(material));
         let aiming = bright.and_then(|bright| bright.at(at.point.position, at.flat));
         let (mut u, mut scatter) = ([0.0; 4], None);
-        if material.scatters_widely() {
+        if at.lobes.is_wide() {
             let spread = path.vertices <= SPREAD;
             u = if spread { sampler.four(path.key, SCATTER) } else { sampler.four_plain(path.key, SCATTER) };
             let all_lights = world.aims_at_all(path.weight(draw));
@@ -168,7 +161,7 @@ impl<'a, const N: usize> PathTracer<'a, N> {
                 world,
                 material,
                 arrival: &at.arrival,
-                point: &at.point,
+                point: at.point,
                 throughput: path.throughput,
                 parted: path.parted,
                 normal: at.flat,
@@ -181,7 +174,7 @@ impl<'a, const N: usize> PathTracer<'a, N> {
                 u,
                 aiming: aiming.as_ref(),
             };
-            let far = material.scatters_through().then_some((at.boundary.beyond, at.parts));
+            let far = at.lobes.intersects(Lobes::GLOSSY_TRANSMISSION).then_some((at.boundary.beyond, at.parts));
             let chance = gathering.gather(far, sampler, path.key, sum);
             self.walker.stats.polarization += lit.moved.get();
             if goes_on && path.kind != PathKind::Camera {
@@ -195,8 +188,8 @@ impl<'a, const N: usize> PathTracer<'a, N> {
                 all_lights,
                 passed: false,
             });
-            if !goes_on && meeting.straight.is_none() && !material.has_single_directions() {
-                return None;
+            if !goes_on && meeting.straight.is_none() && !at.lobes.has_delta() {
+                return;
             }
         }
 
@@ -209,7 +202,7 @@ impl<'a, const N: usize> PathTracer<'a, N> {
             self.walker.branches.retain(|branch| branch.pdf.is_none());
         }
         let mut departure = Departure::new(world, path, &at).with(scatter.as_ref(), meeting.straight.as_ref());
-        self.walker.follow(&mut departure, sampler)
+        self.walker.follow(&mut departure, sampler);
     }
 
     /// Adds what photons bring to a place that the path has reached by way of others.

@@ -6,6 +6,7 @@ use super::media::Media;
 use super::sending::media_of_lights;
 use super::{LightPass, Method, Transport};
 use crate::light::{Light, LightId};
+use crate::material::Lobes;
 use crate::math::DVec3;
 use crate::scene::Scene;
 use crate::spectrum::{Curve, Distinct, Draw, MAX_LANES, Quantity, Response, Table, apply};
@@ -26,6 +27,8 @@ pub struct World {
     /// The bodies around the camera.
     pub(super) camera_media: Media,
     pub(super) has_media: bool,
+    /// The lobes of each material.
+    pub(super) lobes: Vec<Lobes>,
     /// Whether each object lets light straight on; empty where none does.
     see_through: Vec<bool>,
     /// What bounces are aimed at.
@@ -68,6 +71,7 @@ impl World {
         let is_see_through = |object: u32| scene.material_of(object).is_see_through();
         let see_through: Vec<bool> = (0..scene.objects.len() as u32).map(is_see_through).collect();
         let see_through = if see_through.contains(&true) { see_through } else { Vec::new() };
+        let lobes = scene.materials.iter().map(|named| named.material.lobes()).collect();
         let choice = Choice::new(&scene.lights);
         let targets = choice.targets();
         let bright = method.bright.as_ref().map(Bright::new);
@@ -80,6 +84,7 @@ impl World {
             method,
             camera_media: Media::default(),
             has_media,
+            lobes,
             see_through,
             bright,
             aims: None,
