@@ -55,7 +55,7 @@ impl<S> Environment<S> {
     /// sky weighs them.
     pub(super) fn aim(&self, normal: DVec3, u: [f64; 2]) -> Sighting {
         let direction = match &self.image {
-            Some(sky) => sky.turn.transpose() * sky.panorama.aim(u),
+            Some(sky) => sky.turn.transpose() * sky.panorama.sample(u).0,
             None => Frame::about(normal).to_world(cosine_hemisphere(u)),
         };
         Sighting { direction: unit(direction), part: None, density: None }

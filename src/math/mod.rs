@@ -1,6 +1,7 @@
 //! Floor 0: points, directions and random numbers; knows glam only.
 
 mod bounds;
+mod distribution;
 mod frame;
 mod offset;
 mod ray;
@@ -9,6 +10,7 @@ mod transform;
 mod warp;
 
 pub use bounds::Bounds;
+pub use distribution::{BELOW_ONE, DiscreteSample, Distribution, Distribution2d};
 pub use frame::Frame;
 pub use offset::{UNIT_ROUNDOFF, gamma, offset_origin};
 pub use ray::{Ray, unit};
