@@ -1,8 +1,10 @@
+use std::f64::consts::TAU;
+
 use serde::Deserialize;
 
-use super::View;
-use crate::math::{DVec3, Ray};
-use crate::shape::Sighting;
+use super::{Beam, LePdf, LeSample, LightSample};
+use crate::math::{Cone, DVec3, Ray};
+use crate::shape::{Ball, SurfacePoint};
 use crate::spectrum::Quantity;
 
 /// A point that shines evenly in all directions; rays never meet it.
@@ -25,13 +27,29 @@ impl<S> Point<S> {
         Point { position: self.position, intensity: convert(Quantity::Emission, &self.intensity) }
     }
 
-    pub(super) fn aim(&self, from: DVec3) -> Option<Sighting> {
-        let direction = (DVec3::from(self.position) - from).try_normalize()?;
-        Some(Sighting { direction, part: None, density: None })
+    pub(super) fn sample_li(&self, from: &SurfacePoint) -> Option<LightSample> {
+        LightSample::of_point(from, self.position.into(), |_| 1.0)
     }
 
-    pub(super) fn view(&self, ray: &Ray) -> View {
-        let squared = (DVec3::from(self.position) - ray.origin).length_squared();
-        View { distance: squared.sqrt(), object: None, pdf: None, factor: 1.0 / squared, uv: [0.0; 2] }
+    pub(super) fn beam(&self, ball: &Ball) -> Beam {
+        let cone = ball.cone_from(self.position.into());
+        Beam { ball: *ball, cone, flux: TAU * cone.one_minus_cos, is_apart: true }
     }
+
+    pub(super) fn sample_le(&self, cone: &Cone, guide_uv: [f64; 2]) -> Option<LeSample> {
+        from_point(self.position.into(), cone, guide_uv)
+    }
+}
+
+/// A photon that leaves a point of intensity 1 into a cone.
+pub(super) fn from_point(origin: DVec3, cone: &Cone, guide_uv: [f64; 2]) -> Option<LeSample> {
+    let ray = Ray { origin, direction: cone.direction_at(guide_uv)? };
+    let pdf = LePdf { guide_uv: Some(guide_uv), of_square: cone.of_square(), others: 1.0 };
+    Some(LeSample { ray, factor: 1.0, pdf, surface: None })
+}
+
+/// How densely `from_point` draws a photon.
+pub(super) fn pdf_from_point(cone: &Cone, sample: &LeSample) -> Option<LePdf> {
+    let guide_uv = cone.place_of(sample.ray.direction)?;
+    Some(LePdf { guide_uv: Some(guide_uv), of_square: cone.of_square(), others: 1.0 })
 }

@@ -170,9 +170,9 @@ impl Mesh {
     }
 
     /// A point uniform by area, and the triangle it lies on.
-    pub(super) fn sample(&self, u: [f64; 2]) -> (DVec3, u32) {
+    pub(super) fn sample_area(&self, u: [f64; 2]) -> (DVec3, u32) {
         let (index, along) = self.choose(u[0]);
-        (self.triangle(index).sample([along, u[1]]), index)
+        (self.triangle(index).sample_area([along, u[1]]), index)
     }
 
     /// A triangle by its area, and what is left of the random number.

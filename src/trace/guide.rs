@@ -58,7 +58,7 @@ impl Guide {
     }
 
     /// A place of the square for two random numbers.
-    pub(super) fn draw(&self, u: [f64; 2]) -> [f64; 2] {
+    pub(super) fn sample(&self, u: [f64; 2]) -> [f64; 2] {
         self.cells.sample(u).map(|drawn| (drawn.index as f64 + drawn.u) / SIDE as f64)
     }
 
@@ -103,12 +103,12 @@ mod tests {
             // An integral over the disc by drawing places: pi / 4 for its area, a sixteenth of it for (x - 1 / 2)^2.
             let inside = |p: [f64; 2]| (p[0] - 0.5) * (p[0] - 0.5) + (p[1] - 0.5) * (p[1] - 0.5) < 0.25;
             let square = |p: [f64; 2]| if inside(p) { (p[0] - 0.5) * (p[0] - 0.5) } else { 0.0 };
-            let draws = grid(1000).map(|u| guide.draw(u)).map(|p| square(p) / guide.density(p));
+            let draws = grid(1000).map(|u| guide.sample(u)).map(|p| square(p) / guide.density(p));
             let mean = draws.sum::<f64>() / 1e6;
             let exact = std::f64::consts::PI / 64.0;
             assert!((mean / exact - 1.0).abs() < 2e-3, "{mean} for {exact}");
         }
-        let hits = grid(200).filter(|&u| seen(learned.draw(u))).count() as f64 / 40_000.0;
+        let hits = grid(200).filter(|&u| seen(learned.sample(u))).count() as f64 / 40_000.0;
         assert!(hits > 0.5, "{hits} of the photons are seen where 0.024 of all would be");
     }
 }

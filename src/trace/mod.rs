@@ -14,19 +14,15 @@
 //! 7. Random numbers are a pure function of seed, pixel, sample, branch and use; sums have a fixed order.
 
 mod aimed;
-mod aims;
 mod branching;
 mod bright;
 mod brightness;
-mod choice;
 mod clusters;
 mod direct;
-mod emission;
 mod follow;
 mod gather;
 mod gathered;
 mod guide;
-mod lamps;
 mod light_pass;
 mod lit;
 mod map;
@@ -35,6 +31,7 @@ mod merge;
 mod method;
 mod path;
 mod photon;
+mod photon_targets;
 mod pilot;
 mod polarization;
 mod probe;
@@ -53,17 +50,18 @@ mod straight;
 mod tally;
 mod targets;
 mod tracer;
+mod visible_caps;
 mod walk;
 mod width;
 mod world;
 
-pub use aims::{is_photon_source, is_photon_target};
 pub use branching::{Branching, branching};
 pub use bright::{BrightPlace, BrightPlaces};
 pub use brightness::bright_places;
 pub use gathered::{GatheredWorth, gathered_worth};
 pub use light_pass::seen_photons;
 pub use method::{LightPass, MapPasses, Method, Transport};
+pub use photon_targets::is_photon_target;
 pub use pilot::{PhotonWorth, SampleWorth, photons_worth, samples_worth};
 pub use probe::{Probe, probe};
 pub use reach::{gathered_photons, reached_places};

@@ -1,14 +1,13 @@
 //! Photons: light followed forward over smooth surfaces, to where the camera sees it.
 
 use super::World;
-use super::emission::Emitted;
 use super::media::{self, Boundary, Media};
 use super::path::{Leg, Path};
 use super::polarization::Polarized;
 use super::shading;
 use super::straight;
 use super::tracer::Tracer;
-use crate::light::LightId;
+use crate::light::{LeSample, LightId};
 use crate::material::Arrival;
 use crate::math::{BranchKey, DVec3, Sampler};
 use crate::scene::{Hit, MaterialId};
@@ -61,7 +60,7 @@ impl<const N: usize> Tracer<'_, N> {
     /// between media.
     pub(super) fn photon(
         &mut self,
-        emitted: &Emitted,
+        emitted: &LeSample,
         light: LightId,
         media: Media,
         draw: &Draw<N>,

@@ -1,54 +1,40 @@
-//! Where photons are sent.
+//! Where photons are sent, and how they start.
 
-use std::f64::consts::{PI, TAU};
+use std::cell::Cell;
 use std::sync::Arc;
 
 use super::guide::Guide;
-use crate::light::{Light, LightId};
+use crate::light::{Beam, LeSample, LightId};
 use crate::material::Material;
-use crate::math::DVec3;
+use crate::math::{DVec3, Ray};
 use crate::scene::Scene;
-use crate::shape::{Ball, Shape, Sides};
+use crate::shape::Ball;
 use crate::spectrum::Table;
 
 /// Photons of one light toward one ball of smooth objects.
 #[derive(Clone, Debug)]
-pub(super) struct Aim {
+pub(super) struct PhotonTarget {
     pub(super) light: LightId,
     /// How many photons are sent.
     pub(super) photons: u64,
-    pub(super) ball: Ball,
-    /// Of a light that is a point: axis and 1 - cos of the cone that is shone into.
-    pub(super) lobe: (DVec3, f64),
-    /// Which places of the cone, or of the ball's disc, are worth it.
-    pub(super) guide: Arc<Guide>,
-    /// The flux it sends, about.
+    beam: Beam,
+    /// Which of the beam's ways are worth it.
+    guide: Arc<Guide>,
+    /// The flux that it sends, about.
     flux: f64,
-    /// Whether the light is apart from the ball, so that a place stands for a way to it.
-    apart: bool,
-}
-
-/// Whether photons can be sent from a light: not from the sky, nor from a lamp that shows an image, which does not send the same
-/// from all its points, nor from an instance, whose points are drawn by their areas before it was placed.
-pub fn is_photon_source<S>(light: &Light<S>) -> bool {
-    match light {
-        Light::Environment(_) => false,
-        Light::Area(area) => area.coordinates.is_none() && !matches!(*area.shape, Shape::Instance(_)),
-        Light::Point(_) | Light::Spot(_) | Light::Sun(_) => true,
-    }
 }
 
 /// All the ways photons are sent, and to what.
 #[derive(Clone, Debug)]
-pub(super) struct Aims {
+pub(super) struct PhotonTargets {
     /// Those of one light follow each other.
-    pub(super) aims: Vec<Aim>,
+    pub(super) aims: Vec<PhotonTarget>,
     /// Which lights send photons.
     pub(super) lights: Vec<bool>,
     /// Which objects they are sent to.
     pub(super) objects: Vec<bool>,
     /// A ball around all that is finite.
-    pub(super) world: Ball,
+    world: Ball,
     /// Photons asked for.
     photons: u64,
 }
@@ -68,8 +54,9 @@ pub fn is_photon_target<S>(scene: &Scene<S>, object: usize) -> bool {
     smooth && scene.objects[object].shape.bounds().is_some()
 }
 
-impl Aims {
-    /// Aims some lights, given with their luminances, at all objects that photons can be sent to; none if there is none, or none of the lights shines there.
+impl PhotonTargets {
+    /// From some lights, given with their luminances, to all objects that photons can be sent to; none if there is none, or none of
+    /// the lights shines there.
     pub(super) fn new(scene: &Scene<Table>, lights: &[(LightId, f64)], photons: u64) -> Option<Self> {
         let objects: Vec<bool> = (0..scene.objects.len()).map(|object| is_photon_target(scene, object)).collect();
         let shapes = || scene.objects.iter().map(|object| &object.shape);
@@ -79,12 +66,11 @@ impl Aims {
         let world = shapes().filter_map(|shape| shape.ball()).reduce(Ball::around)?;
         let mut aims = Vec::new();
         for (&(light, luminance), ball) in lights.iter().flat_map(|light| balls.iter().map(move |ball| (light, ball))) {
-            let (lobe, size) = reach(&scene.lights[light], ball);
-            let flux = size * luminance;
+            let Some(beam) = scene.lights[light].beam(ball) else { continue };
+            let flux = beam.flux * luminance;
             if flux > 0.0 {
-                let apart = is_apart(&scene.lights[light], ball);
-                let guide = if apart { disc.clone() } else { even.clone() };
-                aims.push(Aim { light, photons: 0, ball: *ball, lobe, guide, flux, apart });
+                let guide = if beam.is_apart { disc.clone() } else { even.clone() };
+                aims.push(PhotonTarget { light, photons: 0, beam, guide, flux });
             }
         }
         let mut lights = vec![false; scene.lights.len()];
@@ -109,51 +95,55 @@ impl Aims {
         }
     }
 
-    /// Follows what was learned: of some photons of each aim, their places and whether the camera saw them.
+    /// Follows what was learned: of some photons of each aim, their `guide_uv` and whether the camera saw them.
     pub(super) fn learn(&mut self, found: &[Vec<([f64; 2], bool)>]) {
         for (aim, photons) in self.aims.iter_mut().zip(found) {
             let seen = photons.iter().filter(|photon| photon.1).count();
             aim.flux *= seen as f64 / photons.len().max(1) as f64;
-            if aim.apart {
+            if aim.beam.is_apart {
                 aim.guide = Arc::new(Guide::learned(photons));
             }
         }
         self.share_out();
     }
-}
 
-/// The cone that a point shines into, and how much of the light's emission goes to a ball.
-fn reach(light: &Light<Table>, ball: &Ball) -> ((DVec3, f64), f64) {
-    let all = (DVec3::Z, 2.0);
-    match light {
-        Light::Point(point) => {
-            let lobe = ball.cone_from(point.position.into());
-            (lobe, TAU * lobe.1)
-        }
-        Light::Spot(spot) => {
-            let (lobe, own) = (ball.cone_from(spot.position.into()), spot.cone());
-            let half = |one_minus_cos: f64| libm::acos((1.0 - one_minus_cos).clamp(-1.0, 1.0));
-            let apart = libm::acos(lobe.0.dot(own.0).clamp(-1.0, 1.0));
-            let misses = lobe.1 < 2.0 && apart > half(lobe.1) + half(own.1);
-            let lobe = if own.1 < lobe.1 { own } else { lobe };
-            (lobe, if misses { 0.0 } else { TAU * lobe.1 })
-        }
-        _ if !is_photon_source(light) => (all, 0.0),
-        Light::Area(area) => {
-            let size = area.shape.emitter(area.sides == Sides::Both).map_or(0.0, |emitter| emitter.intensity);
-            let from = area.shape.ball().map_or(ball.center, |own| own.center);
-            (all, size * TAU * ball.cone_from(from).1)
-        }
-        Light::Sun(_) => (all, PI * ball.radius * ball.radius),
-        Light::Environment(_) => (all, 0.0),
+    /// Which way a photon is sent, a place of the unit square, for two random numbers.
+    pub(super) fn guide_uv(&self, number: usize, u: [f64; 2]) -> [f64; 2] {
+        self.aims[number].guide.sample(u)
     }
-}
 
-/// Whether no point of a lamp lies in a ball.
-fn is_apart(light: &Light<Table>, ball: &Ball) -> bool {
-    let Light::Area(area) = light else { return true };
-    let lamp = area.shape.ball();
-    lamp.is_some_and(|lamp| (lamp.center - ball.center).length() > lamp.radius + ball.radius)
+    /// The start of a photon of a target for its `guide_uv` and two random numbers; none where the light does not shine.
+    ///
+    /// Its flux is divided by how many photons all targets of the light send along the same line: their beams may overlap.
+    pub(super) fn sample_le(
+        &self,
+        scene: &Scene<Table>,
+        number: usize,
+        guide_uv: [f64; 2],
+        u: [f64; 2],
+    ) -> Option<LeSample> {
+        let of_light = |aim: &PhotonTarget| aim.light == self.aims[number].light;
+        let first = self.aims[..number].iter().rposition(|aim| !of_light(aim)).map_or(0, |before| before + 1);
+        let light = &scene.lights[self.aims[number].light];
+        let sample = light.sample_le(&self.aims[number].beam, guide_uv, u)?;
+        let ray = if light.is_sky() { self.from_outside(scene, &sample.ray)? } else { sample.ray };
+        let sent = |(other, aim): (usize, &PhotonTarget)| {
+            let pdf = if other == number { Some(sample.pdf) } else { light.pdf_le(&aim.beam, &sample) };
+            aim.photons as f64 * pdf.map_or(0.0, |pdf| pdf.guided(|uv| aim.guide.density(uv)))
+        };
+        let aims = (first..).zip(self.aims[first..].iter().take_while(|aim| of_light(aim)));
+        let factor = sample.factor / aims.map(sent).sum::<f64>();
+        (factor > 0.0 && factor.is_finite()).then_some(LeSample { ray, factor, ..sample })
+    }
+
+    /// The ray of a photon from the sky, started outside of all that is finite; none where a plane hides the sky there.
+    fn from_outside(&self, scene: &Scene<Table>, ray: &Ray) -> Option<Ray> {
+        let sky = -ray.direction;
+        let out = (self.world.center - ray.origin).dot(sky) + 2.0 * self.world.radius;
+        let start = Ray { origin: ray.origin + sky * out, direction: sky };
+        let hidden = scene.is_hidden(&start, f64::INFINITY, None, &Cell::new(None));
+        (!hidden).then_some(Ray { direction: ray.direction, ..start })
+    }
 }
 
 /// Balls of which none lies in another; of more than are wanted, neighbors as one.
