@@ -30,7 +30,7 @@ fn main() {
         let source = Source { path: "room.toml".into(), text };
         let scene = compile(&source.parse().expect("the room is well formed"), &source).expect("the room is valid");
         let plan = plan(&scene).method;
-        let lights: Vec<usize> = (0..scene.lights.len()).filter(|&id| &scene.lights[id].sends_photons()).collect();
+        let lights: Vec<usize> = (0..scene.lights.len()).filter(|&id| scene.lights[id].sends_photons()).collect();
         let wanted = plan
             .light_pass
             .as_ref()

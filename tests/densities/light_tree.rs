@@ -92,6 +92,6 @@ fn lights_in_one_place_and_in_growing_distances_are_all_chosen() {
         assert!(found.probability.is_finite() && found.probability > 0.0);
     }
     let dark = LightTree::new(&[at(1.0, 0.0)]);
-    assert!(dark.choose(DVec3::ZERO, DVec3::X, false, 0.5).is_none());
+    assert!(dark.sample(DVec3::ZERO, DVec3::X, false, 0.5).is_none());
     assert_eq!(dark.probability(0, DVec3::ZERO, DVec3::X, false), 0.0);
 }
