@@ -1,7 +1,7 @@
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-use super::{Beam, LePdf, LeSample, LightBounds, LightSample, LightTree};
+use super::{Beam, LeSample, LightBounds, LightSample, LightTree};
 use crate::math::{Bounds, Cone, DVec3, Frame, Ray, cosine_hemisphere, unit};
 use crate::shape::{Ball, Cap, Coordinates, Crossing, Shape, ShapeSample, Sides, SurfacePoint};
 use crate::spectrum::Quantity;
@@ -141,44 +141,35 @@ impl<S> Area<S> {
 
     /// A photon from a point of the surface to the ball: in the cone that this fills; by its cosine where the point is inside the
     /// ball.
-    pub(super) fn sample_le(&self, ball: &Ball, guide_uv: [f64; 2], u: [f64; 2]) -> Option<LeSample> {
-        let (point, of_point) = self.shape.sample_emission(ball, u)?;
+    pub(super) fn sample_le(&self, ball: &Ball, [a, b]: [f64; 2], u: [f64; 2]) -> Option<LeSample> {
+        let point = self.shape.sample_emission(ball, u)?;
         let cone = ball.cone_from(point.position);
-        let (direction, pdf) = if cone.is_all() {
-            let direction = self.sample_hemisphere(point.normal, guide_uv);
-            (direction, self.pdf_hemisphere(point.normal.dot(direction), of_point))
+        let direction = if cone.is_all() {
+            let front = self.front();
+            let (side, a) =
+                if a < front { (point.normal, a / front) } else { (-point.normal, (a - front) / (1.0 - front)) };
+            unit(Frame::about(side).to_world(cosine_hemisphere([a, b])))
         } else {
-            let pdf = LePdf { guide_uv: Some(guide_uv), of_square: cone.of_square(), others: of_point };
-            (cone.direction_at(guide_uv)?, pdf)
+            cone.sample([a, b])?
         };
         let cos = point.normal.dot(direction);
-        let sample = LeSample { ray: point.leave(direction), factor: cos.abs(), pdf, surface: Some(point) };
+        let sample = LeSample { ray: point.leave(direction), factor: cos.abs(), surface: Some(point) };
         self.sides.shine(cos > 0.0).then_some(sample)
     }
 
-    /// How densely `sample_le` draws a photon for a ball; none where its way does not lead there.
-    pub(super) fn pdf_le(&self, ball: &Ball, sample: &LeSample) -> Option<LePdf> {
-        let (point, direction) = (sample.surface.as_ref()?, sample.ray.direction);
-        let cone = ball.cone_from(point.position);
-        if cone.is_all() {
-            return Some(self.pdf_hemisphere(point.normal.dot(direction), self.shape.pdf_emission(ball, point)));
-        }
-        let guide_uv = cone.place_of(direction)?;
-        let others = self.shape.pdf_emission(ball, point);
-        Some(LePdf { guide_uv: Some(guide_uv), of_square: cone.of_square(), others })
-    }
-
-    /// A direction from one of the sides, by its cosine.
-    fn sample_hemisphere(&self, normal: DVec3, [u, v]: [f64; 2]) -> DVec3 {
-        let front = self.front();
-        let (side, u) = if u < front { (normal, u / front) } else { (-normal, (u - front) / (1.0 - front)) };
-        unit(Frame::about(side).to_world(cosine_hemisphere([u, v])))
-    }
-
-    /// The density of that direction and of its point.
-    fn pdf_hemisphere(&self, cos: f64, of_point: f64) -> LePdf {
-        let along = if cos > 0.0 { self.front() } else { 1.0 - self.front() } * cos.abs() / PI;
-        LePdf { guide_uv: None, of_square: 1.0, others: along * of_point }
+    /// How densely `sample_le` draws a photon for a ball from places of a density of their own, per unit of area and steradian; 0
+    /// of a way that does not lead there.
+    pub(super) fn pdf_le(&self, ball: &Ball, sample: &LeSample, guide: impl Fn([f64; 2]) -> f64) -> f64 {
+        let Some(point) = &sample.surface else { return 0.0 };
+        let (cone, direction) = (ball.cone_from(point.position), sample.ray.direction);
+        let along = if cone.is_all() {
+            let cos = point.normal.dot(direction);
+            let side = if cos > 0.0 { self.front() } else { 1.0 - self.front() };
+            side * cos.abs() / PI
+        } else {
+            cone.pdf(direction, guide)
+        };
+        along * self.shape.pdf_emission(ball, point)
     }
 
     /// How often a point inside the ball that photons are sent to sends one from its front.

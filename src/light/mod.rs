@@ -20,7 +20,7 @@ pub use bounds::{LightBounds, NormalCone};
 pub use environment::{Environment, Sky};
 pub use panorama::Panorama;
 pub use point::Point;
-pub use sample::{Beam, LePdf, LeSample, LightSample};
+pub use sample::{Beam, LeSample, LightSample};
 pub use sampler::{LightSampler, SampledLight};
 pub use spot::Spot;
 pub use sun::Sun;
@@ -86,8 +86,8 @@ impl<S> Light<S> {
     pub fn sample_li(&self, from: &SurfacePoint, normal: DVec3, u: [f64; 2]) -> Option<LightSample> {
         match self {
             Self::Area(area) => area.sample_li(from, normal, u),
-            Self::Point(point) => point.sample_li(from),
-            Self::Spot(spot) => spot.sample_li(from),
+            Self::Point(point) => LightSample::of_point(from, point.position.into(), |_| 1.0),
+            Self::Spot(spot) => LightSample::of_point(from, spot.position.into(), |direction| spot.part(direction)),
             Self::Environment(environment) => environment.sample_li(from, normal, u),
             Self::Sun(sun) => sun.sample_li(from, u),
         }
@@ -133,21 +133,21 @@ impl<S> Light<S> {
     pub fn sample_le(&self, beam: &Beam, guide_uv: [f64; 2], u: [f64; 2]) -> Option<LeSample> {
         match self {
             Self::Area(area) => area.sample_le(&beam.ball, guide_uv, u),
-            Self::Point(point) => point.sample_le(&beam.cone, guide_uv),
-            Self::Spot(spot) => spot.sample_le(&beam.cone, guide_uv),
+            Self::Point(point) => LeSample::of_point(point.position.into(), &beam.cone, guide_uv, |_| 1.0),
+            Self::Spot(spot) => LeSample::of_point(spot.position.into(), &beam.cone, guide_uv, |way| spot.part(way)),
             Self::Sun(sun) => sun.sample_le(&beam.ball, guide_uv, u),
             Self::Environment(_) => None,
         }
     }
 
-    /// How densely `sample_le` draws the start of a photon of this light for a beam, which may be another than the photon's own;
-    /// none if it cannot.
-    pub fn pdf_le(&self, beam: &Beam, sample: &LeSample) -> Option<LePdf> {
+    /// How densely `sample_le` draws the start of a photon of this light for a beam, which may be another than the photon's own,
+    /// from places of the unit square of a density of their own; 0 if it cannot.
+    pub fn pdf_le(&self, beam: &Beam, sample: &LeSample, guide: impl Fn([f64; 2]) -> f64) -> f64 {
         match self {
-            Self::Area(area) => area.pdf_le(&beam.ball, sample),
-            Self::Point(_) | Self::Spot(_) => point::pdf_from_point(&beam.cone, sample),
-            Self::Sun(sun) => sun.pdf_le(&beam.ball, sample),
-            Self::Environment(_) => None,
+            Self::Area(area) => area.pdf_le(&beam.ball, sample, guide),
+            Self::Point(_) | Self::Spot(_) => beam.cone.pdf(sample.ray.direction, guide),
+            Self::Sun(sun) => sun.pdf_le(&beam.ball, &sample.ray, guide),
+            Self::Environment(_) => 0.0,
         }
     }
 

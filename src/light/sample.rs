@@ -55,28 +55,16 @@ pub struct Beam {
 pub struct LeSample {
     /// Its way from the light.
     pub ray: Ray,
-    /// The factor on the light's emission that makes flux of it, per unit of the photon's density.
+    /// The factor on the light's emission that makes flux of it, over the density of the sample.
     pub factor: f64,
-    /// How densely it is drawn.
-    pub pdf: LePdf,
     /// Where it leaves a surface that shines.
     pub surface: Option<SurfacePoint>,
 }
 
-/// How densely a photon's start is drawn.
-#[derive(Clone, Copy, Debug)]
-pub struct LePdf {
-    /// The place of the unit square that stands for its way; none where that is not drawn by the square.
-    pub guide_uv: Option<[f64; 2]>,
-    /// Solid angle or area that the square stands for.
-    pub(super) of_square: f64,
-    /// Density of what is not drawn by the square.
-    pub(super) others: f64,
-}
-
-impl LePdf {
-    /// The density where places of the square are drawn with a density of their own, per unit of the square.
-    pub fn guided(&self, density_at: impl FnOnce([f64; 2]) -> f64) -> f64 {
-        self.guide_uv.map_or(self.others, |uv| density_at(uv) / self.of_square * self.others)
+impl LeSample {
+    /// Of a point that shines with a part of its intensity in each direction.
+    pub(super) fn of_point(light: DVec3, cone: &Cone, guide_uv: [f64; 2], part: impl Fn(DVec3) -> f64) -> Option<Self> {
+        let direction = cone.sample(guide_uv)?;
+        Some(Self { ray: Ray { origin: light, direction }, factor: part(direction), surface: None })
     }
 }

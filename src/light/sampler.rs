@@ -1,4 +1,4 @@
-use super::{Light, LightId, LightTree};
+use super::{Light, LightBounds, LightId, LightTree};
 use crate::math::{DVec3, Distribution};
 use crate::spectrum::Table;
 
@@ -11,11 +11,12 @@ pub struct LightSampler {
     tree: LightTree,
     /// The tree, then each infinite light.
     kinds: Distribution,
-    /// The light of each entry of the tree.
-    finite: Vec<LightId>,
-    infinite: Vec<LightId>,
-    /// Where each light stands.
-    entries: Vec<Entry>,
+    /// The lights of the tree, then the infinite ones.
+    lights: Vec<LightId>,
+    /// How many lights stand in the tree.
+    finite: usize,
+    /// Place of each light among `lights`; none of one that is not sampled or does not shine.
+    places: Vec<Option<usize>>,
 }
 
 /// A light drawn at random.
@@ -27,47 +28,29 @@ pub struct SampledLight {
     pub probability: f64,
 }
 
-#[derive(Clone, Copy, Debug)]
-enum Entry {
-    /// Nowhere: it is not sampled, or does not shine.
-    Absent,
-    Finite(usize),
-    Infinite(usize),
-}
-
 impl LightSampler {
     /// Of those lights that are sampled and shine.
     pub fn new(lights: &[Light<Table>]) -> Self {
-        let (mut entries, mut finite, mut infinite) = (vec![Entry::Absent; lights.len()], Vec::new(), Vec::new());
-        let (mut bounds, mut irradiances) = (Vec::new(), Vec::new());
-        for (light, id) in lights.iter().zip(0..).filter(|(light, _)| light.is_sampled()) {
-            match light.bounds() {
-                Some(of_light) if of_light.intensity > 0.0 => {
-                    entries[id] = Entry::Finite(finite.len());
-                    finite.push(id);
-                    bounds.push(of_light);
-                }
-                None if light.irradiance() > 0.0 => {
-                    entries[id] = Entry::Infinite(infinite.len());
-                    infinite.push(id);
-                    irradiances.push(light.irradiance());
-                }
-                _ => {}
-            }
-        }
-        let of_sky: f64 = irradiances.iter().sum();
+        let sampled = || (0..lights.len()).filter(|&id| lights[id].is_sampled());
+        let bounds = |id: LightId| Some((id, lights[id].bounds().filter(|light| light.intensity > 0.0)?));
+        let (finite, bounds): (Vec<LightId>, Vec<LightBounds>) = sampled().filter_map(bounds).unzip();
+        let shining = sampled().map(|id| (id, lights[id].irradiance())).filter(|sky| sky.1 > 0.0);
+        let (infinite, irradiances): (Vec<LightId>, Vec<f64>) = shining.unzip();
         let of_tree = match (finite.is_empty(), infinite.is_empty()) {
             (true, _) => 0.0,
-            (false, false) => of_sky,
+            (false, false) => irradiances.iter().sum(),
             (false, true) => 1.0,
         };
+        let mut places = vec![None; lights.len()];
+        let all = [finite.as_slice(), &infinite].concat();
+        all.iter().enumerate().for_each(|(place, &id)| places[id] = Some(place));
         let kinds = Distribution::new(std::iter::once(of_tree).chain(irradiances));
-        Self { tree: LightTree::new(&bounds), kinds, finite, infinite, entries }
+        Self { tree: LightTree::new(&bounds), kinds, lights: all, finite: finite.len(), places }
     }
 
     /// The lights that are sampled from anywhere, in order.
     pub fn lights(&self) -> Vec<LightId> {
-        let mut lights = [self.finite.as_slice(), &self.infinite].concat();
+        let mut lights = self.lights.clone();
         lights.sort_unstable();
         lights
     }
@@ -76,18 +59,21 @@ impl LightSampler {
     pub fn sample(&self, from: DVec3, normal: DVec3, u: f64) -> Option<SampledLight> {
         let kind = self.kinds.sample(u);
         if kind.index > 0 {
-            return Some(SampledLight { light: self.infinite[kind.index - 1], probability: kind.probability });
+            let light = self.lights[self.finite + kind.index - 1];
+            return Some(SampledLight { light, probability: kind.probability });
         }
         let drawn = self.tree.sample(from, normal, false, kind.u)?;
-        Some(SampledLight { light: self.finite[drawn.index], probability: drawn.probability * kind.probability })
+        Some(SampledLight { light: self.lights[drawn.index], probability: drawn.probability * kind.probability })
     }
 
     /// How likely `sample` draws a light.
     pub fn probability(&self, light: LightId, from: DVec3, normal: DVec3) -> f64 {
-        match self.entries[light] {
-            Entry::Absent => 0.0,
-            Entry::Finite(entry) => self.kinds.probability(0) * self.tree.probability(entry, from, normal, false),
-            Entry::Infinite(entry) => self.kinds.probability(1 + entry),
+        match self.places[light] {
+            None => 0.0,
+            Some(place) if place < self.finite => {
+                self.kinds.probability(0) * self.tree.probability(place, from, normal, false)
+            }
+            Some(place) => self.kinds.probability(place - self.finite + 1),
         }
     }
 }

@@ -1,9 +1,8 @@
 use std::f64::consts::TAU;
 
-use super::point::from_point;
-use super::{Beam, LeSample, LightSample};
+use super::Beam;
 use crate::math::{Cone, DVec3, unit};
-use crate::shape::{Ball, SurfacePoint};
+use crate::shape::Ball;
 use crate::spectrum::Quantity;
 
 /// A point that shines into a cone, dimmer toward its edge; rays never meet it.
@@ -58,10 +57,6 @@ impl<S> Spot<S> {
         Cone { axis: unit(DVec3::from(self.toward).normalize()), one_minus_cos: 2.0 * sin * sin }
     }
 
-    pub(super) fn sample_li(&self, from: &SurfacePoint) -> Option<LightSample> {
-        LightSample::of_point(from, self.position.into(), |direction| self.part(direction))
-    }
-
     /// Photons fill the narrower one of both cones: the spot's own, and that of the ball.
     pub(super) fn beam(&self, ball: &Ball) -> Beam {
         let (toward, own) = (ball.cone_from(self.position.into()), self.cone());
@@ -70,11 +65,6 @@ impl<S> Spot<S> {
         let misses = !toward.is_all() && between > half(&toward) + half(&own);
         let cone = if own.one_minus_cos < toward.one_minus_cos { own } else { toward };
         Beam { ball: *ball, cone, flux: if misses { 0.0 } else { TAU * cone.one_minus_cos }, is_apart: true }
-    }
-
-    pub(super) fn sample_le(&self, cone: &Cone, guide_uv: [f64; 2]) -> Option<LeSample> {
-        let sample = from_point(self.position.into(), cone, guide_uv)?;
-        Some(LeSample { factor: self.part(sample.ray.direction), ..sample })
     }
 }
 

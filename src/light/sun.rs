@@ -3,7 +3,7 @@ use std::sync::OnceLock;
 
 use serde::Deserialize;
 
-use super::{Beam, LePdf, LeSample, LightSample};
+use super::{Beam, LeSample, LightSample};
 use crate::math::{Cone, DVec3, Frame, Ray, cone, disk_in_square, one_minus_cos_of_cone, square_around_disk, unit};
 use crate::shape::{Ball, SurfacePoint};
 use crate::spectrum::Quantity;
@@ -112,17 +112,16 @@ impl<S> Sun<S> {
         let [x, y] = disk_in_square(guide_uv)?;
         let origin = ball.center + Frame::about(toward).to_world(DVec3::new(x, y, 0.0) * ball.radius);
         let light = self.along(Ray { origin, direction: toward })?;
-        let pdf = LePdf { guide_uv: Some(guide_uv), of_square: 4.0 * ball.radius * ball.radius, others: 1.0 };
         let ray = Ray { origin, direction: -toward };
-        Some(LeSample { ray, factor: light.factor / light.pdf.unwrap_or(1.0), pdf, surface: None })
+        Some(LeSample { ray, factor: light.factor / light.pdf.unwrap_or(1.0), surface: None })
     }
 
-    /// How densely `sample_le` draws a photon for a ball.
-    pub(super) fn pdf_le(&self, ball: &Ball, sample: &LeSample) -> Option<LePdf> {
-        let frame = Frame::about(-sample.ray.direction);
-        let local = frame.to_local(sample.ray.origin - ball.center) / ball.radius;
-        let guide_uv = square_around_disk([local.x, local.y])?;
-        Some(LePdf { guide_uv: Some(guide_uv), of_square: 4.0 * ball.radius * ball.radius, others: 1.0 })
+    /// How densely `sample_le` draws a photon for a ball from places of a density of their own, per unit of area across its way;
+    /// 0 beside the ball.
+    pub(super) fn pdf_le(&self, ball: &Ball, ray: &Ray, guide: impl Fn([f64; 2]) -> f64) -> f64 {
+        let local = Frame::about(-ray.direction).to_local(ray.origin - ball.center) / ball.radius;
+        let place = square_around_disk([local.x, local.y]);
+        place.map_or(0.0, |place| guide(place) / (4.0 * ball.radius * ball.radius))
     }
 }
 

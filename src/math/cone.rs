@@ -18,30 +18,27 @@ impl Cone {
         self.one_minus_cos >= 2.0
     }
 
-    /// Solid angle of the square that `direction_at` maps to the cone, the corners beside the disk included.
-    pub fn of_square(&self) -> f64 {
-        8.0 * self.one_minus_cos
-    }
-
     /// A direction of the cone for a place of the unit square: equal areas of the disk in it are equal solid angles, 1 - cos =
     /// r^2 times the cone's. None beside the disk.
-    pub fn direction_at(&self, place: [f64; 2]) -> Option<DVec3> {
+    pub fn sample(&self, place: [f64; 2]) -> Option<DVec3> {
         let [x, y] = disk_in_square(place)?;
         let here = (x * x + y * y) * self.one_minus_cos;
         let stretch = (self.one_minus_cos * (2.0 - here)).sqrt();
         Some(unit(Frame::about(self.axis).to_world(DVec3::new(x * stretch, y * stretch, 1.0 - here))))
     }
 
-    /// The place that `direction_at` takes to a direction; none of a direction beside the cone.
-    pub fn place_of(&self, direction: DVec3) -> Option<[f64; 2]> {
+    /// Density per steradian with which `sample` draws a unit vector from places of a density of their own on the square; 0
+    /// beside the cone.
+    pub fn pdf(&self, direction: DVec3, density_at: impl Fn([f64; 2]) -> f64) -> f64 {
         // For unit vectors, without the rounding of 1 - cos.
         let here = 0.5 * (direction - self.axis).length_squared();
         let local = Frame::about(self.axis).to_local(direction);
         let stretch = (self.one_minus_cos * (2.0 - here)).sqrt();
-        if stretch > 0.0 {
-            square_around_disk([local.x / stretch, local.y / stretch]).filter(|_| here < self.one_minus_cos)
-        } else {
-            None
+        if !(stretch > 0.0 && here < self.one_minus_cos) {
+            return 0.0;
         }
+        // The square is 4 / pi times as large as the disk, which stands for 2 pi (1 - cos).
+        let place = square_around_disk([local.x / stretch, local.y / stretch]);
+        place.map_or(0.0, |place| density_at(place) / (8.0 * self.one_minus_cos))
     }
 }

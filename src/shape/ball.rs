@@ -83,8 +83,8 @@ mod tests {
         let (mut all, mut inner) = (0.0, 0.0);
         for i in 0..10_000 {
             let u = [(f64::from(i) + 0.5) / 1e4, (f64::from(i) * 0.618_034).fract()];
-            let (point, density) = sphere.sample_emission(&toward, u).expect("a sphere has points");
-            assert_eq!(sphere.pdf_emission(&toward, &point), density);
+            let point = sphere.sample_emission(&toward, u).expect("a sphere has points");
+            let density = sphere.pdf_emission(&toward, &point);
             all += 1e-4 / density;
             inner += if (point.normal - axis).length_squared() < one_minus_cos { 1e-4 / density } else { 0.0 };
         }

@@ -336,14 +336,15 @@ impl Shape {
         part.map_or(0.0, |part| self.toward(part.density(ray.origin), ray, crossing))
     }
 
-    /// A point from which light may reach a ball, and its density per unit of area, which `pdf_emission` gives as well.
+    /// A point from which light may reach a ball; none of an infinite shape and of an instance.
     ///
-    /// Of a sphere, in the cap that sees some of the ball; of other shapes, all of the surface. None of an infinite shape and
-    /// of an instance.
-    pub fn sample_emission(&self, toward: &Ball, u: [f64; 2]) -> Option<(SurfacePoint, f64)> {
-        let point = match self {
+    /// Of a sphere, in the cap that sees some of the ball; of other shapes, anywhere on the surface.
+    pub fn sample_emission(&self, toward: &Ball, u: [f64; 2]) -> Option<SurfacePoint> {
+        Some(match self {
             Self::Plane(_) | Self::Instance(_) => return None,
             Self::Triangle(triangle) => triangle.point(triangle_coordinates(u)),
+            Self::Sphere(sphere) => sphere.sample_emission(self.ball()?, toward, u),
+            Self::Ellipsoid(ellipsoid) => ellipsoid.point_at(ball_surface(u)),
             Self::Disc(shape) => shape.point(disk(u).into()),
             Self::Quad(shape) => shape.point(u.map(|x| 2.0 * x - 1.0)),
             Self::Cube(cube) => {
@@ -354,13 +355,7 @@ impl Shape {
                 let (triangle, along) = mesh.choose(u[0]);
                 mesh.triangle(triangle).point(triangle_coordinates([along, u[1]]))
             }
-            Self::Ellipsoid(ellipsoid) => {
-                let unit = ball_surface(u);
-                return Some((ellipsoid.point_at(unit), ellipsoid.density_over(unit)));
-            }
-            Self::Sphere(sphere) => return Some(sphere.sample_emission(self.ball()?, toward, u)),
-        };
-        Some((point, 1.0 / self.area()))
+        })
     }
 
     /// Density per unit of area with which `sample_emission` draws a point of the shape for a ball.

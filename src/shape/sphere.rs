@@ -131,14 +131,12 @@ impl Sphere {
         ELSEWHERE * everywhere + (1.0 - ELSEWHERE) * of_cap
     }
 
-    /// A point of the cap that sees some of a ball, denser toward the cap's middle as much as it sends more there, and its
-    /// density per unit of area.
-    pub(super) fn sample_emission(&self, own: Ball, toward: &Ball, u: [f64; 2]) -> (SurfacePoint, f64) {
+    /// A point of the cap that sees some of a ball, denser toward the cap's middle as much as it sends more there.
+    pub(super) fn sample_emission(&self, own: Ball, toward: &Ball, u: [f64; 2]) -> SurfacePoint {
         let Cone { axis, one_minus_cos } = own.cap_toward(toward);
         let u = if one_minus_cos < 2.0 { [1.0 - u[0].sqrt(), u[1]] } else { u };
         let normal = Frame::about(axis).to_world(cone(one_minus_cos, u).0);
-        let point = self.point(self.over(normal));
-        (point, self.pdf_emission(own, toward, &point))
+        self.point(self.over(normal))
     }
 
     /// Density per unit of area with which `sample_emission` draws a point.

@@ -122,17 +122,14 @@ impl PhotonTargets {
         guide_uv: [f64; 2],
         u: [f64; 2],
     ) -> Option<LeSample> {
-        let of_light = |aim: &PhotonTarget| aim.light == self.aims[number].light;
-        let first = self.aims[..number].iter().rposition(|aim| !of_light(aim)).map_or(0, |before| before + 1);
+        let of_light = |aim: &&PhotonTarget| aim.light == self.aims[number].light;
+        let first = self.aims[..number].iter().rposition(|aim| !of_light(&aim)).map_or(0, |before| before + 1);
         let light = &scene.lights[self.aims[number].light];
         let sample = light.sample_le(&self.aims[number].beam, guide_uv, u)?;
         let ray = if light.is_sky() { self.from_outside(scene, &sample.ray)? } else { sample.ray };
-        let sent = |(other, aim): (usize, &PhotonTarget)| {
-            let pdf = if other == number { Some(sample.pdf) } else { light.pdf_le(&aim.beam, &sample) };
-            aim.photons as f64 * pdf.map_or(0.0, |pdf| pdf.guided(|uv| aim.guide.density(uv)))
-        };
-        let aims = (first..).zip(self.aims[first..].iter().take_while(|aim| of_light(aim)));
-        let factor = sample.factor / aims.map(sent).sum::<f64>();
+        let sent =
+            |aim: &PhotonTarget| aim.photons as f64 * light.pdf_le(&aim.beam, &sample, |uv| aim.guide.density(uv));
+        let factor = sample.factor / self.aims[first..].iter().take_while(of_light).map(sent).sum::<f64>();
         (factor > 0.0 && factor.is_finite()).then_some(LeSample { ray, factor, ..sample })
     }
 
