@@ -49,7 +49,7 @@ pub enum Light<S> {
 }
 
 impl<S> Light<S> {
-    /// The same light with its spectrum converted.
+    /// The light with its spectrum converted.
     pub fn map<T>(&self, convert: &mut impl FnMut(Quantity, &S) -> T) -> Light<T> {
         match self {
             Self::Area(area) => Light::Area(area.map(convert)),

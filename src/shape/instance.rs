@@ -33,7 +33,7 @@ impl Instance {
         (pad.is_finite() && around.min.is_finite() && around.max.is_finite()).then_some(placed)
     }
 
-    /// The same mesh after another map as well.
+    /// The placed mesh after another map.
     pub(super) fn transformed(&self, map: &Transform) -> Option<Self> {
         Self::new(self.mesh.clone(), self.to_world.then(map))
     }

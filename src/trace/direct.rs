@@ -14,7 +14,7 @@ use crate::scene::MaterialId;
 use crate::shape::{Crossing, SurfacePoint};
 use crate::spectrum::{Lanes, Table, Throughput};
 
-/// A place where light is gathered.
+/// A point of a surface that scatters widely, where light that lights send straight to it is gathered.
 pub(super) struct Gathering<'a, const N: usize> {
     pub(super) world: &'a World,
     pub(super) material: &'a Material<Table>,

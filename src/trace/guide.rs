@@ -16,7 +16,7 @@ pub(super) struct Guide {
 }
 
 impl Guide {
-    /// The same density everywhere.
+    /// A density of 1 everywhere.
     pub(super) fn even() -> Self {
         Self::of(|_| 1.0)
     }
@@ -47,7 +47,7 @@ impl Guide {
         })
     }
 
-    /// The same density in all cells that the largest disc of the square reaches into.
+    /// A constant density in all cells that the largest disc of the square reaches into, 0 in the others.
     pub(super) fn disc() -> Self {
         Self::of(|cell| f64::from(u8::from(touches_disc(cell))))
     }

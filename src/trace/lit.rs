@@ -5,8 +5,7 @@ use std::f64::consts::PI;
 
 use super::media::Media;
 use super::search::Reached;
-use super::spread::SEEN_PIXELS;
-use super::targets::Targets;
+use super::targets::{SEEN_PIXELS, Targets};
 use super::walk::{Colors, Walk, Way};
 use crate::light::{Light, LightId};
 use crate::math::{BranchKey, Cone, DVec2, DVec3, Frame, Ray, Sampler, cone, disk, unit};
@@ -112,7 +111,7 @@ impl Pair<'_> {
         let (a, b) = (first.end?.0, second.end?.0);
         let scale = self.scale(&a, &first)?;
         let apart = scale * (a.position - b.position).length();
-        if apart >= SEEN_PIXELS && self.share(&start, target, (&first, &a), &walk).is_some_and(|share| share < FAINT) {
+        if apart >= SEEN_PIXELS && self.share(&start, target, &first, &a, &walk).is_some_and(|share| share < FAINT) {
             return Some(0.0);
         }
         // A cone of even density.
@@ -138,7 +137,8 @@ impl Pair<'_> {
         &self,
         start: &Ray,
         target: DVec3,
-        (first, end): (&Walk, &SurfacePoint),
+        first: &Walk,
+        end: &SurfacePoint,
         walk: &impl Fn(usize, Ray) -> Walk,
     ) -> Option<f64> {
         let (scene, light) = (&self.colors.world.scene, &self.colors.world.scene.lights[self.light]);

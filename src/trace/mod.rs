@@ -68,5 +68,6 @@ pub use reach::{gathered_photons, reached_places};
 pub use render::{Report, render, work};
 pub use routes::{ROUTES_NM, Route, Step, Way, routes};
 pub use seen_light::{SeenLight, seen_light};
-pub use spread::{COLORS_NM, SEEN_PIXELS, Spread, spread};
+pub use spread::{COLORS_NM, Spread, spread};
+pub use targets::SEEN_PIXELS;
 pub use world::World;

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::guide::Guide;
 use crate::light::{Beam, LeSample, LightId};
 use crate::material::Material;
-use crate::math::{DVec3, Ray};
+use crate::math::{Ray, neighbors};
 use crate::scene::Scene;
 use crate::shape::Ball;
 use crate::spectrum::Table;
@@ -159,25 +159,7 @@ fn gathered(balls: Vec<Ball>, most: usize) -> Vec<Ball> {
         }
     }
     let mut found = Vec::new();
-    halve(&mut outer, most, &mut found);
+    let mut take = |group: &[Ball]| found.extend(group.iter().copied().reduce(Ball::around));
+    neighbors(&mut outer, most, &|ball| ball.center, &mut take);
     found
-}
-
-/// Adds at most `most` balls around all of some.
-fn halve(balls: &mut [Ball], most: usize, found: &mut Vec<Ball>) {
-    if balls.len() <= most {
-        found.extend_from_slice(balls);
-        return;
-    }
-    if most == 1 {
-        found.extend(balls.iter().copied().reduce(Ball::around));
-        return;
-    }
-    let [low, high] = [DVec3::min, DVec3::max].map(|choose| balls.iter().map(|ball| ball.center).reduce(choose));
-    let size = high.unwrap_or_default() - low.unwrap_or_default();
-    let axis = (0..3).max_by(|&a, &b| size[a].total_cmp(&size[b])).unwrap_or(0);
-    balls.sort_by(|a, b| a.center[axis].total_cmp(&b.center[axis]));
-    let (left, right) = balls.split_at_mut(balls.len() / 2);
-    halve(left, most / 2, found);
-    halve(right, most - most / 2, found);
 }
