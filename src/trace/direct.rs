@@ -7,14 +7,14 @@ use super::path::ScatterSample;
 use super::polarization::{Lit, Polarized};
 use super::straight;
 use super::{World, media, shading};
-use crate::light::{Light, LightId};
+use crate::light::{LightId, LightSample};
 use crate::material::{Arrival, Material};
 use crate::math::{BranchKey, DVec3, Ray, Sampler};
 use crate::scene::MaterialId;
 use crate::shape::{Crossing, SurfacePoint};
 use crate::spectrum::{Lanes, Table, Throughput};
 
-/// A place where light is gathered.
+/// A point of a surface that scatters widely, where light that lights send straight to it is gathered.
 pub(super) struct Gathering<'a, const N: usize> {
     pub(super) world: &'a World,
     pub(super) material: &'a Material<Table>,
@@ -49,14 +49,16 @@ const MORE_DIGITS: u32 = 3;
 impl<const N: usize> Gathering<'_, N> {
     /// What the sensor gets of the light that lights send straight to the surface.
     fn direct(&self, sampler: &Sampler, key: BranchKey) -> [f64; 3] {
-        let targets = &self.world.targets;
+        let lights = &self.world.scene.lights;
         let mut sum = [0.0; 3];
-        let digits = |target: LightId, u: [f64; 2]| match &self.world.scene.lights[target] {
-            Light::Area(area) if area.has_parts() => [finer(u[0], sampler.four_plain(key, MORE_DIGITS)[1]), u[1]],
-            _ => u,
+        let mut take = |light: LightId, probability: f64, [u, v]: [f64; 2]| {
+            let u = if lights[light].has_parts() { finer(u, sampler.four_plain(key, MORE_DIGITS)[1]) } else { u };
+            if let Some(light) = self.of_light(light, probability, [u, v]) {
+                add(&mut sum, light);
+            }
         };
         if self.aims_at_all {
-            for (number, &target) in targets.iter().enumerate() {
+            for (number, &light) in self.world.targets.iter().enumerate() {
                 let u = match number {
                     0 => [self.u[0], self.u[1]],
                     _ => {
@@ -64,13 +66,12 @@ impl<const N: usize> Gathering<'_, N> {
                         if number % 2 == 0 { [u[0], u[1]] } else { [u[2], u[3]] }
                     }
                 };
-                add(&mut sum, self.from(target, 1.0, digits(target, u)));
+                take(light, 1.0, u);
             }
         } else {
-            let more = sampler.four_plain(key, MORE_DIGITS);
-            let (from, normal) = (self.point.position, self.normal);
-            if let Some((target, probability)) = self.world.choice.choose(from, normal, finer(self.u[3], more[0])) {
-                add(&mut sum, self.from(target, probability, digits(target, [self.u[0], self.u[1]])));
+            let u = finer(self.u[3], sampler.four_plain(key, MORE_DIGITS)[0]);
+            if let Some(drawn) = self.world.light_sampler.sample(self.point.position, self.normal, u) {
+                take(drawn.light, drawn.probability, [self.u[0], self.u[1]]);
             }
         }
         sum
@@ -104,73 +105,71 @@ impl<const N: usize> Gathering<'_, N> {
         chance
     }
 
-    /// The share of one light, aimed at with a probability.
-    fn from(&self, target: LightId, probability: f64, u: [f64; 2]) -> [f64; 3] {
-        let light = &self.world.scene.lights[target];
-        let normal = self.normal;
+    /// What the sensor gets of one light, sampled with a probability; none where it gets nothing.
+    fn of_light(&self, id: LightId, probability: f64, u: [f64; 2]) -> Option<[f64; 3]> {
+        let (world, normal) = (self.world, self.normal);
+        let light = &world.scene.lights[id];
+        let sample = light.sample_li(self.point, normal, u)?;
+        let wi = sample.ray.direction;
+        if self.side.is_some() && wi.dot(normal) <= 0.0 {
+            return None;
+        }
+        let flat = if normal.dot(self.arrival.wo) < 0.0 { -normal } else { normal };
+        let (bsdf_cos, bsdf_pdf) = shading::evaluate(self.material, self.arrival, flat, wi)?;
         let probability = probability * self.side.unwrap_or(1.0);
-        let lit = || {
-            let sighting = light.aim(self.point.position, normal, u)?;
-            if self.side.is_some() && sighting.direction.dot(normal) <= 0.0 {
-                return None;
-            }
-            let flat = if normal.dot(self.arrival.wo) < 0.0 { -normal } else { normal };
-            let (bsdf_cos, bsdf_pdf) = shading::evaluate(self.material, self.arrival, flat, sighting.direction)?;
-            let ray = self.point.leave(sighting.direction);
-            let view = light.view(&ray, normal, &sighting)?;
-            let factor = match view.pdf {
-                None => view.factor / probability,
-                Some(pdf) => {
-                    let pdf = pdf * probability;
-                    let weight = if self.goes_on { power_heuristic(pdf, bsdf_pdf) } else { 1.0 };
-                    view.factor * weight / pdf
-                }
-            };
-            if !factor.is_finite() {
-                return None;
-            }
-            let transmitted = if self.world.has_see_through() {
-                Some(self.transmittance(&ray, view.distance, view.object)?)
-            } else if self.world.scene.is_hidden(&ray, view.distance, view.object, self.hider) {
-                return None;
-            } else {
-                None
-            };
-            let factor = match (self.aiming, view.pdf) {
-                (Some(aiming), Some(pdf)) if self.goes_on => {
-                    let pdf = pdf * probability;
-                    view.factor * power_heuristic(pdf, aiming.pdf(sighting.direction, bsdf_pdf)) / pdf
-                }
-                _ => factor,
-            };
-            let mut arriving = light.toward(self.arrival.draw, sighting.direction, view.uv);
-            if let Some((share, _)) = transmitted {
-                arriving = arriving * share;
-            }
-            if let Some(material) = self.inside {
-                arriving =
-                    arriving * media::medium(self.world, material).transmission(self.arrival.draw, view.distance);
-            }
-            let reflected = self.throughput.scaled(factor).of(bsdf_cos * arriving);
-            let rgb = self.world.responses[target].sensor(self.arrival.draw, reflected, self.parted);
-            if let Some(lit) = self.lit {
-                let on_its_way = transmitted.map_or(Polarized::NOT, |(_, polarized)| polarized);
-                lit.count(self.world, (self.material, self.arrival), (sighting.direction, on_its_way), rgb);
-            }
-            Some(rgb)
+        if !self.factor(&sample, probability, bsdf_pdf).is_finite() {
+            return None;
+        }
+        let straight = self.unoccluded(&sample)?;
+        // The density of bounces that are guided takes its time.
+        let bounce_pdf = match self.aiming {
+            Some(aiming) if self.goes_on && sample.pdf.is_some() => aiming.pdf(wi, bsdf_pdf),
+            _ => bsdf_pdf,
         };
-        lit().unwrap_or([0.0; 3])
+        let mut arriving = light.toward(self.arrival.draw, wi, sample.uv);
+        if let Some((share, _)) = straight {
+            arriving = arriving * share;
+        }
+        if let Some(material) = self.inside {
+            arriving = arriving * media::medium(world, material).transmission(self.arrival.draw, sample.distance);
+        }
+        let factor = self.factor(&sample, probability, bounce_pdf);
+        let reflected = self.throughput.scaled(factor).of(bsdf_cos * arriving);
+        let rgb = world.responses[id].sensor(self.arrival.draw, reflected, self.parted);
+        if let Some(lit) = self.lit {
+            let on_its_way = straight.map_or(Polarized::NOT, |(_, polarized)| polarized);
+            lit.count(world, (self.material, self.arrival), (wi, on_its_way), rgb);
+        }
+        Some(rgb)
+    }
+
+    /// The factor on a light's emission and the material's answer: over the density of both ways to the light's direction
+    /// together, where the path's own next direction may meet it.
+    fn factor(&self, sample: &LightSample, probability: f64, bounce_pdf: f64) -> f64 {
+        let Some(pdf) = sample.pdf else { return sample.factor / probability };
+        let pdf = pdf * probability;
+        let weight = if self.goes_on { power_heuristic(pdf, bounce_pdf) } else { 1.0 };
+        sample.factor * weight / pdf
+    }
+
+    /// None if something hides the light; where there are holes and panes, the share that goes straight on through them.
+    fn unoccluded(&self, sample: &LightSample) -> Option<Option<(Lanes<N>, Polarized)>> {
+        if self.world.has_see_through() {
+            return self.transmittance(sample).map(Some);
+        }
+        let hidden = self.world.scene.is_hidden(&sample.ray, sample.distance, sample.object, self.hider);
+        (!hidden).then_some(None)
     }
 
     /// The share of a light that goes straight on through what stands before it; none if something hides it.
     #[cold]
     #[inline(never)]
-    fn transmittance(&self, ray: &Ray, distance: f64, light: Option<u32>) -> Option<(Lanes<N>, Polarized)> {
-        let world = self.world;
-        if world.scene.is_hidden_by(ray, distance, light, self.hider, |object| !world.is_see_through(object)) {
+    fn transmittance(&self, sample: &LightSample) -> Option<(Lanes<N>, Polarized)> {
+        let (world, LightSample { ray, distance, object, .. }) = (self.world, sample);
+        if world.scene.is_hidden_by(ray, *distance, *object, self.hider, |object| !world.is_see_through(object)) {
             return None;
         }
-        straight::transmittance(world, self.arrival.draw, ray, distance, self.inside)
+        straight::transmittance(world, self.arrival.draw, ray, *distance, self.inside)
     }
 }
 
@@ -180,7 +179,8 @@ fn finer(u: f64, more: f64) -> f64 {
     ((u * STEPS).floor() + more) / STEPS
 }
 
-/// The weight of a light that a path met by itself, beside next-event estimation at the path's last surface.
+/// The weight of a light that a path met by itself, beside next-event estimation at the path's last surface. `crossing` is where
+/// the ray meets the light, if that is a surface.
 pub(super) fn weight_of_meeting(
     world: &World,
     light: LightId,
@@ -189,20 +189,13 @@ pub(super) fn weight_of_meeting(
     crossing: Option<&Crossing>,
 ) -> f64 {
     let Some(scatter) = scatter else { return 1.0 };
-    let pdf = match (&world.scene.lights[light], crossing) {
-        (Light::Area(area), Some(_)) if area.aimed_at && scatter.passed => {
-            // The light was aimed at from before the holes and panes that the path has passed since.
-            let ray = Ray { origin: scatter.from, direction: ray.direction };
-            area.shape.intersect(&ray, f64::INFINITY).and_then(|crossing| area.pdf(&ray, scatter.normal, &crossing))
-        }
-        (Light::Area(area), Some(crossing)) if area.aimed_at => area.pdf(ray, scatter.normal, crossing),
-        (Light::Environment(environment), None) => Some(environment.pdf(ray, scatter.normal)),
-        (Light::Sun(sun), None) => sun.pdf(ray),
-        _ => None,
-    };
+    // Through holes and panes that the path has passed since, the light was sampled from before them.
+    let before = Ray { origin: scatter.from, direction: ray.direction };
+    let (ray, crossing) = if scatter.passed { (&before, None) } else { (ray, crossing) };
+    let pdf = world.scene.lights[light].pdf_li(ray, scatter.normal, crossing);
     let Some(pdf) = pdf else { return 1.0 };
     let probability =
-        if scatter.all_lights { 1.0 } else { world.choice.probability(light, scatter.from, scatter.normal) };
+        if scatter.all_lights { 1.0 } else { world.light_sampler.probability(light, scatter.from, scatter.normal) };
     power_heuristic(scatter.pdf, pdf * (probability * scatter.chance))
 }
 

@@ -1,7 +1,6 @@
 //! Photons: light followed forward over smooth surfaces, to where the camera sees it.
 
 use super::World;
-use super::emission::Emitted;
 use super::interaction::Interaction;
 use super::media::{self, Media};
 use super::path::{Path, PathKind};
@@ -9,7 +8,7 @@ use super::polarization::Polarized;
 use super::shading;
 use super::straight;
 use super::walker::{Departure, Walker};
-use crate::light::LightId;
+use crate::light::{LeSample, LightId};
 use crate::material::Arrival;
 use crate::math::{BranchKey, Sampler};
 use crate::spectrum::{Draw, Lanes, Throughput};
@@ -55,7 +54,7 @@ impl<const N: usize> Walker<'_, N> {
     /// between media.
     pub(super) fn photon(
         &mut self,
-        emitted: &Emitted,
+        emitted: &LeSample,
         light: LightId,
         media: Media,
         draw: &Draw<N>,

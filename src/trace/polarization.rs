@@ -9,7 +9,6 @@
 use std::cell::Cell;
 
 use super::World;
-use super::direct::add;
 use super::path::Path;
 use super::path_tracer::PathTracer;
 use crate::material::{Arrival, Material};
@@ -109,7 +108,7 @@ impl<const N: usize> PathTracer<'_, N> {
         if path.polarized.is_any() {
             self.walker.stats.polarization += path.polarized.change() * amount(self.walker.world, light);
         }
-        add(sum, light);
+        sum.iter_mut().zip(light).for_each(|(sum, more)| *sum += more);
     }
 
     /// Counts the light of a camera sample; one that is not finite is left out with all that polarization may have changed

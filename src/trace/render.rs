@@ -5,10 +5,10 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::aims::Aims;
 use super::light_pass::{self, Shown};
 use super::merge::{self, Photons};
 use super::path_tracer::PathTracer;
+use super::photon_targets::PhotonTargets;
 use super::polarization::amount;
 use super::stats::Stats;
 use super::width::{InLanes, in_lanes};
@@ -67,7 +67,7 @@ pub fn work(world: &World) -> u64 {
     let window = world.scene.film.window();
     let samples = u64::from(window.width) * u64::from(window.height) * u64::from(world.method.samples);
     let passes = world.method.light_pass.as_ref().and_then(|pass| pass.map).map_or(0, |map| u64::from(map.count));
-    let photons = |aims: &Option<Aims>| aims.as_ref().map_or(0, Aims::photons);
+    let photons = |aims: &Option<PhotonTargets>| aims.as_ref().map_or(0, PhotonTargets::photons);
     samples + photons(&world.aims) + passes * photons(&world.map_aims)
 }
 

@@ -1,4 +1,4 @@
-//! Where lamps are really seen.
+//! Where lights are really seen that may be hidden for the most part.
 
 use super::World;
 use super::path_tracer::PathTracer;
@@ -9,22 +9,22 @@ use crate::math::{DVec3, Sampler};
 
 /// Camera samples along each side of the image.
 const SIDE: u32 = 64;
-/// Meetings with lamps that tell enough.
+/// Lights met that tell enough.
 const ENOUGH: usize = 2048;
 /// Sets these random numbers apart from those of the image.
 const SEED: u64 = 0x6c61_6d70;
 
-/// The lights that paths meet by chance, with the unit normals there. Looks at the whole image, also where only a part of
-/// it is made, so that all parts are made alike.
-pub(super) fn met_lamps(world: &World) -> Vec<(LightId, DVec3)> {
-    in_lanes(&world.method.basis, Meeting { world })
+/// The lights that paths meet by chance, with the unit normals there. The whole image counts, also where only a part of it is
+/// made, so that all parts are made alike.
+pub(super) fn normals_met(world: &World) -> Vec<(LightId, DVec3)> {
+    in_lanes(&world.method.basis, Looking { world })
 }
 
-struct Meeting<'a> {
+struct Looking<'a> {
     world: &'a World,
 }
 
-impl InLanes for Meeting<'_> {
+impl InLanes for Looking<'_> {
     type Output = Vec<(LightId, DVec3)>;
     fn run<const N: usize>(self) -> Self::Output {
         let (world, film) = (self.world, self.world.scene.film);
