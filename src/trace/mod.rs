@@ -45,6 +45,7 @@ mod routes;
 mod search;
 mod seen_light;
 mod sending;
+mod sensor;
 mod shading;
 mod spread;
 mod stats;

@@ -1,9 +1,11 @@
 //! What the plan asks of a map of photons before it is made.
 
+use std::cell::RefCell;
+
 use super::World;
 use super::merge::photons;
 use super::path_tracer::PathTracer;
-use super::render::sample;
+use super::sensor::Observer;
 use super::width::{InLanes, in_lanes};
 use crate::math::{DVec3, Sampler};
 
@@ -25,10 +27,20 @@ struct Looking<'a> {
 impl InLanes for Looking<'_> {
     type Output = Vec<DVec3>;
     fn run<const N: usize>(self) -> Self::Output {
-        let mut tracer = PathTracer::<N>::new(self.world);
-        tracer.reached = Some(Vec::new());
+        let reached = Reached::default();
+        let mut tracer = PathTracer::<N>::new(self.world).with_observer(&reached);
         look(self.world, &mut tracer);
-        tracer.reached.unwrap_or_default()
+        reached.0.into_inner()
+    }
+}
+
+/// All places that were told of.
+#[derive(Default)]
+struct Reached(RefCell<Vec<DVec3>>);
+
+impl Observer for Reached {
+    fn reach(&self, place: DVec3) {
+        self.0.borrow_mut().push(place);
     }
 }
 
@@ -36,7 +48,7 @@ fn look<const N: usize>(world: &World, tracer: &mut PathTracer<N>) {
     let film = world.scene.film;
     for place in 0..SIDE * SIDE {
         let [x, y] = film.whole().middle_of_cell(SIDE, place);
-        sample(world, tracer, &Sampler::new(world.method.seed ^ LOOKING, [x, y], place), x, y);
+        tracer.sample(&Sampler::new(world.method.seed ^ LOOKING, [x, y], place), [x, y]);
     }
 }
 

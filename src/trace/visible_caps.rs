@@ -1,8 +1,10 @@
 //! Where lights are really seen that may be hidden for the most part.
 
+use std::cell::RefCell;
+
 use super::World;
 use super::path_tracer::PathTracer;
-use super::render::sample;
+use super::sensor::{Contribution, Found, Observer};
 use super::width::{InLanes, in_lanes};
 use crate::light::LightId;
 use crate::math::{DVec3, Sampler};
@@ -28,17 +30,31 @@ impl InLanes for Looking<'_> {
     type Output = Vec<(LightId, DVec3)>;
     fn run<const N: usize>(self) -> Self::Output {
         let (world, film) = (self.world, self.world.scene.film);
-        let mut tracer = PathTracer::<N>::new(world);
-        tracer.met = Some(Vec::new());
+        let met = Met::default();
+        let mut tracer = PathTracer::<N>::new(world).with_observer(&met);
         // A stride that is coprime to the number of places visits them all, far ones first.
         let places = SIDE * SIDE;
         for place in (0..places).map(|i| (i * 1597) % places) {
             let [x, y] = film.whole().middle_of_cell(SIDE, place);
-            sample(world, &mut tracer, &Sampler::new(world.method.seed ^ SEED, [x, y], place), x, y);
-            if tracer.met.as_ref().is_some_and(|met| met.len() >= ENOUGH) {
+            tracer.sample(&Sampler::new(world.method.seed ^ SEED, [x, y], place), [x, y]);
+            if met.0.borrow().len() >= ENOUGH {
                 break;
             }
         }
-        tracer.met.unwrap_or_default()
+        met.0.into_inner()
+    }
+}
+
+/// The lights hit in directions that were drawn where lights were sampled as well.
+#[derive(Default)]
+struct Met(RefCell<Vec<(LightId, DVec3)>>);
+
+impl Observer for Met {
+    fn receive(&self, contribution: &Contribution) {
+        if let (Some(light), Found::Hit { normal: Some(normal), scattered: true }) =
+            (contribution.light, contribution.found)
+        {
+            self.0.borrow_mut().push((light, normal));
+        }
     }
 }
