@@ -4,8 +4,9 @@
 //! cargo bench --bench dispersion
 //! ```
 //!
-//! A glass ball on a checker of tiles under sky and lamp. relMSE = mean variance over mean square, from images of several
-//! seeds; lower time x relMSE is better. "collapse" is the scheme of pbrt-v4: four random wavelengths, one of which goes on.
+//! A glass ball on a checker of tiles under sky and lamp. relMSE = mean variance over mean square, from images of
+//! several seeds; lower time x relMSE is better. "collapse" is the scheme of pbrt-v4: four random wavelengths, one of
+//! which goes on.
 
 use std::time::Instant;
 

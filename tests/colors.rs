@@ -1,4 +1,5 @@
-//! Color spaces are views of the same light, blackbodies have their published colors, and `rgb` survives being a spectrum.
+//! Color spaces are views of the same light, blackbodies have their published colors, and `rgb` survives being a
+//! spectrum.
 //!
 //! ```text
 //! cargo test --release --test all colors::
@@ -22,8 +23,8 @@ const SPACES: [ColorSpace; 6] = [
 ];
 const MODELS: [&str; 6] =
     ["\"rgb\"", "{ bands = 8 }", "{ bands = 12 }", "{ bands = 16 }", "{ bands = 32 }", "\"hero\""];
-/// No light is chosen by its brightness, which is measured in film colors, so that all films share their random numbers. How many
-/// photons there are is learned from samples that do choose lights: it is asked once.
+/// No light is chosen by its brightness, which is measured in film colors, so that all films share their random
+/// numbers. How many photons there are is learned from samples that do choose lights: it is asked once.
 const ALL_LIGHTS: Transport = Transport::Deterministic { cutoff: 1e-4, most: u64::MAX };
 
 /// The film of a scene in a color space, under a model.
@@ -152,8 +153,8 @@ fn blackbodies_have_their_published_chromaticities() {
     assert_near(xy_of_blackbody(1e9), [0.2399, 0.2340], 5e-5, "1e9 K");
 }
 
-/// For a blackbody of 6504 K, (0.3135, 0.3237) is often printed. It is the sum over steps of 10 nm; steps of 1 nm, on which
-/// color is integrated here, give (0.3135, 0.3236).
+/// For a blackbody of 6504 K, (0.3135, 0.3237) is often printed. It is the sum over steps of 10 nm; steps of 1 nm, on
+/// which color is integrated here, give (0.3135, 0.3236).
 #[test]
 fn the_printed_chromaticity_of_6504_kelvin_is_that_of_coarse_steps() {
     assert_near(xy_of_blackbody(6504.0), [0.3135, 0.3236], 5e-5, "6504 K");
@@ -166,8 +167,8 @@ fn the_printed_chromaticity_of_6504_kelvin_is_that_of_coarse_steps() {
     assert_near(xy(xyz), [0.3135, 0.3237], 5e-5, "6504 K in steps of 10 nm");
 }
 
-/// (1.2048, 0.9483, 0.9089) is printed for XYZ = (1, 1, 1) and a white of (0.95047, 1, 1.08883). The white of Rec.709 is
-/// (0.3127, 0.3290), 0.0002 more in Z, and over 1 nm the CIE's own functions sum to (1.00008, 1, 1.00033).
+/// (1.2048, 0.9483, 0.9089) is printed for XYZ = (1, 1, 1) and a white of (0.95047, 1, 1.08883). The white of Rec.709
+/// is (0.3127, 0.3290), 0.0002 more in Z, and over 1 nm the CIE's own functions sum to (1.00008, 1, 1.00033).
 #[test]
 fn the_equal_energy_spectrum_is_pink_in_rec709_however_it_is_written() {
     let expected =

@@ -343,8 +343,8 @@ fn the_plan_counts_the_color_of_glass_and_keeps_three_lanes_where_they_do() {
     assert!(words.contains("all lanes are refracted by 1.5168, so lanes stay together"), "{words}");
 }
 
-/// A floor within dense flint that a lamp lights, once by photons and once by chance: both bring every lane as much, though
-/// solid angles change by the index of the direction and radiance by each lane's own.
+/// A floor within dense flint that a lamp lights, once by photons and once by chance: both bring every lane as much,
+/// though solid angles change by the index of the direction and radiance by each lane's own.
 #[test]
 fn photons_and_paths_bring_the_same_color_through_glass_whose_lanes_stay_together() {
     let color = |caustics: &str, samples: u32| {
