@@ -10,12 +10,15 @@ line, with the command that makes it. Prints where the page is, and which parts 
 
 import argparse
 import datetime
+import functools
 import importlib.metadata
 import json
+import os
 import platform
 import string
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import render
@@ -49,6 +52,7 @@ def run_tools(quick: bool) -> list[str]:
     return failed
 
 
+@functools.cache
 def plan(path: Path) -> list[str]:
     """The plan's words for a scene; none if there is no renderer, or it lacks a file of the scene."""
     try:
@@ -61,8 +65,10 @@ def plan(path: Path) -> list[str]:
 def find_scenes() -> list[dict]:
     """All scenes of the gallery with picture, first line, command, time and plan."""
     measured = json.loads(gallery.MEASURED.read_text("utf-8")) if gallery.MEASURED.is_file() else {}
-    found = []
-    for name in gallery.scenes():
+    names, found = gallery.scenes(), []
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        plans = list(pool.map(plan, [gallery.SCENES / f"{name}.toml" for name in names]))
+    for name, words in zip(names, plans, strict=True):
         picture = gallery.SCENES / f"pictures/{Path(name).name}.png"
         figures = measured.get(name, {})
         found.append(
@@ -72,7 +78,7 @@ def find_scenes() -> list[dict]:
                 "picture": picture if picture.is_file() else None,
                 "command": f"render --exr scenes/{name}.toml",
                 "seconds": figures.get("seconds"),
-                "plan": plan(gallery.SCENES / f"{name}.toml") or [figures[key] for key in ("plan",) if key in figures],
+                "plan": words or [figures[key] for key in ("plan",) if key in figures],
             }
         )
     return found

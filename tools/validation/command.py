@@ -17,10 +17,12 @@ standard error is at most a quarter of what the mistake would change. Exit code 
 import argparse
 import json
 import math
+import os
 import re
 import subprocess
 import sys
 import tempfile
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import render
@@ -110,10 +112,11 @@ def run(rows, out):
         f"{LIMIT:g})"
     )
     results = []
-    with tempfile.TemporaryDirectory() as folder:
-        for row in rows:
-            results.append(measure(row, Path(folder)))
-            show(results[-1])
+    # Most pictures are small: several rows at once keep all processors busy.
+    with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(os.cpu_count()) as pool:
+        for judged in pool.map(measure, rows, [Path(folder) / key(row) for row in rows]):
+            results.append(judged)
+            show(judged)
             sys.stdout.flush()
     write_json(results, out / "validation.json")
     return results
