@@ -10,7 +10,7 @@ pub use self::exr::{Fact, Provenance, View, write_exr};
 pub use file::check_writable;
 pub use filter::Filter;
 pub use picture::write_png;
-pub use sum::PixelSum;
+pub use sum::{PassSum, PixelSum};
 
 use crate::spectrum::ColorSpace;
 

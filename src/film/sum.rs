@@ -3,17 +3,25 @@ use super::{DEPTH_OF_NOTHING, Pixel, Sample};
 /// Samples that are summed one after another before the tree begins.
 const BLOCK: u32 = 16;
 
-/// The running sum of a pixel's samples in 64 bits, in an order that never changes.
+/// The running sum of a pixel's samples in one pass in 64 bits, in an order that never changes.
 ///
 /// Aligned blocks of 16 samples are summed one by one, blocks as the leaves of a binary tree: so the error grows with the
-/// logarithm of the count, and a sum continued later has the same bits.
+/// logarithm of the count.
 #[derive(Clone, Debug)]
-pub struct PixelSum {
+pub struct PassSum {
     block: Entry,
     /// Entry i, where present, sums 2^i blocks.
     tree: Vec<Option<Entry>>,
     taken: u32,
     rejected: u32,
+    nearest: f64,
+}
+
+/// The sum of a pixel's passes, in the order in which they were made.
+#[derive(Clone, Debug)]
+pub struct PixelSum {
+    total: Entry,
+    kept: u32,
     nearest: f64,
 }
 
@@ -29,13 +37,19 @@ impl Entry {
     }
 }
 
-impl Default for PixelSum {
+impl Default for PassSum {
     fn default() -> Self {
         Self { block: Entry::default(), tree: Vec::new(), taken: 0, rejected: 0, nearest: f64::INFINITY }
     }
 }
 
-impl PixelSum {
+impl Default for PixelSum {
+    fn default() -> Self {
+        Self { total: Entry::default(), kept: 0, nearest: f64::INFINITY }
+    }
+}
+
+impl PassSum {
     /// Adds the next sample. One that is not finite is left out and counted; the answer says whether it was kept.
     pub fn add(&mut self, sample: &Sample) -> bool {
         let finite = sample.rgb.iter().all(|x| x.is_finite());
@@ -68,23 +82,29 @@ impl PixelSum {
         self.tree.push(Some(sum));
     }
 
-    /// Folds all blocks into one, which takes little memory while other pixels are summed.
-    pub fn settle(&mut self) {
-        let tree = std::mem::take(&mut self.tree);
-        self.block = tree.into_iter().flatten().fold(self.block, |sum, entry| entry.plus(sum));
+    fn total(&self) -> Entry {
+        self.tree.iter().flatten().fold(self.block, |sum, entry| entry.plus(sum))
+    }
+}
+
+impl PixelSum {
+    /// Adds a pass.
+    pub fn add(&mut self, pass: PassSum) {
+        self.total = self.total.plus(pass.total());
+        self.kept += pass.taken - pass.rejected;
+        self.nearest = self.nearest.min(pass.nearest);
     }
 
     /// The mean over the samples that were kept, and light beside them that is a mean already.
     pub fn pixel(&self, beside: [f64; 3]) -> Pixel {
-        let total = self.tree.iter().flatten().fold(self.block, |sum, entry| entry.plus(sum));
-        let kept = f64::from((self.taken - self.rejected).max(1));
+        let kept = f64::from(self.kept.max(1));
         // A value beyond f32 becomes the largest finite one: EXR readers choke on infinities.
         let store = |x: f64| (x as f32).clamp(f32::MIN, f32::MAX);
         Pixel {
-            rgb: std::array::from_fn(|i| store(total.rgb[i] / kept + beside[i])),
-            alpha: (f64::from(total.met) / kept) as f32,
+            rgb: std::array::from_fn(|i| store(self.total.rgb[i] / kept + beside[i])),
+            alpha: (f64::from(self.total.met) / kept) as f32,
             depth: if self.nearest.is_finite() { store(self.nearest) } else { DEPTH_OF_NOTHING },
-            samples: (self.taken - self.rejected) as f32,
+            samples: self.kept as f32,
         }
     }
 }
@@ -97,11 +117,17 @@ mod tests {
         Sample { rgb: [value; 3], depth: None }
     }
 
+    fn pixel(pass: PassSum) -> Pixel {
+        let mut sum = PixelSum::default();
+        sum.add(pass);
+        sum.pixel([0.0; 3])
+    }
+
     /// Row A1 of the stability catalog.
     #[test]
     fn a1_the_mean_of_many_samples_keeps_nine_digits() {
         let count = 1u32 << 24;
-        let (mut sum, mut exact, mut lost) = (PixelSum::default(), 0.0, 0.0);
+        let (mut sum, mut exact, mut lost) = (PassSum::default(), 0.0, 0.0);
         for i in 0..count {
             let value = 0.1 + f64::from(i % 1013) * 1e-4;
             sum.add(&sample(value));
@@ -110,32 +136,30 @@ mod tests {
             lost = (t - exact) - y;
             exact = t;
         }
-        let total = sum.tree.iter().flatten().fold(sum.block, |sum, entry| entry.plus(sum));
-        assert!((total.rgb[0] / exact - 1.0).abs() <= 1e-9);
-        assert!((f64::from(sum.pixel([0.0; 3]).rgb[0]) / (exact / f64::from(count)) - 1.0).abs() <= 1e-7);
+        assert!((sum.total().rgb[0] / exact - 1.0).abs() <= 1e-9);
+        assert!((f64::from(pixel(sum).rgb[0]) / (exact / f64::from(count)) - 1.0).abs() <= 1e-7);
     }
 
     /// Row A2 of the stability catalog.
     #[test]
     fn a2_dim_samples_after_a_bright_one_all_count() {
-        let mut sum = PixelSum::default();
+        let mut sum = PassSum::default();
         sum.add(&sample(1e9));
         (0..1000).for_each(|_| {
             sum.add(&sample(1.0));
         });
-        let total = sum.tree.iter().flatten().fold(sum.block, |sum, entry| entry.plus(sum));
-        assert_eq!(total.rgb[0], 1e9 + 1000.0);
+        assert_eq!(sum.total().rgb[0], 1e9 + 1000.0);
     }
 
     /// Row A5 of the stability catalog.
     #[test]
     fn a5_a_sample_that_is_not_finite_is_left_out_and_counted() {
-        let mut sum = PixelSum::default();
+        let mut sum = PassSum::default();
         assert!(sum.add(&sample(1.0)));
         assert!(!sum.add(&sample(f64::NAN)));
         assert!(!sum.add(&sample(f64::INFINITY)));
         assert!(sum.add(&sample(3.0)));
-        assert_eq!(sum.pixel([0.0; 3]).rgb, [2.0; 3]);
         assert_eq!(sum.rejected, 2);
+        assert_eq!(pixel(sum).rgb, [2.0; 3]);
     }
 }

@@ -2,12 +2,12 @@
 
 use super::bright::Aiming;
 use super::brightness::Bounce;
+use super::interaction::Interaction;
 use super::path::Path;
+use super::path_tracer::PathTracer;
 use super::polarization::amount;
 use super::shading;
-use super::tracer::Tracer;
-use crate::material::{Arrival, Branch, Material};
-use crate::math::DVec3;
+use crate::material::{Branch, Material};
 use crate::spectrum::{Draw, Table};
 
 /// Whether bounces from a material may be aimed: it scatters nearly alike in all directions of one side.
@@ -15,14 +15,14 @@ pub(super) fn may_aim(material: &Material<Table>) -> bool {
     matches!(material, Material::Diffuse(_) | Material::Plastic(_))
 }
 
-impl<const N: usize> Tracer<'_, N> {
+impl<const N: usize> PathTracer<'_, N> {
     /// Keeps what a bounce found, if somebody wants to know.
     #[inline]
     pub(super) fn note(&mut self, path: &Path<N>, draw: &Draw<N>, distance: f64, light: [f64; 3]) {
-        if let (Some(bounces), Some(drawn)) = (&mut self.bounces, &path.drawn) {
-            let distance = distance + (path.ray.origin - drawn.from).length();
-            let (light, weight) = (amount(self.world, light), path.weight(draw));
-            let (from, normal, direction) = (drawn.from, drawn.normal, path.ray.direction);
+        if let (Some(bounces), Some(scatter)) = (&mut self.bounces, &path.scatter) {
+            let distance = distance + (path.ray.origin - scatter.from).length();
+            let (light, weight) = (amount(self.walker.world, light), path.weight(draw));
+            let (from, normal, direction) = (scatter.from, scatter.normal, path.ray.direction);
             bounces.push(Bounce { from, normal, direction, distance, light, weight });
         }
     }
@@ -30,29 +30,25 @@ impl<const N: usize> Tracer<'_, N> {
     /// The ways on from a surface whose bounces are aimed.
     ///
     /// Roulette is to end aimed paths as often as others: what their density takes from the weight is no measure of importance.
-    pub(super) fn scatter_aimed(
-        &mut self,
-        aiming: &Aiming,
-        (material, arrival): (&Material<Table>, &Arrival<N>),
-        flat: DVec3,
-        u: [f64; 2],
-    ) {
+    pub(super) fn scatter_aimed(&mut self, aiming: &Aiming, at: &Interaction<N>, u: [f64; 2]) {
+        let Interaction { material, arrival, flat, .. } = at;
+        let branches = &mut self.walker.branches;
         let divided = aiming.divided(u[0]);
-        shading::scatter(material, arrival, flat, [divided.err().unwrap_or(0.5), u[1]], &mut self.branches);
+        shading::scatter(material, arrival, *flat, [divided.err().unwrap_or(0.5), u[1]], branches);
         if let Ok(aimed) = divided {
-            self.branches.retain(|branch| branch.pdf.is_none());
-            let Some((wi, known)) = aiming.draw([aimed, u[1]]).filter(|(wi, _)| wi.dot(flat) > 0.0) else { return };
-            let Some((bsdf_cos, own)) = shading::evaluate(material, arrival, flat, wi) else { return };
+            branches.retain(|branch| branch.pdf.is_none());
+            let Some((wi, known)) = aiming.draw([aimed, u[1]]).filter(|(wi, _)| wi.dot(*flat) > 0.0) else { return };
+            let Some((bsdf_cos, own)) = shading::evaluate(material, arrival, *flat, wi) else { return };
             let pdf = aiming.pdf_knowing(wi, own, known);
             if !(own > 0.0 && pdf.is_finite()) {
                 return;
             }
             let share = bsdf_cos * (1.0 / pdf) as f32;
             let eta_scale = own / pdf;
-            self.branches.push(Branch { wi, share, pdf: Some(pdf), crosses: false, eta_scale, polarization: 0.0 });
+            branches.push(Branch { wi, share, pdf: Some(pdf), crosses: false, eta_scale, polarization: 0.0 });
             return;
         }
-        for branch in &mut self.branches {
+        for branch in branches {
             if let Some(own) = branch.pdf.filter(|own| *own > 0.0) {
                 let pdf = aiming.pdf(branch.wi, own);
                 let factor = own / pdf;

@@ -1,8 +1,8 @@
 //! How many ways light has where all of them are followed.
 
 use super::World;
+use super::path_tracer::PathTracer;
 use super::render::sample;
-use super::tracer::Tracer;
 use super::width::{InLanes, in_lanes};
 use crate::material::Material;
 use crate::math::{DVec2, DVec3, Sampler};
@@ -38,16 +38,16 @@ impl InLanes for Asking<'_> {
     type Output = Branching;
     fn run<const N: usize>(self) -> Branching {
         let Self { world, most } = self;
-        let mut tracer = Tracer::<N>::new(world);
+        let mut tracer = PathTracer::<N>::new(world);
         let film = world.scene.film.whole();
         // A stride that is coprime to the number of places visits them all, far ones first.
         let places = SIDE * SIDE;
         let all_over = (0..places).map(|i| (i * 101) % places);
         let all_over: Vec<[u32; 2]> = all_over.map(|place| film.middle_of_cell(SIDE, place)).collect();
         let mut ask = |[x, y]: [u32; 2]| {
-            let before = tracer.tally.rays;
+            let before = tracer.walker.stats.rays;
             sample(world, &mut tracer, &Sampler::new(world.method.seed, [x, y], 0), x, y);
-            (tracer.tally.rays - before, tracer.tally.by_chance > 0)
+            (tracer.walker.stats.rays - before, tracer.walker.stats.by_chance > 0)
         };
         let enough = most * f64::from(places);
         let mut met = 0;

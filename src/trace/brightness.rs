@@ -2,8 +2,8 @@
 
 use super::bright::{BrightPlace, BrightPlaces, MOST};
 use super::clusters::{Cluster, clusters, quantiles};
+use super::path_tracer::PathTracer;
 use super::render::sample;
-use super::tracer::Tracer;
 use super::width::{InLanes, in_lanes};
 use super::{Transport, World};
 use crate::math::{Bounds, BranchKey, DVec3, Frame, Ray, Sampler, cosine_hemisphere, unit};
@@ -68,7 +68,7 @@ impl InLanes for Looking<'_> {
 /// What the bounces of so many camera samples along each side of the image found.
 fn bounces<const N: usize>(world: &World, side: u32) -> Vec<Bounce> {
     let film = world.scene.film;
-    let mut tracer = Tracer::<N>::new(world);
+    let mut tracer = PathTracer::<N>::new(world);
     tracer.bounces = Some(Vec::new());
     for place in 0..side * side {
         let [x, y] = film.whole().middle_of_cell(side, place);

@@ -3,7 +3,7 @@
 use std::cell::Cell;
 
 use super::bright::Aiming;
-use super::path::Drawn;
+use super::path::ScatterSample;
 use super::polarization::{Lit, Polarized};
 use super::straight;
 use super::{World, media, shading};
@@ -184,25 +184,26 @@ fn finer(u: f64, more: f64) -> f64 {
 pub(super) fn weight_of_meeting(
     world: &World,
     light: LightId,
-    drawn: Option<&Drawn>,
+    scatter: Option<&ScatterSample>,
     ray: &Ray,
     crossing: Option<&Crossing>,
 ) -> f64 {
-    let Some(drawn) = drawn else { return 1.0 };
+    let Some(scatter) = scatter else { return 1.0 };
     let pdf = match (&world.scene.lights[light], crossing) {
-        (Light::Area(area), Some(_)) if area.aimed_at && drawn.passed => {
+        (Light::Area(area), Some(_)) if area.aimed_at && scatter.passed => {
             // The light was aimed at from before the holes and panes that the path has passed since.
-            let ray = Ray { origin: drawn.from, direction: ray.direction };
-            area.shape.intersect(&ray, f64::INFINITY).and_then(|crossing| area.pdf(&ray, drawn.normal, &crossing))
+            let ray = Ray { origin: scatter.from, direction: ray.direction };
+            area.shape.intersect(&ray, f64::INFINITY).and_then(|crossing| area.pdf(&ray, scatter.normal, &crossing))
         }
-        (Light::Area(area), Some(crossing)) if area.aimed_at => area.pdf(ray, drawn.normal, crossing),
-        (Light::Environment(environment), None) => Some(environment.pdf(ray, drawn.normal)),
+        (Light::Area(area), Some(crossing)) if area.aimed_at => area.pdf(ray, scatter.normal, crossing),
+        (Light::Environment(environment), None) => Some(environment.pdf(ray, scatter.normal)),
         (Light::Sun(sun), None) => sun.pdf(ray),
         _ => None,
     };
     let Some(pdf) = pdf else { return 1.0 };
-    let probability = if drawn.aimed_at_all { 1.0 } else { world.choice.probability(light, drawn.from, drawn.normal) };
-    power_heuristic(drawn.pdf, pdf * (probability * drawn.chance))
+    let probability =
+        if scatter.all_lights { 1.0 } else { world.choice.probability(light, scatter.from, scatter.normal) };
+    power_heuristic(scatter.pdf, pdf * (probability * scatter.chance))
 }
 
 /// Veach & Guibas 1995, *Optimally Combining Sampling Techniques for Monte Carlo Rendering*, power heuristic, beta = 2.

@@ -14,14 +14,14 @@ use std::f64::consts::PI;
 
 use super::World;
 use super::direct::add;
+use super::interaction::Interaction;
 use super::merge::{Landed, Photons};
 use super::path::Path;
 use super::polarization::{Polarized, amount};
 use super::shading;
-use crate::material::{Arrival, Material};
 use crate::math::{BranchKey, DVec2, DVec3, Frame, Ray, Sampler, unit};
 use crate::shape::SurfacePoint;
-use crate::spectrum::{Lanes, Table};
+use crate::spectrum::Lanes;
 
 /// Surfaces whose normals differ by more than 60 degrees belong to different sides or walls.
 const ALIKE: f64 = 0.5;
@@ -71,11 +71,11 @@ impl<const N: usize> Photons<N> {
         &self,
         world: &World,
         path: &Path<N>,
-        arrival: &Arrival<N>,
-        (point, flat): (&SurfacePoint, DVec3),
-        (material, parts): (&Material<Table>, bool),
+        at: &Interaction<N>,
         sampler: &Sampler,
     ) -> ([f64; 3], f64) {
+        let Interaction { point, flat, material, arrival, parts, .. } = at;
+        let (flat, parts) = (*flat, *parts);
         let Some(map) = world.method.light_pass.as_ref().and_then(|pass| pass.map) else { return ([0.0; 3], 0.0) };
         let [u, whether, ..] = sampler.four_plain(path.key.child(CHOICE), 0);
         if whether >= map.chance {

@@ -2,9 +2,9 @@
 
 use super::World;
 use super::merge::photons;
+use super::path_tracer::PathTracer;
 use super::pilot::SampleWorth;
 use super::render::sample;
-use super::tracer::Tracer;
 use super::width::{InLanes, in_lanes};
 use crate::math::Sampler;
 use crate::spectrum::apply;
@@ -70,8 +70,8 @@ impl InLanes for Gathering<'_> {
         let (mut sent, mut rays, mut of_samples, mut second_moment) = (0, 0, 0, 0.0);
         for map in 0..MAPS {
             let photons = photons::<N>(world, map as u32)?;
-            (sent, rays) = (sent + photons.sent, rays + photons.rays);
-            let mut tracer = Tracer::<N>::new(world);
+            (sent, rays) = (sent + photons.sent, rays + photons.stats.rays);
+            let mut tracer = PathTracer::<N>::new(world);
             tracer.photons = Some(&photons);
             for place in 0..places {
                 let [x, y] = film.whole().middle_of_cell(SIDE, place);
@@ -92,7 +92,7 @@ impl InLanes for Gathering<'_> {
                 let mean = std::array::from_fn(|i| (gathered[i] - before[i]) / f64::from(SAMPLES));
                 by_photons[place as usize].add(apply(&to_xyz, mean));
             }
-            of_samples += tracer.tally.rays;
+            of_samples += tracer.walker.stats.rays;
         }
         let pixels = f64::from(film.width) * f64::from(film.height);
         let mean = |variances: &[f64]| variances.iter().sum::<f64>() / f64::from(places);

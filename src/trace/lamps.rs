@@ -1,8 +1,8 @@
 //! Where lamps are really seen.
 
 use super::World;
+use super::path_tracer::PathTracer;
 use super::render::sample;
-use super::tracer::Tracer;
 use super::width::{InLanes, in_lanes};
 use crate::light::LightId;
 use crate::math::{DVec3, Sampler};
@@ -28,7 +28,7 @@ impl InLanes for Meeting<'_> {
     type Output = Vec<(LightId, DVec3)>;
     fn run<const N: usize>(self) -> Self::Output {
         let (world, film) = (self.world, self.world.scene.film);
-        let mut tracer = Tracer::<N>::new(world);
+        let mut tracer = PathTracer::<N>::new(world);
         tracer.met = Some(Vec::new());
         // A stride that is coprime to the number of places visits them all, far ones first.
         let places = SIDE * SIDE;

@@ -12,7 +12,8 @@ use super::photon::{Landing, Splat};
 use super::polarization::amount;
 use super::render::TILE;
 use super::sending::{Sent, batches, send};
-use super::tracer::Tracer;
+use super::stats::Stats;
+use super::walker::Walker;
 use super::width::{InLanes, in_lanes};
 use super::{LightPass, World};
 use crate::light::LightId;
@@ -48,12 +49,7 @@ pub(super) struct Shown {
     pub(super) moved: Vec<f64>,
     /// Photons sent.
     pub(super) photons: u64,
-    /// Rays followed.
-    pub(super) rays: u64,
-    /// Splats that were not finite.
-    pub(super) non_finite: u64,
-    /// Surfaces of bodies that were left without having been entered.
-    pub(super) unmatched: u64,
+    pub(super) stats: Stats,
 }
 
 /// Sends all photons of a world's light pass; `progress` is told how many are done.
@@ -90,13 +86,12 @@ pub(super) fn splats<const N: usize>(
             group.par_iter().map(|batch| send::<N, _>(world, aims, *batch, false, show_one)).collect();
         progress(group.iter().map(|batch| batch.count).sum());
         for sent in done {
-            shown.rays += sent.rays;
-            shown.unmatched += sent.unmatched;
+            shown.stats += sent.stats;
             for splat in sent.kept {
                 if splat.rgb.iter().all(|x| x.is_finite()) {
                     take(splat);
                 } else {
-                    shown.non_finite += 1;
+                    shown.stats.non_finite += 1;
                 }
             }
         }
@@ -105,8 +100,8 @@ pub(super) fn splats<const N: usize>(
     shown
 }
 
-fn show_one<const N: usize>(tracer: &Tracer<N>, landing: &Landing<N>, sampler: &Sampler, splats: &mut Vec<Splat>) {
-    tracer.show(landing, sampler, splats);
+fn show_one<const N: usize>(walker: &Walker<N>, landing: &Landing<N>, sampler: &Sampler, splats: &mut Vec<Splat>) {
+    walker.show(landing, sampler, splats);
 }
 
 /// What photons sent ahead found.
@@ -135,7 +130,7 @@ impl InLanes for Learning<'_> {
             batches.par_iter().map(|batch| send::<N, _>(&world, aims, *batch, true, show_one)).collect();
         let mut learned = Learned { found: vec![Vec::new(); aims.aims.len()], rays: 0 };
         for (batch, sent) in batches.iter().zip(done) {
-            learned.rays += sent.rays;
+            learned.rays += sent.stats.rays;
             learned.found[batch.aim].extend(sent.places);
         }
         learned

@@ -29,6 +29,13 @@ pub(super) struct Boundary {
     pub(super) crossed: Media,
 }
 
+impl Boundary {
+    /// The medium that the ray came through, and the one it enters if it goes on.
+    pub(super) fn sides(&self) -> [Option<MaterialId>; 2] {
+        [self.here, self.beyond]
+    }
+}
+
 impl Media {
     /// The media around a point, by walking from it to infinity and back in thought: every body whose inside the walk
     /// leaves more often than it enters is around the start.

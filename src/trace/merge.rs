@@ -7,11 +7,13 @@
 use rayon::prelude::*;
 
 use super::World;
+use super::interaction::Interaction;
 use super::map::Map;
 use super::photon::Landing;
 use super::polarization::Polarized;
 use super::sending::{Sent, batches, send};
-use super::tracer::Tracer;
+use super::stats::Stats;
+use super::walker::Walker;
 use crate::light::LightId;
 use crate::math::{DVec3, Sampler};
 use crate::spectrum::{Lanes, Matching, Wavelength};
@@ -54,10 +56,7 @@ pub(super) struct Photons<const N: usize> {
     pub(super) alone: Map<Landed<Alone>>,
     pub(super) matching: Matching<N>,
     pub(super) sent: u64,
-    pub(super) rays: u64,
-    pub(super) unmatched: u64,
-    /// Photons whose flux was not finite.
-    pub(super) non_finite: u64,
+    pub(super) stats: Stats,
 }
 
 /// Sets these random numbers apart from the others.
@@ -79,16 +78,15 @@ pub(super) fn photons<const N: usize>(world: &World, pass: u32) -> Option<Photon
     let matching = world.method.basis.matching(PARTS / radius);
     let first = |photons: u64| u64::from(pass) * photons;
     let batches = batches(aims, |aim| first(aim.photons), |aim| aim.photons, world.method.seed ^ SEED);
-    let keep = |_: &Tracer<N>, landing: &Landing<N>, _: &Sampler, kept: &mut Vec<_>| {
+    let keep = |_: &Walker<N>, landing: &Landing<N>, _: &Sampler, kept: &mut Vec<_>| {
         keep(world, &matching, landing, kept);
     };
     let done: Vec<Sent<(DVec3, Kept<N>)>> =
         batches.par_iter().map(|batch| send(world, aims, *batch, false, keep)).collect();
-    let (mut rays, mut unmatched, mut non_finite) = (0, 0, 0);
+    let mut stats = Stats::default();
     let (mut together, mut alone) = (Vec::new(), Vec::new());
     for sent in done {
-        rays += sent.rays;
-        unmatched += sent.unmatched;
+        stats += sent.stats;
         for (place, kept) in sent.kept {
             match kept {
                 Kept::Together(photon) if photon.carries.flux.0.iter().all(|x| x.is_finite()) => {
@@ -97,18 +95,18 @@ pub(super) fn photons<const N: usize>(world: &World, pass: u32) -> Option<Photon
                 Kept::Alone(photon) if photon.carries.color.iter().all(|x| x.is_finite()) => {
                     alone.push((place, photon))
                 }
-                _ => non_finite += 1,
+                _ => stats.non_finite += 1,
             }
         }
     }
     let sent = batches.iter().map(|batch| batch.count).sum();
     let (together, alone) = (Map::new(together), Map::new(alone));
-    Some(Photons { together, alone, matching, sent, rays, unmatched, non_finite })
+    Some(Photons { together, alone, matching, sent, stats })
 }
 
 /// Keeps a photon where it lands.
 fn keep<const N: usize>(world: &World, matching: &Matching<N>, landing: &Landing<N>, kept: &mut Vec<(DVec3, Kept<N>)>) {
-    let Landing { path, arrival, flat, point, light, .. } = landing;
+    let Landing { path, at: Interaction { arrival, flat, point, .. }, light, .. } = landing;
     let flux = landing.flux(world) * (1.0 / arrival.wo.dot(*flat).abs()) as f32;
     let photon = Landed {
         back: arrival.wo,

@@ -24,18 +24,18 @@ pub(super) struct Path<const N: usize> {
     /// How far the light has to go along it.
     pub(super) length: f64,
     /// What kind of path it is so far.
-    pub(super) leg: Leg,
+    pub(super) kind: PathKind,
     /// How often the path may still leave a diffuse surface.
     pub(super) diffuse_left: u32,
-    /// How the last direction was drawn; none after the camera or a smooth surface.
-    pub(super) drawn: Option<Drawn>,
+    /// How the last direction was sampled; none after the camera or a smooth surface.
+    pub(super) scatter: Option<ScatterSample>,
     /// How far its light may be polarized.
     pub(super) polarized: Polarized,
 }
 
 /// How a path that photons may find as well goes on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Leg {
+pub(super) enum PathKind {
     /// Straight from the camera.
     Camera,
     /// Scattered widely by a surface from which photons are shown to the camera or gathered.
@@ -46,39 +46,39 @@ pub(super) enum Leg {
     Other,
 }
 
-impl Leg {
+impl PathKind {
     /// After one more surface; `wide` says whether light left it by a density of directions, `aimed` whether photons are sent
     /// to its object; none if light cannot be followed forward the same way. Photons are shown from the first surface alone, and gathered
     /// from all others if they are at all.
-    pub(super) fn then(self, gathers: bool, wide: bool, aimed: Option<bool>) -> Self {
-        match (self, wide, aimed) {
-            (Self::Camera, true, _) => Self::Wide,
-            (_, true, _) if gathers => Self::Wide,
-            (Self::Wide | Self::Smooth { .. }, false, Some(aimed)) => Self::Smooth { aimed },
+    pub(super) fn then(self, gathers: bool, wide: bool, aimed: impl FnOnce() -> Option<bool>) -> Self {
+        match (self, wide) {
+            (Self::Camera, true) => Self::Wide,
+            (_, true) if gathers => Self::Wide,
+            (Self::Wide | Self::Smooth { .. }, false) => aimed().map_or(Self::Other, |aimed| Self::Smooth { aimed }),
             _ => Self::Other,
         }
     }
 }
 
-/// How a direction was drawn at a surface whose lights were aimed at as well.
+/// How a direction was sampled at a surface where lights were sampled as well.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Drawn {
+pub(super) struct ScatterSample {
     /// Density per steradian.
     pub(super) pdf: f64,
-    /// The point from which the lights were aimed at.
+    /// The point from which lights were sampled.
     pub(super) from: DVec3,
     /// The surface's unit normal on the side that the direction leads to.
     pub(super) normal: DVec3,
-    /// How likely lights were aimed at on this side of the surface.
+    /// How likely lights were sampled on this side of the surface.
     pub(super) chance: f64,
-    /// Whether every light was aimed at there, or one.
-    pub(super) aimed_at_all: bool,
+    /// Whether every light was sampled there, or one.
+    pub(super) all_lights: bool,
     /// Whether the path has gone straight on through surfaces since.
     pub(super) passed: bool,
 }
 
-impl Drawn {
-    /// The same of a direction drawn with a density, which may lead beyond the surface.
+impl ScatterSample {
+    /// Toward a direction that was sampled with a density, which may lead beyond the surface.
     pub(super) fn toward(self, pdf: f64, crosses: bool) -> Self {
         Self { pdf, normal: if crosses { -self.normal } else { self.normal }, ..self }
     }
@@ -102,20 +102,20 @@ impl<const N: usize> Path<N> {
             key: BranchKey::CAMERA,
             vertices: 0,
             length: 0.0,
-            leg: Leg::Camera,
+            kind: PathKind::Camera,
             diffuse_left: world.method.diffuse_bounces,
-            drawn: None,
+            scatter: None,
             polarized: Polarized::NOT,
         }
     }
 
     /// The path beyond a surface that it goes straight through as if nothing were there.
     ///
-    /// What it meets beyond was aimed at through the surface, from where its direction was drawn: light that goes straight on
-    /// makes no other kind of path.
+    /// Lights beyond were sampled through the surface, from where its direction was: light that goes straight on makes no
+    /// other kind of path.
     pub(super) fn passed(&self, point: &SurfacePoint) -> Self {
-        let drawn = self.drawn.map(|drawn| Drawn { passed: true, ..drawn });
-        Self { ray: point.leave(self.ray.direction), drawn, ..*self }
+        let scatter = self.scatter.map(|scatter| ScatterSample { passed: true, ..scatter });
+        Self { ray: point.leave(self.ray.direction), scatter, ..*self }
     }
 
     /// The path beyond a surface that it has met and goes straight through in part, which is not counted among its surfaces.

@@ -2,8 +2,8 @@
 
 use super::World;
 use super::light_pass;
+use super::path_tracer::PathTracer;
 use super::render::sample;
-use super::tracer::Tracer;
 use super::width::{InLanes, in_lanes};
 use crate::light::LightId;
 use crate::math::Sampler;
@@ -81,7 +81,7 @@ impl Sending<'_> {
             world.method.seed = (self.world.method.seed ^ SEED).wrapping_add(image);
             let mut splats = Vec::new();
             let shown = light_pass::splats::<N>(world, &|_| (), &mut |splat| splats.push((splat.pixel, splat.rgb)));
-            (photons, rays) = (photons + shown.photons, rays + shown.rays);
+            (photons, rays) = (photons + shown.photons, rays + shown.stats.rays);
             values.extend(summed(splats).into_iter().map(|(pixel, rgb)| (pixel, apply(&to_xyz, rgb))));
         }
         let images = IMAGES as f64;
@@ -125,7 +125,7 @@ impl InLanes for Sampling<'_> {
     type Output = SampleWorth;
     fn run<const N: usize>(self) -> SampleWorth {
         let world = self.world;
-        let mut tracer = Tracer::<N>::new(world);
+        let mut tracer = PathTracer::<N>::new(world);
         let film = world.scene.film;
         let to_xyz = film.color_space.to_xyz();
         let seed = world.method.seed ^ SEED;
@@ -146,7 +146,7 @@ impl InLanes for Sampling<'_> {
             }
             variances.push(variance);
         }
-        let rays = tracer.tally.rays as f64 / f64::from(SIDE * SIDE * SAMPLES);
+        let rays = tracer.walker.stats.rays as f64 / f64::from(SIDE * SIDE * SAMPLES);
         SampleWorth::of(variances, f64::from(film.width) * f64::from(film.height), rays)
     }
 }

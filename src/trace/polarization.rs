@@ -11,7 +11,7 @@ use std::cell::Cell;
 use super::World;
 use super::direct::add;
 use super::path::Path;
-use super::tracer::Tracer;
+use super::path_tracer::PathTracer;
 use crate::material::{Arrival, Material};
 use crate::math::DVec3;
 use crate::spectrum::Table;
@@ -103,11 +103,11 @@ impl Lit {
     }
 }
 
-impl<const N: usize> Tracer<'_, N> {
+impl<const N: usize> PathTracer<'_, N> {
     /// Adds light of the sensor that came by a path, and what polarization may have changed of it.
     pub(super) fn receive(&mut self, path: &Path<N>, light: [f64; 3], sum: &mut [f64; 3]) {
         if path.polarized.is_any() {
-            self.tally.polarization += path.polarized.change() * amount(self.world, light);
+            self.walker.stats.polarization += path.polarized.change() * amount(self.walker.world, light);
         }
         add(sum, light);
     }
@@ -115,11 +115,11 @@ impl<const N: usize> Tracer<'_, N> {
     /// Counts the light of a camera sample; one that is not finite is left out with all that polarization may have changed
     /// of it, which was counted after `moved`.
     pub(super) fn count_light(&mut self, sum: [f64; 3], moved: f64) {
-        let light = amount(self.world, sum);
-        if light.is_finite() && self.tally.polarization.is_finite() {
-            self.tally.light += light;
+        let light = amount(self.walker.world, sum);
+        if light.is_finite() && self.walker.stats.polarization.is_finite() {
+            self.walker.stats.light += light;
         } else {
-            self.tally.polarization = moved;
+            self.walker.stats.polarization = moved;
         }
     }
 }

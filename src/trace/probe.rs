@@ -3,10 +3,11 @@
 use std::time::{Duration, Instant};
 
 use super::World;
+use super::path_tracer::PathTracer;
 use super::photon::Landing;
 use super::render::sample;
 use super::sending::{batches, send};
-use super::tracer::Tracer;
+use super::walker::Walker;
 use super::width::{InLanes, in_lanes};
 use crate::math::Sampler;
 
@@ -55,7 +56,7 @@ fn probe_lanes<const N: usize>(world: &World) -> Probe {
     // Tables that are computed when first needed are no part of a sample's time.
     let rough = |id: u32| world.scene.material_of(id).roughness().is_some_and(|roughness| roughness > 0.0);
     if (0..world.scene.objects.len()).any(|object| rough(object as u32)) {
-        let mut tracer = Tracer::<N>::new(world);
+        let mut tracer = PathTracer::<N>::new(world);
         let window = world.scene.film.window();
         for place in 0..SIDE {
             let at = |place: u32, size: u32| (u64::from(place) * u64::from(size) / u64::from(SIDE)) as u32;
@@ -64,7 +65,7 @@ fn probe_lanes<const N: usize>(world: &World) -> Probe {
             sample(world, &mut tracer, &Sampler::new(world.method.seed, [x, y], 0), x, y);
         }
     }
-    let mut tracer = Tracer::<N>::new(world);
+    let mut tracer = PathTracer::<N>::new(world);
     let (mut samples, mut parted) = (0_u32, 0);
     let window = world.scene.film.window();
     let start = Instant::now();
@@ -73,13 +74,13 @@ fn probe_lanes<const N: usize>(world: &World) -> Probe {
     let places = SIDE * SIDE;
     for place in (0..places).map(|i| (i * 229) % places) {
         let [x, y] = window.middle_of_cell(SIDE, place);
-        let before = tracer.tally.partings;
+        let before = tracer.walker.stats.partings;
         sample(world, &mut tracer, &Sampler::new(world.method.seed, [x, y], 0), x, y);
         samples += 1;
-        parted += u32::from(tracer.tally.partings > before);
+        parted += u32::from(tracer.walker.stats.partings > before);
         if samples.is_multiple_of(BATCH) || start.elapsed() > ENOUGH {
             let (then, rays) = before_batch;
-            before_batch = (Instant::now(), tracer.tally.rays);
+            before_batch = (Instant::now(), tracer.walker.stats.rays);
             per_ray.push((before_batch.0 - then).as_secs_f64() / (before_batch.1 - rays).max(1) as f64);
         }
         if start.elapsed() > ENOUGH {
@@ -88,7 +89,7 @@ fn probe_lanes<const N: usize>(world: &World) -> Probe {
     }
     per_ray.sort_by(f64::total_cmp);
     let per_sample = 1.0 / f64::from(samples);
-    let rays = tracer.tally.rays as f64 * per_sample;
+    let rays = tracer.walker.stats.rays as f64 * per_sample;
     Probe {
         samples,
         rays,
@@ -103,7 +104,7 @@ fn photon_time<const N: usize>(world: &World) -> Duration {
     let Some(aims) = &world.aims else { return Duration::ZERO };
     let time = |batch| {
         let start = Instant::now();
-        send(world, aims, batch, true, |_: &Tracer<N>, _: &Landing<N>, _: &Sampler, kept| kept.push(()));
+        send(world, aims, batch, true, |_: &Walker<N>, _: &Landing<N>, _: &Sampler, kept| kept.push(()));
         start.elapsed().div_f64(FEW as f64)
     };
     let batches = batches(aims, |_| 0, |_| FEW, world.method.seed);

@@ -2,8 +2,8 @@
 
 use super::World;
 use super::merge::photons;
+use super::path_tracer::PathTracer;
 use super::render::sample;
-use super::tracer::Tracer;
 use super::width::{InLanes, in_lanes};
 use crate::math::{DVec3, Sampler};
 
@@ -25,14 +25,14 @@ struct Looking<'a> {
 impl InLanes for Looking<'_> {
     type Output = Vec<DVec3>;
     fn run<const N: usize>(self) -> Self::Output {
-        let mut tracer = Tracer::<N>::new(self.world);
+        let mut tracer = PathTracer::<N>::new(self.world);
         tracer.reached = Some(Vec::new());
         look(self.world, &mut tracer);
         tracer.reached.unwrap_or_default()
     }
 }
 
-fn look<const N: usize>(world: &World, tracer: &mut Tracer<N>) {
+fn look<const N: usize>(world: &World, tracer: &mut PathTracer<N>) {
     let film = world.scene.film;
     for place in 0..SIDE * SIDE {
         let [x, y] = film.whole().middle_of_cell(SIDE, place);

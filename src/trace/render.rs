@@ -1,5 +1,6 @@
-//! The loop over tiles.
+//! An image in the making: pass after pass over its tiles.
 
+use std::borrow::Borrow;
 use std::ops::Range;
 
 use rayon::prelude::*;
@@ -7,16 +8,18 @@ use rayon::prelude::*;
 use super::aims::Aims;
 use super::light_pass::{self, Shown};
 use super::merge::{self, Photons};
+use super::path_tracer::PathTracer;
 use super::polarization::amount;
-use super::tally::Tally;
-use super::tracer::Tracer;
+use super::stats::Stats;
 use super::width::{InLanes, in_lanes};
 use super::{Transport, World};
-use crate::film::{Film, Pixel, PixelSum, Sample, Window};
+use crate::film::{Film, PassSum, Pixel, PixelSum, Sample, Window};
 use crate::math::{BranchKey, DVec2, Sampler};
 
 /// Side of a tile in pixels.
 pub(super) const TILE: u32 = 16;
+/// Samples of each pixel in the first pass, where no photons are gathered; every other pass takes as many as were taken before.
+const FIRST_PASS: u32 = 16;
 /// Use of the camera's random numbers: where in the pixel the sample falls.
 const PLACE: u32 = 0;
 /// Another: where on the lens its ray starts. The path's first vertex has 1, 2 and those from 16.
@@ -54,7 +57,9 @@ pub struct Report {
 /// Renders the world's image, or the part of it that is asked for. `progress` is told how many camera samples and photons are
 /// done, from any thread; in the end they are [`work`].
 pub fn render(world: &World, progress: &(dyn Fn(u64) + Sync)) -> (Film, Report) {
-    in_lanes(&world.method.basis, Render { world, progress })
+    let mut rendering = Rendering::new(world);
+    while rendering.advance(progress) {}
+    (rendering.film(), rendering.report())
 }
 
 /// How many camera samples and photons an image takes.
@@ -66,73 +71,161 @@ pub fn work(world: &World) -> u64 {
     samples + photons(&world.aims) + passes * photons(&world.map_aims)
 }
 
-struct Render<'a> {
-    world: &'a World,
+/// An image in the making. It advances pass by pass, can be looked at after each, and is finished after the last.
+///
+/// A pass takes the next samples of all pixels; where photons are gathered, each pass sends its own before. The light pass comes before the
+/// first.
+pub struct Rendering<W> {
+    world: W,
+    tiles: Vec<Tile>,
+    shown: Option<Shown>,
+    /// Of the photons that were gathered.
+    gathered: Stats,
+    photons: u64,
+    /// Camera samples of each pixel so far, and passes.
+    samples: u32,
+    passes: u32,
+}
+
+impl<W: Borrow<World>> Rendering<W> {
+    /// An image without samples yet.
+    pub fn new(world: W) -> Self {
+        let window = world.borrow().scene.film.window();
+        let corners = (0..window.height)
+            .step_by(TILE as usize)
+            .flat_map(|y| (0..window.width).step_by(TILE as usize).map(move |x| [x, y]));
+        let tiles = corners.map(|corner| Tile::new(window, corner)).collect();
+        Self { world, tiles, shown: None, gathered: Stats::default(), photons: 0, samples: 0, passes: 0 }
+    }
+
+    /// What is rendered, and how.
+    pub fn world(&self) -> &World {
+        self.world.borrow()
+    }
+
+    /// Camera samples of each pixel that have been taken.
+    pub fn samples(&self) -> u32 {
+        self.samples
+    }
+
+    /// Makes the next pass, if there is one, and answers whether another one is left. `progress` is told how many camera samples and
+    /// photons were done since it was last told, from any thread.
+    pub fn advance(&mut self, progress: &(dyn Fn(u64) + Sync)) -> bool {
+        let basis = self.world().method.basis.clone();
+        if self.samples < self.world().method.samples {
+            in_lanes(&basis, Pass { rendering: self, progress });
+        }
+        self.samples < self.world().method.samples
+    }
+
+    /// The image of the samples so far.
+    pub fn film(&self) -> Film {
+        let settings = self.world().scene.film;
+        let window = settings.window();
+        let mut pixels = vec![BLANK; window.width as usize * window.height as usize];
+        for tile in &self.tiles {
+            for (place, sum) in (0..).zip(&tile.sums) {
+                let number = tile.number(window, place);
+                pixels[number] = sum.pixel(self.shown_at(number));
+            }
+        }
+        Film {
+            width: window.width,
+            height: window.height,
+            corner: [window.left, window.top],
+            full: [settings.width, settings.height],
+            color_space: settings.color_space,
+            pixels,
+        }
+    }
+
+    /// What was noticed so far.
+    pub fn report(&self) -> Report {
+        let window = self.world().scene.film.window();
+        let (mut all, mut first_non_finite, mut polarization_of_tile) = (self.gathered, None, 0.0_f64);
+        all += self.shown.as_ref().map_or(Stats::default(), |shown| shown.stats);
+        for (number, tile) in self.tiles.iter().enumerate() {
+            let stats = self.stats_of(tile, number);
+            if stats.light > 0.0 {
+                polarization_of_tile = polarization_of_tile.max(stats.polarization / stats.light);
+            }
+            first_non_finite = first_non_finite.or(tile.first_non_finite);
+            all += stats;
+        }
+        let samples = u64::from(window.width) * u64::from(window.height) * u64::from(self.samples);
+        let per_sample = |sum: f64| sum / samples.max(1) as f64;
+        Report {
+            samples,
+            rays: all.rays,
+            non_finite: all.non_finite,
+            first_non_finite,
+            dropped: per_sample(all.dropped),
+            stopped: per_sample(all.stopped),
+            unmatched: all.unmatched,
+            by_chance: all.by_chance,
+            polarization: if all.light > 0.0 { all.polarization / all.light } else { 0.0 },
+            polarization_of_tile,
+            light: all.light,
+            photons: self.photons,
+        }
+    }
+
+    /// What was noticed in a tile, with the light that photons show there.
+    fn stats_of(&self, tile: &Tile, number: usize) -> Stats {
+        let window = self.world().scene.film.window();
+        let mut stats = tile.stats;
+        if let Some(shown) = &self.shown {
+            let samples = f64::from(self.samples);
+            stats.polarization += samples * shown.moved.get(number).copied().unwrap_or_default();
+            let light = |place| amount(self.world(), self.shown_at(tile.number(window, place)));
+            stats.light += samples * (0..tile.width * tile.height).map(light).sum::<f64>();
+        }
+        stats
+    }
+
+    /// What photons show in a pixel of the window.
+    fn shown_at(&self, pixel: usize) -> [f64; 3] {
+        self.shown.as_ref().and_then(|shown| shown.pixels.get(pixel)).copied().unwrap_or_default()
+    }
+
+    fn pass<const N: usize>(&mut self, progress: &(dyn Fn(u64) + Sync)) {
+        let world = self.world.borrow();
+        if self.shown.is_none() {
+            let shown = light_pass::show::<N>(world, progress);
+            self.photons += shown.photons;
+            self.shown = Some(shown);
+        }
+        let all = world.method.samples;
+        let map = world.method.light_pass.as_ref().and_then(|pass| pass.map).filter(|_| world.has_map());
+        let end = match map {
+            Some(map) => (u64::from(self.passes + 1) * u64::from(all) / u64::from(map.count)) as u32,
+            None => (2 * self.samples).max(FIRST_PASS).min(all),
+        };
+        let photons = merge::photons::<N>(world, self.passes);
+        if let Some(photons) = &photons {
+            self.photons += photons.sent;
+            self.gathered += photons.stats;
+            progress(photons.sent);
+        }
+        let numbers = self.samples..end;
+        self.tiles.par_iter_mut().for_each(|tile| {
+            tile.take::<N>(world, photons.as_ref(), numbers.clone());
+            progress(u64::from(tile.width * tile.height) * numbers.len() as u64);
+        });
+        (self.samples, self.passes) = (end, self.passes + 1);
+    }
+}
+
+struct Pass<'a, W> {
+    rendering: &'a mut Rendering<W>,
     progress: &'a (dyn Fn(u64) + Sync),
 }
 
-impl InLanes for Render<'_> {
-    type Output = (Film, Report);
-    fn run<const N: usize>(self) -> (Film, Report) {
-        render_lanes::<N>(self.world, self.progress)
+impl<W: Borrow<World>> InLanes for Pass<'_, W> {
+    type Output = ();
+    fn run<const N: usize>(self) {
+        self.rendering.pass::<N>(self.progress);
     }
-}
-
-fn render_lanes<const N: usize>(world: &World, progress: &(dyn Fn(u64) + Sync)) -> (Film, Report) {
-    let settings = world.scene.film;
-    let window = settings.window();
-    let shown = light_pass::show::<N>(world, progress);
-    let corners = (0..window.height)
-        .step_by(TILE as usize)
-        .flat_map(|y| (0..window.width).step_by(TILE as usize).map(move |x| [x, y]));
-    let mut tiles: Vec<Tile> = corners.map(|corner| Tile::new(window, corner)).collect();
-    let mut report = Report { photons: shown.photons, rays: shown.rays, ..Report::default() };
-    report.non_finite += shown.non_finite;
-    report.unmatched += shown.unmatched;
-    let map = world.method.light_pass.as_ref().and_then(|pass| pass.map).filter(|_| world.has_map());
-    let passes = map.map_or(1, |map| map.count);
-    for pass in 0..passes {
-        let photons = merge::photons::<N>(world, pass);
-        if let Some(photons) = &photons {
-            report.add_photons(photons);
-            progress(photons.sent);
-        }
-        let [first, end] =
-            [pass, pass + 1].map(|pass| (u64::from(pass) * u64::from(world.method.samples) / u64::from(passes)) as u32);
-        let last = pass + 1 == passes;
-        tiles.par_iter_mut().enumerate().for_each(|(number, tile)| {
-            tile.take::<N>(world, photons.as_ref(), first..end);
-            if last {
-                tile.finish(world, &shown, number);
-            }
-            progress(u64::from(tile.width) * u64::from(tile.height) * u64::from(end - first));
-        });
-    }
-    let mut pixels = vec![BLANK; window.width as usize * window.height as usize];
-    for tile in &tiles {
-        report.add(&tile.report);
-        if tile.report.light > 0.0 {
-            let of_tile = tile.report.polarization / tile.report.light;
-            report.polarization_of_tile = report.polarization_of_tile.max(of_tile);
-        }
-        for (row, line) in tile.pixels.chunks_exact(tile.width as usize).enumerate() {
-            let start = (tile.corner[1] as usize + row) * window.width as usize + tile.corner[0] as usize;
-            pixels[start..start + line.len()].copy_from_slice(line);
-        }
-    }
-    let samples = report.samples.max(1) as f64;
-    report.dropped /= samples;
-    report.stopped /= samples;
-    report.polarization = if report.light > 0.0 { report.polarization / report.light } else { 0.0 };
-    let film = Film {
-        width: window.width,
-        height: window.height,
-        corner: [window.left, window.top],
-        full: [settings.width, settings.height],
-        color_space: settings.color_space,
-        pixels,
-    };
-    (film, report)
 }
 
 const BLANK: Pixel = Pixel { rgb: [0.0; 3], alpha: 0.0, depth: 0.0, samples: 0.0 };
@@ -143,68 +236,52 @@ struct Tile {
     corner: [u32; 2],
     width: u32,
     height: u32,
-    /// Sums of its pixels, row by row; empty before the first samples and when the pixels are finished.
+    /// Sums of its pixels, row by row.
     sums: Vec<PixelSum>,
-    pixels: Vec<Pixel>,
-    report: Report,
+    stats: Stats,
+    first_non_finite: Option<[u32; 3]>,
 }
 
 impl Tile {
     fn new(window: Window, corner: [u32; 2]) -> Self {
         let [width, height] = [window.width - corner[0], window.height - corner[1]].map(|left| left.min(TILE));
-        Self { corner, width, height, sums: Vec::new(), pixels: Vec::new(), report: Report::default() }
+        let sums = vec![PixelSum::default(); width as usize * height as usize];
+        Self { corner, width, height, sums, stats: Stats::default(), first_non_finite: None }
+    }
+
+    /// The number of one of its pixels in the window.
+    fn number(&self, window: Window, place: u32) -> usize {
+        let [x, y] = [self.corner[0] + place % self.width, self.corner[1] + place / self.width];
+        y as usize * window.width as usize + x as usize
     }
 
     /// Takes samples of all pixels.
     fn take<const N: usize>(&mut self, world: &World, photons: Option<&Photons<N>>, numbers: Range<u32>) {
         let window = world.scene.film.window();
-        let mut tracer = Tracer::<N>::new(world);
+        let mut tracer = PathTracer::<N>::new(world);
         tracer.photons = photons;
-        let report = &mut self.report;
-        self.sums.resize_with(self.width as usize * self.height as usize, PixelSum::default);
         for (place, sum) in (0..).zip(&mut self.sums) {
             // Random numbers and rays belong to the full image's pixel, whatever part of it is made.
             let x = window.left + self.corner[0] + place % self.width;
             let y = window.top + self.corner[1] + place / self.width;
+            let mut pass = PassSum::default();
             for number in numbers.clone() {
                 let sampler = Sampler::new(world.method.seed, [x, y], number);
-                if !sum.add(&sample(world, &mut tracer, &sampler, x, y)) {
-                    report.non_finite += 1;
-                    report.first_non_finite.get_or_insert([x, y, number]);
+                if !pass.add(&sample(world, &mut tracer, &sampler, x, y)) {
+                    self.stats.non_finite += 1;
+                    self.first_non_finite.get_or_insert([x, y, number]);
                 }
             }
-            sum.settle();
+            sum.add(pass);
         }
-        let Tally { rays, dropped, stopped, unmatched, polarization, light, by_chance, .. } = tracer.tally;
-        let samples = self.sums.len() as u64 * numbers.len() as u64;
-        let lost = Report { dropped, stopped, unmatched, by_chance, ..Report::default() };
-        report.add(&Report { samples, rays, polarization, light, ..lost });
-    }
-
-    /// Makes the pixels of their sums, and what photons show there.
-    fn finish(&mut self, world: &World, shown: &Shown, number: usize) {
-        let width = world.scene.film.window().width;
-        let samples = f64::from(world.method.samples);
-        self.report.polarization += samples * shown.moved.get(number).copied().unwrap_or_default();
-        let by_photons = |place: u32| {
-            let [x, y] = [self.corner[0] + place % self.width, self.corner[1] + place / self.width];
-            shown.pixels.get((y * width + x) as usize).copied().unwrap_or_default()
-        };
-        let mut light = 0.0;
-        let finished = |(place, sum): (u32, PixelSum)| {
-            let rgb = by_photons(place);
-            light += amount(world, rgb);
-            sum.pixel(rgb)
-        };
-        self.pixels = (0..).zip(std::mem::take(&mut self.sums)).map(finished).collect();
-        self.report.light += samples * light;
+        self.stats += tracer.walker.stats;
     }
 }
 
 /// One camera sample.
 pub(super) fn sample<const N: usize>(
     world: &World,
-    tracer: &mut Tracer<N>,
+    tracer: &mut PathTracer<N>,
     sampler: &Sampler,
     x: u32,
     y: u32,
@@ -225,26 +302,4 @@ pub(super) fn sample<const N: usize>(
     };
     let (rgb, first) = tracer.radiance(ray, &draw, sampler);
     Sample { rgb, depth: first.map(|point| camera.depth(point.position)) }
-}
-
-impl Report {
-    fn add_photons<const N: usize>(&mut self, photons: &Photons<N>) {
-        self.photons += photons.sent;
-        self.rays += photons.rays;
-        self.unmatched += photons.unmatched;
-        self.non_finite += photons.non_finite;
-    }
-
-    fn add(&mut self, other: &Self) {
-        self.samples += other.samples;
-        self.rays += other.rays;
-        self.non_finite += other.non_finite;
-        self.first_non_finite = self.first_non_finite.or(other.first_non_finite);
-        self.dropped += other.dropped;
-        self.stopped += other.stopped;
-        self.unmatched += other.unmatched;
-        self.polarization += other.polarization;
-        self.light += other.light;
-        self.by_chance += other.by_chance;
-    }
 }

@@ -2,9 +2,9 @@
 
 use super::light_pass::splats;
 use super::merge;
+use super::path_tracer::PathTracer;
 use super::polarization::amount;
 use super::render::sample;
-use super::tracer::Tracer;
 use super::width::{InLanes, in_lanes};
 use super::{LightPass, MapPasses, World};
 use crate::film::Window;
@@ -63,15 +63,15 @@ impl InLanes for Looking<'_> {
         let window = world.scene.film.window();
         let mut seen = SeenLight { parts: [[0.0; 2]; (PARTS * PARTS) as usize] };
         let photons = merge::photons::<N>(world, 0);
-        let mut tracer = Tracer::<N>::new(world);
+        let mut tracer = PathTracer::<N>::new(world);
         tracer.photons = photons.as_ref();
         for place in 0..SIDE * SIDE {
             let [x, y] = window.middle_of_cell(SIDE, place);
-            let before = tracer.tally;
+            let before = tracer.walker.stats;
             sample(world, &mut tracer, &Sampler::new(world.method.seed, [x, y], 0), x, y);
             let part = &mut seen.parts[part_of(window, [x - window.left, y - window.top])];
-            part[0] += tracer.tally.light - before.light;
-            part[1] += tracer.tally.polarization - before.polarization;
+            part[0] += tracer.walker.stats.light - before.light;
+            part[1] += tracer.walker.stats.polarization - before.polarization;
         }
         // Photons light all pixels, of which so many were looked at.
         let pixels = f64::from(window.width) * f64::from(window.height);

@@ -5,7 +5,8 @@ use super::World;
 use super::aims::{Aim, Aims};
 use super::media::Media;
 use super::photon::Landing;
-use super::tracer::Tracer;
+use super::stats::Stats;
+use super::walker::Walker;
 use crate::light::{Light, LightId};
 use crate::math::{BranchKey, DVec3, Sampler};
 
@@ -32,8 +33,7 @@ pub(super) struct Sent<T> {
     pub(super) kept: Vec<T>,
     /// Where each photon was sent and whether anything was kept of it.
     pub(super) places: Vec<([f64; 2], bool)>,
-    pub(super) rays: u64,
-    pub(super) unmatched: u64,
+    pub(super) stats: Stats,
 }
 
 /// The photons of some aims from number `first` on, batch by batch.
@@ -53,9 +53,9 @@ pub(super) fn send<const N: usize, T>(
     aims: &Aims,
     batch: Batch,
     learns: bool,
-    land: impl Fn(&Tracer<N>, &Landing<N>, &Sampler, &mut Vec<T>),
+    land: impl Fn(&Walker<N>, &Landing<N>, &Sampler, &mut Vec<T>),
 ) -> Sent<T> {
-    let mut tracer = Tracer::<N>::new(world).with_transport(PHOTONS);
+    let mut walker = Walker::<N>::new(world, PHOTONS);
     let (mut kept, mut places) = (Vec::new(), Vec::new());
     let light = aims.aims[batch.aim].light;
     // Ways and wavelengths matter more than where on a small lamp they begin, so theirs are the numbers spread best.
@@ -71,8 +71,8 @@ pub(super) fn send<const N: usize, T>(
             let draw = world.method.basis.draw(u[2]);
             let around = || Media::around(world, emitted.ray.origin, emitted.ray.direction);
             let media = world.light_media[light].unwrap_or_else(around);
-            tracer.photon(&emitted, light, media, &draw, &sampler, &mut |tracer, landing| {
-                land(tracer, landing, &sampler, &mut kept);
+            walker.photon(&emitted, light, media, &draw, &sampler, &mut |walker, landing| {
+                land(walker, landing, &sampler, &mut kept);
             });
         }
         if learns {
@@ -80,7 +80,7 @@ pub(super) fn send<const N: usize, T>(
             kept.clear();
         }
     }
-    Sent { kept, places, rays: tracer.tally.rays, unmatched: tracer.tally.unmatched }
+    Sent { kept, places, stats: walker.stats }
 }
 
 /// The bodies around each light; none where they may differ from point to point.

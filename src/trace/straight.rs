@@ -1,9 +1,10 @@
 //! Light that goes straight on through the holes of masks and through panes that bend nothing.
 
+use super::interaction::arrival;
 use super::path::Path;
 use super::polarization::Polarized;
-use super::{Transport, World, media, shading};
-use crate::material::{Arrival, Straight};
+use super::{Transport, World, shading};
+use crate::material::Straight;
 use crate::math::{Ray, Sampler};
 use crate::scene::{Hit, MaterialId};
 use crate::shape::SurfacePoint;
@@ -89,11 +90,7 @@ pub(super) fn straight_at<const N: usize>(
     inside: Option<MaterialId>,
     (hit, point): (&Hit, &SurfacePoint),
 ) -> Option<Straight<N>> {
-    let index = media::index(world, draw, inside);
-    let (wo, together) = (-ray.direction, world.method.together);
-    let [_, normal] = shading::normals(point, wo);
-    let uv = world.scene.objects[hit.object as usize].uv(&hit.crossing, point);
-    let (incident, beyond, direction_indices) = (index, index, [None; 2]);
-    let arrival = Arrival { wo, normal, uv, draw, present, incident, beyond, direction_indices, together };
+    let [_, normal] = shading::normals(point, -ray.direction);
+    let arrival = arrival(world, draw, (ray.direction, normal, present), (hit, point), [inside; 2]);
     world.scene.material_of(hit.object).straight(&arrival)
 }

@@ -1,6 +1,8 @@
+use std::ops::AddAssign;
+
 /// What happened to the rays of many samples.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Tally {
+pub(super) struct Stats {
     /// Rays followed, without those to lights.
     pub(super) rays: u64,
     /// Weight of the branches that deterministic transport did not follow.
@@ -17,4 +19,20 @@ pub(super) struct Tally {
     pub(super) polarization: f64,
     /// Camera samples of deterministic transport that met so many surfaces that they went on by chance.
     pub(super) by_chance: u64,
+    /// What was sent, showed or kept and is not finite.
+    pub(super) non_finite: u64,
+}
+
+impl AddAssign for Stats {
+    fn add_assign(&mut self, other: Self) {
+        self.rays += other.rays;
+        self.dropped += other.dropped;
+        self.stopped += other.stopped;
+        self.unmatched += other.unmatched;
+        self.partings += other.partings;
+        self.light += other.light;
+        self.polarization += other.polarization;
+        self.by_chance += other.by_chance;
+        self.non_finite += other.non_finite;
+    }
 }

@@ -1,0 +1,80 @@
+//! A ray meets a surface.
+
+use super::media::{self, Boundary};
+use super::path::Path;
+use super::{World, shading};
+use crate::material::{Arrival, Material, Straight};
+use crate::math::DVec3;
+use crate::scene::{Hit, MaterialId};
+use crate::shape::SurfacePoint;
+use crate::spectrum::{Draw, Lanes, Table};
+
+/// The next surface along a ray.
+pub(super) struct Meeting<const N: usize> {
+    pub(super) hit: Hit,
+    pub(super) point: SurfacePoint,
+    /// What goes straight on through it; none if nothing does.
+    pub(super) straight: Option<Straight<N>>,
+}
+
+/// Where a path meets a surface, and what the surface may know of it: made here, for the camera's paths, photons and probes.
+pub(super) struct Interaction<'a, const N: usize> {
+    pub(super) object: u32,
+    pub(super) point: SurfacePoint,
+    pub(super) material: &'a Material<Table>,
+    /// The surface's own unit normal, of the triangle where a mesh is smooth, on the side that the path comes from.
+    pub(super) flat: DVec3,
+    /// The media on both sides.
+    pub(super) boundary: Boundary,
+    pub(super) arrival: Arrival<'a, N>,
+    /// Whether lanes that cross the surface part.
+    pub(super) parts: bool,
+}
+
+impl<'a, const N: usize> Interaction<'a, N> {
+    /// Of a path with the surface that it has met at a boundary of media.
+    pub(super) fn new(
+        world: &'a World,
+        draw: &'a Draw<N>,
+        path: &Path<N>,
+        meeting: &Meeting<N>,
+        boundary: Boundary,
+    ) -> Self {
+        let Meeting { hit, point, .. } = meeting;
+        let material = world.scene.material_of(hit.object);
+        let [flat, normal] = shading::normals(point, -path.ray.direction);
+        let present = path.throughput.present();
+        let arrival = arrival(world, draw, (path.ray.direction, normal, present), (hit, point), boundary.sides());
+        let parts = material.lets_through() && material.parts_lanes(&arrival);
+        Self { object: hit.object, point: *point, material, flat, boundary, arrival, parts }
+    }
+
+    /// With another normal by which the surface scatters.
+    pub(super) fn by_normal(self, normal: DVec3) -> Self {
+        let arrival = Arrival { normal, ..self.arrival };
+        let parts = self.material.lets_through() && self.material.parts_lanes(&arrival);
+        Self { arrival, parts, ..self }
+    }
+}
+
+/// What a surface may know of light that arrives there, between media on the viewer's side and beyond; `normal` is the one by which
+/// it scatters, on the viewer's side.
+pub(super) fn arrival<'a, const N: usize>(
+    world: &'a World,
+    draw: &'a Draw<N>,
+    (direction, normal, present): (DVec3, DVec3, Lanes<N>),
+    (hit, point): (&Hit, &SurfacePoint),
+    sides: [Option<MaterialId>; 2],
+) -> Arrival<'a, N> {
+    Arrival {
+        wo: -direction,
+        normal,
+        uv: world.scene.objects[hit.object as usize].uv(&hit.crossing, point),
+        draw,
+        present,
+        incident: media::index(world, draw, sides[0]),
+        beyond: media::index(world, draw, sides[1]),
+        direction_indices: media::direction_indices(world, sides),
+        together: world.method.together,
+    }
+}
