@@ -3,7 +3,7 @@
 use super::World;
 use super::path_tracer::PathTracer;
 use super::render::sample;
-use super::width::{InLanes, in_lanes};
+use super::width::in_lanes;
 use crate::light::LightId;
 use crate::math::{DVec3, Sampler};
 
@@ -17,28 +17,21 @@ const SEED: u64 = 0x6c61_6d70;
 /// The lights that paths meet by chance, with the unit normals there. Looks at the whole image, also where only a part of
 /// it is made, so that all parts are made alike.
 pub(super) fn met_lamps(world: &World) -> Vec<(LightId, DVec3)> {
-    in_lanes(&world.method.basis, Meeting { world })
+    in_lanes!(&world.method.basis, N => meet::<N>(world))
 }
 
-struct Meeting<'a> {
-    world: &'a World,
-}
-
-impl InLanes for Meeting<'_> {
-    type Output = Vec<(LightId, DVec3)>;
-    fn run<const N: usize>(self) -> Self::Output {
-        let (world, film) = (self.world, self.world.scene.film);
-        let mut tracer = PathTracer::<N>::new(world);
-        tracer.met = Some(Vec::new());
-        // A stride that is coprime to the number of places visits them all, far ones first.
-        let places = SIDE * SIDE;
-        for place in (0..places).map(|i| (i * 1597) % places) {
-            let [x, y] = film.whole().middle_of_cell(SIDE, place);
-            sample(world, &mut tracer, &Sampler::new(world.method.seed ^ SEED, [x, y], place), x, y);
-            if tracer.met.as_ref().is_some_and(|met| met.len() >= ENOUGH) {
-                break;
-            }
+fn meet<const N: usize>(world: &World) -> Vec<(LightId, DVec3)> {
+    let film = world.scene.film;
+    let mut tracer = PathTracer::<N>::new(world);
+    tracer.met = Some(Vec::new());
+    // A stride that is coprime to the number of places visits them all, far ones first.
+    let places = SIDE * SIDE;
+    for place in (0..places).map(|i| (i * 1597) % places) {
+        let [x, y] = film.whole().middle_of_cell(SIDE, place);
+        sample(world, &mut tracer, &Sampler::new(world.method.seed ^ SEED, [x, y], place), x, y);
+        if tracer.met.as_ref().is_some_and(|met| met.len() >= ENOUGH) {
+            break;
         }
-        tracer.met.unwrap_or_default()
     }
+    tracer.met.unwrap_or_default()
 }

@@ -4,7 +4,7 @@ use super::World;
 use super::merge::photons;
 use super::path_tracer::PathTracer;
 use super::render::sample;
-use super::width::{InLanes, in_lanes};
+use super::width::in_lanes;
 use crate::math::{DVec3, Sampler};
 
 /// Camera samples along each side of the image that look where the camera's paths lead.
@@ -15,51 +15,32 @@ const LOOKING: u64 = 0x6c6f_6f6b;
 /// Places on surfaces that scatter widely to which paths from the camera come by way of others; the same whatever part of
 /// the image is made.
 pub fn reached_places(world: &World) -> Vec<DVec3> {
-    in_lanes(&world.method.basis, Looking { world })
+    in_lanes!(&world.method.basis, N => look::<N>(world))
 }
 
-struct Looking<'a> {
-    world: &'a World,
-}
-
-impl InLanes for Looking<'_> {
-    type Output = Vec<DVec3>;
-    fn run<const N: usize>(self) -> Self::Output {
-        let mut tracer = PathTracer::<N>::new(self.world);
-        tracer.reached = Some(Vec::new());
-        look(self.world, &mut tracer);
-        tracer.reached.unwrap_or_default()
-    }
-}
-
-fn look<const N: usize>(world: &World, tracer: &mut PathTracer<N>) {
+fn look<const N: usize>(world: &World) -> Vec<DVec3> {
     let film = world.scene.film;
+    let mut tracer = PathTracer::<N>::new(world);
+    tracer.reached = Some(Vec::new());
     for place in 0..SIDE * SIDE {
         let [x, y] = film.whole().middle_of_cell(SIDE, place);
-        sample(world, tracer, &Sampler::new(world.method.seed ^ LOOKING, [x, y], place), x, y);
+        sample(world, &mut tracer, &Sampler::new(world.method.seed ^ LOOKING, [x, y], place), x, y);
     }
+    tracer.reached.unwrap_or_default()
 }
 
 /// The photons of one pass that lie within a pixel of such places, where all of `SIDE` times `SIDE` fill the image; as a share.
 pub fn gathered_photons(world: &World, places: &[DVec3]) -> f64 {
-    in_lanes(&world.method.basis, Finding { world, places })
+    in_lanes!(&world.method.basis, N => gathered::<N>(world, places))
 }
 
-struct Finding<'a> {
-    world: &'a World,
-    places: &'a [DVec3],
-}
-
-impl InLanes for Finding<'_> {
-    type Output = f64;
-    fn run<const N: usize>(self) -> f64 {
-        let Some(photons) = photons::<N>(self.world, 0) else { return 0.0 };
-        let (world, camera) = (self.world, &self.world.scene.camera);
-        let coarse = f64::from(world.scene.film.width) / f64::from(SIDE);
-        let found = |place: &&DVec3| {
-            let radius = coarse * camera.pixel_width((**place - camera.position()).length());
-            photons.any_near(**place, radius)
-        };
-        self.places.iter().filter(found).count() as f64 / self.places.len().max(1) as f64
-    }
+fn gathered<const N: usize>(world: &World, places: &[DVec3]) -> f64 {
+    let Some(photons) = photons::<N>(world, 0) else { return 0.0 };
+    let camera = &world.scene.camera;
+    let coarse = f64::from(world.scene.film.width) / f64::from(SIDE);
+    let found = |place: &&DVec3| {
+        let radius = coarse * camera.pixel_width((**place - camera.position()).length());
+        photons.any_near(**place, radius)
+    };
+    places.iter().filter(found).count() as f64 / places.len().max(1) as f64
 }

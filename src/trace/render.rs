@@ -11,7 +11,7 @@ use super::merge::{self, Photons};
 use super::path_tracer::PathTracer;
 use super::polarization::amount;
 use super::stats::Stats;
-use super::width::{InLanes, in_lanes};
+use super::width::in_lanes;
 use super::{Transport, World};
 use crate::film::{Film, PassSum, Pixel, PixelSum, Sample, Window};
 use crate::math::{BranchKey, DVec2, Sampler};
@@ -113,7 +113,7 @@ impl<W: Borrow<World>> Rendering<W> {
     pub fn advance(&mut self, progress: &(dyn Fn(u64) + Sync)) -> bool {
         let basis = self.world().method.basis.clone();
         if self.samples < self.world().method.samples {
-            in_lanes(&basis, Pass { rendering: self, progress });
+            in_lanes!(&basis, N => self.pass::<N>(progress));
         }
         self.samples < self.world().method.samples
     }
@@ -213,18 +213,6 @@ impl<W: Borrow<World>> Rendering<W> {
             progress(u64::from(tile.width * tile.height) * numbers.len() as u64);
         });
         (self.samples, self.passes) = (end, self.passes + 1);
-    }
-}
-
-struct Pass<'a, W> {
-    rendering: &'a mut Rendering<W>,
-    progress: &'a (dyn Fn(u64) + Sync),
-}
-
-impl<W: Borrow<World>> InLanes for Pass<'_, W> {
-    type Output = ();
-    fn run<const N: usize>(self) {
-        self.rendering.pass::<N>(self.progress);
     }
 }
 
