@@ -4,9 +4,10 @@
 //! cargo bench --bench caustics [-- point]
 //! ```
 //!
-//! A ball of N-SF11, radius 1, its middle 1.5 above a floor, under a lamp of power pi at a height of 7: the floor's patch
-//! of 1.6 by 1.6 in 24 x 24 pixels. It is nearly black, so that nothing but the caustic itself is measured. relMSE = mean variance over mean square of the pixels, from images of several seeds;
-//! time to 1e-3 is time x relMSE / 1e-3.
+//! A ball of N-SF11, radius 1, its middle 1.5 above a floor, under a lamp of power pi at a height of 7: the floor's
+//! patch of 1.6 by 1.6 in 24 x 24 pixels. It is nearly black, so that nothing but the caustic itself is measured.
+//! relMSE = mean variance over mean square of the pixels, from images of several seeds; time to 1e-3 is time x relMSE /
+//! 1e-3.
 
 use std::time::Instant;
 

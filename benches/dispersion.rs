@@ -4,15 +4,16 @@
 //! cargo bench --bench dispersion
 //! ```
 //!
-//! A glass ball on a checker of tiles under sky and lamp. relMSE = mean variance over mean square, from images of several
-//! seeds; lower time x relMSE is better. "collapse" is the scheme of pbrt-v4: four random wavelengths, one of which goes on.
+//! A glass ball on a checker of tiles under sky and lamp. relMSE = mean variance over mean square, from images of
+//! several seeds; lower time x relMSE is better. "collapse" is the scheme of pbrt-v4: four random wavelengths, one of
+//! which goes on.
 
 use std::time::Instant;
 
 use abbe::film::Film;
 use abbe::plan::plan;
 use abbe::scene::{Scene, Source, compile};
-use abbe::spectrum::{Basis, Curve};
+use abbe::spectrum::{Curve, comparison};
 use abbe::trace::{Method, World, render};
 
 const SEEDS: u64 = 6;
@@ -74,7 +75,7 @@ fn scene(text: String) -> Scene<Curve> {
 fn measure(text: &str, collapses: bool, mask: &[bool]) -> Measured {
     let scene = scene(text.to_owned());
     let method = plan(&scene).method;
-    let basis = if collapses { Basis::collapsing(scene.film.color_space) } else { method.basis.clone() };
+    let basis = if collapses { comparison::collapsing(scene.film.color_space) } else { method.basis.clone() };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread can be started");
     let (mut times, mut images) = (Vec::new(), Vec::new());
     for seed in 0..SEEDS {

@@ -5,9 +5,9 @@
 //! cargo bench --bench rays -- --write FOLDER    # the mesh and the rays as well, for another program to trace
 //! ```
 //!
-//! All numbers in the files are little-endian and 32 bits long. `mesh`: the number of vertices and that of triangles, the
-//! vertices as three floats, the triangles as three numbers of vertices. `primary`, `diffuse` and `shadow`: the number of
-//! rays, and for each its origin, direction and largest t.
+//! All numbers in the files are little-endian and 32 bits long. `mesh`: the number of vertices and that of triangles,
+//! the vertices as three floats, the triangles as three numbers of vertices. `primary`, `diffuse` and `shadow`: the
+//! number of rays, and for each its origin, direction and largest t.
 
 use std::f64::consts::{PI, TAU};
 use std::path::Path;

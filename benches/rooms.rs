@@ -4,9 +4,9 @@
 //! cargo bench --bench rooms
 //! ```
 //!
-//! The error is the root of the mean square difference from a long render with the light pass, over the root of its mean square; time
-//! to 1 % is processor time x error^2 / 1e-4. Photons are as many as the plan asks for, or one a camera sample. Where chance misses
-//! light for good, no time is enough.
+//! The error is the root of the mean square difference from a long render with the light pass, over the root of its
+//! mean square; time to 1 % is processor time x error^2 / 1e-4. Photons are as many as the plan asks for, or one a
+//! camera sample. Where chance misses light for good, no time is enough.
 
 use abbe::film::Film;
 use abbe::plan::plan;

@@ -18,7 +18,8 @@ fn main() -> abbe::Result<()> {
     Ok(())
 }
 
-/// A block in one half of the view, before a wall that shines at one wavelength. The film keeps XYZ, which no line leaves dark.
+/// A block in one half of the view, before a wall that shines at one wavelength. The film keeps XYZ, which no line
+/// leaves dark.
 fn bench(nm: u32) -> String {
     format!(
         "

@@ -1,4 +1,5 @@
-//! Color spaces are views of the same light, blackbodies have their published colors, and `rgb` survives being a spectrum.
+//! Color spaces are views of the same light, blackbodies have their published colors, and `rgb` survives being a
+//! spectrum.
 //!
 //! ```text
 //! cargo test --release --test all colors::
@@ -22,22 +23,30 @@ const SPACES: [ColorSpace; 6] = [
 ];
 const MODELS: [&str; 6] =
     ["\"rgb\"", "{ bands = 8 }", "{ bands = 12 }", "{ bands = 16 }", "{ bands = 32 }", "\"hero\""];
-/// No light is chosen by its brightness, which is measured in film colors, so that all films share their random numbers. How many
-/// photons there are is learned from samples that do choose lights: it is asked once.
+/// No light is chosen by its brightness, which is measured in film colors, so that all films share their random
+/// numbers.
 const ALL_LIGHTS: Transport = Transport::Deterministic { cutoff: 1e-4, most: u64::MAX };
 
-/// The film of a scene in a color space, under a model.
-fn film(body: &str, space: ColorSpace, model: &str) -> Film {
-    let text = format!(
+/// A scene in a color space, under a model.
+fn text(body: &str, space: ColorSpace, model: &str) -> String {
+    format!(
         "film = {{ width = 16, height = 12, color_space = \"{}\" }}\n\
          render = {{ model = {model}, samples = 2, diffuse_bounces = 1 }}\n\
          camera = {{ position = [0, 1, 6], look_at = [0, 0.8, 0], vertical_fov = 35 }}\n{body}",
         space.interop_id()
-    );
-    let planned = |text: &str| plan(&scene(text)).method;
-    let light_pass = planned(&text.replace(space.interop_id(), SPACES[0].interop_id())).light_pass;
-    let method = Method { transport: ALL_LIGHTS, light_pass, ..planned(&text) };
-    render(&World::new(&scene(&text), method), &|_| ()).0
+    )
+}
+
+/// The films of a scene in some color spaces, under a model. How many photons there are is learned from samples that do
+/// choose lights: it is asked once.
+fn films<const S: usize>(body: &str, spaces: [ColorSpace; S], model: &str) -> [Film; S] {
+    let scenes = spaces.map(|space| scene(&text(body, space, model)));
+    let methods = scenes.each_ref().map(|scene| plan(scene).method);
+    let light_pass = &methods[0].light_pass;
+    std::array::from_fn(|i| {
+        let method = Method { transport: ALL_LIGHTS, light_pass: light_pass.clone(), ..methods[i].clone() };
+        render(&World::new(&scenes[i], method), &|_| ()).0
+    })
 }
 
 /// Measured lights and surfaces of every kind, but nothing that is relative to the film's white.
@@ -79,7 +88,7 @@ fn a_measured_scene_is_the_same_xyz_in_every_color_space() {
     for model in MODELS {
         // Three bands hold surfaces as they look under the one light there is, or else under the film's own white.
         let lights = if model == "\"rgb\"" { SAME_LIGHT } else { OTHER_LIGHTS };
-        let films = SPACES.map(|space| film(&format!("{MEASURED}{lights}"), space, model));
+        let films = films(&format!("{MEASURED}{lights}"), SPACES, model);
         let mut worst = 0.0_f64;
         for at in 0..films[0].pixels.len() {
             let [expected, others @ ..] = SPACES.map(|space| {
@@ -107,12 +116,12 @@ fn rgb_lights_and_surfaces_have_their_rec709_color_in_every_color_space_adapted_
         "material.wall.diffuse.reflectance.rgb = {color:?}\n[[object]]\nmaterial = \"wall\"\n\
          shape.plane = {{ point = [0, 0, 0], normal = [0, 0, 1] }}\n[[light]]\nenvironment.radiance = 1\n"
     );
-    for space in SPACES {
-        for model in MODELS {
-            for (body, limit) in [(&sky, 1e-7), (&wall, missed(model))] {
-                for pixel in &film(body, space, model).pixels {
-                    let found = apply(&space.to_rec709(), pixel.rgb.map(f64::from));
-                    assert_near(found, color, limit, &format!("{model}, {space:?}, {body}"));
+    for model in MODELS {
+        for (body, limit) in [(&sky, 1e-7), (&wall, missed(model))] {
+            for film in films(body, SPACES, model) {
+                for pixel in &film.pixels {
+                    let found = apply(&film.color_space.to_rec709(), pixel.rgb.map(f64::from));
+                    assert_near(found, color, limit, &format!("{model}, {:?}, {body}", film.color_space));
                 }
             }
         }
@@ -152,8 +161,8 @@ fn blackbodies_have_their_published_chromaticities() {
     assert_near(xy_of_blackbody(1e9), [0.2399, 0.2340], 5e-5, "1e9 K");
 }
 
-/// For a blackbody of 6504 K, (0.3135, 0.3237) is often printed. It is the sum over steps of 10 nm; steps of 1 nm, on which
-/// color is integrated here, give (0.3135, 0.3236).
+/// For a blackbody of 6504 K, (0.3135, 0.3237) is often printed. It is the sum over steps of 10 nm; steps of 1 nm, on
+/// which color is integrated here, give (0.3135, 0.3236).
 #[test]
 fn the_printed_chromaticity_of_6504_kelvin_is_that_of_coarse_steps() {
     assert_near(xy_of_blackbody(6504.0), [0.3135, 0.3236], 5e-5, "6504 K");
@@ -166,8 +175,8 @@ fn the_printed_chromaticity_of_6504_kelvin_is_that_of_coarse_steps() {
     assert_near(xy(xyz), [0.3135, 0.3237], 5e-5, "6504 K in steps of 10 nm");
 }
 
-/// (1.2048, 0.9483, 0.9089) is printed for XYZ = (1, 1, 1) and a white of (0.95047, 1, 1.08883). The white of Rec.709 is
-/// (0.3127, 0.3290), 0.0002 more in Z, and over 1 nm the CIE's own functions sum to (1.00008, 1, 1.00033).
+/// (1.2048, 0.9483, 0.9089) is printed for XYZ = (1, 1, 1) and a white of (0.95047, 1, 1.08883). The white of Rec.709
+/// is (0.3127, 0.3290), 0.0002 more in Z, and over 1 nm the CIE's own functions sum to (1.00008, 1, 1.00033).
 #[test]
 fn the_equal_energy_spectrum_is_pink_in_rec709_however_it_is_written() {
     let expected =
@@ -176,7 +185,8 @@ fn the_equal_energy_spectrum_is_pink_in_rec709_however_it_is_written() {
     for light in ["{ illuminant = \"E\" }", "{ samples = [[360, 1], [830, 1]] }", "{ samples = [[300, 1], [900, 1]] }"]
     {
         for model in MODELS {
-            let film = film(&format!("[[light]]\nenvironment.radiance = {light}\n"), ColorSpace::Rec709, model);
+            let body = format!("[[light]]\nenvironment.radiance = {light}\n");
+            let [film] = films(&body, [ColorSpace::Rec709], model);
             for pixel in &film.pixels {
                 assert_near(pixel.rgb.map(f64::from), expected, 1e-6, &format!("{light}, {model}"));
             }

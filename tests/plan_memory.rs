@@ -26,7 +26,8 @@ fn held(width: u32, height: u32, samples: u32) -> Memory {
     memory
 }
 
-/// Photons are held while it is learned where they land: as many for any image. Threads may hold some more at a time or less.
+/// Photons are held while it is learned where they land: as many for any image. Threads may hold some more at a time or
+/// less.
 #[test]
 fn w8_the_plan_holds_as_much_for_any_number_of_pixels_and_samples() {
     const MOST: usize = 200_000_000;

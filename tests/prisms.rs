@@ -1,4 +1,5 @@
-//! Every maker's glass as a prism: each spectral line leaves where Snell's law sends it, and as bright as Fresnel lets it.
+//! Every maker's glass as a prism: each spectral line leaves where Snell's law sends it, and as bright as Fresnel lets
+//! it.
 //!
 //! ```text
 //! cargo test --release --test all prisms::
@@ -156,7 +157,8 @@ fn crossing(incidence: f64, refraction: f64) -> f64 {
     1.0 - 0.5 * ((difference.sin() / sum.sin()).powi(2) + (difference.tan() / sum.tan()).powi(2))
 }
 
-/// What is wrong with a glass whose index is expected to be `more` than its formula says, and how many passages were judged.
+/// What is wrong with a glass whose index is expected to be `more` than its formula says, and how many passages were
+/// judged.
 fn judge(glass: &Glass, more: f64) -> (Vec<String>, usize) {
     // Each sun and its two controls, and each pixel's own direction to the side, so that no other sun is near.
     let passages: Vec<Passage> = glass.lines().flat_map(|nm| Passage::pair(nm, glass.index(nm) + more)).collect();

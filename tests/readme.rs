@@ -33,32 +33,43 @@ fn mistakes(text: &str) -> Vec<String> {
     }
 }
 
-/// The rows of the table of all that a scene can hold: what they are about, and the pieces of TOML in them.
+/// The rows of the tables of all that a scene can hold: the head of each table, and the pieces of TOML in the row.
 fn rows(readme: &str) -> Vec<(String, Vec<String>)> {
-    let table = readme.split("## What a scene can hold\n").nth(1).and_then(|rest| rest.split("\n## ").next());
-    let rows =
-        table.expect("there is such a table").lines().filter_map(|line| line.strip_prefix("| ")?.split_once(" | "));
-    let pieces = |row: &str| row.split('`').skip(1).step_by(2).map(str::to_owned).collect();
-    rows.map(|(what, row)| (what.to_owned(), pieces(row))).collect()
+    let part = readme.split("## What a scene can hold\n").nth(1).and_then(|rest| rest.split("\n## ").next());
+    let lines: Vec<&str> = part.expect("there is such a part").lines().collect();
+    let (mut rows, mut head) = (Vec::new(), "");
+    for (line, next) in lines.iter().zip(&lines[1..]).filter(|(line, _)| line.starts_with('|')) {
+        if next.starts_with("|---") {
+            head = line.trim_matches(['|', ' ']);
+        } else if !line.starts_with("|---") {
+            rows.push((head.to_owned(), line.split('`').skip(1).step_by(2).map(str::to_owned).collect()));
+        }
+    }
+    rows
 }
 
 /// The scene in which a piece of a row stands, if it is one that can be put into a scene by itself.
-fn scene(what: &str, piece: &str) -> Option<String> {
+fn scene(head: &str, piece: &str) -> Option<String> {
     let on = |material: String| format!("{AROUND}[material.it]\n{material}\n{BALL}material = \"it\"\n");
-    let table = piece.contains(" = {");
+    let table = piece.contains(" = {") || piece.contains(" = [");
     let value = piece.starts_with(['{', '"']);
-    Some(match what {
-        "shapes" if piece.starts_with("shape.") => format!("{AROUND}[[object]]\nmaterial = \"a\"\n{piece}\n"),
-        "materials" if table => on(piece.to_owned()),
-        "lights" if table => format!("{AROUND}[[light]]\n{piece}\n"),
-        "on an object" if table => format!("{AROUND}{BALL}material = \"a\"\n{piece}\n"),
-        "a spectrum" | "a reflectance besides" | "on a surface"
-            if piece.starts_with('{') || piece == "\"dark skin\"" =>
-        {
+    Some(match head {
+        "in an `[[object]]`" if piece.starts_with("shape.") => {
+            format!("{AROUND}[[object]]\nmaterial = \"a\"\n{piece}\n")
+        }
+        "in an `[[object]]`" | "in an `[[object]]`, on any material" if table => {
+            format!("{AROUND}{BALL}material = \"a\"\n{piece}\n")
+        }
+        "in a `[material.NAME]`" if table => on(piece.to_owned()),
+        "in a `[[light]]`" if piece.contains(" = {") => format!("{AROUND}[[light]]\n{piece}\n"),
+        "a spectrum: any reflectance, transmittance, radiance .." => {
             on(format!("diffuse = {{ reflectance = {piece} }}"))
         }
-        "a light besides" if value => on(format!("emissive = {{ radiance = {piece} }}")),
-        "an index besides" if value => on(format!("dielectric = {{ index = {piece} }}")),
+        "besides, for a light" if value => on(format!("emissive = {{ radiance = {piece} }}")),
+        "besides, for an index" if value => on(format!("dielectric = {{ index = {piece} }}")),
+        "in the image's table" if piece.contains(" = ") => {
+            on(format!("diffuse = {{ reflectance = {{ image = \"wood.png\", {piece} }} }}"))
+        }
         _ => return None,
     })
 }
@@ -66,22 +77,19 @@ fn scene(what: &str, piece: &str) -> Option<String> {
 #[test]
 fn every_row_of_the_readme_shows_toml_that_a_scene_takes() {
     let (mut read, mut compiled) = (0, 0);
-    for (what, pieces) in rows(&readme()) {
-        for piece in pieces
-            .iter()
-            .filter(|piece| piece.contains([' ', '{', '[']) && !piece.contains("--") && *piece != "[[light]]")
-        {
+    for (head, pieces) in rows(&readme()) {
+        for piece in pieces.iter().filter(|piece| piece.contains([' ', '{', '[']) && !piece.contains("--")) {
             let text =
                 if piece.contains(" = ") && !piece.starts_with('{') { piece.clone() } else { format!("x = {piece}") };
-            toml::from_str::<toml::Table>(&text).unwrap_or_else(|error| panic!("{what}: {piece}\n{error}"));
+            toml::from_str::<toml::Table>(&text).unwrap_or_else(|error| panic!("{head}: {piece}\n{error}"));
             read += 1;
-            if let Some(scene) = scene(&what, piece) {
-                assert_eq!(mistakes(&scene), [""; 0], "{what}: {piece}");
+            if let Some(scene) = scene(&head, piece) {
+                assert_eq!(mistakes(&scene), [""; 0], "{head}: {piece}");
                 compiled += 1;
             }
         }
     }
-    assert!(read > 40 && compiled > 30, "{read} pieces were read, {compiled} compiled");
+    assert!(read > 50 && compiled > 45, "{read} pieces were read, {compiled} compiled");
 }
 
 #[test]

@@ -252,7 +252,8 @@ fn normals_under_heights_are_those_of_a_displaced_sphere() {
         let up = displaced(u, v + STEP) - displaced(u, v - STEP);
         let expected = along.cross(up).normalize();
         most = most.max(expected.cross(found.normal).length());
-        // Blinn leaves out the height itself, up to 2.3 % of the radius, and so it misses that much of a tilt up to 0.03.
+        // Blinn leaves out the height itself, up to 2.3 % of the radius, and so it misses that much of a tilt up to
+        // 0.03.
         assert!((found.shading - expected).length() < 1e-3, "{u} {v}: {} not {expected}", found.shading);
     }
     assert!(most > 0.02, "the waves tilt by {most}");

@@ -161,7 +161,8 @@ fn an_even_image_is_the_sky_of_its_color() {
                 );
                 let scene = read(folder.path(), &text);
                 let film = render(&World::new(&scene, plan(&scene).method), &|_| ()).0;
-                // A corner shows the sky, the middle its mirror image. Colored ones would show that spectra of one color differ.
+                // A corner shows the sky, the middle its mirror image. Colored ones would show that spectra of one
+                // color differ.
                 [film.pixels[0].rgb, film.pixels[36].rgb].map(|rgb| rgb.map(f64::from))
             };
             let [found, expected] = [see("{ image = \"even.exr\" }"), see(&format!("{{ rgb = {rgb:?} }}"))];

@@ -77,7 +77,8 @@ fn x8_a_smooth_white_ball_is_as_bright_as_the_sky_around_it() {
 
 #[test]
 fn x8_no_mirror_image_of_a_smooth_ball_shows_its_inside() {
-    // A ray that were sent below a triangle would meet the ball again, from inside, and lose half of its light each time.
+    // A ray that were sent below a triangle would meet the ball again, from inside, and lose half of its light each
+    // time.
     let (film, _) = image(&furnace("mirror.reflectance = 0.5", 16), EVERY_BRANCH);
     let darkest = film.pixels.iter().map(|pixel| pixel.rgb[1]).fold(1.0, f32::min);
     assert!((darkest - 0.5).abs() < 1e-6, "{darkest}");
@@ -90,8 +91,8 @@ fn x8_smooth_glass_loses_no_light() {
     let mean = Mean::of(&film);
     println!("X8: glass {:?} +- {:?}", mean.value, mean.error);
     println!("X8: glass leaves {:?}", report);
-    // Some of the light that bent normals let in meets the inside at angles of total reflection again and again; what is
-    // left of it when chance ends its way comes back so rarely and so bright that a mean is a little low.
+    // Some of the light that bent normals let in meets the inside at angles of total reflection again and again; what
+    // is left of it when chance ends its way comes back so rarely and so bright that a mean is a little low.
     assert!(mean.worst_error([1.0; 3]) <= 1e-3, "{mean:?}");
     assert!((mean.value[1] - 1.0).abs() <= 1e-2, "{mean:?}");
 }

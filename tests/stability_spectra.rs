@@ -103,7 +103,8 @@ fn d12_a_formula_is_not_followed_beyond_its_range() {
     }
 }
 
-/// What a pixel of one sample each gets of a light's own color by way of the heroes alone: mean and deviation of every channel.
+/// What a pixel of one sample each gets of a light's own color by way of the heroes alone: mean and deviation of every
+/// channel.
 fn by_heroes(curve: &Curve) -> [(f64, f64); 3] {
     const SAMPLES: u32 = 4096;
     let basis = heroes(curve);

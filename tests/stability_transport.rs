@@ -272,8 +272,8 @@ fn mean_of_pixels(film: &Film) -> f64 {
     film.pixels.iter().map(|pixel| f64::from(pixel.rgb[0])).sum::<f64>() / film.pixels.len() as f64
 }
 
-/// The lamp of smallpt: the tip of a sphere of radius 600 comes 0.27 through the ceiling. From the floor it fills the cone
-/// through its rim, and of the cone in which the whole sphere is seen 1 / 20.
+/// The lamp of smallpt: the tip of a sphere of radius 600 comes 0.27 through the ceiling. From the floor it fills the
+/// cone through its rim, and of the cone in which the whole sphere is seen 1 / 20.
 #[test]
 fn a_lamp_of_which_the_tip_is_seen_costs_no_more_than_the_tip() {
     let (radius, tip, height, samples) = (600.0_f64, 0.27_f64, 81.33, 16);

@@ -1,5 +1,5 @@
-//! The white furnace: under a sky of 1, whatever reflects or lets through all light shows 1, at every roughness, index and
-//! angle. Prints a table of the least and the most that each material shows.
+//! The white furnace: under a sky of 1, whatever reflects or lets through all light shows 1, at every roughness, index
+//! and angle. Prints a table of the least and the most that each material shows.
 //!
 //! ```text
 //! cargo test --release --test all white_furnace:: -- --nocapture
@@ -13,13 +13,14 @@ const ROUGHNESSES: [f64; 7] = [0.0, 0.05, 0.2, 0.4, 0.6, 0.8, 1.0];
 const INDICES: [f64; 5] = [1.1, 1.33, 1.52, 1.9, 2.5];
 const COSINES: [f64; 10] = [0.001, 0.01, 0.04, 0.1, 0.2, 0.35, 0.5, 0.7, 0.9, 1.0];
 const DRAWS: u32 = 1 << 15;
-/// A rough boundary is drawn by more than the two numbers that are spread evenly: what is left to chance is told by its spread.
+/// A rough boundary is drawn by more than the two numbers that are spread evenly: what is left to chance is told by its
+/// spread.
 const DRAWS_OF_GLASS: u32 = 1 << 17;
 /// A metal that takes less than 1e-9 of the light at right angles.
 const LOSSLESS: &str = "n = 1e-6, k = 100";
 
-/// What a surface between two media shows of an even sky, whose radiance over n^2 is 1 everywhere; and, for glass, how far
-/// chance may put it off.
+/// What a surface between two media shows of an even sky, whose radiance over n^2 is 1 everywhere; and, for glass, how
+/// far chance may put it off.
 fn furnace(material: &Material<Table>, indices: [f64; 2], cos: f64) -> [f64; 2] {
     let draw = Draw::<4>::fixed(3);
     let arrival = Arrival { beyond: [indices[1]; 4], ..arrival(&draw, toward(cos, 0.4), indices[0]) };

@@ -18,10 +18,18 @@ pub struct Basis {
     upsampler: Arc<Upsampler>,
     pub(super) lanes: LaneKind,
     /// Where the fixed lanes read an index, in nm, one per bin.
-    wavelengths_nm: Vec<f64>,
-    pub(super) heroes: Option<(usize, Arc<Mixture>)>,
-    collapses: bool,
+    pub(super) wavelengths_nm: Vec<f64>,
+    pub(super) heroes: Option<Heroes>,
     keeps_together: bool,
+}
+
+/// Wavelengths that are drawn for each sample.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Heroes {
+    pub(super) count: usize,
+    pub(super) mixture: Arc<Mixture>,
+    /// Whether they carry all light, drawn independently from sample to sample, and one of them goes on where lanes part.
+    pub(super) collapse: bool,
 }
 
 /// What the fixed lanes are.
@@ -86,24 +94,8 @@ impl Basis {
     /// If they do not fit.
     pub fn with_heroes(self, heroes: usize, lights: &[Emission]) -> Self {
         assert!(heroes <= MAX_HEROES && self.wavelengths_nm.len() + heroes <= MAX_LANES, "{heroes} heroes do not fit");
-        Self { heroes: Some((heroes, Arc::new(Mixture::new(lights)))), ..self }
-    }
-
-    /// One of the interpolated wavelengths alone, worth to the sensor what it is worth among the others.
-    ///
-    /// # Panics
-    /// If the lane is no interpolated wavelength.
-    pub fn alone(&self, lane: usize) -> Self {
-        let LaneKind::Wavelengths(functions) = &self.lanes else { panic!("bands have no wavelengths") };
-        let lanes = LaneKind::Wavelengths(Arc::new(vec![functions[lane].clone()]));
-        Self { lanes, wavelengths_nm: vec![self.wavelengths_nm[lane]], heroes: None, ..self.clone() }
-    }
-
-    /// For comparison only: four wavelengths drawn independently from sample to sample, of which one goes on where lanes
-    /// part. Pharr, Jakob & Humphreys 2023, *Physically Based Rendering*, sections 4.5.4 and 9.5.
-    pub fn collapsing(space: ColorSpace) -> Self {
-        let heroes = Some((4, Arc::new(Mixture::visible())));
-        Self { heroes, collapses: true, ..Self::wavelengths(space, vec![550.0], &[]) }
+        let heroes = Heroes { count: heroes, mixture: Arc::new(Mixture::new(lights)), collapse: false };
+        Self { heroes: Some(heroes), ..self }
     }
 
     /// The same lanes, refracted by every index as by that of the d line, but for those that are written as `rgb`. What is
@@ -114,7 +106,7 @@ impl Basis {
 
     fn new(space: ColorSpace, lanes: LaneKind, wavelengths_nm: Vec<f64>) -> Self {
         let upsampler = Arc::new(Upsampler::new(space));
-        Self { space, upsampler, lanes, wavelengths_nm, heroes: None, collapses: false, keeps_together: false }
+        Self { space, upsampler, lanes, wavelengths_nm, heroes: None, keeps_together: false }
     }
 
     /// The model's name, as it is recorded in a file.
@@ -124,16 +116,13 @@ impl Basis {
             (LaneKind::Rgb(_), _) => "rgb".into(),
             (LaneKind::Prefiltered(_), _) => "rgb, Rec.2020 prefiltered by the light".into(),
             (LaneKind::Wavelengths(_), None) => format!("bands {lanes}"),
-            (LaneKind::Wavelengths(_), Some((heroes, _))) if self.collapses => {
-                format!("{heroes} wavelengths that collapse")
-            }
-            (LaneKind::Wavelengths(_), Some((heroes, _))) => format!("hero {lanes} + {heroes}"),
+            (LaneKind::Wavelengths(_), Some(heroes)) => format!("hero {lanes} + {}", heroes.count),
         }
     }
 
     /// How many lanes a camera sample carries.
     pub fn lanes(&self) -> usize {
-        self.wavelengths_nm.len() + self.heroes.as_ref().map_or(0, |(heroes, _)| *heroes)
+        self.wavelengths_nm.len() + self.heroes.as_ref().map_or(0, |heroes| heroes.count)
     }
 
     /// How many of them are the same in every sample.
@@ -163,21 +152,17 @@ impl Basis {
 
     /// The lanes of a camera sample, for a random number in 0..1.
     pub fn draw<const N: usize>(&self, u: f64) -> Draw<N> {
-        let Some((count, mixture)) = &self.heroes else { return Draw::fixed(self.fixed_lanes()) };
+        let Some(Heroes { count, mixture, collapse }) = &self.heroes else { return Draw::fixed(self.fixed_lanes()) };
         // The last digits of a well spread number are not spread at all.
-        let u = if self.collapses { (u * 4096.0).fract() } else { u };
+        let u = if *collapse { (u * 4096.0).fract() } else { u };
         // Rotated by equal steps (Wilkie et al. 2014, *Hero Wavelength Spectral Sampling*, equation 13).
         let mut heroes = [Default::default(); MAX_HEROES];
         for (i, hero) in heroes[..*count].iter_mut().enumerate() {
             let rotated = u + i as f64 / *count as f64;
             *hero = mixture.draw(if rotated < 1.0 { rotated } else { rotated - 1.0 }, *count);
         }
-        let heroes = &heroes[..*count];
-        if self.collapses {
-            Draw::collapsing(self.fixed_lanes(), heroes)
-        } else {
-            Draw::with_heroes(self.fixed_lanes(), heroes)
-        }
+        let draw = Draw::with_heroes(self.fixed_lanes(), &heroes[..*count]);
+        if *collapse { draw.collapsing() } else { draw }
     }
 
     /// A checked curve, read onto the bins. An emission of wavelengths is an even table: its colors are in its response.
@@ -230,7 +215,7 @@ impl Basis {
 
     /// The visible grid and the lines behind it; empty if no wavelengths are drawn.
     pub(super) fn fine<T: Clone>(&self, smooth: impl Fn(f64) -> T, line: impl Fn(f64) -> T) -> Vec<T> {
-        let Some((_, mixture)) = &self.heroes else { return Vec::new() };
+        let Some(Heroes { mixture, .. }) = &self.heroes else { return Vec::new() };
         let mut fine: Vec<T> = visible::wavelengths().map(smooth).collect();
         fine.extend(mixture.lines().iter().map(|&nm| line(nm)));
         // Reading between two entries never runs off the end.

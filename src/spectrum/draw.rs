@@ -11,8 +11,9 @@ pub struct Draw<const N: usize> {
     fixed: usize,
     heroes: [Hero; MAX_HEROES],
     count: usize,
-    /// Whether the heroes carry all light from the start, and only the first goes on where lanes part.
-    collapses: bool,
+    /// The factor on what a hero is worth while lanes are together, and after they parted; none where the fixed lanes
+    /// carry the light.
+    hero_factors: [Option<f64>; 2],
     /// What each lane counts while the lanes are together, and after they parted.
     shares: [Lanes<N>; 2],
 }
@@ -49,24 +50,20 @@ impl<const N: usize> Draw<N> {
         let alone = Lanes::from_fn(|i| if (fixed..fixed + count).contains(&i) { 1.0 } else { 0.0 });
         let shares = [together, if count == 0 { together } else { alone }];
         let heroes = std::array::from_fn(|i| heroes.get(i).copied().unwrap_or_default());
-        Self { fixed, heroes, count, collapses: false, shares }
+        Self { fixed, heroes, count, hero_factors: [None, (count > 0).then_some(1.0)], shares }
     }
 
-    /// Heroes that carry all light until lanes part, where all but the first end.
-    pub(super) fn collapsing(fixed: usize, heroes: &[Hero]) -> Self {
-        let draw = Self::with_heroes(fixed, heroes);
-        let together = draw.shares[1] * (1.0 / heroes.len() as f32);
-        let alone = Lanes::from_fn(|i| if i == fixed { 1.0 } else { 0.0 });
-        Self { collapses: true, shares: [together, alone], ..draw }
+    /// The same heroes, which carry all light until lanes part; there all but the first end.
+    pub(super) fn collapsing(self) -> Self {
+        let heroes = self.count as f64;
+        let together = self.shares[1] * (1.0 / heroes as f32);
+        let alone = Lanes::from_fn(|i| if i == self.fixed { 1.0 } else { 0.0 });
+        Self { hero_factors: [Some(1.0), Some(heroes)], shares: [together, alone], ..self }
     }
 
     /// The factor on what a hero is worth, where heroes carry the light; none where the fixed lanes do.
     pub fn hero_factor(&self, parted: bool) -> Option<f64> {
-        match (self.collapses, parted) {
-            (true, true) => Some(self.count as f64),
-            (true, false) => Some(1.0),
-            (false, _) => (parted && self.count > 0).then_some(1.0),
-        }
+        self.hero_factors[usize::from(parted)]
     }
 
     /// A weight: one number per lane.

@@ -6,7 +6,7 @@
 //! have parted, two wavelengths count as one that fall into the same bin: like the disc in which photons are gathered, bins
 //! blur where light goes, and keep its color.
 
-use super::basis::LaneKind;
+use super::basis::{Heroes, LaneKind};
 use super::draw::Hero;
 use super::visible::{self, COUNT};
 use super::{Basis, Draw, Lanes, Response};
@@ -32,7 +32,7 @@ pub struct Wavelength {
 impl Basis {
     /// What connects lanes; a bin holds one part in `parts` of the draws and of the visible range at most, or a single nm or line.
     pub fn matching<const N: usize>(&self, parts: f64) -> Matching<N> {
-        let (LaneKind::Wavelengths(functions), Some((_, mixture))) = (&self.lanes, &self.heroes) else {
+        let (LaneKind::Wavelengths(functions), Some(Heroes { mixture, .. })) = (&self.lanes, &self.heroes) else {
             return Matching::default();
         };
         let own_lines = &self.wavelengths_nm()[functions.len()..];

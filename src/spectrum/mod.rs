@@ -5,6 +5,8 @@ mod bands;
 mod basis;
 mod cardinals;
 mod color;
+#[doc(hidden)]
+pub mod comparison;
 mod curve;
 mod curve_check;
 mod curve_name;

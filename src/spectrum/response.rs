@@ -10,9 +10,9 @@ use super::{Draw, Lanes};
 #[derive(Clone, Debug, PartialEq)]
 pub struct Response {
     /// Each film channel of every fixed lane, 0 beyond the last.
-    rows: Arc<[[f64; MAX_LANES]; 3]>,
+    pub(super) rows: Arc<[[f64; MAX_LANES]; 3]>,
     /// The film color of the light per nm on the fine grid, and of its ideal lines.
-    fine: Arc<[[f64; 3]]>,
+    pub(super) fine: Arc<[[f64; 3]]>,
 }
 
 impl Response {
@@ -26,12 +26,6 @@ impl Response {
         let entry = |channel: usize, lane: usize| columns.get(lane).map_or(0.0, |column| column[channel]);
         let rows = std::array::from_fn(|channel| std::array::from_fn(|lane| entry(channel, lane)));
         Self { rows: Arc::new(rows), fine: fine.into() }
-    }
-
-    /// The same response to one fixed lane and none to the others.
-    pub fn only(&self, lane: usize) -> Self {
-        let rows = self.rows.map(|row| std::array::from_fn(|i| if i == lane { row[i] } else { 0.0 }));
-        Self { rows: Arc::new(rows), fine: vec![[0.0; 3]; self.fine.len()].into() }
     }
 
     /// The film's red, green and blue of light that arrives in lanes; `parted` says whether they parted on the way.

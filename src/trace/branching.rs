@@ -2,7 +2,7 @@
 
 use super::World;
 use super::path_tracer::PathTracer;
-use super::width::{InLanes, in_lanes};
+use super::width::in_lanes;
 use crate::material::Material;
 use crate::math::{DVec2, DVec3, Sampler};
 use crate::spectrum::Table;
@@ -25,42 +25,33 @@ const OBJECTS: usize = 64;
 /// were before them, until it is known whether a mean sample meets more than `most` surfaces. A sample that had to go on
 /// by chance is beyond that whatever the mean is.
 pub fn branching(world: &World, most: f64) -> Branching {
-    in_lanes(&world.method.basis, Asking { world, most })
+    in_lanes!(&world.method.basis, N => ask::<N>(world, most))
 }
 
-struct Asking<'a> {
-    world: &'a World,
-    most: f64,
-}
-
-impl InLanes for Asking<'_> {
-    type Output = Branching;
-    fn run<const N: usize>(self) -> Branching {
-        let Self { world, most } = self;
-        let mut tracer = PathTracer::<N>::new(world);
-        let film = world.scene.film.whole();
-        // A stride that is coprime to the number of places visits them all, far ones first.
-        let places = SIDE * SIDE;
-        let all_over = (0..places).map(|i| (i * 101) % places);
-        let all_over: Vec<[u32; 2]> = all_over.map(|place| film.middle_of_cell(SIDE, place)).collect();
-        let mut ask = |[x, y]: [u32; 2]| {
-            let before = tracer.walker.stats.rays;
-            tracer.sample(&Sampler::new(world.method.seed, [x, y], 0), [x, y]);
-            (tracer.walker.stats.rays - before, tracer.walker.stats.by_chance > 0)
-        };
-        let enough = most * f64::from(places);
-        let mut met = 0;
-        for &pixel in &all_over {
-            let (more, by_chance) = ask(pixel);
-            met += more;
-            if by_chance || met as f64 > enough {
-                return Branching::Beyond(pixel);
-            }
+fn ask<const N: usize>(world: &World, most: f64) -> Branching {
+    let mut tracer = PathTracer::<N>::new(world);
+    let film = world.scene.film.whole();
+    // A stride that is coprime to the number of places visits them all, far ones first.
+    let places = SIDE * SIDE;
+    let all_over = (0..places).map(|i| (i * 101) % places);
+    let all_over: Vec<[u32; 2]> = all_over.map(|place| film.middle_of_cell(SIDE, place)).collect();
+    let mut ask = |[x, y]: [u32; 2]| {
+        let before = tracer.walker.stats.rays;
+        tracer.sample(&Sampler::new(world.method.seed, [x, y], 0), [x, y]);
+        (tracer.walker.stats.rays - before, tracer.walker.stats.by_chance > 0)
+    };
+    let enough = most * f64::from(places);
+    let mut met = 0;
+    for &pixel in &all_over {
+        let (more, by_chance) = ask(pixel);
+        met += more;
+        if by_chance || met as f64 > enough {
+            return Branching::Beyond(pixel);
         }
-        match pixels_of_objects(world, Material::lets_through).into_iter().find(|&pixel| ask(pixel).1) {
-            Some(pixel) => Branching::Beyond(pixel),
-            None => Branching::Affordable(met as f64 / f64::from(places)),
-        }
+    }
+    match pixels_of_objects(world, Material::lets_through).into_iter().find(|&pixel| ask(pixel).1) {
+        Some(pixel) => Branching::Beyond(pixel),
+        None => Branching::Affordable(met as f64 / f64::from(places)),
     }
 }
 

@@ -6,7 +6,7 @@ use super::bright::{BrightPlace, BrightPlaces, MOST};
 use super::clusters::{Cluster, clusters, quantiles};
 use super::path_tracer::PathTracer;
 use super::sensor::{Bounce, Observer};
-use super::width::{InLanes, in_lanes};
+use super::width::in_lanes;
 use super::{Transport, World};
 use crate::math::{Bounds, BranchKey, DVec3, Frame, Ray, Sampler, cosine_hemisphere, unit};
 use crate::shape::{Quad, Shape};
@@ -36,20 +36,13 @@ pub fn bright_places(world: &World) -> Option<BrightPlaces> {
     if world.scene.skies.is_empty() || !is_random || world.method.diffuse_bounces == 0 {
         return None;
     }
-    in_lanes(&world.method.basis, Looking { world })
+    in_lanes!(&world.method.basis, N => places::<N>(world))
 }
 
-struct Looking<'a> {
-    world: &'a World,
-}
-
-impl InLanes for Looking<'_> {
-    type Output = Option<BrightPlaces>;
-    fn run<const N: usize>(self) -> Self::Output {
-        // A few tell whether there is a room at all.
-        inside_of(self.world, bounces::<N>(self.world, FEW))?;
-        learned(inside_of(self.world, bounces::<N>(self.world, SIDE))?)
-    }
+fn places<const N: usize>(world: &World) -> Option<BrightPlaces> {
+    // A few tell whether there is a room at all.
+    inside_of(world, bounces::<N>(world, FEW))?;
+    learned(inside_of(world, bounces::<N>(world, SIDE))?)
 }
 
 /// What the bounces of so many camera samples along each side of the image found.

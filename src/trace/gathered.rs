@@ -7,7 +7,7 @@ use super::merge::photons;
 use super::path_tracer::PathTracer;
 use super::pilot::SampleWorth;
 use super::sensor::{Contribution, Found, Observer, add};
-use super::width::{InLanes, in_lanes};
+use super::width::in_lanes;
 use crate::math::Sampler;
 use crate::spectrum::apply;
 
@@ -37,11 +37,7 @@ const SEED: u64 = 0x6761_7468;
 ///
 /// All of the image counts, also where only a part of it is made, so that all parts are made alike.
 pub fn gathered_worth(world: &World) -> Option<GatheredWorth> {
-    in_lanes(&world.method.basis, Gathering { world })
-}
-
-struct Gathering<'a> {
-    world: &'a World,
+    in_lanes!(&world.method.basis, N => gather::<N>(world))
 }
 
 /// All light that was gathered.
@@ -75,51 +71,48 @@ impl Sums {
     }
 }
 
-impl InLanes for Gathering<'_> {
-    type Output = Option<GatheredWorth>;
-    fn run<const N: usize>(self) -> Self::Output {
-        let (world, film) = (self.world, self.world.scene.film);
-        let to_xyz = film.color_space.to_xyz();
-        let places = SIDE * SIDE;
-        let mut by_photons = vec![Sums::default(); places as usize];
-        let mut by_samples = by_photons.clone();
-        let (mut sent, mut rays, mut of_samples, mut second_moment) = (0, 0, 0, 0.0);
-        for map in 0..MAPS {
-            let photons = photons::<N>(world, map as u32)?;
-            (sent, rays) = (sent + photons.sent, rays + photons.stats.rays);
-            let by_gathering = Gathered::default();
-            let mut tracer = PathTracer::<N>::new(world).with_photons(Some(&photons)).with_observer(&by_gathering);
-            for place in 0..places {
-                let [x, y] = film.whole().middle_of_cell(SIDE, place);
-                let before = by_gathering.0.get();
-                for number in 0..SAMPLES {
-                    let so_far = by_gathering.0.get();
-                    let sampler = Sampler::new((world.method.seed ^ SEED).wrapping_add(u64::from(number)), [x, y], 0);
-                    let found = tracer.sample(&sampler, [x, y]).rgb;
-                    let gathered = by_gathering.0.get();
-                    let others = std::array::from_fn(|i| found[i] - (gathered[i] - so_far[i]));
-                    let here = apply(&to_xyz, std::array::from_fn(|i| gathered[i] - so_far[i]));
-                    second_moment += here.iter().filter(|x| x.is_finite()).map(|x| x * x).sum::<f64>();
-                    if map == 0 {
-                        by_samples[place as usize].add(apply(&to_xyz, others));
-                    }
-                }
+fn gather<const N: usize>(world: &World) -> Option<GatheredWorth> {
+    let film = world.scene.film;
+    let to_xyz = film.color_space.to_xyz();
+    let places = SIDE * SIDE;
+    let mut by_photons = vec![Sums::default(); places as usize];
+    let mut by_samples = by_photons.clone();
+    let (mut sent, mut rays, mut of_samples, mut second_moment) = (0, 0, 0, 0.0);
+    for map in 0..MAPS {
+        let photons = photons::<N>(world, map as u32)?;
+        (sent, rays) = (sent + photons.sent, rays + photons.stats.rays);
+        let by_gathering = Gathered::default();
+        let mut tracer = PathTracer::<N>::new(world).with_photons(Some(&photons)).with_observer(&by_gathering);
+        for place in 0..places {
+            let [x, y] = film.whole().middle_of_cell(SIDE, place);
+            let before = by_gathering.0.get();
+            for number in 0..SAMPLES {
+                let so_far = by_gathering.0.get();
+                let sampler = Sampler::new((world.method.seed ^ SEED).wrapping_add(u64::from(number)), [x, y], 0);
+                let found = tracer.sample(&sampler, [x, y]).rgb;
                 let gathered = by_gathering.0.get();
-                let mean = std::array::from_fn(|i| (gathered[i] - before[i]) / f64::from(SAMPLES));
-                by_photons[place as usize].add(apply(&to_xyz, mean));
+                let others = std::array::from_fn(|i| found[i] - (gathered[i] - so_far[i]));
+                let here = apply(&to_xyz, std::array::from_fn(|i| gathered[i] - so_far[i]));
+                second_moment += here.iter().filter(|x| x.is_finite()).map(|x| x * x).sum::<f64>();
+                if map == 0 {
+                    by_samples[place as usize].add(apply(&to_xyz, others));
+                }
             }
-            of_samples += tracer.walker.stats.rays;
+            let gathered = by_gathering.0.get();
+            let mean = std::array::from_fn(|i| (gathered[i] - before[i]) / f64::from(SAMPLES));
+            by_photons[place as usize].add(apply(&to_xyz, mean));
         }
-        let pixels = f64::from(film.width) * f64::from(film.height);
-        let mean = |variances: &[f64]| variances.iter().sum::<f64>() / f64::from(places);
-        let of_maps: Vec<f64> = by_photons.iter().map(|sums| sums.variance(MAPS as f64)).collect();
-        let variances = by_samples.iter().map(|sums| sums.variance(f64::from(SAMPLES))).collect();
-        let taken = MAPS as f64 * f64::from(places * SAMPLES);
-        Some(GatheredWorth {
-            variance: mean(&of_maps) * pixels * sent as f64 / MAPS as f64,
-            rays: rays as f64 / sent as f64,
-            second_moment: second_moment / taken * pixels * pixels,
-            samples: SampleWorth::of(variances, pixels, of_samples as f64 / taken),
-        })
+        of_samples += tracer.walker.stats.rays;
     }
+    let pixels = f64::from(film.width) * f64::from(film.height);
+    let mean = |variances: &[f64]| variances.iter().sum::<f64>() / f64::from(places);
+    let of_maps: Vec<f64> = by_photons.iter().map(|sums| sums.variance(MAPS as f64)).collect();
+    let variances = by_samples.iter().map(|sums| sums.variance(f64::from(SAMPLES))).collect();
+    let taken = MAPS as f64 * f64::from(places * SAMPLES);
+    Some(GatheredWorth {
+        variance: mean(&of_maps) * pixels * sent as f64 / MAPS as f64,
+        rays: rays as f64 / sent as f64,
+        second_moment: second_moment / taken * pixels * pixels,
+        samples: SampleWorth::of(variances, pixels, of_samples as f64 / taken),
+    })
 }

@@ -14,7 +14,7 @@ use super::sending::{Sent, batches, send};
 use super::sensor::amount;
 use super::stats::Stats;
 use super::walker::Walker;
-use super::width::{InLanes, in_lanes};
+use super::width::in_lanes;
 use super::{LightPass, World};
 use crate::light::LightId;
 use crate::math::Sampler;
@@ -114,27 +114,19 @@ struct Learned {
 }
 
 /// Sends photons ahead. The whole image sees them, also where only a part of it is made, so that all parts are made alike.
-struct Learning<'a> {
-    world: &'a World,
-    most: u64,
-}
-
-impl InLanes for Learning<'_> {
-    type Output = Learned;
-    fn run<const N: usize>(self) -> Learned {
-        let mut world = self.world.clone();
-        world.scene.film.crop = None;
-        let Some(aims) = &world.aims else { return Learned::default() };
-        let batches = batches(aims, |_| 0, |aim| aim.photons.min(self.most), world.method.seed ^ AHEAD_SEED);
-        let done: Vec<Sent<Splat>> =
-            batches.par_iter().map(|batch| send::<N, _>(&world, aims, *batch, true, show_one)).collect();
-        let mut learned = Learned { found: vec![Vec::new(); aims.aims.len()], rays: 0 };
-        for (batch, sent) in batches.iter().zip(done) {
-            learned.rays += sent.stats.rays;
-            learned.found[batch.aim].extend(sent.places);
-        }
-        learned
+fn send_ahead<const N: usize>(world: &World, most: u64) -> Learned {
+    let mut world = world.clone();
+    world.scene.film.crop = None;
+    let Some(aims) = &world.aims else { return Learned::default() };
+    let batches = batches(aims, |_| 0, |aim| aim.photons.min(most), world.method.seed ^ AHEAD_SEED);
+    let done: Vec<Sent<Splat>> =
+        batches.par_iter().map(|batch| send::<N, _>(&world, aims, *batch, true, show_one)).collect();
+    let mut learned = Learned { found: vec![Vec::new(); aims.aims.len()], rays: 0 };
+    for (batch, sent) in batches.iter().zip(done) {
+        learned.rays += sent.stats.rays;
+        learned.found[batch.aim].extend(sent.places);
     }
+    learned
 }
 
 /// Of the photons of each light, the share that the camera sees; of many lights, of a light and its neighbors.
@@ -142,7 +134,7 @@ pub fn seen_photons(world: &World) -> Vec<f64> {
     let mut shares = vec![0.0; world.scene.lights.len()];
     let Some(aims) = &world.aims else { return shares };
     let most = (SEEN_OF_A_PLAN / aims.aims.len() as u64).clamp(1, TOO_FEW);
-    let found = in_lanes(&world.method.basis, Learning { world, most }).found;
+    let found = in_lanes!(&world.method.basis, N => send_ahead::<N>(world, most)).found;
     let mut counts = vec![[0_u32; 2]; shares.len()];
     for (aim, photons) in aims.aims.iter().zip(found) {
         let [sent, seen] = &mut counts[aim.light];
@@ -174,7 +166,7 @@ impl World {
         let aims = world.aims.as_ref().map_or(1, |aims| aims.aims.len() as u64);
         let most = OF_A_PLAN / aims;
         if most >= TOO_FEW {
-            let first = in_lanes(&world.method.basis, Learning { world: &world, most: FIRST });
+            let first = in_lanes!(&world.method.basis, N => send_ahead::<N>(&world, FIRST));
             let sent = first.found.iter().map(Vec::len).sum::<usize>() as f64;
             let by_rays = RAYS_OF_A_PLAN * sent / (first.rays as f64 * aims as f64);
             world.learn_where_to_send((by_rays as u64).clamp(TOO_FEW, most));
@@ -190,7 +182,7 @@ impl World {
         };
         let ahead = least.min(ENOUGH).min(most);
         if ahead >= TOO_FEW {
-            let found = in_lanes(&self.method.basis, Learning { world: self, most: ahead }).found;
+            let found = in_lanes!(&self.method.basis, N => send_ahead::<N>(self, ahead)).found;
             if let Some(aims) = &mut self.aims {
                 aims.learn(&found);
             }

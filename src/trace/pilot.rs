@@ -3,7 +3,7 @@
 use super::World;
 use super::light_pass;
 use super::path_tracer::PathTracer;
-use super::width::{InLanes, in_lanes};
+use super::width::in_lanes;
 use crate::light::LightId;
 use crate::math::Sampler;
 use crate::spectrum::apply;
@@ -46,56 +46,46 @@ const SEED: u64 = 0x7069_6c6f;
 ///
 /// All of the image counts, also where only a part of it is made, so that all parts are made alike.
 pub fn photons_worth(world: &World) -> Vec<PhotonWorth> {
-    in_lanes(&world.method.basis, Sending { world })
+    in_lanes!(&world.method.basis, N => weigh_photons::<N>(world))
 }
 
-struct Sending<'a> {
-    world: &'a World,
+fn weigh_photons<const N: usize>(whole: &World) -> Vec<PhotonWorth> {
+    let mut world = whole.clone();
+    world.scene.film.crop = None;
+    let groups = whole.light_groups();
+    let photons = (ALL / groups.len().max(1) as u64).min(PHOTONS);
+    groups.into_iter().filter_map(|lights| weigh::<N>(whole, &mut world, lights, photons)).collect()
 }
 
-impl InLanes for Sending<'_> {
-    type Output = Vec<PhotonWorth>;
-    fn run<const N: usize>(self) -> Self::Output {
-        let mut world = self.world.clone();
-        world.scene.film.crop = None;
-        let groups = self.world.light_groups();
-        let photons = (ALL / groups.len().max(1) as u64).min(PHOTONS);
-        groups.into_iter().filter_map(|lights| self.of::<N>(&mut world, lights, photons)).collect()
+/// What so many photons of some lights are worth, in a world whose aims are replaced.
+fn weigh<const N: usize>(whole: &World, world: &mut World, lights: Vec<LightId>, each: u64) -> Option<PhotonWorth> {
+    let mut sending = whole.aims.clone()?;
+    sending.aims.retain(|aim| lights.binary_search(&aim.light).is_ok());
+    let all: u64 = sending.aims.iter().map(|aim| aim.photons).sum();
+    for aim in &mut sending.aims {
+        aim.photons = (aim.photons as f64 * each as f64 / all as f64).round().max(1.0) as u64;
     }
-}
-
-impl Sending<'_> {
-    /// What so many photons of some lights are worth, in a world whose aims are replaced.
-    fn of<const N: usize>(&self, world: &mut World, lights: Vec<LightId>, each: u64) -> Option<PhotonWorth> {
-        let mut sending = self.world.aims.clone()?;
-        sending.aims.retain(|aim| lights.binary_search(&aim.light).is_ok());
-        let all: u64 = sending.aims.iter().map(|aim| aim.photons).sum();
-        for aim in &mut sending.aims {
-            aim.photons = (aim.photons as f64 * each as f64 / all as f64).round().max(1.0) as u64;
-        }
-        world.aims = Some(sending);
-        let to_xyz = world.scene.film.color_space.to_xyz();
-        let (mut values, mut photons, mut rays) = (Vec::new(), 0, 0);
-        for image in 0..IMAGES {
-            world.method.seed = (self.world.method.seed ^ SEED).wrapping_add(image);
-            let mut splats = Vec::new();
-            let shown = light_pass::splats::<N>(world, &|_| (), &mut |splat| splats.push((splat.pixel, splat.rgb)));
-            (photons, rays) = (photons + shown.photons, rays + shown.stats.rays);
-            values.extend(summed(splats).into_iter().map(|(pixel, rgb)| (pixel, apply(&to_xyz, rgb))));
-        }
-        let images = IMAGES as f64;
-        let squares = values.iter().map(|&(pixel, xyz)| (pixel, xyz.map(|x| x * x))).collect();
-        let (sums, squares) = (summed(values), summed(squares));
-        let of_value = |sum: f64, squares: f64| ((squares - sum * sum / images) / (images - 1.0)).max(0.0);
-        let of_pixel =
-            |(sum, squares): (&[f64; 3], &[f64; 3])| (0..3).map(|i| of_value(sum[i], squares[i])).sum::<f64>();
-        let variance: f64 = sums.iter().map(|sum| &sum.1).zip(squares.iter().map(|sum| &sum.1)).map(of_pixel).sum();
-        let brings = [0, 1, 2].map(|channel| sums.iter().map(|(_, sum)| sum[channel]).sum::<f64>() / images);
-        let each = photons as f64 / images;
-        let rays = rays as f64 / photons as f64;
-        let worth = PhotonWorth { lights, brings, variance: variance * each, rays };
-        brings.iter().any(|&x| x != 0.0).then_some(worth)
+    world.aims = Some(sending);
+    let to_xyz = world.scene.film.color_space.to_xyz();
+    let (mut values, mut photons, mut rays) = (Vec::new(), 0, 0);
+    for image in 0..IMAGES {
+        world.method.seed = (whole.method.seed ^ SEED).wrapping_add(image);
+        let mut splats = Vec::new();
+        let shown = light_pass::splats::<N>(world, &|_| (), &mut |splat| splats.push((splat.pixel, splat.rgb)));
+        (photons, rays) = (photons + shown.photons, rays + shown.stats.rays);
+        values.extend(summed(splats).into_iter().map(|(pixel, rgb)| (pixel, apply(&to_xyz, rgb))));
     }
+    let images = IMAGES as f64;
+    let squares = values.iter().map(|&(pixel, xyz)| (pixel, xyz.map(|x| x * x))).collect();
+    let (sums, squares) = (summed(values), summed(squares));
+    let of_value = |sum: f64, squares: f64| ((squares - sum * sum / images) / (images - 1.0)).max(0.0);
+    let of_pixel = |(sum, squares): (&[f64; 3], &[f64; 3])| (0..3).map(|i| of_value(sum[i], squares[i])).sum::<f64>();
+    let variance: f64 = sums.iter().map(|sum| &sum.1).zip(squares.iter().map(|sum| &sum.1)).map(of_pixel).sum();
+    let brings = [0, 1, 2].map(|channel| sums.iter().map(|(_, sum)| sum[channel]).sum::<f64>() / images);
+    let each = photons as f64 / images;
+    let rays = rays as f64 / photons as f64;
+    let worth = PhotonWorth { lights, brings, variance: variance * each, rays };
+    brings.iter().any(|&x| x != 0.0).then_some(worth)
 }
 
 /// The sums of what falls on each pixel, of those pixels that anything falls on: never more than there are values.
@@ -113,41 +103,33 @@ fn summed(mut values: Vec<(u32, [f64; 3])>) -> Vec<(u32, [f64; 3])> {
 
 /// What camera samples are worth.
 pub fn samples_worth(world: &World) -> SampleWorth {
-    in_lanes(&world.method.basis, Sampling { world })
+    in_lanes!(&world.method.basis, N => weigh_samples::<N>(world))
 }
 
-struct Sampling<'a> {
-    world: &'a World,
-}
-
-impl InLanes for Sampling<'_> {
-    type Output = SampleWorth;
-    fn run<const N: usize>(self) -> SampleWorth {
-        let world = self.world;
-        let mut tracer = PathTracer::<N>::new(world);
-        let film = world.scene.film;
-        let to_xyz = film.color_space.to_xyz();
-        let seed = world.method.seed ^ SEED;
-        let mut variances = Vec::new();
-        for place in 0..SIDE * SIDE {
-            let [x, y] = film.whole().middle_of_cell(SIDE, place);
-            let taken = (0..SAMPLES).map(|number| {
-                let sampler = Sampler::new(seed.wrapping_add(u64::from(number)), [x, y], 0);
-                apply(&to_xyz, tracer.sample(&sampler, [x, y]).rgb)
-            });
-            let taken: Vec<[f64; 3]> = taken.filter(|xyz| xyz.iter().all(|x| x.is_finite())).collect();
-            let count = taken.len().max(2) as f64;
-            let mut variance = 0.0;
-            for channel in 0..3 {
-                let mean = taken.iter().map(|xyz| xyz[channel]).sum::<f64>() / count;
-                let squares = taken.iter().map(|xyz| (xyz[channel] - mean) * (xyz[channel] - mean));
-                variance += squares.sum::<f64>() / (count - 1.0);
-            }
-            variances.push(variance);
+fn weigh_samples<const N: usize>(world: &World) -> SampleWorth {
+    let mut tracer = PathTracer::<N>::new(world);
+    let film = world.scene.film;
+    let to_xyz = film.color_space.to_xyz();
+    let seed = world.method.seed ^ SEED;
+    let mut variances = Vec::new();
+    for place in 0..SIDE * SIDE {
+        let [x, y] = film.whole().middle_of_cell(SIDE, place);
+        let taken = (0..SAMPLES).map(|number| {
+            let sampler = Sampler::new(seed.wrapping_add(u64::from(number)), [x, y], 0);
+            apply(&to_xyz, tracer.sample(&sampler, [x, y]).rgb)
+        });
+        let taken: Vec<[f64; 3]> = taken.filter(|xyz| xyz.iter().all(|x| x.is_finite())).collect();
+        let count = taken.len().max(2) as f64;
+        let mut variance = 0.0;
+        for channel in 0..3 {
+            let mean = taken.iter().map(|xyz| xyz[channel]).sum::<f64>() / count;
+            let squares = taken.iter().map(|xyz| (xyz[channel] - mean) * (xyz[channel] - mean));
+            variance += squares.sum::<f64>() / (count - 1.0);
         }
-        let rays = tracer.walker.stats.rays as f64 / f64::from(SIDE * SIDE * SAMPLES);
-        SampleWorth::of(variances, f64::from(film.width) * f64::from(film.height), rays)
+        variances.push(variance);
     }
+    let rays = tracer.walker.stats.rays as f64 / f64::from(SIDE * SIDE * SAMPLES);
+    SampleWorth::of(variances, f64::from(film.width) * f64::from(film.height), rays)
 }
 
 impl SampleWorth {

@@ -7,7 +7,7 @@ use super::path_tracer::PathTracer;
 use super::photon::Landing;
 use super::sending::{batches, send};
 use super::walker::Walker;
-use super::width::{InLanes, in_lanes};
+use super::width::in_lanes;
 use crate::math::Sampler;
 
 /// What a probe found, per camera sample.
@@ -37,18 +37,7 @@ const ENOUGH: Duration = Duration::from_millis(300);
 
 /// Traces single samples of pixels spread over the part of the image that is made.
 pub fn probe(world: &World) -> Probe {
-    in_lanes(&world.method.basis, Probing { world })
-}
-
-struct Probing<'a> {
-    world: &'a World,
-}
-
-impl InLanes for Probing<'_> {
-    type Output = Probe;
-    fn run<const N: usize>(self) -> Probe {
-        probe_lanes::<N>(self.world)
-    }
+    in_lanes!(&world.method.basis, N => probe_lanes::<N>(world))
 }
 
 fn probe_lanes<const N: usize>(world: &World) -> Probe {

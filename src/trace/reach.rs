@@ -6,7 +6,7 @@ use super::World;
 use super::merge::photons;
 use super::path_tracer::PathTracer;
 use super::sensor::Observer;
-use super::width::{InLanes, in_lanes};
+use super::width::in_lanes;
 use crate::math::{DVec3, Sampler};
 
 /// Camera samples along each side of the image that look where the camera's paths lead.
@@ -17,21 +17,18 @@ const LOOKING: u64 = 0x6c6f_6f6b;
 /// Places on surfaces that scatter widely to which paths from the camera come by way of others; the same whatever part of
 /// the image is made.
 pub fn reached_places(world: &World) -> Vec<DVec3> {
-    in_lanes(&world.method.basis, Looking { world })
+    in_lanes!(&world.method.basis, N => look::<N>(world))
 }
 
-struct Looking<'a> {
-    world: &'a World,
-}
-
-impl InLanes for Looking<'_> {
-    type Output = Vec<DVec3>;
-    fn run<const N: usize>(self) -> Self::Output {
-        let reached = Reached::default();
-        let mut tracer = PathTracer::<N>::new(self.world).with_observer(&reached);
-        look(self.world, &mut tracer);
-        reached.0.into_inner()
+fn look<const N: usize>(world: &World) -> Vec<DVec3> {
+    let film = world.scene.film;
+    let reached = Reached::default();
+    let mut tracer = PathTracer::<N>::new(world).with_observer(&reached);
+    for place in 0..SIDE * SIDE {
+        let [x, y] = film.whole().middle_of_cell(SIDE, place);
+        tracer.sample(&Sampler::new(world.method.seed ^ LOOKING, [x, y], place), [x, y]);
     }
+    reached.0.into_inner()
 }
 
 /// All places that were told of.
@@ -44,34 +41,18 @@ impl Observer for Reached {
     }
 }
 
-fn look<const N: usize>(world: &World, tracer: &mut PathTracer<N>) {
-    let film = world.scene.film;
-    for place in 0..SIDE * SIDE {
-        let [x, y] = film.whole().middle_of_cell(SIDE, place);
-        tracer.sample(&Sampler::new(world.method.seed ^ LOOKING, [x, y], place), [x, y]);
-    }
-}
-
 /// The photons of one pass that lie within a pixel of such places, where all of `SIDE` times `SIDE` fill the image; as a share.
 pub fn gathered_photons(world: &World, places: &[DVec3]) -> f64 {
-    in_lanes(&world.method.basis, Finding { world, places })
+    in_lanes!(&world.method.basis, N => gathered::<N>(world, places))
 }
 
-struct Finding<'a> {
-    world: &'a World,
-    places: &'a [DVec3],
-}
-
-impl InLanes for Finding<'_> {
-    type Output = f64;
-    fn run<const N: usize>(self) -> f64 {
-        let Some(photons) = photons::<N>(self.world, 0) else { return 0.0 };
-        let (world, camera) = (self.world, &self.world.scene.camera);
-        let coarse = f64::from(world.scene.film.width) / f64::from(SIDE);
-        let found = |place: &&DVec3| {
-            let radius = coarse * camera.pixel_width((**place - camera.position()).length());
-            photons.any_near(**place, radius)
-        };
-        self.places.iter().filter(found).count() as f64 / self.places.len().max(1) as f64
-    }
+fn gathered<const N: usize>(world: &World, places: &[DVec3]) -> f64 {
+    let Some(photons) = photons::<N>(world, 0) else { return 0.0 };
+    let camera = &world.scene.camera;
+    let coarse = f64::from(world.scene.film.width) / f64::from(SIDE);
+    let found = |place: &&DVec3| {
+        let radius = coarse * camera.pixel_width((**place - camera.position()).length());
+        photons.any_near(**place, radius)
+    };
+    places.iter().filter(found).count() as f64 / places.len().max(1) as f64
 }

@@ -12,7 +12,7 @@ use super::path_tracer::PathTracer;
 use super::photon_targets::PhotonTargets;
 use super::sensor::amount;
 use super::stats::Stats;
-use super::width::{InLanes, in_lanes};
+use super::width::in_lanes;
 use crate::film::{Film, PassSum, Pixel, PixelSum, Window};
 use crate::math::Sampler;
 
@@ -109,7 +109,7 @@ impl<W: Borrow<World>> Rendering<W> {
     pub fn advance(&mut self, progress: &(dyn Fn(u64) + Sync)) -> bool {
         let basis = self.world().method.basis.clone();
         if self.samples < self.world().method.samples {
-            in_lanes(&basis, Pass { rendering: self, progress });
+            in_lanes!(&basis, N => self.pass::<N>(progress));
         }
         self.samples < self.world().method.samples
     }
@@ -209,18 +209,6 @@ impl<W: Borrow<World>> Rendering<W> {
             progress(u64::from(tile.width * tile.height) * numbers.len() as u64);
         });
         (self.samples, self.passes) = (end, self.passes + 1);
-    }
-}
-
-struct Pass<'a, W> {
-    rendering: &'a mut Rendering<W>,
-    progress: &'a (dyn Fn(u64) + Sync),
-}
-
-impl<W: Borrow<World>> InLanes for Pass<'_, W> {
-    type Output = ();
-    fn run<const N: usize>(self) {
-        self.rendering.pass::<N>(self.progress);
     }
 }
 

@@ -4,7 +4,7 @@ use super::light_pass::splats;
 use super::merge;
 use super::path_tracer::PathTracer;
 use super::sensor::amount;
-use super::width::{InLanes, in_lanes};
+use super::width::in_lanes;
 use super::{LightPass, MapPasses, World};
 use crate::film::Window;
 use crate::math::Sampler;
@@ -48,40 +48,32 @@ pub fn seen_light(world: &World) -> SeenLight {
         ..pass.clone()
     };
     let world = world.with_light_pass(world.method.light_pass.as_ref().map(fewer));
-    in_lanes(&world.method.basis, Looking { world: &world })
+    in_lanes!(&world.method.basis, N => look::<N>(&world))
 }
 
-struct Looking<'a> {
-    world: &'a World,
-}
-
-impl InLanes for Looking<'_> {
-    type Output = SeenLight;
-    fn run<const N: usize>(self) -> SeenLight {
-        let world = self.world;
-        let window = world.scene.film.window();
-        let mut seen = SeenLight { parts: [[0.0; 2]; (PARTS * PARTS) as usize] };
-        let photons = merge::photons::<N>(world, 0);
-        let mut tracer = PathTracer::<N>::new(world).with_photons(photons.as_ref());
-        for place in 0..SIDE * SIDE {
-            let [x, y] = window.middle_of_cell(SIDE, place);
-            let before = tracer.walker.stats;
-            tracer.sample(&Sampler::new(world.method.seed, [x, y], 0), [x, y]);
-            let part = &mut seen.parts[part_of(window, [x - window.left, y - window.top])];
-            part[0] += tracer.walker.stats.light - before.light;
-            part[1] += tracer.walker.stats.polarization - before.polarization;
-        }
-        // Photons light all pixels, of which so many were looked at.
-        let pixels = f64::from(window.width) * f64::from(window.height);
-        let looked_at = f64::from(SIDE * SIDE) / pixels;
-        splats::<N>(world, &|_| (), &mut |splat| {
-            let light = looked_at * amount(world, splat.rgb);
-            let part = &mut seen.parts[part_of(window, [splat.pixel % window.width, splat.pixel / window.width])];
-            part[0] += light;
-            part[1] += light * f64::from(splat.change);
-        });
-        seen
+fn look<const N: usize>(world: &World) -> SeenLight {
+    let window = world.scene.film.window();
+    let mut seen = SeenLight { parts: [[0.0; 2]; (PARTS * PARTS) as usize] };
+    let photons = merge::photons::<N>(world, 0);
+    let mut tracer = PathTracer::<N>::new(world).with_photons(photons.as_ref());
+    for place in 0..SIDE * SIDE {
+        let [x, y] = window.middle_of_cell(SIDE, place);
+        let before = tracer.walker.stats;
+        tracer.sample(&Sampler::new(world.method.seed, [x, y], 0), [x, y]);
+        let part = &mut seen.parts[part_of(window, [x - window.left, y - window.top])];
+        part[0] += tracer.walker.stats.light - before.light;
+        part[1] += tracer.walker.stats.polarization - before.polarization;
     }
+    // Photons light all pixels, of which so many were looked at.
+    let pixels = f64::from(window.width) * f64::from(window.height);
+    let looked_at = f64::from(SIDE * SIDE) / pixels;
+    splats::<N>(world, &|_| (), &mut |splat| {
+        let light = looked_at * amount(world, splat.rgb);
+        let part = &mut seen.parts[part_of(window, [splat.pixel % window.width, splat.pixel / window.width])];
+        part[0] += light;
+        part[1] += light * f64::from(splat.change);
+    });
+    seen
 }
 
 /// The part of the view that a pixel of the window lies in.

@@ -5,7 +5,7 @@ use std::cell::RefCell;
 use super::World;
 use super::path_tracer::PathTracer;
 use super::sensor::{Contribution, Found, Observer};
-use super::width::{InLanes, in_lanes};
+use super::width::in_lanes;
 use crate::light::LightId;
 use crate::math::{DVec3, Sampler};
 
@@ -19,30 +19,23 @@ const SEED: u64 = 0x6c61_6d70;
 /// The lights that paths meet by chance, with the unit normals there. The whole image counts, also where only a part of it is
 /// made, so that all parts are made alike.
 pub(super) fn normals_met(world: &World) -> Vec<(LightId, DVec3)> {
-    in_lanes(&world.method.basis, Looking { world })
+    in_lanes!(&world.method.basis, N => look::<N>(world))
 }
 
-struct Looking<'a> {
-    world: &'a World,
-}
-
-impl InLanes for Looking<'_> {
-    type Output = Vec<(LightId, DVec3)>;
-    fn run<const N: usize>(self) -> Self::Output {
-        let (world, film) = (self.world, self.world.scene.film);
-        let met = Met::default();
-        let mut tracer = PathTracer::<N>::new(world).with_observer(&met);
-        // A stride that is coprime to the number of places visits them all, far ones first.
-        let places = SIDE * SIDE;
-        for place in (0..places).map(|i| (i * 1597) % places) {
-            let [x, y] = film.whole().middle_of_cell(SIDE, place);
-            tracer.sample(&Sampler::new(world.method.seed ^ SEED, [x, y], place), [x, y]);
-            if met.0.borrow().len() >= ENOUGH {
-                break;
-            }
+fn look<const N: usize>(world: &World) -> Vec<(LightId, DVec3)> {
+    let film = world.scene.film;
+    let met = Met::default();
+    let mut tracer = PathTracer::<N>::new(world).with_observer(&met);
+    // A stride that is coprime to the number of places visits them all, far ones first.
+    let places = SIDE * SIDE;
+    for place in (0..places).map(|i| (i * 1597) % places) {
+        let [x, y] = film.whole().middle_of_cell(SIDE, place);
+        tracer.sample(&Sampler::new(world.method.seed ^ SEED, [x, y], place), [x, y]);
+        if met.0.borrow().len() >= ENOUGH {
+            break;
         }
-        met.0.into_inner()
     }
+    met.0.into_inner()
 }
 
 /// The lights hit in directions that were drawn where lights were sampled as well.

@@ -157,6 +157,7 @@ impl World {
     }
 
     /// The same world with what each light's lanes are worth replaced, for tests that look at single lanes.
+    #[doc(hidden)]
     pub fn with_responses(mut self, replace: impl Fn(&Response) -> Response) -> Self {
         self.responses = self.responses.iter().map(replace).collect();
         self

@@ -46,7 +46,8 @@ fn a_point_out_of_focus_becomes_a_disc_of_the_size_that_the_thin_lens_gives() {
         let (film, _) = image(&(view(&lens, &format!("width = {side}\nheight = {side}"), 768) + &lamp), SPLITTING);
         let pixel = 1.5 * blur / f64::from(side);
         for variance in variances(&film) {
-            // A disc of diameter D has the variance D^2 / 16; so has the lamp, and a pixel of side h has h^2 / 12 (Sheppard).
+            // A disc of diameter D has the variance D^2 / 16; so has the lamp, and a pixel of side h has h^2 / 12
+            // (Sheppard).
             let lamp = (spot / depth) * (spot / depth) / 4.0;
             let found = 4.0 * (variance * pixel * pixel - lamp - pixel * pixel / 12.0).sqrt();
             println!(
@@ -94,8 +95,8 @@ fn rays_that_start_inside_of_a_body_know_it() {
 
 #[test]
 fn a_lens_that_dips_into_a_body_starts_its_rays_on_either_side() {
-    // A box of fog that reaches 6 ahead of the lens begins beside its middle; focused at infinity, the rays of the middle
-    // pixel run straight.
+    // A box of fog that reaches 6 ahead of the lens begins beside its middle; focused at infinity, the rays of the
+    // middle pixel run straight.
     for begin in [0.1_f64, -0.1] {
         let fog = format!(
             "[material.fog]\ndielectric = {{ index = 1, absorption = 0.5 }}\n[[object]]\n\

@@ -1,4 +1,5 @@
-//! The same for caustics that are seen in mirrors, through glass or by way of lit surfaces: photons that land are gathered.
+//! The same for caustics that are seen in mirrors, through glass or by way of lit surfaces: photons that land are
+//! gathered.
 
 use abbe::trace::MapPasses;
 

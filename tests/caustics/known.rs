@@ -17,8 +17,8 @@ fn with_photons(text: &str, photons: u64, samples: u32) -> Film {
     render(&World::new(&scene, method), &|_| ()).0
 }
 
-/// The caustic A of the light tracing lab: a ball of index 1.5 and radius 1, its center 1.5 above the floor, a lamp of power
-/// pi at a height of 7. Seen by parallel rays that start below the ball, so that it hides nothing.
+/// The caustic A of the light tracing lab: a ball of index 1.5 and radius 1, its center 1.5 above the floor, a lamp of
+/// power pi at a height of 7. Seen by parallel rays that start below the ball, so that it hides nothing.
 fn patch(light: &str) -> String {
     format!(
         "[camera]\nposition = [0, 0.4, 0]\nlook_at = [0, 0, 0]\nup = [0, 0, 1]\nprojection = \"orthographic\"\nheight = 1.6\n\
@@ -62,8 +62,8 @@ fn the_caustic_of_a_ball_has_the_irradiance_that_another_program_found() {
     }
 }
 
-/// A spot that shines everywhere to where a point does throws the same caustic, and one that shines into a part of the ball
-/// a part of it.
+/// A spot that shines everywhere to where a point does throws the same caustic, and one that shines into a part of the
+/// ball a part of it.
 #[test]
 fn a_wide_spot_throws_the_caustic_of_a_point_and_a_narrow_one_a_part_of_it() {
     let image = |light: &str| {
@@ -80,14 +80,15 @@ fn a_wide_spot_throws_the_caustic_of_a_point_and_a_narrow_one_a_part_of_it() {
     let (all, wide, narrow) = (mean(&point), mean(&spot(120.0)), mean(&spot(6.0)));
     println!("point {all:.4e}, wide spot {wide:.4e}, narrow spot {narrow:.4e}");
     assert!((wide / all - 1.0).abs() < 0.01, "{wide} for {all}");
-    // All light of a cone of half angle 3 degrees meets the ball within its inner third, where nearly (2 sqrt(n) / (n + 1))^4
-    // goes through, as at normal incidence, and lands on the patch: flux over its area, over pi.
+    // All light of a cone of half angle 3 degrees meets the ball within its inner third, where nearly (2 sqrt(n) / (n +
+    // 1))^4 goes through, as at normal incidence, and lands on the patch: flux over its area, over pi.
     let flux = 0.25 * std::f64::consts::TAU * (1.0 - 3.0_f64.to_radians().cos());
     let exact = flux * 0.96 * 0.96 / (1.6 * 1.6) * 1e-3 / std::f64::consts::PI;
     assert!((narrow / exact - 1.0).abs() < 0.01, "{narrow} for {exact}");
 }
 
-/// A beam of parallel light through a prism onto a screen: what falls on the screen is what Fresnel's equations let through.
+/// A beam of parallel light through a prism onto a screen: what falls on the screen is what Fresnel's equations let
+/// through.
 #[test]
 fn a_beam_through_a_prism_brings_the_screen_the_light_that_fresnel_lets_through() {
     // The beam meets the left face at 45 degrees to its normal; apex up. Everything in the plane z = 0.
@@ -169,7 +170,8 @@ fn a_beam_through_a_prism_brings_the_screen_the_light_that_fresnel_lets_through(
     assert!((landed / sent / exact - 1.0).abs() < 0.005, "{} of the beam arrives for {exact}", landed / sent);
 }
 
-/// Two balls in one line with a point and a sun between two mirrors: cones overlap, photons are sent to several objects.
+/// Two balls in one line with a point and a sun between two mirrors: cones overlap, photons are sent to several
+/// objects.
 const CROWD: &str = "[render]\nseed = 5\n\
     [material.floor]\ndiffuse = { reflectance = 0.7 }\n[material.glass]\ndielectric = { index = \"N-SF11\" }\n\
     [material.mirror]\nmirror = { reflectance = 0.9 }\n\

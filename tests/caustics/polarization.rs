@@ -1,4 +1,5 @@
-//! What polarization may change of a caustic: photons carry what their surfaces did, and it is counted where they are seen.
+//! What polarization may change of a caustic: photons carry what their surfaces did, and it is counted where they are
+//! seen.
 
 use abbe::math::DVec3;
 use abbe::plan::plan;
@@ -13,8 +14,8 @@ fn quad(center: DVec3, normal: DVec3, half: f64) -> String {
     format!("quad = {{ center = {}, u = {}, v = {} }}", show(center), show(up), show(across))
 }
 
-/// Light of a small lamp that two glass plates, both at Brewster's angle and in one plane, reflect to a floor, and a view of
-/// that floor, in a mirror or not. A screen keeps the lamp's own light from it.
+/// Light of a small lamp that two glass plates, both at Brewster's angle and in one plane, reflect to a floor, and a
+/// view of that floor, in a mirror or not. A screen keeps the lamp's own light from it.
 fn two_plates(in_a_mirror: bool) -> String {
     let turn = 180.0 - 2.0 * 1.5_f64.atan().to_degrees();
     let way = |times: f64| {

@@ -26,8 +26,8 @@ fn k1_glass_that_no_photon_lights_is_the_same_to_the_last_bit_with_a_map_and_wit
     }
 }
 
-/// Wavelengths of a lamp of lines either coincide or are other lines; those of a smooth one fall into bins. Photons and paths
-/// part or not: a prism and a mirror throw light that is seen straight on and through another prism.
+/// Wavelengths of a lamp of lines either coincide or are other lines; those of a smooth one fall into bins. Photons and
+/// paths part or not: a prism and a mirror throw light that is seen straight on and through another prism.
 #[test]
 fn k2_lines_and_smooth_spectra_thrown_by_a_prism_and_a_mirror_are_seen_through_another_prism() {
     let prism = |x: f64| {

@@ -81,7 +81,8 @@ impl Kind {
                 fs::write(path, bytes).expect("the folder can be written");
                 let (source, description) = &scenes[of(scenes.len())];
                 let answer = compile(description, source);
-                // Files that are removed at once are never written to the disk; of a program that was stopped one is left.
+                // Files that are removed at once are never written to the disk; of a program that was stopped one is
+                // left.
                 fs::remove_file(path).expect("the file is there");
                 (answer, source.clone())
             }

@@ -4,7 +4,9 @@ use abbe::film::Film;
 use abbe::material::{Arrival, Branch, Dielectric, Interface, Material, Roughness, shared_transmittance};
 use abbe::math::{DVec2, DVec3};
 use abbe::plan::plan;
-use abbe::spectrum::{Basis, ColorSpace, Curve, CurveKind, Draw, Emission, MAX_LANES, Quantity, Table, data, visible};
+use abbe::spectrum::{
+    Basis, ColorSpace, Curve, CurveKind, Draw, Emission, MAX_LANES, Quantity, Table, comparison, data, visible,
+};
 use abbe::trace::{Method, World, render};
 
 use crate::support::scenes::{EVERY_BRANCH, SINGLE_PATH, body, environment, method, scene, standard_errors, view};
@@ -133,13 +135,13 @@ fn d16_plates_of_glass_are_rendered_as_bright_in_every_lane_as_they_are() {
             };
             for lane in (0..basis.lanes()).step_by(if basis.lanes() > 12 { 5 } else { 1 }) {
                 let own = index.bins()[lane];
-                let film = film(&world().with_responses(|response| response.only(lane)));
+                let film = film(&world().with_responses(|response| comparison::only(response, lane)));
                 // What the lane is worth: the channel that has most of it, before nothing.
                 let light = Curve::from(1.0);
                 let alone = {
                     let draw = Draw::<MAX_LANES>::fixed(basis.fixed_lanes());
                     let table = basis.tabulate(Quantity::Emission, &light);
-                    basis.response(&light).only(lane).sensor(&draw, draw.read(&table), false)
+                    comparison::only(&basis.response(&light), lane).sensor(&draw, draw.read(&table), false)
                 };
                 let channel = (0..3).fold(0, |most, c| if alone[c].abs() > alone[most].abs() { c } else { most });
                 for (at, pixel) in film.pixels.iter().enumerate() {
@@ -343,8 +345,8 @@ fn the_plan_counts_the_color_of_glass_and_keeps_three_lanes_where_they_do() {
     assert!(words.contains("all lanes are refracted by 1.5168, so lanes stay together"), "{words}");
 }
 
-/// A floor within dense flint that a lamp lights, once by photons and once by chance: both bring every lane as much, though
-/// solid angles change by the index of the direction and radiance by each lane's own.
+/// A floor within dense flint that a lamp lights, once by photons and once by chance: both bring every lane as much,
+/// though solid angles change by the index of the direction and radiance by each lane's own.
 #[test]
 fn photons_and_paths_bring_the_same_color_through_glass_whose_lanes_stay_together() {
     let color = |caustics: &str, samples: u32| {

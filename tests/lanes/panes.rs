@@ -2,7 +2,8 @@
 
 use crate::support::scenes::{EVERY_BRANCH, body, environment, image, view};
 
-/// What comes straight through a pane that is turned by an angle from a screen of radiance 1, or back from one behind the camera.
+/// What comes straight through a pane that is turned by an angle from a screen of radiance 1, or back from one behind
+/// the camera.
 fn through(material: &str, shape: &str, degrees: f64, wall_behind: bool) -> f64 {
     let (z, facing) = if wall_behind { (-9.0, 1) } else { (9.0, -1) };
     let wall = body(

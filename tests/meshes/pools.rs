@@ -8,7 +8,8 @@ use abbe::scene::Hit;
 use crate::support::random::Random;
 use crate::support::scenes::{body, environment, scene, view};
 
-/// Blocks that touch, a roof of single triangles, a lamp, a ball and a floor, on whole numbers so that many crossings tie.
+/// Blocks that touch, a roof of single triangles, a lamp, a ball and a floor, on whole numbers so that many crossings
+/// tie.
 fn village() -> String {
     let block = |x: i32, z: i32| {
         let corner = |i: i32| format!("[{}, {}, {}]", x + (i & 1), i >> 1 & 1, z + (i >> 2));

@@ -1,5 +1,5 @@
-//! Chains of filters, mirrors, metals and panes between the camera and a lamp: what the plan and the render say of color and of
-//! polarization holds.
+//! Chains of filters, mirrors, metals and panes between the camera and a lamp: what the plan and the render say of
+//! color and of polarization holds.
 
 use abbe::math::DVec3;
 use abbe::plan::plan;

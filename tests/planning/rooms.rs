@@ -14,7 +14,8 @@ type Paint = Box<dyn Fn(f64) -> f64>;
 
 /// Form factors between the walls of a closed box, numbered -x +x -y +y -z +z.
 ///
-/// Howell, *A Catalog of Radiation Heat Transfer Configuration Factors*, C-11 (opposite) and C-14 (adjacent rectangles).
+/// Howell, *A Catalog of Radiation Heat Transfer Configuration Factors*, C-11 (opposite) and C-14 (adjacent
+/// rectangles).
 fn form_factors(size: [f64; 3]) -> [[f64; 6]; 6] {
     let mut factors = [[0.0; 6]; 6];
     for i in 0..6 {
@@ -58,7 +59,8 @@ fn every_wall_sees_all_others() {
     }
 }
 
-/// Radiosities of six walls by their reflectances: the first is lit straight by a lamp, the others as the lamp sees them.
+/// Radiosities of six walls by their reflectances: the first is lit straight by a lamp, the others as the lamp sees
+/// them.
 fn solve(reflectances: [f64; 6], factors: &[[f64; 6]; 6], direct: [f64; 6]) -> [f64; 6] {
     let mut radiosity = [0.0; 6];
     for _ in 0..400 {

@@ -19,8 +19,8 @@ fn root(a: Complex) -> Complex {
     [((modulus + a[0]) / 2.0).max(0.0).sqrt(), -((modulus - a[0]) / 2.0).max(0.0).sqrt()]
 }
 
-/// What a surface does with the intensities of s and p, and with the product of the amplitude of s and the conjugate of that
-/// of p, in frames whose second axis is the direction of travel x s.
+/// What a surface does with the intensities of s and p, and with the product of the amplitude of s and the conjugate of
+/// that of p, in frames whose second axis is the direction of travel x s.
 #[derive(Clone, Copy)]
 pub struct Event {
     s: f64,

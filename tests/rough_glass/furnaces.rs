@@ -45,7 +45,8 @@ fn rough_glass_is_invisible_in_an_even_environment() {
             assert_eq!((report.non_finite, report.unmatched), (0, 0), "{name}");
             let mean = Mean::of(&film);
             println!("{name}: {:.5?} +- {:.1e}", mean.value, mean.worst_error([1.0; 3]));
-            // At each of a few surfaces 3e-4 is lost or won by the tables: see `sides`. Whole surfaces or lanes are judged here.
+            // At each of a few surfaces 3e-4 is lost or won by the tables: see `sides`. Whole surfaces or lanes are
+            // judged here.
             for band in 0..3 {
                 let off = (mean.value[band] - 1.0).abs();
                 assert!(off <= 1e-3 + 3.5 * mean.error[band], "{name}: {mean:?}");
@@ -102,8 +103,8 @@ fn between_equal_indices_rough_glass_is_not_there() {
     }
 }
 
-/// Light leaves a body of n = 9.9 after some 170 surfaces on average. None may gain or lose on the way, and the spread of
-/// the pixels is the noise: no few of them carry it.
+/// Light leaves a body of n = 9.9 after some 170 surfaces on average. None may gain or lose on the way, and the spread
+/// of the pixels is the noise: no few of them carry it.
 #[test]
 fn very_dense_rough_glass_neither_gains_nor_loses_seen_from_outside_and_from_inside() {
     let mut cases = Vec::new();
@@ -133,8 +134,9 @@ fn very_dense_rough_glass_neither_gains_nor_loses_seen_from_outside_and_from_ins
     }
 }
 
-/// How many pixels carry the noise, (sum d^2)^2 / sum d^4 for their deviations d: a third of them if it is normal, and few
-/// where a tail is so long that the spread of the pixels does not tell their error: with fewer than four, that is off by half.
+/// How many pixels carry the noise, (sum d^2)^2 / sum d^4 for their deviations d: a third of them if it is normal, and
+/// few where a tail is so long that the spread of the pixels does not tell their error: with fewer than four, that is
+/// off by half.
 fn carried_by(film: &Film) -> f64 {
     let green = || film.pixels.iter().map(|pixel| f64::from(pixel.rgb[1]));
     let mean = green().sum::<f64>() / film.pixels.len() as f64;

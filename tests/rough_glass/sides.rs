@@ -66,7 +66,8 @@ fn the_closer_two_indices_the_less_a_rough_boundary_turns_any_light() {
                             kept += flow.value / flow.pdf * square / f64::from(1 << 14);
                         }
                     }
-                    // Facets reflect all light below a cosine of sqrt(2 step / n), and turn it more than that a little above.
+                    // Facets reflect all light below a cosine of sqrt(2 step / n), and turn it more than that a little
+                    // above.
                     let what = format!("roughness {roughness}, {indices:?}, cos {cos}");
                     println!("{what}: {kept:.5} goes nearly straight on");
                     assert!(kept > 1.0 - step.sqrt(), "{what}: only {kept} goes nearly straight on");
@@ -78,8 +79,8 @@ fn the_closer_two_indices_the_less_a_rough_boundary_turns_any_light() {
 
 #[test]
 fn what_facets_refract_once_is_what_mitsuba_refracts() {
-    // The indices, alpha, the viewer's cosine at the azimuth 0.3, the direction below the surface, and the BSDF times cosine
-    // that `roughdielectric` of Mitsuba 3.9.1 has there: GGX with masking on each side by itself, in f32.
+    // The indices, alpha, the viewer's cosine at the azimuth 0.3, the direction below the surface, and the BSDF times
+    // cosine that `roughdielectric` of Mitsuba 3.9.1 has there: GGX with masking on each side by itself, in f32.
     let rows = [
         ([1.0, 1.5], 0.1, 0.8, [-0.351531973, -0.118821055], 28.6894),
         ([1.0, 1.5], 0.1, 0.2, [-0.559467540, -0.208458706], 1.57772),

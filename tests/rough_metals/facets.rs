@@ -54,8 +54,8 @@ impl Grid {
     fn probabilities(&self, surface: &RoughSurface) -> Vec<f64> {
         let mut cells = vec![0.0; CELLS * CELLS];
         for row in 0..CELLS {
-            // The last row holds nearly all light that is reflected more than once, with a sharp edge at the horizon; of the
-            // first one only a corner is seen from near the horizon.
+            // The last row holds nearly all light that is reflected more than once, with a sharp edge at the horizon;
+            // of the first one only a corner is seen from near the horizon.
             let up = if row == 0 || row == CELLS - 1 { 40 * FINER } else { FINER };
             for (i, j) in (0..up).flat_map(|i| (0..CELLS * FINER).map(move |j| (i, j))) {
                 let s = (row as f64 + (i as f64 + 0.5) / up as f64) / CELLS as f64;

@@ -1,13 +1,13 @@
-//! Rows H1, H8, H9 and H12: bodies that are stretched unevenly, cameras that stand on surfaces, and things so small beside
-//! others that both are at the ends of what can be said.
+//! Rows H1, H8, H9 and H12: bodies that are stretched unevenly, cameras that stand on surfaces, and things so small
+//! beside others that both are at the ends of what can be said.
 
 use abbe::film::DEPTH_OF_NOTHING;
 
 use crate::support::bodies::ball;
 use crate::support::scenes::{Mean, SPLITTING, body, environment, image, scene, standard_errors, view};
 
-/// Every closed shape under scales that differ by up to 10^6, turned, in an even sky: white paint and glass are as bright as
-/// the sky, which no wrong normal, cosine or area leaves them.
+/// Every closed shape under scales that differ by up to 10^6, turned, in an even sky: white paint and glass are as
+/// bright as the sky, which no wrong normal, cosine or area leaves them.
 #[test]
 fn h1_stretched_bodies_and_instances_keep_all_light() {
     let (points, faces) = ball();

@@ -11,8 +11,8 @@ use crate::support::scenes::{
     Mean, SINGLE_PATH, SPLITTING, body, environment, image, images, moments, standard_errors, view,
 };
 
-/// Lamps that fill a thousandth of what a pixel sees, sampled 1024 times. Found by chance they are as noisy as counting is:
-/// sqrt((1 - p) / (p n)) = 0.988 of the mean at most. Aimed at they are not.
+/// Lamps that fill a thousandth of what a pixel sees, sampled 1024 times. Found by chance they are as noisy as counting
+/// is: sqrt((1 - p) / (p n)) = 0.988 of the mean at most. Aimed at they are not.
 #[test]
 fn a6_a_small_lamp_is_noisy_where_it_is_found_by_chance_and_quiet_where_it_is_aimed_at() {
     const SEEDS: u64 = 64;
@@ -40,7 +40,8 @@ fn a6_a_small_lamp_is_noisy_where_it_is_found_by_chance_and_quiet_where_it_is_ai
         + render
         + &body("floor", "diffuse = { reflectance = 1 }", &["plane = { point = [0, 0, 0], normal = [0, 1, 0] }"])
         + &lamp("[0, 1000, 0]", "[28, 0, 0]", "[0, 0, 28]");
-    // What a small surface sees of a square above it, half its edge over the distance being a: Hamilton & Morgan 1952, P-5.
+    // What a small surface sees of a square above it, half its edge over the distance being a: Hamilton & Morgan 1952,
+    // P-5.
     let a: f64 = 28.0 / 1000.0;
     let across = (1.0 + a * a).sqrt();
     let aimed = relative(&above, 4.0 / PI * a / across * libm::atan(a / across));

@@ -7,8 +7,8 @@ use abbe::scene::{Source, compile};
 
 use crate::support::scenes::{EVERY_BRANCH, SPLITTING, body, environment, image, scene, view};
 
-/// Reflectance of even light from outside of an index: Walsh 1926, *The Reflection Factor of a Polished Glass Surface for
-/// Diffused Light*.
+/// Reflectance of even light from outside of an index: Walsh 1926, *The Reflection Factor of a Polished Glass Surface
+/// for Diffused Light*.
 fn walsh(n: f64) -> f64 {
     let (n2, n4) = (n * n, n * n * n * n);
     0.5 + (n - 1.0) * (3.0 * n + 1.0) / (6.0 * (n + 1.0) * (n + 1.0))
@@ -57,8 +57,8 @@ fn m2_clear_bodies_that_share_a_surface_are_refused_and_those_that_overlap_are_n
     }
 }
 
-/// One side of a glass block and a table below it lie in one plane, cut into triangles in two ways: rounding would decide, ray
-/// by ray, which is met first.
+/// One side of a glass block and a table below it lie in one plane, cut into triangles in two ways: rounding would
+/// decide, ray by ray, which is met first.
 #[test]
 fn t6_sheets_in_one_plane_are_told_of_where_light_must_cross_them_in_order() {
     let block = |y: f64| {
@@ -82,7 +82,8 @@ fn t6_sheets_in_one_plane_are_told_of_where_light_must_cross_them_in_order() {
     }
 }
 
-/// Closed bodies are left as often as they are entered, to the last ray; an open one is counted, and no light is made of it.
+/// Closed bodies are left as often as they are entered, to the last ray; an open one is counted, and no light is made
+/// of it.
 #[test]
 fn m5_a_medium_that_was_never_entered_is_counted_and_left_as_if_nothing_were_there() {
     let (points, faces) = crate::support::bodies::ball();

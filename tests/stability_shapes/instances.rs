@@ -18,8 +18,8 @@ fn instance(map: &Transform) -> Shape {
     Shape::Instance(Box::new(Instance::new(mesh, *map).expect("a map that can be turned back")))
 }
 
-/// A target on or in the ball, in its own space; and the least cosine between a ray there and the target's arm, below which
-/// the ray touches the ball in a point that faces both ways.
+/// A target on or in the ball, in its own space; and the least cosine between a ray there and the target's arm, below
+/// which the ray touches the ball in a point that faces both ways.
 fn target(random: &mut Random) -> (Aim, DVec3, f64) {
     let (points, faces) = ball();
     let [a, b, _] = faces[(random.number() * faces.len() as f64) as usize].map(|i| points[i as usize]);
@@ -75,8 +75,8 @@ fn x4_rays_enter_and_leave_an_instance_of_a_glass_mesh_by_turns() {
 
 #[test]
 fn x4_rays_into_thin_and_sheared_instances_go_astray_no_more_often_than_in_baked_meshes() {
-    // Between the faces of a thin body that meet at its rim a ray aimed exactly there has no room to start, in an instance
-    // as in a baked mesh: counted are those rays, and of all others none.
+    // Between the faces of a thin body that meet at its rim a ray aimed exactly there has no room to start, in an
+    // instance as in a baked mesh: counted are those rays, and of all others none.
     let (points, faces) = ball();
     let all = targets();
     let inner: Vec<_> = all.iter().copied().filter(|target| matches!(target.0, Aim::Anywhere)).collect();
@@ -128,7 +128,8 @@ fn an_instance_is_where_its_baked_triangles_are() {
             let ray = Ray::new(origin, map.point(random.direction() * 0.9 * random.number()) - origin);
             let both = [&placed, &baked].map(|shape| shape.intersect(&ray, f64::INFINITY).expect("it is aimed at"));
             let [a, b] = [placed.point(&ray, &both[0]), baked.point(&ray, &both[1])];
-            // On an edge either of two triangles may be met; the map there and back rounds as much as the thin side allows.
+            // On an edge either of two triangles may be met; the map there and back rounds as much as the thin side
+            // allows.
             assert!((both[0].t - both[1].t).abs() < 1e-11 * both[1].t, "{map:?}");
             if both[0].part == both[1].part {
                 met += 1;

@@ -59,8 +59,8 @@ fn floor(model: &str) -> String {
     )
 }
 
-/// The film color of the floor's middle: reflectance / pi times the sum of L cos cos / r^2 over the lamp, whose radiance
-/// in each lane is read from its table.
+/// The film color of the floor's middle: reflectance / pi times the sum of L cos cos / r^2 over the lamp, whose
+/// radiance in each lane is read from its table.
 fn expected(scene: &Scene<Curve>, basis: &Basis) -> [f64; 3] {
     const STEPS: usize = 300;
     let emission = scene.lights[0].emission();

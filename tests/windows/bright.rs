@@ -80,17 +80,17 @@ fn assert_same(one: &[Film], other: &[Film], claims: usize, what: &str) {
     one.assert_near(other.value, claims, what);
 }
 
-/// A point of a floor that a rectangle lights which stands at right angles to it, by the irradiance over the radiance times
-/// pi: Howell, *A Catalog of Radiation Heat Transfer Configuration Factors*, B-4: a corner of the rectangle, `width` x
-/// `height`, at the foot of the perpendicular from the point, at a distance.
+/// A point of a floor that a rectangle lights which stands at right angles to it, by the irradiance over the radiance
+/// times pi: Howell, *A Catalog of Radiation Heat Transfer Configuration Factors*, B-4: a corner of the rectangle,
+/// `width` x `height`, at the foot of the perpendicular from the point, at a distance.
 fn upright(distance: f64, width: f64, height: f64) -> f64 {
     let (x, y) = (height / width, distance / width);
     let root = (x * x + y * y).sqrt();
     ((1.0 / y).atan() - y / root * (1.0 / root).atan()) / (2.0 * PI)
 }
 
-/// The sky above and below the horizon, through one hole, at a point of a black room's floor; and with places that are right,
-/// beside what is bright, tilted, in the floor's own plane, or all of these.
+/// The sky above and below the horizon, through one hole, at a point of a black room's floor; and with places that are
+/// right, beside what is bright, tilted, in the floor's own plane, or all of these.
 #[test]
 fn an_even_sky_through_an_opening_gives_its_form_factor_wherever_bounces_aim() {
     let text = view([0.5, 2.0, 0.0], [0.500_01, 0.0, 0.0], 0.05, 8)

@@ -34,7 +34,8 @@ fn mean(text: &str, transport: Transport) -> Mean {
     Mean::over_seeds(images(text, transport, 8).iter().map(|(film, _)| film))
 }
 
-/// Shares that go through a pane and come back, unpolarized, at a cosine, by Fresnel's equations and the sum over all reflections inside.
+/// Shares that go through a pane and come back, unpolarized, at a cosine, by Fresnel's equations and the sum over all
+/// reflections inside.
 fn pane(n: f64, t: f64, cos: f64) -> [f64; 2] {
     let beyond = (n * n - 1.0 + cos * cos).sqrt() / n;
     let of = |amplitude: f64| {

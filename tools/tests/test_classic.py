@@ -3,11 +3,11 @@
     pytest tools/tests/test_classic.py
 """
 
-import classic
 import numpy as np
 import pytest
 import render
-from classic_scene import Disc, Plane, Sphere, Triangle, read_scene
+from classic import command as classic
+from classic.scene import Disc, Plane, Sphere, Triangle, read_scene
 
 ORIGIN = np.array([[0.3, 0.2, 5.0]])
 DOWN_Z = np.array([[0.0, 0.0, -1.0]])

@@ -7,10 +7,10 @@ import json
 import tomllib
 from collections import Counter
 
-import gallery
-import gallery_shapes as shapes
 import numpy as np
 import pytest
+from gallery import command as gallery
+from gallery import shapes
 
 
 @pytest.fixture(scope="module")

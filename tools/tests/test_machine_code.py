@@ -1,4 +1,7 @@
-"""What the compiler makes of code whose speed rests on how it is compiled."""
+"""What the compiler makes of code whose speed rests on how it is compiled.
+
+The tests' build is optimized less than a release: what it does not fill in advance, a release does not either.
+"""
 
 import os
 import re

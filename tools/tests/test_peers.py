@@ -1,10 +1,10 @@
-"""Holds what tools/peers_scene.py makes of Abbe's scenes for other renderers against the scenes themselves."""
+"""Holds what tools/peers/scene.py makes of Abbe's scenes for other renderers against the scenes themselves."""
 
 from collections import Counter
 
 import numpy as np
-import peers_scene
 import render
+from peers import scene as peers_scene
 
 
 def edges(faces):

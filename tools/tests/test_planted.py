@@ -5,7 +5,7 @@ pytest tools/tests/test_planted.py
 
 import shutil
 
-import planted
+from planted import command as planted
 
 
 def test_every_patch_applies_to_the_source_as_it_is(capsys):

@@ -10,14 +10,14 @@ import re
 import subprocess
 from pathlib import Path
 
-import browser
 import numpy as np
 import pytest
 import render
-import report
-import report_parts
-import stability
-from stability_plot import Plot, Series
+from browser import command as browser
+from report import command as report
+from report import parts as report_parts
+from stability import command as stability
+from stability.plot import Plot, Series
 
 # Contrast (WCAG 2.2, 1.4.3), font sizes and overflow of every element that has text of its own.
 LEGIBLE = """() => {

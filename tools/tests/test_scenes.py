@@ -9,10 +9,10 @@ import tomllib
 from pathlib import Path
 
 import check_exr
-import gallery
 import numpy as np
 import pytest
 import render
+from gallery import command as gallery
 
 SCENES = sorted(render.SCENES.rglob("*.toml"))
 

@@ -11,8 +11,8 @@ import json
 import numpy as np
 import pytest
 from render import render
-from smallpt_reference import REFERENCE, SIZE
-from smallpt_regions import REGIONS, mean_and_error, region_means, scene_text, sees_front_wall, sees_glass
+from smallpt.reference import REFERENCE, SIZE
+from smallpt.regions import REGIONS, mean_and_error, region_means, scene_text, sees_front_wall, sees_glass
 
 WIDTH, HEIGHT = SIZE
 SAMPLES = 48

@@ -8,12 +8,10 @@ import json
 
 import numpy as np
 import pytest
-import stability
-import stability_geometry as geometry
-import stability_lights as lights
-import stability_optics as optics_rows
-import stability_scenes
-import stability_transport as transport
+from stability import command as stability
+from stability import geometry, lights, transport
+from stability import optics as optics_rows
+from stability import scenes as stability_scenes
 
 
 def test_a_far_ball_is_right_where_the_expanded_formula_is_not():

@@ -10,8 +10,8 @@ import numpy as np
 import OpenEXR
 import pytest
 import render
-import validate
 from validation import book, formulas, row
+from validation import command as validate
 from validation.row import Row, judge
 
 

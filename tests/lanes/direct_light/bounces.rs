@@ -67,8 +67,8 @@ fn light_in_an_absorbing_medium_is_absorbed_on_its_way_to_a_surface() {
 
 #[test]
 fn longer_paths_through_glass_are_left_out_and_reported() {
-    // Straight through a plate of n = 1.5 onto an even sky: (1 - R)^2 by two surfaces, the rest of what crosses by more;
-    // what the front reflects leaves one surface.
+    // Straight through a plate of n = 1.5 onto an even sky: (1 - R)^2 by two surfaces, the rest of what crosses by
+    // more; what the front reflects leaves one surface.
     let plate = body("glass", "dielectric = { index = 1.5 }", &["cube = { center = [0, 0, 0], size = [90, 90, 1] }"]);
     let (r, t) = (0.04, 0.96);
     for (limit, expected) in [(0, 0.0), (1, r), (2, r + t * t), (3, r + t * t + t * r * t), (40, 1.0)] {

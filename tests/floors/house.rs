@@ -1,0 +1,93 @@
+//! Which file uses which, and which files stand in a circle.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+use std::sync::LazyLock;
+
+use super::source::{Names, Source, texts};
+
+/// All files, and the file that each module is.
+pub struct House {
+    pub files: Vec<Source>,
+    modules: BTreeMap<Names, usize>,
+}
+
+/// For each file the files that it uses, with one name of each that it uses.
+pub type Graph = Vec<BTreeMap<usize, String>>;
+
+impl House {
+    pub fn new(texts: &BTreeMap<String, String>) -> Self {
+        let mut files: Vec<Source> = texts.iter().map(|(path, text)| Source::new(path, text)).collect();
+        let declared: BTreeSet<Names> = files
+            .iter()
+            .flat_map(|file| file.items.iter().map(|item| [&file.module[..], &[item.clone()]].concat()))
+            .collect();
+        files.retain(|file| file.module.len() < 2 || declared.contains(&file.module));
+        let modules = files.iter().enumerate().map(|(index, file)| (file.module.clone(), index)).collect();
+        Self { files, modules }
+    }
+
+    /// The file that defines what a path leads to, through all that is handed on by `use`; none if it leads to a
+    /// module.
+    pub fn home(&self, path: &[String]) -> Option<usize> {
+        let inside = (0..path.len())
+            .rev()
+            .find_map(|length| self.modules.get(&path[..length]).map(|file| (*file, &path[length..])));
+        let (file, rest) = inside?;
+        let (name, after) = rest.split_first()?;
+        let source = &self.files[file];
+        let is_module = self.modules.contains_key(&[&source.module[..], &[name.clone()]].concat());
+        if source.items.contains(name) && !is_module {
+            return Some(file);
+        }
+        let own = &path[..path.len() - after.len()];
+        let handed = source.uses.get(name).filter(|handed| handed[..] != *own)?;
+        self.home(&[handed, after].concat())
+    }
+
+    pub fn graph(&self) -> Graph {
+        let edges = |(index, source): (usize, &Source)| {
+            let mut edges = BTreeMap::new();
+            for path in &source.paths {
+                if let Some(home) = self.home(path).filter(|home| *home != index) {
+                    edges.entry(home).or_insert_with(|| path.join("::"));
+                }
+            }
+            edges
+        };
+        self.files.iter().enumerate().map(edges).collect()
+    }
+}
+
+/// The files that can be reached from a file.
+fn reach(graph: &Graph, from: usize) -> BTreeSet<usize> {
+    let (mut reached, mut pending) = (BTreeSet::new(), vec![from]);
+    while let Some(file) = pending.pop() {
+        pending.extend(graph[file].keys().filter(|next| reached.insert(**next)));
+    }
+    reached
+}
+
+/// The largest sets of files each of which uses, through others, all the others.
+pub fn circles(graph: &Graph) -> Vec<BTreeSet<usize>> {
+    let reached: Vec<BTreeSet<usize>> = (0..graph.len()).map(|file| reach(graph, file)).collect();
+    let circle = |file: usize| -> BTreeSet<usize> {
+        reached[file].iter().copied().filter(|other| reached[*other].contains(&file)).collect()
+    };
+    let found: BTreeSet<BTreeSet<usize>> = (0..graph.len()).map(circle).filter(|circle| !circle.is_empty()).collect();
+    found.into_iter().collect()
+}
+
+/// The texts of `src`, read once.
+pub fn here() -> &'static BTreeMap<String, String> {
+    static TEXTS: LazyLock<BTreeMap<String, String>> =
+        LazyLock::new(|| texts(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src")));
+    &TEXTS
+}
+
+/// Holds what a law finds against its exceptions, which have to be exactly these.
+pub fn exactly(name: &str, exceptions: &[&str], found: BTreeSet<String>, why: &str) {
+    let lines: Vec<String> = found.iter().map(|one| format!("    {one:?},\n")).collect();
+    let equal = found.iter().eq(exceptions);
+    assert!(equal, "{why}\nThe exceptions would have to be\n\nconst {name}: &[&str] = &[\n{}];\n", lines.concat());
+}

@@ -1,0 +1,185 @@
+//! Laws that a file keeps by itself.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+use super::exceptions::{ABROAD, LONG, TUPLES, WIDE};
+use super::house::{House, exactly, here};
+use super::source::texts;
+
+/// Most lines of a file.
+const LONGEST_FILE: usize = 500;
+/// Most lines of a function, and how many may have more.
+const LONGEST_FUNCTION: usize = 60;
+const LONG_FUNCTIONS: usize = 3;
+/// Most columns of a comment, as of code.
+const WIDEST: usize = 120;
+
+fn one(path: &str, text: &str) -> BTreeMap<String, String> {
+    BTreeMap::from([(path.to_owned(), text.to_owned())])
+}
+
+fn long_files(texts: &BTreeMap<String, String>) -> BTreeSet<String> {
+    let lines = texts.iter().map(|(path, text)| (path, text.lines().count()));
+    lines.filter(|(_, lines)| *lines > LONGEST_FILE).map(|(path, lines)| format!("{path}: {lines} lines")).collect()
+}
+
+#[test]
+fn every_source_file_is_short_enough_to_read() {
+    exactly("LONG_FILES", &[], long_files(here()), "a file has more than 500 lines");
+    assert_eq!(long_files(&one("a.rs", &"\n".repeat(501))).len(), 1);
+    assert!(long_files(&one("a.rs", &"\n".repeat(500))).is_empty());
+}
+
+fn long_functions(texts: &BTreeMap<String, String>) -> BTreeSet<String> {
+    let mut long = BTreeSet::new();
+    for source in House::new(texts).files {
+        let functions = source.functions.iter().filter(|function| function.lines > LONGEST_FUNCTION);
+        long.extend(functions.map(|function| format!("{}: {}", source.path, function.name)));
+    }
+    long
+}
+
+#[test]
+fn few_functions_are_longer_than_a_page() {
+    let long = long_functions(here());
+    if long.len() > LONG_FUNCTIONS {
+        exactly("LONG", LONG, long, "functions have more than 60 lines");
+    } else {
+        assert!(LONG.is_empty(), "the exceptions LONG are no longer needed");
+    }
+}
+
+#[test]
+fn a_long_function_is_noticed() {
+    for lines in [60, 61] {
+        let body = "\n".repeat(lines - 1);
+        for text in [
+            format!("/// Words.\n#[inline]\npub fn f() {{{body}}}"),
+            format!("impl A {{\n    fn f(\n) -> u8 {{{}}}\n}}", &body[1..]),
+            format!("trait A {{ fn f() {{{body}}} }}"),
+            format!("fn g() {{ fn f() {{{body}}} }}"),
+            format!("mod inner {{ impl A for B {{ fn f() {{{body}}} }} }}"),
+        ] {
+            let found = long_functions(&one("a.rs", &text)).contains("a.rs: f");
+            assert_eq!(found, lines == 61, "{lines}: {}", text.trim());
+        }
+    }
+}
+
+fn tuples(texts: &BTreeMap<String, String>) -> BTreeSet<String> {
+    let mut found = BTreeSet::new();
+    for source in House::new(texts).files {
+        let functions = source.functions.iter().filter(|function| function.takes_tuple);
+        found.extend(functions.map(|function| format!("{}: {}", source.path, function.name)));
+    }
+    found
+}
+
+#[test]
+fn no_function_takes_a_tuple_without_a_name() {
+    exactly("TUPLES", TUPLES, tuples(here()), "a function takes a tuple, whose parts have no names");
+}
+
+#[test]
+fn a_tuple_as_a_parameter_is_noticed() {
+    let refused = [
+        "fn f(x: (f64, f64)) {}",
+        "fn f((x, y): (f64, f64)) {}",
+        "fn f(x: &mut (f64, f64)) {}",
+        "impl A { fn f(&self, x: &(f64, (f64, f64))) {} }",
+        "trait A { fn f(x: (f64, f64)) {} }",
+        "trait A { fn f(x: (f64, f64)); }",
+        "fn g() { fn f(x: (u8, u8)) {} }",
+    ];
+    for text in refused {
+        assert_eq!(tuples(&one("a.rs", text)).into_iter().collect::<Vec<_>>(), ["a.rs: f"], "{text}");
+    }
+    let allowed = [
+        "fn f(x: [f64; 2], then: &dyn Fn()) -> (f64, f64) { g(|(x, y)| x) }",
+        "fn f(x: ()) {}",
+        "fn f(points: &[(f64, f64)], each: impl Fn((f64, f64)) -> f64) {}",
+    ];
+    for text in allowed {
+        assert!(tuples(&one("a.rs", text)).is_empty(), "{text}");
+    }
+}
+
+/// Inherent `impl` blocks away from their type; those of `shape/bvh` may be, whose tree is one concept in many files.
+fn abroad(texts: &BTreeMap<String, String>) -> BTreeSet<String> {
+    let house = House::new(texts);
+    let mut found = BTreeSet::new();
+    for (index, source) in house.files.iter().enumerate().filter(|(_, source)| !source.path.starts_with("shape/bvh/")) {
+        let away = source.impls.iter().filter(|of| house.home(of) != Some(index));
+        found.extend(away.map(|of| format!("{}: {}", source.path, of.last().expect("a name"))));
+    }
+    found
+}
+
+#[test]
+fn a_type_keeps_its_own_methods_in_its_own_file() {
+    exactly("ABROAD", ABROAD, abroad(here()), "a type's inherent impl stands in another file than the type");
+}
+
+#[test]
+fn an_impl_away_from_its_type_is_noticed() {
+    let files = |text: &str| {
+        let root = ("lib.rs", "mod room;");
+        let room = ("room/mod.rs", "mod a; mod b; pub use a::A; pub struct Own;");
+        let files = [root, room, ("room/a.rs", "pub struct A<T>(T);"), ("room/b.rs", text)];
+        BTreeMap::from(files.map(|(path, text)| (path.to_owned(), text.to_owned())))
+    };
+    for text in [
+        "use super::A; impl<T> A<T> {}",
+        "impl super::a::A<u8> {}",
+        "use super::A as Z; mod inner { impl super::Z<u8> {} }",
+    ] {
+        assert_eq!(abroad(&files(text)).len(), 1, "{text}");
+    }
+    for text in [
+        "use super::A; impl<T> Clone for A<T> {}",
+        "struct B; impl B {}",
+        "struct A; impl A {}",
+        "mod inner { struct B; impl B {} }",
+    ] {
+        assert!(abroad(&files(text)).is_empty(), "{text}");
+    }
+}
+
+/// Whether a comment ends beyond the last column.
+fn is_wide(line: &str) -> bool {
+    let marks = line.match_indices("//").map(|(at, _)| &line[..at]);
+    let mut comments = marks.filter(|before| before.trim().is_empty() || before.matches('"').count() % 2 == 0);
+    line.chars().count() > WIDEST && comments.next().is_some()
+}
+
+fn wide_comments(texts: &BTreeMap<String, String>) -> BTreeSet<String> {
+    let counts = texts.iter().map(|(path, text)| (path, text.lines().filter(|line| is_wide(line)).count()));
+    counts.filter(|(_, count)| *count > 0).map(|(path, count)| format!("{path}: {count}")).collect()
+}
+
+#[test]
+fn comments_end_within_the_columns_of_code() {
+    let mut all = BTreeMap::new();
+    for folder in ["src", "tests", "benches", "examples"] {
+        let inside = texts(&Path::new(env!("CARGO_MANIFEST_DIR")).join(folder));
+        all.extend(inside.into_iter().map(|(path, text)| (format!("{folder}/{path}"), text)));
+    }
+    exactly("WIDE", WIDE, wide_comments(&all), "a comment ends beyond column 120");
+}
+
+#[test]
+fn a_wide_comment_is_noticed() {
+    let words = "wörds ".repeat(20);
+    for line in [
+        format!("//! {words}"),
+        format!("    /// {words}"),
+        format!("f(); // {words}"),
+        format!("f(\"//\"); // {words}"),
+    ] {
+        assert!(is_wide(&line), "{line}");
+        assert!(!is_wide(&line[..100]), "{line}");
+    }
+    assert!(!is_wide(&format!("let address = \"https://{words}\";")));
+    assert!(!is_wide(&"é".repeat(120).replacen("éé", "//", 1)));
+}

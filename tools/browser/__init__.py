@@ -1,0 +1,1 @@
+"""A headless Chromium for the report's tests: `python tools/browser.py`."""

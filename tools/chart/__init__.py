@@ -1,0 +1,1 @@
+"""Error against processor time: `python tools/chart.py`."""

@@ -1,0 +1,232 @@
+"""Charts speed against accuracy: Abbe's models and methods, and the renderers that anyone can install beside it.
+
+    python tools/chart.py --list                 # which renderers are there, and how to install the others
+    python tools/chart.py --quick                # every chart, small: under 10 minutes on two cores
+    python tools/chart.py                        # twice the side, four times the samples, five repeats: two hours
+    python tools/chart.py --scene cornell --quick
+    python tools/chart.py --only abbe --quick    # Abbe's own series alone
+    python tools/chart.py --redraw               # pictures and words of what was measured last
+
+Writes into target/chart a PNG and an SVG for each chart, overview.png of the field, chart.csv, chart.json and table.md,
+the table of benches/README.md, and prints what the charts say in words. A renderer that fails is told in a line and
+left out. tools/chart/scenes.py says what is charted, tools/chart/measure.py what the error is and what counts as time,
+tools/chart/findings.py what the words mean. Every renderer runs on one thread and reads the same scene file, the others
+by way of tools/peers.
+"""
+
+import argparse
+import csv
+import json
+import math
+import os
+import platform
+import resource
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import render
+
+from . import draw, renderers, scenes
+from .curves import title_for, unsteady_words
+from .findings import curve, floor, short, table_rows, takes_no_seed, wavers, words_for
+from .measure import Measured, Point, measure
+from .scenes import Chart, Profile
+
+CONVERGED = ("difference", "unseen", "brightness")  # what chart.json keeps of a converged picture
+OVERVIEW = ("cornell", "smallpt", "mesh", "caustic", "beam", "dispersion")
+
+
+def found_versions(charts: list[Chart]) -> tuple[dict[str, str], dict[str, str]]:
+    """Versions of what is there, and lines on what is not, by renderer and variant."""
+    versions, missing = {}, {}
+    for renderer, variant in dict.fromkeys((one.renderer, one.variant) for chart in charts for one in chart.series):
+        key = f"{renderers.NAMES[renderer]} {variant}".strip()
+        try:
+            versions[key] = renderers.version(renderer, variant)
+        except renderers.Missing as words:
+            missing[key] = str(words)
+    return versions, missing
+
+
+def run(chart: Chart, profile: Profile, only: list[str] | None = None) -> dict[str, Measured]:
+    """Every series that can be had; one that cannot be opened is told and left out."""
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = Path(temporary)
+        opened = {}
+        for number, series in enumerate(chart.series):
+            if only and series.renderer not in only:
+                continue
+            try:
+                renderers.version(series.renderer, series.variant)
+                scene = scenes.write_scene(chart, series, folder / f"scene{number}.toml")
+                opened[series.label] = renderers.open_renderer(series, scene, folder / str(number))
+            except (renderers.Missing, RuntimeError) as words:
+                print(f"{series.label} is left out: {words}", flush=True)
+        if all(isinstance(renderer, renderers.PovRay) for renderer in opened.values()):
+            print("nothing is left that could be judged by its own converged picture")
+            return {}
+        try:
+            return measure(opened, chart, profile)
+        finally:
+            for renderer in opened.values():
+                renderer.close()
+
+
+def recorded(series: dict) -> Measured:
+    """A series as `record` wrote it."""
+    points = [Point(**point) for point in series["points"]]
+    return Measured(points, series["start_seconds"], None, *(series.get(name, math.nan) for name in CONVERGED))
+
+
+def panel_for(chart: Chart, found: dict[str, Measured]) -> draw.Panel:
+    kinds = {one.label: one.renderer for one in chart.series}
+    first, *others = found
+    own = all(kinds[label] == "abbe" for label in others)
+    judged = [label for label in others if not takes_no_seed(found[label]) and (own or kinds[label] != "abbe")]
+    curves = {label: curve(found[label]) for label in judged if not wavers(found[label])}
+    finding = title_for(first, curve(found[first]), curves)
+    if wavers(found[first]):
+        finding = unsteady_words(first)
+    if chart.common and len(others) > 1:
+        floors = (f"{short(label)} {floor(found[label])}" for label in others)
+        finding = f"Converged, off {short(first)} by: {', '.join(floors)}".replace("less than", "<")
+    name = short if set(kinds.values()) == {"abbe"} else str
+    lines = [draw.Line(name(label), kinds[label], curve(measured)) for label, measured in found.items()]
+    return draw.Panel(chart.title, finding, lines)
+
+
+def record(chart: Chart, found: dict[str, Measured], words: list[str]) -> dict:
+    """The chart as it stands in chart.json."""
+    kinds = {one.label: "abbe" if one.renderer == "abbe" else "other" for one in chart.series}
+    series = []
+    for label, measured in found.items():
+        points = [point._asdict() for point in measured.points]
+        extra = {"start_seconds": measured.start}
+        if not takes_no_seed(measured):
+            extra |= {name: getattr(measured, name) for name in CONVERGED}
+        series.append({"label": label, "kind": kinds[label], **extra, "points": points})
+    pictures = {"svg": f"{chart.name}.svg", "png": f"{chart.name}.png"}
+    return {"name": chart.name, "title": chart.title, "words": words, "series": series, **pictures}
+
+
+def table(found: dict[str, Measured]) -> str:
+    lines = [f"{'series':<28}{'samples':>8}{'CPU s':>9}{'error':>9}{'RMS':>9}    start, CPU s"]
+    for label, measured in found.items():
+        for point in measured.points:
+            start = f"{measured.start:>12.2f}" if point is measured.points[0] else ""
+            figures = f"{point.cpu_seconds:>9.3f}{point.error:>9.4f}{point.rms:>9.4f}"
+            lines.append(f"{label:<28}{point.samples:>8}{figures}{start}")
+    return "\n".join(lines)
+
+
+def write_data(out: Path, versions: dict, made_by: str, records: list[dict]) -> None:
+    with (out / "chart.csv").open("w", newline="") as file:
+        rows = csv.writer(file, lineterminator="\n")
+        rows.writerow(("chart", "series", "samples", "cpu_seconds", "error", "rms", "error_against_common"))
+        for one in records:
+            for series in one["series"]:
+                rows.writerows(
+                    (one["name"], series["label"], *map(rounded, point.values())) for point in series["points"]
+                )
+    data = {"versions": versions, "made_by": made_by, "scenes": records}
+    (out / "chart.json").write_text(json.dumps(data, indent=1, default=str) + "\n", "utf-8")
+
+
+def rounded(value: float) -> float:
+    return float(f"{value:.5g}")
+
+
+def write_picture(out: Path, chart: Chart, found: dict[str, Measured]) -> None:
+    from matplotlib.image import imsave
+
+    for label, measured in found.items():
+        if measured.reference is not None:
+            linear = measured.reference.mean.clip(0, 1)
+            name = "".join(c if c.isalnum() else "-" for c in label.lower())
+            imsave(out / f"{chart.name}-{name}.png", linear ** (1 / 2.2))
+
+
+def overview(out: Path, panels: dict[str, draw.Panel], note: str) -> None:
+    if wanted := [panels[name] for name in OVERVIEW if name in panels]:
+        draw.draw_overview(wanted, out / "overview", note)
+
+
+def write_table(out: Path, rows: list[str]) -> None:
+    head = ["| scene | beside | time that Abbe takes | pictures apart |", "|---|---|---|---|"]
+    (out / "table.md").write_text("\n".join(head + rows) + "\n", "utf-8")
+
+
+def redraw(out: Path) -> None:
+    """Pictures and words from what was measured before."""
+    data = json.loads((out / "chart.json").read_text("utf-8"))
+    charts = {chart.name: chart for chart in scenes.CHARTS}
+    records, panels, rows = [], {}, []
+    for one in data["scenes"]:
+        chart, found = charts[one["name"]], {series["label"]: recorded(series) for series in one["series"]}
+        panels[chart.name] = panel_for(chart, found)
+        records.append(record(chart, found, words_for(chart, found)))
+        rows += table_rows(chart, found)
+        print(f"\n== {chart.name}: {chart.title}", *records[-1]["words"], sep="\n")
+        draw.draw([panels[chart.name]], out / chart.name, data["made_by"])
+    overview(out, panels, data["made_by"])
+    write_table(out, rows)
+    write_data(out, data["versions"], data["made_by"], records)
+
+
+def load() -> str:
+    """How busy the machine is before the chart adds its own work."""
+    return f"load average {os.getloadavg()[0]:.1f} before"
+
+
+def processor_seconds() -> float:
+    """Of this process and of the renderers that have ended."""
+    usages = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
+    return sum(usage.ru_utime + usage.ru_stime for usage in usages)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    names = [chart.name for chart in scenes.CHARTS]
+    parser.add_argument("--scene", choices=names, action="append", help="only this chart; may be repeated")
+    parser.add_argument("--only", choices=renderers.NAMES, action="append", help="only this one; may be repeated")
+    parser.add_argument("--quick", action="store_true", help="small pictures, fewer samples, three repeats")
+    parser.add_argument("--list", action="store_true", help="say what is installed, and how to get the rest")
+    parser.add_argument("--redraw", action="store_true", help="draw and say chart.json anew; measure nothing")
+    parser.add_argument("--pictures", action="store_true", help="also write each converged picture")
+    parser.add_argument("--out", type=Path, default=render.ROOT / "target/chart", help="folder for what is written")
+    arguments = parser.parse_args()
+    profile = scenes.QUICK if arguments.quick else scenes.FULL
+    charts = [chart for chart in scenes.CHARTS if not arguments.scene or chart.name in arguments.scene]
+    versions, missing = found_versions(charts)
+    for name, words in versions.items():
+        print(f"{name}: {words}")
+    for words in dict.fromkeys(missing.values()):
+        print(f"left out: {words}")
+    if arguments.list:
+        return
+    if arguments.redraw:
+        return redraw(arguments.out)
+    arguments.out.mkdir(parents=True, exist_ok=True)
+    made_by = f"python tools/chart.py {' '.join(sys.argv[1:])}".strip()
+    note = f"{made_by}, {profile.repeats} repeats, {platform.machine()}, {os.cpu_count()} cores, {load()}"
+    begun, records, panels, rows = time.monotonic(), [], {}, []
+    for chart in (scenes.scaled(one, profile) for one in charts):
+        print(f"\n== {chart.name}: {chart.title}, {chart.size[0]} x {chart.size[1]}", flush=True)
+        found = run(chart, profile, arguments.only)
+        if not found:
+            continue
+        words = words_for(chart, found)
+        print(table(found), *words, f"({time.monotonic() - begun:.0f} s so far)", sep="\n", flush=True)
+        panels[chart.name] = panel_for(chart, found)
+        draw.draw([panels[chart.name]], arguments.out / chart.name, note)
+        records.append(record(chart, found, words))
+        rows += table_rows(chart, found)
+        write_data(arguments.out, versions, note, records)
+        if arguments.pictures:
+            write_picture(arguments.out, chart, found)
+    overview(arguments.out, panels, note)
+    write_table(arguments.out, rows)
+    took = f"{time.monotonic() - begun:.0f} s, {processor_seconds():.0f} s of processor time"
+    print(f"\nwrote {len(records)} charts, chart.csv and chart.json into {arguments.out} in {took}")

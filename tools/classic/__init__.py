@@ -1,0 +1,1 @@
+"""An independent backward tracer without random numbers: `python tools/classic.py`."""

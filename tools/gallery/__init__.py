@@ -1,0 +1,1 @@
+"""Meshes, images and pictures of the gallery: `python tools/gallery.py`."""

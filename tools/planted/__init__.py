@@ -1,0 +1,1 @@
+"""Classic bugs, planted one at a time: `python tools/planted.py`."""

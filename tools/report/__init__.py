@@ -1,0 +1,1 @@
+"""One page of what the tools found: `python tools/report.py`."""

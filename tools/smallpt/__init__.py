@@ -1,0 +1,1 @@
+"""The 99-line program and what Abbe makes of its scene: `python tools/smallpt_reference.py`."""

@@ -1,0 +1,1 @@
+"""Failing methods beside Abbe's images: `python tools/stability.py`."""

@@ -1,0 +1,1 @@
+"""Optical data of the catalog: `python tools/tabulate.py`."""
