@@ -8,7 +8,7 @@ use crate::error::{Error, Result};
 use crate::film::{Fact, Film, Pixel, Provenance, View, Window, write_exr, write_png};
 use crate::plan::{Plan, plan};
 use crate::scene::{Projection, Scene};
-use crate::trace::{self, Report, World};
+use crate::trace::{Report, World, prepare, self};
 
 /// What replaces the scene's own settings. By default nothing does.
 ///
@@ -106,7 +106,7 @@ impl Rendering {
         let threads = threads
             .map_err(|error| Error::Arguments { message: format!("cannot start threads: {error}"), help: None })?;
         let plan = threads.install(|| plan(&scene));
-        let world = World::new(&scene, plan.method.clone());
+        let world = prepare(&scene, plan.method.clone());
         let camera = &scene.camera;
         let view = View {
             world_to_camera: camera.world_to_camera(),

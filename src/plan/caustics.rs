@@ -10,7 +10,7 @@ use crate::math::{DVec2, DVec3, one_minus_cos_of_cone};
 use crate::scene::{CausticsText, Scene};
 use crate::shape::Sides;
 use crate::spectrum::Curve;
-use crate::trace::{LightPass, Transport, World, is_photon_target, seen_photons};
+use crate::trace::{LightPass, Transport, World, is_photon_target, piloted, seen_photons};
 
 /// Solid angle in steradians from which on rays meet a lamp often enough: there photons and chance cost the same (`benches/rooms.rs`).
 const SMALL: f64 = 0.5;
@@ -86,7 +86,7 @@ pub(super) fn light_pass(scene: &Scene<Curve>, untaught: &World) -> (Option<Ligh
         LightPass { photons, lights, map: None }
     };
     let asked = pass(1.0, small.iter().map(|light| light.0).collect());
-    let world = untaught.piloted(asked);
+    let world = piloted(untaught, asked);
     let share = seen_photons(&world);
     let (seen, unseen): (Vec<_>, Vec<_>) = small.into_iter().partition(|&(id, _)| share[id] > 0.0);
     let to = match targets.as_slice() {

@@ -16,7 +16,7 @@ use std::time::Duration;
 
 use crate::scene::Scene;
 use crate::spectrum::{Basis, Curve};
-use crate::trace::{LightPass, Method, Probe, Transport, World, probe};
+use crate::trace::{LightPass, Method, Probe, Transport, prepare_unguided, probe};
 use model::Model;
 
 pub use ladder::Rung;
@@ -65,7 +65,7 @@ pub fn plan(scene: &Scene<Curve>) -> Plan {
         light_pass: None,
         bright: None,
     };
-    let world = World::untaught(scene, method.clone());
+    let world = prepare_unguided(scene, method.clone());
     let (shown, why_shown) = caustics::light_pass(scene, &world);
     let (light_pass, why_gathered) = beyond::with_map(scene, &world, shown.as_ref());
     // Why nothing is shown matters only where nothing is gathered either.
@@ -142,7 +142,7 @@ fn cost(scene: &Scene<Curve>, method: &Method, probe: &Probe) -> (String, Durati
 /// What another model of color would cost.
 fn beside(scene: &Scene<Curve>, method: &Method, probe_of_method: &Probe, basis: Basis) -> String {
     let name = basis.name();
-    let other = probe(&World::untaught(scene, Method { basis, ..method.clone() }));
+    let other = probe(&prepare_unguided(scene, Method { basis, ..method.clone() }));
     let times = other.time.as_secs_f64() / probe_of_method.time.as_secs_f64();
     format!("a sample of {name} would take {times:.1} times as long")
 }

@@ -138,7 +138,7 @@ fn dispersion(scene: &Scene<Curve>) -> Option<Spread> {
         light_pass: None,
         bright: None,
     };
-    Some(spread(&World::unlit(scene, method)))
+    Some(spread(&World::new(scene, method)))
 }
 
 fn spoken(spread: &Spread, visible: bool, hero: bool) -> String {

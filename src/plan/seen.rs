@@ -55,7 +55,7 @@ impl<'a> Seen<'a> {
             bright: None,
         };
         let mut keeping = Keeping::new(scene, survey);
-        for of_pixel in routes(&World::unlit(scene, method)) {
+        for of_pixel in routes(&World::new(scene, method)) {
             keeping.keep(&of_pixel);
         }
         keeping.finish(survey, tolerance(scene))

@@ -3,7 +3,6 @@
 use super::bright::Aiming;
 use super::interaction::Interaction;
 use super::shading;
-use super::walker::Walker;
 use crate::material::{Branch, Material};
 use crate::spectrum::Table;
 
@@ -12,13 +11,11 @@ pub(super) fn may_aim(material: &Material<Table>) -> bool {
     matches!(material, Material::Diffuse(_) | Material::Plastic(_))
 }
 
-impl<const N: usize> Walker<'_, N> {
     /// The ways on from a surface whose bounces are aimed.
     ///
     /// Roulette is to end aimed paths as often as others: what their density takes from the weight is no measure of importance.
-    pub(super) fn scatter_aimed(&mut self, aiming: &Aiming, at: &Interaction<N>, u: [f64; 2]) {
+    pub(super) fn scatter_aimed<const N: usize>(aiming: &Aiming, at: &Interaction<N>, u: [f64; 2], branches: &mut Vec<Branch<N>>) {
         let Interaction { material, arrival, flat, .. } = at;
-        let branches = &mut self.branches;
         let divided = aiming.divided(u[0]);
         shading::scatter(material, arrival, *flat, [divided.err().unwrap_or(0.5), u[1]], branches);
         if let Ok(aimed) = divided {
@@ -44,4 +41,3 @@ impl<const N: usize> Walker<'_, N> {
             }
         }
     }
-}

@@ -146,7 +146,7 @@ impl<const N: usize> DirectLighting<'_, N> {
             arriving = arriving * share;
         }
         if let Some(material) = side.inside {
-            arriving = arriving * media::medium(world, material).transmission(arrival.draw, sample.distance);
+            arriving = arriving * media::medium(&world.scene, material).transmission(arrival.draw, sample.distance);
         }
         let factor = self.factor(shadow_ray, bounce_pdf);
         let reflected = self.path.throughput.scaled(factor).of(*bsdf_cos * arriving);

@@ -64,11 +64,10 @@ struct Chosen {
     change: f64,
 }
 
-impl<const N: usize> Photons<N> {
     /// What the sensor gets of the photons around a place that a path has reached, and how much of it polarization may change:
     /// an estimate by the photon that is looked at.
-    pub(super) fn gather(
-        &self,
+    pub(super) fn gather<const N: usize>(
+        photons: &Photons<N>,
         world: &World,
         path: &Path<N>,
         at: &Interaction<N>,
@@ -89,24 +88,24 @@ impl<const N: usize> Photons<N> {
         let change = |back: DVec3, on_its_way: Polarized| {
             path.polarized.brought((material, arrival), (back, on_its_way)).change()
         };
-        self.together.near(point.position, radius, &mut |position, photon| {
+        photons.together.near(point.position, radius, &mut |position, photon| {
             let Some(density) = place.density(path, position, photon) else { return };
             let Some((bsdf_cos, _)) = shading::evaluate(material, arrival, flat, photon.back) else { return };
             let parted = parted(photon.back);
             let carries = &photon.carries;
             let by_heroes = arrival.draw.hero_factor(parted).is_some();
-            let flux = if by_heroes { self.matching.onto_heroes(arrival.draw, carries.flux) } else { carries.flux };
+            let flux = if by_heroes { photons.matching.onto_heroes(arrival.draw, carries.flux) } else { carries.flux };
             let arriving = path.throughput.of(bsdf_cos * flux);
             let rgb = world.responses[carries.light].sensor(arrival.draw, arriving, parted);
             let rgb = rgb.map(|x| density * x);
             found.add(position, rgb, amount(world, rgb), || change(photon.back, photon.polarized));
         });
-        self.alone.near(point.position, radius, &mut |position, photon| {
+        photons.alone.near(point.position, radius, &mut |position, photon| {
             let (wavelength, parted) = (&photon.carries.wavelength, parted(photon.back));
             let by_heroes = arrival.draw.hero_factor(parted).is_some();
             let read = |lanes: Lanes<N>| match by_heroes {
-                true => self.matching.shared(arrival.draw, wavelength, lanes, parted),
-                false => self.matching.read(wavelength, lanes),
+                true => photons.matching.shared(arrival.draw, wavelength, lanes, parted),
+                false => photons.matching.read(wavelength, lanes),
             };
             // Most photons of wavelengths that parted meet others.
             if by_heroes && read(path.throughput.present()) == 0.0 {
@@ -121,7 +120,6 @@ impl<const N: usize> Photons<N> {
         let (light, moved) = place.seen_of(found, point, sampler, path.key);
         (light.map(|x| x / map.chance), moved / map.chance)
     }
-}
 
 impl Found {
     fn add(&mut self, position: DVec3, rgb: [f64; 3], weight: f64, change: impl FnOnce() -> f64) {

@@ -76,9 +76,9 @@ pub(super) fn arrival<'a, const N: usize>(
         uv: world.scene.objects[hit.object as usize].uv(&hit.crossing, point),
         draw,
         present,
-        incident: media::index(world, draw, sides[0]),
-        beyond: media::index(world, draw, sides[1]),
-        direction_indices: media::direction_indices(world, sides),
+        incident: media::index(&world.scene, draw, sides[0]),
+        beyond: media::index(&world.scene, draw, sides[1]),
+        direction_indices: media::direction_indices(&world.scene, sides),
         together: world.method.together,
     }
 }

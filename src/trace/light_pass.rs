@@ -8,15 +8,14 @@
 
 use rayon::prelude::*;
 
-use super::photon::{Landing, Splat};
-use super::render::TILE;
+use super::photon::{Landing, Splat, show as show_photon};
+use super::tile::TILE;
 use super::sending::{Sent, batches, send};
 use super::sensor::amount;
 use super::stats::Stats;
 use super::walker::Walker;
 use super::width::in_lanes;
 use super::{LightPass, World};
-use crate::light::LightId;
 use crate::math::Sampler;
 
 /// Batches whose splats are kept in memory at once.
@@ -37,8 +36,6 @@ const RAYS_OF_A_PLAN: f64 = (1 << 18) as f64;
 const SEEN_OF_A_PLAN: u64 = 1 << 16;
 /// Of each aim, photons that tell how many rays one follows.
 const FIRST: u64 = 256;
-/// Lights that are looked at one by one: of more, neighbors in the scene as one.
-const LIGHTS: usize = 16;
 
 /// What the light pass found.
 #[derive(Clone, Debug, Default)]
@@ -101,7 +98,7 @@ pub(super) fn splats<const N: usize>(
 }
 
 fn show_one<const N: usize>(walker: &Walker<N>, landing: &Landing<N>, sampler: &Sampler, splats: &mut Vec<Splat>) {
-    walker.show(landing, sampler, splats);
+    show_photon(walker, landing, sampler, splats);
 }
 
 /// What photons sent ahead found.
@@ -149,58 +146,32 @@ pub fn seen_photons(world: &World) -> Vec<f64> {
     shares
 }
 
-impl World {
-    /// The pass's lights, each for itself; of many, neighbors in the scene together.
-    pub(super) fn light_groups(&self) -> Vec<Vec<LightId>> {
-        let Some(pass) = &self.method.light_pass else { return Vec::new() };
-        let mut lights = pass.lights.clone();
-        lights.sort_unstable();
-        let of_group = lights.len().div_ceil(LIGHTS).max(1);
-        lights.chunks(of_group).map(<[LightId]>::to_vec).collect()
-    }
-
-    /// This world with a light pass and photons sent ahead, for a plan: no more of them for an image of many pixels than
+/// A world with another light pass and photons sent ahead, for a plan: no more of them for an image of many pixels than
     /// for one of few.
-    pub fn piloted(&self, light_pass: LightPass) -> Self {
-        let mut world = self.with_light_pass(Some(light_pass));
+pub fn piloted(world: &World, light_pass: LightPass) -> World {
+        let mut world = world.with_light_pass(Some(light_pass));
         let aims = world.aims.as_ref().map_or(1, |aims| aims.aims.len() as u64);
         let most = OF_A_PLAN / aims;
         if most >= TOO_FEW {
             let first = in_lanes!(&world.method.basis, N => send_ahead::<N>(&world, FIRST));
             let sent = first.found.iter().map(Vec::len).sum::<usize>() as f64;
             let by_rays = RAYS_OF_A_PLAN * sent / (first.rays as f64 * aims as f64);
-            world.learn_where_to_send((by_rays as u64).clamp(TOO_FEW, most));
+            learn_where_to_send(&mut world, (by_rays as u64).clamp(TOO_FEW, most));
         }
         world
     }
 
-    /// Sends photons ahead, at most so many of an aim, and the others where those were seen.
-    pub(super) fn learn_where_to_send(&mut self, most: u64) {
-        let Some(least) = self.aims.as_ref().and_then(|aims| aims.aims.iter().map(|aim| aim.photons / AHEAD).min())
+/// Sends photons ahead, at most so many of an aim, and the others where those were seen.
+pub(super) fn learn_where_to_send(world: &mut World, most: u64) {
+        let Some(least) = world.aims.as_ref().and_then(|aims| aims.aims.iter().map(|aim| aim.photons / AHEAD).min())
         else {
             return;
         };
         let ahead = least.min(ENOUGH).min(most);
         if ahead >= TOO_FEW {
-            let found = in_lanes!(&self.method.basis, N => send_ahead::<N>(self, ahead)).found;
-            if let Some(aims) = &mut self.aims {
+            let found = in_lanes!(&world.method.basis, N => send_ahead::<N>(world, ahead)).found;
+            if let Some(aims) = &mut world.aims {
                 aims.learn(&found);
             }
         }
     }
-
-    /// Whether photons are sent to an object.
-    pub(super) fn is_photon_target(&self, object: u32) -> bool {
-        self.aims.as_ref().is_some_and(|aims| aims.objects[object as usize])
-    }
-
-    /// Whether paths gather photons where the camera does not see them straight.
-    pub(super) fn has_map(&self) -> bool {
-        self.map_aims.is_some()
-    }
-
-    /// Whether a light sends photons.
-    pub(super) fn sends_photons(&self, light: LightId) -> bool {
-        self.aims.as_ref().is_some_and(|aims| aims.lights[light])
-    }
-}

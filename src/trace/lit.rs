@@ -101,7 +101,7 @@ impl Pair<'_> {
         let media = if scene.lights[self.light].is_sky() {
             Media::default()
         } else {
-            Media::around(self.colors.world, start.origin, start.direction)
+            Media::around(&self.colors.world.scene, start.origin, start.direction)
         };
         let walk = |lane: usize, ray: Ray| self.colors.walk(lane, (ray, media), sampler, Way::Brighter);
         let (first, second) = (walk(0, start), walk(1, start));

@@ -89,7 +89,7 @@ impl<const N: usize> Path<N> {
     pub(super) fn from_camera(world: &World, draw: &Draw<N>, ray: Ray) -> Self {
         let camera = &world.scene.camera;
         let media = if world.has_media && camera.starts_away() {
-            world.camera_media.after_walk(world, camera.position(), ray.origin)
+            world.camera_media.after_walk(&world.scene, camera.position(), ray.origin)
         } else {
             world.camera_media
         };
@@ -135,8 +135,8 @@ impl<const N: usize> Path<N> {
     /// Follows the ray along a distance, on which the medium around it absorbs.
     pub(super) fn advance(&mut self, world: &World, draw: &Draw<N>, distance: f64) {
         self.length += distance;
-        if let Some(material) = self.media.inside(world) {
-            let transmission = media::medium(world, material).transmission(draw, distance);
+        if let Some(material) = self.media.inside(&world.scene) {
+            let transmission = media::medium(&world.scene, material).transmission(draw, distance);
             self.throughput = self.throughput.through(transmission);
         }
     }

@@ -1,6 +1,7 @@
 //! Paths from the camera back to the lights.
 
-use super::aimed::may_aim;
+use super::aimed::{may_aim, scatter_aimed};
+use super::gather::gather;
 use super::direct::{DirectLighting, weight_of_meeting};
 use super::interaction::{Interaction, Meeting};
 use super::merge::Photons;
@@ -195,7 +196,7 @@ impl<'a, const N: usize> PathTracer<'a, N> {
         }
         self.walker.branches.clear();
         match &aiming {
-            Some(aiming) => self.walker.scatter_aimed(aiming, &at, [u[2], u[3]]),
+            Some(aiming) => scatter_aimed(aiming, &at, [u[2], u[3]], &mut self.walker.branches),
             None => shading::scatter(material, &at.arrival, at.flat, [u[2], u[3]], &mut self.walker.branches),
         }
         if !goes_on {
@@ -208,7 +209,7 @@ impl<'a, const N: usize> PathTracer<'a, N> {
     /// Hands what photons bring to a place that the path has reached by way of others to the sensor.
     fn gather_photons(&mut self, path: &Path<N>, at: &Interaction<N>, sampler: &Sampler) {
         if let Some(photons) = self.photons {
-            let (rgb, moved) = photons.gather(self.walker.world, path, at, sampler);
+            let (rgb, moved) = gather(photons, self.walker.world, path, at, sampler);
             self.sensor.receive(Contribution { light: None, found: Found::Gathered, rgb, moved });
         }
         if let Some(observer) = self.sensor.observer {

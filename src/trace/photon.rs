@@ -46,23 +46,22 @@ impl<const N: usize> Landing<'_, N> {
     }
 }
 
-impl<const N: usize> Walker<'_, N> {
     /// Follows a photon over smooth surfaces; `land` is told where it lands on others.
     ///
     /// The first surface must be one that photons are sent to: paths by way of others are left to the camera's rays.
     /// Throughput is followed as if the light were the viewer; flux is what is left of it without the factor of radiance
     /// between media.
-    pub(super) fn photon(
-        &mut self,
+    pub(super) fn follow_photon<const N: usize>(
+        walker: &mut Walker<N>,
         emitted: &LeSample,
         light: LightId,
         media: Media,
         draw: &Draw<N>,
         sampler: &Sampler,
-        land: &mut impl FnMut(&Self, &Landing<N>),
+        land: &mut impl FnMut(&Walker<N>, &Landing<N>),
     ) {
-        let world = self.world;
-        self.pending.push(Path {
+        let world = walker.world;
+        walker.pending.push(Path {
             ray: emitted.ray,
             throughput: Throughput::starting(draw.start()),
             eta_scale: 1.0,
@@ -76,16 +75,16 @@ impl<const N: usize> Walker<'_, N> {
             scatter: None,
             polarized: Polarized::NOT,
         });
-        while let Some(mut path) = self.pending.pop() {
-            if path.vertices >= self.transport.last_vertex() {
+        while let Some(mut path) = walker.pending.pop() {
+            if path.vertices >= walker.transport.last_vertex() {
                 continue;
             }
-            let Some(meeting) = self.meet(&mut path, draw) else { continue };
+            let Some(meeting) = walker.meet(&mut path, draw) else { continue };
             if let Some(straight) = &meeting.straight {
                 let (throughput, key) = (path.throughput.through(straight.share()), path.key.child(BEYOND));
                 let all = throughput == path.throughput;
                 let polarized = path.polarized.after(straight.polarization);
-                self.pending.push(Path { throughput, key, polarized, ..path.passed(&meeting.point) });
+                walker.pending.push(Path { throughput, key, polarized, ..path.passed(&meeting.point) });
                 if all {
                     continue;
                 }
@@ -94,9 +93,9 @@ impl<const N: usize> Walker<'_, N> {
                 continue;
             }
             path.vertices += 1;
-            let boundary = self.boundary(&path, &meeting);
+            let boundary = walker.boundary(&path, &meeting);
             if boundary.here == boundary.beyond && world.scene.material_of(meeting.hit.object).medium().is_some() {
-                self.pass_hidden(&path, &meeting, &boundary);
+                walker.pass_hidden(&path, &meeting, &boundary);
                 continue;
             }
             let at = Interaction::new(world, draw, &path, &meeting, boundary);
@@ -104,41 +103,41 @@ impl<const N: usize> Walker<'_, N> {
             let allowed = path.vertices <= world.method.max_bounces
                 && !(at.lobes.is_diffuse() && world.method.diffuse_bounces == 0);
             if at.lobes.is_wide() && allowed && path.vertices > 1 {
-                land(self, &Landing { path: &path, at: &at, light, factor: emitted.factor });
+                land(walker, &Landing { path: &path, at: &at, light, factor: emitted.factor });
             }
-            self.bounce(&path, at, sampler);
+            bounce(walker, &path, at, sampler);
         }
     }
 
     /// Lets a photon go on over a smooth surface.
-    fn bounce(&mut self, path: &Path<N>, at: Interaction<N>, sampler: &Sampler) {
+    fn bounce<const N: usize>(walker: &mut Walker<N>, path: &Path<N>, at: Interaction<N>, sampler: &Sampler) {
         let plain = shading::plain_normal(at.point, at.arrival.wo);
         let at = at.by_normal(plain);
         let Interaction { material, point, arrival, .. } = &at;
         let goes_on = at.lobes.has_delta() && arrival.wo.dot(arrival.normal) > 0.0;
-        if !goes_on || path.vertices >= self.world.method.max_bounces {
+        if !goes_on || path.vertices >= walker.world.method.max_bounces {
             return;
         }
-        self.branches.clear();
+        walker.branches.clear();
         let u = sampler.four_plain(path.key, SCATTER);
-        material.scatter(arrival, [u[0], u[1]], &mut self.branches);
+        material.scatter(arrival, [u[0], u[1]], &mut walker.branches);
         let (back, forward) = (arrival.wo, arrival.forward());
-        self.branches
+        walker.branches
             .retain(|branch| branch.pdf.is_none() && shading::is_plain(point, branch.wi, back, branch.crosses));
-        for branch in &mut self.branches {
+        for branch in &mut walker.branches {
             branch.share = branch.share * shading::forward_factor(point, branch.wi, back) as f32;
             if let (Some(forward), true) = (&forward, branch.crosses) {
                 branch.share = branch.share * *forward;
             }
         }
-        self.follow(&mut Departure::new(self.world, path, &at), sampler);
+        walker.follow(&mut Departure::new(walker.world, path, &at), sampler);
     }
 
     /// Adds what the camera sees of a photon.
-    pub(super) fn show(&self, landing: &Landing<N>, sampler: &Sampler, splats: &mut Vec<Splat>) {
+    pub(super) fn show<const N: usize>(walker: &Walker<N>, landing: &Landing<N>, sampler: &Sampler, splats: &mut Vec<Splat>) {
         let Landing { path, at, light, factor } = landing;
         let Interaction { arrival, flat, point, material, .. } = at;
-        let world = self.world;
+        let world = walker.world;
         let (camera, film) = (&world.scene.camera, world.scene.film);
         let u = if camera.has_lens() { sampler.four_plain(path.key, LENS) } else { [0.5; 4] };
         let Some(seen) = camera.see(point.position, [u[0], u[1]]) else { return };
@@ -166,18 +165,18 @@ impl<const N: usize> Walker<'_, N> {
         let (mut shone, mut polarized) = (landing.shone(world), Polarized::NOT);
         if world.has_see_through() {
             let closed = |object| !world.is_see_through(object);
-            if world.scene.is_hidden_by(&ray, distance, None, &self.last_occluder, closed) {
+            if world.scene.is_hidden_by(&ray, distance, None, &walker.last_occluder, closed) {
                 return;
             }
             match straight::transmittance(world, arrival.draw, &ray, distance, inside) {
                 Some((share, of_panes)) => (shone, polarized) = (shone * share, of_panes),
                 None => return,
             }
-        } else if world.scene.is_hidden(&ray, distance, None, &self.last_occluder) {
+        } else if world.scene.is_hidden(&ray, distance, None, &walker.last_occluder) {
             return;
         }
         if let Some(material) = inside {
-            shone = shone * media::medium(world, material).transmission(arrival.draw, distance);
+            shone = shone * media::medium(&world.scene, material).transmission(arrival.draw, distance);
         }
         let arriving = path.throughput.scaled(1.0 / path.eta_scale).of(bsdf_cos * shone);
         let rgb = world.responses[*light].sensor(arrival.draw, arriving, parted);
@@ -198,7 +197,6 @@ impl<const N: usize> Walker<'_, N> {
             }
         }
     }
-}
 
 /// The branch of what passes holes, beyond those that a material may have.
 const BEYOND: usize = 64;

@@ -1,23 +1,19 @@
 //! An image in the making: pass after pass over its tiles.
 
 use std::borrow::Borrow;
-use std::ops::Range;
 
 use rayon::prelude::*;
 
 use super::World;
 use super::light_pass::{self, Shown};
-use super::merge::{self, Photons};
-use super::path_tracer::PathTracer;
+use super::merge;
 use super::photon_targets::PhotonTargets;
 use super::sensor::amount;
 use super::stats::Stats;
+use super::tile::{TILE, Tile};
 use super::width::in_lanes;
-use crate::film::{Film, PassSum, Pixel, PixelSum, Window};
-use crate::math::Sampler;
+use crate::film::{Film, Pixel};
 
-/// Side of a tile in pixels.
-pub(super) const TILE: u32 = 16;
 /// Samples of each pixel in the first pass, where no photons are gathered; every other pass takes as many as were taken before.
 const FIRST_PASS: u32 = 16;
 
@@ -213,50 +209,3 @@ impl<W: Borrow<World>> Rendering<W> {
 }
 
 const BLANK: Pixel = Pixel { rgb: [0.0; 3], alpha: 0.0, depth: 0.0, samples: 0.0 };
-
-/// A small part of the image.
-struct Tile {
-    /// Its first column and row in the window.
-    corner: [u32; 2],
-    width: u32,
-    height: u32,
-    /// Sums of its pixels, row by row.
-    sums: Vec<PixelSum>,
-    stats: Stats,
-    first_non_finite: Option<[u32; 3]>,
-}
-
-impl Tile {
-    fn new(window: Window, corner: [u32; 2]) -> Self {
-        let [width, height] = [window.width - corner[0], window.height - corner[1]].map(|left| left.min(TILE));
-        let sums = vec![PixelSum::default(); width as usize * height as usize];
-        Self { corner, width, height, sums, stats: Stats::default(), first_non_finite: None }
-    }
-
-    /// The number of one of its pixels in the window.
-    fn number(&self, window: Window, place: u32) -> usize {
-        let [x, y] = [self.corner[0] + place % self.width, self.corner[1] + place / self.width];
-        y as usize * window.width as usize + x as usize
-    }
-
-    /// Takes samples of all pixels.
-    fn take<const N: usize>(&mut self, world: &World, photons: Option<&Photons<N>>, numbers: Range<u32>) {
-        let window = world.scene.film.window();
-        let mut tracer = PathTracer::<N>::new(world).with_photons(photons);
-        for (place, sum) in (0..).zip(&mut self.sums) {
-            // Random numbers and rays belong to the full image's pixel, whatever part of it is made.
-            let x = window.left + self.corner[0] + place % self.width;
-            let y = window.top + self.corner[1] + place / self.width;
-            let mut pass = PassSum::default();
-            for number in numbers.clone() {
-                let sampler = Sampler::new(world.method.seed, [x, y], number);
-                if !pass.add(&tracer.sample(&sampler, [x, y])) {
-                    self.stats.non_finite += 1;
-                    self.first_non_finite.get_or_insert([x, y, number]);
-                }
-            }
-            sum.add(pass);
-        }
-        self.stats += tracer.walker.stats;
-    }
-}

@@ -3,8 +3,7 @@
 use super::World;
 use super::media;
 use super::path::Path;
-use super::route_end::{At, Walk};
-use super::routes::{ROUTES_NM, Route, Step, Way};
+use super::route::{At, ROUTES_NM, Route, Step, Walk, Way};
 use super::shading;
 use super::straight;
 use crate::light::{Light, LightId};
@@ -106,7 +105,7 @@ impl<'a> Walker<'a> {
                 self.mirrored(&at, facet, Lanes::ONE, 1.0);
             }
             Material::Thin(pane) => {
-                let inside = media::index(world, &self.draw, walk.media.inside(world));
+                let inside = media::index(&world.scene, &self.draw, walk.media.inside(&world.scene));
                 let index = self.draw.read_exact(&pane.index);
                 let cos = (-walk.ray.direction).dot(normal);
                 let r = if index[1] == inside[1] { 0.0 } else { Interface::new(inside[1], index[1], cos).reflectance };
@@ -146,8 +145,8 @@ impl<'a> Walker<'a> {
 
     /// The way after a distance through the body around it.
     fn inside(&self, walk: Walk, distance: f64) -> Walk {
-        let Some(material) = walk.media.inside(self.world) else { return walk };
-        let transmission = media::medium(self.world, material).transmission(&self.draw, distance);
+        let Some(material) = walk.media.inside(&self.world.scene) else { return walk };
+        let transmission = media::medium(&self.world.scene, material).transmission(&self.draw, distance);
         if transmission == Lanes::ONE {
             return walk;
         }
@@ -156,7 +155,7 @@ impl<'a> Walker<'a> {
 
     /// Whether a hole lets the way pass, by chance.
     fn passes(&self, walk: &Walk, hit: &Hit, point: &SurfacePoint, u: f64) -> bool {
-        let (draw, media) = (&self.draw, walk.media.inside(self.world));
+        let (draw, media) = (&self.draw, walk.media.inside(&self.world.scene));
         self.world.is_see_through(hit.object)
             && straight::straight_at(self.world, draw, (&walk.ray, Lanes::ONE), media, (hit, point))
                 .is_some_and(|straight| u < f64::from(straight.holes[1]))
@@ -197,10 +196,10 @@ impl<'a> Walker<'a> {
     fn glass(&mut self, at: &At, [reflectance, transmittance]: [&Table; 2], facets: Option<&Facets>) {
         let (world, walk) = (self.world, at.walk);
         let front = at.point.normal.dot(walk.ray.direction) < 0.0;
-        let Some(boundary) = walk.media.boundary(world, at.material, front) else {
+        let Some(boundary) = walk.media.boundary(&world.scene, at.material, front) else {
             return self.go_on(at, walk.clone(), walk.ray.direction, 0);
         };
-        let [n1, n2] = [boundary.here, boundary.beyond].map(|inside| media::index(world, &self.draw, inside)[1]);
+        let [n1, n2] = [boundary.here, boundary.beyond].map(|inside| media::index(&world.scene, &self.draw, inside)[1]);
         let crossed = Walk { media: boundary.crossed, ..walk.clone() };
         if boundary.here == boundary.beyond {
             return self.go_on(at, crossed, walk.ray.direction, 0);
@@ -264,7 +263,7 @@ impl<'a> Walker<'a> {
                 let step = Step { material: object.material, part, way: Way::Crossed };
                 let tint = self.draw.read_at(transmittance, uv);
                 let enters = point.normal.dot(walk.ray.direction) < 0.0;
-                let media = walk.media.at_surface(world, object.material, enters).0.crossed;
+                let media = walk.media.at_surface(&world.scene, object.material, enters).0.crossed;
                 walk = Walk { media, ..walk.after(Some(step), tint, 1.0) };
             }
             walk.ray = point.leave(walk.ray.direction);

@@ -5,7 +5,7 @@
 //! the number of pixels. Amanatides 1984, *Ray Tracing with Cones*, has beams of rays; Heckbert & Hanrahan 1984, *Beam Tracing
 //! Polygonal Objects*.
 
-use super::spread::is_dark;
+use super::apart::{is_dark, pixels_apart as colors_apart, share_apart};
 use super::targets::{SEEN_PIXELS, Targets};
 use super::walk::{Colors, Walk, Way};
 use crate::math::{DVec2, DVec3, Sampler};
@@ -134,7 +134,7 @@ fn look(colors: &Colors, targets: &Targets, cell: Cell, reached: &mut Vec<Reache
     };
     let off = first.weight == 0.0 || !forked;
     let dispersive = if first.dispersive && !off { cell.size.x * cell.size.y * cell.count } else { 0.0 };
-    let apart = if dispersive > 0.0 { colors.pixels_apart(middle, first, &sampler, cell.way) } else { None };
+    let apart = if dispersive > 0.0 { colors_apart(colors, middle, first, &sampler, cell.way) } else { None };
     let width = colors.world.scene.camera.pixel_angle() * cell.size.length();
     let dark = first.is_out() && is_dark(colors.world);
     Look { cell, dispersive, weight: first.weight, apart, dark, touched: targets.touched(&walks, width) }
@@ -148,7 +148,7 @@ fn look_closer(colors: &Colors, looks: &mut [Look]) {
     let step = untold.len().div_ceil(CLOSER).max(1);
     for look in untold.into_iter().step_by(step) {
         let (middle, sampler) = look.cell.middle(colors);
-        let share = colors.share_apart(middle, &sampler, look.cell.way);
+        let share = share_apart(colors, middle, &sampler, look.cell.way);
         look.apart = Some(if share >= SEEN_SHARE { SEEN_PIXELS } else { 0.0 });
         if share >= SEEN_SHARE {
             // It was all of a pixel.

@@ -36,7 +36,7 @@ fn through_surface<const N: usize>(
     point: &SurfacePoint,
 ) -> Option<Straight<N>> {
     let present = path.throughput.present();
-    let straight = straight_at(world, draw, (&path.ray, present), path.media.inside(world), (hit, point))?;
+    let straight = straight_at(world, draw, (&path.ray, present), path.media.inside(&world.scene), (hit, point))?;
     (!(straight.share() * present).is_zero()).then_some(straight)
 }
 

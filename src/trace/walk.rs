@@ -177,7 +177,7 @@ impl<'a> Colors<'a> {
         let (world, draw, wo) = (self.world, &self.draw, -ray.direction);
         let [_, normal] = shading::normals(point, wo);
         if world.is_see_through(hit.object) {
-            let inside = walk.media.inside(world);
+            let inside = walk.media.inside(&world.scene);
             let straight = straight::straight_at(world, draw, (ray, draw.start()), inside, (hit, point));
             if straight.is_some_and(|straight| walk.takes(f64::from(straight.holes[0]), way)) {
                 return Next::Toward(ray.direction);
@@ -187,10 +187,10 @@ impl<'a> Colors<'a> {
             Material::Dielectric(glass) => {
                 let front = point.normal.dot(ray.direction) < 0.0;
                 let material = world.scene.objects[hit.object as usize].material;
-                let Some(boundary) = walk.media.boundary(world, material, front) else {
+                let Some(boundary) = walk.media.boundary(&world.scene, material, front) else {
                     return Next::Toward(ray.direction);
                 };
-                let indices = [boundary.here, boundary.beyond].map(|inside| media::index(world, draw, inside));
+                let indices = [boundary.here, boundary.beyond].map(|inside| media::index(&world.scene, draw, inside));
                 walk.dispersive |= indices.iter().any(|index| index[0] != index[1]);
                 let [n1, n2] = indices.map(|index| index[lane]);
                 // The same facet for both colors.
@@ -219,7 +219,7 @@ impl<'a> Colors<'a> {
             Material::Mirror(_) => Next::Toward(reflect(wo, normal)),
             Material::Thin(pane) => {
                 let index: [f64; 4] = draw.read_exact(&pane.index);
-                let here = media::index(world, draw, walk.media.inside(world))[0];
+                let here = media::index(&world.scene, draw, walk.media.inside(&world.scene))[0];
                 let one = Interface::new(here, index[0], wo.dot(normal)).reflectance;
                 // Of both surfaces, without absorption (Born & Wolf 1999, section 7.6).
                 let mirrored = if index[0] == here { 0.0 } else { 2.0 * one / (1.0 + one) };

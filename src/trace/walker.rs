@@ -58,7 +58,7 @@ impl<'a, const N: usize> Walker<'a, N> {
     pub(super) fn boundary(&mut self, path: &Path<N>, meeting: &Meeting<N>) -> Boundary {
         let enters = meeting.point.normal.dot(path.ray.direction) < 0.0;
         let material = self.world.scene.objects[meeting.hit.object as usize].material;
-        let (boundary, fits) = path.media.at_surface(self.world, material, enters);
+        let (boundary, fits) = path.media.at_surface(&self.world.scene, material, enters);
         self.stats.unmatched += u64::from(!fits);
         boundary
     }
