@@ -8,7 +8,7 @@ use crate::error::{Error, Result};
 use crate::film::{Fact, Film, Pixel, Provenance, View, Window, write_exr, write_png};
 use crate::plan::{Plan, plan};
 use crate::scene::{Projection, Scene};
-use crate::trace::{Report, World, prepare, self};
+use crate::trace::{self, Report, World, prepare};
 
 /// What replaces the scene's own settings. By default nothing does.
 ///
@@ -165,7 +165,7 @@ impl Rendering {
     pub fn image(&self) -> Image {
         let (film, report) = (self.passes.film(), self.passes.report());
         let provenance = provenance(&self.origin, &self.plan, self.passes.samples(), &report);
-        Image { film, report, because: self.plan.because.clone(), view: self.view.clone(), provenance }
+        Image { film, report, because: self.plan.because.clone(), view: self.view, provenance }
     }
 
     /// Renders all passes that are left; `progress` as of [`advance`](Self::advance).

@@ -9,7 +9,7 @@ use super::polarization::Polarized;
 use super::sensor::{Contribution, Found, Sensor, amount};
 use super::straight;
 use super::{World, media, shading};
-use crate::light::{LightId, LightSample};
+use crate::light::{LightId, LightSample, SampledLight};
 use crate::material::Lobes;
 use crate::math::{DVec3, Ray, Sampler};
 use crate::scene::MaterialId;
@@ -90,9 +90,9 @@ impl<const N: usize> DirectLighting<'_, N> {
 
     fn gather_side(&self, side: &Side, sampler: &Sampler, sensor: &mut Sensor) {
         let (lights, key) = (&self.world.scene.lights, self.path.key);
-        let mut take = |light: LightId, probability: f64, [u, v]: [f64; 2]| {
-            let u = if lights[light].has_parts() { finer(u, sampler.four_plain(key, MORE_DIGITS)[1]) } else { u };
-            let shadow_ray = self.shadow_ray(side, (light, probability), [u, v]);
+        let mut take = |drawn: SampledLight, [u, v]: [f64; 2]| {
+            let u = if lights[drawn.light].has_parts() { finer(u, sampler.four_plain(key, MORE_DIGITS)[1]) } else { u };
+            let shadow_ray = self.shadow_ray(side, drawn, [u, v]);
             if let Some(contribution) = shadow_ray.and_then(|ray| self.trace(side, &ray)) {
                 sensor.receive(contribution);
             }
@@ -106,27 +106,33 @@ impl<const N: usize> DirectLighting<'_, N> {
                         if number % 2 == 0 { [u[0], u[1]] } else { [u[2], u[3]] }
                     }
                 };
-                take(light, 1.0, u);
+                take(SampledLight { light, probability: 1.0 }, u);
             }
         } else {
             let u = finer(self.u[3], sampler.four_plain(key, MORE_DIGITS)[0]);
             if let Some(drawn) = self.world.light_sampler.sample(self.at.point.position, side.normal, u) {
-                take(drawn.light, drawn.probability, [self.u[0], self.u[1]]);
+                take(drawn, [self.u[0], self.u[1]]);
             }
         }
     }
 
     /// A ray to a light that was chosen with a probability; none where the sensor gets nothing of it.
-    fn shadow_ray(&self, side: &Side, (id, chosen): (LightId, f64), u: [f64; 2]) -> Option<ShadowRay<N>> {
+    fn shadow_ray(&self, side: &Side, drawn: SampledLight, u: [f64; 2]) -> Option<ShadowRay<N>> {
         let (normal, arrival) = (side.normal, &self.at.arrival);
-        let sample = self.world.scene.lights[id].sample_li(self.at.point, normal, u)?;
+        let sample = self.world.scene.lights[drawn.light].sample_li(self.at.point, normal, u)?;
         let wi = sample.ray.direction;
         if side.chance.is_some() && wi.dot(normal) <= 0.0 {
             return None;
         }
         let flat = if normal.dot(arrival.wo) < 0.0 { -normal } else { normal };
         let (bsdf_cos, bsdf_pdf) = shading::evaluate(self.at.material, arrival, flat, wi)?;
-        let ray = ShadowRay { light: id, sample, probability: chosen * side.chance.unwrap_or(1.0), bsdf_cos, bsdf_pdf };
+        let ray = ShadowRay {
+            light: drawn.light,
+            sample,
+            probability: drawn.probability * side.chance.unwrap_or(1.0),
+            bsdf_cos,
+            bsdf_pdf,
+        };
         self.factor(&ray, bsdf_pdf).is_finite().then_some(ray)
     }
 
@@ -154,7 +160,7 @@ impl<const N: usize> DirectLighting<'_, N> {
         let mut moved = 0.0;
         if self.path.polarized.is_any() || world.has_see_through() {
             let on_its_way = straight.map_or(Polarized::NOT, |(_, polarized)| polarized);
-            let change = self.path.polarized.brought((self.at.material, arrival), (wi, on_its_way)).change();
+            let change = self.path.polarized.brought(self.at.material, arrival, wi, on_its_way).change();
             moved = if change == 0.0 { 0.0 } else { change * amount(world, rgb) };
         }
         Some(Contribution { light: Some(*light), found: Found::Sampled, rgb, moved })

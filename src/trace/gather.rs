@@ -64,62 +64,61 @@ struct Chosen {
     change: f64,
 }
 
-    /// What the sensor gets of the photons around a place that a path has reached, and how much of it polarization may change:
-    /// an estimate by the photon that is looked at.
-    pub(super) fn gather<const N: usize>(
-        photons: &Photons<N>,
-        world: &World,
-        path: &Path<N>,
-        at: &Interaction<N>,
-        sampler: &Sampler,
-    ) -> ([f64; 3], f64) {
-        let Interaction { point, flat, material, arrival, parts, .. } = at;
-        let (flat, parts) = (*flat, *parts);
-        let Some(map) = world.method.light_pass.as_ref().and_then(|pass| pass.map) else { return ([0.0; 3], 0.0) };
-        let [u, whether, ..] = sampler.four_plain(path.key.child(CHOICE), 0);
-        if whether >= map.chance {
-            return ([0.0; 3], 0.0);
-        }
-        let radius = map.radius * world.scene.camera.pixel_width(path.length);
-        let front = flat.dot(point.normal) > 0.0;
-        let place = Place { world, position: point.position, flat, front, radius };
-        let mut found = Found { sum: [0.0; 3], weight: 0.0, drawn: None, u };
-        let parted = |back: DVec3| path.parted || (parts && back.dot(flat) < 0.0);
-        let change = |back: DVec3, on_its_way: Polarized| {
-            path.polarized.brought((material, arrival), (back, on_its_way)).change()
-        };
-        photons.together.near(point.position, radius, &mut |position, photon| {
-            let Some(density) = place.density(path, position, photon) else { return };
-            let Some((bsdf_cos, _)) = shading::evaluate(material, arrival, flat, photon.back) else { return };
-            let parted = parted(photon.back);
-            let carries = &photon.carries;
-            let by_heroes = arrival.draw.hero_factor(parted).is_some();
-            let flux = if by_heroes { photons.matching.onto_heroes(arrival.draw, carries.flux) } else { carries.flux };
-            let arriving = path.throughput.of(bsdf_cos * flux);
-            let rgb = world.responses[carries.light].sensor(arrival.draw, arriving, parted);
-            let rgb = rgb.map(|x| density * x);
-            found.add(position, rgb, amount(world, rgb), || change(photon.back, photon.polarized));
-        });
-        photons.alone.near(point.position, radius, &mut |position, photon| {
-            let (wavelength, parted) = (&photon.carries.wavelength, parted(photon.back));
-            let by_heroes = arrival.draw.hero_factor(parted).is_some();
-            let read = |lanes: Lanes<N>| match by_heroes {
-                true => photons.matching.shared(arrival.draw, wavelength, lanes, parted),
-                false => photons.matching.read(wavelength, lanes),
-            };
-            // Most photons of wavelengths that parted meet others.
-            if by_heroes && read(path.throughput.present()) == 0.0 {
-                return;
-            }
-            let Some(density) = place.density(path, position, photon) else { return };
-            let Some((bsdf_cos, _)) = shading::evaluate(material, arrival, flat, photon.back) else { return };
-            let share = density * read(path.throughput.of(bsdf_cos));
-            let rgb = photon.carries.color.map(|x| share * x);
-            found.add(position, rgb, amount(world, rgb), || change(photon.back, photon.polarized));
-        });
-        let (light, moved) = place.seen_of(found, point, sampler, path.key);
-        (light.map(|x| x / map.chance), moved / map.chance)
+/// What the sensor gets of the photons around a place that a path has reached, and how much of it polarization may change:
+/// an estimate by the photon that is looked at.
+pub(super) fn gather<const N: usize>(
+    photons: &Photons<N>,
+    world: &World,
+    path: &Path<N>,
+    at: &Interaction<N>,
+    sampler: &Sampler,
+) -> ([f64; 3], f64) {
+    let Interaction { point, flat, material, arrival, parts, .. } = at;
+    let (flat, parts) = (*flat, *parts);
+    let Some(map) = world.method.light_pass.as_ref().and_then(|pass| pass.map) else { return ([0.0; 3], 0.0) };
+    let [u, whether, ..] = sampler.four_plain(path.key.child(CHOICE), 0);
+    if whether >= map.chance {
+        return ([0.0; 3], 0.0);
     }
+    let radius = map.radius * world.scene.camera.pixel_width(path.length);
+    let front = flat.dot(point.normal) > 0.0;
+    let place = Place { world, position: point.position, flat, front, radius };
+    let mut found = Found { sum: [0.0; 3], weight: 0.0, drawn: None, u };
+    let parted = |back: DVec3| path.parted || (parts && back.dot(flat) < 0.0);
+    let change =
+        |back: DVec3, on_its_way: Polarized| path.polarized.brought(material, arrival, back, on_its_way).change();
+    photons.together.near(point.position, radius, &mut |position, photon| {
+        let Some(density) = place.density(path, position, photon) else { return };
+        let Some((bsdf_cos, _)) = shading::evaluate(material, arrival, flat, photon.back) else { return };
+        let parted = parted(photon.back);
+        let carries = &photon.carries;
+        let by_heroes = arrival.draw.hero_factor(parted).is_some();
+        let flux = if by_heroes { photons.matching.onto_heroes(arrival.draw, carries.flux) } else { carries.flux };
+        let arriving = path.throughput.of(bsdf_cos * flux);
+        let rgb = world.responses[carries.light].sensor(arrival.draw, arriving, parted);
+        let rgb = rgb.map(|x| density * x);
+        found.add(position, rgb, amount(world, rgb), || change(photon.back, photon.polarized));
+    });
+    photons.alone.near(point.position, radius, &mut |position, photon| {
+        let (wavelength, parted) = (&photon.carries.wavelength, parted(photon.back));
+        let by_heroes = arrival.draw.hero_factor(parted).is_some();
+        let read = |lanes: Lanes<N>| match by_heroes {
+            true => photons.matching.shared(arrival.draw, wavelength, lanes, parted),
+            false => photons.matching.read(wavelength, lanes),
+        };
+        // Most photons of wavelengths that parted meet others.
+        if by_heroes && read(path.throughput.present()) == 0.0 {
+            return;
+        }
+        let Some(density) = place.density(path, position, photon) else { return };
+        let Some((bsdf_cos, _)) = shading::evaluate(material, arrival, flat, photon.back) else { return };
+        let share = density * read(path.throughput.of(bsdf_cos));
+        let rgb = photon.carries.color.map(|x| share * x);
+        found.add(position, rgb, amount(world, rgb), || change(photon.back, photon.polarized));
+    });
+    let (light, moved) = place.seen_of(found, point, sampler, path.key);
+    (light.map(|x| x / map.chance), moved / map.chance)
+}
 
 impl Found {
     fn add(&mut self, position: DVec3, rgb: [f64; 3], weight: f64, change: impl FnOnce() -> f64) {

@@ -9,10 +9,10 @@
 use rayon::prelude::*;
 
 use super::photon::{Landing, Splat, show as show_photon};
-use super::tile::TILE;
 use super::sending::{Sent, batches, send};
 use super::sensor::amount;
 use super::stats::Stats;
+use super::tile::TILE;
 use super::walker::Walker;
 use super::width::in_lanes;
 use super::{LightPass, World};
@@ -147,31 +147,30 @@ pub fn seen_photons(world: &World) -> Vec<f64> {
 }
 
 /// A world with another light pass and photons sent ahead, for a plan: no more of them for an image of many pixels than
-    /// for one of few.
+/// for one of few.
 pub fn piloted(world: &World, light_pass: LightPass) -> World {
-        let mut world = world.with_light_pass(Some(light_pass));
-        let aims = world.aims.as_ref().map_or(1, |aims| aims.aims.len() as u64);
-        let most = OF_A_PLAN / aims;
-        if most >= TOO_FEW {
-            let first = in_lanes!(&world.method.basis, N => send_ahead::<N>(&world, FIRST));
-            let sent = first.found.iter().map(Vec::len).sum::<usize>() as f64;
-            let by_rays = RAYS_OF_A_PLAN * sent / (first.rays as f64 * aims as f64);
-            learn_where_to_send(&mut world, (by_rays as u64).clamp(TOO_FEW, most));
-        }
-        world
+    let mut world = world.with_light_pass(Some(light_pass));
+    let aims = world.aims.as_ref().map_or(1, |aims| aims.aims.len() as u64);
+    let most = OF_A_PLAN / aims;
+    if most >= TOO_FEW {
+        let first = in_lanes!(&world.method.basis, N => send_ahead::<N>(&world, FIRST));
+        let sent = first.found.iter().map(Vec::len).sum::<usize>() as f64;
+        let by_rays = RAYS_OF_A_PLAN * sent / (first.rays as f64 * aims as f64);
+        learn_where_to_send(&mut world, (by_rays as u64).clamp(TOO_FEW, most));
     }
+    world
+}
 
 /// Sends photons ahead, at most so many of an aim, and the others where those were seen.
 pub(super) fn learn_where_to_send(world: &mut World, most: u64) {
-        let Some(least) = world.aims.as_ref().and_then(|aims| aims.aims.iter().map(|aim| aim.photons / AHEAD).min())
-        else {
-            return;
-        };
-        let ahead = least.min(ENOUGH).min(most);
-        if ahead >= TOO_FEW {
-            let found = in_lanes!(&world.method.basis, N => send_ahead::<N>(world, ahead)).found;
-            if let Some(aims) = &mut world.aims {
-                aims.learn(&found);
-            }
+    let Some(least) = world.aims.as_ref().and_then(|aims| aims.aims.iter().map(|aim| aim.photons / AHEAD).min()) else {
+        return;
+    };
+    let ahead = least.min(ENOUGH).min(most);
+    if ahead >= TOO_FEW {
+        let found = in_lanes!(&world.method.basis, N => send_ahead::<N>(world, ahead)).found;
+        if let Some(aims) = &mut world.aims {
+            aims.learn(&found);
         }
     }
+}

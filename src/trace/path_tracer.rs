@@ -1,8 +1,8 @@
 //! Paths from the camera back to the lights.
 
 use super::aimed::{may_aim, scatter_aimed};
-use super::gather::gather;
 use super::direct::{DirectLighting, weight_of_meeting};
+use super::gather::gather;
 use super::interaction::{Interaction, Meeting};
 use super::merge::Photons;
 use super::path::{Path, PathKind, ScatterSample};

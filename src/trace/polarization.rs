@@ -50,8 +50,10 @@ impl Polarized {
     /// With light that comes to a surface that scatters it, in a direction and polarized on its way there.
     pub(super) fn brought<const N: usize>(
         self,
-        (material, arrival): (&Material<Table>, &Arrival<N>),
-        (wi, on_its_way): (DVec3, Self),
+        material: &Material<Table>,
+        arrival: &Arrival<N>,
+        wi: DVec3,
+        on_its_way: Self,
     ) -> Self {
         self.scattered(material, arrival, wi).joined(on_its_way)
     }

@@ -95,14 +95,21 @@ impl<'a> Walker<'a> {
         let uv = object.uv(&hit.crossing, &point);
         let part = self.part(material, uv, u[2]);
         let at = At { walk: &walk, material: object.material, point: &point, normal, uv, part, u };
-        match material.with_parts()[part] {
+        self.leave(&at, material.with_parts()[part], flat);
+    }
+
+    /// Goes on from a surface in all ways that light may go.
+    fn leave(&mut self, at: &At, material: &Material<Table>, flat: DVec3) {
+        let At { walk, normal, uv, .. } = *at;
+        let world = self.world;
+        match material {
             Material::Mirror(mirror) => {
                 let tint = self.draw.read_at(&mirror.reflectance, uv);
-                self.mirrored(&at, normal, tint, 1.0);
+                self.mirrored(at, normal, tint, 1.0);
             }
             Material::Conductor(metal) => {
                 let facet = metal.roughness.surface().map_or(normal, |surface| at.facet(surface.facets()));
-                self.mirrored(&at, facet, Lanes::ONE, 1.0);
+                self.mirrored(at, facet, Lanes::ONE, 1.0);
             }
             Material::Thin(pane) => {
                 let inside = media::index(&world.scene, &self.draw, walk.media.inside(&world.scene));
@@ -112,21 +119,21 @@ impl<'a> Walker<'a> {
                 let (tint, through) = (self.draw.read_at(&pane.transmittance, uv), (1.0 - r) * (1.0 - r));
                 let crossed = at.step(Way::Crossed);
                 let straight = walk.after(Some(crossed), tint, through);
-                self.go_on(&at, straight, walk.ray.direction, 0);
+                self.go_on(at, straight, walk.ray.direction, 0);
                 // Mirrored by the first surface, and by the second.
                 let back = reflect(-walk.ray.direction, normal);
-                self.go_on(&at, walk.after(None, Lanes::ONE, r), back, 1);
+                self.go_on(at, walk.after(None, Lanes::ONE, r), back, 1);
                 let behind = walk.after(Some(crossed), tint, r * through).after(Some(crossed), tint, 1.0);
-                self.go_on(&at, behind, back, 2);
+                self.go_on(at, behind, back, 2);
             }
             Material::Dielectric(glass) => self.glass(
-                &at,
+                at,
                 [&glass.reflectance, &glass.transmittance],
                 glass.roughness.interface().map(|rough| rough.facets()),
             ),
             Material::Diffuse(diffuse) => {
                 let tint = self.draw.read_at(&diffuse.reflectance, uv);
-                self.scattered(&at, flat, tint, 1.0);
+                self.scattered(at, flat, tint, 1.0);
             }
             Material::Plastic(plastic) => {
                 let index = self.draw.read_exact(&plastic.index)[1];
@@ -135,9 +142,9 @@ impl<'a> Walker<'a> {
                 } else {
                     Interface::new(1.0, index, (-walk.ray.direction).dot(normal)).reflectance
                 };
-                self.go_on(&at, walk.after(None, Lanes::ONE, r), reflect(-walk.ray.direction, normal), 1);
+                self.go_on(at, walk.after(None, Lanes::ONE, r), reflect(-walk.ray.direction, normal), 1);
                 let tint = self.draw.read_at(&plastic.reflectance, uv);
-                self.scattered(&at, flat, tint, 1.0 - r);
+                self.scattered(at, flat, tint, 1.0 - r);
             }
             Material::Emissive(_) | Material::Mix(_) | Material::Mask(_) => {}
         }
@@ -157,7 +164,7 @@ impl<'a> Walker<'a> {
     fn passes(&self, walk: &Walk, hit: &Hit, point: &SurfacePoint, u: f64) -> bool {
         let (draw, media) = (&self.draw, walk.media.inside(&self.world.scene));
         self.world.is_see_through(hit.object)
-            && straight::straight_at(self.world, draw, (&walk.ray, Lanes::ONE), media, (hit, point))
+            && straight::straight_at(self.world, draw, &walk.ray, Lanes::ONE, media, hit, point)
                 .is_some_and(|straight| u < f64::from(straight.holes[1]))
     }
 
@@ -239,7 +246,7 @@ impl<'a> Walker<'a> {
     /// Light that comes straight from a light, through whatever lets it through.
     fn aim(&mut self, at: &At, walk: &Walk, normal: DVec3, id: LightId) {
         let (world, light) = (self.world, &self.world.scene.lights[id]);
-        let Some(sample) = light.sample_li(&at.point, normal, [at.u[1], at.u[0]]) else { return };
+        let Some(sample) = light.sample_li(at.point, normal, [at.u[1], at.u[0]]) else { return };
         let mut walk = Walk { ray: sample.ray, ..walk.clone() };
         let mut left = sample.distance;
         for _ in 0..SURFACES {

@@ -3,7 +3,7 @@
 use abbe::material::{Arrival, Material};
 use abbe::math::{DVec3, Frame};
 use abbe::spectrum::{Draw, Table};
-use abbe::trace::{prepare};
+use abbe::trace::prepare;
 
 use crate::support::scenes::{SINGLE_PATH, method, scene, view};
 

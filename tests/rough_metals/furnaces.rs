@@ -3,7 +3,7 @@
 use abbe::material::{Arrival, Material, Roughness};
 use abbe::math::DVec3;
 use abbe::spectrum::{Draw, Table};
-use abbe::trace::{prepare};
+use abbe::trace::prepare;
 
 use crate::support::scenes::{Mean, SINGLE_PATH, SPLITTING, body, environment, image, method, scene, view};
 

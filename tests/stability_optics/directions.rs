@@ -4,7 +4,7 @@ use abbe::material::{Arrival, Interface, reflect};
 use abbe::math::{DVec2, DVec3, UNIT_ROUNDOFF};
 use abbe::shape::SurfacePoint;
 use abbe::spectrum::Draw;
-use abbe::trace::{prepare};
+use abbe::trace::prepare;
 
 use crate::support::exact::{Exact, ExactVector};
 use crate::support::random::Random;

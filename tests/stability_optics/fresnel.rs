@@ -5,7 +5,7 @@ use std::f64::consts::FRAC_PI_2;
 use abbe::material::{Arrival, Branch, Interface, Material};
 use abbe::math::{DVec3, UNIT_ROUNDOFF};
 use abbe::spectrum::{Draw, Lanes, Table};
-use abbe::trace::{prepare};
+use abbe::trace::prepare;
 
 use crate::support::exact::Exact;
 use crate::support::random::Random;
