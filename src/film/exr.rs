@@ -9,8 +9,8 @@ use exr::prelude::{
     LayerAttributes, LineOrder, SmallVec, Text, Vec2, WritableImage,
 };
 
-use super::Film;
 use super::file::replace_file;
+use super::image::{Film, Pixel};
 use crate::error::{Error, Result};
 
 /// How the camera saw, as the file records it.
@@ -52,7 +52,7 @@ pub enum Fact {
 pub fn write_exr(film: &Film, view: &View, provenance: &Provenance, path: &Path) -> Result<()> {
     let encode = |error: exr::error::Error| Error::Encode { path: path.to_owned(), message: error.to_string() };
     let size = Vec2(film.width as usize, film.height as usize);
-    let channel = |name: &str, value: &dyn Fn(&super::Pixel) -> f32| {
+    let channel = |name: &str, value: &dyn Fn(&Pixel) -> f32| {
         let samples = FlatSamples::F32(film.pixels.iter().map(value).collect());
         AnyChannel { name: Text::from(name), sample_data: samples, quantize_linearly: false, sampling: Vec2(1, 1) }
     };

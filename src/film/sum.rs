@@ -1,4 +1,4 @@
-use super::{DEPTH_OF_NOTHING, Pixel, Sample};
+use super::image::{DEPTH_OF_NOTHING, Pixel, Sample};
 
 /// Samples that are summed one after another before the tree begins.
 const BLOCK: u32 = 16;

@@ -10,6 +10,7 @@ mod polarization;
 mod seen;
 mod survey;
 mod transport;
+mod words;
 mod worth;
 
 use std::time::Duration;
@@ -18,6 +19,7 @@ use crate::scene::Scene;
 use crate::spectrum::{Basis, Curve};
 use crate::trace::{LightPass, Method, Probe, Transport, prepare_unguided, probe};
 use model::Model;
+use words::{in_number, in_words};
 
 pub use ladder::Rung;
 
@@ -145,32 +147,4 @@ fn beside(scene: &Scene<Curve>, method: &Method, probe_of_method: &Probe, basis:
     let other = probe(&prepare_unguided(scene, Method { basis, ..method.clone() }));
     let times = other.time.as_secs_f64() / probe_of_method.time.as_secs_f64();
     format!("a sample of {name} would take {times:.1} times as long")
-}
-
-/// A share as people say it.
-fn percent(share: f64) -> String {
-    match 100.0 * share {
-        p if p < 0.095 => format!("{p:.2} %"),
-        p if p < 9.95 => format!("{p:.1} %"),
-        p => format!("{p:.0} %"),
-    }
-}
-
-/// A count as people say it.
-fn in_number(count: u64) -> String {
-    match count as f64 {
-        n if n < 1e4 => format!("{count}"),
-        n if n < 1e6 => format!("{:.0} thousand", n / 1e3),
-        n => format!("{:.1} million", n / 1e6),
-    }
-}
-
-/// A time as people say it.
-fn in_words(seconds: f64) -> String {
-    match seconds {
-        s if s < 1.0 => "a second or less".into(),
-        s if s < 120.0 => format!("{s:.0} seconds"),
-        s if s < 7200.0 => format!("{:.0} minutes", s / 60.0),
-        s => format!("{:.1} hours", s / 3600.0),
-    }
 }

@@ -2,8 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::model::tolerance;
-use super::survey::{Survey, Tint};
+use super::survey::{Survey, Tint, tolerance};
 use crate::material::Material;
 use crate::scene::Scene;
 use crate::spectrum::{Basis, Curve, Draw, Lanes, MAX_LANES, Quantity, visible};
@@ -40,8 +39,11 @@ const COSINES: f64 = 32.0;
 const WEIGHTS: f64 = 100.0;
 
 impl<'a> Seen<'a> {
-    /// Sends a few hundred rays and keeps what they met.
+    /// Sends a few hundred rays and keeps what they met; nothing where smooth surfaces tint no light.
     pub(super) fn new(scene: &'a Scene<Curve>, survey: &Survey) -> Self {
+        if survey.is_plain() || survey.smooth(1).is_empty() {
+            return Self::default();
+        }
         let basis = Basis::wavelengths(survey.color_space, ROUTES_NM.into(), &[]);
         let method = Method {
             basis,

@@ -126,7 +126,7 @@ impl PhotonTargets {
         let first = self.aims[..number].iter().rposition(|aim| !of_light(&aim)).map_or(0, |before| before + 1);
         let light = &scene.lights[self.aims[number].light];
         let sample = light.sample_le(&self.aims[number].beam, guide_uv, u)?;
-        let ray = if light.is_sky() { self.before_leaving(scene, &sample.ray)? } else { sample.ray };
+        let ray = if light.is_sky() { self.started_outside(scene, &sample.ray)? } else { sample.ray };
         let sent =
             |aim: &PhotonTarget| aim.photons as f64 * light.pdf_le(&aim.beam, &sample, |uv| aim.guide.density(uv));
         let factor = sample.factor / self.aims[first..].iter().take_while(of_light).map(sent).sum::<f64>();
@@ -134,7 +134,7 @@ impl PhotonTargets {
     }
 
     /// The ray of a photon from the sky, started outside of all that is finite; none where a plane hides the sky there.
-    fn before_leaving(&self, scene: &Scene<Table>, ray: &Ray) -> Option<Ray> {
+    fn started_outside(&self, scene: &Scene<Table>, ray: &Ray) -> Option<Ray> {
         let sky = -ray.direction;
         let out = (self.world.center - ray.origin).dot(sky) + 2.0 * self.world.radius;
         let start = Ray { origin: ray.origin + sky * out, direction: sky };
