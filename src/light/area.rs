@@ -3,7 +3,7 @@ use std::sync::Arc;
 
 use super::{Beam, LeSample, LightBounds, LightSample, LightTree};
 use crate::math::{Bounds, Cone, DVec3, Frame, Ray, cosine_hemisphere, unit};
-use crate::shape::{Ball, Cap, Coordinates, Crossing, Shape, ShapeSample, Sides, SurfacePoint};
+use crate::shape::{Ball, Coordinates, Crossing, Shape, ShapeSample, Sides, SurfacePoint};
 use crate::spectrum::Quantity;
 
 /// A surface that shines: an object whose material emits.
@@ -25,12 +25,14 @@ pub struct Area<S> {
     parts: Option<Arc<LightTree>>,
     /// The box from whose outside no backs are seen.
     closed: Option<Bounds>,
-    /// All that is seen of a sphere, if that is a small part.
-    visible_cap: Option<Cap>,
+    /// The unit normals of all that is seen of a sphere, if that is a small part.
+    visible_cap: Option<Cone>,
 }
 
-/// The part of a sphere below which that part is sampled, and not the cone in which the whole is seen.
-const SMALL: f64 = 0.125;
+/// 1 - cos of the largest cap that is sampled, and not the cone in which the whole sphere is seen: an eighth of it.
+const SMALL: f64 = 0.25;
+/// Unit normals below which a cap is not known well enough.
+const ENOUGH: usize = 64;
 
 impl<S> Area<S> {
     /// The light that an object is.
@@ -62,8 +64,14 @@ impl<S> Area<S> {
     }
 
     /// Tells the light the unit normals at which paths met it by chance: if they lie close together, it is sampled there.
+    ///
+    /// The cap is larger than that by a margin, the more so the fewer are known: what is seen beyond the rim makes rare bright
+    /// samples, which cost more than some that see nothing.
     pub fn learn_visible_cap(&mut self, normals: &[DVec3]) {
-        self.visible_cap = Cap::around(normals).filter(|cap| cap.share() < SMALL);
+        let margin = 1.1 + 4.0 / (normals.len() as f64).sqrt();
+        let cap = if normals.len() < ENOUGH { None } else { Cone::around(normals) };
+        let wider = cap.map(|cap| Cone { one_minus_cos: cap.one_minus_cos * margin, ..cap });
+        self.visible_cap = wider.filter(|cap| cap.one_minus_cos < SMALL);
     }
 
     /// Whether the backs of parts may be met first: never from outside of a closed body.

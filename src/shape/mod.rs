@@ -7,7 +7,6 @@ mod affine_plane;
 mod attributes;
 mod ball;
 mod bvh;
-mod cap;
 mod coordinates;
 mod cube;
 mod disc;
@@ -34,7 +33,6 @@ mod triangle;
 pub use attributes::{Attributes, vertex_normals};
 pub use ball::Ball;
 pub use bvh::{Bvh, Vectors, Visitor};
-pub use cap::Cap;
 pub use coordinates::Coordinates;
 pub use cube::Cube;
 pub use disc::Disc;
@@ -53,7 +51,7 @@ pub use triangle::Triangle;
 
 use std::sync::Arc;
 
-use crate::math::{Bounds, DVec3, Ray, Transform, ball_surface, disk, triangle_coordinates};
+use crate::math::{Bounds, Cone, DVec3, Ray, Transform, ball_surface, disk, triangle_coordinates};
 
 /// A surface.
 #[derive(Clone, Debug)]
@@ -295,13 +293,13 @@ impl Shape {
         density.toward(crossing.t, self.point(ray, crossing).normal.dot(ray.direction).abs())
     }
 
-    /// A direction as `sample` draws it; toward a sphere, most often to a cap of it.
-    pub fn sample_cap(&self, cap: &Cap, from: DVec3, u: [f64; 2]) -> Option<ShapeSample> {
+    /// A direction as `sample` draws it; toward a sphere, most often to a cap of it, given by its unit normals.
+    pub fn sample_cap(&self, cap: &Cone, from: DVec3, u: [f64; 2]) -> Option<ShapeSample> {
         if let Self::Sphere(sphere) = self { sphere.sample_cap(cap, from, u) } else { self.sample(from, u) }
     }
 
     /// Density per steradian with which `sample_cap` draws the direction of a ray that first meets the shape at a crossing.
-    pub fn pdf_cap(&self, cap: &Cap, ray: &Ray, crossing: &Crossing) -> f64 {
+    pub fn pdf_cap(&self, cap: &Cone, ray: &Ray, crossing: &Crossing) -> f64 {
         if let Self::Sphere(sphere) = self { sphere.pdf_cap(cap, ray, crossing.t) } else { self.pdf(ray, crossing) }
     }
 

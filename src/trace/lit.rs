@@ -8,7 +8,7 @@ use super::search::Reached;
 use super::targets::{SEEN_PIXELS, Targets};
 use super::walk::{Colors, Walk, Way};
 use crate::light::{Light, LightId};
-use crate::math::{BranchKey, Cone, DVec2, DVec3, Frame, Ray, Sampler, cone, disk, unit};
+use crate::math::{BranchKey, DVec2, DVec3, Frame, Ray, Sampler, disk, unit};
 use crate::shape::{Ball, SurfacePoint};
 use crate::spectrum::Table;
 
@@ -174,8 +174,8 @@ impl Pair<'_> {
         if let Light::Spot(spot) = light {
             let position = DVec3::from(spot.position);
             let (of_ball, own) = (self.ball.cone_from(position), spot.cone());
-            let Cone { axis, one_minus_cos } = if own.one_minus_cos < of_ball.one_minus_cos { own } else { of_ball };
-            let direction = unit(Frame::about(axis).to_world(cone(one_minus_cos, [u[0], u[1]]).0));
+            let cone = if own.one_minus_cos < of_ball.one_minus_cos { own } else { of_ball };
+            let direction = unit(cone.sample_uniform([u[0], u[1]]));
             return Some(position + direction * (self.ball.center - position).length());
         }
         let sample = light.sample_li(&SurfacePoint::in_space(self.ball.center), normal, [u[2], u[3]]);
