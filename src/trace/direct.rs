@@ -30,6 +30,7 @@ pub(super) struct Gathering<'a, const N: usize> {
     pub(super) inside: Option<MaterialId>,
     /// Whether the path goes on from here and may meet a light by itself.
     pub(super) goes_on: bool,
+    /// Whether all lights are sampled, or one.
     pub(super) aims_at_all: bool,
     /// The object that hid a light last.
     pub(super) hider: &'a Cell<Option<u32>>,
@@ -37,7 +38,7 @@ pub(super) struct Gathering<'a, const N: usize> {
     pub(super) lit: Option<&'a Lit>,
     /// Four random numbers of the vertex; the first light uses the first two, the choice of one light the last.
     pub(super) u: [f64; 4],
-    /// How bounces are aimed from here, if they are.
+    /// How bounces are guided from here, if they are.
     pub(super) aiming: Option<&'a Aiming<'a>>,
 }
 
@@ -80,7 +81,7 @@ impl<const N: usize> Gathering<'_, N> {
     /// Adds the light of the lights to a sum, and answers how likely it was to look at a side.
     ///
     /// Where light also comes from beyond the surface, `far` is the medium there and whether lanes part on the way. Both
-    /// sides are looked at or, where only one light is aimed at, one of them chosen by chance.
+    /// sides are looked at or, where only one light is sampled, one of them chosen by chance.
     pub(super) fn gather(
         self,
         far: Option<(Option<MaterialId>, bool)>,
@@ -111,7 +112,7 @@ impl<const N: usize> Gathering<'_, N> {
         let light = &world.scene.lights[id];
         let sample = light.sample_li(self.point, normal, u)?;
         let wi = sample.ray.direction;
-        if self.side.is_some() && wi.dot(normal) <= 0.0 {
+        if wi.dot(normal) <= 0.0 {
             return None;
         }
         let flat = if normal.dot(self.arrival.wo) < 0.0 { -normal } else { normal };
