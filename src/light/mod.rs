@@ -182,11 +182,11 @@ impl Light<Table> {
 
     /// The largest irradiance that a sky gives; 0 of other lights.
     pub fn irradiance(&self) -> f64 {
-        let brightest = self.emission().range().1.max(0.0);
+        let brightest = || self.emission().range().1.max(0.0);
         match self {
             Self::Area(_) | Self::Point(_) | Self::Spot(_) => 0.0,
-            Self::Environment(environment) => brightest * environment.mean() * std::f64::consts::PI,
-            Self::Sun(_) => brightest,
+            Self::Environment(environment) => brightest() * environment.mean() * std::f64::consts::PI,
+            Self::Sun(_) => brightest(),
         }
     }
 
