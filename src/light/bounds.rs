@@ -42,7 +42,8 @@ impl NormalCone {
         self.axis
     }
 
-    /// The narrowest cone around both that contains their axes' great circle: algorithm 1 of Conty Estevez & Kulla 2018.
+    /// The narrowest cone around both that contains their axes' great circle: algorithm 1 of Conty Estevez & Kulla
+    /// 2018.
     pub fn union(self, other: Self) -> Self {
         let (wide, narrow) = if self.angle >= other.angle { (self, other) } else { (other, self) };
         if wide.angle >= PI {

@@ -8,8 +8,8 @@ use crate::spectrum::Image;
 
 /// An image of all directions: latitude and longitude, +y on top, +z in the center, +x at the left quarter.
 ///
-/// Between the middles of its texels it is linear. Directions are drawn by texel, each by its mean brightness and the exact
-/// solid angle of its row, and evenly within it.
+/// Between the middles of its texels it is linear. Directions are drawn by texel, each by its mean brightness and the
+/// exact solid angle of its row, and evenly within it.
 #[derive(Clone, Debug)]
 pub struct Panorama {
     image: Arc<Image>,

@@ -4,8 +4,8 @@ use crate::spectrum::Table;
 
 /// Which of many lights is sampled from a point: by what they may send there.
 ///
-/// Lights of a finite extent stand in a tree. The sky, whose power depends on the scene's size, gets as much as all of them
-/// together, divided by the irradiance of its parts.
+/// Lights of a finite extent stand in a tree. The sky, whose power depends on the scene's size, gets as much as all of
+/// them together, divided by the irradiance of its parts.
 #[derive(Clone, Debug)]
 pub struct LightSampler {
     tree: LightTree,

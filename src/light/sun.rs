@@ -107,8 +107,8 @@ impl<S> Sun<S> {
         Some(LeSample { ray, factor: light.factor / light.pdf.unwrap_or(1.0), surface: None })
     }
 
-    /// How densely `sample_le` draws a photon for a ball from places of a density of their own, per unit of area across its way;
-    /// 0 beside the ball.
+    /// How densely `sample_le` draws a photon for a ball from places of a density of their own, per unit of area across
+    /// its way; 0 beside the ball.
     pub(super) fn pdf_le(&self, ball: &Ball, ray: &Ray, guide: impl Fn([f64; 2]) -> f64) -> f64 {
         let local = Frame::about(-ray.direction).to_local(ray.origin - ball.center) / ball.radius;
         let place = square_around_disk([local.x, local.y]);

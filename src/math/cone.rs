@@ -49,8 +49,8 @@ impl Cone {
         1.0 / (2.0 * PI * self.one_minus_cos)
     }
 
-    /// A direction of the cone for a place of the unit square: equal areas of the disk in it are equal solid angles, 1 - cos =
-    /// r^2 times the cone's. None beside the disk.
+    /// A direction of the cone for a place of the unit square: equal areas of the disk in it are equal solid angles, 1
+    /// - cos = r^2 times the cone's. None beside the disk.
     pub fn sample(&self, place: [f64; 2]) -> Option<DVec3> {
         let [x, y] = disk_in_square(place)?;
         let here = (x * x + y * y) * self.one_minus_cos;
@@ -58,8 +58,8 @@ impl Cone {
         Some(unit(Frame::about(self.axis).to_world(DVec3::new(x * stretch, y * stretch, 1.0 - here))))
     }
 
-    /// Density per steradian with which `sample` draws a unit vector from places of a density of their own on the square; 0
-    /// beside the cone.
+    /// Density per steradian with which `sample` draws a unit vector from places of a density of their own on the
+    /// square; 0 beside the cone.
     pub fn pdf(&self, direction: DVec3, density_at: impl Fn([f64; 2]) -> f64) -> f64 {
         // For unit vectors, without the rounding of 1 - cos.
         let here = 0.5 * (direction - self.axis).length_squared();

@@ -102,7 +102,8 @@ pub struct SurfacePoint {
     pub error: DVec3,
     /// Geometric unit normal on the front side.
     pub normal: DVec3,
-    /// Unit normal by which materials scatter, on the front side: `normal` but on smooth meshes and under maps of relief.
+    /// Unit normal by which materials scatter, on the front side: `normal` but on smooth meshes and under maps of
+    /// relief.
     pub shading: DVec3,
 }
 
@@ -249,7 +250,8 @@ impl Shape {
 
     /// A direction from a point toward the shape; none where the draw sees it exactly edge-on.
     ///
-    /// Spheres are drawn by the cone they fill, triangles and quads nearby by their solid angle, other shapes by their area.
+    /// Spheres are drawn by the cone they fill, triangles and quads nearby by their solid angle, other shapes by their
+    /// area.
     pub fn sample(&self, from: DVec3, u: [f64; 2]) -> Option<ShapeSample> {
         let (point, part) = match self {
             Self::Plane(_) => return None,
@@ -298,7 +300,8 @@ impl Shape {
         if let Self::Sphere(sphere) = self { sphere.sample_cap(cap, from, u) } else { self.sample(from, u) }
     }
 
-    /// Density per steradian with which `sample_cap` draws the direction of a ray that first meets the shape at a crossing.
+    /// Density per steradian with which `sample_cap` draws the direction of a ray that first meets the shape at a
+    /// crossing.
     pub fn pdf_cap(&self, cap: &Cone, ray: &Ray, crossing: &Crossing) -> f64 {
         if let Self::Sphere(sphere) = self { sphere.pdf_cap(cap, ray, crossing.t) } else { self.pdf(ray, crossing) }
     }
@@ -328,7 +331,8 @@ impl Shape {
         Some(self.part(part)?.sample(from, u)?.with_part(part))
     }
 
-    /// Density per steradian with which `sample_part` draws the direction of a ray that first meets the part at a crossing.
+    /// Density per steradian with which `sample_part` draws the direction of a ray that first meets the part at a
+    /// crossing.
     pub fn pdf_part(&self, ray: &Ray, crossing: &Crossing) -> f64 {
         let part = self.part(crossing.part);
         part.map_or(0.0, |part| self.toward(part.density(ray.origin), ray, crossing))

@@ -83,7 +83,8 @@ impl Sphere {
         4.0 * PI * self.radius * self.radius
     }
 
-    /// A direction from a point outside, uniform in the cone that the sphere fills; from inside or on it, any direction.
+    /// A direction from a point outside, uniform in the cone that the sphere fills; from inside or on it, any
+    /// direction.
     pub(super) fn sample(&self, from: DVec3, u: [f64; 2]) -> ShapeSample {
         match self.cone_from(from) {
             Some(cone) => ShapeSample::of_direction(cone.sample_uniform(u), cone.uniform_pdf()),
@@ -96,8 +97,8 @@ impl Sphere {
         self.cone_from(ray.origin).map_or(1.0 / (4.0 * PI), |cone| cone.uniform_pdf())
     }
 
-    /// A direction from a point to a sphere of which most often a cap alone is seen: from outside most lead to points of the
-    /// cap, uniform by area. The others keep the estimate right where more is seen.
+    /// A direction from a point to a sphere of which most often a cap alone is seen: from outside most lead to points
+    /// of the cap, uniform by area. The others keep the estimate right where more is seen.
     pub(super) fn sample_cap(&self, cap: &Cone, from: DVec3, [u, v]: [f64; 2]) -> Option<ShapeSample> {
         let outside = self.cone_from(from).is_some();
         if u < ELSEWHERE || !outside {
@@ -110,7 +111,8 @@ impl Sphere {
         if normal.dot(direction) < 0.0 { ShapeSample::along(direction) } else { None }
     }
 
-    /// Density per steradian with which `sample_cap` draws the direction of a ray that first meets the sphere at a distance.
+    /// Density per steradian with which `sample_cap` draws the direction of a ray that first meets the sphere at a
+    /// distance.
     pub(super) fn pdf_cap(&self, cap: &Cone, ray: &Ray, t: f64) -> f64 {
         let everywhere = self.pdf(ray);
         if self.cone_from(ray.origin).is_none() {

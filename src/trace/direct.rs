@@ -80,8 +80,8 @@ impl<const N: usize> Gathering<'_, N> {
 
     /// Adds the light of the lights to a sum, and answers how likely it was to look at a side.
     ///
-    /// Where light also comes from beyond the surface, `far` is the medium there and whether lanes part on the way. Both
-    /// sides are looked at or, where only one light is sampled, one of them chosen by chance.
+    /// Where light also comes from beyond the surface, `far` is the medium there and whether lanes part on the way.
+    /// Both sides are looked at or, where only one light is sampled, one of them chosen by chance.
     pub(super) fn gather(
         self,
         far: Option<(Option<MaterialId>, bool)>,
@@ -144,8 +144,8 @@ impl<const N: usize> Gathering<'_, N> {
         Some(rgb)
     }
 
-    /// The factor on a light's emission and the material's answer: over the density of both ways to the light's direction
-    /// together, where the path's own next direction may meet it.
+    /// The factor on a light's emission and the material's answer: over the density of both ways to the light's
+    /// direction together, where the path's own next direction may meet it.
     fn factor(&self, sample: &LightSample, probability: f64, bounce_pdf: f64) -> f64 {
         let Some(pdf) = sample.pdf else { return sample.factor / probability };
         let pdf = pdf * probability;
@@ -153,7 +153,8 @@ impl<const N: usize> Gathering<'_, N> {
         sample.factor * weight / pdf
     }
 
-    /// None if something hides the light; where there are holes and panes, the share that goes straight on through them.
+    /// None if something hides the light; where there are holes and panes, the share that goes straight on through
+    /// them.
     fn unoccluded(&self, sample: &LightSample) -> Option<Option<(Lanes<N>, Polarized)>> {
         if self.world.has_see_through() {
             return self.transmittance(sample).map(Some);
@@ -180,8 +181,8 @@ fn finer(u: f64, more: f64) -> f64 {
     ((u * STEPS).floor() + more) / STEPS
 }
 
-/// The weight of a light that a path met by itself, beside next-event estimation at the path's last surface. `crossing` is where
-/// the ray meets the light, if that is a surface.
+/// The weight of a light that a path met by itself, beside next-event estimation at the path's last surface. `crossing`
+/// is where the ray meets the light, if that is a surface.
 pub(super) fn weight_of_meeting(
     world: &World,
     light: LightId,

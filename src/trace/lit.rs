@@ -1,4 +1,5 @@
-//! Light through dispersive objects: rays of two colors from the lights to them, and from there to what the camera sees.
+//! Light through dispersive objects: rays of two colors from the lights to them, and from there to what the camera
+//! sees.
 
 use std::cell::Cell;
 use std::f64::consts::PI;
@@ -20,7 +21,8 @@ const OF_A_PAIR: usize = 1024;
 const LIGHTS: usize = 16;
 /// Colors that are apart by less than this part of the lamp's own blur look white.
 const CONTRAST: f64 = 0.05;
-/// Light by way of an object that is less than this share of the lamp's own, beside it, is not seen: a color may miss as much.
+/// Light by way of an object that is less than this share of the lamp's own, beside it, is not seen: a color may miss
+/// as much.
 const FAINT: f64 = 0.01;
 /// How far beside a ray its neighbors are, in radii of the object: near enough to go the same way.
 const BESIDE: f64 = 1e-3;
@@ -131,8 +133,8 @@ impl Pair<'_> {
         Some(if apart >= CONTRAST * blur { apart } else { 0.0 })
     }
 
-    /// The irradiance by a ray's way as a share of the lamp's own where it lands: the areas that neighbors of the ray span. None where
-    /// they go other ways, or where something keeps the lamp's own light away.
+    /// The irradiance by a ray's way as a share of the lamp's own where it lands: the areas that neighbors of the ray
+    /// span. None where they go other ways, or where something keeps the lamp's own light away.
     fn share(
         &self,
         start: &Ray,

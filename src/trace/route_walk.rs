@@ -240,7 +240,7 @@ impl<'a> Walker<'a> {
     /// Light that comes straight from a light, through whatever lets it through.
     fn aim(&mut self, at: &At, walk: &Walk, normal: DVec3, id: LightId) {
         let (world, light) = (self.world, &self.world.scene.lights[id]);
-        let Some(sample) = light.sample_li(&at.point, normal, [at.u[1], at.u[0]]) else { return };
+        let Some(sample) = light.sample_li(at.point, normal, [at.u[1], at.u[0]]) else { return };
         let mut walk = Walk { ray: sample.ray, ..walk.clone() };
         let mut left = sample.distance;
         for _ in 0..SURFACES {

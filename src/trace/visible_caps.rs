@@ -14,8 +14,8 @@ const ENOUGH: usize = 2048;
 /// Sets these random numbers apart from those of the image.
 const SEED: u64 = 0x6c61_6d70;
 
-/// The lights that paths meet by chance, with the unit normals there. The whole image counts, also where only a part of it is
-/// made, so that all parts are made alike.
+/// The lights that paths meet by chance, with the unit normals there. The whole image counts, also where only a part of
+/// it is made, so that all parts are made alike.
 pub(super) fn normals_met(world: &World) -> Vec<(LightId, DVec3)> {
     in_lanes(&world.method.basis, Looking { world })
 }
