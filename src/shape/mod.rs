@@ -7,7 +7,6 @@ mod affine_plane;
 mod attributes;
 mod ball;
 mod bvh;
-mod cap;
 mod coordinates;
 mod cube;
 mod disc;
@@ -34,7 +33,6 @@ mod triangle;
 pub use attributes::{Attributes, vertex_normals};
 pub use ball::Ball;
 pub use bvh::{Bvh, Vectors, Visitor};
-pub use cap::Cap;
 pub use coordinates::Coordinates;
 pub use cube::Cube;
 pub use disc::Disc;
@@ -53,7 +51,7 @@ pub use triangle::Triangle;
 
 use std::sync::Arc;
 
-use crate::math::{Bounds, DVec3, Ray, Transform, ball_surface, disk, triangle_coordinates};
+use crate::math::{Bounds, Cone, DVec3, Ray, Transform, ball_surface, disk, triangle_coordinates};
 
 /// A surface.
 #[derive(Clone, Debug)]
@@ -104,7 +102,8 @@ pub struct SurfacePoint {
     pub error: DVec3,
     /// Geometric unit normal on the front side.
     pub normal: DVec3,
-    /// Unit normal by which materials scatter, on the front side: `normal` but on smooth meshes and under maps of relief.
+    /// Unit normal by which materials scatter, on the front side: `normal` but on smooth meshes and under maps of
+    /// relief.
     pub shading: DVec3,
 }
 
@@ -251,7 +250,8 @@ impl Shape {
 
     /// A direction from a point toward the shape; none where the draw sees it exactly edge-on.
     ///
-    /// Spheres are drawn by the cone they fill, triangles and quads nearby by their solid angle, other shapes by their area.
+    /// Spheres are drawn by the cone they fill, triangles and quads nearby by their solid angle, other shapes by their
+    /// area.
     pub fn sample(&self, from: DVec3, u: [f64; 2]) -> Option<ShapeSample> {
         let (point, part) = match self {
             Self::Plane(_) => return None,
@@ -295,13 +295,14 @@ impl Shape {
         density.toward(crossing.t, self.point(ray, crossing).normal.dot(ray.direction).abs())
     }
 
-    /// A direction as `sample` draws it; toward a sphere, most often to a cap of it.
-    pub fn sample_cap(&self, cap: &Cap, from: DVec3, u: [f64; 2]) -> Option<ShapeSample> {
+    /// A direction as `sample` draws it; toward a sphere, most often to a cap of it, given by its unit normals.
+    pub fn sample_cap(&self, cap: &Cone, from: DVec3, u: [f64; 2]) -> Option<ShapeSample> {
         if let Self::Sphere(sphere) = self { sphere.sample_cap(cap, from, u) } else { self.sample(from, u) }
     }
 
-    /// Density per steradian with which `sample_cap` draws the direction of a ray that first meets the shape at a crossing.
-    pub fn pdf_cap(&self, cap: &Cap, ray: &Ray, crossing: &Crossing) -> f64 {
+    /// Density per steradian with which `sample_cap` draws the direction of a ray that first meets the shape at a
+    /// crossing.
+    pub fn pdf_cap(&self, cap: &Cone, ray: &Ray, crossing: &Crossing) -> f64 {
         if let Self::Sphere(sphere) = self { sphere.pdf_cap(cap, ray, crossing.t) } else { self.pdf(ray, crossing) }
     }
 
@@ -330,7 +331,8 @@ impl Shape {
         Some(self.part(part)?.sample(from, u)?.with_part(part))
     }
 
-    /// Density per steradian with which `sample_part` draws the direction of a ray that first meets the part at a crossing.
+    /// Density per steradian with which `sample_part` draws the direction of a ray that first meets the part at a
+    /// crossing.
     pub fn pdf_part(&self, ray: &Ray, crossing: &Crossing) -> f64 {
         let part = self.part(crossing.part);
         part.map_or(0.0, |part| self.toward(part.density(ray.origin), ray, crossing))

@@ -39,7 +39,8 @@ pub(super) struct PhotonTargets {
     photons: u64,
 }
 
-/// Most balls of objects that photons are sent to: of more objects, neighbors share one; and most aims of all lights together.
+/// Most balls of objects that photons are sent to: of more objects, neighbors share one; and most aims of all lights
+/// together.
 const MOST: usize = 32;
 const MOST_AIMS: usize = 8192;
 /// Balls that are held against each other.
@@ -55,8 +56,8 @@ pub fn is_photon_target<S>(scene: &Scene<S>, object: usize) -> bool {
 }
 
 impl PhotonTargets {
-    /// From some lights, given with their luminances, to all objects that photons can be sent to; none if there is none, or none of
-    /// the lights shines there.
+    /// From some lights, given with their luminances, to all objects that photons can be sent to; none if there is
+    /// none, or none of the lights shines there.
     pub(super) fn new(scene: &Scene<Table>, lights: &[(LightId, f64)], photons: u64) -> Option<Self> {
         let objects: Vec<bool> = (0..scene.objects.len()).map(|object| is_photon_target(scene, object)).collect();
         let shapes = || scene.objects.iter().map(|object| &object.shape);
@@ -112,9 +113,11 @@ impl PhotonTargets {
         self.aims[number].guide.sample(u)
     }
 
-    /// The start of a photon of a target for its `guide_uv` and two random numbers; none where the light does not shine.
+    /// The start of a photon of a target for its `guide_uv` and two random numbers; none where the light does not
+    /// shine.
     ///
-    /// Its flux is divided by how many photons all targets of the light send along the same line: their beams may overlap.
+    /// Its flux is divided by how many photons all targets of the light send along the same line: their beams may
+    /// overlap.
     pub(super) fn sample_le(
         &self,
         scene: &Scene<Table>,
