@@ -5,7 +5,7 @@ use std::path::Path;
 
 use tobj::LoadError;
 
-use super::mesh_file::MeshFile;
+use super::mesh_data::MeshFile;
 use super::{Attributes, Vertices};
 
 /// Reads the triangles of all objects of a file, and the normals of its vertices if they are wanted.

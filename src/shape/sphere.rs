@@ -1,6 +1,6 @@
 use std::f64::consts::PI;
 
-use super::{Ball, Crossing, Ellipsoid, Shape, ShapeSample, SurfacePoint};
+use super::{Ball, Crossing, Ellipsoid, ShapeSample, SurfacePoint};
 use crate::math::{Bounds, Cone, DMat3, DVec3, Ray, Transform, ball_surface, gamma};
 
 /// A sphere; its front is the outside.
@@ -69,12 +69,13 @@ impl Sphere {
         Bounds { min: self.center - reach, max: self.center + reach }.padded(8)
     }
 
-    pub(super) fn transformed(&self, map: &Transform) -> Shape {
+    /// The sphere after a map; an ellipsoid after an uneven one.
+    pub(super) fn transformed(&self, map: &Transform) -> Result<Self, Ellipsoid> {
         match map.uniform_scale() {
-            Some(scale) => Shape::Sphere(Self::new(map.point(self.center), self.radius * scale)),
+            Some(scale) => Ok(Self::new(map.point(self.center), self.radius * scale)),
             None => {
                 let axes = DMat3::from_diagonal(DVec3::splat(self.radius));
-                Shape::Ellipsoid(Ellipsoid::new(self.center, axes).transformed(map))
+                Err(Ellipsoid::new(self.center, axes).transformed(map))
             }
         }
     }

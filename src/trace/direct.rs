@@ -23,22 +23,13 @@ pub(super) struct DirectLighting<'a, const N: usize> {
     pub(super) at: &'a Interaction<'a, N>,
     /// Whether the path goes on from here and may hit a light by itself.
     pub(super) goes_on: bool,
-<<<<<<< HEAD
     /// Whether every light is sampled, or one.
     pub(super) all_lights: bool,
     /// The object that occluded a light last.
     pub(super) last_occluder: &'a Cell<Option<u32>>,
-=======
-    /// Whether all lights are sampled, or one.
-    pub(super) aims_at_all: bool,
-    /// The object that hid a light last.
-    pub(super) hider: &'a Cell<Option<u32>>,
-    /// What polarization may change of it, where the path is polarized.
-    pub(super) lit: Option<&'a Lit>,
->>>>>>> lights
     /// Four random numbers of the vertex; the first light uses the first two, the choice of one light the last.
     pub(super) u: [f64; 4],
-    /// How bounces are guided from here, if they are.
+    /// How bounces are aimed from here, if they are.
     pub(super) aiming: Option<&'a Aiming<'a>>,
 }
 
@@ -125,50 +116,12 @@ impl<const N: usize> DirectLighting<'_, N> {
         }
     }
 
-<<<<<<< HEAD
     /// A ray to a light that was chosen with a probability; none where the sensor gets nothing of it.
     fn shadow_ray(&self, side: &Side, drawn: SampledLight, u: [f64; 2]) -> Option<ShadowRay<N>> {
         let (normal, arrival) = (side.normal, &self.at.arrival);
         let sample = self.world.scene.lights[drawn.light].sample_li(self.at.point, normal, u)?;
         let wi = sample.ray.direction;
-        if side.chance.is_some() && wi.dot(normal) <= 0.0 {
-=======
-    /// Adds the light of the lights to a sum, and answers how likely it was to look at a side.
-    ///
-    /// Where light also comes from beyond the surface, `far` is the medium there and whether lanes part on the way.
-    /// Both sides are looked at or, where only one light is sampled, one of them chosen by chance.
-    pub(super) fn gather(
-        self,
-        far: Option<(Option<MaterialId>, bool)>,
-        sampler: &Sampler,
-        key: BranchKey,
-        sum: &mut [f64; 3],
-    ) -> f64 {
-        let Some((inside, parts)) = far else {
-            add(sum, self.direct(sampler, key));
-            return 1.0;
-        };
-        let chance = if self.aims_at_all { 1.0 } else { 0.5 };
-        let u = sampler.four_plain(key, MORE_DIGITS)[2];
-        let near = Self { side: Some(chance), ..self };
-        if u < chance {
-            add(sum, near.direct(sampler, key));
-        }
-        if 1.0 - u <= chance {
-            let parted = near.parted || parts;
-            add(sum, Self { normal: -near.normal, parted, inside, ..near }.direct(sampler, key));
-        }
-        chance
-    }
-
-    /// What the sensor gets of one light, sampled with a probability; none where it gets nothing.
-    fn of_light(&self, id: LightId, probability: f64, u: [f64; 2]) -> Option<[f64; 3]> {
-        let (world, normal) = (self.world, self.normal);
-        let light = &world.scene.lights[id];
-        let sample = light.sample_li(self.point, normal, u)?;
-        let wi = sample.ray.direction;
         if wi.dot(normal) <= 0.0 {
->>>>>>> lights
             return None;
         }
         let flat = if normal.dot(arrival.wo) < 0.0 { -normal } else { normal };
@@ -213,29 +166,17 @@ impl<const N: usize> DirectLighting<'_, N> {
         Some(Contribution { light: Some(*light), found: Found::Sampled, rgb, moved })
     }
 
-<<<<<<< HEAD
     /// The factor on a light's emission and the material's answer: over the density of both ways to the light's direction
     /// together, where the path's own next direction may hit it.
     fn factor(&self, ShadowRay { sample, probability, .. }: &ShadowRay<N>, bounce_pdf: f64) -> f64 {
-=======
-    /// The factor on a light's emission and the material's answer: over the density of both ways to the light's
-    /// direction together, where the path's own next direction may meet it.
-    fn factor(&self, sample: &LightSample, probability: f64, bounce_pdf: f64) -> f64 {
->>>>>>> lights
         let Some(pdf) = sample.pdf else { return sample.factor / probability };
         let pdf = pdf * probability;
         let weight = if self.goes_on { power_heuristic(pdf, bounce_pdf) } else { 1.0 };
         sample.factor * weight / pdf
     }
 
-<<<<<<< HEAD
     /// None if something occludes the light; where there are holes and panes, the share that goes straight on through them.
     fn unoccluded(&self, sample: &LightSample, inside: Option<MaterialId>) -> Option<Option<(Lanes<N>, Polarized)>> {
-=======
-    /// None if something hides the light; where there are holes and panes, the share that goes straight on through
-    /// them.
-    fn unoccluded(&self, sample: &LightSample) -> Option<Option<(Lanes<N>, Polarized)>> {
->>>>>>> lights
         if self.world.has_see_through() {
             return self.transmittance(sample, inside).map(Some);
         }
@@ -262,8 +203,8 @@ fn finer(u: f64, more: f64) -> f64 {
     ((u * STEPS).floor() + more) / STEPS
 }
 
-/// The weight of a light that a path met by itself, beside next-event estimation at the path's last surface. `crossing`
-/// is where the ray meets the light, if that is a surface.
+/// The weight of a light that a path met by itself, beside next-event estimation at the path's last surface. `crossing` is where
+/// the ray meets the light, if that is a surface.
 pub(super) fn weight_of_meeting(
     world: &World,
     light: LightId,
