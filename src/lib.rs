@@ -21,8 +21,8 @@
 //! # Ok::<(), abbe::Error>(())
 //! ```
 //!
-//! [`Scene::read`] takes a scene file, [`Scene::from_table`] what a program has built. [`Rendering`] says its plan and its
-//! progress. The rooms below are open as well: a plan without a render, a glass's index, one ray.
+//! [`Scene::read`] takes a scene file, [`Scene::from_table`] what a program has built. [`Rendering`] says its plan and
+//! its progress. The rooms below are open as well: a plan without a render, a glass's index, one ray.
 //!
 //! ```text
 //! scene.toml -> Description -> Scene<Curve> -> Plan -> Scene<Table> -> radiance::<N> over tiles -> Film -> EXR

@@ -139,8 +139,8 @@ impl Rendering {
         self.plan.processor_time.div_f64(self.threads.current_num_threads() as f64)
     }
 
-    /// Renders the next pass, if one is left, and answers whether another one is. Passes take more and more samples, or gather
-    /// photons of their own.
+    /// Renders the next pass, if one is left, and answers whether another one is. Passes take more and more samples, or
+    /// gather photons of their own.
     ///
     /// `progress` is told how much of the [`work`](Self::work) was done since it was last told, from any thread.
     ///

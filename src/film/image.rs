@@ -41,7 +41,8 @@ pub struct Window {
 }
 
 impl Window {
-    /// The pixel of the full image in the middle of a cell, of `side` x `side` cells of the window that are counted row by row.
+    /// The pixel of the full image in the middle of a cell, of `side` x `side` cells of the window that are counted row
+    /// by row.
     pub fn middle_of_cell(&self, side: u32, cell: u32) -> [u32; 2] {
         let middle = |i: u32, size: u32| ((u64::from(2 * i + 1) * u64::from(size)) / u64::from(2 * side)) as u32;
         [self.left + middle(cell % side, self.width), self.top + middle(cell / side, self.height)]

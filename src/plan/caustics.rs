@@ -12,7 +12,8 @@ use crate::shape::Sides;
 use crate::spectrum::Curve;
 use crate::trace::{LightPass, Method, Transport, World, is_photon_target, piloted, seen_photons};
 
-/// Solid angle in steradians from which on rays meet a lamp often enough: there photons and chance cost the same (`benches/rooms.rs`).
+/// Solid angle in steradians from which on rays meet a lamp often enough: there photons and chance cost the same
+/// (`benches/rooms.rs`).
 const SMALL: f64 = 0.5;
 /// Fewest photons of a light pass: from fewer it does not learn where to send them.
 const FEWEST: f64 = 65_536.0;
@@ -223,7 +224,8 @@ fn lit_places(scene: &Scene<Curve>, spread: impl Fn(&Material<Curve>) -> bool) -
     rays.filter_map(place).collect()
 }
 
-/// Under which solid angle, in steradians, a light is seen from half of some places or more; none of one that fills the sky.
+/// Under which solid angle, in steradians, a light is seen from half of some places or more; none of one that fills the
+/// sky.
 fn solid_angle(light: &Light<Curve>, places: &[DVec3]) -> Option<f64> {
     match light {
         Light::Point(_) | Light::Spot(_) => Some(0.0),

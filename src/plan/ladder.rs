@@ -25,8 +25,8 @@ impl Rung {
 /// Most diffuse and smooth colors that are combined; of more, those farthest from gray.
 const MOST: [usize; 2] = [20, 6];
 
-/// The largest relative error of a color that a basis makes in a scene: over its lights and all pairs of surfaces, and over
-/// what light of a probe meets, however many smooth surfaces those are.
+/// The largest relative error of a color that a basis makes in a scene: over its lights and all pairs of surfaces, and
+/// over what light of a probe meets, however many smooth surfaces those are.
 pub(super) fn error(survey: &Survey, seen: &Seen, basis: &Basis) -> f64 {
     missed(survey, basis, &survey.scattering(MOST[0]), &survey.smooth(MOST[1])).max(seen.error(survey, basis))
 }
@@ -70,8 +70,8 @@ fn exact_colors(light: &Emission, scattering: &[&Tint], smooth: &[&Tint], basis:
     paths(&read(scattering), &read(smooth)).iter().map(sum).collect()
 }
 
-/// Every surface i lit straight and by way of every surface j, q = r_i (1 + r_j / (1 - mean r)), alone and seen by way of
-/// every smooth surface; and the lights, seen straight and by way of one or two smooth surfaces.
+/// Every surface i lit straight and by way of every surface j, q = r_i (1 + r_j / (1 - mean r)), alone and seen by way
+/// of every smooth surface; and the lights, seen straight and by way of one or two smooth surfaces.
 fn paths(scattering: &[Vec<f64>], smooth: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let length = scattering.iter().chain(smooth).next().map_or(0, Vec::len);
     let count = scattering.len().max(1) as f64;

@@ -28,7 +28,8 @@ pub use ladder::Rung;
 pub struct Plan {
     /// What the tracer is to do.
     pub method: Method,
-    /// What it will cost, how far colors may be off and what is left out; then one decision a line, each with its numbers.
+    /// What it will cost, how far colors may be off and what is left out; then one decision a line, each with its
+    /// numbers.
     pub because: Vec<String>,
     /// Processor time that the render will take, about.
     pub processor_time: Duration,
@@ -38,8 +39,8 @@ pub struct Plan {
 
 /// Samples where the scene does not say.
 const SAMPLES: u32 = 256;
-/// Refracted rays that lie nearer to each other, in pixels, go on as one where wavelengths are drawn: a twentieth of the
-/// dispersion that can be seen, so that several surfaces in a row stay below it.
+/// Refracted rays that lie nearer to each other, in pixels, go on as one where wavelengths are drawn: a twentieth of
+/// the dispersion that can be seen, so that several surfaces in a row stay below it.
 const TOGETHER_PIXELS: f64 = 0.01;
 
 /// Decides how to render a scene.

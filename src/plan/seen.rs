@@ -27,8 +27,8 @@ struct Color {
     sum: Weighted,
     /// By sums over 1 nm.
     exact: [f64; 3],
-    /// What an error of it is relative to: its strongest channel. Of colors that are fainter than what is tolerated of the
-    /// brightest that the light makes in the view, it is that.
+    /// What an error of it is relative to: its strongest channel. Of colors that are fainter than what is tolerated of
+    /// the brightest that the light makes in the view, it is that.
     scale: f64,
 }
 

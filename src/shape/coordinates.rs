@@ -324,8 +324,8 @@ mod tests {
             let [(_, ahead, [u1, v1]), (_, behind, [u2, v2])] = [STEP, -STEP].map(|step| see(place + way * step));
             let moved = ahead.position - behind.position;
             let expected = along_u * (u1 - u2) + along_v * (v1 - v2);
-            // What is left is of third order in the step, beside roundings of places and coordinates: 1e-15 times tangents up
-            // to 40 long. A wrong tangent is off by the step.
+            // What is left is of third order in the step, beside roundings of places and coordinates: 1e-15 times
+            // tangents up to 40 long. A wrong tangent is off by the step.
             assert!((moved - expected).length() < 1e-12, "{shape:?} at {u} {v}: {moved}, not {expected}");
         }
     }

@@ -12,7 +12,8 @@ use ply_rs_bw::ply::{
 use super::mesh_data::MeshFile;
 use super::{Attributes, Vertices};
 
-/// Reads a mesh file by its ending, `.ply`, `.obj`, `.gltf` or `.glb`; checks that corners exist and vertices are finite.
+/// Reads a mesh file by its ending, `.ply`, `.obj`, `.gltf` or `.glb`; checks that corners exist and vertices are
+/// finite.
 ///
 /// # Errors
 /// A sentence that says what is wrong with the file.

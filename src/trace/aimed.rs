@@ -13,7 +13,8 @@ pub(super) fn may_aim(material: &Material<Table>) -> bool {
 
 /// The ways on from a surface whose bounces are aimed.
 ///
-/// Roulette is to end aimed paths as often as others: what their density takes from the weight is no measure of importance.
+/// Roulette is to end aimed paths as often as others: what their density takes from the weight is no measure of
+/// importance.
 pub(super) fn scatter_aimed<const N: usize>(
     aiming: &Aiming,
     at: &Interaction<N>,

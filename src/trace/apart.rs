@@ -7,8 +7,8 @@ use crate::light::Light;
 use crate::math::{DVec2, DVec3, Sampler};
 use crate::spectrum::Table;
 
-/// Lengths of the steps to a ray's neighbors, in pixels: by the longer one the neighbors on both sides of an edge are as far apart
-/// as two colors that are not seen apart.
+/// Lengths of the steps to a ray's neighbors, in pixels: by the longer one the neighbors on both sides of an edge are
+/// as far apart as two colors that are not seen apart.
 const STEPS: [f64; 2] = [0.5 * SEEN_PIXELS, 0.1 * SEEN_PIXELS];
 /// Places along each side of a pixel whose light is looked at.
 const PLACES: u32 = 6;
@@ -28,7 +28,8 @@ pub(super) fn share_apart(colors: &Colors, middle: DVec2, sampler: &Sampler, way
         let walks = [0, 1].map(|lane| colors.walk_from_camera(at, lane, sampler, way));
         let [first, second] = &walks;
         let part = || {
-            // After other surfaces, light comes from elsewhere: between facets so small the ways of neighbors tell nothing.
+            // After other surfaces, light comes from elsewhere: between facets so small the ways of neighbors tell
+            // nothing.
             see_something(colors, [first, second]) && first.legs.len() != second.legs.len()
                 || apart_by(colors, STEPS[1], at, [first, second], sampler, way) >= SEEN_PIXELS
         };
@@ -46,8 +47,8 @@ fn see_something(colors: &Colors, walks: [&Walk; 2]) -> bool {
 
 /// How many pixels apart both colors show what lies behind.
 ///
-/// The ways of a ray's neighbors, a step aside, show how far a pixel goes. Both colors are compared at one distance, so that an
-/// edge behind the glass, which one of them misses, does not count.
+/// The ways of a ray's neighbors, a step aside, show how far a pixel goes. Both colors are compared at one distance, so
+/// that an edge behind the glass, which one of them misses, does not count.
 fn apart_by(colors: &Colors, step: f64, at: DVec2, walks: [&Walk; 2], sampler: &Sampler, way: Way) -> f64 {
     let [first, second] = walks;
     if !see_something(colors, walks) {

@@ -124,7 +124,8 @@ impl Spread {
 
     /// Weight times area: how much of what is aimed is aimed in vain.
     ///
-    /// The sum of the products of two eigenvalues of the covariance, its second invariant, goes with the square of the area.
+    /// The sum of the products of two eigenvalues of the covariance, its second invariant, goes with the square of the
+    /// area.
     fn cost(&self) -> f64 {
         if self.weight <= 0.0 {
             return 0.0;
@@ -138,7 +139,8 @@ impl Spread {
     }
 }
 
-/// The direction in which points vary least: the largest eigenvector of trace(C) - C for their covariance C, by squaring.
+/// The direction in which points vary least: the largest eigenvector of trace(C) - C for their covariance C, by
+/// squaring.
 fn normal_of(points: &[(DVec3, f64)], weight: f64) -> DVec3 {
     let middle = points.iter().fold(DVec3::ZERO, |sum, (point, share)| sum + *point * (share / weight));
     let times = |x: DVec3| {

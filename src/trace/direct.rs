@@ -66,8 +66,8 @@ const MORE_DIGITS: u32 = 3;
 impl<const N: usize> DirectLighting<'_, N> {
     /// Hands the light of sampled lights to the sensor, and answers how likely it was to look at a side.
     ///
-    /// Where light also comes from beyond the surface, both sides are looked at or, where only one light is sampled, one of
-    /// them chosen by chance.
+    /// Where light also comes from beyond the surface, both sides are looked at or, where only one light is sampled,
+    /// one of them chosen by chance.
     pub(super) fn gather(&self, sampler: &Sampler, sensor: &mut Sensor) -> f64 {
         let (at, parted) = (self.at, self.path.parted);
         let near = Side { normal: at.flat, chance: None, inside: at.boundary.here, parted };
@@ -166,8 +166,8 @@ impl<const N: usize> DirectLighting<'_, N> {
         Some(Contribution { light: Some(*light), found: Found::Sampled, rgb, moved })
     }
 
-    /// The factor on a light's emission and the material's answer: over the density of both ways to the light's direction
-    /// together, where the path's own next direction may hit it.
+    /// The factor on a light's emission and the material's answer: over the density of both ways to the light's
+    /// direction together, where the path's own next direction may hit it.
     fn factor(&self, ShadowRay { sample, probability, .. }: &ShadowRay<N>, bounce_pdf: f64) -> f64 {
         let Some(pdf) = sample.pdf else { return sample.factor / probability };
         let pdf = pdf * probability;
@@ -175,7 +175,8 @@ impl<const N: usize> DirectLighting<'_, N> {
         sample.factor * weight / pdf
     }
 
-    /// None if something occludes the light; where there are holes and panes, the share that goes straight on through them.
+    /// None if something occludes the light; where there are holes and panes, the share that goes straight on through
+    /// them.
     fn unoccluded(&self, sample: &LightSample, inside: Option<MaterialId>) -> Option<Option<(Lanes<N>, Polarized)>> {
         if self.world.has_see_through() {
             return self.transmittance(sample, inside).map(Some);
@@ -203,8 +204,8 @@ fn finer(u: f64, more: f64) -> f64 {
     ((u * STEPS).floor() + more) / STEPS
 }
 
-/// The weight of a light that a path met by itself, beside next-event estimation at the path's last surface. `crossing` is where
-/// the ray meets the light, if that is a surface.
+/// The weight of a light that a path met by itself, beside next-event estimation at the path's last surface. `crossing`
+/// is where the ray meets the light, if that is a surface.
 pub(super) fn weight_of_meeting(
     world: &World,
     light: LightId,

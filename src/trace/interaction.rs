@@ -17,7 +17,8 @@ pub(super) struct Meeting<const N: usize> {
     pub(super) straight: Option<Straight<N>>,
 }
 
-/// Where a path meets a surface, and what the surface may know of it: made here, for the camera's paths, photons and probes.
+/// Where a path meets a surface, and what the surface may know of it: made here, for the camera's paths, photons and
+/// probes.
 pub(super) struct Interaction<'a, const N: usize> {
     pub(super) object: u32,
     pub(super) point: &'a SurfacePoint,
@@ -61,8 +62,8 @@ impl<'a, const N: usize> Interaction<'a, N> {
     }
 }
 
-/// What a surface may know of light that arrives there, between media on the viewer's side and beyond. `wo` leads to the viewer; `normal`
-/// is the one by which the surface scatters, on the viewer's side; `uv` says where it is met.
+/// What a surface may know of light that arrives there, between media on the viewer's side and beyond. `wo` leads to
+/// the viewer; `normal` is the one by which the surface scatters, on the viewer's side; `uv` says where it is met.
 #[inline(always)]
 pub(super) fn arrival<'a, const N: usize>(
     world: &'a World,

@@ -1,10 +1,10 @@
 //! The light pass: caustics, by photons that are sent through glass and over mirrors to what the camera sees.
 //!
-//! It finds the paths light, one or more smooth surfaces, one that scatters widely, camera; and so all of those paths whose
-//! light and first smooth surface photons are sent from and to. The camera's rays leave exactly these out, so that
-//! nothing counts twice and no weights are needed. Veach 1997, *Robust Monte Carlo Methods for Light Transport Simulation*,
-//! section 10.3.4, has the importance; Grittmann et al. 2018, *Efficient Caustic Rendering with Lightweight Photon
-//! Mapping*, the split by kind of path.
+//! It finds the paths light, one or more smooth surfaces, one that scatters widely, camera; and so all of those paths
+//! whose light and first smooth surface photons are sent from and to. The camera's rays leave exactly these out, so
+//! that nothing counts twice and no weights are needed. Veach 1997, *Robust Monte Carlo Methods for Light Transport
+//! Simulation*, section 10.3.4, has the importance; Grittmann et al. 2018, *Efficient Caustic Rendering with
+//! Lightweight Photon Mapping*, the split by kind of path.
 
 use rayon::prelude::*;
 
@@ -24,13 +24,13 @@ const AT_ONCE: usize = 64;
 const SEED: u64 = 0x7068_6f74;
 const AHEAD_SEED: u64 = 0x6168_6561;
 
-/// Of an aim's photons, one in so many is sent ahead to learn which ones are seen, unless those are too few to tell, and as
-/// many as tell enough.
+/// Of an aim's photons, one in so many is sent ahead to learn which ones are seen, unless those are too few to tell,
+/// and as many as tell enough.
 const AHEAD: u64 = 8;
 const TOO_FEW: u64 = 4096;
 const ENOUGH: u64 = 1 << 16;
-/// Photons of all aims that the plan sends ahead, as many whatever the image is: no more than these, and than follow so many
-/// rays, if those are not too few to tell; and of all aims those that tell which are seen.
+/// Photons of all aims that the plan sends ahead, as many whatever the image is: no more than these, and than follow so
+/// many rays, if those are not too few to tell; and of all aims those that tell which are seen.
 const OF_A_PLAN: u64 = 1 << 17;
 const RAYS_OF_A_PLAN: f64 = (1 << 18) as f64;
 const SEEN_OF_A_PLAN: u64 = 1 << 16;
@@ -110,7 +110,8 @@ struct Learned {
     rays: u64,
 }
 
-/// Sends photons ahead. The whole image sees them, also where only a part of it is made, so that all parts are made alike.
+/// Sends photons ahead. The whole image sees them, also where only a part of it is made, so that all parts are made
+/// alike.
 fn send_ahead<const N: usize>(world: &World, most: u64) -> Learned {
     let mut world = world.clone();
     world.scene.film.crop = None;

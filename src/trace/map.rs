@@ -1,7 +1,7 @@
 //! A map of points: a balanced k-d tree.
 //!
-//! Bentley 1975, *Multidimensional Binary Search Trees Used for Associative Searching*; Jensen 2001, *Realistic Image Synthesis
-//! Using Photon Mapping*, section 6.2, keeps photons in one.
+//! Bentley 1975, *Multidimensional Binary Search Trees Used for Associative Searching*; Jensen 2001, *Realistic Image
+//! Synthesis Using Photon Mapping*, section 6.2, keeps photons in one.
 
 use std::ops::Range;
 

@@ -94,7 +94,8 @@ impl Media {
         Some(Boundary { here: self.inside(scene), beyond: crossed.inside(scene), crossed })
     }
 
-    /// The same at a surface of any material, which may bound no medium; and whether the bodies around the ray fit to it.
+    /// The same at a surface of any material, which may bound no medium; and whether the bodies around the ray fit to
+    /// it.
     pub(super) fn at_surface(&self, scene: &Scene<Table>, material: MaterialId, enters: bool) -> (Boundary, bool) {
         let here = self.inside(scene);
         let same = Boundary { here, beyond: here, crossed: *self };
@@ -148,9 +149,9 @@ pub(super) fn index<const N: usize>(scene: &Scene<Table>, draw: &Draw<N>, inside
 
 /// The index by which all rays are refracted on each side of a surface; none where that is each lane's own.
 ///
-/// Shares are exact where media have flat faces, and no lane loses or wins light anywhere. What is left out: a lane travels
-/// as far inside as the ray, and a surface that scatters widely there gets light from outside over the ray's solid
-/// angle, which is (n / d)^2 of the light of a lane of index n by a ray of index d.
+/// Shares are exact where media have flat faces, and no lane loses or wins light anywhere. What is left out: a lane
+/// travels as far inside as the ray, and a surface that scatters widely there gets light from outside over the ray's
+/// solid angle, which is (n / d)^2 of the light of a lane of index n by a ray of index d.
 pub(super) fn direction_indices(scene: &Scene<Table>, sides: [Option<MaterialId>; 2]) -> [Option<f64>; 2] {
     let tables = sides.map(|side| side.map(|material| &medium(scene, material).index));
     if tables.iter().flatten().all(|table| table.direction().is_none()) {

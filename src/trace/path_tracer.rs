@@ -32,8 +32,8 @@ const PLACE: u32 = 0;
 const LENS: u32 = 3;
 /// Uses of the random numbers at a vertex.
 const SCATTER: u32 = 1;
-/// Surfaces of a path whose directions are drawn from a sequence spread over the pixel's samples. Behind them the samples
-/// see so many different places that plain random numbers, which cost less, are taken.
+/// Surfaces of a path whose directions are drawn from a sequence spread over the pixel's samples. Behind them the
+/// samples see so many different places that plain random numbers, which cost less, are taken.
 const SPREAD: u32 = 4;
 
 impl<'a, const N: usize> PathTracer<'a, N> {
@@ -217,7 +217,8 @@ impl<'a, const N: usize> PathTracer<'a, N> {
         }
     }
 
-    /// Tells an observer what a bounce found that went on for a distance, where the sensor had received some light before.
+    /// Tells an observer what a bounce found that went on for a distance, where the sensor had received some light
+    /// before.
     #[inline]
     fn tell(&self, path: &Path<N>, draw: &Draw<N>, distance: f64, before: [f64; 3]) {
         if let (Some(observer), Some(ScatterSample { from, normal, .. })) = (self.sensor.observer, path.scatter) {

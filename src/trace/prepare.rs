@@ -6,8 +6,8 @@ use super::{Method, World};
 use crate::scene::Scene;
 use crate::spectrum::Curve;
 
-/// The scene, tabulated for the method, with rays and photons sent ahead to learn where lamps are visible and where to send the other
-/// photons.
+/// The scene, tabulated for the method, with rays and photons sent ahead to learn where lamps are visible and where to
+/// send the other photons.
 pub fn prepare(scene: &Scene<Curve>, method: Method) -> World {
     let mut world = prepare_unguided(scene, method);
     learn_where_to_send(&mut world, u64::MAX);

@@ -14,7 +14,8 @@ use super::tile::{TILE, Tile};
 use super::width::in_lanes;
 use crate::film::{Film, Pixel};
 
-/// Samples of each pixel in the first pass, where no photons are gathered; every other pass takes as many as were taken before.
+/// Samples of each pixel in the first pass, where no photons are gathered; every other pass takes as many as were taken
+/// before.
 const FIRST_PASS: u32 = 16;
 
 /// What rendering noticed.
@@ -46,8 +47,8 @@ pub struct Report {
     pub photons: u64,
 }
 
-/// Renders the world's image, or the part of it that is asked for. `progress` is told how many camera samples and photons are
-/// done, from any thread; in the end they are [`work`].
+/// Renders the world's image, or the part of it that is asked for. `progress` is told how many camera samples and
+/// photons are done, from any thread; in the end they are [`work`].
 pub fn render(world: &World, progress: &(dyn Fn(u64) + Sync)) -> (Film, Report) {
     let mut rendering = Rendering::new(world);
     while rendering.advance(progress) {}
@@ -65,8 +66,8 @@ pub fn work(world: &World) -> u64 {
 
 /// An image in the making. It advances pass by pass, can be looked at after each, and is finished after the last.
 ///
-/// A pass takes the next samples of all pixels; where photons are gathered, each pass sends its own before. The light pass comes before the
-/// first.
+/// A pass takes the next samples of all pixels; where photons are gathered, each pass sends its own before. The light
+/// pass comes before the first.
 pub struct Rendering<W> {
     world: W,
     tiles: Vec<Tile>,
@@ -100,8 +101,8 @@ impl<W: Borrow<World>> Rendering<W> {
         self.samples
     }
 
-    /// Makes the next pass, if there is one, and answers whether another one is left. `progress` is told how many camera samples and
-    /// photons were done since it was last told, from any thread.
+    /// Makes the next pass, if there is one, and answers whether another one is left. `progress` is told how many
+    /// camera samples and photons were done since it was last told, from any thread.
     pub fn advance(&mut self, progress: &(dyn Fn(u64) + Sync)) -> bool {
         let basis = self.world().method.basis.clone();
         if self.samples < self.world().method.samples {

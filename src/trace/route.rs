@@ -13,7 +13,8 @@ use crate::spectrum::Lanes;
 pub struct Step {
     /// The material.
     pub material: MaterialId,
-    /// Which of the materials that it is made of, in the order of [`Material::with_parts`](crate::material::Material::with_parts).
+    /// Which of the materials that it is made of, in the order of
+    /// [`Material::with_parts`](crate::material::Material::with_parts).
     pub part: usize,
     /// What light does there.
     pub way: Way,

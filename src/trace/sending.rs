@@ -15,8 +15,8 @@ const BATCH: u64 = 4096;
 /// Use of a photon's random numbers: its first ray.
 const RAY: u32 = 0;
 
-/// Photons are followed like camera paths: in all branches while they carry much, then in one. Splitting at 0.05 took as much
-/// time for as much noise, never splitting 2 to 15 times as much (`benches/caustics.rs`).
+/// Photons are followed like camera paths: in all branches while they carry much, then in one. Splitting at 0.05 took
+/// as much time for as much noise, never splitting 2 to 15 times as much (`benches/caustics.rs`).
 const PHOTONS: Transport = Transport::Random { split: 0.25, roulette: 0.05 };
 
 /// A part of an aim's photons.
@@ -51,8 +51,8 @@ pub(super) fn batches(
     aims.aims.iter().enumerate().flat_map(of_aim).collect()
 }
 
-/// Follows the photons of one batch; `land` says what is kept of one that lands. What is learned is only of which photons
-/// something would be kept.
+/// Follows the photons of one batch; `land` says what is kept of one that lands. What is learned is only of which
+/// photons something would be kept.
 pub(super) fn send<const N: usize, T>(
     world: &World,
     aims: &PhotonTargets,

@@ -11,7 +11,8 @@ use super::walk::Colors;
 pub struct Spread {
     /// Share of the view that is on dispersive surfaces.
     pub seen: f64,
-    /// How many pixels apart 400 and 700 nm show what lies behind dispersive surfaces, on a fifth of a pixel of the view or more.
+    /// How many pixels apart 400 and 700 nm show what lies behind dispersive surfaces, on a fifth of a pixel of the
+    /// view or more.
     pub seen_pixels: f64,
     /// The same for the light that comes through dispersive surfaces to diffuse ones that are seen.
     pub lit_pixels: f64,

@@ -57,8 +57,8 @@ pub(super) fn is_met<const N: usize>(
     path.throughput.through(straight.holes).weight(shares) <= u * path.throughput.weight(shares)
 }
 
-/// The share of each lane that goes straight on through all surfaces before a light at a distance that let it, and how far
-/// these polarize it; none if no light does.
+/// The share of each lane that goes straight on through all surfaces before a light at a distance that let it, and how
+/// far these polarize it; none if no light does.
 ///
 /// `inside` is the medium around the ray.
 pub(super) fn transmittance<const N: usize>(

@@ -16,8 +16,8 @@ const ENOUGH: usize = 2048;
 /// Sets these random numbers apart from those of the image.
 const SEED: u64 = 0x6c61_6d70;
 
-/// Learns where lamps are visible that may be hidden for the most part. The whole image counts, also where only a part of it is made,
-/// so that all parts are made alike.
+/// Learns where lamps are visible that may be hidden for the most part. The whole image counts, also where only a part
+/// of it is made, so that all parts are made alike.
 pub(super) fn learn_visible_caps(world: &mut World) {
     if !world.scene.lights.iter().any(|light| matches!(light, Light::Area(area) if area.may_show_a_cap())) {
         return;

@@ -44,9 +44,9 @@ pub const NO_ITEM: u32 = u32::MAX;
 /// A ray in 32 bits, prepared so that no rounding makes it miss a box.
 ///
 /// The distance to a plane b is (b - o) / d. For sides where the ray enters, o is rounded onward along the ray, and for
-/// sides where it leaves, backward: then b - o is too small there and too large here. Its rounding, that of 1 / d and that of
-/// the product are relative; three of u on each side and one of the factor are less than the 12 u by which the far
-/// distance is enlarged (Ize 2013, *Robust BVH Ray Traversal*). Where 1 / d overflows, it is the largest number for
+/// sides where it leaves, backward: then b - o is too small there and too large here. Its rounding, that of 1 / d and
+/// that of the product are relative; three of u on each side and one of the factor are less than the 12 u by which the
+/// far distance is enlarged (Ize 2013, *Robust BVH Ray Traversal*). Where 1 / d overflows, it is the largest number for
 /// entering and infinite for leaving, which is again on the safe side.
 pub struct Slabs {
     pub backward: [bool; 3],
@@ -75,7 +75,8 @@ impl Slabs {
             Self { backward, entry: [0.0; 3], exit: [0.0; 3], entry_inverse: [0.0; 3], exit_inverse: [0.0; 3] };
         for axis in 0..3 {
             let near = origin[axis] as f32;
-            // The conversion is off by u at most, and so is the sum; below the normal numbers by less than the smallest.
+            // The conversion is off by u at most, and so is the sum; below the normal numbers by less than the
+            // smallest.
             let slack = near.abs() * (2.0 * f32::EPSILON) + f32::MIN_POSITIVE;
             let onward = if backward[axis] { -slack } else { slack };
             slabs.entry[axis] = near + onward;
