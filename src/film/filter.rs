@@ -14,7 +14,8 @@ use crate::math::{DVec2, disk};
 ///
 /// ```toml
 /// film.filter = "box"        # or "center", "tent", "gaussian", "blackman-harris"
-/// # film.filter = { gaussian = { sigma = 0.5 } }       # or { tent = { radius = 1 } }, { blackman-harris = { radius = 1.5 } }
+/// # film.filter = { gaussian = { sigma = 0.5 } }
+/// # or { tent = { radius = 1 } }, or { blackman-harris = { radius = 1.5 } }
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Filter {

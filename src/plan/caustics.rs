@@ -2,8 +2,8 @@
 
 use std::f64::consts::TAU;
 
+use super::efficiency::{Worth, weigh};
 use super::words::in_number;
-use super::worth::{Worth, weigh};
 use crate::light::{Light, LightBounds, LightId};
 use crate::material::Material;
 use crate::math::{DVec2, DVec3, one_minus_cos_of_cone};

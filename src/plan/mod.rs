@@ -1,17 +1,17 @@
 //! Floor 5: looks at a scene, decides how little of the world must be modelled to render it, and says why.
 
-mod beyond;
 mod bright;
+mod candidates;
 mod caustics;
-mod ladder;
+mod efficiency;
 mod lights;
 mod model;
+mod photon_map;
 mod polarization;
 mod seen;
 mod survey;
 mod transport;
 mod words;
-mod worth;
 
 use std::time::Duration;
 
@@ -21,7 +21,7 @@ use crate::trace::{LightPass, Method, Probe, Transport, prepare_unguided, probe}
 use model::Model;
 use words::{in_number, in_words};
 
-pub use ladder::Rung;
+pub use candidates::Candidate;
 
 /// How to render a scene and, in words, why.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,7 +34,7 @@ pub struct Plan {
     /// Processor time that the render will take, about.
     pub processor_time: Duration,
     /// The models of color that were weighed, from few lanes to many.
-    pub rungs: Vec<Rung>,
+    pub candidates: Vec<Candidate>,
 }
 
 /// Samples where the scene does not say.
@@ -45,7 +45,7 @@ const TOGETHER_PIXELS: f64 = 0.01;
 
 /// Decides how to render a scene.
 pub fn plan(scene: &Scene<Curve>) -> Plan {
-    let Model { basis, missed, because: mut decisions, next, rungs } = model::model(scene);
+    let Model { basis, missed, because: mut decisions, next, candidates } = model::model(scene);
     let together = if basis.draws_wavelengths() { TOGETHER_PIXELS * scene.camera.pixel_angle() } else { 0.0 };
     let (transport, reason) = transport::transport(scene, &basis, together);
     decisions.push(reason);
@@ -70,7 +70,7 @@ pub fn plan(scene: &Scene<Curve>) -> Plan {
     };
     let world = prepare_unguided(scene, method.clone());
     let (shown, why_shown) = caustics::light_pass(scene, &world);
-    let (light_pass, why_gathered) = beyond::with_map(scene, &world, shown.as_ref());
+    let (light_pass, why_gathered) = photon_map::with_map(scene, &world, shown.as_ref());
     // Why nothing is shown matters only where nothing is gathered either.
     decisions.extend(why_shown.into_iter().filter(|_| shown.is_some() || light_pass.is_none()));
     decisions.extend(why_gathered);
@@ -89,7 +89,7 @@ pub fn plan(scene: &Scene<Curve>) -> Plan {
         because.push(format!("lanes part in {:.0} % of the camera samples", 100.0 * probe.parted));
     }
     because.extend(next.map(|basis| beside(scene, &method, &probe, basis)));
-    Plan { method, because, processor_time, rungs }
+    Plan { method, because, processor_time, candidates }
 }
 
 /// What lights cannot do.

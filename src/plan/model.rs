@@ -1,13 +1,13 @@
 //! Which lanes carry the light, and whether they part.
 
-use super::ladder::{LANES_SAFETY, Rung, bands_beside, error, ladder, own_lines};
+use super::candidates::{Candidate, LANES_SAFETY, bands_beside, candidates, error, own_lines};
 use super::seen::Seen;
 use super::survey::{Survey, disperses, tolerance};
 use super::words::percent;
 use crate::material::Material;
 use crate::scene::{ModelText, Scene};
 use crate::spectrum::{Basis, Curve, CurveKind, Emission, Quantity, provenance};
-use crate::trace::{COLORS_NM, Method, Spread, Transport, World, spread};
+use crate::trace::{COLORS_NM, Dispersion, Method, Transport, World, dispersion as measured_dispersion};
 
 /// Share of the camera rays on dispersive surfaces from which twice the wavelengths are carried.
 const FILLED: f64 = 0.5;
@@ -23,7 +23,7 @@ pub(super) struct Model {
     /// The model beside it that would cost more or less.
     pub(super) next: Option<Basis>,
     /// The models it was chosen from.
-    pub(super) rungs: Vec<Rung>,
+    pub(super) candidates: Vec<Candidate>,
 }
 
 /// The least model that a scene needs, or the one it asks for.
@@ -37,33 +37,34 @@ pub(super) fn model(scene: &Scene<Curve>) -> Model {
     let hero = asks_hero || (scene.render.model == ModelText::Auto && visible);
     let filled = dispersion.is_some_and(|d| d.seen > FILLED);
     let [bands, heroes] = HERO[usize::from(filled)];
-    let rungs = ladder(&survey, &seen, if hero { heroes } else { 0 });
+    let candidates = candidates(&survey, &seen, if hero { heroes } else { 0 });
     let tolerance = tolerance(scene);
-    let chosen = rungs.iter().position(|rung| rung.bound() <= tolerance).unwrap_or(rungs.len() - 1);
+    let chosen = candidates.iter().position(|candidate| candidate.bound() <= tolerance).unwrap_or(candidates.len() - 1);
 
-    let is_exact = survey.is_plain() && rungs[0].error == 0.0;
+    let is_exact = survey.is_plain() && candidates[0].error == 0.0;
     let with_heroes = |bands| bands_beside(&survey, bands, heroes).with_heroes(heroes, &survey.emissions());
     let (basis, why) = match scene.render.model {
         _ if hero && asks_hero => (with_heroes(bands), "the scene asks for it".to_owned()),
         _ if hero => {
-            let least = rungs[chosen].basis.fixed_lanes().saturating_sub(own_lines(&survey, heroes).len());
+            let least = candidates[chosen].basis.fixed_lanes().saturating_sub(own_lines(&survey, heroes).len());
             (with_heroes(bands.max(least)), "dispersion is seen".to_owned())
         }
         ModelText::Rgb => (three_bands(&survey), "the scene asks for it".to_owned()),
         ModelText::Bands(count) => (bands_beside(&survey, count as usize, 0), "the scene asks for it".to_owned()),
-        _ => (rungs[chosen].basis.clone(), least(&rungs, chosen, tolerance, is_exact)),
+        _ => (candidates[chosen].basis.clone(), least(&candidates, chosen, tolerance, is_exact)),
     };
-    let next = if hero { rungs.get(chosen) } else { rungs.get(chosen + 1) }.map(|rung| rung.basis.clone());
+    let next =
+        if hero { candidates.get(chosen) } else { candidates.get(chosen + 1) }.map(|candidate| candidate.basis.clone());
     let next = next.filter(|_| hero || !survey.is_plain());
     let mut because = vec![format!("model {}: {} lanes; {why}", basis.name(), basis.lanes())];
-    let missed = (!is_exact || basis.fixed_lanes() > 3).then(|| missed(&rungs, &basis, &survey, &seen, tolerance));
+    let missed = (!is_exact || basis.fixed_lanes() > 3).then(|| missed(&candidates, &basis, &survey, &seen, tolerance));
     because.extend(lines_without_lane(&survey, &basis));
     because.extend(dispersion.map(|d| spoken(&d, visible, hero)));
     let basis = if together { basis.kept_together() } else { basis };
     because.extend(desaturated(scene, &basis));
     because.extend(materials(scene, &basis));
     let next = next.map(|next| if together || hero { next.kept_together() } else { next });
-    Model { basis, missed, because, next, rungs }
+    Model { basis, missed, because, next, candidates }
 }
 
 /// Three bands, whatever they miss.
@@ -76,8 +77,8 @@ fn three_bands(survey: &Survey) -> Basis {
     }
 }
 
-fn least(rungs: &[Rung], chosen: usize, tolerance: f64, plain: bool) -> String {
-    match rungs[chosen].bound() {
+fn least(candidates: &[Candidate], chosen: usize, tolerance: f64, plain: bool) -> String {
+    match candidates[chosen].bound() {
         _ if plain => {
             "every color is a number or rgb under the film's white, so more lanes would show nothing more".into()
         }
@@ -86,15 +87,17 @@ fn least(rungs: &[Rung], chosen: usize, tolerance: f64, plain: bool) -> String {
     }
 }
 
-/// The whole ladder in one line; for heroes, what their fixed lanes miss.
-fn missed(rungs: &[Rung], basis: &Basis, survey: &Survey, seen: &Seen, tolerance: f64) -> String {
+/// All candidates in one line; for heroes, what their fixed lanes miss.
+fn missed(candidates: &[Candidate], basis: &Basis, survey: &Survey, seen: &Seen, tolerance: f64) -> String {
     if basis.draws_wavelengths() {
         let bound = LANES_SAFETY * error(survey, seen, basis);
         return format!("colors are off by at most {} ({} is tolerated)", percent(bound), percent(tolerance));
     }
-    let mut steps: Vec<String> =
-        rungs.iter().map(|rung| format!("{} {}", rung.basis.name(), percent(rung.bound()))).collect();
-    if !rungs.iter().any(|rung| rung.basis.name() == basis.name()) {
+    let mut steps: Vec<String> = candidates
+        .iter()
+        .map(|candidate| format!("{} {}", candidate.basis.name(), percent(candidate.bound())))
+        .collect();
+    if !candidates.iter().any(|candidate| candidate.basis.name() == basis.name()) {
         steps.push(format!("{} {}", basis.name(), percent(LANES_SAFETY * error(survey, seen, basis))));
     }
     format!("colors are off by at most ({} is tolerated): {}", percent(tolerance), steps.join(", "))
@@ -114,7 +117,7 @@ fn lines_without_lane(survey: &Survey, basis: &Basis) -> Option<String> {
 }
 
 /// How far dispersive glass pulls colors apart; none if there is none.
-fn dispersion(scene: &Scene<Curve>) -> Option<Spread> {
+fn dispersion(scene: &Scene<Curve>) -> Option<Dispersion> {
     scene.materials.iter().find(|m| m.material.medium().is_some_and(disperses))?;
     let basis = Basis::wavelengths(scene.film.color_space, COLORS_NM.into(), &[]);
     let transport = Transport::Random { split: 1.0, roulette: 0.0 };
@@ -131,24 +134,24 @@ fn dispersion(scene: &Scene<Curve>) -> Option<Spread> {
         light_pass: None,
         bright: None,
     };
-    Some(spread(&World::new(scene, method)))
+    Some(measured_dispersion(&World::new(scene, method)))
 }
 
-fn spoken(spread: &Spread, visible: bool, hero: bool) -> String {
+fn spoken(dispersion: &Dispersion, visible: bool, hero: bool) -> String {
     let [from, to] = COLORS_NM;
     let pixels = |x: f64| if x < 9.95 { format!("{x:.2}") } else { format!("{x:.0}") };
-    let share = match 100.0 * spread.seen {
+    let share = match 100.0 * dispersion.seen {
         p if p == 0.0 || p >= 0.5 => format!("{p:.0} %"),
         p => format!("{p:.1e} %"),
     };
-    let lit = format!("{} pixels", pixels(spread.lit_pixels));
-    let shown = if spread.dark {
+    let lit = format!("{} pixels", pixels(dispersion.lit_pixels));
+    let shown = if dispersion.dark {
         format!(
             "no ray of the probe saw anything through the dispersive glass in {share} of the view, which pulls {from} and {to} nm up to \
              {lit} apart where it lights surfaces"
         )
     } else {
-        let seen = pixels(spread.seen_pixels);
+        let seen = pixels(dispersion.seen_pixels);
         format!(
             "dispersive glass in {share} of the view pulls {from} and {to} nm up to {seen} pixels apart, and up to {lit} where it lights \
              surfaces"

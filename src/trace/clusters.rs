@@ -68,7 +68,7 @@ impl Cluster {
             }
         }
         let (_, center, half) = best?;
-        let cost = Spread::of(&points).cost();
+        let cost = Dispersion::of(&points).cost();
         Some(Self { points, cost, center, half })
     }
 
@@ -79,7 +79,7 @@ impl Cluster {
             for cut in 0..CUTS {
                 let place = 2.0 * (cut as f64 + 1.0) / (CUTS as f64 + 1.0) - 1.0;
                 let level = axis.dot(self.center) + place * axis.length_squared();
-                let mut sides = [Spread::default(); 2];
+                let mut sides = [Dispersion::default(); 2];
                 self.points
                     .iter()
                     .for_each(|point| sides[usize::from(point.0.dot(axis) > level)].add(point.0, point.1));
@@ -98,7 +98,7 @@ impl Cluster {
 
 /// How far weighted points are spread.
 #[derive(Clone, Copy, Default)]
-struct Spread {
+struct Dispersion {
     count: usize,
     weight: f64,
     sum: DVec3,
@@ -107,7 +107,7 @@ struct Spread {
     products: DVec3,
 }
 
-impl Spread {
+impl Dispersion {
     fn of(points: &[(DVec3, f64)]) -> Self {
         let mut all = Self::default();
         points.iter().for_each(|point| all.add(point.0, point.1));

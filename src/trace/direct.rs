@@ -98,7 +98,7 @@ impl<const N: usize> DirectLighting<'_, N> {
             }
         };
         if self.all_lights {
-            for (number, &light) in self.world.targets.iter().enumerate() {
+            for (number, &light) in self.world.sampled_lights.iter().enumerate() {
                 let u = match number {
                     0 => [self.u[0], self.u[1]],
                     _ => {

@@ -14,8 +14,8 @@ use std::f64::consts::PI;
 
 use super::World;
 use super::interaction::Interaction;
-use super::merge::{Landed, Photons};
 use super::path::Path;
+use super::photon_map::{Landed, PhotonMap};
 use super::polarization::Polarized;
 use super::sensor::{add, amount};
 use super::shading;
@@ -68,7 +68,7 @@ struct Chosen {
 /// What the sensor gets of the photons around a place that a path has reached, and how much of it polarization may
 /// change: an estimate by the photon that is looked at.
 pub(super) fn gather<const N: usize>(
-    photons: &Photons<N>,
+    photons: &PhotonMap<N>,
     world: &World,
     path: &Path<N>,
     at: &Interaction<N>,

@@ -9,7 +9,7 @@
 use rayon::prelude::*;
 
 use super::photon::{Landing, Splat, show as show_photon};
-use super::sending::{Sent, batches, send};
+use super::photon_batch::{Sent, batches, send};
 use super::sensor::amount;
 use super::stats::Stats;
 use super::tile::TILE;
@@ -24,22 +24,22 @@ const AT_ONCE: usize = 64;
 const SEED: u64 = 0x7068_6f74;
 const AHEAD_SEED: u64 = 0x6168_6561;
 
-/// Of an aim's photons, one in so many is sent ahead to learn which ones are seen, unless those are too few to tell,
+/// Of an target's photons, one in so many is sent ahead to learn which ones are seen, unless those are too few to tell,
 /// and as many as tell enough.
 const AHEAD: u64 = 8;
 const TOO_FEW: u64 = 4096;
 const ENOUGH: u64 = 1 << 16;
-/// Photons of all aims that the plan sends ahead, as many whatever the image is: no more than these, and than follow so
-/// many rays, if those are not too few to tell; and of all aims those that tell which are seen.
+/// Photons of all targets that the plan sends ahead, as many whatever the image is: no more than these, and than follow so
+/// many rays, if those are not too few to tell; and of all targets those that tell which are seen.
 const OF_A_PLAN: u64 = 1 << 17;
 const RAYS_OF_A_PLAN: f64 = (1 << 18) as f64;
 const SEEN_OF_A_PLAN: u64 = 1 << 16;
-/// Of each aim, photons that tell how many rays one follows.
+/// Of each target, photons that tell how many rays one follows.
 const FIRST: u64 = 256;
 
 /// What the light pass found.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Shown {
+pub(super) struct CausticImage {
     /// Film values of the window's pixels; empty where there is no pass.
     pub(super) pixels: Vec<[f64; 3]>,
     /// How much of their light polarization may change, of every tile.
@@ -50,9 +50,9 @@ pub(super) struct Shown {
 }
 
 /// Sends all photons of a world's light pass; `progress` is told how many are done.
-pub(super) fn show<const N: usize>(world: &World, progress: &(dyn Fn(u64) + Sync)) -> Shown {
-    if world.aims.is_none() {
-        return Shown::default();
+pub(super) fn show<const N: usize>(world: &World, progress: &(dyn Fn(u64) + Sync)) -> CausticImage {
+    if world.photon_targets.is_none() {
+        return CausticImage::default();
     }
     let window = world.scene.film.window();
     let mut pixels = vec![[0.0; 3]; window.width as usize * window.height as usize];
@@ -66,7 +66,7 @@ pub(super) fn show<const N: usize>(world: &World, progress: &(dyn Fn(u64) + Sync
         }
     };
     let shown = splats::<N>(world, progress, add);
-    Shown { pixels, moved, ..shown }
+    CausticImage { pixels, moved, ..shown }
 }
 
 /// Sends them and hands over what they show, in an order that never changes; holds no image.
@@ -74,13 +74,13 @@ pub(super) fn splats<const N: usize>(
     world: &World,
     progress: &(dyn Fn(u64) + Sync),
     take: &mut dyn FnMut(Splat),
-) -> Shown {
-    let mut shown = Shown::default();
-    let Some(aims) = &world.aims else { return shown };
-    let batches = batches(aims, |_| 0, |aim| aim.photons, world.method.seed ^ SEED);
+) -> CausticImage {
+    let mut shown = CausticImage::default();
+    let Some(targets) = &world.photon_targets else { return shown };
+    let batches = batches(targets, |_| 0, |target| target.photons, world.method.seed ^ SEED);
     for group in batches.chunks(AT_ONCE) {
         let done: Vec<Sent<Splat>> =
-            group.par_iter().map(|batch| send::<N, _>(world, aims, *batch, false, show_one)).collect();
+            group.par_iter().map(|batch| send::<N, _>(world, targets, *batch, false, show_one)).collect();
         progress(group.iter().map(|batch| batch.count).sum());
         for sent in done {
             shown.stats += sent.stats;
@@ -104,7 +104,7 @@ fn show_one<const N: usize>(walker: &Walker<N>, landing: &Landing<N>, sampler: &
 /// What photons sent ahead found.
 #[derive(Default)]
 struct Learned {
-    /// Of each aim, the places and whether the camera saw them.
+    /// Of each target, the places and whether the camera saw them.
     found: Vec<Vec<([f64; 2], bool)>>,
     /// Rays followed.
     rays: u64,
@@ -115,14 +115,14 @@ struct Learned {
 fn send_ahead<const N: usize>(world: &World, most: u64) -> Learned {
     let mut world = world.clone();
     world.scene.film.crop = None;
-    let Some(aims) = &world.aims else { return Learned::default() };
-    let batches = batches(aims, |_| 0, |aim| aim.photons.min(most), world.method.seed ^ AHEAD_SEED);
+    let Some(targets) = &world.photon_targets else { return Learned::default() };
+    let batches = batches(targets, |_| 0, |target| target.photons.min(most), world.method.seed ^ AHEAD_SEED);
     let done: Vec<Sent<Splat>> =
-        batches.par_iter().map(|batch| send::<N, _>(&world, aims, *batch, true, show_one)).collect();
-    let mut learned = Learned { found: vec![Vec::new(); aims.aims.len()], rays: 0 };
+        batches.par_iter().map(|batch| send::<N, _>(&world, targets, *batch, true, show_one)).collect();
+    let mut learned = Learned { found: vec![Vec::new(); targets.targets.len()], rays: 0 };
     for (batch, sent) in batches.iter().zip(done) {
         learned.rays += sent.stats.rays;
-        learned.found[batch.aim].extend(sent.places);
+        learned.found[batch.target].extend(sent.places);
     }
     learned
 }
@@ -130,12 +130,12 @@ fn send_ahead<const N: usize>(world: &World, most: u64) -> Learned {
 /// Of the photons of each light, the share that the camera sees; of many lights, of a light and its neighbors.
 pub fn seen_photons(world: &World) -> Vec<f64> {
     let mut shares = vec![0.0; world.scene.lights.len()];
-    let Some(aims) = &world.aims else { return shares };
-    let most = (SEEN_OF_A_PLAN / aims.aims.len() as u64).clamp(1, TOO_FEW);
+    let Some(targets) = &world.photon_targets else { return shares };
+    let most = (SEEN_OF_A_PLAN / targets.targets.len() as u64).clamp(1, TOO_FEW);
     let found = in_lanes!(&world.method.basis, N => send_ahead::<N>(world, most)).found;
     let mut counts = vec![[0_u32; 2]; shares.len()];
-    for (aim, photons) in aims.aims.iter().zip(found) {
-        let [sent, seen] = &mut counts[aim.light];
+    for (target, photons) in targets.targets.iter().zip(found) {
+        let [sent, seen] = &mut counts[target.light];
         *sent += photons.len() as u32;
         *seen += photons.iter().filter(|photon| photon.1).count() as u32;
     }
@@ -151,27 +151,31 @@ pub fn seen_photons(world: &World) -> Vec<f64> {
 /// for one of few.
 pub fn piloted(world: &World, light_pass: LightPass) -> World {
     let mut world = world.with_light_pass(Some(light_pass));
-    let aims = world.aims.as_ref().map_or(1, |aims| aims.aims.len() as u64);
-    let most = OF_A_PLAN / aims;
+    let targets = world.photon_targets.as_ref().map_or(1, |targets| targets.targets.len() as u64);
+    let most = OF_A_PLAN / targets;
     if most >= TOO_FEW {
         let first = in_lanes!(&world.method.basis, N => send_ahead::<N>(&world, FIRST));
         let sent = first.found.iter().map(Vec::len).sum::<usize>() as f64;
-        let by_rays = RAYS_OF_A_PLAN * sent / (first.rays as f64 * aims as f64);
+        let by_rays = RAYS_OF_A_PLAN * sent / (first.rays as f64 * targets as f64);
         learn_where_to_send(&mut world, (by_rays as u64).clamp(TOO_FEW, most));
     }
     world
 }
 
-/// Sends photons ahead, at most so many of an aim, and the others where those were seen.
+/// Sends photons ahead, at most so many of an target, and the others where those were seen.
 pub(super) fn learn_where_to_send(world: &mut World, most: u64) {
-    let Some(least) = world.aims.as_ref().and_then(|aims| aims.aims.iter().map(|aim| aim.photons / AHEAD).min()) else {
+    let Some(least) = world
+        .photon_targets
+        .as_ref()
+        .and_then(|targets| targets.targets.iter().map(|target| target.photons / AHEAD).min())
+    else {
         return;
     };
     let ahead = least.min(ENOUGH).min(most);
     if ahead >= TOO_FEW {
         let found = in_lanes!(&world.method.basis, N => send_ahead::<N>(world, ahead)).found;
-        if let Some(aims) = &mut world.aims {
-            aims.learn(&found);
+        if let Some(targets) = &mut world.photon_targets {
+            targets.learn(&found);
         }
     }
 }

@@ -5,13 +5,13 @@
 //! 1. A lane whose throughput is 0 is not on the ray.
 //! 2. Lanes on one ray share its geometry, random numbers and density, and differ only in throughput.
 //! 3. A surface answers with branches, a direction and the lanes that came by it; dispersive lanes part there.
-//! 4. The [`walker`] is a loop over pending rays: it follows all branches while the weight is large, then one, then
+//! 4. The walker is a loop over pending rays: it follows all branches while the weight is large, then one, then
 //!    plays roulette. A weight is the mean throughput over the lanes, without the factor of radiance between media.
 //! 5. Light that goes straight on, through holes and panes, makes no other kind of path: next-event estimation and
 //!    photons look through them.
 //! 6. In Heckbert's notation, with S for surfaces that mirror or refract and D for those that scatter widely: photons
 //!    may find `L S+ D E`, and gathered photons `L S+ D (D|S)* E`; paths from the camera then leave exactly those out.
-//! 7. Light that reaches the camera is a contribution handed to the [`sensor`].
+//! 7. Light that reaches the camera is a contribution handed to the sensor.
 //! 8. Random numbers are a pure function of seed, pixel, sample, branch and use; sums have a fixed order.
 //!
 //! ```text
@@ -30,19 +30,21 @@ mod bright;
 mod brightness;
 mod clusters;
 mod direct;
+mod dispersion;
 mod gather;
-mod gathered;
+mod gathering_worth;
 mod guide;
 mod interaction;
+mod kd_tree;
 mod light_pass;
 mod lit;
-mod map;
 mod media;
-mod merge;
 mod method;
 mod path;
 mod path_tracer;
 mod photon;
+mod photon_batch;
+mod photon_map;
 mod photon_targets;
 mod pilot;
 mod polarization;
@@ -56,10 +58,8 @@ mod route_walk;
 mod routes;
 mod search;
 mod seen_light;
-mod sending;
 mod sensor;
 mod shading;
-mod spread;
 mod stats;
 mod straight;
 mod targets;
@@ -73,7 +73,8 @@ mod world;
 pub use branching::{Branching, branching};
 pub use bright::{BrightPlace, BrightPlaces};
 pub use brightness::bright_places;
-pub use gathered::{GatheredWorth, gathered_worth};
+pub use dispersion::{COLORS_NM, Dispersion, dispersion};
+pub use gathering_worth::{GatheredWorth, gathered_worth};
 pub use light_pass::{piloted, seen_photons};
 pub use method::{LightPass, MapPasses, Method, Transport};
 pub use photon_targets::is_photon_target;
@@ -85,6 +86,5 @@ pub use render::{Rendering, Report, render, work};
 pub use route::{ROUTES_NM, Route, Step, Way};
 pub use routes::routes;
 pub use seen_light::{SeenLight, seen_light};
-pub use spread::{COLORS_NM, Spread, spread};
 pub use targets::SEEN_PIXELS;
 pub use world::World;

@@ -4,8 +4,8 @@ use super::aimed::{may_aim, scatter_aimed};
 use super::direct::{DirectLighting, weight_of_meeting};
 use super::gather::gather;
 use super::interaction::{Interaction, Meeting};
-use super::merge::Photons;
 use super::path::{Path, PathKind, ScatterSample};
+use super::photon_map::PhotonMap;
 use super::sensor::{Bounce, Contribution, Found, Observer, Sensor, amount};
 use super::shading;
 use super::straight;
@@ -23,7 +23,7 @@ pub(super) struct PathTracer<'a, const N: usize> {
     pub(super) walker: Walker<'a, N>,
     sensor: Sensor<'a>,
     /// Photons that are gathered, if any are.
-    photons: Option<&'a Photons<N>>,
+    photons: Option<&'a PhotonMap<N>>,
 }
 
 /// Use of the camera's random numbers: where in the pixel the sample falls.
@@ -42,7 +42,7 @@ impl<'a, const N: usize> PathTracer<'a, N> {
     }
 
     /// With photons that are gathered.
-    pub(super) fn with_photons(self, photons: Option<&'a Photons<N>>) -> Self {
+    pub(super) fn with_photons(self, photons: Option<&'a PhotonMap<N>>) -> Self {
         Self { photons, ..self }
     }
 
@@ -180,7 +180,7 @@ impl<'a, const N: usize> PathTracer<'a, N> {
         if at.lobes.is_wide() {
             let spread = path.vertices <= SPREAD;
             u = if spread { sampler.four(path.key, SCATTER) } else { sampler.four_plain(path.key, SCATTER) };
-            let all_lights = world.aims_at_all(path.weight(draw));
+            let all_lights = world.samples_all_lights(path.weight(draw));
             let last_occluder = &self.walker.last_occluder;
             let (at, aiming) = (&at, aiming.as_ref());
             let lighting = DirectLighting { world, path, at, goes_on, all_lights, last_occluder, u, aiming };

@@ -28,7 +28,7 @@ pub(super) struct PhotonTarget {
 #[derive(Clone, Debug)]
 pub(super) struct PhotonTargets {
     /// Those of one light follow each other.
-    pub(super) aims: Vec<PhotonTarget>,
+    pub(super) targets: Vec<PhotonTarget>,
     /// Which lights send photons.
     pub(super) lights: Vec<bool>,
     /// Which objects they are sent to.
@@ -39,13 +39,13 @@ pub(super) struct PhotonTargets {
     photons: u64,
 }
 
-/// Most balls of objects that photons are sent to: of more objects, neighbors share one; and most aims of all lights
+/// Most balls of objects that photons are sent to: of more objects, neighbors share one; and most targets of all lights
 /// together.
 const MOST: usize = 32;
 const MOST_AIMS: usize = 8192;
 /// Balls that are held against each other.
 const MANY: usize = 4096;
-/// Share of the photons that all aims get alike; the others go by flux.
+/// Share of the photons that all targets get alike; the others go by flux.
 const EVENLY: f64 = 0.1;
 
 /// Whether photons can be sent to an object: finite, and smooth where light goes on.
@@ -65,44 +65,44 @@ impl PhotonTargets {
         let balls = gathered(balls.collect(), (MOST_AIMS / lights.len().max(1)).clamp(1, MOST));
         let [even, disc] = [Guide::even(), Guide::disc()].map(Arc::new);
         let world = shapes().filter_map(|shape| shape.ball()).reduce(Ball::around)?;
-        let mut aims = Vec::new();
+        let mut targets = Vec::new();
         for (&(light, luminance), ball) in lights.iter().flat_map(|light| balls.iter().map(move |ball| (light, ball))) {
             let Some(beam) = scene.lights[light].beam(ball) else { continue };
             let flux = beam.flux * luminance;
             if flux > 0.0 {
                 let guide = if beam.is_apart { disc.clone() } else { even.clone() };
-                aims.push(PhotonTarget { light, photons: 0, beam, guide, flux });
+                targets.push(PhotonTarget { light, photons: 0, beam, guide, flux });
             }
         }
         let mut lights = vec![false; scene.lights.len()];
-        aims.iter().for_each(|aim| lights[aim.light] = true);
-        let mut aims = Self { aims, lights, objects, world, photons };
-        aims.share_out();
-        (!aims.aims.is_empty()).then_some(aims)
+        targets.iter().for_each(|target| lights[target.light] = true);
+        let mut targets = Self { targets, lights, objects, world, photons };
+        targets.share_out();
+        (!targets.targets.is_empty()).then_some(targets)
     }
 
     /// How many photons are sent in all.
     pub(super) fn photons(&self) -> u64 {
-        self.aims.iter().map(|aim| aim.photons).sum()
+        self.targets.iter().map(|target| target.photons).sum()
     }
 
-    /// Lets each aim have its part of the photons, most of them by flux.
+    /// Lets each target have its part of the photons, most of them by flux.
     fn share_out(&mut self) {
-        let (total, count) = (self.aims.iter().map(|aim| aim.flux).sum::<f64>(), self.aims.len() as f64);
-        for aim in &mut self.aims {
-            let by_flux = if total > 0.0 { aim.flux / total } else { 1.0 / count };
+        let (total, count) = (self.targets.iter().map(|target| target.flux).sum::<f64>(), self.targets.len() as f64);
+        for target in &mut self.targets {
+            let by_flux = if total > 0.0 { target.flux / total } else { 1.0 / count };
             let share = EVENLY / count + (1.0 - EVENLY) * by_flux;
-            aim.photons = (share * self.photons as f64).round().max(1.0) as u64;
+            target.photons = (share * self.photons as f64).round().max(1.0) as u64;
         }
     }
 
-    /// Follows what was learned: of some photons of each aim, their `guide_uv` and whether the camera saw them.
+    /// Follows what was learned: of some photons of each target, their `guide_uv` and whether the camera saw them.
     pub(super) fn learn(&mut self, found: &[Vec<([f64; 2], bool)>]) {
-        for (aim, photons) in self.aims.iter_mut().zip(found) {
+        for (target, photons) in self.targets.iter_mut().zip(found) {
             let seen = photons.iter().filter(|photon| photon.1).count();
-            aim.flux *= seen as f64 / photons.len().max(1) as f64;
-            if aim.beam.is_apart {
-                aim.guide = Arc::new(Guide::learned(photons));
+            target.flux *= seen as f64 / photons.len().max(1) as f64;
+            if target.beam.is_apart {
+                target.guide = Arc::new(Guide::learned(photons));
             }
         }
         self.share_out();
@@ -110,7 +110,7 @@ impl PhotonTargets {
 
     /// Which way a photon is sent, a place of the unit square, for two random numbers.
     pub(super) fn guide_uv(&self, number: usize, u: [f64; 2]) -> [f64; 2] {
-        self.aims[number].guide.sample(u)
+        self.targets[number].guide.sample(u)
     }
 
     /// The start of a photon of a target for its `guide_uv` and two random numbers; none where the light does not
@@ -125,14 +125,15 @@ impl PhotonTargets {
         guide_uv: [f64; 2],
         u: [f64; 2],
     ) -> Option<LeSample> {
-        let of_light = |aim: &&PhotonTarget| aim.light == self.aims[number].light;
-        let first = self.aims[..number].iter().rposition(|aim| !of_light(&aim)).map_or(0, |before| before + 1);
-        let light = &scene.lights[self.aims[number].light];
-        let sample = light.sample_le(&self.aims[number].beam, guide_uv, u)?;
+        let of_light = |target: &&PhotonTarget| target.light == self.targets[number].light;
+        let first = self.targets[..number].iter().rposition(|target| !of_light(&target)).map_or(0, |before| before + 1);
+        let light = &scene.lights[self.targets[number].light];
+        let sample = light.sample_le(&self.targets[number].beam, guide_uv, u)?;
         let ray = if light.is_sky() { self.started_outside(scene, &sample.ray)? } else { sample.ray };
-        let sent =
-            |aim: &PhotonTarget| aim.photons as f64 * light.pdf_le(&aim.beam, &sample, |uv| aim.guide.density(uv));
-        let factor = sample.factor / self.aims[first..].iter().take_while(of_light).map(sent).sum::<f64>();
+        let sent = |target: &PhotonTarget| {
+            target.photons as f64 * light.pdf_le(&target.beam, &sample, |uv| target.guide.density(uv))
+        };
+        let factor = sample.factor / self.targets[first..].iter().take_while(of_light).map(sent).sum::<f64>();
         (factor > 0.0 && factor.is_finite()).then_some(LeSample { ray, factor, ..sample })
     }
 

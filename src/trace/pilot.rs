@@ -59,15 +59,15 @@ fn weigh_photons<const N: usize>(whole: &World) -> Vec<PhotonWorth> {
     groups.into_iter().filter_map(|lights| weigh::<N>(whole, &mut world, lights, photons)).collect()
 }
 
-/// What so many photons of some lights are worth, in a world whose aims are replaced.
+/// What so many photons of some lights are worth, in a world whose targets are replaced.
 fn weigh<const N: usize>(whole: &World, world: &mut World, lights: Vec<LightId>, each: u64) -> Option<PhotonWorth> {
-    let mut sending = whole.aims.clone()?;
-    sending.aims.retain(|aim| lights.binary_search(&aim.light).is_ok());
-    let all: u64 = sending.aims.iter().map(|aim| aim.photons).sum();
-    for aim in &mut sending.aims {
-        aim.photons = (aim.photons as f64 * each as f64 / all as f64).round().max(1.0) as u64;
+    let mut sending = whole.photon_targets.clone()?;
+    sending.targets.retain(|target| lights.binary_search(&target.light).is_ok());
+    let all: u64 = sending.targets.iter().map(|target| target.photons).sum();
+    for target in &mut sending.targets {
+        target.photons = (target.photons as f64 * each as f64 / all as f64).round().max(1.0) as u64;
     }
-    world.aims = Some(sending);
+    world.photon_targets = Some(sending);
     let to_xyz = world.scene.film.color_space.to_xyz();
     let (mut values, mut photons, mut rays) = (Vec::new(), 0, 0);
     for image in 0..IMAGES {

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use super::World;
 use super::path_tracer::PathTracer;
 use super::photon::Landing;
-use super::sending::{batches, send};
+use super::photon_batch::{batches, send};
 use super::walker::Walker;
 use super::width::in_lanes;
 use crate::math::Sampler;
@@ -30,9 +30,9 @@ pub struct Probe {
 const SIDE: u32 = 24;
 /// Samples that are timed together.
 const BATCH: u32 = 16;
-/// Photons of an aim, and of how many aims.
+/// Photons of an target, and of how many targets.
 const FEW: u64 = 512;
-const AIMS: usize = 8;
+const TARGETS: usize = 8;
 /// Time after which the probe has seen enough.
 const ENOUGH: Duration = Duration::from_millis(300);
 
@@ -88,16 +88,16 @@ fn probe_lanes<const N: usize>(world: &World) -> Probe {
     }
 }
 
-/// The time that a photon takes: the median of the aims, most photons of a light being alike.
+/// The time that a photon takes: the median of the targets, most photons of a light being alike.
 fn photon_time<const N: usize>(world: &World) -> Duration {
-    let Some(aims) = &world.aims else { return Duration::ZERO };
+    let Some(targets) = &world.photon_targets else { return Duration::ZERO };
     let time = |batch| {
         let start = Instant::now();
-        send(world, aims, batch, true, |_: &Walker<N>, _: &Landing<N>, _: &Sampler, kept| kept.push(()));
+        send(world, targets, batch, true, |_: &Walker<N>, _: &Landing<N>, _: &Sampler, kept| kept.push(()));
         start.elapsed().div_f64(FEW as f64)
     };
-    let batches = batches(aims, |_| 0, |_| FEW, world.method.seed);
-    let step = batches.len().div_ceil(AIMS).max(1);
+    let batches = batches(targets, |_| 0, |_| FEW, world.method.seed);
+    let step = batches.len().div_ceil(TARGETS).max(1);
     let mut times: Vec<Duration> = batches.into_iter().step_by(step).map(time).collect();
     times.sort();
     times[times.len() / 2]

@@ -3,8 +3,8 @@
 use std::cell::RefCell;
 
 use super::World;
-use super::merge::photons;
 use super::path_tracer::PathTracer;
+use super::photon_map::photons;
 use super::sensor::Observer;
 use super::width::in_lanes;
 use crate::math::{DVec3, Sampler};

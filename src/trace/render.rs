@@ -5,8 +5,8 @@ use std::borrow::Borrow;
 use rayon::prelude::*;
 
 use super::World;
-use super::light_pass::{self, Shown};
-use super::merge;
+use super::light_pass::{self, CausticImage};
+use super::photon_map;
 use super::photon_targets::PhotonTargets;
 use super::sensor::amount;
 use super::stats::Stats;
@@ -60,8 +60,8 @@ pub fn work(world: &World) -> u64 {
     let window = world.scene.film.window();
     let samples = u64::from(window.width) * u64::from(window.height) * u64::from(world.method.samples);
     let passes = world.method.light_pass.as_ref().and_then(|pass| pass.map).map_or(0, |map| u64::from(map.count));
-    let photons = |aims: &Option<PhotonTargets>| aims.as_ref().map_or(0, PhotonTargets::photons);
-    samples + photons(&world.aims) + passes * photons(&world.map_aims)
+    let photons = |targets: &Option<PhotonTargets>| targets.as_ref().map_or(0, PhotonTargets::photons);
+    samples + photons(&world.photon_targets) + passes * photons(&world.map_targets)
 }
 
 /// An image in the making. It advances pass by pass, can be looked at after each, and is finished after the last.
@@ -71,7 +71,7 @@ pub fn work(world: &World) -> u64 {
 pub struct Rendering<W> {
     world: W,
     tiles: Vec<Tile>,
-    shown: Option<Shown>,
+    shown: Option<CausticImage>,
     /// Of the photons that were gathered.
     gathered: Stats,
     photons: u64,
@@ -194,7 +194,7 @@ impl<W: Borrow<World>> Rendering<W> {
             Some(map) => (u64::from(self.passes + 1) * u64::from(all) / u64::from(map.count)) as u32,
             None => (2 * self.samples).max(FIRST_PASS).min(all),
         };
-        let photons = merge::photons::<N>(world, self.passes);
+        let photons = photon_map::photons::<N>(world, self.passes);
         if let Some(photons) = &photons {
             self.photons += photons.sent;
             self.gathered += photons.stats;

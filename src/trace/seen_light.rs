@@ -2,8 +2,8 @@
 //! photons.
 
 use super::light_pass::splats;
-use super::merge;
 use super::path_tracer::PathTracer;
+use super::photon_map;
 use super::sensor::amount;
 use super::width::in_lanes;
 use super::{LightPass, MapPasses, World};
@@ -55,7 +55,7 @@ pub fn seen_light(world: &World) -> SeenLight {
 fn look<const N: usize>(world: &World) -> SeenLight {
     let window = world.scene.film.window();
     let mut seen = SeenLight { parts: [[0.0; 2]; (PARTS * PARTS) as usize] };
-    let photons = merge::photons::<N>(world, 0);
+    let photons = photon_map::photons::<N>(world, 0);
     let mut tracer = PathTracer::<N>::new(world).with_photons(photons.as_ref());
     for place in 0..SIDE * SIDE {
         let [x, y] = window.middle_of_cell(SIDE, place);

@@ -3,8 +3,8 @@
 use std::ops::Range;
 
 use super::World;
-use super::merge::Photons;
 use super::path_tracer::PathTracer;
+use super::photon_map::PhotonMap;
 use super::stats::Stats;
 use crate::film::{PassSum, PixelSum, Window};
 use crate::math::Sampler;
@@ -38,7 +38,7 @@ impl Tile {
     }
 
     /// Takes samples of all pixels.
-    pub(super) fn take<const N: usize>(&mut self, world: &World, photons: Option<&Photons<N>>, numbers: Range<u32>) {
+    pub(super) fn take<const N: usize>(&mut self, world: &World, photons: Option<&PhotonMap<N>>, numbers: Range<u32>) {
         let window = world.scene.film.window();
         let mut tracer = PathTracer::<N>::new(world).with_photons(photons);
         for (place, sum) in (0..).zip(&mut self.sums) {

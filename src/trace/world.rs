@@ -19,9 +19,9 @@ pub struct World {
     pub(super) xyz_of_channel: [f64; 3],
     /// What each light's lanes are worth to the sensor.
     pub(super) responses: Vec<Response>,
-    /// Lights that next-event estimation aims at.
-    pub(super) targets: Vec<LightId>,
-    /// Which light is chosen where only one is aimed at.
+    /// Lights that next-event estimation samples.
+    pub(super) sampled_lights: Vec<LightId>,
+    /// Which light is chosen where only one is sampled.
     pub(super) light_sampler: LightSampler,
     /// The bodies around the camera.
     pub(super) camera_media: Media,
@@ -33,9 +33,9 @@ pub struct World {
     /// What bounces are aimed at.
     pub(super) bright: Option<Bright>,
     /// Where photons are sent, if the method has a light pass.
-    pub(super) aims: Option<PhotonTargets>,
+    pub(super) photon_targets: Option<PhotonTargets>,
     /// The same of each pass of its map.
-    pub(super) map_aims: Option<PhotonTargets>,
+    pub(super) map_targets: Option<PhotonTargets>,
     /// The bodies around each light; none where they may differ from point to point.
     pub(super) light_media: Vec<Option<Media>>,
 }
@@ -58,12 +58,12 @@ impl World {
         let see_through = if see_through.contains(&true) { see_through } else { Vec::new() };
         let lobes = scene.materials.iter().map(|named| named.material.lobes()).collect();
         let light_sampler = LightSampler::new(&scene.lights);
-        let targets = light_sampler.lights();
+        let sampled_lights = light_sampler.lights();
         let bright = method.bright.as_ref().map(Bright::new);
         let mut world = Self {
             xyz_of_channel,
             responses,
-            targets,
+            sampled_lights,
             light_sampler,
             scene,
             method,
@@ -72,15 +72,15 @@ impl World {
             lobes,
             see_through,
             bright,
-            aims: None,
-            map_aims: None,
+            photon_targets: None,
+            map_targets: None,
             light_media: Vec::new(),
         };
         if has_media {
             let (position, forward) = (world.scene.camera.position(), world.scene.camera.forward());
             world.camera_media = Media::around(&world.scene, position, forward);
         }
-        world.aim_photons();
+        world.choose_photon_targets();
         world
     }
 
@@ -88,7 +88,7 @@ impl World {
     pub fn with_light_pass(&self, light_pass: Option<LightPass>) -> Self {
         let mut world = self.clone();
         world.method.light_pass = light_pass;
-        world.aim_photons();
+        world.choose_photon_targets();
         world
     }
 
@@ -109,16 +109,16 @@ impl World {
     }
 
     /// Aims the photons of the light pass.
-    fn aim_photons(&mut self) {
+    fn choose_photon_targets(&mut self) {
         let pass = self.method.light_pass.as_ref();
         let sends = |&&light: &&LightId| self.scene.lights[light].sends_photons();
         let senders = pass.map_or(Vec::new(), |pass| pass.lights.iter().filter(sends).copied().collect());
         let senders: Vec<_> = senders.into_iter().map(|light| (light, self.luminance(light))).collect();
-        let aims_of = |photons: u64| PhotonTargets::new(&self.scene, &senders, photons);
-        let aims = pass.and_then(|pass| aims_of(pass.photons));
-        let map_aims = pass.and_then(|pass| pass.map).and_then(|map| aims_of(map.photons));
-        (self.aims, self.map_aims) = (aims, map_aims);
-        if self.aims.is_some() && self.light_media.is_empty() {
+        let targets_of = |photons: u64| PhotonTargets::new(&self.scene, &senders, photons);
+        let targets = pass.and_then(|pass| targets_of(pass.photons));
+        let map_targets = pass.and_then(|pass| pass.map).and_then(|map| targets_of(map.photons));
+        (self.photon_targets, self.map_targets) = (targets, map_targets);
+        if self.photon_targets.is_some() && self.light_media.is_empty() {
             self.light_media = media_of_lights(&self.scene);
         }
     }
@@ -150,14 +150,14 @@ impl World {
         self.see_through.get(object as usize).is_some_and(|&on| on)
     }
 
-    /// Whether next-event estimation at a vertex of the given weight aims at every light, or at one.
-    pub(super) fn aims_at_all(&self, weight: f64) -> bool {
-        /// Lights that may all be aimed at from one vertex.
+    /// Whether next-event estimation at a vertex of the given weight samples every light, or one.
+    pub(super) fn samples_all_lights(&self, weight: f64) -> bool {
+        /// Lights that may all be sampled from one vertex.
         const MANY: usize = 8;
         match self.method.transport {
             Transport::Deterministic { .. } => true,
             Transport::Random { split, .. } => {
-                self.targets.len() == 1 || (weight > split && self.targets.len() <= MANY)
+                self.sampled_lights.len() == 1 || (weight > split && self.sampled_lights.len() <= MANY)
             }
         }
     }
@@ -173,16 +173,16 @@ impl World {
 
     /// Whether photons are sent to an object.
     pub(super) fn is_photon_target(&self, object: u32) -> bool {
-        self.aims.as_ref().is_some_and(|aims| aims.objects[object as usize])
+        self.photon_targets.as_ref().is_some_and(|targets| targets.objects[object as usize])
     }
 
     /// Whether paths gather photons where the camera does not see them straight.
     pub(super) fn has_map(&self) -> bool {
-        self.map_aims.is_some()
+        self.map_targets.is_some()
     }
 
     /// Whether a light sends photons.
     pub(super) fn sends_photons(&self, light: LightId) -> bool {
-        self.aims.as_ref().is_some_and(|aims| aims.lights[light])
+        self.photon_targets.as_ref().is_some_and(|targets| targets.lights[light])
     }
 }

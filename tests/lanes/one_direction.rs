@@ -335,12 +335,12 @@ fn the_plan_counts_the_color_of_glass_and_keeps_three_lanes_where_they_do() {
     for glass in ["\"N-BK7\"", "\"N-SF66\""] {
         let plan = ball(glass, "");
         assert_eq!(plan.method.basis.name(), "rgb", "{glass}: {:?}", plan.because);
-        let stated = plan.rungs[0].bound();
+        let stated = plan.candidates[0].bound();
         assert!(stated > 0.0 && stated < 0.01, "{glass}: {stated}");
         assert!(plan.because.iter().any(|line| line.contains("colors are off by at most")), "{:?}", plan.because);
     }
     let plain = ball("1.5", "");
-    assert!(plain.rungs[0].error == 0.0 && plain.rungs.len() == 1);
+    assert!(plain.candidates[0].error == 0.0 && plain.candidates.len() == 1);
     let words = ball("\"N-BK7\"", "").because.join("\n");
     assert!(words.contains("all lanes are refracted by 1.5168, so lanes stay together"), "{words}");
 }

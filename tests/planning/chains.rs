@@ -198,8 +198,8 @@ fn colors_through_chains_of_filters_mirrors_and_metals_are_missed_by_no_more_tha
         text += &format!("[material.lamp]\nemissive = {{ radiance = {{ illuminant = \"{light}\" }} }}\n");
         let scene = scene(&text);
         let curve = scene.lights[0].emission();
-        for rung in plan(&scene).rungs {
-            let basis = &rung.basis;
+        for candidate in plan(&scene).candidates {
+            let basis = &candidate.basis;
             let emission = Emission::new(curve, basis.color_space());
             let mut exact = [0.0; 3];
             for (value, column) in left(&met, &scene, None).iter().zip(emission.columns()) {
@@ -214,11 +214,11 @@ fn colors_through_chains_of_filters_mirrors_and_metals_are_missed_by_no_more_tha
             let missed = (0..3).fold(0.0_f64, |most, c| most.max((found[c] - exact[c]).abs())) / strongest;
             let name = basis.name();
             assert!(
-                missed <= rung.bound() + 1e-6,
+                missed <= candidate.bound() + 1e-6,
                 "scene {number}, {count} links under {light}, {name}: misses {missed:.5}, stated {:.5}",
-                rung.bound()
+                candidate.bound()
             );
-            ratios.push(rung.bound() / missed.max(1e-6));
+            ratios.push(candidate.bound() / missed.max(1e-6));
         }
     }
     ratios.sort_by(f64::total_cmp);

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use abbe::plan::{Rung, plan};
+use abbe::plan::{Candidate, plan};
 use abbe::scene::Scene;
 use abbe::spectrum::{Basis, Curve, Draw, Emission, Lanes, MAX_LANES, Quantity, data, visible};
 
@@ -154,9 +154,9 @@ fn errors_of_color_are_as_predicted() {
     let mut by_model: Vec<(String, Vec<[f64; 3]>)> = Vec::new();
     for number in 0..ROOMS {
         let room = room(number);
-        for rung in plan(&room.scene).rungs {
-            let Rung { basis, error, .. } = &rung;
-            let found = [true_error(&room, basis), *error, rung.bound()];
+        for candidate in plan(&room.scene).candidates {
+            let Candidate { basis, error, .. } = &candidate;
+            let found = [true_error(&room, basis), *error, candidate.bound()];
             match by_model.iter_mut().find(|(name, _)| *name == basis.name()) {
                 Some((_, list)) => list.push(found),
                 None => by_model.push((basis.name(), vec![found])),

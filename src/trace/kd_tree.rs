@@ -9,7 +9,7 @@ use crate::math::DVec3;
 
 /// Points with what belongs to them, in the order of a tree: the middle of every range splits it.
 #[derive(Clone, Debug)]
-pub(super) struct Map<T> {
+pub(super) struct KdTree<T> {
     points: Vec<(DVec3, T)>,
     /// Along which axis each point splits its range.
     axes: Vec<u8>,
@@ -20,7 +20,7 @@ const FEW: usize = 8;
 /// Ranges of so many are put in order side by side.
 const MANY: usize = 1 << 14;
 
-impl<T: Send> Map<T> {
+impl<T: Send> KdTree<T> {
     pub(super) fn new(mut points: Vec<(DVec3, T)>) -> Self {
         let mut axes = vec![0; points.len()];
         order(&mut points, &mut axes);
@@ -28,7 +28,7 @@ impl<T: Send> Map<T> {
     }
 }
 
-impl<T> Map<T> {
+impl<T> KdTree<T> {
     /// Visits all points nearer to a place than a radius, in an order that never changes.
     pub(super) fn near(&self, place: DVec3, radius: f64, visit: &mut impl FnMut(DVec3, &T)) {
         self.visit(0..self.points.len(), place, radius, visit);
@@ -96,7 +96,7 @@ mod tests {
                 // Many alike along one axis, as on a floor.
                 DVec3::new(x, (8.0 * y).floor(), 0.1 * z)
             };
-            let map = Map::new((0..count).map(|i| (place(i), i)).collect());
+            let map = KdTree::new((0..count).map(|i| (place(i), i)).collect());
             for (number, radius) in [0.0, 0.01, 0.1, 1.0, 20.0].into_iter().enumerate() {
                 let from = place(1_000_000 + number as u32);
                 let mut found = Vec::new();

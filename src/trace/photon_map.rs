@@ -8,10 +8,10 @@ use rayon::prelude::*;
 
 use super::World;
 use super::interaction::Interaction;
-use super::map::Map;
+use super::kd_tree::KdTree;
 use super::photon::Landing;
+use super::photon_batch::{Sent, batches, send};
 use super::polarization::Polarized;
-use super::sending::{Sent, batches, send};
 use super::stats::Stats;
 use super::walker::Walker;
 use crate::light::LightId;
@@ -51,9 +51,9 @@ pub(super) struct Alone {
 }
 
 /// The photons of one pass.
-pub(super) struct Photons<const N: usize> {
-    pub(super) together: Map<Landed<Together<N>>>,
-    pub(super) alone: Map<Landed<Alone>>,
+pub(super) struct PhotonMap<const N: usize> {
+    pub(super) together: KdTree<Landed<Together<N>>>,
+    pub(super) alone: KdTree<Landed<Alone>>,
     pub(super) matching: Matching<N>,
     pub(super) sent: u64,
     pub(super) stats: Stats,
@@ -72,17 +72,17 @@ enum Kept<const N: usize> {
 }
 
 /// Sends the photons of one pass.
-pub(super) fn photons<const N: usize>(world: &World, pass: u32) -> Option<Photons<N>> {
-    let aims = world.map_aims.as_ref()?;
+pub(super) fn photons<const N: usize>(world: &World, pass: u32) -> Option<PhotonMap<N>> {
+    let targets = world.map_targets.as_ref()?;
     let radius = world.method.light_pass.as_ref()?.map?.radius;
     let matching = world.method.basis.matching(PARTS / radius);
     let first = |photons: u64| u64::from(pass) * photons;
-    let batches = batches(aims, |aim| first(aim.photons), |aim| aim.photons, world.method.seed ^ SEED);
+    let batches = batches(targets, |target| first(target.photons), |target| target.photons, world.method.seed ^ SEED);
     let keep = |_: &Walker<N>, landing: &Landing<N>, _: &Sampler, kept: &mut Vec<_>| {
         keep(world, &matching, landing, kept);
     };
     let done: Vec<Sent<(DVec3, Kept<N>)>> =
-        batches.par_iter().map(|batch| send(world, aims, *batch, false, keep)).collect();
+        batches.par_iter().map(|batch| send(world, targets, *batch, false, keep)).collect();
     let mut stats = Stats::default();
     let (mut together, mut alone) = (Vec::new(), Vec::new());
     for sent in done {
@@ -100,8 +100,8 @@ pub(super) fn photons<const N: usize>(world: &World, pass: u32) -> Option<Photon
         }
     }
     let sent = batches.iter().map(|batch| batch.count).sum();
-    let (together, alone) = (Map::new(together), Map::new(alone));
-    Some(Photons { together, alone, matching, sent, stats })
+    let (together, alone) = (KdTree::new(together), KdTree::new(alone));
+    Some(PhotonMap { together, alone, matching, sent, stats })
 }
 
 /// Keeps a photon where it lands.
@@ -132,7 +132,7 @@ impl Landed<()> {
     }
 }
 
-impl<const N: usize> Photons<N> {
+impl<const N: usize> PhotonMap<N> {
     /// Whether any photon lies within a radius of a place.
     pub(super) fn any_near(&self, place: DVec3, radius: f64) -> bool {
         let mut any = false;

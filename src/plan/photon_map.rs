@@ -1,8 +1,8 @@
 //! Whether caustics that are not seen straight need a map of photons.
 
 use super::caustics::{sees_receivers, small_lights, targets};
+use super::efficiency::rounded;
 use super::words::{in_number, percent};
-use super::worth::rounded;
 use crate::scene::{CausticsText, Scene};
 use crate::spectrum::Curve;
 use crate::trace::{

@@ -19,10 +19,10 @@ const RAY: u32 = 0;
 /// as much time for as much noise, never splitting 2 to 15 times as much (`benches/caustics.rs`).
 const PHOTONS: Transport = Transport::Random { split: 0.25, roulette: 0.05 };
 
-/// A part of an aim's photons.
+/// A part of an target's photons.
 #[derive(Clone, Copy)]
 pub(super) struct Batch {
-    pub(super) aim: usize,
+    pub(super) target: usize,
     first: u64,
     pub(super) count: u64,
     seed: u64,
@@ -36,43 +36,43 @@ pub(super) struct Sent<T> {
     pub(super) stats: Stats,
 }
 
-/// The photons of some aims from number `first` on, batch by batch.
+/// The photons of some targets from number `first` on, batch by batch.
 pub(super) fn batches(
-    aims: &PhotonTargets,
+    targets: &PhotonTargets,
     first: impl Fn(&PhotonTarget) -> u64,
     count: impl Fn(&PhotonTarget) -> u64,
     seed: u64,
 ) -> Vec<Batch> {
-    let of_aim = |(number, aim): (usize, &PhotonTarget)| {
-        let (start, end) = (first(aim), first(aim) + count(aim));
-        let batch = move |first: u64| Batch { aim: number, first, count: BATCH.min(end - first), seed };
+    let of_target = |(number, target): (usize, &PhotonTarget)| {
+        let (start, end) = (first(target), first(target) + count(target));
+        let batch = move |first: u64| Batch { target: number, first, count: BATCH.min(end - first), seed };
         (start..end).step_by(BATCH as usize).map(batch)
     };
-    aims.aims.iter().enumerate().flat_map(of_aim).collect()
+    targets.targets.iter().enumerate().flat_map(of_target).collect()
 }
 
 /// Follows the photons of one batch; `land` says what is kept of one that lands. What is learned is only of which
 /// photons something would be kept.
 pub(super) fn send<const N: usize, T>(
     world: &World,
-    aims: &PhotonTargets,
+    targets: &PhotonTargets,
     batch: Batch,
     learns: bool,
     land: impl Fn(&Walker<N>, &Landing<N>, &Sampler, &mut Vec<T>),
 ) -> Sent<T> {
     let mut walker = Walker::<N>::new(world, PHOTONS);
     let (mut kept, mut places) = (Vec::new(), Vec::new());
-    let light = aims.aims[batch.aim].light;
+    let light = targets.targets[batch.target].light;
     // Ways and wavelengths matter more than where on a small lamp they begin, so theirs are the numbers spread best.
     let extended = !matches!(world.scene.lights[light], Light::Point(_) | Light::Spot(_));
     for photon in batch.first..batch.first + batch.count {
-        let key = [batch.aim as u32, (photon >> 32) as u32];
+        let key = [batch.target as u32, (photon >> 32) as u32];
         let sampler = Sampler::new(batch.seed, key, photon as u32);
         let u = sampler.four(BranchKey::CAMERA, RAY);
         let more = if extended { sampler.four_more(BranchKey::CAMERA, RAY)[0] } else { 0.0 };
-        let guide_uv = aims.guide_uv(batch.aim, [u[0], u[1]]);
+        let guide_uv = targets.guide_uv(batch.target, [u[0], u[1]]);
         let before = kept.len();
-        if let Some(emitted) = aims.sample_le(&world.scene, batch.aim, guide_uv, [u[3], more]) {
+        if let Some(emitted) = targets.sample_le(&world.scene, batch.target, guide_uv, [u[3], more]) {
             let draw = world.method.basis.draw(u[2]);
             let around = || Media::around(&world.scene, emitted.ray.origin, emitted.ray.direction);
             let media = world.light_media[light].unwrap_or_else(around);

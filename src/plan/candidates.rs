@@ -6,7 +6,7 @@ use crate::spectrum::{Basis, Draw, Emission, Lanes, MAX_LANES, Quantity, visible
 
 /// One model with the largest error of a color that it is predicted to make.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Rung {
+pub struct Candidate {
     /// What its lanes stand for.
     pub basis: Basis,
     /// Relative to the strongest channel, before the safety factor.
@@ -15,7 +15,7 @@ pub struct Rung {
     pub safety: f64,
 }
 
-impl Rung {
+impl Candidate {
     /// What the color error is promised to stay below.
     pub fn bound(&self) -> f64 {
         self.error * self.safety
@@ -97,23 +97,23 @@ fn paths(scattering: &[Vec<f64>], smooth: &[Vec<f64>]) -> Vec<Vec<f64>> {
 const BRIGHTEST: f64 = 0.95;
 
 /// The models that could render a scene, from few lanes to many, each with its predicted error.
-pub(super) fn ladder(survey: &Survey, seen: &Seen, heroes: usize) -> Vec<Rung> {
+pub(super) fn candidates(survey: &Survey, seen: &Seen, heroes: usize) -> Vec<Candidate> {
     let space = survey.color_space;
-    let rung = |basis: Basis, safety: f64| Rung { error: error(survey, seen, &basis), basis, safety };
-    let mut rungs = Vec::new();
+    let candidate = |basis: Basis, safety: f64| Candidate { error: error(survey, seen, &basis), basis, safety };
+    let mut candidates = Vec::new();
     if survey.is_plain() {
         // Colors of three numbers are what they are; only what glass reflects is measured.
         let basis = Basis::rgb(space);
         let error = missed(survey, &basis, &[], &survey.surfaces(MOST[1]));
-        rungs.push(Rung { basis, error, safety: PREFILTERED_SAFETY });
+        candidates.push(Candidate { basis, error, safety: PREFILTERED_SAFETY });
         if heroes == 0 && error == 0.0 {
-            return rungs;
+            return candidates;
         }
     } else if let Some(light) = survey.common_light() {
-        rungs.push(rung(Basis::prefiltered(space, &light), PREFILTERED_SAFETY));
+        candidates.push(candidate(Basis::prefiltered(space, &light), PREFILTERED_SAFETY));
     }
-    rungs.extend([8, 12, 16, 32].map(|bands| rung(bands_beside(survey, bands, heroes), LANES_SAFETY)));
-    rungs
+    candidates.extend([8, 12, 16, 32].map(|bands| candidate(bands_beside(survey, bands, heroes), LANES_SAFETY)));
+    candidates
 }
 
 /// The emission lines that have lanes of their own beside heroes.

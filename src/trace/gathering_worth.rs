@@ -3,8 +3,8 @@
 use std::cell::Cell;
 
 use super::World;
-use super::merge::photons;
 use super::path_tracer::PathTracer;
+use super::photon_map::photons;
 use super::pilot::SampleWorth;
 use super::sensor::{Contribution, Found, Observer, add};
 use super::width::in_lanes;

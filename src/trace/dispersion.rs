@@ -8,7 +8,7 @@ use super::walk::Colors;
 
 /// What rays of two colors found.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Spread {
+pub struct Dispersion {
     /// Share of the view that is on dispersive surfaces.
     pub seen: f64,
     /// How many pixels apart 400 and 700 nm show what lies behind dispersive surfaces, on a fifth of a pixel of the
@@ -20,7 +20,7 @@ pub struct Spread {
     pub dark: bool,
 }
 
-impl Spread {
+impl Dispersion {
     /// Whether lanes have to part.
     pub fn is_visible(&self) -> bool {
         self.dark || self.seen_pixels.max(self.lit_pixels) >= SEEN_PIXELS
@@ -31,10 +31,10 @@ impl Spread {
 pub const COLORS_NM: [f64; 2] = [400.0, 700.0];
 
 /// Sends some thousand rays through a world of two lanes, those of [`COLORS_NM`]; as many for any number of pixels.
-pub fn spread(world: &World) -> Spread {
+pub fn dispersion(world: &World) -> Dispersion {
     let colors = Colors::new(world);
     let targets = Targets::new(&colors);
     let found = search(&colors, &targets);
     let lit_pixels = lit_pixels(&colors, &targets, &found.reached);
-    Spread { seen: found.seen, seen_pixels: found.pixels, lit_pixels, dark: found.dark }
+    Dispersion { seen: found.seen, seen_pixels: found.pixels, lit_pixels, dark: found.dark }
 }
