@@ -1,5 +1,3 @@
-use serde::Deserialize;
-
 use super::View;
 use crate::math::{DVec3, Ray};
 use crate::shape::Sighting;
@@ -11,8 +9,7 @@ use crate::spectrum::Quantity;
 /// [[light]]
 /// point = { position = [0, 3, 0], intensity = 10 }     # intensity: radiance times area
 /// ```
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug)]
 pub struct Point<S> {
     /// Where it is.
     pub position: [f64; 3],

@@ -45,15 +45,11 @@ pub use roughness::{RoughReflection, RoughSurface, Roughness};
 pub use straight::Straight;
 pub use thin::Thin;
 
-use serde::Deserialize;
-
 use crate::math::DVec3;
 use crate::spectrum::{Curve, Draw, Lanes, Quantity, Table};
 
 /// What a surface does with light.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(rename_all = "snake_case")]
-#[serde(bound(deserialize = "S: Deserialize<'de> + From<f64>, Conductor<S>: Deserialize<'de>"))]
+#[derive(Clone, Debug)]
 pub enum Material<S> {
     /// Scatters evenly in all directions.
     Diffuse(Diffuse<S>),

@@ -43,7 +43,7 @@ const DIRECTION_NM: f64 = 587.5618;
 impl Basis {
     /// Three bands: red, green and blue, linear Rec.709.
     pub fn rgb(space: ColorSpace) -> Self {
-        let white: Curve = CurveKind::Illuminant(space.white_illuminant().into()).into();
+        let white: Curve = CurveKind::Illuminant(Arc::new(space.white_light())).into();
         let bands = Bands::new(ColorSpace::Rec709, &Emission::new(&white, space));
         Self::new(space, LaneKind::Rgb(Arc::new(bands)), BAND_WAVELENGTHS_NM.into())
     }
@@ -180,10 +180,10 @@ impl Basis {
         }
     }
 
-    /// A checked curve, read onto the bins. An emission of wavelengths is an even table: its colors are in its response.
+    /// A curve, read onto the bins. An emission of wavelengths is an even table: its colors are in its response.
     pub fn tabulate(&self, quantity: Quantity, curve: &Curve) -> Table {
-        if curve.varies() {
-            return self.patterned(quantity, curve);
+        if let Some(table) = self.patterned(quantity, curve) {
+            return table;
         }
         if quantity == Quantity::Emission {
             return self.emission(curve);

@@ -36,11 +36,12 @@ impl<const N: usize> Draw<N> {
         }
     }
 
-    /// A color, of numbers as large as they may be, as a factor on white light; the table is that of an image.
+    /// A color, of numbers as large as they may be, as a factor on white light; the table is that of an image. What has no
+    /// colors tints nothing.
     pub fn tint(&self, table: &Table, color: [f32; 3]) -> Lanes<N> {
         match table.pattern().map(|pattern| &pattern.kind) {
             Some(PatternKind::Image(_, palette)) => self.tint_by(palette.as_ref(), color, false),
-            _ => panic!("only images have colors"),
+            _ => Lanes::ONE,
         }
     }
 
@@ -74,13 +75,8 @@ impl Table {
 }
 
 impl Basis {
-    /// A curve that varies over a surface, read onto the bins.
-    pub(super) fn patterned(&self, quantity: Quantity, curve: &Curve) -> Table {
-        let shines = quantity == Quantity::Emission;
-        let level = match shines {
-            true => self.tabulate(quantity, &curve.level()),
-            false => self.even(curve.scale),
-        };
+    /// A curve that varies over a surface, read onto the bins; none if it is the same all over.
+    pub(super) fn patterned(&self, quantity: Quantity, curve: &Curve) -> Option<Table> {
         let of_filter = |curve: &Curve| self.tabulate(Quantity::Transmittance, curve);
         let kind = match &curve.kind {
             CurveKind::Texture(texture) => {
@@ -90,10 +86,15 @@ impl Basis {
             CurveKind::Checker { cells, repeat } => {
                 PatternKind::Checker { cells: cells.each_ref().map(of_filter), repeat: *repeat }
             }
-            _ => panic!("only these curves vary"),
+            _ => return None,
+        };
+        let shines = quantity == Quantity::Emission;
+        let level = match shines {
+            true => self.tabulate(quantity, &curve.level()),
+            false => self.even(curve.scale),
         };
         let most = if shines { f32::INFINITY } else { 1.0 };
-        level.varied(Pattern { kind, most, mean: curve.kind.mean() })
+        Some(level.varied(Pattern { kind, most, mean: curve.kind.mean() }))
     }
 }
 

@@ -40,7 +40,7 @@ const CLOSE: f64 = 1e-4;
 impl Upsampler {
     /// For a film: a reflectance of 1 has the color (1, 1, 1) under its white.
     pub fn new(space: ColorSpace) -> Self {
-        let white = data::illuminant(space.white_illuminant()).expect("the whites are in the catalog");
+        let white = space.white_light();
         let spectrum: Vec<f64> = visible::wavelengths().map(|nm| white.at(nm)).collect();
         let correction = emission::toward(visible::xyz(&spectrum), space.white());
         let adapted = adaptation(space.white(), ColorSpace::Rec709.white());
