@@ -36,10 +36,13 @@ pub(super) struct CurveText<'d> {
     pub(super) place: Value<'d>,
     pub(super) kind: KindText<'d>,
     /// The column of a file that holds the values, counted from 1.
-    pub(super) column: Option<At<'d, u32>>,
+    pub(super) column: Option<At<'d, usize>>,
     pub(super) encoding: Option<At<'d, Encoding>>,
     pub(super) channel: Option<Channel>,
-    pub(super) placement: Placement,
+    pub(super) wrap: Wrap,
+    pub(super) filter: TexelFilter,
+    /// How often an image or a pattern fits into a unit of u and of v.
+    pub(super) repeat: At<'d, [f64; 2]>,
     /// A factor on every value.
     pub(super) scale: At<'d, f64>,
     /// CIE Y of an emission, in place of a factor.
@@ -120,11 +123,17 @@ impl<'d> CurveText<'d> {
         curve_text(value, example(quantity))
     }
 
+    /// Where its image lies, if that is possible.
+    pub(super) fn placement(&self) -> Option<Placement> {
+        Some(Placement { repeat: is_repeat(self.repeat)?, wrap: self.wrap, filter: self.filter })
+    }
+
     /// A spectrum without a table.
     fn bare(value: Value<'d>, kind: KindText<'d>) -> Self {
-        let (placement, scale) = (Placement::default(), At { place: value, it: 1.0 });
+        let (scale, repeat) = (At { place: value, it: 1.0 }, At { place: value, it: [1.0; 2] });
         let (column, encoding, channel, luminance) = (None, None, None, None);
-        Self { value, place: value, kind, column, encoding, channel, placement, scale, luminance }
+        let (wrap, filter) = (Wrap::default(), TexelFilter::default());
+        Self { value, place: value, kind, column, encoding, channel, wrap, filter, repeat, scale, luminance }
     }
 }
 
@@ -141,12 +150,12 @@ fn curve_text<'d>(value: Value<'d>, example: &str) -> Option<CurveText<'d>> {
 
 fn curve_table<'d>(value: Value<'d>, table: &mut Fields<'d>, example: &str) -> Option<CurveText<'d>> {
     let kinds = KINDS.map(|(key, read)| table.get(key).map(|place| (place, read(place))));
-    let column = table.maybe("column", at(Value::count));
+    let column = table.maybe("column", at(|value: Value| value.whole(u64::MAX)));
     let encoding = table.maybe("encoding", at(|value: Value| value.word(&ENCODINGS)));
     let channel = table.maybe("channel", at(|value: Value| value.word(&CHANNELS)));
     let wrap = table.maybe("wrap", at(|value: Value| value.word(&WRAPS)));
     let filter = table.maybe("filter", at(|value: Value| value.word(&FILTERS)));
-    let repeat = table.maybe("repeat", at(repeat));
+    let repeat = table.maybe("repeat", at(one_or_two));
     let scale = table.or("scale", At { place: value, it: 1.0 }, at(Value::number));
     let luminance = table.maybe("luminance", at(Value::number));
     let mut given = kinds.into_iter().flatten();
@@ -178,19 +187,24 @@ fn curve_table<'d>(value: Value<'d>, table: &mut Fields<'d>, example: &str) -> O
         let message = "a spectrum has a `scale` or a `luminance`, not both";
         return scale.place.later(luminance.place).refuse_key(message, None);
     }
-    let placement = Placement {
-        repeat: repeat.map_or([1.0; 2], |repeat| repeat.it),
-        wrap: wrap.map_or(Wrap::default(), |wrap| wrap.it),
-        filter: filter.map_or(TexelFilter::default(), |filter| filter.it),
-    };
+    let (wrap, filter) =
+        (wrap.map(|wrap| wrap.it).unwrap_or_default(), filter.map(|filter| filter.it).unwrap_or_default());
+    let repeat = repeat.unwrap_or(At { place: value, it: [1.0; 2] });
     let channel = channel.map(|channel| channel.it);
-    Some(CurveText { value, place, kind, column, encoding, channel, placement, scale, luminance })
+    Some(CurveText { value, place, kind, column, encoding, channel, wrap, filter, repeat, scale, luminance })
 }
 
 /// How often an image or a pattern fits into a unit of u and of v: a number or two.
 pub(super) fn repeat(value: Value) -> Option<[f64; 2]> {
-    let value = value.as_list("", "write [along u, along v]");
-    let repeat: [f64; 2] = value.one_or("[u, v]")?;
+    is_repeat(At { place: value, it: one_or_two(value)? })
+}
+
+fn one_or_two(value: Value) -> Option<[f64; 2]> {
+    value.as_list("", "write [along u, along v]").one_or("[u, v]")
+}
+
+/// Numbers of copies in a unit that are neither too large nor too small.
+pub(super) fn is_repeat(At { place: value, it: repeat }: At<[f64; 2]>) -> Option<[f64; 2]> {
     match repeat.iter().find(|x| !(1.0 / MOST_REPEAT..=MOST_REPEAT).contains(*x)) {
         Some(wrong) => {
             value.refuse(format!("`repeat` counts copies in a unit, above 0 to {MOST_REPEAT:e}, not {wrong}"))

@@ -8,7 +8,7 @@ use sha2::Digest;
 use super::context::{Context, FileKind};
 use super::curve::curve;
 use super::curve_range::is_factor;
-use super::curve_text::{CurveText, KindText};
+use super::curve_text::{CurveText, KindText, is_repeat};
 use super::image_file::{Meaning, read_texture};
 use crate::scene::text::At;
 use crate::spectrum::{Channel, Curve, CurveKind, Encoding, Image, Quantity, Texture};
@@ -34,7 +34,7 @@ fn image_curve<'d>(
     file: &'d str,
     quantity: Quantity,
 ) -> Option<Curve> {
-    let factor = factor_on_image(text);
+    let (factor, placement) = (factor_on_image(text), text.placement());
     let at_file = At { place: text.place, it: file };
     let encoding = text.encoding.map(|encoding| encoding.it);
     let image = match (text.channel, text.encoding) {
@@ -43,7 +43,7 @@ fn image_curve<'d>(
         }
         _ => image(context, &at_file, Meaning::Light(encoding), text.channel),
     };
-    let (scale, image) = (factor?, image?);
+    let (scale, placement, image) = (factor?, placement?, image?);
     let ([x, y], brightest) = image.brightest();
     if quantity != Quantity::Emission && f64::from(brightest) * scale > 1.0 {
         let scaled = if scale == 1.0 { String::new() } else { format!(" times its scale of {scale}") };
@@ -51,7 +51,7 @@ fn image_curve<'d>(
         let help = format!("scale = {:.4} makes it 1", (1e4 / f64::from(brightest)).floor() / 1e4);
         return text.place.tell(message, (brightest < 1e4).then_some(help));
     }
-    let kind = CurveKind::Texture(Texture { image, placement: text.placement });
+    let kind = CurveKind::Texture(Texture { image, placement });
     Some(Curve { kind, scale, luminance: None })
 }
 
@@ -75,18 +75,19 @@ fn checker<'d>(
     if let Some(luminance) = text.luminance {
         return luminance.place.advise("a checker has no single luminance", "give its squares a `scale`");
     }
+    let repeat = is_repeat(text.repeat);
     let [first, second] = cells.each_ref().map(|cell| {
         let scale = At { it: cell.scale.it * text.scale.it, ..cell.scale };
         square(context, &CurveText { scale, ..cell.clone() }, quantity)
     });
-    let (mut cells, mut scale) = ([first?, second?], 1.0);
+    let (repeat, mut cells, mut scale) = (repeat?, [first?, second?], 1.0);
     if quantity == Quantity::Emission {
         let brightest =
             |cell: &Curve| cell.kind.rgb().map_or(0.0, |rgb| rgb.into_iter().fold(0.0, f64::max) * cell.scale);
         scale = brightest(&cells[0]).max(brightest(&cells[1]));
         cells.iter_mut().for_each(|cell| cell.scale = if scale > 0.0 { cell.scale / scale } else { 0.0 });
     }
-    let kind = CurveKind::Checker { cells: Box::new(cells), repeat: text.placement.repeat };
+    let kind = CurveKind::Checker { cells: Box::new(cells), repeat };
     Some(Curve { kind, scale, luminance: None })
 }
 

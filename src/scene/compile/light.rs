@@ -142,31 +142,26 @@ fn even_or_image<'d>(context: &mut Context<'d>, value: Value<'d>) -> Option<Envi
     Fields::read(value, |light| {
         let radiance = light.need("radiance", |value| CurveText::read(value, Quantity::Emission));
         let turn = light.maybe("transform", at(steps));
-        let (radiance, turn) = (radiance?, turn?);
+        let radiance = radiance?;
         let KindText::Image(file) = radiance.kind else {
-            if let Some(turn) = turn.filter(|turn| !turn.it.is_empty()) {
+            if let Some(turn) = turn?.filter(|turn| !turn.it.is_empty()) {
                 return turn.place.advise("an even environment looks the same after every turn", "leave it out");
             }
             return Some(Environment { radiance: curve(context, &radiance, Quantity::Emission)?, image: None });
         };
-        let CurveText { encoding: None, channel: None, placement, .. } = &radiance else {
-            return not_free(&radiance);
-        };
-        if *placement != Placement::default() {
-            return not_free(&radiance);
+        let is_plain = radiance.encoding.is_none() && radiance.channel.is_none();
+        if !is_plain || radiance.placement()? != Placement::default() {
+            let message =
+                "the image of an environment fills all directions once, in linear light: only its `scale` is free";
+            return radiance.value.refuse(message);
         }
         let factor = factor_on_image(&radiance);
-        let turn = turn.map_or(Some(Transform::IDENTITY), |turn| rotation(&turn.it));
+        let turn = turn.and_then(|turn| turn.map_or(Some(Transform::IDENTITY), |turn| rotation(&turn.it)));
         let panorama = panorama(context, &At { place: radiance.place, it: file });
         let (factor, turn, panorama) = (factor?, turn?, panorama?);
         let rotation = DMat3::from_cols(turn.vector(DVec3::X), turn.vector(DVec3::Y), turn.vector(DVec3::Z));
         Some(Environment { radiance: factor.into(), image: Some(Sky::new(panorama, rotation)) })
     })
-}
-
-fn not_free<T>(radiance: &CurveText) -> Option<T> {
-    let message = "the image of an environment fills all directions once, in linear light: only its `scale` is free";
-    radiance.value.refuse(message)
 }
 
 /// The map of steps that only turn.

@@ -44,7 +44,8 @@ impl<'d> Fields<'d> {
     ) -> Option<T> {
         let mut fields = Self { document, table, span, known: Vec::new(), missing: Vec::new(), told: Vec::new() };
         let read = read(&mut fields);
-        read.filter(|_| fields.are_right())
+        let are_right = fields.are_right();
+        read.filter(|_| are_right)
     }
 
     /// Whether there are no keys but those that were asked for, and all that are needed; tells of the others.
@@ -57,7 +58,9 @@ impl<'d> Fields<'d> {
                 Some(suggestion(word, word, &self.known)),
             );
         }
-        let is_obscure = unknown.iter().any(|(_, word)| meant(word, word, &self.known).is_none());
+        // What a key without sense should have been may be what is missing.
+        let is_obscure =
+            !self.told.is_empty() || unknown.iter().any(|(_, word)| meant(word, word, &self.known).is_none());
         for (key, help) in self.missing.iter().filter(|(key, _)| !is_obscure && !self.is_misspelt(key)) {
             self.document.tell(self.span.clone(), format!("`{key}` is missing"), help.clone());
         }
