@@ -193,6 +193,11 @@ pub fn decode_srgb(encoded: f64) -> f64 {
     if encoded <= 0.04045 { encoded / 12.92 } else { libm::pow((encoded + 0.055) / 1.055, 2.4) }
 }
 
+/// Factors that make one XYZ another.
+pub(super) fn factors(from: [f64; 3], to: [f64; 3]) -> [f64; 3] {
+    std::array::from_fn(|i| to[i] / from[i])
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,10 +1,13 @@
 //! Spectra of which every value is known.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
-use super::basis::BAND_WAVELENGTHS_NM;
 use super::data::{self, Glass, Illuminant, Metal, Reflectance};
 use super::{Quantity, Texture, Upsampler};
+
+/// Where the bands of the `rgb` basis read an index, in nm: the hydrogen C, mercury e and hydrogen F lines.
+pub(super) const BAND_WAVELENGTHS_NM: [f64; 3] = [656.27, 546.07, 486.13];
 
 /// A spectrum: what a scene file says of one, with names looked up and files read.
 #[derive(Clone, Debug, PartialEq)]
@@ -141,6 +144,15 @@ impl CurveKind {
             _ => None,
         }
     }
+
+    /// The mean of its red, green and blue over the surface.
+    pub(super) fn mean(&self) -> f64 {
+        match self {
+            Self::Texture(texture) => texture.image.mean().iter().sum::<f64>() / 3.0,
+            Self::Checker { cells, .. } => 0.5 * cells.iter().map(|cell| cell.scale * cell.kind.mean()).sum::<f64>(),
+            _ => self.rgb().map_or(1.0, |rgb| rgb.iter().sum::<f64>() / 3.0),
+        }
+    }
 }
 
 impl Curve {
@@ -176,6 +188,42 @@ impl Curve {
             CurveKind::Texture(_) => false,
             CurveKind::Checker { cells, .. } => cells.iter().any(Self::is_measured),
             kind => kind.rgb().is_none(),
+        }
+    }
+
+    /// Whether it is different at different places of a surface.
+    pub fn varies(&self) -> bool {
+        matches!(self.kind, CurveKind::Texture(_) | CurveKind::Checker { .. })
+    }
+
+    /// Whether it is 0 everywhere, as an emission.
+    pub fn is_dark(&self) -> bool {
+        let dark = match &self.kind {
+            CurveKind::Number(value) => *value == 0.0,
+            CurveKind::Rgb(rgb) => rgb.iter().all(|x| *x == 0.0),
+            kind => self.varies() && kind.mean() == 0.0,
+        };
+        dark || self.scale == 0.0 || self.luminance == Some(0.0)
+    }
+
+    /// What an image or a checkerboard filters, as an emission: white; any other curve is itself.
+    pub fn level(&self) -> Cow<'_, Self> {
+        match self.varies() {
+            true => Cow::Owned(Self { scale: self.scale, ..1.0.into() }),
+            false => Cow::Borrowed(self),
+        }
+    }
+
+    /// Spectra that stand for all that are on the surface: the curve itself if it is the same everywhere, the curves of a
+    /// checkerboard, the mean and the most colorful texel of an image.
+    pub fn shades(&self) -> Vec<Cow<'_, Self>> {
+        match &self.kind {
+            CurveKind::Texture(Texture { image, .. }) => {
+                let of = |rgb: [f64; 3]| Cow::Owned(Self { kind: CurveKind::Rgb(rgb), ..self.clone() });
+                vec![of(image.mean()), of(image.most_colorful().map(f64::from))]
+            }
+            CurveKind::Checker { cells, .. } => cells.iter().flat_map(Self::shades).collect(),
+            _ => vec![Cow::Borrowed(self)],
         }
     }
 }

@@ -1,6 +1,6 @@
 //! What a light shines, with its true colors: a spectrum on the visible grid and ideal lines.
 
-use super::color::{ColorSpace, Matrix, apply, product};
+use super::color::{ColorSpace, Matrix, apply, factors, product};
 use super::curve::interpolate;
 use super::visible::{self, color_matching};
 use super::{Curve, CurveKind, Quantity, Upsampler, data};
@@ -33,7 +33,7 @@ impl Emission {
             kind @ (&CurveKind::Number(r) | &CurveKind::Rgb([r, _, _])) => {
                 let white = space.white_light();
                 fill(&|nm| white.at(nm));
-                correction = toward(visible::xyz(&spectrum), space.white());
+                correction = factors(visible::xyz(&spectrum), space.white());
                 let [_, g, b] = kind.rgb().unwrap_or([r; 3]);
                 let brightest = 2.0 * r.max(g).max(b);
                 if r == g && g == b {
@@ -154,11 +154,6 @@ fn on_grid(samples: &[[f64; 2]], wavelength_nm: f64) -> f64 {
         (b - a) / 6.0 * (inside(1e-9) + 4.0 * inside(0.5) + inside(1.0 - 1e-9))
     };
     ends.windows(2).map(|pair| part(pair[0], pair[1])).sum()
-}
-
-/// Factors that make one XYZ another.
-pub(super) fn toward(from: [f64; 3], to: [f64; 3]) -> [f64; 3] {
-    std::array::from_fn(|i| to[i] / from[i])
 }
 
 fn diagonal([x, y, z]: [f64; 3]) -> Matrix {
