@@ -374,3 +374,30 @@ fn absorption(context: &Context, place: Value, name: &str) -> Option<CurveKind> 
     let per_meter = |k: f64, nm: f64| 4.0 * std::f64::consts::PI * k / (nm * 1e-9);
     Some(CurveKind::Samples(glass.extinction.iter().map(|&[nm, k]| [nm, per_meter(k, nm) * meters]).collect()))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// An entry of the catalog is used without a check.
+    #[test]
+    fn every_entry_of_the_catalog_is_possible() {
+        let glasses = data::glasses().map(|glass| (CurveKind::glass(glass.key), Quantity::Index));
+        let metals = data::metals().flat_map(|metal| {
+            [Quantity::MetalIndex, Quantity::MetalExtinction].map(|which| (CurveKind::metal(metal.name), which))
+        });
+        let patches = data::reflectances();
+        let patches = patches.map(|patch| (CurveKind::reflectance(patch.name), Quantity::Reflectance));
+        let mut count = 0;
+        for (kind, quantity) in glasses.chain(metals).chain(patches) {
+            let kind = kind.expect("it is found by its name");
+            let value = kind.values(quantity);
+            for nm in 360..=830 {
+                let found = possible(quantity, value(f64::from(nm)), "").err().map(|refusal| refusal.message);
+                assert_eq!(found, None, "{kind:?} at {nm} nm");
+            }
+            count += 1;
+        }
+        assert!(count > 1000, "{count}");
+    }
+}

@@ -77,25 +77,45 @@ pub(super) fn read_texture(
         "jpg" | "jpeg" => ("JPEG", Some(ImageFormat::Jpeg)),
         _ => return Err(unknown(path, "images end in .png, .jpg, .exr (OpenEXR) or .hdr (Radiance)")),
     };
-    let fault = |said: String| unreadable(path, kind, &said);
     let srgb = match (channel, meaning) {
         (Some(Channel::Alpha), _) => false,
         (_, Meaning::Light(encoding)) => encoding.map_or(format.is_some(), |encoding| encoding == Encoding::Srgb),
         _ => false,
     };
-    let directions = meaning == Meaning::Directions;
-    let ignores = |ignores: bool| ignores && !directions;
-    if let Some(format) = format {
-        let image = guarded(|| decode(bytes, format)).map_err(fault)?;
+    let texture = TextureOf { path, kind, meaning, channel, srgb };
+    match format {
+        Some(format) => texture.of_whole_numbers(bytes, format),
+        None => texture.of_floats(bytes),
+    }
+}
+
+/// An image that is read, and as what.
+struct TextureOf<'p> {
+    path: &'p Path,
+    kind: &'static str,
+    meaning: Meaning,
+    channel: Option<Channel>,
+    srgb: bool,
+}
+
+impl TextureOf<'_> {
+    fn fault(&self, said: String) -> Fault {
+        unreadable(self.path, self.kind, &said)
+    }
+
+    fn of_whole_numbers(self, bytes: &[u8], format: ImageFormat) -> Result<TextureFile, Fault> {
+        let Self { path, srgb, .. } = self;
+        let directions = self.meaning == Meaning::Directions;
+        let image = guarded(|| decode(bytes, format)).map_err(|said| self.fault(said))?;
         let width = image.width() as usize;
         let (count, has_alpha) = (usize::from(image.color().channel_count()), image.color().has_alpha());
-        let picked = Picked::new(path, channel, count, has_alpha)?;
+        let picked = Picked::new(path, self.channel, count, has_alpha)?;
         if directions && picked.channels() == 1 {
             let message = format!("{} is gray, and a normal map has red, green and blue", path.display());
             return Err(Fault::new(message, "heights are a `bump_map`"));
         }
         let wide = image.color().bytes_per_pixel() as usize > count;
-        return Ok(if wide {
+        if wide {
             let (numbers, even) = (words(image), |word: u16| f64::from(word) / 65535.0);
             let value = |word: u16| match directions {
                 true => (f64::from(word) - 32768.0) / 32767.0,
@@ -103,34 +123,37 @@ pub(super) fn read_texture(
                 false => even(word),
             };
             let table: Vec<f32> = (0..=u16::MAX).map(|word| value(word) as f32).collect();
-            let ignores_alpha = ignores(picked.ignores(&numbers, u16::MAX));
+            let ignores_alpha = !directions && picked.ignores(&numbers, u16::MAX);
             let floats = picked.of(&numbers).map(|word| table[usize::from(word)]).collect();
-            TextureFile { image: Image::of_floats(width, picked.channels(), floats), ignores_alpha }
-        } else {
-            let numbers = image.into_bytes();
-            let ignores_alpha = ignores(picked.ignores(&numbers, u8::MAX));
-            let (channels, bytes) = (picked.channels(), picked.of(&numbers).collect());
-            let image = match directions {
-                true => Image::of_signed_bytes(width, channels, bytes),
-                false => Image::of_bytes(width, channels, bytes, srgb),
-            };
-            TextureFile { image, ignores_alpha }
-        });
+            return Ok(TextureFile { image: Image::of_floats(width, picked.channels(), floats), ignores_alpha });
+        }
+        let numbers = image.into_bytes();
+        let ignores_alpha = !directions && picked.ignores(&numbers, u8::MAX);
+        let (channels, bytes) = (picked.channels(), picked.of(&numbers).collect());
+        let image = match directions {
+            true => Image::of_signed_bytes(width, channels, bytes),
+            false => Image::of_bytes(width, channels, bytes, srgb),
+        };
+        Ok(TextureFile { image, ignores_alpha })
     }
-    let radiance = kind == "Radiance";
-    let image = guarded(|| if radiance { read_radiance(bytes) } else { read_exr(bytes, true) }).map_err(fault)?;
-    let picked = Picked::new(path, channel, image.channels, !radiance)?;
-    let numbers = &image.numbers[..];
-    let ignores_alpha = ignores(picked.ignores(numbers, 1.0));
-    let mut floats: Vec<f32> = picked.of(numbers).collect();
-    possible(path, Texels { width: image.width, channels: picked.channels(), numbers: &floats }, meaning)?;
-    if directions {
-        floats.iter_mut().for_each(|x| *x = 2.0 * *x - 1.0);
+
+    fn of_floats(self, bytes: &[u8]) -> Result<TextureFile, Fault> {
+        let (radiance, directions) = (self.kind == "Radiance", self.meaning == Meaning::Directions);
+        let read = || if radiance { read_radiance(bytes) } else { read_exr(bytes, true) };
+        let image = guarded(read).map_err(|said| self.fault(said))?;
+        let picked = Picked::new(self.path, self.channel, image.channels, !radiance)?;
+        let ignores_alpha = !directions && picked.ignores(&image.numbers, 1.0);
+        let mut floats: Vec<f32> = picked.of(&image.numbers).collect();
+        let texels = Texels { width: image.width, channels: picked.channels(), numbers: &floats };
+        possible(self.path, texels, self.meaning)?;
+        if directions {
+            floats.iter_mut().for_each(|x| *x = 2.0 * *x - 1.0);
+        }
+        if self.srgb {
+            floats.iter_mut().for_each(|x| *x = decode_srgb(f64::from(*x)) as f32);
+        }
+        Ok(TextureFile { image: Image::of_floats(image.width, picked.channels(), floats), ignores_alpha })
     }
-    if srgb {
-        floats.iter_mut().for_each(|x| *x = decode_srgb(f64::from(*x)) as f32);
-    }
-    Ok(TextureFile { image: Image::of_floats(image.width, picked.channels(), floats), ignores_alpha })
 }
 
 /// Which numbers of a texel are read.

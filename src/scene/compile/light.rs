@@ -14,7 +14,7 @@ use super::measures::{direction, point};
 use super::transform::{Step, map_of, steps};
 use crate::light::{Environment, Light, LightId, Panorama, Point, Sky, Spot, Sun};
 use crate::math::{DMat3, DVec3, Transform};
-use crate::scene::text::{At, Fields, Value, at};
+use crate::scene::text::{At, Fields, Value, above_0_to, at};
 use crate::spectrum::{Curve, Placement, Quantity};
 
 /// The lights of a scene that are right, and which of them rays see that meet nothing.
@@ -83,10 +83,8 @@ fn sun_light<'d>(context: &mut Context<'d>, value: Value<'d>) -> Option<Light<Cu
     Fields::read(value, |light| {
         let toward = light.need("toward", direction);
         // As wide as the sun appears.
-        let angular_diameter = light.or("angular_diameter", 0.533, |value| match value.number()? {
-            degrees if (0.0..=180.0).contains(&degrees) => Some(degrees),
-            degrees => value.refuse(format!("a sun is 0 to 180 degrees across, not {degrees}")),
-        });
+        let angular_diameter = light
+            .or("angular_diameter", 0.533, |value| value.within(0.0..=180.0, "a sun is 0 to 180 degrees across", None));
         let irradiance = light.need("irradiance", |value| emission(context, value));
         let help = "toward = [1, 2, 1] is the direction from the scene to the sun";
         light.stray("look_at", "a sun is infinitely far away and looks at no point", help.into());
@@ -101,14 +99,10 @@ fn spot_light<'d>(context: &mut Context<'d>, value: Value<'d>) -> Option<Light<C
         let position = light.need("position", point);
         let toward = light.maybe("toward", at(direction));
         let target = light.maybe("look_at", at(point));
-        let cone_angle = light.need("cone_angle", |value| match value.number()? {
-            degrees if degrees > 0.0 && degrees <= 180.0 => Some(degrees),
-            degrees => value.refuse(format!("a cone is above 0 to 180 degrees wide, not {degrees}")),
-        });
-        let blend = light.or("blend", 0.15, |value| match value.number()? {
-            part if (0.0..=1.0).contains(&part) => Some(part),
-            part => value.refuse(format!("blend is a part of the cone, 0 to 1, not {part}")),
-        });
+        let cone_angle = light
+            .need("cone_angle", |value| value.within(above_0_to(180.0), "a cone is above 0 to 180 degrees wide", None));
+        let blend =
+            light.or("blend", 0.15, |value| value.within(0.0..=1.0, "blend is a part of the cone, 0 to 1", None));
         let intensity = light.need("intensity", |value| emission(context, value));
         let position = position?;
         let toward = match (toward?, target?) {

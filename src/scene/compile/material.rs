@@ -36,11 +36,8 @@ fn spectrum_or<'d>(fields: &mut Fields<'d>, key: &'static str, default: f64) -> 
 
 /// From 0, smooth, to 1; 0 if it is wrong, which is told.
 fn roughness(fields: &mut Fields) -> f64 {
-    let roughness = fields.or("roughness", 0.0, |value| match value.number()? {
-        roughness @ 0.0..=1.0 => Some(roughness),
-        roughness => value.refuse(format!("a roughness lies between 0, smooth, and 1, not {roughness}")),
-    });
-    roughness.unwrap_or_default()
+    let what = "a roughness lies between 0, smooth, and 1";
+    fields.or("roughness", 0.0, |value| value.within(0.0..=1.0, what, None)).unwrap_or_default()
 }
 
 /// What reads a kind of material, given its table as a whole and by its keys.

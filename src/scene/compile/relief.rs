@@ -45,11 +45,9 @@ fn normal_map<'d>(context: &mut Context<'d>, place: Value<'d>) -> Option<ReliefT
     Fields::read(place, |map| {
         let file = map.need("image", at(Value::text));
         let placement = placement(map, "directions");
-        let strength = map.or("strength", 1.0, |value| match value.number()? {
-            strength @ 0.0..=MOST_STRENGTH => Some(strength),
-            strength => {
-                value.refuse(format!("the strength of a normal map lies between 0 and {MOST_STRENGTH}, not {strength}"))
-            }
+        let strength = map.or("strength", 1.0, |value| {
+            let what = format!("the strength of a normal map lies between 0 and {MOST_STRENGTH}");
+            value.within(0.0..=MOST_STRENGTH, &what, None)
         });
         let file = file?;
         let image = image(context, &file, Meaning::Directions, None)?;
@@ -74,9 +72,9 @@ fn bump_map<'d>(context: &mut Context<'d>, place: Value<'d>) -> Option<ReliefTex
         let file = map.need("image", at(Value::text));
         let channel = map.maybe("channel", |value| value.word(&CHANNELS));
         let placement = placement(map, "heights");
-        let depth = map.need("depth", |value| match value.number()? {
-            depth if depth.abs() <= MAX_LENGTH => Some(depth),
-            depth => value.refuse(format!("the depth of a bump map is a length up to {MAX_LENGTH:e}, not {depth}")),
+        let depth = map.need("depth", |value| {
+            let what = format!("the depth of a bump map is a length up to {MAX_LENGTH:e}");
+            value.within(-MAX_LENGTH..=MAX_LENGTH, &what, None)
         });
         let image = image(context, &file?, Meaning::Heights, channel?);
         let (image, placement, depth) = (image?, placement?, depth?);

@@ -19,19 +19,13 @@ const BANDS: [u32; 4] = [8, 12, 16, 32];
 pub(super) fn render(value: Value) -> Option<RenderText> {
     Fields::read(value, |render| {
         let model = render.or("model", ModelText::Auto, model);
-        let error = render.maybe("error", |value| match value.number()? {
-            error if (1e-6..=1.0).contains(&error) => Some(error),
-            error => {
-                let message = format!("a relative error lies between 0.000001 and 1, not {error}");
-                value.advise(message, "0.01 asks for one percent")
-            }
+        let error = render.maybe("error", |value| {
+            let help = "0.01 asks for one percent";
+            value.within(1e-6..=1.0, "a relative error lies between 0.000001 and 1", Some(help))
         });
-        let meters_per_unit = render.maybe("meters_per_unit", |value| match value.number()? {
-            meters if (1e-12..=1e12).contains(&meters) => Some(meters),
-            meters => {
-                let message = format!("a scene unit is 1e-12 to 1e12 meters, not {meters}");
-                value.advise(message, "0.01 if the scene is in centimeters")
-            }
+        let meters_per_unit = render.maybe("meters_per_unit", |value| {
+            let help = "0.01 if the scene is in centimeters";
+            value.within(1e-12..=1e12, "a scene unit is 1e-12 to 1e12 meters", Some(help))
         });
         let samples = render.maybe("samples", |value| match value.count()? {
             0 => value.refuse("a pixel needs at least 1 sample"),

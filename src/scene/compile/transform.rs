@@ -25,10 +25,8 @@ const STEP: Choice<for<'d> fn(Value<'d>) -> Option<Step>> = Choice {
         ("rotate", |value| {
             Fields::read(value, |turn| {
                 let axis = turn.need("axis", direction);
-                let degrees = turn.need("degrees", |value| match value.number()? {
-                    degrees if degrees.is_finite() => Some(degrees),
-                    degrees => value.refuse(format!("an angle is a finite number, not {degrees}")),
-                });
+                let finite = f64::MIN..=f64::MAX;
+                let degrees = turn.need("degrees", |value| value.within(finite, "an angle is a finite number", None));
                 Some(Step::Rotate(Transform::rotate(axis?, degrees?)))
             })
         }),

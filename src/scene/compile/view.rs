@@ -1,10 +1,12 @@
 //! The film and the camera.
 
+use std::ops::Bound;
+
 use super::context::Context;
-use super::measures::{MAX_LENGTH, direction, long, point};
+use super::measures::{MAX_LENGTH, direction, length, point};
 use crate::film::{Filter, Window};
 use crate::math::DVec3;
-use crate::scene::text::{At, Choice, Fields, Value, at};
+use crate::scene::text::{Choice, Fields, Value, at};
 use crate::scene::{Camera, FilmSettings, Lens, Projection};
 use crate::spectrum::ColorSpace;
 
@@ -122,29 +124,32 @@ pub(super) fn camera(context: &mut Context, value: Value, film: Option<&FilmSett
         let position = camera.need("position", point);
         let target = camera.need("look_at", at(point));
         let up = camera.or("up", DVec3::Y, direction);
-        let projection = ProjectionText::read(camera);
-        let near = camera.or("near", 0.0, |value| match value.number()? {
-            near if (0.0..=MAX_LENGTH).contains(&near) => Some(near),
-            near => value.refuse(format!("near is a distance from 0 to {MAX_LENGTH:e}, not {near}")),
+        let kind = camera.or("projection", ProjectionKind::Perspective, |value| value.word(&PROJECTIONS));
+        let keys = ["vertical_fov", "height", "shift", "lens"].map(|key| camera.get(key));
+        let near = camera.or("near", 0.0, |value| {
+            value.within(0.0..=MAX_LENGTH, &format!("near is a distance from 0 to {MAX_LENGTH:e}"), None)
         });
-        let projection = projection.and_then(|text| text.projection(camera));
+        let projection = kind.and_then(|kind| projection(camera, kind, keys));
+        let [_, _, shifted, opened] = keys;
+        let shift = shifted.map_or(Some([0.0; 2]), shift);
+        let lens = opened.map_or(Some(None), |value| lens(value).map(Some));
         let (position, target, up) = (position?, target?, up?);
         if (target.it - position).try_normalize().is_none() {
             return target.place.refuse("the camera looks at the very point where it stands");
         }
-        let (opened, near, film) = (projection?, near?, film?);
-        let (view, parallel) = Camera::new(position, target.it, up, opened.projection, [film.width, film.height]);
+        let (projection, shift, lens, near, film) = (projection?, shift?, lens?, near?, film?);
+        let (view, parallel) = Camera::new(position, target.it, up, projection, [film.width, film.height]);
         if parallel {
             let warning = "camera.up is parallel to the viewing direction; another direction is taken";
             context.warnings.push(warning.into());
         }
-        if opened.projection == Projection::Equirectangular && film.width != 2 * film.height {
+        if projection == Projection::Equirectangular && film.width != 2 * film.height {
             context.warnings.push(format!(
                 "an equirectangular image is twice as wide as high; {} x {} pixels are stretched",
                 film.width, film.height
             ));
         }
-        Some(view.starting_at(near).shifted(opened.shift).with_lens(opened.lens))
+        Some(view.starting_at(near).shifted(shift).with_lens(lens))
     })
 }
 
@@ -159,82 +164,49 @@ enum ProjectionKind {
     Equirectangular,
 }
 
-/// What a camera says of its projection, some of which not every projection has.
-struct ProjectionText<'d> {
+const PROJECTIONS: [(&str, ProjectionKind); 3] = [
+    ("perspective", ProjectionKind::Perspective),
+    ("orthographic", ProjectionKind::Orthographic),
+    ("equirectangular", ProjectionKind::Equirectangular),
+];
+
+/// The projection, if the camera has the keys for it and no other: of a vertical field of view in degrees, the height of the
+/// view in scene units, a shift and a lens.
+fn projection(
+    camera: &mut Fields,
     kind: ProjectionKind,
-    /// Full angle from the bottom to the top of the image, in degrees: perspective alone.
-    vertical_fov: Option<At<'d, f64>>,
-    /// Height of the view in scene units: orthographic alone.
-    height: Option<At<'d, f64>>,
-    /// How far the window onto the world is moved to the right and up, in heights of the image.
-    shift: Option<At<'d, [f64; 2]>>,
-    /// A lens with an extent; without it everything is sharp.
-    lens: Option<At<'d, Lens>>,
-}
-
-/// A projection by what opening.
-struct Opened {
-    projection: Projection,
-    shift: [f64; 2],
-    lens: Option<Lens>,
-}
-
-impl<'d> ProjectionText<'d> {
-    fn read(camera: &mut Fields<'d>) -> Option<Self> {
-        use ProjectionKind::{Equirectangular, Orthographic, Perspective};
-        const KINDS: [(&str, ProjectionKind); 3] =
-            [("perspective", Perspective), ("orthographic", Orthographic), ("equirectangular", Equirectangular)];
-        let kind = camera.or("projection", Perspective, |value| value.word(&KINDS));
-        let vertical_fov = camera.maybe("vertical_fov", at(Value::number));
-        let height = camera.maybe("height", at(Value::number));
-        let shift = camera.maybe("shift", at(shift));
-        let lens = camera.maybe("lens", at(lens));
-        Some(Self { kind: kind?, vertical_fov: vertical_fov?, height: height?, shift: shift?, lens: lens? })
-    }
-
-    /// The projection, if the camera has the keys for it and no other.
-    fn projection(self, camera: &mut Fields) -> Option<Opened> {
-        let projection = match self.kind {
-            ProjectionKind::Perspective => {
-                if let Some(height) = self.height {
-                    let help = "give its vertical_fov, or write projection = \"orthographic\"";
-                    return height.place.advise("a perspective camera has no height", help);
-                }
-                let Some(At { place, it: vertical_fov }) = self.vertical_fov else {
-                    return camera.lack("vertical_fov", None);
-                };
-                if !(vertical_fov > 0.0 && vertical_fov < 180.0) {
-                    return place.refuse(format!("a field of view lies between 0 and 180 degrees, not {vertical_fov}"));
-                }
-                Projection::Perspective { vertical_fov }
+    [vertical_fov, height, shift, lens]: [Option<Value>; 4],
+) -> Option<Projection> {
+    match (kind, vertical_fov, height) {
+        (ProjectionKind::Perspective, _, Some(height)) => {
+            let help = "give its vertical_fov, or write projection = \"orthographic\"";
+            height.advise("a perspective camera has no height", help)
+        }
+        (ProjectionKind::Perspective, Some(value), None) => {
+            let between = (Bound::Excluded(0.0), Bound::Excluded(180.0));
+            let vertical_fov = value.within(between, "a field of view lies between 0 and 180 degrees", None)?;
+            Some(Projection::Perspective { vertical_fov })
+        }
+        (ProjectionKind::Perspective, None, None) => camera.lack("vertical_fov", None),
+        (ProjectionKind::Orthographic, Some(value), _) => {
+            value.advise("an orthographic camera has no field of view", HEIGHT)
+        }
+        (ProjectionKind::Orthographic, None, Some(height)) => {
+            Some(Projection::Orthographic { height: length(height, "the height of a view")? })
+        }
+        (ProjectionKind::Orthographic, None, None) => camera.lack("height", Some(HEIGHT)),
+        (ProjectionKind::Equirectangular, ..) => match [vertical_fov, height, shift, lens].into_iter().flatten().next()
+        {
+            Some(value) => {
+                let message = format!("an equirectangular camera sees the full sphere and has no {}", value.key());
+                value.advise(message, "leave it out, or choose another projection")
             }
-            ProjectionKind::Orthographic => {
-                let help = "give the height of the view in scene units: height = 2";
-                if let Some(vertical_fov) = self.vertical_fov {
-                    return vertical_fov.place.advise("an orthographic camera has no field of view", help);
-                }
-                let Some(height) = self.height else { return camera.lack("height", Some(help)) };
-                Projection::Orthographic { height: long(height.place, "the height of a view", height.it)? }
-            }
-            ProjectionKind::Equirectangular => {
-                let surplus = [
-                    self.vertical_fov.map(|key| key.place),
-                    self.height.map(|key| key.place),
-                    self.shift.map(|key| key.place),
-                    self.lens.map(|key| key.place),
-                ];
-                if let Some(place) = surplus.into_iter().flatten().next() {
-                    let key = place.key();
-                    let message = format!("an equirectangular camera sees the full sphere and has no {key}");
-                    return place.advise(message, "leave it out, or choose another projection");
-                }
-                Projection::Equirectangular
-            }
-        };
-        let shift = self.shift.map(|shift| shift.it).unwrap_or_default();
-        Some(Opened { projection, shift, lens: self.lens.map(|lens| lens.it) })
+            None => Some(Projection::Equirectangular),
+        },
     }
 }
+
+const HEIGHT: &str = "give the height of the view in scene units: height = 2";
 
 fn shift(value: Value) -> Option<[f64; 2]> {
     let shift: [f64; 2] = value.as_list("", "write [right, up] in heights of the image").numbers()?;
@@ -251,17 +223,13 @@ fn shift(value: Value) -> Option<[f64; 2]> {
 /// distance along the viewing direction at which points are sharp, `inf` for those infinitely far away.
 fn lens(value: Value) -> Option<Lens> {
     Fields::read(value, |lens| {
-        let radius = lens.need("radius", |value| match value.number()? {
-            radius if (0.0..=MAX_LENGTH).contains(&radius) => Some(radius),
-            radius => value.refuse(format!("the radius of a lens is a length from 0 to {MAX_LENGTH:e}, not {radius}")),
+        let radius = lens.need("radius", |value| {
+            value.within(0.0..=MAX_LENGTH, &format!("the radius of a lens is a length from 0 to {MAX_LENGTH:e}"), None)
         });
-        let focus = lens.need("focus_distance", |value| match value.number()? {
-            // An infinite distance is one; NaN is none.
-            focus if (NEAREST_FOCUS..=f64::INFINITY).contains(&focus) => Some(focus),
-            focus => {
-                let message = format!("a focus lies at least {NEAREST_FOCUS:e} away, not {focus}");
-                value.advise(message, "write inf to see sharply what is far away")
-            }
+        let focus = lens.need("focus_distance", |value| {
+            let help = "write inf to see sharply what is far away";
+            let what = format!("a focus lies at least {NEAREST_FOCUS:e} away");
+            value.within(NEAREST_FOCUS..=f64::INFINITY, &what, Some(help))
         });
         Some(Lens::new(radius?, focus?))
     })

@@ -11,4 +11,4 @@ mod value;
 pub(super) use document::{Document, Mistake};
 pub(super) use fields::{Choice, Fields};
 pub(super) use syntax::explain;
-pub(super) use value::{At, Value, at};
+pub(super) use value::{At, Value, above_0_to, at};

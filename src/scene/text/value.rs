@@ -1,6 +1,6 @@
 //! A value of a scene's text, read as what is wanted of it; what it is instead is told.
 
-use std::ops::Range;
+use std::ops::{Bound, Range, RangeBounds};
 
 use toml::Spanned;
 use toml::de::{DeInteger, DeString, DeValue};
@@ -122,6 +122,14 @@ impl<'d> Value<'d> {
         }
     }
 
+    /// A number of a range; `what` says of another one what it should be.
+    pub(in crate::scene) fn within(self, range: impl RangeBounds<f64>, what: &str, help: Option<&str>) -> Option<f64> {
+        match self.number()? {
+            number if range.contains(&number) => Some(number),
+            number => self.tell(format!("{what}, not {number}"), help.map(str::to_owned)),
+        }
+    }
+
     /// A whole number of 0 or more.
     pub(in crate::scene) fn whole<T: TryFrom<i128>>(self, most: u64) -> Option<T> {
         const WANTED: &str = "a whole number of 0 or more";
@@ -236,6 +244,11 @@ pub(in crate::scene) fn at<'d, T>(
     mut read: impl FnMut(Value<'d>) -> Option<T>,
 ) -> impl FnMut(Value<'d>) -> Option<At<'d, T>> {
     move |place| read(place).map(|it| At { place, it })
+}
+
+/// The numbers above 0 to a greatest one.
+pub(in crate::scene) fn above_0_to(most: f64) -> (Bound<f64>, Bound<f64>) {
+    (Bound::Excluded(0.0), Bound::Included(most))
 }
 
 /// An integer, if it is one of at most 128 bits.
