@@ -220,7 +220,7 @@ fn file_of_samples<'d>(
     let Ok(table) = String::from_utf8(context.bytes(place, file, &TABLE)?) else {
         return place.advise(format!("{file} is not text in UTF-8"), "save the table as CSV in UTF-8");
     };
-    let rows = match read_columns(&table, column.it as usize) {
+    let rows = match read_columns(&table, column.it) {
         Ok(rows) => rows,
         Err(fault) => {
             let place = if fault.is_column && column.it != 2 { column.place } else { place };

@@ -67,8 +67,10 @@ pub(super) enum KindText<'d> {
     Checker(Box<[CurveText<'d>; 2]>),
 }
 
+type Reader = for<'d> fn(Value<'d>) -> Option<KindText<'d>>;
+
 /// The keys of which a table of a spectrum has one, and what reads them.
-const KINDS: [(&str, for<'d> fn(Value<'d>) -> Option<KindText<'d>>); 11] = [
+const KINDS: [(&str, Reader); 11] = [
     ("rgb", |value| value.numbers().map(KindText::Rgb)),
     ("samples", |value| pairs(value, "write [wavelength in nm, value]").map(KindText::Samples)),
     ("file", |value| value.text().map(KindText::File)),
