@@ -158,7 +158,7 @@ fn curve_table<'d>(value: Value<'d>, table: &mut Fields<'d>, example: &str) -> O
     let wrap = table.maybe("wrap", at(|value: Value| value.word(&WRAPS)));
     let filter = table.maybe("filter", at(|value: Value| value.word(&FILTERS)));
     let repeat = table.maybe("repeat", at(one_or_two));
-    let scale = table.or("scale", At { place: value, it: 1.0 }, at(Value::number));
+    let scale = table.maybe("scale", at(Value::number));
     let luminance = table.maybe("luminance", at(Value::number));
     let mut given = kinds.into_iter().flatten();
     let Some((place, kind)) = given.next() else {
@@ -185,13 +185,14 @@ fn curve_table<'d>(value: Value<'d>, table: &mut Fields<'d>, example: &str) -> O
     if let Some((owner, place)) = stray.into_iter().find_map(|(owner, place)| Some((owner, place?))) {
         return place.refuse_key(format!("`{}` goes with {owner}", place.key()), None);
     }
-    if let (true, Some(luminance)) = (table.get("scale").is_some(), luminance) {
+    if let (Some(scale), Some(luminance)) = (scale, luminance) {
         let message = "a spectrum has a `scale` or a `luminance`, not both";
         return scale.place.later(luminance.place).refuse_key(message, None);
     }
     let (wrap, filter) =
         (wrap.map(|wrap| wrap.it).unwrap_or_default(), filter.map(|filter| filter.it).unwrap_or_default());
     let repeat = repeat.unwrap_or(At { place: value, it: [1.0; 2] });
+    let scale = scale.unwrap_or(At { place: value, it: 1.0 });
     let channel = channel.map(|channel| channel.it);
     Some(CurveText { value, place, kind, column, encoding, channel, wrap, filter, repeat, scale, luminance })
 }

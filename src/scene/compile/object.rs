@@ -3,11 +3,10 @@
 use std::collections::BTreeSet;
 
 use super::context::Context;
-use super::parts::Materials;
+use super::parts::{Materials, unknown_material};
 use super::relief::{ReliefText, relief};
 use super::shape::{SHAPE, Written};
 use super::transform::{map_of, steps};
-use crate::error::nearest;
 use crate::material::Material;
 use crate::math::Transform;
 use crate::scene::text::{At, Fields, Value, at};
@@ -90,13 +89,7 @@ impl<'m, 'd> Names<'m, 'd> {
         if self.nameless || !self.unknown.insert(name) {
             return None;
         }
-        let names = || self.materials.keys().copied();
-        let help = match nearest(name, names()) {
-            Some(near) => format!("did you mean {near:?}?"),
-            None if self.materials.is_empty() => format!("define it: [material.{name}]"),
-            None => format!("the scene defines {}", names().collect::<Vec<_>>().join(", ")),
-        };
-        value.advise(format!("there is no material named {name:?}"), help)
+        unknown_material(value, name, self.materials.keys().copied())
     }
 }
 

@@ -51,12 +51,7 @@ impl<'d> Search<'_, 'd> {
     fn part(&mut self, kind: &str, place: Value<'d>) -> Option<Part<Curve>> {
         let name = place.text()?;
         let Some((known, draft)) = self.drafts.get_key_value(name) else {
-            let names = || self.drafts.keys().copied();
-            let help = match nearest(name, names()) {
-                Some(near) => format!("did you mean {near:?}?"),
-                None => format!("the scene defines {}", names().collect::<Vec<_>>().join(", ")),
-            };
-            return place.advise(format!("there is no material named {name:?}"), help);
+            return unknown_material(place, name, self.drafts.keys().copied());
         };
         if let Some(start) = self.within.iter().position(|name| name == known) {
             self.circular.extend(&self.within[start..]);
@@ -78,4 +73,18 @@ impl<'d> Search<'_, 'd> {
             _ => Some(Part::new(name, self.whole(known)?)),
         }
     }
+}
+
+/// Tells that there is no material of a name.
+pub(super) fn unknown_material<'n, T>(
+    place: Value,
+    name: &str,
+    known: impl ExactSizeIterator<Item = &'n str> + Clone,
+) -> Option<T> {
+    let help = match nearest(name, known.clone()) {
+        Some(near) => format!("did you mean {near:?}?"),
+        None if known.len() == 0 => format!("define it: [material.{name}]"),
+        None => format!("the scene defines {}", known.collect::<Vec<_>>().join(", ")),
+    };
+    place.advise(format!("there is no material named {name:?}"), help)
 }

@@ -2,6 +2,8 @@
 
 use std::ops::Bound;
 
+use toml::de::DeValue;
+
 use super::context::Context;
 use super::measures::{MAX_LENGTH, direction, length, point};
 use crate::film::{Filter, Window};
@@ -70,34 +72,30 @@ const FILTER: Choice<for<'d> fn(Value<'d>) -> Option<Filter>> = Choice {
     example: "{ gaussian = { sigma = 0.5 } }",
     apart: "leave one of them out",
     kinds: &[
-        ("tent", |value| wide(value, |table| Some(Filter::Tent { radius: table.need("radius", Value::number)? }))),
-        ("gaussian", |value| {
-            wide(value, |table| Some(Filter::Gaussian { sigma: table.need("sigma", Value::number)? }))
-        }),
-        ("blackman-harris", |value| {
-            wide(value, |table| Some(Filter::BlackmanHarris { radius: table.need("radius", Value::number)? }))
-        }),
+        ("tent", |value| wide(value, "radius", |radius| Filter::Tent { radius })),
+        ("gaussian", |value| wide(value, "sigma", |sigma| Filter::Gaussian { sigma })),
+        ("blackman-harris", |value| wide(value, "radius", |radius| Filter::BlackmanHarris { radius })),
     ],
 };
 
-fn wide<'d>(value: Value<'d>, read: impl FnOnce(&mut Fields<'d>) -> Option<Filter>) -> Option<Filter> {
-    Fields::read(value, |table| {
-        let filter = read(table)?;
+fn wide(value: Value, key: &'static str, filter: fn(f64) -> Filter) -> Option<Filter> {
+    let width = |value: Value| {
+        let filter = filter(value.number()?);
         match filter.too_wide() {
             Some((key, width, most)) => {
-                let place = table.get(key).unwrap_or(value);
-                place.refuse(format!("{key} is a width above 0 and at most {most} pixels, not {width}"))
+                value.refuse(format!("{key} is a width above 0 and at most {most} pixels, not {width}"))
             }
             None => Some(filter),
         }
-    })
+    };
+    Fields::read(value, |table| table.need(key, width))
 }
 
 fn filter(value: Value) -> Option<Filter> {
     let named = Filter::PLAIN.map(|filter| (filter.name(), filter));
     match value.node() {
-        toml::de::DeValue::String(_) => return value.word(&named),
-        toml::de::DeValue::Table(_) => {}
+        DeValue::String(_) => return value.word(&named),
+        DeValue::Table(_) => {}
         _ => return value.wanted("a name in quotes or a table such as { gaussian = { sigma = 0.5 } }"),
     }
     let kind = FILTER.kind(value)?;
