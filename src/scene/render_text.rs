@@ -1,6 +1,12 @@
 //! How the image is made, as the scene says.
 
 /// How the image is made.
+///
+/// ```toml
+/// [render]
+/// samples = 256
+/// seed = 0
+/// ```
 #[derive(Clone, Debug, Default)]
 pub struct RenderText {
     /// How spectra are carried.
@@ -22,6 +28,10 @@ pub struct RenderText {
 }
 
 /// Whether caustics may have a light pass of their own.
+///
+/// ```toml
+/// render.caustics = "auto"     # "off"
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum CausticsText {
     /// Photons, where the scene needs them.
@@ -32,6 +42,10 @@ pub enum CausticsText {
 }
 
 /// How spectra are carried.
+///
+/// ```toml
+/// render.model = "auto"     # "rgb", { bands = 16 }, "hero"
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ModelText {
     /// The least that the scene needs.

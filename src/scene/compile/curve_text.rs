@@ -1,23 +1,4 @@
-//! Spectra as authors write them: a number, a catalog name, or a table with one kind and maybe a `scale`.
-//!
-//! ```toml
-//! reflectance = 0.5
-//! reflectance = { rgb = [0.7, 0.5, 0.3] }
-//! reflectance = "dark skin"
-//! reflectance = { file = "paint.csv", column = 2 }
-//! reflectance = { image = "wood.png", repeat = 4 }     # encoding = "srgb", channel, wrap = "repeat", filter = "linear", scale
-//! reflectance = { checker = [0.1, "dark skin"], repeat = [8, 8] }
-//! index = "N-SF11"
-//! index = { rgb = [1.513, 1.517, 1.523] }
-//! index = { samples = [[486.1, 1.522], [656.3, 1.514]] }
-//! index = { cauchy = [1.5046, 0.0042] }
-//! index = { sellmeier = { b = [1.0396, 0.2318, 1.0105], c = [0.0060, 0.0200, 103.56] } }
-//! index = { abbe = { nd = 1.5168, vd = 64.17 } }
-//! radiance = { rgb = [1, 0.9, 0.8], scale = 10 }
-//! radiance = { illuminant = "D65" }
-//! radiance = { blackbody = 5600, luminance = 3 }
-//! radiance = { lines = [[589.0, 2], [589.6, 1]] }
-//! ```
+//! Spectra as authors write them, as [`Curve`](crate::spectrum::Curve) shows.
 
 use toml::de::DeValue;
 

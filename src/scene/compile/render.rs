@@ -11,11 +11,7 @@ const MODELS: [(&str, ModelText); 3] = [("auto", ModelText::Auto), ("rgb", Model
 /// The numbers of wavelengths that a model may have.
 const BANDS: [u32; 4] = [8, 12, 16, 32];
 
-/// ```toml
-/// [render]
-/// samples = 256
-/// seed = 0
-/// ```
+/// What a scene says of it, as [`RenderText`] shows.
 pub(super) fn render(value: Value) -> Option<RenderText> {
     Fields::read(value, |render| {
         let model = render.or("model", ModelText::Auto, model);
@@ -49,9 +45,6 @@ pub(super) fn render(value: Value) -> Option<RenderText> {
     })
 }
 
-/// ```toml
-/// render.model = "auto"     # "rgb", { bands = 16 }, "hero"
-/// ```
 fn model(value: Value) -> Option<ModelText> {
     const KNOWN: &str = "known here: \"auto\", \"rgb\", \"hero\" or { bands = 16 }";
     let near = |word: &str| nearest(word, MODELS.iter().map(|(name, _)| *name).chain(["bands"]));
