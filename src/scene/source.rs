@@ -1,6 +1,8 @@
 //! Scenes that are read: a file, a text, or a table that a program has built.
 
+use std::collections::HashMap;
 use std::io::ErrorKind;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -54,33 +56,39 @@ impl Source {
     /// # Errors
     /// [`Error::Scene`] with all mistakes that can be found, in the order of the file, each with its line and what to do.
     pub fn compile(&self) -> Result<Scene> {
-        self.compile_with(|_, _| None)
+        self.compile_by(Place::Line)
     }
 
-    /// The same; `key` says for a mistake by which key it is told, if not by its line.
-    fn compile_with(&self, key: impl Fn(&Document, &Mistake) -> Option<String>) -> Result<Scene> {
+    fn compile_by(&self, place: Place) -> Result<Scene> {
         let table = match DeTable::parse(&self.text) {
             Ok(table) => table,
-            Err(error) => return Err(self.error([(explain(&self.text, &error), None)])),
+            Err(error) => return Err(self.error(vec![explain(&self.text, &error)], |_| None)),
         };
         let document = Document::new(&self.text, table.get_ref());
         compile(&document, self.path.parent().unwrap_or(Path::new(""))).ok_or_else(|| {
-            let mistakes = document.mistakes().into_iter();
-            self.error(mistakes.map(|mistake| {
-                let key = key(&document, &mistake);
-                (mistake, key)
-            }))
+            let mistakes = document.mistakes();
+            let paths = match place {
+                Place::Line => HashMap::new(),
+                Place::Key => document.paths(mistakes.iter().map(|mistake| mistake.span.clone())),
+            };
+            self.error(mistakes, |span| paths.get(span).cloned())
         })
     }
 
-    fn error(&self, mistakes: impl IntoIterator<Item = (Mistake, Option<String>)>) -> Error {
+    fn error(&self, mistakes: Vec<Mistake>, key: impl Fn(&Range<usize>) -> Option<String>) -> Error {
         let text: Arc<str> = self.text.as_str().into();
-        let diagnostic = |(Mistake { span, message, help }, key)| {
-            let (file, text) = (self.path.clone(), text.clone());
+        let diagnostic = |Mistake { span, message, help }| {
+            let (file, text, key) = (self.path.clone(), text.clone(), key(&span));
             Diagnostic { file, text, span, key, message, help }
         };
         Error::Scene(mistakes.into_iter().map(diagnostic).collect())
     }
+}
+
+/// By what a mistake is told.
+enum Place {
+    Line,
+    Key,
 }
 
 impl Scene {
@@ -107,6 +115,6 @@ impl Scene {
     /// As [`Scene::parse`], but each mistake is told with the path of its key, such as `object[3].shape.sphere.radius`.
     pub fn from_table(table: &toml::Table, folder: impl AsRef<Path>) -> Result<Self> {
         let source = Source { path: folder.as_ref().join("scene.toml"), text: table.to_string() };
-        source.compile_with(|document, mistake| Some(document.path(&mistake.span)))
+        source.compile_by(Place::Key)
     }
 }

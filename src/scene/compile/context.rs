@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, HashMap};
 use std::io::ErrorKind;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -9,7 +10,7 @@ use sha2::{Digest, Sha256};
 
 use super::image_file::Meaning;
 use crate::error::nearest;
-use crate::scene::text::Value;
+use crate::scene::text::{Document, Value};
 use crate::shape::Mesh;
 use crate::spectrum::{Channel, Image};
 
@@ -17,7 +18,7 @@ use crate::spectrum::{Channel, Image};
 pub(super) struct Context<'d> {
     /// Where the names of files begin.
     pub(super) folder: &'d Path,
-    pub(super) warnings: Vec<String>,
+    warnings: Vec<Warning>,
     /// Of the scene file and the files that it names.
     pub(super) hash: Sha256,
     /// Length of a scene unit in meters, if the scene says it.
@@ -26,6 +27,12 @@ pub(super) struct Context<'d> {
     pub(super) images: BTreeMap<(PathBuf, Meaning, Option<Channel>), Arc<Image>>,
     /// By file and whether it is smooth.
     pub(super) meshes: HashMap<(String, bool), Arc<Mesh>>,
+}
+
+/// What the author should know, and where the reason stands.
+struct Warning {
+    place: Option<Range<usize>>,
+    message: String,
 }
 
 /// A kind of file that a scene names.
@@ -42,8 +49,23 @@ impl<'d> Context<'d> {
         Self { folder, warnings: Vec::new(), hash, meters_per_unit: None, images, meshes }
     }
 
-    pub(super) fn warn(&mut self, place: Value, message: impl std::fmt::Display) {
-        self.warnings.push(format!("{}: {message}", place.path()));
+    pub(super) fn warn(&mut self, message: impl Into<String>) {
+        self.warnings.push(Warning { place: None, message: message.into() });
+    }
+
+    /// Warns by the path of a value.
+    pub(super) fn warn_at(&mut self, place: Value, message: impl Into<String>) {
+        self.warnings.push(Warning { place: Some(place.span()), message: message.into() });
+    }
+
+    /// All warnings of a document.
+    pub(super) fn warnings(&self, document: &Document) -> Vec<String> {
+        let paths = document.paths(self.warnings.iter().filter_map(|warning| warning.place.clone()));
+        let told = |Warning { place, message }: &Warning| match place.as_ref().and_then(|place| paths.get(place)) {
+            Some(path) => format!("{path}: {message}"),
+            None => message.clone(),
+        };
+        self.warnings.iter().map(told).collect()
     }
 
     /// The bytes of a file of which the name stands at a place.

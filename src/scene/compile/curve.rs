@@ -36,7 +36,7 @@ pub(super) fn curve<'d>(context: &mut Context<'d>, text: &CurveText<'d>, quantit
     }
     if quantity == Quantity::Index {
         let advice = [reach(&curve), imitation(&curve)];
-        advice.into_iter().flatten().for_each(|advice| context.warn(text.value, advice));
+        advice.into_iter().flatten().for_each(|advice| context.warn_at(text.value, advice));
     }
     Some(curve)
 }

@@ -122,7 +122,7 @@ pub(super) fn image<'d>(
     };
     context.hash.update(&bytes);
     if read.ignores_alpha {
-        context.warn(place, format!("the alpha of {file} is ignored; channel = \"alpha\" reads it"));
+        context.warn_at(place, format!("the alpha of {file} is ignored; channel = \"alpha\" reads it"));
     }
     let image = Arc::new(read.image);
     context.images.insert(key, image.clone());

@@ -179,7 +179,7 @@ fn panorama(context: &mut Context, file: &At<&str>) -> Option<Panorama> {
     let (width, height) = (image.width(), image.height());
     if width != 2 * height {
         let message = "an image of all directions is twice as wide as high";
-        context.warn(file.place, format!("{} is {width} x {height}; {message}", file.it));
+        context.warn_at(file.place, format!("{} is {width} x {height}; {message}", file.it));
     }
     Some(Panorama::new(Arc::new(image)))
 }

@@ -73,13 +73,13 @@ fn built(context: &mut Context, name: &str, value: Value, parts: Parts, smooth: 
     let Parts { vertices, faces, mut attributes } = parts;
     if smooth && attributes.normals.is_empty() {
         attributes.normals = vertex_normals(&vertices, &faces);
-        context.warnings.push(format!("{name}: the mesh has no normals; they are computed from its faces"));
+        context.warn(format!("{name}: the mesh has no normals; they are computed from its faces"));
     }
     let Some((mesh, report)) = Mesh::new(vertices, faces) else {
         return value.refuse("no triangle of this mesh has an area");
     };
     if report.degenerate > 0 {
-        context.warnings.push(format!("{name}: {} triangles without area were dropped", report.degenerate));
+        context.warn(format!("{name}: {} triangles without area were dropped", report.degenerate));
     }
     Some(Arc::new(mesh.with(attributes)))
 }
@@ -140,11 +140,11 @@ fn read_file(context: &mut Context, name: &str, file: &At<&str>, smooth: bool) -
         }
     }
     for what in mesh.ignored {
-        context.warnings.push(format!("{name}: the {what} of {file} are ignored"));
+        context.warn(format!("{name}: the {what} of {file} are ignored"));
     }
     if mesh.names_materials {
         let warning = format!("{name}: the materials of {file} are ignored; the scene gives them");
-        context.warnings.push(warning);
+        context.warn(warning);
     }
     Some(Parts { vertices: mesh.vertices, faces: mesh.faces, attributes: mesh.attributes })
 }

@@ -56,7 +56,7 @@ pub(super) fn compile<'d>(document: &'d Document<'d>, folder: &'d Path) -> Optio
         return None;
     }
     let mut scene = scene?;
-    scene.warnings = context.warnings;
+    scene.warnings = context.warnings(document);
     if scene.lights.is_empty() {
         scene.warnings.push("nothing shines, so the image will be black".into());
     }
@@ -143,7 +143,7 @@ fn contacts(context: &mut Context, placed: &Placed) {
             placed.shapes[first.max(second)].advise::<()>(message, help);
             continue;
         }
-        context.warnings.push(format!(
+        context.warn(format!(
             "a part of the surface of {body} lies exactly in {other}, where light may pass by it: move it a little, apart \
              or into the other"
         ));
@@ -155,7 +155,7 @@ fn faces_inward(context: &mut Context, placed: &Placed) {
     let found = inside_out::inside_out(&placed.objects, |object| is_clear(placed, object));
     let Some(&first) = found.first() else { return };
     let others = if found.len() > 1 { format!(" and {} more", found.len() - 1) } else { String::new() };
-    context.warnings.push(format!(
+    context.warn(format!(
         "{}{others}: the faces of this closed mesh look inward, so its outside is taken for its inside: reverse the order of \
          each face's corners",
         placed.objects[first].name
@@ -166,7 +166,7 @@ fn faces_inward(context: &mut Context, placed: &Placed) {
 fn unused(context: &mut Context, placed: &Placed, drafts: &Drafts) {
     for name in drafts.by_name.keys() {
         if !placed.materials.iter().any(|used| used.name == *name || used.material.is_made_of(name)) {
-            context.warnings.push(format!("material {name} is not used by any object"));
+            context.warn(format!("material {name} is not used by any object"));
         }
     }
 }

@@ -73,7 +73,7 @@ pub(super) fn object<'d>(
         let written = &shape.it.shape;
         if named.it.medium().is_some() && matches!(written, Shape::Mesh(_)) && !written.is_closed() {
             let warning = format!("{name}: a dielectric on an open mesh: light may enter it and never leave");
-            context.warnings.push(warning);
+            context.warn(warning);
         }
         Some(Draft { name, material: named.place.text()?, shape, map, instances, relief: relief? })
     })

@@ -139,10 +139,10 @@ pub(super) fn camera(context: &mut Context, value: Value, film: Option<&FilmSett
         let (view, parallel) = Camera::new(position, target.it, up, projection, [film.width, film.height]);
         if parallel {
             let warning = "camera.up is parallel to the viewing direction; another direction is taken";
-            context.warnings.push(warning.into());
+            context.warn(warning);
         }
         if projection == Projection::Equirectangular && film.width != 2 * film.height {
-            context.warnings.push(format!(
+            context.warn(format!(
                 "an equirectangular image is twice as wide as high; {} x {} pixels are stretched",
                 film.width, film.height
             ));

@@ -1,6 +1,7 @@
 //! The document that is read, and the mistakes that were found in it.
 
 use std::cell::RefCell;
+use std::collections::HashMap;
 use std::ops::Range;
 
 use toml::Spanned;
@@ -54,41 +55,37 @@ impl<'d> Document<'d> {
         mistakes
     }
 
-    /// The keys and positions that lead to a key or a value, as in `object[3].shape.sphere.radius`.
-    pub(in crate::scene) fn path(&self, span: &Range<usize>) -> String {
-        let mut path = String::new();
-        find(self.root, span, &mut path);
-        path
-    }
-}
-
-/// Whether a table holds the key or the value at a place; the way to it is added to `path`.
-fn find(table: &DeTable, span: &Range<usize>, path: &mut String) -> bool {
-    let before = path.len();
-    table.iter().any(|(key, value)| {
-        path.push_str(if before == 0 { "" } else { "." });
-        path.push_str(key.get_ref());
-        let found = key.span() == *span || find_in(value, span, path);
-        if !found {
-            path.truncate(before);
+    /// The keys and positions that lead to keys and values, as in `object[3].shape.sphere.radius`; empty where there are none.
+    pub(in crate::scene) fn paths(&self, places: impl Iterator<Item = Range<usize>>) -> HashMap<Range<usize>, String> {
+        let mut paths: HashMap<_, _> = places.map(|span| (span, String::new())).collect();
+        if !paths.is_empty() {
+            look_into(self.root, "", &mut paths);
         }
-        found
-    })
+        paths
+    }
 }
 
-fn find_in(value: &Spanned<DeValue>, span: &Range<usize>, path: &mut String) -> bool {
-    let before = path.len();
-    match value.get_ref() {
-        _ if value.span() == *span => true,
-        DeValue::Table(table) => find(table, span, path),
-        DeValue::Array(entries) => entries.iter().enumerate().any(|(number, entry)| {
-            path.push_str(&format!("[{number}]"));
-            let found = find_in(entry, span, path);
-            if !found {
-                path.truncate(before);
-            }
-            found
-        }),
-        _ => false,
+fn look_into(table: &DeTable, path: &str, paths: &mut HashMap<Range<usize>, String>) {
+    for (key, value) in table {
+        let dot = if path.is_empty() { "" } else { "." };
+        let path = format!("{path}{dot}{}", key.get_ref());
+        note(key.span(), &path, paths);
+        look_at(value, &path, paths);
     }
+}
+
+fn look_at(value: &Spanned<DeValue>, path: &str, paths: &mut HashMap<Range<usize>, String>) {
+    note(value.span(), path, paths);
+    match value.get_ref() {
+        DeValue::Table(table) => look_into(table, path, paths),
+        DeValue::Array(entries) => {
+            entries.iter().enumerate().for_each(|(number, entry)| look_at(entry, &format!("{path}[{number}]"), paths));
+        }
+        _ => {}
+    }
+}
+
+/// Keeps the first path of a place that is asked for.
+fn note(span: Range<usize>, path: &str, paths: &mut HashMap<Range<usize>, String>) {
+    paths.entry(span).and_modify(|found| found.push_str(if found.is_empty() { path } else { "" }));
 }

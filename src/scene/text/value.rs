@@ -42,11 +42,6 @@ impl<'d> Value<'d> {
         self.node.span()
     }
 
-    /// The keys that lead to it.
-    pub(in crate::scene) fn path(self) -> String {
-        self.document.path(&self.span())
-    }
-
     pub(in crate::scene) fn node(self) -> &'d DeValue<'d> {
         self.node.get_ref()
     }
