@@ -12,7 +12,7 @@ use std::time::Instant;
 
 use abbe::film::Film;
 use abbe::plan::plan;
-use abbe::scene::{Scene, Source, compile};
+use abbe::scene::{Scene, Source};
 use abbe::spectrum::{Curve, comparison};
 use abbe::trace::{Method, prepare, render};
 
@@ -68,7 +68,7 @@ fn main() {
 
 fn scene(text: String) -> Scene<Curve> {
     let source = Source { path: "bench.toml".into(), text };
-    compile(&source.parse().expect("the scene is well formed"), &source).expect("the scene is valid")
+    source.compile().expect("the scene is valid")
 }
 
 /// Images of several seeds on one thread.

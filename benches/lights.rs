@@ -12,7 +12,7 @@ use std::time::Instant;
 
 use abbe::film::Film;
 use abbe::plan::plan;
-use abbe::scene::{Source, compile};
+use abbe::scene::Source;
 use abbe::trace::{Method, prepare, render};
 
 const SEEDS: u64 = 6;
@@ -135,7 +135,7 @@ fn ball() -> String {
 /// Images of several seeds on one thread.
 fn measure(name: &str, text: String) {
     let source = Source { path: "bench.toml".into(), text };
-    let scene = compile(&source.parse().expect("the scene is well formed"), &source).expect("the scene is valid");
+    let scene = source.compile().expect("the scene is valid");
     let method = plan(&scene).method;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread can be started");
     let (mut times, mut images) = (Vec::new(), Vec::new());

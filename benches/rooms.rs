@@ -10,7 +10,7 @@
 
 use abbe::film::Film;
 use abbe::plan::plan;
-use abbe::scene::{Scene, Source, compile};
+use abbe::scene::{Scene, Source};
 use abbe::spectrum::Curve;
 use abbe::trace::{LightPass, Method, prepare, render};
 
@@ -28,7 +28,7 @@ fn main() {
     );
     for twenty::Room { name, text, asks, words } in twenty::rooms() {
         let source = Source { path: "room.toml".into(), text };
-        let scene = compile(&source.parse().expect("the room is well formed"), &source).expect("the room is valid");
+        let scene = source.compile().expect("the room is valid");
         let plan = plan(&scene).method;
         let lights: Vec<usize> = (0..scene.lights.len()).filter(|&id| scene.lights[id].sends_photons()).collect();
         let wanted = plan

@@ -50,18 +50,6 @@ impl Error {
             Self::Io { .. } | Self::Encode { .. } => 1,
         }
     }
-
-    /// Both failures: all their mistakes if they are of a scene, else the first failure that is none.
-    pub(crate) fn and(self, other: Self) -> Self {
-        match (self, other) {
-            (Self::Scene(mut mistakes), Self::Scene(more)) => {
-                mistakes.extend(more);
-                Self::Scene(mistakes)
-            }
-            (Self::Scene(_), other) => other,
-            (first, _) => first,
-        }
-    }
 }
 
 /// A mistake in a scene file, with the place where it stands.
@@ -73,6 +61,8 @@ pub struct Diagnostic {
     pub text: Arc<str>,
     /// The bytes of the text that are wrong.
     pub span: Range<usize>,
+    /// The key that is wrong, as in `object[3].shape.sphere.radius`: of a scene that a program has built, which has no lines.
+    pub key: Option<String>,
     /// What is wrong.
     pub message: String,
     /// What to do.
@@ -90,8 +80,14 @@ impl Diagnostic {
 
 impl fmt::Display for Diagnostic {
     fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
-        let (line, column) = self.line_and_column();
-        write!(formatter, "{}:{line}:{column}: {}", self.file.display(), self.message)?;
+        match &self.key {
+            Some(key) if key.is_empty() => write!(formatter, "{}", self.message)?,
+            Some(key) => write!(formatter, "{key}: {}", self.message)?,
+            None => {
+                let (line, column) = self.line_and_column();
+                write!(formatter, "{}:{line}:{column}: {}", self.file.display(), self.message)?;
+            }
+        }
         match &self.help {
             Some(help) => write!(formatter, " ({help})"),
             None => Ok(()),

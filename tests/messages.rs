@@ -275,6 +275,26 @@ fn a_byte_order_mark_does_not_move_the_column() {
 }
 
 #[test]
+fn mistakes_in_a_table_that_a_program_has_built_are_told_by_their_keys() {
+    let mut scene: abbe::toml::Table = toml::from_str(BASE).expect("TOML");
+    assert_eq!(abbe::Scene::from_table(&scene, "").expect("a scene").objects.len(), 7);
+    let told = |scene: &abbe::toml::Table| abbe::Scene::from_table(scene, "").expect_err("mistakes").to_string();
+    scene["object"][1]["shape"]["sphere"]["radius"] = 0.into();
+    scene["material"]["glass"]["dielectric"]["index"] = "N-BK8".into();
+    scene["light"][0].as_table_mut().expect("a table").insert("nam".into(), "sky".into());
+    let mut mistakes: Vec<String> = told(&scene).lines().map(str::to_owned).collect();
+    mistakes.sort();
+    let expected = [
+        "light[0].nam: unknown key `nam` (did you mean `name`?)",
+        "material.glass.dielectric.index: there is no glass named \"N-BK8\" (did you mean \"N-BK7\"?)",
+        "object[1].shape.sphere.radius: a radius is a length above 0, not 0",
+    ];
+    assert_eq!(mistakes, expected);
+    scene.remove("film");
+    assert!(told(&scene).starts_with("the scene has no [film] (every scene has [camera] and [film])\n"));
+}
+
+#[test]
 fn a_mesh_file_may_have_comments_in_any_encoding() {
     let folder = Folder::new();
     fs::write(folder.path().join("cup.obj"), b"# caf\xe9\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").expect("written");

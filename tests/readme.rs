@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use abbe::Error;
-use abbe::scene::{Source, compile};
+use abbe::scene::Source;
 
 /// What the pieces of a row stand in.
 const AROUND: &str = r#"
@@ -23,7 +23,7 @@ fn readme() -> String {
 /// What is wrong with a scene, but for files that it names and that are not there.
 fn mistakes(text: &str) -> Vec<String> {
     let source = Source { path: PathBuf::from("readme.toml"), text: text.to_owned() };
-    match source.parse().and_then(|description| compile(&description, &source)) {
+    match source.compile() {
         Ok(_) => Vec::new(),
         Err(Error::Scene(mistakes)) => {
             let known = |message: &String| !message.starts_with("there is no file ");

@@ -11,7 +11,7 @@ use crate::support::random::Random;
 use crate::support::scenes::{EVERY_BRANCH, Mean, SINGLE_PATH, SPLITTING, environment, method, view};
 use abbe::film::Film;
 use abbe::math::{DVec3, Ray};
-use abbe::scene::{Scene, Source, compile};
+use abbe::scene::{Scene, Source};
 use abbe::spectrum::Curve;
 use abbe::trace::{Report, Transport, prepare, render};
 use image::ExtendedColorType::{L8, Rgb8, Rgb16};
@@ -19,7 +19,7 @@ use image::ExtendedColorType::{L8, Rgb8, Rgb16};
 /// The scene of a text in a folder.
 fn scene(folder: &Path, text: &str) -> Scene<Curve> {
     let source = Source { path: folder.join("scene.toml"), text: text.to_owned() };
-    source.parse().and_then(|description| compile(&description, &source)).unwrap_or_else(|e| panic!("{e}\n{text}"))
+    source.compile().unwrap_or_else(|e| panic!("{e}\n{text}"))
 }
 
 fn film(folder: &Path, text: &str, transport: Transport) -> (Film, Report) {
@@ -339,7 +339,7 @@ fn images_that_are_no_relief_are_refused_in_words() {
             environment(1.0)
         );
         let source = Source { path: folder.join("scene.toml"), text };
-        source.parse().and_then(|description| compile(&description, &source)).err().map(|error| error.to_string())
+        source.compile().err().map(|error| error.to_string())
     };
     for (shape, map, words) in [
         (sphere, "normal_map = { image = \"gray.png\" }", "gray.png is gray, and a normal map has red, green and blue"),

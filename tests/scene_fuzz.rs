@@ -9,8 +9,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use abbe::Error;
+use abbe::film::Window;
 use abbe::plan::plan;
-use abbe::scene::{Scene, Source, compile};
+use abbe::scene::{Scene, Source};
 use abbe::spectrum::Curve;
 use abbe::trace::{prepare, render};
 use proptest::prelude::*;
@@ -41,16 +42,14 @@ fn scenes() -> Vec<(PathBuf, String)> {
 /// The scene, if the text is one; checks that a refusal can be shown.
 fn read(path: &Path, text: String) -> Option<Scene<Curve>> {
     let source = Source { path: path.to_owned(), text };
-    // The image is made small: its size decides nothing but the time it takes.
-    let scene = source.parse().and_then(|mut description| {
-        if let Some(film) = &mut description.film {
-            (film.width, film.height) = (film.width.min(4), film.height.min(3));
+    match source.compile() {
+        Ok(mut scene) => {
+            // A small part is rendered: its size decides nothing but the time it takes.
+            let whole = scene.film.window();
+            scene.film.crop = Some(Window { width: whole.width.min(4), height: whole.height.min(3), ..whole });
+            scene.render.samples = scene.render.samples.map(|samples| samples.min(1));
+            Some(scene)
         }
-        description.render.samples = description.render.samples.map(|samples| samples.min(1));
-        compile(&description, &source)
-    });
-    match scene {
-        Ok(scene) => Some(scene),
         Err(Error::Scene(mistakes)) => {
             assert!(!mistakes.is_empty() && mistakes.is_sorted_by_key(|mistake| mistake.span.start), "{mistakes:?}");
             for mistake in mistakes {

@@ -8,7 +8,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use abbe::plan::{Plan, plan};
-use abbe::scene::{Scene, Source, compile};
+use abbe::scene::Scene;
 use abbe::spectrum::Curve;
 use abbe::trace::{Transport, prepare, render};
 
@@ -26,14 +26,15 @@ fn paths() -> Vec<PathBuf> {
 
 /// A scene at its own size, or no wider than `width`.
 fn compiled(path: &Path, width: Option<u32>) -> Scene<Curve> {
-    let source = Source::read(path).expect("a scene");
-    let mut description = source.parse().unwrap_or_else(|error| panic!("{error}"));
-    if let Some(width) = width {
-        let film = description.film.as_mut().expect("a scene has a film");
-        (film.width, film.height) = (width, (film.height * width).div_ceil(film.width));
-        description.render.samples = Some(1);
-    }
-    compile(&description, &source).unwrap_or_else(|error| panic!("{error}"))
+    let Some(width) = width else { return Scene::read(path).unwrap_or_else(|error| panic!("{error}")) };
+    let mut scene: toml::Table = toml::from_str(&fs::read_to_string(path).expect("a scene")).expect("TOML");
+    let film = scene["film"].as_table_mut().expect("a scene has a film");
+    let whole = ["width", "height"].map(|key| film[key].as_integer().expect("a number") as u32);
+    film.insert("width".into(), width.into());
+    film.insert("height".into(), (whole[1] * width).div_ceil(whole[0]).into());
+    let render = scene.entry("render").or_insert_with(|| toml::Table::new().into());
+    render.as_table_mut().expect("a table").insert("samples".into(), 1.into());
+    Scene::from_table(&scene, path.parent().expect("a folder")).unwrap_or_else(|error| panic!("{error}"))
 }
 
 fn planned(name: &str) -> (Plan, String) {

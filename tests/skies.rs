@@ -10,7 +10,7 @@ use std::path::Path;
 use abbe::film::Film;
 use abbe::math::DVec3;
 use abbe::plan::plan;
-use abbe::scene::{Scene, Source, compile};
+use abbe::scene::{Scene, Source};
 use abbe::spectrum::Curve;
 use abbe::trace::{Method, prepare, render};
 use exr::prelude::write_rgb_file;
@@ -56,7 +56,7 @@ fn write_sky(folder: &Path) {
 
 fn read(folder: &Path, text: &str) -> Scene<Curve> {
     let source = Source { path: folder.join("scene.toml"), text: text.to_owned() };
-    compile(&source.parse().unwrap(), &source).unwrap_or_else(|error| panic!("{error}"))
+    source.compile().unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// Images of a small white floor that faces the zenith, seen from above.
@@ -194,7 +194,6 @@ fn a_damaged_image_never_stops_the_program() {
             view([0.0; 3], [0.0, 0.0, 1.0], 30.0, 4)
         );
         let source = Source { path: folder.path().join("scene.toml"), text };
-        let description = source.parse().unwrap();
         let mut readable = 0;
         for round in 0..1500 {
             let mut bytes = whole.clone();
@@ -212,7 +211,7 @@ fn a_damaged_image_never_stops_the_program() {
                 }),
             }
             std::fs::write(folder.path().join(name), &bytes).unwrap();
-            readable += usize::from(compile(&description, &source).is_ok());
+            readable += usize::from(source.compile().is_ok());
         }
         assert!((1..1500).contains(&readable), "{name}: {readable} of 1500 damaged files were read");
     }

@@ -93,7 +93,7 @@ fn d11_vanishing_dispersion_is_neither_tinted_nor_noisier_than_none() {
 fn d12_a_formula_is_not_followed_beyond_its_range() {
     let upsampler = Upsampler::new(SPACE);
     for (name, nd) in [("N-BK7", 1.516_80), ("N-SF11", 1.784_72)] {
-        let (curve, glass) = (Curve::from(CurveKind::Name(name.into())), data::glass(name).unwrap());
+        let (curve, glass) = (Curve::from(CurveKind::glass(name).unwrap()), data::glass(name).unwrap());
         let index = curve.reader(Quantity::Index, &upsampler);
         assert!((index(587.5618) - nd).abs() <= 1e-5, "{name}: {}", index(587.5618));
         let (from, to) = glass.range_nm;

@@ -10,7 +10,7 @@ use crate::support::random::Random;
 use crate::support::scenes::view;
 use abbe::film::Film;
 use abbe::plan::plan;
-use abbe::scene::{Scene, Source, compile};
+use abbe::scene::{Scene, Source};
 use abbe::spectrum::{
     Basis, ColorSpace, Curve, CurveKind, Draw, Emission, Image, Lanes, MAX_LANES, Placement, Quantity, TexelFilter,
     Texture,
@@ -20,7 +20,7 @@ use abbe::trace::{prepare, render};
 /// The scene of a text in a folder.
 fn scene(folder: &Path, text: &str) -> Scene<Curve> {
     let source = Source { path: folder.join("scene.toml"), text: text.to_owned() };
-    source.parse().and_then(|description| compile(&description, &source)).unwrap_or_else(|e| panic!("{e}\n{text}"))
+    source.compile().unwrap_or_else(|e| panic!("{e}\n{text}"))
 }
 
 /// The scene's image as the plan would make it.
@@ -81,7 +81,7 @@ fn an_even_gray_image_is_the_plain_reflectance_to_the_last_bit() {
 /// Every kind of basis.
 fn bases() -> Vec<Basis> {
     let space = ColorSpace::Rec709;
-    let light = |text: &str| Emission::new(&CurveKind::Illuminant(text.into()).into(), space);
+    let light = |text: &str| Emission::new(&CurveKind::illuminant(text).unwrap().into(), space);
     vec![
         Basis::rgb(space),
         Basis::prefiltered(space, &light("D65")),

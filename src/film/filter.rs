@@ -1,9 +1,4 @@
 use std::f64::consts::TAU;
-use std::fmt;
-
-use serde::de::value::MapAccessDeserializer;
-use serde::de::{Error, MapAccess, Visitor};
-use serde::{Deserialize, Deserializer};
 
 use crate::math::{DVec2, disk};
 
@@ -50,15 +45,14 @@ const FARTHEST: f64 = 16.0;
 const WINDOW: [f64; 4] = [0.35875, 0.48829, 0.14128, 0.01168];
 
 impl Filter {
-    /// The filters that have a name and no width of their own.
-    const PLAIN: [Self; 5] = [
+    /// The filters as their names alone mean them.
+    pub const PLAIN: [Self; 5] = [
         Self::Box,
         Self::Center,
         Self::Tent { radius: 1.0 },
         Self::Gaussian { sigma: 0.5 },
         Self::BlackmanHarris { radius: 1.5 },
     ];
-    const NAMES: &'static [&'static str] = &["box", "center", "tent", "gaussian", "blackman-harris"];
 
     /// A position about the unit pixel, y down. A sample counts for one pixel alone.
     pub fn place(self, u: [f64; 2]) -> DVec2 {
@@ -182,37 +176,4 @@ fn blackman_harris(u: f64) -> f64 {
         }
     }
     if u < 0.5 { -x } else { x }
-}
-
-/// A filter as a table: its kind with its width.
-#[derive(Deserialize)]
-#[serde(rename_all = "kebab-case", deny_unknown_fields)]
-enum Wide {
-    Tent { radius: f64 },
-    Gaussian { sigma: f64 },
-    BlackmanHarris { radius: f64 },
-}
-
-impl<'de> Deserialize<'de> for Filter {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Either;
-        impl<'de> Visitor<'de> for Either {
-            type Value = Filter;
-            fn expecting(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
-                formatter.write_str("a name in quotes or a table such as { gaussian = { sigma = 0.5 } }")
-            }
-            fn visit_str<E: Error>(self, word: &str) -> Result<Filter, E> {
-                let known = Filter::PLAIN.into_iter().find(|filter| filter.name() == word);
-                known.ok_or_else(|| E::unknown_variant(word, Filter::NAMES))
-            }
-            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Filter, A::Error> {
-                Ok(match Wide::deserialize(MapAccessDeserializer::new(map))? {
-                    Wide::Tent { radius } => Filter::Tent { radius },
-                    Wide::Gaussian { sigma } => Filter::Gaussian { sigma },
-                    Wide::BlackmanHarris { radius } => Filter::BlackmanHarris { radius },
-                })
-            }
-        }
-        deserializer.deserialize_any(Either)
-    }
 }

@@ -1,7 +1,5 @@
 use std::f64::consts::TAU;
 
-use serde::Deserialize;
-
 use super::Beam;
 use crate::shape::Ball;
 use crate::spectrum::Quantity;
@@ -12,8 +10,7 @@ use crate::spectrum::Quantity;
 /// [[light]]
 /// point = { position = [0, 3, 0], intensity = 10 }     # intensity: radiance times area
 /// ```
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug)]
 pub struct Point<S> {
     /// Where it is.
     pub position: [f64; 3],

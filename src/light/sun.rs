@@ -1,8 +1,6 @@
 use std::f64::consts::PI;
 use std::sync::OnceLock;
 
-use serde::Deserialize;
-
 use super::{Beam, LeSample, LightSample};
 use crate::math::{Cone, DVec3, Frame, Ray, disk_in_square, one_minus_cos_of_cone, square_around_disk, unit};
 use crate::shape::{Ball, SurfacePoint};
@@ -14,18 +12,15 @@ use crate::spectrum::Quantity;
 /// [[light]]
 /// sun = { toward = [1, 2, 1], irradiance = 3 }     # angular_diameter = 0.533 degrees, the sun's; 0: parallel light
 /// ```
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug)]
 pub struct Sun<S> {
     /// Direction from the scene to the sun, of any length.
     pub toward: [f64; 3],
     /// Full angle across the disc, in degrees, 0 to 180.
-    #[serde(default = "apparent")]
     pub angular_diameter: f64,
     /// Irradiance on a surface that faces the sun: radiance times the disc's projected solid angle.
     pub irradiance: S,
     /// What every ray asks of it.
-    #[serde(skip)]
     pub(crate) disc: OnceLock<Disc>,
 }
 
@@ -36,10 +31,6 @@ pub(crate) struct Disc {
     cone: Cone,
     /// The factor on the irradiance that makes the disc's radiance of it.
     radiance_factor: f64,
-}
-
-fn apparent() -> f64 {
-    0.533
 }
 
 impl<S> Sun<S> {

@@ -63,7 +63,8 @@ impl Crossing {
 }
 
 impl Coat {
-    pub(super) fn new(roughness: f64) -> Self {
+    /// A coat of a roughness, 0 to 1.
+    pub fn new(roughness: f64) -> Self {
         Self { roughness: Roughness::new(roughness), rows: Arc::new(array::from_fn(|_| OnceLock::new())) }
     }
 

@@ -1,9 +1,7 @@
-use serde::{Deserialize, Deserializer};
-
 use super::degree::degree;
 use super::{Arrival, Branch, RoughReflection, RoughSurface, Roughness, conductor_reflectance, reflect};
 use crate::math::{DVec3, Frame, unit};
-use crate::spectrum::{Curve, CurveKind, Lanes, Quantity, Table};
+use crate::spectrum::{Lanes, Quantity, Table};
 
 /// A metal, smooth or rough.
 ///
@@ -19,31 +17,6 @@ pub struct Conductor<S> {
     pub k: S,
     /// How rough its surface is; below 0.01 it is taken as smooth.
     pub roughness: Roughness,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct ConductorText {
-    metal: Option<String>,
-    n: Option<Curve>,
-    k: Option<Curve>,
-    #[serde(default)]
-    roughness: f64,
-}
-
-impl<'de> Deserialize<'de> for Conductor<Curve> {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let text = ConductorText::deserialize(deserializer)?;
-        let roughness = Roughness::new(text.roughness);
-        match text {
-            ConductorText { metal: Some(name), n: None, k: None, .. } => {
-                let named: Curve = CurveKind::Name(name).into();
-                Ok(Self { n: named.clone(), k: named, roughness })
-            }
-            ConductorText { metal: None, n: Some(n), k: Some(k), .. } => Ok(Self { n, k, roughness }),
-            _ => Err(serde::de::Error::custom("a conductor needs either `metal`, or both `n` and `k`")),
-        }
-    }
 }
 
 impl<S> Conductor<S> {

@@ -1,5 +1,3 @@
-use serde::Deserialize;
-
 use super::{Arrival, Branch, Interface, Roughness, reflect, shared_transmittance};
 use crate::math::DVec3;
 use crate::spectrum::{Draw, Lanes, Quantity, Table};
@@ -17,36 +15,23 @@ use crate::spectrum::{Draw, Lanes, Quantity, Table};
 /// dielectric = { index = { rgb = [1.513, 1.517, 1.523] }, transmittance = { rgb = [0.9, 1, 0.9] }, absorption = 0.2 }
 /// dielectric = { index = "N-BK7", roughness = 0.3 }     # 0 to 1; 0, smooth, if absent
 /// ```
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-#[serde(bound(deserialize = "S: Deserialize<'de> + From<f64>"))]
+#[derive(Clone, Debug)]
 pub struct Dielectric<S> {
     /// Refractive index.
     pub index: S,
     /// Factor on the reflected light.
-    #[serde(default = "flat::<S, 1>")]
     pub reflectance: S,
     /// Factor on the refracted light.
-    #[serde(default = "flat::<S, 1>")]
     pub transmittance: S,
     /// Radiance of the surface itself.
-    #[serde(default = "flat::<S, 0>")]
     pub emission: S,
     /// Absorption coefficient inside, per scene unit, base e (Beer 1852).
-    #[serde(default = "flat::<S, 0>")]
     pub absorption: S,
     /// Where bodies overlap, the one of higher priority is there; of equal ones, the one whose material is used later in
     /// the file. Bodies of one material merge.
-    #[serde(default)]
     pub priority: i32,
     /// How rough its surface is; below 0.01 it is taken as smooth.
-    #[serde(default)]
     pub roughness: Roughness,
-}
-
-/// The default of an optional spectrum.
-pub(super) fn flat<S: From<f64>, const VALUE: i32>() -> S {
-    f64::from(VALUE).into()
 }
 
 impl<S> Dielectric<S> {

@@ -1,7 +1,5 @@
 use std::f64::consts::{FRAC_1_PI, PI};
 
-use serde::Deserialize;
-
 use super::{Arrival, Branch};
 use crate::math::{DVec3, Frame, cosine_hemisphere, unit};
 use crate::spectrum::{Lanes, Quantity, Table};
@@ -11,8 +9,7 @@ use crate::spectrum::{Lanes, Quantity, Table};
 /// ```toml
 /// diffuse = { reflectance = { rgb = [0.7, 0.7, 0.7] } }
 /// ```
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug)]
 pub struct Diffuse<S> {
     /// Share of the arriving light that leaves again.
     pub reflectance: S,

@@ -1,5 +1,3 @@
-use serde::Deserialize;
-
 use crate::shape::Sides;
 use crate::spectrum::Quantity;
 
@@ -9,13 +7,11 @@ use crate::spectrum::Quantity;
 /// emissive = { radiance = 10, sides = "both" }     # or "front"; "both" if absent
 /// emissive = { radiance = { image = "screen.png", scale = 5 } }
 /// ```
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug)]
 pub struct Emissive<S> {
     /// The radiance it shows.
     pub radiance: S,
     /// The sides that show it.
-    #[serde(default)]
     pub sides: Sides,
 }
 

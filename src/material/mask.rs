@@ -1,5 +1,3 @@
-use serde::Deserialize;
-
 use super::{Arrival, Branch, Part, Straight};
 use crate::math::DVec3;
 use crate::spectrum::{Lanes, Quantity, Table};
@@ -10,8 +8,7 @@ use crate::spectrum::{Lanes, Quantity, Table};
 /// ```toml
 /// mask = { material = "leaf", opacity = 0.5 }
 /// ```
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug)]
 pub struct Mask<S> {
     /// The material where it is opaque, by name: one that reflects or lets through.
     pub material: Part<S>,

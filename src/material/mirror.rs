@@ -1,5 +1,3 @@
-use serde::Deserialize;
-
 use super::{Arrival, Branch};
 use crate::math::{DVec3, unit};
 use crate::spectrum::{Quantity, Table};
@@ -9,12 +7,9 @@ use crate::spectrum::{Quantity, Table};
 /// ```toml
 /// mirror = { reflectance = 0.95 }     # 1 if absent
 /// ```
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-#[serde(bound(deserialize = "S: Deserialize<'de> + From<f64>"))]
+#[derive(Clone, Debug)]
 pub struct Mirror<S> {
     /// Share of the arriving light that leaves again, the same at every angle.
-    #[serde(default = "super::dielectric::flat::<S, 1>")]
     pub reflectance: S,
 }
 

@@ -1,5 +1,3 @@
-use serde::{Deserialize, Deserializer};
-
 use super::{Arrival, Branch, Part, Straight};
 use crate::math::{DVec3, Ray};
 use crate::spectrum::{Lanes, Quantity, Table};
@@ -9,21 +7,12 @@ use crate::spectrum::{Lanes, Quantity, Table};
 /// ```toml
 /// mix = { materials = ["steel", "rust"], amount = 0.3 }     # three tenths of rust
 /// ```
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug)]
 pub struct Mix<S> {
     /// The materials, by name: surfaces that reflect or let through, other mixes and masks among them.
-    #[serde(deserialize_with = "two")]
     pub materials: [Part<S>; 2],
     /// Share of the surface that the second covers, 0 to 1.
     pub amount: S,
-}
-
-fn two<'de, D: Deserializer<'de>, S>(deserializer: D) -> Result<[Part<S>; 2], D::Error> {
-    let names = Vec::<String>::deserialize(deserializer)?;
-    let two: Result<[String; 2], _> = names.try_into();
-    let wrong = |names: Vec<_>| serde::de::Error::custom(format!("a mix is made of 2 materials, not {}", names.len()));
-    two.map(|names| names.map(Part::from)).map_err(wrong)
 }
 
 impl<S> Mix<S> {

@@ -45,15 +45,11 @@ pub use roughness::{RoughReflection, RoughSurface, Roughness};
 pub use straight::Straight;
 pub use thin::Thin;
 
-use serde::Deserialize;
-
 use crate::math::DVec3;
 use crate::spectrum::{Curve, Draw, Lanes, Quantity, Table};
 
 /// What a surface does with light.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(rename_all = "snake_case")]
-#[serde(bound(deserialize = "S: Deserialize<'de> + From<f64>, Conductor<S>: Deserialize<'de>"))]
+#[derive(Clone, Debug)]
 pub enum Material<S> {
     /// Scatters evenly in all directions.
     Diffuse(Diffuse<S>),
@@ -132,52 +128,6 @@ impl<S> Material<S> {
         }
     }
 
-    /// Calls `visit` with every spectrum but those of parts, what it describes and its key in the scene file.
-    pub fn each<E>(&self, mut visit: impl FnMut(Quantity, &'static str, &S) -> Result<(), E>) -> Result<(), E> {
-        use Quantity::*;
-        match self {
-            Self::Diffuse(diffuse) => visit(Reflectance, "reflectance", &diffuse.reflectance),
-            Self::Mirror(mirror) => visit(Reflectance, "reflectance", &mirror.reflectance),
-            Self::Thin(thin) => {
-                visit(Index, "index", &thin.index)?;
-                visit(Transmittance, "transmittance", &thin.transmittance)
-            }
-            Self::Conductor(conductor) => {
-                visit(MetalIndex, "n", &conductor.n)?;
-                visit(MetalExtinction, "k", &conductor.k)
-            }
-            Self::Dielectric(dielectric) => {
-                visit(Index, "index", &dielectric.index)?;
-                visit(Reflectance, "reflectance", &dielectric.reflectance)?;
-                visit(Transmittance, "transmittance", &dielectric.transmittance)?;
-                visit(Emission, "emission", &dielectric.emission)?;
-                visit(Absorption, "absorption", &dielectric.absorption)
-            }
-            Self::Emissive(emissive) => visit(Emission, "radiance", &emissive.radiance),
-            Self::Plastic(plastic) => {
-                visit(Index, "index", &plastic.index)?;
-                visit(Reflectance, "reflectance", &plastic.reflectance)
-            }
-            Self::Mix(mix) => visit(Share, "amount", &mix.amount),
-            Self::Mask(mask) => visit(Share, "opacity", &mask.opacity),
-        }
-    }
-
-    /// The material's kind, as the scene file names it.
-    pub fn kind(&self) -> &'static str {
-        match self {
-            Self::Diffuse(_) => "diffuse",
-            Self::Mirror(_) => "mirror",
-            Self::Thin(_) => "thin",
-            Self::Conductor(_) => "conductor",
-            Self::Dielectric(_) => "dielectric",
-            Self::Emissive(_) => "emissive",
-            Self::Plastic(_) => "plastic",
-            Self::Mix(_) => "mix",
-            Self::Mask(_) => "mask",
-        }
-    }
-
     /// The index of the clear surface that light is reflected at or crosses, where it has one.
     pub fn clear_index(&self) -> Option<&S> {
         match self {
@@ -201,8 +151,9 @@ impl<S> Material<S> {
 impl Material<Curve> {
     /// Whether any of its spectra is different at different places of a surface.
     pub fn varies(&self) -> bool {
-        let varies = |part: &Self| part.each(|_, _, curve| if curve.varies() { Err(()) } else { Ok(()) }).is_err();
-        self.with_parts().into_iter().any(varies)
+        let mut varies = false;
+        self.map(&mut |_, curve| varies |= curve.varies());
+        varies
     }
 }
 

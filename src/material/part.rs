@@ -1,40 +1,27 @@
-use serde::Deserialize;
-
-use super::{Mask, Material, Mix};
+use super::Material;
 use crate::spectrum::Quantity;
 
 /// A material that another one is made of: its name in the scene file, and what stands there under that name.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(from = "String")]
+#[derive(Clone, Debug)]
 pub struct Part<S> {
     /// The name.
     pub name: String,
-    found: Option<Box<Material<S>>>,
-}
-
-impl<S> From<String> for Part<S> {
-    fn from(name: String) -> Self {
-        Self { name, found: None }
-    }
+    material: Box<Material<S>>,
 }
 
 impl<S> Part<S> {
-    /// The part with the material that its name stands for.
-    pub fn found(&self, material: Material<S>) -> Self {
-        Self { name: self.name.clone(), found: Some(Box::new(material)) }
+    /// The material that a name stands for.
+    pub fn new(name: &str, material: Material<S>) -> Self {
+        Self { name: name.to_owned(), material: Box::new(material) }
     }
 
-    /// The material of a part in a compiled scene.
-    ///
-    /// # Panics
-    /// Before the scene is compiled.
+    /// The material.
     pub fn material(&self) -> &Material<S> {
-        self.found.as_deref().expect("compiling a scene finds the material of every name")
+        &self.material
     }
 
     pub(super) fn map<T>(&self, convert: &mut impl FnMut(Quantity, &S) -> T) -> Part<T> {
-        let found = self.found.as_ref().map(|material| Box::new(material.map(convert)));
-        Part { name: self.name.clone(), found }
+        Part::new(&self.name, self.material.map(convert))
     }
 }
 
@@ -47,23 +34,6 @@ impl<S> Material<S> {
             Self::Diffuse(_) | Self::Mirror(_) | Self::Conductor(_) | Self::Dielectric(_) => &[],
             Self::Thin(_) | Self::Emissive(_) | Self::Plastic(_) => &[],
         }
-    }
-
-    /// The same material with its parts found; `find` is told the place of each.
-    pub fn with_found<E>(&self, mut find: impl FnMut(usize, &Part<S>) -> Result<Part<S>, E>) -> Result<Self, E>
-    where
-        S: Clone,
-    {
-        Ok(match self {
-            Self::Mix(Mix { materials: [first, second], amount }) => {
-                let materials = [find(0, first)?, find(1, second)?];
-                Self::Mix(Mix { materials, amount: amount.clone() })
-            }
-            Self::Mask(Mask { material, opacity }) => {
-                Self::Mask(Mask { material: find(0, material)?, opacity: opacity.clone() })
-            }
-            whole => whole.clone(),
-        })
     }
 
     /// The material and all that it is made of.

@@ -1,7 +1,5 @@
 use std::f64::consts::FRAC_1_PI;
 
-use serde::{Deserialize, Deserializer};
-
 use super::coat::{Coat, Crossing};
 use super::conductor::above;
 use super::{Arrival, Branch, Interface, RoughSurface, reflect};
@@ -16,30 +14,14 @@ use crate::spectrum::{Lanes, Quantity, Table};
 /// ```toml
 /// plastic = { reflectance = { rgb = [0.7, 0.1, 0.1] }, roughness = 0.2 }     # index = 1.5, roughness = 0 if absent
 /// ```
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-#[serde(bound(deserialize = "S: Deserialize<'de> + From<f64>"))]
+#[derive(Clone, Debug)]
 pub struct Plastic<S> {
     /// Share of the light in the base that it scatters, before the coat sends any of it back.
     pub reflectance: S,
     /// Refractive index of the coat.
-    #[serde(default = "usual_index")]
     pub index: S,
     /// The coat; below a roughness of 0.01 it is taken as smooth.
-    #[serde(rename = "roughness", default = "smooth", deserialize_with = "rough")]
     pub coat: Coat,
-}
-
-fn usual_index<S: From<f64>>() -> S {
-    1.5.into()
-}
-
-fn smooth() -> Coat {
-    Coat::new(0.0)
-}
-
-fn rough<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Coat, D::Error> {
-    f64::deserialize(deserializer).map(Coat::new)
 }
 
 impl<S> Plastic<S> {

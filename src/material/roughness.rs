@@ -1,8 +1,6 @@
 use std::f64::consts::PI;
 use std::sync::{Arc, OnceLock};
 
-use serde::{Deserialize, Deserializer};
-
 use super::by_cosine::ByCosine;
 use super::{Facets, RoughInterface, reflect};
 use crate::math::DVec3;
@@ -14,12 +12,6 @@ pub struct Roughness {
     /// Computed once for all copies, when it is first needed.
     surface: Arc<OnceLock<RoughSurface>>,
     interface: Arc<OnceLock<RoughInterface>>,
-}
-
-impl<'de> Deserialize<'de> for Roughness {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        f64::deserialize(deserializer).map(Self::new)
-    }
 }
 
 /// Width of the facets' slopes below which a surface is taken as smooth.

@@ -1,7 +1,4 @@
-use serde::Deserialize;
-
 use super::degree::degree;
-use super::dielectric::flat;
 use super::{Arrival, Branch, Interface, Straight, reflect};
 use crate::spectrum::{Lanes, Quantity, Table};
 
@@ -11,14 +8,11 @@ use crate::spectrum::{Lanes, Quantity, Table};
 /// ```toml
 /// thin = { index = 1.52 }     # transmittance = 1: what is left after one way through the pane, straight on
 /// ```
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-#[serde(bound(deserialize = "S: Deserialize<'de> + From<f64>"))]
+#[derive(Clone, Debug)]
 pub struct Thin<S> {
     /// Refractive index.
     pub index: S,
     /// Share of the light that is left after one way through the pane, at every angle.
-    #[serde(default = "flat::<S, 1>")]
     pub transmittance: S,
 }
 

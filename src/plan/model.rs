@@ -172,15 +172,13 @@ fn desaturated(scene: &Scene<Curve>, basis: &Basis) -> Option<String> {
         return None;
     }
     let mut count = 0;
-    for material in scene.materials.iter().flat_map(|named| named.material.with_parts()) {
-        let counted: Result<(), ()> = material.each(|quantity, _, curve| {
+    for named in &scene.materials {
+        named.material.map(&mut |quantity, curve| {
             let is_color = matches!(quantity, Quantity::Reflectance | Quantity::Transmittance | Quantity::Share);
             if let (CurveKind::Rgb(rgb), true) = (&curve.kind, is_color) {
                 count += u32::from(basis.upsampler().fit(rgb.map(|x| x * curve.scale)).saturation < 1.0);
             }
-            Ok(())
         });
-        counted.unwrap_or_default();
     }
     let colors = if count == 1 { "1 rgb color is" } else { &format!("{count} rgb colors are") };
     (count > 0).then(|| format!("{colors} more saturated than a smooth reflectance can be, and moved toward gray"))

@@ -1,6 +1,7 @@
 //! What of a scene decides how its spectra must be carried.
 
 use std::borrow::Cow;
+use std::sync::Arc;
 
 use super::lights::{different, farthest_apart};
 use crate::material::{Conductor, Dielectric, Material, Plastic, conductor_reflectance, diffuse_transmittance};
@@ -96,7 +97,7 @@ impl<'a> Survey<'a> {
 
     /// Whether three numbers say all that is known of every color: numbers and `rgb` under the film's own white.
     pub(super) fn is_plain(&self) -> bool {
-        let white: Curve = CurveKind::Illuminant(self.color_space.white_illuminant().into()).into();
+        let white: Curve = CurveKind::Illuminant(Arc::new(self.color_space.white_light())).into();
         let white = Emission::new(&white, self.color_space);
         self.tints.iter().all(|tint| tint.curves().iter().all(|curve| !curve.is_measured()))
             && self.lights.iter().all(|(curve, light)| !curve.is_measured() || light.has_shape_of(&white))

@@ -1,8 +1,5 @@
-use serde::Deserialize;
-
 /// Which sides of a surface shine.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Sides {
     /// Front and back.
     #[default]

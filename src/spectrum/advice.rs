@@ -1,38 +1,18 @@
 //! What an author should know of an index: how far its formula reaches, and which glass it imitates badly.
 
-use super::curve::cauchy_through;
-use super::curve_check::Refusal;
-use super::curve_name::unknown_glass;
 use super::data::{self, Glass};
-use super::{Curve, CurveKind};
+use super::{Curve, CurveKind, Named};
 
 /// The visible wavelengths by which nearly all light is seen, in nm.
 const SEEN_NM: [f64; 2] = [400.0, 700.0];
 
 /// Where a glass of the catalog is used beyond the wavelengths for which its formula holds.
 pub fn reach(curve: &Curve) -> Option<String> {
-    let CurveKind::Name(name) = &curve.kind else { return None };
-    let glass = data::glass(name)?;
+    let CurveKind::Glass(Named { entry: glass, .. }) = &curve.kind else { return None };
     let (from, to) = glass.range_nm;
     (from > SEEN_NM[0] || to < SEEN_NM[1]).then(|| {
         format!("{} is known from {from} to {to} nm; beyond that its index at the nearest end is taken", glass.key)
     })
-}
-
-/// Absorption coefficients of a glass of the catalog: (wavelength in nm, per meter, base e), 4 pi k / wavelength (Born &
-/// Wolf 1999, section 14.1).
-///
-/// # Errors
-/// If there is no such glass, or its absorption is not known.
-pub fn absorption_of(name: &str) -> Result<Vec<[f64; 2]>, Refusal> {
-    let Some(glass) = data::glass(name) else { return Err(unknown_glass(name)) };
-    if glass.extinction.is_empty() {
-        let message = format!("the catalog does not know the absorption of {}", glass.key);
-        return Err(Refusal::new(message)
-            .help("`render catalog glass` lists who has it; or write { samples = [[nm, per unit], ..] }"));
-    }
-    let per_meter = |k: f64, nm: f64| 4.0 * std::f64::consts::PI * k / (nm * 1e-9);
-    Ok(glass.extinction.iter().map(|&[nm, k]| [nm, per_meter(k, nm)]).collect())
 }
 
 /// Largest error of a prism's deviation, in degrees, that an imitated glass may have.
@@ -40,11 +20,7 @@ const TOLERATED_DEGREES: f64 = 0.1;
 
 /// Whether two terms stand where a glass of the catalog with the same n_d and V_d bends light clearly otherwise.
 pub fn imitation(curve: &Curve) -> Option<String> {
-    let [a, b] = match &curve.kind {
-        CurveKind::Cauchy(terms) => *terms,
-        CurveKind::Abbe { nd, vd } => cauchy_through(*nd, *vd),
-        _ => return None,
-    };
+    let CurveKind::Cauchy([a, b]) = &curve.kind else { return None };
     let index = |nm: f64| curve.scale * (a + b / (nm * nm * 1e-6));
     let [nd, nf, nc] = [587.5618, 486.1327, 656.2725].map(index);
     let vd = (nd - 1.0) / (nf - nc);
@@ -69,8 +45,11 @@ pub fn imitation(curve: &Curve) -> Option<String> {
 
 /// How an index is known: its source and, where makers share the name, whose it is.
 pub fn provenance(curve: &Curve) -> Option<String> {
-    let CurveKind::Name(name) = &curve.kind else { return None };
-    let Some(glass) = data::glass(name) else { return data::metal(name).map(|metal| metal.source.to_owned()) };
+    let Named { name, entry: glass } = match &curve.kind {
+        CurveKind::Glass(glass) => glass,
+        CurveKind::Metal(metal) => return Some(metal.entry.source.to_owned()),
+        _ => return None,
+    };
     let rivals: Vec<_> = data::glass_makers(name).into_iter().filter(|key| *key != glass.key).collect();
     Some(match rivals.is_empty() || name.contains('/') {
         true => format!("{}, {}", glass.key, glass.source),

@@ -51,14 +51,13 @@ impl Bands {
     /// The numbers of a curve: colors as they look under the light; a metal of the catalog so that its reflectance at
     /// normal incidence does.
     pub(super) fn filter(&self, quantity: Quantity, curve: &Curve, value: &dyn Fn(f64) -> f64) -> [f64; 3] {
-        let named = matches!(curve.kind, CurveKind::Name(_));
         match quantity {
             Quantity::Reflectance | Quantity::Transmittance | Quantity::Share => {
                 self.mean(value).map(|x| x.clamp(0.0, 1.0))
             }
             Quantity::MetalIndex => self.mean(value).map(|x| x.max(1e-3)),
-            Quantity::MetalExtinction if named => {
-                let index = curve.plain_reader(Quantity::MetalIndex);
+            Quantity::MetalExtinction if matches!(curve.kind, CurveKind::Metal(_)) => {
+                let index = curve.values(Quantity::MetalIndex);
                 let normal = self.mean(&|nm| normal_reflectance(index(nm), value(nm)));
                 let n = self.mean(&index).map(|x| x.max(1e-3));
                 std::array::from_fn(|c| extinction(n[c], normal[c].clamp(0.0, 0.9999)))

@@ -5,9 +5,11 @@ use std::sync::Arc;
 use super::bands::Bands;
 use super::cardinals::cardinals;
 use super::color::{ColorSpace, IDENTITY, Matrix, apply, product};
+use super::curve::BAND_WAVELENGTHS_NM;
 use super::draw::MAX_HEROES;
 use super::mixture::Mixture;
-use super::table::MAX_LANES;
+use super::palette::palette;
+use super::table::{MAX_LANES, Pattern, PatternKind};
 use super::visible::{self, COUNT};
 use super::{Curve, CurveKind, Draw, Emission, Quantity, Response, Table, Upsampler};
 
@@ -43,15 +45,13 @@ pub(super) enum LaneKind {
     Wavelengths(Arc<Vec<Vec<f64>>>),
 }
 
-/// Where the bands of the `rgb` basis read an index, in nm: the hydrogen C, mercury e and hydrogen F lines.
-pub const BAND_WAVELENGTHS_NM: [f64; 3] = [656.27, 546.07, 486.13];
 /// The wavelength by whose index lanes are refracted that stay together, in nm: the helium d line.
 const DIRECTION_NM: f64 = 587.5618;
 
 impl Basis {
     /// Three bands: red, green and blue, linear Rec.709.
     pub fn rgb(space: ColorSpace) -> Self {
-        let white: Curve = CurveKind::Illuminant(space.white_illuminant().into()).into();
+        let white: Curve = CurveKind::Illuminant(Arc::new(space.white_light())).into();
         let bands = Bands::new(ColorSpace::Rec709, &Emission::new(&white, space));
         Self::new(space, LaneKind::Rgb(Arc::new(bands)), BAND_WAVELENGTHS_NM.into())
     }
@@ -165,10 +165,10 @@ impl Basis {
         if *collapse { draw.collapsing() } else { draw }
     }
 
-    /// A checked curve, read onto the bins. An emission of wavelengths is an even table: its colors are in its response.
+    /// A curve, read onto the bins. An emission of wavelengths is an even table: its colors are in its response.
     pub fn tabulate(&self, quantity: Quantity, curve: &Curve) -> Table {
-        if curve.varies() {
-            return self.patterned(quantity, curve);
+        if let Some(table) = self.patterned(quantity, curve) {
+            return table;
         }
         if quantity == Quantity::Emission {
             return self.emission(curve);
@@ -198,13 +198,30 @@ impl Basis {
         }
     }
 
-    /// Whether the lanes are the red, green and blue of colors as they are written.
-    pub(super) fn has_rgb_lanes(&self) -> bool {
-        matches!(self.lanes, LaneKind::Rgb(_))
+    /// A curve that varies over a surface, read onto the bins; none if it is the same all over.
+    fn patterned(&self, quantity: Quantity, curve: &Curve) -> Option<Table> {
+        let of_filter = |curve: &Curve| self.tabulate(Quantity::Transmittance, curve);
+        let kind = match &curve.kind {
+            CurveKind::Texture(texture) => {
+                let palette = (!matches!(self.lanes, LaneKind::Rgb(_))).then(|| palette(of_filter));
+                PatternKind::Image(texture.clone(), palette)
+            }
+            CurveKind::Checker { cells, repeat } => {
+                PatternKind::Checker { cells: cells.each_ref().map(of_filter), repeat: *repeat }
+            }
+            _ => return None,
+        };
+        let shines = quantity == Quantity::Emission;
+        let level = match shines {
+            true => self.tabulate(quantity, &curve.level()),
+            false => self.even(curve.scale),
+        };
+        let most = if shines { f32::INFINITY } else { 1.0 };
+        Some(level.varied(Pattern { kind, most, mean: curve.kind.mean() }))
     }
 
     /// The same number everywhere.
-    pub(super) fn even(&self, value: f64) -> Table {
+    fn even(&self, value: f64) -> Table {
         self.table(vec![value; self.fixed_lanes()], &|_| value)
     }
 

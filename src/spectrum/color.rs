@@ -1,7 +1,8 @@
 //! Film color spaces, their matrices, and the one transfer curve a picture for looking needs.
 
 use palette::{LinSrgb, Srgb};
-use serde::Deserialize;
+
+use super::data::{self, Illuminant};
 
 /// A 3 x 3 matrix, rows first.
 pub type Matrix = [[f64; 3]; 3];
@@ -11,26 +12,20 @@ pub type Matrix = [[f64; 3]; 3];
 /// ```toml
 /// film.color_space = "lin_rec709_scene"
 /// ```
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ColorSpace {
     /// The primaries of Rec.709 (sRGB), white D65.
     #[default]
-    #[serde(rename = "lin_rec709_scene")]
     Rec709,
     /// ACEScg, the AP1 primaries, white near D60.
-    #[serde(rename = "lin_ap1_scene")]
     AcesCg,
     /// ACES2065-1, the AP0 primaries, white near D60.
-    #[serde(rename = "lin_ap0_scene")]
     Aces2065,
     /// The primaries of Rec.2020, white D65.
-    #[serde(rename = "lin_rec2020_scene")]
     Rec2020,
     /// The primaries of DCI-P3, white D65.
-    #[serde(rename = "lin_p3d65_scene")]
     P3D65,
     /// CIE 1931 XYZ. White, a bare number as an emission, is D65; the color (1, 1, 1) is the equal-energy spectrum's.
-    #[serde(rename = "lin_ciexyzd65_scene")]
     Xyz,
 }
 
@@ -51,6 +46,9 @@ const D65: [f64; 2] = [0.3127, 0.3290];
 const ACES_WHITE: [f64; 2] = [0.32168, 0.33767];
 
 impl ColorSpace {
+    /// Every space.
+    pub const ALL: [Self; 6] = [Self::Rec709, Self::AcesCg, Self::Aces2065, Self::Rec2020, Self::P3D65, Self::Xyz];
+
     /// The `colorInteropID` of the space.
     pub fn interop_id(self) -> &'static str {
         match self {
@@ -100,11 +98,12 @@ impl ColorSpace {
     }
 
     /// The CIE illuminant that stands for the space's white where a spectrum is needed.
-    pub fn white_illuminant(self) -> &'static str {
-        match self {
+    pub fn white_light(self) -> Illuminant {
+        let name = match self {
             Self::AcesCg | Self::Aces2065 => "D60",
-            _ => "D65",
-        }
+            Self::Rec709 | Self::Rec2020 | Self::P3D65 | Self::Xyz => "D65",
+        };
+        data::illuminant(name).expect("both whites are in the catalog")
     }
 
     /// Film color to CIE XYZ. SMPTE RP 177-1993, *Derivation of Basic Television Color Equations*.
@@ -194,18 +193,14 @@ pub fn decode_srgb(encoded: f64) -> f64 {
     if encoded <= 0.04045 { encoded / 12.92 } else { libm::pow((encoded + 0.055) / 1.055, 2.4) }
 }
 
+/// Factors that make one XYZ another.
+pub(super) fn factors(from: [f64; 3], to: [f64; 3]) -> [f64; 3] {
+    std::array::from_fn(|i| to[i] / from[i])
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    const ALL: [ColorSpace; 6] = [
-        ColorSpace::Rec709,
-        ColorSpace::AcesCg,
-        ColorSpace::Aces2065,
-        ColorSpace::Rec2020,
-        ColorSpace::P3D65,
-        ColorSpace::Xyz,
-    ];
 
     fn assert_near(found: [f64; 3], expected: [f64; 3], tolerance: f64) {
         for i in 0..3 {
@@ -215,7 +210,7 @@ mod tests {
 
     #[test]
     fn white_is_one_in_every_space_and_white_in_xyz() {
-        for space in ALL.into_iter().filter(|space| *space != ColorSpace::Xyz) {
+        for space in ColorSpace::ALL.into_iter().filter(|space| *space != ColorSpace::Xyz) {
             assert_near(apply(&space.of_xyz(), space.white()), [1.0; 3], 1e-12);
             assert_near(apply(&space.of_rec709(), [1.0; 3]), [1.0; 3], 1e-12);
         }

@@ -1,10 +1,16 @@
-//! Spectra as authors write them.
+//! Spectra of which every value is known.
 
-use super::basis::BAND_WAVELENGTHS_NM;
-use super::curve_check::Refusal;
-use super::{ImageText, Quantity, Texture, Upsampler, data};
+use std::borrow::Cow;
+use std::sync::Arc;
 
-/// A spectrum as it stands in a scene file: a number, a catalog name, or a table with one kind and maybe a `scale`.
+use super::data::{self, Glass, Illuminant, Metal, Reflectance};
+use super::{Quantity, Texture, Upsampler};
+
+/// Where the bands of the `rgb` basis read an index, in nm: the hydrogen C, mercury e and hydrogen F lines.
+pub(super) const BAND_WAVELENGTHS_NM: [f64; 3] = [656.27, 546.07, 486.13];
+
+/// A spectrum: what a scene file says of one, with names looked up and files read. In a scene it is a number, a name of the
+/// catalog, or a table with one kind and maybe a `scale`.
 ///
 /// ```toml
 /// reflectance = 0.5
@@ -34,24 +40,15 @@ pub struct Curve {
     pub luminance: Option<f64>,
 }
 
-/// The ways to write a spectrum.
+/// The kinds of spectra.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CurveKind {
     /// The same at every wavelength; as an emission, that many times the film's white.
     Number(f64),
     /// Linear Rec.709; as an index, its values at 656.27, 546.07 and 486.13 nm.
     Rgb([f64; 3]),
-    /// (wavelength in nm, value), ascending; linear between, flat beyond the ends, as an emission 0 there.
+    /// (wavelength in nm, value), ascending, at least one; linear between, flat beyond the ends, as an emission 0 there.
     Samples(Vec<[f64; 2]>),
-    /// Samples in a text file: wavelengths in the first column, values in another, counted from 1.
-    File {
-        /// Its path, relative to the scene.
-        file: String,
-        /// The column of the values.
-        column: usize,
-    },
-    /// A glass, a metal or a reflectance of the catalog.
-    Name(String),
     /// n = A + B / wavelength^2, wavelength in um (Cauchy 1836).
     Cauchy([f64; 2]),
     /// n^2 = 1 + sum of B w^2 / (w^2 - C), w = wavelength in um, C in um^2 (Sellmeier 1871).
@@ -61,22 +58,19 @@ pub enum CurveKind {
         /// The squared resonance wavelengths C, in um^2.
         c: Vec<f64>,
     },
-    /// The two-term Cauchy curve through n_d with the Abbe number V_d = (n_d - 1) / (n_F - n_C).
-    Abbe {
-        /// Index at 587.56 nm.
-        nd: f64,
-        /// Abbe number.
-        vd: f64,
-    },
+    /// The index of a glass of the catalog.
+    Glass(Named<Glass>),
+    /// n or k of a metal of the catalog.
+    Metal(Named<Metal>),
+    /// A measured reflectance of the catalog.
+    Reflectance(Named<Reflectance>),
     /// A standard light of the catalog, Y = 1.
-    Illuminant(String),
+    Illuminant(Arc<Illuminant>),
     /// A blackbody's light at a temperature in kelvin, Y = 1.
     Blackbody(f64),
     /// Ideal lines: (wavelength in nm, power).
     Lines(Vec<[f64; 2]>),
-    /// An image file.
-    Image(ImageText),
-    /// An image that was read.
+    /// An image.
     Texture(Texture),
     /// A checkerboard of two spectra.
     Checker {
@@ -85,6 +79,22 @@ pub enum CurveKind {
         /// Squares in a unit of u and of v.
         repeat: [f64; 2],
     },
+}
+
+/// An entry of the catalog.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Named<T> {
+    /// The name by which it was asked for: several entries may share it.
+    pub name: String,
+    /// The entry.
+    pub entry: Arc<T>,
+}
+
+impl<T> Named<T> {
+    /// An entry that a name stands for.
+    pub fn new(name: &str, entry: T) -> Self {
+        Self { name: name.to_owned(), entry: Arc::new(entry) }
+    }
 }
 
 impl From<f64> for Curve {
@@ -100,6 +110,52 @@ impl From<CurveKind> for Curve {
 }
 
 impl CurveKind {
+    /// The index of a glass of the catalog, if there is one of that name.
+    pub fn glass(name: &str) -> Option<Self> {
+        data::glass(name).map(|glass| Self::Glass(Named::new(name, glass)))
+    }
+
+    /// n and k of a metal of the catalog, if there is one of that name.
+    pub fn metal(name: &str) -> Option<Self> {
+        data::metal(name).map(|metal| Self::Metal(Named::new(name, metal)))
+    }
+
+    /// A measured reflectance of the catalog, if there is one of that name.
+    pub fn reflectance(name: &str) -> Option<Self> {
+        data::reflectance(name).map(|reflectance| Self::Reflectance(Named::new(name, reflectance)))
+    }
+
+    /// A standard light of the catalog, if there is one of that name.
+    pub fn illuminant(name: &str) -> Option<Self> {
+        data::illuminant(name).map(|light| Self::Illuminant(Arc::new(light)))
+    }
+
+    /// The value at any wavelength in nm before scaling, without a spectrum being made of `rgb`. Of a light it is the power, of
+    /// which ideal lines have none between them; of what varies over a surface it is what its image or pattern is a factor on.
+    pub fn values(&self, quantity: Quantity) -> Box<dyn Fn(f64) -> f64 + '_> {
+        match self {
+            Self::Number(value) => Box::new(move |_| *value),
+            Self::Rgb([red, green, blue]) => {
+                let [r, g, b] = BAND_WAVELENGTHS_NM;
+                let samples = [[b, *blue], [g, *green], [r, *red]];
+                Box::new(move |nm| interpolate(&samples, nm))
+            }
+            Self::Samples(samples) => Box::new(move |nm| interpolate(samples, nm)),
+            Self::Cauchy([a, b]) => Box::new(move |nm| a + b / (nm * nm * 1e-6)),
+            Self::Sellmeier { b, c } => Box::new(move |nm| sellmeier_squared(b, c, nm * 1e-3).sqrt()),
+            Self::Glass(glass) => Box::new(move |nm| glass.entry.index(nm)),
+            Self::Metal(metal) => {
+                let which = usize::from(quantity == Quantity::MetalExtinction);
+                Box::new(move |nm| metal.entry.nk(nm)[which])
+            }
+            Self::Reflectance(reflectance) => Box::new(move |nm| reflectance.entry.at(nm)),
+            Self::Illuminant(light) => Box::new(move |nm| light.at(nm)),
+            Self::Blackbody(kelvin) => Box::new(move |nm| planck(*kelvin, nm)),
+            Self::Lines(_) => Box::new(|_| 0.0),
+            Self::Texture(_) | Self::Checker { .. } => Box::new(|_| 1.0),
+        }
+    }
+
     /// The three numbers of a color that is no measured spectrum.
     pub fn rgb(&self) -> Option<[f64; 3]> {
         match self {
@@ -108,16 +164,22 @@ impl CurveKind {
             _ => None,
         }
     }
+
+    /// The mean of its red, green and blue over the surface.
+    pub(super) fn mean(&self) -> f64 {
+        match self {
+            Self::Texture(texture) => texture.image.mean().iter().sum::<f64>() / 3.0,
+            Self::Checker { cells, .. } => 0.5 * cells.iter().map(|cell| cell.scale * cell.kind.mean()).sum::<f64>(),
+            _ => self.rgb().map_or(1.0, |rgb| rgb.iter().sum::<f64>() / 3.0),
+        }
+    }
 }
 
 impl Curve {
-    /// The value at any wavelength in nm, with all look-ups done once.
+    /// The value at any wavelength in nm.
     ///
     /// An `rgb` reflectance or transmittance becomes the smooth spectrum that `upsampler` finds, an absorption a multiple
     /// of one, an index is read linearly between 486.13, 546.07 and 656.27 nm.
-    ///
-    /// # Panics
-    /// If `check` would refuse the curve, or if it is an emission, which [`super::Emission`] reads.
     pub fn reader(&self, quantity: Quantity, upsampler: &Upsampler) -> Box<dyn Fn(f64) -> f64 + '_> {
         let scale = self.scale;
         match (&self.kind, quantity) {
@@ -130,49 +192,14 @@ impl Curve {
                 let sigmoid = upsampler.fit(rgb.map(|x| x / twice));
                 Box::new(move |nm| scale * twice * sigmoid.at(nm))
             }
-            _ => self.plain_reader(quantity),
+            _ => self.values(quantity),
         }
     }
 
     /// The value at any wavelength in nm, without a spectrum being made of `rgb`.
-    pub(super) fn plain_reader(&self, quantity: Quantity) -> Box<dyn Fn(f64) -> f64 + '_> {
-        let scale = self.scale;
-        match &self.kind {
-            CurveKind::Number(value) => Box::new(move |_| scale * value),
-            CurveKind::Rgb([red, green, blue]) => {
-                let [r, g, b] = BAND_WAVELENGTHS_NM;
-                let samples = [[b, *blue], [g, *green], [r, *red]];
-                Box::new(move |nm| scale * interpolate(&samples, nm))
-            }
-            CurveKind::Samples(samples) => Box::new(move |nm| scale * interpolate(samples, nm)),
-            CurveKind::Cauchy([a, b]) => Box::new(move |nm| scale * (a + b / (nm * nm * 1e-6))),
-            CurveKind::Sellmeier { b, c } => Box::new(move |nm| scale * sellmeier_squared(b, c, nm * 1e-3).sqrt()),
-            CurveKind::Abbe { nd, vd } => {
-                let [a, b] = cauchy_through(*nd, *vd);
-                Box::new(move |nm| scale * (a + b / (nm * nm * 1e-6)))
-            }
-            CurveKind::Name(name) => match quantity {
-                Quantity::MetalIndex | Quantity::MetalExtinction => {
-                    let metal = data::metal(name).expect("the compiler checked the metal's name");
-                    let which = usize::from(quantity == Quantity::MetalExtinction);
-                    Box::new(move |nm| scale * metal.nk(nm)[which])
-                }
-                Quantity::Index => {
-                    let glass = data::glass(name).expect("the compiler checked the glass's name");
-                    Box::new(move |nm| scale * glass.index(nm))
-                }
-                _ => {
-                    let reflectance = data::reflectance(name).expect("the compiler checked the name");
-                    Box::new(move |nm| scale * reflectance.at(nm))
-                }
-            },
-            CurveKind::File { .. } => panic!("the compiler reads files into samples"),
-            CurveKind::Image(_) => panic!("the compiler reads images into textures"),
-            CurveKind::Texture(_) | CurveKind::Checker { .. } => panic!("no single value stands for a surface"),
-            CurveKind::Illuminant(_) | CurveKind::Blackbody(_) | CurveKind::Lines(_) => {
-                panic!("lights are read by Emission")
-            }
-        }
+    pub fn values(&self, quantity: Quantity) -> Box<dyn Fn(f64) -> f64 + '_> {
+        let (scale, values) = (self.scale, self.kind.values(quantity));
+        Box::new(move |nm| scale * values(nm))
     }
 
     /// Whether the curve is made of wavelengths, so that three numbers cannot hold it.
@@ -184,18 +211,40 @@ impl Curve {
         }
     }
 
-    /// Who published the curve, if it is one of the catalog.
-    pub fn source(&self) -> Option<&'static str> {
-        let CurveKind::Name(name) = &self.kind else { return None };
-        data::glass(name).map(|glass| glass.source).or_else(|| data::metal(name).map(|metal| metal.source))
+    /// Whether it is different at different places of a surface.
+    pub fn varies(&self) -> bool {
+        matches!(self.kind, CurveKind::Texture(_) | CurveKind::Checker { .. })
     }
 
-    /// Whether the curve can be this quantity.
-    ///
-    /// # Errors
-    /// What is wrong, where in the curve, and what to do.
-    pub fn check(&self, quantity: Quantity) -> Result<(), Refusal> {
-        super::curve_check::check(self, quantity)
+    /// Whether it is 0 everywhere, as an emission.
+    pub fn is_dark(&self) -> bool {
+        let dark = match &self.kind {
+            CurveKind::Number(value) => *value == 0.0,
+            CurveKind::Rgb(rgb) => rgb.iter().all(|x| *x == 0.0),
+            kind => self.varies() && kind.mean() == 0.0,
+        };
+        dark || self.scale == 0.0 || self.luminance == Some(0.0)
+    }
+
+    /// What an image or a checkerboard filters, as an emission: white; any other curve is itself.
+    pub fn level(&self) -> Cow<'_, Self> {
+        match self.varies() {
+            true => Cow::Owned(Self { scale: self.scale, ..1.0.into() }),
+            false => Cow::Borrowed(self),
+        }
+    }
+
+    /// Spectra that stand for all that are on the surface: the curve itself if it is the same everywhere, the curves of a
+    /// checkerboard, the mean and the most colorful texel of an image.
+    pub fn shades(&self) -> Vec<Cow<'_, Self>> {
+        match &self.kind {
+            CurveKind::Texture(Texture { image, .. }) => {
+                let of = |rgb: [f64; 3]| Cow::Owned(Self { kind: CurveKind::Rgb(rgb), ..self.clone() });
+                vec![of(image.mean()), of(image.most_colorful().map(f64::from))]
+            }
+            CurveKind::Checker { cells, .. } => cells.iter().flat_map(Self::shades).collect(),
+            _ => vec![Cow::Borrowed(self)],
+        }
     }
 }
 
@@ -205,14 +254,24 @@ pub(super) fn interpolate(samples: &[[f64; 2]], x: f64) -> f64 {
 }
 
 /// The squared index of a Sellmeier curve at a wavelength in um.
-pub(super) fn sellmeier_squared(b: &[f64], c: &[f64], um: f64) -> f64 {
+pub fn sellmeier_squared(b: &[f64], c: &[f64], um: f64) -> f64 {
     let w2 = um * um;
     1.0 + b.iter().zip(c).map(|(b, c)| b * w2 / (w2 - c)).sum::<f64>()
 }
 
 /// Cauchy's A and B (um^2) from n_d and V_d, with the lines C 656.27, d 587.56 and F 486.13 nm.
-pub(super) fn cauchy_through(nd: f64, vd: f64) -> [f64; 2] {
+pub fn cauchy_through(nd: f64, vd: f64) -> [f64; 2] {
     let inverse_square = |nm: f64| 1.0 / (nm * 1e-3 * nm * 1e-3);
     let b = (nd - 1.0) / (vd * (inverse_square(486.13) - inverse_square(656.27)));
     [nd - b * inverse_square(587.56), b]
+}
+
+/// Radiance of a blackbody per wavelength, relative to that at 560 nm (Planck 1901), with c2 = 1.438776877e-2 m K
+/// (CODATA 2018).
+pub(super) fn planck(kelvin: f64, wavelength_nm: f64) -> f64 {
+    const SECOND_RADIATION_CONSTANT: f64 = 1.438_776_877e7; // nm K
+    const REFERENCE_NM: f64 = 560.0;
+    let exponent = |nm: f64| SECOND_RADIATION_CONSTANT / (nm * kelvin);
+    let ratio = libm::expm1(exponent(REFERENCE_NM)) / libm::expm1(exponent(wavelength_nm));
+    libm::pow(REFERENCE_NM / wavelength_nm, 5.0) * ratio
 }

@@ -39,7 +39,7 @@ fn hash(curve: &Curve) -> u64 {
         CurveKind::Number(x) | CurveKind::Blackbody(x) => add(*x),
         CurveKind::Rgb(rgb) => rgb.iter().for_each(|&x| add(x)),
         CurveKind::Samples(pairs) | CurveKind::Lines(pairs) => pairs.as_flattened().iter().for_each(|&x| add(x)),
-        CurveKind::Illuminant(name) => name.hash(&mut hasher),
+        CurveKind::Illuminant(light) => light.name.hash(&mut hasher),
         _ => {}
     }
     hasher.finish()

@@ -1,3 +1,6 @@
+use super::palette::filter;
+use super::table::{Pattern, PatternKind};
+use super::texture::square;
 use super::{Lanes, Table};
 
 /// What each lane of a camera sample stands for: the fixed lanes read the bins of every table, heroes a wavelength that
@@ -73,6 +76,44 @@ impl<const N: usize> Draw<N> {
             lanes.0[lane] = table.between(hero.below, hero.fraction) as f32;
         }
         lanes
+    }
+
+    /// A weight at a place of a surface; the place counts only where the table varies.
+    #[inline]
+    pub fn read_at(&self, table: &Table, uv: [f64; 2]) -> Lanes<N> {
+        match table.pattern() {
+            None => self.read(table),
+            Some(pattern) => self.read_pattern(table, pattern, uv),
+        }
+    }
+
+    /// A color, of numbers as large as they may be, as a factor on white light; the table is that of an image. What has no
+    /// colors tints nothing.
+    pub fn tint(&self, table: &Table, color: [f32; 3]) -> Lanes<N> {
+        match table.pattern().map(|pattern| &pattern.kind) {
+            Some(PatternKind::Image(_, palette)) => self.tint_by(palette.as_ref(), color, false),
+            _ => Lanes::ONE,
+        }
+    }
+
+    #[inline]
+    fn tint_by(&self, palette: Option<&Vec<Table>>, color: [f32; 3], bounded: bool) -> Lanes<N> {
+        match palette {
+            Some(palette) => filter(palette, |tint| self.read(tint), color, bounded),
+            None => Lanes::from_fn(|i| color[i.min(2)]),
+        }
+    }
+
+    #[inline(never)]
+    fn read_pattern(&self, table: &Table, pattern: &Pattern, uv: [f64; 2]) -> Lanes<N> {
+        let filter = match &pattern.kind {
+            PatternKind::Image(texture, palette) => {
+                self.tint_by(palette.as_ref(), texture.color(uv), pattern.most == 1.0)
+            }
+            PatternKind::Checker { cells, repeat } => self.read_at(&cells[square(*repeat, uv)], uv),
+        };
+        let product = self.read(table) * filter;
+        Lanes::from_fn(|i| product[i].min(pattern.most))
     }
 
     /// A refractive index: one number per lane with all its digits.

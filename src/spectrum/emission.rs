@@ -1,9 +1,9 @@
 //! What a light shines, with its true colors: a spectrum on the visible grid and ideal lines.
 
-use super::color::{ColorSpace, Matrix, apply, product};
+use super::color::{ColorSpace, Matrix, apply, factors, product};
 use super::curve::interpolate;
 use super::visible::{self, color_matching};
-use super::{Curve, CurveKind, Upsampler, data};
+use super::{Curve, CurveKind, Quantity, Upsampler, data};
 
 /// The light of one curve, scaled so that sums with the color matching functions give film values.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,7 +18,7 @@ pub struct Emission {
 }
 
 impl Emission {
-    /// The emission of a curve that was checked, on a film.
+    /// The emission of a curve on a film.
     ///
     /// A flat spectrum of 1, and an illuminant or a blackbody alone, have Y = 1; numbers and `rgb` are multiples of the
     /// film's white.
@@ -30,11 +30,11 @@ impl Emission {
         };
         let mut normalized = true;
         match &curve.kind {
-            CurveKind::Number(_) | CurveKind::Rgb(_) => {
-                let white = data::illuminant(space.white_illuminant()).expect("the whites are in the catalog");
+            kind @ (&CurveKind::Number(r) | &CurveKind::Rgb([r, _, _])) => {
+                let white = space.white_light();
                 fill(&|nm| white.at(nm));
-                correction = toward(visible::xyz(&spectrum), space.white());
-                let [r, g, b] = curve.kind.rgb().expect("both kinds are three numbers");
+                correction = factors(visible::xyz(&spectrum), space.white());
+                let [_, g, b] = kind.rgb().unwrap_or([r; 3]);
                 let brightest = 2.0 * r.max(g).max(b);
                 if r == g && g == b {
                     spectrum.iter_mut().for_each(|power| *power *= r);
@@ -45,11 +45,6 @@ impl Emission {
                 }
                 normalized = false;
             }
-            CurveKind::Illuminant(name) => {
-                let illuminant = data::illuminant(name).expect("the compiler checked the illuminant's name");
-                fill(&|nm| illuminant.at(nm));
-            }
-            CurveKind::Blackbody(kelvin) => fill(&|nm| planck(*kelvin, nm)),
             CurveKind::Lines(pairs) => {
                 let unit = 1.0 / visible::luminous();
                 lines = pairs.iter().map(|&[nm, power]| [nm, power * unit]).collect();
@@ -60,7 +55,7 @@ impl Emission {
                 fill(&|nm| unit * on_grid(samples, nm));
                 normalized = false;
             }
-            _ => panic!("the compiler lets no other kind shine"),
+            kind => fill(&*kind.values(Quantity::Emission)),
         }
         let film_of_xyz = product(&space.of_xyz(), &diagonal(correction));
         let mut emission = Self { spectrum, lines, correction, film_of_xyz };
@@ -141,8 +136,8 @@ impl Emission {
 /// A sampled emission on the grid: 0 beyond its ends. Where samples lie closer than the grid each step gets the light
 /// around it, weighed by the hat function of its step, so that no narrow line is lost.
 fn on_grid(samples: &[[f64; 2]], wavelength_nm: f64) -> f64 {
-    let [first, last] = [samples[0][0], samples[samples.len() - 1][0]];
-    let at = |nm: f64| if (first..=last).contains(&nm) { interpolate(samples, nm) } else { 0.0 };
+    let (Some([first, _]), Some([last, _])) = (samples.first(), samples.last()) else { return 0.0 };
+    let at = |nm: f64| if (*first..=*last).contains(&nm) { interpolate(samples, nm) } else { 0.0 };
     if samples.windows(2).all(|pair| pair[1][0] - pair[0][0] >= 1.0) {
         return at(wavelength_nm);
     }
@@ -161,21 +156,6 @@ fn on_grid(samples: &[[f64; 2]], wavelength_nm: f64) -> f64 {
     ends.windows(2).map(|pair| part(pair[0], pair[1])).sum()
 }
 
-/// Factors that make one XYZ another.
-pub(super) fn toward(from: [f64; 3], to: [f64; 3]) -> [f64; 3] {
-    std::array::from_fn(|i| to[i] / from[i])
-}
-
 fn diagonal([x, y, z]: [f64; 3]) -> Matrix {
     [[x, 0.0, 0.0], [0.0, y, 0.0], [0.0, 0.0, z]]
-}
-
-/// Radiance of a blackbody per wavelength, relative to that at 560 nm (Planck 1901), with c2 = 1.438776877e-2 m K
-/// (CODATA 2018).
-fn planck(kelvin: f64, wavelength_nm: f64) -> f64 {
-    const SECOND_RADIATION_CONSTANT: f64 = 1.438_776_877e7; // nm K
-    const REFERENCE_NM: f64 = 560.0;
-    let exponent = |nm: f64| SECOND_RADIATION_CONSTANT / (nm * kelvin);
-    let ratio = libm::expm1(exponent(REFERENCE_NM)) / libm::expm1(exponent(wavelength_nm));
-    libm::pow(REFERENCE_NM / wavelength_nm, 5.0) * ratio
 }

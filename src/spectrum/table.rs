@@ -1,27 +1,6 @@
 use std::sync::Arc;
 
-use super::pattern::Pattern;
-
-/// What a curve describes, which decides how it is read onto the lanes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Quantity {
-    /// Share of light that leaves a surface again, 0 to 1.
-    Reflectance,
-    /// Share of light that crosses a surface, 0 to 1.
-    Transmittance,
-    /// How much of a whole is one of its parts, 0 to 1: an opacity, an amount in a mix.
-    Share,
-    /// Radiance, or for a point light intensity; not negative.
-    Emission,
-    /// Real refractive index of a dielectric; above 1.
-    Index,
-    /// Absorption coefficient per scene unit, base e; not negative.
-    Absorption,
-    /// Real part of a metal's refractive index; above 0.
-    MetalIndex,
-    /// Extinction coefficient of a metal: imaginary part of its index; not negative.
-    MetalExtinction,
-}
+use super::Texture;
 
 /// Most lanes that travel together.
 pub const MAX_LANES: usize = 32;
@@ -40,6 +19,26 @@ pub struct Table {
     direction: Option<f64>,
     /// A factor that varies over the surface.
     pattern: Option<Box<Pattern>>,
+}
+
+/// How a table varies over a surface: a factor on its numbers.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Pattern {
+    pub(super) kind: PatternKind,
+    /// What rounding keeps the product below: 1 of a reflectance or a transmittance.
+    pub(super) most: f32,
+    /// The mean brightness of the factor over the image, a third of red, green and blue.
+    pub(super) mean: f64,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum PatternKind {
+    /// With the palette of its colors, unless red, green and blue are the lanes.
+    Image(Texture, Option<Vec<Table>>),
+    Checker {
+        cells: [Table; 2],
+        repeat: [f64; 2],
+    },
 }
 
 impl Table {
@@ -101,6 +100,12 @@ impl Table {
     pub fn range(&self) -> (f64, f64) {
         let all = self.bins().iter().chain(&*self.fine);
         all.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| (low.min(x), high.max(x)))
+    }
+
+    /// The brightest number; of a table that varies the mean of what it is brought to.
+    pub fn brightness(&self) -> f64 {
+        let brightest = self.range().1.max(0.0);
+        self.pattern().map_or(brightest, |pattern| brightest * pattern.mean)
     }
 
     /// Whether all bins hold the same number.

@@ -2,8 +2,6 @@
 
 use std::sync::Arc;
 
-use serde::{Deserialize, Deserializer};
-
 use super::Image;
 
 /// How an image lies in the coordinates (u, v) of a surface: its bottom left corner at (0, 0), u to the right, v up.
@@ -24,8 +22,7 @@ impl Default for Placement {
 }
 
 /// What lies beyond the edges of an image.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Wrap {
     /// The image again.
     #[default]
@@ -37,8 +34,7 @@ pub enum Wrap {
 }
 
 /// What lies between the middles of texels.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum TexelFilter {
     /// A smooth passage, linear in light.
     #[default]
@@ -48,8 +44,7 @@ pub enum TexelFilter {
 }
 
 /// What the numbers of an image file stand for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Encoding {
     /// Colors as screens show them (IEC 61966-2-1): the default of PNG and JPEG.
     Srgb,
@@ -58,8 +53,7 @@ pub enum Encoding {
 }
 
 /// One number of a texel.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[allow(missing_docs)]
 pub enum Channel {
     Red,
@@ -67,19 +61,6 @@ pub enum Channel {
     Blue,
     /// Opacity, which is always linear.
     Alpha,
-}
-
-/// An image as a scene file names it.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ImageText {
-    /// Its path, relative to the scene.
-    pub file: String,
-    /// What its numbers stand for, if not what its kind of file implies.
-    pub encoding: Option<Encoding>,
-    /// The one number of each texel that is read, as a gray; all three if absent.
-    pub channel: Option<Channel>,
-    /// Where it lies.
-    pub placement: Placement,
 }
 
 /// An image on a surface.
@@ -152,30 +133,6 @@ impl Wrap {
 pub(super) fn square(repeat: [f64; 2], uv: [f64; 2]) -> usize {
     let [x, y] = [0, 1].map(|i| (uv[i] * repeat[i]).floor().rem_euclid(2.0));
     usize::from(x != y)
-}
-
-/// Reads a number that stands for both axes, or two numbers.
-///
-/// # Errors
-/// If it is neither.
-pub fn number_or_two<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<[f64; 2]>, D::Error> {
-    struct Two;
-    impl<'de> serde::de::Visitor<'de> for Two {
-        type Value = [f64; 2];
-        fn expecting(&self, formatter: &mut std::fmt::Formatter) -> std::fmt::Result {
-            formatter.write_str("a number or [u, v]")
-        }
-        fn visit_f64<E>(self, value: f64) -> Result<[f64; 2], E> {
-            Ok([value; 2])
-        }
-        fn visit_i64<E>(self, value: i64) -> Result<[f64; 2], E> {
-            Ok([value as f64; 2])
-        }
-        fn visit_seq<A: serde::de::SeqAccess<'de>>(self, sequence: A) -> Result<[f64; 2], A::Error> {
-            Deserialize::deserialize(serde::de::value::SeqAccessDeserializer::new(sequence))
-        }
-    }
-    deserializer.deserialize_any(Two).map(Some)
 }
 
 #[cfg(test)]

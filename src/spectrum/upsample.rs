@@ -1,8 +1,8 @@
 //! From three color numbers to a smooth spectrum within 0..1.
 
-use super::color::{ColorSpace, Matrix, adaptation, apply, inverse, product};
+use super::color::{ColorSpace, Matrix, adaptation, apply, factors, inverse, product};
+use super::data;
 use super::visible::{self, COUNT};
-use super::{data, emission};
 
 /// A spectrum S(w) = 1/2 + x / (2 sqrt(1 + x^2)), x = (a t + b) t + c, where t runs from 0 at 360 to 1 at 830 nm.
 ///
@@ -40,9 +40,9 @@ const CLOSE: f64 = 1e-4;
 impl Upsampler {
     /// For a film: a reflectance of 1 has the color (1, 1, 1) under its white.
     pub fn new(space: ColorSpace) -> Self {
-        let white = data::illuminant(space.white_illuminant()).expect("the whites are in the catalog");
+        let white = space.white_light();
         let spectrum: Vec<f64> = visible::wavelengths().map(|nm| white.at(nm)).collect();
-        let correction = emission::toward(visible::xyz(&spectrum), space.white());
+        let correction = factors(visible::xyz(&spectrum), space.white());
         let adapted = adaptation(space.white(), ColorSpace::Rec709.white());
         let to_rec709 = product(&ColorSpace::Rec709.of_xyz(), &adapted);
         let steps = spectrum.iter().zip(data::color_matching());

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::PathBuf;
 
 use abbe::Error;
-use abbe::scene::{Description, Source, compile};
+use abbe::scene::Source;
 
 use super::corpus;
 use super::mutate::{Dice, mutated, with_checksums, with_lengths};
@@ -25,7 +25,7 @@ enum Via {
     /// They are a scene, in one of these places.
     Scene(Vec<PathBuf>),
     /// They are a file that scenes name, in a folder of its own.
-    File { path: PathBuf, scenes: Vec<(Source, Description)> },
+    File { path: PathBuf, scenes: Vec<Source> },
 }
 
 /// What became of a file: whether it was read, or else the message.
@@ -42,9 +42,7 @@ impl Kind {
         let scenes = (bodies.iter())
             .map(|body| {
                 let text = format!("{WORLD}{}", body.replace("FILE", &format!("\"case.{ending}\"")));
-                let source = Source { path: folder.join("scene.toml"), text };
-                let description = source.parse().unwrap_or_else(|error| panic!("{error}"));
-                (source, description)
+                Source { path: folder.join("scene.toml"), text }
             })
             .collect();
         let path = folder.join(format!("case.{ending}"));
@@ -75,12 +73,12 @@ impl Kind {
             Via::Scene(places) => {
                 let path = places[of(places.len())].clone();
                 let source = Source { path, text: String::from_utf8_lossy(bytes).into_owned() };
-                (source.parse().and_then(|description| compile(&description, &source)), source)
+                (source.compile(), source)
             }
             Via::File { path, scenes } => {
                 fs::write(path, bytes).expect("the folder can be written");
-                let (source, description) = &scenes[of(scenes.len())];
-                let answer = compile(description, source);
+                let source = &scenes[of(scenes.len())];
+                let answer = source.compile();
                 // Files that are removed at once are never written to the disk; of a program that was stopped one is
                 // left.
                 fs::remove_file(path).expect("the file is there");

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use abbe::math::{DVec3, Ray, Transform};
-use abbe::scene::{Source, compile};
+use abbe::scene::Source;
 use abbe::shape::{Mesh, Shape, Vertices, read_mesh};
 
 use crate::support::random::Random;
@@ -118,7 +118,7 @@ fn warnings(name: &str, bytes: &[u8], material: &str) -> Vec<String> {
          [[object]]\nname = \"pyramid\"\nshape.mesh.file = \"{name}\"\nmaterial = \"stuff\"\n"
     );
     let source = Source { path: folder.path().join("scene.toml"), text };
-    let scene = source.parse().and_then(|description| compile(&description, &source));
+    let scene = source.compile();
     scene.unwrap_or_else(|error| panic!("{error}")).warnings
 }
 

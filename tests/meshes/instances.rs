@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use abbe::film::Film;
-use abbe::scene::{Scene, Source, compile};
+use abbe::scene::{Scene, Source};
 use abbe::shape::{Mesh, Shape};
 use abbe::spectrum::Curve;
 use abbe::trace::{Report, Transport, prepare, render};
@@ -25,7 +25,7 @@ fn folder() -> tempfile::TempDir {
 
 fn scene(folder: &tempfile::TempDir, text: &str) -> Scene<Curve> {
     let source = Source { path: folder.path().join("scene.toml"), text: text.to_owned() };
-    source.parse().and_then(|description| compile(&description, &source)).unwrap_or_else(|e| panic!("{e}\n{text}"))
+    source.compile().unwrap_or_else(|e| panic!("{e}\n{text}"))
 }
 
 fn image(folder: &tempfile::TempDir, text: &str, transport: Transport) -> (Film, Report) {
@@ -134,6 +134,6 @@ fn instances_that_touch_are_refused_by_their_names() {
         + "instances = [[], [{ translate = [3, 0, 0] }], [{ translate = [3, 0, 0] }]]\n";
     let folder = folder();
     let source = Source { path: folder.path().join("scene.toml"), text };
-    let error = source.parse().and_then(|description| compile(&description, &source)).expect_err("they coincide");
+    let error = source.compile().expect_err("they coincide");
     assert!(error.to_string().contains("bead [2] and bead [3] lies in one place"), "{error}");
 }

@@ -11,7 +11,7 @@ fn h4_every_glass_has_an_index_at_and_beyond_the_ends_of_its_range() {
     let upsampler = Upsampler::new(ColorSpace::Rec709);
     let mut count = 0;
     for glass in glasses() {
-        let curve = Curve::from(CurveKind::Name(glass.key.into()));
+        let curve = Curve::from(CurveKind::glass(glass.key).unwrap());
         let index = curve.reader(Quantity::Index, &upsampler);
         let (from, to) = glass.range_nm;
         for nm in [from, from.next_up(), 360.0, 830.0, to.next_down(), to] {

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use abbe::material::Interface;
-use abbe::scene::{Source, compile};
+use abbe::scene::Source;
 
 use crate::support::scenes::{EVERY_BRANCH, SPLITTING, body, environment, image, scene, view};
 
@@ -34,7 +34,7 @@ fn d6_even_light_between_glass_and_water_is_reflected_as_the_closed_form_says() 
 
 fn refusal(text: &str) -> String {
     let source = Source { path: PathBuf::from("test.toml"), text: text.to_owned() };
-    match source.parse().and_then(|description| compile(&description, &source)) {
+    match source.compile() {
         Err(abbe::Error::Scene(mistakes)) => mistakes[0].message.clone(),
         other => panic!("{other:?}"),
     }

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use abbe::film::Film;
-use abbe::scene::{Scene, Source, compile};
+use abbe::scene::{Scene, Source};
 use abbe::spectrum::{Basis, Curve};
 use abbe::trace::{Method, Report, Transport, prepare, render};
 
@@ -17,7 +17,7 @@ pub const SINGLE_PATH: Transport = Transport::Random { split: 1.0, roulette: 0.0
 /// The world that a text without mistakes describes.
 pub fn scene(text: &str) -> Scene<Curve> {
     let source = Source { path: PathBuf::from("test.toml"), text: text.to_owned() };
-    source.parse().and_then(|description| compile(&description, &source)).unwrap_or_else(|e| panic!("{e}\n{text}"))
+    source.compile().unwrap_or_else(|e| panic!("{e}\n{text}"))
 }
 
 /// The tables of a scene's camera and of a square film.

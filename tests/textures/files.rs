@@ -126,7 +126,7 @@ fn refusal(folder: &Path, reflectance: &str) -> String {
         view([0.0, 0.0, 9.0], [0.0; 3], 30.0, 4)
     );
     let source = Source { path: folder.join("scene.toml"), text };
-    let read = source.parse().and_then(|description| compile(&description, &source));
+    let read = source.compile();
     match read {
         Err(abbe::Error::Scene(mistakes)) => mistakes[0].message.clone(),
         other => panic!("{reflectance}: {other:?}"),
@@ -193,7 +193,6 @@ fn a_damaged_image_never_stops_the_program() {
             view([0.0, 0.0, 9.0], [0.0; 3], 30.0, 4)
         );
         let source = Source { path: folder.path().join("scene.toml"), text };
-        let description = source.parse().unwrap();
         let (mut readable, mut refused) = (0, 0);
         for round in 0..900 {
             let mut bytes = whole.clone();
@@ -210,7 +209,7 @@ fn a_damaged_image_never_stops_the_program() {
                 }),
             }
             std::fs::write(folder.path().join(name), &bytes).unwrap();
-            match compile(&description, &source) {
+            match source.compile() {
                 Ok(_) => readable += 1,
                 Err(abbe::Error::Scene(mistakes)) => {
                     let mistake = &mistakes[0];

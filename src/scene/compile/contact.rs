@@ -1,0 +1,95 @@
+//! Clear bodies that share a part of their surface with something else.
+
+use crate::math::{Bounds, BranchKey, DVec3, Ray, Sampler, ball_surface};
+use crate::scene::Object;
+
+/// Rays by which two bodies are compared: enough to find one that shares a fiftieth of what is seen of it.
+const RAYS: u32 = 256;
+/// Surfaces of a body that one ray is followed through.
+const DEEP: usize = 4;
+/// Surfaces nearer than this part of a body's size lie in one place: far above rounding, far below anything meant.
+const NEAR: f64 = 1e-9;
+/// Pairs of bodies that are compared at most; a scene with more is not searched further.
+const MOST_PAIRS: usize = 20_000;
+
+/// Pairs of objects, the first one clear, whose surfaces coincide in part; `clear` says which objects are.
+///
+/// A ray that leaves one of them starts beyond the other and never meets it (row M2 of the stability catalog).
+pub(super) fn coinciding(objects: &[Object], clear: impl Fn(&Object) -> bool) -> Vec<(usize, usize)> {
+    let is_clear: Vec<bool> = objects.iter().map(clear).collect();
+    let boxes: Vec<Option<Bounds>> = objects.iter().map(|object| object.shape.bounds()).collect();
+    let mut pairs = near_pairs(&boxes, &is_clear);
+    pairs.sort_unstable();
+    pairs.retain(|&(first, second)| share_a_surface(&objects[first], &objects[second]));
+    pairs
+}
+
+/// Pairs whose boxes meet, the first one clear: of objects in the order in which they begin along the longest side of the scene, each
+/// is compared with those that have not ended (Cohen et al. 1995, *I-COLLIDE*, sweep and prune).
+fn near_pairs(boxes: &[Option<Bounds>], is_clear: &[bool]) -> Vec<(usize, usize)> {
+    if !is_clear.contains(&true) {
+        return Vec::new();
+    }
+    let size = Bounds::around(boxes.iter().flatten().map(Bounds::center));
+    let size = size.max - size.min;
+    let axis = (0..3).max_by(|&a, &b| size[a].total_cmp(&size[b])).unwrap_or(0);
+    let from = |object: usize| boxes[object].map_or(f64::NEG_INFINITY, |of| of.min[axis] - reach(&of));
+    let to = |object: usize| boxes[object].map_or(f64::INFINITY, |of| of.max[axis] + reach(&of));
+    let mut order: Vec<usize> = (0..boxes.len()).collect();
+    order.sort_by(|&a, &b| from(a).total_cmp(&from(b)));
+    let (mut open, mut pairs) = (Vec::<usize>::new(), Vec::new());
+    for object in order {
+        open.retain(|&other| to(other) >= from(object));
+        for &other in &open {
+            let (low, high) = (object.min(other), object.max(other));
+            let (first, second) = if is_clear[low] { (low, high) } else { (high, low) };
+            if is_clear[first] && may_touch(boxes[first], boxes[second]) {
+                pairs.push((first, second));
+                if pairs.len() == MOST_PAIRS {
+                    return pairs;
+                }
+            }
+        }
+        open.push(object);
+    }
+    pairs
+}
+
+/// How far apart surfaces of a body and another may lie in one place.
+fn reach(of: &Bounds) -> f64 {
+    (of.max - of.min).max_element() * NEAR
+}
+
+/// Whether a body's box and another's meet; infinite ones have none.
+fn may_touch(a: Option<Bounds>, b: Option<Bounds>) -> bool {
+    let Some(a) = a else { return false };
+    let Some(b) = b else { return true };
+    let reach = reach(&a);
+    (a.min - reach).cmple(b.max).all() && (b.min - reach).cmple(a.max).all()
+}
+
+fn share_a_surface(body: &Object, other: &Object) -> bool {
+    let Some(bounds) = body.shape.bounds() else { return false };
+    let (center, size) = (bounds.center(), (bounds.max - bounds.min).length());
+    let step = 1e-3 * size;
+    (0..RAYS).any(|number| {
+        let [u, v, x, y] = Sampler::new(0, [0, 0], number).four(BranchKey::CAMERA, 0);
+        let [z, ..] = Sampler::new(0, [1, 0], number).four(BranchKey::CAMERA, 0);
+        let target = bounds.min + (bounds.max - bounds.min) * DVec3::new(x, y, z);
+        let Some(direction) = (target - (center + ball_surface([u, v]) * size)).try_normalize() else { return false };
+        let mut ray = Ray { origin: target - direction * (2.0 * size), direction };
+        for _ in 0..DEEP {
+            let Some(crossing) = body.shape.intersect(&ray, f64::INFINITY) else { return false };
+            let point = body.shape.point(&ray, &crossing);
+            let before = Ray { origin: point.position - direction * step, direction };
+            if let Some(met) = other.shape.intersect(&before, step + NEAR * size) {
+                let parallel = other.shape.point(&before, &met).normal.cross(point.normal).length() < 1e-6;
+                if met.t >= step - NEAR * size && parallel {
+                    return true;
+                }
+            }
+            ray = point.leave(direction);
+        }
+        false
+    })
+}

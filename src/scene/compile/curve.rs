@@ -1,0 +1,403 @@
+//! From a spectrum as written to one of which every value is known.
+
+use std::sync::Arc;
+
+use sha2::Digest;
+
+use super::context::{Context, FileKind};
+use super::curve_name::{illuminant_called, unknown_glass, unknown_illuminant, unknown_metal, unknown_reflectance};
+use super::curve_range::{Refusal, article, factor, possible, shown, told};
+use super::curve_text::{CurveText, KindText};
+use super::spectrum_file::read_columns;
+use crate::scene::text::{At, Value};
+use crate::spectrum::{
+    ColorSpace, Curve, CurveKind, Emission, Named, Quantity, cauchy_through, data, imitation, reach, sellmeier_squared,
+};
+
+const TABLE: FileKind = FileKind { nameless: "a file of samples needs a name", most_bytes: 1 << 26 };
+
+const CAUCHY: &str = "for a glass, A is about 1.5 and B about 0.004 um^2";
+const SELLMEIER: &str = "c holds squared wavelengths in um^2: square the coefficients if they are wavelengths";
+const ABBE: &str = "for a glass, nd is about 1.4 to 2.1 and vd 18 to 95";
+
+/// The spectrum that a text means, the same all over.
+pub(super) fn curve<'d>(context: &mut Context<'d>, text: &CurveText<'d>, quantity: Quantity) -> Option<Curve> {
+    if let (Some(luminance), false) = (text.luminance, quantity == Quantity::Emission) {
+        return luminance.place.advise(format!("{} has no luminance", article(quantity)), "use `scale`");
+    }
+    are_finite(text)?;
+    let kind = kind(context, text, quantity)?;
+    let curve = Curve { kind, scale: text.scale.it, luminance: text.luminance.map(|luminance| luminance.it) };
+    if let Some(At { place, it: luminance }) = text.luminance {
+        told(place, factor("a luminance", luminance))?;
+        if luminance > 0.0 && !Emission::new(&curve, ColorSpace::default()).xyz()[1].is_normal() {
+            return place.refuse("a light without power has no luminance");
+        }
+    }
+    if quantity == Quantity::Index {
+        let advice = [reach(&curve), imitation(&curve)];
+        advice.into_iter().flatten().for_each(|advice| context.warn_at(text.value, advice));
+    }
+    Some(curve)
+}
+
+/// Tells that a quantity cannot be written like this.
+fn unfit<T>(text: &CurveText, quantity: Quantity) -> Option<T> {
+    let key = || format!("`{}`", text.place.key());
+    let (form, help) = match text.kind {
+        KindText::Name(name) => (format!("the name {name:?}"), illuminant_called(name)),
+        KindText::Image(_) | KindText::Checker(_) => (key(), Some(even(quantity).to_owned())),
+        _ => (key(), None),
+    };
+    let help = help.unwrap_or_else(|| forms(quantity).into());
+    text.value.advise(format!("{} cannot be given by {form}", article(quantity)), help)
+}
+
+/// Why a quantity cannot vary over a surface.
+fn even(quantity: Quantity) -> &'static str {
+    match quantity {
+        Quantity::Emission => "only a surface can show it: give an object an `emissive` material",
+        Quantity::Index | Quantity::Absorption => "it belongs to the whole body, not to places on its surface",
+        _ => "a metal is the same all over: give its parts materials of their own",
+    }
+}
+
+/// How a quantity may be written.
+fn forms(quantity: Quantity) -> &'static str {
+    match quantity {
+        Quantity::Emission => "write a number, { rgb = [red, green, blue] } or { illuminant = \"D65\" }",
+        Quantity::Index => "write a number, a glass such as \"N-BK7\" or { samples = [[nm, n], ..] }",
+        Quantity::MetalIndex | Quantity::MetalExtinction => "write a number or { samples = [[nm, value], ..] }",
+        Quantity::Reflectance | Quantity::Transmittance | Quantity::Share | Quantity::Absorption => {
+            "write a number, { rgb = [red, green, blue] } or { samples = [[nm, value], ..] }"
+        }
+    }
+}
+
+/// That a spectrum is made of finite numbers.
+fn are_finite(text: &CurveText) -> Option<()> {
+    let place = text.place;
+    let pairs = |pairs: &[[f64; 2]]| {
+        pairs
+            .iter()
+            .enumerate()
+            .try_for_each(|(number, pair)| pair.iter().try_for_each(|x| finite(place.entry(number), *x)))
+    };
+    let list = |place: Value, list: &[f64]| {
+        list.iter().enumerate().try_for_each(|(number, x)| finite(place.entry(number), *x))
+    };
+    match &text.kind {
+        KindText::Number(x) | KindText::Blackbody(x) => finite(place, *x)?,
+        KindText::Rgb(rgb) => list(place, rgb)?,
+        KindText::Samples(samples) => pairs(samples)?,
+        KindText::Lines(lines) => pairs(lines)?,
+        KindText::Cauchy(terms) => list(place, terms)?,
+        KindText::Sellmeier { b, c } => list(b.place, &b.it).and_then(|()| list(c.place, &c.it))?,
+        KindText::Abbe { nd, vd } => finite(nd.place, nd.it).and_then(|()| finite(vd.place, vd.it))?,
+        KindText::Name(_) | KindText::File(_) | KindText::Illuminant(_) => {}
+        KindText::Image(_) | KindText::Checker(_) => {}
+    }
+    finite(text.scale.place, text.scale.it)?;
+    text.luminance.map_or(Some(()), |luminance| finite(luminance.place, luminance.it))
+}
+
+fn finite(place: Value, x: f64) -> Option<()> {
+    if x.is_finite() { Some(()) } else { place.refuse(not_finite(x)) }
+}
+
+fn not_finite(x: f64) -> String {
+    format!("a spectrum is made of finite numbers, not {x}")
+}
+
+/// What a text says, looked up and read.
+fn kind<'d>(context: &mut Context<'d>, text: &CurveText<'d>, quantity: Quantity) -> Option<CurveKind> {
+    let (place, is_index, shines) = (text.place, quantity == Quantity::Index, quantity == Quantity::Emission);
+    match &text.kind {
+        KindText::Number(number) => {
+            told(place, possible(quantity, number * text.scale.it, ""))?;
+            Some(CurveKind::Number(*number))
+        }
+        KindText::Rgb(rgb) => {
+            each(text, quantity, rgb.iter().copied())?;
+            Some(CurveKind::Rgb(*rgb))
+        }
+        KindText::Samples(samples) => match samples_fit(samples, quantity, text.scale.it) {
+            Ok(()) => Some(CurveKind::Samples(samples.clone())),
+            Err(refusal) => {
+                refusal.entry.map_or(text.value, |entry| place.entry(entry)).tell(refusal.message, refusal.help)
+            }
+        },
+        KindText::File(file) => file_of_samples(context, text, file, quantity),
+        KindText::Cauchy(terms) if is_index => cauchy(text, *terms),
+        KindText::Sellmeier { b, c } if is_index => sellmeier(text, b, c),
+        KindText::Abbe { nd, vd } if is_index => abbe(text, *nd, *vd),
+        KindText::Illuminant(name) if shines => {
+            let Some(light) = data::illuminant(name) else { return unknown_illuminant(name).tell(place) };
+            told(text.scale.place, factor("a scale", text.scale.it))?;
+            Some(CurveKind::Illuminant(Arc::new(light)))
+        }
+        KindText::Blackbody(kelvin) if shines => {
+            told(place, blackbody(*kelvin))?;
+            told(text.scale.place, factor("a scale", text.scale.it))?;
+            Some(CurveKind::Blackbody(*kelvin))
+        }
+        KindText::Lines(lines) if shines => {
+            visible_lines(text, lines)?;
+            each(text, quantity, lines.iter().map(|line| line[1]))?;
+            Some(CurveKind::Lines(lines.clone()))
+        }
+        KindText::Name(name) if !shines => named(context, text.value, name, quantity),
+        _ => unfit(text, quantity),
+    }
+}
+
+/// That every value of a list is possible.
+fn each(text: &CurveText, quantity: Quantity, mut values: impl Iterator<Item = f64>) -> Option<()> {
+    let (scale, mut number) = (text.scale.it, 0..);
+    values.try_for_each(|value| {
+        let place = text.place.entry(number.next().unwrap_or_default());
+        told(place, possible(quantity, value * scale, &with_scale(scale)))
+    })
+}
+
+/// What is told of a scale that a value was multiplied by.
+fn with_scale(scale: f64) -> String {
+    if scale == 1.0 { String::new() } else { format!(" with its scale of {}", shown(scale)) }
+}
+
+/// That samples are a spectrum of a quantity.
+fn samples_fit(samples: &[[f64; 2]], quantity: Quantity, scale: f64) -> Result<(), Refusal> {
+    ascending(samples)?;
+    if let ([[nm, power]], Quantity::Emission) = (samples, quantity) {
+        let refusal = Refusal::new("an emission of one sample is dark: it is 0 beyond its ends");
+        return Err(refusal.help(format!("for one wavelength write {{ lines = [[{nm}, {power}]] }}")).at(0));
+    }
+    let possible = |value: f64| possible(quantity, value * scale, &with_scale(scale));
+    samples.iter().enumerate().try_for_each(|(entry, pair)| {
+        possible(pair[1]).map_err(|refusal| match refusal.is_percent && scale == 1.0 {
+            true => refusal.help("in percent? Then add scale = 0.01").at(entry),
+            false => refusal.at(entry),
+        })
+    })
+}
+
+fn ascending(samples: &[[f64; 2]]) -> Result<(), Refusal> {
+    let Some([first, _]) = samples.first() else {
+        return Err(Refusal::new("a table of samples holds at least one [wavelength in nm, value]"));
+    };
+    if let Some(i) = samples.windows(2).position(|pair| pair[1][0] <= pair[0][0]) {
+        let [before, after] = [samples[i][0], samples[i + 1][0]];
+        let refusal = Refusal::new(format!("wavelengths increase from sample to sample ({after} after {before})"));
+        let refusal = if after < before { refusal.help("sort them, the shortest first") } else { refusal };
+        return Err(refusal.at(i + 1));
+    }
+    if (100.0..=830.0).contains(first) {
+        return Ok(());
+    }
+    let help = unit_of_wavelength(*first, 100.0).unwrap_or("wavelengths are in nm".into());
+    Err(Refusal::new(format!("a first wavelength of {first} nm is far from visible light")).help(help).at(0))
+}
+
+/// The unit that a wavelength seems to be in, if it would be `least` to 830 nm in that.
+fn unit_of_wavelength(given: f64, least: f64) -> Option<String> {
+    let units = [("um", 1e3), ("Angstrom", 0.1), ("m", 1e9)].map(|(unit, nm)| (unit, given * nm));
+    let (unit, nm) = units.into_iter().find(|(_, nm)| (least..=830.0).contains(nm))?;
+    Some(format!("in {unit}? Wavelengths are in nm: then write {}", shown(nm)))
+}
+
+fn file_of_samples<'d>(
+    context: &mut Context<'d>,
+    text: &CurveText<'d>,
+    file: &str,
+    quantity: Quantity,
+) -> Option<CurveKind> {
+    let place = text.place;
+    // The second column is taken where none is named.
+    let column = text.column.unwrap_or(At { place, it: 2 });
+    if column.it < 2 {
+        return column.place.refuse("the values stand in column 2 or later: column 1 holds the wavelengths");
+    }
+    let Ok(table) = String::from_utf8(context.bytes(place, file, &TABLE)?) else {
+        return place.advise(format!("{file} is not text in UTF-8"), "save the table as CSV in UTF-8");
+    };
+    let rows = match read_columns(&table, column.it) {
+        Ok(rows) => rows,
+        Err(fault) => {
+            let place = if fault.is_column && column.it != 2 { column.place } else { place };
+            return place.tell(format!("{file}{}", fault.message), fault.help);
+        }
+    };
+    context.hash.update(table.as_bytes());
+    let samples: Vec<[f64; 2]> = rows.iter().map(|row| row.pair).collect();
+    let all_finite = samples.iter().position(|pair| pair.iter().any(|x| !x.is_finite())).map_or(Ok(()), |entry| {
+        let wrong = samples[entry].into_iter().find(|x| !x.is_finite()).unwrap_or_default();
+        Err(Refusal::new(not_finite(wrong)).at(entry))
+    });
+    match all_finite.and_then(|()| samples_fit(&samples, quantity, text.scale.it)) {
+        Ok(()) => Some(CurveKind::Samples(samples)),
+        Err(Refusal { message, help, entry: Some(entry), .. }) => {
+            place.tell(format!("{file}, line {}: {message}", rows[entry].line), help)
+        }
+        Err(refusal) => refusal.tell(text.value),
+    }
+}
+
+/// n = A + B / wavelength^2.
+fn cauchy(text: &CurveText, terms: [f64; 2]) -> Option<CurveKind> {
+    let (kind, place) = (CurveKind::Cauchy(terms), text.place);
+    match bends(text.scale.it, &kind) {
+        Ok(()) => Some(kind),
+        Err(refusal) if (500.0..100_000.0).contains(&terms[1]) => {
+            let help = format!("B in nm^2? It is in um^2: then write {}", shown(terms[1] * 1e-6));
+            refusal.help(help).tell(place.entry(1))
+        }
+        Err(refusal) => refusal.help(CAUCHY).tell(place),
+    }
+}
+
+/// The two-term Cauchy curve through n_d with the Abbe number V_d = (n_d - 1) / (n_F - n_C).
+fn abbe(text: &CurveText, nd: At<f64>, vd: At<f64>) -> Option<CurveKind> {
+    if vd.it <= 0.0 {
+        return vd.place.refuse("an Abbe number is above 0");
+    }
+    if nd.it <= 1.0 {
+        return nd.place.advise(format!("a refractive index is above 1, not {}", shown(nd.it)), ABBE);
+    }
+    let kind = CurveKind::Cauchy(cauchy_through(nd.it, vd.it));
+    told(text.place, bends(text.scale.it, &kind).map_err(|refusal| refusal.help(ABBE)))?;
+    Some(kind)
+}
+
+fn sellmeier(text: &CurveText, b: &At<Vec<f64>>, c: &At<Vec<f64>>) -> Option<CurveKind> {
+    let place = text.place;
+    if b.it.len() != c.it.len() || b.it.is_empty() {
+        let (b, c) = (b.it.len(), c.it.len());
+        return place.refuse(format!("a Sellmeier curve has as many b as c, here {b} and {c}"));
+    }
+    if let Some(pole) = c.it.iter().position(|&c| c > 0.0 && (0.36..=0.83).contains(&c.sqrt())) {
+        let nm = c.it[pole].sqrt() * 1e3;
+        let message = format!("this Sellmeier curve has a pole at {nm:.0} nm, in visible light");
+        return c.place.entry(pole).advise(message, SELLMEIER);
+    }
+    for nm in 360..=830 {
+        let squared = sellmeier_squared(&b.it, &c.it, f64::from(nm) * 1e-3);
+        if squared.is_nan() || squared <= 0.0 {
+            return place.advise(format!("this Sellmeier curve gives n^2 = {} at {nm} nm", shown(squared)), SELLMEIER);
+        }
+    }
+    let kind = CurveKind::Sellmeier { b: b.it.clone(), c: c.it.clone() };
+    match bends(text.scale.it, &kind) {
+        Ok(()) => Some(kind),
+        Err(refusal) if c.it.iter().all(|&c| c > 1e3) => {
+            refusal.help("c in nm^2? It is in um^2: divide it by 1e6").tell(c.place)
+        }
+        Err(refusal) => refusal.help(SELLMEIER).tell(place),
+    }
+}
+
+/// That a formula of an index bends light by a possible amount at all visible wavelengths. One of exactly 1 is of
+/// coefficients that are 0 or in another unit.
+fn bends(scale: f64, kind: &CurveKind) -> Result<(), Refusal> {
+    let curve = Curve { scale, ..kind.clone().into() };
+    let value = curve.values(Quantity::Index);
+    (360..=830).try_for_each(|nm| {
+        let (value, place) = (value(f64::from(nm)), format!(" at {nm} nm"));
+        if value == 1.0 {
+            return Err(Refusal::new(format!("a refractive index is above 1, not 1{place}")));
+        }
+        possible(Quantity::Index, value, &place)
+    })
+}
+
+fn visible_lines(text: &CurveText, lines: &[[f64; 2]]) -> Option<()> {
+    if lines.is_empty() {
+        return text.value.refuse("a light of lines has at least one [wavelength in nm, power]");
+    }
+    match lines.iter().position(|[nm, _]| !(360.0..=830.0).contains(nm)) {
+        Some(entry) => {
+            let nm = lines[entry][0];
+            let help = unit_of_wavelength(nm, 360.0).unwrap_or("leave it out: it cannot be seen".into());
+            let message = format!("a line lies within 360 to 830 nm, not at {}", shown(nm));
+            text.place.entry(entry).advise(message, help)
+        }
+        None => Some(()),
+    }
+}
+
+fn blackbody(kelvin: f64) -> Result<(), Refusal> {
+    if (100.0..=1e9).contains(&kelvin) {
+        return Ok(());
+    }
+    let refusal = Refusal::new(format!("a blackbody has 100 to 1e9 kelvin, not {}", shown(kelvin)));
+    let units = [("kK", 1e3), ("MK", 1e6)].map(|(unit, factor)| (unit, kelvin * factor));
+    Err(refusal.help(match units.into_iter().find(|(_, kelvin)| (1000.0..=40_000.0).contains(kelvin)) {
+        Some((unit, kelvin)) => format!("in {unit}? Temperatures are in kelvin: then write {}", shown(kelvin)),
+        None => "a candle has 1900, the sun 5772".into(),
+    }))
+}
+
+/// An entry of the catalog.
+fn named(context: &mut Context, place: Value, name: &str, quantity: Quantity) -> Option<CurveKind> {
+    match quantity {
+        Quantity::Index => match data::glass(name) {
+            Some(glass) => Some(CurveKind::Glass(Named::new(name, glass))),
+            None => unknown_glass(name).tell(place),
+        },
+        Quantity::MetalIndex | Quantity::MetalExtinction => match data::metal(name) {
+            Some(metal) => Some(CurveKind::Metal(Named::new(name, metal))),
+            None => unknown_metal(name).tell(place),
+        },
+        Quantity::Absorption => absorption(context, place, name),
+        Quantity::Reflectance | Quantity::Transmittance | Quantity::Share | Quantity::Emission => {
+            match data::reflectance(name) {
+                Some(reflectance) => Some(CurveKind::Reflectance(Named::new(name, reflectance))),
+                None => unknown_reflectance(name).tell(place),
+            }
+        }
+    }
+}
+
+/// The absorption of a glass of the catalog per scene unit.
+fn absorption(context: &Context, place: Value, name: &str) -> Option<CurveKind> {
+    let Some(glass) = data::glass(name) else { return unknown_glass(name).tell(place) };
+    if glass.extinction.is_empty() {
+        let message = format!("the catalog does not know the absorption of {}", glass.key);
+        let help = "`render catalog glass` lists who has it; or write { samples = [[nm, per unit], ..] }";
+        return place.advise(message, help);
+    }
+    let Some(meters) = context.meters_per_unit else {
+        let message =
+            format!("the absorption of {name} is known per meter, and the scene does not say how long its unit is");
+        return place.advise(message, "for a scene in centimeters: [render] meters_per_unit = 0.01");
+    };
+    // 4 pi k / wavelength, base e (Born & Wolf 1999, section 14.1).
+    let per_meter = |k: f64, nm: f64| 4.0 * std::f64::consts::PI * k / (nm * 1e-9);
+    Some(CurveKind::Samples(glass.extinction.iter().map(|&[nm, k]| [nm, per_meter(k, nm) * meters]).collect()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// An entry of the catalog is used without a check.
+    #[test]
+    fn every_entry_of_the_catalog_is_possible() {
+        let glasses = data::glasses().map(|glass| (CurveKind::glass(glass.key), Quantity::Index));
+        let metals = data::metals().flat_map(|metal| {
+            [Quantity::MetalIndex, Quantity::MetalExtinction].map(|which| (CurveKind::metal(metal.name), which))
+        });
+        let patches = data::reflectances();
+        let patches = patches.map(|patch| (CurveKind::reflectance(patch.name), Quantity::Reflectance));
+        let mut count = 0;
+        for (kind, quantity) in glasses.chain(metals).chain(patches) {
+            let kind = kind.expect("it is found by its name");
+            let value = kind.values(quantity);
+            for nm in 360..=830 {
+                let found = possible(quantity, value(f64::from(nm)), "").err().map(|refusal| refusal.message);
+                assert_eq!(found, None, "{kind:?} at {nm} nm");
+            }
+            count += 1;
+        }
+        assert!(count > 1000, "{count}");
+    }
+}

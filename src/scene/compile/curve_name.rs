@@ -1,0 +1,63 @@
+//! Names that the catalog does not have, or has for something else.
+
+use super::curve_range::Refusal;
+use crate::error::nearest;
+use crate::spectrum::data::{self, bare};
+
+const LISTS: &str = "lists the known names";
+
+pub(super) fn unknown_glass(name: &str) -> Refusal {
+    unknown(name, "glass", data::known_as())
+}
+
+pub(super) fn unknown_metal(name: &str) -> Refusal {
+    unknown(name, "metal", data::metals().flat_map(|metal| [vec![metal.name], metal.aliases].concat()))
+}
+
+pub(super) fn unknown_reflectance(name: &str) -> Refusal {
+    let full = || data::reflectances().map(|patch| patch.name);
+    let refusal = unknown(name, "reflectance", full().map(bare).chain(full()));
+    match refusal.help.as_deref() {
+        Some(help) if help.ends_with(LISTS) => {
+            let help = format!("{help}; a color is {{ rgb = [red, green, blue] }}");
+            refusal.help(help)
+        }
+        _ => refusal,
+    }
+}
+
+pub(super) fn unknown_illuminant(name: &str) -> Refusal {
+    unknown(name, "illuminant", illuminants())
+}
+
+/// How to write the illuminant that a bare name is or nearly is.
+pub(super) fn illuminant_called(name: &str) -> Option<String> {
+    match data::illuminant(name) {
+        Some(light) => Some(format!("it is an illuminant: write {{ illuminant = \"{}\" }}", light.name)),
+        None if elsewhere(name).is_some() => None,
+        None => Some(format!("did you mean {{ illuminant = \"{}\" }}?", nearest(name, illuminants())?)),
+    }
+}
+
+fn illuminants() -> impl Iterator<Item = &'static str> {
+    data::illuminants().map(|illuminant| illuminant.name)
+}
+
+fn unknown<'a>(name: &str, what: &str, names: impl Iterator<Item = &'a str>) -> Refusal {
+    let help = match (elsewhere(name), nearest(name, names)) {
+        (Some(other), _) => format!("it is {other}"),
+        (None, Some(near)) => format!("did you mean \"{near}\"?"),
+        (None, None) => format!("`render catalog {what}` {LISTS}"),
+    };
+    Refusal::new(format!("there is no {what} named {name:?}")).help(help)
+}
+
+/// What a name stands for where it is known.
+fn elsewhere(name: &str) -> Option<String> {
+    let glass = || Some(format!("a glass: dielectric = {{ index = \"{}\" }}", data::glass(name)?.name()));
+    let metal = || Some(format!("a metal: conductor = {{ metal = \"{}\" }}", data::metal(name)?.name));
+    let light = || Some(format!("an illuminant: radiance = {{ illuminant = \"{}\" }}", data::illuminant(name)?.name));
+    let patch =
+        || Some(format!("a reflectance: diffuse = {{ reflectance = \"{}\" }}", bare(data::reflectance(name)?.name)));
+    glass().or_else(metal).or_else(light).or_else(patch)
+}

@@ -1,0 +1,109 @@
+//! Whether a value is possible for what a spectrum describes.
+
+use crate::scene::text::Value;
+use crate::spectrum::Quantity;
+
+/// Largest emission: far within f32, which film and lanes hold.
+const MAX_EMISSION: f64 = 1e30;
+/// Largest n and k: several times those of any metal in visible light.
+const MAX_METAL: f64 = 100.0;
+
+/// Why a spectrum cannot be what it is used as.
+pub(super) struct Refusal {
+    pub(super) message: String,
+    /// What to do, where that is known.
+    pub(super) help: Option<String>,
+    /// Whether the value would be right if it was meant in percent.
+    pub(super) is_percent: bool,
+    /// The entry of a list that is wrong, if it is one entry.
+    pub(super) entry: Option<usize>,
+}
+
+impl Refusal {
+    pub(super) fn new(message: impl Into<String>) -> Self {
+        Self { message: message.into(), help: None, is_percent: false, entry: None }
+    }
+
+    pub(super) fn help(self, help: impl Into<String>) -> Self {
+        Self { help: Some(help.into()), ..self }
+    }
+
+    pub(super) fn at(self, entry: usize) -> Self {
+        Self { entry: Some(entry), ..self }
+    }
+
+    /// Tells it of a place.
+    pub(super) fn tell<T>(self, place: Value) -> Option<T> {
+        place.tell(self.message, self.help)
+    }
+}
+
+/// What was checked, if it is right; tells of a place if it is not.
+pub(super) fn told<T>(place: Value, checked: Result<T, Refusal>) -> Option<T> {
+    checked.map_or_else(|refusal| refusal.tell(place), Some)
+}
+
+/// Whether a light can be made brighter or darker by this.
+pub(super) fn is_factor(value: f64) -> bool {
+    (0.0..=MAX_EMISSION).contains(&value)
+}
+
+/// A number by which a whole light is made brighter or darker.
+pub(super) fn factor(name: &str, value: f64) -> Result<(), Refusal> {
+    let bound = match value {
+        _ if value < 0.0 => "at least 0".to_owned(),
+        _ if value > MAX_EMISSION => format!("at most {}", shown(MAX_EMISSION)),
+        _ => return Ok(()),
+    };
+    Err(Refusal::new(format!("{name} is {bound}, not {}", shown(value))))
+}
+
+/// That a value is possible for a quantity; `place` says in the message where it is.
+pub(super) fn possible(quantity: Quantity, value: f64, place: &str) -> Result<(), Refusal> {
+    let name = article(quantity);
+    let (least, most, is_share) = match quantity {
+        Quantity::Reflectance | Quantity::Transmittance | Quantity::Share => (0.0, 1.0, true),
+        Quantity::Emission => (0.0, MAX_EMISSION, false),
+        Quantity::Index => (1.0, 10.0, false),
+        Quantity::Absorption => (0.0, f64::MAX, false),
+        Quantity::MetalIndex => (f64::MIN_POSITIVE, MAX_METAL, false),
+        Quantity::MetalExtinction => (0.0, MAX_METAL, false),
+    };
+    if (least..=most).contains(&value) {
+        return Ok(());
+    }
+    let shown_value = shown(value);
+    let refusal = Refusal::new(match quantity {
+        Quantity::MetalIndex if value <= 0.0 => format!("{name} is above 0, not {shown_value}{place}"),
+        _ if value < least => format!("{name} is at least {least}, not {shown_value}{place}"),
+        _ => format!("{name} is at most {}, not {shown_value}{place}", shown(most)),
+    });
+    Err(match value {
+        2.0..=100.0 if is_share => {
+            Refusal { is_percent: true, ..refusal.help(format!("in percent? Then write {}", shown(value / 100.0))) }
+        }
+        100.0..=255.0 if is_share => {
+            refusal.help("a color from 0 to 255 is sRGB: its linear value is about (v / 255)^2.2")
+        }
+        _ => refusal,
+    })
+}
+
+/// Six digits of a number.
+pub(super) fn shown(value: f64) -> String {
+    let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
+    if rounded == 0.0 || (1e-4..1e15).contains(&rounded.abs()) { rounded.to_string() } else { format!("{rounded:e}") }
+}
+
+pub(super) fn article(quantity: Quantity) -> &'static str {
+    match quantity {
+        Quantity::Reflectance => "a reflectance",
+        Quantity::Transmittance => "a transmittance",
+        Quantity::Share => "a share",
+        Quantity::Emission => "an emission",
+        Quantity::Index => "a refractive index",
+        Quantity::Absorption => "an absorption",
+        Quantity::MetalIndex => "a metal's index n",
+        Quantity::MetalExtinction => "a metal's extinction k",
+    }
+}

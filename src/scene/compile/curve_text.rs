@@ -1,0 +1,205 @@
+//! Spectra as authors write them, as [`Curve`](crate::spectrum::Curve) shows.
+
+use toml::de::DeValue;
+
+use crate::scene::text::{At, Fields, Value, at};
+use crate::spectrum::{Channel, Encoding, Placement, Quantity, TexelFilter, Wrap};
+
+/// Most and, as one over it, least repetitions in a unit.
+const MOST_REPEAT: f64 = 1e6;
+
+/// A spectrum as written, each value with its place.
+#[derive(Clone)]
+pub(super) struct CurveText<'d> {
+    /// The whole.
+    pub(super) value: Value<'d>,
+    /// What its kind says.
+    pub(super) place: Value<'d>,
+    pub(super) kind: KindText<'d>,
+    /// The column of a file that holds the values, counted from 1.
+    pub(super) column: Option<At<'d, usize>>,
+    pub(super) encoding: Option<At<'d, Encoding>>,
+    pub(super) channel: Option<Channel>,
+    pub(super) wrap: Wrap,
+    pub(super) filter: TexelFilter,
+    /// How often an image or a pattern fits into a unit of u and of v.
+    pub(super) repeat: At<'d, [f64; 2]>,
+    /// A factor on every value.
+    pub(super) scale: At<'d, f64>,
+    /// CIE Y of an emission, in place of a factor.
+    pub(super) luminance: Option<At<'d, f64>>,
+}
+
+/// The ways to write a spectrum.
+#[derive(Clone)]
+pub(super) enum KindText<'d> {
+    Number(f64),
+    Name(&'d str),
+    Rgb([f64; 3]),
+    Samples(Vec<[f64; 2]>),
+    File(&'d str),
+    Cauchy([f64; 2]),
+    Sellmeier { b: At<'d, Vec<f64>>, c: At<'d, Vec<f64>> },
+    Abbe { nd: At<'d, f64>, vd: At<'d, f64> },
+    Illuminant(&'d str),
+    Blackbody(f64),
+    Lines(Vec<[f64; 2]>),
+    Image(&'d str),
+    Checker(Box<[CurveText<'d>; 2]>),
+}
+
+type Reader = for<'d> fn(Value<'d>) -> Option<KindText<'d>>;
+
+/// The keys of which a table of a spectrum has one, and what reads them.
+const KINDS: [(&str, Reader); 11] = [
+    ("rgb", |value| value.numbers().map(KindText::Rgb)),
+    ("samples", |value| pairs(value, "write [wavelength in nm, value]").map(KindText::Samples)),
+    ("file", |value| value.text().map(KindText::File)),
+    ("cauchy", |value| value.as_list("", "write [A, B] of n = A + B / wavelength^2").numbers().map(KindText::Cauchy)),
+    ("sellmeier", |value| {
+        Fields::read(value, |table| {
+            let b = table.need("b", at(|value: Value| value.list(Value::number)));
+            let c = table.need("c", at(|value: Value| value.list(Value::number)));
+            Some(KindText::Sellmeier { b: b?, c: c? })
+        })
+    }),
+    ("abbe", |value| {
+        Fields::read(value, |table| {
+            let nd = table.need("nd", at(Value::number));
+            let vd = table.need("vd", at(Value::number));
+            Some(KindText::Abbe { nd: nd?, vd: vd? })
+        })
+    }),
+    ("illuminant", |value| value.text().map(KindText::Illuminant)),
+    ("blackbody", |value| value.number().map(KindText::Blackbody)),
+    ("lines", |value| pairs(value, "write [wavelength in nm, power]").map(KindText::Lines)),
+    ("image", |value| value.text().map(KindText::Image)),
+    ("checker", |value| {
+        let cells = value.list(|entry| curve_text(entry, COLOR))?;
+        let cells = <[CurveText; 2]>::try_from(cells).or_else(|cells| {
+            let message = format!("a `checker` is a list of 2 spectra, not of {}", cells.len());
+            value.refuse_key(message, None).ok_or(())
+        });
+        Some(KindText::Checker(Box::new(cells.ok()?)))
+    }),
+];
+
+fn pairs(value: Value, help: &'static str) -> Option<Vec<[f64; 2]>> {
+    value.list(|entry| entry.as_list("", help).numbers())
+}
+
+const COLOR: &str = "{ rgb = [0.7, 0.5, 0.3] }";
+
+/// A spectrum that could stand where one has no kind.
+fn example(quantity: Quantity) -> &'static str {
+    match quantity {
+        Quantity::Index => "\"N-BK7\" or { cauchy = [1.5046, 0.0042] }",
+        Quantity::Emission => "{ illuminant = \"D65\" }",
+        Quantity::Reflectance | Quantity::Transmittance | Quantity::Share => COLOR,
+        Quantity::Absorption | Quantity::MetalIndex | Quantity::MetalExtinction => COLOR,
+    }
+}
+
+impl<'d> CurveText<'d> {
+    /// What a value says as a spectrum.
+    pub(super) fn read(value: Value<'d>, quantity: Quantity) -> Option<Self> {
+        curve_text(value, example(quantity))
+    }
+
+    /// Where its image lies, if that is possible.
+    pub(super) fn placement(&self) -> Option<Placement> {
+        Some(Placement { repeat: is_repeat(self.repeat)?, wrap: self.wrap, filter: self.filter })
+    }
+
+    /// A spectrum without a table.
+    fn bare(value: Value<'d>, kind: KindText<'d>) -> Self {
+        let (scale, repeat) = (At { place: value, it: 1.0 }, At { place: value, it: [1.0; 2] });
+        let (column, encoding, channel, luminance) = (None, None, None, None);
+        let (wrap, filter) = (Wrap::default(), TexelFilter::default());
+        Self { value, place: value, kind, column, encoding, channel, wrap, filter, repeat, scale, luminance }
+    }
+}
+
+fn curve_text<'d>(value: Value<'d>, example: &str) -> Option<CurveText<'d>> {
+    match value.node() {
+        DeValue::Integer(_) | DeValue::Float(_) => {
+            value.number().map(|number| CurveText::bare(value, KindText::Number(number)))
+        }
+        DeValue::String(name) => Some(CurveText::bare(value, KindText::Name(name))),
+        DeValue::Table(_) => Fields::read(value, |table| curve_table(value, table, example)),
+        _ => value.wanted("a number, a catalog name in quotes, or a table such as { rgb = [r, g, b] }"),
+    }
+}
+
+fn curve_table<'d>(value: Value<'d>, table: &mut Fields<'d>, example: &str) -> Option<CurveText<'d>> {
+    let kinds = KINDS.map(|(key, read)| table.get(key).map(|place| (place, read(place))));
+    let column = table.maybe("column", at(|value: Value| value.whole(u64::MAX)));
+    let encoding = table.maybe("encoding", at(|value: Value| value.word(&ENCODINGS)));
+    let channel = table.maybe("channel", at(|value: Value| value.word(&CHANNELS)));
+    let wrap = table.maybe("wrap", at(|value: Value| value.word(&WRAPS)));
+    let filter = table.maybe("filter", at(|value: Value| value.word(&FILTERS)));
+    let repeat = table.maybe("repeat", at(one_or_two));
+    let scale = table.maybe("scale", at(Value::number));
+    let luminance = table.maybe("luminance", at(Value::number));
+    let mut given = kinds.into_iter().flatten();
+    let Some((place, kind)) = given.next() else {
+        let names: Vec<_> = KINDS.iter().map(|(key, _)| format!("`{key}`")).collect();
+        let (last, others) = names.split_last()?;
+        let message = format!("a spectrum needs one of {} or {last}", others.join(", "));
+        return if table.has_unknown() { None } else { value.advise(message, format!("such as {example}")) };
+    };
+    if let Some((other, _)) = given.next() {
+        let message = format!("a spectrum has exactly one kind, not `{}` and `{}`", place.key(), other.key());
+        return place.later(other).refuse_key(message, None);
+    }
+    let (kind, column, encoding, channel) = (kind?, column?, encoding?, channel?);
+    let (wrap, filter, repeat, scale, luminance) = (wrap?, filter?, repeat?, scale?, luminance?);
+    let (is_image, is_checker) = (matches!(kind, KindText::Image(_)), matches!(kind, KindText::Checker(_)));
+    let stray = [
+        ("`file`", column.filter(|_| !matches!(kind, KindText::File(_))).map(|column| column.place)),
+        ("`image`", encoding.filter(|_| !is_image).map(|encoding| encoding.place)),
+        ("`image`", channel.filter(|_| !is_image).map(|channel| channel.place)),
+        ("`image`", wrap.filter(|_| !is_image).map(|wrap| wrap.place)),
+        ("`image`", filter.filter(|_| !is_image).map(|filter| filter.place)),
+        ("`image` or `checker`", repeat.filter(|_| !is_image && !is_checker).map(|repeat| repeat.place)),
+    ];
+    if let Some((owner, place)) = stray.into_iter().find_map(|(owner, place)| Some((owner, place?))) {
+        return place.refuse_key(format!("`{}` goes with {owner}", place.key()), None);
+    }
+    if let (Some(scale), Some(luminance)) = (scale, luminance) {
+        let message = "a spectrum has a `scale` or a `luminance`, not both";
+        return scale.place.later(luminance.place).refuse_key(message, None);
+    }
+    let (wrap, filter) =
+        (wrap.map(|wrap| wrap.it).unwrap_or_default(), filter.map(|filter| filter.it).unwrap_or_default());
+    let repeat = repeat.unwrap_or(At { place: value, it: [1.0; 2] });
+    let scale = scale.unwrap_or(At { place: value, it: 1.0 });
+    let channel = channel.map(|channel| channel.it);
+    Some(CurveText { value, place, kind, column, encoding, channel, wrap, filter, repeat, scale, luminance })
+}
+
+/// How often an image or a pattern fits into a unit of u and of v: a number or two.
+pub(super) fn repeat(value: Value) -> Option<[f64; 2]> {
+    is_repeat(At { place: value, it: one_or_two(value)? })
+}
+
+fn one_or_two(value: Value) -> Option<[f64; 2]> {
+    value.as_list("", "write [along u, along v]").one_or("[u, v]")
+}
+
+/// Numbers of copies in a unit that are neither too large nor too small.
+pub(super) fn is_repeat(At { place: value, it: repeat }: At<[f64; 2]>) -> Option<[f64; 2]> {
+    match repeat.iter().find(|x| !(1.0 / MOST_REPEAT..=MOST_REPEAT).contains(*x)) {
+        Some(wrong) => {
+            value.refuse(format!("`repeat` counts copies in a unit, above 0 to {MOST_REPEAT:e}, not {wrong}"))
+        }
+        None => Some(repeat),
+    }
+}
+
+pub(super) const CHANNELS: [(&str, Channel); 4] =
+    [("red", Channel::Red), ("green", Channel::Green), ("blue", Channel::Blue), ("alpha", Channel::Alpha)];
+pub(super) const ENCODINGS: [(&str, Encoding); 2] = [("srgb", Encoding::Srgb), ("linear", Encoding::Linear)];
+pub(super) const WRAPS: [(&str, Wrap); 3] =
+    [("repeat", Wrap::Repeat), ("clamp", Wrap::Clamp), ("mirror", Wrap::Mirror)];
+const FILTERS: [(&str, TexelFilter); 2] = [("linear", TexelFilter::Linear), ("nearest", TexelFilter::Nearest)];

@@ -1,0 +1,134 @@
+//! Images and patterns on surfaces.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use sha2::Digest;
+
+use super::context::{Context, FileKind};
+use super::curve::curve;
+use super::curve_range::is_factor;
+use super::curve_text::{CurveText, KindText, is_repeat};
+use super::image_file::{Meaning, read_texture};
+use crate::scene::text::At;
+use crate::spectrum::{Channel, Curve, CurveKind, Encoding, Image, Quantity, Texture};
+
+const IMAGE: FileKind = FileKind { nameless: "an image needs the name of its file", most_bytes: 1 << 32 };
+
+/// The spectrum of a surface, which may vary over it.
+pub(super) fn surface_curve<'d>(context: &mut Context<'d>, text: &CurveText<'d>, quantity: Quantity) -> Option<Curve> {
+    let varies = match quantity {
+        Quantity::Reflectance | Quantity::Transmittance | Quantity::Share | Quantity::Emission => true,
+        Quantity::Index | Quantity::Absorption | Quantity::MetalIndex | Quantity::MetalExtinction => false,
+    };
+    match &text.kind {
+        KindText::Image(file) if varies => image_curve(context, text, file, quantity),
+        KindText::Checker(cells) if varies => checker(context, text, cells, quantity),
+        _ => curve(context, text, quantity),
+    }
+}
+
+fn image_curve<'d>(
+    context: &mut Context<'d>,
+    text: &CurveText<'d>,
+    file: &'d str,
+    quantity: Quantity,
+) -> Option<Curve> {
+    let (factor, placement) = (factor_on_image(text), text.placement());
+    let at_file = At { place: text.place, it: file };
+    let encoding = text.encoding.map(|encoding| encoding.it);
+    let image = match (text.channel, text.encoding) {
+        (Some(Channel::Alpha), Some(At { place, it: Encoding::Srgb })) => {
+            place.advise("alpha is a share, which no kind of file encodes as sRGB", "leave `encoding` out")
+        }
+        _ => image(context, &at_file, Meaning::Light(encoding), text.channel),
+    };
+    let (scale, placement, image) = (factor?, placement?, image?);
+    let ([x, y], brightest) = image.brightest();
+    if quantity != Quantity::Emission && f64::from(brightest) * scale > 1.0 {
+        let scaled = if scale == 1.0 { String::new() } else { format!(" times its scale of {scale}") };
+        let message = format!("{file}: pixel ({x}, {y}) is {brightest}{scaled}, and no surface gives back more than 1");
+        let help = format!("scale = {:.4} makes it 1", (1e4 / f64::from(brightest)).floor() / 1e4);
+        return text.place.tell(message, (brightest < 1e4).then_some(help));
+    }
+    let kind = CurveKind::Texture(Texture { image, placement });
+    Some(Curve { kind, scale, luminance: None })
+}
+
+/// The factor on an image, if it is one, and no luminance stands in its place.
+pub(super) fn factor_on_image(text: &CurveText) -> Option<f64> {
+    if let Some(luminance) = text.luminance {
+        return luminance.place.advise("an image has no single luminance", "use `scale`");
+    }
+    match text.scale.it {
+        scale if is_factor(scale) => Some(scale),
+        scale => text.scale.place.refuse(format!("a factor on an image is finite and at least 0, not {scale}")),
+    }
+}
+
+fn checker<'d>(
+    context: &mut Context<'d>,
+    text: &CurveText<'d>,
+    cells: &[CurveText<'d>; 2],
+    quantity: Quantity,
+) -> Option<Curve> {
+    if let Some(luminance) = text.luminance {
+        return luminance.place.advise("a checker has no single luminance", "give its squares a `scale`");
+    }
+    let repeat = is_repeat(text.repeat);
+    let [first, second] = cells.each_ref().map(|cell| {
+        let scale = At { it: cell.scale.it * text.scale.it, ..cell.scale };
+        square(context, &CurveText { scale, ..cell.clone() }, quantity)
+    });
+    let (repeat, mut cells, mut scale) = (repeat?, [first?, second?], 1.0);
+    if quantity == Quantity::Emission {
+        let brightest =
+            |cell: &Curve| cell.kind.rgb().map_or(0.0, |rgb| rgb.into_iter().fold(0.0, f64::max) * cell.scale);
+        scale = brightest(&cells[0]).max(brightest(&cells[1]));
+        cells.iter_mut().for_each(|cell| cell.scale = if scale > 0.0 { cell.scale / scale } else { 0.0 });
+    }
+    let kind = CurveKind::Checker { cells: Box::new(cells), repeat };
+    Some(Curve { kind, scale, luminance: None })
+}
+
+fn square<'d>(context: &mut Context<'d>, cell: &CurveText<'d>, quantity: Quantity) -> Option<Curve> {
+    // A lamp has one spectrum, the white that colors are filters of.
+    if quantity == Quantity::Emission && !matches!(cell.kind, KindText::Number(_) | KindText::Rgb(_)) {
+        let message = "the squares of a lamp are numbers or `rgb`: it shines in one white";
+        return cell.value.advise(message, "make it of several lamps");
+    }
+    if let (Quantity::Emission, Some(luminance)) = (quantity, cell.luminance) {
+        return luminance.place.advise("the squares of a lamp have no luminance", "use `scale`");
+    }
+    surface_curve(context, cell, quantity)
+}
+
+/// An image, read once for each meaning of its numbers.
+pub(super) fn image<'d>(
+    context: &mut Context<'d>,
+    file: &At<'d, &'d str>,
+    meaning: Meaning,
+    channel: Option<Channel>,
+) -> Option<Arc<Image>> {
+    let At { place, it: file } = *file;
+    let key = (context.folder.join(file), meaning, channel);
+    if let Some(image) = context.images.get(&key) {
+        return Some(image.clone());
+    }
+    let bytes = bytes_of_image(context, &At { place, it: file })?;
+    let read = match read_texture(Path::new(file), &bytes, meaning, channel) {
+        Ok(read) => read,
+        Err(fault) => return place.tell(fault.message, fault.help),
+    };
+    context.hash.update(&bytes);
+    if read.ignores_alpha {
+        context.warn_at(place, format!("the alpha of {file} is ignored; channel = \"alpha\" reads it"));
+    }
+    let image = Arc::new(read.image);
+    context.images.insert(key, image.clone());
+    Some(image)
+}
+
+pub(super) fn bytes_of_image(context: &Context, file: &At<&str>) -> Option<Vec<u8>> {
+    context.bytes(file.place, file.it, &IMAGE)
+}

@@ -1,0 +1,329 @@
+//! Files of images that light or color a scene.
+
+use std::io::Cursor;
+use std::path::Path;
+
+use exr::math::Vec2;
+use exr::prelude::{ReadChannels, ReadLayers, read};
+use image::{DynamicImage, ImageDecoder, ImageFormat};
+
+use super::guard::guarded;
+use crate::spectrum::{Channel, Encoding, Image, decode_srgb};
+
+/// What is wrong with a file.
+pub(super) struct Fault {
+    pub(super) message: String,
+    /// What to do.
+    pub(super) help: Option<String>,
+}
+
+impl Fault {
+    fn new(message: String, help: impl Into<String>) -> Self {
+        Self { message, help: Some(help.into()) }
+    }
+}
+
+/// Reads an OpenEXR or Radiance file from its bytes; the ending of its name says which it is.
+///
+/// # Errors
+/// What is wrong with it, and what to do.
+pub(super) fn read_image(path: &Path, bytes: &[u8]) -> Result<Image, Fault> {
+    let (kind, image) = match ending(path).as_str() {
+        "exr" => ("OpenEXR", guarded(|| read_exr(bytes, false))),
+        "hdr" => ("Radiance", guarded(|| read_radiance(bytes))),
+        ending @ ("png" | "jpg" | "jpeg") => {
+            let help = "use an OpenEXR (.exr) or Radiance (.hdr) image";
+            return Err(Fault::new(format!("a .{ending} image holds no light brighter than white"), help));
+        }
+        _ => return Err(unknown(path, "images end in .exr (OpenEXR) or .hdr (Radiance)")),
+    };
+    let image = image.map_err(|said| unreadable(path, kind, &said))?;
+    possible(path, Texels { width: image.width, channels: 3, numbers: &image.numbers }, Meaning::Light(None))?;
+    Ok(Image::of_floats(image.width, 3, image.numbers))
+}
+
+/// What the numbers of an image on a surface stand for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Meaning {
+    /// Light or shares of it, encoded as told or else as the kind of file implies.
+    Light(Option<Encoding>),
+    /// Heights, just as they are.
+    Heights,
+    /// Directions: the middle of the range of whole numbers is 0, of others one half.
+    Directions,
+}
+
+/// An image for a surface.
+pub(super) struct TextureFile {
+    pub(super) image: Image,
+    /// Whether it has transparent places of which nothing was read.
+    pub(super) ignores_alpha: bool,
+}
+
+/// Reads a PNG, JPEG, OpenEXR or Radiance file from its bytes; the ending of its name says which it is.
+///
+/// # Errors
+/// What is wrong with it, and what to do.
+pub(super) fn read_texture(
+    path: &Path,
+    bytes: &[u8],
+    meaning: Meaning,
+    channel: Option<Channel>,
+) -> Result<TextureFile, Fault> {
+    let (kind, format) = match ending(path).as_str() {
+        "exr" => ("OpenEXR", None),
+        "hdr" => ("Radiance", None),
+        "png" => ("PNG", Some(ImageFormat::Png)),
+        "jpg" | "jpeg" => ("JPEG", Some(ImageFormat::Jpeg)),
+        _ => return Err(unknown(path, "images end in .png, .jpg, .exr (OpenEXR) or .hdr (Radiance)")),
+    };
+    let srgb = match (channel, meaning) {
+        (Some(Channel::Alpha), _) => false,
+        (_, Meaning::Light(encoding)) => encoding.map_or(format.is_some(), |encoding| encoding == Encoding::Srgb),
+        _ => false,
+    };
+    let texture = TextureOf { path, kind, meaning, channel, srgb };
+    match format {
+        Some(format) => texture.of_whole_numbers(bytes, format),
+        None => texture.of_floats(bytes),
+    }
+}
+
+/// An image that is read, and as what.
+struct TextureOf<'p> {
+    path: &'p Path,
+    kind: &'static str,
+    meaning: Meaning,
+    channel: Option<Channel>,
+    srgb: bool,
+}
+
+impl TextureOf<'_> {
+    fn fault(&self, said: String) -> Fault {
+        unreadable(self.path, self.kind, &said)
+    }
+
+    fn of_whole_numbers(self, bytes: &[u8], format: ImageFormat) -> Result<TextureFile, Fault> {
+        let Self { path, srgb, .. } = self;
+        let directions = self.meaning == Meaning::Directions;
+        let image = guarded(|| decode(bytes, format)).map_err(|said| self.fault(said))?;
+        let width = image.width() as usize;
+        let (count, has_alpha) = (usize::from(image.color().channel_count()), image.color().has_alpha());
+        let picked = Picked::new(path, self.channel, count, has_alpha)?;
+        if directions && picked.channels() == 1 {
+            let message = format!("{} is gray, and a normal map has red, green and blue", path.display());
+            return Err(Fault::new(message, "heights are a `bump_map`"));
+        }
+        let wide = image.color().bytes_per_pixel() as usize > count;
+        if wide {
+            let (numbers, even) = (words(image), |word: u16| f64::from(word) / 65535.0);
+            let value = |word: u16| match directions {
+                true => (f64::from(word) - 32768.0) / 32767.0,
+                false if srgb => decode_srgb(even(word)),
+                false => even(word),
+            };
+            let table: Vec<f32> = (0..=u16::MAX).map(|word| value(word) as f32).collect();
+            let ignores_alpha = !directions && picked.ignores(&numbers, u16::MAX);
+            let floats = picked.of(&numbers).map(|word| table[usize::from(word)]).collect();
+            return Ok(TextureFile { image: Image::of_floats(width, picked.channels(), floats), ignores_alpha });
+        }
+        let numbers = image.into_bytes();
+        let ignores_alpha = !directions && picked.ignores(&numbers, u8::MAX);
+        let (channels, bytes) = (picked.channels(), picked.of(&numbers).collect());
+        let image = match directions {
+            true => Image::of_signed_bytes(width, channels, bytes),
+            false => Image::of_bytes(width, channels, bytes, srgb),
+        };
+        Ok(TextureFile { image, ignores_alpha })
+    }
+
+    fn of_floats(self, bytes: &[u8]) -> Result<TextureFile, Fault> {
+        let (radiance, directions) = (self.kind == "Radiance", self.meaning == Meaning::Directions);
+        let read = || if radiance { read_radiance(bytes) } else { read_exr(bytes, true) };
+        let image = guarded(read).map_err(|said| self.fault(said))?;
+        let picked = Picked::new(self.path, self.channel, image.channels, !radiance)?;
+        let ignores_alpha = !directions && picked.ignores(&image.numbers, 1.0);
+        let mut floats: Vec<f32> = picked.of(&image.numbers).collect();
+        let texels = Texels { width: image.width, channels: picked.channels(), numbers: &floats };
+        possible(self.path, texels, self.meaning)?;
+        if directions {
+            floats.iter_mut().for_each(|x| *x = 2.0 * *x - 1.0);
+        }
+        if self.srgb {
+            floats.iter_mut().for_each(|x| *x = decode_srgb(f64::from(*x)) as f32);
+        }
+        Ok(TextureFile { image: Image::of_floats(image.width, picked.channels(), floats), ignores_alpha })
+    }
+}
+
+/// Which numbers of a texel are read.
+struct Picked {
+    /// Numbers of a texel in the file.
+    stride: usize,
+    first: usize,
+    last: usize,
+    alpha: Option<usize>,
+}
+
+impl Picked {
+    /// Of texels of 1 to 4 numbers: 1 or 3 colors, and maybe alpha behind them.
+    fn new(path: &Path, channel: Option<Channel>, stride: usize, has_alpha: bool) -> Result<Self, Fault> {
+        let colors = if stride < 3 { 1 } else { 3 };
+        let one = |at: usize| (at.min(colors - 1), at.min(colors - 1));
+        let (first, last) = match channel {
+            None => (0, colors - 1),
+            Some(Channel::Red) => one(0),
+            Some(Channel::Green) => one(1),
+            Some(Channel::Blue) => one(2),
+            Some(Channel::Alpha) if has_alpha => (colors, colors),
+            Some(Channel::Alpha) => {
+                return Err(Fault { message: format!("{} has no alpha", path.display()), help: None });
+            }
+        };
+        let alpha = (has_alpha && channel.is_none()).then_some(colors);
+        Ok(Self { stride, first, last, alpha })
+    }
+
+    fn channels(&self) -> usize {
+        self.last - self.first + 1
+    }
+
+    fn of<'a, T: Copy>(&'a self, numbers: &'a [T]) -> impl Iterator<Item = T> + 'a {
+        numbers.chunks_exact(self.stride).flat_map(|texel| texel[self.first..=self.last].iter().copied())
+    }
+
+    /// Whether some alpha that is not read is less than `full`.
+    fn ignores<T: Copy + PartialOrd>(&self, numbers: &[T], full: T) -> bool {
+        self.alpha.is_some_and(|alpha| numbers.chunks_exact(self.stride).any(|texel| texel[alpha] < full))
+    }
+}
+
+fn ending(path: &Path) -> String {
+    path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase()
+}
+
+fn unknown(path: &Path, help: &str) -> Fault {
+    Fault::new(format!("the kind of image cannot be told from {:?}", path.display()), help)
+}
+
+fn unreadable(path: &Path, kind: &str, said: &str) -> Fault {
+    Fault::new(format!("{} is no {kind} image ({said})", path.display()), "is the file complete?")
+}
+
+/// The numbers of an image, rows from the top.
+struct Texels<'n> {
+    width: usize,
+    channels: usize,
+    numbers: &'n [f32],
+}
+
+/// Refuses numbers that no light and no surface has.
+fn possible(path: &Path, texels: Texels, meaning: Meaning) -> Result<(), Fault> {
+    let Texels { width, channels, numbers } = texels;
+    let (allowed, help) = match meaning {
+        Meaning::Light(_) => (0.0..=f32::MAX, "light is finite and not negative"),
+        Meaning::Heights => (f32::MIN..=f32::MAX, "heights are finite"),
+        Meaning::Directions => (0.0..=1.0, "directions are written as numbers from 0 to 1, one half being none"),
+    };
+    let mut texels = numbers.chunks_exact(channels);
+    match texels.position(|texel| texel.iter().any(|x| !allowed.contains(x))) {
+        Some(at) => {
+            let (x, y) = (at % width, at / width);
+            let texel = &numbers[at * channels..(at + 1) * channels];
+            let message = format!("{}: pixel ({x}, {y}) is {texel:?}", path.display());
+            Err(Fault::new(message, help))
+        }
+        None => Ok(()),
+    }
+}
+
+/// Most texels of an image: 16384 x 8192.
+const MOST_TEXELS: usize = 1 << 27;
+
+/// Bytes of texels that a file of any length may ask for.
+const ALWAYS: u64 = 1 << 27;
+/// Bytes of texels that one byte of a file can stand for: deflate packs 1032 into one at best (RFC 1951: 258 by 2 bits), and
+/// of a palette of two colors each bit is a texel of 3 bytes. Nothing else in these formats is as dense.
+const DENSEST: u64 = 1032 * 24;
+
+/// Refuses images without texels, and sizes that would fill the memory before it shows that the file has no such texels.
+fn fits(width: usize, height: usize, texels: u64, file: &[u8]) -> Result<(), String> {
+    if width == 0 || height == 0 {
+        return Err("it has no pixels".into());
+    }
+    if width.saturating_mul(height) > MOST_TEXELS {
+        return Err(format!("{width} x {height} pixels are more than {MOST_TEXELS}"));
+    }
+    if texels > ALWAYS.max(DENSEST * file.len() as u64) {
+        return Err(format!("its {} bytes cannot hold {width} x {height} pixels", file.len()));
+    }
+    Ok(())
+}
+
+/// Red, green, blue and maybe alpha of each texel, rows from the top.
+struct Floats {
+    width: usize,
+    channels: usize,
+    numbers: Vec<f32>,
+}
+
+impl Floats {
+    fn new(size: Vec2<usize>, channels: usize) -> Self {
+        Self { width: size.width(), channels, numbers: vec![0.0; channels * size.area()] }
+    }
+
+    fn put<const K: usize>(&mut self, at: Vec2<usize>, texel: [f32; K]) {
+        let from = K * (at.y() * self.width + at.x());
+        self.numbers[from..from + K].copy_from_slice(&texel);
+    }
+}
+
+fn read_exr(bytes: &[u8], alpha: bool) -> Result<Floats, String> {
+    let described = exr::meta::MetaData::read_from_buffered(Cursor::new(bytes), false);
+    let headers = described.map_err(|error| error.to_string())?.headers;
+    for size in headers.iter().map(|header| header.layer_size) {
+        let texel = 4 * if alpha { 4 } else { 3 };
+        fits(size.width(), size.height(), texel * size.width() as u64 * size.height() as u64, bytes)?;
+    }
+    let (layers, bytes) = (read().no_deep_data().largest_resolution_level(), Cursor::new(bytes));
+    let floats = if alpha {
+        let put = |image: &mut Floats, at, (r, g, b, a): (f32, f32, f32, f32)| image.put(at, [r, g, b, a]);
+        let layers = layers.rgba_channels(|size, _| Floats::new(size, 4), put).first_valid_layer();
+        let image = layers.all_attributes().non_parallel().from_buffered(bytes);
+        image.map(|image| image.layer_data.channel_data.pixels)
+    } else {
+        let put = |image: &mut Floats, at, (r, g, b): (f32, f32, f32)| image.put(at, [r, g, b]);
+        let layers = layers.rgb_channels(|size, _| Floats::new(size, 3), put).first_valid_layer();
+        let image = layers.all_attributes().non_parallel().from_buffered(bytes);
+        image.map(|image| image.layer_data.channel_data.pixels)
+    };
+    floats.map_err(|error| error.to_string())
+}
+
+fn read_radiance(bytes: &[u8]) -> Result<Floats, String> {
+    let image = decode(bytes, ImageFormat::Hdr)?.into_rgb32f();
+    Ok(Floats { width: image.width() as usize, channels: 3, numbers: image.into_raw() })
+}
+
+/// The numbers of an image of at most `MOST_TEXELS`.
+fn decode(bytes: &[u8], format: ImageFormat) -> Result<DynamicImage, String> {
+    let mut reader = image::ImageReader::with_format(Cursor::new(bytes), format);
+    let mut limits = image::Limits::default();
+    limits.max_alloc = Some(12 * MOST_TEXELS as u64);
+    reader.limits(limits);
+    let decoder = reader.into_decoder().map_err(|error| error.to_string())?;
+    let (width, height) = decoder.dimensions();
+    fits(width as usize, height as usize, decoder.total_bytes(), bytes)?;
+    DynamicImage::from_decoder(decoder).map_err(|error| error.to_string())
+}
+
+/// The numbers of an image of 16 bits.
+fn words(image: DynamicImage) -> Vec<u16> {
+    match image {
+        DynamicImage::ImageLuma16(image) => image.into_raw(),
+        DynamicImage::ImageLumaA16(image) => image.into_raw(),
+        DynamicImage::ImageRgb16(image) => image.into_raw(),
+        DynamicImage::ImageRgba16(image) => image.into_raw(),
+        other => other.into_rgb16().into_raw(),
+    }
+}

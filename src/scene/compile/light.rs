@@ -1,0 +1,185 @@
+//! The lights that no surface gives.
+
+use std::path::Path;
+use std::sync::{Arc, OnceLock};
+
+use sha2::Digest;
+
+use super::context::Context;
+use super::curve::curve;
+use super::curve_text::{CurveText, KindText};
+use super::image::{bytes_of_image, factor_on_image};
+use super::image_file::read_image;
+use super::measures::{direction, point};
+use super::transform::{Step, map_of, steps};
+use crate::light::{Environment, Light, LightId, Panorama, Point, Sky, Spot, Sun};
+use crate::math::{DMat3, DVec3, Transform};
+use crate::scene::text::{At, Fields, Value, above_0_to, at};
+use crate::spectrum::{Curve, Placement, Quantity};
+
+/// The lights of a scene that are right, and which of them rays see that meet nothing.
+#[derive(Default)]
+pub(super) struct Lights {
+    pub(super) all: Vec<Light<Curve>>,
+    pub(super) skies: Vec<LightId>,
+    has_environment: bool,
+}
+
+impl Lights {
+    /// ```toml
+    /// [[light]]
+    /// environment = { radiance = 1 }     # or `point`, `spot` or `sun`
+    /// ```
+    pub(super) fn read<'d>(&mut self, context: &mut Context<'d>, value: Value<'d>) -> Option<()> {
+        let light = Fields::read(value, |light| {
+            let name = light.maybe("name", Value::text);
+            let kinds = ["environment", "point", "spot", "sun"].map(|kind| light.get(kind));
+            let given: Vec<Value> = kinds.iter().flatten().copied().collect();
+            match given.as_slice() {
+                [] if light.has_unknown() => return None,
+                [] => {
+                    let message = "a light needs a kind: `environment`, `point`, `spot` or `sun`";
+                    return value.advise(message, "such as environment = { radiance = 1 }");
+                }
+                [_] => {}
+                [first, others @ ..] => {
+                    let last = others.iter().fold(*first, |last, other| last.later(*other));
+                    return last.advise("a light has exactly one kind", "start another [[light]] for the second");
+                }
+            }
+            name?;
+            let [environment, point, spot, sun] = kinds;
+            if let Some(place) = environment {
+                if std::mem::replace(&mut self.has_environment, true) {
+                    return place.refuse("a scene has at most one environment");
+                }
+                return even_or_image(context, place).map(Light::Environment);
+            }
+            let point = point.map(|place| point_light(context, place));
+            let spot = spot.map(|place| spot_light(context, place));
+            let sun = sun.map(|place| sun_light(context, place));
+            point.or(spot).or(sun).flatten()
+        })?;
+        self.skies.extend(light.is_sky().then_some(self.all.len()));
+        self.all.push(light);
+        Some(())
+    }
+}
+
+/// The spectrum of a light that no surface gives.
+fn emission<'d>(context: &mut Context<'d>, value: Value<'d>) -> Option<Curve> {
+    curve(context, &CurveText::read(value, Quantity::Emission)?, Quantity::Emission)
+}
+
+fn point_light<'d>(context: &mut Context<'d>, value: Value<'d>) -> Option<Light<Curve>> {
+    Fields::read(value, |light| {
+        let position = light.need("position", point);
+        let intensity = light.need("intensity", |value| emission(context, value));
+        Some(Light::Point(Point { position: position?.to_array(), intensity: intensity? }))
+    })
+}
+
+fn sun_light<'d>(context: &mut Context<'d>, value: Value<'d>) -> Option<Light<Curve>> {
+    Fields::read(value, |light| {
+        let toward = light.need("toward", direction);
+        // As wide as the sun appears.
+        let angular_diameter = light
+            .or("angular_diameter", 0.533, |value| value.within(0.0..=180.0, "a sun is 0 to 180 degrees across", None));
+        let irradiance = light.need("irradiance", |value| emission(context, value));
+        let help = "toward = [1, 2, 1] is the direction from the scene to the sun";
+        light.stray("look_at", "a sun is infinitely far away and looks at no point", help.into());
+        let toward = toward?.to_array();
+        let (angular_diameter, irradiance) = (angular_diameter?, irradiance?);
+        Some(Light::Sun(Sun { toward, angular_diameter, irradiance, disc: OnceLock::new() }))
+    })
+}
+
+fn spot_light<'d>(context: &mut Context<'d>, value: Value<'d>) -> Option<Light<Curve>> {
+    Fields::read(value, |light| {
+        let position = light.need("position", point);
+        let toward = light.maybe("toward", at(direction));
+        let target = light.maybe("look_at", at(point));
+        let cone_angle = light
+            .need("cone_angle", |value| value.within(above_0_to(180.0), "a cone is above 0 to 180 degrees wide", None));
+        let blend =
+            light.or("blend", 0.15, |value| value.within(0.0..=1.0, "blend is a part of the cone, 0 to 1", None));
+        let intensity = light.need("intensity", |value| emission(context, value));
+        let position = position?;
+        let toward = match (toward?, target?) {
+            (Some(toward), None) => toward.it,
+            (None, Some(At { place, it: target })) => match (target - position).try_normalize() {
+                Some(toward) => toward,
+                None => return place.advise("the spot looks at the very point where it stands", "name another point"),
+            },
+            (None, None) if light.has_unknown() => return None,
+            (None, None) => {
+                let help = "toward = [0, -1, 0] is a direction, look_at = [0, 0, 0] a point";
+                return value.advise("`toward` or `look_at` is missing", help);
+            }
+            (Some(toward), Some(target)) => {
+                let help = "`toward` is a direction, `look_at` a point: leave one of them out";
+                let later = toward.place.later(target.place);
+                return later.advise("a spot has `toward` or `look_at`, not both", help);
+            }
+        };
+        let (cone_angle, blend, intensity) = (cone_angle?, blend?, intensity?);
+        let (position, toward) = (position.to_array(), toward.to_array());
+        Some(Light::Spot(Spot { position, toward, cone_angle, blend, intensity }))
+    })
+}
+
+/// ```toml
+/// [[light]]
+/// environment = { radiance = { image = "sky.exr" }, transform = [{ rotate = { axis = [0, 1, 0], degrees = 90 } }] }
+/// ```
+fn even_or_image<'d>(context: &mut Context<'d>, value: Value<'d>) -> Option<Environment<Curve>> {
+    Fields::read(value, |light| {
+        let radiance = light.need("radiance", |value| CurveText::read(value, Quantity::Emission));
+        let turn = light.maybe("transform", at(steps));
+        let radiance = radiance?;
+        let KindText::Image(file) = radiance.kind else {
+            if let Some(turn) = turn?.filter(|turn| !turn.it.is_empty()) {
+                return turn.place.advise("an even environment looks the same after every turn", "leave it out");
+            }
+            return Some(Environment { radiance: curve(context, &radiance, Quantity::Emission)?, image: None });
+        };
+        let is_plain = radiance.encoding.is_none() && radiance.channel.is_none();
+        if !is_plain || radiance.placement()? != Placement::default() {
+            let message =
+                "the image of an environment fills all directions once, in linear light: only its `scale` is free";
+            return radiance.value.refuse(message);
+        }
+        let factor = factor_on_image(&radiance);
+        let turn = turn.and_then(|turn| turn.map_or(Some(Transform::IDENTITY), |turn| rotation(&turn.it)));
+        let panorama = panorama(context, &At { place: radiance.place, it: file });
+        let (factor, turn, panorama) = (factor?, turn?, panorama?);
+        let rotation = DMat3::from_cols(turn.vector(DVec3::X), turn.vector(DVec3::Y), turn.vector(DVec3::Z));
+        Some(Environment { radiance: factor.into(), image: Some(Sky::new(panorama, rotation)) })
+    })
+}
+
+/// The map of steps that only turn.
+fn rotation(steps: &[At<Step>]) -> Option<Transform> {
+    match steps.iter().find(|step| !matches!(step.it, Step::Rotate(_))) {
+        Some(step) => {
+            let message = "an environment has no place and no size: it can be turned only";
+            step.place.advise(message, "write { rotate = { axis = [0, 1, 0], degrees = 90 } }")
+        }
+        None => map_of(steps, Transform::IDENTITY),
+    }
+}
+
+fn panorama(context: &mut Context, file: &At<&str>) -> Option<Panorama> {
+    let bytes = bytes_of_image(context, file)?;
+    let image = match read_image(Path::new(file.it), &bytes) {
+        Ok(image) => image,
+        Err(fault) => return file.place.tell(fault.message, fault.help),
+    };
+    context.hash.update(&bytes);
+    let (width, height) = (image.width(), image.height());
+    if width != 2 * height {
+        let message = "an image of all directions is twice as wide as high";
+        context.warn_at(file.place, format!("{} is {width} x {height}; {message}", file.it));
+    }
+    Some(Panorama::new(Arc::new(image)))
+}

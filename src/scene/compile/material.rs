@@ -1,0 +1,175 @@
+//! Materials, each by itself.
+
+use std::collections::BTreeMap;
+
+use super::context::Context;
+use super::curve_text::CurveText;
+use super::image::surface_curve;
+use crate::material::{Coat, Conductor, Dielectric, Diffuse, Emissive, Material, Mirror, Plastic, Roughness, Thin};
+use crate::scene::text::{Choice, Fields, Value};
+use crate::shape::Sides;
+use crate::spectrum::{Curve, Quantity};
+
+/// A material by itself: of one that is made of others it is known where they are named.
+pub(super) enum Draft<'d, S> {
+    Whole(Material<S>),
+    Mix { parts: [Value<'d>; 2], amount: S },
+    Mask { part: Value<'d>, opacity: S },
+}
+
+/// The spectrum of a key.
+#[derive(Clone, Copy)]
+pub(super) enum Asked<'d> {
+    There(Value<'d>),
+    Default(f64),
+    /// It is missing or wrong, which is told.
+    Lacking,
+}
+
+fn spectrum<'d>(fields: &mut Fields<'d>, key: &'static str) -> Asked<'d> {
+    fields.need(key, Some).map_or(Asked::Lacking, Asked::There)
+}
+
+fn spectrum_or<'d>(fields: &mut Fields<'d>, key: &'static str, default: f64) -> Asked<'d> {
+    fields.get(key).map_or(Asked::Default(default), Asked::There)
+}
+
+/// From 0, smooth, to 1; 0 if it is wrong, which is told.
+fn roughness(fields: &mut Fields) -> f64 {
+    let what = "a roughness lies between 0, smooth, and 1";
+    fields.or("roughness", 0.0, |value| value.within(0.0..=1.0, what, None)).unwrap_or_default()
+}
+
+/// What reads a kind of material, given its table as a whole and by its keys.
+type Reader = for<'d> fn(Value<'d>, &mut Fields<'d>) -> Option<Draft<'d, Asked<'d>>>;
+
+/// The kinds of materials, each documented where it is implemented, in `material`.
+const MATERIAL: Choice<Reader> = Choice {
+    name: "a material",
+    word: "kind of material",
+    example: "diffuse = { reflectance = 0.7 }",
+    apart: "give each kind its own [material.NAME]",
+    kinds: &[
+        ("diffuse", |_, fields| {
+            Some(Draft::Whole(Material::Diffuse(Diffuse { reflectance: spectrum(fields, "reflectance") })))
+        }),
+        ("mirror", |_, fields| {
+            Some(Draft::Whole(Material::Mirror(Mirror { reflectance: spectrum_or(fields, "reflectance", 1.0) })))
+        }),
+        ("conductor", conductor),
+        ("dielectric", |_, fields| dielectric(fields)),
+        ("thin", |_, fields| {
+            let (index, transmittance) = (spectrum(fields, "index"), spectrum_or(fields, "transmittance", 1.0));
+            Some(Draft::Whole(Material::Thin(Thin { index, transmittance })))
+        }),
+        ("emissive", |_, fields| {
+            let radiance = spectrum(fields, "radiance");
+            let words = [("both", Sides::Both), ("front", Sides::Front)];
+            let sides = fields.or("sides", Sides::Both, |value| value.word(&words)).unwrap_or_default();
+            Some(Draft::Whole(Material::Emissive(Emissive { radiance, sides })))
+        }),
+        ("plastic", |_, fields| {
+            let (reflectance, index) = (spectrum(fields, "reflectance"), spectrum_or(fields, "index", 1.5));
+            let coat = Coat::new(roughness(fields));
+            Some(Draft::Whole(Material::Plastic(Plastic { reflectance, index, coat })))
+        }),
+        ("mix", |_, fields| {
+            let parts = fields.need("materials", two_names);
+            let amount = spectrum(fields, "amount");
+            Some(Draft::Mix { parts: parts?, amount })
+        }),
+        ("mask", |_, fields| {
+            let part = fields.need("material", name);
+            let opacity = spectrum(fields, "opacity");
+            Some(Draft::Mask { part: part?, opacity })
+        }),
+    ],
+};
+
+fn conductor<'d>(value: Value<'d>, fields: &mut Fields<'d>) -> Option<Draft<'d, Asked<'d>>> {
+    let (metal, n, k) = (fields.get("metal"), fields.get("n"), fields.get("k"));
+    let roughness = Roughness::new(roughness(fields));
+    let [n, k] = match (metal, n, k) {
+        // A metal gives both.
+        (Some(metal), None, None) => [Asked::There(name(metal)?); 2],
+        (None, Some(n), Some(k)) => [n, k].map(Asked::There),
+        _ if fields.has_unknown() => return None,
+        _ => return value.refuse("a conductor needs either `metal`, or both `n` and `k`"),
+    };
+    Some(Draft::Whole(Material::Conductor(Conductor { n, k, roughness })))
+}
+
+fn dielectric<'d>(fields: &mut Fields<'d>) -> Option<Draft<'d, Asked<'d>>> {
+    Some(Draft::Whole(Material::Dielectric(Dielectric {
+        index: spectrum(fields, "index"),
+        reflectance: spectrum_or(fields, "reflectance", 1.0),
+        transmittance: spectrum_or(fields, "transmittance", 1.0),
+        emission: spectrum_or(fields, "emission", 0.0),
+        absorption: spectrum_or(fields, "absorption", 0.0),
+        priority: fields.or("priority", 0, Value::integer).unwrap_or_default(),
+        roughness: Roughness::new(roughness(fields)),
+    })))
+}
+
+fn two_names(value: Value) -> Option<[Value; 2]> {
+    let names = <[Value; 2]>::try_from(value.list(name)?);
+    let wrong = |names: Vec<Value>| value.refuse(format!("a mix is made of 2 materials, not {}", names.len()));
+    names.map_or_else(wrong, Some)
+}
+
+/// A text in quotes, where it stands.
+fn name(value: Value) -> Option<Value> {
+    value.text().map(|_| value)
+}
+
+/// Every material by itself; those that are wrong are known but not there.
+pub(super) struct Drafts<'d> {
+    pub(super) by_name: BTreeMap<&'d str, Option<Draft<'d, Curve>>>,
+    /// Whether there are others of which the name is not known.
+    pub(super) nameless: bool,
+}
+
+/// The materials of a scene.
+pub(super) fn drafts<'d>(context: &mut Context<'d>, value: Value<'d>) -> Drafts<'d> {
+    let mut drafts = Drafts { by_name: BTreeMap::new(), nameless: !value.node().is_table() };
+    if value.node().is_array() {
+        value.advise::<()>("`material` is a table, not a list", "write [material.NAME] for each");
+        return drafts;
+    }
+    for material in value.table().unwrap_or_default() {
+        let draft = MATERIAL.kind(material).and_then(|kind| {
+            let word = material.key();
+            if MATERIAL.knows(word) && !MATERIAL.knows(kind.key()) {
+                drafts.nameless = true;
+                let help = format!("write [material.NAME] above {word} = {{ .. }}");
+                return kind.refuse_key("this material has no name", Some(help));
+            }
+            let read = MATERIAL.reader(kind)?;
+            Fields::read(kind, |fields| resolved(context, read(kind, fields)?))
+        });
+        drafts.by_name.insert(material.key(), draft);
+    }
+    drafts
+}
+
+/// A material with the spectra that its keys mean.
+fn resolved<'d>(context: &mut Context<'d>, asking: Draft<'d, Asked<'d>>) -> Option<Draft<'d, Curve>> {
+    let mut right = true;
+    let mut curve = |quantity, asked: &Asked<'d>| {
+        let curve = match *asked {
+            Asked::There(value) => {
+                CurveText::read(value, quantity).and_then(|text| surface_curve(context, &text, quantity))
+            }
+            Asked::Default(value) => Some(value.into()),
+            Asked::Lacking => None,
+        };
+        right &= curve.is_some();
+        curve.unwrap_or_else(|| 0.0.into())
+    };
+    let draft = match asking {
+        Draft::Whole(material) => Draft::Whole(material.map(&mut curve)),
+        Draft::Mix { parts, amount } => Draft::Mix { parts, amount: curve(Quantity::Share, &amount) },
+        Draft::Mask { part, opacity } => Draft::Mask { part, opacity: curve(Quantity::Share, &opacity) },
+    };
+    right.then_some(draft)
+}

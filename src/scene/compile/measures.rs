@@ -1,0 +1,50 @@
+//! Points, directions and lengths that numbers can hold.
+
+use crate::math::DVec3;
+use crate::scene::text::Value;
+
+/// Largest length and coordinate: products of a few of them stay far within f64 and f32.
+pub(super) const MAX_LENGTH: f64 = 1e30;
+/// Smallest size, for the same reason.
+pub(super) const MIN_LENGTH: f64 = 1e-30;
+
+/// A point that is not too far away.
+pub(super) fn point(value: Value) -> Option<DVec3> {
+    near(value, value.numbers()?).map(DVec3::from)
+}
+
+/// Numbers that are coordinates, each finite and not too large.
+pub(super) fn near<const N: usize>(value: Value, numbers: [f64; N]) -> Option<[f64; N]> {
+    match numbers.iter().position(|x| !x.is_finite() || x.abs() > MAX_LENGTH) {
+        Some(axis) if numbers[axis].is_finite() => {
+            value.entry(axis).refuse(format!("a coordinate is at most {MAX_LENGTH:e}"))
+        }
+        Some(axis) => value.entry(axis).refuse(format!("a coordinate is a finite number, not {}", numbers[axis])),
+        None => Some(numbers),
+    }
+}
+
+/// A vector of finite length above 0.
+pub(super) fn direction(value: Value) -> Option<DVec3> {
+    let vector = point(value)?;
+    match vector.try_normalize() {
+        Some(_) => Some(vector),
+        None => value.refuse("a direction needs a length above 0"),
+    }
+}
+
+/// A length above 0; `what` it is the length of.
+pub(super) fn length(value: Value, what: &str) -> Option<f64> {
+    long(value, what, value.number()?)
+}
+
+/// A number that is a length above 0.
+pub(super) fn long(value: Value, what: &str, length: f64) -> Option<f64> {
+    if (MIN_LENGTH..=MAX_LENGTH).contains(&length) {
+        Some(length)
+    } else if length > 0.0 && length.is_finite() {
+        value.refuse(format!("{what} is a length from {MIN_LENGTH:e} to {MAX_LENGTH:e}"))
+    } else {
+        value.refuse(format!("{what} is a length above 0, not {length}"))
+    }
+}

@@ -1,0 +1,150 @@
+//! Meshes, and the files they are read from.
+
+use std::sync::Arc;
+
+use sha2::Digest;
+
+use super::context::Context;
+use super::measures::{MAX_LENGTH, direction, near, point};
+use crate::math::DVec3;
+use crate::scene::text::{At, Fields, Value, at};
+use crate::shape::{Attributes, Mesh, Vertices, read_mesh, read_smooth_mesh, vertex_normals};
+
+/// A mesh as written, before any transform.
+pub(super) struct WrittenMesh<'d> {
+    pub(super) mesh: Arc<Mesh>,
+    /// The file that it is read from.
+    pub(super) file: Option<&'d str>,
+}
+
+/// What a mesh is made of.
+struct Parts {
+    vertices: Vertices,
+    faces: Vec<[u32; 3]>,
+    attributes: Attributes,
+}
+
+/// What the scene file says of the points of a mesh.
+struct Inline<'d> {
+    points: Option<At<'d, Vec<DVec3>>>,
+    faces: Option<At<'d, Vec<[u32; 3]>>>,
+    normals: Option<At<'d, Vec<DVec3>>>,
+    uv: Option<At<'d, Vec<[f64; 2]>>>,
+}
+
+/// `mesh = { file = "cup.ply", smooth = true }`, or in place of the file `points`, `faces`, `normals` and `uv`
+pub(super) fn mesh<'d>(context: &mut Context<'d>, name: &str, value: Value<'d>) -> Option<WrittenMesh<'d>> {
+    Fields::read(value, |mesh| {
+        let file = mesh.maybe("file", at(Value::text));
+        let points = mesh.maybe("points", at(|value: Value| value.list(|entry| point(entry.as_list("a point", "")))));
+        let faces = mesh.maybe("faces", at(|value: Value| value.list(face)));
+        let normals =
+            mesh.maybe("normals", at(|value: Value| value.list(|entry| direction(entry.as_list("a normal", "")))));
+        let uv = mesh.maybe("uv", at(|value: Value| value.list(|entry| near(entry, entry.numbers()?))));
+        let smooth = mesh.or("smooth", false, Value::yes_or_no);
+        let is_vague = mesh.has_unknown();
+        let (file, smooth) = (file?, smooth?);
+        let inline = Inline { points: points?, faces: faces?, normals: normals?, uv: uv? };
+        let parts = match (&file, &inline) {
+            (Some(file), Inline { points: None, faces: None, normals: None, uv: None }) => {
+                if let Some(mesh) = context.meshes.get(&(file.it.to_owned(), smooth)) {
+                    return Some(WrittenMesh { mesh: mesh.clone(), file: Some(file.it) });
+                }
+                read_file(context, name, file, smooth)?
+            }
+            (None, Inline { points: Some(_), faces: Some(_), .. }) => inline.parts()?,
+            _ if is_vague => return None,
+            _ => return value.refuse("a mesh has either a `file`, or `points` and `faces`"),
+        };
+        let mesh = built(context, name, value, parts, smooth)?;
+        let file = file.map(|file| file.it);
+        if let Some(file) = file {
+            context.meshes.insert((file.to_owned(), smooth), mesh.clone());
+        }
+        Some(WrittenMesh { mesh, file })
+    })
+}
+
+fn face(value: Value) -> Option<[u32; 3]> {
+    value.as_list("a face", "cut faces with more corners into triangles").array(Value::count)
+}
+
+fn built(context: &mut Context, name: &str, value: Value, parts: Parts, smooth: bool) -> Option<Arc<Mesh>> {
+    let Parts { vertices, faces, mut attributes } = parts;
+    if smooth && attributes.normals.is_empty() {
+        attributes.normals = vertex_normals(&vertices, &faces);
+        context.warn(format!("{name}: the mesh has no normals; they are computed from its faces"));
+    }
+    let Some((mesh, report)) = Mesh::new(vertices, faces) else {
+        return value.refuse("no triangle of this mesh has an area");
+    };
+    if report.degenerate > 0 {
+        context.warn(format!("{name}: {} triangles without area were dropped", report.degenerate));
+    }
+    Some(Arc::new(mesh.with(attributes)))
+}
+
+impl Inline<'_> {
+    fn parts(self) -> Option<Parts> {
+        let (points, faces) = (self.points?, self.faces?);
+        let count = points.it.len();
+        let mut right = true;
+        for (number, face) in faces.it.iter().enumerate() {
+            if let Some(corner) = face.iter().position(|&corner| corner as usize >= count) {
+                let message = format!("there is no point {}: the {count} points count from 0", face[corner]);
+                faces.place.entry(number).entry(corner).refuse::<()>(message);
+                right = false;
+            }
+        }
+        let fits = |place: Value, what: &str, given: usize| match given == count {
+            true => Some(()),
+            false => place.refuse(format!("{count} points have {count} {what}, not {given}")),
+        };
+        let mut attributes = Attributes::default();
+        if let Some(normals) = self.normals {
+            fits(normals.place, "normals", normals.it.len())?;
+            let single = |normal: DVec3| normal.normalize().to_array().map(|x| x as f32);
+            attributes.normals = normals.it.into_iter().map(single).collect();
+        }
+        if let Some(uv) = self.uv {
+            fits(uv.place, "entries of `uv`", uv.it.len())?;
+            attributes.coordinates = uv.it.into_iter().map(|pair| pair.map(|x| x as f32)).collect();
+        }
+        right.then_some(Parts { vertices: Vertices::Double(points.it), faces: faces.it, attributes })
+    }
+}
+
+fn read_file(context: &mut Context, name: &str, file: &At<&str>, smooth: bool) -> Option<Parts> {
+    let At { place, it: file } = *file;
+    let path = context.folder.join(file);
+    let mesh = if smooth { read_smooth_mesh(&path) } else { read_mesh(&path) };
+    let mesh = match mesh {
+        Ok(mesh) => mesh,
+        Err(_) if file.is_empty() => return place.refuse("a mesh file needs a name"),
+        Err(_) if path.is_dir() => return place.refuse(format!("{file} is a folder")),
+        Err(_) if path.try_exists().is_ok_and(|exists| !exists) => return context.missing(place, file),
+        Err(message) => return place.refuse(format!("{file}: {message}")),
+    };
+    let is_far = |&vertex: &u32| mesh.vertices.at(vertex).abs().max_element() > MAX_LENGTH;
+    if let Some(vertex) = (0..mesh.vertices.count() as u32).find(is_far) {
+        return place.refuse(format!("{file}: vertex {vertex} (counted from 0) is beyond {MAX_LENGTH:e}"));
+    }
+    match std::fs::read(&path) {
+        Ok(bytes) => context.hash.update(&bytes),
+        Err(error) => return place.refuse(format!("cannot read {file}: {error}")),
+    }
+    for other in &mesh.others {
+        match std::fs::read(other) {
+            Ok(bytes) => context.hash.update(&bytes),
+            Err(error) => return place.refuse(format!("{}: {error}", other.display())),
+        }
+    }
+    for what in mesh.ignored {
+        context.warn(format!("{name}: the {what} of {file} are ignored"));
+    }
+    if mesh.names_materials {
+        let warning = format!("{name}: the materials of {file} are ignored; the scene gives them");
+        context.warn(warning);
+    }
+    Some(Parts { vertices: mesh.vertices, faces: mesh.faces, attributes: mesh.attributes })
+}

@@ -1,0 +1,193 @@
+//! From a scene's text to a world that can be rendered: what a scene may hold is told here and nowhere else, by the functions
+//! that read it. They look up all names and check all numbers, and go on after a mistake.
+
+mod contact;
+mod context;
+mod curve;
+mod curve_name;
+mod curve_range;
+mod curve_text;
+mod guard;
+mod image;
+mod image_file;
+mod inside_out;
+mod light;
+mod material;
+mod measures;
+mod mesh;
+mod object;
+mod parts;
+mod place;
+mod relief;
+mod render;
+mod shape;
+mod sight;
+mod spectrum_file;
+mod transform;
+mod unlit;
+mod view;
+
+pub(super) use context::nearest_file;
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+use sha2::Digest;
+use toml::de::DeValue;
+
+use self::context::Context;
+use self::material::Drafts;
+use self::object::Names;
+use self::place::Placed;
+use super::index::Index;
+use super::text::{Document, Fields, Value};
+use super::{FilmSettings, Object, RenderText, Scene};
+use crate::light::{Area, Light, LightId};
+use crate::material::Material;
+use crate::shape::Sides;
+use crate::spectrum::Curve;
+
+/// The world that a document describes; none if anything is wrong with it, which is told. The names of files begin at a
+/// folder.
+pub(super) fn compile<'d>(document: &'d Document<'d>, folder: &'d Path) -> Option<Scene<Curve>> {
+    let mut context = Context::new(folder, document.text);
+    let scene = Fields::of_document(document, |sections| scene(&mut context, sections));
+    if document.told() > 0 {
+        return None;
+    }
+    let mut scene = scene?;
+    scene.warnings = context.warnings(document);
+    if scene.lights.is_empty() {
+        scene.warnings.push("nothing shines, so the image will be black".into());
+    }
+    scene.warnings.extend(unlit::unlit(&scene));
+    scene.hash = context.hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
+    Some(scene)
+}
+
+/// The tables of a scene.
+fn scene<'d>(context: &mut Context<'d>, sections: &mut Fields<'d>) -> Option<Scene<Curve>> {
+    let [camera, film, render] = ["camera", "film", "render"].map(|key| sections.get(key));
+    let [materials, objects, lights] = ["material", "object", "light"].map(|key| sections.get(key));
+    let missing = [("camera", camera), ("film", film)].into_iter().filter(|(_, section)| section.is_none());
+    let missing: Vec<String> =
+        missing.filter(|(key, _)| !sections.is_misspelt(key)).map(|(key, _)| format!("no [{key}]")).collect();
+    if !missing.is_empty() {
+        let message = format!("the scene has {}", missing.join(" and "));
+        sections.refuse::<()>(message, Some("every scene has [camera] and [film]"));
+    }
+    let film: Option<FilmSettings> = film.and_then(section).and_then(view::film);
+    let camera = camera.and_then(section).and_then(|camera| view::camera(context, camera, film.as_ref()));
+    let render = render.map_or(Some(RenderText::default()), |render| render::render(section(render)?));
+    // A length that is misspelt is not missing as well.
+    context.meters_per_unit = render.as_ref().map_or(Some(1.0), |render| render.meters_per_unit);
+    let drafts = materials.map(|materials| material::drafts(context, materials));
+    let drafts = drafts.unwrap_or_else(|| Drafts { by_name: BTreeMap::new(), nameless: false });
+    let materials = parts::with_parts(&drafts);
+    let mut names = Names { materials: &materials, nameless: drafts.nameless, unknown: BTreeSet::new() };
+    let objects = objects.map(|objects| {
+        let mut numbers = 0..;
+        entries(objects, |entry| object::object(context, &mut names, entry, numbers.next().unwrap_or_default()))
+    });
+    context.meshes.clear();
+    let placed = place::placed(objects.unwrap_or_default(), &materials);
+    unused(context, &placed, &drafts);
+    contacts(context, &placed);
+    faces_inward(context, &placed);
+    let mut others = light::Lights::default();
+    lights.map(|lights| entries(lights, |light| others.read(context, light)));
+    let Placed { objects, materials, .. } = placed;
+    let index = Index::new(objects.iter().map(|object| &*object.shape));
+    let (lights, skies, warnings, hash) = (Vec::new(), Vec::new(), Vec::new(), String::new());
+    let (camera, film, render) = (camera?, film?, render?);
+    let mut scene = Scene { camera, film, render, objects, materials, lights, skies, warnings, hash, index };
+    surfaces_that_shine(&mut scene);
+    scene.skies = others.skies.into_iter().map(|sky| sky + scene.lights.len()).collect();
+    scene.lights.extend(others.all);
+    Some(scene)
+}
+
+/// A section that is no list.
+fn section(value: Value) -> Option<Value> {
+    match value.node() {
+        DeValue::Array(_) => {
+            let key = value.key();
+            value.advise(format!("`{key}` is a table, not a list"), format!("write [{key}]"))
+        }
+        _ => Some(value),
+    }
+}
+
+/// The entries of a section that is a list of tables, those that are right.
+fn entries<'d, T>(value: Value<'d>, mut read: impl FnMut(Value<'d>) -> Option<T>) -> Vec<T> {
+    if let DeValue::Table(_) = value.node() {
+        let key = value.key();
+        value.advise::<()>(format!("`{key}` is a list of tables"), format!("write [[{key}]] for each"));
+        return Vec::new();
+    }
+    let entries = value.list(|entry| Some(read(entry)));
+    entries.into_iter().flatten().flatten().collect()
+}
+
+fn is_clear(placed: &Placed, object: &Object) -> bool {
+    placed.materials[object.material as usize].material.medium().is_some()
+}
+
+/// Clear bodies may overlap but not share a surface: rounding would decide which of the two a ray meets.
+fn contacts(context: &mut Context, placed: &Placed) {
+    for (first, second) in contact::coinciding(&placed.objects, |object| is_clear(placed, object)) {
+        let [body, other] = [first, second].map(|number| &placed.objects[number].name);
+        if is_clear(placed, &placed.objects[second]) {
+            let message = format!("a part of the surfaces of {body} and {other} lies in one place");
+            let help = "let one reach a little into the other: there the one of higher `priority` is; or leave a gap";
+            placed.shapes[first.max(second)].advise::<()>(message, help);
+            continue;
+        }
+        context.warn(format!(
+            "a part of the surface of {body} lies exactly in {other}, where light may pass by it: move it a little, apart \
+             or into the other"
+        ));
+    }
+}
+
+/// A clear body whose faces look inward fills all that is outside of it, and light that meets it is lost.
+fn faces_inward(context: &mut Context, placed: &Placed) {
+    let found = inside_out::inside_out(&placed.objects, |object| is_clear(placed, object));
+    let Some(&first) = found.first() else { return };
+    let others = if found.len() > 1 { format!(" and {} more", found.len() - 1) } else { String::new() };
+    context.warn(format!(
+        "{}{others}: the faces of this closed mesh look inward, so its outside is taken for its inside: reverse the order of \
+         each face's corners",
+        placed.objects[first].name
+    ));
+}
+
+/// Warns of materials that no object has.
+fn unused(context: &mut Context, placed: &Placed, drafts: &Drafts) {
+    for name in drafts.by_name.keys() {
+        if !placed.materials.iter().any(|used| used.name == *name || used.material.is_made_of(name)) {
+            context.warn(format!("material {name} is not used by any object"));
+        }
+    }
+}
+
+/// Gives every object whose material emits its light.
+fn surfaces_that_shine(scene: &mut Scene<Curve>) {
+    for number in 0..scene.objects.len() {
+        let object = &scene.objects[number];
+        let (radiance, sides, lamp) = match &scene.materials[object.material as usize].material {
+            Material::Emissive(emissive) => (&emissive.radiance, emissive.sides, true),
+            Material::Dielectric(dielectric) => (&dielectric.emission, Sides::Both, false),
+            _ => continue,
+        };
+        if radiance.is_dark() {
+            continue;
+        }
+        let light: LightId = scene.lights.len();
+        let aimed_at = lamp && object.shape.bounds().is_some();
+        let mut area = Area::new(object.shape.clone(), number as u32, radiance.clone(), sides, aimed_at);
+        area.coordinates = object.coordinates.clone().filter(|_| radiance.varies());
+        scene.lights.push(Light::Area(area));
+        scene.objects[number].light = Some(light);
+    }
+}

@@ -1,0 +1,103 @@
+//! Objects, each by itself.
+
+use std::collections::BTreeSet;
+
+use super::context::Context;
+use super::parts::{Materials, unknown_material};
+use super::relief::{ReliefText, relief};
+use super::shape::{SHAPE, Written};
+use super::transform::{map_of, steps};
+use crate::material::Material;
+use crate::math::Transform;
+use crate::scene::text::{At, Fields, Value, at};
+use crate::shape::Shape;
+use crate::spectrum::Curve;
+
+/// ```toml
+/// [[object]]
+/// shape.sphere = { center = [0, 1, 0], radius = 1 }
+/// material = "glass"
+/// # transform = [{ scale = 2 }]
+/// # bump_map = { image = "dents.png", depth = 0.02 }
+/// # instances = [[{ translate = [1, 0, 0] }], [{ translate = [3, 0, 0] }, { scale = [-1, 1, 1] }]]
+/// ```
+pub(super) struct Draft<'d> {
+    /// Its name, or `object N` counted from 1.
+    pub(super) name: String,
+    pub(super) material: &'d str,
+    pub(super) shape: At<'d, Written<'d>>,
+    /// What is done with the shape, and where that stands.
+    pub(super) map: At<'d, Transform>,
+    /// What is done, in place of that, with each of many such shapes; one shape if absent.
+    pub(super) instances: Option<Vec<At<'d, Transform>>>,
+    pub(super) relief: Option<ReliefText<'d>>,
+}
+
+/// The names by which objects find their materials.
+pub(super) struct Names<'m, 'd> {
+    pub(super) materials: &'m Materials<'d>,
+    /// Whether there are materials of which the name is not known.
+    pub(super) nameless: bool,
+    /// Materials that are not there: of each it is told where it is named first.
+    pub(super) unknown: BTreeSet<&'d str>,
+}
+
+/// What an object says; `number` is its position in the list.
+pub(super) fn object<'d>(
+    context: &mut Context<'d>,
+    names: &mut Names<'_, 'd>,
+    entry: Value<'d>,
+    number: usize,
+) -> Option<Draft<'d>> {
+    Fields::read(entry, |object| {
+        let name = object.maybe("name", Value::text);
+        let shape = object.need("shape", Some);
+        let named = object.need("material", at(|value: Value<'d>| names.find(value)));
+        let map = object.or(
+            "transform",
+            At { place: entry, it: Transform::IDENTITY },
+            at(|value| map_of(&steps(value)?, Transform::IDENTITY)),
+        );
+        let instances = object.get("instances");
+        let relief = relief(context, object);
+        for (kind, _) in SHAPE.kinds {
+            object.stray(kind, format!("`{kind}` is a shape"), format!("write shape.{kind} = {{ .. }}"));
+        }
+        let name = name?.map_or_else(|| format!("object {}", number + 1), str::to_owned);
+        let shape = shape.and_then(at(|value| {
+            let (read, kind) = SHAPE.of(value)?;
+            read(context, &name, kind)
+        }));
+        let instances = instances.map_or(Some(None), |value| maps(value, map?.it).map(Some));
+        let (shape, map, named, instances) = (shape?, map?, named?, instances?);
+        let written = &shape.it.shape;
+        if named.it.medium().is_some() && matches!(written, Shape::Mesh(_)) && !written.is_closed() {
+            let warning = format!("{name}: a dielectric on an open mesh: light may enter it and never leave");
+            context.warn(warning);
+        }
+        Some(Draft { name, material: named.place.text()?, shape, map, instances, relief: relief? })
+    })
+}
+
+impl<'m, 'd> Names<'m, 'd> {
+    /// The material of a name.
+    fn find(&mut self, value: Value<'d>) -> Option<&'m Material<Curve>> {
+        let name = value.text()?;
+        if let Some(material) = self.materials.get(name) {
+            return material.as_ref();
+        }
+        if self.nameless || !self.unknown.insert(name) {
+            return None;
+        }
+        unknown_material(value, name, self.materials.keys().copied())
+    }
+}
+
+/// The maps of instances, behind that of the whole.
+fn maps(value: Value, first: Transform) -> Option<Vec<At<Transform>>> {
+    let maps = value.list(at(|value| map_of(&steps(value)?, first)))?;
+    match maps.is_empty() {
+        true => value.refuse("a list without instances leaves nothing of the object"),
+        false => Some(maps),
+    }
+}

@@ -1,0 +1,90 @@
+//! Materials that are made of others: the names of these looked up.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::material::{Draft, Drafts};
+use crate::error::nearest;
+use crate::material::{Mask, Material, Mix, Part};
+use crate::scene::text::Value;
+use crate::spectrum::Curve;
+
+/// Materials by name; those that are wrong are known but not there.
+pub(super) type Materials<'d> = BTreeMap<&'d str, Option<Material<Curve>>>;
+
+/// A search for the materials that others are made of.
+struct Search<'s, 'd> {
+    drafts: &'s BTreeMap<&'d str, Option<Draft<'d, Curve>>>,
+    /// Those that are made of the one that is looked for, the outermost first.
+    within: Vec<&'d str>,
+    /// Those of which it was told that they are made of themselves.
+    circular: BTreeSet<&'d str>,
+}
+
+/// Every material with those it is made of.
+pub(super) fn with_parts<'d>(drafts: &Drafts<'d>) -> Materials<'d> {
+    let mut search = Search { drafts: &drafts.by_name, within: Vec::new(), circular: BTreeSet::new() };
+    drafts.by_name.keys().map(|name| (*name, search.whole(name))).collect()
+}
+
+impl<'d> Search<'_, 'd> {
+    /// The material of a name with those it is made of.
+    fn whole(&mut self, name: &'d str) -> Option<Material<Curve>> {
+        let draft = self.drafts.get(name)?.as_ref().filter(|_| !self.circular.contains(name))?;
+        self.within.push(name);
+        let whole = match draft {
+            Draft::Whole(material) => Some(material.clone()),
+            Draft::Mix { parts, amount } => {
+                let [first, second] = parts.map(|part| self.part("mix", part));
+                let amount = amount.clone();
+                first.zip(second).map(|(first, second)| Material::Mix(Mix { materials: [first, second], amount }))
+            }
+            Draft::Mask { part, opacity } => {
+                let opacity = opacity.clone();
+                self.part("mask", *part).map(|material| Material::Mask(Mask { material, opacity }))
+            }
+        };
+        self.within.pop();
+        whole
+    }
+
+    /// A part of a material with what it is made of.
+    fn part(&mut self, kind: &str, place: Value<'d>) -> Option<Part<Curve>> {
+        let name = place.text()?;
+        let Some((known, draft)) = self.drafts.get_key_value(name) else {
+            return unknown_material(place, name, self.drafts.keys().copied());
+        };
+        if let Some(start) = self.within.iter().position(|name| name == known) {
+            self.circular.extend(&self.within[start..]);
+            let way: Vec<_> = self.within[start + 1..].iter().map(|name| format!("{name:?}")).collect();
+            let by = if way.is_empty() { String::new() } else { format!(", by way of {}", way.join(" and ")) };
+            return place.refuse(format!("material {known:?} is made of itself{by}"));
+        }
+        match draft {
+            Some(Draft::Whole(Material::Dielectric(_))) => place.advise(
+                format!(
+                    "a {kind} is made of surfaces, and {known:?} is a dielectric, which fills the space behind its own"
+                ),
+                "a pane has no inside: thin = { index = 1.52 }",
+            ),
+            Some(Draft::Whole(Material::Emissive(_))) => place.advise(
+                format!("a {kind} is made of surfaces that reflect or let through, and {known:?} is emissive"),
+                "give what shines an object of its own",
+            ),
+            _ => Some(Part::new(name, self.whole(known)?)),
+        }
+    }
+}
+
+/// Tells that there is no material of a name.
+pub(super) fn unknown_material<'n, T>(
+    place: Value,
+    name: &str,
+    known: impl ExactSizeIterator<Item = &'n str> + Clone,
+) -> Option<T> {
+    let help = match nearest(name, known.clone()) {
+        Some(near) => format!("did you mean {near:?}?"),
+        None if known.len() == 0 => format!("define it: [material.{name}]"),
+        None => format!("the scene defines {}", known.collect::<Vec<_>>().join(", ")),
+    };
+    place.advise(format!("there is no material named {name:?}"), help)
+}

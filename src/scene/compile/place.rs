@@ -1,0 +1,83 @@
+//! Objects in their places, after all of them were read.
+
+use std::collections::{BTreeMap, HashMap};
+use std::sync::Arc;
+
+use super::object::Draft;
+use super::parts::Materials;
+use super::shape::Fit;
+use crate::math::Transform;
+use crate::scene::text::{At, Value};
+use crate::scene::{NamedMaterial, Object};
+use crate::shape::{Coordinates, Shape};
+use crate::spectrum::Curve;
+
+/// The objects of a scene.
+#[derive(Default)]
+pub(super) struct Placed<'d> {
+    pub(super) objects: Vec<Object>,
+    /// Where the shape of each stands.
+    pub(super) shapes: Vec<Value<'d>>,
+    /// Their materials, in the order in which objects use them first.
+    pub(super) materials: Vec<NamedMaterial<Curve>>,
+}
+
+/// All objects that are right where they are.
+pub(super) fn placed<'d>(drafts: Vec<Draft<'d>>, materials: &Materials<'d>) -> Placed<'d> {
+    let (mut placed, mut numbers) = (Placed::default(), BTreeMap::<&str, u32>::new());
+    // How often each mesh file is placed.
+    let mut places = HashMap::<&str, usize>::new();
+    for draft in &drafts {
+        let count = draft.instances.as_ref().map_or(1, Vec::len);
+        draft.shape.it.file.into_iter().for_each(|file| *places.entry(file).or_default() += count);
+    }
+    for draft in drafts {
+        let Some(Some(material)) = materials.get(draft.material) else { continue };
+        let number = *numbers.entry(draft.material).or_insert_with(|| {
+            let (name, material) = (draft.material.to_owned(), material.clone());
+            placed.materials.push(NamedMaterial { name, material });
+            placed.materials.len() as u32 - 1
+        });
+        let shape = draft.shape.place;
+        let is_shared = draft.shape.it.file.is_some_and(|file| places[file] > 1);
+        for object in draft.placed(is_shared, number, material.varies()).unwrap_or_default() {
+            placed.objects.push(object);
+            placed.shapes.push(shape);
+        }
+    }
+    placed
+}
+
+impl<'d> Draft<'d> {
+    /// The object, or each of its instances; `is_shared` is a mesh that stands in other places as well.
+    fn placed(self, is_shared: bool, material: u32, varies: bool) -> Option<Vec<Object>> {
+        let Self { name, material: material_name, shape: At { place, it: written }, map, instances, relief } = self;
+        let edges = written.edges;
+        let object = |name: String, shape: Shape, coordinates: Option<Coordinates>| {
+            if varies && coordinates.is_none() {
+                let message = format!("this mesh has no texture coordinates, by which {material_name} would lie on it");
+                return place.advise(message, "give it a material without `image` and `checker`");
+            }
+            let coordinates = coordinates.map(Arc::new);
+            let relief = match &relief {
+                Some(relief) => Some(relief.on(coordinates.as_ref())?),
+                None => None,
+            };
+            let coordinates = coordinates.filter(|_| varies);
+            Some(Object { name, shape: Arc::new(shape), material, light: None, coordinates, relief })
+        };
+        let Some(instances) = instances else {
+            let coordinates = Coordinates::new(&written.shape, &map.it);
+            let shape = if is_shared { written.shape.copied(&map.it) } else { written.shape.transformed(&map.it) };
+            Fit { steps: map.place, whole: place, edges }.check(&shape, &map.it)?;
+            return Some(vec![object(name, shape, coordinates)?]);
+        };
+        let instance = |(number, At { place, it: map }): (usize, At<Transform>)| {
+            let shape = written.shape.copied(&map);
+            Fit { steps: place, whole: place, edges }.check(&shape, &map)?;
+            object(format!("{name} [{}]", number + 1), shape, Coordinates::new(&written.shape, &map))
+        };
+        let placed: Vec<_> = instances.into_iter().enumerate().map(instance).collect();
+        placed.into_iter().collect()
+    }
+}

@@ -1,0 +1,110 @@
+//! Images that bend the normals of objects.
+//!
+//! They belong to the object and not to its material: a depth is a length on it, one material serves flat and dented things,
+//! and of a mix or a mask it is clear which normal counts.
+
+use std::sync::Arc;
+
+use super::context::Context;
+use super::curve_text::{CHANNELS, ENCODINGS, WRAPS, repeat};
+use super::image::image;
+use super::image_file::Meaning;
+use super::measures::MAX_LENGTH;
+use crate::scene::text::{Fields, Value, at};
+use crate::scene::{Relief, ReliefKind};
+use crate::shape::Coordinates;
+use crate::spectrum::{Encoding, Placement, TexelFilter, Texture, Wrap};
+
+/// Largest factor on the slopes of a normal map.
+const MOST_STRENGTH: f64 = 1e3;
+
+/// What bends the normals of an object, before it is known where the image lies.
+pub(super) struct ReliefText<'d> {
+    place: Value<'d>,
+    texture: Texture,
+    kind: ReliefKind,
+}
+
+/// What bends the normals of an object, if anything does; none if that is wrong.
+pub(super) fn relief<'d>(context: &mut Context<'d>, object: &mut Fields<'d>) -> Option<Option<ReliefText<'d>>> {
+    match (object.get("normal_map"), object.get("bump_map")) {
+        (None, None) => Some(None),
+        (Some(_), Some(bump_map)) => bump_map.refuse("an object has a `normal_map` or a `bump_map`, not both"),
+        (Some(place), None) => normal_map(context, place).map(Some),
+        (None, Some(place)) => bump_map(context, place).map(Some),
+    }
+}
+
+/// ```toml
+/// normal_map = { image = "wall_normal.png", repeat = 2, strength = 1 }
+/// ```
+///
+/// Directions: red along u, green along v, blue out of the surface, one half being none. The strength is a factor on red
+/// and green.
+fn normal_map<'d>(context: &mut Context<'d>, place: Value<'d>) -> Option<ReliefText<'d>> {
+    Fields::read(place, |map| {
+        let file = map.need("image", at(Value::text));
+        let placement = placement(map, "directions");
+        let strength = map.or("strength", 1.0, |value| {
+            let what = format!("the strength of a normal map lies between 0 and {MOST_STRENGTH}");
+            value.within(0.0..=MOST_STRENGTH, &what, None)
+        });
+        let file = file?;
+        let image = image(context, &file, Meaning::Directions, None)?;
+        if image.mean()[2] <= 0.0 {
+            let message = format!("{} is no normal map: its mean normal looks into the surface", file.it);
+            let help = "blue is out of the surface and 128 of 255 or more; heights are a `bump_map`";
+            return file.place.advise(message, help);
+        }
+        let (placement, strength) = (placement?, strength?);
+        Some(ReliefText { place, texture: Texture { image, placement }, kind: ReliefKind::Directions { strength } })
+    })
+}
+
+/// ```toml
+/// bump_map = { image = "height.png", repeat = 2, depth = 0.02 }
+/// ```
+///
+/// Heights, of one channel or the mean of all three. The depth is the height of white over black in scene units; below 0
+/// white lies deeper.
+fn bump_map<'d>(context: &mut Context<'d>, place: Value<'d>) -> Option<ReliefText<'d>> {
+    Fields::read(place, |map| {
+        let file = map.need("image", at(Value::text));
+        let channel = map.maybe("channel", |value| value.word(&CHANNELS));
+        let placement = placement(map, "heights");
+        let depth = map.need("depth", |value| {
+            let what = format!("the depth of a bump map is a length up to {MAX_LENGTH:e}");
+            value.within(-MAX_LENGTH..=MAX_LENGTH, &what, None)
+        });
+        let image = image(context, &file?, Meaning::Heights, channel?);
+        let (image, placement, depth) = (image?, placement?, depth?);
+        Some(ReliefText { place, texture: Texture { image, placement }, kind: ReliefKind::Heights { depth } })
+    })
+}
+
+/// Where an image of numbers lies that are no colors.
+fn placement(map: &mut Fields, what: &str) -> Option<Placement> {
+    let repeat = map.or("repeat", [1.0; 2], repeat);
+    let wrap = map.or("wrap", Wrap::default(), |value| value.word(&WRAPS));
+    let linear = map.or("encoding", (), |value| match value.word(&ENCODINGS)? {
+        Encoding::Linear => Some(()),
+        Encoding::Srgb => value.advise(
+            format!("the numbers of this image are {what}, which no screen encodes: they are always linear"),
+            "leave `encoding` out",
+        ),
+    });
+    linear?;
+    Some(Placement { repeat: repeat?, wrap: wrap?, filter: TexelFilter::Linear })
+}
+
+impl ReliefText<'_> {
+    /// On an object, if its points lie somewhere in images.
+    pub(super) fn on(&self, coordinates: Option<&Arc<Coordinates>>) -> Option<Arc<Relief>> {
+        let Some(coordinates) = coordinates.cloned() else {
+            let message = "this mesh has no texture coordinates, by which the image would lie on it";
+            let help = format!("leave `{}` out, or give the mesh coordinates (`uv`)", self.place.key());
+            return self.place.advise(message, help);
+        };
+        Some(Arc::new(Relief { coordinates, texture: self.texture.clone(), kind: self.kind }))
+    }
+}

@@ -1,0 +1,155 @@
+//! From a shape as written to a shape that rays can meet.
+
+use super::context::Context;
+use super::measures::{MAX_LENGTH, MIN_LENGTH, direction, length, long, point};
+use super::mesh::mesh;
+use crate::math::{DVec3, Transform};
+use crate::scene::text::{Choice, Fields, Value, at};
+use crate::shape::{Cube, Disc, Plane, Quad, Shape, Sphere, Triangle};
+
+/// Smallest size relative to the coordinates: some thousand roundings.
+const RESOLVED: f64 = 1e-12;
+
+/// A shape before any transform.
+pub(super) struct Written<'d> {
+    pub(super) shape: Shape,
+    /// The file that it is read from.
+    pub(super) file: Option<&'d str>,
+    /// The edges of a cube.
+    pub(super) edges: Option<[f64; 3]>,
+}
+
+impl From<Shape> for Written<'_> {
+    fn from(shape: Shape) -> Self {
+        Self { shape, file: None, edges: None }
+    }
+}
+
+/// What reads a kind of shape: of the object that has a name.
+type Reader = for<'d> fn(&mut Context<'d>, &str, Value<'d>) -> Option<Written<'d>>;
+
+/// The shapes, each documented where it is implemented, in `shape`.
+pub(super) const SHAPE: Choice<Reader> = Choice {
+    name: "a shape",
+    word: "shape",
+    example: "shape.sphere = { center = [0, 1, 0], radius = 1 }",
+    apart: "start another [[object]] for the second shape",
+    kinds: &[
+        ("plane", |_, _, value| plane(value).map(Written::from)),
+        ("triangle", |_, _, value| triangle(value).map(Written::from)),
+        ("sphere", |_, _, value| sphere(value).map(Written::from)),
+        ("disc", |_, _, value| disc(value).map(Written::from)),
+        ("quad", |_, _, value| quad(value).map(Written::from)),
+        ("cube", |_, _, value| cube(value)),
+        ("mesh", |context, name, value| {
+            let mesh = mesh(context, name, value)?;
+            Some(Written { shape: Shape::Mesh(mesh.mesh), file: mesh.file, edges: None })
+        }),
+    ],
+};
+
+fn plane(value: Value) -> Option<Shape> {
+    Fields::read(value, |plane| {
+        let point = plane.need("point", point);
+        let normal = plane.need("normal", direction);
+        Some(Shape::Plane(Plane::new(point?, normal?)))
+    })
+}
+
+fn triangle(value: Value) -> Option<Shape> {
+    Fields::read(value, |triangle| {
+        let points =
+            triangle.need("points", at(|value: Value| value.list(|entry| point(entry.as_list("a point", "")))))?;
+        let place = points.place;
+        let points = <[DVec3; 3]>::try_from(points.it);
+        let points =
+            points.or_else(|given| place.refuse(format!("a triangle has 3 points, not {}", given.len())).ok_or(()));
+        match points.ok()? {
+            points if Triangle::is_degenerate(points) => {
+                place.refuse("the points of a triangle must not lie on a line")
+            }
+            points => Some(Shape::Triangle(Triangle::new(points))),
+        }
+    })
+}
+
+fn sphere(value: Value) -> Option<Shape> {
+    Fields::read(value, |sphere| {
+        let center = sphere.need("center", point);
+        let radius = sphere.need("radius", |value| length(value, "a radius"));
+        Some(Shape::Sphere(Sphere::new(center?, radius?)))
+    })
+}
+
+fn disc(value: Value) -> Option<Shape> {
+    Fields::read(value, |disc| {
+        let center = disc.need("center", point);
+        let normal = disc.need("normal", direction);
+        let radius = disc.need("radius", |value| length(value, "a radius"));
+        let u = disc.maybe("u", at(direction));
+        let (center, normal, radius, u) = (center?, normal?, radius?, u?);
+        match Disc::new(center, normal, radius, u.map(|u| u.it)) {
+            Some(disc) => Some(Shape::Disc(disc)),
+            None => u.map_or(value, |u| u.place).refuse("a disc's u must not be parallel to its normal"),
+        }
+    })
+}
+
+fn quad(value: Value) -> Option<Shape> {
+    Fields::read(value, |quad| {
+        let center = quad.need("center", point);
+        let u = quad.need("u", direction);
+        let v = quad.need("v", at(direction));
+        let (center, u, v) = (center?, u?, v?);
+        if u.normalize().cross(v.it.normalize()) == DVec3::ZERO {
+            return v.place.refuse("a quad's u and v must not be parallel");
+        }
+        Some(Shape::Quad(Quad::new(center, u, v.it)))
+    })
+}
+
+/// A cube has a size, or three.
+fn cube(value: Value) -> Option<Written> {
+    Fields::read(value, |cube| {
+        let center = cube.need("center", point);
+        let size = cube.need("size", |value| {
+            let size: [f64; 3] = value.one_or("[x, y, z]")?;
+            size.into_iter().all(|edge| long(value, "an edge", edge).is_some()).then_some(size)
+        });
+        let (center, size) = (center?, size?);
+        Some(Written { shape: Shape::Cube(Cube::new(center, size.into())), file: None, edges: Some(size) })
+    })
+}
+
+/// Where it is told of a shape that numbers do not hold it, after a map.
+pub(super) struct Fit<'d> {
+    /// Its steps.
+    pub(super) steps: Value<'d>,
+    pub(super) whole: Value<'d>,
+    /// The edges of a cube.
+    pub(super) edges: Option<[f64; 3]>,
+}
+
+impl Fit<'_> {
+    /// That numbers hold the size and the place of a shape that a map has placed.
+    pub(super) fn check(&self, placed: &Shape, map: &Transform) -> Option<()> {
+        let Some(bounds) = placed.bounds() else { return Some(()) };
+        let (far, wide) = (bounds.min.abs().max(bounds.max.abs()).max_element(), bounds.max - bounds.min);
+        let thin = self.edges.map_or(wide.max_element(), |edges| thickness(edges, map));
+        if !(thin >= MIN_LENGTH && far <= 2.0 * MAX_LENGTH) {
+            return self.steps.refuse("this makes the shape too small, too large or too far");
+        }
+        if thin < RESOLVED * far {
+            let message = "this is so small or thin that the rounding of its coordinates would distort it";
+            return self.whole.refuse(message);
+        }
+        Some(())
+    }
+}
+
+/// The least distance between two faces of a cube after a map.
+fn thickness([x, y, z]: [f64; 3], map: &Transform) -> f64 {
+    let [a, b, c] = [DVec3::X * x, DVec3::Y * y, DVec3::Z * z].map(|edge| map.vector(edge));
+    let height = |edge: DVec3, u: DVec3, v: DVec3| edge.dot(u.normalize().cross(v.normalize()).normalize()).abs();
+    height(a, b, c).min(height(b, c, a)).min(height(c, a, b))
+}

@@ -1,0 +1,152 @@
+//! What the camera sees, straight or by way of other surfaces: roughly, by a few thousand rays.
+//!
+//! Clear bodies, panes and cutouts let rays pass straight on.
+
+use std::cell::Cell;
+
+use crate::light::Light;
+use crate::material::{Material, reflect};
+use crate::math::{BranchKey, DVec2, DVec3, Frame, Ray, Sampler, cosine_hemisphere, unit};
+use crate::scene::{Projection, Scene};
+use crate::shape::SurfacePoint;
+use crate::spectrum::Curve;
+
+/// Camera rays along each side of the image.
+const SIDE: u32 = 24;
+/// Surfaces of a path that turn it, and all of its surfaces.
+const DEEP: usize = 6;
+const LONGEST: usize = 64;
+/// Places that the camera sees which are compared with another one.
+const OTHERS: u32 = 4;
+
+/// One side of an opaque surface.
+pub(super) struct Place {
+    pub(super) point: SurfacePoint,
+    /// Unit normal on that side.
+    pub(super) normal: DVec3,
+    pub(super) object: u32,
+}
+
+/// The places on a few paths from the camera, and what rays are asked for.
+pub(super) struct Sight<'a> {
+    pub(super) scene: &'a Scene<Curve>,
+    /// What paths from the camera meet.
+    pub(super) places: Vec<Place>,
+    /// Rays asked for so far.
+    pub(super) rays: Cell<u64>,
+    occluder: Cell<Option<u32>>,
+}
+
+impl<'a> Sight<'a> {
+    pub(super) fn new(scene: &'a Scene<Curve>) -> Self {
+        Self { scene, places: Vec::new(), rays: Cell::new(0), occluder: Cell::new(None) }
+    }
+
+    /// Follows the camera's rays, far ones first, until `found` answers `true` to the places of one of them.
+    pub(super) fn look(&mut self, mut found: impl FnMut(&Self, &[Place]) -> bool) {
+        let film = self.scene.film;
+        let at = |i: u32, size: u32| (f64::from(i) + 0.5) * f64::from(size) / f64::from(SIDE);
+        // A stride that is coprime to the number of rays visits them all.
+        for i in (0..SIDE * SIDE).map(|i| (i * 229) % (SIDE * SIDE)) {
+            let film = DVec2::new(at(i % SIDE, film.width), at(i / SIDE, film.height));
+            let mut places = Vec::new();
+            self.walk(self.scene.camera.ray(film), &Sampler::new(1, [i, 0], 0), |place| {
+                places.push(place);
+                false
+            });
+            let ends = found(self, &places);
+            self.places.append(&mut places);
+            if ends {
+                return;
+            }
+        }
+    }
+
+    /// Follows a ray over surfaces that scatter evenly or mirror; `met` is told of each, and ends the walk by `true`,
+    /// which is the answer then.
+    pub(super) fn walk(&self, mut ray: Ray, sampler: &Sampler, mut met: impl FnMut(Place) -> bool) -> bool {
+        let (mut key, mut turns) = (BranchKey::CAMERA, 0);
+        for _ in 0..LONGEST {
+            self.rays.set(self.rays.get() + 1);
+            let Some(hit) = self.scene.intersect(&ray) else { return false };
+            let point = self.scene.objects[hit.object as usize].point(&ray, &hit.crossing);
+            let material = self.scene.material_of(hit.object);
+            let [u, v, pass, _] = sampler.four_plain(key, 0);
+            key = key.child(0);
+            if !self.is_opaque(hit.object) && (!material.scatters_widely() || pass < 0.5) {
+                ray = point.leave(ray.direction);
+                continue;
+            }
+            let normal = if point.normal.dot(ray.direction) < 0.0 { point.normal } else { -point.normal };
+            turns += 1;
+            if met(Place { point, normal, object: hit.object }) {
+                return true;
+            }
+            if turns == DEEP || matches!(material, Material::Emissive(_)) {
+                return false;
+            }
+            let direction = match material.scatters_widely() {
+                true => unit(Frame::about(normal).to_world(cosine_hemisphere([u, v]))),
+                false => reflect(-ray.direction, normal),
+            };
+            ray = point.leave(direction);
+        }
+        false
+    }
+
+    /// Whether light never crosses an object.
+    pub(super) fn is_opaque(&self, object: u32) -> bool {
+        let material = self.scene.material_of(object);
+        !material.lets_through() && !material.is_see_through()
+    }
+
+    pub(super) fn is_occluded(&self, ray: &Ray, distance: f64, light: Option<u32>) -> bool {
+        self.rays.set(self.rays.get() + 1);
+        self.scene.is_hidden_by(ray, distance, light, &self.occluder, |object| self.is_opaque(object))
+    }
+
+    /// Whether the camera, or a place on paths from it, sees a place.
+    pub(super) fn is_seen(&self, place: &Place, number: u32) -> bool {
+        let from = place.point.position;
+        let to_camera = match self.scene.camera.projection() {
+            Projection::Orthographic { .. } => self.scene.camera.see(from, [0.5; 2]).map(|seen| seen.start),
+            _ => Some(self.scene.camera.position()),
+        };
+        if to_camera.is_some_and(|to| self.is_free(place, to)) {
+            return true;
+        }
+        let chosen = (0..OTHERS).map(|i| &self.places[((number * OTHERS + i) * 7919) as usize % self.places.len()]);
+        chosen.into_iter().any(|other| {
+            let back = from - other.point.position;
+            other.normal.dot(back) > 0.0 && self.is_free(place, other.point.leave(back).origin)
+        })
+    }
+
+    /// Whether a place on a lamp is in the picture.
+    pub(super) fn is_in_view(&self, place: &Place) -> bool {
+        let Some(seen) = self.scene.camera.see(place.point.position, [0.5; 2]) else { return false };
+        let size = DVec2::new(self.scene.film.width.into(), self.scene.film.height.into());
+        let inside = seen.film.cmpge(DVec2::ZERO).all() && seen.film.cmple(size).all();
+        inside && self.is_free(place, seen.start)
+    }
+
+    /// Whether nothing opaque lies between a place and a point before it.
+    fn is_free(&self, place: &Place, to: DVec3) -> bool {
+        let above = to - place.point.position;
+        if above.dot(place.normal) <= 0.0 {
+            return false;
+        }
+        let origin = place.point.leave(above).origin;
+        let way = to - origin;
+        let Some(direction) = way.try_normalize() else { return true };
+        !self.is_occluded(&Ray { origin, direction }, way.length(), None)
+    }
+}
+
+impl Place {
+    /// Whether the light is this place.
+    pub(super) fn shines(&self, light: &Light<Curve>) -> bool {
+        let front = self.point.normal.dot(self.normal) > 0.0;
+        matches!(light, Light::Area(area) if area.object == self.object && area.sides.shine(front))
+    }
+}

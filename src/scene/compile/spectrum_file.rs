@@ -1,0 +1,97 @@
+//! Text files of measured spectra: wavelengths in the first column, values in others.
+
+/// A row of a file.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Row {
+    /// The number of its line, from 1.
+    pub(super) line: usize,
+    /// (wavelength in nm, value).
+    pub(super) pair: [f64; 2],
+}
+
+/// What is wrong with a file.
+#[derive(Debug, PartialEq)]
+pub(super) struct Fault {
+    /// What follows the name of the file.
+    pub(super) message: String,
+    pub(super) help: Option<String>,
+    /// Whether there is no such column.
+    pub(super) is_column: bool,
+}
+
+/// The rows of a column of a text file, counted from 1; columns stand apart by commas, semicolons, tabs or blanks. Lines
+/// that are empty or begin with # are passed over, and so is a first line of titles.
+///
+/// # Errors
+/// The line and what is wrong with it.
+pub(super) fn read_columns(text: &str, column: usize) -> Result<Vec<Row>, Fault> {
+    let (mut rows, mut titles) = (Vec::new(), true);
+    for (number, line) in text.trim_start_matches('\u{feff}').lines().enumerate() {
+        let line = line.trim();
+        if line.is_empty() || line.starts_with('#') {
+            continue;
+        }
+        let cells = cells(line);
+        let number_in = |at: usize| cells.get(at).map(|cell| cell.parse::<f64>().map_err(|_| *cell));
+        match (number_in(0), number_in(column - 1)) {
+            (Some(Err(_)), _) if titles => {}
+            (Some(Ok(nm)), Some(Ok(value))) => rows.push(Row { line: number + 1, pair: [nm, value] }),
+            (Some(Err(cell)), _) | (_, Some(Err(cell))) => return Err(no_number(number + 1, cell, rows.is_empty())),
+            _ => {
+                let message = format!(", line {}: there is no column {column}, only {}", number + 1, cells.len());
+                return Err(Fault { message, help: None, is_column: true });
+            }
+        }
+        titles = false;
+    }
+    match rows.is_empty() {
+        true => Err(Fault { message: " holds no numbers".into(), help: None, is_column: false }),
+        false => Ok(rows),
+    }
+}
+
+fn no_number(line: usize, cell: &str, first: bool) -> Fault {
+    let message = match cell {
+        "" => format!(", line {line}: a number is missing"),
+        _ => format!(", line {line}: {cell:?} is not a number"),
+    };
+    let decimal = cell.split_once(',').is_some_and(|(whole, rest)| format!("{whole}.{rest}").parse::<f64>().is_ok());
+    let help = match decimal {
+        true => Some("a decimal point is written `.`"),
+        false if first => Some("one line of titles may come first; a line that begins with # is passed over"),
+        false => None,
+    };
+    Fault { message, help: help.map(str::to_owned), is_column: false }
+}
+
+/// Blanks separate cells only where nothing else does.
+fn cells(line: &str) -> Vec<&str> {
+    match [';', ',', '\t'].into_iter().find(|&separator| line.contains(separator)) {
+        Some(separator) => line.split(separator).map(str::trim).collect(),
+        None => line.split_whitespace().collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Row, read_columns};
+
+    #[test]
+    fn titles_comments_and_any_separator_are_understood() {
+        let text = "# a paint\nnm, dull, shiny\n400, 0.1, 0.2\n\n500, 0.3, 0.4\n";
+        let rows = read_columns(text, 3).unwrap();
+        let row = |line, pair| Row { line, pair };
+        assert_eq!(rows, [row(3, [400.0, 0.2]), row(5, [500.0, 0.4])]);
+        assert_eq!(read_columns("400 1e-3\n410\t2e-3", 2).unwrap()[1].pair, [410.0, 2e-3]);
+        assert_eq!(read_columns("400;0.5", 2).unwrap(), [row(1, [400.0, 0.5])]);
+    }
+
+    #[test]
+    fn a_mistake_is_told_with_its_line() {
+        let told = |text, column| read_columns(text, column).unwrap_err().message;
+        assert_eq!(told("400, 0.1\n500, red", 2), ", line 2: \"red\" is not a number");
+        assert_eq!(told("nm, v\n400, 0.1", 3), ", line 2: there is no column 3, only 2");
+        assert_eq!(told("400;0,5", 2), ", line 1: \"0,5\" is not a number");
+        assert_eq!(told("# nothing", 2), " holds no numbers");
+    }
+}

@@ -1,0 +1,201 @@
+//! Lights that light nothing the camera could see.
+//!
+//! Paths from the camera look for places that a light reaches, and paths from the light for places that the camera sees: one that
+//! is found either way is enough. Where light goes behind a clear body is not followed: a doubt speaks for the light.
+
+use super::sight::{Place, Sight};
+use crate::light::{Area, Light, LightId};
+use crate::material::Material;
+use crate::math::{BranchKey, DVec3, Frame, Ray, Sampler, ball_surface, cosine_hemisphere, unit};
+use crate::scene::Scene;
+use crate::shape::{Sides, SurfacePoint};
+use crate::spectrum::Curve;
+
+/// Paths from one light.
+const PATHS: u32 = 256;
+/// Points of all clear bodies that may stand in the light of the sky.
+const POINTS: usize = 1024;
+/// Rays after which no more lights are looked at.
+const MOST_RAYS: u64 = 1 << 20;
+/// Lights that are told of one by one.
+const TOLD: usize = 4;
+
+/// What is wrong with each light of which nothing can be seen.
+pub(super) fn unlit(scene: &Scene<Curve>) -> Vec<String> {
+    let mut sight = Sight::new(scene);
+    let mut dark: Vec<LightId> = (0..scene.lights.len()).filter(|&id| scene.lights[id].is_sampled()).collect();
+    sight.look(|sight, places| {
+        let reaches = |id: &LightId| places.iter().any(|place| reaches(sight, &scene.lights[*id], place));
+        dark.retain(|id| !reaches(id));
+        dark.is_empty() || sight.rays.get() > MOST_RAYS
+    });
+    if sight.places.is_empty() || sight.rays.get() > MOST_RAYS {
+        return Vec::new();
+    }
+    let mut found: Vec<String> = dark.iter().filter_map(|&id| what_is_wrong(&sight, id)).collect();
+    if found.len() > TOLD {
+        let more = found.len() - TOLD;
+        found.truncate(TOLD);
+        found.push(format!("{more} more lights light nothing that the camera sees"));
+    }
+    found
+}
+
+/// What is wrong with a light that paths from the camera have not met.
+fn what_is_wrong(sight: &Sight, id: LightId) -> Option<String> {
+    let light = &sight.scene.lights[id];
+    let why = match light {
+        _ if sight.rays.get() > MOST_RAYS => return None,
+        _ if light.is_sky() => (!reaches_a_clear_body(sight, light)).then(|| unseen(light)),
+        _ => match paths_of(sight, light) {
+            Paths::Seen => None,
+            Paths::PastEverything => Some(past_everything(light)),
+            Paths::Unseen => Some(unseen(light)),
+        },
+    }?;
+    Some(format!("{} {why}", name(sight.scene, id)))
+}
+
+/// What paths from a light found.
+enum Paths {
+    /// The camera sees it, or something that it lights, or may see it behind a clear body.
+    Seen,
+    /// No object at all, but itself.
+    PastEverything,
+    /// Only what the camera does not see.
+    Unseen,
+}
+
+/// Whether a light reaches a place, or is there.
+fn reaches(sight: &Sight, light: &Light<Curve>, place: &Place) -> bool {
+    let digits = place.point.position.to_array().map(|x| x.to_bits() as u32);
+    let [u, v, ..] = Sampler::new(2, [digits[0], digits[1]], digits[2]).four_plain(BranchKey::CAMERA, 0);
+    let lit = || {
+        let sample = light.sample_li(&place.point, place.normal, [u, v]).filter(|sample| sample.factor > 0.0)?;
+        let above = sample.ray.direction.dot(place.normal) > 0.0;
+        Some(above && !sight.is_occluded(&sample.ray, sample.distance, sample.object))
+    };
+    place.shines(light) || lit() == Some(true)
+}
+
+/// Whether the light of a sky comes to a clear body, which may send it anywhere.
+fn reaches_a_clear_body(sight: &Sight, light: &Light<Curve>) -> bool {
+    let clear = (0..sight.scene.objects.len()).filter(|&object| is_clear(sight, object as u32));
+    let boxes: Vec<_> = clear.filter_map(|object| sight.scene.objects[object].shape.bounds()).collect();
+    (0..POINTS).filter(|_| !boxes.is_empty()).any(|number| {
+        let sampler = Sampler::new(4, [number as u32, 0], 0);
+        let ([x, y, z, _], [u, v, ..]) =
+            (sampler.four_plain(BranchKey::CAMERA, 0), sampler.four_plain(BranchKey::CAMERA, 1));
+        let bounds = boxes[number % boxes.len()];
+        let origin = bounds.min + (bounds.max - bounds.min) * DVec3::new(x, y, z);
+        let sample = light.sample_li(&SurfacePoint::in_space(origin), ball_surface([u, v]), [z, x]);
+        sample.is_some_and(|sample| !sight.is_occluded(&sample.ray, f64::INFINITY, None))
+    })
+}
+
+/// Follows paths from a lamp, a point or a spot.
+fn paths_of(sight: &Sight, light: &Light<Curve>) -> Paths {
+    let own = if let Light::Area(area) = light { Some(area.object) } else { None };
+    let mut meets_others = false;
+    for number in 0..PATHS {
+        let sampler = Sampler::new(3, [number, 0], 0);
+        let Some(Start { ray, surface }) = start(light, &sampler) else { continue };
+        if surface.is_some_and(|place| sight.is_in_view(&place)) {
+            return Paths::Seen;
+        }
+        let first = sight.scene.intersect(&ray);
+        if first.is_some_and(|hit| is_clear(sight, hit.object)) {
+            return Paths::Seen;
+        }
+        let seen = sight.walk(ray, &sampler, |place| {
+            meets_others |= own != Some(place.object);
+            let shines = matches!(sight.scene.material_of(place.object), Material::Emissive(_));
+            !shines && sight.is_seen(&place, number)
+        });
+        if seen {
+            return Paths::Seen;
+        }
+    }
+    if meets_others { Paths::Unseen } else { Paths::PastEverything }
+}
+
+fn is_clear(sight: &Sight, object: u32) -> bool {
+    sight.scene.material_of(object).medium().is_some()
+}
+
+/// Where a path leaves a light.
+struct Start {
+    ray: Ray,
+    /// The lamp's surface on the side that shines.
+    surface: Option<Place>,
+}
+
+fn start(light: &Light<Curve>, sampler: &Sampler) -> Option<Start> {
+    let [u, v, ..] = sampler.four_plain(BranchKey::CAMERA, 1);
+    let from_point =
+        |origin: [f64; 3], direction| Start { ray: Ray { origin: origin.into(), direction }, surface: None };
+    match light {
+        Light::Area(area) => start_on(area, sampler),
+        Light::Point(point) => Some(from_point(point.position, ball_surface([u, v]))),
+        Light::Spot(spot) => Some(from_point(spot.position, unit(spot.cone().sample_uniform([u, v])))),
+        Light::Environment(_) | Light::Sun(_) => None,
+    }
+}
+
+/// A point of a lamp, met by a line through its box, and a direction from there by the cosine.
+fn start_on(area: &Area<Curve>, sampler: &Sampler) -> Option<Start> {
+    let [x, y, z, _] = sampler.four_plain(BranchKey::CAMERA, 1);
+    let [a, b, c, d] = sampler.four_plain(BranchKey::CAMERA, 2);
+    let bounds = area.shape.bounds()?;
+    let size = bounds.max - bounds.min;
+    let direction = ball_surface([a, b]);
+    let origin = bounds.min + size * DVec3::new(x, y, z) - direction * (2.0 * size.length());
+    let line = Ray { origin, direction };
+    let crossing = area.shape.intersect(&line, f64::INFINITY)?;
+    let point = area.shape.point(&line, &crossing);
+    let back = area.sides == Sides::Both && point.normal.dot(direction) > 0.0;
+    let normal = if back { -point.normal } else { point.normal };
+    let ray = point.leave(unit(Frame::about(normal).to_world(cosine_hemisphere([c, d]))));
+    Some(Start { ray, surface: Some(Place { point, normal, object: area.object }) })
+}
+
+/// The object that shines, or the number of the `[[light]]`, counted from 1, and its kind.
+fn name(scene: &Scene<Curve>, id: LightId) -> String {
+    let kind = match &scene.lights[id] {
+        Light::Area(area) => return scene.objects[area.object as usize].name.clone(),
+        Light::Point(_) => "point",
+        Light::Spot(_) => "spot",
+        Light::Sun(_) => "sun",
+        Light::Environment(_) => "environment",
+    };
+    let before = scene.lights[..id].iter().filter(|light| !matches!(light, Light::Area(_))).count();
+    format!("light {} ({kind})", before + 1)
+}
+
+fn past_everything(light: &Light<Curve>) -> &'static str {
+    match light {
+        Light::Area(area) if area.sides == Sides::Front && area.shape.is_closed() => {
+            "shines only into its own inside: reverse the corners of its faces, or write sides = \"both\""
+        }
+        Light::Area(area) if area.sides == Sides::Front => {
+            "shines away from every object: turn its front around (swap u and v of a quad, reverse a normal), or write sides = \"both\""
+        }
+        Light::Spot(_) => "shines past every object: aim it at one, or widen its cone_angle",
+        _ => "shines past every object: move it to where its light meets one",
+    }
+}
+
+fn unseen(light: &Light<Curve>) -> &'static str {
+    match light {
+        Light::Area(area) if area.sides == Sides::Front => {
+            "lights nothing that the camera sees: turn its front around, write sides = \"both\", or move it from behind what hides it"
+        }
+        Light::Sun(_) => {
+            "lights nothing that the camera sees: `toward` points from the scene to the sun, and nothing opaque may stand between"
+        }
+        Light::Environment(_) => {
+            "lights nothing that the camera sees: opaque surfaces close it out on all sides; open them, or leave it out"
+        }
+        _ => "lights nothing that the camera sees: turn it, or move it from behind what hides it",
+    }
+}

@@ -1,0 +1,194 @@
+//! A table of a scene's text, key by key.
+
+use std::ops::Range;
+
+use toml::de::DeTable;
+
+use super::document::Document;
+use super::suggest::{meant, suggestion};
+use super::value::Value;
+
+/// A table that is being read: the keys that are asked for are those that it may have.
+pub(in crate::scene) struct Fields<'d> {
+    document: &'d Document<'d>,
+    table: &'d DeTable<'d>,
+    span: Range<usize>,
+    known: Vec<&'static str>,
+    /// Keys that are needed and not there, and what to do.
+    missing: Vec<(&'static str, Option<String>)>,
+    /// Keys of which something else was told than that they are not known.
+    told: Vec<&'static str>,
+}
+
+impl<'d> Fields<'d> {
+    /// What a table says, if it has all the keys that it needs and no others. `read` asks for every key that there may be
+    /// before it gives up over one.
+    pub(in crate::scene) fn read<T>(value: Value<'d>, read: impl FnOnce(&mut Self) -> Option<T>) -> Option<T> {
+        let Some(table) = value.node().as_table() else { return value.wanted("a table, { .. }") };
+        Self::of(value.document, table, value.span(), read)
+    }
+
+    /// What a document says.
+    pub(in crate::scene) fn of_document<T>(
+        document: &'d Document<'d>,
+        read: impl FnOnce(&mut Self) -> Option<T>,
+    ) -> Option<T> {
+        Self::of(document, document.root, 0..0, read)
+    }
+
+    fn of<T>(
+        document: &'d Document<'d>,
+        table: &'d DeTable<'d>,
+        span: Range<usize>,
+        read: impl FnOnce(&mut Self) -> Option<T>,
+    ) -> Option<T> {
+        let mut fields = Self { document, table, span, known: Vec::new(), missing: Vec::new(), told: Vec::new() };
+        let read = read(&mut fields);
+        let are_right = fields.are_right();
+        read.filter(|_| are_right)
+    }
+
+    /// Whether there are no keys but those that were asked for, and all that are needed; tells of the others.
+    fn are_right(&self) -> bool {
+        let unknown = self.unknown();
+        for (span, word) in &unknown {
+            self.document.tell(
+                span.clone(),
+                format!("unknown key `{word}`"),
+                Some(suggestion(word, word, &self.known)),
+            );
+        }
+        // What a key without sense should have been may be what is missing.
+        let is_obscure =
+            !self.told.is_empty() || unknown.iter().any(|(_, word)| meant(word, word, &self.known).is_none());
+        for (key, help) in self.missing.iter().filter(|(key, _)| !is_obscure && !self.is_misspelt(key)) {
+            self.document.tell(self.span.clone(), format!("`{key}` is missing"), help.clone());
+        }
+        unknown.is_empty() && self.missing.is_empty() && self.told.is_empty()
+    }
+
+    /// Whether a key that is not known is most likely this one, which is not missing then.
+    pub(in crate::scene) fn is_misspelt(&self, key: &str) -> bool {
+        self.unknown().iter().any(|(_, word)| meant(word, word, &self.known) == Some(key))
+    }
+
+    fn unknown(&self) -> Vec<(Range<usize>, &'d str)> {
+        let keys = self.table.keys().map(|key| (key.span(), key.get_ref().as_ref()));
+        keys.filter(|(_, key)| !self.known.contains(key) && !self.told.contains(key)).collect()
+    }
+
+    /// Whether there are keys that were not asked for so far.
+    pub(in crate::scene) fn has_unknown(&self) -> bool {
+        !self.told.is_empty() || !self.unknown().is_empty()
+    }
+
+    /// The value of a key that there may be.
+    pub(in crate::scene) fn get(&mut self, key: &'static str) -> Option<Value<'d>> {
+        self.known.push(key);
+        self.table.get_key_value(key).map(|(key, node)| Value::new(self.document, key, node))
+    }
+
+    /// What a key that there may be says; none if it is wrong.
+    pub(in crate::scene) fn maybe<T>(
+        &mut self,
+        key: &'static str,
+        read: impl FnOnce(Value<'d>) -> Option<T>,
+    ) -> Option<Option<T>> {
+        self.get(key).map_or(Some(None), |value| read(value).map(Some))
+    }
+
+    /// What a key says, or what it would say if it were there; none if it is wrong.
+    pub(in crate::scene) fn or<T>(
+        &mut self,
+        key: &'static str,
+        default: T,
+        read: impl FnOnce(Value<'d>) -> Option<T>,
+    ) -> Option<T> {
+        self.get(key).map_or(Some(default), read)
+    }
+
+    /// What a key says that is needed.
+    pub(in crate::scene) fn need<T>(
+        &mut self,
+        key: &'static str,
+        read: impl FnOnce(Value<'d>) -> Option<T>,
+    ) -> Option<T> {
+        let value = self.get(key);
+        if value.is_none() {
+            self.missing.push((key, None));
+        }
+        value.and_then(read)
+    }
+
+    /// Tells, unless it is misspelt, that a key is missing, which not every such table needs.
+    pub(in crate::scene) fn lack<T>(&mut self, key: &'static str, help: Option<&str>) -> Option<T> {
+        self.missing.push((key, help.map(str::to_owned)));
+        None
+    }
+
+    /// Tells of the whole table that it is wrong.
+    pub(in crate::scene) fn refuse<T>(&self, message: impl Into<String>, help: Option<&str>) -> Option<T> {
+        self.document.tell(self.span.clone(), message, help.map(str::to_owned));
+        None
+    }
+
+    /// Tells of a key, if it is there, that it belongs elsewhere.
+    pub(in crate::scene) fn stray(&mut self, key: &'static str, message: impl Into<String>, help: String) {
+        if let Some((found, _)) = self.table.get_key_value(key) {
+            self.document.tell(found.span(), message, Some(help));
+            self.told.push(key);
+        }
+    }
+}
+
+/// A table with one key, its kind.
+pub(in crate::scene) struct Choice<R: 'static> {
+    /// Such as "a shape".
+    pub(in crate::scene) name: &'static str,
+    /// Such as "shape".
+    pub(in crate::scene) word: &'static str,
+    pub(in crate::scene) example: &'static str,
+    /// What to do with a second kind.
+    pub(in crate::scene) apart: &'static str,
+    /// The kinds, each with what reads it.
+    pub(in crate::scene) kinds: &'static [(&'static str, R)],
+}
+
+impl<R: Copy> Choice<R> {
+    /// The kind that a value has: what reads it, and its value.
+    pub(in crate::scene) fn of<'d>(&self, value: Value<'d>) -> Option<(R, Value<'d>)> {
+        let kind = self.kind(value)?;
+        Some((self.reader(kind)?, kind))
+    }
+
+    /// What reads a kind, if it is known.
+    pub(in crate::scene) fn reader(&self, kind: Value) -> Option<R> {
+        let word = kind.key();
+        let known = self.kinds.iter().find(|(known, _)| *known == word).map(|(_, reader)| *reader);
+        known.or_else(|| {
+            let known: Vec<&str> = self.kinds.iter().map(|kind| kind.0).collect();
+            kind.refuse_key(format!("unknown {} `{word}`", self.word), Some(suggestion(word, word, &known)))
+        })
+    }
+
+    pub(in crate::scene) fn knows(&self, word: &str) -> bool {
+        self.kinds.iter().any(|(known, _)| *known == word)
+    }
+
+    /// The value of the first key of a table, known or not; tells of a second one.
+    pub(in crate::scene) fn kind<'d>(&self, value: Value<'d>) -> Option<Value<'d>> {
+        let example = || format!("such as {}", self.example);
+        let Some(table) = value.node().as_table() else {
+            return value.advise(format!("{} is a table with one kind", self.name), example());
+        };
+        let mut kinds: Vec<_> = table.iter().map(|(key, node)| Value::new(value.document, key, node)).collect();
+        kinds.sort_by_key(|kind| kind.key_span().start);
+        if let [_, second, ..] = kinds.as_slice() {
+            second.refuse_key::<()>(format!("{} has exactly one kind", self.name), Some(self.apart.into()));
+        }
+        match kinds.first() {
+            None => value.advise(format!("{} needs a kind", self.name), example()),
+            Some(kind) => Some(*kind),
+        }
+    }
+}

@@ -1,0 +1,87 @@
+//! Text that is not TOML, in the words of people who write scenes.
+
+use std::ops::Range;
+
+use super::document::Mistake;
+
+/// What the error of reading a text as TOML means.
+pub(in crate::scene) fn explain(text: &str, error: &toml::de::Error) -> Mistake {
+    let span = error.span().unwrap_or(0..0);
+    let (before, rest) = text.split_at_checked(span.start).unwrap_or((text, ""));
+    let line = before.rsplit('\n').next().unwrap_or_default();
+    let written = text.get(span.clone()).unwrap_or_default();
+    let said = error.message().lines().next().unwrap_or("this is not TOML");
+    let (message, help) = match said.split(", expected").next().unwrap_or(said) {
+        "key with no value" => return without_value(span, line),
+        "string values must be quoted" => unquoted(written),
+        "invalid basic string" | "invalid literal string" if rest.is_empty() || rest.starts_with(['\r', '\n']) => {
+            ("the closing quote is missing".into(), None)
+        }
+        "missing escaped value" => {
+            let help = "write / in the path of a file, or put the text in single quotes";
+            ("in double quotes, `\\` does not stand for itself".into(), Some(help.into()))
+        }
+        "missing comma between array elements" => return unclosed(before, ']'),
+        "missing comma between key-value pairs" | "missing key for inline table element" => {
+            return unclosed(before, '}');
+        }
+        "unclosed array" | "unclosed table" => ("the closing `]` is missing".into(), None),
+        "unclosed array table" => ("the closing `]]` is missing".into(), None),
+        "unclosed inline table" => ("the closing `}` is missing".into(), None),
+        "unexpected key or value" => ("the line should end after its value".into(), after_value(line, rest)),
+        "invalid mantissa" => ("a number starts with a digit, as in 0.5".into(), None),
+        "invalid fraction" => ("a number ends with a digit, as in 1.0".into(), None),
+        "unexpected leading zero" => ("a number starts with no needless 0".into(), None),
+        "invalid float" | "invalid integer number" => ("this is no number".into(), None),
+        "duplicate key" => duplicate(written, line),
+        _ => (said.to_owned(), None),
+    };
+    Mistake { span, message, help }
+}
+
+fn without_value(span: Range<usize>, line: &str) -> Mistake {
+    let key = line.trim();
+    let start = span.start - line.len() + (line.len() - line.trim_start().len());
+    let (span, help) = if key.starts_with("//") {
+        (start..start + 2, Some("a comment starts with #"))
+    } else if let Some(key) = key.strip_suffix(':') {
+        (start + key.len()..start + key.len() + 1, Some("write `=` instead of `:`"))
+    } else {
+        (span, None)
+    };
+    Mistake { span, message: "a key is followed by `=` and its value".into(), help: help.map(str::to_owned) }
+}
+
+/// The reader notices only at the next word, which may stand lines below.
+fn unclosed(before: &str, bracket: char) -> Mistake {
+    let end = before.trim_end().len();
+    Mistake { span: end..end, message: format!("a comma or the closing `{bracket}` is missing here"), help: None }
+}
+
+fn unquoted(written: &str) -> (String, Option<String>) {
+    let parts: Vec<&str> = written.split_whitespace().collect();
+    if parts.is_empty() {
+        ("a value is missing here".into(), None)
+    } else if written.contains(['“', '”', '„', '‘', '’']) {
+        ("quotes are straight in TOML".into(), Some("write \"..\"".into()))
+    } else if parts.iter().all(|part| part.parse::<f64>().is_ok()) {
+        ("numbers in a list are separated by commas".into(), Some(format!("write {}", parts.join(", "))))
+    } else if written.starts_with(|first: char| first.is_ascii_digit() || "+-.".contains(first)) {
+        ("this is no number".into(), Some("a number stands alone, without a unit or a calculation".into()))
+    } else {
+        ("a text stands in quotes".into(), Some(format!("write {written:?}")))
+    }
+}
+
+fn after_value(line: &str, rest: &str) -> Option<String> {
+    let digits = rest.strip_prefix(',')?;
+    let decimal = line.ends_with(|c: char| c.is_ascii_digit()) && digits.starts_with(|c: char| c.is_ascii_digit());
+    Some(if decimal { "a decimal point is written `.`" } else { "each key stands on a line of its own" }.to_owned())
+}
+
+fn duplicate(key: &str, line: &str) -> (String, Option<String>) {
+    if line.starts_with('[') && matches!(key, "object" | "light") {
+        return (format!("`{key}` is a list of tables"), Some(format!("write [[{key}]] for each")));
+    }
+    (format!("`{key}` is given twice"), None)
+}

@@ -1,0 +1,252 @@
+//! A value of a scene's text, read as what is wanted of it; what it is instead is told.
+
+use std::ops::{Bound, Range, RangeBounds};
+
+use toml::Spanned;
+use toml::de::{DeInteger, DeString, DeValue};
+
+use super::document::Document;
+use super::suggest::{remedy, suggestion};
+
+/// A value, where it stands.
+#[derive(Clone, Copy)]
+pub(in crate::scene) struct Value<'d> {
+    pub(super) document: &'d Document<'d>,
+    /// The key whose value it is, or in whose list it is an entry.
+    key: &'d Spanned<DeString<'d>>,
+    is_entry: bool,
+    node: &'d Spanned<DeValue<'d>>,
+    /// What it is called as a list of numbers, and how to write it.
+    list: Option<(&'static str, &'static str)>,
+}
+
+impl<'d> Value<'d> {
+    pub(super) fn new(
+        document: &'d Document<'d>,
+        key: &'d Spanned<DeString<'d>>,
+        node: &'d Spanned<DeValue<'d>>,
+    ) -> Self {
+        Self { document, key, is_entry: false, node, list: None }
+    }
+
+    /// The key whose value it is, or in whose list it is an entry.
+    pub(in crate::scene) fn key(self) -> &'d str {
+        self.key.get_ref()
+    }
+
+    pub(super) fn key_span(self) -> Range<usize> {
+        self.key.span()
+    }
+
+    pub(in crate::scene) fn span(self) -> Range<usize> {
+        self.node.span()
+    }
+
+    pub(in crate::scene) fn node(self) -> &'d DeValue<'d> {
+        self.node.get_ref()
+    }
+
+    /// Its entry of a position, if it is a list.
+    pub(in crate::scene) fn entry(self, number: usize) -> Self {
+        let entry = self.node().as_array().and_then(|entries| entries.get(number));
+        entry.map_or(self, |node| Self { is_entry: true, node, list: None, ..self })
+    }
+
+    /// Which of two stands further down.
+    pub(in crate::scene) fn later(self, other: Self) -> Self {
+        if other.key.span().start > self.key.span().start { other } else { self }
+    }
+
+    /// The same, called something as a list of numbers, with the way to write it.
+    pub(in crate::scene) fn as_list(self, name: &'static str, help: &'static str) -> Self {
+        Self { list: Some((name, help)), ..self }
+    }
+
+    /// Tells that it is wrong.
+    pub(in crate::scene) fn refuse<T>(self, message: impl Into<String>) -> Option<T> {
+        self.tell(message, None)
+    }
+
+    /// Tells that it is wrong, and what to do.
+    pub(in crate::scene) fn advise<T>(self, message: impl Into<String>, help: impl Into<String>) -> Option<T> {
+        self.tell(message, Some(help.into()))
+    }
+
+    pub(in crate::scene) fn tell<T>(self, message: impl Into<String>, help: Option<String>) -> Option<T> {
+        self.document.tell(self.span(), message, help);
+        None
+    }
+
+    /// Tells that its key is wrong.
+    pub(in crate::scene) fn refuse_key<T>(self, message: impl Into<String>, help: Option<String>) -> Option<T> {
+        self.document.tell(self.key.span(), message, help);
+        None
+    }
+
+    /// Tells what is wanted in its place.
+    pub(in crate::scene) fn wanted<T>(self, wanted: &str) -> Option<T> {
+        let written = self.document.text.get(self.span()).unwrap_or_default();
+        let found = match self.node() {
+            DeValue::Array(_) => "a list".into(),
+            DeValue::Table(_) => "a table".into(),
+            DeValue::Datetime(_) => "a date".into(),
+            DeValue::String(_) if written.len() > 40 || written.contains('\n') => "a text".into(),
+            DeValue::String(_) => format!("the text {written}"),
+            _ => written.to_owned(),
+        };
+        let help = remedy(self.key(), self.node(), wanted, written);
+        self.tell(format!("{} is {wanted}, not {found}", self.name()), help)
+    }
+
+    fn name(self) -> String {
+        if self.is_entry { format!("an entry of `{}`", self.key()) } else { format!("`{}`", self.key()) }
+    }
+
+    pub(in crate::scene) fn number(self) -> Option<f64> {
+        match self.node() {
+            DeValue::Integer(integer) => match parsed(integer) {
+                Some(whole) if whole <= i128::from(u64::MAX) && whole >= i128::from(i64::MIN) => Some(whole as f64),
+                Some(_) => self.wanted("a number"),
+                None => self.refuse("this number is too large"),
+            },
+            DeValue::Float(float) => match float.as_str().parse::<f64>() {
+                Ok(number) if number.is_finite() || number.is_nan() || float.as_str().contains("inf") => Some(number),
+                _ => self.refuse("this number is too large"),
+            },
+            _ => self.wanted("a number"),
+        }
+    }
+
+    /// A number of a range; `what` says of another one what it should be.
+    pub(in crate::scene) fn within(self, range: impl RangeBounds<f64>, what: &str, help: Option<&str>) -> Option<f64> {
+        match self.number()? {
+            number if range.contains(&number) => Some(number),
+            number => self.tell(format!("{what}, not {number}"), help.map(str::to_owned)),
+        }
+    }
+
+    /// A whole number of 0 or more.
+    pub(in crate::scene) fn whole<T: TryFrom<i128>>(self, most: u64) -> Option<T> {
+        const WANTED: &str = "a whole number of 0 or more";
+        match self.node() {
+            DeValue::Integer(integer) => match parsed(integer) {
+                Some(whole) if whole < 0 => self.wanted(WANTED),
+                Some(whole) if whole > i128::from(most) => self.wanted(&format!("at most {most}")),
+                Some(whole) => T::try_from(whole).ok(),
+                None => self.refuse("this number is too large"),
+            },
+            _ => self.wanted(WANTED),
+        }
+    }
+
+    pub(in crate::scene) fn count(self) -> Option<u32> {
+        self.whole(u32::MAX.into())
+    }
+
+    /// A whole number, below 0 as well.
+    pub(in crate::scene) fn integer(self) -> Option<i32> {
+        let integer = self.node().as_integer().and_then(parsed);
+        integer.and_then(|whole| i32::try_from(whole).ok()).or_else(|| self.wanted("a whole number"))
+    }
+
+    pub(in crate::scene) fn text(self) -> Option<&'d str> {
+        self.node().as_str().or_else(|| self.wanted("a text in quotes"))
+    }
+
+    pub(in crate::scene) fn yes_or_no(self) -> Option<bool> {
+        self.node().as_bool().or_else(|| self.wanted("true or false"))
+    }
+
+    /// What a word stands for.
+    pub(in crate::scene) fn word<T: Copy>(self, words: &[(&'static str, T)]) -> Option<T> {
+        let word = self.text()?;
+        words.iter().find(|(known, _)| *known == word).map(|(_, meaning)| *meaning).or_else(|| {
+            let known: Vec<&str> = words.iter().map(|(known, _)| *known).collect();
+            self.unknown(word, &known)
+        })
+    }
+
+    /// Tells that it is no such word.
+    pub(in crate::scene) fn unknown<T>(self, word: &str, known: &[&str]) -> Option<T> {
+        self.advise(format!("`{}` cannot be \"{word}\"", self.key()), suggestion(self.key(), word, known))
+    }
+
+    /// The values of a table's keys.
+    pub(in crate::scene) fn table(self) -> Option<Vec<Self>> {
+        let Some(table) = self.node().as_table() else { return self.wanted("a table") };
+        Some(table.iter().map(|(key, node)| Self::new(self.document, key, node)).collect())
+    }
+
+    /// The entries of a list, if it is one.
+    fn entries(self) -> Option<impl ExactSizeIterator<Item = Self>> {
+        let entries = self.node().as_array()?;
+        Some(entries.iter().map(move |node| Self { is_entry: true, node, list: None, ..self }))
+    }
+
+    /// What all entries of a list say, if nothing is wrong with any.
+    pub(in crate::scene) fn list<T>(self, mut read: impl FnMut(Self) -> Option<T>) -> Option<Vec<T>> {
+        let Some(entries) = self.entries() else { return self.wanted("a list") };
+        let (count, mut all) = (entries.len(), Vec::with_capacity(entries.len()));
+        for entry in entries {
+            let told = self.document.told();
+            all.extend(read(entry));
+            // What is wrong with one entry that is no table is mostly wrong with all.
+            let is_wrong = self.document.told() > told && self.document.last() == Some(entry.span());
+            if is_wrong && !entry.node().is_table() {
+                return None;
+            }
+        }
+        Some(all).filter(|all| all.len() == count)
+    }
+
+    /// What the entries of a list of a given length say.
+    pub(in crate::scene) fn array<T, const N: usize>(self, read: impl FnMut(Self) -> Option<T>) -> Option<[T; N]> {
+        match self.entries().map(|entries| entries.len()) {
+            None => self.wanted(&format!("a list of {N} numbers")),
+            Some(count) if count != N => {
+                let name = self.list.map(|list| list.0).filter(|name| !name.is_empty());
+                let name = name.map_or_else(|| self.name(), str::to_owned);
+                let help = self.list.map(|list| list.1.to_owned()).filter(|help| !help.is_empty());
+                self.tell(format!("{name} is a list of {N} numbers, not one of {count}"), help)
+            }
+            Some(_) => self.list(read)?.try_into().ok(),
+        }
+    }
+
+    pub(in crate::scene) fn numbers<const N: usize>(self) -> Option<[f64; N]> {
+        self.array(Self::number)
+    }
+
+    /// A number for all axes, or a list of one for each, as `form` shows.
+    pub(in crate::scene) fn one_or<const N: usize>(self, form: &str) -> Option<[f64; N]> {
+        match self.node() {
+            DeValue::Integer(_) | DeValue::Float(_) => self.number().map(|number| [number; N]),
+            DeValue::Array(_) => self.numbers(),
+            _ => self.wanted(&format!("a number or {form}")),
+        }
+    }
+}
+
+/// What a value says, and where.
+#[derive(Clone, Copy)]
+pub(in crate::scene) struct At<'d, T> {
+    pub(in crate::scene) place: Value<'d>,
+    pub(in crate::scene) it: T,
+}
+
+/// Reads a value as something, and keeps where it stands.
+pub(in crate::scene) fn at<'d, T>(
+    mut read: impl FnMut(Value<'d>) -> Option<T>,
+) -> impl FnMut(Value<'d>) -> Option<At<'d, T>> {
+    move |place| read(place).map(|it| At { place, it })
+}
+
+/// The numbers above 0 to a greatest one.
+pub(in crate::scene) fn above_0_to(most: f64) -> (Bound<f64>, Bound<f64>) {
+    (Bound::Excluded(0.0), Bound::Included(most))
+}
+
+/// An integer, if it is one of at most 128 bits.
+fn parsed(integer: &DeInteger) -> Option<i128> {
+    i128::from_str_radix(integer.as_str(), integer.radix()).ok()
+}
