@@ -6,7 +6,7 @@
 //! ```
 
 use crate::layers::arrivals::{arrival, material, points, toward};
-use abbe::material::{Arrival, Material};
+use abbe::material::{Arrival, Material, Scatter};
 use abbe::spectrum::{Draw, Table};
 
 const ROUGHNESSES: [f64; 7] = [0.0, 0.05, 0.2, 0.4, 0.6, 0.8, 1.0];

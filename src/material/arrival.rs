@@ -1,7 +1,31 @@
-//! What follows from the indices on both sides of a surface, where light arrives.
+//! Light that arrives at a surface, followed backward from the viewer.
 
-use super::{Arrival, shared_transmittance};
-use crate::spectrum::{Lanes, Table};
+use super::shared_transmittance;
+use crate::math::DVec3;
+use crate::spectrum::{Draw, Lanes, Table};
+
+/// What a material may know of the light that arrives, followed backward from the viewer.
+#[derive(Clone, Copy, Debug)]
+pub struct Arrival<'a, const N: usize> {
+    /// Unit vector to the viewer.
+    pub wo: DVec3,
+    /// Unit normal by which the surface scatters, on the viewer's side: on smooth meshes not that of the triangle.
+    pub normal: DVec3,
+    /// Where the surface is met, for what varies over it.
+    pub uv: [f64; 2],
+    /// Which bin each lane reads.
+    pub draw: &'a Draw<N>,
+    /// The lanes on the ray, each 1, the others 0.
+    pub present: Lanes<N>,
+    /// Refractive index on the viewer's side, per lane.
+    pub incident: [f64; N],
+    /// Refractive index beyond the surface, per lane; the same as `incident` where no medium begins or ends.
+    pub beyond: [f64; N],
+    /// The index by which all rays are refracted on the viewer's side and beyond; none where that is each lane's own.
+    pub direction_indices: [Option<f64>; 2],
+    /// Lanes whose refracted rays lie within this angle of each other, in radians, go on as one.
+    pub together: f64,
+}
 
 impl<const N: usize> Arrival<'_, N> {
     /// A table of the material, read for this ray.

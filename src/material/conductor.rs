@@ -1,4 +1,4 @@
-use super::degree::degree;
+use super::degree::{LANES, degree, largest};
 use super::{Arrival, Branch, RoughReflection, RoughSurface, Roughness, conductor_reflectance, reflect};
 use crate::math::{DVec3, Frame, unit};
 use crate::spectrum::{Lanes, Quantity, Table};
@@ -94,6 +94,15 @@ impl Conductor<Table> {
             }
             reflected as f32
         })
+    }
+
+    /// The degree by the facet that mirrors light from `wi`: [`Material::degree_of_scattered`](super::Material::degree_of_scattered).
+    pub(super) fn degree_of_scattered<const N: usize>(&self, arrival: &Arrival<N>, wi: DVec3) -> f32 {
+        let Some(h) = (arrival.wo + wi).try_normalize() else { return 0.0 };
+        let (n, k) = (arrival.draw.read_exact(&self.n), arrival.draw.read_exact(&self.k));
+        let degree =
+            |lane: usize| degree(conductor_reflectance(arrival.incident[lane], n[lane], k[lane], arrival.wo.dot(h)));
+        largest((0..N).step_by(N.div_ceil(LANES)).map(degree))
     }
 }
 

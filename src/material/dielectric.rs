@@ -1,4 +1,5 @@
-use super::{Arrival, Branch, Interface, Roughness, reflect, shared_transmittance};
+use super::rough_dielectric::{RoughBoundary, parts};
+use super::{Arrival, Branch, Interface, RoughInterface, Roughness, reflect, shared_transmittance};
 use crate::math::DVec3;
 use crate::spectrum::{Draw, Lanes, Quantity, Table};
 
@@ -52,7 +53,7 @@ impl Dielectric<Table> {
     /// The ways on, backward.
     pub(super) fn scatter<const N: usize>(&self, arrival: &Arrival<N>, u: [f64; 2], branches: &mut Vec<Branch<N>>) {
         match self.roughness.interface() {
-            Some(interface) => self.scatter_rough(interface, arrival, u, branches),
+            Some(interface) => self.rough(interface).scatter(arrival, u, branches),
             None => match arrival.one_direction() {
                 Some(directions) => self.scatter_as_one(arrival, directions, branches),
                 None => self.scatter_smooth(arrival, branches),
@@ -61,7 +62,38 @@ impl Dielectric<Table> {
     }
 
     pub(super) fn evaluate<const N: usize>(&self, arrival: &Arrival<N>, wi: DVec3) -> Option<(Lanes<N>, f64)> {
-        self.evaluate_rough(self.roughness.interface()?, arrival, wi)
+        self.rough(self.roughness.interface()?).evaluate(arrival, wi)
+    }
+
+    fn rough<'a>(&'a self, interface: &'a RoughInterface) -> RoughBoundary<'a> {
+        RoughBoundary { interface, reflectance: &self.reflectance, transmittance: &self.transmittance }
+    }
+
+    /// Whether lanes that cross the surface part there: a pure function of the surface and the arriving light.
+    pub(super) fn parts<const N: usize>(&self, arrival: &Arrival<N>) -> bool {
+        match self.roughness.interface() {
+            Some(interface) => parts(interface, arrival),
+            None => arrival.parts(),
+        }
+    }
+
+    /// The degree by the facet of rough glass that light from `wi` meets: Walter et al. 2007, *Microfacet Models for
+    /// Refraction through Rough Surfaces*, equations 13 and 16.
+    pub(super) fn degree_of_scattered<const N: usize>(&self, arrival: &Arrival<N>, wi: DVec3) -> f32 {
+        let (mut last, mut most) = (None, 0.0_f64);
+        for lane in 0..N {
+            let pair @ [n1, n2] = [arrival.incident[lane], arrival.beyond[lane]];
+            if n1 == n2 || last.replace(pair) == Some(pair) {
+                continue;
+            }
+            let crosses = wi.dot(arrival.normal) < 0.0;
+            let h = if crosses { (arrival.wo * n1 + wi * n2) * (n1 - n2).signum() } else { arrival.wo + wi };
+            let Some(h) = h.try_normalize() else { continue };
+            let facet = Interface::new(n1, n2, arrival.wo.dot(h));
+            let degree = if crosses { facet.polarization_refracted } else { facet.polarization_reflected };
+            most = most.max(degree.abs());
+        }
+        most as f32
     }
 
     /// One reflected branch with all lanes, and one refracted branch per distinct pair of indices that refract: here lanes

@@ -1,7 +1,5 @@
 //! In which ways light leaves a material.
 
-use super::Material;
-
 /// The lobes of a material's BSDF: a set of kinds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Lobes(u8);
@@ -61,66 +59,5 @@ impl Lobes {
     /// Whether light leaves in single directions, all of it or some: the mirror images and refractions of smooth surfaces.
     pub const fn has_delta(self) -> bool {
         self.intersects(Self::DELTA)
-    }
-}
-
-impl<S> Material<S> {
-    /// Its lobes; of what is made of other materials, those of all of them.
-    #[inline]
-    pub fn lobes(&self) -> Lobes {
-        let smooth_or = |is_smooth: bool, glossy: Lobes| if is_smooth { Lobes::DELTA_REFLECTION } else { glossy };
-        match self {
-            Self::Diffuse(_) => Lobes::DIFFUSE_REFLECTION,
-            Self::Mirror(_) => Lobes::DELTA_REFLECTION,
-            Self::Thin(_) => Lobes::DELTA,
-            Self::Conductor(conductor) => smooth_or(conductor.roughness.is_smooth(), Lobes::GLOSSY_REFLECTION),
-            Self::Dielectric(dielectric) if dielectric.roughness.is_smooth() => Lobes::DELTA,
-            // Between equal indices light goes straight on, however rough the surface is.
-            Self::Dielectric(_) => Lobes::GLOSSY_REFLECTION.union(Lobes::GLOSSY_TRANSMISSION).union(Lobes::DELTA),
-            Self::Emissive(_) => Lobes::NONE,
-            Self::Plastic(plastic) => {
-                let coat = smooth_or(plastic.coat.roughness().is_smooth(), Lobes::GLOSSY_REFLECTION);
-                Lobes::DIFFUSE_REFLECTION.union(coat)
-            }
-            Self::Mix(_) | Self::Mask(_) => {
-                self.parts().iter().map(|part| part.material().lobes()).fold(Lobes::NONE, Lobes::union)
-            }
-        }
-    }
-
-    /// Whether light leaves in every direction, so that lights can be aimed at.
-    pub fn scatters_widely(&self) -> bool {
-        self.lobes().is_wide()
-    }
-
-    /// Whether light crosses the surface in some way.
-    pub fn lets_through(&self) -> bool {
-        self.lobes().is_transmissive()
-    }
-
-    /// Whether light also comes from beyond the surface in every direction.
-    pub fn scatters_through(&self) -> bool {
-        self.lobes().intersects(Lobes::GLOSSY_TRANSMISSION)
-    }
-
-    /// Whether what leaves in every direction has no memory of where it came from: `diffuse_bounces` counts it.
-    pub fn is_diffuse(&self) -> bool {
-        self.lobes().is_diffuse()
-    }
-
-    /// Whether light leaves in single directions, all of it or some: the mirror images and refractions of smooth surfaces.
-    pub fn has_single_directions(&self) -> bool {
-        self.lobes().has_delta()
-    }
-
-    /// How rough it is, where it can be.
-    pub fn roughness(&self) -> Option<f64> {
-        match self {
-            Self::Conductor(conductor) => Some(conductor.roughness.value()),
-            Self::Dielectric(dielectric) => Some(dielectric.roughness.value()),
-            Self::Plastic(plastic) => Some(plastic.coat.roughness().value()),
-            Self::Diffuse(_) | Self::Mirror(_) | Self::Thin(_) | Self::Emissive(_) => None,
-            Self::Mix(_) | Self::Mask(_) => None,
-        }
     }
 }

@@ -1,6 +1,6 @@
-use super::{Arrival, Branch, Part, Straight};
+use super::{Arrival, Branch, Part, Scatter, Straight};
 use crate::math::DVec3;
-use crate::spectrum::{Lanes, Quantity, Table};
+use crate::spectrum::{Lanes, Table};
 
 /// A material with holes, or one that is thinly spread: what it does not cover lets light go straight on, as if nothing
 /// were there.
@@ -9,21 +9,14 @@ use crate::spectrum::{Lanes, Quantity, Table};
 /// mask = { material = "leaf", opacity = 0.5 }
 /// ```
 #[derive(Clone, Debug)]
-pub struct Mask<S> {
+pub struct Mask<S, M> {
     /// The material where it is opaque, by name: one that reflects or lets through.
-    pub material: Part<S>,
+    pub material: Part<M>,
     /// Share of the light that meets the material, 0 to 1.
     pub opacity: S,
 }
 
-impl<S> Mask<S> {
-    pub(super) fn map<T>(&self, convert: &mut impl FnMut(Quantity, &S) -> T) -> Mask<T> {
-        let opacity = convert(Quantity::Share, &self.opacity);
-        Mask { material: self.material.map(convert), opacity }
-    }
-}
-
-impl Mask<Table> {
+impl<M: Scatter> Mask<Table, M> {
     pub(super) fn scatter<const N: usize>(&self, arrival: &Arrival<N>, u: [f64; 2], branches: &mut Vec<Branch<N>>) {
         let (opacity, first) = (arrival.read(&self.opacity), branches.len());
         self.material.material().scatter(arrival, u, branches);

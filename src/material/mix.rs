@@ -1,6 +1,6 @@
-use super::{Arrival, Branch, Part, Straight};
-use crate::math::{DVec3, Ray};
-use crate::spectrum::{Lanes, Quantity, Table};
+use super::{Arrival, Branch, Part, Scatter, Straight};
+use crate::math::DVec3;
+use crate::spectrum::{Lanes, Table};
 
 /// Two materials in one place, finer than can be seen: patches of the second cover a share of the first.
 ///
@@ -8,21 +8,14 @@ use crate::spectrum::{Lanes, Quantity, Table};
 /// mix = { materials = ["steel", "rust"], amount = 0.3 }     # three tenths of rust
 /// ```
 #[derive(Clone, Debug)]
-pub struct Mix<S> {
+pub struct Mix<S, M> {
     /// The materials, by name: surfaces that reflect or let through, other mixes and masks among them.
-    pub materials: [Part<S>; 2],
+    pub materials: [Part<M>; 2],
     /// Share of the surface that the second covers, 0 to 1.
     pub amount: S,
 }
 
-impl<S> Mix<S> {
-    pub(super) fn map<T>(&self, convert: &mut impl FnMut(Quantity, &S) -> T) -> Mix<T> {
-        let amount = convert(Quantity::Share, &self.amount);
-        Mix { materials: self.materials.each_ref().map(|part| part.map(convert)), amount }
-    }
-}
-
-impl Mix<Table> {
+impl<M: Scatter> Mix<Table, M> {
     /// The share of each material, per lane.
     fn shares<const N: usize>(&self, arrival: &Arrival<N>) -> [Lanes<N>; 2] {
         let second = arrival.read(&self.amount);
@@ -31,7 +24,7 @@ impl Mix<Table> {
 
     /// How often a direction is drawn from the second one, of those drawn from the two: its mean share.
     fn chance_of_second<const N: usize>(&self, arrival: &Arrival<N>) -> f64 {
-        match self.materials.each_ref().map(|part| part.material().scatters_widely()) {
+        match self.materials.each_ref().map(|part| part.material().lobes().is_wide()) {
             [_, false] => 0.0,
             [false, true] => 1.0,
             [true, true] => {
@@ -49,7 +42,7 @@ impl Mix<Table> {
         let u = [[(u[0] - second) / (1.0 - second), u[0] / second][chosen], u[1]];
         for (number, part) in self.materials.iter().enumerate() {
             let (material, share, start) = (part.material(), shares[number], branches.len());
-            if share.is_zero() || (number != chosen && !material.has_single_directions()) {
+            if share.is_zero() || (number != chosen && !material.lobes().has_delta()) {
                 continue;
             }
             material.scatter(arrival, u, branches);
@@ -61,7 +54,7 @@ impl Mix<Table> {
                 match (branch.pdf, before[first..].iter_mut().find(same)) {
                     (Some(pdf), _) if number == chosen => {
                         let chance = [1.0 - second, second];
-                        rest[at - start] = self.beside_other(arrival, branch, pdf, number, (shares, chance));
+                        rest[at - start] = self.beside_other(arrival, branch, pdf, number, shares, chance);
                         at += 1;
                     }
                     (None, None) => {
@@ -87,7 +80,8 @@ impl Mix<Table> {
         drawn: Branch<N>,
         pdf: f64,
         number: usize,
-        (shares, chances): ([Lanes<N>; 2], [f64; 2]),
+        shares: [Lanes<N>; 2],
+        chances: [f64; 2],
     ) -> Branch<N> {
         let other = 1 - number;
         let Some((light, other_pdf)) = self.materials[other].material().evaluate(arrival, drawn.wi) else {
@@ -118,29 +112,9 @@ impl Mix<Table> {
         let parts = self.materials.each_ref().map(|part| part.material().straight(arrival));
         Straight::of_both(parts, self.shares(arrival))
     }
-}
 
-impl<const N: usize> Branch<N> {
-    /// The way of a ray that goes straight on, with the light that comes by it.
-    pub fn onward(ray: &Ray, straight: &Straight<N>) -> Self {
-        let (share, polarization) = (straight.share(), straight.polarization);
-        Self { wi: ray.direction, share, pdf: None, crosses: false, eta_scale: 1.0, polarization }
-    }
-
-    /// The same way with a share of its light.
-    pub(super) fn scaled(&self, share: Lanes<N>) -> Self {
-        Self { share: self.share * share, ..*self }
-    }
-
-    /// Whether both are the same single direction.
-    fn is_same_way(&self, other: &Self) -> bool {
-        let single = self.pdf.is_none() && other.pdf.is_none();
-        single && self.wi == other.wi && self.crosses == other.crosses
-    }
-
-    /// Takes in the light of another branch that goes the same way.
-    fn join(&mut self, other: &Self) {
-        self.polarization = self.polarization.max(other.polarization);
-        self.share += other.share;
+    pub(super) fn degree_of_scattered<const N: usize>(&self, arrival: &Arrival<N>, wi: DVec3) -> f32 {
+        let wide = self.materials.iter().map(Part::material).filter(|material| material.lobes().is_wide());
+        wide.map(|material| material.degree_of_scattered(arrival, wi)).fold(0.0, f32::max)
     }
 }

@@ -2,6 +2,7 @@ use std::f64::consts::FRAC_1_PI;
 
 use super::coat::{Coat, Crossing};
 use super::conductor::above;
+use super::degree::{LANES, largest};
 use super::{Arrival, Branch, Interface, RoughSurface, reflect};
 use crate::math::{DVec3, Frame, cosine_hemisphere, unit};
 use crate::spectrum::{Lanes, Quantity, Table};
@@ -132,6 +133,26 @@ impl Plastic<Table> {
             last = Some((pair, crossing));
             of_lane(&crossing, f64::from(base[i]), pair)
         })
+    }
+
+    /// The degree by the coat, which light crosses and, where it is rough, is mirrored by:
+    /// [`Material::degree_of_scattered`](super::Material::degree_of_scattered).
+    pub(super) fn degree_of_scattered<const N: usize>(&self, arrival: &Arrival<N>, wi: DVec3) -> f32 {
+        let index = arrival.draw.read_exact(&self.index);
+        let lanes = || (0..N).filter(|&lane| index[lane] != arrival.incident[lane]).step_by(N.div_ceil(LANES));
+        let coat = |lane: usize, cos: f64| Interface::new(arrival.incident[lane], index[lane], cos);
+        let crossed = |lane: usize| {
+            let cosines = [arrival.wo, wi].map(|direction| direction.dot(arrival.normal).abs());
+            cosines.map(|cos| coat(lane, cos).polarization_refracted.abs()).into_iter().fold(0.0, f64::max)
+        };
+        let base = largest(lanes().map(crossed));
+        match (self.coat.roughness().is_smooth(), (arrival.wo + wi).try_normalize()) {
+            (false, Some(h)) => {
+                let mirrored = |lane: usize| coat(lane, arrival.wo.dot(h)).polarization_reflected.abs();
+                base.max(largest(lanes().map(mirrored)))
+            }
+            _ => base,
+        }
     }
 }
 

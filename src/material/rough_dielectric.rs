@@ -1,7 +1,7 @@
 //! A rough clear body, lane by lane.
 
 use super::conductor::above;
-use super::{Arrival, Branch, Dielectric, Facet, Flow, Interface, RoughInterface, Sides, Way};
+use super::{Arrival, Branch, Facet, Flow, Interface, RoughInterface, Sides, Way};
 use crate::math::{DVec3, Frame, unit};
 use crate::spectrum::{Lanes, Table};
 
@@ -137,7 +137,7 @@ fn facet_of(number: usize, drawn: Option<(usize, Facet)>) -> Option<Facet> {
 /// The refracted ray turns by sin t dr / (r cos t) where the ratio of the indices, r, changes by dr, and by
 /// |r cos i - cos t| / cos t of what a facet is turned by. The lanes are asked that count while they are together: beside heroes the fixed ones,
 /// for if wavelengths drawn at random decided whether they count, some would count more often than others.
-fn parts<const N: usize>(interface: &RoughInterface, arrival: &Arrival<N>) -> bool {
+pub(super) fn parts<const N: usize>(interface: &RoughInterface, arrival: &Arrival<N>) -> bool {
     if !arrival.parts() {
         return false;
     }
@@ -154,32 +154,26 @@ fn parts<const N: usize>(interface: &RoughInterface, arrival: &Arrival<N>) -> bo
     sin * (most - least) / middle > WIDTHS * interface.facets().alpha() * turned
 }
 
-impl Dielectric<Table> {
-    /// Whether lanes that cross the surface part there: a pure function of the surface and the arriving light.
-    pub(super) fn parts<const N: usize>(&self, arrival: &Arrival<N>) -> bool {
-        match self.roughness.interface() {
-            Some(interface) => parts(interface, arrival),
-            None => arrival.parts(),
-        }
-    }
+/// A rough surface of a clear body.
+pub(super) struct RoughBoundary<'a> {
+    pub(super) interface: &'a RoughInterface,
+    /// Factors on what it reflects and lets through.
+    pub(super) reflectance: &'a Table,
+    pub(super) transmittance: &'a Table,
+}
 
+impl RoughBoundary<'_> {
     /// One branch by reflection, and one by refraction: where lanes part, one for each kind of lanes.
     ///
     /// Lanes that are together share a direction drawn for one of them, chosen evenly, and each is divided by the mean of
     /// all their densities (the balance heuristic, Veach & Guibas 1995; Wilkie et al. 2014). Each branch has a density of
     /// its own, whose integral is what it is drawn as often as. Next-event estimation weighs a direction by the same
-    /// function, [`Dielectric::evaluate_rough`]: the two weights sum to 1 in every direction, however many branches
+    /// function, `evaluate`: the two weights sum to 1 in every direction, however many branches
     /// the tracer follows, as one that is chosen with a probability is divided by it.
-    pub(super) fn scatter_rough<const N: usize>(
-        &self,
-        interface: &RoughInterface,
-        arrival: &Arrival<N>,
-        u: [f64; 2],
-        branches: &mut Vec<Branch<N>>,
-    ) {
-        let (tint, reflectance) = (arrival.read(&self.transmittance), arrival.read(&self.reflectance));
+    pub(super) fn scatter<const N: usize>(&self, arrival: &Arrival<N>, u: [f64; 2], branches: &mut Vec<Branch<N>>) {
+        let (tint, reflectance) = (arrival.read(self.transmittance), arrival.read(self.reflectance));
         self.pass_equal_indices(arrival, tint, branches);
-        let mut meeting = Meeting::new(interface, arrival);
+        let mut meeting = Meeting::new(self.interface, arrival);
         let total: f64 = meeting.kinds.iter().map(|kind| kind.count).sum();
         let mut at = u[0] * total;
         let chosen = meeting.kinds.iter().position(|kind| {
@@ -239,26 +233,21 @@ impl Dielectric<Table> {
         if same.is_zero() {
             return;
         }
-        let parting = if self.parts(arrival) { arrival.draw.parting() } else { Lanes::ONE };
+        let parting = if parts(self.interface, arrival) { arrival.draw.parting() } else { Lanes::ONE };
         let share = same * tint * parting;
         let wi = -arrival.wo;
         branches.push(Branch { wi, share, pdf: None, crosses: true, eta_scale: 1.0, polarization: 0.0 });
     }
 
     /// BSDF times cosine of each lane, and the density of `wi` among the branches on its side.
-    pub(super) fn evaluate_rough<const N: usize>(
-        &self,
-        interface: &RoughInterface,
-        arrival: &Arrival<N>,
-        wi: DVec3,
-    ) -> Option<(Lanes<N>, f64)> {
-        let mut meeting = Meeting::new(interface, arrival);
+    pub(super) fn evaluate<const N: usize>(&self, arrival: &Arrival<N>, wi: DVec3) -> Option<(Lanes<N>, f64)> {
+        let mut meeting = Meeting::new(self.interface, arrival);
         let local = meeting.frame.to_local(wi);
         if local.z > 0.0 {
             let pdf = meeting.reflect(local, None);
-            return (pdf > 0.0).then(|| (meeting.reflected(1.0) * arrival.read(&self.reflectance), pdf));
+            return (pdf > 0.0).then(|| (meeting.reflected(1.0) * arrival.read(self.reflectance), pdf));
         }
         let pdf = if local.z < 0.0 { meeting.cross(local, None) } else { 0.0 };
-        (pdf > 0.0).then(|| (meeting.crossed(1.0) * arrival.read(&self.transmittance), pdf))
+        (pdf > 0.0).then(|| (meeting.crossed(1.0) * arrival.read(self.transmittance), pdf))
     }
 }

@@ -16,6 +16,7 @@ mod ellipsoid;
 mod gltf;
 mod gltf_buffer;
 mod instance;
+mod kinds;
 mod mesh;
 mod mesh_data;
 mod mesh_file;
@@ -29,7 +30,7 @@ mod quad;
 mod sample;
 mod sides;
 mod sphere;
-mod surface;
+
 mod triangle;
 mod vertices;
 
@@ -42,6 +43,7 @@ pub use cube::Cube;
 pub use disc::Disc;
 pub use ellipsoid::Ellipsoid;
 pub use instance::Instance;
+pub use kinds::Shape;
 pub use mesh::{Mesh, MeshReport};
 pub use mesh_file::{read as read_mesh, read_smooth as read_smooth_mesh};
 pub use plane::Plane;
@@ -51,6 +53,6 @@ pub use quad::Quad;
 pub use sample::{Density, ShapeSample};
 pub use sides::Sides;
 pub use sphere::Sphere;
-pub use surface::Shape;
+
 pub use triangle::Triangle;
 pub use vertices::Vertices;

@@ -9,7 +9,7 @@ use super::shading;
 use super::straight;
 use super::walker::{Departure, Walker};
 use crate::light::{LeSample, LightId};
-use crate::material::Arrival;
+use crate::material::{Arrival, Scatter};
 use crate::math::{BranchKey, DVec2, Sampler};
 use crate::scene::FilmSettings;
 use crate::spectrum::{Draw, Lanes, Throughput};

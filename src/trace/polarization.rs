@@ -7,7 +7,7 @@
 //! |d| alone: degrees add as velocities do, and ones that add all the way are the worst. Light leaves lamps and the sky
 //! unpolarized, and surfaces that scatter it diffusely.
 
-use crate::material::{Arrival, Material};
+use crate::material::{Arrival, Material, Scatter};
 use crate::math::DVec3;
 use crate::spectrum::Table;
 

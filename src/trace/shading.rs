@@ -7,7 +7,7 @@
 //! through its plane. Folding moves light and takes none away: what a material gives to a direction is the sum over
 //! both directions that end there, and so is the density.
 
-use crate::material::{Arrival, Branch, Material, reflect};
+use crate::material::{Arrival, Branch, Material, Scatter, reflect};
 use crate::math::{DVec3, unit};
 use crate::shape::SurfacePoint;
 use crate::spectrum::{Lanes, Table};

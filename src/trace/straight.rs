@@ -4,7 +4,7 @@ use super::interaction::arrival;
 use super::path::Path;
 use super::polarization::Polarized;
 use super::{Transport, World, shading};
-use crate::material::Straight;
+use crate::material::{Scatter, Straight};
 use crate::math::{Ray, Sampler};
 use crate::scene::{Hit, MaterialId};
 use crate::shape::SurfacePoint;

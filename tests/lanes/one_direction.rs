@@ -1,7 +1,7 @@
 //! Lanes that stay together share a direction; what a surface reflects and lets through is each lane's own.
 
 use abbe::film::Film;
-use abbe::material::{Arrival, Branch, Dielectric, Interface, Material, Roughness, shared_transmittance};
+use abbe::material::{Arrival, Branch, Dielectric, Interface, Material, Roughness, Scatter, shared_transmittance};
 use abbe::math::{DVec2, DVec3};
 use abbe::plan::plan;
 use abbe::spectrum::{

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use abbe::material::Material;
+use abbe::material::{Material, Scatter};
 use abbe::math::Frame;
 use abbe::spectrum::{Draw, Table};
 

@@ -1,6 +1,6 @@
 //! In an even environment, what reflects all light cannot be told from it; and light goes both ways alike.
 
-use abbe::material::{Interface, Material, diffuse_transmittance};
+use abbe::material::{Interface, Material, Scatter, diffuse_transmittance};
 use abbe::spectrum::{Draw, Table};
 
 use super::arrivals::{arrival, material, points, toward};

@@ -1,6 +1,6 @@
 //! Row G6: in an even environment, what reflects all light cannot be told from it.
 
-use abbe::material::{Arrival, Material, Roughness};
+use abbe::material::{Arrival, Material, Roughness, Scatter};
 use abbe::math::DVec3;
 use abbe::spectrum::{Draw, Table};
 use abbe::trace::prepare;

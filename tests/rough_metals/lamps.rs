@@ -1,6 +1,6 @@
 //! Rough metals under lamps: aiming at them and meeting them agree, and nearly smooth metals look smooth.
 
-use abbe::material::{Arrival, Roughness};
+use abbe::material::{Arrival, Roughness, Scatter};
 use abbe::math::DVec3;
 use abbe::plan::plan;
 use abbe::spectrum::Draw;

@@ -1,6 +1,6 @@
 //! Rows S5, D7 and D8: directions stay unit vectors, for the sphere's and Fresnel's formulas assume it.
 
-use abbe::material::{Arrival, Interface, reflect};
+use abbe::material::{Arrival, Interface, Scatter, reflect};
 use abbe::math::{DVec2, DVec3, UNIT_ROUNDOFF};
 use abbe::shape::SurfacePoint;
 use abbe::spectrum::Draw;

@@ -2,7 +2,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use abbe::material::{Arrival, Branch, Interface, Material};
+use abbe::material::{Arrival, Branch, Interface, Material, Scatter};
 use abbe::math::{DVec3, UNIT_ROUNDOFF};
 use abbe::spectrum::{Draw, Lanes, Table};
 use abbe::trace::prepare;

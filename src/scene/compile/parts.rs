@@ -48,7 +48,7 @@ impl<'d> Search<'_, 'd> {
     }
 
     /// A part of a material with what it is made of.
-    fn part(&mut self, kind: &str, place: Value<'d>) -> Option<Part<Curve>> {
+    fn part(&mut self, kind: &str, place: Value<'d>) -> Option<Part<Material<Curve>>> {
         let name = place.text()?;
         let Some((known, draft)) = self.drafts.get_key_value(name) else {
             return unknown_material(place, name, self.drafts.keys().copied());

@@ -1,4 +1,4 @@
-//! A surface of any kind.
+//! A shape of any kind.
 
 use std::sync::Arc;
 

@@ -1,0 +1,179 @@
+//! A light of any kind.
+
+use super::{Area, Beam, Environment, LeSample, LightBounds, LightSample, Point, Spot, Sun};
+use crate::math::{DVec3, Ray};
+use crate::shape::{Ball, Crossing, Sides, SurfacePoint};
+use crate::spectrum::{Draw, Lanes, Quantity, Table};
+
+/// Number of a light in its scene.
+pub type LightId = usize;
+
+/// Something that shines.
+#[derive(Clone, Debug)]
+pub enum Light<S> {
+    /// A surface that shines.
+    Area(Area<S>),
+    /// A point that shines evenly.
+    Point(Point<S>),
+    /// A point that shines into a cone.
+    Spot(Spot<S>),
+    /// What rays meet that miss everything.
+    Environment(Environment<S>),
+    /// A disc in the sky.
+    Sun(Sun<S>),
+}
+
+impl<S> Light<S> {
+    /// The light with its spectrum converted.
+    pub fn map<T>(&self, convert: &mut impl FnMut(Quantity, &S) -> T) -> Light<T> {
+        match self {
+            Self::Area(area) => Light::Area(area.map(convert)),
+            Self::Point(point) => Light::Point(point.map(convert)),
+            Self::Spot(spot) => Light::Spot(spot.map(convert)),
+            Self::Environment(environment) => Light::Environment(environment.map(convert)),
+            Self::Sun(sun) => Light::Sun(sun.map(convert)),
+        }
+    }
+
+    /// The radiance, intensity of a point or a spot, or irradiance of a sun.
+    pub fn emission(&self) -> &S {
+        match self {
+            Self::Area(area) => &area.radiance,
+            Self::Point(point) => &point.intensity,
+            Self::Spot(spot) => &spot.intensity,
+            Self::Environment(environment) => &environment.radiance,
+            Self::Sun(sun) => &sun.irradiance,
+        }
+    }
+
+    /// Whether next-event estimation samples it; otherwise it shines by being met.
+    pub fn is_sampled(&self) -> bool {
+        if let Self::Area(area) = self { area.is_sampled } else { true }
+    }
+
+    /// Whether one of several parts is drawn before a direction, which uses up digits of the first random number.
+    pub fn has_parts(&self) -> bool {
+        if let Self::Area(area) = self { area.has_parts() } else { false }
+    }
+
+    /// A ray from a point of a surface toward the light; none where it does not shine that way. `normal` is the
+    /// surface's unit normal on the lit side, toward which most samples lead.
+    pub fn sample_li(&self, from: &SurfacePoint, normal: DVec3, u: [f64; 2]) -> Option<LightSample> {
+        match self {
+            Self::Area(area) => area.sample_li(from, normal, u),
+            Self::Point(point) => LightSample::of_point(from, point.position.into(), |_| 1.0),
+            Self::Spot(spot) => LightSample::of_point(from, spot.position.into(), |direction| spot.part(direction)),
+            Self::Environment(environment) => environment.sample_li(from, normal, u),
+            Self::Sun(sun) => sun.sample_li(from, u),
+        }
+    }
+
+    /// Density per steradian with which `sample_li` draws the direction of a ray that leaves a surface of the given
+    /// unit normal; none if it cannot. `crossing` is where the ray first meets a surface that shines, if that is known.
+    pub fn pdf_li(&self, ray: &Ray, normal: DVec3, crossing: Option<&Crossing>) -> Option<f64> {
+        match self {
+            Self::Area(area) if area.is_sampled => match crossing {
+                Some(crossing) => area.pdf_at(ray, normal, crossing),
+                None => area.pdf_at(ray, normal, &area.shape.intersect(ray, f64::INFINITY)?),
+            },
+            Self::Environment(environment) => Some(environment.pdf(ray.direction, normal)),
+            Self::Sun(sun) => sun.pdf(ray),
+            Self::Area(_) | Self::Point(_) | Self::Spot(_) => None,
+        }
+    }
+
+    /// Whether photons can be sent from it.
+    pub fn sends_photons(&self) -> bool {
+        match self {
+            Self::Area(area) => area.sends_photons(),
+            Self::Environment(_) => false,
+            Self::Point(_) | Self::Spot(_) | Self::Sun(_) => true,
+        }
+    }
+
+    /// How photons are sent to a ball; none if the light sends none there.
+    pub fn beam(&self, ball: &Ball) -> Option<Beam> {
+        let beam = match self {
+            Self::Area(area) => area.beam(ball),
+            Self::Point(point) => point.beam(ball),
+            Self::Spot(spot) => spot.beam(ball),
+            Self::Sun(sun) => sun.beam(ball),
+            Self::Environment(_) => return None,
+        };
+        Some(beam).filter(|beam| beam.flux > 0.0)
+    }
+
+    /// The start of a photon for a place of the unit square, which stands for its way, and two more random numbers;
+    /// none where the light does not shine.
+    pub fn sample_le(&self, beam: &Beam, guide_uv: [f64; 2], u: [f64; 2]) -> Option<LeSample> {
+        match self {
+            Self::Area(area) => area.sample_le(&beam.ball, guide_uv, u),
+            Self::Point(point) => LeSample::of_point(point.position.into(), &beam.cone, guide_uv, |_| 1.0),
+            Self::Spot(spot) => LeSample::of_point(spot.position.into(), &beam.cone, guide_uv, |way| spot.part(way)),
+            Self::Sun(sun) => sun.sample_le(&beam.ball, guide_uv, u),
+            Self::Environment(_) => None,
+        }
+    }
+
+    /// How densely `sample_le` draws the start of a photon of this light for a beam, which may be another than the
+    /// photon's own, from places of the unit square of a density of their own; 0 if it cannot.
+    pub fn pdf_le(&self, beam: &Beam, sample: &LeSample, guide: impl Fn([f64; 2]) -> f64) -> f64 {
+        match self {
+            Self::Area(area) => area.pdf_le(&beam.ball, sample, guide),
+            Self::Point(_) | Self::Spot(_) => beam.cone.pdf(sample.ray.direction, guide),
+            Self::Sun(sun) => sun.pdf_le(&beam.ball, &sample.ray, guide),
+            Self::Environment(_) => 0.0,
+        }
+    }
+
+    /// Whether it is met by rays that meet nothing else.
+    pub fn is_sky(&self) -> bool {
+        matches!(self, Self::Environment(_) | Self::Sun(_))
+    }
+
+    /// Whether it is a sky that looks the same in all directions.
+    pub fn is_even_sky(&self) -> bool {
+        matches!(self, Self::Environment(environment) if environment.image.is_none())
+    }
+
+    /// Whether it has an extent, so that what it sends to a point comes from many directions.
+    pub fn is_extended(&self) -> bool {
+        match self {
+            Self::Area(_) | Self::Environment(_) => true,
+            Self::Point(_) | Self::Spot(_) => false,
+            Self::Sun(sun) => sun.angular_diameter > 0.0,
+        }
+    }
+}
+
+impl Light<Table> {
+    /// What the light sends along a direction toward it, which meets it at `uv`: its emission, lane by lane.
+    pub fn toward<const N: usize>(&self, draw: &Draw<N>, direction: DVec3, uv: [f64; 2]) -> Lanes<N> {
+        match self {
+            Self::Environment(environment) => environment.toward(draw, direction),
+            _ => draw.read_at(self.emission(), uv),
+        }
+    }
+
+    /// The largest irradiance that a sky gives; 0 of other lights.
+    pub fn irradiance(&self) -> f64 {
+        let brightest = || self.emission().range().1.max(0.0);
+        match self {
+            Self::Area(_) | Self::Point(_) | Self::Spot(_) => 0.0,
+            Self::Environment(environment) => brightest() * environment.mean() * std::f64::consts::PI,
+            Self::Sun(_) => brightest(),
+        }
+    }
+
+    /// Where the light is and how much it shines, as one of many; none of one that is infinite.
+    pub fn bounds(&self) -> Option<LightBounds> {
+        let bounds = match self {
+            Self::Area(area) => LightBounds::of_shape(&area.shape, area.sides == Sides::Both)?,
+            Self::Point(point) => LightBounds::of_point(point.position.into()),
+            // A spot that shines elsewhere is found dark when it is sampled.
+            Self::Spot(spot) => LightBounds::of_point(spot.position.into()),
+            Self::Environment(_) | Self::Sun(_) => return None,
+        };
+        Some(LightBounds { intensity: bounds.intensity * self.emission().brightness(), ..bounds })
+    }
+}

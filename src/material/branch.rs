@@ -1,0 +1,81 @@
+//! Light that leaves a surface: by ways of its own, or straight on.
+
+use crate::math::{DVec3, Ray};
+use crate::spectrum::Lanes;
+
+/// One way light came to the surface, and the lanes that came by it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Branch<const N: usize> {
+    /// Unit vector toward where the light came from.
+    pub wi: DVec3,
+    /// Factor on each lane's throughput; 0 for lanes that did not come this way.
+    pub share: Lanes<N>,
+    /// Density per steradian with which `wi` was drawn, none for the one direction a smooth surface allows.
+    pub pdf: Option<f64>,
+    /// Whether the light came from beyond the surface.
+    pub crosses: bool,
+    /// The part of `share` that only converts radiance between media, (n_incident / n_beyond)^2 of the ray's indices.
+    pub eta_scale: f64,
+    /// Largest degree |s - p| / (s + p), of any lane, to which unpolarized light that comes by this one direction leaves polarized;
+    /// 0 where it does not, and of directions that were drawn: see [`Material::degree_of_scattered`](super::Material::degree_of_scattered).
+    pub polarization: f32,
+}
+
+impl<const N: usize> Branch<N> {
+    /// The way of a ray that goes straight on, with the light that comes by it.
+    pub fn onward(ray: &Ray, straight: &Straight<N>) -> Self {
+        let (share, polarization) = (straight.share(), straight.polarization);
+        Self { wi: ray.direction, share, pdf: None, crosses: false, eta_scale: 1.0, polarization }
+    }
+
+    /// The same way with a share of its light.
+    pub(super) fn scaled(&self, share: Lanes<N>) -> Self {
+        Self { share: self.share * share, ..*self }
+    }
+
+    /// Whether both are the same single direction.
+    pub(super) fn is_same_way(&self, other: &Self) -> bool {
+        let single = self.pdf.is_none() && other.pdf.is_none();
+        single && self.wi == other.wi && self.crosses == other.crosses
+    }
+
+    /// Takes in the light of another branch that goes the same way.
+    pub(super) fn join(&mut self, other: &Self) {
+        self.polarization = self.polarization.max(other.polarization);
+        self.share += other.share;
+    }
+}
+
+/// What goes straight on through a surface, as a share of each lane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Straight<const N: usize> {
+    /// Through holes, where nothing is met.
+    pub holes: Lanes<N>,
+    /// Through panes.
+    pub panes: Lanes<N>,
+    /// Largest degree |s - p| / (s + p) to which unpolarized light leaves the panes polarized.
+    pub polarization: f32,
+}
+
+impl<const N: usize> Straight<N> {
+    /// Nothing.
+    const NONE: Self = Self { holes: Lanes::ZERO, panes: Lanes::ZERO, polarization: 0.0 };
+
+    /// All that goes straight on.
+    pub fn share(&self) -> Lanes<N> {
+        self.holes + self.panes
+    }
+
+    /// What two materials let through that each cover a share of a surface.
+    pub(super) fn of_both(parts: [Option<Self>; 2], shares: [Lanes<N>; 2]) -> Option<Self> {
+        if parts.iter().all(Option::is_none) {
+            return None;
+        }
+        let [a, b] = parts.map(|part| part.unwrap_or(Self::NONE));
+        Some(Self {
+            holes: a.holes * shares[0] + b.holes * shares[1],
+            panes: a.panes * shares[0] + b.panes * shares[1],
+            polarization: a.polarization.max(b.polarization),
+        })
+    }
+}

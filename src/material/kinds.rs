@@ -1,0 +1,237 @@
+//! A material of any kind. A new kind is a file of its own and a variant here: the compiler then lists every place that
+//! has to know it.
+
+use super::{
+    Arrival, Branch, Conductor, Dielectric, Diffuse, Emissive, Lobes, Mask, Mirror, Mix, Part, Plastic, Scatter,
+    Straight, Thin,
+};
+use crate::math::DVec3;
+use crate::spectrum::{Curve, Lanes, Quantity, Table};
+
+/// What a surface does with light.
+#[derive(Clone, Debug)]
+pub enum Material<S> {
+    /// Scatters evenly in all directions.
+    Diffuse(Diffuse<S>),
+    /// Reflects like an ideal mirror.
+    Mirror(Mirror<S>),
+    /// Reflects like a metal, smooth or rough.
+    Conductor(Conductor<S>),
+    /// Reflects and refracts like glass.
+    Dielectric(Dielectric<S>),
+    /// Reflects and lets through like a window pane.
+    Thin(Thin<S>),
+    /// Shines and absorbs.
+    Emissive(Emissive<S>),
+    /// Scatters evenly under a clear coat.
+    Plastic(Plastic<S>),
+    /// Does what two other materials do, each on a share of the surface.
+    Mix(Mix<S, Self>),
+    /// Does what another material does, and lets the rest straight through.
+    Mask(Mask<S, Self>),
+}
+
+impl<S> Material<S> {
+    /// The same material with every spectrum converted; `convert` is told what the spectrum describes.
+    pub fn map<T>(&self, convert: &mut impl FnMut(Quantity, &S) -> T) -> Material<T> {
+        match self {
+            Self::Diffuse(diffuse) => Material::Diffuse(diffuse.map(convert)),
+            Self::Mirror(mirror) => Material::Mirror(mirror.map(convert)),
+            Self::Thin(thin) => Material::Thin(thin.map(convert)),
+            Self::Conductor(conductor) => Material::Conductor(conductor.map(convert)),
+            Self::Dielectric(dielectric) => Material::Dielectric(dielectric.map(convert)),
+            Self::Emissive(emissive) => Material::Emissive(emissive.map(convert)),
+            Self::Plastic(plastic) => Material::Plastic(plastic.map(convert)),
+            Self::Mix(Mix { materials, amount }) => {
+                let amount = convert(Quantity::Share, amount);
+                let materials = materials.each_ref().map(|part| part.map(|material| material.map(convert)));
+                Material::Mix(Mix { materials, amount })
+            }
+            Self::Mask(Mask { material, opacity }) => {
+                let opacity = convert(Quantity::Share, opacity);
+                Material::Mask(Mask { material: material.map(|material| material.map(convert)), opacity })
+            }
+        }
+    }
+
+    /// The index of the clear surface that light is reflected at or crosses, where it has one.
+    pub fn clear_index(&self) -> Option<&S> {
+        match self {
+            Self::Dielectric(dielectric) => Some(&dielectric.index),
+            Self::Thin(thin) => Some(&thin.index),
+            Self::Plastic(plastic) => Some(&plastic.index),
+            Self::Diffuse(_) | Self::Mirror(_) | Self::Conductor(_) | Self::Emissive(_) => None,
+            Self::Mix(_) | Self::Mask(_) => None,
+        }
+    }
+
+    /// The medium behind the surface's front, where there is one.
+    pub fn medium(&self) -> Option<&Dielectric<S>> {
+        match self {
+            Self::Dielectric(dielectric) => Some(dielectric),
+            _ => None,
+        }
+    }
+
+    /// Its lobes; of what is made of other materials, those of all of them.
+    #[inline]
+    pub fn lobes(&self) -> Lobes {
+        let smooth_or = |is_smooth: bool, glossy: Lobes| if is_smooth { Lobes::DELTA_REFLECTION } else { glossy };
+        match self {
+            Self::Diffuse(_) => Lobes::DIFFUSE_REFLECTION,
+            Self::Mirror(_) => Lobes::DELTA_REFLECTION,
+            Self::Thin(_) => Lobes::DELTA,
+            Self::Conductor(conductor) => smooth_or(conductor.roughness.is_smooth(), Lobes::GLOSSY_REFLECTION),
+            Self::Dielectric(dielectric) if dielectric.roughness.is_smooth() => Lobes::DELTA,
+            // Between equal indices light goes straight on, however rough the surface is.
+            Self::Dielectric(_) => Lobes::GLOSSY_REFLECTION.union(Lobes::GLOSSY_TRANSMISSION).union(Lobes::DELTA),
+            Self::Emissive(_) => Lobes::NONE,
+            Self::Plastic(plastic) => {
+                let coat = smooth_or(plastic.coat.roughness().is_smooth(), Lobes::GLOSSY_REFLECTION);
+                Lobes::DIFFUSE_REFLECTION.union(coat)
+            }
+            Self::Mix(_) | Self::Mask(_) => {
+                self.parts().iter().map(|part| part.material().lobes()).fold(Lobes::NONE, Lobes::union)
+            }
+        }
+    }
+
+    /// Whether light leaves in every direction, so that lights can be aimed at.
+    pub fn scatters_widely(&self) -> bool {
+        self.lobes().is_wide()
+    }
+
+    /// Whether light crosses the surface in some way.
+    pub fn lets_through(&self) -> bool {
+        self.lobes().is_transmissive()
+    }
+
+    /// Whether light also comes from beyond the surface in every direction.
+    pub fn scatters_through(&self) -> bool {
+        self.lobes().intersects(Lobes::GLOSSY_TRANSMISSION)
+    }
+
+    /// Whether what leaves in every direction has no memory of where it came from: `diffuse_bounces` counts it.
+    pub fn is_diffuse(&self) -> bool {
+        self.lobes().is_diffuse()
+    }
+
+    /// Whether light leaves in single directions, all of it or some: the mirror images and refractions of smooth surfaces.
+    pub fn has_single_directions(&self) -> bool {
+        self.lobes().has_delta()
+    }
+
+    /// How rough it is, where it can be.
+    pub fn roughness(&self) -> Option<f64> {
+        match self {
+            Self::Conductor(conductor) => Some(conductor.roughness.value()),
+            Self::Dielectric(dielectric) => Some(dielectric.roughness.value()),
+            Self::Plastic(plastic) => Some(plastic.coat.roughness().value()),
+            Self::Diffuse(_) | Self::Mirror(_) | Self::Thin(_) | Self::Emissive(_) => None,
+            Self::Mix(_) | Self::Mask(_) => None,
+        }
+    }
+
+    /// Whether it lets light straight on: through holes, or as a pane does that bends nothing.
+    pub fn is_see_through(&self) -> bool {
+        matches!(self, Self::Mask(_) | Self::Thin(_))
+            || self.parts().iter().any(|part| part.material().is_see_through())
+    }
+
+    /// The materials it is made of.
+    pub fn parts(&self) -> &[Part<Self>] {
+        match self {
+            Self::Mix(mix) => &mix.materials,
+            Self::Mask(mask) => std::slice::from_ref(&mask.material),
+            Self::Diffuse(_) | Self::Mirror(_) | Self::Conductor(_) | Self::Dielectric(_) => &[],
+            Self::Thin(_) | Self::Emissive(_) | Self::Plastic(_) => &[],
+        }
+    }
+
+    /// The material and all that it is made of.
+    pub fn with_parts(&self) -> Vec<&Self> {
+        let parts = self.parts().iter().flat_map(|part| part.material().with_parts());
+        std::iter::once(self).chain(parts).collect()
+    }
+
+    /// Whether it is made of the material of a name.
+    pub fn is_made_of(&self, name: &str) -> bool {
+        self.parts().iter().any(|part| part.name == name || part.material().is_made_of(name))
+    }
+}
+
+impl Material<Curve> {
+    /// Whether any of its spectra is different at different places of a surface.
+    pub fn varies(&self) -> bool {
+        let mut varies = false;
+        self.map(&mut |_, curve| varies |= curve.varies());
+        varies
+    }
+}
+
+impl Material<Table> {
+    /// Whether lanes part that cross the surface.
+    pub fn parts_lanes<const N: usize>(&self, arrival: &Arrival<N>) -> bool {
+        match self {
+            Self::Dielectric(dielectric) => dielectric.parts(arrival),
+            Self::Diffuse(_) | Self::Mirror(_) | Self::Conductor(_) | Self::Thin(_) => arrival.parts(),
+            Self::Emissive(_) | Self::Plastic(_) | Self::Mix(_) | Self::Mask(_) => arrival.parts(),
+        }
+    }
+}
+
+impl Scatter for Material<Table> {
+    fn lobes(&self) -> Lobes {
+        self.lobes()
+    }
+
+    fn scatter<const N: usize>(&self, arrival: &Arrival<N>, u: [f64; 2], branches: &mut Vec<Branch<N>>) {
+        match self {
+            Self::Diffuse(diffuse) => branches.push(diffuse.scatter(arrival, u)),
+            Self::Mirror(mirror) => branches.push(mirror.scatter(arrival)),
+            Self::Thin(thin) => thin.scatter(arrival, branches),
+            Self::Conductor(conductor) => branches.extend(conductor.scatter(arrival, u)),
+            Self::Dielectric(dielectric) => dielectric.scatter(arrival, u, branches),
+            Self::Emissive(_) => {}
+            Self::Plastic(plastic) => plastic.scatter(arrival, u, branches),
+            Self::Mix(mix) => mix.scatter(arrival, u, branches),
+            Self::Mask(mask) => mask.scatter(arrival, u, branches),
+        }
+    }
+
+    fn evaluate<const N: usize>(&self, arrival: &Arrival<N>, wi: DVec3) -> Option<(Lanes<N>, f64)> {
+        match self {
+            Self::Diffuse(diffuse) => diffuse.evaluate(arrival, wi),
+            Self::Conductor(conductor) => conductor.evaluate(arrival, wi),
+            Self::Dielectric(dielectric) => dielectric.evaluate(arrival, wi),
+            Self::Plastic(plastic) => plastic.evaluate(arrival, wi),
+            Self::Mix(mix) => mix.evaluate(arrival, wi),
+            Self::Mask(mask) => mask.evaluate(arrival, wi),
+            Self::Mirror(_) | Self::Thin(_) | Self::Emissive(_) => None,
+        }
+    }
+
+    fn straight<const N: usize>(&self, arrival: &Arrival<N>) -> Option<Straight<N>> {
+        match self {
+            Self::Thin(thin) => Some(thin.straight(arrival)),
+            Self::Mix(mix) => mix.straight(arrival),
+            Self::Mask(mask) => Some(mask.straight(arrival)),
+            Self::Diffuse(_) | Self::Mirror(_) | Self::Conductor(_) | Self::Dielectric(_) => None,
+            Self::Emissive(_) | Self::Plastic(_) => None,
+        }
+    }
+
+    fn degree_of_scattered<const N: usize>(&self, arrival: &Arrival<N>, wi: DVec3) -> f32 {
+        match self {
+            Self::Conductor(conductor) => conductor.degree_of_scattered(arrival, wi),
+            Self::Dielectric(dielectric) => dielectric.degree_of_scattered(arrival, wi),
+            Self::Plastic(plastic) => plastic.degree_of_scattered(arrival, wi),
+            Self::Mix(mix) => mix.degree_of_scattered(arrival, wi),
+            Self::Mask(mask) => {
+                let material = mask.material.material();
+                if material.scatters_widely() { material.degree_of_scattered(arrival, wi) } else { 0.0 }
+            }
+            Self::Diffuse(_) | Self::Mirror(_) | Self::Thin(_) | Self::Emissive(_) => 0.0,
+        }
+    }
+}
