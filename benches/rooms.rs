@@ -12,7 +12,7 @@ use abbe::film::Film;
 use abbe::plan::plan;
 use abbe::scene::{Scene, Source, compile};
 use abbe::spectrum::Curve;
-use abbe::trace::{LightPass, Method, World, is_photon_source, render};
+use abbe::trace::{LightPass, Method, World, render};
 
 #[path = "../tests/planning/twenty.rs"]
 mod twenty;
@@ -30,7 +30,7 @@ fn main() {
         let source = Source { path: "room.toml".into(), text };
         let scene = compile(&source.parse().expect("the room is well formed"), &source).expect("the room is valid");
         let plan = plan(&scene).method;
-        let lights: Vec<usize> = (0..scene.lights.len()).filter(|&id| is_photon_source(&scene.lights[id])).collect();
+        let lights: Vec<usize> = (0..scene.lights.len()).filter(|&id| scene.lights[id].sends_photons()).collect();
         let wanted = plan
             .light_pass
             .as_ref()

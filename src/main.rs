@@ -51,9 +51,9 @@ fn image(job: &Job, scene: &Scene, exr: Option<&Path>, png: Option<&Path>) -> Re
     outputs().try_for_each(check_writable)?;
     let rendering = Rendering::new(scene, &job.options)?;
     rendering.plan().because.iter().for_each(|line| messages::say(line));
-    let progress = progress::Progress::new(rendering.work());
+    let (progress, expected) = (progress::Progress::new(rendering.work()), rendering.expected());
     let image = rendering.run(&|done| progress.advance(done));
-    progress.finish();
+    progress.finish(expected);
     exr.map_or(Ok(()), |exr| image.write_exr(exr))?;
     png.map_or(Ok(()), |png| image.write_png(png, job.exposure))?;
     messages::print_report(image.report(), exr, png);

@@ -50,14 +50,22 @@ impl Progress {
         }
     }
 
-    /// Removes the bar and says how long it took.
-    pub fn finish(self) {
+    /// Removes the bar and says how long it took, beside the time that was expected.
+    pub fn finish(self, expected: Duration) {
         drop(self.lines);
         if let Some(bar) = &self.bar {
             bar.finish_and_clear();
         }
-        say(&format!("rendered in {:.1} s", self.start.elapsed().as_secs_f64()));
+        say(&rendered(self.start.elapsed(), expected));
     }
+}
+
+/// What is said at the end. Of a short render the time expected says nothing.
+fn rendered(took: Duration, expected: Duration) -> String {
+    let [took, expected] = [took, expected].map(|time| time.as_secs_f64());
+    let compared =
+        if took.max(expected) < 2.0 { String::new() } else { format!("; the plan expected {expected:.1} s") };
+    format!("rendered in {took:.1} s{compared}")
 }
 
 /// A thread that speaks from time to time until it is dropped.

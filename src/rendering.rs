@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 use std::path::Path;
+use std::time::Duration;
 
 use crate::error::{Error, Result};
 use crate::film::{Fact, Film, Pixel, Provenance, View, Window, write_exr, write_png};
@@ -39,18 +40,14 @@ impl Options {
         if let Some(message) = self.crop.and_then(|crop| scene.film.objection(crop)) {
             return refuse(message, "--crop takes first column, first row, width and height");
         }
-        scene.render.samples = self.samples.or(scene.render.samples);
-        scene.render.seed = self.seed.unwrap_or(scene.render.seed);
-        scene.film.crop = self.crop.or(scene.film.crop);
+        (scene.render.samples, scene.render.seed, scene.film.crop) = self.instead_of(scene);
         Ok(())
     }
 
-    /// Whether the scene has these settings.
-    fn fit(&self, scene: &Scene) -> bool {
-        let fits = |asked: bool, same: bool| !asked || same;
-        fits(self.samples.is_some(), self.samples == scene.render.samples)
-            && fits(self.seed.is_some(), self.seed == Some(scene.render.seed))
-            && fits(self.crop.is_some(), self.crop == scene.film.crop)
+    /// Samples, seed and crop that replace those of a scene.
+    fn instead_of(&self, scene: &Scene) -> (Option<u32>, u64, Option<Window>) {
+        let samples = self.samples.or(scene.render.samples);
+        (samples, self.seed.unwrap_or(scene.render.seed), self.crop.or(scene.film.crop))
     }
 }
 
@@ -62,7 +59,7 @@ pub fn render(scene: &Scene, options: &Options) -> Result<Image> {
     Ok(Rendering::new(scene, options)?.run(&|_| ()))
 }
 
-/// A render that is planned and has not begun.
+/// A render that is planned: run to its end, or pass by pass with a look at the image after each.
 ///
 /// ```
 /// # let scene = abbe::Scene::parse("camera = { position = [0, 0, 4], look_at = [0, 0, 0], vertical_fov = 40 }
@@ -82,7 +79,7 @@ pub fn render(scene: &Scene, options: &Options) -> Result<Image> {
 /// ```
 pub struct Rendering {
     plan: Plan,
-    world: World,
+    passes: trace::Rendering<World>,
     view: View,
     /// The scene file's hash, the projection and the filter.
     origin: Origin,
@@ -102,7 +99,7 @@ impl Rendering {
     /// [`Error::Arguments`] if the options do not fit the scene, or threads cannot be started.
     pub fn new(scene: &Scene, options: &Options) -> Result<Self> {
         let mut scene = Cow::Borrowed(scene);
-        if !options.fit(&scene) {
+        if options.instead_of(&scene) != (scene.render.samples, scene.render.seed, scene.film.crop) {
             options.apply(scene.to_mut())?;
         }
         let threads = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build();
@@ -118,7 +115,13 @@ impl Rendering {
             latlong: camera.projection() == Projection::Equirectangular,
         };
         let (hash, filter) = (scene.hash.clone(), scene.film.filter.described());
-        Ok(Self { plan, world, view, origin: Origin { hash, projection: camera.projection(), filter }, threads })
+        Ok(Self {
+            plan,
+            passes: trace::Rendering::new(world),
+            view,
+            origin: Origin { hash, projection: camera.projection(), filter },
+            threads,
+        })
     }
 
     /// How it will be rendered, and why.
@@ -128,15 +131,47 @@ impl Rendering {
 
     /// How much there is to do: camera samples and photons.
     pub fn work(&self) -> u64 {
-        trace::work(&self.world)
+        trace::work(self.passes.world())
     }
 
-    /// Renders the image. `progress` is told how much of the [`work`](Self::work) was done since it was last told, from
-    /// any thread.
-    pub fn run(self, progress: &(dyn Fn(u64) + Sync)) -> Image {
-        let (film, report) = self.threads.install(|| trace::render(&self.world, progress));
-        let provenance = provenance(&self.origin, &self.plan, report.non_finite);
-        Image { film, report, because: self.plan.because, view: self.view, provenance }
+    /// How long it will take, about, if nothing else keeps the processors busy.
+    pub fn expected(&self) -> Duration {
+        self.plan.processor_time.div_f64(self.threads.current_num_threads() as f64)
+    }
+
+    /// Renders the next pass, if one is left, and answers whether another one is. Passes take more and more samples, or gather
+    /// photons of their own.
+    ///
+    /// `progress` is told how much of the [`work`](Self::work) was done since it was last told, from any thread.
+    ///
+    /// ```
+    /// # let scene = abbe::Scene::parse("camera = { position = [0, 0, 4], look_at = [0, 0, 0], vertical_fov = 40 }
+    /// # film = { width = 8, height = 8 }
+    /// # light = [{ environment = { radiance = 1 } }]", "")?;
+    /// let options = abbe::Options { samples: Some(64), ..Default::default() };
+    /// let mut rendering = abbe::Rendering::new(&scene, &options)?;
+    /// while rendering.advance(&|_| ()) {
+    ///     let so_far = rendering.image();
+    ///     println!("{} samples", so_far.layer("samples.V").unwrap()[0]);
+    /// }
+    /// # assert_eq!(rendering.image().layer("samples.V").unwrap()[0], 64.0);
+    /// # Ok::<(), abbe::Error>(())
+    /// ```
+    pub fn advance(&mut self, progress: &(dyn Fn(u64) + Sync)) -> bool {
+        self.threads.install(|| self.passes.advance(progress))
+    }
+
+    /// The image of all samples so far.
+    pub fn image(&self) -> Image {
+        let (film, report) = (self.passes.film(), self.passes.report());
+        let provenance = provenance(&self.origin, &self.plan, self.passes.samples(), &report);
+        Image { film, report, because: self.plan.because.clone(), view: self.view.clone(), provenance }
+    }
+
+    /// Renders all passes that are left; `progress` as of [`advance`](Self::advance).
+    pub fn run(mut self, progress: &(dyn Fn(u64) + Sync)) -> Image {
+        while self.advance(progress) {}
+        self.image()
     }
 }
 
@@ -229,7 +264,7 @@ impl Image {
     }
 }
 
-fn provenance(origin: &Origin, plan: &Plan, non_finite: u64) -> Provenance {
+fn provenance(origin: &Origin, plan: &Plan, samples: u32, report: &Report) -> Provenance {
     let text = |text: &str| Fact::Text(text.to_owned());
     let method = &plan.method;
     let wavelengths: Vec<String> = method.basis.wavelengths_nm().iter().map(f64::to_string).collect();
@@ -244,9 +279,9 @@ fn provenance(origin: &Origin, plan: &Plan, non_finite: u64) -> Provenance {
         ("projection", text(origin.projection.name())),
         ("transport", text(method.transport.name())),
         ("filter", text(&origin.filter)),
-        ("samples", Fact::Count(method.samples.into())),
+        ("samples", Fact::Count(samples.into())),
         ("seed", text(&method.seed.to_string())),
-        ("nonFinite", Fact::Count(non_finite)),
+        ("nonFinite", Fact::Count(report.non_finite)),
     ];
     Provenance { facts: facts.into_iter().chain(photons).chain(blur).collect() }
 }

@@ -5,8 +5,8 @@
 //! cargo test --test all densities::
 //! ```
 
-mod emitters;
 mod filters;
+mod light_tree;
 mod shapes;
 mod stay_in_range;
 mod warps;

@@ -1,8 +1,9 @@
+use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-use super::View;
-use crate::math::{Bounds, DVec3, Ray};
-use crate::shape::{Cap, Choice, Coordinates, Crossing, Emitters, Shape, Sides, Sighting};
+use super::{Beam, LeSample, LightBounds, LightSample, LightTree};
+use crate::math::{Bounds, Cone, DVec3, Frame, Ray, cosine_hemisphere, unit};
+use crate::shape::{Ball, Cap, Coordinates, Crossing, Shape, ShapeSample, Sides, SurfacePoint};
 use crate::spectrum::Quantity;
 
 /// A surface that shines: an object whose material emits.
@@ -16,28 +17,29 @@ pub struct Area<S> {
     pub radiance: S,
     /// The sides that show it.
     pub sides: Sides,
-    /// Whether next-event estimation aims at it: finite `emissive` surfaces. Planes and glowing glass are only met.
-    pub aimed_at: bool,
+    /// Whether next-event estimation samples it: finite `emissive` surfaces. Planes and glowing glass are only met by chance.
+    pub is_sampled: bool,
     /// Where its points lie in the image that it shows, if it shows one.
     pub coordinates: Option<Arc<Coordinates>>,
-    /// The parts of a shape of several, one of which is aimed at.
-    parts: Option<Arc<Emitters>>,
+    /// The parts of a shape of several, one of which is sampled.
+    parts: Option<Arc<LightTree>>,
     /// The box from whose outside no backs are seen.
     closed: Option<Bounds>,
     /// All that is seen of a sphere, if that is a small part.
-    seen: Option<Cap>,
+    visible_cap: Option<Cap>,
 }
 
-/// The part of a sphere below which that part is aimed at, and not the cone in which the whole is seen.
+/// The part of a sphere below which that part is sampled, and not the cone in which the whole is seen.
 const SMALL: f64 = 0.125;
 
 impl<S> Area<S> {
     /// The light that an object is.
-    pub fn new(shape: Arc<Shape>, object: u32, radiance: S, sides: Sides, aimed_at: bool) -> Self {
-        let parts = if aimed_at { shape.parts() } else { Vec::new() };
-        let parts = (parts.len() > 1).then(|| Arc::new(Emitters::new(&parts)));
+    pub fn new(shape: Arc<Shape>, object: u32, radiance: S, sides: Sides, is_sampled: bool) -> Self {
+        let count = if is_sampled { shape.part_count() } else { 0 };
+        let parts: Vec<_> = (0..count).filter_map(|part| Some(LightBounds::of_part(&shape.part(part)?))).collect();
+        let parts = (parts.len() > 1).then(|| Arc::new(LightTree::new(&parts)));
         let closed = if shape.is_closed() { shape.bounds() } else { None };
-        Self { shape, object, radiance, sides, aimed_at, coordinates: None, parts, closed, seen: None }
+        Self { shape, object, radiance, sides, is_sampled, coordinates: None, parts, closed, visible_cap: None }
     }
 
     pub(super) fn map<T>(&self, convert: &mut impl FnMut(Quantity, &S) -> T) -> Area<T> {
@@ -46,27 +48,22 @@ impl<S> Area<S> {
             object: self.object,
             radiance: convert(Quantity::Emission, &self.radiance),
             sides: self.sides,
-            aimed_at: self.aimed_at,
+            is_sampled: self.is_sampled,
             coordinates: self.coordinates.clone(),
             parts: self.parts.clone(),
             closed: self.closed,
-            seen: self.seen,
+            visible_cap: self.visible_cap,
         }
     }
 
-    /// Whether knowing where it is really seen could help: of a sphere that may be a tip.
-    pub fn may_hide(&self) -> bool {
-        self.aimed_at && matches!(*self.shape, Shape::Sphere(_))
+    /// Whether all that is seen of it may be a cap, so that learning it could help: of a sphere.
+    pub fn may_show_a_cap(&self) -> bool {
+        self.is_sampled && matches!(*self.shape, Shape::Sphere(_))
     }
 
-    /// Tells the light the unit normals at which paths met it by chance: if they lie close together, it is aimed at there.
-    pub fn remember(&mut self, normals: &[DVec3]) {
-        self.seen = Cap::around(normals).filter(|cap| cap.share() < SMALL);
-    }
-
-    /// Whether one of several parts is chosen to be aimed at, which uses up digits of a random number.
-    pub fn has_parts(&self) -> bool {
-        self.parts.is_some()
+    /// Tells the light the unit normals at which paths met it by chance: if they lie close together, it is sampled there.
+    pub fn learn_visible_cap(&mut self, normals: &[DVec3]) {
+        self.visible_cap = Cap::around(normals).filter(|cap| cap.share() < SMALL);
     }
 
     /// Whether the backs of parts may be met first: never from outside of a closed body.
@@ -75,50 +72,118 @@ impl<S> Area<S> {
         self.sides == Sides::Both && !self.closed.is_some_and(outside)
     }
 
-    pub(super) fn aim(&self, from: DVec3, normal: DVec3, u: [f64; 2]) -> Option<Sighting> {
-        if let Some(cap) = &self.seen {
-            return self.shape.aim_at_cap(cap, from, u);
+    /// Whether one of several parts is drawn first, which uses up digits of a random number.
+    pub(super) fn has_parts(&self) -> bool {
+        self.parts.is_some()
+    }
+
+    fn sample(&self, from: DVec3, normal: DVec3, u: [f64; 2]) -> Option<ShapeSample> {
+        if let Some(cap) = &self.visible_cap {
+            return self.shape.sample_cap(cap, from, u);
         }
-        let Some(parts) = &self.parts else { return self.shape.aim(from, u) };
-        let Choice { emitter, probability, u: along } = parts.choose(from, normal, self.shows_backs(from), u[0])?;
-        let sighting = self.shape.aim_at_part(emitter, from, [along, u[1]])?;
-        Some(Sighting { density: sighting.density.map(|density| density.times(probability)), ..sighting })
+        let Some(parts) = &self.parts else { return self.shape.sample(from, u) };
+        let part = parts.sample(from, normal, self.shows_backs(from), u[0])?;
+        Some(self.shape.sample_part(part.index as u32, from, [part.u, u[1]])?.times(part.probability))
     }
 
     /// Looks for the light exactly as a ray that happens to meet it would: no distance needs a tolerance.
-    pub(super) fn view(&self, ray: &Ray, normal: DVec3, sighting: &Sighting) -> Option<View> {
-        let crossing = self.shape.intersect(ray, f64::INFINITY)?;
-        if sighting.part.is_some_and(|part| part != crossing.part) {
+    pub(super) fn sample_li(&self, from: &SurfacePoint, normal: DVec3, u: [f64; 2]) -> Option<LightSample> {
+        let sample = self.sample(from.position, normal, u)?;
+        let ray = from.leave(sample.direction);
+        let crossing = self.shape.intersect(&ray, f64::INFINITY)?;
+        if sample.part.is_some_and(|part| part != crossing.part) {
             return None;
         }
-        let point = self.shape.point(ray, &crossing);
+        let point = self.shape.point(&ray, &crossing);
         let cos = point.normal.dot(ray.direction);
-        let pdf = match sighting.density {
+        if !self.sides.shine(cos < 0.0) {
+            return None;
+        }
+        let pdf = match sample.density {
             Some(density) => usable(density.toward(crossing.t, cos.abs()))?,
-            None => self.pdf(ray, normal, &crossing)?,
+            None => self.pdf_at(&ray, normal, &crossing)?,
         };
         let uv = self
             .coordinates
             .as_ref()
             .map_or([0.0; 2], |coordinates| coordinates.at(&self.shape, &crossing, point.position));
-        let view = View { distance: crossing.t, object: Some(self.object), pdf: Some(pdf), factor: 1.0, uv };
-        self.sides.shine(cos < 0.0).then_some(view)
+        Some(LightSample { ray, distance: crossing.t, object: Some(self.object), pdf: Some(pdf), factor: 1.0, uv })
     }
 
-    /// Density with which the light is aimed at, from a surface of the given normal, along a ray that meets it; none where
-    /// it is seen exactly edge-on.
-    pub fn pdf(&self, ray: &Ray, normal: DVec3, crossing: &Crossing) -> Option<f64> {
-        usable(match (&self.seen, &self.parts) {
-            (Some(cap), _) => self.shape.pdf_at_cap(cap, ray, crossing),
-            (None, None) => self.shape.pdf_toward(ray, crossing),
+    /// Density per steradian with which the light is sampled, from a surface of the given unit normal, along a ray that meets it
+    /// first at a crossing; none where it is seen exactly edge-on.
+    pub fn pdf_at(&self, ray: &Ray, normal: DVec3, crossing: &Crossing) -> Option<f64> {
+        usable(match (&self.visible_cap, &self.parts) {
+            (Some(cap), _) => self.shape.pdf_cap(cap, ray, crossing),
+            (None, None) => self.shape.pdf(ray, crossing),
             (None, Some(parts)) => {
-                let both = self.shows_backs(ray.origin);
-                let probability = parts.probability(crossing.part as usize, ray.origin, normal, both);
-                if probability == 0.0 { 0.0 } else { probability * self.shape.pdf_of_part(ray, crossing) }
+                let two_sided = self.shows_backs(ray.origin);
+                let probability = parts.probability(crossing.part as usize, ray.origin, normal, two_sided);
+                if probability == 0.0 { 0.0 } else { probability * self.shape.pdf_part(ray, crossing) }
             }
         })
     }
+
+    /// Whether photons can be sent from it: not if it shows an image, since it does not send the same from all its points, nor
+    /// from an instance, whose points are drawn by their areas before it was placed.
+    pub(super) fn sends_photons(&self) -> bool {
+        self.coordinates.is_none() && !matches!(*self.shape, Shape::Instance(_))
+    }
+
+    pub(super) fn beam(&self, ball: &Ball) -> Beam {
+        let bounds = LightBounds::of_shape(&self.shape, self.sides == Sides::Both);
+        let size = bounds.filter(|_| self.sends_photons()).map_or(0.0, |bounds| bounds.intensity);
+        let own = self.shape.ball();
+        let from = own.map_or(ball.center, |own| own.center);
+        let is_apart = own.is_some_and(|own| (own.center - ball.center).length() > own.radius + ball.radius);
+        Beam { ball: *ball, cone: Cone::ALL, flux: size * TAU * ball.cone_from(from).one_minus_cos, is_apart }
+    }
+
+    /// A photon from a point of the surface to the ball: in the cone that this fills; by its cosine where the point is inside the
+    /// ball.
+    pub(super) fn sample_le(&self, ball: &Ball, [a, b]: [f64; 2], u: [f64; 2]) -> Option<LeSample> {
+        let point = self.shape.sample_emission(ball, u)?;
+        let cone = ball.cone_from(point.position);
+        let direction = if cone.is_all() {
+            let front = self.front();
+            let (side, a) =
+                if a < front { (point.normal, a / front) } else { (-point.normal, (a - front) / (1.0 - front)) };
+            unit(Frame::about(side).to_world(cosine_hemisphere([a, b])))
+        } else {
+            cone.sample([a, b])?
+        };
+        let cos = point.normal.dot(direction);
+        let sample = LeSample { ray: point.leave(direction), factor: cos.abs(), surface: Some(point) };
+        self.sides.shine(cos > 0.0).then_some(sample)
+    }
+
+    /// How densely `sample_le` draws a photon for a ball from places of a density of their own, per unit of area and steradian; 0
+    /// of a way that does not lead there.
+    pub(super) fn pdf_le(&self, ball: &Ball, sample: &LeSample, guide: impl Fn([f64; 2]) -> f64) -> f64 {
+        let Some(point) = &sample.surface else { return 0.0 };
+        let (cone, direction) = (ball.cone_from(point.position), sample.ray.direction);
+        let along = if cone.is_all() {
+            let cos = point.normal.dot(direction);
+            let side = if cos > 0.0 { self.front() } else { 1.0 - self.front() };
+            side * cos.abs() / PI
+        } else {
+            cone.pdf(direction, guide)
+        };
+        along * self.shape.pdf_emission(ball, point)
+    }
+
+    /// How often a point inside the ball that photons are sent to sends one from its front.
+    fn front(&self) -> f64 {
+        match (self.sides, self.shape.is_closed()) {
+            (Sides::Front, _) => 1.0,
+            (Sides::Both, true) => OUTWARD,
+            (Sides::Both, false) => 0.5,
+        }
+    }
 }
+
+/// How often the outer side of a closed lamp around which an object is built sends a photon, and not the inner one.
+const OUTWARD: f64 = 0.875;
 
 fn usable(pdf: f64) -> Option<f64> {
     Some(pdf).filter(|pdf| pdf.is_finite() && *pdf > 0.0)

@@ -1,9 +1,9 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use super::{Panorama, View};
-use crate::math::{DMat3, DVec3, Frame, Ray, cosine_hemisphere, unit};
-use crate::shape::Sighting;
+use super::{LightSample, Panorama};
+use crate::math::{DMat3, DVec3, Frame, cosine_hemisphere, unit};
+use crate::shape::SurfacePoint;
 use crate::spectrum::{Curve, CurveKind, Draw, Lanes, Placement, Quantity, Table, Texture};
 
 /// Light from all directions, where rays miss everything: the same from everywhere, or an image.
@@ -51,27 +51,28 @@ impl<S> Environment<S> {
         Environment { radiance: convert(Quantity::Emission, &self.radiance), image }
     }
 
-    /// Draws directions by the image's brightness; without one by their cosine to the normal, as the irradiance of an even
-    /// sky weighs them.
-    pub(super) fn aim(&self, normal: DVec3, u: [f64; 2]) -> Sighting {
-        let direction = match &self.image {
-            Some(sky) => sky.turn.transpose() * sky.panorama.aim(u),
-            None => Frame::about(normal).to_world(cosine_hemisphere(u)),
+    /// Draws directions by the image's brightness; without one by their cosine to the unit normal of a surface, as the
+    /// irradiance of an even sky weighs them.
+    pub(super) fn sample_li(&self, from: &SurfacePoint, normal: DVec3, u: [f64; 2]) -> Option<LightSample> {
+        let (direction, pdf) = match &self.image {
+            Some(sky) => {
+                let (direction, pdf) = sky.panorama.sample(u);
+                (unit(sky.turn.transpose() * direction), pdf)
+            }
+            None => {
+                let direction = unit(Frame::about(normal).to_world(cosine_hemisphere(u)));
+                (direction, self.pdf(direction, normal))
+            }
         };
-        Sighting { direction: unit(direction), part: None, density: None }
+        (pdf > 0.0).then(|| LightSample::of_sky(from.leave(direction), Some(pdf), 1.0))
     }
 
-    /// Density with which `aim` draws the direction of a ray, at a surface of the given normal.
-    pub fn pdf(&self, ray: &Ray, normal: DVec3) -> f64 {
+    /// Density per steradian with which `sample_li` draws a direction, at a surface of the given unit normal.
+    pub(super) fn pdf(&self, direction: DVec3, normal: DVec3) -> f64 {
         match &self.image {
-            Some(sky) => sky.panorama.pdf(sky.turn * ray.direction),
-            None => ray.direction.dot(normal).max(0.0) / PI,
+            Some(sky) => sky.panorama.pdf(sky.turn * direction),
+            None => direction.dot(normal).max(0.0) / PI,
         }
-    }
-
-    pub(super) fn view(&self, ray: &Ray, normal: DVec3) -> Option<View> {
-        let pdf = Some(self.pdf(ray, normal)).filter(|pdf| *pdf > 0.0)?;
-        Some(View { distance: f64::INFINITY, object: None, pdf: Some(pdf), factor: 1.0, uv: [0.0; 2] })
     }
 
     /// The mean over all directions of the factor on `radiance`.

@@ -1,24 +1,33 @@
-//! Floor 2: how light is aimed at.
+//! Floor 2: how lights are sampled.
 //!
-//! Everything that shines is a [`Light`], whether rays meet it or next-event estimation aims at it; both use the same
-//! radiance and the same density, so that their weights add up to 1.
+//! Everything that shines is a [`Light`]. Next-event estimation samples one from a point (`sample_li`) or asks how densely it
+//! would have sampled a direction that was drawn by other means (`pdf_li`), so that the weights of both add up to 1. Photons
+//! start from lights (`sample_le`, `pdf_le`). Of many lights a [`LightSampler`] draws one.
 
 mod area;
+mod bounds;
 mod environment;
 mod panorama;
 mod point;
+mod sample;
+mod sampler;
 mod spot;
 mod sun;
+mod tree;
 
 pub use area::Area;
+pub use bounds::{LightBounds, NormalCone};
 pub use environment::{Environment, Sky};
 pub use panorama::Panorama;
 pub use point::Point;
+pub use sample::{Beam, LeSample, LightSample};
+pub use sampler::{LightSampler, SampledLight};
 pub use spot::Spot;
 pub use sun::Sun;
+pub use tree::LightTree;
 
-use crate::math::{Bounds, DVec3, Ray};
-use crate::shape::{Emitter, Facing, Sides, Sighting};
+use crate::math::{DVec3, Ray};
+use crate::shape::{Ball, Crossing, Sides, SurfacePoint};
 use crate::spectrum::{Draw, Lanes, Quantity, Table};
 
 /// Number of a light in its scene.
@@ -39,23 +48,8 @@ pub enum Light<S> {
     Sun(Sun<S>),
 }
 
-/// A light as seen along one ray.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct View {
-    /// Distance to the light; anything nearer hides it.
-    pub distance: f64,
-    /// The object the light is, which cannot hide itself.
-    pub object: Option<u32>,
-    /// Density per steradian with which `aim` draws the ray's direction; none if it can draw no other.
-    pub pdf: Option<f64>,
-    /// Factor on the light's table that makes radiance (or, without a pdf, irradiance at right angles) of it.
-    pub factor: f64,
-    /// Where it is seen on the image that a surface shows, if it shows one.
-    pub uv: [f64; 2],
-}
-
 impl<S> Light<S> {
-    /// The same light with its spectrum converted.
+    /// The light with its spectrum converted.
     pub fn map<T>(&self, convert: &mut impl FnMut(Quantity, &S) -> T) -> Light<T> {
         match self {
             Self::Area(area) => Light::Area(area.map(convert)),
@@ -77,35 +71,83 @@ impl<S> Light<S> {
         }
     }
 
-    /// Whether next-event estimation aims at it; otherwise it shines by being met.
-    pub fn is_aimed_at(&self) -> bool {
+    /// Whether next-event estimation samples it; otherwise it shines by being met.
+    pub fn is_sampled(&self) -> bool {
+        if let Self::Area(area) = self { area.is_sampled } else { true }
+    }
+
+    /// Whether one of several parts is drawn before a direction, which uses up digits of the first random number.
+    pub fn has_parts(&self) -> bool {
+        if let Self::Area(area) = self { area.has_parts() } else { false }
+    }
+
+    /// A ray from a point of a surface toward the light; none where it does not shine that way. `normal` is the surface's unit
+    /// normal on the lit side, toward which most samples lead.
+    pub fn sample_li(&self, from: &SurfacePoint, normal: DVec3, u: [f64; 2]) -> Option<LightSample> {
         match self {
-            Self::Area(area) => area.aimed_at,
-            Self::Point(_) | Self::Spot(_) | Self::Environment(_) | Self::Sun(_) => true,
+            Self::Area(area) => area.sample_li(from, normal, u),
+            Self::Point(point) => LightSample::of_point(from, point.position.into(), |_| 1.0),
+            Self::Spot(spot) => LightSample::of_point(from, spot.position.into(), |direction| spot.part(direction)),
+            Self::Environment(environment) => environment.sample_li(from, normal, u),
+            Self::Sun(sun) => sun.sample_li(from, u),
         }
     }
 
-    /// A direction from a surface toward the light; `normal` is the surface's unit normal on the lit side.
-    pub fn aim(&self, from: DVec3, normal: DVec3, u: [f64; 2]) -> Option<Sighting> {
+    /// Density per steradian with which `sample_li` draws the direction of a ray that leaves a surface of the given unit normal;
+    /// none if it cannot. `crossing` is where the ray first meets a surface that shines, if that is known.
+    pub fn pdf_li(&self, ray: &Ray, normal: DVec3, crossing: Option<&Crossing>) -> Option<f64> {
         match self {
-            Self::Area(area) => area.aim(from, normal, u),
-            Self::Point(point) => point.aim(from),
-            Self::Spot(spot) => spot.aim(from),
-            Self::Environment(environment) => Some(environment.aim(normal, u)),
-            Self::Sun(sun) => Some(sun.aim(u)),
+            Self::Area(area) if area.is_sampled => match crossing {
+                Some(crossing) => area.pdf_at(ray, normal, crossing),
+                None => area.pdf_at(ray, normal, &area.shape.intersect(ray, f64::INFINITY)?),
+            },
+            Self::Environment(environment) => Some(environment.pdf(ray.direction, normal)),
+            Self::Sun(sun) => sun.pdf(ray),
+            Self::Area(_) | Self::Point(_) | Self::Spot(_) => None,
         }
     }
 
-    /// The light along a ray that leaves a surface of the given normal, if it shines that way.
-    ///
-    /// `sighting` is what `aim` drew.
-    pub fn view(&self, ray: &Ray, normal: DVec3, sighting: &Sighting) -> Option<View> {
+    /// Whether photons can be sent from it.
+    pub fn sends_photons(&self) -> bool {
         match self {
-            Self::Area(area) => area.view(ray, normal, sighting),
-            Self::Point(point) => Some(point.view(ray)),
-            Self::Spot(spot) => Some(spot.view(ray)),
-            Self::Environment(environment) => environment.view(ray, normal),
-            Self::Sun(sun) => sun.view(ray),
+            Self::Area(area) => area.sends_photons(),
+            Self::Environment(_) => false,
+            Self::Point(_) | Self::Spot(_) | Self::Sun(_) => true,
+        }
+    }
+
+    /// How photons are sent to a ball; none if the light sends none there.
+    pub fn beam(&self, ball: &Ball) -> Option<Beam> {
+        let beam = match self {
+            Self::Area(area) => area.beam(ball),
+            Self::Point(point) => point.beam(ball),
+            Self::Spot(spot) => spot.beam(ball),
+            Self::Sun(sun) => sun.beam(ball),
+            Self::Environment(_) => return None,
+        };
+        Some(beam).filter(|beam| beam.flux > 0.0)
+    }
+
+    /// The start of a photon for a place of the unit square, which stands for its way, and two more random numbers; none where the
+    /// light does not shine.
+    pub fn sample_le(&self, beam: &Beam, guide_uv: [f64; 2], u: [f64; 2]) -> Option<LeSample> {
+        match self {
+            Self::Area(area) => area.sample_le(&beam.ball, guide_uv, u),
+            Self::Point(point) => LeSample::of_point(point.position.into(), &beam.cone, guide_uv, |_| 1.0),
+            Self::Spot(spot) => LeSample::of_point(spot.position.into(), &beam.cone, guide_uv, |way| spot.part(way)),
+            Self::Sun(sun) => sun.sample_le(&beam.ball, guide_uv, u),
+            Self::Environment(_) => None,
+        }
+    }
+
+    /// How densely `sample_le` draws the start of a photon of this light for a beam, which may be another than the photon's own,
+    /// from places of the unit square of a density of their own; 0 if it cannot.
+    pub fn pdf_le(&self, beam: &Beam, sample: &LeSample, guide: impl Fn([f64; 2]) -> f64) -> f64 {
+        match self {
+            Self::Area(area) => area.pdf_le(&beam.ball, sample, guide),
+            Self::Point(_) | Self::Spot(_) => beam.cone.pdf(sample.ray.direction, guide),
+            Self::Sun(sun) => sun.pdf_le(&beam.ball, &sample.ray, guide),
+            Self::Environment(_) => 0.0,
         }
     }
 
@@ -148,21 +190,15 @@ impl Light<Table> {
         }
     }
 
-    /// The light as one of many that may be aimed at; none if it is a sky, or infinite.
-    pub fn emitter(&self) -> Option<Emitter> {
-        let emitter = match self {
-            Self::Area(area) => area.shape.emitter(area.sides == Sides::Both)?,
-            Self::Point(point) => {
-                let bounds = Bounds::around([DVec3::from(point.position)]);
-                Emitter { bounds, facing: Facing::ALL, both: false, intensity: 1.0 }
-            }
-            // A spot that shines elsewhere is found dark when it is aimed at.
-            Self::Spot(spot) => {
-                let bounds = Bounds::around([DVec3::from(spot.position)]);
-                Emitter { bounds, facing: Facing::ALL, both: false, intensity: 1.0 }
-            }
+    /// Where the light is and how much it shines, as one of many; none of one that is infinite.
+    pub fn bounds(&self) -> Option<LightBounds> {
+        let bounds = match self {
+            Self::Area(area) => LightBounds::of_shape(&area.shape, area.sides == Sides::Both)?,
+            Self::Point(point) => LightBounds::of_point(point.position.into()),
+            // A spot that shines elsewhere is found dark when it is sampled.
+            Self::Spot(spot) => LightBounds::of_point(spot.position.into()),
             Self::Environment(_) | Self::Sun(_) => return None,
         };
-        Some(Emitter { intensity: emitter.intensity * self.emission().brightness(), ..emitter })
+        Some(LightBounds { intensity: bounds.intensity * self.emission().brightness(), ..bounds })
     }
 }

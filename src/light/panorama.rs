@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-use crate::math::DVec3;
+use crate::math::{DVec3, Distribution2d};
 use crate::spectrum::Image;
 
 /// An image of all directions: latitude and longitude, +y on top, +z in the center, +x at the left quarter.
@@ -12,47 +12,17 @@ use crate::spectrum::Image;
 /// solid angle of its row, and evenly within it.
 #[derive(Clone, Debug)]
 pub struct Panorama {
-    width: usize,
-    height: usize,
     image: Arc<Image>,
-    /// The probabilities of all rows, summed up; the last is 1.
-    rows: Vec<f64>,
-    /// The probabilities of the texels within each row, summed up; the last of each row is 1.
-    columns: Vec<f64>,
-    mean: f64,
+    texels: Distribution2d,
 }
 
 impl Panorama {
     /// Of an image in which no number is negative or not finite.
     pub fn new(image: Arc<Image>) -> Self {
-        let (width, height) = (image.width(), image.height());
-        let mut panorama =
-            Self { width, height, image, rows: Vec::new(), columns: vec![0.0; width * height], mean: 0.0 };
-        let mut total = 0.0;
-        for row in 0..height {
-            let mut sum = 0.0;
-            for column in 0..width {
-                sum += panorama.brightness(column, row);
-                panorama.columns[row * width + column] = sum;
-            }
-            let columns = &mut panorama.columns[row * width..(row + 1) * width];
-            if sum > 0.0 {
-                columns.iter_mut().for_each(|x| *x /= sum);
-            } else {
-                columns.iter_mut().enumerate().for_each(|(i, x)| *x = (i + 1) as f64 / width as f64);
-            }
-            columns[width - 1] = 1.0;
-            total += sum * (panorama.cos_of_edge(row) - panorama.cos_of_edge(row + 1));
-            panorama.rows.push(total);
-        }
-        panorama.mean = total / (2 * width) as f64;
-        if total > 0.0 {
-            panorama.rows.iter_mut().for_each(|x| *x /= total);
-        } else {
-            panorama.rows = (0..height).map(|row| 0.5 * (1.0 - panorama.cos_of_edge(row + 1))).collect();
-        }
-        panorama.rows[height - 1] = 1.0;
-        panorama
+        let size @ [_, height] = [image.width(), image.height()];
+        let by_row = |row| cos_of_edge(row, height) - cos_of_edge(row + 1, height);
+        let texels = Distribution2d::new(size, |place| brightness(&image, place), by_row);
+        Self { image, texels }
     }
 
     /// The image.
@@ -62,32 +32,7 @@ impl Panorama {
 
     /// The mean of its brightness, a third of red, green and blue, over all directions.
     pub fn mean(&self) -> f64 {
-        self.mean
-    }
-
-    /// The mean over a texel of what is shown there: it and its neighbors, weighed as linear interpolation does.
-    fn brightness(&self, column: usize, row: usize) -> f64 {
-        const SHARES: [f64; 3] = [0.125, 0.75, 0.125];
-        let mut sum = 0.0;
-        for (i, by_row) in SHARES.iter().enumerate() {
-            for (j, by_column) in SHARES.iter().enumerate() {
-                let texel = self.texel(column as isize + j as isize - 1, row as isize + i as isize - 1);
-                sum += by_row * by_column * texel.iter().map(|&x| f64::from(x)).sum::<f64>() / 3.0;
-            }
-        }
-        sum
-    }
-
-    /// A texel; columns go around, and beyond the top and bottom row come those rows again.
-    fn texel(&self, column: isize, row: isize) -> [f32; 3] {
-        let column = column.rem_euclid(self.width as isize) as usize;
-        let row = row.clamp(0, self.height as isize - 1) as usize;
-        self.image.texel(column, row)
-    }
-
-    /// Cosine of the angle from the top to the upper edge of a row.
-    fn cos_of_edge(&self, row: usize) -> f64 {
-        libm::cos(PI * row as f64 / self.height as f64)
+        self.texels.total() / (2 * self.image.width()) as f64
     }
 
     /// Where a direction lies in the image, in texels from its upper left corner.
@@ -96,7 +41,7 @@ impl Panorama {
         let u = 0.5 - libm::atan2(x, z) / TAU;
         // The polar angle by its tangent keeps its digits at the poles.
         let v = libm::atan2((x * x + z * z).sqrt(), y) / PI;
-        [u * self.width as f64, v * self.height as f64]
+        [u * self.image.width() as f64, v * self.image.height() as f64]
     }
 
     /// What is seen in a direction, linear Rec.709.
@@ -104,7 +49,7 @@ impl Panorama {
         let [x, y] = self.place(direction).map(|x| x - 0.5);
         let (left, above) = (x.floor(), y.floor());
         let (right, below) = ((x - left) as f32, (y - above) as f32);
-        let texel = |i: isize, j: isize| self.texel(left as isize + i, above as isize + j);
+        let texel = |i: isize, j: isize| texel(&self.image, left as isize + i, above as isize + j);
         let [a, b, c, d] = [texel(0, 0), texel(1, 0), texel(0, 1), texel(1, 1)];
         std::array::from_fn(|i| {
             let (upper, lower) = (a[i] + right * (b[i] - a[i]), c[i] + right * (d[i] - c[i]));
@@ -112,38 +57,58 @@ impl Panorama {
         })
     }
 
-    /// A direction for two random numbers.
-    pub fn aim(&self, [u, v]: [f64; 2]) -> DVec3 {
-        let (row, down) = choose(&self.rows, v);
-        let (column, across) = choose(&self.columns[row * self.width..(row + 1) * self.width], u);
-        let (top, bottom) = (self.cos_of_edge(row), self.cos_of_edge(row + 1));
-        let y = top + down * (bottom - top);
-        let angle = TAU * (0.5 - (column as f64 + across) / self.width as f64);
+    /// A direction for two random numbers, not turned into the world, and its density per steradian.
+    pub(super) fn sample(&self, u: [f64; 2]) -> (DVec3, f64) {
+        let [column, row] = self.texels.sample(u);
+        let (top, bottom) =
+            (cos_of_edge(row.index, self.image.height()), cos_of_edge(row.index + 1, self.image.height()));
+        let y = top + row.u * (bottom - top);
+        let angle = TAU * (0.5 - (column.index as f64 + column.u) / self.image.width() as f64);
         let radius = (1.0 - y * y).max(0.0).sqrt();
         let (sin, cos) = libm::sincos(angle);
-        DVec3::new(radius * sin, y, radius * cos)
+        (DVec3::new(radius * sin, y, radius * cos), self.density([column.index, row.index]))
     }
 
-    /// Density per steradian with which `aim` draws a direction.
-    pub fn pdf(&self, direction: DVec3) -> f64 {
+    /// Density per steradian with which `sample` draws a direction.
+    pub(super) fn pdf(&self, direction: DVec3) -> f64 {
+        self.density(self.texel_of(direction))
+    }
+
+    fn density(&self, texel: [usize; 2]) -> f64 {
+        let (width, height) = (self.image.width(), self.image.height());
+        let solid_angle = TAU / width as f64 * (cos_of_edge(texel[1], height) - cos_of_edge(texel[1] + 1, height));
+        self.texels.probability(texel) / solid_angle
+    }
+
+    /// Column and row of the texel in which a direction lies.
+    fn texel_of(&self, direction: DVec3) -> [usize; 2] {
         let [x, y] = self.place(direction);
-        let (column, row) = ((x as usize).min(self.width - 1), (y as usize).min(self.height - 1));
-        let by_row = probability(&self.rows, row);
-        let by_column = probability(&self.columns[row * self.width..(row + 1) * self.width], column);
-        let solid_angle = TAU / self.width as f64 * (self.cos_of_edge(row) - self.cos_of_edge(row + 1));
-        by_row * by_column / solid_angle
+        [(x as usize).min(self.image.width() - 1), (y as usize).min(self.image.height() - 1)]
     }
 }
 
-/// The entry of a list of summed probabilities in which a number falls, and where in it.
-fn choose(sums: &[f64], u: f64) -> (usize, f64) {
-    let entry = sums.partition_point(|&sum| sum <= u).min(sums.len() - 1);
-    let before = if entry == 0 { 0.0 } else { sums[entry - 1] };
-    (entry, ((u - before) / (sums[entry] - before)).clamp(0.0, 1.0))
+/// The mean over a texel of what is shown there: it and its neighbors, weighed as linear interpolation does.
+fn brightness(image: &Image, [column, row]: [usize; 2]) -> f64 {
+    const SHARES: [f64; 3] = [0.125, 0.75, 0.125];
+    let mut sum = 0.0;
+    for (i, by_row) in SHARES.iter().enumerate() {
+        for (j, by_column) in SHARES.iter().enumerate() {
+            let texel = texel(image, column as isize + j as isize - 1, row as isize + i as isize - 1);
+            sum += by_row * by_column * texel.iter().map(|&x| f64::from(x)).sum::<f64>() / 3.0;
+        }
+    }
+    sum
 }
 
-fn probability(sums: &[f64], entry: usize) -> f64 {
-    sums[entry] - if entry == 0 { 0.0 } else { sums[entry - 1] }
+/// A texel; columns go around, and beyond the top and bottom row come those rows again.
+fn texel(image: &Image, column: isize, row: isize) -> [f32; 3] {
+    let column = column.rem_euclid(image.width() as isize) as usize;
+    image.texel(column, row.clamp(0, image.height() as isize - 1) as usize)
+}
+
+/// Cosine of the angle from the top to the upper edge of one of `height` rows.
+fn cos_of_edge(row: usize, height: usize) -> f64 {
+    libm::cos(PI * row as f64 / height as f64)
 }
 
 #[cfg(test)]
@@ -177,8 +142,8 @@ mod tests {
     fn g3_every_sample_of_an_even_image_stands_for_the_whole_sphere() {
         let panorama = panorama(64, &[[1.0; 3]; 64 * 32]);
         for u in grid(200).chain([[0.0, 0.0], [1.0 - 1e-16, 1.0 - 1e-16], [0.5, 1e-18]]) {
-            let direction = panorama.aim(u);
-            let weight = f64::from(panorama.color(direction)[0]) / panorama.pdf(direction);
+            let (direction, pdf) = panorama.sample(u);
+            let weight = f64::from(panorama.color(direction)[0]) / pdf;
             assert!((weight / (4.0 * PI) - 1.0).abs() < 1e-6, "{u:?}: {weight}");
         }
     }
@@ -204,7 +169,7 @@ mod tests {
         let mut total = 0.0;
         for at in 0..width * height {
             let (row, column) = (at / width, at % width);
-            let (top, bottom) = (panorama.cos_of_edge(row), panorama.cos_of_edge(row + 1));
+            let (top, bottom) = (cos_of_edge(row, height), cos_of_edge(row + 1, height));
             for [u, v] in grid(3) {
                 let (y, angle) = (top + v * (bottom - top), TAU * (0.5 - (column as f64 + u) / width as f64));
                 let radius = (1.0 - y * y).sqrt();
@@ -216,13 +181,13 @@ mod tests {
         // Draws on a fine grid fall into each texel as often as its probability says.
         let mut counts = vec![0_u32; width * height];
         for u in grid(1000) {
-            let [x, y] = panorama.place(panorama.aim(u));
-            counts[(y as usize).min(height - 1) * width + (x as usize).min(width - 1)] += 1;
+            let (direction, pdf) = panorama.sample(u);
+            assert_eq!(pdf, panorama.pdf(direction), "{u:?}");
+            let [column, row] = panorama.texel_of(direction);
+            counts[row * width + column] += 1;
         }
         for (at, &count) in counts.iter().enumerate() {
-            let (row, column) = (at / width, at % width);
-            let columns = &panorama.columns[row * width..(row + 1) * width];
-            let expected = probability(&panorama.rows, row) * probability(columns, column);
+            let expected = panorama.texels.probability([at % width, at / width]);
             assert!((f64::from(count) / 1e6 - expected).abs() < 1.5e-3, "texel {at}: {count} for {expected}");
         }
     }

@@ -1,8 +1,9 @@
+use std::f64::consts::TAU;
+
 use serde::Deserialize;
 
-use super::View;
-use crate::math::{DVec3, Ray};
-use crate::shape::Sighting;
+use super::Beam;
+use crate::shape::Ball;
 use crate::spectrum::Quantity;
 
 /// A point that shines evenly in all directions; rays never meet it.
@@ -25,13 +26,8 @@ impl<S> Point<S> {
         Point { position: self.position, intensity: convert(Quantity::Emission, &self.intensity) }
     }
 
-    pub(super) fn aim(&self, from: DVec3) -> Option<Sighting> {
-        let direction = (DVec3::from(self.position) - from).try_normalize()?;
-        Some(Sighting { direction, part: None, density: None })
-    }
-
-    pub(super) fn view(&self, ray: &Ray) -> View {
-        let squared = (DVec3::from(self.position) - ray.origin).length_squared();
-        View { distance: squared.sqrt(), object: None, pdf: None, factor: 1.0 / squared, uv: [0.0; 2] }
+    pub(super) fn beam(&self, ball: &Ball) -> Beam {
+        let cone = ball.cone_from(self.position.into());
+        Beam { ball: *ball, cone, flux: TAU * cone.one_minus_cos, is_apart: true }
     }
 }

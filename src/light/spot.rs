@@ -1,6 +1,8 @@
-use super::View;
-use crate::math::{DVec3, Ray, unit};
-use crate::shape::Sighting;
+use std::f64::consts::TAU;
+
+use super::Beam;
+use crate::math::{Cone, DVec3, unit};
+use crate::shape::Ball;
 use crate::spectrum::Quantity;
 
 /// A point that shines into a cone, dimmer toward its edge; rays never meet it.
@@ -49,21 +51,20 @@ impl<S> Spot<S> {
         if angle >= outer { 0.0 } else { t * t * (3.0 - 2.0 * t) }
     }
 
-    /// Axis and 1 - cos of the half angle of the cone.
-    pub fn cone(&self) -> (DVec3, f64) {
+    /// The directions that it shines in.
+    pub fn cone(&self) -> Cone {
         let sin = libm::sin(0.25 * self.cone_angle.to_radians());
-        (unit(DVec3::from(self.toward).normalize()), 2.0 * sin * sin)
+        Cone { axis: unit(DVec3::from(self.toward).normalize()), one_minus_cos: 2.0 * sin * sin }
     }
 
-    pub(super) fn aim(&self, from: DVec3) -> Option<Sighting> {
-        let direction = (DVec3::from(self.position) - from).try_normalize()?;
-        (self.part(-direction) > 0.0).then_some(Sighting { direction, part: None, density: None })
-    }
-
-    pub(super) fn view(&self, ray: &Ray) -> View {
-        let squared = (DVec3::from(self.position) - ray.origin).length_squared();
-        let factor = self.part(-ray.direction) / squared;
-        View { distance: squared.sqrt(), object: None, pdf: None, factor, uv: [0.0; 2] }
+    /// Photons fill the narrower one of both cones: the spot's own, and that of the ball.
+    pub(super) fn beam(&self, ball: &Ball) -> Beam {
+        let (toward, own) = (ball.cone_from(self.position.into()), self.cone());
+        let half = |cone: &Cone| libm::acos((1.0 - cone.one_minus_cos).clamp(-1.0, 1.0));
+        let between = libm::acos(toward.axis.dot(own.axis).clamp(-1.0, 1.0));
+        let misses = !toward.is_all() && between > half(&toward) + half(&own);
+        let cone = if own.one_minus_cos < toward.one_minus_cos { own } else { toward };
+        Beam { ball: *ball, cone, flux: if misses { 0.0 } else { TAU * cone.one_minus_cos }, is_apart: true }
     }
 }
 

@@ -3,9 +3,9 @@ use std::sync::OnceLock;
 
 use serde::Deserialize;
 
-use super::View;
-use crate::math::{DVec3, Frame, Ray, cone, one_minus_cos_of_cone, unit};
-use crate::shape::Sighting;
+use super::{Beam, LeSample, LightSample};
+use crate::math::{Cone, DVec3, Frame, Ray, cone, disk_in_square, one_minus_cos_of_cone, square_around_disk, unit};
+use crate::shape::{Ball, SurfacePoint};
 use crate::spectrum::Quantity;
 
 /// A disc in the sky, the same from everywhere: light from a small cone of directions.
@@ -68,17 +68,28 @@ impl<S> Sun<S> {
         })
     }
 
-    /// Uniform over the disc's solid angle.
-    pub(super) fn aim(&self, u: [f64; 2]) -> Sighting {
+    /// A direction toward the disc, uniform over its solid angle.
+    fn sample(&self, u: [f64; 2]) -> DVec3 {
         let Disc { axis, one_minus_cos, .. } = *self.disc();
-        let direction = match self.angular_diameter {
+        match self.angular_diameter {
             0.0 => axis,
             _ => unit(Frame::about(axis).to_world(cone(one_minus_cos, u).0)),
-        };
-        Sighting { direction, part: None, density: None }
+        }
     }
 
-    /// The density with which a ray's direction is aimed at; none beside the disc and for parallel light.
+    pub(super) fn sample_li(&self, from: &SurfacePoint, u: [f64; 2]) -> Option<LightSample> {
+        self.along(from.leave(self.sample(u)))
+    }
+
+    fn along(&self, ray: Ray) -> Option<LightSample> {
+        let (pdf, factor) = match self.angular_diameter {
+            0.0 => (None, 1.0),
+            _ => (Some(self.pdf(&ray)?), self.radiance_factor()),
+        };
+        Some(LightSample::of_sky(ray, pdf, factor))
+    }
+
+    /// Density per steradian with which a ray's direction is drawn; none beside the disc and for parallel light.
     pub fn pdf(&self, ray: &Ray) -> Option<f64> {
         let Disc { axis, one_minus_cos, density, .. } = *self.disc();
         // For unit vectors |d - axis|^2 = 2 (1 - cos), without the rounding of 1 - cos.
@@ -91,12 +102,26 @@ impl<S> Sun<S> {
         self.disc().radiance_factor
     }
 
-    pub(super) fn view(&self, ray: &Ray) -> Option<View> {
-        let (pdf, factor) = match self.angular_diameter {
-            0.0 => (None, 1.0),
-            _ => (Some(self.pdf(ray)?), self.radiance_factor()),
-        };
-        Some(View { distance: f64::INFINITY, object: None, pdf, factor, uv: [0.0; 2] })
+    pub(super) fn beam(&self, ball: &Ball) -> Beam {
+        Beam { ball: *ball, cone: Cone::ALL, flux: PI * ball.radius * ball.radius, is_apart: true }
+    }
+
+    /// A photon through a disc across the ball.
+    pub(super) fn sample_le(&self, ball: &Ball, guide_uv: [f64; 2], u: [f64; 2]) -> Option<LeSample> {
+        let toward = self.sample(u);
+        let [x, y] = disk_in_square(guide_uv)?;
+        let origin = ball.center + Frame::about(toward).to_world(DVec3::new(x, y, 0.0) * ball.radius);
+        let light = self.along(Ray { origin, direction: toward })?;
+        let ray = Ray { origin, direction: -toward };
+        Some(LeSample { ray, factor: light.factor / light.pdf.unwrap_or(1.0), surface: None })
+    }
+
+    /// How densely `sample_le` draws a photon for a ball from places of a density of their own, per unit of area across its way;
+    /// 0 beside the ball.
+    pub(super) fn pdf_le(&self, ball: &Ball, ray: &Ray, guide: impl Fn([f64; 2]) -> f64) -> f64 {
+        let local = Frame::about(-ray.direction).to_local(ray.origin - ball.center) / ball.radius;
+        let place = square_around_disk([local.x, local.y]);
+        place.map_or(0.0, |place| guide(place) / (4.0 * ball.radius * ball.radius))
     }
 }
 
@@ -105,7 +130,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_sun_is_aimed_at_within_its_disc_and_met_nowhere_else() {
+    fn a_sun_is_sampled_within_its_disc_and_met_nowhere_else() {
         let toward = [0.3, 0.8, -0.2];
         for angular_diameter in [1e-6, 0.533, 20.0, 120.0, 180.0] {
             let sun = Sun { toward, angular_diameter, irradiance: (), disc: OnceLock::new() };
@@ -113,7 +138,7 @@ mod tests {
             let density = 1.0 / (2.0 * PI * 2.0 * libm::pow(libm::sin(0.5 * half), 2.0));
             let pdf = |direction: DVec3| sun.pdf(&Ray { origin: DVec3::ZERO, direction });
             for u in (0..64).flat_map(|i| (0..64).map(move |j| [f64::from(i) / 63.001, f64::from(j) / 63.001])) {
-                let found = pdf(sun.aim(u).direction).unwrap_or_else(|| panic!("{angular_diameter} degrees, {u:?}"));
+                let found = pdf(sun.sample(u)).unwrap_or_else(|| panic!("{angular_diameter} degrees, {u:?}"));
                 assert!((found / density - 1.0).abs() < 1e-9, "{angular_diameter} degrees: {found} for {density}");
             }
             let frame = Frame::about(sun.disc().axis);

@@ -42,6 +42,26 @@ impl Lobes {
     pub const fn intersects(self, kinds: Self) -> bool {
         self.intersection(kinds).0 != 0
     }
+
+    /// Whether light leaves in every direction, so that lights can be sampled.
+    pub const fn is_wide(self) -> bool {
+        self.intersects(Self::NON_DELTA)
+    }
+
+    /// Whether what leaves in every direction has no memory of where it came from: `diffuse_bounces` counts it.
+    pub const fn is_diffuse(self) -> bool {
+        self.intersection(Self::NON_DELTA).0 == Self::DIFFUSE_REFLECTION.0
+    }
+
+    /// Whether light crosses the surface in some way.
+    pub const fn is_transmissive(self) -> bool {
+        self.intersects(Self::TRANSMISSION)
+    }
+
+    /// Whether light leaves in single directions, all of it or some: the mirror images and refractions of smooth surfaces.
+    pub const fn has_delta(self) -> bool {
+        self.intersects(Self::DELTA)
+    }
 }
 
 impl<S> Material<S> {
@@ -70,12 +90,12 @@ impl<S> Material<S> {
 
     /// Whether light leaves in every direction, so that lights can be aimed at.
     pub fn scatters_widely(&self) -> bool {
-        self.lobes().intersects(Lobes::NON_DELTA)
+        self.lobes().is_wide()
     }
 
     /// Whether light crosses the surface in some way.
     pub fn lets_through(&self) -> bool {
-        self.lobes().intersects(Lobes::TRANSMISSION)
+        self.lobes().is_transmissive()
     }
 
     /// Whether light also comes from beyond the surface in every direction.
@@ -85,12 +105,12 @@ impl<S> Material<S> {
 
     /// Whether what leaves in every direction has no memory of where it came from: `diffuse_bounces` counts it.
     pub fn is_diffuse(&self) -> bool {
-        self.lobes().intersection(Lobes::NON_DELTA) == Lobes::DIFFUSE_REFLECTION
+        self.lobes().is_diffuse()
     }
 
     /// Whether light leaves in single directions, all of it or some: the mirror images and refractions of smooth surfaces.
     pub fn has_single_directions(&self) -> bool {
-        self.lobes().intersects(Lobes::DELTA)
+        self.lobes().has_delta()
     }
 
     /// How rough it is, where it can be.

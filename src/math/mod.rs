@@ -1,7 +1,10 @@
 //! Floor 0: points, directions and random numbers; knows glam only.
 
 mod bounds;
+mod cone;
+mod distribution;
 mod frame;
+mod neighbors;
 mod offset;
 mod ray;
 mod sampler;
@@ -9,12 +12,18 @@ mod transform;
 mod warp;
 
 pub use bounds::Bounds;
+pub use cone::Cone;
+pub use distribution::{BELOW_ONE, DiscreteSample, Distribution, Distribution2d};
 pub use frame::Frame;
+pub use neighbors::neighbors;
 pub use offset::{UNIT_ROUNDOFF, gamma, offset_origin};
 pub use ray::{Ray, unit};
 pub use sampler::{BranchKey, Sampler};
 pub use transform::Transform;
-pub use warp::{ball_surface, cone, cosine_hemisphere, disk, one_minus_cos_of_cone, triangle_coordinates};
+pub use warp::{
+    ball_surface, cone, cosine_hemisphere, disk, disk_in_square, one_minus_cos_of_cone, square_around_disk,
+    triangle_coordinates,
+};
 
 /// Points and directions are 64-bit everywhere: see the rows S1 to X7 of `tests/stability_shapes.rs`.
 pub use glam::{DMat3, DVec2, DVec3};

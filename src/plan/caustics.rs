@@ -4,13 +4,13 @@ use std::f64::consts::TAU;
 
 use super::in_number;
 use super::worth::{Worth, weigh};
-use crate::light::{Light, LightId};
+use crate::light::{Light, LightBounds, LightId};
 use crate::material::Material;
 use crate::math::{DVec2, DVec3, one_minus_cos_of_cone};
 use crate::scene::{CausticsText, Scene};
 use crate::shape::Sides;
 use crate::spectrum::Curve;
-use crate::trace::{LightPass, Transport, World, is_photon_source, is_photon_target, seen_photons};
+use crate::trace::{LightPass, Transport, World, is_photon_target, seen_photons};
 
 /// Solid angle in steradians from which on rays meet a lamp often enough: there photons and chance cost the same (`benches/rooms.rs`).
 const SMALL: f64 = 0.5;
@@ -61,9 +61,9 @@ pub(super) fn light_pass(scene: &Scene<Curve>, untaught: &World) -> (Option<Ligh
     }
     let mut small = Vec::new();
     let mut large = Vec::new();
-    for (id, light) in scene.lights.iter().enumerate().filter(|(_, light)| light.is_aimed_at()) {
+    for (id, light) in scene.lights.iter().enumerate().filter(|(_, light)| light.is_sampled()) {
         match solid_angle(light, &places) {
-            Some(size) if size < SMALL && is_photon_source(light) => small.push((id, size)),
+            Some(size) if size < SMALL && light.sends_photons() => small.push((id, size)),
             Some(size) => large.push((id, size)),
             None => {}
         }
@@ -152,7 +152,7 @@ pub(super) fn small_lights(scene: &Scene<Curve>, places: &[DVec3], small: f64) -
     let places = thinned(places.to_vec(), scene.lights.len());
     let is_small = |light: &Light<Curve>| solid_angle(light, &places).is_some_and(|size| size < small);
     let lights = scene.lights.iter().enumerate();
-    let wanted = lights.filter(|(_, light)| light.is_aimed_at() && is_photon_source(light) && is_small(light));
+    let wanted = lights.filter(|(_, light)| light.is_sampled() && light.sends_photons() && is_small(light));
     wanted.map(|(id, _)| id).collect()
 }
 
@@ -215,10 +215,10 @@ fn solid_angle(light: &Light<Curve>, places: &[DVec3]) -> Option<f64> {
         Light::Environment(_) => None,
         Light::Area(area) => {
             let ball = area.shape.ball()?;
-            let size = area.shape.emitter(area.sides == Sides::Both)?.intensity;
+            let size = LightBounds::of_shape(&area.shape, area.sides == Sides::Both)?.intensity;
             let from = |place: &DVec3| {
                 let distance_squared = (ball.center - *place).length_squared();
-                (TAU * ball.cone_from(*place).1).min(size / distance_squared)
+                (TAU * ball.cone_from(*place).one_minus_cos).min(size / distance_squared)
             };
             let mut angles: Vec<f64> = places.iter().map(from).collect();
             angles.sort_by(f64::total_cmp);

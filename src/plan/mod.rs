@@ -12,6 +12,8 @@ mod survey;
 mod transport;
 mod worth;
 
+use std::time::Duration;
+
 use crate::scene::Scene;
 use crate::spectrum::{Basis, Curve};
 use crate::trace::{LightPass, Method, Probe, Transport, World, probe};
@@ -26,6 +28,8 @@ pub struct Plan {
     pub method: Method,
     /// What it will cost, how far colors may be off and what is left out; then one decision a line, each with its numbers.
     pub because: Vec<String>,
+    /// Processor time that the render will take, about.
+    pub processor_time: Duration,
     /// The models of color that were weighed, from few lanes to many.
     pub rungs: Vec<Rung>,
 }
@@ -72,7 +76,8 @@ pub fn plan(scene: &Scene<Curve>) -> Plan {
     let world = world.with_light_pass(light_pass.clone()).with_bright(bright.clone());
     let method = Method { light_pass, bright, ..method };
     let probe = probe(&world);
-    let mut because = vec![cost(scene, &method, &probe)];
+    let (cost, processor_time) = cost(scene, &method, &probe);
+    let mut because = vec![cost];
     because.extend(missed);
     because.extend(polarization::left_out(scene, &world));
     because.extend(lights(scene, method.light_pass.as_ref()));
@@ -81,7 +86,7 @@ pub fn plan(scene: &Scene<Curve>) -> Plan {
         because.push(format!("lanes part in {:.0} % of the camera samples", 100.0 * probe.parted));
     }
     because.extend(next.map(|basis| beside(scene, &method, &probe, basis)));
-    Plan { method, because, rungs }
+    Plan { method, because, processor_time, rungs }
 }
 
 /// What lights cannot do.
@@ -116,21 +121,22 @@ fn lights(scene: &Scene<Curve>, light_pass: Option<&LightPass>) -> Vec<String> {
 }
 
 /// What a few hundred samples say of the whole.
-fn cost(scene: &Scene<Curve>, method: &Method, probe: &Probe) -> String {
+fn cost(scene: &Scene<Curve>, method: &Method, probe: &Probe) -> (String, Duration) {
     let window = scene.film.window();
     let samples = f64::from(window.width) * f64::from(window.height) * f64::from(method.samples);
     let pass = method.light_pass.as_ref();
     let of_map = pass.and_then(|pass| pass.map).map_or(0, |map| u64::from(map.count) * map.photons);
     let photons = pass.map_or(0, |pass| pass.photons) + of_map;
-    let seconds = probe.time.as_secs_f64() * samples + probe.photon.as_secs_f64() * photons as f64;
-    format!(
+    let time = probe.time.mul_f64(samples) + probe.photon.mul_f64(photons as f64);
+    let line = format!(
         "cost: about {} of processor time: {} sample{} per pixel, {:.1} rays each{}",
-        in_words(seconds),
+        in_words(time.as_secs_f64()),
         method.samples,
         if method.samples == 1 { "" } else { "s" },
         probe.rays,
         if photons > 0 { format!(", and {} photons", in_number(photons)) } else { String::new() },
-    )
+    );
+    (line, time)
 }
 
 /// What another model of color would cost.

@@ -58,7 +58,7 @@ pub(super) fn transport(scene: &Scene<Curve>, basis: &Basis, together: f64) -> (
 
 /// A light with an extent that next-event estimation would aim at.
 fn extended_light(scene: &Scene<Curve>) -> Option<String> {
-    scene.lights.iter().find(|light| light.is_aimed_at() && light.is_extended()).map(|light| match light {
+    scene.lights.iter().find(|light| light.is_sampled() && light.is_extended()).map(|light| match light {
         Light::Area(area) => scene.objects[area.object as usize].name.clone(),
         Light::Sun(_) => "the sun".into(),
         _ => "the environment".into(),

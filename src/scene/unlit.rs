@@ -7,8 +7,8 @@ use super::Scene;
 use super::sight::{Place, Sight};
 use crate::light::{Area, Light, LightId};
 use crate::material::Material;
-use crate::math::{BranchKey, DVec3, Frame, Ray, Sampler, ball_surface, cone, cosine_hemisphere, unit};
-use crate::shape::Sides;
+use crate::math::{BranchKey, Cone, DVec3, Frame, Ray, Sampler, ball_surface, cone, cosine_hemisphere, unit};
+use crate::shape::{Sides, SurfacePoint};
 use crate::spectrum::Curve;
 
 /// Paths from one light.
@@ -23,7 +23,7 @@ const TOLD: usize = 4;
 /// What is wrong with each light of which nothing can be seen.
 pub(super) fn unlit(scene: &Scene<Curve>) -> Vec<String> {
     let mut sight = Sight::new(scene);
-    let mut dark: Vec<LightId> = (0..scene.lights.len()).filter(|&id| scene.lights[id].is_aimed_at()).collect();
+    let mut dark: Vec<LightId> = (0..scene.lights.len()).filter(|&id| scene.lights[id].is_sampled()).collect();
     sight.look(|sight, places| {
         let reaches = |id: &LightId| places.iter().any(|place| reaches(sight, &scene.lights[*id], place));
         dark.retain(|id| !reaches(id));
@@ -71,11 +71,9 @@ fn reaches(sight: &Sight, light: &Light<Curve>, place: &Place) -> bool {
     let digits = place.point.position.to_array().map(|x| x.to_bits() as u32);
     let [u, v, ..] = Sampler::new(2, [digits[0], digits[1]], digits[2]).four_plain(BranchKey::CAMERA, 0);
     let lit = || {
-        let sighting = light.aim(place.point.position, place.normal, [u, v])?;
-        let ray = place.point.leave(sighting.direction);
-        let view = light.view(&ray, place.normal, &sighting).filter(|view| view.factor > 0.0)?;
-        let above = sighting.direction.dot(place.normal) > 0.0;
-        Some(above && !sight.is_occluded(&ray, view.distance, view.object))
+        let sample = light.sample_li(&place.point, place.normal, [u, v]).filter(|sample| sample.factor > 0.0)?;
+        let above = sample.ray.direction.dot(place.normal) > 0.0;
+        Some(above && !sight.is_occluded(&sample.ray, sample.distance, sample.object))
     };
     place.shines(light) || lit() == Some(true)
 }
@@ -90,10 +88,8 @@ fn reaches_a_clear_body(sight: &Sight, light: &Light<Curve>) -> bool {
             (sampler.four_plain(BranchKey::CAMERA, 0), sampler.four_plain(BranchKey::CAMERA, 1));
         let bounds = boxes[number % boxes.len()];
         let origin = bounds.min + (bounds.max - bounds.min) * DVec3::new(x, y, z);
-        let sighting = light.aim(origin, ball_surface([u, v]), [z, x]);
-        sighting.is_some_and(|sighting| {
-            !sight.is_occluded(&Ray { origin, direction: sighting.direction }, f64::INFINITY, None)
-        })
+        let sample = light.sample_li(&SurfacePoint::in_space(origin), ball_surface([u, v]), [z, x]);
+        sample.is_some_and(|sample| !sight.is_occluded(&sample.ray, f64::INFINITY, None))
     })
 }
 
@@ -142,8 +138,8 @@ fn start(light: &Light<Curve>, sampler: &Sampler) -> Option<Start> {
         Light::Area(area) => start_on(area, sampler),
         Light::Point(point) => Some(from_point(point.position, ball_surface([u, v]))),
         Light::Spot(spot) => {
-            let (axis, size) = spot.cone();
-            Some(from_point(spot.position, unit(Frame::about(axis).to_world(cone(size, [u, v]).0))))
+            let Cone { axis, one_minus_cos } = spot.cone();
+            Some(from_point(spot.position, unit(Frame::about(axis).to_world(cone(one_minus_cos, [u, v]).0))))
         }
         Light::Environment(_) | Light::Sun(_) => None,
     }

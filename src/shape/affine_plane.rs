@@ -5,7 +5,7 @@ use crate::math::{Bounds, DVec3, Ray, Transform, gamma};
 
 /// A plane with affine coordinates (a, b): the points `center + a u + b v`. Disc and quad are regions of it.
 #[derive(Clone, Debug)]
-pub(super) struct AffinePlane {
+pub struct AffinePlane {
     pub(super) center: DVec3,
     pub(super) u: DVec3,
     pub(super) v: DVec3,
@@ -75,7 +75,7 @@ impl AffinePlane {
     }
 
     /// A point of it, uniform by area.
-    pub(super) fn sample(&self, u: [f64; 2]) -> DVec3 {
+    pub(super) fn sample_area(&self, u: [f64; 2]) -> DVec3 {
         self.at([2.0 * u[0] - 1.0, 2.0 * u[1] - 1.0])
     }
 

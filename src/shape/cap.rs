@@ -44,7 +44,7 @@ impl Cap {
     }
 
     /// The unit normal of a point uniform by area.
-    pub(super) fn draw(&self, u: [f64; 2]) -> DVec3 {
+    pub(super) fn sample(&self, u: [f64; 2]) -> DVec3 {
         Frame::about(self.axis).to_world(cone(self.one_minus_cos, u).0)
     }
 }

@@ -116,7 +116,7 @@ impl Cube {
     }
 
     /// A point uniform by area, and the face it lies on.
-    pub(super) fn sample(&self, u: [f64; 2]) -> (DVec3, u32) {
+    pub(super) fn sample_area(&self, u: [f64; 2]) -> (DVec3, u32) {
         let (face, along) = self.choose(u[0]);
         (self.face(face).at([2.0 * along - 1.0, 2.0 * u[1] - 1.0]), face)
     }

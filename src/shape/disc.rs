@@ -62,7 +62,7 @@ impl Disc {
         PI * self.plane.u.cross(self.plane.v).length()
     }
 
-    pub(super) fn sample(&self, u: [f64; 2]) -> DVec3 {
+    pub(super) fn sample_area(&self, u: [f64; 2]) -> DVec3 {
         self.plane.at(disk(u).into())
     }
 }

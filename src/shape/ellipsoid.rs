@@ -82,12 +82,12 @@ impl Ellipsoid {
         4.0 * PI * axes[0] * axes[0] * libm::pow(mean, 1.0 / p)
     }
 
-    pub(super) fn sample(&self, u: [f64; 2]) -> DVec3 {
+    pub(super) fn sample_area(&self, u: [f64; 2]) -> DVec3 {
         self.point_at(ball_surface(u)).position
     }
 
     /// Both crossings along a direction are drawn, so their densities add.
-    pub(super) fn pdf_toward(&self, ray: &Ray) -> f64 {
+    pub(super) fn pdf(&self, ray: &Ray) -> f64 {
         let roots = self.roots(ray).into_iter().flatten();
         roots.filter(|&t| t > 0.0).map(|t| self.density_at(ray, t)).sum()
     }

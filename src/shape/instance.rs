@@ -1,6 +1,6 @@
 use std::sync::Arc;
 
-use super::{Crossing, Emitter, Mesh, SurfacePoint, Triangle};
+use super::{Crossing, Mesh, SurfacePoint, Triangle};
 use crate::math::{Bounds, DVec3, Ray, Transform, gamma, unit};
 
 /// A mesh placed by an affine map: many of them share the triangles of one.
@@ -33,7 +33,7 @@ impl Instance {
         (pad.is_finite() && around.min.is_finite() && around.max.is_finite()).then_some(placed)
     }
 
-    /// The same mesh after another map as well.
+    /// The placed mesh after another map.
     pub(super) fn transformed(&self, map: &Transform) -> Option<Self> {
         Self::new(self.mesh.clone(), self.to_world.then(map))
     }
@@ -112,13 +112,9 @@ impl Instance {
         self.triangles().map(|triangle| triangle.area()).sum()
     }
 
-    pub(super) fn parts(&self) -> Vec<Emitter> {
-        self.triangles().map(|triangle| triangle.emitter()).collect()
-    }
-
     /// A point of a triangle drawn by its area in the mesh's space, evenly over the triangle.
-    pub(super) fn sample(&self, u: [f64; 2]) -> (DVec3, u32) {
-        let (point, part) = self.mesh.sample(u);
+    pub(super) fn sample_area(&self, u: [f64; 2]) -> (DVec3, u32) {
+        let (point, part) = self.mesh.sample_area(u);
         (self.to_world.point(point), part)
     }
 

@@ -5,7 +5,7 @@ use super::edges::open_edges;
 use super::packed::Packed;
 use super::tangents::over_triangle;
 use super::{Attributes, Bvh, Crossing, SurfacePoint, Triangle};
-use crate::math::{Bounds, DVec3, Ray, Transform};
+use crate::math::{Bounds, DVec3, Distribution, Ray, Transform};
 
 /// Triangles over shared vertices, with a tree of boxes.
 ///
@@ -21,8 +21,8 @@ pub struct Mesh {
     triangles: Vec<[u32; 3]>,
     bvh: Bvh,
     packed: Packed,
-    /// Running sum of the triangles' areas, for drawing one by its area; only lights ask for it.
-    areas: OnceLock<Vec<f64>>,
+    /// The triangles by their areas; only lights ask for it.
+    areas: OnceLock<Distribution>,
     closed: bool,
     attributes: Attributes,
 }
@@ -160,32 +160,24 @@ impl Mesh {
         Self::built(Vertices::Double(points), triangles, self.closed).with(self.attributes.transformed(map))
     }
 
-    fn areas(&self) -> &[f64] {
-        self.areas.get_or_init(|| {
-            let mut total = 0.0;
-            let areas = (0..self.triangles.len() as u32).map(|index| {
-                total += self.triangle(index).area();
-                total
-            });
-            areas.collect()
-        })
+    fn areas(&self) -> &Distribution {
+        let area = |index| self.triangle(index).area();
+        self.areas.get_or_init(|| Distribution::new((0..self.triangles.len() as u32).map(area)))
     }
 
     pub(super) fn area(&self) -> f64 {
-        self.areas()[self.triangles.len() - 1]
+        self.areas().total()
     }
 
     /// A point uniform by area, and the triangle it lies on.
-    pub(super) fn sample(&self, u: [f64; 2]) -> (DVec3, u32) {
+    pub(super) fn sample_area(&self, u: [f64; 2]) -> (DVec3, u32) {
         let (index, along) = self.choose(u[0]);
-        (self.triangle(index).sample([along, u[1]]), index)
+        (self.triangle(index).sample_area([along, u[1]]), index)
     }
 
     /// A triangle by its area, and what is left of the random number.
     pub(super) fn choose(&self, u: f64) -> (u32, f64) {
-        let (areas, target) = (self.areas(), u * self.area());
-        let index = areas.partition_point(|&sum| sum <= target).min(areas.len() - 1);
-        let before = if index == 0 { 0.0 } else { areas[index - 1] };
-        (index as u32, ((target - before) / (areas[index] - before)).clamp(0.0, 1.0))
+        let drawn = self.areas().sample(u);
+        (drawn.index as u32, drawn.u)
     }
 }

@@ -4,8 +4,8 @@
 //! light, in which directions it is seen. Every answer carries the error bound that lets a new ray leave the surface.
 
 mod affine_plane;
-mod aim;
 mod attributes;
+mod ball;
 mod bvh;
 mod cap;
 mod coordinates;
@@ -13,8 +13,6 @@ mod cube;
 mod disc;
 mod edges;
 mod ellipsoid;
-mod emit;
-mod emitters;
 mod gltf;
 mod gltf_buffer;
 mod instance;
@@ -24,36 +22,38 @@ mod obj;
 mod outline;
 mod packed;
 mod plane;
+mod polygon;
 mod pool;
 mod quad;
+mod sample;
 mod sides;
 mod sphere;
 mod tangents;
 mod triangle;
 
-pub use aim::{Density, Sighting};
 pub use attributes::{Attributes, vertex_normals};
+pub use ball::Ball;
 pub use bvh::{Bvh, Vectors, Visitor};
 pub use cap::Cap;
 pub use coordinates::Coordinates;
 pub use cube::Cube;
 pub use disc::Disc;
 pub use ellipsoid::Ellipsoid;
-pub use emit::Ball;
-pub use emitters::{Choice, Emitter, Emitters, Facing};
 pub use instance::Instance;
 pub use mesh::{Mesh, MeshReport, Vertices};
 pub use mesh_file::{read as read_mesh, read_smooth as read_smooth_mesh};
 pub use plane::Plane;
+pub use polygon::Polygon;
 pub use pool::Pool;
 pub use quad::Quad;
+pub use sample::{Density, ShapeSample};
 pub use sides::Sides;
 pub use sphere::Sphere;
 pub use triangle::Triangle;
 
 use std::sync::Arc;
 
-use crate::math::{Bounds, DVec3, Ray, Transform};
+use crate::math::{Bounds, DVec3, Ray, Transform, ball_surface, disk, triangle_coordinates};
 
 /// A surface.
 #[derive(Clone, Debug)]
@@ -109,6 +109,11 @@ pub struct SurfacePoint {
 }
 
 impl SurfacePoint {
+    /// A point that lies on no surface: rays start where it is. Its normals are 0.
+    pub fn in_space(position: DVec3) -> Self {
+        Self { position, error: DVec3::ZERO, normal: DVec3::ZERO, shading: DVec3::ZERO }
+    }
+
     /// The ray that leaves the surface at this point along a unit vector and cannot hit it again there.
     pub fn leave(&self, direction: DVec3) -> Ray {
         let origin = crate::math::offset_origin(self.position, self.error, self.normal, direction);
@@ -223,6 +228,142 @@ impl Shape {
             Self::Cube(cube) => cube.area(),
             Self::Mesh(mesh) => mesh.area(),
             Self::Instance(instance) => instance.area(),
+        }
+    }
+
+    /// The unit normal of the front of a flat shape.
+    pub fn flat_normal(&self) -> Option<DVec3> {
+        match self {
+            Self::Triangle(triangle) => Some(triangle.normal()),
+            Self::Disc(disc) => Some(disc.normal()),
+            Self::Quad(quad) => Some(quad.normal()),
+            _ => None,
+        }
+    }
+
+    /// A ball around the shape: itself if it is one, else that around its box; none for an infinite shape.
+    pub fn ball(&self) -> Option<Ball> {
+        let bounds = self.bounds()?;
+        let (center, half) = (bounds.center(), 0.5 * (bounds.max - bounds.min));
+        let radius = if matches!(self, Self::Sphere(_)) { half.max_element() } else { half.length() };
+        Some(Ball { center, radius })
+    }
+
+    /// A direction from a point toward the shape; none where the draw sees it exactly edge-on.
+    ///
+    /// Spheres are drawn by the cone they fill, triangles and quads nearby by their solid angle, other shapes by their area.
+    pub fn sample(&self, from: DVec3, u: [f64; 2]) -> Option<ShapeSample> {
+        let (point, part) = match self {
+            Self::Plane(_) => return None,
+            Self::Sphere(sphere) => return Some(sphere.sample(from, u)),
+            Self::Triangle(triangle) => return Polygon::Triangle(triangle.clone()).sample(from, u),
+            Self::Quad(quad) => return Polygon::Parallelogram(quad.plane()).sample(from, u),
+            Self::Ellipsoid(ellipsoid) => return ShapeSample::along(ellipsoid.sample_area(u) - from),
+            Self::Disc(disc) => {
+                let sample = ShapeSample::along(disc.sample_area(u) - from)?;
+                return Some(sample.with_density(Density::Area(1.0 / disc.area())));
+            }
+            Self::Cube(cube) => cube.sample_area(u),
+            Self::Mesh(mesh) => mesh.sample_area(u),
+            Self::Instance(instance) => instance.sample_area(u),
+        };
+        Some(ShapeSample::along(point - from)?.with_part(part).with_density(self.density_of_part(part)))
+    }
+
+    /// Density per steradian with which `sample` draws the direction of a ray that first meets the shape at a crossing.
+    pub fn pdf(&self, ray: &Ray, crossing: &Crossing) -> f64 {
+        let density = match self {
+            Self::Plane(_) => return 0.0,
+            Self::Sphere(sphere) => return sphere.pdf(ray),
+            Self::Ellipsoid(ellipsoid) => return ellipsoid.pdf(ray),
+            Self::Triangle(triangle) => Polygon::Triangle(triangle.clone()).density(ray.origin),
+            Self::Quad(quad) => Polygon::Parallelogram(quad.plane()).density(ray.origin),
+            Self::Disc(_) | Self::Cube(_) | Self::Mesh(_) | Self::Instance(_) => self.density_of_part(crossing.part),
+        };
+        self.toward(density, ray, crossing)
+    }
+
+    /// How densely the area of a part is drawn.
+    fn density_of_part(&self, part: u32) -> Density {
+        match self {
+            Self::Instance(instance) => Density::Area(instance.density(part)),
+            _ => Density::Area(1.0 / self.area()),
+        }
+    }
+
+    fn toward(&self, density: Density, ray: &Ray, crossing: &Crossing) -> f64 {
+        density.toward(crossing.t, self.point(ray, crossing).normal.dot(ray.direction).abs())
+    }
+
+    /// A direction as `sample` draws it; toward a sphere, most often to a cap of it.
+    pub fn sample_cap(&self, cap: &Cap, from: DVec3, u: [f64; 2]) -> Option<ShapeSample> {
+        if let Self::Sphere(sphere) = self { sphere.sample_cap(cap, from, u) } else { self.sample(from, u) }
+    }
+
+    /// Density per steradian with which `sample_cap` draws the direction of a ray that first meets the shape at a crossing.
+    pub fn pdf_cap(&self, cap: &Cap, ray: &Ray, crossing: &Crossing) -> f64 {
+        if let Self::Sphere(sphere) = self { sphere.pdf_cap(cap, ray, crossing.t) } else { self.pdf(ray, crossing) }
+    }
+
+    /// How many parts may be sampled one by one: triangles of a mesh, faces of a cube; 0 of other shapes.
+    pub fn part_count(&self) -> u32 {
+        match self {
+            Self::Cube(_) => 6,
+            Self::Mesh(mesh) => mesh.len() as u32,
+            Self::Instance(instance) => instance.mesh().len() as u32,
+            _ => 0,
+        }
+    }
+
+    /// One of the parts, where it stands in the world; none of a shape that has none.
+    pub fn part(&self, part: u32) -> Option<Polygon<'_>> {
+        match self {
+            Self::Cube(cube) => Some(Polygon::Parallelogram(cube.face(part))),
+            Self::Mesh(mesh) => Some(Polygon::Triangle(mesh.triangle(part))),
+            Self::Instance(instance) => Some(Polygon::Triangle(instance.triangle(part))),
+            _ => None,
+        }
+    }
+
+    /// A direction from a point toward one of the parts.
+    pub fn sample_part(&self, part: u32, from: DVec3, u: [f64; 2]) -> Option<ShapeSample> {
+        Some(self.part(part)?.sample(from, u)?.with_part(part))
+    }
+
+    /// Density per steradian with which `sample_part` draws the direction of a ray that first meets the part at a crossing.
+    pub fn pdf_part(&self, ray: &Ray, crossing: &Crossing) -> f64 {
+        let part = self.part(crossing.part);
+        part.map_or(0.0, |part| self.toward(part.density(ray.origin), ray, crossing))
+    }
+
+    /// A point from which light may reach a ball; none of an infinite shape and of an instance.
+    ///
+    /// Of a sphere, in the cap that sees some of the ball; of other shapes, anywhere on the surface.
+    pub fn sample_emission(&self, toward: &Ball, u: [f64; 2]) -> Option<SurfacePoint> {
+        Some(match self {
+            Self::Plane(_) | Self::Instance(_) => return None,
+            Self::Triangle(triangle) => triangle.point(triangle_coordinates(u)),
+            Self::Sphere(sphere) => sphere.sample_emission(self.ball()?, toward, u),
+            Self::Ellipsoid(ellipsoid) => ellipsoid.point_at(ball_surface(u)),
+            Self::Disc(shape) => shape.point(disk(u).into()),
+            Self::Quad(shape) => shape.point(u.map(|x| 2.0 * x - 1.0)),
+            Self::Cube(cube) => {
+                let (face, along) = cube.choose(u[0]);
+                cube.face(face).point([2.0 * along - 1.0, 2.0 * u[1] - 1.0])
+            }
+            Self::Mesh(mesh) => {
+                let (triangle, along) = mesh.choose(u[0]);
+                mesh.triangle(triangle).point(triangle_coordinates([along, u[1]]))
+            }
+        })
+    }
+
+    /// Density per unit of area with which `sample_emission` draws a point of the shape for a ball.
+    pub fn pdf_emission(&self, toward: &Ball, point: &SurfacePoint) -> f64 {
+        match self {
+            Self::Sphere(sphere) => self.ball().map_or(0.0, |own| sphere.pdf_emission(own, toward, point)),
+            Self::Ellipsoid(ellipsoid) => ellipsoid.density_over(ellipsoid.unit_of(point.position)),
+            _ => 1.0 / self.area(),
         }
     }
 }

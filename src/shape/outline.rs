@@ -66,7 +66,7 @@ impl Outline {
     }
 
     /// A direction within, with density 1 / `solid_angle`.
-    pub(super) fn aim(&self, u: [f64; 2]) -> DVec3 {
+    pub(super) fn sample(&self, u: [f64; 2]) -> DVec3 {
         let (mut sin, mut cos) = libm::sincos(0.5 * u[0] * self.solid_angle);
         let (mut part, mut number) = (self.parts[0], 0);
         if self.parts[1].volume > 0.0 {
@@ -142,7 +142,7 @@ mod tests {
         for center in [DVec3::Z, DVec3::Z * 1e-4, DVec3::new(0.5, 0.2, 1e-3), DVec3::new(2.0, 0.0, 0.3)] {
             let outline = square(1.0, center).expect("it is near");
             for u in (0..9).flat_map(|i| (0..9).map(move |j| [i, j].map(|k| f64::from(k) * 0.124_999_99))) {
-                let direction = outline.aim(u);
+                let direction = outline.sample(u);
                 let at = direction * (center.z / direction.z) - center;
                 let out = (at.abs().max_element() - 0.5).max(0.0);
                 assert!(direction.is_finite() && out < 1e-6, "{center} {u:?}: {direction} is {out} beside");

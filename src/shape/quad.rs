@@ -1,5 +1,4 @@
 use super::affine_plane::AffinePlane;
-use super::outline::Outline;
 use super::{Crossing, SurfacePoint};
 use crate::math::{Bounds, DVec3, Ray, Transform};
 
@@ -46,14 +45,5 @@ impl Quad {
 
     pub(super) fn area(&self) -> f64 {
         self.plane.area()
-    }
-
-    /// The outline seen from a point, if it is near.
-    pub(super) fn outline(&self, from: DVec3) -> Option<Outline> {
-        self.plane.outline(from)
-    }
-
-    pub(super) fn sample(&self, u: [f64; 2]) -> DVec3 {
-        self.plane.sample(u)
     }
 }

@@ -1,7 +1,7 @@
 use std::f64::consts::PI;
 
-use super::{Cap, Crossing, Ellipsoid, Shape, SurfacePoint};
-use crate::math::{Bounds, DMat3, DVec3, Frame, Ray, Transform, ball_surface, cone, gamma, one_minus_cos_of_cone};
+use super::{Ball, Cap, Crossing, Ellipsoid, Shape, ShapeSample, SurfacePoint};
+use crate::math::{Bounds, Cone, DMat3, DVec3, Frame, Ray, Transform, ball_surface, cone, gamma};
 
 /// A sphere; its front is the outside.
 ///
@@ -14,7 +14,7 @@ pub struct Sphere {
     radius: f64,
 }
 
-/// How often a sphere of which a cap is seen is aimed at as a whole.
+/// How often a sphere of which a cap is seen is sampled as a whole.
 const ELSEWHERE: f64 = 0.05;
 
 impl Sphere {
@@ -83,40 +83,42 @@ impl Sphere {
         4.0 * PI * self.radius * self.radius
     }
 
-    /// From outside: uniform in the cone the sphere fills. From inside or on it: every direction alike. With its density.
-    pub(super) fn aim(&self, from: DVec3, u: [f64; 2]) -> (DVec3, f64) {
+    /// A direction from a point outside, uniform in the cone that the sphere fills; from inside or on it, any direction.
+    pub(super) fn sample(&self, from: DVec3, u: [f64; 2]) -> ShapeSample {
         match self.cone_from(from) {
-            Some((axis, one_minus_cos)) => {
+            Some(Cone { axis, one_minus_cos }) => {
                 let (direction, pdf) = cone(one_minus_cos, u);
-                (Frame::about(axis).to_world(direction), pdf)
+                ShapeSample::of_direction(Frame::about(axis).to_world(direction), pdf)
             }
-            None => (ball_surface(u), 1.0 / (4.0 * PI)),
+            None => ShapeSample::of_direction(ball_surface(u), 1.0 / (4.0 * PI)),
         }
     }
 
-    pub(super) fn pdf_toward(&self, ray: &Ray) -> f64 {
+    /// Density per steradian with which `sample` draws the direction of a ray that meets the sphere.
+    pub(super) fn pdf(&self, ray: &Ray) -> f64 {
         match self.cone_from(ray.origin) {
-            Some((_, one_minus_cos)) => 1.0 / (2.0 * PI * one_minus_cos),
+            Some(Cone { one_minus_cos, .. }) => 1.0 / (2.0 * PI * one_minus_cos),
             None => 1.0 / (4.0 * PI),
         }
     }
 
-    /// The same where only a cap is likely to be seen: most directions from outside lead to points of it, uniform by area. The
-    /// others keep the estimate right where more is seen.
-    pub(super) fn aim_at_cap(&self, cap: &Cap, from: DVec3, [u, v]: [f64; 2]) -> Option<DVec3> {
-        if u < ELSEWHERE || self.cone_from(from).is_none() {
-            let u = if self.cone_from(from).is_none() { u } else { u / ELSEWHERE };
-            return Some(self.aim(from, [u, v]).0);
+    /// A direction from a point to a sphere of which most often a cap alone is seen: from outside most lead to points of the
+    /// cap, uniform by area. The others keep the estimate right where more is seen.
+    pub(super) fn sample_cap(&self, cap: &Cap, from: DVec3, [u, v]: [f64; 2]) -> Option<ShapeSample> {
+        let outside = self.cone_from(from).is_some();
+        if u < ELSEWHERE || !outside {
+            let u = if outside { u / ELSEWHERE } else { u };
+            return Some(ShapeSample { density: None, ..self.sample(from, [u, v]) });
         }
-        let normal = cap.draw([(u - ELSEWHERE) / (1.0 - ELSEWHERE), v]);
+        let normal = cap.sample([(u - ELSEWHERE) / (1.0 - ELSEWHERE), v]);
         let direction = self.center + normal * self.radius - from;
         // A point behind the horizon is hidden by one in front, whose own density counts.
-        if normal.dot(direction) < 0.0 { direction.try_normalize() } else { None }
+        if normal.dot(direction) < 0.0 { ShapeSample::along(direction) } else { None }
     }
 
-    /// Density per steradian with which `aim_at_cap` draws the direction of a ray that first meets the sphere at a distance.
-    pub(super) fn pdf_at_cap(&self, cap: &Cap, ray: &Ray, t: f64) -> f64 {
-        let everywhere = self.pdf_toward(ray);
+    /// Density per steradian with which `sample_cap` draws the direction of a ray that first meets the sphere at a distance.
+    pub(super) fn pdf_cap(&self, cap: &Cap, ray: &Ray, t: f64) -> f64 {
+        let everywhere = self.pdf(ray);
         if self.cone_from(ray.origin).is_none() {
             return everywhere;
         }
@@ -129,10 +131,26 @@ impl Sphere {
         ELSEWHERE * everywhere + (1.0 - ELSEWHERE) * of_cap
     }
 
-    /// Axis and 1 - cos of the half angle of the cone in which the sphere is seen from outside.
-    fn cone_from(&self, from: DVec3) -> Option<(DVec3, f64)> {
-        let d = self.center - from;
-        let sin_squared = self.radius * self.radius / d.length_squared();
-        (sin_squared < 1.0).then(|| (d.normalize(), one_minus_cos_of_cone(sin_squared)))
+    /// A point of the cap that sees some of a ball, denser toward the cap's middle as much as it sends more there.
+    pub(super) fn sample_emission(&self, own: Ball, toward: &Ball, u: [f64; 2]) -> SurfacePoint {
+        let Cone { axis, one_minus_cos } = own.cap_toward(toward);
+        let u = if one_minus_cos < 2.0 { [1.0 - u[0].sqrt(), u[1]] } else { u };
+        let normal = Frame::about(axis).to_world(cone(one_minus_cos, u).0);
+        self.point(self.over(normal))
+    }
+
+    /// Density per unit of area with which `sample_emission` draws a point.
+    pub(super) fn pdf_emission(&self, own: Ball, toward: &Ball, point: &SurfacePoint) -> f64 {
+        let Cone { axis, one_minus_cos } = own.cap_toward(toward);
+        // 1 - cos of the angle from the middle; a far ball gets light by the cosine, which is 0 at the rim.
+        let here = 0.5 * (point.normal - axis).length_squared();
+        let share = if one_minus_cos < 2.0 { 2.0 * (1.0 - here / one_minus_cos).max(0.0) } else { 1.0 };
+        share * 2.0 / (one_minus_cos * self.area())
+    }
+
+    /// The cone of directions in which the sphere is seen from outside.
+    fn cone_from(&self, from: DVec3) -> Option<Cone> {
+        let cone = Ball { center: self.center, radius: self.radius }.cone_from(from);
+        (!cone.is_all()).then_some(cone)
     }
 }

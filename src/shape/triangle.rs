@@ -1,5 +1,5 @@
 use super::outline::{Outline, is_near};
-use super::{Crossing, Emitter, Facing, SurfacePoint};
+use super::{Crossing, SurfacePoint};
 use crate::math::{Bounds, DVec3, Ray, Transform, gamma, triangle_coordinates};
 
 /// A triangle; its front is the side from which the points run counterclockwise.
@@ -64,12 +64,6 @@ impl Triangle {
         0.5 * (p2 - p1).cross(p3 - p1).length()
     }
 
-    /// The triangle as one of many that shine from their fronts.
-    pub(super) fn emitter(&self) -> Emitter {
-        let facing = Facing::one(self.normal());
-        Emitter { bounds: self.bounds(), facing, both: false, intensity: self.area() }
-    }
-
     /// The outline seen from a point, if it is near.
     pub(super) fn outline(&self, from: DVec3) -> Option<Outline> {
         let [p1, p2, p3] = self.points;
@@ -80,7 +74,7 @@ impl Triangle {
         Outline::seen(from, &self.points, (p2 - p1).cross(p3 - p1))
     }
 
-    pub(super) fn sample(&self, u: [f64; 2]) -> DVec3 {
+    pub(super) fn sample_area(&self, u: [f64; 2]) -> DVec3 {
         self.point(triangle_coordinates(u)).position
     }
 }

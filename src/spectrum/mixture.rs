@@ -3,12 +3,13 @@
 use super::draw::Hero;
 use super::visible::{self, COUNT};
 use super::{Emission, data};
+use crate::math::Distribution;
 
 /// A distribution of wavelengths: a density, constant over each nm, and ideal lines, which are drawn as they are.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Mixture {
-    /// Probability of each step of the visible grid, then of each line, summed up.
-    cumulative: Vec<f64>,
+    /// Each step of the visible grid, then each line.
+    entries: Distribution,
     /// The ideal lines, in nm.
     lines: Vec<f64>,
 }
@@ -46,29 +47,15 @@ impl Mixture {
         if even {
             add(1.0 - BY_LIGHT, &eye, &|_| 0.0);
         }
-        let mut sum = 0.0;
-        let mut cumulative: Vec<f64> = probabilities
-            .iter()
-            .map(|p| {
-                sum += p;
-                sum
-            })
-            .collect();
-        cumulative.iter_mut().for_each(|x| *x /= sum);
-        Self { cumulative, lines }
+        Self { entries: Distribution::new(probabilities), lines }
     }
 
     /// The density of pbrt-v4, sech^2(0.0072 (w - 538)) (Radziszewski, Boryczko & Alda 2009, *An Improved Technique for
     /// Full Spectral Rendering*).
     pub(super) fn visible() -> Self {
         let density = |nm: f64| libm::pow(libm::cosh(0.0072 * (nm + 0.5 - 538.0)), -2.0);
-        let mut cumulative: Vec<f64> = visible::wavelengths().take(COUNT - 1).map(density).collect();
-        for i in 1..cumulative.len() {
-            cumulative[i] += cumulative[i - 1];
-        }
-        let total = cumulative[COUNT - 2];
-        cumulative.iter_mut().for_each(|x| *x /= total);
-        Self { cumulative, lines: Vec::new() }
+        let entries = Distribution::new(visible::wavelengths().take(COUNT - 1).map(density));
+        Self { entries, lines: Vec::new() }
     }
 
     /// The ideal lines, in nm, as they follow the visible grid on the fine grid of every table.
@@ -78,22 +65,18 @@ impl Mixture {
 
     /// Probability of each step of the visible grid, then of each line.
     pub(super) fn probabilities(&self) -> impl Iterator<Item = f64> {
-        let before = std::iter::once(0.0).chain(self.cumulative.iter().copied());
-        self.cumulative.iter().zip(before).map(|(sum, before)| sum - before)
+        (0..self.entries.count()).map(|entry| self.entries.probability(entry))
     }
 
     /// The wavelength for a random number, as one of `heroes`.
     pub(super) fn draw(&self, u: f64, heroes: usize) -> Hero {
-        let last = self.cumulative.len() - 1;
-        let entry = self.cumulative.partition_point(|&sum| sum <= u).min(last);
-        let before = if entry == 0 { 0.0 } else { self.cumulative[entry - 1] };
-        let probability = self.cumulative[entry] - before;
-        let factor = 1.0 / (heroes as f64 * probability);
-        if entry < COUNT - 1 {
-            Hero { below: entry, fraction: ((u - before) / probability).clamp(0.0, 1.0), factor }
+        let drawn = self.entries.sample(u);
+        let factor = 1.0 / (heroes as f64 * drawn.probability);
+        if drawn.index < COUNT - 1 {
+            Hero { below: drawn.index, fraction: drawn.u, factor }
         } else {
             // Lines follow the last wavelength of the grid.
-            Hero { below: entry + 1, fraction: 0.0, factor }
+            Hero { below: drawn.index + 1, fraction: 0.0, factor }
         }
     }
 }

@@ -1,38 +1,24 @@
 //! Ways on from surfaces whose bounces are aimed at bright places.
 
 use super::bright::Aiming;
-use super::brightness::Bounce;
 use super::interaction::Interaction;
-use super::path::Path;
-use super::path_tracer::PathTracer;
-use super::polarization::amount;
 use super::shading;
+use super::walker::Walker;
 use crate::material::{Branch, Material};
-use crate::spectrum::{Draw, Table};
+use crate::spectrum::Table;
 
 /// Whether bounces from a material may be aimed: it scatters nearly alike in all directions of one side.
 pub(super) fn may_aim(material: &Material<Table>) -> bool {
     matches!(material, Material::Diffuse(_) | Material::Plastic(_))
 }
 
-impl<const N: usize> PathTracer<'_, N> {
-    /// Keeps what a bounce found, if somebody wants to know.
-    #[inline]
-    pub(super) fn note(&mut self, path: &Path<N>, draw: &Draw<N>, distance: f64, light: [f64; 3]) {
-        if let (Some(bounces), Some(scatter)) = (&mut self.bounces, &path.scatter) {
-            let distance = distance + (path.ray.origin - scatter.from).length();
-            let (light, weight) = (amount(self.walker.world, light), path.weight(draw));
-            let (from, normal, direction) = (scatter.from, scatter.normal, path.ray.direction);
-            bounces.push(Bounce { from, normal, direction, distance, light, weight });
-        }
-    }
-
+impl<const N: usize> Walker<'_, N> {
     /// The ways on from a surface whose bounces are aimed.
     ///
     /// Roulette is to end aimed paths as often as others: what their density takes from the weight is no measure of importance.
     pub(super) fn scatter_aimed(&mut self, aiming: &Aiming, at: &Interaction<N>, u: [f64; 2]) {
         let Interaction { material, arrival, flat, .. } = at;
-        let branches = &mut self.walker.branches;
+        let branches = &mut self.branches;
         let divided = aiming.divided(u[0]);
         shading::scatter(material, arrival, *flat, [divided.err().unwrap_or(0.5), u[1]], branches);
         if let Ok(aimed) = divided {

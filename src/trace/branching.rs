@@ -2,7 +2,6 @@
 
 use super::World;
 use super::path_tracer::PathTracer;
-use super::render::sample;
 use super::width::in_lanes;
 use crate::material::Material;
 use crate::math::{DVec2, DVec3, Sampler};
@@ -38,7 +37,7 @@ fn ask<const N: usize>(world: &World, most: f64) -> Branching {
     let all_over: Vec<[u32; 2]> = all_over.map(|place| film.middle_of_cell(SIDE, place)).collect();
     let mut ask = |[x, y]: [u32; 2]| {
         let before = tracer.walker.stats.rays;
-        sample(world, &mut tracer, &Sampler::new(world.method.seed, [x, y], 0), x, y);
+        tracer.sample(&Sampler::new(world.method.seed, [x, y], 0), [x, y]);
         (tracer.walker.stats.rays - before, tracer.walker.stats.by_chance > 0)
     };
     let enough = most * f64::from(places);

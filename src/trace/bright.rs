@@ -138,12 +138,12 @@ impl Aiming<'_> {
             left -= chance;
         }
         let (number, u) = chosen?;
-        let sighting = self.bright.targets[number].shape.aim(self.from, [u, v])?;
-        let known = match sighting.density {
-            Some(Density::Angle(density)) => Some((number, density)),
+        let sample = self.bright.targets[number].shape.sample(self.from, [u, v])?;
+        let known = match sample.density {
+            Some(Density::SolidAngle(density)) => Some((number, density)),
             _ => None,
         };
-        Some((sighting.direction, known))
+        Some((sample.direction, known))
     }
 
     /// The density of a direction that the material draws with another.
@@ -161,7 +161,7 @@ impl Aiming<'_> {
                 _ => {
                     let shape = &self.bright.targets[number].shape;
                     let crossing = shape.intersect(&ray, f64::INFINITY);
-                    crossing.map_or(0.0, |crossing| chance * shape.pdf_toward(&ray, &crossing))
+                    crossing.map_or(0.0, |crossing| chance * shape.pdf(&ray, &crossing))
                 }
             };
         }

@@ -1,28 +1,15 @@
 //! What lights a room, learned from a few camera samples.
 
+use std::cell::RefCell;
+
 use super::bright::{BrightPlace, BrightPlaces, MOST};
 use super::clusters::{Cluster, clusters, quantiles};
 use super::path_tracer::PathTracer;
-use super::render::sample;
+use super::sensor::{Bounce, Observer};
 use super::width::in_lanes;
 use super::{Transport, World};
 use crate::math::{Bounds, BranchKey, DVec3, Frame, Ray, Sampler, cosine_hemisphere, unit};
 use crate::shape::{Quad, Shape};
-
-/// What a bounce found where it ended.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Bounce {
-    pub(super) from: DVec3,
-    /// The surface's unit normal there, on the side it left.
-    pub(super) normal: DVec3,
-    pub(super) direction: DVec3,
-    /// How far it went; infinite where it met nothing.
-    pub(super) distance: f64,
-    /// What the sensor gets of the light that lights sent to its end, as X + Y + Z.
-    pub(super) light: f64,
-    /// The path's weight.
-    pub(super) weight: f64,
-}
 
 /// Camera samples along each side of the image: few that look for a room, and those that look what lights it.
 const FEW: u32 = 24;
@@ -61,13 +48,23 @@ fn places<const N: usize>(world: &World) -> Option<BrightPlaces> {
 /// What the bounces of so many camera samples along each side of the image found.
 fn bounces<const N: usize>(world: &World, side: u32) -> Vec<Bounce> {
     let film = world.scene.film;
-    let mut tracer = PathTracer::<N>::new(world);
-    tracer.bounces = Some(Vec::new());
+    let found = Bounces::default();
+    let mut tracer = PathTracer::<N>::new(world).with_observer(&found);
     for place in 0..side * side {
         let [x, y] = film.whole().middle_of_cell(side, place);
-        sample(world, &mut tracer, &Sampler::new(world.method.seed ^ SEED, [x, y], place), x, y);
+        tracer.sample(&Sampler::new(world.method.seed ^ SEED, [x, y], place), [x, y]);
     }
-    tracer.bounces.unwrap_or_default()
+    found.0.into_inner()
+}
+
+/// All bounces that were told of.
+#[derive(Default)]
+struct Bounces(RefCell<Vec<Bounce>>);
+
+impl Observer for Bounces {
+    fn bounce(&self, bounce: Bounce) {
+        self.0.borrow_mut().push(bounce);
+    }
 }
 
 fn weight(bounces: &[Bounce]) -> f64 {

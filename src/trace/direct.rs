@@ -3,42 +3,59 @@
 use std::cell::Cell;
 
 use super::bright::Aiming;
-use super::path::ScatterSample;
-use super::polarization::{Lit, Polarized};
+use super::interaction::Interaction;
+use super::path::{Path, ScatterSample};
+use super::polarization::Polarized;
+use super::sensor::{Contribution, Found, Sensor, amount};
 use super::straight;
 use super::{World, media, shading};
-use crate::light::{Light, LightId};
-use crate::material::{Arrival, Material};
-use crate::math::{BranchKey, DVec3, Ray, Sampler};
+use crate::light::{LightId, LightSample};
+use crate::material::Lobes;
+use crate::math::{DVec3, Ray, Sampler};
 use crate::scene::MaterialId;
-use crate::shape::{Crossing, SurfacePoint};
-use crate::spectrum::{Lanes, Table, Throughput};
+use crate::shape::Crossing;
+use crate::spectrum::Lanes;
 
-/// A place where light is gathered.
-pub(super) struct Gathering<'a, const N: usize> {
+/// A path at a surface that scatters widely, where lights are sampled.
+pub(super) struct DirectLighting<'a, const N: usize> {
     pub(super) world: &'a World,
-    pub(super) material: &'a Material<Table>,
-    pub(super) arrival: &'a Arrival<'a, N>,
-    pub(super) point: &'a SurfacePoint,
-    pub(super) throughput: Throughput<N>,
-    pub(super) parted: bool,
-    /// The surface's unit normal, of the triangle where it is smooth, on the side the light arrives at.
-    pub(super) normal: DVec3,
-    /// How likely that side is looked at, where light may arrive at both: then light from the other side is left to it.
-    pub(super) side: Option<f64>,
-    /// The medium the light arrives through.
-    pub(super) inside: Option<MaterialId>,
-    /// Whether the path goes on from here and may meet a light by itself.
+    pub(super) path: &'a Path<N>,
+    pub(super) at: &'a Interaction<'a, N>,
+    /// Whether the path goes on from here and may hit a light by itself.
     pub(super) goes_on: bool,
-    pub(super) aims_at_all: bool,
-    /// The object that hid a light last.
-    pub(super) hider: &'a Cell<Option<u32>>,
-    /// What polarization may change of it, where the path is polarized.
-    pub(super) lit: Option<&'a Lit>,
+    /// Whether every light is sampled, or one.
+    pub(super) all_lights: bool,
+    /// The object that occluded a light last.
+    pub(super) last_occluder: &'a Cell<Option<u32>>,
     /// Four random numbers of the vertex; the first light uses the first two, the choice of one light the last.
     pub(super) u: [f64; 4],
     /// How bounces are aimed from here, if they are.
     pub(super) aiming: Option<&'a Aiming<'a>>,
+}
+
+/// A side of the surface, from which lights are sampled.
+#[derive(Clone, Copy)]
+struct Side {
+    /// The surface's own unit normal on that side.
+    normal: DVec3,
+    /// How likely that side is looked at, where light may arrive at both: then light from the other side is left to it.
+    chance: Option<f64>,
+    /// The medium the light arrives through.
+    inside: Option<MaterialId>,
+    /// Whether lanes have parted on the way from the light to the camera.
+    parted: bool,
+}
+
+/// A ray to a light, and what is left to know of its light once the ray is known to be free.
+struct ShadowRay<const N: usize> {
+    light: LightId,
+    /// The ray, how far it goes, and the object that does not occlude it.
+    sample: LightSample,
+    /// How likely the light was chosen and this side looked at.
+    probability: f64,
+    /// The material's answer times the cosine, and how densely it scatters into the ray's direction.
+    bsdf_cos: Lanes<N>,
+    bsdf_pdf: f64,
 }
 
 /// Random numbers for the second light and those after it.
@@ -46,17 +63,42 @@ const FURTHER_LIGHTS: u32 = 16;
 /// Random digits for choices among many, and the choice of a side.
 const MORE_DIGITS: u32 = 3;
 
-impl<const N: usize> Gathering<'_, N> {
-    /// What the sensor gets of the light that lights send straight to the surface.
-    fn direct(&self, sampler: &Sampler, key: BranchKey) -> [f64; 3] {
-        let targets = &self.world.targets;
-        let mut sum = [0.0; 3];
-        let digits = |target: LightId, u: [f64; 2]| match &self.world.scene.lights[target] {
-            Light::Area(area) if area.has_parts() => [finer(u[0], sampler.four_plain(key, MORE_DIGITS)[1]), u[1]],
-            _ => u,
+impl<const N: usize> DirectLighting<'_, N> {
+    /// Hands the light of sampled lights to the sensor, and answers how likely it was to look at a side.
+    ///
+    /// Where light also comes from beyond the surface, both sides are looked at or, where only one light is sampled, one of
+    /// them chosen by chance.
+    pub(super) fn gather(&self, sampler: &Sampler, sensor: &mut Sensor) -> f64 {
+        let (at, parted) = (self.at, self.path.parted);
+        let near = Side { normal: at.flat, chance: None, inside: at.boundary.here, parted };
+        if !at.lobes.intersects(Lobes::GLOSSY_TRANSMISSION) {
+            self.gather_side(&near, sampler, sensor);
+            return 1.0;
+        }
+        let chance = if self.all_lights { 1.0 } else { 0.5 };
+        let u = sampler.four_plain(self.path.key, MORE_DIGITS)[2];
+        let near = Side { chance: Some(chance), ..near };
+        if u < chance {
+            self.gather_side(&near, sampler, sensor);
+        }
+        if 1.0 - u <= chance {
+            let far = Side { normal: -near.normal, inside: at.boundary.beyond, parted: parted || at.parts, ..near };
+            self.gather_side(&far, sampler, sensor);
+        }
+        chance
+    }
+
+    fn gather_side(&self, side: &Side, sampler: &Sampler, sensor: &mut Sensor) {
+        let (lights, key) = (&self.world.scene.lights, self.path.key);
+        let mut take = |light: LightId, probability: f64, [u, v]: [f64; 2]| {
+            let u = if lights[light].has_parts() { finer(u, sampler.four_plain(key, MORE_DIGITS)[1]) } else { u };
+            let shadow_ray = self.shadow_ray(side, (light, probability), [u, v]);
+            if let Some(contribution) = shadow_ray.and_then(|ray| self.trace(side, &ray)) {
+                sensor.receive(contribution);
+            }
         };
-        if self.aims_at_all {
-            for (number, &target) in targets.iter().enumerate() {
+        if self.all_lights {
+            for (number, &light) in self.world.targets.iter().enumerate() {
                 let u = match number {
                     0 => [self.u[0], self.u[1]],
                     _ => {
@@ -64,113 +106,88 @@ impl<const N: usize> Gathering<'_, N> {
                         if number % 2 == 0 { [u[0], u[1]] } else { [u[2], u[3]] }
                     }
                 };
-                add(&mut sum, self.from(target, 1.0, digits(target, u)));
+                take(light, 1.0, u);
             }
         } else {
-            let more = sampler.four_plain(key, MORE_DIGITS);
-            let (from, normal) = (self.point.position, self.normal);
-            if let Some((target, probability)) = self.world.choice.choose(from, normal, finer(self.u[3], more[0])) {
-                add(&mut sum, self.from(target, probability, digits(target, [self.u[0], self.u[1]])));
+            let u = finer(self.u[3], sampler.four_plain(key, MORE_DIGITS)[0]);
+            if let Some(drawn) = self.world.light_sampler.sample(self.at.point.position, side.normal, u) {
+                take(drawn.light, drawn.probability, [self.u[0], self.u[1]]);
             }
         }
-        sum
     }
 
-    /// Adds the light of the lights to a sum, and answers how likely it was to look at a side.
-    ///
-    /// Where light also comes from beyond the surface, `far` is the medium there and whether lanes part on the way. Both
-    /// sides are looked at or, where only one light is aimed at, one of them chosen by chance.
-    pub(super) fn gather(
-        self,
-        far: Option<(Option<MaterialId>, bool)>,
-        sampler: &Sampler,
-        key: BranchKey,
-        sum: &mut [f64; 3],
-    ) -> f64 {
-        let Some((inside, parts)) = far else {
-            add(sum, self.direct(sampler, key));
-            return 1.0;
-        };
-        let chance = if self.aims_at_all { 1.0 } else { 0.5 };
-        let u = sampler.four_plain(key, MORE_DIGITS)[2];
-        let near = Self { side: Some(chance), ..self };
-        if u < chance {
-            add(sum, near.direct(sampler, key));
-        }
-        if 1.0 - u <= chance {
-            let parted = near.parted || parts;
-            add(sum, Self { normal: -near.normal, parted, inside, ..near }.direct(sampler, key));
-        }
-        chance
-    }
-
-    /// The share of one light, aimed at with a probability.
-    fn from(&self, target: LightId, probability: f64, u: [f64; 2]) -> [f64; 3] {
-        let light = &self.world.scene.lights[target];
-        let normal = self.normal;
-        let probability = probability * self.side.unwrap_or(1.0);
-        let lit = || {
-            let sighting = light.aim(self.point.position, normal, u)?;
-            if self.side.is_some() && sighting.direction.dot(normal) <= 0.0 {
-                return None;
-            }
-            let flat = if normal.dot(self.arrival.wo) < 0.0 { -normal } else { normal };
-            let (bsdf_cos, bsdf_pdf) = shading::evaluate(self.material, self.arrival, flat, sighting.direction)?;
-            let ray = self.point.leave(sighting.direction);
-            let view = light.view(&ray, normal, &sighting)?;
-            let factor = match view.pdf {
-                None => view.factor / probability,
-                Some(pdf) => {
-                    let pdf = pdf * probability;
-                    let weight = if self.goes_on { power_heuristic(pdf, bsdf_pdf) } else { 1.0 };
-                    view.factor * weight / pdf
-                }
-            };
-            if !factor.is_finite() {
-                return None;
-            }
-            let transmitted = if self.world.has_see_through() {
-                Some(self.transmittance(&ray, view.distance, view.object)?)
-            } else if self.world.scene.is_hidden(&ray, view.distance, view.object, self.hider) {
-                return None;
-            } else {
-                None
-            };
-            let factor = match (self.aiming, view.pdf) {
-                (Some(aiming), Some(pdf)) if self.goes_on => {
-                    let pdf = pdf * probability;
-                    view.factor * power_heuristic(pdf, aiming.pdf(sighting.direction, bsdf_pdf)) / pdf
-                }
-                _ => factor,
-            };
-            let mut arriving = light.toward(self.arrival.draw, sighting.direction, view.uv);
-            if let Some((share, _)) = transmitted {
-                arriving = arriving * share;
-            }
-            if let Some(material) = self.inside {
-                arriving =
-                    arriving * media::medium(self.world, material).transmission(self.arrival.draw, view.distance);
-            }
-            let reflected = self.throughput.scaled(factor).of(bsdf_cos * arriving);
-            let rgb = self.world.responses[target].sensor(self.arrival.draw, reflected, self.parted);
-            if let Some(lit) = self.lit {
-                let on_its_way = transmitted.map_or(Polarized::NOT, |(_, polarized)| polarized);
-                lit.count(self.world, (self.material, self.arrival), (sighting.direction, on_its_way), rgb);
-            }
-            Some(rgb)
-        };
-        lit().unwrap_or([0.0; 3])
-    }
-
-    /// The share of a light that goes straight on through what stands before it; none if something hides it.
-    #[cold]
-    #[inline(never)]
-    fn transmittance(&self, ray: &Ray, distance: f64, light: Option<u32>) -> Option<(Lanes<N>, Polarized)> {
-        let world = self.world;
-        if world.scene.is_hidden_by(ray, distance, light, self.hider, |object| !world.is_see_through(object)) {
+    /// A ray to a light that was chosen with a probability; none where the sensor gets nothing of it.
+    fn shadow_ray(&self, side: &Side, (id, chosen): (LightId, f64), u: [f64; 2]) -> Option<ShadowRay<N>> {
+        let (normal, arrival) = (side.normal, &self.at.arrival);
+        let sample = self.world.scene.lights[id].sample_li(self.at.point, normal, u)?;
+        let wi = sample.ray.direction;
+        if side.chance.is_some() && wi.dot(normal) <= 0.0 {
             return None;
         }
-        straight::transmittance(world, self.arrival.draw, ray, distance, self.inside)
+        let flat = if normal.dot(arrival.wo) < 0.0 { -normal } else { normal };
+        let (bsdf_cos, bsdf_pdf) = shading::evaluate(self.at.material, arrival, flat, wi)?;
+        let ray = ShadowRay { light: id, sample, probability: chosen * side.chance.unwrap_or(1.0), bsdf_cos, bsdf_pdf };
+        self.factor(&ray, bsdf_pdf).is_finite().then_some(ray)
+    }
+
+    /// What the sensor gets by a ray; none if something occludes the light.
+    fn trace(&self, side: &Side, shadow_ray: &ShadowRay<N>) -> Option<Contribution> {
+        let (world, arrival) = (self.world, &self.at.arrival);
+        let ShadowRay { light, sample, bsdf_cos, bsdf_pdf, .. } = shadow_ray;
+        let straight = self.unoccluded(sample, side.inside)?;
+        let wi = sample.ray.direction;
+        // The density of bounces that are guided takes its time.
+        let bounce_pdf = match self.aiming {
+            Some(aiming) if self.goes_on && sample.pdf.is_some() => aiming.pdf(wi, *bsdf_pdf),
+            _ => *bsdf_pdf,
+        };
+        let mut arriving = world.scene.lights[*light].toward(arrival.draw, wi, sample.uv);
+        if let Some((share, _)) = straight {
+            arriving = arriving * share;
+        }
+        if let Some(material) = side.inside {
+            arriving = arriving * media::medium(world, material).transmission(arrival.draw, sample.distance);
+        }
+        let factor = self.factor(shadow_ray, bounce_pdf);
+        let reflected = self.path.throughput.scaled(factor).of(*bsdf_cos * arriving);
+        let rgb = world.responses[*light].sensor(arrival.draw, reflected, side.parted);
+        let mut moved = 0.0;
+        if self.path.polarized.is_any() || world.has_see_through() {
+            let on_its_way = straight.map_or(Polarized::NOT, |(_, polarized)| polarized);
+            let change = self.path.polarized.brought((self.at.material, arrival), (wi, on_its_way)).change();
+            moved = if change == 0.0 { 0.0 } else { change * amount(world, rgb) };
+        }
+        Some(Contribution { light: Some(*light), found: Found::Sampled, rgb, moved })
+    }
+
+    /// The factor on a light's emission and the material's answer: over the density of both ways to the light's direction
+    /// together, where the path's own next direction may hit it.
+    fn factor(&self, ShadowRay { sample, probability, .. }: &ShadowRay<N>, bounce_pdf: f64) -> f64 {
+        let Some(pdf) = sample.pdf else { return sample.factor / probability };
+        let pdf = pdf * probability;
+        let weight = if self.goes_on { power_heuristic(pdf, bounce_pdf) } else { 1.0 };
+        sample.factor * weight / pdf
+    }
+
+    /// None if something occludes the light; where there are holes and panes, the share that goes straight on through them.
+    fn unoccluded(&self, sample: &LightSample, inside: Option<MaterialId>) -> Option<Option<(Lanes<N>, Polarized)>> {
+        if self.world.has_see_through() {
+            return self.transmittance(sample, inside).map(Some);
+        }
+        let hidden = self.world.scene.is_hidden(&sample.ray, sample.distance, sample.object, self.last_occluder);
+        (!hidden).then_some(None)
+    }
+
+    /// The share of a light that goes straight on through what stands before it; none if something occludes it.
+    #[cold]
+    #[inline(never)]
+    fn transmittance(&self, sample: &LightSample, inside: Option<MaterialId>) -> Option<(Lanes<N>, Polarized)> {
+        let (world, LightSample { ray, distance, object, .. }) = (self.world, sample);
+        if world.scene.is_hidden_by(ray, *distance, *object, self.last_occluder, |object| !world.is_see_through(object))
+        {
+            return None;
+        }
+        straight::transmittance(world, self.at.arrival.draw, ray, *distance, inside)
     }
 }
 
@@ -180,7 +197,8 @@ fn finer(u: f64, more: f64) -> f64 {
     ((u * STEPS).floor() + more) / STEPS
 }
 
-/// The weight of a light that a path met by itself, beside next-event estimation at the path's last surface.
+/// The weight of a light that a path met by itself, beside next-event estimation at the path's last surface. `crossing` is where
+/// the ray meets the light, if that is a surface.
 pub(super) fn weight_of_meeting(
     world: &World,
     light: LightId,
@@ -189,20 +207,13 @@ pub(super) fn weight_of_meeting(
     crossing: Option<&Crossing>,
 ) -> f64 {
     let Some(scatter) = scatter else { return 1.0 };
-    let pdf = match (&world.scene.lights[light], crossing) {
-        (Light::Area(area), Some(_)) if area.aimed_at && scatter.passed => {
-            // The light was aimed at from before the holes and panes that the path has passed since.
-            let ray = Ray { origin: scatter.from, direction: ray.direction };
-            area.shape.intersect(&ray, f64::INFINITY).and_then(|crossing| area.pdf(&ray, scatter.normal, &crossing))
-        }
-        (Light::Area(area), Some(crossing)) if area.aimed_at => area.pdf(ray, scatter.normal, crossing),
-        (Light::Environment(environment), None) => Some(environment.pdf(ray, scatter.normal)),
-        (Light::Sun(sun), None) => sun.pdf(ray),
-        _ => None,
-    };
+    // Through holes and panes that the path has passed since, the light was sampled from before them.
+    let before = Ray { origin: scatter.from, direction: ray.direction };
+    let (ray, crossing) = if scatter.passed { (&before, None) } else { (ray, crossing) };
+    let pdf = world.scene.lights[light].pdf_li(ray, scatter.normal, crossing);
     let Some(pdf) = pdf else { return 1.0 };
     let probability =
-        if scatter.all_lights { 1.0 } else { world.choice.probability(light, scatter.from, scatter.normal) };
+        if scatter.all_lights { 1.0 } else { world.light_sampler.probability(light, scatter.from, scatter.normal) };
     power_heuristic(scatter.pdf, pdf * (probability * scatter.chance))
 }
 
@@ -215,10 +226,4 @@ fn power_heuristic(this: f64, other: f64) -> f64 {
     }
     let ratio = other / this;
     1.0 / (1.0 + ratio * ratio)
-}
-
-pub(super) fn add(sum: &mut [f64; 3], more: [f64; 3]) {
-    for (sum, more) in sum.iter_mut().zip(more) {
-        *sum += more;
-    }
 }

@@ -13,11 +13,11 @@
 use std::f64::consts::PI;
 
 use super::World;
-use super::direct::add;
 use super::interaction::Interaction;
 use super::merge::{Landed, Photons};
 use super::path::Path;
-use super::polarization::{Polarized, amount};
+use super::polarization::Polarized;
+use super::sensor::{add, amount};
 use super::shading;
 use crate::math::{BranchKey, DVec2, DVec3, Frame, Ray, Sampler, unit};
 use crate::shape::SurfacePoint;

@@ -1,10 +1,12 @@
 //! What the photons of a map are worth, learned from a few.
 
+use std::cell::Cell;
+
 use super::World;
 use super::merge::photons;
 use super::path_tracer::PathTracer;
 use super::pilot::SampleWorth;
-use super::render::sample;
+use super::sensor::{Contribution, Found, Observer, add};
 use super::width::in_lanes;
 use crate::math::Sampler;
 use crate::spectrum::apply;
@@ -38,6 +40,20 @@ pub fn gathered_worth(world: &World) -> Option<GatheredWorth> {
     in_lanes!(&world.method.basis, N => gather::<N>(world))
 }
 
+/// All light that was gathered.
+#[derive(Default)]
+struct Gathered(Cell<[f64; 3]>);
+
+impl Observer for Gathered {
+    fn receive(&self, contribution: &Contribution) {
+        if contribution.found == Found::Gathered {
+            let mut sum = self.0.get();
+            add(&mut sum, contribution.rgb);
+            self.0.set(sum);
+        }
+    }
+}
+
 /// Sums of some values and of their squares.
 #[derive(Clone, Copy, Default)]
 struct Sums([[f64; 2]; 3]);
@@ -65,16 +81,16 @@ fn gather<const N: usize>(world: &World) -> Option<GatheredWorth> {
     for map in 0..MAPS {
         let photons = photons::<N>(world, map as u32)?;
         (sent, rays) = (sent + photons.sent, rays + photons.stats.rays);
-        let mut tracer = PathTracer::<N>::new(world);
-        tracer.photons = Some(&photons);
+        let by_gathering = Gathered::default();
+        let mut tracer = PathTracer::<N>::new(world).with_photons(Some(&photons)).with_observer(&by_gathering);
         for place in 0..places {
             let [x, y] = film.whole().middle_of_cell(SIDE, place);
-            let before = tracer.gathered;
+            let before = by_gathering.0.get();
             for number in 0..SAMPLES {
-                let so_far = tracer.gathered;
+                let so_far = by_gathering.0.get();
                 let sampler = Sampler::new((world.method.seed ^ SEED).wrapping_add(u64::from(number)), [x, y], 0);
-                let found = sample(world, &mut tracer, &sampler, x, y).rgb;
-                let gathered = tracer.gathered;
+                let found = tracer.sample(&sampler, [x, y]).rgb;
+                let gathered = by_gathering.0.get();
                 let others = std::array::from_fn(|i| found[i] - (gathered[i] - so_far[i]));
                 let here = apply(&to_xyz, std::array::from_fn(|i| gathered[i] - so_far[i]));
                 second_moment += here.iter().filter(|x| x.is_finite()).map(|x| x * x).sum::<f64>();
@@ -82,7 +98,7 @@ fn gather<const N: usize>(world: &World) -> Option<GatheredWorth> {
                     by_samples[place as usize].add(apply(&to_xyz, others));
                 }
             }
-            let gathered = tracer.gathered;
+            let gathered = by_gathering.0.get();
             let mean = std::array::from_fn(|i| (gathered[i] - before[i]) / f64::from(SAMPLES));
             by_photons[place as usize].add(apply(&to_xyz, mean));
         }

@@ -1,5 +1,7 @@
 //! Which photons are worth sending.
 
+use crate::math::Distribution2d;
+
 /// Cells along each side of the square.
 const SIDE: usize = 64;
 /// Share of the photons that is sent everywhere, whatever was learned: what was missed must not come back much too bright.
@@ -10,13 +12,11 @@ const EVERYWHERE: f64 = 0.2;
 /// Jensen 1995, *Importance Driven Path Tracing Using the Photon Map*, learned where to send light in the same way.
 #[derive(Clone, Debug)]
 pub(super) struct Guide {
-    /// Probabilities of the rows, summed up, and of the cells within each row.
-    rows: Vec<f64>,
-    cells: Vec<f64>,
+    cells: Distribution2d,
 }
 
 impl Guide {
-    /// The same density everywhere.
+    /// A density of 1 everywhere.
     pub(super) fn even() -> Self {
         Self::of(|_| 1.0)
     }
@@ -47,46 +47,25 @@ impl Guide {
         })
     }
 
-    /// The same density in all cells that the largest disc of the square reaches into.
+    /// A constant density in all cells that the largest disc of the square reaches into, 0 in the others.
     pub(super) fn disc() -> Self {
         Self::of(|cell| f64::from(u8::from(touches_disc(cell))))
     }
 
     /// A density with probabilities of the cells, up to a factor.
     fn of(probability: impl Fn(usize) -> f64) -> Self {
-        let (mut rows, mut cells, mut all) = (Vec::new(), Vec::new(), 0.0);
-        for row in 0..SIDE {
-            let mut sum = 0.0;
-            let start = cells.len();
-            for column in 0..SIDE {
-                sum += probability(row * SIDE + column);
-                cells.push(sum);
-            }
-            if sum > 0.0 {
-                cells[start..].iter_mut().for_each(|cell| *cell /= sum);
-            }
-            cells[start + SIDE - 1] = 1.0;
-            all += sum;
-            rows.push(all);
-        }
-        rows.iter_mut().for_each(|row| *row /= all);
-        rows[SIDE - 1] = 1.0;
-        Self { rows, cells }
+        Self { cells: Distribution2d::new([SIDE; 2], |[column, row]| probability(row * SIDE + column), |_| 1.0) }
     }
 
     /// A place of the square for two random numbers.
-    pub(super) fn draw(&self, [u, v]: [f64; 2]) -> [f64; 2] {
-        let (row, down) = choose(&self.rows, v);
-        let (column, across) = choose(&self.cells[row * SIDE..(row + 1) * SIDE], u);
-        [(column as f64 + across) / SIDE as f64, (row as f64 + down) / SIDE as f64]
+    pub(super) fn sample(&self, u: [f64; 2]) -> [f64; 2] {
+        self.cells.sample(u).map(|drawn| (drawn.index as f64 + drawn.u) / SIDE as f64)
     }
 
     /// The density of places drawn.
     pub(super) fn density(&self, place: [f64; 2]) -> f64 {
         let cell = cell_of(place);
-        let row = cell / SIDE;
-        let within = probability(&self.cells[row * SIDE..(row + 1) * SIDE], cell % SIDE);
-        probability(&self.rows, row) * within * (SIDE * SIDE) as f64
+        self.cells.probability([cell % SIDE, cell / SIDE]) * (SIDE * SIDE) as f64
     }
 }
 
@@ -103,17 +82,6 @@ fn touches_disc(cell: usize) -> bool {
 fn cell_of(place: [f64; 2]) -> usize {
     let [column, row] = place.map(|x| ((x * SIDE as f64) as usize).min(SIDE - 1));
     row * SIDE + column
-}
-
-/// The entry of a list of summed probabilities in which a number falls, and where in it.
-fn choose(sums: &[f64], u: f64) -> (usize, f64) {
-    let entry = sums.partition_point(|&sum| sum <= u).min(sums.len() - 1);
-    let before = if entry == 0 { 0.0 } else { sums[entry - 1] };
-    (entry, ((u - before) / (sums[entry] - before)).clamp(0.0, 1.0 - f64::EPSILON))
-}
-
-fn probability(sums: &[f64], entry: usize) -> f64 {
-    sums[entry] - if entry == 0 { 0.0 } else { sums[entry - 1] }
 }
 
 #[cfg(test)]
@@ -135,12 +103,12 @@ mod tests {
             // An integral over the disc by drawing places: pi / 4 for its area, a sixteenth of it for (x - 1 / 2)^2.
             let inside = |p: [f64; 2]| (p[0] - 0.5) * (p[0] - 0.5) + (p[1] - 0.5) * (p[1] - 0.5) < 0.25;
             let square = |p: [f64; 2]| if inside(p) { (p[0] - 0.5) * (p[0] - 0.5) } else { 0.0 };
-            let draws = grid(1000).map(|u| guide.draw(u)).map(|p| square(p) / guide.density(p));
+            let draws = grid(1000).map(|u| guide.sample(u)).map(|p| square(p) / guide.density(p));
             let mean = draws.sum::<f64>() / 1e6;
             let exact = std::f64::consts::PI / 64.0;
             assert!((mean / exact - 1.0).abs() < 2e-3, "{mean} for {exact}");
         }
-        let hits = grid(200).filter(|&u| seen(learned.draw(u))).count() as f64 / 40_000.0;
+        let hits = grid(200).filter(|&u| seen(learned.sample(u))).count() as f64 / 40_000.0;
         assert!(hits > 0.5, "{hits} of the photons are seen where 0.024 of all would be");
     }
 }

@@ -3,7 +3,7 @@
 use super::media::{self, Boundary};
 use super::path::Path;
 use super::{World, shading};
-use crate::material::{Arrival, Material, Straight};
+use crate::material::{Arrival, Lobes, Material, Straight};
 use crate::math::DVec3;
 use crate::scene::{Hit, MaterialId};
 use crate::shape::SurfacePoint;
@@ -20,8 +20,9 @@ pub(super) struct Meeting<const N: usize> {
 /// Where a path meets a surface, and what the surface may know of it: made here, for the camera's paths, photons and probes.
 pub(super) struct Interaction<'a, const N: usize> {
     pub(super) object: u32,
-    pub(super) point: SurfacePoint,
+    pub(super) point: &'a SurfacePoint,
     pub(super) material: &'a Material<Table>,
+    pub(super) lobes: Lobes,
     /// The surface's own unit normal, of the triangle where a mesh is smooth, on the side that the path comes from.
     pub(super) flat: DVec3,
     /// The media on both sides.
@@ -33,32 +34,35 @@ pub(super) struct Interaction<'a, const N: usize> {
 
 impl<'a, const N: usize> Interaction<'a, N> {
     /// Of a path with the surface that it has met at a boundary of media.
+    #[inline(always)]
     pub(super) fn new(
         world: &'a World,
         draw: &'a Draw<N>,
         path: &Path<N>,
-        meeting: &Meeting<N>,
+        meeting: &'a Meeting<N>,
         boundary: Boundary,
     ) -> Self {
         let Meeting { hit, point, .. } = meeting;
-        let material = world.scene.material_of(hit.object);
+        let number = world.scene.objects[hit.object as usize].material as usize;
+        let (material, lobes) = (&world.scene.materials[number].material, world.lobes[number]);
         let [flat, normal] = shading::normals(point, -path.ray.direction);
         let present = path.throughput.present();
         let arrival = arrival(world, draw, (path.ray.direction, normal, present), (hit, point), boundary.sides());
-        let parts = material.lets_through() && material.parts_lanes(&arrival);
-        Self { object: hit.object, point: *point, material, flat, boundary, arrival, parts }
+        let parts = lobes.is_transmissive() && material.parts_lanes(&arrival);
+        Self { object: hit.object, point, material, lobes, flat, boundary, arrival, parts }
     }
 
     /// With another normal by which the surface scatters.
     pub(super) fn by_normal(self, normal: DVec3) -> Self {
         let arrival = Arrival { normal, ..self.arrival };
-        let parts = self.material.lets_through() && self.material.parts_lanes(&arrival);
+        let parts = self.lobes.is_transmissive() && self.material.parts_lanes(&arrival);
         Self { arrival, parts, ..self }
     }
 }
 
 /// What a surface may know of light that arrives there, between media on the viewer's side and beyond; `normal` is the one by which
 /// it scatters, on the viewer's side.
+#[inline(always)]
 pub(super) fn arrival<'a, const N: usize>(
     world: &'a World,
     draw: &'a Draw<N>,

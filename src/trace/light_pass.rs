@@ -9,9 +9,9 @@
 use rayon::prelude::*;
 
 use super::photon::{Landing, Splat};
-use super::polarization::amount;
 use super::render::TILE;
 use super::sending::{Sent, batches, send};
+use super::sensor::amount;
 use super::stats::Stats;
 use super::walker::Walker;
 use super::width::in_lanes;

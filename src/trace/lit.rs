@@ -5,11 +5,10 @@ use std::f64::consts::PI;
 
 use super::media::Media;
 use super::search::Reached;
-use super::spread::SEEN_PIXELS;
-use super::targets::Targets;
+use super::targets::{SEEN_PIXELS, Targets};
 use super::walk::{Colors, Walk, Way};
 use crate::light::{Light, LightId};
-use crate::math::{BranchKey, DVec2, DVec3, Frame, Ray, Sampler, cone, disk, unit};
+use crate::math::{BranchKey, Cone, DVec2, DVec3, Frame, Ray, Sampler, cone, disk, unit};
 use crate::shape::{Ball, SurfacePoint};
 use crate::spectrum::Table;
 
@@ -36,7 +35,7 @@ pub(super) fn lit_pixels(colors: &Colors, targets: &Targets, reached: &[Reached]
     if world.method.diffuse_bounces == 0 {
         return 0.0;
     }
-    let shines = |&id: &LightId| world.scene.lights[id].is_aimed_at() && !world.scene.lights[id].is_even_sky();
+    let shines = |&id: &LightId| world.scene.lights[id].is_sampled() && !world.scene.lights[id].is_even_sky();
     let lights: Vec<LightId> = (0..world.scene.lights.len()).filter(shines).collect();
     let balls: Vec<Ball> = targets.all.iter().filter(|target| target.dispersive).map(|target| target.ball()).collect();
     let pairs = balls.len() * lights.len().min(LIGHTS);
@@ -69,9 +68,9 @@ fn brightest(colors: &Colors, lights: &[LightId], ball: &Ball) -> Vec<LightId> {
     }
     let shines = |&id: &LightId| {
         let light = &colors.world.scene.lights[id];
-        let near = light.emitter().map(|emitter| {
-            let squared = (emitter.bounds.center() - ball.center).length_squared();
-            emitter.intensity / squared.max(ball.radius * ball.radius)
+        let near = light.bounds().map(|lamp| {
+            let squared = (lamp.bounds.center() - ball.center).length_squared();
+            lamp.intensity / squared.max(ball.radius * ball.radius)
         });
         (near.unwrap_or_else(|| light.irradiance()), id)
     };
@@ -94,13 +93,11 @@ impl Pair<'_> {
         let u = sampler.four(BranchKey::CAMERA, 0);
         let scene = &self.colors.world.scene;
         let light = &scene.lights[self.light];
-        let facing = light.emitter().and_then(|lamp| (lamp.bounds.center() - self.ball.center).try_normalize());
+        let facing = light.bounds().and_then(|lamp| (lamp.bounds.center() - self.ball.center).try_normalize());
         let normal = facing.unwrap_or(DVec3::Y);
         let target = self.target(light, normal, u)?;
-        let sighting = light.aim(target, normal, [u[2], u[3]])?;
-        let back = Ray { origin: target, direction: sighting.direction };
-        let view = light.view(&back, normal, &sighting)?;
-        let start = self.start(&back, view.distance)?;
+        let sample = light.sample_li(&SurfacePoint::in_space(target), normal, [u[2], u[3]])?;
+        let start = self.start(&sample.ray, sample.distance)?;
         let media = if scene.lights[self.light].is_sky() {
             Media::default()
         } else {
@@ -114,11 +111,11 @@ impl Pair<'_> {
         let (a, b) = (first.end?.0, second.end?.0);
         let scale = self.scale(&a, &first)?;
         let apart = scale * (a.position - b.position).length();
-        if apart >= SEEN_PIXELS && self.share(&start, target, (&first, &a), &walk).is_some_and(|share| share < FAINT) {
+        if apart >= SEEN_PIXELS && self.share(&start, target, &first, &a, &walk).is_some_and(|share| share < FAINT) {
             return Some(0.0);
         }
         // A cone of even density.
-        let radius = view.pdf.map_or(0.0, |pdf| (1.0 / (PI * pdf)).sqrt());
+        let radius = sample.pdf.map_or(0.0, |pdf| (1.0 / (PI * pdf)).sqrt());
         if radius == 0.0 {
             return Some(apart);
         }
@@ -140,16 +137,16 @@ impl Pair<'_> {
         &self,
         start: &Ray,
         target: DVec3,
-        (first, end): (&Walk, &SurfacePoint),
+        first: &Walk,
+        end: &SurfacePoint,
         walk: &impl Fn(usize, Ray) -> Walk,
     ) -> Option<f64> {
         let (scene, light) = (&self.colors.world.scene, &self.colors.world.scene.lights[self.light]);
         let (direction, distance, lamp) = if light.is_sky() {
             (-start.direction, f64::INFINITY, None)
         } else {
-            let sighting = light.aim(end.position, end.normal, [0.5; 2])?;
-            let view = light.view(&end.leave(sighting.direction), end.normal, &sighting)?;
-            (sighting.direction, view.distance, view.object)
+            let sample = light.sample_li(end, end.normal, [0.5; 2])?;
+            (sample.ray.direction, sample.distance, sample.object)
         };
         let (own, from) = (direction.dot(end.normal), -first.last()?.direction.dot(end.normal));
         let keeps_away = |object| !first.met.contains(&object) && !scene.material_of(object).lets_through();
@@ -177,11 +174,12 @@ impl Pair<'_> {
         if let Light::Spot(spot) = light {
             let position = DVec3::from(spot.position);
             let (of_ball, own) = (self.ball.cone_from(position), spot.cone());
-            let (axis, size) = if own.1 < of_ball.1 { own } else { of_ball };
-            let direction = unit(Frame::about(axis).to_world(cone(size, [u[0], u[1]]).0));
+            let Cone { axis, one_minus_cos } = if own.one_minus_cos < of_ball.one_minus_cos { own } else { of_ball };
+            let direction = unit(Frame::about(axis).to_world(cone(one_minus_cos, [u[0], u[1]]).0));
             return Some(position + direction * (self.ball.center - position).length());
         }
-        let axis = light.aim(self.ball.center, normal, [u[2], u[3]])?.direction;
+        let sample = light.sample_li(&SurfacePoint::in_space(self.ball.center), normal, [u[2], u[3]]);
+        let axis = sample.map_or(normal, |sample| sample.ray.direction);
         let [x, y] = (disk([u[0], u[1]]) * self.ball.radius).into();
         Some(self.ball.center + Frame::about(axis).to_world(DVec3::new(x, y, 0.0)))
     }

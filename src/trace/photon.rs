@@ -1,7 +1,6 @@
 //! Photons: light followed forward over smooth surfaces, to where the camera sees it.
 
 use super::World;
-use super::emission::Emitted;
 use super::interaction::Interaction;
 use super::media::{self, Media};
 use super::path::{Path, PathKind};
@@ -9,7 +8,7 @@ use super::polarization::Polarized;
 use super::shading;
 use super::straight;
 use super::walker::{Departure, Walker};
-use crate::light::LightId;
+use crate::light::{LeSample, LightId};
 use crate::material::Arrival;
 use crate::math::{BranchKey, Sampler};
 use crate::spectrum::{Draw, Lanes, Throughput};
@@ -55,7 +54,7 @@ impl<const N: usize> Walker<'_, N> {
     /// between media.
     pub(super) fn photon(
         &mut self,
-        emitted: &Emitted,
+        emitted: &LeSample,
         light: LightId,
         media: Media,
         draw: &Draw<N>,
@@ -63,7 +62,7 @@ impl<const N: usize> Walker<'_, N> {
         land: &mut impl FnMut(&Self, &Landing<N>),
     ) {
         let world = self.world;
-        let mut next = Some(Path {
+        self.pending.push(Path {
             ray: emitted.ray,
             throughput: Throughput::starting(draw.start()),
             eta_scale: 1.0,
@@ -77,7 +76,7 @@ impl<const N: usize> Walker<'_, N> {
             scatter: None,
             polarized: Polarized::NOT,
         });
-        while let Some(mut path) = next.take().or_else(|| self.pending.pop()) {
+        while let Some(mut path) = self.pending.pop() {
             if path.vertices >= self.transport.last_vertex() {
                 continue;
             }
@@ -97,28 +96,28 @@ impl<const N: usize> Walker<'_, N> {
             path.vertices += 1;
             let boundary = self.boundary(&path, &meeting);
             if boundary.here == boundary.beyond && world.scene.material_of(meeting.hit.object).medium().is_some() {
-                next = Some(self.pass_hidden(&path, &meeting, &boundary));
+                self.pass_hidden(&path, &meeting, &boundary);
                 continue;
             }
             let at = Interaction::new(world, draw, &path, &meeting, boundary);
             // As often as light may leave surfaces on its way from the camera.
             let allowed = path.vertices <= world.method.max_bounces
-                && !(at.material.is_diffuse() && world.method.diffuse_bounces == 0);
-            if at.material.scatters_widely() && allowed && path.vertices > 1 {
+                && !(at.lobes.is_diffuse() && world.method.diffuse_bounces == 0);
+            if at.lobes.is_wide() && allowed && path.vertices > 1 {
                 land(self, &Landing { path: &path, at: &at, light, factor: emitted.factor });
             }
-            next = self.bounce(&path, at, sampler);
+            self.bounce(&path, at, sampler);
         }
     }
 
-    /// How a photon goes on from a surface: over smooth ones alone.
-    fn bounce(&mut self, path: &Path<N>, at: Interaction<N>, sampler: &Sampler) -> Option<Path<N>> {
-        let plain = shading::plain_normal(&at.point, at.arrival.wo);
+    /// Lets a photon go on over a smooth surface.
+    fn bounce(&mut self, path: &Path<N>, at: Interaction<N>, sampler: &Sampler) {
+        let plain = shading::plain_normal(at.point, at.arrival.wo);
         let at = at.by_normal(plain);
         let Interaction { material, point, arrival, .. } = &at;
-        let goes_on = material.has_single_directions() && arrival.wo.dot(arrival.normal) > 0.0;
+        let goes_on = at.lobes.has_delta() && arrival.wo.dot(arrival.normal) > 0.0;
         if !goes_on || path.vertices >= self.world.method.max_bounces {
-            return None;
+            return;
         }
         self.branches.clear();
         let u = sampler.four_plain(path.key, SCATTER);
@@ -132,7 +131,7 @@ impl<const N: usize> Walker<'_, N> {
                 branch.share = branch.share * *forward;
             }
         }
-        self.follow(&mut Departure::new(self.world, path, &at), sampler)
+        self.follow(&mut Departure::new(self.world, path, &at), sampler);
     }
 
     /// Adds what the camera sees of a photon.
@@ -159,7 +158,7 @@ impl<const N: usize> Walker<'_, N> {
         let turned = Arrival { wo: seen.direction, normal, ..*arrival };
         let viewed = if same { turned } else { turned.turned_around() };
         let Some((bsdf_cos, _)) = shading::evaluate(material, &viewed, side, arrival.wo) else { return };
-        let parted = path.parted || (!same && material.lets_through() && material.parts_lanes(&viewed));
+        let parted = path.parted || (!same && at.lobes.is_transmissive() && material.parts_lanes(&viewed));
         let cosines = seen.direction.dot(*flat).abs() / arrival.wo.dot(*flat).abs();
         let ray = point.leave(seen.direction);
         let distance = (seen.start - ray.origin).length();

@@ -3,7 +3,6 @@
 use super::World;
 use super::light_pass;
 use super::path_tracer::PathTracer;
-use super::render::sample;
 use super::width::in_lanes;
 use crate::light::LightId;
 use crate::math::Sampler;
@@ -117,7 +116,7 @@ fn weigh_samples<const N: usize>(world: &World) -> SampleWorth {
         let [x, y] = film.whole().middle_of_cell(SIDE, place);
         let taken = (0..SAMPLES).map(|number| {
             let sampler = Sampler::new(seed.wrapping_add(u64::from(number)), [x, y], 0);
-            apply(&to_xyz, sample(world, &mut tracer, &sampler, x, y).rgb)
+            apply(&to_xyz, tracer.sample(&sampler, [x, y]).rgb)
         });
         let taken: Vec<[f64; 3]> = taken.filter(|xyz| xyz.iter().all(|x| x.is_finite())).collect();
         let count = taken.len().max(2) as f64;

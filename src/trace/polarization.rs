@@ -6,12 +6,6 @@
 //! |d| alone: degrees add as velocities do, and ones that add all the way are the worst. Light leaves lamps and the sky
 //! unpolarized, and surfaces that scatter it diffusely.
 
-use std::cell::Cell;
-
-use super::World;
-use super::direct::add;
-use super::path::Path;
-use super::path_tracer::PathTracer;
 use crate::material::{Arrival, Material};
 use crate::math::DVec3;
 use crate::spectrum::Table;
@@ -70,57 +64,6 @@ impl Polarized {
     /// The share of the light by which polarization may have changed it.
     pub(super) fn change(self) -> f64 {
         f64::from(self.growth) - 1.0
-    }
-}
-
-/// How much light there is in a film color: X + Y + Z.
-pub(super) fn amount(world: &World, rgb: [f64; 3]) -> f64 {
-    (0..3).map(|channel| rgb[channel] * world.xyz_of_channel[channel]).sum::<f64>().abs()
-}
-
-/// Light that lights send straight to a surface at the end of a polarized path.
-pub(super) struct Lit {
-    pub(super) polarized: Polarized,
-    /// What polarization may have changed so far.
-    pub(super) moved: Cell<f64>,
-}
-
-impl Lit {
-    /// Counts light of a film color that came from a direction, polarized on its way there.
-    #[cold]
-    #[inline(never)]
-    pub(super) fn count<const N: usize>(
-        &self,
-        world: &World,
-        surface: (&Material<Table>, &Arrival<N>),
-        coming: (DVec3, Polarized),
-        rgb: [f64; 3],
-    ) {
-        let change = self.polarized.brought(surface, coming).change();
-        if change != 0.0 {
-            self.moved.set(self.moved.get() + change * amount(world, rgb));
-        }
-    }
-}
-
-impl<const N: usize> PathTracer<'_, N> {
-    /// Adds light of the sensor that came by a path, and what polarization may have changed of it.
-    pub(super) fn receive(&mut self, path: &Path<N>, light: [f64; 3], sum: &mut [f64; 3]) {
-        if path.polarized.is_any() {
-            self.walker.stats.polarization += path.polarized.change() * amount(self.walker.world, light);
-        }
-        add(sum, light);
-    }
-
-    /// Counts the light of a camera sample; one that is not finite is left out with all that polarization may have changed
-    /// of it, which was counted after `moved`.
-    pub(super) fn count_light(&mut self, sum: [f64; 3], moved: f64) {
-        let light = amount(self.walker.world, sum);
-        if light.is_finite() && self.walker.stats.polarization.is_finite() {
-            self.walker.stats.light += light;
-        } else {
-            self.walker.stats.polarization = moved;
-        }
     }
 }
 

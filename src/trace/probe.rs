@@ -5,7 +5,6 @@ use std::time::{Duration, Instant};
 use super::World;
 use super::path_tracer::PathTracer;
 use super::photon::Landing;
-use super::render::sample;
 use super::sending::{batches, send};
 use super::walker::Walker;
 use super::width::in_lanes;
@@ -51,7 +50,7 @@ fn probe_lanes<const N: usize>(world: &World) -> Probe {
             let at = |place: u32, size: u32| (u64::from(place) * u64::from(size) / u64::from(SIDE)) as u32;
             let (x, y) = (at(place * 7 % SIDE, window.width), at(place, window.height));
             let (x, y) = (window.left + x, window.top + y);
-            sample(world, &mut tracer, &Sampler::new(world.method.seed, [x, y], 0), x, y);
+            tracer.sample(&Sampler::new(world.method.seed, [x, y], 0), [x, y]);
         }
     }
     let mut tracer = PathTracer::<N>::new(world);
@@ -64,7 +63,7 @@ fn probe_lanes<const N: usize>(world: &World) -> Probe {
     for place in (0..places).map(|i| (i * 229) % places) {
         let [x, y] = window.middle_of_cell(SIDE, place);
         let before = tracer.walker.stats.partings;
-        sample(world, &mut tracer, &Sampler::new(world.method.seed, [x, y], 0), x, y);
+        tracer.sample(&Sampler::new(world.method.seed, [x, y], 0), [x, y]);
         samples += 1;
         parted += u32::from(tracer.walker.stats.partings > before);
         if samples.is_multiple_of(BATCH) || start.elapsed() > ENOUGH {

@@ -1,9 +1,11 @@
 //! What the plan asks of a map of photons before it is made.
 
+use std::cell::RefCell;
+
 use super::World;
 use super::merge::photons;
 use super::path_tracer::PathTracer;
-use super::render::sample;
+use super::sensor::Observer;
 use super::width::in_lanes;
 use crate::math::{DVec3, Sampler};
 
@@ -20,13 +22,23 @@ pub fn reached_places(world: &World) -> Vec<DVec3> {
 
 fn look<const N: usize>(world: &World) -> Vec<DVec3> {
     let film = world.scene.film;
-    let mut tracer = PathTracer::<N>::new(world);
-    tracer.reached = Some(Vec::new());
+    let reached = Reached::default();
+    let mut tracer = PathTracer::<N>::new(world).with_observer(&reached);
     for place in 0..SIDE * SIDE {
         let [x, y] = film.whole().middle_of_cell(SIDE, place);
-        sample(world, &mut tracer, &Sampler::new(world.method.seed ^ LOOKING, [x, y], place), x, y);
+        tracer.sample(&Sampler::new(world.method.seed ^ LOOKING, [x, y], place), [x, y]);
     }
-    tracer.reached.unwrap_or_default()
+    reached.0.into_inner()
+}
+
+/// All places that were told of.
+#[derive(Default)]
+struct Reached(RefCell<Vec<DVec3>>);
+
+impl Observer for Reached {
+    fn reach(&self, place: DVec3) {
+        self.0.borrow_mut().push(place);
+    }
 }
 
 /// The photons of one pass that lie within a pixel of such places, where all of `SIDE` times `SIDE` fill the image; as a share.

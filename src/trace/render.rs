@@ -5,25 +5,21 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::aims::Aims;
+use super::World;
 use super::light_pass::{self, Shown};
 use super::merge::{self, Photons};
 use super::path_tracer::PathTracer;
-use super::polarization::amount;
+use super::photon_targets::PhotonTargets;
+use super::sensor::amount;
 use super::stats::Stats;
 use super::width::in_lanes;
-use super::{Transport, World};
-use crate::film::{Film, PassSum, Pixel, PixelSum, Sample, Window};
-use crate::math::{BranchKey, DVec2, Sampler};
+use crate::film::{Film, PassSum, Pixel, PixelSum, Window};
+use crate::math::Sampler;
 
 /// Side of a tile in pixels.
 pub(super) const TILE: u32 = 16;
 /// Samples of each pixel in the first pass, where no photons are gathered; every other pass takes as many as were taken before.
 const FIRST_PASS: u32 = 16;
-/// Use of the camera's random numbers: where in the pixel the sample falls.
-const PLACE: u32 = 0;
-/// Another: where on the lens its ray starts. The path's first vertex has 1, 2 and those from 16.
-const LENS: u32 = 3;
 
 /// What rendering noticed.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -67,7 +63,7 @@ pub fn work(world: &World) -> u64 {
     let window = world.scene.film.window();
     let samples = u64::from(window.width) * u64::from(window.height) * u64::from(world.method.samples);
     let passes = world.method.light_pass.as_ref().and_then(|pass| pass.map).map_or(0, |map| u64::from(map.count));
-    let photons = |aims: &Option<Aims>| aims.as_ref().map_or(0, Aims::photons);
+    let photons = |aims: &Option<PhotonTargets>| aims.as_ref().map_or(0, PhotonTargets::photons);
     samples + photons(&world.aims) + passes * photons(&world.map_aims)
 }
 
@@ -246,8 +242,7 @@ impl Tile {
     /// Takes samples of all pixels.
     fn take<const N: usize>(&mut self, world: &World, photons: Option<&Photons<N>>, numbers: Range<u32>) {
         let window = world.scene.film.window();
-        let mut tracer = PathTracer::<N>::new(world);
-        tracer.photons = photons;
+        let mut tracer = PathTracer::<N>::new(world).with_photons(photons);
         for (place, sum) in (0..).zip(&mut self.sums) {
             // Random numbers and rays belong to the full image's pixel, whatever part of it is made.
             let x = window.left + self.corner[0] + place % self.width;
@@ -255,7 +250,7 @@ impl Tile {
             let mut pass = PassSum::default();
             for number in numbers.clone() {
                 let sampler = Sampler::new(world.method.seed, [x, y], number);
-                if !pass.add(&sample(world, &mut tracer, &sampler, x, y)) {
+                if !pass.add(&tracer.sample(&sampler, [x, y])) {
                     self.stats.non_finite += 1;
                     self.first_non_finite.get_or_insert([x, y, number]);
                 }
@@ -264,30 +259,4 @@ impl Tile {
         }
         self.stats += tracer.walker.stats;
     }
-}
-
-/// One camera sample.
-pub(super) fn sample<const N: usize>(
-    world: &World,
-    tracer: &mut PathTracer<N>,
-    sampler: &Sampler,
-    x: u32,
-    y: u32,
-) -> Sample {
-    let camera = &world.scene.camera;
-    let numbers = |purpose: u32| match world.method.transport {
-        Transport::Deterministic { .. } => [0.5; 4],
-        Transport::Random { .. } => sampler.four(BranchKey::CAMERA, purpose),
-    };
-    let [u, v, wavelength, _] = numbers(PLACE);
-    let film = DVec2::new(f64::from(x), f64::from(y)) + world.scene.film.filter.place([u, v]);
-    let draw = world.method.basis.draw(wavelength);
-    let ray = if camera.has_lens() {
-        let [u, v, ..] = numbers(LENS);
-        camera.lens_ray(film, [u, v])
-    } else {
-        camera.ray(film)
-    };
-    let (rgb, first) = tracer.radiance(ray, &draw, sampler);
-    Sample { rgb, depth: first.map(|point| camera.depth(point.position)) }
 }

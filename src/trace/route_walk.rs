@@ -240,12 +240,11 @@ impl<'a> Walker<'a> {
     /// Light that comes straight from a light, through whatever lets it through.
     fn aim(&mut self, at: &At, walk: &Walk, normal: DVec3, id: LightId) {
         let (world, light) = (self.world, &self.world.scene.lights[id]);
-        let Some(sighting) = light.aim(at.point.position, normal, [at.u[1], at.u[0]]) else { return };
-        let mut walk = Walk { ray: at.point.leave(sighting.direction), ..walk.clone() };
-        let Some(view) = light.view(&walk.ray, normal, &sighting) else { return };
-        let mut left = view.distance;
+        let Some(sample) = light.sample_li(&at.point, normal, [at.u[1], at.u[0]]) else { return };
+        let mut walk = Walk { ray: sample.ray, ..walk.clone() };
+        let mut left = sample.distance;
         for _ in 0..SURFACES {
-            let Some(hit) = world.scene.nearest(&walk.ray, left, |object| view.object != Some(object)) else {
+            let Some(hit) = world.scene.nearest(&walk.ray, left, |object| sample.object != Some(object)) else {
                 let walk = self.inside(walk, left);
                 return self.record(&walk, id);
             };

@@ -5,8 +5,8 @@
 //! the number of pixels. Amanatides 1984, *Ray Tracing with Cones*, has beams of rays; Heckbert & Hanrahan 1984, *Beam Tracing
 //! Polygonal Objects*.
 
-use super::spread::{SEEN_PIXELS, is_dark};
-use super::targets::Targets;
+use super::spread::is_dark;
+use super::targets::{SEEN_PIXELS, Targets};
 use super::walk::{Colors, Walk, Way};
 use crate::math::{DVec2, DVec3, Sampler};
 

@@ -3,8 +3,7 @@
 use super::light_pass::splats;
 use super::merge;
 use super::path_tracer::PathTracer;
-use super::polarization::amount;
-use super::render::sample;
+use super::sensor::amount;
 use super::width::in_lanes;
 use super::{LightPass, MapPasses, World};
 use crate::film::Window;
@@ -56,12 +55,11 @@ fn look<const N: usize>(world: &World) -> SeenLight {
     let window = world.scene.film.window();
     let mut seen = SeenLight { parts: [[0.0; 2]; (PARTS * PARTS) as usize] };
     let photons = merge::photons::<N>(world, 0);
-    let mut tracer = PathTracer::<N>::new(world);
-    tracer.photons = photons.as_ref();
+    let mut tracer = PathTracer::<N>::new(world).with_photons(photons.as_ref());
     for place in 0..SIDE * SIDE {
         let [x, y] = window.middle_of_cell(SIDE, place);
         let before = tracer.walker.stats;
-        sample(world, &mut tracer, &Sampler::new(world.method.seed, [x, y], 0), x, y);
+        tracer.sample(&Sampler::new(world.method.seed, [x, y], 0), [x, y]);
         let part = &mut seen.parts[part_of(window, [x - window.left, y - window.top])];
         part[0] += tracer.walker.stats.light - before.light;
         part[1] += tracer.walker.stats.polarization - before.polarization;

@@ -2,9 +2,9 @@
 
 use super::Transport;
 use super::World;
-use super::aims::{Aim, Aims};
 use super::media::Media;
 use super::photon::Landing;
+use super::photon_targets::{PhotonTarget, PhotonTargets};
 use super::stats::Stats;
 use super::walker::Walker;
 use crate::light::{Light, LightId};
@@ -37,8 +37,13 @@ pub(super) struct Sent<T> {
 }
 
 /// The photons of some aims from number `first` on, batch by batch.
-pub(super) fn batches(aims: &Aims, first: impl Fn(&Aim) -> u64, count: impl Fn(&Aim) -> u64, seed: u64) -> Vec<Batch> {
-    let of_aim = |(number, aim): (usize, &Aim)| {
+pub(super) fn batches(
+    aims: &PhotonTargets,
+    first: impl Fn(&PhotonTarget) -> u64,
+    count: impl Fn(&PhotonTarget) -> u64,
+    seed: u64,
+) -> Vec<Batch> {
+    let of_aim = |(number, aim): (usize, &PhotonTarget)| {
         let (start, end) = (first(aim), first(aim) + count(aim));
         let batch = move |first: u64| Batch { aim: number, first, count: BATCH.min(end - first), seed };
         (start..end).step_by(BATCH as usize).map(batch)
@@ -50,7 +55,7 @@ pub(super) fn batches(aims: &Aims, first: impl Fn(&Aim) -> u64, count: impl Fn(&
 /// something would be kept.
 pub(super) fn send<const N: usize, T>(
     world: &World,
-    aims: &Aims,
+    aims: &PhotonTargets,
     batch: Batch,
     learns: bool,
     land: impl Fn(&Walker<N>, &Landing<N>, &Sampler, &mut Vec<T>),
@@ -65,9 +70,9 @@ pub(super) fn send<const N: usize, T>(
         let sampler = Sampler::new(batch.seed, key, photon as u32);
         let u = sampler.four(BranchKey::CAMERA, RAY);
         let more = if extended { sampler.four_more(BranchKey::CAMERA, RAY)[0] } else { 0.0 };
-        let place = aims.place(batch.aim, [u[0], u[1]]);
+        let guide_uv = aims.guide_uv(batch.aim, [u[0], u[1]]);
         let before = kept.len();
-        if let Some(emitted) = aims.emit(&world.scene, batch.aim, place, [u[3], more]) {
+        if let Some(emitted) = aims.sample_le(&world.scene, batch.aim, guide_uv, [u[3], more]) {
             let draw = world.method.basis.draw(u[2]);
             let around = || Media::around(world, emitted.ray.origin, emitted.ray.direction);
             let media = world.light_media[light].unwrap_or_else(around);
@@ -76,7 +81,7 @@ pub(super) fn send<const N: usize, T>(
             });
         }
         if learns {
-            places.push((place, kept.len() > before));
+            places.push((guide_uv, kept.len() > before));
             kept.clear();
         }
     }

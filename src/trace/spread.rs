@@ -3,7 +3,7 @@
 use super::World;
 use super::lit::lit_pixels;
 use super::search::search;
-use super::targets::Targets;
+use super::targets::{SEEN_PIXELS, Targets};
 use super::walk::{Colors, Walk, Way};
 use crate::light::Light;
 use crate::math::{DVec2, DVec3, Sampler};
@@ -31,8 +31,6 @@ impl Spread {
 
 /// The colors whose ways are compared, in nm: between them lies nearly all that is seen.
 pub const COLORS_NM: [f64; 2] = [400.0, 700.0];
-/// Dispersion over fewer pixels is not seen.
-pub const SEEN_PIXELS: f64 = 0.2;
 /// Lengths of the steps to a ray's neighbors, in pixels: by the longer one the neighbors on both sides of an edge are as far apart
 /// as two colors that are not seen apart.
 const STEPS: [f64; 2] = [0.5 * SEEN_PIXELS, 0.1 * SEEN_PIXELS];

@@ -2,9 +2,11 @@
 
 use super::walk::{Colors, Walk};
 use crate::material::Material;
-use crate::math::{Bounds, DVec3, Ray};
+use crate::math::{Bounds, DVec3, Ray, neighbors};
 use crate::shape::Ball;
 
+/// Dispersion over fewer pixels is not seen.
+pub const SEEN_PIXELS: f64 = 0.2;
 /// Most boxes of either kind: of more objects, neighbors share one.
 const MOST: usize = 48;
 /// How much wider a beam is taken than the rays around it: what they enclose may bulge out between them.
@@ -49,7 +51,7 @@ impl Targets {
                 let bounds = group.iter().map(|of| of.1).fold(Bounds::EMPTY, Bounds::union);
                 all.push(Target { bounds, dispersive });
             };
-            halve(&mut objects, MOST, &mut add);
+            neighbors(&mut objects, MOST, &|object| object.1.center(), &mut add);
         }
         Self { all, of_object }
     }
@@ -134,25 +136,4 @@ impl Beam {
         }
         from <= to
     }
-}
-
-/// Shares objects out to at most `most` groups of neighbors.
-fn halve(objects: &mut [(u32, Bounds)], most: usize, add: &mut impl FnMut(&[(u32, Bounds)])) {
-    if objects.len() <= most {
-        objects.chunks(1).for_each(&mut *add);
-        return;
-    }
-    if most == 1 {
-        add(objects);
-        return;
-    }
-    let centers = objects.iter().map(|of| of.1.center());
-    let size = Bounds::around(centers);
-    let size = size.max - size.min;
-    let axis = (0..3).max_by(|&a, &b| size[a].total_cmp(&size[b])).unwrap_or(0);
-    let middle = objects.len() / 2;
-    objects.select_nth_unstable_by(middle, |a, b| a.1.center()[axis].total_cmp(&b.1.center()[axis]));
-    let (left, right) = objects.split_at_mut(middle);
-    halve(left, most / 2, add);
-    halve(right, most - most / 2, add);
 }

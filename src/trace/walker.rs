@@ -42,7 +42,7 @@ impl<'a, const N: usize> Walker<'a, N> {
     }
 
     /// Follows a path along its ray, through the medium around it, to the next surface; none if it leaves the scene.
-    #[inline]
+    #[inline(always)]
     pub(super) fn meet(&mut self, path: &mut Path<N>, draw: &Draw<N>) -> Option<Meeting<N>> {
         self.stats.rays += 1;
         let hit = self.world.scene.intersect(&path.ray);
@@ -54,7 +54,7 @@ impl<'a, const N: usize> Walker<'a, N> {
     }
 
     /// The media on both sides of the surface that a path has met.
-    #[inline]
+    #[inline(always)]
     pub(super) fn boundary(&mut self, path: &Path<N>, meeting: &Meeting<N>) -> Boundary {
         let enters = meeting.point.normal.dot(path.ray.direction) < 0.0;
         let material = self.world.scene.objects[meeting.hit.object as usize].material;
@@ -63,18 +63,17 @@ impl<'a, const N: usize> Walker<'a, N> {
         boundary
     }
 
-    /// The path beyond a surface of a body that is hidden inside another of higher priority, where nothing is.
-    pub(super) fn pass_hidden(&self, path: &Path<N>, meeting: &Meeting<N>, boundary: &Boundary) -> Path<N> {
+    /// Goes on through a surface of a body that is hidden inside another of higher priority, where nothing is.
+    pub(super) fn pass_hidden(&mut self, path: &Path<N>, meeting: &Meeting<N>, boundary: &Boundary) {
         // No light was sampled through this surface, so what the path meets beyond counts in full.
         let (ray, key) = (meeting.point.leave(path.ray.direction), path.key.child(0));
         let kind =
             path.kind.then(self.world.has_map(), false, || Some(self.world.is_photon_target(meeting.hit.object)));
-        Path { ray, media: boundary.crossed, key, scatter: None, kind, ..*path }
+        self.pending.push(Path { ray, media: boundary.crossed, key, scatter: None, kind, ..*path });
     }
 
-    /// Decides which of the branches are followed, and those of what goes straight on; the answer is the next one, the
-    /// others become pending.
-    pub(super) fn follow(&mut self, departure: &mut Departure<N>, sampler: &Sampler) -> Option<Path<N>> {
+    /// Decides which of the branches are followed, and of what goes straight on: their paths become pending.
+    pub(super) fn follow(&mut self, departure: &mut Departure<N>, sampler: &Sampler) {
         let path = departure.path;
         if let Some(straight) = &departure.straight {
             self.branches.push(Branch::onward(&path.ray, straight));
@@ -89,7 +88,6 @@ impl<'a, const N: usize> Walker<'a, N> {
                         _ => self.pending.push(departure.path_along(number, branch, 1.0)),
                     }
                 }
-                None
             }
             Transport::Random { split, roulette } => {
                 let draw = departure.at.arrival.draw;
@@ -102,27 +100,28 @@ impl<'a, const N: usize> Walker<'a, N> {
         }
     }
 
-    /// One branch, chosen by weight.
-    fn choose(&self, departure: &Departure<N>, sampler: &Sampler, roulette: f64) -> Option<Path<N>> {
+    /// Follows one branch, chosen by weight.
+    fn choose(&mut self, departure: &Departure<N>, sampler: &Sampler, roulette: f64) {
         let weight = |number: usize| departure.weight(&self.branches[number]);
         let u = sampler.four_plain(departure.path.key, CHOICE);
         let total: f64 = (0..self.branches.len()).map(weight).sum();
         let mut left = u[0] * total;
         let mut bright = (0..self.branches.len()).filter(|&number| weight(number) != 0.0);
-        let last = bright.clone().next_back()?;
+        let Some(last) = bright.clone().next_back() else { return };
         let chosen = bright.find(|&number| {
             left -= weight(number);
             left < 0.0
         });
         let number = chosen.unwrap_or(last);
-        let factor = survival(total, roulette, departure.path.vertices, || u[1])?;
-        Some(departure.path_along(number, &self.branches[number], factor * total / weight(number)))
+        if let Some(factor) = survival(total, roulette, departure.path.vertices, || u[1]) {
+            let factor = factor * total / weight(number);
+            self.pending.push(departure.path_along(number, &self.branches[number], factor));
+        }
     }
 
-    /// All branches that roulette leaves.
-    fn follow_many(&mut self, departure: &Departure<N>, sampler: &Sampler, roulette: f64) -> Option<Path<N>> {
-        let sooner = if departure.at.material.is_diffuse() { SOONER } else { 1.0 };
-        let mut next = None;
+    /// Follows all branches that roulette leaves.
+    fn follow_many(&mut self, departure: &Departure<N>, sampler: &Sampler, roulette: f64) {
+        let sooner = if departure.at.lobes.is_diffuse() { SOONER } else { 1.0 };
         for (number, branch) in self.branches.iter().enumerate() {
             let u = || sampler.four_plain(departure.path.key.child(number), CHOICE)[2];
             let weight = departure.weight(branch);
@@ -130,10 +129,9 @@ impl<'a, const N: usize> Walker<'a, N> {
             if weight != 0.0
                 && let Some(factor) = survival(weight, roulette, departure.path.vertices, u)
             {
-                self.pending.extend(next.replace(departure.path_along(number, branch, factor)));
+                self.pending.push(departure.path_along(number, branch, factor));
             }
         }
-        next
     }
 
     /// Which branches are followed by now. Where light has more ways than can be followed, one is chosen, which leaves the
@@ -182,16 +180,16 @@ impl<'a, const N: usize> Departure<'a, N> {
     }
 
     /// The path along a branch, followed with probability 1 / `factor`.
-    #[inline]
+    #[inline(always)]
     fn path_along(&self, number: usize, branch: &Branch<N>, factor: f64) -> Path<N> {
         let Self { world, path, at, .. } = self;
         if let Some(straight) = self.straight.filter(|_| number + 1 == self.branches) {
-            let beyond = path.passed_in_part(&at.point, straight);
+            let beyond = path.passed_in_part(at.point, straight);
             return Path { throughput: beyond.throughput.scaled(factor), key: path.key.child(number), ..beyond };
         }
         let (wide, crosses) = (branch.pdf.is_some(), branch.crosses);
         let aimed = || {
-            let followed = shading::is_plain(&at.point, at.arrival.wo, branch.wi, crosses);
+            let followed = shading::is_plain(at.point, at.arrival.wo, branch.wi, crosses);
             followed.then(|| world.is_photon_target(at.object))
         };
         Path {
@@ -204,7 +202,7 @@ impl<'a, const N: usize> Departure<'a, N> {
             vertices: path.vertices,
             length: path.length,
             kind: path.kind.then(world.has_map(), wide, aimed),
-            diffuse_left: path.diffuse_left - u32::from(wide && at.material.is_diffuse()),
+            diffuse_left: path.diffuse_left - u32::from(wide && at.lobes.is_diffuse()),
             scatter: branch.pdf.and_then(|pdf| self.scatter.map(|scatter| scatter.toward(pdf, crosses))),
             polarized: match branch.pdf {
                 Some(_) => path.polarized.scattered(at.material, &at.arrival, branch.wi),

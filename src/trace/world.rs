@@ -1,11 +1,11 @@
-use super::aims::{Aims, is_photon_source};
 use super::bright::{Bright, BrightPlaces};
-use super::choice::Choice;
-use super::lamps::met_lamps;
 use super::media::Media;
+use super::photon_targets::PhotonTargets;
 use super::sending::media_of_lights;
+use super::visible_caps::normals_met;
 use super::{LightPass, Method, Transport};
-use crate::light::{Light, LightId};
+use crate::light::{Light, LightId, LightSampler};
+use crate::material::Lobes;
 use crate::math::DVec3;
 use crate::scene::Scene;
 use crate::spectrum::{Curve, Distinct, Draw, MAX_LANES, Quantity, Response, Table, apply};
@@ -22,18 +22,20 @@ pub struct World {
     /// Lights that next-event estimation aims at.
     pub(super) targets: Vec<LightId>,
     /// Which light is chosen where only one is aimed at.
-    pub(super) choice: Choice,
+    pub(super) light_sampler: LightSampler,
     /// The bodies around the camera.
     pub(super) camera_media: Media,
     pub(super) has_media: bool,
+    /// The lobes of each material.
+    pub(super) lobes: Vec<Lobes>,
     /// Whether each object lets light straight on; empty where none does.
     see_through: Vec<bool>,
     /// What bounces are aimed at.
     pub(super) bright: Option<Bright>,
     /// Where photons are sent, if the method has a light pass.
-    pub(super) aims: Option<Aims>,
+    pub(super) aims: Option<PhotonTargets>,
     /// The same of each pass of its map.
-    pub(super) map_aims: Option<Aims>,
+    pub(super) map_aims: Option<PhotonTargets>,
     /// The bodies around each light; none where they may differ from point to point.
     pub(super) light_media: Vec<Option<Media>>,
 }
@@ -68,18 +70,20 @@ impl World {
         let is_see_through = |object: u32| scene.material_of(object).is_see_through();
         let see_through: Vec<bool> = (0..scene.objects.len() as u32).map(is_see_through).collect();
         let see_through = if see_through.contains(&true) { see_through } else { Vec::new() };
-        let choice = Choice::new(&scene.lights);
-        let targets = choice.targets();
+        let lobes = scene.materials.iter().map(|named| named.material.lobes()).collect();
+        let light_sampler = LightSampler::new(&scene.lights);
+        let targets = light_sampler.lights();
         let bright = method.bright.as_ref().map(Bright::new);
         let mut world = Self {
             xyz_of_channel,
             responses,
             targets,
-            choice,
+            light_sampler,
             scene,
             method,
             camera_media: Media::default(),
             has_media,
+            lobes,
             see_through,
             bright,
             aims: None,
@@ -121,10 +125,10 @@ impl World {
     /// Aims the photons of the light pass.
     fn aim_photons(&mut self) {
         let pass = self.method.light_pass.as_ref();
-        let sends = |&&light: &&LightId| is_photon_source(&self.scene.lights[light]);
+        let sends = |&&light: &&LightId| self.scene.lights[light].sends_photons();
         let senders = pass.map_or(Vec::new(), |pass| pass.lights.iter().filter(sends).copied().collect());
         let senders: Vec<_> = senders.into_iter().map(|light| (light, self.luminance(light))).collect();
-        let aims_of = |photons: u64| Aims::new(&self.scene, &senders, photons);
+        let aims_of = |photons: u64| PhotonTargets::new(&self.scene, &senders, photons);
         let aims = pass.and_then(|pass| aims_of(pass.photons));
         let map_aims = pass.and_then(|pass| pass.map).and_then(|map| aims_of(map.photons));
         (self.aims, self.map_aims) = (aims, map_aims);
@@ -135,19 +139,19 @@ impl World {
 
     /// Finds out where lamps are seen that may be hidden for the most part.
     fn look_for_lamps(&mut self) {
-        if !self.scene.lights.iter().any(|light| matches!(light, Light::Area(area) if area.may_hide())) {
+        if !self.scene.lights.iter().any(|light| matches!(light, Light::Area(area) if area.may_show_a_cap())) {
             return;
         }
         // Paths meet lamps behind a diffuse surface, also where the image has no such paths.
         let asked = std::mem::replace(&mut self.method.diffuse_bounces, u32::MAX);
-        let met = met_lamps(self);
+        let met = normals_met(self);
         self.method.diffuse_bounces = asked;
         for (id, light) in self.scene.lights.iter_mut().enumerate() {
             if let Light::Area(area) = light
-                && area.may_hide()
+                && area.may_show_a_cap()
             {
                 let normals: Vec<DVec3> = met.iter().filter(|(light, _)| *light == id).map(|(_, n)| *n).collect();
-                area.remember(&normals);
+                area.learn_visible_cap(&normals);
             }
         }
     }

@@ -3,15 +3,17 @@
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-use abbe::light::{Area, Light};
+use abbe::light::{Area, Light, LightSample};
 use abbe::math::{DMat3, DVec3, Frame, Ray, Transform};
-use abbe::shape::{Crossing, Cube, Disc, Ellipsoid, Quad, Shape, Sides, Sighting, Sphere, Triangle};
+use abbe::shape::{
+    Crossing, Cube, Density, Disc, Ellipsoid, Quad, Shape, ShapeSample, Sides, Sphere, SurfacePoint, Triangle,
+};
 
 use crate::support::bodies::{ball, closed_mesh};
 use crate::support::chi_squared;
 use crate::support::random::Random;
 
-/// Calls of `check_aim` by the tests of this file.
+/// Calls of `check_samples` by the tests of this file.
 const TESTS: u32 = 33;
 const DRAWS: usize = 100_000;
 /// Bins by height, and around.
@@ -90,28 +92,40 @@ impl Bins {
     }
 }
 
-/// Tests what `aim` draws from a point against `pdf_toward`; what does not lie on the drawn part is not seen.
+/// Tests what `sample` draws from a point against `pdf`; what does not lie on the drawn part is not seen.
 fn check_shape(name: &str, shape: &Shape, from: DVec3, bins: &Bins) {
-    let pdf = |ray: &Ray, crossing: &Crossing| shape.pdf_toward(ray, crossing);
-    check_aim(name, shape, from, bins, |u| shape.aim(from, u), pdf);
+    let pdf = |ray: &Ray, crossing: &Crossing| shape.pdf(ray, crossing);
+    check_samples(name, shape, from, bins, |u| shape.sample(from, u), pdf);
 }
 
-/// Tests how a shape is aimed at as a lamp, by its parts, from a surface of some normal.
+/// What a light's sample says of the shape it is.
+fn of_light(shape: &Shape, sample: &LightSample) -> ShapeSample {
+    let crossing = shape.intersect(&sample.ray, f64::INFINITY).expect("the sample lies on the lamp");
+    let density = sample.pdf.map(Density::SolidAngle);
+    ShapeSample { direction: sample.ray.direction, part: Some(crossing.part), density }
+}
+
+/// Tests how a shape is sampled as a lamp, by its parts, from a surface of some normal.
 fn check_lamp(name: &str, shape: &Shape, from: DVec3, axis: DVec3, half_angle: f64) {
     let normal = (axis.normalize() + DVec3::new(0.5, -0.3, 0.4)).normalize();
     let area = Area::new(Arc::new(shape.clone()), 0, (), Sides::Both, true);
-    assert!(area.has_parts(), "{name}");
-    let pdf = |ray: &Ray, crossing: &Crossing| area.pdf(ray, normal, crossing).unwrap_or(0.0);
-    let light = Light::Area(area.clone());
-    check_aim(name, shape, from, &Bins::new(axis, half_angle), |u| light.aim(from, normal, u), pdf);
+    let light = Light::Area(area);
+    assert!(light.has_parts(), "{name}");
+    check_light(name, shape, from, &Bins::new(axis, half_angle), (&light, normal));
 }
 
-fn check_aim(
+fn check_light(name: &str, shape: &Shape, from: DVec3, bins: &Bins, (light, normal): (&Light<()>, DVec3)) {
+    let sample = |u| Some(of_light(shape, &light.sample_li(&SurfacePoint::in_space(from), normal, u)?));
+    let pdf = |ray: &Ray, crossing: &Crossing| light.pdf_li(ray, normal, Some(crossing)).unwrap_or(0.0);
+    check_samples(name, shape, from, bins, sample, pdf);
+}
+
+fn check_samples(
     name: &str,
     shape: &Shape,
     from: DVec3,
     bins: &Bins,
-    aim: impl Fn([f64; 2]) -> Option<Sighting>,
+    sample: impl Fn([f64; 2]) -> Option<ShapeSample>,
     pdf: impl Fn(&Ray, &Crossing) -> f64,
 ) {
     let mut random = Random::new(name.bytes().map(u64::from).sum());
@@ -119,14 +133,14 @@ fn check_aim(
     let mut counts = vec![0; BINS[0] * BINS[1]];
     for _ in 0..DRAWS {
         // Nothing drawn is nothing seen.
-        let Some(sighting) = aim(random.pair()) else { continue };
-        let crossing = shape.intersect(&ray(sighting.direction), f64::INFINITY);
-        let bin = bins.index(sighting.direction).unwrap_or_else(|| panic!("{name}: drawn beside the shape"));
-        if let Some(crossing) = crossing.filter(|crossing| sighting.part.is_none_or(|part| part == crossing.part)) {
+        let Some(sample) = sample(random.pair()) else { continue };
+        let crossing = shape.intersect(&ray(sample.direction), f64::INFINITY);
+        let bin = bins.index(sample.direction).unwrap_or_else(|| panic!("{name}: drawn beside the shape"));
+        if let Some(crossing) = crossing.filter(|crossing| sample.part.is_none_or(|part| part == crossing.part)) {
             counts[bin] += 1;
             // What the draw says of its density is what is found of a direction met by chance.
-            if let Some(density) = sighting.density {
-                let ray = ray(sighting.direction);
+            if let Some(density) = sample.density {
+                let ray = ray(sample.direction);
                 let cos = shape.point(&ray, &crossing).normal.dot(ray.direction).abs();
                 let (drawn, met) = (density.toward(crossing.t, cos), pdf(&ray, &crossing));
                 assert!((drawn / met - 1.0).abs() < 1e-9, "{name}: drawn with {drawn}, met with {met}");
@@ -197,10 +211,8 @@ fn directions_toward_a_sphere_that_shows_a_cap_follow_their_density() {
         let normals: Vec<DVec3> = (0..2000).map(|_| near().normalize()).collect();
         let shape = Shape::Sphere(Sphere::new(center, radius));
         let mut area = Area::new(Arc::new(shape.clone()), 0, (), Sides::Both, true);
-        area.remember(&normals);
-        let pdf = |ray: &Ray, crossing: &Crossing| area.pdf(ray, -away, crossing).unwrap_or(0.0);
-        let light = Light::Area(area.clone());
-        check_aim(name, &shape, from, &Bins::new(-away, half_angle), |u| light.aim(from, -away, u), pdf);
+        area.learn_visible_cap(&normals);
+        check_light(name, &shape, from, &Bins::new(-away, half_angle), (&Light::Area(area), -away));
     }
 }
 

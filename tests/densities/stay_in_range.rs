@@ -76,8 +76,8 @@ fn a4_the_sides_of_the_unit_square_are_mapped_onto_the_shape() {
             assert!((direction.length() - 1.0).abs() < 1e-15, "{u:?}: {direction}");
         }
         for (shape, parts) in &shapes {
-            let sighting = shape.aim(DVec3::new(3.0, 2.0, 1.0), u).expect("the point is outside");
-            assert!(sighting.direction.is_finite() && sighting.part.is_some_and(|part| part < *parts), "{sighting:?}");
+            let sample = shape.sample(DVec3::new(3.0, 2.0, 1.0), u).expect("the point is outside");
+            assert!(sample.direction.is_finite() && sample.part.is_some_and(|part| part < *parts), "{sample:?}");
         }
     }
 }

@@ -66,15 +66,14 @@ fn l1_lamps_far_away_keep_their_solid_angle_and_their_irradiance() {
             let (radius, axis) = (random.between(0.5, 2.0), random.direction());
             let center = axis * (radius / ratio);
             let sphere = Shape::Sphere(Sphere::new(center, radius));
-            let sighting = sphere.aim(DVec3::ZERO, random.pair()).expect("it is outside");
-            let ray = Ray { origin: DVec3::ZERO, direction: sighting.direction };
+            let sample = sphere.sample(DVec3::ZERO, random.pair()).expect("it is outside");
+            let ray = Ray { origin: DVec3::ZERO, direction: sample.direction };
             let crossing = sphere.intersect(&ray, f64::INFINITY);
             // At the rim itself a direction may pass by rounding; a draw there is as rare as the rim is thin.
             let Some(crossing) = crossing else { continue };
             let [x, y, z] = center.to_array().map(|x| Exact::from(x) * Exact::from(x));
             let solid_angle = Exact::from(2.0 * PI) * one_minus_cos(radius, x + y + z);
-            let off =
-                (Exact::from(sphere.pdf_toward(&ray, &crossing)) * solid_angle - Exact::from(1.0)).abs().rounded();
+            let off = (Exact::from(sphere.pdf(&ray, &crossing)) * solid_angle - Exact::from(1.0)).abs().rounded();
             assert!(off <= 1e-14, "R / D = {ratio}: the density is off by {off:e}");
             worst = worst.max(off);
         }
@@ -83,9 +82,9 @@ fn l1_lamps_far_away_keep_their_solid_angle_and_their_irradiance() {
         let (mut sum, mut lost) = (0.0, 0);
         for i in 0..4096_u32 {
             let u = [(f64::from(i) + 0.5) / 4096.0, f64::from(i.reverse_bits()) / 4_294_967_296.0];
-            let ray = Ray { origin: DVec3::ZERO, direction: sphere.aim(DVec3::ZERO, u).expect("outside").direction };
+            let ray = Ray { origin: DVec3::ZERO, direction: sphere.sample(DVec3::ZERO, u).expect("outside").direction };
             match sphere.intersect(&ray, f64::INFINITY) {
-                Some(crossing) => sum += ray.direction.z / sphere.pdf_toward(&ray, &crossing) / 4096.0,
+                Some(crossing) => sum += ray.direction.z / sphere.pdf(&ray, &crossing) / 4096.0,
                 None => lost += 1,
             }
         }

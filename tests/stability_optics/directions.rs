@@ -2,6 +2,7 @@
 
 use abbe::material::{Arrival, Interface, reflect};
 use abbe::math::{DVec2, DVec3, UNIT_ROUNDOFF};
+use abbe::shape::SurfacePoint;
 use abbe::spectrum::Draw;
 use abbe::trace::World;
 
@@ -120,9 +121,9 @@ fn s5_camera_rays_and_rays_to_lights_run_along_unit_vectors() {
     for (number, light) in scene.lights.iter().enumerate() {
         let mut worst = 0f64;
         for _ in 0..20_000 {
-            let from = random.direction() * random.between(0.1, 50.0);
-            if let Some(sighting) = light.aim(from, random.direction().normalize(), random.pair()) {
-                worst = worst.max(off_unit(sighting.direction));
+            let from = SurfacePoint::in_space(random.direction() * random.between(0.1, 50.0));
+            if let Some(sample) = light.sample_li(&from, random.direction().normalize(), random.pair()) {
+                worst = worst.max(off_unit(sample.ray.direction));
             }
         }
         println!("S5: rays to light {number} off by at most {worst:.2} u");

@@ -1,0 +1,70 @@
+use crate::math::{Cone, DVec3, Ray};
+use crate::shape::{Ball, SurfacePoint};
+
+/// Light that may reach a point along one ray, unless something hides it.
+///
+/// What it brings is `factor` times the light's emission, per unit of `pdf`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LightSample {
+    /// From the point to the light.
+    pub ray: Ray,
+    /// Distance to the light along the ray, infinite for a sky: what is nearer hides it.
+    pub distance: f64,
+    /// The object that the light is, which cannot hide itself.
+    pub object: Option<u32>,
+    /// Density per steradian with which the ray's direction is drawn; none where no other can be drawn.
+    pub pdf: Option<f64>,
+    /// Factor on the light's emission that makes radiance of it or, without a pdf, irradiance at right angles.
+    pub factor: f64,
+    /// Where the light is met on the image that it shows, if it shows one.
+    pub uv: [f64; 2],
+}
+
+impl LightSample {
+    /// Of a light whose radiance is its emission and that lies beyond everything.
+    pub(super) fn of_sky(ray: Ray, pdf: Option<f64>, factor: f64) -> Self {
+        Self { ray, distance: f64::INFINITY, object: None, pdf, factor, uv: [0.0; 2] }
+    }
+
+    /// Of a point that shines with a part of its intensity in each direction; none where the surface touches it, or where it is
+    /// dark.
+    pub(super) fn of_point(from: &SurfacePoint, light: DVec3, part: impl Fn(DVec3) -> f64) -> Option<Self> {
+        let ray = from.leave((light - from.position).try_normalize()?);
+        let squared = (light - ray.origin).length_squared();
+        let part = part(-ray.direction);
+        let factor = part / squared;
+        (part > 0.0).then_some(Self { ray, distance: squared.sqrt(), object: None, pdf: None, factor, uv: [0.0; 2] })
+    }
+}
+
+/// How one light sends photons to a ball.
+#[derive(Clone, Copy, Debug)]
+pub struct Beam {
+    /// What they are sent to.
+    pub ball: Ball,
+    /// Of a light that is a point: the directions that photons take.
+    pub cone: Cone,
+    /// The flux that it sends to the ball or into the cone, per emission, about.
+    pub flux: f64,
+    /// Whether the light is apart from the ball, so that a place of the unit square stands for a way to it.
+    pub is_apart: bool,
+}
+
+/// The start of a photon.
+#[derive(Clone, Copy, Debug)]
+pub struct LeSample {
+    /// Its way from the light.
+    pub ray: Ray,
+    /// The factor on the light's emission that makes flux of it, over the density of the sample.
+    pub factor: f64,
+    /// Where it leaves a surface that shines.
+    pub surface: Option<SurfacePoint>,
+}
+
+impl LeSample {
+    /// Of a point that shines with a part of its intensity in each direction.
+    pub(super) fn of_point(light: DVec3, cone: &Cone, guide_uv: [f64; 2], part: impl Fn(DVec3) -> f64) -> Option<Self> {
+        let direction = cone.sample(guide_uv)?;
+        Some(Self { ray: Ray { origin: light, direction }, factor: part(direction), surface: None })
+    }
+}

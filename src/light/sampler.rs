@@ -1,0 +1,79 @@
+use super::{Light, LightBounds, LightId, LightTree};
+use crate::math::{DVec3, Distribution};
+use crate::spectrum::Table;
+
+/// Which of many lights is sampled from a point: by what they may send there.
+///
+/// Lights of a finite extent stand in a tree. The sky, whose power depends on the scene's size, gets as much as all of them
+/// together, divided by the irradiance of its parts.
+#[derive(Clone, Debug)]
+pub struct LightSampler {
+    tree: LightTree,
+    /// The tree, then each infinite light.
+    kinds: Distribution,
+    /// The lights of the tree, then the infinite ones.
+    lights: Vec<LightId>,
+    /// How many lights stand in the tree.
+    finite: usize,
+    /// Place of each light among `lights`; none of one that is not sampled or does not shine.
+    places: Vec<Option<usize>>,
+}
+
+/// A light drawn at random.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SampledLight {
+    /// Which one.
+    pub light: LightId,
+    /// How likely it was, above 0 and at most 1.
+    pub probability: f64,
+}
+
+impl LightSampler {
+    /// Of those lights that are sampled and shine.
+    pub fn new(lights: &[Light<Table>]) -> Self {
+        let sampled = || (0..lights.len()).filter(|&id| lights[id].is_sampled());
+        let bounds = |id: LightId| Some((id, lights[id].bounds().filter(|light| light.intensity > 0.0)?));
+        let (finite, bounds): (Vec<LightId>, Vec<LightBounds>) = sampled().filter_map(bounds).unzip();
+        let shining = sampled().map(|id| (id, lights[id].irradiance())).filter(|sky| sky.1 > 0.0);
+        let (infinite, irradiances): (Vec<LightId>, Vec<f64>) = shining.unzip();
+        let of_tree = match (finite.is_empty(), infinite.is_empty()) {
+            (true, _) => 0.0,
+            (false, false) => irradiances.iter().sum(),
+            (false, true) => 1.0,
+        };
+        let mut places = vec![None; lights.len()];
+        let all = [finite.as_slice(), &infinite].concat();
+        all.iter().enumerate().for_each(|(place, &id)| places[id] = Some(place));
+        let kinds = Distribution::new(std::iter::once(of_tree).chain(irradiances));
+        Self { tree: LightTree::new(&bounds), kinds, lights: all, finite: finite.len(), places }
+    }
+
+    /// The lights that are sampled from anywhere, in order.
+    pub fn lights(&self) -> Vec<LightId> {
+        let mut lights = self.lights.clone();
+        lights.sort_unstable();
+        lights
+    }
+
+    /// A light for a point on a surface of the given unit normal; none where no light can come from any.
+    pub fn sample(&self, from: DVec3, normal: DVec3, u: f64) -> Option<SampledLight> {
+        let kind = self.kinds.sample(u);
+        if kind.index > 0 {
+            let light = self.lights[self.finite + kind.index - 1];
+            return Some(SampledLight { light, probability: kind.probability });
+        }
+        let drawn = self.tree.sample(from, normal, false, kind.u)?;
+        Some(SampledLight { light: self.lights[drawn.index], probability: drawn.probability * kind.probability })
+    }
+
+    /// How likely `sample` draws a light.
+    pub fn probability(&self, light: LightId, from: DVec3, normal: DVec3) -> f64 {
+        match self.places[light] {
+            None => 0.0,
+            Some(place) if place < self.finite => {
+                self.kinds.probability(0) * self.tree.probability(place, from, normal, false)
+            }
+            Some(place) => self.kinds.probability(place - self.finite + 1),
+        }
+    }
+}

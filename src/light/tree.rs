@@ -1,0 +1,197 @@
+//! A tree over lights, by which one of many is sampled for a point.
+//!
+//! Conty Estevez & Kulla 2018, *Importance Sampling of Many Lights with Adaptive Tree Splitting*, sections 4 and 5.1, without
+//! their splitting: from any point exactly one is chosen.
+
+use super::LightBounds;
+use crate::math::{BELOW_ONE, Bounds, DVec3, DiscreteSample};
+
+/// Lights 0, 1, 2, .. in nested boxes, with how much light those hold and which way it goes.
+#[derive(Clone, Debug)]
+pub struct LightTree {
+    nodes: Vec<Node>,
+    /// Each node's parent; the root is its own.
+    parents: Vec<u32>,
+    /// Each light's leaf, if it shines.
+    leaves: Vec<Option<u32>>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Node {
+    center: DVec3,
+    /// Of the sphere around the box.
+    radius: f64,
+    axis: DVec3,
+    sin: f64,
+    cos: f64,
+    two_sided: bool,
+    leaf: bool,
+    /// The light of a leaf, or the first child, whose sibling follows it.
+    first: u32,
+    intensity: f64,
+}
+
+/// Slices along each axis between which a node is split.
+const SLICES: usize = 12;
+/// Depth below which nodes are split by halves.
+const DEEP: u32 = 40;
+
+impl LightTree {
+    /// The tree over lights; those that do not shine are never drawn.
+    pub fn new(lights: &[LightBounds]) -> Self {
+        let mut order: Vec<u32> = (0..lights.len() as u32).collect();
+        order.retain(|&i| lights[i as usize].intensity > 0.0);
+        let mut tree = Self { nodes: Vec::new(), parents: Vec::new(), leaves: vec![None; lights.len()] };
+        if order.is_empty() {
+            return tree;
+        }
+        tree.nodes.push(Node::around(&lights[order[0] as usize]));
+        tree.parents.push(0);
+        let mut open = vec![(0, 0..order.len(), 0)];
+        while let Some((index, range, depth)) = open.pop() {
+            let items = &mut order[range.clone()];
+            let all = items.iter().map(|&i| lights[i as usize]).reduce(|a, b| a.with(&b)).expect("no range is empty");
+            let mut node = Node::around(&all);
+            if let [item] = *items {
+                (node.leaf, node.first) = (true, item);
+                tree.leaves[item as usize] = Some(index as u32);
+            } else {
+                let middle = range.start + split(lights, items, &all, depth);
+                node.first = tree.nodes.len() as u32;
+                for (child, range) in [range.start..middle, middle..range.end].into_iter().enumerate() {
+                    tree.nodes.push(node);
+                    tree.parents.push(index as u32);
+                    open.push((node.first as usize + child, range, depth + 1));
+                }
+            }
+            tree.nodes[index] = node;
+        }
+        tree
+    }
+
+    /// A light for a point on a surface of the given normal; none where no light can come from any.
+    ///
+    /// `two_sided`: whether backs are seen of lights that do not say so themselves.
+    pub fn sample(&self, from: DVec3, normal: DVec3, two_sided: bool, mut u: f64) -> Option<DiscreteSample> {
+        let (mut node, mut probability) = (self.nodes.first()?, 1.0);
+        u = u.min(BELOW_ONE);
+        while !node.leaf {
+            let share = self.share(node.first as usize, from, normal, two_sided)?;
+            let second = u >= share;
+            u = (if second { (u - share) / (1.0 - share) } else { u / share }).min(BELOW_ONE);
+            probability *= if second { 1.0 - share } else { share };
+            node = &self.nodes[node.first as usize + usize::from(second)];
+        }
+        (probability > 0.0).then_some(DiscreteSample { index: node.first as usize, probability, u })
+    }
+
+    /// How likely `sample` draws a light.
+    pub fn probability(&self, light: usize, from: DVec3, normal: DVec3, two_sided: bool) -> f64 {
+        let Some(leaf) = self.leaves[light] else { return 0.0 };
+        let (mut node, mut probability) = (leaf, 1.0);
+        while node != 0 {
+            let parent = self.parents[node as usize];
+            let first = self.nodes[parent as usize].first;
+            let Some(share) = self.share(first as usize, from, normal, two_sided) else { return 0.0 };
+            probability *= if node == first { share } else { 1.0 - share };
+            node = parent;
+        }
+        probability
+    }
+
+    /// How often the first of two siblings is taken; none where neither can send light.
+    fn share(&self, first: usize, from: DVec3, normal: DVec3, two_sided: bool) -> Option<f64> {
+        let [a, b] = [0, 1].map(|child| self.nodes[first + child].importance(from, normal, two_sided));
+        (a + b > 0.0).then(|| a / (a + b))
+    }
+}
+
+/// Reorders items so that the first of two groups comes first, and tells how many it has: the split of least cost.
+fn split(lights: &[LightBounds], items: &mut [u32], all: &LightBounds, depth: u32) -> usize {
+    let center = |item: u32| lights[item as usize].bounds.center();
+    let centers = Bounds::around(items.iter().map(|&item| center(item)));
+    let (low, size) = (centers.min, centers.max - centers.min);
+    let longest = (all.bounds.max - all.bounds.min).max_element();
+    let slice = |item: u32, axis: usize| {
+        (((center(item)[axis] - low[axis]) / size[axis] * SLICES as f64) as usize).min(SLICES - 1)
+    };
+    let mut best: Option<(f64, usize, usize)> = None;
+    for axis in (0..3).filter(|&axis| size[axis] > 0.0 && depth < DEEP) {
+        let mut slices: [Option<LightBounds>; SLICES] = [None; SLICES];
+        let join = |a: Option<LightBounds>, b: Option<LightBounds>| match (a, b) {
+            (Some(a), Some(b)) => Some(a.with(&b)),
+            (a, b) => a.or(b),
+        };
+        for &item in items.iter() {
+            let slice = &mut slices[slice(item, axis)];
+            *slice = join(*slice, Some(lights[item as usize]));
+        }
+        let mut after = [None; SLICES];
+        (0..SLICES - 1).rev().for_each(|i| after[i] = join(slices[i + 1], after[i + 1]));
+        let mut before = None;
+        for (i, after) in after.iter().enumerate() {
+            before = join(before, slices[i]);
+            if let (Some(before), Some(after)) = (&before, after) {
+                // Thin boxes are split along their length.
+                let cost = (before.cost() + after.cost()) * longest / size[axis];
+                if best.is_none_or(|best| cost < best.0) {
+                    best = Some((cost, axis, i));
+                }
+            }
+        }
+    }
+    match best {
+        Some((_, axis, last)) => {
+            items.sort_by_key(|&item| slice(item, axis) > last);
+            items.partition_point(|&item| slice(item, axis) <= last)
+        }
+        None => {
+            let axis = size.max_position();
+            items.sort_by(|&a, &b| center(a)[axis].total_cmp(&center(b)[axis]));
+            items.len() / 2
+        }
+    }
+}
+
+impl Node {
+    fn around(light: &LightBounds) -> Self {
+        let LightBounds { bounds, normals, two_sided, intensity } = *light;
+        let (sin, cos) = libm::sincos(normals.angle);
+        let radius = (0.5 * (bounds.max - bounds.min)).length();
+        let center = bounds.center();
+        Self { center, radius, axis: normals.axis, sin, cos, two_sided, leaf: false, first: 0, intensity }
+    }
+
+    /// About the light that reaches a point but for what hides it: equation 3 of the paper, times the cosine at the
+    /// surface, and 0 exactly where those are.
+    ///
+    /// Of a sphere of radius r at distance d whose center has the cosine c, the brightest point has a cosine above 0 where
+    /// c > -r / d; (c + r / d) / (1 + r / d) is that without roots.
+    fn importance(&self, from: DVec3, normal: DVec3, two_sided: bool) -> f64 {
+        let way = self.center - from;
+        let squared = way.length_squared();
+        let lit = normal.dot(way) + self.radius;
+        if lit <= 0.0 {
+            return 0.0;
+        }
+        let distance = squared.sqrt();
+        let along = -self.axis.dot(way);
+        let along = if two_sided || self.two_sided { along.abs() } else { along };
+        // The largest cosine to a direction faced: max(0, a - b) of two angles.
+        let largest = if along >= self.cos * distance {
+            distance
+        } else {
+            along * self.cos + (squared - along * along).max(0.0).sqrt() * self.sin
+        };
+        let seen = largest + self.radius;
+        if seen <= 0.0 {
+            return 0.0;
+        }
+        let whole = distance + self.radius;
+        let spread = squared.max(self.radius * self.radius).max(NEAREST) * (whole * whole).max(NEAREST);
+        self.intensity * (seen * lit / spread)
+    }
+}
+
+/// Keeps importances finite.
+const NEAREST: f64 = 1e-100;

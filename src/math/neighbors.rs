@@ -1,0 +1,19 @@
+use super::{Bounds, DVec3};
+
+/// Shares items out to at most `most` groups of neighbors, which `take` is given one by one: groups are cut in half across the
+/// longest side of the box around their centers.
+pub fn neighbors<T>(items: &mut [T], most: usize, center: &impl Fn(&T) -> DVec3, take: &mut impl FnMut(&[T])) {
+    if items.len() <= most {
+        return items.chunks(1).for_each(take);
+    }
+    if most == 1 {
+        return take(items);
+    }
+    let Bounds { min, max } = Bounds::around(items.iter().map(center));
+    let size = max - min;
+    let axis = (0..3).max_by(|&a, &b| size[a].total_cmp(&size[b])).unwrap_or(0);
+    items.sort_by(|a, b| center(a)[axis].total_cmp(&center(b)[axis]));
+    let (left, right) = items.split_at_mut(items.len() / 2);
+    neighbors(left, most / 2, center, take);
+    neighbors(right, most - most / 2, center, take);
+}

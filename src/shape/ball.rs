@@ -1,0 +1,94 @@
+use crate::math::{Cone, DVec3, one_minus_cos_of_cone};
+
+/// A ball around something.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ball {
+    /// Its middle.
+    pub center: DVec3,
+    /// Its radius.
+    pub radius: f64,
+}
+
+impl Ball {
+    /// The cone of directions in which the ball is seen from a point; all directions from inside of it.
+    pub fn cone_from(&self, from: DVec3) -> Cone {
+        let way = self.center - from;
+        let sin_squared = self.radius * self.radius / way.length_squared();
+        if sin_squared < 1.0 {
+            Cone { axis: way.normalize(), one_minus_cos: one_minus_cos_of_cone(sin_squared) }
+        } else {
+            Cone::ALL
+        }
+    }
+
+    /// Whether a point lies inside.
+    pub fn contains(&self, point: DVec3) -> bool {
+        (point - self.center).length_squared() <= self.radius * self.radius
+    }
+
+    /// The smallest ball around two.
+    pub fn around(self, other: Self) -> Self {
+        let way = other.center - self.center;
+        let distance = way.length();
+        if distance + other.radius <= self.radius {
+            return self;
+        }
+        if distance + self.radius <= other.radius {
+            return other;
+        }
+        let radius = 0.5 * (distance + self.radius + other.radius);
+        Self { center: self.center + way * ((radius - self.radius) / distance), radius }
+    }
+
+    /// The unit normals of those points of the ball's surface that see some of another ball: n . (c - l) > r - R, if the other
+    /// lies outside; else all of them.
+    pub fn cap_toward(&self, other: &Self) -> Cone {
+        let way = other.center - self.center;
+        let distance = way.length();
+        if distance <= self.radius + other.radius {
+            return Cone::ALL;
+        }
+        Cone { axis: way / distance, one_minus_cos: 1.0 - (self.radius - other.radius) / distance }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::PI;
+
+    use super::*;
+    use crate::math::ball_surface;
+    use crate::shape::{Shape, Sphere};
+
+    #[test]
+    fn the_cap_that_light_leaves_from_sees_the_ball_and_no_other_point_does() {
+        let toward = Ball { center: DVec3::new(3.0, 1.0, -2.0), radius: 1.5 };
+        let (center, radius) = (DVec3::new(-1.0, 0.5, 0.0), 0.7);
+        let sphere = Shape::Sphere(Sphere::new(center, radius));
+        let Cone { axis, one_minus_cos } = Ball { center, radius }.cap_toward(&toward);
+        let sees = |normal: DVec3| {
+            let point = center + normal * radius;
+            // The farthest that the ball reaches beyond the plane that touches the sphere in this point.
+            normal.dot(toward.center - point) + toward.radius > 0.0
+        };
+        let mut within = 0;
+        for i in 0..10_000 {
+            let normal = ball_surface([(f64::from(i) + 0.5) / 1e4, (f64::from(i) * 0.618_034).fract()]);
+            let inside = 0.5 * (normal - axis).length_squared() <= one_minus_cos;
+            assert_eq!(inside, sees(normal), "{normal}");
+            within += i32::from(inside);
+        }
+        assert!((f64::from(within) / 1e4 - 0.5 * one_minus_cos).abs() < 1e-3);
+        // Points drawn, each over its density, measure the cap: its area, and that of its inner half.
+        let (mut all, mut inner) = (0.0, 0.0);
+        for i in 0..10_000 {
+            let u = [(f64::from(i) + 0.5) / 1e4, (f64::from(i) * 0.618_034).fract()];
+            let point = sphere.sample_emission(&toward, u).expect("a sphere has points");
+            let density = sphere.pdf_emission(&toward, &point);
+            all += 1e-4 / density;
+            inner += if (point.normal - axis).length_squared() < one_minus_cos { 1e-4 / density } else { 0.0 };
+        }
+        let area = 2.0 * PI * radius * radius * one_minus_cos;
+        assert!((all / area - 1.0).abs() < 0.01 && (inner / area - 0.5).abs() < 0.01, "{all} {inner} for {area}");
+    }
+}

@@ -1,0 +1,165 @@
+//! Where photons are sent, and how they start.
+
+use std::cell::Cell;
+use std::sync::Arc;
+
+use super::guide::Guide;
+use crate::light::{Beam, LeSample, LightId};
+use crate::material::Material;
+use crate::math::{Ray, neighbors};
+use crate::scene::Scene;
+use crate::shape::Ball;
+use crate::spectrum::Table;
+
+/// Photons of one light toward one ball of smooth objects.
+#[derive(Clone, Debug)]
+pub(super) struct PhotonTarget {
+    pub(super) light: LightId,
+    /// How many photons are sent.
+    pub(super) photons: u64,
+    beam: Beam,
+    /// Which of the beam's ways are worth it.
+    guide: Arc<Guide>,
+    /// The flux that it sends, about.
+    flux: f64,
+}
+
+/// All the ways photons are sent, and to what.
+#[derive(Clone, Debug)]
+pub(super) struct PhotonTargets {
+    /// Those of one light follow each other.
+    pub(super) aims: Vec<PhotonTarget>,
+    /// Which lights send photons.
+    pub(super) lights: Vec<bool>,
+    /// Which objects they are sent to.
+    pub(super) objects: Vec<bool>,
+    /// A ball around all that is finite.
+    world: Ball,
+    /// Photons asked for.
+    photons: u64,
+}
+
+/// Most balls of objects that photons are sent to: of more objects, neighbors share one; and most aims of all lights together.
+const MOST: usize = 32;
+const MOST_AIMS: usize = 8192;
+/// Balls that are held against each other.
+const MANY: usize = 4096;
+/// Share of the photons that all aims get alike; the others go by flux.
+const EVENLY: f64 = 0.1;
+
+/// Whether photons can be sent to an object: finite, and smooth where light goes on.
+pub fn is_photon_target<S>(scene: &Scene<S>, object: usize) -> bool {
+    let material = scene.material_of(object as u32);
+    let smooth = !material.scatters_widely() && !matches!(material, Material::Emissive(_));
+    smooth && scene.objects[object].shape.bounds().is_some()
+}
+
+impl PhotonTargets {
+    /// From some lights, given with their luminances, to all objects that photons can be sent to; none if there is none, or none of
+    /// the lights shines there.
+    pub(super) fn new(scene: &Scene<Table>, lights: &[(LightId, f64)], photons: u64) -> Option<Self> {
+        let objects: Vec<bool> = (0..scene.objects.len()).map(|object| is_photon_target(scene, object)).collect();
+        let shapes = || scene.objects.iter().map(|object| &object.shape);
+        let balls = shapes().zip(&objects).filter(|(_, target)| **target).filter_map(|(shape, _)| shape.ball());
+        let balls = gathered(balls.collect(), (MOST_AIMS / lights.len().max(1)).clamp(1, MOST));
+        let [even, disc] = [Guide::even(), Guide::disc()].map(Arc::new);
+        let world = shapes().filter_map(|shape| shape.ball()).reduce(Ball::around)?;
+        let mut aims = Vec::new();
+        for (&(light, luminance), ball) in lights.iter().flat_map(|light| balls.iter().map(move |ball| (light, ball))) {
+            let Some(beam) = scene.lights[light].beam(ball) else { continue };
+            let flux = beam.flux * luminance;
+            if flux > 0.0 {
+                let guide = if beam.is_apart { disc.clone() } else { even.clone() };
+                aims.push(PhotonTarget { light, photons: 0, beam, guide, flux });
+            }
+        }
+        let mut lights = vec![false; scene.lights.len()];
+        aims.iter().for_each(|aim| lights[aim.light] = true);
+        let mut aims = Self { aims, lights, objects, world, photons };
+        aims.share_out();
+        (!aims.aims.is_empty()).then_some(aims)
+    }
+
+    /// How many photons are sent in all.
+    pub(super) fn photons(&self) -> u64 {
+        self.aims.iter().map(|aim| aim.photons).sum()
+    }
+
+    /// Lets each aim have its part of the photons, most of them by flux.
+    fn share_out(&mut self) {
+        let (total, count) = (self.aims.iter().map(|aim| aim.flux).sum::<f64>(), self.aims.len() as f64);
+        for aim in &mut self.aims {
+            let by_flux = if total > 0.0 { aim.flux / total } else { 1.0 / count };
+            let share = EVENLY / count + (1.0 - EVENLY) * by_flux;
+            aim.photons = (share * self.photons as f64).round().max(1.0) as u64;
+        }
+    }
+
+    /// Follows what was learned: of some photons of each aim, their `guide_uv` and whether the camera saw them.
+    pub(super) fn learn(&mut self, found: &[Vec<([f64; 2], bool)>]) {
+        for (aim, photons) in self.aims.iter_mut().zip(found) {
+            let seen = photons.iter().filter(|photon| photon.1).count();
+            aim.flux *= seen as f64 / photons.len().max(1) as f64;
+            if aim.beam.is_apart {
+                aim.guide = Arc::new(Guide::learned(photons));
+            }
+        }
+        self.share_out();
+    }
+
+    /// Which way a photon is sent, a place of the unit square, for two random numbers.
+    pub(super) fn guide_uv(&self, number: usize, u: [f64; 2]) -> [f64; 2] {
+        self.aims[number].guide.sample(u)
+    }
+
+    /// The start of a photon of a target for its `guide_uv` and two random numbers; none where the light does not shine.
+    ///
+    /// Its flux is divided by how many photons all targets of the light send along the same line: their beams may overlap.
+    pub(super) fn sample_le(
+        &self,
+        scene: &Scene<Table>,
+        number: usize,
+        guide_uv: [f64; 2],
+        u: [f64; 2],
+    ) -> Option<LeSample> {
+        let of_light = |aim: &&PhotonTarget| aim.light == self.aims[number].light;
+        let first = self.aims[..number].iter().rposition(|aim| !of_light(&aim)).map_or(0, |before| before + 1);
+        let light = &scene.lights[self.aims[number].light];
+        let sample = light.sample_le(&self.aims[number].beam, guide_uv, u)?;
+        let ray = if light.is_sky() { self.from_outside(scene, &sample.ray)? } else { sample.ray };
+        let sent =
+            |aim: &PhotonTarget| aim.photons as f64 * light.pdf_le(&aim.beam, &sample, |uv| aim.guide.density(uv));
+        let factor = sample.factor / self.aims[first..].iter().take_while(of_light).map(sent).sum::<f64>();
+        (factor > 0.0 && factor.is_finite()).then_some(LeSample { ray, factor, ..sample })
+    }
+
+    /// The ray of a photon from the sky, started outside of all that is finite; none where a plane hides the sky there.
+    fn from_outside(&self, scene: &Scene<Table>, ray: &Ray) -> Option<Ray> {
+        let sky = -ray.direction;
+        let out = (self.world.center - ray.origin).dot(sky) + 2.0 * self.world.radius;
+        let start = Ray { origin: ray.origin + sky * out, direction: sky };
+        let hidden = scene.is_hidden(&start, f64::INFINITY, None, &Cell::new(None));
+        (!hidden).then_some(Ray { direction: ray.direction, ..start })
+    }
+}
+
+/// Balls of which none lies in another; of more than are wanted, neighbors as one.
+fn gathered(balls: Vec<Ball>, most: usize) -> Vec<Ball> {
+    let holds = |a: &Ball, b: &Ball| (a.center - b.center).length() + b.radius <= a.radius;
+    let mut outer: Vec<Ball> = Vec::new();
+    if balls.len() > MANY {
+        // So many are not held against each other.
+        outer = balls;
+    } else {
+        for ball in balls {
+            if !outer.iter().any(|other| holds(other, &ball)) {
+                outer.retain(|other| !holds(&ball, other));
+                outer.push(ball);
+            }
+        }
+    }
+    let mut found = Vec::new();
+    let mut take = |group: &[Ball]| found.extend(group.iter().copied().reduce(Ball::around));
+    neighbors(&mut outer, most, &|ball| ball.center, &mut take);
+    found
+}

@@ -1,0 +1,53 @@
+//! Where lights are really seen that may be hidden for the most part.
+
+use std::cell::RefCell;
+
+use super::World;
+use super::path_tracer::PathTracer;
+use super::sensor::{Contribution, Found, Observer};
+use super::width::in_lanes;
+use crate::light::LightId;
+use crate::math::{DVec3, Sampler};
+
+/// Camera samples along each side of the image.
+const SIDE: u32 = 64;
+/// Lights met that tell enough.
+const ENOUGH: usize = 2048;
+/// Sets these random numbers apart from those of the image.
+const SEED: u64 = 0x6c61_6d70;
+
+/// The lights that paths meet by chance, with the unit normals there. The whole image counts, also where only a part of it is
+/// made, so that all parts are made alike.
+pub(super) fn normals_met(world: &World) -> Vec<(LightId, DVec3)> {
+    in_lanes!(&world.method.basis, N => look::<N>(world))
+}
+
+fn look<const N: usize>(world: &World) -> Vec<(LightId, DVec3)> {
+    let film = world.scene.film;
+    let met = Met::default();
+    let mut tracer = PathTracer::<N>::new(world).with_observer(&met);
+    // A stride that is coprime to the number of places visits them all, far ones first.
+    let places = SIDE * SIDE;
+    for place in (0..places).map(|i| (i * 1597) % places) {
+        let [x, y] = film.whole().middle_of_cell(SIDE, place);
+        tracer.sample(&Sampler::new(world.method.seed ^ SEED, [x, y], place), [x, y]);
+        if met.0.borrow().len() >= ENOUGH {
+            break;
+        }
+    }
+    met.0.into_inner()
+}
+
+/// The lights hit in directions that were drawn where lights were sampled as well.
+#[derive(Default)]
+struct Met(RefCell<Vec<(LightId, DVec3)>>);
+
+impl Observer for Met {
+    fn receive(&self, contribution: &Contribution) {
+        if let (Some(light), Found::Hit { normal: Some(normal), scattered: true }) =
+            (contribution.light, contribution.found)
+        {
+            self.0.borrow_mut().push((light, normal));
+        }
+    }
+}
