@@ -20,7 +20,7 @@ impl House {
         let mut files: Vec<Source> = texts.iter().map(|(path, text)| Source::new(path, text)).collect();
         let declared: BTreeSet<Names> = files
             .iter()
-            .flat_map(|file| file.items.iter().map(|item| [&file.module[..], &[item.clone()]].concat()))
+            .flat_map(|file| file.items.iter().map(|item| [&file.module[..], std::slice::from_ref(item)].concat()))
             .collect();
         files.retain(|file| file.module.len() < 2 || declared.contains(&file.module));
         let modules = files.iter().enumerate().map(|(index, file)| (file.module.clone(), index)).collect();
@@ -36,7 +36,7 @@ impl House {
         let (file, rest) = inside?;
         let (name, after) = rest.split_first()?;
         let source = &self.files[file];
-        let is_module = self.modules.contains_key(&[&source.module[..], &[name.clone()]].concat());
+        let is_module = self.modules.contains_key(&[&source.module[..], std::slice::from_ref(name)].concat());
         if source.items.contains(name) && !is_module {
             return Some(file);
         }
