@@ -15,7 +15,7 @@ use abbe::film::Film;
 use abbe::plan::plan;
 use abbe::scene::{Scene, Source, compile};
 use abbe::spectrum::Curve;
-use abbe::trace::{LightPass, Method, World, render};
+use abbe::trace::{LightPass, Method, prepare, render};
 
 const SEEDS: u64 = 8;
 
@@ -75,7 +75,7 @@ fn measure(name: &str, way: &str, scene: &Scene<Curve>, method: &Method) {
     for seed in 0..SEEDS {
         let start = Instant::now();
         // What is learned before the image belongs to its time.
-        images.push(pool.install(|| render(&World::new(scene, Method { seed, ..method.clone() }), &|_| ())).0);
+        images.push(pool.install(|| render(&prepare(scene, Method { seed, ..method.clone() }), &|_| ())).0);
         seconds += start.elapsed().as_secs_f64() / SEEDS as f64;
     }
     let (error, mean) = relative_error(&images);

@@ -14,7 +14,7 @@ use abbe::film::Film;
 use abbe::plan::plan;
 use abbe::scene::{Scene, Source, compile};
 use abbe::spectrum::{Curve, comparison};
-use abbe::trace::{Method, World, render};
+use abbe::trace::{Method, prepare, render};
 
 const SEEDS: u64 = 6;
 const SAMPLES: u32 = 64;
@@ -79,7 +79,7 @@ fn measure(text: &str, collapses: bool, mask: &[bool]) -> Measured {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread can be started");
     let (mut times, mut images) = (Vec::new(), Vec::new());
     for seed in 0..SEEDS {
-        let world = World::new(&scene, Method { basis: basis.clone(), seed, samples: SAMPLES, ..method.clone() });
+        let world = prepare(&scene, Method { basis: basis.clone(), seed, samples: SAMPLES, ..method.clone() });
         let start = Instant::now();
         images.push(pool.install(|| render(&world, &|_| ())).0);
         times.push(start.elapsed().as_secs_f64());
@@ -112,7 +112,7 @@ fn glass_pixels(index: &str, light: &str) -> Vec<bool> {
     let depths = [true, false].map(|ball| {
         let scene = scene(text(index, light, "\"rgb\"", ball));
         let method = Method { samples: 4, ..plan(&scene).method };
-        render(&World::new(&scene, method), &|_| ()).0.pixels.iter().map(|pixel| pixel.depth).collect::<Vec<_>>()
+        render(&prepare(&scene, method), &|_| ()).0.pixels.iter().map(|pixel| pixel.depth).collect::<Vec<_>>()
     });
     depths[0].iter().zip(&depths[1]).map(|(with, without)| with != without).collect()
 }

@@ -13,7 +13,7 @@ use std::time::Instant;
 use abbe::film::Film;
 use abbe::plan::plan;
 use abbe::scene::{Source, compile};
-use abbe::trace::{Method, World, render};
+use abbe::trace::{Method, prepare, render};
 
 const SEEDS: u64 = 6;
 const SAMPLES: u32 = 32;
@@ -140,7 +140,7 @@ fn measure(name: &str, text: String) {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread can be started");
     let (mut times, mut images) = (Vec::new(), Vec::new());
     for seed in 0..SEEDS {
-        let world = World::new(&scene, Method { seed, samples: SAMPLES, ..method.clone() });
+        let world = prepare(&scene, Method { seed, samples: SAMPLES, ..method.clone() });
         let (film, seconds) = pool.install(|| {
             let (start, before) = (Instant::now(), processor_time());
             let film = render(&world, &|_| ()).0;

@@ -12,7 +12,7 @@ use abbe::film::Film;
 use abbe::plan::plan;
 use abbe::scene::{Scene, Source, compile};
 use abbe::spectrum::Curve;
-use abbe::trace::{LightPass, Method, World, render};
+use abbe::trace::{LightPass, Method, prepare, render};
 
 #[path = "../tests/planning/twenty.rs"]
 mod twenty;
@@ -40,7 +40,7 @@ fn main() {
             let light_pass = pass.then(|| LightPass { photons, lights: lights.clone(), map: None });
             Method { samples, seed, light_pass, ..plan.clone() }
         };
-        let image = |method| pool.install(|| render(&World::new(&scene, method), &|_| ())).0;
+        let image = |method| pool.install(|| render(&prepare(&scene, method), &|_| ())).0;
         let reference = image(method(true, 24 * SAMPLES, 99));
         let timed = |pass| {
             let start = processor_seconds();

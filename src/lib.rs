@@ -21,8 +21,8 @@
 //! # Ok::<(), abbe::Error>(())
 //! ```
 //!
-//! [`Scene::read`] takes a scene file, [`Scene::from_table`] what a program has built. [`Rendering`] says its plan and its
-//! progress. The rooms below are open as well: a plan without a render, a glass's index, one ray.
+//! [`Scene::read`] takes a scene file, [`Scene::from_table`] what a program has built. [`Rendering`] says its plan and
+//! its progress. The rooms below are open as well: a plan without a render, a glass's index, one ray.
 //!
 //! ```text
 //! scene.toml -> Description -> Scene<Curve> -> Plan -> Scene<Table> -> radiance::<N> over tiles -> Film -> EXR
@@ -31,7 +31,7 @@
 //! floor 5   plan        looks at a Scene<Curve>; answers a Method and, in words, why
 //! floor 4   trace       how light travels
 //! floor 3   scene       the world, with every reference resolved
-//! floor 2   material    how light leaves a surface     |  light   how light is aimed at  |  film   what is remembered
+//! floor 2   material    how light leaves a surface     |  light   how lights are sampled  |  film   what is remembered
 //! floor 1   spectrum    what light is made of          |  shape   where surfaces are
 //! floor 0   math        points, directions, random numbers  |  error   what went wrong, where, and what to do
 //! ```

@@ -8,7 +8,7 @@ use crate::error::{Error, Result};
 use crate::film::{Fact, Film, Pixel, Provenance, View, Window, write_exr, write_png};
 use crate::plan::{Plan, plan};
 use crate::scene::{Projection, Scene};
-use crate::trace::{self, Report, World};
+use crate::trace::{self, Report, World, prepare};
 
 /// What replaces the scene's own settings. By default nothing does.
 ///
@@ -106,7 +106,7 @@ impl Rendering {
         let threads = threads
             .map_err(|error| Error::Arguments { message: format!("cannot start threads: {error}"), help: None })?;
         let plan = threads.install(|| plan(&scene));
-        let world = World::new(&scene, plan.method.clone());
+        let world = prepare(&scene, plan.method.clone());
         let camera = &scene.camera;
         let view = View {
             world_to_camera: camera.world_to_camera(),
@@ -139,8 +139,8 @@ impl Rendering {
         self.plan.processor_time.div_f64(self.threads.current_num_threads() as f64)
     }
 
-    /// Renders the next pass, if one is left, and answers whether another one is. Passes take more and more samples, or gather
-    /// photons of their own.
+    /// Renders the next pass, if one is left, and answers whether another one is. Passes take more and more samples, or
+    /// gather photons of their own.
     ///
     /// `progress` is told how much of the [`work`](Self::work) was done since it was last told, from any thread.
     ///
@@ -165,7 +165,7 @@ impl Rendering {
     pub fn image(&self) -> Image {
         let (film, report) = (self.passes.film(), self.passes.report());
         let provenance = provenance(&self.origin, &self.plan, self.passes.samples(), &report);
-        Image { film, report, because: self.plan.because.clone(), view: self.view.clone(), provenance }
+        Image { film, report, because: self.plan.because.clone(), view: self.view, provenance }
     }
 
     /// Renders all passes that are left; `progress` as of [`advance`](Self::advance).

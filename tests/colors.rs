@@ -8,7 +8,7 @@
 use abbe::film::Film;
 use abbe::plan::plan;
 use abbe::spectrum::{Basis, ColorSpace, Curve, CurveKind, Draw, Emission, MAX_LANES, Quantity, apply, visible};
-use abbe::trace::{Method, Transport, World, render};
+use abbe::trace::{Method, Transport, prepare, render};
 
 use crate::support::random::Random;
 use crate::support::scenes::scene;
@@ -45,7 +45,7 @@ fn films<const S: usize>(body: &str, spaces: [ColorSpace; S], model: &str) -> [F
     let light_pass = &methods[0].light_pass;
     std::array::from_fn(|i| {
         let method = Method { transport: ALL_LIGHTS, light_pass: light_pass.clone(), ..methods[i].clone() };
-        render(&World::new(&scenes[i], method), &|_| ()).0
+        render(&prepare(&scenes[i], method), &|_| ()).0
     })
 }
 

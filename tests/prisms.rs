@@ -9,7 +9,7 @@ use std::fmt::Write;
 
 use abbe::math::DVec3;
 use abbe::spectrum::{Basis, ColorSpace, data, visible};
-use abbe::trace::{Method, World, render};
+use abbe::trace::{Method, prepare, render};
 
 use crate::support::scenes::{EVERY_BRANCH, method, scene};
 
@@ -180,7 +180,7 @@ fn judge(glass: &Glass, more: f64) -> (Vec<String>, usize) {
     let scene = scene(&text);
     let basis = Basis::wavelengths(ColorSpace::Xyz, vec![550.0], &glass.lines().collect::<Vec<_>>());
     let method = Method { basis, ..method(&scene, EVERY_BRANCH) };
-    let (film, _) = render(&World::new(&scene, method), &|_| ());
+    let (film, _) = render(&prepare(&scene, method), &|_| ());
     let wrong = views.iter().zip(&film.pixels).filter_map(|((passage, off), pixel)| {
         let found = f64::from(pixel.rgb[0]);
         let expected = if *off == 0.0 { passage.expected() } else { 0.0 };

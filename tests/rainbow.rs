@@ -5,7 +5,7 @@
 //! ```
 
 use abbe::spectrum::{Basis, ColorSpace, data, visible};
-use abbe::trace::{Method, Transport, World, render};
+use abbe::trace::{Method, Transport, prepare, render};
 
 use crate::support::scenes::{method, scene};
 
@@ -70,7 +70,7 @@ impl Bow {
         );
         let scene = scene(&text);
         let basis = Basis::wavelengths(ColorSpace::Xyz, vec![550.0], &[nm]);
-        let (film, _) = render(&World::new(&scene, Method { basis, ..method(&scene, FAINT) }), &|_| ());
+        let (film, _) = render(&prepare(&scene, Method { basis, ..method(&scene, FAINT) }), &|_| ());
         let half = (0.5 * SUN_DEGREES).to_radians();
         let disc = visible::color_matching(nm)[0] / visible::luminous() / (std::f64::consts::PI * half.sin().powi(2));
         // Higher orders that pass here are fainter by a hundred times and more.

@@ -13,7 +13,7 @@ use abbe::film::Film;
 use abbe::math::{DVec3, Ray};
 use abbe::scene::{Scene, Source, compile};
 use abbe::spectrum::Curve;
-use abbe::trace::{Report, Transport, World, render};
+use abbe::trace::{Report, Transport, prepare, render};
 use image::ExtendedColorType::{L8, Rgb8, Rgb16};
 
 /// The scene of a text in a folder.
@@ -25,7 +25,7 @@ fn scene(folder: &Path, text: &str) -> Scene<Curve> {
 fn film(folder: &Path, text: &str, transport: Transport) -> (Film, Report) {
     let scene = scene(folder, text);
     let method = method(&scene, transport);
-    render(&World::new(&scene, method), &|_| ())
+    render(&prepare(&scene, method), &|_| ())
 }
 
 fn write_png(folder: &Path, name: &str, width: u32, color: image::ExtendedColorType, numbers: &[u8]) {

@@ -12,7 +12,7 @@ use abbe::Error;
 use abbe::plan::plan;
 use abbe::scene::{Scene, Source, compile};
 use abbe::spectrum::Curve;
-use abbe::trace::{World, render};
+use abbe::trace::{prepare, render};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
@@ -166,7 +166,7 @@ proptest! {
         let scenes = scenes();
         let (path, text) = scene.get(&scenes);
         if let Some(scene) = read(path, changes.iter().fold(text.clone(), |text, change| edited(&text, change))) {
-            let (_, report) = render(&World::new(&scene, plan(&scene).method), &|_| {});
+            let (_, report) = render(&prepare(&scene, plan(&scene).method), &|_| {});
             prop_assert_eq!(report.non_finite, 0);
         }
     }

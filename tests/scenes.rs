@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use abbe::plan::{Plan, plan};
 use abbe::scene::{Scene, Source, compile};
 use abbe::spectrum::Curve;
-use abbe::trace::{Transport, World, render};
+use abbe::trace::{Transport, prepare, render};
 
 fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes")
@@ -62,7 +62,7 @@ fn every_scene_compiles_without_a_warning_and_says_what_to_look_for() {
 fn a5_every_scene_renders_without_a_number_that_is_not_finite() {
     for path in paths() {
         let scene = compiled(&path, Some(96));
-        let (film, report) = render(&World::new(&scene, plan(&scene).method), &|_| ());
+        let (film, report) = render(&prepare(&scene, plan(&scene).method), &|_| ());
         assert_eq!((report.non_finite, report.unmatched), (0, 0), "{}", path.display());
         assert_eq!(report.samples, film.pixels.len() as u64, "{}", path.display());
         let finite =

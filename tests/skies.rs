@@ -12,7 +12,7 @@ use abbe::math::DVec3;
 use abbe::plan::plan;
 use abbe::scene::{Scene, Source, compile};
 use abbe::spectrum::Curve;
-use abbe::trace::{Method, World, render};
+use abbe::trace::{Method, prepare, render};
 use exr::prelude::write_rgb_file;
 
 use crate::support::scenes::{Mean, view};
@@ -76,7 +76,7 @@ fn films(model: &str, turn: f64, seeds: u64) -> Vec<Film> {
     let scene = read(folder.path(), &text);
     let method = plan(&scene).method;
     let seeded = |seed| Method { seed, ..method.clone() };
-    (0..seeds).map(|seed| render(&World::new(&scene, seeded(seed)), &|_| ()).0).collect()
+    (0..seeds).map(|seed| render(&prepare(&scene, seeded(seed)), &|_| ()).0).collect()
 }
 
 /// Irradiance over pi of the floor when the image is turned about +x.
@@ -129,7 +129,7 @@ fn an_image_is_seen_where_the_convention_says() {
             view([0.0; 3], toward, 1.0, 1)
         );
         let scene = read(folder.path(), &text);
-        let found = render(&World::new(&scene, plan(&scene).method), &|_| ()).0.pixels[0].rgb;
+        let found = render(&prepare(&scene, plan(&scene).method), &|_| ()).0.pixels[0].rgb;
         let expected = color(DVec3::from(toward).normalize());
         for c in 0..3 {
             assert!(
@@ -160,7 +160,7 @@ fn an_even_image_is_the_sky_of_its_color() {
                     view([0.0, 0.0, 6.0], [0.0; 3], 25.0, 8)
                 );
                 let scene = read(folder.path(), &text);
-                let film = render(&World::new(&scene, plan(&scene).method), &|_| ()).0;
+                let film = render(&prepare(&scene, plan(&scene).method), &|_| ()).0;
                 // A corner shows the sky, the middle its mirror image. Colored ones would show that spectra of one
                 // color differ.
                 [film.pixels[0].rgb, film.pixels[36].rgb].map(|rgb| rgb.map(f64::from))

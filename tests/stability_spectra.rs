@@ -8,7 +8,7 @@ use abbe::film::Film;
 use abbe::math::{BranchKey, Sampler};
 use abbe::plan::plan;
 use abbe::spectrum::{Basis, ColorSpace, Curve, CurveKind, Draw, Emission, Lanes, Quantity, Upsampler, data, visible};
-use abbe::trace::{Method, World, render};
+use abbe::trace::{Method, prepare, render};
 
 use crate::support::scenes::{Mean, SPLITTING, method, scene, standard_errors, view};
 
@@ -18,7 +18,7 @@ const SPACE: ColorSpace = ColorSpace::Rec709;
 fn films(text: &str, basis: &Basis, seeds: u64) -> Vec<Film> {
     let scene = scene(text);
     let seeded = |seed| Method { basis: basis.clone(), seed, ..method(&scene, SPLITTING) };
-    (0..seeds).map(|seed| render(&World::new(&scene, seeded(seed)), &|_| ()).0).collect()
+    (0..seeds).map(|seed| render(&prepare(&scene, seeded(seed)), &|_| ()).0).collect()
 }
 
 fn heroes(light: &Curve) -> Basis {
@@ -76,7 +76,7 @@ fn d11_vanishing_dispersion_is_neither_tinted_nor_noisier_than_none() {
         let scene = scene(&text(index, model));
         let method = plan(&scene).method;
         let seeded = |seed| Method { seed, ..method.clone() };
-        (first..first + 24).map(|seed| render(&World::new(&scene, seeded(seed)), &|_| ()).0).collect()
+        (first..first + 24).map(|seed| render(&prepare(&scene, seeded(seed)), &|_| ()).0).collect()
     };
     let vanishing = Mean::over_seeds(images("{ cauchy = [1.5168, 1e-6] }", "\"hero\"", 0).iter());
     let none = Mean::over_seeds(images("1.5168", "{ bands = 12 }", 100).iter());
@@ -163,7 +163,7 @@ fn d14_pure_colors_keep_their_negative_numbers_in_the_film_and_make_a_picture() 
         view([0.0, 0.0, 1.0], [0.0, 0.0, 0.0], 30.0, 4)
     );
     let scene = scene(&text);
-    let film = render(&World::new(&scene, plan(&scene).method), &|_| ()).0;
+    let film = render(&prepare(&scene, plan(&scene).method), &|_| ()).0;
     assert!(film.pixels[0].rgb[0] < -0.1, "{:?}", film.pixels[0]);
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("pure.png");

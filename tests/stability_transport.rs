@@ -10,7 +10,7 @@ use std::f64::consts::PI;
 use abbe::film::Film;
 use abbe::math::DVec3;
 use abbe::plan::plan;
-use abbe::trace::{Transport, World, render};
+use abbe::trace::{Transport, prepare, render};
 
 use crate::support::random::Random;
 use crate::support::scenes::{Mean, SINGLE_PATH, SPLITTING, body, environment, image, images, moments, scene, view};
@@ -236,7 +236,7 @@ fn w7_where_light_has_too_many_ways_the_plan_leaves_them_to_chance_and_says_so()
             assert_eq!(says, random, "{count} {kind}: {:?}", plan.because);
             by_chance += u32::from(random);
             plan.method.samples = if random { 16 } else { 1 };
-            let (_, report) = render(&World::new(&scene, plan.method), &|_| ());
+            let (_, report) = render(&prepare(&scene, plan.method), &|_| ());
             let rays = report.rays as f64 / report.samples as f64;
             println!(
                 "W7: {count} {kind}: {rays:.1} rays a sample, {}",

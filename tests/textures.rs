@@ -15,7 +15,7 @@ use abbe::spectrum::{
     Basis, ColorSpace, Curve, CurveKind, Draw, Emission, Image, Lanes, MAX_LANES, Placement, Quantity, TexelFilter,
     Texture,
 };
-use abbe::trace::{World, render};
+use abbe::trace::{prepare, render};
 
 /// The scene of a text in a folder.
 fn scene(folder: &Path, text: &str) -> Scene<Curve> {
@@ -25,7 +25,7 @@ fn scene(folder: &Path, text: &str) -> Scene<Curve> {
 
 /// The scene's image as the plan would make it.
 fn film(scene: &Scene<Curve>) -> Film {
-    render(&World::new(scene, plan(scene).method), &|_| ()).0
+    render(&prepare(scene, plan(scene).method), &|_| ()).0
 }
 
 /// Writes a PNG of 8 bits a number.

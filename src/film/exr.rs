@@ -9,8 +9,8 @@ use exr::prelude::{
     LayerAttributes, LineOrder, SmallVec, Text, Vec2, WritableImage,
 };
 
-use super::Film;
 use super::file::replace_file;
+use super::image::{Film, Pixel};
 use crate::error::{Error, Result};
 
 /// How the camera saw, as the file records it.
@@ -44,15 +44,15 @@ pub enum Fact {
 
 /// Writes channels R, G, B, A, Z and samples.V, linear, in 32-bit float.
 ///
-/// A crop is the data window, the full image the display window, which is also what the screen window spans: compositors
-/// lay the crop over the image at its place.
+/// A crop is the data window, the full image the display window, which is also what the screen window spans:
+/// compositors lay the crop over the image at its place.
 ///
 /// # Errors
 /// If the file cannot be encoded or written; a file that was there before is then untouched.
 pub fn write_exr(film: &Film, view: &View, provenance: &Provenance, path: &Path) -> Result<()> {
     let encode = |error: exr::error::Error| Error::Encode { path: path.to_owned(), message: error.to_string() };
     let size = Vec2(film.width as usize, film.height as usize);
-    let channel = |name: &str, value: &dyn Fn(&super::Pixel) -> f32| {
+    let channel = |name: &str, value: &dyn Fn(&Pixel) -> f32| {
         let samples = FlatSamples::F32(film.pixels.iter().map(value).collect());
         AnyChannel { name: Text::from(name), sample_data: samples, quantize_linearly: false, sampling: Vec2(1, 1) }
     };
@@ -106,8 +106,8 @@ fn attributes(film: &Film, view: &View, provenance: &Provenance) -> LayerAttribu
 
 /// Puts the attributes of a single-part file into alphabetical order.
 ///
-/// The encoder keeps them in a hash map, whose order changes from run to run; the header's length does not depend on it,
-/// so no offset in the file changes.
+/// The encoder keeps them in a hash map, whose order changes from run to run; the header's length does not depend on
+/// it, so no offset in the file changes.
 fn sort_attributes(file: &mut [u8]) {
     const START: usize = 8; // magic number and version
     let text_end = |from: usize| from + file[from..].iter().position(|&byte| byte == 0).unwrap_or(0) + 1;

@@ -13,8 +13,8 @@ const MOST_LEFT_BEHIND: u32 = 1000;
 
 /// Writes a file under a temporary name beside the target, then renames it: a reader never sees half of it.
 ///
-/// A symbolic link stays and its target is replaced; permissions are kept, and other names of the same file (hard links)
-/// keep what they had. What is there but no file, such as a pipe, is written to as it is.
+/// A symbolic link stays and its target is replaced; permissions are kept, and other names of the same file (hard
+/// links) keep what they had. What is there but no file, such as a pipe, is written to as it is.
 ///
 /// # Errors
 /// If it cannot be written; a file that was there before is then untouched, and nothing else is left behind.

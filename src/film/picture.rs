@@ -1,7 +1,7 @@
 use std::path::Path;
 
-use super::Film;
 use super::file::replace_file;
+use super::image::Film;
 use crate::error::{Error, Result};
 use crate::spectrum::{apply, encode_srgb};
 

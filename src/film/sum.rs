@@ -1,12 +1,12 @@
-use super::{DEPTH_OF_NOTHING, Pixel, Sample};
+use super::image::{DEPTH_OF_NOTHING, Pixel, Sample};
 
 /// Samples that are summed one after another before the tree begins.
 const BLOCK: u32 = 16;
 
 /// The running sum of a pixel's samples in one pass in 64 bits, in an order that never changes.
 ///
-/// Aligned blocks of 16 samples are summed one by one, blocks as the leaves of a binary tree: so the error grows with the
-/// logarithm of the count.
+/// Aligned blocks of 16 samples are summed one by one, blocks as the leaves of a binary tree: so the error grows with
+/// the logarithm of the count.
 #[derive(Clone, Debug)]
 pub struct PassSum {
     block: Entry,

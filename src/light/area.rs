@@ -3,7 +3,7 @@ use std::sync::Arc;
 
 use super::{Beam, LeSample, LightBounds, LightSample, LightTree};
 use crate::math::{Bounds, Cone, DVec3, Frame, Ray, cosine_hemisphere, unit};
-use crate::shape::{Ball, Cap, Coordinates, Crossing, Shape, ShapeSample, Sides, SurfacePoint};
+use crate::shape::{Ball, Coordinates, Crossing, Shape, ShapeSample, Sides, SurfacePoint};
 use crate::spectrum::Quantity;
 
 /// A surface that shines: an object whose material emits.
@@ -17,7 +17,8 @@ pub struct Area<S> {
     pub radiance: S,
     /// The sides that show it.
     pub sides: Sides,
-    /// Whether next-event estimation samples it: finite `emissive` surfaces. Planes and glowing glass are only met by chance.
+    /// Whether next-event estimation samples it: finite `emissive` surfaces. Planes and glowing glass are only met by
+    /// chance.
     pub is_sampled: bool,
     /// Where its points lie in the image that it shows, if it shows one.
     pub coordinates: Option<Arc<Coordinates>>,
@@ -25,12 +26,14 @@ pub struct Area<S> {
     parts: Option<Arc<LightTree>>,
     /// The box from whose outside no backs are seen.
     closed: Option<Bounds>,
-    /// All that is seen of a sphere, if that is a small part.
-    visible_cap: Option<Cap>,
+    /// The unit normals of all that is seen of a sphere, if that is a small part.
+    visible_cap: Option<Cone>,
 }
 
-/// The part of a sphere below which that part is sampled, and not the cone in which the whole is seen.
-const SMALL: f64 = 0.125;
+/// 1 - cos of the largest cap that is sampled, and not the cone in which the whole sphere is seen: an eighth of it.
+const SMALL: f64 = 0.25;
+/// Unit normals below which a cap is not known well enough.
+const ENOUGH: usize = 64;
 
 impl<S> Area<S> {
     /// The light that an object is.
@@ -61,9 +64,16 @@ impl<S> Area<S> {
         self.is_sampled && matches!(*self.shape, Shape::Sphere(_))
     }
 
-    /// Tells the light the unit normals at which paths met it by chance: if they lie close together, it is sampled there.
+    /// Tells the light the unit normals at which paths met it by chance: if they lie close together, it is sampled
+    /// there.
+    ///
+    /// The cap is larger than that by a margin, the more so the fewer are known: what is seen beyond the rim makes rare
+    /// bright samples, which cost more than some that see nothing.
     pub fn learn_visible_cap(&mut self, normals: &[DVec3]) {
-        self.visible_cap = Cap::around(normals).filter(|cap| cap.share() < SMALL);
+        let margin = 1.1 + 4.0 / (normals.len() as f64).sqrt();
+        let cap = if normals.len() < ENOUGH { None } else { Cone::around(normals) };
+        let wider = cap.map(|cap| Cone { one_minus_cos: cap.one_minus_cos * margin, ..cap });
+        self.visible_cap = wider.filter(|cap| cap.one_minus_cos < SMALL);
     }
 
     /// Whether the backs of parts may be met first: never from outside of a closed body.
@@ -110,8 +120,8 @@ impl<S> Area<S> {
         Some(LightSample { ray, distance: crossing.t, object: Some(self.object), pdf: Some(pdf), factor: 1.0, uv })
     }
 
-    /// Density per steradian with which the light is sampled, from a surface of the given unit normal, along a ray that meets it
-    /// first at a crossing; none where it is seen exactly edge-on.
+    /// Density per steradian with which the light is sampled, from a surface of the given unit normal, along a ray that
+    /// meets it first at a crossing; none where it is seen exactly edge-on.
     pub fn pdf_at(&self, ray: &Ray, normal: DVec3, crossing: &Crossing) -> Option<f64> {
         usable(match (&self.visible_cap, &self.parts) {
             (Some(cap), _) => self.shape.pdf_cap(cap, ray, crossing),
@@ -124,8 +134,8 @@ impl<S> Area<S> {
         })
     }
 
-    /// Whether photons can be sent from it: not if it shows an image, since it does not send the same from all its points, nor
-    /// from an instance, whose points are drawn by their areas before it was placed.
+    /// Whether photons can be sent from it: not if it shows an image, since it does not send the same from all its
+    /// points, nor from an instance, whose points are drawn by their areas before it was placed.
     pub(super) fn sends_photons(&self) -> bool {
         self.coordinates.is_none() && !matches!(*self.shape, Shape::Instance(_))
     }
@@ -139,8 +149,8 @@ impl<S> Area<S> {
         Beam { ball: *ball, cone: Cone::ALL, flux: size * TAU * ball.cone_from(from).one_minus_cos, is_apart }
     }
 
-    /// A photon from a point of the surface to the ball: in the cone that this fills; by its cosine where the point is inside the
-    /// ball.
+    /// A photon from a point of the surface to the ball: in the cone that this fills; by its cosine where the point is
+    /// inside the ball.
     pub(super) fn sample_le(&self, ball: &Ball, [a, b]: [f64; 2], u: [f64; 2]) -> Option<LeSample> {
         let point = self.shape.sample_emission(ball, u)?;
         let cone = ball.cone_from(point.position);
@@ -157,8 +167,8 @@ impl<S> Area<S> {
         self.sides.shine(cos > 0.0).then_some(sample)
     }
 
-    /// How densely `sample_le` draws a photon for a ball from places of a density of their own, per unit of area and steradian; 0
-    /// of a way that does not lead there.
+    /// How densely `sample_le` draws a photon for a ball from places of a density of their own, per unit of area and
+    /// steradian; 0 of a way that does not lead there.
     pub(super) fn pdf_le(&self, ball: &Ball, sample: &LeSample, guide: impl Fn([f64; 2]) -> f64) -> f64 {
         let Some(point) = &sample.surface else { return 0.0 };
         let (cone, direction) = (ball.cone_from(point.position), sample.ray.direction);

@@ -1,6 +1,6 @@
 //! Where lights are, how large they are and which way they face.
 //!
-//! Conty Estevez & Kulla 2018, *Importance Sampling of Many Lights with Adaptive Tree Splitting*, section 4.1.
+//! Conty Estevez & Kulla 2018, *Importance Sampling of Many Lights with Adaptive Tree Splitting*, section 4.
 
 use std::f64::consts::PI;
 
@@ -12,7 +12,7 @@ use crate::shape::{Polygon, Shape};
 pub struct LightBounds {
     /// The box that it fills.
     pub bounds: Bounds,
-    /// The directions that its front faces.
+    /// Unit normals of its front.
     pub normals: NormalCone,
     /// Whether its back shines as well.
     pub two_sided: bool,
@@ -42,7 +42,8 @@ impl NormalCone {
         self.axis
     }
 
-    /// The narrowest cone around both that contains their axes' great circle: Conty Estevez & Kulla 2018, algorithm 1.
+    /// The narrowest cone around both that contains their axes' great circle: algorithm 1 of Conty Estevez & Kulla
+    /// 2018.
     pub fn union(self, other: Self) -> Self {
         let (wide, narrow) = if self.angle >= other.angle { (self, other) } else { (other, self) };
         if wide.angle >= PI {
@@ -69,7 +70,7 @@ impl NormalCone {
         }
     }
 
-    /// Conty Estevez & Kulla 2018, equation 1: the measure of orientations, for lights that shine by the cosine.
+    /// The paper's measure of orientations, for lights that shine by the cosine.
     fn measure(&self) -> f64 {
         let widest = (self.angle + 0.5 * PI).min(PI);
         let (sin, cos) = libm::sincos(self.angle);
@@ -79,7 +80,7 @@ impl NormalCone {
 }
 
 impl LightBounds {
-    /// A shape of radiance 1, with the part of its area that is seen where it is seen best; none of an infinite shape.
+    /// A shape of radiance 1; none of an infinite one.
     ///
     /// A convex body shows a quarter of its area on average (Cauchy 1841).
     pub fn of_shape(shape: &Shape, two_sided: bool) -> Option<Self> {
@@ -109,7 +110,7 @@ impl LightBounds {
         }
     }
 
-    /// What it costs to hold so much light in so large a box: equation 1 of the paper.
+    /// The paper's cost of holding so much light in so large a box, facing so many ways.
     pub(super) fn cost(&self) -> f64 {
         let edges = self.bounds.max - self.bounds.min;
         let area = edges.x * edges.y + edges.y * edges.z + edges.z * edges.x;

@@ -12,7 +12,7 @@ use crate::spectrum::{Curve, CurveKind, Draw, Lanes, Placement, Quantity, Table,
 /// [[light]]
 /// environment = { radiance = 1 }
 /// [[light]]
-/// environment = { radiance = { image = "sky.exr", scale = 2 }, transform = [{ rotate = { axis = [0, 1, 0], degrees = 90 } }] }
+/// environment = { radiance = { image = "sky.exr" }, transform = [{ rotate = { axis = [0, 1, 0], degrees = 90 } }] }
 /// ```
 #[derive(Clone, Debug)]
 pub struct Environment<S> {
@@ -90,8 +90,8 @@ impl Environment<Table> {
     }
 }
 
-/// A color made up as white, what two channels have beyond it, and what one has beyond those: the bits of images in three
-/// bands are those of such sums.
+/// A color made up as white, what two channels have beyond it, and what one has beyond those: the bits of images in
+/// three bands are those of such sums.
 fn summed(color: [f32; 3]) -> [f32; 3] {
     let mut order = [0, 1, 2];
     order.sort_by(|&a, &b| color[a].total_cmp(&color[b]));

@@ -1,8 +1,8 @@
 //! Floor 2: how lights are sampled.
 //!
-//! Everything that shines is a [`Light`]. Next-event estimation samples one from a point (`sample_li`) or asks how densely it
-//! would have sampled a direction that was drawn by other means (`pdf_li`), so that the weights of both add up to 1. Photons
-//! start from lights (`sample_le`, `pdf_le`). Of many lights a [`LightSampler`] draws one.
+//! Everything that shines is a [`Light`]. Next-event estimation samples one from a point (`sample_li`) or asks how
+//! densely it would have sampled a direction that was drawn by other means (`pdf_li`), so that the weights of both add
+//! up to 1. Photons start from lights (`sample_le`, `pdf_le`). Of many lights a [`LightSampler`] draws one.
 
 mod area;
 mod bounds;
@@ -81,8 +81,8 @@ impl<S> Light<S> {
         if let Self::Area(area) = self { area.has_parts() } else { false }
     }
 
-    /// A ray from a point of a surface toward the light; none where it does not shine that way. `normal` is the surface's unit
-    /// normal on the lit side, toward which most samples lead.
+    /// A ray from a point of a surface toward the light; none where it does not shine that way. `normal` is the
+    /// surface's unit normal on the lit side, toward which most samples lead.
     pub fn sample_li(&self, from: &SurfacePoint, normal: DVec3, u: [f64; 2]) -> Option<LightSample> {
         match self {
             Self::Area(area) => area.sample_li(from, normal, u),
@@ -93,8 +93,8 @@ impl<S> Light<S> {
         }
     }
 
-    /// Density per steradian with which `sample_li` draws the direction of a ray that leaves a surface of the given unit normal;
-    /// none if it cannot. `crossing` is where the ray first meets a surface that shines, if that is known.
+    /// Density per steradian with which `sample_li` draws the direction of a ray that leaves a surface of the given
+    /// unit normal; none if it cannot. `crossing` is where the ray first meets a surface that shines, if that is known.
     pub fn pdf_li(&self, ray: &Ray, normal: DVec3, crossing: Option<&Crossing>) -> Option<f64> {
         match self {
             Self::Area(area) if area.is_sampled => match crossing {
@@ -128,8 +128,8 @@ impl<S> Light<S> {
         Some(beam).filter(|beam| beam.flux > 0.0)
     }
 
-    /// The start of a photon for a place of the unit square, which stands for its way, and two more random numbers; none where the
-    /// light does not shine.
+    /// The start of a photon for a place of the unit square, which stands for its way, and two more random numbers;
+    /// none where the light does not shine.
     pub fn sample_le(&self, beam: &Beam, guide_uv: [f64; 2], u: [f64; 2]) -> Option<LeSample> {
         match self {
             Self::Area(area) => area.sample_le(&beam.ball, guide_uv, u),
@@ -140,8 +140,8 @@ impl<S> Light<S> {
         }
     }
 
-    /// How densely `sample_le` draws the start of a photon of this light for a beam, which may be another than the photon's own,
-    /// from places of the unit square of a density of their own; 0 if it cannot.
+    /// How densely `sample_le` draws the start of a photon of this light for a beam, which may be another than the
+    /// photon's own, from places of the unit square of a density of their own; 0 if it cannot.
     pub fn pdf_le(&self, beam: &Beam, sample: &LeSample, guide: impl Fn([f64; 2]) -> f64) -> f64 {
         match self {
             Self::Area(area) => area.pdf_le(&beam.ball, sample, guide),
@@ -182,11 +182,11 @@ impl Light<Table> {
 
     /// The largest irradiance that a sky gives; 0 of other lights.
     pub fn irradiance(&self) -> f64 {
-        let brightest = self.emission().range().1.max(0.0);
+        let brightest = || self.emission().range().1.max(0.0);
         match self {
             Self::Area(_) | Self::Point(_) | Self::Spot(_) => 0.0,
-            Self::Environment(environment) => brightest * environment.mean() * std::f64::consts::PI,
-            Self::Sun(_) => brightest,
+            Self::Environment(environment) => brightest() * environment.mean() * std::f64::consts::PI,
+            Self::Sun(_) => brightest(),
         }
     }
 

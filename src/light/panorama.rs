@@ -8,21 +8,24 @@ use crate::spectrum::Image;
 
 /// An image of all directions: latitude and longitude, +y on top, +z in the center, +x at the left quarter.
 ///
-/// Between the middles of its texels it is linear. Directions are drawn by texel, each by its mean brightness and the exact
-/// solid angle of its row, and evenly within it.
+/// Between the middles of its texels it is linear. Directions are drawn by texel, each by its mean brightness and the
+/// exact solid angle of its row, and evenly within it.
 #[derive(Clone, Debug)]
 pub struct Panorama {
     image: Arc<Image>,
     texels: Distribution2d,
+    /// Cosine of the angle from the top to the upper edge of each row, and to the lower edge of the last.
+    edges: Vec<f64>,
 }
 
 impl Panorama {
     /// Of an image in which no number is negative or not finite.
     pub fn new(image: Arc<Image>) -> Self {
         let size @ [_, height] = [image.width(), image.height()];
-        let by_row = |row| cos_of_edge(row, height) - cos_of_edge(row + 1, height);
+        let edges: Vec<f64> = (0..=height).map(|row| libm::cos(PI * row as f64 / height as f64)).collect();
+        let by_row = |row| edges[row] - edges[row + 1];
         let texels = Distribution2d::new(size, |place| brightness(&image, place), by_row);
-        Self { image, texels }
+        Self { image, texels, edges }
     }
 
     /// The image.
@@ -60,8 +63,7 @@ impl Panorama {
     /// A direction for two random numbers, not turned into the world, and its density per steradian.
     pub(super) fn sample(&self, u: [f64; 2]) -> (DVec3, f64) {
         let [column, row] = self.texels.sample(u);
-        let (top, bottom) =
-            (cos_of_edge(row.index, self.image.height()), cos_of_edge(row.index + 1, self.image.height()));
+        let (top, bottom) = (self.edges[row.index], self.edges[row.index + 1]);
         let y = top + row.u * (bottom - top);
         let angle = TAU * (0.5 - (column.index as f64 + column.u) / self.image.width() as f64);
         let radius = (1.0 - y * y).max(0.0).sqrt();
@@ -75,8 +77,7 @@ impl Panorama {
     }
 
     fn density(&self, texel: [usize; 2]) -> f64 {
-        let (width, height) = (self.image.width(), self.image.height());
-        let solid_angle = TAU / width as f64 * (cos_of_edge(texel[1], height) - cos_of_edge(texel[1] + 1, height));
+        let solid_angle = TAU / self.image.width() as f64 * (self.edges[texel[1]] - self.edges[texel[1] + 1]);
         self.texels.probability(texel) / solid_angle
     }
 
@@ -104,11 +105,6 @@ fn brightness(image: &Image, [column, row]: [usize; 2]) -> f64 {
 fn texel(image: &Image, column: isize, row: isize) -> [f32; 3] {
     let column = column.rem_euclid(image.width() as isize) as usize;
     image.texel(column, row.clamp(0, image.height() as isize - 1) as usize)
-}
-
-/// Cosine of the angle from the top to the upper edge of one of `height` rows.
-fn cos_of_edge(row: usize, height: usize) -> f64 {
-    libm::cos(PI * row as f64 / height as f64)
 }
 
 #[cfg(test)]
@@ -169,7 +165,7 @@ mod tests {
         let mut total = 0.0;
         for at in 0..width * height {
             let (row, column) = (at / width, at % width);
-            let (top, bottom) = (cos_of_edge(row, height), cos_of_edge(row + 1, height));
+            let (top, bottom) = (panorama.edges[row], panorama.edges[row + 1]);
             for [u, v] in grid(3) {
                 let (y, angle) = (top + v * (bottom - top), TAU * (0.5 - (column as f64 + u) / width as f64));
                 let radius = (1.0 - y * y).sqrt();

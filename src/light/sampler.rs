@@ -4,11 +4,13 @@ use crate::spectrum::Table;
 
 /// Which of many lights is sampled from a point: by what they may send there.
 ///
-/// Lights of a finite extent stand in a tree. The sky, whose power depends on the scene's size, gets as much as all of them
-/// together, divided by the irradiance of its parts.
+/// Lights of a finite extent stand in a tree. The sky, whose power depends on the scene's size, gets as much as all of
+/// them together, divided by the irradiance of its parts.
 #[derive(Clone, Debug)]
 pub struct LightSampler {
     tree: LightTree,
+    /// How likely a light of the tree is drawn.
+    of_tree: f64,
     /// The tree, then each infinite light.
     kinds: Distribution,
     /// The lights of the tree, then the infinite ones.
@@ -36,7 +38,7 @@ impl LightSampler {
         let (finite, bounds): (Vec<LightId>, Vec<LightBounds>) = sampled().filter_map(bounds).unzip();
         let shining = sampled().map(|id| (id, lights[id].irradiance())).filter(|sky| sky.1 > 0.0);
         let (infinite, irradiances): (Vec<LightId>, Vec<f64>) = shining.unzip();
-        let of_tree = match (finite.is_empty(), infinite.is_empty()) {
+        let weight = match (finite.is_empty(), infinite.is_empty()) {
             (true, _) => 0.0,
             (false, false) => irradiances.iter().sum(),
             (false, true) => 1.0,
@@ -44,8 +46,9 @@ impl LightSampler {
         let mut places = vec![None; lights.len()];
         let all = [finite.as_slice(), &infinite].concat();
         all.iter().enumerate().for_each(|(place, &id)| places[id] = Some(place));
-        let kinds = Distribution::new(std::iter::once(of_tree).chain(irradiances));
-        Self { tree: LightTree::new(&bounds), kinds, lights: all, finite: finite.len(), places }
+        let kinds = Distribution::new(std::iter::once(weight).chain(irradiances));
+        let of_tree = kinds.probability(0);
+        Self { tree: LightTree::new(&bounds), of_tree, kinds, lights: all, finite: finite.len(), places }
     }
 
     /// The lights that are sampled from anywhere, in order.
@@ -57,22 +60,23 @@ impl LightSampler {
 
     /// A light for a point on a surface of the given unit normal; none where no light can come from any.
     pub fn sample(&self, from: DVec3, normal: DVec3, u: f64) -> Option<SampledLight> {
-        let kind = self.kinds.sample(u);
-        if kind.index > 0 {
-            let light = self.lights[self.finite + kind.index - 1];
-            return Some(SampledLight { light, probability: kind.probability });
+        if u < self.of_tree {
+            let drawn = self.tree.sample(from, normal, false, u / self.of_tree)?;
+            return Some(SampledLight {
+                light: self.lights[drawn.index],
+                probability: drawn.probability * self.of_tree,
+            });
         }
-        let drawn = self.tree.sample(from, normal, false, kind.u)?;
-        Some(SampledLight { light: self.lights[drawn.index], probability: drawn.probability * kind.probability })
+        let kind = self.kinds.sample(u);
+        let light = *self.lights.get(self.finite + kind.index.checked_sub(1)?)?;
+        Some(SampledLight { light, probability: kind.probability })
     }
 
     /// How likely `sample` draws a light.
     pub fn probability(&self, light: LightId, from: DVec3, normal: DVec3) -> f64 {
         match self.places[light] {
             None => 0.0,
-            Some(place) if place < self.finite => {
-                self.kinds.probability(0) * self.tree.probability(place, from, normal, false)
-            }
+            Some(place) if place < self.finite => self.of_tree * self.tree.probability(place, from, normal, false),
             Some(place) => self.kinds.probability(place - self.finite + 1),
         }
     }

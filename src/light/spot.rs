@@ -37,8 +37,8 @@ impl<S> Spot<S> {
         }
     }
 
-    /// The part of the intensity that leaves in a direction: 1 within the cone's inner part, 0 beyond the cone, between them
-    /// 3 t^2 - 2 t^3 of the angle.
+    /// The part of the intensity that leaves in a direction: 1 within the cone's inner part, 0 beyond the cone, between
+    /// them 3 t^2 - 2 t^3 of the angle.
     pub fn part(&self, direction: DVec3) -> f64 {
         let axis = DVec3::from(self.toward).normalize();
         let angle = libm::atan2(axis.cross(direction).length(), axis.dot(direction));

@@ -4,7 +4,7 @@ use std::sync::OnceLock;
 use serde::Deserialize;
 
 use super::{Beam, LeSample, LightSample};
-use crate::math::{Cone, DVec3, Frame, Ray, cone, disk_in_square, one_minus_cos_of_cone, square_around_disk, unit};
+use crate::math::{Cone, DVec3, Frame, Ray, disk_in_square, one_minus_cos_of_cone, square_around_disk, unit};
 use crate::shape::{Ball, SurfacePoint};
 use crate::spectrum::Quantity;
 
@@ -32,10 +32,8 @@ pub struct Sun<S> {
 /// The disc as rays ask for it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Disc {
-    axis: DVec3,
-    one_minus_cos: f64,
-    /// Density of directions within.
-    density: f64,
+    /// Directions toward it.
+    cone: Cone,
     /// The factor on the irradiance that makes the disc's radiance of it.
     radiance_factor: f64,
 }
@@ -58,23 +56,16 @@ impl<S> Sun<S> {
     fn disc(&self) -> &Disc {
         self.disc.get_or_init(|| {
             let sin = libm::sin(0.5 * self.angular_diameter.to_radians());
-            let one_minus_cos = one_minus_cos_of_cone(sin * sin);
-            Disc {
-                axis: unit(DVec3::from(self.toward).normalize()),
-                one_minus_cos,
-                density: 1.0 / (2.0 * PI * one_minus_cos),
-                radiance_factor: 1.0 / (PI * (sin * sin)),
-            }
+            let axis = unit(DVec3::from(self.toward).normalize());
+            let cone = Cone { axis, one_minus_cos: one_minus_cos_of_cone(sin * sin) };
+            Disc { cone, radiance_factor: 1.0 / (PI * (sin * sin)) }
         })
     }
 
     /// A direction toward the disc, uniform over its solid angle.
     fn sample(&self, u: [f64; 2]) -> DVec3 {
-        let Disc { axis, one_minus_cos, .. } = *self.disc();
-        match self.angular_diameter {
-            0.0 => axis,
-            _ => unit(Frame::about(axis).to_world(cone(one_minus_cos, u).0)),
-        }
+        let cone = &self.disc().cone;
+        if self.angular_diameter == 0.0 { cone.axis } else { unit(cone.sample_uniform(u)) }
     }
 
     pub(super) fn sample_li(&self, from: &SurfacePoint, u: [f64; 2]) -> Option<LightSample> {
@@ -91,10 +82,10 @@ impl<S> Sun<S> {
 
     /// Density per steradian with which a ray's direction is drawn; none beside the disc and for parallel light.
     pub fn pdf(&self, ray: &Ray) -> Option<f64> {
-        let Disc { axis, one_minus_cos, density, .. } = *self.disc();
+        let cone = &self.disc().cone;
         // For unit vectors |d - axis|^2 = 2 (1 - cos), without the rounding of 1 - cos.
-        let inside = (ray.direction - axis).length_squared() <= 2.0 * one_minus_cos * (1.0 + 1e-12);
-        (inside && one_minus_cos > 0.0).then_some(density)
+        let inside = (ray.direction - cone.axis).length_squared() <= 2.0 * cone.one_minus_cos * (1.0 + 1e-12);
+        (inside && cone.one_minus_cos > 0.0).then(|| cone.uniform_pdf())
     }
 
     /// The factor on the irradiance that makes the disc's radiance of it.
@@ -116,8 +107,8 @@ impl<S> Sun<S> {
         Some(LeSample { ray, factor: light.factor / light.pdf.unwrap_or(1.0), surface: None })
     }
 
-    /// How densely `sample_le` draws a photon for a ball from places of a density of their own, per unit of area across its way;
-    /// 0 beside the ball.
+    /// How densely `sample_le` draws a photon for a ball from places of a density of their own, per unit of area across
+    /// its way; 0 beside the ball.
     pub(super) fn pdf_le(&self, ball: &Ball, ray: &Ray, guide: impl Fn([f64; 2]) -> f64) -> f64 {
         let local = Frame::about(-ray.direction).to_local(ray.origin - ball.center) / ball.radius;
         let place = square_around_disk([local.x, local.y]);
@@ -141,7 +132,7 @@ mod tests {
                 let found = pdf(sun.sample(u)).unwrap_or_else(|| panic!("{angular_diameter} degrees, {u:?}"));
                 assert!((found / density - 1.0).abs() < 1e-9, "{angular_diameter} degrees: {found} for {density}");
             }
-            let frame = Frame::about(sun.disc().axis);
+            let frame = Frame::about(sun.disc().cone.axis);
             let beside = |angle: f64| frame.to_world(DVec3::new(libm::sin(angle), 0.0, libm::cos(angle)));
             assert!(pdf(beside(half * 0.999)).is_some() && pdf(beside(half * 1.001)).is_none());
         }

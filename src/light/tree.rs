@@ -1,7 +1,7 @@
 //! A tree over lights, by which one of many is sampled for a point.
 //!
-//! Conty Estevez & Kulla 2018, *Importance Sampling of Many Lights with Adaptive Tree Splitting*, sections 4 and 5.1, without
-//! their splitting: from any point exactly one is chosen.
+//! Conty Estevez & Kulla 2018, *Importance Sampling of Many Lights with Adaptive Tree Splitting*, sections 4 and 5.1,
+//! without their splitting: from any point exactly one is chosen.
 
 use super::LightBounds;
 use crate::math::{BELOW_ONE, Bounds, DVec3, DiscreteSample};
@@ -165,8 +165,8 @@ impl Node {
     /// About the light that reaches a point but for what hides it: equation 3 of the paper, times the cosine at the
     /// surface, and 0 exactly where those are.
     ///
-    /// Of a sphere of radius r at distance d whose center has the cosine c, the brightest point has a cosine above 0 where
-    /// c > -r / d; (c + r / d) / (1 + r / d) is that without roots.
+    /// Of a sphere of radius r at distance d whose center has the cosine c, the brightest point has a cosine above 0
+    /// where c > -r / d; (c + r / d) / (1 + r / d) is that without roots.
     fn importance(&self, from: DVec3, normal: DVec3, two_sided: bool) -> f64 {
         let way = self.center - from;
         let squared = way.length_squared();

@@ -1,4 +1,6 @@
-use super::{DVec3, Frame, disk_in_square, square_around_disk, unit};
+use std::f64::consts::PI;
+
+use super::{DVec3, Frame, cone, disk_in_square, square_around_disk, unit};
 
 /// All directions within an angle of an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,8 +20,37 @@ impl Cone {
         self.one_minus_cos >= 2.0
     }
 
-    /// A direction of the cone for a place of the unit square: equal areas of the disk in it are equal solid angles, 1 - cos =
-    /// r^2 times the cone's. None beside the disk.
+    /// The cone around unit vectors, at least one, nearly the narrowest: none if they cancel.
+    ///
+    /// Badoiu & Clarkson 2003, *Smaller Core-Sets for Balls*.
+    pub fn around(directions: &[DVec3]) -> Option<Self> {
+        let mut middle = directions.iter().sum::<DVec3>() / directions.len() as f64;
+        let distance = |from: DVec3| move |direction: &DVec3| (*direction - from).length_squared();
+        for step in 1..=100_u32 {
+            let farthest = directions.iter().max_by(|a, b| distance(middle)(a).total_cmp(&distance(middle)(b)))?;
+            middle += (*farthest - middle) / f64::from(step + 1);
+        }
+        let axis = middle.try_normalize()?;
+        Some(Self { axis, one_minus_cos: 0.5 * directions.iter().map(distance(axis)).fold(0.0, f64::max) })
+    }
+
+    /// Whether a unit vector lies in the cone: |d - a|^2 = 2 (1 - cos) keeps its digits in the narrowest cones.
+    pub fn contains(&self, direction: DVec3) -> bool {
+        0.5 * (direction - self.axis).length_squared() <= self.one_minus_cos
+    }
+
+    /// A direction of the cone, uniform by solid angle.
+    pub fn sample_uniform(&self, u: [f64; 2]) -> DVec3 {
+        Frame::about(self.axis).to_world(cone(self.one_minus_cos, u).0)
+    }
+
+    /// Density per steradian with which `sample_uniform` draws directions.
+    pub fn uniform_pdf(&self) -> f64 {
+        1.0 / (2.0 * PI * self.one_minus_cos)
+    }
+
+    /// A direction of the cone for a place of the unit square: equal areas of the disk in it are equal solid angles, 1
+    /// - cos = r^2 times the cone's. None beside the disk.
     pub fn sample(&self, place: [f64; 2]) -> Option<DVec3> {
         let [x, y] = disk_in_square(place)?;
         let here = (x * x + y * y) * self.one_minus_cos;
@@ -27,8 +58,8 @@ impl Cone {
         Some(unit(Frame::about(self.axis).to_world(DVec3::new(x * stretch, y * stretch, 1.0 - here))))
     }
 
-    /// Density per steradian with which `sample` draws a unit vector from places of a density of their own on the square; 0
-    /// beside the cone.
+    /// Density per steradian with which `sample` draws a unit vector from places of a density of their own on the
+    /// square; 0 beside the cone.
     pub fn pdf(&self, direction: DVec3, density_at: impl Fn([f64; 2]) -> f64) -> f64 {
         // For unit vectors, without the rounding of 1 - cos.
         let here = 0.5 * (direction - self.axis).length_squared();

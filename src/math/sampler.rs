@@ -46,7 +46,8 @@ impl Sampler {
         sample_4d(self.index, 0, (seed >> 32) as u32).map(f64::from)
     }
 
-    /// Four more numbers for the same use at the same vertex: with those of [`four`](Self::four), points in eight dimensions.
+    /// Four more numbers for the same use at the same vertex: with those of [`four`](Self::four), points in eight
+    /// dimensions.
     pub fn four_more(&self, branch: BranchKey, purpose: u32) -> [f64; 4] {
         let seed = mix(self.pixel ^ branch.0.wrapping_add(u64::from(purpose)));
         sample_4d(self.index, 1, (seed >> 32) as u32).map(f64::from)

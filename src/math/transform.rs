@@ -97,7 +97,8 @@ impl Transform {
 
     /// How far `then(back)` is from changing nothing, as a bound for |p| up to `reach`, coordinate by coordinate.
     ///
-    /// The products as computed, and the roundings of computing them: gamma(4) (|N| |M| + 1) and gamma(5) (|N| |t| + |s|).
+    /// The products as computed, and the roundings of computing them: gamma(4) (|N| |M| + 1) and gamma(5) (|N| |t| +
+    /// |s|).
     pub fn mismatch(&self, back: &Self, reach: DVec3) -> DVec3 {
         let both = self.then(back);
         let left = both.linear - DMat3::IDENTITY;

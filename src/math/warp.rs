@@ -47,8 +47,8 @@ pub fn cone(one_minus_cos: f64, u: [f64; 2]) -> (DVec3, f64) {
     (DVec3::new(radius * cos, radius * sin, 1.0 - x), 1.0 / (2.0 * PI * one_minus_cos))
 }
 
-/// The point (x, y), |x|^2 + |y|^2 < 1, of the unit disk that lies at a place of the square around it, [0, 1]^2; none beside the
-/// disk. An area of the square is a quarter of that of the disk.
+/// The point (x, y), |x|^2 + |y|^2 < 1, of the unit disk that lies at a place of the square around it, [0, 1]^2; none
+/// beside the disk. An area of the square is a quarter of that of the disk.
 pub fn disk_in_square(place: [f64; 2]) -> Option<[f64; 2]> {
     let [x, y] = place.map(|x| 2.0 * x - 1.0);
     (x * x + y * y < 1.0).then_some([x, y])

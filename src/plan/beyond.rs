@@ -1,20 +1,21 @@
 //! Whether caustics that are not seen straight need a map of photons.
 
 use super::caustics::{sees_receivers, small_lights, targets};
+use super::words::{in_number, percent};
 use super::worth::rounded;
-use super::{in_number, percent};
 use crate::scene::{CausticsText, Scene};
 use crate::spectrum::Curve;
 use crate::trace::{
     GatheredWorth, LightPass, MapPasses, Transport, World, gathered_photons, gathered_worth, reached_places,
 };
 
-/// Most photons per camera sample: between 0.25 and 1 the error for the time hardly changes, where glass is seen through glass.
+/// Most photons per camera sample: between 0.25 and 1 the error for the time hardly changes, where glass is seen
+/// through glass.
 const PHOTONS: f64 = 0.5;
 /// Fewest: of fewer a pilot does not know enough.
 const FEWEST: f64 = 1.0 / 64.0;
-/// How much longer a camera sample takes that gathers wherever it can than one that gathers nowhere, as a share: measured in a room
-/// by a window.
+/// How much longer a camera sample takes that gathers wherever it can than one that gathers nowhere, as a share:
+/// measured in a room by a window.
 const GATHERING: f64 = 0.5;
 /// Least chance that photons are gathered: of what is rarer a pilot does not know enough.
 const RAREST: f64 = 1.0 / 16.0;
@@ -87,8 +88,9 @@ pub(super) fn with_map(
 
 /// How many photons for each camera sample make the time to an error least.
 ///
-/// An image of n_p camera samples and n_l photons has the variance A / n_p + B / n_l in the time C_p n_p + C_l n_l; their product is
-/// least for n_l / n_p = sqrt(B C_p / (A C_l)). Rays followed stand for time, so that the plan is the same everywhere.
+/// An image of n_p camera samples and n_l photons has the variance A / n_p + B / n_l in the time C_p n_p + C_l n_l;
+/// their product is least for n_l / n_p = sqrt(B C_p / (A C_l)). Rays followed stand for time, so that the plan is the
+/// same everywhere.
 fn photons(worth: &GatheredWorth) -> f64 {
     let samples = worth.samples;
     let best = (worth.variance * samples.rays / (samples.common_variance * worth.rays)).sqrt();
@@ -97,8 +99,8 @@ fn photons(worth: &GatheredWorth) -> f64 {
 
 /// At how many of the places that paths reach photons are gathered.
 ///
-/// Where a share q gathers, the second moment M of what a sample gathers adds at most M / q to its variance A, and the time is
-/// 1 + q t of one that gathers nowhere; the product is least for q = sqrt(M / (A t)).
+/// Where a share q gathers, the second moment M of what a sample gathers adds at most M / q to its variance A, and the
+/// time is 1 + q t of one that gathers nowhere; the product is least for q = sqrt(M / (A t)).
 fn chance(worth: &GatheredWorth) -> f64 {
     let best = (worth.second_moment / (worth.samples.common_variance * GATHERING)).sqrt();
     if best.is_nan() { 1.0 } else { rounded(best.clamp(RAREST, 1.0)) }

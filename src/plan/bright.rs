@@ -7,8 +7,8 @@ const CLEARLY: f64 = 1.25;
 
 /// The bright places that bounces are aimed at, if that pays, and why.
 ///
-/// The variance is that without the worst hundredth of the pixels, in which light is found too rarely to tell anything. Rays
-/// followed stand for time, so that the plan is the same everywhere.
+/// The variance is that without the worst hundredth of the pixels, in which light is found too rarely to tell anything.
+/// Rays followed stand for time, so that the plan is the same everywhere.
 pub(super) fn aimed(plain: &World) -> (Option<BrightPlaces>, Option<String>) {
     let Some(places) = bright_places(plain) else { return (None, None) };
     let [before, after] = [samples_worth(plain), samples_worth(&plain.with_bright(Some(places.clone())))];

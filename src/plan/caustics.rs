@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use super::in_number;
+use super::words::in_number;
 use super::worth::{Worth, weigh};
 use crate::light::{Light, LightBounds, LightId};
 use crate::material::Material;
@@ -10,9 +10,10 @@ use crate::math::{DVec2, DVec3, one_minus_cos_of_cone};
 use crate::scene::{CausticsText, Scene};
 use crate::shape::Sides;
 use crate::spectrum::Curve;
-use crate::trace::{LightPass, Transport, World, is_photon_target, seen_photons};
+use crate::trace::{LightPass, Method, Transport, World, is_photon_target, piloted, seen_photons};
 
-/// Solid angle in steradians from which on rays meet a lamp often enough: there photons and chance cost the same (`benches/rooms.rs`).
+/// Solid angle in steradians from which on rays meet a lamp often enough: there photons and chance cost the same
+/// (`benches/rooms.rs`).
 const SMALL: f64 = 0.5;
 /// Fewest photons of a light pass: from fewer it does not learn where to send them.
 const FEWEST: f64 = 65_536.0;
@@ -22,77 +23,25 @@ const PAIRS: usize = 1 << 19;
 const SIDE: u32 = 24;
 
 /// The light pass that a scene needs, if any, and why.
-pub(super) fn light_pass(scene: &Scene<Curve>, untaught: &World) -> (Option<LightPass>, Vec<String>) {
-    let method = untaught.method();
-    let none = |why: String| (None, vec![why]);
-    let spread = |material: &Material<Curve>| may_receive(scene, material);
-    let is_smooth =
-        |material: &Material<Curve>| !material.scatters_widely() && !matches!(material, Material::Emissive(_));
-    let objects = || 0..scene.objects.len();
-    let Some(bends) = objects().find(|&object| is_smooth(scene.material_of(object as u32))) else {
-        return none("no caustics: no surface is smooth glass, a mirror or polished metal".into());
+pub(super) fn light_pass(scene: &Scene<Curve>, unguided: &World) -> (Option<LightPass>, Vec<String>) {
+    let Sources { small, mut large } = match sources(scene, unguided.method()) {
+        Ok(sources) => sources,
+        Err(why) => return (None, why.into_iter().collect()),
     };
-    if !scene.materials.iter().any(|named| spread(&named.material)) {
-        let why = if scene.materials.iter().any(|named| named.material.is_diffuse()) {
-            "with diffuse_bounces 0, diffuse surfaces are lit straight from the lights alone"
-        } else {
-            "no surface is diffuse or rough, on which one could lie"
-        };
-        return none(format!("no caustics: {why}"));
-    }
-    if scene.lights.is_empty() {
-        return none("no caustics: nothing shines".into());
-    }
-    if matches!(method.transport, Transport::Deterministic { .. }) {
-        return (None, Vec::new());
-    }
-    if scene.render.caustics == CausticsText::Off {
-        return none(format!("caustics \"off\": no light pass{}", missing(scene)));
-    }
-    let targets = targets(scene);
-    if targets.is_empty() {
-        let name = &scene.objects[bends].name;
-        return none(format!("no light pass: {name} has no end, so photons cannot be aimed at it{}", missing(scene)));
-    }
-    let places = thinned(lit_places(scene, spread), scene.lights.len());
-    if places.is_empty() {
-        let why = "the camera sees no diffuse or rough surface but through glass or in mirrors, where caustics";
-        return none(format!("no light pass: {why} are left to chance{}", missing(scene)));
-    }
-    let mut small = Vec::new();
-    let mut large = Vec::new();
-    for (id, light) in scene.lights.iter().enumerate().filter(|(_, light)| light.is_sampled()) {
-        match solid_angle(light, &places) {
-            Some(size) if size < SMALL && light.sends_photons() => small.push((id, size)),
-            Some(size) => large.push((id, size)),
-            None => {}
-        }
-    }
-    let mut lines = Vec::new();
-    if small.is_empty() {
-        let why = match large.as_slice() {
-            [] if scene.lights.iter().any(|light| light.is_sky() && !light.is_even_sky()) => {
-                "caustics of an image of the sky are left to chance".into()
-            }
-            [] => "rays find the sky by chance often enough".into(),
-            lights => format!("{} large enough for rays to meet by chance", named(scene, lights)),
-        };
-        return none(format!("no light pass: {why}"));
-    }
     let film = scene.film;
-    let samples = f64::from(film.width) * f64::from(film.height) * f64::from(method.samples);
-    let pass = |photons: f64, lights| {
+    let samples = f64::from(film.width) * f64::from(film.height) * f64::from(unguided.method().samples);
+    let pass = |photons: f64, lights: &[SizedLight]| {
         let photons = (photons * samples).max(FEWEST).ceil() as u64;
-        LightPass { photons, lights, map: None }
+        LightPass { photons, lights: lights.iter().map(|light| light.0).collect(), map: None }
     };
-    let asked = pass(1.0, small.iter().map(|light| light.0).collect());
-    let world = untaught.piloted(asked);
+    let world = piloted(unguided, pass(1.0, &small));
     let share = seen_photons(&world);
     let (seen, unseen): (Vec<_>, Vec<_>) = small.into_iter().partition(|&(id, _)| share[id] > 0.0);
-    let to = match targets.as_slice() {
+    let to = match targets(scene).as_slice() {
         [one] => scene.objects[*one].name.clone(),
         many => format!("{} smooth objects", many.len()),
     };
+    let mut lines = Vec::new();
     if !unseen.is_empty() {
         lines.push(format!(
             "no caustic of {} in sight: none of some thousand photons toward {to} was seen",
@@ -117,7 +66,7 @@ pub(super) fn light_pass(scene: &Scene<Curve>, untaught: &World) -> (Option<Ligh
         lines.push(format!("left to chance: caustics of {}", named(scene, &large)));
     }
     let most = sending.iter().map(|&(id, _)| share[id]).fold(0.0, f64::max);
-    let pass = pass(photons, sending.iter().map(|light| light.0).collect());
+    let pass = pass(photons, &sending);
     lines.push(format!(
         "light pass: {} photons from {} toward {to}, {:.2} for each camera sample; {} of them are seen{}",
         in_number(pass.photons),
@@ -130,6 +79,77 @@ pub(super) fn light_pass(scene: &Scene<Curve>, untaught: &World) -> (Option<Ligh
         ))
     ));
     (Some(pass), lines)
+}
+
+/// A light and the largest solid angle under which it is seen.
+type SizedLight = (LightId, f64);
+
+/// Lights whose caustics chance would hardly find, and others.
+struct Sources {
+    small: Vec<SizedLight>,
+    large: Vec<SizedLight>,
+}
+
+/// The lights that photons may be sent from, or why none are sent.
+fn sources(scene: &Scene<Curve>, method: &Method) -> Result<Sources, Option<String>> {
+    if let Some(why) = no_caustics(scene) {
+        return Err(Some(format!("no caustics: {why}")));
+    }
+    if matches!(method.transport, Transport::Deterministic { .. }) {
+        return Err(None);
+    }
+    if scene.render.caustics == CausticsText::Off {
+        return Err(Some(format!("caustics \"off\": no light pass{}", missing(scene))));
+    }
+    if targets(scene).is_empty() {
+        let bends = smooth_object(scene).map_or("", |object| &scene.objects[object].name);
+        let why = format!("no light pass: {bends} has no end, so photons cannot be aimed at it{}", missing(scene));
+        return Err(Some(why));
+    }
+    let places = thinned(lit_places(scene, |material| may_receive(scene, material)), scene.lights.len());
+    if places.is_empty() {
+        let why = "the camera sees no diffuse or rough surface but through glass or in mirrors, where caustics";
+        return Err(Some(format!("no light pass: {why} are left to chance{}", missing(scene))));
+    }
+    let mut sources = Sources { small: Vec::new(), large: Vec::new() };
+    for (id, light) in scene.lights.iter().enumerate().filter(|(_, light)| light.is_sampled()) {
+        match solid_angle(light, &places) {
+            Some(size) if size < SMALL && light.sends_photons() => sources.small.push((id, size)),
+            Some(size) => sources.large.push((id, size)),
+            None => {}
+        }
+    }
+    if sources.small.is_empty() {
+        let why = match sources.large.as_slice() {
+            [] if scene.lights.iter().any(|light| light.is_sky() && !light.is_even_sky()) => {
+                "caustics of an image of the sky are left to chance".into()
+            }
+            [] => "rays find the sky by chance often enough".into(),
+            lights => format!("{} large enough for rays to meet by chance", named(scene, lights)),
+        };
+        return Err(Some(format!("no light pass: {why}")));
+    }
+    Ok(sources)
+}
+
+/// Why a scene has no caustics, if it has none.
+fn no_caustics(scene: &Scene<Curve>) -> Option<&'static str> {
+    if smooth_object(scene).is_none() {
+        Some("no surface is smooth glass, a mirror or polished metal")
+    } else if scene.materials.iter().any(|named| may_receive(scene, &named.material)) {
+        scene.lights.is_empty().then_some("nothing shines")
+    } else if scene.materials.iter().any(|named| named.material.is_diffuse()) {
+        Some("with diffuse_bounces 0, diffuse surfaces are lit straight from the lights alone")
+    } else {
+        Some("no surface is diffuse or rough, on which one could lie")
+    }
+}
+
+/// The first object that only mirrors or refracts light.
+fn smooth_object(scene: &Scene<Curve>) -> Option<usize> {
+    let is_smooth =
+        |material: &Material<Curve>| !material.scatters_widely() && !matches!(material, Material::Emissive(_));
+    (0..scene.objects.len()).find(|&object| is_smooth(scene.material_of(object as u32)))
 }
 
 /// Objects that photons can be sent to.
@@ -204,7 +224,8 @@ fn lit_places(scene: &Scene<Curve>, spread: impl Fn(&Material<Curve>) -> bool) -
     rays.filter_map(place).collect()
 }
 
-/// Under which solid angle, in steradians, a light is seen from half of some places or more; none of one that fills the sky.
+/// Under which solid angle, in steradians, a light is seen from half of some places or more; none of one that fills the
+/// sky.
 fn solid_angle(light: &Light<Curve>, places: &[DVec3]) -> Option<f64> {
     match light {
         Light::Point(_) | Light::Spot(_) => Some(0.0),

@@ -1,5 +1,6 @@
 //! How much color each model of a spectrum would miss in a scene.
 
+use super::seen::Seen;
 use super::survey::{Survey, Tint};
 use crate::spectrum::{Basis, Draw, Emission, Lanes, MAX_LANES, Quantity, visible};
 
@@ -24,10 +25,10 @@ impl Rung {
 /// Most diffuse and smooth colors that are combined; of more, those farthest from gray.
 const MOST: [usize; 2] = [20, 6];
 
-/// The largest relative error of a color that a basis makes in a scene: over its lights and all pairs of surfaces, and over
-/// what light of a probe meets, however many smooth surfaces those are.
-pub(super) fn error(survey: &Survey, basis: &Basis) -> f64 {
-    missed(survey, basis, &survey.scattering(MOST[0]), &survey.smooth(MOST[1]))
+/// The largest relative error of a color that a basis makes in a scene: over its lights and all pairs of surfaces, and
+/// over what light of a probe meets, however many smooth surfaces those are.
+pub(super) fn error(survey: &Survey, seen: &Seen, basis: &Basis) -> f64 {
+    missed(survey, basis, &survey.scattering(MOST[0]), &survey.smooth(MOST[1])).max(seen.error(survey, basis))
 }
 
 /// The same over paths of chosen tints.
@@ -50,7 +51,7 @@ fn missed(survey: &Survey, basis: &Basis, scattering: &[&Tint], smooth: &[&Tint]
             }
         }
     }
-    worst.max(survey.seen.error(survey, basis))
+    worst
 }
 
 /// The film colors of all paths, by sums over 1 nm.
@@ -69,8 +70,8 @@ fn exact_colors(light: &Emission, scattering: &[&Tint], smooth: &[&Tint], basis:
     paths(&read(scattering), &read(smooth)).iter().map(sum).collect()
 }
 
-/// Every surface i lit straight and by way of every surface j, q = r_i (1 + r_j / (1 - mean r)), alone and seen by way of
-/// every smooth surface; and the lights, seen straight and by way of one or two smooth surfaces.
+/// Every surface i lit straight and by way of every surface j, q = r_i (1 + r_j / (1 - mean r)), alone and seen by way
+/// of every smooth surface; and the lights, seen straight and by way of one or two smooth surfaces.
 fn paths(scattering: &[Vec<f64>], smooth: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let length = scattering.iter().chain(smooth).next().map_or(0, Vec::len);
     let count = scattering.len().max(1) as f64;
@@ -96,9 +97,9 @@ fn paths(scattering: &[Vec<f64>], smooth: &[Vec<f64>]) -> Vec<Vec<f64>> {
 const BRIGHTEST: f64 = 0.95;
 
 /// The models that could render a scene, from few lanes to many, each with its predicted error.
-pub(super) fn ladder(survey: &Survey, heroes: usize) -> Vec<Rung> {
+pub(super) fn ladder(survey: &Survey, seen: &Seen, heroes: usize) -> Vec<Rung> {
     let space = survey.color_space;
-    let rung = |basis: Basis, safety: f64| Rung { error: error(survey, &basis), basis, safety };
+    let rung = |basis: Basis, safety: f64| Rung { error: error(survey, seen, &basis), basis, safety };
     let mut rungs = Vec::new();
     if survey.is_plain() {
         // Colors of three numbers are what they are; only what glass reflects is measured.

@@ -10,14 +10,16 @@ mod polarization;
 mod seen;
 mod survey;
 mod transport;
+mod words;
 mod worth;
 
 use std::time::Duration;
 
 use crate::scene::Scene;
 use crate::spectrum::{Basis, Curve};
-use crate::trace::{LightPass, Method, Probe, Transport, World, probe};
+use crate::trace::{LightPass, Method, Probe, Transport, prepare_unguided, probe};
 use model::Model;
+use words::{in_number, in_words};
 
 pub use ladder::Rung;
 
@@ -26,7 +28,8 @@ pub use ladder::Rung;
 pub struct Plan {
     /// What the tracer is to do.
     pub method: Method,
-    /// What it will cost, how far colors may be off and what is left out; then one decision a line, each with its numbers.
+    /// What it will cost, how far colors may be off and what is left out; then one decision a line, each with its
+    /// numbers.
     pub because: Vec<String>,
     /// Processor time that the render will take, about.
     pub processor_time: Duration,
@@ -36,8 +39,8 @@ pub struct Plan {
 
 /// Samples where the scene does not say.
 const SAMPLES: u32 = 256;
-/// Refracted rays that lie nearer to each other, in pixels, go on as one where wavelengths are drawn: a twentieth of the
-/// dispersion that can be seen, so that several surfaces in a row stay below it.
+/// Refracted rays that lie nearer to each other, in pixels, go on as one where wavelengths are drawn: a twentieth of
+/// the dispersion that can be seen, so that several surfaces in a row stay below it.
 const TOGETHER_PIXELS: f64 = 0.01;
 
 /// Decides how to render a scene.
@@ -65,7 +68,7 @@ pub fn plan(scene: &Scene<Curve>) -> Plan {
         light_pass: None,
         bright: None,
     };
-    let world = World::untaught(scene, method.clone());
+    let world = prepare_unguided(scene, method.clone());
     let (shown, why_shown) = caustics::light_pass(scene, &world);
     let (light_pass, why_gathered) = beyond::with_map(scene, &world, shown.as_ref());
     // Why nothing is shown matters only where nothing is gathered either.
@@ -142,35 +145,7 @@ fn cost(scene: &Scene<Curve>, method: &Method, probe: &Probe) -> (String, Durati
 /// What another model of color would cost.
 fn beside(scene: &Scene<Curve>, method: &Method, probe_of_method: &Probe, basis: Basis) -> String {
     let name = basis.name();
-    let other = probe(&World::untaught(scene, Method { basis, ..method.clone() }));
+    let other = probe(&prepare_unguided(scene, Method { basis, ..method.clone() }));
     let times = other.time.as_secs_f64() / probe_of_method.time.as_secs_f64();
     format!("a sample of {name} would take {times:.1} times as long")
-}
-
-/// A share as people say it.
-fn percent(share: f64) -> String {
-    match 100.0 * share {
-        p if p < 0.095 => format!("{p:.2} %"),
-        p if p < 9.95 => format!("{p:.1} %"),
-        p => format!("{p:.0} %"),
-    }
-}
-
-/// A count as people say it.
-fn in_number(count: u64) -> String {
-    match count as f64 {
-        n if n < 1e4 => format!("{count}"),
-        n if n < 1e6 => format!("{:.0} thousand", n / 1e3),
-        n => format!("{:.1} million", n / 1e6),
-    }
-}
-
-/// A time as people say it.
-fn in_words(seconds: f64) -> String {
-    match seconds {
-        s if s < 1.0 => "a second or less".into(),
-        s if s < 120.0 => format!("{s:.0} seconds"),
-        s if s < 7200.0 => format!("{:.0} minutes", s / 60.0),
-        s => format!("{:.1} hours", s / 3600.0),
-    }
 }

@@ -1,17 +1,14 @@
 //! Which lanes carry the light, and whether they part.
 
 use super::ladder::{LANES_SAFETY, Rung, bands_beside, error, ladder, own_lines};
-use super::percent;
-use super::survey::{Survey, disperses};
+use super::seen::Seen;
+use super::survey::{Survey, disperses, tolerance};
+use super::words::percent;
 use crate::material::Material;
 use crate::scene::{ModelText, Scene};
 use crate::spectrum::{Basis, Curve, CurveKind, Emission, Quantity, provenance};
 use crate::trace::{COLORS_NM, Method, Spread, Transport, World, spread};
 
-/// The relative error of an image that is aimed at where the scene does not say.
-const ERROR: f64 = 0.03;
-/// The share of the error that the model of color may make; noise may make the rest.
-const SHARE: f64 = 1.0 / 3.0;
 /// Share of the camera rays on dispersive surfaces from which twice the wavelengths are carried.
 const FILLED: f64 = 0.5;
 /// Fixed wavelengths and heroes where dispersion is seen, and where it fills the image.
@@ -36,10 +33,11 @@ pub(super) fn model(scene: &Scene<Curve>) -> Model {
     let asks_hero = scene.render.model == ModelText::Hero;
     let together = !visible && !asks_hero;
     let survey = Survey::new(scene, together);
+    let seen = Seen::new(scene, &survey);
     let hero = asks_hero || (scene.render.model == ModelText::Auto && visible);
     let filled = dispersion.is_some_and(|d| d.seen > FILLED);
     let [bands, heroes] = HERO[usize::from(filled)];
-    let rungs = ladder(&survey, if hero { heroes } else { 0 });
+    let rungs = ladder(&survey, &seen, if hero { heroes } else { 0 });
     let tolerance = tolerance(scene);
     let chosen = rungs.iter().position(|rung| rung.bound() <= tolerance).unwrap_or(rungs.len() - 1);
 
@@ -58,7 +56,7 @@ pub(super) fn model(scene: &Scene<Curve>) -> Model {
     let next = if hero { rungs.get(chosen) } else { rungs.get(chosen + 1) }.map(|rung| rung.basis.clone());
     let next = next.filter(|_| hero || !survey.is_plain());
     let mut because = vec![format!("model {}: {} lanes; {why}", basis.name(), basis.lanes())];
-    let missed = (!is_exact || basis.fixed_lanes() > 3).then(|| missed(&rungs, &basis, &survey, tolerance));
+    let missed = (!is_exact || basis.fixed_lanes() > 3).then(|| missed(&rungs, &basis, &survey, &seen, tolerance));
     because.extend(lines_without_lane(&survey, &basis));
     because.extend(dispersion.map(|d| spoken(&d, visible, hero)));
     let basis = if together { basis.kept_together() } else { basis };
@@ -66,11 +64,6 @@ pub(super) fn model(scene: &Scene<Curve>) -> Model {
     because.extend(materials(scene, &basis));
     let next = next.map(|next| if together || hero { next.kept_together() } else { next });
     Model { basis, missed, because, next, rungs }
-}
-
-/// The relative error of a color that its model may make.
-pub(super) fn tolerance(scene: &Scene<Curve>) -> f64 {
-    SHARE * scene.render.error.unwrap_or(ERROR)
 }
 
 /// Three bands, whatever they miss.
@@ -94,15 +87,15 @@ fn least(rungs: &[Rung], chosen: usize, tolerance: f64, plain: bool) -> String {
 }
 
 /// The whole ladder in one line; for heroes, what their fixed lanes miss.
-fn missed(rungs: &[Rung], basis: &Basis, survey: &Survey, tolerance: f64) -> String {
+fn missed(rungs: &[Rung], basis: &Basis, survey: &Survey, seen: &Seen, tolerance: f64) -> String {
     if basis.draws_wavelengths() {
-        let bound = LANES_SAFETY * error(survey, basis);
+        let bound = LANES_SAFETY * error(survey, seen, basis);
         return format!("colors are off by at most {} ({} is tolerated)", percent(bound), percent(tolerance));
     }
     let mut steps: Vec<String> =
         rungs.iter().map(|rung| format!("{} {}", rung.basis.name(), percent(rung.bound()))).collect();
     if !rungs.iter().any(|rung| rung.basis.name() == basis.name()) {
-        steps.push(format!("{} {}", basis.name(), percent(LANES_SAFETY * error(survey, basis))));
+        steps.push(format!("{} {}", basis.name(), percent(LANES_SAFETY * error(survey, seen, basis))));
     }
     format!("colors are off by at most ({} is tolerated): {}", percent(tolerance), steps.join(", "))
 }
@@ -138,7 +131,7 @@ fn dispersion(scene: &Scene<Curve>) -> Option<Spread> {
         light_pass: None,
         bright: None,
     };
-    Some(spread(&World::unlit(scene, method)))
+    Some(spread(&World::new(scene, method)))
 }
 
 fn spoken(spread: &Spread, visible: bool, hero: bool) -> String {

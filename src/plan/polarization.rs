@@ -1,7 +1,7 @@
 //! What the plan says of polarization, which is not traced.
 
-use super::model::tolerance;
-use super::percent;
+use super::survey::tolerance;
+use super::words::percent;
 use crate::scene::Scene;
 use crate::spectrum::Curve;
 use crate::trace::{World, seen_light};

@@ -2,8 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::model::tolerance;
-use super::survey::{Survey, Tint};
+use super::survey::{Survey, Tint, tolerance};
 use crate::material::Material;
 use crate::scene::Scene;
 use crate::spectrum::{Basis, Curve, Draw, Lanes, MAX_LANES, Quantity, visible};
@@ -28,8 +27,8 @@ struct Color {
     sum: Weighted,
     /// By sums over 1 nm.
     exact: [f64; 3],
-    /// What an error of it is relative to: its strongest channel. Of colors that are fainter than what is tolerated of the
-    /// brightest that the light makes in the view, it is that.
+    /// What an error of it is relative to: its strongest channel. Of colors that are fainter than what is tolerated of
+    /// the brightest that the light makes in the view, it is that.
     scale: f64,
 }
 
@@ -40,8 +39,11 @@ const COSINES: f64 = 32.0;
 const WEIGHTS: f64 = 100.0;
 
 impl<'a> Seen<'a> {
-    /// Sends a few hundred rays and keeps what they met.
+    /// Sends a few hundred rays and keeps what they met; nothing where smooth surfaces tint no light.
     pub(super) fn new(scene: &'a Scene<Curve>, survey: &Survey) -> Self {
+        if survey.is_plain() || survey.smooth(1).is_empty() {
+            return Self::default();
+        }
         let basis = Basis::wavelengths(survey.color_space, ROUTES_NM.into(), &[]);
         let method = Method {
             basis,
@@ -55,7 +57,7 @@ impl<'a> Seen<'a> {
             bright: None,
         };
         let mut keeping = Keeping::new(scene, survey);
-        for of_pixel in routes(&World::unlit(scene, method)) {
+        for of_pixel in routes(&World::new(scene, method)) {
             keeping.keep(&of_pixel);
         }
         keeping.finish(survey, tolerance(scene))

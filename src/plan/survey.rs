@@ -3,12 +3,21 @@
 use std::borrow::Cow;
 
 use super::lights::{different, farthest_apart};
-use super::seen::Seen;
 use crate::material::{Conductor, Dielectric, Material, Plastic, conductor_reflectance, diffuse_transmittance};
 use crate::scene::Scene;
 use crate::spectrum::{
     Basis, ColorSpace, Curve, CurveKind, Emission, Quantity, Upsampler, normal_reflectance, visible,
 };
+
+/// The share of the error that the model of color may make; noise may make the rest.
+const SHARE: f64 = 1.0 / 3.0;
+/// The relative error of an image that is aimed at where the scene does not say.
+const ERROR: f64 = 0.03;
+
+/// The relative error of a color that its model may make.
+pub(super) fn tolerance(scene: &Scene<Curve>) -> f64 {
+    SHARE * scene.render.error.unwrap_or(ERROR)
+}
 
 /// The colors of a scene: what shines and what tints.
 pub(super) struct Survey<'a> {
@@ -21,8 +30,6 @@ pub(super) struct Survey<'a> {
     /// Those of them by whose light models are judged.
     judged: Vec<usize>,
     tints: Vec<Tint<'a>>,
-    /// What light of the probe meets, where smooth surfaces tint it.
-    pub(super) seen: Seen<'a>,
 }
 
 /// Something that tints light.
@@ -83,19 +90,8 @@ impl<'a> Survey<'a> {
                 }
             }
         }
-        let mut survey = Self {
-            color_space: space,
-            upsampler: Upsampler::new(space),
-            lights,
-            light_numbers,
-            judged,
-            tints,
-            seen: Seen::default(),
-        };
-        if !survey.is_plain() && !survey.smooth(1).is_empty() {
-            survey.seen = Seen::new(scene, &survey);
-        }
-        survey
+        let upsampler = Upsampler::new(space);
+        Self { color_space: space, upsampler, lights, light_numbers, judged, tints }
     }
 
     /// Whether three numbers say all that is known of every color: numbers and `rgb` under the film's own white.

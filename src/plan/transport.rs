@@ -81,7 +81,7 @@ fn too_many_ways(scene: &Scene<Curve>, basis: &Basis, together: f64) -> Option<S
         light_pass: None,
         bright: None,
     };
-    match branching(&World::unlit(scene, method), AFFORDABLE) {
+    match branching(&World::new(scene, method), AFFORDABLE) {
         Branching::Affordable(_) => None,
         Branching::Beyond([x, y]) => Some(format!(
             "light has too many ways through glass and over mirrors to follow all of them, as at pixel ({x}, {y})"

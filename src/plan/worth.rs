@@ -21,17 +21,20 @@ pub(super) struct Worth {
     pub(super) lights: Vec<LightId>,
     /// How many photons of them for each camera sample make the time to an error least.
     pub(super) photons: f64,
-    /// How many times as long chance takes to the same error; none where it misses light for good, or there is no light.
+    /// How many times as long chance takes to the same error; none where it misses light for good, or there is no
+    /// light.
     pub(super) gain: Option<f64>,
 }
 
 /// Weighs photons of some lights, which the world sends, against chance.
 ///
-/// An image of n_p camera samples and n_l photons has the variance A / n_p + sum B_i / n_i in the time C_p n_p + sum C_i n_i; their
-/// product is least for n_i / n_p = sqrt(B_i C_p / (A C_i)), where it is (sqrt(A C_p) + sum sqrt(B_i C_i))^2. A light that is
-/// left to chance adds K to A: a camera sample that meets the lamp sees f of its radiance, and does so as often as makes the mean
-/// right, so that its second moment is f times the mean. How many photons there are goes by an A without the worst hundredth of the
-/// pixels: else one edge or rare bright path, which no photon mends, leaves the caustic noisier than all around it. Rays followed stand for time, so that the plan is the same everywhere.
+/// An image of n_p camera samples and n_l photons has the variance A / n_p + sum B_i / n_i in the time C_p n_p + sum
+/// C_i n_i; their product is least for n_i / n_p = sqrt(B_i C_p / (A C_i)), where it is (sqrt(A C_p) + sum sqrt(B_i
+/// C_i))^2. A light that is left to chance adds K to A: a camera sample that meets the lamp sees f of its radiance, and
+/// does so as often as makes the mean right, so that its second moment is f times the mean. How many photons there are
+/// goes by an A without the worst hundredth of the pixels: else one edge or rare bright path, which no photon mends,
+/// leaves the caustic noisier than all around it. Rays followed stand for time, so that the plan is the same
+/// everywhere.
 pub(super) fn weigh(scene: &Scene<Curve>, world: &World) -> Worth {
     let samples = samples_worth(world);
     let film = scene.film;
@@ -63,7 +66,8 @@ pub(super) fn weigh(scene: &Scene<Curve>, world: &World) -> Worth {
     }
 }
 
-/// The nearest power of the square root of 2: the least of time x variance is flat, and rounding must not change an image.
+/// The nearest power of the square root of 2: the least of time x variance is flat, and rounding must not change an
+/// image.
 pub(super) fn rounded(photons: f64) -> f64 {
     libm::exp2(0.5 * (2.0 * libm::log2(photons)).round())
 }

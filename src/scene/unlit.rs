@@ -7,7 +7,7 @@ use super::Scene;
 use super::sight::{Place, Sight};
 use crate::light::{Area, Light, LightId};
 use crate::material::Material;
-use crate::math::{BranchKey, Cone, DVec3, Frame, Ray, Sampler, ball_surface, cone, cosine_hemisphere, unit};
+use crate::math::{BranchKey, DVec3, Frame, Ray, Sampler, ball_surface, cosine_hemisphere, unit};
 use crate::shape::{Sides, SurfacePoint};
 use crate::spectrum::Curve;
 
@@ -137,10 +137,7 @@ fn start(light: &Light<Curve>, sampler: &Sampler) -> Option<Start> {
     match light {
         Light::Area(area) => start_on(area, sampler),
         Light::Point(point) => Some(from_point(point.position, ball_surface([u, v]))),
-        Light::Spot(spot) => {
-            let Cone { axis, one_minus_cos } = spot.cone();
-            Some(from_point(spot.position, unit(Frame::about(axis).to_world(cone(one_minus_cos, [u, v]).0))))
-        }
+        Light::Spot(spot) => Some(from_point(spot.position, unit(spot.cone().sample_uniform([u, v])))),
         Light::Environment(_) | Light::Sun(_) => None,
     }
 }

@@ -47,7 +47,8 @@ fn interpolated<const K: usize>(numbers: &[[f32; K]], corners: [u32; 3], [u, v]:
     std::array::from_fn(|i| f64::from(a[i]) * (1.0 - u - v) + f64::from(b[i]) * u + f64::from(c[i]) * v)
 }
 
-/// Normals of vertices, from the triangles around each, weighted by their angles there; vertices at the same place have one.
+/// Normals of vertices, from the triangles around each, weighted by their angles there; vertices at the same place have
+/// one.
 ///
 /// Thuermer & Wuethrich 1998, *Computing Vertex Normals from Polygonal Facets*.
 pub fn vertex_normals(vertices: &Vertices, faces: &[[u32; 3]]) -> Vec<[f32; 3]> {

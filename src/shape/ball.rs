@@ -40,8 +40,8 @@ impl Ball {
         Self { center: self.center + way * ((radius - self.radius) / distance), radius }
     }
 
-    /// The unit normals of those points of the ball's surface that see some of another ball: n . (c - l) > r - R, if the other
-    /// lies outside; else all of them.
+    /// The unit normals of those points of the ball's surface that see some of another ball: n . (c - l) > r - R, if
+    /// the other lies outside; else all of them.
     pub fn cap_toward(&self, other: &Self) -> Cone {
         let way = other.center - self.center;
         let distance = way.length();

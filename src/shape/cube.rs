@@ -70,8 +70,8 @@ impl Cube {
 
     fn crossing(&self, ray: &Ray, t: f64, face: usize) -> Crossing {
         let d = ray.at(t) - self.center;
-        // Kept inside the edges by more than the rounding of a slab coordinate, so that a ray that goes on inside starts
-        // inside all slabs and meets no face it did not cross.
+        // Kept inside the edges by more than the rounding of a slab coordinate, so that a ray that goes on inside
+        // starts inside all slabs and meets no face it did not cross.
         let limit = 1.0 - 64.0 * UNIT_ROUNDOFF * (1.0 + (self.center.abs() + self.extent()).dot(self.reach()));
         let limit = limit.max(0.0);
         let coordinate = |axis: usize| d.dot(self.duals[axis]).clamp(-limit, limit);

@@ -7,7 +7,7 @@ use serde::Deserialize;
 use serde::de::IgnoredAny;
 
 use super::gltf_buffer::{Accessor, Buffer, BufferView, Store};
-use super::mesh_file::MeshFile;
+use super::mesh_data::MeshFile;
 use super::{Attributes, Vertices};
 use crate::math::{DMat3, DVec3, Transform};
 

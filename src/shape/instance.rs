@@ -6,8 +6,9 @@ use crate::math::{Bounds, DVec3, Ray, Transform, gamma, unit};
 /// A mesh placed by an affine map: many of them share the triangles of one.
 ///
 /// Rays are taken into the mesh's own space, without normalizing them there, so that distances stay those of the world.
-/// The surface is the one that the *computed* map back takes to the mesh: its bounds of error hold the roundings of that
-/// map beside those of the map to the world, and a ray that leaves the surface starts on the right side of it there.
+/// The surface is the one that the *computed* map back takes to the mesh: its bounds of error hold the roundings of
+/// that map beside those of the map to the world, and a ray that leaves the surface starts on the right side of it
+/// there.
 #[derive(Clone, Debug)]
 pub struct Instance {
     mesh: Arc<Mesh>,
@@ -77,9 +78,10 @@ impl Instance {
 
     /// Bound in the world of a point's distance to the surface.
     ///
-    /// With M and t the map to the world, N and s the map back, p = M q + t the computed image of q, itself off by e: the
-    /// map to the world rounds by gamma(4) (|M| |q| + |t|). The ray's origin near p is taken back with a rounding of
-    /// gamma(4) (|N| |p| + |s|), one more for the little way between both, to a place that differs from q by |N M - 1| |q| +
+    /// With M and t the map to the world, N and s the map back, p = M q + t the computed image of q, itself off by e:
+    /// the map to the world rounds by gamma(4) (|M| |q| + |t|). The ray's origin near p is taken back with a rounding
+    /// of gamma(4) (|N| |p| + |s|), one more for the little way between both, to a place that differs from q by |N M -
+    /// 1| |q| +
     /// |N t + s|. Those are lengths in the mesh's space, as e is, and worth |M| times as much in the world.
     fn error(&self, own: DVec3, placed: DVec3, error: DVec3) -> DVec3 {
         let there = error + self.mismatch + self.to_object.rounding(placed) * 1.25;

@@ -3,8 +3,8 @@ use std::sync::OnceLock;
 use super::bvh::GROUP;
 use super::edges::open_edges;
 use super::packed::Packed;
-use super::tangents::over_triangle;
-use super::{Attributes, Bvh, Crossing, SurfacePoint, Triangle};
+use super::triangle::tangents_over;
+use super::{Attributes, Bvh, Crossing, SurfacePoint, Triangle, Vertices};
 use crate::math::{Bounds, DVec3, Distribution, Ray, Transform};
 
 /// Triangles over shared vertices, with a tree of boxes.
@@ -25,33 +25,6 @@ pub struct Mesh {
     areas: OnceLock<Distribution>,
     closed: bool,
     attributes: Attributes,
-}
-
-/// Vertices as exactly as they were given: files hold f32, scene files and transforms f64.
-#[derive(Clone, Debug)]
-pub enum Vertices {
-    /// As a mesh file stores them.
-    Single(Vec<[f32; 3]>),
-    /// As a scene file writes them, or after a transform.
-    Double(Vec<DVec3>),
-}
-
-impl Vertices {
-    /// How many there are.
-    pub fn count(&self) -> usize {
-        match self {
-            Self::Single(points) => points.len(),
-            Self::Double(points) => points.len(),
-        }
-    }
-
-    /// Vertex `index`, widened exactly.
-    pub fn at(&self, index: u32) -> DVec3 {
-        match self {
-            Self::Single(points) => points[index as usize].map(f64::from).into(),
-            Self::Double(points) => points[index as usize],
-        }
-    }
 }
 
 /// What building a mesh left out or noticed.
@@ -142,7 +115,7 @@ impl Mesh {
     pub(super) fn tangents(&self, part: u32) -> Option<[DVec3; 2]> {
         let corners = self.triangles[part as usize];
         let at = |corner: u32| self.attributes.coordinates[corner as usize];
-        if self.has_coordinates() { over_triangle(self.corners(part), corners.map(at)) } else { None }
+        if self.has_coordinates() { tangents_over(self.corners(part), corners.map(at)) } else { None }
     }
 
     pub(super) fn vertices(&self) -> impl Iterator<Item = DVec3> + '_ {

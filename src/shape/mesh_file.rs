@@ -2,32 +2,18 @@
 
 use std::fs::File;
 use std::io::BufReader;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use ply_rs_bw::parser::{Parser, Reader};
 use ply_rs_bw::ply::{
     ElementDef, Encoding, Header, Property, PropertyAccess, PropertyAccessResult, PropertyType, ScalarType,
 };
 
+use super::mesh_data::MeshFile;
 use super::{Attributes, Vertices};
 
-/// What a mesh file holds.
-pub struct MeshFile {
-    /// Its vertices, in the precision of the file.
-    pub vertices: Vertices,
-    /// Corners of its triangles; polygons are cut into fans.
-    pub faces: Vec<[u32; 3]>,
-    /// What its vertices carry.
-    pub attributes: Attributes,
-    /// Whether the file asks for materials, which Abbe takes from the scene instead.
-    pub names_materials: bool,
-    /// What else the file holds that moves its points, which are taken as they stand.
-    pub ignored: Vec<&'static str>,
-    /// Other files that it was read from.
-    pub others: Vec<PathBuf>,
-}
-
-/// Reads a mesh file by its ending, `.ply`, `.obj`, `.gltf` or `.glb`; checks that corners exist and vertices are finite.
+/// Reads a mesh file by its ending, `.ply`, `.obj`, `.gltf` or `.glb`; checks that corners exist and vertices are
+/// finite.
 ///
 /// # Errors
 /// A sentence that says what is wrong with the file.

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use tobj::LoadError;
 
-use super::mesh_file::MeshFile;
+use super::mesh_data::MeshFile;
 use super::{Attributes, Vertices};
 
 /// Reads the triangles of all objects of a file, and the normals of its vertices if they are wanted.
@@ -57,7 +57,8 @@ fn no_such(what: &str) -> String {
 /// How many vertices, texture coordinates and normals a text lists.
 ///
 /// # Errors
-/// A face counts further back than there are any, or to a number that no file has: tobj multiplies both before it looks.
+/// A face counts further back than there are any, or to a number that no file has: tobj multiplies both before it
+/// looks.
 fn counted(text: &str) -> Result<[u64; 3], String> {
     let mut counts = [0; 3];
     for line in text.lines() {

@@ -2,8 +2,8 @@ use crate::math::{DVec3, unit};
 
 /// A triangle or parallelogram as it is seen from a point: drawn with the same density from every direction within.
 ///
-/// Peters 2021, *BRDF Importance Sampling for Polygonal Lights*, section 4.1: a fan of spherical triangles about the first
-/// corner, whose far side is swept by the first number, and an arc from the corner to it, divided by the second.
+/// Peters 2021, *BRDF Importance Sampling for Polygonal Lights*, section 4.1: a fan of spherical triangles about the
+/// first corner, whose far side is swept by the first number, and an arc from the corner to it, divided by the second.
 pub(super) struct Outline {
     corners: [DVec3; 4],
     parts: [Part; 2],
@@ -12,8 +12,8 @@ pub(super) struct Outline {
 
 /// Terms of one spherical triangle's solid angle, 2 atan2(volume, across + along).
 ///
-/// Van Oosterom & Strackee 1983, *The Solid Angle of a Plane Triangle*: for the unit vectors a, b, c to the corners, the
-/// volume is a . (b x c) and the other term 1 + a . b + b . c + c . a; `along` is 1 + a . b, `across` the rest.
+/// Van Oosterom & Strackee 1983, *The Solid Angle of a Plane Triangle*: for the unit vectors a, b, c to the corners,
+/// the volume is a . (b x c) and the other term 1 + a . b + b . c + c . a; `along` is 1 + a . b, `across` the rest.
 #[derive(Clone, Copy, Default)]
 struct Part {
     volume: f64,
@@ -35,8 +35,8 @@ pub(super) fn is_near(way: DVec3, squared: f64) -> bool {
 }
 
 impl Outline {
-    /// The outline of flat corners, three or four in order, whose first two edges span twice a triangle's area `spanned`,
-    /// a vector; none where it is too narrow to be divided.
+    /// The outline of flat corners, three or four in order, whose first two edges span twice a triangle's area
+    /// `spanned`, a vector; none where it is too narrow to be divided.
     pub(super) fn seen(from: DVec3, corners: &[DVec3], spanned: DVec3) -> Option<Self> {
         let ways: [DVec3; 4] = std::array::from_fn(|i| corners[i.min(corners.len() - 1)] - from);
         let lengths = ways.map(|way| way.length());
@@ -80,8 +80,8 @@ impl Outline {
             }
         }
         let [apex, a, b] = [self.corners[0], self.corners[number + 1], self.corners[number + 2]];
-        // The direction m = x a + y b for which a, the apex and a's mirror image behind m enclose what is asked for: the
-        // formula's two terms are linear in m.
+        // The direction m = x a + y b for which a, the apex and a's mirror image behind m enclose what is asked for:
+        // the formula's two terms are linear in m.
         let middle = a * (part.volume * cos - part.across * sin) + b * (part.along * sin);
         let far = middle * (2.0 * a.dot(middle) / middle.length_squared()) - a;
         // Heights above the apex are drawn evenly; 1 - cos by the chord keeps its digits on short arcs.

@@ -25,8 +25,8 @@ impl Packed {
         }
     }
 
-    /// The nearest crossing with 0 < t <= `t_max` of a triangle that counts; of equally near ones, that of the one listed
-    /// first.
+    /// The nearest crossing with 0 < t <= `t_max` of a triangle that counts; of equally near ones, that of the one
+    /// listed first.
     #[inline]
     pub fn nearest(&self, bvh: &Bvh, ray: &Ray, t_max: f64, counts: impl Fn(u32) -> bool) -> Option<Crossing> {
         match self {
@@ -179,7 +179,8 @@ impl<T: Number> Block<T> {
     /// A bit for each triangle that the line of a ray may run through, edges and corners included.
     ///
     /// The edge functions are rounded as in `Sheared::intersect`. One that is not 0 has the right sign, for rounding
-    /// keeps the order of products; so what has two of opposite signs is refused there as well, and nothing else is here.
+    /// keeps the order of products; so what has two of opposite signs is refused there as well, and nothing else is
+    /// here.
     #[inline(always)]
     fn inside(&self, vectors: impl Vectors, line: &Line) -> u32 {
         let [x, y, z] = line.sheared.order;

@@ -26,7 +26,8 @@ impl Plane {
         self.normal
     }
 
-    /// t = (q - p0).n_p / (n.n_p): the difference is formed first, so that distance from the world's origin costs nothing.
+    /// t = (q - p0).n_p / (n.n_p): the difference is formed first, so that distance from the world's origin costs
+    /// nothing.
     pub(super) fn intersect(&self, ray: &Ray, t_max: f64) -> Option<Crossing> {
         let t = (self.point - ray.origin).dot(self.normal) / ray.direction.dot(self.normal);
         (t > 0.0 && t <= t_max && t.is_finite()).then(|| Crossing::at(t))

@@ -48,8 +48,8 @@ impl Pool {
         Self { bvh, packed, owners }
     }
 
-    /// The nearest crossing with 0 < t <= `t_max` of a shape that counts, and the shape's number. Of equally near ones, that of
-    /// the lowest number.
+    /// The nearest crossing with 0 < t <= `t_max` of a shape that counts, and the shape's number. Of equally near ones,
+    /// that of the lowest number.
     #[inline]
     pub fn nearest(&self, ray: &Ray, t_max: f64, counts: impl Fn(u32) -> bool) -> Option<(u32, Crossing)> {
         let owner = |item: u32| self.owners[item as usize];

@@ -1,7 +1,7 @@
 use std::f64::consts::PI;
 
-use super::{Ball, Cap, Crossing, Ellipsoid, Shape, ShapeSample, SurfacePoint};
-use crate::math::{Bounds, Cone, DMat3, DVec3, Frame, Ray, Transform, ball_surface, cone, gamma};
+use super::{Ball, Crossing, Ellipsoid, ShapeSample, SurfacePoint};
+use crate::math::{Bounds, Cone, DMat3, DVec3, Ray, Transform, ball_surface, gamma};
 
 /// A sphere; its front is the outside.
 ///
@@ -69,12 +69,13 @@ impl Sphere {
         Bounds { min: self.center - reach, max: self.center + reach }.padded(8)
     }
 
-    pub(super) fn transformed(&self, map: &Transform) -> Shape {
+    /// The sphere after a map; an ellipsoid after an uneven one.
+    pub(super) fn transformed(&self, map: &Transform) -> Result<Self, Ellipsoid> {
         match map.uniform_scale() {
-            Some(scale) => Shape::Sphere(Self::new(map.point(self.center), self.radius * scale)),
+            Some(scale) => Ok(Self::new(map.point(self.center), self.radius * scale)),
             None => {
                 let axes = DMat3::from_diagonal(DVec3::splat(self.radius));
-                Shape::Ellipsoid(Ellipsoid::new(self.center, axes).transformed(map))
+                Err(Ellipsoid::new(self.center, axes).transformed(map))
             }
         }
     }
@@ -83,48 +84,44 @@ impl Sphere {
         4.0 * PI * self.radius * self.radius
     }
 
-    /// A direction from a point outside, uniform in the cone that the sphere fills; from inside or on it, any direction.
+    /// A direction from a point outside, uniform in the cone that the sphere fills; from inside or on it, any
+    /// direction.
     pub(super) fn sample(&self, from: DVec3, u: [f64; 2]) -> ShapeSample {
         match self.cone_from(from) {
-            Some(Cone { axis, one_minus_cos }) => {
-                let (direction, pdf) = cone(one_minus_cos, u);
-                ShapeSample::of_direction(Frame::about(axis).to_world(direction), pdf)
-            }
+            Some(cone) => ShapeSample::of_direction(cone.sample_uniform(u), cone.uniform_pdf()),
             None => ShapeSample::of_direction(ball_surface(u), 1.0 / (4.0 * PI)),
         }
     }
 
     /// Density per steradian with which `sample` draws the direction of a ray that meets the sphere.
     pub(super) fn pdf(&self, ray: &Ray) -> f64 {
-        match self.cone_from(ray.origin) {
-            Some(Cone { one_minus_cos, .. }) => 1.0 / (2.0 * PI * one_minus_cos),
-            None => 1.0 / (4.0 * PI),
-        }
+        self.cone_from(ray.origin).map_or(1.0 / (4.0 * PI), |cone| cone.uniform_pdf())
     }
 
-    /// A direction from a point to a sphere of which most often a cap alone is seen: from outside most lead to points of the
-    /// cap, uniform by area. The others keep the estimate right where more is seen.
-    pub(super) fn sample_cap(&self, cap: &Cap, from: DVec3, [u, v]: [f64; 2]) -> Option<ShapeSample> {
+    /// A direction from a point to a sphere of which most often a cap alone is seen: from outside most lead to points
+    /// of the cap, uniform by area. The others keep the estimate right where more is seen.
+    pub(super) fn sample_cap(&self, cap: &Cone, from: DVec3, [u, v]: [f64; 2]) -> Option<ShapeSample> {
         let outside = self.cone_from(from).is_some();
         if u < ELSEWHERE || !outside {
             let u = if outside { u / ELSEWHERE } else { u };
             return Some(ShapeSample { density: None, ..self.sample(from, [u, v]) });
         }
-        let normal = cap.sample([(u - ELSEWHERE) / (1.0 - ELSEWHERE), v]);
+        let normal = cap.sample_uniform([(u - ELSEWHERE) / (1.0 - ELSEWHERE), v]);
         let direction = self.center + normal * self.radius - from;
         // A point behind the horizon is hidden by one in front, whose own density counts.
         if normal.dot(direction) < 0.0 { ShapeSample::along(direction) } else { None }
     }
 
-    /// Density per steradian with which `sample_cap` draws the direction of a ray that first meets the sphere at a distance.
-    pub(super) fn pdf_cap(&self, cap: &Cap, ray: &Ray, t: f64) -> f64 {
+    /// Density per steradian with which `sample_cap` draws the direction of a ray that first meets the sphere at a
+    /// distance.
+    pub(super) fn pdf_cap(&self, cap: &Cone, ray: &Ray, t: f64) -> f64 {
         let everywhere = self.pdf(ray);
         if self.cone_from(ray.origin).is_none() {
             return everywhere;
         }
         let normal = (ray.at(t) - self.center).normalize();
         let of_cap = if cap.contains(normal) {
-            t * t / (cap.share() * self.area() * normal.dot(ray.direction).abs())
+            t * t / (0.5 * cap.one_minus_cos * self.area() * normal.dot(ray.direction).abs())
         } else {
             0.0
         };
@@ -133,10 +130,9 @@ impl Sphere {
 
     /// A point of the cap that sees some of a ball, denser toward the cap's middle as much as it sends more there.
     pub(super) fn sample_emission(&self, own: Ball, toward: &Ball, u: [f64; 2]) -> SurfacePoint {
-        let Cone { axis, one_minus_cos } = own.cap_toward(toward);
-        let u = if one_minus_cos < 2.0 { [1.0 - u[0].sqrt(), u[1]] } else { u };
-        let normal = Frame::about(axis).to_world(cone(one_minus_cos, u).0);
-        self.point(self.over(normal))
+        let cap = own.cap_toward(toward);
+        let u = if cap.is_all() { u } else { [1.0 - u[0].sqrt(), u[1]] };
+        self.point(self.over(cap.sample_uniform(u)))
     }
 
     /// Density per unit of area with which `sample_emission` draws a point.

@@ -192,3 +192,13 @@ fn triple_product([a, b, c]: [[Twice; 3]; 3]) -> f64 {
     let cross = |i: usize, j: usize| b[i].times(c[j]).minus(b[j].times(c[i]));
     a[0].times(cross(1, 2)).add(a[1].times(cross(2, 0))).add(a[2].times(cross(0, 1))).0
 }
+
+/// The derivatives over a triangle by coordinates given at its corners; none if those lie on a line.
+pub(super) fn tangents_over([p1, p2, p3]: [DVec3; 3], at: [[f32; 2]; 3]) -> Option<[DVec3; 2]> {
+    let [a, b, c] = at.map(|uv| uv.map(f64::from));
+    let [along, across] = [p2 - p1, p3 - p1];
+    let [[u1, v1], [u2, v2]] = [b, c].map(|uv| [uv[0] - a[0], uv[1] - a[1]]);
+    let area = u1 * v2 - v1 * u2;
+    let tangents = [(along * v2 - across * v1) / area, (across * u1 - along * u2) / area];
+    (area != 0.0 && tangents.iter().all(|tangent| tangent.is_finite())).then_some(tangents)
+}

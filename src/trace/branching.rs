@@ -22,8 +22,8 @@ const SIDE: u32 = 16;
 const OBJECTS: usize = 64;
 
 /// Follows all branches in pixels all over the image, and where the camera would see objects of several ways if nothing
-/// were before them, until it is known whether a mean sample meets more than `most` surfaces. A sample that had to go on
-/// by chance is beyond that whatever the mean is.
+/// were before them, until it is known whether a mean sample meets more than `most` surfaces. A sample that had to go
+/// on by chance is beyond that whatever the mean is.
 pub fn branching(world: &World, most: f64) -> Branching {
     in_lanes!(&world.method.basis, N => ask::<N>(world, most))
 }
@@ -55,8 +55,8 @@ fn ask<const N: usize>(world: &World, most: f64) -> Branching {
     }
 }
 
-/// Pixels in which the camera would see objects of some materials if nothing were before them: their middles, and places
-/// toward their corners.
+/// Pixels in which the camera would see objects of some materials if nothing were before them: their middles, and
+/// places toward their corners.
 pub(super) fn pixels_of_objects(world: &World, counts: impl Fn(&Material<Table>) -> bool) -> Vec<[u32; 2]> {
     let scene = &world.scene;
     let wanted = |object: &u32| counts(scene.material_of(*object));

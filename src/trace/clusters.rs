@@ -80,7 +80,9 @@ impl Cluster {
                 let place = 2.0 * (cut as f64 + 1.0) / (CUTS as f64 + 1.0) - 1.0;
                 let level = axis.dot(self.center) + place * axis.length_squared();
                 let mut sides = [Spread::default(); 2];
-                self.points.iter().for_each(|point| sides[usize::from(point.0.dot(axis) > level)].add(point));
+                self.points
+                    .iter()
+                    .for_each(|point| sides[usize::from(point.0.dot(axis) > level)].add(point.0, point.1));
                 let cost = sides[0].cost() + sides[1].cost();
                 let enough = sides.iter().all(|side| side.count >= FEWEST);
                 if enough && best.is_none_or(|best| cost < best.0) {
@@ -108,21 +110,22 @@ struct Spread {
 impl Spread {
     fn of(points: &[(DVec3, f64)]) -> Self {
         let mut all = Self::default();
-        points.iter().for_each(|point| all.add(point));
+        points.iter().for_each(|point| all.add(point.0, point.1));
         all
     }
 
-    fn add(&mut self, (point, weight): &(DVec3, f64)) {
+    fn add(&mut self, point: DVec3, weight: f64) {
         self.count += 1;
         self.weight += weight;
-        self.sum += *point * *weight;
-        self.squares += *point * *point * *weight;
-        self.products += DVec3::new(point.y * point.z, point.z * point.x, point.x * point.y) * *weight;
+        self.sum += point * weight;
+        self.squares += point * point * weight;
+        self.products += DVec3::new(point.y * point.z, point.z * point.x, point.x * point.y) * weight;
     }
 
     /// Weight times area: how much of what is aimed is aimed in vain.
     ///
-    /// The sum of the products of two eigenvalues of the covariance, its second invariant, goes with the square of the area.
+    /// The sum of the products of two eigenvalues of the covariance, its second invariant, goes with the square of the
+    /// area.
     fn cost(&self) -> f64 {
         if self.weight <= 0.0 {
             return 0.0;
@@ -136,7 +139,8 @@ impl Spread {
     }
 }
 
-/// The direction in which points vary least: the largest eigenvector of trace(C) - C for their covariance C, by squaring.
+/// The direction in which points vary least: the largest eigenvector of trace(C) - C for their covariance C, by
+/// squaring.
 fn normal_of(points: &[(DVec3, f64)], weight: f64) -> DVec3 {
     let middle = points.iter().fold(DVec3::ZERO, |sum, (point, share)| sum + *point * (share / weight));
     let times = |x: DVec3| {

@@ -9,7 +9,7 @@ use super::polarization::Polarized;
 use super::sensor::{Contribution, Found, Sensor, amount};
 use super::straight;
 use super::{World, media, shading};
-use crate::light::{LightId, LightSample};
+use crate::light::{LightId, LightSample, SampledLight};
 use crate::material::Lobes;
 use crate::math::{DVec3, Ray, Sampler};
 use crate::scene::MaterialId;
@@ -66,8 +66,8 @@ const MORE_DIGITS: u32 = 3;
 impl<const N: usize> DirectLighting<'_, N> {
     /// Hands the light of sampled lights to the sensor, and answers how likely it was to look at a side.
     ///
-    /// Where light also comes from beyond the surface, both sides are looked at or, where only one light is sampled, one of
-    /// them chosen by chance.
+    /// Where light also comes from beyond the surface, both sides are looked at or, where only one light is sampled,
+    /// one of them chosen by chance.
     pub(super) fn gather(&self, sampler: &Sampler, sensor: &mut Sensor) -> f64 {
         let (at, parted) = (self.at, self.path.parted);
         let near = Side { normal: at.flat, chance: None, inside: at.boundary.here, parted };
@@ -90,9 +90,9 @@ impl<const N: usize> DirectLighting<'_, N> {
 
     fn gather_side(&self, side: &Side, sampler: &Sampler, sensor: &mut Sensor) {
         let (lights, key) = (&self.world.scene.lights, self.path.key);
-        let mut take = |light: LightId, probability: f64, [u, v]: [f64; 2]| {
-            let u = if lights[light].has_parts() { finer(u, sampler.four_plain(key, MORE_DIGITS)[1]) } else { u };
-            let shadow_ray = self.shadow_ray(side, (light, probability), [u, v]);
+        let mut take = |drawn: SampledLight, [u, v]: [f64; 2]| {
+            let u = if lights[drawn.light].has_parts() { finer(u, sampler.four_plain(key, MORE_DIGITS)[1]) } else { u };
+            let shadow_ray = self.shadow_ray(side, drawn, [u, v]);
             if let Some(contribution) = shadow_ray.and_then(|ray| self.trace(side, &ray)) {
                 sensor.receive(contribution);
             }
@@ -106,27 +106,33 @@ impl<const N: usize> DirectLighting<'_, N> {
                         if number % 2 == 0 { [u[0], u[1]] } else { [u[2], u[3]] }
                     }
                 };
-                take(light, 1.0, u);
+                take(SampledLight { light, probability: 1.0 }, u);
             }
         } else {
             let u = finer(self.u[3], sampler.four_plain(key, MORE_DIGITS)[0]);
             if let Some(drawn) = self.world.light_sampler.sample(self.at.point.position, side.normal, u) {
-                take(drawn.light, drawn.probability, [self.u[0], self.u[1]]);
+                take(drawn, [self.u[0], self.u[1]]);
             }
         }
     }
 
     /// A ray to a light that was chosen with a probability; none where the sensor gets nothing of it.
-    fn shadow_ray(&self, side: &Side, (id, chosen): (LightId, f64), u: [f64; 2]) -> Option<ShadowRay<N>> {
+    fn shadow_ray(&self, side: &Side, drawn: SampledLight, u: [f64; 2]) -> Option<ShadowRay<N>> {
         let (normal, arrival) = (side.normal, &self.at.arrival);
-        let sample = self.world.scene.lights[id].sample_li(self.at.point, normal, u)?;
+        let sample = self.world.scene.lights[drawn.light].sample_li(self.at.point, normal, u)?;
         let wi = sample.ray.direction;
-        if side.chance.is_some() && wi.dot(normal) <= 0.0 {
+        if wi.dot(normal) <= 0.0 {
             return None;
         }
         let flat = if normal.dot(arrival.wo) < 0.0 { -normal } else { normal };
         let (bsdf_cos, bsdf_pdf) = shading::evaluate(self.at.material, arrival, flat, wi)?;
-        let ray = ShadowRay { light: id, sample, probability: chosen * side.chance.unwrap_or(1.0), bsdf_cos, bsdf_pdf };
+        let ray = ShadowRay {
+            light: drawn.light,
+            sample,
+            probability: drawn.probability * side.chance.unwrap_or(1.0),
+            bsdf_cos,
+            bsdf_pdf,
+        };
         self.factor(&ray, bsdf_pdf).is_finite().then_some(ray)
     }
 
@@ -146,7 +152,7 @@ impl<const N: usize> DirectLighting<'_, N> {
             arriving = arriving * share;
         }
         if let Some(material) = side.inside {
-            arriving = arriving * media::medium(world, material).transmission(arrival.draw, sample.distance);
+            arriving = arriving * media::medium(&world.scene, material).transmission(arrival.draw, sample.distance);
         }
         let factor = self.factor(shadow_ray, bounce_pdf);
         let reflected = self.path.throughput.scaled(factor).of(*bsdf_cos * arriving);
@@ -154,14 +160,14 @@ impl<const N: usize> DirectLighting<'_, N> {
         let mut moved = 0.0;
         if self.path.polarized.is_any() || world.has_see_through() {
             let on_its_way = straight.map_or(Polarized::NOT, |(_, polarized)| polarized);
-            let change = self.path.polarized.brought((self.at.material, arrival), (wi, on_its_way)).change();
+            let change = self.path.polarized.brought(self.at.material, arrival, wi, on_its_way).change();
             moved = if change == 0.0 { 0.0 } else { change * amount(world, rgb) };
         }
         Some(Contribution { light: Some(*light), found: Found::Sampled, rgb, moved })
     }
 
-    /// The factor on a light's emission and the material's answer: over the density of both ways to the light's direction
-    /// together, where the path's own next direction may hit it.
+    /// The factor on a light's emission and the material's answer: over the density of both ways to the light's
+    /// direction together, where the path's own next direction may hit it.
     fn factor(&self, ShadowRay { sample, probability, .. }: &ShadowRay<N>, bounce_pdf: f64) -> f64 {
         let Some(pdf) = sample.pdf else { return sample.factor / probability };
         let pdf = pdf * probability;
@@ -169,7 +175,8 @@ impl<const N: usize> DirectLighting<'_, N> {
         sample.factor * weight / pdf
     }
 
-    /// None if something occludes the light; where there are holes and panes, the share that goes straight on through them.
+    /// None if something occludes the light; where there are holes and panes, the share that goes straight on through
+    /// them.
     fn unoccluded(&self, sample: &LightSample, inside: Option<MaterialId>) -> Option<Option<(Lanes<N>, Polarized)>> {
         if self.world.has_see_through() {
             return self.transmittance(sample, inside).map(Some);
@@ -197,8 +204,8 @@ fn finer(u: f64, more: f64) -> f64 {
     ((u * STEPS).floor() + more) / STEPS
 }
 
-/// The weight of a light that a path met by itself, beside next-event estimation at the path's last surface. `crossing` is where
-/// the ray meets the light, if that is a surface.
+/// The weight of a light that a path met by itself, beside next-event estimation at the path's last surface. `crossing`
+/// is where the ray meets the light, if that is a surface.
 pub(super) fn weight_of_meeting(
     world: &World,
     light: LightId,

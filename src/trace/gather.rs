@@ -1,14 +1,14 @@
 //! Photons are gathered around a place that a path from the camera has reached.
 //!
-//! Light that photons bring to a disc of radius r is taken for the light at its middle, which blurs: light that varies by its
-//! Laplacian comes out too bright by r^2 / 12 of that. The radius is one of pixels, seen along the path, and shrinks
-//! with the samples as their number to the power -1 / 6, where bias and noise vanish at the same pace (Silverman 1986, *Density
-//! Estimation for Statistics and Data Analysis*, section 4.3).
+//! Light that photons bring to a disc of radius r is taken for the light at its middle, which blurs: light that varies
+//! by its Laplacian comes out too bright by r^2 / 12 of that. The radius is one of pixels, seen along the path, and
+//! shrinks with the samples as their number to the power -1 / 6, where bias and noise vanish at the same pace
+//! (Silverman 1986, *Density Estimation for Statistics and Data Analysis*, section 4.3).
 //!
-//! Whatever object they lie on, photons count on surfaces that continue the one around the place and that a point above it
-//! sees. At edges a part of the disc has no such surface, and what is found is divided by the share that has. One over that
-//! share is how often points of the disc must be drawn, on average, until one has (Booth 2007, *Unbiased Monte Carlo
-//! Estimation of the Reciprocal of an Integral*): once, away from edges.
+//! Whatever object they lie on, photons count on surfaces that continue the one around the place and that a point above
+//! it sees. At edges a part of the disc has no such surface, and what is found is divided by the share that has. One
+//! over that share is how often points of the disc must be drawn, on average, until one has (Booth 2007, *Unbiased
+//! Monte Carlo Estimation of the Reciprocal of an Integral*): once, away from edges.
 
 use std::f64::consts::PI;
 
@@ -25,15 +25,16 @@ use crate::spectrum::Lanes;
 
 /// Surfaces whose normals differ by more than 60 degrees belong to different sides or walls.
 const ALIKE: f64 = 0.5;
-/// How far, in radii, a surface may lie from where it would continue another smoothly: between flat faces that meet at 30
-/// degrees it is less.
+/// How far, in radii, a surface may lie from where it would continue another smoothly: between flat faces that meet at
+/// 30 degrees it is less.
 const STEP: f64 = 0.25;
-/// How far above the place, in radii, the point lies that sees photons, unless something is in the way: from there a ball of
-/// the same radius shows all that is gathered of it.
+/// How far above the place, in radii, the point lies that sees photons, unless something is in the way: from there a
+/// ball of the same radius shows all that is gathered of it.
 const HIGH: f64 = 4.0;
 /// Points of the disc that are drawn at most: what covers less of it is too small to be seen.
 const MOST: u32 = 1 << 12;
-/// The branch of the random numbers for them, beyond those that a path may take, and that of the photon that is looked at.
+/// The branch of the random numbers for them, beyond those that a path may take, and that of the photon that is looked
+/// at.
 const POINTS: usize = 128;
 const CHOICE: usize = 129;
 
@@ -64,63 +65,60 @@ struct Chosen {
     change: f64,
 }
 
-impl<const N: usize> Photons<N> {
-    /// What the sensor gets of the photons around a place that a path has reached, and how much of it polarization may change:
-    /// an estimate by the photon that is looked at.
-    pub(super) fn gather(
-        &self,
-        world: &World,
-        path: &Path<N>,
-        at: &Interaction<N>,
-        sampler: &Sampler,
-    ) -> ([f64; 3], f64) {
-        let Interaction { point, flat, material, arrival, parts, .. } = at;
-        let (flat, parts) = (*flat, *parts);
-        let Some(map) = world.method.light_pass.as_ref().and_then(|pass| pass.map) else { return ([0.0; 3], 0.0) };
-        let [u, whether, ..] = sampler.four_plain(path.key.child(CHOICE), 0);
-        if whether >= map.chance {
-            return ([0.0; 3], 0.0);
-        }
-        let radius = map.radius * world.scene.camera.pixel_width(path.length);
-        let front = flat.dot(point.normal) > 0.0;
-        let place = Place { world, position: point.position, flat, front, radius };
-        let mut found = Found { sum: [0.0; 3], weight: 0.0, drawn: None, u };
-        let parted = |back: DVec3| path.parted || (parts && back.dot(flat) < 0.0);
-        let change = |back: DVec3, on_its_way: Polarized| {
-            path.polarized.brought((material, arrival), (back, on_its_way)).change()
-        };
-        self.together.near(point.position, radius, &mut |position, photon| {
-            let Some(density) = place.density(path, position, photon) else { return };
-            let Some((bsdf_cos, _)) = shading::evaluate(material, arrival, flat, photon.back) else { return };
-            let parted = parted(photon.back);
-            let carries = &photon.carries;
-            let by_heroes = arrival.draw.hero_factor(parted).is_some();
-            let flux = if by_heroes { self.matching.onto_heroes(arrival.draw, carries.flux) } else { carries.flux };
-            let arriving = path.throughput.of(bsdf_cos * flux);
-            let rgb = world.responses[carries.light].sensor(arrival.draw, arriving, parted);
-            let rgb = rgb.map(|x| density * x);
-            found.add(position, rgb, amount(world, rgb), || change(photon.back, photon.polarized));
-        });
-        self.alone.near(point.position, radius, &mut |position, photon| {
-            let (wavelength, parted) = (&photon.carries.wavelength, parted(photon.back));
-            let by_heroes = arrival.draw.hero_factor(parted).is_some();
-            let read = |lanes: Lanes<N>| match by_heroes {
-                true => self.matching.shared(arrival.draw, wavelength, lanes, parted),
-                false => self.matching.read(wavelength, lanes),
-            };
-            // Most photons of wavelengths that parted meet others.
-            if by_heroes && read(path.throughput.present()) == 0.0 {
-                return;
-            }
-            let Some(density) = place.density(path, position, photon) else { return };
-            let Some((bsdf_cos, _)) = shading::evaluate(material, arrival, flat, photon.back) else { return };
-            let share = density * read(path.throughput.of(bsdf_cos));
-            let rgb = photon.carries.color.map(|x| share * x);
-            found.add(position, rgb, amount(world, rgb), || change(photon.back, photon.polarized));
-        });
-        let (light, moved) = place.seen_of(found, point, sampler, path.key);
-        (light.map(|x| x / map.chance), moved / map.chance)
+/// What the sensor gets of the photons around a place that a path has reached, and how much of it polarization may
+/// change: an estimate by the photon that is looked at.
+pub(super) fn gather<const N: usize>(
+    photons: &Photons<N>,
+    world: &World,
+    path: &Path<N>,
+    at: &Interaction<N>,
+    sampler: &Sampler,
+) -> ([f64; 3], f64) {
+    let Interaction { point, flat, material, arrival, parts, .. } = at;
+    let (flat, parts) = (*flat, *parts);
+    let Some(map) = world.method.light_pass.as_ref().and_then(|pass| pass.map) else { return ([0.0; 3], 0.0) };
+    let [u, whether, ..] = sampler.four_plain(path.key.child(CHOICE), 0);
+    if whether >= map.chance {
+        return ([0.0; 3], 0.0);
     }
+    let radius = map.radius * world.scene.camera.pixel_width(path.length);
+    let front = flat.dot(point.normal) > 0.0;
+    let place = Place { world, position: point.position, flat, front, radius };
+    let mut found = Found { sum: [0.0; 3], weight: 0.0, drawn: None, u };
+    let parted = |back: DVec3| path.parted || (parts && back.dot(flat) < 0.0);
+    let change =
+        |back: DVec3, on_its_way: Polarized| path.polarized.brought(material, arrival, back, on_its_way).change();
+    photons.together.near(point.position, radius, &mut |position, photon| {
+        let Some(density) = place.density(path, position, photon) else { return };
+        let Some((bsdf_cos, _)) = shading::evaluate(material, arrival, flat, photon.back) else { return };
+        let parted = parted(photon.back);
+        let carries = &photon.carries;
+        let by_heroes = arrival.draw.hero_factor(parted).is_some();
+        let flux = if by_heroes { photons.matching.onto_heroes(arrival.draw, carries.flux) } else { carries.flux };
+        let arriving = path.throughput.of(bsdf_cos * flux);
+        let rgb = world.responses[carries.light].sensor(arrival.draw, arriving, parted);
+        let rgb = rgb.map(|x| density * x);
+        found.add(position, rgb, amount(world, rgb), || change(photon.back, photon.polarized));
+    });
+    photons.alone.near(point.position, radius, &mut |position, photon| {
+        let (wavelength, parted) = (&photon.carries.wavelength, parted(photon.back));
+        let by_heroes = arrival.draw.hero_factor(parted).is_some();
+        let read = |lanes: Lanes<N>| match by_heroes {
+            true => photons.matching.shared(arrival.draw, wavelength, lanes, parted),
+            false => photons.matching.read(wavelength, lanes),
+        };
+        // Most photons of wavelengths that parted meet others.
+        if by_heroes && read(path.throughput.present()) == 0.0 {
+            return;
+        }
+        let Some(density) = place.density(path, position, photon) else { return };
+        let Some((bsdf_cos, _)) = shading::evaluate(material, arrival, flat, photon.back) else { return };
+        let share = density * read(path.throughput.of(bsdf_cos));
+        let rgb = photon.carries.color.map(|x| share * x);
+        found.add(position, rgb, amount(world, rgb), || change(photon.back, photon.polarized));
+    });
+    let (light, moved) = place.seen_of(found, point, sampler, path.key);
+    (light.map(|x| x / map.chance), moved / map.chance)
 }
 
 impl Found {
@@ -155,8 +153,8 @@ impl Place<'_> {
         Some(kernel * photon.flat.dot(self.flat).abs())
     }
 
-    /// Whether a surface continues that of the place; `flat` is its unit normal on the side from where it is reached, and
-    /// `front` whether that is the front.
+    /// Whether a surface continues that of the place; `flat` is its unit normal on the side from where it is reached,
+    /// and `front` whether that is the front.
     fn goes_on(&self, position: DVec3, flat: DVec3, front: bool) -> bool {
         let cos = flat.dot(self.flat);
         // The far face of a thin body, too, is reached from the other side, but from the front.
@@ -168,7 +166,8 @@ impl Place<'_> {
         0.5 * (position - self.position).dot(normals).abs() <= STEP * self.radius
     }
 
-    /// What is seen of what was found, over the share of the disc that is seen, and how much of it polarization may change.
+    /// What is seen of what was found, over the share of the disc that is seen, and how much of it polarization may
+    /// change.
     fn seen_of(&self, found: Found, point: &SurfacePoint, sampler: &Sampler, key: BranchKey) -> ([f64; 3], f64) {
         let Found { mut sum, weight, drawn: chosen, .. } = found;
         let Some(chosen) = chosen else { return (sum, 0.0) };
@@ -199,7 +198,8 @@ impl Place<'_> {
         (sum, moved)
     }
 
-    /// Whether what is met on the way to a point, or so many times as far, continues the surface; none if nothing is met.
+    /// Whether what is met on the way to a point, or so many times as far, continues the surface; none if nothing is
+    /// met.
     fn sees(&self, from: DVec3, to: DVec3, further: f64) -> Option<bool> {
         let scene = &self.world.scene;
         let way = to - from;

@@ -32,8 +32,8 @@ const SAMPLES: u32 = 4;
 /// Sets these random numbers apart from those of the image.
 const SEED: u64 = 0x6761_7468;
 
-/// Gathers photons of two maps by the same paths: what differs is noise of the photons. It is overestimated where a pixel of
-/// many samples gathers at more places than these few, so that too many photons are sent rather than too few.
+/// Gathers photons of two maps by the same paths: what differs is noise of the photons. It is overestimated where a
+/// pixel of many samples gathers at more places than these few, so that too many photons are sent rather than too few.
 ///
 /// All of the image counts, also where only a part of it is made, so that all parts are made alike.
 pub fn gathered_worth(world: &World) -> Option<GatheredWorth> {

@@ -17,7 +17,8 @@ pub(super) struct Meeting<const N: usize> {
     pub(super) straight: Option<Straight<N>>,
 }
 
-/// Where a path meets a surface, and what the surface may know of it: made here, for the camera's paths, photons and probes.
+/// Where a path meets a surface, and what the surface may know of it: made here, for the camera's paths, photons and
+/// probes.
 pub(super) struct Interaction<'a, const N: usize> {
     pub(super) object: u32,
     pub(super) point: &'a SurfacePoint,
@@ -43,11 +44,12 @@ impl<'a, const N: usize> Interaction<'a, N> {
         boundary: Boundary,
     ) -> Self {
         let Meeting { hit, point, .. } = meeting;
-        let number = world.scene.objects[hit.object as usize].material as usize;
+        let object = &world.scene.objects[hit.object as usize];
+        let (wo, uv, number) = (-path.ray.direction, object.uv(&hit.crossing, point), object.material as usize);
         let (material, lobes) = (&world.scene.materials[number].material, world.lobes[number]);
-        let [flat, normal] = shading::normals(point, -path.ray.direction);
+        let [flat, normal] = shading::normals(point, wo);
         let present = path.throughput.present();
-        let arrival = arrival(world, draw, (path.ray.direction, normal, present), (hit, point), boundary.sides());
+        let arrival = arrival(world, draw, wo, normal, uv, present, boundary.sides());
         let parts = lobes.is_transmissive() && material.parts_lanes(&arrival);
         Self { object: hit.object, point, material, lobes, flat, boundary, arrival, parts }
     }
@@ -60,25 +62,27 @@ impl<'a, const N: usize> Interaction<'a, N> {
     }
 }
 
-/// What a surface may know of light that arrives there, between media on the viewer's side and beyond; `normal` is the one by which
-/// it scatters, on the viewer's side.
+/// What a surface may know of light that arrives there, between media on the viewer's side and beyond. `wo` leads to
+/// the viewer; `normal` is the one by which the surface scatters, on the viewer's side; `uv` says where it is met.
 #[inline(always)]
 pub(super) fn arrival<'a, const N: usize>(
     world: &'a World,
     draw: &'a Draw<N>,
-    (direction, normal, present): (DVec3, DVec3, Lanes<N>),
-    (hit, point): (&Hit, &SurfacePoint),
+    wo: DVec3,
+    normal: DVec3,
+    uv: [f64; 2],
+    present: Lanes<N>,
     sides: [Option<MaterialId>; 2],
 ) -> Arrival<'a, N> {
     Arrival {
-        wo: -direction,
+        wo,
         normal,
-        uv: world.scene.objects[hit.object as usize].uv(&hit.crossing, point),
+        uv,
         draw,
         present,
-        incident: media::index(world, draw, sides[0]),
-        beyond: media::index(world, draw, sides[1]),
-        direction_indices: media::direction_indices(world, sides),
+        incident: media::index(&world.scene, draw, sides[0]),
+        beyond: media::index(&world.scene, draw, sides[1]),
+        direction_indices: media::direction_indices(&world.scene, sides),
         together: world.method.together,
     }
 }

@@ -1,22 +1,21 @@
 //! The light pass: caustics, by photons that are sent through glass and over mirrors to what the camera sees.
 //!
-//! It finds the paths light, one or more smooth surfaces, one that scatters widely, camera; and so all of those paths whose
-//! light and first smooth surface photons are sent from and to. The camera's rays leave exactly these out, so that
-//! nothing counts twice and no weights are needed. Veach 1997, *Robust Monte Carlo Methods for Light Transport Simulation*,
-//! section 10.3.4, has the importance; Grittmann et al. 2018, *Efficient Caustic Rendering with Lightweight Photon
-//! Mapping*, the split by kind of path.
+//! It finds the paths light, one or more smooth surfaces, one that scatters widely, camera; and so all of those paths
+//! whose light and first smooth surface photons are sent from and to. The camera's rays leave exactly these out, so
+//! that nothing counts twice and no weights are needed. Veach 1997, *Robust Monte Carlo Methods for Light Transport
+//! Simulation*, section 10.3.4, has the importance; Grittmann et al. 2018, *Efficient Caustic Rendering with
+//! Lightweight Photon Mapping*, the split by kind of path.
 
 use rayon::prelude::*;
 
-use super::photon::{Landing, Splat};
-use super::render::TILE;
+use super::photon::{Landing, Splat, show as show_photon};
 use super::sending::{Sent, batches, send};
 use super::sensor::amount;
 use super::stats::Stats;
+use super::tile::TILE;
 use super::walker::Walker;
 use super::width::in_lanes;
 use super::{LightPass, World};
-use crate::light::LightId;
 use crate::math::Sampler;
 
 /// Batches whose splats are kept in memory at once.
@@ -25,20 +24,18 @@ const AT_ONCE: usize = 64;
 const SEED: u64 = 0x7068_6f74;
 const AHEAD_SEED: u64 = 0x6168_6561;
 
-/// Of an aim's photons, one in so many is sent ahead to learn which ones are seen, unless those are too few to tell, and as
-/// many as tell enough.
+/// Of an aim's photons, one in so many is sent ahead to learn which ones are seen, unless those are too few to tell,
+/// and as many as tell enough.
 const AHEAD: u64 = 8;
 const TOO_FEW: u64 = 4096;
 const ENOUGH: u64 = 1 << 16;
-/// Photons of all aims that the plan sends ahead, as many whatever the image is: no more than these, and than follow so many
-/// rays, if those are not too few to tell; and of all aims those that tell which are seen.
+/// Photons of all aims that the plan sends ahead, as many whatever the image is: no more than these, and than follow so
+/// many rays, if those are not too few to tell; and of all aims those that tell which are seen.
 const OF_A_PLAN: u64 = 1 << 17;
 const RAYS_OF_A_PLAN: f64 = (1 << 18) as f64;
 const SEEN_OF_A_PLAN: u64 = 1 << 16;
 /// Of each aim, photons that tell how many rays one follows.
 const FIRST: u64 = 256;
-/// Lights that are looked at one by one: of more, neighbors in the scene as one.
-const LIGHTS: usize = 16;
 
 /// What the light pass found.
 #[derive(Clone, Debug, Default)]
@@ -101,7 +98,7 @@ pub(super) fn splats<const N: usize>(
 }
 
 fn show_one<const N: usize>(walker: &Walker<N>, landing: &Landing<N>, sampler: &Sampler, splats: &mut Vec<Splat>) {
-    walker.show(landing, sampler, splats);
+    show_photon(walker, landing, sampler, splats);
 }
 
 /// What photons sent ahead found.
@@ -113,7 +110,8 @@ struct Learned {
     rays: u64,
 }
 
-/// Sends photons ahead. The whole image sees them, also where only a part of it is made, so that all parts are made alike.
+/// Sends photons ahead. The whole image sees them, also where only a part of it is made, so that all parts are made
+/// alike.
 fn send_ahead<const N: usize>(world: &World, most: u64) -> Learned {
     let mut world = world.clone();
     world.scene.film.crop = None;
@@ -149,58 +147,31 @@ pub fn seen_photons(world: &World) -> Vec<f64> {
     shares
 }
 
-impl World {
-    /// The pass's lights, each for itself; of many, neighbors in the scene together.
-    pub(super) fn light_groups(&self) -> Vec<Vec<LightId>> {
-        let Some(pass) = &self.method.light_pass else { return Vec::new() };
-        let mut lights = pass.lights.clone();
-        lights.sort_unstable();
-        let of_group = lights.len().div_ceil(LIGHTS).max(1);
-        lights.chunks(of_group).map(<[LightId]>::to_vec).collect()
+/// A world with another light pass and photons sent ahead, for a plan: no more of them for an image of many pixels than
+/// for one of few.
+pub fn piloted(world: &World, light_pass: LightPass) -> World {
+    let mut world = world.with_light_pass(Some(light_pass));
+    let aims = world.aims.as_ref().map_or(1, |aims| aims.aims.len() as u64);
+    let most = OF_A_PLAN / aims;
+    if most >= TOO_FEW {
+        let first = in_lanes!(&world.method.basis, N => send_ahead::<N>(&world, FIRST));
+        let sent = first.found.iter().map(Vec::len).sum::<usize>() as f64;
+        let by_rays = RAYS_OF_A_PLAN * sent / (first.rays as f64 * aims as f64);
+        learn_where_to_send(&mut world, (by_rays as u64).clamp(TOO_FEW, most));
     }
+    world
+}
 
-    /// This world with a light pass and photons sent ahead, for a plan: no more of them for an image of many pixels than
-    /// for one of few.
-    pub fn piloted(&self, light_pass: LightPass) -> Self {
-        let mut world = self.with_light_pass(Some(light_pass));
-        let aims = world.aims.as_ref().map_or(1, |aims| aims.aims.len() as u64);
-        let most = OF_A_PLAN / aims;
-        if most >= TOO_FEW {
-            let first = in_lanes!(&world.method.basis, N => send_ahead::<N>(&world, FIRST));
-            let sent = first.found.iter().map(Vec::len).sum::<usize>() as f64;
-            let by_rays = RAYS_OF_A_PLAN * sent / (first.rays as f64 * aims as f64);
-            world.learn_where_to_send((by_rays as u64).clamp(TOO_FEW, most));
+/// Sends photons ahead, at most so many of an aim, and the others where those were seen.
+pub(super) fn learn_where_to_send(world: &mut World, most: u64) {
+    let Some(least) = world.aims.as_ref().and_then(|aims| aims.aims.iter().map(|aim| aim.photons / AHEAD).min()) else {
+        return;
+    };
+    let ahead = least.min(ENOUGH).min(most);
+    if ahead >= TOO_FEW {
+        let found = in_lanes!(&world.method.basis, N => send_ahead::<N>(world, ahead)).found;
+        if let Some(aims) = &mut world.aims {
+            aims.learn(&found);
         }
-        world
-    }
-
-    /// Sends photons ahead, at most so many of an aim, and the others where those were seen.
-    pub(super) fn learn_where_to_send(&mut self, most: u64) {
-        let Some(least) = self.aims.as_ref().and_then(|aims| aims.aims.iter().map(|aim| aim.photons / AHEAD).min())
-        else {
-            return;
-        };
-        let ahead = least.min(ENOUGH).min(most);
-        if ahead >= TOO_FEW {
-            let found = in_lanes!(&self.method.basis, N => send_ahead::<N>(self, ahead)).found;
-            if let Some(aims) = &mut self.aims {
-                aims.learn(&found);
-            }
-        }
-    }
-
-    /// Whether photons are sent to an object.
-    pub(super) fn is_photon_target(&self, object: u32) -> bool {
-        self.aims.as_ref().is_some_and(|aims| aims.objects[object as usize])
-    }
-
-    /// Whether paths gather photons where the camera does not see them straight.
-    pub(super) fn has_map(&self) -> bool {
-        self.map_aims.is_some()
-    }
-
-    /// Whether a light sends photons.
-    pub(super) fn sends_photons(&self, light: LightId) -> bool {
-        self.aims.as_ref().is_some_and(|aims| aims.lights[light])
     }
 }

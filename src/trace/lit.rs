@@ -1,4 +1,5 @@
-//! Light through dispersive objects: rays of two colors from the lights to them, and from there to what the camera sees.
+//! Light through dispersive objects: rays of two colors from the lights to them, and from there to what the camera
+//! sees.
 
 use std::cell::Cell;
 use std::f64::consts::PI;
@@ -8,7 +9,7 @@ use super::search::Reached;
 use super::targets::{SEEN_PIXELS, Targets};
 use super::walk::{Colors, Walk, Way};
 use crate::light::{Light, LightId};
-use crate::math::{BranchKey, Cone, DVec2, DVec3, Frame, Ray, Sampler, cone, disk, unit};
+use crate::math::{BranchKey, DVec2, DVec3, Frame, Ray, Sampler, disk, unit};
 use crate::shape::{Ball, SurfacePoint};
 use crate::spectrum::Table;
 
@@ -20,7 +21,8 @@ const OF_A_PAIR: usize = 1024;
 const LIGHTS: usize = 16;
 /// Colors that are apart by less than this part of the lamp's own blur look white.
 const CONTRAST: f64 = 0.05;
-/// Light by way of an object that is less than this share of the lamp's own, beside it, is not seen: a color may miss as much.
+/// Light by way of an object that is less than this share of the lamp's own, beside it, is not seen: a color may miss
+/// as much.
 const FAINT: f64 = 0.01;
 /// How far beside a ray its neighbors are, in radii of the object: near enough to go the same way.
 const BESIDE: f64 = 1e-3;
@@ -101,9 +103,9 @@ impl Pair<'_> {
         let media = if scene.lights[self.light].is_sky() {
             Media::default()
         } else {
-            Media::around(self.colors.world, start.origin, start.direction)
+            Media::around(&self.colors.world.scene, start.origin, start.direction)
         };
-        let walk = |lane: usize, ray: Ray| self.colors.walk(lane, (ray, media), sampler, Way::Brighter);
+        let walk = |lane: usize, ray: Ray| self.colors.walk(lane, ray, media, sampler, Way::Brighter);
         let (first, second) = (walk(0, start), walk(1, start));
         if !first.dispersive || !first.diffuse || !second.diffuse || first.met != second.met || first.weight == 0.0 {
             return None;
@@ -131,8 +133,8 @@ impl Pair<'_> {
         Some(if apart >= CONTRAST * blur { apart } else { 0.0 })
     }
 
-    /// The irradiance by a ray's way as a share of the lamp's own where it lands: the areas that neighbors of the ray span. None where
-    /// they go other ways, or where something keeps the lamp's own light away.
+    /// The irradiance by a ray's way as a share of the lamp's own where it lands: the areas that neighbors of the ray
+    /// span. None where they go other ways, or where something keeps the lamp's own light away.
     fn share(
         &self,
         start: &Ray,
@@ -174,8 +176,8 @@ impl Pair<'_> {
         if let Light::Spot(spot) = light {
             let position = DVec3::from(spot.position);
             let (of_ball, own) = (self.ball.cone_from(position), spot.cone());
-            let Cone { axis, one_minus_cos } = if own.one_minus_cos < of_ball.one_minus_cos { own } else { of_ball };
-            let direction = unit(Frame::about(axis).to_world(cone(one_minus_cos, [u[0], u[1]]).0));
+            let cone = if own.one_minus_cos < of_ball.one_minus_cos { own } else { of_ball };
+            let direction = unit(cone.sample_uniform([u[0], u[1]]));
             return Some(position + direction * (self.ball.center - position).length());
         }
         let sample = light.sample_li(&SurfacePoint::in_space(self.ball.center), normal, [u[2], u[3]]);

@@ -1,7 +1,7 @@
 //! A map of points: a balanced k-d tree.
 //!
-//! Bentley 1975, *Multidimensional Binary Search Trees Used for Associative Searching*; Jensen 2001, *Realistic Image Synthesis
-//! Using Photon Mapping*, section 6.2, keeps photons in one.
+//! Bentley 1975, *Multidimensional Binary Search Trees Used for Associative Searching*; Jensen 2001, *Realistic Image
+//! Synthesis Using Photon Mapping*, section 6.2, keeps photons in one.
 
 use std::ops::Range;
 
@@ -31,10 +31,11 @@ impl<T: Send> Map<T> {
 impl<T> Map<T> {
     /// Visits all points nearer to a place than a radius, in an order that never changes.
     pub(super) fn near(&self, place: DVec3, radius: f64, visit: &mut impl FnMut(DVec3, &T)) {
-        self.visit((0, self.points.len()), place, radius, visit);
+        self.visit(0..self.points.len(), place, radius, visit);
     }
 
-    fn visit(&self, (start, end): (usize, usize), place: DVec3, radius: f64, visit: &mut impl FnMut(DVec3, &T)) {
+    fn visit(&self, range: Range<usize>, place: DVec3, radius: f64, visit: &mut impl FnMut(DVec3, &T)) {
+        let Range { start, end } = range;
         if end - start <= FEW {
             self.look(start..end, place, radius, visit);
             return;
@@ -43,11 +44,11 @@ impl<T> Map<T> {
         let axis = usize::from(self.axes[middle]);
         let beyond = place[axis] - self.points[middle].0[axis];
         if beyond < radius {
-            self.visit((start, middle), place, radius, visit);
+            self.visit(start..middle, place, radius, visit);
         }
         self.look(middle..middle + 1, place, radius, visit);
         if beyond > -radius {
-            self.visit((middle + 1, end), place, radius, visit);
+            self.visit(middle + 1..end, place, radius, visit);
         }
     }
 

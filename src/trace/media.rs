@@ -1,9 +1,9 @@
 //! Which clear bodies a ray is inside of.
 
-use super::World;
+use crate::light::{Light, LightId};
 use crate::material::Dielectric;
 use crate::math::{DVec3, Ray};
-use crate::scene::MaterialId;
+use crate::scene::{MaterialId, Scene};
 use crate::spectrum::{Draw, Table};
 
 /// Different media that may overlap in one place.
@@ -39,14 +39,14 @@ impl Boundary {
 impl Media {
     /// The media around a point, by walking from it to infinity and back in thought: every body whose inside the walk
     /// leaves more often than it enters is around the start.
-    pub(super) fn around(world: &World, start: DVec3, direction: DVec3) -> Self {
+    pub(super) fn around(scene: &Scene<Table>, start: DVec3, direction: DVec3) -> Self {
         let mut balance: Vec<(MaterialId, i32)> = Vec::new();
         let mut ray = Ray { origin: start, direction };
         for _ in 0..MOST_CROSSINGS {
-            let Some(hit) = world.scene.intersect(&ray) else { break };
-            let object = &world.scene.objects[hit.object as usize];
+            let Some(hit) = scene.intersect(&ray) else { break };
+            let object = &scene.objects[hit.object as usize];
             let point = object.shape.point(&ray, &hit.crossing);
-            if world.scene.material_of(hit.object).medium().is_some() {
+            if scene.material_of(hit.object).medium().is_some() {
                 let step = if point.normal.dot(direction) > 0.0 { 1 } else { -1 };
                 match balance.iter_mut().find(|(material, _)| *material == object.material) {
                     Some((_, count)) => *count += step,
@@ -63,15 +63,15 @@ impl Media {
     }
 
     /// The media after walking from one point to another along a straight line.
-    pub(super) fn after_walk(mut self, world: &World, from: DVec3, to: DVec3) -> Self {
+    pub(super) fn after_walk(mut self, scene: &Scene<Table>, from: DVec3, to: DVec3) -> Self {
         let Some(direction) = (to - from).try_normalize() else { return self };
         let mut ray = Ray { origin: from, direction };
         for _ in 0..MOST_CROSSINGS {
             let left = (to - ray.origin).dot(direction);
-            let Some(hit) = world.scene.intersect(&ray).filter(|hit| hit.crossing.t <= left) else { break };
-            let object = &world.scene.objects[hit.object as usize];
+            let Some(hit) = scene.intersect(&ray).filter(|hit| hit.crossing.t <= left) else { break };
+            let object = &scene.objects[hit.object as usize];
             let point = object.shape.point(&ray, &hit.crossing);
-            if world.scene.material_of(hit.object).medium().is_some() {
+            if scene.material_of(hit.object).medium().is_some() {
                 let enters = point.normal.dot(direction) < 0.0;
                 let walked = if enters { self.entered(object.material) } else { self.left(object.material) };
                 self = walked.unwrap_or(self);
@@ -82,26 +82,27 @@ impl Media {
     }
 
     /// The medium that is really there.
-    pub(super) fn inside(&self, world: &World) -> Option<MaterialId> {
-        let rank = |&(material, _): &(MaterialId, u32)| (medium(world, material).priority, material);
+    pub(super) fn inside(&self, scene: &Scene<Table>) -> Option<MaterialId> {
+        let rank = |&(material, _): &(MaterialId, u32)| (medium(scene, material).priority, material);
         self.entries[..self.len as usize].iter().max_by_key(|entry| rank(entry)).map(|entry| entry.0)
     }
 
     /// What a ray meets that crosses the surface of a body; none if it leaves a body it never entered, or enters more
     /// different ones than there is room for.
-    pub(super) fn boundary(&self, world: &World, material: MaterialId, enters: bool) -> Option<Boundary> {
+    pub(super) fn boundary(&self, scene: &Scene<Table>, material: MaterialId, enters: bool) -> Option<Boundary> {
         let crossed = if enters { self.entered(material)? } else { self.left(material)? };
-        Some(Boundary { here: self.inside(world), beyond: crossed.inside(world), crossed })
+        Some(Boundary { here: self.inside(scene), beyond: crossed.inside(scene), crossed })
     }
 
-    /// The same at a surface of any material, which may bound no medium; and whether the bodies around the ray fit to it.
-    pub(super) fn at_surface(&self, world: &World, material: MaterialId, enters: bool) -> (Boundary, bool) {
-        let here = self.inside(world);
+    /// The same at a surface of any material, which may bound no medium; and whether the bodies around the ray fit to
+    /// it.
+    pub(super) fn at_surface(&self, scene: &Scene<Table>, material: MaterialId, enters: bool) -> (Boundary, bool) {
+        let here = self.inside(scene);
         let same = Boundary { here, beyond: here, crossed: *self };
-        if world.scene.materials[material as usize].material.medium().is_none() {
+        if scene.materials[material as usize].material.medium().is_none() {
             return (same, true);
         }
-        self.boundary(world, material, enters).map_or((same, false), |boundary| (boundary, true))
+        self.boundary(scene, material, enters).map_or((same, false), |boundary| (boundary, true))
     }
 
     fn entered(mut self, material: MaterialId) -> Option<Self> {
@@ -134,25 +135,25 @@ impl Media {
 const MOST_CROSSINGS: usize = 100_000;
 
 /// The dielectric that fills a medium.
-pub(super) fn medium(world: &World, material: MaterialId) -> &Dielectric<Table> {
-    world.scene.materials[material as usize].material.medium().expect("only dielectrics become media")
+pub(super) fn medium(scene: &Scene<Table>, material: MaterialId) -> &Dielectric<Table> {
+    scene.materials[material as usize].material.medium().expect("only dielectrics become media")
 }
 
 /// The refractive index of a medium, per lane; 1 in vacuum.
-pub(super) fn index<const N: usize>(world: &World, draw: &Draw<N>, inside: Option<MaterialId>) -> [f64; N] {
+pub(super) fn index<const N: usize>(scene: &Scene<Table>, draw: &Draw<N>, inside: Option<MaterialId>) -> [f64; N] {
     match inside {
-        Some(material) => draw.read_exact(&medium(world, material).index),
+        Some(material) => draw.read_exact(&medium(scene, material).index),
         None => [1.0; N],
     }
 }
 
 /// The index by which all rays are refracted on each side of a surface; none where that is each lane's own.
 ///
-/// Shares are exact where media have flat faces, and no lane loses or wins light anywhere. What is left out: a lane travels
-/// as far inside as the ray, and a surface that scatters widely there gets light from outside over the ray's solid
-/// angle, which is (n / d)^2 of the light of a lane of index n by a ray of index d.
-pub(super) fn direction_indices(world: &World, sides: [Option<MaterialId>; 2]) -> [Option<f64>; 2] {
-    let tables = sides.map(|side| side.map(|material| &medium(world, material).index));
+/// Shares are exact where media have flat faces, and no lane loses or wins light anywhere. What is left out: a lane
+/// travels as far inside as the ray, and a surface that scatters widely there gets light from outside over the ray's
+/// solid angle, which is (n / d)^2 of the light of a lane of index n by a ray of index d.
+pub(super) fn direction_indices(scene: &Scene<Table>, sides: [Option<MaterialId>; 2]) -> [Option<f64>; 2] {
+    let tables = sides.map(|side| side.map(|material| &medium(scene, material).index));
     if tables.iter().flatten().all(|table| table.direction().is_none()) {
         return [None; 2];
     }
@@ -160,4 +161,29 @@ pub(super) fn direction_indices(world: &World, sides: [Option<MaterialId>; 2]) -
         Some(table) => table.direction().or_else(|| table.is_flat().then(|| table.bins()[0])),
         None => Some(1.0),
     })
+}
+
+/// The bodies around each light; none where they may differ from point to point.
+pub(super) fn media_of_lights(scene: &Scene<Table>) -> Vec<Option<Media>> {
+    (0..scene.lights.len()).map(|light| media_of(scene, light)).collect()
+}
+
+/// The bodies around a light; none where they may differ from point to point.
+fn media_of(scene: &Scene<Table>, light: LightId) -> Option<Media> {
+    if scene.materials.iter().all(|named| named.material.medium().is_none()) {
+        return Some(Media::default());
+    }
+    match &scene.lights[light] {
+        Light::Point(point) => Some(Media::around(scene, point.position.into(), DVec3::Y)),
+        Light::Spot(spot) => Some(Media::around(scene, spot.position.into(), DVec3::Y)),
+        Light::Area(area) => {
+            let own = area.shape.bounds()?;
+            let clear = (0..scene.objects.len()).filter(|&i| scene.material_of(i as u32).medium().is_some());
+            let apart = clear.map(|i| scene.objects[i].shape.bounds()).all(|other| {
+                other.is_some_and(|other| own.max.cmplt(other.min).any() || own.min.cmpgt(other.max).any())
+            });
+            apart.then(Media::default)
+        }
+        Light::Sun(_) | Light::Environment(_) => Some(Media::default()),
+    }
 }

@@ -1,8 +1,8 @@
-//! Caustics that the camera does not see straight: photons are kept where they land, and paths from the camera gather them
-//! around the places that they reach by way of other surfaces.
+//! Caustics that the camera does not see straight: photons are kept where they land, and paths from the camera gather
+//! them around the places that they reach by way of other surfaces.
 //!
-//! Every photon draws wavelengths of its own, as every camera sample does. One whose lanes have not parted is kept with its
-//! fixed lanes; of one whose lanes have, each wavelength is kept alone, with the color that its light has.
+//! Every photon draws wavelengths of its own, as every camera sample does. One whose lanes have not parted is kept with
+//! its fixed lanes; of one whose lanes have, each wavelength is kept alone, with the color that its light has.
 
 use rayon::prelude::*;
 
@@ -61,8 +61,8 @@ pub(super) struct Photons<const N: usize> {
 
 /// Sets these random numbers apart from the others.
 const SEED: u64 = 0x6d61_7073;
-/// Parts of the draws in one of which two wavelengths count as one, where the radius is a pixel. They are chosen, as radii
-/// are, so that the blur is small where dispersion spreads colors over dozens of pixels.
+/// Parts of the draws in one of which two wavelengths count as one, where the radius is a pixel. They are chosen, as
+/// radii are, so that the blur is small where dispersion spreads colors over dozens of pixels.
 const PARTS: f64 = 32.0;
 
 /// What is kept of a photon where it lands.

@@ -32,14 +32,16 @@ pub struct LightPass {
     pub photons: u64,
     /// The lights that send them: points, spots, suns and finite `emissive` surfaces.
     pub lights: Vec<LightId>,
-    /// How those caustics are found that the camera does not see straight; none leaves them to the camera's rays and chance.
+    /// How those caustics are found that the camera does not see straight; none leaves them to the camera's rays and
+    /// chance.
     pub map: Option<MapPasses>,
 }
 
-/// Caustics in mirrors, behind glass and lit surfaces: each pass keeps where its photons land, and the camera's paths gather them.
+/// Caustics in mirrors, behind glass and lit surfaces: each pass keeps where its photons land, and the camera's paths
+/// gather them.
 ///
-/// Hachisuka & Jensen 2009, *Stochastic Progressive Photon Mapping*; Knaus & Zwicker 2011, *Progressive Photon Mapping: A
-/// Probabilistic Approach*, for passes that know nothing of each other.
+/// Hachisuka & Jensen 2009, *Stochastic Progressive Photon Mapping*; Knaus & Zwicker 2011, *Progressive Photon Mapping:
+/// A Probabilistic Approach*, for passes that know nothing of each other.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MapPasses {
     /// How many, at most one for each camera sample of a pixel.
@@ -48,7 +50,8 @@ pub struct MapPasses {
     pub photons: u64,
     /// Photons are gathered within this radius, in pixels as wide as the path from the camera is long.
     pub radius: f64,
-    /// The chance of each place that a path reaches that photons are gathered there, above 0 to 1; what is found counts for the others.
+    /// The chance of each place that a path reaches that photons are gathered there, above 0 to 1; what is found counts
+    /// for the others.
     pub chance: f64,
 }
 
@@ -62,7 +65,8 @@ pub enum Transport {
         /// Surfaces that one camera sample may meet; beyond them it goes on by chance, to the same mean.
         most: u64,
     },
-    /// All while the weight is above `split`, then one; below `roulette` a path goes on with probability weight / roulette.
+    /// All while the weight is above `split`, then one; below `roulette` a path goes on with probability weight /
+    /// roulette.
     Random {
         /// Weight above which all branches are followed and all lights are aimed at.
         split: f64,

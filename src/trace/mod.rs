@@ -5,15 +5,26 @@
 //! 1. A lane whose throughput is 0 is not on the ray.
 //! 2. Lanes on one ray share its geometry, random numbers and density, and differ only in throughput.
 //! 3. A surface answers with branches, a direction and the lanes that came by it; dispersive lanes part there.
-//! 4. The tracer is a loop over pending rays: it follows all branches while the weight is large, then one, then plays
-//!    roulette. A weight is the mean throughput over the lanes, without the factor of radiance between media.
-//! 5. Light that goes straight on, through holes and panes, makes no other kind of path: next-event estimation and photons look
-//!    through them.
-//! 6. Paths light, smooth surfaces, one that scatters widely, camera may be found by photons, and those with more surfaces before
-//!    the camera by gathering photons; paths from the camera then leave exactly those out.
-//! 7. Random numbers are a pure function of seed, pixel, sample, branch and use; sums have a fixed order.
+//! 4. The [`walker`] is a loop over pending rays: it follows all branches while the weight is large, then one, then
+//!    plays roulette. A weight is the mean throughput over the lanes, without the factor of radiance between media.
+//! 5. Light that goes straight on, through holes and panes, makes no other kind of path: next-event estimation and
+//!    photons look through them.
+//! 6. In Heckbert's notation, with S for surfaces that mirror or refract and D for those that scatter widely: photons
+//!    may find `L S+ D E`, and gathered photons `L S+ D (D|S)* E`; paths from the camera then leave exactly those out.
+//! 7. Light that reaches the camera is a contribution handed to the [`sensor`].
+//! 8. Random numbers are a pure function of seed, pixel, sample, branch and use; sums have a fixed order.
+//!
+//! ```text
+//! prepare          a world, tabulated and taught where to look
+//! render, tile     an image in the making, pass by pass
+//! path_tracer      camera paths: walker + direct lighting + gathered photons, into the sensor
+//! photon           photons: walker over smooth surfaces + landing
+//! walker           from surface to surface; interaction, media, path
+//! probe, pilot ..  what the plan asks, by the same walks
+//! ```
 
 mod aimed;
+mod apart;
 mod branching;
 mod bright;
 mod brightness;
@@ -35,11 +46,12 @@ mod photon;
 mod photon_targets;
 mod pilot;
 mod polarization;
+mod prepare;
 mod probe;
 mod reach;
 mod render;
 mod roulette;
-mod route_end;
+mod route;
 mod route_walk;
 mod routes;
 mod search;
@@ -51,6 +63,7 @@ mod spread;
 mod stats;
 mod straight;
 mod targets;
+mod tile;
 mod visible_caps;
 mod walk;
 mod walker;
@@ -61,14 +74,16 @@ pub use branching::{Branching, branching};
 pub use bright::{BrightPlace, BrightPlaces};
 pub use brightness::bright_places;
 pub use gathered::{GatheredWorth, gathered_worth};
-pub use light_pass::seen_photons;
+pub use light_pass::{piloted, seen_photons};
 pub use method::{LightPass, MapPasses, Method, Transport};
 pub use photon_targets::is_photon_target;
 pub use pilot::{PhotonWorth, SampleWorth, photons_worth, samples_worth};
+pub use prepare::{prepare, prepare_unguided};
 pub use probe::{Probe, probe};
 pub use reach::{gathered_photons, reached_places};
 pub use render::{Rendering, Report, render, work};
-pub use routes::{ROUTES_NM, Route, Step, Way, routes};
+pub use route::{ROUTES_NM, Route, Step, Way};
+pub use routes::routes;
 pub use seen_light::{SeenLight, seen_light};
 pub use spread::{COLORS_NM, Spread, spread};
 pub use targets::SEEN_PIXELS;

@@ -47,9 +47,9 @@ pub(super) enum PathKind {
 }
 
 impl PathKind {
-    /// After one more surface; `wide` says whether light left it by a density of directions, `aimed` whether photons are sent
-    /// to its object; none if light cannot be followed forward the same way. Photons are shown from the first surface alone, and gathered
-    /// from all others if they are at all.
+    /// After one more surface; `wide` says whether light left it by a density of directions, `aimed` whether photons
+    /// are sent to its object; none if light cannot be followed forward the same way. Photons are shown from the first
+    /// surface alone, and gathered from all others if they are at all.
     pub(super) fn then(self, gathers: bool, wide: bool, aimed: impl FnOnce() -> Option<bool>) -> Self {
         match (self, wide) {
             (Self::Camera, true) => Self::Wide,
@@ -89,7 +89,7 @@ impl<const N: usize> Path<N> {
     pub(super) fn from_camera(world: &World, draw: &Draw<N>, ray: Ray) -> Self {
         let camera = &world.scene.camera;
         let media = if world.has_media && camera.starts_away() {
-            world.camera_media.after_walk(world, camera.position(), ray.origin)
+            world.camera_media.after_walk(&world.scene, camera.position(), ray.origin)
         } else {
             world.camera_media
         };
@@ -111,14 +111,15 @@ impl<const N: usize> Path<N> {
 
     /// The path beyond a surface that it goes straight through as if nothing were there.
     ///
-    /// Lights beyond were sampled through the surface, from where its direction was: light that goes straight on makes no
-    /// other kind of path.
+    /// Lights beyond were sampled through the surface, from where its direction was: light that goes straight on makes
+    /// no other kind of path.
     pub(super) fn passed(&self, point: &SurfacePoint) -> Self {
         let scatter = self.scatter.map(|scatter| ScatterSample { passed: true, ..scatter });
         Self { ray: point.leave(self.ray.direction), scatter, ..*self }
     }
 
-    /// The path beyond a surface that it has met and goes straight through in part, which is not counted among its surfaces.
+    /// The path beyond a surface that it has met and goes straight through in part, which is not counted among its
+    /// surfaces.
     #[cold]
     #[inline(never)]
     pub(super) fn passed_in_part(&self, point: &SurfacePoint, straight: &Straight<N>) -> Self {
@@ -135,8 +136,8 @@ impl<const N: usize> Path<N> {
     /// Follows the ray along a distance, on which the medium around it absorbs.
     pub(super) fn advance(&mut self, world: &World, draw: &Draw<N>, distance: f64) {
         self.length += distance;
-        if let Some(material) = self.media.inside(world) {
-            let transmission = media::medium(world, material).transmission(draw, distance);
+        if let Some(material) = self.media.inside(&world.scene) {
+            let transmission = media::medium(&world.scene, material).transmission(draw, distance);
             self.throughput = self.throughput.through(transmission);
         }
     }

@@ -1,7 +1,8 @@
 //! Paths from the camera back to the lights.
 
-use super::aimed::may_aim;
+use super::aimed::{may_aim, scatter_aimed};
 use super::direct::{DirectLighting, weight_of_meeting};
+use super::gather::gather;
 use super::interaction::{Interaction, Meeting};
 use super::merge::Photons;
 use super::path::{Path, PathKind, ScatterSample};
@@ -31,8 +32,8 @@ const PLACE: u32 = 0;
 const LENS: u32 = 3;
 /// Uses of the random numbers at a vertex.
 const SCATTER: u32 = 1;
-/// Surfaces of a path whose directions are drawn from a sequence spread over the pixel's samples. Behind them the samples
-/// see so many different places that plain random numbers, which cost less, are taken.
+/// Surfaces of a path whose directions are drawn from a sequence spread over the pixel's samples. Behind them the
+/// samples see so many different places that plain random numbers, which cost less, are taken.
 const SPREAD: u32 = 4;
 
 impl<'a, const N: usize> PathTracer<'a, N> {
@@ -195,7 +196,7 @@ impl<'a, const N: usize> PathTracer<'a, N> {
         }
         self.walker.branches.clear();
         match &aiming {
-            Some(aiming) => self.walker.scatter_aimed(aiming, &at, [u[2], u[3]]),
+            Some(aiming) => scatter_aimed(aiming, &at, [u[2], u[3]], &mut self.walker.branches),
             None => shading::scatter(material, &at.arrival, at.flat, [u[2], u[3]], &mut self.walker.branches),
         }
         if !goes_on {
@@ -208,7 +209,7 @@ impl<'a, const N: usize> PathTracer<'a, N> {
     /// Hands what photons bring to a place that the path has reached by way of others to the sensor.
     fn gather_photons(&mut self, path: &Path<N>, at: &Interaction<N>, sampler: &Sampler) {
         if let Some(photons) = self.photons {
-            let (rgb, moved) = photons.gather(self.walker.world, path, at, sampler);
+            let (rgb, moved) = gather(photons, self.walker.world, path, at, sampler);
             self.sensor.receive(Contribution { light: None, found: Found::Gathered, rgb, moved });
         }
         if let Some(observer) = self.sensor.observer {
@@ -216,7 +217,8 @@ impl<'a, const N: usize> PathTracer<'a, N> {
         }
     }
 
-    /// Tells an observer what a bounce found that went on for a distance, where the sensor had received some light before.
+    /// Tells an observer what a bounce found that went on for a distance, where the sensor had received some light
+    /// before.
     #[inline]
     fn tell(&self, path: &Path<N>, draw: &Draw<N>, distance: f64, before: [f64; 3]) {
         if let (Some(observer), Some(ScatterSample { from, normal, .. })) = (self.sensor.observer, path.scatter) {

@@ -10,7 +10,8 @@ use super::straight;
 use super::walker::{Departure, Walker};
 use crate::light::{LeSample, LightId};
 use crate::material::Arrival;
-use crate::math::{BranchKey, Sampler};
+use crate::math::{BranchKey, DVec2, Sampler};
+use crate::scene::FilmSettings;
 use crate::spectrum::{Draw, Lanes, Throughput};
 
 /// Use of the random numbers where a photon is seen: the point of the lens.
@@ -46,155 +47,161 @@ impl<const N: usize> Landing<'_, N> {
     }
 }
 
-impl<const N: usize> Walker<'_, N> {
-    /// Follows a photon over smooth surfaces; `land` is told where it lands on others.
-    ///
-    /// The first surface must be one that photons are sent to: paths by way of others are left to the camera's rays.
-    /// Throughput is followed as if the light were the viewer; flux is what is left of it without the factor of radiance
-    /// between media.
-    pub(super) fn photon(
-        &mut self,
-        emitted: &LeSample,
-        light: LightId,
-        media: Media,
-        draw: &Draw<N>,
-        sampler: &Sampler,
-        land: &mut impl FnMut(&Self, &Landing<N>),
-    ) {
-        let world = self.world;
-        self.pending.push(Path {
-            ray: emitted.ray,
-            throughput: Throughput::starting(draw.start()),
-            eta_scale: 1.0,
-            media,
-            parted: false,
-            key: BranchKey::CAMERA,
-            vertices: 0,
-            length: 0.0,
-            kind: PathKind::Other,
-            diffuse_left: 0,
-            scatter: None,
-            polarized: Polarized::NOT,
-        });
-        while let Some(mut path) = self.pending.pop() {
-            if path.vertices >= self.transport.last_vertex() {
+/// Follows a photon over smooth surfaces; `land` is told where it lands on others.
+///
+/// The first surface must be one that photons are sent to: paths by way of others are left to the camera's rays.
+/// Throughput is followed as if the light were the viewer; flux is what is left of it without the factor of radiance
+/// between media.
+pub(super) fn follow_photon<const N: usize>(
+    walker: &mut Walker<N>,
+    emitted: &LeSample,
+    light: LightId,
+    media: Media,
+    draw: &Draw<N>,
+    sampler: &Sampler,
+    land: &mut impl FnMut(&Walker<N>, &Landing<N>),
+) {
+    let world = walker.world;
+    walker.pending.push(Path {
+        ray: emitted.ray,
+        throughput: Throughput::starting(draw.start()),
+        eta_scale: 1.0,
+        media,
+        parted: false,
+        key: BranchKey::CAMERA,
+        vertices: 0,
+        length: 0.0,
+        kind: PathKind::Other,
+        diffuse_left: 0,
+        scatter: None,
+        polarized: Polarized::NOT,
+    });
+    while let Some(mut path) = walker.pending.pop() {
+        if path.vertices >= walker.transport.last_vertex() {
+            continue;
+        }
+        let Some(meeting) = walker.meet(&mut path, draw) else { continue };
+        if let Some(straight) = &meeting.straight {
+            let (throughput, key) = (path.throughput.through(straight.share()), path.key.child(BEYOND));
+            let all = throughput == path.throughput;
+            let polarized = path.polarized.after(straight.polarization);
+            walker.pending.push(Path { throughput, key, polarized, ..path.passed(&meeting.point) });
+            if all {
                 continue;
             }
-            let Some(meeting) = self.meet(&mut path, draw) else { continue };
-            if let Some(straight) = &meeting.straight {
-                let (throughput, key) = (path.throughput.through(straight.share()), path.key.child(BEYOND));
-                let all = throughput == path.throughput;
-                let polarized = path.polarized.after(straight.polarization);
-                self.pending.push(Path { throughput, key, polarized, ..path.passed(&meeting.point) });
-                if all {
-                    continue;
-                }
-            }
-            if path.vertices == 0 && !world.is_photon_target(meeting.hit.object) {
-                continue;
-            }
-            path.vertices += 1;
-            let boundary = self.boundary(&path, &meeting);
-            if boundary.here == boundary.beyond && world.scene.material_of(meeting.hit.object).medium().is_some() {
-                self.pass_hidden(&path, &meeting, &boundary);
-                continue;
-            }
-            let at = Interaction::new(world, draw, &path, &meeting, boundary);
-            // As often as light may leave surfaces on its way from the camera.
-            let allowed = path.vertices <= world.method.max_bounces
-                && !(at.lobes.is_diffuse() && world.method.diffuse_bounces == 0);
-            if at.lobes.is_wide() && allowed && path.vertices > 1 {
-                land(self, &Landing { path: &path, at: &at, light, factor: emitted.factor });
-            }
-            self.bounce(&path, at, sampler);
+        }
+        if path.vertices == 0 && !world.is_photon_target(meeting.hit.object) {
+            continue;
+        }
+        path.vertices += 1;
+        let boundary = walker.boundary(&path, &meeting);
+        if boundary.here == boundary.beyond && world.scene.material_of(meeting.hit.object).medium().is_some() {
+            walker.pass_hidden(&path, &meeting, &boundary);
+            continue;
+        }
+        let at = Interaction::new(world, draw, &path, &meeting, boundary);
+        // As often as light may leave surfaces on its way from the camera.
+        let allowed =
+            path.vertices <= world.method.max_bounces && !(at.lobes.is_diffuse() && world.method.diffuse_bounces == 0);
+        if at.lobes.is_wide() && allowed && path.vertices > 1 {
+            land(walker, &Landing { path: &path, at: &at, light, factor: emitted.factor });
+        }
+        bounce(walker, &path, at, sampler);
+    }
+}
+
+/// Lets a photon go on over a smooth surface.
+fn bounce<const N: usize>(walker: &mut Walker<N>, path: &Path<N>, at: Interaction<N>, sampler: &Sampler) {
+    let plain = shading::plain_normal(at.point, at.arrival.wo);
+    let at = at.by_normal(plain);
+    let Interaction { material, point, arrival, .. } = &at;
+    let goes_on = at.lobes.has_delta() && arrival.wo.dot(arrival.normal) > 0.0;
+    if !goes_on || path.vertices >= walker.world.method.max_bounces {
+        return;
+    }
+    walker.branches.clear();
+    let u = sampler.four_plain(path.key, SCATTER);
+    material.scatter(arrival, [u[0], u[1]], &mut walker.branches);
+    let (back, forward) = (arrival.wo, arrival.forward());
+    walker.branches.retain(|branch| branch.pdf.is_none() && shading::is_plain(point, branch.wi, back, branch.crosses));
+    for branch in &mut walker.branches {
+        branch.share = branch.share * shading::forward_factor(point, branch.wi, back) as f32;
+        if let (Some(forward), true) = (&forward, branch.crosses) {
+            branch.share = branch.share * *forward;
         }
     }
+    walker.follow(&mut Departure::new(walker.world, path, &at), sampler);
+}
 
-    /// Lets a photon go on over a smooth surface.
-    fn bounce(&mut self, path: &Path<N>, at: Interaction<N>, sampler: &Sampler) {
-        let plain = shading::plain_normal(at.point, at.arrival.wo);
-        let at = at.by_normal(plain);
-        let Interaction { material, point, arrival, .. } = &at;
-        let goes_on = at.lobes.has_delta() && arrival.wo.dot(arrival.normal) > 0.0;
-        if !goes_on || path.vertices >= self.world.method.max_bounces {
-            return;
-        }
-        self.branches.clear();
-        let u = sampler.four_plain(path.key, SCATTER);
-        material.scatter(arrival, [u[0], u[1]], &mut self.branches);
-        let (back, forward) = (arrival.wo, arrival.forward());
-        self.branches
-            .retain(|branch| branch.pdf.is_none() && shading::is_plain(point, branch.wi, back, branch.crosses));
-        for branch in &mut self.branches {
-            branch.share = branch.share * shading::forward_factor(point, branch.wi, back) as f32;
-            if let (Some(forward), true) = (&forward, branch.crosses) {
-                branch.share = branch.share * *forward;
-            }
-        }
-        self.follow(&mut Departure::new(self.world, path, &at), sampler);
+/// Adds what the camera sees of a photon.
+pub(super) fn show<const N: usize>(
+    walker: &Walker<N>,
+    landing: &Landing<N>,
+    sampler: &Sampler,
+    splats: &mut Vec<Splat>,
+) {
+    let Landing { path, at, light, factor } = landing;
+    let Interaction { arrival, flat, point, material, .. } = at;
+    let world = walker.world;
+    let (camera, film) = (&world.scene.camera, world.scene.film);
+    let u = if camera.has_lens() { sampler.four_plain(path.key, LENS) } else { [0.5; 4] };
+    let Some(seen) = camera.see(point.position, [u[0], u[1]]) else { return };
+    let (window, reach) = (film.window(), film.filter.reach());
+    let mut places = camera.places(seen.film, reach);
+    places.retain(|place| {
+        let near = |x: f64, from: u32, size: u32| x >= f64::from(from) - reach && x <= f64::from(from + size) + reach;
+        near(place.x, window.left, window.width) && near(place.y, window.top, window.height)
+    });
+    if places.is_empty() {
+        return;
     }
+    // The surface as the camera sees it.
+    let same = seen.direction.dot(*flat) > 0.0;
+    let [side, normal] = shading::normals(point, seen.direction);
+    let turned = Arrival { wo: seen.direction, normal, ..*arrival };
+    let viewed = if same { turned } else { turned.turned_around() };
+    let Some((bsdf_cos, _)) = shading::evaluate(material, &viewed, side, arrival.wo) else { return };
+    let parted = path.parted || (!same && at.lobes.is_transmissive() && material.parts_lanes(&viewed));
+    let cosines = seen.direction.dot(*flat).abs() / arrival.wo.dot(*flat).abs();
+    let ray = point.leave(seen.direction);
+    let distance = (seen.start - ray.origin).length();
+    let inside = at.boundary.sides()[usize::from(!same)];
+    let (mut shone, mut polarized) = (landing.shone(world), Polarized::NOT);
+    if world.has_see_through() {
+        let closed = |object| !world.is_see_through(object);
+        if world.scene.is_hidden_by(&ray, distance, None, &walker.last_occluder, closed) {
+            return;
+        }
+        match straight::transmittance(world, arrival.draw, &ray, distance, inside) {
+            Some((share, of_panes)) => (shone, polarized) = (shone * share, of_panes),
+            None => return,
+        }
+    } else if world.scene.is_hidden(&ray, distance, None, &walker.last_occluder) {
+        return;
+    }
+    if let Some(material) = inside {
+        shone = shone * media::medium(&world.scene, material).transmission(arrival.draw, distance);
+    }
+    let arriving = path.throughput.scaled(1.0 / path.eta_scale).of(bsdf_cos * shone);
+    let rgb = world.responses[*light].sensor(arrival.draw, arriving, parted);
+    let rgb = rgb.map(|x| x * (factor * cosines * seen.importance));
+    let change = polarized.brought(material, &viewed, arrival.wo, path.polarized).change() as f32;
+    let splat = Splat { pixel: 0, change, rgb };
+    places.into_iter().for_each(|place| spread_over_pixels(film, place, &splat, splats));
+}
 
-    /// Adds what the camera sees of a photon.
-    pub(super) fn show(&self, landing: &Landing<N>, sampler: &Sampler, splats: &mut Vec<Splat>) {
-        let Landing { path, at, light, factor } = landing;
-        let Interaction { arrival, flat, point, material, .. } = at;
-        let world = self.world;
-        let (camera, film) = (&world.scene.camera, world.scene.film);
-        let u = if camera.has_lens() { sampler.four_plain(path.key, LENS) } else { [0.5; 4] };
-        let Some(seen) = camera.see(point.position, [u[0], u[1]]) else { return };
-        let (window, reach) = (film.window(), film.filter.reach());
-        let mut places = camera.places(seen.film, reach);
-        places.retain(|place| {
-            let near =
-                |x: f64, from: u32, size: u32| x >= f64::from(from) - reach && x <= f64::from(from + size) + reach;
-            near(place.x, window.left, window.width) && near(place.y, window.top, window.height)
-        });
-        if places.is_empty() {
-            return;
-        }
-        // The surface as the camera sees it.
-        let same = seen.direction.dot(*flat) > 0.0;
-        let [side, normal] = shading::normals(point, seen.direction);
-        let turned = Arrival { wo: seen.direction, normal, ..*arrival };
-        let viewed = if same { turned } else { turned.turned_around() };
-        let Some((bsdf_cos, _)) = shading::evaluate(material, &viewed, side, arrival.wo) else { return };
-        let parted = path.parted || (!same && at.lobes.is_transmissive() && material.parts_lanes(&viewed));
-        let cosines = seen.direction.dot(*flat).abs() / arrival.wo.dot(*flat).abs();
-        let ray = point.leave(seen.direction);
-        let distance = (seen.start - ray.origin).length();
-        let inside = at.boundary.sides()[usize::from(!same)];
-        let (mut shone, mut polarized) = (landing.shone(world), Polarized::NOT);
-        if world.has_see_through() {
-            let closed = |object| !world.is_see_through(object);
-            if world.scene.is_hidden_by(&ray, distance, None, &self.last_occluder, closed) {
-                return;
-            }
-            match straight::transmittance(world, arrival.draw, &ray, distance, inside) {
-                Some((share, of_panes)) => (shone, polarized) = (shone * share, of_panes),
-                None => return,
-            }
-        } else if world.scene.is_hidden(&ray, distance, None, &self.last_occluder) {
-            return;
-        }
-        if let Some(material) = inside {
-            shone = shone * media::medium(world, material).transmission(arrival.draw, distance);
-        }
-        let arriving = path.throughput.scaled(1.0 / path.eta_scale).of(bsdf_cos * shone);
-        let rgb = world.responses[*light].sensor(arrival.draw, arriving, parted);
-        let rgb = rgb.map(|x| x * (factor * cosines * seen.importance));
-        let change = polarized.brought((material, &viewed), (arrival.wo, path.polarized)).change() as f32;
-        for place in places {
-            let first = |x: f64, from: u32| (x - reach - 0.5).floor().max(f64::from(from)) as u32;
-            let last = |x: f64, from: u32, size: u32| (x + reach).floor().min(f64::from(from + size - 1)) as u32;
-            for y in first(place.y, window.top)..=last(place.y, window.top, window.height) {
-                for x in first(place.x, window.left)..=last(place.x, window.left, window.width) {
-                    let middle = crate::math::DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
-                    let density = film.filter.density(place - middle);
-                    if density > 0.0 {
-                        let pixel = (y - window.top) * window.width + (x - window.left);
-                        splats.push(Splat { pixel, change, rgb: rgb.map(|channel| channel * density) });
-                    }
-                }
+/// Spreads a splat over the pixels around a place of the film, as the filter weighs them.
+fn spread_over_pixels(film: FilmSettings, place: DVec2, splat: &Splat, splats: &mut Vec<Splat>) {
+    let (window, reach) = (film.window(), film.filter.reach());
+    let first = |x: f64, from: u32| (x - reach - 0.5).floor().max(f64::from(from)) as u32;
+    let last = |x: f64, from: u32, size: u32| (x + reach).floor().min(f64::from(from + size - 1)) as u32;
+    for y in first(place.y, window.top)..=last(place.y, window.top, window.height) {
+        for x in first(place.x, window.left)..=last(place.x, window.left, window.width) {
+            let middle = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
+            let density = film.filter.density(place - middle);
+            if density > 0.0 {
+                let pixel = (y - window.top) * window.width + (x - window.left);
+                splats.push(Splat { pixel, rgb: splat.rgb.map(|channel| channel * density), ..*splat });
             }
         }
     }

@@ -39,7 +39,8 @@ pub(super) struct PhotonTargets {
     photons: u64,
 }
 
-/// Most balls of objects that photons are sent to: of more objects, neighbors share one; and most aims of all lights together.
+/// Most balls of objects that photons are sent to: of more objects, neighbors share one; and most aims of all lights
+/// together.
 const MOST: usize = 32;
 const MOST_AIMS: usize = 8192;
 /// Balls that are held against each other.
@@ -55,8 +56,8 @@ pub fn is_photon_target<S>(scene: &Scene<S>, object: usize) -> bool {
 }
 
 impl PhotonTargets {
-    /// From some lights, given with their luminances, to all objects that photons can be sent to; none if there is none, or none of
-    /// the lights shines there.
+    /// From some lights, given with their luminances, to all objects that photons can be sent to; none if there is
+    /// none, or none of the lights shines there.
     pub(super) fn new(scene: &Scene<Table>, lights: &[(LightId, f64)], photons: u64) -> Option<Self> {
         let objects: Vec<bool> = (0..scene.objects.len()).map(|object| is_photon_target(scene, object)).collect();
         let shapes = || scene.objects.iter().map(|object| &object.shape);
@@ -112,9 +113,11 @@ impl PhotonTargets {
         self.aims[number].guide.sample(u)
     }
 
-    /// The start of a photon of a target for its `guide_uv` and two random numbers; none where the light does not shine.
+    /// The start of a photon of a target for its `guide_uv` and two random numbers; none where the light does not
+    /// shine.
     ///
-    /// Its flux is divided by how many photons all targets of the light send along the same line: their beams may overlap.
+    /// Its flux is divided by how many photons all targets of the light send along the same line: their beams may
+    /// overlap.
     pub(super) fn sample_le(
         &self,
         scene: &Scene<Table>,
@@ -126,7 +129,7 @@ impl PhotonTargets {
         let first = self.aims[..number].iter().rposition(|aim| !of_light(&aim)).map_or(0, |before| before + 1);
         let light = &scene.lights[self.aims[number].light];
         let sample = light.sample_le(&self.aims[number].beam, guide_uv, u)?;
-        let ray = if light.is_sky() { self.from_outside(scene, &sample.ray)? } else { sample.ray };
+        let ray = if light.is_sky() { self.started_outside(scene, &sample.ray)? } else { sample.ray };
         let sent =
             |aim: &PhotonTarget| aim.photons as f64 * light.pdf_le(&aim.beam, &sample, |uv| aim.guide.density(uv));
         let factor = sample.factor / self.aims[first..].iter().take_while(of_light).map(sent).sum::<f64>();
@@ -134,7 +137,7 @@ impl PhotonTargets {
     }
 
     /// The ray of a photon from the sky, started outside of all that is finite; none where a plane hides the sky there.
-    fn from_outside(&self, scene: &Scene<Table>, ray: &Ray) -> Option<Ray> {
+    fn started_outside(&self, scene: &Scene<Table>, ray: &Ray) -> Option<Ray> {
         let sky = -ray.direction;
         let out = (self.world.center - ray.origin).dot(sky) + 2.0 * self.world.radius;
         let start = Ray { origin: ray.origin + sky * out, direction: sky };

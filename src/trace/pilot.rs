@@ -1,4 +1,5 @@
-//! What photons and camera samples are worth, learned from a few of both; in XYZ, so that it is the same in every color space.
+//! What photons and camera samples are worth, learned from a few of both; in XYZ, so that it is the same in every color
+//! space.
 
 use super::World;
 use super::light_pass;
@@ -42,7 +43,8 @@ const SAMPLES: u32 = 4;
 /// Sets these random numbers apart from those of the image.
 const SEED: u64 = 0x7069_6c6f;
 
-/// What photons of each of the pass's lights are worth, where photons of the light are seen; many lights are weighed in groups.
+/// What photons of each of the pass's lights are worth, where photons of the light are seen; many lights are weighed in
+/// groups.
 ///
 /// All of the image counts, also where only a part of it is made, so that all parts are made alike.
 pub fn photons_worth(world: &World) -> Vec<PhotonWorth> {

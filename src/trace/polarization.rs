@@ -1,8 +1,9 @@
 //! What polarization, which is not traced, may change of the light seen.
 //!
-//! A surface that favors one polarization by the degree d multiplies intensity by 1 + d p, where p is the part of the light's
-//! polarization in its own frame, and p becomes (p + d) / (1 + d p) where the frames agree. Whatever the frames, retardances
-//! and signs are, intensity is thus changed at most by the product of 1 + P |d|, with P that follows the same rule from
+//! A surface that favors one polarization by the degree d multiplies intensity by 1 + d p, where p is the part of the
+//! light's polarization in its own frame, and p becomes (p + d) / (1 + d p) where the frames agree. Whatever the
+//! frames, retardances and signs are, intensity is thus changed at most by the product of 1 + P |d|, with P that
+//! follows the same rule from
 //! |d| alone: degrees add as velocities do, and ones that add all the way are the worst. Light leaves lamps and the sky
 //! unpolarized, and surfaces that scatter it diffusely.
 
@@ -50,8 +51,10 @@ impl Polarized {
     /// With light that comes to a surface that scatters it, in a direction and polarized on its way there.
     pub(super) fn brought<const N: usize>(
         self,
-        (material, arrival): (&Material<Table>, &Arrival<N>),
-        (wi, on_its_way): (DVec3, Self),
+        material: &Material<Table>,
+        arrival: &Arrival<N>,
+        wi: DVec3,
+        on_its_way: Self,
     ) -> Self {
         self.scattered(material, arrival, wi).joined(on_its_way)
     }

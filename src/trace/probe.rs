@@ -19,7 +19,8 @@ pub struct Probe {
     pub rays: f64,
     /// Share of the samples whose lanes parted.
     pub parted: f64,
-    /// Processor time: of the median ray, times the rays of a mean sample, so that what else the processor did does not count.
+    /// Processor time: of the median ray, times the rays of a mean sample, so that what else the processor did does not
+    /// count.
     pub time: Duration,
     /// The same of a photon, if any are sent.
     pub photon: Duration,

@@ -14,8 +14,8 @@ const SIDE: u32 = 24;
 /// Sets their random numbers apart.
 const LOOKING: u64 = 0x6c6f_6f6b;
 
-/// Places on surfaces that scatter widely to which paths from the camera come by way of others; the same whatever part of
-/// the image is made.
+/// Places on surfaces that scatter widely to which paths from the camera come by way of others; the same whatever part
+/// of the image is made.
 pub fn reached_places(world: &World) -> Vec<DVec3> {
     in_lanes!(&world.method.basis, N => look::<N>(world))
 }
@@ -41,7 +41,8 @@ impl Observer for Reached {
     }
 }
 
-/// The photons of one pass that lie within a pixel of such places, where all of `SIDE` times `SIDE` fill the image; as a share.
+/// The photons of one pass that lie within a pixel of such places, where all of `SIDE` times `SIDE` fill the image; as
+/// a share.
 pub fn gathered_photons(world: &World, places: &[DVec3]) -> f64 {
     in_lanes!(&world.method.basis, N => gathered::<N>(world, places))
 }

@@ -1,24 +1,21 @@
 //! An image in the making: pass after pass over its tiles.
 
 use std::borrow::Borrow;
-use std::ops::Range;
 
 use rayon::prelude::*;
 
 use super::World;
 use super::light_pass::{self, Shown};
-use super::merge::{self, Photons};
-use super::path_tracer::PathTracer;
+use super::merge;
 use super::photon_targets::PhotonTargets;
 use super::sensor::amount;
 use super::stats::Stats;
+use super::tile::{TILE, Tile};
 use super::width::in_lanes;
-use crate::film::{Film, PassSum, Pixel, PixelSum, Window};
-use crate::math::Sampler;
+use crate::film::{Film, Pixel};
 
-/// Side of a tile in pixels.
-pub(super) const TILE: u32 = 16;
-/// Samples of each pixel in the first pass, where no photons are gathered; every other pass takes as many as were taken before.
+/// Samples of each pixel in the first pass, where no photons are gathered; every other pass takes as many as were taken
+/// before.
 const FIRST_PASS: u32 = 16;
 
 /// What rendering noticed.
@@ -50,8 +47,8 @@ pub struct Report {
     pub photons: u64,
 }
 
-/// Renders the world's image, or the part of it that is asked for. `progress` is told how many camera samples and photons are
-/// done, from any thread; in the end they are [`work`].
+/// Renders the world's image, or the part of it that is asked for. `progress` is told how many camera samples and
+/// photons are done, from any thread; in the end they are [`work`].
 pub fn render(world: &World, progress: &(dyn Fn(u64) + Sync)) -> (Film, Report) {
     let mut rendering = Rendering::new(world);
     while rendering.advance(progress) {}
@@ -69,8 +66,8 @@ pub fn work(world: &World) -> u64 {
 
 /// An image in the making. It advances pass by pass, can be looked at after each, and is finished after the last.
 ///
-/// A pass takes the next samples of all pixels; where photons are gathered, each pass sends its own before. The light pass comes before the
-/// first.
+/// A pass takes the next samples of all pixels; where photons are gathered, each pass sends its own before. The light
+/// pass comes before the first.
 pub struct Rendering<W> {
     world: W,
     tiles: Vec<Tile>,
@@ -104,8 +101,8 @@ impl<W: Borrow<World>> Rendering<W> {
         self.samples
     }
 
-    /// Makes the next pass, if there is one, and answers whether another one is left. `progress` is told how many camera samples and
-    /// photons were done since it was last told, from any thread.
+    /// Makes the next pass, if there is one, and answers whether another one is left. `progress` is told how many
+    /// camera samples and photons were done since it was last told, from any thread.
     pub fn advance(&mut self, progress: &(dyn Fn(u64) + Sync)) -> bool {
         let basis = self.world().method.basis.clone();
         if self.samples < self.world().method.samples {
@@ -213,50 +210,3 @@ impl<W: Borrow<World>> Rendering<W> {
 }
 
 const BLANK: Pixel = Pixel { rgb: [0.0; 3], alpha: 0.0, depth: 0.0, samples: 0.0 };
-
-/// A small part of the image.
-struct Tile {
-    /// Its first column and row in the window.
-    corner: [u32; 2],
-    width: u32,
-    height: u32,
-    /// Sums of its pixels, row by row.
-    sums: Vec<PixelSum>,
-    stats: Stats,
-    first_non_finite: Option<[u32; 3]>,
-}
-
-impl Tile {
-    fn new(window: Window, corner: [u32; 2]) -> Self {
-        let [width, height] = [window.width - corner[0], window.height - corner[1]].map(|left| left.min(TILE));
-        let sums = vec![PixelSum::default(); width as usize * height as usize];
-        Self { corner, width, height, sums, stats: Stats::default(), first_non_finite: None }
-    }
-
-    /// The number of one of its pixels in the window.
-    fn number(&self, window: Window, place: u32) -> usize {
-        let [x, y] = [self.corner[0] + place % self.width, self.corner[1] + place / self.width];
-        y as usize * window.width as usize + x as usize
-    }
-
-    /// Takes samples of all pixels.
-    fn take<const N: usize>(&mut self, world: &World, photons: Option<&Photons<N>>, numbers: Range<u32>) {
-        let window = world.scene.film.window();
-        let mut tracer = PathTracer::<N>::new(world).with_photons(photons);
-        for (place, sum) in (0..).zip(&mut self.sums) {
-            // Random numbers and rays belong to the full image's pixel, whatever part of it is made.
-            let x = window.left + self.corner[0] + place % self.width;
-            let y = window.top + self.corner[1] + place / self.width;
-            let mut pass = PassSum::default();
-            for number in numbers.clone() {
-                let sampler = Sampler::new(world.method.seed, [x, y], number);
-                if !pass.add(&tracer.sample(&sampler, [x, y])) {
-                    self.stats.non_finite += 1;
-                    self.first_non_finite.get_or_insert([x, y, number]);
-                }
-            }
-            sum.add(pass);
-        }
-        self.stats += tracer.walker.stats;
-    }
-}

@@ -2,12 +2,12 @@
 
 /// Surfaces after which roulette ends even a path that loses nothing, one time in a thousand.
 const LONG: u32 = 64;
-/// How certain it is then that a path goes on: nearer to 1 than light caught in a clear body needs to find its way out, so that
-/// none comes out much brighter than it went in.
+/// How certain it is then that a path goes on: nearer to 1 than light caught in a clear body needs to find its way out,
+/// so that none comes out much brighter than it went in.
 ///
-/// Beyond a thousand surfaces it is one less in as many as there have been, so that brightness grows in proportion to their
-/// number: light that diffuses through angles, as in a dense body that is hardly rough, leaves after n surfaces as often as
-/// n^(-3/2), and with a factor that grew by a power its noise would have no bounds.
+/// Beyond a thousand surfaces it is one less in as many as there have been, so that brightness grows in proportion to
+/// their number: light that diffuses through angles, as in a dense body that is hardly rough, leaves after n surfaces
+/// as often as n^(-3/2), and with a factor that grew by a power its noise would have no bounds.
 const SURE: f64 = 0.999;
 /// Surfaces after which light counts as caught, and ends as after `LONG`.
 const CAUGHT: u32 = 30_000;

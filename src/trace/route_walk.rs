@@ -3,8 +3,7 @@
 use super::World;
 use super::media;
 use super::path::Path;
-use super::route_end::{At, Walk};
-use super::routes::{ROUTES_NM, Route, Step, Way};
+use super::route::{At, ROUTES_NM, Route, Step, Walk, Way};
 use super::shading;
 use super::straight;
 use crate::light::{Light, LightId};
@@ -96,38 +95,45 @@ impl<'a> Walker<'a> {
         let uv = object.uv(&hit.crossing, &point);
         let part = self.part(material, uv, u[2]);
         let at = At { walk: &walk, material: object.material, point: &point, normal, uv, part, u };
-        match material.with_parts()[part] {
+        self.leave(&at, material.with_parts()[part], flat);
+    }
+
+    /// Goes on from a surface in all ways that light may go.
+    fn leave(&mut self, at: &At, material: &Material<Table>, flat: DVec3) {
+        let At { walk, normal, uv, .. } = *at;
+        let world = self.world;
+        match material {
             Material::Mirror(mirror) => {
                 let tint = self.draw.read_at(&mirror.reflectance, uv);
-                self.mirrored(&at, normal, tint, 1.0);
+                self.mirrored(at, normal, tint, 1.0);
             }
             Material::Conductor(metal) => {
                 let facet = metal.roughness.surface().map_or(normal, |surface| at.facet(surface.facets()));
-                self.mirrored(&at, facet, Lanes::ONE, 1.0);
+                self.mirrored(at, facet, Lanes::ONE, 1.0);
             }
             Material::Thin(pane) => {
-                let inside = media::index(world, &self.draw, walk.media.inside(world));
+                let inside = media::index(&world.scene, &self.draw, walk.media.inside(&world.scene));
                 let index = self.draw.read_exact(&pane.index);
                 let cos = (-walk.ray.direction).dot(normal);
                 let r = if index[1] == inside[1] { 0.0 } else { Interface::new(inside[1], index[1], cos).reflectance };
                 let (tint, through) = (self.draw.read_at(&pane.transmittance, uv), (1.0 - r) * (1.0 - r));
                 let crossed = at.step(Way::Crossed);
                 let straight = walk.after(Some(crossed), tint, through);
-                self.go_on(&at, straight, walk.ray.direction, 0);
+                self.go_on(at, straight, walk.ray.direction, 0);
                 // Mirrored by the first surface, and by the second.
                 let back = reflect(-walk.ray.direction, normal);
-                self.go_on(&at, walk.after(None, Lanes::ONE, r), back, 1);
+                self.go_on(at, walk.after(None, Lanes::ONE, r), back, 1);
                 let behind = walk.after(Some(crossed), tint, r * through).after(Some(crossed), tint, 1.0);
-                self.go_on(&at, behind, back, 2);
+                self.go_on(at, behind, back, 2);
             }
             Material::Dielectric(glass) => self.glass(
-                &at,
+                at,
                 [&glass.reflectance, &glass.transmittance],
                 glass.roughness.interface().map(|rough| rough.facets()),
             ),
             Material::Diffuse(diffuse) => {
                 let tint = self.draw.read_at(&diffuse.reflectance, uv);
-                self.scattered(&at, flat, tint, 1.0);
+                self.scattered(at, flat, tint, 1.0);
             }
             Material::Plastic(plastic) => {
                 let index = self.draw.read_exact(&plastic.index)[1];
@@ -136,9 +142,9 @@ impl<'a> Walker<'a> {
                 } else {
                     Interface::new(1.0, index, (-walk.ray.direction).dot(normal)).reflectance
                 };
-                self.go_on(&at, walk.after(None, Lanes::ONE, r), reflect(-walk.ray.direction, normal), 1);
+                self.go_on(at, walk.after(None, Lanes::ONE, r), reflect(-walk.ray.direction, normal), 1);
                 let tint = self.draw.read_at(&plastic.reflectance, uv);
-                self.scattered(&at, flat, tint, 1.0 - r);
+                self.scattered(at, flat, tint, 1.0 - r);
             }
             Material::Emissive(_) | Material::Mix(_) | Material::Mask(_) => {}
         }
@@ -146,8 +152,8 @@ impl<'a> Walker<'a> {
 
     /// The way after a distance through the body around it.
     fn inside(&self, walk: Walk, distance: f64) -> Walk {
-        let Some(material) = walk.media.inside(self.world) else { return walk };
-        let transmission = media::medium(self.world, material).transmission(&self.draw, distance);
+        let Some(material) = walk.media.inside(&self.world.scene) else { return walk };
+        let transmission = media::medium(&self.world.scene, material).transmission(&self.draw, distance);
         if transmission == Lanes::ONE {
             return walk;
         }
@@ -156,9 +162,9 @@ impl<'a> Walker<'a> {
 
     /// Whether a hole lets the way pass, by chance.
     fn passes(&self, walk: &Walk, hit: &Hit, point: &SurfacePoint, u: f64) -> bool {
-        let (draw, media) = (&self.draw, walk.media.inside(self.world));
+        let (draw, media) = (&self.draw, walk.media.inside(&self.world.scene));
         self.world.is_see_through(hit.object)
-            && straight::straight_at(self.world, draw, (&walk.ray, Lanes::ONE), media, (hit, point))
+            && straight::straight_at(self.world, draw, &walk.ray, Lanes::ONE, media, hit, point)
                 .is_some_and(|straight| u < f64::from(straight.holes[1]))
     }
 
@@ -197,10 +203,10 @@ impl<'a> Walker<'a> {
     fn glass(&mut self, at: &At, [reflectance, transmittance]: [&Table; 2], facets: Option<&Facets>) {
         let (world, walk) = (self.world, at.walk);
         let front = at.point.normal.dot(walk.ray.direction) < 0.0;
-        let Some(boundary) = walk.media.boundary(world, at.material, front) else {
+        let Some(boundary) = walk.media.boundary(&world.scene, at.material, front) else {
             return self.go_on(at, walk.clone(), walk.ray.direction, 0);
         };
-        let [n1, n2] = [boundary.here, boundary.beyond].map(|inside| media::index(world, &self.draw, inside)[1]);
+        let [n1, n2] = [boundary.here, boundary.beyond].map(|inside| media::index(&world.scene, &self.draw, inside)[1]);
         let crossed = Walk { media: boundary.crossed, ..walk.clone() };
         if boundary.here == boundary.beyond {
             return self.go_on(at, crossed, walk.ray.direction, 0);
@@ -240,7 +246,7 @@ impl<'a> Walker<'a> {
     /// Light that comes straight from a light, through whatever lets it through.
     fn aim(&mut self, at: &At, walk: &Walk, normal: DVec3, id: LightId) {
         let (world, light) = (self.world, &self.world.scene.lights[id]);
-        let Some(sample) = light.sample_li(&at.point, normal, [at.u[1], at.u[0]]) else { return };
+        let Some(sample) = light.sample_li(at.point, normal, [at.u[1], at.u[0]]) else { return };
         let mut walk = Walk { ray: sample.ray, ..walk.clone() };
         let mut left = sample.distance;
         for _ in 0..SURFACES {
@@ -264,7 +270,7 @@ impl<'a> Walker<'a> {
                 let step = Step { material: object.material, part, way: Way::Crossed };
                 let tint = self.draw.read_at(transmittance, uv);
                 let enters = point.normal.dot(walk.ray.direction) < 0.0;
-                let media = walk.media.at_surface(world, object.material, enters).0.crossed;
+                let media = walk.media.at_surface(&world.scene, object.material, enters).0.crossed;
                 walk = Walk { media, ..walk.after(Some(step), tint, 1.0) };
             }
             walk.ray = point.leave(walk.ray.direction);

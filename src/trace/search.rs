@@ -1,11 +1,11 @@
 //! Where in the view dispersion is seen: what is small in the picture is still the picture.
 //!
-//! The view is laid out in cells. A cell whose beam may touch a smooth object that its rays have not met is divided, down to a part of a
-//! pixel; so small objects are found also behind panes, in mirrors and in water, by a number of rays that does not depend on
-//! the number of pixels. Amanatides 1984, *Ray Tracing with Cones*, has beams of rays; Heckbert & Hanrahan 1984, *Beam Tracing
-//! Polygonal Objects*.
+//! The view is laid out in cells. A cell whose beam may touch a smooth object that its rays have not met is divided,
+//! down to a part of a pixel; so small objects are found also behind panes, in mirrors and in water, by a number of
+//! rays that does not depend on the number of pixels. Amanatides 1984, *Ray Tracing with Cones*, has beams of rays;
+//! Heckbert & Hanrahan 1984, *Beam Tracing Polygonal Objects*.
 
-use super::spread::is_dark;
+use super::apart::{is_dark, pixels_apart as colors_apart, share_apart};
 use super::targets::{SEEN_PIXELS, Targets};
 use super::walk::{Colors, Walk, Way};
 use crate::math::{DVec2, DVec3, Sampler};
@@ -16,14 +16,14 @@ const SIDE: u32 = 24;
 const MOST: usize = 6000;
 /// Cells this small, in pixels, are not divided.
 const SMALLEST: f64 = 0.5;
-/// So much of the view counts, in pixels, or this share of an image that has few: it changes one pixel as much as an edge that is
-/// just seen apart changes those along it.
+/// So much of the view counts, in pixels, or this share of an image that has few: it changes one pixel as much as an
+/// edge that is just seen apart changes those along it.
 const PIXELS: f64 = SEEN_PIXELS;
 const SHARE: f64 = 0.005;
 /// Pixels that are looked at closer each time.
 const CLOSER: usize = 32;
-/// A pixel of which this share is pulled apart changes as much as one at an edge that is just seen apart: over such an edge the colors
-/// between the outermost two are moved by half as much.
+/// A pixel of which this share is pulled apart changes as much as one at an edge that is just seen apart: over such an
+/// edge the colors between the outermost two are moved by half as much.
 const SEEN_SHARE: f64 = 0.5 * SEEN_PIXELS;
 
 /// A place on a diffuse surface that is seen by way of others.
@@ -134,21 +134,21 @@ fn look(colors: &Colors, targets: &Targets, cell: Cell, reached: &mut Vec<Reache
     };
     let off = first.weight == 0.0 || !forked;
     let dispersive = if first.dispersive && !off { cell.size.x * cell.size.y * cell.count } else { 0.0 };
-    let apart = if dispersive > 0.0 { colors.pixels_apart(middle, first, &sampler, cell.way) } else { None };
+    let apart = if dispersive > 0.0 { colors_apart(colors, middle, first, &sampler, cell.way) } else { None };
     let width = colors.world.scene.camera.pixel_angle() * cell.size.length();
     let dark = first.is_out() && is_dark(colors.world);
     Look { cell, dispersive, weight: first.weight, apart, dark, touched: targets.touched(&walks, width) }
 }
 
-/// Looks at all of a pixel where it cannot be told from one ray. Between the edges of small gems it hardly ever can, and what can be
-/// told there lies in the largest facets, many of which are parallel.
+/// Looks at all of a pixel where it cannot be told from one ray. Between the edges of small gems it hardly ever can,
+/// and what can be told there lies in the largest facets, many of which are parallel.
 fn look_closer(colors: &Colors, looks: &mut [Look]) {
     let untold: Vec<&mut Look> =
         looks.iter_mut().filter(|look| look.dispersive > 0.0 && look.apart.is_none()).collect();
     let step = untold.len().div_ceil(CLOSER).max(1);
     for look in untold.into_iter().step_by(step) {
         let (middle, sampler) = look.cell.middle(colors);
-        let share = colors.share_apart(middle, &sampler, look.cell.way);
+        let share = share_apart(colors, middle, &sampler, look.cell.way);
         look.apart = Some(if share >= SEEN_SHARE { SEEN_PIXELS } else { 0.0 });
         if share >= SEEN_SHARE {
             // It was all of a pixel.

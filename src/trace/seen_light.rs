@@ -1,4 +1,5 @@
-//! How much of the light seen polarization may change, learned from some hundred camera samples and some thousand photons.
+//! How much of the light seen polarization may change, learned from some hundred camera samples and some thousand
+//! photons.
 
 use super::light_pass::splats;
 use super::merge;

@@ -3,20 +3,20 @@
 use super::Transport;
 use super::World;
 use super::media::Media;
-use super::photon::Landing;
+use super::photon::{Landing, follow_photon};
 use super::photon_targets::{PhotonTarget, PhotonTargets};
 use super::stats::Stats;
 use super::walker::Walker;
-use crate::light::{Light, LightId};
-use crate::math::{BranchKey, DVec3, Sampler};
+use crate::light::Light;
+use crate::math::{BranchKey, Sampler};
 
 /// Photons that are followed one after another; what they leave is added in the order of the batches.
 const BATCH: u64 = 4096;
 /// Use of a photon's random numbers: its first ray.
 const RAY: u32 = 0;
 
-/// Photons are followed like camera paths: in all branches while they carry much, then in one. Splitting at 0.05 took as much
-/// time for as much noise, never splitting 2 to 15 times as much (`benches/caustics.rs`).
+/// Photons are followed like camera paths: in all branches while they carry much, then in one. Splitting at 0.05 took
+/// as much time for as much noise, never splitting 2 to 15 times as much (`benches/caustics.rs`).
 const PHOTONS: Transport = Transport::Random { split: 0.25, roulette: 0.05 };
 
 /// A part of an aim's photons.
@@ -51,8 +51,8 @@ pub(super) fn batches(
     aims.aims.iter().enumerate().flat_map(of_aim).collect()
 }
 
-/// Follows the photons of one batch; `land` says what is kept of one that lands. What is learned is only of which photons
-/// something would be kept.
+/// Follows the photons of one batch; `land` says what is kept of one that lands. What is learned is only of which
+/// photons something would be kept.
 pub(super) fn send<const N: usize, T>(
     world: &World,
     aims: &PhotonTargets,
@@ -74,9 +74,9 @@ pub(super) fn send<const N: usize, T>(
         let before = kept.len();
         if let Some(emitted) = aims.sample_le(&world.scene, batch.aim, guide_uv, [u[3], more]) {
             let draw = world.method.basis.draw(u[2]);
-            let around = || Media::around(world, emitted.ray.origin, emitted.ray.direction);
+            let around = || Media::around(&world.scene, emitted.ray.origin, emitted.ray.direction);
             let media = world.light_media[light].unwrap_or_else(around);
-            walker.photon(&emitted, light, media, &draw, &sampler, &mut |walker, landing| {
+            follow_photon(&mut walker, &emitted, light, media, &draw, &sampler, &mut |walker, landing| {
                 land(walker, landing, &sampler, &mut kept);
             });
         }
@@ -86,30 +86,4 @@ pub(super) fn send<const N: usize, T>(
         }
     }
     Sent { kept, places, stats: walker.stats }
-}
-
-/// The bodies around each light; none where they may differ from point to point.
-pub(super) fn media_of_lights(world: &World) -> Vec<Option<Media>> {
-    (0..world.scene.lights.len()).map(|light| media_of(world, light)).collect()
-}
-
-/// The bodies around a light; none where they may differ from point to point.
-fn media_of(world: &World, light: LightId) -> Option<Media> {
-    let scene = &world.scene;
-    if !world.has_media {
-        return Some(Media::default());
-    }
-    match &scene.lights[light] {
-        Light::Point(point) => Some(Media::around(world, point.position.into(), DVec3::Y)),
-        Light::Spot(spot) => Some(Media::around(world, spot.position.into(), DVec3::Y)),
-        Light::Area(area) => {
-            let own = area.shape.bounds()?;
-            let clear = (0..scene.objects.len()).filter(|&i| scene.material_of(i as u32).medium().is_some());
-            let apart = clear.map(|i| scene.objects[i].shape.bounds()).all(|other| {
-                other.is_some_and(|other| own.max.cmplt(other.min).any() || own.min.cmpgt(other.max).any())
-            });
-            apart.then(Media::default)
-        }
-        Light::Sun(_) | Light::Environment(_) => Some(Media::default()),
-    }
 }

@@ -20,8 +20,8 @@ pub(super) struct Contribution {
 /// How light was found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Found {
-    /// A path hit the light: a surface, with its unit normal on the front, or none of a sky; and whether the direction was drawn
-    /// where lights were sampled as well.
+    /// A path hit the light: a surface, with its unit normal on the front, or none of a sky; and whether the direction
+    /// was drawn where lights were sampled as well.
     Hit { normal: Option<DVec3>, scattered: bool },
     /// The light was sampled.
     Sampled,

@@ -1,11 +1,11 @@
-//! Surfaces that look smoother or rougher than they are: materials are asked with the shading normal, and no light is lost where its
-//! directions and those of the triangle disagree.
+//! Surfaces that look smoother or rougher than they are: materials are asked with the shading normal, and no light is
+//! lost where its directions and those of the triangle disagree.
 //!
-//! Two things make up for the difference (Veach 1997, *Robust Monte Carlo Methods for Light Transport Simulation*, section
-//! 5.3, describes what goes wrong without): the shading normal is bent until the mirror image of the viewer's direction
-//! lies above the triangle, and a direction that leaves on the wrong side of the triangle is folded back through its plane.
-//! Folding moves light and takes none away: what a material gives to a direction is the sum over both directions that
-//! end there, and so is the density.
+//! Two things make up for the difference (Veach 1997, *Robust Monte Carlo Methods for Light Transport Simulation*,
+//! section 5.3, describes what goes wrong without): the shading normal is bent until the mirror image of the viewer's
+//! direction lies above the triangle, and a direction that leaves on the wrong side of the triangle is folded back
+//! through its plane. Folding moves light and takes none away: what a material gives to a direction is the sum over
+//! both directions that end there, and so is the density.
 
 use crate::material::{Arrival, Branch, Material, reflect};
 use crate::math::{DVec3, unit};
@@ -24,7 +24,8 @@ pub(super) fn plain_normal(point: &SurfacePoint, wo: DVec3) -> DVec3 {
     if point.normal.dot(wo) > 0.0 { point.shading } else { -point.shading }
 }
 
-/// Whether light goes from `wi` to the viewer at `wo` by the shading normal as it is, so that it can be followed either way.
+/// Whether light goes from `wi` to the viewer at `wo` by the shading normal as it is, so that it can be followed either
+/// way.
 pub(super) fn is_plain(point: &SurfacePoint, wo: DVec3, wi: DVec3, crosses: bool) -> bool {
     if point.shading == point.normal {
         return true;

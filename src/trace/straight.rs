@@ -36,7 +36,7 @@ fn through_surface<const N: usize>(
     point: &SurfacePoint,
 ) -> Option<Straight<N>> {
     let present = path.throughput.present();
-    let straight = straight_at(world, draw, (&path.ray, present), path.media.inside(world), (hit, point))?;
+    let straight = straight_at(world, draw, &path.ray, present, path.media.inside(&world.scene), hit, point)?;
     (!(straight.share() * present).is_zero()).then_some(straight)
 }
 
@@ -57,8 +57,8 @@ pub(super) fn is_met<const N: usize>(
     path.throughput.through(straight.holes).weight(shares) <= u * path.throughput.weight(shares)
 }
 
-/// The share of each lane that goes straight on through all surfaces before a light at a distance that let it, and how far
-/// these polarize it; none if no light does.
+/// The share of each lane that goes straight on through all surfaces before a light at a distance that let it, and how
+/// far these polarize it; none if no light does.
 ///
 /// `inside` is the medium around the ray.
 pub(super) fn transmittance<const N: usize>(
@@ -71,7 +71,7 @@ pub(super) fn transmittance<const N: usize>(
     let (mut ray, mut left, mut all, mut polarized) = (*ray, distance, Lanes::ONE, Polarized::NOT);
     while let Some(hit) = world.scene.nearest(&ray, left, |object| world.is_see_through(object)) {
         let point = world.scene.objects[hit.object as usize].point(&ray, &hit.crossing);
-        let straight = straight_at(world, draw, (&ray, Lanes::ONE), inside, (&hit, &point))?;
+        let straight = straight_at(world, draw, &ray, Lanes::ONE, inside, &hit, &point)?;
         (all, polarized) = (all * straight.share(), polarized.after(straight.polarization));
         if all.is_zero() {
             return None;
@@ -86,11 +86,14 @@ pub(super) fn transmittance<const N: usize>(
 pub(super) fn straight_at<const N: usize>(
     world: &World,
     draw: &Draw<N>,
-    (ray, present): (&Ray, Lanes<N>),
+    ray: &Ray,
+    present: Lanes<N>,
     inside: Option<MaterialId>,
-    (hit, point): (&Hit, &SurfacePoint),
+    hit: &Hit,
+    point: &SurfacePoint,
 ) -> Option<Straight<N>> {
-    let [_, normal] = shading::normals(point, -ray.direction);
-    let arrival = arrival(world, draw, (ray.direction, normal, present), (hit, point), [inside; 2]);
+    let (wo, uv) = (-ray.direction, world.scene.objects[hit.object as usize].uv(&hit.crossing, point));
+    let [_, normal] = shading::normals(point, wo);
+    let arrival = arrival(world, draw, wo, normal, uv, present, [inside; 2]);
     world.scene.material_of(hit.object).straight(&arrival)
 }

@@ -58,8 +58,8 @@ impl Targets {
 
     /// The first target that a beam may touch which not all of its rays have met; none if there is none.
     ///
-    /// Rays that went by the same objects are one beam on their next piece: as wide as they are apart. Of one that goes its own way it
-    /// is only known how wide a beam it would be that nothing has bent: `width` is its angle.
+    /// Rays that went by the same objects are one beam on their next piece: as wide as they are apart. Of one that goes
+    /// its own way it is only known how wide a beam it would be that nothing has bent: `width` is its angle.
     pub(super) fn touched(&self, walks: &[Walk], width: f64) -> Option<usize> {
         let met = |walk: &Walk, target: usize| {
             walk.met

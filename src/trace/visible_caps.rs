@@ -6,7 +6,7 @@ use super::World;
 use super::path_tracer::PathTracer;
 use super::sensor::{Contribution, Found, Observer};
 use super::width::in_lanes;
-use crate::light::LightId;
+use crate::light::{Light, LightId};
 use crate::math::{DVec3, Sampler};
 
 /// Camera samples along each side of the image.
@@ -16,12 +16,27 @@ const ENOUGH: usize = 2048;
 /// Sets these random numbers apart from those of the image.
 const SEED: u64 = 0x6c61_6d70;
 
-/// The lights that paths meet by chance, with the unit normals there. The whole image counts, also where only a part of it is
-/// made, so that all parts are made alike.
-pub(super) fn normals_met(world: &World) -> Vec<(LightId, DVec3)> {
-    in_lanes!(&world.method.basis, N => look::<N>(world))
+/// Learns where lamps are visible that may be hidden for the most part. The whole image counts, also where only a part
+/// of it is made, so that all parts are made alike.
+pub(super) fn learn_visible_caps(world: &mut World) {
+    if !world.scene.lights.iter().any(|light| matches!(light, Light::Area(area) if area.may_show_a_cap())) {
+        return;
+    }
+    // Paths hit lamps behind a diffuse surface, also where the image has no such paths.
+    let asked = std::mem::replace(&mut world.method.diffuse_bounces, u32::MAX);
+    let hit = in_lanes!(&world.method.basis, N => look::<N>(world));
+    world.method.diffuse_bounces = asked;
+    for (id, light) in world.scene.lights.iter_mut().enumerate() {
+        if let Light::Area(area) = light
+            && area.may_show_a_cap()
+        {
+            let normals: Vec<DVec3> = hit.iter().filter(|(light, _)| *light == id).map(|(_, n)| *n).collect();
+            area.learn_visible_cap(&normals);
+        }
+    }
 }
 
+/// The lights that paths hit by chance, with the unit normals there.
 fn look<const N: usize>(world: &World) -> Vec<(LightId, DVec3)> {
     let film = world.scene.film;
     let met = Met::default();

@@ -27,7 +27,8 @@ pub(super) enum Way {
     Brighter,
     /// The fainter one at the first surface that has one, from there on the brighter one.
     FainterFirst,
-    /// The fainter one where light would first leave a dispersive body, from there on the brighter one: the way of the rainbow.
+    /// The fainter one where light would first leave a dispersive body, from there on the brighter one: the way of the
+    /// rainbow.
     FainterInside,
 }
 
@@ -99,6 +100,17 @@ impl Walk {
     }
 }
 
+/// Where a walk meets a surface, with four random numbers.
+#[derive(Clone, Copy)]
+struct Surface<'a> {
+    ray: &'a Ray,
+    hit: &'a Hit,
+    point: &'a SurfacePoint,
+    u: [f64; 4],
+    lane: usize,
+    way: Way,
+}
+
 /// How a walk goes on at a surface.
 enum Next {
     Toward(DVec3),
@@ -127,11 +139,11 @@ impl<'a> Colors<'a> {
     pub(super) fn walk_from_camera(&self, at: DVec2, lane: usize, sampler: &Sampler, way: Way) -> Walk {
         let ray = self.world.scene.camera.ray(at);
         let media = Path::from_camera(self.world, &self.draw, ray).media;
-        self.walk(lane, (ray, media), sampler, way)
+        self.walk(lane, ray, media, sampler, way)
     }
 
     /// Follows one lane; the first one decides for both where light may go two ways.
-    pub(super) fn walk(&self, lane: usize, (mut ray, media): (Ray, Media), sampler: &Sampler, way: Way) -> Walk {
+    pub(super) fn walk(&self, lane: usize, mut ray: Ray, media: Media, sampler: &Sampler, way: Way) -> Walk {
         let (legs, met) = (Vec::with_capacity(4), Vec::with_capacity(4));
         let mut walk = Walk {
             legs,
@@ -151,7 +163,8 @@ impl<'a> Colors<'a> {
             let Some(hit) = hit else { return walk };
             let point = self.world.scene.objects[hit.object as usize].point(&ray, &hit.crossing);
             key = key.child(0);
-            match self.beyond(lane, &mut walk, (&ray, &hit, &point), sampler.four_plain(key, SURFACE), way) {
+            let at = Surface { ray: &ray, hit: &hit, point: &point, u: sampler.four_plain(key, SURFACE), lane, way };
+            match self.beyond(&mut walk, &at) {
                 Next::Toward(direction) => ray = point.leave(direction),
                 Next::End => {
                     walk.end = Some((point, hit.object));
@@ -166,60 +179,23 @@ impl<'a> Colors<'a> {
     }
 
     /// The way on from a surface.
-    fn beyond(
-        &self,
-        lane: usize,
-        walk: &mut Walk,
-        (ray, hit, point): (&Ray, &Hit, &SurfacePoint),
-        u: [f64; 4],
-        way: Way,
-    ) -> Next {
+    fn beyond(&self, walk: &mut Walk, at: &Surface) -> Next {
+        let Surface { ray, hit, point, u, way, .. } = *at;
         let (world, draw, wo) = (self.world, &self.draw, -ray.direction);
         let [_, normal] = shading::normals(point, wo);
         if world.is_see_through(hit.object) {
-            let inside = walk.media.inside(world);
-            let straight = straight::straight_at(world, draw, (ray, draw.start()), inside, (hit, point));
+            let inside = walk.media.inside(&world.scene);
+            let straight = straight::straight_at(world, draw, ray, draw.start(), inside, hit, point);
             if straight.is_some_and(|straight| walk.takes(f64::from(straight.holes[0]), way)) {
                 return Next::Toward(ray.direction);
             }
         }
         match world.scene.material_of(hit.object) {
-            Material::Dielectric(glass) => {
-                let front = point.normal.dot(ray.direction) < 0.0;
-                let material = world.scene.objects[hit.object as usize].material;
-                let Some(boundary) = walk.media.boundary(world, material, front) else {
-                    return Next::Toward(ray.direction);
-                };
-                let indices = [boundary.here, boundary.beyond].map(|inside| media::index(world, draw, inside));
-                walk.dispersive |= indices.iter().any(|index| index[0] != index[1]);
-                let [n1, n2] = indices.map(|index| index[lane]);
-                // The same facet for both colors.
-                let facets = glass.roughness.interface().map(|rough| rough.facets());
-                let facet = facets.map_or(normal, |facets| visible(facets, wo, normal, [u[2], u[3]]));
-                let interface = Interface::new(n1, n2, wo.dot(facet));
-                // The first color's reflectance decides for both, but where it is reflected totally: there the edge has colors.
-                let first = Interface::new(indices[0][0], indices[1][0], wo.dot(facet));
-                let chance = if first.transmittance == 0.0 { interface.reflectance } else { first.reflectance };
-                let inside = indices[0][0] != indices[0][1];
-                let takes =
-                    |walk: &mut Walk| if inside { walk.takes_inside(chance, way) } else { walk.takes(chance, way) };
-                let mirrors = n1 != n2 && (takes(walk) || interface.transmittance == 0.0);
-                let (direction, side) = if mirrors {
-                    (reflect(wo, facet), 1.0)
-                } else {
-                    walk.media = boundary.crossed;
-                    (if n1 == n2 { ray.direction } else { interface.refract(wo, facet) }, -1.0)
-                };
-                if facets.is_some() && direction.dot(normal) * side <= 0.0 {
-                    Next::Lost
-                } else {
-                    Next::Toward(direction)
-                }
-            }
+            Material::Dielectric(glass) => self.meet_glass(walk, at, glass),
             Material::Mirror(_) => Next::Toward(reflect(wo, normal)),
             Material::Thin(pane) => {
                 let index: [f64; 4] = draw.read_exact(&pane.index);
-                let here = media::index(world, draw, walk.media.inside(world))[0];
+                let here = media::index(&world.scene, draw, walk.media.inside(&world.scene))[0];
                 let one = Interface::new(here, index[0], wo.dot(normal)).reflectance;
                 // Of both surfaces, without absorption (Born & Wolf 1999, section 7.6).
                 let mirrored = if index[0] == here { 0.0 } else { 2.0 * one / (1.0 + one) };
@@ -236,6 +212,38 @@ impl<'a> Colors<'a> {
                 Next::End
             }
         }
+    }
+
+    /// The way on from the surface of a clear body.
+    fn meet_glass(&self, walk: &mut Walk, at: &Surface, glass: &Dielectric<Table>) -> Next {
+        let Surface { ray, hit, point, u, lane, way } = *at;
+        let (world, draw, wo) = (self.world, &self.draw, -ray.direction);
+        let [_, normal] = shading::normals(point, wo);
+        let front = point.normal.dot(ray.direction) < 0.0;
+        let material = world.scene.objects[hit.object as usize].material;
+        let Some(boundary) = walk.media.boundary(&world.scene, material, front) else {
+            return Next::Toward(ray.direction);
+        };
+        let indices = [boundary.here, boundary.beyond].map(|inside| media::index(&world.scene, draw, inside));
+        walk.dispersive |= indices.iter().any(|index| index[0] != index[1]);
+        let [n1, n2] = indices.map(|index| index[lane]);
+        // The same facet for both colors.
+        let facets = glass.roughness.interface().map(|rough| rough.facets());
+        let facet = facets.map_or(normal, |facets| visible(facets, wo, normal, [u[2], u[3]]));
+        let interface = Interface::new(n1, n2, wo.dot(facet));
+        // The first color's reflectance decides for both, but where it is reflected totally: there the edge has colors.
+        let first = Interface::new(indices[0][0], indices[1][0], wo.dot(facet));
+        let chance = if first.transmittance == 0.0 { interface.reflectance } else { first.reflectance };
+        let inside = indices[0][0] != indices[0][1];
+        let takes = |walk: &mut Walk| if inside { walk.takes_inside(chance, way) } else { walk.takes(chance, way) };
+        let mirrors = n1 != n2 && (takes(walk) || interface.transmittance == 0.0);
+        let (direction, side) = if mirrors {
+            (reflect(wo, facet), 1.0)
+        } else {
+            walk.media = boundary.crossed;
+            (if n1 == n2 { ray.direction } else { interface.refract(wo, facet) }, -1.0)
+        };
+        if facets.is_some() && direction.dot(normal) * side <= 0.0 { Next::Lost } else { Next::Toward(direction) }
     }
 }
 

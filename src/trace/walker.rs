@@ -32,7 +32,8 @@ const CHOICE: u32 = 2;
 /// gather varies little. Measured on the smallpt scene, where 1 takes 1.17 times as long to an equal error.
 const SOONER: f64 = 5.0;
 
-/// How a sample goes on that has met too many surfaces: what is left is mostly faint, and all branches are still followed that are not.
+/// How a sample goes on that has met too many surfaces: what is left is mostly faint, and all branches are still
+/// followed that are not.
 const BY_CHANCE: Transport = Transport::Random { split: 0.01, roulette: 0.01 };
 
 impl<'a, const N: usize> Walker<'a, N> {
@@ -58,7 +59,7 @@ impl<'a, const N: usize> Walker<'a, N> {
     pub(super) fn boundary(&mut self, path: &Path<N>, meeting: &Meeting<N>) -> Boundary {
         let enters = meeting.point.normal.dot(path.ray.direction) < 0.0;
         let material = self.world.scene.objects[meeting.hit.object as usize].material;
-        let (boundary, fits) = path.media.at_surface(self.world, material, enters);
+        let (boundary, fits) = path.media.at_surface(&self.world.scene, material, enters);
         self.stats.unmatched += u64::from(!fits);
         boundary
     }
@@ -134,8 +135,8 @@ impl<'a, const N: usize> Walker<'a, N> {
         }
     }
 
-    /// Which branches are followed by now. Where light has more ways than can be followed, one is chosen, which leaves the
-    /// mean what it is.
+    /// Which branches are followed by now. Where light has more ways than can be followed, one is chosen, which leaves
+    /// the mean what it is.
     fn rule(&self) -> Transport {
         match self.transport {
             Transport::Deterministic { most, .. } if self.surfaces() > most => BY_CHANCE,

@@ -1,14 +1,14 @@
 use super::bright::{Bright, BrightPlaces};
-use super::media::Media;
+use super::media::{Media, media_of_lights};
 use super::photon_targets::PhotonTargets;
-use super::sending::media_of_lights;
-use super::visible_caps::normals_met;
 use super::{LightPass, Method, Transport};
 use crate::light::{Light, LightId, LightSampler};
 use crate::material::Lobes;
-use crate::math::DVec3;
 use crate::scene::Scene;
 use crate::spectrum::{Curve, Distinct, Draw, MAX_LANES, Quantity, Response, Table, apply};
+
+/// Lights that are weighed one by one: of more, neighbors in the scene as one.
+const LIGHTS: usize = 16;
 
 /// A scene on the lanes of one method: everything the tracer reads.
 #[derive(Clone, Debug)]
@@ -41,22 +41,8 @@ pub struct World {
 }
 
 impl World {
-    /// The scene, tabulated for the method, with photons sent ahead to learn where to send the others.
+    /// The scene, tabulated for the method. Nothing is learned of it: see [`prepare`](super::prepare).
     pub fn new(scene: &Scene<Curve>, method: Method) -> Self {
-        let mut world = Self::untaught(scene, method);
-        world.learn_where_to_send(u64::MAX);
-        world
-    }
-
-    /// The same without photons sent ahead: enough for camera samples.
-    pub fn untaught(scene: &Scene<Curve>, method: Method) -> Self {
-        let mut world = Self::unlit(scene, method);
-        world.look_for_lamps();
-        world
-    }
-
-    /// The scene, tabulated for the method, without a look at where lamps are seen: enough for paths that end in no light.
-    pub fn unlit(scene: &Scene<Curve>, method: Method) -> Self {
         let (mut tables, mut responses) = (Distinct::default(), Distinct::default());
         let response = |light: &Light<Curve>| responses.of(light.emission(), |curve| method.basis.response(curve));
         let responses = scene.lights.iter().map(response).collect();
@@ -92,7 +78,7 @@ impl World {
         };
         if has_media {
             let (position, forward) = (world.scene.camera.position(), world.scene.camera.forward());
-            world.camera_media = Media::around(&world, position, forward);
+            world.camera_media = Media::around(&world.scene, position, forward);
         }
         world.aim_photons();
         world
@@ -133,26 +119,7 @@ impl World {
         let map_aims = pass.and_then(|pass| pass.map).and_then(|map| aims_of(map.photons));
         (self.aims, self.map_aims) = (aims, map_aims);
         if self.aims.is_some() && self.light_media.is_empty() {
-            self.light_media = media_of_lights(self);
-        }
-    }
-
-    /// Finds out where lamps are seen that may be hidden for the most part.
-    fn look_for_lamps(&mut self) {
-        if !self.scene.lights.iter().any(|light| matches!(light, Light::Area(area) if area.may_show_a_cap())) {
-            return;
-        }
-        // Paths meet lamps behind a diffuse surface, also where the image has no such paths.
-        let asked = std::mem::replace(&mut self.method.diffuse_bounces, u32::MAX);
-        let met = normals_met(self);
-        self.method.diffuse_bounces = asked;
-        for (id, light) in self.scene.lights.iter_mut().enumerate() {
-            if let Light::Area(area) = light
-                && area.may_show_a_cap()
-            {
-                let normals: Vec<DVec3> = met.iter().filter(|(light, _)| *light == id).map(|(_, n)| *n).collect();
-                area.learn_visible_cap(&normals);
-            }
+            self.light_media = media_of_lights(&self.scene);
         }
     }
 
@@ -193,5 +160,29 @@ impl World {
                 self.targets.len() == 1 || (weight > split && self.targets.len() <= MANY)
             }
         }
+    }
+
+    /// The pass's lights, each for itself; of many, neighbors in the scene together.
+    pub(super) fn light_groups(&self) -> Vec<Vec<LightId>> {
+        let Some(pass) = &self.method.light_pass else { return Vec::new() };
+        let mut lights = pass.lights.clone();
+        lights.sort_unstable();
+        let of_group = lights.len().div_ceil(LIGHTS).max(1);
+        lights.chunks(of_group).map(<[LightId]>::to_vec).collect()
+    }
+
+    /// Whether photons are sent to an object.
+    pub(super) fn is_photon_target(&self, object: u32) -> bool {
+        self.aims.as_ref().is_some_and(|aims| aims.objects[object as usize])
+    }
+
+    /// Whether paths gather photons where the camera does not see them straight.
+    pub(super) fn has_map(&self) -> bool {
+        self.map_aims.is_some()
+    }
+
+    /// Whether a light sends photons.
+    pub(super) fn sends_photons(&self, light: LightId) -> bool {
+        self.aims.as_ref().is_some_and(|aims| aims.lights[light])
     }
 }

@@ -2,7 +2,7 @@
 
 use abbe::film::Film;
 use abbe::plan::plan;
-use abbe::trace::{Transport, World, render};
+use abbe::trace::{Transport, prepare, render};
 
 use crate::support::scenes::{EVERY_BRANCH, SPLITTING, environment, image, scene};
 
@@ -176,12 +176,12 @@ fn a_crop_has_the_bits_of_the_full_image() {
     let whole = scene(ROOM);
     let planned = plan(&whole).method;
     assert!(matches!(planned.transport, Transport::Random { .. }));
-    let (full, _) = render(&World::new(&whole, planned.clone()), &|_| ());
+    let (full, _) = render(&prepare(&whole, planned.clone()), &|_| ());
     for crop in crops {
         let part = scene(&ROOM.replace("height = 43", &format!("height = 43\ncrop = {crop}")));
         let method = plan(&part).method;
         assert_eq!(method, planned);
-        let (film, report) = render(&World::new(&part, method), &|_| ());
+        let (film, report) = render(&prepare(&part, method), &|_| ());
         assert_eq!(report.samples, 4 * film.pixels.len() as u64);
         assert_eq!(film.full, [75, 43]);
         for y in 0..film.height {

@@ -4,7 +4,7 @@ use abbe::film::Film;
 use abbe::plan::plan;
 use abbe::scene::Scene;
 use abbe::spectrum::Curve;
-use abbe::trace::{LightPass, MapPasses, Method, World, render};
+use abbe::trace::{LightPass, MapPasses, Method, prepare, render};
 
 use crate::support::scenes::{SPLITTING, moments, scene, standard_errors};
 
@@ -49,7 +49,7 @@ pub fn blocks(
     let light_pass = pass.then_some(LightPass { photons: u64::from(samples) * (SIDE * SIDE) as u64, lights, map });
     let asked = Method { samples, transport: SPLITTING, light_pass, ..method.clone() };
     let films: Vec<Film> =
-        (0..SEEDS).map(|seed| render(&World::new(scene, Method { seed, ..asked.clone() }), &|_| ()).0).collect();
+        (0..SEEDS).map(|seed| render(&prepare(scene, Method { seed, ..asked.clone() }), &|_| ()).0).collect();
     let mut found = Vec::new();
     for (block, band) in (0..BLOCKS * BLOCKS).flat_map(|block| (0..3).map(move |band| (block, band))) {
         let wide = SIDE / BLOCKS;

@@ -5,7 +5,7 @@ use std::process::Command;
 
 use abbe::film::Film;
 use abbe::plan::{Plan, plan};
-use abbe::trace::{LightPass, MapPasses, Method, World, render};
+use abbe::trace::{LightPass, MapPasses, Method, prepare, render};
 
 use crate::support::scenes::{SPLITTING, scene};
 
@@ -14,7 +14,7 @@ fn with_photons(text: &str, photons: u64, samples: u32) -> Film {
     let scene = scene(text);
     let light_pass = Some(LightPass { photons, lights: (0..scene.lights.len()).collect(), map: None });
     let method = Method { samples, transport: SPLITTING, light_pass, ..plan(&scene).method };
-    render(&World::new(&scene, method), &|_| ()).0
+    render(&prepare(&scene, method), &|_| ()).0
 }
 
 /// The caustic A of the light tracing lab: a ball of index 1.5 and radius 1, its center 1.5 above the floor, a lamp of
@@ -53,7 +53,7 @@ fn the_caustic_of_a_ball_has_the_irradiance_that_another_program_found() {
         // Straight light, past the ball, is no part of the caustic; the camera's samples are the same.
         let straight = scene(&patch(&light));
         let method = Method { samples: 16, light_pass: None, diffuse_bounces: 0, ..plan(&straight).method };
-        let straight = mean(&render(&World::new(&straight, Method { transport: SPLITTING, ..method }), &|_| ()).0);
+        let straight = mean(&render(&prepare(&straight, Method { transport: SPLITTING, ..method }), &|_| ()).0);
         // The floor is so dark that none of its light comes back from the ball: what is seen is irradiance / 1000 pi.
         let irradiance = (mean(&with_photons(&patch(&light), 400_000, 16)) - straight) * 1e3 * std::f64::consts::PI;
         println!("T1, radius {what}: {irradiance:.6}");
@@ -203,7 +203,7 @@ fn a_part_of_an_image_has_the_bits_that_it_has_in_the_whole() {
         assert!(map.is_some(), "a caustic in a mirror");
         let few = LightPass { photons: 65_536, map, ..pass };
         let method = Method { samples: 24, light_pass: Some(few), ..planned.clone() };
-        let render = |scene| render(&World::new(scene, method.clone()), &|_| ()).0;
+        let render = |scene| render(&prepare(scene, method.clone()), &|_| ()).0;
         let full = render(&whole);
         let part = scene(&crowd(&format!("{filter}crop = [7, 11, 22, 19]")));
         assert_eq!(plan(&part).method.light_pass, planned.light_pass);
@@ -244,7 +244,7 @@ fn photons_toward_objects_whose_cones_overlap_count_once() {
     let image = |lights: Vec<usize>| {
         let pass = LightPass { photons, lights, map: None };
         let with = Method { samples: 4, light_pass: Some(pass), ..method.clone() };
-        let film = render(&World::new(&together, with), &|_| ()).0;
+        let film = render(&prepare(&together, with), &|_| ()).0;
         film.pixels.iter().map(|pixel| f64::from(pixel.rgb[1])).sum::<f64>() / film.pixels.len() as f64
     };
     let [none, point, sun, both] = [vec![], vec![0], vec![1], vec![0, 1]].map(image);

@@ -3,7 +3,7 @@
 
 use abbe::math::DVec3;
 use abbe::plan::plan;
-use abbe::trace::{LightPass, MapPasses, Method, World, render};
+use abbe::trace::{LightPass, MapPasses, Method, prepare, render};
 
 use crate::support::scenes::{SPLITTING, body, scene};
 
@@ -62,7 +62,7 @@ fn what_polarization_may_change_of_a_caustic_is_said_where_photons_are_seen_and_
         let map = in_a_mirror.then_some(MapPasses { count: 2, photons: 50_000, radius: 1.0, chance: 1.0 });
         let light_pass = Some(LightPass { photons: 200_000, lights: vec![0], map });
         let method = Method { samples: 4, transport: SPLITTING, diffuse_bounces: 1, light_pass, ..plan(&scene).method };
-        let (film, report) = render(&World::new(&scene, method), &|_| ());
+        let (film, report) = render(&prepare(&scene, method), &|_| ());
         let lit = film.pixels.iter().filter(|pixel| pixel.rgb[1] > 0.0).count();
         assert!(lit > film.pixels.len() / 2, "in a mirror {in_a_mirror}: {lit} pixels are lit");
         // All that is seen was reflected by both plates, which reflect one polarization alone: it is twice as much.

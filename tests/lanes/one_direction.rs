@@ -7,7 +7,7 @@ use abbe::plan::plan;
 use abbe::spectrum::{
     Basis, ColorSpace, Curve, CurveKind, Draw, Emission, MAX_LANES, Quantity, Table, comparison, data, visible,
 };
-use abbe::trace::{Method, World, render};
+use abbe::trace::{Method, World, prepare, render};
 
 use crate::support::scenes::{EVERY_BRANCH, SINGLE_PATH, body, environment, method, scene, standard_errors, view};
 
@@ -131,7 +131,7 @@ fn d16_plates_of_glass_are_rendered_as_bright_in_every_lane_as_they_are() {
             let scene = scene(&before_or_behind(key, reflected));
             let world = || {
                 let method = Method { basis: basis.clone(), ..method(&scene, EVERY_BRANCH) };
-                World::new(&scene, method)
+                prepare(&scene, method)
             };
             for lane in (0..basis.lanes()).step_by(if basis.lanes() > 12 { 5 } else { 1 }) {
                 let own = index.bins()[lane];
@@ -221,7 +221,7 @@ fn d16_glass_whose_lanes_stay_together_is_invisible_in_an_even_sky() {
                 continue;
             }
             let basis = basis.kept_together();
-            let film = film(&World::new(&scene, Method { basis, ..method(&scene, transport) }));
+            let film = film(&prepare(&scene, Method { basis, ..method(&scene, transport) }));
             let count = film.pixels.len() as f64;
             if roughness.is_empty() {
                 let worst = film.pixels.iter().flat_map(|p| p.rgb).map(|x| (x - 1.0).abs()).fold(0.0, f32::max);
@@ -254,7 +254,7 @@ fn mirror_ball(model: &str) -> (abbe::plan::Plan, Film, Vec<f64>) {
         );
     let scene = scene(&text);
     let plan = plan(&scene);
-    let film = film(&World::new(&scene, plan.method.clone()));
+    let film = film(&prepare(&scene, plan.method.clone()));
     let cosines = (0..81).map(|at| {
         let ray = scene.camera.ray(DVec2::new(f64::from(at % 9) + 0.5, f64::from(at / 9) + 0.5));
         let along = -ray.origin.dot(ray.direction);
@@ -373,7 +373,7 @@ fn photons_and_paths_bring_the_same_color_through_glass_whose_lanes_stay_togethe
         let scene = scene(&text);
         let method = plan(&scene).method;
         assert!(method.light_pass.is_some() == (caustics == "auto"), "{:?}", method.light_pass);
-        let film = film(&World::new(&scene, method));
+        let film = film(&prepare(&scene, method));
         let sum = |band: usize| film.pixels.iter().map(|pixel| f64::from(pixel.rgb[band])).sum::<f64>();
         [sum(0) / sum(1), sum(2) / sum(1)]
     };

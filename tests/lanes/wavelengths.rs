@@ -4,7 +4,7 @@
 use abbe::film::Film;
 use abbe::scene::Scene;
 use abbe::spectrum::{Basis, Curve, Emission, Response, comparison};
-use abbe::trace::{Method, Transport, World, render};
+use abbe::trace::{Method, Transport, prepare, render};
 
 use super::parting::{BALL_AND_PRISM, BLOCK, block};
 use crate::support::scenes::{EVERY_BRANCH, Mean, SPLITTING, method, scene, standard_errors, view};
@@ -31,7 +31,7 @@ const FLINT: &str = "{ index = \"N-SF11\", absorption = \"N-SF11\" }";
 
 fn film(scene: &Scene<Curve>, basis: &Basis, transport: Transport, seed: u64, hear: Option<usize>) -> Film {
     let method = Method { basis: basis.clone(), seed, ..method(scene, transport) };
-    let world = World::new(scene, method);
+    let world = prepare(scene, method);
     let world = match hear {
         Some(lane) => world.with_responses(|response| comparison::only(response, lane)),
         None => world,
@@ -115,7 +115,7 @@ fn three_bands_are_three_lanes_bit_for_bit() {
     let scene = scene(&plain);
     let bands = film(&scene, &Basis::rgb(scene.film.color_space), EVERY_BRANCH, 0, None);
     let lanes = Basis::wavelengths(scene.film.color_space, vec![486.13, 546.07, 656.27], &[]);
-    let world = World::new(&scene, Method { basis: lanes, ..method(&scene, EVERY_BRANCH) });
+    let world = prepare(&scene, Method { basis: lanes, ..method(&scene, EVERY_BRANCH) });
     let blue_first = Response::new(&[[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]], Vec::new());
     let lanes = render(&world.with_responses(|_| blue_first.clone()), &|_| ()).0;
     assert!(bands.pixels.iter().filter(|pixel| pixel.rgb[0] != pixel.rgb[2]).count() > 50, "nothing disperses");

@@ -3,7 +3,7 @@
 use abbe::material::{Arrival, Material};
 use abbe::math::{DVec3, Frame};
 use abbe::spectrum::{Draw, Table};
-use abbe::trace::World;
+use abbe::trace::prepare;
 
 use crate::support::scenes::{SINGLE_PATH, method, scene, view};
 
@@ -20,7 +20,7 @@ pub fn material(text: &str) -> Material<Table> {
     let object = "[[object]]\nshape.sphere = { center = [0, 0, 0], radius = 1 }\nmaterial = \"tested\"\n";
     let text = view([0.0, 0.0, 9.0], [0.0; 3], 1.0, 1) + PARTS + &format!("[material.tested]\n{text}\n{object}");
     let scene = scene(&text);
-    World::new(&scene, method(&scene, SINGLE_PATH)).scene().material_of(0).clone()
+    prepare(&scene, method(&scene, SINGLE_PATH)).scene().material_of(0).clone()
 }
 
 pub const NORMAL: DVec3 = DVec3::new(0.6, -0.48, 0.64);

@@ -6,7 +6,7 @@ use abbe::film::Film;
 use abbe::scene::{Scene, Source, compile};
 use abbe::shape::{Mesh, Shape};
 use abbe::spectrum::Curve;
-use abbe::trace::{Report, Transport, World, render};
+use abbe::trace::{Report, Transport, prepare, render};
 
 use crate::support::bodies::ball;
 use crate::support::scenes::{Mean, SPLITTING, environment, method, view};
@@ -31,7 +31,7 @@ fn scene(folder: &tempfile::TempDir, text: &str) -> Scene<Curve> {
 fn image(folder: &tempfile::TempDir, text: &str, transport: Transport) -> (Film, Report) {
     let scene = scene(folder, text);
     let method = method(&scene, transport);
-    render(&World::new(&scene, method), &|_| ())
+    render(&prepare(&scene, method), &|_| ())
 }
 
 /// An object of a mesh file.

@@ -5,7 +5,7 @@ use abbe::math::DVec3;
 use abbe::plan::plan;
 use abbe::scene::Scene;
 use abbe::spectrum::{Basis, Curve, Draw, Emission, Lanes, MAX_LANES, Quantity, data, visible};
-use abbe::trace::{World, render};
+use abbe::trace::{prepare, render};
 
 use super::stokes::{Stokes, metal, mirror, pane, surface};
 use crate::support::random::Random;
@@ -247,7 +247,7 @@ fn exact_over_averaged(met: &[Met]) -> f64 {
 fn rendered(text: &str) -> (f64, Vec<String>) {
     let scene = scene(&format!("{text}[material.lamp]\nemissive = {{ radiance = 1 }}\n"));
     let plan = plan(&scene);
-    let (_, report) = render(&World::new(&scene, plan.method), &|_| ());
+    let (_, report) = render(&prepare(&scene, plan.method), &|_| ());
     assert!(report.light > 0.0, "no light in\n{text}");
     (report.polarization, plan.because)
 }

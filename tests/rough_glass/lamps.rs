@@ -2,7 +2,7 @@
 
 use abbe::plan::plan;
 use abbe::spectrum::{Basis, Emission};
-use abbe::trace::{Method, Transport, World, render};
+use abbe::trace::{Method, Transport, prepare, render};
 
 use crate::support::scenes::{Mean, SINGLE_PATH, SPLITTING, body, environment, images, scene, view};
 
@@ -73,7 +73,7 @@ fn fixed_lanes_and_heroes_show_the_same_lamp_behind_dispersive_rough_glass() {
                 .map(|seed| {
                     let transport = Transport::Random { split: 0.05, roulette: 0.05 };
                     let base = crate::support::scenes::method(&scene, transport);
-                    render(&World::new(&scene, Method { basis: basis.clone(), seed, ..base }), &|_| ()).0
+                    render(&prepare(&scene, Method { basis: basis.clone(), seed, ..base }), &|_| ()).0
                 })
                 .collect();
             Mean::over_seeds(films.iter())

@@ -3,7 +3,7 @@
 use abbe::material::{Arrival, Material, Roughness};
 use abbe::math::DVec3;
 use abbe::spectrum::{Draw, Table};
-use abbe::trace::World;
+use abbe::trace::prepare;
 
 use crate::support::scenes::{Mean, SINGLE_PATH, SPLITTING, body, environment, image, method, scene, view};
 
@@ -21,7 +21,7 @@ fn points() -> impl Iterator<Item = [f64; 2]> {
 fn conductor(metal: &str, roughness: f64) -> Material<Table> {
     let text = body("metal", &format!("conductor = {{ {metal}, roughness = {roughness:?} }}"), &[BALL]);
     let scene = scene(&(view([0.0, 0.0, 9.0], [0.0; 3], 1.0, 1) + &text));
-    World::new(&scene, method(&scene, SINGLE_PATH)).scene().material_of(0).clone()
+    prepare(&scene, method(&scene, SINGLE_PATH)).scene().material_of(0).clone()
 }
 
 const BALL: &str = "sphere = { center = [0, 0, 0], radius = 1 }";

@@ -4,7 +4,7 @@ use abbe::material::{Arrival, Roughness};
 use abbe::math::DVec3;
 use abbe::plan::plan;
 use abbe::spectrum::Draw;
-use abbe::trace::{Transport, World};
+use abbe::trace::{Transport, prepare};
 
 use crate::support::scenes::{EVERY_BRANCH, Mean, SINGLE_PATH, SPLITTING, body, image, images, method, scene, view};
 
@@ -51,7 +51,7 @@ fn a_point_light_shows_the_brdf_itself() {
             + &body("gold", &format!("conductor = {{ metal = \"Au\", roughness = {roughness:?} }}"), &[FLOOR])
             + point;
         let scene = scene(&text);
-        let world = World::new(&scene, method(&scene, SINGLE_PATH));
+        let world = prepare(&scene, method(&scene, SINGLE_PATH));
         let draw = Draw::<4>::fixed(3);
         let here = DVec3::new(0.5, 0.0, 0.0);
         let (wo, to_light) = ((DVec3::new(4.0, 3.0, 0.5) - here).normalize(), DVec3::new(-1.0, 2.0, 0.3) - here);

@@ -2,7 +2,7 @@
 
 use abbe::film::DEPTH_OF_NOTHING;
 use abbe::plan::plan;
-use abbe::trace::{World, render};
+use abbe::trace::{prepare, render};
 
 use crate::support::scenes::{SPLITTING, environment, image, scene};
 
@@ -45,7 +45,7 @@ fn h11_a_scene_with_nothing_in_it_is_planned_and_black() {
                 shape.sphere = { center = [0, 0, 0], radius = 1 }\n";
     for (text, alpha) in [("", 0.0), ("[[light]]\nenvironment = { radiance = 0 }\n", 0.0), (lamp, 1.0)] {
         let scene = scene(&(view(4, 4, 10.0) + text));
-        let (film, report) = render(&World::new(&scene, plan(&scene).method), &|_| ());
+        let (film, report) = render(&prepare(&scene, plan(&scene).method), &|_| ());
         assert_eq!((report.non_finite, report.unmatched), (0, 0));
         assert!(film.pixels.iter().all(|pixel| pixel.rgb == [0.0; 3] && pixel.alpha == alpha), "{text}");
     }

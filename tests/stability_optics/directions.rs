@@ -4,7 +4,7 @@ use abbe::material::{Arrival, Interface, reflect};
 use abbe::math::{DVec2, DVec3, UNIT_ROUNDOFF};
 use abbe::shape::SurfacePoint;
 use abbe::spectrum::Draw;
-use abbe::trace::World;
+use abbe::trace::prepare;
 
 use crate::support::exact::{Exact, ExactVector};
 use crate::support::random::Random;
@@ -65,7 +65,7 @@ fn s5_every_material_sends_light_on_along_unit_vectors() {
     ];
     let bodies: String = materials.iter().map(|(name, material)| body(name, material, &[ball])).collect();
     let scene = scene(&format!("{}{bodies}", view([0.0, 0.0, 5.0], [0.0; 3], 30.0, 1)));
-    let world = World::new(&scene, method(&scene, EVERY_BRANCH));
+    let world = prepare(&scene, method(&scene, EVERY_BRANCH));
     let draw = Draw::<4>::fixed(3);
     let mut random = Random::new(5);
     for object in 0..materials.len() as u32 {

@@ -5,7 +5,7 @@ use std::f64::consts::FRAC_PI_2;
 use abbe::material::{Arrival, Branch, Interface, Material};
 use abbe::math::{DVec3, UNIT_ROUNDOFF};
 use abbe::spectrum::{Draw, Lanes, Table};
-use abbe::trace::World;
+use abbe::trace::prepare;
 
 use crate::support::exact::Exact;
 use crate::support::random::Random;
@@ -230,7 +230,7 @@ fn the_reference_agrees_with_brewster() {
 fn glass() -> Material<Table> {
     let ball = body("glass", "dielectric = { index = 1.5 }", &["sphere = { center = [0, 0, 0], radius = 1 }"]);
     let scene = scene(&format!("{}{ball}", view([0.0, 0.0, 5.0], [0.0; 3], 30.0, 1)));
-    World::new(&scene, method(&scene, EVERY_BRANCH)).scene().material_of(0).clone()
+    prepare(&scene, method(&scene, EVERY_BRANCH)).scene().material_of(0).clone()
 }
 
 fn branches(material: &Material<Table>, wo: DVec3, normal: DVec3, incident: f64, beyond: f64) -> Vec<Branch<4>> {

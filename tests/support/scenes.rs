@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use abbe::film::Film;
 use abbe::scene::{Scene, Source, compile};
 use abbe::spectrum::{Basis, Curve};
-use abbe::trace::{Method, Report, Transport, World, render};
+use abbe::trace::{Method, Report, Transport, prepare, render};
 
 /// Follows every branch down to a weight that no pixel can show.
 pub const EVERY_BRANCH: Transport = Transport::Deterministic { cutoff: 1e-20, most: u64::MAX };
@@ -58,14 +58,14 @@ pub fn method(scene: &Scene<Curve>, transport: Transport) -> Method {
 pub fn image(text: &str, transport: Transport) -> (Film, Report) {
     let scene = scene(text);
     let method = method(&scene, transport);
-    render(&World::new(&scene, method), &|_| ())
+    render(&prepare(&scene, method), &|_| ())
 }
 
 /// Images of one scene under different seeds.
 pub fn images(text: &str, transport: Transport, seeds: u64) -> Vec<(Film, Report)> {
     let scene = scene(text);
     let seeded = |seed| Method { seed, ..method(&scene, transport) };
-    (0..seeds).map(|seed| render(&World::new(&scene, seeded(seed)), &|_| ())).collect()
+    (0..seeds).map(|seed| render(&prepare(&scene, seeded(seed)), &|_| ())).collect()
 }
 
 /// A mean of each band with its standard error.

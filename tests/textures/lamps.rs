@@ -88,7 +88,7 @@ fn a_lamp_that_shows_an_image_lights_a_floor_as_its_texels_say() {
         let films: Vec<Film> = (0..16)
             .map(|seed| {
                 let method = Method { seed, transport: SPLITTING, ..plan(&scene).method };
-                render(&World::new(&scene, method), &|_| ()).0
+                render(&prepare(&scene, method), &|_| ()).0
             })
             .collect();
         let mean = Mean::over_seeds(films.iter());
@@ -122,7 +122,7 @@ fn a_checkered_lamp_shines_like_its_two_halves() {
         let films: Vec<Film> = (0..16)
             .map(|seed| {
                 let method = Method { seed, transport: SPLITTING, ..plan(&scene).method };
-                render(&World::new(&scene, method), &|_| ()).0
+                render(&prepare(&scene, method), &|_| ()).0
             })
             .collect();
         Mean::over_seeds(films.iter())

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use abbe::film::Film;
 use abbe::math::{Bounds, DVec3};
 use abbe::plan::plan;
-use abbe::trace::{BrightPlace, BrightPlaces, Method, World, bright_places, render};
+use abbe::trace::{BrightPlace, BrightPlaces, Method, bright_places, prepare, prepare_unguided, render};
 
 use crate::support::scenes::{Mean, SPLITTING, body, environment, method, moments, scene, view};
 
@@ -46,12 +46,12 @@ const SUN: &str = "[[light]]\nsun = { toward = [-1, 0.7, 0.2], irradiance = 12 }
 fn films(text: &str, bright: Option<&BrightPlaces>, seeds: u64) -> Vec<Film> {
     let scene = scene(text);
     let asked = Method { bright: bright.cloned(), ..method(&scene, SPLITTING) };
-    (0..seeds).map(|seed| render(&World::new(&scene, Method { seed, ..asked.clone() }), &|_| ()).0).collect()
+    (0..seeds).map(|seed| render(&prepare(&scene, Method { seed, ..asked.clone() }), &|_| ()).0).collect()
 }
 
 fn learned(text: &str) -> Option<BrightPlaces> {
     let scene = scene(text);
-    bright_places(&World::untaught(&scene, method(&scene, SPLITTING)))
+    bright_places(&prepare_unguided(&scene, method(&scene, SPLITTING)))
 }
 
 /// A middle, two half edges and a radiance.

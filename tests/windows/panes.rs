@@ -2,7 +2,7 @@
 
 use abbe::plan::plan;
 use abbe::spectrum::Basis;
-use abbe::trace::{Method, Transport, World, render};
+use abbe::trace::{Method, Transport, prepare, render};
 
 use crate::support::scenes::{EVERY_BRANCH, Mean, SINGLE_PATH, SPLITTING, body, images, method, scene, view};
 
@@ -184,7 +184,7 @@ fn every_model_of_color_sees_the_same_light_through_colored_panes() {
     let scene = scene(&under(&panes(material, &[1.0]), SUN, "0.5", 64));
     let found = |basis: Basis| {
         let method = Method { basis, ..method(&scene, SPLITTING) };
-        Mean::of(&render(&World::new(&scene, method), &|_| ()).0).value
+        Mean::of(&render(&prepare(&scene, method), &|_| ()).0).value
     };
     let space = scene.film.color_space;
     let (fine, coarse) = (found(Basis::bands(space, 32, &[])), found(Basis::bands(space, 16, &[])));

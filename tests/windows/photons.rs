@@ -1,7 +1,7 @@
 //! Photons and panes: each path is found once, by the light pass or by the camera's paths.
 
 use abbe::film::Film;
-use abbe::trace::{LightPass, MapPasses, Method, World, render};
+use abbe::trace::{LightPass, MapPasses, Method, prepare, render};
 
 use crate::support::scenes::{Mean, SPLITTING, body, method, scene, view};
 
@@ -34,7 +34,7 @@ fn films(text: &str, light_pass: bool, map: bool) -> Vec<Film> {
     let lights = (0..scene.lights.len()).collect();
     let light_pass = light_pass.then_some(LightPass { photons: 60_000, lights, map });
     let asked = Method { light_pass, samples: 64, ..method(&scene, SPLITTING) };
-    (0..8).map(|seed| render(&World::new(&scene, Method { seed, ..asked.clone() }), &|_| ()).0).collect()
+    (0..8).map(|seed| render(&prepare(&scene, Method { seed, ..asked.clone() }), &|_| ()).0).collect()
 }
 
 #[test]

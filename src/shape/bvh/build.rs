@@ -7,8 +7,8 @@ use obvhs::aabb::Aabb;
 use obvhs::bvh2::builder::build_bvh2;
 use obvhs::{Boundable, BvhBuildParams};
 
-use super::collapse::Pair;
-use super::node::{Child, Node, Outer, WIDTH};
+use super::node::{Node, Outer, Pair};
+use super::slabs::{Child, WIDTH};
 use super::stack::STACK;
 use crate::math::DVec3;
 
@@ -223,16 +223,6 @@ impl<'a> Builder<'a> {
                 count => self.around(first..first + count),
             };
         }
-    }
-}
-
-impl Pair {
-    fn leaf(range: &Range<usize>) -> Self {
-        Self { outer: Outer::EMPTY, first: range.start as u32, count: range.len() as u32 }
-    }
-
-    fn two(first: usize) -> Self {
-        Self { outer: Outer::EMPTY, first: first as u32, count: 0 }
     }
 }
 

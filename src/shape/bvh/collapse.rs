@@ -1,18 +1,8 @@
 //! From a binary tree to nodes of eight.
 
-use super::Bvh;
 use super::build::Builder;
-use super::node::{Child, Node, Outer, WIDTH};
-
-/// A node of a binary tree.
-#[derive(Clone, Copy)]
-pub struct Pair {
-    pub outer: Outer,
-    /// First of two neighboring nodes, or of a range of `Builder::order`.
-    pub first: u32,
-    /// Number of items of a leaf, 0 for an inner node.
-    pub count: u32,
-}
+use super::node::{Node, Pair};
+use super::slabs::{Child, NO_ITEM, WIDTH};
 
 impl Builder<'_> {
     /// Turns a binary tree into nodes of eight: the children of the largest child take its place until there are eight.
@@ -52,7 +42,7 @@ impl Builder<'_> {
         let first = self.items.len();
         self.items.extend_from_slice(&self.order[pair.first as usize..(pair.first + pair.count) as usize]);
         let full = self.items.len().next_multiple_of(self.group);
-        self.items.resize(full, Bvh::NONE);
+        self.items.resize(full, NO_ITEM);
         Child::leaf(first / self.group, (full - first) / self.group)
     }
 

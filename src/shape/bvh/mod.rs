@@ -3,6 +3,7 @@
 mod build;
 mod collapse;
 mod node;
+mod slabs;
 mod stack;
 mod vectors;
 mod walk;
@@ -12,7 +13,8 @@ pub use walk::Visitor;
 
 use crate::math::{Bounds, Ray};
 use build::Builder;
-use node::{Child, Node, Outer};
+use node::{Node, Outer};
+use slabs::{Child, NO_ITEM};
 use vectors::Instructions;
 use walk::Walk;
 
@@ -31,7 +33,7 @@ pub struct Bvh {
 
 impl Bvh {
     /// Stands for no item, where a group is not full.
-    pub const NONE: u32 = u32::MAX;
+    pub const NONE: u32 = NO_ITEM;
 
     /// The tree over items 0, 1, 2, .. with the given finite boxes, in groups of `GROUP`.
     pub fn new<const GROUP: usize>(bounds: impl Iterator<Item = Bounds>) -> Self {
@@ -48,13 +50,13 @@ impl Bvh {
     /// Shows a visitor the leaves whose boxes the ray may meet before `t_max`, nearer ones first.
     #[inline]
     pub fn walk_in_order<V: Visitor>(&self, ray: &Ray, t_max: f64, visitor: V) -> V {
-        self.instructions.run(Walk::<true, V> { bvh: self, ray, t_max, visitor })
+        self.instructions.run(Walk::<true, V> { root: self.root, nodes: &self.nodes, ray, t_max, visitor })
     }
 
     /// Shows a visitor the leaves whose boxes the ray may meet before `t_max`, in any order.
     #[inline]
     pub fn walk<V: Visitor>(&self, ray: &Ray, t_max: f64, visitor: V) -> V {
-        self.instructions.run(Walk::<false, V> { bvh: self, ray, t_max, visitor })
+        self.instructions.run(Walk::<false, V> { root: self.root, nodes: &self.nodes, ray, t_max, visitor })
     }
 
     /// The same tree, walked without the instructions that only some machines have.

@@ -4,7 +4,7 @@
 //! same operations in the same order in both versions, none of them fused, so that they answer the same bits.
 #![allow(unsafe_code)]
 
-use super::node::{Child, Slabs, WIDTH};
+use super::slabs::{Child, Slabs, WIDTH};
 
 /// Triangles that are tested together.
 pub const GROUP: usize = 4;

@@ -1,7 +1,7 @@
 //! The way of a ray through the tree.
 
-use super::Bvh;
-use super::node::{Child, Slabs, reach};
+use super::node::Node;
+use super::slabs::{Child, Slabs, reach};
 use super::stack::{Room, Stack};
 use super::vectors::{Computation, Vectors, prefetch};
 use crate::math::Ray;
@@ -20,7 +20,8 @@ pub trait Visitor {
 
 /// A walk that looks into nearer boxes first if `ORDERED`, and into any otherwise.
 pub struct Walk<'a, const ORDERED: bool, T> {
-    pub bvh: &'a Bvh,
+    pub root: Option<Child>,
+    pub nodes: &'a [Node],
     pub ray: &'a Ray,
     pub t_max: f64,
     pub visitor: T,
@@ -31,7 +32,7 @@ impl<const ORDERED: bool, T: Visitor> Computation for Walk<'_, ORDERED, T> {
 
     #[inline(always)]
     fn run<V: Vectors>(mut self, vectors: V) -> T {
-        let Some(root) = self.bvh.root else { return self.visitor };
+        let Some(root) = self.root else { return self.visitor };
         let slabs = Slabs::new(self.ray);
         let mut limit = reach(self.t_max);
         // Children to look at, each under the distance at which its box begins.
@@ -48,7 +49,7 @@ impl<const ORDERED: bool, T: Visitor> Computation for Walk<'_, ORDERED, T> {
                     None => return self.visitor,
                 },
                 Err(index) => {
-                    let node = &self.bvh.nodes[index];
+                    let node = &self.nodes[index];
                     let (mut entered, keys) = node.enter(vectors, &slabs, limit);
                     let base = stack.height();
                     while entered != 0 {
@@ -57,7 +58,7 @@ impl<const ORDERED: bool, T: Visitor> Computation for Walk<'_, ORDERED, T> {
                         let key = keys[slot];
                         match Child(key as u32).open() {
                             Ok((first, _)) => self.visitor.prefetch(first),
-                            Err(index) => prefetch(&self.bvh.nodes[index]),
+                            Err(index) => prefetch(&self.nodes[index]),
                         }
                         if ORDERED {
                             stack.push_in_order(key, base);

@@ -1,13 +1,53 @@
-//! How far a way that is followed back from the camera has come, and the surface that it meets there.
+//! A way of light to the camera: what it meets, how far it has been followed back, and the surface that it meets there.
 
 use super::media::Media;
-use super::routes::{Step, Way};
+use crate::light::LightId;
 use crate::material::Facets;
 use crate::math::{BranchKey, DVec3, Frame, Ray};
 use crate::scene::MaterialId;
 use crate::shape::SurfacePoint;
 use crate::spectrum::Lanes;
 
+/// Something that light meets on its way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Step {
+    /// The material.
+    pub material: MaterialId,
+    /// Which of the materials that it is made of, in the order of
+    /// [`Material::with_parts`](crate::material::Material::with_parts).
+    pub part: usize,
+    /// What light does there.
+    pub way: Way,
+}
+
+/// What light does at a surface, or in a body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Way {
+    /// It is mirrored, by a surface or a facet of it met under an angle of this cosine.
+    Reflected(f64),
+    /// It goes through the surface.
+    Crossed,
+    /// It is scattered in every direction.
+    Scattered,
+    /// It goes this distance through the body.
+    Inside(f64),
+}
+
+/// A way of light from a light to the camera.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Route {
+    /// What it meets, the nearest to the camera first.
+    pub steps: Vec<Step>,
+    /// Where it comes from.
+    pub light: LightId,
+    /// What is left of it but for the steps.
+    pub weight: f64,
+    /// Diffuse surfaces among the steps.
+    pub scattered: u32,
+}
+
+/// Wavelengths in nm of the lanes that decide which ways matter.
+pub const ROUTES_NM: [f64; 4] = [450.0, 520.0, 590.0, 650.0];
 /// The end of a way that is followed back from the camera.
 #[derive(Clone)]
 pub(super) struct Walk {

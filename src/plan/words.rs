@@ -1,0 +1,29 @@
+//! Numbers as people say them.
+
+/// A share as people say it.
+pub(super) fn percent(share: f64) -> String {
+    match 100.0 * share {
+        p if p < 0.095 => format!("{p:.2} %"),
+        p if p < 9.95 => format!("{p:.1} %"),
+        p => format!("{p:.0} %"),
+    }
+}
+
+/// A count as people say it.
+pub(super) fn in_number(count: u64) -> String {
+    match count as f64 {
+        n if n < 1e4 => format!("{count}"),
+        n if n < 1e6 => format!("{:.0} thousand", n / 1e3),
+        n => format!("{:.1} million", n / 1e6),
+    }
+}
+
+/// A time as people say it.
+pub(super) fn in_words(seconds: f64) -> String {
+    match seconds {
+        s if s < 1.0 => "a second or less".into(),
+        s if s < 120.0 => format!("{s:.0} seconds"),
+        s if s < 7200.0 => format!("{:.0} minutes", s / 60.0),
+        s => format!("{:.1} hours", s / 3600.0),
+    }
+}

@@ -1,0 +1,282 @@
+//! A surface of any kind.
+
+use std::sync::Arc;
+
+use super::{
+    Ball, Crossing, Cube, Density, Disc, Ellipsoid, Instance, Mesh, Plane, Polygon, Quad, ShapeSample, Sphere,
+    SurfacePoint, Triangle,
+};
+use crate::math::{Bounds, Cone, DVec3, Ray, Transform, ball_surface, disk, triangle_coordinates};
+
+/// A surface.
+#[derive(Clone, Debug)]
+pub enum Shape {
+    /// An infinite plane.
+    Plane(Plane),
+    /// One triangle.
+    Triangle(Triangle),
+    /// A sphere.
+    Sphere(Sphere),
+    /// A sphere after an uneven scale.
+    Ellipsoid(Ellipsoid),
+    /// A flat disc or ellipse.
+    Disc(Disc),
+    /// A parallelogram.
+    Quad(Quad),
+    /// A box or parallelepiped.
+    Cube(Cube),
+    /// Many triangles.
+    Mesh(Arc<Mesh>),
+    /// Many triangles that other places share.
+    Instance(Box<Instance>),
+}
+
+impl Shape {
+    /// The nearest crossing with 0 < t <= `t_max`.
+    pub fn intersect(&self, ray: &Ray, t_max: f64) -> Option<Crossing> {
+        match self {
+            Self::Plane(plane) => plane.intersect(ray, t_max),
+            Self::Triangle(triangle) => triangle.intersect(ray, t_max),
+            Self::Sphere(sphere) => sphere.intersect(ray, t_max),
+            Self::Ellipsoid(ellipsoid) => ellipsoid.intersect(ray, t_max),
+            Self::Disc(disc) => disc.intersect(ray, t_max),
+            Self::Quad(quad) => quad.intersect(ray, t_max),
+            Self::Cube(cube) => cube.intersect(ray, t_max),
+            Self::Mesh(mesh) => mesh.intersect(ray, t_max),
+            Self::Instance(instance) => instance.intersect(ray, t_max),
+        }
+    }
+
+    /// Whether there is a crossing with 0 < t <= `t_max`.
+    pub fn is_crossed(&self, ray: &Ray, t_max: f64) -> bool {
+        match self {
+            Self::Mesh(mesh) => mesh.is_crossed(ray, t_max),
+            Self::Instance(instance) => instance.is_crossed(ray, t_max),
+            _ => self.intersect(ray, t_max).is_some(),
+        }
+    }
+
+    /// The surface at a crossing that `intersect` found on this ray.
+    pub fn point(&self, ray: &Ray, crossing: &Crossing) -> SurfacePoint {
+        match self {
+            Self::Plane(plane) => plane.point(ray.at(crossing.t)),
+            Self::Triangle(triangle) => triangle.point(crossing.uv),
+            Self::Sphere(sphere) => sphere.point(ray.at(crossing.t)),
+            Self::Ellipsoid(ellipsoid) => ellipsoid.point(ray.at(crossing.t)),
+            Self::Disc(disc) => disc.point(crossing.uv),
+            Self::Quad(quad) => quad.point(crossing.uv),
+            Self::Cube(cube) => cube.point(crossing),
+            Self::Mesh(mesh) => mesh.point(crossing),
+            Self::Instance(instance) => instance.point(crossing),
+        }
+    }
+
+    /// The box the shape fills, or none for an infinite one.
+    pub fn bounds(&self) -> Option<Bounds> {
+        match self {
+            Self::Plane(_) => None,
+            Self::Triangle(triangle) => Some(triangle.bounds()),
+            Self::Sphere(sphere) => Some(sphere.bounds()),
+            Self::Ellipsoid(ellipsoid) => Some(ellipsoid.bounds()),
+            Self::Disc(disc) => Some(disc.bounds()),
+            Self::Quad(quad) => Some(quad.bounds()),
+            Self::Cube(cube) => Some(cube.bounds()),
+            Self::Mesh(mesh) => Some(mesh.bounds()),
+            Self::Instance(instance) => Some(instance.bounds()),
+        }
+    }
+
+    /// The shape after an invertible affine map.
+    pub fn transformed(self, map: &Transform) -> Self {
+        if *map == Transform::IDENTITY {
+            return self;
+        }
+        match self {
+            Self::Plane(plane) => Self::Plane(plane.transformed(map)),
+            Self::Triangle(triangle) => Self::Triangle(triangle.transformed(map)),
+            Self::Sphere(sphere) => sphere.transformed(map).map_or_else(Self::Ellipsoid, Self::Sphere),
+            Self::Ellipsoid(ellipsoid) => Self::Ellipsoid(ellipsoid.transformed(map)),
+            Self::Disc(disc) => Self::Disc(disc.transformed(map)),
+            Self::Quad(quad) => Self::Quad(quad.transformed(map)),
+            Self::Cube(cube) => Self::Cube(cube.transformed(map)),
+            Self::Mesh(mesh) => Self::Mesh(Arc::new(mesh.transformed(map))),
+            Self::Instance(instance) => match instance.transformed(map) {
+                Some(instance) => Self::Instance(Box::new(instance)),
+                None => Self::Mesh(Arc::new(instance.baked().transformed(map))),
+            },
+        }
+    }
+
+    /// Another one of many such shapes, after an invertible affine map; they share the triangles of a mesh.
+    pub fn copied(&self, map: &Transform) -> Self {
+        let shared = match self {
+            Self::Mesh(mesh) if *map != Transform::IDENTITY => Instance::new(mesh.clone(), *map),
+            _ => None,
+        };
+        shared.map_or_else(|| self.clone().transformed(map), |instance| Self::Instance(Box::new(instance)))
+    }
+
+    /// Whether the shape has an inside: a dielectric on it fills that, or the half space behind a plane.
+    pub fn is_closed(&self) -> bool {
+        match self {
+            Self::Plane(_) | Self::Sphere(_) | Self::Ellipsoid(_) | Self::Cube(_) => true,
+            Self::Triangle(_) | Self::Disc(_) | Self::Quad(_) => false,
+            Self::Mesh(mesh) => mesh.is_closed(),
+            Self::Instance(instance) => instance.is_closed(),
+        }
+    }
+
+    /// The shape's area, infinite for a plane.
+    pub fn area(&self) -> f64 {
+        match self {
+            Self::Plane(_) => f64::INFINITY,
+            Self::Triangle(triangle) => triangle.area(),
+            Self::Sphere(sphere) => sphere.area(),
+            Self::Ellipsoid(ellipsoid) => ellipsoid.area(),
+            Self::Disc(disc) => disc.area(),
+            Self::Quad(quad) => quad.area(),
+            Self::Cube(cube) => cube.area(),
+            Self::Mesh(mesh) => mesh.area(),
+            Self::Instance(instance) => instance.area(),
+        }
+    }
+
+    /// The unit normal of the front of a flat shape.
+    pub fn flat_normal(&self) -> Option<DVec3> {
+        match self {
+            Self::Triangle(triangle) => Some(triangle.normal()),
+            Self::Disc(disc) => Some(disc.normal()),
+            Self::Quad(quad) => Some(quad.normal()),
+            _ => None,
+        }
+    }
+
+    /// A ball around the shape: itself if it is one, else that around its box; none for an infinite shape.
+    pub fn ball(&self) -> Option<Ball> {
+        let bounds = self.bounds()?;
+        let (center, half) = (bounds.center(), 0.5 * (bounds.max - bounds.min));
+        let radius = if matches!(self, Self::Sphere(_)) { half.max_element() } else { half.length() };
+        Some(Ball { center, radius })
+    }
+
+    /// A direction from a point toward the shape; none where the draw sees it exactly edge-on.
+    ///
+    /// Spheres are drawn by the cone they fill, triangles and quads nearby by their solid angle, other shapes by their
+    /// area.
+    pub fn sample(&self, from: DVec3, u: [f64; 2]) -> Option<ShapeSample> {
+        let (point, part) = match self {
+            Self::Plane(_) => return None,
+            Self::Sphere(sphere) => return Some(sphere.sample(from, u)),
+            Self::Triangle(triangle) => return Polygon::Triangle(triangle.clone()).sample(from, u),
+            Self::Quad(quad) => return Polygon::Parallelogram(quad.plane()).sample(from, u),
+            Self::Ellipsoid(ellipsoid) => return ShapeSample::along(ellipsoid.sample_area(u) - from),
+            Self::Disc(disc) => {
+                let sample = ShapeSample::along(disc.sample_area(u) - from)?;
+                return Some(sample.with_density(Density::Area(1.0 / disc.area())));
+            }
+            Self::Cube(cube) => cube.sample_area(u),
+            Self::Mesh(mesh) => mesh.sample_area(u),
+            Self::Instance(instance) => instance.sample_area(u),
+        };
+        Some(ShapeSample::along(point - from)?.with_part(part).with_density(self.density_of_part(part)))
+    }
+
+    /// Density per steradian with which `sample` draws the direction of a ray that first meets the shape at a crossing.
+    pub fn pdf(&self, ray: &Ray, crossing: &Crossing) -> f64 {
+        let density = match self {
+            Self::Plane(_) => return 0.0,
+            Self::Sphere(sphere) => return sphere.pdf(ray),
+            Self::Ellipsoid(ellipsoid) => return ellipsoid.pdf(ray),
+            Self::Triangle(triangle) => Polygon::Triangle(triangle.clone()).density(ray.origin),
+            Self::Quad(quad) => Polygon::Parallelogram(quad.plane()).density(ray.origin),
+            Self::Disc(_) | Self::Cube(_) | Self::Mesh(_) | Self::Instance(_) => self.density_of_part(crossing.part),
+        };
+        self.toward(density, ray, crossing)
+    }
+
+    /// How densely the area of a part is drawn.
+    fn density_of_part(&self, part: u32) -> Density {
+        match self {
+            Self::Instance(instance) => Density::Area(instance.density(part)),
+            _ => Density::Area(1.0 / self.area()),
+        }
+    }
+
+    fn toward(&self, density: Density, ray: &Ray, crossing: &Crossing) -> f64 {
+        density.toward(crossing.t, self.point(ray, crossing).normal.dot(ray.direction).abs())
+    }
+
+    /// A direction as `sample` draws it; toward a sphere, most often to a cap of it, given by its unit normals.
+    pub fn sample_cap(&self, cap: &Cone, from: DVec3, u: [f64; 2]) -> Option<ShapeSample> {
+        if let Self::Sphere(sphere) = self { sphere.sample_cap(cap, from, u) } else { self.sample(from, u) }
+    }
+
+    /// Density per steradian with which `sample_cap` draws the direction of a ray that first meets the shape at a
+    /// crossing.
+    pub fn pdf_cap(&self, cap: &Cone, ray: &Ray, crossing: &Crossing) -> f64 {
+        if let Self::Sphere(sphere) = self { sphere.pdf_cap(cap, ray, crossing.t) } else { self.pdf(ray, crossing) }
+    }
+
+    /// How many parts may be sampled one by one: triangles of a mesh, faces of a cube; 0 of other shapes.
+    pub fn part_count(&self) -> u32 {
+        match self {
+            Self::Cube(_) => 6,
+            Self::Mesh(mesh) => mesh.len() as u32,
+            Self::Instance(instance) => instance.mesh().len() as u32,
+            _ => 0,
+        }
+    }
+
+    /// One of the parts, where it stands in the world; none of a shape that has none.
+    pub fn part(&self, part: u32) -> Option<Polygon<'_>> {
+        match self {
+            Self::Cube(cube) => Some(Polygon::Parallelogram(cube.face(part))),
+            Self::Mesh(mesh) => Some(Polygon::Triangle(mesh.triangle(part))),
+            Self::Instance(instance) => Some(Polygon::Triangle(instance.triangle(part))),
+            _ => None,
+        }
+    }
+
+    /// A direction from a point toward one of the parts.
+    pub fn sample_part(&self, part: u32, from: DVec3, u: [f64; 2]) -> Option<ShapeSample> {
+        Some(self.part(part)?.sample(from, u)?.with_part(part))
+    }
+
+    /// Density per steradian with which `sample_part` draws the direction of a ray that first meets the part at a
+    /// crossing.
+    pub fn pdf_part(&self, ray: &Ray, crossing: &Crossing) -> f64 {
+        let part = self.part(crossing.part);
+        part.map_or(0.0, |part| self.toward(part.density(ray.origin), ray, crossing))
+    }
+
+    /// A point from which light may reach a ball; none of an infinite shape and of an instance.
+    ///
+    /// Of a sphere, in the cap that sees some of the ball; of other shapes, anywhere on the surface.
+    pub fn sample_emission(&self, toward: &Ball, u: [f64; 2]) -> Option<SurfacePoint> {
+        Some(match self {
+            Self::Plane(_) | Self::Instance(_) => return None,
+            Self::Triangle(triangle) => triangle.point(triangle_coordinates(u)),
+            Self::Sphere(sphere) => sphere.sample_emission(self.ball()?, toward, u),
+            Self::Ellipsoid(ellipsoid) => ellipsoid.point_at(ball_surface(u)),
+            Self::Disc(shape) => shape.point(disk(u).into()),
+            Self::Quad(shape) => shape.point(u.map(|x| 2.0 * x - 1.0)),
+            Self::Cube(cube) => {
+                let (face, along) = cube.choose(u[0]);
+                cube.face(face).point([2.0 * along - 1.0, 2.0 * u[1] - 1.0])
+            }
+            Self::Mesh(mesh) => {
+                let (triangle, along) = mesh.choose(u[0]);
+                mesh.triangle(triangle).point(triangle_coordinates([along, u[1]]))
+            }
+        })
+    }
+
+    /// Density per unit of area with which `sample_emission` draws a point of the shape for a ball.
+    pub fn pdf_emission(&self, toward: &Ball, point: &SurfacePoint) -> f64 {
+        match self {
+            Self::Sphere(sphere) => self.ball().map_or(0.0, |own| sphere.pdf_emission(own, toward, point)),
+            Self::Ellipsoid(ellipsoid) => ellipsoid.density_over(ellipsoid.unit_of(point.position)),
+            _ => 1.0 / self.area(),
+        }
+    }
+}

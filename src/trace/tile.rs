@@ -1,0 +1,60 @@
+//! Parts of an image that are made side by side.
+
+use std::ops::Range;
+
+use super::World;
+use super::merge::Photons;
+use super::path_tracer::PathTracer;
+use super::stats::Stats;
+use crate::film::{PassSum, PixelSum, Window};
+use crate::math::Sampler;
+
+/// Side of a tile in pixels.
+pub(super) const TILE: u32 = 16;
+
+/// A small part of the image.
+pub(super) struct Tile {
+    /// Its first column and row in the window.
+    corner: [u32; 2],
+    pub(super) width: u32,
+    pub(super) height: u32,
+    /// Sums of its pixels, row by row.
+    pub(super) sums: Vec<PixelSum>,
+    pub(super) stats: Stats,
+    pub(super) first_non_finite: Option<[u32; 3]>,
+}
+
+impl Tile {
+    pub(super) fn new(window: Window, corner: [u32; 2]) -> Self {
+        let [width, height] = [window.width - corner[0], window.height - corner[1]].map(|left| left.min(TILE));
+        let sums = vec![PixelSum::default(); width as usize * height as usize];
+        Self { corner, width, height, sums, stats: Stats::default(), first_non_finite: None }
+    }
+
+    /// The number of one of its pixels in the window.
+    pub(super) fn number(&self, window: Window, place: u32) -> usize {
+        let [x, y] = [self.corner[0] + place % self.width, self.corner[1] + place / self.width];
+        y as usize * window.width as usize + x as usize
+    }
+
+    /// Takes samples of all pixels.
+    pub(super) fn take<const N: usize>(&mut self, world: &World, photons: Option<&Photons<N>>, numbers: Range<u32>) {
+        let window = world.scene.film.window();
+        let mut tracer = PathTracer::<N>::new(world).with_photons(photons);
+        for (place, sum) in (0..).zip(&mut self.sums) {
+            // Random numbers and rays belong to the full image's pixel, whatever part of it is made.
+            let x = window.left + self.corner[0] + place % self.width;
+            let y = window.top + self.corner[1] + place / self.width;
+            let mut pass = PassSum::default();
+            for number in numbers.clone() {
+                let sampler = Sampler::new(world.method.seed, [x, y], number);
+                if !pass.add(&tracer.sample(&sampler, [x, y])) {
+                    self.stats.non_finite += 1;
+                    self.first_non_finite.get_or_insert([x, y, number]);
+                }
+            }
+            sum.add(pass);
+        }
+        self.stats += tracer.walker.stats;
+    }
+}
