@@ -89,7 +89,7 @@ fn every_row_of_the_readme_shows_toml_that_a_scene_takes() {
             }
         }
     }
-    assert!(read > 50 && compiled > 45, "{read} pieces were read, {compiled} compiled");
+    assert!(read > 45 && compiled > 40, "{read} pieces were read, {compiled} compiled");
 }
 
 #[test]

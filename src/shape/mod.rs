@@ -30,7 +30,6 @@ mod quad;
 mod sample;
 mod sides;
 mod sphere;
-
 mod triangle;
 mod vertices;
 

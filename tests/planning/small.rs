@@ -19,10 +19,11 @@ const MATERIALS: &str = "[material.flint]\ndielectric = { index = \"N-SF11\", pr
     [material.wall]\ndiffuse = { reflectance = { rgb = [0.7, 0.5, 0.3] } }\n[material.stripe]\ndiffuse = { reflectance = 0.1 }\n\
     [material.lamp]\nemissive = { radiance = 10 }\n";
 
-/// A camera at the origin that looks along -z, a striped wall, a lamp behind the camera.
+/// A camera at the origin that looks along -z, a striped wall, a lamp behind the camera. Photons, which have no say in
+/// whether wavelengths part, are not weighed.
 fn plan_of(things: &str, width: f64) -> Plan {
     plan(&scene(&format!(
-        "[camera]\nposition = [0, 0, 0]\nlook_at = [0, 0, -1]\nvertical_fov = 40\n[film]\nwidth = {width}\nheight = {width}\n{MATERIALS}\
+        "[render]\ncaustics = \"off\"\n[camera]\nposition = [0, 0, 0]\nlook_at = [0, 0, -1]\nvertical_fov = 40\n[film]\nwidth = {width}\nheight = {width}\n{MATERIALS}\
          [[object]]\nshape.quad = {{ center = [0, 0, -20], u = [30, 0, 0], v = [0, 30, 0] }}\nmaterial = \"wall\"\n\
          [[object]]\nshape.quad = {{ center = [0, 0, -19.9], u = [0.4, 0, 0], v = [0, 30, 0] }}\nmaterial = \"stripe\"\n\
          [[object]]\nshape.quad = {{ center = [0, 0, 20], u = [30, 0, 0], v = [0, 30, 0] }}\nmaterial = \"wall\"\n\
