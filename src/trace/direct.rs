@@ -118,15 +118,15 @@ impl<const N: usize> Gathering<'_, N> {
         let flat = if normal.dot(self.arrival.wo) < 0.0 { -normal } else { normal };
         let (bsdf_cos, bsdf_pdf) = shading::evaluate(self.material, self.arrival, flat, wi)?;
         let probability = probability * self.side.unwrap_or(1.0);
-        if !self.factor(&sample, probability, bsdf_pdf).is_finite() {
+        let mut factor = self.factor(&sample, probability, bsdf_pdf);
+        if !factor.is_finite() {
             return None;
         }
         let straight = self.unoccluded(&sample)?;
         // The density of bounces that are guided takes its time.
-        let bounce_pdf = match self.aiming {
-            Some(aiming) if self.goes_on && sample.pdf.is_some() => aiming.pdf(wi, bsdf_pdf),
-            _ => bsdf_pdf,
-        };
+        if let Some(aiming) = self.aiming.filter(|_| self.goes_on && sample.pdf.is_some()) {
+            factor = self.factor(&sample, probability, aiming.pdf(wi, bsdf_pdf));
+        }
         let mut arriving = light.toward(self.arrival.draw, wi, sample.uv);
         if let Some((share, _)) = straight {
             arriving = arriving * share;
@@ -134,7 +134,6 @@ impl<const N: usize> Gathering<'_, N> {
         if let Some(material) = self.inside {
             arriving = arriving * media::medium(world, material).transmission(self.arrival.draw, sample.distance);
         }
-        let factor = self.factor(&sample, probability, bounce_pdf);
         let reflected = self.throughput.scaled(factor).of(bsdf_cos * arriving);
         let rgb = world.responses[id].sensor(self.arrival.draw, reflected, self.parted);
         if let Some(lit) = self.lit {
