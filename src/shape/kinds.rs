@@ -94,7 +94,10 @@ impl Shape {
         match self {
             Self::Plane(plane) => Self::Plane(plane.transformed(map)),
             Self::Triangle(triangle) => Self::Triangle(triangle.transformed(map)),
-            Self::Sphere(sphere) => sphere.transformed(map).map_or_else(Self::Ellipsoid, Self::Sphere),
+            Self::Sphere(sphere) => match sphere.transformed(map) {
+                Some(sphere) => Self::Sphere(sphere),
+                None => Self::Ellipsoid(sphere.ellipsoid().transformed(map)),
+            },
             Self::Ellipsoid(ellipsoid) => Self::Ellipsoid(ellipsoid.transformed(map)),
             Self::Disc(disc) => Self::Disc(disc.transformed(map)),
             Self::Quad(quad) => Self::Quad(quad.transformed(map)),

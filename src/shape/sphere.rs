@@ -69,15 +69,14 @@ impl Sphere {
         Bounds { min: self.center - reach, max: self.center + reach }.padded(8)
     }
 
-    /// The sphere after a map; an ellipsoid after an uneven one.
-    pub(super) fn transformed(&self, map: &Transform) -> Result<Self, Ellipsoid> {
-        match map.uniform_scale() {
-            Some(scale) => Ok(Self::new(map.point(self.center), self.radius * scale)),
-            None => {
-                let axes = DMat3::from_diagonal(DVec3::splat(self.radius));
-                Err(Ellipsoid::new(self.center, axes).transformed(map))
-            }
-        }
+    /// The sphere after a map; none after an uneven one, which makes an ellipsoid of it.
+    pub(super) fn transformed(&self, map: &Transform) -> Option<Self> {
+        map.uniform_scale().map(|scale| Self::new(map.point(self.center), self.radius * scale))
+    }
+
+    /// The same surface as an ellipsoid.
+    pub(super) fn ellipsoid(&self) -> Ellipsoid {
+        Ellipsoid::new(self.center, DMat3::from_diagonal(DVec3::splat(self.radius)))
     }
 
     pub(super) fn area(&self) -> f64 {

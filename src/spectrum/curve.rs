@@ -250,7 +250,7 @@ impl Curve {
 
 /// Linear between samples, flat beyond the ends.
 pub(super) fn interpolate(samples: &[[f64; 2]], x: f64) -> f64 {
-    data::interpolate(samples, x)[1]
+    crate::math::interpolate(samples, x)[1]
 }
 
 /// The squared index of a Sellmeier curve at a wavelength in um.

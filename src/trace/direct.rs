@@ -56,6 +56,8 @@ struct ShadowRay<const N: usize> {
     /// The material's answer times the cosine, and how densely it scatters into the ray's direction.
     bsdf_cos: Lanes<N>,
     bsdf_pdf: f64,
+    /// The factor on both, where bounces are not guided.
+    factor: f64,
 }
 
 /// Random numbers for the second light and those after it.
@@ -126,26 +128,21 @@ impl<const N: usize> DirectLighting<'_, N> {
         }
         let flat = if normal.dot(arrival.wo) < 0.0 { -normal } else { normal };
         let (bsdf_cos, bsdf_pdf) = shading::evaluate(self.at.material, arrival, flat, wi)?;
-        let ray = ShadowRay {
-            light: drawn.light,
-            sample,
-            probability: drawn.probability * side.chance.unwrap_or(1.0),
-            bsdf_cos,
-            bsdf_pdf,
-        };
-        self.factor(&ray, bsdf_pdf).is_finite().then_some(ray)
+        let (light, probability) = (drawn.light, drawn.probability * side.chance.unwrap_or(1.0));
+        let factor = self.factor(&sample, probability, bsdf_pdf);
+        factor.is_finite().then_some(ShadowRay { light, sample, probability, bsdf_cos, bsdf_pdf, factor })
     }
 
     /// What the sensor gets by a ray; none if something occludes the light.
     fn trace(&self, side: &Side, shadow_ray: &ShadowRay<N>) -> Option<Contribution> {
         let (world, arrival) = (self.world, &self.at.arrival);
-        let ShadowRay { light, sample, bsdf_cos, bsdf_pdf, .. } = shadow_ray;
+        let ShadowRay { light, sample, probability, bsdf_cos, bsdf_pdf, factor } = shadow_ray;
         let straight = self.unoccluded(sample, side.inside)?;
         let wi = sample.ray.direction;
         // The density of bounces that are guided takes its time.
-        let bounce_pdf = match self.aiming {
-            Some(aiming) if self.goes_on && sample.pdf.is_some() => aiming.pdf(wi, *bsdf_pdf),
-            _ => *bsdf_pdf,
+        let factor = match self.aiming.filter(|_| self.goes_on && sample.pdf.is_some()) {
+            Some(aiming) => self.factor(sample, *probability, aiming.pdf(wi, *bsdf_pdf)),
+            None => *factor,
         };
         let mut arriving = world.scene.lights[*light].toward(arrival.draw, wi, sample.uv);
         if let Some((share, _)) = straight {
@@ -154,7 +151,6 @@ impl<const N: usize> DirectLighting<'_, N> {
         if let Some(material) = side.inside {
             arriving = arriving * media::medium(&world.scene, material).transmission(arrival.draw, sample.distance);
         }
-        let factor = self.factor(shadow_ray, bounce_pdf);
         let reflected = self.path.throughput.scaled(factor).of(*bsdf_cos * arriving);
         let rgb = world.responses[*light].sensor(arrival.draw, reflected, side.parted);
         let mut moved = 0.0;
@@ -168,7 +164,7 @@ impl<const N: usize> DirectLighting<'_, N> {
 
     /// The factor on a light's emission and the material's answer: over the density of both ways to the light's
     /// direction together, where the path's own next direction may hit it.
-    fn factor(&self, ShadowRay { sample, probability, .. }: &ShadowRay<N>, bounce_pdf: f64) -> f64 {
+    fn factor(&self, sample: &LightSample, probability: f64, bounce_pdf: f64) -> f64 {
         let Some(pdf) = sample.pdf else { return sample.factor / probability };
         let pdf = pdf * probability;
         let weight = if self.goes_on { power_heuristic(pdf, bounce_pdf) } else { 1.0 };

@@ -2,8 +2,8 @@
 
 use std::sync::OnceLock;
 
-use super::interpolate;
 use super::rows::{Row, Rows, fields, numbers};
+use crate::math::interpolate;
 
 const ROWS: Rows = Rows::new(include_str!("colors.txt"));
 

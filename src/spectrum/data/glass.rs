@@ -1,7 +1,7 @@
 //! Clear materials: glasses of the makers, crystals, gems, liquids, plastics and gases.
 
-use super::interpolate;
 use super::rows::{Row, Rows, fields, has_alias, key_of, names, number, numbers, samples};
+use crate::math::interpolate;
 
 const ROWS: Rows = Rows::new(include_str!("glasses.txt"));
 

@@ -1,7 +1,7 @@
 //! Metals, alloys and semiconductors, which light does not cross.
 
-use super::interpolate;
 use super::rows::{Row, Rows, fields, has_alias, key_of, names, samples};
+use crate::math::interpolate;
 
 const ROWS: Rows = Rows::new(include_str!("metals.txt"));
 
