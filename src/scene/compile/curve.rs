@@ -7,7 +7,7 @@ use sha2::Digest;
 use super::context::{Context, FileKind};
 use super::curve_name::{illuminant_called, unknown_glass, unknown_illuminant, unknown_metal, unknown_reflectance};
 use super::curve_range::{Refusal, article, factor, possible, shown, told};
-use super::curve_text::{CurveText, KindText};
+use super::curve_text::{CurveText, KindText, finite, not_finite};
 use super::spectrum_file::read_columns;
 use crate::scene::text::{At, Value};
 use crate::spectrum::{
@@ -25,7 +25,8 @@ pub(super) fn curve<'d>(context: &mut Context<'d>, text: &CurveText<'d>, quantit
     if let (Some(luminance), false) = (text.luminance, quantity == Quantity::Emission) {
         return luminance.place.advise(format!("{} has no luminance", article(quantity)), "use `scale`");
     }
-    are_finite(text)?;
+    finite(text.scale)?;
+    text.luminance.map_or(Some(()), finite)?;
     let kind = kind(context, text, quantity)?;
     let curve = Curve { kind, scale: text.scale.it, luminance: text.luminance.map(|luminance| luminance.it) };
     if let Some(At { place, it: luminance }) = text.luminance {
@@ -72,41 +73,6 @@ fn forms(quantity: Quantity) -> &'static str {
             "write a number, { rgb = [red, green, blue] } or { samples = [[nm, value], ..] }"
         }
     }
-}
-
-/// That a spectrum is made of finite numbers.
-fn are_finite(text: &CurveText) -> Option<()> {
-    let place = text.place;
-    let pairs = |pairs: &[[f64; 2]]| {
-        pairs
-            .iter()
-            .enumerate()
-            .try_for_each(|(number, pair)| pair.iter().try_for_each(|x| finite(place.entry(number), *x)))
-    };
-    let list = |place: Value, list: &[f64]| {
-        list.iter().enumerate().try_for_each(|(number, x)| finite(place.entry(number), *x))
-    };
-    match &text.kind {
-        KindText::Number(x) | KindText::Blackbody(x) => finite(place, *x)?,
-        KindText::Rgb(rgb) => list(place, rgb)?,
-        KindText::Samples(samples) => pairs(samples)?,
-        KindText::Lines(lines) => pairs(lines)?,
-        KindText::Cauchy(terms) => list(place, terms)?,
-        KindText::Sellmeier { b, c } => list(b.place, &b.it).and_then(|()| list(c.place, &c.it))?,
-        KindText::Abbe { nd, vd } => finite(nd.place, nd.it).and_then(|()| finite(vd.place, vd.it))?,
-        KindText::Name(_) | KindText::File(_) | KindText::Illuminant(_) => {}
-        KindText::Image(_) | KindText::Checker(_) => {}
-    }
-    finite(text.scale.place, text.scale.it)?;
-    text.luminance.map_or(Some(()), |luminance| finite(luminance.place, luminance.it))
-}
-
-fn finite(place: Value, x: f64) -> Option<()> {
-    if x.is_finite() { Some(()) } else { place.refuse(not_finite(x)) }
-}
-
-fn not_finite(x: f64) -> String {
-    format!("a spectrum is made of finite numbers, not {x}")
 }
 
 /// What a text says, looked up and read.

@@ -52,26 +52,26 @@ type Reader = for<'d> fn(Value<'d>) -> Option<KindText<'d>>;
 
 /// The keys of which a table of a spectrum has one, and what reads them.
 const KINDS: [(&str, Reader); 11] = [
-    ("rgb", |value| value.numbers().map(KindText::Rgb)),
+    ("rgb", |value| value.array(real).map(KindText::Rgb)),
     ("samples", |value| pairs(value, "write [wavelength in nm, value]").map(KindText::Samples)),
     ("file", |value| value.text().map(KindText::File)),
-    ("cauchy", |value| value.as_list("", "write [A, B] of n = A + B / wavelength^2").numbers().map(KindText::Cauchy)),
+    ("cauchy", |value| value.as_list("", "write [A, B] of n = A + B / wavelength^2").array(real).map(KindText::Cauchy)),
     ("sellmeier", |value| {
         Fields::read(value, |table| {
-            let b = table.need("b", at(|value: Value| value.list(Value::number)));
-            let c = table.need("c", at(|value: Value| value.list(Value::number)));
+            let b = table.need("b", at(|value: Value| value.list(real)));
+            let c = table.need("c", at(|value: Value| value.list(real)));
             Some(KindText::Sellmeier { b: b?, c: c? })
         })
     }),
     ("abbe", |value| {
         Fields::read(value, |table| {
-            let nd = table.need("nd", at(Value::number));
-            let vd = table.need("vd", at(Value::number));
+            let nd = table.need("nd", at(real));
+            let vd = table.need("vd", at(real));
             Some(KindText::Abbe { nd: nd?, vd: vd? })
         })
     }),
     ("illuminant", |value| value.text().map(KindText::Illuminant)),
-    ("blackbody", |value| value.number().map(KindText::Blackbody)),
+    ("blackbody", |value| real(value).map(KindText::Blackbody)),
     ("lines", |value| pairs(value, "write [wavelength in nm, power]").map(KindText::Lines)),
     ("image", |value| value.text().map(KindText::Image)),
     ("checker", |value| {
@@ -85,7 +85,21 @@ const KINDS: [(&str, Reader); 11] = [
 ];
 
 fn pairs(value: Value, help: &'static str) -> Option<Vec<[f64; 2]>> {
-    value.list(|entry| entry.as_list("", help).numbers())
+    value.list(|entry| entry.as_list("", help).array(real))
+}
+
+/// A number that a spectrum can be made of.
+fn real(value: Value) -> Option<f64> {
+    let it = value.number()?;
+    finite(At { place: value, it }).map(|()| it)
+}
+
+pub(super) fn finite(At { place, it }: At<f64>) -> Option<()> {
+    if it.is_finite() { Some(()) } else { place.refuse(not_finite(it)) }
+}
+
+pub(super) fn not_finite(x: f64) -> String {
+    format!("a spectrum is made of finite numbers, not {x}")
 }
 
 const COLOR: &str = "{ rgb = [0.7, 0.5, 0.3] }";
@@ -123,7 +137,7 @@ impl<'d> CurveText<'d> {
 fn curve_text<'d>(value: Value<'d>, example: &str) -> Option<CurveText<'d>> {
     match value.node() {
         DeValue::Integer(_) | DeValue::Float(_) => {
-            value.number().map(|number| CurveText::bare(value, KindText::Number(number)))
+            real(value).map(|number| CurveText::bare(value, KindText::Number(number)))
         }
         DeValue::String(name) => Some(CurveText::bare(value, KindText::Name(name))),
         DeValue::Table(_) => Fields::read(value, |table| curve_table(value, table, example)),
