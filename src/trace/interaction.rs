@@ -3,18 +3,16 @@
 use super::media::{self, Boundary};
 use super::path::Path;
 use super::{World, shading};
-use crate::material::{Arrival, Lobes, Material, Straight};
+use crate::material::{Arrival, Lobes, Material};
 use crate::math::DVec3;
 use crate::scene::{Hit, MaterialId};
 use crate::shape::SurfacePoint;
 use crate::spectrum::{Draw, Lanes, Table};
 
 /// The next surface along a ray.
-pub(super) struct Meeting<const N: usize> {
+pub(super) struct Meeting {
     pub(super) hit: Hit,
     pub(super) point: SurfacePoint,
-    /// What goes straight on through it; none if nothing does.
-    pub(super) straight: Option<Straight<N>>,
 }
 
 /// Where a path meets a surface, and what the surface may know of it: made here, for the camera's paths, photons and
@@ -40,10 +38,10 @@ impl<'a, const N: usize> Interaction<'a, N> {
         world: &'a World,
         draw: &'a Draw<N>,
         path: &Path<N>,
-        meeting: &'a Meeting<N>,
+        meeting: &'a Meeting,
         boundary: Boundary,
     ) -> Self {
-        let Meeting { hit, point, .. } = meeting;
+        let Meeting { hit, point } = meeting;
         let object = &world.scene.objects[hit.object as usize];
         let (wo, uv, number) = (-path.ray.direction, object.uv(&hit.crossing, point), object.material as usize);
         let (material, lobes) = (&world.scene.materials[number].material, world.lobes[number]);

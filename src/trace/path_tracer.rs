@@ -13,7 +13,7 @@ use super::walker::{Departure, Walker};
 use super::{Transport, World};
 use crate::film::Sample;
 use crate::light::{Light, LightId};
-use crate::material::Material;
+use crate::material::{Material, Straight};
 use crate::math::{BranchKey, DVec2, Ray, Sampler};
 use crate::shape::SurfacePoint;
 use crate::spectrum::Draw;
@@ -91,14 +91,16 @@ impl<'a, const N: usize> PathTracer<'a, N> {
                 self.tell(&path, draw, f64::INFINITY, before);
                 continue;
             };
-            let Meeting { hit, point, straight } = &meeting;
-            if let Some(straight) = straight
+            let straight = self.walker.straight(&path, draw, &meeting);
+            let Meeting { hit, point } = &meeting;
+            if let Some(straight) = &straight
                 && path.throughput.through(straight.share()) == path.throughput
             {
                 self.walker.pending.push(path.passed(point));
                 continue;
             }
-            if path.vertices == 0 && first.is_none() && straight::is_met(world, draw, sampler, &path, *straight) {
+            if path.vertices == 0 && first.is_none() && straight::is_met(world, draw, sampler, &path, straight.as_ref())
+            {
                 first = Some(*point);
             }
             path.vertices += 1;
@@ -110,7 +112,7 @@ impl<'a, const N: usize> PathTracer<'a, N> {
                 self.walker.pending.extend(straight.map(|straight| path.passed_in_part(point, &straight)));
                 continue;
             }
-            self.scatter(&path, draw, sampler, &meeting);
+            self.scatter(&path, draw, sampler, &meeting, straight.as_ref());
             if straight.is_none() {
                 self.tell(&path, draw, hit.crossing.t, before);
             }
@@ -142,7 +144,7 @@ impl<'a, const N: usize> PathTracer<'a, N> {
     }
 
     /// Hands the light of a surface that shines by itself to the sensor.
-    fn emission(&mut self, path: &Path<N>, draw: &Draw<N>, Meeting { hit, point, .. }: &Meeting<N>) {
+    fn emission(&mut self, path: &Path<N>, draw: &Draw<N>, Meeting { hit, point }: &Meeting) {
         let world = self.walker.world;
         let object = &world.scene.objects[hit.object as usize];
         let Some(id) = object.light else { return };
@@ -165,7 +167,14 @@ impl<'a, const N: usize> PathTracer<'a, N> {
     }
 
     /// Samples the lights where a surface scatters widely, and lets the path go on: its ways on become pending.
-    fn scatter(&mut self, path: &Path<N>, draw: &Draw<N>, sampler: &Sampler, meeting: &Meeting<N>) {
+    fn scatter(
+        &mut self,
+        path: &Path<N>,
+        draw: &Draw<N>,
+        sampler: &Sampler,
+        meeting: &Meeting,
+        straight: Option<&Straight<N>>,
+    ) {
         let world = self.walker.world;
         let boundary = self.walker.boundary(path, meeting);
         let material = world.scene.material_of(meeting.hit.object);
@@ -190,7 +199,7 @@ impl<'a, const N: usize> PathTracer<'a, N> {
             }
             let (pdf, from, normal, passed) = (0.0, at.point.position, at.flat, false);
             scatter = Some(ScatterSample { pdf, from, normal, chance, all_lights, passed });
-            if !goes_on && meeting.straight.is_none() && !at.lobes.has_delta() {
+            if !goes_on && straight.is_none() && !at.lobes.has_delta() {
                 return;
             }
         }
@@ -202,7 +211,7 @@ impl<'a, const N: usize> PathTracer<'a, N> {
         if !goes_on {
             self.walker.branches.retain(|branch| branch.pdf.is_none());
         }
-        let mut departure = Departure::new(world, path, &at).with(scatter.as_ref(), meeting.straight.as_ref());
+        let mut departure = Departure::new(world, path, &at).with(scatter.as_ref(), straight);
         self.walker.follow(&mut departure, sampler);
     }
 

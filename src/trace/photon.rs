@@ -81,7 +81,7 @@ pub(super) fn follow_photon<const N: usize>(
             continue;
         }
         let Some(meeting) = walker.meet(&mut path, draw) else { continue };
-        if let Some(straight) = &meeting.straight {
+        if let Some(straight) = walker.straight(&path, draw, &meeting) {
             let (throughput, key) = (path.throughput.through(straight.share()), path.key.child(BEYOND));
             let all = throughput == path.throughput;
             let polarized = path.polarized.after(straight.polarization);

@@ -46,7 +46,7 @@ pub(super) fn is_met<const N: usize>(
     draw: &Draw<N>,
     sampler: &Sampler,
     path: &Path<N>,
-    straight: Option<Straight<N>>,
+    straight: Option<&Straight<N>>,
 ) -> bool {
     let Some(straight) = straight.filter(|straight| !straight.holes.is_zero()) else { return true };
     let u = match world.method.transport {

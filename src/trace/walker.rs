@@ -44,19 +44,24 @@ impl<'a, const N: usize> Walker<'a, N> {
 
     /// Follows a path along its ray, through the medium around it, to the next surface; none if it leaves the scene.
     #[inline(always)]
-    pub(super) fn meet(&mut self, path: &mut Path<N>, draw: &Draw<N>) -> Option<Meeting<N>> {
+    pub(super) fn meet(&mut self, path: &mut Path<N>, draw: &Draw<N>) -> Option<Meeting> {
         self.stats.rays += 1;
         let hit = self.world.scene.intersect(&path.ray);
         path.advance(self.world, draw, hit.map_or(f64::INFINITY, |hit| hit.crossing.t));
         let hit = hit?;
         let point = self.world.scene.objects[hit.object as usize].point(&path.ray, &hit.crossing);
-        let straight = straight::straight_on(self.world, draw, path, &hit, &point);
-        Some(Meeting { hit, point, straight })
+        Some(Meeting { hit, point })
+    }
+
+    /// What goes straight on through the surface that a path has met; none if nothing does.
+    #[inline(always)]
+    pub(super) fn straight(&self, path: &Path<N>, draw: &Draw<N>, meeting: &Meeting) -> Option<Straight<N>> {
+        straight::straight_on(self.world, draw, path, &meeting.hit, &meeting.point)
     }
 
     /// The media on both sides of the surface that a path has met.
     #[inline(always)]
-    pub(super) fn boundary(&mut self, path: &Path<N>, meeting: &Meeting<N>) -> Boundary {
+    pub(super) fn boundary(&mut self, path: &Path<N>, meeting: &Meeting) -> Boundary {
         let enters = meeting.point.normal.dot(path.ray.direction) < 0.0;
         let material = self.world.scene.objects[meeting.hit.object as usize].material;
         let (boundary, fits) = path.media.at_surface(&self.world.scene, material, enters);
@@ -65,7 +70,7 @@ impl<'a, const N: usize> Walker<'a, N> {
     }
 
     /// Goes on through a surface of a body that is hidden inside another of higher priority, where nothing is.
-    pub(super) fn pass_hidden(&mut self, path: &Path<N>, meeting: &Meeting<N>, boundary: &Boundary) {
+    pub(super) fn pass_hidden(&mut self, path: &Path<N>, meeting: &Meeting, boundary: &Boundary) {
         // No light was sampled through this surface, so what the path meets beyond counts in full.
         let (ray, key) = (meeting.point.leave(path.ray.direction), path.key.child(0));
         let kind =
