@@ -30,7 +30,8 @@ struct Arguments {
     /// The scene, a TOML file
     scene: Option<PathBuf>,
 
-    /// The image to write; without a path, the scene's name in the current folder. It is written unless --png alone is given
+    /// The image to write; without a path, the scene's name in the current folder. It is written unless --png alone is
+    /// given
     #[arg(long, value_name = "FILE.exr", num_args = 0..=1)]
     exr: Option<Option<PathBuf>>,
 

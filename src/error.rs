@@ -61,7 +61,8 @@ pub struct Diagnostic {
     pub text: Arc<str>,
     /// The bytes of the text that are wrong.
     pub span: Range<usize>,
-    /// The key that is wrong, as in `object[3].shape.sphere.radius`: of a scene that a program has built, which has no lines.
+    /// The key that is wrong, as in `object[3].shape.sphere.radius`: of a scene that a program has built, which has no
+    /// lines.
     pub key: Option<String>,
     /// What is wrong.
     pub message: String,
@@ -97,8 +98,8 @@ impl fmt::Display for Diagnostic {
 
 /// The candidate that a misspelt word most likely meant, if one is near enough.
 ///
-/// Near: at most a third of its letters changed, or one where one of both has two letters and the other more, counting a swap
-/// of neighbors as one change; of equally near ones, the one made of the most of the same letters.
+/// Near: at most a third of its letters changed, or one where one of both has two letters and the other more, counting
+/// a swap of neighbors as one change; of equally near ones, the one made of the most of the same letters.
 pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let lower = word.to_lowercase();
     let most_changes = |candidate: &str| {

@@ -51,8 +51,8 @@ impl<const N: usize> Arrival<'_, N> {
         Some([here?, beyond?])
     }
 
-    /// What of each lane crosses a smooth boundary between the media that its ray meets at an angle of some cosine; none
-    /// where all rays are refracted by the lanes' own indices.
+    /// What of each lane crosses a smooth boundary between the media that its ray meets at an angle of some cosine;
+    /// none where all rays are refracted by the lanes' own indices.
     pub fn own_transmittance(&self, cos: f64) -> Option<[f64; N]> {
         if self.direction_indices == [None; 2] {
             return None;
@@ -66,7 +66,8 @@ impl<const N: usize> Arrival<'_, N> {
         })
     }
 
-    /// What turns the shares of light that crosses, followed from the light as if it were the viewer, into those of flux.
+    /// What turns the shares of light that crosses, followed from the light as if it were the viewer, into those of
+    /// flux.
     ///
     /// Radiance changes by each lane's own (n_here / n_beyond)^2 and solid angles by that of the rays: flux by their
     /// ratio, which light and viewer see the other way round. None where both are the same.
@@ -90,8 +91,8 @@ impl<const N: usize> Arrival<'_, N> {
         !((1..N).all(same) || (self.together > 0.0 && self.is_one_way()))
     }
 
-    /// Whether the outermost refracted rays lie within `together`. All lanes of a draw are asked, on this ray or not, so
-    /// that what becomes of a surface does not depend on what was absorbed before.
+    /// Whether the outermost refracted rays lie within `together`. All lanes of a draw are asked, on this ray or not,
+    /// so that what becomes of a surface does not depend on what was absorbed before.
     fn is_one_way(&self) -> bool {
         let cos = self.wo.dot(self.normal).clamp(0.0, 1.0);
         let ratio = |i: usize| {

@@ -16,8 +16,9 @@ pub struct Branch<const N: usize> {
     pub crosses: bool,
     /// The part of `share` that only converts radiance between media, (n_incident / n_beyond)^2 of the ray's indices.
     pub eta_scale: f64,
-    /// Largest degree |s - p| / (s + p), of any lane, to which unpolarized light that comes by this one direction leaves polarized;
-    /// 0 where it does not, and of directions that were drawn: see [`Material::degree_of_scattered`](super::Material::degree_of_scattered).
+    /// Largest degree |s - p| / (s + p), of any lane, to which unpolarized light that comes by this one direction
+    /// leaves polarized; 0 where it does not, and of directions that were drawn: see
+    /// [`Material::degree_of_scattered`](super::Material::degree_of_scattered).
     pub polarization: f32,
 }
 

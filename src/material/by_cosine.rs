@@ -2,11 +2,12 @@ use std::f64::consts::TAU;
 
 use crate::math::DVec3;
 
-/// A share of the light that meets a rough surface, as a table over the cosine to the normal, from which directions can be
-/// drawn if it is nowhere negative.
+/// A share of the light that meets a rough surface, as a table over the cosine to the normal, from which directions can
+/// be drawn if it is nowhere negative.
 ///
-/// The table has evenly spaced places w in 0..1, with z = alpha ((1 + 1 / alpha)^(w w) - 1) for the cosine z: what facets
-/// whose slopes are as wide as alpha block changes as z log z near 0, most where z is about alpha, and as 1 / z^2 beyond.
+/// The table has evenly spaced places w in 0..1, with z = alpha ((1 + 1 / alpha)^(w w) - 1) for the cosine z: what
+/// facets whose slopes are as wide as alpha block changes as z log z near 0, most where z is about alpha, and as 1 /
+/// z^2 beyond.
 #[derive(Clone, Debug)]
 pub(crate) struct ByCosine {
     alpha: f64,
@@ -104,8 +105,8 @@ impl ByCosine {
         (self.at(place), between(&self.lobe, place) / (TAU * self.slope(place, z)))
     }
 
-    /// A direction in the frame in which +z is the normal, drawn by nearly the share times the cosine: its place is drawn
-    /// from a density that is linear between the places of the table.
+    /// A direction in the frame in which +z is the normal, drawn by nearly the share times the cosine: its place is
+    /// drawn from a density that is linear between the places of the table.
     pub(crate) fn draw(&self, u: [f64; 2]) -> DVec3 {
         let steps = self.steps();
         let step = self.below.partition_point(|&below| below <= u[1]).clamp(1, steps) - 1;

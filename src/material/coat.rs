@@ -8,8 +8,8 @@ use crate::math::DVec3;
 
 /// The clear surface of an opaque body, smooth or rough: what of the light it lets in, and out again.
 ///
-/// A rough one's share is the smooth one's and a difference read from a table, which is computed when it is first needed:
-/// row by row for the relative index m, evenly in the square root of ln m, near which 1 changes most.
+/// A rough one's share is the smooth one's and a difference read from a table, which is computed when it is first
+/// needed: row by row for the relative index m, evenly in the square root of ln m, near which 1 changes most.
 #[derive(Clone, Debug)]
 pub struct Coat {
     roughness: Roughness,
@@ -42,8 +42,8 @@ pub(super) struct Crossing {
 }
 
 impl Crossing {
-    /// BRDF times pi of a diffuse base of reflectance `r` under the coat: T T' r / (m^2 (1 - r R)), where R is the coat's
-    /// reflectance of diffuse light from inside.
+    /// BRDF times pi of a diffuse base of reflectance `r` under the coat: T T' r / (m^2 (1 - r R)), where R is the
+    /// coat's reflectance of diffuse light from inside.
     ///
     /// The radiance is 1 / m^2 times as large outside, and the geometric series sums what the coat sends back to the
     /// base. With T from all around outside, 1 - R = T / m^2 (Duntley 1942, *The Optical Properties of Diffusing

@@ -28,8 +28,8 @@ pub struct Dielectric<S> {
     pub emission: S,
     /// Absorption coefficient inside, per scene unit, base e (Beer 1852).
     pub absorption: S,
-    /// Where bodies overlap, the one of higher priority is there; of equal ones, the one whose material is used later in
-    /// the file. Bodies of one material merge.
+    /// Where bodies overlap, the one of higher priority is there; of equal ones, the one whose material is used later
+    /// in the file. Bodies of one material merge.
     pub priority: i32,
     /// How rough its surface is; below 0.01 it is taken as smooth.
     pub roughness: Roughness,
@@ -96,8 +96,9 @@ impl Dielectric<Table> {
         most as f32
     }
 
-    /// One reflected branch with all lanes, and one refracted branch per distinct pair of indices that refract: here lanes
-    /// part, and only those go on that are there for it. Lanes that share a direction have their own Fresnel shares.
+    /// One reflected branch with all lanes, and one refracted branch per distinct pair of indices that refract: here
+    /// lanes part, and only those go on that are there for it. Lanes that share a direction have their own Fresnel
+    /// shares.
     fn scatter_smooth<const N: usize>(&self, arrival: &Arrival<N>, branches: &mut Vec<Branch<N>>) {
         let (tint, reflectance) = (arrival.read(&self.transmittance), arrival.read(&self.reflectance));
         let parts = arrival.parts();

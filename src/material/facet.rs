@@ -3,8 +3,8 @@
 use super::{Facets, Interface, reflect};
 use crate::math::DVec3;
 
-/// The BSDF times cosine between two directions, and the density with which [`Sides::draw`](super::Sides::draw) draws one for
-/// the other.
+/// The BSDF times cosine between two directions, and the density with which [`Sides::draw`](super::Sides::draw) draws
+/// one for the other.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Flow {
     /// BSDF times cosine.
@@ -42,7 +42,8 @@ pub struct Facet {
 }
 
 impl Facet {
-    /// The facet of normal `h` between two indices, seen from `wo`. `known` is one of the two ways, if it is known already.
+    /// The facet of normal `h` between two indices, seen from `wo`. `known` is one of the two ways, if it is known
+    /// already.
     pub(super) fn new(
         facets: &Facets,
         [n1, n2]: [f64; 2],

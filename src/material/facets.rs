@@ -4,9 +4,9 @@ use crate::math::DVec3;
 
 /// Microscopic mirrors whose slopes are distributed as GGX, in the frame in which +z is the surface's normal.
 ///
-/// Walter et al. 2007, *Microfacet Models for Refraction through Rough Surfaces*; masking and shadowing as correlated by
-/// height, Heitz 2014, *Understanding the Masking-Shadowing Function*, equation 99. Where a direction meets them is told
-/// by [`Facets::slant`], never by a tangent: nothing overflows along the surface.
+/// Walter et al. 2007, *Microfacet Models for Refraction through Rough Surfaces*; masking and shadowing as correlated
+/// by height, Heitz 2014, *Understanding the Masking-Shadowing Function*, equation 99. Where a direction meets them is
+/// told by [`Facets::slant`], never by a tangent: nothing overflows along the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Facets {
     alpha: f64,
@@ -47,11 +47,11 @@ impl Facets {
         self.density(h) / (2.0 * (wo.z * self.slant(wi) / wi.z + self.slant(wo)))
     }
 
-    /// Density per steradian of `wi`, into which a visible facet of normal `h` refracts `wo` from index `n1` to a different
-    /// index `n2`; `cos` are those of both directions to the facet.
+    /// Density per steradian of `wi`, into which a visible facet of normal `h` refracts `wo` from index `n1` to a
+    /// different index `n2`; `cos` are those of both directions to the facet.
     ///
-    /// D G1 cos / z, times the steradians of facets per steradian of directions: Walter et al. 2007, equation 17, without
-    /// the difference n1 cos - n2 cos, which keeps its digits for nearly equal indices.
+    /// D G1 cos / z, times the steradians of facets per steradian of directions: Walter et al. 2007, equation 17,
+    /// without the difference n1 cos - n2 cos, which keeps its digits for nearly equal indices.
     pub fn refraction_pdf(&self, wo: DVec3, h: DVec3, [n1, n2]: [f64; 2], cos: [f64; 2]) -> f64 {
         let turn = (n1 * cos[0] + n2 * cos[1]) / ((n2 - n1) * (n2 + n1));
         let visible = self.density(h) * 2.0 * cos[0] / (wo.z + self.slant(wo));
@@ -65,11 +65,11 @@ impl Facets {
         [2.0 * z / (z + slant), excess / (z + slant)]
     }
 
-    /// The share of the light that a visible facet refracts from `wo` toward `wi`, beyond the surface, that leaves that way;
-    /// and what is left of it, with all its digits.
+    /// The share of the light that a visible facet refracts from `wo` toward `wi`, beyond the surface, that leaves that
+    /// way; and what is left of it, with all its digits.
     ///
-    /// Both directions see a facet as often as G1 G1 if they do so by chance each, and as often as min(G1, G1) if what one
-    /// sees the other does as far as it can (the two ends between which Ashikhmin, Premoze & Shirley 2000, *A
+    /// Both directions see a facet as often as G1 G1 if they do so by chance each, and as often as min(G1, G1) if what
+    /// one sees the other does as far as it can (the two ends between which Ashikhmin, Premoze & Shirley 2000, *A
     /// Microfacet-Based BRDF Generator*, blend). `straight` is the share of the latter.
     pub fn passed(&self, wo: DVec3, wi: DVec3, straight: f64) -> [f64; 2] {
         let ([seen, hidden], [from, _]) = (self.masking(wi), self.masking(wo));

@@ -71,13 +71,13 @@ impl Interface {
 /// What crosses a smooth boundary of lanes that go one way though their indices differ; the rest is reflected.
 ///
 /// `own` are the indices of each lane on both sides, `direction` those by which their ray is refracted, which meets the
-/// boundary at an angle with cosine `cos` in 0..1. Flat surfaces conserve k = n sin i of the ray, so a lane meets each of
-/// them at the angle whose sine is k over its own index: plates have the shares that they would have if the lane went
-/// alone. With q = n cos of the lane on each side and p = q1 q2, T = 2 p ((k^2 + p)^2 + (n1 n2)^2) / ((q1 + q2) (k^2 + p))^2
-/// (Fresnel 1823, with Snell's law put in), in which nothing cancels.
+/// boundary at an angle with cosine `cos` in 0..1. Flat surfaces conserve k = n sin i of the ray, so a lane meets each
+/// of them at the angle whose sine is k over its own index: plates have the shares that they would have if the lane
+/// went alone. With q = n cos of the lane on each side and p = q1 q2, T = 2 p ((k^2 + p)^2 + (n1 n2)^2) / ((q1 + q2)
+/// (k^2 + p))^2 (Fresnel 1823, with Snell's law put in), in which nothing cancels.
 ///
-/// Nothing crosses where the ray is reflected totally, nor where k is no less than either index of the lane: what has no
-/// way on is reflected. The condition is the same from both sides, so that light takes the same ways in and out.
+/// Nothing crosses where the ray is reflected totally, nor where k is no less than either index of the lane: what has
+/// no way on is reflected. The condition is the same from both sides, so that light takes the same ways in and out.
 pub fn shared_transmittance<const N: usize>(own: [&[f64; N]; 2], direction: [f64; 2], cos: f64) -> [f64; N] {
     let ([d1, d2], c) = (direction, cos.clamp(0.0, 1.0));
     let (k_squared, along) = (d1 * d1 * (1.0 - c * c), d1 * d1 * c * c);

@@ -116,7 +116,8 @@ impl<S> Material<S> {
         self.lobes().is_diffuse()
     }
 
-    /// Whether light leaves in single directions, all of it or some: the mirror images and refractions of smooth surfaces.
+    /// Whether light leaves in single directions, all of it or some: the mirror images and refractions of smooth
+    /// surfaces.
     pub fn has_single_directions(&self) -> bool {
         self.lobes().has_delta()
     }

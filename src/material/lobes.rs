@@ -56,7 +56,8 @@ impl Lobes {
         self.intersects(Self::TRANSMISSION)
     }
 
-    /// Whether light leaves in single directions, all of it or some: the mirror images and refractions of smooth surfaces.
+    /// Whether light leaves in single directions, all of it or some: the mirror images and refractions of smooth
+    /// surfaces.
     pub const fn has_delta(self) -> bool {
         self.intersects(Self::DELTA)
     }

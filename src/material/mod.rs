@@ -1,7 +1,7 @@
 //! Floor 2: how light leaves a surface.
 //!
-//! `Material<S>` is written once and read twice: with `S = Curve` it is the scene file's vocabulary, with `S = Table` what
-//! the tracer reads; [`Material::map`] is the bridge. A material answers an [`Arrival`] with [`Branch`]es.
+//! `Material<S>` is written once and read twice: with `S = Curve` it is the scene file's vocabulary, with `S = Table`
+//! what the tracer reads; [`Material::map`] is the bridge. A material answers an [`Arrival`] with [`Branch`]es.
 
 mod arrival;
 mod branch;

@@ -90,7 +90,8 @@ impl Plastic<Table> {
         (!share.is_zero()).then_some(Branch { wi, share, pdf: None, crosses: false, eta_scale: 1.0, polarization })
     }
 
-    /// BRDF times cosine of a rough coat and its base, and the density with which `scatter` draws the light's direction.
+    /// BRDF times cosine of a rough coat and its base, and the density with which `scatter` draws the light's
+    /// direction.
     fn rough<const N: usize>(
         &self,
         arrival: &Arrival<N>,

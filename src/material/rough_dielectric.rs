@@ -5,12 +5,13 @@ use super::{Arrival, Branch, Facet, Flow, Interface, RoughInterface, Sides, Way}
 use crate::math::{DVec3, Frame, unit};
 use crate::spectrum::{Lanes, Table};
 
-/// Lanes part whose refracted rays lie apart by more than this many times what a facet as steep as alpha turns them: the
-/// lobe is as wide to both sides. Together or apart, each lane gets its own light; only the noise differs.
+/// Lanes part whose refracted rays lie apart by more than this many times what a facet as steep as alpha turns them:
+/// the lobe is as wide to both sides. Together or apart, each lane gets its own light; only the noise differs.
 const WIDTHS: f64 = 2.0;
 
-/// A rough surface met by a ray: each lane's boundary, once for all lanes of the same indices that refract. Lanes of one
-/// direction share the facets and what these block, and each has what they reflect and let through by its own indices.
+/// A rough surface met by a ray: each lane's boundary, once for all lanes of the same indices that refract. Lanes of
+/// one direction share the facets and what these block, and each has what they reflect and let through by its own
+/// indices.
 struct Meeting<'a, 'b, const N: usize> {
     arrival: &'a Arrival<'b, N>,
     frame: Frame,
@@ -68,8 +69,8 @@ impl<'a, 'b, const N: usize> Meeting<'a, 'b, N> {
         if self.parts { kind.present * self.arrival.draw.parting() } else { kind.present }
     }
 
-    /// Asks every kind of lanes about a direction above the surface, for the mean of the densities with which they draw it.
-    /// `drawn` is the kind that drew it, and the facet.
+    /// Asks every kind of lanes about a direction above the surface, for the mean of the densities with which they draw
+    /// it. `drawn` is the kind that drew it, and the facet.
     fn reflect(&mut self, wi: DVec3, drawn: Option<(usize, Facet)>) -> f64 {
         let (mut pdf, mut lanes) = (0.0, 0.0);
         for (number, kind) in self.kinds.iter_mut().enumerate() {
@@ -135,8 +136,9 @@ fn facet_of(number: usize, drawn: Option<(usize, Facet)>) -> Option<Facet> {
 /// Whether lanes that cross a rough surface go different ways. While their lobes overlap they go on together.
 ///
 /// The refracted ray turns by sin t dr / (r cos t) where the ratio of the indices, r, changes by dr, and by
-/// |r cos i - cos t| / cos t of what a facet is turned by. The lanes are asked that count while they are together: beside heroes the fixed ones,
-/// for if wavelengths drawn at random decided whether they count, some would count more often than others.
+/// |r cos i - cos t| / cos t of what a facet is turned by. The lanes are asked that count while they are together:
+/// beside heroes the fixed ones, for if wavelengths drawn at random decided whether they count, some would count more
+/// often than others.
 pub(super) fn parts<const N: usize>(interface: &RoughInterface, arrival: &Arrival<N>) -> bool {
     if !arrival.parts() {
         return false;
@@ -165,11 +167,11 @@ pub(super) struct RoughBoundary<'a> {
 impl RoughBoundary<'_> {
     /// One branch by reflection, and one by refraction: where lanes part, one for each kind of lanes.
     ///
-    /// Lanes that are together share a direction drawn for one of them, chosen evenly, and each is divided by the mean of
-    /// all their densities (the balance heuristic, Veach & Guibas 1995; Wilkie et al. 2014). Each branch has a density of
-    /// its own, whose integral is what it is drawn as often as. Next-event estimation weighs a direction by the same
-    /// function, `evaluate`: the two weights sum to 1 in every direction, however many branches
-    /// the tracer follows, as one that is chosen with a probability is divided by it.
+    /// Lanes that are together share a direction drawn for one of them, chosen evenly, and each is divided by the mean
+    /// of all their densities (the balance heuristic, Veach & Guibas 1995; Wilkie et al. 2014). Each branch has a
+    /// density of its own, whose integral is what it is drawn as often as. Next-event estimation weighs a direction by
+    /// the same function, `evaluate`: the two weights sum to 1 in every direction, however many branches the tracer
+    /// follows, as one that is chosen with a probability is divided by it.
     pub(super) fn scatter<const N: usize>(&self, arrival: &Arrival<N>, u: [f64; 2], branches: &mut Vec<Branch<N>>) {
         let (tint, reflectance) = (arrival.read(self.transmittance), arrival.read(self.reflectance));
         self.pass_equal_indices(arrival, tint, branches);

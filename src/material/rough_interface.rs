@@ -7,16 +7,16 @@ use super::fresnel::diffuse_transmittance;
 use super::{Facet, Facets, Flow};
 use crate::math::DVec3;
 
-/// A rough boundary between two clear media: what its facets reflect and refract once, and lobes that give back what they
-/// block, as tables by the cosine and by the ratio of the indices.
+/// A rough boundary between two clear media: what its facets reflect and refract once, and lobes that give back what
+/// they block, as tables by the cosine and by the ratio of the indices.
 ///
-/// Walter et al. 2007, *Microfacet Models for Refraction through Rough Surfaces*: a facet reflects and refracts by Fresnel's
-/// equations; reflected light is masked as correlated by height, refracted light on each side by itself. What is blocked
-/// beyond the surface meets the boundary again, from the other side: as much as crosses both there and back from all around,
-/// T T', goes on as if it were not blocked ([`Facets::passed`]), for facets turn it there as little as here. So glass in a
-/// liquid of nearly its index is as invisible rough as smooth. All other light that meets a second facet is given back
-/// after Kulla & Conty 2017, *Revisiting Physically Based Shading at Imageworks*: see [`Sides`]. One row of the tables is
-/// computed when a ratio near it is first asked for.
+/// Walter et al. 2007, *Microfacet Models for Refraction through Rough Surfaces*: a facet reflects and refracts by
+/// Fresnel's equations; reflected light is masked as correlated by height, refracted light on each side by itself. What
+/// is blocked beyond the surface meets the boundary again, from the other side: as much as crosses both there and back
+/// from all around, T T', goes on as if it were not blocked ([`Facets::passed`]), for facets turn it there as little as
+/// here. So glass in a liquid of nearly its index is as invisible rough as smooth. All other light that meets a second
+/// facet is given back after Kulla & Conty 2017, *Revisiting Physically Based Shading at Imageworks*: see [`Sides`].
+/// One row of the tables is computed when a ratio near it is first asked for.
 #[derive(Clone, Debug)]
 pub struct RoughInterface {
     facets: Facets,
@@ -25,8 +25,9 @@ pub struct RoughInterface {
 
 /// Steps between rows for ratios above 1, and as many below.
 const RATIOS: usize = 160;
-/// The smallest |ln(n2 / n1)| of the rows and the largest, of the largest index there is to vacuum. Between them it grows by
-/// a sixteenth from row to row: light that grazes nearly equal indices is reflected below a cosine of about its root.
+/// The smallest |ln(n2 / n1)| of the rows and the largest, of the largest index there is to vacuum. Between them it
+/// grows by a sixteenth from row to row: light that grazes nearly equal indices is reflected below a cosine of about
+/// its root.
 const SPAN: [f64; 2] = [1e-4, LN_10];
 /// Steps of a row over the cosine.
 const STEPS: usize = 192;
@@ -51,7 +52,8 @@ impl RoughInterface {
         let [least, most] = SPAN;
         let place = libm::log(ratio.abs().clamp(least, most) / least) / libm::log(most / least) * RATIOS as f64;
         let [near, far] = [denser, !denser].map(|denser| self.side(denser, place));
-        // Light meets a boundary evenly as often from both sides if n^2 of it comes: what crosses is the same both ways.
+        // Light meets a boundary evenly as often from both sides if n^2 of it comes: what crosses is the same both
+        // ways.
         let enters = diffuse_transmittance(n2 / n1);
         let leaves = enters * (n1 / n2) * (n1 / n2);
         let most = near.mean_blocked().max(far.mean_blocked());
@@ -76,8 +78,8 @@ impl RoughInterface {
     }
 }
 
-/// The share of the light from the cosine `z` that meets a second facet: the mean over the visible facets, where the index
-/// beyond is `ratio` times that on this side.
+/// The share of the light from the cosine `z` that meets a second facet: the mean over the visible facets, where the
+/// index beyond is `ratio` times that on this side.
 fn blocked(facets: &Facets, z: f64, ratio: f64) -> f64 {
     let wo = DVec3::new((1.0 - z * z).max(0.0).sqrt(), 0.0, z);
     let (mut sum, straight) = (0.0, straight(ratio));
@@ -125,7 +127,8 @@ impl Side<'_> {
         self.mix(ByCosine::mean)
     }
 
-    /// What is blocked at the cosine `z`, and the density per steradian with which [`Side::draw`] draws directions there.
+    /// What is blocked at the cosine `z`, and the density per steradian with which [`Side::draw`] draws directions
+    /// there.
     pub fn blocked_and_density(&self, z: f64) -> [f64; 2] {
         let place = self.rows[0].place(z);
         let [a, b] = self.rows.map(|row| row.value_and_density_at(place, z));
@@ -149,9 +152,9 @@ impl Side<'_> {
 /// A rough boundary between index n1, where the viewer is, and n2 beyond.
 ///
 /// What light loses that meets a second facet, M(z), is given back on the sides a and b by lobes M_a M_b k_ab / pi with
-/// k_11 m_1 + k_12 m_2 = 1, where m is the mean of M: no light is lost or won. They are reciprocal, as k_ab / n_b^2 is the
-/// same both ways; and as far as that allows, as much crosses of what is blocked as of light from all around smooth glass:
-/// k_12 m_2 = T_12 m_2 / max(m_1, m_2).
+/// k_11 m_1 + k_12 m_2 = 1, where m is the mean of M: no light is lost or won. They are reciprocal, as k_ab / n_b^2 is
+/// the same both ways; and as far as that allows, as much crosses of what is blocked as of light from all around smooth
+/// glass: k_12 m_2 = T_12 m_2 / max(m_1, m_2).
 #[derive(Clone, Copy, Debug)]
 pub struct Sides<'a> {
     facets: &'a Facets,
@@ -179,8 +182,9 @@ impl Sides<'_> {
     /// A direction above the surface and one beyond it for the viewer's direction `wo`; none where no light comes from.
     ///
     /// A visible facet is drawn. As often as its light meets a second facet, both directions are drawn from the lobes;
-    /// else they are its own. So all that is drawn goes on as light does: what is evaluated there over the density is at most 1
-    /// on each side and nearly 1 for both, and its product stays so along a path, however many surfaces that meets.
+    /// else they are its own. So all that is drawn goes on as light does: what is evaluated there over the density is
+    /// at most 1 on each side and nearly 1 for both, and its product stays so along a path, however many surfaces that
+    /// meets.
     pub fn draw(&self, wo: DVec3, u: [f64; 2]) -> [Option<Way>; 2] {
         let facet = self.facet([wo, self.facets.visible_normal(wo, u)], None);
         let [chance, around] = later_digits(u);
@@ -207,8 +211,8 @@ impl Sides<'_> {
         once + Flow { value: lobes, pdf: again * lobe, ..Flow::default() }
     }
 
-    /// What crosses from `wi`, beyond the surface, to `wo`: radiance, which changes by (n1 / n2)^2. The facet is found where
-    /// it is not given.
+    /// What crosses from `wi`, beyond the surface, to `wo`: radiance, which changes by (n1 / n2)^2. The facet is found
+    /// where it is not given.
     pub fn crossed(&self, wo: DVec3, wi: DVec3, facet: Option<Facet>) -> Flow {
         let again = self.near.blocked(wo.z);
         let [blocked, lobe] = self.far.blocked_and_density(-wi.z);

@@ -50,7 +50,8 @@ impl Roughness {
     }
 }
 
-/// Facets that reflect once or more often: what light loses that meets a second facet is given back by a lobe of its own.
+/// Facets that reflect once or more often: what light loses that meets a second facet is given back by a lobe of its
+/// own.
 ///
 /// Kulla & Conty 2017, *Revisiting Physically Based Shading at Imageworks*: the lobe is reciprocal, and perfect mirrors
 /// reflect all light. Vectors are unit vectors in the frame in which +z is the normal.

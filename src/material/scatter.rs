@@ -19,8 +19,8 @@ pub trait Scatter {
     /// it out.
     fn straight<const N: usize>(&self, arrival: &Arrival<N>) -> Option<Straight<N>>;
 
-    /// The largest degree |s - p| / (s + p) to which unpolarized light from the unit vector `wi` leaves polarized, where
-    /// the material scatters it by a density of directions: by the facet that mirrors or refracts it, or the coat that
-    /// it crosses.
+    /// The largest degree |s - p| / (s + p) to which unpolarized light from the unit vector `wi` leaves polarized,
+    /// where the material scatters it by a density of directions: by the facet that mirrors or refracts it, or the coat
+    /// that it crosses.
     fn degree_of_scattered<const N: usize>(&self, arrival: &Arrival<N>, wi: DVec3) -> f32;
 }

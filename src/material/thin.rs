@@ -2,8 +2,9 @@ use super::degree::degree;
 use super::{Arrival, Branch, Interface, Straight, reflect};
 use crate::spectrum::{Lanes, Quantity, Table};
 
-/// A pane of clear material without thickness: a window of which nothing but its two surfaces is seen. Light goes straight
-/// on, that of lights to the surfaces behind as well, or is mirrored; all reflections between the two surfaces are summed.
+/// A pane of clear material without thickness: a window of which nothing but its two surfaces is seen. Light goes
+/// straight on, that of lights to the surfaces behind as well, or is mirrored; all reflections between the two surfaces
+/// are summed.
 ///
 /// ```toml
 /// thin = { index = 1.52 }     # transmittance = 1: what is left after one way through the pane, straight on
@@ -68,9 +69,9 @@ impl Thin<Table> {
 
 /// What goes through a pane and what comes back, each (s, p), of which one way leaves the share `t`.
 ///
-/// With R of one surface T = (1 - R)^2 t / (1 - R^2 t^2), and R + R t T comes back (Stokes 1862, *On the Intensity of the Light
-/// Reflected from or Transmitted through a Pile of Plates*). All surfaces share one plane of incidence, so that s and p
-/// keep to themselves: each has its own series, and unpolarized light has the mean of both.
+/// With R of one surface T = (1 - R)^2 t / (1 - R^2 t^2), and R + R t T comes back (Stokes 1862, *On the Intensity of
+/// the Light Reflected from or Transmitted through a Pile of Plates*). All surfaces share one plane of incidence, so
+/// that s and p keep to themselves: each has its own series, and unpolarized light has the mean of both.
 fn all_reflections(surface: &Interface, t: f64) -> [[f64; 2]; 2] {
     let [s, p] = [1.0, -1.0].map(|sign| {
         let r = surface.reflectance * (1.0 + sign * surface.polarization_reflected);

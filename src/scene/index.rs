@@ -44,7 +44,8 @@ impl Index {
         self.pool.as_ref()
     }
 
-    /// Calls `test(object, t_max)` for every object beside the pool that the ray may meet before `t_max`, nearer ones first.
+    /// Calls `test(object, t_max)` for every object beside the pool that the ray may meet before `t_max`, nearer ones
+    /// first.
     ///
     /// `test` answers the new `t_max`.
     #[inline]
@@ -58,7 +59,8 @@ impl Index {
         }
     }
 
-    /// Calls `test(object)` for objects beside the pool that the ray may meet before `t_max`, in any order, until one passes.
+    /// Calls `test(object)` for objects beside the pool that the ray may meet before `t_max`, in any order, until one
+    /// passes.
     #[inline]
     pub(super) fn any(&self, ray: &Ray, t_max: f64, mut test: impl FnMut(u32) -> bool) {
         if self.always.iter().any(|&object| test(object)) || self.bounded.is_empty() {

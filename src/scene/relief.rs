@@ -33,11 +33,12 @@ pub enum ReliefKind {
 }
 
 impl Relief {
-    /// The unit normal by which a point of the surface scatters, on the front side; not a bit different where the image is
-    /// flat.
+    /// The unit normal by which a point of the surface scatters, on the front side; not a bit different where the image
+    /// is flat.
     ///
-    /// Heights h move the tangents to P_u + h_u n and P_v + h_v n, whose cross product is the normal: Blinn 1978, *Simulation
-    /// of Wrinkled Surfaces*, equation 3. The tangents are taken at right angles to the normal of a smooth mesh.
+    /// Heights h move the tangents to P_u + h_u n and P_v + h_v n, whose cross product is the normal: Blinn 1978,
+    /// *Simulation of Wrinkled Surfaces*, equation 3. The tangents are taken at right angles to the normal of a smooth
+    /// mesh.
     #[inline(never)]
     pub fn normal(&self, shape: &Shape, crossing: &Crossing, point: &SurfacePoint) -> DVec3 {
         let n = point.shading;

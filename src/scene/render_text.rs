@@ -19,7 +19,8 @@ pub struct RenderText {
     pub samples: Option<u32>,
     /// Chooses another set of random numbers.
     pub seed: u64,
-    /// How often light may leave a diffuse surface for another before it is gathered from the lights; no limit if absent.
+    /// How often light may leave a diffuse surface for another before it is gathered from the lights; no limit if
+    /// absent.
     pub diffuse_bounces: Option<u32>,
     /// How often light may leave any surface, glass and mirrors included; no limit if absent.
     pub max_bounces: Option<u32>,

@@ -54,7 +54,8 @@ impl Source {
     /// The scene that the text describes, with the meshes, images and tables that it names.
     ///
     /// # Errors
-    /// [`Error::Scene`] with all mistakes that can be found, in the order of the file, each with its line and what to do.
+    /// [`Error::Scene`] with all mistakes that can be found, in the order of the file, each with its line and what to
+    /// do.
     pub fn compile(&self) -> Result<Scene> {
         self.compile_by(Place::Line)
     }

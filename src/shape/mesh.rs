@@ -12,7 +12,7 @@ use crate::math::{Bounds, DVec3, Distribution, Ray, Transform};
 /// ```toml
 /// shape.mesh = { file = "bunny.ply" }                          # PLY, OBJ or glTF, relative to the scene file
 /// shape.mesh = { points = [[0, 0, 0], [1, 0, 0], [0, 1, 0]], faces = [[0, 1, 2]] }
-/// # smooth = true                                              # by the file's normals, or computed ones if it has none
+/// # smooth = true                          # by the file's normals, or computed ones if it has none
 /// # normals = [[0, 0, 1], ..], uv = [[0, 0], ..]               # one for each of the points
 /// ```
 #[derive(Clone, Debug)]

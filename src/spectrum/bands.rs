@@ -6,7 +6,8 @@ use super::{Curve, CurveKind, Emission, Quantity};
 
 /// The color that a light gives to each wavelength in some primaries; each channel sums to 1.
 ///
-/// Ward & Eydelberg-Vileshin 2002, *Picture Perfect RGB Rendering Using Spectral Prefiltering and Sharp Color Primaries*.
+/// Ward & Eydelberg-Vileshin 2002, *Picture Perfect RGB Rendering Using Spectral Prefiltering and Sharp Color
+/// Primaries*.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Bands {
     /// (wavelength in nm, share of each channel).
@@ -68,8 +69,8 @@ impl Bands {
 }
 
 impl Bands {
-    /// The index of each band that reflects at normal incidence as the light shows it: ((n - 1) / (n + 1))^2 is the mean
-    /// over the band.
+    /// The index of each band that reflects at normal incidence as the light shows it: ((n - 1) / (n + 1))^2 is the
+    /// mean over the band.
     pub(super) fn index(&self, value: &dyn Fn(f64) -> f64) -> [f64; 3] {
         self.mean(&|nm| normal_reflectance(value(nm), 0.0)).map(|reflectance| {
             let amplitude = reflectance.clamp(0.0, 0.9999).sqrt();

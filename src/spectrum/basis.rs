@@ -30,7 +30,8 @@ pub struct Basis {
 pub(super) struct Heroes {
     pub(super) count: usize,
     pub(super) mixture: Arc<Mixture>,
-    /// Whether they carry all light, drawn independently from sample to sample, and one of them goes on where lanes part.
+    /// Whether they carry all light, drawn independently from sample to sample, and one of them goes on where lanes
+    /// part.
     pub(super) collapse: bool,
 }
 
@@ -56,14 +57,15 @@ impl Basis {
         Self::new(space, LaneKind::Rgb(Arc::new(bands)), BAND_WAVELENGTHS_NM.into())
     }
 
-    /// Three bands: red, green and blue of Rec.2020, in which every measured spectrum has the color it has under one light.
+    /// Three bands: red, green and blue of Rec.2020, in which every measured spectrum has the color it has under one
+    /// light.
     pub fn prefiltered(space: ColorSpace, light: &Emission) -> Self {
         let bands = Bands::new(ColorSpace::Rec2020, light);
         Self::new(space, LaneKind::Prefiltered(Arc::new(bands)), BAND_WAVELENGTHS_NM.into())
     }
 
-    /// As many wavelengths in equal steps over the part of the spectrum that measured best for their number, and a lane of
-    /// its own for every ideal line.
+    /// As many wavelengths in equal steps over the part of the spectrum that measured best for their number, and a lane
+    /// of its own for every ideal line.
     ///
     /// # Panics
     /// If lanes and lines are none or more than [`MAX_LANES`].
@@ -98,8 +100,9 @@ impl Basis {
         Self { heroes: Some(heroes), ..self }
     }
 
-    /// The same lanes, refracted by every index as by that of the d line, but for those that are written as `rgb`. What is
-    /// reflected and let through is each lane's own; of three bands, as the mean over the band is at normal incidence.
+    /// The same lanes, refracted by every index as by that of the d line, but for those that are written as `rgb`. What
+    /// is reflected and let through is each lane's own; of three bands, as the mean over the band is at normal
+    /// incidence.
     pub fn kept_together(self) -> Self {
         Self { keeps_together: true, ..self }
     }

@@ -9,15 +9,16 @@ use super::{Quantity, Texture, Upsampler};
 /// Where the bands of the `rgb` basis read an index, in nm: the hydrogen C, mercury e and hydrogen F lines.
 pub(super) const BAND_WAVELENGTHS_NM: [f64; 3] = [656.27, 546.07, 486.13];
 
-/// A spectrum: what a scene file says of one, with names looked up and files read. In a scene it is a number, a name of the
-/// catalog, or a table with one kind and maybe a `scale`.
+/// A spectrum: what a scene file says of one, with names looked up and files read. In a scene it is a number, a name of
+/// the catalog, or a table with one kind and maybe a `scale`.
 ///
 /// ```toml
 /// reflectance = 0.5
 /// reflectance = { rgb = [0.7, 0.5, 0.3] }
 /// reflectance = "dark skin"
 /// reflectance = { file = "paint.csv", column = 2 }
-/// reflectance = { image = "wood.png", repeat = 4 }     # encoding = "srgb", channel, wrap = "repeat", filter = "linear", scale
+/// reflectance = { image = "wood.png", repeat = 4 }
+/// # encoding = "srgb", channel, wrap = "repeat", filter = "linear", scale
 /// reflectance = { checker = [0.1, "dark skin"], repeat = [8, 8] }
 /// index = "N-SF11"
 /// index = { rgb = [1.513, 1.517, 1.523] }
@@ -47,7 +48,8 @@ pub enum CurveKind {
     Number(f64),
     /// Linear Rec.709; as an index, its values at 656.27, 546.07 and 486.13 nm.
     Rgb([f64; 3]),
-    /// (wavelength in nm, value), ascending, at least one; linear between, flat beyond the ends, as an emission 0 there.
+    /// (wavelength in nm, value), ascending, at least one; linear between, flat beyond the ends, as an emission 0
+    /// there.
     Samples(Vec<[f64; 2]>),
     /// n = A + B / wavelength^2, wavelength in um (Cauchy 1836).
     Cauchy([f64; 2]),
@@ -130,8 +132,9 @@ impl CurveKind {
         data::illuminant(name).map(|light| Self::Illuminant(Arc::new(light)))
     }
 
-    /// The value at any wavelength in nm before scaling, without a spectrum being made of `rgb`. Of a light it is the power, of
-    /// which ideal lines have none between them; of what varies over a surface it is what its image or pattern is a factor on.
+    /// The value at any wavelength in nm before scaling, without a spectrum being made of `rgb`. Of a light it is the
+    /// power, of which ideal lines have none between them; of what varies over a surface it is what its image or
+    /// pattern is a factor on.
     pub fn values(&self, quantity: Quantity) -> Box<dyn Fn(f64) -> f64 + '_> {
         match self {
             Self::Number(value) => Box::new(move |_| *value),
@@ -178,8 +181,8 @@ impl CurveKind {
 impl Curve {
     /// The value at any wavelength in nm.
     ///
-    /// An `rgb` reflectance or transmittance becomes the smooth spectrum that `upsampler` finds, an absorption a multiple
-    /// of one, an index is read linearly between 486.13, 546.07 and 656.27 nm.
+    /// An `rgb` reflectance or transmittance becomes the smooth spectrum that `upsampler` finds, an absorption a
+    /// multiple of one, an index is read linearly between 486.13, 546.07 and 656.27 nm.
     pub fn reader(&self, quantity: Quantity, upsampler: &Upsampler) -> Box<dyn Fn(f64) -> f64 + '_> {
         let scale = self.scale;
         match (&self.kind, quantity) {
@@ -234,8 +237,8 @@ impl Curve {
         }
     }
 
-    /// Spectra that stand for all that are on the surface: the curve itself if it is the same everywhere, the curves of a
-    /// checkerboard, the mean and the most colorful texel of an image.
+    /// Spectra that stand for all that are on the surface: the curve itself if it is the same everywhere, the curves of
+    /// a checkerboard, the mean and the most colorful texel of an image.
     pub fn shades(&self) -> Vec<Cow<'_, Self>> {
         match &self.kind {
             CurveKind::Texture(Texture { image, .. }) => {

@@ -7,8 +7,8 @@ use super::{Lanes, Table};
 /// was drawn for this sample.
 ///
 /// Heroes ride along until lanes part for the first time. From there on they alone count, and the fixed lanes count on
-/// all paths on which lanes never part: the two sets of paths share no path. The tracer passes the draw on and never looks
-/// inside.
+/// all paths on which lanes never part: the two sets of paths share no path. The tracer passes the draw on and never
+/// looks inside.
 #[derive(Clone, Debug)]
 pub struct Draw<const N: usize> {
     fixed: usize,
@@ -31,8 +31,8 @@ pub(super) struct Hero {
     pub(super) below: usize,
     /// The part of the step to the next entry.
     pub(super) fraction: f64,
-    /// One over the number of heroes times the density with which the wavelength was drawn, in nm; for an ideal line times
-    /// its probability.
+    /// One over the number of heroes times the density with which the wavelength was drawn, in nm; for an ideal line
+    /// times its probability.
     pub(super) factor: f64,
 }
 
@@ -87,8 +87,8 @@ impl<const N: usize> Draw<N> {
         }
     }
 
-    /// A color, of numbers as large as they may be, as a factor on white light; the table is that of an image. What has no
-    /// colors tints nothing.
+    /// A color, of numbers as large as they may be, as a factor on white light; the table is that of an image. What has
+    /// no colors tints nothing.
     pub fn tint(&self, table: &Table, color: [f32; 3]) -> Lanes<N> {
         match table.pattern().map(|pattern| &pattern.kind) {
             Some(PatternKind::Image(_, palette)) => self.tint_by(palette.as_ref(), color, false),
@@ -125,9 +125,10 @@ impl<const N: usize> Draw<N> {
         lanes
     }
 
-    /// How much each lane counts when a single number must stand for a throughput: while lanes are together their shares sum
-    /// to 1. A hero that has parted counts in full, for it goes on alone in place of all: so its way is followed as far as
-    /// if no lanes had parted, which on glass measured half the noise for a third more time than counting it by its part.
+    /// How much each lane counts when a single number must stand for a throughput: while lanes are together their
+    /// shares sum to 1. A hero that has parted counts in full, for it goes on alone in place of all: so its way is
+    /// followed as far as if no lanes had parted, which on glass measured half the noise for a third more time than
+    /// counting it by its part.
     pub fn shares(&self, parted: bool) -> &Lanes<N> {
         &self.shares[usize::from(parted)]
     }

@@ -35,7 +35,8 @@ impl Image {
         Self::new(width, channels, length, Texels::Bytes(bytes, Box::new(std::array::from_fn(value))))
     }
 
-    /// An image of 8 bits a number, which stand for -128/127 to 1 so that 128 is exactly 0: the directions of a normal map.
+    /// An image of 8 bits a number, which stand for -128/127 to 1 so that 128 is exactly 0: the directions of a normal
+    /// map.
     ///
     /// # Panics
     /// As [`Image::of_bytes`].

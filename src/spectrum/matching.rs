@@ -1,10 +1,10 @@
 //! How the lanes of two paths are brought together that meet, one from the camera and one from a light, each with
 //! wavelengths drawn of its own.
 //!
-//! The fixed lanes of both are the same. Where only one path has parted, what the other carries is smooth and is read at the
-//! parted one's wavelengths between its fixed lanes, by the functions with which responses are integrated. Where both
-//! have parted, two wavelengths count as one that fall into the same bin: like the disc in which photons are gathered, bins
-//! blur where light goes, and keep its color.
+//! The fixed lanes of both are the same. Where only one path has parted, what the other carries is smooth and is read
+//! at the parted one's wavelengths between its fixed lanes, by the functions with which responses are integrated. Where
+//! both have parted, two wavelengths count as one that fall into the same bin: like the disc in which photons are
+//! gathered, bins blur where light goes, and keep its color.
 
 use super::basis::{Heroes, LaneKind};
 use super::draw::Hero;
@@ -27,27 +27,6 @@ pub struct Matching<const N: usize> {
 pub struct Wavelength {
     hero: Hero,
     bin: u32,
-}
-
-impl Basis {
-    /// What connects lanes; a bin holds one part in `parts` of the draws and of the visible range at most, or a single nm or line.
-    pub fn matching<const N: usize>(&self, parts: f64) -> Matching<N> {
-        let (LaneKind::Wavelengths(functions), Some(Heroes { mixture, .. })) = (&self.lanes, &self.heroes) else {
-            return Matching::default();
-        };
-        let own_lines = &self.wavelengths_nm()[functions.len()..];
-        let between = |nm: f64| {
-            let (below, fraction) = visible::place(nm);
-            let at = |f: &Vec<f64>| (f[below] + fraction * (f[below + 1] - f[below])) as f32;
-            Lanes::from_fn(|lane| functions.get(lane).map_or(0.0, at))
-        };
-        let line = |nm: f64| match own_lines.iter().position(|&line| line == nm) {
-            Some(own) => Lanes::from_fn(|lane| if lane == functions.len() + own { 1.0 } else { 0.0 }),
-            None => between(nm),
-        };
-        let (bins, chances) = bins(mixture.probabilities(), parts);
-        Matching { weights: self.fine(between, line), bins, chances }
-    }
 }
 
 /// The bin of each entry of the fine grid, and how likely each is, for the probabilities of steps and lines.
@@ -74,10 +53,31 @@ fn bins(probabilities: impl Iterator<Item = f64>, parts: f64) -> (Vec<u32>, Vec<
 }
 
 impl<const N: usize> Matching<N> {
+    /// What connects the lanes of a basis; a bin holds one part in `parts` of the draws and of the visible range at
+    /// most, or a single nm or line.
+    pub fn new(basis: &Basis, parts: f64) -> Self {
+        let (LaneKind::Wavelengths(functions), Some(Heroes { mixture, .. })) = (&basis.lanes, &basis.heroes) else {
+            return Self::default();
+        };
+        let own_lines = &basis.wavelengths_nm()[functions.len()..];
+        let between = |nm: f64| {
+            let (below, fraction) = visible::place(nm);
+            let at = |f: &Vec<f64>| (f[below] + fraction * (f[below + 1] - f[below])) as f32;
+            Lanes::from_fn(|lane| functions.get(lane).map_or(0.0, at))
+        };
+        let line = |nm: f64| match own_lines.iter().position(|&line| line == nm) {
+            Some(own) => Lanes::from_fn(|lane| if lane == functions.len() + own { 1.0 } else { 0.0 }),
+            None => between(nm),
+        };
+        let (bins, chances) = bins(mixture.probabilities(), parts);
+        Self { weights: basis.fine(between, line), bins, chances }
+    }
+
     /// Whether heroes carry light that arrives in lanes; `found` is told the wavelength and the film's color of each.
     pub fn alone(
         &self,
-        (draw, response): (&Draw<N>, &Response),
+        draw: &Draw<N>,
+        response: &Response,
         lanes: Lanes<N>,
         parted: bool,
         mut found: impl FnMut(Wavelength, [f64; 3]),

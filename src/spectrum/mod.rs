@@ -19,7 +19,6 @@ mod mixture;
 mod palette;
 mod quantity;
 mod response;
-mod slope;
 mod table;
 mod texture;
 mod throughput;

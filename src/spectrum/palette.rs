@@ -7,15 +7,18 @@ const LEVELS: [f32; 3] = [0.5, 0.8, 1.0];
 /// The least number of a color divided by its largest; beyond the last one is gray.
 const DISTANCES: [f32; 2] = [0.0, 0.2];
 
-/// Spectra of a lattice of colors, from which that of any color is interpolated: no texel of an image needs a fit of its own.
+/// Spectra of a lattice of colors, from which that of any color is interpolated: no texel of an image needs a fit of
+/// its own.
 ///
-/// The lattice has the six hues (1, s, s) and (1, 1, s) at a few distances s from gray and a few levels of brightness, where
-/// a smooth reflectance with exactly this color is fitted. A color is a sum of those around it, with weights that are linear
-/// in the color: so it has exactly its color, stays within 0..1 and is even where the color is gray. With one distance and
-/// one level this is Smits 1999, *An RGB-to-Spectrum Conversion for Reflectances*; but fully saturated colors as bright as
-/// white have steep edges, which 16 lanes miss by 3 %, where the sums of more moderate ones are as smooth as a fit.
+/// The lattice has the six hues (1, s, s) and (1, 1, s) at a few distances s from gray and a few levels of brightness,
+/// where a smooth reflectance with exactly this color is fitted. A color is a sum of those around it, with weights that
+/// are linear in the color: so it has exactly its color, stays within 0..1 and is even where the color is gray. With
+/// one distance and one level this is Smits 1999, *An RGB-to-Spectrum Conversion for Reflectances*; but fully saturated
+/// colors as bright as white have steep edges, which 16 lanes miss by 3 %, where the sums of more moderate ones are as
+/// smooth as a fit.
 ///
-/// By level, distance from gray and hue: red, green, blue, and what lacks red, green, blue. `tabulate` reads a transmittance.
+/// By level, distance from gray and hue: red, green, blue, and what lacks red, green, blue. `tabulate` reads a
+/// transmittance.
 pub(super) fn palette(tabulate: impl Fn(&Curve) -> Table) -> Vec<Table> {
     let mut tints = Vec::new();
     for level in LEVELS {

@@ -5,8 +5,8 @@ use super::Texture;
 /// Most lanes that travel together.
 pub const MAX_LANES: usize = 32;
 
-/// A spectrum on the bins of one render's basis, in the unit of its quantity: one number per fixed lane and, where a basis
-/// has heroes, a fine grid for wavelengths that are drawn.
+/// A spectrum on the bins of one render's basis, in the unit of its quantity: one number per fixed lane and, where a
+/// basis has heroes, a fine grid for wavelengths that are drawn.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
     bins: usize,

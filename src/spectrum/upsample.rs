@@ -50,8 +50,8 @@ impl Upsampler {
         Self { steps: steps.map(|step| apply(&to_rec709, color(step))).collect() }
     }
 
-    /// The spectrum of a reflectance, each number within 0..1. A color that no sigmoid has is moved toward gray until one
-    /// has it.
+    /// The spectrum of a reflectance, each number within 0..1. A color that no sigmoid has is moved toward gray until
+    /// one has it.
     pub fn fit(&self, rgb: [f64; 3]) -> Sigmoid {
         let gray = (rgb.iter().sum::<f64>() / 3.0).clamp(0.0, 1.0);
         if rgb.iter().all(|&x| x == gray) {

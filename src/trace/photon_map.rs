@@ -75,7 +75,7 @@ enum Kept<const N: usize> {
 pub(super) fn photons<const N: usize>(world: &World, pass: u32) -> Option<PhotonMap<N>> {
     let targets = world.map_targets.as_ref()?;
     let radius = world.method.light_pass.as_ref()?.map?.radius;
-    let matching = world.method.basis.matching(PARTS / radius);
+    let matching = Matching::new(&world.method.basis, PARTS / radius);
     let first = |photons: u64| u64::from(pass) * photons;
     let batches = batches(targets, |target| first(target.photons), |target| target.photons, world.method.seed ^ SEED);
     let keep = |_: &Walker<N>, landing: &Landing<N>, _: &Sampler, kept: &mut Vec<_>| {
@@ -117,7 +117,7 @@ fn keep<const N: usize>(world: &World, matching: &Matching<N>, landing: &Landing
         carries: (),
     };
     let response = &world.responses[*light];
-    let by_heroes = matching.alone((arrival.draw, response), flux, path.parted, |wavelength, color| {
+    let by_heroes = matching.alone(arrival.draw, response, flux, path.parted, |wavelength, color| {
         kept.push((point.position, Kept::Alone(photon.with(Alone { wavelength, color }))));
     });
     if !by_heroes {

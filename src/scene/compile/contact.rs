@@ -24,8 +24,8 @@ pub(super) fn coinciding(objects: &[Object], clear: impl Fn(&Object) -> bool) ->
     pairs
 }
 
-/// Pairs whose boxes meet, the first one clear: of objects in the order in which they begin along the longest side of the scene, each
-/// is compared with those that have not ended (Cohen et al. 1995, *I-COLLIDE*, sweep and prune).
+/// Pairs whose boxes meet, the first one clear: of objects in the order in which they begin along the longest side of
+/// the scene, each is compared with those that have not ended (Cohen et al. 1995, *I-COLLIDE*, sweep and prune).
 fn near_pairs(boxes: &[Option<Bounds>], is_clear: &[bool]) -> Vec<(usize, usize)> {
     if !is_clear.contains(&true) {
         return Vec::new();

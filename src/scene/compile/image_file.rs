@@ -242,11 +242,12 @@ const MOST_TEXELS: usize = 1 << 27;
 
 /// Bytes of texels that a file of any length may ask for.
 const ALWAYS: u64 = 1 << 27;
-/// Bytes of texels that one byte of a file can stand for: deflate packs 1032 into one at best (RFC 1951: 258 by 2 bits), and
-/// of a palette of two colors each bit is a texel of 3 bytes. Nothing else in these formats is as dense.
+/// Bytes of texels that one byte of a file can stand for: deflate packs 1032 into one at best (RFC 1951: 258 by 2
+/// bits), and of a palette of two colors each bit is a texel of 3 bytes. Nothing else in these formats is as dense.
 const DENSEST: u64 = 1032 * 24;
 
-/// Refuses images without texels, and sizes that would fill the memory before it shows that the file has no such texels.
+/// Refuses images without texels, and sizes that would fill the memory before it shows that the file has no such
+/// texels.
 fn fits(width: usize, height: usize, texels: u64, file: &[u8]) -> Result<(), String> {
     if width == 0 || height == 0 {
         return Err("it has no pixels".into());

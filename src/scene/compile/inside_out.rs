@@ -11,8 +11,8 @@ const TRIES: u32 = 16;
 /// Surfaces that a ray crosses at most.
 const MOST: usize = 1000;
 
-/// Clear objects (`clear` says which) that are closed meshes with their faces inward, and no bubbles: a bubble lies in a body of
-/// the same material, which its faces end.
+/// Clear objects (`clear` says which) that are closed meshes with their faces inward, and no bubbles: a bubble lies in
+/// a body of the same material, which its faces end.
 pub(super) fn inside_out(objects: &[Object], clear: impl Fn(&Object) -> bool) -> Vec<usize> {
     let is_mesh = |object: &Object| matches!(*object.shape, Shape::Mesh(_) | Shape::Instance(_));
     let candidates = (0..objects.len()).filter(|&number| {
@@ -52,7 +52,8 @@ fn from_inside(shape: &Shape, number: u32) -> Option<Ray> {
     })
 }
 
-/// How often the inside of a shape, by its normals, lies around the start of a ray: left more often than entered on the way out.
+/// How often the inside of a shape, by its normals, lies around the start of a ray: left more often than entered on the
+/// way out.
 fn bodies_around(shape: &Shape, ray: &Ray) -> i32 {
     let (mut ray, mut bodies) = (*ray, 0);
     for _ in 0..MOST {

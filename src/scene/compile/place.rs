@@ -40,7 +40,7 @@ pub(super) fn placed<'d>(drafts: Vec<Draft<'d>>, materials: &Materials<'d>) -> P
         });
         let shape = draft.shape.place;
         let is_shared = draft.shape.it.file.is_some_and(|file| places[file] > 1);
-        for object in draft.placed(is_shared, number, material.varies()).unwrap_or_default() {
+        for object in objects_of(draft, is_shared, number, material.varies()).unwrap_or_default() {
             placed.objects.push(object);
             placed.shapes.push(shape);
         }
@@ -48,36 +48,34 @@ pub(super) fn placed<'d>(drafts: Vec<Draft<'d>>, materials: &Materials<'d>) -> P
     placed
 }
 
-impl<'d> Draft<'d> {
-    /// The object, or each of its instances; `is_shared` is a mesh that stands in other places as well.
-    fn placed(self, is_shared: bool, material: u32, varies: bool) -> Option<Vec<Object>> {
-        let Self { name, material: material_name, shape: At { place, it: written }, map, instances, relief } = self;
-        let edges = written.edges;
-        let object = |name: String, shape: Shape, coordinates: Option<Coordinates>| {
-            if varies && coordinates.is_none() {
-                let message = format!("this mesh has no texture coordinates, by which {material_name} would lie on it");
-                return place.advise(message, "give it a material without `image` and `checker`");
-            }
-            let coordinates = coordinates.map(Arc::new);
-            let relief = match &relief {
-                Some(relief) => Some(relief.on(coordinates.as_ref())?),
-                None => None,
-            };
-            let coordinates = coordinates.filter(|_| varies);
-            Some(Object { name, shape: Arc::new(shape), material, light: None, coordinates, relief })
+/// The object, or each of its instances; `is_shared` is a mesh that stands in other places as well.
+fn objects_of(draft: Draft, is_shared: bool, material: u32, varies: bool) -> Option<Vec<Object>> {
+    let Draft { name, material: material_name, shape: At { place, it: written }, map, instances, relief } = draft;
+    let edges = written.edges;
+    let object = |name: String, shape: Shape, coordinates: Option<Coordinates>| {
+        if varies && coordinates.is_none() {
+            let message = format!("this mesh has no texture coordinates, by which {material_name} would lie on it");
+            return place.advise(message, "give it a material without `image` and `checker`");
+        }
+        let coordinates = coordinates.map(Arc::new);
+        let relief = match &relief {
+            Some(relief) => Some(relief.on(coordinates.as_ref())?),
+            None => None,
         };
-        let Some(instances) = instances else {
-            let coordinates = Coordinates::new(&written.shape, &map.it);
-            let shape = if is_shared { written.shape.copied(&map.it) } else { written.shape.transformed(&map.it) };
-            Fit { steps: map.place, whole: place, edges }.check(&shape, &map.it)?;
-            return Some(vec![object(name, shape, coordinates)?]);
-        };
-        let instance = |(number, At { place, it: map }): (usize, At<Transform>)| {
-            let shape = written.shape.copied(&map);
-            Fit { steps: place, whole: place, edges }.check(&shape, &map)?;
-            object(format!("{name} [{}]", number + 1), shape, Coordinates::new(&written.shape, &map))
-        };
-        let placed: Vec<_> = instances.into_iter().enumerate().map(instance).collect();
-        placed.into_iter().collect()
-    }
+        let coordinates = coordinates.filter(|_| varies);
+        Some(Object { name, shape: Arc::new(shape), material, light: None, coordinates, relief })
+    };
+    let Some(instances) = instances else {
+        let coordinates = Coordinates::new(&written.shape, &map.it);
+        let shape = if is_shared { written.shape.copied(&map.it) } else { written.shape.transformed(&map.it) };
+        Fit { steps: map.place, whole: place, edges }.check(&shape, &map.it)?;
+        return Some(vec![object(name, shape, coordinates)?]);
+    };
+    let instance = |(number, At { place, it: map }): (usize, At<Transform>)| {
+        let shape = written.shape.copied(&map);
+        Fit { steps: place, whole: place, edges }.check(&shape, &map)?;
+        object(format!("{name} [{}]", number + 1), shape, Coordinates::new(&written.shape, &map))
+    };
+    let placed: Vec<_> = instances.into_iter().enumerate().map(instance).collect();
+    placed.into_iter().collect()
 }

@@ -1,7 +1,7 @@
 //! Images that bend the normals of objects.
 //!
-//! They belong to the object and not to its material: a depth is a length on it, one material serves flat and dented things,
-//! and of a mix or a mask it is clear which normal counts.
+//! They belong to the object and not to its material: a depth is a length on it, one material serves flat and dented
+//! things, and of a mix or a mask it is clear which normal counts.
 
 use std::sync::Arc;
 
@@ -39,8 +39,8 @@ pub(super) fn relief<'d>(context: &mut Context<'d>, object: &mut Fields<'d>) -> 
 /// normal_map = { image = "wall_normal.png", repeat = 2, strength = 1 }
 /// ```
 ///
-/// Directions: red along u, green along v, blue out of the surface, one half being none. The strength is a factor on red
-/// and green.
+/// Directions: red along u, green along v, blue out of the surface, one half being none. The strength is a factor on
+/// red and green.
 fn normal_map<'d>(context: &mut Context<'d>, place: Value<'d>) -> Option<ReliefText<'d>> {
     Fields::read(place, |map| {
         let file = map.need("image", at(Value::text));
@@ -65,8 +65,8 @@ fn normal_map<'d>(context: &mut Context<'d>, place: Value<'d>) -> Option<ReliefT
 /// bump_map = { image = "height.png", repeat = 2, depth = 0.02 }
 /// ```
 ///
-/// Heights, of one channel or the mean of all three. The depth is the height of white over black in scene units; below 0
-/// white lies deeper.
+/// Heights, of one channel or the mean of all three. The depth is the height of white over black in scene units; below
+/// 0 white lies deeper.
 fn bump_map<'d>(context: &mut Context<'d>, place: Value<'d>) -> Option<ReliefText<'d>> {
     Fields::read(place, |map| {
         let file = map.need("image", at(Value::text));

@@ -19,8 +19,8 @@ pub(super) struct Fault {
     pub(super) is_column: bool,
 }
 
-/// The rows of a column of a text file, counted from 1; columns stand apart by commas, semicolons, tabs or blanks. Lines
-/// that are empty or begin with # are passed over, and so is a first line of titles.
+/// The rows of a column of a text file, counted from 1; columns stand apart by commas, semicolons, tabs or blanks.
+/// Lines that are empty or begin with # are passed over, and so is a first line of titles.
 ///
 /// # Errors
 /// The line and what is wrong with it.

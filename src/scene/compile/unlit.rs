@@ -1,7 +1,8 @@
 //! Lights that light nothing the camera could see.
 //!
-//! Paths from the camera look for places that a light reaches, and paths from the light for places that the camera sees: one that
-//! is found either way is enough. Where light goes behind a clear body is not followed: a doubt speaks for the light.
+//! Paths from the camera look for places that a light reaches, and paths from the light for places that the camera
+//! sees: one that is found either way is enough. Where light goes behind a clear body is not followed: a doubt speaks
+//! for the light.
 
 use super::sight::{Place, Sight};
 use crate::light::{Area, Light, LightId};

@@ -168,8 +168,8 @@ const PROJECTIONS: [(&str, ProjectionKind); 3] = [
     ("equirectangular", ProjectionKind::Equirectangular),
 ];
 
-/// The projection, if the camera has the keys for it and no other: of a vertical field of view in degrees, the height of the
-/// view in scene units, a shift and a lens.
+/// The projection, if the camera has the keys for it and no other: of a vertical field of view in degrees, the height
+/// of the view in scene units, a shift and a lens.
 fn projection(
     camera: &mut Fields,
     kind: ProjectionKind,

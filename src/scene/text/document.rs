@@ -55,7 +55,8 @@ impl<'d> Document<'d> {
         mistakes
     }
 
-    /// The keys and positions that lead to keys and values, as in `object[3].shape.sphere.radius`; empty where there are none.
+    /// The keys and positions that lead to keys and values, as in `object[3].shape.sphere.radius`; empty where there
+    /// are none.
     pub(in crate::scene) fn paths(&self, places: impl Iterator<Item = Range<usize>>) -> HashMap<Range<usize>, String> {
         let mut paths: HashMap<_, _> = places.map(|span| (span, String::new())).collect();
         if !paths.is_empty() {

@@ -21,8 +21,8 @@ pub(in crate::scene) struct Fields<'d> {
 }
 
 impl<'d> Fields<'d> {
-    /// What a table says, if it has all the keys that it needs and no others. `read` asks for every key that there may be
-    /// before it gives up over one.
+    /// What a table says, if it has all the keys that it needs and no others. `read` asks for every key that there may
+    /// be before it gives up over one.
     pub(in crate::scene) fn read<T>(value: Value<'d>, read: impl FnOnce(&mut Self) -> Option<T>) -> Option<T> {
         let Some(table) = value.node().as_table() else { return value.wanted("a table, { .. }") };
         Self::of(value.document, table, value.span(), read)

@@ -1,0 +1,243 @@
+//! What a scene holds, and what rays meet in it.
+
+use std::cell::Cell;
+use std::sync::Arc;
+
+use super::index::Index;
+use super::{Camera, Relief, RenderText};
+use crate::film::{Filter, Window};
+use crate::light::{Light, LightId};
+use crate::material::Material;
+use crate::math::Ray;
+use crate::shape::{Coordinates, Crossing, Shape, SurfacePoint};
+use crate::spectrum::{ColorSpace, Curve, Quantity};
+
+/// Number of a material in its scene.
+pub type MaterialId = u32;
+
+/// A world in which every name has been found and every number checked.
+#[derive(Clone, Debug)]
+pub struct Scene<S = Curve> {
+    /// From where it is seen.
+    pub camera: Camera,
+    /// The image to make.
+    pub film: FilmSettings,
+    /// How to make it.
+    pub render: RenderText,
+    /// Surfaces, in the order of the file.
+    pub objects: Vec<Object>,
+    /// Materials, in the order in which objects use them first.
+    pub materials: Vec<NamedMaterial<S>>,
+    /// Everything that shines.
+    pub lights: Vec<Light<S>>,
+    /// The lights that rays see which meet nothing.
+    pub skies: Vec<LightId>,
+    /// What the author should know but need not change.
+    pub warnings: Vec<String>,
+    /// SHA-256 of the scene file and the files it names, 64 hexadecimal digits.
+    pub hash: String,
+    pub(super) index: Index,
+}
+
+/// Size and meaning of the image.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FilmSettings {
+    /// Pixels per row.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// Where in its pixel a sample falls.
+    pub filter: Filter,
+    /// What the numbers mean.
+    pub color_space: ColorSpace,
+    /// The part of the image that is made; all of it if absent.
+    pub crop: Option<Window>,
+}
+
+impl FilmSettings {
+    /// The part of the image that is made.
+    pub fn window(&self) -> Window {
+        self.crop.unwrap_or(self.whole())
+    }
+
+    /// The full image.
+    pub fn whole(&self) -> Window {
+        Window { left: 0, top: 0, width: self.width, height: self.height }
+    }
+
+    /// What is wrong with a crop, if anything.
+    pub fn objection(&self, crop: Window) -> Option<String> {
+        let Window { left, top, width, height } = crop;
+        if width == 0 || height == 0 {
+            return Some(format!("a crop has at least 1 pixel along each side, not {width} x {height}"));
+        }
+        let inside = |from: u32, size: u32, whole: u32| u64::from(from) + u64::from(size) <= u64::from(whole);
+        (!inside(left, width, self.width) || !inside(top, height, self.height)).then(|| {
+            let (right, bottom) = (u64::from(left) + u64::from(width), u64::from(top) + u64::from(height));
+            let whole = format!("the image has {} x {} pixels", self.width, self.height);
+            format!("this crop ends at column {right}, row {bottom}, but {whole}")
+        })
+    }
+}
+
+/// A surface with its material.
+#[derive(Clone, Debug)]
+pub struct Object {
+    /// Its name, or `object N` counted from 1.
+    pub name: String,
+    /// Where it is.
+    pub shape: Arc<Shape>,
+    /// What it does with light.
+    pub material: MaterialId,
+    /// The light it is, if it shines.
+    pub light: Option<LightId>,
+    /// Where its points lie in images, if its material varies over the surface.
+    pub coordinates: Option<Arc<Coordinates>>,
+    /// The image that bends its normal, if there is one.
+    pub relief: Option<Arc<Relief>>,
+}
+
+impl Object {
+    /// The surface at a crossing, with the normal that its relief gives it.
+    #[inline]
+    pub fn point(&self, ray: &Ray, crossing: &Crossing) -> SurfacePoint {
+        let mut point = self.shape.point(ray, crossing);
+        if let Some(relief) = &self.relief {
+            point.shading = relief.normal(&self.shape, crossing, &point);
+        }
+        point
+    }
+
+    /// Where a point of its surface lies in images on it; (0, 0) if there are none.
+    pub fn uv(&self, crossing: &Crossing, point: &SurfacePoint) -> [f64; 2] {
+        let coordinates = self.coordinates.as_ref();
+        coordinates.map_or([0.0; 2], |coordinates| coordinates.at(&self.shape, crossing, point.position))
+    }
+}
+
+/// A material and the name its author gave it.
+#[derive(Clone, Debug)]
+pub struct NamedMaterial<S> {
+    /// Its name in the scene file.
+    pub name: String,
+    /// The material.
+    pub material: Material<S>,
+}
+
+/// Where a ray first meets the world.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit {
+    /// The object met.
+    pub object: u32,
+    /// Where on it.
+    pub crossing: Crossing,
+}
+
+impl<S> Scene<S> {
+    /// The same world with every spectrum converted; `convert` is told what the spectrum describes.
+    pub fn map<T>(&self, mut convert: impl FnMut(Quantity, &S) -> T) -> Scene<T> {
+        let materials = self.materials.iter();
+        Scene {
+            camera: self.camera.clone(),
+            film: self.film,
+            render: self.render.clone(),
+            objects: self.objects.clone(),
+            materials: materials
+                .map(|m| NamedMaterial { name: m.name.clone(), material: m.material.map(&mut convert) })
+                .collect(),
+            lights: self.lights.iter().map(|light| light.map(&mut convert)).collect(),
+            skies: self.skies.clone(),
+            warnings: self.warnings.clone(),
+            hash: self.hash.clone(),
+            index: self.index.clone(),
+        }
+    }
+
+    /// The light that fills the whole sky, if there is one.
+    pub fn environment(&self) -> Option<LightId> {
+        self.skies.iter().copied().find(|&sky| matches!(self.lights[sky], Light::Environment(_)))
+    }
+
+    /// The material of an object.
+    pub fn material_of(&self, object: u32) -> &Material<S> {
+        &self.materials[self.objects[object as usize].material as usize].material
+    }
+
+    /// The nearest surface along a ray; of equally near ones, that of the object listed first.
+    pub fn intersect(&self, ray: &Ray) -> Option<Hit> {
+        self.nearest(ray, f64::INFINITY, |_| true)
+    }
+
+    /// The nearest surface along a ray up to a distance, of those objects that count.
+    #[inline]
+    pub fn nearest(&self, ray: &Ray, distance: f64, counts: impl Fn(u32) -> bool) -> Option<Hit> {
+        let pooled = self.index.pool().and_then(|pool| pool.nearest(ray, distance, &counts));
+        let mut nearest = pooled.map(|(object, crossing)| Hit { object, crossing });
+        let limit = nearest.map_or(distance, |hit| hit.crossing.t);
+        self.index.nearest(ray, limit, |object, limit| {
+            if !counts(object) {
+                return limit;
+            }
+            if let Some(crossing) = self.objects[object as usize].shape.intersect(ray, limit) {
+                if nearest.is_none_or(|n| crossing.t < n.crossing.t || object < n.object) {
+                    nearest = Some(Hit { object, crossing });
+                }
+                return crossing.t;
+            }
+            limit
+        });
+        nearest
+    }
+
+    /// Whether anything lies before a light at `distance`; the light's own object does not hide it.
+    ///
+    /// `hider` remembers what hid a light last: it is asked first, for it often hides the next one as well.
+    pub fn is_hidden(&self, ray: &Ray, distance: f64, light: Option<u32>, hider: &Cell<Option<u32>>) -> bool {
+        self.is_hidden_by(ray, distance, light, hider, |_| true)
+    }
+
+    /// The same by those objects that count.
+    #[inline]
+    pub fn is_hidden_by(
+        &self,
+        ray: &Ray,
+        distance: f64,
+        light: Option<u32>,
+        hider: &Cell<Option<u32>>,
+        counts: impl Fn(u32) -> bool,
+    ) -> bool {
+        // An object listed after the light's own does not hide it by an equal distance.
+        let hides_at = |object: u32, t: f64| match light {
+            _ if !counts(object) => false,
+            Some(light) if light == object => false,
+            Some(light) if light < object => t < distance,
+            _ => true,
+        };
+        if self.index.pool().is_some_and(|pool| pool.any(ray, distance, hides_at)) {
+            return true;
+        }
+        let hides = |object: u32| match light {
+            _ if !counts(object) => false,
+            Some(light) if light == object => false,
+            Some(light) if light < object => self.is_crossed(object, ray, distance.next_down()),
+            _ => self.is_crossed(object, ray, distance),
+        };
+        let last = hider.get();
+        if last.is_some_and(hides) {
+            return true;
+        }
+        let mut hidden = false;
+        self.index.any(ray, distance, |object| {
+            hidden = Some(object) != last && hides(object);
+            if hidden {
+                hider.set(Some(object));
+            }
+            hidden
+        });
+        hidden
+    }
+
+    fn is_crossed(&self, object: u32, ray: &Ray, t_max: f64) -> bool {
+        self.objects[object as usize].shape.is_crossed(ray, t_max)
+    }
+}
