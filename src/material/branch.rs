@@ -18,7 +18,7 @@ pub struct Branch<const N: usize> {
     pub eta_scale: f64,
     /// Largest degree |s - p| / (s + p), of any lane, to which unpolarized light that comes by this one direction
     /// leaves polarized; 0 where it does not, and of directions that were drawn: see
-    /// [`Material::degree_of_scattered`](super::Material::degree_of_scattered).
+    /// [`Scatter::degree_of_scattered`](super::Scatter::degree_of_scattered).
     pub polarization: f32,
 }
 

@@ -97,7 +97,7 @@ impl Conductor<Table> {
     }
 
     /// The degree by the facet that mirrors light from `wi`:
-    /// [`Material::degree_of_scattered`](super::Material::degree_of_scattered).
+    /// [`Scatter::degree_of_scattered`](super::Scatter::degree_of_scattered).
     pub(super) fn degree_of_scattered<const N: usize>(&self, arrival: &Arrival<N>, wi: DVec3) -> f32 {
         let Some(h) = (arrival.wo + wi).try_normalize() else { return 0.0 };
         let (n, k) = (arrival.draw.read_exact(&self.n), arrival.draw.read_exact(&self.k));

@@ -137,7 +137,7 @@ impl Plastic<Table> {
     }
 
     /// The degree by the coat, which light crosses and, where it is rough, is mirrored by:
-    /// [`Material::degree_of_scattered`](super::Material::degree_of_scattered).
+    /// [`Scatter::degree_of_scattered`](super::Scatter::degree_of_scattered).
     pub(super) fn degree_of_scattered<const N: usize>(&self, arrival: &Arrival<N>, wi: DVec3) -> f32 {
         let index = arrival.draw.read_exact(&self.index);
         let lanes = || (0..N).filter(|&lane| index[lane] != arrival.incident[lane]).step_by(N.div_ceil(LANES));
