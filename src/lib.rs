@@ -25,7 +25,7 @@
 //! its progress. The rooms below are open as well: a plan without a render, a glass's index, one ray.
 //!
 //! ```text
-//! scene.toml -> Document -> Scene<Curve> -> Plan -> Scene<Table> -> radiance::<N> over tiles -> Film -> EXR
+//! scene.toml -> Document -> Scene<Curve> -> Plan -> World -> PathTracer<N> over tiles, pass by pass -> Film -> EXR
 //!
 //! floor 6   rendering   a scene made into an image
 //! floor 5   plan        looks at a Scene<Curve>; answers a Method and, in words, why
