@@ -307,7 +307,7 @@ fn maps_of_any_numbers_give_unit_normals() {
     ] {
         let scene = scene(folder, &room("diffuse.reflectance = 1", map));
         let mut random = Random::new(9);
-        for object in &scene.objects {
+        for object in scene.objects.iter() {
             for _ in 0..300 {
                 let from = DVec3::new(0.0, 1.0, 6.0);
                 let toward = DVec3::new(4.0 * random.number() - 2.0, 3.0 * random.number() - 1.0, 0.0);

@@ -157,7 +157,7 @@ fn s6_areas_scale_exactly_and_with_them_how_often_each_light_is_aimed_at() {
     let objects = scene(&text(1.0)).objects;
     for power in [40, -40] {
         let size = libm::exp2(f64::from(power));
-        for (scaled, object) in scene(&text(size)).objects.iter().zip(&objects) {
+        for (scaled, object) in scene(&text(size)).objects.iter().zip(objects.iter()) {
             let expected = object.shape.area() * size * size;
             assert_eq!(scaled.shape.area(), expected, "{:?} at size 2^{power}", object.shape);
         }

@@ -127,7 +127,7 @@ impl<S> Light<S> {
     }
 
     /// Whether it is met by rays that meet nothing else.
-    pub fn is_sky(&self) -> bool {
+    pub fn is_infinite(&self) -> bool {
         matches!(self, Self::Environment(_) | Self::Sun(_))
     }
 

@@ -121,7 +121,7 @@ fn sources(scene: &Scene<Curve>, method: &Method) -> Result<Sources, Option<Stri
     }
     if sources.small.is_empty() {
         let why = match sources.large.as_slice() {
-            [] if scene.lights.iter().any(|light| light.is_sky() && !light.is_even_sky()) => {
+            [] if scene.lights.iter().any(|light| light.is_infinite() && !light.is_even_sky()) => {
                 "caustics of an image of the sky are left to chance".into()
             }
             [] => "rays find the sky by chance often enough".into(),

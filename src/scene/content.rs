@@ -24,19 +24,19 @@ pub struct Scene<S = Curve> {
     pub film: FilmSettings,
     /// How to make it.
     pub render: RenderText,
-    /// Surfaces, in the order of the file.
-    pub objects: Vec<Object>,
+    /// Surfaces, in the order of the file: shared by all scenes that differ only in their spectra.
+    pub objects: Arc<[Object]>,
     /// Materials, in the order in which objects use them first.
     pub materials: Vec<NamedMaterial<S>>,
     /// Everything that shines.
     pub lights: Vec<Light<S>>,
     /// The lights that rays see which meet nothing.
-    pub skies: Vec<LightId>,
+    pub infinite_lights: Vec<LightId>,
     /// What the author should know but need not change.
     pub warnings: Vec<String>,
     /// SHA-256 of the scene file and the files it names, 64 hexadecimal digits.
     pub hash: String,
-    pub(super) index: Index,
+    pub(super) index: Arc<Index>,
 }
 
 /// Size and meaning of the image.
@@ -146,7 +146,7 @@ impl<S> Scene<S> {
                 .map(|m| NamedMaterial { name: m.name.clone(), material: m.material.map(&mut convert) })
                 .collect(),
             lights: self.lights.iter().map(|light| light.map(&mut convert)).collect(),
-            skies: self.skies.clone(),
+            infinite_lights: self.infinite_lights.clone(),
             warnings: self.warnings.clone(),
             hash: self.hash.clone(),
             index: self.index.clone(),
@@ -155,7 +155,7 @@ impl<S> Scene<S> {
 
     /// The light that fills the whole sky, if there is one.
     pub fn environment(&self) -> Option<LightId> {
-        self.skies.iter().copied().find(|&sky| matches!(self.lights[sky], Light::Environment(_)))
+        self.infinite_lights.iter().copied().find(|&sky| matches!(self.lights[sky], Light::Environment(_)))
     }
 
     /// The material of an object.
@@ -191,19 +191,19 @@ impl<S> Scene<S> {
 
     /// Whether anything lies before a light at `distance`; the light's own object does not hide it.
     ///
-    /// `hider` remembers what hid a light last: it is asked first, for it often hides the next one as well.
-    pub fn is_hidden(&self, ray: &Ray, distance: f64, light: Option<u32>, hider: &Cell<Option<u32>>) -> bool {
-        self.is_hidden_by(ray, distance, light, hider, |_| true)
+    /// `last_occluder` remembers what hid a light last: it is asked first, for it often hides the next one as well.
+    pub fn is_occluded(&self, ray: &Ray, distance: f64, light: Option<u32>, last_occluder: &Cell<Option<u32>>) -> bool {
+        self.is_occluded_by(ray, distance, light, last_occluder, |_| true)
     }
 
     /// The same by those objects that count.
     #[inline]
-    pub fn is_hidden_by(
+    pub fn is_occluded_by(
         &self,
         ray: &Ray,
         distance: f64,
         light: Option<u32>,
-        hider: &Cell<Option<u32>>,
+        last_occluder: &Cell<Option<u32>>,
         counts: impl Fn(u32) -> bool,
     ) -> bool {
         // An object listed after the light's own does not hide it by an equal distance.
@@ -222,7 +222,7 @@ impl<S> Scene<S> {
             Some(light) if light < object => self.is_crossed(object, ray, distance.next_down()),
             _ => self.is_crossed(object, ray, distance),
         };
-        let last = hider.get();
+        let last = last_occluder.get();
         if last.is_some_and(hides) {
             return true;
         }
@@ -230,7 +230,7 @@ impl<S> Scene<S> {
         self.index.any(ray, distance, |object| {
             hidden = Some(object) != last && hides(object);
             if hidden {
-                hider.set(Some(object));
+                last_occluder.set(Some(object));
             }
             hidden
         });

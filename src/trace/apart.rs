@@ -85,7 +85,7 @@ pub(super) fn is_dark(world: &World) -> bool {
 }
 
 fn skies_seen(world: &World) -> impl Iterator<Item = &Light<Table>> {
-    world.scene.skies.iter().map(|&sky| &world.scene.lights[sky]).filter(|sky| sky.is_extended())
+    world.scene.infinite_lights.iter().map(|&sky| &world.scene.lights[sky]).filter(|sky| sky.is_extended())
 }
 
 fn angle(a: DVec3, b: DVec3) -> f64 {

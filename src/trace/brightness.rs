@@ -33,7 +33,7 @@ const SEED: u64 = 0x6272_6967;
 /// All of the image counts, also where only a part of it is made, so that all parts are made alike.
 pub fn bright_places(world: &World) -> Option<BrightPlaces> {
     let is_random = matches!(world.method.transport, Transport::Random { .. });
-    if world.scene.skies.is_empty() || !is_random || world.method.diffuse_bounces == 0 {
+    if world.scene.infinite_lights.is_empty() || !is_random || world.method.diffuse_bounces == 0 {
         return None;
     }
     in_lanes!(&world.method.basis, N => places::<N>(world))

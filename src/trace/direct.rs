@@ -177,7 +177,7 @@ impl<const N: usize> DirectLighting<'_, N> {
         if self.world.has_see_through() {
             return self.transmittance(sample, inside).map(Some);
         }
-        let hidden = self.world.scene.is_hidden(&sample.ray, sample.distance, sample.object, self.last_occluder);
+        let hidden = self.world.scene.is_occluded(&sample.ray, sample.distance, sample.object, self.last_occluder);
         (!hidden).then_some(None)
     }
 
@@ -186,7 +186,9 @@ impl<const N: usize> DirectLighting<'_, N> {
     #[inline(never)]
     fn transmittance(&self, sample: &LightSample, inside: Option<MaterialId>) -> Option<(Lanes<N>, Polarized)> {
         let (world, LightSample { ray, distance, object, .. }) = (self.world, sample);
-        if world.scene.is_hidden_by(ray, *distance, *object, self.last_occluder, |object| !world.is_see_through(object))
+        if world
+            .scene
+            .is_occluded_by(ray, *distance, *object, self.last_occluder, |object| !world.is_see_through(object))
         {
             return None;
         }

@@ -100,7 +100,7 @@ impl Pair<'_> {
         let target = self.target(light, normal, u)?;
         let sample = light.sample_li(&SurfacePoint::in_space(target), normal, [u[2], u[3]])?;
         let start = self.start(&sample.ray, sample.distance)?;
-        let media = if scene.lights[self.light].is_sky() {
+        let media = if scene.lights[self.light].is_infinite() {
             Media::default()
         } else {
             Media::around(&self.colors.world.scene, start.origin, start.direction)
@@ -144,7 +144,7 @@ impl Pair<'_> {
         walk: &impl Fn(usize, Ray) -> Walk,
     ) -> Option<f64> {
         let (scene, light) = (&self.colors.world.scene, &self.colors.world.scene.lights[self.light]);
-        let (direction, distance, lamp) = if light.is_sky() {
+        let (direction, distance, lamp) = if light.is_infinite() {
             (-start.direction, f64::INFINITY, None)
         } else {
             let sample = light.sample_li(end, end.normal, [0.5; 2])?;
@@ -153,13 +153,13 @@ impl Pair<'_> {
         let (own, from) = (direction.dot(end.normal), -first.last()?.direction.dot(end.normal));
         let keeps_away = |object| !first.met.contains(&object) && !scene.material_of(object).lets_through();
         let ray = end.leave(direction);
-        if own * from <= 0.0 || scene.is_hidden_by(&ray, distance, lamp, &Cell::new(None), keeps_away) {
+        if own * from <= 0.0 || scene.is_occluded_by(&ray, distance, lamp, &Cell::new(None), keeps_away) {
             return None;
         }
         let (frame, step) = (Frame::about(start.direction), BESIDE * self.ball.radius);
         let [x, y] = [DVec3::X, DVec3::Y].map(|side| {
             let aside = frame.to_world(side) * step;
-            let beside = if light.is_sky() {
+            let beside = if light.is_infinite() {
                 Ray { origin: start.origin + aside, ..*start }
             } else {
                 Ray { direction: unit(target + aside - start.origin), ..*start }
@@ -167,7 +167,7 @@ impl Pair<'_> {
             let walk = walk(0, beside);
             walk.end.filter(|_| walk.met == first.met).map(|beside| beside.0.position - end.position)
         });
-        let nearer = if light.is_sky() { 1.0 } else { (target - start.origin).length() / distance };
+        let nearer = if light.is_infinite() { 1.0 } else { (target - start.origin).length() / distance };
         Some(first.weight * step * step / (x?.cross(y?).length() * own.abs() * nearer * nearer))
     }
 
@@ -194,11 +194,11 @@ impl Pair<'_> {
                 let crossing = area.shape.intersect(back, f64::INFINITY)?;
                 Some(area.shape.point(back, &crossing).leave(-back.direction))
             }
-            light if light.is_sky() => {
+            light if light.is_infinite() => {
                 let world = scene.objects.iter().filter_map(|object| object.shape.ball()).reduce(Ball::around)?;
                 let out = (world.center - back.origin).length() + 2.0 * world.radius;
                 let start = Ray { origin: back.at(out), ..*back };
-                let hidden = scene.is_hidden(&start, f64::INFINITY, None, &Cell::new(None));
+                let hidden = scene.is_occluded(&start, f64::INFINITY, None, &Cell::new(None));
                 (!hidden).then_some(Ray { direction: -back.direction, ..start })
             }
             _ => Some(Ray { origin: back.at(distance), direction: -back.direction }),
@@ -224,7 +224,7 @@ impl Pair<'_> {
         let ray = point.leave(seen.direction);
         let distance = (seen.start - ray.origin).length();
         let hides = |object| !scene.material_of(object).lets_through();
-        let hidden = scene.is_hidden_by(&ray, distance, None, &Cell::new(None), hides);
+        let hidden = scene.is_occluded_by(&ray, distance, None, &Cell::new(None), hides);
         (!hidden).then(|| (seen.importance * seen.direction.dot(point.normal).abs()).sqrt())
     }
 }

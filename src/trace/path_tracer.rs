@@ -126,7 +126,7 @@ impl<'a, const N: usize> PathTracer<'a, N> {
     /// Hands the light of the sky, at the end of a path that hits nothing, to the sensor.
     fn background(&mut self, path: &Path<N>, draw: &Draw<N>) {
         let world = self.walker.world;
-        for &id in &world.scene.skies {
+        for &id in &world.scene.infinite_lights {
             let light = &world.scene.lights[id];
             if self.is_found_by_photons(path, id) {
                 continue;

@@ -169,14 +169,14 @@ pub(super) fn show<const N: usize>(
     let (mut shone, mut polarized) = (landing.shone(world), Polarized::NOT);
     if world.has_see_through() {
         let closed = |object| !world.is_see_through(object);
-        if world.scene.is_hidden_by(&ray, distance, None, &walker.last_occluder, closed) {
+        if world.scene.is_occluded_by(&ray, distance, None, &walker.last_occluder, closed) {
             return;
         }
         match straight::transmittance(world, arrival.draw, &ray, distance, inside) {
             Some((share, of_panes)) => (shone, polarized) = (shone * share, of_panes),
             None => return,
         }
-    } else if world.scene.is_hidden(&ray, distance, None, &walker.last_occluder) {
+    } else if world.scene.is_occluded(&ray, distance, None, &walker.last_occluder) {
         return;
     }
     if let Some(material) = inside {

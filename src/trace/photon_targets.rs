@@ -129,7 +129,7 @@ impl PhotonTargets {
         let first = self.targets[..number].iter().rposition(|target| !of_light(&target)).map_or(0, |before| before + 1);
         let light = &scene.lights[self.targets[number].light];
         let sample = light.sample_le(&self.targets[number].beam, guide_uv, u)?;
-        let ray = if light.is_sky() { self.started_outside(scene, &sample.ray)? } else { sample.ray };
+        let ray = if light.is_infinite() { self.started_outside(scene, &sample.ray)? } else { sample.ray };
         let sent = |target: &PhotonTarget| {
             target.photons as f64 * light.pdf_le(&target.beam, &sample, |uv| target.guide.density(uv))
         };
@@ -142,7 +142,7 @@ impl PhotonTargets {
         let sky = -ray.direction;
         let out = (self.world.center - ray.origin).dot(sky) + 2.0 * self.world.radius;
         let start = Ray { origin: ray.origin + sky * out, direction: sky };
-        let hidden = scene.is_hidden(&start, f64::INFINITY, None, &Cell::new(None));
+        let hidden = scene.is_occluded(&start, f64::INFINITY, None, &Cell::new(None));
         (!hidden).then_some(Ray { direction: ray.direction, ..start })
     }
 }

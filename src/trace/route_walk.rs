@@ -68,7 +68,7 @@ impl<'a> Walker<'a> {
     fn meet(&mut self, walk: Walk) {
         let world = self.world;
         let Some(hit) = world.scene.intersect(&walk.ray) else {
-            for &id in &world.scene.skies {
+            for &id in &world.scene.infinite_lights {
                 if !matches!(&world.scene.lights[id], Light::Sun(sun) if sun.pdf(&walk.ray).is_none()) {
                     self.record(&walk, id);
                 }

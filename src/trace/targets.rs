@@ -37,7 +37,7 @@ impl Targets {
     pub(super) fn new(colors: &Colors) -> Self {
         let scene = &colors.world.scene;
         let mut kinds: [Vec<(u32, Bounds)>; 2] = Default::default();
-        for (object, bounds) in (0..).zip(&scene.objects).filter_map(|(i, o)| Some((i, o.shape.bounds()?))) {
+        for (object, bounds) in (0..).zip(scene.objects.iter()).filter_map(|(i, o)| Some((i, o.shape.bounds()?))) {
             match scene.material_of(object) {
                 Material::Dielectric(glass) => kinds[usize::from(!colors.disperses(glass))].push((object, bounds)),
                 Material::Mirror(_) | Material::Thin(_) | Material::Conductor(_) => kinds[1].push((object, bounds)),

@@ -65,7 +65,7 @@ fn rays_find_in_a_shared_tree_what_they_find_object_by_object() {
             };
             let expected = crossings().any(|other| hides(&other));
             assert_eq!(
-                scene.is_hidden(&ray, distance, light, &Cell::new(None)),
+                scene.is_occluded(&ray, distance, light, &Cell::new(None)),
                 expected,
                 "{ray:?} {light:?} {distance}"
             );

@@ -21,7 +21,7 @@ use crate::spectrum::{Curve, Placement, Quantity};
 #[derive(Default)]
 pub(super) struct Lights {
     pub(super) all: Vec<Light<Curve>>,
-    pub(super) skies: Vec<LightId>,
+    pub(super) infinite_lights: Vec<LightId>,
     has_environment: bool,
 }
 
@@ -60,7 +60,7 @@ impl Lights {
             let sun = sun.map(|place| sun_light(context, place));
             point.or(spot).or(sun).flatten()
         })?;
-        self.skies.extend(light.is_sky().then_some(self.all.len()));
+        self.infinite_lights.extend(light.is_infinite().then_some(self.all.len()));
         self.all.push(light);
         Some(())
     }

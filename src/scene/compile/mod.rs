@@ -31,6 +31,7 @@ pub(super) use context::nearest_file;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
+use std::sync::Arc;
 
 use sha2::Digest;
 use toml::de::DeValue;
@@ -98,11 +99,22 @@ fn scene<'d>(context: &mut Context<'d>, sections: &mut Fields<'d>) -> Option<Sce
     lights.map(|lights| entries(lights, |light| others.read(context, light)));
     let Placed { objects, materials, .. } = placed;
     let index = Index::new(objects.iter().map(|object| &*object.shape));
-    let (lights, skies, warnings, hash) = (Vec::new(), Vec::new(), Vec::new(), String::new());
+    let (lights, infinite_lights, warnings, hash) = (Vec::new(), Vec::new(), Vec::new(), String::new());
     let (camera, film, render) = (camera?, film?, render?);
-    let mut scene = Scene { camera, film, render, objects, materials, lights, skies, warnings, hash, index };
+    let mut scene = Scene {
+        camera,
+        film,
+        render,
+        objects: objects.into(),
+        materials,
+        lights,
+        infinite_lights,
+        warnings,
+        hash,
+        index: index.into(),
+    };
     surfaces_that_shine(&mut scene);
-    scene.skies = others.skies.into_iter().map(|sky| sky + scene.lights.len()).collect();
+    scene.infinite_lights = others.infinite_lights.into_iter().map(|sky| sky + scene.lights.len()).collect();
     scene.lights.extend(others.all);
     Some(scene)
 }
@@ -188,6 +200,6 @@ fn surfaces_that_shine(scene: &mut Scene<Curve>) {
         let mut area = Area::new(object.shape.clone(), number as u32, radiance.clone(), sides, aimed_at);
         area.coordinates = object.coordinates.clone().filter(|_| radiance.varies());
         scene.lights.push(Light::Area(area));
-        scene.objects[number].light = Some(light);
+        Arc::make_mut(&mut scene.objects)[number].light = Some(light);
     }
 }

@@ -47,7 +47,7 @@ fn what_is_wrong(sight: &Sight, id: LightId) -> Option<String> {
     let light = &sight.scene.lights[id];
     let why = match light {
         _ if sight.rays.get() > MOST_RAYS => return None,
-        _ if light.is_sky() => (!reaches_a_clear_body(sight, light)).then(|| unseen(light)),
+        _ if light.is_infinite() => (!reaches_a_clear_body(sight, light)).then(|| unseen(light)),
         _ => match paths_of(sight, light) {
             Paths::Seen => None,
             Paths::PastEverything => Some(past_everything(light)),
