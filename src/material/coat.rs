@@ -1,7 +1,7 @@
 use std::array;
 use std::sync::{Arc, OnceLock};
 
-use super::by_cosine::ByCosine;
+use super::albedo_table::AlbedoTable;
 use super::fresnel::diffuse_transmittance;
 use super::{Interface, RoughSurface, Roughness, reflect};
 use crate::math::DVec3;
@@ -13,7 +13,7 @@ use crate::math::DVec3;
 #[derive(Clone, Debug)]
 pub struct Coat {
     roughness: Roughness,
-    rows: Arc<[OnceLock<ByCosine>; ROWS]>,
+    rows: Arc<[OnceLock<AlbedoTable>; ROWS]>,
 }
 
 /// Rows of the table on each side of a relative index of 1.
@@ -100,7 +100,7 @@ impl Coat {
     }
 
     /// The rows on both sides of a relative index, and how much of each is taken.
-    fn rows(&self, surface: &RoughSurface, m: f64) -> [(f64, &ByCosine); 2] {
+    fn rows(&self, surface: &RoughSurface, m: f64) -> [(f64, &AlbedoTable); 2] {
         let log = libm::log(m);
         let at = (log.abs().sqrt().copysign(log) / WIDEST + 1.0) * SIDE as f64;
         let below = (at.max(0.0) as usize).min(ROWS - 2);
@@ -116,9 +116,9 @@ impl Coat {
 }
 
 /// What a rough surface reflects once, beyond a smooth one of the same relative index m.
-fn row(surface: &RoughSurface, m: f64) -> ByCosine {
+fn row(surface: &RoughSurface, m: f64) -> AlbedoTable {
     // At the very horizon a rough surface still lets light in, which a smooth one does not.
-    ByCosine::new(surface.facets().alpha(), STEPS, |z| {
+    AlbedoTable::new(surface.facets().alpha(), STEPS, |z| {
         let z = z.max(HORIZON);
         reflected_once(surface, m, z) - (1.0 - transmittance(1.0, m, z))
     })

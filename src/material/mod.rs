@@ -3,9 +3,9 @@
 //! `Material<S>` is written once and read twice: with `S = Curve` it is the scene file's vocabulary, with `S = Table`
 //! what the tracer reads; [`Material::map`] is the bridge. A material answers an [`Arrival`] with [`Branch`]es.
 
+mod albedo_table;
 mod arrival;
 mod branch;
-mod by_cosine;
 mod coat;
 mod conductor;
 mod degree;

@@ -1,7 +1,7 @@
 use std::f64::consts::{LN_10, PI};
 use std::sync::OnceLock;
 
-use super::by_cosine::ByCosine;
+use super::albedo_table::AlbedoTable;
 use super::facets::later_digits;
 use super::fresnel::diffuse_transmittance;
 use super::{Facet, Facets, Flow};
@@ -20,7 +20,7 @@ use crate::math::DVec3;
 #[derive(Clone, Debug)]
 pub struct RoughInterface {
     facets: Facets,
-    rows: Box<[OnceLock<ByCosine>]>,
+    rows: Box<[OnceLock<AlbedoTable>]>,
 }
 
 /// Steps between rows for ratios above 1, and as many below.
@@ -68,12 +68,12 @@ impl RoughInterface {
         Side { rows, part: place - below as f64 }
     }
 
-    fn row(&self, denser: bool, row: usize) -> &ByCosine {
+    fn row(&self, denser: bool, row: usize) -> &AlbedoTable {
         self.rows[row + if denser { RATIOS + 1 } else { 0 }].get_or_init(|| {
             let [least, most] = SPAN;
             let size = least * libm::pow(most / least, row as f64 / RATIOS as f64);
             let ratio = libm::exp(if denser { size } else { -size });
-            ByCosine::new(self.facets.alpha(), STEPS, |z| blocked(&self.facets, z, ratio))
+            AlbedoTable::new(self.facets.alpha(), STEPS, |z| blocked(&self.facets, z, ratio))
         })
     }
 }
@@ -106,12 +106,12 @@ fn straight(ratio: f64) -> f64 {
 /// A rough boundary as it is met from one side, between two rows of the tables.
 #[derive(Clone, Copy, Debug)]
 pub struct Side<'a> {
-    rows: [&'a ByCosine; 2],
+    rows: [&'a AlbedoTable; 2],
     part: f64,
 }
 
 impl Side<'_> {
-    fn mix(&self, read: impl Fn(&ByCosine) -> f64) -> f64 {
+    fn mix(&self, read: impl Fn(&AlbedoTable) -> f64) -> f64 {
         let [a, b] = self.rows.map(read);
         a + self.part * (b - a)
     }
@@ -124,7 +124,7 @@ impl Side<'_> {
 
     /// The share of light from all around that meets a second facet.
     pub fn mean_blocked(&self) -> f64 {
-        self.mix(ByCosine::mean)
+        self.mix(AlbedoTable::mean)
     }
 
     /// What is blocked at the cosine `z`, and the density per steradian with which [`Side::draw`] draws directions

@@ -1,7 +1,7 @@
 use std::f64::consts::PI;
 use std::sync::{Arc, OnceLock};
 
-use super::by_cosine::ByCosine;
+use super::albedo_table::AlbedoTable;
 use super::{Facets, RoughInterface, reflect};
 use crate::math::DVec3;
 
@@ -59,7 +59,7 @@ impl Roughness {
 pub struct RoughSurface {
     facets: Facets,
     /// The share of light that meets a second facet.
-    blocked: ByCosine,
+    blocked: AlbedoTable,
 }
 
 /// Directions of light at a rough surface, and what is reflected between them.
@@ -86,7 +86,7 @@ const UP: usize = 96;
 impl RoughSurface {
     fn new(alpha: f64) -> Self {
         let facets = Facets::new(alpha);
-        Self { facets, blocked: ByCosine::new(alpha, STEPS, |z| quadrature(&facets, z)) }
+        Self { facets, blocked: AlbedoTable::new(alpha, STEPS, |z| quadrature(&facets, z)) }
     }
 
     /// The facets themselves.

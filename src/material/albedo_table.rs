@@ -9,7 +9,7 @@ use crate::math::DVec3;
 /// facets whose slopes are as wide as alpha block changes as z log z near 0, most where z is about alpha, and as 1 /
 /// z^2 beyond.
 #[derive(Clone, Debug)]
-pub(crate) struct ByCosine {
+pub(crate) struct AlbedoTable {
     alpha: f64,
     /// ln(1 + 1 / alpha).
     span: f64,
@@ -22,7 +22,7 @@ pub(crate) struct ByCosine {
     below: Vec<f64>,
 }
 
-impl ByCosine {
+impl AlbedoTable {
     /// The table of `value` in a number of steps, for facets as wide as `alpha`.
     pub(crate) fn new(alpha: f64, steps: usize, value: impl Fn(f64) -> f64) -> Self {
         let zeros = vec![0.0; steps + 1];
@@ -94,7 +94,7 @@ impl ByCosine {
         between(&self.values, place)
     }
 
-    /// The share at the cosine `z`, and the density per steradian with which [`ByCosine::draw`] draws directions there.
+    /// The share at the cosine `z`, and the density per steradian with which [`AlbedoTable::draw`] draws directions there.
     pub(crate) fn value_and_density(&self, z: f64) -> (f64, f64) {
         self.value_and_density_at(self.place(z), z)
     }
