@@ -99,6 +99,10 @@ impl<S> Area<S> {
     /// Looks for the light exactly as a ray that happens to meet it would: no distance needs a tolerance.
     pub(super) fn sample_li(&self, from: &SurfacePoint, normal: DVec3, u: [f64; 2]) -> Option<LightSample> {
         let sample = self.sample(from.position, normal, u)?;
+        // A point in space has no horizon.
+        if sample.direction.dot(normal) <= 0.0 && from.normal != DVec3::ZERO {
+            return None;
+        }
         let ray = from.leave(sample.direction);
         let crossing = self.shape.intersect(&ray, f64::INFINITY)?;
         if sample.part.is_some_and(|part| part != crossing.part) {

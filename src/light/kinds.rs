@@ -56,8 +56,9 @@ impl<S> Light<S> {
         if let Self::Area(area) = self { area.has_parts() } else { false }
     }
 
-    /// A ray from a point of a surface toward the light; none where it does not shine that way. `normal` is the
-    /// surface's unit normal on the lit side, toward which most samples lead.
+    /// A ray from a point of a surface toward the light; none where it does not shine that way, or an area lies below
+    /// the surface's horizon there. `normal` is the surface's unit normal on the lit side, toward which most samples
+    /// lead.
     pub fn sample_li(&self, from: &SurfacePoint, normal: DVec3, u: [f64; 2]) -> Option<LightSample> {
         match self {
             Self::Area(area) => area.sample_li(from, normal, u),

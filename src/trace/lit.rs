@@ -147,7 +147,8 @@ impl Pair<'_> {
         let (direction, distance, lamp) = if light.is_infinite() {
             (-start.direction, f64::INFINITY, None)
         } else {
-            let sample = light.sample_li(end, end.normal, [0.5; 2])?;
+            let side = if first.last()?.direction.dot(end.normal) < 0.0 { end.normal } else { -end.normal };
+            let sample = light.sample_li(end, side, [0.5; 2])?;
             (sample.ray.direction, sample.distance, sample.object)
         };
         let (own, from) = (direction.dot(end.normal), -first.last()?.direction.dot(end.normal));
