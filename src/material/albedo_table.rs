@@ -94,7 +94,8 @@ impl AlbedoTable {
         between(&self.values, place)
     }
 
-    /// The share at the cosine `z`, and the density per steradian with which [`AlbedoTable::draw`] draws directions there.
+    /// The share at the cosine `z`, and the density per steradian with which [`AlbedoTable::draw`] draws directions
+    /// there.
     pub(crate) fn value_and_density(&self, z: f64) -> (f64, f64) {
         self.value_and_density_at(self.place(z), z)
     }
