@@ -96,7 +96,7 @@ impl<S> Material<S> {
         }
     }
 
-    /// Whether light leaves in every direction, so that lights can be aimed at.
+    /// Whether light leaves in every direction, so that lights can be sampled.
     pub fn scatters_widely(&self) -> bool {
         self.lobes().is_wide()
     }

@@ -196,7 +196,7 @@ impl<S> Scene<S> {
         self.is_occluded_by(ray, distance, light, last_occluder, |_| true)
     }
 
-    /// The same by those objects that count.
+    /// Whether any object that counts lies before a light at `distance`; the light's own does not occlude it.
     #[inline]
     pub fn is_occluded_by(
         &self,

@@ -137,7 +137,9 @@ impl<const N: usize> DirectLighting<'_, N> {
     fn trace(&self, side: &Side, shadow_ray: &ShadowRay<N>) -> Option<Contribution> {
         let (world, arrival) = (self.world, &self.at.arrival);
         let ShadowRay { light, sample, probability, bsdf_cos, bsdf_pdf, factor } = shadow_ray;
-        let straight = self.unoccluded(sample, side.inside)?;
+        let LightSample { ray, distance, object, .. } = sample;
+        let straight =
+            straight::unoccluded(world, arrival.draw, ray, *distance, *object, side.inside, self.last_occluder)?;
         let wi = sample.ray.direction;
         // The density of bounces that are guided takes its time.
         let factor = match self.aiming.filter(|_| self.goes_on && sample.pdf.is_some()) {
@@ -169,30 +171,6 @@ impl<const N: usize> DirectLighting<'_, N> {
         let pdf = pdf * probability;
         let weight = if self.goes_on { power_heuristic(pdf, bounce_pdf) } else { 1.0 };
         sample.factor * weight / pdf
-    }
-
-    /// None if something occludes the light; where there are holes and panes, the share that goes straight on through
-    /// them.
-    fn unoccluded(&self, sample: &LightSample, inside: Option<MaterialId>) -> Option<Option<(Lanes<N>, Polarized)>> {
-        if self.world.has_see_through() {
-            return self.transmittance(sample, inside).map(Some);
-        }
-        let hidden = self.world.scene.is_occluded(&sample.ray, sample.distance, sample.object, self.last_occluder);
-        (!hidden).then_some(None)
-    }
-
-    /// The share of a light that goes straight on through what stands before it; none if something occludes it.
-    #[cold]
-    #[inline(never)]
-    fn transmittance(&self, sample: &LightSample, inside: Option<MaterialId>) -> Option<(Lanes<N>, Polarized)> {
-        let (world, LightSample { ray, distance, object, .. }) = (self.world, sample);
-        if world
-            .scene
-            .is_occluded_by(ray, *distance, *object, self.last_occluder, |object| !world.is_see_through(object))
-        {
-            return None;
-        }
-        straight::transmittance(world, self.at.arrival.draw, ray, *distance, inside)
     }
 }
 

@@ -14,7 +14,7 @@ pub struct Dispersion {
     /// How many pixels apart 400 and 700 nm show what lies behind dispersive surfaces, on a fifth of a pixel of the
     /// view or more.
     pub seen_pixels: f64,
-    /// The same for the light that comes through dispersive surfaces to diffuse ones that are seen.
+    /// How many pixels apart light of 400 and 700 nm lands on diffuse surfaces that are seen, after dispersive ones.
     pub lit_pixels: f64,
     /// Whether no ray that went by a dispersive surface saw anything, so that nothing is known of what is seen.
     pub dark: bool,

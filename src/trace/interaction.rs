@@ -48,16 +48,21 @@ impl<'a, const N: usize> Interaction<'a, N> {
         let [flat, normal] = shading::normals(point, wo);
         let present = path.throughput.present();
         let arrival = arrival(world, draw, wo, normal, uv, present, boundary.sides());
-        let parts = lobes.is_transmissive() && material.parts_lanes(&arrival);
+        let parts = parts(lobes, material, &arrival);
         Self { object: hit.object, point, material, lobes, flat, boundary, arrival, parts }
     }
 
     /// With another normal by which the surface scatters.
     pub(super) fn by_normal(self, normal: DVec3) -> Self {
         let arrival = Arrival { normal, ..self.arrival };
-        let parts = self.lobes.is_transmissive() && self.material.parts_lanes(&arrival);
+        let parts = parts(self.lobes, self.material, &arrival);
         Self { arrival, parts, ..self }
     }
+}
+
+/// Whether lanes part that cross a surface.
+pub(super) fn parts<const N: usize>(lobes: Lobes, material: &Material<Table>, arrival: &Arrival<N>) -> bool {
+    lobes.is_transmissive() && material.parts_lanes(arrival)
 }
 
 /// What a surface may know of light that arrives there, between media on the viewer's side and beyond. `wo` leads to

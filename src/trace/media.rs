@@ -94,8 +94,8 @@ impl Media {
         Some(Boundary { here: self.inside(scene), beyond: crossed.inside(scene), crossed })
     }
 
-    /// The same at a surface of any material, which may bound no medium; and whether the bodies around the ray fit to
-    /// it.
+    /// What a ray meets that crosses a surface of any material, which may bound no medium; and whether the bodies
+    /// around the ray fit to it.
     pub(super) fn at_surface(&self, scene: &Scene<Table>, material: MaterialId, enters: bool) -> (Boundary, bool) {
         let here = self.inside(scene);
         let same = Boundary { here, beyond: here, crossed: *self };

@@ -93,6 +93,12 @@ impl<const N: usize> Path<N> {
         } else {
             world.camera_media
         };
+        let diffuse_left = world.method.diffuse_bounces;
+        Self { kind: PathKind::Camera, diffuse_left, ..Self::from_light(draw, ray, media) }
+    }
+
+    /// The path of a ray that leaves a light, inside of some bodies.
+    pub(super) fn from_light(draw: &Draw<N>, ray: Ray, media: Media) -> Self {
         Self {
             ray,
             throughput: Throughput::starting(draw.start()),
@@ -102,8 +108,8 @@ impl<const N: usize> Path<N> {
             key: BranchKey::CAMERA,
             vertices: 0,
             length: 0.0,
-            kind: PathKind::Camera,
-            diffuse_left: world.method.diffuse_bounces,
+            kind: PathKind::Other,
+            diffuse_left: 0,
             scatter: None,
             polarized: Polarized::NOT,
         }

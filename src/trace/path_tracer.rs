@@ -176,12 +176,8 @@ impl<'a, const N: usize> PathTracer<'a, N> {
         straight: Option<&Straight<N>>,
     ) {
         let world = self.walker.world;
-        let boundary = self.walker.boundary(path, meeting);
-        let material = world.scene.material_of(meeting.hit.object);
-        if boundary.here == boundary.beyond && material.medium().is_some() {
-            return self.walker.pass_hidden(path, meeting, &boundary);
-        }
-        let at = Interaction::new(world, draw, path, meeting, boundary);
+        let Some(at) = self.walker.interact(path, draw, meeting) else { return };
+        let material = at.material;
         let goes_on = !at.lobes.is_diffuse() || path.diffuse_left > 0;
         let bright = world.bright.as_ref().filter(|_| may_aim(material));
         let aiming = bright.and_then(|bright| bright.at(at.point.position, at.flat));

@@ -1,18 +1,18 @@
 //! Photons: light followed forward over smooth surfaces, to where the camera sees it.
 
 use super::World;
-use super::interaction::Interaction;
+use super::interaction::{Interaction, parts};
 use super::media::{self, Media};
-use super::path::{Path, PathKind};
+use super::path::Path;
 use super::polarization::Polarized;
 use super::shading;
 use super::straight;
 use super::walker::{Departure, Walker};
 use crate::light::{LeSample, LightId};
 use crate::material::{Arrival, Scatter};
-use crate::math::{BranchKey, DVec2, Sampler};
+use crate::math::{DVec2, Sampler};
 use crate::scene::FilmSettings;
-use crate::spectrum::{Draw, Lanes, Throughput};
+use crate::spectrum::{Draw, Lanes};
 
 /// Use of the random numbers where a photon is seen: the point of the lens.
 const LENS: u32 = 3;
@@ -62,20 +62,7 @@ pub(super) fn follow_photon<const N: usize>(
     land: &mut impl FnMut(&Walker<N>, &Landing<N>),
 ) {
     let world = walker.world;
-    walker.pending.push(Path {
-        ray: emitted.ray,
-        throughput: Throughput::starting(draw.start()),
-        eta_scale: 1.0,
-        media,
-        parted: false,
-        key: BranchKey::CAMERA,
-        vertices: 0,
-        length: 0.0,
-        kind: PathKind::Other,
-        diffuse_left: 0,
-        scatter: None,
-        polarized: Polarized::NOT,
-    });
+    walker.pending.push(Path::from_light(draw, emitted.ray, media));
     while let Some(mut path) = walker.pending.pop() {
         if path.vertices >= walker.transport.last_vertex() {
             continue;
@@ -94,12 +81,7 @@ pub(super) fn follow_photon<const N: usize>(
             continue;
         }
         path.vertices += 1;
-        let boundary = walker.boundary(&path, &meeting);
-        if boundary.here == boundary.beyond && world.scene.material_of(meeting.hit.object).medium().is_some() {
-            walker.pass_hidden(&path, &meeting, &boundary);
-            continue;
-        }
-        let at = Interaction::new(world, draw, &path, &meeting, boundary);
+        let Some(at) = walker.interact(&path, draw, &meeting) else { continue };
         // As often as light may leave surfaces on its way from the camera.
         let allowed =
             path.vertices <= world.method.max_bounces && !(at.lobes.is_diffuse() && world.method.diffuse_bounces == 0);
@@ -161,23 +143,16 @@ pub(super) fn show<const N: usize>(
     let turned = Arrival { wo: seen.direction, normal, ..*arrival };
     let viewed = if same { turned } else { turned.turned_around() };
     let Some((bsdf_cos, _)) = shading::evaluate(material, &viewed, side, arrival.wo) else { return };
-    let parted = path.parted || (!same && at.lobes.is_transmissive() && material.parts_lanes(&viewed));
+    let parted = path.parted || (!same && parts(at.lobes, material, &viewed));
     let cosines = seen.direction.dot(*flat).abs() / arrival.wo.dot(*flat).abs();
     let ray = point.leave(seen.direction);
     let distance = (seen.start - ray.origin).length();
     let inside = at.boundary.sides()[usize::from(!same)];
     let (mut shone, mut polarized) = (landing.shone(world), Polarized::NOT);
-    if world.has_see_through() {
-        let closed = |object| !world.is_see_through(object);
-        if world.scene.is_occluded_by(&ray, distance, None, &walker.last_occluder, closed) {
-            return;
-        }
-        match straight::transmittance(world, arrival.draw, &ray, distance, inside) {
-            Some((share, of_panes)) => (shone, polarized) = (shone * share, of_panes),
-            None => return,
-        }
-    } else if world.scene.is_occluded(&ray, distance, None, &walker.last_occluder) {
-        return;
+    let unoccluded = straight::unoccluded(world, arrival.draw, &ray, distance, None, inside, &walker.last_occluder);
+    let Some(through) = unoccluded else { return };
+    if let Some((share, of_panes)) = through {
+        (shone, polarized) = (shone * share, of_panes);
     }
     if let Some(material) = inside {
         shone = shone * media::medium(&world.scene, material).transmission(arrival.draw, distance);

@@ -104,9 +104,8 @@ impl<W: Borrow<World>> Rendering<W> {
     /// Makes the next pass, if there is one, and answers whether another one is left. `progress` is told how many
     /// camera samples and photons were done since it was last told, from any thread.
     pub fn advance(&mut self, progress: &(dyn Fn(u64) + Sync)) -> bool {
-        let basis = self.world().method.basis.clone();
         if self.samples < self.world().method.samples {
-            in_lanes!(&basis, N => self.pass::<N>(progress));
+            in_lanes!(self.world().method.basis, N => self.pass::<N>(progress));
         }
         self.samples < self.world().method.samples
     }

@@ -1,5 +1,7 @@
 //! Light that goes straight on through the holes of masks and through panes that bend nothing.
 
+use std::cell::Cell;
+
 use super::interaction::arrival;
 use super::path::Path;
 use super::polarization::Polarized;
@@ -57,11 +59,35 @@ pub(super) fn is_met<const N: usize>(
     path.throughput.through(straight.holes).weight(shares) <= u * path.throughput.weight(shares)
 }
 
+/// None if something occludes a ray within a distance, but for one object; where there are holes and panes, what
+/// [`transmittance`] says. `inside` is the medium around the ray.
+#[inline]
+pub(super) fn unoccluded<const N: usize>(
+    world: &World,
+    draw: &Draw<N>,
+    ray: &Ray,
+    distance: f64,
+    but_for: Option<u32>,
+    inside: Option<MaterialId>,
+    last_occluder: &Cell<Option<u32>>,
+) -> Option<Option<(Lanes<N>, Polarized)>> {
+    if !world.has_see_through() {
+        return (!world.scene.is_occluded(ray, distance, but_for, last_occluder)).then_some(None);
+    }
+    let closed = |object| !world.is_see_through(object);
+    if world.scene.is_occluded_by(ray, distance, but_for, last_occluder, closed) {
+        return None;
+    }
+    transmittance(world, draw, ray, distance, inside).map(Some)
+}
+
 /// The share of each lane that goes straight on through all surfaces before a light at a distance that let it, and how
 /// far these polarize it; none if no light does.
 ///
 /// `inside` is the medium around the ray.
-pub(super) fn transmittance<const N: usize>(
+#[cold]
+#[inline(never)]
+fn transmittance<const N: usize>(
     world: &World,
     draw: &Draw<N>,
     ray: &Ray,

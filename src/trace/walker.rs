@@ -3,7 +3,6 @@
 use std::cell::Cell;
 
 use super::interaction::{Interaction, Meeting};
-use super::media::Boundary;
 use super::path::{Path, ScatterSample};
 use super::roulette::survival;
 use super::stats::Stats;
@@ -59,23 +58,31 @@ impl<'a, const N: usize> Walker<'a, N> {
         straight::straight_on(self.world, draw, path, &meeting.hit, &meeting.point)
     }
 
-    /// The media on both sides of the surface that a path has met.
+    /// What the surface that a path has met may know of it; none where the path goes on as if nothing were there,
+    /// through the surface of a body that is hidden inside another of higher priority.
     #[inline(always)]
-    pub(super) fn boundary(&mut self, path: &Path<N>, meeting: &Meeting) -> Boundary {
-        let enters = meeting.point.normal.dot(path.ray.direction) < 0.0;
-        let material = self.world.scene.objects[meeting.hit.object as usize].material;
-        let (boundary, fits) = path.media.at_surface(&self.world.scene, material, enters);
+    pub(super) fn interact<'m>(
+        &mut self,
+        path: &Path<N>,
+        draw: &'m Draw<N>,
+        meeting: &'m Meeting,
+    ) -> Option<Interaction<'m, N>>
+    where
+        'a: 'm,
+    {
+        let Meeting { hit, point } = meeting;
+        let number = self.world.scene.objects[hit.object as usize].material;
+        let enters = point.normal.dot(path.ray.direction) < 0.0;
+        let (boundary, fits) = path.media.at_surface(&self.world.scene, number, enters);
         self.stats.unmatched += u64::from(!fits);
-        boundary
-    }
-
-    /// Goes on through a surface of a body that is hidden inside another of higher priority, where nothing is.
-    pub(super) fn pass_hidden(&mut self, path: &Path<N>, meeting: &Meeting, boundary: &Boundary) {
-        // No light was sampled through this surface, so what the path meets beyond counts in full.
-        let (ray, key) = (meeting.point.leave(path.ray.direction), path.key.child(0));
-        let kind =
-            path.kind.then(self.world.has_map(), false, || Some(self.world.is_photon_target(meeting.hit.object)));
-        self.pending.push(Path { ray, media: boundary.crossed, key, scatter: None, kind, ..*path });
+        if boundary.here == boundary.beyond && self.world.scene.material_of(hit.object).medium().is_some() {
+            // No light was sampled through this surface, so what the path meets beyond counts in full.
+            let (ray, key) = (point.leave(path.ray.direction), path.key.child(0));
+            let kind = path.kind.then(self.world.has_map(), false, || Some(self.world.is_photon_target(hit.object)));
+            self.pending.push(Path { ray, media: boundary.crossed, key, scatter: None, kind, ..*path });
+            return None;
+        }
+        Some(Interaction::new(self.world, draw, path, meeting, boundary))
     }
 
     /// Decides which of the branches are followed, and of what goes straight on: their paths become pending.
