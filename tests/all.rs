@@ -17,6 +17,7 @@ mod determinism;
 mod floors;
 mod lanes;
 mod layers;
+mod light_vertices;
 mod meshes;
 mod messages;
 mod outputs;

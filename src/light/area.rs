@@ -186,6 +186,43 @@ impl<S> Area<S> {
         along * self.shape.pdf_emission(ball, point)
     }
 
+    /// A path of light from a point of the surface, by its cosine; of a sphere of which a cap is seen, from there most
+    /// often.
+    pub(super) fn emit(&self, [u0, u1, a, b]: [f64; 4]) -> Option<LeSample> {
+        let everywhere = || self.shape.sample_emission(&EVERYWHERE, [u0, u1]);
+        let point = match &self.visible_cap {
+            Some(cap) => self.shape.sample_emission_of_cap(cap, [u0, u1]).or_else(everywhere),
+            None => everywhere(),
+        }?;
+        let density = match &self.visible_cap {
+            Some(cap) => self.shape.pdf_emission_of_cap(cap, &point),
+            None => self.shape.pdf_emission(&EVERYWHERE, &point),
+        };
+        let front = self.front();
+        let (side, share, a) = if a < front {
+            (point.normal, front, a / front)
+        } else {
+            (-point.normal, 1.0 - front, (a - front) / (1.0 - front))
+        };
+        let direction = unit(Frame::about(side).to_world(cosine_hemisphere([a, b])));
+        let factor = PI / (density * share);
+        (factor > 0.0 && factor.is_finite()).then_some(LeSample {
+            ray: point.leave(direction),
+            factor,
+            surface: Some(point),
+        })
+    }
+
+    /// The flux that `emit` sends, per radiance; 0 if it cannot.
+    pub(super) fn flux(&self) -> f64 {
+        if !self.is_sampled || !self.sends_photons() {
+            return 0.0;
+        }
+        let seen = self.visible_cap.map_or(1.0, |cap| 0.5 * cap.one_minus_cos);
+        let sides = if self.sides == Sides::Both && !self.shape.is_closed() { 2.0 } else { 1.0 };
+        PI * seen * sides * self.shape.area()
+    }
+
     /// How often a point inside the ball that photons are sent to sends one from its front.
     fn front(&self) -> f64 {
         match (self.sides, self.shape.is_closed()) {
@@ -195,6 +232,9 @@ impl<S> Area<S> {
         }
     }
 }
+
+/// A ball that holds everything.
+const EVERYWHERE: Ball = Ball { center: DVec3::ZERO, radius: f64::INFINITY };
 
 /// How often the outer side of a closed lamp around which an object is built sends a photon, and not the inner one.
 const OUTWARD: f64 = 0.875;

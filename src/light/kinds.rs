@@ -1,7 +1,9 @@
 //! A light of any kind.
 
+use std::f64::consts::PI;
+
 use super::{Area, Beam, Environment, LeSample, LightBounds, LightSample, Point, Spot, Sun};
-use crate::math::{DVec3, Ray};
+use crate::math::{DVec3, Ray, ball_surface, unit};
 use crate::shape::{Ball, Crossing, Sides, SurfacePoint};
 use crate::spectrum::{Draw, Lanes, Quantity, Table};
 
@@ -124,6 +126,36 @@ impl<S> Light<S> {
             Self::Point(_) | Self::Spot(_) => beam.cone.pdf(sample.ray.direction, guide),
             Self::Sun(sun) => sun.pdf_le(&beam.ball, &sample.ray, guide),
             Self::Environment(_) => 0.0,
+        }
+    }
+
+    /// The start of a path of its light, toward anything, for four random numbers; its factor makes flux of the
+    /// emission. None where the light does not shine, and from a sky.
+    pub fn emit(&self, u: [f64; 4]) -> Option<LeSample> {
+        match self {
+            Self::Area(area) => area.emit(u),
+            Self::Point(point) => {
+                let ray = Ray { origin: point.position.into(), direction: ball_surface([u[0], u[1]]) };
+                Some(LeSample { ray, factor: 4.0 * PI, surface: None })
+            }
+            Self::Spot(spot) => {
+                let cone = spot.cone();
+                let direction = unit(cone.sample_uniform([u[0], u[1]]));
+                let factor = spot.part(direction) / cone.uniform_pdf();
+                let ray = Ray { origin: spot.position.into(), direction };
+                (factor > 0.0).then_some(LeSample { ray, factor, surface: None })
+            }
+            Self::Environment(_) | Self::Sun(_) => None,
+        }
+    }
+
+    /// The flux that `emit` sends, per emission, about; 0 where it sends nothing, or not all light.
+    pub fn flux(&self) -> f64 {
+        match self {
+            Self::Area(area) => area.flux(),
+            Self::Point(_) => 4.0 * PI,
+            Self::Spot(spot) => 2.0 * PI * spot.cone().one_minus_cos,
+            Self::Environment(_) | Self::Sun(_) => 0.0,
         }
     }
 

@@ -4,6 +4,7 @@ mod bright;
 mod candidates;
 mod caustics;
 mod efficiency;
+mod light_vertices;
 mod lights;
 mod model;
 mod photon_map;
@@ -17,7 +18,7 @@ use std::time::Duration;
 
 use crate::scene::Scene;
 use crate::spectrum::{Basis, Curve};
-use crate::trace::{LightPass, Method, Probe, Transport, prepare_unguided, probe};
+use crate::trace::{BrightPlaces, LightPass, Method, Probe, Transport, World, prepare_unguided, probe};
 use model::Model;
 use words::{in_number, in_words};
 
@@ -67,6 +68,7 @@ pub fn plan(scene: &Scene<Curve>) -> Plan {
         max_bounces,
         light_pass: None,
         bright: None,
+        light_vertices: false,
     };
     let world = prepare_unguided(scene, method.clone());
     let (shown, why_shown) = caustics::light_pass(scene, &world);
@@ -74,10 +76,11 @@ pub fn plan(scene: &Scene<Curve>) -> Plan {
     // Why nothing is shown matters only where nothing is gathered either.
     decisions.extend(why_shown.into_iter().filter(|_| shown.is_some() || light_pass.is_none()));
     decisions.extend(why_gathered);
-    let (bright, why_aimed) = bright::aimed(&world);
-    decisions.extend(why_aimed);
-    let world = world.with_light_pass(light_pass.clone()).with_bright(bright.clone());
-    let method = Method { light_pass, bright, ..method };
+    let world = world.with_light_pass(light_pass.clone());
+    let between = between(&world);
+    decisions.extend(between.reason);
+    let world = world.with_bright(between.bright.clone()).with_light_vertices(between.light_vertices);
+    let method = world.method().clone();
     let probe = probe(&world);
     let (cost, processor_time) = cost(scene, &method, &probe);
     let mut because = vec![cost];
@@ -90,6 +93,30 @@ pub fn plan(scene: &Scene<Curve>) -> Plan {
     }
     because.extend(next.map(|basis| beside(scene, &method, &probe, basis)));
     Plan { method, because, processor_time, candidates }
+}
+
+/// How light between surfaces is found.
+#[derive(Default)]
+struct Between {
+    bright: Option<BrightPlaces>,
+    light_vertices: bool,
+    reason: Option<String>,
+}
+
+/// By light vertices or by bounces that are aimed at bright places, whichever pays more, if any does.
+fn between(world: &World) -> Between {
+    let gain = light_vertices::gain(world);
+    let aimed = bright::aimed(world);
+    match (gain, aimed) {
+        (Some(gain), aimed) if aimed.as_ref().is_none_or(|aimed| gain >= aimed.gain) => {
+            Between { light_vertices: true, reason: Some(light_vertices::reason(gain)), ..Between::default() }
+        }
+        (_, Some(aimed)) => {
+            let reason = Some(aimed.reason());
+            Between { bright: Some(aimed.places), reason, ..Between::default() }
+        }
+        _ => Between::default(),
+    }
 }
 
 /// What lights cannot do.
@@ -130,7 +157,8 @@ fn cost(scene: &Scene<Curve>, method: &Method, probe: &Probe) -> (String, Durati
     let pass = method.light_pass.as_ref();
     let of_map = pass.and_then(|pass| pass.map).map_or(0, |map| u64::from(map.count) * map.photons);
     let photons = pass.map_or(0, |pass| pass.photons) + of_map;
-    let time = probe.time.mul_f64(samples) + probe.photon.mul_f64(photons as f64);
+    let light_paths = probe.light_paths.mul_f64(f64::from(method.samples));
+    let time = probe.time.mul_f64(samples) + probe.photon.mul_f64(photons as f64) + light_paths;
     let line = format!(
         "cost: about {} of processor time: {} sample{} per pixel, {:.1} rays each{}",
         in_words(time.as_secs_f64()),

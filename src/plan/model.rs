@@ -133,6 +133,7 @@ fn dispersion(scene: &Scene<Curve>) -> Option<Dispersion> {
         max_bounces: u32::MAX,
         light_pass: None,
         bright: None,
+        light_vertices: false,
     };
     Some(measured_dispersion(&World::new(scene, method)))
 }

@@ -55,6 +55,7 @@ impl<'a> Seen<'a> {
             max_bounces: u32::MAX,
             light_pass: None,
             bright: None,
+            light_vertices: false,
         };
         let mut keeping = Keeping::new(scene, survey);
         for of_pixel in routes(&World::new(scene, method)) {

@@ -80,6 +80,7 @@ fn too_many_ways(scene: &Scene<Curve>, basis: &Basis, together: f64) -> Option<S
         max_bounces: scene.render.max_bounces.unwrap_or(u32::MAX),
         light_pass: None,
         bright: None,
+        light_vertices: false,
     };
     match branching(&World::new(scene, method), AFFORDABLE) {
         Branching::Affordable(_) => None,

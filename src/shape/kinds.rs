@@ -274,6 +274,26 @@ impl Shape {
         })
     }
 
+    /// A point of a sphere of which most often a cap alone is seen, given by its unit normals: mostly from there; none
+    /// of other shapes.
+    pub fn sample_emission_of_cap(&self, cap: &Cone, u: [f64; 2]) -> Option<SurfacePoint> {
+        if let Self::Sphere(sphere) = self { Some(sphere.sample_emission_of_cap(cap, u)) } else { None }
+    }
+
+    /// Density per unit of area with which `sample_emission_of_cap` draws a point.
+    pub fn pdf_emission_of_cap(&self, cap: &Cone, point: &SurfacePoint) -> f64 {
+        if let Self::Sphere(sphere) = self { sphere.pdf_emission_of_cap(cap, point) } else { 0.0 }
+    }
+
+    /// Whether its shading normals may differ from its own.
+    pub fn is_smooth(&self) -> bool {
+        match self {
+            Self::Mesh(mesh) => mesh.is_smooth(),
+            Self::Instance(instance) => instance.mesh().is_smooth(),
+            _ => false,
+        }
+    }
+
     /// Density per unit of area with which `sample_emission` draws a point of the shape for a ball.
     pub fn pdf_emission(&self, toward: &Ball, point: &SurfacePoint) -> f64 {
         match self {

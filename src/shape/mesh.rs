@@ -101,6 +101,11 @@ impl Mesh {
         Self { attributes, ..self }
     }
 
+    /// Whether its shading normals are interpolated.
+    pub fn is_smooth(&self) -> bool {
+        !self.attributes.normals.is_empty()
+    }
+
     /// Whether it has texture coordinates.
     pub fn has_coordinates(&self) -> bool {
         !self.attributes.coordinates.is_empty()

@@ -143,6 +143,22 @@ impl Sphere {
         share * 2.0 / (one_minus_cos * self.area())
     }
 
+    /// A point uniform by area, most often of a cap.
+    pub(super) fn sample_emission_of_cap(&self, cap: &Cone, [u, v]: [f64; 2]) -> SurfacePoint {
+        let normal = if u < ELSEWHERE {
+            Cone::ALL.sample_uniform([u / ELSEWHERE, v])
+        } else {
+            cap.sample_uniform([(u - ELSEWHERE) / (1.0 - ELSEWHERE), v])
+        };
+        self.point(self.over(normal))
+    }
+
+    /// Density per unit of area with which `sample_emission_of_cap` draws a point.
+    pub(super) fn pdf_emission_of_cap(&self, cap: &Cone, point: &SurfacePoint) -> f64 {
+        let of_cap = if cap.contains(point.normal) { 2.0 / cap.one_minus_cos } else { 0.0 };
+        (ELSEWHERE + (1.0 - ELSEWHERE) * of_cap) / self.area()
+    }
+
     /// The cone of directions in which the sphere is seen from outside.
     fn cone_from(&self, from: DVec3) -> Option<Cone> {
         let cone = Ball { center: self.center, radius: self.radius }.cone_from(from);

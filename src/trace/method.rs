@@ -23,6 +23,8 @@ pub struct Method {
     pub light_pass: Option<LightPass>,
     /// What bounces inside a room are aimed at; none leaves their directions to the materials.
     pub bright: Option<BrightPlaces>,
+    /// Whether light that surfaces send each other is also looked for at vertices of paths from the lights.
+    pub light_vertices: bool,
 }
 
 /// Photons that are sent to all finite smooth objects, for the light that these throw onto what the camera sees.

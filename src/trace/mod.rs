@@ -11,14 +11,16 @@
 //!    photons look through them.
 //! 6. In Heckbert's notation, with S for surfaces that mirror or refract and D for those that scatter widely: photons
 //!    may find `L S+ D E`, and gathered photons `L S+ D (D|S)* E`; paths from the camera then leave exactly those out.
-//! 7. Light that reaches the camera is a contribution handed to the sensor.
-//! 8. Random numbers are a pure function of seed, pixel, sample, branch and use; sums have a fixed order.
+//! 7. Light that one diffuse surface sends another may be looked for at vertices of light paths: `L (S|D)* D D S* E`.
+//!    Paths from the camera then go on to such a surface with the probability of the rest alone.
+//! 8. Light that reaches the camera is a contribution handed to the sensor.
+//! 9. Random numbers are a pure function of seed, pixel, sample, branch and use; sums have a fixed order.
 //!
 //! ```text
 //! prepare          a world, tabulated and taught where to look
 //! render, tile     an image in the making, pass by pass
-//! path_tracer      camera paths: walker + direct lighting + gathered photons, into the sensor
-//! photon           photons: walker over smooth surfaces + landing
+//! path_tracer      camera paths: walker + direct lighting + gathered photons + light vertices, into the sensor
+//! photon           photons and light paths: walker + landing
 //! walker           from surface to surface; interaction, media, path
 //! probe, pilot ..  what the plan asks, by the same walks
 //! ```
@@ -37,6 +39,7 @@ mod guide;
 mod interaction;
 mod kd_tree;
 mod light_pass;
+mod light_vertices;
 mod lit;
 mod media;
 mod method;
@@ -52,6 +55,8 @@ mod prepare;
 mod probe;
 mod reach;
 mod render;
+mod resampling;
+mod resampling_worth;
 mod roulette;
 mod route;
 mod route_walk;
@@ -83,6 +88,7 @@ pub use prepare::{prepare, prepare_unguided};
 pub use probe::{Probe, probe};
 pub use reach::{gathered_photons, reached_places};
 pub use render::{Rendering, Report, render, work};
+pub use resampling_worth::resampling_gain;
 pub use route::{ROUTES_NM, Route, Step, Way};
 pub use routes::routes;
 pub use seen_light::{SeenLight, seen_light};

@@ -75,6 +75,8 @@ pub(super) struct ScatterSample {
     pub(super) all_lights: bool,
     /// Whether the path has gone straight on through surfaces since.
     pub(super) passed: bool,
+    /// Whether a vertex of a light path was looked at from there.
+    pub(super) resampled: bool,
 }
 
 impl ScatterSample {
@@ -93,12 +95,11 @@ impl<const N: usize> Path<N> {
         } else {
             world.camera_media
         };
-        let diffuse_left = world.method.diffuse_bounces;
-        Self { kind: PathKind::Camera, diffuse_left, ..Self::from_light(draw, ray, media) }
+        Self { kind: PathKind::Camera, ..Self::from_light(world, draw, ray, media) }
     }
 
     /// The path of a ray that leaves a light, inside of some bodies.
-    pub(super) fn from_light(draw: &Draw<N>, ray: Ray, media: Media) -> Self {
+    pub(super) fn from_light(world: &World, draw: &Draw<N>, ray: Ray, media: Media) -> Self {
         Self {
             ray,
             throughput: Throughput::starting(draw.start()),
@@ -109,7 +110,7 @@ impl<const N: usize> Path<N> {
             vertices: 0,
             length: 0.0,
             kind: PathKind::Other,
-            diffuse_left: 0,
+            diffuse_left: world.method.diffuse_bounces,
             scatter: None,
             polarized: Polarized::NOT,
         }

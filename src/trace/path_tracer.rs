@@ -4,8 +4,10 @@ use super::aimed::{may_aim, scatter_aimed};
 use super::direct::{DirectLighting, weight_of_meeting};
 use super::gather::gather;
 use super::interaction::{Interaction, Meeting};
+use super::light_vertices::{LightVertices, holds_vertices};
 use super::path::{Path, PathKind, ScatterSample};
 use super::photon_map::PhotonMap;
+use super::resampling::Resampling;
 use super::sensor::{Bounce, Contribution, Found, Observer, Sensor, amount};
 use super::shading;
 use super::straight;
@@ -24,6 +26,8 @@ pub(super) struct PathTracer<'a, const N: usize> {
     sensor: Sensor<'a>,
     /// Photons that are gathered, if any are.
     photons: Option<&'a PhotonMap<N>>,
+    /// Vertices of light paths, if light is looked for there.
+    pub(super) light_vertices: Option<&'a LightVertices<N>>,
 }
 
 /// Use of the camera's random numbers: where in the pixel the sample falls.
@@ -32,13 +36,20 @@ const PLACE: u32 = 0;
 const LENS: u32 = 3;
 /// Uses of the random numbers at a vertex.
 const SCATTER: u32 = 1;
+/// Use of those that end paths whose light is looked for at light vertices.
+const COMPLEMENT: u32 = 6;
 /// Surfaces of a path whose directions are drawn from a sequence spread over the pixel's samples. Behind them the
 /// samples see so many different places that plain random numbers, which cost less, are taken.
 const SPREAD: u32 = 4;
 
 impl<'a, const N: usize> PathTracer<'a, N> {
     pub(super) fn new(world: &'a World) -> Self {
-        Self { walker: Walker::new(world, world.method.transport), sensor: Sensor::new(), photons: None }
+        Self {
+            walker: Walker::new(world, world.method.transport),
+            sensor: Sensor::new(),
+            photons: None,
+            light_vertices: None,
+        }
     }
 
     /// With photons that are gathered.
@@ -177,6 +188,10 @@ impl<'a, const N: usize> PathTracer<'a, N> {
     ) {
         let world = self.walker.world;
         let Some(at) = self.walker.interact(path, draw, meeting) else { return };
+        let is_end = self.ends_at_light_vertices(path, &at, sampler);
+        if is_end {
+            return;
+        }
         let material = at.material;
         let goes_on = !at.lobes.is_diffuse() || path.diffuse_left > 0;
         let bright = world.bright.as_ref().filter(|_| may_aim(material));
@@ -193,8 +208,9 @@ impl<'a, const N: usize> PathTracer<'a, N> {
             if goes_on && path.kind != PathKind::Camera {
                 self.gather_photons(path, at, sampler);
             }
+            let resampled = goes_on && self.resample(path, at, sampler);
             let (pdf, from, normal, passed) = (0.0, at.point.position, at.flat, false);
-            scatter = Some(ScatterSample { pdf, from, normal, chance, all_lights, passed });
+            scatter = Some(ScatterSample { pdf, from, normal, chance, all_lights, passed, resampled });
             if !goes_on && straight.is_none() && !at.lobes.has_delta() {
                 return;
             }
@@ -209,6 +225,29 @@ impl<'a, const N: usize> PathTracer<'a, N> {
         }
         let mut departure = Departure::new(world, path, &at).with(scatter.as_ref(), straight);
         self.walker.follow(&mut departure, sampler);
+    }
+
+    /// Hands the light of a light vertex to the sensor, where the path meets its first diffuse surface.
+    fn resample(&mut self, path: &Path<N>, at: &Interaction<N>, sampler: &Sampler) -> bool {
+        let Some(vertices) = self.light_vertices else { return false };
+        let world = self.walker.world;
+        if !at.lobes.is_diffuse() || path.diffuse_left != world.method.diffuse_bounces {
+            return false;
+        }
+        let resampling = Resampling { world, path, at, vertices, last_occluder: &self.walker.last_occluder };
+        resampling.gather(sampler, &mut self.sensor);
+        self.walker.stats.resampled += 1;
+        true
+    }
+
+    /// Whether a path ends where its light was looked for at light vertices: mostly, and the less the nearer.
+    fn ends_at_light_vertices(&self, path: &Path<N>, at: &Interaction<N>, sampler: &Sampler) -> bool {
+        let (Some(vertices), Some(scatter)) = (self.light_vertices, path.scatter) else { return false };
+        if !scatter.resampled || !holds_vertices(self.walker.world, at) {
+            return false;
+        }
+        let chance = vertices.complement((at.point.position - scatter.from).length_squared());
+        sampler.four_plain(path.key, COMPLEMENT)[0] >= chance
     }
 
     /// Hands what photons bring to a place that the path has reached by way of others to the sensor.

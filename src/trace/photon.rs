@@ -1,5 +1,7 @@
 //! Photons: light followed forward over smooth surfaces, to where the camera sees it.
 
+use std::f64::consts::PI;
+
 use super::World;
 use super::interaction::{Interaction, parts};
 use super::media::{self, Media};
@@ -9,8 +11,8 @@ use super::shading;
 use super::straight;
 use super::walker::{Departure, Walker};
 use crate::light::{LeSample, LightId};
-use crate::material::{Arrival, Scatter};
-use crate::math::{DVec2, Sampler};
+use crate::material::{Arrival, Branch, Material, Scatter};
+use crate::math::{DVec2, DVec3, Frame, Sampler, cosine_hemisphere, unit};
 use crate::scene::FilmSettings;
 use crate::spectrum::{Draw, Lanes};
 
@@ -47,22 +49,37 @@ impl<const N: usize> Landing<'_, N> {
     }
 }
 
-/// Follows a photon over smooth surfaces; `land` is told where it lands on others.
+/// Which surfaces a photon goes on from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Surfaces {
+    /// Smooth ones. The first must be one that photons are sent to: paths by way of others are left to the camera's
+    /// rays.
+    Smooth,
+    /// All.
+    All,
+}
+
+/// How a photon starts.
+pub(super) struct Start<'a> {
+    pub(super) emitted: &'a LeSample,
+    pub(super) light: LightId,
+    pub(super) media: Media,
+}
+
+/// Follows a photon over surfaces; `land` is told where it lands on those that scatter widely.
 ///
-/// The first surface must be one that photons are sent to: paths by way of others are left to the camera's rays.
 /// Throughput is followed as if the light were the viewer; flux is what is left of it without the factor of radiance
 /// between media.
 pub(super) fn follow_photon<const N: usize>(
     walker: &mut Walker<N>,
-    emitted: &LeSample,
-    light: LightId,
-    media: Media,
+    Start { emitted, light, media }: Start,
     draw: &Draw<N>,
     sampler: &Sampler,
+    over: Surfaces,
     land: &mut impl FnMut(&Walker<N>, &Landing<N>),
 ) {
     let world = walker.world;
-    walker.pending.push(Path::from_light(draw, emitted.ray, media));
+    walker.pending.push(Path::from_light(world, draw, emitted.ray, media));
     while let Some(mut path) = walker.pending.pop() {
         if path.vertices >= walker.transport.last_vertex() {
             continue;
@@ -77,19 +94,65 @@ pub(super) fn follow_photon<const N: usize>(
                 continue;
             }
         }
-        if path.vertices == 0 && !world.is_photon_target(meeting.hit.object) {
+        if over == Surfaces::Smooth && path.vertices == 0 && !world.is_photon_target(meeting.hit.object) {
             continue;
         }
         path.vertices += 1;
         let Some(at) = walker.interact(&path, draw, &meeting) else { continue };
         // As often as light may leave surfaces on its way from the camera.
-        let allowed =
-            path.vertices <= world.method.max_bounces && !(at.lobes.is_diffuse() && world.method.diffuse_bounces == 0);
-        if at.lobes.is_wide() && allowed && path.vertices > 1 {
+        let allowed = path.vertices <= world.method.max_bounces && !(at.lobes.is_diffuse() && path.diffuse_left == 0);
+        let shown = over == Surfaces::All || path.vertices > 1;
+        if at.lobes.is_wide() && allowed && shown {
             land(walker, &Landing { path: &path, at: &at, light, factor: emitted.factor });
         }
-        bounce(walker, &path, at, sampler);
+        if over == Surfaces::Smooth || !at.lobes.is_wide() {
+            bounce(walker, &path, at, sampler);
+        } else if allowed && path.vertices < world.method.max_bounces {
+            scatter(walker, &path, &at, sampler);
+        }
     }
+}
+
+/// Lets a photon go on from a surface that scatters widely, with the share that the camera would see of the way back.
+fn scatter<const N: usize>(walker: &mut Walker<N>, path: &Path<N>, at: &Interaction<N>, sampler: &Sampler) {
+    let Interaction { material, point, arrival, flat, .. } = at;
+    let u = sampler.four(path.key, SCATTER);
+    walker.branches.clear();
+    if point.shading == point.normal {
+        material.scatter(arrival, [u[0], u[1]], &mut walker.branches);
+        if !matches!(material, Material::Diffuse(_)) {
+            walker.branches.iter_mut().filter(|branch| branch.pdf.is_some()).for_each(|branch| turn_back(at, branch));
+        }
+        send_forward(arrival, &mut walker.branches);
+    } else {
+        // By shading normals that depend on the viewer, not every direction is drawn from which light arrives.
+        let local = cosine_hemisphere([u[0], u[1]]);
+        let wi = unit(Frame::about(*flat).to_world(local));
+        let share = seen_from(at, wi).map(|bsdf_cos| bsdf_cos * (PI / arrival.wo.dot(*flat)) as f32);
+        let wide =
+            |share| Branch { wi, share, pdf: Some(local.z / PI), crosses: false, eta_scale: 1.0, polarization: 0.0 };
+        walker.branches.extend(share.map(wide));
+    }
+    walker.follow(&mut Departure::new(walker.world, path, at), sampler);
+}
+
+/// What the camera would see of a photon in the direction in which it leaves, times the cosine of its arrival.
+fn seen_from<const N: usize>(at: &Interaction<N>, direction: DVec3) -> Option<Lanes<N>> {
+    let [side, normal] = shading::normals(at.point, direction);
+    let viewed = Arrival { wo: direction, normal, ..at.arrival };
+    shading::evaluate(at.material, &viewed, side, at.arrival.wo).map(|(bsdf_cos, _)| bsdf_cos)
+}
+
+/// Replaces the share of a branch by that of light the other way: materials need not answer alike to both.
+fn turn_back<const N: usize>(at: &Interaction<N>, branch: &mut Branch<N>) {
+    let onward = shading::evaluate(at.material, &at.arrival, at.flat, branch.wi);
+    let (Some((onward, _)), Some(back)) = (onward, seen_from(at, branch.wi)) else {
+        branch.share = Lanes::ZERO;
+        return;
+    };
+    let cosines = (branch.wi.dot(at.flat) / at.arrival.wo.dot(at.flat)).abs() as f32;
+    let ratio = |i: usize| if onward[i] == 0.0 { 0.0 } else { back[i] * cosines / onward[i] };
+    branch.share = branch.share * Lanes::from_fn(ratio);
 }
 
 /// Lets a photon go on over a smooth surface.
@@ -104,15 +167,20 @@ fn bounce<const N: usize>(walker: &mut Walker<N>, path: &Path<N>, at: Interactio
     walker.branches.clear();
     let u = sampler.four_plain(path.key, SCATTER);
     material.scatter(arrival, [u[0], u[1]], &mut walker.branches);
-    let (back, forward) = (arrival.wo, arrival.forward());
+    let back = arrival.wo;
     walker.branches.retain(|branch| branch.pdf.is_none() && shading::is_plain(point, branch.wi, back, branch.crosses));
     for branch in &mut walker.branches {
         branch.share = branch.share * shading::forward_factor(point, branch.wi, back) as f32;
-        if let (Some(forward), true) = (&forward, branch.crosses) {
-            branch.share = branch.share * *forward;
-        }
     }
+    send_forward(arrival, &mut walker.branches);
     walker.follow(&mut Departure::new(walker.world, path, &at), sampler);
+}
+
+/// Makes shares of radiance that cross a smooth surface shares of flux.
+fn send_forward<const N: usize>(arrival: &Arrival<N>, branches: &mut [Branch<N>]) {
+    if let Some(forward) = arrival.forward() {
+        branches.iter_mut().filter(|branch| branch.crosses).for_each(|branch| branch.share = branch.share * forward);
+    }
 }
 
 /// Adds what the camera sees of a photon.

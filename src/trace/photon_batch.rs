@@ -3,7 +3,7 @@
 use super::Transport;
 use super::World;
 use super::media::Media;
-use super::photon::{Landing, follow_photon};
+use super::photon::{Landing, Start, Surfaces, follow_photon};
 use super::photon_targets::{PhotonTarget, PhotonTargets};
 use super::stats::Stats;
 use super::walker::Walker;
@@ -76,7 +76,8 @@ pub(super) fn send<const N: usize, T>(
             let draw = world.method.basis.draw(u[2]);
             let around = || Media::around(&world.scene, emitted.ray.origin, emitted.ray.direction);
             let media = world.light_media[light].unwrap_or_else(around);
-            follow_photon(&mut walker, &emitted, light, media, &draw, &sampler, &mut |walker, landing| {
+            let start = Start { emitted: &emitted, light, media };
+            follow_photon(&mut walker, start, &draw, &sampler, Surfaces::Smooth, &mut |walker, landing| {
                 land(walker, landing, &sampler, &mut kept);
             });
         }

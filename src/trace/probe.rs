@@ -3,6 +3,7 @@
 use std::time::{Duration, Instant};
 
 use super::World;
+use super::light_vertices::{LightVertices, SHARED};
 use super::path_tracer::PathTracer;
 use super::photon::Landing;
 use super::photon_batch::{batches, send};
@@ -24,6 +25,8 @@ pub struct Probe {
     pub time: Duration,
     /// The same of a photon, if any are sent.
     pub photon: Duration,
+    /// Of light paths, if any are followed, for one sample of every pixel.
+    pub light_paths: Duration,
 }
 
 /// Camera samples along each side of the image.
@@ -54,7 +57,11 @@ fn probe_lanes<const N: usize>(world: &World) -> Probe {
             tracer.sample(&Sampler::new(world.method.seed, [x, y], 0), [x, y]);
         }
     }
+    let before_vertices = Instant::now();
+    let vertices = LightVertices::<N>::shared(world, 0);
+    let shared = before_vertices.elapsed();
     let mut tracer = PathTracer::<N>::new(world);
+    tracer.light_vertices = vertices.as_ref();
     let (mut samples, mut parted) = (0_u32, 0);
     let window = world.scene.film.window();
     let start = Instant::now();
@@ -85,6 +92,7 @@ fn probe_lanes<const N: usize>(world: &World) -> Probe {
         parted: f64::from(parted) * per_sample,
         time: Duration::from_secs_f64(per_ray[per_ray.len() / 2] * rays),
         photon: photon_time::<N>(world),
+        light_paths: vertices.map_or(Duration::ZERO, |_| shared.div_f64(f64::from(SHARED))),
     }
 }
 

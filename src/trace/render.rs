@@ -6,6 +6,7 @@ use rayon::prelude::*;
 
 use super::World;
 use super::light_pass::{self, CausticImage};
+use super::light_vertices::{LightVertices, SHARED};
 use super::photon_map;
 use super::photon_targets::PhotonTargets;
 use super::sensor::amount;
@@ -17,6 +18,9 @@ use crate::film::{Film, Pixel};
 /// Samples of each pixel in the first pass, where no photons are gathered; every other pass takes as many as were taken
 /// before.
 const FIRST_PASS: u32 = 16;
+
+/// Samples of each pixel in the largest pass with light vertices, all of which are in memory at once.
+const MOST_AT_ONCE: u32 = 128;
 
 /// What rendering noticed.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -191,6 +195,9 @@ impl<W: Borrow<World>> Rendering<W> {
         let map = world.method.light_pass.as_ref().and_then(|pass| pass.map).filter(|_| world.has_map());
         let end = match map {
             Some(map) => (u64::from(self.passes + 1) * u64::from(all) / u64::from(map.count)) as u32,
+            None if world.method.light_vertices => {
+                (self.samples + self.samples.clamp(FIRST_PASS, MOST_AT_ONCE)).min(all)
+            }
             None => (2 * self.samples).max(FIRST_PASS).min(all),
         };
         let photons = photon_map::photons::<N>(world, self.passes);
@@ -200,8 +207,14 @@ impl<W: Borrow<World>> Rendering<W> {
             progress(photons.sent);
         }
         let numbers = self.samples..end;
+        let sets = (numbers.start / SHARED..numbers.end.div_ceil(SHARED)).filter(|_| world.method.light_vertices);
+        let light_vertices: Vec<_> = sets.filter_map(|set| LightVertices::<N>::shared(world, set)).collect();
+        self.gathered = light_vertices.iter().fold(self.gathered, |mut all, set| {
+            all += set.stats;
+            all
+        });
         self.tiles.par_iter_mut().for_each(|tile| {
-            tile.take::<N>(world, photons.as_ref(), numbers.clone());
+            tile.take::<N>(world, photons.as_ref(), &light_vertices, numbers.clone());
             progress(u64::from(tile.width * tile.height) * numbers.len() as u64);
         });
         (self.samples, self.passes) = (end, self.passes + 1);

@@ -25,6 +25,8 @@ pub(super) enum Found {
     Hit { normal: Option<DVec3>, scattered: bool },
     /// The light was sampled.
     Sampled,
+    /// A path from the light was met.
+    Connected,
     /// Photons were gathered.
     Gathered,
 }

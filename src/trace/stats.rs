@@ -19,6 +19,8 @@ pub(super) struct Stats {
     pub(super) polarization: f64,
     /// Camera samples of deterministic transport that met so many surfaces that they went on by chance.
     pub(super) by_chance: u64,
+    /// Surfaces from which a vertex of a light path was looked at.
+    pub(super) resampled: u64,
     /// What was sent, showed or kept and is not finite.
     pub(super) non_finite: u64,
 }
@@ -33,6 +35,7 @@ impl AddAssign for Stats {
         self.light += other.light;
         self.polarization += other.polarization;
         self.by_chance += other.by_chance;
+        self.resampled += other.resampled;
         self.non_finite += other.non_finite;
     }
 }

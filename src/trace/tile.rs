@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::World;
+use super::light_vertices::{LightVertices, SHARED};
 use super::path_tracer::PathTracer;
 use super::photon_map::PhotonMap;
 use super::stats::Stats;
@@ -38,7 +39,13 @@ impl Tile {
     }
 
     /// Takes samples of all pixels.
-    pub(super) fn take<const N: usize>(&mut self, world: &World, photons: Option<&PhotonMap<N>>, numbers: Range<u32>) {
+    pub(super) fn take<const N: usize>(
+        &mut self,
+        world: &World,
+        photons: Option<&PhotonMap<N>>,
+        light_vertices: &[LightVertices<N>],
+        numbers: Range<u32>,
+    ) {
         let window = world.scene.film.window();
         let mut tracer = PathTracer::<N>::new(world).with_photons(photons);
         for (place, sum) in (0..).zip(&mut self.sums) {
@@ -47,6 +54,7 @@ impl Tile {
             let y = window.top + self.corner[1] + place / self.width;
             let mut pass = PassSum::default();
             for number in numbers.clone() {
+                tracer.light_vertices = light_vertices.get(((number - numbers.start) / SHARED) as usize);
                 let sampler = Sampler::new(world.method.seed, [x, y], number);
                 if !pass.add(&tracer.sample(&sampler, [x, y])) {
                     self.stats.non_finite += 1;

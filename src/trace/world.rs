@@ -100,8 +100,15 @@ impl World {
         world
     }
 
+    /// This world with or without light vertices.
+    pub fn with_light_vertices(&self, light_vertices: bool) -> Self {
+        let mut world = self.clone();
+        world.method.light_vertices = light_vertices;
+        world
+    }
+
     /// CIE Y of what a light shines.
-    fn luminance(&self, light: LightId) -> f64 {
+    pub(super) fn luminance(&self, light: LightId) -> f64 {
         let draw = Draw::<MAX_LANES>::fixed(self.method.basis.fixed_lanes());
         let emission = draw.read(self.scene.lights[light].emission());
         let rgb = self.responses[light].sensor(&draw, emission, false);

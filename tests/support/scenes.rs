@@ -51,6 +51,7 @@ pub fn method(scene: &Scene<Curve>, transport: Transport) -> Method {
         max_bounces: scene.render.max_bounces.unwrap_or(u32::MAX),
         light_pass: None,
         bright: None,
+        light_vertices: false,
     }
 }
 

@@ -1,0 +1,302 @@
+//! Vertices of paths from the lights, at which paths from the camera look for the light that surfaces send each other.
+//!
+//! At its first diffuse surface x, a path from the camera chooses one vertex y of some, by what each would bring, and
+//! looks whether it sees it: resampled importance sampling (Talbot, Cline & Egbert 2005, *Importance Resampling for
+//! Global Illumination*). Near vertices would bring too much by far: of what leaves y for x, only the part d^2 / (d^2 +
+//! D^2) is looked for at distance d, and the bounce that happens to go from x to y goes on from there with the
+//! probability of the rest, D^2 / (d^2 + D^2). Both together are exact for any D (Kollig & Keller 2004, *Illumination
+//! in the Presence of Weak Singularities*, bound the same way).
+
+use std::f64::consts::FRAC_1_PI;
+
+use rayon::prelude::*;
+
+use super::interaction::Interaction;
+use super::media::{Media, media_of_lights};
+use super::photon::{Landing, Start, Surfaces, follow_photon};
+use super::sensor::amount;
+use super::stats::Stats;
+use super::walker::Walker;
+use super::{Transport, World};
+use crate::light::LightId;
+use crate::material::{Lobes, Material};
+use crate::math::{BranchKey, DVec3, Distribution, Sampler};
+use crate::shape::SurfacePoint;
+use crate::spectrum::{Draw, Lanes};
+
+/// A vertex of a light path, on a diffuse surface.
+#[derive(Clone, Debug)]
+pub(super) struct LightVertex<const N: usize> {
+    pub(super) point: SurfacePoint,
+    /// The surface's unit normal on the side that is lit.
+    pub(super) flat: DVec3,
+    /// What leaves it in any direction of that side, lane by lane: intensity over the cosine.
+    pub(super) leaving: Lanes<N>,
+    pub(super) light: LightId,
+    /// Surfaces that the light has met, this one included.
+    pub(super) vertices: u32,
+}
+
+/// The vertices of some light paths, dealt into hands of which each holds vertices from all over the scene.
+pub(super) struct LightVertices<const N: usize> {
+    hands: Vec<Hand>,
+    /// In the order of the hands.
+    vertices: Vec<LightVertex<N>>,
+    /// The point from which places in hands are counted.
+    center: DVec3,
+    /// D^2.
+    near_squared: f64,
+    pub(super) stats: Stats,
+}
+
+/// Vertices of a hand: from 16 to 64 the error for the time is the same.
+const HAND: usize = 32;
+
+/// What a choice among the vertices of a hand asks; absent ones have no power.
+#[derive(Clone, Debug)]
+struct Hand {
+    place: [[f32; HAND]; 3],
+    flat: [[f32; HAND]; 3],
+    /// X + Y + Z of what leaves, as the sensor sees it.
+    power: [f32; HAND],
+}
+
+/// Samples of each pixel that share light paths.
+pub(super) const SHARED: u32 = 16;
+/// Camera samples for each light path, and the fewest and most light paths: what samples share does not average out
+/// over pixels.
+const PER_PATH: u64 = 64;
+const FEWEST: u64 = 1024;
+const MOST: u64 = 8192;
+/// Light paths that are followed one after another; their vertices are kept in the order of the batches.
+const BATCH: u64 = 256;
+/// D as a share of the median distance of vertices from their middle: a twelfth of the side of a room. From two thirds
+/// of that to one and a half, the error for the time is the same.
+const NEAR: f64 = 0.1;
+/// The set of a pilot.
+const PILOT: u32 = u32::MAX;
+/// Sets these random numbers apart from the others.
+const SEED: u64 = 0x6c76_7274;
+/// Uses of a light path's random numbers: where it starts, and of which light.
+const START: u32 = 0;
+const LIGHT: u32 = 1;
+/// Light paths are followed as photons are.
+const LIGHT_PATHS: Transport = Transport::Random { split: 0.25, roulette: 0.05 };
+
+/// Whether light paths find all light that surfaces send each other in a scene, as paths from the camera do.
+///
+/// Not where lights do not say where their light starts: skies, suns, lamps that show images, glowing glass. Not where
+/// interpolated normals bend glass or mirrors, whose light cannot be followed forward alike, nor where light crosses
+/// rough surfaces, nor where wavelengths are drawn anew for each camera sample.
+pub(super) fn finds_all_light(world: &World) -> bool {
+    let scene = &world.scene;
+    let is_plain = |id: usize| {
+        let object = &scene.objects[id];
+        let lobes = world.lobes[object.material as usize];
+        let smooth = object.shape.is_smooth() || object.relief.is_some();
+        !lobes.intersects(Lobes::GLOSSY_TRANSMISSION) && !(smooth && lobes.has_delta())
+    };
+    let shines = |light: &crate::light::Light<_>| light.flux() > 0.0 && light.flux().is_finite();
+    !world.method.basis.draws_wavelengths()
+        && matches!(world.method.transport, Transport::Random { .. })
+        && !world.has_map()
+        && !scene.lights.is_empty()
+        && scene.lights.iter().all(shines)
+        && (0..scene.objects.len()).all(is_plain)
+}
+
+/// Whether light that leaves a surface for another is looked for at light vertices on it: a diffuse one, by its own
+/// normal.
+pub(super) fn holds_vertices<const N: usize>(world: &World, at: &Interaction<N>) -> bool {
+    matches!(at.material, Material::Diffuse(_))
+        && at.point.shading == at.point.normal
+        && !world.is_see_through(at.object)
+}
+
+impl<const N: usize> LightVertices<N> {
+    /// The vertices for the samples from `SHARED` times `number` on; none where the method asks for none.
+    pub(super) fn shared(world: &World, number: u32) -> Option<Self> {
+        if !world.method.light_vertices || !finds_all_light(world) {
+            return None;
+        }
+        let film = world.scene.film;
+        let samples = u64::from(film.width) * u64::from(film.height) * u64::from(SHARED);
+        Self::of_paths(world, number, (samples / PER_PATH).clamp(FEWEST, MOST))
+    }
+
+    /// A few vertices, for a pilot.
+    pub(super) fn few(world: &World) -> Option<Self> {
+        Self::of_paths(world, PILOT, FEWEST)
+    }
+
+    /// The vertices of some light paths of a set; none if nothing shines.
+    fn of_paths(world: &World, number: u32, paths: u64) -> Option<Self> {
+        let lights = Lights::new(world)?;
+        let batches = (0..paths.div_ceil(BATCH)).into_par_iter();
+        let of_batch = |batch: u64| {
+            let paths = batch * BATCH..(batch * BATCH + BATCH).min(paths);
+            lights.follow(world, number, paths)
+        };
+        let done: Vec<Followed<N>> = batches.map(of_batch).collect();
+        let (mut stats, mut vertices) = (Stats::default(), Vec::new());
+        for followed in done {
+            stats += followed.stats;
+            vertices.extend(followed.vertices);
+        }
+        let each = 1.0 / paths as f32;
+        vertices.iter_mut().for_each(|vertex| vertex.leaving = vertex.leaving * each);
+        Some(Self::dealt(world, vertices, stats))
+    }
+
+    /// Deals vertices into hands.
+    fn dealt(world: &World, mut vertices: Vec<LightVertex<N>>, stats: Stats) -> Self {
+        let middle = vertices.iter().map(|vertex| vertex.point.position).sum::<DVec3>() / vertices.len().max(1) as f64;
+        let mut distances: Vec<f64> = vertices.iter().map(|v| (v.point.position - middle).length_squared()).collect();
+        let half = distances.len() / 2;
+        let squared =
+            if distances.is_empty() { 1.0 } else { *distances.select_nth_unstable_by(half, f64::total_cmp).1 };
+        let near_squared = (NEAR * NEAR * squared).max(f64::MIN_POSITIVE);
+        let scale = 256.0 / squared.sqrt();
+        vertices.sort_by_cached_key(|vertex| morton((vertex.point.position - middle) * scale));
+        let count = vertices.len().div_ceil(HAND);
+        let mut hands = vec![Hand::EMPTY; count];
+        let mut order: Vec<Option<LightVertex<N>>> = vec![None; count * HAND];
+        for (number, vertex) in vertices.into_iter().enumerate() {
+            let (hand, slot) = (number % count, number / count);
+            hands[hand].set(world, slot, &vertex, middle);
+            order[hand * HAND + slot] = Some(vertex);
+        }
+        // Absent vertices are never chosen.
+        let first = order.iter().flatten().next().cloned();
+        let vertices = order.into_iter().filter_map(|vertex| vertex.or_else(|| first.clone())).collect();
+        Self { hands, vertices, center: middle, near_squared, stats }
+    }
+
+    /// D^2: of light from a distance d, the part d^2 / (d^2 + D^2) is looked for at vertices.
+    pub(super) fn near_squared(&self) -> f64 {
+        self.near_squared
+    }
+
+    /// The chance with which a bounce goes on from a surface at a distance whose light is looked for at light vertices.
+    pub(super) fn complement(&self, distance_squared: f64) -> f64 {
+        self.near_squared / (distance_squared + self.near_squared)
+    }
+
+    /// A vertex as seen from a point of a surface, for two random numbers, and one over how likely it was; none if none
+    /// is seen.
+    pub(super) fn choose(&self, from: DVec3, flat: DVec3, [u, v]: [f64; 2]) -> Option<(&LightVertex<N>, f64)> {
+        let count = self.hands.len();
+        let number = ((u * count as f64) as usize).min(count.checked_sub(1)?);
+        let [from, flat] = [from - self.center, flat].map(|v| v.as_vec3().to_array());
+        let weights = self.hands[number].weights(from, flat, self.near_squared as f32);
+        let total: f32 = weights.iter().sum();
+        let mut left = v as f32 * total;
+        let mut chosen = None;
+        for (slot, &weight) in weights.iter().enumerate() {
+            if weight > 0.0 {
+                chosen = Some((slot, weight));
+                left -= weight;
+                if left < 0.0 {
+                    break;
+                }
+            }
+        }
+        let (slot, weight) = chosen?;
+        let factor = count as f64 * f64::from(total) / f64::from(weight);
+        factor.is_finite().then(|| (&self.vertices[number * HAND + slot], factor))
+    }
+}
+
+impl Hand {
+    const EMPTY: Self = Self { place: [[0.0; HAND]; 3], flat: [[0.0; HAND]; 3], power: [0.0; HAND] };
+
+    fn set<const N: usize>(&mut self, world: &World, slot: usize, vertex: &LightVertex<N>, center: DVec3) {
+        let place = (vertex.point.position - center).as_vec3().to_array();
+        let flat = vertex.flat.as_vec3().to_array();
+        for axis in 0..3 {
+            (self.place[axis][slot], self.flat[axis][slot]) = (place[axis], flat[axis]);
+        }
+        let draw = Draw::<N>::fixed(world.method.basis.fixed_lanes());
+        let rgb = world.responses[vertex.light].sensor(&draw, vertex.leaving, false);
+        self.power[slot] = amount(world, rgb) as f32;
+    }
+
+    /// What each vertex would bring to a white diffuse surface, about.
+    #[inline]
+    fn weights(&self, from: [f32; 3], flat: [f32; 3], near_squared: f32) -> [f32; HAND] {
+        std::array::from_fn(|i| {
+            let way = [0, 1, 2].map(|axis| self.place[axis][i] - from[axis]);
+            let squared = way[0] * way[0] + way[1] * way[1] + way[2] * way[2];
+            let here = (way[0] * flat[0] + way[1] * flat[1] + way[2] * flat[2]).max(0.0);
+            let there = (-(way[0] * self.flat[0][i] + way[1] * self.flat[1][i] + way[2] * self.flat[2][i])).max(0.0);
+            let weight = self.power[i] * (here * there) / (squared * (squared + near_squared));
+            if weight < f32::INFINITY { weight } else { 0.0 }
+        })
+    }
+}
+
+/// The place of a point along Morton's curve through a cube around the origin.
+fn morton(place: DVec3) -> u64 {
+    let spread = |x: f64| {
+        let mut x = (x + 1024.0).clamp(0.0, 2047.0) as u64;
+        x = (x | x << 32) & 0x1f_0000_0000_ffff;
+        x = (x | x << 16) & 0x1f_0000_ff00_00ff;
+        x = (x | x << 8) & 0x100f_00f0_0f00_f00f;
+        x = (x | x << 4) & 0x10c3_0c30_c30c_30c3;
+        (x | x << 2) & 0x1249_2492_4924_9249
+    };
+    spread(place.x) | spread(place.y) << 1 | spread(place.z) << 2
+}
+
+/// The lights that paths start from.
+struct Lights {
+    by_flux: Distribution,
+    media: Vec<Option<Media>>,
+}
+
+/// What became of some light paths.
+struct Followed<const N: usize> {
+    vertices: Vec<LightVertex<N>>,
+    stats: Stats,
+}
+
+impl Lights {
+    /// None if no light shines.
+    fn new(world: &World) -> Option<Self> {
+        let flux = |(id, light): (LightId, &crate::light::Light<_>)| light.flux() * world.luminance(id);
+        let by_flux = Distribution::new(world.scene.lights.iter().enumerate().map(flux));
+        (by_flux.total() > 0.0).then(|| Self { by_flux, media: media_of_lights(&world.scene) })
+    }
+
+    /// Follows some light paths of a set.
+    fn follow<const N: usize>(&self, world: &World, set: u32, paths: std::ops::Range<u64>) -> Followed<N> {
+        let mut walker = Walker::<N>::new(world, LIGHT_PATHS);
+        let draw = world.method.basis.draw(0.0);
+        let mut vertices = Vec::new();
+        for number in paths {
+            let sampler = Sampler::new(world.method.seed ^ SEED, [set, 0], number as u32);
+            let drawn = self.by_flux.sample(sampler.four_plain(BranchKey::CAMERA, LIGHT)[0]);
+            let light = drawn.index;
+            let Some(mut emitted) = world.scene.lights[light].emit(sampler.four(BranchKey::CAMERA, START)) else {
+                continue;
+            };
+            emitted.factor /= drawn.probability;
+            let around = || Media::around(&world.scene, emitted.ray.origin, emitted.ray.direction);
+            let media = self.media[light].unwrap_or_else(around);
+            let start = Start { emitted: &emitted, light, media };
+            follow_photon(&mut walker, start, &draw, &sampler, Surfaces::All, &mut |_, landing| {
+                vertices.extend(kept(world, landing));
+            });
+        }
+        Followed { vertices, stats: walker.stats }
+    }
+}
+
+/// The vertex where a light path lands, if it is one.
+fn kept<const N: usize>(world: &World, landing: &Landing<N>) -> Option<LightVertex<N>> {
+    let Landing { path, at, light, .. } = landing;
+    let Material::Diffuse(diffuse) = at.material else { return None };
+    let leaving = landing.flux(world) * at.arrival.read(&diffuse.reflectance) * FRAC_1_PI as f32;
+    let usable = holds_vertices(world, at) && !leaving.is_zero() && leaving.0.iter().all(|x| x.is_finite());
+    usable.then(|| LightVertex { point: *at.point, flat: at.flat, leaving, light: *light, vertices: path.vertices })
+}

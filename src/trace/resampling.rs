@@ -1,0 +1,83 @@
+//! Light that comes to a camera path from a vertex of a light path.
+
+use std::cell::Cell;
+
+use super::World;
+use super::interaction::Interaction;
+use super::light_vertices::{LightVertex, LightVertices};
+use super::media;
+use super::path::Path;
+use super::polarization::Polarized;
+use super::sensor::{Contribution, Found, Sensor, amount};
+use super::shading;
+use super::straight;
+use crate::math::{Sampler, gamma, unit};
+
+/// A path at its first diffuse surface.
+pub(super) struct Resampling<'a, const N: usize> {
+    pub(super) world: &'a World,
+    pub(super) path: &'a Path<N>,
+    pub(super) at: &'a Interaction<'a, N>,
+    pub(super) vertices: &'a LightVertices<N>,
+    /// The object that occluded a light last.
+    pub(super) last_occluder: &'a Cell<Option<u32>>,
+}
+
+/// Use of the random numbers that choose vertices.
+const VERTEX: u32 = 5;
+
+impl<const N: usize> Resampling<'_, N> {
+    /// Hands the light of two vertices to the sensor, where they are seen.
+    pub(super) fn gather(&self, sampler: &Sampler, sensor: &mut Sensor) {
+        let [a, b, c, d] = sampler.four(self.path.key, VERTEX);
+        for u in [[a, b], [c, d]] {
+            let chosen = self.vertices.choose(self.at.point.position, self.at.flat, u);
+            if let Some(contribution) = chosen.and_then(|(vertex, factor)| self.connected(vertex, 0.5 * factor)) {
+                sensor.receive(contribution);
+            }
+        }
+    }
+
+    /// What the sensor gets of a vertex; none if it is not seen.
+    fn connected(&self, vertex: &LightVertex<N>, factor: f64) -> Option<Contribution> {
+        let (world, at) = (self.world, self.at);
+        if self.path.vertices.saturating_add(vertex.vertices) > world.method.max_bounces {
+            return None;
+        }
+        let to = vertex.point.position;
+        let origin = at.point.leave((to - at.point.position).try_normalize()?).origin;
+        let way = to - origin;
+        let squared = way.length_squared();
+        let direction = unit(way.try_normalize()?);
+        let (ray, distance) = (crate::math::Ray { origin, direction }, squared.sqrt());
+        let cos = -direction.dot(vertex.flat);
+        if direction.dot(at.flat) <= 0.0 || cos <= 0.0 {
+            return None;
+        }
+        let (bsdf_cos, _) = shading::evaluate(at.material, &at.arrival, at.flat, direction)?;
+        // The ray ends before the surface of the vertex: this lies within its error of the point, and the ray, whose
+        // direction is rounded, passes that within some roundings of the distance.
+        let short = (vertex.point.normal.abs().dot(vertex.point.error) + gamma(8) * distance) / cos;
+        let inside = at.boundary.here;
+        let last = self.last_occluder;
+        let straight = straight::unoccluded(world, at.arrival.draw, &ray, distance - short, None, inside, last)?;
+        let mut arriving = vertex.leaving;
+        if let Some((share, _)) = straight {
+            arriving = arriving * share;
+        }
+        if let Some(material) = inside {
+            arriving = arriving * media::medium(&world.scene, material).transmission(at.arrival.draw, distance);
+        }
+        let near_squared = self.vertices.near_squared();
+        let factor = factor * cos / (squared + near_squared);
+        let reflected = self.path.throughput.scaled(factor).of(bsdf_cos * arriving);
+        let rgb = world.responses[vertex.light].sensor(at.arrival.draw, reflected, self.path.parted);
+        let mut moved = 0.0;
+        if self.path.polarized.is_any() || world.has_see_through() {
+            let on_its_way = straight.map_or(Polarized::NOT, |(_, polarized)| polarized);
+            let change = self.path.polarized.brought(at.material, &at.arrival, direction, on_its_way).change();
+            moved = if change == 0.0 { 0.0 } else { change * amount(world, rgb) };
+        }
+        Some(Contribution { light: Some(vertex.light), found: Found::Connected, rgb, moved })
+    }
+}

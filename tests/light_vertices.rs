@@ -1,0 +1,359 @@
+//! Light that surfaces send each other, looked for at vertices of light paths: against a closed form, and against paths
+//! from the camera alone in rooms of many kinds.
+//!
+//! ```text
+//! cargo test --test all light_vertices::
+//! ```
+
+use std::f64::consts::PI;
+
+use abbe::film::Film;
+use abbe::plan::plan;
+use abbe::spectrum::Basis;
+use abbe::trace::{Method, prepare, render, resampling_gain};
+
+use crate::support::scenes::{SPLITTING, body, environment, method, moments, scene, standard_errors, view};
+
+const WHITE: &str = "diffuse = { reflectance = 0.7 }";
+const LAMP: &str = "emissive = { radiance = { rgb = [9, 8, 6] } }";
+
+fn quad(center: [f64; 3], u: [f64; 3], v: [f64; 3]) -> String {
+    format!("quad = {{ center = {center:?}, u = {u:?}, v = {v:?} }}")
+}
+
+/// The six walls of a closed box, 4 x 3 x 5, on the floor.
+fn walls() -> [String; 6] {
+    [
+        quad([0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 0.0, -2.5]),
+        quad([0.0, 3.0, 0.0], [2.0, 0.0, 0.0], [0.0, 0.0, 2.5]),
+        quad([2.0, 1.5, 0.0], [0.0, 0.0, 2.5], [0.0, 1.5, 0.0]),
+        quad([-2.0, 1.5, 0.0], [0.0, 0.0, 2.5], [0.0, 1.5, 0.0]),
+        quad([0.0, 1.5, -2.5], [2.0, 0.0, 0.0], [0.0, 1.5, 0.0]),
+        quad([0.0, 1.5, 2.5], [2.0, 0.0, 0.0], [0.0, 1.5, 0.0]),
+    ]
+}
+
+/// The box seen from inside, with what else stands there.
+fn room(wall: &str, render: &str, more: &[String]) -> String {
+    let walls = walls();
+    view([1.3, 1.6, 2.2], [-0.6, 1.0, -1.0], 75.0, 12)
+        + &format!("[render]\nsamples = 32\n{render}\n")
+        + &body("wall", wall, &walls.each_ref().map(String::as_str))
+        + &more.concat()
+}
+
+fn lamp() -> String {
+    body("lamp", LAMP, &[&quad([0.3, 2.9, -0.4], [0.5, 0.0, 0.0], [0.0, 0.0, 0.4])])
+}
+
+fn ball(name: &str, material: &str) -> String {
+    body(name, material, &["sphere = { center = [-0.6, 0.9, -0.8], radius = 0.8 }"])
+}
+
+/// Octahedron with normals of a ball.
+fn smooth(material: &str) -> String {
+    let points = "[[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]]";
+    let faces = "[[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]]";
+    format!(
+        "[material.smooth]\n{material}\n[[object]]\nmaterial = \"smooth\"\n\
+         shape.mesh = {{ points = {points}, faces = {faces}, normals = {points} }}\n\
+         transform = [{{ translate = [-0.5, 1.2, -0.7] }}]\n"
+    )
+}
+
+/// Rooms in which all light is found by light paths.
+fn rooms() -> Vec<(&'static str, String)> {
+    let with = |more: &[String]| room(WHITE, "", more);
+    let boxes = body(
+        "red",
+        "diffuse = { reflectance = { rgb = [0.8, 0.2, 0.1] } }",
+        &[
+            "cube = { center = [-0.6, 0.6, -0.9], size = [1, 1.2, 1] }",
+            "cube = { center = [0.9, 0.3, 0.2], size = 0.6 }",
+        ],
+    );
+    let small = |position: &str| format!("[[light]]\n{position}, intensity = {{ rgb = [3, 4, 5] }} }}\n");
+    let lamps: String = (0..12)
+        .map(|i| {
+            let (x, z) = (f64::from(i % 4) - 1.5, f64::from(i / 4) - 1.0);
+            format!(
+                "[[light]]\npoint = {{ position = [{x:?}, 2.5, {z:?}], intensity = {:?} }}\n",
+                0.2 + 0.1 * f64::from(i)
+            )
+        })
+        .collect();
+    let wall_with_gap = body("wall", WHITE, &[&quad([-0.4, 1.5, -0.2], [0.0, 0.0, 2.1], [0.0, 1.5, 0.0])])
+        .replace("[material.wall]\ndiffuse = { reflectance = 0.7 }\n", "");
+    let beyond = body("lamp", LAMP, &["sphere = { center = [-1.5, 1.5, -1.4], radius = 0.3 }"]);
+    let masked = "[material.paint]\ndiffuse = { reflectance = 0.5 }\n".to_owned()
+        + &body(
+            "screen",
+            "mask = { material = \"paint\", opacity = 0.4 }",
+            &[&quad([0.0, 1.5, -0.6], [1.2, 0.0, 0.0], [0.0, 1.2, 0.0])],
+        );
+    let floor = "[[object]]\nshape.plane = { point = [0, 0, 0], normal = [0, 1, 0] }\nmaterial = \"wall\"\n\
+                 [[object]]\nshape.plane = { point = [0, 3, 0], normal = [0, -1, 0] }\nmaterial = \"wall\"\n";
+    let open = view([1.3, 1.6, 2.2], [-0.6, 1.0, -1.0], 75.0, 12)
+        + "[render]\nsamples = 32\n[material.wall]\ndiffuse = { reflectance = 0.7 }\n"
+        + floor
+        + &lamp()
+        + &boxes;
+    let scaled = |factor: f64| {
+        let mut text = String::new();
+        for line in with(&[lamp(), boxes.clone()]).lines() {
+            text += line;
+            text += "\n";
+            if line.starts_with("shape.") {
+                text += &format!("transform = [{{ scale = {factor:e} }}]\n");
+            }
+        }
+        let place = [1.3, 1.6, 2.2].map(|x: f64| x * factor);
+        let at = [-0.6, 1.0, -1.0].map(|x: f64| x * factor);
+        text.replace("position = [1.3, 1.6, 2.2]", &format!("position = {place:?}"))
+            .replace("look_at = [-0.6, 1.0, -1.0]", &format!("look_at = {at:?}"))
+    };
+    vec![
+        ("boxes", with(&[lamp(), boxes.clone()])),
+        ("dark walls", room("diffuse = { reflectance = 0.15 }", "", &[lamp(), boxes.clone()])),
+        ("white walls", room("diffuse = { reflectance = 0.95 }", "", &[lamp()])),
+        ("a point", with(&[small("point = { position = [0, 2, 0]"), boxes.clone()])),
+        (
+            "a spot",
+            with(&[small("spot = { position = [0, 2.5, 0], toward = [-0.2, -1, 0.1], cone_angle = 50"), boxes.clone()]),
+        ),
+        (
+            "a ball of light",
+            with(&[body("lamp", LAMP, &["sphere = { center = [0.8, 2.2, -0.8], radius = 0.3 }"]), boxes.clone()]),
+        ),
+        (
+            "the tip of a ball of light",
+            with(&[body("lamp", LAMP, &["sphere = { center = [0, 62.8, 0], radius = 60 }"]), boxes.clone()]),
+        ),
+        (
+            "a cube of light",
+            with(&[body("lamp", LAMP, &["cube = { center = [0.8, 2.2, -0.8], size = 0.5 }"]), boxes.clone()]),
+        ),
+        (
+            "lamps of two colors",
+            with(&[
+                lamp(),
+                body(
+                    "blue",
+                    "emissive = { radiance = { rgb = [1, 3, 9] }, sides = \"front\" }",
+                    &[&quad([1.9, 1.0, 0.0], [0.0, 0.0, -0.4], [0.0, 0.4, 0.0])],
+                ),
+                boxes.clone(),
+            ]),
+        ),
+        ("twelve points", with(&[lamps, boxes.clone()])),
+        ("a glass ball", with(&[lamp(), ball("glass", "dielectric = { index = 1.5 }")])),
+        (
+            "a glass ball that absorbs",
+            with(&[lamp(), ball("glass", "dielectric = { index = 1.5, absorption = { rgb = [0.2, 0.8, 2] } }")]),
+        ),
+        ("a mirror", with(&[lamp(), ball("silver", "mirror = { reflectance = 0.9 }")])),
+        ("rough metal", with(&[lamp(), ball("metal", "conductor = { metal = \"copper\", roughness = 0.3 }")])),
+        ("plastic", with(&[lamp(), ball("plastic", "plastic = { reflectance = 0.6, index = 1.5 }")])),
+        (
+            "rough plastic",
+            with(&[lamp(), ball("plastic", "plastic = { reflectance = 0.6, index = 1.5, roughness = 0.3 }")]),
+        ),
+        ("plastic walls", room("plastic = { reflectance = 0.6, index = 1.5 }", "", &[lamp(), ball("paint", WHITE)])),
+        (
+            "a mix",
+            with(&[
+                lamp(),
+                "[material.silver]\nmirror = { reflectance = 0.9 }\n".to_owned(),
+                ball("mix", "mix = { materials = [\"wall\", \"silver\"], amount = 0.4 }"),
+            ]),
+        ),
+        ("a screen with holes", with(&[lamp(), masked])),
+        (
+            "a pane",
+            with(&[
+                lamp(),
+                body("pane", "thin = { index = 1.5 }", &[&quad([0.0, 1.5, -0.6], [1.2, 0.0, 0.0], [0.0, 1.2, 0.0])]),
+            ]),
+        ),
+        ("a smooth mesh", with(&[lamp(), smooth("diffuse = { reflectance = { rgb = [0.8, 0.5, 0.2] } }")])),
+        ("a smooth mesh of rough metal", with(&[lamp(), smooth("conductor = { metal = \"gold\", roughness = 0.4 }")])),
+        ("three bounces", room(WHITE, "max_bounces = 3", &[lamp(), ball("glass", "dielectric = { index = 1.5 }")])),
+        ("two bounces", room(WHITE, "max_bounces = 2", &[lamp(), boxes.clone()])),
+        ("one diffuse bounce", room(WHITE, "diffuse_bounces = 1", &[lamp(), boxes.clone()])),
+        (
+            "two diffuse bounces",
+            room(WHITE, "diffuse_bounces = 2", &[lamp(), ball("silver", "mirror = { reflectance = 0.9 }")]),
+        ),
+        ("a gap", with(&[wall_with_gap, beyond])),
+        ("planes without end", open),
+        ("a room of a micrometer", scaled(1e-6)),
+        ("a room of a million", scaled(1e6)),
+        (
+            "a ball in water",
+            with(&[
+                lamp(),
+                body(
+                    "water",
+                    "dielectric = { index = 1.333, absorption = { rgb = [0.5, 0.1, 0.05] } }",
+                    &["cube = { center = [-0.6, 0.8, -0.8], size = [2, 1.5, 2] }"],
+                ),
+                body("paint", WHITE, &["sphere = { center = [-0.6, 0.8, -0.8], radius = 0.5 }"]),
+            ]),
+        ),
+        (
+            "a lamp in a globe",
+            with(&[
+                body("globe", "dielectric = { index = 1.5 }", &["sphere = { center = [0, 2, 0], radius = 0.5 }"]),
+                body("lamp", LAMP, &["sphere = { center = [0, 2, 0], radius = 0.3 }"]),
+            ]),
+        ),
+    ]
+}
+
+/// Images with or without light vertices.
+fn films(text: &str, light_vertices: bool, basis: Option<&Basis>, seeds: u64) -> Vec<Film> {
+    let scene = scene(text);
+    let mut asked = Method { light_vertices, ..method(&scene, SPLITTING) };
+    asked.basis = basis.cloned().unwrap_or(asked.basis);
+    (0..seeds).map(|seed| render(&prepare(&scene, Method { seed, ..asked.clone() }), &|_| ()).0).collect()
+}
+
+/// The mean of a quarter of an image in a band, and its standard error from seed to seed: pixels share light paths.
+fn of_quarter(films: &[Film], quarter: usize, band: usize) -> (f64, f64) {
+    let of_film = |film: &Film| {
+        let half = film.width as usize / 2;
+        let in_quarter = |i: &usize| (i % (2 * half)) / half + 2 * (i / (2 * half) / half) == quarter;
+        let pixels = (0..film.pixels.len()).filter(in_quarter);
+        pixels.map(|i| f64::from(film.pixels[i].rgb[band])).sum::<f64>() / (half * half) as f64
+    };
+    let (mean, variance) = moments(films.iter().map(of_film));
+    (mean, (variance / films.len() as f64).sqrt())
+}
+
+const SEEDS: u64 = 16;
+
+fn assert_same(what: &str, text: &str, basis: Option<&Basis>, claims: usize) -> f64 {
+    let [plain, resampled] = [false, true].map(|on| films(text, on, basis, SEEDS));
+    let mut worst = 0.0_f64;
+    for (quarter, band) in (0..4).flat_map(|quarter| (0..3).map(move |band| (quarter, band))) {
+        let [(a, of_a), (b, of_b)] = [&plain, &resampled].map(|films| of_quarter(films, quarter, band));
+        let error = libm::hypot(of_a, of_b);
+        let off = (a - b).abs() / error;
+        assert!(
+            off < standard_errors(12 * claims),
+            "{what}: quarter {quarter}, band {band}: {b} for {a} +- {error:.1e}, off by {off:.1} sigma"
+        );
+        worst = worst.max(off);
+    }
+    worst
+}
+
+/// Quarters of images of all rooms have the same means with light vertices and without.
+#[test]
+fn light_vertices_change_no_mean() {
+    let rooms = rooms();
+    for (what, text) in &rooms {
+        let gain = resampling_gain(&prepare(&scene(text), method(&scene(text), SPLITTING)));
+        assert!(gain.is_some(), "{what}: light vertices do not find all light");
+        let worst = assert_same(what, text, None, rooms.len());
+        println!("{what}: at most {worst:.1} sigma, gain {:.1}", gain.unwrap_or(0.0));
+    }
+}
+
+/// Twelve bands of measured paint are as right as three numbers.
+#[test]
+fn light_vertices_carry_all_bands() {
+    let text = room(
+        "diffuse = { reflectance = \"orange yellow\" }",
+        "",
+        &[
+            body(
+                "lamp",
+                "emissive = { radiance = { illuminant = \"FL11\", scale = 4 } }",
+                &[&quad([0.3, 2.9, -0.4], [0.5, 0.0, 0.0], [0.0, 0.0, 0.4])],
+            ),
+            ball("paint", "diffuse = { reflectance = \"blue sky\" }"),
+        ],
+    );
+    let basis = plan(&scene(&text)).method.basis;
+    assert!(basis.fixed_lanes() > 4 && !basis.draws_wavelengths(), "{}", basis.name());
+    assert_same("twelve bands", &text, Some(&basis), 1);
+}
+
+/// An integrating sphere of radius r with a point of intensity I in its middle shows (rho / pi) (I / r^2) / (1 - rho)
+/// everywhere: Goebel 1967, *Generalized Integrating-Sphere Theory*, equation 1, for a sphere without ports.
+#[test]
+fn an_integrating_sphere_shows_its_closed_form() {
+    for reflectance in [0.3, 0.8, 0.98] {
+        let text = view([1.2, 0.3, 0.0], [-2.0, 0.1, 0.4], 60.0, 12)
+            + "[render]\nsamples = 64\n[[light]]\npoint = { position = [0, 0, 0], intensity = 2 }\n"
+            + &body(
+                "paint",
+                &format!("diffuse = {{ reflectance = {reflectance:?} }}"),
+                &["sphere = { center = [0, 0, 0], radius = 2 }"],
+            );
+        let expected = reflectance / PI * (2.0 / 4.0) / (1.0 - reflectance);
+        let films = films(&text, true, None, SEEDS);
+        for quarter in 0..4 {
+            let (mean, error) = of_quarter(&films, quarter, 1);
+            println!("{reflectance}: {mean:.6} +- {error:.1e} for {expected:.6}");
+            assert!((mean - expected).abs() < standard_errors(12) * error + 1e-6 * expected, "{reflectance}");
+            assert!(error < 0.01 * expected, "{error}");
+        }
+    }
+}
+
+/// What light paths cannot find is left to the paths of the camera.
+#[test]
+fn rooms_with_light_that_light_paths_miss_have_no_light_vertices() {
+    let with = |more: &[String]| room(WHITE, "", more);
+    let glass = "dielectric = { index = 1.5, roughness = 0.2 }";
+    let scenes = [
+        ("a sky", with(&[lamp(), environment(1.0)])),
+        ("the sun", with(&[lamp(), "[[light]]\nsun = { toward = [0, 1, 0], irradiance = 1 }\n".into()])),
+        ("rough glass", with(&[lamp(), ball("glass", glass)])),
+        ("glass that looks smoother than it is", with(&[lamp(), smooth("dielectric = { index = 1.5 }")])),
+        ("nothing shines", with(&[])),
+    ];
+    for (what, text) in &scenes {
+        let scene = scene(text);
+        let asked = Method { samples: 4, ..method(&scene, SPLITTING) };
+        let world = prepare(&scene, asked.clone());
+        assert_eq!(resampling_gain(&world), None, "{what}");
+        let forced = prepare(&scene, Method { light_vertices: true, ..asked });
+        assert_eq!(render(&forced, &|_| ()).0, render(&world, &|_| ()).0, "{what}");
+    }
+}
+
+/// All parts of an image are made alike, by any number of threads and in passes of any size.
+#[test]
+fn parts_of_an_image_are_the_same_as_the_whole() {
+    let text = room(WHITE, "", &[lamp(), ball("glass", "dielectric = { index = 1.5 }")]);
+    let whole = films(&text, true, None, 1).remove(0);
+    let mut cropped = scene(&text);
+    cropped.film.crop = Some(abbe::film::Window { left: 5, top: 4, width: 3, height: 2 });
+    let asked = Method { light_vertices: true, ..method(&cropped, SPLITTING) };
+    for threads in [1, 2, 3] {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+        let part = pool.install(|| render(&prepare(&cropped, asked.clone()), &|_| ()).0);
+        for (i, pixel) in part.pixels.iter().enumerate() {
+            let [x, y] = [5 + i % 3, 4 + i / 3];
+            assert_eq!(pixel.rgb, whole.pixels[y * 12 + x].rgb, "{threads} threads, pixel {x}, {y}");
+        }
+    }
+}
+
+/// The plan looks for light at vertices where that pays, and not where all light comes straight from lamps.
+#[test]
+fn the_plan_weighs_light_vertices() {
+    let larger = |text: &str| text.replace("width = 12\nheight = 12", "width = 128\nheight = 128");
+    let closed = larger(&room(WHITE, "", &[lamp()]));
+    let decided = plan(&scene(&closed));
+    assert!(decided.method.light_vertices, "{:?}", decided.because);
+    assert!(decided.because.iter().any(|line| line.contains("light vertices")), "{:?}", decided.because);
+    let black = larger(&room("diffuse = { reflectance = 0.01 }", "", &[lamp()]));
+    assert!(!plan(&scene(&black)).method.light_vertices);
+    let direct = larger(&room(WHITE, "diffuse_bounces = 0", &[lamp()]));
+    assert!(!plan(&scene(&direct)).method.light_vertices);
+    assert!(!plan(&scene(&room(WHITE, "", &[lamp()]))).method.light_vertices, "too small for a pilot");
+}
