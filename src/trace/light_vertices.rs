@@ -94,7 +94,7 @@ pub(super) fn finds_all_light(world: &World) -> bool {
         let object = &scene.objects[id];
         let lobes = world.lobes[object.material as usize];
         let smooth = object.shape.is_smooth() || object.relief.is_some();
-        !lobes.intersects(Lobes::GLOSSY_TRANSMISSION) && !(smooth && lobes.has_delta())
+        !(lobes.intersects(Lobes::GLOSSY_TRANSMISSION) || (smooth && lobes.has_delta()))
     };
     let shines = |light: &crate::light::Light<_>| light.flux() > 0.0 && light.flux().is_finite();
     !world.method.basis.draws_wavelengths()
@@ -298,5 +298,5 @@ fn kept<const N: usize>(world: &World, landing: &Landing<N>) -> Option<LightVert
     let Material::Diffuse(diffuse) = at.material else { return None };
     let leaving = landing.flux(world) * at.arrival.read(&diffuse.reflectance) * FRAC_1_PI as f32;
     let usable = holds_vertices(world, at) && !leaving.is_zero() && leaving.0.iter().all(|x| x.is_finite());
-    usable.then(|| LightVertex { point: *at.point, flat: at.flat, leaving, light: *light, vertices: path.vertices })
+    usable.then_some(LightVertex { point: *at.point, flat: at.flat, leaving, light: *light, vertices: path.vertices })
 }
