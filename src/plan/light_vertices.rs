@@ -5,7 +5,7 @@ use crate::trace::{World, resampling_gain};
 /// How much shorter an equal error must take: a pilot knows no better.
 const CLEARLY: f64 = 1.25;
 /// Fewest camera samples of an image for which the pilot is worth its time.
-const WORTH_A_PILOT: f64 = 2e5;
+const WORTH_A_PILOT: f64 = 1e5;
 
 /// How many times as long an equal error takes without light vertices, where they pay.
 pub(super) fn gain(world: &World) -> Option<f64> {
