@@ -1,6 +1,6 @@
 //! A mesh's triangles in the order of its tree's leaves, tested against a ray four at a time.
 
-use super::bvh::{GROUP, Number, prefetch};
+use super::bvh::{Crossings, GROUP, Line, Number, prefetch};
 use super::triangle::Sheared;
 use super::{Bvh, Crossing, Vectors, Vertices, Visitor};
 use crate::math::{DVec3, Ray};
@@ -74,40 +74,42 @@ fn nearest<T: Number>(
     t_max: f64,
     counts: impl Fn(u32) -> bool,
 ) -> Option<Crossing> {
-    let visitor = Nearest { blocks, items: bvh.items(), line: Line::new(ray), counts, found: None };
+    let sheared = Sheared::new(ray);
+    let visitor = Nearest { blocks, items: bvh.items(), line: sheared.line(), sheared, counts, found: None };
     let found = bvh.walk_in_order(ray, t_max, visitor).found;
     found.map(|found| Crossing { part: bvh.items()[found.part as usize], ..found })
 }
 
 #[inline]
 fn any<T: Number>(blocks: &[Block<T>], bvh: &Bvh, ray: &Ray, t_max: f64, counts: impl Fn(u32, f64) -> bool) -> bool {
-    bvh.walk(ray, t_max, Any { blocks, items: bvh.items(), line: Line::new(ray), counts, found: false }).found
-}
-
-/// A ray as the tests of four triangles take it.
-struct Line {
-    sheared: Sheared,
-    /// Its origin in the order of the sheared axes.
-    origin: [f64; 3],
-    shear: [f64; 2],
-}
-
-impl Line {
-    #[inline(always)]
-    fn new(ray: &Ray) -> Self {
-        let sheared = Sheared::new(ray);
-        let origin = sheared.order.map(|axis| ray.origin[axis]);
-        Self { origin, shear: [sheared.shear.x, sheared.shear.y], sheared }
-    }
+    let sheared = Sheared::new(ray);
+    let visitor = Any { blocks, items: bvh.items(), line: sheared.line(), sheared, counts, found: false };
+    bvh.walk(ray, t_max, visitor).found
 }
 
 struct Nearest<'a, T, F> {
     blocks: &'a [Block<T>],
     items: &'a [u32],
     line: Line,
+    sheared: Sheared,
     counts: F,
     /// Its part is the place in `items`.
     found: Option<Crossing>,
+}
+
+impl<T, F: Fn(u32) -> bool> Nearest<'_, T, F> {
+    /// Takes a crossing in place of what was found, if it counts and lies before that, and answers the new `t_max`.
+    #[inline(always)]
+    fn take(&mut self, crossing: Crossing, t_max: f64) -> f64 {
+        let item = |place: u32| self.items[place as usize];
+        if !(self.counts)(item(crossing.part)) {
+            return t_max;
+        }
+        if self.found.is_none_or(|found| crossing.t < found.t || item(crossing.part) < item(found.part)) {
+            self.found = Some(crossing);
+        }
+        crossing.t
+    }
 }
 
 impl<T: Number, F: Fn(u32) -> bool> Visitor for Nearest<'_, T, F> {
@@ -115,20 +117,17 @@ impl<T: Number, F: Fn(u32) -> bool> Visitor for Nearest<'_, T, F> {
     fn visit(&mut self, vectors: impl Vectors, first: usize, groups: usize, mut t_max: f64) -> Option<f64> {
         for group in first..first + groups {
             let block = &self.blocks[group];
-            let mut inside = block.inside(vectors, &self.line);
-            while inside != 0 {
-                let lane = (inside.trailing_zeros() & 3) as usize;
-                inside &= inside - 1;
-                if let Some(crossing) = block.crossing(lane, &self.line.sheared, t_max) {
-                    let place = (group * GROUP + lane) as u32;
-                    let item = |place: u32| self.items[place as usize];
-                    if !(self.counts)(item(place)) {
-                        continue;
-                    }
-                    if self.found.is_none_or(|found| crossing.t < found.t || item(place) < item(found.part)) {
-                        self.found = Some(Crossing { part: place, ..crossing });
-                    }
-                    t_max = crossing.t;
+            let Some(mut crossings) = block.meet(vectors, &self.line, &self.sheared, t_max) else { continue };
+            while let Some(lane) = next(&mut crossings.met) {
+                if crossings.t[lane] <= t_max {
+                    let part = (group * GROUP + lane) as u32;
+                    t_max = self.take(Crossing { part, ..crossing_of(&crossings, lane) }, t_max);
+                }
+            }
+            while let Some(lane) = next(&mut crossings.unsure) {
+                if let Some(crossing) = block.exactly(lane, &self.sheared, t_max) {
+                    let part = (group * GROUP + lane) as u32;
+                    t_max = self.take(Crossing { part, ..crossing }, t_max);
                 }
             }
         }
@@ -145,6 +144,7 @@ struct Any<'a, T, F> {
     blocks: &'a [Block<T>],
     items: &'a [u32],
     line: Line,
+    sheared: Sheared,
     counts: F,
     found: bool,
 }
@@ -154,16 +154,16 @@ impl<T: Number, F: Fn(u32, f64) -> bool> Visitor for Any<'_, T, F> {
     fn visit(&mut self, vectors: impl Vectors, first: usize, groups: usize, t_max: f64) -> Option<f64> {
         for group in first..first + groups {
             let block = &self.blocks[group];
-            let mut inside = block.inside(vectors, &self.line);
-            while inside != 0 {
-                let lane = (inside.trailing_zeros() & 3) as usize;
-                inside &= inside - 1;
-                if let Some(crossing) = block.crossing(lane, &self.line.sheared, t_max)
-                    && (self.counts)(self.items[group * GROUP + lane], crossing.t)
-                {
-                    self.found = true;
-                    return None;
-                }
+            let Some(mut crossings) = block.meet(vectors, &self.line, &self.sheared, t_max) else { continue };
+            let counts = |lane: usize, t: f64| (self.counts)(self.items[group * GROUP + lane], t);
+            while let Some(lane) = next(&mut crossings.met) {
+                self.found |= counts(lane, crossings.t[lane]);
+            }
+            while let Some(lane) = next(&mut crossings.unsure).filter(|_| !self.found) {
+                self.found = block.exactly(lane, &self.sheared, t_max).is_some_and(|crossing| counts(lane, crossing.t));
+            }
+            if self.found {
+                return None;
             }
         }
         Some(t_max)
@@ -175,22 +175,38 @@ impl<T: Number, F: Fn(u32, f64) -> bool> Visitor for Any<'_, T, F> {
     }
 }
 
+/// The lowest of some lanes, taken off.
+#[inline(always)]
+fn next(lanes: &mut u32) -> Option<usize> {
+    let lane = lanes.trailing_zeros() as usize;
+    let is_there = *lanes != 0;
+    *lanes &= lanes.wrapping_sub(1);
+    is_there.then_some(lane & (GROUP - 1))
+}
+
+/// The crossing with a triangle that is met.
+#[inline(always)]
+fn crossing_of(crossings: &Crossings, lane: usize) -> Crossing {
+    let Crossings { t, v, w, determinant, .. } = crossings;
+    Crossing { t: t[lane], part: 0, uv: [v[lane] / determinant[lane], w[lane] / determinant[lane]] }
+}
+
 impl<T: Number> Block<T> {
-    /// A bit for each triangle that the line of a ray may run through, edges and corners included.
+    /// The triangles that a ray meets with 0 < t <= `t_max`, edges and corners included.
     ///
     /// The edge functions are rounded as in `Sheared::intersect`. One that is not 0 has the right sign, for rounding
     /// keeps the order of products; so what has two of opposite signs is refused there as well, and nothing else is
-    /// here.
+    /// here. What that test asks of more digits is left to it.
     #[inline(always)]
-    fn inside(&self, vectors: impl Vectors, line: &Line) -> u32 {
-        let [x, y, z] = line.sheared.order;
+    fn meet(&self, vectors: impl Vectors, line: &Line, sheared: &Sheared, t_max: f64) -> Option<Crossings> {
+        let [x, y, z] = sheared.order;
         let corners = self.0.each_ref().map(|corner| [&corner[x], &corner[y], &corner[z]]);
-        vectors.inside(corners, line.origin, line.shear)
+        vectors.meet(corners, line, t_max)
     }
 
     /// The crossing of one of the triangles with 0 < t <= `t_max`.
-    #[inline]
-    fn crossing(&self, lane: usize, sheared: &Sheared, t_max: f64) -> Option<Crossing> {
+    #[inline(never)]
+    fn exactly(&self, lane: usize, sheared: &Sheared, t_max: f64) -> Option<Crossing> {
         let corner = |corner: &[[T; GROUP]; 3]| DVec3::from(corner.map(|x| x[lane].into()));
         sheared.intersect([corner(&self.0[0]), corner(&self.0[1]), corner(&self.0[2])], t_max)
     }

@@ -1,3 +1,4 @@
+use super::bvh::Line;
 use super::outline::{Outline, is_near};
 use super::{Crossing, SurfacePoint};
 use crate::math::{Bounds, DVec3, Ray, Transform, gamma, triangle_coordinates};
@@ -91,11 +92,15 @@ fn scaled_normal([p1, p2, p3]: [DVec3; 3]) -> DVec3 {
 /// Woop, Benthin & Wald 2013, *Watertight Ray/Triangle Intersection*; here in 64 bits, with edge functions that round
 /// to zero decided by their exact sign, so that of two triangles sharing an edge at least one is hit.
 pub(super) struct Sheared {
-    pub(super) origin: DVec3,
+    origin: DVec3,
     /// The axes that become x, y and z.
     pub(super) order: [usize; 3],
-    pub(super) shear: DVec3,
+    shear: DVec3,
 }
+
+/// The bound of 264 chained roundings, on cubes of the largest difference. Nearer to the plane, the side on which a ray
+/// starts is decided exactly, so that a ray leaving any triangle by any offset does not hit it again.
+const NEAR: f64 = gamma(264);
 
 impl Sheared {
     pub(super) fn new(ray: &Ray) -> Self {
@@ -107,6 +112,11 @@ impl Sheared {
         }
         let shear = DVec3::new(d[x] / d[z], d[y] / d[z], 1.0 / d[z]);
         Self { origin: ray.origin, order: [x, y, z], shear }
+    }
+
+    /// The same for the test of several triangles at once.
+    pub(super) fn line(&self) -> Line {
+        Line { origin: self.order.map(|axis| self.origin[axis]), shear: self.shear.to_array(), near: NEAR }
     }
 
     /// The crossing with 0 < t <= `t_max`, edges and corners included.
@@ -133,10 +143,8 @@ impl Sheared {
             return None;
         }
         let mut along = (u * a[2] + v * b[2] + w * c[2]) * self.shear.z;
-        // The bound of 264 chained roundings on cubes of the largest difference. Nearer to the plane, the side on which
-        // the ray starts is decided exactly, so that a ray leaving any triangle by any offset does not hit it again.
         let size = points.map(|p| (p - self.origin).abs().max_element()).into_iter().fold(0.0, f64::max);
-        if along.abs() <= gamma(264) * size * size * size * self.shear.z.abs() {
+        if along.abs() <= NEAR * size * size * size * self.shear.z.abs() {
             along = -triple_product(points.map(|p| difference(p, self.origin))) * self.shear.z.abs();
         }
         let t = along / determinant;

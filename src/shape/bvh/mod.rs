@@ -8,7 +8,7 @@ mod stack;
 mod vectors;
 mod walk;
 
-pub use vectors::{GROUP, Number, Vectors, prefetch};
+pub use vectors::{Crossings, GROUP, Line, Number, Vectors, prefetch};
 pub use walk::Visitor;
 
 use crate::math::{Bounds, Ray};
