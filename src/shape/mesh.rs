@@ -80,14 +80,22 @@ impl Mesh {
         self.triangles[index as usize].map(|corner| self.vertices.at(corner))
     }
 
-    /// The nearest crossing; of equally near ones, that of the triangle listed first.
-    pub(super) fn intersect(&self, ray: &Ray, t_max: f64) -> Option<Crossing> {
-        self.packed.nearest(&self.bvh, ray, t_max, |_| true)
+    /// The nearest crossing of a ray that may leave one of the triangles; of equally near ones, that of the triangle
+    /// listed first.
+    pub(super) fn intersect(&self, ray: &Ray, t_max: f64, left: Option<u32>) -> Option<Crossing> {
+        self.packed.nearest(&self.bvh, ray, t_max, |part| left == Some(part), |_| true)
     }
 
-    /// Whether there is a crossing with 0 < t <= `t_max`.
-    pub(super) fn is_crossed(&self, ray: &Ray, t_max: f64) -> bool {
-        self.packed.any(&self.bvh, ray, t_max, |_, _| true)
+    /// Whether a ray that may leave one of the triangles has a crossing with 0 < t <= `t_max` that counts, told its
+    /// triangle and t.
+    pub(super) fn is_crossed(
+        &self,
+        ray: &Ray,
+        t_max: f64,
+        left: Option<u32>,
+        counts: impl Fn(u32, f64) -> bool,
+    ) -> bool {
+        self.packed.any(&self.bvh, ray, t_max, |part| left == Some(part), counts)
     }
 
     pub(super) fn point(&self, crossing: &Crossing) -> SurfacePoint {

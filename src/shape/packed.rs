@@ -26,21 +26,35 @@ impl Packed {
     }
 
     /// The nearest crossing with 0 < t <= `t_max` of a triangle that counts; of equally near ones, that of the one
-    /// listed first.
+    /// listed first. The ray may start on the triangle that it leaves.
     #[inline]
-    pub fn nearest(&self, bvh: &Bvh, ray: &Ray, t_max: f64, counts: impl Fn(u32) -> bool) -> Option<Crossing> {
+    pub fn nearest(
+        &self,
+        bvh: &Bvh,
+        ray: &Ray,
+        t_max: f64,
+        leaves: impl Fn(u32) -> bool,
+        counts: impl Fn(u32) -> bool,
+    ) -> Option<Crossing> {
         match self {
-            Self::Single(blocks) => nearest(blocks, bvh, ray, t_max, counts),
-            Self::Double(blocks) => nearest(blocks, bvh, ray, t_max, counts),
+            Self::Single(blocks) => nearest(blocks, bvh, ray, t_max, leaves, counts),
+            Self::Double(blocks) => nearest(blocks, bvh, ray, t_max, leaves, counts),
         }
     }
 
     /// Whether there is a crossing with 0 < t <= `t_max` that counts, told its triangle and t.
     #[inline]
-    pub fn any(&self, bvh: &Bvh, ray: &Ray, t_max: f64, counts: impl Fn(u32, f64) -> bool) -> bool {
+    pub fn any(
+        &self,
+        bvh: &Bvh,
+        ray: &Ray,
+        t_max: f64,
+        leaves: impl Fn(u32) -> bool,
+        counts: impl Fn(u32, f64) -> bool,
+    ) -> bool {
         match self {
-            Self::Single(blocks) => any(blocks, bvh, ray, t_max, counts),
-            Self::Double(blocks) => any(blocks, bvh, ray, t_max, counts),
+            Self::Single(blocks) => any(blocks, bvh, ray, t_max, leaves, counts),
+            Self::Double(blocks) => any(blocks, bvh, ray, t_max, leaves, counts),
         }
     }
 }
@@ -72,32 +86,41 @@ fn nearest<T: Number>(
     bvh: &Bvh,
     ray: &Ray,
     t_max: f64,
+    leaves: impl Fn(u32) -> bool,
     counts: impl Fn(u32) -> bool,
 ) -> Option<Crossing> {
     let sheared = Sheared::new(ray);
-    let visitor = Nearest { blocks, items: bvh.items(), line: sheared.line(), sheared, counts, found: None };
+    let visitor = Nearest { blocks, items: bvh.items(), line: sheared.line(), sheared, leaves, counts, found: None };
     let found = bvh.walk_in_order(ray, t_max, visitor).found;
     found.map(|found| Crossing { part: bvh.items()[found.part as usize], ..found })
 }
 
 #[inline]
-fn any<T: Number>(blocks: &[Block<T>], bvh: &Bvh, ray: &Ray, t_max: f64, counts: impl Fn(u32, f64) -> bool) -> bool {
+fn any<T: Number>(
+    blocks: &[Block<T>],
+    bvh: &Bvh,
+    ray: &Ray,
+    t_max: f64,
+    leaves: impl Fn(u32) -> bool,
+    counts: impl Fn(u32, f64) -> bool,
+) -> bool {
     let sheared = Sheared::new(ray);
-    let visitor = Any { blocks, items: bvh.items(), line: sheared.line(), sheared, counts, found: false };
+    let visitor = Any { blocks, items: bvh.items(), line: sheared.line(), sheared, leaves, counts, found: false };
     bvh.walk(ray, t_max, visitor).found
 }
 
-struct Nearest<'a, T, F> {
+struct Nearest<'a, T, L, F> {
     blocks: &'a [Block<T>],
     items: &'a [u32],
     line: Line,
     sheared: Sheared,
+    leaves: L,
     counts: F,
     /// Its part is the place in `items`.
     found: Option<Crossing>,
 }
 
-impl<T, F: Fn(u32) -> bool> Nearest<'_, T, F> {
+impl<T, L, F: Fn(u32) -> bool> Nearest<'_, T, L, F> {
     /// Takes a crossing in place of what was found, if it counts and lies before that, and answers the new `t_max`.
     #[inline(always)]
     fn take(&mut self, crossing: Crossing, t_max: f64) -> f64 {
@@ -112,7 +135,7 @@ impl<T, F: Fn(u32) -> bool> Nearest<'_, T, F> {
     }
 }
 
-impl<T: Number, F: Fn(u32) -> bool> Visitor for Nearest<'_, T, F> {
+impl<T: Number, L: Fn(u32) -> bool, F: Fn(u32) -> bool> Visitor for Nearest<'_, T, L, F> {
     #[inline(always)]
     fn visit(&mut self, vectors: impl Vectors, first: usize, groups: usize, mut t_max: f64) -> Option<f64> {
         for group in first..first + groups {
@@ -125,8 +148,10 @@ impl<T: Number, F: Fn(u32) -> bool> Visitor for Nearest<'_, T, F> {
                 }
             }
             while let Some(lane) = next(&mut crossings.unsure) {
-                if let Some(crossing) = block.exactly(lane, &self.sheared, t_max) {
-                    let part = (group * GROUP + lane) as u32;
+                let part = (group * GROUP + lane) as u32;
+                if !(self.leaves)(self.items[part as usize])
+                    && let Some(crossing) = block.exactly(lane, &self.sheared, t_max)
+                {
                     t_max = self.take(Crossing { part, ..crossing }, t_max);
                 }
             }
@@ -140,16 +165,17 @@ impl<T: Number, F: Fn(u32) -> bool> Visitor for Nearest<'_, T, F> {
     }
 }
 
-struct Any<'a, T, F> {
+struct Any<'a, T, L, F> {
     blocks: &'a [Block<T>],
     items: &'a [u32],
     line: Line,
     sheared: Sheared,
+    leaves: L,
     counts: F,
     found: bool,
 }
 
-impl<T: Number, F: Fn(u32, f64) -> bool> Visitor for Any<'_, T, F> {
+impl<T: Number, L: Fn(u32) -> bool, F: Fn(u32, f64) -> bool> Visitor for Any<'_, T, L, F> {
     #[inline(always)]
     fn visit(&mut self, vectors: impl Vectors, first: usize, groups: usize, t_max: f64) -> Option<f64> {
         for group in first..first + groups {
@@ -160,7 +186,8 @@ impl<T: Number, F: Fn(u32, f64) -> bool> Visitor for Any<'_, T, F> {
                 self.found |= counts(lane, crossings.t[lane]);
             }
             while let Some(lane) = next(&mut crossings.unsure).filter(|_| !self.found) {
-                self.found = block.exactly(lane, &self.sheared, t_max).is_some_and(|crossing| counts(lane, crossing.t));
+                self.found = !(self.leaves)(self.items[group * GROUP + lane])
+                    && block.exactly(lane, &self.sheared, t_max).is_some_and(|crossing| counts(lane, crossing.t));
             }
             if self.found {
                 return None;
@@ -259,10 +286,10 @@ mod tests {
                 }
                 let ray = Ray { origin, direction };
                 let t_max = if i % 5 == 0 { number() } else { f64::INFINITY };
-                let found = packed.nearest(&wide, &ray, t_max, |_| true);
-                assert_eq!(found, packed.nearest(&plain, &ray, t_max, |_| true), "{ray:?}");
-                assert_eq!(found.is_some(), packed.any(&wide, &ray, t_max, |_, _| true), "{ray:?}");
-                assert_eq!(found.is_some(), packed.any(&plain, &ray, t_max, |_, _| true), "{ray:?}");
+                let found = packed.nearest(&wide, &ray, t_max, |_| false, |_| true);
+                assert_eq!(found, packed.nearest(&plain, &ray, t_max, |_| false, |_| true), "{ray:?}");
+                assert_eq!(found.is_some(), packed.any(&wide, &ray, t_max, |_| false, |_, _| true), "{ray:?}");
+                assert_eq!(found.is_some(), packed.any(&plain, &ray, t_max, |_| false, |_, _| true), "{ray:?}");
                 let each = faces.iter().filter_map(|face| Triangle::new(face.map(corner)).intersect(&ray, t_max));
                 if i % 16 < 4 {
                     let nearest = each.map(|crossing| crossing.t).min_by(f64::total_cmp);

@@ -11,7 +11,7 @@ use super::walker::{Departure, Walker};
 use crate::light::{LeSample, LightId};
 use crate::material::{Arrival, Scatter};
 use crate::math::{DVec2, Sampler};
-use crate::scene::FilmSettings;
+use crate::scene::{Ends, FilmSettings};
 use crate::spectrum::{Draw, Lanes};
 
 /// Use of the random numbers where a photon is seen: the point of the lens.
@@ -149,7 +149,8 @@ pub(super) fn show<const N: usize>(
     let distance = (seen.start - ray.origin).length();
     let inside = at.boundary.sides()[usize::from(!same)];
     let (mut shone, mut polarized) = (landing.shone(world), Polarized::NOT);
-    let unoccluded = straight::unoccluded(world, arrival.draw, &ray, distance, None, inside, &walker.last_occluder);
+    let ends = Ends { left: path.left, ..Ends::default() };
+    let unoccluded = straight::unoccluded(world, arrival.draw, &ray, distance, ends, inside, &walker.last_occluder);
     let Some(through) = unoccluded else { return };
     if let Some((share, of_panes)) = through {
         (shone, polarized) = (shone * share, of_panes);

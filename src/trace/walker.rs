@@ -45,9 +45,10 @@ impl<'a, const N: usize> Walker<'a, N> {
     #[inline(always)]
     pub(super) fn meet(&mut self, path: &mut Path<N>, draw: &Draw<N>) -> Option<Meeting> {
         self.stats.rays += 1;
-        let hit = self.world.scene.intersect(&path.ray);
+        let hit = self.world.scene.intersect_from(&path.ray, path.left);
         path.advance(self.world, draw, hit.map_or(f64::INFINITY, |hit| hit.crossing.t));
         let hit = hit?;
+        path.left = Some(hit.primitive());
         let point = self.world.scene.objects[hit.object as usize].point(&path.ray, &hit.crossing);
         Some(Meeting { hit, point })
     }
@@ -207,6 +208,7 @@ impl<'a, const N: usize> Departure<'a, N> {
         };
         Path {
             ray: at.point.leave(branch.wi),
+            left: path.left,
             throughput: path.throughput.through(branch.share).scaled(factor),
             eta_scale: path.eta_scale * branch.eta_scale,
             media: if crosses { at.boundary.crossed } else { path.media },
