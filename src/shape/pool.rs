@@ -1,4 +1,5 @@
 use super::bvh::GROUP;
+use super::mesh::SMALL;
 use super::packed::Packed;
 use super::{Bvh, Crossing, Shape, Triangle, Vertices};
 use crate::math::{DVec3, Ray};
@@ -12,11 +13,8 @@ pub struct Pool {
     owners: Vec<[u32; 2]>,
 }
 
-/// Triangles of a mesh above which it is better left alone.
-const SMALL: usize = 1024;
-
 impl Pool {
-    /// Whether a shape may go into a pool.
+    /// Whether a shape may go into a pool: larger meshes are better left alone.
     pub fn takes(shape: &Shape) -> bool {
         match shape {
             Shape::Triangle(_) => true,

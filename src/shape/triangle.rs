@@ -34,15 +34,13 @@ impl Triangle {
         Sheared::new(ray).intersect(self.points, t_max)
     }
 
-    pub(super) fn point(&self, [u, v]: [f64; 2]) -> SurfacePoint {
+    pub(super) fn point(&self, uv: [f64; 2]) -> SurfacePoint {
+        Facet::new(self).point(uv)
+    }
+
+    fn at(&self, [u, v]: [f64; 2]) -> DVec3 {
         let [p1, p2, p3] = self.points;
-        let position = p1 * (1.0 - u - v) + p2 * u + p3 * v;
-        let largest = p1.abs().max(p2.abs()).max(p3.abs());
-        // The test forms differences as long as the triangle in every coordinate, also in one that is 0 at all corners.
-        let extent = p1.max(p2).max(p3) - p1.min(p2).min(p3);
-        let error = (largest + DVec3::splat(extent.max_element())) * gamma(7);
-        let normal = self.normal();
-        SurfacePoint { position, error, normal, shading: normal }
+        p1 * (1.0 - u - v) + p2 * u + p3 * v
     }
 
     /// Unit normal by the right-hand rule.
@@ -76,7 +74,31 @@ impl Triangle {
     }
 
     pub(super) fn sample_area(&self, u: [f64; 2]) -> DVec3 {
-        self.point(triangle_coordinates(u)).position
+        self.at(triangle_coordinates(u))
+    }
+}
+
+/// A triangle with what all of its points share.
+#[derive(Clone, Debug)]
+pub(super) struct Facet {
+    pub(super) triangle: Triangle,
+    normal: DVec3,
+    error: DVec3,
+}
+
+impl Facet {
+    pub(super) fn new(triangle: &Triangle) -> Self {
+        let [p1, p2, p3] = triangle.points;
+        let largest = p1.abs().max(p2.abs()).max(p3.abs());
+        // The test forms differences as long as the triangle in every coordinate, also in one that is 0 at all corners.
+        let extent = p1.max(p2).max(p3) - p1.min(p2).min(p3);
+        let error = (largest + DVec3::splat(extent.max_element())) * gamma(7);
+        Self { triangle: triangle.clone(), normal: triangle.normal(), error }
+    }
+
+    pub(super) fn point(&self, uv: [f64; 2]) -> SurfacePoint {
+        let (position, normal) = (self.triangle.at(uv), self.normal);
+        SurfacePoint { position, error: self.error, normal, shading: normal }
     }
 }
 

@@ -24,6 +24,8 @@ pub(super) struct PathTracer<'a, const N: usize> {
     sensor: Sensor<'a>,
     /// Photons that are gathered, if any are.
     photons: Option<&'a PhotonMap<N>>,
+    /// What the lanes of every sample stand for, where that is the same.
+    draw: Option<Draw<N>>,
 }
 
 /// Use of the camera's random numbers: where in the pixel the sample falls.
@@ -38,7 +40,9 @@ const SPREAD: u32 = 4;
 
 impl<'a, const N: usize> PathTracer<'a, N> {
     pub(super) fn new(world: &'a World) -> Self {
-        Self { walker: Walker::new(world, world.method.transport), sensor: Sensor::new(), photons: None }
+        let basis = &world.method.basis;
+        let draw = (!basis.draws_wavelengths()).then(|| basis.draw(0.0));
+        Self { walker: Walker::new(world, world.method.transport), sensor: Sensor::new(), photons: None, draw }
     }
 
     /// With photons that are gathered.
@@ -62,7 +66,7 @@ impl<'a, const N: usize> PathTracer<'a, N> {
         };
         let [u, v, wavelength, _] = numbers(PLACE);
         let film = DVec2::new(f64::from(x), f64::from(y)) + world.scene.film.filter.place([u, v]);
-        let draw = world.method.basis.draw(wavelength);
+        let draw = self.draw.clone().unwrap_or_else(|| world.method.basis.draw(wavelength));
         let ray = if camera.has_lens() {
             let [u, v, ..] = numbers(LENS);
             camera.lens_ray(film, [u, v])
@@ -176,7 +180,8 @@ impl<'a, const N: usize> PathTracer<'a, N> {
         straight: Option<&Straight<N>>,
     ) {
         let world = self.walker.world;
-        let Some(at) = self.walker.interact(path, draw, meeting) else { return };
+        let Some(boundary) = self.walker.boundary(path, meeting) else { return };
+        let at = Interaction::new(world, draw, path, meeting, boundary);
         let material = at.material;
         let goes_on = !at.lobes.is_diffuse() || path.diffuse_left > 0;
         let bright = world.bright.as_ref().filter(|_| may_aim(material));
@@ -185,7 +190,7 @@ impl<'a, const N: usize> PathTracer<'a, N> {
         if at.lobes.is_wide() {
             let spread = path.vertices <= SPREAD;
             u = if spread { sampler.four(path.key, SCATTER) } else { sampler.four_plain(path.key, SCATTER) };
-            let all_lights = world.samples_all_lights(path.weight(draw));
+            let all_lights = world.samples_all_lights(|| path.weight(draw));
             let last_occluder = &self.walker.last_occluder;
             let (at, aiming) = (&at, aiming.as_ref());
             let lighting = DirectLighting { world, path, at, goes_on, all_lights, last_occluder, u, aiming };

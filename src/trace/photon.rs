@@ -81,7 +81,8 @@ pub(super) fn follow_photon<const N: usize>(
             continue;
         }
         path.vertices += 1;
-        let Some(at) = walker.interact(&path, draw, &meeting) else { continue };
+        let Some(boundary) = walker.boundary(&path, &meeting) else { continue };
+        let at = Interaction::new(world, draw, &path, &meeting, boundary);
         // As often as light may leave surfaces on its way from the camera.
         let allowed =
             path.vertices <= world.method.max_bounces && !(at.lobes.is_diffuse() && world.method.diffuse_bounces == 0);

@@ -268,12 +268,10 @@ pub mod avx2 {
         let v = _mm256_sub_pd(_mm256_mul_pd(a[0], c[1]), _mm256_mul_pd(a[1], c[0]));
         let w = _mm256_sub_pd(_mm256_mul_pd(b[0], a[1]), _mm256_mul_pd(b[1], a[0]));
         let zero = _mm256_setzero_pd();
-        let below = [u, v, w].map(|x| _mm256_cmp_pd::<_CMP_NGE_UQ>(x, zero));
-        let above = [u, v, w].map(|x| _mm256_cmp_pd::<_CMP_NLE_UQ>(x, zero));
-        let below = _mm256_or_pd(_mm256_or_pd(below[0], below[1]), below[2]);
-        let above = _mm256_or_pd(_mm256_or_pd(above[0], above[1]), above[2]);
-        let outside = _mm256_and_pd(below, above);
-        if _mm256_movemask_pd(outside) == (1 << GROUP) - 1 {
+        let none_below = _mm256_cmp_pd::<_CMP_GE_OQ>(_mm256_min_pd(_mm256_min_pd(u, v), w), zero);
+        let none_above = _mm256_cmp_pd::<_CMP_LE_OQ>(_mm256_max_pd(_mm256_max_pd(u, v), w), zero);
+        let inside = _mm256_or_pd(none_below, none_above);
+        if _mm256_movemask_pd(inside) == 0 {
             return None;
         }
         let determinant = _mm256_add_pd(_mm256_add_pd(u, v), w);
@@ -290,7 +288,7 @@ pub mod avx2 {
         let unsure = _mm256_or_pd(_mm256_or_pd(near, on_edge[0]), _mm256_or_pd(on_edge[1], on_edge[2]));
         let ahead = _mm256_cmp_pd::<_CMP_GT_OQ>(t, zero);
         let ahead = _mm256_and_pd(ahead, _mm256_cmp_pd::<_CMP_LE_OQ>(t, _mm256_set1_pd(t_max)));
-        let met = _mm256_andnot_pd(_mm256_or_pd(outside, unsure), ahead);
+        let met = _mm256_andnot_pd(unsure, _mm256_and_pd(inside, ahead));
         let bits = |lanes: __m256d| _mm256_movemask_pd(lanes) as u32;
         let numbers = |lanes: __m256d| {
             let mut numbers = [0.0; GROUP];
@@ -300,7 +298,7 @@ pub mod avx2 {
         };
         Some(Crossings {
             met: bits(met),
-            unsure: bits(_mm256_andnot_pd(outside, unsure)),
+            unsure: bits(_mm256_and_pd(inside, unsure)),
             t: numbers(t),
             v: numbers(v),
             w: numbers(w),
