@@ -90,9 +90,10 @@ fn nearest<T: Number>(
     counts: impl Fn(u32) -> bool,
 ) -> Option<Crossing> {
     let sheared = Sheared::new(ray);
-    let visitor = Nearest { blocks, items: bvh.items(), line: sheared.line(), sheared, leaves, counts, found: None };
-    let found = bvh.walk_in_order(ray, t_max, visitor).found;
-    found.map(|found| Crossing { part: bvh.items()[found.part as usize], ..found })
+    let mut visitor =
+        Nearest { blocks, items: bvh.items(), line: sheared.line(), sheared, leaves, counts, found: None };
+    bvh.walk_in_order(ray, t_max, &mut visitor);
+    visitor.found.map(|found| Crossing { part: bvh.items()[found.part as usize], ..found })
 }
 
 #[inline]
@@ -105,8 +106,9 @@ fn any<T: Number>(
     counts: impl Fn(u32, f64) -> bool,
 ) -> bool {
     let sheared = Sheared::new(ray);
-    let visitor = Any { blocks, items: bvh.items(), line: sheared.line(), sheared, leaves, counts, found: false };
-    bvh.walk(ray, t_max, visitor).found
+    let mut visitor = Any { blocks, items: bvh.items(), line: sheared.line(), sheared, leaves, counts, found: false };
+    bvh.walk(ray, t_max, &mut visitor);
+    visitor.found
 }
 
 struct Nearest<'a, T, L, F> {
