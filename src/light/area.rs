@@ -96,15 +96,27 @@ impl<S> Area<S> {
         Some(self.shape.sample_part(part.index as u32, from, [part.u, u[1]])?.times(part.probability))
     }
 
-    /// Looks for the light exactly as a ray that happens to meet it would: no distance needs a tolerance.
+    /// A sample of which it is known that no other part of the light hides it.
     pub(super) fn sample_li(&self, from: &SurfacePoint, normal: DVec3, u: [f64; 2]) -> Option<LightSample> {
+        let sample = self.sample_li_in_part(from, normal, u)?;
+        let is_hidden = |part| self.shape.hides(&sample.ray, part, sample.distance);
+        (!sample.part.is_some_and(is_hidden)).then_some(LightSample { part: None, ..sample })
+    }
+
+    /// Looks for the light exactly as a ray that happens to meet it would: no distance needs a tolerance.
+    pub(super) fn sample_li_in_part(&self, from: &SurfacePoint, normal: DVec3, u: [f64; 2]) -> Option<LightSample> {
         let sample = self.sample(from.position, normal, u)?;
         // A point in space has no horizon.
         if sample.direction.dot(normal) <= 0.0 && from.normal != DVec3::ZERO {
             return None;
         }
         let ray = from.leave(sample.direction);
-        let crossing = self.shape.intersect(&ray, f64::INFINITY)?;
+        // The tree of a mesh is left to those who ask what occludes the light.
+        let part = sample.part.filter(|_| self.shape.has_triangles());
+        let crossing = match part {
+            Some(part) => self.shape.intersect_triangle(&ray, part)?,
+            None => self.shape.intersect(&ray, f64::INFINITY)?,
+        };
         if sample.part.is_some_and(|part| part != crossing.part) {
             return None;
         }
@@ -121,7 +133,8 @@ impl<S> Area<S> {
             .coordinates
             .as_ref()
             .map_or([0.0; 2], |coordinates| coordinates.at(&self.shape, &crossing, point.position));
-        Some(LightSample { ray, distance: crossing.t, object: Some(self.object), pdf: Some(pdf), factor: 1.0, uv })
+        let (distance, object) = (crossing.t, Some(self.object));
+        Some(LightSample { ray, distance, object, part, pdf: Some(pdf), factor: 1.0, uv })
     }
 
     /// Density per steradian with which the light is sampled, from a surface of the given unit normal, along a ray that

@@ -71,6 +71,15 @@ impl<S> Light<S> {
         }
     }
 
+    /// The same, but that where it has a `part`, other triangles of the light may still hide it.
+    pub fn sample_li_in_part(&self, from: &SurfacePoint, normal: DVec3, u: [f64; 2]) -> Option<LightSample> {
+        if let Self::Area(area) = self {
+            area.sample_li_in_part(from, normal, u)
+        } else {
+            self.sample_li(from, normal, u)
+        }
+    }
+
     /// Density per steradian with which `sample_li` draws the direction of a ray that leaves a surface of the given
     /// unit normal; none if it cannot. `crossing` is where the ray first meets a surface that shines, if that is known.
     pub fn pdf_li(&self, ray: &Ray, normal: DVec3, crossing: Option<&Crossing>) -> Option<f64> {

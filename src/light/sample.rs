@@ -12,6 +12,8 @@ pub struct LightSample {
     pub distance: f64,
     /// The object that the light is, which cannot hide itself.
     pub object: Option<u32>,
+    /// The triangle of that object, where others may still hide it.
+    pub part: Option<u32>,
     /// Density per steradian with which the ray's direction is drawn; none where no other can be drawn.
     pub pdf: Option<f64>,
     /// Factor on the light's emission that makes radiance of it or, without a pdf, irradiance at right angles.
@@ -23,7 +25,7 @@ pub struct LightSample {
 impl LightSample {
     /// Of a light whose radiance is its emission and that lies beyond everything.
     pub(super) fn of_sky(ray: Ray, pdf: Option<f64>, factor: f64) -> Self {
-        Self { ray, distance: f64::INFINITY, object: None, pdf, factor, uv: [0.0; 2] }
+        Self { ray, distance: f64::INFINITY, object: None, part: None, pdf, factor, uv: [0.0; 2] }
     }
 
     /// Of a point that shines with a part of its intensity in each direction; none where the surface touches it, or
@@ -33,7 +35,8 @@ impl LightSample {
         let squared = (light - ray.origin).length_squared();
         let part = part(-ray.direction);
         let factor = part / squared;
-        (part > 0.0).then_some(Self { ray, distance: squared.sqrt(), object: None, pdf: None, factor, uv: [0.0; 2] })
+        let distance = squared.sqrt();
+        (part > 0.0).then_some(Self { ray, distance, object: None, part: None, pdf: None, factor, uv: [0.0; 2] })
     }
 }
 

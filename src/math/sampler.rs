@@ -1,6 +1,8 @@
 //! Random numbers as a pure function of seed, pixel, sample, branch and use.
 
-use sobol_burley::sample_4d;
+use std::sync::LazyLock;
+
+use sobol_burley::parts::{Int4, hash, hash_int4, owen_scramble_int4_rev, owen_scramble_rev, sobol_int4_rev};
 
 /// Samples after which the Sobol sequence is continued under another scramble.
 const SEQUENCE: u32 = 1 << 16;
@@ -43,14 +45,14 @@ impl Sampler {
     /// Burley 2020, *Practical Hash-based Owen Scrambling*.
     pub fn four(&self, branch: BranchKey, purpose: u32) -> [f64; 4] {
         let seed = mix(self.pixel ^ branch.0.wrapping_add(u64::from(purpose)));
-        sample_4d(self.index, 0, (seed >> 32) as u32).map(f64::from)
+        sobol(self.index, 0, (seed >> 32) as u32)
     }
 
     /// Four more numbers for the same use at the same vertex: with those of [`four`](Self::four), points in eight
     /// dimensions.
     pub fn four_more(&self, branch: BranchKey, purpose: u32) -> [f64; 4] {
         let seed = mix(self.pixel ^ branch.0.wrapping_add(u64::from(purpose)));
-        sample_4d(self.index, 1, (seed >> 32) as u32).map(f64::from)
+        sobol(self.index, 1, (seed >> 32) as u32)
     }
 
     /// Four numbers in [0, 1) for one use at one vertex, independent from sample to sample.
@@ -63,6 +65,25 @@ impl Sampler {
     }
 }
 
+/// Four dimensions of a shuffled and scrambled point, the numbers of `sobol_burley::sample_4d`.
+fn sobol(index: u32, dimensions: usize, seed: u32) -> [f64; 4] {
+    let shuffled = owen_scramble_rev(index.reverse_bits(), hash(seed ^ 0x79c6_8e4a));
+    let digit = |i: usize| SOBOL[dimensions][i][(shuffled >> (28 - 4 * i)) as usize & 15];
+    let [a, b, c, d] = [digit(0), digit(1), digit(2), digit(3)];
+    let point: [u32; 4] = std::array::from_fn(|i| (a[i] ^ b[i]) ^ (c[i] ^ d[i]));
+    let seed = seed.wrapping_mul(0x9c8f_2d3b) ^ dimensions as u32;
+    let scramble = [0x912f_69ba, 0x174f_18ab, 0x691e_72ca, 0xb40c_c1b8].map(|x: u32| x ^ seed);
+    owen_scramble_int4_rev(point.into(), hash_int4(scramble.into())).reverse_bits().to_f32_norm().map(f64::from)
+}
+
+/// Of two sets of four dimensions, the points of each of the four hexadecimal digits of an index, bits reversed. The
+/// sequence is linear: an index has the sum of its digits' points, bit by bit.
+static SOBOL: LazyLock<[[[[u32; 4]; 16]; 4]; 2]> = LazyLock::new(|| {
+    let point =
+        |set: usize, i: usize, digit: usize| Int4::into(sobol_int4_rev((digit as u32) << (28 - 4 * i), set as u32));
+    std::array::from_fn(|set| std::array::from_fn(|i| std::array::from_fn(|digit| point(set, i, digit))))
+});
+
 /// A bijection of 64 bits that spreads every input bit over all output bits.
 ///
 /// Steele, Lea & Flood 2014, *Fast Splittable Pseudorandom Number Generators* (mix64, variant 13 of Stafford).
@@ -71,4 +92,20 @@ fn mix(x: u64) -> u64 {
     let x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     let x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
     x ^ (x >> 31)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn points_are_those_of_the_plain_sequence() {
+        for i in 0..20_000_u32 {
+            let (index, seed) = (i.wrapping_mul(0x9e37_79b1) >> 16, mix(u64::from(i)) as u32);
+            for dimensions in 0..2 {
+                let plain = sobol_burley::sample_4d(index, dimensions, seed).map(f64::from);
+                assert_eq!(sobol(index, dimensions as usize, seed), plain, "{index} {seed}");
+            }
+        }
+    }
 }

@@ -9,7 +9,7 @@ use crate::film::{Filter, Window};
 use crate::light::{Light, LightId};
 use crate::material::Material;
 use crate::math::Ray;
-use crate::shape::{Coordinates, Crossing, Shape, SurfacePoint};
+use crate::shape::{Coordinates, Crossing, Shape, SurfacePoint, is_before};
 use crate::spectrum::{ColorSpace, Curve, Quantity};
 
 /// Number of a material in its scene.
@@ -133,6 +133,46 @@ pub struct Hit {
     pub crossing: Crossing,
 }
 
+impl Hit {
+    /// What was met.
+    pub fn primitive(&self) -> Primitive {
+        Primitive { object: self.object, part: self.crossing.part }
+    }
+}
+
+/// A part of an object: a triangle of its mesh, a face of its cube, or all of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Primitive {
+    /// The object.
+    pub object: u32,
+    /// The part, 0 of other shapes.
+    pub part: u32,
+}
+
+impl Primitive {
+    /// The part, if it is one of this object.
+    fn of(self, object: u32) -> Option<u32> {
+        (self.object == object).then_some(self.part)
+    }
+}
+
+/// What a ray leads from and to, if those are surfaces.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Ends {
+    /// What the ray leaves. A triangle is not met again by a ray that leaves it, which is not tested.
+    pub left: Option<Primitive>,
+    /// The object of the light that it leads to, which does not occlude itself ..
+    pub light: Option<u32>,
+    /// .. but where one of its triangles is meant, which the others do occlude.
+    pub part: Option<u32>,
+}
+
+impl From<Option<u32>> for Ends {
+    fn from(light: Option<u32>) -> Self {
+        Self { light, ..Self::default() }
+    }
+}
+
 impl<S> Scene<S> {
     /// The same world with every spectrum converted; `convert` is told what the spectrum describes.
     pub fn map<T>(&self, mut convert: impl FnMut(Quantity, &S) -> T) -> Scene<T> {
@@ -168,17 +208,35 @@ impl<S> Scene<S> {
         self.nearest(ray, f64::INFINITY, |_| true)
     }
 
+    /// The same of a ray that leaves a surface.
+    pub fn intersect_from(&self, ray: &Ray, left: Option<Primitive>) -> Option<Hit> {
+        self.nearest_from(ray, f64::INFINITY, left, |_| true)
+    }
+
     /// The nearest surface along a ray up to a distance, of those objects that count.
     #[inline]
     pub fn nearest(&self, ray: &Ray, distance: f64, counts: impl Fn(u32) -> bool) -> Option<Hit> {
-        let pooled = self.index.pool().and_then(|pool| pool.nearest(ray, distance, &counts));
+        self.nearest_from(ray, distance, None, counts)
+    }
+
+    #[inline]
+    fn nearest_from(
+        &self,
+        ray: &Ray,
+        distance: f64,
+        left: Option<Primitive>,
+        counts: impl Fn(u32) -> bool,
+    ) -> Option<Hit> {
+        let triangle = left.map(|left| [left.object, left.part]);
+        let pooled = self.index.pool().and_then(|pool| pool.nearest(ray, distance, triangle, &counts));
         let mut nearest = pooled.map(|(object, crossing)| Hit { object, crossing });
         let limit = nearest.map_or(distance, |hit| hit.crossing.t);
         self.index.nearest(ray, limit, |object, limit| {
             if !counts(object) {
                 return limit;
             }
-            if let Some(crossing) = self.objects[object as usize].shape.intersect(ray, limit) {
+            let left = left.and_then(|left| left.of(object));
+            if let Some(crossing) = self.objects[object as usize].shape.intersect_from(ray, limit, left) {
                 if nearest.is_none_or(|n| crossing.t < n.crossing.t || object < n.object) {
                     nearest = Some(Hit { object, crossing });
                 }
@@ -192,8 +250,14 @@ impl<S> Scene<S> {
     /// Whether anything lies before a light at `distance`; the light's own object does not hide it.
     ///
     /// `last_occluder` remembers what hid a light last: it is asked first, for it often hides the next one as well.
-    pub fn is_occluded(&self, ray: &Ray, distance: f64, light: Option<u32>, last_occluder: &Cell<Option<u32>>) -> bool {
-        self.is_occluded_by(ray, distance, light, last_occluder, |_| true)
+    pub fn is_occluded(
+        &self,
+        ray: &Ray,
+        distance: f64,
+        ends: impl Into<Ends>,
+        last_occluder: &Cell<Option<u32>>,
+    ) -> bool {
+        self.is_occluded_by(ray, distance, ends, last_occluder, |_| true)
     }
 
     /// Whether any object that counts lies before a light at `distance`; the light's own does not occlude it.
@@ -202,25 +266,31 @@ impl<S> Scene<S> {
         &self,
         ray: &Ray,
         distance: f64,
-        light: Option<u32>,
+        ends: impl Into<Ends>,
         last_occluder: &Cell<Option<u32>>,
         counts: impl Fn(u32) -> bool,
     ) -> bool {
+        let Ends { left, light, part } = ends.into();
         // An object listed after the light's own does not hide it by an equal distance.
-        let hides_at = |object: u32, t: f64| match light {
+        let hides_at = |[object, other]: [u32; 2], t: f64| match light {
+            Some(light) if light == object => part.is_some_and(|part| is_before([other, part], [t, distance])),
             _ if !counts(object) => false,
-            Some(light) if light == object => false,
             Some(light) if light < object => t < distance,
             _ => true,
         };
-        if self.index.pool().is_some_and(|pool| pool.any(ray, distance, hides_at)) {
+        let triangle = left.map(|left| [left.object, left.part]);
+        if self.index.pool().is_some_and(|pool| pool.any(ray, distance, triangle, hides_at)) {
             return true;
         }
-        let hides = |object: u32| match light {
-            _ if !counts(object) => false,
-            Some(light) if light == object => false,
-            Some(light) if light < object => self.is_crossed(object, ray, distance.next_down()),
-            _ => self.is_crossed(object, ray, distance),
+        let hides = |object: u32| {
+            let shape = &self.objects[object as usize].shape;
+            let is_crossed = |t_max| shape.is_crossed_from(ray, t_max, left.and_then(|left| left.of(object)));
+            match light {
+                Some(light) if light == object => part.is_some_and(|part| shape.hides(ray, part, distance)),
+                _ if !counts(object) => false,
+                Some(light) if light < object => is_crossed(distance.next_down()),
+                _ => is_crossed(distance),
+            }
         };
         let last = last_occluder.get();
         if last.is_some_and(hides) {
@@ -235,9 +305,5 @@ impl<S> Scene<S> {
             hidden
         });
         hidden
-    }
-
-    fn is_crossed(&self, object: u32, ray: &Ray, t_max: f64) -> bool {
-        self.objects[object as usize].shape.is_crossed(ray, t_max)
     }
 }

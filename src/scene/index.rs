@@ -55,7 +55,7 @@ impl Index {
         }
         if !self.bounded.is_empty() {
             let test = |object, t_max| Some(test(object, t_max));
-            self.tree.walk_in_order(ray, t_max, Objects { index: self, test });
+            self.tree.walk_in_order(ray, t_max, &mut Objects { index: self, test });
         }
     }
 
@@ -67,7 +67,7 @@ impl Index {
             return;
         }
         let test = |object, t_max| (!test(object)).then_some(t_max);
-        self.tree.walk(ray, t_max, Objects { index: self, test });
+        self.tree.walk(ray, t_max, &mut Objects { index: self, test });
     }
 }
 

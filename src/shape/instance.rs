@@ -49,12 +49,23 @@ impl Instance {
         &self.mesh
     }
 
-    pub(super) fn intersect(&self, ray: &Ray, t_max: f64) -> Option<Crossing> {
-        self.mesh.intersect(&self.own(ray), t_max)
+    pub(super) fn intersect(&self, ray: &Ray, t_max: f64, left: Option<u32>) -> Option<Crossing> {
+        self.mesh.intersect(&self.own(ray), t_max, left)
     }
 
-    pub(super) fn is_crossed(&self, ray: &Ray, t_max: f64) -> bool {
-        self.mesh.is_crossed(&self.own(ray), t_max)
+    pub(super) fn is_crossed(
+        &self,
+        ray: &Ray,
+        t_max: f64,
+        left: Option<u32>,
+        counts: impl Fn(u32, f64) -> bool,
+    ) -> bool {
+        self.mesh.is_crossed(&self.own(ray), t_max, left, counts)
+    }
+
+    /// The crossing with one triangle alone.
+    pub(super) fn intersect_part(&self, ray: &Ray, part: u32) -> Option<Crossing> {
+        self.mesh.triangle(part).intersect(&self.own(ray), f64::INFINITY)
     }
 
     /// The ray in the mesh's space.

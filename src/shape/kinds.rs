@@ -34,6 +34,11 @@ pub enum Shape {
 impl Shape {
     /// The nearest crossing with 0 < t <= `t_max`.
     pub fn intersect(&self, ray: &Ray, t_max: f64) -> Option<Crossing> {
+        self.intersect_from(ray, t_max, None)
+    }
+
+    /// The same of a ray that may leave one of the shape's own parts. A flat one is not met again, which is not tested.
+    pub fn intersect_from(&self, ray: &Ray, t_max: f64, left: Option<u32>) -> Option<Crossing> {
         match self {
             Self::Plane(plane) => plane.intersect(ray, t_max),
             Self::Triangle(triangle) => triangle.intersect(ray, t_max),
@@ -42,18 +47,48 @@ impl Shape {
             Self::Disc(disc) => disc.intersect(ray, t_max),
             Self::Quad(quad) => quad.intersect(ray, t_max),
             Self::Cube(cube) => cube.intersect(ray, t_max),
-            Self::Mesh(mesh) => mesh.intersect(ray, t_max),
-            Self::Instance(instance) => instance.intersect(ray, t_max),
+            Self::Mesh(mesh) => mesh.intersect(ray, t_max, left),
+            Self::Instance(instance) => instance.intersect(ray, t_max, left),
         }
     }
 
     /// Whether there is a crossing with 0 < t <= `t_max`.
     pub fn is_crossed(&self, ray: &Ray, t_max: f64) -> bool {
+        self.is_crossed_from(ray, t_max, None)
+    }
+
+    /// The same of a ray that may leave one of the shape's own parts.
+    pub fn is_crossed_from(&self, ray: &Ray, t_max: f64, left: Option<u32>) -> bool {
         match self {
-            Self::Mesh(mesh) => mesh.is_crossed(ray, t_max),
-            Self::Instance(instance) => instance.is_crossed(ray, t_max),
+            Self::Mesh(mesh) => mesh.is_crossed(ray, t_max, left, |_, _| true),
+            Self::Instance(instance) => instance.is_crossed(ray, t_max, left, |_, _| true),
             _ => self.intersect(ray, t_max).is_some(),
         }
+    }
+
+    /// The crossing with the triangle of a mesh alone, whatever lies before it; none of other shapes.
+    pub fn intersect_triangle(&self, ray: &Ray, part: u32) -> Option<Crossing> {
+        let crossing = match self {
+            Self::Mesh(mesh) => mesh.triangle(part).intersect(ray, f64::INFINITY),
+            Self::Instance(instance) => instance.intersect_part(ray, part),
+            _ => None,
+        };
+        Some(Crossing { part, ..crossing? })
+    }
+
+    /// Whether `intersect` finds another triangle than this one, which the ray crosses at t.
+    pub fn hides(&self, ray: &Ray, part: u32, t: f64) -> bool {
+        let hides = |other, nearer| is_before([other, part], [nearer, t]);
+        match self {
+            Self::Mesh(mesh) => mesh.is_crossed(ray, t, None, hides),
+            Self::Instance(instance) => instance.is_crossed(ray, t, None, hides),
+            _ => false,
+        }
+    }
+
+    /// Whether its parts are triangles, which can be met one by one.
+    pub fn has_triangles(&self) -> bool {
+        matches!(self, Self::Mesh(_) | Self::Instance(_))
     }
 
     /// The surface at a crossing that `intersect` found on this ray.
@@ -302,4 +337,10 @@ impl Shape {
             _ => 1.0 / self.area(),
         }
     }
+}
+
+/// Whether the first of two triangles that a ray crosses at some t is the one that it meets: of equally near ones, that
+/// which is listed first.
+pub fn is_before(parts: [u32; 2], t: [f64; 2]) -> bool {
+    parts[0] != parts[1] && (t[0] < t[1] || t[0] == t[1] && parts[0] < parts[1])
 }

@@ -3,7 +3,7 @@ use std::sync::OnceLock;
 use super::bvh::GROUP;
 use super::edges::open_edges;
 use super::packed::Packed;
-use super::triangle::tangents_over;
+use super::triangle::{Facet, tangents_over};
 use super::{Attributes, Bvh, Crossing, SurfacePoint, Triangle, Vertices};
 use crate::math::{Bounds, DVec3, Distribution, Ray, Transform};
 
@@ -21,11 +21,16 @@ pub struct Mesh {
     triangles: Vec<[u32; 3]>,
     bvh: Bvh,
     packed: Packed,
+    /// The triangles of a small mesh, at which more rays arrive than it has of them.
+    facets: Vec<Facet>,
     /// The triangles by their areas; only lights ask for it.
     areas: OnceLock<Distribution>,
     closed: bool,
     attributes: Attributes,
 }
+
+/// Triangles of a mesh up to which memory does not matter.
+pub(super) const SMALL: usize = 1024;
 
 /// What building a mesh left out or noticed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -55,7 +60,9 @@ impl Mesh {
         let shapes = || triangles.iter().map(|face| Triangle::new(face.map(|corner| vertices.at(corner))));
         let bvh = Bvh::new::<GROUP>(shapes().map(|triangle| triangle.bounds()));
         let packed = Packed::new(&vertices, &triangles, bvh.items());
-        Self { bvh, packed, vertices, triangles, areas: OnceLock::new(), closed, attributes: Attributes::default() }
+        let facets = if triangles.len() <= SMALL { shapes().map(|shape| Facet::new(&shape)).collect() } else { vec![] };
+        let (areas, attributes) = (OnceLock::new(), Attributes::default());
+        Self { bvh, packed, facets, vertices, triangles, areas, closed, attributes }
     }
 
     /// How many triangles there are.
@@ -73,25 +80,39 @@ impl Mesh {
     }
 
     pub(super) fn triangle(&self, index: u32) -> Triangle {
-        Triangle::new(self.corners(index))
+        match self.facets.get(index as usize) {
+            Some(facet) => facet.triangle.clone(),
+            None => Triangle::new(self.corners(index)),
+        }
     }
 
     fn corners(&self, index: u32) -> [DVec3; 3] {
         self.triangles[index as usize].map(|corner| self.vertices.at(corner))
     }
 
-    /// The nearest crossing; of equally near ones, that of the triangle listed first.
-    pub(super) fn intersect(&self, ray: &Ray, t_max: f64) -> Option<Crossing> {
-        self.packed.nearest(&self.bvh, ray, t_max, |_| true)
+    /// The nearest crossing of a ray that may leave one of the triangles; of equally near ones, that of the triangle
+    /// listed first.
+    pub(super) fn intersect(&self, ray: &Ray, t_max: f64, left: Option<u32>) -> Option<Crossing> {
+        self.packed.nearest(&self.bvh, ray, t_max, |part| left == Some(part), |_| true)
     }
 
-    /// Whether there is a crossing with 0 < t <= `t_max`.
-    pub(super) fn is_crossed(&self, ray: &Ray, t_max: f64) -> bool {
-        self.packed.any(&self.bvh, ray, t_max, |_, _| true)
+    /// Whether a ray that may leave one of the triangles has a crossing with 0 < t <= `t_max` that counts, told its
+    /// triangle and t.
+    pub(super) fn is_crossed(
+        &self,
+        ray: &Ray,
+        t_max: f64,
+        left: Option<u32>,
+        counts: impl Fn(u32, f64) -> bool,
+    ) -> bool {
+        self.packed.any(&self.bvh, ray, t_max, |part| left == Some(part), counts)
     }
 
     pub(super) fn point(&self, crossing: &Crossing) -> SurfacePoint {
-        let point = self.triangle(crossing.part).point(crossing.uv);
+        let point = match self.facets.get(crossing.part as usize) {
+            Some(facet) => facet.point(crossing.uv),
+            None => self.triangle(crossing.part).point(crossing.uv),
+        };
         let shading = self.attributes.shading(self.triangles[crossing.part as usize], crossing.uv, point.normal);
         SurfacePoint { shading, ..point }
     }

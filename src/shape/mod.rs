@@ -42,7 +42,7 @@ pub use cube::Cube;
 pub use disc::Disc;
 pub use ellipsoid::Ellipsoid;
 pub use instance::Instance;
-pub use kinds::Shape;
+pub use kinds::{Shape, is_before};
 pub use mesh::{Mesh, MeshReport};
 pub use mesh_file::{read as read_mesh, read_smooth as read_smooth_mesh};
 pub use plane::Plane;

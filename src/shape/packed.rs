@@ -1,6 +1,6 @@
 //! A mesh's triangles in the order of its tree's leaves, tested against a ray four at a time.
 
-use super::bvh::{GROUP, Number, prefetch};
+use super::bvh::{Crossings, GROUP, Line, Number, prefetch};
 use super::triangle::Sheared;
 use super::{Bvh, Crossing, Vectors, Vertices, Visitor};
 use crate::math::{DVec3, Ray};
@@ -26,21 +26,35 @@ impl Packed {
     }
 
     /// The nearest crossing with 0 < t <= `t_max` of a triangle that counts; of equally near ones, that of the one
-    /// listed first.
+    /// listed first. The ray may start on the triangle that it leaves.
     #[inline]
-    pub fn nearest(&self, bvh: &Bvh, ray: &Ray, t_max: f64, counts: impl Fn(u32) -> bool) -> Option<Crossing> {
+    pub fn nearest(
+        &self,
+        bvh: &Bvh,
+        ray: &Ray,
+        t_max: f64,
+        leaves: impl Fn(u32) -> bool,
+        counts: impl Fn(u32) -> bool,
+    ) -> Option<Crossing> {
         match self {
-            Self::Single(blocks) => nearest(blocks, bvh, ray, t_max, counts),
-            Self::Double(blocks) => nearest(blocks, bvh, ray, t_max, counts),
+            Self::Single(blocks) => nearest(blocks, bvh, ray, t_max, leaves, counts),
+            Self::Double(blocks) => nearest(blocks, bvh, ray, t_max, leaves, counts),
         }
     }
 
     /// Whether there is a crossing with 0 < t <= `t_max` that counts, told its triangle and t.
     #[inline]
-    pub fn any(&self, bvh: &Bvh, ray: &Ray, t_max: f64, counts: impl Fn(u32, f64) -> bool) -> bool {
+    pub fn any(
+        &self,
+        bvh: &Bvh,
+        ray: &Ray,
+        t_max: f64,
+        leaves: impl Fn(u32) -> bool,
+        counts: impl Fn(u32, f64) -> bool,
+    ) -> bool {
         match self {
-            Self::Single(blocks) => any(blocks, bvh, ray, t_max, counts),
-            Self::Double(blocks) => any(blocks, bvh, ray, t_max, counts),
+            Self::Single(blocks) => any(blocks, bvh, ray, t_max, leaves, counts),
+            Self::Double(blocks) => any(blocks, bvh, ray, t_max, leaves, counts),
         }
     }
 }
@@ -72,63 +86,75 @@ fn nearest<T: Number>(
     bvh: &Bvh,
     ray: &Ray,
     t_max: f64,
+    leaves: impl Fn(u32) -> bool,
     counts: impl Fn(u32) -> bool,
 ) -> Option<Crossing> {
-    let visitor = Nearest { blocks, items: bvh.items(), line: Line::new(ray), counts, found: None };
-    let found = bvh.walk_in_order(ray, t_max, visitor).found;
-    found.map(|found| Crossing { part: bvh.items()[found.part as usize], ..found })
+    let sheared = Sheared::new(ray);
+    let mut visitor =
+        Nearest { blocks, items: bvh.items(), line: sheared.line(), sheared, leaves, counts, found: None };
+    bvh.walk_in_order(ray, t_max, &mut visitor);
+    visitor.found.map(|found| Crossing { part: bvh.items()[found.part as usize], ..found })
 }
 
 #[inline]
-fn any<T: Number>(blocks: &[Block<T>], bvh: &Bvh, ray: &Ray, t_max: f64, counts: impl Fn(u32, f64) -> bool) -> bool {
-    bvh.walk(ray, t_max, Any { blocks, items: bvh.items(), line: Line::new(ray), counts, found: false }).found
+fn any<T: Number>(
+    blocks: &[Block<T>],
+    bvh: &Bvh,
+    ray: &Ray,
+    t_max: f64,
+    leaves: impl Fn(u32) -> bool,
+    counts: impl Fn(u32, f64) -> bool,
+) -> bool {
+    let sheared = Sheared::new(ray);
+    let mut visitor = Any { blocks, items: bvh.items(), line: sheared.line(), sheared, leaves, counts, found: false };
+    bvh.walk(ray, t_max, &mut visitor);
+    visitor.found
 }
 
-/// A ray as the tests of four triangles take it.
-struct Line {
-    sheared: Sheared,
-    /// Its origin in the order of the sheared axes.
-    origin: [f64; 3],
-    shear: [f64; 2],
-}
-
-impl Line {
-    #[inline(always)]
-    fn new(ray: &Ray) -> Self {
-        let sheared = Sheared::new(ray);
-        let origin = sheared.order.map(|axis| ray.origin[axis]);
-        Self { origin, shear: [sheared.shear.x, sheared.shear.y], sheared }
-    }
-}
-
-struct Nearest<'a, T, F> {
+struct Nearest<'a, T, L, F> {
     blocks: &'a [Block<T>],
     items: &'a [u32],
     line: Line,
+    sheared: Sheared,
+    leaves: L,
     counts: F,
     /// Its part is the place in `items`.
     found: Option<Crossing>,
 }
 
-impl<T: Number, F: Fn(u32) -> bool> Visitor for Nearest<'_, T, F> {
+impl<T, L, F: Fn(u32) -> bool> Nearest<'_, T, L, F> {
+    /// Takes a crossing in place of what was found, if it counts and lies before that, and answers the new `t_max`.
+    #[inline(always)]
+    fn take(&mut self, crossing: Crossing, t_max: f64) -> f64 {
+        let item = |place: u32| self.items[place as usize];
+        if !(self.counts)(item(crossing.part)) {
+            return t_max;
+        }
+        if self.found.is_none_or(|found| crossing.t < found.t || item(crossing.part) < item(found.part)) {
+            self.found = Some(crossing);
+        }
+        crossing.t
+    }
+}
+
+impl<T: Number, L: Fn(u32) -> bool, F: Fn(u32) -> bool> Visitor for Nearest<'_, T, L, F> {
     #[inline(always)]
     fn visit(&mut self, vectors: impl Vectors, first: usize, groups: usize, mut t_max: f64) -> Option<f64> {
         for group in first..first + groups {
             let block = &self.blocks[group];
-            let mut inside = block.inside(vectors, &self.line);
-            while inside != 0 {
-                let lane = (inside.trailing_zeros() & 3) as usize;
-                inside &= inside - 1;
-                if let Some(crossing) = block.crossing(lane, &self.line.sheared, t_max) {
-                    let place = (group * GROUP + lane) as u32;
-                    let item = |place: u32| self.items[place as usize];
-                    if !(self.counts)(item(place)) {
-                        continue;
-                    }
-                    if self.found.is_none_or(|found| crossing.t < found.t || item(place) < item(found.part)) {
-                        self.found = Some(Crossing { part: place, ..crossing });
-                    }
-                    t_max = crossing.t;
+            let Some(mut crossings) = block.meet(vectors, &self.line, &self.sheared, t_max) else { continue };
+            while let Some(lane) = next(&mut crossings.met) {
+                if crossings.t[lane] <= t_max {
+                    let part = (group * GROUP + lane) as u32;
+                    t_max = self.take(Crossing { part, ..crossing_of(&crossings, lane) }, t_max);
+                }
+            }
+            while let Some(lane) = next(&mut crossings.unsure) {
+                let part = (group * GROUP + lane) as u32;
+                if !(self.leaves)(self.items[part as usize])
+                    && let Some(crossing) = block.exactly(lane, &self.sheared, t_max)
+                {
+                    t_max = self.take(Crossing { part, ..crossing }, t_max);
                 }
             }
         }
@@ -141,29 +167,32 @@ impl<T: Number, F: Fn(u32) -> bool> Visitor for Nearest<'_, T, F> {
     }
 }
 
-struct Any<'a, T, F> {
+struct Any<'a, T, L, F> {
     blocks: &'a [Block<T>],
     items: &'a [u32],
     line: Line,
+    sheared: Sheared,
+    leaves: L,
     counts: F,
     found: bool,
 }
 
-impl<T: Number, F: Fn(u32, f64) -> bool> Visitor for Any<'_, T, F> {
+impl<T: Number, L: Fn(u32) -> bool, F: Fn(u32, f64) -> bool> Visitor for Any<'_, T, L, F> {
     #[inline(always)]
     fn visit(&mut self, vectors: impl Vectors, first: usize, groups: usize, t_max: f64) -> Option<f64> {
         for group in first..first + groups {
             let block = &self.blocks[group];
-            let mut inside = block.inside(vectors, &self.line);
-            while inside != 0 {
-                let lane = (inside.trailing_zeros() & 3) as usize;
-                inside &= inside - 1;
-                if let Some(crossing) = block.crossing(lane, &self.line.sheared, t_max)
-                    && (self.counts)(self.items[group * GROUP + lane], crossing.t)
-                {
-                    self.found = true;
-                    return None;
-                }
+            let Some(mut crossings) = block.meet(vectors, &self.line, &self.sheared, t_max) else { continue };
+            let counts = |lane: usize, t: f64| (self.counts)(self.items[group * GROUP + lane], t);
+            while let Some(lane) = next(&mut crossings.met) {
+                self.found |= counts(lane, crossings.t[lane]);
+            }
+            while let Some(lane) = next(&mut crossings.unsure).filter(|_| !self.found) {
+                self.found = !(self.leaves)(self.items[group * GROUP + lane])
+                    && block.exactly(lane, &self.sheared, t_max).is_some_and(|crossing| counts(lane, crossing.t));
+            }
+            if self.found {
+                return None;
             }
         }
         Some(t_max)
@@ -175,22 +204,38 @@ impl<T: Number, F: Fn(u32, f64) -> bool> Visitor for Any<'_, T, F> {
     }
 }
 
+/// The lowest of some lanes, taken off.
+#[inline(always)]
+fn next(lanes: &mut u32) -> Option<usize> {
+    let lane = lanes.trailing_zeros() as usize;
+    let is_there = *lanes != 0;
+    *lanes &= lanes.wrapping_sub(1);
+    is_there.then_some(lane & (GROUP - 1))
+}
+
+/// The crossing with a triangle that is met.
+#[inline(always)]
+fn crossing_of(crossings: &Crossings, lane: usize) -> Crossing {
+    let Crossings { t, v, w, determinant, .. } = crossings;
+    Crossing { t: t[lane], part: 0, uv: [v[lane] / determinant[lane], w[lane] / determinant[lane]] }
+}
+
 impl<T: Number> Block<T> {
-    /// A bit for each triangle that the line of a ray may run through, edges and corners included.
+    /// The triangles that a ray meets with 0 < t <= `t_max`, edges and corners included.
     ///
     /// The edge functions are rounded as in `Sheared::intersect`. One that is not 0 has the right sign, for rounding
     /// keeps the order of products; so what has two of opposite signs is refused there as well, and nothing else is
-    /// here.
+    /// here. What that test asks of more digits is left to it.
     #[inline(always)]
-    fn inside(&self, vectors: impl Vectors, line: &Line) -> u32 {
-        let [x, y, z] = line.sheared.order;
+    fn meet(&self, vectors: impl Vectors, line: &Line, sheared: &Sheared, t_max: f64) -> Option<Crossings> {
+        let [x, y, z] = sheared.order;
         let corners = self.0.each_ref().map(|corner| [&corner[x], &corner[y], &corner[z]]);
-        vectors.inside(corners, line.origin, line.shear)
+        vectors.meet(corners, line, t_max)
     }
 
     /// The crossing of one of the triangles with 0 < t <= `t_max`.
-    #[inline]
-    fn crossing(&self, lane: usize, sheared: &Sheared, t_max: f64) -> Option<Crossing> {
+    #[inline(never)]
+    fn exactly(&self, lane: usize, sheared: &Sheared, t_max: f64) -> Option<Crossing> {
         let corner = |corner: &[[T; GROUP]; 3]| DVec3::from(corner.map(|x| x[lane].into()));
         sheared.intersect([corner(&self.0[0]), corner(&self.0[1]), corner(&self.0[2])], t_max)
     }
@@ -243,10 +288,10 @@ mod tests {
                 }
                 let ray = Ray { origin, direction };
                 let t_max = if i % 5 == 0 { number() } else { f64::INFINITY };
-                let found = packed.nearest(&wide, &ray, t_max, |_| true);
-                assert_eq!(found, packed.nearest(&plain, &ray, t_max, |_| true), "{ray:?}");
-                assert_eq!(found.is_some(), packed.any(&wide, &ray, t_max, |_, _| true), "{ray:?}");
-                assert_eq!(found.is_some(), packed.any(&plain, &ray, t_max, |_, _| true), "{ray:?}");
+                let found = packed.nearest(&wide, &ray, t_max, |_| false, |_| true);
+                assert_eq!(found, packed.nearest(&plain, &ray, t_max, |_| false, |_| true), "{ray:?}");
+                assert_eq!(found.is_some(), packed.any(&wide, &ray, t_max, |_| false, |_, _| true), "{ray:?}");
+                assert_eq!(found.is_some(), packed.any(&plain, &ray, t_max, |_| false, |_, _| true), "{ray:?}");
                 let each = faces.iter().filter_map(|face| Triangle::new(face.map(corner)).intersect(&ray, t_max));
                 if i % 16 < 4 {
                     let nearest = each.map(|crossing| crossing.t).min_by(f64::total_cmp);

@@ -1,4 +1,5 @@
 use super::bvh::GROUP;
+use super::mesh::SMALL;
 use super::packed::Packed;
 use super::{Bvh, Crossing, Shape, Triangle, Vertices};
 use crate::math::{DVec3, Ray};
@@ -12,11 +13,8 @@ pub struct Pool {
     owners: Vec<[u32; 2]>,
 }
 
-/// Triangles of a mesh above which it is better left alone.
-const SMALL: usize = 1024;
-
 impl Pool {
-    /// Whether a shape may go into a pool.
+    /// Whether a shape may go into a pool: larger meshes are better left alone.
     pub fn takes(shape: &Shape) -> bool {
         match shape {
             Shape::Triangle(_) => true,
@@ -49,18 +47,27 @@ impl Pool {
     }
 
     /// The nearest crossing with 0 < t <= `t_max` of a shape that counts, and the shape's number. Of equally near ones,
-    /// that of the lowest number.
+    /// that of the lowest number. `left` is the triangle that the ray leaves, as a shape and a part.
     #[inline]
-    pub fn nearest(&self, ray: &Ray, t_max: f64, counts: impl Fn(u32) -> bool) -> Option<(u32, Crossing)> {
+    pub fn nearest(
+        &self,
+        ray: &Ray,
+        t_max: f64,
+        left: Option<[u32; 2]>,
+        counts: impl Fn(u32) -> bool,
+    ) -> Option<(u32, Crossing)> {
         let owner = |item: u32| self.owners[item as usize];
-        let crossing = self.packed.nearest(&self.bvh, ray, t_max, |item| counts(owner(item)[0]))?;
+        let leaves = |item| left == Some(owner(item));
+        let crossing = self.packed.nearest(&self.bvh, ray, t_max, leaves, |item| counts(owner(item)[0]))?;
         let [number, part] = owner(crossing.part);
         Some((number, Crossing { part, ..crossing }))
     }
 
-    /// Whether there is a crossing with 0 < t <= `t_max` that counts, told the shape's number and t.
+    /// Whether there is a crossing with 0 < t <= `t_max` that counts, told the shape's number, the part and t.
     #[inline]
-    pub fn any(&self, ray: &Ray, t_max: f64, counts: impl Fn(u32, f64) -> bool) -> bool {
-        self.packed.any(&self.bvh, ray, t_max, |item, t| counts(self.owners[item as usize][0], t))
+    pub fn any(&self, ray: &Ray, t_max: f64, left: Option<[u32; 2]>, counts: impl Fn([u32; 2], f64) -> bool) -> bool {
+        let owner = |item: u32| self.owners[item as usize];
+        let leaves = |item| left == Some(owner(item));
+        self.packed.any(&self.bvh, ray, t_max, leaves, |item, t| counts(owner(item), t))
     }
 }

@@ -1,3 +1,4 @@
+use super::bvh::Line;
 use super::outline::{Outline, is_near};
 use super::{Crossing, SurfacePoint};
 use crate::math::{Bounds, DVec3, Ray, Transform, gamma, triangle_coordinates};
@@ -33,15 +34,13 @@ impl Triangle {
         Sheared::new(ray).intersect(self.points, t_max)
     }
 
-    pub(super) fn point(&self, [u, v]: [f64; 2]) -> SurfacePoint {
+    pub(super) fn point(&self, uv: [f64; 2]) -> SurfacePoint {
+        Facet::new(self).point(uv)
+    }
+
+    fn at(&self, [u, v]: [f64; 2]) -> DVec3 {
         let [p1, p2, p3] = self.points;
-        let position = p1 * (1.0 - u - v) + p2 * u + p3 * v;
-        let largest = p1.abs().max(p2.abs()).max(p3.abs());
-        // The test forms differences as long as the triangle in every coordinate, also in one that is 0 at all corners.
-        let extent = p1.max(p2).max(p3) - p1.min(p2).min(p3);
-        let error = (largest + DVec3::splat(extent.max_element())) * gamma(7);
-        let normal = self.normal();
-        SurfacePoint { position, error, normal, shading: normal }
+        p1 * (1.0 - u - v) + p2 * u + p3 * v
     }
 
     /// Unit normal by the right-hand rule.
@@ -75,7 +74,31 @@ impl Triangle {
     }
 
     pub(super) fn sample_area(&self, u: [f64; 2]) -> DVec3 {
-        self.point(triangle_coordinates(u)).position
+        self.at(triangle_coordinates(u))
+    }
+}
+
+/// A triangle with what all of its points share.
+#[derive(Clone, Debug)]
+pub(super) struct Facet {
+    pub(super) triangle: Triangle,
+    normal: DVec3,
+    error: DVec3,
+}
+
+impl Facet {
+    pub(super) fn new(triangle: &Triangle) -> Self {
+        let [p1, p2, p3] = triangle.points;
+        let largest = p1.abs().max(p2.abs()).max(p3.abs());
+        // The test forms differences as long as the triangle in every coordinate, also in one that is 0 at all corners.
+        let extent = p1.max(p2).max(p3) - p1.min(p2).min(p3);
+        let error = (largest + DVec3::splat(extent.max_element())) * gamma(7);
+        Self { triangle: triangle.clone(), normal: triangle.normal(), error }
+    }
+
+    pub(super) fn point(&self, uv: [f64; 2]) -> SurfacePoint {
+        let (position, normal) = (self.triangle.at(uv), self.normal);
+        SurfacePoint { position, error: self.error, normal, shading: normal }
     }
 }
 
@@ -91,11 +114,15 @@ fn scaled_normal([p1, p2, p3]: [DVec3; 3]) -> DVec3 {
 /// Woop, Benthin & Wald 2013, *Watertight Ray/Triangle Intersection*; here in 64 bits, with edge functions that round
 /// to zero decided by their exact sign, so that of two triangles sharing an edge at least one is hit.
 pub(super) struct Sheared {
-    pub(super) origin: DVec3,
+    origin: DVec3,
     /// The axes that become x, y and z.
     pub(super) order: [usize; 3],
-    pub(super) shear: DVec3,
+    shear: DVec3,
 }
+
+/// The bound of 264 chained roundings, on cubes of the largest difference. Nearer to the plane, the side on which a ray
+/// starts is decided exactly, so that a ray leaving any triangle by any offset does not hit it again.
+const NEAR: f64 = gamma(264);
 
 impl Sheared {
     pub(super) fn new(ray: &Ray) -> Self {
@@ -107,6 +134,11 @@ impl Sheared {
         }
         let shear = DVec3::new(d[x] / d[z], d[y] / d[z], 1.0 / d[z]);
         Self { origin: ray.origin, order: [x, y, z], shear }
+    }
+
+    /// The same for the test of several triangles at once.
+    pub(super) fn line(&self) -> Line {
+        Line { origin: self.order.map(|axis| self.origin[axis]), shear: self.shear.to_array(), near: NEAR }
     }
 
     /// The crossing with 0 < t <= `t_max`, edges and corners included.
@@ -133,10 +165,8 @@ impl Sheared {
             return None;
         }
         let mut along = (u * a[2] + v * b[2] + w * c[2]) * self.shear.z;
-        // The bound of 264 chained roundings on cubes of the largest difference. Nearer to the plane, the side on which
-        // the ray starts is decided exactly, so that a ray leaving any triangle by any offset does not hit it again.
         let size = points.map(|p| (p - self.origin).abs().max_element()).into_iter().fold(0.0, f64::max);
-        if along.abs() <= gamma(264) * size * size * size * self.shear.z.abs() {
+        if along.abs() <= NEAR * size * size * size * self.shear.z.abs() {
             along = -triple_product(points.map(|p| difference(p, self.origin))) * self.shear.z.abs();
         }
         let t = along / determinant;

@@ -12,7 +12,7 @@ use super::{World, media, shading};
 use crate::light::{LightId, LightSample, SampledLight};
 use crate::material::Lobes;
 use crate::math::{DVec3, Ray, Sampler};
-use crate::scene::MaterialId;
+use crate::scene::{Ends, MaterialId};
 use crate::shape::Crossing;
 use crate::spectrum::Lanes;
 
@@ -121,7 +121,7 @@ impl<const N: usize> DirectLighting<'_, N> {
     /// A ray to a light that was chosen with a probability; none where the sensor gets nothing of it.
     fn shadow_ray(&self, side: &Side, drawn: SampledLight, u: [f64; 2]) -> Option<ShadowRay<N>> {
         let (normal, arrival) = (side.normal, &self.at.arrival);
-        let sample = self.world.scene.lights[drawn.light].sample_li(self.at.point, normal, u)?;
+        let sample = self.world.scene.lights[drawn.light].sample_li_in_part(self.at.point, normal, u)?;
         let wi = sample.ray.direction;
         if wi.dot(normal) <= 0.0 {
             return None;
@@ -137,9 +137,10 @@ impl<const N: usize> DirectLighting<'_, N> {
     fn trace(&self, side: &Side, shadow_ray: &ShadowRay<N>) -> Option<Contribution> {
         let (world, arrival) = (self.world, &self.at.arrival);
         let ShadowRay { light, sample, probability, bsdf_cos, bsdf_pdf, factor } = shadow_ray;
-        let LightSample { ray, distance, object, .. } = sample;
+        let LightSample { ray, distance, object, part, .. } = sample;
+        let ends = Ends { left: self.path.left, light: *object, part: *part };
         let straight =
-            straight::unoccluded(world, arrival.draw, ray, *distance, *object, side.inside, self.last_occluder)?;
+            straight::unoccluded(world, arrival.draw, ray, *distance, ends, side.inside, self.last_occluder)?;
         let wi = sample.ray.direction;
         // The density of bounces that are guided takes its time.
         let factor = match self.aiming.filter(|_| self.goes_on && sample.pdf.is_some()) {

@@ -47,9 +47,11 @@ impl<'a, const N: usize> Interaction<'a, N> {
         let (material, lobes) = (&world.scene.materials[number].material, world.lobes[number]);
         let [flat, normal] = shading::normals(point, wo);
         let present = path.throughput.present();
-        let arrival = arrival(world, draw, wo, normal, uv, present, boundary.sides());
-        let parts = parts(lobes, material, &arrival);
-        Self { object: hit.object, point, material, lobes, flat, boundary, arrival, parts }
+        let sides = boundary.sides();
+        let arrival = arrival(world, draw, wo, normal, uv, present, sides);
+        let mut at = Self { object: hit.object, point, material, lobes, flat, boundary, arrival, parts: false };
+        at.parts = parts(lobes, material, &at.arrival);
+        at
     }
 
     /// With another normal by which the surface scatters.

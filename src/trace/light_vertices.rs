@@ -11,7 +11,6 @@ use std::f64::consts::FRAC_1_PI;
 
 use rayon::prelude::*;
 
-use super::interaction::Interaction;
 use super::media::{Media, media_of_lights};
 use super::photon::{Landing, Start, Surfaces, follow_photon};
 use super::sensor::amount;
@@ -107,10 +106,10 @@ pub(super) fn finds_all_light(world: &World) -> bool {
 
 /// Whether light that leaves a surface for another is looked for at light vertices on it: a diffuse one, by its own
 /// normal.
-pub(super) fn holds_vertices<const N: usize>(world: &World, at: &Interaction<N>) -> bool {
-    matches!(at.material, Material::Diffuse(_))
-        && at.point.shading == at.point.normal
-        && !world.is_see_through(at.object)
+pub(super) fn holds_vertices(world: &World, object: u32, point: &SurfacePoint) -> bool {
+    matches!(world.scene.material_of(object), Material::Diffuse(_))
+        && point.shading == point.normal
+        && !world.is_see_through(object)
 }
 
 impl<const N: usize> LightVertices<N> {
@@ -297,6 +296,7 @@ fn kept<const N: usize>(world: &World, landing: &Landing<N>) -> Option<LightVert
     let Landing { path, at, light, .. } = landing;
     let Material::Diffuse(diffuse) = at.material else { return None };
     let leaving = landing.flux(world) * at.arrival.read(&diffuse.reflectance) * FRAC_1_PI as f32;
-    let usable = holds_vertices(world, at) && !leaving.is_zero() && leaving.0.iter().all(|x| x.is_finite());
+    let usable =
+        holds_vertices(world, at.object, at.point) && !leaving.is_zero() && leaving.0.iter().all(|x| x.is_finite());
     usable.then_some(LightVertex { point: *at.point, flat: at.flat, leaving, light: *light, vertices: path.vertices })
 }

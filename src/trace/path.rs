@@ -3,6 +3,7 @@ use super::media::{self, Media};
 use super::polarization::Polarized;
 use crate::material::Straight;
 use crate::math::{BranchKey, DVec3, Ray};
+use crate::scene::Primitive;
 use crate::shape::SurfacePoint;
 use crate::spectrum::{Draw, Throughput};
 
@@ -10,6 +11,8 @@ use crate::spectrum::{Draw, Throughput};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Path<const N: usize> {
     pub(super) ray: Ray,
+    /// The surface that it met last, which its ray leaves.
+    pub(super) left: Option<Primitive>,
     pub(super) throughput: Throughput<N>,
     /// The factor of radiance between the medium at the path's end and the camera's, which is no measure of importance.
     pub(super) eta_scale: f64,
@@ -102,6 +105,7 @@ impl<const N: usize> Path<N> {
     pub(super) fn from_light(world: &World, draw: &Draw<N>, ray: Ray, media: Media) -> Self {
         Self {
             ray,
+            left: None,
             throughput: Throughput::starting(draw.start()),
             eta_scale: 1.0,
             media,

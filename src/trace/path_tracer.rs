@@ -28,6 +28,8 @@ pub(super) struct PathTracer<'a, const N: usize> {
     photons: Option<&'a PhotonMap<N>>,
     /// Vertices of light paths, if light is looked for there.
     pub(super) light_vertices: Option<&'a LightVertices<N>>,
+    /// What the lanes of every sample stand for, where that is the same.
+    draw: Option<Draw<N>>,
 }
 
 /// Use of the camera's random numbers: where in the pixel the sample falls.
@@ -44,12 +46,10 @@ const SPREAD: u32 = 4;
 
 impl<'a, const N: usize> PathTracer<'a, N> {
     pub(super) fn new(world: &'a World) -> Self {
-        Self {
-            walker: Walker::new(world, world.method.transport),
-            sensor: Sensor::new(),
-            photons: None,
-            light_vertices: None,
-        }
+        let basis = &world.method.basis;
+        let draw = (!basis.draws_wavelengths()).then(|| basis.draw(0.0));
+        let (walker, sensor) = (Walker::new(world, world.method.transport), Sensor::new());
+        Self { walker, sensor, photons: None, light_vertices: None, draw }
     }
 
     /// With photons that are gathered.
@@ -73,7 +73,7 @@ impl<'a, const N: usize> PathTracer<'a, N> {
         };
         let [u, v, wavelength, _] = numbers(PLACE);
         let film = DVec2::new(f64::from(x), f64::from(y)) + world.scene.film.filter.place([u, v]);
-        let draw = world.method.basis.draw(wavelength);
+        let draw = self.draw.clone().unwrap_or_else(|| world.method.basis.draw(wavelength));
         let ray = if camera.has_lens() {
             let [u, v, ..] = numbers(LENS);
             camera.lens_ray(film, [u, v])
@@ -187,11 +187,11 @@ impl<'a, const N: usize> PathTracer<'a, N> {
         straight: Option<&Straight<N>>,
     ) {
         let world = self.walker.world;
-        let Some(at) = self.walker.interact(path, draw, meeting) else { return };
-        let is_end = self.ends_at_light_vertices(path, &at, sampler);
-        if is_end {
+        let Some(boundary) = self.walker.boundary(path, meeting) else { return };
+        if self.ends_at_light_vertices(path, meeting, sampler) {
             return;
         }
+        let at = Interaction::new(world, draw, path, meeting, boundary);
         let material = at.material;
         let goes_on = !at.lobes.is_diffuse() || path.diffuse_left > 0;
         let bright = world.bright.as_ref().filter(|_| may_aim(material));
@@ -200,7 +200,7 @@ impl<'a, const N: usize> PathTracer<'a, N> {
         if at.lobes.is_wide() {
             let spread = path.vertices <= SPREAD;
             u = if spread { sampler.four(path.key, SCATTER) } else { sampler.four_plain(path.key, SCATTER) };
-            let all_lights = world.samples_all_lights(path.weight(draw));
+            let all_lights = world.samples_all_lights(|| path.weight(draw));
             let last_occluder = &self.walker.last_occluder;
             let (at, aiming) = (&at, aiming.as_ref());
             let lighting = DirectLighting { world, path, at, goes_on, all_lights, last_occluder, u, aiming };
@@ -241,12 +241,12 @@ impl<'a, const N: usize> PathTracer<'a, N> {
     }
 
     /// Whether a path ends where its light was looked for at light vertices: mostly, and the less the nearer.
-    fn ends_at_light_vertices(&self, path: &Path<N>, at: &Interaction<N>, sampler: &Sampler) -> bool {
+    fn ends_at_light_vertices(&self, path: &Path<N>, meeting: &Meeting, sampler: &Sampler) -> bool {
         let (Some(vertices), Some(scatter)) = (self.light_vertices, path.scatter) else { return false };
-        if !scatter.resampled || !holds_vertices(self.walker.world, at) {
+        if !scatter.resampled || !holds_vertices(self.walker.world, meeting.hit.object, &meeting.point) {
             return false;
         }
-        let chance = vertices.complement((at.point.position - scatter.from).length_squared());
+        let chance = vertices.complement((meeting.point.position - scatter.from).length_squared());
         sampler.four_plain(path.key, COMPLEMENT)[0] >= chance
     }
 

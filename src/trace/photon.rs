@@ -13,7 +13,7 @@ use super::walker::{Departure, Walker};
 use crate::light::{LeSample, LightId};
 use crate::material::{Arrival, Branch, Material, Scatter};
 use crate::math::{DVec2, DVec3, Frame, Sampler, cosine_hemisphere, unit};
-use crate::scene::FilmSettings;
+use crate::scene::{Ends, FilmSettings};
 use crate::spectrum::{Draw, Lanes};
 
 /// Use of the random numbers where a photon is seen: the point of the lens.
@@ -98,7 +98,8 @@ pub(super) fn follow_photon<const N: usize>(
             continue;
         }
         path.vertices += 1;
-        let Some(at) = walker.interact(&path, draw, &meeting) else { continue };
+        let Some(boundary) = walker.boundary(&path, &meeting) else { continue };
+        let at = Interaction::new(world, draw, &path, &meeting, boundary);
         // As often as light may leave surfaces on its way from the camera.
         let allowed = path.vertices <= world.method.max_bounces && !(at.lobes.is_diffuse() && path.diffuse_left == 0);
         let shown = over == Surfaces::All || path.vertices > 1;
@@ -217,7 +218,8 @@ pub(super) fn show<const N: usize>(
     let distance = (seen.start - ray.origin).length();
     let inside = at.boundary.sides()[usize::from(!same)];
     let (mut shone, mut polarized) = (landing.shone(world), Polarized::NOT);
-    let unoccluded = straight::unoccluded(world, arrival.draw, &ray, distance, None, inside, &walker.last_occluder);
+    let ends = Ends { left: path.left, ..Ends::default() };
+    let unoccluded = straight::unoccluded(world, arrival.draw, &ray, distance, ends, inside, &walker.last_occluder);
     let Some(through) = unoccluded else { return };
     if let Some((share, of_panes)) = through {
         (shone, polarized) = (shone * share, of_panes);

@@ -11,7 +11,8 @@ use super::polarization::Polarized;
 use super::sensor::{Contribution, Found, Sensor, amount};
 use super::shading;
 use super::straight;
-use crate::math::{Sampler, gamma, unit};
+use crate::math::{Ray, Sampler, gamma, unit};
+use crate::scene::Ends;
 
 /// A path at its first diffuse surface.
 pub(super) struct Resampling<'a, const N: usize> {
@@ -49,7 +50,7 @@ impl<const N: usize> Resampling<'_, N> {
         let way = to - origin;
         let squared = way.length_squared();
         let direction = unit(way.try_normalize()?);
-        let (ray, distance) = (crate::math::Ray { origin, direction }, squared.sqrt());
+        let (ray, distance) = (Ray { origin, direction }, squared.sqrt());
         let cos = -direction.dot(vertex.flat);
         if direction.dot(at.flat) <= 0.0 || cos <= 0.0 {
             return None;
@@ -58,9 +59,9 @@ impl<const N: usize> Resampling<'_, N> {
         // The ray ends before the surface of the vertex: this lies within its error of the point, and the ray, whose
         // direction is rounded, passes that within some roundings of the distance.
         let short = (vertex.point.normal.abs().dot(vertex.point.error) + gamma(8) * distance) / cos;
-        let inside = at.boundary.here;
-        let last = self.last_occluder;
-        let straight = straight::unoccluded(world, at.arrival.draw, &ray, distance - short, None, inside, last)?;
+        let (inside, last) = (at.boundary.here, self.last_occluder);
+        let ends = Ends { left: self.path.left, ..Ends::default() };
+        let straight = straight::unoccluded(world, at.arrival.draw, &ray, distance - short, ends, inside, last)?;
         let mut arriving = vertex.leaving;
         if let Some((share, _)) = straight {
             arriving = arriving * share;

@@ -8,7 +8,7 @@ use super::polarization::Polarized;
 use super::{Transport, World, shading};
 use crate::material::{Scatter, Straight};
 use crate::math::{Ray, Sampler};
-use crate::scene::{Hit, MaterialId};
+use crate::scene::{Ends, Hit, MaterialId};
 use crate::shape::SurfacePoint;
 use crate::spectrum::{Draw, Lanes};
 
@@ -59,7 +59,7 @@ pub(super) fn is_met<const N: usize>(
     path.throughput.through(straight.holes).weight(shares) <= u * path.throughput.weight(shares)
 }
 
-/// None if something occludes a ray within a distance, but for one object; where there are holes and panes, what
+/// None if something occludes a ray within a distance; where there are holes and panes, what
 /// [`transmittance`] says. `inside` is the medium around the ray.
 #[inline]
 pub(super) fn unoccluded<const N: usize>(
@@ -67,15 +67,15 @@ pub(super) fn unoccluded<const N: usize>(
     draw: &Draw<N>,
     ray: &Ray,
     distance: f64,
-    but_for: Option<u32>,
+    ends: Ends,
     inside: Option<MaterialId>,
     last_occluder: &Cell<Option<u32>>,
 ) -> Option<Option<(Lanes<N>, Polarized)>> {
     if !world.has_see_through() {
-        return (!world.scene.is_occluded(ray, distance, but_for, last_occluder)).then_some(None);
+        return (!world.scene.is_occluded(ray, distance, ends, last_occluder)).then_some(None);
     }
     let closed = |object| !world.is_see_through(object);
-    if world.scene.is_occluded_by(ray, distance, but_for, last_occluder, closed) {
+    if world.scene.is_occluded_by(ray, distance, ends, last_occluder, closed) {
         return None;
     }
     transmittance(world, draw, ray, distance, inside).map(Some)

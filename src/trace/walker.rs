@@ -3,6 +3,7 @@
 use std::cell::Cell;
 
 use super::interaction::{Interaction, Meeting};
+use super::media::Boundary;
 use super::path::{Path, ScatterSample};
 use super::roulette::survival;
 use super::stats::Stats;
@@ -45,9 +46,10 @@ impl<'a, const N: usize> Walker<'a, N> {
     #[inline(always)]
     pub(super) fn meet(&mut self, path: &mut Path<N>, draw: &Draw<N>) -> Option<Meeting> {
         self.stats.rays += 1;
-        let hit = self.world.scene.intersect(&path.ray);
+        let hit = self.world.scene.intersect_from(&path.ray, path.left);
         path.advance(self.world, draw, hit.map_or(f64::INFINITY, |hit| hit.crossing.t));
         let hit = hit?;
+        path.left = Some(hit.primitive());
         let point = self.world.scene.objects[hit.object as usize].point(&path.ray, &hit.crossing);
         Some(Meeting { hit, point })
     }
@@ -58,18 +60,10 @@ impl<'a, const N: usize> Walker<'a, N> {
         straight::straight_on(self.world, draw, path, &meeting.hit, &meeting.point)
     }
 
-    /// What the surface that a path has met may know of it; none where the path goes on as if nothing were there,
-    /// through the surface of a body that is hidden inside another of higher priority.
+    /// The media at the surface that a path has met; none where the path goes on as if nothing were there, through the
+    /// surface of a body that is hidden inside another of higher priority.
     #[inline(always)]
-    pub(super) fn interact<'m>(
-        &mut self,
-        path: &Path<N>,
-        draw: &'m Draw<N>,
-        meeting: &'m Meeting,
-    ) -> Option<Interaction<'m, N>>
-    where
-        'a: 'm,
-    {
+    pub(super) fn boundary(&mut self, path: &Path<N>, meeting: &Meeting) -> Option<Boundary> {
         let Meeting { hit, point } = meeting;
         let number = self.world.scene.objects[hit.object as usize].material;
         let enters = point.normal.dot(path.ray.direction) < 0.0;
@@ -82,7 +76,7 @@ impl<'a, const N: usize> Walker<'a, N> {
             self.pending.push(Path { ray, media: boundary.crossed, key, scatter: None, kind, ..*path });
             return None;
         }
-        Some(Interaction::new(self.world, draw, path, meeting, boundary))
+        Some(boundary)
     }
 
     /// Decides which of the branches are followed, and of what goes straight on: their paths become pending.
@@ -207,6 +201,7 @@ impl<'a, const N: usize> Departure<'a, N> {
         };
         Path {
             ray: at.point.leave(branch.wi),
+            left: path.left,
             throughput: path.throughput.through(branch.share).scaled(factor),
             eta_scale: path.eta_scale * branch.eta_scale,
             media: if crosses { at.boundary.crossed } else { path.media },

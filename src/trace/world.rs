@@ -158,13 +158,13 @@ impl World {
     }
 
     /// Whether next-event estimation at a vertex of the given weight samples every light, or one.
-    pub(super) fn samples_all_lights(&self, weight: f64) -> bool {
+    pub(super) fn samples_all_lights(&self, weight: impl FnOnce() -> f64) -> bool {
         /// Lights that may all be sampled from one vertex.
         const MANY: usize = 8;
         match self.method.transport {
             Transport::Deterministic { .. } => true,
             Transport::Random { split, .. } => {
-                self.sampled_lights.len() == 1 || (weight > split && self.sampled_lights.len() <= MANY)
+                self.sampled_lights.len() == 1 || (self.sampled_lights.len() <= MANY && weight() > split)
             }
         }
     }

@@ -26,10 +26,11 @@ impl Visitor for Reached<'_> {
 
 fn reaches(boxes: &[Bounds], ray: &Ray, item: u32) -> bool {
     let bvh = &Bvh::new::<1>(boxes.iter().copied());
-    let visitor = || Reached { bvh, item, reached: false };
-    let reached = [bvh.walk(ray, f64::INFINITY, visitor()), bvh.walk_in_order(ray, f64::INFINITY, visitor())];
-    assert_eq!(reached[0].reached, reached[1].reached);
-    reached[0].reached
+    let [mut any, mut nearest] = [(); 2].map(|()| Reached { bvh, item, reached: false });
+    bvh.walk(ray, f64::INFINITY, &mut any);
+    bvh.walk_in_order(ray, f64::INFINITY, &mut nearest);
+    assert_eq!(any.reached, nearest.reached);
+    any.reached
 }
 
 /// A point whose coordinates f32 holds, so that its box is not rounded outward.

@@ -8,7 +8,7 @@ mod stack;
 mod vectors;
 mod walk;
 
-pub use vectors::{GROUP, Number, Vectors, prefetch};
+pub use vectors::{Crossings, GROUP, Line, Number, Vectors, prefetch};
 pub use walk::Visitor;
 
 use crate::math::{Bounds, Ray};
@@ -49,14 +49,14 @@ impl Bvh {
 
     /// Shows a visitor the leaves whose boxes the ray may meet before `t_max`, nearer ones first.
     #[inline]
-    pub fn walk_in_order<V: Visitor>(&self, ray: &Ray, t_max: f64, visitor: V) -> V {
-        self.instructions.run(Walk::<true, V> { root: self.root, nodes: &self.nodes, ray, t_max, visitor })
+    pub fn walk_in_order(&self, ray: &Ray, t_max: f64, visitor: &mut impl Visitor) {
+        self.instructions.run(Walk::<true, _> { root: self.root, nodes: &self.nodes, ray, t_max, visitor })
     }
 
     /// Shows a visitor the leaves whose boxes the ray may meet before `t_max`, in any order.
     #[inline]
-    pub fn walk<V: Visitor>(&self, ray: &Ray, t_max: f64, visitor: V) -> V {
-        self.instructions.run(Walk::<false, V> { root: self.root, nodes: &self.nodes, ray, t_max, visitor })
+    pub fn walk(&self, ray: &Ray, t_max: f64, visitor: &mut impl Visitor) {
+        self.instructions.run(Walk::<false, _> { root: self.root, nodes: &self.nodes, ray, t_max, visitor })
     }
 
     /// The same tree, walked without the instructions that only some machines have.

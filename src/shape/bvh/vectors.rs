@@ -17,10 +17,31 @@ pub trait Vectors: Copy {
     /// enters, and below them those of the child: keys are in the order of distances, for these are not negative.
     fn enter(self, first: Sides, last: Sides, children: &[Child; WIDTH], slabs: &Slabs, reach: f32) -> (u32, Keys);
 
-    /// A bit for each of four triangles whose edge functions are not of two signs.
+    /// Where a line meets four triangles with 0 < t <= `t_max`; none if its edge functions are of two signs for all.
     ///
-    /// `corners` are rows of x, y and z for each of three corners, `origin` and `shear` in the same order.
-    fn inside<T: Number>(self, corners: [[&[T; GROUP]; 3]; 3], origin: [f64; 3], shear: [f64; 2]) -> u32;
+    /// `corners` are rows of x, y and z, in the order of the line's axes, for each of three corners.
+    fn meet<T: Number>(self, corners: [[&[T; GROUP]; 3]; 3], line: &Line, t_max: f64) -> Option<Crossings>;
+}
+
+/// A ray as the test of four triangles takes it: sheared so that it runs along its third axis.
+pub struct Line {
+    pub origin: [f64; 3],
+    pub shear: [f64; 3],
+    /// The part of a triangle's size by which its plane must be away from the origin for rounding not to matter.
+    pub near: f64,
+}
+
+/// Where a line meets four triangles.
+pub struct Crossings {
+    /// A bit for each triangle that it meets.
+    pub met: u32,
+    /// A bit for each that needs more digits: an edge function is 0, or the line starts near the plane.
+    pub unsure: u32,
+    pub t: [f64; GROUP],
+    /// The affine coordinates are v and w over the determinant.
+    pub v: [f64; GROUP],
+    pub w: [f64; GROUP],
+    pub determinant: [f64; GROUP],
 }
 
 /// A computation that is compiled once for each kind of instructions.
@@ -66,21 +87,32 @@ impl Vectors for Plain {
     }
 
     #[inline(always)]
-    fn inside<T: Number>(self, corners: [[&[T; GROUP]; 3]; 3], origin: [f64; 3], shear: [f64; 2]) -> u32 {
-        let mut inside = 0;
+    fn meet<T: Number>(self, corners: [[&[T; GROUP]; 3]; 3], line: &Line, t_max: f64) -> Option<Crossings> {
+        let (mut met, mut unsure, [mut t, mut v, mut w, mut determinant]) = (0, 0, [[0.0; GROUP]; 4]);
         for i in 0..GROUP {
+            let mut size = 0.0_f64;
             let [a, b, c] = corners.map(|[x, y, z]| {
-                let along = z[i].into() - origin[2];
-                [(x[i].into() - origin[0]) - shear[0] * along, (y[i].into() - origin[1]) - shear[1] * along]
+                let [x, y, z] =
+                    [x[i].into() - line.origin[0], y[i].into() - line.origin[1], z[i].into() - line.origin[2]];
+                size = size.max(x.abs()).max(y.abs()).max(z.abs());
+                [x - line.shear[0] * z, y - line.shear[1] * z, z]
             });
             let u = c[0] * b[1] - c[1] * b[0];
-            let v = a[0] * c[1] - a[1] * c[0];
-            let w = b[0] * a[1] - b[1] * a[0];
-            let none_below = u >= 0.0 && v >= 0.0 && w >= 0.0;
-            let none_above = u <= 0.0 && v <= 0.0 && w <= 0.0;
-            inside |= u32::from(none_below || none_above) << i;
+            v[i] = a[0] * c[1] - a[1] * c[0];
+            w[i] = b[0] * a[1] - b[1] * a[0];
+            let none_below = u >= 0.0 && v[i] >= 0.0 && w[i] >= 0.0;
+            let none_above = u <= 0.0 && v[i] <= 0.0 && w[i] <= 0.0;
+            if none_below || none_above {
+                determinant[i] = u + v[i] + w[i];
+                let along = (u * a[2] + v[i] * b[2] + w[i] * c[2]) * line.shear[2];
+                let is_near = along.abs() <= line.near * size * size * size * line.shear[2].abs();
+                let is_unsure = is_near || u == 0.0 || v[i] == 0.0 || w[i] == 0.0;
+                t[i] = along / determinant[i];
+                met |= u32::from(!is_unsure && t[i] > 0.0 && t[i] <= t_max) << i;
+                unsure |= u32::from(is_unsure) << i;
+            }
         }
-        inside
+        (met | unsure != 0).then_some(Crossings { met, unsure, t, v, w, determinant })
     }
 }
 
@@ -155,7 +187,7 @@ impl Number for f64 {}
 pub mod avx2 {
     use std::arch::x86_64::*;
 
-    use super::{Child, Computation, GROUP, Keys, Number, Sides, Slabs, Vectors, WIDTH};
+    use super::{Child, Computation, Crossings, GROUP, Keys, Line, Number, Sides, Slabs, Vectors, WIDTH};
 
     /// A proof that the machine has AVX2: 256-bit registers.
     #[derive(Clone, Copy, Debug)]
@@ -186,9 +218,9 @@ pub mod avx2 {
         }
 
         #[inline(always)]
-        fn inside<T: Number>(self, corners: [[&[T; GROUP]; 3]; 3], origin: [f64; 3], shear: [f64; 2]) -> u32 {
+        fn meet<T: Number>(self, corners: [[&[T; GROUP]; 3]; 3], line: &Line, t_max: f64) -> Option<Crossings> {
             // SAFETY: an `Avx2` exists only where its instructions do.
-            unsafe { inside(self, corners, origin, shear) }
+            unsafe { meet(self, corners, line, t_max) }
         }
     }
 
@@ -223,24 +255,54 @@ pub mod avx2 {
 
     #[inline]
     #[target_feature(enable = "avx2")]
-    fn inside<T: Number>(avx2: Avx2, corners: [[&[T; GROUP]; 3]; 3], origin: [f64; 3], shear: [f64; 2]) -> u32 {
-        let [ox, oy, oz] = [0, 1, 2].map(|axis| _mm256_set1_pd(origin[axis]));
-        let [sx, sy] = [0, 1].map(|axis| _mm256_set1_pd(shear[axis]));
-        let mut sheared = [[_mm256_setzero_pd(); 2]; 3];
-        for ([x, y, z], [across, up]) in corners.iter().zip(&mut sheared) {
-            let along = _mm256_sub_pd(T::widened(avx2, z), oz);
-            *across = _mm256_sub_pd(_mm256_sub_pd(T::widened(avx2, x), ox), _mm256_mul_pd(sx, along));
-            *up = _mm256_sub_pd(_mm256_sub_pd(T::widened(avx2, y), oy), _mm256_mul_pd(sy, along));
-        }
-        let [a, b, c] = sheared;
+    fn meet<T: Number>(avx2: Avx2, corners: [[&[T; GROUP]; 3]; 3], line: &Line, t_max: f64) -> Option<Crossings> {
+        let [ox, oy, oz] = line.origin.map(|x| _mm256_set1_pd(x));
+        let [sx, sy, sz] = line.shear.map(|x| _mm256_set1_pd(x));
+        let differences = corners.map(|[x, y, z]| {
+            let (x, y) = (_mm256_sub_pd(T::widened(avx2, x), ox), _mm256_sub_pd(T::widened(avx2, y), oy));
+            [x, y, _mm256_sub_pd(T::widened(avx2, z), oz)]
+        });
+        let [a, b, c] = differences
+            .map(|[x, y, z]| [_mm256_sub_pd(x, _mm256_mul_pd(sx, z)), _mm256_sub_pd(y, _mm256_mul_pd(sy, z)), z]);
         let u = _mm256_sub_pd(_mm256_mul_pd(c[0], b[1]), _mm256_mul_pd(c[1], b[0]));
         let v = _mm256_sub_pd(_mm256_mul_pd(a[0], c[1]), _mm256_mul_pd(a[1], c[0]));
         let w = _mm256_sub_pd(_mm256_mul_pd(b[0], a[1]), _mm256_mul_pd(b[1], a[0]));
         let zero = _mm256_setzero_pd();
-        let below = [u, v, w].map(|x| _mm256_cmp_pd::<_CMP_NGE_UQ>(x, zero));
-        let above = [u, v, w].map(|x| _mm256_cmp_pd::<_CMP_NLE_UQ>(x, zero));
-        let below = _mm256_or_pd(_mm256_or_pd(below[0], below[1]), below[2]);
-        let above = _mm256_or_pd(_mm256_or_pd(above[0], above[1]), above[2]);
-        !_mm256_movemask_pd(_mm256_and_pd(below, above)) as u32 & ((1 << GROUP) - 1)
+        let none_below = _mm256_cmp_pd::<_CMP_GE_OQ>(_mm256_min_pd(_mm256_min_pd(u, v), w), zero);
+        let none_above = _mm256_cmp_pd::<_CMP_LE_OQ>(_mm256_max_pd(_mm256_max_pd(u, v), w), zero);
+        let inside = _mm256_or_pd(none_below, none_above);
+        if _mm256_movemask_pd(inside) == 0 {
+            return None;
+        }
+        let determinant = _mm256_add_pd(_mm256_add_pd(u, v), w);
+        let along = _mm256_add_pd(_mm256_mul_pd(u, a[2]), _mm256_mul_pd(v, b[2]));
+        let along = _mm256_mul_pd(_mm256_add_pd(along, _mm256_mul_pd(w, c[2])), sz);
+        let t = _mm256_div_pd(along, determinant);
+        let sign = _mm256_set1_pd(-0.0);
+        let size =
+            differences.as_flattened().iter().fold(zero, |size, &x| _mm256_max_pd(size, _mm256_andnot_pd(sign, x)));
+        let bound = _mm256_mul_pd(_mm256_mul_pd(_mm256_mul_pd(_mm256_set1_pd(line.near), size), size), size);
+        let bound = _mm256_mul_pd(bound, _mm256_andnot_pd(sign, sz));
+        let near = _mm256_cmp_pd::<_CMP_LE_OQ>(_mm256_andnot_pd(sign, along), bound);
+        let on_edge = [u, v, w].map(|x| _mm256_cmp_pd::<_CMP_EQ_OQ>(x, zero));
+        let unsure = _mm256_or_pd(_mm256_or_pd(near, on_edge[0]), _mm256_or_pd(on_edge[1], on_edge[2]));
+        let ahead = _mm256_cmp_pd::<_CMP_GT_OQ>(t, zero);
+        let ahead = _mm256_and_pd(ahead, _mm256_cmp_pd::<_CMP_LE_OQ>(t, _mm256_set1_pd(t_max)));
+        let met = _mm256_andnot_pd(unsure, _mm256_and_pd(inside, ahead));
+        let bits = |lanes: __m256d| _mm256_movemask_pd(lanes) as u32;
+        let numbers = |lanes: __m256d| {
+            let mut numbers = [0.0; GROUP];
+            // SAFETY: the store writes the four numbers of the array.
+            unsafe { _mm256_storeu_pd(numbers.as_mut_ptr(), lanes) };
+            numbers
+        };
+        Some(Crossings {
+            met: bits(met),
+            unsure: bits(_mm256_and_pd(inside, unsure)),
+            t: numbers(t),
+            v: numbers(v),
+            w: numbers(w),
+            determinant: numbers(determinant),
+        })
     }
 }

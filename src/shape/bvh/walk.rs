@@ -24,15 +24,15 @@ pub struct Walk<'a, const ORDERED: bool, T> {
     pub nodes: &'a [Node],
     pub ray: &'a Ray,
     pub t_max: f64,
-    pub visitor: T,
+    pub visitor: &'a mut T,
 }
 
 impl<const ORDERED: bool, T: Visitor> Computation for Walk<'_, ORDERED, T> {
-    type Output = T;
+    type Output = ();
 
     #[inline(always)]
-    fn run<V: Vectors>(mut self, vectors: V) -> T {
-        let Some(root) = self.root else { return self.visitor };
+    fn run<V: Vectors>(mut self, vectors: V) {
+        let Some(root) = self.root else { return };
         let slabs = Slabs::new(self.ray);
         let mut limit = reach(self.t_max);
         // Children to look at, each under the distance at which its box begins.
@@ -46,7 +46,7 @@ impl<const ORDERED: bool, T: Visitor> Computation for Walk<'_, ORDERED, T> {
                         self.t_max = t_max;
                         limit = reach(t_max);
                     }
-                    None => return self.visitor,
+                    None => return,
                 },
                 Err(index) => {
                     let node = &self.nodes[index];
@@ -69,7 +69,7 @@ impl<const ORDERED: bool, T: Visitor> Computation for Walk<'_, ORDERED, T> {
                 }
             }
             loop {
-                let Some(key) = stack.pop() else { return self.visitor };
+                let Some(key) = stack.pop() else { return };
                 if f32::from_bits((key >> 32) as u32) <= limit {
                     current = Child(key as u32);
                     break;
