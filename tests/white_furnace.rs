@@ -6,7 +6,7 @@
 //! ```
 
 use crate::layers::arrivals::{arrival, material, points, toward};
-use abbe::material::{Arrival, Material, Scatter};
+use abbe::material::{Arrival, Index, Material, Scatter};
 use abbe::spectrum::{Draw, Table};
 
 const ROUGHNESSES: [f64; 7] = [0.0, 0.05, 0.2, 0.4, 0.6, 0.8, 1.0];
@@ -23,7 +23,7 @@ const LOSSLESS: &str = "n = 1e-6, k = 100";
 /// far chance may put it off.
 fn furnace(material: &Material<Table>, indices: [f64; 2], cos: f64) -> [f64; 2] {
     let draw = Draw::<4>::fixed(3);
-    let arrival = Arrival { beyond: [indices[1]; 4], ..arrival(&draw, toward(cos, 0.4), indices[0]) };
+    let arrival = Arrival { beyond: Index::Same(indices[1]), ..arrival(&draw, toward(cos, 0.4), indices[0]) };
     let (mut sum, mut squares, mut branches) = (0.0, 0.0, Vec::new());
     let glass = material.scatters_through();
     let draws = if glass { DRAWS_OF_GLASS } else { DRAWS };

@@ -17,17 +17,52 @@ pub struct Arrival<'a, const N: usize> {
     pub draw: &'a Draw<N>,
     /// The lanes on the ray, each 1, the others 0.
     pub present: Lanes<N>,
-    /// Refractive index on the viewer's side, per lane.
-    pub incident: [f64; N],
-    /// Refractive index beyond the surface, per lane; the same as `incident` where no medium begins or ends.
-    pub beyond: [f64; N],
+    /// Refractive index on the viewer's side.
+    pub incident: Index<'a>,
+    /// Refractive index beyond the surface; the same as `incident` where no medium begins or ends.
+    pub beyond: Index<'a>,
     /// The index by which all rays are refracted on the viewer's side and beyond; none where that is each lane's own.
     pub direction_indices: [Option<f64>; 2],
     /// Lanes whose refracted rays lie within this angle of each other, in radians, go on as one.
     pub together: f64,
 }
 
+/// The refractive index of a medium.
+#[derive(Clone, Copy, Debug)]
+pub enum Index<'a> {
+    /// That of all lanes.
+    Same(f64),
+    /// Each lane's own.
+    Own(&'a Table),
+}
+
 impl<const N: usize> Arrival<'_, N> {
+    /// A lane's index on the viewer's side.
+    pub fn incident_of(&self, lane: usize) -> f64 {
+        self.index_of(self.incident, lane)
+    }
+
+    /// A lane's index beyond the surface.
+    pub fn beyond_of(&self, lane: usize) -> f64 {
+        self.index_of(self.beyond, lane)
+    }
+
+    #[inline]
+    fn index_of(&self, index: Index, lane: usize) -> f64 {
+        match index {
+            Index::Same(index) => index,
+            Index::Own(table) => self.draw.read_lane(table, lane),
+        }
+    }
+
+    /// The indices of all lanes on both sides.
+    pub(super) fn indices(&self) -> [[f64; N]; 2] {
+        [self.incident, self.beyond].map(|index| match index {
+            Index::Same(index) => [index; N],
+            Index::Own(table) => self.draw.read_exact(table),
+        })
+    }
+
     /// A table of the material, read for this ray.
     pub fn read(&self, table: &Table) -> Lanes<N> {
         self.draw.read_at(table, self.uv)
@@ -42,7 +77,7 @@ impl<const N: usize> Arrival<'_, N> {
     /// The indices by which a lane's ray is refracted, on both sides.
     pub fn refracting(&self, lane: usize) -> [f64; 2] {
         let [here, beyond] = self.direction_indices;
-        [here.unwrap_or(self.incident[lane]), beyond.unwrap_or(self.beyond[lane])]
+        [here.unwrap_or_else(|| self.incident_of(lane)), beyond.unwrap_or_else(|| self.beyond_of(lane))]
     }
 
     /// The indices by which the rays of all lanes are refracted, where they are given.
@@ -57,10 +92,11 @@ impl<const N: usize> Arrival<'_, N> {
         if self.direction_indices == [None; 2] {
             return None;
         }
+        let [incident, beyond] = self.indices();
         Some(match self.one_direction() {
-            Some(directions) => shared_transmittance([&self.incident, &self.beyond], directions, cos),
+            Some(directions) => shared_transmittance([&incident, &beyond], directions, cos),
             None => std::array::from_fn(|i| {
-                let own = [&[self.incident[i]], &[self.beyond[i]]];
+                let own = [&[incident[i]], &[beyond[i]]];
                 shared_transmittance::<1>(own, self.refracting(i), cos)[0]
             }),
         })
@@ -75,7 +111,7 @@ impl<const N: usize> Arrival<'_, N> {
         (self.direction_indices != [None; 2]).then(|| {
             Lanes::from_fn(|i| {
                 let [here, beyond] = self.refracting(i);
-                let ratio = (self.beyond[i] / self.incident[i]) * (here / beyond);
+                let ratio = (self.beyond_of(i) / self.incident_of(i)) * (here / beyond);
                 ((ratio * ratio) * (ratio * ratio)) as f32
             })
         })
@@ -83,7 +119,7 @@ impl<const N: usize> Arrival<'_, N> {
 
     /// Whether light that crosses the surface goes different ways in different lanes.
     pub fn parts(&self) -> bool {
-        if self.one_direction().is_some() {
+        if self.one_direction().is_some() || matches!((self.incident, self.beyond), (Index::Same(_), Index::Same(_))) {
             return false;
         }
         let first = self.refracting(0);

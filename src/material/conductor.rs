@@ -51,7 +51,7 @@ impl Conductor<Table> {
         let cos = arrival.wo.dot(arrival.normal);
         let reflected: [[f64; 2]; N] = std::array::from_fn(|i| match arrival.present[i] {
             0.0 => [0.0; 2],
-            _ => conductor_reflectance(arrival.incident[i], n[i], k[i], cos),
+            _ => conductor_reflectance(arrival.incident_of(i), n[i], k[i], cos),
         });
         Branch {
             wi: reflect(arrival.wo, arrival.normal),
@@ -84,7 +84,7 @@ impl Conductor<Table> {
             if arrival.present[i] == 0.0 {
                 return 0.0;
             }
-            let metal = [arrival.incident[i], n[i], k[i]];
+            let metal = [arrival.incident_of(i), n[i], k[i]];
             if last != Some(metal) {
                 let [n1, n, k] = metal;
                 let again = surface.reflected_again(mean_reflectance(n1, n, k));
@@ -102,7 +102,7 @@ impl Conductor<Table> {
         let Some(h) = (arrival.wo + wi).try_normalize() else { return 0.0 };
         let (n, k) = (arrival.draw.read_exact(&self.n), arrival.draw.read_exact(&self.k));
         let degree =
-            |lane: usize| degree(conductor_reflectance(arrival.incident[lane], n[lane], k[lane], arrival.wo.dot(h)));
+            |lane: usize| degree(conductor_reflectance(arrival.incident_of(lane), n[lane], k[lane], arrival.wo.dot(h)));
         largest((0..N).step_by(N.div_ceil(LANES)).map(degree))
     }
 }

@@ -82,7 +82,7 @@ impl Dielectric<Table> {
     pub(super) fn degree_of_scattered<const N: usize>(&self, arrival: &Arrival<N>, wi: DVec3) -> f32 {
         let (mut last, mut most) = (None, 0.0_f64);
         for lane in 0..N {
-            let pair @ [n1, n2] = [arrival.incident[lane], arrival.beyond[lane]];
+            let pair @ [n1, n2] = [arrival.incident_of(lane), arrival.beyond_of(lane)];
             if n1 == n2 || last.replace(pair) == Some(pair) {
                 continue;
             }
@@ -111,7 +111,7 @@ impl Dielectric<Table> {
         let own = arrival.own_transmittance(cos);
         for lane in (0..N).filter(|&lane| arrival.present[lane] != 0.0) {
             let pair @ [here, beyond] = arrival.refracting(lane);
-            let [n1, n2] = [arrival.incident[lane], arrival.beyond[lane]];
+            let [n1, n2] = [arrival.incident_of(lane), arrival.beyond_of(lane)];
             let interface = match last {
                 Some((of, interface)) if of == pair => interface,
                 _ => Interface::new(here, beyond, cos),
@@ -163,7 +163,7 @@ impl Dielectric<Table> {
     ) {
         let (tint, reflectance) = (arrival.read(&self.transmittance), arrival.read(&self.reflectance));
         let cos = arrival.wo.dot(arrival.normal);
-        let (n1, n2) = (&arrival.incident, &arrival.beyond);
+        let [n1, n2] = &arrival.indices();
         let mut push = |wi, share: Lanes<N>, crosses, eta_scale, polarization: f64| {
             let (share, polarization) = (share * arrival.present, polarization.abs() as f32);
             if !share.is_zero() {

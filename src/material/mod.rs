@@ -28,7 +28,7 @@ mod roughness;
 mod scatter;
 mod thin;
 
-pub use arrival::Arrival;
+pub use arrival::{Arrival, Index};
 pub use branch::{Branch, Straight};
 pub use coat::Coat;
 pub use conductor::Conductor;

@@ -81,8 +81,8 @@ impl Plastic<Table> {
     fn mirrored<const N: usize>(&self, arrival: &Arrival<N>) -> Option<Branch<N>> {
         let (index, cos) = (arrival.draw.read_exact(&self.index), arrival.wo.dot(arrival.normal));
         let (mut share, mut polarization) = (Lanes::ZERO, 0.0);
-        for lane in (0..N).filter(|&i| arrival.present[i] != 0.0 && index[i] != arrival.incident[i]) {
-            let interface = Interface::new(arrival.incident[lane], index[lane], cos);
+        for lane in (0..N).filter(|&i| arrival.present[i] != 0.0 && index[i] != arrival.incident_of(i)) {
+            let interface = Interface::new(arrival.incident_of(lane), index[lane], cos);
             share.0[lane] = interface.reflectance as f32;
             polarization = interface.polarization_reflected.abs().max(f64::from(polarization)) as f32;
         }
@@ -126,7 +126,7 @@ impl Plastic<Table> {
             if arrival.present[i] == 0.0 {
                 return T::default();
             }
-            let pair = [arrival.incident[i], index[i]];
+            let pair = [arrival.incident_of(i), index[i]];
             let crossing = match last {
                 Some((of, crossing)) if of == pair => crossing,
                 _ => self.coat.crossing(pair[0], pair[1], from, to),
@@ -140,8 +140,8 @@ impl Plastic<Table> {
     /// [`Scatter::degree_of_scattered`](super::Scatter::degree_of_scattered).
     pub(super) fn degree_of_scattered<const N: usize>(&self, arrival: &Arrival<N>, wi: DVec3) -> f32 {
         let index = arrival.draw.read_exact(&self.index);
-        let lanes = || (0..N).filter(|&lane| index[lane] != arrival.incident[lane]).step_by(N.div_ceil(LANES));
-        let coat = |lane: usize, cos: f64| Interface::new(arrival.incident[lane], index[lane], cos);
+        let lanes = || (0..N).filter(|&lane| index[lane] != arrival.incident_of(lane)).step_by(N.div_ceil(LANES));
+        let coat = |lane: usize, cos: f64| Interface::new(arrival.incident_of(lane), index[lane], cos);
         let crossed = |lane: usize| {
             let cosines = [arrival.wo, wi].map(|direction| direction.dot(arrival.normal).abs());
             cosines.map(|cos| coat(lane, cos).polarization_refracted.abs()).into_iter().fold(0.0, f64::max)

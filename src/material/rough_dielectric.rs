@@ -115,7 +115,7 @@ impl<'a, 'b, const N: usize> Meeting<'a, 'b, N> {
         let facet = if crosses { facet } else { -facet };
         Lanes::from_fn(|i| {
             // Radiance changes by the lane's own indices, and `value` is that of the ray's.
-            let ratio = (self.arrival.incident[i] / self.arrival.beyond[i]) * (beyond / here);
+            let ratio = (self.arrival.incident_of(i) / self.arrival.beyond_of(i)) * (beyond / here);
             let square = if crosses { ratio * ratio } else { 1.0 };
             ((value + (own[i] - of_ray.transmittance) * facet) * square * factor).max(0.0) as f32
         })

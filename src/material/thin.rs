@@ -50,11 +50,11 @@ impl Thin<Table> {
         let (mut through, mut back, mut degrees) = (Lanes::ZERO, Lanes::ZERO, [0.0_f64; 2]);
         let mut last: Option<([f64; 3], [[f64; 2]; 2])> = None;
         for lane in (0..N).filter(|&lane| arrival.present[lane] != 0.0) {
-            if index[lane] == arrival.incident[lane] {
+            if index[lane] == arrival.incident_of(lane) {
                 through.0[lane] = way[lane];
                 continue;
             }
-            let pane = [arrival.incident[lane], index[lane], f64::from(way[lane])];
+            let pane = [arrival.incident_of(lane), index[lane], f64::from(way[lane])];
             let summed = match last {
                 Some((of, summed)) if of == pane => summed,
                 _ => all_reflections(&Interface::new(pane[0], pane[1], cos), pane[2]),

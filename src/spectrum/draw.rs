@@ -125,6 +125,14 @@ impl<const N: usize> Draw<N> {
         lanes
     }
 
+    /// One of these numbers.
+    pub fn read_lane(&self, table: &Table, lane: usize) -> f64 {
+        match self.heroes[..self.count].get(lane.wrapping_sub(self.fixed)) {
+            Some(hero) => table.between(hero.below, hero.fraction),
+            None => table.fixed::<N>()[lane],
+        }
+    }
+
     /// How much each lane counts when a single number must stand for a throughput: while lanes are together their
     /// shares sum to 1. A hero that has parted counts in full, for it goes on alone in place of all: so its way is
     /// followed as far as if no lanes had parted, which on glass measured half the noise for a third more time than

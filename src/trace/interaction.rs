@@ -85,8 +85,8 @@ pub(super) fn arrival<'a, const N: usize>(
         uv,
         draw,
         present,
-        incident: media::index(&world.scene, draw, sides[0]),
-        beyond: media::index(&world.scene, draw, sides[1]),
+        incident: media::index_around(&world.scene, sides[0]),
+        beyond: media::index_around(&world.scene, sides[1]),
         direction_indices: media::direction_indices(&world.scene, sides),
         together: world.method.together,
     }

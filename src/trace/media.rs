@@ -1,7 +1,7 @@
 //! Which clear bodies a ray is inside of.
 
 use crate::light::{Light, LightId};
-use crate::material::Dielectric;
+use crate::material::{Dielectric, Index};
 use crate::math::{DVec3, Ray};
 use crate::scene::{MaterialId, Scene};
 use crate::spectrum::{Draw, Table};
@@ -144,6 +144,15 @@ pub(super) fn index<const N: usize>(scene: &Scene<Table>, draw: &Draw<N>, inside
     match inside {
         Some(material) => draw.read_exact(&medium(scene, material).index),
         None => [1.0; N],
+    }
+}
+
+/// The same, not yet read.
+pub(super) fn index_around(scene: &Scene<Table>, inside: Option<MaterialId>) -> Index<'_> {
+    match inside.map(|material| &medium(scene, material).index) {
+        Some(table) if table.is_flat() => Index::Same(table.bins()[0]),
+        Some(table) => Index::Own(table),
+        None => Index::Same(1.0),
     }
 }
 

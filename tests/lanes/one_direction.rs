@@ -1,7 +1,9 @@
 //! Lanes that stay together share a direction; what a surface reflects and lets through is each lane's own.
 
 use abbe::film::Film;
-use abbe::material::{Arrival, Branch, Dielectric, Interface, Material, Roughness, Scatter, shared_transmittance};
+use abbe::material::{
+    Arrival, Branch, Dielectric, Index, Interface, Material, Roughness, Scatter, shared_transmittance,
+};
 use abbe::math::{DVec2, DVec3};
 use abbe::plan::plan;
 use abbe::spectrum::{
@@ -60,19 +62,18 @@ fn d16_every_lane_of_every_glass_of_the_catalog_has_its_own_plate() {
             let own = draw.read_exact(&table);
             let Some(direction) = table.direction() else { panic!("{} does not disperse", glass.key) };
             assert!((direction - glass.n_d()).abs() < 1e-9, "{}: {direction}", glass.key);
-            let material = clear(&basis, table);
+            let material = clear(&basis, table.clone());
             for degrees in (0..18).map(|i| f64::from(5 * i)) {
                 let (sin, cos) = libm::sincos(degrees.to_radians());
                 let (wo, normal, present) = (DVec3::new(sin, 0.0, cos), DVec3::Z, draw.start());
-                let vacuum = [1.0; MAX_LANES];
                 let enters = Arrival {
                     wo,
                     normal,
                     uv: [0.0; 2],
                     draw: &draw,
                     present,
-                    incident: vacuum,
-                    beyond: own,
+                    incident: Index::Same(1.0),
+                    beyond: Index::Own(&table),
                     direction_indices: [Some(1.0), Some(direction)],
                     together: 0.0,
                 };

@@ -1,6 +1,6 @@
 //! Materials written as text, and light that arrives at them.
 
-use abbe::material::{Arrival, Material};
+use abbe::material::{Arrival, Index, Material};
 use abbe::math::{DVec3, Frame};
 use abbe::spectrum::{Draw, Table};
 use abbe::trace::prepare;
@@ -33,7 +33,7 @@ pub fn toward(cos: f64, azimuth: f64) -> DVec3 {
 
 /// Light from a surface under a medium of an index, toward `wo`.
 pub fn arrival(draw: &Draw<4>, wo: DVec3, index: f64) -> Arrival<'_, 4> {
-    let (incident, beyond) = ([index; 4], [index; 4]);
+    let [incident, beyond] = [Index::Same(index); 2];
     Arrival {
         wo,
         normal: NORMAL,

@@ -1,6 +1,6 @@
 //! Row G6: in an even environment, what reflects all light cannot be told from it.
 
-use abbe::material::{Arrival, Material, Roughness, Scatter};
+use abbe::material::{Arrival, Index, Material, Roughness, Scatter};
 use abbe::math::DVec3;
 use abbe::spectrum::{Draw, Table};
 use abbe::trace::prepare;
@@ -38,8 +38,8 @@ fn furnace(material: &Material<Table>, cos: f64, index: f64) -> [f64; 3] {
         uv: [0.0; 2],
         draw: &draw,
         present: draw.start(),
-        incident: [index; 4],
-        beyond: [index; 4],
+        incident: Index::Same(index),
+        beyond: Index::Same(index),
         direction_indices: [None; 2],
         together: 0.0,
     };

@@ -1,6 +1,6 @@
 //! Rough metals under lamps: aiming at them and meeting them agree, and nearly smooth metals look smooth.
 
-use abbe::material::{Arrival, Roughness, Scatter};
+use abbe::material::{Arrival, Index, Roughness, Scatter};
 use abbe::math::DVec3;
 use abbe::plan::plan;
 use abbe::spectrum::Draw;
@@ -55,7 +55,7 @@ fn a_point_light_shows_the_brdf_itself() {
         let draw = Draw::<4>::fixed(3);
         let here = DVec3::new(0.5, 0.0, 0.0);
         let (wo, to_light) = ((DVec3::new(4.0, 3.0, 0.5) - here).normalize(), DVec3::new(-1.0, 2.0, 0.3) - here);
-        let (incident, beyond) = ([1.0; 4], [1.0; 4]);
+        let [incident, beyond] = [Index::Same(1.0); 2];
         let arrival = Arrival {
             wo,
             normal: DVec3::Y,

@@ -1,9 +1,9 @@
 //! Rows S5, D7 and D8: directions stay unit vectors, for the sphere's and Fresnel's formulas assume it.
 
-use abbe::material::{Arrival, Interface, Scatter, reflect};
+use abbe::material::{Arrival, Index, Interface, Scatter, reflect};
 use abbe::math::{DVec2, DVec3, UNIT_ROUNDOFF};
 use abbe::shape::SurfacePoint;
-use abbe::spectrum::Draw;
+use abbe::spectrum::{Draw, Table};
 use abbe::trace::prepare;
 
 use crate::support::exact::{Exact, ExactVector};
@@ -66,14 +66,14 @@ fn s5_every_material_sends_light_on_along_unit_vectors() {
     let bodies: String = materials.iter().map(|(name, material)| body(name, material, &[ball])).collect();
     let scene = scene(&format!("{}{bodies}", view([0.0, 0.0, 5.0], [0.0; 3], 30.0, 1)));
     let world = prepare(&scene, method(&scene, EVERY_BRANCH));
-    let draw = Draw::<4>::fixed(3);
+    let (draw, inside) = (Draw::<4>::fixed(3), Table::new([1.7, 1.73, 1.79, 1.0]));
     let mut random = Random::new(5);
     for object in 0..materials.len() as u32 {
         let (material, mut worst, mut branches) = (world.scene().material_of(object), 0f64, Vec::new());
         for _ in 0..20_000 {
             let wo = random.direction().normalize();
             let normal = normal_toward(wo, &mut random);
-            let (incident, beyond) = ([1.7, 1.73, 1.79, 1.0], [1.0; 4]);
+            let (incident, beyond) = (Index::Own(&inside), Index::Same(1.0));
             let arrival = Arrival {
                 wo,
                 normal,

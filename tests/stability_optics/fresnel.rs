@@ -2,7 +2,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use abbe::material::{Arrival, Branch, Interface, Material, Scatter};
+use abbe::material::{Arrival, Branch, Index, Interface, Material, Scatter};
 use abbe::math::{DVec3, UNIT_ROUNDOFF};
 use abbe::spectrum::{Draw, Lanes, Table};
 use abbe::trace::prepare;
@@ -235,7 +235,7 @@ fn glass() -> Material<Table> {
 
 fn branches(material: &Material<Table>, wo: DVec3, normal: DVec3, incident: f64, beyond: f64) -> Vec<Branch<4>> {
     let draw = Draw::<4>::fixed(3);
-    let (incident, beyond) = ([incident; 4], [beyond; 4]);
+    let [incident, beyond] = [incident, beyond].map(Index::Same);
     let mut branches = Vec::new();
     material.scatter(
         &Arrival {
