@@ -15,6 +15,7 @@ use super::media::{Media, media_of_lights};
 use super::photon::{Landing, Start, Surfaces, follow_photon};
 use super::sensor::amount;
 use super::stats::Stats;
+use super::usefulness::usefulness;
 use super::walker::Walker;
 use super::{Transport, World};
 use crate::light::LightId;
@@ -56,7 +57,7 @@ const HAND: usize = 32;
 struct Hand {
     place: [[f32; HAND]; 3],
     flat: [[f32; HAND]; 3],
-    /// X + Y + Z of what leaves, as the sensor sees it.
+    /// X + Y + Z of what leaves, as the sensor sees it, times how often it is seen.
     power: [f32; HAND],
 }
 
@@ -157,12 +158,14 @@ impl<const N: usize> LightVertices<N> {
         let near_squared = (NEAR * NEAR * squared).max(f64::MIN_POSITIVE);
         let scale = 256.0 / squared.sqrt();
         vertices.sort_by_cached_key(|vertex| morton((vertex.point.position - middle) * scale));
+        let useful = usefulness(world, &vertices);
         let count = vertices.len().div_ceil(HAND);
         let mut hands = vec![Hand::EMPTY; count];
         let mut order: Vec<Option<LightVertex<N>>> = vec![None; count * HAND];
         for (number, vertex) in vertices.into_iter().enumerate() {
             let (hand, slot) = (number % count, number / count);
             hands[hand].set(world, slot, &vertex, middle);
+            hands[hand].power[slot] *= useful[number];
             order[hand * HAND + slot] = Some(vertex);
         }
         // Absent vertices are never chosen.

@@ -69,6 +69,7 @@ mod stats;
 mod straight;
 mod targets;
 mod tile;
+mod usefulness;
 mod visible_caps;
 mod walk;
 mod walker;
