@@ -33,8 +33,9 @@ pub(super) struct LightVertex<const N: usize> {
     /// What leaves it in any direction of that side, lane by lane: intensity over the cosine.
     pub(super) leaving: Lanes<N>,
     pub(super) light: LightId,
-    /// Surfaces that the light has met, this one included.
+    /// Surfaces that the light has met, and the diffuse ones of them, this one included.
     pub(super) vertices: u32,
+    pub(super) diffuse: u32,
 }
 
 /// The vertices of some light paths, dealt into hands of which each holds vertices from all over the scene.
@@ -301,5 +302,7 @@ fn kept<const N: usize>(world: &World, landing: &Landing<N>) -> Option<LightVert
     let leaving = landing.flux(world) * at.arrival.read(&diffuse.reflectance) * FRAC_1_PI as f32;
     let usable =
         holds_vertices(world, at.object, at.point) && !leaving.is_zero() && leaving.0.iter().all(|x| x.is_finite());
-    usable.then_some(LightVertex { point: *at.point, flat: at.flat, leaving, light: *light, vertices: path.vertices })
+    let diffuse = world.method.diffuse_bounces - path.diffuse_left + 1;
+    let (point, flat, light, vertices) = (*at.point, at.flat, *light, path.vertices);
+    usable.then_some(LightVertex { point, flat, leaving, light, vertices, diffuse })
 }

@@ -231,7 +231,7 @@ impl<'a, const N: usize> PathTracer<'a, N> {
     fn resample(&mut self, path: &Path<N>, at: &Interaction<N>, sampler: &Sampler) -> bool {
         let Some(vertices) = self.light_vertices else { return false };
         let world = self.walker.world;
-        if !at.lobes.is_diffuse() || path.diffuse_left != world.method.diffuse_bounces {
+        if !at.lobes.is_diffuse() {
             return false;
         }
         let resampling = Resampling { world, path, at, vertices, last_occluder: &self.walker.last_occluder };

@@ -42,7 +42,8 @@ impl<const N: usize> Resampling<'_, N> {
     /// What the sensor gets of a vertex; none if it is not seen.
     fn connected(&self, vertex: &LightVertex<N>, factor: f64) -> Option<Contribution> {
         let (world, at) = (self.world, self.at);
-        if self.path.vertices.saturating_add(vertex.vertices) > world.method.max_bounces {
+        let bounces = self.path.vertices.saturating_add(vertex.vertices);
+        if bounces > world.method.max_bounces || vertex.diffuse > self.path.diffuse_left {
             return None;
         }
         let to = vertex.point.position;

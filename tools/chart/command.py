@@ -35,7 +35,7 @@ from .measure import Measured, Point, measure
 from .scenes import Chart, Profile
 
 CONVERGED = ("difference", "unseen", "brightness")  # what chart.json keeps of a converged picture
-OVERVIEW = ("cornell", "smallpt", "mesh", "caustic", "beam", "dispersion")
+OVERVIEW = ("cornell", "ajar", "smallpt", "mesh", "caustic", "beam")
 
 
 def found_versions(charts: list[Chart]) -> tuple[dict[str, str], dict[str, str]]:
@@ -175,6 +175,17 @@ def redraw(out: Path) -> None:
     write_data(out, data["versions"], data["made_by"], records)
 
 
+def vectors() -> str:
+    """The widest vectors of the processor, which renderers compiled where they run may use."""
+    try:
+        said = Path("/proc/cpuinfo").read_text("utf-8")
+    except OSError:
+        return platform.machine()
+    flags = set(next((line for line in said.splitlines() if line.startswith("flags")), "").split())
+    widest = [name for flag, name in (("avx512f", "AVX-512"), ("avx2", "AVX2")) if flag in flags]
+    return f"{platform.machine()} with {widest[0]}" if widest else platform.machine()
+
+
 def load() -> str:
     """How busy the machine is before the chart adds its own work."""
     return f"load average {os.getloadavg()[0]:.1f} before"
@@ -210,7 +221,7 @@ def main() -> None:
         return redraw(arguments.out)
     arguments.out.mkdir(parents=True, exist_ok=True)
     made_by = f"python tools/chart.py {' '.join(sys.argv[1:])}".strip()
-    note = f"{made_by}, {profile.repeats} repeats, {platform.machine()}, {os.cpu_count()} cores, {load()}"
+    note = f"{made_by}, {profile.repeats} repeats, {vectors()}, {os.cpu_count()} cores, {load()}"
     begun, records, panels, rows = time.monotonic(), [], {}, []
     for chart in (scenes.scaled(one, profile) for one in charts):
         print(f"\n== {chart.name}: {chart.title}, {chart.size[0]} x {chart.size[1]}", flush=True)

@@ -178,6 +178,30 @@ CHARTS = (
         ),
     ),
     Chart(
+        "ajar",
+        "A room lit through the gap of a door",
+        PEERS / "ajar.toml",
+        (48, 48),
+        (
+            abbe("Abbe", 16, 64, 256, model='"rgb"'),
+            mitsuba("llvm_ad_rgb", 16, 64, 256),
+            mitsuba("scalar_rgb", 16, 64, 256),
+            luxcore(16, 64, 256),
+            cycles(16, 64, 256),
+        ),
+    ),
+    Chart(
+        "water",
+        "A cylinder of water in the sun",
+        PEERS / "water.toml",
+        (48, 48),
+        (
+            abbe("Abbe", 4, 16, 64, model='"rgb"'),
+            mitsuba("llvm_ad_rgb", 16, 64, 256),
+            cycles(16, 64, 256),
+        ),
+    ),
+    Chart(
         "mesh",
         "A ball of 180 000 triangles under an even sky",
         PEERS / "mesh.toml",
