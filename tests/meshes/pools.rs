@@ -88,7 +88,7 @@ fn the_triangle_of_a_lamp_is_occluded_by_others_of_the_lamp_and_by_what_stands_b
         let scene = scene(&blocks(large));
         let mut random = Random::new(32);
         let (mut free, mut hidden) = (0, 0);
-        for i in 0..20_000 {
+        for i in 0..40_000 {
             let mut place = || {
                 let x = random.between(-2.0, 2.0);
                 if i % 2 == 0 { (2.0 * x).round() / 2.0 } else { x }
