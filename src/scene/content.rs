@@ -150,6 +150,9 @@ pub struct Primitive {
 }
 
 impl Primitive {
+    /// None.
+    const NONE: Self = Self { object: u32::MAX, part: 0 };
+
     /// The part, if it is one of this object.
     fn of(self, object: u32) -> Option<u32> {
         (self.object == object).then_some(self.part)
@@ -205,7 +208,7 @@ impl<S> Scene<S> {
 
     /// The nearest surface along a ray; of equally near ones, that of the object listed first.
     pub fn intersect(&self, ray: &Ray) -> Option<Hit> {
-        self.nearest(ray, f64::INFINITY, |_| true)
+        self.intersect_from(ray, None)
     }
 
     /// The same of a ray that leaves a surface.
@@ -228,6 +231,7 @@ impl<S> Scene<S> {
         counts: impl Fn(u32) -> bool,
     ) -> Option<Hit> {
         let triangle = left.map(|left| [left.object, left.part]);
+        let left = left.unwrap_or(Primitive::NONE);
         let pooled = self.index.pool().and_then(|pool| pool.nearest(ray, distance, triangle, &counts));
         let mut nearest = pooled.map(|(object, crossing)| Hit { object, crossing });
         let limit = nearest.map_or(distance, |hit| hit.crossing.t);
@@ -235,8 +239,8 @@ impl<S> Scene<S> {
             if !counts(object) {
                 return limit;
             }
-            let left = left.and_then(|left| left.of(object));
-            if let Some(crossing) = self.objects[object as usize].shape.intersect_from(ray, limit, left) {
+            let shape = &self.objects[object as usize].shape;
+            if let Some(crossing) = shape.intersect_from(ray, limit, left.of(object)) {
                 if nearest.is_none_or(|n| crossing.t < n.crossing.t || object < n.object) {
                     nearest = Some(Hit { object, crossing });
                 }
@@ -270,7 +274,8 @@ impl<S> Scene<S> {
         last_occluder: &Cell<Option<u32>>,
         counts: impl Fn(u32) -> bool,
     ) -> bool {
-        let Ends { left, light, part } = ends.into();
+        let ends = ends.into();
+        let Ends { left, light, part } = ends;
         // An object listed after the light's own does not hide it by an equal distance.
         let hides_at = |[object, other]: [u32; 2], t: f64| match light {
             Some(light) if light == object => part.is_some_and(|part| is_before([other, part], [t, distance])),
@@ -282,28 +287,33 @@ impl<S> Scene<S> {
         if self.index.pool().is_some_and(|pool| pool.any(ray, distance, triangle, hides_at)) {
             return true;
         }
-        let hides = |object: u32| {
-            let shape = &self.objects[object as usize].shape;
-            let is_crossed = |t_max| shape.is_crossed_from(ray, t_max, left.and_then(|left| left.of(object)));
-            match light {
-                Some(light) if light == object => part.is_some_and(|part| shape.hides(ray, part, distance)),
-                _ if !counts(object) => false,
-                Some(light) if light < object => is_crossed(distance.next_down()),
-                _ => is_crossed(distance),
-            }
-        };
         let last = last_occluder.get();
-        if last.is_some_and(hides) {
+        if last.is_some_and(|last| self.hides(last, ray, distance, ends, &counts)) {
             return true;
         }
         let mut hidden = false;
         self.index.any(ray, distance, |object| {
-            hidden = Some(object) != last && hides(object);
+            hidden = Some(object) != last && self.hides(object, ray, distance, ends, &counts);
             if hidden {
                 last_occluder.set(Some(object));
             }
             hidden
         });
         hidden
+    }
+
+    /// Whether an object beside the pool that counts lies before a light at `distance`.
+    #[inline(always)]
+    fn hides(&self, object: u32, ray: &Ray, distance: f64, ends: Ends, counts: impl Fn(u32) -> bool) -> bool {
+        let shape = &self.objects[object as usize].shape;
+        match ends.light {
+            Some(light) if light == object => ends.part.is_some_and(|part| shape.hides(ray, part, distance)),
+            _ if !counts(object) => false,
+            light => {
+                let is_later = light.is_some_and(|light| light < object);
+                let t_max = if is_later { distance.next_down() } else { distance };
+                shape.is_crossed_from(ray, t_max, ends.left.and_then(|left| left.of(object)))
+            }
+        }
     }
 }

@@ -59,10 +59,25 @@ impl Shape {
 
     /// The same of a ray that may leave one of the shape's own parts.
     pub fn is_crossed_from(&self, ray: &Ray, t_max: f64, left: Option<u32>) -> bool {
+        if self.has_triangles() {
+            self.are_triangles_crossed(ray, t_max, left, |_, _| true)
+        } else {
+            self.intersect_from(ray, t_max, None).is_some()
+        }
+    }
+
+    #[inline(never)]
+    fn are_triangles_crossed(
+        &self,
+        ray: &Ray,
+        t_max: f64,
+        left: Option<u32>,
+        counts: impl Fn(u32, f64) -> bool,
+    ) -> bool {
         match self {
-            Self::Mesh(mesh) => mesh.is_crossed(ray, t_max, left, |_, _| true),
-            Self::Instance(instance) => instance.is_crossed(ray, t_max, left, |_, _| true),
-            _ => self.intersect(ray, t_max).is_some(),
+            Self::Mesh(mesh) => mesh.is_crossed(ray, t_max, left, counts),
+            Self::Instance(instance) => instance.is_crossed(ray, t_max, left, counts),
+            _ => false,
         }
     }
 
@@ -78,12 +93,7 @@ impl Shape {
 
     /// Whether `intersect` finds another triangle than this one, which the ray crosses at t.
     pub fn hides(&self, ray: &Ray, part: u32, t: f64) -> bool {
-        let hides = |other, nearer| is_before([other, part], [nearer, t]);
-        match self {
-            Self::Mesh(mesh) => mesh.is_crossed(ray, t, None, hides),
-            Self::Instance(instance) => instance.is_crossed(ray, t, None, hides),
-            _ => false,
-        }
+        self.are_triangles_crossed(ray, t, None, |other, nearer| is_before([other, part], [nearer, t]))
     }
 
     /// Whether its parts are triangles, which can be met one by one.

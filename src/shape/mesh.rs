@@ -108,6 +108,7 @@ impl Mesh {
         self.packed.any(&self.bvh, ray, t_max, |part| left == Some(part), counts)
     }
 
+    #[inline]
     pub(super) fn point(&self, crossing: &Crossing) -> SurfacePoint {
         let point = match self.facets.get(crossing.part as usize) {
             Some(facet) => facet.point(crossing.uv),

@@ -292,10 +292,14 @@ mod tests {
                 assert_eq!(found, packed.nearest(&plain, &ray, t_max, |_| false, |_| true), "{ray:?}");
                 assert_eq!(found.is_some(), packed.any(&wide, &ray, t_max, |_| false, |_, _| true), "{ray:?}");
                 assert_eq!(found.is_some(), packed.any(&plain, &ray, t_max, |_| false, |_, _| true), "{ray:?}");
-                let each = faces.iter().filter_map(|face| Triangle::new(face.map(corner)).intersect(&ray, t_max));
                 if i % 16 < 4 {
-                    let nearest = each.map(|crossing| crossing.t).min_by(f64::total_cmp);
-                    assert_eq!(found.map(|crossing| crossing.t), nearest, "{ray:?}");
+                    let one = |part: u32| {
+                        let triangle = Triangle::new(faces[part as usize].map(corner));
+                        triangle.intersect(&ray, t_max).map(|crossing| Crossing { part, ..crossing })
+                    };
+                    let each = (0..faces.len() as u32).filter_map(one);
+                    let nearest = each.min_by(|a, b| a.t.total_cmp(&b.t).then(a.part.cmp(&b.part)));
+                    assert_eq!(found, nearest, "{ray:?}");
                 }
                 met += usize::from(found.is_some());
             }

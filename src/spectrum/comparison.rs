@@ -29,6 +29,6 @@ pub fn alone(basis: &Basis, lane: usize) -> Basis {
 
 /// The same response to one fixed lane and none to the others.
 pub fn only(response: &Response, lane: usize) -> Response {
-    let rows = response.rows.map(|row| std::array::from_fn(|i| if i == lane { row[i] } else { 0.0 }));
-    Response { rows: Arc::new(rows), fine: vec![[0.0; 3]; response.fine.len()].into() }
+    let columns = std::array::from_fn(|i| if i == lane { response.columns[i] } else { [0.0; 4] });
+    Response { columns: Arc::new(columns), fine: vec![[0.0; 3]; response.fine.len()].into() }
 }

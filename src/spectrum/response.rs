@@ -9,8 +9,9 @@ use super::{Draw, Lanes};
 /// It belongs to the light a path ends in, so that a spiky illuminant can be integrated exactly whatever the lanes are.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Response {
-    /// Each film channel of every fixed lane, 0 beyond the last.
-    pub(super) rows: Arc<[[f64; MAX_LANES]; 3]>,
+    /// The film channels of every fixed lane, 0 beyond the last. A fourth number makes two pairs of them, as wide as
+    /// what a processor adds at once.
+    pub(super) columns: Arc<[[f64; 4]; MAX_LANES]>,
     /// The film color of the light per nm on the fine grid, and of its ideal lines.
     pub(super) fine: Arc<[[f64; 3]]>,
 }
@@ -23,9 +24,8 @@ impl Response {
 
     /// A response with the film color of each fixed lane, and of each entry of the fine grid.
     pub fn new(columns: &[[f64; 3]], fine: Vec<[f64; 3]>) -> Self {
-        let entry = |channel: usize, lane: usize| columns.get(lane).map_or(0.0, |column| column[channel]);
-        let rows = std::array::from_fn(|channel| std::array::from_fn(|lane| entry(channel, lane)));
-        Self { rows: Arc::new(rows), fine: fine.into() }
+        let column = |lane: usize| columns.get(lane).map_or([0.0; 4], |&[r, g, b]| [r, g, b, 0.0]);
+        Self { columns: Arc::new(std::array::from_fn(column)), fine: fine.into() }
     }
 
     /// The film's red, green and blue of light that arrives in lanes; `parted` says whether they parted on the way.
@@ -34,14 +34,14 @@ impl Response {
             return self.heroes(draw, lanes, factor);
         }
         // Four sums side by side, so that the processor need not wait for each addition.
-        std::array::from_fn(|channel| {
-            let row: &[f64; N] = self.rows[channel].first_chunk().expect("no more lanes are compiled than fit");
-            let mut sums = [0.0; 4];
-            for (four, weights) in lanes.0.chunks_exact(4).zip(row.chunks_exact(4)) {
-                (0..4).for_each(|i| sums[i] += weights[i] * f64::from(four[i]));
+        let columns: &[[f64; 4]; N] = self.columns.first_chunk().expect("no more lanes are compiled than fit");
+        let mut sums = [[0.0; 4]; 4];
+        for (four, columns) in lanes.0.as_chunks::<4>().0.iter().zip(columns.as_chunks::<4>().0) {
+            for i in 0..4 {
+                (0..4).for_each(|channel| sums[i][channel] += columns[i][channel] * f64::from(four[i]));
             }
-            (sums[0] + sums[1]) + (sums[2] + sums[3])
-        })
+        }
+        std::array::from_fn(|channel| (sums[0][channel] + sums[1][channel]) + (sums[2][channel] + sums[3][channel]))
     }
 
     fn heroes<const N: usize>(&self, draw: &Draw<N>, lanes: Lanes<N>, factor: f64) -> [f64; 3] {

@@ -48,8 +48,16 @@ impl<'a, const N: usize> Interaction<'a, N> {
         let [flat, normal] = shading::normals(point, wo);
         let present = path.throughput.present();
         let sides = boundary.sides();
-        let arrival = arrival(world, draw, wo, normal, uv, present, sides);
-        let mut at = Self { object: hit.object, point, material, lobes, flat, boundary, arrival, parts: false };
+        let mut at = Self {
+            object: hit.object,
+            point,
+            material,
+            lobes,
+            flat,
+            boundary,
+            arrival: arrival(world, draw, wo, normal, uv, present, sides),
+            parts: false,
+        };
         at.parts = parts(lobes, material, &at.arrival);
         at
     }

@@ -91,7 +91,9 @@ impl<'a, const N: usize> PathTracer<'a, N> {
         let mut first = None;
         self.walker.started = self.walker.stats.rays;
         self.walker.pending.push(Path::from_camera(world, draw, ray));
-        while let Some(mut path) = self.walker.pending.pop() {
+        while let Some(last) = self.walker.pending.len().checked_sub(1) {
+            let mut path = self.walker.pending[last];
+            self.walker.pending.truncate(last);
             if path.vertices >= self.walker.transport.last_vertex() {
                 self.walker.stats.stopped += path.weight(draw);
                 continue;

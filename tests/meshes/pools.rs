@@ -3,7 +3,7 @@
 use std::cell::Cell;
 
 use abbe::math::{DVec3, Ray};
-use abbe::scene::Hit;
+use abbe::scene::{Ends, Hit};
 
 use crate::support::random::Random;
 use crate::support::scenes::{body, environment, scene, view};
@@ -72,4 +72,46 @@ fn rays_find_in_a_shared_tree_what_they_find_object_by_object() {
         }
     }
     assert!(met > 20_000 && ties > 1000, "{met} rays meet something, {ties} two things at once");
+}
+
+/// A village of blocks that stand in a tree of their own each if `large`, for they have too many triangles.
+fn blocks(large: bool) -> String {
+    let more: String = (0..1100).map(|i| format!(", [{i}, 99, 0], [{i}, 99, 1], [{}, 99, 0]", i + 1)).collect();
+    let faces: String = (0..1100).map(|i| format!(", [{}, {}, {}]", 3 * i + 8, 3 * i + 9, 3 * i + 10)).collect();
+    let (points, faces) = if large { (more, faces) } else { Default::default() };
+    village().replace("]], faces", &format!("]{points}], faces")).replace("[3, 7, 5]]", &format!("[3, 7, 5]{faces}]"))
+}
+
+#[test]
+fn the_triangle_of_a_lamp_is_occluded_by_others_of_the_lamp_and_by_what_stands_before_it() {
+    for large in [false, true] {
+        let scene = scene(&blocks(large));
+        let mut random = Random::new(32);
+        let (mut free, mut hidden) = (0, 0);
+        for i in 0..40_000 {
+            let mut place = || {
+                let x = random.between(-2.0, 2.0);
+                if i % 2 == 0 { (2.0 * x).round() / 2.0 } else { x }
+            };
+            let [origin, target] = [(); 2].map(|()| DVec3::new(place(), place(), place()));
+            let Some(direction) = (target - origin).try_normalize() else { continue };
+            let ray = Ray { origin, direction };
+            let lamp = [0, 1, 4, 5][i % 4];
+            let shape = &scene.objects[lamp].shape;
+            let own = shape.intersect(&ray, f64::INFINITY);
+            for part in 0..12 {
+                let Some(crossing) = shape.intersect_triangle(&ray, part) else { continue };
+                let ends = Ends { left: None, light: Some(lamp as u32), part: Some(part) };
+                let whole = scene.is_occluded(&ray, crossing.t, Some(lamp as u32), &Cell::new(None));
+                let expected = whole || own != Some(crossing);
+                assert_eq!(
+                    scene.is_occluded(&ray, crossing.t, ends, &Cell::new(None)),
+                    expected,
+                    "{ray:?} {lamp} {part}"
+                );
+                (free, hidden) = (free + usize::from(!expected), hidden + usize::from(expected && !whole));
+            }
+        }
+        assert!(free > 500 && hidden > 500, "{free} are free, {hidden} hidden by the lamp alone");
+    }
 }

@@ -70,7 +70,7 @@ impl Slabs {
     #[inline(always)]
     pub fn new(ray: &Ray) -> Self {
         let (origin, direction) = (ray.origin.to_array(), ray.direction.to_array());
-        let backward = direction.map(|d| d < 0.0);
+        let backward = direction.map(f64::is_sign_negative);
         let mut slabs =
             Self { backward, entry: [0.0; 3], exit: [0.0; 3], entry_inverse: [0.0; 3], exit_inverse: [0.0; 3] };
         for axis in 0..3 {
@@ -78,14 +78,14 @@ impl Slabs {
             // The conversion is off by u at most, and so is the sum; below the normal numbers by less than the
             // smallest.
             let slack = near.abs() * (2.0 * f32::EPSILON) + f32::MIN_POSITIVE;
-            let onward = if backward[axis] { -slack } else { slack };
+            let sign = direction[axis] as f32;
+            let onward = slack.copysign(sign);
             slabs.entry[axis] = near + onward;
             slabs.exit[axis] = near - onward;
             let inverse = direction[axis].recip().abs() as f32;
-            let entry = if direction[axis] == 0.0 { inverse } else { inverse.min(f32::MAX) };
-            let exit = inverse * WIDEN;
-            slabs.entry_inverse[axis] = if backward[axis] { -entry } else { entry };
-            slabs.exit_inverse[axis] = if backward[axis] { -exit } else { exit };
+            let entry = if inverse < f32::MAX { inverse } else { f32::MAX };
+            slabs.entry_inverse[axis] = entry.copysign(sign);
+            slabs.exit_inverse[axis] = (inverse * WIDEN).copysign(sign);
         }
         slabs
     }
