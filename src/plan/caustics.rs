@@ -22,11 +22,25 @@ const PAIRS: usize = 1 << 19;
 /// Camera rays along each side of the image that look for surfaces on which caustics may lie.
 const SIDE: u32 = 24;
 
+/// Whether caustics are shown to the camera by photons.
+pub(super) struct Shown {
+    pub(super) pass: Option<LightPass>,
+    pub(super) why: Vec<String>,
+    /// A world whose photons have learned where to go.
+    pub(super) taught: Option<World>,
+}
+
+impl Shown {
+    fn not(why: Vec<String>) -> Self {
+        Self { pass: None, why, taught: None }
+    }
+}
+
 /// The light pass that a scene needs, if any, and why.
-pub(super) fn light_pass(scene: &Scene<Curve>, unguided: &World) -> (Option<LightPass>, Vec<String>) {
+pub(super) fn light_pass(scene: &Scene<Curve>, unguided: &World) -> Shown {
     let Sources { small, mut large } = match sources(scene, unguided.method()) {
         Ok(sources) => sources,
-        Err(why) => return (None, why.into_iter().collect()),
+        Err(why) => return Shown::not(why.into_iter().collect()),
     };
     let film = scene.film;
     let samples = f64::from(film.width) * f64::from(film.height) * f64::from(unguided.method().samples);
@@ -49,7 +63,7 @@ pub(super) fn light_pass(scene: &Scene<Curve>, unguided: &World) -> (Option<Ligh
         ));
     }
     if seen.is_empty() {
-        return (None, lines);
+        return Shown::not(lines);
     }
     let Worth { lights, photons, gain } = weigh(scene, &world);
     let (sending, left): (Vec<_>, Vec<_>) = seen.into_iter().partition(|(id, _)| lights.contains(id));
@@ -60,7 +74,7 @@ pub(super) fn light_pass(scene: &Scene<Curve>, unguided: &World) -> (Option<Ligh
             None => "what they land on is black".into(),
         };
         lines.push(format!("no light pass: photons from {} toward {to} are seen, but {why}", named(scene, &large)));
-        return (None, lines);
+        return Shown::not(lines);
     }
     if !large.is_empty() {
         lines.push(format!("left to chance: caustics of {}", named(scene, &large)));
@@ -78,7 +92,7 @@ pub(super) fn light_pass(scene: &Scene<Curve>, unguided: &World) -> (Option<Ligh
             in_number(gain.round() as u64)
         ))
     ));
-    (Some(pass), lines)
+    Shown { pass: Some(pass), why: lines, taught: Some(world) }
 }
 
 /// A light and the largest solid angle under which it is seen.

@@ -17,7 +17,8 @@ use std::time::Duration;
 
 use crate::scene::Scene;
 use crate::spectrum::{Basis, Curve};
-use crate::trace::{LightPass, Method, Probe, Transport, prepare_unguided, probe};
+use crate::trace::{LightPass, Method, PhotonTimes, Probe, Transport, photon_times, prepare_unguided, probe};
+use caustics::Shown;
 use model::Model;
 use words::{in_number, in_words};
 
@@ -69,17 +70,18 @@ pub fn plan(scene: &Scene<Curve>) -> Plan {
         bright: None,
     };
     let world = prepare_unguided(scene, method.clone());
-    let (shown, why_shown) = caustics::light_pass(scene, &world);
+    let Shown { pass: shown, why, taught } = caustics::light_pass(scene, &world);
     let (light_pass, why_gathered) = photon_map::with_map(scene, &world, shown.as_ref());
     // Why nothing is shown matters only where nothing is gathered either.
-    decisions.extend(why_shown.into_iter().filter(|_| shown.is_some() || light_pass.is_none()));
+    decisions.extend(why.into_iter().filter(|_| shown.is_some() || light_pass.is_none()));
     decisions.extend(why_gathered);
     let (bright, why_aimed) = bright::aimed(&world);
     decisions.extend(why_aimed);
     let world = world.with_light_pass(light_pass.clone()).with_bright(bright.clone());
     let method = Method { light_pass, bright, ..method };
     let probe = probe(&world);
-    let (cost, processor_time) = cost(scene, &method, &probe);
+    let times = photon_times(&taught.map_or(world.clone(), |taught| world.clone().taught_by(&taught)));
+    let (cost, processor_time) = cost(scene, &method, &probe, times);
     let mut because = vec![cost];
     because.extend(missed);
     because.extend(polarization::left_out(scene, &world));
@@ -124,13 +126,15 @@ fn lights(scene: &Scene<Curve>, light_pass: Option<&LightPass>) -> Vec<String> {
 }
 
 /// What a few hundred samples say of the whole.
-fn cost(scene: &Scene<Curve>, method: &Method, probe: &Probe) -> (String, Duration) {
+fn cost(scene: &Scene<Curve>, method: &Method, probe: &Probe, times: PhotonTimes) -> (String, Duration) {
     let window = scene.film.window();
     let samples = f64::from(window.width) * f64::from(window.height) * f64::from(method.samples);
     let pass = method.light_pass.as_ref();
     let of_map = pass.and_then(|pass| pass.map).map_or(0, |map| u64::from(map.count) * map.photons);
-    let photons = pass.map_or(0, |pass| pass.photons) + of_map;
-    let time = probe.time.mul_f64(samples) + probe.photon.mul_f64(photons as f64);
+    let shown = pass.map_or(0, |pass| pass.photons);
+    let photons = shown + of_map;
+    let of_photons = times.shown.mul_f64(shown as f64) + times.kept.mul_f64(of_map as f64);
+    let time = probe.time.mul_f64(samples) + of_photons;
     let line = format!(
         "cost: about {} of processor time: {} sample{} per pixel, {:.1} rays each{}",
         in_words(time.as_secs_f64()),
