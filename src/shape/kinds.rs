@@ -282,4 +282,20 @@ impl Shape {
             _ => 1.0 / self.area(),
         }
     }
+
+    /// A point as `sample_emission` draws it; of a sphere, most often of a cap of it, given by its unit normals.
+    pub fn sample_cap_emission(&self, cap: &Cone, toward: &Ball, u: [f64; 2]) -> Option<SurfacePoint> {
+        match self {
+            Self::Sphere(sphere) => Some(sphere.sample_cap_emission(cap, self.ball()?, toward, u)),
+            _ => self.sample_emission(toward, u),
+        }
+    }
+
+    /// Density per unit of area with which `sample_cap_emission` draws a point of the shape for a ball.
+    pub fn pdf_cap_emission(&self, cap: &Cone, toward: &Ball, point: &SurfacePoint) -> f64 {
+        match self {
+            Self::Sphere(sphere) => self.ball().map_or(0.0, |own| sphere.pdf_cap_emission(cap, own, toward, point)),
+            _ => self.pdf_emission(toward, point),
+        }
+    }
 }
