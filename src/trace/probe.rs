@@ -43,8 +43,8 @@ const BATCH: u32 = 16;
 /// What takes so many times as long as the median is timed again.
 const SLOW: f64 = 2.0;
 /// Photons that are timed together, and how often.
-const FEW: u64 = 512;
-const TIMES: u64 = 8;
+const FEW: u64 = 64;
+const TIMES: u64 = 64;
 /// Most photons of the map that is gathered from.
 const GATHERED: u64 = 4096;
 /// Time after which the probe has seen enough.
