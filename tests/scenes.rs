@@ -103,6 +103,8 @@ fn the_smallpt_scene_is_planned_as_a_path_tracer_of_three_lanes_that_stay_togeth
     assert_says(&because, "model rgb: 3 lanes");
     assert_says(&because, "in every lane, so lanes stay together");
     assert_says(&because, "light leaves left wall in every direction");
+    // The tip that is seen has 0.14 sr, the whole sphere 2.8.
+    assert_says(&because, "photons from lamp (2.0e-1 sr) toward 2 smooth objects");
     assert!(!because.contains("lanes part"), "{because}");
 }
 

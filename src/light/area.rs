@@ -151,6 +151,17 @@ impl<S> Area<S> {
         })
     }
 
+    /// A ball around the part that can be seen, and the area of that from where it is seen best; none of a shape that
+    /// is infinite.
+    pub fn visible_part(&self) -> Option<(Ball, f64)> {
+        let own = self.shape.ball()?;
+        let size = LightBounds::of_shape(&self.shape, self.sides == Sides::Both)?.intensity;
+        let Some(Cone { axis, one_minus_cos }) = self.visible_cap else { return Some((own, size)) };
+        let [cos, sin] = [1.0 - one_minus_cos, (one_minus_cos * (2.0 - one_minus_cos)).sqrt()];
+        let part = Ball { center: own.center + axis * (own.radius * cos), radius: own.radius * sin };
+        Some((part, PI * part.radius * part.radius))
+    }
+
     /// Whether photons can be sent from it: not if it shows an image, since it does not send the same from all its
     /// points, nor from an instance, whose points are drawn by their areas before it was placed.
     pub(super) fn sends_photons(&self) -> bool {
@@ -158,8 +169,7 @@ impl<S> Area<S> {
     }
 
     pub(super) fn beam(&self, ball: &Ball) -> Beam {
-        let bounds = LightBounds::of_shape(&self.shape, self.sides == Sides::Both);
-        let size = bounds.filter(|_| self.sends_photons()).map_or(0.0, |bounds| bounds.intensity);
+        let size = self.visible_part().filter(|_| self.sends_photons()).map_or(0.0, |(_, size)| size);
         let own = self.shape.ball();
         let from = own.map_or(ball.center, |own| own.center);
         let is_apart = own.is_some_and(|own| (own.center - ball.center).length() > own.radius + ball.radius);
@@ -169,7 +179,10 @@ impl<S> Area<S> {
     /// A photon from a point of the surface to the ball: in the cone that this fills; by its cosine where the point is
     /// inside the ball.
     pub(super) fn sample_le(&self, ball: &Ball, [a, b]: [f64; 2], u: [f64; 2]) -> Option<LeSample> {
-        let point = self.shape.sample_emission(ball, u)?;
+        let point = match &self.visible_cap {
+            Some(cap) => self.shape.sample_cap_emission(cap, ball, u)?,
+            None => self.shape.sample_emission(ball, u)?,
+        };
         let cone = ball.cone_from(point.position);
         let direction = if cone.is_all() {
             let front = self.front();
@@ -196,34 +209,19 @@ impl<S> Area<S> {
         } else {
             cone.pdf(direction, guide)
         };
-        along * self.shape.pdf_emission(ball, point)
+        let of_point = match &self.visible_cap {
+            Some(cap) => self.shape.pdf_cap_emission(cap, ball, point),
+            None => self.shape.pdf_emission(ball, point),
+        };
+        along * of_point
     }
 
     /// A path of light from a point of the surface, by its cosine; of a sphere of which a cap is seen, from there most
     /// often.
     pub(super) fn emit(&self, [u0, u1, a, b]: [f64; 4]) -> Option<LeSample> {
-        let everywhere = || self.shape.sample_emission(&EVERYWHERE, [u0, u1]);
-        let point = match &self.visible_cap {
-            Some(cap) => self.shape.sample_emission_of_cap(cap, [u0, u1]).or_else(everywhere),
-            None => everywhere(),
-        }?;
-        let density = match &self.visible_cap {
-            Some(cap) => self.shape.pdf_emission_of_cap(cap, &point),
-            None => self.shape.pdf_emission(&EVERYWHERE, &point),
-        };
-        let front = self.front();
-        let (side, share, a) = if a < front {
-            (point.normal, front, a / front)
-        } else {
-            (-point.normal, 1.0 - front, (a - front) / (1.0 - front))
-        };
-        let direction = unit(Frame::about(side).to_world(cosine_hemisphere([a, b])));
-        let factor = PI / (density * share);
-        (factor > 0.0 && factor.is_finite()).then_some(LeSample {
-            ray: point.leave(direction),
-            factor,
-            surface: Some(point),
-        })
+        let sample = self.sample_le(&EVERYWHERE, [a, b], [u0, u1])?;
+        let factor = sample.factor / self.pdf_le(&EVERYWHERE, &sample, |_| 1.0);
+        (factor > 0.0 && factor.is_finite()).then_some(LeSample { factor, ..sample })
     }
 
     /// The flux that `emit` sends, per radiance; 0 if it cannot.

@@ -135,7 +135,9 @@ impl<const N: usize> Arrival<'_, N> {
             let [here, beyond] = self.refracting(i);
             here / beyond
         };
-        let (least, most) = (0..N).map(ratio).fold((f64::INFINITY, 0.0_f64), |(l, m), x| (l.min(x), m.max(x)));
+        // Plain comparisons, since no index is a NaN: `min` and `max` would ask about that in every lane.
+        let wider = |(l, m): (f64, f64), x: f64| (if x < l { x } else { l }, if x > m { x } else { m });
+        let (least, most) = (0..N).map(ratio).fold((f64::INFINITY, 0.0), wider);
         let [a, b] = [least, most].map(|eta| {
             let sin = eta * (1.0 - cos * cos).sqrt();
             [sin, (1.0 - sin * sin).max(0.0).sqrt()]

@@ -4,13 +4,12 @@ use std::f64::consts::TAU;
 
 use super::efficiency::{Worth, weigh};
 use super::words::in_number;
-use crate::light::{Light, LightBounds, LightId};
+use crate::light::{Light, LightId};
 use crate::material::Material;
 use crate::math::{DVec2, DVec3, one_minus_cos_of_cone};
 use crate::scene::{CausticsText, Scene};
-use crate::shape::Sides;
 use crate::spectrum::Curve;
-use crate::trace::{LightPass, Method, Transport, World, is_photon_target, piloted, seen_photons};
+use crate::trace::{LightPass, Transport, World, is_photon_target, piloted, seen_photons};
 
 /// Solid angle in steradians from which on rays meet a lamp often enough: there photons and chance cost the same
 /// (`benches/rooms.rs`).
@@ -22,11 +21,25 @@ const PAIRS: usize = 1 << 19;
 /// Camera rays along each side of the image that look for surfaces on which caustics may lie.
 const SIDE: u32 = 24;
 
+/// Whether caustics are shown to the camera by photons.
+pub(super) struct Shown {
+    pub(super) pass: Option<LightPass>,
+    pub(super) why: Vec<String>,
+    /// A world whose photons have learned where to go.
+    pub(super) taught: Option<World>,
+}
+
+impl Shown {
+    fn not(why: Vec<String>) -> Self {
+        Self { pass: None, why, taught: None }
+    }
+}
+
 /// The light pass that a scene needs, if any, and why.
-pub(super) fn light_pass(scene: &Scene<Curve>, unguided: &World) -> (Option<LightPass>, Vec<String>) {
-    let Sources { small, mut large } = match sources(scene, unguided.method()) {
+pub(super) fn light_pass(scene: &Scene<Curve>, unguided: &World) -> Shown {
+    let Sources { small, mut large } = match sources(scene, unguided) {
         Ok(sources) => sources,
-        Err(why) => return (None, why.into_iter().collect()),
+        Err(why) => return Shown::not(why.into_iter().collect()),
     };
     let film = scene.film;
     let samples = f64::from(film.width) * f64::from(film.height) * f64::from(unguided.method().samples);
@@ -49,7 +62,7 @@ pub(super) fn light_pass(scene: &Scene<Curve>, unguided: &World) -> (Option<Ligh
         ));
     }
     if seen.is_empty() {
-        return (None, lines);
+        return Shown::not(lines);
     }
     let Worth { lights, photons, gain } = weigh(scene, &world);
     let (sending, left): (Vec<_>, Vec<_>) = seen.into_iter().partition(|(id, _)| lights.contains(id));
@@ -60,7 +73,7 @@ pub(super) fn light_pass(scene: &Scene<Curve>, unguided: &World) -> (Option<Ligh
             None => "what they land on is black".into(),
         };
         lines.push(format!("no light pass: photons from {} toward {to} are seen, but {why}", named(scene, &large)));
-        return (None, lines);
+        return Shown::not(lines);
     }
     if !large.is_empty() {
         lines.push(format!("left to chance: caustics of {}", named(scene, &large)));
@@ -78,7 +91,7 @@ pub(super) fn light_pass(scene: &Scene<Curve>, unguided: &World) -> (Option<Ligh
             in_number(gain.round() as u64)
         ))
     ));
-    (Some(pass), lines)
+    Shown { pass: Some(pass), why: lines, taught: Some(world) }
 }
 
 /// A light and the largest solid angle under which it is seen.
@@ -91,11 +104,11 @@ struct Sources {
 }
 
 /// The lights that photons may be sent from, or why none are sent.
-fn sources(scene: &Scene<Curve>, method: &Method) -> Result<Sources, Option<String>> {
+fn sources(scene: &Scene<Curve>, world: &World) -> Result<Sources, Option<String>> {
     if let Some(why) = no_caustics(scene) {
         return Err(Some(format!("no caustics: {why}")));
     }
-    if matches!(method.transport, Transport::Deterministic { .. }) {
+    if matches!(world.method().transport, Transport::Deterministic { .. }) {
         return Err(None);
     }
     if scene.render.caustics == CausticsText::Off {
@@ -112,7 +125,7 @@ fn sources(scene: &Scene<Curve>, method: &Method) -> Result<Sources, Option<Stri
         return Err(Some(format!("no light pass: {why} are left to chance{}", missing(scene))));
     }
     let mut sources = Sources { small: Vec::new(), large: Vec::new() };
-    for (id, light) in scene.lights.iter().enumerate().filter(|(_, light)| light.is_sampled()) {
+    for (id, light) in world.scene().lights.iter().enumerate().filter(|(_, light)| light.is_sampled()) {
         match solid_angle(light, &places) {
             Some(size) if size < SMALL && light.sends_photons() => sources.small.push((id, size)),
             Some(size) => sources.large.push((id, size)),
@@ -168,9 +181,10 @@ fn may_receive(scene: &Scene<Curve>, material: &Material<Curve>) -> bool {
 }
 
 /// Lights that photons can be sent from and that are seen from the places given under less than a solid angle.
-pub(super) fn small_lights(scene: &Scene<Curve>, places: &[DVec3], small: f64) -> Vec<LightId> {
+pub(super) fn small_lights(world: &World, places: &[DVec3], small: f64) -> Vec<LightId> {
+    let scene = world.scene();
     let places = thinned(places.to_vec(), scene.lights.len());
-    let is_small = |light: &Light<Curve>| solid_angle(light, &places).is_some_and(|size| size < small);
+    let is_small = |light: &Light<_>| solid_angle(light, &places).is_some_and(|size| size < small);
     let lights = scene.lights.iter().enumerate();
     let wanted = lights.filter(|(_, light)| light.is_sampled() && light.sends_photons() && is_small(light));
     wanted.map(|(id, _)| id).collect()
@@ -224,9 +238,9 @@ fn lit_places(scene: &Scene<Curve>, spread: impl Fn(&Material<Curve>) -> bool) -
     rays.filter_map(place).collect()
 }
 
-/// Under which solid angle, in steradians, a light is seen from half of some places or more; none of one that fills the
-/// sky.
-fn solid_angle(light: &Light<Curve>, places: &[DVec3]) -> Option<f64> {
+/// Under which solid angle, in steradians, a light is seen from half of some places or more, by the part of it that can
+/// be seen; none of one that fills the sky.
+fn solid_angle<S>(light: &Light<S>, places: &[DVec3]) -> Option<f64> {
     match light {
         Light::Point(_) | Light::Spot(_) => Some(0.0),
         Light::Sun(sun) => {
@@ -235,8 +249,7 @@ fn solid_angle(light: &Light<Curve>, places: &[DVec3]) -> Option<f64> {
         }
         Light::Environment(_) => None,
         Light::Area(area) => {
-            let ball = area.shape.ball()?;
-            let size = LightBounds::of_shape(&area.shape, area.sides == Sides::Both)?.intensity;
+            let (ball, size) = area.visible_part()?;
             let from = |place: &DVec3| {
                 let distance_squared = (ball.center - *place).length_squared();
                 (TAU * ball.cone_from(*place).one_minus_cos).min(size / distance_squared)

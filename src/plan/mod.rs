@@ -18,7 +18,10 @@ use std::time::Duration;
 
 use crate::scene::Scene;
 use crate::spectrum::{Basis, Curve};
-use crate::trace::{BrightPlaces, LightPass, Method, Probe, Transport, World, prepare_unguided, probe};
+use crate::trace::{
+    BrightPlaces, LightPass, Method, PhotonTimes, Probe, Transport, World, photon_times, prepare_unguided, probe,
+};
+use caustics::Shown;
 use model::Model;
 use words::{in_number, in_words};
 
@@ -71,10 +74,10 @@ pub fn plan(scene: &Scene<Curve>) -> Plan {
         light_vertices: false,
     };
     let world = prepare_unguided(scene, method.clone());
-    let (shown, why_shown) = caustics::light_pass(scene, &world);
+    let Shown { pass: shown, why, taught } = caustics::light_pass(scene, &world);
     let (light_pass, why_gathered) = photon_map::with_map(scene, &world, shown.as_ref());
     // Why nothing is shown matters only where nothing is gathered either.
-    decisions.extend(why_shown.into_iter().filter(|_| shown.is_some() || light_pass.is_none()));
+    decisions.extend(why.into_iter().filter(|_| shown.is_some() || light_pass.is_none()));
     decisions.extend(why_gathered);
     let world = world.with_light_pass(light_pass.clone());
     let between = between(&world);
@@ -82,7 +85,8 @@ pub fn plan(scene: &Scene<Curve>) -> Plan {
     let world = world.with_bright(between.bright.clone()).with_light_vertices(between.light_vertices);
     let method = world.method().clone();
     let probe = probe(&world);
-    let (cost, processor_time) = cost(scene, &method, &probe);
+    let times = photon_times(&taught.map_or(world.clone(), |taught| world.clone().taught_by(&taught)));
+    let (cost, processor_time) = cost(scene, &method, &probe, times);
     let mut because = vec![cost];
     because.extend(missed);
     because.extend(polarization::left_out(scene, &world));
@@ -151,14 +155,16 @@ fn lights(scene: &Scene<Curve>, light_pass: Option<&LightPass>) -> Vec<String> {
 }
 
 /// What a few hundred samples say of the whole.
-fn cost(scene: &Scene<Curve>, method: &Method, probe: &Probe) -> (String, Duration) {
+fn cost(scene: &Scene<Curve>, method: &Method, probe: &Probe, times: PhotonTimes) -> (String, Duration) {
     let window = scene.film.window();
     let samples = f64::from(window.width) * f64::from(window.height) * f64::from(method.samples);
     let pass = method.light_pass.as_ref();
     let of_map = pass.and_then(|pass| pass.map).map_or(0, |map| u64::from(map.count) * map.photons);
-    let photons = pass.map_or(0, |pass| pass.photons) + of_map;
-    let light_paths = probe.light_paths.mul_f64(f64::from(method.samples));
-    let time = probe.time.mul_f64(samples) + probe.photon.mul_f64(photons as f64) + light_paths;
+    let shown = pass.map_or(0, |pass| pass.photons);
+    let photons = shown + of_map;
+    let of_photons = times.shown.mul_f64(shown as f64) + times.kept.mul_f64(of_map as f64);
+    let of_light_paths = probe.light_paths.mul_f64(f64::from(method.samples));
+    let time = probe.time.mul_f64(samples) + of_photons + of_light_paths;
     let line = format!(
         "cost: about {} of processor time: {} sample{} per pixel, {:.1} rays each{}",
         in_words(time.as_secs_f64()),

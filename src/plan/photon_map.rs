@@ -56,7 +56,7 @@ pub(super) fn with_map(
     let map = passes(PHOTONS);
     let pass = shown.cloned().unwrap_or_else(|| LightPass {
         photons: (PHOTONS * samples).ceil() as u64,
-        lights: small_lights(scene, &places, SMALL),
+        lights: small_lights(untaught, &places, SMALL),
         map: None,
     });
     if pass.lights.is_empty() {

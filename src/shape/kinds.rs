@@ -319,17 +319,6 @@ impl Shape {
         })
     }
 
-    /// A point of a sphere of which most often a cap alone is seen, given by its unit normals: mostly from there; none
-    /// of other shapes.
-    pub fn sample_emission_of_cap(&self, cap: &Cone, u: [f64; 2]) -> Option<SurfacePoint> {
-        if let Self::Sphere(sphere) = self { Some(sphere.sample_emission_of_cap(cap, u)) } else { None }
-    }
-
-    /// Density per unit of area with which `sample_emission_of_cap` draws a point.
-    pub fn pdf_emission_of_cap(&self, cap: &Cone, point: &SurfacePoint) -> f64 {
-        if let Self::Sphere(sphere) = self { sphere.pdf_emission_of_cap(cap, point) } else { 0.0 }
-    }
-
     /// Whether its shading normals may differ from its own.
     pub fn is_smooth(&self) -> bool {
         match self {
@@ -345,6 +334,22 @@ impl Shape {
             Self::Sphere(sphere) => self.ball().map_or(0.0, |own| sphere.pdf_emission(own, toward, point)),
             Self::Ellipsoid(ellipsoid) => ellipsoid.density_over(ellipsoid.unit_of(point.position)),
             _ => 1.0 / self.area(),
+        }
+    }
+
+    /// A point as `sample_emission` draws it; of a sphere, most often of a cap of it, given by its unit normals.
+    pub fn sample_cap_emission(&self, cap: &Cone, toward: &Ball, u: [f64; 2]) -> Option<SurfacePoint> {
+        match self {
+            Self::Sphere(sphere) => Some(sphere.sample_cap_emission(cap, self.ball()?, toward, u)),
+            _ => self.sample_emission(toward, u),
+        }
+    }
+
+    /// Density per unit of area with which `sample_cap_emission` draws a point of the shape for a ball.
+    pub fn pdf_cap_emission(&self, cap: &Cone, toward: &Ball, point: &SurfacePoint) -> f64 {
+        match self {
+            Self::Sphere(sphere) => self.ball().map_or(0.0, |own| sphere.pdf_cap_emission(cap, own, toward, point)),
+            _ => self.pdf_emission(toward, point),
         }
     }
 }

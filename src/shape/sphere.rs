@@ -143,20 +143,18 @@ impl Sphere {
         share * 2.0 / (one_minus_cos * self.area())
     }
 
-    /// A point uniform by area, most often of a cap.
-    pub(super) fn sample_emission_of_cap(&self, cap: &Cone, [u, v]: [f64; 2]) -> SurfacePoint {
-        let normal = if u < ELSEWHERE {
-            Cone::ALL.sample_uniform([u / ELSEWHERE, v])
-        } else {
-            cap.sample_uniform([(u - ELSEWHERE) / (1.0 - ELSEWHERE), v])
-        };
-        self.point(self.over(normal))
+    /// A point as `sample_emission` draws it, or most often of a cap, uniform by area.
+    pub(super) fn sample_cap_emission(&self, cap: &Cone, own: Ball, toward: &Ball, [u, v]: [f64; 2]) -> SurfacePoint {
+        if u < ELSEWHERE {
+            return self.sample_emission(own, toward, [u / ELSEWHERE, v]);
+        }
+        self.point(self.over(cap.sample_uniform([(u - ELSEWHERE) / (1.0 - ELSEWHERE), v])))
     }
 
-    /// Density per unit of area with which `sample_emission_of_cap` draws a point.
-    pub(super) fn pdf_emission_of_cap(&self, cap: &Cone, point: &SurfacePoint) -> f64 {
-        let of_cap = if cap.contains(point.normal) { 2.0 / cap.one_minus_cos } else { 0.0 };
-        (ELSEWHERE + (1.0 - ELSEWHERE) * of_cap) / self.area()
+    /// Density per unit of area with which `sample_cap_emission` draws a point.
+    pub(super) fn pdf_cap_emission(&self, cap: &Cone, own: Ball, toward: &Ball, point: &SurfacePoint) -> f64 {
+        let of_cap = if cap.contains(point.normal) { 2.0 / (cap.one_minus_cos * self.area()) } else { 0.0 };
+        ELSEWHERE * self.pdf_emission(own, toward, point) + (1.0 - ELSEWHERE) * of_cap
     }
 
     /// The cone of directions in which the sphere is seen from outside.

@@ -64,6 +64,9 @@ impl<'a, const N: usize> Interaction<'a, N> {
 
     /// With another normal by which the surface scatters.
     pub(super) fn by_normal(self, normal: DVec3) -> Self {
+        if normal == self.arrival.normal {
+            return self;
+        }
         let arrival = Arrival { normal, ..self.arrival };
         let parts = parts(self.lobes, self.material, &arrival);
         Self { arrival, parts, ..self }

@@ -1,86 +1,98 @@
 //! A map of points: a balanced k-d tree.
 //!
 //! Bentley 1975, *Multidimensional Binary Search Trees Used for Associative Searching*; Jensen 2001, *Realistic Image
-//! Synthesis Using Photon Mapping*, section 6.2, keeps photons in one.
+//! Synthesis Using Photon Mapping*, section 6.2, keeps photons in one. A grid would want one radius for all, and here
+//! each path has its own. What belongs to a point is kept apart, so that a search reads little memory.
 
 use std::ops::Range;
 
-use crate::math::DVec3;
+use crate::math::{Bounds, DVec3};
 
-/// Points with what belongs to them, in the order of a tree: the middle of every range splits it.
+/// Points with what belongs to them.
 #[derive(Clone, Debug)]
 pub(super) struct KdTree<T> {
-    points: Vec<(DVec3, T)>,
-    /// Along which axis each point splits its range.
-    axes: Vec<u8>,
+    /// Leaf by leaf; within each in the order that they were given.
+    points: Vec<DVec3>,
+    found: Vec<T>,
+    /// Level by level: the children of split i are 2 i + 1 and 2 i + 2.
+    splits: Vec<Split>,
+    bounds: Option<Bounds>,
+}
+
+/// A plane that has one half of a range before it and the other beyond.
+#[derive(Clone, Copy, Debug, Default)]
+struct Split {
+    at: f64,
+    axis: u32,
 }
 
 /// Ranges of so few points are not split.
 const FEW: usize = 8;
-/// Ranges of so many are put in order side by side.
-const MANY: usize = 1 << 14;
-
-impl<T: Send> KdTree<T> {
-    pub(super) fn new(mut points: Vec<(DVec3, T)>) -> Self {
-        let mut axes = vec![0; points.len()];
-        order(&mut points, &mut axes);
-        Self { points, axes }
-    }
-}
 
 impl<T> KdTree<T> {
-    /// Visits all points nearer to a place than a radius, in an order that never changes.
-    pub(super) fn near(&self, place: DVec3, radius: f64, visit: &mut impl FnMut(DVec3, &T)) {
-        self.visit(0..self.points.len(), place, radius, visit);
+    pub(super) fn new(points: Vec<(DVec3, T)>) -> Self {
+        let mut order: Vec<(DVec3, u32)> = (0..).zip(&points).map(|(number, point)| (point.0, number)).collect();
+        let mut splits = Vec::new();
+        split(&mut order, 0, &mut splits);
+        let mut given: Vec<Option<T>> = points.into_iter().map(|point| Some(point.1)).collect();
+        let found = order.iter().filter_map(|&(_, number)| given[number as usize].take()).collect();
+        let points: Vec<DVec3> = order.into_iter().map(|point| point.0).collect();
+        let bounds = points.iter().map(|&point| Bounds { min: point, max: point }).reduce(Bounds::union);
+        Self { points, found, splits, bounds }
     }
 
-    fn visit(&self, range: Range<usize>, place: DVec3, radius: f64, visit: &mut impl FnMut(DVec3, &T)) {
+    /// Visits all points nearer to a place than a radius, in an order that never changes.
+    pub(super) fn near(&self, place: DVec3, radius: f64, visit: &mut impl FnMut(DVec3, &T)) {
+        let Some(Bounds { min, max }) = self.bounds else { return };
+        if (place.clamp(min, max) - place).length_squared() < radius * radius {
+            self.visit(0, 0..self.points.len(), place, radius, visit);
+        }
+    }
+
+    fn visit(&self, node: usize, range: Range<usize>, place: DVec3, radius: f64, visit: &mut impl FnMut(DVec3, &T)) {
         let Range { start, end } = range;
         if end - start <= FEW {
             self.look(start..end, place, radius, visit);
             return;
         }
-        let middle = start + (end - start) / 2;
-        let axis = usize::from(self.axes[middle]);
-        let beyond = place[axis] - self.points[middle].0[axis];
+        let (Split { at, axis }, middle) = (self.splits[node], start + (end - start) / 2);
+        let beyond = place[axis as usize] - at;
         if beyond < radius {
-            self.visit(start..middle, place, radius, visit);
+            self.visit(2 * node + 1, start..middle, place, radius, visit);
         }
-        self.look(middle..middle + 1, place, radius, visit);
         if beyond > -radius {
-            self.visit(middle + 1..end, place, radius, visit);
+            self.visit(2 * node + 2, middle..end, place, radius, visit);
         }
     }
 
     fn look(&self, range: Range<usize>, place: DVec3, radius: f64, visit: &mut impl FnMut(DVec3, &T)) {
-        for (point, found) in &self.points[range] {
+        for (point, number) in self.points[range.clone()].iter().zip(range) {
             if (*point - place).length_squared() < radius * radius {
-                visit(*point, found);
+                visit(*point, &self.found[number]);
             }
         }
     }
 }
 
-/// Puts points in the order of a tree.
-fn order<T: Send>(points: &mut [(DVec3, T)], axes: &mut [u8]) {
+/// Puts points in the order of a tree, which their numbers and places alone decide.
+fn split(points: &mut [(DVec3, u32)], node: usize, splits: &mut Vec<Split>) {
     if points.len() <= FEW {
+        points.sort_unstable_by_key(|point| point.1);
         return;
     }
     let [low, high] = [DVec3::min, DVec3::max].map(|of| points.iter().map(|point| point.0).reduce(of));
     let size = high.unwrap_or_default() - low.unwrap_or_default();
     let axis = (1..3).fold(0, |widest, axis| if size[axis] > size[widest] { axis } else { widest });
     let middle = points.len() / 2;
-    points.select_nth_unstable_by(middle, |a, b| a.0[axis].total_cmp(&b.0[axis]));
-    axes[middle] = axis as u8;
-    let ((before, after), (axes_before, axes_after)) = (points.split_at_mut(middle), axes.split_at_mut(middle));
-    let mut left = || order(before, axes_before);
-    let mut right = || order(&mut after[1..], &mut axes_after[1..]);
-    if middle > MANY {
-        rayon::join(left, right);
-    } else {
-        left();
-        right();
+    let order = |a: &(DVec3, u32), b: &(DVec3, u32)| a.0[axis].total_cmp(&b.0[axis]).then(a.1.cmp(&b.1));
+    points.select_nth_unstable_by(middle, order);
+    if splits.len() <= node {
+        splits.resize(node + 1, Split::default());
     }
+    splits[node] = Split { at: points[middle].0[axis], axis: axis as u32 };
+    let (before, beyond) = points.split_at_mut(middle);
+    split(before, 2 * node + 1, splits);
+    split(beyond, 2 * node + 2, splits);
 }
 
 #[cfg(test)]

@@ -9,7 +9,8 @@
 use rayon::prelude::*;
 
 use super::photon::{Landing, Splat, show as show_photon};
-use super::photon_batch::{Sent, batches, send};
+use super::photon_batch::{Batch, Sent, batches, send};
+use super::photon_targets::PhotonTargets;
 use super::sensor::amount;
 use super::stats::Stats;
 use super::tile::TILE;
@@ -79,8 +80,7 @@ pub(super) fn splats<const N: usize>(
     let Some(targets) = &world.photon_targets else { return shown };
     let batches = batches(targets, |_| 0, |target| target.photons, world.method.seed ^ SEED);
     for group in batches.chunks(AT_ONCE) {
-        let done: Vec<Sent<Splat>> =
-            group.par_iter().map(|batch| send::<N, _>(world, targets, *batch, false, show_one)).collect();
+        let done: Vec<Sent<Splat>> = group.par_iter().map(|batch| send_shown::<N>(world, targets, *batch)).collect();
         progress(group.iter().map(|batch| batch.count).sum());
         for sent in done {
             shown.stats += sent.stats;
@@ -95,6 +95,11 @@ pub(super) fn splats<const N: usize>(
     }
     shown.photons = batches.iter().map(|batch| batch.count).sum();
     shown
+}
+
+/// Sends one batch.
+pub(super) fn send_shown<const N: usize>(world: &World, targets: &PhotonTargets, batch: Batch) -> Sent<Splat> {
+    send(world, targets, batch, false, show_one::<N>)
 }
 
 fn show_one<const N: usize>(walker: &Walker<N>, landing: &Landing<N>, sampler: &Sampler, splats: &mut Vec<Splat>) {

@@ -86,7 +86,7 @@ pub use method::{LightPass, MapPasses, Method, Transport};
 pub use photon_targets::is_photon_target;
 pub use pilot::{PhotonWorth, SampleWorth, photons_worth, samples_worth};
 pub use prepare::{prepare, prepare_unguided};
-pub use probe::{Probe, probe};
+pub use probe::{PhotonTimes, Probe, photon_times, probe};
 pub use reach::{gathered_photons, reached_places};
 pub use render::{Rendering, Report, render, work};
 pub use resampling_worth::resampling_gain;

@@ -19,13 +19,13 @@ const RAY: u32 = 0;
 /// as much time for as much noise, never splitting 2 to 15 times as much (`benches/caustics.rs`).
 const PHOTONS: Transport = Transport::Random { split: 0.25, roulette: 0.05 };
 
-/// A part of an target's photons.
+/// A part of a target's photons.
 #[derive(Clone, Copy)]
 pub(super) struct Batch {
     pub(super) target: usize,
-    first: u64,
+    pub(super) first: u64,
     pub(super) count: u64,
-    seed: u64,
+    pub(super) seed: u64,
 }
 
 /// What became of a batch.

@@ -10,7 +10,8 @@ use super::World;
 use super::interaction::Interaction;
 use super::kd_tree::KdTree;
 use super::photon::Landing;
-use super::photon_batch::{Sent, batches, send};
+use super::photon_batch::{Batch, Sent, batches, send};
+use super::photon_targets::PhotonTargets;
 use super::polarization::Polarized;
 use super::stats::Stats;
 use super::walker::Walker;
@@ -66,7 +67,7 @@ const SEED: u64 = 0x6d61_7073;
 const PARTS: f64 = 32.0;
 
 /// What is kept of a photon where it lands.
-enum Kept<const N: usize> {
+pub(super) enum Kept<const N: usize> {
     Together(Landed<Together<N>>),
     Alone(Landed<Alone>),
 }
@@ -74,15 +75,11 @@ enum Kept<const N: usize> {
 /// Sends the photons of one pass.
 pub(super) fn photons<const N: usize>(world: &World, pass: u32) -> Option<PhotonMap<N>> {
     let targets = world.map_targets.as_ref()?;
-    let radius = world.method.light_pass.as_ref()?.map?.radius;
-    let matching = Matching::new(&world.method.basis, PARTS / radius);
+    let matching = matching(world)?;
     let first = |photons: u64| u64::from(pass) * photons;
     let batches = batches(targets, |target| first(target.photons), |target| target.photons, world.method.seed ^ SEED);
-    let keep = |_: &Walker<N>, landing: &Landing<N>, _: &Sampler, kept: &mut Vec<_>| {
-        keep(world, &matching, landing, kept);
-    };
     let done: Vec<Sent<(DVec3, Kept<N>)>> =
-        batches.par_iter().map(|batch| send(world, targets, *batch, false, keep)).collect();
+        batches.par_iter().map(|batch| send_kept(world, targets, &matching, *batch)).collect();
     let mut stats = Stats::default();
     let (mut together, mut alone) = (Vec::new(), Vec::new());
     for sent in done {
@@ -102,6 +99,25 @@ pub(super) fn photons<const N: usize>(world: &World, pass: u32) -> Option<Photon
     let sent = batches.iter().map(|batch| batch.count).sum();
     let (together, alone) = (KdTree::new(together), KdTree::new(alone));
     Some(PhotonMap { together, alone, matching, sent, stats })
+}
+
+/// Which wavelengths count as one in the world's map.
+pub(super) fn matching<const N: usize>(world: &World) -> Option<Matching<N>> {
+    let radius = world.method.light_pass.as_ref()?.map?.radius;
+    Some(Matching::new(&world.method.basis, PARTS / radius))
+}
+
+/// Sends one batch.
+pub(super) fn send_kept<const N: usize>(
+    world: &World,
+    targets: &PhotonTargets,
+    matching: &Matching<N>,
+    batch: Batch,
+) -> Sent<(DVec3, Kept<N>)> {
+    let keep = |_: &Walker<N>, landing: &Landing<N>, _: &Sampler, kept: &mut Vec<_>| {
+        keep(world, matching, landing, kept);
+    };
+    send(world, targets, batch, false, keep)
 }
 
 /// Keeps a photon where it lands.

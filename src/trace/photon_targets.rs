@@ -86,6 +86,23 @@ impl PhotonTargets {
         self.targets.iter().map(|target| target.photons).sum()
     }
 
+    /// The target of one of all the photons, counted from the first target on.
+    pub(super) fn of_photon(&self, number: u64) -> usize {
+        let mut before = 0;
+        let holds = |target: &PhotonTarget| {
+            before += target.photons;
+            number < before
+        };
+        self.targets.iter().position(holds).unwrap_or(self.targets.len() - 1)
+    }
+
+    /// Follows what other targets of the same scene, of all these lights, have learned.
+    pub(super) fn follow(&mut self, taught: &Self) {
+        self.targets.clone_from(&taught.targets);
+        self.targets.retain(|target| self.lights[target.light]);
+        self.share_out();
+    }
+
     /// Lets each target have its part of the photons, most of them by flux.
     fn share_out(&mut self) {
         let (total, count) = (self.targets.iter().map(|target| target.flux).sum::<f64>(), self.targets.len() as f64);

@@ -1,14 +1,18 @@
 //! A few hundred camera samples, traced ahead so that the plan can speak in numbers.
 
+use std::cell::Cell;
+use std::ops::Range;
 use std::time::{Duration, Instant};
 
-use super::World;
+use super::light_pass::send_shown;
 use super::light_vertices::{LightVertices, SHARED};
 use super::path_tracer::PathTracer;
-use super::photon::Landing;
-use super::photon_batch::{batches, send};
-use super::walker::Walker;
+use super::photon_batch::Batch;
+use super::photon_map::{matching, photons, send_kept};
+use super::photon_targets::PhotonTargets;
+use super::stats::Stats;
 use super::width::in_lanes;
+use super::{LightPass, MapPasses, World};
 use crate::math::Sampler;
 
 /// What a probe found, per camera sample.
@@ -20,22 +24,32 @@ pub struct Probe {
     pub rays: f64,
     /// Share of the samples whose lanes parted.
     pub parted: f64,
-    /// Processor time: of the median ray, times the rays of a mean sample, so that what else the processor did does not
-    /// count.
+    /// Processor time, with that of gathering photons.
     pub time: Duration,
-    /// The same of a photon, if any are sent.
-    pub photon: Duration,
-    /// Of light paths, if any are followed, for one sample of every pixel.
+    /// Processor time of light paths, if any are followed, for one sample of every pixel.
     pub light_paths: Duration,
 }
 
+/// Processor time per photon; none where there are no such photons.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PhotonTimes {
+    /// Of one of the light pass.
+    pub shown: Duration,
+    /// Of one of a map.
+    pub kept: Duration,
+}
+
 /// Camera samples along each side of the image.
-const SIDE: u32 = 24;
+const SIDE: u32 = 48;
 /// Samples that are timed together.
 const BATCH: u32 = 16;
-/// Photons of an target, and of how many targets.
-const FEW: u64 = 512;
-const TARGETS: usize = 8;
+/// What takes so many times as long as the median is timed again.
+const SLOW: f64 = 2.0;
+/// Photons that are timed together, and how often.
+const FEW: u64 = 64;
+const TIMES: u64 = 64;
+/// Most photons of the map that is gathered from.
+const GATHERED: u64 = 4096;
 /// Time after which the probe has seen enough.
 const ENOUGH: Duration = Duration::from_millis(300);
 
@@ -59,54 +73,91 @@ fn probe_lanes<const N: usize>(world: &World) -> Probe {
     }
     let before_vertices = Instant::now();
     let vertices = LightVertices::<N>::shared(world, 0);
-    let shared = before_vertices.elapsed();
-    let mut tracer = PathTracer::<N>::new(world);
+    let light_paths =
+        vertices.as_ref().map_or(Duration::ZERO, |_| before_vertices.elapsed().div_f64(f64::from(SHARED)));
+    let few = with_few_photons(world);
+    let photons = photons::<N>(&few, 0);
+    let mut tracer = PathTracer::<N>::new(&few).with_photons(photons.as_ref());
     tracer.light_vertices = vertices.as_ref();
-    let (mut samples, mut parted) = (0_u32, 0);
     let window = world.scene.film.window();
-    let start = Instant::now();
-    let (mut before_batch, mut per_ray) = ((start, 0), Vec::new());
-    // A stride that is coprime to the number of places visits them all, far ones first.
-    let places = SIDE * SIDE;
-    for place in (0..places).map(|i| (i * 229) % places) {
-        let [x, y] = window.middle_of_cell(SIDE, place);
-        let before = tracer.walker.stats.partings;
-        tracer.sample(&Sampler::new(world.method.seed, [x, y], 0), [x, y]);
-        samples += 1;
-        parted += u32::from(tracer.walker.stats.partings > before);
-        if samples.is_multiple_of(BATCH) || start.elapsed() > ENOUGH {
-            let (then, rays) = before_batch;
-            before_batch = (Instant::now(), tracer.walker.stats.rays);
-            per_ray.push((before_batch.0 - then).as_secs_f64() / (before_batch.1 - rays).max(1) as f64);
+    let parted = Cell::new(0);
+    let mut take = |numbers: Range<u32>| {
+        let (start, before) = (Instant::now(), tracer.walker.stats.rays);
+        // A stride that is coprime to the number of places visits them all, far ones first.
+        for place in numbers.map(|i| (i * 229) % (SIDE * SIDE)) {
+            let [x, y] = window.middle_of_cell(SIDE, place);
+            let before = tracer.walker.stats.partings;
+            tracer.sample(&Sampler::new(world.method.seed, [x, y], 0), [x, y]);
+            parted.set(parted.get() + u32::from(tracer.walker.stats.partings > before));
         }
-        if start.elapsed() > ENOUGH {
-            break;
-        }
+        Timed { time: start.elapsed(), rays: tracer.walker.stats.rays - before }
+    };
+    let (start, mut batches) = (Instant::now(), Vec::new());
+    while batches.len() < (SIDE * SIDE / BATCH) as usize && start.elapsed() < ENOUGH {
+        let first = batches.len() as u32 * BATCH;
+        batches.push(take(first..first + BATCH));
     }
-    per_ray.sort_by(f64::total_cmp);
+    let (samples, parted) = (batches.len() as u32 * BATCH, parted.get());
+    let rays = batches.iter().map(|batch| batch.rays).sum::<u64>() as f64 / f64::from(samples);
+    let time = undisturbed(batches, |number| take(number as u32 * BATCH..(number as u32 + 1) * BATCH));
     let per_sample = 1.0 / f64::from(samples);
-    let rays = tracer.walker.stats.rays as f64 * per_sample;
-    Probe {
-        samples,
-        rays,
-        parted: f64::from(parted) * per_sample,
-        time: Duration::from_secs_f64(per_ray[per_ray.len() / 2] * rays),
-        photon: photon_time::<N>(world),
-        light_paths: vertices.map_or(Duration::ZERO, |_| shared.div_f64(f64::from(SHARED))),
-    }
+    Probe { samples, rays, parted: f64::from(parted) * per_sample, time: time.mul_f64(per_sample), light_paths }
 }
 
-/// The time that a photon takes: the median of the targets, most photons of a light being alike.
-fn photon_time<const N: usize>(world: &World) -> Duration {
-    let Some(targets) = &world.photon_targets else { return Duration::ZERO };
-    let time = |batch| {
-        let start = Instant::now();
-        send(world, targets, batch, true, |_: &Walker<N>, _: &Landing<N>, _: &Sampler, kept| kept.push(()));
-        start.elapsed().div_f64(FEW as f64)
+/// What some work took.
+#[derive(Clone, Copy)]
+struct Timed {
+    time: Duration,
+    rays: u64,
+}
+
+/// The time of all batches. Those whose rays took much longer than the median are timed again: where only something
+/// else kept the processor, they are faster.
+fn undisturbed(batches: Vec<Timed>, mut again: impl FnMut(usize) -> Timed) -> Duration {
+    let per_ray = |batch: &Timed| batch.time.as_secs_f64() / batch.rays.max(1) as f64;
+    let mut all: Vec<f64> = batches.iter().map(per_ray).collect();
+    all.sort_by(f64::total_cmp);
+    let slow = SLOW * all[all.len() / 2];
+    let time = |(number, batch): (usize, &Timed)| match per_ray(batch) > slow {
+        true => batch.time.min(again(number).time),
+        false => batch.time,
     };
-    let batches = batches(targets, |_| 0, |_| FEW, world.method.seed);
-    let step = batches.len().div_ceil(TARGETS).max(1);
-    let mut times: Vec<Duration> = batches.into_iter().step_by(step).map(time).collect();
-    times.sort();
-    times[times.len() / 2]
+    batches.iter().enumerate().map(time).sum()
+}
+
+/// A world whose map has few photons, of which as many are gathered around a place as of all.
+fn with_few_photons(world: &World) -> World {
+    let fewer = |map: MapPasses| {
+        let photons = map.photons.min(GATHERED);
+        MapPasses { photons, radius: map.radius * (map.photons as f64 / photons as f64).sqrt(), ..map }
+    };
+    let pass = world.method.light_pass.as_ref();
+    world.with_light_pass(pass.map(|pass| LightPass { map: pass.map.map(fewer), ..pass.clone() }))
+}
+
+/// Sends some photons of those targets that send most.
+pub fn photon_times(world: &World) -> PhotonTimes {
+    let of = |targets: &Option<PhotonTargets>, send: &dyn Fn(&PhotonTargets, Batch) -> Stats| {
+        targets.as_ref().map_or(Duration::ZERO, |targets| photon_time(targets, world.method.seed, send))
+    };
+    in_lanes!(&world.method.basis, N => {
+        let matching = matching::<N>(world);
+        let keep = |targets: &PhotonTargets, batch| {
+            matching.as_ref().map_or(Stats::default(), |matching| send_kept(world, targets, matching, batch).stats)
+        };
+        PhotonTimes {
+            shown: of(&world.photon_targets, &|targets, batch| send_shown::<N>(world, targets, batch).stats),
+            kept: of(&world.map_targets, &keep),
+        }
+    })
+}
+
+fn photon_time(targets: &PhotonTargets, seed: u64, send: &dyn Fn(&PhotonTargets, Batch) -> Stats) -> Duration {
+    let take = |number: u64| {
+        let target = targets.of_photon((2 * number + 1) * targets.photons() / (2 * TIMES));
+        let start = Instant::now();
+        let stats = send(targets, Batch { target, first: number * FEW, count: FEW, seed });
+        Timed { time: start.elapsed(), rays: stats.rays }
+    };
+    undisturbed((0..TIMES).map(take).collect(), |number| take(number as u64)).div_f64((TIMES * FEW) as f64)
 }

@@ -92,6 +92,14 @@ impl World {
         world
     }
 
+    /// This world, its light pass's photons sent where another world of the same scene has learned to.
+    pub fn taught_by(mut self, taught: &Self) -> Self {
+        if let (Some(targets), Some(taught)) = (&mut self.photon_targets, &taught.photon_targets) {
+            targets.follow(taught);
+        }
+        self
+    }
+
     /// This world with other bright places that bounces are aimed at.
     pub fn with_bright(&self, bright: Option<BrightPlaces>) -> Self {
         let mut world = self.clone();
