@@ -5,7 +5,7 @@ use std::cell::Cell;
 use super::interaction::{Interaction, Meeting};
 use super::media::Boundary;
 use super::path::{Path, ScatterSample};
-use super::roulette::survival;
+use super::roulette::{LONG, survival};
 use super::stats::Stats;
 use super::{Transport, World, shading, straight};
 use crate::material::{Branch, Straight};
@@ -98,7 +98,7 @@ impl<'a, const N: usize> Walker<'a, N> {
             }
             Transport::Random { split, roulette } => {
                 let draw = departure.at.arrival.draw;
-                if self.branches.len() > 1 && path.weight(draw) <= split {
+                if self.branches.len() > 1 && (path.vertices >= LONG || path.weight(draw) <= split) {
                     self.choose(departure, sampler, roulette)
                 } else {
                     self.follow_many(departure, sampler, roulette)
