@@ -120,8 +120,7 @@ impl<S> Area<S> {
         if sample.part.is_some_and(|part| part != crossing.part) {
             return None;
         }
-        let point = self.shape.point(&ray, &crossing);
-        let cos = point.normal.dot(ray.direction);
+        let cos = self.shape.normal(&ray, &crossing).dot(ray.direction);
         if !self.sides.shine(cos < 0.0) {
             return None;
         }
@@ -129,10 +128,9 @@ impl<S> Area<S> {
             Some(density) => usable(density.toward(crossing.t, cos.abs()))?,
             None => self.pdf_at(&ray, normal, &crossing)?,
         };
-        let uv = self
-            .coordinates
-            .as_ref()
-            .map_or([0.0; 2], |coordinates| coordinates.at(&self.shape, &crossing, point.position));
+        let uv = self.coordinates.as_ref().map_or([0.0; 2], |coordinates| {
+            coordinates.at(&self.shape, &crossing, self.shape.point(&ray, &crossing).position)
+        });
         let (distance, object) = (crossing.t, Some(self.object));
         Some(LightSample { ray, distance, object, part, pdf: Some(pdf), factor: 1.0, uv })
     }

@@ -116,6 +116,11 @@ impl Shape {
         }
     }
 
+    /// The geometric unit normal there.
+    pub fn normal(&self, ray: &Ray, crossing: &Crossing) -> DVec3 {
+        if let Self::Mesh(mesh) = self { mesh.normal(crossing.part) } else { self.point(ray, crossing).normal }
+    }
+
     /// The box the shape fills, or none for an infinite one.
     pub fn bounds(&self) -> Option<Bounds> {
         match self {
@@ -251,7 +256,7 @@ impl Shape {
     }
 
     fn toward(&self, density: Density, ray: &Ray, crossing: &Crossing) -> f64 {
-        density.toward(crossing.t, self.point(ray, crossing).normal.dot(ray.direction).abs())
+        density.toward(crossing.t, self.normal(ray, crossing).dot(ray.direction).abs())
     }
 
     /// A direction as `sample` draws it; toward a sphere, most often to a cap of it, given by its unit normals.
@@ -279,7 +284,7 @@ impl Shape {
     pub fn part(&self, part: u32) -> Option<Polygon<'_>> {
         match self {
             Self::Cube(cube) => Some(Polygon::Parallelogram(cube.face(part))),
-            Self::Mesh(mesh) => Some(Polygon::Triangle(mesh.triangle(part))),
+            Self::Mesh(mesh) => Some(mesh.polygon(part)),
             Self::Instance(instance) => Some(Polygon::Triangle(instance.triangle(part))),
             _ => None,
         }

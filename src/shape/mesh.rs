@@ -4,7 +4,7 @@ use super::bvh::GROUP;
 use super::edges::open_edges;
 use super::packed::Packed;
 use super::triangle::{Facet, tangents_over};
-use super::{Attributes, Bvh, Crossing, SurfacePoint, Triangle, Vertices};
+use super::{Attributes, Bvh, Crossing, Polygon, SurfacePoint, Triangle, Vertices};
 use crate::math::{Bounds, DVec3, Distribution, Ray, Transform};
 
 /// Triangles over shared vertices, with a tree of boxes.
@@ -77,6 +77,21 @@ impl Mesh {
 
     pub(super) fn is_closed(&self) -> bool {
         self.closed
+    }
+
+    /// One of the triangles.
+    pub(super) fn polygon(&self, index: u32) -> Polygon<'_> {
+        match self.facets.get(index as usize) {
+            Some(facet) => Polygon::Facet(facet),
+            None => Polygon::Triangle(self.triangle(index)),
+        }
+    }
+
+    pub(super) fn normal(&self, index: u32) -> DVec3 {
+        match self.facets.get(index as usize) {
+            Some(facet) => facet.normal,
+            None => self.triangle(index).normal(),
+        }
     }
 
     pub(super) fn triangle(&self, index: u32) -> Triangle {

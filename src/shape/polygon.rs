@@ -1,5 +1,6 @@
 use super::affine_plane::AffinePlane;
 use super::outline::Outline;
+use super::triangle::Facet;
 use super::{Density, ShapeSample, Triangle};
 use crate::math::{Bounds, DVec3};
 
@@ -8,6 +9,8 @@ use crate::math::{Bounds, DVec3};
 pub enum Polygon<'a> {
     /// A triangle, where it stands in the world.
     Triangle(Triangle),
+    /// The same, kept by its mesh.
+    Facet(&'a Facet),
     /// The unit square of a plane.
     Parallelogram(&'a AffinePlane),
 }
@@ -17,6 +20,7 @@ impl Polygon<'_> {
     pub fn bounds(&self) -> Bounds {
         match self {
             Self::Triangle(triangle) => triangle.bounds(),
+            Self::Facet(facet) => facet.triangle.bounds(),
             Self::Parallelogram(plane) => plane.bounds(),
         }
     }
@@ -25,6 +29,7 @@ impl Polygon<'_> {
     pub fn normal(&self) -> DVec3 {
         match self {
             Self::Triangle(triangle) => triangle.normal(),
+            Self::Facet(facet) => facet.normal,
             Self::Parallelogram(plane) => plane.normal(),
         }
     }
@@ -33,6 +38,7 @@ impl Polygon<'_> {
     pub fn area(&self) -> f64 {
         match self {
             Self::Triangle(triangle) => triangle.area(),
+            Self::Facet(facet) => facet.area,
             Self::Parallelogram(plane) => plane.area(),
         }
     }
@@ -42,6 +48,7 @@ impl Polygon<'_> {
         match (self.outline(from), self) {
             (Some(outline), _) => Some(ShapeSample::of_direction(outline.sample(u), 1.0 / outline.solid_angle())),
             (None, Self::Triangle(triangle)) => self.toward(from, triangle.sample_area(u)),
+            (None, Self::Facet(facet)) => self.toward(from, facet.triangle.sample_area(u)),
             (None, Self::Parallelogram(plane)) => self.toward(from, plane.sample_area(u)),
         }
     }
@@ -61,6 +68,7 @@ impl Polygon<'_> {
     fn outline(&self, from: DVec3) -> Option<Outline> {
         match self {
             Self::Triangle(triangle) => triangle.outline(from),
+            Self::Facet(facet) => facet.outline(from),
             Self::Parallelogram(plane) => plane.outline(from),
         }
     }

@@ -35,7 +35,17 @@ impl Triangle {
     }
 
     pub(super) fn point(&self, uv: [f64; 2]) -> SurfacePoint {
-        Facet::new(self).point(uv)
+        let (position, normal) = (self.at(uv), self.normal());
+        SurfacePoint { position, error: self.error(), normal, shading: normal }
+    }
+
+    /// Bound of the error of a point.
+    fn error(&self) -> DVec3 {
+        let [p1, p2, p3] = self.points;
+        let largest = p1.abs().max(p2.abs()).max(p3.abs());
+        // The test forms differences as long as the triangle in every coordinate, also in one that is 0 at all corners.
+        let extent = p1.max(p2).max(p3) - p1.min(p2).min(p3);
+        (largest + DVec3::splat(extent.max_element())) * gamma(7)
     }
 
     fn at(&self, [u, v]: [f64; 2]) -> DVec3 {
@@ -65,12 +75,27 @@ impl Triangle {
 
     /// The outline seen from a point, if it is near.
     pub(super) fn outline(&self, from: DVec3) -> Option<Outline> {
+        self.outline_from(from, self.middle(), self.squared())
+    }
+
+    fn outline_from(&self, from: DVec3, middle: DVec3, squared: f64) -> Option<Outline> {
         let [p1, p2, p3] = self.points;
-        let longest = (p2 - p1).length_squared().max((p3 - p1).length_squared()).max((p3 - p2).length_squared());
-        if !is_near((p1 + p2 + p3) / 3.0 - from, 0.25 * longest) {
+        if !is_near(middle - from, squared) {
             return None;
         }
         Outline::seen(from, &self.points, (p2 - p1).cross(p3 - p1))
+    }
+
+    fn middle(&self) -> DVec3 {
+        let [p1, p2, p3] = self.points;
+        (p1 + p2 + p3) / 3.0
+    }
+
+    /// The square of half the longest edge.
+    fn squared(&self) -> f64 {
+        let [p1, p2, p3] = self.points;
+        let longest = (p2 - p1).length_squared().max((p3 - p1).length_squared()).max((p3 - p2).length_squared());
+        0.25 * longest
     }
 
     pub(super) fn sample_area(&self, u: [f64; 2]) -> DVec3 {
@@ -80,20 +105,24 @@ impl Triangle {
 
 /// A triangle with what all of its points share.
 #[derive(Clone, Debug)]
-pub(super) struct Facet {
+pub struct Facet {
     pub(super) triangle: Triangle,
-    normal: DVec3,
+    pub(super) normal: DVec3,
+    pub(super) area: f64,
     error: DVec3,
+    middle: DVec3,
+    squared: f64,
 }
 
 impl Facet {
     pub(super) fn new(triangle: &Triangle) -> Self {
-        let [p1, p2, p3] = triangle.points;
-        let largest = p1.abs().max(p2.abs()).max(p3.abs());
-        // The test forms differences as long as the triangle in every coordinate, also in one that is 0 at all corners.
-        let extent = p1.max(p2).max(p3) - p1.min(p2).min(p3);
-        let error = (largest + DVec3::splat(extent.max_element())) * gamma(7);
-        Self { triangle: triangle.clone(), normal: triangle.normal(), error }
+        let error = triangle.error();
+        let (middle, squared) = (triangle.middle(), triangle.squared());
+        Self { triangle: triangle.clone(), normal: triangle.normal(), area: triangle.area(), error, middle, squared }
+    }
+
+    pub(super) fn outline(&self, from: DVec3) -> Option<Outline> {
+        self.triangle.outline_from(from, self.middle, self.squared)
     }
 
     pub(super) fn point(&self, uv: [f64; 2]) -> SurfacePoint {
