@@ -8,17 +8,19 @@
 //! in the Presence of Weak Singularities*, bound the same way).
 
 use std::f64::consts::FRAC_1_PI;
+use std::ops::Range;
 
 use rayon::prelude::*;
 
 use super::media::{Media, media_of_lights};
+use super::path::PathKind;
 use super::photon::{Landing, Start, Surfaces, follow_photon};
 use super::sensor::amount;
 use super::stats::Stats;
 use super::usefulness::usefulness;
 use super::walker::Walker;
 use super::{Transport, World};
-use crate::light::LightId;
+use crate::light::{Light, LightId};
 use crate::material::{Lobes, Material};
 use crate::math::{BranchKey, DVec3, Distribution, Sampler};
 use crate::shape::SurfacePoint;
@@ -67,15 +69,16 @@ pub(super) const SHARED: u32 = 16;
 /// Camera samples for each light path, and the fewest and most light paths: what samples share does not average out
 /// over pixels.
 const PER_PATH: u64 = 64;
-const FEWEST: u64 = 1024;
+const FEWEST: u64 = 256;
 const MOST: u64 = 8192;
 /// Light paths that are followed one after another; their vertices are kept in the order of the batches.
 const BATCH: u64 = 256;
 /// D as a share of the median distance of vertices from their middle: a twelfth of the side of a room. From two thirds
 /// of that to one and a half, the error for the time is the same.
 const NEAR: f64 = 0.1;
-/// The set of a pilot.
+/// The set of a pilot, and its light paths.
 const PILOT: u32 = u32::MAX;
+const OF_A_PILOT: u64 = 1024;
 /// Sets these random numbers apart from the others.
 const SEED: u64 = 0x6c76_7274;
 /// Uses of a light path's random numbers: where it starts, and of which light.
@@ -97,10 +100,9 @@ pub(super) fn finds_all_light(world: &World) -> bool {
         let smooth = object.shape.is_smooth() || object.relief.is_some();
         !(lobes.intersects(Lobes::GLOSSY_TRANSMISSION) || (smooth && lobes.has_delta()))
     };
-    let shines = |light: &crate::light::Light<_>| light.flux() > 0.0 && light.flux().is_finite();
+    let shines = |light: &Light<_>| light.flux() > 0.0 && light.flux().is_finite();
     !world.method.basis.draws_wavelengths()
         && matches!(world.method.transport, Transport::Random { .. })
-        && !world.has_map()
         && !scene.lights.is_empty()
         && scene.lights.iter().all(shines)
         && (0..scene.objects.len()).all(is_plain)
@@ -115,19 +117,19 @@ pub(super) fn holds_vertices(world: &World, object: u32, point: &SurfacePoint) -
 }
 
 impl<const N: usize> LightVertices<N> {
-    /// The vertices for the samples from `SHARED` times `number` on; none where the method asks for none.
-    pub(super) fn shared(world: &World, number: u32) -> Option<Self> {
+    /// The vertices for some samples of each pixel, at most `SHARED`; none where the method asks for none.
+    pub(super) fn shared(world: &World, samples: Range<u32>) -> Option<Self> {
         if !world.method.light_vertices || !finds_all_light(world) {
             return None;
         }
         let film = world.scene.film;
-        let samples = u64::from(film.width) * u64::from(film.height) * u64::from(SHARED);
-        Self::of_paths(world, number, (samples / PER_PATH).clamp(FEWEST, MOST))
+        let all = u64::from(film.width) * u64::from(film.height) * samples.len() as u64;
+        Self::of_paths(world, samples.start, (all / PER_PATH).clamp(FEWEST, MOST))
     }
 
     /// A few vertices, for a pilot.
     pub(super) fn few(world: &World) -> Option<Self> {
-        Self::of_paths(world, PILOT, FEWEST)
+        Self::of_paths(world, PILOT, OF_A_PILOT)
     }
 
     /// The vertices of some light paths of a set; none if nothing shines.
@@ -266,13 +268,13 @@ struct Followed<const N: usize> {
 impl Lights {
     /// None if no light shines.
     fn new(world: &World) -> Option<Self> {
-        let flux = |(id, light): (LightId, &crate::light::Light<_>)| light.flux() * world.luminance(id);
+        let flux = |(id, light): (LightId, &Light<_>)| light.flux() * world.luminance(id);
         let by_flux = Distribution::new(world.scene.lights.iter().enumerate().map(flux));
         (by_flux.total() > 0.0).then(|| Self { by_flux, media: media_of_lights(&world.scene) })
     }
 
     /// Follows some light paths of a set.
-    fn follow<const N: usize>(&self, world: &World, set: u32, paths: std::ops::Range<u64>) -> Followed<N> {
+    fn follow<const N: usize>(&self, world: &World, set: u32, paths: Range<u64>) -> Followed<N> {
         let mut walker = Walker::<N>::new(world, LIGHT_PATHS);
         let draw = world.method.basis.draw(0.0);
         let mut vertices = Vec::new();
@@ -295,13 +297,17 @@ impl Lights {
     }
 }
 
-/// The vertex where a light path lands, if it is one.
+/// The vertex where a light path lands, if it is one: not where photons are gathered that came the same way.
 fn kept<const N: usize>(world: &World, landing: &Landing<N>) -> Option<LightVertex<N>> {
     let Landing { path, at, light, .. } = landing;
     let Material::Diffuse(diffuse) = at.material else { return None };
     let leaving = landing.flux(world) * at.arrival.read(&diffuse.reflectance) * FRAC_1_PI as f32;
-    let usable =
-        holds_vertices(world, at.object, at.point) && !leaving.is_zero() && leaving.0.iter().all(|x| x.is_finite());
+    let came_over_smooth = path.vertices > 1 && path.kind == PathKind::Other;
+    let is_gathered = world.has_map() && world.sends_photons(*light) && came_over_smooth;
+    let usable = holds_vertices(world, at.object, at.point)
+        && !is_gathered
+        && !leaving.is_zero()
+        && leaving.0.iter().all(|x| x.is_finite());
     let diffuse = world.method.diffuse_bounces - path.diffuse_left + 1;
     let (point, flat, light, vertices) = (*at.point, at.flat, *light, path.vertices);
     usable.then_some(LightVertex { point, flat, leaving, light, vertices, diffuse })

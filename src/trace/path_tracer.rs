@@ -190,10 +190,15 @@ impl<'a, const N: usize> PathTracer<'a, N> {
     ) {
         let world = self.walker.world;
         let Some(boundary) = self.walker.boundary(path, meeting) else { return };
-        if self.ends_at_light_vertices(path, meeting, sampler) {
+        let ends = self.ends_at_light_vertices(path, meeting, sampler);
+        if ends && !(world.has_map() && path.diffuse_left > 0) {
             return;
         }
         let at = Interaction::new(world, draw, path, meeting, boundary);
+        if ends {
+            // Light vertices leave out what photons bring here.
+            return self.gather_photons(path, &at, sampler);
+        }
         let material = at.material;
         let goes_on = !at.lobes.is_diffuse() || path.diffuse_left > 0;
         let bright = world.bright.as_ref().filter(|_| may_aim(material));

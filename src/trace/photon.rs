@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use super::World;
 use super::interaction::{Interaction, parts};
 use super::media::{self, Media};
-use super::path::Path;
+use super::path::{Path, PathKind};
 use super::polarization::Polarized;
 use super::shading;
 use super::straight;
@@ -98,6 +98,9 @@ pub(super) fn follow_photon<const N: usize>(
             continue;
         }
         path.vertices += 1;
+        if over == Surfaces::All && path.vertices == 1 && !world.is_photon_target(meeting.hit.object) {
+            path.kind = PathKind::Wide;
+        }
         let Some(boundary) = walker.boundary(&path, &meeting) else { continue };
         let at = Interaction::new(world, draw, &path, &meeting, boundary);
         // As often as light may leave surfaces on its way from the camera.

@@ -72,7 +72,7 @@ fn probe_lanes<const N: usize>(world: &World) -> Probe {
         }
     }
     let before_vertices = Instant::now();
-    let vertices = LightVertices::<N>::shared(world, 0);
+    let vertices = LightVertices::<N>::shared(world, 0..SHARED);
     let light_paths =
         vertices.as_ref().map_or(Duration::ZERO, |_| before_vertices.elapsed().div_f64(f64::from(SHARED)));
     let few = with_few_photons(world);
@@ -126,7 +126,7 @@ fn undisturbed(batches: Vec<Timed>, mut again: impl FnMut(usize) -> Timed) -> Du
 }
 
 /// A world whose map has few photons, of which as many are gathered around a place as of all.
-fn with_few_photons(world: &World) -> World {
+pub(super) fn with_few_photons(world: &World) -> World {
     let fewer = |map: MapPasses| {
         let photons = map.photons.min(GATHERED);
         MapPasses { photons, radius: map.radius * (map.photons as f64 / photons as f64).sqrt(), ..map }

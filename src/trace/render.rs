@@ -207,8 +207,8 @@ impl<W: Borrow<World>> Rendering<W> {
             progress(photons.sent);
         }
         let numbers = self.samples..end;
-        let sets = (numbers.start / SHARED..numbers.end.div_ceil(SHARED)).filter(|_| world.method.light_vertices);
-        let light_vertices: Vec<_> = sets.filter_map(|set| LightVertices::<N>::shared(world, set)).collect();
+        let shared = |first: u32| LightVertices::<N>::shared(world, first..(first + SHARED).min(end));
+        let light_vertices: Vec<_> = numbers.clone().step_by(SHARED as usize).map_while(shared).collect();
         self.gathered = light_vertices.iter().fold(self.gathered, |mut all, set| {
             all += set.stats;
             all

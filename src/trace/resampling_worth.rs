@@ -3,6 +3,8 @@
 use super::World;
 use super::light_vertices::{LightVertices, finds_all_light};
 use super::path_tracer::PathTracer;
+use super::photon_map::{PhotonMap, photons};
+use super::probe::with_few_photons;
 use super::width::in_lanes;
 use crate::math::Sampler;
 use crate::spectrum::apply;
@@ -28,8 +30,10 @@ pub fn resampling_gain(world: &World) -> Option<f64> {
 
 fn compare<const N: usize>(world: &World) -> Option<f64> {
     let vertices = LightVertices::<N>::few(world)?;
-    let plain = weigh::<N>(world, None);
-    let resampled = weigh(world, Some(&vertices));
+    let few = with_few_photons(world);
+    let photons = photons::<N>(&few, 0);
+    let plain = weigh(&few, photons.as_ref(), None);
+    let resampled = weigh(&few, photons.as_ref(), Some(&vertices));
     let mean = plain.pixels.iter().map(|pixel| pixel.mean).sum::<f64>() / plain.pixels.len() as f64;
     let gain = plain.error(mean) * plain.rays / (resampled.error(mean) * resampled.rays);
     gain.is_finite().then_some(gain)
@@ -46,8 +50,12 @@ struct Weighed {
     rays: f64,
 }
 
-fn weigh<const N: usize>(world: &World, vertices: Option<&LightVertices<N>>) -> Weighed {
-    let mut tracer = PathTracer::<N>::new(world);
+fn weigh<const N: usize>(
+    world: &World,
+    photons: Option<&PhotonMap<N>>,
+    vertices: Option<&LightVertices<N>>,
+) -> Weighed {
+    let mut tracer = PathTracer::<N>::new(world).with_photons(photons);
     tracer.light_vertices = vertices;
     let film = world.scene.film;
     let to_xyz = film.color_space.to_xyz();
