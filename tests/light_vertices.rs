@@ -186,8 +186,8 @@ fn rooms() -> Vec<(&'static str, String)> {
         ),
         ("a gap", with(&[wall_with_gap, beyond])),
         ("planes without end", open),
-        ("a room of a micrometer", scaled(1e-6)),
-        ("a room of a million", scaled(1e6)),
+        ("a room of a picometer", scaled(1e-12)),
+        ("a room of a trillion", scaled(1e12)),
         (
             "a ball in water",
             with(&[

@@ -1,7 +1,7 @@
 //! Vertices of paths from the lights, at which paths from the camera look for the light that surfaces send each other.
 //!
-//! At its first diffuse surface x, a path from the camera chooses one vertex y of some, by what each would bring, and
-//! looks whether it sees it: resampled importance sampling (Talbot, Cline & Egbert 2005, *Importance Resampling for
+//! At a diffuse surface x, a path from the camera chooses one vertex y of some, by what each would bring, and looks
+//! whether it sees it: resampled importance sampling (Talbot, Cline & Egbert 2005, *Importance Resampling for
 //! Global Illumination*). Near vertices would bring too much by far: of what leaves y for x, only the part d^2 / (d^2 +
 //! D^2) is looked for at distance d, and the bounce that happens to go from x to y goes on from there with the
 //! probability of the rest, D^2 / (d^2 + D^2). Both together are exact for any D (Kollig & Keller 2004, *Illumination
@@ -29,7 +29,9 @@ use crate::spectrum::{Draw, Lanes};
 /// A vertex of a light path, on a diffuse surface.
 #[derive(Clone, Debug)]
 pub(super) struct LightVertex<const N: usize> {
-    pub(super) point: SurfacePoint,
+    pub(super) position: DVec3,
+    /// Bound of its distance from the true surface.
+    pub(super) error: f64,
     /// The surface's unit normal on the side that is lit.
     pub(super) flat: DVec3,
     /// What leaves it in any direction of that side, lane by lane: intensity over the cosine.
@@ -45,10 +47,10 @@ pub(super) struct LightVertices<const N: usize> {
     hands: Vec<Hand>,
     /// In the order of the hands.
     vertices: Vec<LightVertex<N>>,
-    /// The point from which places in hands are counted.
+    /// The point from which places in hands are counted, in units of D.
     center: DVec3,
-    /// D^2.
-    near_squared: f64,
+    /// D.
+    near: f64,
     pub(super) stats: Stats,
 }
 
@@ -60,7 +62,7 @@ const HAND: usize = 64;
 struct Hand {
     place: [[f32; HAND]; 3],
     flat: [[f32; HAND]; 3],
-    /// X + Y + Z of what leaves, as the sensor sees it, times how often it is seen.
+    /// X + Y + Z of what leaves, as the sensor sees it, times how often it is seen; 1 of the brightest vertex.
     power: [f32; HAND],
 }
 
@@ -76,6 +78,8 @@ const BATCH: u64 = 256;
 /// D as a share of the median distance of vertices from their middle: a twelfth of the side of a room. From two thirds
 /// of that to one and a half, the error for the time is the same.
 const NEAR: f64 = 0.1;
+/// Cells of Morton's curve to a D.
+const CELLS: f64 = 25.0;
 /// The set of a pilot, and its light paths.
 const PILOT: u32 = u32::MAX;
 const OF_A_PILOT: u64 = 1024;
@@ -153,38 +157,32 @@ impl<const N: usize> LightVertices<N> {
 
     /// Deals vertices into hands.
     fn dealt(world: &World, mut vertices: Vec<LightVertex<N>>, stats: Stats) -> Self {
-        let middle = vertices.iter().map(|vertex| vertex.point.position).sum::<DVec3>() / vertices.len().max(1) as f64;
-        let mut distances: Vec<f64> = vertices.iter().map(|v| (v.point.position - middle).length_squared()).collect();
-        let half = distances.len() / 2;
-        let squared =
-            if distances.is_empty() { 1.0 } else { *distances.select_nth_unstable_by(half, f64::total_cmp).1 };
-        let near_squared = (NEAR * NEAR * squared).max(f64::MIN_POSITIVE);
-        let scale = 256.0 / squared.sqrt();
-        vertices.sort_by_cached_key(|vertex| morton((vertex.point.position - middle) * scale));
-        let useful = usefulness(world, &vertices);
+        let center = vertices.iter().map(|vertex| vertex.position).sum::<DVec3>() / vertices.len().max(1) as f64;
+        let near = NEAR * median(vertices.iter().map(|vertex| (vertex.position - center).length()).collect());
+        vertices.sort_by_cached_key(|vertex| morton((vertex.position - center) * (CELLS / near)));
+        let powers = powers(world, &vertices);
         let count = vertices.len().div_ceil(HAND);
         let mut hands = vec![Hand::EMPTY; count];
         let mut order: Vec<Option<LightVertex<N>>> = vec![None; count * HAND];
-        for (number, vertex) in vertices.into_iter().enumerate() {
+        for (number, (vertex, power)) in vertices.into_iter().zip(powers).enumerate() {
             let (hand, slot) = (number % count, number / count);
-            hands[hand].set(world, slot, &vertex, middle);
-            hands[hand].power[slot] *= useful[number];
+            hands[hand].set(slot, (vertex.position - center) / near, vertex.flat, power);
             order[hand * HAND + slot] = Some(vertex);
         }
         // Absent vertices are never chosen.
         let first = order.iter().flatten().next().cloned();
         let vertices = order.into_iter().filter_map(|vertex| vertex.or_else(|| first.clone())).collect();
-        Self { hands, vertices, center: middle, near_squared, stats }
+        Self { hands, vertices, center, near, stats }
     }
 
     /// D^2: of light from a distance d, the part d^2 / (d^2 + D^2) is looked for at vertices.
     pub(super) fn near_squared(&self) -> f64 {
-        self.near_squared
+        self.near * self.near
     }
 
     /// The chance with which a bounce goes on from a surface at a distance whose light is looked for at light vertices.
     pub(super) fn complement(&self, distance_squared: f64) -> f64 {
-        self.near_squared / (distance_squared + self.near_squared)
+        self.near_squared() / (distance_squared + self.near_squared())
     }
 
     /// A vertex as seen from a point of a surface, for two random numbers, and one over how likely it was; none if none
@@ -192,8 +190,8 @@ impl<const N: usize> LightVertices<N> {
     pub(super) fn choose(&self, from: DVec3, flat: DVec3, [u, v]: [f64; 2]) -> Option<(&LightVertex<N>, f64)> {
         let count = self.hands.len();
         let number = ((u * count as f64) as usize).min(count.checked_sub(1)?);
-        let [from, flat] = [from - self.center, flat].map(|v| v.as_vec3().to_array());
-        let weights = self.hands[number].weights(from, flat, self.near_squared as f32);
+        let [from, flat] = [(from - self.center) / self.near, flat].map(|v| v.as_vec3().to_array());
+        let weights = self.hands[number].weights(from, flat);
         let total: f32 = weights.iter().sum();
         let mut left = v as f32 * total;
         let mut chosen = None;
@@ -215,29 +213,40 @@ impl<const N: usize> LightVertices<N> {
 impl Hand {
     const EMPTY: Self = Self { place: [[0.0; HAND]; 3], flat: [[0.0; HAND]; 3], power: [0.0; HAND] };
 
-    fn set<const N: usize>(&mut self, world: &World, slot: usize, vertex: &LightVertex<N>, center: DVec3) {
-        let place = (vertex.point.position - center).as_vec3().to_array();
-        let flat = vertex.flat.as_vec3().to_array();
+    fn set(&mut self, slot: usize, place: DVec3, flat: DVec3, power: f32) {
         for axis in 0..3 {
-            (self.place[axis][slot], self.flat[axis][slot]) = (place[axis], flat[axis]);
+            (self.place[axis][slot], self.flat[axis][slot]) = (place[axis] as f32, flat[axis] as f32);
         }
-        let draw = Draw::<N>::fixed(world.method.basis.fixed_lanes());
-        let rgb = world.responses[vertex.light].sensor(&draw, vertex.leaving, false);
-        self.power[slot] = amount(world, rgb) as f32;
+        self.power[slot] = power;
     }
 
     /// What each vertex would bring to a white diffuse surface, about.
     #[inline]
-    fn weights(&self, from: [f32; 3], flat: [f32; 3], near_squared: f32) -> [f32; HAND] {
+    fn weights(&self, from: [f32; 3], flat: [f32; 3]) -> [f32; HAND] {
         std::array::from_fn(|i| {
             let way = [0, 1, 2].map(|axis| self.place[axis][i] - from[axis]);
             let squared = way[0] * way[0] + way[1] * way[1] + way[2] * way[2];
             let here = (way[0] * flat[0] + way[1] * flat[1] + way[2] * flat[2]).max(0.0);
             let there = (-(way[0] * self.flat[0][i] + way[1] * self.flat[1][i] + way[2] * self.flat[2][i])).max(0.0);
-            let weight = self.power[i] * (here * there) / (squared * (squared + near_squared));
+            let weight = self.power[i] * (here * there) / (squared * (squared + 1.0));
             if weight < f32::INFINITY { weight } else { 0.0 }
         })
     }
+}
+
+/// What leaves each vertex, as the sensor sees it, times how often it is seen; 1 of the brightest.
+fn powers<const N: usize>(world: &World, vertices: &[LightVertex<N>]) -> Vec<f32> {
+    let draw = Draw::<N>::fixed(world.method.basis.fixed_lanes());
+    let seen = |vertex: &LightVertex<N>| world.responses[vertex.light].sensor(&draw, vertex.leaving, false);
+    let powers: Vec<f64> = vertices.iter().map(|vertex| amount(world, seen(vertex))).collect();
+    let most = powers.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
+    powers.iter().zip(usefulness(world, vertices)).map(|(power, share)| (power / most) as f32 * share).collect()
+}
+
+/// Of some lengths; 1 if they are none.
+fn median(mut lengths: Vec<f64>) -> f64 {
+    let half = lengths.len() / 2;
+    if lengths.is_empty() { 1.0 } else { lengths.select_nth_unstable_by(half, f64::total_cmp).1.max(f64::MIN_POSITIVE) }
 }
 
 /// The place of a point along Morton's curve through a cube around the origin.
@@ -309,6 +318,7 @@ fn kept<const N: usize>(world: &World, landing: &Landing<N>) -> Option<LightVert
         && !leaving.is_zero()
         && leaving.0.iter().all(|x| x.is_finite());
     let diffuse = world.method.diffuse_bounces - path.diffuse_left + 1;
-    let (point, flat, light, vertices) = (*at.point, at.flat, *light, path.vertices);
-    usable.then_some(LightVertex { point, flat, leaving, light, vertices, diffuse })
+    let SurfacePoint { position, error, normal, .. } = *at.point;
+    let (error, flat, light, vertices) = (normal.abs().dot(error), at.flat, *light, path.vertices);
+    usable.then_some(LightVertex { position, error, flat, leaving, light, vertices, diffuse })
 }

@@ -234,7 +234,7 @@ impl<'a, const N: usize> PathTracer<'a, N> {
         self.walker.follow(&mut departure, sampler);
     }
 
-    /// Hands the light of a light vertex to the sensor, where the path meets its first diffuse surface.
+    /// Hands the light of a light vertex to the sensor, where the path meets a diffuse surface.
     fn resample(&mut self, path: &Path<N>, at: &Interaction<N>, sampler: &Sampler) -> bool {
         let Some(vertices) = self.light_vertices else { return false };
         let world = self.walker.world;

@@ -20,7 +20,7 @@ use crate::film::{Film, Pixel};
 const FIRST_PASS: u32 = 16;
 
 /// Samples of each pixel in the largest pass with light vertices, all of which are in memory at once.
-const MOST_AT_ONCE: u32 = 128;
+const MOST_AT_ONCE: u32 = 64;
 
 /// What rendering noticed.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -14,7 +14,7 @@ use super::straight;
 use crate::math::{Ray, Sampler, gamma, unit};
 use crate::scene::Ends;
 
-/// A path at its first diffuse surface.
+/// A path at a diffuse surface.
 pub(super) struct Resampling<'a, const N: usize> {
     pub(super) world: &'a World,
     pub(super) path: &'a Path<N>,
@@ -46,7 +46,7 @@ impl<const N: usize> Resampling<'_, N> {
         if bounces > world.method.max_bounces || vertex.diffuse > self.path.diffuse_left {
             return None;
         }
-        let to = vertex.point.position;
+        let to = vertex.position;
         let origin = at.point.leave((to - at.point.position).try_normalize()?).origin;
         let way = to - origin;
         let squared = way.length_squared();
@@ -59,7 +59,7 @@ impl<const N: usize> Resampling<'_, N> {
         let (bsdf_cos, _) = shading::evaluate(at.material, &at.arrival, at.flat, direction)?;
         // The ray ends before the surface of the vertex: this lies within its error of the point, and the ray, whose
         // direction is rounded, passes that within some roundings of the distance.
-        let short = (vertex.point.normal.abs().dot(vertex.point.error) + gamma(8) * distance) / cos;
+        let short = (vertex.error + gamma(8) * distance) / cos;
         let (inside, last) = (at.boundary.here, self.last_occluder);
         let ends = Ends { left: self.path.left, ..Ends::default() };
         let straight = straight::unoccluded(world, at.arrival.draw, &ray, distance - short, ends, inside, last)?;

@@ -65,7 +65,7 @@ fn sees<const N: usize>(
     vertex: &LightVertex<N>,
     last_occluder: &Cell<Option<u32>>,
 ) -> bool {
-    let way = vertex.point.position - place.point.position;
+    let way = vertex.position - place.point.position;
     let Some(direction) = way.try_normalize() else { return true };
     let ray = Ray { direction: unit(direction), ..place.point.leave(direction) };
     let ends = Ends { left: Some(place.primitive), ..Ends::default() };
