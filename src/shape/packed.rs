@@ -28,8 +28,8 @@ impl Packed {
     /// The nearest crossing with 0 < t <= `t_max` of a triangle that counts; of equally near ones, that of the one
     /// listed first.
     ///
-    /// `leaves` says which triangle the ray starts on by its error bound: it lies on the side that it leaves to, so that
-    /// the sign by many digits is known.
+    /// `leaves` says which triangle the ray starts on by its error bound: it lies on the side that it leaves to, so
+    /// that the sign by many digits is known.
     #[inline]
     pub fn nearest(
         &self,

@@ -240,7 +240,8 @@ fn powers<const N: usize>(world: &World, vertices: &[LightVertex<N>]) -> Vec<f32
     let seen = |vertex: &LightVertex<N>| world.responses[vertex.light].sensor(&draw, vertex.leaving, false);
     let powers: Vec<f64> = vertices.iter().map(|vertex| amount(world, seen(vertex))).collect();
     let most = powers.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
-    powers.iter().zip(usefulness(world, vertices)).map(|(power, share)| (power / most) as f32 * share).collect()
+    let places: Vec<DVec3> = vertices.iter().map(|vertex| vertex.position).collect();
+    powers.iter().zip(usefulness(world, &places)).map(|(power, share)| (power / most) as f32 * share).collect()
 }
 
 /// Of some lengths; 1 if they are none.

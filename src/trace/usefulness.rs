@@ -3,8 +3,7 @@
 use std::cell::Cell;
 
 use super::World;
-use super::light_vertices::LightVertex;
-use crate::math::{BranchKey, DVec2, Ray, Sampler, unit};
+use crate::math::{BranchKey, DVec2, DVec3, Ray, Sampler, unit};
 use crate::scene::{Ends, Primitive};
 use crate::shape::SurfacePoint;
 
@@ -24,18 +23,18 @@ struct Place {
 
 /// For each vertex, how often places that the camera sees also see its neighborhood: above 0 to 1. Vertices that follow
 /// each other are neighbors. The whole image counts, also where only a part of it is made.
-pub(super) fn usefulness<const N: usize>(world: &World, vertices: &[LightVertex<N>]) -> Vec<f32> {
+pub(super) fn usefulness(world: &World, vertices: &[DVec3]) -> Vec<f32> {
     let places = places(world);
     if places.is_empty() {
         return vec![1.0; vertices.len()];
     }
     let last_occluder = Cell::new(None);
-    let of_group = |(number, group): (usize, &[LightVertex<N>])| {
+    let of_group = |(number, group): (usize, &[DVec3])| {
         let seen = (0..LOOKS).filter(|&look| {
             let [u, v, ..] =
                 Sampler::new(world.method.seed ^ SEED, [number as u32, 0], look).four(BranchKey::CAMERA, 0);
             let chosen = |u: f64, count: usize| ((u * count as f64) as usize).min(count - 1);
-            let (vertex, place) = (&group[chosen(u, group.len())], &places[chosen(v, places.len())]);
+            let (vertex, place) = (group[chosen(u, group.len())], &places[chosen(v, places.len())]);
             sees(world, place, vertex, &last_occluder)
         });
         // One look more that sees: what was never seen by chance must not be left out.
@@ -59,13 +58,8 @@ fn places(world: &World) -> Vec<Place> {
 }
 
 /// Whether nothing stands between a place and a vertex; on which sides of their surfaces is not asked.
-fn sees<const N: usize>(
-    world: &World,
-    place: &Place,
-    vertex: &LightVertex<N>,
-    last_occluder: &Cell<Option<u32>>,
-) -> bool {
-    let way = vertex.position - place.point.position;
+fn sees(world: &World, place: &Place, vertex: DVec3, last_occluder: &Cell<Option<u32>>) -> bool {
+    let way = vertex - place.point.position;
     let Some(direction) = way.try_normalize() else { return true };
     let ray = Ray { direction: unit(direction), ..place.point.leave(direction) };
     let ends = Ends { left: Some(place.primitive), ..Ends::default() };
