@@ -346,7 +346,7 @@ fn parts_of_an_image_are_the_same_as_the_whole() {
 /// The plan looks for light at vertices where that pays, and not where all light comes straight from lamps.
 #[test]
 fn the_plan_weighs_light_vertices() {
-    let larger = |text: &str| text.replace("width = 12\nheight = 12", "width = 128\nheight = 128");
+    let larger = |text: &str| text.replace("width = 12\nheight = 12", "width = 256\nheight = 256");
     let closed = larger(&room(WHITE, "", &[lamp()]));
     let decided = plan(&scene(&closed));
     assert!(decided.method.light_vertices, "{:?}", decided.because);
@@ -355,5 +355,5 @@ fn the_plan_weighs_light_vertices() {
     assert!(!plan(&scene(&black)).method.light_vertices);
     let direct = larger(&room(WHITE, "diffuse_bounces = 0", &[lamp()]));
     assert!(!plan(&scene(&direct)).method.light_vertices);
-    assert!(!plan(&scene(&room(WHITE, "", &[lamp()]))).method.light_vertices, "too small for a pilot");
+    assert!(!plan(&scene(&room(WHITE, "", &[lamp()]))).method.light_vertices, "too small");
 }

@@ -4,14 +4,15 @@ use crate::trace::{World, resampling_gain};
 
 /// How much shorter an equal error must take: a pilot knows no better.
 const CLEARLY: f64 = 1.25;
-/// Fewest camera samples of an image for which the pilot is worth its time.
-const WORTH_A_PILOT: f64 = 1e5;
+/// Fewest camera samples of an image: of a smaller one there would be so few light paths that their noise, which all
+/// pixels share, shows in means over the image.
+const LARGE: f64 = 1e6;
 
 /// How many times as long an equal error takes without light vertices, where they pay.
 pub(super) fn gain(world: &World) -> Option<f64> {
     let (film, method) = (world.scene().film, world.method());
     let samples = f64::from(film.width) * f64::from(film.height) * f64::from(method.samples);
-    if samples < WORTH_A_PILOT || method.diffuse_bounces == 0 {
+    if samples < LARGE || method.diffuse_bounces == 0 {
         return None;
     }
     resampling_gain(world).filter(|&gain| gain > CLEARLY)

@@ -70,9 +70,9 @@ struct Hand {
 pub(super) const SHARED: u32 = 16;
 /// Camera samples for each light path, and the fewest and most light paths: what samples share does not average out
 /// over pixels.
-const PER_PATH: u64 = 64;
+const PER_PATH: u64 = 32;
 const FEWEST: u64 = 256;
-const MOST: u64 = 8192;
+const MOST: u64 = 16_384;
 /// Light paths that are followed one after another; their vertices are kept in the order of the batches.
 const BATCH: u64 = 256;
 /// D as a share of the median distance of vertices from their middle: a twelfth of the side of a room. From two thirds

@@ -98,5 +98,5 @@ def box(reflectance, quick):
         "paths that end after 8 bounces",
         expected * (1 - reflectance**8),
         words,
-        2,
+        2 if quick else 8,  # light paths, which are followed for larger images, are shared by all pixels of one
     )

@@ -1,9 +1,9 @@
 """A row of the book, and how the images of its scene are judged.
 
 The standard error is honest: of two seeds' differences pixel by pixel, of the spread of more seeds' means where a
-photon lights many pixels, of the spread of the pixels where there is one image. To it comes the bound of rounding: a
-stored value is a product of up to 32 factors in 32 bits, each off by at most 2^-24. Where a few pixels hold nearly all
-of the noise, its spread says little of its size, and the row fails for that.
+photon or a light path lights many pixels, of the spread of the pixels where there is one image. To it comes the bound of
+rounding: a stored value is a product of up to 32 factors in 32 bits, each off by at most 2^-24. Where a few pixels hold
+nearly all of the noise, its spread says little of its size, and the row fails for that.
 """
 
 from collections.abc import Callable
