@@ -17,7 +17,7 @@ use super::path::PathKind;
 use super::photon::{Landing, Start, Surfaces, follow_photon};
 use super::sensor::amount;
 use super::stats::Stats;
-use super::usefulness::usefulness;
+use super::usefulness::{Place, places, usefulness};
 use super::walker::Walker;
 use super::{Transport, World};
 use crate::light::{Light, LightId};
@@ -45,7 +45,7 @@ pub(super) struct LightVertex<const N: usize> {
 /// The vertices of some light paths, dealt into hands of which each holds vertices from all over the scene.
 pub(super) struct LightVertices<const N: usize> {
     hands: Vec<Hand>,
-    /// In the order of the hands.
+    /// Along a curve through the scene; each hand has every so many-th of them as there are hands.
     vertices: Vec<LightVertex<N>>,
     /// The point from which places in hands are counted, in units of D.
     center: DVec3,
@@ -120,31 +120,53 @@ pub(super) fn holds_vertices(world: &World, object: u32, point: &SurfacePoint) -
         && !world.is_see_through(object)
 }
 
-impl<const N: usize> LightVertices<N> {
-    /// The vertices for some samples of each pixel, at most `SHARED`; none where the method asks for none.
-    pub(super) fn shared(world: &World, samples: Range<u32>) -> Option<Self> {
-        if !world.method.light_vertices || !finds_all_light(world) {
+/// The lights of a world that paths start from, and from where their vertices are looked at: what all sets share.
+pub(super) struct LightPaths<'a> {
+    world: &'a World,
+    by_flux: Distribution,
+    media: Vec<Option<Media>>,
+    places: Vec<Place>,
+}
+
+/// What became of some light paths.
+struct Followed<const N: usize> {
+    vertices: Vec<LightVertex<N>>,
+    stats: Stats,
+}
+
+impl<'a> LightPaths<'a> {
+    /// None where they would not find all light, or nothing shines.
+    pub(super) fn new(world: &'a World) -> Option<Self> {
+        if !finds_all_light(world) {
             return None;
         }
-        let film = world.scene.film;
+        let flux = |(id, light): (LightId, &Light<_>)| light.flux() * world.luminance(id);
+        let by_flux = Distribution::new(world.scene.lights.iter().enumerate().map(flux));
+        let (media, places) = (media_of_lights(&world.scene), places(world));
+        (by_flux.total() > 0.0).then_some(Self { world, by_flux, media, places })
+    }
+
+    /// Those that the method asks for.
+    pub(super) fn asked_for(world: &'a World) -> Option<Self> {
+        if world.method.light_vertices { Self::new(world) } else { None }
+    }
+
+    /// The vertices for some samples of each pixel, at most `SHARED`.
+    pub(super) fn shared<const N: usize>(&self, samples: Range<u32>) -> LightVertices<N> {
+        let film = self.world.scene.film;
         let all = u64::from(film.width) * u64::from(film.height) * samples.len() as u64;
-        Self::of_paths(world, samples.start, (all / PER_PATH).clamp(FEWEST, MOST))
+        self.vertices(samples.start, (all / PER_PATH).clamp(FEWEST, MOST))
     }
 
     /// A few vertices, for a pilot.
-    pub(super) fn few(world: &World) -> Option<Self> {
-        Self::of_paths(world, PILOT, OF_A_PILOT)
+    pub(super) fn few<const N: usize>(&self) -> LightVertices<N> {
+        self.vertices(PILOT, OF_A_PILOT)
     }
 
-    /// The vertices of some light paths of a set; none if nothing shines.
-    fn of_paths(world: &World, number: u32, paths: u64) -> Option<Self> {
-        let lights = Lights::new(world)?;
-        let batches = (0..paths.div_ceil(BATCH)).into_par_iter();
-        let of_batch = |batch: u64| {
-            let paths = batch * BATCH..(batch * BATCH + BATCH).min(paths);
-            lights.follow(world, number, paths)
-        };
-        let done: Vec<Followed<N>> = batches.map(of_batch).collect();
+    /// The vertices of some light paths of a set.
+    fn vertices<const N: usize>(&self, set: u32, paths: u64) -> LightVertices<N> {
+        let of_batch = |batch: u64| self.follow(set, batch * BATCH..(batch * BATCH + BATCH).min(paths));
+        let done: Vec<Followed<N>> = (0..paths.div_ceil(BATCH)).into_par_iter().map(of_batch).collect();
         let (mut stats, mut vertices) = (Stats::default(), Vec::new());
         for followed in done {
             stats += followed.stats;
@@ -152,29 +174,59 @@ impl<const N: usize> LightVertices<N> {
         }
         let each = 1.0 / paths as f32;
         vertices.iter_mut().for_each(|vertex| vertex.leaving = vertex.leaving * each);
-        Some(Self::dealt(world, vertices, stats))
+        self.dealt(vertices, stats)
     }
 
+    /// Follows some light paths of a set.
+    fn follow<const N: usize>(&self, set: u32, paths: Range<u64>) -> Followed<N> {
+        let world = self.world;
+        let mut walker = Walker::<N>::new(world, LIGHT_PATHS);
+        let draw = world.method.basis.draw(0.0);
+        let mut vertices = Vec::new();
+        for number in paths {
+            let sampler = Sampler::new(world.method.seed ^ SEED, [set, 0], number as u32);
+            let drawn = self.by_flux.sample(sampler.four_plain(BranchKey::CAMERA, LIGHT)[0]);
+            let light = drawn.index;
+            let Some(mut emitted) = world.scene.lights[light].emit(sampler.four(BranchKey::CAMERA, START)) else {
+                continue;
+            };
+            emitted.factor /= drawn.probability;
+            let around = || Media::around(&world.scene, emitted.ray.origin, emitted.ray.direction);
+            let media = self.media[light].unwrap_or_else(around);
+            let start = Start { emitted: &emitted, light, media };
+            follow_photon(&mut walker, start, &draw, &sampler, Surfaces::All, &mut |_, landing| {
+                vertices.extend(kept(world, landing));
+            });
+        }
+        Followed { vertices, stats: walker.stats }
+    }
     /// Deals vertices into hands.
-    fn dealt(world: &World, mut vertices: Vec<LightVertex<N>>, stats: Stats) -> Self {
+    fn dealt<const N: usize>(&self, mut vertices: Vec<LightVertex<N>>, stats: Stats) -> LightVertices<N> {
         let center = vertices.iter().map(|vertex| vertex.position).sum::<DVec3>() / vertices.len().max(1) as f64;
         let near = NEAR * median(vertices.iter().map(|vertex| (vertex.position - center).length()).collect());
         vertices.sort_by_cached_key(|vertex| morton((vertex.position - center) * (CELLS / near)));
-        let powers = powers(world, &vertices);
         let count = vertices.len().div_ceil(HAND);
         let mut hands = vec![Hand::EMPTY; count];
-        let mut order: Vec<Option<LightVertex<N>>> = vec![None; count * HAND];
-        for (number, (vertex, power)) in vertices.into_iter().zip(powers).enumerate() {
-            let (hand, slot) = (number % count, number / count);
-            hands[hand].set(slot, (vertex.position - center) / near, vertex.flat, power);
-            order[hand * HAND + slot] = Some(vertex);
+        for (number, (vertex, power)) in vertices.iter().zip(self.powers(&vertices)).enumerate() {
+            hands[number % count].set(number / count, (vertex.position - center) / near, vertex.flat, power);
         }
-        // Absent vertices are never chosen.
-        let first = order.iter().flatten().next().cloned();
-        let vertices = order.into_iter().filter_map(|vertex| vertex.or_else(|| first.clone())).collect();
-        Self { hands, vertices, center, near, stats }
+        LightVertices { hands, vertices, center, near, stats }
     }
 
+    /// What leaves each vertex, as the sensor sees it, times how often it is seen; 1 of the brightest.
+    fn powers<const N: usize>(&self, vertices: &[LightVertex<N>]) -> Vec<f32> {
+        let world = self.world;
+        let draw = Draw::<N>::fixed(world.method.basis.fixed_lanes());
+        let seen = |vertex: &LightVertex<N>| world.responses[vertex.light].sensor(&draw, vertex.leaving, false);
+        let powers: Vec<f64> = vertices.iter().map(|vertex| amount(world, seen(vertex))).collect();
+        let most = powers.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
+        let positions: Vec<DVec3> = vertices.iter().map(|vertex| vertex.position).collect();
+        let shares = usefulness(world, &self.places, &positions);
+        powers.iter().zip(shares).map(|(power, share)| (power / most) as f32 * share).collect()
+    }
+}
+
+impl<const N: usize> LightVertices<N> {
     /// D^2: of light from a distance d, the part d^2 / (d^2 + D^2) is looked for at vertices.
     pub(super) fn near_squared(&self) -> f64 {
         self.near * self.near
@@ -206,7 +258,7 @@ impl<const N: usize> LightVertices<N> {
         }
         let (slot, weight) = chosen?;
         let factor = count as f64 * f64::from(total) / f64::from(weight);
-        factor.is_finite().then(|| (&self.vertices[number * HAND + slot], factor))
+        factor.is_finite().then(|| (&self.vertices[slot * count + number], factor))
     }
 }
 
@@ -234,17 +286,7 @@ impl Hand {
     }
 }
 
-/// What leaves each vertex, as the sensor sees it, times how often it is seen; 1 of the brightest.
-fn powers<const N: usize>(world: &World, vertices: &[LightVertex<N>]) -> Vec<f32> {
-    let draw = Draw::<N>::fixed(world.method.basis.fixed_lanes());
-    let seen = |vertex: &LightVertex<N>| world.responses[vertex.light].sensor(&draw, vertex.leaving, false);
-    let powers: Vec<f64> = vertices.iter().map(|vertex| amount(world, seen(vertex))).collect();
-    let most = powers.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
-    let places: Vec<DVec3> = vertices.iter().map(|vertex| vertex.position).collect();
-    powers.iter().zip(usefulness(world, &places)).map(|(power, share)| (power / most) as f32 * share).collect()
-}
-
-/// Of some lengths; 1 if they are none.
+/// The median of some lengths; 1 if there are none.
 fn median(mut lengths: Vec<f64>) -> f64 {
     let half = lengths.len() / 2;
     if lengths.is_empty() { 1.0 } else { lengths.select_nth_unstable_by(half, f64::total_cmp).1.max(f64::MIN_POSITIVE) }
@@ -261,50 +303,6 @@ fn morton(place: DVec3) -> u64 {
         (x | x << 2) & 0x1249_2492_4924_9249
     };
     spread(place.x) | spread(place.y) << 1 | spread(place.z) << 2
-}
-
-/// The lights that paths start from.
-struct Lights {
-    by_flux: Distribution,
-    media: Vec<Option<Media>>,
-}
-
-/// What became of some light paths.
-struct Followed<const N: usize> {
-    vertices: Vec<LightVertex<N>>,
-    stats: Stats,
-}
-
-impl Lights {
-    /// None if no light shines.
-    fn new(world: &World) -> Option<Self> {
-        let flux = |(id, light): (LightId, &Light<_>)| light.flux() * world.luminance(id);
-        let by_flux = Distribution::new(world.scene.lights.iter().enumerate().map(flux));
-        (by_flux.total() > 0.0).then(|| Self { by_flux, media: media_of_lights(&world.scene) })
-    }
-
-    /// Follows some light paths of a set.
-    fn follow<const N: usize>(&self, world: &World, set: u32, paths: Range<u64>) -> Followed<N> {
-        let mut walker = Walker::<N>::new(world, LIGHT_PATHS);
-        let draw = world.method.basis.draw(0.0);
-        let mut vertices = Vec::new();
-        for number in paths {
-            let sampler = Sampler::new(world.method.seed ^ SEED, [set, 0], number as u32);
-            let drawn = self.by_flux.sample(sampler.four_plain(BranchKey::CAMERA, LIGHT)[0]);
-            let light = drawn.index;
-            let Some(mut emitted) = world.scene.lights[light].emit(sampler.four(BranchKey::CAMERA, START)) else {
-                continue;
-            };
-            emitted.factor /= drawn.probability;
-            let around = || Media::around(&world.scene, emitted.ray.origin, emitted.ray.direction);
-            let media = self.media[light].unwrap_or_else(around);
-            let start = Start { emitted: &emitted, light, media };
-            follow_photon(&mut walker, start, &draw, &sampler, Surfaces::All, &mut |_, landing| {
-                vertices.extend(kept(world, landing));
-            });
-        }
-        Followed { vertices, stats: walker.stats }
-    }
 }
 
 /// The vertex where a light path lands, if it is one: not where photons are gathered that came the same way.

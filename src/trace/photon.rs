@@ -94,13 +94,13 @@ pub(super) fn follow_photon<const N: usize>(
                 continue;
             }
         }
-        if over == Surfaces::Smooth && path.vertices == 0 && !world.is_photon_target(meeting.hit.object) {
-            continue;
+        if path.vertices == 0 && !world.is_photon_target(meeting.hit.object) {
+            match over {
+                Surfaces::Smooth => continue,
+                Surfaces::All => path.kind = PathKind::Wide,
+            }
         }
         path.vertices += 1;
-        if over == Surfaces::All && path.vertices == 1 && !world.is_photon_target(meeting.hit.object) {
-            path.kind = PathKind::Wide;
-        }
         let Some(boundary) = walker.boundary(&path, &meeting) else { continue };
         let at = Interaction::new(world, draw, &path, &meeting, boundary);
         // As often as light may leave surfaces on its way from the camera.

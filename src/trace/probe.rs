@@ -5,7 +5,7 @@ use std::ops::Range;
 use std::time::{Duration, Instant};
 
 use super::light_pass::send_shown;
-use super::light_vertices::{LightVertices, SHARED};
+use super::light_vertices::{LightPaths, SHARED};
 use super::path_tracer::PathTracer;
 use super::photon_batch::Batch;
 use super::photon_map::{matching, photons, send_kept};
@@ -72,7 +72,7 @@ fn probe_lanes<const N: usize>(world: &World) -> Probe {
         }
     }
     let before_vertices = Instant::now();
-    let vertices = LightVertices::<N>::shared(world, 0..SHARED);
+    let vertices = LightPaths::asked_for(world).map(|light_paths| light_paths.shared::<N>(0..SHARED));
     let light_paths =
         vertices.as_ref().map_or(Duration::ZERO, |_| before_vertices.elapsed().div_f64(f64::from(SHARED)));
     let few = with_few_photons(world);

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use super::World;
 use super::light_pass::{self, CausticImage};
-use super::light_vertices::{LightVertices, SHARED};
+use super::light_vertices::{LightPaths, LightVertices, SHARED};
 use super::photon_map;
 use super::photon_targets::PhotonTargets;
 use super::sensor::amount;
@@ -207,12 +207,14 @@ impl<W: Borrow<World>> Rendering<W> {
             progress(photons.sent);
         }
         let numbers = self.samples..end;
-        let shared = |first: u32| LightVertices::<N>::shared(world, first..(first + SHARED).min(end));
-        let light_vertices: Vec<_> = numbers.clone().step_by(SHARED as usize).map_while(shared).collect();
-        self.gathered = light_vertices.iter().fold(self.gathered, |mut all, set| {
-            all += set.stats;
-            all
-        });
+        let light_vertices: Vec<LightVertices<N>> = match LightPaths::asked_for(world) {
+            Some(light_paths) => {
+                let shared = |first: u32| light_paths.shared(first..(first + SHARED).min(end));
+                numbers.clone().step_by(SHARED as usize).map(shared).collect()
+            }
+            None => Vec::new(),
+        };
+        light_vertices.iter().for_each(|set| self.gathered += set.stats);
         self.tiles.par_iter_mut().for_each(|tile| {
             tile.take::<N>(world, photons.as_ref(), &light_vertices, numbers.clone());
             progress(u64::from(tile.width * tile.height) * numbers.len() as u64);

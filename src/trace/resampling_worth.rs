@@ -1,7 +1,7 @@
 //! What light vertices are worth, learned from some thousand camera samples with and without them.
 
 use super::World;
-use super::light_vertices::{LightVertices, finds_all_light};
+use super::light_vertices::{LightPaths, LightVertices};
 use super::path_tracer::PathTracer;
 use super::photon_map::{PhotonMap, photons};
 use super::probe::with_few_photons;
@@ -25,11 +25,12 @@ const SEED: u64 = 0x7265_7361;
 /// out. Rays followed stand for time, so that the answer is the same everywhere; all of the image counts, also where
 /// only a part of it is made.
 pub fn resampling_gain(world: &World) -> Option<f64> {
-    if finds_all_light(world) { in_lanes!(&world.method.basis, N => compare::<N>(world)) } else { None }
+    let light_paths = LightPaths::new(world)?;
+    in_lanes!(&world.method.basis, N => compare::<N>(world, &light_paths))
 }
 
-fn compare<const N: usize>(world: &World) -> Option<f64> {
-    let vertices = LightVertices::<N>::few(world)?;
+fn compare<const N: usize>(world: &World, light_paths: &LightPaths) -> Option<f64> {
+    let vertices = light_paths.few::<N>();
     let few = with_few_photons(world);
     let photons = photons::<N>(&few, 0);
     let plain = weigh(&few, photons.as_ref(), None);

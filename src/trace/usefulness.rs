@@ -16,15 +16,14 @@ const LOOKS: u32 = 32;
 const SEED: u64 = 0x6c6f_6f6b;
 
 /// A place on a diffuse surface that the camera sees straight.
-struct Place {
+pub(super) struct Place {
     point: SurfacePoint,
     primitive: Primitive,
 }
 
 /// For each vertex, how often places that the camera sees also see its neighborhood: above 0 to 1. Vertices that follow
 /// each other are neighbors. The whole image counts, also where only a part of it is made.
-pub(super) fn usefulness(world: &World, vertices: &[DVec3]) -> Vec<f32> {
-    let places = places(world);
+pub(super) fn usefulness(world: &World, places: &[Place], vertices: &[DVec3]) -> Vec<f32> {
     if places.is_empty() {
         return vec![1.0; vertices.len()];
     }
@@ -44,7 +43,8 @@ pub(super) fn usefulness(world: &World, vertices: &[DVec3]) -> Vec<f32> {
     vertices.chunks(ALIKE).enumerate().flat_map(of_group).collect()
 }
 
-fn places(world: &World) -> Vec<Place> {
+/// Some such places, all over the image.
+pub(super) fn places(world: &World) -> Vec<Place> {
     let (scene, film) = (&world.scene, world.scene.film);
     let place = |number: u32| {
         let [x, y] = film.whole().middle_of_cell(SIDE, number).map(|x| f64::from(x) + 0.5);
