@@ -211,7 +211,7 @@ impl<S> Scene<S> {
         self.intersect_from(ray, None)
     }
 
-    /// The same of a ray that leaves a surface.
+    /// The nearest surface along a ray that leaves a surface.
     pub fn intersect_from(&self, ray: &Ray, left: Option<Primitive>) -> Option<Hit> {
         self.nearest_from(ray, f64::INFINITY, left, |_| true)
     }

@@ -5,10 +5,9 @@ use std::cell::Cell;
 use super::bright::Aiming;
 use super::interaction::Interaction;
 use super::path::{Path, ScatterSample};
-use super::polarization::Polarized;
-use super::sensor::{Contribution, Found, Sensor, amount};
-use super::straight;
-use super::{World, media, shading};
+use super::sensor::{Contribution, Found, Sensor};
+use super::straight::Passage;
+use super::{World, shading};
 use crate::light::{LightId, LightSample, SampledLight};
 use crate::material::Lobes;
 use crate::math::{DVec3, Ray, Sampler};
@@ -139,29 +138,19 @@ impl<const N: usize> DirectLighting<'_, N> {
         let ShadowRay { light, sample, probability, bsdf_cos, bsdf_pdf, factor } = shadow_ray;
         let LightSample { ray, distance, object, part, .. } = sample;
         let ends = Ends { left: self.path.left, light: *object, part: *part };
-        let straight =
-            straight::unoccluded(world, arrival.draw, ray, *distance, ends, side.inside, self.last_occluder)?;
-        let wi = sample.ray.direction;
+        let passage =
+            Passage { ray, distance: *distance, ends, inside: side.inside, last_occluder: self.last_occluder };
+        let wi = ray.direction;
+        let light_of = || world.scene.lights[*light].toward(arrival.draw, wi, sample.uv);
+        let (arriving, on_its_way) = passage.arriving(world, arrival.draw, light_of)?;
         // The density of bounces that are guided takes its time.
         let factor = match self.aiming.filter(|_| self.goes_on && sample.pdf.is_some()) {
             Some(aiming) => self.factor(sample, *probability, aiming.pdf(wi, *bsdf_pdf)),
             None => *factor,
         };
-        let mut arriving = world.scene.lights[*light].toward(arrival.draw, wi, sample.uv);
-        if let Some((share, _)) = straight {
-            arriving = arriving * share;
-        }
-        if let Some(material) = side.inside {
-            arriving = arriving * media::medium(&world.scene, material).transmission(arrival.draw, sample.distance);
-        }
         let reflected = self.path.throughput.scaled(factor).of(*bsdf_cos * arriving);
         let rgb = world.responses[*light].sensor(arrival.draw, reflected, side.parted);
-        let mut moved = 0.0;
-        if self.path.polarized.is_any() || world.has_see_through() {
-            let on_its_way = straight.map_or(Polarized::NOT, |(_, polarized)| polarized);
-            let change = self.path.polarized.brought(self.at.material, arrival, wi, on_its_way).change();
-            moved = if change == 0.0 { 0.0 } else { change * amount(world, rgb) };
-        }
+        let moved = self.at.moved(world, self.path, wi, on_its_way, rgb);
         Some(Contribution { light: Some(*light), found: Found::Sampled, rgb, moved })
     }
 

@@ -2,6 +2,8 @@
 
 use super::media::{self, Boundary};
 use super::path::Path;
+use super::polarization::Polarized;
+use super::sensor::amount;
 use super::{World, shading};
 use crate::material::{Arrival, Lobes, Material};
 use crate::math::DVec3;
@@ -70,6 +72,17 @@ impl<'a, const N: usize> Interaction<'a, N> {
         let arrival = Arrival { normal, ..self.arrival };
         let parts = parts(self.lobes, self.material, &arrival);
         Self { arrival, parts, ..self }
+    }
+}
+
+impl<const N: usize> Interaction<'_, N> {
+    /// How much of light from the unit vector `wi` polarization may change that reaches the sensor by a path as `rgb`.
+    pub(super) fn moved(&self, world: &World, path: &Path<N>, wi: DVec3, on_its_way: Polarized, rgb: [f64; 3]) -> f64 {
+        if !path.polarized.is_any() && !world.has_see_through() {
+            return 0.0;
+        }
+        let change = path.polarized.brought(self.material, &self.arrival, wi, on_its_way).change();
+        if change == 0.0 { 0.0 } else { change * amount(world, rgb) }
     }
 }
 

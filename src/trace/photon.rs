@@ -4,11 +4,10 @@ use std::f64::consts::PI;
 
 use super::World;
 use super::interaction::{Interaction, parts};
-use super::media::{self, Media};
+use super::media::Media;
 use super::path::{Path, PathKind};
-use super::polarization::Polarized;
 use super::shading;
-use super::straight;
+use super::straight::Passage;
 use super::walker::{Departure, Walker};
 use crate::light::{LeSample, LightId};
 use crate::material::{Arrival, Branch, Material, Scatter};
@@ -220,16 +219,10 @@ pub(super) fn show<const N: usize>(
     let ray = point.leave(seen.direction);
     let distance = (seen.start - ray.origin).length();
     let inside = at.boundary.sides()[usize::from(!same)];
-    let (mut shone, mut polarized) = (landing.shone(world), Polarized::NOT);
     let ends = Ends { left: path.left, ..Ends::default() };
-    let unoccluded = straight::unoccluded(world, arrival.draw, &ray, distance, ends, inside, &walker.last_occluder);
-    let Some(through) = unoccluded else { return };
-    if let Some((share, of_panes)) = through {
-        (shone, polarized) = (shone * share, of_panes);
-    }
-    if let Some(material) = inside {
-        shone = shone * media::medium(&world.scene, material).transmission(arrival.draw, distance);
-    }
+    let passage = Passage { ray: &ray, distance, ends, inside, last_occluder: &walker.last_occluder };
+    let shone = passage.arriving(world, arrival.draw, || landing.shone(world));
+    let Some((shone, polarized)) = shone else { return };
     let arriving = path.throughput.scaled(1.0 / path.eta_scale).of(bsdf_cos * shone);
     let rgb = world.responses[*light].sensor(arrival.draw, arriving, parted);
     let rgb = rgb.map(|x| x * (factor * cosines * seen.importance));

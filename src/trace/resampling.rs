@@ -5,12 +5,10 @@ use std::cell::Cell;
 use super::World;
 use super::interaction::Interaction;
 use super::light_vertices::{LightVertex, LightVertices};
-use super::media;
 use super::path::Path;
-use super::polarization::Polarized;
-use super::sensor::{Contribution, Found, Sensor, amount};
+use super::sensor::{Contribution, Found, Sensor};
 use super::shading;
-use super::straight;
+use super::straight::Passage;
 use crate::math::{Ray, Sampler, gamma, unit};
 use crate::scene::Ends;
 
@@ -60,26 +58,15 @@ impl<const N: usize> Resampling<'_, N> {
         // The ray ends before the surface of the vertex: this lies within its error of the point, and the ray, whose
         // direction is rounded, passes that within some roundings of the distance.
         let short = (vertex.error + gamma(8) * distance) / cos;
-        let (inside, last) = (at.boundary.here, self.last_occluder);
         let ends = Ends { left: self.path.left, ..Ends::default() };
-        let straight = straight::unoccluded(world, at.arrival.draw, &ray, distance - short, ends, inside, last)?;
-        let mut arriving = vertex.leaving;
-        if let Some((share, _)) = straight {
-            arriving = arriving * share;
-        }
-        if let Some(material) = inside {
-            arriving = arriving * media::medium(&world.scene, material).transmission(at.arrival.draw, distance);
-        }
+        let (distance, inside) = (distance - short, at.boundary.here);
+        let passage = Passage { ray: &ray, distance, ends, inside, last_occluder: self.last_occluder };
+        let (arriving, on_its_way) = passage.arriving(world, at.arrival.draw, || vertex.leaving)?;
         let near_squared = self.vertices.near_squared();
         let factor = factor * cos / (squared + near_squared);
         let reflected = self.path.throughput.scaled(factor).of(bsdf_cos * arriving);
         let rgb = world.responses[vertex.light].sensor(at.arrival.draw, reflected, self.path.parted);
-        let mut moved = 0.0;
-        if self.path.polarized.is_any() || world.has_see_through() {
-            let on_its_way = straight.map_or(Polarized::NOT, |(_, polarized)| polarized);
-            let change = self.path.polarized.brought(at.material, &at.arrival, direction, on_its_way).change();
-            moved = if change == 0.0 { 0.0 } else { change * amount(world, rgb) };
-        }
+        let moved = at.moved(world, self.path, direction, on_its_way, rgb);
         Some(Contribution { light: Some(vertex.light), found: Found::Connected, rgb, moved })
     }
 }

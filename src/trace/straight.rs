@@ -3,6 +3,7 @@
 use std::cell::Cell;
 
 use super::interaction::arrival;
+use super::media;
 use super::path::Path;
 use super::polarization::Polarized;
 use super::{Transport, World, shading};
@@ -59,26 +60,47 @@ pub(super) fn is_met<const N: usize>(
     path.throughput.through(straight.holes).weight(shares) <= u * path.throughput.weight(shares)
 }
 
-/// None if something occludes a ray within a distance; where there are holes and panes, what
-/// [`transmittance`] says. `inside` is the medium around the ray.
-#[inline]
-pub(super) fn unoccluded<const N: usize>(
-    world: &World,
-    draw: &Draw<N>,
-    ray: &Ray,
-    distance: f64,
-    ends: Ends,
-    inside: Option<MaterialId>,
-    last_occluder: &Cell<Option<u32>>,
-) -> Option<Option<(Lanes<N>, Polarized)>> {
-    if !world.has_see_through() {
-        return (!world.scene.is_occluded(ray, distance, ends, last_occluder)).then_some(None);
+/// The straight way of light to a place.
+pub(super) struct Passage<'a> {
+    /// From the place toward the light.
+    pub(super) ray: &'a Ray,
+    pub(super) distance: f64,
+    pub(super) ends: Ends,
+    /// The medium around the ray.
+    pub(super) inside: Option<MaterialId>,
+    /// The object that occluded a light last.
+    pub(super) last_occluder: &'a Cell<Option<u32>>,
+}
+
+impl Passage<'_> {
+    /// What arrives of light through holes, panes and the medium, and how far panes polarize it; none if something
+    /// occludes it. `light` is asked only if nothing does.
+    #[inline]
+    pub(super) fn arriving<const N: usize>(
+        &self,
+        world: &World,
+        draw: &Draw<N>,
+        light: impl FnOnce() -> Lanes<N>,
+    ) -> Option<(Lanes<N>, Polarized)> {
+        let Self { ray, distance, ends, inside, last_occluder } = *self;
+        let (mut arriving, polarized);
+        if world.has_see_through() {
+            let closed = |object| !world.is_see_through(object);
+            if world.scene.is_occluded_by(ray, distance, ends, last_occluder, closed) {
+                return None;
+            }
+            let (share, of_panes) = transmittance(world, draw, ray, distance, inside)?;
+            (arriving, polarized) = (light() * share, of_panes);
+        } else if world.scene.is_occluded(ray, distance, ends, last_occluder) {
+            return None;
+        } else {
+            (arriving, polarized) = (light(), Polarized::NOT);
+        }
+        if let Some(material) = inside {
+            arriving = arriving * media::medium(&world.scene, material).transmission(draw, distance);
+        }
+        Some((arriving, polarized))
     }
-    let closed = |object| !world.is_see_through(object);
-    if world.scene.is_occluded_by(ray, distance, ends, last_occluder, closed) {
-        return None;
-    }
-    transmittance(world, draw, ray, distance, inside).map(Some)
 }
 
 /// The share of each lane that goes straight on through all surfaces before a light at a distance that let it, and how
