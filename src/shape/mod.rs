@@ -35,6 +35,7 @@ mod vertices;
 
 pub use attributes::{Attributes, vertex_normals};
 pub use ball::Ball;
+pub(crate) use bvh::prefetch;
 pub use bvh::{Bvh, Vectors, Visitor};
 pub use coordinates::Coordinates;
 pub use crossing::{Crossing, SurfacePoint};

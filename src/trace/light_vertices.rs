@@ -45,7 +45,7 @@ pub(super) struct LightVertex<const N: usize> {
 /// The vertices of some light paths, dealt into hands of which each holds vertices from all over the scene.
 pub(super) struct LightVertices<const N: usize> {
     hands: Vec<Hand>,
-    /// Along a curve through the scene; each hand has every so many-th of them as there are hands.
+    /// Along a curve through the scene; each hand has every so many-th of them as there are hands, a row after another.
     vertices: Vec<LightVertex<N>>,
     /// The point from which places in hands are counted, in units of D.
     center: DVec3,
@@ -54,17 +54,22 @@ pub(super) struct LightVertices<const N: usize> {
     pub(super) stats: Stats,
 }
 
-/// Vertices of a hand: of 32, an image is noisier by a sixth.
-const HAND: usize = 64;
+/// Rows of a hand, and vertices of a row. There are 64 in all: of 32, an image is noisier by a sixth.
+const ROWS: usize = 8;
+const ROW: usize = 8;
+const HAND: usize = ROWS * ROW;
 
 /// What a choice among the vertices of a hand asks; absent ones have no power.
 #[derive(Clone, Debug)]
 struct Hand {
-    place: [[f32; HAND]; 3],
-    flat: [[f32; HAND]; 3],
+    place: [OfHand; 3],
+    flat: [OfHand; 3],
     /// X + Y + Z of what leaves, as the sensor sees it, times how often it is seen; 1 of the brightest vertex.
-    power: [f32; HAND],
+    power: OfHand,
 }
+
+/// A number for each vertex of a hand. Neighbors are those of different rows, so that all rows are summed at once.
+type OfHand = [[f32; ROWS]; ROW];
 
 /// Samples of each pixel that share light paths.
 pub(super) const SHARED: u32 = 16;
@@ -115,9 +120,7 @@ pub(super) fn finds_all_light(world: &World) -> bool {
 /// Whether light that leaves a surface for another is looked for at light vertices on it: a diffuse one, by its own
 /// normal.
 pub(super) fn holds_vertices(world: &World, object: u32, point: &SurfacePoint) -> bool {
-    matches!(world.scene.material_of(object), Material::Diffuse(_))
-        && point.shading == point.normal
-        && !world.is_see_through(object)
+    matches!(world.scene.material_of(object), Material::Diffuse(_)) && point.shading == point.normal
 }
 
 /// The lights of a world that paths start from, and from where their vertices are looked at: what all sets share.
@@ -200,6 +203,7 @@ impl<'a> LightPaths<'a> {
         }
         Followed { vertices, stats: walker.stats }
     }
+
     /// Deals vertices into hands.
     fn dealt<const N: usize>(&self, mut vertices: Vec<LightVertex<N>>, stats: Stats) -> LightVertices<N> {
         let center = vertices.iter().map(|vertex| vertex.position).sum::<DVec3>() / vertices.len().max(1) as f64;
@@ -244,44 +248,56 @@ impl<const N: usize> LightVertices<N> {
         let number = ((u * count as f64) as usize).min(count.checked_sub(1)?);
         let [from, flat] = [(from - self.center) / self.near, flat].map(|v| v.as_vec3().to_array());
         let weights = self.hands[number].weights(from, flat);
-        let total: f32 = weights.iter().sum();
-        let mut left = v as f32 * total;
-        let mut chosen = None;
-        for (slot, &weight) in weights.iter().enumerate() {
-            if weight > 0.0 {
-                chosen = Some((slot, weight));
-                left -= weight;
-                if left < 0.0 {
-                    break;
-                }
-            }
-        }
-        let (slot, weight) = chosen?;
-        let factor = count as f64 * f64::from(total) / f64::from(weight);
-        factor.is_finite().then(|| (&self.vertices[slot * count + number], factor))
+        let rows = weights.iter().fold([0.0; ROWS], |rows, weights| std::array::from_fn(|row| rows[row] + weights[row]));
+        let total: f32 = rows.iter().sum();
+        let (row, left) = chosen(rows, v as f32 * total)?;
+        let (place, _) = chosen(weights.map(|weights| weights[row]), left)?;
+        let factor = count as f64 * f64::from(total) / f64::from(weights[place][row]);
+        factor.is_finite().then(|| (&self.vertices[(row * ROW + place) * count + number], factor))
     }
 }
 
+/// The weight within which a share of their sum ends, and the rest of the share; of all that are above 0 the last one
+/// where rounding leaves the share too large, none where there are none.
+fn chosen<const COUNT: usize>(weights: [f32; COUNT], share: f32) -> Option<(usize, f32)> {
+    let (mut left, mut chosen) = (share, None);
+    for (number, weight) in weights.into_iter().enumerate().filter(|(_, weight)| *weight > 0.0) {
+        chosen = Some((number, left));
+        if left < weight {
+            break;
+        }
+        left -= weight;
+    }
+    chosen
+}
+
 impl Hand {
-    const EMPTY: Self = Self { place: [[0.0; HAND]; 3], flat: [[0.0; HAND]; 3], power: [0.0; HAND] };
+    const EMPTY: Self = Self { place: [[[0.0; ROWS]; ROW]; 3], flat: [[[0.0; ROWS]; ROW]; 3], power: [[0.0; ROWS]; ROW] };
 
     fn set(&mut self, slot: usize, place: DVec3, flat: DVec3, power: f32) {
+        let (row, slot) = (slot / ROW, slot % ROW);
         for axis in 0..3 {
-            (self.place[axis][slot], self.flat[axis][slot]) = (place[axis] as f32, flat[axis] as f32);
+            (self.place[axis][slot][row], self.flat[axis][slot][row]) = (place[axis] as f32, flat[axis] as f32);
         }
-        self.power[slot] = power;
+        self.power[slot][row] = power;
     }
 
     /// What each vertex would bring to a white diffuse surface, about.
     #[inline]
-    fn weights(&self, from: [f32; 3], flat: [f32; 3]) -> [f32; HAND] {
+    fn weights(&self, from: [f32; 3], flat: [f32; 3]) -> OfHand {
+        let Self { place, flat: flats, power } = self;
+        // One instruction, where `max` takes several for the sake of NaN.
+        let positive = |x: f32| if x > 0.0 { x } else { 0.0 };
         std::array::from_fn(|i| {
-            let way = [0, 1, 2].map(|axis| self.place[axis][i] - from[axis]);
-            let squared = way[0] * way[0] + way[1] * way[1] + way[2] * way[2];
-            let here = (way[0] * flat[0] + way[1] * flat[1] + way[2] * flat[2]).max(0.0);
-            let there = (-(way[0] * self.flat[0][i] + way[1] * self.flat[1][i] + way[2] * self.flat[2][i])).max(0.0);
-            let weight = self.power[i] * (here * there) / (squared * (squared + 1.0));
-            if weight < f32::INFINITY { weight } else { 0.0 }
+            std::array::from_fn(|row| {
+                let way = [0, 1, 2].map(|axis| place[axis][i][row] - from[axis]);
+                let squared = way[0] * way[0] + way[1] * way[1] + way[2] * way[2];
+                let here = positive(way[0] * flat[0] + way[1] * flat[1] + way[2] * flat[2]);
+                let there = [0, 1, 2].map(|axis| way[axis] * flats[axis][i][row]);
+                let there = positive(-(there[0] + there[1] + there[2]));
+                let weight = power[i][row] * (here * there) / (squared * (squared + 1.0));
+                if weight < f32::INFINITY { weight } else { 0.0 }
+            })
         })
     }
 }

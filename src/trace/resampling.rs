@@ -11,6 +11,7 @@ use super::shading;
 use super::straight::Passage;
 use crate::math::{Ray, Sampler, gamma, unit};
 use crate::scene::Ends;
+use crate::shape::prefetch;
 
 /// A path at a diffuse surface.
 pub(super) struct Resampling<'a, const N: usize> {
@@ -29,9 +30,13 @@ impl<const N: usize> Resampling<'_, N> {
     /// Hands the light of two vertices to the sensor, where they are seen.
     pub(super) fn gather(&self, sampler: &Sampler, sensor: &mut Sensor) {
         let [a, b, c, d] = sampler.four(self.path.key, VERTEX);
-        for u in [[a, b], [c, d]] {
+        // Both are chosen first: the memory of one comes while the other is chosen.
+        let chosen = [[a, b], [c, d]].map(|u| {
             let chosen = self.vertices.choose(self.at.point.position, self.at.flat, u);
-            if let Some(contribution) = chosen.and_then(|(vertex, factor)| self.connected(vertex, 0.5 * factor)) {
+            chosen.inspect(|(vertex, _)| prefetch(*vertex))
+        });
+        for (vertex, factor) in chosen.into_iter().flatten() {
+            if let Some(contribution) = self.connected(vertex, 0.5 * factor) {
                 sensor.receive(contribution);
             }
         }
