@@ -35,8 +35,8 @@ mod vertices;
 
 pub use attributes::{Attributes, vertex_normals};
 pub use ball::Ball;
-pub(crate) use bvh::prefetch;
 pub use bvh::{Bvh, Vectors, Visitor};
+pub(crate) use bvh::{Computation, Instructions, prefetch};
 pub use coordinates::Coordinates;
 pub use crossing::{Crossing, SurfacePoint};
 pub use cube::Cube;

@@ -23,7 +23,7 @@ use super::{Transport, World};
 use crate::light::{Light, LightId};
 use crate::material::{Lobes, Material};
 use crate::math::{BranchKey, DVec3, Distribution, Sampler};
-use crate::shape::SurfacePoint;
+use crate::shape::{Computation, Instructions, SurfacePoint, Vectors};
 use crate::spectrum::{Draw, Lanes};
 
 /// A vertex of a light path, on a diffuse surface.
@@ -51,6 +51,7 @@ pub(super) struct LightVertices<const N: usize> {
     center: DVec3,
     /// D.
     near: f64,
+    instructions: Instructions,
     pub(super) stats: Stats,
 }
 
@@ -214,7 +215,7 @@ impl<'a> LightPaths<'a> {
         for (number, (vertex, power)) in vertices.iter().zip(self.powers(&vertices)).enumerate() {
             hands[number % count].set(number / count, (vertex.position - center) / near, vertex.flat, power);
         }
-        LightVertices { hands, vertices, center, near, stats }
+        LightVertices { hands, vertices, center, near, instructions: Instructions::best(), stats }
     }
 
     /// What leaves each vertex, as the sensor sees it, times how often it is seen; 1 of the brightest.
@@ -247,8 +248,9 @@ impl<const N: usize> LightVertices<N> {
         let count = self.hands.len();
         let number = ((u * count as f64) as usize).min(count.checked_sub(1)?);
         let [from, flat] = [(from - self.center) / self.near, flat].map(|v| v.as_vec3().to_array());
-        let weights = self.hands[number].weights(from, flat);
-        let rows = weights.iter().fold([0.0; ROWS], |rows, weights| std::array::from_fn(|row| rows[row] + weights[row]));
+        let weights = self.instructions.run(Weighing { hand: &self.hands[number], from, flat });
+        let rows =
+            weights.iter().fold([0.0; ROWS], |rows, weights| std::array::from_fn(|row| rows[row] + weights[row]));
         let total: f32 = rows.iter().sum();
         let (row, left) = chosen(rows, v as f32 * total)?;
         let (place, _) = chosen(weights.map(|weights| weights[row]), left)?;
@@ -272,7 +274,8 @@ fn chosen<const COUNT: usize>(weights: [f32; COUNT], share: f32) -> Option<(usiz
 }
 
 impl Hand {
-    const EMPTY: Self = Self { place: [[[0.0; ROWS]; ROW]; 3], flat: [[[0.0; ROWS]; ROW]; 3], power: [[0.0; ROWS]; ROW] };
+    const EMPTY: Self =
+        Self { place: [[[0.0; ROWS]; ROW]; 3], flat: [[[0.0; ROWS]; ROW]; 3], power: [[0.0; ROWS]; ROW] };
 
     fn set(&mut self, slot: usize, place: DVec3, flat: DVec3, power: f32) {
         let (row, slot) = (slot / ROW, slot % ROW);
@@ -281,11 +284,22 @@ impl Hand {
         }
         self.power[slot][row] = power;
     }
+}
 
-    /// What each vertex would bring to a white diffuse surface, about.
-    #[inline]
-    fn weights(&self, from: [f32; 3], flat: [f32; 3]) -> OfHand {
-        let Self { place, flat: flats, power } = self;
+/// Asks what each vertex of a hand would bring to a white diffuse surface, about.
+struct Weighing<'a> {
+    hand: &'a Hand,
+    /// The point of the surface as places in hands are given, and its unit normal.
+    from: [f32; 3],
+    flat: [f32; 3],
+}
+
+impl Computation for Weighing<'_> {
+    type Output = OfHand;
+
+    #[inline(always)]
+    fn run<V: Vectors>(self, _: V) -> OfHand {
+        let Self { hand: Hand { place, flat: flats, power }, from, flat } = self;
         // One instruction, where `max` takes several for the sake of NaN.
         let positive = |x: f32| if x > 0.0 { x } else { 0.0 };
         std::array::from_fn(|i| {
@@ -336,4 +350,35 @@ fn kept<const N: usize>(world: &World, landing: &Landing<N>) -> Option<LightVert
     let SurfacePoint { position, error, normal, .. } = *at.point;
     let (error, flat, light, vertices) = (normal.abs().dot(error), at.flat, *light, path.vertices);
     usable.then_some(LightVertex { position, error, flat, leaving, light, vertices, diffuse })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn plain_and_wide_instructions_weigh_a_hand_alike() {
+        let number = |i: usize, use_: u32| {
+            Sampler::new(3, [0, 0], i as u32).four_plain(BranchKey::CAMERA, use_).map(|u| 4.0 * u - 2.0)
+        };
+        let mut hand = Hand::EMPTY;
+        for slot in 0..HAND - 3 {
+            let ([x, y, z, power], [a, b, c, _]) = (number(slot, 0), number(slot, 1));
+            hand.set(slot, DVec3::new(x, y, z), DVec3::new(a, b, c).normalize(), power.abs() as f32);
+        }
+        let mut some = 0;
+        for i in 0..1000 {
+            let ([x, y, z, _], [a, b, c, _]) = (number(i, 2), number(i, 3));
+            // Also from the place of a vertex, where what is looked for at distance 0 is no number.
+            let from = if i < 8 { hand.place.map(|axis| axis[i][0]) } else { [x, y, z].map(|x| x as f32) };
+            let weigh = |instructions: Instructions| {
+                instructions.run(Weighing { hand: &hand, from, flat: [a, b, c].map(|x| x as f32) })
+            };
+            let weights = weigh(Instructions::Plain);
+            assert_eq!(weights, weigh(Instructions::best()));
+            assert!(weights.as_flattened().iter().all(|weight| (0.0..f32::INFINITY).contains(weight)));
+            some += usize::from(weights.as_flattened().iter().any(|&weight| weight > 0.0));
+        }
+        assert!(some > 900, "only {some} of 1000 places are reached by any vertex");
+    }
 }

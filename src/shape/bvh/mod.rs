@@ -8,14 +8,13 @@ mod stack;
 mod vectors;
 mod walk;
 
-pub use vectors::{Crossings, GROUP, Line, Number, Vectors, prefetch};
+pub use vectors::{Computation, Crossings, GROUP, Instructions, Line, Number, Vectors, prefetch};
 pub use walk::Visitor;
 
 use crate::math::{Bounds, Ray};
 use build::Builder;
 use node::{Node, Outer};
 use slabs::{Child, NO_ITEM};
-use vectors::Instructions;
 use walk::Walk;
 
 /// A bounding volume hierarchy over numbered items, eight children to a node.
