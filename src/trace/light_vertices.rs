@@ -51,6 +51,7 @@ pub(super) struct LightVertices<const N: usize> {
     center: DVec3,
     /// D.
     near: f64,
+    /// Those that weigh hands.
     instructions: Instructions,
     pub(super) stats: Stats,
 }
