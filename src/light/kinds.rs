@@ -71,8 +71,8 @@ impl<S> Light<S> {
         }
     }
 
-    /// A ray toward the light as `sample_li` draws it. Where it has a `part`, other triangles of the light may occlude
-    /// that: this is left to the caller.
+    /// A ray toward the light as `sample_li` draws it. Whether other triangles of the light occlude its `part`, if it
+    /// has one, is left to the caller.
     pub fn sample_li_in_part(&self, from: &SurfacePoint, normal: DVec3, u: [f64; 2]) -> Option<LightSample> {
         if let Self::Area(area) = self {
             area.sample_li_in_part(from, normal, u)

@@ -73,10 +73,9 @@ impl<'a, const N: usize> Interaction<'a, N> {
         let parts = parts(self.lobes, self.material, &arrival);
         Self { arrival, parts, ..self }
     }
-}
 
-impl<const N: usize> Interaction<'_, N> {
-    /// How much of light from the unit vector `wi` polarization may change that reaches the sensor by a path as `rgb`.
+    /// How much polarization may change, as X + Y + Z, of light that arrives along the unit vector `wi` and that the
+    /// path brings to the sensor as `rgb`. `on_its_way` is how far panes have polarized it.
     pub(super) fn moved(&self, world: &World, path: &Path<N>, wi: DVec3, on_its_way: Polarized, rgb: [f64; 3]) -> f64 {
         if !path.polarized.is_any() && !world.has_see_through() {
             return 0.0;

@@ -45,13 +45,13 @@ pub(super) struct LightVertex<const N: usize> {
 /// The vertices of some light paths, dealt into hands of which each holds vertices from all over the scene.
 pub(super) struct LightVertices<const N: usize> {
     hands: Vec<Hand>,
-    /// Along a curve through the scene; each hand has every so many-th of them as there are hands, a row after another.
+    /// In the order of a curve through the scene. With n hands, each has every n-th vertex, row after row.
     vertices: Vec<LightVertex<N>>,
     /// The point from which places in hands are counted, in units of D.
     center: DVec3,
     /// D.
     near: f64,
-    /// Those that weigh hands.
+    /// The instructions by which hands are weighed.
     instructions: Instructions,
     pub(super) stats: Stats,
 }
@@ -70,7 +70,8 @@ struct Hand {
     power: OfHand,
 }
 
-/// A number for each vertex of a hand. Neighbors are those of different rows, so that all rows are summed at once.
+/// A number for each vertex of a hand: for each place in a row, the numbers of all rows side by side, so that all rows
+/// are summed at once.
 type OfHand = [[f32; ROWS]; ROW];
 
 /// Samples of each pixel that share light paths.
@@ -260,8 +261,8 @@ impl<const N: usize> LightVertices<N> {
     }
 }
 
-/// The weight within which a share of their sum ends, and the rest of the share; of all that are above 0 the last one
-/// where rounding leaves the share too large, none where there are none.
+/// The place of the weight in which a share of the sum ends, and what of the share falls to it. A weight of 0 is never
+/// chosen. Where rounding leaves the share larger than the sum, the last weight above 0 is chosen.
 fn chosen<const COUNT: usize>(weights: [f32; COUNT], share: f32) -> Option<(usize, f32)> {
     let (mut left, mut chosen) = (share, None);
     for (number, weight) in weights.into_iter().enumerate().filter(|(_, weight)| *weight > 0.0) {
@@ -287,7 +288,7 @@ impl Hand {
     }
 }
 
-/// Asks what each vertex of a hand would bring to a white diffuse surface, about.
+/// Finds about what each vertex of a hand would bring to a white diffuse surface.
 struct Weighing<'a> {
     hand: &'a Hand,
     /// The point of the surface as places in hands are given, and its unit normal.
@@ -359,8 +360,8 @@ mod tests {
 
     #[test]
     fn plain_and_wide_instructions_weigh_a_hand_alike() {
-        let number = |i: usize, use_: u32| {
-            Sampler::new(3, [0, 0], i as u32).four_plain(BranchKey::CAMERA, use_).map(|u| 4.0 * u - 2.0)
+        let number = |i: usize, purpose: u32| {
+            Sampler::new(3, [0, 0], i as u32).four_plain(BranchKey::CAMERA, purpose).map(|u| 4.0 * u - 2.0)
         };
         let mut hand = Hand::EMPTY;
         for slot in 0..HAND - 3 {
@@ -370,7 +371,7 @@ mod tests {
         let mut some = 0;
         for i in 0..1000 {
             let ([x, y, z, _], [a, b, c, _]) = (number(i, 2), number(i, 3));
-            // Also from the place of a vertex, where what is looked for at distance 0 is no number.
+            // Also from the place of a vertex itself, where its weight is 0 / 0.
             let from = if i < 8 { hand.place.map(|axis| axis[i][0]) } else { [x, y, z].map(|x| x as f32) };
             let weigh = |instructions: Instructions| {
                 instructions.run(Weighing { hand: &hand, from, flat: [a, b, c].map(|x| x as f32) })

@@ -30,7 +30,7 @@ impl<const N: usize> Resampling<'_, N> {
     /// Hands the light of two vertices to the sensor, where they are seen.
     pub(super) fn gather(&self, sampler: &Sampler, sensor: &mut Sensor) {
         let [a, b, c, d] = sampler.four(self.path.key, VERTEX);
-        // Both are chosen first: the memory of one comes while the other is chosen.
+        // Both are chosen first, so that the memory of one is read while the other is chosen.
         let chosen = [[a, b], [c, d]].map(|u| {
             let chosen = self.vertices.choose(self.at.point.position, self.at.flat, u);
             chosen.inspect(|(vertex, _)| prefetch(*vertex))

@@ -60,10 +60,11 @@ pub(super) fn is_met<const N: usize>(
     path.throughput.through(straight.holes).weight(shares) <= u * path.throughput.weight(shares)
 }
 
-/// The straight way of light to a place.
+/// The straight way of light to a place, which something may occlude.
 pub(super) struct Passage<'a> {
     /// From the place toward the light.
     pub(super) ray: &'a Ray,
+    /// How far away the light is.
     pub(super) distance: f64,
     pub(super) ends: Ends,
     /// The medium around the ray.
