@@ -3,8 +3,8 @@
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
-use abbe::film::Window;
-use abbe::{Error, Options, Result};
+use abbe::film::{Layer, Window};
+use abbe::{Error, Options, Result, nearest};
 use clap::Parser;
 
 use crate::catalog::Query;
@@ -19,6 +19,7 @@ Examples:
   render --plan scenes/prism.toml                 say what it would do, and why
   render --check scenes/prism.toml                find mistakes in the scene
   render --samples 16 --exr scenes/prism.toml     take a quick look
+  render --layers albedo,N --exr scenes/prism.toml   write layers beside the image
   render catalog --help                           see which glasses it knows
 
 Exit codes: 0 done, 1 the render or a file failed, 2 bad arguments or scene.";
@@ -63,6 +64,10 @@ struct Arguments {
     #[arg(long, value_name = "X,Y,W,H", allow_negative_numbers = true, value_parser = crop)]
     crop: Option<Window>,
 
+    /// Layers in the EXR beside the image, instead of the scene's: such as albedo,N,lights, or all
+    #[arg(long, value_name = "NAMES", value_parser = layers)]
+    layers: Option<LayerList>,
+
     /// Processor threads; all if absent. The image is the same for any number
     #[arg(long, value_name = "N", allow_negative_numbers = true,
           value_parser = clap::value_parser!(u16).range(1..=MAX_THREADS))]
@@ -82,6 +87,25 @@ fn crop(text: &str) -> std::result::Result<Window, String> {
         Some(&[left, top, width, height]) => Ok(Window { left, top, width, height }),
         _ => Err("a crop is four whole numbers of pixels, such as 100,50,320,180".into()),
     }
+}
+
+/// Layers that are asked for.
+#[derive(Clone)]
+struct LayerList(Vec<Layer>);
+
+fn layers(text: &str) -> std::result::Result<LayerList, String> {
+    if text == Layer::ALL {
+        return Ok(LayerList(Layer::NAMES.iter().map(|(_, layer)| *layer).collect()));
+    }
+    let names = || Layer::NAMES.iter().map(|(name, _)| *name);
+    let named = |word: &str| {
+        let known = Layer::NAMES.iter().find(|(name, _)| *name == word).map(|(_, layer)| *layer);
+        known.ok_or_else(|| match nearest(word, names()) {
+            Some(near) => format!("there is no layer `{word}`: did you mean {near}?"),
+            None => format!("there is no layer `{word}`: known are {}", names().collect::<Vec<_>>().join(", ")),
+        })
+    };
+    text.split(',').map(|word| named(word.trim())).collect::<std::result::Result<_, _>>().map(LayerList)
 }
 
 /// A scene and what is wanted of it.
@@ -149,9 +173,10 @@ fn job(arguments: Arguments) -> Result<Job> {
     } else {
         Output::Image { exr: Some(exr).filter(|_| with_exr), png: arguments.png }
     };
-    let Arguments { samples, seed, crop, threads, .. } = arguments;
-    let exposure = arguments.exposure.unwrap_or(0.0);
-    Ok(Job { scene, output, exposure, options: Options { samples, seed, crop, threads: threads.map(usize::from) } })
+    let Arguments { samples, seed, crop, layers, threads, .. } = arguments;
+    let (exposure, layers) = (arguments.exposure.unwrap_or(0.0), layers.map(|LayerList(layers)| layers));
+    let options = Options { samples, seed, crop, layers, threads: threads.map(usize::from) };
+    Ok(Job { scene, output, exposure, options })
 }
 
 impl Job {

@@ -54,7 +54,14 @@ fn image(job: &Job, scene: &Scene, exr: Option<&Path>, png: Option<&Path>) -> Re
     let (progress, expected) = (progress::Progress::new(rendering.work()), rendering.expected());
     let image = rendering.run(&|done| progress.advance(done));
     progress.finish(expected);
-    exr.map_or(Ok(()), |exr| image.write_exr(exr))?;
+    if let Some(exr) = exr {
+        let clamped = image.write_exr(exr)?;
+        if clamped > 0 {
+            messages::warn(&format!(
+                "{clamped} values were too bright for 16 bits and became 65504: precision = \"float\" keeps them"
+            ));
+        }
+    }
     png.map_or(Ok(()), |png| image.write_png(png, job.exposure))?;
     messages::print_report(image.report(), exr, png);
     Ok(())

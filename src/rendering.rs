@@ -5,7 +5,9 @@ use std::path::Path;
 use std::time::Duration;
 
 use crate::error::{Error, Result};
-use crate::film::{Fact, Film, Pixel, Provenance, View, Window, write_exr, write_png};
+use crate::film::{
+    Fact, Film, Format, LONGEST_NAME, Layer, Pixel, Provenance, View, Window, light_layer_name, write_exr, write_png,
+};
 use crate::plan::{Plan, plan};
 use crate::scene::{Projection, Scene};
 use crate::trace::{self, Report, World, prepare};
@@ -15,7 +17,7 @@ use crate::trace::{self, Report, World, prepare};
 /// ```
 /// let quick = abbe::Options { samples: Some(4), ..abbe::Options::default() };
 /// ```
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Options {
     /// Camera samples per pixel, 1 or more.
     pub samples: Option<u32>,
@@ -23,6 +25,8 @@ pub struct Options {
     pub seed: Option<u64>,
     /// The part of the image that is made, in pixels of the full image.
     pub crop: Option<Window>,
+    /// Layers in place of the scene's own.
+    pub layers: Option<Vec<Layer>>,
     /// Processor threads; one for each processor if absent. The image is the same for any number.
     pub threads: Option<usize>,
 }
@@ -41,6 +45,13 @@ impl Options {
             return refuse(message, "--crop takes first column, first row, width and height");
         }
         (scene.render.samples, scene.render.seed, scene.film.crop) = self.instead_of(scene);
+        if let Some(layers) = &self.layers {
+            scene.format.layers.clone_from(layers);
+        }
+        if let Some(name) = too_long(scene) {
+            let message = format!("the layer {name} would have a name that not every program reads: it is too long");
+            return refuse(message, "give that light or object a shorter `group`, of at most 23 letters");
+        }
         Ok(())
     }
 
@@ -49,6 +60,13 @@ impl Options {
         let samples = self.samples.or(scene.render.samples);
         (samples, self.seed.unwrap_or(scene.render.seed), self.crop.or(scene.film.crop))
     }
+}
+
+/// The layer of a light whose name is too long for a file, if lights have layers.
+fn too_long(scene: &Scene) -> Option<String> {
+    let has_lights = scene.format.layers.contains(&Layer::Lights);
+    let mut names = scene.light_groups.iter().map(|group| light_layer_name(group)).filter(|_| has_lights);
+    names.find(|name| name.len() + ".R".len() > LONGEST_NAME)
 }
 
 /// Renders a scene.
@@ -81,6 +99,7 @@ pub struct Rendering {
     plan: Plan,
     passes: trace::Rendering<World>,
     view: View,
+    format: Format,
     /// The scene file's hash, the projection and the filter.
     origin: Origin,
     threads: rayon::ThreadPool,
@@ -99,7 +118,8 @@ impl Rendering {
     /// [`Error::Arguments`] if the options do not fit the scene, or threads cannot be started.
     pub fn new(scene: &Scene, options: &Options) -> Result<Self> {
         let mut scene = Cow::Borrowed(scene);
-        if options.instead_of(&scene) != (scene.render.samples, scene.render.seed, scene.film.crop) {
+        let is_as_asked = options.instead_of(&scene) == (scene.render.samples, scene.render.seed, scene.film.crop);
+        if !is_as_asked || options.layers.is_some() || too_long(&scene).is_some() {
             options.apply(scene.to_mut())?;
         }
         let threads = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build();
@@ -119,6 +139,7 @@ impl Rendering {
             plan,
             passes: trace::Rendering::new(world),
             view,
+            format: scene.format.clone(),
             origin: Origin { hash, projection: camera.projection(), filter },
             threads,
         })
@@ -152,9 +173,9 @@ impl Rendering {
     /// let mut rendering = abbe::Rendering::new(&scene, &options)?;
     /// while rendering.advance(&|_| ()) {
     ///     let so_far = rendering.image();
-    ///     println!("{} samples", so_far.layer("samples.V").unwrap()[0]);
+    ///     println!("{} camera samples", so_far.report().samples);
     /// }
-    /// # assert_eq!(rendering.image().layer("samples.V").unwrap()[0], 64.0);
+    /// # assert_eq!(rendering.image().report().samples, 64 * 64);
     /// # Ok::<(), abbe::Error>(())
     /// ```
     pub fn advance(&mut self, progress: &(dyn Fn(u64) + Sync)) -> bool {
@@ -165,7 +186,8 @@ impl Rendering {
     pub fn image(&self) -> Image {
         let (film, report) = (self.passes.film(), self.passes.report());
         let provenance = provenance(&self.origin, &self.plan, self.passes.samples(), &report);
-        Image { film, report, because: self.plan.because.clone(), view: self.view, provenance }
+        let (because, format) = (self.plan.because.clone(), self.format.clone());
+        Image { film, report, because, view: self.view, format, provenance }
     }
 
     /// Renders all passes that are left; `progress` as of [`advance`](Self::advance).
@@ -182,6 +204,7 @@ pub struct Image {
     report: Report,
     because: Vec<String>,
     view: View,
+    format: Format,
     provenance: Provenance,
 }
 
@@ -217,7 +240,7 @@ impl Image {
     /// | `R`, `G`, `B` | linear color |
     /// | `A` | share of the camera rays that met something, 0 to 1 |
     /// | `Z` | nearest depth in scene units, 1e10 where nothing is met |
-    /// | `samples.V` | camera samples |
+    /// | `albedo.R`, `N.X`, .. | what was asked for beside them |
     pub fn layer(&self, name: &str) -> Option<Vec<f32>> {
         let value: fn(&Pixel) -> f32 = match name {
             "R" => |pixel| pixel.rgb[0],
@@ -225,10 +248,17 @@ impl Image {
             "B" => |pixel| pixel.rgb[2],
             "A" => |pixel| pixel.alpha,
             "Z" => |pixel| pixel.depth,
-            "samples.V" => |pixel| pixel.samples,
-            _ => return None,
+            _ => return self.layer_beside(name),
         };
         Some(self.film.pixels.iter().map(value).collect())
+    }
+
+    /// A channel of a layer that was asked for.
+    fn layer_beside(&self, name: &str) -> Option<Vec<f32>> {
+        let (layer, channel) = name.rsplit_once('.')?;
+        let image = self.film.layers.iter().find(|image| image.name == layer)?;
+        let number = image.layer.channels().iter().position(|known| *known == channel)?;
+        Some(image.channel(number).collect())
     }
 
     /// The pixels as they are, with what they mean.
@@ -246,13 +276,13 @@ impl Image {
         &self.because
     }
 
-    /// Writes a linear OpenEXR file of 32-bit floats with all layers, the camera, and everything that another run needs
-    /// to make the same bytes.
+    /// Writes a linear OpenEXR file with all layers, the camera, and everything that another run needs to make the same
+    /// bytes. Answers how many values were too large for 16 bits, if it has those, and became 65504.
     ///
     /// # Errors
     /// If it cannot be written; a file that was there before is then untouched.
-    pub fn write_exr(&self, path: impl AsRef<Path>) -> Result<()> {
-        write_exr(&self.film, &self.view, &self.provenance, path.as_ref())
+    pub fn write_exr(&self, path: impl AsRef<Path>) -> Result<u64> {
+        write_exr(&self.film, &self.format, &self.view, &self.provenance, path.as_ref())
     }
 
     /// Writes an 8-bit sRGB picture for looking, brightened by 2^`exposure`.

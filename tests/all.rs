@@ -14,6 +14,7 @@ mod caustics;
 mod colors;
 mod densities;
 mod determinism;
+mod film_layers;
 mod floors;
 mod lanes;
 mod layers;

@@ -65,9 +65,9 @@ fn any_number_of_threads_and_any_run_write_the_same_bytes() {
         .replace("[material]", "[material]\nplain.diffuse.reflectance = 0")
         .replace("material = \"floor\"", "material = \"silver\"");
     for scene in [RANDOM, deterministic.as_str()] {
-        let first = rendered(folder.path(), scene, &["--threads", "1"]);
+        let first = rendered(folder.path(), scene, &["--layers", "all", "--threads", "1"]);
         for threads in ["1", "2", "3", "7"] {
-            let again = rendered(folder.path(), scene, &["--threads", threads]);
+            let again = rendered(folder.path(), scene, &["--layers", "all", "--threads", threads]);
             assert!(again == first, "{threads} threads write other bytes");
         }
     }

@@ -1,16 +1,17 @@
-//! The film as an OpenEXR file: one part, scan lines, ZIP, float; the same bytes for the same film.
+//! The film as an OpenEXR file of scan lines; the same bytes for the same film.
 
 use std::io::Cursor;
 use std::path::Path;
 
 use exr::meta::attribute::{Chromaticities, EnvironmentMap};
 use exr::prelude::{
-    AnyChannel, AnyChannels, AttributeValue, Compression, Encoding, FlatSamples, Image, IntegerBounds, Layer,
-    LayerAttributes, LineOrder, SmallVec, Text, Vec2, WritableImage,
+    AnyChannel, AnyChannels, AttributeValue, Compression, Encoding, FlatSamples, Image, ImageAttributes, IntegerBounds,
+    Layer, LayerAttributes, LineOrder, SmallVec, Text, Vec2, WritableImage, f16,
 };
 
 use super::file::replace_file;
-use super::image::{Film, Pixel};
+use super::format::{Format, Precision};
+use super::image::Film;
 use crate::error::{Error, Result};
 
 /// How the camera saw, as the file records it.
@@ -42,42 +43,138 @@ pub enum Fact {
     Count(u64),
 }
 
-/// Writes channels R, G, B, A, Z and samples.V, linear, in 32-bit float.
+/// Writes a linear image: R, G, B, A and Z, and the layers that it has beside them. Answers how many values were too
+/// large for the precision and became the largest that fits.
 ///
 /// A crop is the data window, the full image the display window, which is also what the screen window spans:
 /// compositors lay the crop over the image at its place.
 ///
 /// # Errors
 /// If the file cannot be encoded or written; a file that was there before is then untouched.
-pub fn write_exr(film: &Film, view: &View, provenance: &Provenance, path: &Path) -> Result<()> {
+pub fn write_exr(film: &Film, format: &Format, view: &View, provenance: &Provenance, path: &Path) -> Result<u64> {
     let encode = |error: exr::error::Error| Error::Encode { path: path.to_owned(), message: error.to_string() };
-    let size = Vec2(film.width as usize, film.height as usize);
-    let channel = |name: &str, value: &dyn Fn(&Pixel) -> f32| {
-        let samples = FlatSamples::F32(film.pixels.iter().map(value).collect());
-        AnyChannel { name: Text::from(name), sample_data: samples, quantize_linearly: false, sampling: Vec2(1, 1) }
+    let mut channels = Channels { half: format.precision == Precision::Half, clamped: 0 };
+    let parts = parts(film, format, &mut channels);
+    let mut attributes = attributes(film, view, provenance);
+    let text = |text: &Option<String>| text.as_deref().map(utf8);
+    (attributes.owner, attributes.comments) = (text(&format.owner), text(&format.comments));
+    if channels.half {
+        let clamped = AttributeValue::I32(i32::try_from(channels.clamped).unwrap_or(i32::MAX));
+        attributes.other.insert(Text::from("render/clamped"), clamped);
+    }
+    let encoding = Encoding {
+        compression: compression(format.compression),
+        line_order: LineOrder::Increasing,
+        ..Encoding::UNCOMPRESSED
     };
-    let mut list = SmallVec::new();
-    list.push(channel("A", &|pixel| pixel.alpha));
-    list.push(channel("B", &|pixel| pixel.rgb[2]));
-    list.push(channel("G", &|pixel| pixel.rgb[1]));
-    list.push(channel("R", &|pixel| pixel.rgb[0]));
-    list.push(channel("Z", &|pixel| pixel.depth));
-    // A channel in a layer of its own is also what makes Blender offer the depth to its compositor.
-    list.push(channel("samples.V", &|pixel| pixel.samples));
-    let encoding =
-        Encoding { compression: Compression::ZIP16, line_order: LineOrder::Increasing, ..Encoding::UNCOMPRESSED };
-    let layer = Layer::new(size, attributes(film, view, provenance), encoding, AnyChannels::sort(list));
-    let mut image = Image::from_layer(layer);
-    image.attributes.display_window = IntegerBounds::from_dimensions((film.full[0] as usize, film.full[1] as usize));
-    let primaries = film.color_space.primaries();
-    let [red, green, blue, white] =
-        [primaries.red, primaries.green, primaries.blue, primaries.white].map(|[x, y]| Vec2(x as f32, y as f32));
-    image.attributes.chromaticities = Some(Chromaticities { red, green, blue, white });
+    let size = Vec2(film.width as usize, film.height as usize);
+    let part = |(number, part): (usize, Part)| {
+        let own = if number == 0 { attributes.clone() } else { of_data(&attributes) };
+        let name = format.multipart.then(|| Text::new_or_panic(part.name));
+        Layer::new(size, LayerAttributes { layer_name: name, ..own }, encoding, AnyChannels::sort(part.channels))
+    };
+    let layers: Vec<_> = parts.into_iter().enumerate().map(part).collect();
+    let window = IntegerBounds::from_dimensions((film.full[0] as usize, film.full[1] as usize));
+    let mut image = Image::from_layers(ImageAttributes::new(window), layers);
+    // The chromaticities would be those of all parts, also of those that hold no colors.
+    image.attributes.chromaticities = (!format.multipart).then(|| chromaticities(film));
     let mut bytes = Cursor::new(Vec::new());
     image.write().to_buffered(&mut bytes).map_err(encode)?;
     let mut bytes = bytes.into_inner();
     sort_attributes(&mut bytes);
-    replace_file(path, &bytes)
+    replace_file(path, &bytes)?;
+    Ok(channels.clamped)
+}
+
+type Channel = AnyChannel<FlatSamples>;
+
+/// A part of the file.
+struct Part {
+    name: String,
+    channels: SmallVec<[Channel; 4]>,
+}
+
+/// Makes channels, and counts what does not fit into them.
+struct Channels {
+    half: bool,
+    clamped: u64,
+}
+
+impl Channels {
+    /// A channel of some name; it has 16 bits if it may and colors have.
+    fn of(&mut self, name: &str, may_be_half: bool, values: impl Iterator<Item = f32>) -> Channel {
+        let sample_data = match self.half && may_be_half {
+            true => FlatSamples::F16(values.map(|value| self.half(value)).collect()),
+            false => FlatSamples::F32(values.collect()),
+        };
+        AnyChannel { name: Text::new_or_panic(name), sample_data, quantize_linearly: false, sampling: Vec2(1, 1) }
+    }
+
+    fn half(&mut self, value: f32) -> f16 {
+        let half = f16::from_f32(value);
+        if half.is_finite() {
+            return half;
+        }
+        self.clamped += 1;
+        if value > 0.0 { f16::MAX } else { f16::MIN }
+    }
+}
+
+/// What the file holds: one part, or one for the image and each layer if the format sets them apart.
+fn parts(film: &Film, format: &Format, channels: &mut Channels) -> Vec<Part> {
+    let pixels = || film.pixels.iter();
+    let mut image = SmallVec::new();
+    image.push(channels.of("A", true, pixels().map(|pixel| pixel.alpha)));
+    for (number, name) in ["R", "G", "B"].into_iter().enumerate() {
+        image.push(channels.of(name, true, pixels().map(|pixel| pixel.rgb[number])));
+    }
+    image.push(channels.of("Z", false, pixels().map(|pixel| pixel.depth)));
+    let mut parts = vec![Part { name: "image".to_owned(), channels: image }];
+    for image in &film.layers {
+        if format.multipart {
+            parts.push(Part { name: image.name.clone(), channels: SmallVec::new() });
+        }
+        let part = parts.last_mut().expect("the image comes first");
+        for (number, channel) in image.layer.channels().iter().enumerate() {
+            let name = format!("{}.{channel}", image.name);
+            part.channels.push(channels.of(&name, image.layer.may_be_half(), image.channel(number)));
+        }
+    }
+    parts
+}
+
+fn compression(compression: super::Compression) -> Compression {
+    match compression {
+        super::Compression::None => Compression::Uncompressed,
+        super::Compression::Rle => Compression::RLE,
+        super::Compression::Zips => Compression::ZIP1,
+        super::Compression::Zip => Compression::ZIP16,
+        super::Compression::Piz => Compression::PIZ,
+    }
+}
+
+fn chromaticities(film: &Film) -> Chromaticities {
+    let primaries = film.color_space.primaries();
+    let [red, green, blue, white] =
+        [primaries.red, primaries.green, primaries.blue, primaries.white].map(|[x, y]| Vec2(x as f32, y as f32));
+    Chromaticities { red, green, blue, white }
+}
+
+/// Text of any language: the type is made for Latin-1, readers take the bytes for UTF-8.
+fn utf8(text: &str) -> Text {
+    Text::from_slice_unchecked(text.as_bytes())
+}
+
+/// The attributes of another part than the first: where it lies and how it was seen.
+fn of_data(attributes: &LayerAttributes) -> LayerAttributes {
+    let mut own = LayerAttributes {
+        layer_position: attributes.layer_position,
+        screen_window_width: attributes.screen_window_width,
+        screen_window_center: attributes.screen_window_center,
+        ..LayerAttributes::default()
+    };
+    own.other.insert(Text::from("colorInteropID"), AttributeValue::Text(Text::from("data")));
+    own
 }
 
 fn attributes(film: &Film, view: &View, provenance: &Provenance) -> LayerAttributes {
@@ -104,21 +201,36 @@ fn attributes(film: &Film, view: &View, provenance: &Provenance) -> LayerAttribu
     attributes
 }
 
-/// Puts the attributes of a single-part file into alphabetical order.
+/// Puts the attributes of each part into alphabetical order.
 ///
-/// The encoder keeps them in a hash map, whose order changes from run to run; the header's length does not depend on
+/// The encoder keeps them in a hash map, whose order changes from run to run; the headers' length does not depend on
 /// it, so no offset in the file changes.
 fn sort_attributes(file: &mut [u8]) {
     const START: usize = 8; // magic number and version
-    let text_end = |from: usize| from + file[from..].iter().position(|&byte| byte == 0).unwrap_or(0) + 1;
-    let (mut at, mut entries) = (START, Vec::new());
+    const SEVERAL_PARTS: u8 = 0x10; // of the second byte of the version
+    let several = file[5] & SEVERAL_PARTS != 0;
+    let mut at = START;
+    loop {
+        at = sort_header(file, at);
+        // The list of several headers ends with an empty one.
+        if !several || file[at] == 0 {
+            return;
+        }
+    }
+}
+
+/// Sorts the attributes of one header, and answers where it ends.
+fn sort_header(file: &mut [u8], start: usize) -> usize {
+    let text_end = |file: &[u8], from: usize| from + file[from..].iter().position(|&byte| byte == 0).unwrap_or(0) + 1;
+    let (mut at, mut entries) = (start, Vec::new());
     while file[at] != 0 {
-        let size_at = text_end(text_end(at));
+        let size_at = text_end(file, text_end(file, at));
         let size = u32::from_le_bytes([file[size_at], file[size_at + 1], file[size_at + 2], file[size_at + 3]]);
         let end = size_at + 4 + size as usize;
         entries.push(file[at..end].to_vec());
         at = end;
     }
     entries.sort();
-    file[START..at].copy_from_slice(&entries.concat());
+    file[start..at].copy_from_slice(&entries.concat());
+    at + 1
 }

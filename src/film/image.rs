@@ -1,5 +1,6 @@
 //! An image: its pixels and what they mean.
 
+use super::layers::LayerImage;
 use crate::spectrum::ColorSpace;
 
 /// Depth of a pixel whose rays meet nothing, the value compositing packages expect.
@@ -64,6 +65,8 @@ pub struct Film {
     pub color_space: ColorSpace,
     /// `width * height` pixels, row by row.
     pub pixels: Vec<Pixel>,
+    /// What was asked for beside them.
+    pub layers: Vec<LayerImage>,
 }
 
 impl Film {

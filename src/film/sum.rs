@@ -95,6 +95,16 @@ impl PixelSum {
         self.nearest = self.nearest.min(pass.nearest);
     }
 
+    /// The sum of the samples that were kept.
+    pub fn rgb(&self) -> [f64; 3] {
+        self.total.rgb
+    }
+
+    /// How many samples were kept.
+    pub fn kept(&self) -> u32 {
+        self.kept
+    }
+
     /// The mean over the samples that were kept, and light beside them that is a mean already.
     pub fn pixel(&self, beside: [f64; 3]) -> Pixel {
         let kept = f64::from(self.kept.max(1));

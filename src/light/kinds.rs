@@ -169,6 +169,17 @@ impl<S> Light<S> {
         }
     }
 
+    /// What a scene file calls such a light.
+    pub fn kind_name(&self) -> &'static str {
+        match self {
+            Self::Area(_) => "emissive",
+            Self::Environment(_) => "environment",
+            Self::Point(_) => "point",
+            Self::Spot(_) => "spot",
+            Self::Sun(_) => "sun",
+        }
+    }
+
     /// Whether it is met by rays that meet nothing else.
     pub fn is_infinite(&self) -> bool {
         matches!(self, Self::Environment(_) | Self::Sun(_))

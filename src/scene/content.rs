@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::index::Index;
 use super::{Camera, Relief, RenderText};
-use crate::film::{Filter, Window};
+use crate::film::{Filter, Format, Window};
 use crate::light::{Light, LightId};
 use crate::material::Material;
 use crate::math::Ray;
@@ -22,6 +22,8 @@ pub struct Scene<S = Curve> {
     pub camera: Camera,
     /// The image to make.
     pub film: FilmSettings,
+    /// What its file holds.
+    pub format: Format,
     /// How to make it.
     pub render: RenderText,
     /// Surfaces, in the order of the file: shared by all scenes that differ only in their spectra.
@@ -32,6 +34,10 @@ pub struct Scene<S = Curve> {
     pub lights: Vec<Light<S>>,
     /// The lights that rays see which meet nothing.
     pub infinite_lights: Vec<LightId>,
+    /// The group of each light, by its name: lights of one group share a layer.
+    pub light_groups: Vec<String>,
+    /// Those of the infinite lights that the camera does not see straight.
+    pub hidden_lights: Vec<LightId>,
     /// What the author should know but need not change.
     pub warnings: Vec<String>,
     /// SHA-256 of the scene file and the files it names, 64 hexadecimal digits.
@@ -93,8 +99,26 @@ pub struct Object {
     pub light: Option<LightId>,
     /// Where its points lie in images, if its material varies over the surface.
     pub coordinates: Option<Arc<Coordinates>>,
+    /// The same whatever its material is; none of a shape that has none.
+    pub chart: Option<Arc<Coordinates>>,
+    /// The group of lights that it belongs to if it shines, by its name.
+    pub group: String,
+    /// What the camera sees of it.
+    pub sight: Sight,
     /// The image that bends its normal, if there is one.
     pub relief: Option<Arc<Relief>>,
+}
+
+/// What the camera sees of an object where it looks straight at it. Light, mirrors and shadows know no difference.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Sight {
+    /// All of it.
+    #[default]
+    Shown,
+    /// What is behind it.
+    Hidden,
+    /// Nothing: a hole in the image, of coverage 0.
+    Holdout,
 }
 
 impl Object {
@@ -106,6 +130,11 @@ impl Object {
             point.shading = relief.normal(&self.shape, crossing, &point);
         }
         point
+    }
+
+    /// Where a point of its surface would lie in an image on it; (0, 0) if it has no coordinates.
+    pub fn chart_uv(&self, crossing: &Crossing, point: &SurfacePoint) -> [f64; 2] {
+        self.chart.as_ref().map_or([0.0; 2], |chart| chart.at(&self.shape, crossing, point.position))
     }
 
     /// Where a point of its surface lies in images on it; (0, 0) if there are none.
@@ -183,6 +212,7 @@ impl<S> Scene<S> {
         Scene {
             camera: self.camera.clone(),
             film: self.film,
+            format: self.format.clone(),
             render: self.render.clone(),
             objects: self.objects.clone(),
             materials: materials
@@ -190,6 +220,8 @@ impl<S> Scene<S> {
                 .collect(),
             lights: self.lights.iter().map(|light| light.map(&mut convert)).collect(),
             infinite_lights: self.infinite_lights.clone(),
+            light_groups: self.light_groups.clone(),
+            hidden_lights: self.hidden_lights.clone(),
             warnings: self.warnings.clone(),
             hash: self.hash.clone(),
             index: self.index.clone(),
@@ -214,6 +246,11 @@ impl<S> Scene<S> {
     /// The nearest surface along a ray that leaves a surface.
     pub fn intersect_from(&self, ray: &Ray, left: Option<Primitive>) -> Option<Hit> {
         self.nearest_from(ray, f64::INFINITY, left, |_| true)
+    }
+
+    /// The nearest surface along a ray of the camera, which may have left one through which light goes straight on.
+    pub fn intersect_seen(&self, ray: &Ray, left: Option<Primitive>) -> Option<Hit> {
+        self.nearest_from(ray, f64::INFINITY, left, |object| self.objects[object as usize].sight != Sight::Hidden)
     }
 
     /// The nearest surface along a ray up to a distance, of those objects that count.

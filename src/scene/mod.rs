@@ -13,7 +13,7 @@ mod source;
 mod text;
 
 pub use camera::{Camera, Lens, Projection, Seen};
-pub use content::{Ends, FilmSettings, Hit, MaterialId, NamedMaterial, Object, Primitive, Scene};
+pub use content::{Ends, FilmSettings, Hit, MaterialId, NamedMaterial, Object, Primitive, Scene, Sight};
 pub use relief::{Relief, ReliefKind};
 pub use render_text::{CausticsText, ModelText, RenderText};
 pub use source::Source;

@@ -3,9 +3,10 @@
 use std::cell::Cell;
 
 use super::bright::Aiming;
+use super::contribution::{Contribution, Found};
 use super::interaction::Interaction;
 use super::path::{Path, ScatterSample};
-use super::sensor::{Contribution, Found, Sensor};
+use super::sensor::Sensor;
 use super::straight::Passage;
 use super::{World, shading};
 use crate::light::{LightId, LightSample, SampledLight};
@@ -69,7 +70,7 @@ impl<const N: usize> DirectLighting<'_, N> {
     ///
     /// Where light also comes from beyond the surface, both sides are looked at or, where only one light is sampled,
     /// one of them chosen by chance.
-    pub(super) fn gather(&self, sampler: &Sampler, sensor: &mut Sensor) -> f64 {
+    pub(super) fn gather(&self, sampler: &Sampler, sensor: &mut Sensor<N>) -> f64 {
         let (at, parted) = (self.at, self.path.parted);
         let near = Side { normal: at.flat, chance: None, inside: at.boundary.here, parted };
         if !at.lobes.intersects(Lobes::GLOSSY_TRANSMISSION) {
@@ -89,7 +90,7 @@ impl<const N: usize> DirectLighting<'_, N> {
         chance
     }
 
-    fn gather_side(&self, side: &Side, sampler: &Sampler, sensor: &mut Sensor) {
+    fn gather_side(&self, side: &Side, sampler: &Sampler, sensor: &mut Sensor<N>) {
         let (lights, key) = (&self.world.scene.lights, self.path.key);
         let mut take = |drawn: SampledLight, [u, v]: [f64; 2]| {
             let u = if lights[drawn.light].has_parts() { finer(u, sampler.four_plain(key, MORE_DIGITS)[1]) } else { u };
@@ -138,8 +139,8 @@ impl<const N: usize> DirectLighting<'_, N> {
         let ShadowRay { light, sample, probability, bsdf_cos, bsdf_pdf, factor } = shadow_ray;
         let LightSample { ray, distance, object, part, .. } = sample;
         let ends = Ends { left: self.path.left, light: *object, part: *part };
-        let passage =
-            Passage { ray, distance: *distance, ends, inside: side.inside, last_occluder: self.last_occluder };
+        let (distance, inside, last_occluder) = (*distance, side.inside, self.last_occluder);
+        let passage = Passage { ray, distance, ends, inside, to_camera: false, last_occluder };
         let wi = ray.direction;
         let light_of = || world.scene.lights[*light].toward(arrival.draw, wi, sample.uv);
         let (arriving, on_its_way) = passage.arriving(world, arrival.draw, light_of)?;
@@ -151,7 +152,8 @@ impl<const N: usize> DirectLighting<'_, N> {
         let reflected = self.path.throughput.scaled(factor).of(*bsdf_cos * arriving);
         let rgb = world.responses[*light].sensor(arrival.draw, reflected, side.parted);
         let moved = self.at.moved(world, self.path, wi, on_its_way, rgb);
-        Some(Contribution { light: Some(*light), found: Found::Sampled, rgb, moved })
+        let (bounces, dispersed) = (self.path.bounces + 1, side.parted);
+        Some(Contribution { light: Some(*light), found: Found::Sampled, rgb, moved, bounces, dispersed })
     }
 
     /// The factor on a light's emission and the material's answer: over the density of both ways to the light's

@@ -13,12 +13,14 @@
 use std::f64::consts::PI;
 
 use super::World;
+use super::contribution::{self, Contribution};
 use super::interaction::Interaction;
 use super::path::Path;
 use super::photon_map::{Landed, PhotonMap};
 use super::polarization::Polarized;
-use super::sensor::{add, amount};
+use super::sensor::add;
 use super::shading;
+use crate::light::LightId;
 use crate::math::{BranchKey, DVec2, DVec3, Frame, Ray, Sampler, unit};
 use crate::shape::SurfacePoint;
 use crate::spectrum::Lanes;
@@ -52,6 +54,8 @@ struct Place<'a> {
 /// What was found, and one photon of it, drawn by what it brings.
 struct Found {
     sum: [f64; 3],
+    /// What each photon brings, if that is asked for.
+    parts: Option<Vec<Contribution>>,
     weight: f64,
     drawn: Option<Chosen>,
     u: f64,
@@ -61,30 +65,49 @@ struct Chosen {
     position: DVec3,
     rgb: [f64; 3],
     weight: f64,
+    /// Its number among the parts.
+    part: usize,
     /// By what share polarization may change it.
     change: f64,
 }
 
-/// What the sensor gets of the photons around a place that a path has reached, and how much of it polarization may
-/// change: an estimate by the photon that is looked at.
+/// Light that was gathered, and what each photon brings of it if that was asked for.
+pub(super) struct Gathered {
+    pub(super) all: Contribution,
+    pub(super) parts: Vec<Contribution>,
+}
+
+/// What the sensor gets of the photons around a place that a path has reached; if `apart`, photon by photon as well.
+/// How much of it polarization may change is an estimate by the photon that is looked at.
 pub(super) fn gather<const N: usize>(
     photons: &PhotonMap<N>,
     world: &World,
     path: &Path<N>,
     at: &Interaction<N>,
     sampler: &Sampler,
-) -> ([f64; 3], f64) {
+    apart: bool,
+) -> Gathered {
     let Interaction { point, flat, material, arrival, parts, .. } = at;
     let (flat, parts) = (*flat, *parts);
-    let Some(map) = world.method.light_pass.as_ref().and_then(|pass| pass.map) else { return ([0.0; 3], 0.0) };
+    let bounces = path.bounces + 2;
+    let brought = |light: Option<LightId>, rgb: [f64; 3], dispersed: bool| Contribution {
+        light,
+        found: contribution::Found::Gathered,
+        rgb,
+        moved: 0.0,
+        bounces,
+        dispersed,
+    };
+    let nothing = Gathered { all: brought(None, [0.0; 3], false), parts: Vec::new() };
+    let Some(map) = world.method.light_pass.as_ref().and_then(|pass| pass.map) else { return nothing };
     let [u, whether, ..] = sampler.four_plain(path.key.child(CHOICE), 0);
     if whether >= map.chance {
-        return ([0.0; 3], 0.0);
+        return nothing;
     }
     let radius = map.radius * world.scene.camera.pixel_width(path.length);
     let front = flat.dot(point.normal) > 0.0;
     let place = Place { world, position: point.position, flat, front, radius };
-    let mut found = Found { sum: [0.0; 3], weight: 0.0, drawn: None, u };
+    let mut found = Found { sum: [0.0; 3], parts: apart.then(Vec::new), weight: 0.0, drawn: None, u };
     let parted = |back: DVec3| path.parted || (parts && back.dot(flat) < 0.0);
     let change =
         |back: DVec3, on_its_way: Polarized| path.polarized.brought(material, arrival, back, on_its_way).change();
@@ -97,8 +120,8 @@ pub(super) fn gather<const N: usize>(
         let flux = if by_heroes { photons.matching.onto_heroes(arrival.draw, carries.flux) } else { carries.flux };
         let arriving = path.throughput.of(bsdf_cos * flux);
         let rgb = world.responses[carries.light].sensor(arrival.draw, arriving, parted);
-        let rgb = rgb.map(|x| density * x);
-        found.add(position, rgb, amount(world, rgb), || change(photon.back, photon.polarized));
+        let brought = brought(Some(carries.light), rgb.map(|x| density * x), parted);
+        found.add(position, brought, world.amount(brought.rgb), || change(photon.back, photon.polarized));
     });
     photons.alone.near(point.position, radius, &mut |position, photon| {
         let (wavelength, parted) = (&photon.carries.wavelength, parted(photon.back));
@@ -114,16 +137,24 @@ pub(super) fn gather<const N: usize>(
         let Some(density) = place.density(path, position, photon) else { return };
         let Some((bsdf_cos, _)) = shading::evaluate(material, arrival, flat, photon.back) else { return };
         let share = density * read(path.throughput.of(bsdf_cos));
-        let rgb = photon.carries.color.map(|x| share * x);
-        found.add(position, rgb, amount(world, rgb), || change(photon.back, photon.polarized));
+        let brought = brought(Some(photon.carries.light), photon.carries.color.map(|x| share * x), true);
+        found.add(position, brought, world.amount(brought.rgb), || change(photon.back, photon.polarized));
     });
-    let (light, moved) = place.seen_of(found, point, sampler, path.key);
-    (light.map(|x| x / map.chance), moved / map.chance)
+    let (rgb, moved) = place.seen_of(&mut found, point, sampler, path.key);
+    let (rgb, moved) = (rgb.map(|x| x / map.chance), moved / map.chance);
+    let mut parts = found.parts.unwrap_or_default();
+    parts.iter_mut().for_each(|part| part.rgb = part.rgb.map(|x| x / map.chance));
+    Gathered { all: Contribution { moved, ..brought(None, rgb, false) }, parts }
 }
 
 impl Found {
-    fn add(&mut self, position: DVec3, rgb: [f64; 3], weight: f64, change: impl FnOnce() -> f64) {
+    fn add(&mut self, position: DVec3, brought: Contribution, weight: f64, change: impl FnOnce() -> f64) {
+        let rgb = brought.rgb;
         add(&mut self.sum, rgb);
+        let part = self.parts.as_ref().map_or(0, Vec::len);
+        if let Some(parts) = &mut self.parts {
+            parts.push(brought);
+        }
         if weight == 0.0 {
             return;
         }
@@ -131,7 +162,7 @@ impl Found {
         // What is left of a random number after a choice is one again.
         let chance = weight / self.weight;
         if self.u < chance {
-            self.drawn = Some(Chosen { position, rgb, weight, change: change() });
+            self.drawn = Some(Chosen { position, rgb, weight, part, change: change() });
             self.u /= chance;
         } else {
             self.u = (self.u - chance) / (1.0 - chance);
@@ -168,17 +199,20 @@ impl Place<'_> {
 
     /// What is seen of what was found, over the share of the disc that is seen, and how much of it polarization may
     /// change.
-    fn seen_of(&self, found: Found, point: &SurfacePoint, sampler: &Sampler, key: BranchKey) -> ([f64; 3], f64) {
-        let Found { mut sum, weight, drawn: chosen, .. } = found;
+    fn seen_of(&self, found: &mut Found, point: &SurfacePoint, sampler: &Sampler, key: BranchKey) -> ([f64; 3], f64) {
+        let Found { mut sum, ref mut parts, weight, drawn: ref chosen, .. } = *found;
         let Some(chosen) = chosen else { return (sum, 0.0) };
         let many = weight / chosen.weight;
-        let mut moved = many * chosen.change * amount(self.world, chosen.rgb);
+        let mut moved = many * chosen.change * self.world.amount(chosen.rgb);
         let up = point.leave(self.flat);
         let far = HIGH * self.radius;
         let free = self.world.scene.nearest(&up, 2.0 * far, |_| true).map_or(far, |hit| 0.5 * hit.crossing.t);
         let (height, from) = (far.min(free), up.at(far.min(free)));
         if !self.sees(from, chosen.position, 1.0).unwrap_or(true) {
             (0..3).for_each(|i| sum[i] -= chosen.rgb[i] * many);
+            if let Some(parts) = parts {
+                (0..3).for_each(|i| parts[chosen.part].rgb[i] -= chosen.rgb[i] * many);
+            }
             moved = 0.0;
         }
         let frame = Frame::about(self.flat);
@@ -191,7 +225,9 @@ impl Place<'_> {
                 let DVec2 { x, y } = self.radius * by_kernel(u);
                 let at = self.position + frame.to_world(DVec3::new(x, y, 0.0));
                 if self.sees(from, at, further) == Some(true) {
-                    return (sum.map(|x| x * f64::from(drawn)), moved * f64::from(drawn));
+                    let drawn = f64::from(drawn);
+                    parts.iter_mut().flatten().for_each(|part| part.rgb = part.rgb.map(|x| x * drawn));
+                    return (sum.map(|x| x * drawn), moved * drawn);
                 }
             }
         }

@@ -3,7 +3,6 @@
 use super::media::{self, Boundary};
 use super::path::Path;
 use super::polarization::Polarized;
-use super::sensor::amount;
 use super::{World, shading};
 use crate::material::{Arrival, Lobes, Material};
 use crate::math::DVec3;
@@ -81,7 +80,7 @@ impl<'a, const N: usize> Interaction<'a, N> {
             return 0.0;
         }
         let change = path.polarized.brought(self.material, &self.arrival, wi, on_its_way).change();
-        if change == 0.0 { 0.0 } else { change * amount(world, rgb) }
+        if change == 0.0 { 0.0 } else { change * world.amount(rgb) }
     }
 }
 

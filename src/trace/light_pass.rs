@@ -8,15 +8,16 @@
 
 use rayon::prelude::*;
 
+use super::contribution::{Contribution, Found};
 use super::photon::{Landing, Splat, show as show_photon};
 use super::photon_batch::{Batch, Sent, batches, send};
 use super::photon_targets::PhotonTargets;
-use super::sensor::amount;
 use super::stats::Stats;
 use super::tile::TILE;
 use super::walker::Walker;
 use super::width::in_lanes;
 use super::{LightPass, World};
+use crate::film::Layer;
 use crate::math::Sampler;
 
 /// Batches whose splats are kept in memory at once.
@@ -45,6 +46,8 @@ pub(super) struct CausticImage {
     pub(super) pixels: Vec<[f64; 3]>,
     /// How much of their light polarization may change, of every tile.
     pub(super) moved: Vec<f64>,
+    /// What they show in the layers: a row for each pixel.
+    pub(super) layers: Vec<f64>,
     /// Photons sent.
     pub(super) photons: u64,
     pub(super) stats: Stats,
@@ -58,16 +61,38 @@ pub(super) fn show<const N: usize>(world: &World, progress: &(dyn Fn(u64) + Sync
     let window = world.scene.film.window();
     let mut pixels = vec![[0.0; 3]; window.width as usize * window.height as usize];
     let mut moved = vec![0.0; window.width.div_ceil(TILE) as usize * window.height.div_ceil(TILE) as usize];
-    let add = &mut |Splat { pixel, change, rgb }: Splat| {
+    let mut layers = vec![0.0; pixels.len() * world.layers.numbers];
+    let add = &mut |splat: Splat| {
+        let Splat { pixel, change, rgb, .. } = splat;
+        if !world.layers.is_empty() {
+            let numbers = world.layers.numbers;
+            add_to_layers(world, &splat, &mut layers[pixel as usize * numbers..][..numbers]);
+        }
         (0..3).for_each(|i| pixels[pixel as usize][i] += rgb[i]);
         if change != 0.0 {
             let [column, row] = [pixel % window.width, pixel / window.width].map(|place| place / TILE);
             let tile = row * window.width.div_ceil(TILE) + column;
-            moved[tile as usize] += f64::from(change) * amount(world, rgb);
+            moved[tile as usize] += f64::from(change) * world.amount(rgb);
         }
     };
     let shown = splats::<N>(world, progress, add);
-    CausticImage { pixels, moved, ..shown }
+    CausticImage { pixels, moved, layers, ..shown }
+}
+
+/// Adds a photon that the camera sees to the row of its pixel, which holds means.
+fn add_to_layers(world: &World, splat: &Splat, row: &mut [f64]) {
+    let Splat { light, rgb, dispersed, early, .. } = *splat;
+    // Smooth surfaces mirrored or refracted it, and the last one scattered it to the camera.
+    let bounces = 2;
+    let light = Some(light);
+    world.layers.add(row, &Contribution { light, found: Found::Shown, rgb, moved: 0.0, bounces, dispersed });
+    let mut add = |layer: Layer, numbers: [f64; 3]| {
+        if let Some(at) = world.layers.at(layer) {
+            (0..3).for_each(|channel| row[at + channel] += numbers[channel]);
+        }
+    };
+    add(Layer::Variance, rgb.map(|x| x * x));
+    add(if early { Layer::HalfA } else { Layer::HalfB }, rgb.map(|x| 2.0 * x));
 }
 
 /// Sends them and hands over what they show, in an order that never changes; holds no image.

@@ -15,7 +15,6 @@ use rayon::prelude::*;
 use super::media::{Media, media_of_lights};
 use super::path::PathKind;
 use super::photon::{Landing, Start, Surfaces, follow_photon};
-use super::sensor::amount;
 use super::stats::Stats;
 use super::usefulness::{Place, places, usefulness};
 use super::walker::Walker;
@@ -199,7 +198,7 @@ impl<'a> LightPaths<'a> {
             emitted.factor /= drawn.probability;
             let around = || Media::around(&world.scene, emitted.ray.origin, emitted.ray.direction);
             let media = self.media[light].unwrap_or_else(around);
-            let start = Start { emitted: &emitted, light, media };
+            let start = Start { emitted: &emitted, light, media, early: true };
             follow_photon(&mut walker, start, &draw, &sampler, Surfaces::All, &mut |_, landing| {
                 vertices.extend(kept(world, landing));
             });
@@ -225,7 +224,7 @@ impl<'a> LightPaths<'a> {
         let world = self.world;
         let draw = Draw::<N>::fixed(world.method.basis.fixed_lanes());
         let seen = |vertex: &LightVertex<N>| world.responses[vertex.light].sensor(&draw, vertex.leaving, false);
-        let powers: Vec<f64> = vertices.iter().map(|vertex| amount(world, seen(vertex))).collect();
+        let powers: Vec<f64> = vertices.iter().map(|vertex| world.amount(seen(vertex))).collect();
         let most = powers.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
         let positions: Vec<DVec3> = vertices.iter().map(|vertex| vertex.position).collect();
         let shares = usefulness(world, &self.places, &positions);

@@ -34,6 +34,10 @@ pub(super) struct Path<const N: usize> {
     pub(super) scatter: Option<ScatterSample>,
     /// How far its light may be polarized.
     pub(super) polarized: Polarized,
+    /// How often surfaces have scattered, mirrored or refracted it.
+    pub(super) bounces: u32,
+    /// Whether only smooth surfaces have: what it meets next is seen.
+    pub(super) is_seen: bool,
 }
 
 /// How a path that photons may find as well goes on.
@@ -117,6 +121,8 @@ impl<const N: usize> Path<N> {
             diffuse_left: world.method.diffuse_bounces,
             scatter: None,
             polarized: Polarized::NOT,
+            bounces: 0,
+            is_seen: true,
         }
     }
 

@@ -1,14 +1,16 @@
 //! Paths from the camera back to the lights.
 
 use super::aimed::{may_aim, scatter_aimed};
+use super::contribution::{Contribution, Found};
 use super::direct::{DirectLighting, weight_of_meeting};
-use super::gather::gather;
+use super::gather::{Gathered, gather};
 use super::interaction::{Interaction, Meeting};
+use super::layer_sample::{LayerSample, Met};
 use super::light_vertices::{LightVertices, holds_vertices};
 use super::path::{Path, PathKind, ScatterSample};
 use super::photon_map::PhotonMap;
 use super::resampling::Resampling;
-use super::sensor::{Bounce, Contribution, Found, Observer, Sensor, amount};
+use super::sensor::{Bounce, Observer, Sensor};
 use super::shading;
 use super::straight;
 use super::walker::{Departure, Walker};
@@ -17,13 +19,14 @@ use crate::film::Sample;
 use crate::light::{Light, LightId};
 use crate::material::{Material, Straight};
 use crate::math::{BranchKey, DVec2, Ray, Sampler};
+use crate::scene::Sight;
 use crate::shape::SurfacePoint;
 use crate::spectrum::Draw;
 
 /// Follows the rays of camera samples back to the light, and samples the lights on the way.
 pub(super) struct PathTracer<'a, const N: usize> {
     pub(super) walker: Walker<'a, N>,
-    sensor: Sensor<'a>,
+    sensor: Sensor<'a, N>,
     /// Photons that are gathered, if any are.
     photons: Option<&'a PhotonMap<N>>,
     /// Vertices of light paths, if light is looked for there.
@@ -63,6 +66,17 @@ impl<'a, const N: usize> PathTracer<'a, N> {
         self
     }
 
+    /// With the layers that the world asks for.
+    pub(super) fn with_layers(mut self) -> Self {
+        self.sensor.layers = LayerSample::of(self.walker.world);
+        self
+    }
+
+    /// What the last camera sample left in the layers, if any are asked for.
+    pub(super) fn layers(&self) -> Option<&[f64]> {
+        self.sensor.layers.as_ref().map(|layers| layers.row.as_slice())
+    }
+
     /// One camera sample.
     pub(super) fn sample(&mut self, sampler: &Sampler, [x, y]: [u32; 2]) -> Sample {
         let world = self.walker.world;
@@ -89,6 +103,9 @@ impl<'a, const N: usize> PathTracer<'a, N> {
     fn trace(&mut self, ray: Ray, draw: &Draw<N>, sampler: &Sampler) -> Option<SurfacePoint> {
         let world = self.walker.world;
         let mut first = None;
+        if let Some(layers) = &mut self.sensor.layers {
+            layers.begin();
+        }
         self.walker.started = self.walker.stats.rays;
         self.walker.pending.push(Path::from_camera(world, draw, ray));
         while let Some(last) = self.walker.pending.len().checked_sub(1) {
@@ -112,8 +129,14 @@ impl<'a, const N: usize> PathTracer<'a, N> {
                 self.walker.pending.push(path.passed(point));
                 continue;
             }
-            if path.vertices == 0 && first.is_none() && straight::is_met(world, draw, sampler, &path, straight.as_ref())
-            {
+            if world.hides_objects && path.kind == PathKind::Camera && world.sight(hit.object) == Sight::Holdout {
+                self.walker.pending.extend(straight.map(|straight| path.passed_in_part(point, &straight)));
+                continue;
+            }
+            let is_met_first = path.vertices == 0
+                && first.is_none()
+                && straight::is_met(world, draw, sampler, &path, straight.as_ref());
+            if is_met_first {
                 first = Some(*point);
             }
             path.vertices += 1;
@@ -125,7 +148,7 @@ impl<'a, const N: usize> PathTracer<'a, N> {
                 self.walker.pending.extend(straight.map(|straight| path.passed_in_part(point, &straight)));
                 continue;
             }
-            self.scatter(&path, draw, sampler, &meeting, straight.as_ref());
+            self.scatter(&path, draw, sampler, &meeting, straight.as_ref(), is_met_first);
             if straight.is_none() {
                 self.tell(&path, draw, hit.crossing.t, before);
             }
@@ -141,7 +164,8 @@ impl<'a, const N: usize> PathTracer<'a, N> {
         let world = self.walker.world;
         for &id in &world.scene.infinite_lights {
             let light = &world.scene.lights[id];
-            if self.is_found_by_photons(path, id) {
+            let is_hidden = path.kind == PathKind::Camera && world.scene.hidden_lights.contains(&id);
+            if is_hidden || self.is_found_by_photons(path, id) {
                 continue;
             }
             let factor = match light {
@@ -175,8 +199,9 @@ impl<'a, const N: usize> PathTracer<'a, N> {
     /// Hands light that came by a path to the sensor.
     fn receive(&mut self, path: &Path<N>, light: LightId, found: Found, rgb: [f64; 3]) {
         let is_any = path.polarized.is_any();
-        let moved = if is_any { path.polarized.change() * amount(self.walker.world, rgb) } else { 0.0 };
-        self.sensor.receive(Contribution { light: Some(light), found, rgb, moved });
+        let moved = if is_any { path.polarized.change() * self.walker.world.amount(rgb) } else { 0.0 };
+        let (bounces, dispersed) = (path.bounces, path.parted);
+        self.sensor.receive(Contribution { light: Some(light), found, rgb, moved, bounces, dispersed });
     }
 
     /// Samples the lights where a surface scatters widely, and lets the path go on: its ways on become pending.
@@ -187,6 +212,7 @@ impl<'a, const N: usize> PathTracer<'a, N> {
         sampler: &Sampler,
         meeting: &Meeting,
         straight: Option<&Straight<N>>,
+        is_met_first: bool,
     ) {
         let world = self.walker.world;
         let Some(boundary) = self.walker.boundary(path, meeting) else { return };
@@ -195,6 +221,9 @@ impl<'a, const N: usize> PathTracer<'a, N> {
             return;
         }
         let at = Interaction::new(world, draw, path, meeting, boundary);
+        if let Some(layers) = &mut self.sensor.layers {
+            layers.meet(&Met { path, meeting, at: &at, straight, is_met_first }, sampler);
+        }
         if ends {
             // Light vertices leave out what photons bring here.
             return self.gather_photons(path, &at, sampler);
@@ -260,8 +289,9 @@ impl<'a, const N: usize> PathTracer<'a, N> {
     /// Hands what photons bring to a place that the path has reached by way of others to the sensor.
     fn gather_photons(&mut self, path: &Path<N>, at: &Interaction<N>, sampler: &Sampler) {
         if let Some(photons) = self.photons {
-            let (rgb, moved) = gather(photons, self.walker.world, path, at, sampler);
-            self.sensor.receive(Contribution { light: None, found: Found::Gathered, rgb, moved });
+            let apart = self.sensor.layers.is_some() && self.walker.world.layers.tell_photons_apart();
+            let Gathered { all, parts } = gather(photons, self.walker.world, path, at, sampler, apart);
+            self.sensor.receive_in_parts(&all, if apart { &parts } else { std::slice::from_ref(&all) });
         }
         if let Some(observer) = self.sensor.observer {
             observer.reach(at.point.position);
@@ -273,7 +303,7 @@ impl<'a, const N: usize> PathTracer<'a, N> {
     #[inline]
     fn tell(&self, path: &Path<N>, draw: &Draw<N>, distance: f64, before: [f64; 3]) {
         if let (Some(observer), Some(ScatterSample { from, normal, .. })) = (self.sensor.observer, path.scatter) {
-            let light = amount(self.walker.world, std::array::from_fn(|i| self.sensor.rgb[i] - before[i]));
+            let light = self.walker.world.amount(std::array::from_fn(|i| self.sensor.rgb[i] - before[i]));
             let (direction, distance) = (path.ray.direction, distance + (path.ray.origin - from).length());
             observer.bounce(Bounce { from, normal, direction, distance, light, weight: path.weight(draw) });
         }

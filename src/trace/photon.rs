@@ -12,7 +12,7 @@ use super::walker::{Departure, Walker};
 use crate::light::{LeSample, LightId};
 use crate::material::{Arrival, Branch, Material, Scatter};
 use crate::math::{DVec2, DVec3, Frame, Sampler, cosine_hemisphere, unit};
-use crate::scene::{Ends, FilmSettings};
+use crate::scene::{Ends, FilmSettings, Sight};
 use crate::spectrum::{Draw, Lanes};
 
 /// Use of the random numbers where a photon is seen: the point of the lens.
@@ -25,6 +25,11 @@ pub(super) struct Splat {
     /// By what share polarization may change it.
     pub(super) change: f32,
     pub(super) rgb: [f64; 3],
+    pub(super) light: LightId,
+    /// Whether its wavelengths parted on the way.
+    pub(super) dispersed: bool,
+    /// Whether the photon is of the first half of those sent with it.
+    pub(super) early: bool,
 }
 
 /// Where a photon lands, and the light's way there.
@@ -34,6 +39,8 @@ pub(super) struct Landing<'a, const N: usize> {
     pub(super) light: LightId,
     /// Flux per emission.
     factor: f64,
+    /// Whether the photon is of the first half of those sent with it.
+    early: bool,
 }
 
 impl<const N: usize> Landing<'_, N> {
@@ -63,6 +70,8 @@ pub(super) struct Start<'a> {
     pub(super) emitted: &'a LeSample,
     pub(super) light: LightId,
     pub(super) media: Media,
+    /// Whether the photon is of the first half of those sent with it.
+    pub(super) early: bool,
 }
 
 /// Follows a photon over surfaces; `land` is told where it lands on those that scatter widely.
@@ -71,7 +80,7 @@ pub(super) struct Start<'a> {
 /// between media.
 pub(super) fn follow_photon<const N: usize>(
     walker: &mut Walker<N>,
-    Start { emitted, light, media }: Start,
+    Start { emitted, light, media, early }: Start,
     draw: &Draw<N>,
     sampler: &Sampler,
     over: Surfaces,
@@ -106,7 +115,7 @@ pub(super) fn follow_photon<const N: usize>(
         let allowed = path.vertices <= world.method.max_bounces && !(at.lobes.is_diffuse() && path.diffuse_left == 0);
         let shown = over == Surfaces::All || path.vertices > 1;
         if at.lobes.is_wide() && allowed && shown {
-            land(walker, &Landing { path: &path, at: &at, light, factor: emitted.factor });
+            land(walker, &Landing { path: &path, at: &at, light, factor: emitted.factor, early });
         }
         if over == Surfaces::Smooth || !at.lobes.is_wide() {
             bounce(walker, &path, at, sampler);
@@ -193,10 +202,13 @@ pub(super) fn show<const N: usize>(
     sampler: &Sampler,
     splats: &mut Vec<Splat>,
 ) {
-    let Landing { path, at, light, factor } = landing;
+    let Landing { path, at, light, factor, early } = landing;
     let Interaction { arrival, flat, point, material, .. } = at;
     let world = walker.world;
     let (camera, film) = (&world.scene.camera, world.scene.film);
+    if world.hides_objects && world.sight(at.object) != Sight::Shown {
+        return;
+    }
     let u = if camera.has_lens() { sampler.four_plain(path.key, LENS) } else { [0.5; 4] };
     let Some(seen) = camera.see(point.position, [u[0], u[1]]) else { return };
     let (window, reach) = (film.window(), film.filter.reach());
@@ -220,14 +232,14 @@ pub(super) fn show<const N: usize>(
     let distance = (seen.start - ray.origin).length();
     let inside = at.boundary.sides()[usize::from(!same)];
     let ends = Ends { left: path.left, ..Ends::default() };
-    let passage = Passage { ray: &ray, distance, ends, inside, last_occluder: &walker.last_occluder };
+    let passage = Passage { ray: &ray, distance, ends, inside, to_camera: true, last_occluder: &walker.last_occluder };
     let shone = passage.arriving(world, arrival.draw, || landing.shone(world));
     let Some((shone, polarized)) = shone else { return };
     let arriving = path.throughput.scaled(1.0 / path.eta_scale).of(bsdf_cos * shone);
     let rgb = world.responses[*light].sensor(arrival.draw, arriving, parted);
     let rgb = rgb.map(|x| x * (factor * cosines * seen.importance));
     let change = polarized.brought(material, &viewed, arrival.wo, path.polarized).change() as f32;
-    let splat = Splat { pixel: 0, change, rgb };
+    let splat = Splat { pixel: 0, change, rgb, light: *light, dispersed: parted, early: *early };
     places.into_iter().for_each(|place| spread_over_pixels(film, place, &splat, splats));
 }
 

@@ -76,7 +76,8 @@ pub(super) fn send<const N: usize, T>(
             let draw = world.method.basis.draw(u[2]);
             let around = || Media::around(&world.scene, emitted.ray.origin, emitted.ray.direction);
             let media = world.light_media[light].unwrap_or_else(around);
-            let start = Start { emitted: &emitted, light, media };
+            let early = photon < targets.targets[batch.target].photons / 2;
+            let start = Start { emitted: &emitted, light, media, early };
             follow_photon(&mut walker, start, &draw, &sampler, Surfaces::Smooth, &mut |walker, landing| {
                 land(walker, landing, &sampler, &mut kept);
             });

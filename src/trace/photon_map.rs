@@ -47,6 +47,7 @@ pub(super) struct Together<const N: usize> {
 #[derive(Clone, Debug)]
 pub(super) struct Alone {
     pub(super) wavelength: Wavelength,
+    pub(super) light: LightId,
     /// The film's color of its flux over the cosine under which it arrived.
     pub(super) color: [f64; 3],
 }
@@ -134,7 +135,7 @@ fn keep<const N: usize>(world: &World, matching: &Matching<N>, landing: &Landing
     };
     let response = &world.responses[*light];
     let by_heroes = matching.alone(arrival.draw, response, flux, path.parted, |wavelength, color| {
-        kept.push((point.position, Kept::Alone(photon.with(Alone { wavelength, color }))));
+        kept.push((point.position, Kept::Alone(photon.with(Alone { wavelength, light: *light, color }))));
     });
     if !by_heroes {
         kept.push((point.position, Kept::Together(photon.with(Together { flux, light: *light }))));

@@ -5,11 +5,11 @@ use std::borrow::Borrow;
 use rayon::prelude::*;
 
 use super::World;
+use super::layer_sums::{Taken, images, write};
 use super::light_pass::{self, CausticImage};
 use super::light_vertices::{LightPaths, LightVertices, SHARED};
 use super::photon_map;
 use super::photon_targets::PhotonTargets;
-use super::sensor::amount;
 use super::stats::Stats;
 use super::tile::{TILE, Tile};
 use super::width::in_lanes;
@@ -87,11 +87,11 @@ pub struct Rendering<W> {
 impl<W: Borrow<World>> Rendering<W> {
     /// An image without samples yet.
     pub fn new(world: W) -> Self {
-        let window = world.borrow().scene.film.window();
+        let (window, layers) = (world.borrow().scene.film.window(), &world.borrow().layers);
         let corners = (0..window.height)
             .step_by(TILE as usize)
             .flat_map(|y| (0..window.width).step_by(TILE as usize).map(move |x| [x, y]));
-        let tiles = corners.map(|corner| Tile::new(window, corner)).collect();
+        let tiles = corners.map(|corner| Tile::new(window, corner, layers)).collect();
         Self { world, tiles, shown: None, gathered: Stats::default(), photons: 0, samples: 0, passes: 0 }
     }
 
@@ -119,10 +119,17 @@ impl<W: Borrow<World>> Rendering<W> {
         let settings = self.world().scene.film;
         let window = settings.window();
         let mut pixels = vec![BLANK; window.width as usize * window.height as usize];
+        let layers = &self.world().layers;
+        let mut images = images(layers, pixels.len());
         for tile in &self.tiles {
             for (place, sum) in (0..).zip(&tile.sums) {
                 let number = tile.number(window, place);
                 pixels[number] = sum.pixel(self.shown_at(number));
+                if !layers.is_empty() {
+                    let (sums, shown) = (tile.layers.row(layers, place as usize), self.shown_in_layers(number));
+                    let taken = Taken { sums, shown, rgb: sum.rgb(), kept: sum.kept() };
+                    write(layers, &taken, number, &mut images);
+                }
             }
         }
         Film {
@@ -132,6 +139,7 @@ impl<W: Borrow<World>> Rendering<W> {
             full: [settings.width, settings.height],
             color_space: settings.color_space,
             pixels,
+            layers: images,
         }
     }
 
@@ -173,7 +181,7 @@ impl<W: Borrow<World>> Rendering<W> {
         if let Some(shown) = &self.shown {
             let samples = f64::from(self.samples);
             stats.polarization += samples * shown.moved.get(number).copied().unwrap_or_default();
-            let light = |place| amount(self.world(), self.shown_at(tile.number(window, place)));
+            let light = |place| self.world().amount(self.shown_at(tile.number(window, place)));
             stats.light += samples * (0..tile.width * tile.height).map(light).sum::<f64>();
         }
         stats
@@ -182,6 +190,15 @@ impl<W: Borrow<World>> Rendering<W> {
     /// What photons show in a pixel of the window.
     fn shown_at(&self, pixel: usize) -> [f64; 3] {
         self.shown.as_ref().and_then(|shown| shown.pixels.get(pixel)).copied().unwrap_or_default()
+    }
+
+    /// What photons show in the layers of a pixel of the window.
+    fn shown_in_layers(&self, pixel: usize) -> &[f64] {
+        let numbers = self.world().layers.numbers;
+        self.shown
+            .as_ref()
+            .and_then(|shown| shown.layers.get(pixel * numbers..(pixel + 1) * numbers))
+            .unwrap_or_default()
     }
 
     fn pass<const N: usize>(&mut self, progress: &(dyn Fn(u64) + Sync)) {

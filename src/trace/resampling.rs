@@ -3,10 +3,11 @@
 use std::cell::Cell;
 
 use super::World;
+use super::contribution::{Contribution, Found};
 use super::interaction::Interaction;
 use super::light_vertices::{LightVertex, LightVertices};
 use super::path::Path;
-use super::sensor::{Contribution, Found, Sensor};
+use super::sensor::Sensor;
 use super::shading;
 use super::straight::Passage;
 use crate::math::{Ray, Sampler, gamma, unit};
@@ -28,7 +29,7 @@ const VERTEX: u32 = 5;
 
 impl<const N: usize> Resampling<'_, N> {
     /// Hands the light of two vertices to the sensor, where they are seen.
-    pub(super) fn gather(&self, sampler: &Sampler, sensor: &mut Sensor) {
+    pub(super) fn gather(&self, sampler: &Sampler, sensor: &mut Sensor<N>) {
         let [a, b, c, d] = sampler.four(self.path.key, VERTEX);
         // Both are chosen first, so that the memory of one is read while the other is chosen.
         let chosen = [[a, b], [c, d]].map(|u| {
@@ -65,13 +66,15 @@ impl<const N: usize> Resampling<'_, N> {
         let short = (vertex.error + gamma(8) * distance) / cos;
         let ends = Ends { left: self.path.left, ..Ends::default() };
         let (distance, inside) = (distance - short, at.boundary.here);
-        let passage = Passage { ray: &ray, distance, ends, inside, last_occluder: self.last_occluder };
+        let passage =
+            Passage { ray: &ray, distance, ends, inside, to_camera: false, last_occluder: self.last_occluder };
         let (arriving, on_its_way) = passage.arriving(world, at.arrival.draw, || vertex.leaving)?;
         let near_squared = self.vertices.near_squared();
         let factor = factor * cos / (squared + near_squared);
         let reflected = self.path.throughput.scaled(factor).of(bsdf_cos * arriving);
         let rgb = world.responses[vertex.light].sensor(at.arrival.draw, reflected, self.path.parted);
         let moved = at.moved(world, self.path, direction, on_its_way, rgb);
-        Some(Contribution { light: Some(vertex.light), found: Found::Connected, rgb, moved })
+        let (bounces, dispersed) = (self.path.bounces + 1 + vertex.vertices, self.path.parted);
+        Some(Contribution { light: Some(vertex.light), found: Found::Connected, rgb, moved, bounces, dispersed })
     }
 }

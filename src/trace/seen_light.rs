@@ -4,7 +4,6 @@
 use super::light_pass::splats;
 use super::path_tracer::PathTracer;
 use super::photon_map;
-use super::sensor::amount;
 use super::width::in_lanes;
 use super::{LightPass, MapPasses, World};
 use crate::film::Window;
@@ -69,7 +68,7 @@ fn look<const N: usize>(world: &World) -> SeenLight {
     let pixels = f64::from(window.width) * f64::from(window.height);
     let looked_at = f64::from(SIDE * SIDE) / pixels;
     splats::<N>(world, &|_| (), &mut |splat| {
-        let light = looked_at * amount(world, splat.rgb);
+        let light = looked_at * world.amount(splat.rgb);
         let part = &mut seen.parts[part_of(window, [splat.pixel % window.width, splat.pixel / window.width])];
         part[0] += light;
         part[1] += light * f64::from(splat.change);

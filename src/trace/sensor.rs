@@ -1,35 +1,10 @@
 //! Where the light of camera samples arrives.
 
 use super::World;
+use super::contribution::Contribution;
+use super::layer_sample::LayerSample;
 use super::stats::Stats;
-use crate::light::LightId;
 use crate::math::DVec3;
-
-/// Light that reaches the sensor by one path.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Contribution {
-    /// The light it comes from; none where photons of several were gathered.
-    pub(super) light: Option<LightId>,
-    pub(super) found: Found,
-    /// How much, in the film's color space.
-    pub(super) rgb: [f64; 3],
-    /// How much of it polarization may change, as X + Y + Z.
-    pub(super) moved: f64,
-}
-
-/// How light was found.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Found {
-    /// A path hit the light: a surface, with its unit normal on the front, or none of a sky; and whether the direction
-    /// was drawn where lights were sampled as well.
-    Hit { normal: Option<DVec3>, scattered: bool },
-    /// The light was sampled.
-    Sampled,
-    /// A path from the light was met.
-    Connected,
-    /// Photons were gathered.
-    Gathered,
-}
 
 /// What a path found in a direction that was drawn where lights were sampled as well.
 #[derive(Clone, Copy, Debug)]
@@ -57,26 +32,37 @@ pub(super) trait Observer {
 }
 
 /// The sink of all light that one camera sample after another finds.
-pub(super) struct Sensor<'a> {
+pub(super) struct Sensor<'a, const N: usize> {
     /// What the sample at hand has received.
     pub(super) rgb: [f64; 3],
     /// How much of that polarization may change.
     moved: f64,
     pub(super) observer: Option<&'a dyn Observer>,
+    /// What it leaves in layers, if any are asked for.
+    pub(super) layers: Option<LayerSample<'a, N>>,
 }
 
-impl<'a> Sensor<'a> {
+impl<const N: usize> Sensor<'_, N> {
     pub(super) fn new() -> Self {
-        Self { rgb: [0.0; 3], moved: 0.0, observer: None }
+        Self { rgb: [0.0; 3], moved: 0.0, observer: None, layers: None }
     }
 
     /// Receives light.
     #[inline]
     pub(super) fn receive(&mut self, contribution: Contribution) {
-        add(&mut self.rgb, contribution.rgb);
-        self.moved += contribution.moved;
+        self.receive_in_parts(&contribution, std::slice::from_ref(&contribution));
+    }
+
+    /// Receives light that layers tell apart.
+    #[inline]
+    pub(super) fn receive_in_parts(&mut self, all: &Contribution, parts: &[Contribution]) {
+        add(&mut self.rgb, all.rgb);
+        self.moved += all.moved;
+        if let Some(layers) = &mut self.layers {
+            parts.iter().for_each(|part| layers.receive(part));
+        }
         if let Some(observer) = self.observer {
-            observer.receive(&contribution);
+            observer.receive(all);
         }
     }
 
@@ -84,7 +70,7 @@ impl<'a> Sensor<'a> {
     ///
     /// One that is not finite is left out of the image, and so of the light that is counted.
     pub(super) fn read_out(&mut self, world: &World, stats: &mut Stats) -> [f64; 3] {
-        let light = amount(world, self.rgb);
+        let light = world.amount(self.rgb);
         if light.is_finite() && self.moved.is_finite() {
             stats.light += light;
             stats.polarization += self.moved;
@@ -92,11 +78,6 @@ impl<'a> Sensor<'a> {
         self.moved = 0.0;
         std::mem::take(&mut self.rgb)
     }
-}
-
-/// How much light there is in a film color: X + Y + Z.
-pub(super) fn amount(world: &World, rgb: [f64; 3]) -> f64 {
-    (0..3).map(|channel| rgb[channel] * world.xyz_of_channel[channel]).sum::<f64>().abs()
 }
 
 pub(super) fn add(sum: &mut [f64; 3], more: [f64; 3]) {

@@ -9,7 +9,7 @@ use super::polarization::Polarized;
 use super::{Transport, World, shading};
 use crate::material::{Scatter, Straight};
 use crate::math::{Ray, Sampler};
-use crate::scene::{Ends, Hit, MaterialId};
+use crate::scene::{Ends, Hit, MaterialId, Sight};
 use crate::shape::SurfacePoint;
 use crate::spectrum::{Draw, Lanes};
 
@@ -69,6 +69,8 @@ pub(super) struct Passage<'a> {
     pub(super) ends: Ends,
     /// The medium around the ray.
     pub(super) inside: Option<MaterialId>,
+    /// Whether it leads to the camera, from which some objects may be hidden.
+    pub(super) to_camera: bool,
     /// The object that occluded a light last.
     pub(super) last_occluder: &'a Cell<Option<u32>>,
 }
@@ -83,14 +85,16 @@ impl Passage<'_> {
         draw: &Draw<N>,
         light: impl FnOnce() -> Lanes<N>,
     ) -> Option<(Lanes<N>, Polarized)> {
-        let Self { ray, distance, ends, inside, last_occluder } = *self;
+        let Self { ray, distance, ends, inside, to_camera, last_occluder } = *self;
         let (mut arriving, polarized);
-        if world.has_see_through() {
-            let closed = |object| !world.is_see_through(object);
+        let hides = to_camera && world.hides_objects;
+        if hides || world.has_see_through() {
+            let is_there = |object| !hides || world.sight(object) != Sight::Hidden;
+            let closed = |object| !world.is_see_through(object) && is_there(object);
             if world.scene.is_occluded_by(ray, distance, ends, last_occluder, closed) {
                 return None;
             }
-            let (share, of_panes) = transmittance(world, draw, ray, distance, inside)?;
+            let (share, of_panes) = transmittance(world, draw, ray, distance, inside, is_there)?;
             (arriving, polarized) = (light() * share, of_panes);
         } else if world.scene.is_occluded(ray, distance, ends, last_occluder) {
             return None;
@@ -116,9 +120,11 @@ fn transmittance<const N: usize>(
     ray: &Ray,
     distance: f64,
     inside: Option<MaterialId>,
+    is_there: impl Fn(u32) -> bool,
 ) -> Option<(Lanes<N>, Polarized)> {
     let (mut ray, mut left, mut all, mut polarized) = (*ray, distance, Lanes::ONE, Polarized::NOT);
-    while let Some(hit) = world.scene.nearest(&ray, left, |object| world.is_see_through(object)) {
+    let counts = |object: u32| world.is_see_through(object) && is_there(object);
+    while let Some(hit) = world.scene.nearest(&ray, left, counts) {
         let point = world.scene.objects[hit.object as usize].point(&ray, &hit.crossing);
         let straight = straight_at(world, draw, &ray, Lanes::ONE, inside, &hit, &point)?;
         (all, polarized) = (all * straight.share(), polarized.after(straight.polarization));

@@ -3,6 +3,8 @@
 use std::ops::Range;
 
 use super::World;
+use super::layer_sums::LayerSums;
+use super::layers::Layers;
 use super::light_vertices::{LightVertices, SHARED};
 use super::path_tracer::PathTracer;
 use super::photon_map::PhotonMap;
@@ -21,15 +23,18 @@ pub(super) struct Tile {
     pub(super) height: u32,
     /// Sums of its pixels, row by row.
     pub(super) sums: Vec<PixelSum>,
+    /// Sums of their layers.
+    pub(super) layers: LayerSums,
     pub(super) stats: Stats,
     pub(super) first_non_finite: Option<[u32; 3]>,
 }
 
 impl Tile {
-    pub(super) fn new(window: Window, corner: [u32; 2]) -> Self {
+    pub(super) fn new(window: Window, corner: [u32; 2], layers: &Layers) -> Self {
         let [width, height] = [window.width - corner[0], window.height - corner[1]].map(|left| left.min(TILE));
         let sums = vec![PixelSum::default(); width as usize * height as usize];
-        Self { corner, width, height, sums, stats: Stats::default(), first_non_finite: None }
+        let layers = LayerSums::new(layers, sums.len());
+        Self { corner, width, height, sums, layers, stats: Stats::default(), first_non_finite: None }
     }
 
     /// The number of one of its pixels in the window.
@@ -47,7 +52,7 @@ impl Tile {
         numbers: Range<u32>,
     ) {
         let window = world.scene.film.window();
-        let mut tracer = PathTracer::<N>::new(world).with_photons(photons);
+        let mut tracer = PathTracer::<N>::new(world).with_photons(photons).with_layers();
         for (place, sum) in (0..).zip(&mut self.sums) {
             // Random numbers and rays belong to the full image's pixel, whatever part of it is made.
             let x = window.left + self.corner[0] + place % self.width;
@@ -56,9 +61,13 @@ impl Tile {
             for number in numbers.clone() {
                 tracer.light_vertices = light_vertices.get(((number - numbers.start) / SHARED) as usize);
                 let sampler = Sampler::new(world.method.seed, [x, y], number);
-                if !pass.add(&tracer.sample(&sampler, [x, y])) {
+                let sample = tracer.sample(&sampler, [x, y]);
+                if !pass.add(&sample) {
                     self.stats.non_finite += 1;
                     self.first_non_finite.get_or_insert([x, y, number]);
+                } else if let Some(left) = tracer.layers() {
+                    let early = number < world.method.samples / 2;
+                    self.layers.add(&world.layers, place as usize, early, &sample, left);
                 }
             }
             sum.add(pass);

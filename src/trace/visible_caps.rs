@@ -3,8 +3,9 @@
 use std::cell::RefCell;
 
 use super::World;
+use super::contribution::{Contribution, Found};
 use super::path_tracer::PathTracer;
-use super::sensor::{Contribution, Found, Observer};
+use super::sensor::Observer;
 use super::width::in_lanes;
 use crate::light::{Light, LightId};
 use crate::math::{DVec3, Sampler};

@@ -4,7 +4,7 @@ use std::cell::Cell;
 
 use super::interaction::{Interaction, Meeting};
 use super::media::Boundary;
-use super::path::{Path, ScatterSample};
+use super::path::{Path, PathKind, ScatterSample};
 use super::roulette::{LONG, survival};
 use super::stats::Stats;
 use super::{Transport, World, shading, straight};
@@ -46,7 +46,10 @@ impl<'a, const N: usize> Walker<'a, N> {
     #[inline(always)]
     pub(super) fn meet(&mut self, path: &mut Path<N>, draw: &Draw<N>) -> Option<Meeting> {
         self.stats.rays += 1;
-        let hit = self.world.scene.intersect_from(&path.ray, path.left);
+        let hit = match path.kind {
+            PathKind::Camera if self.world.hides_objects => self.world.scene.intersect_seen(&path.ray, path.left),
+            _ => self.world.scene.intersect_from(&path.ray, path.left),
+        };
         path.advance(self.world, draw, hit.map_or(f64::INFINITY, |hit| hit.crossing.t));
         let hit = hit?;
         path.left = Some(hit.primitive());
@@ -216,6 +219,8 @@ impl<'a, const N: usize> Departure<'a, N> {
                 Some(_) => path.polarized.scattered(at.material, &at.arrival, branch.wi),
                 None => path.polarized.after(branch.polarization),
             },
+            bounces: path.bounces + 1,
+            is_seen: path.is_seen && !wide && !at.lobes.is_wide(),
         }
     }
 }

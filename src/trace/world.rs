@@ -1,10 +1,11 @@
 use super::bright::{Bright, BrightPlaces};
+use super::layers::Layers;
 use super::media::{Media, media_of_lights};
 use super::photon_targets::PhotonTargets;
 use super::{LightPass, Method, Transport};
 use crate::light::{Light, LightId, LightSampler};
 use crate::material::Lobes;
-use crate::scene::Scene;
+use crate::scene::{Scene, Sight};
 use crate::spectrum::{Curve, Distinct, Draw, MAX_LANES, Quantity, Response, Table, apply};
 
 /// Lights that are weighed one by one: of more, neighbors in the scene as one.
@@ -15,8 +16,10 @@ const LIGHTS: usize = 16;
 pub struct World {
     pub(super) scene: Scene<Table>,
     pub(super) method: Method,
+    /// What is asked for beside the image.
+    pub(super) layers: Layers,
     /// X + Y + Z of each film channel.
-    pub(super) xyz_of_channel: [f64; 3],
+    xyz_of_channel: [f64; 3],
     /// What each light's lanes are worth to the sensor.
     pub(super) responses: Vec<Response>,
     /// Lights that next-event estimation samples.
@@ -26,6 +29,8 @@ pub struct World {
     /// The bodies around the camera.
     pub(super) camera_media: Media,
     pub(super) has_media: bool,
+    /// Whether there are objects that the camera does not see, or sees as holes.
+    pub(super) hides_objects: bool,
     /// The lobes of each material.
     pub(super) lobes: Vec<Lobes>,
     /// Whether each object lets light straight on; empty where none does.
@@ -48,11 +53,13 @@ impl World {
         let responses = scene.lights.iter().map(response).collect();
         let to_xyz = scene.film.color_space.to_xyz();
         let xyz_of_channel = [0, 1, 2].map(|channel| to_xyz.iter().map(|row| row[channel]).sum());
+        let layers = Layers::new(scene, &method.basis);
         let has_media = scene.materials.iter().any(|m| m.material.medium().is_some());
         let scene = scene.map(|quantity, curve| match quantity {
             Quantity::Emission => tables.of(curve, |curve| method.basis.tabulate(quantity, curve)),
             _ => method.basis.tabulate(quantity, curve),
         });
+        let hides_objects = scene.objects.iter().any(|object| object.sight != Sight::Shown);
         let is_see_through = |object: u32| scene.material_of(object).is_see_through();
         let see_through: Vec<bool> = (0..scene.objects.len() as u32).map(is_see_through).collect();
         let see_through = if see_through.contains(&true) { see_through } else { Vec::new() };
@@ -61,6 +68,7 @@ impl World {
         let sampled_lights = light_sampler.lights();
         let bright = method.bright.as_ref().map(Bright::new);
         let mut world = Self {
+            layers,
             xyz_of_channel,
             responses,
             sampled_lights,
@@ -69,6 +77,7 @@ impl World {
             method,
             camera_media: Media::default(),
             has_media,
+            hides_objects,
             lobes,
             see_through,
             bright,
@@ -163,6 +172,16 @@ impl World {
     /// Whether an object lets light straight on.
     pub(super) fn is_see_through(&self, object: u32) -> bool {
         self.see_through.get(object as usize).is_some_and(|&on| on)
+    }
+
+    /// How much light there is in a film color: X + Y + Z.
+    pub(super) fn amount(&self, rgb: [f64; 3]) -> f64 {
+        (0..3).map(|channel| rgb[channel] * self.xyz_of_channel[channel]).sum::<f64>().abs()
+    }
+
+    /// What the camera sees of an object.
+    pub(super) fn sight(&self, object: u32) -> Sight {
+        self.scene.objects[object as usize].sight
     }
 
     /// Whether next-event estimation at a vertex of the given weight samples every light, or one.

@@ -11,6 +11,7 @@ use super::curve_text::{CurveText, KindText};
 use super::image::{bytes_of_image, factor_on_image};
 use super::image_file::read_image;
 use super::measures::{direction, point};
+use super::object;
 use super::transform::{Step, map_of, steps};
 use crate::light::{Environment, Light, LightId, Panorama, Point, Sky, Spot, Sun};
 use crate::math::{DMat3, DVec3, Transform};
@@ -22,6 +23,10 @@ use crate::spectrum::{Curve, Placement, Quantity};
 pub(super) struct Lights {
     pub(super) all: Vec<Light<Curve>>,
     pub(super) infinite_lights: Vec<LightId>,
+    /// Those of them that the camera does not see.
+    pub(super) hidden: Vec<LightId>,
+    /// The group of each light.
+    pub(super) groups: Vec<String>,
     has_environment: bool,
 }
 
@@ -31,8 +36,11 @@ impl Lights {
     /// environment = { radiance = 1 }     # or `point`, `spot` or `sun`
     /// ```
     pub(super) fn read<'d>(&mut self, context: &mut Context<'d>, value: Value<'d>) -> Option<()> {
+        let (mut group, mut visible) = (None, true);
         let light = Fields::read(value, |light| {
             let name = light.maybe("name", Value::text);
+            let own = light.maybe("group", object::group);
+            let seen = light.maybe("visible_to_camera", at(Value::yes_or_no));
             let kinds = ["environment", "point", "spot", "sun"].map(|kind| light.get(kind));
             let given: Vec<Value> = kinds.iter().flatten().copied().collect();
             match given.as_slice() {
@@ -47,8 +55,15 @@ impl Lights {
                     return last.advise("a light has exactly one kind", "start another [[light]] for the second");
                 }
             }
-            name?;
+            group = own?.or(name?);
             let [environment, point, spot, sun] = kinds;
+            if let Some(seen) = seen? {
+                visible = seen.it;
+                if point.or(spot).is_some() {
+                    let message = "a point and a spot are too small to be seen";
+                    return seen.place.advise(message, "leave `visible_to_camera` out");
+                }
+            }
             if let Some(place) = environment {
                 if std::mem::replace(&mut self.has_environment, true) {
                     return place.refuse("a scene has at most one environment");
@@ -61,6 +76,8 @@ impl Lights {
             point.or(spot).or(sun).flatten()
         })?;
         self.infinite_lights.extend(light.is_infinite().then_some(self.all.len()));
+        self.hidden.extend((!visible).then_some(self.all.len()));
+        self.groups.push(group.unwrap_or(light.kind_name()).to_owned());
         self.all.push(light);
         Some(())
     }

@@ -42,7 +42,7 @@ use self::object::Names;
 use self::place::Placed;
 use super::index::Index;
 use super::text::{Document, Fields, Value};
-use super::{FilmSettings, Object, RenderText, Scene};
+use super::{Object, RenderText, Scene};
 use crate::light::{Area, Light, LightId};
 use crate::material::Material;
 use crate::shape::Sides;
@@ -77,7 +77,7 @@ fn scene<'d>(context: &mut Context<'d>, sections: &mut Fields<'d>) -> Option<Sce
         let message = format!("the scene has {}", missing.join(" and "));
         sections.refuse::<()>(message, Some("every scene has [camera] and [film]"));
     }
-    let film: Option<FilmSettings> = film.and_then(section).and_then(view::film);
+    let (film, format) = film.and_then(section).and_then(view::film).unzip();
     let camera = camera.and_then(section).and_then(|camera| view::camera(context, camera, film.as_ref()));
     let render = render.map_or(Some(RenderText::default()), |render| render::render(section(render)?));
     // A length that is misspelt is not missing as well.
@@ -100,21 +100,28 @@ fn scene<'d>(context: &mut Context<'d>, sections: &mut Fields<'d>) -> Option<Sce
     let Placed { objects, materials, .. } = placed;
     let index = Index::new(objects.iter().map(|object| &*object.shape));
     let (lights, infinite_lights, warnings, hash) = (Vec::new(), Vec::new(), Vec::new(), String::new());
-    let (camera, film, render) = (camera?, film?, render?);
+    let (light_groups, hidden_lights) = (Vec::new(), Vec::new());
+    let (camera, film, format, render) = (camera?, film?, format?, render?);
     let mut scene = Scene {
         camera,
         film,
+        format,
         render,
         objects: objects.into(),
         materials,
         lights,
         infinite_lights,
+        light_groups,
+        hidden_lights,
         warnings,
         hash,
         index: index.into(),
     };
     surfaces_that_shine(&mut scene);
-    scene.infinite_lights = others.infinite_lights.into_iter().map(|sky| sky + scene.lights.len()).collect();
+    let [infinite, hidden] = [others.infinite_lights, others.hidden]
+        .map(|lights| lights.into_iter().map(|light| light + scene.lights.len()).collect());
+    (scene.infinite_lights, scene.hidden_lights) = (infinite, hidden);
+    scene.light_groups.extend(others.groups);
     scene.lights.extend(others.all);
     Some(scene)
 }
@@ -199,6 +206,7 @@ fn surfaces_that_shine(scene: &mut Scene<Curve>) {
         let aimed_at = lamp && object.shape.bounds().is_some();
         let mut area = Area::new(object.shape.clone(), number as u32, radiance.clone(), sides, aimed_at);
         area.coordinates = object.coordinates.clone().filter(|_| radiance.varies());
+        scene.light_groups.push(object.group.clone());
         scene.lights.push(Light::Area(area));
         Arc::make_mut(&mut scene.objects)[number].light = Some(light);
     }

@@ -9,6 +9,7 @@ use super::shape::{SHAPE, Written};
 use super::transform::{map_of, steps};
 use crate::material::Material;
 use crate::math::Transform;
+use crate::scene::Sight;
 use crate::scene::text::{At, Fields, Value, at};
 use crate::shape::Shape;
 use crate::spectrum::Curve;
@@ -18,6 +19,8 @@ use crate::spectrum::Curve;
 /// shape.sphere = { center = [0, 1, 0], radius = 1 }
 /// material = "glass"
 /// # transform = [{ scale = 2 }]
+/// # visible_to_camera = false     # or holdout = true
+/// # group = "key"                 # the layer of its light
 /// # bump_map = { image = "dents.png", depth = 0.02 }
 /// # instances = [[{ translate = [1, 0, 0] }], [{ translate = [3, 0, 0] }, { scale = [-1, 1, 1] }]]
 /// ```
@@ -31,6 +34,9 @@ pub(super) struct Draft<'d> {
     /// What is done, in place of that, with each of many such shapes; one shape if absent.
     pub(super) instances: Option<Vec<At<'d, Transform>>>,
     pub(super) relief: Option<ReliefText<'d>>,
+    /// The group of lights that it belongs to.
+    pub(super) group: Option<&'d str>,
+    pub(super) sight: Sight,
 }
 
 /// The names by which objects find their materials.
@@ -60,6 +66,8 @@ pub(super) fn object<'d>(
         );
         let instances = object.get("instances");
         let relief = relief(context, object);
+        let group = object.maybe("group", group);
+        let sight = sight(object);
         for (kind, _) in SHAPE.kinds {
             object.stray(kind, format!("`{kind}` is a shape"), format!("write shape.{kind} = {{ .. }}"));
         }
@@ -70,13 +78,38 @@ pub(super) fn object<'d>(
         }));
         let instances = instances.map_or(Some(None), |value| maps(value, map?.it).map(Some));
         let (shape, map, named, instances) = (shape?, map?, named?, instances?);
+        let (group, sight) = (group?, sight?);
         let written = &shape.it.shape;
         if named.it.medium().is_some() && matches!(written, Shape::Mesh(_)) && !written.is_closed() {
             let warning = format!("{name}: a dielectric on an open mesh: light may enter it and never leave");
             context.warn(warning);
         }
-        Some(Draft { name, material: named.place.text()?, shape, map, instances, relief: relief? })
+        Some(Draft { name, material: named.place.text()?, shape, map, instances, relief: relief?, group, sight })
     })
+}
+
+/// What the camera sees of an object.
+fn sight(object: &mut Fields) -> Option<Sight> {
+    let visible = object.or("visible_to_camera", true, Value::yes_or_no);
+    let holdout = object.maybe("holdout", at(Value::yes_or_no));
+    match (visible?, holdout?) {
+        (false, Some(At { place, it: true })) => {
+            let help = "a holdout cuts a hole, an object that is not visible does not: leave one of them out";
+            place.advise("a holdout is there for the camera alone, which does not see this object", help)
+        }
+        (false, _) => Some(Sight::Hidden),
+        (true, Some(At { it: true, .. })) => Some(Sight::Holdout),
+        (true, _) => Some(Sight::Shown),
+    }
+}
+
+/// The name of a group of lights.
+pub(super) fn group(value: Value<'_>) -> Option<&str> {
+    let name = value.text()?;
+    match name.is_empty() {
+        true => value.advise("a group of lights has a name", "such as group = \"key\""),
+        false => Some(name),
+    }
 }
 
 impl<'m, 'd> Names<'m, 'd> {

@@ -6,7 +6,7 @@ use toml::de::DeValue;
 
 use super::context::Context;
 use super::measures::{MAX_LENGTH, direction, length, point};
-use crate::film::{Filter, Window};
+use crate::film::{Compression, Filter, FirstSurface, Format, Layer, Precision, Window};
 use crate::math::DVec3;
 use crate::scene::text::{Choice, Fields, Value, at};
 use crate::scene::{Camera, FilmSettings, Lens, Projection};
@@ -26,8 +26,14 @@ const MAX_SHIFT: f64 = 1000.0;
 /// width = 960
 /// height = 540
 /// crop = [100, 50, 320, 180]         # first column, first row from the top, width and height
+/// layers = ["albedo", "N", "lights"]
+/// first = "visible"                  # albedo, N and others of what is seen in mirrors and through glass
+/// precision = "half"
+/// compression = "piz"
+/// multipart = true
+/// metadata = { owner = "Ernst Abbe", comments = "shot 12" }
 /// ```
-pub(super) fn film(value: Value) -> Option<FilmSettings> {
+pub(super) fn film(value: Value) -> Option<(FilmSettings, Format)> {
     Fields::read(value, |film| {
         let width = film.need("width", at(side));
         let height = film.need("height", at(side));
@@ -35,6 +41,7 @@ pub(super) fn film(value: Value) -> Option<FilmSettings> {
         let spaces = ColorSpace::ALL.map(|space| (space.interop_id(), space));
         let color_space = film.or("color_space", ColorSpace::default(), |value| value.word(&spaces));
         let crop = film.maybe("crop", at(crop));
+        let format = format(film);
         let (width, height) = (width?.it, height?);
         let pixels = u64::from(width) * u64::from(height.it);
         if pixels > MAX_PIXELS {
@@ -47,9 +54,45 @@ pub(super) fn film(value: Value) -> Option<FilmSettings> {
             Some((place, message)) => {
                 place.advise(message, "a crop is [first column, first row, width, height], from the top left corner")
             }
-            None => Some(film),
+            None => Some((film, format?)),
         }
     })
+}
+
+/// What the file holds.
+fn format(film: &mut Fields) -> Option<Format> {
+    let layers = film.or("layers", Vec::new(), layers);
+    let first = film.or("first", FirstSurface::default(), |value| value.word(&FirstSurface::NAMES));
+    let precision = film.or("precision", Precision::default(), |value| value.word(&Precision::NAMES));
+    let compression = film.or("compression", Compression::default(), |value| value.word(&Compression::NAMES));
+    let multipart = film.or("multipart", false, Value::yes_or_no);
+    let metadata = film.or("metadata", [None, None], |value| {
+        Fields::read(value, |metadata| {
+            let [owner, comments] = ["owner", "comments"].map(|key| metadata.maybe(key, line));
+            Some([owner?, comments?])
+        })
+    });
+    let [owner, comments] = metadata?;
+    let (layers, first, precision) = (layers?, first?, precision?);
+    Some(Format { layers, first, precision, compression: compression?, multipart: multipart?, owner, comments })
+}
+
+fn layers(value: Value) -> Option<Vec<Layer>> {
+    if value.node().as_str() == Some(Layer::ALL) {
+        return Some(Layer::NAMES.iter().map(|(_, layer)| *layer).collect());
+    }
+    value
+        .as_list("layer", "write a list such as [\"albedo\", \"N\"], or \"all\"")
+        .list(|layer| layer.word(&Layer::NAMES))
+}
+
+/// Text for the header of the file, which a 0 would end.
+fn line(value: Value) -> Option<String> {
+    let text = value.text()?;
+    match text.contains('\0') {
+        true => value.refuse("text of a file's header has no character 0"),
+        false => Some(text.to_owned()),
+    }
 }
 
 fn side(value: Value) -> Option<u32> {

@@ -1,0 +1,125 @@
+//! What a file may hold beside red, green, blue, coverage and depth.
+
+/// A layer, or several of one kind.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Layer {
+    /// Light straight from surfaces that shine: `L E` in Heckbert's notation.
+    Emission,
+    /// Light straight from the sky or the sun.
+    Background,
+    /// Light that was scattered once, by whatever surface: `L (S|D) E`.
+    Direct,
+    /// Light that was scattered more often.
+    Indirect,
+    /// Light that photons found; it is part of the indirect light.
+    Caustics,
+    /// Light whose wavelengths parted on their way.
+    Dispersed,
+    /// One layer for each light, or group of lights. Together they are the image.
+    Lights,
+    /// The share of light that the first surface sends back, 0 to 1.
+    Albedo,
+    /// The unit normal by which the first surface scatters, on the camera's side, in the world's axes.
+    Normal,
+    /// The unit normal of the surface's own shape.
+    GeometricNormal,
+    /// The point of the first surface in the world, of the nearest sample.
+    Position,
+    /// Where images lie on it, of the nearest sample.
+    Uv,
+    /// Variance of the pixel's mean.
+    Variance,
+    /// Camera samples.
+    Samples,
+    /// The image of the first half of the samples.
+    HalfA,
+    /// The image of the second half.
+    HalfB,
+}
+
+impl Layer {
+    /// The word that asks for all of them.
+    pub const ALL: &str = "all";
+
+    /// All of them by the names that ask for them.
+    pub const NAMES: [(&str, Self); 16] = [
+        ("emission", Self::Emission),
+        ("background", Self::Background),
+        ("direct", Self::Direct),
+        ("indirect", Self::Indirect),
+        ("caustics", Self::Caustics),
+        ("dispersed", Self::Dispersed),
+        ("lights", Self::Lights),
+        ("albedo", Self::Albedo),
+        ("N", Self::Normal),
+        ("Nd", Self::GeometricNormal),
+        ("P", Self::Position),
+        ("UV", Self::Uv),
+        ("variance", Self::Variance),
+        ("samples", Self::Samples),
+        ("half_a", Self::HalfA),
+        ("half_b", Self::HalfB),
+    ];
+
+    /// The name that asks for it, and that the file has unless there are several.
+    pub fn name(self) -> &'static str {
+        Self::NAMES.into_iter().find(|(_, layer)| *layer == self).map_or("", |(name, _)| name)
+    }
+
+    /// The names of its channels.
+    pub fn channels(self) -> &'static [&'static str] {
+        match self {
+            Self::Normal | Self::GeometricNormal | Self::Position => &["X", "Y", "Z"],
+            Self::Uv => &["U", "V"],
+            Self::Samples => &["V"],
+            _ => &["R", "G", "B"],
+        }
+    }
+
+    /// Whether 16 bits are enough where the file has them: for light, and for numbers up to 1.
+    pub fn may_be_half(self) -> bool {
+        !matches!(self, Self::Position | Self::Uv | Self::Variance | Self::Samples)
+    }
+}
+
+/// Which surface is the first.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum FirstSurface {
+    /// The one that the camera ray meets.
+    #[default]
+    Met,
+    /// The one that is seen, in mirrors and through smooth glass as well.
+    Visible,
+}
+
+impl FirstSurface {
+    /// Both by their names in a scene file.
+    pub const NAMES: [(&str, Self); 2] = [("met", Self::Met), ("visible", Self::Visible)];
+}
+
+/// A layer of a finished image.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LayerImage {
+    /// What it is.
+    pub layer: Layer,
+    /// Its name in the file.
+    pub name: String,
+    /// The numbers of all channels of a pixel, pixel by pixel.
+    pub values: Vec<f32>,
+}
+
+impl LayerImage {
+    /// One of its channels, row by row from the top left.
+    pub fn channel(&self, number: usize) -> impl ExactSizeIterator<Item = f32> + '_ {
+        self.values.iter().skip(number).step_by(self.layer.channels().len()).copied()
+    }
+}
+
+/// Longest name of a channel that every reader keeps.
+pub const LONGEST_NAME: usize = 31;
+
+/// The name of a light's layer: `light_` and its name, in which other characters than letters and digits become `_`.
+pub fn light_layer_name(name: &str) -> String {
+    let plain = |letter: char| if letter.is_ascii_alphanumeric() { letter } else { '_' };
+    format!("light_{}", name.chars().map(plain).collect::<String>())
+}

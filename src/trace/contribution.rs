@@ -1,0 +1,36 @@
+//! Light on its way into the sensor.
+
+use crate::light::LightId;
+use crate::math::DVec3;
+
+/// Light that reaches the sensor by one path.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Contribution {
+    /// The light it comes from; none where photons of several were gathered.
+    pub(super) light: Option<LightId>,
+    pub(super) found: Found,
+    /// How much, in the film's color space.
+    pub(super) rgb: [f64; 3],
+    /// How much of it polarization may change, as X + Y + Z.
+    pub(super) moved: f64,
+    /// How often surfaces scattered, mirrored or refracted it on its way.
+    pub(super) bounces: u32,
+    /// Whether its wavelengths parted on the way.
+    pub(super) dispersed: bool,
+}
+
+/// How light was found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Found {
+    /// A path hit the light: a surface, with its unit normal on the front, or none of a sky; and whether the direction
+    /// was drawn where lights were sampled as well.
+    Hit { normal: Option<DVec3>, scattered: bool },
+    /// The light was sampled.
+    Sampled,
+    /// A path from the light was met.
+    Connected,
+    /// Photons were gathered.
+    Gathered,
+    /// A photon was shown to the camera.
+    Shown,
+}

@@ -1,0 +1,127 @@
+//! What one camera sample leaves in the layers.
+
+use super::World;
+use super::contribution::Contribution;
+use super::interaction::{Interaction, Meeting};
+use super::layers::Layers;
+use super::path::Path;
+use super::shading;
+use crate::film::{FirstSurface, Layer};
+use crate::material::{Branch, Straight};
+use crate::math::Sampler;
+use crate::spectrum::Lanes;
+
+/// Use of the random numbers by which albedo is found.
+const ALBEDO: u32 = 7;
+
+/// A row of numbers, filled by one camera sample after another.
+pub(super) struct LayerSample<'a, const N: usize> {
+    world: &'a World,
+    pub(super) row: Vec<f64>,
+    /// The largest share of the sample that a surface had so far: places are those of that surface.
+    share: f64,
+    branches: Vec<Branch<N>>,
+}
+
+/// A surface that a path has met.
+pub(super) struct Met<'a, const N: usize> {
+    pub(super) path: &'a Path<N>,
+    pub(super) meeting: &'a Meeting,
+    pub(super) at: &'a Interaction<'a, N>,
+    /// What goes straight on.
+    pub(super) straight: Option<&'a Straight<N>>,
+    /// Whether it is what the camera ray meets.
+    pub(super) is_met_first: bool,
+}
+
+impl<'a, const N: usize> LayerSample<'a, N> {
+    /// None where no layers are asked for.
+    pub(super) fn of(world: &'a World) -> Option<Self> {
+        let Layers { numbers, .. } = world.layers;
+        (!world.layers.is_empty()).then(|| Self { world, row: vec![0.0; numbers], share: 0.0, branches: Vec::new() })
+    }
+
+    /// Begins another sample.
+    pub(super) fn begin(&mut self) {
+        self.row.fill(0.0);
+        self.share = 0.0;
+    }
+
+    /// Receives light that came to the sensor.
+    pub(super) fn receive(&mut self, contribution: &Contribution) {
+        self.world.layers.add(&mut self.row, contribution);
+    }
+
+    /// Remembers a surface, if it is the first one.
+    pub(super) fn meet(&mut self, met: &Met<N>, sampler: &Sampler) {
+        let layers = &self.world.layers;
+        let share = if layers.see_surfaces() { met.share(layers.first) } else { 0.0 };
+        if share <= 0.0 {
+            return;
+        }
+        let Met { path, meeting, at, .. } = met;
+        self.mean(Layer::Normal, (share * at.arrival.normal).to_array());
+        self.mean(Layer::GeometricNormal, (share * at.flat).to_array());
+        let albedo = self.albedo(path, at, sampler);
+        self.mean(Layer::Albedo, albedo);
+        if share > self.share {
+            self.share = share;
+            let position = at.point.position;
+            let object = &self.world.scene.objects[at.object as usize];
+            self.place(Layer::Position, &position.to_array());
+            self.place(Layer::Uv, &object.chart_uv(&meeting.hit.crossing, at.point));
+        }
+    }
+
+    fn mean(&mut self, layer: Layer, numbers: [f64; 3]) {
+        if let Some(at) = self.world.layers.at(layer) {
+            (0..3).for_each(|i| self.row[at + i] += numbers[i]);
+        }
+    }
+
+    fn place(&mut self, layer: Layer, numbers: &[f64]) {
+        if let Some(at) = self.world.layers.at(layer) {
+            self.row[at..at + numbers.len()].copy_from_slice(numbers);
+        }
+    }
+
+    /// What a white light all around would show of the surface, if it is asked for: an estimate by the directions of
+    /// one draw, exact where shares do not depend on them.
+    fn albedo(&mut self, path: &Path<N>, at: &Interaction<N>, sampler: &Sampler) -> [f64; 3] {
+        let Some((response, white)) = &self.world.layers.white else { return [0.0; 3] };
+        let [u, v, ..] = sampler.four_plain(path.key, ALBEDO);
+        let (arrival, draw) = (&at.arrival, at.arrival.draw);
+        self.branches.clear();
+        shading::scatter(at.material, arrival, at.flat, [u, v], &mut self.branches);
+        let white = draw.read(white);
+        // Radiance changes by each lane's own index where light crosses, `eta_scale` by that of the ray.
+        let crossing = arrival.forward().map_or(white, |twice| Lanes::from_fn(|i| twice[i].sqrt() * white[i]));
+        let mut albedo = [0.0; 3];
+        for branch in &self.branches {
+            let share = path.throughput.of(branch.share * if branch.crosses { crossing } else { white });
+            let rgb = response.sensor(draw, share, path.parted || (at.parts && branch.crosses));
+            let scale = path.eta_scale * branch.eta_scale;
+            (0..3).for_each(|channel| albedo[channel] += rgb[channel] / scale);
+        }
+        albedo
+    }
+}
+
+impl<const N: usize> Met<'_, N> {
+    /// The share of the camera sample for which the surface is the first.
+    fn share(&self, first: FirstSurface) -> f64 {
+        let Self { path, at, .. } = self;
+        if first == FirstSurface::Met {
+            return f64::from(u8::from(self.is_met_first));
+        }
+        let is_smooth = at.lobes.has_delta() && !at.lobes.is_wide();
+        if !path.is_seen || is_smooth {
+            return 0.0;
+        }
+        let draw = at.arrival.draw;
+        let shares = draw.shares(path.parted);
+        let through =
+            |straight: &Straight<N>| path.throughput.through(straight.share()).weight(shares) / path.eta_scale;
+        (path.weight(draw) - self.straight.map_or(0.0, through)) / draw.siblings(path.parted)
+    }
+}

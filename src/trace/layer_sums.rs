@@ -1,0 +1,128 @@
+//! Layers of many samples: sums of a tile's pixels, and the finished images.
+
+use super::layers::{Layers, OF_A_HALF};
+use crate::film::{Layer, LayerImage, Sample};
+
+/// Sums of the pixels of a tile.
+#[derive(Default)]
+pub(super) struct LayerSums {
+    /// A row of numbers for each pixel.
+    rows: Vec<f64>,
+    /// The depth of what each pixel's places are of.
+    depths: Vec<f64>,
+}
+
+impl LayerSums {
+    /// Of so many pixels.
+    pub(super) fn new(layers: &Layers, pixels: usize) -> Self {
+        match layers.is_empty() {
+            true => Self::default(),
+            false => Self { rows: vec![0.0; pixels * layers.numbers], depths: vec![f64::INFINITY; pixels] },
+        }
+    }
+
+    /// Adds a sample of a pixel: what the image gets of it, and what it left in the layers. `early` are those of the
+    /// first half: they and the others are each spread as evenly as all are, as every other one would not be.
+    pub(super) fn add(&mut self, layers: &Layers, pixel: usize, early: bool, sample: &Sample, left: &[f64]) {
+        let row = &mut self.rows[pixel * layers.numbers..][..layers.numbers];
+        let nearer = sample.depth.is_some_and(|depth| depth < self.depths[pixel]);
+        if let (true, Some(depth)) = (nearer, sample.depth) {
+            self.depths[pixel] = depth;
+        }
+        for &layer in &layers.wanted {
+            let Some(at) = layers.at(layer) else { continue };
+            let add = |row: &mut [f64], numbers: [f64; 3]| (0..3).for_each(|i| row[at + i] += numbers[i]);
+            match layer {
+                Layer::Samples => {}
+                Layer::Variance => add(row, sample.rgb.map(|x| x * x)),
+                Layer::HalfA | Layer::HalfB => {
+                    if early == (layer == Layer::HalfA) {
+                        add(row, sample.rgb);
+                        row[at + OF_A_HALF - 1] += 1.0;
+                    }
+                }
+                Layer::Position | Layer::Uv => {
+                    let size = layer.channels().len();
+                    if nearer {
+                        row[at..at + size].copy_from_slice(&left[at..at + size]);
+                    }
+                }
+                Layer::Lights => {
+                    let size = 3 * layers.groups.len();
+                    row[at..at + size].iter_mut().zip(&left[at..]).for_each(|(sum, more)| *sum += more);
+                }
+                _ => add(row, std::array::from_fn(|i| left[at + i])),
+            }
+        }
+    }
+
+    /// The row of a pixel.
+    pub(super) fn row(&self, layers: &Layers, pixel: usize) -> &[f64] {
+        &self.rows[pixel * layers.numbers..][..layers.numbers]
+    }
+}
+
+/// What is known of a pixel once its samples are taken.
+pub(super) struct Taken<'a> {
+    /// Its row of sums.
+    pub(super) sums: &'a [f64],
+    /// The same of what photons show, which is no sum over samples; empty where they show nothing.
+    pub(super) shown: &'a [f64],
+    /// The sum of the samples that were kept, and how many they are.
+    pub(super) rgb: [f64; 3],
+    pub(super) kept: u32,
+}
+
+/// The images of the layers, as yet without values, for so many pixels.
+pub(super) fn images(layers: &Layers, pixels: usize) -> Vec<LayerImage> {
+    let image = |layer: Layer, name: String| {
+        let values = vec![0.0; pixels * layer.channels().len()];
+        LayerImage { layer, name, values }
+    };
+    let of_layer = |&layer: &Layer| match layer {
+        Layer::Lights => layers.groups.iter().map(|name| image(layer, name.clone())).collect(),
+        _ => vec![image(layer, layer.name().to_owned())],
+    };
+    layers.wanted.iter().flat_map(of_layer).collect()
+}
+
+/// Writes a pixel's values into the images.
+pub(super) fn write(layers: &Layers, taken: &Taken, pixel: usize, images: &mut [LayerImage]) {
+    let mut images = images.iter_mut();
+    for &layer in &layers.wanted {
+        let at = layers.at(layer).unwrap_or_default();
+        let several = if layer == Layer::Lights { layers.groups.len() } else { 1 };
+        for (number, image) in images.by_ref().take(several).enumerate() {
+            let size = layer.channels().len();
+            for (channel, value) in image.values[pixel * size..][..size].iter_mut().enumerate() {
+                *value = stored(taken.value(layer, at + 3 * number, channel));
+            }
+        }
+    }
+}
+
+impl Taken<'_> {
+    fn value(&self, layer: Layer, at: usize, channel: usize) -> f64 {
+        let kept = f64::from(self.kept.max(1));
+        let sum = self.sums.get(at + channel).copied().unwrap_or_default();
+        let shown = self.shown.get(at + channel).copied().unwrap_or_default();
+        match layer {
+            Layer::Samples => f64::from(self.kept),
+            Layer::Position | Layer::Uv => sum,
+            Layer::Albedo => (sum / kept).clamp(0.0, 1.0),
+            // Of one sample nothing is known. Photons land independently: the sum of their squares estimates the
+            // variance of their sum.
+            Layer::Variance => {
+                let mean = self.rgb[channel] / kept;
+                (sum / kept - mean * mean).max(0.0) / (kept - 1.0).max(1.0) + shown
+            }
+            Layer::HalfA | Layer::HalfB => sum / self.sums[at + OF_A_HALF - 1].max(1.0) + shown,
+            _ => sum / kept + shown,
+        }
+    }
+}
+
+/// A value beyond f32 becomes the largest finite one: EXR readers choke on infinities.
+fn stored(value: f64) -> f32 {
+    (value as f32).clamp(f32::MIN, f32::MAX)
+}

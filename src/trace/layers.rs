@@ -1,0 +1,107 @@
+//! The layers that are asked for beside the image: which they are, and where their sums stand.
+
+use super::contribution::{Contribution, Found};
+use crate::film::{FirstSurface, Layer, light_layer_name};
+use crate::scene::Scene;
+use crate::spectrum::{Basis, Curve, Quantity, Response, Table};
+
+/// The layers of a world's image.
+///
+/// A pixel, a camera sample and what photons show in a pixel each have a row of numbers for them: three sums of a
+/// layer of light, and so on in the order of the layers.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Layers {
+    /// In the order in which they were asked for.
+    pub(super) wanted: Vec<Layer>,
+    /// Where the numbers of each begin, if it is wanted.
+    places: [Option<usize>; Layer::NAMES.len()],
+    /// Numbers in a row.
+    pub(super) numbers: usize,
+    /// The group of each light, and the names of the groups' layers.
+    group_of: Vec<usize>,
+    pub(super) groups: Vec<String>,
+    /// Which surface is the first.
+    pub(super) first: FirstSurface,
+    /// A light of radiance 1, by which albedo is looked at.
+    pub(super) white: Option<(Response, Table)>,
+}
+
+/// Numbers of a half of the samples: a color, and how many samples they are.
+pub(super) const OF_A_HALF: usize = 4;
+
+impl Layers {
+    /// The layers that a scene asks for.
+    pub(super) fn new(scene: &Scene<Curve>, basis: &Basis) -> Self {
+        let mut layers = Self { first: scene.format.first, ..Self::default() };
+        for group in &scene.light_groups {
+            let name = light_layer_name(group);
+            let known = layers.groups.iter().position(|known| *known == name);
+            layers.group_of.push(known.unwrap_or(layers.groups.len()));
+            layers.groups.extend(known.is_none().then_some(name));
+        }
+        for &layer in &scene.format.layers {
+            if layers.at(layer).is_none() {
+                layers.places[layer as usize] = Some(layers.numbers);
+                layers.wanted.push(layer);
+                layers.numbers += match layer {
+                    Layer::Lights => 3 * layers.groups.len(),
+                    Layer::HalfA | Layer::HalfB => OF_A_HALF,
+                    Layer::Samples => 0,
+                    _ => layer.channels().len(),
+                };
+            }
+        }
+        if layers.at(Layer::Albedo).is_some() {
+            let one = Curve::from(1.0);
+            layers.white = Some((basis.response(&one), basis.tabulate(Quantity::Emission, &one)));
+        }
+        layers
+    }
+
+    /// Whether there are none.
+    pub(super) fn is_empty(&self) -> bool {
+        self.wanted.is_empty()
+    }
+
+    /// Where in a row the numbers of a layer begin; none if it is not wanted.
+    #[inline]
+    pub(super) fn at(&self, layer: Layer) -> Option<usize> {
+        self.places[layer as usize]
+    }
+
+    /// Whether it matters of which light gathered photons are, and whether they were dispersed.
+    pub(super) fn tell_photons_apart(&self) -> bool {
+        self.at(Layer::Lights).or(self.at(Layer::Dispersed)).is_some()
+    }
+
+    /// Whether anything is wanted of first surfaces.
+    pub(super) fn see_surfaces(&self) -> bool {
+        use Layer::{Albedo, GeometricNormal, Normal, Position, Uv};
+        [Albedo, Normal, GeometricNormal, Position, Uv].iter().any(|layer| self.at(*layer).is_some())
+    }
+
+    /// Adds light to a row.
+    pub(super) fn add(&self, row: &mut [f64], contribution: &Contribution) {
+        let Contribution { light, found, rgb, bounces, dispersed, .. } = contribution;
+        let mut add = |at: Option<usize>| {
+            if let Some(at) = at {
+                (0..3).for_each(|channel| row[at + channel] += rgb[channel]);
+            }
+        };
+        add(self.at(match (bounces, found) {
+            (0, Found::Hit { normal: Some(_), .. }) => Layer::Emission,
+            (0, _) => Layer::Background,
+            (1, _) => Layer::Direct,
+            _ => Layer::Indirect,
+        }));
+        if let Found::Gathered | Found::Shown = found {
+            add(self.at(Layer::Caustics));
+        }
+        if *dispersed {
+            add(self.at(Layer::Dispersed));
+        }
+        if let (Some(at), Some(light)) = (self.at(Layer::Lights), light) {
+            add(Some(at + 3 * self.group_of[*light]));
+        }
+    }
+}

@@ -1,0 +1,308 @@
+//! Layers beside the image: what they hold, that they add up to it, and that they change nothing of it.
+
+mod files;
+
+use abbe::film::{FirstSurface, Layer};
+use abbe::{Image, Options, Scene};
+
+/// Glass that disperses, a mirror, a pane, rough metal and a coated ball on a floor, lit by a lamp, a sky and a spot:
+/// photons are shown and gathered, lanes part.
+const ROOM: &str = r#"
+camera = { position = [0, 1.6, 6], look_at = [0, 0.7, 0], vertical_fov = 38 }
+film = { width = 40, height = 28 }
+render = { samples = 8, seed = 5 }
+[material]
+floor.diffuse.reflectance = { rgb = [0.7, 0.5, 0.3] }
+glass.dielectric.index = "N-SF11"
+silver.mirror.reflectance = 0.9
+gold.conductor = { metal = "Au", roughness = 0.3 }
+coated.plastic = { reflectance = 0.4, roughness = 0.2 }
+window.thin.index = 1.5
+lamp.emissive.radiance = 40
+[[object]]
+name = "floor"
+shape.plane = { point = [0, 0, 0], normal = [0, 1, 0] }
+material = "floor"
+[[object]]
+shape.sphere = { center = [0.2, 0.8, 0.6], radius = 0.8 }
+material = "glass"
+[[object]]
+shape.quad = { center = [-2, 1, -1], u = [0.5, 0, 0.5], v = [0, 1, 0] }
+material = "silver"
+[[object]]
+shape.cube = { center = [1.9, 0.5, -0.4], size = 1 }
+material = "gold"
+[[object]]
+shape.sphere = { center = [-1.1, 0.4, 1.2], radius = 0.4 }
+material = "coated"
+[[object]]
+shape.quad = { center = [1.6, 0.6, 1.6], u = [0.4, 0, 0.1], v = [0, 0.6, 0] }
+material = "window"
+[[object]]
+name = "key lamp"
+shape.sphere = { center = [-1, 2.3, -1], radius = 0.15 }
+material = "lamp"
+[[light]]
+environment.radiance = 0.2
+[[light]]
+name = "rim"
+spot = { position = [3, 3, -2], look_at = [0.2, 0.8, 0.6], cone_angle = 30, intensity = 8 }
+"#;
+
+fn all_layers() -> Vec<Layer> {
+    Layer::NAMES.iter().map(|(_, layer)| *layer).collect()
+}
+
+fn rendered(text: &str, layers: &[Layer]) -> Image {
+    let scene = Scene::parse(text, "").expect("the scene is valid");
+    let options = Options { layers: Some(layers.to_vec()), threads: Some(1), ..Options::default() };
+    abbe::render(&scene, &options).expect("it renders")
+}
+
+/// The channels of a layer of light, pixel by pixel.
+fn rgb(image: &Image, layer: &str) -> Vec<[f64; 3]> {
+    let [red, green, blue] = ["R", "G", "B"].map(|channel| {
+        let values = image.layer(&format!("{layer}.{channel}"));
+        values.unwrap_or_else(|| panic!("there is no layer {layer}"))
+    });
+    (0..red.len()).map(|i| [red[i], green[i], blue[i]].map(f64::from)).collect()
+}
+
+fn beauty(image: &Image) -> Vec<[f64; 3]> {
+    image.rgb().into_iter().map(|rgb| rgb.map(f64::from)).collect()
+}
+
+/// Layers sum to the image as exactly as 32 bits tell, of the largest of them.
+fn assert_sum(image: &Image, layers: &[&str], share: f64) {
+    let parts: Vec<_> = layers.iter().map(|layer| rgb(image, layer)).collect();
+    for (pixel, expected) in beauty(image).into_iter().enumerate() {
+        for channel in 0..3 {
+            let values = || parts.iter().map(|part| share * part[pixel][channel]);
+            let size = values().map(f64::abs).sum::<f64>() + expected[channel].abs();
+            let off = (values().sum::<f64>() - expected[channel]).abs();
+            assert!(off <= 4.0 * f64::from(f32::EPSILON) * size, "{layers:?}: pixel {pixel}, channel {channel}: {off}");
+        }
+    }
+}
+
+#[test]
+fn layers_of_light_add_up_to_the_image() {
+    let image = rendered(ROOM, &all_layers());
+    assert_sum(&image, &["emission", "background", "direct", "indirect"], 1.0);
+    assert_sum(&image, &["light_key_lamp", "light_environment", "light_rim"], 1.0);
+    assert_sum(&image, &["half_a", "half_b"], 0.5);
+    let total = |layer: &str| rgb(&image, layer).iter().flatten().sum::<f64>();
+    for layer in ["emission", "background", "direct", "indirect", "caustics", "dispersed", "light_rim"] {
+        assert!(total(layer) > 0.0, "nothing in {layer}");
+    }
+    assert!(total("caustics") < total("indirect") && total("dispersed") < total("indirect") + total("direct"));
+}
+
+#[test]
+fn layers_change_no_bit_of_the_image() {
+    let (plain, layered) = (rendered(ROOM, &[]), rendered(ROOM, &all_layers()));
+    for channel in ["R", "G", "B", "A", "Z"] {
+        assert_eq!(plain.layer(channel), layered.layer(channel), "{channel}");
+    }
+    assert_eq!(plain.film().layers.len(), 0);
+}
+
+#[test]
+fn a_light_of_its_own_layer_is_the_image_that_it_makes_alone() {
+    let room = |lights: &str| {
+        format!(
+            "camera = {{ position = [0, 1, 4], look_at = [0, 0.5, 0], vertical_fov = 40 }}\n\
+             film = {{ width = 24, height = 16 }}\nrender = {{ samples = 16, diffuse_bounces = 0 }}\n\
+             material.white.diffuse.reflectance = 0.8\n\
+             object = [{{ shape.plane = {{ point = [0, 0, 0], normal = [0, 1, 0] }}, material = \"white\" }}]\n{lights}"
+        )
+    };
+    let (point, late) = (
+        "[[light]]\npoint = { position = [0, 2, 0], intensity = 3 }\n",
+        "[[light]]\nname = \"late light\"\npoint = { position = [1, 1, 1], intensity = 2 }\n",
+    );
+    let both = rendered(&room(&format!("{point}{late}")), &[Layer::Lights]);
+    for (layer, light) in [("light_point", point), ("light_late_light", late)] {
+        let alone = rendered(&room(light), &[]);
+        let pairs = rgb(&both, layer).into_iter().zip(beauty(&alone));
+        for (pixel, (part, whole)) in pairs.enumerate() {
+            let near = (0..3).all(|i| (part[i] - whole[i]).abs() <= 1e-6 + 1e-5 * whole[i]);
+            assert!(near, "{layer}, pixel {pixel}: {part:?} is not {whole:?}");
+        }
+    }
+}
+
+#[test]
+fn lights_of_one_group_share_a_layer() {
+    let text = ROOM.replace("name = \"key lamp\"", "group = \"warm\"").replace("name = \"rim\"", "group = \"warm\"");
+    let image = rendered(&text, &[Layer::Lights]);
+    let names: Vec<_> = image.film().layers.iter().map(|layer| layer.name.as_str()).collect();
+    assert_eq!(names, ["light_warm", "light_environment"]);
+    assert_sum(&image, &names, 1.0);
+}
+
+/// One ball, all of it in sight.
+const BALL: &str = r#"
+camera = { position = [0, 0, 4], look_at = [0, 0, 0], vertical_fov = 40 }
+film = { width = 33, height = 33, filter = "center" }
+render = { samples = 4 }
+material.clay.diffuse.reflectance = { rgb = [0.2, 0.5, 0.8] }
+[[object]]
+shape.sphere = { center = [0, 0, 0], radius = 1 }
+material = "clay"
+[[light]]
+environment.radiance = 1
+"#;
+
+#[test]
+fn surfaces_are_those_that_the_camera_meets() {
+    let image = rendered(BALL, &[Layer::Position, Layer::Normal, Layer::GeometricNormal, Layer::Albedo, Layer::Uv]);
+    let layer = |name: &str| image.layer(name).unwrap_or_else(|| panic!("there is no {name}"));
+    let [position, normal, flat] =
+        ["P", "N", "Nd"].map(|name| ["X", "Y", "Z"].map(|axis| layer(&format!("{name}.{axis}"))));
+    let (alpha, depth) = (layer("A"), layer("Z"));
+    let mut met = 0;
+    for pixel in 0..33 * 33 {
+        let at = |of: &[Vec<f32>; 3]| [0, 1, 2].map(|axis| f64::from(of[axis][pixel]));
+        let (p, n) = (at(&position), at(&normal));
+        if alpha[pixel] == 0.0 {
+            assert_eq!((p, n), ([0.0; 3], [0.0; 3]), "pixel {pixel} is empty");
+            continue;
+        }
+        met += 1;
+        // On a unit ball about the origin, a point is its own normal.
+        assert!((0..3).all(|i| (p[i] - n[i]).abs() < 1e-6), "pixel {pixel}: {p:?} and {n:?}");
+        assert_eq!(n, at(&flat));
+        assert!((p.iter().map(|x| x * x).sum::<f64>() - 1.0).abs() < 1e-6 && n[2] > 0.0);
+        assert!((f64::from(depth[pixel]) - (4.0 - p[2])).abs() < 1e-6);
+        let albedo = rgb(&image, "albedo")[pixel];
+        assert!((0..3).all(|i| (albedo[i] - [0.2, 0.5, 0.8][i]).abs() < 1e-6), "{albedo:?}");
+        let uv = ["UV.U", "UV.V"].map(|name| layer(name)[pixel]);
+        assert!(uv.iter().all(|x| (0.0..=1.0).contains(x)), "{uv:?}");
+    }
+    assert!(met > 300);
+}
+
+#[test]
+fn albedo_of_metal_and_glass_is_what_they_send_back() {
+    let of = |material: &str| {
+        let text =
+            BALL.replace("diffuse.reflectance = { rgb = [0.2, 0.5, 0.8] }", material).replace("= 4 }\n", "= 256 }\n");
+        let image = rendered(&text, &[Layer::Albedo]);
+        rgb(&image, "albedo")[16 * 33 + 16]
+    };
+    // All of what meets glass is mirrored or goes on; a mirror sends back its reflectance.
+    for (material, expected) in [
+        ("dielectric.index = 1.5", [1.0; 3]),
+        ("dielectric.index = \"N-SF11\"", [1.0; 3]),
+        ("mirror.reflectance = { rgb = [0.9, 0.6, 0.3] }", [0.9, 0.6, 0.3]),
+    ] {
+        let albedo = of(material);
+        assert!((0..3).all(|i| (albedo[i] - expected[i]).abs() < 2e-3), "{material}: {albedo:?}");
+    }
+    // Gold, straight on: n and k of the catalog give 0.9 and 0.3 in red and blue.
+    let gold = of("conductor = { metal = \"Au\", roughness = 0.1 }");
+    assert!(gold[0] > 0.85 && gold[2] < 0.5, "{gold:?}");
+}
+
+#[test]
+fn what_is_seen_in_a_mirror_is_the_first_surface_if_asked_for() {
+    let text = "camera = { position = [0, 0, 4], look_at = [0, 0, 0], vertical_fov = 10 }\n\
+                film = { width = 8, height = 8, first = \"visible\", layers = [\"N\", \"albedo\", \"P\"] }\n\
+                render.samples = 4\n[material]\nsilver.mirror.reflectance = 0.5\n\
+                wall.diffuse.reflectance = { rgb = [0.8, 0.4, 0.2] }\n\
+                [[object]]\nshape.quad = { center = [0, 0, 0], u = [1, 0, 1], v = [0, 1, 0] }\nmaterial = \"silver\"\n\
+                [[object]]\nshape.plane = { point = [-3, 0, 0], normal = [1, 0, 0] }\nmaterial = \"wall\"\n\
+                [[object]]\nshape.plane = { point = [3, 0, 0], normal = [-1, 0, 0] }\nmaterial = \"wall\"\n\
+                [[light]]\nenvironment.radiance = 1\n";
+    let scene = Scene::parse(text, "").expect("the scene is valid");
+    assert_eq!(scene.format.first, FirstSurface::Visible);
+    let image = abbe::render(&scene, &Options::default()).expect("it renders");
+    let middle = 4 * 8 + 4;
+    // The share of the sample that the mirror leaves weighs the normal.
+    let normal = ["N.X", "N.Y", "N.Z"].map(|name| image.layer(name).expect("it was asked for")[middle]);
+    assert!((normal[0].abs() - 0.5).abs() < 1e-6 && normal[1] == 0.0 && normal[2] == 0.0, "{normal:?}");
+    let albedo = rgb(&image, "albedo")[middle];
+    assert!((0..3).all(|i| (albedo[i] - [0.4, 0.2, 0.1][i]).abs() < 1e-6), "{albedo:?}");
+    assert!((image.layer("P.X").expect("it was asked for")[middle].abs() - 3.0).abs() < 1e-6);
+}
+
+#[test]
+fn a_hidden_sky_lights_the_scene_and_is_not_in_the_image() {
+    let hidden = BALL.replace("[[light]]", "[[light]]\nvisible_to_camera = false");
+    let (seen, hidden) = (rendered(BALL, &[]), rendered(&hidden, &[]));
+    let alpha = seen.layer("A").expect("every image has it");
+    assert_eq!(hidden.layer("A").as_ref(), Some(&alpha));
+    for (pixel, alpha) in alpha.iter().enumerate() {
+        let expected = if *alpha == 0.0 { [0.0; 3] } else { seen.rgb()[pixel] };
+        assert_eq!(hidden.rgb()[pixel], expected, "pixel {pixel}");
+    }
+}
+
+#[test]
+fn a_hidden_object_is_not_in_the_image_but_in_its_light() {
+    // A screen between the camera and the ball, which the sun casts no shadow of onto the visible side.
+    let screen = "\n[[object]]\nvisible_to_camera = false\n\
+                  shape.quad = { center = [0, 0, 2], u = [0.4, 0, 0], v = [0, 0.4, 0] }\nmaterial = \"clay\"\n";
+    let (without, with) = (rendered(BALL, &[]), rendered(&format!("{BALL}{screen}"), &[]));
+    for channel in ["A", "Z"] {
+        assert_eq!(without.layer(channel), with.layer(channel), "{channel}");
+    }
+    let middle = |image: &Image| image.rgb_at(16, 16)[0];
+    assert!(middle(&with) < 0.99 * middle(&without), "the screen takes light from the ball");
+}
+
+#[test]
+fn a_holdout_cuts_a_hole_and_leaves_the_rest_alone() {
+    let other = "\n[[object]]\nshape.sphere = { center = [0.5, 0, 1.2], radius = 0.3 }\nmaterial = \"clay\"\n";
+    let plain = rendered(&format!("{BALL}{other}"), &[]);
+    let cut = rendered(&format!("{BALL}{}", other.replace("shape.", "holdout = true\nshape.")), &[]);
+    let behind = rendered(BALL, &[]);
+    let (mut holes, mut same) = (0, 0);
+    for pixel in 0..33 * 33 {
+        let of = |image: &Image, channel: &str| image.layer(channel).expect("every image has it")[pixel];
+        if of(&plain, "Z") == of(&behind, "Z") {
+            same += 1;
+            assert_eq!(cut.rgb()[pixel], plain.rgb()[pixel], "pixel {pixel}");
+        } else {
+            holes += 1;
+            assert_eq!((cut.rgb()[pixel], of(&cut, "A"), of(&cut, "Z")), ([0.0; 3], 0.0, 1e10), "pixel {pixel}");
+        }
+    }
+    assert!(holes > 20 && same > 800, "{holes} {same}");
+}
+
+/// What the halves and the variance say is what other seeds show.
+#[test]
+fn variance_is_no_less_than_images_of_other_seeds_show() {
+    let scene = Scene::parse(ROOM, "").expect("the scene is valid");
+    let layers = Some(vec![Layer::Variance, Layer::HalfA, Layer::HalfB]);
+    let images: Vec<Image> = (0..24)
+        .map(|seed| {
+            let options = Options { layers: layers.clone(), seed: Some(seed), ..Options::default() };
+            abbe::render(&scene, &options).expect("it renders")
+        })
+        .collect();
+    let (mut told, mut seen, mut halves) = (0.0, 0.0, 0.0);
+    for pixel in 0..40 * 28 {
+        for channel in 0..3 {
+            let values: Vec<f64> = images.iter().map(|image| f64::from(image.rgb()[pixel][channel])).collect();
+            let mean = values.iter().sum::<f64>() / 24.0;
+            let weight = 1.0 / (mean * mean + 0.01);
+            seen += weight * values.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / 23.0;
+            for image in &images {
+                told += weight * rgb_of(image, "variance", pixel, channel) / 24.0;
+                let apart = rgb_of(image, "half_a", pixel, channel) - rgb_of(image, "half_b", pixel, channel);
+                halves += weight * 0.25 * apart * apart / 24.0;
+            }
+        }
+    }
+    // Samples are spread more evenly than independent ones, so that the variance of the samples is an upper bound.
+    assert!(told >= 0.9 * seen && told <= 6.0 * seen, "told {told:.3}, seen {seen:.3}");
+    assert!((0.5..2.0).contains(&(halves / seen)), "halves {halves:.3}, seen {seen:.3}");
+}
+
+fn rgb_of(image: &Image, name: &str, pixel: usize, channel: usize) -> f64 {
+    let layer = image.film().layers.iter().find(|layer| layer.name == name).expect("it was asked for");
+    f64::from(layer.values[3 * pixel + channel])
+}

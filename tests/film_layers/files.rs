@@ -1,0 +1,101 @@
+//! Layers as files hold them.
+
+use std::collections::BTreeMap;
+
+use abbe::film::{Compression, Layer, Precision};
+use abbe::{Options, Scene};
+use exr::prelude::{AttributeValue, FlatSamples, ReadChannels, ReadLayers, read};
+
+use super::{ROOM, all_layers};
+
+/// A part's name, and its channels with their bits and values.
+type Parts = Vec<(Option<String>, BTreeMap<String, (u32, Vec<f32>)>)>;
+
+fn written(precision: Precision, compression: Compression, multipart: bool, layers: &[Layer]) -> (Parts, Vec<u8>) {
+    let mut scene = Scene::parse(ROOM, "").expect("the scene is valid");
+    (scene.format.precision, scene.format.compression) = (precision, compression);
+    (scene.format.multipart, scene.format.owner) = (multipart, Some("Émilie".into()));
+    let options = Options { layers: Some(layers.to_vec()), samples: Some(2), ..Options::default() };
+    let image = abbe::render(&scene, &options).expect("it renders");
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("image.exr");
+    image.write_exr(&path).expect("it can be written");
+    let bytes = std::fs::read(&path).expect("it was written");
+    let file = read().no_deep_data().largest_resolution_level().all_channels().all_layers().all_attributes();
+    let file = file.from_file(&path).expect("it can be read");
+    let part = |layer: &exr::prelude::Layer<exr::prelude::AnyChannels<FlatSamples>>| {
+        let name = layer.attributes.layer_name.as_ref().map(ToString::to_string);
+        let channels = layer.channel_data.list.iter().map(|channel| {
+            let bits = if let FlatSamples::F16(_) = channel.sample_data { 16 } else { 32 };
+            (channel.name.to_string(), (bits, channel.sample_data.values_as_f32().collect()))
+        });
+        (name, channels.collect())
+    };
+    let data = |layer: &exr::prelude::Layer<_>| {
+        let space = &layer.attributes.other[&exr::prelude::Text::from("colorInteropID")];
+        *space == AttributeValue::Text("data".into())
+    };
+    assert!(file.layer_data.iter().skip(1).all(data) && !data(&file.layer_data[0]));
+    (file.layer_data.iter().map(part).collect(), bytes)
+}
+
+#[test]
+fn a_plain_file_holds_the_image_alone() {
+    let (parts, _) = written(Precision::Float, Compression::Zip, false, &[]);
+    let names: Vec<_> = parts[0].1.keys().map(String::as_str).collect();
+    assert_eq!((parts.len(), names), (1, vec!["A", "B", "G", "R", "Z"]));
+}
+
+#[test]
+fn every_lossless_compression_and_several_parts_hold_the_same_numbers() {
+    let (parts, bytes) = written(Precision::Float, Compression::Zip, false, &all_layers());
+    let all = &parts[0].1;
+    assert!(all.values().all(|(bits, _)| *bits == 32) && all.contains_key("light_key_lamp.R"));
+    assert!(bytes.windows("Émilie".len()).any(|window| window == "Émilie".as_bytes()));
+    for (_, compression) in Compression::NAMES {
+        for multipart in [false, true] {
+            let (parts, bytes) = written(Precision::Float, compression, multipart, &all_layers());
+            assert_eq!(bytes, written(Precision::Float, compression, multipart, &all_layers()).1);
+            let together: BTreeMap<_, _> = parts.iter().flat_map(|(_, channels)| channels.clone()).collect();
+            assert_eq!(&together, all, "{compression:?}, several parts: {multipart}");
+            if !multipart {
+                assert_eq!(parts.len(), 1);
+                continue;
+            }
+            for (name, channels) in &parts[1..] {
+                let name = name.as_ref().expect("each part has a name");
+                assert!(
+                    channels.keys().all(|channel| channel.rsplit_once('.').is_some_and(|(layer, _)| layer == name))
+                );
+            }
+            assert_eq!(parts[0].0.as_deref(), Some("image"));
+        }
+    }
+}
+
+#[test]
+fn half_precision_keeps_places_and_statistics_whole() {
+    let (float, _) = written(Precision::Float, Compression::Zip, false, &all_layers());
+    let (half, _) = written(Precision::Half, Compression::Zip, false, &all_layers());
+    for (name, (bits, values)) in &half[0].1 {
+        let exact = &float[0].1[name].1;
+        let layer = name.rsplit_once('.').map_or(name.as_str(), |(layer, _)| layer);
+        let is_whole = ["Z", "P", "UV", "variance", "samples"].contains(&layer);
+        assert_eq!(*bits, if is_whole { 32 } else { 16 }, "{name}");
+        for (value, exact) in values.iter().zip(exact) {
+            let near = if is_whole { 0.0 } else { exact.abs() / 2048.0 + 3e-8 };
+            assert!((value - exact).abs() <= near, "{name}: {value} for {exact}");
+        }
+    }
+}
+
+#[test]
+fn what_is_too_bright_for_half_precision_is_counted() {
+    let text = "camera = { position = [0, 0, 4], look_at = [0, 0, 0], vertical_fov = 40 }\n\
+                film = { width = 4, height = 4, precision = \"half\" }\nrender.samples = 1\n\
+                light = [{ environment = { radiance = 1e6 } }]\n";
+    let scene = Scene::parse(text, "").expect("the scene is valid");
+    let image = abbe::render(&scene, &Options::default()).expect("it renders");
+    let folder = tempfile::tempdir().expect("a folder");
+    assert_eq!(image.write_exr(folder.path().join("image.exr")).expect("it can be written"), 4 * 4 * 3);
+}
