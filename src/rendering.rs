@@ -130,6 +130,7 @@ impl Rendering {
         let camera = &scene.camera;
         let view = View {
             world_to_camera: camera.world_to_camera(),
+            world_to_ndc: camera.world_to_ndc(),
             screen_window_width: camera.screen_window_width(),
             screen_window_center: camera.screen_window_center(),
             latlong: camera.projection() == Projection::Equirectangular,

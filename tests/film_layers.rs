@@ -2,7 +2,7 @@
 
 mod files;
 
-use abbe::film::{FirstSurface, Layer};
+use abbe::film::{FirstSurface, Layer, id};
 use abbe::{Image, Options, Scene};
 
 /// Glass that disperses, a mirror, a pane, rough metal and a coated ball on a floor, lit by a lamp, a sky and a spot:
@@ -195,6 +195,7 @@ fn albedo_of_metal_and_glass_is_what_they_send_back() {
     for (material, expected) in [
         ("dielectric.index = 1.5", [1.0; 3]),
         ("dielectric.index = \"N-SF11\"", [1.0; 3]),
+        ("thin.index = 1.5", [1.0; 3]),
         ("mirror.reflectance = { rgb = [0.9, 0.6, 0.3] }", [0.9, 0.6, 0.3]),
     ] {
         let albedo = of(material);
@@ -270,6 +271,40 @@ fn a_holdout_cuts_a_hole_and_leaves_the_rest_alone() {
         }
     }
     assert!(holes > 20 && same > 800, "{holes} {same}");
+}
+
+#[test]
+fn mattes_cover_what_the_image_covers() {
+    let text = ROOM.replace(
+        "[[light]]\nenvironment",
+        "[[object]]\nname = \"stones\"\nshape.cube = { center = [0, 0, 0], size = 0.3 }\nmaterial = \"floor\"\n\
+         instances = [[{ translate = [-1.6, 0.2, 1.8] }], [{ translate = [-1.6, 0.2, 2.2] }]]\n\n[[light]]\nenvironment",
+    );
+    let mattes = [Layer::CryptoObject, Layer::CryptoMaterial, Layer::CryptoAsset];
+    let image = rendered(&text, &mattes);
+    let alpha = image.layer("A").expect("every image has it");
+    let bits = |name: &str| id(name);
+    let coverage = |matte: &str, id: u32, pixel: usize| -> f32 {
+        let channels = |rank: usize, channel: &str| {
+            image.layer(&format!("{matte}{rank:02}.{channel}")).expect("it was asked for")[pixel]
+        };
+        let of = |rank: usize| [["r", "g"], ["b", "a"]].map(|two| two.map(|channel| channels(rank, channel)));
+        (0..3).flat_map(of).filter(|[number, _]| number.to_bits() == id).map(|[_, share]| share).sum()
+    };
+    let mut found = 0.0;
+    for (pixel, alpha) in alpha.iter().enumerate() {
+        for manifest in &image.film().manifests {
+            let all: f32 = manifest.entries.iter().map(|(_, id)| coverage(manifest.name, *id, pixel)).sum();
+            assert!((all - alpha).abs() < 1e-6, "{}, pixel {pixel}: {all} of {alpha}", manifest.name);
+        }
+        let stones = coverage("CryptoAsset", bits("stones"), pixel);
+        let each = ["stones [1]", "stones [2]"].map(|name| coverage("CryptoObject", bits(name), pixel));
+        assert!((stones - each[0] - each[1]).abs() < 1e-6);
+        let floor = coverage("CryptoObject", bits("floor"), pixel);
+        assert!((coverage("CryptoMaterial", bits("floor"), pixel) - floor - stones).abs() < 1e-6);
+        found += stones;
+    }
+    assert!(found > 5.0, "the stones cover {found} pixels");
 }
 
 /// What the halves and the variance say is what other seeds show.

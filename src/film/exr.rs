@@ -19,6 +19,9 @@ use crate::error::{Error, Result};
 pub struct View {
     /// World to camera for row vectors, left-handed: +x right, +y up, +z forward (OpenEXR standard attributes).
     pub world_to_camera: [[f64; 4]; 4],
+    /// World to normalized device coordinates for row vectors: x and y are 0 at the top left corner of the full image,
+    /// 1 at the bottom right one; none of a view all around.
+    pub world_to_ndc: Option<[[f64; 4]; 4]>,
     /// Width of the image in the plane one unit before the camera.
     pub screen_window_width: f64,
     /// The middle of the image there, to the right and up.
@@ -58,6 +61,17 @@ pub fn write_exr(film: &Film, format: &Format, view: &View, provenance: &Provena
     let mut attributes = attributes(film, view, provenance);
     let text = |text: &Option<String>| text.as_deref().map(utf8);
     (attributes.owner, attributes.comments) = (text(&format.owner), text(&format.comments));
+    for manifest in &film.manifests {
+        for (key, value) in [
+            ("name", manifest.name),
+            ("hash", "MurmurHash3_32"),
+            ("conversion", "uint32_to_float32"),
+            ("manifest", &manifest.json()),
+        ] {
+            let name = Text::new_or_panic(format!("cryptomatte/{}/{key}", manifest.key()));
+            attributes.other.insert(name, AttributeValue::Text(utf8(value)));
+        }
+    }
     if channels.half {
         let clamped = AttributeValue::I32(i32::try_from(channels.clamped).unwrap_or(i32::MAX));
         attributes.other.insert(Text::from("render/clamped"), clamped);
@@ -186,7 +200,8 @@ fn attributes(film: &Film, view: &View, provenance: &Provenance) -> LayerAttribu
         layer_position: Vec2(film.corner[0] as i32, film.corner[1] as i32),
         screen_window_width: view.screen_window_width as f32,
         screen_window_center: Vec2(view.screen_window_center[0] as f32, view.screen_window_center[1] as f32),
-        world_to_camera: Some(std::array::from_fn(|i| view.world_to_camera[i / 4][i % 4] as f32)),
+        world_to_camera: Some(matrix(&view.world_to_camera)),
+        world_to_normalized_device: view.world_to_ndc.as_ref().map(matrix),
         ..LayerAttributes::default()
     };
     let text = |value: &str| AttributeValue::Text(Text::new_or_panic(value));
@@ -199,6 +214,10 @@ fn attributes(film: &Film, view: &View, provenance: &Provenance) -> LayerAttribu
         attributes.other.insert(Text::new_or_panic(format!("render/{key}")), value);
     }
     attributes
+}
+
+fn matrix(rows: &[[f64; 4]; 4]) -> [f32; 16] {
+    std::array::from_fn(|i| rows[i / 4][i % 4] as f32)
 }
 
 /// Puts the attributes of each part into alphabetical order.

@@ -1,5 +1,6 @@
 //! An image: its pixels and what they mean.
 
+use super::cryptomatte::Manifest;
 use super::layers::LayerImage;
 use crate::spectrum::ColorSpace;
 
@@ -67,6 +68,8 @@ pub struct Film {
     pub pixels: Vec<Pixel>,
     /// What was asked for beside them.
     pub layers: Vec<LayerImage>,
+    /// What the numbers of their mattes stand for.
+    pub manifests: Vec<Manifest>,
 }
 
 impl Film {

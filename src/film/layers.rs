@@ -35,6 +35,12 @@ pub enum Layer {
     HalfA,
     /// The image of the second half.
     HalfB,
+    /// A matte of each object that the camera sees, by Cryptomatte.
+    CryptoObject,
+    /// A matte of each material.
+    CryptoMaterial,
+    /// A matte of all instances of an object together.
+    CryptoAsset,
 }
 
 impl Layer {
@@ -42,7 +48,7 @@ impl Layer {
     pub const ALL: &str = "all";
 
     /// All of them by the names that ask for them.
-    pub const NAMES: [(&str, Self); 16] = [
+    pub const NAMES: [(&str, Self); 19] = [
         ("emission", Self::Emission),
         ("background", Self::Background),
         ("direct", Self::Direct),
@@ -59,6 +65,9 @@ impl Layer {
         ("samples", Self::Samples),
         ("half_a", Self::HalfA),
         ("half_b", Self::HalfB),
+        ("CryptoObject", Self::CryptoObject),
+        ("CryptoMaterial", Self::CryptoMaterial),
+        ("CryptoAsset", Self::CryptoAsset),
     ];
 
     /// The name that asks for it, and that the file has unless there are several.
@@ -72,13 +81,19 @@ impl Layer {
             Self::Normal | Self::GeometricNormal | Self::Position => &["X", "Y", "Z"],
             Self::Uv => &["U", "V"],
             Self::Samples => &["V"],
+            Self::CryptoObject | Self::CryptoMaterial | Self::CryptoAsset => &["r", "g", "b", "a"],
             _ => &["R", "G", "B"],
         }
     }
 
     /// Whether 16 bits are enough where the file has them: for light, and for numbers up to 1.
     pub fn may_be_half(self) -> bool {
-        !matches!(self, Self::Position | Self::Uv | Self::Variance | Self::Samples)
+        !matches!(self, Self::Position | Self::Uv | Self::Variance | Self::Samples) && !self.is_matte()
+    }
+
+    /// Whether it is a matte.
+    pub fn is_matte(self) -> bool {
+        matches!(self, Self::CryptoObject | Self::CryptoMaterial | Self::CryptoAsset)
     }
 }
 

@@ -1,5 +1,6 @@
 //! Floor 2: what is remembered of the light that arrives, and how it is written down.
 
+mod cryptomatte;
 mod exr;
 mod file;
 mod filter;
@@ -10,6 +11,7 @@ mod picture;
 mod sum;
 
 pub use self::exr::{Fact, Provenance, View, write_exr};
+pub use cryptomatte::{Manifest, RANKS, id};
 pub use file::check_writable;
 pub use filter::Filter;
 pub use format::{Compression, Format, Precision};

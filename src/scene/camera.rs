@@ -213,6 +213,25 @@ impl Camera {
         [[x.x, y.x, z.x, 0.0], [x.y, y.y, z.y, 0.0], [x.z, y.z, z.z, 0.0], [shift[0], shift[1], shift[2], 1.0]]
     }
 
+    /// World to normalized device coordinates for row vectors, after a division by the fourth number: x and y are 0 at
+    /// the top left corner of the full image and 1 at the bottom right one; z grows with the distance. None of a view
+    /// all around. What a lens blurs is where its middle sees it.
+    pub fn world_to_ndc(&self) -> Option<[[f64; 4]; 4]> {
+        let (scale, middle) = (0.5 / self.half, self.center * 0.5 / self.half);
+        let (x, y) = (0.5 - middle.x, 0.5 + middle.y);
+        let of_camera = match self.projection {
+            Projection::Perspective { .. } => {
+                [[scale.x, 0.0, 0.0, 0.0], [0.0, -scale.y, 0.0, 0.0], [x, y, 1.0, 1.0], [0.0, 0.0, -1.0, 0.0]]
+            }
+            Projection::Orthographic { .. } => {
+                [[scale.x, 0.0, 0.0, 0.0], [0.0, -scale.y, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [x, y, 0.0, 1.0]]
+            }
+            Projection::Equirectangular => return None,
+        };
+        let product = |row: [f64; 4]| [0, 1, 2, 3].map(|to| (0..4).map(|i| row[i] * of_camera[i][to]).sum());
+        Some(self.world_to_camera().map(product))
+    }
+
     /// The angle of a pixel in the middle of the image, in radians.
     ///
     /// Pixels of an orthographic view have none; it is the angle under which one appears from as far away as the point

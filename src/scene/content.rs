@@ -101,8 +101,10 @@ pub struct Object {
     pub coordinates: Option<Arc<Coordinates>>,
     /// The same whatever its material is; none of a shape that has none.
     pub chart: Option<Arc<Coordinates>>,
-    /// The group of lights that it belongs to if it shines, by its name.
-    pub group: String,
+    /// The name of what it is one of, if it is one of several instances; else its own.
+    pub asset: String,
+    /// The group of lights that it belongs to if it shines; its asset alone if absent.
+    pub group: Option<String>,
     /// What the camera sees of it.
     pub sight: Sight,
     /// The image that bends its normal, if there is one.

@@ -17,10 +17,19 @@ const ALBEDO: u32 = 7;
 /// A row of numbers, filled by one camera sample after another.
 pub(super) struct LayerSample<'a, const N: usize> {
     world: &'a World,
-    pub(super) row: Vec<f64>,
+    row: Vec<f64>,
     /// The largest share of the sample that a surface had so far: places are those of that surface.
     share: f64,
+    /// The object that the camera ray met.
+    object: Option<u32>,
     branches: Vec<Branch<N>>,
+}
+
+/// What a camera sample has left.
+pub(super) struct Left<'a> {
+    pub(super) row: &'a [f64],
+    /// The object that the camera ray met, if any.
+    pub(super) object: Option<u32>,
 }
 
 /// A surface that a path has met.
@@ -38,13 +47,25 @@ impl<'a, const N: usize> LayerSample<'a, N> {
     /// None where no layers are asked for.
     pub(super) fn of(world: &'a World) -> Option<Self> {
         let Layers { numbers, .. } = world.layers;
-        (!world.layers.is_empty()).then(|| Self { world, row: vec![0.0; numbers], share: 0.0, branches: Vec::new() })
+        let new = || Self { world, row: vec![0.0; numbers], share: 0.0, object: None, branches: Vec::new() };
+        (!world.layers.is_empty()).then(new)
     }
 
     /// Begins another sample.
     pub(super) fn begin(&mut self) {
         self.row.fill(0.0);
         self.share = 0.0;
+        self.object = None;
+    }
+
+    /// What the sample has left.
+    pub(super) fn left(&self) -> Left<'_> {
+        Left { row: &self.row, object: self.object }
+    }
+
+    /// Remembers the object that the camera ray met.
+    pub(super) fn meet_object(&mut self, object: u32) {
+        self.object = Some(object);
     }
 
     /// Receives light that came to the sensor.
@@ -62,7 +83,9 @@ impl<'a, const N: usize> LayerSample<'a, N> {
         let Met { path, meeting, at, .. } = met;
         self.mean(Layer::Normal, (share * at.arrival.normal).to_array());
         self.mean(Layer::GeometricNormal, (share * at.flat).to_array());
-        let albedo = self.albedo(path, at, sampler);
+        // What a pane lets straight on is of it as what glass refracts is, unless what is behind counts by itself.
+        let panes = met.straight.filter(|_| layers.first == FirstSurface::Met).map(|straight| straight.panes);
+        let albedo = self.albedo(path, at, panes, sampler);
         self.mean(Layer::Albedo, albedo);
         if share > self.share {
             self.share = share;
@@ -87,7 +110,7 @@ impl<'a, const N: usize> LayerSample<'a, N> {
 
     /// What a white light all around would show of the surface, if it is asked for: an estimate by the directions of
     /// one draw, exact where shares do not depend on them.
-    fn albedo(&mut self, path: &Path<N>, at: &Interaction<N>, sampler: &Sampler) -> [f64; 3] {
+    fn albedo(&mut self, path: &Path<N>, at: &Interaction<N>, panes: Option<Lanes<N>>, sampler: &Sampler) -> [f64; 3] {
         let Some((response, white)) = &self.world.layers.white else { return [0.0; 3] };
         let [u, v, ..] = sampler.four_plain(path.key, ALBEDO);
         let (arrival, draw) = (&at.arrival, at.arrival.draw);
@@ -96,7 +119,8 @@ impl<'a, const N: usize> LayerSample<'a, N> {
         let white = draw.read(white);
         // Radiance changes by each lane's own index where light crosses, `eta_scale` by that of the ray.
         let crossing = arrival.forward().map_or(white, |twice| Lanes::from_fn(|i| twice[i].sqrt() * white[i]));
-        let mut albedo = [0.0; 3];
+        let through = panes.map(|panes| response.sensor(draw, path.throughput.of(panes * white), path.parted));
+        let mut albedo = through.map_or([0.0; 3], |rgb| rgb.map(|x| x / path.eta_scale));
         for branch in &self.branches {
             let share = path.throughput.of(branch.share * if branch.crosses { crossing } else { white });
             let rgb = response.sensor(draw, share, path.parted || (at.parts && branch.crosses));

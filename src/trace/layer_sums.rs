@@ -1,7 +1,9 @@
 //! Layers of many samples: sums of a tile's pixels, and the finished images.
 
+use super::coverage::Coverage;
+use super::layer_sample::Left;
 use super::layers::{Layers, OF_A_HALF};
-use crate::film::{Layer, LayerImage, Sample};
+use crate::film::{Layer, LayerImage, RANKS, Sample};
 
 /// Sums of the pixels of a tile.
 #[derive(Default)]
@@ -10,6 +12,8 @@ pub(super) struct LayerSums {
     rows: Vec<f64>,
     /// The depth of what each pixel's places are of.
     depths: Vec<f64>,
+    /// The objects of each pixel, if there are mattes.
+    covered: Coverage,
 }
 
 impl LayerSums {
@@ -17,14 +21,22 @@ impl LayerSums {
     pub(super) fn new(layers: &Layers, pixels: usize) -> Self {
         match layers.is_empty() {
             true => Self::default(),
-            false => Self { rows: vec![0.0; pixels * layers.numbers], depths: vec![f64::INFINITY; pixels] },
+            false => Self {
+                rows: vec![0.0; pixels * layers.numbers],
+                depths: vec![f64::INFINITY; pixels],
+                covered: if layers.ids.is_empty() { Coverage::default() } else { Coverage::new(pixels) },
+            },
         }
     }
 
     /// Adds a sample of a pixel: what the image gets of it, and what it left in the layers. `early` are those of the
     /// first half: they and the others are each spread as evenly as all are, as every other one would not be.
-    pub(super) fn add(&mut self, layers: &Layers, pixel: usize, early: bool, sample: &Sample, left: &[f64]) {
+    pub(super) fn add(&mut self, layers: &Layers, pixel: usize, early: bool, sample: &Sample, left: &Left) {
         let row = &mut self.rows[pixel * layers.numbers..][..layers.numbers];
+        if let Some(object) = left.object.filter(|_| !layers.ids.is_empty()) {
+            self.covered.add(pixel, object);
+        }
+        let left = left.row;
         let nearer = sample.depth.is_some_and(|depth| depth < self.depths[pixel]);
         if let (true, Some(depth)) = (nearer, sample.depth) {
             self.depths[pixel] = depth;
@@ -33,7 +45,7 @@ impl LayerSums {
             let Some(at) = layers.at(layer) else { continue };
             let add = |row: &mut [f64], numbers: [f64; 3]| (0..3).for_each(|i| row[at + i] += numbers[i]);
             match layer {
-                Layer::Samples => {}
+                Layer::Samples | Layer::CryptoObject | Layer::CryptoMaterial | Layer::CryptoAsset => {}
                 Layer::Variance => add(row, sample.rgb.map(|x| x * x)),
                 Layer::HalfA | Layer::HalfB => {
                     if early == (layer == Layer::HalfA) {
@@ -60,6 +72,11 @@ impl LayerSums {
     pub(super) fn row(&self, layers: &Layers, pixel: usize) -> &[f64] {
         &self.rows[pixel * layers.numbers..][..layers.numbers]
     }
+
+    /// Which objects each pixel shows.
+    pub(super) fn covered(&self) -> &Coverage {
+        &self.covered
+    }
 }
 
 /// What is known of a pixel once its samples are taken.
@@ -71,6 +88,9 @@ pub(super) struct Taken<'a> {
     /// The sum of the samples that were kept, and how many they are.
     pub(super) rgb: [f64; 3],
     pub(super) kept: u32,
+    /// Which objects the pixels of its tile show, and its place among them.
+    pub(super) covered: &'a Coverage,
+    pub(super) place: usize,
 }
 
 /// The images of the layers, as yet without values, for so many pixels.
@@ -81,6 +101,7 @@ pub(super) fn images(layers: &Layers, pixels: usize) -> Vec<LayerImage> {
     };
     let of_layer = |&layer: &Layer| match layer {
         Layer::Lights => layers.groups.iter().map(|name| image(layer, name.clone())).collect(),
+        _ if layer.is_matte() => (0..RANKS / 2).map(|i| image(layer, format!("{}{i:02}", layer.name()))).collect(),
         _ => vec![image(layer, layer.name().to_owned())],
     };
     layers.wanted.iter().flat_map(of_layer).collect()
@@ -90,6 +111,16 @@ pub(super) fn images(layers: &Layers, pixels: usize) -> Vec<LayerImage> {
 pub(super) fn write(layers: &Layers, taken: &Taken, pixel: usize, images: &mut [LayerImage]) {
     let mut images = images.iter_mut();
     for &layer in &layers.wanted {
+        if let Some((_, ids)) = layers.ids.iter().find(|(matte, _)| *matte == layer) {
+            let ranks = taken.covered.ranks(taken.place, ids);
+            for (two, image) in ranks.chunks_exact(2).zip(images.by_ref()) {
+                let coverage = |samples: u32| (f64::from(samples) / f64::from(taken.kept.max(1))) as f32;
+                let [(a, of_a), (b, of_b)] = [two[0], two[1]];
+                let values = [f32::from_bits(a), coverage(of_a), f32::from_bits(b), coverage(of_b)];
+                image.values[4 * pixel..4 * pixel + 4].copy_from_slice(&values);
+            }
+            continue;
+        }
         let at = layers.at(layer).unwrap_or_default();
         let several = if layer == Layer::Lights { layers.groups.len() } else { 1 };
         for (number, image) in images.by_ref().take(several).enumerate() {

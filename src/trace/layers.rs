@@ -1,7 +1,7 @@
 //! The layers that are asked for beside the image: which they are, and where their sums stand.
 
 use super::contribution::{Contribution, Found};
-use crate::film::{FirstSurface, Layer, light_layer_name};
+use crate::film::{FirstSurface, Layer, Manifest, id, light_layer_name};
 use crate::scene::Scene;
 use crate::spectrum::{Basis, Curve, Quantity, Response, Table};
 
@@ -22,8 +22,19 @@ pub(super) struct Layers {
     pub(super) groups: Vec<String>,
     /// Which surface is the first.
     pub(super) first: FirstSurface,
+    /// The numbers by which mattes tell objects apart: of each matte that is wanted, a number for each object.
+    pub(super) ids: Vec<(Layer, Vec<u32>)>,
     /// A light of radiance 1, by which albedo is looked at.
     pub(super) white: Option<(Response, Table)>,
+}
+
+/// The name that each object has in a matte.
+fn names<S>(scene: &Scene<S>, matte: Layer) -> impl Iterator<Item = &str> {
+    scene.objects.iter().map(move |object| match matte {
+        Layer::CryptoMaterial => scene.materials[object.material as usize].name.as_str(),
+        Layer::CryptoAsset => &object.asset,
+        _ => &object.name,
+    })
 }
 
 /// Numbers of a half of the samples: a color, and how many samples they are.
@@ -47,15 +58,23 @@ impl Layers {
                     Layer::Lights => 3 * layers.groups.len(),
                     Layer::HalfA | Layer::HalfB => OF_A_HALF,
                     Layer::Samples => 0,
+                    _ if layer.is_matte() => 0,
                     _ => layer.channels().len(),
                 };
             }
         }
+        let mattes = layers.wanted.iter().filter(|layer| layer.is_matte());
+        layers.ids = mattes.map(|&matte| (matte, names(scene, matte).map(id).collect())).collect();
         if layers.at(Layer::Albedo).is_some() {
             let one = Curve::from(1.0);
             layers.white = Some((basis.response(&one), basis.tabulate(Quantity::Emission, &one)));
         }
         layers
+    }
+
+    /// What the numbers of the mattes stand for.
+    pub(super) fn manifests<S>(&self, scene: &Scene<S>) -> Vec<Manifest> {
+        self.ids.iter().map(|(matte, _)| Manifest::new(matte.name(), names(scene, *matte))).collect()
     }
 
     /// Whether there are none.

@@ -32,6 +32,7 @@ mod bright;
 mod brightness;
 mod clusters;
 mod contribution;
+mod coverage;
 mod direct;
 mod dispersion;
 mod gather;

@@ -5,7 +5,7 @@ use super::contribution::{Contribution, Found};
 use super::direct::{DirectLighting, weight_of_meeting};
 use super::gather::{Gathered, gather};
 use super::interaction::{Interaction, Meeting};
-use super::layer_sample::{LayerSample, Met};
+use super::layer_sample::{LayerSample, Left, Met};
 use super::light_vertices::{LightVertices, holds_vertices};
 use super::path::{Path, PathKind, ScatterSample};
 use super::photon_map::PhotonMap;
@@ -73,8 +73,8 @@ impl<'a, const N: usize> PathTracer<'a, N> {
     }
 
     /// What the last camera sample left in the layers, if any are asked for.
-    pub(super) fn layers(&self) -> Option<&[f64]> {
-        self.sensor.layers.as_ref().map(|layers| layers.row.as_slice())
+    pub(super) fn layers(&self) -> Option<Left<'_>> {
+        self.sensor.layers.as_ref().map(LayerSample::left)
     }
 
     /// One camera sample.
@@ -138,6 +138,9 @@ impl<'a, const N: usize> PathTracer<'a, N> {
                 && straight::is_met(world, draw, sampler, &path, straight.as_ref());
             if is_met_first {
                 first = Some(*point);
+                if let Some(layers) = &mut self.sensor.layers {
+                    layers.meet_object(hit.object);
+                }
             }
             path.vertices += 1;
             self.emission(&path, draw, &meeting);

@@ -127,7 +127,8 @@ impl<W: Borrow<World>> Rendering<W> {
                 pixels[number] = sum.pixel(self.shown_at(number));
                 if !layers.is_empty() {
                     let (sums, shown) = (tile.layers.row(layers, place as usize), self.shown_in_layers(number));
-                    let taken = Taken { sums, shown, rgb: sum.rgb(), kept: sum.kept() };
+                    let (covered, place) = (tile.layers.covered(), place as usize);
+                    let taken = Taken { sums, shown, rgb: sum.rgb(), kept: sum.kept(), covered, place };
                     write(layers, &taken, number, &mut images);
                 }
             }
@@ -140,6 +141,7 @@ impl<W: Borrow<World>> Rendering<W> {
             color_space: settings.color_space,
             pixels,
             layers: images,
+            manifests: layers.manifests(&self.world().scene),
         }
     }
 

@@ -67,7 +67,7 @@ impl Tile {
                     self.first_non_finite.get_or_insert([x, y, number]);
                 } else if let Some(left) = tracer.layers() {
                     let early = number < world.method.samples / 2;
-                    self.layers.add(&world.layers, place as usize, early, &sample, left);
+                    self.layers.add(&world.layers, place as usize, early, &sample, &left);
                 }
             }
             sum.add(pass);

@@ -53,6 +53,35 @@ fn a_point_is_seen_where_its_ray_comes_from() {
 }
 
 #[test]
+fn the_matrix_to_device_coordinates_projects_as_the_camera_sees() {
+    let mut random = Random::new(3);
+    let mut projected = 0;
+    for (number, camera) in cameras().iter().enumerate().filter(|(_, camera)| !camera.has_lens()) {
+        let Some(matrix) = camera.world_to_ndc() else {
+            assert_eq!(camera.projection(), Projection::Equirectangular);
+            continue;
+        };
+        for _ in 0..500 {
+            let film = DVec2::new(random.between(-20.0, 84.0), random.between(-20.0, 60.0));
+            let ray = camera.lens_ray(film, [0.5; 2]);
+            let at = |distance: f64| {
+                let DVec3 { x, y, z } = ray.at(distance);
+                let number = |to: usize| x * matrix[0][to] + y * matrix[1][to] + z * matrix[2][to] + matrix[3][to];
+                [0, 1, 2].map(|to| number(to) / number(3))
+            };
+            let (near, far) = (at(random.between(0.1, 3.0)), at(random.between(4.0, 9.0)));
+            for [x, y, _] in [near, far] {
+                let pixel = DVec2::new(x * f64::from(SIZE[0]), y * f64::from(SIZE[1]));
+                assert!((pixel - film).length() < 1e-9, "camera {number}: {pixel} for {film}");
+            }
+            assert!(near[2] < far[2], "camera {number}: depth grows");
+            projected += 1;
+        }
+    }
+    assert_eq!(projected, 3 * 500);
+}
+
+#[test]
 fn a_small_area_that_faces_the_camera_fills_as_many_pixels_as_its_importance_says() {
     let mut random = Random::new(2);
     for (number, camera) in cameras().iter().enumerate() {

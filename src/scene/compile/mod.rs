@@ -206,7 +206,7 @@ fn surfaces_that_shine(scene: &mut Scene<Curve>) {
         let aimed_at = lamp && object.shape.bounds().is_some();
         let mut area = Area::new(object.shape.clone(), number as u32, radiance.clone(), sides, aimed_at);
         area.coordinates = object.coordinates.clone().filter(|_| radiance.varies());
-        scene.light_groups.push(object.group.clone());
+        scene.light_groups.push(object.group.as_ref().unwrap_or(&object.asset).clone());
         scene.lights.push(Light::Area(area));
         Arc::make_mut(&mut scene.objects)[number].light = Some(light);
     }

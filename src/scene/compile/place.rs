@@ -51,7 +51,8 @@ pub(super) fn placed<'d>(drafts: Vec<Draft<'d>>, materials: &Materials<'d>) -> P
 /// The object, or each of its instances; `is_shared` is a mesh that stands in other places as well.
 fn objects_of(draft: Draft, is_shared: bool, material: u32, varies: bool) -> Option<Vec<Object>> {
     let Draft { name, material: material_name, shape: At { place, it: written }, map, instances, relief, .. } = draft;
-    let (group, sight) = (draft.group.unwrap_or(&name).to_owned(), draft.sight);
+    let (group, sight) = (draft.group.map(str::to_owned), draft.sight);
+    let asset = name.clone();
     let edges = written.edges;
     let object = |name: String, shape: Shape, coordinates: Option<Coordinates>| {
         if varies && coordinates.is_none() {
@@ -64,8 +65,8 @@ fn objects_of(draft: Draft, is_shared: bool, material: u32, varies: bool) -> Opt
             None => None,
         };
         let (chart, coordinates) = (coordinates.clone(), coordinates.filter(|_| varies));
-        let (shape, group) = (Arc::new(shape), group.clone());
-        Some(Object { name, shape, material, light: None, coordinates, chart, group, sight, relief })
+        let (shape, asset, group) = (Arc::new(shape), asset.clone(), group.clone());
+        Some(Object { name, asset, shape, material, light: None, coordinates, chart, group, sight, relief })
     };
     let Some(instances) = instances else {
         let coordinates = Coordinates::new(&written.shape, &map.it);
