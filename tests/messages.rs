@@ -156,6 +156,11 @@ fn impossible_numbers_and_shapes_are_refused() {
 }
 
 #[test]
+fn what_a_file_may_hold_and_what_the_camera_sees_is_checked() {
+    check("film.txt", 15);
+}
+
+#[test]
 fn impossible_spectra_are_refused() {
     check("spectra.txt", 125);
 }

@@ -78,8 +78,12 @@ fn format(film: &mut Fields) -> Option<Format> {
 }
 
 fn layers(value: Value) -> Option<Vec<Layer>> {
-    if value.node().as_str() == Some(Layer::ALL) {
-        return Some(Layer::NAMES.iter().map(|(_, layer)| *layer).collect());
+    match value.node().as_str() {
+        Some(Layer::ALL) => return Some(Layer::NAMES.iter().map(|(_, layer)| *layer).collect()),
+        Some(word) => {
+            return value.advise("`layers` is a list", format!("write layers = [\"{word}\"], or \"{}\"", Layer::ALL));
+        }
+        None => {}
     }
     value
         .as_list("layer", "write a list such as [\"albedo\", \"N\"], or \"all\"")
