@@ -4,6 +4,8 @@ use abbe::spectrum::data::{self, GLASS_MAKERS, Glass};
 use abbe::{Error, Result};
 use clap::Parser;
 
+use crate::messages::aligned;
+
 const HELP: &str = "\
 Words are looked for in names, other names and makers, whatever their case; all of them must be found. \
 Among the glasses of the makers, flint finds those with V_d below 50, crown the others.
@@ -135,15 +137,4 @@ fn reflectance_lines(words: &[String]) -> Vec<Vec<String>> {
 
 fn range(low: f64, high: f64) -> String {
     format!("{low:.0}-{high:.0} nm")
-}
-
-/// The cells of each line as one text, every column as wide as its widest cell.
-fn aligned(lines: &[Vec<String>]) -> Vec<String> {
-    let width = |column: usize| lines.iter().map(|cells| cells[column].chars().count()).max().unwrap_or(0);
-    let widths: Vec<_> = (0..lines.first().map_or(0, Vec::len)).map(width).collect();
-    let line = |cells: &Vec<String>| {
-        let padded: Vec<_> = cells.iter().zip(&widths).map(|(cell, &width)| format!("{cell:width$}")).collect();
-        padded.join("  ").trim_end().to_owned()
-    };
-    lines.iter().map(line).collect()
 }

@@ -1,14 +1,15 @@
 //! The command line.
 
-use std::ffi::OsStr;
+use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 
 use abbe::film::{Layer, Window};
-use abbe::{Error, Options, Result, nearest};
+use abbe::{Options, Result, nearest};
 use clap::Parser;
 
-use crate::catalog::Query;
 use crate::messages::is_colored;
+use crate::outputs::{check_exposure, check_png, ends_in, refuse};
+use crate::{catalog, diff, info, view};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -21,6 +22,9 @@ Examples:
   render --samples 16 --exr scenes/prism.toml     take a quick look
   render --layers albedo,N --exr scenes/prism.toml   write layers beside the image
   render catalog --help                           see which glasses it knows
+  render info prism.exr                           say what an image carries
+  render view prism.exr                           show it on the terminal
+  render diff prism.exr other.exr                 say whether two images agree
 
 Exit codes: 0 done, 1 the render or a file failed, 2 bad arguments or scene.";
 
@@ -126,19 +130,30 @@ pub enum Output {
 /// What is asked for.
 pub enum Request {
     Render(Job),
-    Catalog(Query),
+    Catalog(catalog::Query),
+    Info(info::Query),
+    View(view::Query),
+    Diff(diff::Query),
     /// Help or the version.
     Answer(String),
 }
 
 /// Reads the command line; prints clap's own errors by itself and exits.
 pub fn parse() -> Result<Request> {
-    let mut words = std::env::args_os();
-    if std::env::args_os().nth(1).is_some_and(|first| first == "catalog") {
-        words.next();
-        return Query::try_parse_from(words).map_or_else(told, |query| Ok(Request::Catalog(query)));
+    let words: Vec<OsString> = std::env::args_os().collect();
+    let rest = words.iter().skip(1);
+    match words.get(1).and_then(|first| first.to_str()) {
+        Some("catalog") => read(rest, Request::Catalog),
+        Some("info") => read(rest, Request::Info),
+        Some("view") => read(rest, Request::View),
+        Some("diff") => read(rest, Request::Diff),
+        _ => Arguments::try_parse_from(&words).map_or_else(told, |arguments| job(arguments).map(Request::Render)),
     }
-    Arguments::try_parse_from(words).map_or_else(told, |arguments| job(arguments).map(Request::Render))
+}
+
+/// The arguments of a command, the first of which is its name.
+fn read<'w, A: Parser>(words: impl Iterator<Item = &'w OsString>, request: fn(A) -> Request) -> Result<Request> {
+    A::try_parse_from(words).map_or_else(told, |arguments| Ok(request(arguments)))
 }
 
 /// What clap has to say: help and version are an answer like any other, a mistake ends the command.
@@ -155,17 +170,12 @@ fn job(arguments: Arguments) -> Result<Job> {
     let idle = [("--plan", arguments.plan), ("--check", arguments.check)].into_iter().find(|(_, asked)| *asked);
     let with_exr = arguments.exr.is_some() || arguments.png.is_none();
     let (scene, exr) = scene_and_image(arguments.scene, arguments.exr, idle.map(|(flag, _)| flag))?;
-    if arguments.exposure.is_some_and(|stops| !stops.is_finite()) {
-        return refuse("an exposure is a finite number of stops", Some("for instance: --exposure 1"));
-    }
+    check_exposure(arguments.exposure)?;
     if arguments.exposure.is_some() && arguments.png.is_none() {
         let help = "add --png look.png, or leave --exposure out";
         return refuse("--exposure brightens the picture of --png alone, and none is asked for", Some(help));
     }
-    if let Some(png) = arguments.png.as_deref().filter(|png| !ends_in(png, "png")) {
-        let message = format!("--png writes a file that ends in .png, not {}", png.display());
-        return refuse(&message, Some("for instance: --png look.png"));
-    }
+    check_png(arguments.png.as_deref())?;
     let output = if arguments.plan {
         Output::Plan
     } else if arguments.check {
@@ -177,17 +187,6 @@ fn job(arguments: Arguments) -> Result<Job> {
     let (exposure, layers) = (arguments.exposure.unwrap_or(0.0), layers.map(|LayerList(layers)| layers));
     let options = Options { samples, seed, crop, layers, threads: threads.map(usize::from) };
     Ok(Job { scene, output, exposure, options })
-}
-
-impl Job {
-    /// Refuses an output that is the scene itself, by another name or a link.
-    pub fn spares_scene(&self, output: &Path) -> Result<()> {
-        let real = |path: &Path| std::fs::canonicalize(path).ok();
-        match real(output).filter(|output| real(&self.scene).as_ref() == Some(output)) {
-            Some(_) => refuse(&format!("{} is the scene itself", output.display()), Some("name another file")),
-            None => Ok(()),
-        }
-    }
 }
 
 /// `--exr` takes an image to write, or nothing; right before the scene it belongs to the scene.
@@ -217,17 +216,9 @@ fn scene_and_image(
     }
 }
 
-fn ends_in(path: &Path, ending: &str) -> bool {
-    path.extension().is_some_and(|found| found.eq_ignore_ascii_case(ending))
-}
-
 /// The scene's name with the ending .exr, in the current folder.
 fn beside(scene: &Path) -> PathBuf {
     let mut name = scene.file_stem().unwrap_or(OsStr::new("image")).to_owned();
     name.push(".exr");
     name.into()
-}
-
-fn refuse<T>(message: &str, help: Option<&str>) -> Result<T> {
-    Err(Error::Arguments { message: message.to_owned(), help: help.map(str::to_owned) })
 }

@@ -1,8 +1,9 @@
 //! The one error type: what went wrong, where, and what to do.
 
 use std::fmt;
+use std::fs;
 use std::ops::Range;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// A failure, as it is told to the person who ran the command.
@@ -29,6 +30,14 @@ pub enum Error {
         /// What the system said.
         source: std::io::Error,
     },
+    /// A file is not the image that it should be.
+    #[error("cannot read {}: {message}", .path.display())]
+    Decode {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        message: String,
+    },
     /// An image could not be encoded.
     #[error("cannot write {}: {message}", .path.display())]
     Encode {
@@ -47,7 +56,7 @@ impl Error {
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Scene(_) | Self::Arguments { .. } => 2,
-            Self::Io { .. } | Self::Encode { .. } => 1,
+            Self::Io { .. } | Self::Decode { .. } | Self::Encode { .. } => 1,
         }
     }
 }
@@ -112,6 +121,16 @@ pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
         .filter(|(changes, candidate)| *changes <= most_changes(candidate))
         .min_by_key(|(changes, candidate)| (*changes, foreign_letters(&lower, &candidate.to_lowercase())))
         .map(|(_, candidate)| candidate)
+}
+
+/// The file beside a missing one that was most likely meant.
+pub(crate) fn nearest_file(missing: &Path) -> Option<PathBuf> {
+    let folder = missing.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let files = fs::read_dir(folder).ok()?.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
+    let mut names: Vec<String> = files.collect();
+    names.sort();
+    let near = nearest(missing.file_name()?.to_str()?, names.iter().map(String::as_str))?;
+    Some(missing.with_file_name(near))
 }
 
 /// The letters that only one of two words has.

@@ -30,7 +30,7 @@
 //! floor 6   rendering   a scene made into an image
 //! floor 5   plan        looks at a Scene<Curve>; answers a Method and, in words, why
 //! floor 4   trace       how light travels
-//! floor 3   scene       the world, with every reference resolved
+//! floor 3   scene       the world, with every reference resolved  |  look   images shown and compared
 //! floor 2   material    how light leaves a surface     |  light   how lights are sampled  |  film   what is remembered
 //! floor 1   spectrum    what light is made of          |  shape   where surfaces are
 //! floor 0   math        points, directions, random numbers  |  error   what went wrong, where, and what to do
@@ -55,6 +55,7 @@ pub mod light;
 pub mod material;
 
 // Floor 3
+pub mod look;
 pub mod scene;
 
 // Floor 4

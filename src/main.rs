@@ -2,8 +2,12 @@
 
 mod catalog;
 mod cli;
+mod diff;
+mod info;
 mod messages;
+mod outputs;
 mod progress;
+mod view;
 
 use std::path::Path;
 use std::process::ExitCode;
@@ -13,20 +17,25 @@ use abbe::plan::plan;
 use abbe::{Rendering, Result, Scene};
 
 use cli::{Job, Output, Request};
+use outputs::spare;
 
 fn main() -> ExitCode {
     let answered = cli::parse().and_then(|request| match request {
-        Request::Render(job) => run(&job),
-        Request::Answer(text) => messages::answer(&text),
-        Request::Catalog(query) => catalog::lines(&query).and_then(|lines| messages::answer_lines(&lines)),
+        Request::Render(job) => run(&job).map(|()| ExitCode::SUCCESS),
+        Request::Answer(text) => messages::answer(&text).map(|()| ExitCode::SUCCESS),
+        Request::Catalog(query) => listed(catalog::lines(&query)),
+        Request::Info(query) => listed(info::lines(&query)),
+        Request::View(query) => view::run(&query).map(|()| ExitCode::SUCCESS),
+        Request::Diff(query) => Ok(diff::run(&query)),
     });
-    match answered {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            messages::print_error(&error);
-            ExitCode::from(error.exit_code())
-        }
-    }
+    answered.unwrap_or_else(|error| {
+        messages::print_error(&error);
+        ExitCode::from(error.exit_code())
+    })
+}
+
+fn listed(lines: Result<Vec<String>>) -> Result<ExitCode> {
+    messages::answer_lines(&lines?).map(|()| ExitCode::SUCCESS)
 }
 
 fn run(job: &Job) -> Result<()> {
@@ -47,7 +56,7 @@ fn run(job: &Job) -> Result<()> {
 
 fn image(job: &Job, scene: &Scene, exr: Option<&Path>, png: Option<&Path>) -> Result<()> {
     let outputs = || [exr, png].into_iter().flatten();
-    outputs().try_for_each(|output| job.spares_scene(output))?;
+    outputs().try_for_each(|output| spare(&job.scene, "scene", output))?;
     outputs().try_for_each(check_writable)?;
     let rendering = Rendering::new(scene, &job.options)?;
     rendering.plan().because.iter().for_each(|line| messages::say(line));

@@ -39,6 +39,31 @@ pub fn answer_lines(lines: &[String]) -> Result<()> {
     answer(&lines.iter().flat_map(|line| [line, "\n"]).collect::<String>())
 }
 
+/// The cells of each line as one text, every column as wide as its widest cell.
+pub fn aligned(lines: &[Vec<String>]) -> Vec<String> {
+    let width = |column: usize| lines.iter().map(|cells| cells[column].chars().count()).max().unwrap_or(0);
+    let widths: Vec<_> = (0..lines.first().map_or(0, Vec::len)).map(width).collect();
+    let line = |cells: &Vec<String>| {
+        let padded: Vec<_> = cells.iter().zip(&widths).map(|(cell, &width)| format!("{cell:width$}")).collect();
+        padded.join("  ").trim_end().to_owned()
+    };
+    lines.iter().map(line).collect()
+}
+
+/// Five digits, without a power of ten where that is as short.
+pub fn number(value: f64) -> String {
+    let size = value.abs();
+    if size < 5e-7 {
+        return if value == 0.0 { "0".into() } else { format!("{value:.4e}") };
+    }
+    if !(1e-3..1e6).contains(&size) {
+        return format!("{value:.4e}");
+    }
+    let digits = (4 - libm::floor(libm::log10(size)) as i32).clamp(0, 6) as usize;
+    let text = format!("{value:.digits$}");
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}
+
 /// Something to know that stops nothing.
 pub fn warn(message: &str) {
     say(&format!("warning: {message}"));

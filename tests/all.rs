@@ -19,6 +19,7 @@ mod floors;
 mod lanes;
 mod layers;
 mod light_vertices;
+mod look;
 mod meshes;
 mod messages;
 mod outputs;

@@ -14,15 +14,25 @@ pub fn write_png(film: &Film, exposure: f64, path: &Path) -> Result<()> {
     let to_rec709 = film.color_space.to_rec709();
     let encoded = |rgb: [f32; 3]| encode_srgb(apply(&to_rec709, rgb.map(|x| f64::from(x) * gain)).map(|x| x as f32));
     let bytes: Vec<u8> = film.pixels.iter().flat_map(|pixel| encoded(pixel.rgb)).collect();
+    write_rgb8(&bytes, [film.width, film.height], path)
+}
+
+/// Writes red, green and blue of 8 bits, row by row, as a PNG of this width and height.
+///
+/// # Errors
+/// If the file cannot be written; nothing is left behind then.
+pub fn write_rgb8(bytes: &[u8], size: [u32; 2], path: &Path) -> Result<()> {
+    replace_file(path, &png(bytes, size, path)?)
+}
+
+/// The bytes of such a PNG; `path` is what it is called if it cannot be made.
+///
+/// # Errors
+/// If the encoder refuses the size.
+pub fn png(bytes: &[u8], [width, height]: [u32; 2], path: &Path) -> Result<Vec<u8>> {
     let mut file = std::io::Cursor::new(Vec::new());
-    image::write_buffer_with_format(
-        &mut file,
-        &bytes,
-        film.width,
-        film.height,
-        image::ExtendedColorType::Rgb8,
-        image::ImageFormat::Png,
-    )
-    .map_err(|error| Error::Encode { path: path.to_owned(), message: error.to_string() })?;
-    replace_file(path, file.get_ref())
+    let (color, format) = (image::ExtendedColorType::Rgb8, image::ImageFormat::Png);
+    image::write_buffer_with_format(&mut file, bytes, width, height, color, format)
+        .map_err(|error| Error::Encode { path: path.to_owned(), message: error.to_string() })?;
+    Ok(file.into_inner())
 }

@@ -9,9 +9,9 @@ use std::sync::Arc;
 use toml::de::DeTable;
 
 use super::Scene;
-use super::compile::{compile, nearest_file};
+use super::compile::compile;
 use super::text::{Document, Mistake, explain};
-use crate::error::{Diagnostic, Error, Result};
+use crate::error::{Diagnostic, Error, Result, nearest_file};
 
 const A_SCENE: &str = "a scene is a TOML file, such as scenes/prism.toml";
 

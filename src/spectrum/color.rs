@@ -42,6 +42,28 @@ pub struct Primaries {
     pub white: [f64; 2],
 }
 
+impl Primaries {
+    /// Color to CIE XYZ. SMPTE RP 177-1993, *Derivation of Basic Television Color Equations*.
+    fn to_xyz(self) -> Matrix {
+        let columns = transpose([self.red, self.green, self.blue].map(from_chromaticity_or_dark));
+        let strengths = apply(&inverse(&columns), from_chromaticity(self.white));
+        columns.map(|row| std::array::from_fn(|i| row[i] * strengths[i]))
+    }
+
+    /// Color to linear Rec.709, adapted to its white; none of primaries that lie on one line, or a white without light.
+    pub fn to_rec709(self) -> Option<Matrix> {
+        let from_red = |[x, y]: [f64; 2]| [x - self.red[0], y - self.red[1]];
+        let [green, blue] = [self.green, self.blue].map(from_red);
+        // Twice the area of the triangle; that of Rec.709 is 0.2. Rounding makes up to 1e-7 of a line in a file.
+        if (green[0] * blue[1] - green[1] * blue[0]).abs() < 1e-6 {
+            return None;
+        }
+        let adapted = product(&adaptation(from_chromaticity(self.white), ColorSpace::Rec709.white()), &self.to_xyz());
+        let matrix = product(&ColorSpace::Rec709.of_xyz(), &adapted);
+        matrix.iter().flatten().all(|x| x.is_finite()).then_some(matrix)
+    }
+}
+
 const D65: [f64; 2] = [0.3127, 0.3290];
 const ACES_WHITE: [f64; 2] = [0.32168, 0.33767];
 
@@ -59,6 +81,11 @@ impl ColorSpace {
             Self::P3D65 => "lin_p3d65_scene",
             Self::Xyz => "lin_ciexyzd65_scene",
         }
+    }
+
+    /// The space that a `colorInteropID` names.
+    pub fn of_interop_id(id: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|space| space.interop_id() == id)
     }
 
     /// The space that people call by a name such as "sRGB", "ACEScg" or "Rec.2020".
@@ -106,15 +133,12 @@ impl ColorSpace {
         data::illuminant(name).expect("both whites are in the catalog")
     }
 
-    /// Film color to CIE XYZ. SMPTE RP 177-1993, *Derivation of Basic Television Color Equations*.
+    /// Film color to CIE XYZ.
     pub fn to_xyz(self) -> Matrix {
         if self == Self::Xyz {
             return IDENTITY;
         }
-        let Primaries { red, green, blue, white } = self.primaries();
-        let columns = transpose([red, green, blue].map(from_chromaticity_or_dark));
-        let strengths = apply(&inverse(&columns), from_chromaticity(white));
-        columns.map(|row| std::array::from_fn(|i| row[i] * strengths[i]))
+        self.primaries().to_xyz()
     }
 
     /// CIE XYZ to film color.
@@ -224,6 +248,18 @@ mod tests {
         assert_near(m[0], [0.4124, 0.3576, 0.1805], 5e-5);
         assert_near(m[1], [0.2126, 0.7152, 0.0722], 5e-5);
         assert_near(m[2], [0.0193, 0.1192, 0.9505], 5e-5);
+    }
+
+    #[test]
+    fn primaries_that_a_file_gives_are_adapted_as_those_of_a_space_are() {
+        for space in [ColorSpace::Rec709, ColorSpace::AcesCg, ColorSpace::Rec2020] {
+            let matrix = space.primaries().to_rec709().expect("the primaries span a triangle");
+            (0..3).for_each(|i| assert_near(matrix[i], space.to_rec709()[i], 1e-12));
+            assert_eq!(ColorSpace::of_interop_id(space.interop_id()), Some(space));
+        }
+        let line = Primaries { red: [0.2, 0.2], green: [0.3, 0.3], blue: [0.4, 0.4], white: D65 };
+        assert_eq!(line.to_rec709(), None);
+        assert_eq!(Primaries { white: [0.3, 0.0], ..ColorSpace::Rec709.primaries() }.to_rec709(), None);
     }
 
     #[test]

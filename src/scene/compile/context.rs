@@ -9,7 +9,7 @@ use std::sync::Arc;
 use sha2::{Digest, Sha256};
 
 use super::image_file::Meaning;
-use crate::error::nearest;
+use crate::error::nearest_file;
 use crate::scene::text::{Document, Value};
 use crate::shape::Mesh;
 use crate::spectrum::{Channel, Image};
@@ -102,14 +102,4 @@ impl<'d> Context<'d> {
         };
         place.advise(format!("there is no file {file}"), help)
     }
-}
-
-/// The file beside a missing one that was most likely meant.
-pub(in crate::scene) fn nearest_file(missing: &Path) -> Option<PathBuf> {
-    let folder = missing.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let files = std::fs::read_dir(folder).ok()?.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
-    let mut names: Vec<String> = files.collect();
-    names.sort();
-    let near = nearest(missing.file_name()?.to_str()?, names.iter().map(String::as_str))?;
-    Some(missing.with_file_name(near))
 }

@@ -7,7 +7,7 @@ use exr::math::Vec2;
 use exr::prelude::{ReadChannels, ReadLayers, read};
 use image::{DynamicImage, ImageDecoder, ImageFormat};
 
-use super::guard::guarded;
+use crate::film::{MOST_TEXELS, fits, guarded};
 use crate::spectrum::{Channel, Encoding, Image, decode_srgb};
 
 /// What is wrong with a file.
@@ -235,30 +235,6 @@ fn possible(path: &Path, texels: Texels, meaning: Meaning) -> Result<(), Fault> 
         }
         None => Ok(()),
     }
-}
-
-/// Most texels of an image: 16384 x 8192.
-const MOST_TEXELS: usize = 1 << 27;
-
-/// Bytes of texels that a file of any length may ask for.
-const ALWAYS: u64 = 1 << 27;
-/// Bytes of texels that one byte of a file can stand for: deflate packs 1032 into one at best (RFC 1951: 258 by 2
-/// bits), and of a palette of two colors each bit is a texel of 3 bytes. Nothing else in these formats is as dense.
-const DENSEST: u64 = 1032 * 24;
-
-/// Refuses images without texels, and sizes that would fill the memory before it shows that the file has no such
-/// texels.
-fn fits(width: usize, height: usize, texels: u64, file: &[u8]) -> Result<(), String> {
-    if width == 0 || height == 0 {
-        return Err("it has no pixels".into());
-    }
-    if width.saturating_mul(height) > MOST_TEXELS {
-        return Err(format!("{width} x {height} pixels are more than {MOST_TEXELS}"));
-    }
-    if texels > ALWAYS.max(DENSEST * file.len() as u64) {
-        return Err(format!("its {} bytes cannot hold {width} x {height} pixels", file.len()));
-    }
-    Ok(())
 }
 
 /// Red, green, blue and maybe alpha of each texel, rows from the top.

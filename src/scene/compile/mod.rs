@@ -7,7 +7,6 @@ mod curve;
 mod curve_name;
 mod curve_range;
 mod curve_text;
-mod guard;
 mod image;
 mod image_file;
 mod inside_out;
@@ -26,8 +25,6 @@ mod spectrum_file;
 mod transform;
 mod unlit;
 mod view;
-
-pub(super) use context::nearest_file;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;

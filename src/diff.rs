@@ -1,0 +1,136 @@
+//! `render diff`: whether two OpenEXR images agree.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use abbe::Result;
+use abbe::film::{ExrFile, check_writable};
+use abbe::look::{Difference, Noise, compare};
+use clap::Parser;
+
+use crate::messages::{aligned, answer_lines, number, print_error, say};
+use crate::outputs::{check_png, refuse, spare};
+
+const HELP: &str = "\
+Files with a variance layer agree if they differ by no more than their noise: if every z = (a - b) / sqrt(va + vb), \
+and that of each channel's mean, is within what chance exceeds in one of a hundred pairs of images. \
+Other files agree if all values are equal, or relMSE is at most --tolerance.
+
+Examples:
+  render diff old.exr new.exr                       do they agree, and if not, where
+  render diff old.exr new.exr --tolerance 1e-4      do they agree so far
+  render diff old.exr new.exr --layer albedo
+  render diff old.exr new.exr --png difference.png  see where they differ
+
+Exit codes: 0 they agree, 1 they differ, 2 they cannot be read or compared.";
+
+/// Say whether two OpenEXR images agree.
+#[derive(Parser)]
+#[command(name = "render diff", bin_name = "render diff", after_help = HELP)]
+pub struct Query {
+    /// One image
+    #[arg(value_name = "A.exr")]
+    a: PathBuf,
+
+    /// The other image, to which it is compared
+    #[arg(value_name = "B.exr")]
+    b: PathBuf,
+
+    /// A layer such as albedo or Z instead of the image itself
+    #[arg(long, value_name = "NAME")]
+    layer: Option<String>,
+
+    /// The largest relMSE of images that agree; noise is not looked at then
+    #[arg(long, value_name = "RELMSE", allow_negative_numbers = true)]
+    tolerance: Option<f64>,
+
+    /// Write a gray picture of |a - b|
+    #[arg(long, value_name = "OUT.png")]
+    png: Option<PathBuf>,
+}
+
+/// Compares, and answers the exit code.
+pub fn run(query: &Query) -> ExitCode {
+    match compared(query) {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::from(1),
+        Err(error) => {
+            print_error(&error);
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn compared(query: &Query) -> Result<bool> {
+    check_png(query.png.as_deref())?;
+    if query.tolerance.is_some_and(|most| !(most >= 0.0 && most.is_finite())) {
+        return refuse("a tolerance is a finite number, 0 or more", Some("for instance: --tolerance 1e-4"));
+    }
+    for input in [&query.a, &query.b] {
+        query.png.as_deref().map_or(Ok(()), |png| spare(input, "image", png))?;
+    }
+    let files = [ExrFile::read(&query.a)?, ExrFile::read(&query.b)?];
+    let shown = [&query.a, &query.b].map(|path| path.display().to_string());
+    let names = shown.each_ref().map(String::as_str);
+    let found = compare(files.each_ref(), query.layer.as_deref(), names)?;
+    let agrees = found.agrees(query.tolerance);
+    let mut lines = vec![format!("{} and {} {}", names[0], names[1], if agrees { "agree" } else { "differ" })];
+    lines[0].push_str(if found.is_equal { ": all values are equal" } else { "" });
+    lines.extend(figures(&found, query.tolerance));
+    if let Some(png) = &query.png {
+        let (picture, white) = found.picture();
+        check_writable(png)?;
+        picture.write_png(png)?;
+        say(&format!("wrote {}: white is a difference of {} or more", png.display(), number(white)));
+    }
+    answer_lines(&lines)?;
+    Ok(agrees)
+}
+
+fn figures(found: &Difference, tolerance: Option<f64>) -> Vec<String> {
+    let mut rows = Vec::new();
+    let mut put = |key: &str, text: String| rows.push(vec![key.to_owned(), text]);
+    let most = tolerance.map_or(String::new(), |most| format!(", {} is tolerated", number(most)));
+    if !found.is_equal {
+        put("relMSE", format!("{}{most}", number(found.relative_mse)));
+        put("brightness", format!("{} times that of the second", number(found.brightness)));
+    }
+    if let Some(color) = found.color.filter(|_| !found.is_equal) {
+        let clipped = match color.clipped {
+            0.0 => String::new(),
+            share => format!(", of colors clipped to 0..1, as {:.1} % of the pixels are", 100.0 * share),
+        };
+        put("dE2000", format!("mean {:.3}, worst {:.2}{clipped}", color.mean, color.worst));
+    }
+    if let Some(noise) = found.noise.as_ref().filter(|_| !found.is_equal) {
+        put("z", of_noise(found, noise));
+        let means: Vec<String> = noise.means.iter().map(|z| format!("{z:.1}")).collect();
+        put("z of means", format!("{} in {}", means.join(", "), found.channels.join(", ")));
+        if noise.changed > 0 {
+            put("no noise", format!("{} values differ though neither file says that they vary", noise.changed));
+        }
+    }
+    if !found.is_equal && found.noise.is_none() && tolerance.is_none() {
+        put("judged by", "equality: no variance layers tell the noise, and no --tolerance is given".into());
+    }
+    if let Some(worst) = &found.worst {
+        let [a, b] = worst
+            .values
+            .each_ref()
+            .map(|values| values.iter().map(|value| number(*value)).collect::<Vec<_>>().join(" "));
+        let [x, y] = worst.at;
+        put("worst pixel", format!("({x}, {y}): {a} and {b}"));
+    }
+    if found.left_out > 0 {
+        let all = found.absolute.len();
+        put("not finite", format!("{} of {all} pixels, left out; {} of them differ", found.left_out, found.torn));
+    }
+    aligned(&rows)
+}
+
+fn of_noise(found: &Difference, noise: &Noise) -> String {
+    let [pixel, channel] = noise.at;
+    let ([x, y], channel) = (found.bounds.place(pixel), &found.channels[channel]);
+    let beyond = if noise.beyond > 0 { format!("; {} beyond it", noise.beyond) } else { String::new() };
+    format!("worst {:.1} in {channel} of ({x}, {y}), chance makes up to {:.1}{beyond}", noise.worst, noise.threshold)
+}

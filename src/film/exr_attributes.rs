@@ -1,0 +1,109 @@
+//! Attributes of OpenEXR files in words.
+
+use std::collections::HashMap;
+
+use exr::meta::attribute::{AttributeValue, EnvironmentMap};
+use exr::prelude::{LayerAttributes, Text};
+
+/// World to camera for row vectors, row by row.
+pub type CameraMatrix = [f32; 16];
+
+/// Bytes as a text: files are meant to hold UTF-8, and older ones hold Latin-1. Nothing in it can steer a terminal.
+pub(super) fn text(text: &Text) -> String {
+    let text = std::str::from_utf8(text.bytes()).map_or_else(|_| text.to_string(), str::to_owned);
+    text.chars().map(|c| if c.is_control() { char::REPLACEMENT_CHARACTER } else { c }).collect()
+}
+
+/// The attributes of a part and those that all parts share, by their names in the file, in order. Those that say how
+/// pixels are stored, and the camera's matrix, are told elsewhere.
+pub(super) fn attributes(part: &LayerAttributes, shared: &HashMap<Text, AttributeValue>) -> Vec<(String, String)> {
+    let mut found: Vec<(String, String)> =
+        part.other.iter().chain(shared).map(|(key, value)| (text(key), words(value))).collect();
+    let mut put = |key: &str, value: Option<String>| found.extend(value.map(|value| (key.to_owned(), value)));
+    for (key, value) in [
+        ("software", &part.software_name),
+        ("owner", &part.owner),
+        ("comments", &part.comments),
+        ("capDate", &part.capture_date),
+        ("view", &part.view_name),
+        ("wrapmodes", &part.wrap_mode_name),
+        ("renderingTransform", &part.rendering_transform_name),
+        ("lookModTransform", &part.look_modification_transform_name),
+    ] {
+        put(key, value.as_ref().map(text));
+    }
+    for (key, value) in [
+        ("whiteLuminance", part.white_luminance),
+        ("xDensity", part.horizontal_density),
+        ("utcOffset", part.utc_offset),
+        ("longitude", part.longitude),
+        ("latitude", part.latitude),
+        ("altitude", part.altitude),
+        ("focus", part.focus),
+        ("expTime", part.exposure),
+        ("aperture", part.aperture),
+        ("isoSpeed", part.iso_speed),
+        ("near", part.near_clip_plane),
+        ("far", part.far_clip_plane),
+        ("fieldOfViewHorizontal", part.horizontal_field_of_view),
+        ("fieldOfViewVertical", part.vertical_field_of_view),
+    ] {
+        put(key, value.map(|value| value.to_string()));
+    }
+    put("adoptedNeutral", part.adopted_neutral.map(|at| numbers(&[at.x(), at.y()])));
+    put("framesPerSecond", part.frames_per_second.map(|(up, down)| format!("{up}/{down}")));
+    put("worldToNDC", part.world_to_normalized_device.map(|matrix| numbers(&matrix)));
+    put("multiView", part.multi_view_names.as_ref().map(|names| listed(names)));
+    put("preview", part.preview.as_ref().map(|_| "a small picture".into()));
+    let sphere = part.environment_map.map(|map| match map {
+        EnvironmentMap::LatitudeLongitude => "the full sphere, by longitude and latitude",
+        EnvironmentMap::Cube => "the six faces of a cube",
+    });
+    put("envmap", sphere.map(str::to_owned));
+    // What a file does not say is read as this.
+    if part.screen_window_width != 1.0 || part.world_to_camera.is_some() {
+        put("screenWindowWidth", Some(part.screen_window_width.to_string()));
+    }
+    let center = [part.screen_window_center.x(), part.screen_window_center.y()];
+    if center != [0.0; 2] {
+        put("screenWindowCenter", Some(numbers(&center)));
+    }
+    found.sort();
+    found
+}
+
+fn numbers(numbers: &[f32]) -> String {
+    numbers.iter().map(f32::to_string).collect::<Vec<_>>().join(" ")
+}
+
+fn listed(texts: &[Text]) -> String {
+    texts.iter().map(text).collect::<Vec<_>>().join(", ")
+}
+
+fn words(value: &AttributeValue) -> String {
+    match value {
+        AttributeValue::Text(value) => text(value),
+        AttributeValue::TextVector(values) => listed(values),
+        AttributeValue::F64(value) => value.to_string(),
+        AttributeValue::F32(value) => value.to_string(),
+        AttributeValue::I32(value) => value.to_string(),
+        AttributeValue::Rational((up, down)) => format!("{up}/{down}"),
+        AttributeValue::IntVec2(v) => format!("{} {}", v.x(), v.y()),
+        AttributeValue::FloatVec2(v) => numbers(&[v.x(), v.y()]),
+        AttributeValue::IntVec3((x, y, z)) => format!("{x} {y} {z}"),
+        AttributeValue::FloatVec3((x, y, z)) => numbers(&[*x, *y, *z]),
+        AttributeValue::Matrix3x3(matrix) => numbers(matrix),
+        AttributeValue::Matrix4x4(matrix) => numbers(matrix),
+        AttributeValue::FloatRect(rect) => numbers(&[rect.min.x(), rect.min.y(), rect.max.x(), rect.max.y()]),
+        AttributeValue::IntegerBounds(bounds) => {
+            let [corner, last] = [bounds.position, bounds.max()];
+            format!("{} {} to {} {}", corner.x(), corner.y(), last.x(), last.y())
+        }
+        AttributeValue::TimeCode(time) => {
+            format!("{:02}:{:02}:{:02}:{:02}", time.hours, time.minutes, time.seconds, time.frame)
+        }
+        AttributeValue::Bytes { type_hint, bytes } => format!("{} bytes of {}", bytes.len(), text(type_hint)),
+        AttributeValue::Custom { kind, bytes } => format!("{} bytes of {}", bytes.len(), text(kind)),
+        other => format!("{other:?}"),
+    }
+}

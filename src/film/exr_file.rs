@@ -1,0 +1,231 @@
+//! OpenEXR files of any program, read whole.
+
+use std::collections::BTreeSet;
+use std::fs::File;
+use std::io::{Cursor, ErrorKind, Read};
+use std::path::Path;
+
+use exr::meta::MetaData;
+use exr::prelude::{
+    AnyChannels, Blocks, Compression, Encoding, FlatImage, FlatSamples, IntegerBounds, LineOrder, ReadChannels,
+    ReadLayers, Vec2, read,
+};
+
+use super::exr_attributes::{attributes, text};
+use super::exr_layer::{BEAUTY, ExrLayer};
+use super::exr_part::{Channel, Part, PixelBounds};
+use super::guard::{fits, guarded};
+use crate::error::{Error, Result, nearest, nearest_file};
+use crate::spectrum::Primaries;
+
+/// Most bytes of a file: 4 GiB.
+const MOST_BYTES: u64 = 1 << 32;
+const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
+
+/// An OpenEXR file, with all its parts.
+#[derive(Debug)]
+pub struct ExrFile {
+    /// How many bytes it has.
+    pub length: usize,
+    /// The display window: the full image, of which a part may hold less or more.
+    pub display: PixelBounds,
+    /// Width of a pixel divided by its height.
+    pub pixel_aspect: f32,
+    /// What red, green and blue mean, if it says so by numbers.
+    pub chromaticities: Option<Primaries>,
+    /// In the order of the file.
+    pub parts: Vec<Part>,
+}
+
+impl ExrFile {
+    /// Reads a file with all its parts and channels; of several resolutions the largest.
+    ///
+    /// # Errors
+    /// [`Error::Arguments`] if there is no such file, [`Error::Decode`] if it is no OpenEXR file, not complete, or of a
+    /// kind that cannot be read.
+    pub fn read(path: &Path) -> Result<Self> {
+        let bytes = bytes(path)?;
+        guarded(|| Self::decode(&bytes)).map_err(|said| decode_error(path, &said))
+    }
+
+    fn decode(bytes: &[u8]) -> std::result::Result<Self, String> {
+        let described = MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(|error| error.to_string())?;
+        if described.headers.iter().any(|header| header.deep) {
+            return Err("it is a deep image, which has many values to a pixel".into());
+        }
+        let mut all = 0u64;
+        for header in &described.headers {
+            let [width, height] = [header.layer_size.width(), header.layer_size.height()];
+            all = all
+                .saturating_add((width as u64 * height as u64).saturating_mul(header.channels.bytes_per_pixel as u64));
+            fits(width, height, all, bytes)?;
+        }
+        let reader = read().no_deep_data().largest_resolution_level().all_channels().all_layers().all_attributes();
+        let image = reader.non_parallel().from_buffered(Cursor::new(bytes)).map_err(|error| error.to_string())?;
+        Ok(Self::of_image(image, bytes.len()))
+    }
+
+    fn of_image(image: FlatImage, length: usize) -> Self {
+        let shared = image.attributes;
+        let IntegerBounds { position, size } = shared.display_window;
+        let pair = |v: Vec2<f32>| [v.x().into(), v.y().into()];
+        let chromaticities = shared.chromaticities.map(|found| Primaries {
+            red: pair(found.red),
+            green: pair(found.green),
+            blue: pair(found.blue),
+            white: pair(found.white),
+        });
+        let mut taken = BTreeSet::new();
+        let parts = image.layer_data.into_iter().map(|layer| {
+            let name = layer.attributes.layer_name.as_ref().map(text);
+            Part {
+                bounds: PixelBounds::new(layer.attributes.layer_position, layer.size),
+                storage: storage(&layer.encoding),
+                attributes: attributes(&layer.attributes, &shared.other),
+                camera: layer.attributes.world_to_camera,
+                channels: channels(layer.channel_data, name.as_deref(), &mut taken),
+                name,
+            }
+        });
+        Self {
+            parts: parts.collect(),
+            length,
+            display: PixelBounds::new(position, size),
+            pixel_aspect: shared.pixel_aspect,
+            chromaticities,
+        }
+    }
+
+    /// Its layers, the beauty of a part before the others.
+    pub fn layers(&self) -> Vec<ExrLayer<'_>> {
+        let mut layers = Vec::new();
+        for part in &self.parts {
+            let at_root: Vec<&Channel> = part.channels.iter().filter(|channel| channel.layer.is_empty()).collect();
+            let is_color = |channel: &&Channel| ["R", "G", "B", "A"].contains(&channel.name.as_str());
+            let (color, alone): (Vec<&Channel>, Vec<&Channel>) = at_root.iter().partition(|channel| is_color(channel));
+            let beauty = ExrLayer::new(BEAUTY, part, color.clone());
+            let has_beauty = beauty.color().is_some();
+            layers.extend(has_beauty.then_some(beauty));
+            let alone = if has_beauty { alone } else { at_root };
+            layers.extend(alone.into_iter().map(|channel| ExrLayer::new(&channel.name, part, vec![channel])));
+            let mut names: Vec<&str> = part.channels.iter().map(|channel| channel.layer.as_str()).collect();
+            names.sort_unstable();
+            names.dedup();
+            for name in names.into_iter().filter(|name| !name.is_empty()) {
+                let inside = part.channels.iter().filter(|channel| channel.layer == name);
+                layers.push(ExrLayer::new(name, part, inside.collect()));
+            }
+        }
+        layers
+    }
+
+    /// The layer of a name, or the channel of a full name as a layer of its own; without a name the beauty, or else the
+    /// first layer. `shown` is the file's name in messages.
+    ///
+    /// # Errors
+    /// [`Error::Arguments`] if there is none, with the nearest name and those that there are.
+    pub fn layer(&self, wanted: Option<&str>, shown: &str) -> Result<ExrLayer<'_>> {
+        let mut layers = self.layers();
+        let refuse = |message: String, help: String| Err(Error::Arguments { message, help: Some(help) });
+        if layers.is_empty() {
+            return refuse(format!("{shown} has no channels"), "render info says what a file holds".into());
+        }
+        let named = |wanted: &str| layers.iter().position(|layer| layer.name == wanted);
+        let Some(wanted) = wanted else {
+            let first = named(BEAUTY).unwrap_or(0);
+            return Ok(layers.swap_remove(first));
+        };
+        if let Some(at) = named(wanted) {
+            return Ok(layers.swap_remove(at));
+        }
+        for part in &self.parts {
+            if let Some(channel) = part.channels.iter().find(|channel| channel.full_name() == wanted) {
+                return Ok(ExrLayer::new(wanted, part, vec![channel]));
+            }
+        }
+        let names: Vec<&str> = layers.iter().map(|layer| layer.name.as_str()).collect();
+        let near = nearest(wanted, names.iter().copied()).map(|near| format!("did you mean {near}? "));
+        let has = format!("it has {}", names.join(", "));
+        refuse(format!("{shown} has no layer {wanted}"), near.unwrap_or_default() + &has)
+    }
+
+    /// The value of an attribute in the first part that has it.
+    pub fn attribute(&self, name: &str) -> Option<&str> {
+        let all = self.parts.iter().flat_map(|part| &part.attributes);
+        all.into_iter().find(|(key, _)| key == name).map(|(_, value)| value.as_str())
+    }
+}
+
+/// The file's bytes, if it begins as an OpenEXR file does.
+fn bytes(path: &Path) -> Result<Vec<u8>> {
+    let refuse = |message: String, help: String| Err(Error::Arguments { message, help: Some(help) });
+    let (shown, an_image) = (path.display(), "an image is an OpenEXR file, such as prism.exr");
+    let mut start = Vec::new();
+    let read = File::open(path).and_then(|mut file| {
+        (&mut file).take(MAGIC.len() as u64).read_to_end(&mut start)?;
+        if start == MAGIC {
+            file.take(MOST_BYTES).read_to_end(&mut start)?;
+        }
+        Ok(())
+    });
+    match read.map_err(|error| (error.kind(), error)) {
+        Ok(()) if start.starts_with(&MAGIC) => Ok(start),
+        Ok(()) => Err(decode_error(path, "it does not begin as one does")),
+        Err((ErrorKind::NotFound | ErrorKind::NotADirectory, _)) => {
+            let near = nearest_file(path).map(|near| format!("did you mean {}?", near.display()));
+            refuse(format!("there is no image file {shown}"), near.unwrap_or(an_image.into()))
+        }
+        Err((ErrorKind::IsADirectory, _)) => refuse(format!("{shown} is a folder, not an image"), an_image.into()),
+        Err((_, source)) => Err(Error::Io { doing: "read", path: path.to_owned(), source }),
+    }
+}
+
+fn decode_error(path: &Path, said: &str) -> Error {
+    Error::Decode { path: path.to_owned(), message: format!("it is no complete OpenEXR image ({said})") }
+}
+
+/// The channels of a part. Where an earlier part has one of the same name, the part's name tells them apart.
+fn channels(list: AnyChannels<FlatSamples>, part: Option<&str>, taken: &mut BTreeSet<String>) -> Vec<Channel> {
+    let mut channels: Vec<Channel> = (list.list.into_iter())
+        .map(|channel| {
+            let full = text(&channel.name);
+            let (layer, name) = full.rsplit_once('.').unwrap_or(("", &full));
+            Channel { layer: layer.to_owned(), name: name.to_owned(), samples: channel.sample_data }
+        })
+        .collect();
+    if let Some(part) = part.filter(|_| channels.iter().any(|channel| taken.contains(&channel.full_name()))) {
+        for channel in &mut channels {
+            channel.layer =
+                if channel.layer.is_empty() { part.to_owned() } else { format!("{part}.{}", channel.layer) };
+        }
+    }
+    taken.extend(channels.iter().map(Channel::full_name));
+    channels
+}
+
+fn storage(encoding: &Encoding) -> String {
+    let packed = match encoding.compression {
+        Compression::Uncompressed => "not compressed",
+        Compression::RLE => "rle",
+        Compression::ZIP1 => "zips",
+        Compression::ZIP16 => "zip",
+        Compression::PIZ => "piz",
+        Compression::PXR24 => "pxr24",
+        Compression::B44 => "b44",
+        Compression::B44A => "b44a",
+        Compression::DWAA(_) => "dwaa",
+        Compression::DWAB(_) => "dwab",
+        Compression::HTJ2K32 => "htj2k32",
+        Compression::HTJ2K256 => "htj2k256",
+    };
+    let blocks = match encoding.blocks {
+        Blocks::ScanLines => "scan lines".to_owned(),
+        Blocks::Tiles(size) => format!("tiles of {} x {}", size.width(), size.height()),
+    };
+    let order = match encoding.line_order {
+        LineOrder::Increasing => "from the top",
+        LineOrder::Decreasing => "from the bottom",
+        LineOrder::Unspecified => "in any order",
+    };
+    format!("{packed}, {blocks} {order}")
+}

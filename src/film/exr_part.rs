@@ -1,0 +1,126 @@
+//! The parts of an OpenEXR file, and their channels.
+
+use exr::prelude::{FlatSamples, Vec2};
+
+use super::exr_attributes::CameraMatrix;
+
+/// A rectangle of pixels, y down; it may begin left of column 0 or above row 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PixelBounds {
+    /// Its first column and row.
+    pub corner: [i64; 2],
+    /// Columns and rows.
+    pub size: [usize; 2],
+}
+
+impl PixelBounds {
+    pub(super) fn new(position: Vec2<i32>, size: Vec2<usize>) -> Self {
+        Self { corner: [position.x().into(), position.y().into()], size: [size.width(), size.height()] }
+    }
+
+    /// The column and row of a pixel that is told by its number, row by row from the top left.
+    pub fn place(&self, index: usize) -> [i64; 2] {
+        [self.corner[0] + (index % self.size[0]) as i64, self.corner[1] + (index / self.size[0]) as i64]
+    }
+
+    /// The last column and row.
+    pub fn last(&self) -> [i64; 2] {
+        [0, 1].map(|axis| self.corner[axis] + self.size[axis] as i64 - 1)
+    }
+}
+
+/// One image of a file, with channels of its own.
+#[derive(Debug)]
+pub struct Part {
+    /// Its name, which files of several parts give.
+    pub name: Option<String>,
+    /// The data window: the pixels that are there.
+    pub bounds: PixelBounds,
+    /// How its pixels are packed, such as `zip, scan lines`.
+    pub storage: String,
+    /// The other attributes by their names in the file, in their order, as words.
+    pub attributes: Vec<(String, String)>,
+    /// World to camera, if it is told.
+    pub camera: Option<CameraMatrix>,
+    /// In the order of the file.
+    pub channels: Vec<Channel>,
+}
+
+/// One number of every pixel.
+#[derive(Debug)]
+pub struct Channel {
+    /// What stands before the last dot of its name; empty at the root.
+    pub layer: String,
+    /// What stands behind it, such as R.
+    pub name: String,
+    pub(super) samples: FlatSamples,
+}
+
+impl Channel {
+    /// ExrLayer and name, as the file has them.
+    pub fn full_name(&self) -> String {
+        if self.layer.is_empty() { self.name.clone() } else { format!("{}.{}", self.layer, self.name) }
+    }
+
+    /// `half`, `float` or `uint`.
+    pub fn kind(&self) -> &'static str {
+        match self.samples {
+            FlatSamples::F16(_) => "half",
+            FlatSamples::F32(_) => "float",
+            FlatSamples::U32(_) => "uint",
+        }
+    }
+
+    /// The value of a pixel, counted row by row from the top left of the data window.
+    ///
+    /// # Panics
+    /// If there is no such pixel.
+    pub fn at(&self, index: usize) -> f64 {
+        match &self.samples {
+            FlatSamples::F16(values) => values[index].to_f64(),
+            FlatSamples::F32(values) => values[index].into(),
+            FlatSamples::U32(values) => values[index].into(),
+        }
+    }
+
+    /// All values, row by row from the top left of the data window.
+    pub fn values(&self) -> impl Iterator<Item = f64> {
+        (0..self.samples.len()).map(|index| self.at(index))
+    }
+
+    /// What can be said of all values at once.
+    pub fn statistics(&self) -> Statistics {
+        let mut found =
+            Statistics { nan: 0, infinite: 0, finite: 0, min: f64::INFINITY, max: f64::NEG_INFINITY, mean: 0.0 };
+        for value in self.values() {
+            if value.is_nan() {
+                found.nan += 1;
+            } else if value.is_infinite() {
+                found.infinite += 1;
+            } else {
+                found.finite += 1;
+                (found.min, found.max) = (found.min.min(value), found.max.max(value));
+                found.mean += value;
+            }
+        }
+        found.mean /= found.finite.max(1) as f64;
+        found
+    }
+}
+
+/// How many values of a channel there are, and how large the finite ones.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Statistics {
+    /// Values that are no numbers.
+    pub nan: usize,
+    /// Values that are infinite, of either sign.
+    pub infinite: usize,
+    /// The others, over which the rest is taken.
+    pub finite: usize,
+    /// The least; infinity where none is finite.
+    pub min: f64,
+    /// The largest; minus infinity where none is finite.
+    pub max: f64,
+    /// Their mean; 0 where none is finite.
+    pub mean: f64,
+}

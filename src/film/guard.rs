@@ -1,0 +1,50 @@
+//! Decoders of other makers: some panic over damaged files, some believe any size that a file claims to have.
+
+use std::cell::Cell;
+use std::panic::{AssertUnwindSafe, catch_unwind, set_hook, take_hook};
+use std::sync::Once;
+
+thread_local! {
+    static QUIET: Cell<bool> = const { Cell::new(false) };
+}
+
+/// What a decoder answers, or an error if it panics; nothing is printed of that.
+pub(crate) fn guarded<T>(decode: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
+    static HOOK: Once = Once::new();
+    HOOK.call_once(|| {
+        let others = take_hook();
+        set_hook(Box::new(move |info| {
+            if !QUIET.get() {
+                others(info);
+            }
+        }));
+    });
+    QUIET.set(true);
+    let answer = catch_unwind(AssertUnwindSafe(decode));
+    QUIET.set(false);
+    answer.unwrap_or_else(|_| Err("its data contradict themselves".into()))
+}
+
+/// Most texels of an image: 16384 x 8192.
+pub(crate) const MOST_TEXELS: usize = 1 << 27;
+
+/// Bytes of texels that a file of any length may ask for.
+const ALWAYS: u64 = 1 << 27;
+/// Bytes of texels that one byte of a file can stand for: deflate packs 1032 into one at best (RFC 1951: 258 by 2
+/// bits), and of a palette of two colors each bit is a texel of 3 bytes. Nothing else in these formats is as dense.
+const DENSEST: u64 = 1032 * 24;
+
+/// Refuses images without texels, and sizes whose `bytes` would fill the memory before it shows that the file has no
+/// such texels.
+pub(crate) fn fits(width: usize, height: usize, bytes: u64, file: &[u8]) -> Result<(), String> {
+    if width == 0 || height == 0 {
+        return Err("it has no pixels".into());
+    }
+    if width.saturating_mul(height) > MOST_TEXELS {
+        return Err(format!("{width} x {height} pixels are more than {MOST_TEXELS}"));
+    }
+    if bytes > ALWAYS.max(DENSEST * file.len() as u64) {
+        return Err(format!("its {} bytes cannot hold {width} x {height} pixels", file.len()));
+    }
+    Ok(())
+}

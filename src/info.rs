@@ -1,0 +1,184 @@
+//! `render info`: what an OpenEXR file carries.
+
+use std::path::PathBuf;
+
+use abbe::film::{CameraMatrix, Channel, ExrFile, Part, PixelBounds, Statistics};
+use abbe::spectrum::{ColorSpace, Primaries};
+use abbe::{Result, film::ExrLayer};
+use clap::Parser;
+
+use crate::messages::{aligned, number};
+
+const HELP: &str = "\
+It says the size and the part of it that is there, the color space, the camera, all that the file says of itself, \
+and of each channel its type, least, mean and largest value, and how many values are not finite.
+
+Examples:
+  render info rainbow.exr            files of other programs as well
+  render info rainbow.exr | less
+
+Exit codes: 0 done, 1 the file cannot be read, 2 bad arguments or no such file.";
+
+/// Say what an OpenEXR image carries.
+#[derive(Parser)]
+#[command(name = "render info", bin_name = "render info", after_help = HELP)]
+pub struct Query {
+    /// The image
+    #[arg(value_name = "FILE.exr")]
+    file: PathBuf,
+}
+
+/// Most characters of an attribute that are shown: lists of names can be as long as a book.
+const MOST_SHOWN: usize = 200;
+/// Chromaticities in a file are 32-bit floats, and some programs round them to four digits.
+const SAME_CHROMATICITY: f64 = 1e-4;
+
+/// The lines that answer a query.
+///
+/// # Errors
+/// If the file cannot be read.
+pub fn lines(query: &Query) -> Result<Vec<String>> {
+    let file = ExrFile::read(&query.file)?;
+    let parts = if file.parts.len() == 1 { "1 part".into() } else { format!("{} parts", file.parts.len()) };
+    let mut lines = vec![format!("{}: OpenEXR, {parts}, {} bytes", query.file.display(), file.length)];
+    for (number, part) in file.parts.iter().enumerate() {
+        if file.parts.len() > 1 {
+            let name = part.name.as_deref().map_or(String::new(), |name| format!(" {}", short(name)));
+            lines.push(format!("\npart {}{name}", number + 1));
+        }
+        let own = part.attributes.iter().filter(|(key, _)| !key.starts_with("render/"));
+        let rest = own.filter(|(key, _)| !["screenWindowWidth", "screenWindowCenter"].contains(&key.as_str()));
+        let rows = [picture(&file, part), camera(&file, part), rest.map(|(key, value)| row(key, value)).collect()];
+        lines.extend(aligned(&rows.concat()));
+        let origin = part.attributes.iter().filter(|(key, _)| key.starts_with("render/"));
+        let origin: Vec<_> = origin.map(|(key, value)| row(key, value)).collect();
+        if !origin.is_empty() {
+            lines.push(String::new());
+            lines.extend(aligned(&origin));
+        }
+        lines.push(String::new());
+        lines.extend(channels(&file, part));
+    }
+    Ok(lines)
+}
+
+fn row(key: &str, value: &str) -> Vec<String> {
+    vec![short(key), short(value)]
+}
+
+/// A text of a bounded length.
+fn short(text: &str) -> String {
+    match text.chars().count() {
+        count if count > MOST_SHOWN => {
+            format!("{} .. ({count} characters)", text.chars().take(MOST_SHOWN).collect::<String>())
+        }
+        _ => text.to_owned(),
+    }
+}
+
+/// Size, windows, storage and color.
+fn picture(file: &ExrFile, part: &Part) -> Vec<Vec<String>> {
+    let [width, height] = file.display.size;
+    let mut rows = vec![row("size", &format!("{width} x {height} pixels"))];
+    if file.display.corner != [0, 0] {
+        let [x, y] = file.display.corner;
+        rows.push(row("begins at", &format!("({x}, {y})")));
+    }
+    rows.extend(window(&file.display, &part.bounds).map(|(key, value)| row(key, &value)));
+    if file.pixel_aspect != 1.0 {
+        rows.push(row("pixels", &format!("{} times as wide as high", file.pixel_aspect)));
+    }
+    rows.push(row("storage", &part.storage));
+    if let Some(primaries) = file.chromaticities {
+        rows.push(row("chromaticities", &chromaticities(&primaries)));
+    }
+    rows
+}
+
+/// How the pixels that are there lie in the full image; nothing if they are just it.
+fn window(full: &PixelBounds, there: &PixelBounds) -> Option<(&'static str, String)> {
+    if full == there {
+        return None;
+    }
+    let ([left, top], [right, bottom]) = (there.corner, there.last());
+    let beyond =
+        [0, 1].iter().any(|&axis| there.corner[axis] < full.corner[axis] || there.last()[axis] > full.last()[axis]);
+    let within =
+        [0, 1].iter().any(|&axis| there.corner[axis] > full.corner[axis] || there.last()[axis] < full.last()[axis]);
+    let key = match (within, beyond) {
+        (true, false) => "crop",
+        (false, _) => "overscan",
+        (true, true) => "crop and overscan",
+    };
+    let [width, height] = there.size;
+    Some((key, format!("{width} x {height} pixels are there, ({left}, {top}) to ({right}, {bottom})")))
+}
+
+fn chromaticities(found: &Primaries) -> String {
+    let all = |primaries: &Primaries| [primaries.red, primaries.green, primaries.blue, primaries.white];
+    let near = |space: &ColorSpace| {
+        let pairs = all(found).into_iter().zip(all(&space.primaries()));
+        pairs.into_iter().all(|(a, b)| (0..2).all(|i| (a[i] - b[i]).abs() < SAME_CHROMATICITY))
+    };
+    let known = ColorSpace::ALL.iter().find(|space| near(space));
+    let known = known.map_or(String::new(), |space| format!(" ({})", space.interop_id()));
+    let [red, green, blue, white] = all(found).map(|[x, y]| format!("{x:.4} {y:.4}"));
+    format!("red {red}, green {green}, blue {blue}, white {white}{known}")
+}
+
+/// Where the camera stands, where it looks, and how much it sees.
+fn camera(file: &ExrFile, part: &Part) -> Vec<Vec<String>> {
+    let Some(matrix) = part.camera else { return Vec::new() };
+    let mut rows = match place(&matrix) {
+        Some((position, forward)) => {
+            vec![row("camera", &format!("at {}, looks along {}", triple(position), triple(forward)))]
+        }
+        None => vec![row("worldToCamera", &matrix.map(|x| x.to_string()).join(" "))],
+    };
+    let said = |key: &str| part.attributes.iter().find(|(name, _)| name == key).map(|(_, value)| value.as_str());
+    let width: Option<f64> = said("screenWindowWidth").and_then(|width| width.parse().ok());
+    let [columns, lines] = file.display.size.map(|size| size as f64);
+    let Some(width) = width else { return rows };
+    let height = width * lines / columns / f64::from(file.pixel_aspect);
+    rows.push(match said("render/projection") {
+        None | Some("perspective") => {
+            let [across, up] = [width, height].map(|size| 2.0 * libm::atan(0.5 * size).to_degrees());
+            row("field of view", &format!("{across:.2} degrees across, {up:.2} up"))
+        }
+        Some(_) => row("view", &format!("{} across, {} up", number(width), number(height))),
+    });
+    rows.extend(said("screenWindowCenter").map(|center| row("view's middle", center)));
+    rows
+}
+
+/// Position and direction of a camera by its matrix for row vectors, if that only turns and moves.
+fn place(matrix: &CameraMatrix) -> Option<([f64; 3], [f64; 3])> {
+    let row = |i: usize| -> [f64; 3] { std::array::from_fn(|j| matrix[4 * i + j].into()) };
+    let dot = |a: [f64; 3], b: [f64; 3]| -> f64 { (0..3).map(|i| a[i] * b[i]).sum() };
+    let turns = (0..3).all(|i| (0..3).all(|j| (dot(row(i), row(j)) - f64::from(u8::from(i == j))).abs() < 1e-3));
+    let position = [0, 1, 2].map(|i| -dot(row(3), row(i)));
+    turns.then(|| (position, [0, 1, 2].map(|i| row(i)[2])))
+}
+
+fn triple(values: [f64; 3]) -> String {
+    format!("({})", values.map(number).join(", "))
+}
+
+/// A line for each channel of a part.
+fn channels(file: &ExrFile, part: &Part) -> Vec<String> {
+    let head = ["layer", "channel", "type", "min", "mean", "max", ""].map(str::to_owned).to_vec();
+    let mut rows = vec![head];
+    for layer in file.layers().iter().filter(|layer| std::ptr::eq(layer.part, part)) {
+        rows.extend(layer.channels.iter().map(|channel| line(layer, channel)));
+    }
+    aligned(&rows)
+}
+
+fn line(layer: &ExrLayer, channel: &Channel) -> Vec<String> {
+    let Statistics { nan, infinite, finite, min, max, mean } = channel.statistics();
+    let [min, mean, max] = [min, mean, max].map(|x| if finite > 0 { number(x) } else { "-".into() });
+    let broken = [(nan, "NaN"), (infinite, "infinite")].into_iter().filter(|(count, _)| *count > 0);
+    let broken: Vec<String> = broken.map(|(count, what)| format!("{count} {what}")).collect();
+    let [layer, name] = [&layer.name, &channel.name].map(|text| short(text));
+    vec![layer, name, channel.kind().into(), min, mean, max, broken.join(", ")]
+}

@@ -1,0 +1,247 @@
+use palette::color_difference::Ciede2000;
+use palette::{FromColor, Lab, LinSrgb};
+
+use super::noise::{Noise, Noisy};
+use super::picture::{Picture, percentile, to_rec709};
+use super::tone::shown;
+use crate::error::{Error, Result};
+use crate::film::{BEAUTY, Channel, ExrFile, ExrLayer, PixelBounds};
+use crate::spectrum::apply;
+
+/// What the square of a value is raised by before the square of a difference is divided by it: dark pixels do not
+/// count without bound.
+const DARK: f64 = 0.01;
+/// Most that the matrices of two color spaces differ by if they are the same, written in 32-bit floats.
+const SAME_SPACE: f64 = 1e-3;
+
+/// How far two images are apart. Pixels with a value that is not finite are left out, but of `torn`.
+#[derive(Clone, Debug)]
+pub struct Difference {
+    /// Where both images lie.
+    pub bounds: PixelBounds,
+    /// The channels that are compared.
+    pub channels: Vec<String>,
+    /// Whether every value is the same; those that are no numbers are.
+    pub is_equal: bool,
+    /// Pixels that are left out.
+    pub left_out: usize,
+    /// Those of them whose values differ: finite in one image only, or infinite with another sign.
+    pub torn: usize,
+    /// The mean of (a - b)^2 / (b^2 + 0.01) over all values.
+    pub relative_mse: f64,
+    /// The sum of the first image's values over that of the second one's.
+    pub brightness: f64,
+    /// How different the colors look, if they are colors.
+    pub color: Option<ColorDifference>,
+    /// The pixel with the largest sum of (a - b)^2 / (b^2 + 0.01), if any differs.
+    pub worst: Option<WorstPixel>,
+    /// Whether that is noise, if both files say how noisy they are.
+    pub noise: Option<Noise>,
+    /// The largest |a - b| of each pixel's values; infinite where it is left out and torn, 0 where only left out.
+    pub absolute: Vec<f64>,
+}
+
+/// CIEDE2000 (CIE 142:2001) of colors as a screen shows them: brought to Rec.709 and clipped to 0..1. The film's
+/// (1, 1, 1) is L* = 100 under D65.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ColorDifference {
+    /// Over all pixels.
+    pub mean: f64,
+    /// The largest.
+    pub worst: f64,
+    /// The share of pixels of which a value was clipped in either image.
+    pub clipped: f64,
+}
+
+/// The values of both images in one pixel.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WorstPixel {
+    /// Column and row in the full image.
+    pub at: [i64; 2],
+    /// Those of the first and of the second image.
+    pub values: [Vec<f64>; 2],
+}
+
+/// Compares a layer of two files, without a name the beauty. `shown` are the files' names in messages.
+///
+/// # Errors
+/// [`Error::Arguments`] if one of them has no such layer, or their sizes, places, channels or color spaces differ.
+pub fn compare(files: [&ExrFile; 2], layer: Option<&str>, shown: [&str; 2]) -> Result<Difference> {
+    let layers = [files[0].layer(layer, shown[0])?, files[1].layer(layer, shown[1])?];
+    comparable(files, &layers, shown)?;
+    let [a, b] = layers.each_ref().map(ExrLayer::values);
+    let bounds = layers[0].part.bounds;
+    let mut found = measured([&a, &b], bounds);
+    if layers.iter().all(|layer| layer.color().is_some()) {
+        found.color = Some(color_difference(files, [&a, &b], &found));
+    }
+    if let [Some(first), Some(second)] = [0, 1].map(|i| Noisy::new(files[i], &layers[i]))
+        && layers[0].name == BEAUTY
+    {
+        let finite = |at: usize| [&a, &b].iter().all(|channels| channels.iter().all(|one| one.at(at).is_finite()));
+        found.noise = Some(Noise::new([&first, &second], [&a, &b], found.absolute.len(), |at| !finite(at)));
+    }
+    Ok(found)
+}
+
+/// Refuses images that do not show the same pixels in the same way.
+fn comparable(files: [&ExrFile; 2], layers: &[ExrLayer; 2], shown: [&str; 2]) -> Result<()> {
+    let refuse = |what: [String; 2], help: &str| {
+        let message = format!("{} has {}, {} {}", shown[0], what[0], shown[1], what[1]);
+        Err(Error::Arguments { message, help: Some(help.to_owned()) })
+    };
+    let bounds = layers.each_ref().map(|layer| layer.part.bounds);
+    if bounds[0] != bounds[1] || files[0].display != files[1].display {
+        let place = |i: usize| {
+            let ([x, y], [width, height], full) = (bounds[i].corner, bounds[i].size, files[i].display.size);
+            format!("{width} x {height} pixels at ({x}, {y}) of {} x {}", full[0], full[1])
+        };
+        return refuse([0, 1].map(place), "images of other sizes or crops cannot be compared");
+    }
+    let names = layers
+        .each_ref()
+        .map(|layer| layer.values().iter().map(|channel| channel.name.as_str()).collect::<Vec<_>>().join(", "));
+    if names[0] != names[1] {
+        return refuse(names.map(|names| format!("the channels {names}")), "--layer names another layer");
+    }
+    if layers[0].color().is_some() {
+        let matrices = files.map(|file| to_rec709(file).0);
+        let pairs = matrices[0].as_flattened().iter().zip(matrices[1].as_flattened());
+        if pairs.into_iter().any(|(a, b)| (a - b).abs() > SAME_SPACE) {
+            let space = |file: &ExrFile| match file.attribute("colorInteropID") {
+                Some(id) => format!("the color space {id}"),
+                None => "colors of other chromaticities".into(),
+            };
+            return refuse(files.map(space), "colors of other spaces cannot be compared");
+        }
+    }
+    Ok(())
+}
+
+/// All that the values alone say.
+fn measured([a, b]: [&[&Channel]; 2], bounds: PixelBounds) -> Difference {
+    let count = bounds.size[0] * bounds.size[1];
+    let (mut sums, mut squares, mut values, mut most) = ([0.0; 2], 0.0, 0usize, 0.0);
+    let mut found = Difference {
+        bounds,
+        channels: a.iter().map(|channel| channel.name.clone()).collect(),
+        is_equal: true,
+        left_out: 0,
+        torn: 0,
+        relative_mse: 0.0,
+        brightness: 1.0,
+        color: None,
+        worst: None,
+        noise: None,
+        absolute: Vec::with_capacity(count),
+    };
+    for at in 0..count {
+        let pairs = || a.iter().zip(b).map(|(a, b)| (a.at(at), b.at(at)));
+        let is_equal = pairs().all(|(a, b)| a == b || a.is_nan() && b.is_nan());
+        found.is_equal &= is_equal;
+        if pairs().any(|(a, b)| !(a.is_finite() && b.is_finite())) {
+            found.left_out += 1;
+            found.torn += usize::from(!is_equal);
+            found.absolute.push(if is_equal { 0.0 } else { f64::INFINITY });
+            continue;
+        }
+        let (mut error, mut absolute) = (0.0, 0.0f64);
+        for (a, b) in pairs() {
+            error += (a - b) * (a - b) / (b * b + DARK);
+            absolute = absolute.max((a - b).abs());
+            sums = [sums[0] + a, sums[1] + b];
+            values += 1;
+        }
+        squares += error;
+        found.absolute.push(absolute);
+        if error > most {
+            most = error;
+            let of = |channels: &[&Channel]| channels.iter().map(|channel| channel.at(at)).collect();
+            found.worst = Some(WorstPixel { at: bounds.place(at), values: [of(a), of(b)] });
+        }
+    }
+    found.relative_mse = squares / values.max(1) as f64;
+    found.brightness = if sums[0] == sums[1] { 1.0 } else { sums[0] / sums[1] };
+    found
+}
+
+fn color_difference(files: [&ExrFile; 2], colors: [&[&Channel]; 2], measured: &Difference) -> ColorDifference {
+    let matrices = files.map(|file| to_rec709(file).0);
+    let (mut sum, mut worst, mut clipped, mut count) = (0.0, 0.0f64, 0usize, 0usize);
+    for at in 0..measured.absolute.len() {
+        let values = [0, 1].map(|i| [0, 1, 2].map(|channel| colors[i][channel].at(at)));
+        if !values.as_flattened().iter().all(|x| x.is_finite()) {
+            continue;
+        }
+        let seen = [0, 1].map(|i| apply(&matrices[i], values[i]));
+        let difference = delta_e_2000(seen);
+        (sum, worst, count) = (sum + difference, worst.max(difference), count + 1);
+        // Matrices carry white to 1 but for rounding.
+        clipped += usize::from(seen.as_flattened().iter().any(|x| !(-1e-6..=1.0 + 1e-6).contains(x)));
+    }
+    let count = count.max(1) as f64;
+    ColorDifference { mean: sum / count, worst, clipped: clipped as f64 / count }
+}
+
+/// CIEDE2000 of two linear Rec.709 colors that are clipped to 0..1.
+fn delta_e_2000(colors: [[f64; 3]; 2]) -> f64 {
+    let [a, b] = colors.map(|color| {
+        let [red, green, blue] = color.map(shown);
+        Lab::from_color(LinSrgb::new(red, green, blue))
+    });
+    Ciede2000::difference(a, b)
+}
+
+impl Difference {
+    /// Whether the images agree: equal values do; otherwise a tolerance of the relative mean squared error decides, if
+    /// there is one, or else whether both differ by more than their noise. Without either, what differs does not agree.
+    pub fn agrees(&self, tolerance: Option<f64>) -> bool {
+        let within = match (tolerance, &self.noise) {
+            (Some(tolerance), _) => self.relative_mse <= tolerance,
+            (None, Some(noise)) => noise.agrees(),
+            (None, None) => false,
+        };
+        self.is_equal || within && self.torn == 0
+    }
+
+    /// The largest difference of each pixel as a gray picture, and the difference that is white in it: the 99th
+    /// percentile, or the largest where that is 0.
+    pub fn picture(&self) -> (Picture, f64) {
+        let finite: Vec<f64> = self.absolute.iter().copied().filter(|x| x.is_finite()).collect();
+        let largest = finite.iter().copied().fold(0.0, f64::max);
+        let white = percentile(finite, 99).filter(|white| *white > 0.0).unwrap_or(largest);
+        let gray = |x: &f64| if *x > 0.0 { shown(x / white) } else { 0.0 };
+        (Picture::of_grays(self.bounds.size[0], self.absolute.iter().map(gray)), white)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Sharma, Wu & Dalal 2005, *The CIEDE2000 Color-Difference Formula*, table 1, pairs 1, 7, 13, 17 and 25.
+    #[test]
+    fn known_pairs_are_as_far_apart_as_published() {
+        for (a, b, expected) in [
+            ([50.0, 2.6772, -79.7751], [50.0, 0.0, -82.7485], 2.0425),
+            ([50.0, 0.0, 0.0], [50.0, -1.0, 2.0], 2.3669),
+            ([50.0, -0.001, 2.49], [50.0, 0.0011, -2.49], 4.7461),
+            ([50.0, 2.5, 0.0], [73.0, 25.0, -18.0], 27.1492),
+            ([60.2574, -34.0099, 36.2677], [60.4626, -34.1751, 39.4387], 1.2644),
+        ] {
+            let lab = |[l, a, b]: [f64; 3]| Lab::<palette::white_point::D65, f64>::new(l, a, b);
+            let found = Ciede2000::difference(lab(a), lab(b));
+            assert!((found - expected).abs() < 5e-5, "{found} is not {expected}");
+        }
+    }
+
+    /// Grays of L* 0, 50 and 100: linear 0, ((50 + 16) / 116)^3 and 1. Of L* 50 and 100, S_L is
+    /// 1 + 0.015 * 25^2 / sqrt(20 + 25^2) = 1.36911.
+    #[test]
+    fn grays_are_apart_by_their_lightness_alone_and_light_beyond_white_is_white() {
+        let gray = libm::pow(66.0 / 116.0, 3.0);
+        assert!((delta_e_2000([[1.0; 3], [gray; 3]]) - 50.0 / 1.369_11).abs() < 2e-2);
+        assert_eq!(delta_e_2000([[1.0; 3], [1e30, 2.0, f64::INFINITY]]), 0.0);
+        assert_eq!(delta_e_2000([[0.0; 3], [-3.0; 3]]), 0.0);
+    }
+}

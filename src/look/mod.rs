@@ -1,0 +1,13 @@
+//! Floor 3: images that are looked at and compared, whoever made them.
+
+mod difference;
+mod noise;
+mod picture;
+mod significance;
+mod tone;
+
+pub use difference::{ColorDifference, Difference, WorstPixel, compare};
+pub use noise::Noise;
+pub use picture::{Exposure, Picture};
+pub use significance::{normal_equivalent, sidak_threshold};
+pub use tone::Tone;

@@ -1,0 +1,117 @@
+use super::significance::{normal_equivalent, sidak_threshold};
+use crate::film::{Channel, ExrFile, ExrLayer};
+
+/// Probability with which two images of the same thing are said to differ.
+const FAMILY: f64 = 0.01;
+/// Values so near to each other are the same but for rounding, whatever their variance; in half floats, so near.
+const ROUNDING: f64 = 1e-5;
+const ROUNDING_OF_HALF: f64 = 1.0 / 1024.0;
+
+/// Whether two images differ by more than their noise.
+///
+/// Of each value, z is the difference over its standard deviation sqrt(va + vb), by the `variance` layers of both
+/// files. Where `samples.V` says how few samples these rest on, z is the normal number that is as improbable, by the
+/// degrees of freedom of Welch 1947. A variance that is negative or no number counts as 0.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Noise {
+    /// The z of either sign that all values together exceed by chance in 1 of 100 pairs of images.
+    pub threshold: f64,
+    /// The z that is farthest from 0.
+    pub worst: f64,
+    /// Its pixel, row by row, and the number of its channel.
+    pub at: [usize; 2],
+    /// How many values are beyond the threshold.
+    pub beyond: usize,
+    /// How many values without any variance in both images differ by more than rounding.
+    pub changed: usize,
+    /// The z of each channel's mean over the image.
+    pub means: Vec<f64>,
+}
+
+/// What is needed of one image.
+pub(super) struct Noisy<'f> {
+    variance: Vec<&'f Channel>,
+    samples: Option<&'f Channel>,
+    rounding: f64,
+}
+
+impl<'f> Noisy<'f> {
+    /// Of the colors of a file that says their variance.
+    pub(super) fn new(file: &'f ExrFile, beauty: &ExrLayer<'f>) -> Option<Self> {
+        let layers = file.layers();
+        let there = |name: &str| {
+            let named = layers.iter().filter(move |layer| layer.name == name);
+            named.into_iter().find(|layer| layer.part.bounds == beauty.part.bounds)
+        };
+        let variance = there("variance")?.color()?.to_vec();
+        let samples = there("samples").and_then(|layer| layer.channels.first().copied());
+        let half = beauty.values().iter().any(|channel| channel.kind() == "half");
+        Some(Self { variance, samples, rounding: if half { ROUNDING_OF_HALF } else { ROUNDING } })
+    }
+
+    fn variance(&self, channel: usize, pixel: usize) -> f64 {
+        // Not `clamp`, which would keep what is no number.
+        self.variance[channel].at(pixel).max(0.0)
+    }
+
+    /// How many samples beyond the first its variance rests on; endless where it is not said.
+    fn freedom(&self, pixel: usize) -> f64 {
+        self.samples.map_or(f64::INFINITY, |samples| (samples.at(pixel) - 1.0).max(1.0))
+    }
+}
+
+/// The degrees of freedom of a sum of two variances. Welch 1947, *The Generalization of "Student's" Problem when
+/// Several Different Population Variances are Involved*, equation 28.
+fn freedom(variances: [f64; 2], of_each: [f64; 2]) -> f64 {
+    let sum = variances[0] + variances[1];
+    let parts: f64 = (0..2).map(|i| (variances[i] / sum) * (variances[i] / sum) / of_each[i]).sum();
+    1.0 / parts
+}
+
+impl Noise {
+    /// Of two images with their colors; `is_left_out` tells pixels that are not compared.
+    pub(super) fn new(
+        noisy: [&Noisy; 2],
+        colors: [&[&Channel]; 2],
+        count: usize,
+        is_left_out: impl Fn(usize) -> bool,
+    ) -> Self {
+        let rounding = noisy[0].rounding.max(noisy[1].rounding);
+        let same = |a: f64, b: f64| (a - b).abs() <= rounding * a.abs().max(b.abs());
+        let (mut all, mut tests) = (Vec::new(), colors[0].len());
+        let mut found = Self { threshold: 0.0, worst: 0.0, at: [0; 2], beyond: 0, changed: 0, means: Vec::new() };
+        for channel in 0..colors[0].len() {
+            let (mut sums, mut variance) = ([0.0; 2], 0.0);
+            for pixel in (0..count).filter(|pixel| !is_left_out(*pixel)) {
+                let [a, b] = colors.map(|colors| colors[channel].at(pixel));
+                let variances = noisy.map(|noisy| noisy.variance(channel, pixel));
+                let both = variances[0] + variances[1];
+                (sums, variance) = ([sums[0] + a, sums[1] + b], variance + both);
+                tests += usize::from(both > 0.0);
+                if same(a, b) {
+                    continue;
+                }
+                if both == 0.0 {
+                    found.changed += 1;
+                    continue;
+                }
+                let freedom = freedom(variances, noisy.map(|noisy| noisy.freedom(pixel)));
+                let z = normal_equivalent((a - b) / both.sqrt(), freedom);
+                all.push(z);
+                if z.abs() > found.worst.abs() {
+                    (found.worst, found.at) = (z, [pixel, channel]);
+                }
+            }
+            let [a, b] = sums;
+            found.means.push(if same(a, b) || variance == 0.0 { 0.0 } else { (a - b) / variance.sqrt() });
+        }
+        found.threshold = sidak_threshold(tests, FAMILY);
+        found.beyond = all.iter().filter(|z| z.abs() > found.threshold).count();
+        found
+    }
+
+    /// Whether nothing is beyond what chance makes.
+    pub fn agrees(&self) -> bool {
+        self.beyond == 0 && self.changed == 0 && self.means.iter().all(|z| z.abs() <= self.threshold)
+    }
+}

@@ -1,0 +1,206 @@
+use std::path::Path;
+
+use super::tone::{Tone, shown};
+use crate::error::Result;
+use crate::film::{Channel, ExrFile, ExrLayer, png, write_rgb8};
+use crate::spectrum::{ColorSpace, apply, encode_srgb};
+
+/// Depths and the like from here on stand for nothing at all.
+const NOTHING: f64 = 1e9;
+
+/// How bright colors are shown.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Exposure {
+    /// Light is multiplied by 2 to the power of this.
+    pub stops: f64,
+    /// Then it goes through this curve.
+    pub tone: Tone,
+}
+
+/// What a screen is to show.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Picture {
+    width: usize,
+    /// Red, green and blue from 0 to 1, row by row.
+    pixels: Vec<[f32; 3]>,
+    /// Whether they are linear light, or numbers that are to be shown as they are.
+    is_light: bool,
+}
+
+impl Picture {
+    /// A layer as a picture, and what is to be said of it.
+    ///
+    /// Colors are brought to Rec.709 and exposed. Of directions (`N`), -1 becomes 0 and 1 becomes 1. Of any other layer
+    /// the first three channels are stretched from their 1st to their 99th percentile; one alone is gray.
+    pub fn of_layer(file: &ExrFile, layer: &ExrLayer, exposure: Exposure) -> (Self, Vec<String>) {
+        let width = layer.part.bounds.size[0];
+        if let Some(color) = layer.color() {
+            let (to_rec709, said) = to_rec709(file);
+            let gain = libm::exp2(exposure.stops);
+            let show = |rgb: [f64; 3]| apply(&to_rec709, rgb.map(|x| x * gain)).map(|x| exposure.tone.shown(x) as f32);
+            let count = layer.part.bounds.size[0] * layer.part.bounds.size[1];
+            let pixels = (0..count).map(|at| show(color.map(|channel| channel.at(at)))).collect();
+            return (Self { width, pixels, is_light: true }, said.into_iter().collect());
+        }
+        let (mut planes, mut said) = (Vec::new(), Vec::new());
+        for channel in layer.channels.iter().take(3) {
+            let (low, high) = if is_direction(layer) { (-1.0, 1.0) } else { span(channel) };
+            if !is_direction(layer) {
+                said.push(format!(
+                    "{}: black is {:?}, white {:?}, the 1st and 99th percentile of the finite values below 1e9",
+                    channel.full_name(),
+                    low as f32,
+                    high as f32
+                ));
+            }
+            planes.push(stretched(channel, low, high));
+        }
+        let pixel = |at: usize| match &planes[..] {
+            [gray] => [gray[at]; 3],
+            planes => std::array::from_fn(|i| planes.get(i).map_or(0.0, |plane| plane[at])),
+        };
+        let pixels = (0..planes.first().map_or(0, Vec::len)).map(pixel).collect();
+        (Self { width, pixels, is_light: false }, said)
+    }
+
+    /// Gray numbers from 0 to 1, row by row.
+    pub fn of_grays(width: usize, grays: impl IntoIterator<Item = f64>) -> Self {
+        Self { width, pixels: grays.into_iter().map(|gray| [gray as f32; 3]).collect(), is_light: false }
+    }
+
+    /// Pixels of a row.
+    pub fn width(&self) -> usize {
+        self.width
+    }
+
+    /// Rows.
+    pub fn height(&self) -> usize {
+        self.pixels.len() / self.width
+    }
+
+    /// The picture in as many pixels, each the mean of the area that it covers.
+    #[must_use]
+    pub fn scaled(&self, width: usize, height: usize) -> Self {
+        let [across, down] = [shares(self.width, width), shares(self.height(), height)];
+        let mean = |shares: &[(usize, f32)], pixel: &dyn Fn(usize) -> [f32; 3]| {
+            shares.iter().fold([0.0; 3], |sum: [f32; 3], &(at, share)| {
+                let pixel = pixel(at);
+                std::array::from_fn(|i| sum[i] + share * pixel[i])
+            })
+        };
+        let rows = self.pixels.chunks_exact(self.width);
+        let narrow: Vec<[f32; 3]> = rows.flat_map(|row| across.iter().map(|x| mean(x, &|at| row[at]))).collect();
+        let column = |y: &[(usize, f32)], x: usize| mean(y, &|at| narrow[at * width + x]);
+        let pixels = down.iter().flat_map(|y| (0..width).map(move |x| column(y, x))).collect();
+        Self { width, pixels, is_light: self.is_light }
+    }
+
+    /// Red, green and blue of 8 bits, row by row.
+    pub fn bytes(&self) -> Vec<[u8; 3]> {
+        let plain = |pixel: [f32; 3]| pixel.map(|x| (255.0 * x).round() as u8);
+        self.pixels.iter().map(|pixel| if self.is_light { encode_srgb(*pixel) } else { plain(*pixel) }).collect()
+    }
+
+    /// Writes it as an 8-bit PNG.
+    ///
+    /// # Errors
+    /// If the file cannot be written; nothing is left behind then.
+    pub fn write_png(&self, path: &Path) -> Result<()> {
+        write_rgb8(self.bytes().as_flattened(), [self.width as u32, self.height() as u32], path)
+    }
+
+    /// The bytes of such a PNG.
+    ///
+    /// # Errors
+    /// If the encoder refuses the size.
+    pub fn png(&self) -> Result<Vec<u8>> {
+        png(self.bytes().as_flattened(), [self.width as u32, self.height() as u32], Path::new("the picture"))
+    }
+}
+
+/// Which of `from` pixels each of `to` covers, and the share that each of them has in it.
+fn shares(from: usize, to: usize) -> Vec<Vec<(usize, f32)>> {
+    let step = from as f64 / to as f64;
+    let share = |i: usize| {
+        let (low, high) = (i as f64 * step, (i + 1) as f64 * step);
+        let covered = (low as usize)..(libm::ceil(high) as usize).min(from);
+        let part = |at: usize| high.min((at + 1) as f64) - low.max(at as f64);
+        covered.map(|at| (at, (part(at) / step) as f32)).collect()
+    };
+    (0..to).map(share).collect()
+}
+
+/// Whether a layer holds unit vectors: normals of any kind, by the names that renderers give them.
+fn is_direction(layer: &ExrLayer) -> bool {
+    let last = layer.name.rsplit('.').next().unwrap_or_default().to_lowercase();
+    layer.channels.len() == 3 && (last == "n" || last == "ns" || last == "ng" || last.contains("normal"))
+}
+
+/// The matrix from the colors of a file to linear Rec.709, and what is to be said if it is not known.
+pub(super) fn to_rec709(file: &ExrFile) -> ([[f64; 3]; 3], Option<String>) {
+    let id = file.attribute("colorInteropID");
+    if let Some(space) = id.and_then(ColorSpace::of_interop_id) {
+        return (space.to_rec709(), None);
+    }
+    let as_is = ColorSpace::Rec709.to_rec709();
+    match (file.chromaticities.map(|primaries| primaries.to_rec709()), id) {
+        (Some(Some(matrix)), _) => (matrix, None),
+        (Some(None), _) => (as_is, Some("its chromaticities mean no colors: it is shown as linear Rec.709".into())),
+        (None, Some(id)) => {
+            (as_is, Some(format!("the color space {id:?} is not known: it is shown as linear Rec.709")))
+        }
+        (None, None) => (as_is, None),
+    }
+}
+
+/// The 1st and 99th percentile of the finite values of a channel that do not stand for nothing.
+fn span(channel: &Channel) -> (f64, f64) {
+    let values: Vec<f64> = channel.values().filter(|x| x.is_finite() && *x < NOTHING).collect();
+    let [low, high] = [1, 99].map(|percent| percentile(values.clone(), percent));
+    (low.unwrap_or(0.0), high.unwrap_or(1.0))
+}
+
+/// The value below which about so many of a hundred lie; none of no values.
+pub(super) fn percentile(mut values: Vec<f64>, percent: usize) -> Option<f64> {
+    let last = values.len().checked_sub(1)?;
+    Some(*values.select_nth_unstable_by((last * percent + 50) / 100, f64::total_cmp).1)
+}
+
+/// Values from 0, at `low`, to 1, at `high`; the middle where both are the same.
+fn stretched(channel: &Channel, low: f64, high: f64) -> Vec<f32> {
+    let of = |x: f64| if high > low { (x - low) / (high - low) } else { x - low + 0.5 };
+    channel.values().map(|x| shown(of(x)) as f32).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn light(width: usize, values: &[f32]) -> Picture {
+        Picture { width, pixels: values.iter().map(|x| [*x; 3]).collect(), is_light: true }
+    }
+
+    #[test]
+    fn a_scaled_picture_has_the_mean_of_each_area_in_linear_light() {
+        let checker = light(2, &[0.0, 1.0, 1.0, 0.0]);
+        // sRGB of 0.5 (IEC 61966-2-1).
+        assert_eq!(checker.scaled(1, 1).bytes(), [[188; 3]]);
+        let row = light(3, &[0.0, 0.6, 1.0]);
+        let two: Vec<f32> = row.scaled(2, 1).pixels.iter().map(|pixel| pixel[0]).collect();
+        // One and a half pixels each: (0 + 0.3) / 1.5 and (0.3 + 1) / 1.5.
+        assert!((two[0] - 0.2).abs() < 1e-6 && (two[1] - 1.3 / 1.5).abs() < 1e-6, "{two:?}");
+        assert_eq!(row.scaled(3, 1), row);
+    }
+
+    #[test]
+    fn the_shares_of_an_area_are_all_of_it() {
+        for (from, to) in [(7, 3), (3, 7), (1920, 80), (81, 80), (1, 1)] {
+            let shares = shares(from, to);
+            assert_eq!(shares.len(), to);
+            for share in shares {
+                assert!((share.iter().map(|(_, part)| part).sum::<f32>() - 1.0).abs() < 1e-5, "{from} to {to}");
+                assert!(share.iter().all(|(at, part)| *at < from && *part >= 0.0));
+            }
+        }
+    }
+}

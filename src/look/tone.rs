@@ -1,0 +1,88 @@
+/// How light becomes what a screen can show, on each of red, green and blue alike.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Tone {
+    /// Light beyond 1 is cut off; all below it stays as it is.
+    #[default]
+    Srgb,
+    /// A filmic curve: a soft toe, and a shoulder that reaches white at 5.6. Hable 2010, *Uncharted 2: HDR Lighting*,
+    /// Game Developers Conference, with the constants and the exposure bias of 2 that he gives in *Filmic Tonemapping
+    /// Operators*, filmicworlds.com 2010.
+    Hable,
+}
+
+impl Tone {
+    /// Every one.
+    pub const ALL: [Self; 2] = [Self::Srgb, Self::Hable];
+
+    /// Its name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Srgb => "srgb",
+            Self::Hable => "hable",
+        }
+    }
+
+    /// What a screen shows, 0 to 1 and linear; what is no number is black.
+    pub fn shown(self, light: f64) -> f64 {
+        shown(match self {
+            Self::Srgb => light,
+            Self::Hable => hable(2.0 * light.clamp(0.0, BEYOND_WHITE)) / hable(WHITE),
+        })
+    }
+}
+
+/// What is between 0 and 1; 0 for what is no number.
+pub(super) fn shown(value: f64) -> f64 {
+    if value.is_nan() { 0.0 } else { value.clamp(0.0, 1.0) }
+}
+
+/// The light before the bias that is white.
+const WHITE: f64 = 11.2;
+/// White whatever the curve makes of it; the curve of infinity would be no number.
+const BEYOND_WHITE: f64 = 1e6;
+
+/// The curve with its six constants: shoulder strength, linear strength, linear angle, toe strength, toe numerator and
+/// toe denominator.
+fn hable(x: f64) -> f64 {
+    const A: f64 = 0.15;
+    const B: f64 = 0.50;
+    const C: f64 = 0.10;
+    const D: f64 = 0.20;
+    const E: f64 = 0.02;
+    const F: f64 = 0.30;
+    (x * (A * x + C * B) + D * E) / (x * (A * x + B) + D * F) - E / F
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// By the listing: x = 2 light, (0.15 x^2 + 0.05 x + 0.004) / (0.15 x^2 + 0.5 x + 0.06) - 1/15, divided by its
+    /// value at 11.2.
+    #[test]
+    fn the_curve_of_hable_has_its_published_values() {
+        let white = 19.38 / 24.476 - 1.0 / 15.0;
+        for (light, over, under) in [(0.18, 0.04144, 0.25944), (0.5, 0.204, 0.71), (1.0, 0.704, 1.66)] {
+            let expected = (over / under - 1.0 / 15.0) / white;
+            assert!((Tone::Hable.shown(light) - expected).abs() < 1e-12, "{light}");
+        }
+        assert_eq!(Tone::Hable.shown(0.0), 0.0);
+        assert!((Tone::Hable.shown(5.6) - 1.0).abs() < 1e-12);
+        assert!(Tone::Hable.shown(5.5) < 1.0);
+    }
+
+    #[test]
+    fn every_curve_stays_within_what_a_screen_can_show() {
+        for tone in Tone::ALL {
+            for light in [f64::NEG_INFINITY, -1.0, -1e-9, f64::NAN] {
+                assert_eq!(tone.shown(light), 0.0, "{tone:?} of {light}");
+            }
+            for light in [6.0, 1e9, f64::MAX, f64::INFINITY] {
+                assert_eq!(tone.shown(light), 1.0, "{tone:?} of {light}");
+            }
+            let rises = (0..100).all(|i| tone.shown(f64::from(i) / 50.0) <= tone.shown(f64::from(i + 1) / 50.0));
+            assert!(rises, "{tone:?}");
+        }
+        assert_eq!(Tone::Srgb.shown(0.25), 0.25);
+    }
+}

@@ -1,0 +1,42 @@
+//! What the command may write, and how it refuses.
+
+use std::path::Path;
+
+use abbe::{Error, Result};
+
+/// A refusal of what is asked for.
+pub fn refuse<T>(message: &str, help: Option<&str>) -> Result<T> {
+    Err(Error::Arguments { message: message.to_owned(), help: help.map(str::to_owned) })
+}
+
+pub fn ends_in(path: &Path, ending: &str) -> bool {
+    path.extension().is_some_and(|found| found.eq_ignore_ascii_case(ending))
+}
+
+/// Refuses a picture that is called anything but a PNG.
+pub fn check_png(png: Option<&Path>) -> Result<()> {
+    match png.filter(|png| !ends_in(png, "png")) {
+        Some(png) => {
+            let message = format!("--png writes a file that ends in .png, not {}", png.display());
+            refuse(&message, Some("for instance: --png look.png"))
+        }
+        None => Ok(()),
+    }
+}
+
+/// Refuses an output that is the input itself, by another name or a link.
+pub fn spare(input: &Path, what: &str, output: &Path) -> Result<()> {
+    let real = |path: &Path| std::fs::canonicalize(path).ok();
+    match real(output).filter(|output| real(input).as_ref() == Some(output)) {
+        Some(_) => refuse(&format!("{} is the {what} itself", output.display()), Some("name another file")),
+        None => Ok(()),
+    }
+}
+
+/// Refuses what is no number of stops.
+pub fn check_exposure(stops: Option<f64>) -> Result<()> {
+    match stops.filter(|stops| !stops.is_finite()) {
+        Some(_) => refuse("an exposure is a finite number of stops", Some("for instance: --exposure 1")),
+        None => Ok(()),
+    }
+}

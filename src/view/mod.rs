@@ -1,0 +1,88 @@
+//! `render view`: an OpenEXR image on the terminal, or as a PNG.
+
+mod terminal;
+
+use std::path::PathBuf;
+
+use abbe::Result;
+use abbe::film::{BEAUTY, ExrFile, check_writable};
+use abbe::look::{Exposure, Picture, Tone};
+use clap::Parser;
+use clap::builder::PossibleValuesParser;
+
+use crate::messages::{answer, say};
+use crate::outputs::{check_exposure, check_png, refuse, spare};
+
+const HELP: &str = "\
+kitty, WezTerm and Ghostty show the pixels themselves, every other terminal two of them in a character. \
+Colors are brought to Rec.709. Normals are shown from -1 to 1, depths and single numbers from their 1st to their 99th \
+percentile. The tone srgb cuts off what is brighter than white; hable is the filmic curve of Hable 2010.
+
+Examples:
+  render view rainbow.exr                      on the terminal
+  render view rainbow.exr Z                    the depth
+  render view rainbow.exr --exposure 2         four times as bright
+  render view rainbow.exr --png look.png       a PNG instead
+  render view rainbow.exr albedo --sixel       for terminals that know sixels
+
+Exit codes: 0 done, 1 a file cannot be read or written, 2 bad arguments, no such file or layer.";
+
+/// Show an OpenEXR image on the terminal.
+#[derive(Parser)]
+#[command(name = "render view", bin_name = "render view", after_help = HELP)]
+pub struct Query {
+    /// The image
+    #[arg(value_name = "FILE.exr")]
+    file: PathBuf,
+
+    /// A layer such as albedo, N or Z, or a channel such as albedo.R; the image itself if absent
+    layer: Option<String>,
+
+    /// Write an 8-bit sRGB picture of full size, and show nothing
+    #[arg(long, value_name = "OUT.png")]
+    png: Option<PathBuf>,
+
+    /// Brighten colors by 2^STOPS
+    #[arg(long, value_name = "STOPS", allow_negative_numbers = true)]
+    exposure: Option<f64>,
+
+    /// The curve from light to the screen: srgb if absent
+    #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(Tone::ALL.map(Tone::name)))]
+    tone: Option<String>,
+
+    /// Show sixels; which terminals know them cannot be found out
+    #[arg(long, conflicts_with = "png")]
+    sixel: bool,
+}
+
+/// Shows or writes the picture.
+///
+/// # Errors
+/// If the image cannot be read, has no such layer, or the picture cannot be written.
+pub fn run(query: &Query) -> Result<()> {
+    check_exposure(query.exposure)?;
+    check_png(query.png.as_deref())?;
+    query.png.as_deref().map_or(Ok(()), |png| spare(&query.file, "image", png))?;
+    let file = ExrFile::read(&query.file)?;
+    let layer = file.layer(query.layer.as_deref(), &query.file.display().to_string())?;
+    if query.layer.is_none() && layer.name != BEAUTY {
+        say(&format!("there are no R, G and B: this is {}", layer.name));
+    }
+    let given = [("--exposure", query.exposure.is_some()), ("--tone", query.tone.is_some())];
+    if let Some((flag, _)) = given.iter().find(|(_, given)| *given).filter(|_| layer.color().is_none()) {
+        return refuse(&format!("{flag} is for colors, and {} has none", layer.name), Some("leave it out"));
+    }
+    let tone = Tone::ALL.into_iter().find(|tone| Some(tone.name()) == query.tone.as_deref()).unwrap_or_default();
+    let exposure = Exposure { stops: query.exposure.unwrap_or(0.0), tone };
+    let (picture, said) = Picture::of_layer(&file, &layer, exposure);
+    said.iter().for_each(|line| say(line));
+    match &query.png {
+        Some(png) => {
+            check_writable(png)?;
+            picture.write_png(png)?;
+            say(&format!("wrote {}", png.display()));
+            Ok(())
+        }
+        None => answer(&terminal::drawn(&picture, query.sixel)?),
+    }
+}

@@ -1,0 +1,31 @@
+//! `render info`, `render view` and `render diff`: images that are looked at and compared.
+//!
+//! ```text
+//! cargo test --test all look::
+//! ```
+
+mod damaged;
+mod diff;
+mod files;
+mod info;
+mod view;
+
+use crate::messages::run::{Answer, Folder, render};
+
+/// Refused with this text and nothing on stdout.
+fn assert_refused(answer: &Answer, code: i32, stderr: &str) {
+    assert_eq!(answer.stderr, stderr);
+    assert_eq!((answer.code, &*answer.stdout), (Some(code), ""));
+}
+
+#[test]
+fn each_has_help_with_examples_and_exit_codes() {
+    for command in ["info", "view", "diff"] {
+        let help = render(&Folder::new(), &[command, "--help"]);
+        assert_eq!((help.code, &*help.stderr), (Some(0), ""));
+        let examples = help.stdout.split("Examples:\n").nth(1).expect("there are examples");
+        assert!(examples.contains(&format!("  render {command} ")), "{examples}");
+        assert!(examples.contains("\nExit codes: 0 "), "{examples}");
+        assert!(help.stdout.contains(&format!("Usage: render {command} ")), "{}", help.stdout);
+    }
+}

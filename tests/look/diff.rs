@@ -1,0 +1,240 @@
+use abbe::film::ExrFile;
+use abbe::look::{Difference, compare};
+use abbe::{Options, Scene};
+
+use super::assert_refused;
+use super::files::{Exr, ramp};
+use crate::messages::run::{Answer, Folder, render};
+
+/// A lamp above matte balls: noise in nearly every pixel, and a sky without any.
+const SCENE: &str = r#"
+camera = { position = [0, 1, 6], look_at = [0, 1, 0], vertical_fov = 35 }
+film = { width = 32, height = 24 }
+material.white.diffuse = { reflectance = 0.7 }
+material.lamp.emissive = { radiance = 20 }
+[[object]]
+shape.sphere = { center = [0, 1, 0], radius = 1 }
+material = "white"
+[[object]]
+shape.plane = { point = [0, 0, 0], normal = [0, 1, 0] }
+material = "white"
+[[object]]
+shape.sphere = { center = [2, 4, 1], radius = 0.5 }
+material = "lamp"
+[[light]]
+environment = { radiance = 0.2 }
+"#;
+const COLORS: [&str; 3] = ["R", "G", "B"];
+const VARIANCES: [&str; 3] = ["variance.R", "variance.G", "variance.B"];
+
+/// The mean of 16 renders of 2 samples each, with the variance that it has by their spread.
+fn with_variance(first_seed: u64) -> Exr {
+    let scene = Scene::parse(SCENE, "").expect("a scene");
+    let renders: Vec<Vec<[f32; 3]>> = (first_seed..first_seed + 16)
+        .map(|seed| {
+            let options = Options { samples: Some(2), seed: Some(seed), ..Options::default() };
+            abbe::render(&scene, &options).expect("an image").rgb()
+        })
+        .collect();
+    let count = renders[0].len();
+    let (mut means, mut variances) = (vec![vec![0.0; count]; 3], vec![vec![0.0; count]; 3]);
+    for channel in 0..3 {
+        for pixel in 0..count {
+            let values: Vec<f64> = renders.iter().map(|image| image[pixel][channel].into()).collect();
+            let mean = values.iter().sum::<f64>() / 16.0;
+            let squares: f64 = values.iter().map(|x| (x - mean) * (x - mean)).sum();
+            means[channel][pixel] = mean as f32;
+            variances[channel][pixel] = (squares / (15.0 * 16.0)) as f32;
+        }
+    }
+    let mut channels: Vec<_> = COLORS.into_iter().zip(means).collect();
+    channels.extend(VARIANCES.into_iter().zip(variances));
+    channels.push(("samples.V", vec![16.0; count]));
+    Exr::new([32, 24], channels)
+}
+
+/// An even gray of 20 x 10 pixels whose variance is known, but for the last row, which has none.
+fn gray() -> Exr {
+    let mut channels: Vec<_> = COLORS.map(|name| (name, vec![0.5; 200])).to_vec();
+    let variance: Vec<f32> = (0..200).map(|i| if i < 180 { 1e-4 } else { 0.0 }).collect();
+    channels.extend(VARIANCES.map(|name| (name, variance.clone())));
+    Exr::new([20, 10], channels)
+}
+
+fn diff(folder: &Folder, a: &Exr, b: &Exr, more: &[&str]) -> Answer {
+    a.write(&folder.path().join("a.exr"));
+    b.write(&folder.path().join("b.exr"));
+    render(folder, &[&["diff", "a.exr", "b.exr"], more].concat())
+}
+
+fn difference(a: &Exr, b: &Exr) -> Difference {
+    let folder = Folder::new();
+    diff(&folder, a, b, &[]);
+    let [a, b] = ["a.exr", "b.exr"].map(|name| ExrFile::read(&folder.path().join(name)).expect("an image"));
+    compare([&a, &b], None, ["a.exr", "b.exr"]).expect("they can be compared")
+}
+
+fn assert_says(answer: &Answer, code: i32, lines: &[&str]) {
+    assert_eq!((answer.code, &*answer.stderr), (Some(code), ""), "{}", answer.stdout);
+    let told = answer.stdout.lines().map(|line| line.split_whitespace().collect::<Vec<_>>().join(" "));
+    let told: Vec<String> = told.collect();
+    for line in lines {
+        assert!(told.iter().any(|found| found.starts_with(line)), "{line:?} is not in\n{}", answer.stdout);
+    }
+}
+
+#[test]
+fn renders_of_a_scene_with_other_seeds_agree_and_one_of_a_brighter_lamp_does_not() {
+    let (folder, [a, mut b]) = (Folder::new(), [with_variance(0), with_variance(100)]);
+    let noise = difference(&a, &b).noise.expect("both files say their variance");
+    assert!(noise.worst != 0.0 && noise.agrees(), "{noise:?}");
+    assert_says(&diff(&folder, &a, &b, &[]), 0, &["a.exr and b.exr agree", "relMSE ", "z worst "]);
+    // One percent more light is far below the noise of a pixel, and beyond that of the image's mean.
+    for name in COLORS {
+        b.channel(name).iter_mut().for_each(|x| *x *= 1.01);
+    }
+    let noise = difference(&a, &b).noise.expect("both files say their variance");
+    assert!(noise.means.iter().all(|z| *z < -noise.threshold), "{noise:?}");
+    assert_says(&diff(&folder, &a, &b, &[]), 1, &["a.exr and b.exr differ"]);
+}
+
+#[test]
+fn a_pixel_that_is_ten_standard_deviations_off_is_found() {
+    let folder = Folder::new();
+    let (a, mut b) = (gray(), gray());
+    // Ten times the deviation sqrt(1e-4 + 1e-4) of a difference, in green of pixel (7, 3).
+    b.channel("G")[67] -= 10.0 * 2e-4_f32.sqrt();
+    let noise = difference(&a, &b).noise.expect("both files say their variance");
+    assert!((noise.worst - 10.0).abs() < 1e-4 && noise.at == [67, 1] && noise.beyond == 1, "{noise:?}");
+    // 540 values: 1 - 0.99^(1/540) is 1.8612e-5, whose two-sided quantile is 4.281.
+    assert!((noise.threshold - 4.281).abs() < 2e-3, "{noise:?}");
+    let lines = [
+        "a.exr and b.exr differ",
+        "z worst 10.0 in G of (7, 3), chance makes up to 4.3; 1 beyond it",
+        "worst pixel (7, 3): 0.5 0.5 0.5 and 0.5 0.35858 0.5",
+    ];
+    assert_says(&diff(&folder, &a, &b, &[]), 1, &lines);
+    // Four are within what the largest of so many is by chance.
+    b.channel("G")[67] = 0.5 - 4.0 * 2e-4_f32.sqrt();
+    assert_says(&diff(&folder, &a, &b, &[]), 0, &["a.exr and b.exr agree"]);
+}
+
+#[test]
+fn it_is_the_same_where_layers_are_parts_of_their_own() {
+    let (a, mut b) = (gray(), gray());
+    b.channel("R")[5] += 0.5;
+    let channels = b.parts[0].1.clone();
+    let (colors, variances) = channels.into_iter().partition(|(name, _)| COLORS.contains(name));
+    b.parts = vec![("beauty", colors), ("variance", variances)];
+    let noise = difference(&a, &b).noise.expect("both files say their variance");
+    assert_eq!((noise.at, noise.beyond, noise.changed), ([5, 0], 1, 0));
+}
+
+#[test]
+fn few_samples_know_their_own_spread_badly() {
+    let with_samples = |image: &Exr, count: f32| {
+        let mut image = image.clone();
+        image.parts[0].1.push(("samples.V", vec![count; 200]));
+        image
+    };
+    let (a, mut b) = (gray(), gray());
+    b.channel("G")[67] += 6.0 * 2e-4_f32.sqrt();
+    for (count, agree) in [(4.0, true), (1000.0, false)] {
+        let noise = difference(&with_samples(&a, count), &with_samples(&b, count)).noise.expect("variance");
+        assert_eq!(noise.agrees(), agree, "{count}: {noise:?}");
+    }
+}
+
+#[test]
+fn values_without_variance_differ_only_beyond_rounding() {
+    let (a, mut b) = (gray(), gray());
+    b.channel("R")[190] = 0.5 * (1.0 + 5e-6);
+    assert!(difference(&a, &b).agrees(None));
+    b.channel("R")[190] = 0.5 * (1.0 + 2e-5);
+    let noise = difference(&a, &b).noise.expect("variance");
+    assert!(noise.changed == 1 && !noise.agrees());
+    // A variance that is no number is none, and hides nothing.
+    let mut c = gray();
+    c.channel("variance.R")[190] = f32::NAN;
+    c.channel("R")[190] = 0.6;
+    assert!(!difference(&a, &c).agrees(None));
+}
+
+#[test]
+fn without_variance_equality_or_a_tolerance_decides() {
+    let folder = Folder::new();
+    let (a, mut b) = (ramp(), ramp());
+    let equal = diff(&folder, &a, &b, &[]);
+    assert_eq!((equal.code, &*equal.stdout), (Some(0), "a.exr and b.exr agree: all values are equal\n"));
+    b.channel("B")[3] = 0.4;
+    // (0.3 - 0.4)^2 / (0.4^2 + 0.01) over 24 values; all others have the brightness 2.8.
+    let lines = [
+        "a.exr and b.exr differ",
+        "relMSE 0.002451",
+        "brightness 0.98824 times that of the second",
+        "dE2000 mean ",
+        "judged by equality: ",
+        "worst pixel (3, 0): 0.3 0.3 0.3 and 0.3 0.3 0.4",
+    ];
+    assert_says(&diff(&folder, &a, &b, &[]), 1, &lines);
+    let tolerated = ["a.exr and b.exr agree", "relMSE 0.002451, 0.0025 is tolerated"];
+    assert_says(&diff(&folder, &a, &b, &["--tolerance", "0.0025"]), 0, &tolerated);
+    assert_says(&diff(&folder, &a, &b, &["--tolerance", "0.0024"]), 1, &["a.exr and b.exr differ"]);
+}
+
+#[test]
+fn values_that_are_not_finite_agree_only_with_their_like() {
+    let folder = Folder::new();
+    let (mut a, mut b) = (ramp(), ramp());
+    a.channel("R")[2] = f32::NAN;
+    let told = ["a.exr and b.exr differ", "not finite 1 of 8 pixels, left out; 1 of them differ"];
+    assert_says(&diff(&folder, &a, &b, &["--tolerance", "1"]), 1, &told);
+    b.channel("R")[2] = f32::NAN;
+    assert_says(&diff(&folder, &a, &b, &[]), 0, &["a.exr and b.exr agree: all values are equal"]);
+}
+
+#[test]
+fn a_layer_is_compared_by_its_name_and_a_picture_shows_where() {
+    let folder = Folder::new();
+    let mut a = ramp();
+    a.parts[0].1.push(("Z", vec![1.0; 8]));
+    let mut b = a.clone();
+    b.channel("Z")[5] = 3.0;
+    assert_eq!(diff(&folder, &a, &b, &[]).code, Some(0));
+    let answer = diff(&folder, &a, &b, &["--layer", "Z", "--png", "where.png"]);
+    assert_eq!(answer.code, Some(1), "{}", answer.stderr);
+    assert_eq!(answer.stderr, "wrote where.png: white is a difference of 2 or more\n");
+    assert!(answer.stdout.contains("\nworst pixel  (1, 1): 1 and 3\n"), "{}", answer.stdout);
+    let picture = image::open(folder.path().join("where.png")).expect("a picture").into_rgb8();
+    let white: Vec<usize> = (0..8).filter(|&i| picture.get_pixel(i as u32 % 4, i as u32 / 4).0 == [255; 3]).collect();
+    assert_eq!(white, [5]);
+}
+
+#[test]
+fn what_cannot_be_compared_is_refused_with_an_exit_code_of_its_own() {
+    let folder = Folder::new();
+    let mut crop = ramp();
+    (crop.corner, crop.full) = ([2, 1], [8, 4]);
+    let size = "error: a.exr has 4 x 2 pixels at (0, 0) of 4 x 2, b.exr 4 x 2 pixels at (2, 1) of 8 x 4\n\
+                help: images of other sizes or crops cannot be compared\n";
+    assert_refused(&diff(&folder, &ramp(), &crop, &[]), 2, size);
+    let mut aces = ramp();
+    aces.texts.push(("colorInteropID", "lin_ap1_scene".into()));
+    let space = "error: b.exr has the color space lin_ap1_scene, a.exr colors of other chromaticities\n\
+                 help: colors of other spaces cannot be compared\n";
+    diff(&folder, &ramp(), &aces, &[]);
+    assert_refused(&render(&folder, &["diff", "b.exr", "a.exr", "--png", "c.png"]), 2, space);
+    let layer = "error: a.exr has no layer Z\nhelp: it has beauty\n";
+    assert_refused(&diff(&folder, &ramp(), &ramp(), &["--layer", "Z"]), 2, layer);
+    let tolerance = "error: a tolerance is a finite number, 0 or more\nhelp: for instance: --tolerance 1e-4\n";
+    for number in ["-1", "nan", "inf"] {
+        assert_refused(&diff(&folder, &ramp(), &ramp(), &["--tolerance", number]), 2, tolerance);
+    }
+    folder.write("b.exr", "no image");
+    let broken = "error: cannot read b.exr: it is no complete OpenEXR image (it does not begin as one does)\n";
+    assert_refused(&render(&folder, &["diff", "a.exr", "b.exr", "--png", "c.png"]), 2, broken);
+    let missing = "error: there is no image file c.exr\nhelp: did you mean a.exr?\n";
+    assert_refused(&render(&folder, &["diff", "a.exr", "c.exr"]), 2, missing);
+    assert_eq!(render(&folder, &["diff", "a.exr"]).code, Some(2));
+    assert_eq!(folder.listing(), ["a.exr", "b.exr"]);
+}

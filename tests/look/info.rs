@@ -1,0 +1,124 @@
+use std::fs;
+
+use super::assert_refused;
+use super::files::{Exr, ramp};
+use crate::messages::run::{Folder, render};
+
+const SCENE: &str = r#"
+camera = { position = [0, 1, 6], look_at = [0, 1, 0], vertical_fov = 35 }
+film = { width = 12, height = 8, color_space = "lin_ap1_scene" }
+render.samples = 3
+material.white.diffuse = { reflectance = 0.7 }
+[[object]]
+shape.sphere = { center = [0, 1, 0], radius = 1 }
+material = "white"
+[[light]]
+environment = { radiance = 1 }
+"#;
+
+/// The lines of an answer, with one space between words.
+fn lines(folder: &Folder, file: &str) -> Vec<String> {
+    let answer = render(folder, &["info", file]);
+    assert_eq!((answer.code, &*answer.stderr), (Some(0), ""));
+    answer.stdout.lines().map(|line| line.split_whitespace().collect::<Vec<_>>().join(" ")).collect()
+}
+
+fn assert_says(lines: &[String], expected: &[&str]) {
+    for line in expected {
+        assert!(lines.iter().any(|found| found.starts_with(line)), "{line:?} is not in\n{}", lines.join("\n"));
+    }
+}
+
+#[test]
+fn a_render_says_size_crop_color_camera_origin_and_channels() {
+    let folder = Folder::new();
+    folder.write("ball.toml", SCENE);
+    assert_eq!(render(&folder, &["ball.toml", "--crop", "4,2,6,5"]).code, Some(0));
+    let lines = lines(&folder, "ball.exr");
+    assert_says(
+        &lines,
+        &[
+            "ball.exr: OpenEXR, 1 part, ",
+            "size 12 x 8 pixels",
+            "crop 6 x 5 pixels are there, (4, 2) to (9, 6)",
+            "storage zip, scan lines from the top",
+            "chromaticities red 0.7130 0.2930, green 0.1650 0.8300, blue 0.1280 0.0440, white 0.3217 0.3377 (lin_ap1_scene)",
+            "camera at (0, 1, 6), looks along (0, 0, -1)",
+            // 2 atan(1.5 tan(17.5 degrees)).
+            "field of view 50.62 degrees across, 35.00 up",
+            "colorInteropID lin_ap1_scene",
+            "render/samples 3",
+            "render/seed 0",
+            "layer channel type min mean max",
+            "beauty R float ",
+            "Z Z float ",
+            "samples V float 3 3 3",
+        ],
+    );
+    assert!(!lines.iter().any(|line| line.contains("NaN") || line.contains("infinite")));
+}
+
+#[test]
+fn values_that_are_no_numbers_are_counted_and_left_out() {
+    let folder = Folder::new();
+    let values = vec![f32::NAN, 1.0, 2.0, f32::INFINITY, f32::NAN, f32::NEG_INFINITY];
+    let image = Exr::new([3, 2], vec![("Y", values), ("broken.X", vec![f32::NAN; 6])]);
+    image.write(&folder.path().join("a.exr"));
+    assert_says(&lines(&folder, "a.exr"), &["Y Y float 1 1.5 2 2 NaN, 2 infinite", "broken X float - - - 6 NaN"]);
+}
+
+#[test]
+fn overscan_and_parts_of_other_programs_are_told() {
+    let folder = Folder::new();
+    let flat = |value: f32| vec![value; 12];
+    let mut image = Exr::new([4, 3], Vec::new());
+    (image.corner, image.full, image.half) = ([-1, -1], [2, 1], true);
+    image.texts.push(("comments2", "two\nlines \u{1b}[31m and \u{e9}".into()));
+    image.parts = vec![
+        ("rgba", vec![("R", flat(0.5)), ("G", flat(0.5)), ("B", flat(0.5))]),
+        ("albedo", vec![("R", flat(0.25)), ("G", flat(0.25)), ("B", flat(0.25))]),
+        ("depth", vec![("Z", flat(7.0))]),
+    ];
+    image.write(&folder.path().join("a.exr"));
+    assert_says(
+        &lines(&folder, "a.exr"),
+        &[
+            "a.exr: OpenEXR, 3 parts, ",
+            "part 1 rgba",
+            "overscan 4 x 3 pixels are there, (-1, -1) to (2, 1)",
+            "storage not compressed, scan lines from the top",
+            // Nothing in a file can steer the terminal.
+            "comments2 two\u{fffd}lines \u{fffd}[31m and \u{e9}",
+            "beauty R half 0.5 0.5 0.5",
+            "part 2 albedo",
+            "albedo G half 0.25 0.25 0.25",
+            "Z Z half 7 7 7",
+        ],
+    );
+}
+
+#[test]
+fn a_file_that_cannot_be_read_is_told_in_one_line() {
+    let folder = Folder::new();
+    ramp().write(&folder.path().join("ramp.exr"));
+    folder.write("text.exr", "no image");
+    folder.write("empty.exr", "");
+    let whole = fs::read(folder.path().join("ramp.exr")).expect("it is there");
+    fs::write(folder.path().join("half.exr"), &whole[..whole.len() - 20]).expect("files can be written");
+    let info = |file: &str| render(&folder, &["info", file]);
+    let help = "help: an image is an OpenEXR file, such as prism.exr\n";
+    let missing = "error: there is no image file rampe.exr\nhelp: did you mean ramp.exr?\n";
+    assert_refused(&info("rampe.exr"), 2, missing);
+    assert_refused(&info("no/a.exr"), 2, &format!("error: there is no image file no/a.exr\n{help}"));
+    assert_refused(&info("."), 2, &format!("error: . is a folder, not an image\n{help}"));
+    for file in ["text.exr", "empty.exr"] {
+        let refusal =
+            format!("error: cannot read {file}: it is no complete OpenEXR image (it does not begin as one does)\n");
+        assert_refused(&info(file), 1, &refusal);
+    }
+    let answer = info("half.exr");
+    assert_eq!((answer.code, &*answer.stdout), (Some(1), ""));
+    assert!(answer.stderr.starts_with("error: cannot read half.exr: it is no complete OpenEXR image ("));
+    assert_eq!(answer.stderr.lines().count(), 1, "{}", answer.stderr);
+    assert_eq!(folder.listing(), ["empty.exr", "half.exr", "ramp.exr", "text.exr"]);
+}

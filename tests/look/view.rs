@@ -1,0 +1,162 @@
+use std::process::Command;
+
+use exr::meta::attribute::Chromaticities;
+use exr::prelude::Vec2;
+
+use super::assert_refused;
+use super::files::{Exr, ramp};
+use crate::messages::run::{Folder, render};
+
+const SCENE: &str = r#"
+camera = { position = [0, 1, 6], look_at = [0, 1, 0], vertical_fov = 35 }
+film = { width = 6, height = 4, color_space = "lin_ap1_scene" }
+render.samples = 1
+material.red.diffuse = { reflectance = { rgb = [0.7, 0.2, 0.1] } }
+[[object]]
+shape.sphere = { center = [0, 1, 0], radius = 1 }
+material = "red"
+[[light]]
+environment = { radiance = 1 }
+"#;
+
+/// The pixels of a PNG that is written of a layer, and what is said of it.
+fn pixels(folder: &Folder, arguments: &[&str]) -> (Vec<[u8; 3]>, String) {
+    let answer = render(folder, &[&["view", "a.exr", "--png", "look.png"], arguments].concat());
+    assert_eq!((answer.code, &*answer.stdout), (Some(0), ""), "{}", answer.stderr);
+    let said = answer.stderr.strip_suffix("wrote look.png\n").expect("the last line").to_owned();
+    let picture = image::open(folder.path().join("look.png")).expect("a picture").into_rgb8();
+    (picture.pixels().map(|pixel| pixel.0).collect(), said)
+}
+
+/// Color, a normal, a position, a depth and a label of two pixels.
+fn layers(folder: &Folder) {
+    let mut channels: Vec<_> = ["R", "G", "B"].map(|name| (name, vec![0.5, 2.0])).to_vec();
+    channels.push(("A", vec![1.0, 0.0]));
+    channels.push(("Z", vec![3.0, 1e10]));
+    channels.extend([("N.X", vec![0.0, -1.0]), ("N.Y", vec![0.0, 1.0]), ("N.Z", vec![1.0, 0.0])]);
+    channels.extend([("P.X", vec![5.0, 7.0]), ("P.Y", vec![f32::NAN, 1.0])]);
+    channels.extend([("albedo.R", vec![1.0, 0.0]), ("albedo.G", vec![0.0; 2]), ("albedo.B", vec![0.0; 2])]);
+    Exr::new([2, 1], channels).write(&folder.path().join("a.exr"));
+}
+
+#[test]
+fn a_picture_of_an_image_is_the_one_that_its_render_writes() {
+    let folder = Folder::new();
+    folder.write("ball.toml", SCENE);
+    assert_eq!(render(&folder, &["ball.toml", "--exr", "a.exr", "--png", "b.png", "--exposure", "-1"]).code, Some(0));
+    pixels(&folder, &["--exposure", "-1"]);
+    let read = |name: &str| std::fs::read(folder.path().join(name)).expect("it is there");
+    assert!(read("look.png") == read("b.png"));
+}
+
+#[test]
+fn each_layer_is_shown_as_what_it_is() {
+    let folder = Folder::new();
+    layers(&folder);
+    // sRGB of 0.5 is 188; what is brighter than white is white.
+    assert_eq!(pixels(&folder, &[]), (vec![[188; 3], [255; 3]], String::new()));
+    assert_eq!(pixels(&folder, &["beauty", "--exposure", "-2"]).0[1], [188; 3]);
+    assert_eq!(pixels(&folder, &["albedo"]).0, [[255, 0, 0], [0; 3]]);
+    assert_eq!(pixels(&folder, &["N"]), (vec![[128, 128, 255], [0, 255, 128]], String::new()));
+    let span = "the 1st and 99th percentile of the finite values below 1e9\n";
+    // One depth is finite: it is the middle, and nothing is white.
+    assert_eq!(pixels(&folder, &["Z"]), (vec![[128; 3], [255; 3]], format!("Z: black is 3.0, white 3.0, {span}")));
+    assert_eq!(pixels(&folder, &["A"]).0, [[255; 3], [0; 3]]);
+    assert_eq!(pixels(&folder, &["albedo.R"]).0, [[255; 3], [0; 3]]);
+    let (shown, said) = pixels(&folder, &["P"]);
+    assert_eq!(shown, [[0, 0, 0], [255, 128, 0]]);
+    assert_eq!(said, format!("P.X: black is 5.0, white 7.0, {span}P.Y: black is 1.0, white 1.0, {span}"));
+}
+
+#[test]
+fn where_there_are_no_colors_the_first_layer_is_shown_and_named() {
+    let folder = Folder::new();
+    Exr::new([2, 1], vec![("Y", vec![1.0, 3.0])]).write(&folder.path().join("a.exr"));
+    let (shown, said) = pixels(&folder, &[]);
+    assert_eq!(shown, [[0; 3], [255; 3]]);
+    assert!(said.starts_with("there are no R, G and B: this is Y\nY: black is 1.0, white 3.0, "), "{said}");
+}
+
+/// Hable's curve of 1: (0.704 / 1.66 - 1 / 15) / (19.38 / 24.476 - 1 / 15) = 0.49292, in sRGB 186.3.
+#[test]
+fn a_tone_is_chosen_by_name() {
+    let folder = Folder::new();
+    layers(&folder);
+    let (shown, _) = pixels(&folder, &["--tone", "hable", "--exposure", "1"]);
+    assert_eq!(shown[0], [186; 3]);
+    assert_eq!(pixels(&folder, &["--tone", "srgb"]).0[0], [188; 3]);
+    let answer = render(&folder, &["view", "a.exr", "--tone", "habel"]);
+    assert_eq!(answer.code, Some(2));
+    assert!(answer.stderr.contains("[possible values: srgb, hable]"), "{}", answer.stderr);
+}
+
+#[test]
+fn colors_of_any_space_are_brought_to_rec709() {
+    let folder = Folder::new();
+    let path = folder.path().join("a.exr");
+    // A green of Rec.2020 is outside of Rec.709: all but green is clipped to 0.
+    let green = Exr::new([1, 1], vec![("R", vec![0.0]), ("G", vec![0.2]), ("B", vec![0.0])]);
+    let rec2020 = Chromaticities {
+        red: Vec2(0.708, 0.292),
+        green: Vec2(0.170, 0.797),
+        blue: Vec2(0.131, 0.046),
+        white: Vec2(0.3127, 0.3290),
+    };
+    // ITU-R BT.2087: green is 1.1329 of Rec.709's, in sRGB 131.5 where 0.2 is 123.6.
+    let text = |id: &str| vec![("colorInteropID", id.to_owned())];
+    Exr { chromaticities: Some(rec2020), ..green.clone() }.write(&path);
+    assert_eq!(pixels(&folder, &[]), (vec![[0, 131, 0]], String::new()));
+    Exr { texts: text("lin_rec2020_scene"), ..green.clone() }.write(&path);
+    assert_eq!(pixels(&folder, &[]), (vec![[0, 131, 0]], String::new()));
+    Exr { texts: text("lin_other_scene"), ..green.clone() }.write(&path);
+    let said = "the color space \"lin_other_scene\" is not known: it is shown as linear Rec.709\n";
+    assert_eq!(pixels(&folder, &[]), (vec![[0, 124, 0]], said.to_owned()));
+    let none = Chromaticities { green: Vec2(0.708, 0.292), ..rec2020 };
+    Exr { chromaticities: Some(none), ..green }.write(&path);
+    let said = "its chromaticities mean no colors: it is shown as linear Rec.709\n";
+    assert_eq!(pixels(&folder, &[]), (vec![[0, 124, 0]], said.to_owned()));
+}
+
+#[test]
+fn without_a_terminal_pixels_are_halves_of_characters_in_so_many_columns() {
+    let folder = Folder::new();
+    ramp().write(&folder.path().join("a.exr"));
+    let answer = render(&folder, &["view", "a.exr"]);
+    assert_eq!((answer.code, &*answer.stderr), (Some(0), ""));
+    assert_eq!(answer.stdout.matches('▀').count(), 4);
+    assert!(answer.stdout.starts_with("\x1b[38;2;0;0;0;48;2;170;170;170m▀"), "{:?}", answer.stdout);
+    assert!(answer.stdout.ends_with("▀\x1b[0m\n"), "{:?}", answer.stdout);
+    let mut command = Command::new(env!("CARGO_BIN_EXE_render"));
+    let output = command.current_dir(folder.path()).env("COLUMNS", "2").args(["view", "a.exr"]).output();
+    let text = String::from_utf8(output.expect("the command can be started").stdout).expect("UTF-8");
+    // Two columns of a single row; the mean of all four pixels in linear light is (0 + 0.1 + 0.4 + 0.5) / 4.
+    assert_eq!(text.matches('▀').count(), 2);
+    let sixels = render(&folder, &["view", "a.exr", "--sixel"]).stdout;
+    assert!(sixels.starts_with("\x1bP0;1q\"1;1;4;2#0;2;0;0;0") && sixels.ends_with("\x1b\\\n"), "{sixels:?}");
+}
+
+#[test]
+fn what_cannot_be_shown_is_refused_and_nothing_is_written() {
+    let folder = Folder::new();
+    layers(&folder);
+    let view = |arguments: &[&str]| render(&folder, &[&["view"], arguments].concat());
+    let has = "it has beauty, Z, N, P, albedo\n";
+    let refusal = format!("error: a.exr has no layer albdo\nhelp: did you mean albedo? {has}");
+    assert_refused(&view(&["a.exr", "albdo", "--png", "b.png"]), 2, &refusal);
+    assert_refused(&view(&["a.exr", "variance"]), 2, &format!("error: a.exr has no layer variance\nhelp: {has}"));
+    let png = "error: --png writes a file that ends in .png, not b.jpg\nhelp: for instance: --png look.png\n";
+    assert_refused(&view(&["a.exr", "--png", "b.jpg"]), 2, png);
+    let exposure = "error: an exposure is a finite number of stops\nhelp: for instance: --exposure 1\n";
+    assert_refused(&view(&["a.exr", "--exposure", "nan"]), 2, exposure);
+    let depth = "error: --exposure is for colors, and Z has none\nhelp: leave it out\n";
+    assert_refused(&view(&["a.exr", "Z", "--exposure", "1"]), 2, depth);
+    let missing = "error: there is no image file b.exr\nhelp: did you mean a.exr?\n";
+    assert_refused(&view(&["b.exr", "--png", "b.png"]), 2, missing);
+    assert_eq!(view(&["a.exr", "--png", "b.png", "--sixel"]).code, Some(2));
+    let place = "error: cannot write a.exr/b.png: a file stands where its folder should be\n";
+    assert_refused(&view(&["a.exr", "--png", "a.exr/b.png"]), 1, place);
+    std::fs::copy(folder.path().join("a.exr"), folder.path().join("a.png")).expect("files can be copied");
+    let itself = "error: a.png is the image itself\nhelp: name another file\n";
+    assert_refused(&view(&["a.png", "--png", "a.png"]), 2, itself);
+    assert_eq!(folder.listing(), ["a.exr", "a.png"]);
+}
