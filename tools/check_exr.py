@@ -2,13 +2,19 @@
 
     python tools/check_exr.py FILE...           # exit code 1 if any file breaks a rule
 
-One scanline part under lossless ZIP, channels R G B A Z (and samples.V) as 32-bit floats, finite, a stated color space, the camera,
-and the provenance under render/. Attribute meanings: OpenEXR, "Standard Attributes"; color: ASWF Color Interop Forum,
-recommendations 03 and 04 (2026).
+Scan lines under lossless compression: R G B A Z, alone or with layers, in one part or with each layer in a part of its own.
+Numbers are finite, and 32-bit floats unless the file says that colors have 16 bits. Lights and kinds of light add up to the image,
+mattes to its coverage. A stated color space, the camera, and the provenance under render/.
+
+Attribute meanings: OpenEXR, "Standard Attributes"; color: ASWF Color Interop Forum, recommendations 03 and 04 (2026); mattes:
+Cryptomatte specification 1.2.0.
 """
 
+import itertools
+import json
 import re
 import sys
+from typing import NamedTuple
 
 import numpy as np
 import OpenEXR
@@ -25,6 +31,40 @@ CHROMATICITIES = {
     "lin_ciexyzd65_scene": (1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1 / 3, 1 / 3),
 }
 
+LOSSLESS = {
+    OpenEXR.NO_COMPRESSION: "none",
+    OpenEXR.RLE_COMPRESSION: "rle",
+    OpenEXR.ZIPS_COMPRESSION: "zips",
+    OpenEXR.ZIP_COMPRESSION: "zip",
+    OpenEXR.PIZ_COMPRESSION: "piz",
+}
+
+# The channels of each layer; those of the image itself have no layer.
+LAYERS = {
+    r"": "RGBAZ",
+    r"emission|background|direct|indirect|caustics|dispersed": "RGB",
+    r"light_[A-Za-z0-9_]+": "RGB",
+    r"albedo|variance|half_[ab]": "RGB",
+    r"Nd?|P": "XYZ",
+    r"UV": "UV",
+    r"samples": "V",
+    r"Crypto(Object|Material|Asset)0[0-2]": "rgba",
+}
+# Numbers that 16 bits would spoil: depth, places, statistics and the numbers of mattes.
+ALWAYS_32_BITS = r"Z|P\..*|UV\..*|variance\..*|samples\..*|Crypto.*"
+# Attributes in which the parts of a file agree.
+SHARED = (
+    "type",
+    "compression",
+    "lineOrder",
+    "dataWindow",
+    "displayWindow",
+    "pixelAspectRatio",
+    "screenWindowCenter",
+    "screenWindowWidth",
+)
+MATTE_LAYERS = ("00", "01", "02")
+
 # What each provenance attribute must look like; a seed is text because an EXR integer has 32 bits only.
 PROVENANCE = {
     "render/version": r"\S.*",
@@ -39,12 +79,47 @@ PROVENANCE = {
 }
 
 
-def layout(header, channels):
-    """One scanline image, lossless, top to bottom; the display window at the origin, the data window all or a part of it."""
+class File(NamedTuple):
+    """What a file holds: the header of its first part, all channels by name, and header and channels of each part."""
+
+    header: dict
+    channels: dict
+    parts: list
+
+    def layers(self):
+        """The names of its layers, in the order of their channels."""
+        return list(dict.fromkeys(name.rpartition(".")[0] for name in self.channels))
+
+    def layer(self, layer):
+        """The channels of a layer as one array of float64, channel by channel; None unless it has all of them."""
+        names = [f"{layer}.{channel}" for channel in known_channels(layer)]
+        if names and all(name in self.channels for name in names):
+            return np.array([self.channels[name] for name in names], np.float64)
+        return None
+
+
+def read(path):
+    """A file with all of its pixels; RuntimeError if it is damaged or cut off."""
+    with OpenEXR.File(str(path), separate_channels=True) as file:
+        if not file.parts:
+            raise RuntimeError("the pixels are damaged or cut off")
+        # What is not copied goes with the file.
+        parts = [(dict(part.header), {name: each.pixels.copy() for name, each in part.channels.items()}) for part in file.parts]
+        return File(parts[0][0], {name: pixels for _, channels in parts for name, pixels in channels.items()}, parts)
+
+
+def known_channels(layer):
+    """The channels of a layer that Abbe writes; none of any other."""
+    return next((channels for form, channels in LAYERS.items() if re.fullmatch(form, layer)), "")
+
+
+def layout(file):
+    """Scan lines, lossless, top to bottom; the display window at the origin, the data window all or a part of it."""
+    header = file.header
     if header.get("type", OpenEXR.scanlineimage) != OpenEXR.scanlineimage:
         yield f"type is {header['type']}, not a scanline image"
-    if header["compression"] != OpenEXR.ZIP_COMPRESSION:
-        yield f"compression is {header['compression']}, not ZIP"
+    if header["compression"] not in LOSSLESS:
+        yield f"compression is {header['compression']}, not one of {', '.join(LOSSLESS.values())}"
     if header["lineOrder"] != OpenEXR.INCREASING_Y:
         yield f"line order is {header['lineOrder']}, not increasing y"
     data, display = (np.array(header[name]) for name in ("dataWindow", "displayWindow"))
@@ -58,31 +133,71 @@ def layout(header, channels):
         yield f"pixel aspect ratio is {header['pixelAspectRatio']}, not 1"
 
 
-def names(header, channels):
-    """Names that every reader keeps: Nuke drops other characters, old readers cut at 31 bytes."""
-    for name in channels:
+def parts(file):
+    """Of several parts, the first is the image and says all of it; each other one is data: the layer of its name, or depth."""
+    if len(file.parts) == 1:
+        return
+    if file.header.get("name") != "image":
+        yield f"the first part is {file.header.get('name')!r}, not 'image'"
+    if layers := {name.rpartition(".")[0] for name in file.parts[0][1]} - {""}:
+        yield f"part 'image': holds {', '.join(sorted(layers))} as well"
+    if len(file.channels) < sum(len(channels) for _, channels in file.parts):
+        yield "a channel is in several parts"
+    for header, channels in file.parts[1:]:
+        part = f"part {header.get('name')!r}"
+        layers = {name.rpartition(".")[0] for name in channels}
+        if layers != {header.get("name")} and (header.get("name"), *channels) != ("depth", "Z"):
+            yield f"{part}: holds {', '.join(map(repr, sorted(layers)))}, not the layer of its name"
+        for name in SHARED:
+            if not np.array_equal(header.get(name), file.header.get(name)):
+                yield f"{part}: {name} differs from that of the first part"
+        if header.get("colorInteropID") != "data":
+            yield f"{part}: colorInteropID is {header.get('colorInteropID')!r}, not 'data'"
+        if said := sorted(name for name in header if re.match("render/|cryptomatte/|chromaticities|capDate", name)):
+            yield f"{part}: {', '.join(said)} would stand in the first part, if anywhere"
+        if warnings := int(OpenEXR.checkColorMetadata(header, file.header)):
+            yield f"{part}: OpenEXR warns of the color metadata: bits {warnings:#x}"
+
+
+def names(file):
+    """Names that every reader keeps: Nuke drops other characters, old readers cut at 31 bytes. Layers are whole."""
+    for name in file.channels:
         if not re.fullmatch(r"[\x21-\x7e]{1,31}", name):
             yield f"channel {name!r}: not 1 to 31 printable ASCII characters"
         if not re.fullmatch(r"([A-Za-z][A-Za-z0-9_]*\.)?[A-Za-z][A-Za-z0-9_]*", name):
             yield f"channel {name!r}: not LAYER.CHANNEL"
-    for channel in header["channels"]:
+    for channel in itertools.chain.from_iterable(header["channels"] for header, _ in file.parts):
         if channel.pLinear:
             yield f"channel {channel.name!r}: marked as perceptually linear"
         if (channel.xSampling, channel.ySampling) != (1, 1):
             yield f"channel {channel.name!r}: subsampled"
-    for name in "RGBAZ":
-        if name not in channels:
-            yield f"channel {name!r}: missing"
+    for layer in dict.fromkeys(["", *file.layers()]):
+        known, prefix = known_channels(layer), f"{layer}." if layer else ""
+        held = {name[len(prefix) :] for name in file.channels if name.rpartition(".")[0] == layer}
+        if not known and re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", layer):
+            yield f"layer {layer!r}: not one that Abbe writes"
+        for channel in sorted(set(known) ^ held if known else ()):
+            yield f"channel {prefix + channel!r}: {'missing' if channel in known else 'none of its layer'}"
 
 
-def values(header, channels):
-    """32-bit floats, finite; coverage in 0..1; a positive depth, the miss depth where nothing is covered."""
-    for name, pixels in channels.items():
-        if pixels.dtype != np.float32:
-            yield f"channel {name!r}: {pixels.dtype}, not 32-bit float"
+def types(file):
+    """32-bit floats; 16 bits for colors, coverage and normals of a file that counts what did not fit into them."""
+    half = "render/clamped" in file.header
+    for name, pixels in file.channels.items():
+        bits = 16 if half and not re.fullmatch(ALWAYS_32_BITS, name) else 32
+        if pixels.dtype != np.dtype(f"f{bits // 8}"):
+            yield f"channel {name!r}: {pixels.dtype}, not {bits}-bit float"
+    clamped = file.header.get("render/clamped", 0)
+    if type(clamped) is not int or clamped < 0:
+        yield f"render/clamped is {clamped!r}, not an integer from 0"
+
+
+def values(file):
+    """Finite numbers; coverage in 0..1; a positive depth, the miss depth where nothing is covered."""
+    for name, pixels in file.channels.items():
         if wrong := np.count_nonzero(~np.isfinite(pixels.astype(np.float64))):
             yield f"channel {name!r}: {wrong} values not finite"
-    alpha, depth = (channels.get(name) for name in "AZ")
+    alpha, depth = (file.channels.get(name) for name in "AZ")
     if alpha is not None and not ((alpha >= 0) & (alpha <= 1)).all():
         yield f"channel 'A': from {alpha.min()} to {alpha.max()}, not within 0..1"
     if depth is not None and not (depth > 0).all():
@@ -91,21 +206,174 @@ def values(header, channels):
         yield f"channel 'Z': pixels without coverage are not at the miss depth {MISS_DEPTH:g}"
 
 
-def color(header, channels):
-    """A color space by name, and the same by its chromaticities for readers that know no names."""
-    space, stored = header.get("colorInteropID"), header.get("chromaticities")
+def surfaces(file):
+    """What is known of first surfaces: shares of light, means of unit normals; nothing where there is no surface."""
+    albedo = file.layer("albedo")
+    if albedo is not None and not ((albedo >= 0) & (albedo <= 1)).all():
+        yield f"layer 'albedo': from {albedo.min()} to {albedo.max()}, not within 0..1"
+    for layer in ("N", "Nd"):
+        normal = file.layer(layer)
+        if normal is not None:
+            length = np.sqrt((normal**2).sum(axis=0)).max()
+            if length > 1 + np.finfo(file.channels[f"{layer}.X"].dtype).eps:
+                yield f"layer {layer!r}: a length of {length}, more than 1"
+    alpha = file.channels.get("A")
+    for layer in ("N", "Nd", "P", "UV"):
+        numbers = file.layer(layer)
+        if alpha is not None and numbers is not None and (wrong := np.count_nonzero(numbers[:, alpha == 0].any(axis=0))):
+            yield f"layer {layer!r}: not 0 in {wrong} pixels where nothing is met"
+
+
+def statistics(file):
+    """Variance is not negative; as many samples as were asked for, but for those that were not finite."""
+    variance, samples = file.layer("variance"), file.layer("samples")
+    if variance is not None and not (variance >= 0).all():
+        yield f"layer 'variance': {np.count_nonzero(~(variance >= 0))} values negative"
+    if samples is None:
+        return
+    if ((samples < 0) | (samples != np.floor(samples))).any():
+        yield "layer 'samples': not whole numbers"
+    asked, lost = file.header.get("render/samples"), file.header.get("render/nonFinite")
+    if type(asked) is not int:
+        return
+    if (samples > asked).any():
+        yield f"layer 'samples': up to {samples.max():g}, more than {asked}"
+    elif lost == 0 and (samples != asked).any():
+        yield f"layer 'samples': down to {samples.min():g} of {asked}, and none was lost"
+
+
+def sums(file):
+    """Kinds of light, lights, and the halves of the samples make the image, as exactly as its numbers are stored."""
+    lights = [layer for layer in file.layers() if layer.startswith("light_")]
+    wholes = [(("emission", "background", "direct", "indirect"), 1), (lights, 1)]
+    samples = file.header.get("render/samples")
+    # Halves of an odd number of samples, or of fewer than were taken, are not of equal weight.
+    if type(samples) is int and samples % 2 == 0 and file.header.get("render/nonFinite") == 0:
+        wholes.append((("half_a", "half_b"), 0.5))
+    image = [file.channels.get(name) for name in "RGB"]
+    for layers, share in wholes:
+        terms = [file.layer(layer) for layer in layers]
+        if not terms or any(each is None for each in [*terms, *image]):
+            continue
+        kind = np.finfo(image[0].dtype)
+        numbers = np.array([*(share * term for term in terms), -np.array(image, np.float64)])
+        # Each number is off by half a unit in its last place; what did not fit says nothing.
+        rounding = float(kind.eps) * np.abs(numbers).sum(axis=0) + len(numbers) * float(kind.smallest_subnormal)
+        fits = (np.abs([*terms, numbers[-1]]) < float(kind.max)).all(axis=0)
+        off = np.where(fits, np.abs(numbers.sum(axis=0)) - rounding, 0)
+        if wrong := np.count_nonzero(off > 0):
+            yield f"{' + '.join(layers)}: not {'R, G, B' if share == 1 else 'twice R, G, B'} in {wrong} values, by {off.max():g}"
+
+
+def murmur3(data):
+    """MurmurHash3_x86_32 of bytes, of seed 0."""
+    mask = 0xFFFFFFFF
+
+    def turned(number, bits):
+        return (number << bits | number >> 32 - bits) & mask
+
+    def mixed(block):
+        return turned(block * 0xCC9E2D51 & mask, 15) * 0x1B873593 & mask
+
+    number, whole = 0, len(data) // 4 * 4
+    for at in range(0, whole, 4):
+        number = turned(number ^ mixed(int.from_bytes(data[at : at + 4], "little")), 13) * 5 + 0xE6546B64 & mask
+    number ^= mixed(int.from_bytes(data[whole:], "little")) ^ len(data)
+    number = (number ^ number >> 16) * 0x85EBCA6B & mask
+    number = (number ^ number >> 13) * 0xC2B2AE35 & mask
+    return number ^ number >> 16
+
+
+def matte_number(name):
+    """The number of a name in a matte: its hash, with an exponent of a finite float that is not 0."""
+    number = murmur3(name.encode())
+    return number ^ 1 << 23 if number >> 23 & 0xFF in (0, 0xFF) else number
+
+
+def matte_key(name):
+    """What stands for a matte in the names of its attributes."""
+    return f"{murmur3(name.encode()):08x}"[:7]
+
+
+def matte(file, name):
+    """The numbers of a matte, as integers, and their coverage, rank by rank; None unless all layers are there in 32 bits."""
+    channels = [file.channels.get(f"{name}{layer}.{channel}") for layer in MATTE_LAYERS for channel in "rgba"]
+    if any(each is None or each.dtype != np.float32 for each in channels):
+        return None
+    return np.array([each.view(np.uint32) for each in channels[::2]]), np.array(channels[1::2], np.float64)
+
+
+def mattes(file):
+    """The attributes of each matte, and its numbers: of its manifest, the most covered first, together what the image covers."""
+    found = dict.fromkeys(layer[:-2] for layer in file.layers() if re.fullmatch(r"Crypto[A-Za-z]+[0-9]{2}", layer))
+    keys = {match[1] for attribute in file.header if (match := re.match(r"cryptomatte/([^/]*)/", attribute))}
+    for key in sorted(keys - {matte_key(name) for name in found}):
+        yield f"cryptomatte/{key}: no matte of this file"
+    for name in found:
+        key = matte_key(name)
+        said = {field: file.header.get(f"cryptomatte/{key}/{field}") for field in ("name", "hash", "conversion", "manifest")}
+        for field, value in {"name": name, "hash": "MurmurHash3_32", "conversion": "uint32_to_float32"}.items():
+            if said[field] != value:
+                yield f"cryptomatte/{key}/{field} is {said[field]!r}, not {value!r}"
+        try:
+            manifest = {each: int(number, 16) for each, number in json.loads(said["manifest"]).items()}
+        except (TypeError, ValueError, AttributeError):
+            yield f"cryptomatte/{key}/manifest is no object of names and hexadecimal numbers"
+            continue
+        for each, number in manifest.items():
+            if number != matte_number(each):
+                yield f"cryptomatte/{key}/manifest: {each!r} is {number:08x}, not {matte_number(each):08x}"
+        for suffix in MATTE_LAYERS:
+            if name + suffix not in file.layers():
+                yield f"layer {name + suffix!r}: missing"
+        if (ranks := matte(file, name)) is not None:
+            yield from (f"matte {name!r}: {violation}" for violation in coverage(file, *ranks, manifest))
+
+
+def coverage(file, numbers, shares, manifest):
+    """The ranks of a matte."""
+    if unknown := set(np.unique(numbers).tolist()) - {0, *manifest.values()}:
+        yield f"{len(unknown)} numbers are not in its manifest, such as {min(unknown):08x}"
+    if ((numbers == 0) != (shares == 0)).any():
+        yield "numbers without coverage, or coverage without a number"
+    if any(((a == b) & (a != 0)).any() for a, b in itertools.combinations(numbers, 2)):
+        yield "a number has several ranks of a pixel"
+    if (shares < 0).any():
+        yield f"coverage down to {shares.min():g}"
+    if (np.diff(shares, axis=0) > 0).any():
+        yield "coverage grows from rank to rank"
+    whole = shares.sum(axis=0)
+    rounding = len(shares) * np.finfo(np.float32).eps
+    if (whole > 1 + rounding).any():
+        yield f"coverage adds up to {whole.max():g}, more than 1"
+    alpha = file.channels.get("A")
+    if alpha is None:
+        return
+    # Where the last rank is taken there may be more objects than ranks.
+    off = np.where(shares[-1] == 0, np.abs(whole - alpha), whole - alpha).max()
+    if off > rounding + (np.finfo(alpha.dtype).eps if alpha.dtype.kind == "f" else 0):
+        yield f"coverage adds up to another number than A, by {off:g}"
+
+
+def color(file):
+    """A color space by name, and, in a single part, by its chromaticities for readers that know no names."""
+    space, stored = file.header.get("colorInteropID"), file.header.get("chromaticities")
     if space not in CHROMATICITIES:
         yield f"colorInteropID is {space!r}, not one of {', '.join(CHROMATICITIES)}"
+    elif len(file.parts) > 1:
+        if stored is not None:
+            yield "chromaticities would be those of all parts"
     elif stored is None:
         yield "chromaticities are missing"
     elif tuple(stored) != tuple(float(np.float32(value)) for value in CHROMATICITIES[space]):
         yield f"chromaticities {stored} are not those of {space}"
-    if warnings := int(OpenEXR.checkColorMetadata(header)):
+    if warnings := int(OpenEXR.checkColorMetadata(file.header)):
         yield f"OpenEXR warns of the color metadata: bits {warnings:#x}"
 
 
-def camera(header, channels):
+def camera(file):
     """worldToCamera acts on row vectors, from a right-handed world to a left-handed camera that looks along +z."""
+    header = file.header
     if not header.get("screenWindowWidth", 0) > 0:
         yield "screenWindowWidth is not positive"
     center = np.asarray(header.get("screenWindowCenter", (np.nan, np.nan)), np.float64)
@@ -128,38 +396,73 @@ def camera(header, channels):
         yield "worldToCamera is not orthonormal"
     elif np.linalg.det(turn) > 0:
         yield "worldToCamera does not end in a left-handed camera"
+    else:
+        yield from projection(header, matrix, center)
 
 
-def provenance(header, channels):
+def projection(header, world_to_camera, center):
+    """worldToNDC puts points where worldToCamera and the screen window do, and farther ones at a larger z."""
+    kind, stored = header.get("render/projection"), header.get("worldToNDC")
+    if kind == "equirectangular":
+        if stored is not None:
+            yield "worldToNDC is present in a view all around"
+        return
+    if stored is None:
+        yield "worldToNDC is missing"
+        return
+    if kind not in ("perspective", "orthographic") or not header.get("screenWindowWidth", 0) > 0:
+        return
+    columns, rows = np.asarray(header["displayWindow"][1], np.float64) + 1
+    size = header["screenWindowWidth"] * np.array([1, rows / columns])
+    # Points at two depths, as seen on the screen from the top left to the bottom right, and where they are in the world.
+    ndc = np.array([(0, 0), (1, 0), (0.25, 0.75), (0.5, 0.5), (1, 1)] * 2, np.float64)
+    depth = np.repeat([1.0, 3.0], 5)[:, None] * max(1, np.abs(world_to_camera[3]).max())
+    across = (center + (ndc - 0.5) * (1, -1) * size) * (depth if kind == "perspective" else 1)
+    seen = np.hstack([across, depth, np.ones_like(depth)])
+    world = seen @ np.linalg.inv(world_to_camera)
+    stored = np.asarray(stored, np.float64)
+    clip, eps = world @ stored, np.finfo(np.float32).eps
+    # What the rounding of each of 16 numbers does to a point, in units of the image.
+    from_camera = np.abs(world) @ np.abs(world_to_camera)[:, :3] * eps
+    off_axis = from_camera[:, :2] + np.abs(across) / depth * from_camera[:, 2:]
+    to_screen = off_axis / (depth if kind == "perspective" else 1) / size + eps * (1 + np.abs(center) / size)
+    off_clip = np.abs(world) @ np.abs(stored) * eps
+    with np.errstate(divide="ignore", invalid="ignore"):
+        found = clip[:, :3] / clip[:, 3:]
+        rounding = to_screen + (off_clip[:, :2] + np.abs(found[:, :2]) * off_clip[:, 3:]) / clip[:, 3:]
+    if not (clip[:, 3] > 0).all():
+        yield "worldToNDC puts points before the camera behind it"
+    elif not (np.abs(found[:, :2] - ndc) <= rounding).all():
+        off = np.abs(found[:, :2] - ndc).max()
+        yield f"worldToNDC is off by {off:.3g} of the image from worldToCamera and the screen window"
+    elif not (found[5:, 2] > found[:5, 2]).all():
+        yield "worldToNDC does not put farther points at a larger z"
+
+
+def provenance(file):
     """Where the image comes from, and no clock: two runs of one scene are the same to the byte."""
     for name, form in PROVENANCE.items():
-        value = header.get(name)
+        value = file.header.get(name)
         if value is None:
             yield f"{name} is missing"
         elif isinstance(form, range) and (type(value) is not int or value not in form):
             yield f"{name} is {value!r}, not an integer from {form.start}"
         elif isinstance(form, str) and not (isinstance(value, str) and re.fullmatch(form, value)):
             yield f"{name} is {value!r}, not text like {form}"
-    if not str(header.get("software", "")).strip():
+    if not str(file.header.get("software", "")).strip():
         yield "software is missing"
-    if "capDate" in header:
+    if "capDate" in file.header:
         yield "capDate is present"
 
 
-RULES = (layout, names, values, color, camera, provenance)
+RULES = (layout, parts, names, types, values, surfaces, statistics, sums, mattes, color, camera, provenance)
 
 
 def violations(path):
     """Every broken rule of the file, in words."""
     try:
-        with OpenEXR.File(str(path), separate_channels=True) as file:
-            if not file.parts:
-                return ["unreadable: the pixels are damaged or cut off"]
-            if len(file.parts) != 1:
-                return [f"{len(file.parts)} parts, not one"]
-            header = file.parts[0].header
-            channels = {name: channel.pixels for name, channel in file.parts[0].channels.items()}
-            return [violation for rule in RULES for violation in rule(header, channels)]
+        file = read(path)
+        return [violation for rule in RULES for violation in rule(file)]
     except RuntimeError as error:
         return [f"unreadable: {error}"]
 

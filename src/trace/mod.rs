@@ -20,6 +20,7 @@
 //! prepare          a world, tabulated and taught where to look
 //! render, tile     an image in the making, pass by pass
 //! path_tracer      camera paths: walker + direct lighting + gathered photons + light vertices, into the sensor
+//! layers           what is asked for beside the image: contributions told apart, first surfaces, sums of a tile
 //! photon           photons and light paths: walker + landing
 //! walker           from surface to surface; interaction, media, path
 //! probe, pilot ..  what the plan asks, by the same walks

@@ -52,7 +52,6 @@ fn a_render_says_size_crop_color_camera_origin_and_channels() {
             "layer channel type min mean max",
             "beauty R float ",
             "Z Z float ",
-            "samples V float 3 3 3",
         ],
     );
     assert!(!lines.iter().any(|line| line.contains("NaN") || line.contains("infinite")));
