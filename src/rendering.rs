@@ -1,6 +1,7 @@
 //! Floor 6: a scene made into an image, for programs; the `render` command is one of them.
 
 use std::borrow::Cow;
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Duration;
 
@@ -48,9 +49,8 @@ impl Options {
         if let Some(layers) = &self.layers {
             scene.format.layers.clone_from(layers);
         }
-        if let Some(name) = too_long(scene) {
-            let message = format!("the layer {name} would have a name that not every program reads: it is too long");
-            return refuse(message, "give that light or object a shorter `group`, of at most 23 letters");
+        if let Some(message) = bad_light_layer(scene) {
+            return refuse(message, "give that light or object a `group` of at most 23 letters a to z, digits and _");
         }
         Ok(())
     }
@@ -62,11 +62,23 @@ impl Options {
     }
 }
 
-/// The layer of a light whose name is too long for a file, if lights have layers.
-fn too_long(scene: &Scene) -> Option<String> {
-    let has_lights = scene.format.layers.contains(&Layer::Lights);
-    let mut names = scene.light_groups.iter().map(|group| light_layer_name(group)).filter(|_| has_lights);
-    names.find(|name| name.len() + ".R".len() > LONGEST_NAME)
+/// What is wrong with the layer of a light, if lights have layers.
+fn bad_light_layer(scene: &Scene) -> Option<String> {
+    if !scene.format.layers.contains(&Layer::Lights) {
+        return None;
+    }
+    let mut known = BTreeMap::new();
+    for group in &scene.light_groups {
+        let name = light_layer_name(group);
+        if name.len() + ".R".len() > LONGEST_NAME {
+            return Some(format!("the layer {name} would have a name that not every program reads: it is too long"));
+        }
+        let other = known.entry(name.clone()).or_insert(group);
+        if *other != group {
+            return Some(format!("the lights {other} and {group} would share the layer {name}"));
+        }
+    }
+    None
 }
 
 /// Renders a scene.
@@ -119,7 +131,7 @@ impl Rendering {
     pub fn new(scene: &Scene, options: &Options) -> Result<Self> {
         let mut scene = Cow::Borrowed(scene);
         let is_as_asked = options.instead_of(&scene) == (scene.render.samples, scene.render.seed, scene.film.crop);
-        if !is_as_asked || options.layers.is_some() || too_long(&scene).is_some() {
+        if !is_as_asked || options.layers.is_some() || bad_light_layer(&scene).is_some() {
             options.apply(scene.to_mut())?;
         }
         let threads = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build();

@@ -141,6 +141,20 @@ fn lights_of_one_group_share_a_layer() {
     assert_sum(&image, &names, 1.0);
 }
 
+#[test]
+fn names_of_lights_that_no_file_can_tell_apart_are_refused() {
+    for (from, to, told) in [
+        ("\"key lamp\"", "\"a lamp with quite a long name\"", "it is too long"),
+        ("\"rim\"", "\"key-lamp\"", "the lights key lamp and key-lamp would share the layer light_key_lamp"),
+    ] {
+        let scene = Scene::parse(&ROOM.replace(from, to), "").expect("the scene is valid");
+        let options = Options { layers: Some(vec![Layer::Lights]), ..Options::default() };
+        let error = abbe::render(&scene, &options).expect_err("the names are refused");
+        assert!(error.to_string().contains(told), "{error}");
+        assert!(abbe::render(&scene, &Options { samples: Some(1), ..Options::default() }).is_ok());
+    }
+}
+
 /// One ball, all of it in sight.
 const BALL: &str = r#"
 camera = { position = [0, 0, 4], look_at = [0, 0, 0], vertical_fov = 40 }
@@ -271,6 +285,63 @@ fn a_holdout_cuts_a_hole_and_leaves_the_rest_alone() {
         }
     }
     assert!(holes > 20 && same > 800, "{holes} {same}");
+}
+
+/// Dark bodies on gray ground under a sky and a lamp: what is in a plate, and what is laid over it.
+fn ball_on_ground(ball: bool, ground: &str, sky: &str, lamp: &str) -> Image {
+    let ball = if ball {
+        "[[object]]\nshape.sphere = { center = [0, 0.5, 0], radius = 0.5 }\nmaterial = \"dark\"\n\
+         [[object]]\nshape.cube = { center = [1, 0.3, 0.5], size = 0.6 }\nmaterial = \"dark\"\n"
+    } else {
+        ""
+    };
+    let text = format!(
+        "camera = {{ position = [0, 2, 5], look_at = [0, 0.3, 0], vertical_fov = 36 }}\n\
+         film = {{ width = 32, height = 24 }}\nrender = {{ samples = 256 }}\n[material]\n\
+         gray.diffuse.reflectance = 0.5\ndark.diffuse.reflectance = 0.05\nlamp.emissive.radiance = 60\n{ball}\
+         [[object]]\n{ground}shape.plane = {{ point = [0, 0, 0], normal = [0, 1, 0] }}\nmaterial = \"gray\"\n\
+         [[object]]\n{lamp}shape.sphere = {{ center = [2, 4, 1], radius = 0.5 }}\nmaterial = \"lamp\"\n\
+         [[light]]\n{sky}environment.radiance = 0.5\n"
+    );
+    rendered(&text, &[Layer::Shadow])
+}
+
+#[test]
+fn an_image_with_shadow_catcher_over_its_plate_is_the_whole_picture() {
+    let whole = ball_on_ground(true, "", "", "");
+    let plate = ball_on_ground(false, "", "", "");
+    let over = ball_on_ground(true, "shadow_catcher = true\n", "visible_to_camera = false\n", "");
+    let (alpha, shadow) = (over.layer("A").expect("every image has it"), rgb(&over, "shadow"));
+    let (mut shaded, mut worst) = (0, 0.0_f64);
+    // Blocks of 4 x 4 pixels, whose noise is a fourth of a pixel's.
+    for block in 0..8 * 6 {
+        let pixels = (0..16).map(|i| (block / 8 * 4 + i / 4) * 32 + block % 8 * 4 + i % 4);
+        let (mut laid, mut expected) = ([0.0; 3], [0.0; 3]);
+        for pixel in pixels {
+            let clear = 1.0 - f64::from(alpha[pixel]);
+            let is_catcher = over.rgb()[pixel] == [0.0; 3];
+            shaded += usize::from(is_catcher && alpha[pixel] > 0.3);
+            for channel in 0..3 {
+                laid[channel] += beauty(&over)[pixel][channel] + clear * beauty(&plate)[pixel][channel];
+                expected[channel] += beauty(&whole)[pixel][channel];
+            }
+            assert!(!is_catcher || (0..3).all(|i| shadow[pixel][i] <= 1.0));
+        }
+        for channel in 0..3 {
+            worst = worst.max((laid[channel] / expected[channel] - 1.0).abs());
+        }
+    }
+    assert!(shaded > 8, "{shaded} pixels lie in the shadow");
+    // Light that the bodies send to the ground is not in its coverage: a hundredth where they are so dark.
+    assert!(worst < 0.02, "a block is {worst:.4} off");
+}
+
+#[test]
+fn a_shadow_catcher_on_which_nothing_stands_is_clear() {
+    let over = ball_on_ground(false, "shadow_catcher = true\n", "visible_to_camera = false\n", "");
+    assert!(over.layer("A").expect("every image has it").iter().all(|alpha| *alpha == 0.0));
+    assert!(beauty(&over).iter().all(|rgb| *rgb == [0.0; 3]));
+    assert!(rgb(&over, "shadow").iter().all(|rgb| *rgb == [0.0; 3]));
 }
 
 #[test]

@@ -3,8 +3,8 @@
     python tools/check_exr.py FILE...           # exit code 1 if any file breaks a rule
 
 Scan lines under lossless compression: R G B A Z, alone or with layers, in one part or with each layer in a part of its own.
-Numbers are finite, and 32-bit floats unless the file says that colors have 16 bits. Lights and kinds of light add up to the image,
-mattes to its coverage. A stated color space, the camera, and the provenance under render/.
+Numbers are finite, and 32-bit floats unless the file says that colors have 16 bits. Lights and kinds of light add up to the
+image, mattes to its coverage. A stated color space, the camera, and the provenance under render/.
 
 Attribute meanings: OpenEXR, "Standard Attributes"; color: ASWF Color Interop Forum, recommendations 03 and 04 (2026); mattes:
 Cryptomatte specification 1.2.0.
@@ -42,7 +42,7 @@ LOSSLESS = {
 # The channels of each layer; those of the image itself have no layer.
 LAYERS = {
     r"": "RGBAZ",
-    r"emission|background|direct|indirect|caustics|dispersed": "RGB",
+    r"emission|background|direct|indirect|caustics|dispersed|shadow": "RGB",
     r"light_[A-Za-z0-9_]+": "RGB",
     r"albedo|variance|half_[ab]": "RGB",
     r"Nd?|P": "XYZ",
@@ -53,16 +53,8 @@ LAYERS = {
 # Numbers that 16 bits would spoil: depth, places, statistics and the numbers of mattes.
 ALWAYS_32_BITS = r"Z|P\..*|UV\..*|variance\..*|samples\..*|Crypto.*"
 # Attributes in which the parts of a file agree.
-SHARED = (
-    "type",
-    "compression",
-    "lineOrder",
-    "dataWindow",
-    "displayWindow",
-    "pixelAspectRatio",
-    "screenWindowCenter",
-    "screenWindowWidth",
-)
+SHARED = ("type", "compression", "lineOrder", "dataWindow", "displayWindow", "pixelAspectRatio")
+SHARED += ("screenWindowCenter", "screenWindowWidth")
 MATTE_LAYERS = ("00", "01", "02")
 
 # What each provenance attribute must look like; a seed is text because an EXR integer has 32 bits only.
@@ -215,7 +207,8 @@ def surfaces(file):
         normal = file.layer(layer)
         if normal is not None:
             length = np.sqrt((normal**2).sum(axis=0)).max()
-            if length > 1 + np.finfo(file.channels[f"{layer}.X"].dtype).eps:
+            # What mirrors and glass leave of a sample is a product of 32-bit shares.
+            if length > 1 + np.finfo(file.channels[f"{layer}.X"].dtype).eps + 32 * np.finfo(np.float32).eps:
                 yield f"layer {layer!r}: a length of {length}, more than 1"
     alpha = file.channels.get("A")
     for layer in ("N", "Nd", "P", "UV"):
@@ -349,9 +342,11 @@ def coverage(file, numbers, shares, manifest):
     alpha = file.channels.get("A")
     if alpha is None:
         return
-    # Where the last rank is taken there may be more objects than ranks.
-    off = np.where(shares[-1] == 0, np.abs(whole - alpha), whole - alpha).max()
-    if off > rounding + (np.finfo(alpha.dtype).eps if alpha.dtype.kind == "f" else 0):
+    # Where the last rank is taken there may be more objects than ranks; shadows cover a plate, and are no objects.
+    shadow = [file.channels.get(f"shadow.{channel}") for channel in "RGB"]
+    clear = np.zeros_like(whole, bool) if any(part is None for part in shadow) else (np.stack(shadow) == 0).all(axis=0)
+    off = np.where((shares[-1] == 0) & clear, np.abs(whole - alpha), whole - alpha).max()
+    if off > rounding + np.finfo(alpha.dtype).eps:
         yield f"coverage adds up to another number than A, by {off:g}"
 
 
@@ -455,16 +450,21 @@ def provenance(file):
         yield "capDate is present"
 
 
-RULES = (layout, parts, names, types, values, surfaces, statistics, sums, mattes, color, camera, provenance)
+RULES = (layout, parts, names, types, color, camera, provenance)
+RULES_OF_PIXELS = (values, surfaces, statistics, sums, mattes)
 
 
 def violations(path):
     """Every broken rule of the file, in words."""
     try:
         file = read(path)
-        return [violation for rule in RULES for violation in rule(file)]
     except RuntimeError as error:
         return [f"unreadable: {error}"]
+    # Pixels of several sizes, or that are no floats, break a rule of those above and cannot be compared.
+    sizes, kinds = ({getattr(pixels, what) for pixels in file.channels.values()} for what in ("shape", "dtype"))
+    comparable = len(sizes) == 1 and all(kind.kind == "f" for kind in kinds)
+    rules = (*RULES, *RULES_OF_PIXELS) if comparable else RULES
+    return [violation for rule in rules for violation in rule(file)]
 
 
 def main(paths):

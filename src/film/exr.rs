@@ -142,8 +142,13 @@ fn parts(film: &Film, format: &Format, channels: &mut Channels) -> Vec<Part> {
     for (number, name) in ["R", "G", "B"].into_iter().enumerate() {
         image.push(channels.of(name, true, pixels().map(|pixel| pixel.rgb[number])));
     }
-    image.push(channels.of("Z", false, pixels().map(|pixel| pixel.depth)));
+    let depth = channels.of("Z", false, pixels().map(|pixel| pixel.depth));
     let mut parts = vec![Part { name: "image".to_owned(), channels: image }];
+    if format.multipart {
+        // Blender takes a part of R, G, B, A and another channel for none of what they are.
+        parts.push(Part { name: "depth".to_owned(), channels: SmallVec::new() });
+    }
+    parts.last_mut().expect("the image comes first").channels.push(depth);
     for image in &film.layers {
         if format.multipart {
             parts.push(Part { name: image.name.clone(), channels: SmallVec::new() });

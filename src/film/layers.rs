@@ -31,10 +31,12 @@ pub enum Layer {
     Variance,
     /// Camera samples.
     Samples,
-    /// The image of the first half of the samples.
+    /// The image of the first half of the samples, which is the larger one of an odd number.
     HalfA,
     /// The image of the second half.
     HalfB,
+    /// How much of the light on shadow catchers other objects take.
+    Shadow,
     /// A matte of each object that the camera sees, by Cryptomatte.
     CryptoObject,
     /// A matte of each material.
@@ -48,7 +50,7 @@ impl Layer {
     pub const ALL: &str = "all";
 
     /// All of them by the names that ask for them.
-    pub const NAMES: [(&str, Self); 19] = [
+    pub const NAMES: [(&str, Self); 20] = [
         ("emission", Self::Emission),
         ("background", Self::Background),
         ("direct", Self::Direct),
@@ -65,6 +67,7 @@ impl Layer {
         ("samples", Self::Samples),
         ("half_a", Self::HalfA),
         ("half_b", Self::HalfB),
+        ("shadow", Self::Shadow),
         ("CryptoObject", Self::CryptoObject),
         ("CryptoMaterial", Self::CryptoMaterial),
         ("CryptoAsset", Self::CryptoAsset),

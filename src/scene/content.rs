@@ -121,6 +121,8 @@ pub enum Sight {
     Hidden,
     /// Nothing: a hole in the image, of coverage 0.
     Holdout,
+    /// What other objects change of the light on it: it stands for a surface of the plate that the image is laid over.
+    ShadowCatcher,
 }
 
 impl Object {
@@ -253,6 +255,17 @@ impl<S> Scene<S> {
     /// The nearest surface along a ray of the camera, which may have left one through which light goes straight on.
     pub fn intersect_seen(&self, ray: &Ray, left: Option<Primitive>) -> Option<Hit> {
         self.nearest_from(ray, f64::INFINITY, left, |object| self.objects[object as usize].sight != Sight::Hidden)
+    }
+
+    /// The nearest surface of the plate's world along a ray: see [`Scene::is_of_plate`].
+    pub fn intersect_plate(&self, ray: &Ray, left: Option<Primitive>) -> Option<Hit> {
+        self.nearest_from(ray, f64::INFINITY, left, |object| self.is_of_plate(object))
+    }
+
+    /// Whether an object stands for something that is in the plate, or lights it: a shadow catcher, a holdout, a lamp.
+    pub fn is_of_plate(&self, object: u32) -> bool {
+        let object = &self.objects[object as usize];
+        object.light.is_some() || matches!(object.sight, Sight::ShadowCatcher | Sight::Holdout)
     }
 
     /// The nearest surface along a ray up to a distance, of those objects that count.

@@ -7,7 +7,7 @@ use super::contribution::{Contribution, Found};
 use super::interaction::Interaction;
 use super::path::{Path, ScatterSample};
 use super::sensor::Sensor;
-use super::straight::Passage;
+use super::straight::{Passage, Past};
 use super::{World, shading};
 use crate::light::{LightId, LightSample, SampledLight};
 use crate::material::Lobes;
@@ -140,7 +140,7 @@ impl<const N: usize> DirectLighting<'_, N> {
         let LightSample { ray, distance, object, part, .. } = sample;
         let ends = Ends { left: self.path.left, light: *object, part: *part };
         let (distance, inside, last_occluder) = (*distance, side.inside, self.last_occluder);
-        let passage = Passage { ray, distance, ends, inside, to_camera: false, last_occluder };
+        let passage = Passage { ray, distance, ends, inside, past: Past::Objects(self.path.among), last_occluder };
         let wi = ray.direction;
         let light_of = || world.scene.lights[*light].toward(arrival.draw, wi, sample.uv);
         let (arriving, on_its_way) = passage.arriving(world, arrival.draw, light_of)?;

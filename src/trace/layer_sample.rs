@@ -4,7 +4,7 @@ use super::World;
 use super::contribution::Contribution;
 use super::interaction::{Interaction, Meeting};
 use super::layers::Layers;
-use super::path::Path;
+use super::path::{Among, Path};
 use super::shading;
 use crate::film::{FirstSurface, Layer};
 use crate::material::{Branch, Straight};
@@ -68,6 +68,15 @@ impl<'a, const N: usize> LayerSample<'a, N> {
         self.object = Some(object);
     }
 
+    /// Forgets all that the sample has left but the light of a shadow catcher, with all objects and with those of the
+    /// plate alone.
+    pub(super) fn catch(&mut self, with_and_without: [[f64; 3]; 2]) {
+        self.begin();
+        if with_and_without.as_flattened().iter().all(|x| x.is_finite()) {
+            self.world.layers.catch(&mut self.row, with_and_without);
+        }
+    }
+
     /// Receives light that came to the sensor.
     pub(super) fn receive(&mut self, contribution: &Contribution) {
         self.world.layers.add(&mut self.row, contribution);
@@ -76,6 +85,9 @@ impl<'a, const N: usize> LayerSample<'a, N> {
     /// Remembers a surface, if it is the first one.
     pub(super) fn meet(&mut self, met: &Met<N>, sampler: &Sampler) {
         let layers = &self.world.layers;
+        if met.path.among == Among::Plate {
+            return;
+        }
         let share = if layers.see_surfaces() { met.share(layers.first) } else { 0.0 };
         if share <= 0.0 {
             return;

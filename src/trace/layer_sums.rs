@@ -37,6 +37,7 @@ impl LayerSums {
             self.covered.add(pixel, object);
         }
         let left = left.row;
+        layers.add_caught(row, left);
         let nearer = sample.depth.is_some_and(|depth| depth < self.depths[pixel]);
         if let (true, Some(depth)) = (nearer, sample.depth) {
             self.depths[pixel] = depth;
@@ -45,7 +46,8 @@ impl LayerSums {
             let Some(at) = layers.at(layer) else { continue };
             let add = |row: &mut [f64], numbers: [f64; 3]| (0..3).for_each(|i| row[at + i] += numbers[i]);
             match layer {
-                Layer::Samples | Layer::CryptoObject | Layer::CryptoMaterial | Layer::CryptoAsset => {}
+                Layer::Samples | Layer::Shadow => {}
+                Layer::CryptoObject | Layer::CryptoMaterial | Layer::CryptoAsset => {}
                 Layer::Variance => add(row, sample.rgb.map(|x| x * x)),
                 Layer::HalfA | Layer::HalfB => {
                     if early == (layer == Layer::HalfA) {
@@ -125,8 +127,13 @@ pub(super) fn write(layers: &Layers, taken: &Taken, pixel: usize, images: &mut [
         let several = if layer == Layer::Lights { layers.groups.len() } else { 1 };
         for (number, image) in images.by_ref().take(several).enumerate() {
             let size = layer.channels().len();
+            let shadow = layers.caught(taken.sums, taken.shown, taken.kept).filter(|_| layer == Layer::Shadow);
+            let shadow = shadow.map_or([0.0; 3], |caught| caught.shadow());
             for (channel, value) in image.values[pixel * size..][..size].iter_mut().enumerate() {
-                *value = stored(taken.value(layer, at + 3 * number, channel));
+                *value = match layer {
+                    Layer::Shadow => stored(shadow[channel]),
+                    _ => stored(taken.value(layer, at + 3 * number, channel)),
+                };
             }
         }
     }

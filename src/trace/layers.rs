@@ -2,7 +2,7 @@
 
 use super::contribution::{Contribution, Found};
 use crate::film::{FirstSurface, Layer, Manifest, id, light_layer_name};
-use crate::scene::Scene;
+use crate::scene::{Scene, Sight};
 use crate::spectrum::{Basis, Curve, Quantity, Response, Table};
 
 /// The layers of a world's image.
@@ -24,6 +24,8 @@ pub(super) struct Layers {
     pub(super) first: FirstSurface,
     /// The numbers by which mattes tell objects apart: of each matte that is wanted, a number for each object.
     pub(super) ids: Vec<(Layer, Vec<u32>)>,
+    /// Where the numbers of shadow catchers begin, if there are any: see [`Caught`].
+    caught: Option<usize>,
     /// A light of radiance 1, by which albedo is looked at.
     pub(super) white: Option<(Response, Table)>,
 }
@@ -35,6 +37,37 @@ fn names<S>(scene: &Scene<S>, matte: Layer) -> impl Iterator<Item = &str> {
         Layer::CryptoAsset => &object.asset,
         _ => &object.name,
     })
+}
+
+/// Light that a pixel's shadow catchers send to the camera.
+pub(super) struct Caught {
+    /// With all objects.
+    with: [f64; 3],
+    /// With those alone that are in the plate or light it.
+    without: [f64; 3],
+    /// The share of the pixel that they cover.
+    share: f64,
+}
+
+impl Caught {
+    /// Two colors and a share.
+    const NUMBERS: usize = 7;
+
+    /// The part of each channel that other objects take, times the share of the pixel; negative where they add light.
+    pub(super) fn shadow(&self) -> [f64; 3] {
+        [0, 1, 2].map(|channel| self.taken(self.with[channel], self.without[channel]))
+    }
+
+    /// The same of luminance, which is what the image covers there; 0 where light is added. `luminance` is the weight
+    /// of each channel.
+    pub(super) fn coverage(&self, luminance: [f64; 3]) -> f64 {
+        let of = |rgb: [f64; 3]| (0..3).map(|channel| luminance[channel] * rgb[channel]).sum::<f64>();
+        self.taken(of(self.with), of(self.without)).clamp(0.0, self.share)
+    }
+
+    fn taken(&self, with: f64, without: f64) -> f64 {
+        if without > 0.0 { self.share * (1.0 - with / without) } else { 0.0 }
+    }
 }
 
 /// Numbers of a half of the samples: a color, and how many samples they are.
@@ -57,11 +90,15 @@ impl Layers {
                 layers.numbers += match layer {
                     Layer::Lights => 3 * layers.groups.len(),
                     Layer::HalfA | Layer::HalfB => OF_A_HALF,
-                    Layer::Samples => 0,
+                    Layer::Samples | Layer::Shadow => 0,
                     _ if layer.is_matte() => 0,
                     _ => layer.channels().len(),
                 };
             }
+        }
+        if scene.objects.iter().any(|object| object.sight == Sight::ShadowCatcher) {
+            layers.caught = Some(layers.numbers);
+            layers.numbers += Caught::NUMBERS;
         }
         let mattes = layers.wanted.iter().filter(|layer| layer.is_matte());
         layers.ids = mattes.map(|&matte| (matte, names(scene, matte).map(id).collect())).collect();
@@ -79,7 +116,7 @@ impl Layers {
 
     /// Whether there are none.
     pub(super) fn is_empty(&self) -> bool {
-        self.wanted.is_empty()
+        self.wanted.is_empty() && self.caught.is_none()
     }
 
     /// Where in a row the numbers of a layer begin; none if it is not wanted.
@@ -97,6 +134,43 @@ impl Layers {
     pub(super) fn see_surfaces(&self) -> bool {
         use Layer::{Albedo, GeometricNormal, Normal, Position, Uv};
         [Albedo, Normal, GeometricNormal, Position, Uv].iter().any(|layer| self.at(*layer).is_some())
+    }
+
+    /// Whether there are shadow catchers.
+    pub(super) fn catches(&self) -> bool {
+        self.caught.is_some()
+    }
+
+    /// Writes the light on a shadow catcher into an empty row.
+    pub(super) fn catch(&self, row: &mut [f64], [with, without]: [[f64; 3]; 2]) {
+        let Some(at) = self.caught else { return };
+        row[at..at + 3].copy_from_slice(&with);
+        row[at + 3..at + 6].copy_from_slice(&without);
+        row[at + 6] = 1.0;
+    }
+
+    /// Adds the light of a photon on a shadow catcher to a row.
+    pub(super) fn catch_photon(&self, row: &mut [f64], rgb: [f64; 3]) {
+        if let Some(at) = self.caught {
+            (0..3).for_each(|channel| row[at + channel] += rgb[channel]);
+        }
+    }
+
+    /// What shadow catchers show, by the sums of so many samples and what photons show.
+    pub(super) fn caught(&self, sums: &[f64], shown: &[f64], kept: u32) -> Option<Caught> {
+        let at = self.caught?;
+        let kept = f64::from(kept.max(1));
+        let mean = |number: usize| sums[at + number] / kept + shown.get(at + number).copied().unwrap_or_default();
+        let [with, without] = [0, 3].map(|first| [0, 1, 2].map(|channel| mean(first + channel)));
+        Some(Caught { with, without, share: mean(6) })
+    }
+
+    /// Adds the numbers of shadow catchers to sums.
+    pub(super) fn add_caught(&self, sums: &mut [f64], row: &[f64]) {
+        if let Some(at) = self.caught {
+            let more = &row[at..at + Caught::NUMBERS];
+            sums[at..at + Caught::NUMBERS].iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
+        }
     }
 
     /// Adds light to a row.

@@ -68,6 +68,9 @@ pub(super) fn show<const N: usize>(world: &World, progress: &(dyn Fn(u64) + Sync
             let numbers = world.layers.numbers;
             add_to_layers(world, &splat, &mut layers[pixel as usize * numbers..][..numbers]);
         }
+        if splat.caught && world.layers.catches() {
+            return;
+        }
         (0..3).for_each(|i| pixels[pixel as usize][i] += rgb[i]);
         if change != 0.0 {
             let [column, row] = [pixel % window.width, pixel / window.width].map(|place| place / TILE);
@@ -81,7 +84,10 @@ pub(super) fn show<const N: usize>(world: &World, progress: &(dyn Fn(u64) + Sync
 
 /// Adds a photon that the camera sees to the row of its pixel, which holds means.
 fn add_to_layers(world: &World, splat: &Splat, row: &mut [f64]) {
-    let Splat { light, rgb, dispersed, early, .. } = *splat;
+    let Splat { light, rgb, dispersed, early, caught, .. } = *splat;
+    if caught {
+        return world.layers.catch_photon(row, rgb);
+    }
     // Smooth surfaces mirrored or refracted it, and the last one scattered it to the camera.
     let bounces = 2;
     let light = Some(light);

@@ -38,6 +38,17 @@ pub(super) struct Path<const N: usize> {
     pub(super) bounces: u32,
     /// Whether only smooth surfaces have: what it meets next is seen.
     pub(super) is_seen: bool,
+    /// Which objects there are for it.
+    pub(super) among: Among,
+}
+
+/// Which objects there are for a ray.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Among {
+    /// All.
+    All,
+    /// Those that are in the plate or light it.
+    Plate,
 }
 
 /// How a path that photons may find as well goes on.
@@ -123,6 +134,7 @@ impl<const N: usize> Path<N> {
             polarized: Polarized::NOT,
             bounces: 0,
             is_seen: true,
+            among: Among::All,
         }
     }
 

@@ -7,7 +7,7 @@ use super::gather::{Gathered, gather};
 use super::interaction::{Interaction, Meeting};
 use super::layer_sample::{LayerSample, Left, Met};
 use super::light_vertices::{LightVertices, holds_vertices};
-use super::path::{Path, PathKind, ScatterSample};
+use super::path::{Among, Path, PathKind, ScatterSample};
 use super::photon_map::PhotonMap;
 use super::resampling::Resampling;
 use super::sensor::{Bounce, Observer, Sensor};
@@ -18,7 +18,7 @@ use super::{Transport, World};
 use crate::film::Sample;
 use crate::light::{Light, LightId};
 use crate::material::{Material, Straight};
-use crate::math::{BranchKey, DVec2, Ray, Sampler};
+use crate::math::{BranchKey, DVec2, Sampler};
 use crate::scene::Sight;
 use crate::shape::SurfacePoint;
 use crate::spectrum::Draw;
@@ -94,20 +94,44 @@ impl<'a, const N: usize> PathTracer<'a, N> {
         } else {
             camera.ray(film)
         };
-        let first = self.trace(ray, &draw, sampler);
+        if let Some(layers) = &mut self.sensor.layers {
+            layers.begin();
+        }
+        let path = Path::from_camera(world, &draw, ray);
+        let first = self.trace(path, &draw, sampler);
+        if self.sees_shadow_catcher() {
+            self.catch(path, &draw, sampler);
+            return Sample { rgb: [0.0; 3], depth: None };
+        }
         let rgb = self.sensor.read_out(world, &mut self.walker.stats);
         Sample { rgb, depth: first.map(|point| camera.depth(point.position)) }
     }
 
-    /// Hands all light along a camera ray to the sensor, and answers what the ray hit first.
-    fn trace(&mut self, ray: Ray, draw: &Draw<N>, sampler: &Sampler) -> Option<SurfacePoint> {
+    /// Whether the camera ray has met a shadow catcher.
+    fn sees_shadow_catcher(&self) -> bool {
+        let object = self.sensor.layers.as_ref().and_then(|layers| layers.left().object);
+        object.is_some_and(|object| self.walker.world.sight(object) == Sight::ShadowCatcher)
+    }
+
+    /// Holds the light of a path that met a shadow catcher against that of the same path among the objects of the plate
+    /// alone. Neither is seen in the image.
+    #[cold]
+    fn catch(&mut self, path: Path<N>, draw: &Draw<N>, sampler: &Sampler) {
+        let with = std::mem::take(&mut self.sensor.rgb);
+        self.trace(Path { among: Among::Plate, ..path }, draw, sampler);
+        let without = std::mem::take(&mut self.sensor.rgb);
+        self.sensor.forget();
+        if let Some(layers) = &mut self.sensor.layers {
+            layers.catch([with, without]);
+        }
+    }
+
+    /// Hands all light along the path of a camera ray to the sensor, and answers what the ray hit first.
+    fn trace(&mut self, path: Path<N>, draw: &Draw<N>, sampler: &Sampler) -> Option<SurfacePoint> {
         let world = self.walker.world;
         let mut first = None;
-        if let Some(layers) = &mut self.sensor.layers {
-            layers.begin();
-        }
         self.walker.started = self.walker.stats.rays;
-        self.walker.pending.push(Path::from_camera(world, draw, ray));
+        self.walker.pending.push(path);
         while let Some(last) = self.walker.pending.len().checked_sub(1) {
             let mut path = self.walker.pending[last];
             self.walker.pending.truncate(last);
@@ -268,7 +292,7 @@ impl<'a, const N: usize> PathTracer<'a, N> {
 
     /// Hands the light of a light vertex to the sensor, where the path meets a diffuse surface.
     fn resample(&mut self, path: &Path<N>, at: &Interaction<N>, sampler: &Sampler) -> bool {
-        let Some(vertices) = self.light_vertices else { return false };
+        let Some(vertices) = self.light_vertices.filter(|_| path.among == Among::All) else { return false };
         let world = self.walker.world;
         if !at.lobes.is_diffuse() {
             return false;
@@ -291,7 +315,7 @@ impl<'a, const N: usize> PathTracer<'a, N> {
 
     /// Hands what photons bring to a place that the path has reached by way of others to the sensor.
     fn gather_photons(&mut self, path: &Path<N>, at: &Interaction<N>, sampler: &Sampler) {
-        if let Some(photons) = self.photons {
+        if let Some(photons) = self.photons.filter(|_| path.among == Among::All) {
             let apart = self.sensor.layers.is_some() && self.walker.world.layers.tell_photons_apart();
             let Gathered { all, parts } = gather(photons, self.walker.world, path, at, sampler, apart);
             self.sensor.receive_in_parts(&all, if apart { &parts } else { std::slice::from_ref(&all) });
@@ -314,6 +338,7 @@ impl<'a, const N: usize> PathTracer<'a, N> {
 
     /// Whether the path's way to a light is one that photons find.
     fn is_found_by_photons(&self, path: &Path<N>, light: LightId) -> bool {
-        path.kind == PathKind::Smooth { aimed: true } && self.walker.world.sends_photons(light)
+        let is_smooth = path.kind == PathKind::Smooth { aimed: true } && path.among == Among::All;
+        is_smooth && self.walker.world.sends_photons(light)
     }
 }

@@ -7,7 +7,7 @@ use super::interaction::{Interaction, parts};
 use super::media::Media;
 use super::path::{Path, PathKind};
 use super::shading;
-use super::straight::Passage;
+use super::straight::{Passage, Past};
 use super::walker::{Departure, Walker};
 use crate::light::{LeSample, LightId};
 use crate::material::{Arrival, Branch, Material, Scatter};
@@ -30,6 +30,8 @@ pub(super) struct Splat {
     pub(super) dispersed: bool,
     /// Whether the photon is of the first half of those sent with it.
     pub(super) early: bool,
+    /// Whether it landed on a shadow catcher.
+    pub(super) caught: bool,
 }
 
 /// Where a photon lands, and the light's way there.
@@ -206,7 +208,8 @@ pub(super) fn show<const N: usize>(
     let Interaction { arrival, flat, point, material, .. } = at;
     let world = walker.world;
     let (camera, film) = (&world.scene.camera, world.scene.film);
-    if world.hides_objects && world.sight(at.object) != Sight::Shown {
+    let sight = world.sight(at.object);
+    if matches!(sight, Sight::Hidden | Sight::Holdout) {
         return;
     }
     let u = if camera.has_lens() { sampler.four_plain(path.key, LENS) } else { [0.5; 4] };
@@ -232,14 +235,22 @@ pub(super) fn show<const N: usize>(
     let distance = (seen.start - ray.origin).length();
     let inside = at.boundary.sides()[usize::from(!same)];
     let ends = Ends { left: path.left, ..Ends::default() };
-    let passage = Passage { ray: &ray, distance, ends, inside, to_camera: true, last_occluder: &walker.last_occluder };
+    let passage = Passage { ray: &ray, distance, ends, inside, past: Past::Seen, last_occluder: &walker.last_occluder };
     let shone = passage.arriving(world, arrival.draw, || landing.shone(world));
     let Some((shone, polarized)) = shone else { return };
     let arriving = path.throughput.scaled(1.0 / path.eta_scale).of(bsdf_cos * shone);
     let rgb = world.responses[*light].sensor(arrival.draw, arriving, parted);
     let rgb = rgb.map(|x| x * (factor * cosines * seen.importance));
     let change = polarized.brought(material, &viewed, arrival.wo, path.polarized).change() as f32;
-    let splat = Splat { pixel: 0, change, rgb, light: *light, dispersed: parted, early: *early };
+    let splat = Splat {
+        pixel: 0,
+        change,
+        rgb,
+        light: *light,
+        dispersed: parted,
+        early: *early,
+        caught: sight == Sight::ShadowCatcher,
+    };
     places.into_iter().for_each(|place| spread_over_pixels(film, place, &splat, splats));
 }
 

@@ -120,6 +120,7 @@ impl<W: Borrow<World>> Rendering<W> {
         let window = settings.window();
         let mut pixels = vec![BLANK; window.width as usize * window.height as usize];
         let layers = &self.world().layers;
+        let luminance = settings.color_space.to_xyz()[1];
         let mut images = images(layers, pixels.len());
         for tile in &self.tiles {
             for (place, sum) in (0..).zip(&tile.sums) {
@@ -130,6 +131,10 @@ impl<W: Borrow<World>> Rendering<W> {
                     let (covered, place) = (tile.layers.covered(), place as usize);
                     let taken = Taken { sums, shown, rgb: sum.rgb(), kept: sum.kept(), covered, place };
                     write(layers, &taken, number, &mut images);
+                    if let Some(caught) = layers.caught(sums, shown, sum.kept()) {
+                        let alpha = f64::from(pixels[number].alpha) + caught.coverage(luminance);
+                        pixels[number].alpha = alpha.min(1.0) as f32;
+                    }
                 }
             }
         }

@@ -6,10 +6,10 @@ use super::World;
 use super::contribution::{Contribution, Found};
 use super::interaction::Interaction;
 use super::light_vertices::{LightVertex, LightVertices};
-use super::path::Path;
+use super::path::{Among, Path};
 use super::sensor::Sensor;
 use super::shading;
-use super::straight::Passage;
+use super::straight::{Passage, Past};
 use crate::math::{Ray, Sampler, gamma, unit};
 use crate::scene::Ends;
 use crate::shape::prefetch;
@@ -66,8 +66,14 @@ impl<const N: usize> Resampling<'_, N> {
         let short = (vertex.error + gamma(8) * distance) / cos;
         let ends = Ends { left: self.path.left, ..Ends::default() };
         let (distance, inside) = (distance - short, at.boundary.here);
-        let passage =
-            Passage { ray: &ray, distance, ends, inside, to_camera: false, last_occluder: self.last_occluder };
+        let passage = Passage {
+            ray: &ray,
+            distance,
+            ends,
+            inside,
+            past: Past::Objects(Among::All),
+            last_occluder: self.last_occluder,
+        };
         let (arriving, on_its_way) = passage.arriving(world, at.arrival.draw, || vertex.leaving)?;
         let near_squared = self.vertices.near_squared();
         let factor = factor * cos / (squared + near_squared);

@@ -66,6 +66,11 @@ impl<const N: usize> Sensor<'_, N> {
         }
     }
 
+    /// Forgets what the sample received.
+    pub(super) fn forget(&mut self) {
+        (self.rgb, self.moved) = ([0.0; 3], 0.0);
+    }
+
     /// What the sample received; the next one starts with nothing.
     ///
     /// One that is not finite is left out of the image, and so of the light that is counted.

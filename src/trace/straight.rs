@@ -4,7 +4,7 @@ use std::cell::Cell;
 
 use super::interaction::arrival;
 use super::media;
-use super::path::Path;
+use super::path::{Among, Path};
 use super::polarization::Polarized;
 use super::{Transport, World, shading};
 use crate::material::{Scatter, Straight};
@@ -69,10 +69,33 @@ pub(super) struct Passage<'a> {
     pub(super) ends: Ends,
     /// The medium around the ray.
     pub(super) inside: Option<MaterialId>,
-    /// Whether it leads to the camera, from which some objects may be hidden.
-    pub(super) to_camera: bool,
+    /// Which objects may occlude it.
+    pub(super) past: Past,
     /// The object that occluded a light last.
     pub(super) last_occluder: &'a Cell<Option<u32>>,
+}
+
+/// Which objects may occlude a way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Past {
+    /// Those that are there for a path.
+    Objects(Among),
+    /// Those that are not hidden from the camera, to which it leads.
+    Seen,
+}
+
+impl Past {
+    fn is_all(self, world: &World) -> bool {
+        self == Self::Objects(Among::All) || !world.hides_objects
+    }
+
+    fn has(self, world: &World, object: u32) -> bool {
+        match self {
+            Self::Objects(Among::All) => true,
+            Self::Objects(Among::Plate) => world.scene.is_of_plate(object),
+            Self::Seen => world.sight(object) != Sight::Hidden,
+        }
+    }
 }
 
 impl Passage<'_> {
@@ -85,11 +108,11 @@ impl Passage<'_> {
         draw: &Draw<N>,
         light: impl FnOnce() -> Lanes<N>,
     ) -> Option<(Lanes<N>, Polarized)> {
-        let Self { ray, distance, ends, inside, to_camera, last_occluder } = *self;
+        let Self { ray, distance, ends, inside, past, last_occluder } = *self;
         let (mut arriving, polarized);
-        let hides = to_camera && world.hides_objects;
-        if hides || world.has_see_through() {
-            let is_there = |object| !hides || world.sight(object) != Sight::Hidden;
+        let all = past.is_all(world);
+        if !all || world.has_see_through() {
+            let is_there = |object| all || past.has(world, object);
             let closed = |object| !world.is_see_through(object) && is_there(object);
             if world.scene.is_occluded_by(ray, distance, ends, last_occluder, closed) {
                 return None;

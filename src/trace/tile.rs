@@ -66,7 +66,7 @@ impl Tile {
                     self.stats.non_finite += 1;
                     self.first_non_finite.get_or_insert([x, y, number]);
                 } else if let Some(left) = tracer.layers() {
-                    let early = number < world.method.samples / 2;
+                    let early = number < world.method.samples.div_ceil(2);
                     self.layers.add(&world.layers, place as usize, early, &sample, &left);
                 }
             }

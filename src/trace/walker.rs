@@ -4,7 +4,7 @@ use std::cell::Cell;
 
 use super::interaction::{Interaction, Meeting};
 use super::media::Boundary;
-use super::path::{Path, PathKind, ScatterSample};
+use super::path::{Among, Path, PathKind, ScatterSample};
 use super::roulette::{LONG, survival};
 use super::stats::Stats;
 use super::{Transport, World, shading, straight};
@@ -47,7 +47,10 @@ impl<'a, const N: usize> Walker<'a, N> {
     pub(super) fn meet(&mut self, path: &mut Path<N>, draw: &Draw<N>) -> Option<Meeting> {
         self.stats.rays += 1;
         let hit = match path.kind {
-            PathKind::Camera if self.world.hides_objects => self.world.scene.intersect_seen(&path.ray, path.left),
+            PathKind::Camera if self.world.hides_objects && path.among == Among::All => {
+                self.world.scene.intersect_seen(&path.ray, path.left)
+            }
+            _ if path.among == Among::Plate => self.world.scene.intersect_plate(&path.ray, path.left),
             _ => self.world.scene.intersect_from(&path.ray, path.left),
         };
         path.advance(self.world, draw, hit.map_or(f64::INFINITY, |hit| hit.crossing.t));
@@ -221,6 +224,7 @@ impl<'a, const N: usize> Departure<'a, N> {
             },
             bounces: path.bounces + 1,
             is_seen: path.is_seen && !wide && !at.lobes.is_wide(),
+            among: path.among,
         }
     }
 }

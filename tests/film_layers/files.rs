@@ -62,7 +62,9 @@ fn every_lossless_compression_and_several_parts_hold_the_same_numbers() {
                 assert_eq!(parts.len(), 1);
                 continue;
             }
-            for (name, channels) in &parts[1..] {
+            assert_eq!(parts[1].0.as_deref(), Some("depth"));
+            assert!(parts[0].1.keys().eq(["A", "B", "G", "R"]) && parts[1].1.keys().eq(["Z"]));
+            for (name, channels) in &parts[2..] {
                 let name = name.as_ref().expect("each part has a name");
                 assert!(
                     channels.keys().all(|channel| channel.rsplit_once('.').is_some_and(|(layer, _)| layer == name))

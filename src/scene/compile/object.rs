@@ -19,7 +19,7 @@ use crate::spectrum::Curve;
 /// shape.sphere = { center = [0, 1, 0], radius = 1 }
 /// material = "glass"
 /// # transform = [{ scale = 2 }]
-/// # visible_to_camera = false     # or holdout = true
+/// # visible_to_camera = false     # or holdout = true, or shadow_catcher = true
 /// # group = "key"                 # the layer of its light
 /// # bump_map = { image = "dents.png", depth = 0.02 }
 /// # instances = [[{ translate = [1, 0, 0] }], [{ translate = [3, 0, 0] }, { scale = [-1, 1, 1] }]]
@@ -91,15 +91,19 @@ pub(super) fn object<'d>(
 /// What the camera sees of an object.
 fn sight(object: &mut Fields) -> Option<Sight> {
     let visible = object.or("visible_to_camera", true, Value::yes_or_no);
-    let holdout = object.maybe("holdout", at(Value::yes_or_no));
-    match (visible?, holdout?) {
-        (false, Some(At { place, it: true })) => {
-            let help = "a holdout cuts a hole, an object that is not visible does not: leave one of them out";
-            place.advise("a holdout is there for the camera alone, which does not see this object", help)
+    let mut kind = |key| object.maybe(key, at(Value::yes_or_no)).map(|value| value.filter(|value| value.it));
+    let (holdout, catcher) = (kind("holdout"), kind("shadow_catcher"));
+    match (visible?, holdout?, catcher?) {
+        (false, Some(other), _) | (false, _, Some(other)) | (true, Some(_), Some(other)) => {
+            let help = "an object is not visible, or cuts a hole, or shows the shadows on it: keep one of these";
+            other
+                .place
+                .advise(format!("`{}` is not all that the camera is told of this object", other.place.key()), help)
         }
-        (false, _) => Some(Sight::Hidden),
-        (true, Some(At { it: true, .. })) => Some(Sight::Holdout),
-        (true, _) => Some(Sight::Shown),
+        (false, None, None) => Some(Sight::Hidden),
+        (true, Some(_), None) => Some(Sight::Holdout),
+        (true, None, Some(_)) => Some(Sight::ShadowCatcher),
+        (true, None, None) => Some(Sight::Shown),
     }
 }
 
