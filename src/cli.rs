@@ -20,7 +20,7 @@ Examples:
   render --plan scenes/prism.toml                 say what it would do, and why
   render --check scenes/prism.toml                find mistakes in the scene
   render --samples 16 --exr scenes/prism.toml     take a quick look
-  render --layers albedo,N --exr scenes/prism.toml   write layers beside the image
+  render --layers all --exr scenes/prism.toml     write layers beside the image
   render catalog --help                           see which glasses it knows
   render info prism.exr                           say what an image carries
   render view prism.exr                           show it on the terminal

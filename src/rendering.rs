@@ -36,7 +36,7 @@ impl Options {
     /// Puts these settings in place of the scene's own.
     ///
     /// # Errors
-    /// [`Error::Arguments`] if there are no samples, or the crop lies outside the image.
+    /// [`Error::Arguments`] if there are no samples, the crop lies outside the image, or its layers cannot be written.
     pub fn apply(&self, scene: &mut Scene) -> Result<()> {
         let refuse = |message: String, help: &str| Err(Error::Arguments { message, help: Some(help.to_owned()) });
         if self.samples == Some(0) {
@@ -48,6 +48,11 @@ impl Options {
         (scene.render.samples, scene.render.seed, scene.film.crop) = self.instead_of(scene);
         if let Some(layers) = &self.layers {
             scene.format.layers.clone_from(layers);
+        }
+        if scene.layer_bytes() > MOST_OF_LAYERS {
+            let gigabytes = scene.layer_bytes() / 1_000_000_000;
+            let message = format!("{} channels of layers would take {gigabytes} GB of memory", scene.layer_channels());
+            return refuse(message, "ask for fewer layers, or make a part of the image at a time with --crop");
         }
         if let Some(message) = bad_light_layer(scene) {
             return refuse(message, "give that light or object a `group` of at most 23 letters a to z, digits and _");
@@ -61,6 +66,9 @@ impl Options {
         (samples, self.seed.unwrap_or(scene.render.seed), self.crop.or(scene.film.crop))
     }
 }
+
+/// Most bytes of memory that layers may take: 64 GB.
+const MOST_OF_LAYERS: u64 = 64_000_000_000;
 
 /// What is wrong with the layer of a light, if lights have layers.
 fn bad_light_layer(scene: &Scene) -> Option<String> {
@@ -131,7 +139,11 @@ impl Rendering {
     pub fn new(scene: &Scene, options: &Options) -> Result<Self> {
         let mut scene = Cow::Borrowed(scene);
         let is_as_asked = options.instead_of(&scene) == (scene.render.samples, scene.render.seed, scene.film.crop);
-        if !is_as_asked || options.layers.is_some() || bad_light_layer(&scene).is_some() {
+        if !is_as_asked
+            || options.layers.is_some()
+            || bad_light_layer(&scene).is_some()
+            || scene.layer_bytes() > MOST_OF_LAYERS
+        {
             options.apply(scene.to_mut())?;
         }
         let threads = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build();

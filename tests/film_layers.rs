@@ -2,7 +2,7 @@
 
 mod files;
 
-use abbe::film::{FirstSurface, Layer, id};
+use abbe::film::{FirstSurface, Layer, Window, id};
 use abbe::{Image, Options, Scene};
 
 /// Glass that disperses, a mirror, a pane, rough metal and a coated ball on a floor, lit by a lamp, a sky and a spot:
@@ -139,6 +139,18 @@ fn lights_of_one_group_share_a_layer() {
     let names: Vec<_> = image.film().layers.iter().map(|layer| layer.name.as_str()).collect();
     assert_eq!(names, ["light_warm", "light_environment"]);
     assert_sum(&image, &names, 1.0);
+}
+
+#[test]
+fn layers_that_would_fill_all_memory_are_refused() {
+    let huge = ROOM.replace("width = 40, height = 28", "width = 16384, height = 16384");
+    let mut scene = Scene::parse(&huge, "").expect("the scene is valid");
+    let options = Options { layers: Some(all_layers()), ..Options::default() };
+    let error = options.apply(&mut scene).expect_err("it is refused").to_string();
+    assert!(error.contains("channels of layers would take") && error.contains("GB of memory"), "{error}");
+    let crop = Some(Window { left: 0, top: 0, width: 64, height: 64 });
+    let mut scene = Scene::parse(&huge, "").expect("the scene is valid");
+    assert!(Options { crop, ..options }.apply(&mut scene).is_ok());
 }
 
 #[test]

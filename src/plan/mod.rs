@@ -88,6 +88,7 @@ pub fn plan(scene: &Scene<Curve>) -> Plan {
     let times = photon_times(&taught.map_or(world.clone(), |taught| world.clone().taught_by(&taught)));
     let (cost, processor_time) = cost(scene, &method, &probe, times);
     let mut because = vec![cost];
+    because.extend(layers(scene));
     because.extend(missed);
     because.extend(polarization::left_out(scene, &world));
     because.extend(lights(scene, method.light_pass.as_ref()));
@@ -121,6 +122,13 @@ fn between(world: &World) -> Between {
         }
         _ => Between::default(),
     }
+}
+
+/// What layers take, where that is much.
+fn layers(scene: &Scene<Curve>) -> Option<String> {
+    let gigabytes = scene.layer_bytes() as f64 / 1e9;
+    let channels = scene.layer_channels();
+    (gigabytes >= 1.0).then(|| format!("layers: {channels} channels beside the image take {gigabytes:.1} GB of memory"))
 }
 
 /// What lights cannot do.

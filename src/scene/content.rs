@@ -1,11 +1,12 @@
 //! What a scene holds, and what rays meet in it.
 
 use std::cell::Cell;
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use super::index::Index;
 use super::{Camera, Relief, RenderText};
-use crate::film::{Filter, Format, Window};
+use crate::film::{Filter, Format, Layer, RANKS, Window};
 use crate::light::{Light, LightId};
 use crate::material::Material;
 use crate::math::Ray;
@@ -230,6 +231,24 @@ impl<S> Scene<S> {
             hash: self.hash.clone(),
             index: self.index.clone(),
         }
+    }
+
+    /// Channels of the layers that the file has beside the image.
+    pub fn layer_channels(&self) -> u64 {
+        let groups = self.light_groups.iter().collect::<BTreeSet<_>>().len();
+        let images = |layer: &Layer| match layer {
+            Layer::Lights => groups,
+            layer if layer.is_matte() => RANKS / 2,
+            _ => 1,
+        };
+        self.format.layers.iter().map(|layer| (images(layer) * layer.channels().len()) as u64).sum()
+    }
+
+    /// Bytes of memory that layers take: of each number a sum in 64 bits, its value in 32, and that again while the
+    /// file is written.
+    pub fn layer_bytes(&self) -> u64 {
+        let window = self.film.window();
+        16 * self.layer_channels() * u64::from(window.width) * u64::from(window.height)
     }
 
     /// The light that fills the whole sky, if there is one.
