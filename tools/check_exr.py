@@ -44,7 +44,7 @@ LAYERS = {
     r"": "RGBAZ",
     r"emission|background|direct|indirect|caustics|dispersed|shadow": "RGB",
     r"light_[A-Za-z0-9_]+": "RGB",
-    r"albedo|variance|half_[ab]": "RGB",
+    r"albedo|variance|half_[ab]|denoised": "RGB",
     r"Nd?|P": "XYZ",
     r"UV": "UV",
     r"samples": "V",
