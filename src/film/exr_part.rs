@@ -57,7 +57,7 @@ pub struct Channel {
 }
 
 impl Channel {
-    /// ExrLayer and name, as the file has them.
+    /// Layer and name, as the file has them.
     pub fn full_name(&self) -> String {
         if self.layer.is_empty() { self.name.clone() } else { format!("{}.{}", self.layer, self.name) }
     }
