@@ -41,35 +41,35 @@ pub(super) struct LightVertex<const N: usize> {
     pub(super) diffuse: u32,
 }
 
-/// The vertices of some light paths, dealt into hands of which each holds vertices from all over the scene.
+/// The vertices of some light paths, dealt into sets of candidates. Each set has vertices from all over the scene.
 pub(super) struct LightVertices<const N: usize> {
-    hands: Vec<Hand>,
-    /// In the order of a curve through the scene. With n hands, each has every n-th vertex, row after row.
+    candidates: Vec<Candidates>,
+    /// In the order of a curve through the scene. Of n sets of candidates each has every n-th vertex, row after row.
     vertices: Vec<LightVertex<N>>,
-    /// The point from which places in hands are counted, in units of D.
+    /// The point from which places of candidates are counted, in units of D.
     center: DVec3,
     /// D.
     near: f64,
-    /// The instructions by which hands are weighed.
+    /// The instructions by which candidates are weighed.
     instructions: Instructions,
     pub(super) stats: Stats,
 }
 
-/// Rows of a hand, and vertices of a row. There are 64 in all: of 32, an image is noisier by a sixth.
+/// Rows of candidates, and vertices of a row. There are 64 in all: of 32, an image is noisier by a sixth.
 const ROWS: usize = 8;
 const ROW: usize = 8;
-const HAND: usize = ROWS * ROW;
+const CANDIDATES: usize = ROWS * ROW;
 
-/// What a choice among the vertices of a hand asks; absent ones have no power.
+/// What a choice among some vertices asks of them; absent ones have no power.
 #[derive(Clone, Debug)]
-struct Hand {
+struct Candidates {
     place: [OfHand; 3],
     flat: [OfHand; 3],
     /// X + Y + Z of what leaves, as the sensor sees it, times how often it is seen; 1 of the brightest vertex.
     power: OfHand,
 }
 
-/// A number for each vertex of a hand: for each place in a row, the numbers of all rows side by side, so that all rows
+/// A number for each candidate: for each place in a row, the numbers of all rows side by side, so that all rows
 /// are summed at once.
 type OfHand = [[f32; ROWS]; ROW];
 
@@ -206,17 +206,17 @@ impl<'a> LightPaths<'a> {
         Followed { vertices, stats: walker.stats }
     }
 
-    /// Deals vertices into hands.
+    /// Deals vertices into sets of candidates.
     fn dealt<const N: usize>(&self, mut vertices: Vec<LightVertex<N>>, stats: Stats) -> LightVertices<N> {
         let center = vertices.iter().map(|vertex| vertex.position).sum::<DVec3>() / vertices.len().max(1) as f64;
         let near = NEAR * median(vertices.iter().map(|vertex| (vertex.position - center).length()).collect());
         vertices.sort_by_cached_key(|vertex| morton((vertex.position - center) * (CELLS / near)));
-        let count = vertices.len().div_ceil(HAND);
-        let mut hands = vec![Hand::EMPTY; count];
+        let count = vertices.len().div_ceil(CANDIDATES);
+        let mut candidates = vec![Candidates::EMPTY; count];
         for (number, (vertex, power)) in vertices.iter().zip(self.powers(&vertices)).enumerate() {
-            hands[number % count].set(number / count, (vertex.position - center) / near, vertex.flat, power);
+            candidates[number % count].set(number / count, (vertex.position - center) / near, vertex.flat, power);
         }
-        LightVertices { hands, vertices, center, near, instructions: Instructions::best(), stats }
+        LightVertices { candidates, vertices, center, near, instructions: Instructions::best(), stats }
     }
 
     /// What leaves each vertex, as the sensor sees it, times how often it is seen; 1 of the brightest.
@@ -246,10 +246,10 @@ impl<const N: usize> LightVertices<N> {
     /// A vertex as seen from a point of a surface, for two random numbers, and one over how likely it was; none if none
     /// is seen.
     pub(super) fn choose(&self, from: DVec3, flat: DVec3, [u, v]: [f64; 2]) -> Option<(&LightVertex<N>, f64)> {
-        let count = self.hands.len();
+        let count = self.candidates.len();
         let number = ((u * count as f64) as usize).min(count.checked_sub(1)?);
         let [from, flat] = [(from - self.center) / self.near, flat].map(|v| v.as_vec3().to_array());
-        let weights = self.instructions.run(Weighing { hand: &self.hands[number], from, flat });
+        let weights = self.instructions.run(Weighing { candidates: &self.candidates[number], from, flat });
         let rows =
             weights.iter().fold([0.0; ROWS], |rows, weights| std::array::from_fn(|row| rows[row] + weights[row]));
         let total: f32 = rows.iter().sum();
@@ -274,7 +274,7 @@ fn chosen<const COUNT: usize>(weights: [f32; COUNT], share: f32) -> Option<(usiz
     chosen
 }
 
-impl Hand {
+impl Candidates {
     const EMPTY: Self =
         Self { place: [[[0.0; ROWS]; ROW]; 3], flat: [[[0.0; ROWS]; ROW]; 3], power: [[0.0; ROWS]; ROW] };
 
@@ -287,10 +287,10 @@ impl Hand {
     }
 }
 
-/// Finds about what each vertex of a hand would bring to a white diffuse surface.
+/// Finds about what each candidate would bring to a white diffuse surface.
 struct Weighing<'a> {
-    hand: &'a Hand,
-    /// The point of the surface as places in hands are given, and its unit normal.
+    candidates: &'a Candidates,
+    /// The point of the surface as places of candidates are given, and its unit normal.
     from: [f32; 3],
     flat: [f32; 3],
 }
@@ -300,7 +300,7 @@ impl Computation for Weighing<'_> {
 
     #[inline(always)]
     fn run<V: Vectors>(self, _: V) -> OfHand {
-        let Self { hand: Hand { place, flat: flats, power }, from, flat } = self;
+        let Self { candidates: Candidates { place, flat: flats, power }, from, flat } = self;
         // One instruction, where `max` takes several for the sake of NaN.
         let positive = |x: f32| if x > 0.0 { x } else { 0.0 };
         std::array::from_fn(|i| {
@@ -358,22 +358,22 @@ mod tests {
     use super::*;
 
     #[test]
-    fn plain_and_wide_instructions_weigh_a_hand_alike() {
+    fn plain_and_wide_instructions_weigh_candidates_alike() {
         let number = |i: usize, purpose: u32| {
             Sampler::new(3, [0, 0], i as u32).four_plain(BranchKey::CAMERA, purpose).map(|u| 4.0 * u - 2.0)
         };
-        let mut hand = Hand::EMPTY;
-        for slot in 0..HAND - 3 {
+        let mut candidates = Candidates::EMPTY;
+        for slot in 0..CANDIDATES - 3 {
             let ([x, y, z, power], [a, b, c, _]) = (number(slot, 0), number(slot, 1));
-            hand.set(slot, DVec3::new(x, y, z), DVec3::new(a, b, c).normalize(), power.abs() as f32);
+            candidates.set(slot, DVec3::new(x, y, z), DVec3::new(a, b, c).normalize(), power.abs() as f32);
         }
         let mut some = 0;
         for i in 0..1000 {
             let ([x, y, z, _], [a, b, c, _]) = (number(i, 2), number(i, 3));
             // Also from the place of a vertex itself, where its weight is 0 / 0.
-            let from = if i < 8 { hand.place.map(|axis| axis[i][0]) } else { [x, y, z].map(|x| x as f32) };
+            let from = if i < 8 { candidates.place.map(|axis| axis[i][0]) } else { [x, y, z].map(|x| x as f32) };
             let weigh = |instructions: Instructions| {
-                instructions.run(Weighing { hand: &hand, from, flat: [a, b, c].map(|x| x as f32) })
+                instructions.run(Weighing { candidates: &candidates, from, flat: [a, b, c].map(|x| x as f32) })
             };
             let weights = weigh(Instructions::Plain);
             assert_eq!(weights, weigh(Instructions::best()));
