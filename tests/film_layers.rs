@@ -89,9 +89,17 @@ fn assert_sum(image: &Image, layers: &[&str], share: f64) {
 fn layers_of_light_add_up_to_the_image() {
     let image = rendered(ROOM, &all_layers());
     assert_sum(&image, &["emission", "background", "direct", "indirect"], 1.0);
+    let lobes = ["diffuse", "glossy", "specular", "transmission"];
+    let split = lobes.map(|lobe| [format!("{lobe}_direct"), format!("{lobe}_indirect")]);
+    let split: Vec<&str> = split.as_flattened().iter().map(String::as_str).collect();
+    assert_sum(&image, &[&["emission", "background"], split.as_slice()].concat(), 1.0);
     assert_sum(&image, &["light_key_lamp", "light_environment", "light_rim"], 1.0);
     assert_sum(&image, &["half_a", "half_b"], 0.5);
     let total = |layer: &str| rgb(&image, layer).iter().flatten().sum::<f64>();
+    // Nothing here is behind one surface alone.
+    for layer in split.into_iter().filter(|layer| *layer != "transmission_direct") {
+        assert!(total(layer) > 0.0, "nothing in {layer}");
+    }
     for layer in ["emission", "background", "direct", "indirect", "caustics", "dispersed", "light_rim"] {
         assert!(total(layer) > 0.0, "nothing in {layer}");
     }
@@ -130,6 +138,38 @@ fn a_light_of_its_own_layer_is_the_image_that_it_makes_alone() {
             assert!(near, "{layer}, pixel {pixel}: {part:?} is not {whole:?}");
         }
     }
+}
+
+/// A coat reflects the same whatever lies below it, and a base scatters the same patch by patch as where it lies alone.
+#[test]
+fn lobes_of_one_surface_are_told_apart_to_the_last_digits() {
+    let lit = |materials: &str, layer: Layer| {
+        let text = BALL
+            .replace(
+                "material.clay.diffuse.reflectance = { rgb = [0.2, 0.5, 0.8] }",
+                &format!("[material]\n{materials}"),
+            )
+            .replace("environment.radiance = 1", "point = { position = [3, 2, 4], intensity = 30 }")
+            .replace("render =", "render.model = \"rgb\"\nrender.seed = 1\n#");
+        let image = rendered(&text, &[layer]);
+        rgb(&image, layer.name())
+    };
+    let same = |[a, b]: [Vec<[f64; 3]>; 2], what: &str| {
+        assert!(a.as_flattened().iter().sum::<f64>() > 1.0, "{what}");
+        for (a, b) in a.as_flattened().iter().zip(b.as_flattened()) {
+            assert!((a - b).abs() <= 1e-6 + 2e-6 * b.abs(), "{what}: {a} is not {b}");
+        }
+    };
+    let coated = "clay.plastic = { reflectance = { rgb = [0.2, 0.5, 0.8] }, roughness = 0.3 }";
+    let coat = "clay.plastic = { reflectance = 0, roughness = 0.3 }";
+    same([lit(coated, Layer::GlossyDirect), lit(coat, Layer::Direct)], "the coat");
+    let mixed = "clay.mix = { materials = [\"chalk\", \"gold\"], amount = 0.25 }\nchalk.diffuse.reflectance = 0.8\n\
+                 gold.conductor = { metal = \"Au\", roughness = 0.3 }";
+    let chalk = "clay.diffuse.reflectance = 0.6";
+    let gold = "clay.mix = { materials = [\"gold\", \"soot\"], amount = 0.75 }\nsoot.diffuse.reflectance = 0\n\
+                gold.conductor = { metal = \"Au\", roughness = 0.3 }";
+    same([lit(mixed, Layer::DiffuseDirect), lit(chalk, Layer::Direct)], "the chalk");
+    same([lit(mixed, Layer::GlossyDirect), lit(gold, Layer::Direct)], "the gold");
 }
 
 #[test]

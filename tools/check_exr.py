@@ -43,6 +43,7 @@ LOSSLESS = {
 LAYERS = {
     r"": "RGBAZ",
     r"emission|background|direct|indirect|caustics|dispersed|shadow": "RGB",
+    r"(diffuse|glossy|specular|transmission)_(in)?direct": "RGB",
     r"light_[A-Za-z0-9_]+": "RGB",
     r"albedo|variance|half_[ab]|denoised": "RGB",
     r"Nd?|P": "XYZ",
@@ -56,6 +57,7 @@ ALWAYS_32_BITS = r"Z|P\..*|UV\..*|variance\..*|samples\..*|Crypto.*"
 SHARED = ("type", "compression", "lineOrder", "dataWindow", "displayWindow", "pixelAspectRatio")
 SHARED += ("screenWindowCenter", "screenWindowWidth")
 MATTE_LAYERS = ("00", "01", "02")
+LOBES = ("diffuse", "glossy", "specular", "transmission")
 
 # What each provenance attribute must look like; a seed is text because an EXR integer has 32 bits only.
 PROVENANCE = {
@@ -238,7 +240,8 @@ def statistics(file):
 def sums(file):
     """Kinds of light, lights, and the halves of the samples make the image, as exactly as its numbers are stored."""
     lights = [layer for layer in file.layers() if layer.startswith("light_")]
-    wholes = [(("emission", "background", "direct", "indirect"), 1), (lights, 1)]
+    lobes = [f"{lobe}_{kind}" for lobe in LOBES for kind in ("direct", "indirect")]
+    wholes = [(("emission", "background", "direct", "indirect"), 1), (("emission", "background", *lobes), 1), (lights, 1)]
     samples = file.header.get("render/samples")
     # Halves of an odd number of samples, or of fewer than were taken, are not of equal weight.
     if type(samples) is int and samples % 2 == 0 and file.header.get("render/nonFinite") == 0:

@@ -11,6 +11,22 @@ pub enum Layer {
     Direct,
     /// Light that was scattered more often.
     Indirect,
+    /// Of the direct light, what the first surface reflects diffusely.
+    DiffuseDirect,
+    /// What it reflects glossily: rough metal, the coat of rough plastic.
+    GlossyDirect,
+    /// What it mirrors.
+    SpecularDirect,
+    /// What comes through it.
+    TransmissionDirect,
+    /// Of the indirect light, what the first surface reflects diffusely.
+    DiffuseIndirect,
+    /// What it reflects glossily.
+    GlossyIndirect,
+    /// What it mirrors.
+    SpecularIndirect,
+    /// What comes through it.
+    TransmissionIndirect,
     /// Light that photons found; it is part of the indirect light.
     Caustics,
     /// Light whose wavelengths parted on their way.
@@ -50,11 +66,19 @@ impl Layer {
     pub const ALL: &str = "all";
 
     /// All of them by the names that ask for them.
-    pub const NAMES: [(&str, Self); 20] = [
+    pub const NAMES: [(&str, Self); 28] = [
         ("emission", Self::Emission),
         ("background", Self::Background),
         ("direct", Self::Direct),
         ("indirect", Self::Indirect),
+        ("diffuse_direct", Self::DiffuseDirect),
+        ("glossy_direct", Self::GlossyDirect),
+        ("specular_direct", Self::SpecularDirect),
+        ("transmission_direct", Self::TransmissionDirect),
+        ("diffuse_indirect", Self::DiffuseIndirect),
+        ("glossy_indirect", Self::GlossyIndirect),
+        ("specular_indirect", Self::SpecularIndirect),
+        ("transmission_indirect", Self::TransmissionIndirect),
         ("caustics", Self::Caustics),
         ("dispersed", Self::Dispersed),
         ("lights", Self::Lights),
@@ -92,6 +116,15 @@ impl Layer {
     /// Whether 16 bits are enough where the file has them: for light, and for numbers up to 1.
     pub fn may_be_half(self) -> bool {
         !matches!(self, Self::Position | Self::Uv | Self::Variance | Self::Samples) && !self.is_matte()
+    }
+
+    /// Whether it holds what one lobe of the first surface sends to the camera.
+    pub fn is_of_lobe(self) -> bool {
+        use Layer::{DiffuseDirect, DiffuseIndirect, GlossyDirect, GlossyIndirect};
+        use Layer::{SpecularDirect, SpecularIndirect, TransmissionDirect, TransmissionIndirect};
+        let reflected = matches!(self, DiffuseDirect | GlossyDirect | DiffuseIndirect | GlossyIndirect);
+        let single = matches!(self, SpecularDirect | SpecularIndirect);
+        reflected || single || matches!(self, TransmissionDirect | TransmissionIndirect)
     }
 
     /// Whether it is a matte.

@@ -212,6 +212,17 @@ impl Scatter for Material<Table> {
         }
     }
 
+    fn diffuse_part<const N: usize>(&self, arrival: &Arrival<N>, wi: DVec3) -> Lanes<N> {
+        match self {
+            Self::Diffuse(diffuse) => diffuse.evaluate(arrival, wi).map_or(Lanes::ZERO, |(light, _)| light),
+            Self::Plastic(plastic) => plastic.diffuse_part(arrival, wi),
+            Self::Mix(mix) => mix.diffuse_part(arrival, wi),
+            Self::Mask(mask) => mask.diffuse_part(arrival, wi),
+            Self::Mirror(_) | Self::Conductor(_) | Self::Dielectric(_) => Lanes::ZERO,
+            Self::Thin(_) | Self::Emissive(_) => Lanes::ZERO,
+        }
+    }
+
     fn straight<const N: usize>(&self, arrival: &Arrival<N>) -> Option<Straight<N>> {
         match self {
             Self::Thin(thin) => Some(thin.straight(arrival)),

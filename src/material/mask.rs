@@ -28,6 +28,10 @@ impl<M: Scatter> Mask<Table, M> {
         Some((light * arrival.read(&self.opacity), pdf))
     }
 
+    pub(super) fn diffuse_part<const N: usize>(&self, arrival: &Arrival<N>, wi: DVec3) -> Lanes<N> {
+        self.material.material().diffuse_part(arrival, wi) * arrival.read(&self.opacity)
+    }
+
     /// The share that goes straight on.
     pub(super) fn straight<const N: usize>(&self, arrival: &Arrival<N>) -> Straight<N> {
         let (opacity, within) = (arrival.read(&self.opacity), self.material.material().straight(arrival));

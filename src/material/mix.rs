@@ -107,6 +107,11 @@ impl<M: Scatter> Mix<Table, M> {
         Some((a.0 * shares[0] + b.0 * shares[1], (1.0 - second) * a.1 + second * b.1))
     }
 
+    pub(super) fn diffuse_part<const N: usize>(&self, arrival: &Arrival<N>, wi: DVec3) -> Lanes<N> {
+        let (shares, [a, b]) = (self.shares(arrival), self.materials.each_ref().map(Part::material));
+        a.diffuse_part(arrival, wi) * shares[0] + b.diffuse_part(arrival, wi) * shares[1]
+    }
+
     /// The share that goes straight on.
     pub(super) fn straight<const N: usize>(&self, arrival: &Arrival<N>) -> Option<Straight<N>> {
         let parts = self.materials.each_ref().map(|part| part.material().straight(arrival));

@@ -77,6 +77,17 @@ impl Plastic<Table> {
         Some((Lanes::from_fn(|i| light[i] as f32), pdf))
     }
 
+    /// What the base scatters through the coat.
+    pub(super) fn diffuse_part<const N: usize>(&self, arrival: &Arrival<N>, wi: DVec3) -> Lanes<N> {
+        let cos = wi.dot(arrival.normal);
+        if cos <= 0.0 {
+            return Lanes::ZERO;
+        }
+        let wo = above(&Frame::about(arrival.normal), arrival.wo);
+        let light = self.lanes(arrival, [wo.z, cos], |crossing, r, _| crossing.base(r) * cos * FRAC_1_PI);
+        Lanes::from_fn(|i| light[i] as f32)
+    }
+
     /// What a smooth coat reflects.
     fn mirrored<const N: usize>(&self, arrival: &Arrival<N>) -> Option<Branch<N>> {
         let (index, cos) = (arrival.draw.read_exact(&self.index), arrival.wo.dot(arrival.normal));

@@ -15,6 +15,9 @@ pub trait Scatter {
     /// None where only a delta distribution could send light that way.
     fn evaluate<const N: usize>(&self, arrival: &Arrival<N>, wi: DVec3) -> Option<(Lanes<N>, f64)>;
 
+    /// What of BSDF times cosine, as `evaluate` answers it, is of diffuse lobes.
+    fn diffuse_part<const N: usize>(&self, arrival: &Arrival<N>, wi: DVec3) -> Lanes<N>;
+
     /// The share of the light that goes straight on and into the same media; none where nothing does. `scatter` leaves
     /// it out.
     fn straight<const N: usize>(&self, arrival: &Arrival<N>) -> Option<Straight<N>>;

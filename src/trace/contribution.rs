@@ -1,5 +1,6 @@
 //! Light on its way into the sensor.
 
+use super::first_lobe::FirstLobe;
 use crate::light::LightId;
 use crate::math::DVec3;
 
@@ -13,6 +14,8 @@ pub(super) struct Contribution {
     pub(super) rgb: [f64; 3],
     /// How much of it polarization may change, as X + Y + Z.
     pub(super) moved: f64,
+    /// How the first surface sent it to the camera, if layers tell that apart.
+    pub(super) first: Option<FirstLobe>,
     /// How often surfaces scattered, mirrored or refracted it on its way.
     pub(super) bounces: u32,
     /// Whether its wavelengths parted on the way.

@@ -153,7 +153,8 @@ impl<const N: usize> DirectLighting<'_, N> {
         let rgb = world.responses[*light].sensor(arrival.draw, reflected, side.parted);
         let moved = self.at.moved(world, self.path, wi, on_its_way, rgb);
         let (bounces, dispersed) = (self.path.bounces + 1, side.parted);
-        Some(Contribution { light: Some(*light), found: Found::Sampled, rgb, moved, bounces, dispersed })
+        let first = self.at.first_lobe(world, self.path, wi, side.normal != self.at.flat);
+        Some(Contribution { light: Some(*light), found: Found::Sampled, rgb, moved, first, bounces, dispersed })
     }
 
     /// The factor on a light's emission and the material's answer: over the density of both ways to the light's

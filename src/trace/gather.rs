@@ -95,6 +95,7 @@ pub(super) fn gather<const N: usize>(
         found: contribution::Found::Gathered,
         rgb,
         moved: 0.0,
+        first: path.first,
         bounces,
         dispersed,
     };

@@ -1,5 +1,6 @@
 //! A ray meets a surface.
 
+use super::first_lobe::FirstLobe;
 use super::media::{self, Boundary};
 use super::path::Path;
 use super::polarization::Polarized;
@@ -81,6 +82,23 @@ impl<'a, const N: usize> Interaction<'a, N> {
         }
         let change = path.polarized.brought(self.material, &self.arrival, wi, on_its_way).change();
         if change == 0.0 { 0.0 } else { change * world.amount(rgb) }
+    }
+}
+
+impl<const N: usize> Interaction<'_, N> {
+    /// The lobe by which the first surface sends light to the camera that a path finds here, in a direction that may
+    /// lead beyond the surface; none if layers do not tell that apart.
+    #[inline]
+    pub(super) fn first_lobe(&self, world: &World, path: &Path<N>, wi: DVec3, crosses: bool) -> Option<FirstLobe> {
+        match path.bounces {
+            0 if !world.layers.tell_lobes_apart() => None,
+            0 if crosses => Some(FirstLobe::Transmitted),
+            0 => {
+                let Self { material, lobes, arrival, .. } = self;
+                Some(FirstLobe::reflected(world.layers.white.as_ref(), material, *lobes, arrival, wi))
+            }
+            _ => path.first,
+        }
     }
 }
 

@@ -123,19 +123,23 @@ impl<'a, const N: usize> LayerSample<'a, N> {
     /// What a white light all around would show of the surface, if it is asked for: an estimate by the directions of
     /// one draw, exact where shares do not depend on them.
     fn albedo(&mut self, path: &Path<N>, at: &Interaction<N>, panes: Option<Lanes<N>>, sampler: &Sampler) -> [f64; 3] {
-        let Some((response, white)) = &self.world.layers.white else { return [0.0; 3] };
+        let layers = &self.world.layers;
+        let (Some(white), Some(_)) = (&layers.white, layers.at(Layer::Albedo)) else { return [0.0; 3] };
         let [u, v, ..] = sampler.four_plain(path.key, ALBEDO);
         let (arrival, draw) = (&at.arrival, at.arrival.draw);
         self.branches.clear();
         shading::scatter(at.material, arrival, at.flat, [u, v], &mut self.branches);
-        let white = draw.read(white);
         // Radiance changes by each lane's own index where light crosses, `eta_scale` by that of the ray.
-        let crossing = arrival.forward().map_or(white, |twice| Lanes::from_fn(|i| twice[i].sqrt() * white[i]));
-        let through = panes.map(|panes| response.sensor(draw, path.throughput.of(panes * white), path.parted));
+        let crossing = arrival.forward().map(|twice| Lanes::from_fn(|i| twice[i].sqrt()));
+        let through = panes.map(|panes| white.times(draw, path.throughput.of(panes), path.parted));
         let mut albedo = through.map_or([0.0; 3], |rgb| rgb.map(|x| x / path.eta_scale));
         for branch in &self.branches {
-            let share = path.throughput.of(branch.share * if branch.crosses { crossing } else { white });
-            let rgb = response.sensor(draw, share, path.parted || (at.parts && branch.crosses));
+            let share = match crossing {
+                Some(crossing) if branch.crosses => branch.share * crossing,
+                _ => branch.share,
+            };
+            let parted = path.parted || (at.parts && branch.crosses);
+            let rgb = white.times(draw, path.throughput.of(share), parted);
             let scale = path.eta_scale * branch.eta_scale;
             (0..3).for_each(|channel| albedo[channel] += rgb[channel] / scale);
         }

@@ -1,9 +1,11 @@
 //! The layers that are asked for beside the image: which they are, and where their sums stand.
 
 use super::contribution::{Contribution, Found};
+use super::first_lobe::FirstLobe;
+use super::white::White;
 use crate::film::{FirstSurface, Layer, Manifest, id, light_layer_name};
 use crate::scene::{Scene, Sight};
-use crate::spectrum::{Basis, Curve, Quantity, Response, Table};
+use crate::spectrum::{Basis, Curve};
 
 /// The layers of a world's image.
 ///
@@ -26,8 +28,10 @@ pub(super) struct Layers {
     pub(super) ids: Vec<(Layer, Vec<u32>)>,
     /// Where the numbers of shadow catchers begin, if there are any: see [`Caught`].
     caught: Option<usize>,
-    /// A light of radiance 1, by which albedo is looked at.
-    pub(super) white: Option<(Response, Table)>,
+    /// Whether any of them is of a lobe of the first surface.
+    lobes_apart: bool,
+    /// A light of radiance 1, by which albedo and lobes are looked at.
+    pub(super) white: Option<White>,
 }
 
 /// The name that each object has in a matte.
@@ -102,9 +106,9 @@ impl Layers {
         }
         let mattes = layers.wanted.iter().filter(|layer| layer.is_matte());
         layers.ids = mattes.map(|&matte| (matte, names(scene, matte).map(id).collect())).collect();
-        if layers.at(Layer::Albedo).is_some() {
-            let one = Curve::from(1.0);
-            layers.white = Some((basis.response(&one), basis.tabulate(Quantity::Emission, &one)));
+        layers.lobes_apart = layers.wanted.iter().any(|layer| layer.is_of_lobe());
+        if layers.lobes_apart || layers.at(Layer::Albedo).is_some() {
+            layers.white = Some(White::new(basis));
         }
         layers
     }
@@ -173,9 +177,38 @@ impl Layers {
         }
     }
 
+    /// Whether light is told apart by the lobe of the first surface.
+    #[inline]
+    pub(super) fn tell_lobes_apart(&self) -> bool {
+        self.lobes_apart
+    }
+
+    /// Adds light to a row by the lobe of the first surface.
+    fn add_by_lobe(&self, row: &mut [f64], first: FirstLobe, bounces: u32, rgb: &[f64; 3]) {
+        let once = bounces == 1;
+        let pick = |direct: Layer, indirect: Layer| self.at(if once { direct } else { indirect });
+        let mut add = |at: Option<usize>, share: [f64; 3]| {
+            if let Some(at) = at {
+                (0..3).for_each(|channel| row[at + channel] += share[channel] * rgb[channel]);
+            }
+        };
+        match first {
+            FirstLobe::Reflected { diffuse } => {
+                let diffuse = diffuse.map(f64::from);
+                add(pick(Layer::DiffuseDirect, Layer::DiffuseIndirect), diffuse);
+                add(pick(Layer::GlossyDirect, Layer::GlossyIndirect), diffuse.map(|share| 1.0 - share));
+            }
+            FirstLobe::Specular => add(pick(Layer::SpecularDirect, Layer::SpecularIndirect), [1.0; 3]),
+            FirstLobe::Transmitted => add(pick(Layer::TransmissionDirect, Layer::TransmissionIndirect), [1.0; 3]),
+        }
+    }
+
     /// Adds light to a row.
     pub(super) fn add(&self, row: &mut [f64], contribution: &Contribution) {
-        let Contribution { light, found, rgb, bounces, dispersed, .. } = contribution;
+        let Contribution { light, found, rgb, bounces, dispersed, first, .. } = contribution;
+        if let Some(first) = first.filter(|_| *bounces > 0) {
+            self.add_by_lobe(row, first, *bounces, rgb);
+        }
         let mut add = |at: Option<usize>| {
             if let Some(at) = at {
                 (0..3).for_each(|channel| row[at + channel] += rgb[channel]);

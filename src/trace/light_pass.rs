@@ -84,14 +84,14 @@ pub(super) fn show<const N: usize>(world: &World, progress: &(dyn Fn(u64) + Sync
 
 /// Adds a photon that the camera sees to the row of its pixel, which holds means.
 fn add_to_layers(world: &World, splat: &Splat, row: &mut [f64]) {
-    let Splat { light, rgb, dispersed, early, caught, .. } = *splat;
+    let Splat { light, rgb, dispersed, early, caught, first, .. } = *splat;
     if caught {
         return world.layers.catch_photon(row, rgb);
     }
     // Smooth surfaces mirrored or refracted it, and the last one scattered it to the camera.
     let bounces = 2;
     let light = Some(light);
-    world.layers.add(row, &Contribution { light, found: Found::Shown, rgb, moved: 0.0, bounces, dispersed });
+    world.layers.add(row, &Contribution { light, found: Found::Shown, rgb, moved: 0.0, first, bounces, dispersed });
     let mut add = |layer: Layer, numbers: [f64; 3]| {
         if let Some(at) = world.layers.at(layer) {
             (0..3).for_each(|channel| row[at + channel] += numbers[channel]);

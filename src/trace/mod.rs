@@ -36,6 +36,7 @@ mod contribution;
 mod coverage;
 mod direct;
 mod dispersion;
+mod first_lobe;
 mod gather;
 mod gathering_worth;
 mod guide;
@@ -79,6 +80,7 @@ mod usefulness;
 mod visible_caps;
 mod walk;
 mod walker;
+mod white;
 mod width;
 mod world;
 

@@ -1,4 +1,5 @@
 use super::World;
+use super::first_lobe::FirstLobe;
 use super::media::{self, Media};
 use super::polarization::Polarized;
 use crate::material::Straight;
@@ -40,6 +41,8 @@ pub(super) struct Path<const N: usize> {
     pub(super) is_seen: bool,
     /// Which objects there are for it.
     pub(super) among: Among,
+    /// By which lobe the first surface sends its light to the camera, if layers tell that apart.
+    pub(super) first: Option<FirstLobe>,
 }
 
 /// Which objects there are for a ray.
@@ -135,6 +138,7 @@ impl<const N: usize> Path<N> {
             bounces: 0,
             is_seen: true,
             among: Among::All,
+            first: None,
         }
     }
 

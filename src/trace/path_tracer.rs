@@ -227,8 +227,8 @@ impl<'a, const N: usize> PathTracer<'a, N> {
     fn receive(&mut self, path: &Path<N>, light: LightId, found: Found, rgb: [f64; 3]) {
         let is_any = path.polarized.is_any();
         let moved = if is_any { path.polarized.change() * self.walker.world.amount(rgb) } else { 0.0 };
-        let (bounces, dispersed) = (path.bounces, path.parted);
-        self.sensor.receive(Contribution { light: Some(light), found, rgb, moved, bounces, dispersed });
+        let Path { bounces, parted: dispersed, first, .. } = *path;
+        self.sensor.receive(Contribution { light: Some(light), found, rgb, moved, first, bounces, dispersed });
     }
 
     /// Samples the lights where a surface scatters widely, and lets the path go on: its ways on become pending.

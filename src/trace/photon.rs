@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use super::World;
+use super::first_lobe::FirstLobe;
 use super::interaction::{Interaction, parts};
 use super::media::Media;
 use super::path::{Path, PathKind};
@@ -32,6 +33,8 @@ pub(super) struct Splat {
     pub(super) early: bool,
     /// Whether it landed on a shadow catcher.
     pub(super) caught: bool,
+    /// By which lobe that surface sends it to the camera, if layers tell that apart.
+    pub(super) first: Option<FirstLobe>,
 }
 
 /// Where a photon lands, and the light's way there.
@@ -242,15 +245,11 @@ pub(super) fn show<const N: usize>(
     let rgb = world.responses[*light].sensor(arrival.draw, arriving, parted);
     let rgb = rgb.map(|x| x * (factor * cosines * seen.importance));
     let change = polarized.brought(material, &viewed, arrival.wo, path.polarized).change() as f32;
-    let splat = Splat {
-        pixel: 0,
-        change,
-        rgb,
-        light: *light,
-        dispersed: parted,
-        early: *early,
-        caught: sight == Sight::ShadowCatcher,
-    };
+    let reflected = || FirstLobe::reflected(world.layers.white.as_ref(), material, at.lobes, &viewed, arrival.wo);
+    let lobe = || if same { reflected() } else { FirstLobe::Transmitted };
+    let first = world.layers.tell_lobes_apart().then(lobe);
+    let (light, dispersed, early, caught) = (*light, parted, *early, sight == Sight::ShadowCatcher);
+    let splat = Splat { pixel: 0, change, rgb, light, dispersed, early, caught, first };
     places.into_iter().for_each(|place| spread_over_pixels(film, place, &splat, splats));
 }
 

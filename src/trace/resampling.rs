@@ -81,6 +81,7 @@ impl<const N: usize> Resampling<'_, N> {
         let rgb = world.responses[vertex.light].sensor(at.arrival.draw, reflected, self.path.parted);
         let moved = at.moved(world, self.path, direction, on_its_way, rgb);
         let (bounces, dispersed) = (self.path.bounces + 1 + vertex.vertices, self.path.parted);
-        Some(Contribution { light: Some(vertex.light), found: Found::Connected, rgb, moved, bounces, dispersed })
+        let first = at.first_lobe(world, self.path, direction, false);
+        Some(Contribution { light: Some(vertex.light), found: Found::Connected, rgb, moved, first, bounces, dispersed })
     }
 }

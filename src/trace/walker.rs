@@ -2,6 +2,7 @@
 
 use std::cell::Cell;
 
+use super::first_lobe::FirstLobe;
 use super::interaction::{Interaction, Meeting};
 use super::media::Boundary;
 use super::path::{Among, Path, PathKind, ScatterSample};
@@ -225,6 +226,10 @@ impl<'a, const N: usize> Departure<'a, N> {
             bounces: path.bounces + 1,
             is_seen: path.is_seen && !wide && !at.lobes.is_wide(),
             among: path.among,
+            first: match path.bounces {
+                0 if !wide && !crosses && world.layers.tell_lobes_apart() => Some(FirstLobe::Specular),
+                _ => at.first_lobe(world, path, branch.wi, crosses),
+            },
         }
     }
 }

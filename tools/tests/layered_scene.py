@@ -58,6 +58,7 @@ spot = {{ position = [3, 3, -2], look_at = [0.7, 0.7, 0.6], cone_angle = 40, int
 # The parts of the file of all layers, and their channels with the bits that they have at least.
 LAYERS = {
     **dict.fromkeys(("emission", "background", "direct", "indirect", "caustics", "dispersed", "shadow"), ("RGB", 16)),
+    **dict.fromkeys((f"{lobe}_{kind}" for lobe in check_exr.LOBES for kind in ("direct", "indirect")), ("RGB", 16)),
     **dict.fromkeys(("light_key_lamp", "light_environment", "light_rim"), ("RGB", 16)),
     "albedo": ("RGB", 16),
     "N": ("XYZ", 16),

@@ -24,6 +24,7 @@ def layered(half=False, **changes):
     normal = np.stack([np.zeros_like(alpha), alpha, np.zeros_like(alpha)])
     layers = {
         **kinds,
+        **{f"{lobe}_{kind}": 0.25 * kinds[kind] for lobe in check_exr.LOBES for kind in ("direct", "indirect")},
         "caustics": 0.5 * kinds["indirect"],
         "dispersed": 0.1 * image,
         "light_key": share * image,
@@ -133,6 +134,7 @@ def object_number(name):
         (changed("samples.V", 3.5), "layer 'samples': not whole numbers"),
         (changed("samples.V", 3), "layer 'samples': down to 3 of 4, and none was lost"),
         (changed("samples.V", 5), "layer 'samples': up to 5, more than 4"),
+        (changed("glossy_direct.R", 3), "transmission_indirect: not R, G, B in 1 values"),
         (changed("indirect.G", 3), "emission + background + direct + indirect: not R, G, B in 1 values"),
         (changed("light_rim_1.B", 3), "light_key + light_rim_1: not R, G, B in 1 values"),
         (changed("half_b.R", 30), "half_a + half_b: not twice R, G, B in 1 values"),

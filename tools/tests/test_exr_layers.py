@@ -99,8 +99,8 @@ def test_colors_come_first_and_the_owner_is_told_by_openimageio():
 
 def test_every_layer_holds_something():
     for layer in LAYERS:
-        # Four samples of a pixel meet no more than four objects, here two.
-        if not layer.endswith(("01", "02")):
+        # Four samples of a pixel meet no more than four objects, here two. Nothing is behind one surface alone.
+        if not layer.endswith(("01", "02")) and layer != "transmission_direct":
             assert read(Form()).layer(layer).any(), layer
 
 

@@ -1,0 +1,52 @@
+//! How the first surface sent light to the camera.
+
+use super::white::White;
+use crate::material::{Arrival, Lobes, Material, Scatter};
+use crate::math::DVec3;
+use crate::spectrum::{Lanes, Table};
+
+/// The lobe of the first surface by which light came to the camera.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum FirstLobe {
+    /// Reflected in every direction: this share of each film channel by a diffuse lobe, the rest by a glossy one.
+    Reflected { diffuse: [f32; 3] },
+    /// Mirrored.
+    Specular,
+    /// Come through the surface.
+    Transmitted,
+}
+
+impl FirstLobe {
+    /// Of a material that reflects light from the unit vector `wi` in every direction. Where it has both lobes, they
+    /// are held against each other in a white light: exactly where each lane is a channel of the film.
+    pub(super) fn reflected<const N: usize>(
+        white: Option<&White>,
+        material: &Material<Table>,
+        lobes: Lobes,
+        arrival: &Arrival<N>,
+        wi: DVec3,
+    ) -> Self {
+        let diffuse = match (lobes.intersects(Lobes::DIFFUSE_REFLECTION), lobes.intersects(Lobes::GLOSSY_REFLECTION)) {
+            (false, _) => [0.0; 3],
+            (true, false) => [1.0; 3],
+            (true, true) => white.map_or([1.0; 3], |white| diffuse_share(white, material, arrival, wi)),
+        };
+        Self::Reflected { diffuse }
+    }
+}
+
+#[cold]
+fn diffuse_share<const N: usize>(
+    white: &White,
+    material: &Material<Table>,
+    arrival: &Arrival<N>,
+    wi: DVec3,
+) -> [f32; 3] {
+    let Some((all, _)) = material.evaluate(arrival, wi) else { return [1.0; 3] };
+    let seen = |lanes: Lanes<N>| white.times(arrival.draw, lanes, false);
+    let (diffuse, all) = (seen(material.diffuse_part(arrival, wi)), seen(all));
+    std::array::from_fn(|channel| match all[channel] {
+        all if all > 0.0 => (diffuse[channel] / all).clamp(0.0, 1.0) as f32,
+        _ => 1.0,
+    })
+}
