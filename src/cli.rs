@@ -99,7 +99,7 @@ struct LayerList(Vec<Layer>);
 
 fn layers(text: &str) -> std::result::Result<LayerList, String> {
     if text == Layer::ALL {
-        return Ok(LayerList(Layer::NAMES.iter().map(|(_, layer)| *layer).collect()));
+        return Ok(LayerList(Layer::all()));
     }
     let names = || Layer::NAMES.iter().map(|(name, _)| *name);
     let named = |word: &str| {

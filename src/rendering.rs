@@ -38,7 +38,6 @@ impl Options {
     /// # Errors
     /// [`Error::Arguments`] if there are no samples, the crop lies outside the image, or its layers cannot be written.
     pub fn apply(&self, scene: &mut Scene) -> Result<()> {
-        let refuse = |message: String, help: &str| Err(Error::Arguments { message, help: Some(help.to_owned()) });
         if self.samples == Some(0) {
             return refuse("a pixel needs at least 1 sample".into(), "leave the samples out to take the scene's own");
         }
@@ -49,15 +48,7 @@ impl Options {
         if let Some(layers) = &self.layers {
             scene.format.layers.clone_from(layers);
         }
-        if scene.layer_bytes() > MOST_OF_LAYERS {
-            let gigabytes = scene.layer_bytes() / 1_000_000_000;
-            let message = format!("{} channels of layers would take {gigabytes} GB of memory", scene.layer_channels());
-            return refuse(message, "ask for fewer layers, or make a part of the image at a time with --crop");
-        }
-        if let Some(message) = bad_light_layer(scene) {
-            return refuse(message, "give that light or object a `group` of at most 23 letters a to z, digits and _");
-        }
-        Ok(())
+        check_layers(scene)
     }
 
     /// Samples, seed and crop that replace those of a scene.
@@ -67,26 +58,37 @@ impl Options {
     }
 }
 
+fn refuse<T>(message: String, help: &str) -> Result<T> {
+    Err(Error::Arguments { message, help: Some(help.to_owned()) })
+}
+
 /// Most bytes of memory that layers may take: 64 GB.
 const MOST_OF_LAYERS: u64 = 64_000_000_000;
 
-/// What is wrong with the layer of a light, if lights have layers.
-fn bad_light_layer(scene: &Scene) -> Option<String> {
-    if !scene.format.layers.contains(&Layer::Lights) {
-        return None;
+/// Refuses layers that fill all memory, and layers of lights whose names cannot be written.
+fn check_layers(scene: &Scene) -> Result<()> {
+    if scene.layer_bytes() > MOST_OF_LAYERS {
+        let gigabytes = scene.layer_bytes() / 1_000_000_000;
+        let message = format!("{} channels of layers would take {gigabytes} GB of memory", scene.layer_channels());
+        return refuse(message, "ask for fewer layers, or make a part of the image at a time with --crop");
     }
+    if !scene.format.layers.contains(&Layer::Lights) {
+        return Ok(());
+    }
+    let help = "give that light or object a `group` of at most 23 letters a to z, digits and _";
     let mut known = BTreeMap::new();
     for group in &scene.light_groups {
         let name = light_layer_name(group);
         if name.len() + ".R".len() > LONGEST_NAME {
-            return Some(format!("the layer {name} would have a name that not every program reads: it is too long"));
+            let message = format!("the layer {name} would have a name that not every program reads: it is too long");
+            return refuse(message, help);
         }
         let other = known.entry(name.clone()).or_insert(group);
         if *other != group {
-            return Some(format!("the lights {other} and {group} would share the layer {name}"));
+            return refuse(format!("the lights {other} and {group} would share the layer {name}"), help);
         }
     }
-    None
+    Ok(())
 }
 
 /// Renders a scene.
@@ -139,11 +141,9 @@ impl Rendering {
     pub fn new(scene: &Scene, options: &Options) -> Result<Self> {
         let mut scene = Cow::Borrowed(scene);
         let is_as_asked = options.instead_of(&scene) == (scene.render.samples, scene.render.seed, scene.film.crop);
-        if !is_as_asked
-            || options.layers.is_some()
-            || bad_light_layer(&scene).is_some()
-            || scene.layer_bytes() > MOST_OF_LAYERS
-        {
+        if is_as_asked && options.layers.is_none() {
+            check_layers(&scene)?;
+        } else {
             options.apply(scene.to_mut())?;
         }
         let threads = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build();

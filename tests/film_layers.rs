@@ -49,10 +49,6 @@ name = "rim"
 spot = { position = [3, 3, -2], look_at = [0.2, 0.8, 0.6], cone_angle = 30, intensity = 8 }
 "#;
 
-fn all_layers() -> Vec<Layer> {
-    Layer::NAMES.iter().map(|(_, layer)| *layer).collect()
-}
-
 fn rendered(text: &str, layers: &[Layer]) -> Image {
     let scene = Scene::parse(text, "").expect("the scene is valid");
     let options = Options { layers: Some(layers.to_vec()), threads: Some(1), ..Options::default() };
@@ -87,7 +83,7 @@ fn assert_sum(image: &Image, layers: &[&str], share: f64) {
 
 #[test]
 fn layers_of_light_add_up_to_the_image() {
-    let image = rendered(ROOM, &all_layers());
+    let image = rendered(ROOM, &Layer::all());
     assert_sum(&image, &["emission", "background", "direct", "indirect"], 1.0);
     let lobes = ["diffuse", "glossy", "specular", "transmission"];
     let split = lobes.map(|lobe| [format!("{lobe}_direct"), format!("{lobe}_indirect")]);
@@ -108,7 +104,7 @@ fn layers_of_light_add_up_to_the_image() {
 
 #[test]
 fn layers_change_no_bit_of_the_image() {
-    let (plain, layered) = (rendered(ROOM, &[]), rendered(ROOM, &all_layers()));
+    let (plain, layered) = (rendered(ROOM, &[]), rendered(ROOM, &Layer::all()));
     for channel in ["R", "G", "B", "A", "Z"] {
         assert_eq!(plain.layer(channel), layered.layer(channel), "{channel}");
     }
@@ -185,7 +181,7 @@ fn lights_of_one_group_share_a_layer() {
 fn layers_that_would_fill_all_memory_are_refused() {
     let huge = ROOM.replace("width = 40, height = 28", "width = 16384, height = 16384");
     let mut scene = Scene::parse(&huge, "").expect("the scene is valid");
-    let options = Options { layers: Some(all_layers()), ..Options::default() };
+    let options = Options { layers: Some(Layer::all()), ..Options::default() };
     let error = options.apply(&mut scene).expect_err("it is refused").to_string();
     assert!(error.contains("channels of layers would take") && error.contains("GB of memory"), "{error}");
     let crop = Some(Window { left: 0, top: 0, width: 64, height: 64 });

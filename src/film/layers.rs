@@ -97,6 +97,11 @@ impl Layer {
         ("CryptoAsset", Self::CryptoAsset),
     ];
 
+    /// Every one.
+    pub fn all() -> Vec<Self> {
+        Self::NAMES.iter().map(|(_, layer)| *layer).collect()
+    }
+
     /// The name that asks for it, and that the file has unless there are several.
     pub fn name(self) -> &'static str {
         Self::NAMES.into_iter().find(|(_, layer)| *layer == self).map_or("", |(name, _)| name)
@@ -120,11 +125,11 @@ impl Layer {
 
     /// Whether it holds what one lobe of the first surface sends to the camera.
     pub fn is_of_lobe(self) -> bool {
-        use Layer::{DiffuseDirect, DiffuseIndirect, GlossyDirect, GlossyIndirect};
-        use Layer::{SpecularDirect, SpecularIndirect, TransmissionDirect, TransmissionIndirect};
-        let reflected = matches!(self, DiffuseDirect | GlossyDirect | DiffuseIndirect | GlossyIndirect);
-        let single = matches!(self, SpecularDirect | SpecularIndirect);
-        reflected || single || matches!(self, TransmissionDirect | TransmissionIndirect)
+        match self {
+            Self::DiffuseDirect | Self::GlossyDirect | Self::SpecularDirect | Self::TransmissionDirect => true,
+            Self::DiffuseIndirect | Self::GlossyIndirect | Self::SpecularIndirect | Self::TransmissionIndirect => true,
+            _ => false,
+        }
     }
 
     /// Whether it is a matte.

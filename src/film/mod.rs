@@ -27,6 +27,6 @@ pub use format::{Compression, Format, Precision};
 pub use image::{DEPTH_OF_NOTHING, Film, Pixel, Sample, Window};
 pub use layers::{FirstSurface, LONGEST_NAME, Layer, LayerImage, light_layer_name};
 pub use picture::{png, write_png, write_rgb8};
-pub use sum::{PassSum, PixelSum};
+pub use sum::{PassSum, PixelSum, stored};
 
 pub(crate) use guard::{MOST_TEXELS, fits, guarded};

@@ -108,15 +108,18 @@ impl PixelSum {
     /// The mean over the samples that were kept, and light beside them that is a mean already.
     pub fn pixel(&self, beside: [f64; 3]) -> Pixel {
         let kept = f64::from(self.kept.max(1));
-        // A value beyond f32 becomes the largest finite one: EXR readers choke on infinities.
-        let store = |x: f64| (x as f32).clamp(f32::MIN, f32::MAX);
         Pixel {
-            rgb: std::array::from_fn(|i| store(self.total.rgb[i] / kept + beside[i])),
+            rgb: std::array::from_fn(|i| stored(self.total.rgb[i] / kept + beside[i])),
             alpha: (f64::from(self.total.met) / kept) as f32,
-            depth: if self.nearest.is_finite() { store(self.nearest) } else { DEPTH_OF_NOTHING },
+            depth: if self.nearest.is_finite() { stored(self.nearest) } else { DEPTH_OF_NOTHING },
             samples: self.kept as f32,
         }
     }
+}
+
+/// A number as the file has it. Beyond f32 it becomes the largest finite one: EXR readers choke on infinities.
+pub fn stored(number: f64) -> f32 {
+    (number as f32).clamp(f32::MIN, f32::MAX)
 }
 
 #[cfg(test)]

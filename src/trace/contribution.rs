@@ -37,3 +37,10 @@ pub(super) enum Found {
     /// A photon was shown to the camera.
     Shown,
 }
+
+/// Adds a color to the numbers at the beginning of a row, or to another color.
+pub(super) fn add(sums: &mut [f64], color: [f64; 3]) {
+    for (sum, more) in sums.iter_mut().zip(color) {
+        *sum += more;
+    }
+}

@@ -13,12 +13,11 @@
 use std::f64::consts::PI;
 
 use super::World;
-use super::contribution::{self, Contribution};
+use super::contribution::{self, Contribution, add};
 use super::interaction::Interaction;
 use super::path::Path;
 use super::photon_map::{Landed, PhotonMap};
 use super::polarization::Polarized;
-use super::sensor::add;
 use super::shading;
 use crate::light::LightId;
 use crate::math::{BranchKey, DVec2, DVec3, Frame, Ray, Sampler, unit};

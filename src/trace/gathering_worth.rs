@@ -3,11 +3,11 @@
 use std::cell::Cell;
 
 use super::World;
-use super::contribution::{Contribution, Found};
+use super::contribution::{Contribution, Found, add};
 use super::path_tracer::PathTracer;
 use super::photon_map::photons;
 use super::pilot::SampleWorth;
-use super::sensor::{Observer, add};
+use super::sensor::Observer;
 use super::width::in_lanes;
 use crate::math::Sampler;
 use crate::spectrum::apply;

@@ -83,9 +83,7 @@ impl<'a, const N: usize> Interaction<'a, N> {
         let change = path.polarized.brought(self.material, &self.arrival, wi, on_its_way).change();
         if change == 0.0 { 0.0 } else { change * world.amount(rgb) }
     }
-}
 
-impl<const N: usize> Interaction<'_, N> {
     /// The lobe by which the first surface sends light to the camera that a path finds here, in a direction that may
     /// lead beyond the surface; none if layers do not tell that apart.
     #[inline]

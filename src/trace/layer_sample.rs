@@ -93,24 +93,18 @@ impl<'a, const N: usize> LayerSample<'a, N> {
             return;
         }
         let Met { path, meeting, at, .. } = met;
-        self.mean(Layer::Normal, (share * at.arrival.normal).to_array());
-        self.mean(Layer::GeometricNormal, (share * at.flat).to_array());
+        layers.add_to(Layer::Normal, &mut self.row, (share * at.arrival.normal).to_array());
+        layers.add_to(Layer::GeometricNormal, &mut self.row, (share * at.flat).to_array());
         // What a pane lets straight on is of it as what glass refracts is, unless what is behind counts by itself.
         let panes = met.straight.filter(|_| layers.first == FirstSurface::Met).map(|straight| straight.panes);
         let albedo = self.albedo(path, at, panes, sampler);
-        self.mean(Layer::Albedo, albedo);
+        layers.add_to(Layer::Albedo, &mut self.row, albedo);
         if share > self.share {
             self.share = share;
             let position = at.point.position;
             let object = &self.world.scene.objects[at.object as usize];
             self.place(Layer::Position, &position.to_array());
             self.place(Layer::Uv, &object.chart_uv(&meeting.hit.crossing, at.point));
-        }
-    }
-
-    fn mean(&mut self, layer: Layer, numbers: [f64; 3]) {
-        if let Some(at) = self.world.layers.at(layer) {
-            (0..3).for_each(|i| self.row[at + i] += numbers[i]);
         }
     }
 

@@ -1,9 +1,10 @@
 //! Layers of many samples: sums of a tile's pixels, and the finished images.
 
+use super::contribution::add;
 use super::coverage::Coverage;
 use super::layer_sample::Left;
 use super::layers::{Layers, OF_A_HALF};
-use crate::film::{Layer, LayerImage, RANKS, Sample};
+use crate::film::{Layer, LayerImage, RANKS, Sample, stored};
 
 /// Sums of the pixels of a tile.
 #[derive(Default)]
@@ -44,14 +45,13 @@ impl LayerSums {
         }
         for &layer in &layers.wanted {
             let Some(at) = layers.at(layer) else { continue };
-            let add = |row: &mut [f64], numbers: [f64; 3]| (0..3).for_each(|i| row[at + i] += numbers[i]);
             match layer {
                 Layer::Samples | Layer::Shadow => {}
                 Layer::CryptoObject | Layer::CryptoMaterial | Layer::CryptoAsset => {}
-                Layer::Variance => add(row, sample.rgb.map(|x| x * x)),
+                Layer::Variance => add(&mut row[at..], sample.rgb.map(|x| x * x)),
                 Layer::HalfA | Layer::HalfB => {
                     if early == (layer == Layer::HalfA) {
-                        add(row, sample.rgb);
+                        add(&mut row[at..], sample.rgb);
                         row[at + OF_A_HALF - 1] += 1.0;
                     }
                 }
@@ -65,7 +65,7 @@ impl LayerSums {
                     let size = 3 * layers.groups.len();
                     row[at..at + size].iter_mut().zip(&left[at..]).for_each(|(sum, more)| *sum += more);
                 }
-                _ => add(row, std::array::from_fn(|i| left[at + i])),
+                _ => add(&mut row[at..], std::array::from_fn(|i| left[at + i])),
             }
         }
     }
@@ -127,13 +127,15 @@ pub(super) fn write(layers: &Layers, taken: &Taken, pixel: usize, images: &mut [
         let several = if layer == Layer::Lights { layers.groups.len() } else { 1 };
         for (number, image) in images.by_ref().take(several).enumerate() {
             let size = layer.channels().len();
-            let shadow = layers.caught(taken.sums, taken.shown, taken.kept).filter(|_| layer == Layer::Shadow);
-            let shadow = shadow.map_or([0.0; 3], |caught| caught.shadow());
-            for (channel, value) in image.values[pixel * size..][..size].iter_mut().enumerate() {
-                *value = match layer {
-                    Layer::Shadow => stored(shadow[channel]),
-                    _ => stored(taken.value(layer, at + 3 * number, channel)),
-                };
+            let values = &mut image.values[pixel * size..][..size];
+            if layer == Layer::Shadow {
+                let caught = layers.caught(taken.sums, taken.shown, taken.kept);
+                let shadow = caught.map_or([0.0; 3], |caught| caught.shadow());
+                values.copy_from_slice(&shadow.map(stored));
+                continue;
+            }
+            for (channel, value) in values.iter_mut().enumerate() {
+                *value = stored(taken.value(layer, at + 3 * number, channel));
             }
         }
     }
@@ -158,9 +160,4 @@ impl Taken<'_> {
             _ => sum / kept + shown,
         }
     }
-}
-
-/// A value beyond f32 becomes the largest finite one: EXR readers choke on infinities.
-fn stored(value: f64) -> f32 {
-    (value as f32).clamp(f32::MIN, f32::MAX)
 }

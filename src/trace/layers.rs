@@ -1,6 +1,6 @@
 //! The layers that are asked for beside the image: which they are, and where their sums stand.
 
-use super::contribution::{Contribution, Found};
+use super::contribution::{Contribution, Found, add};
 use super::first_lobe::FirstLobe;
 use super::white::White;
 use crate::film::{FirstSurface, Layer, Manifest, id, light_layer_name};
@@ -156,7 +156,7 @@ impl Layers {
     /// Adds the light of a photon on a shadow catcher to a row.
     pub(super) fn catch_photon(&self, row: &mut [f64], rgb: [f64; 3]) {
         if let Some(at) = self.caught {
-            (0..3).for_each(|channel| row[at + channel] += rgb[channel]);
+            add(&mut row[at..], rgb);
         }
     }
 
@@ -185,21 +185,26 @@ impl Layers {
 
     /// Adds light to a row by the lobe of the first surface.
     fn add_by_lobe(&self, row: &mut [f64], first: FirstLobe, bounces: u32, rgb: &[f64; 3]) {
-        let once = bounces == 1;
-        let pick = |direct: Layer, indirect: Layer| self.at(if once { direct } else { indirect });
-        let mut add = |at: Option<usize>, share: [f64; 3]| {
-            if let Some(at) = at {
-                (0..3).for_each(|channel| row[at + channel] += share[channel] * rgb[channel]);
-            }
+        let mut add = |direct: Layer, indirect: Layer, share: [f64; 3]| {
+            let layer = if bounces == 1 { direct } else { indirect };
+            self.add_to(layer, row, std::array::from_fn(|channel| share[channel] * rgb[channel]));
         };
         match first {
             FirstLobe::Reflected { diffuse } => {
                 let diffuse = diffuse.map(f64::from);
-                add(pick(Layer::DiffuseDirect, Layer::DiffuseIndirect), diffuse);
-                add(pick(Layer::GlossyDirect, Layer::GlossyIndirect), diffuse.map(|share| 1.0 - share));
+                add(Layer::DiffuseDirect, Layer::DiffuseIndirect, diffuse);
+                add(Layer::GlossyDirect, Layer::GlossyIndirect, diffuse.map(|share| 1.0 - share));
             }
-            FirstLobe::Specular => add(pick(Layer::SpecularDirect, Layer::SpecularIndirect), [1.0; 3]),
-            FirstLobe::Transmitted => add(pick(Layer::TransmissionDirect, Layer::TransmissionIndirect), [1.0; 3]),
+            FirstLobe::Specular => add(Layer::SpecularDirect, Layer::SpecularIndirect, [1.0; 3]),
+            FirstLobe::Transmitted => add(Layer::TransmissionDirect, Layer::TransmissionIndirect, [1.0; 3]),
+        }
+    }
+
+    /// Adds three numbers to those of a layer in a row, if it is wanted.
+    #[inline]
+    pub(super) fn add_to(&self, layer: Layer, row: &mut [f64], numbers: [f64; 3]) {
+        if let Some(at) = self.at(layer) {
+            add(&mut row[at..], numbers);
         }
     }
 
@@ -209,25 +214,21 @@ impl Layers {
         if let Some(first) = first.filter(|_| *bounces > 0) {
             self.add_by_lobe(row, first, *bounces, rgb);
         }
-        let mut add = |at: Option<usize>| {
-            if let Some(at) = at {
-                (0..3).for_each(|channel| row[at + channel] += rgb[channel]);
-            }
-        };
-        add(self.at(match (bounces, found) {
+        let kind = match (bounces, found) {
             (0, Found::Hit { normal: Some(_), .. }) => Layer::Emission,
             (0, _) => Layer::Background,
             (1, _) => Layer::Direct,
             _ => Layer::Indirect,
-        }));
+        };
+        self.add_to(kind, row, *rgb);
         if let Found::Gathered | Found::Shown = found {
-            add(self.at(Layer::Caustics));
+            self.add_to(Layer::Caustics, row, *rgb);
         }
         if *dispersed {
-            add(self.at(Layer::Dispersed));
+            self.add_to(Layer::Dispersed, row, *rgb);
         }
         if let (Some(at), Some(light)) = (self.at(Layer::Lights), light) {
-            add(Some(at + 3 * self.group_of[*light]));
+            add(&mut row[at + 3 * self.group_of[*light]..], *rgb);
         }
     }
 }

@@ -92,13 +92,8 @@ fn add_to_layers(world: &World, splat: &Splat, row: &mut [f64]) {
     let bounces = 2;
     let light = Some(light);
     world.layers.add(row, &Contribution { light, found: Found::Shown, rgb, moved: 0.0, first, bounces, dispersed });
-    let mut add = |layer: Layer, numbers: [f64; 3]| {
-        if let Some(at) = world.layers.at(layer) {
-            (0..3).for_each(|channel| row[at + channel] += numbers[channel]);
-        }
-    };
-    add(Layer::Variance, rgb.map(|x| x * x));
-    add(if early { Layer::HalfA } else { Layer::HalfB }, rgb.map(|x| 2.0 * x));
+    world.layers.add_to(Layer::Variance, row, rgb.map(|x| x * x));
+    world.layers.add_to(if early { Layer::HalfA } else { Layer::HalfB }, row, rgb.map(|x| 2.0 * x));
 }
 
 /// Sends them and hands over what they show, in an order that never changes; holds no image.
@@ -175,7 +170,7 @@ pub fn seen_photons(world: &World) -> Vec<f64> {
         *sent += photons.len() as u32;
         *seen += photons.iter().filter(|photon| photon.1).count() as u32;
     }
-    for group in world.light_groups() {
+    for group in world.photon_light_groups() {
         let of_group = |i: usize| group.iter().map(|&light| counts[light][i]).sum::<u32>();
         let share = f64::from(of_group(1)) / f64::from(of_group(0).max(1));
         group.iter().for_each(|&light| shares[light] = share);

@@ -63,15 +63,15 @@ const CANDIDATES: usize = ROWS * ROW;
 /// What a choice among some vertices asks of them; absent ones have no power.
 #[derive(Clone, Debug)]
 struct Candidates {
-    place: [OfHand; 3],
-    flat: [OfHand; 3],
+    place: [OfCandidates; 3],
+    flat: [OfCandidates; 3],
     /// X + Y + Z of what leaves, as the sensor sees it, times how often it is seen; 1 of the brightest vertex.
-    power: OfHand,
+    power: OfCandidates,
 }
 
 /// A number for each candidate: for each place in a row, the numbers of all rows side by side, so that all rows
 /// are summed at once.
-type OfHand = [[f32; ROWS]; ROW];
+type OfCandidates = [[f32; ROWS]; ROW];
 
 /// Samples of each pixel that share light paths.
 pub(super) const SHARED: u32 = 16;
@@ -296,10 +296,10 @@ struct Weighing<'a> {
 }
 
 impl Computation for Weighing<'_> {
-    type Output = OfHand;
+    type Output = OfCandidates;
 
     #[inline(always)]
-    fn run<V: Vectors>(self, _: V) -> OfHand {
+    fn run<V: Vectors>(self, _: V) -> OfCandidates {
         let Self { candidates: Candidates { place, flat: flats, power }, from, flat } = self;
         // One instruction, where `max` takes several for the sake of NaN.
         let positive = |x: f32| if x > 0.0 { x } else { 0.0 };

@@ -54,7 +54,7 @@ pub fn photons_worth(world: &World) -> Vec<PhotonWorth> {
 fn weigh_photons<const N: usize>(whole: &World) -> Vec<PhotonWorth> {
     let mut world = whole.clone();
     world.scene.film.crop = None;
-    let groups = whole.light_groups();
+    let groups = whole.photon_light_groups();
     let photons = (ALL / groups.len().max(1) as u64).min(PHOTONS);
     groups.into_iter().filter_map(|lights| weigh::<N>(whole, &mut world, lights, photons)).collect()
 }

@@ -1,7 +1,7 @@
 //! Where the light of camera samples arrives.
 
 use super::World;
-use super::contribution::Contribution;
+use super::contribution::{Contribution, add};
 use super::layer_sample::LayerSample;
 use super::stats::Stats;
 use crate::math::DVec3;
@@ -82,11 +82,5 @@ impl<const N: usize> Sensor<'_, N> {
         }
         self.moved = 0.0;
         std::mem::take(&mut self.rgb)
-    }
-}
-
-pub(super) fn add(sum: &mut [f64; 3], more: [f64; 3]) {
-    for (sum, more) in sum.iter_mut().zip(more) {
-        *sum += more;
     }
 }

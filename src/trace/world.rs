@@ -197,7 +197,7 @@ impl World {
     }
 
     /// The pass's lights, each for itself; of many, neighbors in the scene together.
-    pub(super) fn light_groups(&self) -> Vec<Vec<LightId>> {
+    pub(super) fn photon_light_groups(&self) -> Vec<Vec<LightId>> {
         let Some(pass) = &self.method.light_pass else { return Vec::new() };
         let mut lights = pass.lights.clone();
         lights.sort_unstable();

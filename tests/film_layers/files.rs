@@ -6,7 +6,7 @@ use abbe::film::{Compression, Layer, Precision};
 use abbe::{Options, Scene};
 use exr::prelude::{AttributeValue, FlatSamples, ReadChannels, ReadLayers, read};
 
-use super::{ROOM, all_layers};
+use super::ROOM;
 
 /// A part's name, and its channels with their bits and values.
 type Parts = Vec<(Option<String>, BTreeMap<String, (u32, Vec<f32>)>)>;
@@ -48,14 +48,14 @@ fn a_plain_file_holds_the_image_alone() {
 
 #[test]
 fn every_lossless_compression_and_several_parts_hold_the_same_numbers() {
-    let (parts, bytes) = written(Precision::Float, Compression::Zip, false, &all_layers());
+    let (parts, bytes) = written(Precision::Float, Compression::Zip, false, &Layer::all());
     let all = &parts[0].1;
     assert!(all.values().all(|(bits, _)| *bits == 32) && all.contains_key("light_key_lamp.R"));
     assert!(bytes.windows("Émilie".len()).any(|window| window == "Émilie".as_bytes()));
     for (_, compression) in Compression::NAMES {
         for multipart in [false, true] {
-            let (parts, bytes) = written(Precision::Float, compression, multipart, &all_layers());
-            assert_eq!(bytes, written(Precision::Float, compression, multipart, &all_layers()).1);
+            let (parts, bytes) = written(Precision::Float, compression, multipart, &Layer::all());
+            assert_eq!(bytes, written(Precision::Float, compression, multipart, &Layer::all()).1);
             let together: BTreeMap<_, _> = parts.iter().flat_map(|(_, channels)| channels.clone()).collect();
             assert_eq!(&together, all, "{compression:?}, several parts: {multipart}");
             if !multipart {
@@ -77,8 +77,8 @@ fn every_lossless_compression_and_several_parts_hold_the_same_numbers() {
 
 #[test]
 fn half_precision_keeps_places_and_statistics_whole() {
-    let (float, _) = written(Precision::Float, Compression::Zip, false, &all_layers());
-    let (half, _) = written(Precision::Half, Compression::Zip, false, &all_layers());
+    let (float, _) = written(Precision::Float, Compression::Zip, false, &Layer::all());
+    let (half, _) = written(Precision::Half, Compression::Zip, false, &Layer::all());
     for (name, (bits, values)) in &half[0].1 {
         let exact = &float[0].1[name].1;
         let layer = name.rsplit_once('.').map_or(name.as_str(), |(layer, _)| layer);

@@ -93,13 +93,13 @@ fn sight(object: &mut Fields) -> Option<Sight> {
     let visible = object.or("visible_to_camera", true, Value::yes_or_no);
     let mut kind = |key| object.maybe(key, at(Value::yes_or_no)).map(|value| value.filter(|value| value.it));
     let (holdout, catcher) = (kind("holdout"), kind("shadow_catcher"));
+    let both = |key: At<'_, bool>, other: &str| {
+        let help = "an object is hidden, or cuts a hole, or shows the shadows on it: keep one of these";
+        key.place.advise(format!("`{}` cannot be combined with `{other}`", key.place.key()), help)
+    };
     match (visible?, holdout?, catcher?) {
-        (false, Some(other), _) | (false, _, Some(other)) | (true, Some(_), Some(other)) => {
-            let help = "an object is not visible, or cuts a hole, or shows the shadows on it: keep one of these";
-            other
-                .place
-                .advise(format!("`{}` is not all that the camera is told of this object", other.place.key()), help)
-        }
+        (false, Some(key), _) | (false, _, Some(key)) => both(key, "visible_to_camera = false"),
+        (true, Some(_), Some(key)) => both(key, "holdout"),
         (false, None, None) => Some(Sight::Hidden),
         (true, Some(_), None) => Some(Sight::Holdout),
         (true, None, Some(_)) => Some(Sight::ShadowCatcher),

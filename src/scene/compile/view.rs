@@ -79,7 +79,7 @@ fn format(film: &mut Fields) -> Option<Format> {
 
 fn layers(value: Value) -> Option<Vec<Layer>> {
     match value.node().as_str() {
-        Some(Layer::ALL) => return Some(Layer::NAMES.iter().map(|(_, layer)| *layer).collect()),
+        Some(Layer::ALL) => return Some(Layer::all()),
         Some(word) => {
             return value.advise("`layers` is a list", format!("write layers = [\"{word}\"], or \"{}\"", Layer::ALL));
         }
