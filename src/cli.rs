@@ -21,6 +21,7 @@ Examples:
   render --check scenes/prism.toml                find mistakes in the scene
   render --samples 16 --exr scenes/prism.toml     take a quick look
   render --layers all --exr scenes/prism.toml     write layers beside the image
+  render --spectral --exr scenes/prism.toml       write ./prism.spectral.exr as well
   render catalog --help                           see which glasses it knows
   render info prism.exr                           say what an image carries
   render view prism.exr                           show it on the terminal
@@ -71,6 +72,10 @@ struct Arguments {
     /// Layers in the EXR beside the image, instead of the scene's: such as albedo,N,lights, or all
     #[arg(long, value_name = "NAMES", value_parser = layers)]
     layers: Option<LayerList>,
+
+    /// Write the spectrum of each pixel beside the EXR, as NAME.spectral.exr
+    #[arg(long, conflicts_with = "check")]
+    spectral: bool,
 
     /// Processor threads; all if absent. The image is the same for any number
     #[arg(long, value_name = "N", allow_negative_numbers = true,
@@ -183,9 +188,13 @@ fn job(arguments: Arguments) -> Result<Job> {
     } else {
         Output::Image { exr: Some(exr).filter(|_| with_exr), png: arguments.png }
     };
-    let Arguments { samples, seed, crop, layers, threads, .. } = arguments;
+    if arguments.spectral && !with_exr {
+        let help = "add --exr, or leave --spectral out";
+        return refuse("--spectral writes spectra beside an EXR, and --png alone writes none", Some(help));
+    }
+    let Arguments { samples, seed, crop, layers, spectral, threads, .. } = arguments;
     let (exposure, layers) = (arguments.exposure.unwrap_or(0.0), layers.map(|LayerList(layers)| layers));
-    let options = Options { samples, seed, crop, layers, threads: threads.map(usize::from) };
+    let options = Options { samples, seed, crop, layers, spectral, threads: threads.map(usize::from) };
     Ok(Job { scene, output, exposure, options })
 }
 

@@ -40,6 +40,9 @@ fn listed(lines: Result<Vec<String>>) -> Result<ExitCode> {
 
 fn run(job: &Job) -> Result<()> {
     let mut scene = Scene::read(&job.scene)?;
+    if let Output::Image { exr: None, .. } = job.output {
+        scene.format.spectral = None;
+    }
     job.options.apply(&mut scene)?;
     scene.warnings.iter().for_each(|warning| messages::warn(warning));
     match &job.output {
@@ -55,7 +58,8 @@ fn run(job: &Job) -> Result<()> {
 }
 
 fn image(job: &Job, scene: &Scene, exr: Option<&Path>, png: Option<&Path>) -> Result<()> {
-    let outputs = || [exr, png].into_iter().flatten();
+    let spectral = exr.filter(|_| scene.format.spectral.is_some()).map(|exr| exr.with_extension("spectral.exr"));
+    let outputs = || [exr, spectral.as_deref(), png].into_iter().flatten();
     outputs().try_for_each(|output| spare(&job.scene, "scene", output))?;
     outputs().try_for_each(check_writable)?;
     let rendering = Rendering::new(scene, &job.options)?;
@@ -71,7 +75,8 @@ fn image(job: &Job, scene: &Scene, exr: Option<&Path>, png: Option<&Path>) -> Re
             ));
         }
     }
+    spectral.as_ref().map_or(Ok(()), |spectral| image.write_spectral_exr(spectral))?;
     png.map_or(Ok(()), |png| image.write_png(png, job.exposure))?;
-    messages::print_report(image.report(), exr, png);
+    messages::print_report(image.report(), outputs());
     Ok(())
 }

@@ -126,7 +126,7 @@ pub fn is_colored(stream: &impl IsTerminal) -> bool {
 }
 
 /// What the render noticed and where the image is.
-pub fn print_report(report: &Report, exr: Option<&Path>, png: Option<&Path>) {
+pub fn print_report<'p>(report: &Report, written: impl Iterator<Item = &'p Path>) {
     if let Some([x, y, sample]) = report.first_non_finite {
         warn(&format!(
             "{} samples were not finite and are left out; the first is sample {sample} of pixel ({x}, {y})",
@@ -153,9 +153,7 @@ pub fn print_report(report: &Report, exr: Option<&Path>, png: Option<&Path>) {
         let tile = if tile > 1.05 * all { format!(", up to {tile:.1} % in 16 x 16 pixels") } else { String::new() };
         say(&format!("polarization may change up to {all:.1} % of the light seen{tile}: it is not traced"));
     }
-    for path in [exr, png].into_iter().flatten() {
-        say(&format!("wrote {}", path.display()));
-    }
+    written.for_each(|path| say(&format!("wrote {}", path.display())));
 }
 
 /// The share of the light from which on it is said what polarization may change.

@@ -8,9 +8,10 @@ use std::time::Duration;
 use crate::error::{Error, Result};
 use crate::film::{
     Fact, Film, Format, LONGEST_NAME, Layer, Pixel, Provenance, View, Window, light_layer_name, write_exr, write_png,
+    write_spectral_exr,
 };
 use crate::plan::{Plan, plan};
-use crate::scene::{Projection, Scene};
+use crate::scene::{ModelText, Projection, Scene};
 use crate::trace::{self, Report, World, prepare};
 
 /// What replaces the scene's own settings. By default nothing does.
@@ -28,6 +29,8 @@ pub struct Options {
     pub crop: Option<Window>,
     /// Layers in place of the scene's own.
     pub layers: Option<Vec<Layer>>,
+    /// Whether spectra are made, as they are where the scene asks for them.
+    pub spectral: bool,
     /// Processor threads; one for each processor if absent. The image is the same for any number.
     pub threads: Option<usize>,
 }
@@ -48,6 +51,9 @@ impl Options {
         if let Some(layers) = &self.layers {
             scene.format.layers.clone_from(layers);
         }
+        if self.spectral {
+            scene.format.spectral.get_or_insert_default();
+        }
         check_layers(scene)
     }
 
@@ -65,12 +71,16 @@ fn refuse<T>(message: String, help: &str) -> Result<T> {
 /// Most bytes of memory that layers may take: 64 GB.
 const MOST_OF_LAYERS: u64 = 64_000_000_000;
 
-/// Refuses layers that fill all memory, and layers of lights whose names cannot be written.
+/// Refuses layers that fill all memory or cannot be made, and layers of lights whose names cannot be written.
 fn check_layers(scene: &Scene) -> Result<()> {
     if scene.layer_bytes() > MOST_OF_LAYERS {
         let gigabytes = scene.layer_bytes() / 1_000_000_000;
         let message = format!("{} channels of layers would take {gigabytes} GB of memory", scene.layer_channels());
         return refuse(message, "ask for fewer layers, or make a part of the image at a time with --crop");
+    }
+    if scene.format.spectral.is_some() && scene.render.model == ModelText::Rgb {
+        let message = "model = \"rgb\" has no wavelengths to make spectra of".into();
+        return refuse(message, "leave the model out, or ask for wavelengths: model = { bands = 32 }");
     }
     if !scene.format.layers.contains(&Layer::Lights) {
         return Ok(());
@@ -141,7 +151,7 @@ impl Rendering {
     pub fn new(scene: &Scene, options: &Options) -> Result<Self> {
         let mut scene = Cow::Borrowed(scene);
         let is_as_asked = options.instead_of(&scene) == (scene.render.samples, scene.render.seed, scene.film.crop);
-        if is_as_asked && options.layers.is_none() {
+        if is_as_asked && options.layers.is_none() && !options.spectral {
             check_layers(&scene)?;
         } else {
             options.apply(scene.to_mut())?;
@@ -308,6 +318,30 @@ impl Image {
     /// If it cannot be written; a file that was there before is then untouched.
     pub fn write_exr(&self, path: impl AsRef<Path>) -> Result<u64> {
         write_exr(&self.film, &self.format, &self.view, &self.provenance, path.as_ref())
+    }
+
+    /// The spectrum of the pixel in column `x`, row `y`, counted from 0 at the top left; none if spectra were not asked
+    /// for.
+    ///
+    /// Each band is its center in nm and its radiance per nm, the mean over the band, on the scale of the scene's
+    /// `samples`: an even spectrum of 1 is 1 in all of them, and has luminance 1 in the image.
+    ///
+    /// # Panics
+    /// If there is no such pixel.
+    pub fn spectrum_at(&self, x: u32, y: u32) -> Option<Vec<[f64; 2]>> {
+        let spectral = self.film.spectral.as_ref()?;
+        assert!(x < self.width(), "there is no column {x} in an image of {} pixels per row", self.width());
+        let values = spectral.pixel(y as usize * self.film.width as usize + x as usize).iter();
+        Some(spectral.bands.centers_nm().zip(values).map(|(nm, &value)| [nm, value.into()]).collect())
+    }
+
+    /// Writes the spectra of all pixels as an OpenEXR file, in the layout of Fichet, Pacanowski & Wilkie 2021; nothing
+    /// if they were not asked for.
+    ///
+    /// # Errors
+    /// As [`write_exr`](Self::write_exr).
+    pub fn write_spectral_exr(&self, path: impl AsRef<Path>) -> Result<()> {
+        write_spectral_exr(&self.film, &self.format, &self.view, &self.provenance, path.as_ref())
     }
 
     /// Writes an 8-bit sRGB picture for looking, brightened by 2^`exposure`.

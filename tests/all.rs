@@ -34,6 +34,7 @@ mod scene_fuzz;
 mod scenes;
 mod skies;
 mod smooth_meshes;
+mod spectral;
 mod stability_catalog;
 mod stability_extremes;
 mod stability_lights;

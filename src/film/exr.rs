@@ -6,7 +6,7 @@ use std::path::Path;
 use exr::meta::attribute::{Chromaticities, EnvironmentMap};
 use exr::prelude::{
     AnyChannel, AnyChannels, AttributeValue, Compression, Encoding, FlatSamples, Image, ImageAttributes, IntegerBounds,
-    Layer, LayerAttributes, LineOrder, SmallVec, Text, Vec2, WritableImage, f16,
+    Layer, LayerAttributes, Layers, LineOrder, SmallVec, Text, Vec2, WritableImage, f16,
 };
 
 use super::file::replace_file;
@@ -55,12 +55,9 @@ pub enum Fact {
 /// # Errors
 /// If the file cannot be encoded or written; a file that was there before is then untouched.
 pub fn write_exr(film: &Film, format: &Format, view: &View, provenance: &Provenance, path: &Path) -> Result<u64> {
-    let encode = |error: exr::error::Error| Error::Encode { path: path.to_owned(), message: error.to_string() };
     let mut channels = Channels { half: format.precision == Precision::Half, clamped: 0 };
     let parts = parts(film, format, &mut channels);
-    let mut attributes = attributes(film, view, provenance);
-    let text = |text: &Option<String>| text.as_deref().map(utf8);
-    (attributes.owner, attributes.comments) = (text(&format.owner), text(&format.comments));
+    let mut attributes = attributes(film, format, view, provenance);
     for manifest in &film.manifests {
         for (key, value) in [
             ("name", manifest.name),
@@ -76,11 +73,7 @@ pub fn write_exr(film: &Film, format: &Format, view: &View, provenance: &Provena
         let clamped = AttributeValue::I32(i32::try_from(channels.clamped).unwrap_or(i32::MAX));
         attributes.other.insert(Text::from("render/clamped"), clamped);
     }
-    let encoding = Encoding {
-        compression: compression(format.compression),
-        line_order: LineOrder::Increasing,
-        ..Encoding::UNCOMPRESSED
-    };
+    let encoding = encoding(compression(format.compression));
     let size = Vec2(film.width as usize, film.height as usize);
     let part = |(number, part): (usize, Part)| {
         let own = if number == 0 { attributes.clone() } else { of_data(&attributes) };
@@ -88,19 +81,24 @@ pub fn write_exr(film: &Film, format: &Format, view: &View, provenance: &Provena
         Layer::new(size, LayerAttributes { layer_name: name, ..own }, encoding, AnyChannels::sort(part.channels))
     };
     let layers: Vec<_> = parts.into_iter().enumerate().map(part).collect();
-    let window = IntegerBounds::from_dimensions((film.full[0] as usize, film.full[1] as usize));
-    let mut image = Image::from_layers(ImageAttributes::new(window), layers);
+    let mut image = Image::from_layers(ImageAttributes::new(display_window(film)), layers);
     // The chromaticities would be those of all parts, also of those that hold no colors.
     image.attributes.chromaticities = (!format.multipart).then(|| chromaticities(film));
-    let mut bytes = Cursor::new(Vec::new());
-    image.write().to_buffered(&mut bytes).map_err(encode)?;
-    let mut bytes = bytes.into_inner();
-    sort_attributes(&mut bytes);
-    replace_file(path, &bytes)?;
+    write_image(&image, path)?;
     Ok(channels.clamped)
 }
 
-type Channel = AnyChannel<FlatSamples>;
+/// Writes a file of parts.
+pub(super) fn write_image(image: &Image<Layers<AnyChannels<FlatSamples>>>, path: &Path) -> Result<()> {
+    let mut bytes = Cursor::new(Vec::new());
+    let written = image.write().to_buffered(&mut bytes);
+    written.map_err(|error| Error::Encode { path: path.to_owned(), message: error.to_string() })?;
+    let mut bytes = bytes.into_inner();
+    sort_attributes(&mut bytes);
+    replace_file(path, &bytes)
+}
+
+pub(super) type Channel = AnyChannel<FlatSamples>;
 
 /// A part of the file.
 struct Part {
@@ -109,14 +107,15 @@ struct Part {
 }
 
 /// Makes channels, and counts what does not fit into them.
-struct Channels {
+#[derive(Default)]
+pub(super) struct Channels {
     half: bool,
     clamped: u64,
 }
 
 impl Channels {
     /// A channel of some name; it has 16 bits if it may and colors have.
-    fn of(&mut self, name: &str, may_be_half: bool, values: impl Iterator<Item = f32>) -> Channel {
+    pub(super) fn of(&mut self, name: &str, may_be_half: bool, values: impl Iterator<Item = f32>) -> Channel {
         let sample_data = match self.half && may_be_half {
             true => FlatSamples::F16(values.map(|value| self.half(value)).collect()),
             false => FlatSamples::F32(values.collect()),
@@ -162,6 +161,11 @@ fn parts(film: &Film, format: &Format, channels: &mut Channels) -> Vec<Part> {
     parts
 }
 
+/// Rows from the top, packed in a way.
+pub(super) fn encoding(compression: Compression) -> Encoding {
+    Encoding { compression, line_order: LineOrder::Increasing, ..Encoding::UNCOMPRESSED }
+}
+
 fn compression(compression: super::Compression) -> Compression {
     match compression {
         super::Compression::None => Compression::Uncompressed,
@@ -172,7 +176,12 @@ fn compression(compression: super::Compression) -> Compression {
     }
 }
 
-fn chromaticities(film: &Film) -> Chromaticities {
+/// The full image.
+pub(super) fn display_window(film: &Film) -> IntegerBounds {
+    IntegerBounds::from_dimensions((film.full[0] as usize, film.full[1] as usize))
+}
+
+pub(super) fn chromaticities(film: &Film) -> Chromaticities {
     let primaries = film.color_space.primaries();
     let [red, green, blue, white] =
         [primaries.red, primaries.green, primaries.blue, primaries.white].map(|[x, y]| Vec2(x as f32, y as f32));
@@ -196,9 +205,12 @@ fn of_data(attributes: &LayerAttributes) -> LayerAttributes {
     own
 }
 
-fn attributes(film: &Film, view: &View, provenance: &Provenance) -> LayerAttributes {
+/// The attributes of the first part.
+pub(super) fn attributes(film: &Film, format: &Format, view: &View, provenance: &Provenance) -> LayerAttributes {
     let mut attributes = LayerAttributes {
         software_name: Some(Text::from(concat!("Abbe ", env!("CARGO_PKG_VERSION")))),
+        owner: format.owner.as_deref().map(utf8),
+        comments: format.comments.as_deref().map(utf8),
         // Readers take the data window of an environment for the full sphere, which a crop is not.
         environment_map: (view.latlong && film.full == [film.width, film.height])
             .then_some(EnvironmentMap::LatitudeLongitude),

@@ -1,6 +1,7 @@
 //! How an image is written.
 
 use super::layers::{FirstSurface, Layer};
+use crate::spectrum::WavelengthBands;
 
 /// What a file holds beside the image, and how its numbers are written.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -15,6 +16,8 @@ pub struct Format {
     pub compression: Compression,
     /// Whether each layer is a part of its own.
     pub multipart: bool,
+    /// The bands of the spectral image that is made beside it, if one is.
+    pub spectral: Option<WavelengthBands>,
     /// Who owns the image.
     pub owner: Option<String>,
     /// What there is to say about it.

@@ -2,6 +2,7 @@
 
 use super::cryptomatte::Manifest;
 use super::layers::LayerImage;
+use super::spectral::SpectralImage;
 use crate::spectrum::ColorSpace;
 
 /// Depth of a pixel whose rays meet nothing, the value compositing packages expect.
@@ -68,6 +69,8 @@ pub struct Film {
     pub pixels: Vec<Pixel>,
     /// What was asked for beside them.
     pub layers: Vec<LayerImage>,
+    /// Their spectra, if those were asked for.
+    pub spectral: Option<SpectralImage>,
     /// What the numbers of their mattes stand for.
     pub manifests: Vec<Manifest>,
 }

@@ -125,11 +125,10 @@ impl Layer {
 
     /// Whether it holds what one lobe of the first surface sends to the camera.
     pub fn is_of_lobe(self) -> bool {
-        match self {
-            Self::DiffuseDirect | Self::GlossyDirect | Self::SpecularDirect | Self::TransmissionDirect => true,
-            Self::DiffuseIndirect | Self::GlossyIndirect | Self::SpecularIndirect | Self::TransmissionIndirect => true,
-            _ => false,
-        }
+        use Layer::{DiffuseDirect, GlossyDirect, SpecularDirect, TransmissionDirect};
+        use Layer::{DiffuseIndirect, GlossyIndirect, SpecularIndirect, TransmissionIndirect};
+        matches!(self, DiffuseDirect | GlossyDirect | SpecularDirect | TransmissionDirect)
+            || matches!(self, DiffuseIndirect | GlossyIndirect | SpecularIndirect | TransmissionIndirect)
     }
 
     /// Whether it is a matte.

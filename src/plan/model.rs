@@ -6,7 +6,7 @@ use super::survey::{Survey, disperses, tolerance};
 use super::words::percent;
 use crate::material::Material;
 use crate::scene::{ModelText, Scene};
-use crate::spectrum::{Basis, Curve, CurveKind, Emission, Quantity, provenance};
+use crate::spectrum::{Basis, Curve, CurveKind, Emission, MAX_LANES, Quantity, provenance};
 use crate::trace::{COLORS_NM, Dispersion, Method, Transport, World, dispersion as measured_dispersion};
 
 /// Share of the camera rays on dispersive surfaces from which twice the wavelengths are carried.
@@ -37,6 +37,7 @@ pub(super) fn model(scene: &Scene<Curve>) -> Model {
     let hero = asks_hero || (scene.render.model == ModelText::Auto && visible);
     let filled = dispersion.is_some_and(|d| d.seen > FILLED);
     let [bands, heroes] = HERO[usize::from(filled)];
+    let spectral = scene.format.spectral.is_some();
     let candidates = candidates(&survey, &seen, if hero { heroes } else { 0 });
     let tolerance = tolerance(scene);
     let chosen = candidates.iter().position(|candidate| candidate.bound() <= tolerance).unwrap_or(candidates.len() - 1);
@@ -45,12 +46,14 @@ pub(super) fn model(scene: &Scene<Curve>) -> Model {
     let with_heroes = |bands| bands_beside(&survey, bands, heroes).with_heroes(heroes, &survey.emissions());
     let (basis, why) = match scene.render.model {
         _ if hero && asks_hero => (with_heroes(bands), "the scene asks for it".to_owned()),
+        _ if hero && spectral => (with_heroes(MAX_LANES), "dispersion is seen, and spectra are asked for".to_owned()),
         _ if hero => {
             let least = candidates[chosen].basis.fixed_lanes().saturating_sub(own_lines(&survey, heroes).len());
             (with_heroes(bands.max(least)), "dispersion is seen".to_owned())
         }
         ModelText::Rgb => (three_bands(&survey), "the scene asks for it".to_owned()),
         ModelText::Bands(count) => (bands_beside(&survey, count as usize, 0), "the scene asks for it".to_owned()),
+        _ if spectral => (bands_beside(&survey, MAX_LANES, 0), "the most there are, for the spectra".to_owned()),
         _ => (candidates[chosen].basis.clone(), least(&candidates, chosen, tolerance, is_exact)),
     };
     let next =

@@ -233,7 +233,7 @@ impl<S> Scene<S> {
         }
     }
 
-    /// Channels of the layers that the file has beside the image.
+    /// Channels of the layers that are made beside the image, and of its spectra.
     pub fn layer_channels(&self) -> u64 {
         let groups = self.light_groups.iter().collect::<BTreeSet<_>>().len();
         let images = |layer: &Layer| match layer {
@@ -241,7 +241,8 @@ impl<S> Scene<S> {
             layer if layer.is_matte() => RANKS / 2,
             _ => 1,
         };
-        self.format.layers.iter().map(|layer| (images(layer) * layer.channels().len()) as u64).sum()
+        let layers = self.format.layers.iter().map(|layer| images(layer) * layer.channels().len()).sum::<usize>();
+        (layers + self.format.spectral.map_or(0, |bands| bands.count())) as u64
     }
 
     /// Bytes of memory that layers take: of each number a sum in 64 bits, its value in 32, and that again while the

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::band_response::BandResponse;
 use super::bands::Bands;
 use super::cardinals::cardinals;
 use super::color::{ColorSpace, IDENTITY, Matrix, apply, product};
@@ -11,7 +12,7 @@ use super::mixture::Mixture;
 use super::palette::palette;
 use super::table::{MAX_LANES, Pattern, PatternKind};
 use super::visible::{self, COUNT};
-use super::{Curve, CurveKind, Draw, Emission, Quantity, Response, Table, Upsampler};
+use super::{Curve, CurveKind, Draw, Emission, Quantity, Response, Table, Upsampler, WavelengthBands};
 
 /// What the lanes of one render stand for: the bins on which all its spectra are tabulated.
 #[derive(Clone, Debug, PartialEq)]
@@ -268,36 +269,65 @@ impl Basis {
         }
     }
 
+    /// What the lanes bring to bands of wavelengths when a path ends in a light of this emission; none of three bands,
+    /// which are no wavelengths.
+    pub fn band_response(&self, curve: &Curve, bands: WavelengthBands) -> Option<BandResponse> {
+        let LaneKind::Wavelengths(functions) = &self.lanes else { return None };
+        let emission = Emission::new(&curve.level(), self.space);
+        let level = emission.level();
+        let unit = if level == 0.0 { 0.0 } else { emission.unit() / level };
+        let mut columns = vec![0.0; self.fixed_lanes() * bands.count()];
+        let mut add = |lane: usize, band: usize, light: f64| {
+            columns[lane * bands.count() + band] += light * unit / bands.step_nm();
+        };
+        let lines = emission.lines();
+        self.spread(functions, lines, |part, lane, weight| match part.checked_sub(COUNT) {
+            None => {
+                let light = weight * emission.spectrum()[part];
+                bands.around(visible::FIRST_NM + part as f64).for_each(|(band, width)| add(lane, band, light * width));
+            }
+            Some(line) => {
+                let [nm, power] = lines[line];
+                bands.of(nm).into_iter().for_each(|band| add(lane, band, weight * power));
+            }
+        });
+        let at = |nm: f64| unit * emission.spectrum()[(nm - visible::FIRST_NM) as usize];
+        let line = |nm: f64| unit * emission.power_of_line(nm);
+        let lines_nm = self.heroes.as_ref().map_or(&[][..], |heroes| heroes.mixture.lines());
+        Some(BandResponse::new(bands, columns, self.fine(at, line), lines_nm))
+    }
+
+    /// How each part of a light is spread over the lanes: told is the number of the part, first the wavelengths of the
+    /// visible grid, then the lines; a lane; and the share that it carries.
+    fn spread(&self, functions: &[Vec<f64>], lines: &[[f64; 2]], mut carries: impl FnMut(usize, usize, f64)) {
+        for part in 0..COUNT {
+            functions.iter().enumerate().for_each(|(lane, function)| carries(part, lane, function[part]));
+        }
+        for (part, &[nm, _]) in (COUNT..).zip(lines) {
+            let own = self.wavelengths_nm[functions.len()..].iter().position(|&lane| lane == nm);
+            match own {
+                Some(lane) => carries(part, functions.len() + lane, 1.0),
+                None => {
+                    let (below, fraction) = visible::place(nm);
+                    let between = |f: &Vec<f64>| f[below] + fraction * (f[below + 1] - f[below]);
+                    functions.iter().enumerate().for_each(|(lane, function)| carries(part, lane, between(function)));
+                }
+            }
+        }
+    }
+
     /// Light times color matching functions, integrated with the function of each lane.
     fn light_matrix(&self, emission: &Emission, functions: &[Vec<f64>]) -> Response {
         let level = emission.level();
         let per_level = |color: [f64; 3]| if level == 0.0 { [0.0; 3] } else { color.map(|x| x / level) };
+        let lines = emission.lines().iter().map(|&[nm, power]| per_level(emission.film(nm).map(|x| x * power)));
+        let light: Vec<[f64; 3]> = emission.columns().map(per_level).chain(lines).collect();
         let mut columns = vec![[0.0; 3]; self.fixed_lanes()];
-        let mut add = |lane: usize, weight: f64, color: [f64; 3]| {
-            (0..3).for_each(|c| columns[lane][c] += weight * color[c]);
-        };
-        let light: Vec<[f64; 3]> = emission.columns().map(per_level).collect();
-        for (i, color) in light.iter().enumerate() {
-            functions.iter().enumerate().for_each(|(lane, function)| add(lane, function[i], *color));
-        }
-        for &[nm, power] in emission.lines() {
-            let color = per_level(emission.film(nm).map(|x| x * power));
-            let own = self.wavelengths_nm[functions.len()..].iter().position(|&lane| lane == nm);
-            match own {
-                Some(lane) => add(functions.len() + lane, 1.0, color),
-                None => {
-                    let (below, fraction) = visible::place(nm);
-                    let between = |f: &Vec<f64>| f[below] + fraction * (f[below + 1] - f[below]);
-                    functions.iter().enumerate().for_each(|(lane, function)| add(lane, between(function), color));
-                }
-            }
-        }
+        self.spread(functions, emission.lines(), |part, lane, weight| {
+            (0..3).for_each(|c| columns[lane][c] += weight * light[part][c]);
+        });
         let at = |nm: f64| light[(nm - visible::FIRST_NM) as usize];
-        let line = |nm: f64| {
-            let powers = emission.lines().iter().filter(|line| line[0] == nm).map(|line| line[1]);
-            per_level(emission.film(nm).map(|x| x * powers.clone().sum::<f64>()))
-        };
-        debug_assert_eq!(light.len(), COUNT);
+        let line = |nm: f64| per_level(emission.film(nm).map(|x| x * emission.power_of_line(nm)));
         Response::new(&columns, self.fine(at, line))
     }
 }

@@ -80,6 +80,17 @@ impl Emission {
         &self.lines
     }
 
+    /// Radiance per nm and of lines for a number of the spectrum, on the scale on which an even spectrum of 1 is 1 and
+    /// has Y = 1.
+    pub(super) fn unit(&self) -> f64 {
+        visible::luminous() * self.correction[1]
+    }
+
+    /// The power of the ideal lines at exactly a wavelength.
+    pub(super) fn power_of_line(&self, wavelength_nm: f64) -> f64 {
+        self.lines.iter().filter(|line| line[0] == wavelength_nm).map(|line| line[1]).sum()
+    }
+
     /// CIE XYZ.
     pub fn xyz(&self) -> [f64; 3] {
         let sum = self.uncorrected();

@@ -9,7 +9,7 @@
 use super::basis::{Heroes, LaneKind};
 use super::draw::Hero;
 use super::visible::{self, COUNT};
-use super::{Basis, Draw, Lanes, Response};
+use super::{BandResponse, Basis, Draw, Lanes, Response};
 
 /// What connects the lanes of one basis.
 #[derive(Clone, Debug, Default)]
@@ -27,6 +27,16 @@ pub struct Matching<const N: usize> {
 pub struct Wavelength {
     hero: Hero,
     bin: u32,
+}
+
+impl Wavelength {
+    /// The band into which light of this wavelength falls, and how much it is there: light of a film color that was
+    /// found by a response, and is looked at by the same light's response to bands.
+    pub fn band(&self, color: [f64; 3], response: &Response, bands: &BandResponse) -> Option<(usize, f64)> {
+        let one = response.hero(&self.hero);
+        let strongest = (0..3).fold(0, |most, c| if one[c].abs() > one[most].abs() { c } else { most });
+        (one[strongest] != 0.0).then(|| bands.hero(&self.hero, color[strongest] / one[strongest]))?
+    }
 }
 
 /// The bin of each entry of the fine grid, and how likely each is, for the probabilities of steps and lines.

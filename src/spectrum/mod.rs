@@ -1,6 +1,7 @@
 //! Floor 1: what light is made of. A lane is a number that travels; only this folder knows what it stands for.
 
 mod advice;
+mod band_response;
 mod bands;
 mod basis;
 mod cardinals;
@@ -24,8 +25,10 @@ mod texture;
 mod throughput;
 mod upsample;
 pub mod visible;
+mod wavelength_bands;
 
 pub use advice::{imitation, provenance, reach};
+pub use band_response::BandResponse;
 pub use bands::normal_reflectance;
 pub use basis::Basis;
 pub use color::{ColorSpace, Primaries, apply, decode_srgb, encode_srgb};
@@ -42,3 +45,4 @@ pub use table::{MAX_LANES, Table};
 pub use texture::{Channel, Encoding, Placement, TexelFilter, Texture, Wrap};
 pub use throughput::Throughput;
 pub use upsample::{Sigmoid, Upsampler};
+pub use wavelength_bands::WavelengthBands;

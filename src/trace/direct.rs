@@ -2,6 +2,7 @@
 
 use std::cell::Cell;
 
+use super::arrived::Arrived;
 use super::bright::Aiming;
 use super::contribution::{Contribution, Found};
 use super::interaction::Interaction;
@@ -94,9 +95,8 @@ impl<const N: usize> DirectLighting<'_, N> {
         let (lights, key) = (&self.world.scene.lights, self.path.key);
         let mut take = |drawn: SampledLight, [u, v]: [f64; 2]| {
             let u = if lights[drawn.light].has_parts() { finer(u, sampler.four_plain(key, MORE_DIGITS)[1]) } else { u };
-            let shadow_ray = self.shadow_ray(side, drawn, [u, v]);
-            if let Some(contribution) = shadow_ray.and_then(|ray| self.trace(side, &ray)) {
-                sensor.receive(contribution);
+            if let Some(shadow_ray) = self.shadow_ray(side, drawn, [u, v]) {
+                self.trace(side, &shadow_ray, sensor);
             }
         };
         if self.all_lights {
@@ -133,8 +133,8 @@ impl<const N: usize> DirectLighting<'_, N> {
         factor.is_finite().then_some(ShadowRay { light, sample, probability, bsdf_cos, bsdf_pdf, factor })
     }
 
-    /// What the sensor gets by a ray; none if something occludes the light.
-    fn trace(&self, side: &Side, shadow_ray: &ShadowRay<N>) -> Option<Contribution> {
+    /// Hands what comes by a ray to the sensor, unless something occludes the light.
+    fn trace(&self, side: &Side, shadow_ray: &ShadowRay<N>, sensor: &mut Sensor<N>) {
         let (world, arrival) = (self.world, &self.at.arrival);
         let ShadowRay { light, sample, probability, bsdf_cos, bsdf_pdf, factor } = shadow_ray;
         let LightSample { ray, distance, object, part, .. } = sample;
@@ -143,18 +143,20 @@ impl<const N: usize> DirectLighting<'_, N> {
         let passage = Passage { ray, distance, ends, inside, past: Past::Objects(self.path.among), last_occluder };
         let wi = ray.direction;
         let light_of = || world.scene.lights[*light].toward(arrival.draw, wi, sample.uv);
-        let (arriving, on_its_way) = passage.arriving(world, arrival.draw, light_of)?;
+        let Some((arriving, on_its_way)) = passage.arriving(world, arrival.draw, light_of) else { return };
         // The density of bounces that are guided takes its time.
         let factor = match self.aiming.filter(|_| self.goes_on && sample.pdf.is_some()) {
             Some(aiming) => self.factor(sample, *probability, aiming.pdf(wi, *bsdf_pdf)),
             None => *factor,
         };
-        let reflected = self.path.throughput.scaled(factor).of(*bsdf_cos * arriving);
-        let rgb = world.responses[*light].sensor(arrival.draw, reflected, side.parted);
+        let lanes = &self.path.throughput.scaled(factor).of(*bsdf_cos * arriving);
+        let (light, dispersed) = (*light, side.parted);
+        let arrived = Arrived { light, draw: arrival.draw, lanes, parted: dispersed };
+        let rgb = arrived.rgb(&world.responses);
         let moved = self.at.moved(world, self.path, wi, on_its_way, rgb);
-        let (bounces, dispersed) = (self.path.bounces + 1, side.parted);
+        let (light, found, bounces) = (Some(light), Found::Sampled, self.path.bounces + 1);
         let first = self.at.first_lobe(world, self.path, wi, side.normal != self.at.flat);
-        Some(Contribution { light: Some(*light), found: Found::Sampled, rgb, moved, first, bounces, dispersed })
+        sensor.receive(Contribution { light, found, rgb, moved, first, bounces, dispersed }, &arrived);
     }
 
     /// The factor on a light's emission and the material's answer: over the density of both ways to the light's

@@ -13,6 +13,7 @@
 use std::f64::consts::PI;
 
 use super::World;
+use super::arrived::Arrived;
 use super::contribution::{self, Contribution, add};
 use super::interaction::Interaction;
 use super::path::Path;
@@ -22,7 +23,7 @@ use super::shading;
 use crate::light::LightId;
 use crate::math::{BranchKey, DVec2, DVec3, Frame, Ray, Sampler, unit};
 use crate::shape::SurfacePoint;
-use crate::spectrum::Lanes;
+use crate::spectrum::{Lanes, Wavelength};
 
 /// Surfaces whose normals differ by more than 60 degrees belong to different sides or walls.
 const ALIKE: f64 = 0.5;
@@ -51,10 +52,10 @@ struct Place<'a> {
 }
 
 /// What was found, and one photon of it, drawn by what it brings.
-struct Found {
+struct Found<const N: usize> {
     sum: [f64; 3],
     /// What each photon brings, if that is asked for.
-    parts: Option<Vec<Contribution>>,
+    parts: Option<Vec<Part<N>>>,
     weight: f64,
     drawn: Option<Chosen>,
     u: f64,
@@ -71,9 +72,25 @@ struct Chosen {
 }
 
 /// Light that was gathered, and what each photon brings of it if that was asked for.
-pub(super) struct Gathered {
+pub(super) struct Gathered<const N: usize> {
     pub(super) all: Contribution,
-    pub(super) parts: Vec<Contribution>,
+    pub(super) parts: Option<Vec<Part<N>>>,
+}
+
+/// What one photon brings, but for a factor.
+pub(super) struct Part<const N: usize> {
+    pub(super) contribution: Contribution,
+    pub(super) spectrum: PartSpectrum<N>,
+    pub(super) factor: f64,
+}
+
+/// The spectrum of what a photon brings.
+#[derive(Clone, Copy)]
+pub(super) enum PartSpectrum<const N: usize> {
+    /// Lanes of the camera path.
+    Lanes(Lanes<N>),
+    /// One wavelength.
+    Alone(Wavelength),
 }
 
 /// What the sensor gets of the photons around a place that a path has reached; if `apart`, photon by photon as well.
@@ -85,7 +102,7 @@ pub(super) fn gather<const N: usize>(
     at: &Interaction<N>,
     sampler: &Sampler,
     apart: bool,
-) -> Gathered {
+) -> Gathered<N> {
     let Interaction { point, flat, material, arrival, parts, .. } = at;
     let (flat, parts) = (*flat, *parts);
     let bounces = path.bounces + 2;
@@ -98,7 +115,7 @@ pub(super) fn gather<const N: usize>(
         bounces,
         dispersed,
     };
-    let nothing = Gathered { all: brought(None, [0.0; 3], false), parts: Vec::new() };
+    let nothing = Gathered { all: brought(None, [0.0; 3], false), parts: apart.then(Vec::new) };
     let Some(map) = world.method.light_pass.as_ref().and_then(|pass| pass.map) else { return nothing };
     let [u, whether, ..] = sampler.four_plain(path.key.child(CHOICE), 0);
     if whether >= map.chance {
@@ -118,10 +135,11 @@ pub(super) fn gather<const N: usize>(
         let carries = &photon.carries;
         let by_heroes = arrival.draw.hero_factor(parted).is_some();
         let flux = if by_heroes { photons.matching.onto_heroes(arrival.draw, carries.flux) } else { carries.flux };
-        let arriving = path.throughput.of(bsdf_cos * flux);
-        let rgb = world.responses[carries.light].sensor(arrival.draw, arriving, parted);
-        let brought = brought(Some(carries.light), rgb.map(|x| density * x), parted);
-        found.add(position, brought, world.amount(brought.rgb), || change(photon.back, photon.polarized));
+        let lanes = path.throughput.of(bsdf_cos * flux);
+        let rgb = Arrived { light: carries.light, draw: arrival.draw, lanes: &lanes, parted }.rgb(&world.responses);
+        let contribution = brought(Some(carries.light), rgb, parted);
+        let part = Part { contribution, spectrum: PartSpectrum::Lanes(lanes), factor: density };
+        found.add(world, position, part, || change(photon.back, photon.polarized));
     });
     photons.alone.near(point.position, radius, &mut |position, photon| {
         let (wavelength, parted) = (&photon.carries.wavelength, parted(photon.back));
@@ -136,24 +154,25 @@ pub(super) fn gather<const N: usize>(
         }
         let Some(density) = place.density(path, position, photon) else { return };
         let Some((bsdf_cos, _)) = shading::evaluate(material, arrival, flat, photon.back) else { return };
-        let share = density * read(path.throughput.of(bsdf_cos));
-        let brought = brought(Some(photon.carries.light), photon.carries.color.map(|x| share * x), true);
-        found.add(position, brought, world.amount(brought.rgb), || change(photon.back, photon.polarized));
+        let factor = density * read(path.throughput.of(bsdf_cos));
+        let contribution = brought(Some(photon.carries.light), photon.carries.color, true);
+        let part = Part { contribution, spectrum: PartSpectrum::Alone(*wavelength), factor };
+        found.add(world, position, part, || change(photon.back, photon.polarized));
     });
     let (rgb, moved) = place.seen_of(&mut found, point, sampler, path.key);
     let (rgb, moved) = (rgb.map(|x| x / map.chance), moved / map.chance);
-    let mut parts = found.parts.unwrap_or_default();
-    parts.iter_mut().for_each(|part| part.rgb = part.rgb.map(|x| x / map.chance));
-    Gathered { all: Contribution { moved, ..brought(None, rgb, false) }, parts }
+    found.parts.iter_mut().flatten().for_each(|part| part.factor /= map.chance);
+    Gathered { all: Contribution { moved, ..brought(None, rgb, false) }, parts: found.parts }
 }
 
-impl Found {
-    fn add(&mut self, position: DVec3, brought: Contribution, weight: f64, change: impl FnOnce() -> f64) {
-        let rgb = brought.rgb;
+impl<const N: usize> Found<N> {
+    fn add(&mut self, world: &World, position: DVec3, part: Part<N>, change: impl FnOnce() -> f64) {
+        let rgb = part.contribution.rgb.map(|x| part.factor * x);
+        let weight = world.amount(rgb);
         add(&mut self.sum, rgb);
-        let part = self.parts.as_ref().map_or(0, Vec::len);
+        let number = self.parts.as_ref().map_or(0, Vec::len);
         if let Some(parts) = &mut self.parts {
-            parts.push(brought);
+            parts.push(part);
         }
         if weight == 0.0 {
             return;
@@ -162,7 +181,7 @@ impl Found {
         // What is left of a random number after a choice is one again.
         let chance = weight / self.weight;
         if self.u < chance {
-            self.drawn = Some(Chosen { position, rgb, weight, part, change: change() });
+            self.drawn = Some(Chosen { position, rgb, weight, part: number, change: change() });
             self.u /= chance;
         } else {
             self.u = (self.u - chance) / (1.0 - chance);
@@ -199,7 +218,13 @@ impl Place<'_> {
 
     /// What is seen of what was found, over the share of the disc that is seen, and how much of it polarization may
     /// change.
-    fn seen_of(&self, found: &mut Found, point: &SurfacePoint, sampler: &Sampler, key: BranchKey) -> ([f64; 3], f64) {
+    fn seen_of<const N: usize>(
+        &self,
+        found: &mut Found<N>,
+        point: &SurfacePoint,
+        sampler: &Sampler,
+        key: BranchKey,
+    ) -> ([f64; 3], f64) {
         let Found { mut sum, ref mut parts, weight, drawn: ref chosen, .. } = *found;
         let Some(chosen) = chosen else { return (sum, 0.0) };
         let many = weight / chosen.weight;
@@ -211,7 +236,7 @@ impl Place<'_> {
         if !self.sees(from, chosen.position, 1.0).unwrap_or(true) {
             (0..3).for_each(|i| sum[i] -= chosen.rgb[i] * many);
             if let Some(parts) = parts {
-                (0..3).for_each(|i| parts[chosen.part].rgb[i] -= chosen.rgb[i] * many);
+                parts[chosen.part].factor *= 1.0 - many;
             }
             moved = 0.0;
         }
@@ -226,7 +251,7 @@ impl Place<'_> {
                 let at = self.position + frame.to_world(DVec3::new(x, y, 0.0));
                 if self.sees(from, at, further) == Some(true) {
                     let drawn = f64::from(drawn);
-                    parts.iter_mut().flatten().for_each(|part| part.rgb = part.rgb.map(|x| x * drawn));
+                    parts.iter_mut().flatten().for_each(|part| part.factor *= drawn);
                     return (sum.map(|x| x * drawn), moved * drawn);
                 }
             }

@@ -1,15 +1,18 @@
 //! What one camera sample leaves in the layers.
 
 use super::World;
+use super::arrived::Arrived;
 use super::contribution::Contribution;
+use super::gather::{Gathered, Part, PartSpectrum};
 use super::interaction::{Interaction, Meeting};
 use super::layers::Layers;
 use super::path::{Among, Path};
 use super::shading;
+use super::spectrum_sample::SpectrumSample;
 use crate::film::{FirstSurface, Layer};
 use crate::material::{Branch, Straight};
 use crate::math::Sampler;
-use crate::spectrum::Lanes;
+use crate::spectrum::{Draw, Lanes};
 
 /// Use of the random numbers by which albedo is found.
 const ALBEDO: u32 = 7;
@@ -18,6 +21,8 @@ const ALBEDO: u32 = 7;
 pub(super) struct LayerSample<'a, const N: usize> {
     world: &'a World,
     row: Vec<f64>,
+    /// What it leaves in the bands of a spectral image, if one is asked for.
+    spectrum: Option<SpectrumSample<'a, N>>,
     /// The largest share of the sample that a surface had so far: places are those of that surface.
     share: f64,
     /// The object that the camera ray met.
@@ -47,13 +52,21 @@ impl<'a, const N: usize> LayerSample<'a, N> {
     /// None where no layers are asked for.
     pub(super) fn of(world: &'a World) -> Option<Self> {
         let Layers { numbers, .. } = world.layers;
-        let new = || Self { world, row: vec![0.0; numbers], share: 0.0, object: None, branches: Vec::new() };
-        (!world.layers.is_empty()).then(new)
+        let (row, spectrum) = (vec![0.0; numbers], world.layers.spectrum.as_ref().map(SpectrumSample::new));
+        (!world.layers.is_empty()).then(|| Self {
+            world,
+            row,
+            spectrum,
+            share: 0.0,
+            object: None,
+            branches: Vec::new(),
+        })
     }
 
     /// Begins another sample.
     pub(super) fn begin(&mut self) {
         self.row.fill(0.0);
+        self.spectrum.iter_mut().for_each(SpectrumSample::begin);
         self.share = 0.0;
         self.object = None;
     }
@@ -77,9 +90,41 @@ impl<'a, const N: usize> LayerSample<'a, N> {
         }
     }
 
-    /// Receives light that came to the sensor.
-    pub(super) fn receive(&mut self, contribution: &Contribution) {
+    /// Receives light that came to the sensor, and the lanes by which it arrived.
+    pub(super) fn receive(&mut self, contribution: &Contribution, arrived: &Arrived<N>) {
         self.world.layers.add(&mut self.row, contribution);
+        if let Some(spectrum) = &mut self.spectrum {
+            spectrum.receive(arrived, 1.0);
+        }
+    }
+
+    /// Receives light of photons that were gathered.
+    pub(super) fn receive_gathered(&mut self, gathered: &Gathered<N>, draw: &Draw<N>) {
+        let Some(parts) = &gathered.parts else { return self.world.layers.add(&mut self.row, &gathered.all) };
+        for Part { contribution, spectrum, factor } in parts {
+            let rgb = contribution.rgb.map(|x| factor * x);
+            self.world.layers.add(&mut self.row, &Contribution { rgb, ..*contribution });
+            let (Some(sample), Some(light)) = (&mut self.spectrum, contribution.light) else { continue };
+            match spectrum {
+                PartSpectrum::Lanes(lanes) => {
+                    sample.receive(&Arrived { light, draw, lanes, parted: contribution.dispersed }, *factor);
+                }
+                PartSpectrum::Alone(wavelength) => {
+                    let responses = (&self.world.responses[light], sample.response(light));
+                    sample.receive_alone(wavelength.band(rgb, responses.0, responses.1));
+                }
+            }
+        }
+    }
+
+    /// Keeps what the sample at hand leaves in the bands of a spectral image.
+    pub(super) fn keep(&mut self) {
+        self.spectrum.iter_mut().for_each(SpectrumSample::keep);
+    }
+
+    /// Adds all that was kept of spectra to a pixel's row.
+    pub(super) fn hand_over(&mut self, row: &mut [f64]) {
+        self.spectrum.iter_mut().for_each(|spectrum| spectrum.hand_over(row));
     }
 
     /// Remembers a surface, if it is the first one.

@@ -4,7 +4,8 @@ use super::contribution::add;
 use super::coverage::Coverage;
 use super::layer_sample::Left;
 use super::layers::{Layers, OF_A_HALF};
-use crate::film::{Layer, LayerImage, RANKS, Sample, stored};
+use super::spectrum_sample::Spectrum;
+use crate::film::{Layer, LayerImage, RANKS, Sample, SpectralImage, stored};
 
 /// Sums of the pixels of a tile.
 #[derive(Default)]
@@ -75,6 +76,11 @@ impl LayerSums {
         &self.rows[pixel * layers.numbers..][..layers.numbers]
     }
 
+    /// The same, to add to it.
+    pub(super) fn row_mut(&mut self, layers: &Layers, pixel: usize) -> &mut [f64] {
+        &mut self.rows[pixel * layers.numbers..][..layers.numbers]
+    }
+
     /// Which objects each pixel shows.
     pub(super) fn covered(&self) -> &Coverage {
         &self.covered
@@ -107,6 +113,12 @@ pub(super) fn images(layers: &Layers, pixels: usize) -> Vec<LayerImage> {
         _ => vec![image(layer, layer.name().to_owned())],
     };
     layers.wanted.iter().flat_map(of_layer).collect()
+}
+
+/// The spectra of so many pixels, as yet without values; none if they are not asked for.
+pub(super) fn spectral_image(layers: &Layers, pixels: usize) -> Option<SpectralImage> {
+    let bands = layers.spectrum.as_ref()?.bands;
+    Some(SpectralImage { bands, values: vec![0.0; pixels * bands.count()] })
 }
 
 /// Writes a pixel's values into the images.
@@ -142,6 +154,15 @@ pub(super) fn write(layers: &Layers, taken: &Taken, pixel: usize, images: &mut [
 }
 
 impl Taken<'_> {
+    /// Writes the pixel's spectrum into the image.
+    pub(super) fn write_spectrum(&self, spectrum: &Spectrum, pixel: usize, image: &mut SpectralImage) {
+        let (kept, bands) = (f64::from(self.kept.max(1)), spectrum.bands.count());
+        for (band, value) in image.values[pixel * bands..][..bands].iter_mut().enumerate() {
+            let shown = self.shown.get(spectrum.at + band).copied().unwrap_or_default();
+            *value = stored(self.sums[spectrum.at + band] / kept + shown);
+        }
+    }
+
     fn value(&self, layer: Layer, at: usize, channel: usize) -> f64 {
         let kept = f64::from(self.kept.max(1));
         let sum = self.sums.get(at + channel).copied().unwrap_or_default();

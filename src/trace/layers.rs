@@ -2,6 +2,7 @@
 
 use super::contribution::{Contribution, Found, add};
 use super::first_lobe::FirstLobe;
+use super::spectrum_sample::Spectrum;
 use super::white::White;
 use crate::film::{FirstSurface, Layer, Manifest, id, light_layer_name};
 use crate::scene::{Scene, Sight};
@@ -28,6 +29,8 @@ pub(super) struct Layers {
     pub(super) ids: Vec<(Layer, Vec<u32>)>,
     /// Where the numbers of shadow catchers begin, if there are any: see [`Caught`].
     caught: Option<usize>,
+    /// The bands of a spectral image, if one is asked for.
+    pub(super) spectrum: Option<Spectrum>,
     /// Whether any of them is of a lobe of the first surface.
     lobes_apart: bool,
     /// A light of radiance 1, by which albedo and lobes are looked at.
@@ -104,6 +107,10 @@ impl Layers {
             layers.caught = Some(layers.numbers);
             layers.numbers += Caught::NUMBERS;
         }
+        if let Some(bands) = scene.format.spectral {
+            layers.spectrum = Spectrum::new(scene, basis, bands, layers.numbers);
+            layers.numbers += layers.spectrum.as_ref().map_or(0, |spectrum| spectrum.bands.count());
+        }
         let mattes = layers.wanted.iter().filter(|layer| layer.is_matte());
         layers.ids = mattes.map(|&matte| (matte, names(scene, matte).map(id).collect())).collect();
         layers.lobes_apart = layers.wanted.iter().any(|layer| layer.is_of_lobe());
@@ -120,7 +127,7 @@ impl Layers {
 
     /// Whether there are none.
     pub(super) fn is_empty(&self) -> bool {
-        self.wanted.is_empty() && self.caught.is_none()
+        self.wanted.is_empty() && self.caught.is_none() && self.spectrum.is_none()
     }
 
     /// Where in a row the numbers of a layer begin; none if it is not wanted.
@@ -129,9 +136,9 @@ impl Layers {
         self.places[layer as usize]
     }
 
-    /// Whether it matters of which light gathered photons are, and whether they were dispersed.
+    /// Whether it matters of which light gathered photons are, whether they were dispersed, or what their spectra are.
     pub(super) fn tell_photons_apart(&self) -> bool {
-        self.at(Layer::Lights).or(self.at(Layer::Dispersed)).is_some()
+        self.at(Layer::Lights).or(self.at(Layer::Dispersed)).is_some() || self.spectrum.is_some()
     }
 
     /// Whether anything is wanted of first surfaces.

@@ -84,7 +84,7 @@ pub(super) fn show<const N: usize>(world: &World, progress: &(dyn Fn(u64) + Sync
 
 /// Adds a photon that the camera sees to the row of its pixel, which holds means.
 fn add_to_layers(world: &World, splat: &Splat, row: &mut [f64]) {
-    let Splat { light, rgb, dispersed, early, caught, first, .. } = *splat;
+    let Splat { light, rgb, dispersed, early, caught, first, density, .. } = *splat;
     if caught {
         return world.layers.catch_photon(row, rgb);
     }
@@ -92,6 +92,10 @@ fn add_to_layers(world: &World, splat: &Splat, row: &mut [f64]) {
     let bounces = 2;
     let light = Some(light);
     world.layers.add(row, &Contribution { light, found: Found::Shown, rgb, moved: 0.0, first, bounces, dispersed });
+    if let (Some(spectrum), Some(bands)) = (&world.layers.spectrum, &splat.bands) {
+        let sums = row[spectrum.at..].iter_mut().zip(bands.iter());
+        sums.for_each(|(sum, &light)| *sum += density * f64::from(light));
+    }
     world.layers.add_to(Layer::Variance, row, rgb.map(|x| x * x));
     world.layers.add_to(if early { Layer::HalfA } else { Layer::HalfB }, row, rgb.map(|x| 2.0 * x));
 }

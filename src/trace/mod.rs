@@ -28,6 +28,7 @@
 
 mod aimed;
 mod apart;
+mod arrived;
 mod branching;
 mod bright;
 mod brightness;
@@ -72,6 +73,7 @@ mod search;
 mod seen_light;
 mod sensor;
 mod shading;
+mod spectrum_sample;
 mod stats;
 mod straight;
 mod targets;

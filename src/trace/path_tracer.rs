@@ -1,11 +1,12 @@
 //! Paths from the camera back to the lights.
 
 use super::aimed::{may_aim, scatter_aimed};
+use super::arrived::Arrived;
 use super::contribution::{Contribution, Found};
 use super::direct::{DirectLighting, weight_of_meeting};
-use super::gather::{Gathered, gather};
+use super::gather::gather;
 use super::interaction::{Interaction, Meeting};
-use super::layer_sample::{LayerSample, Left, Met};
+use super::layer_sample::{LayerSample, Met};
 use super::light_vertices::{LightVertices, holds_vertices};
 use super::path::{Among, Path, PathKind, ScatterSample};
 use super::photon_map::PhotonMap;
@@ -18,7 +19,7 @@ use super::{Transport, World};
 use crate::film::Sample;
 use crate::light::{Light, LightId};
 use crate::material::{Material, Straight};
-use crate::math::{BranchKey, DVec2, Sampler};
+use crate::math::{BranchKey, DVec2, DVec3, Sampler};
 use crate::scene::Sight;
 use crate::shape::SurfacePoint;
 use crate::spectrum::Draw;
@@ -73,8 +74,8 @@ impl<'a, const N: usize> PathTracer<'a, N> {
     }
 
     /// What the last camera sample left in the layers, if any are asked for.
-    pub(super) fn layers(&self) -> Option<Left<'_>> {
-        self.sensor.layers.as_ref().map(LayerSample::left)
+    pub(super) fn layers(&mut self) -> Option<&mut LayerSample<'a, N>> {
+        self.sensor.layers.as_mut()
     }
 
     /// One camera sample.
@@ -201,9 +202,8 @@ impl<'a, const N: usize> PathTracer<'a, N> {
                 _ => 1.0,
             };
             let weight = weight_of_meeting(world, id, path.scatter.as_ref(), &path.ray, None);
-            let arriving = path.throughput.scaled(weight * factor).of(light.toward(draw, path.ray.direction, [0.0; 2]));
-            let rgb = world.responses[id].sensor(draw, arriving, path.parted);
-            self.receive(path, id, Found::Hit { normal: None, scattered: path.scatter.is_some() }, rgb);
+            let lanes = &path.throughput.scaled(weight * factor).of(light.toward(draw, path.ray.direction, [0.0; 2]));
+            self.receive(path, None, &Arrived { light: id, draw, lanes, parted: path.parted });
         }
     }
 
@@ -218,17 +218,18 @@ impl<'a, const N: usize> PathTracer<'a, N> {
         }
         let weight = weight_of_meeting(world, id, path.scatter.as_ref(), &path.ray, Some(&hit.crossing));
         let uv = object.uv(&hit.crossing, point);
-        let light = path.throughput.scaled(weight).of(draw.read_at(&area.radiance, uv));
-        let rgb = world.responses[id].sensor(draw, light, path.parted);
-        self.receive(path, id, Found::Hit { normal: Some(point.normal), scattered: path.scatter.is_some() }, rgb);
+        let lanes = &path.throughput.scaled(weight).of(draw.read_at(&area.radiance, uv));
+        self.receive(path, Some(point.normal), &Arrived { light: id, draw, lanes, parted: path.parted });
     }
 
-    /// Hands light that came by a path to the sensor.
-    fn receive(&mut self, path: &Path<N>, light: LightId, found: Found, rgb: [f64; 3]) {
+    /// Hands light that a path has hit to the sensor; `normal` is that of the surface that shines.
+    fn receive(&mut self, path: &Path<N>, normal: Option<DVec3>, arrived: &Arrived<N>) {
+        let rgb = arrived.rgb(&self.walker.world.responses);
         let is_any = path.polarized.is_any();
         let moved = if is_any { path.polarized.change() * self.walker.world.amount(rgb) } else { 0.0 };
+        let (light, found) = (Some(arrived.light), Found::Hit { normal, scattered: path.scatter.is_some() });
         let Path { bounces, parted: dispersed, first, .. } = *path;
-        self.sensor.receive(Contribution { light: Some(light), found, rgb, moved, first, bounces, dispersed });
+        self.sensor.receive(Contribution { light, found, rgb, moved, first, bounces, dispersed }, arrived);
     }
 
     /// Samples the lights where a surface scatters widely, and lets the path go on: its ways on become pending.
@@ -317,8 +318,8 @@ impl<'a, const N: usize> PathTracer<'a, N> {
     fn gather_photons(&mut self, path: &Path<N>, at: &Interaction<N>, sampler: &Sampler) {
         if let Some(photons) = self.photons.filter(|_| path.among == Among::All) {
             let apart = self.sensor.layers.is_some() && self.walker.world.layers.tell_photons_apart();
-            let Gathered { all, parts } = gather(photons, self.walker.world, path, at, sampler, apart);
-            self.sensor.receive_in_parts(&all, if apart { &parts } else { std::slice::from_ref(&all) });
+            let gathered = gather(photons, self.walker.world, path, at, sampler, apart);
+            self.sensor.receive_gathered(&gathered, at.arrival.draw);
         }
         if let Some(observer) = self.sensor.observer {
             observer.reach(at.point.position);

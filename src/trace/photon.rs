@@ -1,8 +1,10 @@
 //! Photons: light followed forward over smooth surfaces, to where the camera sees it.
 
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 use super::World;
+use super::arrived::Arrived;
 use super::first_lobe::FirstLobe;
 use super::interaction::{Interaction, parts};
 use super::media::Media;
@@ -20,12 +22,15 @@ use crate::spectrum::{Draw, Lanes};
 const LENS: u32 = 3;
 
 /// What a photon adds to a pixel of the window.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Splat {
     pub(super) pixel: u32,
     /// By what share polarization may change it.
     pub(super) change: f32,
     pub(super) rgb: [f64; 3],
+    /// What it adds to the bands of a spectral image if one is asked for, times a factor.
+    pub(super) bands: Option<Arc<[f32]>>,
+    pub(super) density: f64,
     pub(super) light: LightId,
     /// Whether its wavelengths parted on the way.
     pub(super) dispersed: bool,
@@ -241,15 +246,18 @@ pub(super) fn show<const N: usize>(
     let passage = Passage { ray: &ray, distance, ends, inside, past: Past::Seen, last_occluder: &walker.last_occluder };
     let shone = passage.arriving(world, arrival.draw, || landing.shone(world));
     let Some((shone, polarized)) = shone else { return };
-    let arriving = path.throughput.scaled(1.0 / path.eta_scale).of(bsdf_cos * shone);
-    let rgb = world.responses[*light].sensor(arrival.draw, arriving, parted);
-    let rgb = rgb.map(|x| x * (factor * cosines * seen.importance));
+    let lanes = &path.throughput.scaled(1.0 / path.eta_scale).of(bsdf_cos * shone);
+    let arrived = Arrived { light: *light, draw: arrival.draw, lanes, parted };
+    let factor = factor * cosines * seen.importance;
+    let rgb = arrived.rgb(&world.responses).map(|x| x * factor);
+    let spectrum = world.layers.spectrum.as_ref();
+    let bands = spectrum.map(|spectrum| spectrum.of(&arrived, factor).into_iter().map(|x| x as f32).collect());
     let change = polarized.brought(material, &viewed, arrival.wo, path.polarized).change() as f32;
     let reflected = || FirstLobe::reflected(world.layers.white.as_ref(), material, at.lobes, &viewed, arrival.wo);
     let lobe = || if same { reflected() } else { FirstLobe::Transmitted };
     let first = world.layers.tell_lobes_apart().then(lobe);
     let (light, dispersed, early, caught) = (*light, parted, *early, sight == Sight::ShadowCatcher);
-    let splat = Splat { pixel: 0, change, rgb, light, dispersed, early, caught, first };
+    let splat = Splat { pixel: 0, change, rgb, bands, density: 1.0, light, dispersed, early, caught, first };
     places.into_iter().for_each(|place| spread_over_pixels(film, place, &splat, splats));
 }
 
@@ -264,7 +272,8 @@ fn spread_over_pixels(film: FilmSettings, place: DVec2, splat: &Splat, splats: &
             let density = film.filter.density(place - middle);
             if density > 0.0 {
                 let pixel = (y - window.top) * window.width + (x - window.left);
-                splats.push(Splat { pixel, rgb: splat.rgb.map(|channel| channel * density), ..*splat });
+                let rgb = splat.rgb.map(|channel| channel * density);
+                splats.push(Splat { pixel, rgb, density, ..splat.clone() });
             }
         }
     }

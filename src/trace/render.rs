@@ -5,7 +5,7 @@ use std::borrow::Borrow;
 use rayon::prelude::*;
 
 use super::World;
-use super::layer_sums::{Taken, images, write};
+use super::layer_sums::{Taken, images, spectral_image, write};
 use super::light_pass::{self, CausticImage};
 use super::light_vertices::{LightPaths, LightVertices, SHARED};
 use super::photon_map;
@@ -122,6 +122,7 @@ impl<W: Borrow<World>> Rendering<W> {
         let layers = &self.world().layers;
         let luminance = settings.color_space.to_xyz()[1];
         let mut images = images(layers, pixels.len());
+        let mut spectral = spectral_image(layers, pixels.len());
         for tile in &self.tiles {
             for (place, sum) in (0..).zip(&tile.sums) {
                 let number = tile.number(window, place);
@@ -131,6 +132,9 @@ impl<W: Borrow<World>> Rendering<W> {
                     let (covered, place) = (tile.layers.covered(), place as usize);
                     let taken = Taken { sums, shown, rgb: sum.rgb(), kept: sum.kept(), covered, place };
                     write(layers, &taken, number, &mut images);
+                    if let (Some(image), Some(spectrum)) = (&mut spectral, &layers.spectrum) {
+                        taken.write_spectrum(spectrum, number, image);
+                    }
                     if let Some(caught) = layers.caught(sums, shown, sum.kept()) {
                         let alpha = f64::from(pixels[number].alpha) + caught.coverage(luminance);
                         pixels[number].alpha = alpha.min(1.0) as f32;
@@ -146,6 +150,7 @@ impl<W: Borrow<World>> Rendering<W> {
             color_space: settings.color_space,
             pixels,
             layers: images,
+            spectral,
             manifests: layers.manifests(&self.world().scene),
         }
     }

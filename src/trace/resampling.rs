@@ -3,6 +3,7 @@
 use std::cell::Cell;
 
 use super::World;
+use super::arrived::Arrived;
 use super::contribution::{Contribution, Found};
 use super::interaction::Interaction;
 use super::light_vertices::{LightVertex, LightVertices};
@@ -37,14 +38,12 @@ impl<const N: usize> Resampling<'_, N> {
             chosen.inspect(|(vertex, _)| prefetch(*vertex))
         });
         for (vertex, factor) in chosen.into_iter().flatten() {
-            if let Some(contribution) = self.connected(vertex, 0.5 * factor) {
-                sensor.receive(contribution);
-            }
+            self.connect(vertex, 0.5 * factor, sensor);
         }
     }
 
-    /// What the sensor gets of a vertex; none if it is not seen.
-    fn connected(&self, vertex: &LightVertex<N>, factor: f64) -> Option<Contribution> {
+    /// Hands the light of a vertex to the sensor; answers nothing if it is not seen.
+    fn connect(&self, vertex: &LightVertex<N>, factor: f64, sensor: &mut Sensor<N>) -> Option<()> {
         let (world, at) = (self.world, self.at);
         let bounces = self.path.vertices.saturating_add(vertex.vertices);
         if bounces > world.method.max_bounces || vertex.diffuse > self.path.diffuse_left {
@@ -77,11 +76,14 @@ impl<const N: usize> Resampling<'_, N> {
         let (arriving, on_its_way) = passage.arriving(world, at.arrival.draw, || vertex.leaving)?;
         let near_squared = self.vertices.near_squared();
         let factor = factor * cos / (squared + near_squared);
-        let reflected = self.path.throughput.scaled(factor).of(bsdf_cos * arriving);
-        let rgb = world.responses[vertex.light].sensor(at.arrival.draw, reflected, self.path.parted);
+        let lanes = &self.path.throughput.scaled(factor).of(bsdf_cos * arriving);
+        let arrived = Arrived { light: vertex.light, draw: at.arrival.draw, lanes, parted: self.path.parted };
+        let rgb = arrived.rgb(&world.responses);
         let moved = at.moved(world, self.path, direction, on_its_way, rgb);
         let (bounces, dispersed) = (self.path.bounces + 1 + vertex.vertices, self.path.parted);
         let first = at.first_lobe(world, self.path, direction, false);
-        Some(Contribution { light: Some(vertex.light), found: Found::Connected, rgb, moved, first, bounces, dispersed })
+        let (light, found) = (Some(vertex.light), Found::Connected);
+        sensor.receive(Contribution { light, found, rgb, moved, first, bounces, dispersed }, &arrived);
+        Some(())
     }
 }

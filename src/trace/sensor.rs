@@ -1,10 +1,13 @@
 //! Where the light of camera samples arrives.
 
 use super::World;
+use super::arrived::Arrived;
 use super::contribution::{Contribution, add};
+use super::gather::Gathered;
 use super::layer_sample::LayerSample;
 use super::stats::Stats;
 use crate::math::DVec3;
+use crate::spectrum::Draw;
 
 /// What a path found in a direction that was drawn where lights were sampled as well.
 #[derive(Clone, Copy, Debug)]
@@ -47,20 +50,27 @@ impl<const N: usize> Sensor<'_, N> {
         Self { rgb: [0.0; 3], moved: 0.0, observer: None, layers: None }
     }
 
-    /// Receives light.
+    /// Receives light, and the lanes by which it arrives.
     #[inline]
-    pub(super) fn receive(&mut self, contribution: Contribution) {
-        self.receive_in_parts(&contribution, std::slice::from_ref(&contribution));
+    pub(super) fn receive(&mut self, contribution: Contribution, arrived: &Arrived<N>) {
+        if let Some(layers) = &mut self.layers {
+            layers.receive(&contribution, arrived);
+        }
+        self.receive_all(&contribution);
     }
 
-    /// Receives light that layers tell apart.
+    /// Receives light of photons that were gathered.
+    pub(super) fn receive_gathered(&mut self, gathered: &Gathered<N>, draw: &Draw<N>) {
+        if let Some(layers) = &mut self.layers {
+            layers.receive_gathered(gathered, draw);
+        }
+        self.receive_all(&gathered.all);
+    }
+
     #[inline]
-    pub(super) fn receive_in_parts(&mut self, all: &Contribution, parts: &[Contribution]) {
+    fn receive_all(&mut self, all: &Contribution) {
         add(&mut self.rgb, all.rgb);
         self.moved += all.moved;
-        if let Some(layers) = &mut self.layers {
-            parts.iter().for_each(|part| layers.receive(part));
-        }
         if let Some(observer) = self.observer {
             observer.receive(all);
         }

@@ -65,10 +65,14 @@ impl Tile {
                 if !pass.add(&sample) {
                     self.stats.non_finite += 1;
                     self.first_non_finite.get_or_insert([x, y, number]);
-                } else if let Some(left) = tracer.layers() {
+                } else if let Some(layers) = tracer.layers() {
                     let early = number < world.method.samples.div_ceil(2);
-                    self.layers.add(&world.layers, place as usize, early, &sample, &left);
+                    layers.keep();
+                    self.layers.add(&world.layers, place as usize, early, &sample, &layers.left());
                 }
+            }
+            if let Some(layers) = tracer.layers() {
+                layers.hand_over(self.layers.row_mut(&world.layers, place as usize));
             }
             sum.add(pass);
         }

@@ -77,7 +77,7 @@ fn parted_lanes_equal_one_render_for_each_index_bit_for_bit() {
 pub fn block(film: &Film, column: u32, row: u32) -> Film {
     let places = (0..BLOCK * BLOCK).map(|i| (column * BLOCK + i % BLOCK, row * BLOCK + i / BLOCK));
     let pixels = places.map(|(x, y)| *film.at(x, y)).collect();
-    Film { width: BLOCK, height: BLOCK, pixels, layers: Vec::new(), manifests: Vec::new(), ..*film }
+    Film { width: BLOCK, height: BLOCK, pixels, layers: Vec::new(), spectral: None, manifests: Vec::new(), ..*film }
 }
 
 pub const BLOCK: u32 = 8;

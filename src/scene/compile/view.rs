@@ -10,7 +10,8 @@ use crate::film::{Compression, Filter, FirstSurface, Format, Layer, Precision, W
 use crate::math::DVec3;
 use crate::scene::text::{Choice, Fields, Value, at};
 use crate::scene::{Camera, FilmSettings, Lens, Projection};
-use crate::spectrum::ColorSpace;
+use crate::spectrum::visible::{FIRST_NM, LAST_NM};
+use crate::spectrum::{ColorSpace, WavelengthBands};
 
 /// Most pixels in a row or column.
 const MAX_SIDE: u32 = 65_536;
@@ -31,6 +32,7 @@ const MAX_SHIFT: f64 = 1000.0;
 /// precision = "half"
 /// compression = "piz"
 /// multipart = true
+/// spectral = true                    # or { from = 380, to = 780, step = 5 }, in nm: a spectral image beside it
 /// metadata = { owner = "Ernst Abbe", comments = "shot 12" }
 /// ```
 pub(super) fn film(value: Value) -> Option<(FilmSettings, Format)> {
@@ -66,6 +68,7 @@ fn format(film: &mut Fields) -> Option<Format> {
     let precision = film.or("precision", Precision::default(), |value| value.word(&Precision::NAMES));
     let compression = film.or("compression", Compression::default(), |value| value.word(&Compression::NAMES));
     let multipart = film.or("multipart", false, Value::yes_or_no);
+    let spectral = film.or("spectral", None, spectral);
     let metadata = film.or("metadata", [None, None], |value| {
         Fields::read(value, |metadata| {
             let [owner, comments] = ["owner", "comments"].map(|key| metadata.maybe(key, line));
@@ -74,7 +77,34 @@ fn format(film: &mut Fields) -> Option<Format> {
     });
     let [owner, comments] = metadata?;
     let (layers, first, precision) = (layers?, first?, precision?);
-    Some(Format { layers, first, precision, compression: compression?, multipart: multipart?, owner, comments })
+    let (compression, multipart, spectral) = (compression?, multipart?, spectral?);
+    Some(Format { layers, first, precision, compression, multipart, spectral, owner, comments })
+}
+
+/// The bands of a spectral image: true for those that most programs expect, or from where to where, in nm, and the
+/// width of each.
+fn spectral(value: Value) -> Option<Option<WavelengthBands>> {
+    match value.node() {
+        DeValue::Boolean(true) => return Some(Some(WavelengthBands::default())),
+        DeValue::Boolean(false) => return Some(None),
+        DeValue::Table(_) => {}
+        _ => return value.wanted("true, or a table such as { from = 380, to = 780, step = 5 }"),
+    }
+    let [from, to, step] = Fields::read(value, |bands| {
+        let nm = |value: Value| value.within(FIRST_NM..=LAST_NM, "a band lies between 360 and 830 nm", None);
+        let width = |value: Value| {
+            let between = (Bound::Excluded(0.0), Bound::Included(LAST_NM - FIRST_NM));
+            value.within(between, "a step is a width above 0 and at most 470 nm", None)
+        };
+        let [from, to, step] = [bands.or("from", 380.0, nm), bands.or("to", 780.0, nm), bands.or("step", 5.0, width)];
+        Some([from?, to?, step?])
+    })?;
+    let most = WavelengthBands::MOST;
+    match WavelengthBands::new(from, to, step) {
+        Some(bands) => Some(Some(bands)),
+        None if from > to => value.refuse(format!("the last band, at {to} nm, lies before the first, at {from} nm")),
+        None => value.refuse(format!("a step of {step} nm makes more than the {most} bands that fit")),
+    }
 }
 
 fn layers(value: Value) -> Option<Vec<Layer>> {

@@ -1,0 +1,95 @@
+//! Bands of equal width, one beside the other: what a spectral image tells apart.
+
+/// Bands of wavelengths, each around its center.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WavelengthBands {
+    first_nm: f64,
+    step_nm: f64,
+    count: usize,
+}
+
+impl Default for WavelengthBands {
+    /// 81 bands of 5 nm, centered on 380 to 780 nm.
+    fn default() -> Self {
+        Self { first_nm: 380.0, step_nm: 5.0, count: 81 }
+    }
+}
+
+impl WavelengthBands {
+    /// Most bands of an image.
+    pub const MOST: usize = 1000;
+
+    /// Bands whose centers lie `step_nm` apart, from the first to the last that is not beyond `to_nm`; none unless the
+    /// step is positive, and they are 1 to [`MOST`](Self::MOST).
+    pub fn new(from_nm: f64, to_nm: f64, step_nm: f64) -> Option<Self> {
+        // A last band that only rounding puts beyond the end is one of them.
+        let steps = ((to_nm - from_nm) / step_nm * (1.0 + 4.0 * f64::EPSILON)).floor();
+        let fits = step_nm > 0.0 && (0.0..Self::MOST as f64).contains(&steps);
+        fits.then(|| Self { first_nm: from_nm, step_nm, count: steps as usize + 1 })
+    }
+
+    /// How many they are.
+    pub fn count(&self) -> usize {
+        self.count
+    }
+
+    /// From center to center, which is also the width of each, in nm.
+    pub fn step_nm(&self) -> f64 {
+        self.step_nm
+    }
+
+    /// The centers, in nm, ascending.
+    pub fn centers_nm(&self) -> impl ExactSizeIterator<Item = f64> + use<> {
+        let Self { first_nm, step_nm, count } = *self;
+        (0..count).map(move |band| first_nm + band as f64 * step_nm)
+    }
+
+    /// The band of a wavelength; between two bands the upper one.
+    pub(super) fn of(&self, wavelength_nm: f64) -> Option<usize> {
+        let band = ((wavelength_nm - self.first_nm) / self.step_nm + 0.5).floor();
+        (0.0..self.count as f64).contains(&band).then_some(band as usize)
+    }
+
+    /// Each band that the nm around a wavelength reaches into, and how much of it lies there.
+    pub(super) fn around(&self, wavelength_nm: f64) -> impl Iterator<Item = (usize, f64)> + use<> {
+        let Self { first_nm, step_nm, count } = *self;
+        let start = first_nm - 0.5 * step_nm;
+        let [from, to] = [wavelength_nm - 0.5, wavelength_nm + 0.5];
+        let at = |nm: f64| ((nm - start) / step_nm).floor().clamp(0.0, count as f64 - 1.0) as usize;
+        (at(from)..=at(to)).filter_map(move |band| {
+            let below = start + band as f64 * step_nm;
+            let inside = to.min(below + step_nm) - from.max(below);
+            (inside > 0.0).then_some((band, inside))
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_nm_lies_in_bands_by_its_whole_width() {
+        for (from, to, step) in [(380.0, 780.0, 5.0), (400.0, 700.0, 0.4), (390.0, 720.0, 7.3), (550.0, 550.0, 1.0)] {
+            let bands = WavelengthBands::new(from, to, step).unwrap();
+            let mut widths = vec![0.0; bands.count()];
+            for nm in 200..1000 {
+                bands.around(f64::from(nm)).for_each(|(band, width)| widths[band] += width);
+            }
+            assert!(widths.iter().all(|width| (width / step - 1.0).abs() < 1e-12), "{from} to {to} by {step}");
+            let centers: Vec<f64> = bands.centers_nm().collect();
+            assert!(centers.iter().enumerate().all(|(band, &nm)| bands.of(nm) == Some(band)));
+            assert!(centers[centers.len() - 1] <= to + 1e-9 && centers[centers.len() - 1] + step > to);
+        }
+    }
+
+    #[test]
+    fn bands_that_are_none_or_too_many_are_refused() {
+        assert_eq!(WavelengthBands::new(380.0, 780.0, 5.0), Some(WavelengthBands::default()));
+        assert!(WavelengthBands::new(780.0, 380.0, 5.0).is_none());
+        assert!(WavelengthBands::new(380.0, 780.0, 0.0).is_none());
+        assert!(WavelengthBands::new(380.0, 780.0, -5.0).is_none());
+        assert!(WavelengthBands::new(380.0, 780.0, f64::NAN).is_none());
+        assert!(WavelengthBands::new(380.0, 780.0, 0.01).is_none());
+    }
+}

@@ -1,0 +1,23 @@
+//! Lanes at the end of their way.
+
+use crate::light::LightId;
+use crate::spectrum::{Draw, Lanes, Response};
+
+/// The lanes by which light arrives at the sensor.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Arrived<'a, const N: usize> {
+    /// The light it comes from.
+    pub(super) light: LightId,
+    pub(super) draw: &'a Draw<N>,
+    pub(super) lanes: &'a Lanes<N>,
+    /// Whether they parted on the way.
+    pub(super) parted: bool,
+}
+
+impl<const N: usize> Arrived<'_, N> {
+    /// The film's red, green and blue, by what the lanes of each light are worth.
+    #[inline]
+    pub(super) fn rgb(&self, responses: &[Response]) -> [f64; 3] {
+        responses[self.light].sensor(self.draw, *self.lanes, self.parted)
+    }
+}

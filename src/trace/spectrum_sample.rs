@@ -1,0 +1,114 @@
+//! What camera samples leave in the bands of a spectral image.
+//!
+//! Lanes are summed over all samples of a pixel, and are spread over the bands once for all of them.
+
+use super::arrived::Arrived;
+use crate::light::LightId;
+use crate::scene::Scene;
+use crate::spectrum::{BandResponse, Basis, Curve, Distinct, Lanes, WavelengthBands};
+
+/// The bands of a spectral image, and what the lanes of each light are to them.
+#[derive(Clone, Debug)]
+pub(super) struct Spectrum {
+    pub(super) bands: WavelengthBands,
+    /// Where their sums begin in a row.
+    pub(super) at: usize,
+    /// Of each light, which of the responses it has.
+    response_of: Vec<usize>,
+    responses: Vec<BandResponse>,
+}
+
+impl Spectrum {
+    /// None if lanes are no wavelengths.
+    pub(super) fn new(scene: &Scene<Curve>, basis: &Basis, bands: WavelengthBands, at: usize) -> Option<Self> {
+        let (mut distinct, mut responses) = (Distinct::default(), Vec::new());
+        let mut response_of = Vec::new();
+        for light in &scene.lights {
+            response_of.push(distinct.of(light.emission(), |curve| {
+                responses.push(basis.band_response(curve, bands));
+                responses.len() - 1
+            }));
+        }
+        let responses = responses.into_iter().collect::<Option<_>>()?;
+        Some(Self { bands, at, response_of, responses })
+    }
+
+    /// What a light's lanes are to the bands.
+    pub(super) fn response(&self, light: LightId) -> &BandResponse {
+        &self.responses[self.response_of[light]]
+    }
+
+    /// Light in all bands.
+    pub(super) fn of<const N: usize>(&self, arrived: &Arrived<N>, factor: f64) -> Vec<f64> {
+        let Arrived { light, draw, lanes, parted } = *arrived;
+        let (response, mut bands) = (self.response(light), vec![0.0; self.bands.count()]);
+        if !response.heroes(draw, lanes, parted, |band, light| bands[band] += factor * light) {
+            response.add_fixed(&lanes.0.map(|lane| factor * f64::from(lane)), &mut bands);
+        }
+        bands
+    }
+}
+
+/// Light that one camera sample after another leaves in the bands.
+pub(super) struct SpectrumSample<'a, const N: usize> {
+    spectrum: &'a Spectrum,
+    /// Of the sample at hand: lanes that never parted, with the number of their response and a factor; and light of
+    /// single wavelengths, with its band.
+    together: Vec<(usize, Lanes<N>, f64)>,
+    alone: Vec<(usize, f64)>,
+    /// Sums of the samples that were kept: lanes by their response, and bands.
+    lanes: Vec<[f64; N]>,
+    bands: Vec<f64>,
+}
+
+impl<'a, const N: usize> SpectrumSample<'a, N> {
+    pub(super) fn new(spectrum: &'a Spectrum) -> Self {
+        let lanes = vec![[0.0; N]; spectrum.responses.len()];
+        let bands = vec![0.0; spectrum.bands.count()];
+        Self { spectrum, together: Vec::new(), alone: Vec::new(), lanes, bands }
+    }
+
+    /// Begins another sample.
+    pub(super) fn begin(&mut self) {
+        self.together.clear();
+        self.alone.clear();
+    }
+
+    /// Receives light, times a factor.
+    pub(super) fn receive(&mut self, arrived: &Arrived<N>, factor: f64) {
+        let Self { spectrum, together, alone, .. } = self;
+        let Arrived { light, draw, lanes, parted } = *arrived;
+        let found = |band, light| alone.push((band, factor * light));
+        if !spectrum.response(light).heroes(draw, lanes, parted, found) {
+            together.push((spectrum.response_of[light], *lanes, factor));
+        }
+    }
+
+    /// Receives light of a single wavelength: its band, if it falls into any, and how much it is.
+    pub(super) fn receive_alone(&mut self, found: Option<(usize, f64)>) {
+        self.alone.extend(found);
+    }
+
+    /// What a light's lanes are to the bands.
+    pub(super) fn response(&self, light: LightId) -> &'a BandResponse {
+        self.spectrum.response(light)
+    }
+
+    /// Keeps what the sample has received.
+    pub(super) fn keep(&mut self) {
+        for (response, lanes, factor) in self.together.drain(..) {
+            let sums = self.lanes[response].iter_mut().zip(lanes.0);
+            sums.for_each(|(sum, lane)| *sum += factor * f64::from(lane));
+        }
+        self.alone.drain(..).for_each(|(band, light)| self.bands[band] += light);
+    }
+
+    /// Adds all that was kept to a row, and begins anew.
+    pub(super) fn hand_over(&mut self, row: &mut [f64]) {
+        let row = &mut row[self.spectrum.at..][..self.bands.len()];
+        for (response, lanes) in self.spectrum.responses.iter().zip(&mut self.lanes) {
+            response.add_fixed(&std::mem::replace(lanes, [0.0; N]), row);
+        }
+        row.iter_mut().zip(&mut self.bands).for_each(|(sum, light)| *sum += std::mem::take(light));
+    }
+}

@@ -1,0 +1,207 @@
+//! Spectra of pixels: that they are those of the lights, and that they make the colors of the image.
+
+use abbe::film::Film;
+use abbe::plan::plan;
+use abbe::spectrum::{apply, data};
+use abbe::trace::{self, Method};
+use abbe::{Image, Options, Scene};
+
+fn rendered(text: &str) -> Image {
+    let scene = Scene::parse(text, "").expect("the scene is valid");
+    abbe::render(&scene, &Options { threads: Some(1), ..Options::default() }).expect("it renders")
+}
+
+/// What each pixel's bands of 1 nm, from 360 to 830, make of the image, at worst relative to its brightest channel and
+/// one percent of the image's mean.
+fn worst_color(film: &Film) -> f64 {
+    let film_of_xyz = film.color_space.of_xyz();
+    let spectral = film.spectral.as_ref().expect("spectra were asked for");
+    assert_eq!(spectral.bands.count(), data::color_matching().len());
+    let luminous: f64 = data::color_matching().iter().map(|cmf| cmf[1]).sum();
+    let strongest = |rgb: [f32; 3]| rgb.iter().fold(0.0, |most: f64, &x| most.max(f64::from(x).abs()));
+    let mean = film.pixels.iter().map(|pixel| strongest(pixel.rgb)).sum::<f64>() / film.pixels.len() as f64;
+    assert!(mean > 0.0);
+    let worst = |number: usize| {
+        let (mut xyz, expected) = ([0.0; 3], film.pixels[number].rgb);
+        for (&radiance, cmf) in spectral.pixel(number).iter().zip(data::color_matching()) {
+            (0..3).for_each(|i| xyz[i] += f64::from(radiance) * cmf[i] / luminous);
+        }
+        let color = apply(&film_of_xyz, xyz);
+        let off = (0..3).map(|i| (color[i] - f64::from(expected[i])).abs()).fold(0.0, f64::max);
+        off / strongest(expected).max(0.01 * mean)
+    };
+    (0..film.pixels.len()).map(worst).fold(0.0, f64::max)
+}
+
+/// Glass that disperses, a mirror and gold on a floor under a lamp, a sky and a spot: photons are shown and gathered,
+/// lanes part, images and numbers shine.
+fn room(film: &str, glass: &str) -> String {
+    format!(
+        r#"
+        camera = {{ position = [0, 1.6, 6], look_at = [0, 0.7, 0], vertical_fov = 38 }}
+        film = {{ width = 24, height = 16, {film} }}
+        render = {{ samples = 16, seed = 5 }}
+        [material]
+        floor.diffuse.reflectance = {{ rgb = [0.7, 0.5, 0.3] }}
+        glass.dielectric.index = {glass}
+        silver.mirror.reflectance = 0.9
+        gold.conductor = {{ metal = "Au", roughness = 0.3 }}
+        lamp.emissive.radiance = {{ illuminant = "FL11", scale = 40 }}
+        screen.emissive.radiance = {{ checker = [3, {{ rgb = [0.5, 1, 2] }}] }}
+        [[object]]
+        shape.plane = {{ point = [0, 0, 0], normal = [0, 1, 0] }}
+        material = "floor"
+        [[object]]
+        shape.sphere = {{ center = [0.2, 0.8, 0.6], radius = 0.8 }}
+        material = "glass"
+        [[object]]
+        shape.quad = {{ center = [-2, 1, -1], u = [0.5, 0, 0.5], v = [0, 1, 0] }}
+        material = "silver"
+        [[object]]
+        shape.cube = {{ center = [1.9, 0.5, -0.4], size = 1 }}
+        material = "gold"
+        [[object]]
+        shape.sphere = {{ center = [-1, 2.3, -1], radius = 0.15 }}
+        material = "lamp"
+        [[object]]
+        shape.quad = {{ center = [1.6, 1.6, -1.6], u = [0.4, 0, 0.1], v = [0, 0.6, 0] }}
+        material = "screen"
+        [[light]]
+        environment.radiance = {{ samples = [[380, 0.1], [780, 0.3]] }}
+        [[light]]
+        spot = {{ position = [3, 3, -2], look_at = [0.2, 0.8, 0.6], cone_angle = 30, intensity = {{ blackbody = 3000, scale = 8 }} }}
+        "#
+    )
+}
+
+/// All 1 nm of the visible grid.
+const FINE: &str = "spectral = { from = 360, to = 830, step = 1 }";
+
+#[test]
+fn an_even_spectrum_of_one_is_one_in_every_band() {
+    for bands in ["true", "{ from = 400, to = 700, step = 10 }", "{ from = 550, to = 552, step = 0.25 }"] {
+        let image = rendered(&format!(
+            "camera = {{ position = [0, 0, 5], look_at = [0, 0, 0], vertical_fov = 40 }}\n\
+             film = {{ width = 4, height = 2, spectral = {bands} }}\n\
+             light = [{{ environment.radiance.samples = [[300, 1], [900, 1]] }}]"
+        ));
+        let spectral = image.film().spectral.as_ref().expect("spectra were asked for");
+        assert!(spectral.values.iter().all(|&value| value == 1.0), "{bands}: {:?}", spectral.pixel(0));
+    }
+}
+
+/// Numbers and `rgb` are the film's white to the digits in which its chromaticity is known: the white light is 4e-5
+/// off it in x and y, which is less than 5e-4 of a channel.
+const WHITE: f64 = 5e-4;
+
+#[test]
+fn spectra_make_the_colors_of_the_image() {
+    let image = rendered(&room(FINE, "1.5"));
+    assert!(image.because().iter().any(|line| line.starts_with("light pass")), "{:?}", image.because());
+    assert!(image.because().iter().any(|line| line.starts_with("photon map")), "{:?}", image.because());
+    let worst = worst_color(image.film());
+    assert!(worst <= WHITE, "{worst}");
+}
+
+/// A wavelength that was drawn counts in its band as in the band's middle: the functions change by a few percent in
+/// half a nm, at most by 0.06 of themselves.
+#[test]
+fn spectra_of_lanes_that_part_make_the_colors_of_the_image() {
+    let image = rendered(&room(FINE, "\"N-SF11\""));
+    assert!(image.because().iter().any(|line| line.starts_with("model hero")), "{:?}", image.because());
+    let worst = worst_color(image.film());
+    assert!(worst <= 0.06, "{worst}");
+}
+
+#[test]
+fn light_vertices_leave_spectra_too() {
+    let text = format!(
+        r#"
+        camera = {{ position = [0, 0, 2.9], look_at = [0, 0, 0], vertical_fov = 60 }}
+        film = {{ width = 12, height = 12, {FINE} }}
+        render = {{ samples = 64 }}
+        [material]
+        wall.diffuse.reflectance = {{ rgb = [0.75, 0.7, 0.6] }}
+        lamp.emissive = {{ radiance = 4, sides = "front" }}
+        [[object]]
+        shape.cube = {{ center = [0, 0, 0], size = 6 }}
+        material = "wall"
+        [[object]]
+        shape.quad = {{ center = [0, 2.9, 0], u = [1, 0, 0], v = [0, 0, 1] }}
+        material = "lamp"
+        "#
+    );
+    let scene = Scene::parse(&text, "").expect("the scene is valid");
+    let by = |light_vertices: bool| {
+        let world = trace::prepare(&scene, Method { light_vertices, ..plan(&scene).method });
+        trace::render(&world, &|_| ()).0
+    };
+    let [with, without] = [true, false].map(by);
+    assert_ne!(with.spectral, without.spectral);
+    let worst = worst_color(&with);
+    assert!(worst <= WHITE, "{worst}");
+}
+
+/// Two ideal lines stay in their bands: power over the width of the band.
+#[test]
+fn ideal_lines_stay_in_their_bands() {
+    let image = rendered(
+        "camera = { position = [0, 0, 5], look_at = [0, 0, 0], vertical_fov = 40 }\n\
+         film = { width = 2, height = 2, spectral = true }\n\
+         light = [{ environment.radiance = { lines = [[546.1, 3], [611, 1]] } }]",
+    );
+    for [nm, radiance] in image.spectrum_at(1, 1).expect("spectra were asked for") {
+        let power = if nm == 545.0 {
+            3.0
+        } else if nm == 610.0 {
+            1.0
+        } else {
+            0.0
+        };
+        assert!((radiance - power / 5.0).abs() <= 1e-6, "{radiance} at {nm}");
+    }
+}
+
+/// Glass that parts lanes in an even world shows that world, in every band: what a prism's spectra add up to.
+#[test]
+fn a_dispersive_ball_in_an_even_world_cannot_be_seen_in_any_band() {
+    let image = rendered(
+        "camera = { position = [0, 0, 5], look_at = [0, 0, 0], vertical_fov = 10 }\n\
+         film = { width = 16, height = 16, spectral = { from = 420, to = 680, step = 20 } }\n\
+         render = { samples = 64, model = \"hero\" }\n\
+         material.glass.dielectric.index = \"N-SF11\"\n\
+         light = [{ environment.radiance.samples = [[300, 1], [900, 1]] }]\n\
+         object = [{ shape.sphere = { center = [0, 0, 0], radius = 1 }, material = \"glass\" }]",
+    );
+    let spectral = image.film().spectral.as_ref().expect("spectra were asked for");
+    let pixels = spectral.values.len() / spectral.bands.count();
+    for (band, nm) in spectral.bands.centers_nm().enumerate() {
+        let values = || (0..pixels).map(|pixel| f64::from(spectral.pixel(pixel)[band]));
+        let mean = values().sum::<f64>() / pixels as f64;
+        let variance = values().map(|x| (x - mean) * (x - mean)).sum::<f64>() / (pixels - 1) as f64;
+        let z = (mean - 1.0) / (variance / pixels as f64).sqrt();
+        assert!(z.abs() <= 4.0, "{mean} at {nm} nm, z = {z}");
+    }
+}
+
+#[test]
+fn spectra_change_no_bit_of_the_image_by_the_same_lanes() {
+    let lanes = |film: &str| room(film, "1.5").replace("samples = 16,", "samples = 16, model = { bands = 32 },");
+    let (plain, spectral) = (rendered(&lanes("")), rendered(&lanes("spectral = true")));
+    for channel in ["R", "G", "B", "A", "Z"] {
+        assert_eq!(plain.layer(channel), spectral.layer(channel), "{channel}");
+    }
+}
+
+/// A part of the image has the spectra that it has in the full image, and so has it with any number of threads.
+#[test]
+fn spectra_are_the_same_for_any_part_and_any_number_of_threads() {
+    let scene = Scene::parse(&room("spectral = true", "1.5"), "").expect("the scene is valid");
+    let with = |options: Options| abbe::render(&scene, &options).expect("it renders");
+    let whole = with(Options { threads: Some(1), ..Options::default() });
+    let crop = abbe::film::Window { left: 7, top: 5, width: 10, height: 8 };
+    let part = with(Options { threads: Some(3), crop: Some(crop), ..Options::default() });
+    for (x, y) in (0..8).flat_map(|y| (0..10).map(move |x| (x, y))) {
+        assert_eq!(part.spectrum_at(x, y), whole.spectrum_at(crop.left + x, crop.top + y), "{x}, {y}");
+    }
+}
