@@ -6,6 +6,9 @@ Scan lines under lossless compression: R G B A Z, alone or with layers, in one p
 Numbers are finite, and 32-bit floats unless the file says that colors have 16 bits. Lights and kinds of light add up to the
 image, mattes to its coverage. A stated color space, the camera, and the provenance under render/.
 
+A spectral image holds R G B and one channel for each band of wavelengths (Fichet, Pacanowski & Wilkie 2021, "An OpenEXR
+Layout for Spectral Images", JCGT 10(3)).
+
 Attribute meanings: OpenEXR, "Standard Attributes"; color: ASWF Color Interop Forum, recommendations 03 and 04 (2026); mattes:
 Cryptomatte specification 1.2.0.
 """
@@ -51,6 +54,8 @@ LAYERS = {
     r"samples": "V",
     r"Crypto(Object|Material|Asset)0[0-2]": "rgba",
 }
+# A band of wavelengths: its center in nm, with a decimal comma.
+BAND = r"S0\.([0-9]+),([0-9]{6})nm"
 # Numbers that 16 bits would spoil: depth, places, statistics and the numbers of mattes.
 ALWAYS_32_BITS = r"Z|P\..*|UV\..*|variance\..*|samples\..*|Crypto.*"
 # Attributes in which the parts of a file agree.
@@ -90,6 +95,11 @@ class File(NamedTuple):
         if names and all(name in self.channels for name in names):
             return np.array([self.channels[name] for name in names], np.float64)
         return None
+
+    def bands(self):
+        """The channels of a spectral image by the centers of their bands in nm, ascending."""
+        found = {name: re.fullmatch(BAND, name) for name in self.channels}
+        return dict(sorted((float(f"{match[1]}.{match[2]}"), name) for name, match in found.items() if match))
 
 
 def read(path):
@@ -158,15 +168,18 @@ def names(file):
     for name in file.channels:
         if not re.fullmatch(r"[\x21-\x7e]{1,31}", name):
             yield f"channel {name!r}: not 1 to 31 printable ASCII characters"
-        if not re.fullmatch(r"([A-Za-z][A-Za-z0-9_]*\.)?[A-Za-z][A-Za-z0-9_]*", name):
+        if not re.fullmatch(rf"([A-Za-z][A-Za-z0-9_]*\.)?[A-Za-z][A-Za-z0-9_]*|{BAND}", name):
             yield f"channel {name!r}: not LAYER.CHANNEL"
     for channel in itertools.chain.from_iterable(header["channels"] for header, _ in file.parts):
         if channel.pLinear:
             yield f"channel {channel.name!r}: marked as perceptually linear"
         if (channel.xSampling, channel.ySampling) != (1, 1):
             yield f"channel {channel.name!r}: subsampled"
+    spectral = bool(file.bands())
     for layer in dict.fromkeys(["", *file.layers()]):
-        known, prefix = known_channels(layer), f"{layer}." if layer else ""
+        if spectral and layer == "S0":
+            continue
+        known, prefix = "RGB" if spectral and not layer else known_channels(layer), f"{layer}." if layer else ""
         held = {name[len(prefix) :] for name in file.channels if name.rpartition(".")[0] == layer}
         if not known and re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", layer):
             yield f"layer {layer!r}: not one that Abbe writes"
@@ -259,6 +272,31 @@ def sums(file):
         off = np.where(fits, np.abs(numbers.sum(axis=0)) - rounding, 0)
         if wrong := np.count_nonzero(off > 0):
             yield f"{' + '.join(layers)}: not {'R, G, B' if share == 1 else 'twice R, G, B'} in {wrong} values, by {off.max():g}"
+
+
+# What a spectral image says of itself; readers of the layout warn of any other unit than this one.
+SPECTRAL = {"spectralLayoutVersion": "1.0", "emissiveUnits": "W.m^-2.sr^-1", "render/spectralUnits": "W.m^-2.sr^-1.nm^-1"}
+
+
+def spectrum(file):
+    """Bands side by side, alone with R, G and B; attributes that say so, and only there."""
+    bands, said = np.array(list(file.bands())), {name: file.header.get(name) for name in (*SPECTRAL, "render/spectralStep")}
+    if not len(bands):
+        yield from (f"{name} in a file without spectra" for name, value in said.items() if value is not None)
+        return
+    yield from (f"{name} is {said[name]!r}, not {value!r}" for name, value in SPECTRAL.items() if said[name] != value)
+    step = said["render/spectralStep"]
+    if not isinstance(step, float) or not step > 0:
+        yield f"render/spectralStep is {step!r}, not a width in nm"
+    # Centers have six decimals, and the step the digits of a 32-bit float.
+    elif (np.abs(np.diff(bands) - step) > 1e-6 + 4 * step * np.finfo(np.float32).eps).any():
+        yield f"bands are not {step:g} nm apart throughout"
+    if "render/clamped" in file.header:
+        yield "a spectral image of 16 bits"
+    if len(file.parts) > 1:
+        yield "a spectral image of several parts"
+    if others := sorted(set(file.layers()) - {"", "S0"}):
+        yield f"a spectral image with the layers {', '.join(others)}"
 
 
 def murmur3(data):
@@ -453,7 +491,7 @@ def provenance(file):
         yield "capDate is present"
 
 
-RULES = (layout, parts, names, types, color, camera, provenance)
+RULES = (layout, parts, names, types, spectrum, color, camera, provenance)
 RULES_OF_PIXELS = (values, surfaces, statistics, sums, mattes)
 
 
