@@ -48,7 +48,7 @@ LAYERS = {
     r"emission|background|direct|indirect|caustics|dispersed|shadow": "RGB",
     r"(diffuse|glossy|specular|transmission)_(in)?direct": "RGB",
     r"light_[A-Za-z0-9_]+": "RGB",
-    r"albedo|variance|half_[ab]|denoised": "RGB",
+    r"albedo|variance|residual|half_[ab]|denoised": "RGB",
     r"Nd?|P": "XYZ",
     r"UV": "UV",
     r"samples": "V",
@@ -57,7 +57,7 @@ LAYERS = {
 # A band of wavelengths: its center in nm, with a decimal comma.
 BAND = r"S0\.([0-9]+),([0-9]{6})nm"
 # Numbers that 16 bits would spoil: depth, places, statistics and the numbers of mattes.
-ALWAYS_32_BITS = r"Z|P\..*|UV\..*|variance\..*|samples\..*|Crypto.*"
+ALWAYS_32_BITS = r"Z|P\..*|UV\..*|variance\..*|samples\..*|residual\..*|Crypto.*"
 # Attributes in which the parts of a file agree.
 SHARED = ("type", "compression", "lineOrder", "dataWindow", "displayWindow", "pixelAspectRatio")
 SHARED += ("screenWindowCenter", "screenWindowWidth")

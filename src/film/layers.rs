@@ -51,6 +51,8 @@ pub enum Layer {
     HalfA,
     /// The image of the second half.
     HalfB,
+    /// The energy audit: of weight 1 that left the camera, what has not ended at a light, in the sky or absorbed.
+    Residual,
     /// How much of the light on shadow catchers other objects take.
     Shadow,
     /// A matte of each object that the camera sees, by Cryptomatte.
@@ -66,7 +68,7 @@ impl Layer {
     pub const ALL: &str = "all";
 
     /// All of them by the names that ask for them.
-    pub const NAMES: [(&str, Self); 28] = [
+    pub const NAMES: [(&str, Self); 29] = [
         ("emission", Self::Emission),
         ("background", Self::Background),
         ("direct", Self::Direct),
@@ -91,6 +93,7 @@ impl Layer {
         ("samples", Self::Samples),
         ("half_a", Self::HalfA),
         ("half_b", Self::HalfB),
+        ("residual", Self::Residual),
         ("shadow", Self::Shadow),
         ("CryptoObject", Self::CryptoObject),
         ("CryptoMaterial", Self::CryptoMaterial),
@@ -120,7 +123,7 @@ impl Layer {
 
     /// Whether 16 bits are enough where the file has them: for light, and for numbers up to 1.
     pub fn may_be_half(self) -> bool {
-        !matches!(self, Self::Position | Self::Uv | Self::Variance | Self::Samples) && !self.is_matte()
+        !matches!(self, Self::Position | Self::Uv | Self::Variance | Self::Samples | Self::Residual) && !self.is_matte()
     }
 
     /// Whether it holds what one lobe of the first surface sends to the camera.

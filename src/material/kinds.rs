@@ -171,6 +171,18 @@ impl Material<Curve> {
 }
 
 impl Material<Table> {
+    /// Whether it is a smooth clear surface that absorbs nothing: all that arrives is reflected or let through.
+    pub fn absorbs_nothing(&self) -> bool {
+        match self {
+            Self::Dielectric(Dielectric { roughness, reflectance, transmittance, .. }) => {
+                roughness.is_smooth() && reflectance.is_one() && transmittance.is_one()
+            }
+            Self::Thin(thin) => thin.transmittance.is_one(),
+            Self::Diffuse(_) | Self::Mirror(_) | Self::Conductor(_) => false,
+            Self::Emissive(_) | Self::Plastic(_) | Self::Mix(_) | Self::Mask(_) => false,
+        }
+    }
+
     /// Whether lanes part that cross the surface.
     pub fn parts_lanes<const N: usize>(&self, arrival: &Arrival<N>) -> bool {
         match self {

@@ -113,6 +113,11 @@ impl Table {
         self.flat
     }
 
+    /// Whether it is 1 in every bin and everywhere.
+    pub fn is_one(&self) -> bool {
+        self.flat && self.pattern.is_none() && self.fixed[0] == 1.0
+    }
+
     /// The numbers of the first N fixed lanes.
     pub(super) fn fixed<const N: usize>(&self) -> &[f64; N] {
         self.fixed.first_chunk().expect("no more lanes are compiled than fit")

@@ -2,6 +2,7 @@
 
 use super::World;
 use super::arrived::Arrived;
+use super::audit::Audit;
 use super::contribution::Contribution;
 use super::gather::{Gathered, Part, PartSpectrum};
 use super::interaction::{Interaction, Meeting};
@@ -74,6 +75,13 @@ impl<'a, const N: usize> LayerSample<'a, N> {
     /// What the sample has left.
     pub(super) fn left(&self) -> Left<'_> {
         Left { row: &self.row, object: self.object }
+    }
+
+    /// Keeps what an audit of the sample has left open.
+    pub(super) fn keep_audit(&mut self, audit: &Audit<N>, draw: &Draw<N>) {
+        if let Some(white) = &self.world.layers.white {
+            self.world.layers.add_to(Layer::Residual, &mut self.row, audit.left_open(white, draw));
+        }
     }
 
     /// Remembers the object that the camera ray met.

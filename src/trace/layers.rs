@@ -33,7 +33,7 @@ pub(super) struct Layers {
     pub(super) spectrum: Option<Spectrum>,
     /// Whether any of them is of a lobe of the first surface.
     lobes_apart: bool,
-    /// A light of radiance 1, by which albedo and lobes are looked at.
+    /// A light of radiance 1, by which albedo, lobes and residual are looked at.
     pub(super) white: Option<White>,
 }
 
@@ -114,7 +114,7 @@ impl Layers {
         let mattes = layers.wanted.iter().filter(|layer| layer.is_matte());
         layers.ids = mattes.map(|&matte| (matte, names(scene, matte).map(id).collect())).collect();
         layers.lobes_apart = layers.wanted.iter().any(|layer| layer.is_of_lobe());
-        if layers.lobes_apart || layers.at(Layer::Albedo).is_some() {
+        if layers.lobes_apart || layers.at(Layer::Albedo).or(layers.at(Layer::Residual)).is_some() {
             layers.white = Some(White::new(basis));
         }
         layers

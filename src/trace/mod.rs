@@ -29,6 +29,7 @@
 mod aimed;
 mod apart;
 mod arrived;
+mod audit;
 mod branching;
 mod bright;
 mod brightness;

@@ -2,6 +2,7 @@
 
 use super::aimed::{may_aim, scatter_aimed};
 use super::arrived::Arrived;
+use super::audit::Audit;
 use super::contribution::{Contribution, Found};
 use super::direct::{DirectLighting, weight_of_meeting};
 use super::gather::gather;
@@ -16,7 +17,7 @@ use super::shading;
 use super::straight;
 use super::walker::{Departure, Walker};
 use super::{Transport, World};
-use crate::film::Sample;
+use crate::film::{Layer, Sample};
 use crate::light::{Light, LightId};
 use crate::material::{Material, Straight};
 use crate::math::{BranchKey, DVec2, DVec3, Sampler};
@@ -69,7 +70,9 @@ impl<'a, const N: usize> PathTracer<'a, N> {
 
     /// With the layers that the world asks for.
     pub(super) fn with_layers(mut self) -> Self {
-        self.sensor.layers = LayerSample::of(self.walker.world);
+        let world = self.walker.world;
+        self.sensor.layers = LayerSample::of(world);
+        self.walker.audit = world.layers.at(Layer::Residual).map(|_| Audit::new(world));
         self
     }
 
@@ -99,7 +102,13 @@ impl<'a, const N: usize> PathTracer<'a, N> {
             layers.begin();
         }
         let path = Path::from_camera(world, &draw, ray);
+        if let Some(audit) = &mut self.walker.audit {
+            audit.begin(&path, &draw);
+        }
         let first = self.trace(path, &draw, sampler);
+        if let (Some(audit), Some(layers)) = (&self.walker.audit, &mut self.sensor.layers) {
+            layers.keep_audit(audit, &draw);
+        }
         if self.sees_shadow_catcher() {
             self.catch(path, &draw, sampler);
             return Sample { rgb: [0.0; 3], depth: None };
@@ -155,6 +164,7 @@ impl<'a, const N: usize> PathTracer<'a, N> {
                 continue;
             }
             if world.hides_objects && path.kind == PathKind::Camera && world.sight(hit.object) == Sight::Holdout {
+                self.walker.audit.iter_mut().for_each(|audit| audit.end_beside(&path, straight.as_ref(), draw));
                 self.walker.pending.extend(straight.map(|straight| path.passed_in_part(point, &straight)));
                 continue;
             }
@@ -170,10 +180,7 @@ impl<'a, const N: usize> PathTracer<'a, N> {
             path.vertices += 1;
             self.emission(&path, draw, &meeting);
             if path.vertices > world.method.max_bounces {
-                if !matches!(world.scene.material_of(hit.object), Material::Emissive(_)) {
-                    self.walker.stats.stopped += path.weight(draw) / draw.siblings(path.parted);
-                }
-                self.walker.pending.extend(straight.map(|straight| path.passed_in_part(point, &straight)));
+                self.cut(&path, draw, &meeting, straight.as_ref());
                 continue;
             }
             self.scatter(&path, draw, sampler, &meeting, straight.as_ref(), is_met_first);
@@ -187,9 +194,20 @@ impl<'a, const N: usize> PathTracer<'a, N> {
         first
     }
 
+    /// Ends a path that has met as many surfaces as it may, but for what goes straight on.
+    fn cut(&mut self, path: &Path<N>, draw: &Draw<N>, meeting: &Meeting, straight: Option<&Straight<N>>) {
+        if !matches!(self.walker.world.scene.material_of(meeting.hit.object), Material::Emissive(_)) {
+            self.walker.stats.stopped += path.weight(draw) / draw.siblings(path.parted);
+        } else if let Some(audit) = &mut self.walker.audit {
+            audit.end_beside(path, straight, draw);
+        }
+        self.walker.pending.extend(straight.map(|straight| path.passed_in_part(&meeting.point, straight)));
+    }
+
     /// Hands the light of the sky, at the end of a path that hits nothing, to the sensor.
     fn background(&mut self, path: &Path<N>, draw: &Draw<N>) {
         let world = self.walker.world;
+        self.walker.audit.iter_mut().for_each(|audit| audit.end(path, draw));
         for &id in &world.scene.infinite_lights {
             let light = &world.scene.lights[id];
             let is_hidden = path.kind == PathKind::Camera && world.scene.hidden_lights.contains(&id);
@@ -244,7 +262,7 @@ impl<'a, const N: usize> PathTracer<'a, N> {
     ) {
         let world = self.walker.world;
         let Some(boundary) = self.walker.boundary(path, meeting) else { return };
-        let ends = self.ends_at_light_vertices(path, meeting, sampler);
+        let ends = self.ends_at_light_vertices(path, draw, meeting, sampler);
         if ends && !(world.has_map() && path.diffuse_left > 0) {
             return;
         }
@@ -275,7 +293,7 @@ impl<'a, const N: usize> PathTracer<'a, N> {
             let resampled = goes_on && self.resample(path, at, sampler);
             let (pdf, from, normal, passed) = (0.0, at.point.position, at.flat, false);
             scatter = Some(ScatterSample { pdf, from, normal, chance, all_lights, passed, resampled });
-            if !goes_on && straight.is_none() && !at.lobes.has_delta() {
+            if !goes_on && straight.is_none() && !at.lobes.has_delta() && self.walker.audit.is_none() {
                 return;
             }
         }
@@ -284,6 +302,7 @@ impl<'a, const N: usize> PathTracer<'a, N> {
             Some(aiming) => scatter_aimed(aiming, &at, [u[2], u[3]], &mut self.walker.branches),
             None => shading::scatter(material, &at.arrival, at.flat, [u[2], u[3]], &mut self.walker.branches),
         }
+        self.walker.account(path, &at, straight);
         if !goes_on {
             self.walker.branches.retain(|branch| branch.pdf.is_none());
         }
@@ -305,13 +324,15 @@ impl<'a, const N: usize> PathTracer<'a, N> {
     }
 
     /// Whether a path ends where its light was looked for at light vertices: mostly, and the less the nearer.
-    fn ends_at_light_vertices(&self, path: &Path<N>, meeting: &Meeting, sampler: &Sampler) -> bool {
+    fn ends_at_light_vertices(&mut self, path: &Path<N>, draw: &Draw<N>, meeting: &Meeting, sampler: &Sampler) -> bool {
         let (Some(vertices), Some(scatter)) = (self.light_vertices, path.scatter) else { return false };
         if !scatter.resampled || !holds_vertices(self.walker.world, meeting.hit.object, &meeting.point) {
             return false;
         }
         let chance = vertices.complement((meeting.point.position - scatter.from).length_squared());
-        sampler.four_plain(path.key, COMPLEMENT)[0] >= chance
+        let ends = sampler.four_plain(path.key, COMPLEMENT)[0] >= chance;
+        self.walker.audit.iter_mut().filter(|_| ends).for_each(|audit| audit.end(path, draw));
+        ends
     }
 
     /// Hands what photons bring to a place that the path has reached by way of others to the sensor.

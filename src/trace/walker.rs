@@ -2,6 +2,7 @@
 
 use std::cell::Cell;
 
+use super::audit::Audit;
 use super::first_lobe::FirstLobe;
 use super::interaction::{Interaction, Meeting};
 use super::media::Boundary;
@@ -22,6 +23,8 @@ pub(super) struct Walker<'a, const N: usize> {
     /// The object that occluded the last light that was: the first to ask about the next one.
     pub(super) last_occluder: Cell<Option<u32>>,
     pub(super) stats: Stats,
+    /// Where all weight ends, if somebody asks.
+    pub(super) audit: Option<Audit<'a, N>>,
     /// Rays that were followed before this camera sample.
     pub(super) started: u64,
 }
@@ -40,7 +43,7 @@ const BY_CHANCE: Transport = Transport::Random { split: 0.01, roulette: 0.01 };
 impl<'a, const N: usize> Walker<'a, N> {
     pub(super) fn new(world: &'a World, transport: Transport) -> Self {
         let (pending, branches, last_occluder) = (Vec::new(), Vec::new(), Cell::new(None));
-        Self { world, transport, pending, branches, last_occluder, stats: Stats::default(), started: 0 }
+        Self { world, transport, pending, branches, last_occluder, stats: Stats::default(), audit: None, started: 0 }
     }
 
     /// Follows a path along its ray, through the medium around it, to the next surface; none if it leaves the scene.
@@ -54,7 +57,11 @@ impl<'a, const N: usize> Walker<'a, N> {
             _ if path.among == Among::Plate => self.world.scene.intersect_plate(&path.ray, path.left),
             _ => self.world.scene.intersect_from(&path.ray, path.left),
         };
+        let before = path.throughput;
         path.advance(self.world, draw, hit.map_or(f64::INFINITY, |hit| hit.crossing.t));
+        if let Some(audit) = &mut self.audit {
+            audit.absorb(path, before, draw);
+        }
         let hit = hit?;
         path.left = Some(hit.primitive());
         let point = self.world.scene.objects[hit.object as usize].point(&path.ray, &hit.crossing);
@@ -84,6 +91,13 @@ impl<'a, const N: usize> Walker<'a, N> {
             return None;
         }
         Some(boundary)
+    }
+
+    /// Accounts for the branches and what goes straight on, if somebody asks.
+    pub(super) fn account(&mut self, path: &Path<N>, at: &Interaction<N>, straight: Option<&Straight<N>>) {
+        if let Some(audit) = &mut self.audit {
+            audit.split(path, at, &self.branches, straight);
+        }
     }
 
     /// Decides which of the branches are followed, and of what goes straight on: their paths become pending.

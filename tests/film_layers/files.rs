@@ -82,7 +82,8 @@ fn half_precision_keeps_places_and_statistics_whole() {
     for (name, (bits, values)) in &half[0].1 {
         let exact = &float[0].1[name].1;
         let layer = name.rsplit_once('.').map_or(name.as_str(), |(layer, _)| layer);
-        let is_whole = ["Z", "P", "UV", "variance", "samples"].contains(&layer) || layer.starts_with("Crypto");
+        let is_whole =
+            ["Z", "P", "UV", "variance", "samples", "residual"].contains(&layer) || layer.starts_with("Crypto");
         assert_eq!(*bits, if is_whole { 32 } else { 16 }, "{name}");
         for (value, exact) in values.iter().zip(exact) {
             let near = if is_whole { 0.0 } else { exact.abs() / 2048.0 + 3e-8 };

@@ -67,6 +67,7 @@ LAYERS = {
     "UV": ("UV", 32),
     "variance": ("RGB", 32),
     "samples": ("V", 32),
+    "residual": ("RGB", 32),
     "half_a": ("RGB", 16),
     "half_b": ("RGB", 16),
     **{f"Crypto{of}0{i}": ("rgba", 32) for of in ("Object", "Material", "Asset") for i in range(3)},

@@ -38,6 +38,7 @@ def layered(half=False, **changes):
         "P": numbers.normal(size=(3, HEIGHT, WIDTH)) * alpha,
         "UV": numbers.random((2, HEIGHT, WIDTH)) * alpha,
         "samples": np.full((1, HEIGHT, WIDTH), 4),
+        "residual": 1e-7 * (share - 0.5),
         "shadow": np.zeros_like(image),
     }
     for matte, names in MATTES.items():
