@@ -108,7 +108,7 @@ def known_channels(layer):
 
 
 def layout(file):
-    """Scan lines, lossless, top to bottom; the display window at the origin, the data window all or a part of it."""
+    """Scan lines, lossless, top to bottom; the display window at the origin. Crops are smaller, overscan is larger."""
     header = file.header
     if header.get("type", OpenEXR.scanlineimage) != OpenEXR.scanlineimage:
         yield f"type is {header['type']}, not a scanline image"
@@ -117,8 +117,6 @@ def layout(file):
     if header["lineOrder"] != OpenEXR.INCREASING_Y:
         yield f"line order is {header['lineOrder']}, not increasing y"
     data, display = (np.array(header[name]) for name in ("dataWindow", "displayWindow"))
-    if (data[0] < display[0]).any() or (data[1] > display[1]).any() or (data[0] > data[1]).any():
-        yield f"data window {data.tolist()} is no part of display window {display.tolist()}"
     if "envmap" in header and not np.array_equal(data, display):
         yield f"data window {data.tolist()} of an environment differs from display window {display.tolist()}"
     if display[0].any():

@@ -14,6 +14,7 @@ mod image;
 mod layers;
 mod picture;
 mod sum;
+mod window;
 
 pub use self::exr::{Fact, Provenance, View, write_exr};
 pub use cryptomatte::{Manifest, RANKS, id};
@@ -24,9 +25,10 @@ pub use exr_part::{Channel, Part, PixelBounds, Statistics};
 pub use file::check_writable;
 pub use filter::Filter;
 pub use format::{Compression, Format, Precision};
-pub use image::{DEPTH_OF_NOTHING, Film, Pixel, Sample, Window};
+pub use image::{DEPTH_OF_NOTHING, Film, Pixel, Sample};
 pub use layers::{FirstSurface, LONGEST_NAME, Layer, LayerImage, light_layer_name};
 pub use picture::{png, write_png, write_rgb8};
 pub use sum::{PassSum, PixelSum, stored};
+pub use window::{Overscan, Window};
 
 pub(crate) use guard::{MOST_TEXELS, fits, guarded};

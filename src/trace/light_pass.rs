@@ -59,7 +59,7 @@ pub(super) fn show<const N: usize>(world: &World, progress: &(dyn Fn(u64) + Sync
         return CausticImage::default();
     }
     let window = world.scene.film.window();
-    let mut pixels = vec![[0.0; 3]; window.width as usize * window.height as usize];
+    let mut pixels = vec![[0.0; 3]; window.pixels() as usize];
     let mut moved = vec![0.0; window.width.div_ceil(TILE) as usize * window.height.div_ceil(TILE) as usize];
     let mut layers = vec![0.0; pixels.len() * world.layers.numbers];
     let add = &mut |splat: Splat| {
@@ -141,11 +141,11 @@ struct Learned {
     rays: u64,
 }
 
-/// Sends photons ahead. The whole image sees them, also where only a part of it is made, so that all parts are made
+/// Sends photons ahead. The format sees them, also where a part of it or more is made, so that all parts are made
 /// alike.
 fn send_ahead<const N: usize>(world: &World, most: u64) -> Learned {
     let mut world = world.clone();
-    world.scene.film.crop = None;
+    world.scene.film = world.scene.film.of_the_format();
     let Some(targets) = &world.photon_targets else { return Learned::default() };
     let batches = batches(targets, |_| 0, |target| target.photons.min(most), world.method.seed ^ AHEAD_SEED);
     let done: Vec<Sent<Splat>> =

@@ -78,7 +78,7 @@ impl<'a, const N: usize> PathTracer<'a, N> {
     }
 
     /// One camera sample.
-    pub(super) fn sample(&mut self, sampler: &Sampler, [x, y]: [u32; 2]) -> Sample {
+    pub(super) fn sample(&mut self, sampler: &Sampler, [x, y]: [i32; 2]) -> Sample {
         let world = self.walker.world;
         let camera = &world.scene.camera;
         let numbers = |purpose: u32| match world.method.transport {

@@ -32,7 +32,7 @@ pub struct Report {
     /// Samples left out because they were not finite.
     pub non_finite: u64,
     /// Column, row and number of the first of them.
-    pub first_non_finite: Option<[u32; 3]>,
+    pub first_non_finite: Option<[i64; 3]>,
     /// Mean weight per camera sample of the branches that deterministic transport dropped.
     pub dropped: f64,
     /// Mean weight per camera sample of paths stopped because they would not end.
@@ -62,7 +62,7 @@ pub fn render(world: &World, progress: &(dyn Fn(u64) + Sync)) -> (Film, Report) 
 /// How many camera samples and photons an image takes.
 pub fn work(world: &World) -> u64 {
     let window = world.scene.film.window();
-    let samples = u64::from(window.width) * u64::from(window.height) * u64::from(world.method.samples);
+    let samples = window.pixels() * u64::from(world.method.samples);
     let passes = world.method.light_pass.as_ref().and_then(|pass| pass.map).map_or(0, |map| u64::from(map.count));
     let photons = |targets: &Option<PhotonTargets>| targets.as_ref().map_or(0, PhotonTargets::photons);
     samples + photons(&world.photon_targets) + passes * photons(&world.map_targets)
@@ -118,7 +118,7 @@ impl<W: Borrow<World>> Rendering<W> {
     pub fn film(&self) -> Film {
         let settings = self.world().scene.film;
         let window = settings.window();
-        let mut pixels = vec![BLANK; window.width as usize * window.height as usize];
+        let mut pixels = vec![BLANK; window.pixels() as usize];
         let layers = &self.world().layers;
         let luminance = settings.color_space.to_xyz()[1];
         let mut images = images(layers, pixels.len());
@@ -163,7 +163,7 @@ impl<W: Borrow<World>> Rendering<W> {
             first_non_finite = first_non_finite.or(tile.first_non_finite);
             all += stats;
         }
-        let samples = u64::from(window.width) * u64::from(window.height) * u64::from(self.samples);
+        let samples = window.pixels() * u64::from(self.samples);
         let per_sample = |sum: f64| sum / samples.max(1) as f64;
         Report {
             samples,

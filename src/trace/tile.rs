@@ -26,7 +26,7 @@ pub(super) struct Tile {
     /// Sums of their layers.
     pub(super) layers: LayerSums,
     pub(super) stats: Stats,
-    pub(super) first_non_finite: Option<[u32; 3]>,
+    pub(super) first_non_finite: Option<[i64; 3]>,
 }
 
 impl Tile {
@@ -54,17 +54,17 @@ impl Tile {
         let window = world.scene.film.window();
         let mut tracer = PathTracer::<N>::new(world).with_photons(photons).with_layers();
         for (place, sum) in (0..).zip(&mut self.sums) {
-            // Random numbers and rays belong to the full image's pixel, whatever part of it is made.
-            let x = window.left + self.corner[0] + place % self.width;
-            let y = window.top + self.corner[1] + place / self.width;
+            // Random numbers and rays belong to the format's pixel, whatever part of it is made.
+            let x = window.left + (self.corner[0] + place % self.width) as i32;
+            let y = window.top + (self.corner[1] + place / self.width) as i32;
             let mut pass = PassSum::default();
             for number in numbers.clone() {
                 tracer.light_vertices = light_vertices.get(((number - numbers.start) / SHARED) as usize);
-                let sampler = Sampler::new(world.method.seed, [x, y], number);
+                let sampler = Sampler::of_pixel(world.method.seed, [x, y], number);
                 let sample = tracer.sample(&sampler, [x, y]);
                 if !pass.add(&sample) {
                     self.stats.non_finite += 1;
-                    self.first_non_finite.get_or_insert([x, y, number]);
+                    self.first_non_finite.get_or_insert([x.into(), y.into(), number.into()]);
                 } else if let Some(left) = tracer.layers() {
                     let early = number < world.method.samples.div_ceil(2);
                     self.layers.add(&world.layers, place as usize, early, &sample, &left);
