@@ -14,14 +14,16 @@ pub struct Sample {
     pub rgb: [f64; 3],
     /// Depth of what the camera ray met, if it met anything.
     pub depth: Option<f64>,
+    /// Whether it fell where the filter is negative.
+    pub is_subtracted: bool,
 }
 
 /// A finished pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pixel {
-    /// Film red, green and blue, linear, the mean of the samples.
+    /// Film red, green and blue, linear, the mean of the samples as the filter weighs them.
     pub rgb: [f32; 3],
-    /// Share of the camera rays that met something.
+    /// Share of the camera rays that met something, as the filter weighs them, within 0 and 1.
     pub alpha: f32,
     /// The nearest depth among the samples, [`DEPTH_OF_NOTHING`] where none met anything.
     pub depth: f32,

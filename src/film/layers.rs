@@ -132,6 +132,13 @@ impl Layer {
         }
     }
 
+    /// Whether it holds light, which is filtered as the image is.
+    pub fn is_light(self) -> bool {
+        use Layer::{Albedo, GeometricNormal, HalfA, HalfB, Normal, Position, Samples, Shadow, Uv, Variance};
+        let is_of_surface = matches!(self, Albedo | Normal | GeometricNormal | Position | Uv | Shadow);
+        !is_of_surface && !matches!(self, Variance | Samples | HalfA | HalfB) && !self.is_matte()
+    }
+
     /// Whether it is a matte.
     pub fn is_matte(self) -> bool {
         matches!(self, Self::CryptoObject | Self::CryptoMaterial | Self::CryptoAsset)

@@ -12,7 +12,9 @@ mod format;
 mod guard;
 mod image;
 mod layers;
+mod mitchell;
 mod picture;
+mod sample_weights;
 mod sum;
 mod window;
 
@@ -27,7 +29,9 @@ pub use filter::Filter;
 pub use format::{Compression, Format, Precision};
 pub use image::{DEPTH_OF_NOTHING, Film, Pixel, Sample};
 pub use layers::{FirstSurface, LONGEST_NAME, Layer, LayerImage, light_layer_name};
+pub use mitchell::Mitchell;
 pub use picture::{png, write_png, write_rgb8};
+pub use sample_weights::SampleWeights;
 pub use sum::{PassSum, PixelSum, stored};
 pub use window::{Overscan, Window};
 

@@ -203,10 +203,11 @@ impl<S> Scene<S> {
         self.format.layers.iter().map(|layer| (images(layer) * layer.channels().len()) as u64).sum()
     }
 
-    /// Bytes of memory that layers take: of each number a sum in 64 bits, its value in 32, and that again while the
-    /// file is written.
+    /// Bytes of memory that layers take: of each number a sum in 64 bits, another where a filter subtracts samples, its
+    /// value in 32, and that again while the file is written.
     pub fn layer_bytes(&self) -> u64 {
-        16 * self.layer_channels() * self.film.window().pixels()
+        let each = if self.film.filter.is_signed() { 24 } else { 16 };
+        each * self.layer_channels() * self.film.window().pixels()
     }
 
     /// The light that fills the whole sky, if there is one.

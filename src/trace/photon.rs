@@ -261,10 +261,15 @@ fn spread_over_pixels(film: FilmSettings, place: DVec2, splat: &Splat, splats: &
     for y in first(place.y, 1)..=last(place.y, 1) {
         for x in first(place.x, 0)..=last(place.x, 0) {
             let middle = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
-            let density = film.filter.density(place - middle);
-            if density > 0.0 {
+            // Shadow catchers show no light, but the share of it that is missing.
+            let filter = |offset| match splat.caught {
+                true => film.filter.positive_value(offset),
+                false => film.filter.value(offset),
+            };
+            let weight = filter(place - middle);
+            if weight != 0.0 {
                 let pixel = (y - window.top) as u32 * window.width + (x - window.left) as u32;
-                splats.push(Splat { pixel, rgb: splat.rgb.map(|channel| channel * density), ..*splat });
+                splats.push(Splat { pixel, rgb: splat.rgb.map(|channel| channel * weight), ..*splat });
             }
         }
     }

@@ -13,7 +13,7 @@ use super::photon_targets::PhotonTargets;
 use super::stats::Stats;
 use super::tile::{TILE, Tile};
 use super::width::in_lanes;
-use crate::film::{Film, Pixel};
+use crate::film::{Film, Pixel, PixelSum, SampleWeights};
 
 /// Samples of each pixel in the first pass, where no photons are gathered; every other pass takes as many as were taken
 /// before.
@@ -87,11 +87,12 @@ pub struct Rendering<W> {
 impl<W: Borrow<World>> Rendering<W> {
     /// An image without samples yet.
     pub fn new(world: W) -> Self {
-        let (window, layers) = (world.borrow().scene.film.window(), &world.borrow().layers);
+        let (film, layers) = (&world.borrow().scene.film, &world.borrow().layers);
+        let window = film.window();
         let corners = (0..window.height)
             .step_by(TILE as usize)
             .flat_map(|y| (0..window.width).step_by(TILE as usize).map(move |x| [x, y]));
-        let tiles = corners.map(|corner| Tile::new(window, corner, layers)).collect();
+        let tiles = corners.map(|corner| Tile::new(film, corner, layers)).collect();
         Self { world, tiles, shown: None, gathered: Stats::default(), photons: 0, samples: 0, passes: 0 }
     }
 
@@ -121,17 +122,19 @@ impl<W: Borrow<World>> Rendering<W> {
         let mut pixels = vec![BLANK; window.pixels() as usize];
         let layers = &self.world().layers;
         let luminance = settings.color_space.to_xyz()[1];
-        let mut images = images(layers, pixels.len());
+        let (mut images, none) = (images(layers, pixels.len()), PixelSum::default());
         for tile in &self.tiles {
             for (place, sum) in (0..).zip(&tile.sums) {
                 let number = tile.number(window, place);
-                pixels[number] = sum.pixel(self.shown_at(number));
+                let place = place as usize;
+                let subtracted = tile.subtracted.get(place).unwrap_or(&none);
+                let weights = SampleWeights::new(settings.filter, [sum.kept(), subtracted.kept()]);
+                pixels[number] = sum.pixel(subtracted, &weights, self.shown_at(number));
                 if !layers.is_empty() {
-                    let (sums, shown) = (tile.layers.row(layers, place as usize), self.shown_in_layers(number));
-                    let (covered, place) = (tile.layers.covered(), place as usize);
-                    let taken = Taken { sums, shown, rgb: sum.rgb(), kept: sum.kept(), covered, place };
-                    write(layers, &taken, number, &mut images);
-                    if let Some(caught) = layers.caught(sums, shown, sum.kept()) {
+                    let (sums, shown) = (tile.layers.rows(layers, place), self.shown_in_layers(number));
+                    let (covered, rgb) = (tile.layers.covered(), [sum.rgb(), subtracted.rgb()]);
+                    write(layers, &Taken { sums, shown, rgb, weights, covered, place }, number, &mut images);
+                    if let Some(caught) = layers.caught(sums[0], shown, weights.added()) {
                         let alpha = f64::from(pixels[number].alpha) + caught.coverage(luminance);
                         pixels[number].alpha = alpha.min(1.0) as f32;
                     }

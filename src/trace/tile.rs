@@ -11,6 +11,7 @@ use super::photon_map::PhotonMap;
 use super::stats::Stats;
 use crate::film::{PassSum, PixelSum, Window};
 use crate::math::Sampler;
+use crate::scene::FilmSettings;
 
 /// Side of a tile in pixels.
 pub(super) const TILE: u32 = 16;
@@ -23,6 +24,8 @@ pub(super) struct Tile {
     pub(super) height: u32,
     /// Sums of its pixels, row by row.
     pub(super) sums: Vec<PixelSum>,
+    /// The same of samples that are subtracted; empty where the filter is nowhere negative.
+    pub(super) subtracted: Vec<PixelSum>,
     /// Sums of their layers.
     pub(super) layers: LayerSums,
     pub(super) stats: Stats,
@@ -30,11 +33,13 @@ pub(super) struct Tile {
 }
 
 impl Tile {
-    pub(super) fn new(window: Window, corner: [u32; 2], layers: &Layers) -> Self {
+    pub(super) fn new(film: &FilmSettings, corner: [u32; 2], layers: &Layers) -> Self {
+        let (window, is_signed) = (film.window(), film.filter.is_signed());
         let [width, height] = [window.width - corner[0], window.height - corner[1]].map(|left| left.min(TILE));
         let sums = vec![PixelSum::default(); width as usize * height as usize];
-        let layers = LayerSums::new(layers, sums.len());
-        Self { corner, width, height, sums, layers, stats: Stats::default(), first_non_finite: None }
+        let subtracted = if is_signed { sums.clone() } else { Vec::new() };
+        let layers = LayerSums::new(layers, sums.len(), is_signed);
+        Self { corner, width, height, sums, subtracted, layers, stats: Stats::default(), first_non_finite: None }
     }
 
     /// The number of one of its pixels in the window.
@@ -57,12 +62,13 @@ impl Tile {
             // Random numbers and rays belong to the format's pixel, whatever part of it is made.
             let x = window.left + (self.corner[0] + place % self.width) as i32;
             let y = window.top + (self.corner[1] + place / self.width) as i32;
-            let mut pass = PassSum::default();
+            let [mut pass, mut subtracted] = [PassSum::default(), PassSum::default()];
             for number in numbers.clone() {
                 tracer.light_vertices = light_vertices.get(((number - numbers.start) / SHARED) as usize);
                 let sampler = Sampler::of_pixel(world.method.seed, [x, y], number);
                 let sample = tracer.sample(&sampler, [x, y]);
-                if !pass.add(&sample) {
+                let lobe = if sample.is_subtracted { &mut subtracted } else { &mut pass };
+                if !lobe.add(&sample) {
                     self.stats.non_finite += 1;
                     self.first_non_finite.get_or_insert([x.into(), y.into(), number.into()]);
                 } else if let Some(left) = tracer.layers() {
@@ -71,6 +77,9 @@ impl Tile {
                 }
             }
             sum.add(pass);
+            if let Some(sum) = self.subtracted.get_mut(place as usize) {
+                sum.add(subtracted);
+            }
         }
         self.stats += tracer.walker.stats;
     }

@@ -39,7 +39,7 @@ fn bits(film: &Film, of: Window) -> Vec<u32> {
 
 #[test]
 fn overscan_changes_no_bit_of_the_format_and_crops_are_parts_of_both() {
-    let filtered = ROOM.replace("height = 28", "height = 28, filter = \"gaussian\"");
+    let filtered = ROOM.replace("height = 28", "height = 28, filter = \"mitchell\"");
     let catcher = ROOM.replace("name = \"floor\"\n", "name = \"floor\"\nshadow_catcher = true\n");
     for text in [ROOM, &filtered, &catcher] {
         let (plain, wide) = (made(text, None, None, 1), made(text, Some(AROUND), None, 3));

@@ -83,10 +83,11 @@ class Form(NamedTuple):
     multipart: bool = False
     crop: bool = False
     overscan: bool = False
+    sharp: bool = False
 
     def __str__(self):
         words = ("layers" if self.layers else "plain", self.precision, self.compression)
-        return "-".join([*words, *(name for name in ("multipart", "crop", "overscan") if getattr(self, name))])
+        return "-".join([*words, *(name for name in ("multipart", "crop", "overscan", "sharp") if getattr(self, name))])
 
     def scene(self):
         """The scene, as text."""
@@ -94,6 +95,7 @@ class Form(NamedTuple):
         film += ", multipart = true" if self.multipart else ""
         film += ', layers = "all"' if self.layers else ""
         film += f", crop = {list(CROP)}" if self.crop else ""
+        film += ', filter = "mitchell"' if self.sharp else ""
         film += f", overscan = {list(OVERSCAN)}" if self.overscan else ""
         return SCENE.format(width=WIDTH, height=HEIGHT, film=film + ', metadata = { owner = "Émilie", comments = "shot 12" }')
 

@@ -134,6 +134,7 @@ SEEN = world_to_ndc(np.diag([1, 1, -1, 1]), (0, 0), 1.5, HEIGHT, WIDTH, orthogra
         {"screenWindowCenter": np.array([0.1, -0.4], np.float32)},
         {"render/filter": "gaussian sigma 0.5"},
         {"render/filter": "blackman-harris radius 1.5"},
+        {"render/filter": "mitchell b 0 c 0.5"},
         {"render/projection": "orthographic"},
         {"render/projection": "orthographic", "screenWindowCenter": np.array([0.1, -0.4], np.float32)},
         {"worldToCamera": far_away()},

@@ -106,6 +106,15 @@ def test_colors_come_first_and_the_owner_is_told_by_openimageio():
     assert spec.get_string_attribute("ImageDescription") == "shot 12"
 
 
+@pytest.mark.parametrize("form", [Form(sharp=True), Form(precision="half", multipart=True, sharp=True)], ids=str)
+def test_a_filter_that_subtracts_keeps_every_rule(form):
+    assert check_exr.violations(rendered(form)) == []
+    header, channels = read(form)[:2]
+    third = 1 / 3
+    assert header["render/filter"] == f"mitchell b {third!r} c {third!r}"
+    assert (channels["direct.R"] < 0).any() and (channels["A"] >= 0).all()
+
+
 def test_every_layer_holds_something():
     for layer in LAYERS:
         # Four samples of a pixel meet no more than four objects, here two. Nothing is behind one surface alone.

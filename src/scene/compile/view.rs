@@ -6,7 +6,7 @@ use toml::de::DeValue;
 
 use super::context::Context;
 use super::measures::{MAX_LENGTH, direction, length, point};
-use crate::film::{Compression, Filter, FirstSurface, Format, Layer, Overscan, Precision, Window};
+use crate::film::{Compression, Filter, FirstSurface, Format, Layer, Mitchell, Overscan, Precision, Window};
 use crate::math::DVec3;
 use crate::scene::text::{Choice, Fields, Value, at};
 use crate::scene::{Camera, FilmSettings, Lens, Projection};
@@ -133,7 +133,7 @@ fn overscan(value: Value) -> Option<Overscan> {
     }
 }
 
-/// Filters with their widths.
+/// Filters with their widths or parameters.
 const FILTER: Choice<for<'d> fn(Value<'d>) -> Option<Filter>> = Choice {
     name: "a filter",
     word: "filter",
@@ -143,6 +143,7 @@ const FILTER: Choice<for<'d> fn(Value<'d>) -> Option<Filter>> = Choice {
         ("tent", |value| wide(value, "radius", |radius| Filter::Tent { radius })),
         ("gaussian", |value| wide(value, "sigma", |sigma| Filter::Gaussian { sigma })),
         ("blackman-harris", |value| wide(value, "radius", |radius| Filter::BlackmanHarris { radius })),
+        ("mitchell", mitchell),
     ],
 };
 
@@ -158,6 +159,18 @@ fn wide(value: Value, key: &'static str, filter: fn(f64) -> Filter) -> Option<Fi
     };
     Fields::read(value, |table| table.need(key, width))
 }
+
+fn mitchell(value: Value) -> Option<Filter> {
+    Fields::read(value, |table| {
+        let parameter = |key: &'static str| {
+            move |value: Value| value.within(0.0..=1.0, &format!("{key} lies between 0 and 1"), Some(CUBICS))
+        };
+        let [b, c] = ["b", "c"].map(|key| table.need(key, parameter(key)));
+        Some(Filter::Mitchell(Mitchell { b: b?, c: c? }))
+    })
+}
+
+const CUBICS: &str = "\"mitchell\" alone has b = 1/3 and c = 1/3; b = 0 and c = 0.5 are the spline of Catmull and Rom";
 
 fn filter(value: Value) -> Option<Filter> {
     let named = Filter::PLAIN.map(|filter| (filter.name(), filter));
