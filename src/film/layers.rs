@@ -134,9 +134,15 @@ impl Layer {
 
     /// Whether it holds light, which is filtered as the image is.
     pub fn is_light(self) -> bool {
-        use Layer::{Albedo, GeometricNormal, HalfA, HalfB, Normal, Position, Samples, Shadow, Uv, Variance};
-        let is_of_surface = matches!(self, Albedo | Normal | GeometricNormal | Position | Uv | Shadow);
-        !is_of_surface && !matches!(self, Variance | Samples | HalfA | HalfB) && !self.is_matte()
+        match self {
+            Self::Emission | Self::Background | Self::Direct | Self::Indirect => true,
+            Self::DiffuseDirect | Self::GlossyDirect | Self::SpecularDirect | Self::TransmissionDirect => true,
+            Self::DiffuseIndirect | Self::GlossyIndirect | Self::SpecularIndirect | Self::TransmissionIndirect => true,
+            Self::Caustics | Self::Dispersed | Self::Lights => true,
+            Self::Albedo | Self::Normal | Self::GeometricNormal | Self::Position | Self::Uv | Self::Shadow => false,
+            Self::Variance | Self::Samples | Self::HalfA | Self::HalfB => false,
+            Self::CryptoObject | Self::CryptoMaterial | Self::CryptoAsset => false,
+        }
     }
 
     /// Whether it is a matte.
