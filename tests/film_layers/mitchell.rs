@@ -2,7 +2,7 @@
 
 use abbe::film::{Film, Filter, Layer, Mitchell};
 use abbe::plan::plan;
-use abbe::trace::{Method, prepare, render};
+use abbe::trace::{LightPass, Method, prepare, render};
 use abbe::{Image, Options};
 
 use super::{ROOM, assert_sum, rendered};
@@ -174,4 +174,29 @@ fn the_variance_is_that_of_the_sharpened_image() {
     }
     // Samples spread evenly make the image quieter than chance, as with any filter.
     assert!(said / seen > 0.9 && said / seen < 2.5, "{said} is said, {seen} is seen");
+}
+
+/// Photons that a mirror sends to the middle of a floor: pixels share all of their light, whatever the filter is.
+#[test]
+fn photons_are_spread_by_the_filter_with_its_sign() {
+    let caustic = |filter: &str| {
+        let mut scene = scene(&format!(
+            "camera = {{ position = [0, 5, 0], look_at = [0, 0, 0], up = [0, 0, -1], projection = \"orthographic\", height = 4 }}\n\
+             film = {{ width = 24, height = 24, filter = \"{filter}\" }}\n\
+             material.white.diffuse.reflectance = 0.8\nmaterial.silver.mirror.reflectance = 0.9\n\
+             [[object]]\nshape.plane = {{ point = [0, 0, 0], normal = [0, 1, 0] }}\nmaterial = \"white\"\n\
+             [[object]]\nshape.quad = {{ center = [-1, 1.2, 0], u = [0, 0.15, 0], v = [0, 0, 0.15] }}\nmaterial = \"silver\"\n\
+             [[light]]\npoint = {{ position = [1, 2.4, 0], intensity = 5 }}\n"
+        ));
+        scene.format.layers = vec![Layer::Caustics];
+        let light_pass = Some(LightPass { photons: 20_000, lights: vec![0], map: None });
+        let method = Method { samples: 4, light_pass, ..plan(&scene).method };
+        let film = render(&prepare(&scene, method), &|_| ()).0;
+        film.layers[0].channel(1).map(f64::from).collect::<Vec<f64>>()
+    };
+    let (even, sharp) = (caustic("box"), caustic("mitchell"));
+    let [sum, sharp_sum] = [&even, &sharp].map(|light| light.iter().sum::<f64>());
+    assert!(sum > 0.0 && (sharp_sum / sum - 1.0).abs() < 1e-5, "{sum} and {sharp_sum}");
+    let [most, least] = [even.iter().copied().fold(0.0, f64::max), sharp.iter().copied().fold(0.0, f64::min)];
+    assert!(least < -0.01 * most, "{least} beside {most}");
 }
