@@ -3,7 +3,7 @@
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 
-use abbe::film::{Layer, Window};
+use abbe::film::{Layer, Overscan, Window};
 use abbe::{Options, Result, nearest};
 use clap::Parser;
 
@@ -65,8 +65,14 @@ struct Arguments {
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = seed)]
     seed: Option<u64>,
 
-    /// Render this part of the image alone, instead of the scene's crop: first column, first row, width, height
-    #[arg(long, value_name = "X,Y,W,H", allow_negative_numbers = true, value_parser = crop)]
+    /// Render so many pixels around the format as well, instead of the scene's overscan: on each side, or to the left,
+    /// above, to the right and below
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = overscan)]
+    overscan: Option<Overscan>,
+
+    /// Render this part of the image alone, instead of the scene's crop: first column, first row, width, height; both
+    /// firsts are negative in the overscan
+    #[arg(long, value_name = "X,Y,W,H", allow_hyphen_values = true, value_parser = crop)]
     crop: Option<Window>,
 
     /// Layers in the EXR beside the image, instead of the scene's: such as albedo,N,lights, or all
@@ -90,12 +96,24 @@ fn seed(text: &str) -> std::result::Result<u64, String> {
     text.parse().map_err(|_| format!("a seed is a whole number from 0 to {}", u64::MAX))
 }
 
-fn crop(text: &str) -> std::result::Result<Window, String> {
+fn overscan(text: &str) -> std::result::Result<Overscan, String> {
     let numbers: Option<Vec<u32>> = text.split(',').map(|part| part.trim().parse().ok()).collect();
     match numbers.as_deref() {
-        Some(&[left, top, width, height]) => Ok(Window { left, top, width, height }),
-        _ => Err("a crop is four whole numbers of pixels, such as 100,50,320,180".into()),
+        Some(&[pixels]) => Ok(Overscan::even(pixels)),
+        Some(&[left, top, right, bottom]) => Ok(Overscan { left, top, right, bottom }),
+        _ => Err("overscan is one or four whole numbers of pixels, such as 16 or 16,8,16,8".into()),
     }
+}
+
+fn crop(text: &str) -> std::result::Result<Window, String> {
+    let parts: Vec<&str> = text.split(',').map(str::trim).collect();
+    let read = |[left, top, width, height]: [&str; 4]| {
+        let [left, top] = [left, top].map(str::parse::<i32>);
+        let [width, height] = [width, height].map(str::parse::<u32>);
+        Some(Window { left: left.ok()?, top: top.ok()?, width: width.ok()?, height: height.ok()? })
+    };
+    let window = <[&str; 4]>::try_from(parts).ok().and_then(read);
+    window.ok_or_else(|| "a crop is four whole numbers of pixels, such as 100,50,320,180".into())
 }
 
 /// Layers that are asked for.
@@ -192,9 +210,9 @@ fn job(arguments: Arguments) -> Result<Job> {
         let help = "add --exr, or leave --spectral out";
         return refuse("--spectral writes spectra beside an EXR, and --png alone writes none", Some(help));
     }
-    let Arguments { samples, seed, crop, layers, spectral, threads, .. } = arguments;
+    let Arguments { samples, seed, overscan, crop, layers, spectral, threads, .. } = arguments;
     let (exposure, layers) = (arguments.exposure.unwrap_or(0.0), layers.map(|LayerList(layers)| layers));
-    let options = Options { samples, seed, crop, layers, spectral, threads: threads.map(usize::from) };
+    let options = Options { samples, seed, overscan, crop, layers, spectral, threads: threads.map(usize::from) };
     Ok(Job { scene, output, exposure, options })
 }
 

@@ -7,11 +7,11 @@ use std::time::Duration;
 
 use crate::error::{Error, Result};
 use crate::film::{
-    Fact, Film, Format, LONGEST_NAME, Layer, Pixel, Provenance, View, Window, light_layer_name, write_exr, write_png,
-    write_spectral_exr,
+    Fact, Film, Format, LONGEST_NAME, Layer, Overscan, Pixel, Provenance, View, Window, light_layer_name, write_exr,
+    write_png, write_spectral_exr,
 };
 use crate::plan::{Plan, plan};
-use crate::scene::{ModelText, Projection, Scene};
+use crate::scene::{FilmSettings, ModelText, Projection, Scene};
 use crate::trace::{self, Report, World, prepare};
 
 /// What replaces the scene's own settings. By default nothing does.
@@ -25,7 +25,9 @@ pub struct Options {
     pub samples: Option<u32>,
     /// Chooses another set of random numbers.
     pub seed: Option<u64>,
-    /// The part of the image that is made, in pixels of the full image.
+    /// What is made around the format, in pixels.
+    pub overscan: Option<Overscan>,
+    /// The part of the image and its overscan that is made, in pixels of the format.
     pub crop: Option<Window>,
     /// Layers in place of the scene's own.
     pub layers: Option<Vec<Layer>>,
@@ -39,15 +41,23 @@ impl Options {
     /// Puts these settings in place of the scene's own.
     ///
     /// # Errors
-    /// [`Error::Arguments`] if there are no samples, the crop lies outside the image, or its layers cannot be written.
+    /// [`Error::Arguments`] if there are no samples, the overscan is too wide, the crop lies outside the image and its
+    /// overscan, or its layers cannot be written.
     pub fn apply(&self, scene: &mut Scene) -> Result<()> {
         if self.samples == Some(0) {
             return refuse("a pixel needs at least 1 sample".into(), "leave the samples out to take the scene's own");
         }
-        if let Some(message) = self.crop.and_then(|crop| scene.film.objection(crop)) {
+        let (samples, seed, film) = self.instead_of(scene);
+        if let Some(message) = film.objection_to_overscan() {
+            return refuse(
+                message,
+                "--overscan takes one number of pixels, or those to the left, above, to the right and below",
+            );
+        }
+        if let Some(message) = film.objection_to_crop() {
             return refuse(message, "--crop takes first column, first row, width and height");
         }
-        (scene.render.samples, scene.render.seed, scene.film.crop) = self.instead_of(scene);
+        (scene.render.samples, scene.render.seed, scene.film) = (samples, seed, film);
         if let Some(layers) = &self.layers {
             scene.format.layers.clone_from(layers);
         }
@@ -57,10 +67,11 @@ impl Options {
         check_layers(scene)
     }
 
-    /// Samples, seed and crop that replace those of a scene.
-    fn instead_of(&self, scene: &Scene) -> (Option<u32>, u64, Option<Window>) {
+    /// Samples, seed and film that replace those of a scene.
+    fn instead_of(&self, scene: &Scene) -> (Option<u32>, u64, FilmSettings) {
         let samples = self.samples.or(scene.render.samples);
-        (samples, self.seed.unwrap_or(scene.render.seed), self.crop.or(scene.film.crop))
+        let (overscan, crop) = (self.overscan.unwrap_or(scene.film.overscan), self.crop.or(scene.film.crop));
+        (samples, self.seed.unwrap_or(scene.render.seed), FilmSettings { overscan, crop, ..scene.film })
     }
 }
 
@@ -150,7 +161,7 @@ impl Rendering {
     /// [`Error::Arguments`] if the options do not fit the scene, or threads cannot be started.
     pub fn new(scene: &Scene, options: &Options) -> Result<Self> {
         let mut scene = Cow::Borrowed(scene);
-        let is_as_asked = options.instead_of(&scene) == (scene.render.samples, scene.render.seed, scene.film.crop);
+        let is_as_asked = options.instead_of(&scene) == (scene.render.samples, scene.render.seed, scene.film);
         if is_as_asked && options.layers.is_none() && !options.spectral {
             check_layers(&scene)?;
         } else {
@@ -244,7 +255,7 @@ pub struct Image {
 }
 
 impl Image {
-    /// Pixels per row; of a crop, those that were made.
+    /// Pixels per row of what was made: the format, with its overscan or a part of it.
     pub fn width(&self) -> u32 {
         self.film.width
     }
@@ -259,7 +270,7 @@ impl Image {
         self.film.pixels.iter().map(|pixel| pixel.rgb).collect()
     }
 
-    /// Linear red, green and blue of the pixel in column `x`, row `y`, counted from 0 at the top left.
+    /// Linear red, green and blue of the pixel in column `x`, row `y`, counted from 0 at the top left of what was made.
     ///
     /// # Panics
     /// If there is no such pixel.

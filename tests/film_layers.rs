@@ -1,6 +1,8 @@
 //! Layers beside the image: what they hold, that they add up to it, and that they change nothing of it.
 
 mod files;
+mod mitchell;
+mod overscan;
 mod residual;
 
 use abbe::film::{FirstSurface, Layer, Window, id};

@@ -330,16 +330,22 @@ fn rooms_with_light_that_light_paths_miss_have_no_light_vertices() {
 fn parts_of_an_image_are_the_same_as_the_whole() {
     let text = room(WHITE, "", &[lamp(), ball("glass", "dielectric = { index = 1.5 }")]);
     let whole = films(&text, true, None, 1).remove(0);
-    let mut cropped = scene(&text);
-    cropped.film.crop = Some(abbe::film::Window { left: 5, top: 4, width: 3, height: 2 });
-    let asked = Method { light_vertices: true, ..method(&cropped, SPLITTING) };
-    for threads in [1, 2, 3] {
+    let crop = abbe::film::Window { left: 5, top: 4, width: 3, height: 2 };
+    for (threads, crop, overscan) in [(1, Some(crop), 0), (2, Some(crop), 0), (3, Some(crop), 3), (1, None, 3)] {
+        let mut part = scene(&text);
+        (part.film.crop, part.film.overscan) = (crop, abbe::film::Overscan::even(overscan));
+        let asked = Method { light_vertices: true, ..method(&part, SPLITTING) };
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
-        let part = pool.install(|| render(&prepare(&cropped, asked.clone()), &|_| ()).0);
-        for (i, pixel) in part.pixels.iter().enumerate() {
-            let [x, y] = [5 + i % 3, 4 + i / 3];
-            assert_eq!(pixel.rgb, whole.pixels[y * 12 + x].rgb, "{threads} threads, pixel {x}, {y}");
+        let part = pool.install(|| render(&prepare(&part, asked), &|_| ()).0);
+        let mut compared = 0;
+        for (i, pixel) in (0_i32..).zip(&part.pixels) {
+            let [x, y] = [part.corner[0] + i % part.width as i32, part.corner[1] + i / part.width as i32];
+            if (0..12).contains(&x) && (0..12).contains(&y) {
+                assert_eq!(pixel.rgb, whole.at(x as u32, y as u32).rgb, "{threads} threads, pixel {x}, {y}");
+                compared += 1;
+            }
         }
+        assert_eq!(compared, if crop.is_some() { 6 } else { 144 });
     }
 }
 

@@ -70,7 +70,7 @@ PROVENANCE = {
     "render/sceneHash": r"[0-9a-f]{64}",
     "render/seed": r"[0-9]{1,20}",
     "render/samples": range(1, 2**31),
-    "render/filter": r"box|center|(tent|blackman-harris) radius [0-9.]+(e-[0-9]+)?|gaussian sigma [0-9.]+(e-[0-9]+)?",
+    "render/filter": r"box|center|(tent|blackman-harris) radius [0-9.]+(e-[0-9]+)?|gaussian sigma [0-9.]+(e-[0-9]+)?|mitchell b [0-9.]+ c [0-9.]+",
     "render/projection": r"perspective|orthographic|equirectangular",
     "render/model": r"\S.*",
     "render/transport": r"\S.*",
@@ -118,7 +118,7 @@ def known_channels(layer):
 
 
 def layout(file):
-    """Scan lines, lossless, top to bottom; the display window at the origin, the data window all or a part of it."""
+    """Scan lines, lossless, top to bottom; the display window at the origin. Crops are smaller, overscan is larger."""
     header = file.header
     if header.get("type", OpenEXR.scanlineimage) != OpenEXR.scanlineimage:
         yield f"type is {header['type']}, not a scanline image"
@@ -127,8 +127,6 @@ def layout(file):
     if header["lineOrder"] != OpenEXR.INCREASING_Y:
         yield f"line order is {header['lineOrder']}, not increasing y"
     data, display = (np.array(header[name]) for name in ("dataWindow", "displayWindow"))
-    if (data[0] < display[0]).any() or (data[1] > display[1]).any() or (data[0] > data[1]).any():
-        yield f"data window {data.tolist()} is no part of display window {display.tolist()}"
     if "envmap" in header and not np.array_equal(data, display):
         yield f"data window {data.tolist()} of an environment differs from display window {display.tolist()}"
     if display[0].any():
@@ -199,6 +197,11 @@ def types(file):
         yield f"render/clamped is {clamped!r}, not an integer from 0"
 
 
+def subtracts(file):
+    """Whether the filter is negative in places: coverage is then filtered as light is, and what is met is told of the rest."""
+    return str(file.header.get("render/filter", "")).startswith("mitchell")
+
+
 def values(file):
     """Finite numbers; coverage in 0..1; a positive depth, the miss depth where nothing is covered."""
     for name, pixels in file.channels.items():
@@ -209,7 +212,7 @@ def values(file):
         yield f"channel 'A': from {alpha.min()} to {alpha.max()}, not within 0..1"
     if depth is not None and not (depth > 0).all():
         yield f"channel 'Z': {np.count_nonzero(~(depth > 0))} depths not positive"
-    if alpha is not None and depth is not None and (alpha[depth != np.float32(MISS_DEPTH)] == 0).any():
+    if alpha is not None and depth is not None and not subtracts(file) and (alpha[depth != np.float32(MISS_DEPTH)] == 0).any():
         yield f"channel 'Z': pixels without coverage are not at the miss depth {MISS_DEPTH:g}"
 
 
@@ -228,7 +231,9 @@ def surfaces(file):
     alpha = file.channels.get("A")
     for layer in ("N", "Nd", "P", "UV"):
         numbers = file.layer(layer)
-        if alpha is not None and numbers is not None and (wrong := np.count_nonzero(numbers[:, alpha == 0].any(axis=0))):
+        if alpha is None or numbers is None or subtracts(file):
+            continue
+        if (wrong := np.count_nonzero(numbers[:, alpha == 0].any(axis=0))):
             yield f"layer {layer!r}: not 0 in {wrong} pixels where nothing is met"
 
 
@@ -381,7 +386,7 @@ def coverage(file, numbers, shares, manifest):
     if (whole > 1 + rounding).any():
         yield f"coverage adds up to {whole.max():g}, more than 1"
     alpha = file.channels.get("A")
-    if alpha is None:
+    if alpha is None or subtracts(file):
         return
     # Where the last rank is taken there may be more objects than ranks; shadows cover a plate, and are no objects.
     shadow = [file.channels.get(f"shadow.{channel}") for channel in "RGB"]

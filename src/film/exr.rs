@@ -49,8 +49,8 @@ pub enum Fact {
 /// Writes a linear image: R, G, B, A and Z, and the layers that it has beside them. Answers how many values were too
 /// large for the precision and became the largest that fits.
 ///
-/// A crop is the data window, the full image the display window, which is also what the screen window spans:
-/// compositors lay the crop over the image at its place.
+/// What was made is the data window, the format the display window, which is also what the screen window spans:
+/// compositors lay a crop over the format at its place, and overscan around it.
 ///
 /// # Errors
 /// If the file cannot be encoded or written; a file that was there before is then untouched.
@@ -211,10 +211,10 @@ pub(super) fn attributes(film: &Film, format: &Format, view: &View, provenance: 
         software_name: Some(Text::from(concat!("Abbe ", env!("CARGO_PKG_VERSION")))),
         owner: format.owner.as_deref().map(utf8),
         comments: format.comments.as_deref().map(utf8),
-        // Readers take the data window of an environment for the full sphere, which a crop is not.
-        environment_map: (view.latlong && film.full == [film.width, film.height])
+        // Readers take the data window of an environment for the full sphere, which crops and overscan are not.
+        environment_map: (view.latlong && film.corner == [0, 0] && film.full == [film.width, film.height])
             .then_some(EnvironmentMap::LatitudeLongitude),
-        layer_position: Vec2(film.corner[0] as i32, film.corner[1] as i32),
+        layer_position: Vec2(film.corner[0], film.corner[1]),
         screen_window_width: view.screen_window_width as f32,
         screen_window_center: Vec2(view.screen_window_center[0] as f32, view.screen_window_center[1] as f32),
         world_to_camera: Some(matrix(&view.world_to_camera)),

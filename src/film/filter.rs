@@ -1,16 +1,18 @@
 use std::f64::consts::TAU;
 
+use super::mitchell::{Mitchell, RADIUS};
 use crate::math::{DVec2, disk};
 
 /// Where in its pixel, or around it, a camera sample falls.
 ///
 /// The filter is the density of the samples, which all weigh the same: a sample counts for one pixel alone, and pixels
-/// share no noise (Ernst, Stamminger & Greiner 2006, *Filter Importance Sampling*). Widths are in pixels.
+/// share no noise (Ernst, Stamminger & Greiner 2006, *Filter Importance Sampling*). Where a filter is negative its
+/// absolute value is the density, and samples are subtracted. Widths are in pixels.
 ///
 /// ```toml
-/// film.filter = "box"        # or "center", "tent", "gaussian", "blackman-harris"
+/// film.filter = "box"        # or "center", "tent", "gaussian", "blackman-harris", "mitchell"
 /// # film.filter = { gaussian = { sigma = 0.5 } }
-/// # or { tent = { radius = 1 } }, or { blackman-harris = { radius = 1.5 } }
+/// # or { tent = { radius = 1 } }, { blackman-harris = { radius = 1.5 } }, or { mitchell = { b = 0, c = 0.5 } }
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Filter {
@@ -35,6 +37,8 @@ pub enum Filter {
         /// Half of the window's length; 1.5 in the plain filter.
         radius: f64,
     },
+    /// A cubic on each axis that falls below 0 and so keeps edges sharp.
+    Mitchell(Mitchell),
 }
 
 /// Where the normal distribution ends, in standard deviations: 0.03 % of it lie beyond.
@@ -46,12 +50,13 @@ const WINDOW: [f64; 4] = [0.35875, 0.48829, 0.14128, 0.01168];
 
 impl Filter {
     /// The filters as their names alone mean them.
-    pub const PLAIN: [Self; 5] = [
+    pub const PLAIN: [Self; 6] = [
         Self::Box,
         Self::Center,
         Self::Tent { radius: 1.0 },
         Self::Gaussian { sigma: 0.5 },
         Self::BlackmanHarris { radius: 1.5 },
+        Self::Mitchell(Mitchell::PLAIN),
     ];
 
     /// A position about the unit pixel, y down. A sample counts for one pixel alone.
@@ -63,14 +68,16 @@ impl Filter {
             Self::Tent { radius } => middle + DVec2::from(u.map(tent)) * radius,
             Self::Gaussian { sigma } => middle + normal(u) * sigma,
             Self::BlackmanHarris { radius } => middle + DVec2::from(u.map(blackman_harris)) * radius,
+            Self::Mitchell(cubic) => middle + DVec2::from(u.map(|u| cubic.place(u))),
         }
     }
 
-    /// The density of samples at an offset from the middle of their pixel, in pixels; its integral is 1.
+    /// The value at an offset from the middle of a pixel, in pixels; its integral is 1. Where it is nowhere negative it
+    /// is the density of samples.
     ///
     /// A filter without a width has none: what cannot be drawn there, but only found, is spread over the pixel.
-    pub fn density(self, offset: DVec2) -> f64 {
-        let each = |density: &dyn Fn(f64) -> f64| density(offset.x) * density(offset.y);
+    pub fn value(self, offset: DVec2) -> f64 {
+        let each = |value: &dyn Fn(f64) -> f64| value(offset.x) * value(offset.y);
         match self {
             Self::Box | Self::Center => each(&|x| if (-0.5..0.5).contains(&x) { 1.0 } else { 0.0 }),
             Self::Tent { radius } => each(&|x| (1.0 - x.abs() / radius).max(0.0) / radius),
@@ -87,6 +94,30 @@ impl Filter {
                 let cos = |times: f64| libm::cos(0.5 * TAU * times * x / radius);
                 (a + b * cos(1.0) + c * cos(2.0) + d * cos(3.0)) / (2.0 * a * radius)
             }),
+            Self::Mitchell(cubic) => each(&|x| cubic.value(x)),
+        }
+    }
+
+    /// The value where it is positive, over the integral of that; elsewhere 0.
+    pub fn positive_value(self, offset: DVec2) -> f64 {
+        self.value(offset).max(0.0) / (0.5 * (1.0 + self.absolute_integral()))
+    }
+
+    /// Whether samples may fall where the filter is negative.
+    pub fn is_signed(self) -> bool {
+        matches!(self, Self::Mitchell(_))
+    }
+
+    /// Whether a sample at a place about the unit pixel is subtracted.
+    pub fn subtracts(self, place: DVec2) -> bool {
+        self.is_signed() && self.value(place - 0.5) < 0.0
+    }
+
+    /// The integral of the absolute value: what a sample counts before signs.
+    pub fn absolute_integral(self) -> f64 {
+        match self {
+            Self::Mitchell(cubic) => cubic.absolute() * cubic.absolute(),
+            _ => 1.0,
         }
     }
 
@@ -96,6 +127,7 @@ impl Filter {
             Self::Box | Self::Center => 0.5,
             Self::Tent { radius } | Self::BlackmanHarris { radius } => radius,
             Self::Gaussian { sigma } => CUT * sigma,
+            Self::Mitchell(_) => RADIUS,
         }
     }
 
@@ -107,12 +139,16 @@ impl Filter {
             Self::Tent { .. } => "tent",
             Self::Gaussian { .. } => "gaussian",
             Self::BlackmanHarris { .. } => "blackman-harris",
+            Self::Mitchell(_) => "mitchell",
         }
     }
 
-    /// Name and width, as a file records them.
+    /// Name and width or parameters, as a file records them.
     pub fn described(self) -> String {
         let name = self.name();
+        if let Self::Mitchell(Mitchell { b, c }) = self {
+            return format!("{name} b {b} c {c}");
+        }
         self.width().map_or(name.to_owned(), |(key, width, _)| format!("{name} {key} {width}"))
     }
 
@@ -123,7 +159,7 @@ impl Filter {
 
     fn width(self) -> Option<(&'static str, f64, f64)> {
         match self {
-            Self::Box | Self::Center => None,
+            Self::Box | Self::Center | Self::Mitchell(_) => None,
             Self::Tent { radius } | Self::BlackmanHarris { radius } => Some(("radius", radius, FARTHEST)),
             Self::Gaussian { sigma } => Some(("sigma", sigma, FARTHEST / CUT)),
         }

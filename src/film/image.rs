@@ -15,14 +15,16 @@ pub struct Sample {
     pub rgb: [f64; 3],
     /// Depth of what the camera ray met, if it met anything.
     pub depth: Option<f64>,
+    /// Whether it fell where the filter is negative.
+    pub is_subtracted: bool,
 }
 
 /// A finished pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pixel {
-    /// Film red, green and blue, linear, the mean of the samples.
+    /// Film red, green and blue, linear, the mean of the samples as the filter weighs them.
     pub rgb: [f32; 3],
-    /// Share of the camera rays that met something.
+    /// Share of the camera rays that met something, as the filter weighs them, within 0 and 1.
     pub alpha: f32,
     /// The nearest depth among the samples, [`DEPTH_OF_NOTHING`] where none met anything.
     pub depth: f32,
@@ -30,38 +32,16 @@ pub struct Pixel {
     pub samples: f32,
 }
 
-/// A part of an image, in pixels from its top left corner.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Window {
-    /// Its first column.
-    pub left: u32,
-    /// Its first row.
-    pub top: u32,
-    /// Pixels per row.
-    pub width: u32,
-    /// Rows.
-    pub height: u32,
-}
-
-impl Window {
-    /// The pixel of the full image in the middle of a cell, of `side` x `side` cells of the window that are counted row
-    /// by row.
-    pub fn middle_of_cell(&self, side: u32, cell: u32) -> [u32; 2] {
-        let middle = |i: u32, size: u32| ((u64::from(2 * i + 1) * u64::from(size)) / u64::from(2 * side)) as u32;
-        [self.left + middle(cell % side, self.width), self.top + middle(cell / side, self.height)]
-    }
-}
-
-/// A finished image or part of one, rows from the top.
+/// A finished image, with its overscan or a part of it, rows from the top.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Film {
     /// Pixels per row.
     pub width: u32,
     /// Rows.
     pub height: u32,
-    /// Column and row of the first pixel in the full image.
-    pub corner: [u32; 2],
-    /// Pixels per row and rows of the full image.
+    /// Column and row of the first pixel, counted from the top left corner of the format: negative in its overscan.
+    pub corner: [i32; 2],
+    /// Pixels per row and rows of the format.
     pub full: [u32; 2],
     /// What red, green and blue mean.
     pub color_space: ColorSpace,

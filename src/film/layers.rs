@@ -134,6 +134,19 @@ impl Layer {
             || matches!(self, DiffuseIndirect | GlossyIndirect | SpecularIndirect | TransmissionIndirect)
     }
 
+    /// Whether it holds light, which is filtered as the image is.
+    pub fn is_light(self) -> bool {
+        match self {
+            Self::Emission | Self::Background | Self::Direct | Self::Indirect => true,
+            Self::DiffuseDirect | Self::GlossyDirect | Self::SpecularDirect | Self::TransmissionDirect => true,
+            Self::DiffuseIndirect | Self::GlossyIndirect | Self::SpecularIndirect | Self::TransmissionIndirect => true,
+            Self::Caustics | Self::Dispersed | Self::Lights => true,
+            Self::Albedo | Self::Normal | Self::GeometricNormal | Self::Position | Self::Uv | Self::Shadow => false,
+            Self::Variance | Self::Samples | Self::HalfA | Self::HalfB | Self::Residual => false,
+            Self::CryptoObject | Self::CryptoMaterial | Self::CryptoAsset => false,
+        }
+    }
+
     /// Whether it is a matte.
     pub fn is_matte(self) -> bool {
         matches!(self, Self::CryptoObject | Self::CryptoMaterial | Self::CryptoAsset)

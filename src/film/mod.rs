@@ -13,9 +13,12 @@ mod format;
 mod guard;
 mod image;
 mod layers;
+mod mitchell;
 mod picture;
+mod sample_weights;
 mod spectral;
 mod sum;
+mod window;
 
 pub use self::exr::{Fact, Provenance, View, write_exr};
 pub use cryptomatte::{Manifest, RANKS, id};
@@ -27,10 +30,13 @@ pub use exr_spectral::write_spectral_exr;
 pub use file::check_writable;
 pub use filter::Filter;
 pub use format::{Compression, Format, Precision};
-pub use image::{DEPTH_OF_NOTHING, Film, Pixel, Sample, Window};
+pub use image::{DEPTH_OF_NOTHING, Film, Pixel, Sample};
 pub use layers::{FirstSurface, LONGEST_NAME, Layer, LayerImage, light_layer_name};
+pub use mitchell::Mitchell;
 pub use picture::{png, write_png, write_rgb8};
+pub use sample_weights::SampleWeights;
 pub use spectral::SpectralImage;
 pub use sum::{PassSum, PixelSum, stored};
+pub use window::{Overscan, Window};
 
 pub(crate) use guard::{MOST_TEXELS, fits, guarded};

@@ -1,4 +1,5 @@
 use super::image::{DEPTH_OF_NOTHING, Pixel, Sample};
+use super::sample_weights::SampleWeights;
 
 /// Samples that are summed one after another before the tree begins.
 const BLOCK: u32 = 16;
@@ -105,14 +106,15 @@ impl PixelSum {
         self.kept
     }
 
-    /// The mean over the samples that were kept, and light beside them that is a mean already.
-    pub fn pixel(&self, beside: [f64; 3]) -> Pixel {
-        let kept = f64::from(self.kept.max(1));
+    /// The mean over the samples that were kept, with those that are subtracted, and light beside them that is a mean
+    /// already. Depths are of those that are added.
+    pub fn pixel(&self, subtracted: &Self, weights: &SampleWeights, beside: [f64; 3]) -> Pixel {
+        let mean = |of: &dyn Fn(&Self) -> f64| weights.sum([of(self), of(subtracted)]) / weights.taken();
         Pixel {
-            rgb: std::array::from_fn(|i| stored(self.total.rgb[i] / kept + beside[i])),
-            alpha: (f64::from(self.total.met) / kept) as f32,
+            rgb: std::array::from_fn(|i| stored(mean(&|sum| sum.total.rgb[i]) + beside[i])),
+            alpha: mean(&|sum| sum.total.met.into()).clamp(0.0, 1.0) as f32,
             depth: if self.nearest.is_finite() { stored(self.nearest) } else { DEPTH_OF_NOTHING },
-            samples: self.kept as f32,
+            samples: weights.kept() as f32,
         }
     }
 }
@@ -124,16 +126,18 @@ pub fn stored(number: f64) -> f32 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::filter::Filter;
     use super::*;
 
     fn sample(value: f64) -> Sample {
-        Sample { rgb: [value; 3], depth: None }
+        Sample { rgb: [value; 3], depth: None, is_subtracted: false }
     }
 
     fn pixel(pass: PassSum) -> Pixel {
         let mut sum = PixelSum::default();
         sum.add(pass);
-        sum.pixel([0.0; 3])
+        let weights = SampleWeights::new(Filter::Box, [sum.kept(), 0]);
+        sum.pixel(&PixelSum::default(), &weights, [0.0; 3])
     }
 
     /// Row A1 of the stability catalog.

@@ -32,9 +32,15 @@ pub struct Sampler {
 }
 
 impl Sampler {
-    /// The numbers of one sample of one pixel under a seed.
-    pub fn new(seed: u64, pixel: [u32; 2], sample: u32) -> Self {
-        let place = (u64::from(pixel[1]) << 32) | u64::from(pixel[0]);
+    /// The numbers of one sample of one pixel under a seed. Columns and rows may be negative, as in the overscan.
+    pub fn of_pixel(seed: u64, pixel: [i32; 2], sample: u32) -> Self {
+        // The bits of a negative number are those of a positive one that no image has.
+        Self::new(seed, pixel.map(|place| place as u32), sample)
+    }
+
+    /// The numbers of one sample of anything that two numbers tell from all others, under a seed.
+    pub fn new(seed: u64, key: [u32; 2], sample: u32) -> Self {
+        let place = (u64::from(key[1]) << 32) | u64::from(key[0]);
         let pixel = mix(mix(seed) ^ place).wrapping_add(u64::from(sample / SEQUENCE));
         Self { pixel, index: sample % SEQUENCE }
     }

@@ -165,7 +165,7 @@ fn lights(scene: &Scene<Curve>, light_pass: Option<&LightPass>) -> Vec<String> {
 /// What a few hundred samples say of the whole.
 fn cost(scene: &Scene<Curve>, method: &Method, probe: &Probe, times: PhotonTimes) -> (String, Duration) {
     let window = scene.film.window();
-    let samples = f64::from(window.width) * f64::from(window.height) * f64::from(method.samples);
+    let samples = window.pixels() as f64 * f64::from(method.samples);
     let pass = method.light_pass.as_ref();
     let of_map = pass.and_then(|pass| pass.map).map_or(0, |map| u64::from(map.count) * map.photons);
     let shown = pass.map_or(0, |pass| pass.photons);

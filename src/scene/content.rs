@@ -5,13 +5,13 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use super::index::Index;
-use super::{Camera, Relief, RenderText};
-use crate::film::{Filter, Format, Layer, RANKS, Window};
+use super::{Camera, FilmSettings, Relief, RenderText};
+use crate::film::{Format, Layer, RANKS};
 use crate::light::{Light, LightId};
 use crate::material::Material;
 use crate::math::Ray;
 use crate::shape::{Coordinates, Crossing, Shape, SurfacePoint, is_before};
-use crate::spectrum::{ColorSpace, Curve, Quantity};
+use crate::spectrum::{Curve, Quantity};
 
 /// Number of a material in its scene.
 pub type MaterialId = u32;
@@ -44,47 +44,6 @@ pub struct Scene<S = Curve> {
     /// SHA-256 of the scene file and the files it names, 64 hexadecimal digits.
     pub hash: String,
     pub(super) index: Arc<Index>,
-}
-
-/// Size and meaning of the image.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FilmSettings {
-    /// Pixels per row.
-    pub width: u32,
-    /// Rows.
-    pub height: u32,
-    /// Where in its pixel a sample falls.
-    pub filter: Filter,
-    /// What the numbers mean.
-    pub color_space: ColorSpace,
-    /// The part of the image that is made; all of it if absent.
-    pub crop: Option<Window>,
-}
-
-impl FilmSettings {
-    /// The part of the image that is made.
-    pub fn window(&self) -> Window {
-        self.crop.unwrap_or(self.whole())
-    }
-
-    /// The full image.
-    pub fn whole(&self) -> Window {
-        Window { left: 0, top: 0, width: self.width, height: self.height }
-    }
-
-    /// What is wrong with a crop, if anything.
-    pub fn objection(&self, crop: Window) -> Option<String> {
-        let Window { left, top, width, height } = crop;
-        if width == 0 || height == 0 {
-            return Some(format!("a crop has at least 1 pixel along each side, not {width} x {height}"));
-        }
-        let inside = |from: u32, size: u32, whole: u32| u64::from(from) + u64::from(size) <= u64::from(whole);
-        (!inside(left, width, self.width) || !inside(top, height, self.height)).then(|| {
-            let (right, bottom) = (u64::from(left) + u64::from(width), u64::from(top) + u64::from(height));
-            let whole = format!("the image has {} x {} pixels", self.width, self.height);
-            format!("this crop ends at column {right}, row {bottom}, but {whole}")
-        })
-    }
 }
 
 /// A surface with its material.
@@ -245,11 +204,11 @@ impl<S> Scene<S> {
         (layers + self.format.spectral.map_or(0, |bands| bands.count())) as u64
     }
 
-    /// Bytes of memory that layers take: of each number a sum in 64 bits, its value in 32, and that again while the
-    /// file is written.
+    /// Bytes of memory that layers take: of each number a sum in 64 bits, another where a filter subtracts samples, its
+    /// value in 32, and that again while the file is written.
     pub fn layer_bytes(&self) -> u64 {
-        let window = self.film.window();
-        16 * self.layer_channels() * u64::from(window.width) * u64::from(window.height)
+        let each = if self.film.filter.is_signed() { 24 } else { 16 };
+        each * self.layer_channels() * self.film.window().pixels()
     }
 
     /// The light that fills the whole sky, if there is one.

@@ -6,6 +6,7 @@
 mod camera;
 mod compile;
 mod content;
+mod film;
 mod index;
 mod relief;
 mod render_text;
@@ -13,7 +14,8 @@ mod source;
 mod text;
 
 pub use camera::{Camera, Lens, Projection, Seen};
-pub use content::{Ends, FilmSettings, Hit, MaterialId, NamedMaterial, Object, Primitive, Scene, Sight};
+pub use content::{Ends, Hit, MaterialId, NamedMaterial, Object, Primitive, Scene, Sight};
+pub use film::FilmSettings;
 pub use relief::{Relief, ReliefKind};
 pub use render_text::{CausticsText, ModelText, RenderText};
 pub use source::Source;

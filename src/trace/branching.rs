@@ -13,7 +13,7 @@ pub enum Branching {
     /// Surfaces that a mean camera sample meets.
     Affordable(f64),
     /// More than was asked for, seen from a pixel.
-    Beyond([u32; 2]),
+    Beyond([i32; 2]),
 }
 
 /// Pixels along each side of the image that are asked.
@@ -34,10 +34,10 @@ fn ask<const N: usize>(world: &World, most: f64) -> Branching {
     // A stride that is coprime to the number of places visits them all, far ones first.
     let places = SIDE * SIDE;
     let all_over = (0..places).map(|i| (i * 101) % places);
-    let all_over: Vec<[u32; 2]> = all_over.map(|place| film.middle_of_cell(SIDE, place)).collect();
-    let mut ask = |[x, y]: [u32; 2]| {
+    let all_over: Vec<[i32; 2]> = all_over.map(|place| film.middle_of_cell(SIDE, place)).collect();
+    let mut ask = |[x, y]: [i32; 2]| {
         let before = tracer.walker.stats.rays;
-        tracer.sample(&Sampler::new(world.method.seed, [x, y], 0), [x, y]);
+        tracer.sample(&Sampler::of_pixel(world.method.seed, [x, y], 0), [x, y]);
         (tracer.walker.stats.rays - before, tracer.walker.stats.by_chance > 0)
     };
     let enough = most * f64::from(places);
@@ -57,7 +57,7 @@ fn ask<const N: usize>(world: &World, most: f64) -> Branching {
 
 /// Pixels in which the camera would see objects of some materials if nothing were before them: their middles, and
 /// places toward their corners.
-pub(super) fn pixels_of_objects(world: &World, counts: impl Fn(&Material<Table>) -> bool) -> Vec<[u32; 2]> {
+pub(super) fn pixels_of_objects(world: &World, counts: impl Fn(&Material<Table>) -> bool) -> Vec<[i32; 2]> {
     let scene = &world.scene;
     let wanted = |object: &u32| counts(scene.material_of(*object));
     let several: Vec<u32> = (0..scene.objects.len() as u32).filter(wanted).collect();
@@ -73,7 +73,7 @@ pub(super) fn pixels_of_objects(world: &World, counts: impl Fn(&Material<Table>)
             let Some(DVec2 { x, y }) = scene.camera.see(point, [0.5; 2]).map(|seen| seen.film) else { continue };
             let inside = |at: f64, size: u32| at >= 0.0 && at < f64::from(size);
             if inside(x, scene.film.width) && inside(y, scene.film.height) {
-                pixels.push([x as u32, y as u32]);
+                pixels.push([x as i32, y as i32]);
             }
         }
     }

@@ -52,7 +52,7 @@ fn bounces<const N: usize>(world: &World, side: u32) -> Vec<Bounce> {
     let mut tracer = PathTracer::<N>::new(world).with_observer(&found);
     for place in 0..side * side {
         let [x, y] = film.whole().middle_of_cell(side, place);
-        tracer.sample(&Sampler::new(world.method.seed ^ SEED, [x, y], place), [x, y]);
+        tracer.sample(&Sampler::of_pixel(world.method.seed ^ SEED, [x, y], place), [x, y]);
     }
     found.0.into_inner()
 }

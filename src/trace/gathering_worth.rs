@@ -89,7 +89,7 @@ fn gather<const N: usize>(world: &World) -> Option<GatheredWorth> {
             let before = by_gathering.0.get();
             for number in 0..SAMPLES {
                 let so_far = by_gathering.0.get();
-                let sampler = Sampler::new((world.method.seed ^ SEED).wrapping_add(u64::from(number)), [x, y], 0);
+                let sampler = Sampler::of_pixel((world.method.seed ^ SEED).wrapping_add(u64::from(number)), [x, y], 0);
                 let found = tracer.sample(&sampler, [x, y]).rgb;
                 let gathered = by_gathering.0.get();
                 let others = std::array::from_fn(|i| found[i] - (gathered[i] - so_far[i]));

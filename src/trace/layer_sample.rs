@@ -125,14 +125,16 @@ impl<'a, const N: usize> LayerSample<'a, N> {
         }
     }
 
-    /// Keeps what the sample at hand leaves in the bands of a spectral image.
-    pub(super) fn keep(&mut self) {
-        self.spectrum.iter_mut().for_each(SpectrumSample::keep);
+    /// Keeps what the sample at hand, which is added or subtracted, leaves in the bands of a spectral image.
+    pub(super) fn keep(&mut self, is_subtracted: bool) {
+        self.spectrum.iter_mut().for_each(|spectrum| spectrum.keep(is_subtracted));
     }
 
-    /// Adds all that was kept of spectra to a pixel's row.
-    pub(super) fn hand_over(&mut self, row: &mut [f64]) {
-        self.spectrum.iter_mut().for_each(|spectrum| spectrum.hand_over(row));
+    /// Adds all that was kept of spectra to a pixel's rows, that of samples that are subtracted behind the other.
+    pub(super) fn hand_over(&mut self, rows: [&mut [f64]; 2]) {
+        if let Some(spectrum) = &mut self.spectrum {
+            spectrum.hand_over(rows);
+        }
     }
 
     /// Remembers a surface, if it is the first one.

@@ -5,13 +5,15 @@ use super::coverage::Coverage;
 use super::layer_sample::Left;
 use super::layers::{Layers, OF_A_HALF};
 use super::spectrum_sample::Spectrum;
-use crate::film::{Layer, LayerImage, RANKS, Sample, SpectralImage, stored};
+use crate::film::{Layer, LayerImage, RANKS, Sample, SampleWeights, SpectralImage, stored};
 
 /// Sums of the pixels of a tile.
 #[derive(Default)]
 pub(super) struct LayerSums {
     /// A row of numbers for each pixel.
     rows: Vec<f64>,
+    /// The same of samples that are subtracted, where there may be any: of light alone, and of what is made of samples.
+    subtracted: Vec<f64>,
     /// The depth of what each pixel's places are of.
     depths: Vec<f64>,
     /// The objects of each pixel, if there are mattes.
@@ -19,12 +21,13 @@ pub(super) struct LayerSums {
 }
 
 impl LayerSums {
-    /// Of so many pixels.
-    pub(super) fn new(layers: &Layers, pixels: usize) -> Self {
+    /// Of so many pixels; some samples of theirs are subtracted, or none is.
+    pub(super) fn new(layers: &Layers, pixels: usize, is_signed: bool) -> Self {
         match layers.is_empty() {
             true => Self::default(),
             false => Self {
                 rows: vec![0.0; pixels * layers.numbers],
+                subtracted: if is_signed { vec![0.0; pixels * layers.numbers] } else { Vec::new() },
                 depths: vec![f64::INFINITY; pixels],
                 covered: if layers.ids.is_empty() { Coverage::default() } else { Coverage::new(pixels) },
             },
@@ -34,13 +37,14 @@ impl LayerSums {
     /// Adds a sample of a pixel: what the image gets of it, and what it left in the layers. `early` are those of the
     /// first half: they and the others are each spread as evenly as all are, as every other one would not be.
     pub(super) fn add(&mut self, layers: &Layers, pixel: usize, early: bool, sample: &Sample, left: &Left) {
-        let row = &mut self.rows[pixel * layers.numbers..][..layers.numbers];
-        if let Some(object) = left.object.filter(|_| !layers.ids.is_empty()) {
+        let rows = if sample.is_subtracted { &mut self.subtracted } else { &mut self.rows };
+        let row = &mut rows[pixel * layers.numbers..][..layers.numbers];
+        if let Some(object) = left.object.filter(|_| !layers.ids.is_empty() && !sample.is_subtracted) {
             self.covered.add(pixel, object);
         }
         let left = left.row;
         layers.add_caught(row, left);
-        let nearer = sample.depth.is_some_and(|depth| depth < self.depths[pixel]);
+        let nearer = !sample.is_subtracted && sample.depth.is_some_and(|depth| depth < self.depths[pixel]);
         if let (true, Some(depth)) = (nearer, sample.depth) {
             self.depths[pixel] = depth;
         }
@@ -71,14 +75,16 @@ impl LayerSums {
         }
     }
 
-    /// The row of a pixel.
-    pub(super) fn row(&self, layers: &Layers, pixel: usize) -> &[f64] {
-        &self.rows[pixel * layers.numbers..][..layers.numbers]
+    /// The row of a pixel, and that of its samples that are subtracted, which may be empty.
+    pub(super) fn rows(&self, layers: &Layers, pixel: usize) -> [&[f64]; 2] {
+        let range = pixel * layers.numbers..(pixel + 1) * layers.numbers;
+        [&self.rows[range.clone()], self.subtracted.get(range).unwrap_or_default()]
     }
 
-    /// The same, to add to it.
-    pub(super) fn row_mut(&mut self, layers: &Layers, pixel: usize) -> &mut [f64] {
-        &mut self.rows[pixel * layers.numbers..][..layers.numbers]
+    /// The same, to add to them.
+    pub(super) fn rows_mut(&mut self, layers: &Layers, pixel: usize) -> [&mut [f64]; 2] {
+        let range = pixel * layers.numbers..(pixel + 1) * layers.numbers;
+        [&mut self.rows[range.clone()], self.subtracted.get_mut(range).unwrap_or_default()]
     }
 
     /// Which objects each pixel shows.
@@ -89,13 +95,13 @@ impl LayerSums {
 
 /// What is known of a pixel once its samples are taken.
 pub(super) struct Taken<'a> {
-    /// Its row of sums.
-    pub(super) sums: &'a [f64],
+    /// Its row of sums, and that of samples that are subtracted.
+    pub(super) sums: [&'a [f64]; 2],
     /// The same of what photons show, which is no sum over samples; empty where they show nothing.
     pub(super) shown: &'a [f64],
-    /// The sum of the samples that were kept, and how many they are.
-    pub(super) rgb: [f64; 3],
-    pub(super) kept: u32,
+    /// The sum of the samples that were kept, of those that are added and subtracted, and what they count.
+    pub(super) rgb: [[f64; 3]; 2],
+    pub(super) weights: SampleWeights,
     /// Which objects the pixels of its tile show, and its place among them.
     pub(super) covered: &'a Coverage,
     pub(super) place: usize,
@@ -128,7 +134,7 @@ pub(super) fn write(layers: &Layers, taken: &Taken, pixel: usize, images: &mut [
         if let Some((_, ids)) = layers.ids.iter().find(|(matte, _)| *matte == layer) {
             let ranks = taken.covered.ranks(taken.place, ids);
             for (two, image) in ranks.chunks_exact(2).zip(images.by_ref()) {
-                let coverage = |samples: u32| (f64::from(samples) / f64::from(taken.kept.max(1))) as f32;
+                let coverage = |samples: u32| (f64::from(samples) / taken.weights.added()) as f32;
                 let [(a, of_a), (b, of_b)] = [two[0], two[1]];
                 let values = [f32::from_bits(a), coverage(of_a), f32::from_bits(b), coverage(of_b)];
                 image.values[4 * pixel..4 * pixel + 4].copy_from_slice(&values);
@@ -141,7 +147,7 @@ pub(super) fn write(layers: &Layers, taken: &Taken, pixel: usize, images: &mut [
             let size = layer.channels().len();
             let values = &mut image.values[pixel * size..][..size];
             if layer == Layer::Shadow {
-                let caught = layers.caught(taken.sums, taken.shown, taken.kept);
+                let caught = layers.caught(taken.sums[0], taken.shown, taken.weights.added());
                 let shadow = caught.map_or([0.0; 3], |caught| caught.shadow());
                 values.copy_from_slice(&shadow.map(stored));
                 continue;
@@ -156,29 +162,34 @@ pub(super) fn write(layers: &Layers, taken: &Taken, pixel: usize, images: &mut [
 impl Taken<'_> {
     /// Writes the pixel's spectrum into the image.
     pub(super) fn write_spectrum(&self, spectrum: &Spectrum, pixel: usize, image: &mut SpectralImage) {
-        let (kept, bands) = (f64::from(self.kept.max(1)), spectrum.bands.count());
+        let bands = spectrum.bands.count();
         for (band, value) in image.values[pixel * bands..][..bands].iter_mut().enumerate() {
-            let shown = self.shown.get(spectrum.at + band).copied().unwrap_or_default();
-            *value = stored(self.sums[spectrum.at + band] / kept + shown);
+            *value = stored(self.light(spectrum.at + band));
         }
     }
 
+    /// The mean of a number that is light, with what photons show.
+    fn light(&self, at: usize) -> f64 {
+        let sums = self.sums.map(|row| row.get(at).copied().unwrap_or_default());
+        self.weights.sum(sums) / self.weights.taken() + self.shown.get(at).copied().unwrap_or_default()
+    }
+
     fn value(&self, layer: Layer, at: usize, channel: usize) -> f64 {
-        let kept = f64::from(self.kept.max(1));
-        let sum = self.sums.get(at + channel).copied().unwrap_or_default();
+        let sums = self.sums.map(|row| row.get(at + channel).copied().unwrap_or_default());
         let shown = self.shown.get(at + channel).copied().unwrap_or_default();
+        let weights = &self.weights;
         match layer {
-            Layer::Samples => f64::from(self.kept),
-            Layer::Position | Layer::Uv => sum,
-            Layer::Albedo => (sum / kept).clamp(0.0, 1.0),
-            // Of one sample nothing is known. Photons land independently: the sum of their squares estimates the
-            // variance of their sum.
-            Layer::Variance => {
-                let mean = self.rgb[channel] / kept;
-                (sum / kept - mean * mean).max(0.0) / (kept - 1.0).max(1.0) + shown
+            Layer::Samples => weights.kept().into(),
+            Layer::Position | Layer::Uv => sums[0],
+            Layer::Albedo => (sums[0] / weights.added()).clamp(0.0, 1.0),
+            // Photons land independently: the sum of their squares estimates the variance of their sum.
+            Layer::Variance => weights.variance(self.rgb.map(|rgb| rgb[channel]), sums[0] + sums[1]) + shown,
+            Layer::HalfA | Layer::HalfB => {
+                let taken = self.sums.map(|row| row.get(at + OF_A_HALF - 1).copied().unwrap_or_default());
+                weights.sum(sums) / (taken[0] + taken[1]).max(1.0) + shown
             }
-            Layer::HalfA | Layer::HalfB => sum / self.sums[at + OF_A_HALF - 1].max(1.0) + shown,
-            _ => sum / kept + shown,
+            _ if layer.is_light() => self.light(at + channel),
+            _ => sums[0] / weights.added(),
         }
     }
 }

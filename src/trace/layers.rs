@@ -168,9 +168,8 @@ impl Layers {
     }
 
     /// What shadow catchers show, by the sums of so many samples and what photons show.
-    pub(super) fn caught(&self, sums: &[f64], shown: &[f64], kept: u32) -> Option<Caught> {
+    pub(super) fn caught(&self, sums: &[f64], shown: &[f64], kept: f64) -> Option<Caught> {
         let at = self.caught?;
-        let kept = f64::from(kept.max(1));
         let mean = |number: usize| sums[at + number] / kept + shown.get(at + number).copied().unwrap_or_default();
         let [with, without] = [0, 3].map(|first| [0, 1, 2].map(|channel| mean(first + channel)));
         Some(Caught { with, without, share: mean(6) })

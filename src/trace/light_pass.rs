@@ -59,7 +59,7 @@ pub(super) fn show<const N: usize>(world: &World, progress: &(dyn Fn(u64) + Sync
         return CausticImage::default();
     }
     let window = world.scene.film.window();
-    let mut pixels = vec![[0.0; 3]; window.width as usize * window.height as usize];
+    let mut pixels = vec![[0.0; 3]; window.pixels() as usize];
     let mut moved = vec![0.0; window.width.div_ceil(TILE) as usize * window.height.div_ceil(TILE) as usize];
     let mut layers = vec![0.0; pixels.len() * world.layers.numbers];
     let add = &mut |splat: Splat| {
@@ -84,7 +84,7 @@ pub(super) fn show<const N: usize>(world: &World, progress: &(dyn Fn(u64) + Sync
 
 /// Adds a photon that the camera sees to the row of its pixel, which holds means.
 fn add_to_layers(world: &World, splat: &Splat, row: &mut [f64]) {
-    let Splat { light, rgb, dispersed, early, caught, first, density, .. } = *splat;
+    let Splat { light, rgb, dispersed, early, caught, first, weight, .. } = *splat;
     if caught {
         return world.layers.catch_photon(row, rgb);
     }
@@ -94,7 +94,7 @@ fn add_to_layers(world: &World, splat: &Splat, row: &mut [f64]) {
     world.layers.add(row, &Contribution { light, found: Found::Shown, rgb, moved: 0.0, first, bounces, dispersed });
     if let (Some(spectrum), Some(bands)) = (&world.layers.spectrum, &splat.bands) {
         let sums = row[spectrum.at..].iter_mut().zip(bands.iter());
-        sums.for_each(|(sum, &light)| *sum += density * f64::from(light));
+        sums.for_each(|(sum, &light)| *sum += weight * f64::from(light));
     }
     world.layers.add_to(Layer::Variance, row, rgb.map(|x| x * x));
     world.layers.add_to(if early { Layer::HalfA } else { Layer::HalfB }, row, rgb.map(|x| 2.0 * x));
@@ -145,11 +145,11 @@ struct Learned {
     rays: u64,
 }
 
-/// Sends photons ahead. The whole image sees them, also where only a part of it is made, so that all parts are made
+/// Sends photons ahead. The format sees them, also where a part of it or more is made, so that all parts are made
 /// alike.
 fn send_ahead<const N: usize>(world: &World, most: u64) -> Learned {
     let mut world = world.clone();
-    world.scene.film.crop = None;
+    world.scene.film = world.scene.film.of_the_format();
     let Some(targets) = &world.photon_targets else { return Learned::default() };
     let batches = batches(targets, |_| 0, |target| target.photons.min(most), world.method.seed ^ AHEAD_SEED);
     let done: Vec<Sent<Splat>> =

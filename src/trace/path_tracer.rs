@@ -82,7 +82,7 @@ impl<'a, const N: usize> PathTracer<'a, N> {
     }
 
     /// One camera sample.
-    pub(super) fn sample(&mut self, sampler: &Sampler, [x, y]: [u32; 2]) -> Sample {
+    pub(super) fn sample(&mut self, sampler: &Sampler, [x, y]: [i32; 2]) -> Sample {
         let world = self.walker.world;
         let camera = &world.scene.camera;
         let numbers = |purpose: u32| match world.method.transport {
@@ -90,7 +90,9 @@ impl<'a, const N: usize> PathTracer<'a, N> {
             Transport::Random { .. } => sampler.four(BranchKey::CAMERA, purpose),
         };
         let [u, v, wavelength, _] = numbers(PLACE);
-        let film = DVec2::new(f64::from(x), f64::from(y)) + world.scene.film.filter.place([u, v]);
+        let place = world.scene.film.filter.place([u, v]);
+        let film = DVec2::new(f64::from(x), f64::from(y)) + place;
+        let is_subtracted = world.scene.film.filter.subtracts(place);
         let draw = self.draw.clone().unwrap_or_else(|| world.method.basis.draw(wavelength));
         let ray = if camera.has_lens() {
             let [u, v, ..] = numbers(LENS);
@@ -111,10 +113,10 @@ impl<'a, const N: usize> PathTracer<'a, N> {
         }
         if self.sees_shadow_catcher() {
             self.catch(path, &draw, sampler);
-            return Sample { rgb: [0.0; 3], depth: None };
+            return Sample { rgb: [0.0; 3], depth: None, is_subtracted };
         }
         let rgb = self.sensor.read_out(world, &mut self.walker.stats);
-        Sample { rgb, depth: first.map(|point| camera.depth(point.position)) }
+        Sample { rgb, depth: first.map(|point| camera.depth(point.position)), is_subtracted }
     }
 
     /// Whether the camera ray has met a shadow catcher.

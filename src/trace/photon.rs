@@ -30,7 +30,7 @@ pub(super) struct Splat {
     pub(super) rgb: [f64; 3],
     /// What it adds to the bands of a spectral image if one is asked for, times a factor.
     pub(super) bands: Option<Arc<[f32]>>,
-    pub(super) density: f64,
+    pub(super) weight: f64,
     pub(super) light: LightId,
     /// Whether its wavelengths parted on the way.
     pub(super) dispersed: bool,
@@ -223,11 +223,10 @@ pub(super) fn show<const N: usize>(
     let u = if camera.has_lens() { sampler.four_plain(path.key, LENS) } else { [0.5; 4] };
     let Some(seen) = camera.see(point.position, [u[0], u[1]]) else { return };
     let (window, reach) = (film.window(), film.filter.reach());
-    let mut places = camera.places(seen.film, reach);
-    places.retain(|place| {
-        let near = |x: f64, from: u32, size: u32| x >= f64::from(from) - reach && x <= f64::from(from + size) + reach;
-        near(place.x, window.left, window.width) && near(place.y, window.top, window.height)
-    });
+    let mut places = camera.places(seen.film, reach + f64::from(film.overscan.widest()));
+    let [first, end] = window.ends().map(|place| place.map(|x| x as f64));
+    let near = |x: f64, axis: usize| x >= first[axis] - reach && x <= end[axis] + reach;
+    places.retain(|place| near(place.x, 0) && near(place.y, 1));
     if places.is_empty() {
         return;
     }
@@ -257,23 +256,29 @@ pub(super) fn show<const N: usize>(
     let lobe = || if same { reflected() } else { FirstLobe::Transmitted };
     let first = world.layers.tell_lobes_apart().then(lobe);
     let (light, dispersed, early, caught) = (*light, parted, *early, sight == Sight::ShadowCatcher);
-    let splat = Splat { pixel: 0, change, rgb, bands, density: 1.0, light, dispersed, early, caught, first };
+    let splat = Splat { pixel: 0, change, rgb, bands, weight: 1.0, light, dispersed, early, caught, first };
     places.into_iter().for_each(|place| spread_over_pixels(film, place, &splat, splats));
 }
 
 /// Spreads a splat over the pixels around a place of the film, as the filter weighs them.
 fn spread_over_pixels(film: FilmSettings, place: DVec2, splat: &Splat, splats: &mut Vec<Splat>) {
     let (window, reach) = (film.window(), film.filter.reach());
-    let first = |x: f64, from: u32| (x - reach - 0.5).floor().max(f64::from(from)) as u32;
-    let last = |x: f64, from: u32, size: u32| (x + reach).floor().min(f64::from(from + size - 1)) as u32;
-    for y in first(place.y, window.top)..=last(place.y, window.top, window.height) {
-        for x in first(place.x, window.left)..=last(place.x, window.left, window.width) {
+    let [first, end] = window.ends();
+    let first = |x: f64, axis: usize| (x - reach - 0.5).floor().max(first[axis] as f64) as i32;
+    let last = |x: f64, axis: usize| (x + reach).floor().min((end[axis] - 1) as f64) as i32;
+    for y in first(place.y, 1)..=last(place.y, 1) {
+        for x in first(place.x, 0)..=last(place.x, 0) {
             let middle = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
-            let density = film.filter.density(place - middle);
-            if density > 0.0 {
-                let pixel = (y - window.top) * window.width + (x - window.left);
-                let rgb = splat.rgb.map(|channel| channel * density);
-                splats.push(Splat { pixel, rgb, density, ..splat.clone() });
+            // Shadow catchers show no light, but the share of it that is missing.
+            let filter = |offset| match splat.caught {
+                true => film.filter.positive_value(offset),
+                false => film.filter.value(offset),
+            };
+            let weight = filter(place - middle);
+            if weight != 0.0 {
+                let pixel = (y - window.top) as u32 * window.width + (x - window.left) as u32;
+                let rgb = splat.rgb.map(|channel| channel * weight);
+                splats.push(Splat { pixel, rgb, weight, ..splat.clone() });
             }
         }
     }

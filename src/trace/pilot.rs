@@ -46,14 +46,14 @@ const SEED: u64 = 0x7069_6c6f;
 /// What photons of each of the pass's lights are worth, where photons of the light are seen; many lights are weighed in
 /// groups.
 ///
-/// All of the image counts, also where only a part of it is made, so that all parts are made alike.
+/// The format counts, also where a part of it or more is made, so that all parts are made alike.
 pub fn photons_worth(world: &World) -> Vec<PhotonWorth> {
     in_lanes!(&world.method.basis, N => weigh_photons::<N>(world))
 }
 
 fn weigh_photons<const N: usize>(whole: &World) -> Vec<PhotonWorth> {
     let mut world = whole.clone();
-    world.scene.film.crop = None;
+    world.scene.film = world.scene.film.of_the_format();
     let groups = whole.photon_light_groups();
     let photons = (ALL / groups.len().max(1) as u64).min(PHOTONS);
     groups.into_iter().filter_map(|lights| weigh::<N>(whole, &mut world, lights, photons)).collect()
@@ -117,7 +117,7 @@ fn weigh_samples<const N: usize>(world: &World) -> SampleWorth {
     for place in 0..SIDE * SIDE {
         let [x, y] = film.whole().middle_of_cell(SIDE, place);
         let taken = (0..SAMPLES).map(|number| {
-            let sampler = Sampler::new(seed.wrapping_add(u64::from(number)), [x, y], 0);
+            let sampler = Sampler::of_pixel(seed.wrapping_add(u64::from(number)), [x, y], 0);
             apply(&to_xyz, tracer.sample(&sampler, [x, y]).rgb)
         });
         let taken: Vec<[f64; 3]> = taken.filter(|xyz| xyz.iter().all(|x| x.is_finite())).collect();

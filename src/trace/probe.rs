@@ -67,8 +67,8 @@ fn probe_lanes<const N: usize>(world: &World) -> Probe {
         for place in 0..SIDE {
             let at = |place: u32, size: u32| (u64::from(place) * u64::from(size) / u64::from(SIDE)) as u32;
             let (x, y) = (at(place * 7 % SIDE, window.width), at(place, window.height));
-            let (x, y) = (window.left + x, window.top + y);
-            tracer.sample(&Sampler::new(world.method.seed, [x, y], 0), [x, y]);
+            let (x, y) = (window.left + x as i32, window.top + y as i32);
+            tracer.sample(&Sampler::of_pixel(world.method.seed, [x, y], 0), [x, y]);
         }
     }
     let before_vertices = Instant::now();
@@ -87,7 +87,7 @@ fn probe_lanes<const N: usize>(world: &World) -> Probe {
         for place in numbers.map(|i| (i * 229) % (SIDE * SIDE)) {
             let [x, y] = window.middle_of_cell(SIDE, place);
             let before = tracer.walker.stats.partings;
-            tracer.sample(&Sampler::new(world.method.seed, [x, y], 0), [x, y]);
+            tracer.sample(&Sampler::of_pixel(world.method.seed, [x, y], 0), [x, y]);
             parted.set(parted.get() + u32::from(tracer.walker.stats.partings > before));
         }
         Timed { time: start.elapsed(), rays: tracer.walker.stats.rays - before }

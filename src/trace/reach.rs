@@ -26,7 +26,7 @@ fn look<const N: usize>(world: &World) -> Vec<DVec3> {
     let mut tracer = PathTracer::<N>::new(world).with_observer(&reached);
     for place in 0..SIDE * SIDE {
         let [x, y] = film.whole().middle_of_cell(SIDE, place);
-        tracer.sample(&Sampler::new(world.method.seed ^ LOOKING, [x, y], place), [x, y]);
+        tracer.sample(&Sampler::of_pixel(world.method.seed ^ LOOKING, [x, y], place), [x, y]);
     }
     reached.0.into_inner()
 }

@@ -13,7 +13,7 @@ use super::photon_targets::PhotonTargets;
 use super::stats::Stats;
 use super::tile::{TILE, Tile};
 use super::width::in_lanes;
-use crate::film::{Film, Pixel};
+use crate::film::{Film, Pixel, PixelSum, SampleWeights};
 
 /// Samples of each pixel in the first pass, where no photons are gathered; every other pass takes as many as were taken
 /// before.
@@ -32,7 +32,7 @@ pub struct Report {
     /// Samples left out because they were not finite.
     pub non_finite: u64,
     /// Column, row and number of the first of them.
-    pub first_non_finite: Option<[u32; 3]>,
+    pub first_non_finite: Option<[i64; 3]>,
     /// Mean weight per camera sample of the branches that deterministic transport dropped.
     pub dropped: f64,
     /// Mean weight per camera sample of paths stopped because they would not end.
@@ -62,7 +62,7 @@ pub fn render(world: &World, progress: &(dyn Fn(u64) + Sync)) -> (Film, Report) 
 /// How many camera samples and photons an image takes.
 pub fn work(world: &World) -> u64 {
     let window = world.scene.film.window();
-    let samples = u64::from(window.width) * u64::from(window.height) * u64::from(world.method.samples);
+    let samples = window.pixels() * u64::from(world.method.samples);
     let passes = world.method.light_pass.as_ref().and_then(|pass| pass.map).map_or(0, |map| u64::from(map.count));
     let photons = |targets: &Option<PhotonTargets>| targets.as_ref().map_or(0, PhotonTargets::photons);
     samples + photons(&world.photon_targets) + passes * photons(&world.map_targets)
@@ -87,11 +87,12 @@ pub struct Rendering<W> {
 impl<W: Borrow<World>> Rendering<W> {
     /// An image without samples yet.
     pub fn new(world: W) -> Self {
-        let (window, layers) = (world.borrow().scene.film.window(), &world.borrow().layers);
+        let (film, layers) = (&world.borrow().scene.film, &world.borrow().layers);
+        let window = film.window();
         let corners = (0..window.height)
             .step_by(TILE as usize)
             .flat_map(|y| (0..window.width).step_by(TILE as usize).map(move |x| [x, y]));
-        let tiles = corners.map(|corner| Tile::new(window, corner, layers)).collect();
+        let tiles = corners.map(|corner| Tile::new(film, corner, layers)).collect();
         Self { world, tiles, shown: None, gathered: Stats::default(), photons: 0, samples: 0, passes: 0 }
     }
 
@@ -118,24 +119,27 @@ impl<W: Borrow<World>> Rendering<W> {
     pub fn film(&self) -> Film {
         let settings = self.world().scene.film;
         let window = settings.window();
-        let mut pixels = vec![BLANK; window.width as usize * window.height as usize];
+        let mut pixels = vec![BLANK; window.pixels() as usize];
         let layers = &self.world().layers;
         let luminance = settings.color_space.to_xyz()[1];
-        let mut images = images(layers, pixels.len());
+        let (mut images, none) = (images(layers, pixels.len()), PixelSum::default());
         let mut spectral = spectral_image(layers, pixels.len());
         for tile in &self.tiles {
             for (place, sum) in (0..).zip(&tile.sums) {
                 let number = tile.number(window, place);
-                pixels[number] = sum.pixel(self.shown_at(number));
+                let place = place as usize;
+                let subtracted = tile.subtracted.get(place).unwrap_or(&none);
+                let weights = SampleWeights::new(settings.filter, [sum.kept(), subtracted.kept()]);
+                pixels[number] = sum.pixel(subtracted, &weights, self.shown_at(number));
                 if !layers.is_empty() {
-                    let (sums, shown) = (tile.layers.row(layers, place as usize), self.shown_in_layers(number));
-                    let (covered, place) = (tile.layers.covered(), place as usize);
-                    let taken = Taken { sums, shown, rgb: sum.rgb(), kept: sum.kept(), covered, place };
+                    let (sums, shown) = (tile.layers.rows(layers, place), self.shown_in_layers(number));
+                    let (covered, rgb) = (tile.layers.covered(), [sum.rgb(), subtracted.rgb()]);
+                    let taken = Taken { sums, shown, rgb, weights, covered, place };
                     write(layers, &taken, number, &mut images);
                     if let (Some(image), Some(spectrum)) = (&mut spectral, &layers.spectrum) {
                         taken.write_spectrum(spectrum, number, image);
                     }
-                    if let Some(caught) = layers.caught(sums, shown, sum.kept()) {
+                    if let Some(caught) = layers.caught(sums[0], shown, weights.added()) {
                         let alpha = f64::from(pixels[number].alpha) + caught.coverage(luminance);
                         pixels[number].alpha = alpha.min(1.0) as f32;
                     }
@@ -168,7 +172,7 @@ impl<W: Borrow<World>> Rendering<W> {
             first_non_finite = first_non_finite.or(tile.first_non_finite);
             all += stats;
         }
-        let samples = u64::from(window.width) * u64::from(window.height) * u64::from(self.samples);
+        let samples = window.pixels() * u64::from(self.samples);
         let per_sample = |sum: f64| sum / samples.max(1) as f64;
         Report {
             samples,

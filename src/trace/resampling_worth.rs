@@ -63,7 +63,7 @@ fn weigh<const N: usize>(
     let pixel = |place: u32| {
         let [x, y] = film.whole().middle_of_cell(SIDE, place);
         let taken = (0..SAMPLES).map(|number| {
-            let sampler = Sampler::new(world.method.seed ^ SEED, [x, y], number);
+            let sampler = Sampler::of_pixel(world.method.seed ^ SEED, [x, y], number);
             apply(&to_xyz, tracer.sample(&sampler, [x, y]).rgb).iter().sum::<f64>()
         });
         let taken: Vec<f64> = taken.filter(|light| light.is_finite()).collect();

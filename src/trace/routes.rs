@@ -18,9 +18,9 @@ pub fn routes(world: &World) -> Vec<Vec<Route>> {
     let places = (0..SIDE * SIDE).map(|i| (i * 229) % (SIDE * SIDE));
     let all_over = places.map(|place| film.middle_of_cell(SIDE, place));
     let objects = pixels_of_objects(world, |material| material.has_single_directions());
-    let of_pixel = |(number, [x, y]): (u32, [u32; 2])| {
+    let of_pixel = |(number, [x, y]): (u32, [i32; 2])| {
         let ray = world.scene.camera.ray(DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5));
-        let sampler = Sampler::new(world.method.seed, [x, y], number);
+        let sampler = Sampler::of_pixel(world.method.seed, [x, y], number);
         let mut walker = Walker::new(world, sampler);
         let met = walker.walk(ray);
         (met, walker.found)

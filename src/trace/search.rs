@@ -169,7 +169,7 @@ fn place(walks: &[Walk; 5], size: DVec2) -> Option<Reached> {
 impl Cell {
     fn middle(&self, colors: &Colors) -> (DVec2, Sampler) {
         let middle = self.corner + self.size * 0.5;
-        (middle, Sampler::new(colors.world.method.seed, [middle.x as u32, middle.y as u32], 0))
+        (middle, Sampler::of_pixel(colors.world.method.seed, [middle.x as i32, middle.y as i32], 0))
     }
 
     fn is_whole(&self, colors: &Colors) -> bool {

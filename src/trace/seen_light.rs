@@ -59,13 +59,13 @@ fn look<const N: usize>(world: &World) -> SeenLight {
     for place in 0..SIDE * SIDE {
         let [x, y] = window.middle_of_cell(SIDE, place);
         let before = tracer.walker.stats;
-        tracer.sample(&Sampler::new(world.method.seed, [x, y], 0), [x, y]);
-        let part = &mut seen.parts[part_of(window, [x - window.left, y - window.top])];
+        tracer.sample(&Sampler::of_pixel(world.method.seed, [x, y], 0), [x, y]);
+        let part = &mut seen.parts[part_of(window, [(x - window.left) as u32, (y - window.top) as u32])];
         part[0] += tracer.walker.stats.light - before.light;
         part[1] += tracer.walker.stats.polarization - before.polarization;
     }
     // Photons light all pixels, of which so many were looked at.
-    let pixels = f64::from(window.width) * f64::from(window.height);
+    let pixels = window.pixels() as f64;
     let looked_at = f64::from(SIDE * SIDE) / pixels;
     splats::<N>(world, &|_| (), &mut |splat| {
         let light = looked_at * world.amount(splat.rgb);

@@ -56,7 +56,13 @@ pub(super) struct SpectrumSample<'a, const N: usize> {
     /// single wavelengths, with its band.
     together: Vec<(usize, Lanes<N>, f64)>,
     alone: Vec<(usize, f64)>,
-    /// Sums of the samples that were kept: lanes by their response, and bands.
+    /// Sums of the samples that were kept and are added, and of those that are subtracted.
+    kept: [Kept<N>; 2],
+}
+
+/// Sums of samples: lanes by their response, and bands.
+#[derive(Clone)]
+struct Kept<const N: usize> {
     lanes: Vec<[f64; N]>,
     bands: Vec<f64>,
 }
@@ -64,8 +70,8 @@ pub(super) struct SpectrumSample<'a, const N: usize> {
 impl<'a, const N: usize> SpectrumSample<'a, N> {
     pub(super) fn new(spectrum: &'a Spectrum) -> Self {
         let lanes = vec![[0.0; N]; spectrum.responses.len()];
-        let bands = vec![0.0; spectrum.bands.count()];
-        Self { spectrum, together: Vec::new(), alone: Vec::new(), lanes, bands }
+        let nothing = Kept { lanes, bands: vec![0.0; spectrum.bands.count()] };
+        Self { spectrum, together: Vec::new(), alone: Vec::new(), kept: [nothing.clone(), nothing] }
     }
 
     /// Begins another sample.
@@ -94,21 +100,25 @@ impl<'a, const N: usize> SpectrumSample<'a, N> {
         self.spectrum.response(light)
     }
 
-    /// Keeps what the sample has received.
-    pub(super) fn keep(&mut self) {
+    /// Keeps what the sample, which is added or subtracted, has received.
+    pub(super) fn keep(&mut self, is_subtracted: bool) {
+        let Kept { lanes: sums, bands } = &mut self.kept[usize::from(is_subtracted)];
         for (response, lanes, factor) in self.together.drain(..) {
-            let sums = self.lanes[response].iter_mut().zip(lanes.0);
+            let sums = sums[response].iter_mut().zip(lanes.0);
             sums.for_each(|(sum, lane)| *sum += factor * f64::from(lane));
         }
-        self.alone.drain(..).for_each(|(band, light)| self.bands[band] += light);
+        self.alone.drain(..).for_each(|(band, light)| bands[band] += light);
     }
 
-    /// Adds all that was kept to a row, and begins anew.
-    pub(super) fn hand_over(&mut self, row: &mut [f64]) {
-        let row = &mut row[self.spectrum.at..][..self.bands.len()];
-        for (response, lanes) in self.spectrum.responses.iter().zip(&mut self.lanes) {
-            response.add_fixed(&std::mem::replace(lanes, [0.0; N]), row);
+    /// Adds all that was kept to rows of sums, and begins anew. Where nothing is subtracted the second may be empty.
+    pub(super) fn hand_over(&mut self, rows: [&mut [f64]; 2]) {
+        let Self { spectrum, kept, .. } = self;
+        for (row, kept) in rows.into_iter().zip(kept).filter(|(row, _)| !row.is_empty()) {
+            let row = &mut row[spectrum.at..][..kept.bands.len()];
+            for (response, lanes) in spectrum.responses.iter().zip(&mut kept.lanes) {
+                response.add_fixed(&std::mem::replace(lanes, [0.0; N]), row);
+            }
+            row.iter_mut().zip(&mut kept.bands).for_each(|(sum, light)| *sum += std::mem::take(light));
         }
-        row.iter_mut().zip(&mut self.bands).for_each(|(sum, light)| *sum += std::mem::take(light));
     }
 }

@@ -17,8 +17,8 @@ const ENOUGH: usize = 2048;
 /// Sets these random numbers apart from those of the image.
 const SEED: u64 = 0x6c61_6d70;
 
-/// Learns where lamps are visible that may be hidden for the most part. The whole image counts, also where only a part
-/// of it is made, so that all parts are made alike.
+/// Learns where lamps are visible that may be hidden for the most part. The format counts, also where a part of it or
+/// more is made, so that all parts are made alike.
 pub(super) fn learn_visible_caps(world: &mut World) {
     if !world.scene.lights.iter().any(|light| matches!(light, Light::Area(area) if area.may_show_a_cap())) {
         return;
@@ -46,7 +46,7 @@ fn look<const N: usize>(world: &World) -> Vec<(LightId, DVec3)> {
     let places = SIDE * SIDE;
     for place in (0..places).map(|i| (i * 1597) % places) {
         let [x, y] = film.whole().middle_of_cell(SIDE, place);
-        tracer.sample(&Sampler::new(world.method.seed ^ SEED, [x, y], place), [x, y]);
+        tracer.sample(&Sampler::of_pixel(world.method.seed ^ SEED, [x, y], place), [x, y]);
         if met.0.borrow().len() >= ENOUGH {
             break;
         }

@@ -1,4 +1,4 @@
-//! What files say of the camera, and the flag that crops.
+//! What files say of the camera, and the flags that crop and add overscan.
 
 use exr::image::{AnyChannels, FlatSamples, Image, Layer};
 use exr::meta::attribute::{AttributeValue, EnvironmentMap, Text};
@@ -46,6 +46,50 @@ fn a_crop_is_the_data_window_of_the_full_display_window() {
 }
 
 #[test]
+fn overscan_begins_before_the_display_window() {
+    let folder = Folder::new();
+    let wide = SCENE.replace("height = 4", "height = 4\noverscan = [3, 1, 2, 0]");
+    for (scene, flags, corner, size) in [
+        (wide.as_str(), &[][..], Vec2(-3, -1), Vec2(13, 5)),
+        (SCENE, &["--overscan", "3,1,2,0"], Vec2(-3, -1), Vec2(13, 5)),
+        (&wide, &["--overscan", "2"], Vec2(-2, -2), Vec2(12, 8)),
+        (&wide, &["--overscan", "0"], Vec2(0, 0), Vec2(8, 4)),
+        (&wide, &["--crop", "-3,-1,4,2"], Vec2(-3, -1), Vec2(4, 2)),
+        (&wide, &["--crop", "8, 3, 2, 1"], Vec2(8, 3), Vec2(2, 1)),
+    ] {
+        let image = written(&folder, scene, flags);
+        assert_eq!(image.attributes.display_window, IntegerBounds::from_dimensions((8, 4)));
+        assert_eq!((image.layer_data.attributes.layer_position, image.layer_data.size), (corner, size), "{flags:?}");
+        // The screen window is that of the display window.
+        assert_eq!(image.layer_data.attributes.screen_window_width, 4.0);
+        let picture = std::fs::read(folder.path().join("image.png")).expect("a picture");
+        assert_eq!(picture[16..24], [0, 0, 0, size.x() as u8, 0, 0, 0, size.y() as u8]);
+    }
+}
+
+#[test]
+fn overscan_that_cannot_be_is_refused() {
+    let folder = Folder::new();
+    folder.write("scene.toml", SCENE);
+    let refused = |flags: &[&str]| {
+        let answer = render(&folder, &[&["scene.toml"], flags].concat());
+        (answer.code, answer.stderr)
+    };
+    let wide = "error: an image with its overscan has at most 65536 pixels along each side, not 80008\n\
+                help: --overscan takes one number of pixels, or those to the left, above, to the right and below\n";
+    assert_eq!(refused(&["--overscan", "40000"]), (Some(2), wide.to_owned()));
+    let beyond = "error: this crop ends before column 10, row 6, but the image with its overscan before column 9, row 5\n\
+                  help: --crop takes first column, first row, width and height\n";
+    assert_eq!(refused(&["--overscan", "1", "--crop", "-1,-1,11,7"]), (Some(2), beyond.to_owned()));
+    for wrong in ["-1", "1,2", "1.5", "wide", "99999999999", ""] {
+        let (code, told) = refused(&["--overscan", wrong]);
+        let expected = "overscan is one or four whole numbers of pixels, such as 16 or 16,8,16,8";
+        assert!(code == Some(2) && told.contains(expected), "{wrong}: {told}");
+    }
+    assert_eq!(folder.listing(), ["scene.toml"]);
+}
+
+#[test]
 fn a_crop_that_cannot_be_is_refused() {
     let folder = Folder::new();
     folder.write("scene.toml", SCENE);
@@ -87,8 +131,10 @@ fn files_say_how_the_world_was_projected() {
     assert_eq!(attributes.other.get(&Text::from("render/projection")).cloned(), text("equirectangular"));
     assert_eq!(attributes.environment_map, Some(EnvironmentMap::LatitudeLongitude));
     assert_eq!((attributes.screen_window_width, attributes.screen_window_center), (1.0, Vec2(0.0, 0.0)));
-    // Readers take the data window for the sphere, so a crop is no environment.
-    assert_eq!(written(&folder, &full, &["--crop", "0,0,2,2"]).layer_data.attributes.environment_map, None);
+    // Readers take the data window for the sphere, so a crop is no environment, and nor is overscan.
+    for flags in [&["--crop", "0,0,2,2"][..], &["--overscan", "1"], &["--overscan", "1", "--crop", "-1,0,8,4"]] {
+        assert_eq!(written(&folder, &full, flags).layer_data.attributes.environment_map, None);
+    }
 
     let flat = SCENE.replace("vertical_fov = 90", "projection = \"orthographic\"\nheight = 3\nshift = [0, 1]");
     let attributes = written(&folder, &flat, &[]).layer_data.attributes;

@@ -186,7 +186,11 @@ fn a_crop_has_the_bits_of_the_full_image() {
         assert_eq!(film.full, [75, 43]);
         for y in 0..film.height {
             for x in 0..film.width {
-                assert_eq!(film.at(x, y), full.at(film.corner[0] + x, film.corner[1] + y), "{crop}: {x}, {y}");
+                assert_eq!(
+                    film.at(x, y),
+                    full.at(film.corner[0] as u32 + x, film.corner[1] as u32 + y),
+                    "{crop}: {x}, {y}"
+                );
             }
         }
     }

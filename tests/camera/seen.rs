@@ -138,7 +138,7 @@ fn filters_have_the_density_of_their_samples() {
             let drawn = filter.place(u) - DVec2::splat(0.5);
             assert!(drawn.abs().max_element() <= reach, "{}: {drawn}", filter.name());
             let even = (DVec2::from(u) * 2.0 - 1.0) * reach;
-            let density = filter.density(even) * 4.0 * reach * reach;
+            let density = filter.value(even) * 4.0 * reach * reach;
             for (sum, (offset, weight)) in sums.iter_mut().zip([(drawn, 1.0), (even, density)]) {
                 let waves = [1.0, libm::cos(2.0 * offset.x), libm::cos(2.0 * offset.x) * libm::cos(3.0 * offset.y)];
                 (0..3).for_each(|i| sum[i] += weight * waves[i] / f64::from(SIDE * SIDE));

@@ -116,7 +116,7 @@ fn a_glass_ball_under_a_round_lamp() {
 
 #[test]
 fn a_mirror_beside_a_lamp_that_lights_the_floor_as_well() {
-    let text = seen_by(ABOVE, "filter = \"tent\"")
+    let text = seen_by(ABOVE, "filter = \"mitchell\"")
         + FLOOR
         + LAMP
         + "[material.mirror]\nmirror = { reflectance = { rgb = [0.9, 0.8, 0.5] } }\n\

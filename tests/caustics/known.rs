@@ -203,13 +203,21 @@ fn a_part_of_an_image_has_the_bits_that_it_has_in_the_whole() {
         assert!(map.is_some(), "a caustic in a mirror");
         let few = LightPass { photons: 65_536, map, ..pass };
         let method = Method { samples: 24, light_pass: Some(few), ..planned.clone() };
-        let render = |scene| render(&prepare(scene, method.clone()), &|_| ()).0;
+        let render = |scene: &abbe::Scene| render(&prepare(scene, method.clone()), &|_| ()).0;
         let full = render(&whole);
-        let part = scene(&crowd(&format!("{filter}crop = [7, 11, 22, 19]")));
-        assert_eq!(plan(&part).method.light_pass, planned.light_pass);
-        let part = render(&part);
-        for (x, y) in (0..22).flat_map(|x| (0..19).map(move |y| (x, y))) {
-            assert_eq!(part.at(x, y), full.at(7 + x, 11 + y), "{x} {y}");
+        for window in ["crop = [7, 11, 22, 19]", "overscan = [40, 5, 3, 60]", "overscan = 9\ncrop = [-9, 3, 13, 17]"] {
+            let part = scene(&crowd(&format!("{filter}{window}")));
+            assert_eq!(plan(&part).method.light_pass, planned.light_pass);
+            let part = render(&part);
+            let mut same = 0;
+            for (x, y) in (0..part.width).flat_map(|x| (0..part.height).map(move |y| (x, y))) {
+                let [column, row] = [part.corner[0] + x as i32, part.corner[1] + y as i32];
+                if (0..48).contains(&column) && (0..36).contains(&row) {
+                    assert_eq!(part.at(x, y), full.at(column as u32, row as u32), "{window}: {column} {row}");
+                    same += 1;
+                }
+            }
+            assert!(same >= 4 * 17, "{window} has {same} pixels of the format");
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Samples of the pixel filters against the densities that give them their names.
 
-use abbe::film::Filter;
+use abbe::film::{Filter, Mitchell, SampleWeights};
+use abbe::math::DVec2;
 
 use super::warps::{around, check_warp};
 use crate::support::random::Random;
@@ -56,6 +57,102 @@ fn samples_of_blackman_harris_follow_the_window() {
     check_warp("Blackman-Harris filter", warp, |x0, x1, y0, y1| between(x0, x1) * between(y0, y1) / (all * all));
 }
 
+/// B and C of cubic filters: the plain one, the spline of Catmull and Rom, the B-spline, and the ends of what may be.
+const CUBICS: [[f64; 2]; 5] = [[1.0 / 3.0, 1.0 / 3.0], [0.0, 0.5], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]];
+
+/// The integral of a cubic filter from the middle to x, of either sign: of equation 8 of Mitchell & Netravali 1988.
+fn cubic(b: f64, c: f64, x: f64) -> f64 {
+    let inner = [6.0 - 2.0 * b, 0.0, -18.0 + 12.0 * b + 6.0 * c, 12.0 - 9.0 * b - 6.0 * c];
+    let outer = [8.0 * b + 24.0 * c, -12.0 * b - 48.0 * c, 6.0 * b + 30.0 * c, -b - 6.0 * c];
+    let to = |piece: [f64; 4], x: f64| (0..4).map(|i| piece[i] * x.powi(i as i32 + 1) / (6.0 * (i as f64 + 1.0))).sum();
+    let [near, far, start]: [f64; 3] = [to(inner, x.min(1.0)), to(outer, x.max(1.0)), to(outer, 1.0)];
+    near + far - start
+}
+
+/// The same of the absolute value: the outer piece has the root (2 B + 6 C) / (B + 6 C) beside a double one at 2.
+fn absolute_cubic(b: f64, c: f64, x: f64) -> f64 {
+    let root = (2.0 * b + 6.0 * c) / (b + 6.0 * c);
+    if x <= root { cubic(b, c, x) } else { 2.0 * cubic(b, c, root) - cubic(b, c, x) }
+}
+
+#[test]
+fn samples_of_cubics_follow_their_absolute_value() {
+    for [b, c] in CUBICS {
+        let filter = Filter::Mitchell(Mitchell { b, c });
+        let all = 2.0 * absolute_cubic(b, c, 2.0);
+        assert!((2.0 * cubic(b, c, 2.0) - 1.0).abs() < 1e-14, "the integral");
+        assert!((filter.absolute_integral() - all * all).abs() < 1e-13, "the integral of the absolute value");
+        let below = |x: f64| (0.5 * all + absolute_cubic(b, c, x.abs()).copysign(x)) / all;
+        let between = |low: f64, high: f64| below(4.0 * high - 2.0) - below(4.0 * low - 2.0);
+        let warp = |u| about(filter, u).map(|x| 0.5 + 0.25 * x);
+        check_warp(&format!("mitchell filter {b} {c}"), warp, |x0, x1, y0, y1| between(x0, x1) * between(y0, y1));
+    }
+}
+
+#[test]
+fn cubics_have_the_published_values_and_add_up_to_1_over_all_pixels() {
+    let value = |[b, c]: [f64; 2], x: f64| Filter::Mitchell(Mitchell { b, c }).value(DVec2::new(x, 0.0));
+    // (6 - 2 B) / 6 squared in the middle, times B / 6 beside it.
+    assert!((value(CUBICS[0], 0.0) - 64.0 / 81.0).abs() < 1e-15);
+    assert!((value(CUBICS[0], 1.0) - 8.0 / 9.0 / 18.0).abs() < 1e-15);
+    // The spline of Catmull and Rom passes through its samples; halfway, it weighs them 9 / 16 and -1 / 16.
+    let halfway = [0.0, 1.0, 0.5, 1.5].map(|x| value(CUBICS[1], x));
+    for (found, expected) in halfway.into_iter().zip([1.0, 0.0, 9.0 / 16.0, -1.0 / 16.0]) {
+        assert!((found - expected).abs() < 1e-15, "{halfway:?}");
+    }
+    let mut random = Random::new(8);
+    for [b, c] in CUBICS {
+        let filter = Filter::Mitchell(Mitchell { b, c });
+        for _ in 0..100 {
+            let [x, y] = random.pair();
+            let pixels = (-2..=2).flat_map(|i| (-2..=2).map(move |j| DVec2::new(f64::from(i), f64::from(j))));
+            let sum: f64 = pixels.map(|pixel| filter.value(DVec2::new(x, y) - pixel)).sum();
+            assert!((sum - 1.0).abs() < 1e-14, "{b} {c}: {sum}");
+            let offset = DVec2::new(4.0 * x - 2.0, 4.0 * y - 2.0);
+            assert_eq!(filter.subtracts(offset + 0.5), filter.value(offset) < 0.0);
+        }
+    }
+}
+
+/// Means of independent samples have the expectation and the variance that are told of them, of few samples as of many.
+#[test]
+fn means_of_signed_samples_are_unbiased_and_their_variance_is_known() {
+    let filter = Filter::Mitchell(Mitchell { b: 0.0, c: 0.8 });
+    // An edge at 0.6 pixels to the right of the middle, before light that grows to the right.
+    let light = |x: f64| if x < 0.6 { 3.0 } else { 1.0 + 0.5 * x };
+    let steps = 1 << 16;
+    let exact: f64 = (0..steps)
+        .map(|i| {
+            let x = 4.0 * (f64::from(i) + 0.5) / f64::from(steps) - 2.0;
+            // The middle of the other axis, so that its integral is left out.
+            light(x) * filter.value(DVec2::new(x, 0.0)) / filter.value(DVec2::ZERO) * 4.0 / f64::from(steps)
+        })
+        .sum::<f64>();
+    let mut random = Random::new(21);
+    for (samples, pixels) in [(5, 400_000), (24, 100_000)] {
+        let (mut sum, mut squares, mut told) = (0.0, 0.0, 0.0);
+        for _ in 0..pixels {
+            let (mut counts, mut sums, mut all) = ([0; 2], [0.0; 2], 0.0);
+            for _ in 0..samples {
+                let place = filter.place(random.pair());
+                let value = light(place.x - 0.5);
+                let lobe = usize::from(filter.subtracts(place));
+                (counts[lobe], sums[lobe], all) = (counts[lobe] + 1, sums[lobe] + value, all + value * value);
+            }
+            let weights = SampleWeights::new(filter, counts);
+            let mean = weights.sum(sums) / weights.taken();
+            (sum, squares, told) = (sum + mean, squares + mean * mean, told + weights.variance(sums, all));
+        }
+        let pixels = f64::from(pixels);
+        let (mean, variance) = (sum / pixels, squares / pixels - (sum / pixels) * (sum / pixels));
+        // Where none of 5 samples is added, 1 of 10000 times, there is nothing to subtract from.
+        let z = (mean - exact) / (variance / pixels).sqrt();
+        assert!(z.abs() < 4.0, "{samples} samples: {mean} is {z} standard errors off {exact}");
+        let ratio = told / pixels / variance;
+        assert!((ratio - 1.0).abs() < if samples == 5 { 0.25 } else { 0.05 }, "{samples} samples: {ratio}");
+    }
+}
+
 #[test]
 fn filters_stay_in_their_width_and_are_even() {
     let mut random = Random::new(3);
@@ -64,6 +161,8 @@ fn filters_stay_in_their_width_and_are_even() {
         (Filter::Tent { radius: 1.0 }, 1.0),
         (Filter::Gaussian { sigma: 0.5 }, 2.0),
         (Filter::BlackmanHarris { radius: 1.5 }, 1.5),
+        (Filter::Mitchell(Mitchell::PLAIN), 2.0),
+        (Filter::Mitchell(Mitchell { b: 0.0, c: 0.0 }), 2.0),
     ];
     let last = 1.0 - f64::from(f32::EPSILON) / 2.0;
     for (filter, width) in filters {

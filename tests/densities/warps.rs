@@ -8,7 +8,7 @@ use crate::support::chi_squared;
 use crate::support::random::Random;
 
 /// Calls of `check_warp`, those for filters included.
-const TESTS: u32 = 12;
+const TESTS: u32 = 17;
 const DRAWS: usize = 400_000;
 const ROWS: usize = 16;
 const COLUMNS: usize = 16;

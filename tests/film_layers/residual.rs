@@ -120,7 +120,7 @@ fn light_vertices_end_paths_and_a_limit_of_diffuse_bounces_loses_them() {
     };
     let unlimited = room("");
     assert!(unlimited.iter().all(|(_, z)| z.abs() <= 3.0), "{unlimited:?}");
-    // What leaves the first wall is 0.7 of what arrives, and nothing may leave it: but for the lamp, which takes its part.
+    // What leaves the first wall is 0.7 of what arrives, and nothing may leave it. The lamp takes what meets it.
     let limited = room(", diffuse_bounces = 0");
     assert!(limited.iter().all(|(mean, _)| (0.6..=0.7).contains(mean)), "{limited:?}");
 }

@@ -30,6 +30,15 @@ fn assert_says(lines: &[String], expected: &[&str]) {
 }
 
 #[test]
+fn a_render_says_its_overscan() {
+    let folder = Folder::new();
+    folder.write("ball.toml", SCENE);
+    assert_eq!(render(&folder, &["ball.toml", "--overscan", "4,2,6,5"]).code, Some(0));
+    let expected = ["size 12 x 8 pixels", "overscan 22 x 15 pixels are there, (-4, -2) to (17, 12)"];
+    assert_says(&lines(&folder, "ball.exr"), &expected);
+}
+
+#[test]
 fn a_render_says_size_crop_color_camera_origin_and_channels() {
     let folder = Folder::new();
     folder.write("ball.toml", SCENE);

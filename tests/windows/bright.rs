@@ -199,7 +199,9 @@ fn what_no_room_encloses_is_left_as_it_is() {
 #[test]
 fn the_same_places_are_learned_whatever_part_of_the_image_is_made() {
     let text = room(&[[-2.0, -0.8], [0.2, 1.4]], WHITE, 4, &[SUN, &environment(1.0)].concat());
-    let part = text.replace("[film]\n", "[film]\ncrop = [3, 4, 5, 6]\n");
-    assert_ne!(part, text);
-    assert_eq!(plan(&scene(&part)).method.bright, plan(&scene(&text)).method.bright);
+    for window in ["crop = [3, 4, 5, 6]", "overscan = 20"] {
+        let part = text.replace("[film]\n", &format!("[film]\n{window}\n"));
+        assert_ne!(part, text);
+        assert_eq!(plan(&scene(&part)).method.bright, plan(&scene(&text)).method.bright);
+    }
 }

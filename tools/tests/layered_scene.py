@@ -10,6 +10,7 @@ import render
 
 WIDTH, HEIGHT = 64, 48
 CROP = (20, 11, 31, 26)  # first column, first row, width and height
+OVERSCAN = (7, 3, 2, 9)  # columns and rows to the left, above, to the right and below
 COMPRESSIONS = tuple(check_exr.LOSSLESS.values())
 
 # A ball, glass that disperses and two cubes of one mesh on a floor, under a lamp, a spot and a sky: all layers hold something.
@@ -82,10 +83,12 @@ class Form(NamedTuple):
     compression: str = "zip"
     multipart: bool = False
     crop: bool = False
+    overscan: bool = False
+    sharp: bool = False
 
     def __str__(self):
         words = ("layers" if self.layers else "plain", self.precision, self.compression)
-        return "-".join([*words, *(name for name in ("multipart", "crop") if getattr(self, name))])
+        return "-".join([*words, *(name for name in ("multipart", "crop", "overscan", "sharp") if getattr(self, name))])
 
     def scene(self):
         """The scene, as text."""
@@ -93,6 +96,8 @@ class Form(NamedTuple):
         film += ", multipart = true" if self.multipart else ""
         film += ', layers = "all"' if self.layers else ""
         film += f", crop = {list(CROP)}" if self.crop else ""
+        film += ', filter = "mitchell"' if self.sharp else ""
+        film += f", overscan = {list(OVERSCAN)}" if self.overscan else ""
         return SCENE.format(width=WIDTH, height=HEIGHT, film=film + ', metadata = { owner = "Émilie", comments = "shot 12" }')
 
     def bits(self):

@@ -41,6 +41,7 @@ FORMS = {
     "half": ', precision = "half", compression = "piz"',
     "multipart": ", multipart = true",
     "cropped": ', multipart = true, precision = "half", crop = [20, 11, 61, 50]',
+    "overscan": ', overscan = [20, 11, 1, 5]',
 }
 
 

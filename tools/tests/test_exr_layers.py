@@ -1,4 +1,4 @@
-"""Files of layers hold the same numbers in every form: whole or cropped, in one part or several, in 16 or 32 bits, packed or not.
+"""Files of layers hold the same numbers in every form: whole, cropped or with overscan, in one part or several, in 16 or 32 bits, packed or not.
 
     pytest tools/tests/test_exr_layers.py
 
@@ -12,15 +12,18 @@ import numpy as np
 import OpenEXR
 import pytest
 import render
-from layered_scene import COMPRESSIONS, CROP, HEIGHT, LAYERS, WIDTH, Form, read, rendered
+from layered_scene import COMPRESSIONS, CROP, HEIGHT, LAYERS, OVERSCAN, WIDTH, Form, read, rendered
 
-# Each precision with each compression in one part and in several, whole; crops and plain files of each precision.
+# Each precision with each compression in one part and in several, whole; crops, overscan and plain files of each precision.
 FORMS = [
     *(Form(True, *each) for each in itertools.product(("float", "half"), COMPRESSIONS, (False, True))),
     Form(precision="float", compression="zips", crop=True),
     Form(precision="float", compression="piz", multipart=True, crop=True),
     Form(precision="half", compression="zip", crop=True),
     Form(precision="half", compression="none", multipart=True, crop=True),
+    Form(overscan=True),
+    Form(precision="half", compression="piz", multipart=True, overscan=True),
+    Form(precision="float", multipart=True, crop=True, overscan=True),
     *(Form(False, precision, crop=crop) for precision in ("float", "half") for crop in (False, True)),
 ]
 every_form = pytest.mark.parametrize("form", FORMS, ids=str)
@@ -28,14 +31,17 @@ every_form = pytest.mark.parametrize("form", FORMS, ids=str)
 
 def window(form):
     """First and last column and row of the pixels that a form holds."""
-    left, top, width, height = CROP if form.crop else (0, 0, WIDTH, HEIGHT)
-    return (left, top), (left + width - 1, top + height - 1)
+    if form.crop:
+        left, top, width, height = CROP
+        return (left, top), (left + width - 1, top + height - 1)
+    left, top, right, bottom = OVERSCAN if form.overscan else (0, 0, 0, 0)
+    return (-left, -top), (WIDTH + right - 1, HEIGHT + bottom - 1)
 
 
 def expected(form, name):
-    """A channel of a form: that of the plainest file, cropped and rounded."""
+    """A channel of a form where it shows the format: that of the plainest file, cropped and rounded."""
     (left, top), (right, bottom) = window(form)
-    values = read(Form())[1][name][top : bottom + 1, left : right + 1]
+    values = read(Form())[1][name][max(top, 0) : bottom + 1, max(left, 0) : right + 1]
     return values.astype(np.float16 if form.bits()[name] == 16 else np.float32)
 
 
@@ -48,7 +54,10 @@ def test_a_file_of_every_form_keeps_every_rule(form):
 def test_every_form_holds_the_same_pixels_to_the_bit(form):
     file = read(form)
     assert set(file.channels) == set(form.bits())
-    for name, pixels in file.channels.items():
+    (left, top), (right, bottom) = window(form)
+    for name, every in file.channels.items():
+        assert every.shape == (bottom - top + 1, right - left + 1)
+        pixels = every[max(-top, 0) : HEIGHT - top, max(-left, 0) : WIDTH - left]
         wanted = expected(form, name)
         assert (pixels.dtype, pixels.shape) == (wanted.dtype, wanted.shape), name
         assert pixels.tobytes() == wanted.tobytes(), name
@@ -95,6 +104,15 @@ def test_colors_come_first_and_the_owner_is_told_by_openimageio():
     assert (spec.alpha_channel, spec.z_channel) == (3, 4)
     assert spec.get_string_attribute("Copyright") == "Émilie"
     assert spec.get_string_attribute("ImageDescription") == "shot 12"
+
+
+@pytest.mark.parametrize("form", [Form(sharp=True), Form(precision="half", multipart=True, sharp=True)], ids=str)
+def test_a_filter_that_subtracts_keeps_every_rule(form):
+    assert check_exr.violations(rendered(form)) == []
+    header, channels = read(form)[:2]
+    third = 1 / 3
+    assert header["render/filter"] == f"mitchell b {third!r} c {third!r}"
+    assert (channels["direct.R"] < 0).any() and (channels["A"] >= 0).all()
 
 
 def test_every_layer_holds_something():
@@ -149,7 +167,7 @@ SPARK = '[[object]]\nshape.sphere = {{ center = {}, radius = 0.06 }}\nmaterial =
         'projection = "orthographic", height = 2.4, shift = [-0.1, 0.07]',
     ],
 )
-@pytest.mark.parametrize("film", ["", ", crop = [10, 5, 80, 55]"])
+@pytest.mark.parametrize("film", ["", ", crop = [10, 5, 80, 55]", ", overscan = [9, 4, 0, 21]"])
 def test_world_to_ndc_points_at_what_shines(camera, film):
     text = SPARKS.format(camera=camera, film=film) + "".join(SPARK.format(list(at), name) for name, at in BALLS.items())
     header, channels = render.render(text)

@@ -6,17 +6,13 @@ use toml::de::DeValue;
 
 use super::context::Context;
 use super::measures::{MAX_LENGTH, direction, length, point};
-use crate::film::{Compression, Filter, FirstSurface, Format, Layer, Precision, Window};
+use crate::film::{Compression, Filter, FirstSurface, Format, Layer, Mitchell, Overscan, Precision, Window};
 use crate::math::DVec3;
 use crate::scene::text::{Choice, Fields, Value, at};
 use crate::scene::{Camera, FilmSettings, Lens, Projection};
 use crate::spectrum::visible::{FIRST_NM, LAST_NM};
 use crate::spectrum::{ColorSpace, WavelengthBands};
 
-/// Most pixels in a row or column.
-const MAX_SIDE: u32 = 65_536;
-/// Most pixels in an image: at 20 bytes each, and as many again while the file is written, 10 GB.
-const MAX_PIXELS: u64 = 1 << 28;
 /// Nearest focus: what a lens bends by, radius over this, stays within f64.
 const NEAREST_FOCUS: f64 = 1e-30;
 /// Largest shift in heights of the image.
@@ -26,6 +22,7 @@ const MAX_SHIFT: f64 = 1000.0;
 /// [film]
 /// width = 960
 /// height = 540
+/// overscan = 16                      # pixels around the format, or [left, top, right, bottom]
 /// crop = [100, 50, 320, 180]         # first column, first row from the top, width and height
 /// layers = ["albedo", "N", "lights"]
 /// first = "visible"                  # albedo, N and others of what is seen in mirrors and through glass
@@ -42,22 +39,31 @@ pub(super) fn film(value: Value) -> Option<(FilmSettings, Format)> {
         let filter = film.or("filter", Filter::default(), filter);
         let spaces = ColorSpace::ALL.map(|space| (space.interop_id(), space));
         let color_space = film.or("color_space", ColorSpace::default(), |value| value.word(&spaces));
+        let overscan = film.maybe("overscan", at(overscan));
         let crop = film.maybe("crop", at(crop));
         let format = format(film);
         let (width, height) = (width?.it, height?);
-        let pixels = u64::from(width) * u64::from(height.it);
-        if pixels > MAX_PIXELS {
-            let message = format!("{width} x {} pixels are {pixels}; at most {MAX_PIXELS} fit", height.it);
-            return height.place.refuse(message);
+        let (pixels, most) = (u64::from(width) * u64::from(height.it), FilmSettings::MAX_PIXELS);
+        if pixels > most {
+            return height.place.refuse(format!("{width} x {} pixels are {pixels}; at most {most} fit", height.it));
         }
-        let (filter, color_space, crop) = (filter?, color_space?, crop?);
-        let film = FilmSettings { width, height: height.it, filter, color_space, crop: crop.map(|crop| crop.it) };
-        match crop.and_then(|crop| Some((crop.place, film.objection(crop.it)?))) {
-            Some((place, message)) => {
-                place.advise(message, "a crop is [first column, first row, width, height], from the top left corner")
-            }
-            None => Some((film, format?)),
+        let (filter, color_space, height, overscan, crop) = (filter?, color_space?, height.it, overscan?, crop?);
+        let film = FilmSettings {
+            width,
+            height,
+            filter,
+            color_space,
+            overscan: overscan.map_or(Overscan::default(), |overscan| overscan.it),
+            crop: crop.map(|crop| crop.it),
+        };
+        if let Some((overscan, message)) = overscan.zip(film.objection_to_overscan()) {
+            return overscan.place.advise(message, "overscan is a number of pixels, or [left, top, right, bottom]");
         }
+        if let Some((crop, message)) = crop.zip(film.objection_to_crop()) {
+            let help = "a crop is [first column, first row, width, height], from the top left corner";
+            return crop.place.advise(message, help);
+        }
+        Some((film, format?))
     })
 }
 
@@ -131,18 +137,33 @@ fn line(value: Value) -> Option<String> {
 
 fn side(value: Value) -> Option<u32> {
     match value.count()? {
-        size @ 1..=MAX_SIDE => Some(size),
-        size => value.refuse(format!("an image has 1 to {MAX_SIDE} pixels along each side, not {size}")),
+        size @ 1..=FilmSettings::MAX_SIDE => Some(size),
+        size => {
+            let most = FilmSettings::MAX_SIDE;
+            value.refuse(format!("an image has 1 to {most} pixels along each side, not {size}"))
+        }
     }
 }
 
 fn crop(value: Value) -> Option<Window> {
     let value = value.as_list("", "write [first column, first row, width, height]");
-    let [left, top, width, height] = value.array(Value::count)?;
-    Some(Window { left, top, width, height })
+    let [left, top, width, height] = value.array(Some)?;
+    Some(Window { left: left.integer()?, top: top.integer()?, width: width.count()?, height: height.count()? })
 }
 
-/// Filters with their widths.
+fn overscan(value: Value) -> Option<Overscan> {
+    match value.node() {
+        DeValue::Integer(_) | DeValue::Float(_) => value.count().map(Overscan::even),
+        DeValue::Array(_) => {
+            let [left, top, right, bottom] =
+                value.as_list("", "write [left, top, right, bottom]").array(Value::count)?;
+            Some(Overscan { left, top, right, bottom })
+        }
+        _ => value.wanted("a number of pixels or a list [left, top, right, bottom]"),
+    }
+}
+
+/// Filters with their widths or parameters.
 const FILTER: Choice<for<'d> fn(Value<'d>) -> Option<Filter>> = Choice {
     name: "a filter",
     word: "filter",
@@ -152,6 +173,7 @@ const FILTER: Choice<for<'d> fn(Value<'d>) -> Option<Filter>> = Choice {
         ("tent", |value| wide(value, "radius", |radius| Filter::Tent { radius })),
         ("gaussian", |value| wide(value, "sigma", |sigma| Filter::Gaussian { sigma })),
         ("blackman-harris", |value| wide(value, "radius", |radius| Filter::BlackmanHarris { radius })),
+        ("mitchell", mitchell),
     ],
 };
 
@@ -167,6 +189,18 @@ fn wide(value: Value, key: &'static str, filter: fn(f64) -> Filter) -> Option<Fi
     };
     Fields::read(value, |table| table.need(key, width))
 }
+
+fn mitchell(value: Value) -> Option<Filter> {
+    Fields::read(value, |table| {
+        let parameter = |key: &'static str| {
+            move |value: Value| value.within(0.0..=1.0, &format!("{key} lies between 0 and 1"), Some(CUBICS))
+        };
+        let [b, c] = ["b", "c"].map(|key| table.need(key, parameter(key)));
+        Some(Filter::Mitchell(Mitchell { b: b?, c: c? }))
+    })
+}
+
+const CUBICS: &str = "\"mitchell\" alone has b = 1/3 and c = 1/3; b = 0 and c = 0.5 are the spline of Catmull and Rom";
 
 fn filter(value: Value) -> Option<Filter> {
     let named = Filter::PLAIN.map(|filter| (filter.name(), filter));

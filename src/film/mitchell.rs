@@ -1,0 +1,99 @@
+//! The cubic filters of Mitchell & Netravali 1988, *Reconstruction Filters in Computer Graphics*.
+//!
+//! Their equation 8 (page 223) on one axis, x in pixels from the middle:
+//!
+//! | | 6 k(x) |
+//! |---|---|
+//! | \|x\| < 1 | (12 - 9 B - 6 C) \|x\|^3 + (-18 + 12 B + 6 C) \|x\|^2 + 6 - 2 B |
+//! | \|x\| < 2 | (-B - 6 C) \|x\|^3 + (6 B + 30 C) \|x\|^2 + (-12 B - 48 C) \|x\| + 8 B + 24 C |
+//! | else | 0 |
+//!
+//! The integral is 1 for any B and C. For both from 0 to 1 the inner piece falls from (6 - 2 B) / 6 to B / 6, which is
+//! not negative. With t = 2 - |x| the outer one is t^2 ((B + 6 C) t - 6 C) / 6: negative where t is less than
+//! t0 = 6 C / (B + 6 C), with the integral -M on each side, M = C t0^3 / 12. So that of |k| is 1 + 4 M.
+
+/// Farthest from the middle where a filter is not 0.
+pub(super) const RADIUS: f64 = 2.0;
+
+/// A cubic filter, told by its two parameters, each from 0 to 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mitchell {
+    /// How far it blurs: 1 is the cubic B-spline, if c is 0.
+    pub b: f64,
+    /// How far it rings: 0.5 is the spline of Catmull and Rom, if b is 0.
+    pub c: f64,
+}
+
+impl Mitchell {
+    /// What the authors recommend.
+    pub const PLAIN: Self = Self { b: 1.0 / 3.0, c: 1.0 / 3.0 };
+
+    /// Its value at a distance from the middle on one axis.
+    pub(super) fn value(self, x: f64) -> f64 {
+        let (Self { b, c }, x) = (self, x.abs());
+        if x < 1.0 {
+            (((12.0 - 9.0 * b - 6.0 * c) * x + (-18.0 + 12.0 * b + 6.0 * c)) * x * x + (6.0 - 2.0 * b)) / 6.0
+        } else if x < RADIUS {
+            let t = RADIUS - x;
+            t * t * ((b + 6.0 * c) * t - 6.0 * c) / 6.0
+        } else {
+            0.0
+        }
+    }
+
+    /// The integral of its absolute value on one axis.
+    pub(super) fn absolute(self) -> f64 {
+        1.0 + 4.0 * self.negative()
+    }
+
+    /// A distance from the middle, drawn by the absolute value: by Newton's method on its integral, kept between bounds
+    /// that halve.
+    pub(super) fn place(self, u: f64) -> f64 {
+        let wanted = 0.5 * self.absolute() * (2.0 * u - 1.0).abs();
+        let (mut low, mut high, mut x) = (0.0, RADIUS, wanted);
+        for _ in 0..60 {
+            let error = self.within(x) - wanted;
+            if error == 0.0 {
+                break;
+            }
+            if error > 0.0 {
+                high = x
+            } else {
+                low = x
+            }
+            let next = x - error / self.value(x).abs();
+            let next = if next > low && next < high { next } else { 0.5 * (low + high) };
+            let step = (next - x).abs();
+            x = next;
+            if step <= 1e-12 {
+                break;
+            }
+        }
+        if u < 0.5 { -x } else { x }
+    }
+
+    /// Where the outer piece changes its sign, from the end.
+    fn change(self) -> f64 {
+        if self.c > 0.0 { 6.0 * self.c / (self.b + 6.0 * self.c) } else { 0.0 }
+    }
+
+    /// The integral of what is negative on one side, without its sign.
+    fn negative(self) -> f64 {
+        let change = self.change();
+        self.c * change * change * change / 12.0
+    }
+
+    /// The integral of the absolute value from the middle to x.
+    fn within(self, x: f64) -> f64 {
+        let Self { b, c } = self;
+        if x < 1.0 {
+            let squared = x * x;
+            let (cubic, square) = (12.0 - 9.0 * b - 6.0 * c, -18.0 + 12.0 * b + 6.0 * c);
+            return x * ((cubic / 4.0 * x + square / 3.0) * squared + (6.0 - 2.0 * b)) / 6.0;
+        }
+        let t = RADIUS - x;
+        let beyond = t * t * t * (2.0 * c - (b + 6.0 * c) * t / 4.0) / 6.0;
+        let beyond = if t < self.change() { beyond } else { 2.0 * self.negative() - beyond };
+        0.5 * self.absolute() - beyond
+    }
+}
