@@ -36,7 +36,8 @@ impl Options {
     /// Puts these settings in place of the scene's own.
     ///
     /// # Errors
-    /// [`Error::Arguments`] if there are no samples, the crop lies outside the image, or its layers cannot be written.
+    /// [`Error::Arguments`] if there are no samples, the crop lies outside the image, or its layers cannot be written,
+    /// together or in the scene's format.
     pub fn apply(&self, scene: &mut Scene) -> Result<()> {
         if self.samples == Some(0) {
             return refuse("a pixel needs at least 1 sample".into(), "leave the samples out to take the scene's own");
@@ -65,8 +66,11 @@ fn refuse<T>(message: String, help: &str) -> Result<T> {
 /// Most bytes of memory that layers may take: 64 GB.
 const MOST_OF_LAYERS: u64 = 64_000_000_000;
 
-/// Refuses layers that fill all memory, and layers of lights whose names cannot be written.
+/// Refuses layers that fill all memory or do not fit the format, and layers of lights whose names cannot be written.
 fn check_layers(scene: &Scene) -> Result<()> {
+    if let Some((message, help)) = scene.format.objection() {
+        return refuse(message, &help);
+    }
     if scene.layer_bytes() > MOST_OF_LAYERS {
         let gigabytes = scene.layer_bytes() / 1_000_000_000;
         let message = format!("{} channels of layers would take {gigabytes} GB of memory", scene.layer_channels());

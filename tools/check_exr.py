@@ -2,8 +2,8 @@
 
     python tools/check_exr.py FILE...           # exit code 1 if any file breaks a rule
 
-Scan lines under lossless compression: R G B A Z, alone or with layers, in one part or with each layer in a part of its own.
-Numbers are finite, and 32-bit floats unless the file says that colors have 16 bits. Lights and kinds of light add up to the
+Scan lines: R G B A Z, alone or with layers, in one part or with each layer in a part of its own. Only colors are under a
+compression that loses. Numbers are finite, and 32-bit floats unless the file says that colors have 16 bits. Lights and kinds of light add up to the
 image, mattes to its coverage. A stated color space, the camera, and the provenance under render/.
 
 Attribute meanings: OpenEXR, "Standard Attributes"; color: ASWF Color Interop Forum, recommendations 03 and 04 (2026); mattes:
@@ -39,6 +39,12 @@ LOSSLESS = {
     OpenEXR.PIZ_COMPRESSION: "piz",
 }
 
+LOSSY = {
+    OpenEXR.PXR24_COMPRESSION: "pxr24",
+    OpenEXR.DWAA_COMPRESSION: "dwaa",
+    OpenEXR.DWAB_COMPRESSION: "dwab",
+}
+
 # The channels of each layer; those of the image itself have no layer.
 LAYERS = {
     r"": "RGBAZ",
@@ -51,6 +57,8 @@ LAYERS = {
     r"samples": "V",
     r"Crypto(Object|Material|Asset)0[0-2]": "rgba",
 }
+# What a compression that loses may change: light to look at. A is rounded, or kept.
+LIGHT = r"([RGBA]|(emission|background|direct|indirect|caustics|dispersed|shadow|light_\w+|[a-z]+_(in)?direct)\.[RGB])"
 # Numbers that 16 bits would spoil: depth, places, statistics and the numbers of mattes.
 ALWAYS_32_BITS = r"Z|P\..*|UV\..*|variance\..*|samples\..*|Crypto.*"
 # Attributes in which the parts of a file agree.
@@ -112,8 +120,8 @@ def layout(file):
     header = file.header
     if header.get("type", OpenEXR.scanlineimage) != OpenEXR.scanlineimage:
         yield f"type is {header['type']}, not a scanline image"
-    if header["compression"] not in LOSSLESS:
-        yield f"compression is {header['compression']}, not one of {', '.join(LOSSLESS.values())}"
+    if header["compression"] not in LOSSLESS | LOSSY:
+        yield f"compression is {header['compression']}, not one of {', '.join((LOSSLESS | LOSSY).values())}"
     if header["lineOrder"] != OpenEXR.INCREASING_Y:
         yield f"line order is {header['lineOrder']}, not increasing y"
     data, display = (np.array(header[name]) for name in ("dataWindow", "displayWindow"))
@@ -143,7 +151,10 @@ def parts(file):
         if layers != {header.get("name")} and (header.get("name"), *channels) != ("depth", "Z"):
             yield f"{part}: holds {', '.join(map(repr, sorted(layers)))}, not the layer of its name"
         for name in SHARED:
-            if not np.array_equal(header.get(name), file.header.get(name)):
+            wanted = file.header.get(name)
+            if name == "compression" and wanted in LOSSY and not all(re.fullmatch(LIGHT, each) for each in channels):
+                wanted = OpenEXR.ZIP_COMPRESSION
+            if not np.array_equal(header.get(name), wanted):
                 yield f"{part}: {name} differs from that of the first part"
         if header.get("colorInteropID") != "data":
             yield f"{part}: colorInteropID is {header.get('colorInteropID')!r}, not 'data'"
@@ -151,6 +162,24 @@ def parts(file):
             yield f"{part}: {', '.join(said)} would stand in the first part, if anywhere"
         if warnings := int(OpenEXR.checkColorMetadata(header, file.header)):
             yield f"{part}: OpenEXR warns of the color metadata: bits {warnings:#x}"
+
+
+def losses(file):
+    """A compression that loses changes colors alone; DWA makes 16 bits of them, and packs a depth without loss."""
+    for header, channels in file.parts:
+        name = LOSSY.get(header["compression"])
+        for channel, pixels in channels.items() if name else ():
+            if not re.fullmatch(LIGHT if name == "pxr24" else f"Z|{LIGHT}", channel):
+                yield f"channel {channel!r}: no color, and {name} changes it"
+            elif name != "pxr24" and channel != "Z" and pixels.dtype != np.float16:
+                yield f"channel {channel!r}: {pixels.dtype}, of which {name} keeps 16 bits"
+
+
+def unit(file, name):
+    """How far apart numbers of a channel are, as a part of them: PXR24 leaves 15 bits of a mantissa of 23."""
+    packed = next(header["compression"] for header, channels in file.parts if name in channels)
+    exact = float(np.finfo(file.channels[name].dtype).eps)
+    return max(exact, 2.0**-15) if packed == OpenEXR.PXR24_COMPRESSION else exact
 
 
 def names(file):
@@ -242,6 +271,8 @@ def sums(file):
     lights = [layer for layer in file.layers() if layer.startswith("light_")]
     lobes = [f"{lobe}_{kind}" for lobe in LOBES for kind in ("direct", "indirect")]
     wholes = [(("emission", "background", "direct", "indirect"), 1), (("emission", "background", *lobes), 1), (lights, 1)]
+    if file.header["compression"] in (OpenEXR.DWAA_COMPRESSION, OpenEXR.DWAB_COMPRESSION):
+        return  # colors are what looks alike
     samples = file.header.get("render/samples")
     # Halves of an odd number of samples, or of fewer than were taken, are not of equal weight.
     if type(samples) is int and samples % 2 == 0 and file.header.get("render/nonFinite") == 0:
@@ -254,7 +285,7 @@ def sums(file):
         kind = np.finfo(image[0].dtype)
         numbers = np.array([*(share * term for term in terms), -np.array(image, np.float64)])
         # Each number is off by half a unit in its last place; what did not fit says nothing.
-        rounding = float(kind.eps) * np.abs(numbers).sum(axis=0) + len(numbers) * float(kind.smallest_subnormal)
+        rounding = unit(file, "R") * np.abs(numbers).sum(axis=0) + len(numbers) * float(kind.smallest_subnormal)
         fits = (np.abs([*terms, numbers[-1]]) < float(kind.max)).all(axis=0)
         off = np.where(fits, np.abs(numbers.sum(axis=0)) - rounding, 0)
         if wrong := np.count_nonzero(off > 0):
@@ -349,7 +380,7 @@ def coverage(file, numbers, shares, manifest):
     shadow = [file.channels.get(f"shadow.{channel}") for channel in "RGB"]
     clear = np.zeros_like(whole, bool) if any(part is None for part in shadow) else (np.stack(shadow) == 0).all(axis=0)
     off = np.where((shares[-1] == 0) & clear, np.abs(whole - alpha), whole - alpha).max()
-    if off > rounding + np.finfo(alpha.dtype).eps:
+    if off > rounding + unit(file, "A"):
         yield f"coverage adds up to another number than A, by {off:g}"
 
 
@@ -453,7 +484,7 @@ def provenance(file):
         yield "capDate is present"
 
 
-RULES = (layout, parts, names, types, color, camera, provenance)
+RULES = (layout, parts, losses, names, types, color, camera, provenance)
 RULES_OF_PIXELS = (values, surfaces, statistics, sums, mattes)
 
 

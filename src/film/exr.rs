@@ -5,12 +5,12 @@ use std::path::Path;
 
 use exr::meta::attribute::{Chromaticities, EnvironmentMap};
 use exr::prelude::{
-    AnyChannel, AnyChannels, AttributeValue, Compression, Encoding, FlatSamples, Image, ImageAttributes, IntegerBounds,
-    Layer, LayerAttributes, LineOrder, SmallVec, Text, Vec2, WritableImage, f16,
+    AnyChannel, AnyChannels, AttributeValue, Encoding, FlatSamples, Image, ImageAttributes, IntegerBounds, Layer,
+    LayerAttributes, LineOrder, SmallVec, Text, Vec2, WritableImage, f16,
 };
 
 use super::file::replace_file;
-use super::format::{Format, Precision};
+use super::format::{Compression, Format, Precision};
 use super::image::Film;
 use crate::error::{Error, Result};
 
@@ -76,15 +76,13 @@ pub fn write_exr(film: &Film, format: &Format, view: &View, provenance: &Provena
         let clamped = AttributeValue::I32(i32::try_from(channels.clamped).unwrap_or(i32::MAX));
         attributes.other.insert(Text::from("render/clamped"), clamped);
     }
-    let encoding = Encoding {
-        compression: compression(format.compression),
-        line_order: LineOrder::Increasing,
-        ..Encoding::UNCOMPRESSED
-    };
     let size = Vec2(film.width as usize, film.height as usize);
     let part = |(number, part): (usize, Part)| {
         let own = if number == 0 { attributes.clone() } else { of_data(&attributes) };
         let name = format.multipart.then(|| Text::new_or_panic(part.name));
+        let packed = if part.is_data && format.compression.is_lossy() { Compression::Zip } else { format.compression };
+        let compression = compression(packed);
+        let encoding = Encoding { compression, line_order: LineOrder::Increasing, ..Encoding::UNCOMPRESSED };
         Layer::new(size, LayerAttributes { layer_name: name, ..own }, encoding, AnyChannels::sort(part.channels))
     };
     let layers: Vec<_> = parts.into_iter().enumerate().map(part).collect();
@@ -105,6 +103,8 @@ type Channel = AnyChannel<FlatSamples>;
 /// A part of the file.
 struct Part {
     name: String,
+    /// Whether it holds what is no color, apart from the image.
+    is_data: bool,
     channels: SmallVec<[Channel; 4]>,
 }
 
@@ -143,15 +143,16 @@ fn parts(film: &Film, format: &Format, channels: &mut Channels) -> Vec<Part> {
         image.push(channels.of(name, true, pixels().map(|pixel| pixel.rgb[number])));
     }
     let depth = channels.of("Z", false, pixels().map(|pixel| pixel.depth));
-    let mut parts = vec![Part { name: "image".to_owned(), channels: image }];
+    let mut parts = vec![Part { name: "image".to_owned(), is_data: false, channels: image }];
     if format.multipart {
         // Blender takes a part of R, G, B, A and another channel for none of what they are.
-        parts.push(Part { name: "depth".to_owned(), channels: SmallVec::new() });
+        parts.push(Part { name: "depth".to_owned(), is_data: true, channels: SmallVec::new() });
     }
     parts.last_mut().expect("the image comes first").channels.push(depth);
     for image in &film.layers {
         if format.multipart {
-            parts.push(Part { name: image.name.clone(), channels: SmallVec::new() });
+            let is_data = !image.layer.is_color();
+            parts.push(Part { name: image.name.clone(), is_data, channels: SmallVec::new() });
         }
         let part = parts.last_mut().expect("the image comes first");
         for (number, channel) in image.layer.channels().iter().enumerate() {
@@ -162,13 +163,18 @@ fn parts(film: &Film, format: &Format, channels: &mut Channels) -> Vec<Part> {
     parts
 }
 
-fn compression(compression: super::Compression) -> Compression {
+fn compression(compression: Compression) -> exr::compression::Compression {
+    use exr::compression::Compression as Exr;
     match compression {
-        super::Compression::None => Compression::Uncompressed,
-        super::Compression::Rle => Compression::RLE,
-        super::Compression::Zips => Compression::ZIP1,
-        super::Compression::Zip => Compression::ZIP16,
-        super::Compression::Piz => Compression::PIZ,
+        Compression::None => Exr::Uncompressed,
+        Compression::Rle => Exr::RLE,
+        Compression::Zips => Exr::ZIP1,
+        Compression::Zip => Exr::ZIP16,
+        Compression::Piz => Exr::PIZ,
+        Compression::Pxr24 => Exr::PXR24,
+        // The level is that of OpenEXR, 45; the attribute that could say another is deprecated.
+        Compression::Dwaa => Exr::DWAA(None),
+        Compression::Dwab => Exr::DWAB(None),
     }
 }
 

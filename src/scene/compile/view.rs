@@ -63,8 +63,8 @@ pub(super) fn film(value: Value) -> Option<(FilmSettings, Format)> {
 fn format(film: &mut Fields) -> Option<Format> {
     let layers = film.or("layers", Vec::new(), layers);
     let first = film.or("first", FirstSurface::default(), |value| value.word(&FirstSurface::NAMES));
-    let precision = film.or("precision", Precision::default(), |value| value.word(&Precision::NAMES));
-    let compression = film.or("compression", Compression::default(), |value| value.word(&Compression::NAMES));
+    let precision = film.maybe("precision", |value| value.word(&Precision::NAMES));
+    let compression = film.maybe("compression", at(compression));
     let multipart = film.or("multipart", false, Value::yes_or_no);
     let metadata = film.or("metadata", [None, None], |value| {
         Fields::read(value, |metadata| {
@@ -73,8 +73,28 @@ fn format(film: &mut Fields) -> Option<Format> {
         })
     });
     let [owner, comments] = metadata?;
-    let (layers, first, precision) = (layers?, first?, precision?);
-    Some(Format { layers, first, precision, compression: compression?, multipart: multipart?, owner, comments })
+    let (layers, first, compressed, multipart) = (layers?, first?, compression?, multipart?);
+    let (place, compression) = compressed.map_or((None, Compression::default()), |at| (Some(at.place), at.it));
+    let precision = precision?.unwrap_or(match compression.is_of_16_bits() {
+        true => Precision::Half,
+        false => Precision::default(),
+    });
+    let format = Format { layers, first, precision, compression, multipart, owner, comments };
+    match place.and_then(|place| Some((place, format.objection()?))) {
+        Some((place, (message, help))) => place.advise(message, help),
+        None => Some(format),
+    }
+}
+
+fn compression(value: Value) -> Option<Compression> {
+    match value.node().as_str() {
+        Some(name @ ("b44" | "b44a")) => {
+            let message =
+                format!("the compression {name} is not written: dark pixels lose their colors beside bright ones");
+            value.advise(message, "\"dwaa\" makes smaller files; \"piz\" and \"zip\" lose nothing")
+        }
+        _ => value.word(&Compression::NAMES),
+    }
 }
 
 fn layers(value: Value) -> Option<Vec<Layer>> {
