@@ -76,6 +76,11 @@ struct Arguments {
     #[arg(long, value_name = "N", allow_negative_numbers = true,
           value_parser = clap::value_parser!(u16).range(1..=MAX_THREADS))]
     threads: Option<u16>,
+
+    /// Say in the EXR when it was made, how long that took, and on how many threads. Without it two runs write the same
+    /// bytes
+    #[arg(long, conflicts_with_all = ["plan", "check"])]
+    stamp: bool,
 }
 
 /// More threads than any one machine has processors for; many more would exhaust it.
@@ -183,9 +188,9 @@ fn job(arguments: Arguments) -> Result<Job> {
     } else {
         Output::Image { exr: Some(exr).filter(|_| with_exr), png: arguments.png }
     };
-    let Arguments { samples, seed, crop, layers, threads, .. } = arguments;
+    let Arguments { samples, seed, crop, layers, threads, stamp, .. } = arguments;
     let (exposure, layers) = (arguments.exposure.unwrap_or(0.0), layers.map(|LayerList(layers)| layers));
-    let options = Options { samples, seed, crop, layers, threads: threads.map(usize::from) };
+    let options = Options { samples, seed, crop, layers, threads: threads.map(usize::from), stamp };
     Ok(Job { scene, output, exposure, options })
 }
 

@@ -81,6 +81,11 @@ PROVENANCE = {
 }
 
 
+# What a stamp says: when the image was made, in UTC, how long that took, and on how many threads.
+STAMP = ("capDate", "utcOffset", "render/renderTime", "render/threads")
+STAMPED = r"[0-9]{4}:(0[1-9]|1[0-2]):(0[1-9]|[12][0-9]|3[01]) ([01][0-9]|2[0-3]):[0-5][0-9]:[0-5][0-9]"
+
+
 class File(NamedTuple):
     """What a file holds: the header of its first part, all channels by name, and header and channels of each part."""
 
@@ -396,8 +401,34 @@ def color(file):
         yield "chromaticities are missing"
     elif tuple(stored) != tuple(float(np.float32(value)) for value in CHROMATICITIES[space]):
         yield f"chromaticities {stored} are not those of {space}"
+    if not file.header.get("whiteLuminance", 1) > 0:
+        yield f"whiteLuminance is {file.header['whiteLuminance']}, not positive"
     if warnings := int(OpenEXR.checkColorMetadata(file.header)):
         yield f"OpenEXR warns of the color metadata: bits {warnings:#x}"
+
+
+def optics(file):
+    """Sensor, focal lengths and f-number agree with the screen window and with each other."""
+    header, near = file.header, 4 * np.finfo(np.float32).eps
+    for name in ("near", "focus", "aperture", "pinholeFocalLength", "effectiveFocalLength"):
+        if not header.get(name, 1) > 0:
+            yield f"{name} is {header[name]}, not positive"
+    sensor, pinhole, effective = (header.get(name) for name in ("sensorOverallDimensions", "pinholeFocalLength", "effectiveFocalLength"))
+    if (sensor is None) != (pinhole is None):
+        yield "sensorOverallDimensions and pinholeFocalLength: one is there without the other"
+    elif sensor is not None:
+        columns, rows = np.asarray(header["displayWindow"][1], np.float64) + 1
+        if abs(sensor[0] - pinhole * header["screenWindowWidth"]) > near * sensor[0]:
+            yield f"pinholeFocalLength is {pinhole}, not that of a sensor of {sensor[0]} mm and the screen window"
+        if abs(sensor[1] * columns - sensor[0] * rows) > near * sensor[0] * rows:
+            yield f"sensorOverallDimensions are {list(sensor)}, not as the image"
+    if effective is not None:
+        # 1 / f = 1 / image distance + 1 / distance in focus.
+        expected = 1 / (1 / (pinhole or np.nan) + 1 / (1e3 * header.get("focus", np.nan)))
+        if not abs(effective - expected) <= near * expected:
+            yield f"effectiveFocalLength is {effective}, not that of pinholeFocalLength and focus"
+    if (effective is None) != ("aperture" not in header or "focus" not in header):
+        yield "effectiveFocalLength, aperture and focus: some are there without the others"
 
 
 def camera(file):
@@ -469,7 +500,7 @@ def projection(header, world_to_camera, center):
 
 
 def provenance(file):
-    """Where the image comes from, and no clock: two runs of one scene are the same to the byte."""
+    """Where the image comes from, and no clock: two runs of one scene are the same to the byte, unless a stamp is asked for."""
     for name, form in PROVENANCE.items():
         value = file.header.get(name)
         if value is None:
@@ -480,11 +511,16 @@ def provenance(file):
             yield f"{name} is {value!r}, not text like {form}"
     if not str(file.header.get("software", "")).strip():
         yield "software is missing"
-    if "capDate" in file.header:
-        yield "capDate is present"
+    stamped = [name in file.header for name in STAMP]
+    if any(stamped) and not all(stamped):
+        yield f"{', '.join(STAMP)}: some are there, and not all"
+    elif all(stamped) and (not re.fullmatch(STAMPED, file.header["capDate"]) or file.header["utcOffset"] != 0):
+        yield f"capDate is {file.header['capDate']!r} with utcOffset {file.header['utcOffset']}, not a time in UTC"
+    elif all(stamped) and not (file.header["render/renderTime"] >= 0 and file.header["render/threads"] >= 1):
+        yield "render/renderTime or render/threads is no time and no number of threads"
 
 
-RULES = (layout, parts, losses, names, types, color, camera, provenance)
+RULES = (layout, parts, losses, names, types, color, optics, camera, provenance)
 RULES_OF_PIXELS = (values, surfaces, statistics, sums, mattes)
 
 

@@ -2,6 +2,7 @@
 
 use std::io::Cursor;
 use std::path::Path;
+use std::time::SystemTime;
 
 use exr::meta::attribute::{Chromaticities, EnvironmentMap};
 use exr::prelude::{
@@ -12,6 +13,7 @@ use exr::prelude::{
 use super::file::replace_file;
 use super::format::{Compression, Format, Precision};
 use super::image::Film;
+use super::time::cap_date;
 use crate::error::{Error, Result};
 
 /// How the camera saw, as the file records it.
@@ -28,22 +30,46 @@ pub struct View {
     pub screen_window_center: [f64; 2],
     /// Whether the image shows all directions by longitude and latitude.
     pub latlong: bool,
+    /// The lens and what is behind it.
+    pub optics: Optics,
 }
 
-/// Where the image comes from: everything that another run needs to make the same bytes, and no time of day.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// What a camera of glass and metal would say of itself, as far as the scene knows it (OpenEXR, *Standard Attributes*).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Optics {
+    /// Distance at which rays start, in scene units.
+    pub near: Option<f64>,
+    /// Width and height of the sensor, in mm.
+    pub sensor: Option<[f64; 2]>,
+    /// Distance from the sensor to the pinhole, or to the middle of the lens, in mm.
+    pub pinhole_focal_length: Option<f64>,
+    /// Focal length of the lens, in mm.
+    pub focal_length: Option<f64>,
+    /// Focal length over the diameter of the opening.
+    pub f_number: Option<f64>,
+    /// Distance from the lens to the plane in focus, in m; may be infinite.
+    pub focus: Option<f64>,
+}
+
+/// Where the image comes from: everything that another run needs to make the same bytes, and no time of day unless that
+/// is asked for.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Provenance {
     /// Key and value of each attribute; keys are written below `render/`.
     pub facts: Vec<(&'static str, Fact)>,
+    /// When the image was made.
+    pub time: Option<SystemTime>,
 }
 
 /// One value of the provenance.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Fact {
     /// A string attribute.
     Text(String),
     /// An int attribute; counts beyond 2^31 - 1 are written as that.
     Count(u64),
+    /// A double attribute.
+    Seconds(f64),
 }
 
 /// Writes a linear image: R, G, B, A and Z, and the layers that it has beside them. Answers how many values were too
@@ -61,6 +87,7 @@ pub fn write_exr(film: &Film, format: &Format, view: &View, provenance: &Provena
     let mut attributes = attributes(film, view, provenance);
     let text = |text: &Option<String>| text.as_deref().map(utf8);
     (attributes.owner, attributes.comments) = (text(&format.owner), text(&format.comments));
+    attributes.white_luminance = format.white_luminance.map(|luminance| luminance as f32);
     for manifest in &film.manifests {
         for (key, value) in [
             ("name", manifest.name),
@@ -210,21 +237,38 @@ fn attributes(film: &Film, view: &View, provenance: &Provenance) -> LayerAttribu
             .then_some(EnvironmentMap::LatitudeLongitude),
         layer_position: Vec2(film.corner[0] as i32, film.corner[1] as i32),
         screen_window_width: view.screen_window_width as f32,
-        screen_window_center: Vec2(view.screen_window_center[0] as f32, view.screen_window_center[1] as f32),
+        screen_window_center: vector(view.screen_window_center),
         world_to_camera: Some(matrix(&view.world_to_camera)),
         world_to_normalized_device: view.world_to_ndc.as_ref().map(matrix),
+        near_clip_plane: view.optics.near.map(|near| near as f32),
+        focus: view.optics.focus.map(|focus| focus as f32),
+        aperture: view.optics.f_number.map(|number| number as f32),
+        capture_date: provenance.time.map(|time| Text::new_or_panic(cap_date(time))),
+        utc_offset: provenance.time.map(|_| 0.0),
         ..LayerAttributes::default()
     };
+    let optics = [
+        ("sensorOverallDimensions", view.optics.sensor.map(|mm| AttributeValue::FloatVec2(vector(mm)))),
+        ("pinholeFocalLength", view.optics.pinhole_focal_length.map(|mm| AttributeValue::F32(mm as f32))),
+        ("effectiveFocalLength", view.optics.focal_length.map(|mm| AttributeValue::F32(mm as f32))),
+    ];
+    let known = optics.into_iter().filter_map(|(name, value)| Some((Text::from(name), value?)));
+    attributes.other.extend(known);
     let text = |value: &str| AttributeValue::Text(Text::new_or_panic(value));
     attributes.other.insert(Text::from("colorInteropID"), text(film.color_space.interop_id()));
     for (key, fact) in &provenance.facts {
         let value = match fact {
             Fact::Text(value) => text(value),
             Fact::Count(count) => AttributeValue::I32(i32::try_from(*count).unwrap_or(i32::MAX)),
+            Fact::Seconds(seconds) => AttributeValue::F64(*seconds),
         };
         attributes.other.insert(Text::new_or_panic(format!("render/{key}")), value);
     }
     attributes
+}
+
+fn vector([x, y]: [f64; 2]) -> Vec2<f32> {
+    Vec2(x as f32, y as f32)
 }
 
 fn matrix(rows: &[[f64; 4]; 4]) -> [f32; 16] {

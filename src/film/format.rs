@@ -16,6 +16,8 @@ pub struct Format {
     /// Whether each layer is a part of its own. Then a compression that loses packs colors alone, and
     /// [`Compression::Zip`] what is no color.
     pub multipart: bool,
+    /// Luminance of red, green and blue of 1, in cd/m^2, where the scene gives its lights in such units.
+    pub white_luminance: Option<f64>,
     /// Who owns the image.
     pub owner: Option<String>,
     /// What there is to say about it.

@@ -14,8 +14,9 @@ mod image;
 mod layers;
 mod picture;
 mod sum;
+mod time;
 
-pub use self::exr::{Fact, Provenance, View, write_exr};
+pub use self::exr::{Fact, Optics, Provenance, View, write_exr};
 pub use cryptomatte::{Manifest, RANKS, id};
 pub use exr_attributes::CameraMatrix;
 pub use exr_file::ExrFile;
