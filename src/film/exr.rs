@@ -1,15 +1,17 @@
 //! The film as an OpenEXR file of scan lines; the same bytes for the same film.
 
-use std::io::Cursor;
 use std::path::Path;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::SystemTime;
 
 use exr::meta::attribute::{Chromaticities, EnvironmentMap};
 use exr::prelude::{
     AnyChannel, AnyChannels, AttributeValue, Encoding, FlatSamples, Image, ImageAttributes, IntegerBounds, Layer,
-    LayerAttributes, LineOrder, SmallVec, Text, Vec2, WritableImage, f16,
+    LayerAttributes, LineOrder, SmallVec, Text, Vec2, f16,
 };
+use rayon::prelude::{IntoParallelIterator, ParallelIterator};
 
+use super::exr_blocks;
 use super::file::replace_file;
 use super::format::{Compression, Format, Precision};
 use super::image::Film;
@@ -82,7 +84,8 @@ pub enum Fact {
 /// If the file cannot be encoded or written; a file that was there before is then untouched.
 pub fn write_exr(film: &Film, format: &Format, view: &View, provenance: &Provenance, path: &Path) -> Result<u64> {
     let encode = |error: exr::error::Error| Error::Encode { path: path.to_owned(), message: error.to_string() };
-    let mut channels = Channels { half: format.precision == Precision::Half, clamped: 0 };
+    let half = format.precision == Precision::Half;
+    let mut channels = Channels { half, pixels: film.pixels.len(), clamped: 0 };
     let parts = parts(film, format, &mut channels);
     let mut attributes = attributes(film, view, provenance);
     let text = |text: &Option<String>| text.as_deref().map(utf8);
@@ -117,9 +120,8 @@ pub fn write_exr(film: &Film, format: &Format, view: &View, provenance: &Provena
     let mut image = Image::from_layers(ImageAttributes::new(window), layers);
     // The chromaticities would be those of all parts, also of those that hold no colors.
     image.attributes.chromaticities = (!format.multipart).then(|| chromaticities(film));
-    let mut bytes = Cursor::new(Vec::new());
-    image.write().to_buffered(&mut bytes).map_err(encode)?;
-    let mut bytes = bytes.into_inner();
+    let mut bytes = exr_blocks::file(&image).map_err(encode)?;
+    drop(image);
     sort_attributes(&mut bytes);
     replace_file(path, &bytes)?;
     Ok(channels.clamped)
@@ -138,38 +140,45 @@ struct Part {
 /// Makes channels, and counts what does not fit into them.
 struct Channels {
     half: bool,
+    /// Of each channel.
+    pixels: usize,
     clamped: u64,
 }
 
 impl Channels {
-    /// A channel of some name; it has 16 bits if it may and colors have.
-    fn of(&mut self, name: &str, may_be_half: bool, values: impl Iterator<Item = f32>) -> Channel {
-        let sample_data = match self.half && may_be_half {
-            true => FlatSamples::F16(values.map(|value| self.half(value)).collect()),
-            false => FlatSamples::F32(values.collect()),
+    /// A channel of some name, of the value of each pixel; it has 16 bits if it may and colors have.
+    fn of(&mut self, name: &str, may_be_half: bool, value: impl Fn(usize) -> f32 + Send + Sync) -> Channel {
+        let pixels = (0..self.pixels).into_par_iter();
+        let sample_data = if self.half && may_be_half {
+            let clamped = AtomicU64::new(0);
+            let halves = pixels.map(|pixel| half(value(pixel), &clamped)).collect();
+            self.clamped += clamped.into_inner();
+            FlatSamples::F16(halves)
+        } else {
+            FlatSamples::F32(pixels.map(value).collect())
         };
         AnyChannel { name: Text::new_or_panic(name), sample_data, quantize_linearly: false, sampling: Vec2(1, 1) }
     }
+}
 
-    fn half(&mut self, value: f32) -> f16 {
-        let half = f16::from_f32(value);
-        if half.is_finite() {
-            return half;
-        }
-        self.clamped += 1;
-        if value > 0.0 { f16::MAX } else { f16::MIN }
+/// A value in 16 bits; one that does not fit is counted, and becomes the largest that does.
+fn half(value: f32, clamped: &AtomicU64) -> f16 {
+    let half = f16::from_f32(value);
+    if half.is_finite() {
+        return half;
     }
+    clamped.fetch_add(1, Ordering::Relaxed);
+    if value > 0.0 { f16::MAX } else { f16::MIN }
 }
 
 /// What the file holds: one part, or one for the image and each layer if the format sets them apart.
 fn parts(film: &Film, format: &Format, channels: &mut Channels) -> Vec<Part> {
-    let pixels = || film.pixels.iter();
     let mut image = SmallVec::new();
-    image.push(channels.of("A", true, pixels().map(|pixel| pixel.alpha)));
+    image.push(channels.of("A", true, |pixel| film.pixels[pixel].alpha));
     for (number, name) in ["R", "G", "B"].into_iter().enumerate() {
-        image.push(channels.of(name, true, pixels().map(|pixel| pixel.rgb[number])));
+        image.push(channels.of(name, true, |pixel| film.pixels[pixel].rgb[number]));
     }
-    let depth = channels.of("Z", false, pixels().map(|pixel| pixel.depth));
+    let depth = channels.of("Z", false, |pixel| film.pixels[pixel].depth);
     let mut parts = vec![Part { name: "image".to_owned(), is_data: false, channels: image }];
     if format.multipart {
         // Blender takes a part of R, G, B, A and another channel for none of what they are.
@@ -182,9 +191,10 @@ fn parts(film: &Film, format: &Format, channels: &mut Channels) -> Vec<Part> {
             parts.push(Part { name: image.name.clone(), is_data, channels: SmallVec::new() });
         }
         let part = parts.last_mut().expect("the image comes first");
-        for (number, channel) in image.layer.channels().iter().enumerate() {
-            let name = format!("{}.{channel}", image.name);
-            part.channels.push(channels.of(&name, image.layer.may_be_half(), image.channel(number)));
+        let names = image.layer.channels();
+        for (number, channel) in names.iter().enumerate() {
+            let value = |pixel: usize| image.values[pixel * names.len() + number];
+            part.channels.push(channels.of(&format!("{}.{channel}", image.name), image.layer.may_be_half(), value));
         }
     }
     parts

@@ -3,6 +3,7 @@
 mod cryptomatte;
 mod exr;
 mod exr_attributes;
+mod exr_blocks;
 mod exr_file;
 mod exr_layer;
 mod exr_part;
