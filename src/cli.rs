@@ -87,6 +87,11 @@ struct Arguments {
     #[arg(long, value_name = "N", allow_negative_numbers = true,
           value_parser = clap::value_parser!(u16).range(1..=MAX_THREADS))]
     threads: Option<u16>,
+
+    /// Say in the EXR when it was made, how long that took, and on how many threads. Without it two runs write the same
+    /// bytes
+    #[arg(long, conflicts_with_all = ["plan", "check"])]
+    stamp: bool,
 }
 
 /// More threads than any one machine has processors for; many more would exhaust it.
@@ -210,9 +215,9 @@ fn job(arguments: Arguments) -> Result<Job> {
         let help = "add --exr, or leave --spectral out";
         return refuse("--spectral writes spectra beside an EXR, and --png alone writes none", Some(help));
     }
-    let Arguments { samples, seed, overscan, crop, layers, spectral, threads, .. } = arguments;
+    let Arguments { samples, seed, overscan, crop, layers, spectral, threads, stamp, .. } = arguments;
     let (exposure, layers) = (arguments.exposure.unwrap_or(0.0), layers.map(|LayerList(layers)| layers));
-    let options = Options { samples, seed, overscan, crop, layers, spectral, threads: threads.map(usize::from) };
+    let options = Options { samples, seed, overscan, crop, layers, spectral, threads: threads.map(usize::from), stamp };
     Ok(Job { scene, output, exposure, options })
 }
 

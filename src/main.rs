@@ -70,8 +70,9 @@ fn image(job: &Job, scene: &Scene, exr: Option<&Path>, png: Option<&Path>) -> Re
     if let Some(exr) = exr {
         let clamped = image.write_exr(exr)?;
         if clamped > 0 {
+            let lossless = if scene.format.compression.is_of_16_bits() { " with compression = \"zip\"" } else { "" };
             messages::warn(&format!(
-                "{clamped} values were too bright for 16 bits and became 65504: precision = \"float\" keeps them"
+                "{clamped} values were too bright for 16 bits and became 65504: precision = \"float\"{lossless} keeps them"
             ));
         }
     }

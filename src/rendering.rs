@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::path::Path;
-use std::time::Duration;
+use std::time::{Duration, Instant, SystemTime};
 
 use crate::error::{Error, Result};
 use crate::film::{
@@ -35,6 +35,9 @@ pub struct Options {
     pub spectral: bool,
     /// Processor threads; one for each processor if absent. The image is the same for any number.
     pub threads: Option<usize>,
+    /// Whether the file says when the image was made, on how many threads, and how long it took. Then no two files are
+    /// the same to the byte.
+    pub stamp: bool,
 }
 
 impl Options {
@@ -42,7 +45,7 @@ impl Options {
     ///
     /// # Errors
     /// [`Error::Arguments`] if there are no samples, the overscan is too wide, the crop lies outside the image and its
-    /// overscan, or its layers cannot be written.
+    /// overscan, or its layers cannot be written, together or in the scene's format.
     pub fn apply(&self, scene: &mut Scene) -> Result<()> {
         if self.samples == Some(0) {
             return refuse("a pixel needs at least 1 sample".into(), "leave the samples out to take the scene's own");
@@ -82,8 +85,12 @@ fn refuse<T>(message: String, help: &str) -> Result<T> {
 /// Most bytes of memory that layers may take: 64 GB.
 const MOST_OF_LAYERS: u64 = 64_000_000_000;
 
-/// Refuses layers that fill all memory or cannot be made, and layers of lights whose names cannot be written.
+/// Refuses layers that fill all memory, cannot be made or do not fit the format, and lights whose layers' names cannot
+/// be written.
 fn check_layers(scene: &Scene) -> Result<()> {
+    if let Some((message, help)) = scene.format.objection() {
+        return refuse(message, &help);
+    }
     if scene.layer_bytes() > MOST_OF_LAYERS {
         let gigabytes = scene.layer_bytes() / 1_000_000_000;
         let message = format!("{} channels of layers would take {gigabytes} GB of memory", scene.layer_channels());
@@ -146,6 +153,8 @@ pub struct Rendering {
     /// The scene file's hash, the projection and the filter.
     origin: Origin,
     threads: rayon::ThreadPool,
+    /// When it began, if the file says that.
+    began: Option<Instant>,
 }
 
 struct Origin {
@@ -160,6 +169,7 @@ impl Rendering {
     /// # Errors
     /// [`Error::Arguments`] if the options do not fit the scene, or threads cannot be started.
     pub fn new(scene: &Scene, options: &Options) -> Result<Self> {
+        let began = options.stamp.then(Instant::now);
         let mut scene = Cow::Borrowed(scene);
         let is_as_asked = options.instead_of(&scene) == (scene.render.samples, scene.render.seed, scene.film);
         if is_as_asked && options.layers.is_none() && !options.spectral {
@@ -179,6 +189,7 @@ impl Rendering {
             screen_window_width: camera.screen_window_width(),
             screen_window_center: camera.screen_window_center(),
             latlong: camera.projection() == Projection::Equirectangular,
+            optics: camera.optics(scene.render.meters_per_unit),
         };
         let (hash, filter) = (scene.hash.clone(), scene.film.filter.described());
         Ok(Self {
@@ -188,6 +199,7 @@ impl Rendering {
             format: scene.format.clone(),
             origin: Origin { hash, projection: camera.projection(), filter },
             threads,
+            began,
         })
     }
 
@@ -231,7 +243,13 @@ impl Rendering {
     /// The image of all samples so far.
     pub fn image(&self) -> Image {
         let (film, report) = (self.passes.film(), self.passes.report());
-        let provenance = provenance(&self.origin, &self.plan, self.passes.samples(), &report);
+        let mut provenance = provenance(&self.origin, &self.plan, self.passes.samples(), &report);
+        if let Some(began) = self.began {
+            provenance.time = Some(SystemTime::now());
+            let threads = Fact::Count(self.threads.current_num_threads() as u64);
+            let time = Fact::Seconds(began.elapsed().as_secs_f64());
+            provenance.facts.extend([("renderTime", time), ("threads", threads)]);
+        }
         let (because, format) = (self.plan.because.clone(), self.format.clone());
         Image { film, report, because, view: self.view, format, provenance }
     }
@@ -383,5 +401,5 @@ fn provenance(origin: &Origin, plan: &Plan, samples: u32, report: &Report) -> Pr
         ("seed", text(&method.seed.to_string())),
         ("nonFinite", Fact::Count(report.non_finite)),
     ];
-    Provenance { facts: facts.into_iter().chain(photons).chain(blur).collect() }
+    Provenance { facts: facts.into_iter().chain(photons).chain(blur).collect(), time: None }
 }

@@ -25,6 +25,7 @@ mod messages;
 mod outputs;
 mod planning;
 mod prisms;
+mod radiometry;
 mod rainbow;
 mod readme;
 mod relief;

@@ -7,7 +7,7 @@
 use std::path::Path;
 use std::process::Command;
 
-use exr::prelude::read_first_flat_layer_from_file;
+use exr::prelude::{AttributeValue, LayerAttributes, Text, read_first_flat_layer_from_file};
 
 /// Chance everywhere: a glass ball, mirror and metal on a diffuse floor under two lamps and a sky. The film is no
 /// multiple of any tile.
@@ -89,4 +89,30 @@ fn another_seed_gives_another_image_of_the_same_scene() {
     assert!(differing * 2 > other.len(), "only {differing} pixels differ");
     let mean = |image: &[f32]| image.iter().sum::<f32>() / image.len() as f32;
     assert!((mean(&of_scene) / mean(&other) - 1.0).abs() < 0.1, "{} and {}", mean(&of_scene), mean(&other));
+}
+
+#[test]
+fn only_a_stamp_says_when_and_how_an_image_was_made() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let header = |flags: &[&str]| {
+        rendered(folder.path(), RANDOM, flags);
+        let image = read_first_flat_layer_from_file(folder.path().join("image.exr")).expect("an EXR");
+        image.layer_data.attributes
+    };
+    let value = |header: &LayerAttributes, name: &str| header.other.get(&Text::from(name)).cloned();
+    let plain = header(&["--threads", "2"]);
+    assert_eq!((plain.capture_date.clone(), plain.utc_offset), (None, None));
+    assert!(["render/threads", "render/renderTime"].iter().all(|name| value(&plain, name).is_none()));
+    let stamped = header(&["--stamp", "--threads", "2"]);
+    let date = stamped.capture_date.clone().expect("a date").to_string();
+    let form: Vec<usize> = date.split([':', ' ']).map(str::len).collect();
+    assert_eq!((form, stamped.utc_offset), (vec![4, 2, 2, 2, 2, 2], Some(0.0)), "{date}");
+    assert_eq!(value(&stamped, "render/threads"), Some(AttributeValue::I32(2)));
+    let Some(AttributeValue::F64(seconds)) = value(&stamped, "render/renderTime") else {
+        panic!("no time of rendering")
+    };
+    assert!(seconds > 0.0 && seconds < 3600.0, "{seconds}");
+    // All else is the same.
+    let rest = |header: &LayerAttributes| header.other.len();
+    assert_eq!(rest(&plain) + 2, rest(&stamped));
 }

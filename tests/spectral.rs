@@ -90,6 +90,27 @@ fn an_even_spectrum_of_one_is_one_in_every_band() {
     }
 }
 
+/// Measured radiance stays what it is, whatever the luminance of white; a luminance is found again by the observer.
+#[test]
+fn spectra_of_absolute_light_are_in_watts() {
+    let sky = |radiance: &str| {
+        rendered(&format!(
+            "camera = {{ position = [0, 0, 5], look_at = [0, 0, 0], vertical_fov = 40 }}\n\
+             film = {{ width = 2, height = 2, {FINE}, radiometry = \"absolute\", white_luminance = 80 }}\n\
+             light = [{{ environment.radiance = {radiance} }}]"
+        ))
+    };
+    let measured = sky("{ samples = [[300, 0.25], [900, 0.25]] }");
+    let spectrum = measured.spectrum_at(0, 0).expect("spectra were asked for");
+    assert!(spectrum.iter().all(|[_, radiance]| (radiance / 0.25 - 1.0).abs() <= 1e-6), "{spectrum:?}");
+    for bright in ["1500", "{ illuminant = \"FL11\", luminance = 1500 }"] {
+        let spectrum = sky(bright).spectrum_at(0, 0).expect("spectra were asked for");
+        let seen = spectrum.iter().zip(data::color_matching()).map(|([_, radiance], cmf)| radiance * cmf[1]);
+        let luminance = 683.002 * seen.sum::<f64>();
+        assert!((luminance / 1500.0 - 1.0).abs() <= WHITE, "{bright}: {luminance} cd/m2");
+    }
+}
+
 /// Numbers and `rgb` are the film's white to the digits in which its chromaticity is known: the white light is 4e-5
 /// off it in x and y, which is less than 5e-4 of a channel.
 const WHITE: f64 = 5e-4;

@@ -2,8 +2,8 @@
 
     python tools/check_exr.py FILE...           # exit code 1 if any file breaks a rule
 
-Scan lines under lossless compression: R G B A Z, alone or with layers, in one part or with each layer in a part of its own.
-Numbers are finite, and 32-bit floats unless the file says that colors have 16 bits. Lights and kinds of light add up to the
+Scan lines: R G B A Z, alone or with layers, in one part or with each layer in a part of its own. Only colors are under a
+compression that loses. Numbers are finite, and 32-bit floats unless the file says that colors have 16 bits. Lights and kinds of light add up to the
 image, mattes to its coverage. A stated color space, the camera, and the provenance under render/.
 
 A spectral image holds R G B and one channel for each band of wavelengths (Fichet, Pacanowski & Wilkie 2021, "An OpenEXR
@@ -42,6 +42,12 @@ LOSSLESS = {
     OpenEXR.PIZ_COMPRESSION: "piz",
 }
 
+LOSSY = {
+    OpenEXR.PXR24_COMPRESSION: "pxr24",
+    OpenEXR.DWAA_COMPRESSION: "dwaa",
+    OpenEXR.DWAB_COMPRESSION: "dwab",
+}
+
 # The channels of each layer; those of the image itself have no layer.
 LAYERS = {
     r"": "RGBAZ",
@@ -56,6 +62,8 @@ LAYERS = {
 }
 # A band of wavelengths: its center in nm, with a decimal comma.
 BAND = r"S0\.([0-9]+),([0-9]{6})nm"
+# What a compression that loses may change: light to look at. A is rounded, or kept.
+LIGHT = r"([RGBA]|(emission|background|direct|indirect|caustics|dispersed|shadow|light_\w+|[a-z]+_(in)?direct)\.[RGB])"
 # Numbers that 16 bits would spoil: depth, places, statistics and the numbers of mattes.
 ALWAYS_32_BITS = r"Z|P\..*|UV\..*|variance\..*|samples\..*|residual\..*|Crypto.*"
 # Attributes in which the parts of a file agree.
@@ -76,6 +84,11 @@ PROVENANCE = {
     "render/transport": r"\S.*",
     "render/nonFinite": range(2**31),
 }
+
+
+# What a stamp says: when the image was made, in UTC, how long that took, and on how many threads.
+STAMP = ("capDate", "utcOffset", "render/renderTime", "render/threads")
+STAMPED = r"[0-9]{4}:(0[1-9]|1[0-2]):(0[1-9]|[12][0-9]|3[01]) ([01][0-9]|2[0-3]):[0-5][0-9]:[0-5][0-9]"
 
 
 class File(NamedTuple):
@@ -122,8 +135,8 @@ def layout(file):
     header = file.header
     if header.get("type", OpenEXR.scanlineimage) != OpenEXR.scanlineimage:
         yield f"type is {header['type']}, not a scanline image"
-    if header["compression"] not in LOSSLESS:
-        yield f"compression is {header['compression']}, not one of {', '.join(LOSSLESS.values())}"
+    if header["compression"] not in LOSSLESS | LOSSY:
+        yield f"compression is {header['compression']}, not one of {', '.join((LOSSLESS | LOSSY).values())}"
     if header["lineOrder"] != OpenEXR.INCREASING_Y:
         yield f"line order is {header['lineOrder']}, not increasing y"
     data, display = (np.array(header[name]) for name in ("dataWindow", "displayWindow"))
@@ -151,7 +164,10 @@ def parts(file):
         if layers != {header.get("name")} and (header.get("name"), *channels) != ("depth", "Z"):
             yield f"{part}: holds {', '.join(map(repr, sorted(layers)))}, not the layer of its name"
         for name in SHARED:
-            if not np.array_equal(header.get(name), file.header.get(name)):
+            wanted = file.header.get(name)
+            if name == "compression" and wanted in LOSSY and not all(re.fullmatch(LIGHT, each) for each in channels):
+                wanted = OpenEXR.ZIP_COMPRESSION
+            if not np.array_equal(header.get(name), wanted):
                 yield f"{part}: {name} differs from that of the first part"
         if header.get("colorInteropID") != "data":
             yield f"{part}: colorInteropID is {header.get('colorInteropID')!r}, not 'data'"
@@ -159,6 +175,24 @@ def parts(file):
             yield f"{part}: {', '.join(said)} would stand in the first part, if anywhere"
         if warnings := int(OpenEXR.checkColorMetadata(header, file.header)):
             yield f"{part}: OpenEXR warns of the color metadata: bits {warnings:#x}"
+
+
+def losses(file):
+    """A compression that loses changes colors alone; DWA makes 16 bits of them, and packs a depth without loss."""
+    for header, channels in file.parts:
+        name = LOSSY.get(header["compression"])
+        for channel, pixels in channels.items() if name else ():
+            if not re.fullmatch(LIGHT if name == "pxr24" else f"Z|{LIGHT}", channel):
+                yield f"channel {channel!r}: no color, and {name} changes it"
+            elif name != "pxr24" and channel != "Z" and pixels.dtype != np.float16:
+                yield f"channel {channel!r}: {pixels.dtype}, of which {name} keeps 16 bits"
+
+
+def unit(file, name):
+    """How far apart numbers of a channel are, as a part of them: PXR24 leaves 15 bits of a mantissa of 23."""
+    packed = next(header["compression"] for header, channels in file.parts if name in channels)
+    exact = float(np.finfo(file.channels[name].dtype).eps)
+    return max(exact, 2.0**-15) if packed == OpenEXR.PXR24_COMPRESSION else exact
 
 
 def names(file):
@@ -260,6 +294,8 @@ def sums(file):
     lights = [layer for layer in file.layers() if layer.startswith("light_")]
     lobes = [f"{lobe}_{kind}" for lobe in LOBES for kind in ("direct", "indirect")]
     wholes = [(("emission", "background", "direct", "indirect"), 1), (("emission", "background", *lobes), 1), (lights, 1)]
+    if file.header["compression"] in (OpenEXR.DWAA_COMPRESSION, OpenEXR.DWAB_COMPRESSION):
+        return  # colors are what looks alike
     samples = file.header.get("render/samples")
     # Halves of an odd number of samples, or of fewer than were taken, are not of equal weight.
     if type(samples) is int and samples % 2 == 0 and file.header.get("render/nonFinite") == 0:
@@ -272,7 +308,7 @@ def sums(file):
         kind = np.finfo(image[0].dtype)
         numbers = np.array([*(share * term for term in terms), -np.array(image, np.float64)])
         # Each number is off by half a unit in its last place; what did not fit says nothing.
-        rounding = float(kind.eps) * np.abs(numbers).sum(axis=0) + len(numbers) * float(kind.smallest_subnormal)
+        rounding = unit(file, "R") * np.abs(numbers).sum(axis=0) + len(numbers) * float(kind.smallest_subnormal)
         fits = (np.abs([*terms, numbers[-1]]) < float(kind.max)).all(axis=0)
         off = np.where(fits, np.abs(numbers.sum(axis=0)) - rounding, 0)
         if wrong := np.count_nonzero(off > 0):
@@ -392,7 +428,7 @@ def coverage(file, numbers, shares, manifest):
     shadow = [file.channels.get(f"shadow.{channel}") for channel in "RGB"]
     clear = np.zeros_like(whole, bool) if any(part is None for part in shadow) else (np.stack(shadow) == 0).all(axis=0)
     off = np.where((shares[-1] == 0) & clear, np.abs(whole - alpha), whole - alpha).max()
-    if off > rounding + np.finfo(alpha.dtype).eps:
+    if off > rounding + unit(file, "A"):
         yield f"coverage adds up to another number than A, by {off:g}"
 
 
@@ -408,8 +444,34 @@ def color(file):
         yield "chromaticities are missing"
     elif tuple(stored) != tuple(float(np.float32(value)) for value in CHROMATICITIES[space]):
         yield f"chromaticities {stored} are not those of {space}"
+    if not file.header.get("whiteLuminance", 1) > 0:
+        yield f"whiteLuminance is {file.header['whiteLuminance']}, not positive"
     if warnings := int(OpenEXR.checkColorMetadata(file.header)):
         yield f"OpenEXR warns of the color metadata: bits {warnings:#x}"
+
+
+def optics(file):
+    """Sensor, focal lengths and f-number agree with the screen window and with each other."""
+    header, near = file.header, 4 * np.finfo(np.float32).eps
+    for name in ("near", "focus", "aperture", "pinholeFocalLength", "effectiveFocalLength"):
+        if not header.get(name, 1) > 0:
+            yield f"{name} is {header[name]}, not positive"
+    sensor, pinhole, effective = (header.get(name) for name in ("sensorOverallDimensions", "pinholeFocalLength", "effectiveFocalLength"))
+    if (sensor is None) != (pinhole is None):
+        yield "sensorOverallDimensions and pinholeFocalLength: one is there without the other"
+    elif sensor is not None:
+        columns, rows = np.asarray(header["displayWindow"][1], np.float64) + 1
+        if abs(sensor[0] - pinhole * header["screenWindowWidth"]) > near * sensor[0]:
+            yield f"pinholeFocalLength is {pinhole}, not that of a sensor of {sensor[0]} mm and the screen window"
+        if abs(sensor[1] * columns - sensor[0] * rows) > near * sensor[0] * rows:
+            yield f"sensorOverallDimensions are {list(sensor)}, not as the image"
+    if effective is not None:
+        # 1 / f = 1 / image distance + 1 / distance in focus.
+        expected = 1 / (1 / (pinhole or np.nan) + 1 / (1e3 * header.get("focus", np.nan)))
+        if not abs(effective - expected) <= near * expected:
+            yield f"effectiveFocalLength is {effective}, not that of pinholeFocalLength and focus"
+    if (effective is None) != ("aperture" not in header or "focus" not in header):
+        yield "effectiveFocalLength, aperture and focus: some are there without the others"
 
 
 def camera(file):
@@ -481,7 +543,7 @@ def projection(header, world_to_camera, center):
 
 
 def provenance(file):
-    """Where the image comes from, and no clock: two runs of one scene are the same to the byte."""
+    """Where the image comes from, and no clock: two runs of one scene are the same to the byte, unless a stamp is asked for."""
     for name, form in PROVENANCE.items():
         value = file.header.get(name)
         if value is None:
@@ -492,11 +554,16 @@ def provenance(file):
             yield f"{name} is {value!r}, not text like {form}"
     if not str(file.header.get("software", "")).strip():
         yield "software is missing"
-    if "capDate" in file.header:
-        yield "capDate is present"
+    stamped = [name in file.header for name in STAMP]
+    if any(stamped) and not all(stamped):
+        yield f"{', '.join(STAMP)}: some are there, and not all"
+    elif all(stamped) and (not re.fullmatch(STAMPED, file.header["capDate"]) or file.header["utcOffset"] != 0):
+        yield f"capDate is {file.header['capDate']!r} with utcOffset {file.header['utcOffset']}, not a time in UTC"
+    elif all(stamped) and not (file.header["render/renderTime"] >= 0 and file.header["render/threads"] >= 1):
+        yield "render/renderTime or render/threads is no time and no number of threads"
 
 
-RULES = (layout, parts, names, types, spectrum, color, camera, provenance)
+RULES = (layout, parts, losses, names, types, spectrum, color, optics, camera, provenance)
 RULES_OF_PIXELS = (values, surfaces, statistics, sums, mattes)
 
 

@@ -7,7 +7,7 @@
 
 The layers `albedo` and `N` tell the denoiser where surfaces end and textures change; with film.first = "visible" in the
 scene they also tell what is seen in mirrors and through smooth glass. All other channels and all attributes stay as they
-are, to the bit. A file of several parts gets one more, and a layer `denoised` that is already there is replaced.
+are, to the bit: so a file whose compression loses is refused. A file of several parts gets one more, and a layer `denoised` that is already there is replaced.
 
 A denoised image looks clean but is biased: measure and compare the noisy one, which stays in the file.
 """
@@ -116,6 +116,8 @@ def main(arguments=None):
     options = parser.parse_args(arguments)
     out = options.out or options.image
     with opened(options.image) as file:
+        if lossy := {check_exr.LOSSY[each] for part in file.parts if (each := part.header["compression"]) in check_exr.LOSSY}:
+            sys.exit(f"{options.image}: colors under {lossy.pop()} would lose once more: render it with compression = \"zip\"")
         images = inputs(options.image, file)
         try:
             import pyoidn

@@ -1,17 +1,21 @@
 //! The film as an OpenEXR file of scan lines; the same bytes for the same film.
 
-use std::io::Cursor;
 use std::path::Path;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::SystemTime;
 
 use exr::meta::attribute::{Chromaticities, EnvironmentMap};
 use exr::prelude::{
-    AnyChannel, AnyChannels, AttributeValue, Compression, Encoding, FlatSamples, Image, ImageAttributes, IntegerBounds,
-    Layer, LayerAttributes, Layers, LineOrder, SmallVec, Text, Vec2, WritableImage, f16,
+    AnyChannel, AnyChannels, AttributeValue, Encoding, FlatImage, FlatSamples, Image, ImageAttributes, IntegerBounds,
+    Layer, LayerAttributes, LineOrder, SmallVec, Text, Vec2, f16,
 };
+use rayon::prelude::{IntoParallelIterator, ParallelIterator};
 
+use super::exr_blocks;
 use super::file::replace_file;
-use super::format::{Format, Precision};
+use super::format::{Compression, Format, Precision};
 use super::image::Film;
+use super::time::cap_date;
 use crate::error::{Error, Result};
 
 /// How the camera saw, as the file records it.
@@ -28,22 +32,46 @@ pub struct View {
     pub screen_window_center: [f64; 2],
     /// Whether the image shows all directions by longitude and latitude.
     pub latlong: bool,
+    /// The lens and what is behind it.
+    pub optics: Optics,
 }
 
-/// Where the image comes from: everything that another run needs to make the same bytes, and no time of day.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// What a camera of glass and metal would say of itself, as far as the scene knows it (OpenEXR, *Standard Attributes*).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Optics {
+    /// Distance at which rays start, in scene units.
+    pub near: Option<f64>,
+    /// Width and height of the sensor, in mm.
+    pub sensor: Option<[f64; 2]>,
+    /// Distance from the sensor to the pinhole, or to the middle of the lens, in mm.
+    pub pinhole_focal_length: Option<f64>,
+    /// Focal length of the lens, in mm.
+    pub focal_length: Option<f64>,
+    /// Focal length over the diameter of the opening.
+    pub f_number: Option<f64>,
+    /// Distance from the lens to the plane in focus, in m; may be infinite.
+    pub focus: Option<f64>,
+}
+
+/// Where the image comes from: everything that another run needs to make the same bytes, and no time of day unless that
+/// is asked for.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Provenance {
     /// Key and value of each attribute; keys are written below `render/`.
     pub facts: Vec<(&'static str, Fact)>,
+    /// When the image was made.
+    pub time: Option<SystemTime>,
 }
 
 /// One value of the provenance.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Fact {
     /// A string attribute.
     Text(String),
     /// An int attribute; counts beyond 2^31 - 1 are written as that.
     Count(u64),
+    /// A double attribute.
+    Seconds(f64),
 }
 
 /// Writes a linear image: R, G, B, A and Z, and the layers that it has beside them. Answers how many values were too
@@ -55,7 +83,8 @@ pub enum Fact {
 /// # Errors
 /// If the file cannot be encoded or written; a file that was there before is then untouched.
 pub fn write_exr(film: &Film, format: &Format, view: &View, provenance: &Provenance, path: &Path) -> Result<u64> {
-    let mut channels = Channels { half: format.precision == Precision::Half, clamped: 0 };
+    let half = format.precision == Precision::Half;
+    let mut channels = Channels { half, ..Channels::new(film) };
     let parts = parts(film, format, &mut channels);
     let mut attributes = attributes(film, format, view, provenance);
     for manifest in &film.manifests {
@@ -73,27 +102,27 @@ pub fn write_exr(film: &Film, format: &Format, view: &View, provenance: &Provena
         let clamped = AttributeValue::I32(i32::try_from(channels.clamped).unwrap_or(i32::MAX));
         attributes.other.insert(Text::from("render/clamped"), clamped);
     }
-    let encoding = encoding(compression(format.compression));
     let size = Vec2(film.width as usize, film.height as usize);
     let part = |(number, part): (usize, Part)| {
         let own = if number == 0 { attributes.clone() } else { of_data(&attributes) };
         let name = format.multipart.then(|| Text::new_or_panic(part.name));
-        Layer::new(size, LayerAttributes { layer_name: name, ..own }, encoding, AnyChannels::sort(part.channels))
+        let packed = if part.is_data && format.compression.is_lossy() { Compression::Zip } else { format.compression };
+        let own = LayerAttributes { layer_name: name, ..own };
+        Layer::new(size, own, encoding(packed), AnyChannels::sort(part.channels))
     };
     let layers: Vec<_> = parts.into_iter().enumerate().map(part).collect();
     let mut image = Image::from_layers(ImageAttributes::new(display_window(film)), layers);
     // The chromaticities would be those of all parts, also of those that hold no colors.
     image.attributes.chromaticities = (!format.multipart).then(|| chromaticities(film));
-    write_image(&image, path)?;
+    write_image(image, path)?;
     Ok(channels.clamped)
 }
 
 /// Writes a file of parts.
-pub(super) fn write_image(image: &Image<Layers<AnyChannels<FlatSamples>>>, path: &Path) -> Result<()> {
-    let mut bytes = Cursor::new(Vec::new());
-    let written = image.write().to_buffered(&mut bytes);
-    written.map_err(|error| Error::Encode { path: path.to_owned(), message: error.to_string() })?;
-    let mut bytes = bytes.into_inner();
+pub(super) fn write_image(image: FlatImage, path: &Path) -> Result<()> {
+    let encode = |error: exr::error::Error| Error::Encode { path: path.to_owned(), message: error.to_string() };
+    let mut bytes = exr_blocks::file(&image).map_err(encode)?;
+    drop(image);
     sort_attributes(&mut bytes);
     replace_file(path, &bytes)
 }
@@ -103,76 +132,96 @@ pub(super) type Channel = AnyChannel<FlatSamples>;
 /// A part of the file.
 struct Part {
     name: String,
+    /// Whether it holds what is no color, apart from the image.
+    is_data: bool,
     channels: SmallVec<[Channel; 4]>,
 }
 
 /// Makes channels, and counts what does not fit into them.
-#[derive(Default)]
 pub(super) struct Channels {
     half: bool,
+    /// Of each channel.
+    pixels: usize,
     clamped: u64,
 }
 
 impl Channels {
-    /// A channel of some name; it has 16 bits if it may and colors have.
-    pub(super) fn of(&mut self, name: &str, may_be_half: bool, values: impl Iterator<Item = f32>) -> Channel {
-        let sample_data = match self.half && may_be_half {
-            true => FlatSamples::F16(values.map(|value| self.half(value)).collect()),
-            false => FlatSamples::F32(values.collect()),
+    /// Of 32 bits, for the pixels of a film.
+    pub(super) fn new(film: &Film) -> Self {
+        Self { half: false, pixels: film.pixels.len(), clamped: 0 }
+    }
+
+    /// A channel of some name, of the value of each pixel; it has 16 bits if it may and colors have.
+    pub(super) fn of(&mut self, name: &str, may_be_half: bool, value: impl Fn(usize) -> f32 + Send + Sync) -> Channel {
+        let pixels = (0..self.pixels).into_par_iter();
+        let sample_data = if self.half && may_be_half {
+            let clamped = AtomicU64::new(0);
+            let halves = pixels.map(|pixel| half(value(pixel), &clamped)).collect();
+            self.clamped += clamped.into_inner();
+            FlatSamples::F16(halves)
+        } else {
+            FlatSamples::F32(pixels.map(value).collect())
         };
         AnyChannel { name: Text::new_or_panic(name), sample_data, quantize_linearly: false, sampling: Vec2(1, 1) }
     }
+}
 
-    fn half(&mut self, value: f32) -> f16 {
-        let half = f16::from_f32(value);
-        if half.is_finite() {
-            return half;
-        }
-        self.clamped += 1;
-        if value > 0.0 { f16::MAX } else { f16::MIN }
+/// A value in 16 bits; one that does not fit is counted, and becomes the largest that does.
+fn half(value: f32, clamped: &AtomicU64) -> f16 {
+    let half = f16::from_f32(value);
+    if half.is_finite() {
+        return half;
     }
+    clamped.fetch_add(1, Ordering::Relaxed);
+    if value > 0.0 { f16::MAX } else { f16::MIN }
 }
 
 /// What the file holds: one part, or one for the image and each layer if the format sets them apart.
 fn parts(film: &Film, format: &Format, channels: &mut Channels) -> Vec<Part> {
-    let pixels = || film.pixels.iter();
     let mut image = SmallVec::new();
-    image.push(channels.of("A", true, pixels().map(|pixel| pixel.alpha)));
+    image.push(channels.of("A", true, |pixel| film.pixels[pixel].alpha));
     for (number, name) in ["R", "G", "B"].into_iter().enumerate() {
-        image.push(channels.of(name, true, pixels().map(|pixel| pixel.rgb[number])));
+        image.push(channels.of(name, true, |pixel| film.pixels[pixel].rgb[number]));
     }
-    let depth = channels.of("Z", false, pixels().map(|pixel| pixel.depth));
-    let mut parts = vec![Part { name: "image".to_owned(), channels: image }];
+    let depth = channels.of("Z", false, |pixel| film.pixels[pixel].depth);
+    let mut parts = vec![Part { name: "image".to_owned(), is_data: false, channels: image }];
     if format.multipart {
         // Blender takes a part of R, G, B, A and another channel for none of what they are.
-        parts.push(Part { name: "depth".to_owned(), channels: SmallVec::new() });
+        parts.push(Part { name: "depth".to_owned(), is_data: true, channels: SmallVec::new() });
     }
     parts.last_mut().expect("the image comes first").channels.push(depth);
     for image in &film.layers {
         if format.multipart {
-            parts.push(Part { name: image.name.clone(), channels: SmallVec::new() });
+            let is_data = !image.layer.is_color();
+            parts.push(Part { name: image.name.clone(), is_data, channels: SmallVec::new() });
         }
         let part = parts.last_mut().expect("the image comes first");
-        for (number, channel) in image.layer.channels().iter().enumerate() {
-            let name = format!("{}.{channel}", image.name);
-            part.channels.push(channels.of(&name, image.layer.may_be_half(), image.channel(number)));
+        let names = image.layer.channels();
+        for (number, channel) in names.iter().enumerate() {
+            let value = |pixel: usize| image.values[pixel * names.len() + number];
+            part.channels.push(channels.of(&format!("{}.{channel}", image.name), image.layer.may_be_half(), value));
         }
     }
     parts
 }
 
 /// Rows from the top, packed in a way.
-pub(super) fn encoding(compression: Compression) -> Encoding {
-    Encoding { compression, line_order: LineOrder::Increasing, ..Encoding::UNCOMPRESSED }
+pub(super) fn encoding(packed: Compression) -> Encoding {
+    Encoding { compression: compression(packed), line_order: LineOrder::Increasing, ..Encoding::UNCOMPRESSED }
 }
 
-fn compression(compression: super::Compression) -> Compression {
+fn compression(compression: Compression) -> exr::compression::Compression {
+    use exr::compression::Compression as Exr;
     match compression {
-        super::Compression::None => Compression::Uncompressed,
-        super::Compression::Rle => Compression::RLE,
-        super::Compression::Zips => Compression::ZIP1,
-        super::Compression::Zip => Compression::ZIP16,
-        super::Compression::Piz => Compression::PIZ,
+        Compression::None => Exr::Uncompressed,
+        Compression::Rle => Exr::RLE,
+        Compression::Zips => Exr::ZIP1,
+        Compression::Zip => Exr::ZIP16,
+        Compression::Piz => Exr::PIZ,
+        Compression::Pxr24 => Exr::PXR24,
+        // The level is that of OpenEXR, 45; the attribute that could say another is deprecated.
+        Compression::Dwaa => Exr::DWAA(None),
+        Compression::Dwab => Exr::DWAB(None),
     }
 }
 
@@ -210,27 +259,45 @@ pub(super) fn attributes(film: &Film, format: &Format, view: &View, provenance: 
     let mut attributes = LayerAttributes {
         software_name: Some(Text::from(concat!("Abbe ", env!("CARGO_PKG_VERSION")))),
         owner: format.owner.as_deref().map(utf8),
+        white_luminance: format.white_luminance.map(|luminance| luminance as f32),
         comments: format.comments.as_deref().map(utf8),
         // Readers take the data window of an environment for the full sphere, which crops and overscan are not.
         environment_map: (view.latlong && film.corner == [0, 0] && film.full == [film.width, film.height])
             .then_some(EnvironmentMap::LatitudeLongitude),
         layer_position: Vec2(film.corner[0], film.corner[1]),
         screen_window_width: view.screen_window_width as f32,
-        screen_window_center: Vec2(view.screen_window_center[0] as f32, view.screen_window_center[1] as f32),
+        screen_window_center: vector(view.screen_window_center),
         world_to_camera: Some(matrix(&view.world_to_camera)),
         world_to_normalized_device: view.world_to_ndc.as_ref().map(matrix),
+        near_clip_plane: view.optics.near.map(|near| near as f32),
+        focus: view.optics.focus.map(|focus| focus as f32),
+        aperture: view.optics.f_number.map(|number| number as f32),
+        capture_date: provenance.time.map(|time| Text::new_or_panic(cap_date(time))),
+        utc_offset: provenance.time.map(|_| 0.0),
         ..LayerAttributes::default()
     };
+    let optics = [
+        ("sensorOverallDimensions", view.optics.sensor.map(|mm| AttributeValue::FloatVec2(vector(mm)))),
+        ("pinholeFocalLength", view.optics.pinhole_focal_length.map(|mm| AttributeValue::F32(mm as f32))),
+        ("effectiveFocalLength", view.optics.focal_length.map(|mm| AttributeValue::F32(mm as f32))),
+    ];
+    let known = optics.into_iter().filter_map(|(name, value)| Some((Text::from(name), value?)));
+    attributes.other.extend(known);
     let text = |value: &str| AttributeValue::Text(Text::new_or_panic(value));
     attributes.other.insert(Text::from("colorInteropID"), text(film.color_space.interop_id()));
     for (key, fact) in &provenance.facts {
         let value = match fact {
             Fact::Text(value) => text(value),
             Fact::Count(count) => AttributeValue::I32(i32::try_from(*count).unwrap_or(i32::MAX)),
+            Fact::Seconds(seconds) => AttributeValue::F64(*seconds),
         };
         attributes.other.insert(Text::new_or_panic(format!("render/{key}")), value);
     }
     attributes
+}
+
+fn vector([x, y]: [f64; 2]) -> Vec2<f32> {
+    Vec2(x as f32, y as f32)
 }
 
 fn matrix(rows: &[[f64; 4]; 4]) -> [f32; 16] {

@@ -3,21 +3,21 @@
 
 use std::path::Path;
 
-use exr::prelude::{AnyChannels, AttributeValue, Compression, Image, ImageAttributes, Layer, SmallVec, Text, Vec2};
+use exr::prelude::{AnyChannels, AttributeValue, Image, ImageAttributes, Layer, SmallVec, Text, Vec2};
 
 use super::exr::{
     Channel, Channels, Provenance, View, attributes, chromaticities, display_window, encoding, write_image,
 };
-use super::format::Format;
+use super::format::{Compression, Format};
 use super::image::Film;
 use crate::error::Result;
 
 /// Writes the spectra of an image: a channel `S0.380,000000nm` and so on for each band, with its center in nm and a
 /// decimal comma, and R, G and B for looking. Nothing is written of an image without spectra.
 ///
-/// Numbers are radiance in W m^-2 sr^-1 nm^-1 where a scene gives its lights in that, the mean over the band.
-/// Programs that know the layout take the number for one at the center, and the attribute `emissiveUnits` for a mere
-/// name: it holds the text that they expect, `render/spectralUnits` the unit.
+/// Numbers are radiance in W m^-2 sr^-1 nm^-1 where the scene's light is absolute, or given in that unit; each is the
+/// mean over its band. Programs that know the layout take it for the radiance at the center, and `emissiveUnits` for a
+/// mere name: that attribute holds the text that they expect, and `render/spectralUnits` the unit.
 ///
 /// # Errors
 /// If the file cannot be encoded or written; a file that was there before is then untouched.
@@ -29,12 +29,12 @@ pub fn write_spectral_exr(
     path: &Path,
 ) -> Result<()> {
     let Some(spectral) = &film.spectral else { return Ok(()) };
-    let (mut make, mut channels) = (Channels::default(), SmallVec::<[Channel; 4]>::new());
+    let (mut make, mut channels) = (Channels::new(film), SmallVec::<[Channel; 4]>::new());
     for (number, name) in ["R", "G", "B"].into_iter().enumerate() {
-        channels.push(make.of(name, false, film.pixels.iter().map(|pixel| pixel.rgb[number])));
+        channels.push(make.of(name, false, |pixel| film.pixels[pixel].rgb[number]));
     }
     for (band, center) in spectral.bands.centers_nm().enumerate() {
-        channels.push(make.of(&channel_name(center), false, spectral.band(band)));
+        channels.push(make.of(&channel_name(center), false, |pixel| spectral.pixel(pixel)[band]));
     }
     let mut attributes = attributes(film, format, view, provenance);
     let step = AttributeValue::F32(spectral.bands.step_nm() as f32);
@@ -47,10 +47,10 @@ pub fn write_spectral_exr(
         attributes.other.insert(Text::from(key), value);
     }
     let size = Vec2(film.width as usize, film.height as usize);
-    let part = Layer::new(size, attributes, encoding(Compression::ZIP16), AnyChannels::sort(channels));
+    let part = Layer::new(size, attributes, encoding(Compression::Zip), AnyChannels::sort(channels));
     let mut image = Image::from_layers(ImageAttributes::new(display_window(film)), vec![part]);
     image.attributes.chromaticities = Some(chromaticities(film));
-    write_image(&image, path)
+    write_image(image, path)
 }
 
 fn text(value: &str) -> AttributeValue {

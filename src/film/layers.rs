@@ -126,6 +126,15 @@ impl Layer {
         !matches!(self, Self::Position | Self::Uv | Self::Variance | Self::Samples | Self::Residual) && !self.is_matte()
     }
 
+    /// Whether it is light to look at: what is computed with, such as an albedo or a half of the samples, is none.
+    pub fn is_color(self) -> bool {
+        match self {
+            Self::Emission | Self::Background | Self::Direct | Self::Indirect => true,
+            Self::Caustics | Self::Dispersed | Self::Lights | Self::Shadow => true,
+            _ => self.is_of_lobe(),
+        }
+    }
+
     /// Whether it holds what one lobe of the first surface sends to the camera.
     pub fn is_of_lobe(self) -> bool {
         use Layer::{DiffuseDirect, GlossyDirect, SpecularDirect, TransmissionDirect};

@@ -3,6 +3,7 @@
 mod cryptomatte;
 mod exr;
 mod exr_attributes;
+mod exr_blocks;
 mod exr_file;
 mod exr_layer;
 mod exr_part;
@@ -18,9 +19,10 @@ mod picture;
 mod sample_weights;
 mod spectral;
 mod sum;
+mod time;
 mod window;
 
-pub use self::exr::{Fact, Provenance, View, write_exr};
+pub use self::exr::{Fact, Optics, Provenance, View, write_exr};
 pub use cryptomatte::{Manifest, RANKS, id};
 pub use exr_attributes::CameraMatrix;
 pub use exr_file::ExrFile;

@@ -16,9 +16,4 @@ impl SpectralImage {
     pub fn pixel(&self, number: usize) -> &[f32] {
         &self.values[number * self.bands.count()..][..self.bands.count()]
     }
-
-    /// The radiance of all pixels in a band.
-    pub(super) fn band(&self, band: usize) -> impl Iterator<Item = f32> + '_ {
-        self.values.iter().skip(band).step_by(self.bands.count()).copied()
-    }
 }

@@ -1,5 +1,6 @@
 use std::f64::consts::{PI, TAU};
 
+use crate::film::Optics;
 use crate::math::{DVec2, DVec3, Frame, Ray, disk, unit};
 
 /// From where the scene is seen, and how directions become places in the image.
@@ -19,6 +20,8 @@ pub struct Camera {
     pub(super) lens: Option<Lens>,
     /// Distance of the point looked at.
     reach: f64,
+    /// Width of what is behind the lens, in mm. No ray depends on it.
+    sensor_width: Option<f64>,
 }
 
 /// How directions become places in the image.
@@ -113,6 +116,7 @@ impl Camera {
             near: 0.0,
             lens: None,
             reach: (target - position).length(),
+            sensor_width: None,
         };
         (camera, parallel)
     }
@@ -134,6 +138,37 @@ impl Camera {
     #[must_use]
     pub fn with_lens(self, lens: Option<Lens>) -> Self {
         Self { lens: lens.filter(|lens| lens.radius > 0.0), ..self }
+    }
+
+    /// The same camera, whose full image a sensor of this width in mm takes up.
+    #[must_use]
+    pub fn on_sensor(self, width: Option<f64>) -> Self {
+        Self { sensor_width: width, ..self }
+    }
+
+    /// What the lens and the sensor are like, as far as the scene says it. Of a perspective view a sensor's width tells
+    /// how far behind the lens it is; a thin lens that is in focus at a distance d and has its image at a distance v is
+    /// of the focal length 1 / (1 / v + 1 / d).
+    pub fn optics(&self, meters_per_unit: Option<f64>) -> Optics {
+        let (width, is_flat) = (2.0 * self.half.x, matches!(self.projection, Projection::Perspective { .. }));
+        let sensor = self.sensor_width.filter(|_| is_flat);
+        let pinhole_focal_length = sensor.map(|sensor| sensor / width);
+        let lens = self.lens.zip(meters_per_unit);
+        let mm = |lens: Lens, meters: f64| (1e3 * meters * lens.radius, lens.inverse_focus / (1e3 * meters));
+        let of_lens = lens.zip(pinhole_focal_length).map(|((lens, meters), behind)| {
+            let (radius, inverse_focus) = mm(lens, meters);
+            let focal_length = 1.0 / (1.0 / behind + inverse_focus);
+            (focal_length, focal_length / (2.0 * radius))
+        });
+        let (focal_length, f_number) = of_lens.unzip();
+        Optics {
+            near: Some(self.near).filter(|near| *near > 0.0),
+            sensor: sensor.map(|across| [across, across * self.size.y / self.size.x]),
+            pinhole_focal_length,
+            focal_length,
+            f_number,
+            focus: lens.map(|(lens, meters)| meters / lens.inverse_focus),
+        }
     }
 
     /// The ray through a point of the film, in pixels from the top left corner, and the middle of the lens.

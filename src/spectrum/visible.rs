@@ -9,6 +9,10 @@ pub const LAST_NM: f64 = 830.0;
 /// Wavelengths on the grid.
 pub const COUNT: usize = 471;
 
+/// Luminous efficacy of radiation at the peak of the photopic eye, in lm/W: K_m of CIE 018:2019, *The Basis of Physical
+/// Photometry*.
+pub const EFFICACY: f64 = 683.002;
+
 /// The wavelengths of the grid, in nm.
 pub fn wavelengths() -> impl Iterator<Item = f64> {
     (0..COUNT).map(|i| FIRST_NM + i as f64)

@@ -164,7 +164,7 @@ impl Taken<'_> {
     pub(super) fn write_spectrum(&self, spectrum: &Spectrum, pixel: usize, image: &mut SpectralImage) {
         let bands = spectrum.bands.count();
         for (band, value) in image.values[pixel * bands..][..bands].iter_mut().enumerate() {
-            *value = stored(self.light(spectrum.at + band));
+            *value = stored(spectrum.unit * self.light(spectrum.at + band));
         }
     }
 

@@ -5,6 +5,7 @@
 use super::arrived::Arrived;
 use crate::light::LightId;
 use crate::scene::Scene;
+use crate::spectrum::visible::{EFFICACY, luminous};
 use crate::spectrum::{BandResponse, Basis, Curve, Distinct, Lanes, WavelengthBands};
 
 /// The bands of a spectral image, and what the lanes of each light are to them.
@@ -13,6 +14,8 @@ pub(super) struct Spectrum {
     pub(super) bands: WavelengthBands,
     /// Where their sums begin in a row.
     pub(super) at: usize,
+    /// The spectral radiance that a 1 of the sums is: 1, or in W m^-2 sr^-1 nm^-1 where the scene's light is absolute.
+    pub(super) unit: f64,
     /// Of each light, which of the responses it has.
     response_of: Vec<usize>,
     responses: Vec<BandResponse>,
@@ -30,7 +33,9 @@ impl Spectrum {
             }));
         }
         let responses = responses.into_iter().collect::<Option<_>>()?;
-        Some(Self { bands, at, response_of, responses })
+        // In absolute light, an even spectrum of this radiance has the luminance of white.
+        let unit = scene.format.white_luminance.map_or(1.0, |white| white / (EFFICACY * luminous()));
+        Some(Self { bands, at, unit, response_of, responses })
     }
 
     /// What a light's lanes are to the bands.

@@ -155,3 +155,45 @@ fn files_say_the_filter_with_its_width() {
         assert_eq!(found, Some(AttributeValue::Text(Text::from(recorded))));
     }
 }
+
+#[test]
+fn files_say_the_lens_in_meters_and_millimeters() {
+    let folder = Folder::new();
+    let said = |scene: &str| {
+        let attributes = written(&folder, scene, &[]).layer_data.attributes;
+        let other = |name: &str| attributes.other.get(&Text::from(name)).cloned();
+        let number = |name: &str| match other(name) {
+            Some(AttributeValue::F32(number)) => Some(number),
+            None => None,
+            Some(found) => panic!("{name} is {found:?}"),
+        };
+        let focal_lengths = [number("pinholeFocalLength"), number("effectiveFocalLength")];
+        let sensor = other("sensorOverallDimensions");
+        (sensor, focal_lengths, attributes.aperture, attributes.focus, attributes.near_clip_plane)
+    };
+    let near = |found: Option<f32>, expected: f64| {
+        let found = f64::from(found.expect("it is said"));
+        assert!((found / expected - 1.0).abs() < 1e-6, "{found} for {expected}");
+    };
+    assert_eq!(said(SCENE), (None, [None; 2], None, None, None));
+
+    // 90 degrees high, twice as wide as high: half of the height from the middle.
+    let sensor = SCENE.replace("= 90", "= 90\nsensor_width = 36\nnear = 0.5");
+    let millimeters = Some(AttributeValue::FloatVec2(Vec2(36.0, 18.0)));
+    assert_eq!(said(&sensor), (millimeters.clone(), [Some(9.0), None], None, None, Some(0.5)));
+
+    // A lens 2 cm across, focused at 0.9 m: 1 / f = 1 / 9 mm + 1 / 900 mm.
+    let lens = sensor.replace("near = 0.5", "lens = { radius = 1, focus_distance = 90 }");
+    assert_eq!(said(&lens), (millimeters.clone(), [Some(9.0), None], None, None, None));
+    let (found, [pinhole, effective], aperture, focus, _) =
+        said(&lens.replace("[render]\n", "[render]\nmeters_per_unit = 0.01\n"));
+    assert_eq!((found, pinhole), (millimeters, Some(9.0)));
+    let focal_length = 1.0 / (1.0 / 9.0 + 1.0 / 900.0);
+    near(effective, focal_length);
+    near(aperture, focal_length / 20.0);
+    near(focus, 0.9);
+
+    let far = lens.replace("focus_distance = 90", "focus_distance = inf").replace("sensor_width = 36\n", "");
+    let (found, lengths, aperture, focus, _) = said(&far.replace("[render]\n", "[render]\nmeters_per_unit = 0.01\n"));
+    assert_eq!((found, lengths, aperture, focus), (None, [None; 2], None, Some(f32::INFINITY)));
+}

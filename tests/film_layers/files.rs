@@ -52,7 +52,7 @@ fn every_lossless_compression_and_several_parts_hold_the_same_numbers() {
     let all = &parts[0].1;
     assert!(all.values().all(|(bits, _)| *bits == 32) && all.contains_key("light_key_lamp.R"));
     assert!(bytes.windows("Émilie".len()).any(|window| window == "Émilie".as_bytes()));
-    for (_, compression) in Compression::NAMES {
+    for compression in Compression::NAMES.into_iter().map(|(_, known)| known).filter(|known| !known.is_lossy()) {
         for multipart in [false, true] {
             let (parts, bytes) = written(Precision::Float, compression, multipart, &Layer::all());
             assert_eq!(bytes, written(Precision::Float, compression, multipart, &Layer::all()).1);
@@ -72,6 +72,59 @@ fn every_lossless_compression_and_several_parts_hold_the_same_numbers() {
             }
             assert_eq!(parts[0].0.as_deref(), Some("image"));
         }
+    }
+}
+
+#[test]
+fn a_compression_that_loses_changes_colors_alone() {
+    let float = &written(Precision::Float, Compression::Zip, true, &Layer::all()).0;
+    let half = &written(Precision::Half, Compression::Zip, true, &Layer::all()).0;
+    let is_color = |part: &str| {
+        let data = ["depth", "albedo", "N", "Nd", "P", "UV", "variance", "samples", "half_a", "half_b"];
+        !data.contains(&part) && !part.starts_with("Crypto")
+    };
+    for (precision, compression, exact) in [
+        (Precision::Float, Compression::Pxr24, float),
+        (Precision::Half, Compression::Dwaa, half),
+        (Precision::Half, Compression::Dwab, half),
+    ] {
+        let (parts, bytes) = written(precision, compression, true, &Layer::all());
+        assert_eq!(bytes, written(precision, compression, true, &Layer::all()).1);
+        for ((name, channels), (_, exact)) in parts.iter().zip(exact) {
+            let name = name.as_ref().expect("each part has a name");
+            assert!(is_color(name) || channels == exact, "{compression:?}: {name}");
+        }
+        let (red, exact) = (&parts[0].1["R"].1, &exact[0].1["R"].1);
+        assert_ne!(red, exact);
+        if compression == Compression::Pxr24 {
+            // 15 bits of a mantissa are left, rounded.
+            assert!(red.iter().zip(exact).all(|(red, exact)| (red - exact).abs() <= exact.abs() / 65536.0));
+        } else {
+            assert_eq!(parts[0].1["A"], half[0].1["A"]);
+        }
+    }
+}
+
+#[test]
+fn a_lossy_file_of_one_part_holds_no_data() {
+    let asked = |compression, precision, multipart, layers: &[Layer]| {
+        let mut scene = Scene::parse(ROOM, "").expect("the scene is valid");
+        (scene.format.compression, scene.format.precision, scene.format.multipart) =
+            (compression, precision, multipart);
+        let options = Options { layers: Some(layers.to_vec()), ..Options::default() };
+        options.apply(&mut scene).err().map(|error| error.to_string())
+    };
+    let (half, float) = (Precision::Half, Precision::Float);
+    let light = [Layer::Lights, Layer::Direct];
+    assert_eq!(asked(Compression::Dwaa, half, false, &light), None);
+    assert_eq!(asked(Compression::Pxr24, float, true, &Layer::all()), None);
+    for (compression, precision, layers, message) in [
+        (Compression::Dwab, half, &[Layer::Albedo, Layer::Direct][..], "dwab changes what is no color: albedo"),
+        (Compression::Dwaa, half, &[Layer::Normal, Layer::HalfA], "dwaa changes what is no color: N, half_a"),
+        (Compression::Pxr24, half, &[Layer::Direct], "pxr24 changes what is no color: Z"),
+        (Compression::Dwaa, float, &[], "dwaa holds colors of 16 bits, not of 32"),
+    ] {
+        assert_eq!(asked(compression, precision, false, layers), Some(format!("the compression {message}")));
     }
 }
 

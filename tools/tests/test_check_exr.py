@@ -9,6 +9,15 @@ import OpenEXR
 import pytest
 
 HEIGHT, WIDTH = 8, 12
+STAMP = {"capDate": "2026:02:28 23:59:59", "utcOffset": 0.0, "render/renderTime": 1.5, "render/threads": 2}
+# A sensor of 36 mm behind a screen window of 1.5, and a lens that is in focus 3 m away.
+OPTICS = {
+    "sensorOverallDimensions": (36.0, 24.0),
+    "pinholeFocalLength": 24.0,
+    "effectiveFocalLength": 1 / (1 / 24 + 1 / 3000),
+    "aperture": 2.8,
+    "focus": 3.0,
+}
 
 
 def world_to_ndc(world_to_camera, center, width, rows, columns, orthographic):
@@ -141,6 +150,9 @@ SEEN = world_to_ndc(np.diag([1, 1, -1, 1]), (0, 0), 1.5, HEIGHT, WIDTH, orthogra
         {"worldToCamera": far_away(), "render/projection": "orthographic"},
         {**ALL_AROUND, "envmap": OpenEXR.ENVMAP_LATLONG},
         {"compression": OpenEXR.PIZ_COMPRESSION, "owner": "Émilie", "comments": "shot 12"},
+        {"whiteLuminance": 100.0, **STAMP, **OPTICS},
+        {**OPTICS, "focus": np.inf, "effectiveFocalLength": 24.0},
+        {"focus": 3.0, "near": 0.5},
     ],
 )
 def test_crops_overscan_shifts_filters_and_projections_break_no_rule(found, changes):
@@ -151,7 +163,7 @@ def test_crops_overscan_shifts_filters_and_projections_break_no_rule(found, chan
     ("changes", "reason"),
     [
         ({"type": OpenEXR.tiledimage, "tiles": OpenEXR.TileDescription()}, "not a scanline image"),
-        ({"compression": OpenEXR.PXR24_COMPRESSION}, "not one of none, rle, zips, zip, piz"),
+        ({"compression": OpenEXR.B44_COMPRESSION}, "not one of none, rle, zips, zip, piz, pxr24, dwaa, dwab"),
         ({"lineOrder": OpenEXR.DECREASING_Y}, "not increasing y"),
         ({**ALL_AROUND, "envmap": OpenEXR.ENVMAP_LATLONG, "dataWindow": SHIFTED, "displayWindow": WINDOW}, "of an environment"),
         ({"dataWindow": SHIFTED, "displayWindow": SHIFTED}, "not at the origin"),
@@ -179,7 +191,17 @@ def test_crops_overscan_shifts_filters_and_projections_break_no_rule(found, chan
         ({"worldToNDC": SEEN @ np.diag([1, 1, -1, 1]).astype(np.float32)}, "farther points at a larger z"),
         ({"worldToNDC": SEEN, **ALL_AROUND}, "a view all around"),
         ({"software": None}, "software is missing"),
-        ({"capDate": "2026:01:01 00:00:00"}, "capDate is present"),
+        ({"capDate": "2026:01:01 00:00:00"}, "some are there, and not all"),
+        ({**STAMP, "capDate": "2026:13:01 00:00:00"}, "not a time in UTC"),
+        ({**STAMP, "utcOffset": 3600.0}, "not a time in UTC"),
+        ({**STAMP, "render/threads": 0}, "no number of threads"),
+        ({"whiteLuminance": -1.0}, "whiteLuminance is -1.0, not positive"),
+        ({"focus": 0.0}, "focus is 0.0, not positive"),
+        ({"pinholeFocalLength": 24.0}, "one is there without the other"),
+        ({**OPTICS, "pinholeFocalLength": 25.0, "effectiveFocalLength": None}, "pinholeFocalLength is 25.0, not that of a sensor"),
+        ({**OPTICS, "sensorOverallDimensions": (36.0, 20.0)}, "not as the image"),
+        ({**OPTICS, "effectiveFocalLength": 24.0}, "effectiveFocalLength is 24.0, not that of"),
+        ({**OPTICS, "aperture": None}, "some are there without the others"),
         ({"render/version": None}, "render/version is missing"),
         ({"render/sceneHash": "0f" * 31}, "render/sceneHash"),
         ({"render/seed": "-1"}, "render/seed"),
@@ -246,4 +268,4 @@ def test_the_command_names_each_file_and_exits_with_1_on_any_violation(tmp_path,
     OpenEXR.File(header(capDate="2026:01:01 00:00:00"), channels()).write(bad)
     assert check_exr.main([good]) == 0
     assert check_exr.main([good, bad]) == 1
-    assert f"FAIL {bad}\n      capDate is present" in capsys.readouterr().out
+    assert f"FAIL {bad}\n      capDate, utcOffset, render/renderTime, render/threads: some are there" in capsys.readouterr().out

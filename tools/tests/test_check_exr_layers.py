@@ -233,6 +233,44 @@ def test_a_good_file_of_several_parts_breaks_no_rule(found_in_parts, half):
     assert found_in_parts(several_parts(half)) == []
 
 
+def lossy_parts(compression, half):
+    """The good file of several parts, its colors under a compression that loses, its depth apart."""
+    parts = several_parts(half)
+    parts["depth"] = {**parts["N"][0], "name": "depth"}, {"Z": parts["image"][1].pop("Z")}
+    for header, channels in parts.values():
+        light = all(re.fullmatch(check_exr.LIGHT, name) for name in channels)
+        header["compression"] = compression if light else OpenEXR.ZIP_COMPRESSION
+    return parts
+
+
+@pytest.mark.parametrize("half", [False, True])
+@pytest.mark.parametrize("compression", check_exr.LOSSY, ids=check_exr.LOSSY.values())
+def test_colors_alone_may_be_under_a_compression_that_loses(found_in_parts, half, compression):
+    found = found_in_parts(lossy_parts(compression, half))
+    if half or compression == OpenEXR.PXR24_COMPRESSION:
+        assert found == []
+    else:
+        assert "channel 'R': float32, of which dwa" in "\n".join(found)
+
+
+@pytest.mark.parametrize("name", ["N", "albedo", "variance", "half_a", "CryptoObject00"])
+@pytest.mark.parametrize("compression", check_exr.LOSSY, ids=check_exr.LOSSY.values())
+def test_data_under_a_compression_that_loses_fail(found_in_parts, compression, name):
+    parts = lossy_parts(compression, half=True)
+    parts[name][0]["compression"] = compression
+    violations = found_in_parts(parts)
+    assert f"part {name!r}: compression differs from that of the first part" in violations
+    for channel in parts[name][1]:
+        assert f"channel {channel!r}: no color, and {check_exr.LOSSY[compression]} changes it" in violations
+
+
+def test_a_depth_under_pxr24_fails(found):
+    image = {name: plane(0.5, np.float32 if name == "Z" else np.float16) for name in "RGBAZ"}
+    attributes = {"render/clamped": 0, "compression": OpenEXR.PXR24_COMPRESSION}
+    assert found(header(**attributes), image) == ["channel 'Z': no color, and pxr24 changes it"]
+    assert found(header(**attributes | {"compression": OpenEXR.DWAA_COMPRESSION}), image) == []
+
+
 def test_depth_may_be_a_part_of_its_own(found_in_parts):
     parts = several_parts()
     parts["depth"] = {**parts["N"][0], "name": "depth"}, {"Z": parts["image"][1].pop("Z")}

@@ -82,6 +82,12 @@ def test_missing_layers_are_named_with_the_command_that_makes_them(tmp_path, cap
     assert "`render SCENE.toml --exr image.exr --layers albedo,N`" in text
 
 
+def test_colors_that_would_lose_once_more_are_refused(tmp_path, capsys):
+    image = noisy(tmp_path / "image.exr", ', multipart = true, compression = "dwaa"')
+    told = 'image.exr: colors under dwaa would lose once more: render it with compression = "zip"'
+    assert said(capsys, image).endswith(told)
+
+
 def test_a_missing_package_is_named(tmp_path, capsys, monkeypatch):
     monkeypatch.setitem(sys.modules, "pyoidn", None)
     image = noisy(tmp_path / "image.exr")

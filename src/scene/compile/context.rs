@@ -23,6 +23,8 @@ pub(super) struct Context<'d> {
     pub(super) hash: Sha256,
     /// Length of a scene unit in meters, if the scene says it.
     pub(super) meters_per_unit: Option<f64>,
+    /// Luminance of the film's white in cd/m^2, if the scene's light is absolute.
+    pub(super) white_luminance: Option<f64>,
     /// By file and by what was read of it.
     pub(super) images: BTreeMap<(PathBuf, Meaning, Option<Channel>), Arc<Image>>,
     /// By file and whether it is smooth.
@@ -46,7 +48,8 @@ impl<'d> Context<'d> {
     pub(super) fn new(folder: &'d Path, text: &str) -> Self {
         let hash = Sha256::new_with_prefix(text.as_bytes());
         let (images, meshes) = (BTreeMap::new(), HashMap::new());
-        Self { folder, warnings: Vec::new(), hash, meters_per_unit: None, images, meshes }
+        let (meters_per_unit, white_luminance) = (None, None);
+        Self { folder, warnings: Vec::new(), hash, meters_per_unit, white_luminance, images, meshes }
     }
 
     pub(super) fn warn(&mut self, message: impl Into<String>) {

@@ -8,6 +8,7 @@ use super::context::{Context, FileKind};
 use super::curve_name::{illuminant_called, unknown_glass, unknown_illuminant, unknown_metal, unknown_reflectance};
 use super::curve_range::{Refusal, article, factor, possible, shown, told};
 use super::curve_text::{CurveText, KindText, finite, not_finite};
+use super::radiometry::on_film;
 use super::spectrum_file::read_columns;
 use crate::scene::text::{At, Value};
 use crate::spectrum::{
@@ -39,7 +40,10 @@ pub(super) fn curve<'d>(context: &mut Context<'d>, text: &CurveText<'d>, quantit
         let advice = [reach(&curve), imitation(&curve)];
         advice.into_iter().flatten().for_each(|advice| context.warn_at(text.value, advice));
     }
-    Some(curve)
+    match quantity {
+        Quantity::Emission => on_film(context, text, curve),
+        _ => Some(curve),
+    }
 }
 
 /// Tells that a quantity cannot be written like this.

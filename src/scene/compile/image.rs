@@ -10,6 +10,7 @@ use super::curve::curve;
 use super::curve_range::is_factor;
 use super::curve_text::{CurveText, KindText, is_repeat};
 use super::image_file::{Meaning, read_texture};
+use super::radiometry::on_film;
 use crate::scene::text::At;
 use crate::spectrum::{Channel, Curve, CurveKind, Encoding, Image, Quantity, Texture};
 
@@ -51,8 +52,11 @@ fn image_curve<'d>(
         let help = format!("scale = {:.4} makes it 1", (1e4 / f64::from(brightest)).floor() / 1e4);
         return text.place.tell(message, (brightest < 1e4).then_some(help));
     }
-    let kind = CurveKind::Texture(Texture { image, placement });
-    Some(Curve { kind, scale, luminance: None })
+    let curve = Curve { kind: CurveKind::Texture(Texture { image, placement }), scale, luminance: None };
+    match quantity {
+        Quantity::Emission => on_film(context, text, curve),
+        _ => Some(curve),
+    }
 }
 
 /// The factor on an image, if it is one, and no luminance stands in its place.

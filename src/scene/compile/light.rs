@@ -12,6 +12,7 @@ use super::image::{bytes_of_image, factor_on_image};
 use super::image_file::read_image;
 use super::measures::{direction, point};
 use super::object;
+use super::radiometry;
 use super::transform::{Step, map_of, steps};
 use crate::light::{Environment, Light, LightId, Panorama, Point, Sky, Spot, Sun};
 use crate::math::{DMat3, DVec3, Transform};
@@ -88,10 +89,16 @@ fn emission<'d>(context: &mut Context<'d>, value: Value<'d>) -> Option<Curve> {
     curve(context, &CurveText::read(value, Quantity::Emission)?, Quantity::Emission)
 }
 
+/// The spectrum of a light of a point.
+fn intensity<'d>(context: &mut Context<'d>, value: Value<'d>) -> Option<Curve> {
+    let emission = emission(context, value)?;
+    radiometry::intensity(context, value, emission)
+}
+
 fn point_light<'d>(context: &mut Context<'d>, value: Value<'d>) -> Option<Light<Curve>> {
     Fields::read(value, |light| {
         let position = light.need("position", point);
-        let intensity = light.need("intensity", |value| emission(context, value));
+        let intensity = light.need("intensity", |value| intensity(context, value));
         Some(Light::Point(Point { position: position?.to_array(), intensity: intensity? }))
     })
 }
@@ -120,7 +127,7 @@ fn spot_light<'d>(context: &mut Context<'d>, value: Value<'d>) -> Option<Light<C
             .need("cone_angle", |value| value.within(above_0_to(180.0), "a cone is above 0 to 180 degrees wide", None));
         let blend =
             light.or("blend", 0.15, |value| value.within(0.0..=1.0, "blend is a part of the cone, 0 to 1", None));
-        let intensity = light.need("intensity", |value| emission(context, value));
+        let intensity = light.need("intensity", |value| intensity(context, value));
         let position = position?;
         let toward = match (toward?, target?) {
             (Some(toward), None) => toward.it,
@@ -169,9 +176,9 @@ fn even_or_image<'d>(context: &mut Context<'d>, value: Value<'d>) -> Option<Envi
         let factor = factor_on_image(&radiance);
         let turn = turn.and_then(|turn| turn.map_or(Some(Transform::IDENTITY), |turn| rotation(&turn.it)));
         let panorama = panorama(context, &At { place: radiance.place, it: file });
-        let (factor, turn, panorama) = (factor?, turn?, panorama?);
+        let (factor, turn, panorama) = (radiometry::on_film(context, &radiance, factor?.into())?, turn?, panorama?);
         let rotation = DMat3::from_cols(turn.vector(DVec3::X), turn.vector(DVec3::Y), turn.vector(DVec3::Z));
-        Some(Environment { radiance: factor.into(), image: Some(Sky::new(panorama, rotation)) })
+        Some(Environment { radiance: factor, image: Some(Sky::new(panorama, rotation)) })
     })
 }
 

@@ -17,6 +17,7 @@ mod mesh;
 mod object;
 mod parts;
 mod place;
+mod radiometry;
 mod relief;
 mod render;
 mod shape;
@@ -75,6 +76,7 @@ fn scene<'d>(context: &mut Context<'d>, sections: &mut Fields<'d>) -> Option<Sce
         sections.refuse::<()>(message, Some("every scene has [camera] and [film]"));
     }
     let (film, format) = film.and_then(section).and_then(view::film).unzip();
+    context.white_luminance = format.as_ref().and_then(|format| format.white_luminance);
     let camera = camera.and_then(section).and_then(|camera| view::camera(context, camera, film.as_ref()));
     let render = render.map_or(Some(RenderText::default()), |render| render::render(section(render)?));
     // A length that is misspelt is not missing as well.

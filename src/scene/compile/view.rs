@@ -8,13 +8,17 @@ use super::context::Context;
 use super::measures::{MAX_LENGTH, direction, length, point};
 use crate::film::{Compression, Filter, FirstSurface, Format, Layer, Mitchell, Overscan, Precision, Window};
 use crate::math::DVec3;
-use crate::scene::text::{Choice, Fields, Value, at};
+use crate::scene::text::{At, Choice, Fields, Value, above_0_to, at};
 use crate::scene::{Camera, FilmSettings, Lens, Projection};
 use crate::spectrum::visible::{FIRST_NM, LAST_NM};
 use crate::spectrum::{ColorSpace, WavelengthBands};
 
 /// Nearest focus: what a lens bends by, radius over this, stays within f64.
 const NEAREST_FOCUS: f64 = 1e-30;
+/// Largest luminance of white: that of the sun is 1.6e9.
+const MOST_LUMINOUS: f64 = 1e12;
+/// Widest sensor, in mm: a kilometer.
+const WIDEST_SENSOR: f64 = 1e6;
 /// Largest shift in heights of the image.
 const MAX_SHIFT: f64 = 1000.0;
 
@@ -30,6 +34,8 @@ const MAX_SHIFT: f64 = 1000.0;
 /// compression = "piz"
 /// multipart = true
 /// spectral = true                    # or { from = 380, to = 780, step = 5 }, in nm: a spectral image beside it
+/// radiometry = "absolute"            # lights are given in cd/m2, lx, cd, or in watts per nm
+/// white_luminance = 100              # cd/m2 of red, green and blue of 1
 /// metadata = { owner = "Ernst Abbe", comments = "shot 12" }
 /// ```
 pub(super) fn film(value: Value) -> Option<(FilmSettings, Format)> {
@@ -71,8 +77,8 @@ pub(super) fn film(value: Value) -> Option<(FilmSettings, Format)> {
 fn format(film: &mut Fields) -> Option<Format> {
     let layers = film.or("layers", Vec::new(), layers);
     let first = film.or("first", FirstSurface::default(), |value| value.word(&FirstSurface::NAMES));
-    let precision = film.or("precision", Precision::default(), |value| value.word(&Precision::NAMES));
-    let compression = film.or("compression", Compression::default(), |value| value.word(&Compression::NAMES));
+    let precision = film.maybe("precision", |value| value.word(&Precision::NAMES));
+    let compression = film.maybe("compression", at(compression));
     let multipart = film.or("multipart", false, Value::yes_or_no);
     let spectral = film.or("spectral", None, spectral);
     let metadata = film.or("metadata", [None, None], |value| {
@@ -81,10 +87,38 @@ fn format(film: &mut Fields) -> Option<Format> {
             Some([owner?, comments?])
         })
     });
+    let white_luminance = white_luminance(film);
     let [owner, comments] = metadata?;
-    let (layers, first, precision) = (layers?, first?, precision?);
-    let (compression, multipart, spectral) = (compression?, multipart?, spectral?);
-    Some(Format { layers, first, precision, compression, multipart, spectral, owner, comments })
+    let (layers, first, compressed, multipart) = (layers?, first?, compression?, multipart?);
+    let (place, compression) = compressed.map_or((None, Compression::default()), |at| (Some(at.place), at.it));
+    let precision = precision?.unwrap_or(match compression.is_of_16_bits() {
+        true => Precision::Half,
+        false => Precision::default(),
+    });
+    let (white_luminance, spectral) = (white_luminance?, spectral?);
+    let format =
+        Format { layers, first, precision, compression, multipart, spectral, white_luminance, owner, comments };
+    match place.and_then(|place| Some((place, format.objection()?))) {
+        Some((place, (message, help))) => place.advise(message, help),
+        None => Some(format),
+    }
+}
+
+/// Luminance of red, green and blue of 1, if the scene's light is absolute.
+fn white_luminance(film: &mut Fields) -> Option<Option<f64>> {
+    let is_absolute = film.or("radiometry", false, |value| value.word(&[("absolute", true), ("relative", false)]));
+    let help = "in cd/m2: 100 is about that of a screen's white";
+    let what = format!("a luminance of white is above 0 to {MOST_LUMINOUS:e}");
+    let white =
+        film.maybe("white_luminance", at(|value: Value| value.within(above_0_to(MOST_LUMINOUS), &what, Some(help))));
+    match (is_absolute?, white?) {
+        (true, white) => Some(Some(white.map_or(1.0, |white| white.it))),
+        (false, None) => Some(None),
+        (false, Some(At { place, .. })) => place.refuse_key(
+            "a luminance of white goes with radiometry = \"absolute\"",
+            Some("add that, or leave it out".into()),
+        ),
+    }
 }
 
 /// The bands of a spectral image: true for those that most programs expect, or from where to where, in nm, and the
@@ -110,6 +144,17 @@ fn spectral(value: Value) -> Option<Option<WavelengthBands>> {
         Some(bands) => Some(Some(bands)),
         None if from > to => value.refuse(format!("the last band, at {to} nm, lies before the first, at {from} nm")),
         None => value.refuse(format!("a step of {step} nm makes more than the {most} bands that fit")),
+    }
+}
+
+fn compression(value: Value) -> Option<Compression> {
+    match value.node().as_str() {
+        Some(name @ ("b44" | "b44a")) => {
+            let message =
+                format!("the compression {name} is not written: dark pixels lose their colors beside bright ones");
+            value.advise(message, "\"dwaa\" makes smaller files; \"piz\" and \"zip\" lose nothing")
+        }
+        _ => value.word(&Compression::NAMES),
     }
 }
 
@@ -225,6 +270,7 @@ fn filter(value: Value) -> Option<Filter> {
 /// vertical_fov = 35          # degrees
 /// lens = { radius = 0.02, focus_distance = 6 }
 /// shift = [0, 0.2]           # of the image's height
+/// sensor_width = 36          # mm; for the file alone
 /// ```
 ///
 /// The film is absent if it is wrong.
@@ -238,6 +284,7 @@ pub(super) fn camera(context: &mut Context, value: Value, film: Option<&FilmSett
         let near = camera.or("near", 0.0, |value| {
             value.within(0.0..=MAX_LENGTH, &format!("near is a distance from 0 to {MAX_LENGTH:e}"), None)
         });
+        let sensor = camera.maybe("sensor_width", |value| sensor_width(value, kind?));
         let projection = kind.and_then(|kind| projection(camera, kind, keys));
         let [_, _, shifted, opened] = keys;
         let shift = shifted.map_or(Some([0.0; 2]), shift);
@@ -246,7 +293,7 @@ pub(super) fn camera(context: &mut Context, value: Value, film: Option<&FilmSett
         if (target.it - position).try_normalize().is_none() {
             return target.place.refuse("the camera looks at the very point where it stands");
         }
-        let (projection, shift, lens, near, film) = (projection?, shift?, lens?, near?, film?);
+        let (projection, shift, lens, near, sensor, film) = (projection?, shift?, lens?, near?, sensor?, film?);
         let (view, parallel) = Camera::new(position, target.it, up, projection, [film.width, film.height]);
         if parallel {
             let warning = "camera.up is parallel to the viewing direction; another direction is taken";
@@ -258,7 +305,7 @@ pub(super) fn camera(context: &mut Context, value: Value, film: Option<&FilmSett
                 film.width, film.height
             ));
         }
-        Some(view.starting_at(near).shifted(shift).with_lens(lens))
+        Some(view.starting_at(near).shifted(shift).with_lens(lens).on_sensor(sensor))
     })
 }
 
@@ -312,6 +359,21 @@ fn projection(
             }
             None => Some(Projection::Equirectangular),
         },
+    }
+}
+
+/// Width of the sensor in mm, or of the film in a camera.
+fn sensor_width(value: Value, kind: ProjectionKind) -> Option<f64> {
+    match kind {
+        ProjectionKind::Perspective => {
+            let help = "in millimeters: 36 of a full-frame camera, 24.9 of Super 35";
+            value.within(
+                above_0_to(WIDEST_SENSOR),
+                &format!("a sensor is above 0 to {WIDEST_SENSOR:e} mm wide"),
+                Some(help),
+            )
+        }
+        _ => value.advise("only a perspective camera has a focal length, which its sensor tells", "leave it out"),
     }
 }
 

@@ -1,0 +1,43 @@
+//! Light in units, of scenes whose film is absolute.
+//!
+//! A number is a luminance in cd/m^2, of an intensity in cd, of an irradiance in lx: as many times white light of 1.
+//! Measured spectra and lines are radiances in W / (m^2 sr nm) and W / (m^2 sr), intensities and irradiances alike.
+
+use super::context::Context;
+use super::curve_text::CurveText;
+use crate::scene::text::Value;
+use crate::spectrum::visible::{EFFICACY, luminous};
+use crate::spectrum::{Curve, CurveKind};
+
+/// The light of a curve on a film whose white has the luminance that the scene says; the same if it says none.
+pub(super) fn on_film(context: &Context, text: &CurveText, curve: Curve) -> Option<Curve> {
+    let Some(white) = context.white_luminance else { return Some(curve) };
+    let unit = match curve.kind {
+        CurveKind::Illuminant(_) | CurveKind::Blackbody(_) if curve.luminance.is_none() => {
+            let message = "in absolute light, this spectrum does not say how bright it is";
+            let help = "add its `luminance`: of a radiance in cd/m2, of an intensity in cd, of an irradiance in lx";
+            return text.value.advise(message, help);
+        }
+        // A flat spectrum of 1 is of luminance 1 otherwise.
+        CurveKind::Samples(_) | CurveKind::Lines(_) if curve.luminance.is_none() => EFFICACY * luminous(),
+        _ => 1.0,
+    };
+    Some(brighter(curve, unit / white))
+}
+
+/// An intensity in cd or W / (sr nm), for distances in scene units.
+pub(super) fn intensity(context: &Context, place: Value, intensity: Curve) -> Option<Curve> {
+    match (context.white_luminance, context.meters_per_unit) {
+        (None, _) => Some(intensity),
+        (Some(_), Some(meters)) => Some(brighter(intensity, 1.0 / (meters * meters))),
+        (Some(_), None) => {
+            let message = "absolute light falls off with meters, and the scene does not say how long its unit is";
+            place.advise(message, "for a scene in meters: [render] meters_per_unit = 1")
+        }
+    }
+}
+
+fn brighter(curve: Curve, factor: f64) -> Curve {
+    let luminance = curve.luminance.map(|luminance| luminance * factor);
+    Curve { scale: curve.scale * factor, luminance, ..curve }
+}
