@@ -9,7 +9,7 @@ use clap::Parser;
 
 use crate::messages::is_colored;
 use crate::outputs::{check_exposure, check_png, ends_in, refuse};
-use crate::{catalog, diff, info, view};
+use crate::{catalog, diff, info, keep, merge, view};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -22,12 +22,15 @@ Examples:
   render --samples 16 --exr scenes/prism.toml     take a quick look
   render --layers all --exr scenes/prism.toml     write layers beside the image
   render --spectral --exr scenes/prism.toml       write ./prism.spectral.exr as well
+  render --checkpoint 60s --exr scenes/prism.toml lose nothing: --resume goes on
+  render --shard 1/4 --exr scenes/prism.toml      make one of four parts
+  render merge prism.exr prism.*.part             lay them together
   render catalog --help                           see which glasses it knows
   render info prism.exr                           say what an image carries
   render view prism.exr                           show it on the terminal
   render diff prism.exr other.exr                 say whether two images agree
 
-Exit codes: 0 done, 1 the render or a file failed, 2 bad arguments or scene.";
+Exit codes: 0 done, 1 the render or a file failed, 2 bad arguments or scene, 130 stopped by Ctrl-C.";
 
 /// Render a TOML scene to a linear OpenEXR image.
 #[derive(Parser)]
@@ -88,6 +91,9 @@ struct Arguments {
           value_parser = clap::value_parser!(u16).range(1..=MAX_THREADS))]
     threads: Option<u16>,
 
+    #[command(flatten)]
+    keep: keep::Flags,
+
     /// Say in the EXR when it was made, how long that took, and on how many threads. Without it two runs write the same
     /// bytes
     #[arg(long, conflicts_with_all = ["plan", "check"])]
@@ -146,6 +152,7 @@ pub struct Job {
     pub output: Output,
     pub exposure: f64,
     pub options: Options,
+    pub keep: keep::Flags,
 }
 
 /// What is wanted of the scene.
@@ -162,6 +169,7 @@ pub enum Request {
     Info(info::Query),
     View(view::Query),
     Diff(diff::Query),
+    Merge(merge::Query),
     /// Help or the version.
     Answer(String),
 }
@@ -175,6 +183,7 @@ pub fn parse() -> Result<Request> {
         Some("info") => read(rest, Request::Info),
         Some("view") => read(rest, Request::View),
         Some("diff") => read(rest, Request::Diff),
+        Some("merge") => read(rest, Request::Merge),
         _ => Arguments::try_parse_from(&words).map_or_else(told, |arguments| job(arguments).map(Request::Render)),
     }
 }
@@ -204,6 +213,7 @@ fn job(arguments: Arguments) -> Result<Job> {
         return refuse("--exposure brightens the picture of --png alone, and none is asked for", Some(help));
     }
     check_png(arguments.png.as_deref())?;
+    arguments.keep.check(idle.is_some(), with_exr, arguments.png.is_some(), arguments.stamp)?;
     let output = if arguments.plan {
         Output::Plan
     } else if arguments.check {
@@ -215,10 +225,12 @@ fn job(arguments: Arguments) -> Result<Job> {
         let help = "add --exr, or leave --spectral out";
         return refuse("--spectral writes spectra beside an EXR, and --png alone writes none", Some(help));
     }
-    let Arguments { samples, seed, overscan, crop, layers, spectral, threads, stamp, .. } = arguments;
+    let Arguments { samples, seed, overscan, crop, layers, spectral, threads, stamp, keep, .. } = arguments;
     let (exposure, layers) = (arguments.exposure.unwrap_or(0.0), layers.map(|LayerList(layers)| layers));
-    let options = Options { samples, seed, overscan, crop, layers, spectral, threads: threads.map(usize::from), stamp };
-    Ok(Job { scene, output, exposure, options })
+    let shard = keep.shard();
+    let options =
+        Options { samples, seed, overscan, crop, layers, spectral, threads: threads.map(usize::from), stamp, shard };
+    Ok(Job { scene, output, exposure, options, keep })
 }
 
 /// `--exr` takes an image to write, or nothing; right before the scene it belongs to the scene.

@@ -4,6 +4,8 @@ mod catalog;
 mod cli;
 mod diff;
 mod info;
+mod keep;
+mod merge;
 mod messages;
 mod outputs;
 mod progress;
@@ -17,15 +19,17 @@ use abbe::plan::plan;
 use abbe::{Rendering, Result, Scene};
 
 use cli::{Job, Output, Request};
+use keep::Keep;
 use outputs::spare;
 
 fn main() -> ExitCode {
     let answered = cli::parse().and_then(|request| match request {
-        Request::Render(job) => run(&job).map(|()| ExitCode::SUCCESS),
+        Request::Render(job) => run(&job),
         Request::Answer(text) => messages::answer(&text).map(|()| ExitCode::SUCCESS),
         Request::Catalog(query) => listed(catalog::lines(&query)),
         Request::Info(query) => listed(info::lines(&query)),
         Request::View(query) => view::run(&query).map(|()| ExitCode::SUCCESS),
+        Request::Merge(query) => merge::run(&query).map(|()| ExitCode::SUCCESS),
         Request::Diff(query) => Ok(diff::run(&query)),
     });
     answered.unwrap_or_else(|error| {
@@ -38,7 +42,7 @@ fn listed(lines: Result<Vec<String>>) -> Result<ExitCode> {
     messages::answer_lines(&lines?).map(|()| ExitCode::SUCCESS)
 }
 
-fn run(job: &Job) -> Result<()> {
+fn run(job: &Job) -> Result<ExitCode> {
     let mut scene = Scene::read(&job.scene)?;
     if let Output::Image { exr: None, .. } = job.output {
         scene.format.spectral = None;
@@ -50,34 +54,49 @@ fn run(job: &Job) -> Result<()> {
             let count = scene.objects.len();
             let objects = if count == 1 { "object" } else { "objects" };
             messages::say(&format!("{} is a valid scene: {count} {objects}", job.scene.display()));
-            Ok(())
+            Ok(ExitCode::SUCCESS)
         }
-        Output::Plan => messages::answer_lines(&plan(&scene).because),
+        Output::Plan => listed(Ok(plan(&scene).because)),
         Output::Image { exr, png } => image(job, &scene, exr.as_deref(), png.as_deref()),
     }
 }
 
-fn image(job: &Job, scene: &Scene, exr: Option<&Path>, png: Option<&Path>) -> Result<()> {
+fn image(job: &Job, scene: &Scene, exr: Option<&Path>, png: Option<&Path>) -> Result<ExitCode> {
+    let part = exr.and_then(|exr| job.keep.part(exr));
     let spectral = exr.filter(|_| scene.format.spectral.is_some()).map(|exr| exr.with_extension("spectral.exr"));
-    let outputs = || [exr, spectral.as_deref(), png].into_iter().flatten();
-    outputs().try_for_each(|output| spare(&job.scene, "scene", output))?;
-    outputs().try_for_each(check_writable)?;
-    let rendering = Rendering::new(scene, &job.options)?;
+    let outputs: Vec<&Path> = match &part {
+        Some(part) => vec![part],
+        None => [exr, spectral.as_deref(), png].into_iter().flatten().collect(),
+    };
+    outputs.iter().try_for_each(|output| spare(&job.scene, "scene", output))?;
+    outputs.iter().try_for_each(|output| check_writable(output))?;
+    let mut keep = Keep::new(&job.keep, outputs[0])?;
+    let mut rendering = Rendering::new(scene, &job.options)?;
     rendering.plan().because.iter().for_each(|line| messages::say(line));
-    let (progress, expected) = (progress::Progress::new(rendering.work()), rendering.expected());
-    let image = rendering.run(&|done| progress.advance(done));
-    progress.finish(expected);
-    if let Some(exr) = exr {
-        let clamped = image.write_exr(exr)?;
-        if clamped > 0 {
-            let lossless = if scene.format.compression.is_of_16_bits() { " with compression = \"zip\"" } else { "" };
-            messages::warn(&format!(
-                "{clamped} values were too bright for 16 bits and became 65504: precision = \"float\"{lossless} keeps them"
-            ));
-        }
+    if !keep.resume(&mut rendering, &outputs)? {
+        return Ok(ExitCode::SUCCESS);
     }
-    spectral.as_ref().map_or(Ok(()), |spectral| image.write_spectral_exr(spectral))?;
+    let progress = progress::Progress::new(rendering.work(), rendering.done());
+    let expected = rendering.expected();
+    let is_finished = keep.run(&mut rendering, &progress)?;
+    if !is_finished {
+        progress.stop();
+        keep.say_how_to_resume();
+        return Ok(ExitCode::from(keep::STOPPED_CODE));
+    }
+    progress.finish(expected);
+    let image = rendering.image();
+    match (&part, exr) {
+        (Some(part), _) => rendering.write_part(part)?,
+        (None, Some(exr)) => messages::warn_of_clamped(&image, image.write_exr(exr)?),
+        (None, None) => {}
+    }
+    if let (None, Some(spectral)) = (&part, &spectral) {
+        image.write_spectral_exr(spectral)?;
+    }
     png.map_or(Ok(()), |png| image.write_png(png, job.exposure))?;
-    messages::print_report(image.report(), outputs());
-    Ok(())
+    // Last: a checkpoint with all samples says that the image is written.
+    keep.save(&rendering)?;
+    messages::print_report(image.report(), outputs.into_iter());
+    Ok(ExitCode::SUCCESS)
 }

@@ -6,7 +6,7 @@ use std::io::{ErrorKind, IsTerminal, Write};
 use std::path::Path;
 
 use abbe::trace::Report;
-use abbe::{Diagnostic, Error, Result};
+use abbe::{Diagnostic, Error, Image, Result};
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 
 /// Most mistakes of a scene that are shown.
@@ -69,6 +69,24 @@ pub fn warn(message: &str) {
     say(&format!("warning: {message}"));
 }
 
+/// Says how many values were too large for the file, if any were.
+pub fn warn_of_clamped(image: &Image, clamped: u64) {
+    if clamped > 0 {
+        let lossless = if image.format().compression.is_of_16_bits() { " with compression = \"zip\"" } else { "" };
+        warn(&format!(
+            "{clamped} values were too bright for 16 bits and became 65504: precision = \"float\"{lossless} keeps them"
+        ));
+    }
+}
+
+/// What went wrong with a file or what was asked for, in one line.
+pub fn problem(error: &Error) -> String {
+    match error {
+        Error::Io { doing, path, source } => format!("cannot {doing} {}: {}", path.display(), reason(source)),
+        other => other.to_string(),
+    }
+}
+
 /// What went wrong, where, and what to do.
 pub fn print_error(error: &Error) {
     match error {
@@ -77,10 +95,7 @@ pub fn print_error(error: &Error) {
             say(&format!("error: {message}"));
             help.iter().for_each(|help| say(&format!("help: {help}")));
         }
-        Error::Io { doing, path, source } => {
-            say(&format!("error: cannot {doing} {}: {}", path.display(), reason(source)));
-        }
-        other => say(&format!("error: {other}")),
+        other => say(&format!("error: {}", problem(other))),
     }
 }
 

@@ -17,6 +17,8 @@ pub struct Progress {
     lines: Option<Lines>,
     done: Arc<AtomicU64>,
     start: Instant,
+    /// The share of the work that this run does.
+    left: f64,
 }
 
 /// Renders shorter than this say nothing where there is no terminal.
@@ -25,21 +27,25 @@ const QUIET: Duration = Duration::from_secs(10);
 const PERIOD: Duration = Duration::from_secs(30);
 
 impl Progress {
-    /// Of a render of so many camera samples and photons.
-    pub fn new(work: u64) -> Self {
-        let (done, start) = (Arc::new(AtomicU64::new(0)), Instant::now());
+    /// Of a render of so many camera samples and photons, some of which an earlier run has done.
+    pub fn new(work: u64, before: u64) -> Self {
+        let (done, start) = (Arc::new(AtomicU64::new(before)), Instant::now());
         let bar = std::io::stderr().is_terminal().then(|| {
             let style = ProgressStyle::with_template("{wide_bar} {percent:>3} %  {elapsed} passed, {eta} left");
-            ProgressBar::new(work).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+            ProgressBar::new(work)
+                .with_position(before)
+                .with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
         });
         let lines = bar.is_none().then(|| {
             let done = done.clone();
             Lines::new(QUIET, PERIOD, move || {
                 let passed = start.elapsed().as_secs_f64();
-                say(&line(done.load(Ordering::Relaxed) as f64 / work.max(1) as f64, passed));
+                let part = |done: u64| done as f64 / work.max(1) as f64;
+                say(&line([before, done.load(Ordering::Relaxed)].map(part), passed));
             })
         });
-        Self { bar, lines, done, start }
+        let left = work.saturating_sub(before) as f64 / work.max(1) as f64;
+        Self { bar, lines, done, start, left }
     }
 
     /// Counts those that are done; may be called from any thread.
@@ -50,13 +56,19 @@ impl Progress {
         }
     }
 
-    /// Removes the bar and says how long it took, beside the time that was expected.
+    /// Removes the bar and says how long it took, beside the time that was expected of the whole render.
     pub fn finish(self, expected: Duration) {
+        let (start, expected) = (self.start, expected.mul_f64(self.left));
+        self.stop();
+        say(&rendered(start.elapsed(), expected));
+    }
+
+    /// Removes the bar.
+    pub fn stop(self) {
         drop(self.lines);
         if let Some(bar) = &self.bar {
             bar.finish_and_clear();
         }
-        say(&rendered(self.start.elapsed(), expected));
     }
 }
 
@@ -96,12 +108,12 @@ impl Drop for Lines {
     }
 }
 
-/// How far a part of the work is after so many seconds.
-fn line(part: f64, passed: f64) -> String {
+/// How far the work is after so many seconds: the parts of it that were done before them and are done now.
+fn line([before, part]: [f64; 2], passed: f64) -> String {
     let percent = (100.0 * part).floor().min(99.0);
-    let left = match part {
+    let left = match part - before {
         0.0 => String::new(),
-        part => format!(", about {} left", spoken(passed * (1.0 - part).max(0.0) / part)),
+        more => format!(", about {} left", spoken(passed * (1.0 - part).max(0.0) / more)),
     };
     format!("{percent} %, {} passed{left}", spoken(passed))
 }
@@ -121,10 +133,11 @@ mod tests {
 
     #[test]
     fn a_line_says_the_part_that_is_done_and_the_time_passed_and_left() {
-        assert_eq!(line(0.0, 10.0), "0 %, 10 s passed");
-        assert_eq!(line(0.25, 40.0), "25 %, 40 s passed, about 2 min left");
-        assert_eq!(line(0.999, 3000.0), "99 %, 50 min passed, about 3 s left");
-        assert_eq!(line(0.1, 7200.0), "10 %, 2.0 h passed, about 18.0 h left");
+        assert_eq!(line([0.0, 0.0], 10.0), "0 %, 10 s passed");
+        assert_eq!(line([0.0, 0.25], 40.0), "25 %, 40 s passed, about 2 min left");
+        assert_eq!(line([0.0, 0.999], 3000.0), "99 %, 50 min passed, about 3 s left");
+        assert_eq!(line([0.0, 0.1], 7200.0), "10 %, 2.0 h passed, about 18.0 h left");
+        assert_eq!(line([0.5, 0.6], 10.0), "60 %, 10 s passed, about 40 s left");
     }
 
     #[test]

@@ -3,14 +3,18 @@
 //! Friedman & Jones 2015, *Fully automatic ID mattes with support for motion blur and transparency*; the layout is that
 //! of the Cryptomatte specification 1.2.0.
 
+use std::borrow::Cow;
+
+use serde::{Deserialize, Serialize};
+
 /// Objects of a pixel that are told, two in each layer.
 pub const RANKS: usize = 6;
 
 /// The names behind the numbers of a matte.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Manifest {
     /// The name of the matte, with which its layers begin.
-    pub name: &'static str,
+    pub name: Cow<'static, str>,
     /// Each name once, with its number.
     pub entries: Vec<(String, u32)>,
 }
@@ -21,12 +25,12 @@ impl Manifest {
         let mut entries: Vec<_> = names.map(|name| (name.to_owned(), id(name))).collect();
         entries.sort();
         entries.dedup();
-        Self { name, entries }
+        Self { name: name.into(), entries }
     }
 
     /// Seven hexadecimal digits that stand for the matte among the attributes of a file.
     pub fn key(&self) -> String {
-        format!("{:08x}", hash(self.name))[..7].to_owned()
+        format!("{:08x}", hash(&self.name))[..7].to_owned()
     }
 
     /// Names and numbers as a JSON object.

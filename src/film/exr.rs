@@ -1,5 +1,6 @@
 //! The film as an OpenEXR file of scan lines; the same bytes for the same film.
 
+use std::borrow::Cow;
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::SystemTime;
@@ -10,6 +11,7 @@ use exr::prelude::{
     Layer, LayerAttributes, LineOrder, SmallVec, Text, Vec2, f16,
 };
 use rayon::prelude::{IntoParallelIterator, ParallelIterator};
+use serde::{Deserialize, Serialize};
 
 use super::exr_blocks;
 use super::file::replace_file;
@@ -19,7 +21,7 @@ use super::time::cap_date;
 use crate::error::{Error, Result};
 
 /// How the camera saw, as the file records it.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct View {
     /// World to camera for row vectors, left-handed: +x right, +y up, +z forward (OpenEXR standard attributes).
     pub world_to_camera: [[f64; 4]; 4],
@@ -37,7 +39,7 @@ pub struct View {
 }
 
 /// What a camera of glass and metal would say of itself, as far as the scene knows it (OpenEXR, *Standard Attributes*).
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Optics {
     /// Distance at which rays start, in scene units.
     pub near: Option<f64>,
@@ -55,16 +57,16 @@ pub struct Optics {
 
 /// Where the image comes from: everything that another run needs to make the same bytes, and no time of day unless that
 /// is asked for.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Provenance {
     /// Key and value of each attribute; keys are written below `render/`.
-    pub facts: Vec<(&'static str, Fact)>,
+    pub facts: Vec<(Cow<'static, str>, Fact)>,
     /// When the image was made.
     pub time: Option<SystemTime>,
 }
 
 /// One value of the provenance.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Fact {
     /// A string attribute.
     Text(String),
@@ -89,7 +91,7 @@ pub fn write_exr(film: &Film, format: &Format, view: &View, provenance: &Provena
     let mut attributes = attributes(film, format, view, provenance);
     for manifest in &film.manifests {
         for (key, value) in [
-            ("name", manifest.name),
+            ("name", &*manifest.name),
             ("hash", "MurmurHash3_32"),
             ("conversion", "uint32_to_float32"),
             ("manifest", &manifest.json()),

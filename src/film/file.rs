@@ -19,11 +19,19 @@ const MOST_LEFT_BEHIND: u32 = 1000;
 /// # Errors
 /// If it cannot be written; a file that was there before is then untouched, and nothing else is left behind.
 pub(super) fn replace_file(path: &Path, bytes: &[u8]) -> Result<()> {
+    replace_by(path, &mut |file| file.write_all(bytes))
+}
+
+/// The same of bytes that come one after another.
+///
+/// # Errors
+/// As [`replace_file`].
+pub(super) fn replace_by(path: &Path, write: &mut dyn FnMut(&mut dyn Write) -> io::Result<()>) -> Result<()> {
     let written = Target::of(path).and_then(|target| match target {
-        Target::Device => File::options().write(true).open(path)?.write_all(bytes),
+        Target::Device => write(&mut File::options().write(true).open(path)?),
         Target::File(target) => {
             let (mut file, temporary) = Temporary::beside(&target)?;
-            file.write_all(bytes)?;
+            write(&mut file)?;
             if let Ok(before) = fs::metadata(&target) {
                 file.set_permissions(before.permissions())?;
             }

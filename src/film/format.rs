@@ -1,10 +1,12 @@
 //! How an image is written.
 
+use serde::{Deserialize, Serialize};
+
 use super::layers::{FirstSurface, Layer};
 use crate::spectrum::WavelengthBands;
 
 /// What a file holds beside the image, and how its numbers are written.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Format {
     /// Layers, in the order in which they were asked for.
     pub layers: Vec<Layer>,
@@ -53,7 +55,7 @@ impl Format {
 }
 
 /// Bits of a color. Depth, places and statistics always have 32.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Precision {
     /// 16 bits: three digits, up to 65504.
     Half,
@@ -68,7 +70,7 @@ impl Precision {
 }
 
 /// How numbers are packed: without losing a bit, but for those that say so.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Compression {
     /// Not at all: the largest files, the fastest to write.
     None,

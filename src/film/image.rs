@@ -1,5 +1,7 @@
 //! An image: its pixels and what they mean.
 
+use serde::{Deserialize, Serialize};
+
 use super::cryptomatte::Manifest;
 use super::layers::LayerImage;
 use super::spectral::SpectralImage;
@@ -20,7 +22,7 @@ pub struct Sample {
 }
 
 /// A finished pixel.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Pixel {
     /// Film red, green and blue, linear, the mean of the samples as the filter weighs them.
     pub rgb: [f32; 3],
@@ -33,7 +35,7 @@ pub struct Pixel {
 }
 
 /// A finished image, with its overscan or a part of it, rows from the top.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Film {
     /// Pixels per row.
     pub width: u32,

@@ -1,7 +1,9 @@
 //! What a file may hold beside red, green, blue, coverage and depth.
 
+use serde::{Deserialize, Serialize};
+
 /// A layer, or several of one kind.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Layer {
     /// Light straight from surfaces that shine: `L E` in Heckbert's notation.
     Emission,
@@ -163,7 +165,7 @@ impl Layer {
 }
 
 /// Which surface is the first.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum FirstSurface {
     /// The one that the camera ray meets.
     #[default]
@@ -178,7 +180,7 @@ impl FirstSurface {
 }
 
 /// A layer of a finished image.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LayerImage {
     /// What it is.
     pub layer: Layer,

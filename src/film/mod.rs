@@ -1,5 +1,6 @@
 //! Floor 2: what is remembered of the light that arrives, and how it is written down.
 
+mod blocks;
 mod cryptomatte;
 mod exr;
 mod exr_attributes;
@@ -17,6 +18,7 @@ mod layers;
 mod mitchell;
 mod picture;
 mod sample_weights;
+mod shard;
 mod spectral;
 mod sum;
 mod time;
@@ -37,8 +39,10 @@ pub use layers::{FirstSurface, LONGEST_NAME, Layer, LayerImage, light_layer_name
 pub use mitchell::Mitchell;
 pub use picture::{png, write_png, write_rgb8};
 pub use sample_weights::SampleWeights;
+pub use shard::{Shard, TILE, TilePlace};
 pub use spectral::SpectralImage;
 pub use sum::{PassSum, PixelSum, stored};
 pub use window::{Overscan, Window};
 
+pub(crate) use blocks::{BlockReader, BlockWriter, Kind, write_blocks};
 pub(crate) use guard::{MOST_TEXELS, fits, guarded};

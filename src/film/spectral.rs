@@ -1,9 +1,11 @@
 //! Images that hold a spectrum in each pixel.
 
+use serde::{Deserialize, Serialize};
+
 use crate::spectrum::WavelengthBands;
 
 /// The spectra of an image's pixels.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SpectralImage {
     /// Where their bands lie.
     pub bands: WavelengthBands,

@@ -1,3 +1,5 @@
+use serde::{Deserialize, Serialize};
+
 use super::image::{DEPTH_OF_NOTHING, Pixel, Sample};
 use super::sample_weights::SampleWeights;
 
@@ -19,14 +21,14 @@ pub struct PassSum {
 }
 
 /// The sum of a pixel's passes, in the order in which they were made.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct PixelSum {
     total: Entry,
     kept: u32,
     nearest: f64,
 }
 
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 struct Entry {
     rgb: [f64; 3],
     met: u32,

@@ -1,6 +1,7 @@
 //! Film color spaces, their matrices, and the one transfer curve a picture for looking needs.
 
 use palette::{LinSrgb, Srgb};
+use serde::{Deserialize, Serialize};
 
 use super::data::{self, Illuminant};
 
@@ -12,7 +13,7 @@ pub type Matrix = [[f64; 3]; 3];
 /// ```toml
 /// film.color_space = "lin_rec709_scene"
 /// ```
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum ColorSpace {
     /// The primaries of Rec.709 (sRGB), white D65.
     #[default]

@@ -1,7 +1,9 @@
 //! Bands of equal width, one beside the other: what a spectral image tells apart.
 
+use serde::{Deserialize, Serialize};
+
 /// Bands of wavelengths, each around its center.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct WavelengthBands {
     first_nm: f64,
     step_nm: f64,

@@ -1,12 +1,14 @@
 //! Which objects the pixels of a tile show.
 
+use serde::{Deserialize, Serialize};
+
 use crate::film::RANKS;
 
 /// Of each pixel, the objects that its camera samples met, with how many did.
-#[derive(Default)]
+#[derive(Default, Serialize, Deserialize)]
 pub(super) struct Coverage(Vec<Vec<Covered>>);
 
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Serialize, Deserialize)]
 struct Covered {
     object: u32,
     samples: u32,
@@ -16,6 +18,16 @@ impl Coverage {
     /// Of so many pixels.
     pub(super) fn new(pixels: usize) -> Self {
         Self(vec![Vec::new(); pixels])
+    }
+
+    /// How many pixels there are.
+    pub(super) fn pixels(&self) -> usize {
+        self.0.len()
+    }
+
+    /// Whether all objects are among so many.
+    pub(super) fn is_among(&self, objects: usize) -> bool {
+        self.0.iter().flatten().all(|covered| (covered.object as usize) < objects)
     }
 
     /// Counts a camera sample that met an object.

@@ -1,5 +1,7 @@
 //! Layers of many samples: sums of a tile's pixels, and the finished images.
 
+use serde::{Deserialize, Serialize};
+
 use super::contribution::add;
 use super::coverage::Coverage;
 use super::layer_sample::Left;
@@ -8,7 +10,7 @@ use super::spectrum_sample::Spectrum;
 use crate::film::{Layer, LayerImage, RANKS, Sample, SampleWeights, SpectralImage, stored};
 
 /// Sums of the pixels of a tile.
-#[derive(Default)]
+#[derive(Default, Serialize, Deserialize)]
 pub(super) struct LayerSums {
     /// A row of numbers for each pixel.
     rows: Vec<f64>,
@@ -32,6 +34,12 @@ impl LayerSums {
                 covered: if layers.ids.is_empty() { Coverage::default() } else { Coverage::new(pixels) },
             },
         }
+    }
+
+    /// Whether it has as many numbers of each kind as another one.
+    pub(super) fn is_shaped_as(&self, other: &Self) -> bool {
+        let lengths = |sums: &Self| [sums.rows.len(), sums.subtracted.len(), sums.depths.len(), sums.covered.pixels()];
+        lengths(self) == lengths(other)
     }
 
     /// Adds a sample of a pixel: what the image gets of it, and what it left in the layers. `early` are those of the

@@ -7,17 +7,19 @@
 //! Lightweight Photon Mapping*, the split by kind of path.
 
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use super::contribution::{Contribution, Found};
 use super::photon::{Landing, Splat, show as show_photon};
 use super::photon_batch::{Batch, Sent, batches, send};
 use super::photon_targets::PhotonTargets;
 use super::stats::Stats;
-use super::tile::TILE;
+use super::tile::{Shown, Tile};
 use super::walker::Walker;
+use super::watch::Watch;
 use super::width::in_lanes;
 use super::{LightPass, World};
-use crate::film::Layer;
+use crate::film::{Layer, Shard};
 use crate::math::Sampler;
 
 /// Batches whose splats are kept in memory at once.
@@ -39,47 +41,51 @@ const SEEN_OF_A_PLAN: u64 = 1 << 16;
 /// Of each target, photons that tell how many rays one follows.
 const FIRST: u64 = 256;
 
-/// What the light pass found.
-#[derive(Clone, Debug, Default)]
-pub(super) struct CausticImage {
-    /// Film values of the window's pixels; empty where there is no pass.
-    pub(super) pixels: Vec<[f64; 3]>,
-    /// How much of their light polarization may change, of every tile.
-    pub(super) moved: Vec<f64>,
-    /// What they show in the layers: a row for each pixel.
-    pub(super) layers: Vec<f64>,
+/// How far a light pass is. It goes on where it stopped.
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+pub(super) struct Sending {
+    /// Batches that are done.
+    batches: usize,
     /// Photons sent.
     pub(super) photons: u64,
     pub(super) stats: Stats,
 }
 
-/// Sends all photons of a world's light pass; `progress` is told how many are done.
-pub(super) fn show<const N: usize>(world: &World, progress: &(dyn Fn(u64) + Sync)) -> CausticImage {
+/// Sends the photons of a world's light pass that have not been sent, until it shall stop, and adds what they show to
+/// the tiles of a part of the image; answers whether all are sent. `progress` is told how many are done.
+///
+/// Every part sends all photons, which may be seen anywhere: a sum of what the parts found would have other last bits.
+pub(super) fn show<const N: usize>(
+    world: &World,
+    sending: &mut Sending,
+    shard: Shard,
+    tiles: &mut [Tile],
+    watch: &Watch,
+) -> bool {
     if world.photon_targets.is_none() {
-        return CausticImage::default();
+        return true;
     }
-    let window = world.scene.film.window();
-    let mut pixels = vec![[0.0; 3]; window.pixels() as usize];
-    let mut moved = vec![0.0; window.width.div_ceil(TILE) as usize * window.height.div_ceil(TILE) as usize];
-    let mut layers = vec![0.0; pixels.len() * world.layers.numbers];
+    let (window, numbers) = (world.scene.film.window(), world.layers.numbers);
+    for tile in tiles.iter_mut().filter(|tile| tile.shown.pixels.is_empty()) {
+        let pixels = tile.sums.len();
+        tile.shown = Shown { pixels: vec![[0.0; 3]; pixels], layers: vec![0.0; pixels * numbers], moved: 0.0 };
+    }
     let add = &mut |splat: Splat| {
         let Splat { pixel, change, rgb, .. } = splat;
+        let Some([tile, place]) = shard.place_of(window, pixel) else { return };
+        let shown = &mut tiles[tile].shown;
         if !world.layers.is_empty() {
-            let numbers = world.layers.numbers;
-            add_to_layers(world, &splat, &mut layers[pixel as usize * numbers..][..numbers]);
+            add_to_layers(world, &splat, &mut shown.layers[place * numbers..][..numbers]);
         }
         if splat.caught && world.layers.catches() {
             return;
         }
-        (0..3).for_each(|i| pixels[pixel as usize][i] += rgb[i]);
+        (0..3).for_each(|i| shown.pixels[place][i] += rgb[i]);
         if change != 0.0 {
-            let [column, row] = [pixel % window.width, pixel / window.width].map(|place| place / TILE);
-            let tile = row * window.width.div_ceil(TILE) + column;
-            moved[tile as usize] += f64::from(change) * world.amount(rgb);
+            shown.moved += f64::from(change) * world.amount(rgb);
         }
     };
-    let shown = splats::<N>(world, progress, add);
-    CausticImage { pixels, moved, layers, ..shown }
+    send_on::<N>(world, sending, watch, add)
 }
 
 /// Adds a photon that the camera sees to the row of its pixel, which holds means.
@@ -100,31 +106,36 @@ fn add_to_layers(world: &World, splat: &Splat, row: &mut [f64]) {
     world.layers.add_to(if early { Layer::HalfA } else { Layer::HalfB }, row, rgb.map(|x| 2.0 * x));
 }
 
-/// Sends them and hands over what they show, in an order that never changes; holds no image.
-pub(super) fn splats<const N: usize>(
-    world: &World,
-    progress: &(dyn Fn(u64) + Sync),
-    take: &mut dyn FnMut(Splat),
-) -> CausticImage {
-    let mut shown = CausticImage::default();
-    let Some(targets) = &world.photon_targets else { return shown };
+/// Sends all of them and hands over what they show, in an order that never changes; holds no image.
+pub(super) fn splats<const N: usize>(world: &World, take: &mut dyn FnMut(Splat)) -> Sending {
+    let mut sending = Sending::default();
+    send_on::<N>(world, &mut sending, &Watch { progress: &|_| (), is_due: &|| false }, take);
+    sending
+}
+
+/// The same of those that have not been sent, until it shall stop; answers whether all are.
+fn send_on<const N: usize>(world: &World, sending: &mut Sending, watch: &Watch, take: &mut dyn FnMut(Splat)) -> bool {
+    let Some(targets) = &world.photon_targets else { return true };
     let batches = batches(targets, |_| 0, |target| target.photons, world.method.seed ^ SEED);
-    for group in batches.chunks(AT_ONCE) {
-        let done: Vec<Sent<Splat>> = group.par_iter().map(|batch| send_shown::<N>(world, targets, *batch)).collect();
-        progress(group.iter().map(|batch| batch.count).sum());
-        for sent in done {
-            shown.stats += sent.stats;
+    for group in batches.get(sending.batches..).unwrap_or_default().chunks(AT_ONCE) {
+        let send = |batch: &Batch| (!(watch.is_due)()).then(|| send_shown::<N>(world, targets, *batch));
+        let done: Vec<Option<Sent<Splat>>> = group.par_iter().map(send).collect();
+        for (batch, sent) in group.iter().zip(done) {
+            // Splats are added in the order of the batches: what was found beyond a gap is found again.
+            let Some(sent) = sent else { return false };
+            (watch.progress)(batch.count);
+            (sending.batches, sending.photons) = (sending.batches + 1, sending.photons + batch.count);
+            sending.stats += sent.stats;
             for splat in sent.kept {
                 if splat.rgb.iter().all(|x| x.is_finite()) {
                     take(splat);
                 } else {
-                    shown.stats.non_finite += 1;
+                    sending.stats.non_finite += 1;
                 }
             }
         }
     }
-    shown.photons = batches.iter().map(|batch| batch.count).sum();
-    shown
+    true
 }
 
 /// Sends one batch.

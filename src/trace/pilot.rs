@@ -73,7 +73,7 @@ fn weigh<const N: usize>(whole: &World, world: &mut World, lights: Vec<LightId>,
     for image in 0..IMAGES {
         world.method.seed = (whole.method.seed ^ SEED).wrapping_add(image);
         let mut splats = Vec::new();
-        let shown = light_pass::splats::<N>(world, &|_| (), &mut |splat| splats.push((splat.pixel, splat.rgb)));
+        let shown = light_pass::splats::<N>(world, &mut |splat| splats.push((splat.pixel, splat.rgb)));
         (photons, rays) = (photons + shown.photons, rays + shown.stats.rays);
         values.extend(summed(splats).into_iter().map(|(pixel, rgb)| (pixel, apply(&to_xyz, rgb))));
     }

@@ -1,26 +1,25 @@
 //! An image in the making: pass after pass over its tiles.
 
+use std::any::Any;
 use std::borrow::Borrow;
+use std::io;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::prelude::*;
 
 use super::World;
 use super::layer_sums::{Taken, images, spectral_image, write};
-use super::light_pass::{self, CausticImage};
-use super::light_vertices::{LightPaths, LightVertices, SHARED};
-use super::photon_map;
+use super::light_pass;
+use super::pass_light::PassLight;
+use super::passes::Progress;
 use super::photon_targets::PhotonTargets;
+use super::saved::{self, Restored};
 use super::stats::Stats;
-use super::tile::{TILE, Tile};
+use super::tile::Tile;
+use super::watch::Watch;
 use super::width::in_lanes;
-use crate::film::{Film, Pixel, PixelSum, SampleWeights};
-
-/// Samples of each pixel in the first pass, where no photons are gathered; every other pass takes as many as were taken
-/// before.
-const FIRST_PASS: u32 = 16;
-
-/// Samples of each pixel in the largest pass with light vertices, all of which are in memory at once.
-const MOST_AT_ONCE: u32 = 64;
+use crate::error::Result;
+use crate::film::{BlockReader, BlockWriter, Film, Pixel, PixelSum, SampleWeights, Shard, TilePlace};
 
 /// What rendering noticed.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -52,48 +51,48 @@ pub struct Report {
 }
 
 /// Renders the world's image, or the part of it that is asked for. `progress` is told how many camera samples and
-/// photons are done, from any thread; in the end they are [`work`].
+/// photons are done, from any thread; in the end they are [`Rendering::work`].
 pub fn render(world: &World, progress: &(dyn Fn(u64) + Sync)) -> (Film, Report) {
     let mut rendering = Rendering::new(world);
     while rendering.advance(progress) {}
     (rendering.film(), rendering.report())
 }
 
-/// How many camera samples and photons an image takes.
-pub fn work(world: &World) -> u64 {
-    let window = world.scene.film.window();
-    let samples = window.pixels() * u64::from(world.method.samples);
-    let passes = world.method.light_pass.as_ref().and_then(|pass| pass.map).map_or(0, |map| u64::from(map.count));
-    let photons = |targets: &Option<PhotonTargets>| targets.as_ref().map_or(0, PhotonTargets::photons);
-    samples + photons(&world.photon_targets) + passes * photons(&world.map_targets)
+/// How far an image in the making came.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Advance {
+    /// All samples are taken.
+    Finished,
+    /// A pass is finished, and another one is left.
+    Passed,
+    /// It stopped within a pass, as it was told to.
+    Stopped,
 }
 
 /// An image in the making. It advances pass by pass, can be looked at after each, and is finished after the last.
 ///
 /// A pass takes the next samples of all pixels; where photons are gathered, each pass sends its own before. The light
-/// pass comes before the first.
+/// pass comes before the first. It may stop anywhere between two pixels, be saved there, and go on.
 pub struct Rendering<W> {
     world: W,
+    shard: Shard,
     tiles: Vec<Tile>,
-    shown: Option<CausticImage>,
-    /// Of the photons that were gathered.
-    gathered: Stats,
-    photons: u64,
-    /// Camera samples of each pixel so far, and passes.
-    samples: u32,
-    passes: u32,
+    progress: Progress,
+    /// What the paths of the pass that was stopped look at.
+    light: Option<Box<dyn Any + Send + Sync>>,
 }
 
 impl<W: Borrow<World>> Rendering<W> {
     /// An image without samples yet.
     pub fn new(world: W) -> Self {
+        Self::of_shard(world, Shard::WHOLE)
+    }
+
+    /// One of several parts of an image; all other pixels stay blank.
+    pub fn of_shard(world: W, shard: Shard) -> Self {
         let (film, layers) = (&world.borrow().scene.film, &world.borrow().layers);
-        let window = film.window();
-        let corners = (0..window.height)
-            .step_by(TILE as usize)
-            .flat_map(|y| (0..window.width).step_by(TILE as usize).map(move |x| [x, y]));
-        let tiles = corners.map(|corner| Tile::new(film, corner, layers)).collect();
-        Self { world, tiles, shown: None, gathered: Stats::default(), photons: 0, samples: 0, passes: 0 }
+        let tiles = shard.tiles(film.window()).map(|place| Tile::new(film, place, layers)).collect();
+        Self { world, shard, tiles, progress: Progress::default(), light: None }
     }
 
     /// What is rendered, and how.
@@ -103,16 +102,48 @@ impl<W: Borrow<World>> Rendering<W> {
 
     /// Camera samples of each pixel that have been taken.
     pub fn samples(&self) -> u32 {
-        self.samples
+        self.progress.samples
+    }
+
+    /// Whether all samples are taken.
+    pub fn is_finished(&self) -> bool {
+        self.samples() >= self.world().method.samples
+    }
+
+    /// How many camera samples and photons the image takes.
+    pub fn work(&self) -> u64 {
+        let world = self.world();
+        let samples = self.pixels() * u64::from(world.method.samples);
+        let passes = world.method.light_pass.as_ref().and_then(|pass| pass.map).map_or(0, |map| u64::from(map.count));
+        let photons = |targets: &Option<PhotonTargets>| targets.as_ref().map_or(0, PhotonTargets::photons);
+        samples + photons(&world.photon_targets) + passes * photons(&world.map_targets)
+    }
+
+    /// How many of them are done.
+    pub fn done(&self) -> u64 {
+        self.samples_taken() + self.photons()
     }
 
     /// Makes the next pass, if there is one, and answers whether another one is left. `progress` is told how many
     /// camera samples and photons were done since it was last told, from any thread.
     pub fn advance(&mut self, progress: &(dyn Fn(u64) + Sync)) -> bool {
-        if self.samples < self.world().method.samples {
-            in_lanes!(self.world().method.basis, N => self.pass::<N>(progress));
+        self.advance_until(progress, &|| false) == Advance::Passed
+    }
+
+    /// The same, but stops before the next pixels once `is_due` says so. It is asked before every pixel of a pass, from
+    /// any thread.
+    pub fn advance_until(&mut self, progress: &(dyn Fn(u64) + Sync), is_due: &(dyn Fn() -> bool + Sync)) -> Advance {
+        let stopped = AtomicBool::new(false);
+        let stops = || {
+            let due = stopped.load(Ordering::Relaxed) || is_due();
+            stopped.fetch_or(due, Ordering::Relaxed) || due
+        };
+        let watch = Watch { progress, is_due: &stops };
+        let all = self.world().method.samples;
+        if self.samples() < all && !in_lanes!(self.world().method.basis, N => self.pass::<N>(&watch)) {
+            return Advance::Stopped;
         }
-        self.samples < self.world().method.samples
+        if self.samples() < all { Advance::Passed } else { Advance::Finished }
     }
 
     /// The image of the samples so far.
@@ -124,15 +155,14 @@ impl<W: Borrow<World>> Rendering<W> {
         let luminance = settings.color_space.to_xyz()[1];
         let (mut images, none) = (images(layers, pixels.len()), PixelSum::default());
         let mut spectral = spectral_image(layers, pixels.len());
-        for tile in &self.tiles {
-            for (place, sum) in (0..).zip(&tile.sums) {
-                let number = tile.number(window, place);
-                let place = place as usize;
+        for (tile, at) in self.places() {
+            for (place, sum) in tile.sums.iter().enumerate() {
+                let number = at.pixel(window, place as u32);
                 let subtracted = tile.subtracted.get(place).unwrap_or(&none);
                 let weights = SampleWeights::new(settings.filter, [sum.kept(), subtracted.kept()]);
-                pixels[number] = sum.pixel(subtracted, &weights, self.shown_at(number));
+                pixels[number] = sum.pixel(subtracted, &weights, tile.shown_at(place));
                 if !layers.is_empty() {
-                    let (sums, shown) = (tile.layers.rows(layers, place), self.shown_in_layers(number));
+                    let (sums, shown) = (tile.layers.rows(layers, place), tile.shown_in_layers(layers, place));
                     let (covered, rgb) = (tile.layers.covered(), [sum.rgb(), subtracted.rgb()]);
                     let taken = Taken { sums, shown, rgb, weights, covered, place };
                     write(layers, &taken, number, &mut images);
@@ -161,18 +191,16 @@ impl<W: Borrow<World>> Rendering<W> {
 
     /// What was noticed so far.
     pub fn report(&self) -> Report {
-        let window = self.world().scene.film.window();
-        let (mut all, mut first_non_finite, mut polarization_of_tile) = (self.gathered, None, 0.0_f64);
-        all += self.shown.as_ref().map_or(Stats::default(), |shown| shown.stats);
-        for (number, tile) in self.tiles.iter().enumerate() {
-            let stats = self.stats_of(tile, number);
+        let (mut all, mut first_non_finite, mut polarization_of_tile) = (self.shared_stats(), None, 0.0_f64);
+        for tile in &self.tiles {
+            let stats = self.stats_of(tile);
             if stats.light > 0.0 {
                 polarization_of_tile = polarization_of_tile.max(stats.polarization / stats.light);
             }
             first_non_finite = first_non_finite.or(tile.first_non_finite);
             all += stats;
         }
-        let samples = window.pixels() * u64::from(self.samples);
+        let samples = self.samples_taken();
         let per_sample = |sum: f64| sum / samples.max(1) as f64;
         Report {
             samples,
@@ -186,73 +214,97 @@ impl<W: Borrow<World>> Rendering<W> {
             polarization: if all.light > 0.0 { all.polarization / all.light } else { 0.0 },
             polarization_of_tile,
             light: all.light,
-            photons: self.photons,
+            photons: self.photons(),
         }
     }
 
-    /// What was noticed in a tile, with the light that photons show there.
-    fn stats_of(&self, tile: &Tile, number: usize) -> Stats {
-        let window = self.world().scene.film.window();
-        let mut stats = tile.stats;
-        if let Some(shown) = &self.shown {
-            let samples = f64::from(self.samples);
-            stats.polarization += samples * shown.moved.get(number).copied().unwrap_or_default();
-            let light = |place| self.world().amount(self.shown_at(tile.number(window, place)));
-            stats.light += samples * (0..tile.width * tile.height).map(light).sum::<f64>();
-        }
+    /// What was left out of the light that all parts of an image send alike.
+    pub fn non_finite_in_all_parts(&self) -> u64 {
+        self.shared_stats().non_finite
+    }
+
+    /// Writes how far it is, and all sums.
+    ///
+    /// # Errors
+    /// If they cannot be written.
+    pub(crate) fn save(&self, blocks: &mut BlockWriter) -> io::Result<()> {
+        saved::save(self.world(), &self.progress, &self.tiles, blocks)
+    }
+
+    /// Goes on from what was saved of a rendering of the same world, of other samples perhaps.
+    ///
+    /// # Errors
+    /// If it cannot be read. Then, and if it does not go on, this one must not be used.
+    pub(crate) fn restore(&mut self, blocks: BlockReader) -> Result<Restored> {
+        self.light = None;
+        saved::restore(self.world.borrow(), &mut self.progress, &mut self.tiles, blocks)
+    }
+
+    /// Its tiles with their places.
+    fn places(&self) -> impl Iterator<Item = (&Tile, TilePlace)> {
+        self.tiles.iter().zip(self.shard.tiles(self.world().scene.film.window()))
+    }
+
+    fn pixels(&self) -> u64 {
+        self.tiles.iter().map(|tile| tile.sums.len() as u64).sum()
+    }
+
+    fn photons(&self) -> u64 {
+        self.progress.sending.photons + self.progress.gathered_photons
+    }
+
+    /// Camera samples taken, with those of the pass that was stopped.
+    fn samples_taken(&self) -> u64 {
+        let (samples, passes) = (self.progress.samples, self.progress.passes);
+        let of_pass = u64::from(self.progress.end_of_pass(self.world()) - samples);
+        let ahead = |tile: &Tile| if tile.passes > passes { tile.sums.len() as u64 } else { tile.ahead.into() };
+        self.pixels() * u64::from(samples) + of_pass * self.tiles.iter().map(ahead).sum::<u64>()
+    }
+
+    fn shared_stats(&self) -> Stats {
+        let mut stats = self.progress.gathered;
+        stats += self.progress.sending.stats;
         stats
     }
 
-    /// What photons show in a pixel of the window.
-    fn shown_at(&self, pixel: usize) -> [f64; 3] {
-        self.shown.as_ref().and_then(|shown| shown.pixels.get(pixel)).copied().unwrap_or_default()
+    /// What was noticed in a tile, with the light that photons show there.
+    fn stats_of(&self, tile: &Tile) -> Stats {
+        let mut stats = tile.stats;
+        let samples = f64::from(self.samples());
+        stats.polarization += samples * tile.shown.moved;
+        stats.light += samples * tile.shown.pixels.iter().map(|&rgb| self.world().amount(rgb)).sum::<f64>();
+        stats
     }
 
-    /// What photons show in the layers of a pixel of the window.
-    fn shown_in_layers(&self, pixel: usize) -> &[f64] {
-        let numbers = self.world().layers.numbers;
-        self.shown
-            .as_ref()
-            .and_then(|shown| shown.layers.get(pixel * numbers..(pixel + 1) * numbers))
-            .unwrap_or_default()
-    }
-
-    fn pass<const N: usize>(&mut self, progress: &(dyn Fn(u64) + Sync)) {
+    /// Makes the next pass, or goes on with it; answers whether it is finished.
+    fn pass<const N: usize>(&mut self, watch: &Watch) -> bool {
         let world = self.world.borrow();
-        if self.shown.is_none() {
-            let shown = light_pass::show::<N>(world, progress);
-            self.photons += shown.photons;
-            self.shown = Some(shown);
+        let progress = &mut self.progress;
+        if !light_pass::show::<N>(world, &mut progress.sending, self.shard, &mut self.tiles, watch) {
+            return false;
         }
-        let all = world.method.samples;
-        let map = world.method.light_pass.as_ref().and_then(|pass| pass.map).filter(|_| world.has_map());
-        let end = match map {
-            Some(map) => (u64::from(self.passes + 1) * u64::from(all) / u64::from(map.count)) as u32,
-            None if world.method.light_vertices => {
-                (self.samples + self.samples.clamp(FIRST_PASS, MOST_AT_ONCE)).min(all)
-            }
-            None => (2 * self.samples).max(FIRST_PASS).min(all),
-        };
-        let photons = photon_map::photons::<N>(world, self.passes);
-        if let Some(photons) = &photons {
-            self.photons += photons.sent;
-            self.gathered += photons.stats;
-            progress(photons.sent);
-        }
-        let numbers = self.samples..end;
-        let light_vertices: Vec<LightVertices<N>> = match LightPaths::asked_for(world) {
-            Some(light_paths) => {
-                let shared = |first: u32| light_paths.shared(first..(first + SHARED).min(end));
-                numbers.clone().step_by(SHARED as usize).map(shared).collect()
-            }
-            None => Vec::new(),
-        };
-        light_vertices.iter().for_each(|set| self.gathered += set.stats);
-        self.tiles.par_iter_mut().for_each(|tile| {
-            tile.take::<N>(world, photons.as_ref(), &light_vertices, numbers.clone());
-            progress(u64::from(tile.width * tile.height) * numbers.len() as u64);
+        let numbers = progress.samples..progress.end_of_pass(world);
+        let kept = self.light.take().and_then(|light| light.downcast::<PassLight<N>>().ok());
+        let light = kept.unwrap_or_else(|| {
+            let light = PassLight::new(world, progress.passes, numbers.clone());
+            (watch.progress)(light.sent());
+            Box::new(light)
         });
-        (self.samples, self.passes) = (end, self.passes + 1);
+        let (window, passes) = (world.scene.film.window(), progress.passes);
+        let places: Vec<TilePlace> = self.shard.tiles(window).collect();
+        let left = self.tiles.par_iter_mut().zip(places).filter(|(tile, _)| tile.passes == passes);
+        left.for_each(|(tile, place)| {
+            let taken = tile.take::<N>(place, world, &light, numbers.clone(), watch.is_due);
+            (watch.progress)(u64::from(taken) * numbers.len() as u64);
+        });
+        if self.tiles.iter().any(|tile| tile.passes == passes) {
+            self.light = Some(light);
+            return false;
+        }
+        light.add_to(&mut progress.gathered);
+        progress.gathered_photons += light.sent();
+        (progress.samples, progress.passes) = (numbers.end, passes + 1);
+        true
     }
 }
 

@@ -67,7 +67,7 @@ fn look<const N: usize>(world: &World) -> SeenLight {
     // Photons light all pixels, of which so many were looked at.
     let pixels = window.pixels() as f64;
     let looked_at = f64::from(SIDE * SIDE) / pixels;
-    splats::<N>(world, &|_| (), &mut |splat| {
+    splats::<N>(world, &mut |splat| {
         let light = looked_at * world.amount(splat.rgb);
         let part = &mut seen.parts[part_of(window, [splat.pixel % window.width, splat.pixel / window.width])];
         part[0] += light;

@@ -1,7 +1,9 @@
 use std::ops::AddAssign;
 
+use serde::{Deserialize, Serialize};
+
 /// What happened to the rays of many samples.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Stats {
     /// Rays followed, without those to lights.
     pub(super) rays: u64,

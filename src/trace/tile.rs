@@ -2,89 +2,137 @@
 
 use std::ops::Range;
 
+use serde::{Deserialize, Serialize};
+
 use super::World;
 use super::layer_sums::LayerSums;
 use super::layers::Layers;
-use super::light_vertices::{LightVertices, SHARED};
+use super::pass_light::PassLight;
 use super::path_tracer::PathTracer;
-use super::photon_map::PhotonMap;
 use super::stats::Stats;
-use crate::film::{PassSum, PixelSum, Window};
+use crate::film::{PassSum, PixelSum, TilePlace};
 use crate::math::Sampler;
 use crate::scene::FilmSettings;
 
-/// Side of a tile in pixels.
-pub(super) const TILE: u32 = 16;
-
 /// A small part of the image.
+#[derive(Serialize, Deserialize)]
 pub(super) struct Tile {
-    /// Its first column and row in the window.
-    corner: [u32; 2],
-    pub(super) width: u32,
-    pub(super) height: u32,
     /// Sums of its pixels, row by row.
     pub(super) sums: Vec<PixelSum>,
     /// The same of samples that are subtracted; empty where the filter is nowhere negative.
     pub(super) subtracted: Vec<PixelSum>,
     /// Sums of their layers.
     pub(super) layers: LayerSums,
+    /// What photons show in its pixels.
+    pub(super) shown: Shown,
     pub(super) stats: Stats,
     pub(super) first_non_finite: Option<[i64; 3]>,
+    /// Passes that all its pixels have had, and how many of them have had the next one.
+    pub(super) passes: u32,
+    pub(super) ahead: u32,
+}
+
+/// What photons show in a tile; empty where none are sent.
+#[derive(Clone, Default, Serialize, Deserialize)]
+pub(super) struct Shown {
+    /// Film values of its pixels.
+    pub(super) pixels: Vec<[f64; 3]>,
+    /// A row for each pixel of what they show in the layers.
+    pub(super) layers: Vec<f64>,
+    /// How much of their light polarization may change.
+    pub(super) moved: f64,
 }
 
 impl Tile {
-    pub(super) fn new(film: &FilmSettings, corner: [u32; 2], layers: &Layers) -> Self {
-        let (window, is_signed) = (film.window(), film.filter.is_signed());
-        let [width, height] = [window.width - corner[0], window.height - corner[1]].map(|left| left.min(TILE));
-        let sums = vec![PixelSum::default(); width as usize * height as usize];
+    pub(super) fn new(film: &FilmSettings, place: TilePlace, layers: &Layers) -> Self {
+        let is_signed = film.filter.is_signed();
+        let sums = vec![PixelSum::default(); place.pixels()];
         let subtracted = if is_signed { sums.clone() } else { Vec::new() };
         let layers = LayerSums::new(layers, sums.len(), is_signed);
-        Self { corner, width, height, sums, subtracted, layers, stats: Stats::default(), first_non_finite: None }
+        let (shown, stats) = (Shown::default(), Stats::default());
+        Self { sums, subtracted, layers, shown, stats, first_non_finite: None, passes: 0, ahead: 0 }
     }
 
-    /// The number of one of its pixels in the window.
-    pub(super) fn number(&self, window: Window, place: u32) -> usize {
-        let [x, y] = [self.corner[0] + place % self.width, self.corner[1] + place / self.width];
-        y as usize * window.width as usize + x as usize
+    /// Whether it has as many sums of each kind as another one of the same place.
+    pub(super) fn is_shaped_as(&self, other: &Self, layers: &Layers) -> bool {
+        let pixels = other.sums.len();
+        let of = |whole: usize| [0, whole].into_iter();
+        (self.sums.len(), self.subtracted.len()) == (pixels, other.subtracted.len())
+            && self.layers.is_shaped_as(&other.layers)
+            && of(pixels).any(|length| length == self.shown.pixels.len())
+            && of(pixels * layers.numbers).any(|length| length == self.shown.layers.len())
+            && (self.ahead as usize) < pixels
     }
 
-    /// Takes samples of all pixels.
+    /// What photons show in one of its pixels.
+    pub(super) fn shown_at(&self, place: usize) -> [f64; 3] {
+        self.shown.pixels.get(place).copied().unwrap_or_default()
+    }
+
+    /// What they show in the layers of one of its pixels.
+    pub(super) fn shown_in_layers(&self, layers: &Layers, place: usize) -> &[f64] {
+        self.shown.layers.get(place * layers.numbers..(place + 1) * layers.numbers).unwrap_or_default()
+    }
+
+    /// Takes samples of all pixels that have not had them, until it shall stop. Answers how many pixels have got them.
     pub(super) fn take<const N: usize>(
         &mut self,
+        place: TilePlace,
         world: &World,
-        photons: Option<&PhotonMap<N>>,
-        light_vertices: &[LightVertices<N>],
+        light: &PassLight<N>,
+        numbers: Range<u32>,
+        stops: &dyn Fn() -> bool,
+    ) -> u32 {
+        let window = world.scene.film.window();
+        let mut tracer = PathTracer::<N>::new(world).with_photons(light.photons.as_ref()).with_layers();
+        let first = self.ahead;
+        while (self.ahead as usize) < self.sums.len() && !stops() {
+            // Random numbers and rays belong to the format's pixel, whatever part of it is made.
+            let x = window.left + (place.corner[0] + self.ahead % place.width) as i32;
+            let y = window.top + (place.corner[1] + self.ahead / place.width) as i32;
+            self.take_pixel(world, &mut tracer, light, [x, y], numbers.clone());
+            self.ahead += 1;
+        }
+        let taken = self.ahead - first;
+        if self.ahead as usize == self.sums.len() {
+            (self.passes, self.ahead) = (self.passes + 1, 0);
+        }
+        taken
+    }
+
+    /// Takes samples of the next pixel, which is pixel (x, y) of the format.
+    fn take_pixel<'w, const N: usize>(
+        &mut self,
+        world: &World,
+        tracer: &mut PathTracer<'w, N>,
+        light: &'w PassLight<N>,
+        pixel: [i32; 2],
         numbers: Range<u32>,
     ) {
-        let window = world.scene.film.window();
-        let mut tracer = PathTracer::<N>::new(world).with_photons(photons).with_layers();
-        for (place, sum) in (0..).zip(&mut self.sums) {
-            // Random numbers and rays belong to the format's pixel, whatever part of it is made.
-            let x = window.left + (self.corner[0] + place % self.width) as i32;
-            let y = window.top + (self.corner[1] + place / self.width) as i32;
-            let [mut pass, mut subtracted] = [PassSum::default(), PassSum::default()];
-            for number in numbers.clone() {
-                tracer.light_vertices = light_vertices.get(((number - numbers.start) / SHARED) as usize);
-                let sampler = Sampler::of_pixel(world.method.seed, [x, y], number);
-                let sample = tracer.sample(&sampler, [x, y]);
-                let lobe = if sample.is_subtracted { &mut subtracted } else { &mut pass };
-                if !lobe.add(&sample) {
-                    self.stats.non_finite += 1;
-                    self.first_non_finite.get_or_insert([x.into(), y.into(), number.into()]);
-                } else if let Some(layers) = tracer.layers() {
-                    let early = number < world.method.samples.div_ceil(2);
-                    layers.keep(sample.is_subtracted);
-                    self.layers.add(&world.layers, place as usize, early, &sample, &layers.left());
-                }
-            }
-            if let Some(layers) = tracer.layers() {
-                layers.hand_over(self.layers.rows_mut(&world.layers, place as usize));
-            }
-            sum.add(pass);
-            if let Some(sum) = self.subtracted.get_mut(place as usize) {
-                sum.add(subtracted);
+        let place = self.ahead as usize;
+        let [mut pass, mut subtracted] = [PassSum::default(), PassSum::default()];
+        for number in numbers.clone() {
+            tracer.light_vertices = light.vertices(number - numbers.start);
+            let sampler = Sampler::of_pixel(world.method.seed, pixel, number);
+            let sample = tracer.sample(&sampler, pixel);
+            let lobe = if sample.is_subtracted { &mut subtracted } else { &mut pass };
+            if !lobe.add(&sample) {
+                self.stats.non_finite += 1;
+                self.first_non_finite.get_or_insert([pixel[0].into(), pixel[1].into(), number.into()]);
+            } else if let Some(layers) = tracer.layers() {
+                let early = number < world.method.samples.div_ceil(2);
+                layers.keep(sample.is_subtracted);
+                self.layers.add(&world.layers, place, early, &sample, &layers.left());
             }
         }
-        self.stats += tracer.walker.stats;
+        if let Some(layers) = tracer.layers() {
+            layers.hand_over(self.layers.rows_mut(&world.layers, place));
+        }
+        self.sums[place].add(pass);
+        if let Some(sum) = self.subtracted.get_mut(place) {
+            sum.add(subtracted);
+        }
+        // Pixel by pixel, so that a stop between two of them changes no order of sums.
+        self.stats += std::mem::take(&mut tracer.walker.stats);
     }
 }

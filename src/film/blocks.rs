@@ -1,0 +1,159 @@
+//! Files of blocks, each with a checksum: what is cut short or has changed on a disk is found before it is used.
+//!
+//! | bytes | what |
+//! |---|---|
+//! | 8 | what kind of file it is |
+//! | 8, 4, n | of each block: its length n, the CRC-32 of length and content, the content; numbers are little-endian |
+//! | 8, 4 | the end: a block of length 0 |
+//!
+//! Numbers in a block are written by `postcard`: those of floating point bit by bit, so that sums go on as they were.
+//! CRC-32 finds every change of up to 32 bits in a row (Koopman 2002, *32-Bit Cyclic Redundancy Codes for Internet
+//! Applications*).
+
+use std::fs::File;
+use std::io::{self, BufReader, Read, Write};
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+use super::file::replace_by;
+use crate::error::{Error, Result};
+
+/// The first bytes of a kind of file.
+pub type Kind = [u8; 8];
+
+/// Bytes of a length, and of a length and its checksum.
+const LENGTH: usize = 8;
+const HEAD: usize = 12;
+
+/// Writes a file of blocks, one after another.
+pub struct BlockWriter<'a> {
+    to: &'a mut dyn Write,
+    /// The block in the making.
+    bytes: Vec<u8>,
+}
+
+/// Writes a file of blocks as a whole or not at all.
+///
+/// # Errors
+/// If it cannot be written; a file that was there before is then untouched.
+pub fn write_blocks(path: &Path, kind: Kind, write: &dyn Fn(&mut BlockWriter) -> io::Result<()>) -> Result<()> {
+    replace_by(path, &mut |to| {
+        to.write_all(&kind)?;
+        let mut blocks = BlockWriter { to, bytes: Vec::new() };
+        write(&mut blocks)?;
+        blocks.bytes.resize(HEAD, 0);
+        blocks.put()
+    })
+}
+
+impl BlockWriter<'_> {
+    /// Writes the next block.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    pub fn block(&mut self, content: &impl Serialize) -> io::Result<()> {
+        let mut bytes = std::mem::take(&mut self.bytes);
+        bytes.resize(HEAD, 0);
+        self.bytes = postcard::to_extend(content, bytes).map_err(io::Error::other)?;
+        self.put()
+    }
+
+    /// Hands over the block in the making.
+    fn put(&mut self) -> io::Result<()> {
+        let (head, content) = self.bytes.split_at_mut(HEAD);
+        let length = (content.len() as u64).to_le_bytes();
+        head[..LENGTH].copy_from_slice(&length);
+        head[LENGTH..].copy_from_slice(&checksum(length, content).to_le_bytes());
+        self.to.write_all(&self.bytes)?;
+        self.bytes.clear();
+        Ok(())
+    }
+}
+
+fn checksum(length: [u8; LENGTH], content: &[u8]) -> u32 {
+    let mut hasher = crc32fast::Hasher::new();
+    hasher.update(&length);
+    hasher.update(content);
+    hasher.finalize()
+}
+
+/// Reads a file of blocks, one after another.
+pub struct BlockReader {
+    path: PathBuf,
+    file: BufReader<File>,
+    /// Bytes of the file that have not been read.
+    left: u64,
+}
+
+impl BlockReader {
+    /// Opens a file; none if it is of another kind.
+    ///
+    /// # Errors
+    /// If it cannot be read.
+    pub fn open(path: &Path, kind: Kind) -> Result<Option<Self>> {
+        let opened = || {
+            let mut file = File::open(path)?;
+            let (mut found, metadata) = (Kind::default(), file.metadata()?);
+            if !metadata.is_file() || metadata.len() < kind.len() as u64 {
+                return Ok(None);
+            }
+            file.read_exact(&mut found)?;
+            let left = metadata.len() - kind.len() as u64;
+            Ok((found == kind).then(|| Self { path: path.to_owned(), file: BufReader::new(file), left }))
+        };
+        opened().map_err(|source| Error::Io { doing: "read", path: path.to_owned(), source })
+    }
+
+    /// The next block.
+    ///
+    /// # Errors
+    /// [`Error::Decode`] if it is not what was written.
+    pub fn block<T: DeserializeOwned>(&mut self) -> Result<T> {
+        let bytes = self.content()?;
+        match postcard::take_from_bytes(&bytes) {
+            Ok((content, [])) => Ok(content),
+            _ => Err(self.damaged()),
+        }
+    }
+
+    /// Makes sure that no block is left.
+    ///
+    /// # Errors
+    /// [`Error::Decode`] if one is, or the end is missing.
+    pub fn end(mut self) -> Result<()> {
+        if self.content()?.is_empty() && self.left == 0 { Ok(()) } else { Err(self.damaged()) }
+    }
+
+    fn content(&mut self) -> Result<Vec<u8>> {
+        let mut head = [0; HEAD];
+        self.fill(&mut head)?;
+        let length: [u8; LENGTH] = std::array::from_fn(|i| head[i]);
+        let sum: [u8; HEAD - LENGTH] = std::array::from_fn(|i| head[LENGTH + i]);
+        let bytes = u64::from_le_bytes(length);
+        // A length that was changed must not fill the memory.
+        if bytes > self.left {
+            return Err(self.damaged());
+        }
+        let mut content = vec![0; bytes as usize];
+        self.fill(&mut content)?;
+        let is_whole = checksum(length, &content) == u32::from_le_bytes(sum);
+        if is_whole { Ok(content) } else { Err(self.damaged()) }
+    }
+
+    fn fill(&mut self, bytes: &mut [u8]) -> Result<()> {
+        if bytes.len() as u64 > self.left {
+            return Err(self.damaged());
+        }
+        self.left -= bytes.len() as u64;
+        let path = &self.path;
+        self.file.read_exact(bytes).map_err(|source| Error::Io { doing: "read", path: path.clone(), source })
+    }
+
+    /// The error of a file that is not as it was written.
+    pub fn damaged(&self) -> Error {
+        let message = "it is damaged or cut short; delete it and render again".to_owned();
+        Error::Decode { path: self.path.clone(), message }
+    }
+}

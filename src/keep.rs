@@ -1,0 +1,300 @@
+//! Renders that lose nothing: checkpoints, snapshots, and what happens on Ctrl-C.
+
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use abbe::film::Shard;
+use abbe::{Advance, Error, Rendering, Result, Resumed};
+use clap::Args;
+
+use crate::messages::{problem, say, warn};
+use crate::outputs::refuse;
+use crate::progress::Progress;
+
+/// What the command line says of it.
+#[derive(Args)]
+pub struct Flags {
+    /// Keep what is done in NAME.checkpoint beside the image, so often and when stopped by Ctrl-C: 60s, 5m, 1h. Of an
+    /// image so large that writing takes long, at most 1 % of the time goes into it
+    #[arg(long, value_name = "TIME", value_parser = time)]
+    checkpoint: Option<Duration>,
+
+    /// Go on from NAME.checkpoint, if it is there, to the same image; with more --samples than it has, to a better one
+    #[arg(long)]
+    resume: bool,
+
+    /// Keep the image fresh while rendering, so often
+    #[arg(long, value_name = "TIME", value_parser = time)]
+    snapshot: Option<Duration>,
+
+    /// Render one of N parts of the image to NAME.i-of-N.part, for `render merge`
+    #[arg(long, value_name = "i/N", value_parser = shard)]
+    shard: Option<Shard>,
+}
+
+/// How often where --resume alone is given.
+const OFTEN: Duration = Duration::from_secs(60);
+/// So many times what writing took passes before it is done again.
+const SELDOM: u32 = 100;
+
+fn time(text: &str) -> std::result::Result<Duration, String> {
+    let units = [("ms", 1e-3), ("s", 1.0), ("m", 60.0), ("min", 60.0), ("h", 3600.0)];
+    let (number, unit) = text.split_at(text.find(|letter: char| letter.is_ascii_alphabetic()).unwrap_or(text.len()));
+    let scale = units.iter().find(|(name, _)| *name == unit).map(|(_, scale)| *scale);
+    let seconds = scale.and_then(|scale| Some(scale * number.trim().parse::<f64>().ok()?));
+    let known = seconds.filter(|&seconds| seconds > 0.0).and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
+    known.ok_or_else(|| "a time is a number with a unit, such as 60s, 5m or 1h".into())
+}
+
+fn shard(text: &str) -> std::result::Result<Shard, String> {
+    let parts = text.split_once('/');
+    let numbers = parts.and_then(|(number, count)| Some([number.parse().ok()?, count.parse().ok()?]));
+    let shard = numbers.and_then(|[number, count]| Shard::new(number, count));
+    shard.ok_or_else(|| "a part is its number and how many there are, such as 1/16, 2/16, up to 16/16".into())
+}
+
+impl Flags {
+    /// The part of the image that is made.
+    pub fn shard(&self) -> Shard {
+        self.shard.unwrap_or_default()
+    }
+
+    /// What stands in the way of it, if no image is rendered, or none is written as an EXR.
+    ///
+    /// # Errors
+    /// If anything does.
+    pub fn check(&self, idle: bool, exr: bool, png: bool, stamp: bool) -> Result<()> {
+        let keeps = [("--checkpoint", self.checkpoint.is_some()), ("--resume", self.resume)];
+        let flags = [("--snapshot", self.snapshot.is_some()), ("--shard", self.shard.is_some())];
+        if let Some((flag, _)) = keeps.into_iter().chain(flags).find(|(_, given)| *given && idle) {
+            return refuse(&format!("{flag} is of a render, and nothing is rendered"), Some("leave it out"));
+        }
+        if self.shard.is_some() && (!exr || png) {
+            let help = "leave --png out, and make a picture of the merged image";
+            return refuse("--shard makes a part of an EXR, and no picture", Some(help));
+        }
+        if self.shard.is_some() && stamp {
+            return refuse("parts of an image say no time, so --stamp has no place in them", Some("leave it out"));
+        }
+        if self.snapshot.is_some() && (!exr || self.shard.is_some()) {
+            return refuse("--snapshot keeps an EXR fresh, and none is rendered", Some("leave it out"));
+        }
+        Ok(())
+    }
+
+    /// Where a part of an image is written, if one is made.
+    pub fn part(&self, image: &Path) -> Option<PathBuf> {
+        self.shard.map(|shard| image.with_extension(format!("{}-of-{}.part", shard.number(), shard.count())))
+    }
+}
+
+/// What is kept of a render, and when.
+pub struct Keep {
+    /// Where the checkpoint is, if one is kept.
+    pub checkpoint: Option<PathBuf>,
+    checkpoints: Timer,
+    /// The image that is kept fresh, if one is.
+    snapshot: Option<PathBuf>,
+    snapshots: Timer,
+    resume: bool,
+}
+
+/// When something is done again.
+struct Timer {
+    period: Option<Duration>,
+    due: Option<Instant>,
+}
+
+impl Timer {
+    fn new(period: Option<Duration>) -> Self {
+        Self { period, due: due(period) }
+    }
+
+    fn is_due(&self) -> bool {
+        self.due.is_some_and(|due| Instant::now() >= due)
+    }
+
+    /// Does it, and not again for a while.
+    fn run<T>(&mut self, work: impl FnOnce() -> T) -> T {
+        let start = Instant::now();
+        let result = work();
+        self.due = due(self.period.map(|period| period.max(start.elapsed() * SELDOM)));
+        result
+    }
+}
+
+/// The end of a time from now on; none if it is absent, or beyond all times.
+fn due(period: Option<Duration>) -> Option<Instant> {
+    period.and_then(|period| Instant::now().checked_add(period))
+}
+
+/// Whether the command was told to stop.
+static STOPPED: AtomicBool = AtomicBool::new(false);
+/// The exit code of a command that was.
+pub const STOPPED_CODE: u8 = 130;
+
+impl Keep {
+    /// Of a render to a file.
+    ///
+    /// # Errors
+    /// If a checkpoint of an earlier run would be lost, or Ctrl-C cannot be caught.
+    pub fn new(flags: &Flags, file: &Path) -> Result<Self> {
+        let keeps = flags.checkpoint.is_some() || flags.resume;
+        let mut name = file.file_stem().unwrap_or(OsStr::new("image")).to_owned();
+        name.push(".checkpoint");
+        let checkpoint = keeps.then(|| file.with_file_name(name));
+        if let Some(there) = checkpoint.as_deref().filter(|path| !flags.resume && path.exists()) {
+            let help = "add --resume to go on from it, or delete it to begin anew";
+            return refuse(&format!("{} is there from an earlier run", there.display()), Some(help));
+        }
+        if keeps || flags.snapshot.is_some() {
+            let caught = ctrlc::set_handler(|| {
+                if STOPPED.swap(true, Ordering::Relaxed) {
+                    std::process::exit(STOPPED_CODE.into());
+                }
+            });
+            caught
+                .map_err(|error| Error::Arguments { message: format!("cannot catch Ctrl-C: {error}"), help: None })?;
+        }
+        Ok(Self {
+            checkpoint,
+            checkpoints: Timer::new(flags.checkpoint.or(flags.resume.then_some(OFTEN))),
+            snapshot: flags.snapshot.map(|_| file.to_owned()),
+            snapshots: Timer::new(flags.snapshot),
+            resume: flags.resume,
+        })
+    }
+
+    /// Goes on from the checkpoint, if it shall and there is one. Answers whether anything is left to be done: `outputs`
+    /// are the files that a finished render has written.
+    ///
+    /// # Errors
+    /// If the checkpoint is of something else, or damaged.
+    pub fn resume(&self, rendering: &mut Rendering, outputs: &[&Path]) -> Result<bool> {
+        let Some(path) = self.checkpoint.as_deref().filter(|_| self.resume) else { return Ok(true) };
+        if !path.exists() {
+            say(&format!("there is no {}: the render begins", path.display()));
+            return Ok(true);
+        }
+        let missing = outputs.iter().find(|output| !output.exists());
+        let name = path.display();
+        match rendering.resume(path)? {
+            Resumed::Continues => {
+                let share = rendering.done() as f64 / rendering.work().max(1) as f64;
+                say(&format!("going on from {name}, which has {:.0} % of the work", (100.0 * share).floor()));
+                Ok(true)
+            }
+            Resumed::Finished if missing.is_none() => {
+                say(&format!("{name} has all samples, and the image is written: nothing is left to be done"));
+                Ok(false)
+            }
+            Resumed::Finished => Ok(true),
+            Resumed::HasMore(samples) => match missing {
+                None => {
+                    say(&format!("{name} has {samples} samples per pixel, more than that: nothing is left to be done"));
+                    Ok(false)
+                }
+                Some(missing) => refuse(
+                    &format!("{name} has {samples} samples per pixel, and {} is not there", missing.display()),
+                    Some(&format!("add --samples {samples} to write it")),
+                ),
+            },
+        }
+    }
+
+    /// Renders what is left; answers whether all of it was, or somebody stopped it.
+    ///
+    /// # Errors
+    /// If it was stopped, and what is done cannot be kept.
+    pub fn run(&mut self, rendering: &mut Rendering, progress: &Progress) -> Result<bool> {
+        loop {
+            let stops = || STOPPED.load(Ordering::Relaxed);
+            let is_due = || stops() || self.checkpoints.is_due() || self.snapshots.is_due();
+            let advance = rendering.advance_until(&|done| progress.advance(done), &is_due);
+            if advance == Advance::Finished {
+                return Ok(true);
+            }
+            if stops() {
+                self.save(rendering)?;
+                self.take_snapshot(rendering)?;
+                return Ok(false);
+            }
+            if advance == Advance::Stopped {
+                let kept = self.keep(rendering);
+                // The render is worth more than what could not be kept of it, and may yet be written.
+                kept.unwrap_or_else(|error| warn(&format!("the render goes on, but {}", problem(&error))));
+            }
+        }
+    }
+
+    /// Writes what is due.
+    fn keep(&mut self, rendering: &Rendering) -> Result<()> {
+        let mut snapshots = std::mem::replace(&mut self.snapshots, Timer::new(None));
+        let mut checkpoints = std::mem::replace(&mut self.checkpoints, Timer::new(None));
+        let shows = snapshots.is_due();
+        // No image may have more samples than the checkpoint that says it is finished.
+        let saved = if shows || checkpoints.is_due() { checkpoints.run(|| self.save(rendering)) } else { Ok(()) };
+        let shown = if shows { snapshots.run(|| self.take_snapshot(rendering)) } else { Ok(()) };
+        (self.checkpoints, self.snapshots) = (checkpoints, snapshots);
+        saved.and(shown)
+    }
+
+    /// Writes the checkpoint, if one is kept.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    pub fn save(&self, rendering: &Rendering) -> Result<()> {
+        self.checkpoint.as_ref().map_or(Ok(()), |path| rendering.save(path))
+    }
+
+    fn take_snapshot(&self, rendering: &Rendering) -> Result<()> {
+        let Some(path) = &self.snapshot else { return Ok(()) };
+        let image = rendering.image();
+        // Before the first samples, photons have shown a part of their light.
+        if image.report().samples == 0 { Ok(()) } else { image.write_exr(path).map(|_| ()) }
+    }
+
+    /// Says what was kept, and how to go on.
+    pub fn say_how_to_resume(&self) {
+        let Some(path) = &self.checkpoint else {
+            return say("stopped; with --checkpoint 60s, what is done would be kept");
+        };
+        let mut words: Vec<String> = std::env::args().map(|word| quoted(&word)).collect();
+        if !self.resume {
+            words.push("--resume".into());
+        }
+        say(&format!("stopped; {} keeps what is done. Go on with\n  {}", path.display(), words.join(" ")));
+    }
+}
+
+/// A word as the shell takes it.
+fn quoted(word: &str) -> String {
+    let is_plain = |letter: char| letter.is_ascii_alphanumeric() || "_-./=,:+%@".contains(letter);
+    if !word.is_empty() && word.chars().all(is_plain) {
+        word.into()
+    } else {
+        format!("'{}'", word.replace('\'', "'\\''"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_time_has_a_unit() {
+        for (text, seconds) in [("60s", 60.0), ("0.5s", 0.5), ("5m", 300.0), ("1.5h", 5400.0), ("20ms", 0.02)] {
+            assert_eq!(time(text), Ok(Duration::from_secs_f64(seconds)), "{text}");
+        }
+        for text in ["", "60", "s", "-1s", "0s", "1e400s", "nans", "1 day", "60 s s"] {
+            assert!(time(text).is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn a_word_is_quoted_where_the_shell_would_split_it() {
+        assert_eq!(["a/b.toml", "a b", "it's", ""].map(quoted), ["a/b.toml", "'a b'", "'it'\\''s'", "''"]);
+    }
+}

@@ -1,0 +1,82 @@
+//! By what a render is known again.
+
+use std::fmt::Write;
+
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+
+use crate::film::{Format, Shard};
+use crate::scene::{FilmSettings, Scene};
+use crate::trace::{LightPass, Method};
+
+/// What two runs must have in common to add to one image, each with its name.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) struct Identity(Vec<(String, String)>);
+
+const SCENE: &str = "scene";
+const PLAN: &str = "plan";
+
+impl Identity {
+    /// Of a scene with the options in it. The number of samples is no part of it, unless the plan depends on that.
+    pub(super) fn new(scene: &Scene, method: &Method, shard: Shard) -> Self {
+        let FilmSettings { width, height, filter, color_space, overscan, crop } = scene.film;
+        let Format { layers, first, spectral, .. } = &scene.format;
+        let names: Vec<&str> = layers.iter().map(|layer| layer.name()).collect();
+        let facts = [
+            ("version", env!("CARGO_PKG_VERSION").to_owned()),
+            (SCENE, scene.hash.clone()),
+            ("size", format!("{width} x {height} pixels")),
+            ("overscan", overscan_text(overscan)),
+            (
+                "crop",
+                crop.map_or("none".into(), |crop| format!("{},{},{},{}", crop.left, crop.top, crop.width, crop.height)),
+            ),
+            ("seed", scene.render.seed.to_string()),
+            ("filter", filter.described()),
+            ("color space", color_space.interop_id().to_owned()),
+            ("list of layers", if names.is_empty() { "empty".into() } else { names.join(",") }),
+            ("first surface", format!("{first:?}").to_lowercase()),
+            ("number of spectral bands", spectral.map_or(0, |bands| bands.count()).to_string()),
+            ("part", format!("{} of {}", shard.number(), shard.count())),
+            (PLAN, digest(&format!("{:?} {spectral:?} {filter:?}", of_camera(method)))),
+        ];
+        Self(facts.map(|(name, value)| (name.to_owned(), value)).into())
+    }
+
+    /// The same of all parts of an image.
+    pub(super) fn of_all_parts(&self) -> Self {
+        Self(self.0.iter().filter(|(name, _)| name != "part").cloned().collect())
+    }
+
+    /// What differs in another run, if anything does.
+    pub(super) fn difference(&self, other: &Self) -> Option<String> {
+        let value = |name: &str| self.0.iter().find(|(known, _)| known == name).map(|(_, value)| value);
+        let (name, theirs) = other.0.iter().find(|(name, theirs)| value(name) != Some(theirs))?;
+        Some(match name.as_str() {
+            SCENE => "it was made of another scene, or of this one before it was changed".into(),
+            PLAN => "it was made by another plan".into(),
+            _ => format!("its {name} is {theirs}, not {}", value(name).map_or("known", String::as_str)),
+        })
+    }
+}
+
+fn overscan_text(overscan: crate::film::Overscan) -> String {
+    let crate::film::Overscan { left, top, right, bottom } = overscan;
+    format!("{left},{top},{right},{bottom}")
+}
+
+/// What of a method decides what a camera sample finds: not how many there are, nor how many photons are shown beside
+/// them. Where photons are gathered, their number and radius belong to it, and so does the number of samples.
+fn of_camera(method: &Method) -> Method {
+    let gathers = method.light_pass.as_ref().is_some_and(|pass| pass.map.is_some());
+    let light_pass = method.light_pass.clone().map(|pass| LightPass { photons: 0, ..pass });
+    if gathers { method.clone() } else { Method { samples: 0, light_pass, ..method.clone() } }
+}
+
+/// 64 hexadecimal digits that stand for a text.
+fn digest(text: &str) -> String {
+    Sha256::digest(text.as_bytes()).iter().fold(String::new(), |mut digits, byte| {
+        let _ = write!(digits, "{byte:02x}");
+        digits
+    })
+}

@@ -1,0 +1,14 @@
+//! Floor 6: a scene made into an image, for programs; the `render` command is one of them.
+
+mod checkpoint;
+mod identity;
+mod image;
+mod options;
+mod part;
+mod render;
+
+pub use checkpoint::Resumed;
+pub use image::Image;
+pub use options::Options;
+pub use part::merge;
+pub use render::{Rendering, render};

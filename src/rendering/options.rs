@@ -1,0 +1,114 @@
+//! What is asked for beside the scene.
+
+use std::collections::BTreeMap;
+
+use crate::error::{Error, Result};
+use crate::film::{LONGEST_NAME, Layer, Overscan, Shard, Window, light_layer_name};
+use crate::scene::{FilmSettings, ModelText, Scene};
+
+/// What replaces the scene's own settings. By default nothing does.
+///
+/// ```
+/// let quick = abbe::Options { samples: Some(4), ..abbe::Options::default() };
+/// ```
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Options {
+    /// Camera samples per pixel, 1 or more.
+    pub samples: Option<u32>,
+    /// Chooses another set of random numbers.
+    pub seed: Option<u64>,
+    /// What is made around the format, in pixels.
+    pub overscan: Option<Overscan>,
+    /// The part of the image and its overscan that is made, in pixels of the format.
+    pub crop: Option<Window>,
+    /// Layers in place of the scene's own.
+    pub layers: Option<Vec<Layer>>,
+    /// Whether spectra are made, as they are where the scene asks for them.
+    pub spectral: bool,
+    /// Processor threads; one for each processor if absent. The image is the same for any number.
+    pub threads: Option<usize>,
+    /// The part of the image's tiles that is made.
+    pub shard: Shard,
+    /// Whether the file says when the image was made, on how many threads, and how long it took. Then no two files are
+    /// the same to the byte. Parts do not say it.
+    pub stamp: bool,
+}
+
+impl Options {
+    /// Puts these settings in place of the scene's own.
+    ///
+    /// # Errors
+    /// [`Error::Arguments`] if there are no samples, the overscan is too wide, the crop lies outside the image and its
+    /// overscan, or its layers cannot be written, together or in the scene's format.
+    pub fn apply(&self, scene: &mut Scene) -> Result<()> {
+        if self.samples == Some(0) {
+            return refuse("a pixel needs at least 1 sample".into(), "leave the samples out to take the scene's own");
+        }
+        let (samples, seed, film) = self.instead_of(scene);
+        if let Some(message) = film.objection_to_overscan() {
+            return refuse(
+                message,
+                "--overscan takes one number of pixels, or those to the left, above, to the right and below",
+            );
+        }
+        if let Some(message) = film.objection_to_crop() {
+            return refuse(message, "--crop takes first column, first row, width and height");
+        }
+        (scene.render.samples, scene.render.seed, scene.film) = (samples, seed, film);
+        if let Some(layers) = &self.layers {
+            scene.format.layers.clone_from(layers);
+        }
+        if self.spectral {
+            scene.format.spectral.get_or_insert_default();
+        }
+        check_layers(scene)
+    }
+
+    /// Samples, seed and film that replace those of a scene.
+    pub(super) fn instead_of(&self, scene: &Scene) -> (Option<u32>, u64, FilmSettings) {
+        let samples = self.samples.or(scene.render.samples);
+        let (overscan, crop) = (self.overscan.unwrap_or(scene.film.overscan), self.crop.or(scene.film.crop));
+        (samples, self.seed.unwrap_or(scene.render.seed), FilmSettings { overscan, crop, ..scene.film })
+    }
+}
+
+fn refuse<T>(message: String, help: &str) -> Result<T> {
+    Err(Error::Arguments { message, help: Some(help.to_owned()) })
+}
+
+/// Most bytes of memory that layers may take: 64 GB.
+const MOST_OF_LAYERS: u64 = 64_000_000_000;
+
+/// Refuses layers that fill all memory, cannot be made or do not fit the format, and lights whose layers' names cannot
+/// be written.
+pub(super) fn check_layers(scene: &Scene) -> Result<()> {
+    if let Some((message, help)) = scene.format.objection() {
+        return refuse(message, &help);
+    }
+    if scene.layer_bytes() > MOST_OF_LAYERS {
+        let gigabytes = scene.layer_bytes() / 1_000_000_000;
+        let message = format!("{} channels of layers would take {gigabytes} GB of memory", scene.layer_channels());
+        return refuse(message, "ask for fewer layers, or make a part of the image at a time with --crop");
+    }
+    if scene.format.spectral.is_some() && scene.render.model == ModelText::Rgb {
+        let message = "model = \"rgb\" has no wavelengths to make spectra of".into();
+        return refuse(message, "leave the model out, or ask for wavelengths: model = { bands = 32 }");
+    }
+    if !scene.format.layers.contains(&Layer::Lights) {
+        return Ok(());
+    }
+    let help = "give that light or object a `group` of at most 23 letters a to z, digits and _";
+    let mut known = BTreeMap::new();
+    for group in &scene.light_groups {
+        let name = light_layer_name(group);
+        if name.len() + ".R".len() > LONGEST_NAME {
+            let message = format!("the layer {name} would have a name that not every program reads: it is too long");
+            return refuse(message, help);
+        }
+        let other = known.entry(name.clone()).or_insert(group);
+        if *other != group {
+            return refuse(format!("the lights {other} and {group} would share the layer {name}"), help);
+        }
+    }
+    Ok(())
+}

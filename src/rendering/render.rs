@@ -1,0 +1,270 @@
+//! Renders, step by step.
+
+use std::borrow::Cow;
+use std::path::Path;
+use std::time::{Duration, Instant, SystemTime};
+
+use super::checkpoint::{self, Resumed};
+use super::identity::Identity;
+use super::image::Image;
+use super::options::{Options, check_layers};
+use super::part;
+use crate::error::{Error, Result};
+use crate::film::{Fact, Format, Provenance, Shard, View};
+use crate::plan::{Plan, plan};
+use crate::scene::{Projection, Scene};
+use crate::trace::{self, Advance, Report, World, prepare};
+
+/// Renders a scene.
+///
+/// # Errors
+/// As [`Rendering::new`].
+pub fn render(scene: &Scene, options: &Options) -> Result<Image> {
+    Ok(Rendering::new(scene, options)?.run(&|_| ()))
+}
+
+/// A render that is planned: run to its end, or pass by pass with a look at the image after each.
+///
+/// ```
+/// # let scene = abbe::Scene::parse("camera = { position = [0, 0, 4], look_at = [0, 0, 0], vertical_fov = 40 }
+/// # film = { width = 8, height = 8 }
+/// # light = [{ environment = { radiance = 1 } }]", "")?;
+/// let rendering = abbe::Rendering::new(&scene, &abbe::Options::default())?;
+/// println!("{}", rendering.plan().because.join("\n"));
+/// let all = rendering.work();
+/// let done = std::sync::atomic::AtomicU64::new(0);
+/// let image = rendering.run(&|more| {
+///     let before = done.fetch_add(more, std::sync::atomic::Ordering::Relaxed);
+///     println!("{} %", 100 * (before + more) / all);
+/// });
+/// assert_eq!(done.into_inner(), all);
+/// # assert_eq!(image.rgb_at(3, 4), [1.0; 3]);
+/// # Ok::<(), abbe::Error>(())
+/// ```
+pub struct Rendering {
+    plan: Plan,
+    passes: trace::Rendering<World>,
+    view: View,
+    format: Format,
+    /// The scene file's hash, the projection and the filter.
+    origin: Origin,
+    threads: rayon::ThreadPool,
+    /// What a render has to be to go on from this one.
+    identity: Identity,
+    shard: Shard,
+    /// When it began, if the file says that.
+    began: Option<Instant>,
+}
+
+struct Origin {
+    hash: String,
+    projection: Projection,
+    filter: String,
+}
+
+impl Rendering {
+    /// Decides how to render a scene, and prepares it.
+    ///
+    /// # Errors
+    /// [`Error::Arguments`] if the options do not fit the scene, or threads cannot be started.
+    pub fn new(scene: &Scene, options: &Options) -> Result<Self> {
+        let began = (options.stamp && options.shard == Shard::WHOLE).then(Instant::now);
+        let mut scene = Cow::Borrowed(scene);
+        let is_as_asked = options.instead_of(&scene) == (scene.render.samples, scene.render.seed, scene.film);
+        if is_as_asked && options.layers.is_none() && !options.spectral {
+            check_layers(&scene)?;
+        } else {
+            options.apply(scene.to_mut())?;
+        }
+        let threads = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build();
+        let threads = threads
+            .map_err(|error| Error::Arguments { message: format!("cannot start threads: {error}"), help: None })?;
+        let plan = threads.install(|| plan(&scene));
+        let world = prepare(&scene, plan.method.clone());
+        let camera = &scene.camera;
+        let view = View {
+            world_to_camera: camera.world_to_camera(),
+            world_to_ndc: camera.world_to_ndc(),
+            screen_window_width: camera.screen_window_width(),
+            screen_window_center: camera.screen_window_center(),
+            latlong: camera.projection() == Projection::Equirectangular,
+            optics: camera.optics(scene.render.meters_per_unit),
+        };
+        let (hash, filter) = (scene.hash.clone(), scene.film.filter.described());
+        Ok(Self {
+            identity: Identity::new(&scene, &plan.method, options.shard),
+            shard: options.shard,
+            plan,
+            passes: trace::Rendering::of_shard(world, options.shard),
+            view,
+            format: scene.format.clone(),
+            origin: Origin { hash, projection: camera.projection(), filter },
+            threads,
+            began,
+        })
+    }
+
+    /// How it will be rendered, and why.
+    pub fn plan(&self) -> &Plan {
+        &self.plan
+    }
+
+    /// How much there is to do: camera samples and photons.
+    pub fn work(&self) -> u64 {
+        self.passes.work()
+    }
+
+    /// How long it will take, about, if nothing else keeps the processors busy.
+    pub fn expected(&self) -> Duration {
+        self.plan.processor_time.div_f64(self.threads.current_num_threads() as f64)
+    }
+
+    /// Renders the next pass, if one is left, and answers whether another one is. Passes take more and more samples, or
+    /// gather photons of their own.
+    ///
+    /// `progress` is told how much of the [`work`](Self::work) was done since it was last told, from any thread.
+    ///
+    /// ```
+    /// # let scene = abbe::Scene::parse("camera = { position = [0, 0, 4], look_at = [0, 0, 0], vertical_fov = 40 }
+    /// # film = { width = 8, height = 8 }
+    /// # light = [{ environment = { radiance = 1 } }]", "")?;
+    /// let options = abbe::Options { samples: Some(64), ..Default::default() };
+    /// let mut rendering = abbe::Rendering::new(&scene, &options)?;
+    /// while rendering.advance(&|_| ()) {
+    ///     let so_far = rendering.image();
+    ///     println!("{} camera samples", so_far.report().samples);
+    /// }
+    /// # assert_eq!(rendering.image().report().samples, 64 * 64);
+    /// # Ok::<(), abbe::Error>(())
+    /// ```
+    pub fn advance(&mut self, progress: &(dyn Fn(u64) + Sync)) -> bool {
+        self.threads.install(|| self.passes.advance(progress))
+    }
+
+    /// The same, but stops before the next pixels once `is_due` says so. It is asked again and again, from any thread.
+    ///
+    /// A render that has stopped can be looked at, [saved](Self::save) and go on; the image in the end is the same.
+    ///
+    /// ```
+    /// # let scene = abbe::Scene::parse("camera = { position = [0, 0, 4], look_at = [0, 0, 0], vertical_fov = 40 }
+    /// # film = { width = 8, height = 8 }
+    /// # light = [{ environment = { radiance = 1 } }]", "")?;
+    /// # let folder = tempfile::tempdir().expect("a folder");
+    /// # let path = folder.path().join("image.checkpoint");
+    /// use std::time::{Duration, Instant};
+    /// let mut rendering = abbe::Rendering::new(&scene, &abbe::Options::default())?;
+    /// let mut due = Instant::now() + Duration::from_secs(60);
+    /// loop {
+    ///     match rendering.advance_until(&|_| (), &|| Instant::now() > due) {
+    ///         abbe::Advance::Finished => break,
+    ///         abbe::Advance::Passed => {}
+    ///         abbe::Advance::Stopped => {
+    ///             rendering.save(&path)?;
+    ///             due = Instant::now() + Duration::from_secs(60);
+    ///         }
+    ///     }
+    /// }
+    /// # Ok::<(), abbe::Error>(())
+    /// ```
+    pub fn advance_until(&mut self, progress: &(dyn Fn(u64) + Sync), is_due: &(dyn Fn() -> bool + Sync)) -> Advance {
+        self.threads.install(|| self.passes.advance_until(progress, is_due))
+    }
+
+    /// How much of the [`work`](Self::work) is done.
+    pub fn done(&self) -> u64 {
+        self.passes.done()
+    }
+
+    /// Writes a checkpoint: all sums so far, from which another run goes on to the same image.
+    ///
+    /// # Errors
+    /// If it cannot be written; a file that was there before is then untouched.
+    pub fn save(&self, path: impl AsRef<Path>) -> Result<()> {
+        checkpoint::save(path.as_ref(), &self.identity, &self.passes)
+    }
+
+    /// Goes on from a checkpoint of the same scene, seed, image, layers and plan; more samples may be asked for.
+    ///
+    /// ```
+    /// # let scene = abbe::Scene::parse("camera = { position = [0, 0, 4], look_at = [0, 0, 0], vertical_fov = 40 }
+    /// # film = { width = 8, height = 8 }
+    /// # light = [{ environment = { radiance = 1 } }]", "")?;
+    /// # let folder = tempfile::tempdir().expect("a folder");
+    /// # let path = folder.path().join("image.checkpoint");
+    /// let options = abbe::Options { samples: Some(64), ..Default::default() };
+    /// let mut first = abbe::Rendering::new(&scene, &options)?;
+    /// first.advance(&|_| ());
+    /// first.save(&path)?;
+    /// let mut second = abbe::Rendering::new(&scene, &options)?;
+    /// assert_eq!(second.resume(&path)?, abbe::Resumed::Continues);
+    /// assert_eq!(second.run(&|_| ()).film(), first.run(&|_| ()).film());
+    /// # Ok::<(), abbe::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::Arguments`] if it is a checkpoint of something else, or cannot become this image; [`Error::Decode`] if
+    /// it is damaged; then this render must not be used any more.
+    pub fn resume(&mut self, path: impl AsRef<Path>) -> Result<Resumed> {
+        checkpoint::resume(path.as_ref(), &self.identity, &mut self.passes)
+    }
+
+    /// Writes the finished tiles of a part of an image, for [`merge`](super::merge).
+    ///
+    /// # Errors
+    /// [`Error::Arguments`] if samples are left to be taken. If it cannot be written, a file that was there before is
+    /// untouched.
+    pub fn write_part(&self, path: impl AsRef<Path>) -> Result<()> {
+        if !self.passes.is_finished() {
+            let message = "a part of an image is written when all its samples are taken".to_owned();
+            return Err(Error::Arguments { message, help: None });
+        }
+        let shared = self.passes.non_finite_in_all_parts();
+        part::write(path.as_ref(), &self.identity, self.shard, shared, self.image())
+    }
+
+    /// The image of all samples so far.
+    pub fn image(&self) -> Image {
+        let (film, report) = (self.passes.film(), self.passes.report());
+        let mut provenance = provenance(&self.origin, &self.plan, self.passes.samples(), &report);
+        if !self.passes.is_finished() {
+            provenance.facts.push(("complete".into(), Fact::Count(0)));
+        }
+        if let Some(began) = self.began {
+            provenance.time = Some(SystemTime::now());
+            let threads = Fact::Count(self.threads.current_num_threads() as u64);
+            let time = Fact::Seconds(began.elapsed().as_secs_f64());
+            provenance.facts.extend([("renderTime".into(), time), ("threads".into(), threads)]);
+        }
+        let (because, format) = (self.plan.because.clone(), self.format.clone());
+        Image { film, report, because, view: self.view, format, provenance }
+    }
+
+    /// Renders all passes that are left; `progress` as of [`advance`](Self::advance).
+    pub fn run(mut self, progress: &(dyn Fn(u64) + Sync)) -> Image {
+        while self.advance(progress) {}
+        self.image()
+    }
+}
+
+fn provenance(origin: &Origin, plan: &Plan, samples: u32, report: &Report) -> Provenance {
+    let text = |text: &str| Fact::Text(text.to_owned());
+    let method = &plan.method;
+    let wavelengths: Vec<String> = method.basis.wavelengths_nm().iter().map(f64::to_string).collect();
+    let pass = method.light_pass.as_ref();
+    let photons = pass.map(|pass| ("photons", Fact::Count(pass.photons)));
+    let blur = pass.and_then(|pass| pass.map).map(|map| ("photonRadius", text(&format!("{:.3} pixels", map.radius))));
+    let facts = [
+        ("version", text(env!("CARGO_PKG_VERSION"))),
+        ("sceneHash", text(&origin.hash)),
+        ("model", text(&method.basis.name())),
+        ("wavelengths", text(&wavelengths.join(" "))),
+        ("projection", text(origin.projection.name())),
+        ("transport", text(method.transport.name())),
+        ("filter", text(&origin.filter)),
+        ("samples", Fact::Count(samples.into())),
+        ("seed", text(&method.seed.to_string())),
+        ("nonFinite", Fact::Count(report.non_finite)),
+    ];
+    let facts = facts.into_iter().chain(photons).chain(blur).map(|(key, fact)| (key.into(), fact));
+    Provenance { facts: facts.collect(), time: None }
+}

@@ -1,0 +1,45 @@
+//! What all camera samples of a pass share: gathered photons and vertices of light paths.
+
+use std::ops::Range;
+
+use super::World;
+use super::light_vertices::{LightPaths, LightVertices, SHARED};
+use super::photon_map::{PhotonMap, photons};
+use super::stats::Stats;
+
+/// The light that the paths of one pass look at.
+pub(super) struct PassLight<const N: usize> {
+    pub(super) photons: Option<PhotonMap<N>>,
+    vertices: Vec<LightVertices<N>>,
+}
+
+impl<const N: usize> PassLight<N> {
+    /// For one pass and the samples that it takes of each pixel.
+    pub(super) fn new(world: &World, pass: u32, numbers: Range<u32>) -> Self {
+        let photons = photons::<N>(world, pass);
+        let vertices = match LightPaths::asked_for(world) {
+            Some(light_paths) => {
+                let shared = |first: u32| light_paths.shared(first..(first + SHARED).min(numbers.end));
+                numbers.clone().step_by(SHARED as usize).map(shared).collect()
+            }
+            None => Vec::new(),
+        };
+        Self { photons, vertices }
+    }
+
+    /// The vertices that a sample looks at, counted from the first of the pass.
+    pub(super) fn vertices(&self, sample: u32) -> Option<&LightVertices<N>> {
+        self.vertices.get((sample / SHARED) as usize)
+    }
+
+    /// Photons sent.
+    pub(super) fn sent(&self) -> u64 {
+        self.photons.as_ref().map_or(0, |photons| photons.sent)
+    }
+
+    /// Adds what was noticed of it.
+    pub(super) fn add_to(&self, stats: &mut Stats) {
+        self.photons.iter().for_each(|photons| *stats += photons.stats);
+        self.vertices.iter().for_each(|set| *stats += set.stats);
+    }
+}

@@ -1,0 +1,266 @@
+//! Renders that stop and go on, and images made in parts: the same bytes as of one render.
+//!
+//! ```text
+//! cargo test --test all checkpoints::
+//! ```
+
+use std::path::Path;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use abbe::film::{Layer, Overscan, Shard, Window};
+use abbe::trace::Method;
+use abbe::{Advance, Error, Image, Options, Rendering, Resumed, Scene, merge};
+
+use crate::support::random::Random;
+use crate::support::scenes::scene;
+
+mod command;
+mod damage;
+
+/// A glass ball and a mirror on a floor under a small lamp. The film is no multiple of any tile.
+pub const GLASS: &str = r#"
+camera = { position = [0, 1.5, 6], look_at = [0, 0.7, 0], vertical_fov = 35 }
+film = { width = 37, height = 21 }
+render = { samples = 20, seed = 3 }
+[material]
+floor.diffuse.reflectance = 0.6
+glass.dielectric.index = 1.5
+silver.mirror.reflectance = 0.9
+lamp.emissive.radiance = 8
+[[object]]
+shape.plane = { point = [0, 0, 0], normal = [0, 1, 0] }
+material = "floor"
+[[object]]
+shape.sphere = { center = [0, 0.8, 0], radius = 0.8 }
+material = "glass"
+[[object]]
+shape.sphere = { center = [-1.8, 0.7, -0.5], radius = 0.7 }
+material = "silver"
+[[object]]
+shape.sphere = { center = [-1, 2.5, 1], radius = 0.2 }
+material = "lamp"
+"#;
+
+/// A closed room under a lamp.
+const ROOM: &str = r#"
+camera = { position = [1.3, 1.6, 2.2], look_at = [-0.6, 1, -1], vertical_fov = 75 }
+film = { width = 21, height = 18 }
+render = { samples = 40 }
+[material]
+wall.diffuse.reflectance = 0.7
+lamp.emissive.radiance.rgb = [9, 8, 6]
+[[object]]
+shape.quad = { center = [0, 0, 0], u = [2, 0, 0], v = [0, 0, -2.5] }
+material = "wall"
+[[object]]
+shape.quad = { center = [0, 3, 0], u = [2, 0, 0], v = [0, 0, 2.5] }
+material = "wall"
+[[object]]
+shape.quad = { center = [2, 1.5, 0], u = [0, 0, 2.5], v = [0, 1.5, 0] }
+material = "wall"
+[[object]]
+shape.quad = { center = [-2, 1.5, 0], u = [0, 0, 2.5], v = [0, 1.5, 0] }
+material = "wall"
+[[object]]
+shape.quad = { center = [0, 1.5, -2.5], u = [2, 0, 0], v = [0, 1.5, 0] }
+material = "wall"
+[[object]]
+shape.quad = { center = [0, 1.5, 2.5], u = [2, 0, 0], v = [0, 1.5, 0] }
+material = "wall"
+[[object]]
+shape.quad = { center = [0.3, 2.9, -0.4], u = [0.5, 0, 0], v = [0, 0, 0.4] }
+material = "lamp"
+"#;
+
+/// Scenes of all ways to find light, with options, and whether a method is the one that is meant.
+fn kinds() -> Vec<(&'static str, String, Options, fn(&Method) -> bool)> {
+    let shows = |method: &Method| method.light_pass.as_ref().is_some_and(|pass| pass.map.is_none());
+    let gathers = |method: &Method| method.light_pass.as_ref().is_some_and(|pass| pass.map.is_some());
+    let all = || Options { layers: Some(Layer::all()), spectral: true, ..Options::default() };
+    let plain = GLASS.replace("material = \"silver\"", "material = \"floor\"");
+    let cut = Options {
+        overscan: Some(Overscan { left: 3, top: 0, right: 5, bottom: 2 }),
+        crop: Some(Window { left: -2, top: 4, width: 35, height: 18 }),
+        ..all()
+    };
+    let mitchell = GLASS.replace("height = 21", "height = 21, filter = \"mitchell\"");
+    let split = GLASS.replace("index = 1.5", "index = \"SF11\"");
+    let still = GLASS.replace("height = 21", "height = 21, filter = \"center\"").replace(
+        "floor.diffuse.reflectance = 0.6",
+        "floor.diffuse.reflectance = 0",
+    );
+    vec![
+        ("photons that are shown", plain, Options::default(), shows),
+        ("photons that are gathered, all layers", GLASS.into(), all(), gathers),
+        ("a filter with negative lobes, a crop in the overscan", mitchell, cut, gathers),
+        ("light vertices", ROOM.into(), Options::default(), |method| method.light_vertices),
+        ("wavelengths that are drawn", split, all(), |method| method.basis.draws_wavelengths()),
+        ("one sample per pixel", still.replace("samples = 20", "samples = 1"), all(), |method| method.samples == 1),
+    ]
+}
+
+/// The bytes of the files that an image is written as.
+fn bytes(image: &Image, folder: &Path) -> Vec<Vec<u8>> {
+    let [exr, spectral] = ["image.exr", "image.spectral.exr"].map(|name| folder.join(name));
+    image.write_exr(&exr).expect("an image can be written");
+    image.write_spectral_exr(&spectral).expect("an image can be written");
+    [exr, spectral].iter().filter_map(|path| std::fs::read(path).ok()).collect()
+}
+
+fn rendering(scene: &Scene, options: &Options, threads: usize) -> Rendering {
+    Rendering::new(scene, &Options { threads: Some(threads), ..options.clone() }).expect("it can be rendered")
+}
+
+/// Renders on until it was asked so many times whether it shall stop; answers how many times it was asked.
+fn advance(rendering: &mut Rendering, most: u64) -> u64 {
+    let asked = AtomicU64::new(0);
+    let is_due = || asked.fetch_add(1, Ordering::Relaxed) >= most;
+    while rendering.advance_until(&|_| (), &is_due) == Advance::Passed {}
+    asked.into_inner()
+}
+
+#[test]
+fn a_render_that_stops_anywhere_goes_on_to_the_same_bytes() {
+    let (folder, mut random) = (tempfile::tempdir().expect("a folder"), Random::new(11));
+    let path = folder.path().join("image.checkpoint");
+    for (kind, text, options, is_meant) in kinds() {
+        let scene = scene(&text);
+        let mut whole = rendering(&scene, &options, 2);
+        assert!(is_meant(&whole.plan().method), "{kind}: {:?}", whole.plan().because);
+        let asked = advance(&mut whole, u64::MAX);
+        let (expected, report) = (bytes(&whole.image(), folder.path()), whole.image().report().clone());
+        for threads in [1, 2, 3, 7, 2] {
+            let mut first = rendering(&scene, &options, threads);
+            // Twice, so that what goes on stops again.
+            for _ in 0..2 {
+                advance(&mut first, (random.number() * 0.6 * asked as f64) as u64);
+                first.save(&path).expect("a checkpoint can be written");
+                let mut next = rendering(&scene, &options, 9 - threads);
+                let resumed = next.resume(&path).expect("a checkpoint can be read");
+                assert_eq!(resumed == Resumed::Finished, next.done() == next.work(), "{kind}");
+                assert_eq!((next.done(), next.image()), (first.done(), first.image()), "{kind}: {threads} threads");
+                first = next;
+            }
+            let before = first.done();
+            let (work, done) = (first.work(), AtomicU64::new(before));
+            let image = first.run(&|more| {
+                done.fetch_add(more, Ordering::Relaxed);
+            });
+            assert_eq!(done.into_inner(), work, "{kind}");
+            assert!(bytes(&image, folder.path()) == expected, "{kind}: {threads} threads, stopped at {before} of {work}");
+            assert_eq!(*image.report(), report, "{kind}: {threads} threads");
+        }
+    }
+}
+
+#[test]
+fn a_render_that_stops_and_goes_on_in_one_run_makes_the_same_image() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for (kind, text, options, _) in kinds() {
+        let scene = scene(&text);
+        let (mut whole, mut often) = (rendering(&scene, &options, 2), rendering(&scene, &options, 2));
+        let asked = advance(&mut whole, u64::MAX);
+        while often.done() < often.work() {
+            advance(&mut often, asked / 7 + 1);
+        }
+        let [whole, often] = [whole, often].map(|rendering| bytes(&rendering.image(), folder.path()));
+        assert!(whole == often, "{kind}");
+    }
+}
+
+#[test]
+fn parts_of_an_image_are_together_the_same_bytes_as_the_whole() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for (kind, text, options, _) in kinds() {
+        let scene = scene(&text);
+        let whole = bytes(&rendering(&scene, &options, 2).run(&|_| ()), folder.path());
+        // Of an image of few tiles some of 16 parts have none.
+        for (count, threads) in [(1, 1), (2, 3), (3, 7), (16, 2)] {
+            let paths: Vec<_> = (1..=count).map(|number| folder.path().join(format!("{number}-of-{count}.part"))).collect();
+            for (number, path) in (1..).zip(&paths) {
+                let shard = Shard::new(number, count).expect("there is such a part");
+                let mut rendering = rendering(&scene, &Options { shard, ..options.clone() }, threads);
+                assert!(rendering.write_part(path).is_err(), "{kind}: an unfinished part");
+                let done = AtomicU64::new(0);
+                let count_done = |more| {
+                    done.fetch_add(more, Ordering::Relaxed);
+                };
+                while rendering.advance(&count_done) {}
+                assert_eq!((done.into_inner(), rendering.done()), (rendering.work(), rendering.work()), "{kind}");
+                rendering.write_part(path).expect("a part can be written");
+            }
+            let merged = merge(&paths).expect("the parts belong together");
+            assert!(bytes(&merged, folder.path()) == whole, "{kind}: {count} parts");
+        }
+    }
+}
+
+#[test]
+fn a_part_that_stops_goes_on_to_the_same_bytes() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let [checkpoint, part, other] = ["a.checkpoint", "a.part", "b.part"].map(|name| folder.path().join(name));
+    let shard = Shard::new(2, 3).expect("there is such a part");
+    for (kind, text, options, _) in kinds() {
+        let (scene, options) = (scene(&text), Options { shard, ..options });
+        let [mut whole, mut first, mut next] = [2, 3, 1].map(|threads| rendering(&scene, &options, threads));
+        let asked = advance(&mut whole, u64::MAX);
+        whole.write_part(&part).expect("a part can be written");
+        advance(&mut first, asked / 2);
+        first.save(&checkpoint).expect("a checkpoint can be written");
+        next.resume(&checkpoint).expect("a checkpoint can be read");
+        advance(&mut next, u64::MAX);
+        next.write_part(&other).expect("a part can be written");
+        let read = |path| std::fs::read(path).expect("it was written");
+        assert!(read(&part) == read(&other), "{kind}");
+    }
+}
+
+/// Renders with some samples to the end and goes on with others.
+fn raised(text: &str, options: &Options, samples: [u32; 2]) -> Result<(Image, Image, Resumed), Error> {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("image.checkpoint");
+    let scene = scene(text);
+    let [mut few, mut more, whole] =
+        [samples[0], samples[1], samples[1]].map(|n| rendering(&scene, &Options { samples: Some(n), ..options.clone() }, 2));
+    advance(&mut few, u64::MAX);
+    few.save(&path)?;
+    let resumed = more.resume(&path)?;
+    Ok((more.run(&|_| ()), whole.run(&|_| ()), resumed))
+}
+
+#[test]
+fn more_samples_are_added_to_those_that_were_taken() {
+    let plain = GLASS.replace("material = \"silver\"", "material = \"floor\"");
+    let layers = Options { layers: Some(vec![Layer::Variance, Layer::Lights, Layer::CryptoObject]), ..Options::default() };
+    // Other photons are shown beside more samples.
+    for (text, samples) in [(plain.as_str(), [16, 64]), (plain.as_str(), [32, 50]), (ROOM, [32, 100])] {
+        let (image, whole, resumed) = raised(text, &layers, samples).expect("there is a pass that ends there");
+        assert_eq!((image, resumed), (whole, Resumed::Continues), "{samples:?}");
+    }
+}
+
+#[test]
+fn samples_that_cannot_become_those_that_are_asked_for_are_refused() {
+    let plain = GLASS.replace("material = \"silver\"", "material = \"floor\"");
+    let halves = Options { layers: Some(vec![Layer::HalfA]), ..Options::default() };
+    for (text, options, samples, why) in [
+        (plain.as_str(), Options::default(), [50, 100], "no pass that ends there"),
+        (plain.as_str(), halves, [16, 32], "half_a and half_b are halves of 16 samples"),
+        // The radius within which photons are gathered becomes less with more samples.
+        (GLASS, Options::default(), [16, 32], "another plan"),
+    ] {
+        let message = raised(text, &options, samples).expect_err("it is refused").to_string();
+        assert!(message.contains(why), "{samples:?}: {message}");
+    }
+}
+
+#[test]
+fn a_checkpoint_with_more_samples_than_are_asked_for_is_good_enough() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("image.checkpoint");
+    let scene = scene(ROOM);
+    let [mut many, mut few] = [64, 20].map(|n| rendering(&scene, &Options { samples: Some(n), ..Options::default() }, 2));
+    advance(&mut many, u64::MAX);
+    many.save(&path).expect("a checkpoint can be written");
+    assert_eq!(few.resume(&path).expect("it can be read"), Resumed::HasMore(64));
+}
