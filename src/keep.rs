@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use abbe::film::Shard;
+use abbe::film::{Shard, check_writable};
 use abbe::{Advance, Error, Rendering, Result, Resumed};
 use clap::Args;
 
@@ -149,6 +149,7 @@ impl Keep {
             let help = "add --resume to go on from it, or delete it to begin anew";
             return refuse(&format!("{} is there from an earlier run", there.display()), Some(help));
         }
+        checkpoint.as_deref().map_or(Ok(()), check_writable)?;
         if keeps || flags.snapshot.is_some() {
             let caught = ctrlc::set_handler(|| {
                 if STOPPED.swap(true, Ordering::Relaxed) {
@@ -167,8 +168,8 @@ impl Keep {
         })
     }
 
-    /// Goes on from the checkpoint, if it shall and there is one. Answers whether anything is left to be done: `outputs`
-    /// are the files that a finished render has written.
+    /// Goes on from the checkpoint, if it shall and there is one. Answers whether anything is left to be done:
+    /// `outputs` are the files that a finished render has written.
     ///
     /// # Errors
     /// If the checkpoint is of something else, or damaged.

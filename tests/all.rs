@@ -11,6 +11,7 @@ mod support;
 mod camera;
 mod catalog;
 mod caustics;
+mod checkpoints;
 mod colors;
 mod densities;
 mod determinism;

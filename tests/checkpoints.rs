@@ -26,7 +26,7 @@ render = { samples = 20, seed = 3 }
 floor.diffuse.reflectance = 0.6
 glass.dielectric.index = 1.5
 silver.mirror.reflectance = 0.9
-lamp.emissive.radiance = 8
+lamp.emissive.radiance = 800
 [[object]]
 shape.plane = { point = [0, 0, 0], normal = [0, 1, 0] }
 material = "floor"
@@ -37,7 +37,27 @@ material = "glass"
 shape.sphere = { center = [-1.8, 0.7, -0.5], radius = 0.7 }
 material = "silver"
 [[object]]
-shape.sphere = { center = [-1, 2.5, 1], radius = 0.2 }
+shape.sphere = { center = [-1, 2.5, 1], radius = 0.02 }
+material = "lamp"
+"#;
+
+/// What a ball that is not seen throws onto the floor.
+const CAUSTIC: &str = r#"
+camera = { position = [0, 1.5, 6], look_at = [0, 0, 0], vertical_fov = 12 }
+film = { width = 37, height = 21 }
+render = { samples = 20, seed = 3 }
+[material]
+floor.diffuse.reflectance = 0.6
+glass.dielectric.index = 1.5
+lamp.emissive.radiance = 800
+[[object]]
+shape.plane = { point = [0, 0, 0], normal = [0, 1, 0] }
+material = "floor"
+[[object]]
+shape.sphere = { center = [0, 4, 0], radius = 0.1 }
+material = "glass"
+[[object]]
+shape.sphere = { center = [0, 5, 0], radius = 0.02 }
 material = "lamp"
 "#;
 
@@ -77,7 +97,6 @@ fn kinds() -> Vec<(&'static str, String, Options, fn(&Method) -> bool)> {
     let shows = |method: &Method| method.light_pass.as_ref().is_some_and(|pass| pass.map.is_none());
     let gathers = |method: &Method| method.light_pass.as_ref().is_some_and(|pass| pass.map.is_some());
     let all = || Options { layers: Some(Layer::all()), spectral: true, ..Options::default() };
-    let plain = GLASS.replace("material = \"silver\"", "material = \"floor\"");
     let cut = Options {
         overscan: Some(Overscan { left: 3, top: 0, right: 5, bottom: 2 }),
         crop: Some(Window { left: -2, top: 4, width: 35, height: 18 }),
@@ -85,12 +104,11 @@ fn kinds() -> Vec<(&'static str, String, Options, fn(&Method) -> bool)> {
     };
     let mitchell = GLASS.replace("height = 21", "height = 21, filter = \"mitchell\"");
     let split = GLASS.replace("index = 1.5", "index = \"SF11\"");
-    let still = GLASS.replace("height = 21", "height = 21, filter = \"center\"").replace(
-        "floor.diffuse.reflectance = 0.6",
-        "floor.diffuse.reflectance = 0",
-    );
+    let still = GLASS
+        .replace("height = 21", "height = 21, filter = \"center\"")
+        .replace("floor.diffuse.reflectance = 0.6", "floor.diffuse.reflectance = 0");
     vec![
-        ("photons that are shown", plain, Options::default(), shows),
+        ("photons that are shown", CAUSTIC.into(), Options::default(), shows),
         ("photons that are gathered, all layers", GLASS.into(), all(), gathers),
         ("a filter with negative lobes, a crop in the overscan", mitchell, cut, gathers),
         ("light vertices", ROOM.into(), Options::default(), |method| method.light_vertices),
@@ -138,7 +156,7 @@ fn a_render_that_stops_anywhere_goes_on_to_the_same_bytes() {
                 let mut next = rendering(&scene, &options, 9 - threads);
                 let resumed = next.resume(&path).expect("a checkpoint can be read");
                 assert_eq!(resumed == Resumed::Finished, next.done() == next.work(), "{kind}");
-                assert_eq!((next.done(), next.image()), (first.done(), first.image()), "{kind}: {threads} threads");
+                assert!((next.done(), next.image()) == (first.done(), first.image()), "{kind}: {threads} threads");
                 first = next;
             }
             let before = first.done();
@@ -147,7 +165,10 @@ fn a_render_that_stops_anywhere_goes_on_to_the_same_bytes() {
                 done.fetch_add(more, Ordering::Relaxed);
             });
             assert_eq!(done.into_inner(), work, "{kind}");
-            assert!(bytes(&image, folder.path()) == expected, "{kind}: {threads} threads, stopped at {before} of {work}");
+            assert!(
+                bytes(&image, folder.path()) == expected,
+                "{kind}: {threads} threads, stopped at {before} of {work}"
+            );
             assert_eq!(*image.report(), report, "{kind}: {threads} threads");
         }
     }
@@ -176,7 +197,8 @@ fn parts_of_an_image_are_together_the_same_bytes_as_the_whole() {
         let whole = bytes(&rendering(&scene, &options, 2).run(&|_| ()), folder.path());
         // Of an image of few tiles some of 16 parts have none.
         for (count, threads) in [(1, 1), (2, 3), (3, 7), (16, 2)] {
-            let paths: Vec<_> = (1..=count).map(|number| folder.path().join(format!("{number}-of-{count}.part"))).collect();
+            let paths: Vec<_> =
+                (1..=count).map(|number| folder.path().join(format!("{number}-of-{count}.part"))).collect();
             for (number, path) in (1..).zip(&paths) {
                 let shard = Shard::new(number, count).expect("there is such a part");
                 let mut rendering = rendering(&scene, &Options { shard, ..options.clone() }, threads);
@@ -220,8 +242,8 @@ fn raised(text: &str, options: &Options, samples: [u32; 2]) -> Result<(Image, Im
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("image.checkpoint");
     let scene = scene(text);
-    let [mut few, mut more, whole] =
-        [samples[0], samples[1], samples[1]].map(|n| rendering(&scene, &Options { samples: Some(n), ..options.clone() }, 2));
+    let [mut few, mut more, whole] = [samples[0], samples[1], samples[1]]
+        .map(|n| rendering(&scene, &Options { samples: Some(n), ..options.clone() }, 2));
     advance(&mut few, u64::MAX);
     few.save(&path)?;
     let resumed = more.resume(&path)?;
@@ -230,26 +252,25 @@ fn raised(text: &str, options: &Options, samples: [u32; 2]) -> Result<(Image, Im
 
 #[test]
 fn more_samples_are_added_to_those_that_were_taken() {
-    let plain = GLASS.replace("material = \"silver\"", "material = \"floor\"");
-    let layers = Options { layers: Some(vec![Layer::Variance, Layer::Lights, Layer::CryptoObject]), ..Options::default() };
+    let layers =
+        Options { layers: Some(vec![Layer::Variance, Layer::Lights, Layer::CryptoObject]), ..Options::default() };
     // Other photons are shown beside more samples.
-    for (text, samples) in [(plain.as_str(), [16, 64]), (plain.as_str(), [32, 50]), (ROOM, [32, 100])] {
+    for (text, samples) in [(CAUSTIC, [16, 64]), (CAUSTIC, [32, 50]), (ROOM, [32, 100])] {
         let (image, whole, resumed) = raised(text, &layers, samples).expect("there is a pass that ends there");
-        assert_eq!((image, resumed), (whole, Resumed::Continues), "{samples:?}");
+        assert!((image, resumed) == (whole, Resumed::Continues), "{samples:?}");
     }
 }
 
 #[test]
 fn samples_that_cannot_become_those_that_are_asked_for_are_refused() {
-    let plain = GLASS.replace("material = \"silver\"", "material = \"floor\"");
     let halves = Options { layers: Some(vec![Layer::HalfA]), ..Options::default() };
     for (text, options, samples, why) in [
-        (plain.as_str(), Options::default(), [50, 100], "no pass that ends there"),
-        (plain.as_str(), halves, [16, 32], "half_a and half_b are halves of 16 samples"),
+        (CAUSTIC, Options::default(), [50, 100], "no pass that ends there"),
+        (CAUSTIC, halves, [16, 32], "half_a and half_b are halves of 16 samples"),
         // The radius within which photons are gathered becomes less with more samples.
         (GLASS, Options::default(), [16, 32], "another plan"),
     ] {
-        let message = raised(text, &options, samples).expect_err("it is refused").to_string();
+        let message = raised(text, &options, samples).map(|_| ()).expect_err("it is refused").to_string();
         assert!(message.contains(why), "{samples:?}: {message}");
     }
 }
@@ -259,7 +280,8 @@ fn a_checkpoint_with_more_samples_than_are_asked_for_is_good_enough() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("image.checkpoint");
     let scene = scene(ROOM);
-    let [mut many, mut few] = [64, 20].map(|n| rendering(&scene, &Options { samples: Some(n), ..Options::default() }, 2));
+    let [mut many, mut few] =
+        [64, 20].map(|n| rendering(&scene, &Options { samples: Some(n), ..Options::default() }, 2));
     advance(&mut many, u64::MAX);
     many.save(&path).expect("a checkpoint can be written");
     assert_eq!(few.resume(&path).expect("it can be read"), Resumed::HasMore(64));

@@ -416,7 +416,7 @@ fn mattes_cover_what_the_image_covers() {
     let mut found = 0.0;
     for (pixel, alpha) in alpha.iter().enumerate() {
         for manifest in &image.film().manifests {
-            let all: f32 = manifest.entries.iter().map(|(_, id)| coverage(manifest.name, *id, pixel)).sum();
+            let all: f32 = manifest.entries.iter().map(|(_, id)| coverage(&manifest.name, *id, pixel)).sum();
             assert!((all - alpha).abs() < 1e-6, "{}, pixel {pixel}: {all} of {alpha}", manifest.name);
         }
         let stones = coverage("CryptoAsset", bits("stones"), pixel);

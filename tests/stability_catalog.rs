@@ -21,7 +21,7 @@ const ROWS: [(&str, u32); 16] = [
     ("C", 2),
     ("K", 5),
     ("H", 13),
-    ("F", 2),
+    ("F", 3),
 ];
 
 fn home() -> &'static Path {

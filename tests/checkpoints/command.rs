@@ -1,0 +1,226 @@
+//! What the command says of checkpoints and parts, and what it leaves alone.
+
+use std::fs;
+use std::process::{Command, Stdio};
+use std::time::{Duration, SystemTime};
+
+use super::GLASS;
+use crate::messages::run::{Answer, Folder, render};
+
+fn folder() -> Folder {
+    let folder = Folder::new();
+    folder.write("s.toml", GLASS);
+    folder
+}
+
+/// Runs words that are separated by blanks.
+fn run(folder: &Folder, words: &str) -> Answer {
+    render(folder, &words.split(' ').collect::<Vec<_>>())
+}
+
+/// The last lines of what was said, from the one on that begins with a word.
+fn said_from<'a>(answer: &'a Answer, word: &str) -> &'a str {
+    answer.stderr.find(word).map_or(&*answer.stderr, |at| &answer.stderr[at..]).trim_end()
+}
+
+fn refused(folder: &Folder, words: &str, message: &str) {
+    let answer = run(folder, words);
+    assert_eq!((answer.code, said_from(&answer, "error:")), (Some(2), message), "{words}");
+}
+
+fn done(folder: &Folder, words: &str) -> Answer {
+    let answer = run(folder, words);
+    assert_eq!(answer.code, Some(0), "{words}: {}", answer.stderr);
+    answer
+}
+
+fn bytes(folder: &Folder, name: &str) -> Vec<u8> {
+    fs::read(folder.path().join(name)).expect("it was written")
+}
+
+fn modified(folder: &Folder, name: &str) -> SystemTime {
+    fs::metadata(folder.path().join(name)).and_then(|found| found.modified()).expect("it was written")
+}
+
+#[test]
+fn a_finished_render_that_is_resumed_says_so_and_rewrites_nothing() {
+    let folder = folder();
+    let begun = done(&folder, "s.toml --resume");
+    assert!(begun.stderr.contains("there is no s.checkpoint: the render begins\n"), "{}", begun.stderr);
+    assert_eq!(folder.listing(), ["s.checkpoint", "s.exr", "s.toml"]);
+    let times = ["s.checkpoint", "s.exr"].map(|name| modified(&folder, name));
+    for (words, told) in [
+        ("s.toml --resume", "s.checkpoint has all samples, and the image is written: nothing is left to be done"),
+        (
+            "s.toml --resume --checkpoint 1h",
+            "s.checkpoint has all samples, and the image is written: nothing is left to be done",
+        ),
+    ] {
+        assert_eq!(said_from(&done(&folder, words), "s.checkpoint"), told, "{words}");
+    }
+    assert_eq!(["s.checkpoint", "s.exr"].map(|name| modified(&folder, name)), times);
+    // An image that was lost is written again.
+    let image = bytes(&folder, "s.exr");
+    fs::remove_file(folder.path().join("s.exr")).expect("it is there");
+    done(&folder, "s.toml --resume");
+    assert!(bytes(&folder, "s.exr") == image);
+    refused(
+        &folder,
+        "s.toml --checkpoint 1h",
+        "error: s.checkpoint is there from an earlier run\nhelp: add --resume to go on from it, or delete it to begin anew",
+    );
+}
+
+#[test]
+fn a_checkpoint_of_something_else_is_refused_in_one_line_that_says_what_differs() {
+    let folder = folder();
+    done(&folder, "s.toml --resume --samples 4");
+    let begin_anew = "help: delete it, or leave --resume out, to begin anew";
+    for (flags, difference) in [
+        ("--seed 4", "its seed is 3, not 4"),
+        ("--crop 0,0,8,8", "its crop is none, not 0,0,8,8"),
+        ("--overscan 2", "its overscan is 0,0,0,0, not 2,2,2,2"),
+        ("--layers N", "its list of layers is empty, not N"),
+        ("--spectral", "its number of spectral bands is 0, not 81"),
+    ] {
+        let message = format!("error: cannot go on from s.checkpoint: {difference}\n{begin_anew}");
+        refused(&folder, &format!("s.toml --resume --samples 4 {flags}"), &message);
+    }
+    folder.write("s.toml", &GLASS.replace("index = 1.5", "index = 1.6"));
+    let difference = "it was made of another scene, or of this one before it was changed";
+    let message = format!("error: cannot go on from s.checkpoint: {difference}\n{begin_anew}");
+    refused(&folder, "s.toml --resume --samples 4", &message);
+    folder.write("s.checkpoint", "something else");
+    refused(
+        &folder,
+        "s.toml --resume",
+        "error: cannot go on from s.checkpoint: it is no checkpoint\nhelp: name another image, or move that file away",
+    );
+    assert_eq!(bytes(&folder, "s.checkpoint"), b"something else");
+}
+
+#[test]
+fn parts_that_do_not_make_one_image_are_refused_by_name() {
+    let folder = folder();
+    for part in ["1/2", "2/2", "1/3"] {
+        done(&folder, &format!("s.toml --samples 4 --exr new/folder/s.exr --shard {part}"));
+    }
+    done(&folder, "s.toml --samples 4 --exr seed.exr --shard 2/2 --seed 8");
+    done(&folder, "s.toml --samples 5 --exr samples.exr --shard 2/2");
+    done(&folder, "s.toml --samples 4 --exr layers.exr --shard 2/2 --layers N");
+    let [one, two, third] = ["1-of-2", "2-of-2", "1-of-3"].map(|part| format!("new/folder/s.{part}.part"));
+    let again = "help: render it again, or leave it out";
+    let other = |path: &str, why: &str| format!("error: {path} does not belong to {one}: {why}\n{again}");
+    folder.write("old.exr", "an image of last week");
+    for (parts, message) in [
+        (one.clone(), "error: part 2 of 2 is missing\nhelp: render it: --shard 2/2".into()),
+        (third.clone(), "error: part 2 of 3 is missing, and 1 more\nhelp: render it: --shard 2/3".into()),
+        (
+            format!("{one} {two} {one}"),
+            format!("error: {one} and {one} are both part 1 of 2\nhelp: leave one of them out"),
+        ),
+        (format!("{one} {two} {third}"), other(&third, "it is one of 3 parts, not of 2")),
+        (format!("{one} seed.2-of-2.part"), other("seed.2-of-2.part", "its seed is 8, not 3")),
+        (format!("{one} layers.2-of-2.part"), other("layers.2-of-2.part", "its list of layers is N, not empty")),
+        (
+            format!("{one} s.toml"),
+            "error: s.toml is no part of an image\n\
+             help: parts are made by --shard, as in render --shard 1/4 scene.toml"
+                .into(),
+        ),
+    ] {
+        refused(&folder, &format!("merge old.exr {parts}"), &message);
+    }
+    assert_eq!(run(&folder, &format!("merge old.exr {one} samples.2-of-2.part")).code, Some(2));
+    assert_eq!(bytes(&folder, "old.exr"), b"an image of last week");
+    assert_eq!(done(&folder, &format!("merge old.exr {two} {one}")).stderr, "wrote old.exr\n");
+    done(&folder, "s.toml --samples 4");
+    assert!(bytes(&folder, "s.exr") == bytes(&folder, "old.exr"));
+}
+
+#[test]
+fn flags_that_have_no_place_are_refused() {
+    let folder = folder();
+    for (words, message) in [
+        ("s.toml --plan --resume", "error: --resume is of a render, and nothing is rendered\nhelp: leave it out"),
+        ("s.toml --check --shard 1/2", "error: --shard is of a render, and nothing is rendered\nhelp: leave it out"),
+        (
+            "s.toml --png a.png --shard 1/2",
+            "error: --shard makes a part of an EXR, and no picture\n\
+             help: leave --png out, and make a picture of the merged image",
+        ),
+        (
+            "s.toml --png a.png --snapshot 1s",
+            "error: --snapshot keeps an EXR fresh, and none is rendered\nhelp: leave it out",
+        ),
+        (
+            "s.toml --stamp --shard 1/2",
+            "error: parts of an image say no time, so --stamp has no place in them\nhelp: leave it out",
+        ),
+    ] {
+        refused(&folder, words, message);
+    }
+    for (words, part) in [
+        ("s.toml --checkpoint 60", "a time is a number with a unit, such as 60s, 5m or 1h"),
+        ("s.toml --shard 0/4", "a part is its number and how many there are, such as 1/16, 2/16, up to 16/16"),
+        ("s.toml --shard 5/4", "a part is its number and how many there are"),
+    ] {
+        let answer = run(&folder, words);
+        assert!(answer.code == Some(2) && answer.stderr.contains(part), "{words}: {}", answer.stderr);
+    }
+    assert_eq!(folder.listing(), ["s.toml"]);
+}
+
+/// Starts a render, sends a signal when a file is there, and answers what was said and the exit code.
+#[cfg(unix)]
+fn stopped(folder: &Folder, words: &str, signal: &str, file: &str) -> (String, Option<i32>) {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_render"));
+    command.current_dir(folder.path()).args(words.split(' ')).stderr(Stdio::piped());
+    let child = command.spawn().expect("the command can be started");
+    while !folder.path().join(file).exists() {
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    let sent = Command::new("kill").args([signal, &child.id().to_string()]).status().expect("there is kill");
+    assert!(sent.success());
+    let output = child.wait_with_output().expect("it ends");
+    (String::from_utf8(output.stderr).expect("messages are UTF-8"), output.status.code())
+}
+
+#[cfg(unix)]
+#[test]
+fn a_render_that_is_told_to_stop_says_how_to_go_on_and_goes_on_to_the_same_bytes() {
+    let folder = folder();
+    let samples = "--samples 2000";
+    done(&folder, &format!("s.toml --exr whole.exr {samples}"));
+    for signal in ["-INT", "-TERM"] {
+        let words = format!("s.toml {samples} --threads 1 --checkpoint 20ms --snapshot 20ms");
+        let (said, code) = stopped(&folder, &words, signal, "s.checkpoint");
+        let told = format!(
+            "stopped; s.checkpoint keeps what is done. Go on with\n  {} {words} --resume\n",
+            env!("CARGO_BIN_EXE_render")
+        );
+        assert!(code == Some(130) && said.ends_with(&told), "{code:?}: {said}");
+        assert_eq!(folder.listing().iter().filter(|name| name.starts_with('.')).count(), 0);
+        done(&folder, &format!("s.toml {samples} --resume"));
+        assert!(bytes(&folder, "s.exr") == bytes(&folder, "whole.exr"), "{signal}");
+        fs::remove_file(folder.path().join("s.checkpoint")).expect("it is there");
+    }
+}
+
+/// A disk that is full is a limit on the size of files that is ignored: the write fails.
+#[cfg(unix)]
+#[test]
+fn a_checkpoint_that_cannot_be_written_stops_no_render_and_loses_no_file() {
+    let folder = folder();
+    folder.write("s.exr", "an image of last week");
+    let line = "trap '' XFSZ; ulimit -f 4; exec \"$0\" s.toml --samples 400 --checkpoint 1ms";
+    let mut shell = Command::new("sh");
+    let output = shell.current_dir(folder.path()).args(["-c", line, env!("CARGO_BIN_EXE_render")]).output();
+    let output = output.expect("there is a shell");
+    let said = String::from_utf8(output.stderr).expect("messages are UTF-8");
+    assert!(said.contains("warning: the render goes on, but cannot write s.checkpoint: "), "{said}");
+    assert!(said.contains("error: cannot write s.exr: "), "{said}");
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert_eq!(folder.listing(), ["s.exr", "s.toml"]);
+    assert_eq!(bytes(&folder, "s.exr"), b"an image of last week");
+}
