@@ -225,7 +225,10 @@ impl Rendering {
     /// The image of all samples so far.
     pub fn image(&self) -> Image {
         let (film, report) = (self.passes.film(), self.passes.report());
-        let mut provenance = provenance(&self.origin, &self.plan, self.passes.samples(), &report);
+        // Within a pass some pixels are ahead: then it is the mean.
+        let within = report.samples.div_ceil(film.pixels.len() as u64);
+        let samples = if self.passes.is_finished() { self.passes.samples().into() } else { within };
+        let mut provenance = provenance(&self.origin, &self.plan, samples, &report);
         if !self.passes.is_finished() {
             provenance.facts.push(("complete".into(), Fact::Count(0)));
         }
@@ -246,7 +249,7 @@ impl Rendering {
     }
 }
 
-fn provenance(origin: &Origin, plan: &Plan, samples: u32, report: &Report) -> Provenance {
+fn provenance(origin: &Origin, plan: &Plan, samples: u64, report: &Report) -> Provenance {
     let text = |text: &str| Fact::Text(text.to_owned());
     let method = &plan.method;
     let wavelengths: Vec<String> = method.basis.wavelengths_nm().iter().map(f64::to_string).collect();
@@ -261,7 +264,7 @@ fn provenance(origin: &Origin, plan: &Plan, samples: u32, report: &Report) -> Pr
         ("projection", text(origin.projection.name())),
         ("transport", text(method.transport.name())),
         ("filter", text(&origin.filter)),
-        ("samples", Fact::Count(samples.into())),
+        ("samples", Fact::Count(samples)),
         ("seed", text(&method.seed.to_string())),
         ("nonFinite", Fact::Count(report.non_finite)),
     ];
