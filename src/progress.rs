@@ -9,7 +9,8 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::messages::say;
+use crate::events::Event;
+use crate::messages::{Listener, listener, say};
 
 /// How far a render is.
 pub struct Progress {
@@ -17,29 +18,31 @@ pub struct Progress {
     lines: Option<Lines>,
     done: Arc<AtomicU64>,
     start: Instant,
+    work: u64,
 }
 
 /// Renders shorter than this say nothing where there is no terminal.
 const QUIET: Duration = Duration::from_secs(10);
 /// The time between two lines.
 const PERIOD: Duration = Duration::from_secs(30);
+/// The time between two lines for a program.
+const TICK: Duration = Duration::from_secs(1);
 
 impl Progress {
     /// Of a render of so many camera samples and photons.
     pub fn new(work: u64) -> Self {
         let (done, start) = (Arc::new(AtomicU64::new(0)), Instant::now());
-        let bar = std::io::stderr().is_terminal().then(|| {
+        let is_shown = listener() == Listener::Person && std::io::stderr().is_terminal();
+        let bar = is_shown.then(|| {
             let style = ProgressStyle::with_template("{wide_bar} {percent:>3} %  {elapsed} passed, {eta} left");
             ProgressBar::new(work).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
         });
         let lines = bar.is_none().then(|| {
             let done = done.clone();
-            Lines::new(QUIET, PERIOD, move || {
-                let passed = start.elapsed().as_secs_f64();
-                say(&line(done.load(Ordering::Relaxed) as f64 / work.max(1) as f64, passed));
-            })
+            let (first, then) = if listener() == Listener::Program { (TICK, TICK) } else { (QUIET, PERIOD) };
+            Lines::new(first, then, move || speak(done.load(Ordering::Relaxed), work, start.elapsed()))
         });
-        Self { bar, lines, done, start }
+        Self { bar, lines, done, start, work }
     }
 
     /// Counts those that are done; may be called from any thread.
@@ -51,13 +54,35 @@ impl Progress {
     }
 
     /// Removes the bar and says how long it took, beside the time that was expected.
-    pub fn finish(self, expected: Duration) {
+    pub fn finish(self, expected: Duration) -> Duration {
         drop(self.lines);
         if let Some(bar) = &self.bar {
             bar.finish_and_clear();
         }
-        say(&rendered(self.start.elapsed(), expected));
+        let took = self.start.elapsed();
+        match listener() {
+            Listener::Program => speak(self.work, self.work, took),
+            _ => say(&rendered(took, expected)),
+        }
+        took
     }
+}
+
+/// Says how much of the work is done after some time.
+fn speak(done: u64, total: u64, passed: Duration) {
+    let (part, seconds) = (done as f64 / total.max(1) as f64, passed.as_secs_f64());
+    match listener() {
+        Listener::Program => {
+            let seconds_left = (done > 0).then(|| left(part, seconds));
+            Event::Progress { done, total, seconds, seconds_left }.tell();
+        }
+        _ => say(&line(part, seconds)),
+    }
+}
+
+/// Seconds left when a part is done after so many.
+fn left(part: f64, passed: f64) -> f64 {
+    passed * (1.0 - part).max(0.0) / part
 }
 
 /// What is said at the end. Of a short render the time expected says nothing.
@@ -101,7 +126,7 @@ fn line(part: f64, passed: f64) -> String {
     let percent = (100.0 * part).floor().min(99.0);
     let left = match part {
         0.0 => String::new(),
-        part => format!(", about {} left", spoken(passed * (1.0 - part).max(0.0) / part)),
+        part => format!(", about {} left", spoken(left(part, passed))),
     };
     format!("{percent} %, {} passed{left}", spoken(passed))
 }

@@ -7,8 +7,8 @@ use std::time::{Duration, Instant, SystemTime};
 
 use crate::error::{Error, Result};
 use crate::film::{
-    Fact, Film, Format, LONGEST_NAME, Layer, Overscan, Pixel, Provenance, View, Window, light_layer_name, write_exr,
-    write_png, write_spectral_exr,
+    Fact, Film, Format, LONGEST_NAME, Layer, Overscan, Pixel, Provenance, View, Window, encode_exr, light_layer_name,
+    write_exr, write_png, write_spectral_exr,
 };
 use crate::plan::{Plan, plan};
 use crate::scene::{FilmSettings, ModelText, Projection, Scene};
@@ -161,6 +161,8 @@ struct Origin {
     hash: String,
     projection: Projection,
     filter: String,
+    /// Values in place of the scene file's, as on a command line.
+    settings: String,
 }
 
 impl Rendering {
@@ -191,13 +193,14 @@ impl Rendering {
             latlong: camera.projection() == Projection::Equirectangular,
             optics: camera.optics(scene.render.meters_per_unit),
         };
-        let (hash, filter) = (scene.hash.clone(), scene.film.filter.described());
+        let settings: Vec<String> = scene.settings.iter().map(|setting| format!("--set {setting}")).collect();
+        let (hash, filter, settings) = (scene.hash.clone(), scene.film.filter.described(), settings.join(" "));
         Ok(Self {
             plan,
             passes: trace::Rendering::new(world),
             view,
             format: scene.format.clone(),
-            origin: Origin { hash, projection: camera.projection(), filter },
+            origin: Origin { hash, projection: camera.projection(), filter, settings },
             threads,
             began,
         })
@@ -349,6 +352,14 @@ impl Image {
         write_exr(&self.film, &self.format, &self.view, &self.provenance, path.as_ref())
     }
 
+    /// The bytes of that file, and how many values became 65504.
+    ///
+    /// # Errors
+    /// If it cannot be encoded.
+    pub fn exr_bytes(&self) -> Result<(Vec<u8>, u64)> {
+        encode_exr(&self.film, &self.format, &self.view, &self.provenance, Path::new("the image"))
+    }
+
     /// The spectrum of the pixel in column `x`, row `y`, counted from 0 at the top left; none if spectra were not asked
     /// for.
     ///
@@ -401,5 +412,6 @@ fn provenance(origin: &Origin, plan: &Plan, samples: u32, report: &Report) -> Pr
         ("seed", text(&method.seed.to_string())),
         ("nonFinite", Fact::Count(report.non_finite)),
     ];
-    Provenance { facts: facts.into_iter().chain(photons).chain(blur).collect(), time: None }
+    let settings = (!origin.settings.is_empty()).then(|| ("set", text(&origin.settings)));
+    Provenance { facts: facts.into_iter().chain(settings).chain(photons).chain(blur).collect(), time: None }
 }

@@ -6,7 +6,8 @@ use super::house::{House, here};
 use super::source::Source;
 
 /// Modules of the command, which stands above all floors.
-const COMMAND: [&str; 9] = ["main", "catalog", "cli", "diff", "info", "messages", "outputs", "progress", "view"];
+const COMMAND: [&str; 12] =
+    ["main", "catalog", "cli", "diff", "events", "frames", "info", "manual", "messages", "outputs", "progress", "view"];
 /// What `lib.rs` hands on from the room `error`.
 const ERRORS: [&str; 5] = ["Diagnostic", "Error", "Result", "nearest", "error"];
 
