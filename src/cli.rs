@@ -5,11 +5,12 @@ use std::path::{Path, PathBuf};
 
 use abbe::film::{Layer, Overscan, Window};
 use abbe::{Options, Result, nearest};
-use clap::Parser;
+use clap::{Command, CommandFactory, Parser};
 
-use crate::messages::is_colored;
-use crate::outputs::{check_exposure, check_png, ends_in, refuse};
-use crate::{catalog, diff, info, keep, merge, view};
+use crate::frames::numbered;
+use crate::messages::{Listener, is_colored, listener, speak_to};
+use crate::outputs::{check_exposure, check_png, ends_in, is_standard, refuse};
+use crate::{catalog, diff, info, keep, manual, merge, view};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -25,10 +26,14 @@ Examples:
   render --checkpoint 60s --exr scenes/prism.toml lose nothing: --resume goes on
   render --shard 1/4 --exr scenes/prism.toml      make one of four parts
   render merge prism.exr prism.*.part             lay them together
+  render --set film.width=320 scenes/prism.toml   change a value of the scene
+  render - --exr frame.exr < scenes/prism.toml    read the scene from standard input
+  render --json --exr scenes/prism.toml           speak to a program
   render catalog --help                           see which glasses it knows
   render info prism.exr                           say what an image carries
   render view prism.exr                           show it on the terminal
   render diff prism.exr other.exr                 say whether two images agree
+  render completions bash                         complete its words in a shell; render man is its page
 
 Exit codes: 0 done, 1 the render or a file failed, 2 bad arguments or scene, 130 stopped by Ctrl-C.";
 
@@ -36,11 +41,11 @@ Exit codes: 0 done, 1 the render or a file failed, 2 bad arguments or scene, 130
 #[derive(Parser)]
 #[command(name = "render", version, after_help = EXAMPLES)]
 struct Arguments {
-    /// The scene, a TOML file
+    /// The scene, a TOML file; - is standard input
     scene: Option<PathBuf>,
 
-    /// The image to write; without a path, the scene's name in the current folder. It is written unless --png alone is
-    /// given
+    /// The image to write; without a path, the scene's name in the current folder; - is standard output. It is written
+    /// unless --png alone is given
     #[arg(long, value_name = "FILE.exr", num_args = 0..=1)]
     exr: Option<Option<PathBuf>>,
 
@@ -59,6 +64,24 @@ struct Arguments {
     /// Check the scene; render nothing
     #[arg(long, conflicts_with = "png")]
     check: bool,
+
+    /// Another value of the scene: the path of a key and a TOML value, such as film.width=320 or
+    /// object.ball.shape.sphere.radius=2. Objects, lights and other entries of lists go by name, or by number from 1.
+    /// What is not TOML is a text: object.ball.material=gold. One word sets the scene's variable: angle=45
+    #[arg(long, value_name = "KEY=VALUE", allow_hyphen_values = true)]
+    set: Vec<String>,
+
+    /// The number of a frame: the value of the variable frame, and of %04d in the names of the files to write
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32))]
+    frame: Option<u32>,
+
+    /// Say nothing but warnings and errors
+    #[arg(long, conflicts_with = "json")]
+    quiet: bool,
+
+    /// Say all on standard output, as a JSON object a line: plan, progress, report, files, warnings and errors
+    #[arg(long)]
+    json: bool,
 
     /// Camera samples per pixel, instead of the scene's
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..))]
@@ -149,6 +172,8 @@ fn layers(text: &str) -> std::result::Result<LayerList, String> {
 /// A scene and what is wanted of it.
 pub struct Job {
     pub scene: PathBuf,
+    /// Values in place of the scene's.
+    pub set: Vec<String>,
     pub output: Output,
     pub exposure: f64,
     pub options: Options,
@@ -170,7 +195,7 @@ pub enum Request {
     View(view::Query),
     Diff(diff::Query),
     Merge(merge::Query),
-    /// Help or the version.
+    /// Help, the version, completions or the manual page.
     Answer(String),
 }
 
@@ -184,8 +209,32 @@ pub fn parse() -> Result<Request> {
         Some("view") => read(rest, Request::View),
         Some("diff") => read(rest, Request::Diff),
         Some("merge") => read(rest, Request::Merge),
-        _ => Arguments::try_parse_from(&words).map_or_else(told, |arguments| job(arguments).map(Request::Render)),
+        Some("completions") => read(rest, |query| Request::Answer(manual::completions(&query, whole()))),
+        Some("man") => read(rest, |manual::Manual {}| Request::Answer(manual::page(whole()))),
+        _ => {
+            let parsed = Arguments::try_parse_from(&words);
+            speak_to(match &parsed {
+                Ok(arguments) if arguments.quiet => Listener::Busy,
+                Ok(arguments) if arguments.json => Listener::Program,
+                Err(_) if words.iter().any(|word| word == "--json") => Listener::Program,
+                _ => Listener::Person,
+            });
+            parsed.map_or_else(told, |arguments| job(arguments).map(Request::Render))
+        }
     }
+}
+
+/// The command with all commands below it.
+fn whole() -> Command {
+    let below = [
+        ("catalog", catalog::Query::command()),
+        ("info", info::Query::command()),
+        ("view", view::Query::command()),
+        ("diff", diff::Query::command()),
+        ("completions", manual::Completions::command()),
+        ("man", manual::Manual::command()),
+    ];
+    Arguments::command().subcommands(below.map(|(name, command)| command.name(name).bin_name(name)))
 }
 
 /// The arguments of a command, the first of which is its name.
@@ -195,6 +244,11 @@ fn read<'w, A: Parser>(words: impl Iterator<Item = &'w OsString>, request: fn(A)
 
 /// What clap has to say: help and version are an answer like any other, a mistake ends the command.
 fn told(said: clap::Error) -> Result<Request> {
+    if said.use_stderr() && listener() == Listener::Program {
+        let text = said.render().to_string();
+        let (message, _) = text.split_once("\n\n").unwrap_or((&text, ""));
+        return refuse(message.strip_prefix("error: ").unwrap_or(message), Some("render --help tells all arguments"));
+    }
     if said.use_stderr() {
         said.exit();
     }
@@ -205,7 +259,7 @@ fn told(said: clap::Error) -> Result<Request> {
 
 fn job(arguments: Arguments) -> Result<Job> {
     let idle = [("--plan", arguments.plan), ("--check", arguments.check)].into_iter().find(|(_, asked)| *asked);
-    let with_exr = arguments.exr.is_some() || arguments.png.is_none();
+    let with_exr = idle.is_none() && (arguments.exr.is_some() || arguments.png.is_none());
     let (scene, exr) = scene_and_image(arguments.scene, arguments.exr, idle.map(|(flag, _)| flag))?;
     check_exposure(arguments.exposure)?;
     if arguments.exposure.is_some() && arguments.png.is_none() {
@@ -214,23 +268,33 @@ fn job(arguments: Arguments) -> Result<Job> {
     }
     check_png(arguments.png.as_deref())?;
     arguments.keep.check(idle.is_some(), with_exr, arguments.png.is_some(), arguments.stamp)?;
+    if arguments.spectral && !with_exr && arguments.png.is_some() {
+        let help = "add --exr, or leave --spectral out";
+        return refuse("--spectral writes spectra beside an EXR, and --png alone writes none", Some(help));
+    }
+    let frame = arguments.frame;
     let output = if arguments.plan {
         Output::Plan
     } else if arguments.check {
         Output::Check
     } else {
-        Output::Image { exr: Some(exr).filter(|_| with_exr), png: arguments.png }
+        let exr = if with_exr { Some(exr.map_or_else(|| beside(&scene, frame), Ok)?) } else { None };
+        let of_frame = |path: Option<PathBuf>| path.map(|path| numbered(&path, frame)).transpose();
+        Output::Image { exr: of_frame(exr)?, png: of_frame(arguments.png)? }
     };
-    if arguments.spectral && !with_exr {
-        let help = "add --exr, or leave --spectral out";
-        return refuse("--spectral writes spectra beside an EXR, and --png alone writes none", Some(help));
+    if let (Output::Image { exr: Some(exr), .. }, true) = (&output, arguments.json)
+        && is_standard(exr)
+    {
+        let message = "--json and --exr - would both write to standard output";
+        return refuse(message, Some("name the image, as in --exr out/frame.exr"));
     }
     let Arguments { samples, seed, overscan, crop, layers, spectral, threads, stamp, keep, .. } = arguments;
     let (exposure, layers) = (arguments.exposure.unwrap_or(0.0), layers.map(|LayerList(layers)| layers));
     let shard = keep.shard();
     let options =
         Options { samples, seed, overscan, crop, layers, spectral, threads: threads.map(usize::from), stamp, shard };
-    Ok(Job { scene, output, exposure, options, keep })
+    let set = frame.map(|frame| format!("set.frame={frame}")).into_iter().chain(arguments.set).collect();
+    Ok(Job { scene, set, output, exposure, options, keep })
 }
 
 /// `--exr` takes an image to write, or nothing; right before the scene it belongs to the scene.
@@ -240,29 +304,36 @@ fn scene_and_image(
     scene: Option<PathBuf>,
     exr: Option<Option<PathBuf>>,
     idle: Option<&str>,
-) -> Result<(PathBuf, PathBuf)> {
+) -> Result<(PathBuf, Option<PathBuf>)> {
     let is_exr = |path: &Path| ends_in(path, "exr");
     match (scene, exr.flatten()) {
-        (Some(scene), Some(image)) if is_exr(&image) => match idle {
+        (Some(scene), Some(image)) if is_exr(&image) || is_standard(&image) => match idle {
             Some(flag) => {
                 let message = format!("{flag} renders nothing, so {} would not be written", image.display());
                 refuse(&message, Some("leave one of them out"))
             }
-            None => Ok((scene, image)),
+            None => Ok((scene, Some(image))),
         },
         (Some(_), Some(image)) => {
             let message = format!("--exr writes a file that ends in .exr, not {}", image.display());
             refuse(&message, Some("name the scene once, and the image as in --exr out/frame.exr"))
         }
-        (Some(scene), None) => Ok((scene.clone(), beside(&scene))),
-        (None, Some(scene)) if !is_exr(&scene) => Ok((scene.clone(), beside(&scene))),
+        (Some(scene), None) => Ok((scene, None)),
+        (None, Some(scene)) if !is_exr(&scene) => Ok((scene, None)),
         (None, _) => refuse("no scene is given", Some("for instance: render --exr scenes/prism.toml")),
     }
 }
 
-/// The scene's name with the ending .exr, in the current folder.
-fn beside(scene: &Path) -> PathBuf {
+/// The scene's name with the ending .exr, after the number of its frame, in the current folder.
+fn beside(scene: &Path, frame: Option<u32>) -> Result<PathBuf> {
+    if is_standard(scene) {
+        let message = "a scene from standard input has no name for its image";
+        return refuse(message, Some("name the image, as in render - --exr out/frame.exr"));
+    }
     let mut name = scene.file_stem().unwrap_or(OsStr::new("image")).to_owned();
+    if let Some(frame) = frame {
+        name.push(format!(".{frame:04}"));
+    }
     name.push(".exr");
-    name.into()
+    Ok(name.into())
 }

@@ -84,6 +84,19 @@ impl Flags {
         Ok(())
     }
 
+    /// Refuses to keep anything of an image that goes to standard output.
+    ///
+    /// # Errors
+    /// If anything is to be kept.
+    pub fn check_standard(&self) -> Result<()> {
+        let keeps = self.checkpoint.or(self.snapshot).is_some() || self.resume || self.shard.is_some();
+        if keeps {
+            let message = "--checkpoint, --resume, --snapshot and --shard write files beside the image, and standard output has none";
+            return refuse(message, Some("name the image, as in --exr out/frame.exr"));
+        }
+        Ok(())
+    }
+
     /// Where a part of an image is written, if one is made.
     pub fn part(&self, image: &Path) -> Option<PathBuf> {
         self.shard.map(|shard| image.with_extension(format!("{}-of-{}.part", shard.number(), shard.count())))

@@ -3,8 +3,11 @@
 mod catalog;
 mod cli;
 mod diff;
+mod events;
+mod frames;
 mod info;
 mod keep;
+mod manual;
 mod merge;
 mod messages;
 mod outputs;
@@ -16,11 +19,12 @@ use std::process::ExitCode;
 
 use abbe::film::check_writable;
 use abbe::plan::plan;
-use abbe::{Rendering, Result, Scene};
+use abbe::scene::Source;
+use abbe::{Image, Rendering, Result, Scene};
 
 use cli::{Job, Output, Request};
 use keep::Keep;
-use outputs::spare;
+use outputs::{check_standard, is_standard, spare};
 
 fn main() -> ExitCode {
     let answered = cli::parse().and_then(|request| match request {
@@ -43,7 +47,8 @@ fn listed(lines: Result<Vec<String>>) -> Result<ExitCode> {
 }
 
 fn run(job: &Job) -> Result<ExitCode> {
-    let mut scene = Scene::read(&job.scene)?;
+    let source = if is_standard(&job.scene) { Source::standard_input() } else { Source::read(&job.scene) }?;
+    let mut scene = source.compile_with(&job.set)?;
     if let Output::Image { exr: None, .. } = job.output {
         scene.format.spectral = None;
     }
@@ -51,28 +56,41 @@ fn run(job: &Job) -> Result<ExitCode> {
     scene.warnings.iter().for_each(|warning| messages::warn(warning));
     match &job.output {
         Output::Check => {
-            let count = scene.objects.len();
-            let objects = if count == 1 { "object" } else { "objects" };
-            messages::say(&format!("{} is a valid scene: {count} {objects}", job.scene.display()));
+            messages::print_checked(&source.path, scene.objects.len());
             Ok(ExitCode::SUCCESS)
         }
-        Output::Plan => listed(Ok(plan(&scene).because)),
+        Output::Plan => messages::answer_plan(&plan(&scene)).map(|()| ExitCode::SUCCESS),
         Output::Image { exr, png } => image(job, &scene, exr.as_deref(), png.as_deref()),
     }
 }
 
+/// Writes the image to its file, or to standard output; answers how many values were too bright for it.
+fn write(image: &Image, exr: &Path) -> Result<u64> {
+    if !is_standard(exr) {
+        return image.write_exr(exr);
+    }
+    let (bytes, clamped) = image.exr_bytes()?;
+    messages::send(&bytes)?;
+    Ok(clamped)
+}
+
 fn image(job: &Job, scene: &Scene, exr: Option<&Path>, png: Option<&Path>) -> Result<ExitCode> {
-    let part = exr.and_then(|exr| job.keep.part(exr));
-    let spectral = exr.filter(|_| scene.format.spectral.is_some()).map(|exr| exr.with_extension("spectral.exr"));
+    let exr_file = exr.filter(|exr| !is_standard(exr));
+    if exr_file != exr {
+        check_standard(scene.format.spectral.is_some())?;
+        job.keep.check_standard()?;
+    }
+    let part = exr_file.and_then(|exr| job.keep.part(exr));
+    let spectral = exr_file.filter(|_| scene.format.spectral.is_some()).map(|exr| exr.with_extension("spectral.exr"));
     let outputs: Vec<&Path> = match &part {
         Some(part) => vec![part],
-        None => [exr, spectral.as_deref(), png].into_iter().flatten().collect(),
+        None => [exr_file, spectral.as_deref(), png].into_iter().flatten().collect(),
     };
     outputs.iter().try_for_each(|output| spare(&job.scene, "scene", output))?;
     outputs.iter().try_for_each(|output| check_writable(output))?;
-    let mut keep = Keep::new(&job.keep, outputs[0])?;
+    let mut keep = Keep::new(&job.keep, outputs.first().copied().unwrap_or(Path::new("image")))?;
     let mut rendering = Rendering::new(scene, &job.options)?;
-    rendering.plan().because.iter().for_each(|line| messages::say(line));
+    messages::print_plan(rendering.plan());
     if !keep.resume(&mut rendering, &outputs)? {
         return Ok(ExitCode::SUCCESS);
     }
@@ -84,11 +102,11 @@ fn image(job: &Job, scene: &Scene, exr: Option<&Path>, png: Option<&Path>) -> Re
         keep.say_how_to_resume();
         return Ok(ExitCode::from(keep::STOPPED_CODE));
     }
-    progress.finish(expected);
+    let took = progress.finish(expected);
     let image = rendering.image();
     match (&part, exr) {
         (Some(part), _) => rendering.write_part(part)?,
-        (None, Some(exr)) => messages::warn_of_clamped(&image, image.write_exr(exr)?),
+        (None, Some(exr)) => messages::warn_of_clamped(&image, write(&image, exr)?),
         (None, None) => {}
     }
     if let (None, Some(spectral)) = (&part, &spectral) {
@@ -97,6 +115,7 @@ fn image(job: &Job, scene: &Scene, exr: Option<&Path>, png: Option<&Path>) -> Re
     png.map_or(Ok(()), |png| image.write_png(png, job.exposure))?;
     // Last: a checkpoint with all samples says that the image is written.
     keep.save(&rendering)?;
-    messages::print_report(image.report(), outputs.into_iter());
+    messages::print_report(image.report(), took, expected);
+    outputs.into_iter().for_each(messages::print_written);
     Ok(ExitCode::SUCCESS)
 }

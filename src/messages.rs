@@ -1,19 +1,54 @@
-//! What the command says to the person who runs it, on stderr.
+//! What the command says: to the person who runs it, on stderr; to a program, as JSON on stdout.
 //!
 //! Where nobody can be told, as where stderr is a closed pipe or a full disk, nothing is said and the work goes on.
 
 use std::io::{ErrorKind, IsTerminal, Write};
 use std::path::Path;
+use std::sync::OnceLock;
+use std::time::Duration;
 
+use abbe::plan::Plan;
 use abbe::trace::Report;
 use abbe::{Diagnostic, Error, Image, Result};
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 
+use crate::events::Event;
+
+/// To whom it speaks.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Listener {
+    /// A person.
+    Person,
+    /// A person who wants to know of errors and warnings alone.
+    Busy,
+    /// A program.
+    Program,
+}
+
+static LISTENER: OnceLock<Listener> = OnceLock::new();
+
+/// Decides to whom all is said from now on; the first decision stays.
+pub fn speak_to(listener: Listener) {
+    let _ = LISTENER.set(listener);
+}
+
+pub fn listener() -> Listener {
+    *LISTENER.get().unwrap_or(&Listener::Person)
+}
+
 /// Most mistakes of a scene that are shown.
 const MOST_SHOWN: usize = 20;
 
-/// One plain line, or several.
+/// One plain line, or several, which a busy person can do without.
 pub fn say(line: &str) {
+    match listener() {
+        Listener::Person => print(line),
+        Listener::Busy => {}
+        Listener::Program => Event::Note { message: line }.tell(),
+    }
+}
+
+fn print(line: &str) {
     let _ = writeln!(std::io::stderr().lock(), "{line}");
 }
 
@@ -37,6 +72,16 @@ pub fn answer(text: &str) -> Result<()> {
 /// As of a text.
 pub fn answer_lines(lines: &[String]) -> Result<()> {
     answer(&lines.iter().flat_map(|line| [line, "\n"]).collect::<String>())
+}
+
+/// An image on stdout, which nobody may miss a part of.
+///
+/// # Errors
+/// If it cannot be written, or nobody reads it to its end.
+pub fn send(image: &[u8]) -> Result<()> {
+    let mut stdout = std::io::stdout().lock();
+    let sent = stdout.write_all(image).and_then(|()| stdout.flush());
+    sent.map_err(|source| Error::Io { doing: "write", path: "the image to stdout".into(), source })
 }
 
 /// The cells of each line as one text, every column as wide as its widest cell.
@@ -66,7 +111,10 @@ pub fn number(value: f64) -> String {
 
 /// Something to know that stops nothing.
 pub fn warn(message: &str) {
-    say(&format!("warning: {message}"));
+    match listener() {
+        Listener::Program => Event::Warning { message }.tell(),
+        _ => print(&format!("warning: {message}")),
+    }
 }
 
 /// Says how many values were too large for the file, if any were.
@@ -90,23 +138,28 @@ pub fn problem(error: &Error) -> String {
 /// What went wrong, where, and what to do.
 pub fn print_error(error: &Error) {
     match error {
+        _ if listener() == Listener::Program => Event::errors(error).iter().for_each(Event::tell),
         Error::Scene(mistakes) => print_mistakes(mistakes),
         Error::Arguments { message, help } => {
-            say(&format!("error: {message}"));
-            help.iter().for_each(|help| say(&format!("help: {help}")));
+            print(&format!("error: {message}"));
+            help.iter().for_each(|help| print(&format!("help: {help}")));
         }
-        other => say(&format!("error: {}", problem(other))),
+        other => print(&format!("error: {}", problem(other))),
     }
 }
 
-/// All that is wrong with a scene, in the order of the file, and how much that is.
+/// All that is wrong with a scene, in the order of its files, and how much that is.
 fn print_mistakes(mistakes: &[Diagnostic]) {
     let shown = &mistakes[..mistakes.len().min(MOST_SHOWN)];
-    say(&shown.iter().map(underlined).collect::<Vec<_>>().join("\n\n"));
+    print(&shown.iter().map(underlined).collect::<Vec<_>>().join("\n\n"));
     let (count, more) = (mistakes.len(), mistakes.len() - shown.len());
-    let Some(file) = mistakes.get(1).map(|mistake| mistake.file.display()) else { return };
+    if count < 2 {
+        return;
+    }
+    let mut files: Vec<_> = mistakes.iter().map(|mistake| mistake.file.display().to_string()).collect();
+    files.dedup();
     let more = if more > 0 { format!(": these and {more} more") } else { String::new() };
-    say(&format!("\n{count} mistakes in {file}{more}"));
+    print(&format!("\n{count} mistakes in {}{more}", files.join(", ")));
 }
 
 /// What the system said, in plain words where it is terse.
@@ -140,8 +193,48 @@ pub fn is_colored(stream: &impl IsTerminal) -> bool {
     stream.is_terminal() && std::env::var_os("NO_COLOR").is_none()
 }
 
-/// What the render noticed and where the image is.
-pub fn print_report<'p>(report: &Report, written: impl Iterator<Item = &'p Path>) {
+/// That a scene is right.
+pub fn print_checked(scene: &Path, objects: usize) {
+    if listener() == Listener::Program {
+        return Event::Checked { scene, objects }.tell();
+    }
+    let what = if objects == 1 { "object" } else { "objects" };
+    say(&format!("{} is a valid scene: {objects} {what}", scene.display()));
+}
+
+/// How a scene would be rendered, on stdout.
+///
+/// # Errors
+/// As of a text.
+pub fn answer_plan(plan: &Plan) -> Result<()> {
+    match listener() {
+        Listener::Program => print_plan(plan),
+        _ => answer_lines(&plan.because)?,
+    }
+    Ok(())
+}
+
+/// How a scene is rendered.
+pub fn print_plan(plan: &Plan) {
+    match listener() {
+        Listener::Program => Event::plan(plan).tell(),
+        _ => plan.because.iter().for_each(|line| say(line)),
+    }
+}
+
+/// That a file was written.
+pub fn print_written(path: &Path) {
+    match listener() {
+        Listener::Program => Event::Written { path }.tell(),
+        _ => say(&format!("wrote {}", path.display())),
+    }
+}
+
+/// What the render noticed.
+pub fn print_report(report: &Report, took: Duration, expected: Duration) {
+    if listener() == Listener::Program {
+        Event::report(report, took, expected).tell();
+    }
     if let Some([x, y, sample]) = report.first_non_finite {
         warn(&format!(
             "{} samples were not finite and are left out; the first is sample {sample} of pixel ({x}, {y})",
@@ -154,21 +247,23 @@ pub fn print_report<'p>(report: &Report, written: impl Iterator<Item = &'p Path>
             report.unmatched
         ));
     }
-    if report.dropped + report.stopped > 0.0 {
-        say(&format!("branches that were not followed: {:.1e} of the weight", report.dropped + report.stopped));
-    }
     if report.by_chance > 0 {
         warn(&format!(
             "in {} of {} camera samples light had too many ways to follow all, and went on by chance: these pixels have noise",
             report.by_chance, report.samples
         ));
     }
+    if listener() == Listener::Program {
+        return;
+    }
+    if report.dropped + report.stopped > 0.0 {
+        say(&format!("branches that were not followed: {:.1e} of the weight", report.dropped + report.stopped));
+    }
     if report.polarization_of_tile > TOLD {
         let [all, tile] = [report.polarization, report.polarization_of_tile].map(|share| 100.0 * share);
         let tile = if tile > 1.05 * all { format!(", up to {tile:.1} % in 16 x 16 pixels") } else { String::new() };
         say(&format!("polarization may change up to {all:.1} % of the light seen{tile}: it is not traced"));
     }
-    written.for_each(|path| say(&format!("wrote {}", path.display())));
 }
 
 /// The share of the light from which on it is said what polarization may change.

@@ -1,5 +1,6 @@
 //! What the command may write, and how it refuses.
 
+use std::io::IsTerminal;
 use std::path::Path;
 
 use abbe::{Error, Result};
@@ -11,6 +12,23 @@ pub fn refuse<T>(message: &str, help: Option<&str>) -> Result<T> {
 
 pub fn ends_in(path: &Path, ending: &str) -> bool {
     path.extension().is_some_and(|found| found.eq_ignore_ascii_case(ending))
+}
+
+/// Whether a path stands for standard input or output.
+pub fn is_standard(path: &Path) -> bool {
+    path == Path::new("-")
+}
+
+/// Refuses an image on standard output that has nowhere to go, or more than one file.
+pub fn check_standard(spectral: bool) -> Result<()> {
+    if spectral {
+        let message = "spectra are written beside the image, and standard output has no place beside it";
+        return refuse(message, Some("name the image, as in --exr out/frame.exr"));
+    }
+    if std::io::stdout().is_terminal() {
+        return refuse("an EXR on standard output is no text for a terminal", Some("send it on: --exr - > frame.exr"));
+    }
+    Ok(())
 }
 
 /// Refuses a picture that is called anything but a PNG.

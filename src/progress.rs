@@ -9,7 +9,8 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::messages::say;
+use crate::events::Event;
+use crate::messages::{Listener, listener, say};
 
 /// How far a render is.
 pub struct Progress {
@@ -17,7 +18,8 @@ pub struct Progress {
     lines: Option<Lines>,
     done: Arc<AtomicU64>,
     start: Instant,
-    /// The share of the work that this run does.
+    work: u64,
+    /// The share of it that this run does.
     left: f64,
 }
 
@@ -25,12 +27,15 @@ pub struct Progress {
 const QUIET: Duration = Duration::from_secs(10);
 /// The time between two lines.
 const PERIOD: Duration = Duration::from_secs(30);
+/// The time between two lines for a program.
+const TICK: Duration = Duration::from_secs(1);
 
 impl Progress {
     /// Of a render of so many camera samples and photons, some of which an earlier run has done.
     pub fn new(work: u64, before: u64) -> Self {
         let (done, start) = (Arc::new(AtomicU64::new(before)), Instant::now());
-        let bar = std::io::stderr().is_terminal().then(|| {
+        let is_shown = listener() == Listener::Person && std::io::stderr().is_terminal();
+        let bar = is_shown.then(|| {
             let style = ProgressStyle::with_template("{wide_bar} {percent:>3} %  {elapsed} passed, {eta} left");
             ProgressBar::new(work)
                 .with_position(before)
@@ -38,14 +43,11 @@ impl Progress {
         });
         let lines = bar.is_none().then(|| {
             let done = done.clone();
-            Lines::new(QUIET, PERIOD, move || {
-                let passed = start.elapsed().as_secs_f64();
-                let part = |done: u64| done as f64 / work.max(1) as f64;
-                say(&line([before, done.load(Ordering::Relaxed)].map(part), passed));
-            })
+            let (first, then) = if listener() == Listener::Program { (TICK, TICK) } else { (QUIET, PERIOD) };
+            Lines::new(first, then, move || speak([before, done.load(Ordering::Relaxed)], work, start.elapsed()))
         });
         let left = work.saturating_sub(before) as f64 / work.max(1) as f64;
-        Self { bar, lines, done, start, left }
+        Self { bar, lines, done, start, work, left }
     }
 
     /// Counts those that are done; may be called from any thread.
@@ -57,10 +59,15 @@ impl Progress {
     }
 
     /// Removes the bar and says how long it took, beside the time that was expected of the whole render.
-    pub fn finish(self, expected: Duration) {
-        let (start, expected) = (self.start, expected.mul_f64(self.left));
+    pub fn finish(self, expected: Duration) -> Duration {
+        let (start, work, expected) = (self.start, self.work, expected.mul_f64(self.left));
         self.stop();
-        say(&rendered(start.elapsed(), expected));
+        let took = start.elapsed();
+        match listener() {
+            Listener::Program => speak([0, work], work, took),
+            _ => say(&rendered(took, expected)),
+        }
+        took
     }
 
     /// Removes the bar.
@@ -70,6 +77,24 @@ impl Progress {
             bar.finish_and_clear();
         }
     }
+}
+
+/// Says how much of the work is done after some time, of which an earlier run has done some.
+fn speak([before, done]: [u64; 2], total: u64, passed: Duration) {
+    let parts = [before, done].map(|work| work as f64 / total.max(1) as f64);
+    let seconds = passed.as_secs_f64();
+    match listener() {
+        Listener::Program => {
+            let seconds_left = (done > before).then(|| left(parts, seconds));
+            Event::Progress { done, total, seconds, seconds_left }.tell();
+        }
+        _ => say(&line(parts, seconds)),
+    }
+}
+
+/// Seconds left after so many, in which the part that is done has grown.
+fn left([before, part]: [f64; 2], passed: f64) -> f64 {
+    passed * (1.0 - part).max(0.0) / (part - before)
 }
 
 /// What is said at the end. Of a short render the time expected says nothing.
@@ -113,7 +138,7 @@ fn line([before, part]: [f64; 2], passed: f64) -> String {
     let percent = (100.0 * part).floor().min(99.0);
     let left = match part - before {
         0.0 => String::new(),
-        more => format!(", about {} left", spoken(passed * (1.0 - part).max(0.0) / more)),
+        _ => format!(", about {} left", spoken(left([before, part], passed))),
     };
     format!("{percent} %, {} passed{left}", spoken(passed))
 }

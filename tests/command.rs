@@ -126,7 +126,6 @@ fn a_scene_that_cannot_be_read_is_refused_with_the_nearest_file() {
     let missing = "error: there is no scene file bal.toml\nhelp: did you mean ball.toml?\n";
     assert_refuses(&["bal.toml"], 2, missing);
     assert_refuses(&["--exr", "bal.toml"], 2, missing);
-    assert_refuses(&["-"], 2, &format!("error: there is no scene file -\n{example}"));
     assert_refuses(&["cup"], 2, &format!("error: there is no scene file cup\n{example}"));
     assert_refuses(&["no/ball.toml"], 2, &format!("error: there is no scene file no/ball.toml\n{example}"));
     assert_refuses(&["ball.toml/x.toml"], 2, &format!("error: there is no scene file ball.toml/x.toml\n{example}"));

@@ -9,6 +9,7 @@
 //! + widht = 4                          lines put in their place, or at the end if nothing is taken out
 //! @ cup.ply                            another file in the folder of the scene
 //! > ply                                its lines
+//! = film.width=abc                     a value in place of the scene's, by --set
 //!
 //! error: unknown key `widht`
 //! ..
@@ -28,6 +29,7 @@ struct Case<'a> {
     scene: String,
     /// Other files: name and text.
     files: Vec<(&'a str, String)>,
+    settings: Vec<&'a str>,
     expected: &'a str,
 }
 
@@ -36,18 +38,20 @@ impl<'a> Case<'a> {
         let (title, rest) = text.split_once('\n').expect("a heading ends its line");
         let (patch, expected) = rest.split_once("\n\n").expect("a blank line ends the patch");
         let (mut taken, mut put, mut files) = (Vec::new(), Vec::new(), Vec::<(&str, String)>::new());
+        let mut settings = Vec::new();
         for line in patch.lines() {
             let (mark, line) = line.split_at(1);
             let line = line.strip_prefix(' ').unwrap_or(line);
             match mark {
                 "-" => taken.push(line),
                 "+" => put.push(line),
+                "=" => settings.push(line),
                 "@" => files.push((line, String::new())),
                 ">" => files.last_mut().expect("a file has a name").1 += &format!("{line}\n"),
                 other => panic!("{title}: what is {other}?"),
             }
         }
-        Self { title, scene: patched(title, &taken, &put), files, expected: expected.trim_end() }
+        Self { title, scene: patched(title, &taken, &put), files, settings, expected: expected.trim_end() }
     }
 
     /// A folder with the scene and its files.
@@ -68,7 +72,8 @@ impl<'a> Case<'a> {
         let before = folder.listing();
         // A check and a render refuse a scene with the same words, and neither leaves anything behind.
         for flag in ["--check", "--exr"] {
-            let answer = render(&folder, &[flag, "scene.toml"]);
+            let settings = self.settings.iter().flat_map(|setting| ["--set", setting]);
+            let answer = render(&folder, &[flag, "scene.toml"].into_iter().chain(settings).collect::<Vec<_>>());
             let told = answer.stderr.trim_end();
             let answered = answer.code == Some(2) && answer.stdout.is_empty() && told == self.expected;
             if !answered {
@@ -206,6 +211,16 @@ error: paint.csv is not text in UTF-8
 ";
     let answer = render(&folder, &["--check", "scene.toml"]);
     assert_eq!((answer.code, &*answer.stderr), (Some(2), expected));
+}
+
+#[test]
+fn settings_and_variables_are_refused_where_they_stand() {
+    check("settings.txt", 35);
+}
+
+#[test]
+fn mistakes_in_included_files_are_told_with_their_file_and_line() {
+    check("includes.txt", 14);
 }
 
 #[test]

@@ -85,6 +85,22 @@ pub enum Fact {
 /// # Errors
 /// If the file cannot be encoded or written; a file that was there before is then untouched.
 pub fn write_exr(film: &Film, format: &Format, view: &View, provenance: &Provenance, path: &Path) -> Result<u64> {
+    let (bytes, clamped) = encode_exr(film, format, view, provenance, path)?;
+    replace_file(path, &bytes)?;
+    Ok(clamped)
+}
+
+/// The bytes of such a file, and how many values were too large; `path` is what it is called in an error.
+///
+/// # Errors
+/// If it cannot be encoded.
+pub fn encode_exr(
+    film: &Film,
+    format: &Format,
+    view: &View,
+    provenance: &Provenance,
+    path: &Path,
+) -> Result<(Vec<u8>, u64)> {
     let half = format.precision == Precision::Half;
     let mut channels = Channels { half, ..Channels::new(film) };
     let parts = parts(film, format, &mut channels);
@@ -116,17 +132,16 @@ pub fn write_exr(film: &Film, format: &Format, view: &View, provenance: &Provena
     let mut image = Image::from_layers(ImageAttributes::new(display_window(film)), layers);
     // The chromaticities would be those of all parts, also of those that hold no colors.
     image.attributes.chromaticities = (!format.multipart).then(|| chromaticities(film));
-    write_image(image, path)?;
-    Ok(channels.clamped)
+    Ok((encode_image(image, path)?, channels.clamped))
 }
 
-/// Writes a file of parts.
-pub(super) fn write_image(image: FlatImage, path: &Path) -> Result<()> {
+/// The bytes of a file of parts.
+pub(super) fn encode_image(image: FlatImage, path: &Path) -> Result<Vec<u8>> {
     let encode = |error: exr::error::Error| Error::Encode { path: path.to_owned(), message: error.to_string() };
     let mut bytes = exr_blocks::file(&image).map_err(encode)?;
     drop(image);
     sort_attributes(&mut bytes);
-    replace_file(path, &bytes)
+    Ok(bytes)
 }
 
 pub(super) type Channel = AnyChannel<FlatSamples>;

@@ -6,8 +6,9 @@ use std::path::Path;
 use exr::prelude::{AnyChannels, AttributeValue, Image, ImageAttributes, Layer, SmallVec, Text, Vec2};
 
 use super::exr::{
-    Channel, Channels, Provenance, View, attributes, chromaticities, display_window, encoding, write_image,
+    Channel, Channels, Provenance, View, attributes, chromaticities, display_window, encode_image, encoding,
 };
+use super::file::replace_file;
 use super::format::{Compression, Format};
 use super::image::Film;
 use crate::error::Result;
@@ -50,7 +51,7 @@ pub fn write_spectral_exr(
     let part = Layer::new(size, attributes, encoding(Compression::Zip), AnyChannels::sort(channels));
     let mut image = Image::from_layers(ImageAttributes::new(display_window(film)), vec![part]);
     image.attributes.chromaticities = Some(chromaticities(film));
-    write_image(image, path)
+    replace_file(path, &encode_image(image, path)?)
 }
 
 fn text(value: &str) -> AttributeValue {

@@ -24,7 +24,7 @@ mod sum;
 mod time;
 mod window;
 
-pub use self::exr::{Fact, Optics, Provenance, View, write_exr};
+pub use self::exr::{Fact, Optics, Provenance, View, encode_exr, write_exr};
 pub use cryptomatte::{Manifest, RANKS, id};
 pub use exr_attributes::CameraMatrix;
 pub use exr_file::ExrFile;

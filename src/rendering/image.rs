@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::error::Result;
-use crate::film::{Film, Format, Pixel, Provenance, View, write_exr, write_png, write_spectral_exr};
+use crate::film::{Film, Format, Pixel, Provenance, View, encode_exr, write_exr, write_png, write_spectral_exr};
 use crate::trace::Report;
 
 /// A rendered image, and all that is known of it.
@@ -97,6 +97,14 @@ impl Image {
     /// If it cannot be written; a file that was there before is then untouched.
     pub fn write_exr(&self, path: impl AsRef<Path>) -> Result<u64> {
         write_exr(&self.film, &self.format, &self.view, &self.provenance, path.as_ref())
+    }
+
+    /// The bytes of that file, and how many values became 65504.
+    ///
+    /// # Errors
+    /// If it cannot be encoded.
+    pub fn exr_bytes(&self) -> Result<(Vec<u8>, u64)> {
+        encode_exr(&self.film, &self.format, &self.view, &self.provenance, Path::new("the image"))
     }
 
     /// The spectrum of the pixel in column `x`, row `y`, counted from 0 at the top left; none if spectra were not asked

@@ -60,6 +60,8 @@ struct Origin {
     hash: String,
     projection: Projection,
     filter: String,
+    /// Values in place of the scene file's, as on a command line.
+    settings: String,
 }
 
 impl Rendering {
@@ -90,6 +92,7 @@ impl Rendering {
             latlong: camera.projection() == Projection::Equirectangular,
             optics: camera.optics(scene.render.meters_per_unit),
         };
+        let settings: Vec<String> = scene.settings.iter().map(|setting| format!("--set {setting}")).collect();
         let (hash, filter) = (scene.hash.clone(), scene.film.filter.described());
         Ok(Self {
             identity: Identity::new(&scene, &plan.method, options.shard),
@@ -98,7 +101,7 @@ impl Rendering {
             passes: trace::Rendering::of_shard(world, options.shard),
             view,
             format: scene.format.clone(),
-            origin: Origin { hash, projection: camera.projection(), filter },
+            origin: Origin { hash, projection: camera.projection(), filter, settings: settings.join(" ") },
             threads,
             began,
         })
@@ -268,6 +271,7 @@ fn provenance(origin: &Origin, plan: &Plan, samples: u64, report: &Report) -> Pr
         ("seed", text(&method.seed.to_string())),
         ("nonFinite", Fact::Count(report.non_finite)),
     ];
-    let facts = facts.into_iter().chain(photons).chain(blur).map(|(key, fact)| (key.into(), fact));
+    let settings = (!origin.settings.is_empty()).then(|| ("set", text(&origin.settings)));
+    let facts = facts.into_iter().chain(settings).chain(photons).chain(blur).map(|(key, fact)| (key.into(), fact));
     Provenance { facts: facts.collect(), time: None }
 }

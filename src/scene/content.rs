@@ -41,8 +41,10 @@ pub struct Scene<S = Curve> {
     pub hidden_lights: Vec<LightId>,
     /// What the author should know but need not change.
     pub warnings: Vec<String>,
-    /// SHA-256 of the scene file and the files it names, 64 hexadecimal digits.
+    /// SHA-256 of the scene file, the values set in it and the files it names, 64 hexadecimal digits.
     pub hash: String,
+    /// Values that were put in place of those of the file, each as `KEY=VALUE`.
+    pub settings: Vec<String>,
     pub(super) index: Arc<Index>,
 }
 
@@ -188,6 +190,7 @@ impl<S> Scene<S> {
             hidden_lights: self.hidden_lights.clone(),
             warnings: self.warnings.clone(),
             hash: self.hash.clone(),
+            settings: self.settings.clone(),
             index: self.index.clone(),
         }
     }

@@ -1,17 +1,16 @@
 //! Scenes that are read: a file, a text, or a table that a program has built.
 
 use std::collections::HashMap;
-use std::io::ErrorKind;
+use std::io::{ErrorKind, Read};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 use toml::de::DeTable;
 
 use super::Scene;
-use super::compile::compile;
-use super::text::{Document, Mistake, explain};
-use crate::error::{Diagnostic, Error, Result, nearest_file};
+use super::compile::{SECTIONS, compile};
+use super::text::{Document, Included, Mistake, Texts, fill, merged, set};
+use crate::error::{Error, Result, nearest_file};
 
 const A_SCENE: &str = "a scene is a TOML file, such as scenes/prism.toml";
 
@@ -46,44 +45,119 @@ impl Source {
                 };
             }
         };
-        // A byte order mark would count as a column.
-        let text = text.strip_prefix('\u{feff}').unwrap_or(&text).to_owned();
-        Ok(Self { path: path.to_owned(), text })
+        Ok(Self { path: path.to_owned(), text: without_mark(&text) })
     }
 
-    /// The scene that the text describes, with the meshes, images and tables that it names.
+    /// Reads a scene from standard input. Files that it names are looked for in the current folder.
+    ///
+    /// # Errors
+    /// If it cannot be read or is not UTF-8.
+    pub fn standard_input() -> Result<Self> {
+        let path = PathBuf::from("<stdin>");
+        let mut bytes = Vec::new();
+        if let Err(source) = std::io::stdin().lock().read_to_end(&mut bytes) {
+            return Err(Error::Io { doing: "read", path, source });
+        }
+        let Ok(text) = String::from_utf8(bytes) else {
+            let message = "the scene on standard input is not text in UTF-8".into();
+            return Err(Error::Arguments { message, help: Some(A_SCENE.into()) });
+        };
+        Ok(Self { path, text: without_mark(&text) })
+    }
+
+    /// The scene that the text describes, with the files that it includes, and the meshes, images and tables that they
+    /// name.
     ///
     /// # Errors
     /// [`Error::Scene`] with all mistakes that can be found, in the order of the file, each with its line and what to
     /// do.
     pub fn compile(&self) -> Result<Scene> {
-        self.compile_by(Place::Line)
+        self.compile_with(&[])
     }
 
-    fn compile_by(&self, place: Place) -> Result<Scene> {
-        let table = match DeTable::parse(&self.text) {
-            Ok(table) => table,
-            Err(error) => return Err(self.error(vec![explain(&self.text, &error)], |_| None)),
-        };
-        let document = Document::new(&self.text, table.get_ref());
-        compile(&document, self.path.parent().unwrap_or(Path::new(""))).ok_or_else(|| {
-            let mistakes = document.mistakes();
-            let paths = match place {
+    /// The same with other values: each setting is the path of a key, `=` and a TOML value, such as `film.width=320` or
+    /// `object.ball.material="gold"`. What is not TOML is a text. Entries of lists go by their `name`, or by their
+    /// number from 1. A path of one word sets the variable of that name.
+    ///
+    /// ```
+    /// let text = "set.width = 8
+    /// camera = { position = [0, 0, 4], look_at = [0, 0, 0], vertical_fov = 40 }
+    /// film = { width = \"$width\", height = 8 }
+    /// light = [{ environment = { radiance = 1 } }]";
+    /// let source = abbe::scene::Source { path: "scene.toml".into(), text: text.into() };
+    /// let scene = source.compile_with(&["width=16".into(), "film.height=4".into()])?;
+    /// assert_eq!((scene.film.width, scene.film.height), (16, 4));
+    /// # Ok::<(), abbe::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`compile`](Self::compile). A mistake in a setting is told of a file called `--set`, in which each has a
+    /// line.
+    pub fn compile_with(&self, settings: &[String]) -> Result<Scene> {
+        self.compile_by(Place::Line, settings)
+    }
+
+    fn compile_by(&self, place: Place, given: &[String]) -> Result<Scene> {
+        let Included { mut texts, parts, mistakes, .. } = Included::of(&self.path, &self.text);
+        let settings = texts.add_lines(Path::new("--set"), self.folder(), given);
+        let refuse = |mut mistakes: Vec<Mistake>| {
+            mistakes.sort_by_key(|mistake| mistake.span.start);
+            mistakes.dedup();
+            let keys = match place {
                 Place::Line => HashMap::new(),
-                Place::Key => document.paths(mistakes.iter().map(|mistake| mistake.span.clone())),
+                Place::Key => keys(&texts, &parts, &mistakes),
             };
-            self.error(mistakes, |span| paths.get(span).cloned())
-        })
+            let diagnostic = |mistake: Mistake| {
+                let key = keys.get(&mistake.span).cloned();
+                texts.diagnostic(mistake, key)
+            };
+            Error::Scene(mistakes.into_iter().map(diagnostic).collect())
+        };
+        if !mistakes.is_empty() {
+            let others = merged(&texts, &parts).err().into_iter().flatten();
+            return Err(refuse(mistakes.into_iter().chain(others).collect()));
+        }
+        let (root, unused) = whole(&texts, &parts, &settings).map_err(refuse)?;
+        let document = Document::new(&texts, &root);
+        let mut scene = compile(&document).ok_or_else(|| refuse(document.mistakes()))?;
+        scene.settings = given.to_vec();
+        scene.warnings.extend(unused.into_iter().map(|name| format!("variable {name} is not used")));
+        Ok(scene)
     }
 
-    fn error(&self, mistakes: Vec<Mistake>, key: impl Fn(&Range<usize>) -> Option<String>) -> Error {
-        let text: Arc<str> = self.text.as_str().into();
-        let diagnostic = |Mistake { span, message, help }| {
-            let (file, text, key) = (self.path.clone(), text.clone(), key(&span));
-            Diagnostic { file, text, span, key, message, help }
-        };
-        Error::Scene(mistakes.into_iter().map(diagnostic).collect())
+    /// Where the names of its files begin.
+    fn folder(&self) -> &Path {
+        self.path.parent().unwrap_or(Path::new(""))
     }
+}
+
+/// What the texts of files say together, with the values of settings and of variables in their places; beside it, the
+/// variables that are not used.
+fn whole<'d>(
+    texts: &'d Texts,
+    files: &[Range<usize>],
+    settings: &[Range<usize>],
+) -> std::result::Result<(DeTable<'d>, Vec<String>), Vec<Mistake>> {
+    let mut root = merged(texts, files)?;
+    let text = |span: &Range<usize>| &texts.whole()[span.clone()];
+    let wrong = settings.iter().filter_map(|span| set(&mut root, text(span), span.start, &SECTIONS).err());
+    let wrong: Vec<Mistake> = wrong.collect();
+    if !wrong.is_empty() {
+        return Err(wrong);
+    }
+    let unused = fill(&mut root, &SECTIONS)?;
+    Ok((root, unused))
+}
+
+/// The keys where mistakes in the first file stand.
+fn keys(texts: &Texts, files: &[Range<usize>], mistakes: &[Mistake]) -> HashMap<Range<usize>, String> {
+    let spans = mistakes.iter().map(|mistake| mistake.span.clone()).filter(|span| texts.is_in_first(span.start));
+    merged(texts, files).map(|root| Document::new(texts, &root).paths(spans)).unwrap_or_default()
+}
+
+fn without_mark(text: &str) -> String {
+    // A byte order mark would count as a column.
+    text.strip_prefix('\u{feff}').unwrap_or(text).to_owned()
 }
 
 /// By what a mistake is told.
@@ -116,6 +190,6 @@ impl Scene {
     /// As [`Scene::parse`], but each mistake is told with the path of its key, such as `object[3].shape.sphere.radius`.
     pub fn from_table(table: &toml::Table, folder: impl AsRef<Path>) -> Result<Self> {
         let source = Source { path: folder.as_ref().join("scene.toml"), text: table.to_string() };
-        source.compile_by(Place::Key)
+        source.compile_by(Place::Key, &[])
     }
 }

@@ -6,8 +6,10 @@ use super::house::{House, here};
 use super::source::Source;
 
 /// Modules of the command, which stands above all floors.
-const COMMAND: [&str; 11] =
-    ["main", "catalog", "cli", "diff", "info", "keep", "merge", "messages", "outputs", "progress", "view"];
+const COMMAND: [&str; 14] = [
+    "main", "catalog", "cli", "diff", "events", "frames", "info", "keep", "manual", "merge", "messages", "outputs",
+    "progress", "view",
+];
 /// What `lib.rs` hands on from the room `error`.
 const ERRORS: [&str; 5] = ["Diagnostic", "Error", "Result", "nearest", "error"];
 

@@ -4,13 +4,13 @@ use std::sync::Arc;
 
 use sha2::Digest;
 
-use super::context::{Context, FileKind};
+use super::context::Context;
 use super::curve_name::{illuminant_called, unknown_glass, unknown_illuminant, unknown_metal, unknown_reflectance};
 use super::curve_range::{Refusal, article, factor, possible, shown, told};
 use super::curve_text::{CurveText, KindText, finite, not_finite};
 use super::radiometry::on_film;
 use super::spectrum_file::read_columns;
-use crate::scene::text::{At, Value};
+use crate::scene::text::{At, FileKind, Value};
 use crate::spectrum::{
     ColorSpace, Curve, CurveKind, Emission, Named, Quantity, cauchy_through, data, imitation, reach, sellmeier_squared,
 };
@@ -22,7 +22,7 @@ const SELLMEIER: &str = "c holds squared wavelengths in um^2: square the coeffic
 const ABBE: &str = "for a glass, nd is about 1.4 to 2.1 and vd 18 to 95";
 
 /// The spectrum that a text means, the same all over.
-pub(super) fn curve<'d>(context: &mut Context<'d>, text: &CurveText<'d>, quantity: Quantity) -> Option<Curve> {
+pub(super) fn curve<'d>(context: &mut Context, text: &CurveText<'d>, quantity: Quantity) -> Option<Curve> {
     if let (Some(luminance), false) = (text.luminance, quantity == Quantity::Emission) {
         return luminance.place.advise(format!("{} has no luminance", article(quantity)), "use `scale`");
     }
@@ -80,7 +80,7 @@ fn forms(quantity: Quantity) -> &'static str {
 }
 
 /// What a text says, looked up and read.
-fn kind<'d>(context: &mut Context<'d>, text: &CurveText<'d>, quantity: Quantity) -> Option<CurveKind> {
+fn kind<'d>(context: &mut Context, text: &CurveText<'d>, quantity: Quantity) -> Option<CurveKind> {
     let (place, is_index, shines) = (text.place, quantity == Quantity::Index, quantity == Quantity::Emission);
     match &text.kind {
         KindText::Number(number) => {
@@ -176,7 +176,7 @@ fn unit_of_wavelength(given: f64, least: f64) -> Option<String> {
 }
 
 fn file_of_samples<'d>(
-    context: &mut Context<'d>,
+    context: &mut Context,
     text: &CurveText<'d>,
     file: &str,
     quantity: Quantity,
@@ -187,7 +187,7 @@ fn file_of_samples<'d>(
     if column.it < 2 {
         return column.place.refuse("the values stand in column 2 or later: column 1 holds the wavelengths");
     }
-    let Ok(table) = String::from_utf8(context.bytes(place, file, &TABLE)?) else {
+    let Ok(table) = String::from_utf8(place.file(file, &TABLE)?) else {
         return place.advise(format!("{file} is not text in UTF-8"), "save the table as CSV in UTF-8");
     };
     let rows = match read_columns(&table, column.it) {

@@ -5,19 +5,19 @@ use std::sync::Arc;
 
 use sha2::Digest;
 
-use super::context::{Context, FileKind};
+use super::context::Context;
 use super::curve::curve;
 use super::curve_range::is_factor;
 use super::curve_text::{CurveText, KindText, is_repeat};
 use super::image_file::{Meaning, read_texture};
 use super::radiometry::on_film;
-use crate::scene::text::At;
+use crate::scene::text::{At, FileKind};
 use crate::spectrum::{Channel, Curve, CurveKind, Encoding, Image, Quantity, Texture};
 
 const IMAGE: FileKind = FileKind { nameless: "an image needs the name of its file", most_bytes: 1 << 32 };
 
 /// The spectrum of a surface, which may vary over it.
-pub(super) fn surface_curve<'d>(context: &mut Context<'d>, text: &CurveText<'d>, quantity: Quantity) -> Option<Curve> {
+pub(super) fn surface_curve<'d>(context: &mut Context, text: &CurveText<'d>, quantity: Quantity) -> Option<Curve> {
     let varies = match quantity {
         Quantity::Reflectance | Quantity::Transmittance | Quantity::Share | Quantity::Emission => true,
         Quantity::Index | Quantity::Absorption | Quantity::MetalIndex | Quantity::MetalExtinction => false,
@@ -29,12 +29,7 @@ pub(super) fn surface_curve<'d>(context: &mut Context<'d>, text: &CurveText<'d>,
     }
 }
 
-fn image_curve<'d>(
-    context: &mut Context<'d>,
-    text: &CurveText<'d>,
-    file: &'d str,
-    quantity: Quantity,
-) -> Option<Curve> {
+fn image_curve<'d>(context: &mut Context, text: &CurveText<'d>, file: &'d str, quantity: Quantity) -> Option<Curve> {
     let (factor, placement) = (factor_on_image(text), text.placement());
     let at_file = At { place: text.place, it: file };
     let encoding = text.encoding.map(|encoding| encoding.it);
@@ -71,7 +66,7 @@ pub(super) fn factor_on_image(text: &CurveText) -> Option<f64> {
 }
 
 fn checker<'d>(
-    context: &mut Context<'d>,
+    context: &mut Context,
     text: &CurveText<'d>,
     cells: &[CurveText<'d>; 2],
     quantity: Quantity,
@@ -95,7 +90,7 @@ fn checker<'d>(
     Some(Curve { kind, scale, luminance: None })
 }
 
-fn square<'d>(context: &mut Context<'d>, cell: &CurveText<'d>, quantity: Quantity) -> Option<Curve> {
+fn square<'d>(context: &mut Context, cell: &CurveText<'d>, quantity: Quantity) -> Option<Curve> {
     // A lamp has one spectrum, the white that colors are filters of.
     if quantity == Quantity::Emission && !matches!(cell.kind, KindText::Number(_) | KindText::Rgb(_)) {
         let message = "the squares of a lamp are numbers or `rgb`: it shines in one white";
@@ -109,17 +104,17 @@ fn square<'d>(context: &mut Context<'d>, cell: &CurveText<'d>, quantity: Quantit
 
 /// An image, read once for each meaning of its numbers.
 pub(super) fn image<'d>(
-    context: &mut Context<'d>,
+    context: &mut Context,
     file: &At<'d, &'d str>,
     meaning: Meaning,
     channel: Option<Channel>,
 ) -> Option<Arc<Image>> {
     let At { place, it: file } = *file;
-    let key = (context.folder.join(file), meaning, channel);
+    let key = (place.folder().join(file), meaning, channel);
     if let Some(image) = context.images.get(&key) {
         return Some(image.clone());
     }
-    let bytes = bytes_of_image(context, &At { place, it: file })?;
+    let bytes = bytes_of_image(&At { place, it: file })?;
     let read = match read_texture(Path::new(file), &bytes, meaning, channel) {
         Ok(read) => read,
         Err(fault) => return place.tell(fault.message, fault.help),
@@ -133,6 +128,6 @@ pub(super) fn image<'d>(
     Some(image)
 }
 
-pub(super) fn bytes_of_image(context: &Context, file: &At<&str>) -> Option<Vec<u8>> {
-    context.bytes(file.place, file.it, &IMAGE)
+pub(super) fn bytes_of_image(file: &At<&str>) -> Option<Vec<u8>> {
+    file.place.file(file.it, &IMAGE)
 }

@@ -36,7 +36,7 @@ impl Lights {
     /// [[light]]
     /// environment = { radiance = 1 }     # or `point`, `spot` or `sun`
     /// ```
-    pub(super) fn read<'d>(&mut self, context: &mut Context<'d>, value: Value<'d>) -> Option<()> {
+    pub(super) fn read<'d>(&mut self, context: &mut Context, value: Value<'d>) -> Option<()> {
         let (mut group, mut visible) = (None, true);
         let light = Fields::read(value, |light| {
             let name = light.maybe("name", Value::text);
@@ -85,17 +85,17 @@ impl Lights {
 }
 
 /// The spectrum of a light that no surface gives.
-fn emission<'d>(context: &mut Context<'d>, value: Value<'d>) -> Option<Curve> {
+fn emission<'d>(context: &mut Context, value: Value<'d>) -> Option<Curve> {
     curve(context, &CurveText::read(value, Quantity::Emission)?, Quantity::Emission)
 }
 
 /// The spectrum of a light of a point.
-fn intensity<'d>(context: &mut Context<'d>, value: Value<'d>) -> Option<Curve> {
+fn intensity<'d>(context: &mut Context, value: Value<'d>) -> Option<Curve> {
     let emission = emission(context, value)?;
     radiometry::intensity(context, value, emission)
 }
 
-fn point_light<'d>(context: &mut Context<'d>, value: Value<'d>) -> Option<Light<Curve>> {
+fn point_light<'d>(context: &mut Context, value: Value<'d>) -> Option<Light<Curve>> {
     Fields::read(value, |light| {
         let position = light.need("position", point);
         let intensity = light.need("intensity", |value| intensity(context, value));
@@ -103,7 +103,7 @@ fn point_light<'d>(context: &mut Context<'d>, value: Value<'d>) -> Option<Light<
     })
 }
 
-fn sun_light<'d>(context: &mut Context<'d>, value: Value<'d>) -> Option<Light<Curve>> {
+fn sun_light<'d>(context: &mut Context, value: Value<'d>) -> Option<Light<Curve>> {
     Fields::read(value, |light| {
         let toward = light.need("toward", direction);
         // As wide as the sun appears.
@@ -118,7 +118,7 @@ fn sun_light<'d>(context: &mut Context<'d>, value: Value<'d>) -> Option<Light<Cu
     })
 }
 
-fn spot_light<'d>(context: &mut Context<'d>, value: Value<'d>) -> Option<Light<Curve>> {
+fn spot_light<'d>(context: &mut Context, value: Value<'d>) -> Option<Light<Curve>> {
     Fields::read(value, |light| {
         let position = light.need("position", point);
         let toward = light.maybe("toward", at(direction));
@@ -156,7 +156,7 @@ fn spot_light<'d>(context: &mut Context<'d>, value: Value<'d>) -> Option<Light<C
 /// [[light]]
 /// environment = { radiance = { image = "sky.exr" }, transform = [{ rotate = { axis = [0, 1, 0], degrees = 90 } }] }
 /// ```
-fn even_or_image<'d>(context: &mut Context<'d>, value: Value<'d>) -> Option<Environment<Curve>> {
+fn even_or_image<'d>(context: &mut Context, value: Value<'d>) -> Option<Environment<Curve>> {
     Fields::read(value, |light| {
         let radiance = light.need("radiance", |value| CurveText::read(value, Quantity::Emission));
         let turn = light.maybe("transform", at(steps));
@@ -194,7 +194,7 @@ fn rotation(steps: &[At<Step>]) -> Option<Transform> {
 }
 
 fn panorama(context: &mut Context, file: &At<&str>) -> Option<Panorama> {
-    let bytes = bytes_of_image(context, file)?;
+    let bytes = bytes_of_image(file)?;
     let image = match read_image(Path::new(file.it), &bytes) {
         Ok(image) => image,
         Err(fault) => return file.place.tell(fault.message, fault.help),

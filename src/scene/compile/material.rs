@@ -130,7 +130,7 @@ pub(super) struct Drafts<'d> {
 }
 
 /// The materials of a scene.
-pub(super) fn drafts<'d>(context: &mut Context<'d>, value: Value<'d>) -> Drafts<'d> {
+pub(super) fn drafts<'d>(context: &mut Context, value: Value<'d>) -> Drafts<'d> {
     let mut drafts = Drafts { by_name: BTreeMap::new(), nameless: !value.node().is_table() };
     if value.node().is_array() {
         value.advise::<()>("`material` is a table, not a list", "write [material.NAME] for each");
@@ -153,7 +153,7 @@ pub(super) fn drafts<'d>(context: &mut Context<'d>, value: Value<'d>) -> Drafts<
 }
 
 /// A material with the spectra that its keys mean.
-fn resolved<'d>(context: &mut Context<'d>, asking: Draft<'d, Asked<'d>>) -> Option<Draft<'d, Curve>> {
+fn resolved<'d>(context: &mut Context, asking: Draft<'d, Asked<'d>>) -> Option<Draft<'d, Curve>> {
     let mut right = true;
     let mut curve = |quantity, asked: &Asked<'d>| {
         let curve = match *asked {

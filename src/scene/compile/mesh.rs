@@ -33,7 +33,7 @@ struct Inline<'d> {
 }
 
 /// `mesh = { file = "cup.ply", smooth = true }`, or in place of the file `points`, `faces`, `normals` and `uv`
-pub(super) fn mesh<'d>(context: &mut Context<'d>, name: &str, value: Value<'d>) -> Option<WrittenMesh<'d>> {
+pub(super) fn mesh<'d>(context: &mut Context, name: &str, value: Value<'d>) -> Option<WrittenMesh<'d>> {
     Fields::read(value, |mesh| {
         let file = mesh.maybe("file", at(Value::text));
         let points = mesh.maybe("points", at(|value: Value| value.list(|entry| point(entry.as_list("a point", "")))));
@@ -47,7 +47,7 @@ pub(super) fn mesh<'d>(context: &mut Context<'d>, name: &str, value: Value<'d>) 
         let inline = Inline { points: points?, faces: faces?, normals: normals?, uv: uv? };
         let parts = match (&file, &inline) {
             (Some(file), Inline { points: None, faces: None, normals: None, uv: None }) => {
-                if let Some(mesh) = context.meshes.get(&(file.it.to_owned(), smooth)) {
+                if let Some(mesh) = context.meshes.get(&(file.place.folder().join(file.it), smooth)) {
                     return Some(WrittenMesh { mesh: mesh.clone(), file: Some(file.it) });
                 }
                 read_file(context, name, file, smooth)?
@@ -57,11 +57,10 @@ pub(super) fn mesh<'d>(context: &mut Context<'d>, name: &str, value: Value<'d>) 
             _ => return value.refuse("a mesh has either a `file`, or `points` and `faces`"),
         };
         let mesh = built(context, name, value, parts, smooth)?;
-        let file = file.map(|file| file.it);
-        if let Some(file) = file {
-            context.meshes.insert((file.to_owned(), smooth), mesh.clone());
+        if let Some(At { place, it: file }) = file {
+            context.meshes.insert((place.folder().join(file), smooth), mesh.clone());
         }
-        Some(WrittenMesh { mesh, file })
+        Some(WrittenMesh { mesh, file: file.map(|file| file.it) })
     })
 }
 
@@ -116,13 +115,13 @@ impl Inline<'_> {
 
 fn read_file(context: &mut Context, name: &str, file: &At<&str>, smooth: bool) -> Option<Parts> {
     let At { place, it: file } = *file;
-    let path = context.folder.join(file);
+    let path = place.folder().join(file);
     let mesh = if smooth { read_smooth_mesh(&path) } else { read_mesh(&path) };
     let mesh = match mesh {
         Ok(mesh) => mesh,
         Err(_) if file.is_empty() => return place.refuse("a mesh file needs a name"),
         Err(_) if path.is_dir() => return place.refuse(format!("{file} is a folder")),
-        Err(_) if path.try_exists().is_ok_and(|exists| !exists) => return context.missing(place, file),
+        Err(_) if path.try_exists().is_ok_and(|exists| !exists) => return place.missing(file),
         Err(message) => return place.refuse(format!("{file}: {message}")),
     };
     let is_far = |&vertex: &u32| mesh.vertices.at(vertex).abs().max_element() > MAX_LENGTH;

@@ -28,7 +28,6 @@ mod unlit;
 mod view;
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::Path;
 use std::sync::Arc;
 
 use sha2::Digest;
@@ -39,17 +38,19 @@ use self::material::Drafts;
 use self::object::Names;
 use self::place::Placed;
 use super::index::Index;
-use super::text::{Document, Fields, Value};
+use super::text::{Document, Fields, INCLUDE, SET, Value};
 use super::{Object, RenderText, Scene};
 use crate::light::{Area, Light, LightId};
 use crate::material::Material;
 use crate::shape::Sides;
 use crate::spectrum::Curve;
 
-/// The world that a document describes; none if anything is wrong with it, which is told. The names of files begin at a
-/// folder.
-pub(super) fn compile<'d>(document: &'d Document<'d>, folder: &'d Path) -> Option<Scene<Curve>> {
-    let mut context = Context::new(folder, document.text);
+/// The sections that a scene may have.
+pub(super) const SECTIONS: [&str; 6] = ["camera", "film", "render", "material", "object", "light"];
+
+/// The world that a document describes; none if anything is wrong with it, which is told.
+pub(super) fn compile<'d>(document: &'d Document<'d>) -> Option<Scene<Curve>> {
+    let mut context = Context::new(document.texts.whole());
     let scene = Fields::of_document(document, |sections| scene(&mut context, sections));
     if document.told() > 0 {
         return None;
@@ -65,9 +66,10 @@ pub(super) fn compile<'d>(document: &'d Document<'d>, folder: &'d Path) -> Optio
 }
 
 /// The tables of a scene.
-fn scene<'d>(context: &mut Context<'d>, sections: &mut Fields<'d>) -> Option<Scene<Curve>> {
-    let [camera, film, render] = ["camera", "film", "render"].map(|key| sections.get(key));
-    let [materials, objects, lights] = ["material", "object", "light"].map(|key| sections.get(key));
+fn scene<'d>(context: &mut Context, sections: &mut Fields<'d>) -> Option<Scene<Curve>> {
+    let [camera, film, render, materials, objects, lights] = SECTIONS.map(|key| sections.get(key));
+    // What these say was put in its places before.
+    let _ = [SET, INCLUDE].map(|key| sections.get(key));
     let missing = [("camera", camera), ("film", film)].into_iter().filter(|(_, section)| section.is_none());
     let missing: Vec<String> =
         missing.filter(|(key, _)| !sections.is_misspelt(key)).map(|(key, _)| format!("no [{key}]")).collect();
@@ -114,6 +116,7 @@ fn scene<'d>(context: &mut Context<'d>, sections: &mut Fields<'d>) -> Option<Sce
         hidden_lights,
         warnings,
         hash,
+        settings: Vec::new(),
         index: index.into(),
     };
     surfaces_that_shine(&mut scene);

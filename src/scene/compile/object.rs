@@ -50,7 +50,7 @@ pub(super) struct Names<'m, 'd> {
 
 /// What an object says; `number` is its position in the list.
 pub(super) fn object<'d>(
-    context: &mut Context<'d>,
+    context: &mut Context,
     names: &mut Names<'_, 'd>,
     entry: Value<'d>,
     number: usize,

@@ -26,7 +26,7 @@ pub(super) struct ReliefText<'d> {
 }
 
 /// What bends the normals of an object, if anything does; none if that is wrong.
-pub(super) fn relief<'d>(context: &mut Context<'d>, object: &mut Fields<'d>) -> Option<Option<ReliefText<'d>>> {
+pub(super) fn relief<'d>(context: &mut Context, object: &mut Fields<'d>) -> Option<Option<ReliefText<'d>>> {
     match (object.get("normal_map"), object.get("bump_map")) {
         (None, None) => Some(None),
         (Some(_), Some(bump_map)) => bump_map.refuse("an object has a `normal_map` or a `bump_map`, not both"),
@@ -41,7 +41,7 @@ pub(super) fn relief<'d>(context: &mut Context<'d>, object: &mut Fields<'d>) -> 
 ///
 /// Directions: red along u, green along v, blue out of the surface, one half being none. The strength is a factor on
 /// red and green.
-fn normal_map<'d>(context: &mut Context<'d>, place: Value<'d>) -> Option<ReliefText<'d>> {
+fn normal_map<'d>(context: &mut Context, place: Value<'d>) -> Option<ReliefText<'d>> {
     Fields::read(place, |map| {
         let file = map.need("image", at(Value::text));
         let placement = placement(map, "directions");
@@ -67,7 +67,7 @@ fn normal_map<'d>(context: &mut Context<'d>, place: Value<'d>) -> Option<ReliefT
 ///
 /// Heights, of one channel or the mean of all three. The depth is the height of white over black in scene units; below
 /// 0 white lies deeper.
-fn bump_map<'d>(context: &mut Context<'d>, place: Value<'d>) -> Option<ReliefText<'d>> {
+fn bump_map<'d>(context: &mut Context, place: Value<'d>) -> Option<ReliefText<'d>> {
     Fields::read(place, |map| {
         let file = map.need("image", at(Value::text));
         let channel = map.maybe("channel", |value| value.word(&CHANNELS));

@@ -26,7 +26,7 @@ impl From<Shape> for Written<'_> {
 }
 
 /// What reads a kind of shape: of the object that has a name.
-type Reader = for<'d> fn(&mut Context<'d>, &str, Value<'d>) -> Option<Written<'d>>;
+type Reader = for<'d> fn(&mut Context, &str, Value<'d>) -> Option<Written<'d>>;
 
 /// The shapes, each documented where it is implemented, in `shape`.
 pub(super) const SHAPE: Choice<Reader> = Choice {

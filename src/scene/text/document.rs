@@ -1,4 +1,4 @@
-//! The document that is read, and the mistakes that were found in it.
+//! The document that is read, and what is told of it.
 
 use std::cell::RefCell;
 use std::collections::HashMap;
@@ -7,26 +7,19 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// What is wrong with a scene, and where.
-#[derive(Clone, Debug, PartialEq)]
-pub(in crate::scene) struct Mistake {
-    /// The bytes that are wrong.
-    pub(in crate::scene) span: Range<usize>,
-    pub(in crate::scene) message: String,
-    /// What to do.
-    pub(in crate::scene) help: Option<String>,
-}
+use super::mistake::Mistake;
+use super::texts::Texts;
 
-/// A text, what it says as TOML, and what is wrong with that so far.
+/// The texts of a scene, what they say as TOML, and what is wrong with that so far.
 pub(in crate::scene) struct Document<'d> {
-    pub(in crate::scene) text: &'d str,
+    pub(in crate::scene) texts: &'d Texts,
     pub(in crate::scene) root: &'d DeTable<'d>,
     mistakes: RefCell<Vec<Mistake>>,
 }
 
 impl<'d> Document<'d> {
-    pub(in crate::scene) fn new(text: &'d str, root: &'d DeTable<'d>) -> Self {
-        Self { text, root, mistakes: RefCell::default() }
+    pub(in crate::scene) fn new(texts: &'d Texts, root: &'d DeTable<'d>) -> Self {
+        Self { texts, root, mistakes: RefCell::default() }
     }
 
     /// Keeps a mistake. Reading goes on, so that all are told at once.

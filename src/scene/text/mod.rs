@@ -4,11 +4,23 @@
 
 mod document;
 mod fields;
+mod include;
+mod mistake;
+mod named_file;
+mod settings;
 mod suggest;
 mod syntax;
+mod texts;
+mod tree;
 mod value;
+mod variables;
 
-pub(super) use document::{Document, Mistake};
+pub(super) use document::Document;
 pub(super) use fields::{Choice, Fields};
-pub(super) use syntax::explain;
+pub(super) use include::{INCLUDE, Included, merged};
+pub(super) use mistake::Mistake;
+pub(super) use named_file::FileKind;
+pub(super) use settings::set;
+pub(super) use texts::Texts;
 pub(super) use value::{At, Value, above_0_to, at};
+pub(super) use variables::{SET, fill};

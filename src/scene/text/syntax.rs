@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::document::Mistake;
+use super::mistake::Mistake;
 
 /// What the error of reading a text as TOML means.
 pub(in crate::scene) fn explain(text: &str, error: &toml::de::Error) -> Mistake {

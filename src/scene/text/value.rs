@@ -1,11 +1,13 @@
 //! A value of a scene's text, read as what is wanted of it; what it is instead is told.
 
 use std::ops::{Bound, Range, RangeBounds};
+use std::path::Path;
 
 use toml::Spanned;
 use toml::de::{DeInteger, DeString, DeValue};
 
 use super::document::Document;
+use super::named_file::{FileKind, missing, read_named};
 use super::suggest::{remedy, suggestion};
 
 /// A value, where it stands.
@@ -77,6 +79,25 @@ impl<'d> Value<'d> {
         None
     }
 
+    /// Where the names of its files begin.
+    pub(in crate::scene) fn folder(self) -> &'d Path {
+        self.document.texts.folder(self.span().start)
+    }
+
+    /// The bytes of the file of this name.
+    pub(in crate::scene) fn file(self, name: &str, kind: &FileKind) -> Option<Vec<u8>> {
+        match read_named(self.folder(), name, kind) {
+            Ok(bytes) => Some(bytes),
+            Err(fault) => self.tell(fault.message, fault.help),
+        }
+    }
+
+    /// Tells that there is no file of this name.
+    pub(in crate::scene) fn missing<T>(self, name: &str) -> Option<T> {
+        let fault = missing(self.folder(), name);
+        self.tell(fault.message, fault.help)
+    }
+
     /// Tells that its key is wrong.
     pub(in crate::scene) fn refuse_key<T>(self, message: impl Into<String>, help: Option<String>) -> Option<T> {
         self.document.tell(self.key.span(), message, help);
@@ -85,7 +106,7 @@ impl<'d> Value<'d> {
 
     /// Tells what is wanted in its place.
     pub(in crate::scene) fn wanted<T>(self, wanted: &str) -> Option<T> {
-        let written = self.document.text.get(self.span()).unwrap_or_default();
+        let written = self.document.texts.whole().get(self.span()).unwrap_or_default();
         let found = match self.node() {
             DeValue::Array(_) => "a list".into(),
             DeValue::Table(_) => "a table".into(),

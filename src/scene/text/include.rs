@@ -1,0 +1,150 @@
+//! Files that a scene includes: what they say stands in the scene as if it were written there.
+
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+use toml::de::{DeTable, DeValue};
+
+use super::mistake::Mistake;
+use super::named_file::{Fault, FileKind, read_named};
+use super::texts::Texts;
+use super::tree::{Node, parsed, word};
+
+/// The key of the names of such files.
+pub(in crate::scene) const INCLUDE: &str = "include";
+const SCENE: FileKind = FileKind { nameless: "a file to include needs a name", most_bytes: 1 << 30 };
+/// Most files within one another: far fewer than would exhaust the stack.
+const DEEPEST: usize = 64;
+
+/// The texts of a scene, and what is wrong with them so far.
+pub(in crate::scene) struct Included {
+    pub(in crate::scene) texts: Texts,
+    /// Where each file stands among them.
+    pub(in crate::scene) parts: Vec<Range<usize>>,
+    pub(in crate::scene) mistakes: Vec<Mistake>,
+    /// All files, none by two names.
+    files: Vec<PathBuf>,
+    /// Those of them that are being read, the outermost first.
+    within: Vec<PathBuf>,
+}
+
+impl Included {
+    /// A text with those of all files that it includes, each once, in the order in which they are named first.
+    pub(in crate::scene) fn of(path: &Path, text: &str) -> Self {
+        let (texts, parts, mistakes) = (Texts::default(), Vec::new(), Vec::new());
+        let mut found = Self { texts, parts, mistakes, files: Vec::new(), within: Vec::new() };
+        found.add(path, text);
+        found
+    }
+
+    fn add(&mut self, path: &Path, text: &str) {
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let span = self.texts.add(path, folder, text);
+        self.parts.push(span.clone());
+        self.files.push(real(path));
+        self.within.push(real(path));
+        // Most texts include nothing, and are read only once. A key may be written with escapes.
+        if text.contains(INCLUDE) || text.contains('\\') {
+            match parsed(text, span.start) {
+                Ok(table) => table.get(INCLUDE).into_iter().for_each(|names| self.add_all(names, folder)),
+                Err(mistake) => self.mistakes.push(mistake),
+            }
+        }
+        self.within.pop();
+    }
+
+    /// Adds the files of a list of names.
+    fn add_all(&mut self, names: &Node, folder: &Path) {
+        let refuse = |span| {
+            let help = Some("such as include = [\"materials.toml\"]".into());
+            Mistake { span, message: "`include` is a list of files".into(), help }
+        };
+        let Some(entries) = names.get_ref().as_array() else { return self.mistakes.push(refuse(names.span())) };
+        for entry in entries.iter() {
+            let added = match entry.get_ref().as_str() {
+                None => Err(refuse(entry.span())),
+                Some(name) => self.add_named(name, folder).map_err(|Fault { message, help }| Mistake {
+                    span: entry.span(),
+                    message,
+                    help,
+                }),
+            };
+            self.mistakes.extend(added.err());
+        }
+    }
+
+    fn add_named(&mut self, name: &str, folder: &Path) -> Result<(), Fault> {
+        let path = folder.join(name);
+        if self.within.contains(&real(&path)) {
+            let help = Some("what both need stands in a file of its own".into());
+            return Err(Fault { message: format!("{name} includes itself by way of this file"), help });
+        }
+        if self.files.contains(&real(&path)) {
+            return Ok(());
+        }
+        if self.within.len() >= DEEPEST {
+            return Err(Fault { message: format!("more than {DEEPEST} files include one another"), help: None });
+        }
+        let Ok(text) = String::from_utf8(read_named(folder, name, &SCENE)?) else {
+            return Err(Fault { message: format!("{name} is not text in UTF-8"), help: None });
+        };
+        self.add(&path, text.strip_prefix('\u{feff}').unwrap_or(&text));
+        Ok(())
+    }
+}
+
+/// The one name of a file, without links.
+fn real(path: &Path) -> PathBuf {
+    std::fs::canonicalize(path).unwrap_or(path.to_owned())
+}
+
+/// What all files say together: lists one behind the other, and the keys of tables side by side.
+pub(in crate::scene) fn merged<'d>(texts: &'d Texts, files: &[Range<usize>]) -> Result<DeTable<'d>, Vec<Mistake>> {
+    let (mut whole, mut mistakes) = (DeTable::new(), Vec::new());
+    for part in files {
+        match parsed(&texts.whole()[part.clone()], part.start) {
+            Ok(mut table) => {
+                table.remove(INCLUDE);
+                merge(&mut whole, table, texts, &mut mistakes);
+            }
+            Err(mistake) => mistakes.push(mistake),
+        }
+    }
+    if mistakes.is_empty() { Ok(whole) } else { Err(mistakes) }
+}
+
+fn merge<'d>(whole: &mut DeTable<'d>, table: DeTable<'d>, texts: &Texts, mistakes: &mut Vec<Mistake>) {
+    for (section, value) in table {
+        let name: &str = word(&section);
+        let Some((first, found)) = whole.remove_entry(name) else {
+            whole.insert(section, value);
+            continue;
+        };
+        let span = found.span();
+        let both = match (found.into_inner(), value.into_inner()) {
+            (DeValue::Array(entries), DeValue::Array(more)) => {
+                DeValue::Array(entries.into_iter().chain(more).collect())
+            }
+            (DeValue::Table(mut keys), DeValue::Table(more)) => {
+                for (key, value) in more {
+                    match keys.get_key_value(word(&key)) {
+                        Some((known, _)) => {
+                            let message = format!("`{name}.{}` is given twice", word(&key));
+                            let help = format!("it stands at {} as well: keep one of them", texts.named(known.span()));
+                            mistakes.push(Mistake { span: key.span(), message, help: Some(help) });
+                        }
+                        None => drop(keys.insert(key, value)),
+                    }
+                }
+                DeValue::Table(keys)
+            }
+            (found, _) => {
+                let message = format!("`{name}` is given twice");
+                let help = format!("it stands at {} as well, in another form", texts.named(first.span()));
+                mistakes.push(Mistake { span: section.span(), message, help: Some(help) });
+                found
+            }
+        };
+        whole.insert(first, toml::Spanned::new(span, both));
+    }
+}

@@ -1,0 +1,55 @@
+//! Files that a scene names.
+
+use std::io::ErrorKind;
+use std::path::Path;
+
+use crate::error::nearest_file;
+
+/// A kind of file that a scene names.
+pub(in crate::scene) struct FileKind {
+    /// What is told where its name is empty.
+    pub(in crate::scene) nameless: &'static str,
+    pub(in crate::scene) most_bytes: u64,
+}
+
+/// What is wrong with a file.
+pub(super) struct Fault {
+    pub(super) message: String,
+    /// What to do.
+    pub(super) help: Option<String>,
+}
+
+/// The bytes of a file whose name begins at a folder.
+pub(super) fn read_named(folder: &Path, file: &str, kind: &FileKind) -> Result<Vec<u8>, Fault> {
+    let refuse = |message: String| Err(Fault { message, help: None });
+    let path = folder.join(file);
+    match std::fs::metadata(&path) {
+        Ok(found) if found.is_file() && found.len() > kind.most_bytes => {
+            return refuse(format!("{file} has {} bytes, more than {}", found.len(), kind.most_bytes));
+        }
+        // A device never ends.
+        Ok(found) if !found.is_file() && !found.is_dir() => return refuse(format!("{file} is no file but a device")),
+        _ => {}
+    }
+    match std::fs::read(&path) {
+        Ok(bytes) => Ok(bytes),
+        Err(_) if file.is_empty() => refuse(kind.nameless.into()),
+        Err(_) if path.is_dir() => refuse(format!("{file} is a folder")),
+        Err(error) if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {
+            Err(missing(folder, file))
+        }
+        Err(error) => refuse(format!("cannot read {file}: {error}")),
+    }
+}
+
+/// That there is no such file.
+pub(super) fn missing(folder: &Path, file: &str) -> Fault {
+    let near = nearest_file(&folder.join(file));
+    let near = near.and_then(|near| near.file_name().map(|name| Path::new(file).with_file_name(name)));
+    let help = match near {
+        Some(near) => format!("did you mean \"{}\"?", near.display()),
+        None if folder.as_os_str().is_empty() => "the path starts at the folder of the scene".into(),
+        None => format!("the path starts at {}", folder.display()),
+    };
+    Fault { message: format!("there is no file {file}"), help: Some(help) }
+}

@@ -1,0 +1,227 @@
+//! Values that replace those of a scene: `film.width=320`, as on a command line.
+
+use std::borrow::Cow;
+use std::ops::Range;
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use super::include::INCLUDE;
+use super::mistake::Mistake;
+use super::suggest::suggestion;
+use super::tree::{Key, Node, parsed, word};
+use super::variables::SET;
+use crate::error::nearest;
+
+/// A key as a path of words, and its value.
+struct Setting<'d> {
+    path: Vec<Key<'d>>,
+    value: Node<'d>,
+}
+
+/// Puts the value of `text`, which starts at a place of the whole, in its place in a scene that has such sections.
+pub(in crate::scene) fn set<'d>(
+    root: &mut DeTable<'d>,
+    text: &'d str,
+    start: usize,
+    sections: &[&str],
+) -> Result<(), Mistake> {
+    let Setting { mut path, value } = setting(text, start)?;
+    if let Some(key) = path.first().filter(|key| word(key) == INCLUDE) {
+        let help = Some("write it into the scene; a scene may come from standard input".into());
+        return Err(Mistake { span: key.span(), message: "`include` cannot be set".into(), help });
+    }
+    if let [name] = path.as_slice() {
+        let is_value = !value.get_ref().is_table() && !value.get_ref().is_array();
+        match variables(root) {
+            Some(variables) if variables.contains_key(word(name)) => {
+                path.insert(0, Spanned::new(name.span(), SET.into()));
+            }
+            variables if is_value && !root.contains_key(word(name)) && !sections.contains(&word(name)) => {
+                return Err(no_variable(name, &names(variables), sections));
+            }
+            _ => {}
+        }
+    }
+    if let [section, name, _, ..] = path.as_slice()
+        && section.get_ref() == "material"
+    {
+        let materials = root.get("material").and_then(|materials| materials.get_ref().as_table());
+        let known = names(materials);
+        if !known.contains(&word(name)) {
+            let message = format!("there is no material named {:?}", word(name));
+            let help = match nearest(word(name), known) {
+                Some(near) => format!("did you mean {near:?}?"),
+                None => format!("a new material is given whole: material.{}={{ .. }}", word(name)),
+            };
+            return Err(Mistake { span: name.span(), message, help: Some(help) });
+        }
+    }
+    put(root, &path, value)
+}
+
+fn variables<'t, 'd>(root: &'t DeTable<'d>) -> Option<&'t DeTable<'d>> {
+    root.get(SET)?.get_ref().as_table()
+}
+
+fn names<'t>(table: Option<&'t DeTable>) -> Vec<&'t str> {
+    table.into_iter().flat_map(DeTable::keys).map(word).collect()
+}
+
+fn no_variable(name: &Key, known: &[&str], sections: &[&str]) -> Mistake {
+    let word = word(name);
+    let help = match nearest(word, known.iter().chain(sections).copied()) {
+        Some(near) => format!("did you mean `{near}`?"),
+        None if known.is_empty() => {
+            "a scene gives its variables in [set]; other values have a path: film.width=320".into()
+        }
+        None => format!("known here: {}", known.join(", ")),
+    };
+    Mistake { span: name.span(), message: format!("there is no variable `{word}`"), help: Some(help) }
+}
+
+/// Reads `KEY=VALUE`. A value that is not TOML is a text as it stands.
+fn setting(text: &str, start: usize) -> Result<Setting<'_>, Mistake> {
+    let whole = start..start + text.len();
+    let refuse = |message: &str| {
+        let help = Some("for instance: film.width=320".into());
+        Err(Mistake { span: whole.clone(), message: message.into(), help })
+    };
+    let Some(equals) = equals(text) else { return refuse("a setting is a key, `=` and a value") };
+    if text[..equals].trim().is_empty() {
+        return refuse("a setting is a key, `=` and a value");
+    }
+    let key = format!("{}=0", &text[..equals]);
+    let path: Option<Vec<Key>> = parsed(&key, start).map(|table| {
+        let path = path(&table)?;
+        Some(path.into_iter().map(|key| Spanned::new(key.span(), word(key).to_string().into())).collect())
+    })?;
+    let Some(path) = path else { return refuse("a setting is one key, `=` and its value") };
+    let (before, value) = text.split_at(equals + 1);
+    let at = start + before.len() + (value.len() - value.trim_start().len());
+    let value = value.trim();
+    match parsed(text, start) {
+        Ok(mut table) => match valued(&mut table, &path) {
+            Some(value) => Ok(Setting { path, value }),
+            None => refuse("a setting is one key, `=` and its value"),
+        },
+        Err(mistake) if value.is_empty() || is_meant_as_toml(value) => Err(mistake),
+        Err(_) => {
+            let value = Spanned::new(at..at + value.len(), DeValue::String(Cow::Borrowed(value)));
+            Ok(Setting { path, value })
+        }
+    }
+}
+
+/// Where a key ends that may be quoted.
+fn equals(text: &str) -> Option<usize> {
+    let (mut quote, mut is_escaped) = (None, false);
+    text.char_indices().find_map(|(at, letter)| {
+        match (quote, letter) {
+            _ if is_escaped => is_escaped = false,
+            (Some('"'), '\\') => is_escaped = true,
+            (Some(open), _) if letter == open => quote = None,
+            (None, '"' | '\'') => quote = Some(letter),
+            (None, '=') => return Some(at),
+            _ => {}
+        }
+        None
+    })
+}
+
+/// Lists, tables and quoted texts are, and what is a number but for its form.
+fn is_meant_as_toml(value: &str) -> bool {
+    let is_number = value.starts_with(|first: char| first.is_ascii_digit() || "+-.".contains(first))
+        && value.parse::<f64>().is_ok();
+    value.starts_with(['[', '{', '"', '\'']) || is_number
+}
+
+/// The keys, each the only one of its table, that lead to a number.
+fn path<'t, 'd>(table: &'t DeTable<'d>) -> Option<Vec<&'t Key<'d>>> {
+    let (mut path, mut table) = (Vec::new(), table);
+    loop {
+        let (key, value) = table.iter().next().filter(|_| table.len() == 1)?;
+        path.push(key);
+        match value.get_ref() {
+            DeValue::Table(inner) => table = inner,
+            _ => return Some(path),
+        }
+    }
+}
+
+/// The value at the end of such a path, if there is nothing beside it.
+fn valued<'d>(table: &mut DeTable<'d>, path: &[Key]) -> Option<Node<'d>> {
+    let (key, rest) = path.split_first()?;
+    let mut value = Some(table.remove(word(key))?).filter(|_| table.is_empty())?;
+    match (value.get_mut(), rest) {
+        (_, []) => Some(value),
+        (DeValue::Table(inner), rest) => valued(inner, rest),
+        _ => None,
+    }
+}
+
+fn put<'d>(table: &mut DeTable<'d>, path: &[Key<'d>], value: Node<'d>) -> Result<(), Mistake> {
+    let Some((key, rest)) = path.split_first() else { return Ok(()) };
+    if rest.is_empty() {
+        // With its key: what is wrong with it is wrong here.
+        table.remove(word(key));
+        table.insert(key.clone(), value);
+        return Ok(());
+    }
+    if !table.contains_key(word(key)) {
+        table.insert(key.clone(), Spanned::new(key.span(), DeValue::Table(DeTable::new())));
+    }
+    table.get_mut(word(key)).map_or(Ok(()), |node| put_into(node, key, rest, value))
+}
+
+/// Puts a value into the value of a key.
+fn put_into<'d>(node: &mut Node<'d>, key: &Key, path: &[Key<'d>], value: Node<'d>) -> Result<(), Mistake> {
+    let Some((next, rest)) = path.split_first() else {
+        *node = value;
+        return Ok(());
+    };
+    match node.get_mut() {
+        DeValue::Table(table) => put(table, path, value),
+        DeValue::Array(entries) => {
+            let number = position(word(key), entries, next)?;
+            put_into(&mut entries.as_mut()[number], next, rest, value)
+        }
+        _ => {
+            let message = format!("`{}` is no table here, so it has no `{}`", word(key), word(next));
+            let help = format!("set `{}` itself", word(key));
+            Err(Mistake { span: next.span(), message, help: Some(help) })
+        }
+    }
+}
+
+/// Which entry of a list has this name or number; numbers count from 1.
+fn position(list: &str, entries: &[Node], key: &Key) -> Result<usize, Mistake> {
+    let word: &str = word(key);
+    let name = |entry: &Node| Some(entry.get_ref().as_table()?.get("name")?.get_ref().as_str()?.to_owned());
+    let names: Vec<Option<String>> = entries.iter().map(name).collect();
+    let named: Vec<usize> = (0..names.len()).filter(|&number| names[number].as_deref() == Some(word)).collect();
+    let refuse = |span: Range<usize>, message: String, help: String| Err(Mistake { span, message, help: Some(help) });
+    match named.as_slice() {
+        [number] => return Ok(*number),
+        [] => {}
+        several => {
+            let numbers: Vec<String> = several.iter().map(|number| format!("{list}.{}", number + 1)).collect();
+            let message = format!("{} entries of `{list}` are named {word:?}", several.len());
+            return refuse(key.span(), message, format!("name each by its number: {}", numbers.join(", ")));
+        }
+    }
+    if let Some(number) = word.parse::<usize>().ok().and_then(|number| number.checked_sub(1))
+        && number < entries.len()
+    {
+        return Ok(number);
+    }
+    let known: Vec<&str> = names.iter().flatten().map(String::as_str).collect();
+    let counted = format!("entries are counted from 1 to {}", entries.len());
+    let help = match known.as_slice() {
+        _ if entries.is_empty() => "the list is empty".into(),
+        [] => counted,
+        _ if word.parse::<usize>().is_ok() => counted,
+        known => suggestion(word, word, known),
+    };
+    refuse(key.span(), format!("`{list}` has no entry `{word}`"), help)
+}

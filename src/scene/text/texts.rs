@@ -1,0 +1,91 @@
+//! The texts of a scene, as one.
+
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use super::mistake::Mistake;
+use crate::error::Diagnostic;
+
+/// The texts that a scene is made of: its file, the files that it includes and what replaces their values. They stand
+/// one behind the other, so that a place in any of them is a range of bytes of the whole.
+#[derive(Default)]
+pub(in crate::scene) struct Texts {
+    whole: String,
+    parts: Vec<Part>,
+}
+
+/// One of the texts.
+struct Part {
+    /// As it is called in messages.
+    path: PathBuf,
+    /// Where the names of its files begin.
+    folder: PathBuf,
+    span: Range<usize>,
+}
+
+impl Texts {
+    /// Adds a text, and answers where it stands.
+    pub(in crate::scene) fn add(&mut self, path: &Path, folder: &Path, text: &str) -> Range<usize> {
+        if !self.parts.is_empty() {
+            // TOML has no such character: the end of a text is not the start of the next one.
+            self.whole.push('\0');
+        }
+        let start = self.whole.len();
+        self.whole.push_str(text);
+        let span = start..self.whole.len();
+        self.parts.push(Part { path: path.to_owned(), folder: folder.to_owned(), span: span.clone() });
+        span
+    }
+
+    /// All of them, one behind the other.
+    pub(in crate::scene) fn whole(&self) -> &str {
+        &self.whole
+    }
+
+    /// Adds lines, if there are any, as one text, and answers where each stands.
+    pub(in crate::scene) fn add_lines(&mut self, path: &Path, folder: &Path, lines: &[String]) -> Vec<Range<usize>> {
+        if lines.is_empty() {
+            return Vec::new();
+        }
+        let mut next = self.add(path, folder, &lines.join("\n")).start;
+        let place = |line: &String| {
+            let start = next;
+            next += line.len() + 1;
+            start..start + line.len()
+        };
+        lines.iter().map(place).collect()
+    }
+
+    /// Whether a place stands in the first of them.
+    pub(in crate::scene) fn is_in_first(&self, place: usize) -> bool {
+        self.parts.first().is_some_and(|part| place <= part.span.end)
+    }
+
+    /// Where the names of files begin that stand at a place.
+    pub(in crate::scene) fn folder(&self, place: usize) -> &Path {
+        self.part(place).map_or(Path::new(""), |part| &part.folder)
+    }
+
+    fn part(&self, place: usize) -> Option<&Part> {
+        self.parts.iter().rfind(|part| part.span.start <= place)
+    }
+
+    /// A place as people name it, such as `scene.toml:3:7`.
+    pub(super) fn named(&self, span: Range<usize>) -> String {
+        let found = self.diagnostic(Mistake { span, message: String::new(), help: None }, None);
+        let (line, column) = found.line_and_column();
+        format!("{}:{line}:{column}", found.file.display())
+    }
+
+    /// A mistake with its file.
+    pub(in crate::scene) fn diagnostic(&self, mistake: Mistake, key: Option<String>) -> Diagnostic {
+        let Mistake { span, message, help } = mistake;
+        let (file, part) =
+            self.part(span.start).map_or((PathBuf::new(), 0..0), |part| (part.path.clone(), part.span.clone()));
+        let local = |at: usize| at.min(part.end) - part.start;
+        let span = local(span.start)..local(span.end);
+        let text: Arc<str> = self.whole[part].into();
+        Diagnostic { file, text, span, key, message, help }
+    }
+}

@@ -1,0 +1,128 @@
+//! Variables of a scene: `[set] angle = 30`, and `"$angle"` wherever that value is meant.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use toml::de::{DeTable, DeValue};
+
+use super::mistake::Mistake;
+use super::tree::{Key, Node, word};
+use crate::error::nearest;
+
+/// The section of the variables.
+pub(in crate::scene) const SET: &str = "set";
+/// The variable that the number of a frame sets.
+const FRAME: &str = "frame";
+
+/// The variables of a scene.
+#[derive(Default)]
+struct Variables<'d> {
+    /// Those that are right.
+    values: BTreeMap<String, Node<'d>>,
+    /// The names of all.
+    known: BTreeSet<String>,
+    used: BTreeSet<String>,
+    mistakes: Vec<Mistake>,
+}
+
+/// Takes the variables out of a scene and puts their values where they are meant. Answers the names of those that are
+/// not used. What is wrong with a value is told where it stands among the variables.
+pub(in crate::scene) fn fill(root: &mut DeTable, sections: &[&str]) -> Result<Vec<String>, Vec<Mistake>> {
+    let mut variables = Variables::default();
+    if let Some((key, given)) = root.remove_entry(SET) {
+        match given.into_inner() {
+            DeValue::Table(table) => {
+                table.into_iter().for_each(|(name, value)| variables.define(&name, value, sections));
+            }
+            _ => {
+                variables.tell(&key, "`set` is the table of variables".into(), "write [set], and them below it".into())
+            }
+        }
+    }
+    variables.fill_table(root);
+    if !variables.mistakes.is_empty() {
+        return Err(variables.mistakes);
+    }
+    // Frames are numbered in the names of files as well.
+    let is_unused = |name: &String| !variables.used.contains(name) && name != FRAME;
+    Ok(variables.known.into_iter().filter(is_unused).collect())
+}
+
+impl<'d> Variables<'d> {
+    fn tell(&mut self, place: &toml::Spanned<impl Sized>, message: String, help: String) {
+        self.mistakes.push(Mistake { span: place.span(), message, help: Some(help) });
+    }
+
+    fn define(&mut self, key: &Key<'d>, value: Node<'d>, sections: &[&str]) {
+        let name = word(key);
+        self.known.insert(name.to_owned());
+        if sections.contains(&name) {
+            let message = format!("`{name}` is a section of the scene, not a variable");
+            self.tell(key, message, "give the variable another name".into());
+        } else if !is_name(name) {
+            let message = format!("{name:?} cannot name a variable");
+            self.tell(key, message, "its name is a letter or _, then letters, digits, _ and -".into());
+        } else if let Some(other) = used_in(&value) {
+            let message =
+                format!("the variable `{name}` is made of another, `{}`", variable(other).unwrap_or_default());
+            self.tell(&value, message, "give each variable a value of its own".into());
+        } else {
+            self.values.insert(name.to_owned(), value);
+        }
+    }
+
+    fn fill_table(&mut self, table: &mut DeTable<'d>) {
+        for (_, value) in table.iter_mut() {
+            self.fill_value(value);
+        }
+    }
+
+    fn fill_value(&mut self, node: &mut Node<'d>) {
+        match node.get_mut() {
+            DeValue::Table(table) => self.fill_table(table),
+            DeValue::Array(entries) => entries.iter_mut().for_each(|entry| self.fill_value(entry)),
+            DeValue::String(text) => {
+                if let Some(plain) = text.strip_prefix("$$") {
+                    *text = format!("${plain}").into();
+                } else if let Some(name) = variable(text).map(str::to_owned) {
+                    match self.values.get(&name) {
+                        Some(value) => *node = value.clone(),
+                        None if self.known.contains(&name) => {}
+                        None => self.unknown(node, &name),
+                    }
+                    self.used.insert(name);
+                }
+            }
+            _ => {}
+        }
+    }
+
+    fn unknown(&mut self, place: &Node, name: &str) {
+        let near = nearest(name, self.known.iter().map(String::as_str));
+        let help = match near {
+            Some(near) => format!("did you mean \"${near}\"?"),
+            None if name == FRAME => "give the number of the frame: --frame 1".into(),
+            None => format!("give it a value: [set] {name} = .."),
+        };
+        self.tell(place, format!("there is no variable `{name}`"), help);
+    }
+}
+
+/// The name of the variable that a text stands for.
+fn variable(text: &str) -> Option<&str> {
+    text.strip_prefix('$').filter(|name| is_name(name))
+}
+
+fn is_name(name: &str) -> bool {
+    let may_follow = |letter: char| letter.is_ascii_alphanumeric() || matches!(letter, '_' | '-');
+    name.starts_with(|first: char| first.is_ascii_alphabetic() || first == '_') && name.chars().all(may_follow)
+}
+
+/// A text in a value that stands for a variable.
+fn used_in<'v>(value: &'v Node) -> Option<&'v str> {
+    match value.get_ref() {
+        DeValue::String(text) => Some(&**text).filter(|text| variable(text).is_some()),
+        DeValue::Array(entries) => entries.iter().find_map(used_in),
+        DeValue::Table(table) => table.values().find_map(used_in),
+        _ => None,
+    }
+}

@@ -1,0 +1,234 @@
+//! The command in a pipeline: standard input and output, JSON, silence, frames.
+
+use std::process::{Command, Output, Stdio};
+use std::{fs, io::Write, thread};
+
+use serde_json::Value;
+
+use crate::messages::run::{Folder, render};
+
+const SCENE: &str = include_str!("messages/base.toml");
+
+fn folder() -> Folder {
+    let folder = Folder::new();
+    folder.write("scene.toml", SCENE);
+    folder
+}
+
+/// Runs `render` with a text on standard input.
+fn fed(folder: &Folder, arguments: &[&str], text: &[u8]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_render"));
+    command.current_dir(folder.path()).args(arguments);
+    let pipes = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = pipes.spawn().expect("the command can be started");
+    let (mut stdin, text) = (child.stdin.take().expect("it is piped"), text.to_owned());
+    // A command that refuses its arguments does not read.
+    let feed = thread::spawn(move || stdin.write_all(&text).unwrap_or_default());
+    let output = child.wait_with_output().expect("the command ends");
+    feed.join().expect("the text is fed");
+    output
+}
+
+fn text(bytes: &[u8]) -> &str {
+    std::str::from_utf8(bytes).expect("messages are UTF-8")
+}
+
+/// What was said in JSON, all of the kind.
+fn told(stdout: &str, kind: &str) -> Vec<Value> {
+    let lines =
+        stdout.lines().map(|line| serde_json::from_str::<Value>(line).unwrap_or_else(|e| panic!("{line}: {e}")));
+    lines.filter(|event| event["kind"] == kind).collect()
+}
+
+#[test]
+fn a_scene_may_come_from_standard_input_and_an_image_go_to_standard_output() {
+    let folder = folder();
+    assert_eq!(render(&folder, &["scene.toml", "--exr", "file.exr"]).code, Some(0));
+    let file = fs::read(folder.path().join("file.exr")).expect("the image was written");
+    let to_file = fed(&folder, &["-", "--exr", "fed.exr"], SCENE.as_bytes());
+    assert_eq!((to_file.status.code(), text(&to_file.stdout)), (Some(0), ""), "{}", text(&to_file.stderr));
+    assert_eq!(fs::read(folder.path().join("fed.exr")).expect("the image was written"), file);
+    let sent = fed(&folder, &["-", "--exr", "-", "--png", "look.png"], SCENE.as_bytes());
+    assert_eq!(sent.status.code(), Some(0), "{}", text(&sent.stderr));
+    assert_eq!(sent.stdout, file);
+    assert!(text(&sent.stderr).ends_with("wrote look.png\n"), "{}", text(&sent.stderr));
+    assert_eq!(folder.listing(), ["fed.exr", "file.exr", "look.png", "scene.toml"]);
+    let sent = fed(&folder, &["scene.toml", "--exr", "-"], b"");
+    assert_eq!(sent.stdout, file);
+}
+
+#[test]
+fn a_scene_on_standard_input_is_called_so_and_finds_its_files_from_the_current_folder() {
+    let folder = folder();
+    folder.write("gold.toml", "material.copper.conductor.metal = \"Cu\"\n");
+    let scene = format!("include = [\"gold.toml\"]\n{SCENE}");
+    let checked = fed(&folder, &["--check", "-"], format!("\u{feff}{scene}").as_bytes());
+    let expected = "warning: material copper is not used by any object\n<stdin> is a valid scene: 7 objects\n";
+    assert_eq!((checked.status.code(), text(&checked.stderr)), (Some(0), expected));
+    let wrong = fed(&folder, &["--check", "-"], scene.replace("width = 4", "widht = 4").as_bytes());
+    assert_eq!(wrong.status.code(), Some(2));
+    assert!(text(&wrong.stderr).contains("--> <stdin>:8:1\n"), "{}", text(&wrong.stderr));
+    let latin = fed(&folder, &["--check", "-"], b"# caf\xe9\n");
+    let expected = "error: the scene on standard input is not text in UTF-8\n\
+                    help: a scene is a TOML file, such as scenes/prism.toml\n";
+    assert_eq!((latin.status.code(), text(&latin.stderr)), (Some(2), expected));
+}
+
+#[test]
+fn what_standard_input_and_output_cannot_do_is_refused() {
+    let folder = folder();
+    let name = "help: name the image, as in --exr out/frame.exr\n";
+    for (arguments, expected) in [
+        (
+            &["-"][..],
+            "error: a scene from standard input has no name for its image\n\
+             help: name the image, as in render - --exr out/frame.exr\n"
+                .to_owned(),
+        ),
+        (
+            &["scene.toml", "--spectral", "--exr", "-"],
+            format!("error: spectra are written beside the image, and standard output has no place beside it\n{name}"),
+        ),
+        (
+            &["scene.toml", "--set", "film.spectral=true", "--exr", "-"],
+            format!("error: spectra are written beside the image, and standard output has no place beside it\n{name}"),
+        ),
+        (
+            &["scene.toml", "--plan", "--exr", "-"],
+            "error: --plan renders nothing, so - would not be written\nhelp: leave one of them out\n".into(),
+        ),
+    ] {
+        let refused = fed(&folder, arguments, SCENE.as_bytes());
+        let answer = (refused.status.code(), text(&refused.stdout), text(&refused.stderr));
+        assert_eq!(answer, (Some(2), "", &*expected), "{arguments:?}");
+    }
+    let both = fed(&folder, &["scene.toml", "--json", "--exr", "-"], b"");
+    let errors = told(text(&both.stdout), "error");
+    assert_eq!((both.status.code(), text(&both.stderr)), (Some(2), ""));
+    assert_eq!(errors[0]["message"], "--json and --exr - would both write to standard output");
+    assert_eq!(folder.listing(), ["scene.toml"]);
+}
+
+#[test]
+fn with_quiet_warnings_and_errors_alone_are_said() {
+    let folder = folder();
+    let quiet = render(&folder, &["scene.toml", "--quiet"]);
+    assert_eq!((quiet.code, &*quiet.stdout, &*quiet.stderr), (Some(0), "", ""));
+    let warned = render(&folder, &["scene.toml", "--quiet", "--set", "material.copper={mirror={}}"]);
+    let expected = "warning: material copper is not used by any object\n";
+    assert_eq!((warned.code, &*warned.stdout, &*warned.stderr), (Some(0), "", expected));
+    let checked = render(&folder, &["scene.toml", "--quiet", "--check"]);
+    assert_eq!((checked.code, &*checked.stdout, &*checked.stderr), (Some(0), "", ""));
+    let planned = render(&folder, &["scene.toml", "--quiet", "--plan"]);
+    assert!(planned.code == Some(0) && planned.stdout.starts_with("cost: ") && planned.stderr.is_empty());
+    let wrong = render(&folder, &["scene.toml", "--quiet", "--set", "film.width=x"]);
+    assert!(wrong.code == Some(2) && wrong.stderr.starts_with("error: "), "{}", wrong.stderr);
+}
+
+#[test]
+fn with_json_every_line_is_an_object_and_nothing_else_is_said() {
+    let folder = folder();
+    let sets = ["--set", "material.copper={mirror={}}"];
+    let arguments: Vec<&str> =
+        ["scene.toml", "--json", "--exr", "a.exr", "--png", "a.png"].into_iter().chain(sets).collect();
+    let said = render(&folder, &arguments);
+    assert_eq!((said.code, &*said.stderr), (Some(0), ""));
+    let kinds: Vec<Value> =
+        said.stdout.lines().map(|line| serde_json::from_str::<Value>(line).expect("JSON")["kind"].clone()).collect();
+    assert_eq!(kinds.first().and_then(Value::as_str), Some("warning"));
+    assert_eq!(told(&said.stdout, "plan")[0]["samples"], 1);
+    let progress = told(&said.stdout, "progress").pop().expect("the end is told");
+    assert_eq!((&progress["done"], &progress["seconds_left"]), (&progress["total"], &Value::from(0.0)));
+    assert_eq!(told(&said.stdout, "report")[0]["samples"], 12);
+    let written: Vec<Value> = told(&said.stdout, "written").iter().map(|event| event["path"].clone()).collect();
+    assert_eq!(written, ["a.exr", "a.png"]);
+    let planned = render(&folder, &["scene.toml", "--json", "--plan"]);
+    let words = render(&folder, &["scene.toml", "--plan"]);
+    let because = &told(&planned.stdout, "plan")[0]["because"];
+    // The first line says a time, which is measured.
+    let told_lines: Vec<&str> = because.as_array().expect("a list").iter().filter_map(Value::as_str).collect();
+    assert_eq!(told_lines[1..], words.stdout.lines().collect::<Vec<_>>()[1..]);
+    let checked = render(&folder, &["scene.toml", "--json", "--check"]);
+    assert_eq!(checked.stdout, "{\"kind\":\"checked\",\"scene\":\"scene.toml\",\"objects\":7}\n");
+}
+
+#[test]
+fn with_json_mistakes_are_objects_with_their_place() {
+    let folder = folder();
+    let wrong = render(&folder, &["scene.toml", "--json", "--set", "film.widht=3", "--set", "render.samples=-1"]);
+    assert_eq!((wrong.code, &*wrong.stderr), (Some(2), ""));
+    let expected = concat!(
+        r#"{"kind":"error","message":"unknown key `widht`","file":"--set","line":1,"column":6,"help":"did you mean `width`?"}"#,
+        "\n",
+        r#"{"kind":"error","message":"`samples` is a whole number of 0 or more, not -1","file":"--set","line":2,"column":16,"help":null}"#,
+        "\n"
+    );
+    assert_eq!(wrong.stdout, expected);
+    let missing = render(&folder, &["scen.toml", "--json"]);
+    let error = &told(&missing.stdout, "error")[0];
+    assert_eq!((missing.code, &error["help"]), (Some(2), &Value::from("did you mean scene.toml?")));
+    let unwritable = render(&folder, &["scene.toml", "--json", "--exr", "scene.toml/a.exr"]);
+    let error = &told(&unwritable.stdout, "error")[0];
+    assert_eq!((unwritable.code, &error["file"]), (Some(1), &Value::from("scene.toml/a.exr")));
+    let argument = render(&folder, &["scene.toml", "--json", "--sampels", "3"]);
+    assert_eq!((argument.code, &*argument.stderr), (Some(2), ""));
+    let error = &told(&argument.stdout, "error")[0];
+    assert_eq!(error["message"], "unexpected argument '--sampels' found");
+}
+
+#[test]
+fn a_frame_is_a_variable_and_a_number_in_the_names_of_files() {
+    let folder = folder();
+    folder.write("turn.toml", &SCENE.replace("degrees = 30", "degrees = \"$frame\""));
+    let frame = |arguments: &[&str]| {
+        let answer =
+            render(&folder, &["turn.toml", "--quiet"].into_iter().chain(arguments.iter().copied()).collect::<Vec<_>>());
+        assert_eq!((answer.code, &*answer.stderr), (Some(0), ""));
+    };
+    frame(&["--frame", "12", "--exr", "out/turn.%04d.exr", "--png", "%d.png"]);
+    frame(&["--frame", "7"]);
+    frame(&["--set", "set.frame=7", "--exr", "seven.exr"]);
+    assert_eq!(folder.listing(), ["12.png", "out", "scene.toml", "seven.exr", "turn.0007.exr", "turn.toml"]);
+    assert!(folder.path().join("out/turn.0012.exr").is_file());
+    let bytes = |name: &str| fs::read(folder.path().join(name)).expect("the image was written");
+    assert_eq!(bytes("seven.exr"), bytes("turn.0007.exr"));
+    assert_ne!(bytes("seven.exr"), bytes("out/turn.0012.exr"));
+    let nameless = render(&folder, &["scene.toml", "--exr", "turn.%04d.exr"]);
+    let expected =
+        "error: turn.%04d.exr is named after a frame, and no frame is given\nhelp: give its number: --frame 1\n";
+    assert_eq!((nameless.code, &*nameless.stderr), (Some(2), expected));
+}
+
+#[test]
+fn the_image_says_what_was_set() {
+    let folder = folder();
+    let sets = ["--set", "film.width=5", "--set", "object.ball.material=gold"];
+    assert_eq!(render(&folder, &["scene.toml"].into_iter().chain(sets).collect::<Vec<_>>()).code, Some(0));
+    let said = render(&folder, &["info", "scene.exr"]).stdout;
+    assert!(said.contains("--set film.width=5 --set object.ball.material=gold\n"), "{said}");
+    assert_eq!(render(&folder, &["scene.toml"]).code, Some(0));
+    assert!(!render(&folder, &["info", "scene.exr"]).stdout.contains("render/set"));
+}
+
+#[test]
+fn completions_and_the_manual_page_know_every_flag_and_command() {
+    let folder = Folder::new();
+    let help = render(&folder, &["--help"]).stdout;
+    let flags: Vec<&str> = help.split_whitespace().filter(|word| word.starts_with("--")).collect();
+    let words = |text: &str| text.replace("\\-", "-");
+    let page = render(&folder, &["man"]);
+    assert!(page.code == Some(0) && page.stdout.contains(".TH render 1"), "{}", page.stderr);
+    for shell in ["bash", "elvish", "fish", "powershell", "zsh"] {
+        let script = render(&folder, &["completions", shell]);
+        assert_eq!((script.code, &*script.stderr), (Some(0), ""));
+        for command in ["catalog", "info", "view", "diff", "completions", "man"] {
+            assert!(script.stdout.contains(command) && page.stdout.contains(command), "{shell}: {command}");
+        }
+        let known = words(&script.stdout);
+        assert!(["set", "json", "quiet", "frame", "spectral"].iter().all(|flag| known.contains(flag)), "{shell}");
+    }
+    let page = words(&page.stdout);
+    assert!(["--set", "--json", "--quiet", "--frame"].iter().all(|flag| flags.contains(flag) && page.contains(flag)));
+    let wrong = render(&folder, &["completions", "fsh"]);
+    assert!(wrong.code == Some(2) && wrong.stderr.contains("'fish'"), "{}", wrong.stderr);
+}

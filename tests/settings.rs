@@ -1,0 +1,204 @@
+//! Values that replace those of a scene, its variables, and the files that it includes.
+
+use std::fs;
+use std::path::Path;
+
+use abbe::scene::{Scene, Source};
+
+const SCENE: &str = r#"
+camera = { position = [0, 1, 6], look_at = [0, 1, 0], vertical_fov = 35 }
+film = { width = 6, height = 4 }
+material.white.diffuse.reflectance = 0.7
+material.gold.conductor.metal = "Au"
+light = [{ environment = { radiance = 1 } }, { name = "key", point = { position = [0, 3, 3], intensity = 10 } }]
+
+[[object]]
+name = "ball"
+shape.sphere = { center = [0, 1, 0], radius = 1 }
+material = "white"
+
+[[object]]
+name = "big \"b.ll\""
+shape.sphere = { center = [3, 1, 0], radius = 1 }
+material = "white"
+transform = [{ scale = 1 }, { translate = [0, 0, 0] }]
+"#;
+
+fn with(text: &str, settings: &[&str]) -> Scene {
+    let source = Source { path: "scene.toml".into(), text: text.to_owned() };
+    let settings: Vec<String> = settings.iter().map(|setting| (*setting).to_owned()).collect();
+    source.compile_with(&settings).unwrap_or_else(|error| panic!("{settings:?}: {error}"))
+}
+
+/// All that a scene is but what it is called and made of.
+fn shown(scene: Scene) -> String {
+    let mut scene = scene;
+    (scene.hash, scene.settings) = Default::default();
+    format!("{scene:?}")
+}
+
+/// Checks that settings make the scene that the file makes where `old` is replaced by `new`.
+fn assert_replaces(settings: &[&str], old: &str, new: &str) {
+    assert_eq!(SCENE.matches(old).count(), 1, "{old}");
+    let (set, written) = (with(SCENE, settings), with(&SCENE.replace(old, new), &[]));
+    assert_ne!(set.hash, with(SCENE, &[]).hash, "{settings:?}");
+    let (set, written) = (shown(set), shown(written));
+    assert_eq!(set, written, "{settings:?}");
+    assert_ne!(set, shown(with(SCENE, &[])), "{settings:?} changes nothing");
+}
+
+#[test]
+fn a_setting_means_what_the_same_value_in_the_file_means() {
+    assert_replaces(&["film.width=8"], "width = 6", "width = 8");
+    assert_replaces(&["film={width=8,height=4}"], "width = 6", "width = 8");
+    assert_replaces(&[" film . width = 8 # columns"], "width = 6", "width = 8");
+    assert_replaces(&["render.samples=3"], "film =", "render.samples = 3\nfilm =");
+    assert_replaces(&["camera.position=[0, 2, 6]"], "position = [0, 1, 6]", "position = [0, 2, 6]");
+    assert_replaces(&["camera.position.2=2"], "position = [0, 1, 6]", "position = [0, 2, 6]");
+    assert_replaces(&["material.white.diffuse.reflectance=0.5"], "reflectance = 0.7", "reflectance = 0.5");
+    let hidden = "name = \"ball\"\nvisible_to_camera = false";
+    assert_replaces(&["object.ball.visible_to_camera=false"], "name = \"ball\"", hidden);
+    let silver = ["material.silver={mirror={}}", "object.1.material=silver"];
+    let written = SCENE.replacen("\"white\"", "\"silver\"", 1).replace("film =", "material.silver.mirror = {}\nfilm =");
+    assert_eq!(shown(with(SCENE, &silver)), shown(with(&written, &[])));
+}
+
+#[test]
+fn entries_of_lists_go_by_name_or_number() {
+    let ball = "center = [0, 1, 0], radius = 1";
+    assert_replaces(&["object.ball.shape.sphere.radius=0.5"], ball, "center = [0, 1, 0], radius = 0.5");
+    assert_replaces(&["object.1.shape.sphere.radius=0.5"], ball, "center = [0, 1, 0], radius = 0.5");
+    let big = "center = [3, 1, 0], radius = 1";
+    assert_replaces(&[r#"object."big \"b.ll\"".shape.sphere.radius=0.5"#], big, "center = [3, 1, 0], radius = 0.5");
+    assert_replaces(&[r#"object.'big "b.ll"'.shape.sphere.radius=0.5"#], big, "center = [3, 1, 0], radius = 0.5");
+    assert_replaces(&["light.key.point.intensity=5"], "intensity = 10", "intensity = 5");
+    assert_replaces(&["light.2.point.intensity=5"], "intensity = 10", "intensity = 5");
+    let (old, new) = ("{ translate = [0, 0, 0] }", "{ translate = [0, 1, 0] }");
+    assert_replaces(&["object.2.transform.2={ translate = [0, 1, 0] }"], old, new);
+    assert_replaces(&["object.2.transform.2.translate.2=1"], old, new);
+}
+
+#[test]
+fn what_is_not_toml_is_a_text_and_the_last_of_several_settings_counts() {
+    let named = |material: &str| SCENE.replacen("\"white\"", material, 1);
+    for settings in [&["object.ball.material=gold"][..], &["object.ball.material=\"gold\""]] {
+        assert_eq!(shown(with(SCENE, settings)), shown(with(&named("\"gold\""), &[])));
+    }
+    assert_eq!(with(SCENE, &["film.width=8", "film.width=10"]).film.width, 10);
+    assert_eq!(with(SCENE, &["film={width=8,height=2}", "film.width=10"]).film.height, 2);
+    // A name before a number.
+    let text = SCENE.replace("name = \"ball\"", "name = \"2\"");
+    let radius = |settings: &[&str]| shown(with(&text, settings));
+    let first = text.replace("center = [0, 1, 0], radius = 1", "center = [0, 1, 0], radius = 0.5");
+    assert_eq!(radius(&["object.2.shape.sphere.radius=0.5"]), shown(with(&first, &[])));
+}
+
+#[test]
+fn the_hash_is_that_of_the_file_and_all_settings() {
+    let hash = |settings: &[&str]| with(SCENE, settings).hash;
+    let all = [&[][..], &["film.width=8"], &["film.width=9"], &["film.width=8", "film.height=5"]].map(hash);
+    let distinct: std::collections::BTreeSet<_> = all.iter().collect();
+    assert_eq!(distinct.len(), all.len());
+    assert_eq!(with(SCENE, &["film.width=8"]).settings, ["film.width=8"]);
+}
+
+#[test]
+fn a_variable_stands_for_its_value_wherever_that_is_meant() {
+    let text = SCENE
+        .replace("vertical_fov = 35", "vertical_fov = \"$angle\"")
+        .replace("position = [0, 3, 3]", "position = [0, \"$height\", 3]")
+        .replace("reflectance = 0.7", "reflectance = \"$paint\"")
+        .replace("radius = 1 }\nmaterial = \"white\"\n\n", "radius = 1 }\nmaterial = \"$first\"\n\n");
+    let text = format!("{text}\n[set]\nangle = 35\nheight = 3\npaint = 0.7\nfirst = \"white\"\n");
+    assert_eq!(shown(with(&text, &[])), shown(with(SCENE, &[])));
+    let written = SCENE.replace("vertical_fov = 35", "vertical_fov = 45");
+    for settings in [&["angle=45"][..], &["set.angle=45"], &["angle=10", "angle=45.0"]] {
+        assert_eq!(shown(with(&text, settings)), shown(with(&written, &[])), "{settings:?}");
+    }
+    let written = SCENE.replace("reflectance = 0.7", "reflectance = { rgb = [0.5, 0.4, 0.3] }");
+    assert_eq!(shown(with(&text, &["paint={rgb=[0.5, 0.4, 0.3]}"])), shown(with(&written, &[])));
+    // A setting may use a variable.
+    assert_eq!(with(&text, &["film.width=\"$height\""]).film.width, 3);
+}
+
+#[test]
+fn a_doubled_dollar_is_a_dollar_and_unused_variables_are_told() {
+    let text = SCENE.replace("name = \"ball\"", "name = \"$$angle\"");
+    assert_eq!(with(&text, &[]).objects[0].name, "$angle");
+    let text = SCENE.replace("name = \"ball\"", "name = \"$5\"");
+    assert_eq!(with(&text, &[]).objects[0].name, "$5");
+    let scene = with(&format!("{SCENE}\n[set]\nangle = 3\nframe = 1\n"), &[]);
+    assert!(scene.warnings.contains(&"variable angle is not used".to_owned()), "{:?}", scene.warnings);
+    assert!(!scene.warnings.iter().any(|warning| warning.contains("frame")), "{:?}", scene.warnings);
+}
+
+fn folder_with(files: &[(&str, &str)]) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().expect("a folder can be made");
+    for (name, text) in files {
+        let path = folder.path().join(name);
+        fs::create_dir_all(path.parent().unwrap_or(Path::new(""))).expect("folders can be made");
+        fs::write(path, text).expect("files can be written");
+    }
+    folder
+}
+
+fn read(folder: &tempfile::TempDir) -> Scene {
+    Scene::read(folder.path().join("scene.toml")).unwrap_or_else(|error| panic!("{error}"))
+}
+
+#[test]
+fn included_files_stand_in_the_scene_as_if_they_were_written_there() {
+    let (head, objects) = SCENE.split_at(SCENE.find("[[object]]").unwrap_or_default());
+    let gold = "material.gold.conductor.metal = \"Au\"\n";
+    let second = objects.rfind("[[object]]").unwrap_or_default();
+    let scene =
+        format!("include = [\"parts/all.toml\", \"gold.toml\"]\n{}{}", head.replace(gold, ""), &objects[..second]);
+    let folder = folder_with(&[
+        ("scene.toml", &scene),
+        // The same file twice, by two ways, is one file.
+        ("parts/all.toml", "include = [\"ball.toml\", \"../gold.toml\", \"./ball.toml\"]\n"),
+        ("parts/ball.toml", &objects[second..]),
+        ("gold.toml", gold),
+    ]);
+    let whole = read(&folder);
+    assert_eq!(whole.objects.iter().map(|object| &*object.name).collect::<Vec<_>>(), ["ball", "big \"b.ll\""]);
+    let hash = whole.hash.clone();
+    assert_eq!(shown(whole), shown(with(SCENE, &[])));
+    fs::write(folder.path().join("gold.toml"), format!("{gold}# other\n")).expect("files can be written");
+    assert_ne!(read(&folder).hash, hash);
+}
+
+#[test]
+fn files_are_named_from_the_folder_of_the_file_that_names_them() {
+    let paint = SCENE.replace("reflectance = 0.7", "reflectance = { file = \"paint.csv\" }");
+    let other = "material.other.diffuse.reflectance = { file = \"paint.csv\" }\n";
+    let folder = folder_with(&[
+        ("scene.toml", &format!("include = [\"parts/other.toml\"]\n{paint}")),
+        ("paint.csv", "400, 0.25\n700, 0.25\n"),
+        ("parts/other.toml", other),
+        ("parts/paint.csv", "400, 0.75\n700, 0.75\n"),
+    ]);
+    let set = |settings: &[&str]| {
+        let source = Source::read(&folder.path().join("scene.toml")).expect("the scene can be read");
+        let settings: Vec<String> = settings.iter().map(|setting| (*setting).to_owned()).collect();
+        format!("{:?}", source.compile_with(&settings).expect("the scene is right").materials)
+    };
+    let own = set(&[]);
+    assert!(own.contains("0.25") && !own.contains("0.75"), "{own}");
+    let other = set(&["object.1.material=other", "object.2.material=other"]);
+    assert!(other.contains("0.75") && !other.contains("0.25"), "{other}");
+    // What is set stands where the scene stands.
+    let set = set(&["material.white.diffuse.reflectance={ file = \"parts/paint.csv\" }"]);
+    assert!(set.contains("0.75"), "{set}");
+}
+
+#[test]
+fn a_scene_that_a_program_has_built_may_include_files_and_tells_where_they_are_wrong() {
+    let folder = folder_with(&[("gold.toml", "[material.copper]\nconductor = { metal = \"Cu\", roughnes = 1 }\n")]);
+    let table: abbe::toml::Table = format!("include = [\"gold.toml\"]\n{SCENE}").parse().expect("it is TOML");
+    let refused = Scene::from_table(&table, folder.path()).expect_err("a key is misspelt").to_string();
+    assert!(refused.ends_with("gold.toml:2:29: unknown key `roughnes` (did you mean `roughness`?)"), "{refused}");
+    let table: abbe::toml::Table = SCENE.replace("= 35", "= \"$angle\"").parse().expect("it is TOML");
+    let refused = Scene::from_table(&table, "").expect_err("there is no such variable").to_string();
+    assert!(refused.starts_with("camera.vertical_fov: there is no variable `angle`"), "{refused}");
+}

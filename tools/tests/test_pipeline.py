@@ -1,0 +1,94 @@
+"""A program drives the renderer and reads nothing but its JSON.
+
+    pytest tools/tests/test_pipeline.py
+"""
+
+import json
+import os
+import subprocess
+import sys
+
+import jsonschema
+import numpy as np
+import pytest
+import render
+
+SCHEMA = json.loads((render.ROOT / "tools/events.schema.json").read_text("utf-8"))
+TURNTABLE = render.ROOT / "examples/turntable.toml"
+SMALL = ("--set", "film.width=24", "--set", "film.height=16", "--samples", "2")
+
+
+def events(*arguments, code=0):
+    """What the command says with --json, each line held by the schema."""
+    command = [str(render.binary()), "--json", *map(str, arguments)]
+    run = subprocess.run(command, capture_output=True, text=True, check=False, timeout=600)
+    assert (run.returncode, run.stderr) == (code, "")
+    said = [json.loads(line) for line in run.stdout.splitlines()]
+    for event in said:
+        jsonschema.validate(event, SCHEMA)
+    return said
+
+
+def kinds(said):
+    return list(dict.fromkeys(event["kind"] for event in said))
+
+
+def test_the_schema_is_a_schema_and_refuses_what_it_does_not_know():
+    jsonschema.Draft202012Validator.check_schema(SCHEMA)
+    jsonschema.validate({"kind": "written", "path": "a.exr"}, SCHEMA)
+    for wrong in (
+        {},
+        {"kind": "gift"},
+        {"kind": "written"},
+        {"kind": "written", "path": 3},
+        {"kind": "written", "path": "a.exr", "size": 3},
+        {"kind": "progress", "done": -1, "total": 3, "seconds": 0.1, "seconds_left": None},
+        {"kind": "error", "message": "no", "file": None, "line": 0, "column": 1, "help": None},
+    ):
+        with pytest.raises(jsonschema.ValidationError):
+            jsonschema.validate(wrong, SCHEMA)
+
+
+def test_all_that_is_said_of_a_render_is_in_the_schema(tmp_path):
+    exr, png = tmp_path / "a.exr", tmp_path / "a.png"
+    said = events(TURNTABLE, "--exr", exr, "--png", png, "--spectral", *SMALL, "--set", "set.spare=1")
+    assert kinds(said) == ["warning", "plan", "progress", "report", "written"]
+    (plan,) = (event for event in said if event["kind"] == "plan")
+    (report,) = (event for event in said if event["kind"] == "report")
+    assert plan["samples"] == 2 and report["samples"] == 24 * 16 * 2
+    written = [event["path"] for event in said if event["kind"] == "written"]
+    assert written == [str(exr), str(exr.with_suffix(".spectral.exr")), str(png)]
+    assert render.read(exr).rgb.shape == (16, 24, 3)
+
+
+def test_checks_plans_and_mistakes_are_in_the_schema(tmp_path):
+    assert kinds(events(TURNTABLE, "--check")) == ["checked"]
+    assert kinds(events(TURNTABLE, "--plan", *SMALL)) == ["plan"]
+    assert kinds(events(TURNTABLE, "--set", "film.width=x", code=2)) == ["error"]
+    assert kinds(events(tmp_path / "no.toml", code=2)) == ["error"]
+    assert kinds(events(TURNTABLE, "--sampels", "3", code=2)) == ["error"]
+    (tmp_path / "file").write_text("")
+    assert kinds(events(TURNTABLE, "--exr", tmp_path / "file/a.exr", code=1)) == ["error"]
+
+
+def test_a_turntable_of_eight_frames_is_driven_by_twenty_lines(tmp_path):
+    driver = render.ROOT / "examples/turntable.py"
+    assert len(driver.read_text("utf-8").splitlines()) <= 20
+    environment = {**os.environ, "RENDER": str(render.binary())}
+    command = [sys.executable, str(driver), str(tmp_path), *SMALL]
+    run = subprocess.run(command, capture_output=True, text=True, check=False, timeout=600, env=environment)
+    assert (run.returncode, run.stderr) == (0, "")
+    names = [f"turntable.{frame:04}.exr" for frame in range(1, 9)]
+    assert sorted(path.name for path in tmp_path.iterdir()) == names
+    frames = [render.read(tmp_path / name) for name in names]
+    # Noise is the same in each frame: what differs is what has turned.
+    for frame, other in zip(frames, frames[1:] + frames[:1], strict=True):
+        assert np.mean(np.abs(frame.channels["Z"] - other.channels["Z"]) > 0.01) > 0.05
+    assert all(f"written {tmp_path / name}" in run.stdout for name in names)
+
+
+def test_a_driver_stops_at_a_mistake_and_says_it(tmp_path):
+    environment = {**os.environ, "RENDER": str(render.binary())}
+    command = [sys.executable, str(render.ROOT / "examples/turntable.py"), str(tmp_path), "--set", "film.widht=3"]
+    run = subprocess.run(command, capture_output=True, text=True, check=False, timeout=600, env=environment)
+    assert (run.returncode, run.stdout) == (2, "frame 1: error unknown key `widht`\n")
