@@ -33,7 +33,8 @@ Examples:
   render info prism.exr                           say what an image carries
   render view prism.exr                           show it on the terminal
   render diff prism.exr other.exr                 say whether two images agree
-  render completions bash                         complete its words in a shell; render man is its page
+  render completions bash                         complete its words in a shell
+  render man                                      write its manual page
 
 Exit codes: 0 done, 1 the render or a file failed, 2 bad arguments or scene, 130 stopped by Ctrl-C.";
 

@@ -92,8 +92,11 @@ shape.quad = { center = [0.3, 2.9, -0.4], u = [0.5, 0, 0], v = [0, 0, 0.4] }
 material = "lamp"
 "#;
 
-/// Scenes of all ways to find light, with options, and whether a method is the one that is meant.
-fn kinds() -> Vec<(&'static str, String, Options, fn(&Method) -> bool)> {
+/// A name, a scene, options, and whether a method is the one that is meant.
+type Kind = (&'static str, String, Options, fn(&Method) -> bool);
+
+/// Scenes of all ways to find light.
+fn kinds() -> Vec<Kind> {
     let shows = |method: &Method| method.light_pass.as_ref().is_some_and(|pass| pass.map.is_none());
     let gathers = |method: &Method| method.light_pass.as_ref().is_some_and(|pass| pass.map.is_some());
     let all = || Options { layers: Some(Layer::all()), spectral: true, ..Options::default() };
@@ -107,11 +110,15 @@ fn kinds() -> Vec<(&'static str, String, Options, fn(&Method) -> bool)> {
     let still = GLASS
         .replace("height = 21", "height = 21, filter = \"center\"")
         .replace("floor.diffuse.reflectance = 0.6", "floor.diffuse.reflectance = 0");
+    // Light vertices are worth their while in large images alone.
+    let large = ROOM.replace("width = 21, height = 18", "width = 420, height = 360");
+    let crop = Some(Window { left: 200, top: 150, width: 21, height: 18 });
+    let part = Options { crop, ..Options::default() };
     vec![
         ("photons that are shown", CAUSTIC.into(), Options::default(), shows),
         ("photons that are gathered, all layers", GLASS.into(), all(), gathers),
         ("a filter with negative lobes, a crop in the overscan", mitchell, cut, gathers),
-        ("light vertices", ROOM.into(), Options::default(), |method| method.light_vertices),
+        ("light vertices", large, part, |method| method.light_vertices),
         ("wavelengths that are drawn", split, all(), |method| method.basis.draws_wavelengths()),
         ("one sample per pixel", still.replace("samples = 20", "samples = 1"), all(), |method| method.samples == 1),
     ]

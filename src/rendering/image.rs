@@ -85,7 +85,7 @@ impl Image {
         &self.format
     }
 
-    /// How it was rendered and why, one decision a line.
+    /// How it was rendered and why, one decision a line; nothing of an image that was merged from parts.
     pub fn because(&self) -> &[String] {
         &self.because
     }

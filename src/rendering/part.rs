@@ -31,7 +31,6 @@ struct Head {
     /// With what was left out of the light that all parts send alike; and what was left out beside that.
     provenance: Provenance,
     non_finite: u64,
-    because: Vec<String>,
 }
 
 /// A tile of the image: its pixels, and their numbers in each layer and in the spectral image.
@@ -49,7 +48,7 @@ const NON_FINITE: &str = "nonFinite";
 /// # Errors
 /// If they cannot be written; a file that was there before is then untouched.
 pub(super) fn write(path: &Path, identity: &Identity, shard: Shard, shared: u64, image: Image) -> Result<()> {
-    let Image { mut film, report, because, view, format, mut provenance } = image;
+    let Image { mut film, report, view, format, mut provenance, .. } = image;
     set_non_finite(&mut provenance, shared);
     let pixels = std::mem::take(&mut film.pixels);
     let layers: Vec<_> =
@@ -57,7 +56,7 @@ pub(super) fn write(path: &Path, identity: &Identity, shard: Shard, shared: u64,
     let spectra = film.spectral.as_mut().map(|spectral| (std::mem::take(&mut spectral.values), spectral.bands.count()));
     let window = window(&film);
     let (identity, non_finite) = (identity.of_all_parts(), report.non_finite - shared);
-    let head = Head { identity, shard, film, format, view, provenance, non_finite, because };
+    let head = Head { identity, shard, film, format, view, provenance, non_finite };
     write_blocks(path, PART, &|blocks| {
         blocks.block(&head)?;
         shard.tiles(window).try_for_each(|tile| {
@@ -119,7 +118,7 @@ pub fn merge(parts: &[PathBuf]) -> Result<Image> {
         let help = format!("render it: --shard {number}/{count}");
         return Err(refused(format!("part {number} of {count} is missing{more}"), help));
     }
-    let Head { film, format, view, mut provenance, because, .. } = whole;
+    let Head { film, format, view, mut provenance, .. } = whole;
     let shared = provenance.facts.iter().find_map(|fact| match fact {
         (key, Fact::Count(shared)) if key == NON_FINITE => Some(*shared),
         _ => None,
@@ -128,7 +127,7 @@ pub fn merge(parts: &[PathBuf]) -> Result<Image> {
     set_non_finite(&mut provenance, non_finite);
     let film = joined(film, found.values().copied())?;
     let report = Report { non_finite, ..Report::default() };
-    Ok(Image { film, report, because, view, format, provenance })
+    Ok(Image { film, report, because: Vec::new(), view, format, provenance })
 }
 
 fn refused(message: impl Display, help: impl Display) -> Error {
