@@ -36,7 +36,8 @@ Examples:
   render completions bash                         complete its words in a shell
   render man                                      write its manual page
 
-Exit codes: 0 done, 1 the render or a file failed, 2 bad arguments or scene, 130 stopped by Ctrl-C.";
+Exit codes: 0 done, 1 the render or a file failed, 2 bad arguments or scene,
+130 stopped by Ctrl-C.";
 
 /// Render a TOML scene to a linear OpenEXR image.
 #[derive(Parser)]
