@@ -22,12 +22,12 @@ Examples:
   render --check scenes/prism.toml                find mistakes in the scene
   render --samples 16 --exr scenes/prism.toml     take a quick look
   render --layers all --exr scenes/prism.toml     write layers beside the image
-  render --spectral --exr scenes/prism.toml       write ./prism.spectral.exr as well
+  render --spectral --exr scenes/prism.toml       write spectra beside the image
   render --checkpoint 60s --exr scenes/prism.toml lose nothing: --resume goes on
   render --shard 1/4 --exr scenes/prism.toml      make one of four parts
   render merge prism.exr prism.*.part             lay them together
   render --set film.width=320 scenes/prism.toml   change a value of the scene
-  render - --exr frame.exr < scenes/prism.toml    read the scene from standard input
+  render - --exr frame.exr < scenes/prism.toml    read it from standard input
   render --json --exr scenes/prism.toml           speak to a program
   render catalog --help                           see which glasses it knows
   render info prism.exr                           say what an image carries
