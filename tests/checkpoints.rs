@@ -132,6 +132,12 @@ fn bytes(image: &Image, folder: &Path) -> Vec<Vec<u8>> {
     [exr, spectral].iter().filter_map(|path| std::fs::read(path).ok()).collect()
 }
 
+/// Whether two images have the same pixels and say the same of them. How long they were expected to take is another
+/// matter.
+fn is_same(a: &Image, b: &Image) -> bool {
+    (a.film(), a.report()) == (b.film(), b.report())
+}
+
 fn rendering(scene: &Scene, options: &Options, threads: usize) -> Rendering {
     Rendering::new(scene, &Options { threads: Some(threads), ..options.clone() }).expect("it can be rendered")
 }
@@ -163,7 +169,8 @@ fn a_render_that_stops_anywhere_goes_on_to_the_same_bytes() {
                 let mut next = rendering(&scene, &options, 9 - threads);
                 let resumed = next.resume(&path).expect("a checkpoint can be read");
                 assert_eq!(resumed == Resumed::Finished, next.done() == next.work(), "{kind}");
-                assert!((next.done(), next.image()) == (first.done(), first.image()), "{kind}: {threads} threads");
+                assert_eq!(next.done(), first.done(), "{kind}: {threads} threads");
+                assert!(is_same(&next.image(), &first.image()), "{kind}: {threads} threads");
                 first = next;
             }
             let before = first.done();
@@ -266,7 +273,7 @@ fn more_samples_are_added_to_those_that_were_taken() {
     // Other photons are shown beside more samples.
     for (text, samples) in [(CAUSTIC, [16, 64]), (CAUSTIC, [32, 50]), (ROOM, [32, 100])] {
         let (image, whole, resumed) = raised(text, &layers, samples).expect("there is a pass that ends there");
-        assert!((image, resumed) == (whole, Resumed::Continues), "{samples:?}");
+        assert!(is_same(&image, &whole) && resumed == Resumed::Continues, "{samples:?}");
     }
 }
 
