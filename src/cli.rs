@@ -2,6 +2,7 @@
 
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use abbe::film::{Layer, Overscan, Window};
 use abbe::{Options, Result, nearest};
@@ -21,6 +22,7 @@ Examples:
   render --plan scenes/prism.toml                 say what it would do, and why
   render --check scenes/prism.toml                find mistakes in the scene
   render --samples 16 --exr scenes/prism.toml     take a quick look
+  render --error 0.01 --exr scenes/prism.toml     stop when it is off by 1 %
   render --layers all --exr scenes/prism.toml     write layers beside the image
   render --spectral --exr scenes/prism.toml       write spectra beside the image
   render --checkpoint 60s --exr scenes/prism.toml lose nothing: --resume goes on
@@ -85,9 +87,18 @@ struct Arguments {
     #[arg(long)]
     json: bool,
 
-    /// Camera samples per pixel, instead of the scene's
+    /// Camera samples per pixel, instead of the scene's; with --error or --time, the most
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..))]
     samples: Option<u32>,
+
+    /// Take samples until the image is off by no more than this in 95 of 100 renders: 0.01 is one percent. The first of
+    /// --error, --time and --samples ends the render; the scene's samples then count no more
+    #[arg(long, value_name = "RATIO", allow_negative_numbers = true)]
+    error: Option<f64>,
+
+    /// Take samples for so long: 90s, 10m, 1.5h
+    #[arg(long, value_name = "TIME", value_parser = keep::time)]
+    time: Option<Duration>,
 
     /// Another set of random numbers, instead of the scene's
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = seed)]
@@ -115,6 +126,11 @@ struct Arguments {
     #[arg(long, value_name = "N", allow_negative_numbers = true,
           value_parser = clap::value_parser!(u16).range(1..=MAX_THREADS))]
     threads: Option<u16>,
+
+    /// Write all that is known of the render as JSON: its plan, what it took, how far the image is off and why it
+    /// stopped
+    #[arg(long, value_name = "FILE.json", conflicts_with_all = ["plan", "check"])]
+    report: Option<PathBuf>,
 
     #[command(flatten)]
     keep: keep::Flags,
@@ -180,6 +196,8 @@ pub struct Job {
     pub exposure: f64,
     pub options: Options,
     pub keep: keep::Flags,
+    /// Where all that is known of the render is written.
+    pub report: Option<PathBuf>,
 }
 
 /// What is wanted of the scene.
@@ -191,7 +209,7 @@ pub enum Output {
 
 /// What is asked for.
 pub enum Request {
-    Render(Job),
+    Render(Box<Job>),
     Catalog(catalog::Query),
     Info(info::Query),
     View(view::Query),
@@ -221,7 +239,7 @@ pub fn parse() -> Result<Request> {
                 Err(_) if words.iter().any(|word| word == "--json") => Listener::Program,
                 _ => Listener::Person,
             });
-            parsed.map_or_else(told, |arguments| job(arguments).map(Request::Render))
+            parsed.map_or_else(told, |arguments| job(arguments).map(|job| Request::Render(Box::new(job))))
         }
     }
 }
@@ -290,13 +308,26 @@ fn job(arguments: Arguments) -> Result<Job> {
         let message = "--json and --exr - would both write to standard output";
         return refuse(message, Some("name the image, as in --exr out/frame.exr"));
     }
-    let Arguments { samples, seed, overscan, crop, layers, spectral, threads, stamp, keep, .. } = arguments;
+    let Arguments { samples, error, time, seed, overscan, crop, layers, spectral, threads, stamp, keep, .. } =
+        arguments;
     let (exposure, layers) = (arguments.exposure.unwrap_or(0.0), layers.map(|LayerList(layers)| layers));
     let shard = keep.shard();
-    let options =
-        Options { samples, seed, overscan, crop, layers, spectral, threads: threads.map(usize::from), stamp, shard };
+    let options = Options {
+        samples,
+        error,
+        time,
+        seed,
+        overscan,
+        crop,
+        layers,
+        spectral,
+        threads: threads.map(usize::from),
+        stamp,
+        shard,
+    };
+    let report = arguments.report.map(|path| numbered(&path, frame)).transpose()?;
     let set = frame.map(|frame| format!("set.frame={frame}")).into_iter().chain(arguments.set).collect();
-    Ok(Job { scene, set, output, exposure, options, keep })
+    Ok(Job { scene, set, output, exposure, options, keep, report })
 }
 
 /// `--exr` takes an image to write, or nothing; right before the scene it belongs to the scene.

@@ -6,10 +6,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use abbe::film::{Shard, check_writable};
+use abbe::scene::duration;
 use abbe::{Advance, Error, Rendering, Result, Resumed};
 use clap::Args;
 
-use crate::messages::{problem, say, warn};
+use crate::messages::{problem, say, so_far, warn};
 use crate::outputs::refuse;
 use crate::progress::Progress;
 
@@ -39,13 +40,8 @@ const OFTEN: Duration = Duration::from_secs(60);
 /// So many times what writing took passes before it is done again.
 const SELDOM: u32 = 100;
 
-fn time(text: &str) -> std::result::Result<Duration, String> {
-    let units = [("ms", 1e-3), ("s", 1.0), ("m", 60.0), ("min", 60.0), ("h", 3600.0)];
-    let (number, unit) = text.split_at(text.find(|letter: char| letter.is_ascii_alphabetic()).unwrap_or(text.len()));
-    let scale = units.iter().find(|(name, _)| *name == unit).map(|(_, scale)| *scale);
-    let seconds = scale.and_then(|scale| Some(scale * number.trim().parse::<f64>().ok()?));
-    let known = seconds.filter(|&seconds| seconds > 0.0).and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
-    known.ok_or_else(|| "a time is a number with a unit, such as 60s, 5m or 1h".into())
+pub fn time(text: &str) -> std::result::Result<Duration, String> {
+    duration(text).ok_or_else(|| "a time is a number with a unit, such as 60s, 5m or 1h".into())
 }
 
 fn shard(text: &str) -> std::result::Result<Shard, String> {
@@ -223,12 +219,19 @@ impl Keep {
     /// # Errors
     /// If it was stopped, and what is done cannot be kept.
     pub fn run(&mut self, rendering: &mut Rendering, progress: &Progress) -> Result<bool> {
+        let mut looked = rendering.error();
         loop {
             let stops = || STOPPED.load(Ordering::Relaxed);
             let is_due = || stops() || self.checkpoints.is_due() || self.snapshots.is_due();
             let advance = rendering.advance_until(&|done| progress.advance(done), &is_due);
+            progress.expect(rendering.work());
             if advance == Advance::Finished {
                 return Ok(true);
+            }
+            let error = rendering.error();
+            if error != looked {
+                error.iter().for_each(|error| progress.say(&so_far(error)));
+                looked = error;
             }
             if stops() {
                 self.save(rendering)?;
@@ -296,16 +299,6 @@ fn quoted(word: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_time_has_a_unit() {
-        for (text, seconds) in [("60s", 60.0), ("0.5s", 0.5), ("5m", 300.0), ("1.5h", 5400.0), ("20ms", 0.02)] {
-            assert_eq!(time(text), Ok(Duration::from_secs_f64(seconds)), "{text}");
-        }
-        for text in ["", "60", "s", "-1s", "0s", "1e400s", "nans", "1 day", "60 s s"] {
-            assert!(time(text).is_err(), "{text}");
-        }
-    }
 
     #[test]
     fn a_word_is_quoted_where_the_shell_would_split_it() {

@@ -23,6 +23,7 @@ use abbe::scene::Source;
 use abbe::{Image, Rendering, Result, Scene};
 
 use cli::{Job, Output, Request};
+use events::{Event, write_account};
 use keep::Keep;
 use outputs::{check_standard, is_standard, spare};
 
@@ -88,6 +89,8 @@ fn image(job: &Job, scene: &Scene, exr: Option<&Path>, png: Option<&Path>) -> Re
     };
     outputs.iter().try_for_each(|output| spare(&job.scene, "scene", output))?;
     outputs.iter().try_for_each(|output| check_writable(output))?;
+    let report = job.report.as_deref();
+    report.map_or(Ok(()), |report| spare(&job.scene, "scene", report).and_then(|()| check_writable(report)))?;
     let mut keep = Keep::new(&job.keep, outputs.first().copied().unwrap_or(Path::new("image")))?;
     let mut rendering = Rendering::new(scene, &job.options)?;
     messages::print_plan(rendering.plan());
@@ -95,13 +98,13 @@ fn image(job: &Job, scene: &Scene, exr: Option<&Path>, png: Option<&Path>) -> Re
         return Ok(ExitCode::SUCCESS);
     }
     let progress = progress::Progress::new(rendering.work(), rendering.done());
-    let expected = rendering.expected();
     let is_finished = keep.run(&mut rendering, &progress)?;
     if !is_finished {
         progress.stop();
         keep.say_how_to_resume();
         return Ok(ExitCode::from(keep::STOPPED_CODE));
     }
+    let expected = rendering.expected();
     let took = progress.finish(expected);
     let image = rendering.image();
     match (&part, exr) {
@@ -115,7 +118,11 @@ fn image(job: &Job, scene: &Scene, exr: Option<&Path>, png: Option<&Path>) -> Re
     png.map_or(Ok(()), |png| image.write_png(png, job.exposure))?;
     // Last: a checkpoint with all samples says that the image is written.
     keep.save(&rendering)?;
-    messages::print_report(image.report(), took, expected);
-    outputs.into_iter().for_each(messages::print_written);
+    messages::print_report(&image, took, expected);
+    if let Some(report) = report {
+        let (plan, end) = (Event::plan(rendering.plan()), Event::report(&image, took, expected));
+        write_account(report, plan, end, &outputs)?;
+    }
+    outputs.into_iter().chain(report).for_each(messages::print_written);
     Ok(ExitCode::SUCCESS)
 }

@@ -8,8 +8,7 @@ use std::sync::OnceLock;
 use std::time::Duration;
 
 use abbe::plan::Plan;
-use abbe::trace::Report;
-use abbe::{Diagnostic, Error, Image, Result};
+use abbe::{Diagnostic, Error, Image, ImageError, Result};
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 
 use crate::events::Event;
@@ -97,14 +96,20 @@ pub fn aligned(lines: &[Vec<String>]) -> Vec<String> {
 
 /// Five digits, without a power of ten where that is as short.
 pub fn number(value: f64) -> String {
+    number_of_digits(value, 5)
+}
+
+/// The same of another number of digits.
+fn number_of_digits(value: f64, digits: i32) -> String {
     let size = value.abs();
+    let scientific = || format!("{value:.*e}", digits as usize - 1);
     if size < 5e-7 {
-        return if value == 0.0 { "0".into() } else { format!("{value:.4e}") };
+        return if value == 0.0 { "0".into() } else { scientific() };
     }
     if !(1e-3..1e6).contains(&size) {
-        return format!("{value:.4e}");
+        return scientific();
     }
-    let digits = (4 - libm::floor(libm::log10(size)) as i32).clamp(0, 6) as usize;
+    let digits = (digits - 1 - libm::floor(libm::log10(size)) as i32).clamp(0, 6) as usize;
     let text = format!("{value:.digits$}");
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }
@@ -230,11 +235,52 @@ pub fn print_written(path: &Path) {
     }
 }
 
-/// What the render noticed.
-pub fn print_report(report: &Report, took: Duration, expected: Duration) {
-    if listener() == Listener::Program {
-        Event::report(report, took, expected).tell();
+/// How far the image is off while it is rendered, in one line.
+pub fn so_far(error: &ImageError) -> String {
+    let asked = error.asked.map_or(String::new(), |asked| format!("; {} is asked for", percent(asked)));
+    format!(
+        "{} samples per pixel: the image is off by at most {}{asked}",
+        error.noise.samples,
+        percent(error.at_most())
+    )
+}
+
+/// How far it is off in the end, and whether that was asked for.
+fn print_error_of_image(error: &ImageError) {
+    let noise = &error.noise;
+    let [at_most, expected, of_noise, of_color] =
+        [error.at_most(), noise.expected, noise.at_most, error.model].map(percent);
+    if let Some(outlier) = noise.outlier {
+        let ([x, y], share) = (outlier.pixel, percent(outlier.share));
+        warn(&format!(
+            "pixel ({x}, {y}) makes {share} of the noise, by light that one of eight renders found there and no other: \
+             there may be more of it than any number of samples tells"
+        ));
     }
+    if let Some(asked) = error.asked.filter(|_| !error.is_reached()) {
+        warn(&format!("the error of {} that was asked for is not reached", percent(asked)));
+    }
+    let off = match noise.outlier {
+        None => format!("at most {at_most} in 95 of 100 renders (noise {of_noise}, color {of_color})"),
+        Some(_) => format!("{expected} or more"),
+    };
+    say(&format!("{} samples per pixel: the image is off by {off}", noise.samples));
+    let ([x, y], worst) = (noise.worst_tile.corner, percent(noise.worst_tile.expected));
+    say(&format!("noise is {expected} of the image's brightness, and {worst} in the 16 x 16 pixels from ({x}, {y})"));
+}
+
+/// A share as people say it.
+fn percent(share: f64) -> String {
+    format!("{} %", number_of_digits(100.0 * share, 2))
+}
+
+/// What the render noticed.
+pub fn print_report(image: &Image, took: Duration, expected: Duration) {
+    let report = image.report();
+    if listener() == Listener::Program {
+        Event::report(image, took, expected).tell();
+    }
+    image.error().iter().for_each(|error| print_error_of_image(error));
     if let Some([x, y, sample]) = report.first_non_finite {
         warn(&format!(
             "{} samples were not finite and are left out; the first is sample {sample} of pixel ({x}, {y})",

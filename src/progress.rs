@@ -18,9 +18,10 @@ pub struct Progress {
     lines: Option<Lines>,
     done: Arc<AtomicU64>,
     start: Instant,
-    work: u64,
-    /// The share of it that this run does.
-    left: f64,
+    /// All that is to be done, as far as it is known.
+    work: Arc<AtomicU64>,
+    /// What an earlier run has done.
+    before: u64,
 }
 
 /// Renders shorter than this say nothing where there is no terminal.
@@ -33,7 +34,8 @@ const TICK: Duration = Duration::from_secs(1);
 impl Progress {
     /// Of a render of so many camera samples and photons, some of which an earlier run has done.
     pub fn new(work: u64, before: u64) -> Self {
-        let (done, start) = (Arc::new(AtomicU64::new(before)), Instant::now());
+        let [done, work_known] = [before, work].map(|count| Arc::new(AtomicU64::new(count)));
+        let start = Instant::now();
         let is_shown = listener() == Listener::Person && std::io::stderr().is_terminal();
         let bar = is_shown.then(|| {
             let style = ProgressStyle::with_template("{wide_bar} {percent:>3} %  {elapsed} passed, {eta} left");
@@ -42,12 +44,28 @@ impl Progress {
                 .with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
         });
         let lines = bar.is_none().then(|| {
-            let done = done.clone();
+            let (done, work) = (done.clone(), work_known.clone());
             let (first, then) = if listener() == Listener::Program { (TICK, TICK) } else { (QUIET, PERIOD) };
-            Lines::new(first, then, move || speak([before, done.load(Ordering::Relaxed)], work, start.elapsed()))
+            let [done, work] = [done, work].map(|count| move || count.load(Ordering::Relaxed));
+            Lines::new(first, then, move || speak([before, done()], work(), start.elapsed()))
         });
-        let left = work.saturating_sub(before) as f64 / work.max(1) as f64;
-        Self { bar, lines, done, start, work, left }
+        Self { bar, lines, done, start, work: work_known, before }
+    }
+
+    /// Says anew how much is to be done in all.
+    pub fn expect(&self, work: u64) {
+        self.work.store(work, Ordering::Relaxed);
+        if let Some(bar) = &self.bar {
+            bar.set_length(work);
+        }
+    }
+
+    /// Says something while it goes on.
+    pub fn say(&self, line: &str) {
+        match &self.bar {
+            Some(bar) => bar.suspend(|| say(line)),
+            None => say(line),
+        }
     }
 
     /// Counts those that are done; may be called from any thread.
@@ -60,7 +78,9 @@ impl Progress {
 
     /// Removes the bar and says how long it took, beside the time that was expected of the whole render.
     pub fn finish(self, expected: Duration) -> Duration {
-        let (start, work, expected) = (self.start, self.work, expected.mul_f64(self.left));
+        let (start, work) = (self.start, self.work.load(Ordering::Relaxed));
+        let left = work.saturating_sub(self.before) as f64 / work.max(1) as f64;
+        let expected = expected.mul_f64(left);
         self.stop();
         let took = start.elapsed();
         match listener() {

@@ -47,6 +47,7 @@ mod stability_scale;
 mod stability_shapes;
 mod stability_spectra;
 mod stability_transport;
+mod stopping;
 mod textures;
 mod white_furnace;
 mod windows;

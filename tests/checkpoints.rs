@@ -42,7 +42,7 @@ material = "lamp"
 "#;
 
 /// What a ball that is not seen throws onto the floor.
-const CAUSTIC: &str = r#"
+pub const CAUSTIC: &str = r#"
 camera = { position = [0, 1.5, 6], look_at = [0, 0, 0], vertical_fov = 12 }
 film = { width = 37, height = 21 }
 render = { samples = 20, seed = 3 }
@@ -62,7 +62,7 @@ material = "lamp"
 "#;
 
 /// A closed room under a lamp.
-const ROOM: &str = r#"
+pub const ROOM: &str = r#"
 camera = { position = [1.3, 1.6, 2.2], look_at = [-0.6, 1, -1], vertical_fov = 75 }
 film = { width = 21, height = 18 }
 render = { samples = 40 }
@@ -93,7 +93,7 @@ material = "lamp"
 "#;
 
 /// A name, a scene, options, and whether a method is the one that is meant.
-type Kind = (&'static str, String, Options, fn(&Method) -> bool);
+pub type Kind = (&'static str, String, Options, fn(&Method) -> bool);
 
 /// Scenes of all ways to find light.
 fn kinds() -> Vec<Kind> {
@@ -125,7 +125,7 @@ fn kinds() -> Vec<Kind> {
 }
 
 /// The bytes of the files that an image is written as.
-fn bytes(image: &Image, folder: &Path) -> Vec<Vec<u8>> {
+pub fn bytes(image: &Image, folder: &Path) -> Vec<Vec<u8>> {
     let [exr, spectral] = ["image.exr", "image.spectral.exr"].map(|name| folder.join(name));
     image.write_exr(&exr).expect("an image can be written");
     image.write_spectral_exr(&spectral).expect("an image can be written");

@@ -73,7 +73,7 @@ pub enum Fact {
     /// An int attribute; counts beyond 2^31 - 1 are written as that.
     Count(u64),
     /// A double attribute.
-    Seconds(f64),
+    Number(f64),
 }
 
 /// Writes a linear image: R, G, B, A and Z, and the layers that it has beside them. Answers how many values were too
@@ -306,7 +306,7 @@ pub(super) fn attributes(film: &Film, format: &Format, view: &View, provenance: 
         let value = match fact {
             Fact::Text(value) => text(value),
             Fact::Count(count) => AttributeValue::I32(i32::try_from(*count).unwrap_or(i32::MAX)),
-            Fact::Seconds(seconds) => AttributeValue::F64(*seconds),
+            Fact::Number(number) => AttributeValue::F64(*number),
         };
         attributes.other.insert(Text::new_or_panic(format!("render/{key}")), value);
     }

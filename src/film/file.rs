@@ -18,7 +18,7 @@ const MOST_LEFT_BEHIND: u32 = 1000;
 ///
 /// # Errors
 /// If it cannot be written; a file that was there before is then untouched, and nothing else is left behind.
-pub(super) fn replace_file(path: &Path, bytes: &[u8]) -> Result<()> {
+pub fn replace_file(path: &Path, bytes: &[u8]) -> Result<()> {
     replace_by(path, &mut |file| file.write_all(bytes))
 }
 

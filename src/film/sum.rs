@@ -85,6 +85,16 @@ impl PassSum {
         self.tree.push(Some(sum));
     }
 
+    /// The sum of the samples that were kept.
+    pub fn rgb(&self) -> [f64; 3] {
+        self.total().rgb
+    }
+
+    /// How many samples were kept.
+    pub fn kept(&self) -> u32 {
+        self.taken - self.rejected
+    }
+
     fn total(&self) -> Entry {
         self.tree.iter().flatten().fold(self.block, |sum, entry| entry.plus(sum))
     }
@@ -94,7 +104,7 @@ impl PixelSum {
     /// Adds a pass.
     pub fn add(&mut self, pass: PassSum) {
         self.total = self.total.plus(pass.total());
-        self.kept += pass.taken - pass.rejected;
+        self.kept += pass.kept();
         self.nearest = self.nearest.min(pass.nearest);
     }
 

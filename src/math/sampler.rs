@@ -71,6 +71,11 @@ impl Sampler {
     }
 }
 
+/// The seed of one of several renders of the same image that shall know nothing of each other.
+pub fn seed_of(seed: u64, number: u64) -> u64 {
+    mix(mix(seed) ^ number.wrapping_add(1))
+}
+
 /// Four dimensions of a shuffled and scrambled point, the numbers of `sobol_burley::sample_4d`.
 fn sobol(index: u32, dimensions: usize, seed: u32) -> [f64; 4] {
     let shuffled = owen_scramble_rev(index.reverse_bits(), hash(seed ^ 0x79c6_8e4a));

@@ -80,9 +80,12 @@ pub(super) fn light_pass(scene: &Scene<Curve>, unguided: &World) -> Shown {
     }
     let most = sending.iter().map(|&(id, _)| share[id]).fold(0.0, f64::max);
     let pass = pass(photons, &sending);
+    let all = match unguided.method().stop {
+        None => format!("{} ", in_number(pass.photons)),
+        Some(_) => String::new(),
+    };
     lines.push(format!(
-        "light pass: {} photons from {} toward {to}, {:.2} for each camera sample; {} of them are seen{}",
-        in_number(pass.photons),
+        "light pass: {all}photons from {} toward {to}, {:.2} for each camera sample; {} of them are seen{}",
         named(scene, &sending),
         pass.photons as f64 / samples,
         if most < 0.095 { format!("{:.1} %", 100.0 * most) } else { format!("{:.0} %", 100.0 * most) },

@@ -10,6 +10,7 @@ mod model;
 mod photon_map;
 mod polarization;
 mod seen;
+mod stopping;
 mod survey;
 mod transport;
 mod words;
@@ -39,6 +40,10 @@ pub struct Plan {
     pub processor_time: Duration,
     /// The models of color that were weighed, from few lanes to many.
     pub candidates: Vec<Candidate>,
+    /// The lines that say what light is left out.
+    pub left_out: Vec<String>,
+    /// How far colors may be off, relative to the strongest channel, because spectra are carried in so few lanes.
+    pub model_error: f64,
 }
 
 /// Samples where the scene does not say.
@@ -49,11 +54,13 @@ const TOGETHER_PIXELS: f64 = 0.01;
 
 /// Decides how to render a scene.
 pub fn plan(scene: &Scene<Curve>) -> Plan {
-    let Model { basis, missed, because: mut decisions, next, candidates } = model::model(scene);
+    let Model { basis, missed, error: model_error, because: mut decisions, next, candidates } = model::model(scene);
     let together = if basis.draws_wavelengths() { TOGETHER_PIXELS * scene.camera.pixel_angle() } else { 0.0 };
     let (transport, reason) = transport::transport(scene, &basis, together);
     decisions.push(reason);
+    let stop = stopping::stop(&scene.render);
     let samples = match (transport, scene.render.samples) {
+        _ if stop.is_some() => stopping::COUNTED_FOR,
         (_, Some(samples)) => samples,
         (Transport::Deterministic { .. }, None) => 1,
         (Transport::Random { .. }, None) => SAMPLES,
@@ -66,6 +73,7 @@ pub fn plan(scene: &Scene<Curve>) -> Plan {
         transport,
         together,
         samples,
+        stop,
         seed,
         diffuse_bounces,
         max_bounces,
@@ -88,16 +96,18 @@ pub fn plan(scene: &Scene<Curve>) -> Plan {
     let times = photon_times(&taught.map_or(world.clone(), |taught| world.clone().taught_by(&taught)));
     let (cost, processor_time) = cost(scene, &method, &probe, times);
     let mut because = vec![cost];
+    because.extend(stopping::reason(scene, method.stop.as_ref()));
     because.extend(layers(scene));
     because.extend(missed);
-    because.extend(polarization::left_out(scene, &world));
-    because.extend(lights(scene, method.light_pass.as_ref()));
+    let left_out: Vec<String> =
+        polarization::left_out(scene, &world).into_iter().chain(lights(scene, method.light_pass.as_ref())).collect();
+    because.extend(left_out.iter().cloned());
     because.extend(decisions);
     if probe.parted > 0.0 {
         because.push(format!("lanes part in {:.0} % of the camera samples", 100.0 * probe.parted));
     }
     because.extend(next.map(|basis| beside(scene, &method, &probe, basis)));
-    Plan { method, because, processor_time, candidates }
+    Plan { method, because, processor_time, candidates, left_out, model_error }
 }
 
 /// How light between surfaces is found.
@@ -173,11 +183,15 @@ fn cost(scene: &Scene<Curve>, method: &Method, probe: &Probe, times: PhotonTimes
     let of_photons = times.shown.mul_f64(shown as f64) + times.kept.mul_f64(of_map as f64);
     let of_light_paths = probe.light_paths.mul_f64(f64::from(method.samples));
     let time = probe.time.mul_f64(samples) + of_photons + of_light_paths;
+    let (share, of) = match method.stop {
+        Some(_) => (f64::from(stopping::FIRST_LOOK) / f64::from(method.samples), " for each"),
+        None => (1.0, ":"),
+    };
+    let (told, photons) = ((share * f64::from(method.samples)) as u32, (share * photons as f64) as u64);
     let line = format!(
-        "cost: about {} of processor time: {} sample{} per pixel, {:.1} rays each{}",
-        in_words(time.as_secs_f64()),
-        method.samples,
-        if method.samples == 1 { "" } else { "s" },
+        "cost: about {} of processor time{of} {told} sample{} per pixel, {:.1} rays each{}",
+        in_words(share * time.as_secs_f64()),
+        if told == 1 { "" } else { "s" },
         probe.rays,
         if photons > 0 { format!(", and {} photons", in_number(photons)) } else { String::new() },
     );

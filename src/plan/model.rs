@@ -19,6 +19,8 @@ pub(super) struct Model {
     pub(super) basis: Basis,
     /// How far colors may be off.
     pub(super) missed: Option<String>,
+    /// The same as a number.
+    pub(super) error: f64,
     pub(super) because: Vec<String>,
     /// The model beside it that would cost more or less.
     pub(super) next: Option<Basis>,
@@ -61,13 +63,14 @@ pub(super) fn model(scene: &Scene<Curve>) -> Model {
     let next = next.filter(|_| hero || !survey.is_plain());
     let mut because = vec![format!("model {}: {} lanes; {why}", basis.name(), basis.lanes())];
     let missed = (!is_exact || basis.fixed_lanes() > 3).then(|| missed(&candidates, &basis, &survey, &seen, tolerance));
+    let error = if missed.is_some() { bound(&candidates, &basis, &survey, &seen) } else { 0.0 };
     because.extend(lines_without_lane(&survey, &basis));
     because.extend(dispersion.map(|d| spoken(&d, visible, hero)));
     let basis = if together { basis.kept_together() } else { basis };
     because.extend(desaturated(scene, &basis));
     because.extend(materials(scene, &basis));
     let next = next.map(|next| if together || hero { next.kept_together() } else { next });
-    Model { basis, missed, because, next, candidates }
+    Model { basis, missed, error, because, next, candidates }
 }
 
 /// Three bands, whatever they miss.
@@ -90,10 +93,16 @@ fn least(candidates: &[Candidate], chosen: usize, tolerance: f64, plain: bool) -
     }
 }
 
+/// How far colors may be off in a basis.
+fn bound(candidates: &[Candidate], basis: &Basis, survey: &Survey, seen: &Seen) -> f64 {
+    let known = candidates.iter().find(|candidate| candidate.basis.name() == basis.name());
+    known.map_or_else(|| LANES_SAFETY * error(survey, seen, basis), Candidate::bound)
+}
+
 /// All candidates in one line; for heroes, what their fixed lanes miss.
 fn missed(candidates: &[Candidate], basis: &Basis, survey: &Survey, seen: &Seen, tolerance: f64) -> String {
     if basis.draws_wavelengths() {
-        let bound = LANES_SAFETY * error(survey, seen, basis);
+        let bound = bound(candidates, basis, survey, seen);
         return format!("colors are off by at most {} ({} is tolerated)", percent(bound), percent(tolerance));
     }
     let mut steps: Vec<String> = candidates
@@ -101,7 +110,7 @@ fn missed(candidates: &[Candidate], basis: &Basis, survey: &Survey, seen: &Seen,
         .map(|candidate| format!("{} {}", candidate.basis.name(), percent(candidate.bound())))
         .collect();
     if !candidates.iter().any(|candidate| candidate.basis.name() == basis.name()) {
-        steps.push(format!("{} {}", basis.name(), percent(LANES_SAFETY * error(survey, seen, basis))));
+        steps.push(format!("{} {}", basis.name(), percent(bound(candidates, basis, survey, seen))));
     }
     format!("colors are off by at most ({} is tolerated): {}", percent(tolerance), steps.join(", "))
 }
@@ -131,6 +140,7 @@ fn dispersion(scene: &Scene<Curve>) -> Option<Dispersion> {
         transport,
         together: 0.0,
         samples: 1,
+        stop: None,
         seed,
         diffuse_bounces,
         max_bounces: u32::MAX,

@@ -71,19 +71,29 @@ pub(super) fn with_map(
     }
     let map =
         gathered_worth(&with_few).map_or(map, |worth| MapPasses { chance: chance(&worth), ..passes(photons(&worth)) });
-    let line = format!(
-        "photon map: {} pass{} of {} photons, for caustics that are seen in mirrors or through glass or light other surfaces; it blurs them by \
-         {radius:.2} pixels, less with more samples{}",
-        map.count,
-        if map.count == 1 { "" } else { "es" },
-        in_number(map.photons),
-        if map.chance < 1.0 {
-            format!("; paths look for photons at {} of the surfaces they reach", percent(map.chance))
-        } else {
-            String::new()
-        },
-    );
+    let line = described(&map, samples, method.stop.is_some());
     (asked(map), vec![line])
+}
+
+/// What a person is told of a map beside so many camera samples, which are all of them or not.
+fn described(map: &MapPasses, samples: f64, stops: bool) -> String {
+    let photons = match (stops, map.count) {
+        (true, _) => {
+            format!("{:.2} photons for each camera sample", (u64::from(map.count) * map.photons) as f64 / samples)
+        }
+        (false, 1) => format!("1 pass of {} photons", in_number(map.photons)),
+        (false, count) => format!("{count} passes of {} photons", in_number(map.photons)),
+    };
+    let less = if stops { "" } else { ", less with more samples" };
+    let chance = match map.chance {
+        1.0.. => String::new(),
+        chance => format!("; paths look for photons at {} of the surfaces they reach", percent(chance)),
+    };
+    format!(
+        "photon map: {photons}, for caustics that are seen in mirrors or through glass or light other surfaces; it blurs them by \
+         {:.2} pixels{less}{chance}",
+        map.radius
+    )
 }
 
 /// How many photons for each camera sample make the time to an error least.

@@ -50,6 +50,7 @@ impl<'a> Seen<'a> {
             transport: Transport::Random { split: 1.0, roulette: 0.0 },
             together: 0.0,
             samples: 1,
+            stop: None,
             seed: scene.render.seed,
             diffuse_bounces: scene.render.diffuse_bounces.unwrap_or(u32::MAX),
             max_bounces: u32::MAX,

@@ -75,6 +75,7 @@ fn too_many_ways(scene: &Scene<Curve>, basis: &Basis, together: f64) -> Option<S
         transport: Transport::Deterministic { cutoff: CUTOFF, most: MOST_SURFACES },
         together,
         samples: 1,
+        stop: None,
         seed: scene.render.seed,
         diffuse_bounces: scene.render.diffuse_bounces.unwrap_or(u32::MAX),
         max_bounces: scene.render.max_bounces.unwrap_or(u32::MAX),

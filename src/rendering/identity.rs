@@ -7,7 +7,7 @@ use sha2::{Digest, Sha256};
 
 use crate::film::{Format, Shard};
 use crate::scene::{FilmSettings, Scene};
-use crate::trace::{LightPass, Method};
+use crate::trace::{LightPass, Method, Stop};
 
 /// What two runs must have in common to add to one image, each with its name.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -37,6 +37,7 @@ impl Identity {
             ("list of layers", if names.is_empty() { "empty".into() } else { names.join(",") }),
             ("first surface", format!("{first:?}").to_lowercase()),
             ("number of spectral bands", spectral.map_or(0, |bands| bands.count()).to_string()),
+            ("stop rule", if method.stop.is_some() { "error or time" } else { "samples alone" }.to_owned()),
             ("part", format!("{} of {}", shard.number(), shard.count())),
             (PLAN, digest(&format!("{:?} {spectral:?} {filter:?}", of_camera(method)))),
         ];
@@ -65,12 +66,15 @@ fn overscan_text(overscan: crate::film::Overscan) -> String {
     format!("{left},{top},{right},{bottom}")
 }
 
-/// What of a method decides what a camera sample finds: not how many there are, nor how many photons are shown beside
-/// them. Where photons are gathered, their number and radius belong to it, and so does the number of samples.
+/// What of a method decides what a camera sample finds: not how many there are, nor when they are enough, nor how many
+/// photons are shown beside them. Where photons are gathered, their number and radius belong to it, and so does the
+/// number of samples.
 fn of_camera(method: &Method) -> Method {
     let gathers = method.light_pass.as_ref().is_some_and(|pass| pass.map.is_some());
     let light_pass = method.light_pass.clone().map(|pass| LightPass { photons: 0, ..pass });
-    if gathers { method.clone() } else { Method { samples: 0, light_pass, ..method.clone() } }
+    let stop = method.stop.as_ref().map(|_| Stop { noise: None, time: None, most: 0 });
+    let method = Method { stop, ..method.clone() };
+    if gathers { method } else { Method { samples: 0, light_pass, ..method } }
 }
 
 /// 64 hexadecimal digits that stand for a text.

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use super::image_error::ImageError;
 use crate::error::Result;
 use crate::film::{Film, Format, Pixel, Provenance, View, encode_exr, write_exr, write_png, write_spectral_exr};
 use crate::trace::Report;
@@ -11,6 +12,7 @@ use crate::trace::Report;
 pub struct Image {
     pub(super) film: Film,
     pub(super) report: Report,
+    pub(super) error: Option<ImageError>,
     pub(super) because: Vec<String>,
     pub(super) view: View,
     pub(super) format: Format,
@@ -78,6 +80,11 @@ impl Image {
     /// What rendering noticed: samples, rays, light that was left out.
     pub fn report(&self) -> &Report {
         &self.report
+    }
+
+    /// How far it is off, where a stop rule has it measured: in a render that stops by its error or by time.
+    pub fn error(&self) -> Option<&ImageError> {
+        self.error.as_ref()
     }
 
     /// How its file is written.

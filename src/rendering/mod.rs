@@ -3,12 +3,14 @@
 mod checkpoint;
 mod identity;
 mod image;
+mod image_error;
 mod options;
 mod part;
 mod render;
 
 pub use checkpoint::Resumed;
 pub use image::Image;
+pub use image_error::ImageError;
 pub use options::Options;
 pub use part::merge;
 pub use render::{Rendering, render};

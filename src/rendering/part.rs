@@ -127,7 +127,7 @@ pub fn merge(parts: &[PathBuf]) -> Result<Image> {
     set_non_finite(&mut provenance, non_finite);
     let film = joined(film, found.values().copied())?;
     let report = Report { non_finite, ..Report::default() };
-    Ok(Image { film, report, because: Vec::new(), view, format, provenance })
+    Ok(Image { film, report, error: None, because: Vec::new(), view, format, provenance })
 }
 
 fn refused(message: impl Display, help: impl Display) -> Error {

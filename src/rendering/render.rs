@@ -7,6 +7,7 @@ use std::time::{Duration, Instant, SystemTime};
 use super::checkpoint::{self, Resumed};
 use super::identity::Identity;
 use super::image::Image;
+use super::image_error::ImageError;
 use super::options::{Options, check_layers};
 use super::part;
 use crate::error::{Error, Result};
@@ -52,6 +53,8 @@ pub struct Rendering {
     /// What a render has to be to go on from this one.
     identity: Identity,
     shard: Shard,
+    /// The error that is asked for, if one is.
+    asked: Option<f64>,
     /// When it began, if the file says that.
     began: Option<Instant>,
 }
@@ -70,9 +73,10 @@ impl Rendering {
     /// # Errors
     /// [`Error::Arguments`] if the options do not fit the scene, or threads cannot be started.
     pub fn new(scene: &Scene, options: &Options) -> Result<Self> {
-        let began = (options.stamp && options.shard == Shard::WHOLE).then(Instant::now);
+        let now = Instant::now();
+        let began = (options.stamp && options.shard == Shard::WHOLE).then_some(now);
         let mut scene = Cow::Borrowed(scene);
-        let is_as_asked = options.instead_of(&scene) == (scene.render.samples, scene.render.seed, scene.film);
+        let is_as_asked = options.instead_of(&scene) == (scene.render.clone(), scene.film);
         if is_as_asked && options.layers.is_none() && !options.spectral {
             check_layers(&scene)?;
         } else {
@@ -98,11 +102,12 @@ impl Rendering {
             identity: Identity::new(&scene, &plan.method, options.shard),
             shard: options.shard,
             plan,
-            passes: trace::Rendering::of_shard(world, options.shard),
+            passes: trace::Rendering::of_shard(world, options.shard).since(now),
             view,
             format: scene.format.clone(),
             origin: Origin { hash, projection: camera.projection(), filter, settings: settings.join(" ") },
             threads,
+            asked: scene.render.error,
             began,
         })
     }
@@ -112,14 +117,15 @@ impl Rendering {
         &self.plan
     }
 
-    /// How much there is to do: camera samples and photons.
+    /// How much there is to do: camera samples and photons. With a stop rule this is a guess, better after each pass.
     pub fn work(&self) -> u64 {
         self.passes.work()
     }
 
     /// How long it will take, about, if nothing else keeps the processors busy.
     pub fn expected(&self) -> Duration {
-        self.plan.processor_time.div_f64(self.threads.current_num_threads() as f64)
+        let part = self.work() as f64 / self.passes.planned_work().max(1) as f64;
+        self.plan.processor_time.mul_f64(part / self.threads.current_num_threads() as f64)
     }
 
     /// Renders the next pass, if one is left, and answers whether another one is. Passes take more and more samples, or
@@ -225,24 +231,32 @@ impl Rendering {
         part::write(path.as_ref(), &self.identity, self.shard, shared, self.image())
     }
 
+    /// How far the image was off at the last look, where a stop rule looks.
+    pub fn error(&self) -> Option<ImageError> {
+        let (report, model) = (self.passes.report(), self.plan.model_error);
+        let noise = report.noise?;
+        Some(ImageError { asked: self.asked, noise, model, stopped_by: report.stopped_by })
+    }
+
     /// The image of all samples so far.
     pub fn image(&self) -> Image {
-        let (film, report) = (self.passes.film(), self.passes.report());
+        let (film, report, error) = (self.passes.film(), self.passes.report(), self.error());
         // Within a pass some pixels are ahead: then it is the mean.
         let within = report.samples.div_ceil(film.pixels.len() as u64);
         let samples = if self.passes.is_finished() { self.passes.samples().into() } else { within };
         let mut provenance = provenance(&self.origin, &self.plan, samples, &report);
+        provenance.facts.extend(error.iter().flat_map(facts_of_error));
         if !self.passes.is_finished() {
             provenance.facts.push(("complete".into(), Fact::Count(0)));
         }
         if let Some(began) = self.began {
             provenance.time = Some(SystemTime::now());
             let threads = Fact::Count(self.threads.current_num_threads() as u64);
-            let time = Fact::Seconds(began.elapsed().as_secs_f64());
+            let time = Fact::Number(began.elapsed().as_secs_f64());
             provenance.facts.extend([("renderTime".into(), time), ("threads".into(), threads)]);
         }
         let (because, format) = (self.plan.because.clone(), self.format.clone());
-        Image { film, report, because, view: self.view, format, provenance }
+        Image { film, report, error, because, view: self.view, format, provenance }
     }
 
     /// Renders all passes that are left; `progress` as of [`advance`](Self::advance).
@@ -250,6 +264,14 @@ impl Rendering {
         while self.advance(progress) {}
         self.image()
     }
+}
+
+/// What a file says of its image's error.
+fn facts_of_error(error: &ImageError) -> Vec<(Cow<'static, str>, Fact)> {
+    let by = error.stopped_by.map(|by| ("stoppedBy", Fact::Text(by.name().to_owned())));
+    let [at_most, noise] = [error.at_most(), error.noise.expected].map(Fact::Number);
+    let facts = [("errorAtMost", at_most), ("noise", noise), ("modelError", Fact::Number(error.model))];
+    by.into_iter().chain(facts).map(|(key, fact)| (key.into(), fact)).collect()
 }
 
 fn provenance(origin: &Origin, plan: &Plan, samples: u64, report: &Report) -> Provenance {

@@ -6,6 +6,7 @@
 mod camera;
 mod compile;
 mod content;
+mod duration;
 mod film;
 mod index;
 mod relief;
@@ -15,6 +16,7 @@ mod text;
 
 pub use camera::{Camera, Lens, Projection, Seen};
 pub use content::{Ends, Hit, MaterialId, NamedMaterial, Object, Primitive, Scene, Sight};
+pub use duration::duration;
 pub use film::FilmSettings;
 pub use relief::{Relief, ReliefKind};
 pub use render_text::{CausticsText, ModelText, RenderText};

@@ -1,5 +1,8 @@
 //! How the image is made, as the scene says.
 
+use std::ops::RangeInclusive;
+use std::time::Duration;
+
 /// How the image is made.
 ///
 /// ```toml
@@ -7,15 +10,18 @@
 /// samples = 256
 /// seed = 0
 /// ```
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct RenderText {
     /// How spectra are carried.
     pub model: ModelText,
-    /// Relative error of the image that is wanted: a third of it is what the model of color may miss.
+    /// Relative error of the image at which it is good enough: a third of it is what the model of color may miss, the
+    /// rest is noise. Then no more samples are taken.
     pub error: Option<f64>,
+    /// How long it may render.
+    pub time: Option<Duration>,
     /// Length of a scene unit in meters: needed where a glass brings its own absorption.
     pub meters_per_unit: Option<f64>,
-    /// Camera samples per pixel.
+    /// Camera samples per pixel; beside an error or a time, the most.
     pub samples: Option<u32>,
     /// Chooses another set of random numbers.
     pub seed: u64,
@@ -26,6 +32,13 @@ pub struct RenderText {
     pub max_bounces: Option<u32>,
     /// Whether caustics may have a light pass of their own.
     pub caustics: CausticsText,
+    /// Whether a part of the image is made, which does not know the error of the whole: then all samples are taken.
+    pub is_part: bool,
+}
+
+impl RenderText {
+    /// Relative errors that may be asked for.
+    pub const ERRORS: RangeInclusive<f64> = 1e-6..=1.0;
 }
 
 /// Whether caustics may have a light pass of their own.

@@ -107,6 +107,8 @@ pub(super) struct Taken<'a> {
     pub(super) sums: [&'a [f64]; 2],
     /// The same of what photons show, which is no sum over samples; empty where they show nothing.
     pub(super) shown: &'a [f64],
+    /// The variance of the mean, where replicates tell it.
+    pub(super) variance: Option<[f64; 3]>,
     /// The sum of the samples that were kept, of those that are added and subtracted, and what they count.
     pub(super) rgb: [[f64; 3]; 2],
     pub(super) weights: SampleWeights,
@@ -191,7 +193,10 @@ impl Taken<'_> {
             Layer::Position | Layer::Uv => sums[0],
             Layer::Albedo => (sums[0] / weights.added()).clamp(0.0, 1.0),
             // Photons land independently: the sum of their squares estimates the variance of their sum.
-            Layer::Variance => weights.variance(self.rgb.map(|rgb| rgb[channel]), sums[0] + sums[1]) + shown,
+            Layer::Variance => self.variance.map_or_else(
+                || weights.variance(self.rgb.map(|rgb| rgb[channel]), sums[0] + sums[1]) + shown,
+                |variance| variance[channel],
+            ),
             Layer::HalfA | Layer::HalfB => {
                 let taken = self.sums.map(|row| row.get(at + OF_A_HALF - 1).copied().unwrap_or_default());
                 weights.sum(sums) / (taken[0] + taken[1]).max(1.0) + shown

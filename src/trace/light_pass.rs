@@ -10,6 +10,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::contribution::{Contribution, Found};
+use super::pass::Pass;
 use super::photon::{Landing, Splat, show as show_photon};
 use super::photon_batch::{Batch, Sent, batches, send};
 use super::photon_targets::PhotonTargets;
@@ -51,29 +52,44 @@ pub(super) struct Sending {
     pub(super) stats: Stats,
 }
 
+impl Sending {
+    /// Whether any batch is done.
+    pub(super) fn has_begun(&self) -> bool {
+        self.batches > 0
+    }
+
+    /// Another one follows.
+    pub(super) fn begin_anew(&mut self) {
+        self.batches = 0;
+    }
+}
+
 /// Sends the photons of a world's light pass that have not been sent, until it shall stop, and adds what they show to
-/// the tiles of a part of the image; answers whether all are sent. `progress` is told how many are done.
+/// the tiles of a part of the image; answers whether all are sent. `progress` is told how many are done. The first pass
+/// sends all photons; where there are replicates, every pass sends some.
 ///
 /// Every part sends all photons, which may be seen anywhere: a sum of what the parts found would have other last bits.
 pub(super) fn show<const N: usize>(
     world: &World,
+    pass: &Pass,
     sending: &mut Sending,
     shard: Shard,
     tiles: &mut [Tile],
     watch: &Watch,
 ) -> bool {
-    if world.photon_targets.is_none() {
-        return true;
-    }
+    let Some(targets) = &world.photon_targets else { return true };
+    let some = pass.part_of_photons(world).map(|part| targets.times(part));
+    let weight = pass.weight_of_photons();
     let (window, numbers) = (world.scene.film.window(), world.layers.numbers);
     for tile in tiles.iter_mut().filter(|tile| tile.shown.pixels.is_empty()) {
         let pixels = tile.sums.len();
         tile.shown = Shown { pixels: vec![[0.0; 3]; pixels], layers: vec![0.0; pixels * numbers], moved: 0.0 };
     }
     let add = &mut |splat: Splat| {
+        let splat = splat.times(weight).of_half(pass.is_of_first_half());
         let Splat { pixel, change, rgb, .. } = splat;
         let Some([tile, place]) = shard.place_of(window, pixel) else { return };
-        let shown = &mut tiles[tile].shown;
+        let Tile { shown, replicates, .. } = &mut tiles[tile];
         if !world.layers.is_empty() {
             add_to_layers(world, &splat, &mut shown.layers[place * numbers..][..numbers]);
         }
@@ -84,8 +100,9 @@ pub(super) fn show<const N: usize>(
         if change != 0.0 {
             shown.moved += f64::from(change) * world.amount(rgb);
         }
+        pass.replicate.iter().for_each(|&replicate| replicates.show(place, replicate, rgb));
     };
-    send_on::<N>(world, sending, watch, add)
+    send_on::<N>(world, some.as_ref().unwrap_or(targets), pass.photon_seed().0, sending, watch, add)
 }
 
 /// Adds a photon that the camera sees to the row of its pixel, which holds means.
@@ -108,15 +125,24 @@ fn add_to_layers(world: &World, splat: &Splat, row: &mut [f64]) {
 
 /// Sends all of them and hands over what they show, in an order that never changes; holds no image.
 pub(super) fn splats<const N: usize>(world: &World, take: &mut dyn FnMut(Splat)) -> Sending {
-    let mut sending = Sending::default();
-    send_on::<N>(world, &mut sending, &Watch { progress: &|_| (), is_due: &|| false }, take);
+    let (mut sending, watch) = (Sending::default(), Watch { progress: &|_| (), is_due: &|| false });
+    let targets = world.photon_targets.iter();
+    targets.for_each(|targets| {
+        send_on::<N>(world, targets, world.method.seed, &mut sending, &watch, take);
+    });
     sending
 }
 
 /// The same of those that have not been sent, until it shall stop; answers whether all are.
-fn send_on<const N: usize>(world: &World, sending: &mut Sending, watch: &Watch, take: &mut dyn FnMut(Splat)) -> bool {
-    let Some(targets) = &world.photon_targets else { return true };
-    let batches = batches(targets, |_| 0, |target| target.photons, world.method.seed ^ SEED);
+fn send_on<const N: usize>(
+    world: &World,
+    targets: &PhotonTargets,
+    seed: u64,
+    sending: &mut Sending,
+    watch: &Watch,
+    take: &mut dyn FnMut(Splat),
+) -> bool {
+    let batches = batches(targets, |_| 0, |target| target.photons, seed ^ SEED);
     for group in batches.get(sending.batches..).unwrap_or_default().chunks(AT_ONCE) {
         let send = |batch: &Batch| (!(watch.is_due)()).then(|| send_shown::<N>(world, targets, *batch));
         let done: Vec<Option<Sent<Splat>>> = group.par_iter().map(send).collect();

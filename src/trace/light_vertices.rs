@@ -128,6 +128,8 @@ pub(super) fn holds_vertices(world: &World, object: u32, point: &SurfacePoint) -
 /// The lights of a world that paths start from, and from where their vertices are looked at: what all sets share.
 pub(super) struct LightPaths<'a> {
     world: &'a World,
+    /// Of their random numbers.
+    seed: u64,
     by_flux: Distribution,
     media: Vec<Option<Media>>,
     places: Vec<Place>,
@@ -141,19 +143,19 @@ struct Followed<const N: usize> {
 
 impl<'a> LightPaths<'a> {
     /// None where they would not find all light, or nothing shines.
-    pub(super) fn new(world: &'a World) -> Option<Self> {
+    pub(super) fn new(world: &'a World, seed: u64) -> Option<Self> {
         if !finds_all_light(world) {
             return None;
         }
         let flux = |(id, light): (LightId, &Light<_>)| light.flux() * world.luminance(id);
         let by_flux = Distribution::new(world.scene.lights.iter().enumerate().map(flux));
         let (media, places) = (media_of_lights(&world.scene), places(world));
-        (by_flux.total() > 0.0).then_some(Self { world, by_flux, media, places })
+        (by_flux.total() > 0.0).then_some(Self { world, seed, by_flux, media, places })
     }
 
     /// Those that the method asks for.
-    pub(super) fn asked_for(world: &'a World) -> Option<Self> {
-        if world.method.light_vertices { Self::new(world) } else { None }
+    pub(super) fn asked_for(world: &'a World, seed: u64) -> Option<Self> {
+        if world.method.light_vertices { Self::new(world, seed) } else { None }
     }
 
     /// The vertices for some samples of each pixel, at most `SHARED`.
@@ -189,7 +191,7 @@ impl<'a> LightPaths<'a> {
         let draw = world.method.basis.draw(0.0);
         let mut vertices = Vec::new();
         for number in paths {
-            let sampler = Sampler::new(world.method.seed ^ SEED, [set, 0], number as u32);
+            let sampler = Sampler::new(self.seed ^ SEED, [set, 0], number as u32);
             let drawn = self.by_flux.sample(sampler.four_plain(BranchKey::CAMERA, LIGHT)[0]);
             let light = drawn.index;
             let Some(mut emitted) = world.scene.lights[light].emit(sampler.four(BranchKey::CAMERA, START)) else {

@@ -1,3 +1,5 @@
+use std::time::Duration;
+
 use super::BrightPlaces;
 use crate::light::LightId;
 use crate::spectrum::Basis;
@@ -11,8 +13,10 @@ pub struct Method {
     pub transport: Transport,
     /// Lanes whose refracted rays lie within this angle of each other, in radians, stay together.
     pub together: f64,
-    /// Camera samples per pixel.
+    /// Camera samples per pixel; with a stop rule, those that photons are counted for.
     pub samples: u32,
+    /// When enough samples are taken; without, it is all of them.
+    pub stop: Option<Stop>,
     /// Chooses the set of random numbers.
     pub seed: u64,
     /// How often light may leave a diffuse surface for another before it is gathered from the lights.
@@ -25,6 +29,21 @@ pub struct Method {
     pub bright: Option<BrightPlaces>,
     /// Whether light that surfaces send each other is also looked for at vertices of paths from the lights.
     pub light_vertices: bool,
+}
+
+/// When enough samples are taken: as soon as one of these says so.
+///
+/// The samples are then those of eight replicates, renders that know nothing of each other: how far these are apart
+/// tells the noise of their mean. No pixel stops by itself, on what its own samples say: that would make it too dark
+/// (Kirk & Arvo 1991, *Unbiased Sampling Techniques for Image Synthesis*).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stop {
+    /// The relative noise of the image that is enough, as [`Noise`](super::Noise) has it.
+    pub noise: Option<f64>,
+    /// How long it may render.
+    pub time: Option<Duration>,
+    /// Most camera samples per pixel; they are a multiple of eight.
+    pub most: u32,
 }
 
 /// Photons that are sent to all finite smooth objects, for the light that these throw onto what the camera sees.

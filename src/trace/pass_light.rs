@@ -1,9 +1,8 @@
 //! What all camera samples of a pass share: gathered photons and vertices of light paths.
 
-use std::ops::Range;
-
 use super::World;
 use super::light_vertices::{LightPaths, LightVertices, SHARED};
+use super::pass::Pass;
 use super::photon_map::{PhotonMap, photons};
 use super::stats::Stats;
 
@@ -14,10 +13,11 @@ pub(super) struct PassLight<const N: usize> {
 }
 
 impl<const N: usize> PassLight<N> {
-    /// For one pass and the samples that it takes of each pixel.
-    pub(super) fn new(world: &World, pass: u32, numbers: Range<u32>) -> Self {
+    /// For one pass.
+    pub(super) fn new(world: &World, pass: &Pass) -> Self {
         let photons = photons::<N>(world, pass);
-        let vertices = match LightPaths::asked_for(world) {
+        let numbers = &pass.numbers;
+        let vertices = match LightPaths::asked_for(world, pass.seed) {
             Some(light_paths) => {
                 let shared = |first: u32| light_paths.shared(first..(first + SHARED).min(numbers.end));
                 numbers.clone().step_by(SHARED as usize).map(shared).collect()

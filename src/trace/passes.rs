@@ -4,6 +4,9 @@ use serde::{Deserialize, Serialize};
 
 use super::World;
 use super::light_pass::Sending;
+use super::noise::Noise;
+use super::pass::{Pass, Stage};
+use super::replicates::REPLICATES;
 use super::stats::Stats;
 
 /// Samples of each pixel in the first pass, where no photons are gathered; every other pass takes as many as were taken
@@ -19,6 +22,10 @@ pub(super) struct Progress {
     /// Camera samples of each pixel, and passes.
     pub(super) samples: u32,
     pub(super) passes: u32,
+    /// Where there are replicates.
+    pub(super) stage: Stage,
+    /// What they told when they last had as many samples each.
+    pub(super) noise: Option<Noise>,
     pub(super) sending: Sending,
     /// Of photons that were gathered, and paths from the lights.
     pub(super) gathered: Stats,
@@ -26,9 +33,45 @@ pub(super) struct Progress {
 }
 
 impl Progress {
+    /// The next pass.
+    pub(super) fn pass(&self, world: &World) -> Pass {
+        if world.method.stop.is_some() {
+            return self.stage.pass(world, self.passes, most_at_once(world));
+        }
+        let numbers = self.samples..end_of_pass(world, self.samples, self.passes);
+        Pass::of_one_render(world, self.passes, numbers)
+    }
+
     /// Camera samples of each pixel after the next pass.
     pub(super) fn end_of_pass(&self, world: &World) -> u32 {
-        end_of_pass(world, self.samples, self.passes)
+        self.samples + self.pass(world).numbers.len() as u32
+    }
+
+    /// Counts a pass that is finished.
+    pub(super) fn finish(&mut self, pass: &Pass) {
+        let samples = pass.numbers.len() as u32;
+        (self.samples, self.passes) = (self.samples + samples, self.passes + 1);
+        if pass.replicate.is_some() {
+            self.stage = self.stage.after(samples);
+            self.sending.begin_anew();
+        }
+    }
+
+    /// How many samples of each pixel photons have been shown for, where every pass sends some: of the pass that was
+    /// stopped, all or none.
+    pub(super) fn shown_for(&self, world: &World) -> u32 {
+        if self.sending.has_begun() { self.end_of_pass(world) } else { self.samples }
+    }
+
+    /// Camera samples of each pixel after the stage of all replicates.
+    pub(super) fn samples_of_stage(&self) -> u32 {
+        (self.stage.before.saturating_add(self.stage.size)).saturating_mul(REPLICATES as u32)
+    }
+
+    /// Whether its numbers fit together.
+    pub(super) fn is_whole(&self, world: &World) -> bool {
+        let unused = self.stage == Stage::default();
+        if world.method.stop.is_some() { self.stage.is_after(self.samples) } else { unused }
     }
 
     /// Whether a render of a world comes by here, so that all its sums are these.
@@ -36,6 +79,12 @@ impl Progress {
         let samples = (0..self.passes).fold(0, |samples, pass| end_of_pass(world, samples, pass));
         samples == self.samples && samples <= world.method.samples
     }
+}
+
+/// Most samples of a replicate in one pass: as many as share a map, or light vertices that are in memory at once.
+fn most_at_once(world: &World) -> u32 {
+    let map = world.method.light_pass.as_ref().and_then(|pass| pass.map).filter(|_| world.has_map());
+    map.map_or(MOST_AT_ONCE, |map| (world.method.samples / map.count).clamp(1, MOST_AT_ONCE))
 }
 
 fn end_of_pass(world: &World, samples: u32, passes: u32) -> u32 {

@@ -42,6 +42,18 @@ pub(super) struct Splat {
     pub(super) first: Option<FirstLobe>,
 }
 
+impl Splat {
+    /// So many times as bright.
+    pub(super) fn times(self, factor: f64) -> Self {
+        Self { rgb: self.rgb.map(|x| x * factor), weight: self.weight * factor, ..self }
+    }
+
+    /// The same of a photon of the first half or not, if that is said.
+    pub(super) fn of_half(self, early: Option<bool>) -> Self {
+        Self { early: early.unwrap_or(self.early), ..self }
+    }
+}
+
 /// Where a photon lands, and the light's way there.
 pub(super) struct Landing<'a, const N: usize> {
     pub(super) path: &'a Path<N>,

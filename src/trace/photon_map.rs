@@ -4,11 +4,14 @@
 //! Every photon draws wavelengths of its own, as every camera sample does. One whose lanes have not parted is kept with
 //! its fixed lanes; of one whose lanes have, each wavelength is kept alone, with the color that its light has.
 
+use std::borrow::Cow;
+
 use rayon::prelude::*;
 
 use super::World;
 use super::interaction::Interaction;
 use super::kd_tree::KdTree;
+use super::pass::Pass;
 use super::photon::Landing;
 use super::photon_batch::{Batch, Sent, batches, send};
 use super::photon_targets::PhotonTargets;
@@ -74,11 +77,14 @@ pub(super) enum Kept<const N: usize> {
 }
 
 /// Sends the photons of one pass.
-pub(super) fn photons<const N: usize>(world: &World, pass: u32) -> Option<PhotonMap<N>> {
-    let targets = world.map_targets.as_ref()?;
-    let matching = matching(world)?;
-    let first = |photons: u64| u64::from(pass) * photons;
-    let batches = batches(targets, |target| first(target.photons), |target| target.photons, world.method.seed ^ SEED);
+pub(super) fn photons<const N: usize>(world: &World, pass: &Pass) -> Option<PhotonMap<N>> {
+    let (targets, matching) = (world.map_targets.as_ref()?, matching(world)?);
+    let count = world.method.light_pass.as_ref()?.map?.count;
+    let targets = &*pass
+        .part_of_photons(world)
+        .map_or(Cow::Borrowed(targets), |part| Cow::Owned(targets.times(part * f64::from(count))));
+    let (seed, before) = pass.photon_seed();
+    let batches = batches(targets, |target| before * target.photons, |target| target.photons, seed ^ SEED);
     let done: Vec<Sent<(DVec3, Kept<N>)>> =
         batches.par_iter().map(|batch| send_kept(world, targets, &matching, *batch)).collect();
     let mut stats = Stats::default();

@@ -103,6 +103,14 @@ impl PhotonTargets {
         self.share_out();
     }
 
+    /// The same with another number of photons, so many times as many.
+    pub(super) fn times(&self, factor: f64) -> Self {
+        let photons = (factor * self.photons as f64).ceil() as u64;
+        let mut targets = Self { photons, ..self.clone() };
+        targets.share_out();
+        targets
+    }
+
     /// Lets each target have its part of the photons, most of them by flux.
     fn share_out(&mut self) {
         let (total, count) = (self.targets.iter().map(|target| target.flux).sum::<f64>(), self.targets.len() as f64);

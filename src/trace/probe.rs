@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 
 use super::light_pass::send_shown;
 use super::light_vertices::{LightPaths, SHARED};
+use super::pass::Pass;
 use super::path_tracer::PathTracer;
 use super::photon_batch::Batch;
 use super::photon_map::{matching, photons, send_kept};
@@ -72,11 +73,12 @@ fn probe_lanes<const N: usize>(world: &World) -> Probe {
         }
     }
     let before_vertices = Instant::now();
-    let vertices = LightPaths::asked_for(world).map(|light_paths| light_paths.shared::<N>(0..SHARED));
+    let vertices =
+        LightPaths::asked_for(world, world.method.seed).map(|light_paths| light_paths.shared::<N>(0..SHARED));
     let light_paths =
         vertices.as_ref().map_or(Duration::ZERO, |_| before_vertices.elapsed().div_f64(f64::from(SHARED)));
     let few = with_few_photons(world);
-    let photons = photons::<N>(&few, 0);
+    let photons = photons::<N>(&few, &Pass::of_photons_alone(&few, 0));
     let mut tracer = PathTracer::<N>::new(&few).with_photons(photons.as_ref());
     tracer.light_vertices = vertices.as_ref();
     let window = world.scene.film.window();

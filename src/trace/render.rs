@@ -1,23 +1,27 @@
 //! An image in the making: pass after pass over its tiles.
 
 use std::any::Any;
-use std::borrow::Borrow;
+use std::borrow::{Borrow, Cow};
 use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
 
 use rayon::prelude::*;
 
-use super::World;
 use super::layer_sums::{Taken, images, spectral_image, write};
 use super::light_pass;
+use super::noise::{Noise, noise};
 use super::pass_light::PassLight;
 use super::passes::Progress;
 use super::photon_targets::PhotonTargets;
+use super::replicates::REPLICATES;
 use super::saved::{self, Restored};
 use super::stats::Stats;
+use super::stopping::{Clock, Stopped, next_stage, samples_wanted, tells_noise};
 use super::tile::Tile;
 use super::watch::Watch;
 use super::width::in_lanes;
+use super::{Stop, World};
 use crate::error::Result;
 use crate::film::{BlockReader, BlockWriter, Film, Pixel, PixelSum, SampleWeights, Shard, TilePlace};
 
@@ -48,6 +52,10 @@ pub struct Report {
     pub light: f64,
     /// Photons sent by the light pass.
     pub photons: u64,
+    /// How far the image is off, where a stop rule has it measured.
+    pub noise: Option<Noise>,
+    /// What ended the render, if a stop rule could, and it is finished.
+    pub stopped_by: Option<Stopped>,
 }
 
 /// Renders the world's image, or the part of it that is asked for. `progress` is told how many camera samples and
@@ -80,6 +88,8 @@ pub struct Rendering<W> {
     progress: Progress,
     /// What the paths of the pass that was stopped look at.
     light: Option<Box<dyn Any + Send + Sync>>,
+    /// How fast it goes, where there is a stop rule.
+    clock: Clock,
 }
 
 impl<W: Borrow<World>> Rendering<W> {
@@ -91,8 +101,15 @@ impl<W: Borrow<World>> Rendering<W> {
     /// One of several parts of an image; all other pixels stay blank.
     pub fn of_shard(world: W, shard: Shard) -> Self {
         let (film, layers) = (&world.borrow().scene.film, &world.borrow().layers);
-        let tiles = shard.tiles(film.window()).map(|place| Tile::new(film, place, layers)).collect();
-        Self { world, shard, tiles, progress: Progress::default(), light: None }
+        let replicated = world.borrow().method.stop.is_some();
+        let tiles = shard.tiles(film.window()).map(|place| Tile::new(film, place, layers, replicated)).collect();
+        let (progress, clock) = (Progress::default(), Clock::new(Instant::now()));
+        Self { world, shard, tiles, progress, light: None, clock }
+    }
+
+    /// Lets the time of a stop rule run from another moment on.
+    pub fn since(self, began: Instant) -> Self {
+        Self { clock: Clock::new(began), ..self }
     }
 
     /// What is rendered, and how.
@@ -105,18 +122,35 @@ impl<W: Borrow<World>> Rendering<W> {
         self.progress.samples
     }
 
-    /// Whether all samples are taken.
+    /// Whether all samples are taken, or enough.
     pub fn is_finished(&self) -> bool {
-        self.samples() >= self.world().method.samples
+        match &self.world().method.stop {
+            None => self.samples() >= self.world().method.samples,
+            Some(stop) => self.progress.stage.size == 0 && self.next_stage(stop) == 0,
+        }
     }
 
-    /// How many camera samples and photons the image takes.
-    pub fn work(&self) -> u64 {
+    /// Camera samples and photons of the method's samples.
+    pub fn planned_work(&self) -> u64 {
         let world = self.world();
         let samples = self.pixels() * u64::from(world.method.samples);
         let passes = world.method.light_pass.as_ref().and_then(|pass| pass.map).map_or(0, |map| u64::from(map.count));
         let photons = |targets: &Option<PhotonTargets>| targets.as_ref().map_or(0, PhotonTargets::photons);
         samples + photons(&world.photon_targets) + passes * photons(&world.map_targets)
+    }
+
+    /// How many camera samples and photons the image takes; with a stop rule, about, and better known after each pass.
+    pub fn work(&self) -> u64 {
+        let (world, all) = (self.world(), self.planned_work());
+        match &world.method.stop {
+            None => all,
+            Some(_) if self.is_finished() => self.done(),
+            Some(stop) => {
+                let wanted = samples_wanted(stop, &self.progress, &self.clock);
+                let work = all as f64 * f64::from(wanted) / f64::from(world.method.samples);
+                self.done().max(work as u64)
+            }
+        }
     }
 
     /// How many of them are done.
@@ -139,11 +173,38 @@ impl<W: Borrow<World>> Rendering<W> {
             stopped.fetch_or(due, Ordering::Relaxed) || due
         };
         let watch = Watch { progress, is_due: &stops };
-        let all = self.world().method.samples;
-        if self.samples() < all && !in_lanes!(self.world().method.basis, N => self.pass::<N>(&watch)) {
+        if !self.begin_pass() {
+            return Advance::Finished;
+        }
+        if !in_lanes!(self.world().method.basis, N => self.pass::<N>(&watch)) {
             return Advance::Stopped;
         }
-        if self.samples() < all { Advance::Passed } else { Advance::Finished }
+        if self.is_finished() { Advance::Finished } else { Advance::Passed }
+    }
+
+    /// Whether there is a next pass. Decides how many samples the replicates take, if that is not known.
+    fn begin_pass(&mut self) -> bool {
+        if let (Some(stop), 0) = (&self.world().method.stop, self.progress.stage.size) {
+            self.progress.stage.size = self.next_stage(stop);
+            self.clock.begin(self.samples());
+            return self.progress.stage.size > 0;
+        }
+        self.world().method.stop.is_some() || !self.is_finished()
+    }
+
+    /// How many samples each replicate takes in the next stage; none if enough are taken.
+    fn next_stage(&self, stop: &Stop) -> u32 {
+        next_stage(stop, &self.progress, &self.clock)
+    }
+
+    /// Looks at the replicates, if they have as many samples each.
+    fn look(&mut self) {
+        let (stage, film) = (self.progress.stage, self.world().scene.film);
+        if stage.size == 0 && stage.before > 0 && self.world().method.stop.is_some() {
+            let window = film.window();
+            let tiles = self.places().map(|(tile, place)| (&tile.replicates, place));
+            self.progress.noise = Some(noise(tiles, [window.left, window.top], film.filter, stage.before));
+        }
     }
 
     /// The image of the samples so far.
@@ -154,17 +215,21 @@ impl<W: Borrow<World>> Rendering<W> {
         let layers = &self.world().layers;
         let luminance = settings.color_space.to_xyz()[1];
         let (mut images, none) = (images(layers, pixels.len()), PixelSum::default());
+        let (each, shown_counts) = (self.each(), self.shown_counts());
         let mut spectral = spectral_image(layers, pixels.len());
         for (tile, at) in self.places() {
             for (place, sum) in tile.sums.iter().enumerate() {
                 let number = at.pixel(window, place as u32);
                 let subtracted = tile.subtracted.get(place).unwrap_or(&none);
                 let weights = SampleWeights::new(settings.filter, [sum.kept(), subtracted.kept()]);
-                pixels[number] = sum.pixel(subtracted, &weights, tile.shown_at(place));
+                let shown = tile.shown_at(place).map(|x| x * shown_counts);
+                pixels[number] = sum.pixel(subtracted, &weights, shown);
                 if !layers.is_empty() {
                     let (sums, shown) = (tile.layers.rows(layers, place), tile.shown_in_layers(layers, place));
+                    let shown = &*times(shown, shown_counts);
                     let (covered, rgb) = (tile.layers.covered(), [sum.rgb(), subtracted.rgb()]);
-                    let taken = Taken { sums, shown, rgb, weights, covered, place };
+                    let variance = each.map(|each| variance(&tile.replicates.pixel(place, settings.filter, each)));
+                    let taken = Taken { sums, shown, variance, rgb, weights, covered, place };
                     write(layers, &taken, number, &mut images);
                     if let (Some(image), Some(spectrum)) = (&mut spectral, &layers.spectrum) {
                         taken.write_spectrum(spectrum, number, image);
@@ -215,7 +280,20 @@ impl<W: Borrow<World>> Rendering<W> {
             polarization_of_tile,
             light: all.light,
             photons: self.photons(),
+            noise: self.noise().copied(),
+            stopped_by: self.stopped_by(),
         }
+    }
+
+    /// How far the image was off at the last look, where a stop rule looks.
+    pub fn noise(&self) -> Option<&Noise> {
+        self.progress.noise.as_ref().filter(|noise| tells_noise(noise.samples))
+    }
+
+    /// What ended the render, if a stop rule could, and it is finished.
+    fn stopped_by(&self) -> Option<Stopped> {
+        let stop = self.world().method.stop.as_ref().filter(|_| self.is_finished())?;
+        Some(Stopped::new(stop, &self.progress))
     }
 
     /// What was left out of the light that all parts of an image send alike.
@@ -238,6 +316,21 @@ impl<W: Borrow<World>> Rendering<W> {
     pub(crate) fn restore(&mut self, blocks: BlockReader) -> Result<Restored> {
         self.light = None;
         saved::restore(self.world.borrow(), &mut self.progress, &mut self.tiles, blocks)
+    }
+
+    /// Samples of a pixel that each replicate has, on average, where there are replicates.
+    fn each(&self) -> Option<u32> {
+        let has_some = self.world().method.stop.is_some() && self.samples() > 0;
+        has_some.then(|| self.samples().div_ceil(REPLICATES as u32))
+    }
+
+    /// What the sum of what photons show counts in the image.
+    fn shown_counts(&self) -> f64 {
+        let world = self.world();
+        match world.method.stop {
+            None => 1.0,
+            Some(_) => 1.0 / f64::from(self.progress.shown_for(world).max(1)),
+        }
     }
 
     /// Its tiles with their places.
@@ -270,7 +363,7 @@ impl<W: Borrow<World>> Rendering<W> {
     /// What was noticed in a tile, with the light that photons show there.
     fn stats_of(&self, tile: &Tile) -> Stats {
         let mut stats = tile.stats;
-        let samples = f64::from(self.samples());
+        let samples = f64::from(self.samples()) * self.shown_counts();
         stats.polarization += samples * tile.shown.moved;
         stats.light += samples * tile.shown.pixels.iter().map(|&rgb| self.world().amount(rgb)).sum::<f64>();
         stats
@@ -280,13 +373,13 @@ impl<W: Borrow<World>> Rendering<W> {
     fn pass<const N: usize>(&mut self, watch: &Watch) -> bool {
         let world = self.world.borrow();
         let progress = &mut self.progress;
-        if !light_pass::show::<N>(world, &mut progress.sending, self.shard, &mut self.tiles, watch) {
+        let pass = progress.pass(world);
+        if !light_pass::show::<N>(world, &pass, &mut progress.sending, self.shard, &mut self.tiles, watch) {
             return false;
         }
-        let numbers = progress.samples..progress.end_of_pass(world);
         let kept = self.light.take().and_then(|light| light.downcast::<PassLight<N>>().ok());
         let light = kept.unwrap_or_else(|| {
-            let light = PassLight::new(world, progress.passes, numbers.clone());
+            let light = PassLight::new(world, &pass);
             (watch.progress)(light.sent());
             Box::new(light)
         });
@@ -294,8 +387,8 @@ impl<W: Borrow<World>> Rendering<W> {
         let places: Vec<TilePlace> = self.shard.tiles(window).collect();
         let left = self.tiles.par_iter_mut().zip(places).filter(|(tile, _)| tile.passes == passes);
         left.for_each(|(tile, place)| {
-            let taken = tile.take::<N>(place, world, &light, numbers.clone(), watch.is_due);
-            (watch.progress)(u64::from(taken) * numbers.len() as u64);
+            let taken = tile.take::<N>(place, world, &light, &pass, watch.is_due);
+            (watch.progress)(u64::from(taken) * pass.numbers.len() as u64);
         });
         if self.tiles.iter().any(|tile| tile.passes == passes) {
             self.light = Some(light);
@@ -303,9 +396,24 @@ impl<W: Borrow<World>> Rendering<W> {
         }
         light.add_to(&mut progress.gathered);
         progress.gathered_photons += light.sent();
-        (progress.samples, progress.passes) = (numbers.end, passes + 1);
+        progress.finish(&pass);
+        self.look();
         true
     }
+}
+
+/// Numbers so many times as large.
+fn times(numbers: &[f64], factor: f64) -> Cow<'_, [f64]> {
+    if factor == 1.0 { numbers.into() } else { numbers.iter().map(|x| x * factor).collect() }
+}
+
+/// The variance of the mean of all replicates.
+fn variance(replicates: &[[f64; 3]; REPLICATES]) -> [f64; 3] {
+    let count = REPLICATES as f64;
+    std::array::from_fn(|i| {
+        let mean = replicates.iter().map(|rgb| rgb[i]).sum::<f64>() / count;
+        replicates.iter().map(|rgb| (rgb[i] - mean) * (rgb[i] - mean)).sum::<f64>() / (count * (count - 1.0))
+    })
 }
 
 const BLANK: Pixel = Pixel { rgb: [0.0; 3], alpha: 0.0, depth: 0.0, samples: 0.0 };

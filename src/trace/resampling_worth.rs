@@ -2,6 +2,7 @@
 
 use super::World;
 use super::light_vertices::{LightPaths, LightVertices};
+use super::pass::Pass;
 use super::path_tracer::PathTracer;
 use super::photon_map::{PhotonMap, photons};
 use super::probe::with_few_photons;
@@ -25,14 +26,14 @@ const SEED: u64 = 0x7265_7361;
 /// out. Rays followed stand for time, so that the answer is the same everywhere; all of the image counts, also where
 /// only a part of it is made.
 pub fn resampling_gain(world: &World) -> Option<f64> {
-    let light_paths = LightPaths::new(world)?;
+    let light_paths = LightPaths::new(world, world.method.seed)?;
     in_lanes!(&world.method.basis, N => compare::<N>(world, &light_paths))
 }
 
 fn compare<const N: usize>(world: &World, light_paths: &LightPaths) -> Option<f64> {
     let vertices = light_paths.few::<N>();
     let few = with_few_photons(world);
-    let photons = photons::<N>(&few, 0);
+    let photons = photons::<N>(&few, &Pass::of_photons_alone(&few, 0));
     let plain = weigh(&few, photons.as_ref(), None);
     let resampled = weigh(&few, photons.as_ref(), Some(&vertices));
     let mean = plain.pixels.iter().map(|pixel| pixel.mean).sum::<f64>() / plain.pixels.len() as f64;

@@ -64,13 +64,17 @@ pub(super) fn restore(
 ) -> Result<Restored> {
     let Head { progress: found, end_of_pass, samples, photons: sent, tiles: saved } = blocks.block()?;
     *progress = found;
-    if progress.samples == samples && samples > world.method.samples {
-        return Ok(Restored::HasMore(samples));
+    let has_more = match &world.method.stop {
+        None => progress.samples == samples && samples > world.method.samples,
+        Some(stop) => progress.samples > stop.most,
+    };
+    if has_more {
+        return Ok(Restored::HasMore(progress.samples));
     }
     if let Some(objection) = objection(world, progress, end_of_pass, samples) {
         return Ok(Restored::Refused(objection));
     }
-    if saved != tiles.len() as u64 {
+    if saved != tiles.len() as u64 || !progress.is_whole(world) {
         return Err(blocks.damaged());
     }
     // Camera samples are what they are, however many photons are sent beside them.
@@ -97,6 +101,10 @@ pub(super) fn restore(
 
 /// Why a render cannot go on from what was saved of one of the same plan and so many samples.
 fn objection(world: &World, progress: &Progress, end_of_pass: Option<u32>, samples: u32) -> Option<String> {
+    if let Some(stop) = &world.method.stop {
+        let (end, most) = (progress.samples_of_stage(), stop.most);
+        return (end > most).then(|| format!("it is on its way to {end} samples per pixel, more than {most}"));
+    }
     let asked = world.method.samples;
     let (taken, begun) = (progress.samples, end_of_pass.is_some());
     let is_on_the_way = progress.is_on_the_way_of(world);

@@ -2,6 +2,7 @@
 //! photons.
 
 use super::light_pass::splats;
+use super::pass::Pass;
 use super::path_tracer::PathTracer;
 use super::photon_map;
 use super::width::in_lanes;
@@ -54,7 +55,7 @@ pub fn seen_light(world: &World) -> SeenLight {
 fn look<const N: usize>(world: &World) -> SeenLight {
     let window = world.scene.film.window();
     let mut seen = SeenLight { parts: [[0.0; 2]; (PARTS * PARTS) as usize] };
-    let photons = photon_map::photons::<N>(world, 0);
+    let photons = photon_map::photons::<N>(world, &Pass::of_photons_alone(world, 0));
     let mut tracer = PathTracer::<N>::new(world).with_photons(photons.as_ref());
     for place in 0..SIDE * SIDE {
         let [x, y] = window.middle_of_cell(SIDE, place);

@@ -1,14 +1,14 @@
 //! Parts of an image that are made side by side.
 
-use std::ops::Range;
-
 use serde::{Deserialize, Serialize};
 
 use super::World;
 use super::layer_sums::LayerSums;
 use super::layers::Layers;
+use super::pass::Pass;
 use super::pass_light::PassLight;
 use super::path_tracer::PathTracer;
+use super::replicates::Replicates;
 use super::stats::Stats;
 use crate::film::{PassSum, PixelSum, TilePlace};
 use crate::math::Sampler;
@@ -25,6 +25,8 @@ pub(super) struct Tile {
     pub(super) layers: LayerSums,
     /// What photons show in its pixels.
     pub(super) shown: Shown,
+    /// What each replicate found, where there are several.
+    pub(super) replicates: Replicates,
     pub(super) stats: Stats,
     pub(super) first_non_finite: Option<[i64; 3]>,
     /// Passes that all its pixels have had, and how many of them have had the next one.
@@ -32,7 +34,8 @@ pub(super) struct Tile {
     pub(super) ahead: u32,
 }
 
-/// What photons show in a tile; empty where none are sent.
+/// What photons show in a tile; empty where none are sent. Where every pass sends some, each counts as much as it takes
+/// samples.
 #[derive(Clone, Default, Serialize, Deserialize)]
 pub(super) struct Shown {
     /// Film values of its pixels.
@@ -44,13 +47,14 @@ pub(super) struct Shown {
 }
 
 impl Tile {
-    pub(super) fn new(film: &FilmSettings, place: TilePlace, layers: &Layers) -> Self {
+    pub(super) fn new(film: &FilmSettings, place: TilePlace, layers: &Layers, replicated: bool) -> Self {
         let is_signed = film.filter.is_signed();
         let sums = vec![PixelSum::default(); place.pixels()];
         let subtracted = if is_signed { sums.clone() } else { Vec::new() };
         let layers = LayerSums::new(layers, sums.len(), is_signed);
+        let replicates = if replicated { Replicates::new(sums.len(), is_signed) } else { Replicates::default() };
         let (shown, stats) = (Shown::default(), Stats::default());
-        Self { sums, subtracted, layers, shown, stats, first_non_finite: None, passes: 0, ahead: 0 }
+        Self { sums, subtracted, layers, shown, replicates, stats, first_non_finite: None, passes: 0, ahead: 0 }
     }
 
     /// Whether it has as many sums of each kind as another one of the same place.
@@ -59,6 +63,7 @@ impl Tile {
         let of = |whole: usize| [0, whole].into_iter();
         (self.sums.len(), self.subtracted.len()) == (pixels, other.subtracted.len())
             && self.layers.is_shaped_as(&other.layers)
+            && self.replicates.is_shaped_as(&other.replicates)
             && of(pixels).any(|length| length == self.shown.pixels.len())
             && of(pixels * layers.numbers).any(|length| length == self.shown.layers.len())
             && (self.ahead as usize) < pixels
@@ -80,7 +85,7 @@ impl Tile {
         place: TilePlace,
         world: &World,
         light: &PassLight<N>,
-        numbers: Range<u32>,
+        pass: &Pass,
         stops: &dyn Fn() -> bool,
     ) -> u32 {
         let window = world.scene.film.window();
@@ -90,7 +95,7 @@ impl Tile {
             // Random numbers and rays belong to the format's pixel, whatever part of it is made.
             let x = window.left + (place.corner[0] + self.ahead % place.width) as i32;
             let y = window.top + (place.corner[1] + self.ahead / place.width) as i32;
-            self.take_pixel(world, &mut tracer, light, [x, y], numbers.clone());
+            self.take_pixel(world, &mut tracer, light, [x, y], pass);
             self.ahead += 1;
         }
         let taken = self.ahead - first;
@@ -107,20 +112,20 @@ impl Tile {
         tracer: &mut PathTracer<'w, N>,
         light: &'w PassLight<N>,
         pixel: [i32; 2],
-        numbers: Range<u32>,
+        pass: &Pass,
     ) {
         let place = self.ahead as usize;
-        let [mut pass, mut subtracted] = [PassSum::default(), PassSum::default()];
-        for number in numbers.clone() {
-            tracer.light_vertices = light.vertices(number - numbers.start);
-            let sampler = Sampler::of_pixel(world.method.seed, pixel, number);
+        let [mut added, mut subtracted] = [PassSum::default(), PassSum::default()];
+        for number in pass.numbers.clone() {
+            tracer.light_vertices = light.vertices(number - pass.numbers.start);
+            let sampler = Sampler::of_pixel(pass.seed, pixel, number);
             let sample = tracer.sample(&sampler, pixel);
-            let lobe = if sample.is_subtracted { &mut subtracted } else { &mut pass };
+            let lobe = if sample.is_subtracted { &mut subtracted } else { &mut added };
             if !lobe.add(&sample) {
                 self.stats.non_finite += 1;
                 self.first_non_finite.get_or_insert([pixel[0].into(), pixel[1].into(), number.into()]);
             } else if let Some(layers) = tracer.layers() {
-                let early = number < world.method.samples.div_ceil(2);
+                let early = pass.is_early(world, number);
                 layers.keep(sample.is_subtracted);
                 self.layers.add(&world.layers, place, early, &sample, &layers.left());
             }
@@ -128,7 +133,10 @@ impl Tile {
         if let Some(layers) = tracer.layers() {
             layers.hand_over(self.layers.rows_mut(&world.layers, place));
         }
-        self.sums[place].add(pass);
+        if let Some(replicate) = pass.replicate {
+            self.replicates.add(place, replicate, [&added, &subtracted]);
+        }
+        self.sums[place].add(added);
         if let Some(sum) = self.subtracted.get_mut(place) {
             sum.add(subtracted);
         }

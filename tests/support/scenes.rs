@@ -46,6 +46,7 @@ pub fn method(scene: &Scene<Curve>, transport: Transport) -> Method {
         transport,
         together: 0.0,
         samples: scene.render.samples.unwrap_or(1),
+        stop: None,
         seed: scene.render.seed,
         diffuse_bounces: scene.render.diffuse_bounces.unwrap_or(u32::MAX),
         max_bounces: scene.render.max_bounces.unwrap_or(u32::MAX),

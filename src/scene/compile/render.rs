@@ -4,7 +4,7 @@ use toml::de::DeValue;
 
 use crate::error::nearest;
 use crate::scene::text::{Fields, Value};
-use crate::scene::{CausticsText, ModelText, RenderText};
+use crate::scene::{CausticsText, ModelText, RenderText, duration};
 
 /// The models that have a name.
 const MODELS: [(&str, ModelText); 3] = [("auto", ModelText::Auto), ("rgb", ModelText::Rgb), ("hero", ModelText::Hero)];
@@ -17,7 +17,12 @@ pub(super) fn render(value: Value) -> Option<RenderText> {
         let model = render.or("model", ModelText::Auto, model);
         let error = render.maybe("error", |value| {
             let help = "0.01 asks for one percent";
-            value.within(1e-6..=1.0, "a relative error lies between 0.000001 and 1", Some(help))
+            value.within(RenderText::ERRORS, "a relative error lies between 0.000001 and 1", Some(help))
+        });
+        let time = render.maybe("time", |value| {
+            let text = value.text()?;
+            let help = "a time is a number with a unit: \"90s\", \"10m\", \"1.5h\"";
+            duration(text).map_or_else(|| value.advise(format!("`time` cannot be \"{text}\""), help), Some)
         });
         let meters_per_unit = render.maybe("meters_per_unit", |value| {
             let help = "0.01 if the scene is in centimeters";
@@ -35,12 +40,14 @@ pub(super) fn render(value: Value) -> Option<RenderText> {
         Some(RenderText {
             model: model?,
             error: error?,
+            time: time?,
             meters_per_unit: meters_per_unit?,
             samples: samples?,
             seed: seed?,
             diffuse_bounces: diffuse_bounces?,
             max_bounces: max_bounces?,
             caustics: caustics?,
+            is_part: false,
         })
     })
 }

@@ -1,0 +1,51 @@
+//! When enough samples are taken.
+
+use super::words::{in_words, percent};
+use crate::scene::{RenderText, Scene};
+use crate::spectrum::Curve;
+use crate::trace::Stop;
+
+/// Samples that tell the noise of an image, at least.
+pub(super) const FIRST_LOOK: u32 = 64;
+/// Fewest that replicates can share.
+const FEWEST: u32 = 8;
+/// Most samples where the scene does not say.
+const MOST: u32 = 65_536;
+/// Samples that photons are counted for: as many for each, however many there will be.
+pub(super) const COUNTED_FOR: u32 = 1024;
+/// The part of the error that is left for noise where a third of it is left for the model of color: squares add up.
+const NOISE: f64 = 0.942_809_041_582_063_4;
+
+/// When a render has enough, if it does not take all samples whatever they show.
+pub(super) fn stop(render: &RenderText) -> Option<Stop> {
+    let RenderText { error, time, samples, is_part, .. } = *render;
+    let most = samples.unwrap_or(MOST) / FEWEST * FEWEST;
+    let fewest = if time.is_some() { FEWEST } else { FIRST_LOOK };
+    let asked = error.is_some() || time.is_some();
+    (asked && most >= fewest && !is_part).then(|| Stop { noise: error.map(|error| NOISE * error), time, most })
+}
+
+/// What a person is told of it.
+pub(super) fn reason(scene: &Scene<Curve>, stop: Option<&Stop>) -> Option<String> {
+    let RenderText { error, time, samples, is_part, .. } = scene.render;
+    let Some(stop) = stop else {
+        let samples = samples.filter(|_| error.is_some() || time.is_some())?;
+        return Some(match is_part {
+            true => format!("takes all {samples} samples: a part of an image does not tell the error of the whole"),
+            false => format!("takes all {samples} samples: fewer than {FIRST_LOOK} do not tell the error"),
+        });
+    };
+    let within = |error: f64| {
+        let noise = percent(NOISE * error);
+        format!("when the error is at most {} in 95 of 100 renders (noise {noise}, the rest color)", percent(error))
+    };
+    let after = |time: std::time::Duration| format!("after {}", spoken(time.as_secs_f64()));
+    let rules = [error.map(within), time.map(after), Some(format!("at {} samples per pixel", stop.most))];
+    let rules: Vec<String> = rules.into_iter().flatten().collect();
+    Some(format!("stops {}, whichever is first", rules.join(", or ")))
+}
+
+/// A time as people say it, also a short one.
+fn spoken(seconds: f64) -> String {
+    if seconds < 10.0 { format!("{seconds} s") } else { in_words(seconds) }
+}

@@ -1,0 +1,29 @@
+use crate::trace::{Noise, Stopped};
+
+/// How far an image is off, as a render with a stop rule has measured it.
+///
+/// Errors are relative: the root of the mean square, over all pixels and the three film channels, by that of the image.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ImageError {
+    /// The error that was asked for, if one was.
+    pub asked: Option<f64>,
+    /// What chance makes of it.
+    pub noise: Noise,
+    /// What the model of color may make of it, as the plan predicts: relative to the strongest channel of each color.
+    pub model: f64,
+    /// What ended the render; none as long as it goes on.
+    pub stopped_by: Option<Stopped>,
+}
+
+impl ImageError {
+    /// The error is smaller than this in 95 of 100 renders, but for what no render of the plan finds, for the blur of
+    /// photons that are gathered, and for light that is too rare to have been met.
+    pub fn at_most(&self) -> f64 {
+        self.noise.at_most.hypot(self.model)
+    }
+
+    /// Whether the error that was asked for is reached; so it is where none was.
+    pub fn is_reached(&self) -> bool {
+        self.asked.is_none() || self.stopped_by == Some(Stopped::Noise)
+    }
+}

@@ -1,0 +1,104 @@
+//! One pass over the pixels: which samples it takes.
+
+use std::ops::Range;
+
+use serde::{Deserialize, Serialize};
+
+use super::World;
+use super::replicates::{HALF, REPLICATES};
+use crate::math::seed_of;
+
+/// Which samples a pass takes of each pixel, and of which random numbers.
+#[derive(Clone, Debug)]
+pub(super) struct Pass {
+    /// Counted from 0.
+    number: u32,
+    /// Its samples in the sequence of its seed.
+    pub(super) numbers: Range<u32>,
+    /// Of camera samples and light vertices.
+    pub(super) seed: u64,
+    /// Whose samples they are, where there are replicates.
+    pub(super) replicate: Option<u32>,
+}
+
+impl Pass {
+    /// One of a render without replicates.
+    pub(super) fn of_one_render(world: &World, number: u32, numbers: Range<u32>) -> Self {
+        Self { number, numbers, seed: world.method.seed, replicate: None }
+    }
+
+    /// One whose photons alone are looked at, by a pilot.
+    pub(super) fn of_photons_alone(world: &World, number: u32) -> Self {
+        Self::of_one_render(world, number, 0..0)
+    }
+
+    /// The seed of its photons, and how many passes' photons of that seed come before.
+    pub(super) fn photon_seed(&self) -> (u64, u64) {
+        match self.replicate {
+            None => (self.seed, self.number.into()),
+            Some(_) => (seed_of(self.seed, self.numbers.start.into()), 0),
+        }
+    }
+
+    /// Its part of all the photons that are sent beside the method's samples; none where the first pass sends them all.
+    pub(super) fn part_of_photons(&self, world: &World) -> Option<f64> {
+        self.replicate.map(|_| self.numbers.len() as f64 / f64::from(world.method.samples))
+    }
+
+    /// What its photons count: as much as its samples, where every pass sends some.
+    pub(super) fn weight_of_photons(&self) -> f64 {
+        self.replicate.map_or(1.0, |_| self.numbers.len() as f64)
+    }
+
+    /// Whether it is of the first half of all replicates, where there are some.
+    pub(super) fn is_of_first_half(&self) -> Option<bool> {
+        self.replicate.map(|replicate| replicate < HALF)
+    }
+
+    /// Whether one of its samples is of the first half of all.
+    pub(super) fn is_early(&self, world: &World, number: u32) -> bool {
+        self.is_of_first_half().unwrap_or(number < world.method.samples.div_ceil(2))
+    }
+}
+
+/// A stage of a render in replicates: each takes as many samples.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) struct Stage {
+    /// Samples of a pixel that each replicate had before it.
+    pub(super) before: u32,
+    /// How many each takes; 0 before it is known.
+    pub(super) size: u32,
+    /// The replicate whose turn it is, and how many it has taken.
+    replicate: u32,
+    taken: u32,
+}
+
+impl Stage {
+    /// The next pass, of at most so many samples.
+    pub(super) fn pass(self, world: &World, number: u32, most: u32) -> Pass {
+        let start = self.before + self.taken;
+        let end = self.before + self.size.min(self.taken + most);
+        let seed = seed_of(world.method.seed, self.replicate.into());
+        Pass { number, numbers: start..end, seed, replicate: Some(self.replicate) }
+    }
+
+    /// After so many more samples of the replicate whose turn it is.
+    pub(super) fn after(mut self, samples: u32) -> Self {
+        self.taken += samples;
+        if self.taken == self.size {
+            (self.replicate, self.taken) = (self.replicate + 1, 0);
+        }
+        if self.replicate == REPLICATES as u32 {
+            return Self { before: self.before + self.size, ..Self::default() };
+        }
+        self
+    }
+
+    /// Whether it can be one, after so many samples of each pixel.
+    pub(super) fn is_after(self, samples: u32) -> bool {
+        let Self { before, size, replicate, taken } = self;
+        let each = |count: u32| u64::from(REPLICATES as u32) * u64::from(count);
+        let own = u64::from(replicate) * u64::from(size) + u64::from(taken);
+        each(before) + own == u64::from(samples) && replicate < REPLICATES as u32 && (taken < size || size + taken == 0)
+    }
+}

@@ -1,0 +1,140 @@
+//! When enough samples are taken.
+
+use std::time::{Duration, Instant};
+
+use super::Stop;
+use super::noise::Noise;
+use super::passes::Progress;
+use super::replicates::REPLICATES;
+
+/// Samples of each replicate before the first look at the noise: 64 of a pixel. The next looks come when there are
+/// twice as many.
+const FIRST: u32 = 8;
+/// Of the time that is left, the part that a stage is planned to take, and the part of all time that is too short for
+/// another one.
+const PLANNED: f64 = 0.95;
+const SHORT: f64 = 0.02;
+
+/// What ended a render that had a stop rule.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stopped {
+    /// The noise is as small as was asked for.
+    Noise,
+    /// The time is over.
+    Time,
+    /// All samples are taken that it might take.
+    Samples,
+}
+
+impl Stopped {
+    /// What ended it.
+    pub(super) fn new(stop: &Stop, progress: &Progress) -> Self {
+        match () {
+            () if is_enough(stop, progress.noise.as_ref()) => Self::Noise,
+            () if progress.stage.before >= most(stop) => Self::Samples,
+            () => Self::Time,
+        }
+    }
+
+    /// The word for it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Noise => "error",
+            Self::Time => "time",
+            Self::Samples => "samples",
+        }
+    }
+}
+
+/// How fast a render goes.
+#[derive(Clone, Debug)]
+pub(super) struct Clock {
+    began: Instant,
+    /// When this run began its first stage, and how many samples of each pixel there were.
+    first: Option<(Instant, u32)>,
+}
+
+impl Clock {
+    pub(super) fn new(began: Instant) -> Self {
+        Self { began, first: None }
+    }
+
+    /// A stage begins, after so many samples of each pixel.
+    pub(super) fn begin(&mut self, samples: u32) {
+        self.first.get_or_insert((Instant::now(), samples));
+    }
+
+    /// The time that is left of some.
+    fn left(&self, time: Duration) -> Duration {
+        time.saturating_sub(self.began.elapsed())
+    }
+
+    /// How many samples of each pixel are taken in a time, after so many; none if that is not known.
+    fn samples_in(&self, time: Duration, samples: u32) -> Option<f64> {
+        let (since, before) = self.first?;
+        let taken = samples.checked_sub(before).filter(|&taken| taken > 0)?;
+        Some(f64::from(taken) * time.as_secs_f64() / since.elapsed().as_secs_f64())
+    }
+}
+
+/// Whether so many samples of each pixel tell its noise.
+pub(super) fn tells_noise(samples: u32) -> bool {
+    samples >= REPLICATES as u32 * FIRST
+}
+
+/// Whether the noise is small enough, and known well enough to say so.
+fn is_enough(stop: &Stop, noise: Option<&Noise>) -> bool {
+    let is_known = |noise: &&Noise| tells_noise(noise.samples) && noise.outlier.is_none();
+    matches!((stop.noise, noise.filter(is_known)), (Some(wanted), Some(noise)) if noise.at_most <= wanted)
+}
+
+/// Most samples of each replicate.
+fn most(stop: &Stop) -> u32 {
+    stop.most / REPLICATES as u32
+}
+
+/// How many samples each replicate takes in the next stage; none if enough are taken.
+pub(super) fn next_stage(stop: &Stop, progress: &Progress, clock: &Clock) -> u32 {
+    if is_enough(stop, progress.noise.as_ref()) {
+        return 0;
+    }
+    let each = progress.stage.before;
+    let doubled = match (each, stop.time) {
+        (0, None) => FIRST,
+        (0, Some(_)) => 1,
+        _ => each,
+    };
+    let size = doubled.min(most(stop) - each.min(most(stop)));
+    match stop.time {
+        Some(time) if each > 0 => {
+            let left = clock.left(time);
+            let all = REPLICATES as u32 * each;
+            if left < time.mul_f64(SHORT) {
+                return 0;
+            }
+            // A run that goes on from a checkpoint does not know yet how fast it is.
+            let fits = clock.samples_in(left.mul_f64(PLANNED), all).map_or(1.0, |samples| samples / REPLICATES as f64);
+            size.min(fits as u32)
+        }
+        _ => size,
+    }
+}
+
+/// How many samples of a pixel will be enough, about.
+pub(super) fn samples_wanted(stop: &Stop, progress: &Progress, clock: &Clock) -> u32 {
+    let stage = progress.stage;
+    let each = stage.before + stage.size;
+    let mut wanted = each.max(FIRST).min(most(stop));
+    if let (Some(goal), Some(noise)) = (stop.noise, &progress.noise) {
+        let times = (noise.at_most / goal).powi(2);
+        while f64::from(wanted) < times * f64::from(stage.before) && wanted < most(stop) {
+            wanted = wanted.saturating_mul(2).min(most(stop));
+        }
+    } else if stop.noise.is_none() {
+        wanted = most(stop);
+    }
+    let wanted = REPLICATES as u32 * wanted;
+    let (taken, time) = (REPLICATES as u32 * stage.before, stop.time);
+    let in_time = time.and_then(|time| clock.samples_in(clock.left(time), taken));
+    in_time.map_or(wanted, |more| wanted.min(taken + more as u32).max(REPLICATES as u32 * each))
+}

@@ -1,0 +1,257 @@
+//! Renders that stop when their error is small enough, or their time is over.
+//!
+//! `tools/coverage.py` holds many renders of larger scenes against references that find their light another way.
+//!
+//! ```text
+//! cargo test --test all stopping::
+//! ```
+
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Duration;
+
+use abbe::film::{Layer, Shard};
+use abbe::trace::{Method, Stopped};
+use abbe::{Advance, Image, Options, Rendering, Resumed, Scene, render};
+use rayon::prelude::*;
+
+use crate::checkpoints::{CAUSTIC, GLASS, Kind, ROOM, bytes};
+use crate::support::random::Random;
+use crate::support::scenes::scene;
+
+fn asks(error: f64, most: u32) -> Options {
+    Options { error: Some(error), samples: Some(most), ..Options::default() }
+}
+
+/// Scenes of all ways to find light.
+fn kinds() -> [Kind; 3] {
+    let shows = |method: &Method| method.light_pass.as_ref().is_some_and(|pass| pass.map.is_none());
+    let gathers = |method: &Method| method.light_pass.as_ref().is_some_and(|pass| pass.map.is_some());
+    let room = ROOM.replace("width = 21, height = 18", "width = 42, height = 36, filter = \"mitchell\"");
+    let all = |error| Options { layers: Some(Layer::all()), spectral: true, ..asks(error, 256) };
+    [
+        ("photons that are shown, all layers", CAUSTIC.into(), all(0.5), shows),
+        ("photons that are gathered", GLASS.into(), asks(0.3, 128), gathers),
+        ("light vertices, a filter with negative lobes", room, asks(0.02, 256), |method| method.light_vertices),
+    ]
+}
+
+fn rendering(scene: &Scene, options: &Options, threads: usize) -> Rendering {
+    Rendering::new(scene, &Options { threads: Some(threads), ..options.clone() }).expect("it can be rendered")
+}
+
+/// Renders on until it was asked so many times whether it shall stop; answers how many times it was asked.
+fn advance(rendering: &mut Rendering, most: u64) -> u64 {
+    let asked = AtomicU64::new(0);
+    let is_due = || asked.fetch_add(1, Ordering::Relaxed) >= most;
+    while rendering.advance_until(&|_| (), &is_due) == Advance::Passed {}
+    asked.into_inner()
+}
+
+#[test]
+fn any_threads_and_stops_on_the_way_make_the_same_bytes() {
+    let (folder, mut random) = (tempfile::tempdir().expect("a folder"), Random::new(5));
+    let path = folder.path().join("image.checkpoint");
+    for (kind, text, options, is_meant) in kinds() {
+        let scene = scene(&text);
+        let mut whole = rendering(&scene, &options, 2);
+        assert!(is_meant(&whole.plan().method), "{kind}: {:?}", whole.plan().because);
+        let asked = advance(&mut whole, u64::MAX);
+        let (expected, report) = (bytes(&whole.image(), folder.path()), whole.image().report().clone());
+        assert!(report.noise.is_some_and(|noise| noise.samples >= 64), "{kind}");
+        for threads in [1, 3, 7] {
+            let mut first = rendering(&scene, &options, threads);
+            for _ in 0..2 {
+                advance(&mut first, (random.number() * 0.6 * asked as f64) as u64);
+                first.save(&path).expect("a checkpoint can be written");
+                let mut next = rendering(&scene, &options, 9 - threads);
+                next.resume(&path).expect("a checkpoint can be read");
+                assert_eq!(next.done(), first.done(), "{kind}");
+                assert_eq!(next.image().film(), first.image().film(), "{kind}");
+                first = next;
+            }
+            let image = first.run(&|_| ());
+            assert!(bytes(&image, folder.path()) == expected, "{kind}: {threads} threads");
+            assert_eq!(*image.report(), report, "{kind}: {threads} threads");
+        }
+    }
+}
+
+#[test]
+fn a_smaller_error_can_be_asked_for_later() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("image.checkpoint");
+    let scene = scene(ROOM);
+    let [mut rough, mut same, mut fine, whole] =
+        [0.08, 0.1, 0.02, 0.02].map(|error| rendering(&scene, &asks(error, 8192), 2));
+    advance(&mut rough, u64::MAX);
+    rough.save(&path).expect("a checkpoint can be written");
+    assert_eq!(same.resume(&path).expect("it can be read"), Resumed::Finished);
+    assert_eq!(same.image().film(), rough.image().film());
+    assert_eq!(fine.resume(&path).expect("it can be read"), Resumed::Continues);
+    let fine = fine.run(&|_| ());
+    assert!(fine.report().samples > rough.image().report().samples);
+    assert_eq!(fine.film(), whole.run(&|_| ()).film());
+    // And a render that may not take as many is good enough.
+    let mut few = rendering(&scene, &asks(0.02, 64), 2);
+    let mut more = rendering(&scene, &asks(1e-6, 128), 2);
+    advance(&mut more, u64::MAX);
+    more.save(&path).expect("a checkpoint can be written");
+    assert_eq!(few.resume(&path).expect("it can be read"), Resumed::HasMore(128));
+    let mut plain = rendering(&scene, &Options { samples: Some(64), ..Options::default() }, 2);
+    let refused = plain.resume(&path).expect_err("it is of another kind").to_string();
+    assert!(refused.contains("its stop rule is error or time, not samples alone"), "{refused}");
+}
+
+/// The square of the difference of two images, by the square of the second.
+fn error_squared(image: &Image, truth: &[[f64; 3]]) -> f64 {
+    let squares = |x: f64| x * x;
+    let pixels = image.rgb();
+    let pairs = pixels.iter().flatten().zip(truth.iter().flatten());
+    let apart: f64 = pairs.map(|(&x, y)| squares(f64::from(x) - y)).sum();
+    apart / truth.iter().flatten().map(|&x| squares(x)).sum::<f64>()
+}
+
+/// A room by light vertices, which make noise that pixels share, under a lamp that few of its surfaces see.
+fn small_room() -> Scene {
+    let shaded = ROOM.replace("v = [0, 0, 0.4] }", "v = [0, 0, -0.4] }");
+    scene(&shaded.replace("width = 21, height = 18", "width = 32, height = 32"))
+}
+
+/// The mean of long renders without replicates and light vertices, which images of so few samples do not have.
+fn truth(scene: &Scene) -> Vec<[f64; 3]> {
+    const RENDERS: u64 = 24;
+    let one = |seed: u64| {
+        let options = Options { samples: Some(900), seed: Some(1000 + seed), ..Options::default() };
+        let rendering = Rendering::new(scene, &options).expect("it can be rendered");
+        assert!(!rendering.plan().method.light_vertices);
+        rendering.run(&|_| ()).rgb()
+    };
+    let images: Vec<Vec<[f32; 3]>> = (0..RENDERS).into_par_iter().map(one).collect();
+    let mean = |pixel: usize| {
+        [0, 1, 2].map(|i| images.iter().map(|image| f64::from(image[pixel][i])).sum::<f64>() / RENDERS as f64)
+    };
+    (0..images[0].len()).map(mean).collect()
+}
+
+#[test]
+fn the_noise_that_is_told_is_the_noise_that_is_there_and_the_bound_holds() {
+    const RENDERS: u64 = 40;
+    let scene = small_room();
+    let truth = truth(&scene);
+    let one = |seed: u64| {
+        let image = render(&scene, &Options { seed: Some(seed), ..asks(1e-6, 64) }).expect("it can be rendered");
+        let noise = image.report().noise.expect("there are replicates");
+        [error_squared(&image, &truth), noise.expected * noise.expected, noise.at_most * noise.at_most]
+    };
+    let found: Vec<[f64; 3]> = (0..RENDERS).into_par_iter().map(one).collect();
+    let apart: Vec<f64> = found.iter().map(|[true_error, told, _]| true_error - told).collect();
+    let mean = apart.iter().sum::<f64>() / RENDERS as f64;
+    let variance = apart.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / (RENDERS - 1) as f64;
+    let z = mean / (variance / RENDERS as f64).sqrt();
+    let of_mean = found.iter().map(|[_, told, _]| told).sum::<f64>() / RENDERS as f64;
+    assert!(z.abs() < 4.0 && mean.abs() < 0.25 * of_mean, "z = {z:.2}, {:.2} of the noise", mean / of_mean);
+    // 95 of 100; fewer than 34 of 40 by chance once in 300 times.
+    let kept = found.iter().filter(|[true_error, _, bound]| true_error <= bound).count();
+    assert!(kept >= 34, "{kept} of {RENDERS}");
+    // A bound that is far too wide would hold as well.
+    let mut ratios: Vec<f64> = found.iter().map(|[true_error, _, bound]| (true_error / bound).sqrt()).collect();
+    ratios.sort_by(f64::total_cmp);
+    assert!(ratios[ratios.len() / 2] > 0.5, "median {:.2}", ratios[ratios.len() / 2]);
+}
+
+#[test]
+fn light_that_one_of_eight_renders_finds_alone_ends_no_render_and_is_told() {
+    // A glossy ball throws the light of a tiny lamp onto the floor: no photons are sent there.
+    let text = r#"
+camera = { position = [0, 3, 5], look_at = [0, 0, 0], vertical_fov = 30 }
+film = { width = 64, height = 64 }
+[material]
+floor.diffuse.reflectance = 0.8
+steel.conductor = { metal = "Ag", roughness = 0.02 }
+lamp.emissive.radiance = 4e5
+[[object]]
+shape.plane = { point = [0, 0, 0], normal = [0, 1, 0] }
+material = "floor"
+[[object]]
+shape.sphere = { center = [0, 1, 0], radius = 0.4 }
+material = "steel"
+[[object]]
+shape.sphere = { center = [0, 3, -1], radius = 0.01 }
+material = "lamp"
+"#;
+    let scene = scene(text);
+    let told = |seed: u64| {
+        let image = render(&scene, &Options { seed: Some(seed), ..asks(0.9, 128) }).expect("it can be rendered");
+        let (error, samples) = (image.error().expect("there are replicates").clone(), image.report().samples);
+        error.noise.outlier.map(|outlier| {
+            assert!(outlier.share > 0.1 && !error.is_reached(), "{error:?}");
+            assert_eq!((error.stopped_by, samples), (Some(Stopped::Samples), 128 * 64 * 64));
+            // It is a bright one.
+            let [x, y] = outlier.pixel.map(|place| place as u32);
+            assert!(image.rgb_at(x, y)[0] > 1.3 * image.rgb_at((x + 8) % 64, y)[0], "{error:?}");
+        })
+    };
+    let found: Vec<_> = (0..12).into_par_iter().map(told).collect();
+    let outliers: Vec<_> = found.iter().flatten().collect();
+    assert!(outliers.len() >= 4, "{} of 12 renders met it", outliers.len());
+}
+
+#[test]
+fn the_first_of_error_time_and_samples_ends_a_render() {
+    let scene = scene(ROOM);
+    let ends = |options: Options| {
+        let image = render(&scene, &options).expect("it can be rendered");
+        let samples = image.report().samples / (21 * 18);
+        (image.error().and_then(|error| error.stopped_by), samples)
+    };
+    let in_time = |millis: u64| Options { time: Some(Duration::from_millis(millis)), ..Options::default() };
+    assert_eq!(ends(asks(0.9, 4096)), (Some(Stopped::Noise), 64));
+    assert_eq!(ends(asks(1e-6, 100)), (Some(Stopped::Samples), 96));
+    // Eight samples there are in any case; of so few the error is not told.
+    assert_eq!(ends(in_time(1)), (None, 8));
+    let (by, samples) = ends(Options { samples: Some(64), ..in_time(3_600_000) });
+    assert_eq!((by, samples), (Some(Stopped::Samples), 64));
+    let (by, _) = ends(Options { error: Some(0.9), ..in_time(3_600_000) });
+    assert_eq!(by, Some(Stopped::Noise));
+    // Fewer than 64 do not tell an error.
+    assert_eq!(ends(asks(0.9, 40)), (None, 40));
+}
+
+#[test]
+fn an_image_without_noise_has_none_and_its_halves_and_variance_are_of_replicates() {
+    let black = scene(&ROOM.replace("radiance.rgb = [9, 8, 6]", "radiance = 1e-300"));
+    let image = render(&black, &asks(1e-6, 128)).expect("it can be rendered");
+    assert!(image.error().is_some_and(|error| error.noise.samples == 64), "{:?}", image.error());
+    let layers = Some(vec![Layer::HalfA, Layer::HalfB, Layer::Variance]);
+    for text in [CAUSTIC, ROOM] {
+        let options = Options { layers: layers.clone(), ..asks(1e-6, 128) };
+        let image = render(&scene(text), &options).expect("it can be rendered");
+        let layer = |name: &str| image.layer(name).expect("it was asked for");
+        let (mut apart, mut variance) = (0.0, 0.0);
+        for name in ["R", "G", "B"] {
+            let [a, b, told, both] =
+                [format!("half_a.{name}"), format!("half_b.{name}"), format!("variance.{name}"), name.into()]
+                    .map(|name| layer(&name));
+            for pixel in 0..both.len() {
+                let [a, b, told, both] = [&a, &b, &told, &both].map(|values| f64::from(values[pixel]));
+                assert!((0.5 * (a + b) - both).abs() <= 1e-6 * (both.abs() + 1e-6), "{a} {b} {both}");
+                apart += 0.25 * (a - b) * (a - b);
+                variance += told;
+            }
+        }
+        // Over all pixels, halves and replicates tell the same.
+        assert!((apart / variance - 1.0).abs() < 0.35, "{apart} {variance}");
+    }
+}
+
+#[test]
+fn parts_take_all_samples_and_say_so() {
+    let text = scene(ROOM);
+    let shard = Shard::new(1, 2).expect("there is such a part");
+    let refused = Rendering::new(&text, &Options { shard, error: Some(0.1), ..Options::default() });
+    let message = refused.map(|_| ()).expect_err("no part tells the error of the whole").to_string();
+    assert!(message.contains("does not tell the error of the whole"), "{message}");
+    let part = Rendering::new(&text, &Options { shard, ..asks(0.1, 128) }).expect("so many samples are taken");
+    assert!(part.plan().method.stop.is_none() && part.plan().method.samples == 128);
+    assert!(part.plan().because.iter().any(|line| line.starts_with("takes all 128 samples")));
+}
