@@ -9,7 +9,7 @@ use abbe::{Options, Result, nearest};
 use clap::{Command, CommandFactory, Parser};
 
 use crate::frames::numbered;
-use crate::messages::{Listener, is_colored, listener, speak_to};
+use crate::messages::{Listener, Protocol, is_colored, listener, speak_to};
 use crate::outputs::{check_exposure, check_png, ends_in, is_standard, refuse};
 use crate::{catalog, diff, info, keep, manual, merge, view};
 
@@ -86,6 +86,10 @@ struct Arguments {
     /// Say all on standard output, as a JSON object a line: plan, progress, report, files, warnings and errors
     #[arg(long)]
     json: bool,
+
+    /// Say on standard output how far it is, by the lines of a farm's protocol; all else goes to its log
+    #[arg(long, value_name = "PROTOCOL", conflicts_with_all = ["json", "quiet", "plan", "check"])]
+    progress: Option<Protocol>,
 
     /// Camera samples per pixel, instead of the scene's; with --error or --time, the most
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..))]
@@ -236,7 +240,9 @@ pub fn parse() -> Result<Request> {
             speak_to(match &parsed {
                 Ok(arguments) if arguments.quiet => Listener::Busy,
                 Ok(arguments) if arguments.json => Listener::Program,
+                Ok(Arguments { progress: Some(Protocol::Openjd), .. }) => Listener::Farm,
                 Err(_) if words.iter().any(|word| word == "--json") => Listener::Program,
+                Err(_) if words.iter().any(|word| word == "--progress") => Listener::Farm,
                 _ => Listener::Person,
             });
             parsed.map_or_else(told, |arguments| job(arguments).map(|job| Request::Render(Box::new(job))))
@@ -251,6 +257,7 @@ fn whole() -> Command {
         ("info", info::Query::command()),
         ("view", view::Query::command()),
         ("diff", diff::Query::command()),
+        ("merge", merge::Query::command()),
         ("completions", manual::Completions::command()),
         ("man", manual::Manual::command()),
     ];
@@ -264,7 +271,7 @@ fn read<'w, A: Parser>(words: impl Iterator<Item = &'w OsString>, request: fn(A)
 
 /// What clap has to say: help and version are an answer like any other, a mistake ends the command.
 fn told(said: clap::Error) -> Result<Request> {
-    if said.use_stderr() && listener() == Listener::Program {
+    if said.use_stderr() && matches!(listener(), Listener::Program | Listener::Farm) {
         let text = said.render().to_string();
         let (message, _) = text.split_once("\n\n").unwrap_or((&text, ""));
         return refuse(message.strip_prefix("error: ").unwrap_or(message), Some("render --help tells all arguments"));
@@ -302,11 +309,12 @@ fn job(arguments: Arguments) -> Result<Job> {
         let of_frame = |path: Option<PathBuf>| path.map(|path| numbered(&path, frame)).transpose();
         Output::Image { exr: of_frame(exr)?, png: of_frame(arguments.png)? }
     };
-    if let (Output::Image { exr: Some(exr), .. }, true) = (&output, arguments.json)
+    let talks = [("--json", arguments.json), ("--progress", arguments.progress.is_some())];
+    if let (Output::Image { exr: Some(exr), .. }, Some((flag, _))) = (&output, talks.iter().find(|(_, asked)| *asked))
         && is_standard(exr)
     {
-        let message = "--json and --exr - would both write to standard output";
-        return refuse(message, Some("name the image, as in --exr out/frame.exr"));
+        let message = format!("{flag} and --exr - would both write to standard output");
+        return refuse(&message, Some("name the image, as in --exr out/frame.exr"));
     }
     let Arguments { samples, error, time, seed, overscan, crop, layers, spectral, threads, stamp, keep, .. } =
         arguments;

@@ -10,6 +10,7 @@ mod keep;
 mod manual;
 mod merge;
 mod messages;
+mod openjd;
 mod outputs;
 mod progress;
 mod view;

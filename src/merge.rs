@@ -1,18 +1,19 @@
 //! The `merge` command: one image of the parts that several machines made.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use abbe::Result;
 use abbe::film::check_writable;
+use abbe::{Error, Result};
 use clap::Parser;
 
-use crate::messages::{say, warn_of_clamped};
+use crate::messages::{Listener, Protocol, problem, say, speak_to, warn, warn_of_clamped};
 use crate::outputs::{ends_in, refuse, spare};
 
 const EXAMPLES: &str = "\
 Examples:
   render --shard 1/4 --exr scenes/prism.toml      make one of four parts: prism.1-of-4.part
   render merge prism.exr prism.*-of-4.part        lay all four together
+  render merge --delete prism.exr prism.*.part    keep nothing but the image
 
 The merged image has the same bytes as one that a single render makes.";
 
@@ -27,6 +28,14 @@ pub struct Query {
     /// All parts of it, in any order
     #[arg(required = true, value_name = "PART")]
     parts: Vec<PathBuf>,
+
+    /// Delete the parts when the image is written, and the checkpoints beside them
+    #[arg(long)]
+    delete: bool,
+
+    /// Say on standard output what happens, by the lines of a farm's protocol; all else goes to its log
+    #[arg(long, value_name = "PROTOCOL")]
+    progress: Option<Protocol>,
 }
 
 /// Writes the image.
@@ -34,7 +43,11 @@ pub struct Query {
 /// # Errors
 /// If parts are missing, do not belong together or are damaged, or the image cannot be written.
 pub fn run(query: &Query) -> Result<()> {
-    let Query { image: path, parts } = query;
+    let Query { image: path, parts, delete, progress } = query;
+    speak_to(match progress {
+        Some(Protocol::Openjd) => Listener::Farm,
+        None => Listener::Person,
+    });
     if !ends_in(path, "exr") {
         let message = format!("merge writes a file that ends in .exr, not {}", path.display());
         return refuse(&message, Some("for instance: render merge out.exr *.part"));
@@ -48,6 +61,20 @@ pub fn run(query: &Query) -> Result<()> {
         let path = path.with_extension("spectral.exr");
         image.write_spectral_exr(&path)?;
         say(&format!("wrote {}", path.display()));
+    }
+    if *delete {
+        // The image is written all the same.
+        parts.iter().try_for_each(|part| delete_part(part)).unwrap_or_else(|error| warn(&problem(&error)));
+    }
+    Ok(())
+}
+
+/// Deletes a part and the checkpoint of the render that made it, if it is there.
+fn delete_part(part: &Path) -> Result<()> {
+    let checkpoint = part.with_extension("checkpoint");
+    let there = [part, &checkpoint].into_iter().filter(|path| path.exists());
+    for path in there {
+        std::fs::remove_file(path).map_err(|source| Error::Io { doing: "delete", path: path.to_owned(), source })?;
     }
     Ok(())
 }

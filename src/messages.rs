@@ -10,8 +10,10 @@ use std::time::Duration;
 use abbe::plan::Plan;
 use abbe::{Diagnostic, Error, Image, ImageError, Result};
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
+use clap::ValueEnum;
 
 use crate::events::Event;
+use crate::openjd;
 
 /// To whom it speaks.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -22,6 +24,15 @@ pub enum Listener {
     Busy,
     /// A program.
     Program,
+    /// Whoever runs a task of Open Job Description; what people read is in its log.
+    Farm,
+}
+
+/// The lines by which progress is told on stdout.
+#[derive(Clone, Copy, ValueEnum)]
+pub enum Protocol {
+    /// Those of Open Job Description
+    Openjd,
 }
 
 static LISTENER: OnceLock<Listener> = OnceLock::new();
@@ -44,6 +55,7 @@ pub fn say(line: &str) {
         Listener::Person => print(line),
         Listener::Busy => {}
         Listener::Program => Event::Note { message: line }.tell(),
+        Listener::Farm => openjd::status(line),
     }
 }
 
@@ -142,6 +154,9 @@ pub fn problem(error: &Error) -> String {
 
 /// What went wrong, where, and what to do.
 pub fn print_error(error: &Error) {
+    if listener() == Listener::Farm {
+        openjd::fail(&summary(error));
+    }
     match error {
         _ if listener() == Listener::Program => Event::errors(error).iter().for_each(Event::tell),
         Error::Scene(mistakes) => print_mistakes(mistakes),
@@ -151,6 +166,15 @@ pub fn print_error(error: &Error) {
         }
         other => print(&format!("error: {}", problem(other))),
     }
+}
+
+/// The same in one line.
+fn summary(error: &Error) -> String {
+    let Error::Scene(mistakes) = error else { return problem(error) };
+    let [first, more @ ..] = &**mistakes else { return problem(error) };
+    let (line, column) = first.line_and_column();
+    let more = if more.is_empty() { String::new() } else { format!(", and {} more", more.len()) };
+    format!("{}:{line}:{column}: {}{more}", first.file.display(), first.message)
 }
 
 /// All that is wrong with a scene, in the order of its files, and how much that is.
@@ -223,6 +247,7 @@ pub fn answer_plan(plan: &Plan) -> Result<()> {
 pub fn print_plan(plan: &Plan) {
     match listener() {
         Listener::Program => Event::plan(plan).tell(),
+        Listener::Farm => plan.because.iter().for_each(|line| print(line)),
         _ => plan.because.iter().for_each(|line| say(line)),
     }
 }

@@ -11,6 +11,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::events::Event;
 use crate::messages::{Listener, listener, say};
+use crate::openjd;
 
 /// How far a render is.
 pub struct Progress {
@@ -30,6 +31,8 @@ const QUIET: Duration = Duration::from_secs(10);
 const PERIOD: Duration = Duration::from_secs(30);
 /// The time between two lines for a program.
 const TICK: Duration = Duration::from_secs(1);
+/// The time between two lines for the log of a farm.
+const LOGGED: Duration = Duration::from_secs(5);
 
 impl Progress {
     /// Of a render of so many camera samples and photons, some of which an earlier run has done.
@@ -45,10 +48,17 @@ impl Progress {
         });
         let lines = bar.is_none().then(|| {
             let (done, work) = (done.clone(), work_known.clone());
-            let (first, then) = if listener() == Listener::Program { (TICK, TICK) } else { (QUIET, PERIOD) };
+            let (first, then) = match listener() {
+                Listener::Program => (TICK, TICK),
+                Listener::Farm => (TICK, LOGGED),
+                _ => (QUIET, PERIOD),
+            };
             let [done, work] = [done, work].map(|count| move || count.load(Ordering::Relaxed));
             Lines::new(first, then, move || speak([before, done()], work(), start.elapsed()))
         });
+        if listener() == Listener::Farm {
+            openjd::progress(before as f64 / work.max(1) as f64);
+        }
         Self { bar, lines, done, start, work: work_known, before }
     }
 
@@ -85,6 +95,10 @@ impl Progress {
         let took = start.elapsed();
         match listener() {
             Listener::Program => speak([0, work], work, took),
+            Listener::Farm => {
+                openjd::progress(1.0);
+                say(&rendered(took, expected));
+            }
             _ => say(&rendered(took, expected)),
         }
         took
@@ -107,6 +121,10 @@ fn speak([before, done]: [u64; 2], total: u64, passed: Duration) {
         Listener::Program => {
             let seconds_left = (done > before).then(|| left(parts, seconds));
             Event::Progress { done, total, seconds, seconds_left }.tell();
+        }
+        Listener::Farm => {
+            openjd::progress(parts[1]);
+            say(&line(parts, seconds));
         }
         _ => say(&line(parts, seconds)),
     }

@@ -5,7 +5,7 @@ use std::{fs, io::Write, thread};
 
 use serde_json::Value;
 
-use crate::messages::run::{Folder, render};
+use crate::messages::run::{Answer, Folder, render};
 
 const SCENE: &str = include_str!("messages/base.toml");
 
@@ -176,6 +176,81 @@ fn with_json_mistakes_are_objects_with_their_place() {
     assert_eq!(error["message"], "unexpected argument '--sampels' found");
 }
 
+/// Runs words that are separated by blanks, of which a farm is told.
+fn for_farm(folder: &Folder, words: &str, code: i32) -> Answer {
+    let answer = render(folder, &words.split(' ').chain(["--progress", "openjd"]).collect::<Vec<_>>());
+    assert_eq!(answer.code, Some(code), "{words}: {}", answer.stderr);
+    let said =
+        |line: &str| ["progress", "status", "fail"].iter().any(|kind| line.starts_with(&format!("openjd_{kind}: ")));
+    assert!(answer.stdout.lines().all(said), "{words}: {}", answer.stdout);
+    answer
+}
+
+#[test]
+fn a_farm_is_told_how_far_a_part_is_and_people_read_the_rest_in_its_log() {
+    let folder = folder();
+    for (words, written) in
+        [("--shard 1/2 --resume", "a.1-of-2.part"), ("--shard 2/2 --checkpoint 1h", "a.2-of-2.part")]
+    {
+        let part =
+            for_farm(&folder, &format!("scene.toml --exr a.exr --set material.copper={{mirror={{}}}} {words}"), 0);
+        assert!(part.stdout.contains("openjd_progress: 0.0\n"), "{}", part.stdout);
+        let end = part.stdout.split("openjd_progress: 100.0\n").nth(1).expect("the end is told");
+        assert!(end.starts_with("openjd_status: rendered in "), "{end}");
+        assert!(end.ends_with(&format!("openjd_status: wrote {written}\n")), "{end}");
+        assert!(
+            part.stderr.starts_with("warning: material copper is not used by any object\ncost: "),
+            "{}",
+            part.stderr
+        );
+    }
+    let merged = for_farm(&folder, "merge a.exr a.1-of-2.part a.2-of-2.part --delete", 0);
+    assert_eq!((&*merged.stdout, &*merged.stderr), ("openjd_status: wrote a.exr\n", ""));
+    assert_eq!(folder.listing(), ["a.exr", "scene.toml"]);
+}
+
+#[test]
+fn a_farm_is_told_in_one_line_why_a_task_fails() {
+    let folder = folder();
+    for (words, code, why, log) in [
+        ("scene.toml --set film.widht=3", 2, "--set:1:6: unknown key `widht`", "= help: did you mean `width`?"),
+        (
+            "scene.toml --set film.widht=3 --set film.heihgt=3",
+            2,
+            "--set:1:6: unknown key `widht`, and 1 more",
+            "2 mistakes in --set",
+        ),
+        (
+            "scene.toml --sampels 3",
+            2,
+            "unexpected argument '--sampels' found",
+            "help: render --help tells all arguments",
+        ),
+        (
+            "scene.toml --exr -",
+            2,
+            "--progress and --exr - would both write to standard output",
+            "help: name the image, as in --exr out/frame.exr",
+        ),
+        (
+            "scene.toml --exr scene.toml/a.exr",
+            1,
+            "cannot write scene.toml/a.exr: a file stands where its folder should be",
+            "error: cannot write scene.toml/a.exr",
+        ),
+        ("merge a.exr scene.toml", 2, "scene.toml is no part of an image", "help: parts are made by --shard"),
+    ] {
+        let failed = for_farm(&folder, words, code);
+        assert_eq!(failed.stdout, format!("openjd_fail: {why}\n"), "{words}");
+        assert!(failed.stderr.contains(log), "{words}: {}", failed.stderr);
+    }
+    for flag in ["--json", "--quiet", "--plan", "--check"] {
+        let both = render(&folder, &["scene.toml", "--progress", "openjd", flag]);
+        let said = both.stdout + &both.stderr;
+        assert!(both.code == Some(2) && said.contains("cannot be used with"), "{flag}: {said}");
+    }
+}
+
 #[test]
 fn a_frame_is_a_variable_and_a_number_in_the_names_of_files() {
     let folder = folder();
@@ -221,11 +296,14 @@ fn completions_and_the_manual_page_know_every_flag_and_command() {
     for shell in ["bash", "elvish", "fish", "powershell", "zsh"] {
         let script = render(&folder, &["completions", shell]);
         assert_eq!((script.code, &*script.stderr), (Some(0), ""));
-        for command in ["catalog", "info", "view", "diff", "completions", "man"] {
+        for command in ["catalog", "info", "view", "diff", "merge", "completions", "man"] {
             assert!(script.stdout.contains(command) && page.stdout.contains(command), "{shell}: {command}");
         }
         let known = words(&script.stdout);
-        assert!(["set", "json", "quiet", "frame", "spectral"].iter().all(|flag| known.contains(flag)), "{shell}");
+        assert!(
+            ["set", "json", "quiet", "frame", "spectral", "progress"].iter().all(|flag| known.contains(flag)),
+            "{shell}"
+        );
     }
     let page = words(&page.stdout);
     assert!(["--set", "--json", "--quiet", "--frame"].iter().all(|flag| flags.contains(flag) && page.contains(flag)));

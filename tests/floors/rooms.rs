@@ -6,9 +6,9 @@ use super::house::{House, here};
 use super::source::Source;
 
 /// Modules of the command, which stands above all floors.
-const COMMAND: [&str; 14] = [
-    "main", "catalog", "cli", "diff", "events", "frames", "info", "keep", "manual", "merge", "messages", "outputs",
-    "progress", "view",
+const COMMAND: [&str; 15] = [
+    "main", "catalog", "cli", "diff", "events", "frames", "info", "keep", "manual", "merge", "messages", "openjd",
+    "outputs", "progress", "view",
 ];
 /// What `lib.rs` hands on from the room `error`.
 const ERRORS: [&str; 5] = ["Diagnostic", "Error", "Result", "nearest", "error"];
