@@ -33,6 +33,7 @@ done
 
 # 130 says that it was stopped and can go on.
 if [ "$late" ] && [ $code -eq 130 ]; then
-    scontrol requeue "$SLURM_JOB_ID"
+    # The number of the job is, for one of the tasks, that of the whole array.
+    scontrol requeue "${SLURM_ARRAY_JOB_ID}_$SLURM_ARRAY_TASK_ID"
 fi
 exit $code

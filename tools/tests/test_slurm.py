@@ -146,13 +146,15 @@ def test_an_array_of_eight_makes_the_bytes_of_one_render(cluster, folder):
 def test_a_task_that_runs_out_of_time_goes_on_in_another_turn(cluster, folder):
     expected = whole(folder, samples=700)
     array, merge = cluster.submit(folder, 2, "--samples", "700")
-    until(lambda: "the render begins" in logs(folder), "no task has begun")
+    log = folder / "2.log"
+    until(lambda: log.exists() and "the render begins" in log.read_text("utf-8"), "the task has not begun")
     time.sleep(1)
-    # As Slurm sends it before the time limit.
-    cluster.run("scancel", "--batch", "--signal=USR1", f"{array}_1")
+    # As Slurm sends it before the time limit. The last task has the number of the array.
+    cluster.run("scancel", "--batch", "--signal=USR1", f"{array}_2")
     assert cluster.wait(merge) == "COMPLETED", logs(folder)
-    said = (folder / "1.log").read_text("utf-8")
-    assert "out/s.1-of-2.checkpoint keeps what is done" in said and "going on from out/s.1-of-2.checkpoint" in said, said
+    said = log.read_text("utf-8")
+    assert "out/s.2-of-2.checkpoint keeps what is done" in said and "going on from out/s.2-of-2.checkpoint" in said, said
+    assert logs(folder).count("the render begins") == 2, logs(folder)
     assert (folder / "out/s.exr").read_bytes() == expected
 
 
