@@ -92,6 +92,18 @@ shape.quad = { center = [0.3, 2.9, -0.4], u = [0.5, 0, 0], v = [0, 0, 0.4] }
 material = "lamp"
 "#;
 
+/// A ball under the sky, in 64 tiles.
+const LIT: &str = r#"
+camera = { position = [0, 0, 4], look_at = [0, 0, 0], vertical_fov = 40 }
+film = { width = 128, height = 128 }
+render = { samples = 2 }
+material.matte.diffuse.reflectance = 0.6
+light = [{ environment = { radiance = 1 } }]
+[[object]]
+shape.sphere = { center = [0, 0, 0], radius = 1 }
+material = "matte"
+"#;
+
 /// A name, a scene, options, and whether a method is the one that is meant.
 pub type Kind = (&'static str, String, Options, fn(&Method) -> bool);
 
@@ -206,13 +218,20 @@ fn a_render_that_stops_and_goes_on_in_one_run_makes_the_same_image() {
 #[test]
 fn parts_of_an_image_are_together_the_same_bytes_as_the_whole() {
     let folder = tempfile::tempdir().expect("a folder");
-    // Of an image of six tiles some of 16 parts have none.
+    // Of an image of six tiles some of 16 parts have none, but of one of 64 tiles all have some.
     let few: &[(u32, usize)] = &[(3, 7)];
     let many = [few, &[(1, 1), (2, 3), (16, 2)]].concat();
-    for (number, (kind, text, options, _)) in kinds().into_iter().enumerate() {
+    let all = [&*many, &[(64, 2)]].concat();
+    let tiles = ("64 tiles", LIT.into(), Options::default(), (|_| true) as fn(&Method) -> bool);
+    for (number, (kind, text, options, _)) in [tiles].into_iter().chain(kinds()).enumerate() {
         let scene = scene(&text);
         let whole = bytes(&rendering(&scene, &options, 2).run(&|_| ()), folder.path());
-        for &(count, threads) in if number == 0 { &many } else { few } {
+        let counts = match number {
+            0 => &all[..],
+            1 => &many,
+            _ => few,
+        };
+        for &(count, threads) in counts {
             let paths: Vec<_> =
                 (1..=count).map(|number| folder.path().join(format!("{number}-of-{count}.part"))).collect();
             for (number, path) in (1..).zip(&paths) {

@@ -1,4 +1,4 @@
-"""Open Job Description runs an image in parts: tools/farm/frame.yaml.
+"""Open Job Description runs an image in parts, and a model says how many make sense: tools/farm.
 
 pytest tools/tests/test_farm.py
 """
@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 import render
+from farm.model import Work, fastest, forecast, most, slowest
 
 TEMPLATE = render.ROOT / "tools/farm/frame.yaml"
 OPENJD = Path(sys.executable).with_name("openjd")
@@ -124,3 +125,62 @@ def test_a_canceled_task_keeps_what_is_done_and_goes_on_from_there(folder):
     said = run(folder, Shards=2, Samples=700)
     assert re.search(r"openjd_status: going on from .*frame\.1-of-2\.checkpoint, which has [1-9]", said), said
     assert (folder / "out/frame.exr").read_bytes() == expected
+
+
+# Ten seconds that every part repeats, a thousand of tiles.
+WORK = Work(start=1, load=2, plan=3, photons=4, tiles=1000, merge=5, merge_part=0.1, count=400)
+
+
+def test_one_render_is_no_more_than_its_work():
+    assert forecast(WORK, 1) == (1, 1010, 1010, pytest.approx(10 / 1010))
+
+
+def test_parts_repeat_what_they_do_alike_and_share_their_tiles():
+    parts, processor, time, overhead = forecast(WORK, 100)
+    assert (parts, processor, time) == (100, 1000 + 1000 + 5 + 10, pytest.approx(10 + 10 + 5 + 10))
+    assert overhead == pytest.approx(1 - 1000 / processor)
+
+
+def test_parts_without_tiles_make_nothing_faster():
+    assert slowest(WORK, 400) == 1 and slowest(WORK, 800) == 2
+    assert forecast(WORK, 800).time > forecast(WORK, 400).time
+
+
+def test_the_slowest_part_is_farther_from_the_mean_the_fewer_tiles_it_has():
+    varied = WORK._replace(variation=0.5)
+    ratios = [slowest(varied, parts) for parts in (1, 10, 100, 400)]
+    assert ratios[0] == 1 and ratios == sorted(ratios)
+
+
+def test_the_best_numbers_of_parts_are_those_beside_which_all_are_worse():
+    for overhead in (0.1, 0.5, 0.9):
+        count = most(WORK, overhead)
+        assert forecast(WORK, count).overhead <= overhead < forecast(WORK, count + 1).overhead
+    best = fastest(WORK, 10_000)
+    assert best == 100  # where tiles / n^2 = merge_part
+    assert most(WORK._replace(tiles=0.1), 0.25) == 1
+
+
+def test_a_forecast_is_made_of_what_is_measured_and_compared(tmp_path):
+    scene = tmp_path / "s.toml"
+    scene.write_text(
+        """
+camera = { position = [0, 0, 4], look_at = [0, 0, 0], vertical_fov = 40 }
+film = { width = 64, height = 48 }
+material.matte.diffuse.reflectance = 0.6
+light = [{ environment = { radiance = 1 } }]
+[[object]]
+shape.sphere = { center = [0, 0, 0], radius = 1 }
+material = "matte"
+""",
+        "utf-8",
+    )
+    chart = tmp_path / "farm.png"
+    words = [scene, "--samples", 16, "--verify", 1, 3, "--chart", chart]
+    tool = [sys.executable, render.ROOT / "tools/farm.py", *words]
+    run = subprocess.run(list(map(str, tool)), capture_output=True, text=True, check=False, timeout=600)
+    assert run.returncode == 0, run.stdout + run.stderr
+    assert re.search(r"^12 tiles +[\d.]+ m?s$", run.stdout, re.MULTILINE), run.stdout
+    assert re.search(r"^ 10000 +[\d.]+ (s|min) .* %$", run.stdout, re.MULTILINE), run.stdout
+    assert "overhead is at most a quarter of the processor time up to " in run.stdout
+    assert chart.stat().st_size > 1000

@@ -1,0 +1,8 @@
+"""Says how many parts of an image make sense: tools/farm/command.py."""
+
+import sys
+
+from farm.command import main
+
+if __name__ == "__main__":
+    sys.exit(main())

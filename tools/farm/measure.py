@@ -1,0 +1,95 @@
+"""Measures what a render in parts consists of."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+from statistics import median
+from typing import NamedTuple
+
+import numpy as np
+import render
+
+from .model import Work
+
+# Parts that are merged to see what one costs, and how often each is measured.
+FEW, MANY, REPEATS = 2, 32, 5
+# Parts whose tiles tell how much tiles vary.
+COMPARED = 8
+
+
+class Renderer(NamedTuple):
+    """Renders a scene into a folder."""
+
+    scene: Path
+    folder: Path
+    threads: int
+    samples: int | None  # of each pixel, if not those of the scene
+    flags: tuple  # more words for the command
+
+    def processor_time(self, *words):
+        """Seconds of processor time that the command takes."""
+        command = [str(render.binary()), *map(str, words)]
+        with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE) as process:
+            said = process.stderr.read().decode()
+            _, status, used = os.wait4(process.pid, 0)
+            process.returncode = os.waitstatus_to_exitcode(status)
+        if process.returncode:
+            sys.exit(f"{' '.join(command)}: exit code {process.returncode}\n{said}")
+        return used.ru_utime + used.ru_stime
+
+    def of_scene(self, *words, samples=None):
+        samples = samples or self.samples
+        samples = ["--samples", samples] if samples else []
+        return self.processor_time(self.scene, "--threads", self.threads, *samples, *self.flags, *words)
+
+    def whole(self):
+        return self.of_scene("--exr", self.folder / "whole.exr")
+
+    def part(self, number, count, samples=None):
+        words = ["--exr", self.folder / "image.exr", "--shard", f"{number}/{count}"]
+        return self.of_scene(*words, samples=samples)
+
+    def merge(self, count):
+        parts = [self.folder / f"image.{number}-of-{count}.part" for number in range(1, count + 1)]
+        return self.processor_time("merge", self.folder / "image.exr", *parts)
+
+
+def tiles_of(exr):
+    """How many tiles of 16 x 16 pixels the image has."""
+    (left, top), (right, bottom) = render.read(exr).header["dataWindow"]
+    return int(-(-(right - left + 1) // 16) * -(-(bottom - top + 1) // 16))
+
+
+def measured(seconds, repeats=3):
+    return median(seconds() for _ in range(repeats))
+
+
+def merging(renderer):
+    """What merging takes whatever the number of parts, and what it takes for each."""
+    seconds = {}
+    for count in (FEW, MANY):
+        for number in range(1, count + 1):
+            renderer.part(number, count, samples=1)
+        seconds[count] = measured(lambda count=count: renderer.merge(count), REPEATS)
+    each = max(0.0, seconds[MANY] - seconds[FEW]) / (MANY - FEW)
+    return max(0.0, seconds[FEW] - FEW * each), each
+
+
+def measure(renderer):
+    start = measured(lambda: renderer.processor_time("--version"))
+    checked = measured(lambda: renderer.of_scene("--check"))
+    planned = measured(lambda: renderer.of_scene("--plan"))
+    whole = renderer.whole()
+    count = tiles_of(renderer.folder / "whole.exr")
+    # Beyond the number of tiles a part has none: what is left is what all of them do.
+    repeated = measured(lambda: renderer.part(count + 1, count + 1))
+    tiles = max(0.0, whole - repeated)
+    merge, merge_part = merging(renderer)
+    compared = min(COMPARED, count)
+    costs = np.array([renderer.part(number, compared) for number in range(1, compared + 1)]) - repeated
+    # Each has so many tiles, whose deviations by chance even out by the root of their number.
+    variation = float(costs.std(ddof=1) / costs.mean() * np.sqrt(count / compared)) if compared > 1 else 0.0
+    load, plan = max(0.0, checked - start), max(0.0, planned - checked)
+    photons = max(0.0, repeated - start - load - plan)
+    return Work(start, load, plan, photons, tiles, merge, merge_part, count, variation)
