@@ -62,10 +62,10 @@ def table(work):
 def advice(work):
     best = fastest(work, COUNTS[-1])
     quarter, half = most(work, 0.25), most(work, 0.5)
-    return (
-        f"overhead is at most a quarter of the processor time up to {counted(quarter)}, and at most half up to {half}; "
-        f"the image is there first with {counted(best)}, after {spoken(forecast(work, best).time)}"
-    )
+    limits = f"overhead is at most a quarter of the processor time up to {counted(quarter)}, and at most half up to {half}"
+    if quarter == 0:
+        limits = "more than a quarter of the processor time is overhead in one render already"
+    return f"{limits}; the image is there first with {counted(best)}, after {spoken(forecast(work, best).time)}"
 
 
 def verify(work, renderer, counts):

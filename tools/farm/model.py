@@ -61,9 +61,12 @@ def forecast(work, parts):
 
 
 def most(work, overhead):
-    """The largest number of parts with at most this share of overhead, and 1 if none has so little."""
+    """The largest number of parts with at most this share of overhead; 0 if one render has more."""
     budget = work.tiles / (1 - overhead) - work.tiles - work.merge
-    return max(1, math.floor(budget / (work.repeated + work.merge_part)))
+    parts = math.floor(budget / (work.repeated + work.merge_part))
+    if parts > 1:
+        return parts
+    return 1 if forecast(work, 1).overhead <= overhead else 0
 
 
 def fastest(work, limit):
