@@ -8,8 +8,10 @@
 #
 #     sbatch --array=1-N tools/farm/shard.sh N SCENE.toml IMAGE.exr [--samples 64 ..]
 #
-# Two minutes before the time limit it keeps what is done in a checkpoint, and the task goes on in another turn. A task
-# that is preempted, or whose node fails, does so too.
+# Two minutes before the time limit it keeps what is done in a checkpoint, and the task goes on in another turn: the limit
+# has to be longer than two minutes and the plan together. A task that is preempted, or whose node fails, goes on as well.
+#
+# RENDER is the command, if it is not called `render`.
 
 set -u
 count=$1 scene=$2 image=$3
