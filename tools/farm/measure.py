@@ -12,8 +12,14 @@ import render
 
 from .model import Work
 
-# Parts that are merged to see what one costs, and how often each is measured.
-FEW, MANY, REPEATS = 2, 32, 5
+# Parts that are merged to see what one costs, and how often that is measured.
+FEW, MANY, REPEATS = 2, 256, 5
+# What a part costs a merge is not what it shows: an image of a tile has it too, and is rendered at once.
+BLACK = """
+camera = { position = [0, 0, 4], look_at = [0, 0, 0], vertical_fov = 40 }
+film = { width = 16, height = 16 }
+render.samples = 1
+"""
 # Parts whose tiles tell how much tiles vary.
 COMPARED = 8
 
@@ -65,15 +71,19 @@ def measured(seconds, repeats=3):
     return median(seconds() for _ in range(repeats))
 
 
+def merged(renderer, count):
+    for number in range(1, count + 1):
+        renderer.part(number, count, samples=1)
+    return measured(lambda: renderer.merge(count), REPEATS)
+
+
 def merging(renderer):
     """What merging takes whatever the number of parts, and what it takes for each."""
-    seconds = {}
-    for count in (FEW, MANY):
-        for number in range(1, count + 1):
-            renderer.part(number, count, samples=1)
-        seconds[count] = measured(lambda count=count: renderer.merge(count), REPEATS)
-    each = max(0.0, seconds[MANY] - seconds[FEW]) / (MANY - FEW)
-    return max(0.0, seconds[FEW] - FEW * each), each
+    scene, folder = renderer.folder / "black.toml", renderer.folder / "black"
+    scene.write_text(BLACK, "utf-8")
+    black = Renderer(scene, folder, threads=1, samples=None, flags=())
+    each = max(0.0, merged(black, MANY) - merged(black, FEW)) / (MANY - FEW)
+    return max(0.0, merged(renderer, FEW) - FEW * each), each
 
 
 def measure(renderer):
