@@ -1,6 +1,6 @@
 """How many parts of an image make sense on a farm.
 
-    python tools/farm.py scenes/cornell.toml                 # a few minutes: renders the scene some four times
+    python tools/farm.py scenes/cornell.toml                 # renders all tiles twice, and what parts repeat 15 times
     python tools/farm.py scenes/cornell.toml --samples 64    # more flags of render may follow
     python tools/farm.py scenes/cornell.toml --verify 1 4 16 64
     python tools/farm.py scenes/cornell.toml --chart farm.png
