@@ -49,7 +49,7 @@ pub enum Event<'e> {
         polarization: f64,
         polarization_of_tile: f64,
         /// How far the image is off, where that was measured.
-        error: Option<ErrorOfImage>,
+        error: Option<ErrorOfImage<'e>>,
         /// What the process has taken so far, where the system tells it.
         processor_seconds: Option<f64>,
         peak_memory_bytes: Option<u64>,
@@ -66,7 +66,7 @@ pub enum Event<'e> {
 
 /// How far an image is off. All errors are relative to the image.
 #[derive(Serialize)]
-pub struct ErrorOfImage {
+pub struct ErrorOfImage<'e> {
     /// The error that was asked for, if one was.
     asked: Option<f64>,
     is_reached: bool,
@@ -85,10 +85,15 @@ pub struct ErrorOfImage {
     /// Column and row of a pixel whose light one of eight renders found alone, and its share of the variance.
     outlier: Option<[i64; 2]>,
     outlier_share: Option<f64>,
+    /// The light, how often it was scattered, mirrored or refracted on its way, and how it was found.
+    outlier_light: Option<&'e str>,
+    outlier_bounces: Option<u32>,
+    outlier_found: Option<&'static str>,
 }
 
-impl ErrorOfImage {
-    fn new(error: &ImageError) -> Self {
+impl<'e> ErrorOfImage<'e> {
+    fn new(error: &'e ImageError) -> Self {
+        let light = error.rare_light.as_ref();
         let (noise, outlier) = (&error.noise, error.noise.outlier.as_ref());
         Self {
             asked: error.asked,
@@ -103,6 +108,9 @@ impl ErrorOfImage {
             worst_tile_noise: noise.worst_tile.expected,
             outlier: outlier.map(|outlier| outlier.pixel),
             outlier_share: outlier.map(|outlier| outlier.share),
+            outlier_light: light.and_then(|light| light.name.as_deref()),
+            outlier_bounces: light.map(|light| light.bounces),
+            outlier_found: light.map(|light| light.found),
         }
     }
 }
@@ -151,7 +159,7 @@ impl<'e> Event<'e> {
         }
     }
 
-    pub fn report(image: &Image, took: Duration, expected: Duration) -> Self {
+    pub fn report(image: &'e Image, took: Duration, expected: Duration) -> Self {
         let report = image.report();
         Self::Report {
             samples: report.samples,

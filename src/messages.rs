@@ -8,6 +8,7 @@ use std::sync::OnceLock;
 use std::time::Duration;
 
 use abbe::plan::Plan;
+use abbe::trace::RareLight;
 use abbe::{Diagnostic, Error, Image, ImageError, Result};
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 use clap::ValueEnum;
@@ -277,8 +278,9 @@ fn print_error_of_image(error: &ImageError) {
         [error.at_most(), noise.expected, noise.at_most, error.model].map(percent);
     if let Some(outlier) = noise.outlier {
         let ([x, y], share) = (outlier.pixel, percent(outlier.share));
+        let light = error.rare_light.as_ref().map_or("light".into(), told);
         warn(&format!(
-            "pixel ({x}, {y}) makes {share} of the noise, by light that one of eight renders found there and no other: \
+            "pixel ({x}, {y}) makes {share} of the noise, by {light} that one of eight renders found there and no other: \
              there may be more of it than any number of samples tells"
         ));
     }
@@ -292,6 +294,14 @@ fn print_error_of_image(error: &ImageError) {
     say(&format!("{} samples per pixel: the image is off by {off}", noise.samples));
     let ([x, y], worst) = (noise.worst_tile.corner, percent(noise.worst_tile.expected));
     say(&format!("noise is {expected} of the image's brightness, and {worst} in the 16 x 16 pixels from ({x}, {y})"));
+}
+
+/// Rare light with its way.
+fn told(light: &RareLight) -> String {
+    let RareLight { name, bounces, found } = light;
+    let of = name.as_ref().map_or(String::new(), |name| format!(" of {name}"));
+    let after = if *bounces == 1 { "after 1 bounce".into() } else { format!("after {bounces} bounces") };
+    format!("light{of}, {found} {after},")
 }
 
 /// A share as people say it.

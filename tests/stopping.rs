@@ -185,6 +185,8 @@ material = "lamp"
         let (error, samples) = (image.error().expect("there are replicates").clone(), image.report().samples);
         error.noise.outlier.map(|outlier| {
             assert!(outlier.share > 0.1 && !error.is_reached(), "{error:?}");
+            let light = error.rare_light.as_ref().expect("a sample met it");
+            assert!(light.name.as_deref() == Some("object 3") && light.bounces > 0, "{light:?}");
             assert_eq!((error.stopped_by, samples), (Some(Stopped::Samples), 128 * 64 * 64));
             // It is a bright one.
             let [x, y] = outlier.pixel.map(|place| place as u32);

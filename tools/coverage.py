@@ -147,8 +147,8 @@ def naive(scene, seed):
         ratio = variance / (image.rgb**2).mean() / error**2
         if ratio <= 1:
             return count
-        # It looks after every 16 samples; those that cannot be enough are left out here.
-        count = max(count + 16, int(count * ratio * 0.9) // 16 * 16)
+        # It looks after every 16 samples; looks long before there are enough are left out here.
+        count = max(count + 16, int(count * min(ratio, 4)) // 16 * 16)
 
 
 def judged(name, renders, pool):

@@ -1,4 +1,4 @@
-use crate::trace::{Noise, Stopped};
+use crate::trace::{Noise, RareLight, Stopped};
 
 /// How far an image is off, as a render with a stop rule has measured it.
 ///
@@ -9,6 +9,8 @@ pub struct ImageError {
     pub asked: Option<f64>,
     /// What chance makes of it.
     pub noise: Noise,
+    /// The light that makes an outlier of the noise, of a render that has ended.
+    pub rare_light: Option<RareLight>,
     /// What the model of color may make of it, as the plan predicts: relative to the strongest channel of each color.
     pub model: f64,
     /// What ended the render; none as long as it goes on.

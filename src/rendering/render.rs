@@ -235,7 +235,9 @@ impl Rendering {
     pub fn error(&self) -> Option<ImageError> {
         let (report, model) = (self.passes.report(), self.plan.model_error);
         let noise = report.noise?;
-        Some(ImageError { asked: self.asked, noise, model, stopped_by: report.stopped_by })
+        let stopped_by = report.stopped_by;
+        let rare_light = self.threads.install(|| stopped_by.and_then(|_| self.passes.rare_light()));
+        Some(ImageError { asked: self.asked, noise, rare_light, model, stopped_by })
     }
 
     /// The image of all samples so far.

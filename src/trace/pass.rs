@@ -74,6 +74,11 @@ pub(super) struct Stage {
 }
 
 impl Stage {
+    /// Of one replicate alone: so many samples after others.
+    pub(super) fn of_replicate(replicate: u32, before: u32, size: u32) -> Self {
+        Self { before, size, replicate, taken: 0 }
+    }
+
     /// The next pass, of at most so many samples.
     pub(super) fn pass(self, world: &World, number: u32, most: u32) -> Pass {
         let start = self.before + self.taken;

@@ -82,7 +82,7 @@ impl Progress {
 }
 
 /// Most samples of a replicate in one pass: as many as share a map, or light vertices that are in memory at once.
-fn most_at_once(world: &World) -> u32 {
+pub(super) fn most_at_once(world: &World) -> u32 {
     let map = world.method.light_pass.as_ref().and_then(|pass| pass.map).filter(|_| world.has_map());
     map.map_or(MOST_AT_ONCE, |map| (world.method.samples / map.count).clamp(1, MOST_AT_ONCE))
 }

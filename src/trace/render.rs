@@ -12,8 +12,9 @@ use super::layer_sums::{Taken, images, spectral_image, write};
 use super::light_pass;
 use super::noise::{Noise, noise};
 use super::pass_light::PassLight;
-use super::passes::Progress;
+use super::passes::{Progress, most_at_once};
 use super::photon_targets::PhotonTargets;
+use super::rare_light::{RareLight, rare_light};
 use super::replicates::REPLICATES;
 use super::saved::{self, Restored};
 use super::stats::Stats;
@@ -294,6 +295,12 @@ impl<W: Borrow<World>> Rendering<W> {
     fn stopped_by(&self) -> Option<Stopped> {
         let stop = self.world().method.stop.as_ref().filter(|_| self.is_finished())?;
         Some(Stopped::new(stop, &self.progress))
+    }
+
+    /// Which light it is that one replicate found alone, if any did at the last look.
+    pub fn rare_light(&self) -> Option<RareLight> {
+        let (world, noise) = (self.world(), self.noise()?);
+        rare_light(world, &noise.outlier?, noise.samples / REPLICATES as u32, most_at_once(world))
     }
 
     /// What was left out of the light that all parts of an image send alike.
