@@ -110,7 +110,7 @@ fn image(job: &Job, scene: &Scene, exr: Option<&Path>, png: Option<&Path>) -> Re
     let image = rendering.image();
     match (&part, exr) {
         (Some(part), _) => rendering.write_part(part)?,
-        (None, Some(exr)) => messages::warn_of_clamped(&image, write(&image, exr)?),
+        (None, Some(exr)) => messages::warn_of_clamped(image.format(), write(&image, exr)?),
         (None, None) => {}
     }
     if let (None, Some(spectral)) = (&part, &spectral) {

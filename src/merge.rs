@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use abbe::film::check_writable;
-use abbe::{Error, Result};
+use abbe::{Error, Parts, Result};
 use clap::Parser;
 
 use crate::messages::{Listener, Protocol, problem, say, speak_to, warn, warn_of_clamped};
@@ -54,12 +54,11 @@ pub fn run(query: &Query) -> Result<()> {
     }
     parts.iter().try_for_each(|part| spare(part, "part", path))?;
     check_writable(path)?;
-    let image = abbe::merge(parts)?;
-    warn_of_clamped(&image, image.write_exr(path)?);
+    let image = Parts::open(parts)?;
+    warn_of_clamped(image.format(), image.write_exr(path)?);
     say(&format!("wrote {}", path.display()));
-    if image.film().spectral.is_some() {
-        let path = path.with_extension("spectral.exr");
-        image.write_spectral_exr(&path)?;
+    let path = path.with_extension("spectral.exr");
+    if image.write_spectral_exr(&path)? {
         say(&format!("wrote {}", path.display()));
     }
     if *delete {

@@ -7,6 +7,7 @@ use std::path::Path;
 use std::sync::OnceLock;
 use std::time::Duration;
 
+use abbe::film::Format;
 use abbe::plan::Plan;
 use abbe::trace::RareLight;
 use abbe::{Diagnostic, Error, Image, ImageError, Result};
@@ -136,9 +137,9 @@ pub fn warn(message: &str) {
 }
 
 /// Says how many values were too large for the file, if any were.
-pub fn warn_of_clamped(image: &Image, clamped: u64) {
+pub fn warn_of_clamped(format: &Format, clamped: u64) {
     if clamped > 0 {
-        let lossless = if image.format().compression.is_of_16_bits() { " with compression = \"zip\"" } else { "" };
+        let lossless = if format.compression.is_of_16_bits() { " with compression = \"zip\"" } else { "" };
         warn(&format!(
             "{clamped} values were too bright for 16 bits and became 65504: precision = \"float\"{lossless} keeps them"
         ));

@@ -11,13 +11,13 @@
 //! Applications*).
 
 use std::fs::File;
-use std::io::{self, BufReader, Read, Write};
+use std::io::{self, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use super::file::replace_by;
+use super::file::{cannot_write, replace_by};
 use crate::error::{Error, Result};
 
 /// The first bytes of a kind of file.
@@ -39,13 +39,14 @@ pub struct BlockWriter<'a> {
 /// # Errors
 /// If it cannot be written; a file that was there before is then untouched.
 pub fn write_blocks(path: &Path, kind: Kind, write: &dyn Fn(&mut BlockWriter) -> io::Result<()>) -> Result<()> {
-    replace_by(path, &mut |to| {
+    let written = |to: &mut dyn Write| {
         to.write_all(&kind)?;
         let mut blocks = BlockWriter { to, bytes: Vec::new() };
         write(&mut blocks)?;
         blocks.bytes.resize(HEAD, 0);
         blocks.put()
-    })
+    };
+    replace_by(path, &mut |place| written(place).map_err(|source| cannot_write(path, source)))
 }
 
 impl BlockWriter<'_> {
@@ -83,7 +84,8 @@ fn checksum(length: [u8; LENGTH], content: &[u8]) -> u32 {
 pub struct BlockReader {
     path: PathBuf,
     file: BufReader<File>,
-    /// Bytes of the file that have not been read.
+    /// Bytes of the file that have been read, and those that have not.
+    place: u64,
     left: u64,
 }
 
@@ -100,10 +102,29 @@ impl BlockReader {
                 return Ok(None);
             }
             file.read_exact(&mut found)?;
-            let left = metadata.len() - kind.len() as u64;
-            Ok((found == kind).then(|| Self { path: path.to_owned(), file: BufReader::new(file), left }))
+            let (place, left) = (kind.len() as u64, metadata.len() - kind.len() as u64);
+            Ok((found == kind).then(|| Self { path: path.to_owned(), file: BufReader::new(file), place, left }))
         };
         opened().map_err(|source| Error::Io { doing: "read", path: path.to_owned(), source })
+    }
+
+    /// Opens a file once more, at the [place](Self::place) where another reader left it.
+    ///
+    /// # Errors
+    /// If it cannot be read.
+    pub fn open_at(path: &Path, place: u64) -> Result<Self> {
+        let opened = || {
+            let mut file = File::open(path)?;
+            let left = file.metadata()?.len().saturating_sub(place);
+            file.seek(SeekFrom::Start(place))?;
+            Ok(Self { path: path.to_owned(), file: BufReader::new(file), place, left })
+        };
+        opened().map_err(|source| Error::Io { doing: "read", path: path.to_owned(), source })
+    }
+
+    /// How many bytes of the file were read.
+    pub fn place(&self) -> u64 {
+        self.place
     }
 
     /// The next block.
@@ -147,6 +168,7 @@ impl BlockReader {
             return Err(self.damaged());
         }
         self.left -= bytes.len() as u64;
+        self.place += bytes.len() as u64;
         let path = &self.path;
         self.file.read_exact(bytes).map_err(|source| Error::Io { doing: "read", path: path.clone(), source })
     }

@@ -1,24 +1,22 @@
 //! The film as an OpenEXR file of scan lines; the same bytes for the same film.
 
 use std::borrow::Cow;
+use std::io::Cursor;
 use std::path::Path;
-use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::SystemTime;
 
 use exr::meta::attribute::{Chromaticities, EnvironmentMap};
-use exr::prelude::{
-    AnyChannel, AnyChannels, AttributeValue, Encoding, FlatImage, FlatSamples, Image, ImageAttributes, IntegerBounds,
-    Layer, LayerAttributes, LineOrder, SmallVec, Text, Vec2, f16,
-};
-use rayon::prelude::{IntoParallelIterator, ParallelIterator};
+use exr::prelude::{AttributeValue, ImageAttributes, IntegerBounds, LayerAttributes, Text, Vec2};
 use serde::{Deserialize, Serialize};
 
-use super::exr_blocks;
-use super::file::replace_file;
+use super::exr_blocks::{self, CLAMPED, Part};
+use super::exr_column::{Column, Of};
+use super::file::replace_by;
 use super::format::{Compression, Format, Precision};
 use super::image::Film;
+use super::rows::Rows;
 use super::time::cap_date;
-use crate::error::{Error, Result};
+use crate::error::Result;
 
 /// How the camera saw, as the file records it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -76,34 +74,51 @@ pub enum Fact {
     Number(f64),
 }
 
+/// What a file says of an image beside its pixels.
+#[derive(Clone, Copy)]
+pub struct Heading<'a> {
+    /// The image, for its size, its layers and their names; its pixels are not looked at.
+    pub film: &'a Film,
+    /// How it is written.
+    pub format: &'a Format,
+    /// How the camera saw.
+    pub view: &'a View,
+    /// Where it comes from.
+    pub provenance: &'a Provenance,
+}
+
 /// Writes a linear image: R, G, B, A and Z, and the layers that it has beside them. Answers how many values were too
 /// large for the precision and became the largest that fits.
 ///
 /// What was made is the data window, the format the display window, which is also what the screen window spans:
-/// compositors lay a crop over the format at its place, and overscan around it.
+/// compositors lay a crop over the format at its place, and overscan around it. It takes as much memory as a few blocks
+/// of rows.
 ///
 /// # Errors
-/// If the file cannot be encoded or written; a file that was there before is then untouched.
-pub fn write_exr(film: &Film, format: &Format, view: &View, provenance: &Provenance, path: &Path) -> Result<u64> {
-    let (bytes, clamped) = encode_exr(film, format, view, provenance, path)?;
-    replace_file(path, &bytes)?;
+/// If rows cannot be read, or the file cannot be encoded or written; a file that was there before is then untouched.
+pub fn write_exr(heading: Heading, rows: &mut dyn Rows, path: &Path) -> Result<u64> {
+    let (parts, mut clamped) = (parts(heading), 0);
+    replace_by(path, &mut |place| {
+        clamped = exr_blocks::write(&parts, rows, place, path)?;
+        Ok(())
+    })?;
     Ok(clamped)
 }
 
 /// The bytes of such a file, and how many values were too large; `path` is what it is called in an error.
 ///
 /// # Errors
-/// If it cannot be encoded.
-pub fn encode_exr(
-    film: &Film,
-    format: &Format,
-    view: &View,
-    provenance: &Provenance,
-    path: &Path,
-) -> Result<(Vec<u8>, u64)> {
+/// If rows cannot be read, or it cannot be encoded.
+pub fn encode_exr(heading: Heading, rows: &mut dyn Rows, path: &Path) -> Result<(Vec<u8>, u64)> {
+    let mut bytes = Cursor::new(Vec::new());
+    let clamped = exr_blocks::write(&parts(heading), rows, &mut bytes, path)?;
+    Ok((bytes.into_inner(), clamped))
+}
+
+/// The parts of the file: one, or one for the image and each layer if the format sets them apart.
+fn parts(heading: Heading) -> Vec<Part> {
+    let Heading { film, format, view, provenance } = heading;
     let half = format.precision == Precision::Half;
-    let mut channels = Channels { half, ..Channels::new(film) };
-    let parts = parts(film, format, &mut channels);
     let mut attributes = attributes(film, format, view, provenance);
     for manifest in &film.manifests {
         for (key, value) in [
@@ -116,130 +131,56 @@ pub fn encode_exr(
             attributes.other.insert(name, AttributeValue::Text(utf8(value)));
         }
     }
-    if channels.half {
-        let clamped = AttributeValue::I32(i32::try_from(channels.clamped).unwrap_or(i32::MAX));
-        attributes.other.insert(Text::from("render/clamped"), clamped);
+    if half {
+        // How many there are is known when the pixels are written.
+        attributes.other.insert(Text::from(CLAMPED), AttributeValue::I32(0));
     }
-    let size = Vec2(film.width as usize, film.height as usize);
-    let part = |(number, part): (usize, Part)| {
-        let own = if number == 0 { attributes.clone() } else { of_data(&attributes) };
-        let name = format.multipart.then(|| Text::new_or_panic(part.name));
-        let packed = if part.is_data && format.compression.is_lossy() { Compression::Zip } else { format.compression };
-        let own = LayerAttributes { layer_name: name, ..own };
-        Layer::new(size, own, encoding(packed), AnyChannels::sort(part.channels))
-    };
-    let layers: Vec<_> = parts.into_iter().enumerate().map(part).collect();
-    let mut image = Image::from_layers(ImageAttributes::new(display_window(film)), layers);
+    let mut shared = ImageAttributes::new(display_window(film));
     // The chromaticities would be those of all parts, also of those that hold no colors.
-    image.attributes.chromaticities = (!format.multipart).then(|| chromaticities(film));
-    Ok((encode_image(image, path)?, channels.clamped))
+    shared.chromaticities = (!format.multipart).then(|| chromaticities(film));
+    let part = |(number, group): (usize, Group)| {
+        let own = if number == 0 { attributes.clone() } else { of_data(&attributes) };
+        let name = format.multipart.then(|| Text::new_or_panic(group.name));
+        let packed = if group.is_data && format.compression.is_lossy() { Compression::Zip } else { format.compression };
+        Part::new(film, group.columns, packed, shared.clone(), LayerAttributes { layer_name: name, ..own })
+    };
+    groups(film, format, half).into_iter().enumerate().map(part).collect()
 }
 
-/// The bytes of a file of parts.
-pub(super) fn encode_image(image: FlatImage, path: &Path) -> Result<Vec<u8>> {
-    let encode = |error: exr::error::Error| Error::Encode { path: path.to_owned(), message: error.to_string() };
-    let mut bytes = exr_blocks::file(&image).map_err(encode)?;
-    drop(image);
-    sort_attributes(&mut bytes);
-    Ok(bytes)
-}
-
-pub(super) type Channel = AnyChannel<FlatSamples>;
-
-/// A part of the file.
-struct Part {
-    name: String,
+/// Channels that stand in a part.
+struct Group<'f> {
+    name: &'f str,
     /// Whether it holds what is no color, apart from the image.
     is_data: bool,
-    channels: SmallVec<[Channel; 4]>,
+    columns: Vec<Column>,
 }
 
-/// Makes channels, and counts what does not fit into them.
-pub(super) struct Channels {
-    half: bool,
-    /// Of each channel.
-    pixels: usize,
-    clamped: u64,
-}
-
-impl Channels {
-    /// Of 32 bits, for the pixels of a film.
-    pub(super) fn new(film: &Film) -> Self {
-        Self { half: false, pixels: film.pixels.len(), clamped: 0 }
-    }
-
-    /// A channel of some name, of the value of each pixel; it has 16 bits if it may and colors have.
-    pub(super) fn of(&mut self, name: &str, may_be_half: bool, value: impl Fn(usize) -> f32 + Send + Sync) -> Channel {
-        let pixels = (0..self.pixels).into_par_iter();
-        let sample_data = if self.half && may_be_half {
-            let clamped = AtomicU64::new(0);
-            let halves = pixels.map(|pixel| half(value(pixel), &clamped)).collect();
-            self.clamped += clamped.into_inner();
-            FlatSamples::F16(halves)
-        } else {
-            FlatSamples::F32(pixels.map(value).collect())
-        };
-        AnyChannel { name: Text::new_or_panic(name), sample_data, quantize_linearly: false, sampling: Vec2(1, 1) }
-    }
-}
-
-/// A value in 16 bits; one that does not fit is counted, and becomes the largest that does.
-fn half(value: f32, clamped: &AtomicU64) -> f16 {
-    let half = f16::from_f32(value);
-    if half.is_finite() {
-        return half;
-    }
-    clamped.fetch_add(1, Ordering::Relaxed);
-    if value > 0.0 { f16::MAX } else { f16::MIN }
-}
-
-/// What the file holds: one part, or one for the image and each layer if the format sets them apart.
-fn parts(film: &Film, format: &Format, channels: &mut Channels) -> Vec<Part> {
-    let mut image = SmallVec::new();
-    image.push(channels.of("A", true, |pixel| film.pixels[pixel].alpha));
-    for (number, name) in ["R", "G", "B"].into_iter().enumerate() {
-        image.push(channels.of(name, true, |pixel| film.pixels[pixel].rgb[number]));
-    }
-    let depth = channels.of("Z", false, |pixel| film.pixels[pixel].depth);
-    let mut parts = vec![Part { name: "image".to_owned(), is_data: false, channels: image }];
+/// The channels of all parts; those of colors have 16 bits if they shall.
+fn groups<'f>(film: &'f Film, format: &Format, half: bool) -> Vec<Group<'f>> {
+    let mut image = vec![Column::new("A", half, Of::Alpha)];
+    image.extend(colors(half));
+    let mut groups = vec![Group { name: "image", is_data: false, columns: image }];
     if format.multipart {
         // Blender takes a part of R, G, B, A and another channel for none of what they are.
-        parts.push(Part { name: "depth".to_owned(), is_data: true, channels: SmallVec::new() });
+        groups.push(Group { name: "depth", is_data: true, columns: Vec::new() });
     }
-    parts.last_mut().expect("the image comes first").channels.push(depth);
-    for image in &film.layers {
+    groups.last_mut().expect("the image comes first").columns.push(Column::new("Z", false, Of::Depth));
+    for (layer, image) in film.layers.iter().enumerate() {
         if format.multipart {
-            let is_data = !image.layer.is_color();
-            parts.push(Part { name: image.name.clone(), is_data, channels: SmallVec::new() });
+            groups.push(Group { name: &image.name, is_data: !image.layer.is_color(), columns: Vec::new() });
         }
-        let part = parts.last_mut().expect("the image comes first");
-        let names = image.layer.channels();
-        for (number, channel) in names.iter().enumerate() {
-            let value = |pixel: usize| image.values[pixel * names.len() + number];
-            part.channels.push(channels.of(&format!("{}.{channel}", image.name), image.layer.may_be_half(), value));
-        }
+        let columns = image.layer.channels().iter().enumerate().map(|(channel, name)| {
+            let is_half = half && image.layer.may_be_half();
+            Column::new(&format!("{}.{name}", image.name), is_half, Of::Layer { layer, channel })
+        });
+        groups.last_mut().expect("the image comes first").columns.extend(columns);
     }
-    parts
+    groups
 }
 
-/// Rows from the top, packed in a way.
-pub(super) fn encoding(packed: Compression) -> Encoding {
-    Encoding { compression: compression(packed), line_order: LineOrder::Increasing, ..Encoding::UNCOMPRESSED }
-}
-
-fn compression(compression: Compression) -> exr::compression::Compression {
-    use exr::compression::Compression as Exr;
-    match compression {
-        Compression::None => Exr::Uncompressed,
-        Compression::Rle => Exr::RLE,
-        Compression::Zips => Exr::ZIP1,
-        Compression::Zip => Exr::ZIP16,
-        Compression::Piz => Exr::PIZ,
-        Compression::Pxr24 => Exr::PXR24,
-        // The level is that of OpenEXR, 45; the attribute that could say another is deprecated.
-        Compression::Dwaa => Exr::DWAA(None),
-        Compression::Dwab => Exr::DWAB(None),
-    }
+/// Red, green and blue.
+pub(super) fn colors(is_half: bool) -> impl Iterator<Item = Column> {
+    ["R", "G", "B"].into_iter().enumerate().map(move |(number, name)| Column::new(name, is_half, Of::Color(number)))
 }
 
 /// The full image.
@@ -319,38 +260,4 @@ fn vector([x, y]: [f64; 2]) -> Vec2<f32> {
 
 fn matrix(rows: &[[f64; 4]; 4]) -> [f32; 16] {
     std::array::from_fn(|i| rows[i / 4][i % 4] as f32)
-}
-
-/// Puts the attributes of each part into alphabetical order.
-///
-/// The encoder keeps them in a hash map, whose order changes from run to run; the headers' length does not depend on
-/// it, so no offset in the file changes.
-fn sort_attributes(file: &mut [u8]) {
-    const START: usize = 8; // magic number and version
-    const SEVERAL_PARTS: u8 = 0x10; // of the second byte of the version
-    let several = file[5] & SEVERAL_PARTS != 0;
-    let mut at = START;
-    loop {
-        at = sort_header(file, at);
-        // The list of several headers ends with an empty one.
-        if !several || file[at] == 0 {
-            return;
-        }
-    }
-}
-
-/// Sorts the attributes of one header, and answers where it ends.
-fn sort_header(file: &mut [u8], start: usize) -> usize {
-    let text_end = |file: &[u8], from: usize| from + file[from..].iter().position(|&byte| byte == 0).unwrap_or(0) + 1;
-    let (mut at, mut entries) = (start, Vec::new());
-    while file[at] != 0 {
-        let size_at = text_end(file, text_end(file, at));
-        let size = u32::from_le_bytes([file[size_at], file[size_at + 1], file[size_at + 2], file[size_at + 3]]);
-        let end = size_at + 4 + size as usize;
-        entries.push(file[at..end].to_vec());
-        at = end;
-    }
-    entries.sort();
-    file[start..at].copy_from_slice(&entries.concat());
-    at + 1
 }

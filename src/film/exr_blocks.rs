@@ -1,50 +1,190 @@
-//! The pixels of an OpenEXR file, packed block by block on all threads.
+//! The pixels of an OpenEXR file, packed block by block on all threads and written as they come.
 
-use std::io::Cursor;
+use std::ops::Range;
+use std::path::Path;
 
 use exr::block::chunk::{Chunk, CompressedBlock, CompressedScanLineBlock};
-use exr::block::writer::ChunksWriter;
-use exr::block::{BlockIndex, UncompressedBlock, enumerate_ordered_header_block_indices};
-use exr::compression::Compression;
-use exr::error::Result;
-use exr::image::write::layers::{LayersWriter, WritableLayers};
+use exr::block::{BlockIndex, UncompressedBlock};
+use exr::compression::Compression as Packing;
+use exr::meta::attribute::ChannelList;
 use exr::meta::header::Header;
-use exr::prelude::{FlatImage, WritableImage};
+use exr::meta::{BlockDescription, compute_chunk_count};
+use exr::prelude::{ChannelDescription, ImageAttributes, LayerAttributes, LineOrder, SampleType, Vec2};
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 use zlib_rs::{DeflateConfig, ReturnCode, compress_bound, compress_slice};
 
+use super::exr_column::Column;
+use super::exr_head;
+use super::file::{Place, cannot_write};
+use super::format::Compression;
+use super::image::Film;
+use super::rows::Rows;
+use crate::error::{Error, Result};
+
 /// Level of deflate: the bytes of level 4 of the library for EXR, in half of the time (`benches/README.md`).
 const LEVEL: i32 = 3;
-/// Blocks that each thread packs before all are written: they are all of the file that is in memory twice.
+/// Blocks that each thread packs before all are written: they are all of the file that is in memory.
 const BLOCKS_AT_A_TIME: usize = 4;
+/// Bytes of a place in the file.
+const OFFSET: usize = 8;
 
-/// The bytes of an image of scan lines. They are the same for any number of threads.
-pub(super) fn file(image: &FlatImage) -> Result<Vec<u8>> {
-    let mut bytes = Cursor::new(Vec::new());
-    let headers = image.write().infer_meta_data();
-    let writer = image.layer_data.create_writer(&headers);
-    exr::block::write(&mut bytes, headers, true, |meta, chunks| {
-        let all: Vec<(usize, BlockIndex)> = enumerate_ordered_header_block_indices(&meta.headers).collect();
-        for some in all.chunks(BLOCKS_AT_A_TIME * rayon::current_num_threads()) {
-            let pack = |&(number, index): &(usize, BlockIndex)| {
-                let data = writer.extract_uncompressed_block(&meta.headers, index);
-                Ok((number, chunk(&meta.headers, UncompressedBlock { index, data })?))
-            };
-            let packed: Vec<Result<(usize, Chunk)>> = some.par_iter().map(pack).collect();
-            for each in packed {
-                let (number, chunk) = each?;
-                chunks.write_chunk(number, chunk)?;
+/// How many values of 16 bits were too large for them.
+pub(super) const CLAMPED: &str = "render/clamped";
+
+/// A part of a file of scan lines: its channels by their names, and all it says beside their numbers.
+pub(super) struct Part {
+    columns: Vec<Column>,
+    header: Header,
+}
+
+impl Part {
+    /// With the pixels of a film.
+    pub(super) fn new(
+        film: &Film,
+        mut columns: Vec<Column>,
+        packed: Compression,
+        shared_attributes: ImageAttributes,
+        own_attributes: LayerAttributes,
+    ) -> Self {
+        columns.sort_by(|a, b| a.name.cmp(&b.name));
+        let channel = |column: &Column| {
+            let sample_type = if column.is_half { SampleType::F16 } else { SampleType::F32 };
+            ChannelDescription::new(column.name.clone(), sample_type, false)
+        };
+        let (compression, blocks) = (packing(packed), BlockDescription::ScanLines);
+        let layer_size = Vec2(film.width as usize, film.height as usize);
+        let header = Header {
+            channels: ChannelList::new(columns.iter().map(channel).collect()),
+            compression,
+            blocks,
+            line_order: LineOrder::Increasing,
+            layer_size,
+            deep: false,
+            deep_data_version: None,
+            chunk_count: compute_chunk_count(compression, layer_size, blocks),
+            max_samples_per_pixel: None,
+            shared_attributes,
+            own_attributes,
+        };
+        Self { columns, header }
+    }
+
+    /// Rows of a block.
+    fn block_rows(&self) -> u32 {
+        self.header.compression.scan_lines_per_block() as u32
+    }
+}
+
+fn packing(compression: Compression) -> Packing {
+    match compression {
+        Compression::None => Packing::Uncompressed,
+        Compression::Rle => Packing::RLE,
+        Compression::Zips => Packing::ZIP1,
+        Compression::Zip => Packing::ZIP16,
+        Compression::Piz => Packing::PIZ,
+        Compression::Pxr24 => Packing::PXR24,
+        // The level is that of OpenEXR, 45; the attribute that could say another is deprecated.
+        Compression::Dwaa => Packing::DWAA(None),
+        Compression::Dwab => Packing::DWAB(None),
+    }
+}
+
+/// A block of rows of a part.
+struct Block {
+    part: usize,
+    rows: Range<u32>,
+}
+
+/// Writes a file of scan lines from its beginning, and answers how many values were too large. Its bytes are the same
+/// for any number of threads, and for any number of rows that come at once.
+///
+/// All parts go down the image side by side, so that no row is needed twice.
+///
+/// # Errors
+/// If rows cannot be read, or the file cannot be encoded or written; `path` is what it is called then.
+pub(super) fn write(parts: &[Part], rows: &mut dyn Rows, place: &mut dyn Place, path: &Path) -> Result<u64> {
+    let encode = |error: exr::error::Error| Error::Encode { path: path.to_owned(), message: error.to_string() };
+    let failed = |source| cannot_write(path, source);
+    let headers: Vec<Header> = parts.iter().map(|part| part.header.clone()).collect();
+    let mut head = exr_head::encode(&headers).map_err(encode)?;
+    let mut offsets: Vec<Vec<u64>> = vec![Vec::new(); parts.len()];
+    let offset_bytes = OFFSET * headers.iter().map(|header| header.chunk_count).sum::<usize>();
+    place.write_all(&head).and_then(|()| place.write_all(&vec![0; offset_bytes])).map_err(failed)?;
+    let (mut end, mut clamped, mut bytes) = ((head.len() + offset_bytes) as u64, 0, Vec::new());
+    for strip in strips(parts, rows.at_once()) {
+        let blocks = blocks(parts, &strip);
+        let (film, first) = rows.rows(strip.clone())?;
+        let pack = |block: &Block| {
+            let below = (block.rows.start - strip.start) as usize * film.width as usize;
+            pack(parts, &headers, block, film, first + below)
+        };
+        for some in blocks.chunks(BLOCKS_AT_A_TIME * rayon::current_num_threads()) {
+            let packed: Vec<_> = some.par_iter().map(pack).collect();
+            for (block, packed) in some.iter().zip(packed) {
+                let Packed { chunk, clamped: more } = packed.map_err(encode)?;
+                bytes.clear();
+                chunk.write(&mut bytes, parts.len()).map_err(encode)?;
+                place.write_all(&bytes).map_err(failed)?;
+                offsets[block.part].push(end);
+                end += bytes.len() as u64;
+                clamped += more;
             }
         }
-        Ok(())
-    })?;
-    Ok(bytes.into_inner())
+    }
+    exr_head::set_count(&mut head, CLAMPED, clamped);
+    head.extend(offsets.into_iter().flatten().flat_map(u64::to_le_bytes));
+    place.rewind().and_then(|()| place.write_all(&head)).map_err(failed)?;
+    Ok(clamped)
+}
+
+/// Rows that are worked on at once: at most so many, but as many as the tallest block has.
+fn strips(parts: &[Part], at_once: Option<u32>) -> impl Iterator<Item = Range<u32>> + use<> {
+    let height = parts.iter().map(|part| part.header.layer_size.height() as u32).max().unwrap_or_default();
+    // Those of all packings are powers of two.
+    let tallest = parts.iter().map(Part::block_rows).max().unwrap_or(1);
+    let each = at_once.map_or(height, |rows| rows / tallest * tallest).max(tallest);
+    (0..height).step_by(each as usize).map(move |first| first..height.min(first.saturating_add(each)))
+}
+
+/// The blocks of some rows, from the top; those that begin together in the order of their parts.
+fn blocks(parts: &[Part], strip: &Range<u32>) -> Vec<Block> {
+    let of_part = |(part, Part { header, .. }): (usize, &Part)| {
+        let each = header.compression.scan_lines_per_block() as u32;
+        let rows = strip.clone().step_by(each as usize);
+        let end = strip.end;
+        rows.map(move |first| Block { part, rows: first..end.min(first.saturating_add(each)) })
+    };
+    let mut blocks: Vec<Block> = parts.iter().enumerate().flat_map(of_part).collect();
+    blocks.sort_by_key(|block| (block.rows.start, block.part));
+    blocks
+}
+
+/// A block as it stands in the file, and how many of its values were too large.
+struct Packed {
+    chunk: Chunk,
+    clamped: u64,
+}
+
+/// Packs a block of pixels of a film, the first of which has a number.
+fn pack(parts: &[Part], headers: &[Header], block: &Block, film: &Film, first: usize) -> exr::error::Result<Packed> {
+    let Part { columns, header } = &parts[block.part];
+    let (width, rows) = (film.width as usize, block.rows.len());
+    let mut data = Vec::with_capacity(header.channels.bytes_per_pixel * width * rows);
+    let mut clamped = 0;
+    for row in 0..rows {
+        for column in columns {
+            clamped += column.put(film, first + row * width, width, &mut data);
+        }
+    }
+    let (pixel_position, pixel_size) = (Vec2(0, block.rows.start as usize), Vec2(width, rows));
+    let index = BlockIndex { layer: block.part, pixel_position, pixel_size, level: Vec2(0, 0) };
+    Ok(Packed { chunk: chunk(headers, UncompressedBlock { index, data })?, clamped })
 }
 
 /// A block as it stands in the file: the library's own but for deflate, of which its own takes twice as long.
-fn chunk(headers: &[Header], block: UncompressedBlock) -> Result<Chunk> {
+fn chunk(headers: &[Header], block: UncompressedBlock) -> exr::error::Result<Chunk> {
     let header = &headers[block.index.layer];
-    let is_deflate = matches!(header.compression, Compression::ZIP1 | Compression::ZIP16);
+    let is_deflate = matches!(header.compression, Packing::ZIP1 | Packing::ZIP16);
     if !is_deflate || cfg!(target_endian = "big") {
         return block.compress_to_chunk(headers);
     }

@@ -3,14 +3,14 @@
 
 use std::path::Path;
 
-use exr::prelude::{AnyChannels, AttributeValue, Image, ImageAttributes, Layer, SmallVec, Text, Vec2};
+use exr::prelude::{AttributeValue, ImageAttributes, Text};
 
-use super::exr::{
-    Channel, Channels, Provenance, View, attributes, chromaticities, display_window, encode_image, encoding,
-};
-use super::file::replace_file;
-use super::format::{Compression, Format};
-use super::image::Film;
+use super::exr::{Heading, attributes, chromaticities, colors, display_window};
+use super::exr_blocks::{self, Part};
+use super::exr_column::{Column, Of};
+use super::file::replace_by;
+use super::format::Compression;
+use super::rows::Rows;
 use crate::error::Result;
 
 /// Writes the spectra of an image: a channel `S0.380,000000nm` and so on for each band, with its center in nm and a
@@ -21,22 +21,13 @@ use crate::error::Result;
 /// mere name: that attribute holds the text that they expect, and `render/spectralUnits` the unit.
 ///
 /// # Errors
-/// If the file cannot be encoded or written; a file that was there before is then untouched.
-pub fn write_spectral_exr(
-    film: &Film,
-    format: &Format,
-    view: &View,
-    provenance: &Provenance,
-    path: &Path,
-) -> Result<()> {
+/// If rows cannot be read, or the file cannot be encoded or written; a file that was there before is then untouched.
+pub fn write_spectral_exr(heading: Heading, rows: &mut dyn Rows, path: &Path) -> Result<()> {
+    let Heading { film, format, view, provenance } = heading;
     let Some(spectral) = &film.spectral else { return Ok(()) };
-    let (mut make, mut channels) = (Channels::new(film), SmallVec::<[Channel; 4]>::new());
-    for (number, name) in ["R", "G", "B"].into_iter().enumerate() {
-        channels.push(make.of(name, false, |pixel| film.pixels[pixel].rgb[number]));
-    }
-    for (band, center) in spectral.bands.centers_nm().enumerate() {
-        channels.push(make.of(&channel_name(center), false, |pixel| spectral.pixel(pixel)[band]));
-    }
+    let bands = spectral.bands.centers_nm().enumerate();
+    let bands = bands.map(|(band, center)| Column::new(&channel_name(center), false, Of::Band(band)));
+    let columns = colors(false).chain(bands).collect();
     let mut attributes = attributes(film, format, view, provenance);
     let step = AttributeValue::F32(spectral.bands.step_nm() as f32);
     for (key, value) in [
@@ -47,11 +38,10 @@ pub fn write_spectral_exr(
     ] {
         attributes.other.insert(Text::from(key), value);
     }
-    let size = Vec2(film.width as usize, film.height as usize);
-    let part = Layer::new(size, attributes, encoding(Compression::Zip), AnyChannels::sort(channels));
-    let mut image = Image::from_layers(ImageAttributes::new(display_window(film)), vec![part]);
-    image.attributes.chromaticities = Some(chromaticities(film));
-    replace_file(path, &encode_image(image, path)?)
+    let mut shared = ImageAttributes::new(display_window(film));
+    shared.chromaticities = Some(chromaticities(film));
+    let parts = [Part::new(film, columns, Compression::Zip, shared, attributes)];
+    replace_by(path, &mut |place| exr_blocks::write(&parts, rows, place, path).map(drop))
 }
 
 fn text(value: &str) -> AttributeValue {

@@ -1,7 +1,7 @@
 //! Files that appear whole or not at all.
 
 use std::fs::{self, File};
-use std::io::{self, Write};
+use std::io::{self, Cursor, Seek, Write};
 use std::path::{Path, PathBuf};
 
 use crate::error::{Error, Result};
@@ -11,6 +11,11 @@ const MOST_LINKS: u32 = 40;
 /// Most temporary files of a run that died and was followed by one of the same process id.
 const MOST_LEFT_BEHIND: u32 = 1000;
 
+/// Where the bytes of a file go: some of its first ones may be known last.
+pub(super) trait Place: Write + Seek {}
+
+impl<P: Write + Seek> Place for P {}
+
 /// Writes a file under a temporary name beside the target, then renames it: a reader never sees half of it.
 ///
 /// A symbolic link stays and its target is replaced; permissions are kept, and other names of the same file (hard
@@ -19,27 +24,39 @@ const MOST_LEFT_BEHIND: u32 = 1000;
 /// # Errors
 /// If it cannot be written; a file that was there before is then untouched, and nothing else is left behind.
 pub fn replace_file(path: &Path, bytes: &[u8]) -> Result<()> {
-    replace_by(path, &mut |file| file.write_all(bytes))
+    replace_by(path, &mut |place| place.write_all(bytes).map_err(|source| cannot_write(path, source)))
 }
 
-/// The same of bytes that come one after another.
+/// The same of bytes that come one after another, of which those of a device are all in memory before it has any.
 ///
 /// # Errors
-/// As [`replace_file`].
-pub(super) fn replace_by(path: &Path, write: &mut dyn FnMut(&mut dyn Write) -> io::Result<()>) -> Result<()> {
-    let written = Target::of(path).and_then(|target| match target {
-        Target::Device => write(&mut File::options().write(true).open(path)?),
-        Target::File(target) => {
-            let (mut file, temporary) = Temporary::beside(&target)?;
-            write(&mut file)?;
-            if let Ok(before) = fs::metadata(&target) {
-                file.set_permissions(before.permissions())?;
-            }
-            file.sync_all()?;
-            temporary.become_file(&target)
+/// As [`replace_file`], and what the bytes come with.
+pub(super) fn replace_by(path: &Path, write: &mut dyn FnMut(&mut dyn Place) -> Result<()>) -> Result<()> {
+    let failed = |source| cannot_write(path, source);
+    let target = match Target::of(path).map_err(failed)? {
+        Target::Device => {
+            let mut bytes = Cursor::new(Vec::new());
+            write(&mut bytes)?;
+            let mut device = File::options().write(true).open(path).map_err(failed)?;
+            return device.write_all(bytes.get_ref()).map_err(failed);
         }
-    });
-    written.map_err(|source| Error::Io { doing: "write", path: path.to_owned(), source })
+        Target::File(target) => target,
+    };
+    let (mut file, temporary) = Temporary::beside(&target).map_err(failed)?;
+    write(&mut file)?;
+    let become_file = || {
+        if let Ok(before) = fs::metadata(&target) {
+            file.set_permissions(before.permissions())?;
+        }
+        file.sync_all()?;
+        temporary.become_file(&target)
+    };
+    become_file().map_err(failed)
+}
+
+/// The error of a file that cannot be written.
+pub(super) fn cannot_write(path: &Path, source: io::Error) -> Error {
+    Error::Io { doing: "write", path: path.to_owned(), source }
 }
 
 /// Finds out before a long render whether its image can be written; creates the folder if it is missing.
@@ -58,7 +75,7 @@ pub fn check_writable(path: &Path) -> Result<()> {
             Temporary::beside(&target).map(drop)
         }
     });
-    tried.map_err(|source| Error::Io { doing: "write", path: path.to_owned(), source })
+    tried.map_err(|source| cannot_write(path, source))
 }
 
 /// What a path stands for.

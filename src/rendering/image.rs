@@ -4,7 +4,9 @@ use std::path::Path;
 
 use super::image_error::ImageError;
 use crate::error::Result;
-use crate::film::{Film, Format, Pixel, Provenance, View, encode_exr, write_exr, write_png, write_spectral_exr};
+use crate::film::{
+    Film, Format, Heading, Pixel, Provenance, View, encode_exr, write_exr, write_png, write_spectral_exr,
+};
 use crate::trace::Report;
 
 /// A rendered image, and all that is known of it.
@@ -97,13 +99,18 @@ impl Image {
         &self.because
     }
 
+    /// What its files say of it.
+    fn heading(&self) -> Heading<'_> {
+        Heading { film: &self.film, format: &self.format, view: &self.view, provenance: &self.provenance }
+    }
+
     /// Writes a linear OpenEXR file with all layers, the camera, and everything that another run needs to make the same
     /// bytes. Answers how many values were too large for 16 bits, if it has those, and became 65504.
     ///
     /// # Errors
     /// If it cannot be written; a file that was there before is then untouched.
     pub fn write_exr(&self, path: impl AsRef<Path>) -> Result<u64> {
-        write_exr(&self.film, &self.format, &self.view, &self.provenance, path.as_ref())
+        write_exr(self.heading(), &mut &self.film, path.as_ref())
     }
 
     /// The bytes of that file, and how many values became 65504.
@@ -111,7 +118,7 @@ impl Image {
     /// # Errors
     /// If it cannot be encoded.
     pub fn exr_bytes(&self) -> Result<(Vec<u8>, u64)> {
-        encode_exr(&self.film, &self.format, &self.view, &self.provenance, Path::new("the image"))
+        encode_exr(self.heading(), &mut &self.film, Path::new("the image"))
     }
 
     /// The spectrum of the pixel in column `x`, row `y`, counted from 0 at the top left; none if spectra were not asked
@@ -135,7 +142,7 @@ impl Image {
     /// # Errors
     /// As [`write_exr`](Self::write_exr).
     pub fn write_spectral_exr(&self, path: impl AsRef<Path>) -> Result<()> {
-        write_spectral_exr(&self.film, &self.format, &self.view, &self.provenance, path.as_ref())
+        write_spectral_exr(self.heading(), &mut &self.film, path.as_ref())
     }
 
     /// Writes an 8-bit sRGB picture for looking, brightened by 2^`exposure`.

@@ -6,11 +6,12 @@ mod image;
 mod image_error;
 mod options;
 mod part;
+mod parts;
 mod render;
 
 pub use checkpoint::Resumed;
 pub use image::Image;
 pub use image_error::ImageError;
 pub use options::Options;
-pub use part::merge;
+pub use parts::{Parts, merge};
 pub use render::{Rendering, render};

@@ -1,0 +1,76 @@
+//! The numbers of each pixel that an OpenEXR file holds.
+
+use exr::prelude::{Text, f16};
+
+use super::image::Film;
+
+/// A channel: its name, and which number of a pixel it holds.
+pub(super) struct Column {
+    pub(super) name: Text,
+    /// Whether it has 16 bits, not 32.
+    pub(super) is_half: bool,
+    pub(super) of: Of,
+}
+
+/// A number of a pixel.
+#[derive(Clone, Copy)]
+pub(super) enum Of {
+    Alpha,
+    /// Red, green or blue, by its number.
+    Color(usize),
+    Depth,
+    /// A layer and one of its channels, by their numbers.
+    Layer {
+        layer: usize,
+        channel: usize,
+    },
+    /// The radiance of a spectral band.
+    Band(usize),
+}
+
+impl Column {
+    pub(super) fn new(name: &str, is_half: bool, of: Of) -> Self {
+        Self { name: Text::new_or_panic(name), is_half, of }
+    }
+
+    /// Adds the bytes of so many pixels, the first of which has a number. Answers how many values were too large for 16
+    /// bits and became the largest that fits.
+    pub(super) fn put(&self, film: &Film, first: usize, pixels: usize, bytes: &mut Vec<u8>) -> u64 {
+        let all = &film.pixels[first..first + pixels];
+        match self.of {
+            Of::Alpha => self.put_all(all.iter().map(|pixel| pixel.alpha), bytes),
+            Of::Color(number) => self.put_all(all.iter().map(|pixel| pixel.rgb[number]), bytes),
+            Of::Depth => self.put_all(all.iter().map(|pixel| pixel.depth), bytes),
+            Of::Layer { layer, channel } => {
+                let image = &film.layers[layer];
+                let each = image.layer.channels().len();
+                let values = &image.values[first * each..(first + pixels) * each];
+                self.put_all(values.iter().skip(channel).step_by(each).copied(), bytes)
+            }
+            Of::Band(band) => {
+                let spectral = film.spectral.as_ref().expect("bands are of a film with spectra");
+                self.put_all((first..first + pixels).map(|pixel| spectral.pixel(pixel)[band]), bytes)
+            }
+        }
+    }
+
+    fn put_all(&self, values: impl Iterator<Item = f32>, bytes: &mut Vec<u8>) -> u64 {
+        let mut clamped = 0;
+        if self.is_half {
+            values.for_each(|value| bytes.extend(half(value, &mut clamped).to_ne_bytes()));
+        } else {
+            values.for_each(|value| bytes.extend(value.to_ne_bytes()));
+        }
+        clamped
+    }
+}
+
+/// A value in 16 bits; one that does not fit is counted, and becomes the largest that does.
+fn half(value: f32, clamped: &mut u64) -> f16 {
+    let half = f16::from_f32(value);
+    if half.is_finite() {
+        return half;
+    }
+    *clamped += 1;
+    if value > 0.0 { f16::MAX } else { f16::MIN }
+}

@@ -1,0 +1,84 @@
+//! What stands in an OpenEXR file before its pixels; the same bytes for the same attributes.
+
+use std::io::Cursor;
+use std::ops::Range;
+
+use exr::error::{Error, Result};
+use exr::meta::header::Header;
+
+/// Magic number and version, before the first attribute.
+const START: usize = 8;
+/// The bit of files of several parts in the second byte of the version.
+const SEVERAL_PARTS: u8 = 0x10;
+
+/// The bytes up to the table of the blocks' places, with the attributes of each part in alphabetical order.
+///
+/// The library keeps them in a hash map, whose order changes from run to run.
+///
+/// # Errors
+/// If the library finds that not every program could read the file.
+pub(super) fn encode(headers: &[Header]) -> Result<Vec<u8>> {
+    let mut bytes = Cursor::new(Vec::new());
+    // The library writes what stands before the blocks, and then asks for these.
+    match exr::block::write(&mut bytes, headers.iter().cloned().collect(), true, |_, _| Err(Error::Aborted)) {
+        Ok(()) | Err(Error::Aborted) => {}
+        Err(error) => return Err(error),
+    }
+    let mut bytes = bytes.into_inner();
+    let parts = attributes(&bytes);
+    for entries in &parts.of_parts {
+        let mut sorted: Vec<Vec<u8>> = entries.iter().map(|entry| bytes[entry.clone()].to_vec()).collect();
+        sorted.sort();
+        if let Some(first) = entries.first() {
+            let sorted = sorted.concat();
+            bytes[first.start..first.start + sorted.len()].copy_from_slice(&sorted);
+        }
+    }
+    bytes.truncate(parts.end);
+    Ok(bytes)
+}
+
+/// Sets an int attribute of the first part, if that has it; counts beyond 2^31 - 1 become that.
+pub(super) fn set_count(head: &mut [u8], name: &str, count: u64) {
+    let named = [name.as_bytes(), b"\0int\0"].concat();
+    let of_parts = attributes(head).of_parts;
+    let found =
+        of_parts.first().and_then(|entries| entries.iter().find(|entry| head[(*entry).clone()].starts_with(&named)));
+    if let Some(entry) = found {
+        let count = i32::try_from(count).unwrap_or(i32::MAX);
+        head[entry.end - size_of::<i32>()..entry.end].copy_from_slice(&count.to_le_bytes());
+    }
+}
+
+/// Where the attributes stand.
+struct Attributes {
+    /// Of each part, one after another.
+    of_parts: Vec<Vec<Range<usize>>>,
+    /// Where the last part's end.
+    end: usize,
+}
+
+fn attributes(file: &[u8]) -> Attributes {
+    let text_end = |from: usize| from + file[from..].iter().position(|&byte| byte == 0).unwrap_or(0) + 1;
+    let several = file[5] & SEVERAL_PARTS != 0;
+    let (mut at, mut of_parts) = (START, Vec::new());
+    loop {
+        let mut entries = Vec::new();
+        while file[at] != 0 {
+            let size_at = text_end(text_end(at));
+            let size = u32::from_le_bytes([file[size_at], file[size_at + 1], file[size_at + 2], file[size_at + 3]]);
+            let end = size_at + 4 + size as usize;
+            entries.push(at..end);
+            at = end;
+        }
+        at += 1;
+        // The list of several parts ends with an empty one.
+        if several && entries.is_empty() {
+            return Attributes { of_parts, end: at };
+        }
+        of_parts.push(entries);
+        if !several {
+            return Attributes { of_parts, end: at };
+        }
+    }
+}

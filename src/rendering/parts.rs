@@ -1,0 +1,259 @@
+//! Images whose parts several machines made, laid together.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+use super::image::Image;
+use super::part::{Head, Tile, numbers, open, refused, set_non_finite, window};
+use crate::error::Result;
+use crate::film::{
+    BlockReader, DEPTH_OF_NOTHING, Film, Format, Heading, Pixel, Provenance, Rows, Shard, TILE, TilePlace, View,
+    Window, write_exr, write_spectral_exr,
+};
+use crate::trace::Report;
+
+/// The parts of an image, all of them and of the same render. Only one tile of each is looked at at a time.
+///
+/// ```
+/// # let scene = abbe::Scene::parse("camera = { position = [0, 0, 4], look_at = [0, 0, 0], vertical_fov = 40 }
+/// # film = { width = 40, height = 8 }
+/// # light = [{ environment = { radiance = 1 } }]", "")?;
+/// # let folder = tempfile::tempdir().expect("a folder");
+/// let paths = [1, 2].map(|number| folder.path().join(format!("{number}-of-2.part")));
+/// for (number, path) in (1..).zip(&paths) {
+///     let shard = abbe::film::Shard::new(number, 2).expect("there are two parts");
+///     let options = abbe::Options { shard, ..Default::default() };
+///     let mut rendering = abbe::Rendering::new(&scene, &options)?;
+///     while rendering.advance(&|_| ()) {}
+///     rendering.write_part(path)?;
+/// }
+/// let parts = abbe::Parts::open(&paths)?;
+/// parts.write_exr(folder.path().join("image.exr"))?;
+/// let whole = abbe::render(&scene, &abbe::Options::default())?;
+/// assert_eq!(parts.image()?.film(), whole.film());
+/// # Ok::<(), abbe::Error>(())
+/// ```
+pub struct Parts {
+    /// The image without its pixels.
+    film: Film,
+    format: Format,
+    view: View,
+    provenance: Provenance,
+    /// What was left out of all parts.
+    non_finite: u64,
+    /// In the order of their numbers.
+    files: Vec<Tiles>,
+}
+
+/// The tiles of a part in its file.
+#[derive(Clone)]
+struct Tiles {
+    path: PathBuf,
+    /// The byte at which the first one begins.
+    start: u64,
+}
+
+/// Lays the parts of an image together in memory: the same image, to the last bit, as one render makes.
+///
+/// # Errors
+/// As [`Parts::open`]; [`Error::Decode`](crate::Error::Decode) if a part is damaged.
+pub fn merge(parts: &[PathBuf]) -> Result<Image> {
+    Parts::open(parts)?.image()
+}
+
+impl Parts {
+    /// Finds out whether parts, named in any order, make an image.
+    ///
+    /// # Errors
+    /// [`Error::Arguments`](crate::Error::Arguments) if a part is missing or there twice, or parts are not of the same
+    /// render; [`Error::Decode`](crate::Error::Decode) if one is damaged before its tiles.
+    pub fn open(paths: &[PathBuf]) -> Result<Self> {
+        let Some((first, others)) = paths.split_first() else {
+            return Err(refused("no part of an image is given", "name all of them: render merge out.exr *.part"));
+        };
+        let (whole, blocks) = open(first)?;
+        let (count, window) = (whole.shard.count(), window(&whole.film));
+        let mut non_finite = whole.non_finite;
+        let mut found = BTreeMap::from([(whole.shard.number(), tiles(first, blocks, whole.shard, window)?)]);
+        for path in others {
+            let (head, blocks) = open(path)?;
+            if let Some(difference) = whole.difference(&head) {
+                let message = format!("{} does not belong to {}: {difference}", path.display(), first.display());
+                return Err(refused(message, "render it again, or leave it out"));
+            }
+            let number = head.shard.number();
+            if let Some(other) = found.insert(number, tiles(path, blocks, head.shard, window)?) {
+                let message =
+                    format!("{} and {} are both part {number} of {count}", other.path.display(), path.display());
+                return Err(refused(message, "leave one of them out"));
+            }
+            non_finite += head.non_finite;
+        }
+        let mut missing = (1..=count).filter(|number| !found.contains_key(number));
+        if let Some(number) = missing.next() {
+            let more = missing.count();
+            let more = if more == 0 { String::new() } else { format!(", and {more} more") };
+            let help = format!("render it: --shard {number}/{count}");
+            return Err(refused(format!("part {number} of {count} is missing{more}"), help));
+        }
+        non_finite += whole.shared_non_finite();
+        let Head { film, format, view, mut provenance, .. } = whole;
+        set_non_finite(&mut provenance, non_finite);
+        Ok(Self { film, format, view, provenance, non_finite, files: found.into_values().collect() })
+    }
+
+    /// How the image's file is written.
+    pub fn format(&self) -> &Format {
+        &self.format
+    }
+
+    /// Writes the image as [`Image::write_exr`] does, to the same bytes as one render. It takes as much memory as some
+    /// rows of the image, whatever the number of parts.
+    ///
+    /// # Errors
+    /// As of [`Image::write_exr`], and [`Error::Decode`](crate::Error::Decode) if a part is damaged.
+    pub fn write_exr(&self, path: impl AsRef<Path>) -> Result<u64> {
+        write_exr(self.heading(), &mut Strip::new(self, Some(AT_ONCE)), path.as_ref())
+    }
+
+    /// Writes the spectra as [`Image::write_spectral_exr`] does, in as little memory. Answers whether there are any.
+    ///
+    /// # Errors
+    /// As [`write_exr`](Self::write_exr).
+    pub fn write_spectral_exr(&self, path: impl AsRef<Path>) -> Result<bool> {
+        write_spectral_exr(self.heading(), &mut Strip::new(self, Some(AT_ONCE)), path.as_ref())?;
+        Ok(self.film.spectral.is_some())
+    }
+
+    /// The image in memory. It says of its rendering only what its files say.
+    ///
+    /// # Errors
+    /// [`Error::Decode`](crate::Error::Decode) if a part is damaged.
+    pub fn image(&self) -> Result<Image> {
+        let mut all = Strip::new(self, None);
+        all.rows(0..self.film.height)?;
+        let report = Report { non_finite: self.non_finite, ..Report::default() };
+        let (view, format, provenance) = (self.view, self.format.clone(), self.provenance.clone());
+        Ok(Image { film: all.film, report, error: None, because: Vec::new(), view, format, provenance })
+    }
+
+    fn heading(&self) -> Heading<'_> {
+        Heading { film: &self.film, format: &self.format, view: &self.view, provenance: &self.provenance }
+    }
+}
+
+/// Where the tiles of a part begin, of which it may have none.
+fn tiles(path: &Path, blocks: BlockReader, shard: Shard, window: Window) -> Result<Tiles> {
+    let start = blocks.place();
+    if shard.tiles(window).next().is_none() {
+        blocks.end()?;
+    }
+    Ok(Tiles { path: path.to_owned(), start })
+}
+
+/// Rows that are merged at once: some blocks of the usual packing.
+const AT_ONCE: u32 = 64;
+/// Files that are open at once, of the 256 that the strictest system allows; of more parts, some are opened again for
+/// each of their tiles.
+const MOST_OPEN: usize = 200;
+
+/// Rows of an image, of the tiles of all parts.
+struct Strip<'p> {
+    parts: &'p Parts,
+    /// How far each part is read, and its reader if that is kept.
+    files: Vec<Tiles>,
+    readers: Vec<Option<BlockReader>>,
+    at_once: Option<u32>,
+    /// Tiles of all parts.
+    tiles: usize,
+    /// The rows.
+    film: Film,
+}
+
+impl<'p> Strip<'p> {
+    fn new(parts: &'p Parts, at_once: Option<u32>) -> Self {
+        let readers = parts.files.iter().take(MOST_OPEN).map(|_| None).collect();
+        let (files, tiles) = (parts.files.clone(), Shard::WHOLE.tiles(window(&parts.film)).count());
+        Self { parts, files, readers, at_once, tiles, film: Film { height: 0, ..parts.film.clone() } }
+    }
+
+    /// Makes room for so many rows.
+    fn resize(&mut self, rows: u32) {
+        let film = &mut self.film;
+        film.height = rows;
+        let pixels = film.width as usize * rows as usize;
+        film.pixels.resize(pixels, BLANK);
+        film.layers.iter_mut().for_each(|layer| layer.values.resize(pixels * numbers(layer), 0.0));
+        if let Some(spectral) = &mut film.spectral {
+            spectral.values.resize(pixels * spectral.bands.count(), 0.0);
+        }
+    }
+
+    /// Reads the next tile of the part that has it, which is its last one perhaps.
+    fn read(&mut self, place: TilePlace) -> Result<Tile> {
+        let (number, count) = (place.number as usize, self.files.len());
+        let part = number % count;
+        let kept = self.readers.get_mut(part).and_then(Option::take);
+        let file = &mut self.files[part];
+        let mut blocks = kept.map_or_else(|| BlockReader::open_at(&file.path, file.start), Ok)?;
+        let tile: Tile = blocks.block()?;
+        if !tile.fits(place, &self.film) {
+            return Err(blocks.damaged());
+        }
+        if number + count >= self.tiles {
+            blocks.end()?;
+        } else {
+            file.start = blocks.place();
+            if let Some(reader) = self.readers.get_mut(part) {
+                *reader = Some(blocks);
+            }
+        }
+        Ok(tile)
+    }
+
+    /// Puts a tile into the rows, of which the first one has a number.
+    fn paste(&mut self, tile: &Tile, place: TilePlace, first: u32) {
+        let film = &mut self.film;
+        let [left, top] = place.corner;
+        let place = TilePlace { corner: [left, top - first], ..place };
+        let window = window(film);
+        paste(&tile.pixels, 1, window, place, &mut film.pixels);
+        for (layer, values) in film.layers.iter_mut().zip(&tile.layers) {
+            paste(values, numbers(layer), window, place, &mut layer.values);
+        }
+        if let Some(spectral) = &mut film.spectral {
+            paste(&tile.spectral, spectral.bands.count(), window, place, &mut spectral.values);
+        }
+    }
+}
+
+const BLANK: Pixel = Pixel { rgb: [0.0; 3], alpha: 0.0, depth: DEPTH_OF_NOTHING, samples: 0.0 };
+
+/// Rows are asked for from the top down, whole tiles at once.
+impl Rows for Strip<'_> {
+    fn at_once(&self) -> Option<u32> {
+        self.at_once
+    }
+
+    fn rows(&mut self, rows: Range<u32>) -> Result<(&Film, usize)> {
+        self.resize(rows.end - rows.start);
+        let window = window(&self.parts.film);
+        let per_row = window.width.div_ceil(TILE) as usize;
+        let [first, end] = [rows.start, rows.end].map(|row| row.div_ceil(TILE) as usize * per_row);
+        for place in Shard::WHOLE.tiles(window).skip(first).take(end - first) {
+            let tile = self.read(place)?;
+            self.paste(&tile, place, rows.start);
+        }
+        Ok((&self.film, 0))
+    }
+}
+
+/// Puts the values of a tile's pixels, so many of each, into the rows that a window is.
+fn paste<T: Copy>(values: &[T], each: usize, window: Window, place: TilePlace, rows: &mut [T]) {
+    let length = place.width as usize * each;
+    for (row, values) in (0..place.height).zip(values.chunks_exact(length)) {
+        let first = place.pixel(window, row * place.width) * each;
+        rows[first..first + length].copy_from_slice(values);
+    }
+}
