@@ -1,13 +1,22 @@
-//! What the plan holds in memory does not grow with pixels or samples.
+//! What the plan holds in memory does not grow with pixels or samples, what a merge holds not with parts or rows.
 
 mod support;
 
 #[path = "fuzz/allocator.rs"]
 mod allocator;
 
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+
+use abbe::film::{Layer, Shard};
 use abbe::plan::plan;
+use abbe::{Options, Parts, Rendering};
 use allocator::{Memory, memory_of};
 use support::scenes::scene;
+
+/// Memory is counted of all threads together.
+static ALONE: Mutex<()> = Mutex::new(());
 
 /// A glass ball on a floor under a small lamp.
 fn held(width: u32, height: u32, samples: u32) -> Memory {
@@ -31,9 +40,55 @@ fn held(width: u32, height: u32, samples: u32) -> Memory {
 #[test]
 fn w8_the_plan_holds_as_much_for_any_number_of_pixels_and_samples() {
     const MOST: usize = 200_000_000;
+    let _alone = ALONE.lock();
     let small = held(640, 360, 64);
     let large = [(3840, 2160, 256), (16384, 16384, 16), (640, 360, 65_536)].map(|(w, h, samples)| held(w, h, samples));
     let most = large.into_iter().fold(Memory::default(), Memory::max);
     println!("{small:?} for a small image, {most:?} for large ones");
     assert!(most.peak <= MOST.min(2 * small.peak) && most.largest <= 2 * small.largest, "{small:?} and {most:?}");
+}
+
+/// The parts of an image with all layers, so many of them.
+fn parts(folder: &Path, height: u32, count: u32) -> Vec<PathBuf> {
+    let scene = scene(&format!(
+        "[camera]\nposition = [0, 0, 4]\nlook_at = [0, 0, 0]\nvertical_fov = 40\n\
+         [film]\nwidth = 160\nheight = {height}\n[render]\nsamples = 1\nmodel = \"rgb\"\n\
+         [material.white]\ndiffuse = {{ reflectance = 0.7 }}\n[[light]]\nenvironment = {{ radiance = 1 }}\n\
+         [[object]]\nmaterial = \"white\"\nshape.sphere = {{ center = [0, 0, 0], radius = 1 }}\n"
+    ));
+    let part = |number| {
+        let path = folder.join(format!("{height}.{number}-of-{count}.part"));
+        let shard = Shard::new(number, count).expect("there is such a part");
+        let options = Options { shard, layers: Some(Layer::all()), ..Options::default() };
+        let mut rendering = Rendering::new(&scene, &options).expect("it can be rendered");
+        while rendering.advance(&|_| ()) {}
+        rendering.write_part(&path).expect("a part can be written");
+        path
+    };
+    (1..=count).map(part).collect()
+}
+
+/// What a merge holds, with the bytes of the image's numbers and of its largest part.
+fn merged(height: u32, count: u32) -> (Memory, usize, usize) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let paths = parts(folder.path(), height, count);
+    let exr = folder.path().join("image.exr");
+    let merge = || Parts::open(&paths).and_then(|parts| parts.write_exr(&exr));
+    let (done, memory) = memory_of(merge);
+    done.expect("the parts belong together");
+    let channels = 5 + Layer::all().iter().map(|layer| layer.channels().len()).sum::<usize>();
+    let size = |path: &PathBuf| fs::metadata(path).expect("it was written").len() as usize;
+    let part = paths.iter().map(size).max().expect("there are parts");
+    (memory, channels * 4 * 160 * height as usize, part)
+}
+
+/// Rows go from the parts to the file as they come. Threads may hold some blocks more at a time or less.
+#[test]
+fn w10_a_merge_holds_as_much_for_any_number_of_parts_and_rows() {
+    let _alone = ALONE.lock();
+    let (few, image, part) = merged(512, 3);
+    let ((many, ..), (tall, ..)) = (merged(512, 60), merged(2048, 3));
+    println!("{few:?} for 3 parts, {many:?} for 60, {tall:?} for 4 times as many rows; an image has {image} bytes");
+    assert!(few.peak < image + 2 * part && few.peak < image / 2, "{few:?}, an image of {image}, a part of {part}");
+    assert!(many.peak < few.peak * 3 / 2 && tall.peak < few.peak * 3 / 2, "{few:?}, {many:?} and {tall:?}");
 }

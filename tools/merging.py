@@ -1,0 +1,89 @@
+"""What merging the parts of an image takes: memory and time, beside the size of a part and of the image.
+
+    python tools/merging.py                   # 256 parts of 1920 x 1080 pixels with all layers, some 3 minutes
+    python tools/merging.py --parts 2000      # more parts than a process may have files open
+
+The image is what its channels take in memory, each number as wide as in the file. The merged file is held against that of
+one render, byte by byte. The system counts the memory of this script as the least of its children's, some 30 MB.
+"""
+
+import argparse
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import OpenEXR
+import render
+
+SCENE = """
+camera = { position = [0, 1.6, 6], look_at = [0, 0.7, 0], vertical_fov = 38 }
+film = { width = WIDTH, height = HEIGHT, precision = "PRECISION" }
+render = { samples = 1, seed = 3, caustics = "off" }
+material.floor.diffuse.reflectance = { rgb = [0.7, 0.5, 0.3] }
+material.glass.dielectric.index = 1.5
+material.gold.conductor = { metal = "Au", roughness = 0.3 }
+material.lamp.emissive.radiance = 30
+object = [
+    { name = "floor", shape.disc = { center = [0, 0, 0], normal = [0, 1, 0], radius = 4 }, material = "floor" },
+    { name = "glass", shape.sphere = { center = [-0.8, 0.8, 0], radius = 0.8 }, material = "glass" },
+    { name = "gold", shape.sphere = { center = [0.9, 0.7, 0], radius = 0.7 }, material = "gold" },
+    { name = "lamp", shape.sphere = { center = [-2, 3, 1], radius = 0.3 }, material = "lamp" },
+]
+light = [
+    { environment.radiance = 0.3 },
+    { sun = { toward = [1, 2, 1], irradiance = 3 } },
+]
+"""
+
+
+def run(*words):
+    """Seconds and peak bytes of a command of the renderer."""
+    start = time.monotonic()
+    child = subprocess.Popen([str(render.binary()), *map(str, words)], stderr=subprocess.DEVNULL)
+    _, status, usage = os.wait4(child.pid, 0)
+    child.returncode = os.waitstatus_to_exitcode(status)
+    if child.returncode:
+        raise SystemExit(f"{words} ended with exit code {child.returncode}")
+    return time.monotonic() - start, usage.ru_maxrss * (1 if sys.platform == "darwin" else 1024)
+
+
+def image_bytes(path):
+    """What the numbers of a file take in memory."""
+    with OpenEXR.File(str(path), separate_channels=True) as file:
+        return sum(channel.pixels.nbytes for part in file.parts for channel in part.channels.values())
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--parts", type=int, default=256)
+    parser.add_argument("--width", type=int, default=1920)
+    parser.add_argument("--height", type=int, default=1080)
+    parser.add_argument("--precision", choices=["half", "float"], default="float")
+    arguments = parser.parse_args()
+    text = SCENE
+    for key in ("width", "height", "precision"):
+        text = text.replace(key.upper(), str(getattr(arguments, key)))
+    with tempfile.TemporaryDirectory() as folder:
+        scene, whole, merged = (Path(folder) / name for name in ("s.toml", "whole.exr", "merged.exr"))
+        scene.write_text(text, "utf-8")
+        rendered = [scene, "--layers", "all", "--exr"]
+        numbers = range(1, arguments.parts + 1)
+        for number in numbers:
+            run(*rendered, Path(folder) / "part.exr", "--shard", f"{number}/{arguments.parts}")
+        parts = [Path(folder) / f"part.{number}-of-{arguments.parts}.part" for number in numbers]
+        seconds, peak = run("merge", merged, *parts)
+        run(*rendered, whole)
+        same = whole.read_bytes() == merged.read_bytes()
+        part, image = max(path.stat().st_size for path in parts), image_bytes(whole)
+        print(f"{arguments.parts} parts of {arguments.width} x {arguments.height} pixels, all layers, {arguments.precision}")
+        print(f"image {image / 1e6:.0f} MB, part {part / 1e6:.1f} MB, merged in {seconds:.1f} s")
+        print(f"peak {peak / 1e6:.0f} MB, {peak / (image + 2 * part):.3f} of an image and two parts")
+        print("the bytes of one render" if same else "OTHER BYTES than of one render")
+    return 0 if same and peak <= image + 2 * part else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
