@@ -1,12 +1,15 @@
 //! From a scene's text to a world that can be rendered: what a scene may hold is told here and nowhere else, by the
 //! functions that read it. They look up all names and check all numbers, and go on after a mistake.
 
+mod camera;
 mod contact;
 mod context;
 mod curve;
 mod curve_name;
 mod curve_range;
 mod curve_text;
+mod film;
+mod format;
 mod image;
 mod image_file;
 mod inside_out;
@@ -25,7 +28,6 @@ mod sight;
 mod spectrum_file;
 mod transform;
 mod unlit;
-mod view;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -77,9 +79,9 @@ fn scene<'d>(context: &mut Context, sections: &mut Fields<'d>) -> Option<Scene<C
         let message = format!("the scene has {}", missing.join(" and "));
         sections.refuse::<()>(message, Some("every scene has [camera] and [film]"));
     }
-    let (film, format) = film.and_then(section).and_then(view::film).unzip();
+    let (film, format) = film.and_then(section).and_then(film::film).unzip();
     context.white_luminance = format.as_ref().and_then(|format| format.white_luminance);
-    let camera = camera.and_then(section).and_then(|camera| view::camera(context, camera, film.as_ref()));
+    let camera = camera.and_then(section).and_then(|camera| camera::camera(context, camera, film.as_ref()));
     let render = render.map_or(Some(RenderText::default()), |render| render::render(section(render)?));
     // A length that is misspelt is not missing as well.
     context.meters_per_unit = render.as_ref().map_or(Some(1.0), |render| render.meters_per_unit);

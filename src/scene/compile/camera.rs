@@ -1,0 +1,159 @@
+//! The camera.
+
+use std::ops::Bound;
+
+use super::context::Context;
+use super::measures::{MAX_LENGTH, direction, length, point};
+use crate::math::DVec3;
+use crate::scene::text::{Fields, Value, above_0_to, at};
+use crate::scene::{Camera, FilmSettings, Lens, Projection};
+
+/// Nearest focus: what a lens bends by, radius over this, stays within f64.
+const NEAREST_FOCUS: f64 = 1e-30;
+/// Widest sensor, in mm: a kilometer.
+const WIDEST_SENSOR: f64 = 1e6;
+/// Largest shift in heights of the image.
+const MAX_SHIFT: f64 = 1000.0;
+
+/// ```toml
+/// [camera]
+/// position = [0, 1.2, 6]
+/// look_at = [0, 1, 0]
+/// vertical_fov = 35          # degrees
+/// lens = { radius = 0.02, focus_distance = 6 }
+/// shift = [0, 0.2]           # of the image's height
+/// sensor_width = 36          # mm; for the file alone
+/// ```
+///
+/// The film is absent if it is wrong.
+pub(super) fn camera(context: &mut Context, value: Value, film: Option<&FilmSettings>) -> Option<Camera> {
+    Fields::read(value, |camera| {
+        let position = camera.need("position", point);
+        let target = camera.need("look_at", at(point));
+        let up = camera.or("up", DVec3::Y, direction);
+        let kind = camera.or("projection", ProjectionKind::Perspective, |value| value.word(&PROJECTIONS));
+        let keys = ["vertical_fov", "height", "shift", "lens"].map(|key| camera.get(key));
+        let near = camera.or("near", 0.0, |value| {
+            value.within(0.0..=MAX_LENGTH, &format!("near is a distance from 0 to {MAX_LENGTH:e}"), None)
+        });
+        let sensor = camera.maybe("sensor_width", |value| sensor_width(value, kind?));
+        let projection = kind.and_then(|kind| projection(camera, kind, keys));
+        let [_, _, shifted, opened] = keys;
+        let shift = shifted.map_or(Some([0.0; 2]), shift);
+        let lens = opened.map_or(Some(None), |value| lens(value).map(Some));
+        let (position, target, up) = (position?, target?, up?);
+        if (target.it - position).try_normalize().is_none() {
+            return target.place.refuse("the camera looks at the very point where it stands");
+        }
+        let (projection, shift, lens, near, sensor, film) = (projection?, shift?, lens?, near?, sensor?, film?);
+        let (view, parallel) = Camera::new(position, target.it, up, projection, [film.width, film.height]);
+        if parallel {
+            let warning = "camera.up is parallel to the viewing direction; another direction is taken";
+            context.warn(warning);
+        }
+        if projection == Projection::Equirectangular && film.width != 2 * film.height {
+            context.warn(format!(
+                "an equirectangular image is twice as wide as high; {} x {} pixels are stretched",
+                film.width, film.height
+            ));
+        }
+        Some(view.starting_at(near).shifted(shift).with_lens(lens).on_sensor(sensor))
+    })
+}
+
+/// How directions become places in the image.
+#[derive(Clone, Copy)]
+enum ProjectionKind {
+    /// Rays from one point through a window.
+    Perspective,
+    /// Parallel rays.
+    Orthographic,
+    /// Rays of the full sphere, by longitude and latitude.
+    Equirectangular,
+}
+
+const PROJECTIONS: [(&str, ProjectionKind); 3] = [
+    ("perspective", ProjectionKind::Perspective),
+    ("orthographic", ProjectionKind::Orthographic),
+    ("equirectangular", ProjectionKind::Equirectangular),
+];
+
+/// The projection, if the camera has the keys for it and no other: of a vertical field of view in degrees, the height
+/// of the view in scene units, a shift and a lens.
+fn projection(
+    camera: &mut Fields,
+    kind: ProjectionKind,
+    [vertical_fov, height, shift, lens]: [Option<Value>; 4],
+) -> Option<Projection> {
+    match (kind, vertical_fov, height) {
+        (ProjectionKind::Perspective, _, Some(height)) => {
+            let help = "give its vertical_fov, or write projection = \"orthographic\"";
+            height.advise("a perspective camera has no height", help)
+        }
+        (ProjectionKind::Perspective, Some(value), None) => {
+            let between = (Bound::Excluded(0.0), Bound::Excluded(180.0));
+            let vertical_fov = value.within(between, "a field of view lies between 0 and 180 degrees", None)?;
+            Some(Projection::Perspective { vertical_fov })
+        }
+        (ProjectionKind::Perspective, None, None) => camera.lack("vertical_fov", None),
+        (ProjectionKind::Orthographic, Some(value), _) => {
+            value.advise("an orthographic camera has no field of view", HEIGHT)
+        }
+        (ProjectionKind::Orthographic, None, Some(height)) => {
+            Some(Projection::Orthographic { height: length(height, "the height of a view")? })
+        }
+        (ProjectionKind::Orthographic, None, None) => camera.lack("height", Some(HEIGHT)),
+        (ProjectionKind::Equirectangular, ..) => match [vertical_fov, height, shift, lens].into_iter().flatten().next()
+        {
+            Some(value) => {
+                let message = format!("an equirectangular camera sees the full sphere and has no {}", value.key());
+                value.advise(message, "leave it out, or choose another projection")
+            }
+            None => Some(Projection::Equirectangular),
+        },
+    }
+}
+
+/// Width of the sensor in mm, or of the film in a camera.
+fn sensor_width(value: Value, kind: ProjectionKind) -> Option<f64> {
+    match kind {
+        ProjectionKind::Perspective => {
+            let help = "in millimeters: 36 of a full-frame camera, 24.9 of Super 35";
+            value.within(
+                above_0_to(WIDEST_SENSOR),
+                &format!("a sensor is above 0 to {WIDEST_SENSOR:e} mm wide"),
+                Some(help),
+            )
+        }
+        _ => value.advise("only a perspective camera has a focal length, which its sensor tells", "leave it out"),
+    }
+}
+
+const HEIGHT: &str = "give the height of the view in scene units: height = 2";
+
+fn shift(value: Value) -> Option<[f64; 2]> {
+    let shift: [f64; 2] = value.as_list("", "write [right, up] in heights of the image").numbers()?;
+    match shift.iter().position(|part| !(-MAX_SHIFT..=MAX_SHIFT).contains(part)) {
+        Some(axis) => {
+            let message = format!("a shift is -{MAX_SHIFT} to {MAX_SHIFT} heights of the image, not {}", shift[axis]);
+            value.entry(axis).refuse(message)
+        }
+        None => Some(shift),
+    }
+}
+
+/// `lens = { radius = 0.02, focus_distance = 6 }`: the radius of the opening in scene units, 0 for a pinhole, and the
+/// distance along the viewing direction at which points are sharp, `inf` for those infinitely far away.
+fn lens(value: Value) -> Option<Lens> {
+    Fields::read(value, |lens| {
+        let radius = lens.need("radius", |value| {
+            value.within(0.0..=MAX_LENGTH, &format!("the radius of a lens is a length from 0 to {MAX_LENGTH:e}"), None)
+        });
+        let focus = lens.need("focus_distance", |value| {
+            let help = "write inf to see sharply what is far away";
+            let what = format!("a focus lies at least {NEAREST_FOCUS:e} away");
+            value.within(NEAREST_FOCUS..=f64::INFINITY, &what, Some(help))
+        });
+        Some(Lens::new(radius?, focus?))
+    })
+}

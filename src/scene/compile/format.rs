@@ -1,0 +1,120 @@
+//! What an image's file holds, and how its numbers are written.
+
+use std::ops::Bound;
+
+use toml::de::DeValue;
+
+use crate::film::{Compression, FirstSurface, Format, Layer, Precision};
+use crate::scene::text::{At, Fields, Value, above_0_to, at};
+use crate::spectrum::WavelengthBands;
+use crate::spectrum::visible::{FIRST_NM, LAST_NM};
+
+/// Largest luminance of white: that of the sun is 1.6e9.
+const MOST_LUMINOUS: f64 = 1e12;
+
+/// What the file holds.
+pub(super) fn format(film: &mut Fields) -> Option<Format> {
+    let layers = film.or("layers", Vec::new(), layers);
+    let first = film.or("first", FirstSurface::default(), |value| value.word(&FirstSurface::NAMES));
+    let precision = film.maybe("precision", |value| value.word(&Precision::NAMES));
+    let compression = film.maybe("compression", at(compression));
+    let multipart = film.or("multipart", false, Value::yes_or_no);
+    let spectral = film.or("spectral", None, spectral);
+    let metadata = film.or("metadata", [None, None], |value| {
+        Fields::read(value, |metadata| {
+            let [owner, comments] = ["owner", "comments"].map(|key| metadata.maybe(key, line));
+            Some([owner?, comments?])
+        })
+    });
+    let white_luminance = white_luminance(film);
+    let [owner, comments] = metadata?;
+    let (layers, first, compressed, multipart) = (layers?, first?, compression?, multipart?);
+    let (place, compression) = compressed.map_or((None, Compression::default()), |at| (Some(at.place), at.it));
+    let precision = precision?.unwrap_or(match compression.is_of_16_bits() {
+        true => Precision::Half,
+        false => Precision::default(),
+    });
+    let (white_luminance, spectral) = (white_luminance?, spectral?);
+    let format =
+        Format { layers, first, precision, compression, multipart, spectral, white_luminance, owner, comments };
+    match place.and_then(|place| Some((place, format.objection()?))) {
+        Some((place, (message, help))) => place.advise(message, help),
+        None => Some(format),
+    }
+}
+
+/// Luminance of red, green and blue of 1, if the scene's light is absolute.
+fn white_luminance(film: &mut Fields) -> Option<Option<f64>> {
+    let is_absolute = film.or("radiometry", false, |value| value.word(&[("absolute", true), ("relative", false)]));
+    let help = "in cd/m2: 100 is about that of a screen's white";
+    let what = format!("a luminance of white is above 0 to {MOST_LUMINOUS:e}");
+    let white =
+        film.maybe("white_luminance", at(|value: Value| value.within(above_0_to(MOST_LUMINOUS), &what, Some(help))));
+    match (is_absolute?, white?) {
+        (true, white) => Some(Some(white.map_or(1.0, |white| white.it))),
+        (false, None) => Some(None),
+        (false, Some(At { place, .. })) => place.refuse_key(
+            "a luminance of white goes with radiometry = \"absolute\"",
+            Some("add that, or leave it out".into()),
+        ),
+    }
+}
+
+/// The bands of a spectral image: true for those that most programs expect, or from where to where, in nm, and the
+/// width of each.
+fn spectral(value: Value) -> Option<Option<WavelengthBands>> {
+    match value.node() {
+        DeValue::Boolean(true) => return Some(Some(WavelengthBands::default())),
+        DeValue::Boolean(false) => return Some(None),
+        DeValue::Table(_) => {}
+        _ => return value.wanted("true, or a table such as { from = 380, to = 780, step = 5 }"),
+    }
+    let [from, to, step] = Fields::read(value, |bands| {
+        let nm = |value: Value| value.within(FIRST_NM..=LAST_NM, "a band lies between 360 and 830 nm", None);
+        let width = |value: Value| {
+            let between = (Bound::Excluded(0.0), Bound::Included(LAST_NM - FIRST_NM));
+            value.within(between, "a step is a width above 0 and at most 470 nm", None)
+        };
+        let [from, to, step] = [bands.or("from", 380.0, nm), bands.or("to", 780.0, nm), bands.or("step", 5.0, width)];
+        Some([from?, to?, step?])
+    })?;
+    let most = WavelengthBands::MOST;
+    match WavelengthBands::new(from, to, step) {
+        Some(bands) => Some(Some(bands)),
+        None if from > to => value.refuse(format!("the last band, at {to} nm, lies before the first, at {from} nm")),
+        None => value.refuse(format!("a step of {step} nm makes more than the {most} bands that fit")),
+    }
+}
+
+fn compression(value: Value) -> Option<Compression> {
+    match value.node().as_str() {
+        Some(name @ ("b44" | "b44a")) => {
+            let message =
+                format!("the compression {name} is not written: dark pixels lose their colors beside bright ones");
+            value.advise(message, "\"dwaa\" makes smaller files; \"piz\" and \"zip\" lose nothing")
+        }
+        _ => value.word(&Compression::NAMES),
+    }
+}
+
+fn layers(value: Value) -> Option<Vec<Layer>> {
+    match value.node().as_str() {
+        Some(Layer::ALL) => return Some(Layer::all()),
+        Some(word) => {
+            return value.advise("`layers` is a list", format!("write layers = [\"{word}\"], or \"{}\"", Layer::ALL));
+        }
+        None => {}
+    }
+    value
+        .as_list("layer", "write a list such as [\"albedo\", \"N\"], or \"all\"")
+        .list(|layer| layer.word(&Layer::NAMES))
+}
+
+/// Text for the header of the file, which a 0 would end.
+fn line(value: Value) -> Option<String> {
+    let text = value.text()?;
+    match text.contains('\0') {
+        true => value.refuse("text of a file's header has no character 0"),
+        false => Some(text.to_owned()),
+    }
+}
