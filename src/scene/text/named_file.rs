@@ -48,7 +48,7 @@ pub(super) fn missing(folder: &Path, file: &str) -> Fault {
     let near = near.and_then(|near| near.file_name().map(|name| Path::new(file).with_file_name(name)));
     let help = match near {
         Some(near) => format!("did you mean \"{}\"?", near.display()),
-        None if folder.as_os_str().is_empty() => "the path starts at the folder of the scene".into(),
+        None if folder.as_os_str().is_empty() => "the path starts at the current folder".into(),
         None => format!("the path starts at {}", folder.display()),
     };
     Fault { message: format!("there is no file {file}"), help: Some(help) }
