@@ -103,9 +103,41 @@ def test_a_full_disk_loses_no_old_image_and_is_told(folder):
         subprocess.run(["umount", str(disk)], check=True)
 
 
-@pytest.mark.parametrize("flags", [["--exr", "file/s.exr"], ["--exr", "file/s.exr", "--shard", "1/2"]])
-def test_a_folder_that_cannot_be_made_is_told_before_the_render(folder, flags):
-    (folder / "file").write_text("no folder", "utf-8")
+@pytest.fixture
+def unwritable(folder, request):
+    """A name in the folder under which nothing can be written, and what is said of it."""
+    place = folder / "place"
+    if request.param == "file":
+        place.write_text("no folder", "utf-8")
+        yield "a file stands where its folder should be"
+        return
+    place.mkdir()
+    mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", "ro", "tmpfs", str(place)], check=False)
+    if mounted.returncode:
+        pytest.skip("no disk can be mounted here")
+    try:
+        yield "permission is denied"
+    finally:
+        subprocess.run(["umount", str(place)], check=True)
+
+
+ROOT = pytest.mark.skipif(os.geteuid() != 0, reason="a disk that is mounted needs root")
+
+
+@pytest.mark.parametrize("unwritable", ["file", pytest.param("disk", marks=ROOT)], indirect=True)
+@pytest.mark.parametrize(
+    "flags",
+    [
+        ["--exr", "place/s.exr"],
+        ["--exr", "place/below/s.exr", "--snapshot", "1s"],
+        ["--exr", "place/s.exr", "--shard", "1/2"],
+        ["--exr", "s.exr", "--png", "place/s.png"],
+        ["--plan", "--plan-file", "place/s.plan"],
+    ],
+    ids=lambda flags: flags[-2],
+)
+def test_a_place_that_cannot_be_written_to_is_told_before_the_render(folder, flags, unwritable):
     run = start(folder, *flags)
     said = run.communicate(timeout=600)[1]
-    assert run.returncode == 1 and "a file stands where its folder should be" in said, said
+    assert run.returncode == 1 and said.count("\n") == 1 and unwritable in said, said
+    assert sorted(path.name for path in folder.iterdir()) == ["place", "s.toml"]
