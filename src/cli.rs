@@ -28,6 +28,7 @@ Examples:
   render --checkpoint 60s --exr scenes/prism.toml lose nothing: --resume goes on
   render --shard 1/4 --exr scenes/prism.toml      make one of four parts
   render merge prism.exr prism.*.part             lay them together
+  render --plan s.toml --plan-file s.plan         make a plan once, for all parts
   render --set film.width=320 scenes/prism.toml   change a value of the scene
   render - --exr frame.exr < scenes/prism.toml    read it from standard input
   render --json --exr scenes/prism.toml           speak to a program
@@ -64,6 +65,11 @@ struct Arguments {
     /// Say what would be modelled, why, and at what cost; render nothing
     #[arg(long, conflicts_with_all = ["check", "png"])]
     plan: bool,
+
+    /// With --plan, write the plan to this file; without, follow it, so that parts of an image need not plan each for
+    /// itself. It is of one scene and its options, and the image is the same
+    #[arg(long, value_name = "FILE.plan", conflicts_with = "check")]
+    plan_file: Option<PathBuf>,
 
     /// Check the scene; render nothing
     #[arg(long, conflicts_with = "png")]
@@ -206,8 +212,12 @@ pub struct Job {
 
 /// What is wanted of the scene.
 pub enum Output {
-    Image { exr: Option<PathBuf>, png: Option<PathBuf> },
-    Plan,
+    Image {
+        exr: Option<PathBuf>,
+        png: Option<PathBuf>,
+    },
+    /// The plan, and the file that it is written to, if one is.
+    Plan(Option<PathBuf>),
     Check,
 }
 
@@ -300,8 +310,9 @@ fn job(arguments: Arguments) -> Result<Job> {
         return refuse("--spectral writes spectra beside an EXR, and --png alone writes none", Some(help));
     }
     let frame = arguments.frame;
+    let mut plan_file = arguments.plan_file;
     let output = if arguments.plan {
-        Output::Plan
+        Output::Plan(plan_file.take())
     } else if arguments.check {
         Output::Check
     } else {
@@ -330,8 +341,9 @@ fn job(arguments: Arguments) -> Result<Job> {
         layers,
         spectral,
         threads: threads.map(usize::from),
-        stamp,
         shard,
+        plan: plan_file,
+        stamp,
     };
     let report = arguments.report.map(|path| numbered(&path, frame)).transpose()?;
     let set = frame.map(|frame| format!("set.frame={frame}")).into_iter().chain(arguments.set).collect();

@@ -270,7 +270,11 @@ impl Keep {
         let Some(path) = &self.snapshot else { return Ok(()) };
         let image = rendering.image();
         // Before the first samples, photons have shown a part of their light.
-        if image.report().samples == 0 { Ok(()) } else { image.write_exr(path).map(|_| ()) }
+        if image.report().samples == 0 {
+            return Ok(());
+        }
+        image.write_exr(path)?;
+        image.write_spectral_exr(path.with_extension("spectral.exr"))
     }
 
     /// Says what was kept, and how to go on.

@@ -68,7 +68,7 @@ pub mod plan;
 mod rendering;
 
 pub use error::{Diagnostic, Error, Result, nearest};
-pub use rendering::{Image, ImageError, Options, Parts, Rendering, Resumed, merge, render};
+pub use rendering::{Image, ImageError, Options, Parts, Rendering, Resumed, merge, render, write_plan};
 pub use scene::Scene;
 pub use toml;
 pub use trace::Advance;

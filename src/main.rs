@@ -21,7 +21,7 @@ use std::process::ExitCode;
 use abbe::film::check_writable;
 use abbe::plan::plan;
 use abbe::scene::Source;
-use abbe::{Image, Rendering, Result, Scene};
+use abbe::{Image, Rendering, Result, Scene, write_plan};
 
 use cli::{Job, Output, Request};
 use events::{Event, write_account};
@@ -61,9 +61,21 @@ fn run(job: &Job) -> Result<ExitCode> {
             messages::print_checked(&source.path, scene.objects.len());
             Ok(ExitCode::SUCCESS)
         }
-        Output::Plan => messages::answer_plan(&plan(&scene)).map(|()| ExitCode::SUCCESS),
+        Output::Plan(file) => answer_plan(job, &scene, file.as_deref()),
         Output::Image { exr, png } => image(job, &scene, exr.as_deref(), png.as_deref()),
     }
+}
+
+/// Says how the scene is rendered, and writes it down if that is asked for.
+fn answer_plan(job: &Job, scene: &Scene, file: Option<&Path>) -> Result<ExitCode> {
+    file.map_or(Ok(()), |file| spare(&job.scene, "scene", file).and_then(|()| check_writable(file)))?;
+    let plan = plan(scene);
+    messages::answer_plan(&plan)?;
+    if let Some(file) = file {
+        write_plan(&plan, scene, file)?;
+        messages::print_written(file);
+    }
+    Ok(ExitCode::SUCCESS)
 }
 
 /// Writes the image to its file, or to standard output; answers how many values were too bright for it.

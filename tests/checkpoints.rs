@@ -272,6 +272,27 @@ fn a_part_that_stops_goes_on_to_the_same_bytes() {
     }
 }
 
+#[test]
+fn a_part_that_follows_a_plan_from_a_file_has_the_same_bytes() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let [plan, part, other] = ["a.plan", "a.part", "b.part"].map(|name| folder.path().join(name));
+    for (kind, text, options, _) in kinds() {
+        let mut scene = scene(&text);
+        options.apply(&mut scene).expect("the options fit");
+        abbe::write_plan(&abbe::plan::plan(&scene), &scene, &plan).expect("a plan can be written");
+        let shard = Shard::new(2, 3).expect("there is such a part");
+        let alone = Options { shard, ..options };
+        let planned = Options { plan: Some(plan.clone()), ..alone.clone() };
+        for (options, path) in [(alone, &part), (planned, &other)] {
+            let mut rendering = rendering(&scene, &options, 2);
+            advance(&mut rendering, u64::MAX);
+            rendering.write_part(path).expect("a part can be written");
+        }
+        let read = |path| std::fs::read(path).expect("it was written");
+        assert!(read(&part) == read(&other), "{kind}");
+    }
+}
+
 /// Renders with some samples to the end and goes on with others.
 fn raised(text: &str, options: &Options, samples: [u32; 2]) -> Result<(Image, Image, Resumed), Error> {
     let folder = tempfile::tempdir().expect("a folder");

@@ -1,7 +1,9 @@
+use serde::{Deserialize, Serialize};
+
 use super::{DMat3, DVec3};
 
 /// An axis-aligned box, empty when any `min` exceeds its `max`.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Bounds {
     /// Smallest coordinates.
     pub min: DVec3,

@@ -1,5 +1,7 @@
 //! Drawing by tables: one entry of many, or one cell of a grid.
 
+use serde::{Deserialize, Serialize};
+
 /// An entry drawn from a table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DiscreteSample {
@@ -18,7 +20,7 @@ pub const BELOW_ONE: f64 = 1.0 - f64::EPSILON / 2.0;
 ///
 /// They are drawn by inverting the sums of their probabilities.
 /// Pharr, Jakob & Humphreys 2023, *Physically Based Rendering*, 4th ed., appendix A.4.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Distribution {
     /// Probability of each entry and all before it; the last is 1.
     cumulative: Vec<f64>,

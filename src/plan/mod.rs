@@ -17,6 +17,8 @@ mod words;
 
 use std::time::Duration;
 
+use serde::{Deserialize, Serialize};
+
 use crate::scene::Scene;
 use crate::spectrum::{Basis, Curve};
 use crate::trace::{
@@ -29,7 +31,7 @@ use words::{in_number, in_words};
 pub use candidates::Candidate;
 
 /// How to render a scene and, in words, why.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Plan {
     /// What the tracer is to do.
     pub method: Method,
@@ -38,7 +40,8 @@ pub struct Plan {
     pub because: Vec<String>,
     /// Processor time that the render will take, about.
     pub processor_time: Duration,
-    /// The models of color that were weighed, from few lanes to many.
+    /// The models of color that were weighed, from few lanes to many; none of a plan that was read from a file.
+    #[serde(skip)]
     pub candidates: Vec<Candidate>,
     /// The lines that say what light is left out.
     pub left_out: Vec<String>,

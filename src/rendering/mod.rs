@@ -7,6 +7,7 @@ mod image_error;
 mod options;
 mod part;
 mod parts;
+mod plan_file;
 mod render;
 
 pub use checkpoint::Resumed;
@@ -14,4 +15,5 @@ pub use image::Image;
 pub use image_error::ImageError;
 pub use options::Options;
 pub use parts::{Parts, merge};
+pub use plan_file::write_plan;
 pub use render::{Rendering, render};

@@ -1,6 +1,7 @@
 //! What is asked for beside the scene.
 
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 use std::time::Duration;
 
 use crate::error::{Error, Result};
@@ -36,6 +37,9 @@ pub struct Options {
     pub threads: Option<usize>,
     /// The part of the image's tiles that is made.
     pub shard: Shard,
+    /// The file of a plan that is followed, where one would be made: of this scene with the same options but for
+    /// threads, part and stamp. The image is the same.
+    pub plan: Option<PathBuf>,
     /// Whether the file says when the image was made, on how many threads, and how long it took. Then no two files are
     /// the same to the byte. Parts do not say it.
     pub stamp: bool,

@@ -10,6 +10,7 @@ use super::image::Image;
 use super::image_error::ImageError;
 use super::options::{Options, check_layers};
 use super::part;
+use super::plan_file::read_plan;
 use crate::error::{Error, Result};
 use crate::film::{Fact, Format, Provenance, Shard, View};
 use crate::plan::{Plan, plan};
@@ -71,7 +72,8 @@ impl Rendering {
     /// Decides how to render a scene, and prepares it.
     ///
     /// # Errors
-    /// [`Error::Arguments`] if the options do not fit the scene, or threads cannot be started.
+    /// [`Error::Arguments`] if the options do not fit the scene, its plan is of something else, or threads cannot be
+    /// started; [`Error::Decode`] if the plan is damaged.
     pub fn new(scene: &Scene, options: &Options) -> Result<Self> {
         let now = Instant::now();
         let began = (options.stamp && options.shard == Shard::WHOLE).then_some(now);
@@ -85,7 +87,10 @@ impl Rendering {
         let threads = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build();
         let threads = threads
             .map_err(|error| Error::Arguments { message: format!("cannot start threads: {error}"), help: None })?;
-        let plan = threads.install(|| plan(&scene));
+        let plan = match &options.plan {
+            Some(path) => read_plan(path, &scene)?,
+            None => threads.install(|| plan(&scene)),
+        };
         let world = prepare(&scene, plan.method.clone());
         let camera = &scene.camera;
         let view = View {

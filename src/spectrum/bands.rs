@@ -1,5 +1,7 @@
 //! Three bands that hold measured spectra as they look under one light.
 
+use serde::{Deserialize, Serialize};
+
 use super::color::{ColorSpace, apply};
 use super::visible::{self, color_matching};
 use super::{Curve, CurveKind, Emission, Quantity};
@@ -8,7 +10,7 @@ use super::{Curve, CurveKind, Emission, Quantity};
 ///
 /// Ward & Eydelberg-Vileshin 2002, *Picture Perfect RGB Rendering Using Spectral Prefiltering and Sharp Color
 /// Primaries*.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Bands {
     /// (wavelength in nm, share of each channel).
     parts: Vec<(f64, [f64; 3])>,

@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use serde::{Deserialize, Serialize};
+
 use super::band_response::BandResponse;
 use super::bands::Bands;
 use super::cardinals::cardinals;
@@ -15,7 +17,7 @@ use super::visible::{self, COUNT};
 use super::{Curve, CurveKind, Draw, Emission, Quantity, Response, Table, Upsampler, WavelengthBands};
 
 /// What the lanes of one render stand for: the bins on which all its spectra are tabulated.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Basis {
     space: ColorSpace,
     upsampler: Arc<Upsampler>,
@@ -27,7 +29,7 @@ pub struct Basis {
 }
 
 /// Wavelengths that are drawn for each sample.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Heroes {
     pub(super) count: usize,
     pub(super) mixture: Arc<Mixture>,
@@ -37,7 +39,7 @@ pub(super) struct Heroes {
 }
 
 /// What the fixed lanes are.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) enum LaneKind {
     /// Linear Rec.709, and what the film's white shows in it.
     Rgb(Arc<Bands>),

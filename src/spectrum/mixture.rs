@@ -1,12 +1,14 @@
 //! The wavelengths that matter: from where heroes are drawn.
 
+use serde::{Deserialize, Serialize};
+
 use super::draw::Hero;
 use super::visible::{self, COUNT};
 use super::{Emission, data};
 use crate::math::Distribution;
 
 /// A distribution of wavelengths: a density, constant over each nm, and ideal lines, which are drawn as they are.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Mixture {
     /// Each step of the visible grid, then each line.
     entries: Distribution,

@@ -1,5 +1,7 @@
 //! From three color numbers to a smooth spectrum within 0..1.
 
+use serde::{Deserialize, Serialize};
+
 use super::color::{ColorSpace, Matrix, adaptation, apply, factors, inverse, product};
 use super::data;
 use super::visible::{self, COUNT};
@@ -28,7 +30,7 @@ fn sigmoid(x: f64) -> f64 {
 }
 
 /// Finds the sigmoid spectra that look like linear Rec.709 colors under a film's white.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Upsampler {
     /// Rec.709 red, green and blue of a reflectance of 1 within one step of the visible range; each sums to 1.
     steps: Vec<[f64; 3]>,

@@ -8,6 +8,8 @@
 
 use std::f64::consts::PI;
 
+use serde::{Deserialize, Serialize};
+
 use crate::math::{Bounds, DVec3, Ray};
 use crate::shape::{Density, Quad, Shape};
 
@@ -23,7 +25,7 @@ const ELSEWHERE: f64 = 3.0;
 const FLAT: f64 = 1e-3;
 
 /// A rectangle from which or through which much light comes.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BrightPlace {
     /// Its middle.
     pub center: DVec3,
@@ -34,7 +36,7 @@ pub struct BrightPlace {
 }
 
 /// What lights a room, as bounces found it.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BrightPlaces {
     /// Where they are aimed at from.
     pub within: Bounds,

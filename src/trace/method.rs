@@ -1,11 +1,13 @@
 use std::time::Duration;
 
+use serde::{Deserialize, Serialize};
+
 use super::BrightPlaces;
 use crate::light::LightId;
 use crate::spectrum::Basis;
 
 /// How to render, as plain data: what the plan decides and the tracer obeys.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Method {
     /// What the lanes stand for.
     pub basis: Basis,
@@ -36,7 +38,7 @@ pub struct Method {
 /// The samples are then those of eight replicates, renders that know nothing of each other: how far these are apart
 /// tells the noise of their mean. No pixel stops by itself, on what its own samples say: that would make it too dark
 /// (Kirk & Arvo 1991, *Unbiased Sampling Techniques for Image Synthesis*).
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Stop {
     /// The relative noise of the image that is enough, as [`Noise`](super::Noise) has it.
     pub noise: Option<f64>,
@@ -47,7 +49,7 @@ pub struct Stop {
 }
 
 /// Photons that are sent to all finite smooth objects, for the light that these throw onto what the camera sees.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LightPass {
     /// How many, about.
     pub photons: u64,
@@ -63,7 +65,7 @@ pub struct LightPass {
 ///
 /// Hachisuka & Jensen 2009, *Stochastic Progressive Photon Mapping*; Knaus & Zwicker 2011, *Progressive Photon Mapping:
 /// A Probabilistic Approach*, for passes that know nothing of each other.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MapPasses {
     /// How many, at most one for each camera sample of a pixel.
     pub count: u32,
@@ -77,7 +79,7 @@ pub struct MapPasses {
 }
 
 /// Which of a surface's branches are followed.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Transport {
     /// All of them, until the weight falls below `cutoff`; what is dropped is summed and reported.
     Deterministic {

@@ -139,6 +139,40 @@ fn parts_that_do_not_make_one_image_are_refused_by_name() {
 }
 
 #[test]
+fn a_plan_is_made_once_and_followed_and_one_of_something_else_is_refused() {
+    let folder = folder();
+    let asked = "s.toml --samples 4 --layers N";
+    let planned = done(&folder, &format!("{asked} --plan --plan-file new/folder/s.plan"));
+    assert_eq!(planned.stderr, "wrote new/folder/s.plan\n");
+    done(&folder, &format!("{asked} --exr without.exr"));
+    done(&folder, &format!("{asked} --plan-file new/folder/s.plan --exr with.exr"));
+    assert!(bytes(&folder, "with.exr") == bytes(&folder, "without.exr"));
+    for part in ["1/2", "2/2"] {
+        done(&folder, &format!("{asked} --plan-file new/folder/s.plan --exr part.exr --shard {part}"));
+    }
+    done(&folder, "merge merged.exr part.1-of-2.part part.2-of-2.part");
+    assert!(bytes(&folder, "merged.exr") == bytes(&folder, "without.exr"));
+    folder.write("other.toml", &GLASS.replace("index = 1.5", "index = 1.6"));
+    let help = "help: make it with the same options: render --plan scene.toml --plan-file frame.plan";
+    let cannot = "cannot follow new/folder/s.plan: ";
+    for (words, message) in [
+        (format!("{asked} --seed 4"), format!("{cannot}its seed is 3, not 4")),
+        (asked.replace("--samples 4", "--samples 8"), format!("{cannot}its number of samples is 4, not 8")),
+        (asked.replace("N", "P"), format!("{cannot}its list of layers is N, not P")),
+        (
+            asked.replace("s.toml", "other.toml"),
+            format!("{cannot}it was made of another scene, or of this one before it was changed"),
+        ),
+    ] {
+        refused(&folder, &format!("{words} --plan-file new/folder/s.plan"), &format!("error: {message}\n{help}"));
+    }
+    refused(&folder, "s.toml --plan-file s.plan", &format!("error: there is no plan s.plan\n{help}"));
+    refused(&folder, "s.toml --plan-file s.toml", &format!("error: s.toml is no plan\n{help}"));
+    refused(&folder, "s.toml --plan --plan-file s.toml", "error: s.toml is the scene itself\nhelp: name another file");
+    assert_eq!(bytes(&folder, "s.toml"), GLASS.as_bytes());
+}
+
+#[test]
 fn flags_that_have_no_place_are_refused() {
     let folder = folder();
     for (words, message) in [
@@ -204,6 +238,18 @@ fn a_render_that_is_told_to_stop_says_how_to_go_on_and_goes_on_to_the_same_bytes
         done(&folder, &format!("s.toml {samples} --resume"));
         assert!(bytes(&folder, "s.exr") == bytes(&folder, "whole.exr"), "{signal}");
         fs::remove_file(folder.path().join("s.checkpoint")).expect("it is there");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_snapshot_has_its_spectra_beside_it() {
+    let folder = folder();
+    let (_, code) = stopped(&folder, "s.toml --samples 2000 --spectral --snapshot 20ms", "-INT", "s.spectral.exr");
+    assert_eq!((code, folder.listing()), (Some(130), ["s.exr", "s.spectral.exr", "s.toml"].map(String::from).into()));
+    for name in ["s.exr", "s.spectral.exr"] {
+        let told = done(&folder, &format!("info {name}")).stdout;
+        assert!(told.contains("render/complete"), "{name}: {told}");
     }
 }
 

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use abbe::film::{Layer, Shard};
-use abbe::{Error, Options, merge};
+use abbe::{Error, Options, Rendering, merge};
 
 use super::{GLASS, advance, rendering};
 use crate::support::scenes::scene;
@@ -56,4 +56,14 @@ fn f3_a_changed_byte_of_a_checkpoint_or_a_part_is_found_and_so_is_a_missing_end(
     }
     let parts = [part.clone(), other];
     try_all(&part, "a part", || merge(&parts).map(|_| ()));
+}
+
+#[test]
+fn f3_a_changed_byte_of_a_plan_is_found_and_so_is_a_missing_end() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("a.plan");
+    let scene = scene(&GLASS.replace("samples = 20", "samples = 20, model = \"rgb\""));
+    abbe::write_plan(&abbe::plan::plan(&scene), &scene, &path).expect("it can be written");
+    let planned = Options { plan: Some(path.clone()), threads: Some(1), ..Options::default() };
+    try_all(&path, "a plan", || Rendering::new(&scene, &planned).map(|_| ()));
 }

@@ -1,0 +1,86 @@
+//! Plans that are made once, for all parts of an image.
+
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use super::identity::Identity;
+use crate::error::{Error, Result};
+use crate::film::{BlockReader, Kind, Shard, write_blocks};
+use crate::plan::Plan;
+use crate::scene::Scene;
+
+/// The first bytes of a plan.
+const PLAN: Kind = *b"AbbePln1";
+
+/// What a plan is of.
+#[derive(Serialize, Deserialize)]
+struct Head {
+    identity: Identity,
+    /// Samples per pixel, if they were asked for.
+    samples: Option<u32>,
+}
+
+impl Head {
+    fn new(scene: &Scene, plan: &Plan) -> Self {
+        let identity = Identity::new(scene, &plan.method, Shard::WHOLE).of_all_parts();
+        Self { identity, samples: scene.render.samples }
+    }
+
+    /// What differs in another one, if anything does.
+    fn difference(&self, other: &Self) -> Option<String> {
+        let words = |samples: Option<u32>| samples.map_or("chosen by the plan".into(), |count| count.to_string());
+        let of_samples = (self.samples != other.samples)
+            .then(|| format!("its number of samples is {}, not {}", words(other.samples), words(self.samples)));
+        of_samples.or_else(|| self.identity.difference(&other.identity))
+    }
+}
+
+/// Writes the plan of a scene with all options in it, for [`Options::plan`](crate::Options::plan).
+///
+/// ```
+/// # let scene = abbe::Scene::parse("camera = { position = [0, 0, 4], look_at = [0, 0, 0], vertical_fov = 40 }
+/// # film = { width = 8, height = 8 }
+/// # light = [{ environment = { radiance = 1 } }]", "")?;
+/// # let folder = tempfile::tempdir().expect("a folder");
+/// # let path = folder.path().join("frame.plan");
+/// abbe::write_plan(&abbe::plan::plan(&scene), &scene, &path)?;
+/// let planned = abbe::Options { plan: Some(path), ..abbe::Options::default() };
+/// let image = abbe::render(&scene, &planned)?;
+/// assert_eq!(image.film(), abbe::render(&scene, &abbe::Options::default())?.film());
+/// # Ok::<(), abbe::Error>(())
+/// ```
+///
+/// # Errors
+/// If it cannot be written; a file that was there before is then untouched.
+pub fn write_plan(plan: &Plan, scene: &Scene, path: impl AsRef<Path>) -> Result<()> {
+    let head = Head::new(scene, plan);
+    write_blocks(path.as_ref(), PLAN, &|blocks| {
+        blocks.block(&head)?;
+        blocks.block(plan)
+    })
+}
+
+/// Reads the plan of a scene with all options in it.
+///
+/// # Errors
+/// [`Error::Arguments`] if it is missing, or of something else; [`Error::Decode`] if it is damaged.
+pub(super) fn read_plan(path: &Path, scene: &Scene) -> Result<Plan> {
+    if !path.exists() {
+        return refuse(&format!("there is no plan {}", path.display()));
+    }
+    let Some(mut blocks) = BlockReader::open(path, PLAN)? else {
+        return refuse(&format!("{} is no plan", path.display()));
+    };
+    let (head, plan): (Head, Plan) = (blocks.block()?, blocks.block()?);
+    blocks.end()?;
+    match Head::new(scene, &plan).difference(&head) {
+        Some(difference) => refuse(&format!("cannot follow {}: {difference}", path.display())),
+        None => Ok(plan),
+    }
+}
+
+fn refuse<T>(message: &str) -> Result<T> {
+    let help = "make it with the same options: render --plan scene.toml --plan-file frame.plan";
+    Err(Error::Arguments { message: message.to_owned(), help: Some(help.to_owned()) })
+}
