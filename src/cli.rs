@@ -28,7 +28,7 @@ Examples:
   render --checkpoint 60s --exr scenes/prism.toml lose nothing: --resume goes on
   render --shard 1/4 --exr scenes/prism.toml      make one of four parts
   render merge prism.exr prism.*.part             lay them together
-  render --plan s.toml --plan-file s.plan         make a plan once, for all parts
+  render --plan s.toml --plan-file s.plan         make a plan for all parts
   render --set film.width=320 scenes/prism.toml   change a value of the scene
   render - --exr frame.exr < scenes/prism.toml    read it from standard input
   render --json --exr scenes/prism.toml           speak to a program
@@ -310,7 +310,7 @@ fn job(arguments: Arguments) -> Result<Job> {
         return refuse("--spectral writes spectra beside an EXR, and --png alone writes none", Some(help));
     }
     let frame = arguments.frame;
-    let mut plan_file = arguments.plan_file;
+    let mut plan_file = arguments.plan_file.map(|path| numbered(&path, frame)).transpose()?;
     let output = if arguments.plan {
         Output::Plan(plan_file.take())
     } else if arguments.check {

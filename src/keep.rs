@@ -250,12 +250,18 @@ impl Keep {
     fn keep(&mut self, rendering: &Rendering) -> Result<()> {
         let mut snapshots = std::mem::replace(&mut self.snapshots, Timer::new(None));
         let mut checkpoints = std::mem::replace(&mut self.checkpoints, Timer::new(None));
-        let shows = snapshots.is_due();
-        // No image may have more samples than the checkpoint that says it is finished.
-        let saved = if shows || checkpoints.is_due() { checkpoints.run(|| self.save(rendering)) } else { Ok(()) };
-        let shown = if shows { snapshots.run(|| self.take_snapshot(rendering)) } else { Ok(()) };
+        let mut save = || checkpoints.run(|| self.save(rendering));
+        let kept = if snapshots.is_due() {
+            // No image may have more samples than the checkpoint that says it is finished, whose time counts as well.
+            snapshots.run(|| {
+                let saved = save();
+                saved.and(self.take_snapshot(rendering))
+            })
+        } else {
+            save()
+        };
         (self.checkpoints, self.snapshots) = (checkpoints, snapshots);
-        saved.and(shown)
+        kept
     }
 
     /// Writes the checkpoint, if one is kept.
