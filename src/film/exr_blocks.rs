@@ -23,8 +23,10 @@ use crate::error::{Error, Result};
 
 /// Level of deflate: the bytes of level 4 of the library for EXR, in half of the time (`benches/README.md`).
 const LEVEL: i32 = 3;
-/// Blocks that each thread packs before all are written: they are all of the file that is in memory.
+/// Blocks that each thread packs before all are written: they are all of the file that is in memory. Of lower blocks,
+/// as many as have the rows of these.
 const BLOCKS_AT_A_TIME: usize = 4;
+const BLOCK_ROWS: usize = 16;
 /// Bytes of a place in the file.
 const OFFSET: usize = 8;
 
@@ -111,6 +113,8 @@ pub(super) fn write(parts: &[Part], rows: &mut dyn Rows, place: &mut dyn Place, 
     let offset_bytes = OFFSET * headers.iter().map(|header| header.chunk_count).sum::<usize>();
     place.write_all(&head).and_then(|()| place.write_all(&vec![0; offset_bytes])).map_err(failed)?;
     let (mut end, mut clamped, mut bytes) = ((head.len() + offset_bytes) as u64, 0, Vec::new());
+    let low = (BLOCK_ROWS / tallest_block(parts) as usize).max(1);
+    let at_a_time = BLOCKS_AT_A_TIME * low * rayon::current_num_threads();
     for strip in strips(parts, rows.at_once()) {
         let blocks = blocks(parts, &strip);
         let (film, first) = rows.rows(strip.clone())?;
@@ -118,17 +122,17 @@ pub(super) fn write(parts: &[Part], rows: &mut dyn Rows, place: &mut dyn Place, 
             let below = (block.rows.start - strip.start) as usize * film.width as usize;
             pack(parts, &headers, block, film, first + below)
         };
-        for some in blocks.chunks(BLOCKS_AT_A_TIME * rayon::current_num_threads()) {
+        for some in blocks.chunks(at_a_time) {
             let packed: Vec<_> = some.par_iter().map(pack).collect();
+            bytes.clear();
             for (block, packed) in some.iter().zip(packed) {
                 let Packed { chunk, clamped: more } = packed.map_err(encode)?;
-                bytes.clear();
+                offsets[block.part].push(end + bytes.len() as u64);
                 chunk.write(&mut bytes, parts.len()).map_err(encode)?;
-                place.write_all(&bytes).map_err(failed)?;
-                offsets[block.part].push(end);
-                end += bytes.len() as u64;
                 clamped += more;
             }
+            place.write_all(&bytes).map_err(failed)?;
+            end += bytes.len() as u64;
         }
     }
     exr_head::set_count(&mut head, CLAMPED, clamped);
@@ -137,11 +141,15 @@ pub(super) fn write(parts: &[Part], rows: &mut dyn Rows, place: &mut dyn Place, 
     Ok(clamped)
 }
 
+/// Rows of the tallest block; those of all packings are powers of two.
+fn tallest_block(parts: &[Part]) -> u32 {
+    parts.iter().map(Part::block_rows).max().unwrap_or(1)
+}
+
 /// Rows that are worked on at once: at most so many, but as many as the tallest block has.
 fn strips(parts: &[Part], at_once: Option<u32>) -> impl Iterator<Item = Range<u32>> + use<> {
     let height = parts.iter().map(|part| part.header.layer_size.height() as u32).max().unwrap_or_default();
-    // Those of all packings are powers of two.
-    let tallest = parts.iter().map(Part::block_rows).max().unwrap_or(1);
+    let tallest = tallest_block(parts);
     let each = at_once.map_or(height, |rows| rows / tallest * tallest).max(tallest);
     (0..height).step_by(each as usize).map(move |first| first..height.min(first.saturating_add(each)))
 }
