@@ -8,7 +8,7 @@ use super::identity::Identity;
 use crate::error::{Error, Result};
 use crate::film::{BlockReader, Kind, Shard, write_blocks};
 use crate::plan::Plan;
-use crate::scene::Scene;
+use crate::scene::{RenderText, Scene};
 
 /// The first bytes of a plan.
 const PLAN: Kind = *b"AbbePln1";
@@ -19,12 +19,17 @@ struct Head {
     identity: Identity,
     /// Samples per pixel, if they were asked for.
     samples: Option<u32>,
+    /// The error and the time in seconds that end a render, which parts do not know.
+    error: Option<f64>,
+    time: Option<f64>,
 }
 
 impl Head {
     fn new(scene: &Scene, plan: &Plan) -> Self {
         let identity = Identity::new(scene, &plan.method, Shard::WHOLE).of_all_parts();
-        Self { identity, samples: scene.render.samples }
+        let RenderText { samples, error, time, is_part, .. } = scene.render;
+        let [error, time] = [error, time.map(|time| time.as_secs_f64())].map(|end| end.filter(|_| !is_part));
+        Self { identity, samples, error, time }
     }
 
     /// What differs in another one, if anything does.
@@ -32,7 +37,12 @@ impl Head {
         let words = |samples: Option<u32>| samples.map_or("chosen by the plan".into(), |count| count.to_string());
         let of_samples = (self.samples != other.samples)
             .then(|| format!("its number of samples is {}, not {}", words(other.samples), words(self.samples)));
-        of_samples.or_else(|| self.identity.difference(&other.identity))
+        let ends = [("error", self.error, other.error), ("time in seconds", self.time, other.time)];
+        let in_words = |end: Option<f64>| end.map_or("none".into(), |end| end.to_string());
+        let of_ends = ends.into_iter().find(|(_, own, other)| own != other);
+        let of_ends =
+            of_ends.map(|(name, own, other)| format!("its {name} is {}, not {}", in_words(other), in_words(own)));
+        of_samples.or(of_ends).or_else(|| self.identity.difference(&other.identity))
     }
 }
 
