@@ -197,7 +197,9 @@ impl Keep {
                 Ok(true)
             }
             Resumed::Finished if missing.is_none() => {
-                say(&format!("{name} has all samples, and the image is written: nothing is left to be done"));
+                say(&format!(
+                    "{name} has all samples that are needed, and the image is written: nothing is left to be done"
+                ));
                 Ok(false)
             }
             Resumed::Finished => Ok(true),

@@ -275,8 +275,7 @@ pub fn so_far(error: &ImageError) -> String {
 /// How far it is off in the end, and whether that was asked for.
 fn print_error_of_image(error: &ImageError) {
     let noise = &error.noise;
-    let [at_most, expected, of_noise, of_color] =
-        [error.at_most(), noise.expected, noise.at_most, error.model].map(percent);
+    let [at_most, expected, of_color] = [error.at_most(), noise.expected, error.model].map(percent);
     if let Some(outlier) = noise.outlier {
         let ([x, y], share) = (outlier.pixel, percent(outlier.share));
         let light = error.rare_light.as_ref().map_or("light".into(), told);
@@ -289,12 +288,14 @@ fn print_error_of_image(error: &ImageError) {
         warn(&format!("the error of {} that was asked for is not reached", percent(asked)));
     }
     let off = match noise.outlier {
-        None => format!("at most {at_most} in 95 of 100 renders (noise {of_noise}, color {of_color})"),
+        None => format!("at most {at_most} in 95 of 100 renders (color {of_color}, the rest noise)"),
         Some(_) => format!("{expected} or more"),
     };
     say(&format!("{} samples per pixel: the image is off by {off}", noise.samples));
     let ([x, y], worst) = (noise.worst_tile.corner, percent(noise.worst_tile.expected));
-    say(&format!("noise is {expected} of the image's brightness, and {worst} in the 16 x 16 pixels from ({x}, {y})"));
+    say(&format!(
+        "noise is about {expected} of the image's brightness, and {worst} in the 16 x 16 pixels from ({x}, {y})"
+    ));
 }
 
 /// Rare light with its way.

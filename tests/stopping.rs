@@ -1,6 +1,6 @@
 //! Renders that stop when their error is small enough, or their time is over.
 //!
-//! `tools/coverage.py` holds many renders of larger scenes against references that find their light another way.
+//! `tools/stopping.py` holds many renders of larger scenes against references that find their light another way.
 //!
 //! ```text
 //! cargo test --test all stopping::

@@ -23,6 +23,7 @@
 //! layers           what is asked for beside the image: contributions told apart, first surfaces, sums of a tile
 //! photon           photons and light paths: walker + landing
 //! walker           from surface to surface; interaction, media, path
+//! replicates       eight renders side by side; noise, stopping: what they tell, and when that is enough
 //! probe, pilot ..  what the plan asks, by the same walks
 //! ```
 

@@ -1,11 +1,16 @@
 //! The noise of an image, told by replicates.
 //!
-//! The error of the mean of all replicates is itself a random number. Where pixels know nothing of each other it is
-//! hardly one, for they are many; but light vertices and photons are shared by pixels, so that a whole image may be too
-//! bright, and in a caustic few pixels make most of it. So the bound is one for a single draw, as the upper end of a
-//! prediction interval is: with x of R replicates, mean x + t s sqrt(1 + 1/R), where s is their standard deviation and t
-//! Student's of R - 1 degrees. Errors are never negative and now and then large, so x is their logarithm; the bound is no
-//! less than it is of the errors themselves.
+//! With errors e_r of R replicates, the error of their mean is expected to be E = mean |e_r|^2 / R. It is itself a random
+//! number, and the bound has to hold for the one that was drawn. Two things are not known of it:
+//!
+//! - E is an estimate. Its variance is told by how far the |e_r|^2 are apart: s^2 / R.
+//! - The error that was drawn lies around E. Where pixels know nothing of each other it hardly does, for they are many;
+//!   but light vertices and photons are shared by pixels, so that a whole image may be too bright. If errors are normal,
+//!   R |mean e_r|^2 has the variance g^2 = 2 tr(C^2), where C is the covariance of all pixels, and the products of two
+//!   replicates tell that: the mean of (e_r . e_s)^2 is tr(C^2). What s^2 has beyond g^2 are rare bright samples, of which
+//!   the mean has R times as many: they add (s^2 - g^2) / R.
+//!
+//! The bound is R E + t sqrt(s^2 / R + g^2 + (s^2 - g^2) / R), over R, with Student's t of R - 1 degrees of freedom.
 
 use serde::{Deserialize, Serialize};
 
@@ -22,7 +27,8 @@ pub struct Noise {
     pub samples: u32,
     /// The error that is expected.
     pub expected: f64,
-    /// The error is smaller than this in 95 of 100 renders.
+    /// The error is smaller than this in 95 of 100 renders of as many samples. A render that takes samples until this is
+    /// small enough stops rather when it is too small by chance.
     pub at_most: f64,
     /// The tile of 16 x 16 pixels with most noise: the first column and row, and its error, relative to the image.
     pub worst_tile: TileNoise,
@@ -63,8 +69,8 @@ const ALONE: f64 = 0.6457;
 /// Sums over some pixels.
 #[derive(Default)]
 struct Spread {
-    /// Of squared deviations from the mean of the replicates, and of squares of the mean.
-    deviations: [f64; REPLICATES],
+    /// Of products of two replicates' deviations from their mean, and of squares of the mean.
+    products: [[f64; REPLICATES]; REPLICATES],
     squares: f64,
     numbers: f64,
     /// The pixel with the largest deviations in which one replicate stands out: where it is, and how large they are.
@@ -72,22 +78,26 @@ struct Spread {
 }
 
 impl Spread {
+    /// The sum of all squared deviations.
     fn total(&self) -> f64 {
-        self.deviations.iter().sum()
+        (0..REPLICATES).map(|i| self.products[i][i]).sum()
     }
 
     /// Adds a pixel of the format.
     fn add(&mut self, pixel: [i64; 2], replicates: &[[f64; 3]; REPLICATES]) {
         let mean: [f64; 3] = std::array::from_fn(|i| replicates.iter().map(|rgb| rgb[i]).sum::<f64>());
         let mean = mean.map(|sum| sum / REPLICATES as f64);
-        let apart = |rgb: &[f64; 3]| (0..3).map(|i| (rgb[i] - mean[i]) * (rgb[i] - mean[i])).sum::<f64>();
-        let deviations = replicates.each_ref().map(apart);
+        let apart = replicates.map(|rgb| [0, 1, 2].map(|i| rgb[i] - mean[i]));
+        let product = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
         let (mut sum, mut most, mut replicate) = (0.0, 0.0, 0);
-        for (number, &deviation) in deviations.iter().enumerate() {
-            self.deviations[number] += deviation;
-            sum += deviation;
-            if deviation > most {
-                (most, replicate) = (deviation, number as u32);
+        for (number, &deviation) in apart.iter().enumerate() {
+            for (products, &other) in self.products[number].iter_mut().zip(&apart) {
+                *products += product(deviation, other);
+            }
+            let square = product(deviation, deviation);
+            sum += square;
+            if square > most {
+                (most, replicate) = (square, number as u32);
             }
         }
         if most > ALONE * sum && self.outlier.as_ref().is_none_or(|(_, other)| sum > *other) {
@@ -98,9 +108,8 @@ impl Spread {
     }
 
     fn join(&mut self, other: Self) {
-        for (sum, more) in self.deviations.iter_mut().zip(other.deviations) {
-            *sum += more;
-        }
+        let sums = self.products.iter_mut().flatten();
+        sums.zip(other.products.iter().flatten()).for_each(|(sum, more)| *sum += more);
         (self.squares, self.numbers) = (self.squares + other.squares, self.numbers + other.numbers);
         let is_larger = |new: &(Outlier, f64)| self.outlier.as_ref().is_none_or(|old| new.1 > old.1);
         if let Some(outlier) = other.outlier.filter(is_larger) {
@@ -108,16 +117,35 @@ impl Spread {
         }
     }
 
+    /// The mean square error of a replicate, and what the error of the mean of all stays below in 95 of 100 cases, times
+    /// their number.
+    fn errors(&self) -> [f64; 2] {
+        let (count, numbers) = (REPLICATES as f64, self.numbers.max(1.0));
+        // Each replicate is a part of the mean that its deviation is from.
+        let errors: [f64; REPLICATES] = std::array::from_fn(|i| self.products[i][i] / numbers * count / (count - 1.0));
+        let mean = errors.iter().sum::<f64>() / count;
+        let spread = errors.iter().map(|error| (error - mean) * (error - mean)).sum::<f64>() / (count - 1.0);
+        let mut shared = 0.0;
+        for (i, products) in self.products.iter().enumerate() {
+            for product in &products[..i] {
+                // Deviations of two replicates have the covariance -C / R, those of one (1 - 1/R) C.
+                let product = product / numbers + mean / count;
+                shared += product * product;
+            }
+        }
+        let of_one = 1.0 - 1.0 / count;
+        let pairs = 0.5 * count * (count - 1.0);
+        let normal = 2.0 * shared / pairs / (of_one * of_one + 1.0 / (count * count));
+        let variance = spread / count + normal + (spread - normal).max(0.0) / count;
+        [mean, mean + STUDENT * variance.sqrt()]
+    }
+
     /// What the sums tell.
     fn noise(self, samples: u32, worst: Option<([i64; 2], f64)>) -> Noise {
         let count = REPLICATES as f64;
-        // The mean is nearer to each replicate than the truth is.
-        let error = |deviation: f64| deviation / self.numbers.max(1.0) * count / (count - 1.0);
-        let errors = self.deviations.map(error);
-        let mean = errors.iter().sum::<f64>() / count;
-        let bound = predicted(errors).max(libm::exp(predicted(errors.map(libm::log))));
+        let (numbers, [mean, bound]) = (self.numbers.max(1.0), self.errors());
         // The square of the mean has its variance in it.
-        let signal = self.squares / self.numbers.max(1.0) - mean / count;
+        let signal = self.squares / numbers - mean / count;
         let relative = |error: f64| match error / count / signal {
             _ if error == 0.0 => 0.0,
             square if square >= 0.0 => square.sqrt(),
@@ -134,14 +162,6 @@ impl Spread {
             outlier: outlier.filter(|outlier| outlier.share > MUCH),
         }
     }
-}
-
-/// What the next of some numbers stays below in 95 of 100 cases; nothing is told where one of them is not finite.
-fn predicted(numbers: [f64; REPLICATES]) -> f64 {
-    let count = REPLICATES as f64;
-    let mean = numbers.iter().sum::<f64>() / count;
-    let squares: f64 = numbers.iter().map(|number| (number - mean) * (number - mean)).sum();
-    mean + STUDENT * (squares / (count - 1.0) * (1.0 + 1.0 / count)).sqrt()
 }
 
 /// The noise of an image's tiles, whose first pixels are given, after so many samples of each replicate.

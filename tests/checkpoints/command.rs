@@ -50,10 +50,13 @@ fn a_finished_render_that_is_resumed_says_so_and_rewrites_nothing() {
     assert_eq!(folder.listing(), ["s.checkpoint", "s.exr", "s.toml"]);
     let times = ["s.checkpoint", "s.exr"].map(|name| modified(&folder, name));
     for (words, told) in [
-        ("s.toml --resume", "s.checkpoint has all samples, and the image is written: nothing is left to be done"),
+        (
+            "s.toml --resume",
+            "s.checkpoint has all samples that are needed, and the image is written: nothing is left to be done",
+        ),
         (
             "s.toml --resume --checkpoint 1h",
-            "s.checkpoint has all samples, and the image is written: nothing is left to be done",
+            "s.checkpoint has all samples that are needed, and the image is written: nothing is left to be done",
         ),
     ] {
         assert_eq!(said_from(&done(&folder, words), "s.checkpoint"), told, "{words}");

@@ -61,6 +61,35 @@ def test_all_that_is_said_of_a_render_is_in_the_schema(tmp_path):
     assert render.read(exr).rgb.shape == (16, 24, 3)
 
 
+def test_an_error_that_is_asked_for_is_told_and_the_report_keeps_all(tmp_path):
+    exr, kept = tmp_path / "a.exr", tmp_path / "a.json"
+    small = ("--set", "film.width=24", "--set", "film.height=16")
+    said = events(TURNTABLE, "--exr", exr, "--error", "0.2", "--report", kept, *small)
+    (plan,) = (event for event in said if event["kind"] == "plan")
+    (report,) = (event for event in said if event["kind"] == "report")
+    assert plan["samples"] == 65536 and plan["photons"] is None and plan["processor_seconds"] is None
+    error = report["error"]
+    assert error["is_reached"] and error["stopped_by"] == "error" and error["at_most"] <= 0.2
+    assert error["samples_per_pixel"] * 24 * 16 == report["samples"]
+    assert report["peak_memory_bytes"] > 1e6 and report["processor_seconds"] > 0
+    account = json.loads(kept.read_text("utf-8"))
+    for event in (account["plan"], account["report"]):
+        jsonschema.validate(event, SCHEMA)
+    assert account["written"] == [str(exr)] and account["report"]["error"] == error
+    header = render.read(exr).header
+    assert header["render/stoppedBy"] == "error" and header["render/samples"] == error["samples_per_pixel"]
+    assert header["render/errorAtMost"] == pytest.approx(error["at_most"], rel=1e-12)
+
+
+def test_what_is_no_error_and_no_time_is_refused(tmp_path):
+    for flag, value in (("--error", "0"), ("--error", "-1"), ("--error", "nan"), ("--error", "2"), ("--time", "5"), ("--time", "0s")):
+        (mistake,) = events(TURNTABLE, flag, value, "--exr", tmp_path / "a.exr", code=2)
+        assert mistake["kind"] == "error"
+    (tmp_path / "file").write_text("")
+    (mistake,) = events(TURNTABLE, "--exr", tmp_path / "a.exr", "--report", tmp_path / "file/a.json", code=1)
+    assert mistake["kind"] == "error" and not (tmp_path / "a.exr").exists()
+
+
 def test_checks_plans_and_mistakes_are_in_the_schema(tmp_path):
     assert kinds(events(TURNTABLE, "--check")) == ["checked"]
     assert kinds(events(TURNTABLE, "--plan", *SMALL)) == ["plan"]

@@ -1,12 +1,13 @@
 """How often `--error` keeps its word: many small renders, each held against a long one that finds its light another way.
 
-    python tools/coverage.py                            five scenes, 40 renders each
-    python tools/coverage.py --renders 8 smooth lamp    fewer, of some
-    python tools/coverage.py --json coverage.json       the figures as well as the table
+    python tools/stopping.py                            five scenes, 40 renders each
+    python tools/stopping.py --renders 8 smooth lamp    fewer, of some
+    python tools/stopping.py --json stopping.json       the figures as well as the table
 
 An error is the root of the mean square over all pixels and channels, relative to that of the image. A scene's column
 "kept" is the share of its renders whose true error is at most the error that was asked for; "bound" is the share whose
-true error is at most what the render says of itself. True errors are those beside a long reference: of caustics without
+true error is at most the bound that stopped the render. That is smaller than what was asked for, and by chance as well, so no
+render claims it. True errors are those beside a long reference: of caustics without
 photons, of a room without light vertices, of all scenes with other seeds and one sequence for all samples of a pixel.
 What the reference itself is off by is told by the spread of its parts, and its square is subtracted.
 
