@@ -19,8 +19,8 @@ pub struct ImageError {
 
 impl ImageError {
     /// The error is smaller than this in 95 of 100 renders, but for what no render of the plan finds, for the blur of
-    /// photons that are gathered, and for light that is too rare to have been met. Where the error that was asked for is
-    /// reached, it is that: what the render measured is less by chance as well.
+    /// photons that are gathered, and for light that is too rare to have been met. Where the error that was asked for
+    /// is reached, it is that: what the render measured is less by chance as well.
     pub fn at_most(&self) -> f64 {
         let measured = self.noise.at_most.hypot(self.model);
         self.asked.filter(|_| self.stopped_by == Some(Stopped::Noise)).map_or(measured, |asked| measured.max(asked))

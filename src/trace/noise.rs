@@ -1,14 +1,14 @@
 //! The noise of an image, told by replicates.
 //!
-//! With errors e_r of R replicates, the error of their mean is expected to be E = mean |e_r|^2 / R. It is itself a random
-//! number, and the bound has to hold for the one that was drawn. Two things are not known of it:
+//! With errors e_r of R replicates, the error of their mean is expected to be E = mean |e_r|^2 / R. It is itself a
+//! random number, and the bound has to hold for the one that was drawn. Two things are not known of it:
 //!
 //! - E is an estimate. Its variance is told by how far the |e_r|^2 are apart: s^2 / R.
 //! - The error that was drawn lies around E. Where pixels know nothing of each other it hardly does, for they are many;
-//!   but light vertices and photons are shared by pixels, so that a whole image may be too bright. If errors are normal,
+//!   but light vertices and photons are shared by pixels, so that a whole image may be too bright. Of normal errors,
 //!   R |mean e_r|^2 has the variance g^2 = 2 tr(C^2), where C is the covariance of all pixels, and the products of two
-//!   replicates tell that: the mean of (e_r . e_s)^2 is tr(C^2). What s^2 has beyond g^2 are rare bright samples, of which
-//!   the mean has R times as many: they add (s^2 - g^2) / R.
+//!   replicates tell that: the mean of (e_r . e_s)^2 is tr(C^2). What s^2 has beyond g^2 are rare bright samples, of
+//!   which the mean has R times as many: they add (s^2 - g^2) / R.
 //!
 //! The bound is R E + t sqrt(s^2 / R + g^2 + (s^2 - g^2) / R), over R, with Student's t of R - 1 degrees of freedom.
 
@@ -27,8 +27,8 @@ pub struct Noise {
     pub samples: u32,
     /// The error that is expected.
     pub expected: f64,
-    /// The error is smaller than this in 95 of 100 renders of as many samples. A render that takes samples until this is
-    /// small enough stops rather when it is too small by chance.
+    /// The error is smaller than this in 95 of 100 renders of as many samples. A render that takes samples until this
+    /// is small enough stops rather when it is too small by chance.
     pub at_most: f64,
     /// The tile of 16 x 16 pixels with most noise: the first column and row, and its error, relative to the image.
     pub worst_tile: TileNoise,
@@ -117,8 +117,8 @@ impl Spread {
         }
     }
 
-    /// The mean square error of a replicate, and what the error of the mean of all stays below in 95 of 100 cases, times
-    /// their number.
+    /// The mean square error of a replicate, and what the error of the mean of all stays below in 95 of 100 cases,
+    /// times their number.
     fn errors(&self) -> [f64; 2] {
         let (count, numbers) = (REPLICATES as f64, self.numbers.max(1.0));
         // Each replicate is a part of the mean that its deviation is from.
