@@ -150,12 +150,12 @@ fn is_same(a: &Image, b: &Image) -> bool {
     (a.film(), a.report()) == (b.film(), b.report())
 }
 
-fn rendering(scene: &Scene, options: &Options, threads: usize) -> Rendering {
+pub fn rendering(scene: &Scene, options: &Options, threads: usize) -> Rendering {
     Rendering::new(scene, &Options { threads: Some(threads), ..options.clone() }).expect("it can be rendered")
 }
 
 /// Renders on until it was asked so many times whether it shall stop; answers how many times it was asked.
-fn advance(rendering: &mut Rendering, most: u64) -> u64 {
+pub fn advance(rendering: &mut Rendering, most: u64) -> u64 {
     let asked = AtomicU64::new(0);
     let is_due = || asked.fetch_add(1, Ordering::Relaxed) >= most;
     while rendering.advance_until(&|_| (), &is_due) == Advance::Passed {}

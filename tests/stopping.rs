@@ -6,15 +6,14 @@
 //! cargo test --test all stopping::
 //! ```
 
-use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
 use abbe::film::{Layer, Shard};
 use abbe::trace::{Method, Stopped};
-use abbe::{Advance, Image, Options, Rendering, Resumed, Scene, render};
+use abbe::{Image, Options, Rendering, Resumed, Scene, render};
 use rayon::prelude::*;
 
-use crate::checkpoints::{CAUSTIC, GLASS, Kind, ROOM, bytes};
+use crate::checkpoints::{CAUSTIC, GLASS, Kind, ROOM, advance, bytes, rendering};
 use crate::support::random::Random;
 use crate::support::scenes::scene;
 
@@ -33,18 +32,6 @@ fn kinds() -> [Kind; 3] {
         ("photons that are gathered", GLASS.into(), asks(0.3, 128), gathers),
         ("light vertices, a filter with negative lobes", room, asks(0.02, 256), |method| method.light_vertices),
     ]
-}
-
-fn rendering(scene: &Scene, options: &Options, threads: usize) -> Rendering {
-    Rendering::new(scene, &Options { threads: Some(threads), ..options.clone() }).expect("it can be rendered")
-}
-
-/// Renders on until it was asked so many times whether it shall stop; answers how many times it was asked.
-fn advance(rendering: &mut Rendering, most: u64) -> u64 {
-    let asked = AtomicU64::new(0);
-    let is_due = || asked.fetch_add(1, Ordering::Relaxed) >= most;
-    while rendering.advance_until(&|_| (), &is_due) == Advance::Passed {}
-    asked.into_inner()
 }
 
 #[test]
