@@ -188,3 +188,49 @@ pub(super) fn noise<'t>(
     }
     all.noise(REPLICATES as u32 * each, worst)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::{BranchKey, Sampler};
+
+    /// Of renders of 1024 pixels with samples u^-a, by eight replicates of so many samples: the shares that are off by
+    /// no more than they say, and that say that they do not know.
+    fn told(a: f64, samples: u32) -> [f64; 2] {
+        const RENDERS: u32 = 60;
+        const PIXELS: u32 = 1024;
+        let mut told = [0.0; 2];
+        for render in 0..RENDERS {
+            let (mut spread, mut error, truth) = (Spread::default(), 0.0, 1.0 / (1.0 - a));
+            for pixel in 0..PIXELS {
+                let replicates: [[f64; 3]; REPLICATES] = std::array::from_fn(|replicate| {
+                    let key = [render, pixel * REPLICATES as u32 + replicate as u32];
+                    let number = |sample| Sampler::new(7, key, sample).four_plain(BranchKey::CAMERA, 0)[0];
+                    let value = |sample| libm::pow(number(sample).max(1e-12), -a);
+                    [(0..samples).map(value).sum::<f64>() / f64::from(samples); 3]
+                });
+                let mean = replicates.iter().map(|rgb| rgb[0]).sum::<f64>() / REPLICATES as f64;
+                error += (mean - truth) * (mean - truth) / (f64::from(PIXELS) * truth * truth);
+                spread.add([i64::from(pixel), 0], &replicates);
+            }
+            let noise = spread.noise(samples, None);
+            let doubts = noise.outlier.is_some();
+            told[0] += f64::from(u8::from(!doubts && error.sqrt() <= noise.at_most)) / f64::from(RENDERS);
+            told[1] += f64::from(u8::from(doubts)) / f64::from(RENDERS);
+        }
+        told
+    }
+
+    /// Row A7 of the stability catalog. u^-0.3 has three moments, u^-0.45 has two, and u^-0.8 has no variance.
+    #[test]
+    fn a7_samples_without_variance_are_doubted_and_what_is_believed_is_kept() {
+        for samples in [8, 64] {
+            let [kept, doubted] = told(0.3, samples);
+            assert!(kept / (1.0 - doubted) >= 0.9 && doubted < 0.25, "u^-0.3, {samples}: {kept} {doubted}");
+            let [kept, doubted] = told(0.45, samples);
+            assert!(kept / (1.0 - doubted) >= 0.9, "u^-0.45, {samples}: {kept} {doubted}");
+            let [kept, doubted] = told(0.8, samples);
+            assert!(kept <= 0.02 && doubted >= 0.95, "u^-0.8, {samples}: {kept} {doubted}");
+        }
+    }
+}

@@ -145,13 +145,27 @@ fn half_precision_keeps_places_and_statistics_whole() {
     }
 }
 
+/// Row O1 of the stability catalog.
 #[test]
-fn what_is_too_bright_for_half_precision_is_counted() {
-    let text = "camera = { position = [0, 0, 4], look_at = [0, 0, 0], vertical_fov = 40 }\n\
-                film = { width = 4, height = 4, precision = \"half\" }\nrender.samples = 1\n\
-                light = [{ environment = { radiance = 1e6 } }]\n";
-    let scene = Scene::parse(text, "").expect("the scene is valid");
-    let image = abbe::render(&scene, &Options::default()).expect("it renders");
+fn o1_what_is_too_bright_for_half_precision_is_its_largest_number_and_is_counted() {
     let folder = tempfile::tempdir().expect("a folder");
-    assert_eq!(image.write_exr(folder.path().join("image.exr")).expect("it can be written"), 4 * 4 * 3);
+    let path = folder.path().join("image.exr");
+    // Halves end at 65504; from 65520 on, the nearest would be infinity.
+    for (radiance, clamped) in [("65503", 0), ("65519.99", 0), ("65520", 4 * 4 * 3), ("1e6", 4 * 4 * 3)] {
+        let text = format!(
+            "camera = {{ position = [0, 0, 4], look_at = [0, 0, 0], vertical_fov = 40 }}\n\
+             film = {{ width = 4, height = 4, precision = \"half\" }}\nrender.samples = 1\n\
+             light = [{{ environment = {{ radiance = {radiance} }} }}]\n"
+        );
+        let scene = Scene::parse(&text, "").expect("the scene is valid");
+        let image = abbe::render(&scene, &Options::default()).expect("it renders");
+        assert_eq!(image.write_exr(&path).expect("it can be written"), clamped, "{radiance}");
+        let file = read().no_deep_data().largest_resolution_level().all_channels().first_valid_layer().all_attributes();
+        let file = file.from_file(&path).expect("it can be read");
+        for channel in
+            file.layer_data.channel_data.list.iter().filter(|channel| "RGB".contains(&*channel.name.to_string()))
+        {
+            assert!(channel.sample_data.values_as_f32().all(|value| value == 65504.0), "{radiance}: {}", channel.name);
+        }
+    }
 }
