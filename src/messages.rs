@@ -280,8 +280,8 @@ fn print_error_of_image(error: &ImageError) {
         let ([x, y], share) = (outlier.pixel, percent(outlier.share));
         let light = error.rare_light.as_ref().map_or("light".into(), told);
         warn(&format!(
-            "pixel ({x}, {y}) makes {share} of the noise, by {light} that one of eight renders found there and no other: \
-             there may be more of it than any number of samples tells"
+            "pixel ({x}, {y}) makes {share} of the noise: one of eight renders found {light} there, and no other did. \
+             There may be more such light than the samples tell"
         ));
     }
     if let Some(asked) = error.asked.filter(|_| !error.is_reached()) {
@@ -303,7 +303,7 @@ fn told(light: &RareLight) -> String {
     let RareLight { name, bounces, found } = light;
     let of = name.as_ref().map_or(String::new(), |name| format!(" of {name}"));
     let after = if *bounces == 1 { "after 1 bounce".into() } else { format!("after {bounces} bounces") };
-    format!("light{of}, {found} {after},")
+    format!("light{of} ({found} {after})")
 }
 
 /// A share as people say it.
