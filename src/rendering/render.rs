@@ -238,9 +238,7 @@ impl Rendering {
 
     /// How far the image was off at the last look, where a stop rule looks.
     pub fn error(&self) -> Option<ImageError> {
-        let (report, model) = (self.passes.report(), self.plan.model_error);
-        let noise = report.noise?;
-        let stopped_by = report.stopped_by;
+        let (noise, model, stopped_by) = (*self.passes.noise()?, self.plan.model_error, self.passes.stopped_by());
         let rare_light = self.threads.install(|| stopped_by.and_then(|_| self.passes.rare_light()));
         Some(ImageError { asked: self.asked, noise, rare_light, model, stopped_by })
     }

@@ -229,7 +229,7 @@ impl<W: Borrow<World>> Rendering<W> {
                     let (sums, shown) = (tile.layers.rows(layers, place), tile.shown_in_layers(layers, place));
                     let shown = &*times(shown, shown_counts);
                     let (covered, rgb) = (tile.layers.covered(), [sum.rgb(), subtracted.rgb()]);
-                    let variance = each.map(|each| variance(&tile.replicates.pixel(place, settings.filter, each)));
+                    let variance = each.map(|each| tile.replicates.variance(place, settings.filter, each));
                     let taken = Taken { sums, shown, variance, rgb, weights, covered, place };
                     write(layers, &taken, number, &mut images);
                     if let (Some(image), Some(spectrum)) = (&mut spectral, &layers.spectrum) {
@@ -292,7 +292,7 @@ impl<W: Borrow<World>> Rendering<W> {
     }
 
     /// What ended the render, if a stop rule could, and it is finished.
-    fn stopped_by(&self) -> Option<Stopped> {
+    pub fn stopped_by(&self) -> Option<Stopped> {
         let stop = self.world().method.stop.as_ref().filter(|_| self.is_finished())?;
         Some(Stopped::new(stop, &self.progress))
     }
@@ -412,15 +412,6 @@ impl<W: Borrow<World>> Rendering<W> {
 /// Numbers so many times as large.
 fn times(numbers: &[f64], factor: f64) -> Cow<'_, [f64]> {
     if factor == 1.0 { numbers.into() } else { numbers.iter().map(|x| x * factor).collect() }
-}
-
-/// The variance of the mean of all replicates.
-fn variance(replicates: &[[f64; 3]; REPLICATES]) -> [f64; 3] {
-    let count = REPLICATES as f64;
-    std::array::from_fn(|i| {
-        let mean = replicates.iter().map(|rgb| rgb[i]).sum::<f64>() / count;
-        replicates.iter().map(|rgb| (rgb[i] - mean) * (rgb[i] - mean)).sum::<f64>() / (count * (count - 1.0))
-    })
 }
 
 const BLANK: Pixel = Pixel { rgb: [0.0; 3], alpha: 0.0, depth: 0.0, samples: 0.0 };

@@ -80,4 +80,13 @@ impl Replicates {
             std::array::from_fn(|i| mean(i) + f64::from(shown[i]) / f64::from(each))
         })
     }
+
+    /// The variance of a pixel's mean over all replicates, after so many samples of each.
+    pub(super) fn variance(&self, pixel: usize, filter: Filter, each: u32) -> [f64; 3] {
+        let (replicates, count) = (self.pixel(pixel, filter, each), REPLICATES as f64);
+        std::array::from_fn(|i| {
+            let mean = replicates.iter().map(|rgb| rgb[i]).sum::<f64>() / count;
+            replicates.iter().map(|rgb| (rgb[i] - mean) * (rgb[i] - mean)).sum::<f64>() / (count * (count - 1.0))
+        })
+    }
 }
