@@ -13,7 +13,7 @@ from contextlib import ExitStack
 
 import pytest
 import render
-from test_farm import SCENE
+from test_farm import folder, whole  # noqa: F401
 
 COMMANDS = ["slurmctld", "slurmd", "sbatch", "squeue", "scancel", "scontrol", "sinfo"]
 SHARD = render.ROOT / "tools/farm/shard.sh"
@@ -118,17 +118,6 @@ def cluster(tmp_path_factory):
         until(lambda: subprocess.run(idle, **ask).stdout.strip() == "idle", "the node is not idle")
         yield found
         found.run("scancel", "--user", user)
-
-
-@pytest.fixture
-def folder(tmp_path):
-    (tmp_path / "s.toml").write_text(SCENE, "utf-8")
-    return tmp_path
-
-
-def whole(folder, **flags):
-    render.write(folder / "s.toml", folder / "whole.exr", **flags)
-    return (folder / "whole.exr").read_bytes()
 
 
 def logs(folder):
