@@ -26,6 +26,7 @@ mod messages;
 mod outputs;
 mod pipeline;
 mod planning;
+mod polarization;
 mod prisms;
 mod radiometry;
 mod rainbow;

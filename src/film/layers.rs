@@ -63,6 +63,13 @@ pub enum Layer {
     CryptoMaterial,
     /// A matte of all instances of an object together.
     CryptoAsset,
+    /// How much of the light is polarized along the image's rows more than along its columns: the second component of
+    /// the Stokes vector, of which the image is the first.
+    S1,
+    /// The same along the diagonal from the lower left to the upper right, and across it.
+    S2,
+    /// How much more of it turns right than left, seen toward the scene.
+    S3,
 }
 
 impl Layer {
@@ -70,7 +77,7 @@ impl Layer {
     pub const ALL: &str = "all";
 
     /// All of them by the names that ask for them.
-    pub const NAMES: [(&str, Self); 29] = [
+    pub const NAMES: [(&str, Self); 32] = [
         ("emission", Self::Emission),
         ("background", Self::Background),
         ("direct", Self::Direct),
@@ -100,11 +107,18 @@ impl Layer {
         ("CryptoObject", Self::CryptoObject),
         ("CryptoMaterial", Self::CryptoMaterial),
         ("CryptoAsset", Self::CryptoAsset),
+        ("S1", Self::S1),
+        ("S2", Self::S2),
+        ("S3", Self::S3),
     ];
 
-    /// Every one.
+    /// The components of the Stokes vector beside the image.
+    pub const STOKES: [Self; 3] = [Self::S1, Self::S2, Self::S3];
+
+    /// Every one that does not ask for light to be followed in another way.
     pub fn all() -> Vec<Self> {
-        Self::NAMES.iter().map(|(_, layer)| *layer).collect()
+        let all = Self::NAMES.iter().map(|(_, layer)| *layer);
+        all.filter(|layer| !Self::STOKES.contains(layer)).collect()
     }
 
     /// The name that asks for it, and that the file has unless there are several.
@@ -125,7 +139,8 @@ impl Layer {
 
     /// Whether 16 bits are enough where the file has them: for light, and for numbers up to 1.
     pub fn may_be_half(self) -> bool {
-        !matches!(self, Self::Position | Self::Uv | Self::Variance | Self::Samples | Self::Residual) && !self.is_matte()
+        let exact = matches!(self, Self::Position | Self::Uv | Self::Variance | Self::Samples | Self::Residual);
+        !exact && !self.is_matte() && !Self::STOKES.contains(&self)
     }
 
     /// Whether it is light to look at: what is computed with, such as an albedo or a half of the samples, is none.
@@ -151,7 +166,7 @@ impl Layer {
             Self::Emission | Self::Background | Self::Direct | Self::Indirect => true,
             Self::DiffuseDirect | Self::GlossyDirect | Self::SpecularDirect | Self::TransmissionDirect => true,
             Self::DiffuseIndirect | Self::GlossyIndirect | Self::SpecularIndirect | Self::TransmissionIndirect => true,
-            Self::Caustics | Self::Dispersed | Self::Lights => true,
+            Self::Caustics | Self::Dispersed | Self::Lights | Self::S1 | Self::S2 | Self::S3 => true,
             Self::Albedo | Self::Normal | Self::GeometricNormal | Self::Position | Self::Uv | Self::Shadow => false,
             Self::Variance | Self::Samples | Self::HalfA | Self::HalfB | Self::Residual => false,
             Self::CryptoObject | Self::CryptoMaterial | Self::CryptoAsset => false,

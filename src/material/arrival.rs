@@ -102,6 +102,19 @@ impl<const N: usize> Arrival<'_, N> {
         })
     }
 
+    /// A lane's indices on both sides, and the cosine under which it meets, by its own index, a smooth boundary that
+    /// its ray meets at an angle of some cosine; those of the ray where that is reflected totally.
+    pub(super) fn own_boundary(&self, lane: usize, cos: f64) -> [f64; 3] {
+        let own @ [n1, n2] = [self.incident_of(lane), self.beyond_of(lane)];
+        let along @ [here, beyond] = self.refracting(lane);
+        let sin_squared = 1.0 - cos * cos;
+        if along == own || here * here * sin_squared >= beyond * beyond {
+            return [here, beyond, cos];
+        }
+        let sin = here / n1;
+        [n1, n2, (1.0 - sin * sin * sin_squared).max(0.0).sqrt()]
+    }
+
     /// What turns the shares of light that crosses, followed from the light as if it were the viewer, into those of
     /// flux.
     ///

@@ -22,7 +22,23 @@ pub struct Branch<const N: usize> {
     pub polarization: f32,
 }
 
+/// From where light arrives that leaves a surface to the viewer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Incoming {
+    /// Unit vector toward it.
+    pub wi: DVec3,
+    /// Whether it is beyond the surface.
+    pub crosses: bool,
+    /// Whether it is the one direction that a smooth surface allows.
+    pub single: bool,
+}
+
 impl<const N: usize> Branch<N> {
+    /// From where its light arrives.
+    pub fn incoming(&self) -> Incoming {
+        Incoming { wi: self.wi, crosses: self.crosses, single: self.pdf.is_none() }
+    }
+
     /// The way of a ray that goes straight on, with the light that comes by it.
     pub fn onward(ray: &Ray, straight: &Straight<N>) -> Self {
         let (share, polarization) = (straight.share(), straight.polarization);

@@ -1,5 +1,7 @@
 use super::degree::{LANES, degree, largest};
-use super::{Arrival, Branch, RoughReflection, RoughSurface, Roughness, conductor_reflectance, reflect};
+use super::{
+    Arrival, Block, Branch, Incoming, Mueller, RoughReflection, RoughSurface, Roughness, conductor_reflectance, reflect,
+};
 use crate::math::{DVec3, Frame, unit};
 use crate::spectrum::{Lanes, Quantity, Table};
 
@@ -104,6 +106,29 @@ impl Conductor<Table> {
         let degree =
             |lane: usize| degree(conductor_reflectance(arrival.incident_of(lane), n[lane], k[lane], arrival.wo.dot(h)));
         largest((0..N).step_by(N.div_ceil(LANES)).map(degree))
+    }
+
+    /// By the facet that mirrors the light; what is reflected more than once leaves unpolarized.
+    pub(super) fn mueller<const N: usize>(&self, arrival: &Arrival<N>, incoming: Incoming) -> Mueller<N> {
+        let (axis, cos, once) = match self.roughness.surface() {
+            None if incoming.single => (arrival.wo.cross(arrival.normal), arrival.wo.dot(arrival.normal), 1.0),
+            Some(surface) if !incoming.single => {
+                let frame = Frame::about(arrival.normal);
+                let reflection = surface.evaluate(above(&frame, arrival.wo), frame.to_local(incoming.wi));
+                let Some(reflection) = reflection else { return Mueller::NONE };
+                (arrival.wo.cross(incoming.wi), reflection.cos, reflection.once)
+            }
+            _ => return Mueller::NONE,
+        };
+        let (n, k) = (arrival.draw.read_exact(&self.n), arrival.draw.read_exact(&self.k));
+        let (mut last, mut block) = (None, Block::default());
+        Mueller::of_lanes(axis, arrival.present, |lane| {
+            let metal @ [n1, n, k] = [arrival.incident_of(lane), n[lane], k[lane]];
+            if last.replace(metal) != Some(metal) {
+                block = Block::of_metal(n1, n, k, cos).times(once);
+            }
+            block
+        })
     }
 }
 

@@ -1,5 +1,7 @@
 use super::rough_dielectric::{RoughBoundary, parts};
-use super::{Arrival, Branch, Interface, RoughInterface, Roughness, reflect, shared_transmittance};
+use super::{
+    Arrival, Block, Branch, Incoming, Interface, Mueller, RoughInterface, Roughness, reflect, shared_transmittance,
+};
 use crate::math::DVec3;
 use crate::spectrum::{Draw, Lanes, Quantity, Table};
 
@@ -188,6 +190,28 @@ impl Dielectric<Table> {
         let share = reflectance * Lanes::from_fn(|i| (1.0 - crossing[i]) as f32);
         let wi = reflect(arrival.wo, arrival.normal);
         push(wi, share, false, 1.0, interface.polarization_reflected);
+    }
+
+    /// By the surface, or the facet that light meets.
+    pub(super) fn mueller<const N: usize>(&self, arrival: &Arrival<N>, incoming: Incoming) -> Mueller<N> {
+        match self.roughness.interface() {
+            Some(interface) if !incoming.single => self.rough(interface).mueller(arrival, incoming),
+            Some(_) => Mueller::unchanged(arrival.present * arrival.read(&self.transmittance)),
+            None => self.mueller_of_smooth(arrival, incoming.crosses),
+        }
+    }
+
+    fn mueller_of_smooth<const N: usize>(&self, arrival: &Arrival<N>, crosses: bool) -> Mueller<N> {
+        let tint = arrival.read(if crosses { &self.transmittance } else { &self.reflectance });
+        let (axis, cos) = (arrival.wo.cross(arrival.normal), arrival.wo.dot(arrival.normal));
+        let (mut last, mut block) = (None, Block::default());
+        Mueller::of_lanes(axis, arrival.present, |lane| {
+            let boundary = arrival.own_boundary(lane, cos);
+            if last.replace(boundary) != Some(boundary) {
+                block = Block::at_boundary(boundary, crosses);
+            }
+            block.times(f64::from(tint[lane]))
+        })
     }
 
     fn is_clear(&self) -> bool {

@@ -2,10 +2,10 @@
 //! has to know it.
 
 use super::{
-    Arrival, Branch, Conductor, Dielectric, Diffuse, Emissive, Lobes, Mask, Mirror, Mix, Part, Plastic, Scatter,
-    Straight, Thin,
+    Arrival, Branch, Conductor, Dielectric, Diffuse, Emissive, Incoming, Lobes, Mask, Mirror, Mix, Mueller, Part,
+    Plastic, Polarizer, Retarder, Scatter, Straight, Thin,
 };
-use crate::math::DVec3;
+use crate::math::{DVec3, Transform};
 use crate::spectrum::{Curve, Lanes, Quantity, Table};
 
 /// What a surface does with light.
@@ -25,6 +25,10 @@ pub enum Material<S> {
     Emissive(Emissive<S>),
     /// Scatters evenly under a clear coat.
     Plastic(Plastic<S>),
+    /// Lets light through that is polarized along an axis.
+    Polarizer(Polarizer),
+    /// Shifts the phase of light that is polarized along an axis.
+    Retarder(Retarder),
     /// Does what two other materials do, each on a share of the surface.
     Mix(Mix<S, Self>),
     /// Does what another material does, and lets the rest straight through.
@@ -42,6 +46,8 @@ impl<S> Material<S> {
             Self::Dielectric(dielectric) => Material::Dielectric(dielectric.map(convert)),
             Self::Emissive(emissive) => Material::Emissive(emissive.map(convert)),
             Self::Plastic(plastic) => Material::Plastic(plastic.map(convert)),
+            Self::Polarizer(polarizer) => Material::Polarizer(*polarizer),
+            Self::Retarder(retarder) => Material::Retarder(*retarder),
             Self::Mix(Mix { materials, amount }) => {
                 let amount = convert(Quantity::Share, amount);
                 let materials = materials.each_ref().map(|part| part.map(|material| material.map(convert)));
@@ -61,7 +67,7 @@ impl<S> Material<S> {
             Self::Thin(thin) => Some(&thin.index),
             Self::Plastic(plastic) => Some(&plastic.index),
             Self::Diffuse(_) | Self::Mirror(_) | Self::Conductor(_) | Self::Emissive(_) => None,
-            Self::Mix(_) | Self::Mask(_) => None,
+            Self::Mix(_) | Self::Mask(_) | Self::Polarizer(_) | Self::Retarder(_) => None,
         }
     }
 
@@ -85,7 +91,7 @@ impl<S> Material<S> {
             Self::Dielectric(dielectric) if dielectric.roughness.is_smooth() => Lobes::DELTA,
             // Between equal indices light goes straight on, however rough the surface is.
             Self::Dielectric(_) => Lobes::GLOSSY_REFLECTION.union(Lobes::GLOSSY_TRANSMISSION).union(Lobes::DELTA),
-            Self::Emissive(_) => Lobes::NONE,
+            Self::Emissive(_) | Self::Polarizer(_) | Self::Retarder(_) => Lobes::NONE,
             Self::Plastic(plastic) => {
                 let coat = smooth_or(plastic.coat.roughness().is_smooth(), Lobes::GLOSSY_REFLECTION);
                 Lobes::DIFFUSE_REFLECTION.union(coat)
@@ -129,13 +135,13 @@ impl<S> Material<S> {
             Self::Dielectric(dielectric) => Some(dielectric.roughness.value()),
             Self::Plastic(plastic) => Some(plastic.coat.roughness().value()),
             Self::Diffuse(_) | Self::Mirror(_) | Self::Thin(_) | Self::Emissive(_) => None,
-            Self::Mix(_) | Self::Mask(_) => None,
+            Self::Mix(_) | Self::Mask(_) | Self::Polarizer(_) | Self::Retarder(_) => None,
         }
     }
 
     /// Whether it lets light straight on: through holes, or as a pane does that bends nothing.
     pub fn is_see_through(&self) -> bool {
-        matches!(self, Self::Mask(_) | Self::Thin(_))
+        matches!(self, Self::Mask(_) | Self::Thin(_) | Self::Polarizer(_) | Self::Retarder(_))
             || self.parts().iter().any(|part| part.material().is_see_through())
     }
 
@@ -146,6 +152,7 @@ impl<S> Material<S> {
             Self::Mask(mask) => std::slice::from_ref(&mask.material),
             Self::Diffuse(_) | Self::Mirror(_) | Self::Conductor(_) | Self::Dielectric(_) => &[],
             Self::Thin(_) | Self::Emissive(_) | Self::Plastic(_) => &[],
+            Self::Polarizer(_) | Self::Retarder(_) => &[],
         }
     }
 
@@ -155,6 +162,12 @@ impl<S> Material<S> {
         std::iter::once(self).chain(parts).collect()
     }
 
+    /// Whether it polarizes light by an axis of its own.
+    pub fn has_axis(&self) -> bool {
+        matches!(self, Self::Polarizer(_) | Self::Retarder(_))
+            || self.parts().iter().any(|part| part.material().has_axis())
+    }
+
     /// Whether it is made of the material of a name.
     pub fn is_made_of(&self, name: &str) -> bool {
         self.parts().iter().any(|part| part.name == name || part.material().is_made_of(name))
@@ -162,6 +175,19 @@ impl<S> Material<S> {
 }
 
 impl Material<Curve> {
+    /// The same, its axes turned with the object that it lies on.
+    #[must_use]
+    pub fn turned(&self, map: &Transform) -> Self {
+        match self {
+            Self::Polarizer(polarizer) => Self::Polarizer(polarizer.turned(map)),
+            Self::Retarder(retarder) => Self::Retarder(retarder.turned(map)),
+            Self::Mask(Mask { material, opacity }) => {
+                Self::Mask(Mask { material: material.map(|material| material.turned(map)), opacity: opacity.clone() })
+            }
+            other => other.clone(),
+        }
+    }
+
     /// Whether any of its spectra is different at different places of a surface.
     pub fn varies(&self) -> bool {
         let mut varies = false;
@@ -178,7 +204,8 @@ impl Material<Table> {
                 roughness.is_smooth() && reflectance.is_one() && transmittance.is_one()
             }
             Self::Thin(thin) => thin.transmittance.is_one(),
-            Self::Diffuse(_) | Self::Mirror(_) | Self::Conductor(_) => false,
+            Self::Retarder(_) => true,
+            Self::Diffuse(_) | Self::Mirror(_) | Self::Conductor(_) | Self::Polarizer(_) => false,
             Self::Emissive(_) | Self::Plastic(_) | Self::Mix(_) | Self::Mask(_) => false,
         }
     }
@@ -189,6 +216,7 @@ impl Material<Table> {
             Self::Dielectric(dielectric) => dielectric.parts(arrival),
             Self::Diffuse(_) | Self::Mirror(_) | Self::Conductor(_) | Self::Thin(_) => arrival.parts(),
             Self::Emissive(_) | Self::Plastic(_) | Self::Mix(_) | Self::Mask(_) => arrival.parts(),
+            Self::Polarizer(_) | Self::Retarder(_) => false,
         }
     }
 }
@@ -205,7 +233,7 @@ impl Scatter for Material<Table> {
             Self::Thin(thin) => thin.scatter(arrival, branches),
             Self::Conductor(conductor) => branches.extend(conductor.scatter(arrival, u)),
             Self::Dielectric(dielectric) => dielectric.scatter(arrival, u, branches),
-            Self::Emissive(_) => {}
+            Self::Emissive(_) | Self::Polarizer(_) | Self::Retarder(_) => {}
             Self::Plastic(plastic) => plastic.scatter(arrival, u, branches),
             Self::Mix(mix) => mix.scatter(arrival, u, branches),
             Self::Mask(mask) => mask.scatter(arrival, u, branches),
@@ -220,7 +248,7 @@ impl Scatter for Material<Table> {
             Self::Plastic(plastic) => plastic.evaluate(arrival, wi),
             Self::Mix(mix) => mix.evaluate(arrival, wi),
             Self::Mask(mask) => mask.evaluate(arrival, wi),
-            Self::Mirror(_) | Self::Thin(_) | Self::Emissive(_) => None,
+            Self::Mirror(_) | Self::Thin(_) | Self::Emissive(_) | Self::Polarizer(_) | Self::Retarder(_) => None,
         }
     }
 
@@ -231,13 +259,15 @@ impl Scatter for Material<Table> {
             Self::Mix(mix) => mix.diffuse_part(arrival, wi),
             Self::Mask(mask) => mask.diffuse_part(arrival, wi),
             Self::Mirror(_) | Self::Conductor(_) | Self::Dielectric(_) => Lanes::ZERO,
-            Self::Thin(_) | Self::Emissive(_) => Lanes::ZERO,
+            Self::Thin(_) | Self::Emissive(_) | Self::Polarizer(_) | Self::Retarder(_) => Lanes::ZERO,
         }
     }
 
     fn straight<const N: usize>(&self, arrival: &Arrival<N>) -> Option<Straight<N>> {
         match self {
             Self::Thin(thin) => Some(thin.straight(arrival)),
+            Self::Polarizer(polarizer) => Some(polarizer.straight()),
+            Self::Retarder(retarder) => Some(retarder.straight()),
             Self::Mix(mix) => mix.straight(arrival),
             Self::Mask(mask) => Some(mask.straight(arrival)),
             Self::Diffuse(_) | Self::Mirror(_) | Self::Conductor(_) | Self::Dielectric(_) => None,
@@ -256,6 +286,33 @@ impl Scatter for Material<Table> {
                 if material.scatters_widely() { material.degree_of_scattered(arrival, wi) } else { 0.0 }
             }
             Self::Diffuse(_) | Self::Mirror(_) | Self::Thin(_) | Self::Emissive(_) => 0.0,
+            Self::Polarizer(_) | Self::Retarder(_) => 0.0,
+        }
+    }
+
+    fn mueller<const N: usize>(&self, arrival: &Arrival<N>, incoming: Incoming) -> Mueller<N> {
+        match self {
+            Self::Mirror(mirror) if incoming.single => mirror.mueller(arrival),
+            Self::Thin(thin) if incoming.single => thin.muellers(arrival)[1],
+            Self::Conductor(conductor) => conductor.mueller(arrival, incoming),
+            Self::Dielectric(dielectric) => dielectric.mueller(arrival, incoming),
+            Self::Plastic(plastic) => plastic.mueller(arrival, incoming),
+            Self::Mix(mix) => mix.mueller(arrival, incoming),
+            Self::Mask(mask) => mask.mueller(arrival, incoming),
+            Self::Diffuse(_) | Self::Emissive(_) | Self::Mirror(_) | Self::Thin(_) => Mueller::NONE,
+            Self::Polarizer(_) | Self::Retarder(_) => Mueller::NONE,
+        }
+    }
+
+    fn mueller_of_straight<const N: usize>(&self, arrival: &Arrival<N>) -> Mueller<N> {
+        match self {
+            Self::Thin(thin) => thin.muellers(arrival)[0],
+            Self::Polarizer(polarizer) => polarizer.mueller(arrival),
+            Self::Retarder(retarder) => retarder.mueller(arrival),
+            Self::Mix(mix) => mix.mueller_of_straight(arrival),
+            Self::Mask(mask) => mask.mueller_of_straight(arrival),
+            Self::Diffuse(_) | Self::Mirror(_) | Self::Conductor(_) | Self::Dielectric(_) => Mueller::NONE,
+            Self::Emissive(_) | Self::Plastic(_) => Mueller::NONE,
         }
     }
 }

@@ -1,4 +1,4 @@
-use super::{Arrival, Branch, Part, Scatter, Straight};
+use super::{Arrival, Branch, Incoming, Mueller, Part, Scatter, Straight};
 use crate::math::DVec3;
 use crate::spectrum::{Lanes, Table};
 
@@ -30,6 +30,17 @@ impl<M: Scatter> Mask<Table, M> {
 
     pub(super) fn diffuse_part<const N: usize>(&self, arrival: &Arrival<N>, wi: DVec3) -> Lanes<N> {
         self.material.material().diffuse_part(arrival, wi) * arrival.read(&self.opacity)
+    }
+
+    pub(super) fn mueller<const N: usize>(&self, arrival: &Arrival<N>, incoming: Incoming) -> Mueller<N> {
+        self.material.material().mueller(arrival, incoming).scaled(arrival.read(&self.opacity))
+    }
+
+    /// Holes change nothing.
+    pub(super) fn mueller_of_straight<const N: usize>(&self, arrival: &Arrival<N>) -> Mueller<N> {
+        let (opacity, within) = (arrival.read(&self.opacity), self.material.material());
+        let hole = Mueller::unchanged(Lanes::from_fn(|i| 1.0 - opacity[i]));
+        within.mueller_of_straight(arrival).scaled(opacity).plus(&hole)
     }
 
     /// The share that goes straight on.

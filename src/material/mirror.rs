@@ -1,6 +1,6 @@
-use super::{Arrival, Branch};
+use super::{Arrival, Block, Branch, Mueller};
 use crate::math::{DVec3, unit};
-use crate::spectrum::{Quantity, Table};
+use crate::spectrum::{Lanes, Quantity, Table};
 
 /// An ideal mirror on both sides.
 ///
@@ -29,6 +29,13 @@ impl Mirror<Table> {
             eta_scale: 1.0,
             polarization: 0.0,
         }
+    }
+
+    /// That of a perfect metal: handedness turns around.
+    pub(super) fn mueller<const N: usize>(&self, arrival: &Arrival<N>) -> Mueller<N> {
+        let share = arrival.read(&self.reflectance);
+        let block = Block { a: share, d: Lanes::ZERO, c: share * -1.0, q: Lanes::ZERO };
+        Mueller { axis: arrival.wo.cross(arrival.normal), block, base: None }
     }
 }
 

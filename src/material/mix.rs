@@ -1,4 +1,4 @@
-use super::{Arrival, Branch, Part, Scatter, Straight};
+use super::{Arrival, Branch, Incoming, Mueller, Part, Scatter, Straight};
 use crate::math::DVec3;
 use crate::spectrum::{Lanes, Table};
 
@@ -110,6 +110,18 @@ impl<M: Scatter> Mix<Table, M> {
     pub(super) fn diffuse_part<const N: usize>(&self, arrival: &Arrival<N>, wi: DVec3) -> Lanes<N> {
         let (shares, [a, b]) = (self.shares(arrival), self.materials.each_ref().map(Part::material));
         a.diffuse_part(arrival, wi) * shares[0] + b.diffuse_part(arrival, wi) * shares[1]
+    }
+
+    pub(super) fn mueller<const N: usize>(&self, arrival: &Arrival<N>, incoming: Incoming) -> Mueller<N> {
+        let [a, b] = self.materials.each_ref().map(|part| part.material().mueller(arrival, incoming));
+        let shares = self.shares(arrival);
+        a.scaled(shares[0]).plus(&b.scaled(shares[1]))
+    }
+
+    pub(super) fn mueller_of_straight<const N: usize>(&self, arrival: &Arrival<N>) -> Mueller<N> {
+        let [a, b] = self.materials.each_ref().map(|part| part.material().mueller_of_straight(arrival));
+        let shares = self.shares(arrival);
+        a.scaled(shares[0]).plus(&b.scaled(shares[1]))
     }
 
     /// The share that goes straight on.

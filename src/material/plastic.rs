@@ -3,7 +3,7 @@ use std::f64::consts::FRAC_1_PI;
 use super::coat::{Coat, Crossing};
 use super::conductor::above;
 use super::degree::{LANES, largest};
-use super::{Arrival, Branch, Interface, RoughSurface, reflect};
+use super::{Arrival, Base, Block, Branch, Incoming, Interface, Mueller, RoughSurface, reflect};
 use crate::math::{DVec3, Frame, cosine_hemisphere, unit};
 use crate::spectrum::{Lanes, Quantity, Table};
 
@@ -145,6 +145,54 @@ impl Plastic<Table> {
             last = Some((pair, crossing));
             of_lane(&crossing, f64::from(base[i]), pair)
         })
+    }
+
+    /// By the coat, which light crosses and is mirrored by. A rough one is crossed as a smooth one is.
+    pub(super) fn mueller<const N: usize>(&self, arrival: &Arrival<N>, incoming: Incoming) -> Mueller<N> {
+        let index = arrival.draw.read_exact(&self.index);
+        let reflected = |lane: usize, cos: f64| match (arrival.incident_of(lane), index[lane]) {
+            (n1, n2) if n1 == n2 => Block::default(),
+            (n1, n2) => Block::reflected(n1, n2, cos),
+        };
+        let cos = arrival.wo.dot(arrival.normal);
+        if incoming.single {
+            let axis = arrival.wo.cross(arrival.normal);
+            return Mueller::of_lanes(axis, arrival.present, |lane| reflected(lane, cos));
+        }
+        let to = incoming.wi.dot(arrival.normal);
+        if to <= 0.0 {
+            return Mueller::NONE;
+        }
+        let mueller = match self.coat.roughness().surface() {
+            None => Mueller::NONE,
+            Some(surface) => {
+                let frame = Frame::about(arrival.normal);
+                let reflection = surface.evaluate(above(&frame, arrival.wo), frame.to_local(incoming.wi));
+                let Some(reflection) = reflection else { return Mueller::NONE };
+                let axis = arrival.wo.cross(incoming.wi);
+                let facet = |lane| reflected(lane, reflection.cos).times(reflection.once);
+                Mueller::of_lanes(axis, arrival.present, facet)
+            }
+        };
+        let from = above(&Frame::about(arrival.normal), arrival.wo).z;
+        let crossed = |lane: usize, cos: f64| match (arrival.incident_of(lane), index[lane]) {
+            (n1, n2) if n1 == n2 => 0.0,
+            (n1, n2) => {
+                let crossing = Block::refracted(n1, n2, cos);
+                if crossing.a > 0.0 { crossing.d / crossing.a } else { 0.0 }
+            }
+        };
+        let base = self.lanes(arrival, [from, to], |crossing, r, _| crossing.base(r) * to * FRAC_1_PI);
+        let [leaving, arriving] = [cos, to].map(|cos| -> [f64; N] {
+            std::array::from_fn(|lane| if arrival.present[lane] == 0.0 { 0.0 } else { crossed(lane, cos) })
+        });
+        let base = Base {
+            normal: arrival.normal,
+            leaving: Lanes::from_fn(|i| (base[i] * leaving[i]) as f32),
+            arriving: Lanes::from_fn(|i| (base[i] * arriving[i]) as f32),
+            both: Lanes::from_fn(|i| (base[i] * leaving[i] * arriving[i]) as f32),
+        };
+        Mueller { base: Some(base), ..mueller }
     }
 
     /// The degree by the coat, which light crosses and, where it is rough, is mirrored by:

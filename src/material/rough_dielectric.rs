@@ -1,7 +1,7 @@
 //! A rough clear body, lane by lane.
 
 use super::conductor::above;
-use super::{Arrival, Branch, Facet, Flow, Interface, RoughInterface, Sides, Way};
+use super::{Arrival, Block, Branch, Facet, Flow, Incoming, Interface, Mueller, RoughInterface, Sides, Way};
 use crate::math::{DVec3, Frame, unit};
 use crate::spectrum::{Lanes, Table};
 
@@ -239,6 +239,31 @@ impl RoughBoundary<'_> {
         let share = same * tint * parting;
         let wi = -arrival.wo;
         branches.push(Branch { wi, share, pdf: None, crosses: true, eta_scale: 1.0, polarization: 0.0 });
+    }
+
+    /// By the facet that reflects or refracts the light of each kind of lanes. What meets a second facet leaves
+    /// unpolarized.
+    pub(super) fn mueller<const N: usize>(&self, arrival: &Arrival<N>, incoming: Incoming) -> Mueller<N> {
+        let mut meeting = Meeting::new(self.interface, arrival);
+        let local = meeting.frame.to_local(incoming.wi);
+        let crosses = local.z < 0.0;
+        let pdf = if crosses { meeting.cross(local, None) } else { meeting.reflect(local, None) };
+        if pdf <= 0.0 {
+            return Mueller::NONE;
+        }
+        let tint = arrival.read(if crosses { self.transmittance } else { self.reflectance });
+        let mut mueller = Mueller::of_lanes(arrival.wo.cross(incoming.wi), Lanes::ZERO, |_| Block::default());
+        for kind in meeting.kinds.iter().filter(|kind| !crosses || kind.crossing > 0.0) {
+            let lanes = if crosses { meeting.across(kind) } else { kind.present };
+            for lane in (0..N).filter(|&lane| lanes[lane] != 0.0) {
+                let block = Block::at_boundary(arrival.own_boundary(lane, kind.flow.cos), crosses);
+                // The facets' part of radiance that crosses is already changed by the ray's indices.
+                let [here, beyond] = kind.indices;
+                let square = if crosses { (beyond / here) * (beyond / here) } else { 1.0 };
+                mueller.block.set(lane, block.times(kind.flow.facet * square * f64::from(tint[lane])));
+            }
+        }
+        mueller
     }
 
     /// BSDF times cosine of each lane, and the density of `wi` among the branches on its side.

@@ -1,4 +1,4 @@
-use super::{Arrival, Branch, Lobes, Straight};
+use super::{Arrival, Branch, Incoming, Lobes, Mueller, Straight};
 use crate::math::DVec3;
 use crate::spectrum::Lanes;
 
@@ -26,4 +26,11 @@ pub trait Scatter {
     /// where the material scatters it by a density of directions: by the facet that mirrors or refracts it, or the coat
     /// that it crosses.
     fn degree_of_scattered<const N: usize>(&self, arrival: &Arrival<N>, wi: DVec3) -> f32;
+
+    /// What becomes of the polarization of light that arrives, of which `scatter` and `evaluate` say how much
+    /// leaves.
+    fn mueller<const N: usize>(&self, arrival: &Arrival<N>, incoming: Incoming) -> Mueller<N>;
+
+    /// The same of light that goes straight on, as `straight` says.
+    fn mueller_of_straight<const N: usize>(&self, arrival: &Arrival<N>) -> Mueller<N>;
 }

@@ -1,5 +1,5 @@
 use super::degree::degree;
-use super::{Arrival, Branch, Interface, Straight, reflect};
+use super::{Arrival, Block, Branch, Interface, Mueller, Straight, reflect};
 use crate::spectrum::{Lanes, Quantity, Table};
 
 /// A pane of clear material without thickness: a window of which nothing but its two surfaces is seen. Light goes
@@ -40,6 +40,30 @@ impl Thin<Table> {
             let (wi, polarization) = (reflect(arrival.wo, arrival.normal), degrees[1] as f32);
             branches.push(Branch { wi, share, pdf: None, crosses: false, eta_scale: 1.0, polarization });
         }
+    }
+
+    /// What becomes of polarization straight on and where light is mirrored.
+    pub(super) fn muellers<const N: usize>(&self, arrival: &Arrival<N>) -> [Mueller<N>; 2] {
+        let (index, way) = (arrival.draw.read_exact(&self.index), arrival.read(&self.transmittance));
+        let (axis, cos) = (arrival.wo.cross(arrival.normal), arrival.wo.dot(arrival.normal));
+        let (mut last, mut blocks) = (None, [Block::default(); 2]);
+        let mut block_of = |lane: usize| {
+            let pane @ [n1, n2, t] = [arrival.incident_of(lane), index[lane], f64::from(way[lane])];
+            if n1 == n2 {
+                return [Block::IDENTITY.times(t), Block::default()];
+            }
+            if last.replace(pane) != Some(pane) {
+                blocks = Block::of_pane(Block::reflected(n1, n2, cos), Block::refracted(n1, n2, cos), t);
+            }
+            blocks
+        };
+        let mut back = Mueller::of_lanes(axis, Lanes::ZERO, |_| Block::default());
+        let through = Mueller::of_lanes(axis, arrival.present, |lane| {
+            let [through, mirrored] = block_of(lane);
+            back.block.set(lane, mirrored);
+            through
+        });
+        [through, back]
     }
 
     /// What of each lane goes straight on and what is mirrored, and the largest degree of polarization that this gives

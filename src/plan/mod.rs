@@ -22,7 +22,8 @@ use serde::{Deserialize, Serialize};
 use crate::scene::Scene;
 use crate::spectrum::{Basis, Curve};
 use crate::trace::{
-    BrightPlaces, LightPass, Method, PhotonTimes, Probe, Transport, World, photon_times, prepare_unguided, probe,
+    BrightPlaces, LightPass, Method, PhotonTimes, Polarizing, Probe, Transport, World, photon_times, prepare_unguided,
+    probe,
 };
 use caustics::Shown;
 use model::Model;
@@ -83,6 +84,7 @@ pub fn plan(scene: &Scene<Curve>) -> Plan {
         light_pass: None,
         bright: None,
         light_vertices: false,
+        polarization: Polarizing::Averaged,
     };
     let world = prepare_unguided(scene, method.clone());
     let Shown { pass: shown, why, taught } = caustics::light_pass(scene, &world);
@@ -94,6 +96,9 @@ pub fn plan(scene: &Scene<Curve>) -> Plan {
     let between = between(&world);
     decisions.extend(between.reason);
     let world = world.with_bright(between.bright.clone()).with_light_vertices(between.light_vertices);
+    let polarization = polarization::decide(scene, &world);
+    decisions.extend(polarization.why);
+    let world = world.with_polarization(polarization.polarization);
     let method = world.method().clone();
     let probe = probe(&world);
     let times = photon_times(&taught.map_or(world.clone(), |taught| world.clone().taught_by(&taught)));
@@ -103,7 +108,7 @@ pub fn plan(scene: &Scene<Curve>) -> Plan {
     because.extend(layers(scene));
     because.extend(missed);
     let left_out: Vec<String> =
-        polarization::left_out(scene, &world).into_iter().chain(lights(scene, method.light_pass.as_ref())).collect();
+        polarization.left_out.into_iter().chain(lights(scene, method.light_pass.as_ref())).collect();
     because.extend(left_out.iter().cloned());
     because.extend(decisions);
     if probe.parted > 0.0 {

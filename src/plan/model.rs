@@ -7,7 +7,7 @@ use super::words::percent;
 use crate::material::Material;
 use crate::scene::{ModelText, Scene};
 use crate::spectrum::{Basis, Curve, CurveKind, Emission, MAX_LANES, Quantity, provenance};
-use crate::trace::{COLORS_NM, Dispersion, Method, Transport, World, dispersion as measured_dispersion};
+use crate::trace::{COLORS_NM, Dispersion, Method, Polarizing, Transport, World, dispersion as measured_dispersion};
 
 /// Share of the camera rays on dispersive surfaces from which twice the wavelengths are carried.
 const FILLED: f64 = 0.5;
@@ -147,6 +147,7 @@ fn dispersion(scene: &Scene<Curve>) -> Option<Dispersion> {
         light_pass: None,
         bright: None,
         light_vertices: false,
+        polarization: Polarizing::Averaged,
     };
     Some(measured_dispersion(&World::new(scene, method)))
 }

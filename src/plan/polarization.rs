@@ -1,30 +1,74 @@
-//! What the plan says of polarization, which is not traced.
+//! Whether polarization is traced, and why.
 
 use super::survey::tolerance;
 use super::words::percent;
-use crate::scene::Scene;
+use crate::film::Layer;
+use crate::scene::{PolarizationText, Scene};
 use crate::spectrum::Curve;
-use crate::trace::{World, seen_light};
+use crate::trace::{Polarizing, World, polarization_error, seen_light};
+
+/// What is done about polarization, and what is said of it.
+#[derive(Default)]
+pub(super) struct Decided {
+    pub(super) polarization: Polarizing,
+    pub(super) why: Option<String>,
+    /// What is left out of the image.
+    pub(super) left_out: Option<String>,
+}
+
+/// The error is measured on so few samples that they may miss what is so many times as large.
+const MISSED: f64 = 2.0;
+
+/// Traces polarization where the scene asks for it, or where leaving it out would be wrong by more than is tolerated.
+pub(super) fn decide(scene: &Scene<Curve>, world: &World) -> Decided {
+    let on = |why: String| {
+        let why = Some(format!("polarization on: {why}"));
+        Decided { polarization: Polarizing::Traced, why, left_out: None }
+    };
+    let off = |why: Option<String>, left_out: Option<String>| {
+        let why = why.map(|why| format!("polarization off: {why}"));
+        Decided { polarization: Polarizing::Averaged, why, left_out }
+    };
+    match scene.render.polarization {
+        PolarizationText::On => return on("the scene asks for it".into()),
+        PolarizationText::Off => {
+            return off(Some("the scene asks for it".into()), left_out(seen_light(world).change_of_part()));
+        }
+        PolarizationText::Auto => {}
+    }
+    if let Some(asking) = asking(scene) {
+        return on(asking);
+    }
+    let bound = seen_light(world).change_of_part();
+    let tolerated = tolerance(scene);
+    if bound <= tolerated {
+        return off(None, left_out(bound));
+    }
+    let error = polarization_error(world);
+    let measured = format!("{} (tolerated {})", percent(error), percent(tolerated));
+    if MISSED * error > tolerated {
+        on(format!("averaging would be wrong by {measured}"))
+    } else {
+        off(Some(format!("it would change {measured}")), None)
+    }
+}
+
+/// What has no meaning without it.
+fn asking(scene: &Scene<Curve>) -> Option<String> {
+    if scene.camera.filter().is_some() {
+        return Some("there is a filter before the camera".into());
+    }
+    if Layer::STOKES.iter().any(|layer| scene.format.layers.contains(layer)) {
+        return Some("the film asks for Stokes vectors".into());
+    }
+    let sheet = scene.materials.iter().find(|material| material.material.has_axis())?;
+    Some(format!("the scene has a sheet that polarizes ({})", sheet.name))
+}
 
 /// How much polarization may change; nothing where it can hardly be told.
-pub(super) fn left_out(scene: &Scene<Curve>, world: &World) -> Option<String> {
-    let light = seen_light(world);
-    let (all, part) = (light.change(), light.change_of_part());
-    let tolerated = tolerance(scene);
-    if part > tolerated {
-        let part = if part > 1.05 * all {
-            format!(", and up to {} in a part of the view", percent(part))
-        } else {
-            String::new()
-        };
-        return Some(format!(
-            "polarization may change up to {} of the light seen{part}; it is not traced ({} is tolerated)",
-            percent(all),
-            percent(tolerated)
-        ));
-    }
-    (part > NOTHING)
-        .then(|| format!("polarization is not traced: it changes at most {} of the light seen", percent(part)))
+fn left_out(change: f64) -> Option<String> {
+    (change > NOTHING)
+        .then(|| format!("polarization is not traced: it changes at most {} of the light seen", percent(change)))
 }
 
 /// A share that is not worth a word.

@@ -6,7 +6,7 @@ use super::survey::{Survey, Tint, tolerance};
 use crate::material::Material;
 use crate::scene::Scene;
 use crate::spectrum::{Basis, Curve, Draw, Lanes, MAX_LANES, Quantity, visible};
-use crate::trace::{Method, ROUTES_NM, Route, Step, Transport, Way, World, routes};
+use crate::trace::{Method, Polarizing, ROUTES_NM, Route, Step, Transport, Way, World, routes};
 
 /// Products of tints by number, with the weight of each.
 type Weighted = Vec<(usize, f64)>;
@@ -57,6 +57,7 @@ impl<'a> Seen<'a> {
             light_pass: None,
             bright: None,
             light_vertices: false,
+            polarization: Polarizing::Averaged,
         };
         let mut keeping = Keeping::new(scene, survey);
         for of_pixel in routes(&World::new(scene, method)) {

@@ -88,6 +88,7 @@ impl<'a> Survey<'a> {
                     Material::Mix(mix) => tints.extend(filters(Quantity::Share, &mix.amount)),
                     Material::Mask(mask) => tints.extend(filters(Quantity::Share, &mask.opacity)),
                     Material::Emissive(lamp) => tints.extend(shown(&lamp.radiance)),
+                    Material::Polarizer(_) | Material::Retarder(_) => {}
                 }
             }
         }

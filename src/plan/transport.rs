@@ -4,7 +4,7 @@ use crate::film::Filter;
 use crate::light::Light;
 use crate::scene::{Object, Scene};
 use crate::spectrum::{Basis, Curve};
-use crate::trace::{Branching, Method, Transport, World, branching};
+use crate::trace::{Branching, Method, Polarizing, Transport, World, branching};
 
 /// Weight below which deterministic transport follows no branch.
 const CUTOFF: f64 = 1e-9;
@@ -82,6 +82,7 @@ fn too_many_ways(scene: &Scene<Curve>, basis: &Basis, together: f64) -> Option<S
         light_pass: None,
         bright: None,
         light_vertices: false,
+        polarization: Polarizing::Averaged,
     };
     match branching(&World::new(scene, method), AFFORDABLE) {
         Branching::Affordable(_) => None,

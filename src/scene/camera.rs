@@ -22,6 +22,7 @@ pub struct Camera {
     reach: f64,
     /// Width of what is behind the lens, in mm. No ray depends on it.
     sensor_width: Option<f64>,
+    filter: Option<PolarizingFilter>,
 }
 
 /// How directions become places in the image.
@@ -62,6 +63,22 @@ pub struct Lens {
     pub(super) radius: f64,
     /// One over the distance of the plane in focus: 0 where that is infinitely far away.
     pub(super) inverse_focus: f64,
+}
+
+/// A linear polarizer before the camera.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PolarizingFilter {
+    /// The direction that it lets through, from the image's right toward its top, in radians.
+    pub angle: f64,
+    /// What it lets through of light across that direction, 0 to 1.
+    pub extinction: f64,
+}
+
+impl PolarizingFilter {
+    /// What it lets through of unpolarized light.
+    pub fn transmittance(&self) -> f64 {
+        0.5 * (1.0 + self.extinction)
+    }
 }
 
 impl Lens {
@@ -117,6 +134,7 @@ impl Camera {
             lens: None,
             reach: (target - position).length(),
             sensor_width: None,
+            filter: None,
         };
         (camera, parallel)
     }
@@ -144,6 +162,12 @@ impl Camera {
     #[must_use]
     pub fn on_sensor(self, width: Option<f64>) -> Self {
         Self { sensor_width: width, ..self }
+    }
+
+    /// The same camera behind a filter.
+    #[must_use]
+    pub fn behind(self, filter: Option<PolarizingFilter>) -> Self {
+        Self { filter, ..self }
     }
 
     /// What the lens and the sensor are like, as far as the scene says it. Of a perspective view a sensor's width tells
@@ -229,6 +253,20 @@ impl Camera {
     /// How directions become places in the image.
     pub fn projection(&self) -> Projection {
         self.projection
+    }
+
+    /// The horizontal of the image, to the right, across a ray in a direction: x of Stokes vectors. A unit vector.
+    pub fn image_right(&self, direction: DVec3) -> DVec3 {
+        let right = match self.projection {
+            Projection::Equirectangular => direction.cross(self.up),
+            _ => self.right - direction * direction.dot(self.right),
+        };
+        right.try_normalize().unwrap_or(self.right)
+    }
+
+    /// The filter before it, if there is one.
+    pub fn filter(&self) -> Option<PolarizingFilter> {
+        self.filter
     }
 
     /// Whether the rays of a point of the film start on a lens with an extent.

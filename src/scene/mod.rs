@@ -14,10 +14,10 @@ mod render_text;
 mod source;
 mod text;
 
-pub use camera::{Camera, Lens, Projection, Seen};
+pub use camera::{Camera, Lens, PolarizingFilter, Projection, Seen};
 pub use content::{Ends, Hit, MaterialId, NamedMaterial, Object, Primitive, Scene, Sight};
 pub use duration::duration;
 pub use film::FilmSettings;
 pub use relief::{Relief, ReliefKind};
-pub use render_text::{CausticsText, ModelText, RenderText};
+pub use render_text::{CausticsText, ModelText, PolarizationText, RenderText};
 pub use source::Source;

@@ -32,6 +32,8 @@ pub struct RenderText {
     pub max_bounces: Option<u32>,
     /// Whether caustics may have a light pass of their own.
     pub caustics: CausticsText,
+    /// Whether polarization is traced.
+    pub polarization: PolarizationText,
     /// Whether a part of the image is made, which does not know the error of the whole: then all samples are taken.
     pub is_part: bool,
 }
@@ -39,6 +41,22 @@ pub struct RenderText {
 impl RenderText {
     /// Relative errors that may be asked for.
     pub const ERRORS: RangeInclusive<f64> = 1e-6..=1.0;
+}
+
+/// Whether polarization is traced.
+///
+/// ```toml
+/// render.polarization = "auto"     # "on", "off"
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PolarizationText {
+    /// Where leaving it out would be wrong by more than is tolerated.
+    #[default]
+    Auto,
+    /// Yes.
+    On,
+    /// No: light is taken for unpolarized at every surface.
+    Off,
 }
 
 /// Whether caustics may have a light pass of their own.

@@ -83,21 +83,22 @@ impl<const N: usize> Matching<N> {
         Self { weights: basis.fine(between, line), bins, chances }
     }
 
-    /// Whether heroes carry light that arrives in lanes; `found` is told the wavelength and the film's color of each.
+    /// Whether heroes carry light that arrives in lanes; `found` is told the lane, the wavelength
+    /// and the film's color of each.
     pub fn alone(
         &self,
         draw: &Draw<N>,
         response: &Response,
         lanes: Lanes<N>,
         parted: bool,
-        mut found: impl FnMut(Wavelength, [f64; 3]),
+        mut found: impl FnMut(usize, Wavelength, [f64; 3]),
     ) -> bool {
         let Some(factor) = draw.hero_factor(parted) else { return false };
         for (hero, lane) in draw.heroes().zip(draw.fixed_lanes()..) {
             let weight = factor * hero.factor * f64::from(lanes[lane]);
             if weight != 0.0 {
                 let wavelength = Wavelength { hero: *hero, bin: self.bins[hero.below] };
-                found(wavelength, response.hero(hero).map(|x| weight * x));
+                found(lane, wavelength, response.hero(hero).map(|x| weight * x));
             }
         }
         true

@@ -20,4 +20,9 @@ impl<const N: usize> Arrived<'_, N> {
     pub(super) fn rgb(&self, responses: &[Response]) -> [f64; 3] {
         responses[self.light].sensor(self.draw, *self.lanes, self.parted)
     }
+
+    /// The same of a part of each lane, which may be negative.
+    pub(super) fn times(&self, part: Lanes<N>, responses: &[Response]) -> [f64; 3] {
+        responses[self.light].sensor(self.draw, *self.lanes * part, self.parted)
+    }
 }

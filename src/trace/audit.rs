@@ -12,6 +12,7 @@ use super::World;
 use super::interaction::Interaction;
 use super::media::{Media, index_around};
 use super::path::Path;
+use super::polarization::Onward;
 use super::white::White;
 use crate::material::{Branch, Index, Straight};
 use crate::spectrum::{Draw, Lanes, Throughput};
@@ -31,26 +32,26 @@ impl<'a, const N: usize> Audit<'a, N> {
     }
 
     /// Begins with the path of another camera ray.
-    pub(super) fn begin(&mut self, path: &Path<N>, draw: &Draw<N>) {
+    pub(super) fn begin<P>(&mut self, path: &Path<N, P>, draw: &Draw<N>) {
         self.start = self.indices(&path.media, draw);
         self.open = [draw.start().0.map(f64::from), [0.0; N]];
     }
 
     /// A path has come to its end.
-    pub(super) fn end(&mut self, path: &Path<N>, draw: &Draw<N>) {
+    pub(super) fn end<P>(&mut self, path: &Path<N, P>, draw: &Draw<N>) {
         let ended = self.weight(path, path.throughput, draw);
         self.close(path.parted, &ended);
     }
 
     /// A path has come to its end, but for what goes straight on.
-    pub(super) fn end_beside(&mut self, path: &Path<N>, straight: Option<&Straight<N>>, draw: &Draw<N>) {
-        let share = straight.map_or(Lanes::ZERO, Straight::share);
+    pub(super) fn end_beside<P>(&mut self, path: &Path<N, P>, onward: Option<&Onward<N, P>>, draw: &Draw<N>) {
+        let share = onward.map_or(Lanes::ZERO, |onward| onward.straight.share());
         let ended = self.weight(path, path.throughput, draw);
         self.close(path.parted, &std::array::from_fn(|i| ended[i] * (1.0 - f64::from(share[i]))));
     }
 
     /// The medium around a path has absorbed some of the throughput that it had before.
-    pub(super) fn absorb(&mut self, path: &Path<N>, before: Throughput<N>, draw: &Draw<N>) {
+    pub(super) fn absorb<P>(&mut self, path: &Path<N, P>, before: Throughput<N>, draw: &Draw<N>) {
         if before != path.throughput {
             let [before, after] = [before, path.throughput].map(|throughput| self.weight(path, throughput, draw));
             self.close(path.parted, &std::array::from_fn(|i| before[i] - after[i]));
@@ -61,9 +62,9 @@ impl<'a, const N: usize> Audit<'a, N> {
     ///
     /// A clear surface absorbs nothing: what its branches lack, or have too much, stays open. Any other absorbs what
     /// they lack, for no formula of its own says how much that is.
-    pub(super) fn split(
+    pub(super) fn split<P>(
         &mut self,
-        path: &Path<N>,
+        path: &Path<N, P>,
         at: &Interaction<N>,
         branches: &[Branch<N>],
         straight: Option<&Straight<N>>,
@@ -109,7 +110,7 @@ impl<'a, const N: usize> Audit<'a, N> {
     }
 
     /// A throughput as a share of the flux that left the camera, at the end of a path.
-    fn weight(&self, path: &Path<N>, throughput: Throughput<N>, draw: &Draw<N>) -> [f64; N] {
+    fn weight<P>(&self, path: &Path<N, P>, throughput: Throughput<N>, draw: &Draw<N>) -> [f64; N] {
         let (lanes, here) = (throughput.of(Lanes::ONE), self.indices(&path.media, draw));
         std::array::from_fn(|lane| {
             let ratio = here[lane] / self.start[lane];

@@ -7,6 +7,7 @@ use super::bright::Aiming;
 use super::contribution::{Contribution, Found};
 use super::interaction::Interaction;
 use super::path::{Path, ScatterSample};
+use super::polarization::{MetLight, Polarization};
 use super::sensor::Sensor;
 use super::straight::{Passage, Past};
 use super::{World, shading};
@@ -18,9 +19,9 @@ use crate::shape::Crossing;
 use crate::spectrum::Lanes;
 
 /// A path at a surface that scatters widely, where lights are sampled.
-pub(super) struct DirectLighting<'a, const N: usize> {
+pub(super) struct DirectLighting<'a, const N: usize, P> {
     pub(super) world: &'a World,
-    pub(super) path: &'a Path<N>,
+    pub(super) path: &'a Path<N, P>,
     pub(super) at: &'a Interaction<'a, N>,
     /// Whether the path goes on from here and may hit a light by itself.
     pub(super) goes_on: bool,
@@ -66,7 +67,7 @@ const FURTHER_LIGHTS: u32 = 16;
 /// Random digits for choices among many, and the choice of a side.
 const MORE_DIGITS: u32 = 3;
 
-impl<const N: usize> DirectLighting<'_, N> {
+impl<const N: usize, P: Polarization<N>> DirectLighting<'_, N, P> {
     /// Hands the light of sampled lights to the sensor, and answers how likely it was to look at a side.
     ///
     /// Where light also comes from beyond the surface, both sides are looked at or, where only one light is sampled,
@@ -143,20 +144,23 @@ impl<const N: usize> DirectLighting<'_, N> {
         let passage = Passage { ray, distance, ends, inside, past: Past::Objects(self.path.among), last_occluder };
         let wi = ray.direction;
         let light_of = || world.scene.lights[*light].toward(arrival.draw, wi, sample.uv);
-        let Some((arriving, on_its_way)) = passage.arriving(world, arrival.draw, light_of) else { return };
+        let mut bsdf_cos = *bsdf_cos;
+        let toward = || self.path.polarization.toward(self.at, wi, &mut bsdf_cos);
+        let Some((arriving, on_its_way)) = passage.arriving(world, arrival.draw, toward, light_of) else { return };
         // The density of bounces that are guided takes its time.
         let factor = match self.aiming.filter(|_| self.goes_on && sample.pdf.is_some()) {
             Some(aiming) => self.factor(sample, *probability, aiming.pdf(wi, *bsdf_pdf)),
             None => *factor,
         };
-        let lanes = &self.path.throughput.scaled(factor).of(*bsdf_cos * arriving);
+        let lanes = &self.path.throughput.scaled(factor).of(bsdf_cos * arriving);
         let (light, dispersed) = (*light, side.parted);
         let arrived = Arrived { light, draw: arrival.draw, lanes, parted: dispersed };
         let rgb = arrived.rgb(&world.responses);
-        let moved = self.at.moved(world, self.path, wi, on_its_way, rgb);
+        let met = MetLight { world, arrived: &arrived, rgb };
+        let moved = self.path.polarization.moved(self.at, wi, on_its_way, &met);
         let (light, found, bounces) = (Some(light), Found::Sampled, self.path.bounces + 1);
-        let first = self.at.first_lobe(world, self.path, wi, side.normal != self.at.flat);
-        sensor.receive(Contribution { light, found, rgb, moved, first, bounces, dispersed }, &arrived);
+        let first = self.at.first_lobe(world, self.path.lobe(), wi, side.normal != self.at.flat);
+        sensor.receive(Contribution { light, found, rgb, moved, first, bounces, dispersed }, &arrived, &on_its_way);
     }
 
     /// The factor on a light's emission and the material's answer: over the density of both ways to the light's

@@ -18,7 +18,7 @@ use super::contribution::{self, Contribution, add};
 use super::interaction::Interaction;
 use super::path::Path;
 use super::photon_map::{Landed, PhotonMap};
-use super::polarization::Polarized;
+use super::polarization::Polarization;
 use super::shading;
 use crate::light::LightId;
 use crate::math::{BranchKey, DVec2, DVec3, Frame, Ray, Sampler, unit};
@@ -80,6 +80,8 @@ pub(super) struct Gathered<const N: usize> {
 /// What one photon brings, but for a factor.
 pub(super) struct Part<const N: usize> {
     pub(super) contribution: Contribution,
+    /// S1, S2 and S3 of it, if they are asked for.
+    pub(super) stokes: Option<[[f64; 3]; 3]>,
     pub(super) spectrum: PartSpectrum<N>,
     pub(super) factor: f64,
 }
@@ -95,10 +97,10 @@ pub(super) enum PartSpectrum<const N: usize> {
 
 /// What the sensor gets of the photons around a place that a path has reached; if `apart`, photon by photon as well.
 /// How much of it polarization may change is an estimate by the photon that is looked at.
-pub(super) fn gather<const N: usize>(
-    photons: &PhotonMap<N>,
+pub(super) fn gather<const N: usize, P: Polarization<N>>(
+    photons: &PhotonMap<N, P>,
     world: &World,
-    path: &Path<N>,
+    path: &Path<N, P>,
     at: &Interaction<N>,
     sampler: &Sampler,
     apart: bool,
@@ -126,20 +128,24 @@ pub(super) fn gather<const N: usize>(
     let place = Place { world, position: point.position, flat, front, radius };
     let mut found = Found { sum: [0.0; 3], parts: apart.then(Vec::new), weight: 0.0, drawn: None, u };
     let parted = |back: DVec3| path.parted || (parts && back.dot(flat) < 0.0);
-    let change =
-        |back: DVec3, on_its_way: Polarized| path.polarized.brought(material, arrival, back, on_its_way).change();
     photons.together.near(point.position, radius, &mut |position, photon| {
         let Some(density) = place.density(path, position, photon) else { return };
-        let Some((bsdf_cos, _)) = shading::evaluate(material, arrival, flat, photon.back) else { return };
+        let Some((mut bsdf_cos, _)) = shading::evaluate(material, arrival, flat, photon.back) else { return };
         let parted = parted(photon.back);
         let carries = &photon.carries;
         let by_heroes = arrival.draw.hero_factor(parted).is_some();
-        let flux = if by_heroes { photons.matching.onto_heroes(arrival.draw, carries.flux) } else { carries.flux };
+        let onto_heroes = |lanes: Lanes<N>| photons.matching.onto_heroes(arrival.draw, lanes);
+        let flux = if by_heroes { onto_heroes(carries.flux) } else { carries.flux };
+        let read = if by_heroes { Some(P::read_landed(&photon.polarization, onto_heroes)) } else { None };
+        let light = read.as_ref().unwrap_or(&photon.polarization);
+        let joined = path.polarization.join(at, photon.back, light, &mut bsdf_cos);
         let lanes = path.throughput.of(bsdf_cos * flux);
-        let rgb = Arrived { light: carries.light, draw: arrival.draw, lanes: &lanes, parted }.rgb(&world.responses);
-        let contribution = brought(Some(carries.light), rgb, parted);
-        let part = Part { contribution, spectrum: PartSpectrum::Lanes(lanes), factor: density };
-        found.add(world, position, part, || change(photon.back, photon.polarized));
+        let arrived = Arrived { light: carries.light, draw: arrival.draw, lanes: &lanes, parted };
+        let contribution = brought(Some(carries.light), arrived.rgb(&world.responses), parted);
+        let stokes = joined.stokes().map(|stokes| stokes.map(|part| arrived.times(part, &world.responses)));
+        let part = Part { contribution, stokes, spectrum: PartSpectrum::Lanes(lanes), factor: density };
+        let change = || path.polarization.change_of_joined(at, photon.back, light, joined, lanes);
+        found.add(world, position, part, change);
     });
     photons.alone.near(point.position, radius, &mut |position, photon| {
         let (wavelength, parted) = (&photon.carries.wavelength, parted(photon.back));
@@ -153,11 +159,16 @@ pub(super) fn gather<const N: usize>(
             return;
         }
         let Some(density) = place.density(path, position, photon) else { return };
-        let Some((bsdf_cos, _)) = shading::evaluate(material, arrival, flat, photon.back) else { return };
-        let factor = density * read(path.throughput.of(bsdf_cos));
-        let contribution = brought(Some(photon.carries.light), photon.carries.color, true);
-        let part = Part { contribution, spectrum: PartSpectrum::Alone(*wavelength), factor };
-        found.add(world, position, part, || change(photon.back, photon.polarized));
+        let Some((mut bsdf_cos, _)) = shading::evaluate(material, arrival, flat, photon.back) else { return };
+        let joined = path.polarization.join(at, photon.back, &photon.polarization, &mut bsdf_cos);
+        let lanes = path.throughput.of(bsdf_cos);
+        let (seen, color) = (read(lanes), photon.carries.color);
+        let contribution = brought(Some(photon.carries.light), color, true);
+        let share = |part: Lanes<N>| if seen == 0.0 { 0.0 } else { read(lanes * part) / seen };
+        let stokes = joined.stokes().map(|stokes| stokes.map(|part| color.map(|x| x * share(part))));
+        let part = Part { contribution, stokes, spectrum: PartSpectrum::Alone(*wavelength), factor: density * seen };
+        let change = || path.polarization.change_of_joined(at, photon.back, &photon.polarization, joined, lanes);
+        found.add(world, position, part, change);
     });
     let (rgb, moved) = place.seen_of(&mut found, point, sampler, path.key);
     let (rgb, moved) = (rgb.map(|x| x / map.chance), moved / map.chance);
@@ -191,7 +202,12 @@ impl<const N: usize> Found<N> {
 
 impl Place<'_> {
     /// For how much a photon counts, if it is seen, per area of the plane that touches the surface at the place.
-    fn density<const N: usize, T>(&self, path: &Path<N>, position: DVec3, photon: &Landed<T>) -> Option<f64> {
+    fn density<const N: usize, P, T, L>(
+        &self,
+        path: &Path<N, P>,
+        position: DVec3,
+        photon: &Landed<T, L>,
+    ) -> Option<f64> {
         let short = path.vertices + photon.vertices - 1 <= self.world.method.max_bounces;
         if !short || !self.goes_on(position, photon.flat, photon.front) {
             return None;

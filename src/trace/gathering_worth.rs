@@ -8,6 +8,7 @@ use super::pass::Pass;
 use super::path_tracer::PathTracer;
 use super::photon_map::photons;
 use super::pilot::SampleWorth;
+use super::polarized::Polarized;
 use super::sensor::Observer;
 use super::width::in_lanes;
 use crate::math::Sampler;
@@ -81,7 +82,7 @@ fn gather<const N: usize>(world: &World) -> Option<GatheredWorth> {
     let mut by_samples = by_photons.clone();
     let (mut sent, mut rays, mut of_samples, mut second_moment) = (0, 0, 0, 0.0);
     for map in 0..MAPS {
-        let photons = photons::<N>(world, &Pass::of_photons_alone(world, map as u32))?;
+        let photons = photons::<N, Polarized>(world, &Pass::of_photons_alone(world, map as u32))?;
         (sent, rays) = (sent + photons.sent, rays + photons.stats.rays);
         let by_gathering = Gathered::default();
         let mut tracer = PathTracer::<N>::new(world).with_photons(Some(&photons)).with_observer(&by_gathering);

@@ -2,11 +2,9 @@
 
 use super::first_lobe::FirstLobe;
 use super::media::{self, Boundary};
-use super::path::Path;
-use super::polarization::Polarized;
 use super::{World, shading};
 use crate::material::{Arrival, Lobes, Material};
-use crate::math::DVec3;
+use crate::math::{DVec3, Ray};
 use crate::scene::{Hit, MaterialId};
 use crate::shape::SurfacePoint;
 use crate::spectrum::{Draw, Lanes, Table};
@@ -34,21 +32,21 @@ pub(super) struct Interaction<'a, const N: usize> {
 }
 
 impl<'a, const N: usize> Interaction<'a, N> {
-    /// Of a path with the surface that it has met at a boundary of media.
+    /// Of a ray, with some lanes on it, with the surface that it has met at a boundary of media.
     #[inline(always)]
     pub(super) fn new(
         world: &'a World,
         draw: &'a Draw<N>,
-        path: &Path<N>,
+        ray: &Ray,
+        present: Lanes<N>,
         meeting: &'a Meeting,
         boundary: Boundary,
     ) -> Self {
         let Meeting { hit, point } = meeting;
         let object = &world.scene.objects[hit.object as usize];
-        let (wo, uv, number) = (-path.ray.direction, object.uv(&hit.crossing, point), object.material as usize);
+        let (wo, uv, number) = (-ray.direction, object.uv(&hit.crossing, point), object.material as usize);
         let (material, lobes) = (&world.scene.materials[number].material, world.lobes[number]);
         let [flat, normal] = shading::normals(point, wo);
-        let present = path.throughput.present();
         let sides = boundary.sides();
         let mut at = Self {
             object: hit.object,
@@ -74,28 +72,25 @@ impl<'a, const N: usize> Interaction<'a, N> {
         Self { arrival, parts, ..self }
     }
 
-    /// How much polarization may change, as X + Y + Z, of light that arrives along the unit vector `wi` and that the
-    /// path brings to the sensor as `rgb`. `on_its_way` is how far panes have polarized it.
-    pub(super) fn moved(&self, world: &World, path: &Path<N>, wi: DVec3, on_its_way: Polarized, rgb: [f64; 3]) -> f64 {
-        if !path.polarized.is_any() && !world.has_see_through() {
-            return 0.0;
-        }
-        let change = path.polarized.brought(self.material, &self.arrival, wi, on_its_way).change();
-        if change == 0.0 { 0.0 } else { change * world.amount(rgb) }
-    }
-
     /// The lobe by which the first surface sends light to the camera that a path finds here, in a direction that may
-    /// lead beyond the surface; none if layers do not tell that apart.
+    /// lead beyond the surface; none if layers do not tell that apart. `known` is that of a path that has left the
+    /// first surface, none before.
     #[inline]
-    pub(super) fn first_lobe(&self, world: &World, path: &Path<N>, wi: DVec3, crosses: bool) -> Option<FirstLobe> {
-        match path.bounces {
-            0 if !world.layers.tell_lobes_apart() => None,
-            0 if crosses => Some(FirstLobe::Transmitted),
-            0 => {
+    pub(super) fn first_lobe(
+        &self,
+        world: &World,
+        known: Option<Option<FirstLobe>>,
+        wi: DVec3,
+        crosses: bool,
+    ) -> Option<FirstLobe> {
+        match known {
+            None if !world.layers.tell_lobes_apart() => None,
+            None if crosses => Some(FirstLobe::Transmitted),
+            None => {
                 let Self { material, lobes, arrival, .. } = self;
                 Some(FirstLobe::reflected(world.layers.white.as_ref(), material, *lobes, arrival, wi))
             }
-            _ => path.first,
+            Some(first) => first,
         }
     }
 }

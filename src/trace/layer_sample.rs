@@ -8,6 +8,7 @@ use super::gather::{Gathered, Part, PartSpectrum};
 use super::interaction::{Interaction, Meeting};
 use super::layers::Layers;
 use super::path::{Among, Path};
+use super::polarization::Polarization;
 use super::shading;
 use super::spectrum_sample::SpectrumSample;
 use crate::film::{FirstSurface, Layer};
@@ -39,8 +40,8 @@ pub(super) struct Left<'a> {
 }
 
 /// A surface that a path has met.
-pub(super) struct Met<'a, const N: usize> {
-    pub(super) path: &'a Path<N>,
+pub(super) struct Met<'a, const N: usize, P> {
+    pub(super) path: &'a Path<N, P>,
     pub(super) meeting: &'a Meeting,
     pub(super) at: &'a Interaction<'a, N>,
     /// What goes straight on.
@@ -99,8 +100,12 @@ impl<'a, const N: usize> LayerSample<'a, N> {
     }
 
     /// Receives light that came to the sensor, and the lanes by which it arrived.
-    pub(super) fn receive(&mut self, contribution: &Contribution, arrived: &Arrived<N>) {
+    pub(super) fn receive(&mut self, contribution: &Contribution, arrived: &Arrived<N>, stokes: Option<[Lanes<N>; 3]>) {
         self.world.layers.add(&mut self.row, contribution);
+        if let Some(stokes) = stokes {
+            let stokes = stokes.map(|part| arrived.times(part, &self.world.responses));
+            self.world.layers.add_stokes(&mut self.row, stokes, 1.0);
+        }
         if let Some(spectrum) = &mut self.spectrum {
             spectrum.receive(arrived, 1.0);
         }
@@ -109,9 +114,12 @@ impl<'a, const N: usize> LayerSample<'a, N> {
     /// Receives light of photons that were gathered.
     pub(super) fn receive_gathered(&mut self, gathered: &Gathered<N>, draw: &Draw<N>) {
         let Some(parts) = &gathered.parts else { return self.world.layers.add(&mut self.row, &gathered.all) };
-        for Part { contribution, spectrum, factor } in parts {
+        for Part { contribution, stokes, spectrum, factor } in parts {
             let rgb = contribution.rgb.map(|x| factor * x);
             self.world.layers.add(&mut self.row, &Contribution { rgb, ..*contribution });
+            if let Some(stokes) = stokes {
+                self.world.layers.add_stokes(&mut self.row, *stokes, *factor);
+            }
             let (Some(sample), Some(light)) = (&mut self.spectrum, contribution.light) else { continue };
             match spectrum {
                 PartSpectrum::Lanes(lanes) => {
@@ -138,7 +146,7 @@ impl<'a, const N: usize> LayerSample<'a, N> {
     }
 
     /// Remembers a surface, if it is the first one.
-    pub(super) fn meet(&mut self, met: &Met<N>, sampler: &Sampler) {
+    pub(super) fn meet<P: Polarization<N>>(&mut self, met: &Met<N, P>, sampler: &Sampler) {
         let layers = &self.world.layers;
         if met.path.among == Among::Plate {
             return;
@@ -171,7 +179,13 @@ impl<'a, const N: usize> LayerSample<'a, N> {
 
     /// What a white light all around would show of the surface, if it is asked for: an estimate by the directions of
     /// one draw, exact where shares do not depend on them.
-    fn albedo(&mut self, path: &Path<N>, at: &Interaction<N>, panes: Option<Lanes<N>>, sampler: &Sampler) -> [f64; 3] {
+    fn albedo<P: Polarization<N>>(
+        &mut self,
+        path: &Path<N, P>,
+        at: &Interaction<N>,
+        panes: Option<Lanes<N>>,
+        sampler: &Sampler,
+    ) -> [f64; 3] {
         let layers = &self.world.layers;
         let (Some(white), Some(_)) = (&layers.white, layers.at(Layer::Albedo)) else { return [0.0; 3] };
         let [u, v, ..] = sampler.four_plain(path.key, ALBEDO);
@@ -196,7 +210,7 @@ impl<'a, const N: usize> LayerSample<'a, N> {
     }
 }
 
-impl<const N: usize> Met<'_, N> {
+impl<const N: usize, P: Polarization<N>> Met<'_, N, P> {
     /// The share of the camera sample for which the surface is the first.
     fn share(&self, first: FirstSurface) -> f64 {
         let Self { path, at, .. } = self;

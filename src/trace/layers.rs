@@ -138,7 +138,8 @@ impl Layers {
 
     /// Whether it matters of which light gathered photons are, whether they were dispersed, or what their spectra are.
     pub(super) fn tell_photons_apart(&self) -> bool {
-        self.at(Layer::Lights).or(self.at(Layer::Dispersed)).is_some() || self.spectrum.is_some()
+        let one = [Layer::Lights, Layer::Dispersed, Layer::S1].into_iter().any(|layer| self.at(layer).is_some());
+        one || self.spectrum.is_some()
     }
 
     /// Whether anything is wanted of first surfaces.
@@ -211,6 +212,14 @@ impl Layers {
     pub(super) fn add_to(&self, layer: Layer, row: &mut [f64], numbers: [f64; 3]) {
         if let Some(at) = self.at(layer) {
             add(&mut row[at..], numbers);
+        }
+    }
+
+    /// Adds S1, S2 and S3 of light to a row, times a factor.
+    #[cold]
+    pub(super) fn add_stokes(&self, row: &mut [f64], stokes: [[f64; 3]; 3], factor: f64) {
+        for (layer, color) in [Layer::S1, Layer::S2, Layer::S3].into_iter().zip(stokes) {
+            self.add_to(layer, row, color.map(|x| factor * x));
         }
     }
 

@@ -14,6 +14,8 @@ use super::pass::Pass;
 use super::photon::{Landing, Splat, show as show_photon};
 use super::photon_batch::{Batch, Sent, batches, send};
 use super::photon_targets::PhotonTargets;
+use super::polarization::Polarization;
+use super::polarized::Polarized;
 use super::stats::Stats;
 use super::tile::{Shown, Tile};
 use super::walker::Walker;
@@ -69,7 +71,7 @@ impl Sending {
 /// sends all photons; where there are replicates, every pass sends some.
 ///
 /// Every part sends all photons, which may be seen anywhere: a sum of what the parts found would have other last bits.
-pub(super) fn show<const N: usize>(
+pub(super) fn show<const N: usize, P: Polarization<N>>(
     world: &World,
     pass: &Pass,
     sending: &mut Sending,
@@ -102,7 +104,7 @@ pub(super) fn show<const N: usize>(
         }
         pass.replicate.iter().for_each(|&replicate| replicates.show(place, replicate, rgb));
     };
-    send_on::<N>(world, some.as_ref().unwrap_or(targets), pass.photon_seed().0, sending, watch, add)
+    send_on::<N, P>(world, some.as_ref().unwrap_or(targets), pass.photon_seed().0, sending, watch, add)
 }
 
 /// Adds a photon that the camera sees to the row of its pixel, which holds means.
@@ -115,6 +117,9 @@ fn add_to_layers(world: &World, splat: &Splat, row: &mut [f64]) {
     let bounces = 2;
     let light = Some(light);
     world.layers.add(row, &Contribution { light, found: Found::Shown, rgb, moved: 0.0, first, bounces, dispersed });
+    if let Some(stokes) = &splat.stokes {
+        world.layers.add_stokes(row, **stokes, weight);
+    }
     if let (Some(spectrum), Some(bands)) = (&world.layers.spectrum, &splat.bands) {
         let sums = row[spectrum.at..].iter_mut().zip(bands.iter());
         sums.for_each(|(sum, &light)| *sum += weight * f64::from(light));
@@ -124,17 +129,17 @@ fn add_to_layers(world: &World, splat: &Splat, row: &mut [f64]) {
 }
 
 /// Sends all of them and hands over what they show, in an order that never changes; holds no image.
-pub(super) fn splats<const N: usize>(world: &World, take: &mut dyn FnMut(Splat)) -> Sending {
+pub(super) fn splats<const N: usize, P: Polarization<N>>(world: &World, take: &mut dyn FnMut(Splat)) -> Sending {
     let (mut sending, watch) = (Sending::default(), Watch { progress: &|_| (), is_due: &|| false });
     let targets = world.photon_targets.iter();
     targets.for_each(|targets| {
-        send_on::<N>(world, targets, world.method.seed, &mut sending, &watch, take);
+        send_on::<N, P>(world, targets, world.method.seed, &mut sending, &watch, take);
     });
     sending
 }
 
 /// The same of those that have not been sent, until it shall stop; answers whether all are.
-fn send_on<const N: usize>(
+fn send_on<const N: usize, P: Polarization<N>>(
     world: &World,
     targets: &PhotonTargets,
     seed: u64,
@@ -144,7 +149,7 @@ fn send_on<const N: usize>(
 ) -> bool {
     let batches = batches(targets, |_| 0, |target| target.photons, seed ^ SEED);
     for group in batches.get(sending.batches..).unwrap_or_default().chunks(AT_ONCE) {
-        let send = |batch: &Batch| (!(watch.is_due)()).then(|| send_shown::<N>(world, targets, *batch));
+        let send = |batch: &Batch| (!(watch.is_due)()).then(|| send_shown::<N, P>(world, targets, *batch));
         let done: Vec<Option<Sent<Splat>>> = group.par_iter().map(send).collect();
         for (batch, sent) in group.iter().zip(done) {
             // Splats are added in the order of the batches: what was found beyond a gap is found again.
@@ -165,11 +170,20 @@ fn send_on<const N: usize>(
 }
 
 /// Sends one batch.
-pub(super) fn send_shown<const N: usize>(world: &World, targets: &PhotonTargets, batch: Batch) -> Sent<Splat> {
-    send(world, targets, batch, false, show_one::<N>)
+pub(super) fn send_shown<const N: usize, P: Polarization<N>>(
+    world: &World,
+    targets: &PhotonTargets,
+    batch: Batch,
+) -> Sent<Splat> {
+    send(world, targets, batch, false, show_one::<N, P>)
 }
 
-fn show_one<const N: usize>(walker: &Walker<N>, landing: &Landing<N>, sampler: &Sampler, splats: &mut Vec<Splat>) {
+fn show_one<const N: usize, P: Polarization<N>>(
+    walker: &Walker<N, P>,
+    landing: &Landing<N, P>,
+    sampler: &Sampler,
+    splats: &mut Vec<Splat>,
+) {
     show_photon(walker, landing, sampler, splats);
 }
 
@@ -190,7 +204,7 @@ fn send_ahead<const N: usize>(world: &World, most: u64) -> Learned {
     let Some(targets) = &world.photon_targets else { return Learned::default() };
     let batches = batches(targets, |_| 0, |target| target.photons.min(most), world.method.seed ^ AHEAD_SEED);
     let done: Vec<Sent<Splat>> =
-        batches.par_iter().map(|batch| send::<N, _>(&world, targets, *batch, true, show_one)).collect();
+        batches.par_iter().map(|batch| send::<N, Polarized, _>(&world, targets, *batch, true, show_one)).collect();
     let mut learned = Learned { found: vec![Vec::new(); targets.targets.len()], rays: 0 };
     for (batch, sent) in batches.iter().zip(done) {
         learned.rays += sent.stats.rays;

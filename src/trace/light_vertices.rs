@@ -15,6 +15,8 @@ use rayon::prelude::*;
 use super::media::{Media, media_of_lights};
 use super::path::PathKind;
 use super::photon::{Landing, Start, Surfaces, follow_photon};
+use super::polarization::Polarization;
+use super::polarized::Polarized;
 use super::stats::Stats;
 use super::usefulness::{Place, places, usefulness};
 use super::walker::Walker;
@@ -159,20 +161,20 @@ impl<'a> LightPaths<'a> {
     }
 
     /// The vertices for some samples of each pixel, at most `SHARED`.
-    pub(super) fn shared<const N: usize>(&self, samples: Range<u32>) -> LightVertices<N> {
+    pub(super) fn shared<const N: usize, P: Polarization<N>>(&self, samples: Range<u32>) -> LightVertices<N> {
         let film = self.world.scene.film;
         let all = u64::from(film.width) * u64::from(film.height) * samples.len() as u64;
-        self.vertices(samples.start, (all / PER_PATH).clamp(FEWEST, MOST))
+        self.vertices::<N, P>(samples.start, (all / PER_PATH).clamp(FEWEST, MOST))
     }
 
     /// A few vertices, for a pilot.
     pub(super) fn few<const N: usize>(&self) -> LightVertices<N> {
-        self.vertices(PILOT, OF_A_PILOT)
+        self.vertices::<N, Polarized>(PILOT, OF_A_PILOT)
     }
 
     /// The vertices of some light paths of a set.
-    fn vertices<const N: usize>(&self, set: u32, paths: u64) -> LightVertices<N> {
-        let of_batch = |batch: u64| self.follow(set, batch * BATCH..(batch * BATCH + BATCH).min(paths));
+    fn vertices<const N: usize, P: Polarization<N>>(&self, set: u32, paths: u64) -> LightVertices<N> {
+        let of_batch = |batch: u64| self.follow::<N, P>(set, batch * BATCH..(batch * BATCH + BATCH).min(paths));
         let done: Vec<Followed<N>> = (0..paths.div_ceil(BATCH)).into_par_iter().map(of_batch).collect();
         let (mut stats, mut vertices) = (Stats::default(), Vec::new());
         for followed in done {
@@ -185,9 +187,9 @@ impl<'a> LightPaths<'a> {
     }
 
     /// Follows some light paths of a set.
-    fn follow<const N: usize>(&self, set: u32, paths: Range<u64>) -> Followed<N> {
+    fn follow<const N: usize, P: Polarization<N>>(&self, set: u32, paths: Range<u64>) -> Followed<N> {
         let world = self.world;
-        let mut walker = Walker::<N>::new(world, LIGHT_PATHS);
+        let mut walker = Walker::<N, P>::new(world, LIGHT_PATHS);
         let draw = world.method.basis.draw(0.0);
         let mut vertices = Vec::new();
         for number in paths {
@@ -339,7 +341,7 @@ fn morton(place: DVec3) -> u64 {
 }
 
 /// The vertex where a light path lands, if it is one: not where photons are gathered that came the same way.
-fn kept<const N: usize>(world: &World, landing: &Landing<N>) -> Option<LightVertex<N>> {
+fn kept<const N: usize, P>(world: &World, landing: &Landing<N, P>) -> Option<LightVertex<N>> {
     let Landing { path, at, light, .. } = landing;
     let Material::Diffuse(diffuse) = at.material else { return None };
     let leaving = landing.flux(world) * at.arrival.read(&diffuse.reflectance) * FRAC_1_PI as f32;

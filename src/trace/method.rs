@@ -31,6 +31,20 @@ pub struct Method {
     pub bright: Option<BrightPlaces>,
     /// Whether light that surfaces send each other is also looked for at vertices of paths from the lights.
     pub light_vertices: bool,
+    /// Whether polarization is traced.
+    pub polarization: Polarizing,
+}
+
+/// Whether polarization is traced.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Polarizing {
+    /// No: light is taken for unpolarized at every surface.
+    #[default]
+    Averaged,
+    /// Yes.
+    Traced,
+    /// Paths are those of light that is taken for unpolarized, and are told how much polarization changes.
+    Compared,
 }
 
 /// When enough samples are taken: as soon as one of these says so.

@@ -4,22 +4,24 @@ use super::World;
 use super::light_vertices::{LightPaths, LightVertices, SHARED};
 use super::pass::Pass;
 use super::photon_map::{PhotonMap, photons};
+use super::polarization::Polarization;
+use super::polarized::Polarized;
 use super::stats::Stats;
 
 /// The light that the paths of one pass look at.
-pub(super) struct PassLight<const N: usize> {
-    pub(super) photons: Option<PhotonMap<N>>,
+pub(super) struct PassLight<const N: usize, P: Polarization<N> = Polarized> {
+    pub(super) photons: Option<PhotonMap<N, P>>,
     vertices: Vec<LightVertices<N>>,
 }
 
-impl<const N: usize> PassLight<N> {
+impl<const N: usize, P: Polarization<N>> PassLight<N, P> {
     /// For one pass.
     pub(super) fn new(world: &World, pass: &Pass) -> Self {
-        let photons = photons::<N>(world, pass);
+        let photons = photons::<N, P>(world, pass);
         let numbers = &pass.numbers;
         let vertices = match LightPaths::asked_for(world, pass.seed) {
             Some(light_paths) => {
-                let shared = |first: u32| light_paths.shared(first..(first + SHARED).min(numbers.end));
+                let shared = |first: u32| light_paths.shared::<N, P>(first..(first + SHARED).min(numbers.end));
                 numbers.clone().step_by(SHARED as usize).map(shared).collect()
             }
             None => Vec::new(),

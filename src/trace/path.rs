@@ -1,8 +1,8 @@
 use super::World;
 use super::first_lobe::FirstLobe;
 use super::media::{self, Media};
-use super::polarization::Polarized;
-use crate::material::Straight;
+use super::polarization::{Onward, Polarization};
+use super::polarized::Polarized;
 use crate::math::{BranchKey, DVec3, Ray};
 use crate::scene::Primitive;
 use crate::shape::SurfacePoint;
@@ -10,7 +10,7 @@ use crate::spectrum::{Draw, Throughput};
 
 /// A ray on its way back from the camera.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Path<const N: usize> {
+pub(super) struct Path<const N: usize, P = Polarized> {
     pub(super) ray: Ray,
     /// The surface that it met last, which its ray leaves.
     pub(super) left: Option<Primitive>,
@@ -33,8 +33,8 @@ pub(super) struct Path<const N: usize> {
     pub(super) diffuse_left: u32,
     /// How the last direction was sampled; none after the camera or a smooth surface.
     pub(super) scatter: Option<ScatterSample>,
-    /// How far its light may be polarized.
-    pub(super) polarized: Polarized,
+    /// How its light is polarized.
+    pub(super) polarization: P,
     /// How often surfaces have scattered, mirrored or refracted it.
     pub(super) bounces: u32,
     /// Whether only smooth surfaces have: what it meets next is seen.
@@ -107,7 +107,7 @@ impl ScatterSample {
     }
 }
 
-impl<const N: usize> Path<N> {
+impl<const N: usize, P: Polarization<N>> Path<N, P> {
     /// The path of a camera ray.
     pub(super) fn from_camera(world: &World, draw: &Draw<N>, ray: Ray) -> Self {
         let camera = &world.scene.camera;
@@ -116,7 +116,12 @@ impl<const N: usize> Path<N> {
         } else {
             world.camera_media
         };
-        Self { kind: PathKind::Camera, ..Self::from_light(world, draw, ray, media) }
+        let polarization = P::of_camera(world, &ray);
+        let path = Self { kind: PathKind::Camera, polarization, ..Self::from_light(world, draw, ray, media) };
+        match camera.filter() {
+            Some(filter) => Self { throughput: path.throughput.scaled(filter.transmittance()), ..path },
+            None => path,
+        }
     }
 
     /// The path of a ray that leaves a light, inside of some bodies.
@@ -134,7 +139,7 @@ impl<const N: usize> Path<N> {
             kind: PathKind::Other,
             diffuse_left: world.method.diffuse_bounces,
             scatter: None,
-            polarized: Polarized::NOT,
+            polarization: P::of_light(world, &ray),
             bounces: 0,
             is_seen: true,
             among: Among::All,
@@ -155,10 +160,15 @@ impl<const N: usize> Path<N> {
     /// surfaces.
     #[cold]
     #[inline(never)]
-    pub(super) fn passed_in_part(&self, point: &SurfacePoint, straight: &Straight<N>) -> Self {
-        let throughput = self.throughput.through(straight.share());
-        let polarized = self.polarized.after(straight.polarization);
-        Self { throughput, polarized, vertices: self.vertices - 1, ..self.passed(point) }
+    pub(super) fn passed_in_part(&self, point: &SurfacePoint, onward: &Onward<N, P>) -> Self {
+        let throughput = self.throughput.through(onward.straight.share());
+        let polarization = onward.polarization;
+        Self { throughput, polarization, vertices: self.vertices - 1, ..self.passed(point) }
+    }
+
+    /// By which lobe the first surface sends its light to the camera; none before it has left one.
+    pub(super) fn lobe(&self) -> Option<Option<FirstLobe>> {
+        (self.bounces > 0).then_some(self.first)
     }
 
     /// How much the path can still matter: its mean throughput, without the factor of radiance between media.

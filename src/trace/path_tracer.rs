@@ -11,6 +11,8 @@ use super::layer_sample::{LayerSample, Met};
 use super::light_vertices::{LightVertices, holds_vertices};
 use super::path::{Among, Path, PathKind, ScatterSample};
 use super::photon_map::PhotonMap;
+use super::polarization::{MetLight, Onward, Polarization};
+use super::polarized::Polarized;
 use super::resampling::Resampling;
 use super::sensor::{Bounce, Observer, Sensor};
 use super::shading;
@@ -19,18 +21,18 @@ use super::walker::{Departure, Walker};
 use super::{Transport, World};
 use crate::film::{Layer, Sample};
 use crate::light::{Light, LightId};
-use crate::material::{Material, Straight};
+use crate::material::Material;
 use crate::math::{BranchKey, DVec2, DVec3, Sampler};
 use crate::scene::Sight;
 use crate::shape::SurfacePoint;
 use crate::spectrum::Draw;
 
 /// Follows the rays of camera samples back to the light, and samples the lights on the way.
-pub(super) struct PathTracer<'a, const N: usize> {
-    pub(super) walker: Walker<'a, N>,
+pub(super) struct PathTracer<'a, const N: usize, P: Polarization<N> = Polarized> {
+    pub(super) walker: Walker<'a, N, P>,
     sensor: Sensor<'a, N>,
     /// Photons that are gathered, if any are.
-    photons: Option<&'a PhotonMap<N>>,
+    photons: Option<&'a PhotonMap<N, P>>,
     /// Vertices of light paths, if light is looked for there.
     pub(super) light_vertices: Option<&'a LightVertices<N>>,
     /// What the lanes of every sample stand for, where that is the same.
@@ -49,7 +51,7 @@ const COMPLEMENT: u32 = 6;
 /// samples see so many different places that plain random numbers, which cost less, are taken.
 const SPREAD: u32 = 4;
 
-impl<'a, const N: usize> PathTracer<'a, N> {
+impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
     pub(super) fn new(world: &'a World) -> Self {
         let basis = &world.method.basis;
         let draw = (!basis.draws_wavelengths()).then(|| basis.draw(0.0));
@@ -58,7 +60,7 @@ impl<'a, const N: usize> PathTracer<'a, N> {
     }
 
     /// With photons that are gathered.
-    pub(super) fn with_photons(self, photons: Option<&'a PhotonMap<N>>) -> Self {
+    pub(super) fn with_photons(self, photons: Option<&'a PhotonMap<N, P>>) -> Self {
         Self { photons, ..self }
     }
 
@@ -128,7 +130,7 @@ impl<'a, const N: usize> PathTracer<'a, N> {
     /// Holds the light of a path that met a shadow catcher against that of the same path among the objects of the plate
     /// alone. Neither is seen in the image.
     #[cold]
-    fn catch(&mut self, path: Path<N>, draw: &Draw<N>, sampler: &Sampler) {
+    fn catch(&mut self, path: Path<N, P>, draw: &Draw<N>, sampler: &Sampler) {
         let with = std::mem::take(&mut self.sensor.rgb);
         self.trace(Path { among: Among::Plate, ..path }, draw, sampler);
         let without = std::mem::take(&mut self.sensor.rgb);
@@ -139,7 +141,7 @@ impl<'a, const N: usize> PathTracer<'a, N> {
     }
 
     /// Hands all light along the path of a camera ray to the sensor, and answers what the ray hit first.
-    fn trace(&mut self, path: Path<N>, draw: &Draw<N>, sampler: &Sampler) -> Option<SurfacePoint> {
+    fn trace(&mut self, path: Path<N, P>, draw: &Draw<N>, sampler: &Sampler) -> Option<SurfacePoint> {
         let world = self.walker.world;
         let mut first = None;
         self.walker.started = self.walker.stats.rays;
@@ -157,22 +159,22 @@ impl<'a, const N: usize> PathTracer<'a, N> {
                 self.tell(&path, draw, f64::INFINITY, before);
                 continue;
             };
-            let straight = self.walker.straight(&path, draw, &meeting);
+            let onward = self.walker.straight(&path, draw, &meeting);
             let Meeting { hit, point } = &meeting;
-            if let Some(straight) = &straight
-                && path.throughput.through(straight.share()) == path.throughput
+            if let Some(straight) = &onward
+                && path.throughput.through(straight.straight.share()) == path.throughput
             {
-                self.walker.pending.push(path.passed(point));
+                let polarization = straight.polarization;
+                self.walker.pending.push(Path { polarization, ..path.passed(point) });
                 continue;
             }
             if world.hides_objects && path.kind == PathKind::Camera && world.sight(hit.object) == Sight::Holdout {
-                self.walker.audit.iter_mut().for_each(|audit| audit.end_beside(&path, straight.as_ref(), draw));
-                self.walker.pending.extend(straight.map(|straight| path.passed_in_part(point, &straight)));
+                self.walker.audit.iter_mut().for_each(|audit| audit.end_beside(&path, onward.as_ref(), draw));
+                self.walker.pending.extend(onward.map(|onward| path.passed_in_part(point, &onward)));
                 continue;
             }
-            let is_met_first = path.vertices == 0
-                && first.is_none()
-                && straight::is_met(world, draw, sampler, &path, straight.as_ref());
+            let is_met_first =
+                path.vertices == 0 && first.is_none() && straight::is_met(world, draw, sampler, &path, onward.as_ref());
             if is_met_first {
                 first = Some(*point);
                 if let Some(layers) = &mut self.sensor.layers {
@@ -182,11 +184,11 @@ impl<'a, const N: usize> PathTracer<'a, N> {
             path.vertices += 1;
             self.emission(&path, draw, &meeting);
             if path.vertices > world.method.max_bounces {
-                self.cut(&path, draw, &meeting, straight.as_ref());
+                self.cut(&path, draw, &meeting, onward.as_ref());
                 continue;
             }
-            self.scatter(&path, draw, sampler, &meeting, straight.as_ref(), is_met_first);
-            if straight.is_none() {
+            self.scatter(&path, draw, sampler, &meeting, onward.as_ref(), is_met_first);
+            if onward.is_none() {
                 self.tell(&path, draw, hit.crossing.t, before);
             }
         }
@@ -197,17 +199,17 @@ impl<'a, const N: usize> PathTracer<'a, N> {
     }
 
     /// Ends a path that has met as many surfaces as it may, but for what goes straight on.
-    fn cut(&mut self, path: &Path<N>, draw: &Draw<N>, meeting: &Meeting, straight: Option<&Straight<N>>) {
+    fn cut(&mut self, path: &Path<N, P>, draw: &Draw<N>, meeting: &Meeting, onward: Option<&Onward<N, P>>) {
         if !matches!(self.walker.world.scene.material_of(meeting.hit.object), Material::Emissive(_)) {
             self.walker.stats.stopped += path.weight(draw) / draw.siblings(path.parted);
         } else if let Some(audit) = &mut self.walker.audit {
-            audit.end_beside(path, straight, draw);
+            audit.end_beside(path, onward, draw);
         }
-        self.walker.pending.extend(straight.map(|straight| path.passed_in_part(&meeting.point, straight)));
+        self.walker.pending.extend(onward.map(|onward| path.passed_in_part(&meeting.point, onward)));
     }
 
     /// Hands the light of the sky, at the end of a path that hits nothing, to the sensor.
-    fn background(&mut self, path: &Path<N>, draw: &Draw<N>) {
+    fn background(&mut self, path: &Path<N, P>, draw: &Draw<N>) {
         let world = self.walker.world;
         self.walker.audit.iter_mut().for_each(|audit| audit.end(path, draw));
         for &id in &world.scene.infinite_lights {
@@ -228,7 +230,7 @@ impl<'a, const N: usize> PathTracer<'a, N> {
     }
 
     /// Hands the light of a surface that shines by itself to the sensor.
-    fn emission(&mut self, path: &Path<N>, draw: &Draw<N>, Meeting { hit, point }: &Meeting) {
+    fn emission(&mut self, path: &Path<N, P>, draw: &Draw<N>, Meeting { hit, point }: &Meeting) {
         let world = self.walker.world;
         let object = &world.scene.objects[hit.object as usize];
         let Some(id) = object.light else { return };
@@ -243,23 +245,26 @@ impl<'a, const N: usize> PathTracer<'a, N> {
     }
 
     /// Hands light that a path has hit to the sensor; `normal` is that of the surface that shines.
-    fn receive(&mut self, path: &Path<N>, normal: Option<DVec3>, arrived: &Arrived<N>) {
+    fn receive(&mut self, path: &Path<N, P>, normal: Option<DVec3>, arrived: &Arrived<N>) {
         let rgb = arrived.rgb(&self.walker.world.responses);
-        let is_any = path.polarized.is_any();
-        let moved = if is_any { path.polarized.change() * self.walker.world.amount(rgb) } else { 0.0 };
+        let moved = path.polarization.moved_of_met(&MetLight { world: self.walker.world, arrived, rgb });
         let (light, found) = (Some(arrived.light), Found::Hit { normal, scattered: path.scatter.is_some() });
         let Path { bounces, parted: dispersed, first, .. } = *path;
-        self.sensor.receive(Contribution { light, found, rgb, moved, first, bounces, dispersed }, arrived);
+        self.sensor.receive(
+            Contribution { light, found, rgb, moved, first, bounces, dispersed },
+            arrived,
+            &path.polarization,
+        );
     }
 
     /// Samples the lights where a surface scatters widely, and lets the path go on: its ways on become pending.
     fn scatter(
         &mut self,
-        path: &Path<N>,
+        path: &Path<N, P>,
         draw: &Draw<N>,
         sampler: &Sampler,
         meeting: &Meeting,
-        straight: Option<&Straight<N>>,
+        onward: Option<&Onward<N, P>>,
         is_met_first: bool,
     ) {
         let world = self.walker.world;
@@ -268,8 +273,9 @@ impl<'a, const N: usize> PathTracer<'a, N> {
         if ends && !(world.has_map() && path.diffuse_left > 0) {
             return;
         }
-        let at = Interaction::new(world, draw, path, meeting, boundary);
+        let at = Interaction::new(world, draw, &path.ray, path.throughput.present(), meeting, boundary);
         if let Some(layers) = &mut self.sensor.layers {
+            let straight = onward.map(|onward| &onward.straight);
             layers.meet(&Met { path, meeting, at: &at, straight, is_met_first }, sampler);
         }
         if ends {
@@ -295,7 +301,7 @@ impl<'a, const N: usize> PathTracer<'a, N> {
             let resampled = goes_on && self.resample(path, at, sampler);
             let (pdf, from, normal, passed) = (0.0, at.point.position, at.flat, false);
             scatter = Some(ScatterSample { pdf, from, normal, chance, all_lights, passed, resampled });
-            if !goes_on && straight.is_none() && !at.lobes.has_delta() && self.walker.audit.is_none() {
+            if !goes_on && onward.is_none() && !at.lobes.has_delta() && self.walker.audit.is_none() {
                 return;
             }
         }
@@ -304,16 +310,17 @@ impl<'a, const N: usize> PathTracer<'a, N> {
             Some(aiming) => scatter_aimed(aiming, &at, [u[2], u[3]], &mut self.walker.branches),
             None => shading::scatter(material, &at.arrival, at.flat, [u[2], u[3]], &mut self.walker.branches),
         }
-        self.walker.account(path, &at, straight);
+        self.walker.polarize(path, &at);
+        self.walker.account(path, &at, onward.map(|onward| &onward.straight));
         if !goes_on {
-            self.walker.branches.retain(|branch| branch.pdf.is_none());
+            self.walker.keep_single();
         }
-        let mut departure = Departure::new(world, path, &at).with(scatter.as_ref(), straight);
+        let mut departure = Departure::new(world, path, &at).with(scatter.as_ref(), onward);
         self.walker.follow(&mut departure, sampler);
     }
 
     /// Hands the light of a light vertex to the sensor, where the path meets a diffuse surface.
-    fn resample(&mut self, path: &Path<N>, at: &Interaction<N>, sampler: &Sampler) -> bool {
+    fn resample(&mut self, path: &Path<N, P>, at: &Interaction<N>, sampler: &Sampler) -> bool {
         let Some(vertices) = self.light_vertices.filter(|_| path.among == Among::All) else { return false };
         let world = self.walker.world;
         if !at.lobes.is_diffuse() {
@@ -326,7 +333,13 @@ impl<'a, const N: usize> PathTracer<'a, N> {
     }
 
     /// Whether a path ends where its light was looked for at light vertices: mostly, and the less the nearer.
-    fn ends_at_light_vertices(&mut self, path: &Path<N>, draw: &Draw<N>, meeting: &Meeting, sampler: &Sampler) -> bool {
+    fn ends_at_light_vertices(
+        &mut self,
+        path: &Path<N, P>,
+        draw: &Draw<N>,
+        meeting: &Meeting,
+        sampler: &Sampler,
+    ) -> bool {
         let (Some(vertices), Some(scatter)) = (self.light_vertices, path.scatter) else { return false };
         if !scatter.resampled || !holds_vertices(self.walker.world, meeting.hit.object, &meeting.point) {
             return false;
@@ -338,7 +351,7 @@ impl<'a, const N: usize> PathTracer<'a, N> {
     }
 
     /// Hands what photons bring to a place that the path has reached by way of others to the sensor.
-    fn gather_photons(&mut self, path: &Path<N>, at: &Interaction<N>, sampler: &Sampler) {
+    fn gather_photons(&mut self, path: &Path<N, P>, at: &Interaction<N>, sampler: &Sampler) {
         if let Some(photons) = self.photons.filter(|_| path.among == Among::All) {
             let apart = self.sensor.layers.is_some() && self.walker.world.layers.tell_photons_apart();
             let gathered = gather(photons, self.walker.world, path, at, sampler, apart);
@@ -352,7 +365,7 @@ impl<'a, const N: usize> PathTracer<'a, N> {
     /// Tells an observer what a bounce found that went on for a distance, where the sensor had received some light
     /// before.
     #[inline]
-    fn tell(&self, path: &Path<N>, draw: &Draw<N>, distance: f64, before: [f64; 3]) {
+    fn tell(&self, path: &Path<N, P>, draw: &Draw<N>, distance: f64, before: [f64; 3]) {
         if let (Some(observer), Some(ScatterSample { from, normal, .. })) = (self.sensor.observer, path.scatter) {
             let light = self.walker.world.amount(std::array::from_fn(|i| self.sensor.rgb[i] - before[i]));
             let (direction, distance) = (path.ray.direction, distance + (path.ray.origin - from).length());
@@ -361,7 +374,7 @@ impl<'a, const N: usize> PathTracer<'a, N> {
     }
 
     /// Whether the path's way to a light is one that photons find.
-    fn is_found_by_photons(&self, path: &Path<N>, light: LightId) -> bool {
+    fn is_found_by_photons(&self, path: &Path<N, P>, light: LightId) -> bool {
         let is_smooth = path.kind == PathKind::Smooth { aimed: true } && path.among == Among::All;
         is_smooth && self.walker.world.sends_photons(light)
     }

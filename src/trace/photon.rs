@@ -9,12 +9,14 @@ use super::first_lobe::FirstLobe;
 use super::interaction::{Interaction, parts};
 use super::media::Media;
 use super::path::{Path, PathKind};
+use super::polarization::Polarization;
+use super::polarized::Polarized;
 use super::shading;
 use super::straight::{Passage, Past};
 use super::walker::{Departure, Walker};
 use crate::light::{LeSample, LightId};
 use crate::material::{Arrival, Branch, Material, Scatter};
-use crate::math::{DVec2, DVec3, Frame, Sampler, cosine_hemisphere, unit};
+use crate::math::{DVec2, DVec3, Frame, Ray, Sampler, cosine_hemisphere, unit};
 use crate::scene::{Ends, FilmSettings, Sight};
 use crate::spectrum::{Draw, Lanes};
 
@@ -28,6 +30,8 @@ pub(super) struct Splat {
     /// By what share polarization may change it.
     pub(super) change: f32,
     pub(super) rgb: [f64; 3],
+    /// S1, S2 and S3 if they are asked for, times a factor.
+    pub(super) stokes: Option<Arc<[[f64; 3]; 3]>>,
     /// What it adds to the bands of a spectral image if one is asked for, times a factor.
     pub(super) bands: Option<Arc<[f32]>>,
     pub(super) weight: f64,
@@ -55,8 +59,8 @@ impl Splat {
 }
 
 /// Where a photon lands, and the light's way there.
-pub(super) struct Landing<'a, const N: usize> {
-    pub(super) path: &'a Path<N>,
+pub(super) struct Landing<'a, const N: usize, P = Polarized> {
+    pub(super) path: &'a Path<N, P>,
     pub(super) at: &'a Interaction<'a, N>,
     pub(super) light: LightId,
     /// Flux per emission.
@@ -65,7 +69,7 @@ pub(super) struct Landing<'a, const N: usize> {
     early: bool,
 }
 
-impl<const N: usize> Landing<'_, N> {
+impl<const N: usize, P> Landing<'_, N, P> {
     /// What the light shines on the photon's way, per emission.
     fn shone(&self, world: &World) -> Lanes<N> {
         world.scene.lights[self.light].toward(self.at.arrival.draw, -self.path.ray.direction, [0.0; 2])
@@ -100,13 +104,13 @@ pub(super) struct Start<'a> {
 ///
 /// Throughput is followed as if the light were the viewer; flux is what is left of it without the factor of radiance
 /// between media.
-pub(super) fn follow_photon<const N: usize>(
-    walker: &mut Walker<N>,
+pub(super) fn follow_photon<const N: usize, P: Polarization<N>>(
+    walker: &mut Walker<N, P>,
     Start { emitted, light, media, early }: Start,
     draw: &Draw<N>,
     sampler: &Sampler,
     over: Surfaces,
-    land: &mut impl FnMut(&Walker<N>, &Landing<N>),
+    land: &mut impl FnMut(&Walker<N, P>, &Landing<N, P>),
 ) {
     let world = walker.world;
     walker.pending.push(Path::from_light(world, draw, emitted.ray, media));
@@ -115,11 +119,11 @@ pub(super) fn follow_photon<const N: usize>(
             continue;
         }
         let Some(meeting) = walker.meet(&mut path, draw) else { continue };
-        if let Some(straight) = walker.straight(&path, draw, &meeting) {
-            let (throughput, key) = (path.throughput.through(straight.share()), path.key.child(BEYOND));
+        if let Some(onward) = walker.straight(&path, draw, &meeting) {
+            let (throughput, key) = (path.throughput.through(onward.straight.share()), path.key.child(BEYOND));
             let all = throughput == path.throughput;
-            let polarized = path.polarized.after(straight.polarization);
-            walker.pending.push(Path { throughput, key, polarized, ..path.passed(&meeting.point) });
+            let polarization = onward.polarization;
+            walker.pending.push(Path { throughput, key, polarization, ..path.passed(&meeting.point) });
             if all {
                 continue;
             }
@@ -132,7 +136,7 @@ pub(super) fn follow_photon<const N: usize>(
         }
         path.vertices += 1;
         let Some(boundary) = walker.boundary(&path, &meeting) else { continue };
-        let at = Interaction::new(world, draw, &path, &meeting, boundary);
+        let at = Interaction::new(world, draw, &path.ray, path.throughput.present(), &meeting, boundary);
         // As often as light may leave surfaces on its way from the camera.
         let allowed = path.vertices <= world.method.max_bounces && !(at.lobes.is_diffuse() && path.diffuse_left == 0);
         let shown = over == Surfaces::All || path.vertices > 1;
@@ -148,12 +152,18 @@ pub(super) fn follow_photon<const N: usize>(
 }
 
 /// Lets a photon go on from a surface that scatters widely, with the share that the camera would see of the way back.
-fn scatter<const N: usize>(walker: &mut Walker<N>, path: &Path<N>, at: &Interaction<N>, sampler: &Sampler) {
+fn scatter<const N: usize, P: Polarization<N>>(
+    walker: &mut Walker<N, P>,
+    path: &Path<N, P>,
+    at: &Interaction<N>,
+    sampler: &Sampler,
+) {
     let Interaction { material, point, arrival, flat, .. } = at;
     let u = sampler.four(path.key, SCATTER);
     walker.branches.clear();
     if point.shading == point.normal {
         material.scatter(arrival, [u[0], u[1]], &mut walker.branches);
+        walker.polarize(path, at);
         if !matches!(material, Material::Diffuse(_)) {
             walker.branches.iter_mut().filter(|branch| branch.pdf.is_some()).for_each(|branch| turn_back(at, branch));
         }
@@ -166,6 +176,7 @@ fn scatter<const N: usize>(walker: &mut Walker<N>, path: &Path<N>, at: &Interact
         let wide =
             |share| Branch { wi, share, pdf: Some(local.z / PI), crosses: false, eta_scale: 1.0, polarization: 0.0 };
         walker.branches.extend(share.map(wide));
+        walker.polarize(path, at);
     }
     walker.follow(&mut Departure::new(walker.world, path, at), sampler);
 }
@@ -190,7 +201,12 @@ fn turn_back<const N: usize>(at: &Interaction<N>, branch: &mut Branch<N>) {
 }
 
 /// Lets a photon go on over a smooth surface.
-fn bounce<const N: usize>(walker: &mut Walker<N>, path: &Path<N>, at: Interaction<N>, sampler: &Sampler) {
+fn bounce<const N: usize, P: Polarization<N>>(
+    walker: &mut Walker<N, P>,
+    path: &Path<N, P>,
+    at: Interaction<N>,
+    sampler: &Sampler,
+) {
     let plain = shading::plain_normal(at.point, at.arrival.wo);
     let at = at.by_normal(plain);
     let Interaction { material, point, arrival, .. } = &at;
@@ -203,6 +219,7 @@ fn bounce<const N: usize>(walker: &mut Walker<N>, path: &Path<N>, at: Interactio
     material.scatter(arrival, [u[0], u[1]], &mut walker.branches);
     let back = arrival.wo;
     walker.branches.retain(|branch| branch.pdf.is_none() && shading::is_plain(point, branch.wi, back, branch.crosses));
+    walker.polarize(path, &at);
     for branch in &mut walker.branches {
         branch.share = branch.share * shading::forward_factor(point, branch.wi, back) as f32;
     }
@@ -218,9 +235,9 @@ fn send_forward<const N: usize>(arrival: &Arrival<N>, branches: &mut [Branch<N>]
 }
 
 /// Adds what the camera sees of a photon.
-pub(super) fn show<const N: usize>(
-    walker: &Walker<N>,
-    landing: &Landing<N>,
+pub(super) fn show<const N: usize, P: Polarization<N>>(
+    walker: &Walker<N, P>,
+    landing: &Landing<N, P>,
     sampler: &Sampler,
     splats: &mut Vec<Splat>,
 ) {
@@ -247,7 +264,7 @@ pub(super) fn show<const N: usize>(
     let [side, normal] = shading::normals(point, seen.direction);
     let turned = Arrival { wo: seen.direction, normal, ..*arrival };
     let viewed = if same { turned } else { turned.turned_around() };
-    let Some((bsdf_cos, _)) = shading::evaluate(material, &viewed, side, arrival.wo) else { return };
+    let Some((mut bsdf_cos, _)) = shading::evaluate(material, &viewed, side, arrival.wo) else { return };
     let parted = path.parted || (!same && parts(at.lobes, material, &viewed));
     let cosines = seen.direction.dot(*flat).abs() / arrival.wo.dot(*flat).abs();
     let ray = point.leave(seen.direction);
@@ -255,20 +272,27 @@ pub(super) fn show<const N: usize>(
     let inside = at.boundary.sides()[usize::from(!same)];
     let ends = Ends { left: path.left, ..Ends::default() };
     let passage = Passage { ray: &ray, distance, ends, inside, past: Past::Seen, last_occluder: &walker.last_occluder };
-    let shone = passage.arriving(world, arrival.draw, || landing.shone(world));
-    let Some((shone, polarized)) = shone else { return };
-    let lanes = &path.throughput.scaled(1.0 / path.eta_scale).of(bsdf_cos * shone);
+    let start = || path.polarization.shown(at, seen.direction, &mut bsdf_cos);
+    let shone = passage.arriving(world, arrival.draw, start, || landing.shone(world));
+    let Some((shone, on_its_way)) = shone else { return };
+    let back = Ray { origin: seen.start, direction: -seen.direction };
+    let polarized = path.polarization.seen(at, &viewed, on_its_way, world, &back);
+    let arriving = polarized.factor.map_or(bsdf_cos * shone, |factor| bsdf_cos * shone * factor);
+    let lanes = &path.throughput.scaled(1.0 / path.eta_scale).of(arriving);
     let arrived = Arrived { light: *light, draw: arrival.draw, lanes, parted };
-    let factor = factor * cosines * seen.importance;
+    let filtered = camera.filter().map_or(1.0, |filter| filter.transmittance());
+    let factor = factor * cosines * seen.importance * filtered;
     let rgb = arrived.rgb(&world.responses).map(|x| x * factor);
     let spectrum = world.layers.spectrum.as_ref();
     let bands = spectrum.map(|spectrum| spectrum.of(&arrived, factor).into_iter().map(|x| x as f32).collect());
-    let change = polarized.brought(material, &viewed, arrival.wo, path.polarized).change() as f32;
+    let color = |part: Lanes<N>| arrived.times(part, &world.responses).map(|x| x * factor);
+    let stokes = polarized.stokes.map(|stokes| Arc::new(stokes.map(color)));
+    let change = polarized.change;
     let reflected = || FirstLobe::reflected(world.layers.white.as_ref(), material, at.lobes, &viewed, arrival.wo);
     let lobe = || if same { reflected() } else { FirstLobe::Transmitted };
     let first = world.layers.tell_lobes_apart().then(lobe);
     let (light, dispersed, early, caught) = (*light, parted, *early, sight == Sight::ShadowCatcher);
-    let splat = Splat { pixel: 0, change, rgb, bands, weight: 1.0, light, dispersed, early, caught, first };
+    let splat = Splat { pixel: 0, change, rgb, stokes, bands, weight: 1.0, light, dispersed, early, caught, first };
     places.into_iter().for_each(|place| spread_over_pixels(film, place, &splat, splats));
 }
 

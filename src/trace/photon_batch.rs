@@ -5,6 +5,7 @@ use super::World;
 use super::media::Media;
 use super::photon::{Landing, Start, Surfaces, follow_photon};
 use super::photon_targets::{PhotonTarget, PhotonTargets};
+use super::polarization::Polarization;
 use super::stats::Stats;
 use super::walker::Walker;
 use crate::light::Light;
@@ -53,14 +54,14 @@ pub(super) fn batches(
 
 /// Follows the photons of one batch; `land` says what is kept of one that lands. What is learned is only of which
 /// photons something would be kept.
-pub(super) fn send<const N: usize, T>(
+pub(super) fn send<const N: usize, P: Polarization<N>, T>(
     world: &World,
     targets: &PhotonTargets,
     batch: Batch,
     learns: bool,
-    land: impl Fn(&Walker<N>, &Landing<N>, &Sampler, &mut Vec<T>),
+    land: impl Fn(&Walker<N, P>, &Landing<N, P>, &Sampler, &mut Vec<T>),
 ) -> Sent<T> {
-    let mut walker = Walker::<N>::new(world, PHOTONS);
+    let mut walker = Walker::<N, P>::new(world, PHOTONS);
     let (mut kept, mut places) = (Vec::new(), Vec::new());
     let light = targets.targets[batch.target].light;
     // Ways and wavelengths matter more than where on a small lamp they begin, so theirs are the numbers spread best.

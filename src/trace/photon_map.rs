@@ -15,7 +15,8 @@ use super::pass::Pass;
 use super::photon::Landing;
 use super::photon_batch::{Batch, Sent, batches, send};
 use super::photon_targets::PhotonTargets;
-use super::polarization::Polarized;
+use super::polarization::Polarization;
+use super::polarized::Polarized;
 use super::stats::Stats;
 use super::walker::Walker;
 use crate::light::LightId;
@@ -24,7 +25,7 @@ use crate::spectrum::{Lanes, Matching, Wavelength};
 
 /// A photon that has landed, and what it carries.
 #[derive(Clone, Debug)]
-pub(super) struct Landed<T> {
+pub(super) struct Landed<T, L = Polarized> {
     /// Unit vector back along its way.
     pub(super) back: DVec3,
     /// The surface's own unit normal there, on the side it came from.
@@ -33,8 +34,8 @@ pub(super) struct Landed<T> {
     pub(super) front: bool,
     /// Surfaces it met, the last one included.
     pub(super) vertices: u32,
-    /// How far its light is polarized.
-    pub(super) polarized: Polarized,
+    /// How its light is polarized.
+    pub(super) polarization: L,
     pub(super) carries: T,
 }
 
@@ -56,9 +57,9 @@ pub(super) struct Alone {
 }
 
 /// The photons of one pass.
-pub(super) struct PhotonMap<const N: usize> {
-    pub(super) together: KdTree<Landed<Together<N>>>,
-    pub(super) alone: KdTree<Landed<Alone>>,
+pub(super) struct PhotonMap<const N: usize, P: Polarization<N> = Polarized> {
+    pub(super) together: KdTree<Landed<Together<N>, P::Landed>>,
+    pub(super) alone: KdTree<Landed<Alone, P::Landed>>,
     pub(super) matching: Matching<N>,
     pub(super) sent: u64,
     pub(super) stats: Stats,
@@ -71,13 +72,13 @@ const SEED: u64 = 0x6d61_7073;
 const PARTS: f64 = 32.0;
 
 /// What is kept of a photon where it lands.
-pub(super) enum Kept<const N: usize> {
-    Together(Landed<Together<N>>),
-    Alone(Landed<Alone>),
+pub(super) enum Kept<const N: usize, L = Polarized> {
+    Together(Landed<Together<N>, L>),
+    Alone(Landed<Alone, L>),
 }
 
 /// Sends the photons of one pass.
-pub(super) fn photons<const N: usize>(world: &World, pass: &Pass) -> Option<PhotonMap<N>> {
+pub(super) fn photons<const N: usize, P: Polarization<N>>(world: &World, pass: &Pass) -> Option<PhotonMap<N, P>> {
     let (targets, matching) = (world.map_targets.as_ref()?, matching(world)?);
     let count = world.method.light_pass.as_ref()?.map?.count;
     let targets = &*pass
@@ -85,8 +86,8 @@ pub(super) fn photons<const N: usize>(world: &World, pass: &Pass) -> Option<Phot
         .map_or(Cow::Borrowed(targets), |part| Cow::Owned(targets.times(part * f64::from(count))));
     let (seed, before) = pass.photon_seed();
     let batches = batches(targets, |target| before * target.photons, |target| target.photons, seed ^ SEED);
-    let done: Vec<Sent<(DVec3, Kept<N>)>> =
-        batches.par_iter().map(|batch| send_kept(world, targets, &matching, *batch)).collect();
+    let done: Vec<Sent<(DVec3, Kept<N, P::Landed>)>> =
+        batches.par_iter().map(|batch| send_kept::<N, P>(world, targets, &matching, *batch)).collect();
     let mut stats = Stats::default();
     let (mut together, mut alone) = (Vec::new(), Vec::new());
     for sent in done {
@@ -115,47 +116,57 @@ pub(super) fn matching<const N: usize>(world: &World) -> Option<Matching<N>> {
 }
 
 /// Sends one batch.
-pub(super) fn send_kept<const N: usize>(
+pub(super) fn send_kept<const N: usize, P: Polarization<N>>(
     world: &World,
     targets: &PhotonTargets,
     matching: &Matching<N>,
     batch: Batch,
-) -> Sent<(DVec3, Kept<N>)> {
-    let keep = |_: &Walker<N>, landing: &Landing<N>, _: &Sampler, kept: &mut Vec<_>| {
+) -> Sent<(DVec3, Kept<N, P::Landed>)> {
+    let keep = |_: &Walker<N, P>, landing: &Landing<N, P>, _: &Sampler, kept: &mut Vec<_>| {
         keep(world, matching, landing, kept);
     };
     send(world, targets, batch, false, keep)
 }
 
 /// Keeps a photon where it lands.
-fn keep<const N: usize>(world: &World, matching: &Matching<N>, landing: &Landing<N>, kept: &mut Vec<(DVec3, Kept<N>)>) {
-    let Landing { path, at: Interaction { arrival, flat, point, .. }, light, .. } = landing;
+fn keep<const N: usize, P: Polarization<N>>(
+    world: &World,
+    matching: &Matching<N>,
+    landing: &Landing<N, P>,
+    kept: &mut Vec<(DVec3, Kept<N, P::Landed>)>,
+) {
+    let Landing { path, at, light, .. } = landing;
+    let Interaction { arrival, flat, point, .. } = at;
     let flux = landing.flux(world) * (1.0 / arrival.wo.dot(*flat).abs()) as f32;
     let photon = Landed {
         back: arrival.wo,
         flat: *flat,
         front: flat.dot(point.normal) > 0.0,
         vertices: path.vertices,
-        polarized: path.polarized,
+        polarization: path.polarization.landed(at),
         carries: (),
     };
     let response = &world.responses[*light];
-    let by_heroes = matching.alone(arrival.draw, response, flux, path.parted, |wavelength, color| {
-        kept.push((point.position, Kept::Alone(photon.with(Alone { wavelength, light: *light, color }))));
+    let by_heroes = matching.alone(arrival.draw, response, flux, path.parted, |lane, wavelength, color| {
+        let of_lane = |lanes: Lanes<N>| Lanes([lanes[lane]; N]);
+        let polarization = P::read_landed(&photon.polarization, of_lane);
+        let carries = Alone { wavelength, light: *light, color };
+        kept.push((point.position, Kept::Alone(photon.with(polarization, carries))));
     });
     if !by_heroes {
-        kept.push((point.position, Kept::Together(photon.with(Together { flux, light: *light }))));
+        let polarization = photon.polarization.clone();
+        kept.push((point.position, Kept::Together(photon.with(polarization, Together { flux, light: *light }))));
     }
 }
 
-impl Landed<()> {
-    fn with<T>(&self, carries: T) -> Landed<T> {
-        let Self { back, flat, front, vertices, polarized, .. } = *self;
-        Landed { back, flat, front, vertices, polarized, carries }
+impl<L> Landed<(), L> {
+    fn with<T>(&self, polarization: L, carries: T) -> Landed<T, L> {
+        let Self { back, flat, front, vertices, .. } = *self;
+        Landed { back, flat, front, vertices, polarization, carries }
     }
 }
 
-impl<const N: usize> PhotonMap<N> {
+impl<const N: usize, P: Polarization<N>> PhotonMap<N, P> {
     /// Whether any photon lies within a radius of a place.
     pub(super) fn any_near(&self, place: DVec3, radius: f64) -> bool {
         let mut any = false;

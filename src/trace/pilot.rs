@@ -4,6 +4,7 @@
 use super::World;
 use super::light_pass;
 use super::path_tracer::PathTracer;
+use super::polarized::Polarized;
 use super::width::in_lanes;
 use crate::light::LightId;
 use crate::math::Sampler;
@@ -73,7 +74,7 @@ fn weigh<const N: usize>(whole: &World, world: &mut World, lights: Vec<LightId>,
     for image in 0..IMAGES {
         world.method.seed = (whole.method.seed ^ SEED).wrapping_add(image);
         let mut splats = Vec::new();
-        let shown = light_pass::splats::<N>(world, &mut |splat| splats.push((splat.pixel, splat.rgb)));
+        let shown = light_pass::splats::<N, Polarized>(world, &mut |splat| splats.push((splat.pixel, splat.rgb)));
         (photons, rays) = (photons + shown.photons, rays + shown.stats.rays);
         values.extend(summed(splats).into_iter().map(|(pixel, rgb)| (pixel, apply(&to_xyz, rgb))));
     }

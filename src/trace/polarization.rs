@@ -1,85 +1,112 @@
-//! What polarization, which is not traced, may change of the light seen.
-//!
-//! A surface that favors one polarization by the degree d multiplies intensity by 1 + d p, where p is the part of the
-//! light's polarization in its own frame, and p becomes (p + d) / (1 + d p) where the frames agree. Whatever the
-//! frames, retardances and signs are, intensity is thus changed at most by the product of 1 + P |d|, with P that
-//! follows the same rule from
-//! |d| alone: degrees add as velocities do, and ones that add all the way are the worst. Light leaves lamps and the sky
-//! unpolarized, and surfaces that scatter it diffusely.
+//! What a path knows of the polarization of its light.
 
-use crate::material::{Arrival, Material, Scatter};
-use crate::math::DVec3;
-use crate::spectrum::Table;
+use std::fmt::Debug;
 
-/// How far a path's light may be polarized, and by what factor that may have changed it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Polarized {
-    degree: f32,
-    growth: f32,
+use super::World;
+use super::arrived::Arrived;
+use super::interaction::Interaction;
+use crate::material::{Arrival, Branch, Material, Straight};
+use crate::math::{DVec3, Ray};
+use crate::spectrum::{Lanes, Table};
+
+/// What of a path's light goes straight on where it meets a surface.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Onward<const N: usize, P> {
+    /// The share of each lane.
+    pub(super) straight: Straight<N>,
+    /// How the path's light is polarized beyond.
+    pub(super) polarization: P,
 }
 
-impl Polarized {
-    /// Of a camera that sees all polarizations alike.
-    pub(super) const NOT: Self = Self { degree: 0.0, growth: 1.0 };
+/// Light that a path has found.
+pub(super) struct MetLight<'a, const N: usize> {
+    pub(super) world: &'a World,
+    pub(super) arrived: &'a Arrived<'a, N>,
+    /// What the sensor gets of it.
+    pub(super) rgb: [f64; 3],
+}
 
-    /// After a surface of a degree, 0 to 1.
-    pub(super) fn after(self, degree: f32) -> Self {
-        if degree == 0.0 {
-            return self;
-        }
-        let factor = 1.0 + self.degree * degree;
-        let growth = (self.growth * factor).min(f32::MAX);
-        Self { degree: ((self.degree + degree) / factor).min(1.0), growth }
-    }
+/// How the light of a photon reaches the camera.
+pub(super) struct SeenPhoton<const N: usize> {
+    /// By what share polarization may change it.
+    pub(super) change: f32,
+    /// The factor by which a filter changes it.
+    pub(super) factor: Option<Lanes<N>>,
+    /// S1, S2 and S3 over S0, if they are asked for.
+    pub(super) stokes: Option<[Lanes<N>; 3]>,
+}
 
-    /// After a way on which unpolarized light is polarized as `other` says.
-    pub(super) fn joined(self, other: Self) -> Self {
-        let growth = (other.growth * self.growth).min(f32::MAX);
-        Self { growth, ..self }.after(other.degree)
-    }
+/// What a path knows of the polarization of its light: [`Polarized`](super::polarized::Polarized), by how much it may
+/// matter that polarization is not traced, or [`Rows`](super::rows::Rows), all of it.
+///
+/// Densities never depend on it, nor do directions: all ways to sample light agree on them.
+pub(super) trait Polarization<const N: usize>: Copy + Debug + Send + Sync + 'static {
+    /// What is kept of it with a photon that has landed.
+    type Landed: Clone + Debug + Send + Sync;
 
-    /// After light was scattered by a material in a direction that it drew from a density.
-    pub(super) fn scattered<const N: usize>(self, material: &Material<Table>, arrival: &Arrival<N>, wi: DVec3) -> Self {
-        if let Material::Diffuse(_) = material {
-            return Self { degree: 0.0, ..self };
-        }
-        let degree = material.degree_of_scattered(arrival, wi);
-        let after = self.after(degree);
-        if material.is_diffuse() { Self { degree, ..after } } else { after }
-    }
+    /// Of a path that starts at the camera along a ray.
+    fn of_camera(world: &World, ray: &Ray) -> Self;
 
-    /// With light that comes to a surface that scatters it, in a direction and polarized on its way there.
-    pub(super) fn brought<const N: usize>(
+    /// Of a path that starts at a light, which shines unpolarized.
+    fn of_light(world: &World, ray: &Ray) -> Self;
+
+    /// After a surface that lets some light go straight on; makes that the share that does.
+    fn after_straight(self, material: &Material<Table>, arrival: &Arrival<N>, straight: &mut Straight<N>) -> Self;
+
+    /// Before branches are chosen: makes their shares those of the path's light, and adds what each goes on with to
+    /// `after`. Nothing is added where that can wait until one is chosen.
+    fn split(self, at: &Interaction<N>, branches: &mut [Branch<N>], after: &mut Vec<Self>);
+
+    /// After a branch, of which `split` may have told already.
+    fn along(self, at: &Interaction<N>, branch: &Branch<N>, known: Option<&Self>) -> Self;
+
+    /// On the way from a surface along the unit vector `wi` to a light, where it meets panes next; makes `bsdf_cos`
+    /// that of the path's light.
+    fn toward(self, at: &Interaction<N>, wi: DVec3, bsdf_cos: &mut Lanes<N>) -> Self;
+
+    /// How much of light that arrives along `wi`, `on_its_way` by `toward` and panes, polarization may change, as X + Y
+    /// + Z.
+    fn moved(self, at: &Interaction<N>, wi: DVec3, on_its_way: Self, light: &MetLight<N>) -> f64;
+
+    /// The same of light that the path has met.
+    fn moved_of_met(self, light: &MetLight<N>) -> f64;
+
+    /// On the way from a surface, where a photon has landed, along a unit vector to the camera; makes `bsdf_cos` that
+    /// of the photon's light.
+    fn shown(self, at: &Interaction<N>, direction: DVec3, bsdf_cos: &mut Lanes<N>) -> Self;
+
+    /// What the camera sees of a photon that came to it from there along a ray of its own; `on_its_way` is by `shown`
+    /// and panes, `viewed` the surface as the camera sees it.
+    fn seen(
         self,
-        material: &Material<Table>,
-        arrival: &Arrival<N>,
-        wi: DVec3,
+        at: &Interaction<N>,
+        viewed: &Arrival<N>,
         on_its_way: Self,
-    ) -> Self {
-        self.scattered(material, arrival, wi).joined(on_its_way)
-    }
+        world: &World,
+        ray: &Ray,
+    ) -> SeenPhoton<N>;
 
-    /// Whether there is anything that polarization may have changed or may change at the next surface.
-    pub(super) fn is_any(self) -> bool {
-        self.degree != 0.0 || self.growth != 1.0
-    }
+    /// What is kept of it where a photon has landed.
+    fn landed(self, at: &Interaction<N>) -> Self::Landed;
 
-    /// The share of the light by which polarization may have changed it.
-    pub(super) fn change(self) -> f64 {
-        f64::from(self.growth) - 1.0
-    }
-}
+    /// Brings a path from the camera, at a surface, together with a photon that has landed near and came along `wi`;
+    /// makes `bsdf_cos` that of their light.
+    fn join(self, at: &Interaction<N>, wi: DVec3, photon: &Self::Landed, bsdf_cos: &mut Lanes<N>) -> Self;
 
-#[cfg(test)]
-mod tests {
-    use super::Polarized;
+    /// By what share polarization may change the light of a photon, which came along a unit vector, that `join` has
+    /// brought together with a path in lanes.
+    fn change_of_joined(
+        self,
+        at: &Interaction<N>,
+        wi: DVec3,
+        photon: &Self::Landed,
+        joined: Self,
+        lanes: Lanes<N>,
+    ) -> f64;
 
-    #[test]
-    fn degrees_add_as_velocities_do() {
-        let twice = Polarized::NOT.after(0.5).after(0.0).after(0.5);
-        assert_eq!(twice, Polarized { degree: 0.8, growth: 1.25 });
-        let brewster = Polarized::NOT.after(1.0).after(0.0).after(1.0);
-        assert_eq!((brewster.degree, brewster.change()), (1.0, 1.0));
-        assert!((0..1000).fold(Polarized::NOT, |path, _| path.after(1.0)).change().is_finite());
-    }
+    /// What is kept with a photon, its lanes read as others.
+    fn read_landed(photon: &Self::Landed, read: impl Fn(Lanes<N>) -> Lanes<N>) -> Self::Landed;
+
+    /// S1, S2 and S3 of unpolarized light that the path has met, each as a factor on S0, if they are asked for.
+    fn stokes(&self) -> Option<[Lanes<N>; 3]>;
 }

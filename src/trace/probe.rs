@@ -11,8 +11,10 @@ use super::path_tracer::PathTracer;
 use super::photon_batch::Batch;
 use super::photon_map::{matching, photons, send_kept};
 use super::photon_targets::PhotonTargets;
+use super::polarization::Polarization;
+use super::polarized::Polarized;
 use super::stats::Stats;
-use super::width::in_lanes;
+use super::width::{in_lanes, in_lanes_of};
 use super::{LightPass, MapPasses, World};
 use crate::math::Sampler;
 
@@ -56,14 +58,14 @@ const ENOUGH: Duration = Duration::from_millis(300);
 
 /// Traces single samples of pixels spread over the part of the image that is made.
 pub fn probe(world: &World) -> Probe {
-    in_lanes!(&world.method.basis, N => probe_lanes::<N>(world))
+    in_lanes_of!(world, N, P => probe_lanes::<N, P>(world))
 }
 
-fn probe_lanes<const N: usize>(world: &World) -> Probe {
+fn probe_lanes<const N: usize, P: Polarization<N>>(world: &World) -> Probe {
     // Tables that are computed when first needed are no part of a sample's time.
     let rough = |id: u32| world.scene.material_of(id).roughness().is_some_and(|roughness| roughness > 0.0);
     if (0..world.scene.objects.len()).any(|object| rough(object as u32)) {
-        let mut tracer = PathTracer::<N>::new(world);
+        let mut tracer = PathTracer::<N, P>::new(world);
         let window = world.scene.film.window();
         for place in 0..SIDE {
             let at = |place: u32, size: u32| (u64::from(place) * u64::from(size) / u64::from(SIDE)) as u32;
@@ -74,12 +76,12 @@ fn probe_lanes<const N: usize>(world: &World) -> Probe {
     }
     let before_vertices = Instant::now();
     let vertices =
-        LightPaths::asked_for(world, world.method.seed).map(|light_paths| light_paths.shared::<N>(0..SHARED));
+        LightPaths::asked_for(world, world.method.seed).map(|light_paths| light_paths.shared::<N, P>(0..SHARED));
     let light_paths =
         vertices.as_ref().map_or(Duration::ZERO, |_| before_vertices.elapsed().div_f64(f64::from(SHARED)));
     let few = with_few_photons(world);
-    let photons = photons::<N>(&few, &Pass::of_photons_alone(&few, 0));
-    let mut tracer = PathTracer::<N>::new(&few).with_photons(photons.as_ref());
+    let photons = photons::<N, P>(&few, &Pass::of_photons_alone(&few, 0));
+    let mut tracer = PathTracer::<N, P>::new(&few).with_photons(photons.as_ref());
     tracer.light_vertices = vertices.as_ref();
     let window = world.scene.film.window();
     let parted = Cell::new(0);
@@ -145,10 +147,10 @@ pub fn photon_times(world: &World) -> PhotonTimes {
     in_lanes!(&world.method.basis, N => {
         let matching = matching::<N>(world);
         let keep = |targets: &PhotonTargets, batch| {
-            matching.as_ref().map_or(Stats::default(), |matching| send_kept(world, targets, matching, batch).stats)
+            matching.as_ref().map_or(Stats::default(), |matching| send_kept::<N, Polarized>(world, targets, matching, batch).stats)
         };
         PhotonTimes {
-            shown: of(&world.photon_targets, &|targets, batch| send_shown::<N>(world, targets, batch).stats),
+            shown: of(&world.photon_targets, &|targets, batch| send_shown::<N, Polarized>(world, targets, batch).stats),
             kept: of(&world.map_targets, &keep),
         }
     })

@@ -8,8 +8,9 @@ use super::noise::Outlier;
 use super::pass::Stage;
 use super::pass_light::PassLight;
 use super::path_tracer::PathTracer;
+use super::polarization::Polarization;
 use super::sensor::Observer;
-use super::width::in_lanes;
+use super::width::in_lanes_of;
 use crate::math::Sampler;
 
 /// Light that one of the replicates found and no other.
@@ -46,18 +47,23 @@ impl Observer for Brightest<'_> {
 /// Takes the samples of the pixel that stands out once more, and looks for the brightest light of them, after so many
 /// samples of each replicate. None where it was a photon that the camera saw, which is no sample's.
 pub(super) fn rare_light(world: &World, outlier: &Outlier, each: u32, most_at_once: u32) -> Option<RareLight> {
-    in_lanes!(&world.method.basis, N => brightest::<N>(world, outlier, each, most_at_once))
+    in_lanes_of!(world, N, P => brightest::<N, P>(world, outlier, each, most_at_once))
 }
 
-fn brightest<const N: usize>(world: &World, outlier: &Outlier, each: u32, most_at_once: u32) -> Option<RareLight> {
+fn brightest<const N: usize, P: Polarization<N>>(
+    world: &World,
+    outlier: &Outlier,
+    each: u32,
+    most_at_once: u32,
+) -> Option<RareLight> {
     let brightest = Brightest { world, found: Cell::new(None), amount: Cell::new(0.0) };
     let pixel = outlier.pixel.map(|place| place as i32);
     let (mut all, mut before) = (0.0, 0);
     while before < each {
         let stage = Stage::of_replicate(outlier.replicate, before, each - before);
         let pass = stage.pass(world, 0, most_at_once);
-        let light = PassLight::<N>::new(world, &pass);
-        let mut tracer = PathTracer::<N>::new(world).with_photons(light.photons.as_ref()).with_observer(&brightest);
+        let light = PassLight::<N, P>::new(world, &pass);
+        let mut tracer = PathTracer::<N, P>::new(world).with_photons(light.photons.as_ref()).with_observer(&brightest);
         for number in pass.numbers.clone() {
             tracer.light_vertices = light.vertices(number - pass.numbers.start);
             let sample = tracer.sample(&Sampler::of_pixel(pass.seed, pixel, number), pixel);

@@ -6,6 +6,7 @@ use super::World;
 use super::pass::Pass;
 use super::path_tracer::PathTracer;
 use super::photon_map::photons;
+use super::polarized::Polarized;
 use super::sensor::Observer;
 use super::width::in_lanes;
 use crate::math::{DVec3, Sampler};
@@ -49,7 +50,7 @@ pub fn gathered_photons(world: &World, places: &[DVec3]) -> f64 {
 }
 
 fn gathered<const N: usize>(world: &World, places: &[DVec3]) -> f64 {
-    let Some(photons) = photons::<N>(world, &Pass::of_photons_alone(world, 0)) else { return 0.0 };
+    let Some(photons) = photons::<N, Polarized>(world, &Pass::of_photons_alone(world, 0)) else { return 0.0 };
     let camera = &world.scene.camera;
     let coarse = f64::from(world.scene.film.width) / f64::from(SIDE);
     let found = |place: &&DVec3| {

@@ -14,6 +14,7 @@ use super::noise::{Noise, noise};
 use super::pass_light::PassLight;
 use super::passes::{Progress, most_at_once};
 use super::photon_targets::PhotonTargets;
+use super::polarization::Polarization;
 use super::rare_light::{RareLight, rare_light};
 use super::replicates::REPLICATES;
 use super::saved::{self, Restored};
@@ -21,7 +22,7 @@ use super::stats::Stats;
 use super::stopping::{Clock, Stopped, next_stage, samples_wanted, tells_noise};
 use super::tile::Tile;
 use super::watch::Watch;
-use super::width::in_lanes;
+use super::width::in_lanes_of;
 use super::{Stop, World};
 use crate::error::Result;
 use crate::film::{BlockReader, BlockWriter, Film, Pixel, PixelSum, SampleWeights, Shard, TilePlace};
@@ -177,7 +178,7 @@ impl<W: Borrow<World>> Rendering<W> {
         if !self.begin_pass() {
             return Advance::Finished;
         }
-        if !in_lanes!(self.world().method.basis, N => self.pass::<N>(&watch)) {
+        if !in_lanes_of!(self.world(), N, P => self.pass::<N, P>(&watch)) {
             return Advance::Stopped;
         }
         if self.is_finished() { Advance::Finished } else { Advance::Passed }
@@ -377,14 +378,14 @@ impl<W: Borrow<World>> Rendering<W> {
     }
 
     /// Makes the next pass, or goes on with it; answers whether it is finished.
-    fn pass<const N: usize>(&mut self, watch: &Watch) -> bool {
+    fn pass<const N: usize, P: Polarization<N>>(&mut self, watch: &Watch) -> bool {
         let world = self.world.borrow();
         let progress = &mut self.progress;
         let pass = progress.pass(world);
-        if !light_pass::show::<N>(world, &pass, &mut progress.sending, self.shard, &mut self.tiles, watch) {
+        if !light_pass::show::<N, P>(world, &pass, &mut progress.sending, self.shard, &mut self.tiles, watch) {
             return false;
         }
-        let kept = self.light.take().and_then(|light| light.downcast::<PassLight<N>>().ok());
+        let kept = self.light.take().and_then(|light| light.downcast::<PassLight<N, P>>().ok());
         let light = kept.unwrap_or_else(|| {
             let light = PassLight::new(world, &pass);
             (watch.progress)(light.sent());
@@ -394,7 +395,7 @@ impl<W: Borrow<World>> Rendering<W> {
         let places: Vec<TilePlace> = self.shard.tiles(window).collect();
         let left = self.tiles.par_iter_mut().zip(places).filter(|(tile, _)| tile.passes == passes);
         left.for_each(|(tile, place)| {
-            let taken = tile.take::<N>(place, world, &light, &pass, watch.is_due);
+            let taken = tile.take::<N, P>(place, world, &light, &pass, watch.is_due);
             (watch.progress)(u64::from(taken) * pass.numbers.len() as u64);
         });
         if self.tiles.iter().any(|tile| tile.passes == passes) {

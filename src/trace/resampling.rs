@@ -8,6 +8,7 @@ use super::contribution::{Contribution, Found};
 use super::interaction::Interaction;
 use super::light_vertices::{LightVertex, LightVertices};
 use super::path::{Among, Path};
+use super::polarization::{MetLight, Polarization};
 use super::sensor::Sensor;
 use super::shading;
 use super::straight::{Passage, Past};
@@ -16,9 +17,9 @@ use crate::scene::Ends;
 use crate::shape::prefetch;
 
 /// A path at a diffuse surface.
-pub(super) struct Resampling<'a, const N: usize> {
+pub(super) struct Resampling<'a, const N: usize, P> {
     pub(super) world: &'a World,
-    pub(super) path: &'a Path<N>,
+    pub(super) path: &'a Path<N, P>,
     pub(super) at: &'a Interaction<'a, N>,
     pub(super) vertices: &'a LightVertices<N>,
     /// The object that occluded a light last.
@@ -28,7 +29,7 @@ pub(super) struct Resampling<'a, const N: usize> {
 /// Use of the random numbers that choose vertices.
 const VERTEX: u32 = 5;
 
-impl<const N: usize> Resampling<'_, N> {
+impl<const N: usize, P: Polarization<N>> Resampling<'_, N, P> {
     /// Hands the light of two vertices to the sensor, where they are seen.
     pub(super) fn gather(&self, sampler: &Sampler, sensor: &mut Sensor<N>) {
         let [a, b, c, d] = sampler.four(self.path.key, VERTEX);
@@ -59,7 +60,7 @@ impl<const N: usize> Resampling<'_, N> {
         if direction.dot(at.flat) <= 0.0 || cos <= 0.0 {
             return None;
         }
-        let (bsdf_cos, _) = shading::evaluate(at.material, &at.arrival, at.flat, direction)?;
+        let (mut bsdf_cos, _) = shading::evaluate(at.material, &at.arrival, at.flat, direction)?;
         // The ray ends before the surface of the vertex: this lies within its error of the point, and the ray, whose
         // direction is rounded, passes that within some roundings of the distance.
         let short = (vertex.error + gamma(8) * distance) / cos;
@@ -73,17 +74,19 @@ impl<const N: usize> Resampling<'_, N> {
             past: Past::Objects(Among::All),
             last_occluder: self.last_occluder,
         };
-        let (arriving, on_its_way) = passage.arriving(world, at.arrival.draw, || vertex.leaving)?;
+        let toward = || self.path.polarization.toward(at, direction, &mut bsdf_cos);
+        let (arriving, on_its_way) = passage.arriving(world, at.arrival.draw, toward, || vertex.leaving)?;
         let near_squared = self.vertices.near_squared();
         let factor = factor * cos / (squared + near_squared);
         let lanes = &self.path.throughput.scaled(factor).of(bsdf_cos * arriving);
         let arrived = Arrived { light: vertex.light, draw: at.arrival.draw, lanes, parted: self.path.parted };
         let rgb = arrived.rgb(&world.responses);
-        let moved = at.moved(world, self.path, direction, on_its_way, rgb);
+        let met = MetLight { world, arrived: &arrived, rgb };
+        let moved = self.path.polarization.moved(at, direction, on_its_way, &met);
         let (bounces, dispersed) = (self.path.bounces + 1 + vertex.vertices, self.path.parted);
-        let first = at.first_lobe(world, self.path, direction, false);
+        let first = at.first_lobe(world, self.path.lobe(), direction, false);
         let (light, found) = (Some(vertex.light), Found::Connected);
-        sensor.receive(Contribution { light, found, rgb, moved, first, bounces, dispersed }, &arrived);
+        sensor.receive(Contribution { light, found, rgb, moved, first, bounces, dispersed }, &arrived, &on_its_way);
         Some(())
     }
 }

@@ -5,6 +5,7 @@ use super::light_vertices::{LightPaths, LightVertices};
 use super::pass::Pass;
 use super::path_tracer::PathTracer;
 use super::photon_map::{PhotonMap, photons};
+use super::polarized::Polarized;
 use super::probe::with_few_photons;
 use super::width::in_lanes;
 use crate::math::Sampler;
@@ -33,7 +34,7 @@ pub fn resampling_gain(world: &World) -> Option<f64> {
 fn compare<const N: usize>(world: &World, light_paths: &LightPaths) -> Option<f64> {
     let vertices = light_paths.few::<N>();
     let few = with_few_photons(world);
-    let photons = photons::<N>(&few, &Pass::of_photons_alone(&few, 0));
+    let photons = photons::<N, Polarized>(&few, &Pass::of_photons_alone(&few, 0));
     let plain = weigh(&few, photons.as_ref(), None);
     let resampled = weigh(&few, photons.as_ref(), Some(&vertices));
     let mean = plain.pixels.iter().map(|pixel| pixel.mean).sum::<f64>() / plain.pixels.len() as f64;

@@ -3,9 +3,10 @@
 use super::World;
 use super::media;
 use super::path::Path;
+use super::polarized::Polarized;
 use super::route::{At, ROUTES_NM, Route, Step, Walk, Way};
 use super::shading;
-use super::straight;
+use super::straight::{Through, straight_at};
 use crate::light::{Light, LightId};
 use crate::material::{Facets, Interface, Material, reflect};
 use crate::math::{BranchKey, DVec3, Frame, Ray, Sampler, cosine_hemisphere, unit};
@@ -39,7 +40,7 @@ impl<'a> Walker<'a> {
 
     /// Answers how many surfaces it met.
     pub(super) fn walk(&mut self, ray: Ray) -> usize {
-        let media = Path::from_camera(self.world, &self.draw, ray).media;
+        let media = Path::<4, Polarized>::from_camera(self.world, &self.draw, ray).media;
         let (steps, key) = (Vec::new(), BranchKey::CAMERA);
         self.pending.push(Walk { ray, media, key, steps, weight: 1.0, left: Lanes::ONE, scattered: 0 });
         let mut best = 0.0_f32;
@@ -146,6 +147,9 @@ impl<'a> Walker<'a> {
                 let tint = self.draw.read_at(&plastic.reflectance, uv);
                 self.scattered(at, flat, tint, 1.0 - r);
             }
+            Material::Polarizer(_) | Material::Retarder(_) => {
+                self.go_on(at, walk.after(None, Lanes::ONE, 1.0), walk.ray.direction, 0);
+            }
             Material::Emissive(_) | Material::Mix(_) | Material::Mask(_) => {}
         }
     }
@@ -162,10 +166,17 @@ impl<'a> Walker<'a> {
 
     /// Whether a hole lets the way pass, by chance.
     fn passes(&self, walk: &Walk, hit: &Hit, point: &SurfacePoint, u: f64) -> bool {
-        let (draw, media) = (&self.draw, walk.media.inside(&self.world.scene));
+        let (draw, inside) = (&self.draw, walk.media.inside(&self.world.scene));
         self.world.is_see_through(hit.object)
-            && straight::straight_at(self.world, draw, &walk.ray, Lanes::ONE, media, hit, point)
-                .is_some_and(|straight| u < f64::from(straight.holes[1]))
+            && straight_at(
+                self.world,
+                draw,
+                &Through { ray: &walk.ray, present: Lanes::ONE, inside },
+                hit,
+                point,
+                Polarized::NOT,
+            )
+            .is_some_and(|onward| u < f64::from(onward.straight.holes[1]))
     }
 
     /// The material that is met, by chance where there are several.

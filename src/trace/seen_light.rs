@@ -5,13 +5,14 @@ use super::light_pass::splats;
 use super::pass::Pass;
 use super::path_tracer::PathTracer;
 use super::photon_map;
+use super::polarized::Polarized;
 use super::width::in_lanes;
 use super::{LightPass, MapPasses, World};
 use crate::film::Window;
 use crate::math::Sampler;
 
 /// Camera samples along each side of the image.
-const SIDE: u32 = 24;
+pub(super) const SIDE: u32 = 24;
 /// Parts of the view along each side.
 const PARTS: u32 = 6;
 /// Most photons that are shown, and most that are gathered.
@@ -43,19 +44,24 @@ fn share([light, change]: [f64; 2]) -> f64 {
 
 /// Looks at the part of the image that is made, with fewer photons than the world's method asks for.
 pub fn seen_light(world: &World) -> SeenLight {
+    let world = with_fewer_photons(world);
+    in_lanes!(&world.method.basis, N => look::<N>(&world))
+}
+
+/// The world with fewer photons than its method asks for.
+pub(super) fn with_fewer_photons(world: &World) -> World {
     let fewer = |pass: &LightPass| LightPass {
         photons: pass.photons.min(SHOWN),
         map: pass.map.map(|map| MapPasses { photons: map.photons.min(GATHERED), ..map }),
         ..pass.clone()
     };
-    let world = world.with_light_pass(world.method.light_pass.as_ref().map(fewer));
-    in_lanes!(&world.method.basis, N => look::<N>(&world))
+    world.with_light_pass(world.method.light_pass.as_ref().map(fewer))
 }
 
 fn look<const N: usize>(world: &World) -> SeenLight {
     let window = world.scene.film.window();
     let mut seen = SeenLight { parts: [[0.0; 2]; (PARTS * PARTS) as usize] };
-    let photons = photon_map::photons::<N>(world, &Pass::of_photons_alone(world, 0));
+    let photons = photon_map::photons::<N, Polarized>(world, &Pass::of_photons_alone(world, 0));
     let mut tracer = PathTracer::<N>::new(world).with_photons(photons.as_ref());
     for place in 0..SIDE * SIDE {
         let [x, y] = window.middle_of_cell(SIDE, place);
@@ -68,7 +74,7 @@ fn look<const N: usize>(world: &World) -> SeenLight {
     // Photons light all pixels, of which so many were looked at.
     let pixels = window.pixels() as f64;
     let looked_at = f64::from(SIDE * SIDE) / pixels;
-    splats::<N>(world, &mut |splat| {
+    splats::<N, Polarized>(world, &mut |splat| {
         let light = looked_at * world.amount(splat.rgb);
         let part = &mut seen.parts[part_of(window, [splat.pixel % window.width, splat.pixel / window.width])];
         part[0] += light;

@@ -5,6 +5,7 @@ use super::arrived::Arrived;
 use super::contribution::{Contribution, add};
 use super::gather::Gathered;
 use super::layer_sample::LayerSample;
+use super::polarization::Polarization;
 use super::stats::Stats;
 use crate::math::DVec3;
 use crate::spectrum::Draw;
@@ -50,11 +51,16 @@ impl<const N: usize> Sensor<'_, N> {
         Self { rgb: [0.0; 3], moved: 0.0, observer: None, layers: None }
     }
 
-    /// Receives light, and the lanes by which it arrives.
+    /// Receives light, the lanes by which it arrives, and how the path is polarized where it meets the light.
     #[inline]
-    pub(super) fn receive(&mut self, contribution: Contribution, arrived: &Arrived<N>) {
+    pub(super) fn receive<P: Polarization<N>>(
+        &mut self,
+        contribution: Contribution,
+        arrived: &Arrived<N>,
+        polarization: &P,
+    ) {
         if let Some(layers) = &mut self.layers {
-            layers.receive(&contribution, arrived);
+            layers.receive(&contribution, arrived, polarization.stokes());
         }
         self.receive_all(&contribution);
     }

@@ -53,7 +53,7 @@ fn bent(wo: DVec3, flat: DVec3, smooth: DVec3) -> DVec3 {
 }
 
 /// The mirror image of a direction in the triangle's plane.
-fn folded(direction: DVec3, flat: DVec3) -> DVec3 {
+pub(super) fn folded(direction: DVec3, flat: DVec3) -> DVec3 {
     unit(direction - flat * (2.0 * direction.dot(flat)))
 }
 

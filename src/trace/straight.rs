@@ -5,9 +5,9 @@ use std::cell::Cell;
 use super::interaction::arrival;
 use super::media;
 use super::path::{Among, Path};
-use super::polarization::Polarized;
+use super::polarization::{Onward, Polarization};
 use super::{Transport, World, shading};
-use crate::material::{Scatter, Straight};
+use crate::material::Scatter;
 use crate::math::{Ray, Sampler};
 use crate::scene::{Ends, Hit, MaterialId, Sight};
 use crate::shape::SurfacePoint;
@@ -16,41 +16,43 @@ use crate::spectrum::{Draw, Lanes};
 /// Use of the random numbers of a ray from the camera that meets a surface with holes.
 const COVER: u32 = 4;
 
-/// The share of each lane of a path that goes straight on where it meets a surface; none if nothing does.
+/// What of a path's light goes straight on where it meets a surface; none if nothing does.
 #[inline]
-pub(super) fn straight_on<const N: usize>(
+pub(super) fn straight_on<const N: usize, P: Polarization<N>>(
     world: &World,
     draw: &Draw<N>,
-    path: &Path<N>,
+    path: &Path<N, P>,
     hit: &Hit,
     point: &SurfacePoint,
-) -> Option<Straight<N>> {
+) -> Option<Onward<N, P>> {
     if world.is_see_through(hit.object) { through_surface(world, draw, path, hit, point) } else { None }
 }
 
 /// The same of a surface that lets light straight on.
 #[cold]
 #[inline(never)]
-fn through_surface<const N: usize>(
+fn through_surface<const N: usize, P: Polarization<N>>(
     world: &World,
     draw: &Draw<N>,
-    path: &Path<N>,
+    path: &Path<N, P>,
     hit: &Hit,
     point: &SurfacePoint,
-) -> Option<Straight<N>> {
+) -> Option<Onward<N, P>> {
     let present = path.throughput.present();
-    let straight = straight_at(world, draw, &path.ray, present, path.media.inside(&world.scene), hit, point)?;
-    (!(straight.share() * present).is_zero()).then_some(straight)
+    let through = Through { ray: &path.ray, present, inside: path.media.inside(&world.scene) };
+    let onward = straight_at(world, draw, &through, hit, point, path.polarization)?;
+    (!(onward.straight.share() * present).is_zero()).then_some(onward)
 }
 
 /// Whether a ray from the camera counts as having met a surface, which may have holes: a pane is met, a hole is not.
-pub(super) fn is_met<const N: usize>(
+pub(super) fn is_met<const N: usize, P: Polarization<N>>(
     world: &World,
     draw: &Draw<N>,
     sampler: &Sampler,
-    path: &Path<N>,
-    straight: Option<&Straight<N>>,
+    path: &Path<N, P>,
+    onward: Option<&Onward<N, P>>,
 ) -> bool {
+    let straight = onward.map(|onward| &onward.straight);
     let Some(straight) = straight.filter(|straight| !straight.holes.is_zero()) else { return true };
     let u = match world.method.transport {
         Transport::Deterministic { .. } => 0.5,
@@ -99,17 +101,19 @@ impl Past {
 }
 
 impl Passage<'_> {
-    /// What arrives of light through holes, panes and the medium, and how far panes polarize it; none if something
-    /// occludes it. `light` is asked only if nothing does.
+    /// What arrives of light through holes, panes and the medium, and how it is polarized beyond them; none if
+    /// something occludes it. `polarization` is that of the path at the place; it and `light` are asked only if nothing
+    /// does.
     #[inline]
-    pub(super) fn arriving<const N: usize>(
+    pub(super) fn arriving<const N: usize, P: Polarization<N>>(
         &self,
         world: &World,
         draw: &Draw<N>,
+        polarization: impl FnOnce() -> P,
         light: impl FnOnce() -> Lanes<N>,
-    ) -> Option<(Lanes<N>, Polarized)> {
+    ) -> Option<(Lanes<N>, P)> {
         let Self { ray, distance, ends, inside, past, last_occluder } = *self;
-        let (mut arriving, polarized);
+        let (mut arriving, after);
         let all = past.is_all(world);
         if !all || world.has_see_through() {
             let is_there = |object| all || past.has(world, object);
@@ -117,61 +121,71 @@ impl Passage<'_> {
             if world.scene.is_occluded_by(ray, distance, ends, last_occluder, closed) {
                 return None;
             }
-            let (share, of_panes) = transmittance(world, draw, ray, distance, inside, is_there)?;
-            (arriving, polarized) = (light() * share, of_panes);
+            let (share, beyond) = self.transmittance(world, draw, polarization(), is_there)?;
+            (arriving, after) = (light() * share, beyond);
         } else if world.scene.is_occluded(ray, distance, ends, last_occluder) {
             return None;
         } else {
-            (arriving, polarized) = (light(), Polarized::NOT);
+            (arriving, after) = (light(), polarization());
         }
         if let Some(material) = inside {
             arriving = arriving * media::medium(&world.scene, material).transmission(draw, distance);
         }
-        Some((arriving, polarized))
+        Some((arriving, after))
     }
-}
 
-/// The share of each lane that goes straight on through all surfaces before a light at a distance that let it, and how
-/// far these polarize it; none if no light does.
-///
-/// `inside` is the medium around the ray.
-#[cold]
-#[inline(never)]
-fn transmittance<const N: usize>(
-    world: &World,
-    draw: &Draw<N>,
-    ray: &Ray,
-    distance: f64,
-    inside: Option<MaterialId>,
-    is_there: impl Fn(u32) -> bool,
-) -> Option<(Lanes<N>, Polarized)> {
-    let (mut ray, mut left, mut all, mut polarized) = (*ray, distance, Lanes::ONE, Polarized::NOT);
-    let counts = |object: u32| world.is_see_through(object) && is_there(object);
-    while let Some(hit) = world.scene.nearest(&ray, left, counts) {
-        let point = world.scene.objects[hit.object as usize].point(&ray, &hit.crossing);
-        let straight = straight_at(world, draw, &ray, Lanes::ONE, inside, &hit, &point)?;
-        (all, polarized) = (all * straight.share(), polarized.after(straight.polarization));
-        if all.is_zero() {
-            return None;
+    /// The share of each lane that goes straight on through all surfaces before the light, and how it is polarized
+    /// beyond them; none if no light does.
+    #[cold]
+    #[inline(never)]
+    fn transmittance<const N: usize, P: Polarization<N>>(
+        &self,
+        world: &World,
+        draw: &Draw<N>,
+        mut polarization: P,
+        is_there: impl Fn(u32) -> bool,
+    ) -> Option<(Lanes<N>, P)> {
+        let (mut ray, mut left, mut all) = (*self.ray, self.distance, Lanes::ONE);
+        let counts = |object: u32| world.is_see_through(object) && is_there(object);
+        while let Some(hit) = world.scene.nearest(&ray, left, counts) {
+            let point = world.scene.objects[hit.object as usize].point(&ray, &hit.crossing);
+            let through = Through { ray: &ray, present: Lanes::ONE, inside: self.inside };
+            let onward = straight_at(world, draw, &through, &hit, &point, polarization)?;
+            (all, polarization) = (all * onward.straight.share(), onward.polarization);
+            if all.is_zero() {
+                return None;
+            }
+            left -= hit.crossing.t;
+            ray = point.leave(ray.direction);
         }
-        left -= hit.crossing.t;
-        ray = point.leave(ray.direction);
+        Some((all, polarization))
     }
-    Some((all, polarized))
 }
 
-/// The share of each lane that a material lets straight on where a ray meets it: what every ray asks.
-pub(super) fn straight_at<const N: usize>(
+/// A ray that meets a surface which may let some of its light straight on.
+pub(super) struct Through<'a, const N: usize> {
+    pub(super) ray: &'a Ray,
+    /// The lanes on it.
+    pub(super) present: Lanes<N>,
+    /// The medium around it.
+    pub(super) inside: Option<MaterialId>,
+}
+
+/// What a material lets straight on where a ray meets it: what every ray asks.
+pub(super) fn straight_at<const N: usize, P: Polarization<N>>(
     world: &World,
     draw: &Draw<N>,
-    ray: &Ray,
-    present: Lanes<N>,
-    inside: Option<MaterialId>,
+    through: &Through<N>,
     hit: &Hit,
     point: &SurfacePoint,
-) -> Option<Straight<N>> {
+    polarization: P,
+) -> Option<Onward<N, P>> {
+    let Through { ray, present, inside } = *through;
     let (wo, uv) = (-ray.direction, world.scene.objects[hit.object as usize].uv(&hit.crossing, point));
     let [_, normal] = shading::normals(point, wo);
     let arrival = arrival(world, draw, wo, normal, uv, present, [inside; 2]);
-    world.scene.material_of(hit.object).straight(&arrival)
+    let material = world.scene.material_of(hit.object);
+    let mut straight = material.straight(&arrival)?;
+    let polarization = polarization.after_straight(material, &arrival, &mut straight);
+    Some(Onward { straight, polarization })
 }

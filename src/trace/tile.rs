@@ -8,6 +8,7 @@ use super::layers::Layers;
 use super::pass::Pass;
 use super::pass_light::PassLight;
 use super::path_tracer::PathTracer;
+use super::polarization::Polarization;
 use super::replicates::Replicates;
 use super::stats::Stats;
 use crate::film::{PassSum, PixelSum, TilePlace};
@@ -80,16 +81,16 @@ impl Tile {
     }
 
     /// Takes samples of all pixels that have not had them, until it shall stop. Answers how many pixels have got them.
-    pub(super) fn take<const N: usize>(
+    pub(super) fn take<const N: usize, P: Polarization<N>>(
         &mut self,
         place: TilePlace,
         world: &World,
-        light: &PassLight<N>,
+        light: &PassLight<N, P>,
         pass: &Pass,
         stops: &dyn Fn() -> bool,
     ) -> u32 {
         let window = world.scene.film.window();
-        let mut tracer = PathTracer::<N>::new(world).with_photons(light.photons.as_ref()).with_layers();
+        let mut tracer = PathTracer::<N, P>::new(world).with_photons(light.photons.as_ref()).with_layers();
         let first = self.ahead;
         while (self.ahead as usize) < self.sums.len() && !stops() {
             // Random numbers and rays belong to the format's pixel, whatever part of it is made.
@@ -106,11 +107,11 @@ impl Tile {
     }
 
     /// Takes samples of the next pixel, which is pixel (x, y) of the format.
-    fn take_pixel<'w, const N: usize>(
+    fn take_pixel<'w, const N: usize, P: Polarization<N>>(
         &mut self,
         world: &World,
-        tracer: &mut PathTracer<'w, N>,
-        light: &'w PassLight<N>,
+        tracer: &mut PathTracer<'w, N, P>,
+        light: &'w PassLight<N, P>,
         pixel: [i32; 2],
         pass: &Pass,
     ) {

@@ -3,8 +3,9 @@
 use super::World;
 use super::media::{self, Media};
 use super::path::Path;
+use super::polarized::Polarized;
 use super::shading;
-use super::straight;
+use super::straight::{Through, straight_at};
 use crate::material::{Dielectric, Facets, Interface, Material, RoughSurface, reflect};
 use crate::math::{BranchKey, DVec2, DVec3, Frame, Ray, Sampler, unit};
 use crate::scene::Hit;
@@ -138,7 +139,7 @@ impl<'a> Colors<'a> {
     /// Follows the ray through a place of the film.
     pub(super) fn walk_from_camera(&self, at: DVec2, lane: usize, sampler: &Sampler, way: Way) -> Walk {
         let ray = self.world.scene.camera.ray(at);
-        let media = Path::from_camera(self.world, &self.draw, ray).media;
+        let media = Path::<4, Polarized>::from_camera(self.world, &self.draw, ray).media;
         self.walk(lane, ray, media, sampler, way)
     }
 
@@ -185,8 +186,9 @@ impl<'a> Colors<'a> {
         let [_, normal] = shading::normals(point, wo);
         if world.is_see_through(hit.object) {
             let inside = walk.media.inside(&world.scene);
-            let straight = straight::straight_at(world, draw, ray, draw.start(), inside, hit, point);
-            if straight.is_some_and(|straight| walk.takes(f64::from(straight.holes[0]), way)) {
+            let through = Through { ray, present: draw.start(), inside };
+            let onward = straight_at(world, draw, &through, hit, point, Polarized::NOT);
+            if onward.is_some_and(|onward| walk.takes(f64::from(onward.straight.holes[0]), way)) {
                 return Next::Toward(ray.direction);
             }
         }

@@ -7,6 +7,8 @@ use super::first_lobe::FirstLobe;
 use super::interaction::{Interaction, Meeting};
 use super::media::Boundary;
 use super::path::{Among, Path, PathKind, ScatterSample};
+use super::polarization::{Onward, Polarization};
+use super::polarized::Polarized;
 use super::roulette::{LONG, survival};
 use super::stats::Stats;
 use super::{Transport, World, shading, straight};
@@ -15,11 +17,13 @@ use crate::math::Sampler;
 use crate::spectrum::Draw;
 
 /// Follows rays, one sample after another; its buffers live as long as it does.
-pub(super) struct Walker<'a, const N: usize> {
+pub(super) struct Walker<'a, const N: usize, P = Polarized> {
     pub(super) world: &'a World,
     pub(super) transport: Transport,
-    pub(super) pending: Vec<Path<N>>,
+    pub(super) pending: Vec<Path<N, P>>,
     pub(super) branches: Vec<Branch<N>>,
+    /// How light is polarized along each of them, where it is traced.
+    polarizations: Vec<P>,
     /// The object that occluded the last light that was: the first to ask about the next one.
     pub(super) last_occluder: Cell<Option<u32>>,
     pub(super) stats: Stats,
@@ -40,15 +44,24 @@ const SOONER: f64 = 5.0;
 /// followed that are not.
 const BY_CHANCE: Transport = Transport::Random { split: 0.01, roulette: 0.01 };
 
-impl<'a, const N: usize> Walker<'a, N> {
+impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
     pub(super) fn new(world: &'a World, transport: Transport) -> Self {
-        let (pending, branches, last_occluder) = (Vec::new(), Vec::new(), Cell::new(None));
-        Self { world, transport, pending, branches, last_occluder, stats: Stats::default(), audit: None, started: 0 }
+        Self {
+            world,
+            transport,
+            pending: Vec::new(),
+            branches: Vec::new(),
+            polarizations: Vec::new(),
+            last_occluder: Cell::new(None),
+            stats: Stats::default(),
+            audit: None,
+            started: 0,
+        }
     }
 
     /// Follows a path along its ray, through the medium around it, to the next surface; none if it leaves the scene.
     #[inline(always)]
-    pub(super) fn meet(&mut self, path: &mut Path<N>, draw: &Draw<N>) -> Option<Meeting> {
+    pub(super) fn meet(&mut self, path: &mut Path<N, P>, draw: &Draw<N>) -> Option<Meeting> {
         self.stats.rays += 1;
         let hit = match path.kind {
             PathKind::Camera if self.world.hides_objects && path.among == Among::All => {
@@ -70,14 +83,14 @@ impl<'a, const N: usize> Walker<'a, N> {
 
     /// What goes straight on through the surface that a path has met; none if nothing does.
     #[inline(always)]
-    pub(super) fn straight(&self, path: &Path<N>, draw: &Draw<N>, meeting: &Meeting) -> Option<Straight<N>> {
+    pub(super) fn straight(&self, path: &Path<N, P>, draw: &Draw<N>, meeting: &Meeting) -> Option<Onward<N, P>> {
         straight::straight_on(self.world, draw, path, &meeting.hit, &meeting.point)
     }
 
     /// The media at the surface that a path has met; none where the path goes on as if nothing were there, through the
     /// surface of a body that is hidden inside another of higher priority.
     #[inline(always)]
-    pub(super) fn boundary(&mut self, path: &Path<N>, meeting: &Meeting) -> Option<Boundary> {
+    pub(super) fn boundary(&mut self, path: &Path<N, P>, meeting: &Meeting) -> Option<Boundary> {
         let Meeting { hit, point } = meeting;
         let number = self.world.scene.objects[hit.object as usize].material;
         let enters = point.normal.dot(path.ray.direction) < 0.0;
@@ -93,18 +106,31 @@ impl<'a, const N: usize> Walker<'a, N> {
         Some(boundary)
     }
 
+    /// Makes the shares of the branches those of the path's light, which may be polarized.
+    #[inline(always)]
+    pub(super) fn polarize(&mut self, path: &Path<N, P>, at: &Interaction<N>) {
+        path.polarization.split(at, &mut self.branches, &mut self.polarizations);
+    }
+
+    /// Leaves the branches alone that smooth surfaces have.
+    pub(super) fn keep_single(&mut self) {
+        let mut branches = self.branches.iter();
+        self.polarizations.retain(|_| branches.next().is_some_and(|branch| branch.pdf.is_none()));
+        self.branches.retain(|branch| branch.pdf.is_none());
+    }
+
     /// Accounts for the branches and what goes straight on, if somebody asks.
-    pub(super) fn account(&mut self, path: &Path<N>, at: &Interaction<N>, straight: Option<&Straight<N>>) {
+    pub(super) fn account(&mut self, path: &Path<N, P>, at: &Interaction<N>, straight: Option<&Straight<N>>) {
         if let Some(audit) = &mut self.audit {
             audit.split(path, at, &self.branches, straight);
         }
     }
 
     /// Decides which of the branches are followed, and of what goes straight on: their paths become pending.
-    pub(super) fn follow(&mut self, departure: &mut Departure<N>, sampler: &Sampler) {
+    pub(super) fn follow(&mut self, departure: &mut Departure<N, P>, sampler: &Sampler) {
         let path = departure.path;
-        if let Some(straight) = &departure.straight {
-            self.branches.push(Branch::onward(&path.ray, straight));
+        if let Some(onward) = &departure.onward {
+            self.branches.push(Branch::onward(&path.ray, &onward.straight));
         }
         self.stats.partings += u64::from(self.branches.iter().filter(|branch| branch.crosses).count() > 1);
         departure.branches = self.branches.len();
@@ -113,7 +139,9 @@ impl<'a, const N: usize> Walker<'a, N> {
                 for (number, branch) in self.branches.iter().enumerate() {
                     match departure.weight(branch) {
                         weight if weight < cutoff => self.stats.dropped += weight,
-                        _ => self.pending.push(departure.path_along(number, branch, 1.0)),
+                        _ => {
+                            self.pending.push(departure.path_along(number, branch, self.polarizations.get(number), 1.0))
+                        }
                     }
                 }
             }
@@ -129,7 +157,7 @@ impl<'a, const N: usize> Walker<'a, N> {
     }
 
     /// Follows one branch, chosen by weight.
-    fn choose(&mut self, departure: &Departure<N>, sampler: &Sampler, roulette: f64) {
+    fn choose(&mut self, departure: &Departure<N, P>, sampler: &Sampler, roulette: f64) {
         let weight = |number: usize| departure.weight(&self.branches[number]);
         let u = sampler.four_plain(departure.path.key, CHOICE);
         let total: f64 = (0..self.branches.len()).map(weight).sum();
@@ -143,12 +171,13 @@ impl<'a, const N: usize> Walker<'a, N> {
         let number = chosen.unwrap_or(last);
         if let Some(factor) = survival(total, roulette, departure.path.vertices, || u[1]) {
             let factor = factor * total / weight(number);
-            self.pending.push(departure.path_along(number, &self.branches[number], factor));
+            let (branch, known) = (&self.branches[number], self.polarizations.get(number));
+            self.pending.push(departure.path_along(number, branch, known, factor));
         }
     }
 
     /// Follows all branches that roulette leaves.
-    fn follow_many(&mut self, departure: &Departure<N>, sampler: &Sampler, roulette: f64) {
+    fn follow_many(&mut self, departure: &Departure<N, P>, sampler: &Sampler, roulette: f64) {
         let sooner = if departure.at.lobes.is_diffuse() { SOONER } else { 1.0 };
         for (number, branch) in self.branches.iter().enumerate() {
             let u = || sampler.four_plain(departure.path.key.child(number), CHOICE)[2];
@@ -157,7 +186,7 @@ impl<'a, const N: usize> Walker<'a, N> {
             if weight != 0.0
                 && let Some(factor) = survival(weight, roulette, departure.path.vertices, u)
             {
-                self.pending.push(departure.path_along(number, branch, factor));
+                self.pending.push(departure.path_along(number, branch, self.polarizations.get(number), factor));
             }
         }
     }
@@ -178,25 +207,25 @@ impl<'a, const N: usize> Walker<'a, N> {
 }
 
 /// A path that leaves a surface.
-pub(super) struct Departure<'a, const N: usize> {
+pub(super) struct Departure<'a, const N: usize, P = Polarized> {
     world: &'a World,
-    path: &'a Path<N>,
+    path: &'a Path<N, P>,
     at: &'a Interaction<'a, N>,
     /// From where lights were sampled, if they were.
     scatter: Option<&'a ScatterSample>,
     /// What goes straight on: the last branch.
-    straight: Option<&'a Straight<N>>,
+    onward: Option<&'a Onward<N, P>>,
     branches: usize,
 }
 
-impl<'a, const N: usize> Departure<'a, N> {
-    pub(super) fn new(world: &'a World, path: &'a Path<N>, at: &'a Interaction<'a, N>) -> Self {
-        Self { world, path, at, scatter: None, straight: None, branches: 0 }
+impl<'a, const N: usize, P: Polarization<N>> Departure<'a, N, P> {
+    pub(super) fn new(world: &'a World, path: &'a Path<N, P>, at: &'a Interaction<'a, N>) -> Self {
+        Self { world, path, at, scatter: None, onward: None, branches: 0 }
     }
 
     /// With lights sampled here, and what goes straight on.
-    pub(super) fn with(self, scatter: Option<&'a ScatterSample>, straight: Option<&'a Straight<N>>) -> Self {
-        Self { scatter, straight, ..self }
+    pub(super) fn with(self, scatter: Option<&'a ScatterSample>, onward: Option<&'a Onward<N, P>>) -> Self {
+        Self { scatter, onward, ..self }
     }
 
     /// The weight of the path along a branch.
@@ -207,12 +236,13 @@ impl<'a, const N: usize> Departure<'a, N> {
         path.throughput.through(branch.share).weight(shares) / (path.eta_scale * branch.eta_scale)
     }
 
-    /// The path along a branch, followed with probability 1 / `factor`.
+    /// The path along a branch, followed with probability 1 / `factor`. `known` is how its light is polarized, where
+    /// that is known already.
     #[inline(always)]
-    fn path_along(&self, number: usize, branch: &Branch<N>, factor: f64) -> Path<N> {
+    fn path_along(&self, number: usize, branch: &Branch<N>, known: Option<&P>, factor: f64) -> Path<N, P> {
         let Self { world, path, at, .. } = self;
-        if let Some(straight) = self.straight.filter(|_| number + 1 == self.branches) {
-            let beyond = path.passed_in_part(at.point, straight);
+        if let Some(onward) = self.onward.filter(|_| number + 1 == self.branches) {
+            let beyond = path.passed_in_part(at.point, onward);
             return Path { throughput: beyond.throughput.scaled(factor), key: path.key.child(number), ..beyond };
         }
         let (wide, crosses) = (branch.pdf.is_some(), branch.crosses);
@@ -233,16 +263,13 @@ impl<'a, const N: usize> Departure<'a, N> {
             kind: path.kind.then(world.has_map(), wide, aimed),
             diffuse_left: path.diffuse_left - u32::from(wide && at.lobes.is_diffuse()),
             scatter: branch.pdf.and_then(|pdf| self.scatter.map(|scatter| scatter.toward(pdf, crosses))),
-            polarized: match branch.pdf {
-                Some(_) => path.polarized.scattered(at.material, &at.arrival, branch.wi),
-                None => path.polarized.after(branch.polarization),
-            },
+            polarization: path.polarization.along(at, branch, known),
             bounces: path.bounces + 1,
             is_seen: path.is_seen && !wide && !at.lobes.is_wide(),
             among: path.among,
             first: match path.bounces {
                 0 if !wide && !crosses && world.layers.tell_lobes_apart() => Some(FirstLobe::Specular),
-                _ => at.first_lobe(world, path, branch.wi, crosses),
+                _ => at.first_lobe(world, path.lobe(), branch.wi, crosses),
             },
         }
     }

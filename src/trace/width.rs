@@ -20,4 +20,22 @@ macro_rules! in_lanes {
         }
     };
 }
+
+/// The same in a world's lanes, with what its paths know of polarization:
+/// `in_lanes_of!(world, N, P => work::<N, P>())`.
+macro_rules! in_lanes_of {
+    ($world:expr, $n:ident, $p:ident => $work:expr) => {
+        match $world.method.polarization {
+            $crate::trace::Polarizing::Averaged => $crate::trace::width::in_lanes!($world.method.basis, $n => {
+                type $p = $crate::trace::polarized::Polarized;
+                $work
+            }),
+            _ => $crate::trace::width::in_lanes!($world.method.basis, $n => {
+                type $p = $crate::trace::rows::Rows<$n>;
+                $work
+            }),
+        }
+    };
+}
 pub(super) use in_lanes;
+pub(super) use in_lanes_of;

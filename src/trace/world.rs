@@ -2,7 +2,7 @@ use super::bright::{Bright, BrightPlaces};
 use super::layers::Layers;
 use super::media::{Media, media_of_lights};
 use super::photon_targets::PhotonTargets;
-use super::{LightPass, Method, Transport};
+use super::{LightPass, Method, Polarizing, Transport};
 use crate::light::{Light, LightId, LightSampler};
 use crate::material::Lobes;
 use crate::scene::{Scene, Sight};
@@ -121,6 +121,13 @@ impl World {
     pub fn with_light_vertices(&self, light_vertices: bool) -> Self {
         let mut world = self.clone();
         world.method.light_vertices = light_vertices;
+        world
+    }
+
+    /// This world with polarization traced or not.
+    pub fn with_polarization(&self, polarization: Polarizing) -> Self {
+        let mut world = self.clone();
+        world.method.polarization = polarization;
         world
     }
 

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use abbe::film::Film;
 use abbe::scene::{Scene, Source};
 use abbe::spectrum::{Basis, Curve};
-use abbe::trace::{Method, Report, Transport, prepare, render};
+use abbe::trace::{Method, Polarizing, Report, Transport, prepare, render};
 
 /// Follows every branch down to a weight that no pixel can show.
 pub const EVERY_BRANCH: Transport = Transport::Deterministic { cutoff: 1e-20, most: u64::MAX };
@@ -53,6 +53,7 @@ pub fn method(scene: &Scene<Curve>, transport: Transport) -> Method {
         light_pass: None,
         bright: None,
         light_vertices: false,
+        polarization: Polarizing::Averaged,
     }
 }
 

@@ -6,7 +6,7 @@ use super::context::Context;
 use super::measures::{MAX_LENGTH, direction, length, point};
 use crate::math::DVec3;
 use crate::scene::text::{Fields, Value, above_0_to, at};
-use crate::scene::{Camera, FilmSettings, Lens, Projection};
+use crate::scene::{Camera, FilmSettings, Lens, PolarizingFilter, Projection};
 
 /// Nearest focus: what a lens bends by, radius over this, stays within f64.
 const NEAREST_FOCUS: f64 = 1e-30;
@@ -23,6 +23,7 @@ const MAX_SHIFT: f64 = 1000.0;
 /// lens = { radius = 0.02, focus_distance = 6 }
 /// shift = [0, 0.2]           # of the image's height
 /// sensor_width = 36          # mm; for the file alone
+/// polarizer = { axis = 90 }  # a filter before it: degrees from the image's right toward its top
 /// ```
 ///
 /// The film is absent if it is wrong.
@@ -31,6 +32,7 @@ pub(super) fn camera(context: &mut Context, value: Value, film: Option<&FilmSett
         let position = camera.need("position", point);
         let target = camera.need("look_at", at(point));
         let up = camera.or("up", DVec3::Y, direction);
+        let filter = camera.maybe("polarizer", filter);
         let kind = camera.or("projection", ProjectionKind::Perspective, |value| value.word(&PROJECTIONS));
         let keys = ["vertical_fov", "height", "shift", "lens"].map(|key| camera.get(key));
         let near = camera.or("near", 0.0, |value| {
@@ -57,7 +59,7 @@ pub(super) fn camera(context: &mut Context, value: Value, film: Option<&FilmSett
                 film.width, film.height
             ));
         }
-        Some(view.starting_at(near).shifted(shift).with_lens(lens).on_sensor(sensor))
+        Some(view.starting_at(near).shifted(shift).with_lens(lens).on_sensor(sensor).behind(filter?))
     })
 }
 
@@ -156,4 +158,23 @@ fn lens(value: Value) -> Option<Lens> {
         });
         Some(Lens::new(radius?, focus?))
     })
+}
+
+/// `polarizer = { axis = 90, extinction = 0 }`: the direction that it lets through in degrees, and what it lets through
+/// across that.
+fn filter(value: Value) -> Option<PolarizingFilter> {
+    Fields::read(value, |filter| {
+        let axis = filter.need("axis", |value| {
+            let help = "in degrees: 0 is the image's right, 90 its top";
+            value.within(-360.0..=360.0, "an axis lies between -360 and 360 degrees", Some(help))
+        });
+        let extinction = filter.or("extinction", 0.0, extinction);
+        Some(PolarizingFilter { angle: axis?.to_radians(), extinction: extinction? })
+    })
+}
+
+/// What a polarizer lets through across its axis, of what it lets through along it.
+pub(super) fn extinction(value: Value) -> Option<f64> {
+    let help = "of what is let through along the axis: 0 of a perfect polarizer, about 0.0001 of a sheet";
+    value.within(0.0..=1.0, "an extinction lies between 0 and 1", Some(help))
 }

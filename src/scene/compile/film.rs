@@ -19,6 +19,7 @@ use crate::spectrum::ColorSpace;
 /// precision = "half"
 /// compression = "piz"
 /// multipart = true
+/// stokes = true                      # layers S1, S2, S3: how the light is polarized
 /// spectral = true                    # or { from = 380, to = 780, step = 5 }, in nm: a spectral image beside it
 /// radiometry = "absolute"            # lights are given in cd/m2, lx, cd, or in watts per nm
 /// white_luminance = 100              # cd/m2 of red, green and blue of 1

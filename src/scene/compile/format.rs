@@ -19,6 +19,7 @@ pub(super) fn format(film: &mut Fields) -> Option<Format> {
     let precision = film.maybe("precision", |value| value.word(&Precision::NAMES));
     let compression = film.maybe("compression", at(compression));
     let multipart = film.or("multipart", false, Value::yes_or_no);
+    let stokes = film.or("stokes", false, Value::yes_or_no);
     let spectral = film.or("spectral", None, spectral);
     let metadata = film.or("metadata", [None, None], |value| {
         Fields::read(value, |metadata| {
@@ -28,7 +29,8 @@ pub(super) fn format(film: &mut Fields) -> Option<Format> {
     });
     let white_luminance = white_luminance(film);
     let [owner, comments] = metadata?;
-    let (layers, first, compressed, multipart) = (layers?, first?, compression?, multipart?);
+    let (mut layers, first, compressed, multipart) = (layers?, first?, compression?, multipart?);
+    layers.extend(if stokes? { Layer::STOKES.as_slice() } else { &[] });
     let (place, compression) = compressed.map_or((None, Compression::default()), |at| (Some(at.place), at.it));
     let precision = precision?.unwrap_or(match compression.is_of_16_bits() {
         true => Precision::Half,

@@ -2,10 +2,14 @@
 
 use std::collections::BTreeMap;
 
+use super::camera::extinction;
 use super::context::Context;
 use super::curve_text::CurveText;
 use super::image::surface_curve;
-use crate::material::{Coat, Conductor, Dielectric, Diffuse, Emissive, Material, Mirror, Plastic, Roughness, Thin};
+use super::measures::direction;
+use crate::material::{
+    Coat, Conductor, Dielectric, Diffuse, Emissive, Material, Mirror, Plastic, Polarizer, Retarder, Roughness, Thin,
+};
 use crate::scene::text::{Choice, Fields, Value};
 use crate::shape::Sides;
 use crate::spectrum::{Curve, Quantity};
@@ -73,6 +77,14 @@ const MATERIAL: Choice<Reader> = Choice {
             let coat = Coat::new(roughness(fields));
             Some(Draft::Whole(Material::Plastic(Plastic { reflectance, index, coat })))
         }),
+        ("polarizer", |_, fields| {
+            let (axis, extinction) = (fields.need("axis", direction), fields.or("extinction", 0.0, extinction));
+            Some(Draft::Whole(Material::Polarizer(Polarizer { axis: axis?, extinction: extinction? })))
+        }),
+        ("retarder", |_, fields| {
+            let (axis, retardance) = (fields.need("axis", direction), fields.need("retardance", retardance));
+            Some(Draft::Whole(Material::Retarder(Retarder { axis: axis?, retardance: retardance? })))
+        }),
         ("mix", |_, fields| {
             let parts = fields.need("materials", two_names);
             let amount = spectrum(fields, "amount");
@@ -85,6 +97,12 @@ const MATERIAL: Choice<Reader> = Choice {
         }),
     ],
 };
+
+/// By how much light along the fast axis is ahead, in degrees.
+fn retardance(value: Value) -> Option<f64> {
+    let help = "in degrees: 90 of a quarter-wave plate, 180 of a half-wave plate";
+    value.within(-360.0..=360.0, "a retardance lies between -360 and 360 degrees", Some(help))
+}
 
 fn conductor<'d>(value: Value<'d>, fields: &mut Fields<'d>) -> Option<Draft<'d, Asked<'d>>> {
     let (metal, n, k) = (fields.get("metal"), fields.get("n"), fields.get("k"));

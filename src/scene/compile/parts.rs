@@ -70,6 +70,10 @@ impl<'d> Search<'_, 'd> {
                 format!("a {kind} is made of surfaces that reflect or let through, and {known:?} is emissive"),
                 "give what shines an object of its own",
             ),
+            Some(Draft::Whole(material)) if kind == "mix" && material.has_axis() => place.advise(
+                format!("a mix is made of surfaces without an axis, and {known:?} polarizes light by one"),
+                "give it an object of its own; one with holes is a mask",
+            ),
             _ => Some(Part::new(name, self.whole(known)?)),
         }
     }

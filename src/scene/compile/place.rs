@@ -38,9 +38,20 @@ pub(super) fn placed<'d>(drafts: Vec<Draft<'d>>, materials: &Materials<'d>) -> P
             placed.materials.push(NamedMaterial { name, material });
             placed.materials.len() as u32 - 1
         });
-        let shape = draft.shape.place;
+        let maps = match (&draft.instances, material.has_axis()) {
+            (Some(instances), true) => instances.iter().map(|map| map.it).collect(),
+            (None, true) => vec![draft.map.it],
+            (_, false) => Vec::new(),
+        };
+        let (shape, name) = (draft.shape.place, draft.material);
         let is_shared = draft.shape.it.file.is_some_and(|file| places[file] > 1);
-        for object in objects_of(draft, is_shared, number, material.varies()).unwrap_or_default() {
+        let objects = objects_of(draft, is_shared, number, material.varies()).unwrap_or_default();
+        for (instance, mut object) in objects.into_iter().enumerate() {
+            if let Some(map) = maps.get(instance) {
+                let (name, material) = (name.to_owned(), material.turned(map));
+                placed.materials.push(NamedMaterial { name, material });
+                object.material = placed.materials.len() as u32 - 1;
+            }
             placed.objects.push(object);
             placed.shapes.push(shape);
         }

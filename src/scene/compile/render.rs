@@ -4,7 +4,7 @@ use toml::de::DeValue;
 
 use crate::error::nearest;
 use crate::scene::text::{Fields, Value};
-use crate::scene::{CausticsText, ModelText, RenderText, duration};
+use crate::scene::{CausticsText, ModelText, PolarizationText, RenderText, duration};
 
 /// The models that have a name.
 const MODELS: [(&str, ModelText); 3] = [("auto", ModelText::Auto), ("rgb", ModelText::Rgb), ("hero", ModelText::Hero)];
@@ -37,6 +37,8 @@ pub(super) fn render(value: Value) -> Option<RenderText> {
         let max_bounces = render.maybe("max_bounces", Value::count);
         let words = [("auto", CausticsText::Auto), ("off", CausticsText::Off)];
         let caustics = render.or("caustics", CausticsText::Auto, |value| value.word(&words));
+        let words = [("auto", PolarizationText::Auto), ("on", PolarizationText::On), ("off", PolarizationText::Off)];
+        let polarization = render.or("polarization", PolarizationText::Auto, |value| value.word(&words));
         Some(RenderText {
             model: model?,
             error: error?,
@@ -47,6 +49,7 @@ pub(super) fn render(value: Value) -> Option<RenderText> {
             diffuse_bounces: diffuse_bounces?,
             max_bounces: max_bounces?,
             caustics: caustics?,
+            polarization: polarization?,
             is_part: false,
         })
     })

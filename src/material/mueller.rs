@@ -1,0 +1,305 @@
+//! What a surface does to the polarization of light.
+//!
+//! Light is told by its Stokes vector (S0, S1, S2, S3) in a frame whose z is the light's direction: S1 is what is
+//! polarized along x less what is along y = z x x, S2 the same at 45 degrees from x toward y, S3 what turns right less
+//! what turns left, seen looking toward the source (Hecht 2017, *Optics*, section 8.13; Born & Wolf 1999, *Principles
+//! of Optics*, section 1.4.2). Fields vary as e^(i omega t), and an absorbing index is n - i k.
+
+use crate::math::DVec3;
+use crate::spectrum::Lanes;
+
+/// The Mueller matrix of light that meets one smooth boundary, or one facet:
+///
+/// ```text
+/// a  d  0  0
+/// d  a  0  0
+/// 0  0  c -q
+/// 0  0  q  c
+/// ```
+///
+/// Both frames have s as their x, the direction across the plane of incidence, so that p = z x s and r_p = -r_s of
+/// light that arrives along the normal. With what becomes of the intensities, S and P, and of the amplitudes, s and p,
+/// a = (S + P) / 2, d = (S - P) / 2 and c + i q = conj(s) p.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Block<T> {
+    /// What becomes of unpolarized light.
+    pub a: T,
+    /// How much of that s is more than p, halved.
+    pub d: T,
+    /// What is left of light polarized at 45 degrees.
+    pub c: T,
+    /// What of it turns right.
+    pub q: T,
+}
+
+impl Block<f64> {
+    /// Of a boundary that changes nothing.
+    pub const IDENTITY: Self = Self { a: 1.0, d: 0.0, c: 1.0, q: 0.0 };
+
+    /// Of amplitudes without a phase.
+    fn of_amplitudes(s: f64, p: f64) -> Self {
+        Self { a: 0.5 * (s * s + p * p), d: 0.5 * (s * s - p * p), c: s * p, q: 0.0 }
+    }
+
+    /// What the boundary from index `n1` to a different index `n2` reflects of light that meets it at an angle with
+    /// cosine `cos` in 0..1.
+    ///
+    /// Fresnel 1823; beyond the critical angle p is ahead of s by delta, tan(delta / 2) = cos sqrt(sin^2 - n^2) /
+    /// sin^2, n = n2 / n1 (Born & Wolf 1999, section 1.5.4).
+    pub fn reflected(n1: f64, n2: f64, cos: f64) -> Self {
+        let (c1, squared) = refracted_cosine(n1, n2, cos);
+        if squared > 0.0 {
+            let c2 = squared.sqrt();
+            let (s, p) = (n1 * c1 + n2 * c2, n2 * c1 + n1 * c2);
+            return Self::of_amplitudes((n1 * c1 - n2 * c2) / s, (n2 * c1 - n1 * c2) / p);
+        }
+        let (x, y) = (1.0 - c1 * c1, c1 * (n2 / n1) * (-squared).sqrt());
+        let length = x * x + y * y;
+        Self { a: 1.0, d: 0.0, c: (x * x - y * y) / length, q: 2.0 * x * y / length }
+    }
+
+    /// What crosses it, as flux: radiance changes by (n1 / n2)^2 besides. Nothing beyond the critical angle.
+    pub fn refracted(n1: f64, n2: f64, cos: f64) -> Self {
+        let (c1, squared) = refracted_cosine(n1, n2, cos);
+        if squared <= 0.0 {
+            return Self::default();
+        }
+        let c2 = squared.sqrt();
+        let both = 2.0 * (n1 * n2 * c1 * c2).sqrt();
+        Self::of_amplitudes(both / (n1 * c1 + n2 * c2), both / (n2 * c1 + n1 * c2))
+    }
+
+    /// What becomes of radiance at a smooth boundary between two indices, met at an angle of a cosine, where it crosses
+    /// it or is reflected. Between equal indices nothing happens.
+    pub fn at_boundary([n1, n2, cos]: [f64; 3], crosses: bool) -> Self {
+        match (n1 == n2, crosses) {
+            (true, true) => Self::IDENTITY,
+            (true, false) => Self::default(),
+            (false, true) => Self::refracted(n1, n2, cos).times((n1 / n2) * (n1 / n2)),
+            (false, false) => Self::reflected(n1, n2, cos),
+        }
+    }
+
+    /// What a metal n - i k reflects under a medium of index `n1`.
+    ///
+    /// With u - i b = sqrt((n - i k)^2 / n1^2 - sin^2), r_s = (cos - u + i b) / (cos + u - i b) and r_p / r_s =
+    /// -(u - i b - e) / (u - i b + e), e = sin^2 / cos (Born & Wolf 1999, section 14.4, in the signs of this module).
+    pub fn of_metal(n1: f64, n: f64, k: f64, cos: f64) -> Self {
+        let cos = cos.clamp(0.0, 1.0);
+        let (eta, kappa) = (n / n1, k / n1);
+        let (c2, s2) = (cos * cos, 1.0 - cos * cos);
+        let t0 = eta * eta - kappa * kappa - s2;
+        let modulus = (t0 * t0 + 4.0 * eta * eta * kappa * kappa).sqrt();
+        let u = (0.5 * (modulus + t0)).max(0.0).sqrt();
+        let b = (0.5 * (modulus - t0)).max(0.0).sqrt();
+        let squared = |u: f64, v: f64| u * u + v * v;
+        let s = (modulus + c2 - 2.0 * u * cos) / (modulus + c2 + 2.0 * u * cos);
+        let (uc, bc) = (u * cos, b * cos);
+        let below = squared(uc + s2, bc);
+        if below == 0.0 {
+            return Self { a: 1.0, d: 0.0, c: 1.0, q: 0.0 };
+        }
+        let p = s * squared(uc - s2, bc) / below;
+        let [c, q] = [s2 * s2 - squared(uc, bc), 2.0 * s2 * bc].map(|part| s * part / below);
+        Self { a: 0.5 * (s + p), d: 0.5 * (s - p), c, q }
+    }
+
+    /// A sheet that lets all light through that is polarized along its axis, which is s, and the share `extinction` of
+    /// light across it.
+    pub fn of_polarizer(extinction: f64) -> Self {
+        Self::of_amplitudes(1.0, extinction.sqrt())
+    }
+
+    /// A sheet in which light along its fast axis, which is s, is ahead by a phase.
+    pub fn of_retarder(phase: f64) -> Self {
+        let (sin, cos) = libm::sincos(phase);
+        Self { a: 1.0, d: 0.0, c: cos, q: -sin }
+    }
+
+    /// What goes through two parallel surfaces alike, of which each reflects `one` and lets `crossing` through, and
+    /// what comes back; `t` is left after one way between them. No phase is kept from surface to surface.
+    pub fn of_pane(one: Self, crossing: Self, t: f64) -> [Self; 2] {
+        if crossing.a <= 0.0 {
+            return [Self::default(), one];
+        }
+        let [(r_s, x_s), (r_p, x_p)] = [1.0, -1.0].map(|sign| (one.a + sign * one.d, crossing.a + sign * crossing.d));
+        // (through, back) of what is multiplied by r at a reflection and by x at a crossing. 1 - r^2 is the sum of
+        // what crosses, so that nothing cancels.
+        let series = |r: f64, x: f64, crosses: f64| {
+            let through = x * x * t / ((1.0 - t * t) + t * t * crosses);
+            [through, r + r * t * through]
+        };
+        let (s, p) = (series(r_s, x_s, x_s * (1.0 + r_s)), series(r_p, x_p, x_p * (1.0 + r_p)));
+        let mixed = series(one.c, crossing.c, x_s + x_p - x_s * x_p);
+        [0, 1].map(|way| Self { a: 0.5 * (s[way] + p[way]), d: 0.5 * (s[way] - p[way]), c: mixed[way], q: 0.0 })
+    }
+
+    /// Times a number.
+    pub fn times(self, factor: f64) -> Self {
+        Self { a: self.a * factor, d: self.d * factor, c: self.c * factor, q: self.q * factor }
+    }
+}
+
+/// The cosine within 0..1, and the square of the one beyond; it is negative under total reflection.
+fn refracted_cosine(n1: f64, n2: f64, cos: f64) -> (f64, f64) {
+    let c1 = cos.clamp(0.0, 1.0);
+    let eta = n1 / n2;
+    (c1, ((n2 - n1) * (n2 + n1) / (n2 * n2) + (eta * c1) * (eta * c1)).min(1.0))
+}
+
+impl<const N: usize> Block<Lanes<N>> {
+    /// Of nothing.
+    const NONE: Self = Self { a: Lanes::ZERO, d: Lanes::ZERO, c: Lanes::ZERO, q: Lanes::ZERO };
+
+    /// Sets a lane.
+    pub fn set(&mut self, lane: usize, block: Block<f64>) {
+        let Block { a, d, c, q } = block;
+        (self.a.0[lane], self.d.0[lane], self.c.0[lane], self.q.0[lane]) = (a as f32, d as f32, c as f32, q as f32);
+    }
+
+    fn map(&self, of: impl Fn(Lanes<N>) -> Lanes<N>) -> Self {
+        Self { a: of(self.a), d: of(self.d), c: of(self.c), q: of(self.q) }
+    }
+
+    fn plus(&self, other: &Self) -> Self {
+        Self { a: self.a + other.a, d: self.d + other.d, c: self.c + other.c, q: self.q + other.q }
+    }
+}
+
+/// Light that crosses a coat, loses its polarization below and crosses the coat again, as shares of what a surface does
+/// to unpolarized light that it polarizes on its way out, on its way in, and both.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Base<const N: usize> {
+    /// The coat's unit normal: s is across it, for the light that leaves and for that which arrives.
+    pub normal: DVec3,
+    /// What light that leaves is polarized by.
+    pub leaving: Lanes<N>,
+    /// What light that arrives is.
+    pub arriving: Lanes<N>,
+    /// Both.
+    pub both: Lanes<N>,
+}
+
+/// What a surface does to light that leaves it to the viewer, in the unit of its share or of BSDF times cosine.
+///
+/// The rest of that share, which is not in `block` nor in `base`, leaves unpolarized whatever it was.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mueller<const N: usize> {
+    /// Across the plane of incidence of `block`, of any length; 0 where there is none.
+    pub axis: DVec3,
+    /// What meets one boundary.
+    pub block: Block<Lanes<N>>,
+    /// What comes from below a coat.
+    pub base: Option<Base<N>>,
+}
+
+impl<const N: usize> Mueller<N> {
+    /// Of a surface that leaves no polarization.
+    pub const NONE: Self = Self { axis: DVec3::ZERO, block: Block::NONE, base: None };
+
+    /// Of a boundary that light meets in a plane; each lane on the ray has its own block.
+    pub fn of_lanes(axis: DVec3, present: Lanes<N>, mut of_lane: impl FnMut(usize) -> Block<f64>) -> Self {
+        let mut block = Block::NONE;
+        (0..N).filter(|&lane| present[lane] != 0.0).for_each(|lane| block.set(lane, of_lane(lane)));
+        Self { axis, block, base: None }
+    }
+
+    /// Of a share that is left as it is.
+    pub fn unchanged(share: Lanes<N>) -> Self {
+        let block = Block { a: share, d: Lanes::ZERO, c: share, q: Lanes::ZERO };
+        Self { block, ..Self::NONE }
+    }
+
+    /// A share of it.
+    pub fn scaled(&self, share: Lanes<N>) -> Self {
+        let base = self.base.map(|base| Base {
+            leaving: base.leaving * share,
+            arriving: base.arriving * share,
+            both: base.both * share,
+            ..base
+        });
+        Self { axis: self.axis, block: self.block.map(|part| part * share), base }
+    }
+
+    /// Both together; where both have a plane of incidence it is the same.
+    pub fn plus(&self, other: &Self) -> Self {
+        let axis = if self.axis == DVec3::ZERO { other.axis } else { self.axis };
+        let base = match (self.base, other.base) {
+            (Some(a), Some(b)) => Some(Base {
+                leaving: a.leaving + b.leaving,
+                arriving: a.arriving + b.arriving,
+                both: a.both + b.both,
+                ..a
+            }),
+            (a, b) => a.or(b),
+        };
+        Self { axis, block: self.block.plus(&other.block), base }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Block;
+
+    fn near(got: f64, expected: f64) {
+        assert!((got - expected).abs() < 6e-7, "{got} for {expected}");
+    }
+
+    #[test]
+    fn glass_reflects_and_refracts_as_fresnel_has_it() {
+        // (angle, R, d_R, c_R, T, d_T, c_T) from index 1 to 1.5.
+        for [angle, r, d_r, c_r, t, d_t, c_t] in [
+            [0.0, 0.04, 0.0, -1.0, 0.96, 0.0, 1.0],
+            [30.0, 0.041523, 0.391918, -0.92, 0.958477, -0.016978, 0.999856],
+            [45.0, 0.050240, 0.831479, -0.555556, 0.949760, -0.043983, 0.999032],
+            [56.309932, 0.073964, 1.0, 0.0, 0.926036, -0.079872, 0.996805],
+            [60.0, 0.089187, 0.979796, 0.2, 0.910813, -0.095941, 0.995387],
+            [75.0, 0.253061, 0.578105, 0.815963, 0.746939, -0.195860, 0.980632],
+        ] {
+            let cos = f64::to_radians(angle).cos();
+            let (back, on) = (Block::reflected(1.0, 1.5, cos), Block::refracted(1.0, 1.5, cos));
+            [(back.a, r), (back.d / back.a, d_r), (back.c / back.a, c_r), (back.q, 0.0)]
+                .into_iter()
+                .for_each(|(x, y)| near(x, y));
+            [(on.a, t), (on.d / on.a, d_t), (on.c / on.a, c_t), (on.q, 0.0)].into_iter().for_each(|(x, y)| near(x, y));
+        }
+    }
+
+    #[test]
+    fn total_reflection_has_its_phase() {
+        for [angle, c, q] in [[45.0, 0.8, 0.6], [60.0, 0.760870, 0.648905], [75.0, 0.927536, 0.373740]] {
+            let all = Block::reflected(1.5, 1.0, f64::to_radians(angle).cos());
+            [(all.a, 1.0), (all.d, 0.0), (all.c, c), (all.q, q)].into_iter().for_each(|(x, y)| near(x, y));
+        }
+    }
+
+    #[test]
+    fn metals_have_theirs() {
+        // (n, k, angle, R_s, R_p, arg r_p / r_s in degrees).
+        for [n, k, angle, s, p, argument] in [
+            [0.43, 2.455, 45.0, 0.849414, 0.721504, 149.731837],
+            [0.43, 2.455, 75.0, 0.943701, 0.706358, 72.742012],
+            [0.06, 3.586, 45.0, 0.988061, 0.976265, 158.106852],
+            [0.06, 3.586, 75.0, 0.995683, 0.965111, 91.712086],
+            [1.015, 6.627, 45.0, 0.939707, 0.883049, 168.152672],
+            [1.015, 6.627, 75.0, 0.977597, 0.763276, 124.230155],
+        ] {
+            let metal = Block::of_metal(1.0, n, k, f64::to_radians(angle).cos());
+            [(metal.a + metal.d, s), (metal.a - metal.d, p)].into_iter().for_each(|(x, y)| near(x, y));
+            near(metal.q.atan2(metal.c).to_degrees() / 1000.0, argument / 1000.0);
+            near(metal.c.hypot(metal.q), (s * p).sqrt());
+        }
+        let along = Block::of_metal(1.0, 0.43, 2.455, 1.0);
+        assert!(along.d.abs() < 1e-15 && (along.c + along.a).abs() < 1e-15, "{along:?}");
+    }
+
+    #[test]
+    fn a_pane_sums_all_reflections() {
+        let cos = f64::to_radians(60.0).cos();
+        let [on, back] = Block::of_pane(Block::reflected(1.0, 1.52, cos), Block::refracted(1.0, 1.52, cos), 0.9);
+        [(back.a, 0.144024), (back.d / back.a, 0.980834), (back.c / back.a, 0.192978)]
+            .into_iter()
+            .for_each(|(x, y)| near(x, y));
+        [(on.a, 0.757083), (on.d / on.a, -0.185148), (on.c / on.a, 0.969445)].into_iter().for_each(|(x, y)| near(x, y));
+    }
+}

@@ -1,0 +1,309 @@
+//! Polarization traced: rows of Stokes weights, followed backward.
+//!
+//! A sensor that takes the intensity of light takes the scalar product of a row of four weights with the light's Stokes
+//! vector. On its way back the row is multiplied by the Mueller matrix of each surface: of unpolarized light its first
+//! weight is what counts, which is the path's throughput. The others are kept as shares of it, with the reference
+//! direction of their frame, the last surface's s. (Rows and columns: Jarabo & Arellano 2018, *Bidirectional Rendering
+//! of Vector Light Transport*. Mueller matrices are reciprocal, M of the way back = Q M^T Q with Q = diag(1, 1, -1, 1):
+//! Sekera 1966, *Scattering Matrices and Reciprocity Relationships*. So photons are followed by the same code.)
+
+use super::World;
+use super::arrived::Arrived;
+use super::interaction::Interaction;
+use super::method::Polarizing;
+use super::polarization::{MetLight, Polarization, SeenPhoton};
+use super::shading;
+use crate::film::Layer;
+use crate::material::{Arrival, Block, Branch, Incoming, Material, Mueller, Scatter, Straight};
+use crate::math::{DVec3, Frame, Ray};
+use crate::spectrum::{Lanes, Table};
+
+/// What the sensor takes of each Stokes component, lane by lane.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Rows<const N: usize> {
+    /// The x of the frame whose z is the direction of the light, back along the ray: a unit vector.
+    x: DVec3,
+    /// Rows of S0, S1, S2 and S3 of the image, each over the throughput: the first begins with 1.
+    rows: [[Lanes<N>; 4]; 4],
+    /// How many are wanted: the first, or all.
+    count: usize,
+    /// Whether the throughput is that of a path whose light is taken for unpolarized at every surface, which is
+    /// compared.
+    compares: bool,
+}
+
+/// How light that a photon brings is polarized.
+#[derive(Clone, Debug)]
+pub(super) struct Column<const N: usize> {
+    x: DVec3,
+    /// S0 to S3 over what light would be that is taken for unpolarized.
+    stokes: [Lanes<N>; 4],
+}
+
+/// Cosine and sine of twice the angle from one reference direction to another, about the direction z of the light.
+#[derive(Clone, Copy)]
+struct Turn(f32, f32);
+
+impl Turn {
+    const NONE: Self = Self(1.0, 0.0);
+
+    /// From the unit vector `x`; none to a direction that has no part across z.
+    fn new(z: DVec3, x: DVec3, to: DVec3) -> Option<Self> {
+        let (c, t) = (x.dot(to), z.cross(x).dot(to));
+        let length = c * c + t * t;
+        (length > 0.0).then(|| Self(((c * c - t * t) / length) as f32, (2.0 * c * t / length) as f32))
+    }
+
+    /// Of the linear components, 1 and 2.
+    fn of<const N: usize>(self, one: Lanes<N>, two: Lanes<N>) -> [Lanes<N>; 2] {
+        let Self(c, s) = self;
+        [one * c + two * s, two * c + one * -s]
+    }
+}
+
+/// A unit vector across z, near a direction.
+fn across(z: DVec3, near: DVec3) -> DVec3 {
+    let across = near.try_normalize().and_then(|near| (near - z * z.dot(near)).try_normalize());
+    across.unwrap_or_else(|| Frame::about(z).to_world(DVec3::X))
+}
+
+/// One way by which light leaves a surface.
+struct Passing<'a, const N: usize> {
+    mueller: &'a Mueller<N>,
+    /// What leaves of unpolarized light.
+    value: Lanes<N>,
+    /// The direction of the light on both sides of the surface, to the viewer and before it arrives.
+    z: [DVec3; 2],
+}
+
+impl<const N: usize> Rows<N> {
+    /// Where light meets no surface before it reaches the sensor, which has image right at `x`.
+    fn starting(x: DVec3, count: usize, compares: bool) -> Self {
+        let one = |row: usize, column: usize| if row == column { Lanes::ONE } else { Lanes::ZERO };
+        let rows = std::array::from_fn(|row| std::array::from_fn(|column| one(row, column)));
+        Self { x, rows, count, compares }
+    }
+
+    /// After a surface, and the factor by which polarization changes what leaves it.
+    fn after(&self, passing: &Passing<N>) -> (Self, Lanes<N>) {
+        let Passing { mueller, value, z: [z, onward] } = *passing;
+        let Mueller { axis, block, base } = mueller;
+        let base = base.map(|base| {
+            let inward = across(onward, onward.cross(base.normal));
+            (base, Turn::new(z, self.x, z.cross(base.normal)).unwrap_or(Turn::NONE), inward)
+        });
+        let met = Turn::new(z, self.x, *axis);
+        let x = match (&base, met) {
+            (Some((.., inward)), None) => *inward,
+            (_, None) => across(onward, self.x),
+            (_, Some(_)) => across(onward, *axis),
+        };
+        let met = met.unwrap_or(Turn::NONE);
+        let mut after = Self { x, ..*self };
+        for row in &mut after.rows[..self.count] {
+            let [q0, q1, q2, q3] = *row;
+            let [r1, r2] = met.of(q1, q2);
+            *row = [
+                value * q0 + block.d * r1,
+                block.d * q0 + block.a * r1,
+                block.c * r2 + block.q * q3,
+                block.c * q3 + block.q * r2 * -1.0,
+            ];
+            if let Some((base, turn, inward)) = &base {
+                let [u1, _] = turn.of(q1, q2);
+                let back = Turn::new(onward, *inward, x).unwrap_or(Turn::NONE);
+                let [v1, v2] = back.of(base.arriving * q0 + base.both * u1, Lanes::ZERO);
+                row[0] += base.leaving * u1;
+                row[1] += v1;
+                row[2] += v2;
+            }
+        }
+        let factor = after.divide_by(value);
+        (after, factor)
+    }
+
+    /// Makes rows that are absolute shares of what the throughput becomes; answers the factor on what leaves the
+    /// surface of unpolarized light.
+    fn divide_by(&mut self, value: Lanes<N>) -> Lanes<N> {
+        let first = self.rows[0][0];
+        let inverse = |x: f32| if x > 0.0 { 1.0 / x } else { 0.0 };
+        let (factor, scale) = match self.compares {
+            true => (Lanes::ONE, Lanes::from_fn(|i| inverse(value[i]))),
+            false => (Lanes::from_fn(|i| first[i].max(0.0) * inverse(value[i])), Lanes::from_fn(|i| inverse(first[i]))),
+        };
+        self.rows[..self.count].iter_mut().flatten().for_each(|part| *part = *part * scale);
+        // Rounding may leave a degree above 1.
+        let [_, one, two, three] = self.rows[0];
+        let squared = one * one + two * two + three * three;
+        if !self.compares && squared.0.iter().any(|&squared| squared > 1.0) {
+            let within = Lanes::from_fn(|i| if squared[i] > 1.0 { 1.0 / squared[i].sqrt() } else { 1.0 });
+            self.rows[0][1..].iter_mut().for_each(|part| *part = *part * within);
+        }
+        factor
+    }
+
+    /// After a surface that light leaves by a way, and the factor on what leaves.
+    fn passed(&self, at: &Interaction<N>, incoming: Incoming, value: Lanes<N>) -> (Self, Lanes<N>) {
+        let mueller = at.material.mueller(&at.arrival, incoming);
+        let z = [at.arrival.wo, -incoming.wi];
+        self.after(&Passing { mueller: &mueller, value, z })
+    }
+
+    /// The mirror image in a plane: light that was folded there by a shading normal.
+    fn folded(mut self, flat: DVec3) -> Self {
+        self.x = shading::folded(self.x, flat);
+        for row in &mut self.rows[..self.count] {
+            (row[2], row[3]) = (row[2] * -1.0, row[3] * -1.0);
+        }
+        self
+    }
+
+    /// The direction by which a material was asked, where shading normals have folded it to `incoming`.
+    fn unfolded(at: &Interaction<N>, incoming: Incoming) -> Option<Incoming> {
+        let is_folded = at.flat != at.arrival.normal && (incoming.wi.dot(at.arrival.normal) < 0.0) != incoming.crosses;
+        is_folded.then(|| Incoming { wi: shading::folded(incoming.wi, at.flat), ..incoming })
+    }
+
+    /// The same as `passed`, along a direction that shading normals may have folded.
+    fn passed_folded(&self, at: &Interaction<N>, incoming: Incoming, value: Option<Lanes<N>>) -> (Self, Lanes<N>) {
+        let drawn = Self::unfolded(at, incoming);
+        let asked = drawn.unwrap_or(incoming);
+        let evaluated = || at.material.evaluate(&at.arrival, asked.wi).map_or(Lanes::ZERO, |(light, _)| light);
+        let (after, factor) = self.passed(at, asked, value.unwrap_or_else(evaluated));
+        (if drawn.is_some() { after.folded(at.flat) } else { after }, factor)
+    }
+
+    /// What light of some polarization, whose direction is z, is to the sensor; and the factor on its intensity.
+    fn receiving(&self, z: DVec3, light: &Column<N>) -> (Self, Lanes<N>) {
+        let mut after = *self;
+        let turn = Turn::new(z, self.x, light.x).unwrap_or(Turn::NONE);
+        for row in &mut after.rows[..self.count] {
+            let [one, two] = turn.of(row[1], row[2]);
+            let [s0, s1, s2, s3] = light.stokes;
+            row[0] = row[0] * s0 + one * s1 + two * s2 + row[3] * s3;
+        }
+        let factor = after.divide_by(Lanes::ONE);
+        (after, factor)
+    }
+
+    /// The light that a photon brings which has followed the first row: Q times it.
+    fn column(&self) -> Column<N> {
+        let [zero, one, two, three] = self.rows[0];
+        Column { x: self.x, stokes: [zero, one, two * -1.0, three] }
+    }
+
+    /// By how much polarization changes light that is compared.
+    fn compared(&self, light: &MetLight<N>) -> f64 {
+        if !self.compares {
+            return 0.0;
+        }
+        let MetLight { world, arrived, rgb } = *light;
+        let lanes = &(*arrived.lanes * self.rows[0][0]);
+        let exact = Arrived { lanes, ..*arrived }.rgb(&world.responses);
+        world.amount(exact) - world.amount(rgb)
+    }
+}
+
+impl<const N: usize> Polarization<N> for Rows<N> {
+    /// None on surfaces that leave no polarization.
+    type Landed = Option<Box<Column<N>>>;
+
+    fn of_camera(world: &World, ray: &Ray) -> Self {
+        let count = if world.layers.at(Layer::S1).is_some() { 4 } else { 1 };
+        let camera = &world.scene.camera;
+        let x = camera.image_right(ray.direction);
+        let rows = Self::starting(x, count, world.method.polarization == Polarizing::Compared);
+        let Some(filter) = camera.filter() else { return rows };
+        let (z, value) = (-ray.direction, Lanes([filter.transmittance() as f32; N]));
+        let (sin, cos) = libm::sincos(filter.angle);
+        let axis = x * cos + z.cross(x) * sin;
+        let mueller = Mueller::of_lanes(axis, Lanes::ONE, |_| Block::of_polarizer(filter.extinction));
+        rows.after(&Passing { mueller: &mueller, value, z: [z; 2] }).0
+    }
+
+    fn of_light(world: &World, ray: &Ray) -> Self {
+        let x = Frame::about(ray.direction).to_world(DVec3::X);
+        Self::starting(x, 1, world.method.polarization == Polarizing::Compared)
+    }
+
+    fn after_straight(self, material: &Material<Table>, arrival: &Arrival<N>, straight: &mut Straight<N>) -> Self {
+        let (mueller, value) = (material.mueller_of_straight(arrival), straight.share());
+        let (after, factor) = self.after(&Passing { mueller: &mueller, value, z: [arrival.wo; 2] });
+        let share = value * factor;
+        straight.panes = Lanes::from_fn(|i| (share[i] - straight.holes[i]).max(0.0));
+        after
+    }
+
+    fn split(self, at: &Interaction<N>, branches: &mut [Branch<N>], after: &mut Vec<Self>) {
+        after.clear();
+        for branch in branches {
+            let value = match branch.pdf {
+                None => Some(branch.share),
+                Some(pdf) if at.flat == at.arrival.normal => Some(branch.share * pdf as f32),
+                Some(_) => None,
+            };
+            let (rows, factor) = self.passed_folded(at, branch.incoming(), value);
+            branch.share = branch.share * factor;
+            after.push(rows);
+        }
+    }
+
+    fn along(self, _: &Interaction<N>, _: &Branch<N>, known: Option<&Self>) -> Self {
+        *known.expect("`split` tells of all branches")
+    }
+
+    fn toward(self, at: &Interaction<N>, wi: DVec3, bsdf_cos: &mut Lanes<N>) -> Self {
+        let crosses = wi.dot(at.flat) < 0.0;
+        let value = if at.flat == at.arrival.normal { Some(*bsdf_cos) } else { None };
+        let (after, factor) = self.passed_folded(at, Incoming { wi, crosses, single: false }, value);
+        *bsdf_cos = *bsdf_cos * factor;
+        after
+    }
+
+    fn moved(self, _: &Interaction<N>, _: DVec3, on_its_way: Self, light: &MetLight<N>) -> f64 {
+        on_its_way.compared(light)
+    }
+
+    fn moved_of_met(self, light: &MetLight<N>) -> f64 {
+        self.compared(light)
+    }
+
+    fn shown(self, at: &Interaction<N>, direction: DVec3, bsdf_cos: &mut Lanes<N>) -> Self {
+        let incoming = Incoming { wi: direction, crosses: direction.dot(at.flat) < 0.0, single: false };
+        let (after, factor) = self.passed_folded(at, incoming, None);
+        *bsdf_cos = *bsdf_cos * factor;
+        after
+    }
+
+    fn seen(self, at: &Interaction<N>, _: &Arrival<N>, on_its_way: Self, world: &World, ray: &Ray) -> SeenPhoton<N> {
+        let (after, factor) = Self::of_camera(world, ray).receiving(-ray.direction, &on_its_way.column());
+        let joined = after.change_of_joined(at, ray.direction, &None, after, factor);
+        SeenPhoton { change: joined as f32, factor: Some(factor), stokes: after.stokes() }
+    }
+
+    fn landed(self, at: &Interaction<N>) -> Self::Landed {
+        let is_of_no_use = matches!(at.material, Material::Diffuse(_)) && !self.compares;
+        (!is_of_no_use).then(|| Box::new(self.column()))
+    }
+
+    fn join(self, at: &Interaction<N>, wi: DVec3, photon: &Self::Landed, bsdf_cos: &mut Lanes<N>) -> Self {
+        let after = self.toward(at, wi, bsdf_cos);
+        let Some(light) = photon else { return after };
+        let (after, factor) = after.receiving(-wi, light);
+        *bsdf_cos = *bsdf_cos * factor;
+        after
+    }
+
+    fn change_of_joined(self, _: &Interaction<N>, _: DVec3, _: &Self::Landed, joined: Self, lanes: Lanes<N>) -> f64 {
+        let all = f64::from(lanes.sum());
+        if self.compares && all > 0.0 { f64::from((lanes * joined.rows[0][0]).sum()) / all - 1.0 } else { 0.0 }
+    }
+
+    fn read_landed(photon: &Self::Landed, read: impl Fn(Lanes<N>) -> Lanes<N>) -> Self::Landed {
+        photon.as_ref().map(|column| Box::new(Column { x: column.x, stokes: column.stokes.map(read) }))
+    }
+
+    fn stokes(&self) -> Option<[Lanes<N>; 3]> {
+        (self.count == 4).then(|| [1, 2, 3].map(|row| self.rows[row][0]))
+    }
+}

@@ -1,0 +1,349 @@
+//! Polarization against closed forms: rows of Stokes weights through sheets, mirrors, glass and panes.
+//!
+//! Expected numbers are those of the formulas that the tests name, computed in f64; metals and sheets were compared
+//! with Mitsuba 3.9.1 (`*_polarized`), which agrees to its own 32 bits. A camera at z = 5 looks along -z, up is +y: S1
+//! > 0 is horizontal.
+
+use abbe::film::Layer;
+use abbe::math::DVec3;
+use abbe::{Image, Options, Scene};
+
+use crate::support::scenes::moments;
+
+/// Lanes are f32 and are rounded at each of a few surfaces.
+const ROUNDING: f64 = 2e-6;
+
+/// One pixel of a narrow view of some objects and lights, with a key of the camera; S0, S1, S2 and S3.
+fn stokes(camera: &str, rest: &str) -> [f64; 4] {
+    let text = format!(
+        "camera = {{ position = [0, 0, 5], look_at = [0, 0, 0], projection = \"orthographic\", height = 1e-6{camera} }}\n\
+         film = {{ width = 1, height = 1, filter = \"center\", stokes = true }}\n{rest}"
+    );
+    let scene = Scene::parse(&text, "").unwrap_or_else(|error| panic!("{error}\n{text}"));
+    let image = abbe::render(&scene, &Options { threads: Some(1), ..Options::default() }).expect("it renders");
+    components(&image)
+}
+
+fn components(image: &Image) -> [f64; 4] {
+    let film = image.film();
+    let of = |layer: Layer| {
+        let image = film.layers.iter().find(|image| image.layer == layer).expect("the layer is there");
+        f64::from(image.values[1])
+    };
+    [f64::from(film.pixels[0].rgb[1]), of(Layer::S1), of(Layer::S2), of(Layer::S3)]
+}
+
+fn assert_near(got: [f64; 4], expected: [f64; 4], within: f64, what: &str) {
+    let off = (0..4).map(|i| (got[i] - expected[i]).abs()).fold(0.0, f64::max);
+    assert!(off <= within, "{what}: {got:?} for {expected:?}, off by {off:.1e}");
+}
+
+const SKY: &str = "[[light]]\nenvironment.radiance = 1\n";
+
+/// Sheets before the sky, the first nearest to the camera, seen straight or turned about y by some degrees.
+fn sheets(sheets: &[String], turned: f64) -> String {
+    sheets_apart(sheets, turned, 1.0)
+}
+
+/// The same, so far apart.
+fn sheets_apart(sheets: &[String], turned: f64, apart: f64) -> String {
+    let mut text = SKY.to_owned();
+    for (number, sheet) in sheets.iter().enumerate() {
+        text += &format!(
+            "[material.sheet{number}]\n{sheet}\n[[object]]\nmaterial = \"sheet{number}\"\n\
+             shape.quad = {{ center = [0, 0, 0], u = [0.5, 0, 0], v = [0, 0.5, 0] }}\n\
+             transform = [{{ rotate = {{ axis = [0, 1, 0], degrees = {turned} }} }}, \
+             {{ translate = [0, 0, {}] }}]\n",
+            -apart * number as f64
+        );
+    }
+    text
+}
+
+fn polarizer(degrees: f64, extinction: f64) -> String {
+    let (sin, cos) = degrees.to_radians().sin_cos();
+    format!("polarizer = {{ axis = [{cos}, {sin}, 0], extinction = {extinction} }}")
+}
+
+fn retarder(degrees: f64, retardance: f64) -> String {
+    let (sin, cos) = degrees.to_radians().sin_cos();
+    format!("retarder = {{ axis = [{cos}, {sin}, 0], retardance = {retardance} }}")
+}
+
+#[test]
+fn two_polarizers_let_through_what_malus_says() {
+    for degrees in [0.0_f64, 15.0, 30.0, 45.0, 60.0, 75.0, 90.0] {
+        let cos = degrees.to_radians().cos();
+        let got = stokes("", &sheets(&[polarizer(0.0, 0.0), polarizer(degrees, 0.0)], 0.0));
+        let half = 0.5 * cos * cos;
+        assert_near(got, [half, half, 0.0, 0.0], ROUNDING, &format!("{degrees} degrees"));
+        let got = stokes("", &sheets(&[polarizer(degrees, 0.0), polarizer(0.0, 1e-4)], 0.0));
+        let half = 0.5 * (cos * cos + 1e-4 * (1.0 - cos * cos));
+        let turned = |x: f64| f64::to_radians(2.0 * degrees) * x;
+        let expected = [half, half * turned(1.0).cos(), half * turned(1.0).sin(), 0.0];
+        assert_near(got, expected, ROUNDING, &format!("{degrees} degrees before a leaking one"));
+    }
+    let three = stokes("", &sheets(&[0.0, 45.0, 90.0].map(|degrees| polarizer(degrees, 0.0)), 0.0));
+    assert_near(three, [0.125, 0.125, 0.0, 0.0], ROUNDING, "three");
+}
+
+#[test]
+fn a_filter_before_the_camera_is_a_sheet() {
+    for degrees in [0.0_f64, 30.0, 90.0, 120.0] {
+        let filter = format!(", polarizer = {{ axis = {degrees}, extinction = 0.01 }}");
+        let behind = sheets(&[polarizer(20.0, 0.0)], 0.0);
+        let by_sheet = stokes("", &sheets(&[polarizer(degrees, 0.01), polarizer(20.0, 0.0)], 0.0));
+        assert_near(stokes(&filter, &behind), by_sheet, ROUNDING, &format!("{degrees} degrees"));
+    }
+}
+
+/// Crossed sheets between whose axes the plane of incidence lies let light through that meets them aslant: the
+/// absorbing axes are no longer at right angles across the ray.
+#[test]
+fn crossed_polarizers_leak_aslant() {
+    for (degrees, expected) in [(15.0, 0.000600), (30.0, 0.010204), (45.0, 0.055556), (60.0, 0.180000)] {
+        let got = stokes("", &sheets(&[polarizer(45.0, 0.0), polarizer(-45.0, 0.0)], degrees));
+        assert!((got[0] - expected).abs() < 2e-6, "{degrees} degrees: {got:?} for {expected}");
+    }
+}
+
+#[test]
+fn wave_plates_turn_linear_light() {
+    let behind = |plate: String, axis: f64| stokes("", &sheets(&[plate, polarizer(axis, 0.0)], 0.0));
+    for (plate, expected) in [
+        (retarder(45.0, 90.0), [0.5, 0.0, 0.0, 0.5]),
+        (retarder(-45.0, 90.0), [0.5, 0.0, 0.0, -0.5]),
+        (retarder(22.5, 180.0), [0.5, 0.0, 0.5, 0.0]),
+        (retarder(45.0, 180.0), [0.5, -0.5, 0.0, 0.0]),
+        (retarder(45.0, 60.0), [0.5, 0.25, 0.0, 0.433013]),
+    ] {
+        assert_near(behind(plate.clone(), 0.0), expected, ROUNDING, &plate);
+    }
+    for retardance in [30.0_f64, 60.0, 90.0, 120.0, 180.0] {
+        let sheets = sheets(&[polarizer(0.0, 0.0), retarder(45.0, retardance), polarizer(90.0, 0.0)], 0.0);
+        let sin = (0.5 * retardance.to_radians()).sin();
+        let through = 0.5 * sin * sin;
+        assert_near(stokes("", &sheets), [through, through, 0.0, 0.0], ROUNDING, &format!("{retardance} degrees"));
+    }
+}
+
+/// Mirrors 1 apart on the ray, with the unit normals that it meets.
+fn mirrors(material: &str, normals: &[DVec3]) -> String {
+    let is_body = material.starts_with("dielectric");
+    let mut text = format!("{SKY}[material.mirror]\n{material}\n");
+    let (mut place, mut direction) = (DVec3::ZERO, DVec3::NEG_Z);
+    for normal in normals.iter().map(|normal| normal.normalize()) {
+        let middle = place - 0.2 * normal;
+        text += &match is_body {
+            false => format!(
+                "[[object]]\nmaterial = \"mirror\"\n\
+                 shape.disc = {{ center = [{}, {}, {}], normal = [{}, {}, {}], radius = 0.2 }}\n",
+                place.x, place.y, place.z, normal.x, normal.y, normal.z
+            ),
+            true => format!(
+                "[[object]]\nmaterial = \"mirror\"\nshape.sphere = {{ center = [{}, {}, {}], radius = 0.2 }}\n",
+                middle.x, middle.y, middle.z
+            ),
+        };
+        direction -= 2.0 * direction.dot(normal) * normal;
+        place += direction;
+    }
+    text
+}
+
+/// Glass that lets nothing through again.
+const BLACK_GLASS: &str = "dielectric = { index = 1.5, absorption = 1e6 }";
+
+/// Metals n - i k; Mitsuba's `scalar_mono_polarized` shows the same ten pixels to 2.4e-7.
+#[test]
+fn metals_mirror_all_four_components() {
+    let gold = "conductor = { n = 0.43, k = 2.455 }";
+    let aluminum = "conductor = { n = 1.015, k = 6.627 }";
+    let slanting = DVec3::new(1.0, 0.0, 1.0);
+    let (sin, cos) = f64::to_radians(30.0).sin_cos();
+    let up = DVec3::new(0.0, 1.0, 1.0).normalize() - DVec3::X;
+    let grazing = [
+        DVec3::new(0.965925826, 0.0, 0.258819045),
+        DVec3::new(0.462096828, 0.683012702, 0.565650219),
+        DVec3::new(-0.159272307, -0.985466895, 0.059053637),
+    ];
+    for (material, normals, expected) in [
+        (gold, vec![slanting], [0.785459, -0.063955, 0.0, 0.0]),
+        (gold, vec![DVec3::new(cos, sin, 1.0)], [0.785459, -0.031978, -0.055387, 0.0]),
+        (gold, vec![slanting, up], [0.616945, -0.050234, 0.043242, 0.025236]),
+        (gold, grazing[..2].to_vec(), [0.680673, -0.097907, -0.028745, 0.092527]),
+        (gold, grazing.to_vec(), [0.533189, -0.056212, 0.041503, 0.090961]),
+        (aluminum, grazing.to_vec(), [0.684973, -0.107958, 0.075201, 0.048315]),
+        ("mirror = {}", grazing.to_vec(), [1.0, 0.0, 0.0, 0.0]),
+    ] {
+        let got = stokes("", &mirrors(material, &normals));
+        assert_near(got, expected, ROUNDING, &format!("{material}, {} mirrors", normals.len()));
+    }
+}
+
+#[test]
+fn a_mirror_turns_handedness_around() {
+    let scene = mirrors("mirror = {}", &[DVec3::new(1.0, 0.0, 1.0)])
+        + "[material]\nplate.retarder = { axis = [0, 1, 1], retardance = 90 }\nsheet.polarizer.axis = [0, 1, 0]\n\
+           [[object]]\nmaterial = \"plate\"\nshape.quad = { center = [1, 0, 0], u = [0, 0.2, 0], v = [0, 0, 0.2] }\n\
+           [[object]]\nmaterial = \"sheet\"\nshape.quad = { center = [2, 0, 0], u = [0, 0.2, 0], v = [0, 0, 0.2] }\n";
+    // Seen toward +x, z is to the right: the plate's axis lies at 45 degrees.
+    let straight = stokes("", &sheets(&[retarder(45.0, 90.0), polarizer(90.0, 0.0)], 0.0));
+    assert_near(straight, [0.5, 0.0, 0.0, straight[3]], ROUNDING, "straight");
+    let mirrored = stokes("", &scene);
+    assert_near(mirrored, [0.5, 0.0, 0.0, -straight[3]], ROUNDING, "mirrored");
+    assert!((straight[3].abs() - 0.5).abs() < ROUNDING, "{straight:?}");
+}
+
+/// Black glass of index 1.5 under a filter: p alone, s alone, and none. At Brewster's angle no p is left.
+#[test]
+fn a_filter_takes_the_glare_off_glass() {
+    for (degrees, p, s, all) in [
+        (45.0_f64, 0.004233, 0.046007, 0.050240),
+        (56.309932, 0.0, 0.073964, 0.073964),
+        (65.0, 0.006482, 0.114031, 0.120513),
+    ] {
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        let glass = mirrors(BLACK_GLASS, &[DVec3::new(sin, 0.0, cos)]);
+        // The plane of incidence is horizontal.
+        for (filter, expected) in [(", polarizer.axis = 0", p), (", polarizer.axis = 90", s), ("", all)] {
+            let got = stokes(filter, &glass)[0];
+            assert!((got - expected).abs() < 1e-6, "{degrees} degrees{filter}: {got} for {expected}");
+        }
+    }
+}
+
+/// A second plane of incidence turned against the first: light that one favors the other may not.
+#[test]
+fn two_reflections_depend_on_how_their_planes_lie() {
+    for (degrees, expected) in [
+        (45.0_f64, [0.00426907, 0.00339656, 0.00252405, 0.00165154, 0.00077903]),
+        (56.309932, [0.01094149, 0.00820612, 0.00547075, 0.00273537, 0.0]),
+    ] {
+        for (turned, expected) in [0.0_f64, 30.0, 45.0, 60.0, 90.0].into_iter().zip(expected) {
+            let (sin, cos) = degrees.to_radians().sin_cos();
+            let first = DVec3::new(sin, 0.0, cos);
+            let direction = DVec3::NEG_Z - 2.0 * DVec3::NEG_Z.dot(first) * first;
+            let across = direction.cross(DVec3::Y);
+            let (sin_turned, cos_turned) = turned.to_radians().sin_cos();
+            let second = -direction * cos + (across * cos_turned + DVec3::Y * sin_turned) * sin;
+            let scene = mirrors(BLACK_GLASS, &[first, second]);
+            let got = stokes("", &scene)[0];
+            assert!((got - expected).abs() < 3e-8, "{degrees}, {turned} degrees: {got} for {expected}");
+        }
+    }
+}
+
+/// A pile of panes over a lamp that is behind it alone: what is mirrored is black.
+fn pile(plates: usize, index: f64, degrees: f64) -> String {
+    let lamp = "[material.lamp.emissive]\nradiance = 1\n[[object]]\nmaterial = \"lamp\"\n\
+                shape.disc = { center = [0, 0, -20], normal = [0, 0, 1], radius = 0.5 }\n";
+    let panes = vec![format!("thin = {{ index = {index} }}"); plates];
+    sheets_apart(&panes, degrees, 1e-3).replace(SKY, lamp)
+}
+
+/// What goes through it, and S1 where s is vertical: of each polarization (1 - R) / (1 + (2 m - 1) R) (Stokes 1862, *On
+/// the Intensity of the Light Reflected from or Transmitted through a Pile of Plates*).
+fn through_pile(plates: usize, index: f64, degrees: f64) -> [f64; 2] {
+    let (sin, cos) = degrees.to_radians().sin_cos();
+    let within = (1.0 - (sin / index).powi(2)).sqrt();
+    let amplitudes = [(cos - index * within) / (cos + index * within), (index * cos - within) / (index * cos + within)];
+    let [s, p] = amplitudes.map(|r| (1.0 - r * r) / (1.0 + (2.0 * plates as f64 - 1.0) * r * r));
+    [0.5 * (s + p), 0.5 * (p - s)]
+}
+
+/// Plates without a phase between them.
+#[test]
+fn a_pile_of_plates_polarizes() {
+    // Known numbers: the formula is right.
+    let [t, s1] = through_pile(4, 1.5168, 56.603838);
+    assert!((t - 0.702374).abs() < 1e-6 && (s1 / t - 0.423743).abs() < 1e-6, "{t}, {s1}");
+    for (index, degrees) in [(1.5, 45.0), (1.5168, 56.603838), (1.5168, 75.0)] {
+        for plates in [1, 2] {
+            let [t, s1] = through_pile(plates, index, degrees);
+            let got = stokes("", &pile(plates, index, degrees));
+            assert_near(got, [t, s1, 0.0, 0.0], 1e-5, &format!("{plates} of {index} at {degrees} degrees"));
+        }
+    }
+}
+
+/// The same where light has too many ways: by chance, as many pixels of a pile of ten.
+#[test]
+fn a_pile_of_many_plates_polarizes_on_average() {
+    for plates in [4, 10] {
+        let text = format!(
+            "camera = {{ position = [0, 0, 5], look_at = [0, 0, 0], projection = \"orthographic\", height = 1e-6 }}\n\
+             film = {{ width = 24, height = 24, stokes = true }}\nrender = {{ samples = 16 }}\n{}",
+            pile(plates, 1.5168, 56.603838)
+        );
+        let scene = Scene::parse(&text, "").expect("the scene is valid");
+        let image = abbe::render(&scene, &Options::default()).expect("it renders");
+        let film = image.film();
+        let s1 = film.layers.iter().find(|image| image.layer == Layer::S1).expect("the layer is there");
+        let seen = [
+            moments(film.pixels.iter().map(|pixel| f64::from(pixel.rgb[1]))),
+            moments(s1.channel(1).map(f64::from).collect::<Vec<_>>().into_iter()),
+        ];
+        for ((mean, variance), expected) in seen.into_iter().zip(through_pile(plates, 1.5168, 56.603838)) {
+            let error = (variance / film.pixels.len() as f64).sqrt();
+            let z = (mean - expected) / error;
+            println!("{plates} plates: {mean:.6} +- {error:.6} for {expected:.6}, z {z:.2}");
+            assert!(z.abs() < 4.0 && error < 0.01, "{plates} plates: {mean} +- {error} for {expected}");
+        }
+    }
+}
+
+/// A Fresnel rhomb of index 1.51 at 54.6 degrees makes circular light of light at 45 degrees.
+#[test]
+fn total_reflection_shifts_the_phase() {
+    let angle = 54.6_f64.to_radians();
+    let rhomb = |reflections: usize| {
+        // In glass all around, a slab of air mirrors totally: its face is met at the angle.
+        let mut text = format!(
+            "{SKY}[material]\nglass.dielectric.index = 1.51\nsheet.polarizer.axis = [1, 1, 0]\nair.thin.index = 1\n"
+        );
+        let (mut place, mut direction) = (DVec3::ZERO, DVec3::NEG_Z);
+        for number in 0..reflections {
+            let sign = if number % 2 == 0 { 1.0 } else { -1.0 };
+            let normal = DVec3::new(sign * angle.sin(), 0.0, angle.cos());
+            let normal = if number == 0 { normal } else { DVec3::new(-angle.sin(), 0.0, -angle.cos()) };
+            text += &format!(
+                "[[object]]\nmaterial = \"air\"\nshape.disc = {{ center = [{}, {}, {}], normal = [{}, {}, {}], radius = 0.2 }}\n",
+                place.x, place.y, place.z, normal.x, normal.y, normal.z
+            );
+            direction -= 2.0 * direction.dot(normal) * normal;
+            place += direction;
+        }
+        let across = direction.cross(DVec3::Y);
+        let (u, v) = (0.2 * across, 0.2 * DVec3::Y);
+        let axis = across + DVec3::Y;
+        text = text.replace("axis = [1, 1, 0]", &format!("axis = [{}, {}, {}]", axis.x, axis.y, axis.z));
+        text += &format!(
+            "[[object]]\nmaterial = \"sheet\"\nshape.quad = {{ center = [{}, {}, {}], u = [{}, {}, {}], v = [{}, {}, {}] }}\n",
+            place.x, place.y, place.z, u.x, u.y, u.z, v.x, v.y, v.z
+        );
+        text + "[[object]]\nmaterial = \"glass\"\nshape.sphere = { center = [0, 0, 0], radius = 100 }\n"
+    };
+    for (reflections, expected) in [(1, [0.706958, 0.707256]), (2, [0.000422, 1.0])] {
+        let got = stokes("", &rhomb(reflections));
+        let [s2, s3] = [got[2], got[3]].map(|part| (part / got[0]).abs());
+        assert!((s2 - expected[0]).abs() < 1e-5 && (s3 - expected[1]).abs() < 1e-5, "{reflections}: {got:?}");
+    }
+}
+
+/// The base of plastic leaves through its coat: partly polarized in the plane of the normal.
+#[test]
+fn a_coat_polarizes_what_comes_from_below() {
+    for (degrees, expected) in
+        [(30.0, 0.016978), (45.0, 0.043983), (60.0, 0.095941), (75.0, 0.195860), (85.0, 0.308744)]
+    {
+        let plastic = "plastic = { reflectance = 0.8, index = 1.5 }".to_owned();
+        // A lamp straight above is not mirrored toward the camera.
+        let (sin, cos) = f64::to_radians(degrees).sin_cos();
+        let scene = sheets(&[plastic], degrees).replace(SKY, "")
+            + &format!("[[light]]\npoint = {{ position = [{}, 0, {}], intensity = 100 }}\n", 10.0 * sin, 10.0 * cos);
+        let got = stokes("", &scene);
+        assert!((got[1] / got[0] - expected).abs() < 1e-5, "{degrees} degrees: {got:?} for {expected}");
+        assert!(got[2].abs() + got[3].abs() < 1e-6 * got[0], "{degrees} degrees: {got:?}");
+    }
+}
