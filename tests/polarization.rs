@@ -347,3 +347,31 @@ fn a_coat_polarizes_what_comes_from_below() {
         assert!(got[2].abs() + got[3].abs() < 1e-6 * got[0], "{degrees} degrees: {got:?}");
     }
 }
+
+/// Water under a sky of degree 0.7 everywhere the camera looks, polarized at an angle from s.
+#[test]
+fn a_polarized_sky_changes_what_water_mirrors() {
+    for (degrees, expected) in [
+        (30.0_f64, [0.028139, 0.024810, 0.021480, 0.014820]),
+        (45.0, [0.045541, 0.036745, 0.027949, 0.010357]),
+        (53.1315, [0.066662, 0.052937, 0.039213, 0.011764]),
+        (70.0, [0.193998, 0.163791, 0.133584, 0.073169]),
+    ] {
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        let normal = DVec3::new(sin, 0.0, cos);
+        let direction = DVec3::NEG_Z - 2.0 * DVec3::NEG_Z.dot(normal) * normal;
+        let p = direction.cross(DVec3::Y);
+        for (turned, expected) in [0.0_f64, 30.0, 45.0, 90.0].into_iter().zip(expected) {
+            // A quarter turn from the sun light is polarized across both: s is vertical here.
+            let (sin, cos) = turned.to_radians().sin_cos();
+            let sun = p * cos + DVec3::Y * sin;
+            let scene = mirrors("dielectric = { index = 1.3334, absorption = 1e6 }", &[normal]);
+            let sky = format!(
+                "environment = {{ radiance = 1, polarization = {{ sun = [{}, {}, {}], degree = 0.7 }} }}",
+                sun.x, sun.y, sun.z
+            );
+            let got = stokes("", &scene.replace("environment.radiance = 1", &sky))[0];
+            assert!((got - expected).abs() < 1e-6, "{degrees}, {turned} degrees: {got} for {expected}");
+        }
+    }
+}

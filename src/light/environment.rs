@@ -13,6 +13,8 @@ use crate::spectrum::{Curve, CurveKind, Draw, Lanes, Placement, Quantity, Table,
 /// environment = { radiance = 1 }
 /// [[light]]
 /// environment = { radiance = { image = "sky.exr" }, transform = [{ rotate = { axis = [0, 1, 0], degrees = 90 } }] }
+/// [[light]]
+/// environment = { radiance = 1, polarization = { sun = [0, 1, 1], degree = 0.7 } }
 /// ```
 #[derive(Clone, Debug)]
 pub struct Environment<S> {
@@ -20,6 +22,31 @@ pub struct Environment<S> {
     pub radiance: S,
     /// The image.
     pub image: Option<Sky<S>>,
+    /// How it is polarized, if it is.
+    pub polarization: Option<SkyPolarization>,
+}
+
+/// The polarization of a clear sky: of sunlight that air has scattered once.
+///
+/// Rayleigh 1871, *On the Light from the Sky, its Polarization and Colour*: the degree is sin^2 g / (1 + cos^2 g) at an
+/// angle g from the sun, and fields swing across the plane of the sun and the ray. Air scatters more than once, and
+/// molecules are no spheres: so the most there is, a quarter turn from the sun, is given.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SkyPolarization {
+    /// Unit vector toward the sun.
+    pub sun: DVec3,
+    /// The degree a quarter turn from it, 0 to 1.
+    pub degree: f64,
+}
+
+impl SkyPolarization {
+    /// Along which direction light is polarized that comes from the unit vector `wi`, and to which degree; none toward
+    /// the sun and away from it, where it is not.
+    pub fn toward(&self, wi: DVec3) -> Option<(DVec3, f64)> {
+        let cos = wi.dot(self.sun);
+        let axis = wi.cross(self.sun).try_normalize()?;
+        Some((axis, self.degree * (1.0 - cos * cos) / (1.0 + cos * cos)))
+    }
 }
 
 /// An image around the scene.
@@ -48,7 +75,8 @@ impl<S> Environment<S> {
             turn: sky.turn,
             colors: convert(Quantity::Emission, &sky.colors),
         });
-        Environment { radiance: convert(Quantity::Emission, &self.radiance), image }
+        let polarization = self.polarization;
+        Environment { radiance: convert(Quantity::Emission, &self.radiance), image, polarization }
     }
 
     /// Draws directions by the image's brightness; without one by their cosine to the unit normal of a surface, as the

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::{Area, Beam, Environment, LeSample, LightBounds, LightSample, Point, Spot, Sun};
+use super::{Area, Beam, Environment, LeSample, LightBounds, LightSample, Point, SkyPolarization, Spot, Sun};
 use crate::math::{DVec3, Ray, ball_surface, unit};
 use crate::shape::{Ball, Crossing, Sides, SurfacePoint};
 use crate::spectrum::{Draw, Lanes, Quantity, Table};
@@ -45,6 +45,14 @@ impl<S> Light<S> {
             Self::Spot(spot) => &spot.intensity,
             Self::Environment(environment) => &environment.radiance,
             Self::Sun(sun) => &sun.irradiance,
+        }
+    }
+
+    /// How its light is polarized; none of light that is not.
+    pub fn polarization(&self) -> Option<&SkyPolarization> {
+        match self {
+            Self::Environment(environment) => environment.polarization.as_ref(),
+            Self::Area(_) | Self::Point(_) | Self::Spot(_) | Self::Sun(_) => None,
         }
     }
 

@@ -18,7 +18,7 @@ mod tree;
 
 pub use area::Area;
 pub use bounds::{LightBounds, NormalCone};
-pub use environment::{Environment, Sky};
+pub use environment::{Environment, Sky, SkyPolarization};
 pub use kinds::{Light, LightId};
 pub use panorama::Panorama;
 pub use point::Point;

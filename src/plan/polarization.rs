@@ -61,6 +61,9 @@ fn asking(scene: &Scene<Curve>) -> Option<String> {
     if Layer::STOKES.iter().any(|layer| scene.format.layers.contains(layer)) {
         return Some("the film asks for Stokes vectors".into());
     }
+    if scene.lights.iter().any(|light| light.polarization().is_some()) {
+        return Some("the sky is polarized".into());
+    }
     let sheet = scene.materials.iter().find(|material| material.material.has_axis())?;
     Some(format!("the scene has a sheet that polarizes ({})", sheet.name))
 }

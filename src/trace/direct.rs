@@ -146,7 +146,9 @@ impl<const N: usize, P: Polarization<N>> DirectLighting<'_, N, P> {
         let light_of = || world.scene.lights[*light].toward(arrival.draw, wi, sample.uv);
         let mut bsdf_cos = *bsdf_cos;
         let toward = || self.path.polarization.toward(self.at, wi, &mut bsdf_cos);
-        let Some((arriving, on_its_way)) = passage.arriving(world, arrival.draw, toward, light_of) else { return };
+        let arriving = passage.arriving(world, arrival.draw, toward, light_of);
+        let Some((mut arriving, on_its_way)) = arriving else { return };
+        let on_its_way = on_its_way.lit_by(&world.scene.lights[*light], wi, &mut arriving);
         // The density of bounces that are guided takes its time.
         let factor = match self.aiming.filter(|_| self.goes_on && sample.pdf.is_some()) {
             Some(aiming) => self.factor(sample, *probability, aiming.pdf(wi, *bsdf_pdf)),

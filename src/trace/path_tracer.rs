@@ -39,6 +39,14 @@ pub(super) struct PathTracer<'a, const N: usize, P: Polarization<N> = Polarized>
     draw: Option<Draw<N>>,
 }
 
+/// Where a path has hit a light.
+struct Lit<P> {
+    /// The unit normal of the surface that shines, on its front; none of a sky.
+    normal: Option<DVec3>,
+    /// How the path is polarized there.
+    polarization: P,
+}
+
 /// Use of the camera's random numbers: where in the pixel the sample falls.
 const PLACE: u32 = 0;
 /// Another: where on the lens its ray starts. The path's first vertex has 1, 2 and those from 16.
@@ -224,8 +232,11 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
                 _ => 1.0,
             };
             let weight = weight_of_meeting(world, id, path.scatter.as_ref(), &path.ray, None);
-            let lanes = &path.throughput.scaled(weight * factor).of(light.toward(draw, path.ray.direction, [0.0; 2]));
-            self.receive(path, None, &Arrived { light: id, draw, lanes, parted: path.parted });
+            let mut shone = light.toward(draw, path.ray.direction, [0.0; 2]);
+            let polarization = path.polarization.lit_by(light, path.ray.direction, &mut shone);
+            let lanes = &path.throughput.scaled(weight * factor).of(shone);
+            let lit = Lit { normal: None, polarization };
+            self.receive(path, &lit, &Arrived { light: id, draw, lanes, parted: path.parted });
         }
     }
 
@@ -241,19 +252,21 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         let weight = weight_of_meeting(world, id, path.scatter.as_ref(), &path.ray, Some(&hit.crossing));
         let uv = object.uv(&hit.crossing, point);
         let lanes = &path.throughput.scaled(weight).of(draw.read_at(&area.radiance, uv));
-        self.receive(path, Some(point.normal), &Arrived { light: id, draw, lanes, parted: path.parted });
+        let lit = Lit { normal: Some(point.normal), polarization: path.polarization };
+        self.receive(path, &lit, &Arrived { light: id, draw, lanes, parted: path.parted });
     }
 
-    /// Hands light that a path has hit to the sensor; `normal` is that of the surface that shines.
-    fn receive(&mut self, path: &Path<N, P>, normal: Option<DVec3>, arrived: &Arrived<N>) {
+    /// Hands light that a path has hit to the sensor.
+    fn receive(&mut self, path: &Path<N, P>, lit: &Lit<P>, arrived: &Arrived<N>) {
         let rgb = arrived.rgb(&self.walker.world.responses);
-        let moved = path.polarization.moved_of_met(&MetLight { world: self.walker.world, arrived, rgb });
+        let Lit { normal, polarization } = *lit;
+        let moved = polarization.moved_of_met(&MetLight { world: self.walker.world, arrived, rgb });
         let (light, found) = (Some(arrived.light), Found::Hit { normal, scattered: path.scatter.is_some() });
         let Path { bounces, parted: dispersed, first, .. } = *path;
         self.sensor.receive(
             Contribution { light, found, rgb, moved, first, bounces, dispersed },
             arrived,
-            &path.polarization,
+            &polarization,
         );
     }
 

@@ -5,6 +5,7 @@ use std::fmt::Debug;
 use super::World;
 use super::arrived::Arrived;
 use super::interaction::Interaction;
+use crate::light::Light;
 use crate::material::{Arrival, Branch, Material, Straight};
 use crate::math::{DVec3, Ray};
 use crate::spectrum::{Lanes, Table};
@@ -70,6 +71,10 @@ pub(super) trait Polarization<const N: usize>: Copy + Debug + Send + Sync + 'sta
 
     /// The same of light that the path has met.
     fn moved_of_met(self, light: &MetLight<N>) -> f64;
+
+    /// Where the path meets light that comes from the unit vector `wi`, which may be polarized; makes `shone`, what the
+    /// light would be that is not, what the path takes of it.
+    fn lit_by(self, light: &Light<Table>, wi: DVec3, shone: &mut Lanes<N>) -> Self;
 
     /// On the way from a surface, where a photon has landed, along a unit vector to the camera; makes `bsdf_cos` that
     /// of the photon's light.

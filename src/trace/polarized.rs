@@ -10,6 +10,7 @@
 use super::World;
 use super::interaction::Interaction;
 use super::polarization::{MetLight, Polarization, SeenPhoton};
+use crate::light::Light;
 use crate::material::{Arrival, Branch, Material, Scatter, Straight};
 use crate::math::{DVec3, Ray};
 use crate::spectrum::{Lanes, Table};
@@ -115,6 +116,11 @@ impl<const N: usize> Polarization<N> for Polarized {
 
     fn moved_of_met(self, light: &MetLight<N>) -> f64 {
         if self.is_any() { self.change() * light.world.amount(light.rgb) } else { 0.0 }
+    }
+
+    #[inline(always)]
+    fn lit_by(self, _: &Light<Table>, _: DVec3, _: &mut Lanes<N>) -> Self {
+        self
     }
 
     #[inline(always)]

@@ -14,6 +14,7 @@ use super::method::Polarizing;
 use super::polarization::{MetLight, Polarization, SeenPhoton};
 use super::shading;
 use crate::film::Layer;
+use crate::light::Light;
 use crate::material::{Arrival, Block, Branch, Incoming, Material, Mueller, Scatter, Straight};
 use crate::math::{DVec3, Frame, Ray};
 use crate::spectrum::{Lanes, Table};
@@ -266,6 +267,14 @@ impl<const N: usize> Polarization<N> for Rows<N> {
 
     fn moved_of_met(self, light: &MetLight<N>) -> f64 {
         self.compared(light)
+    }
+
+    fn lit_by(self, light: &Light<Table>, wi: DVec3, shone: &mut Lanes<N>) -> Self {
+        let Some((axis, degree)) = light.polarization().and_then(|sky| sky.toward(wi)) else { return self };
+        let stokes = [1.0, degree as f32, 0.0, 0.0].map(|part| Lanes([part; N]));
+        let (after, factor) = self.receiving(-wi, &Column { x: axis, stokes });
+        *shone = *shone * factor;
+        after
     }
 
     fn shown(self, at: &Interaction<N>, direction: DVec3, bsdf_cos: &mut Lanes<N>) -> Self {

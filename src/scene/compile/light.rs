@@ -14,7 +14,7 @@ use super::measures::{direction, point};
 use super::object;
 use super::radiometry;
 use super::transform::{Step, map_of, steps};
-use crate::light::{Environment, Light, LightId, Panorama, Point, Sky, Spot, Sun};
+use crate::light::{Environment, Light, LightId, Panorama, Point, Sky, SkyPolarization, Spot, Sun};
 use crate::math::{DMat3, DVec3, Transform};
 use crate::scene::text::{At, Fields, Value, above_0_to, at};
 use crate::spectrum::{Curve, Placement, Quantity};
@@ -160,12 +160,14 @@ fn even_or_image<'d>(context: &mut Context, value: Value<'d>) -> Option<Environm
     Fields::read(value, |light| {
         let radiance = light.need("radiance", |value| CurveText::read(value, Quantity::Emission));
         let turn = light.maybe("transform", at(steps));
-        let radiance = radiance?;
+        let polarization = light.maybe("polarization", sky_polarization);
+        let (radiance, polarization) = (radiance?, polarization?);
         let KindText::Image(file) = radiance.kind else {
             if let Some(turn) = turn?.filter(|turn| !turn.it.is_empty()) {
                 return turn.place.advise("an even environment looks the same after every turn", "leave it out");
             }
-            return Some(Environment { radiance: curve(context, &radiance, Quantity::Emission)?, image: None });
+            let radiance = curve(context, &radiance, Quantity::Emission)?;
+            return Some(Environment { radiance, image: None, polarization });
         };
         let is_plain = radiance.encoding.is_none() && radiance.channel.is_none();
         if !is_plain || radiance.placement()? != Placement::default() {
@@ -178,7 +180,20 @@ fn even_or_image<'d>(context: &mut Context, value: Value<'d>) -> Option<Environm
         let panorama = panorama(context, &At { place: radiance.place, it: file });
         let (factor, turn, panorama) = (radiometry::on_film(context, &radiance, factor?.into())?, turn?, panorama?);
         let rotation = DMat3::from_cols(turn.vector(DVec3::X), turn.vector(DVec3::Y), turn.vector(DVec3::Z));
-        Some(Environment { radiance: factor, image: Some(Sky::new(panorama, rotation)) })
+        Some(Environment { radiance: factor, image: Some(Sky::new(panorama, rotation)), polarization })
+    })
+}
+
+/// `polarization = { sun = [0, 1, 1], degree = 0.7 }`: where the sun of a clear sky stands, and how far its light is
+/// polarized a quarter turn from there.
+fn sky_polarization(value: Value) -> Option<SkyPolarization> {
+    Fields::read(value, |sky| {
+        let sun = sky.need("sun", direction);
+        let degree = sky.need("degree", |value| {
+            let help = "what is polarized of a clear sky's light a quarter turn from the sun: 0.7 to 0.8";
+            value.within(0.0..=1.0, "a degree of polarization lies between 0 and 1", Some(help))
+        });
+        Some(SkyPolarization { sun: sun?.normalize(), degree: degree? })
     })
 }
 
