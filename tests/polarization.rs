@@ -4,6 +4,8 @@
 //! with Mitsuba 3.9.1 (`*_polarized`), which agrees to its own 32 bits. A camera at z = 5 looks along -z, up is +y: S1
 //! > 0 is horizontal.
 
+mod criterion;
+
 use abbe::film::Layer;
 use abbe::math::DVec3;
 use abbe::{Image, Options, Scene};
