@@ -215,6 +215,32 @@ fn a_filter_takes_the_glare_off_glass() {
     }
 }
 
+/// Light at 45 degrees is mirrored by glass of index 1.5 as c / a of its Mueller matrix has it: below Brewster's angle it
+/// swings the other way.
+#[test]
+fn glass_turns_the_plane_of_polarization() {
+    for (degrees, a, d, c) in [
+        (30.0_f64, 0.041523, 0.391918, -0.92),
+        (45.0, 0.050240, 0.831479, -0.555556),
+        (75.0, 0.253061, 0.578105, 0.815963),
+    ] {
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        let normal = DVec3::new(sin, 0.0, cos);
+        let direction = DVec3::NEG_Z + 2.0 * cos * normal;
+        let p = DVec3::Y.cross(direction);
+        let [u, v, place, axis] = [0.2 * p, 0.2 * DVec3::Y, direction, DVec3::Y + p];
+        let scene = mirrors(BLACK_GLASS, &[normal])
+            + &format!(
+                "[material.sheet]\npolarizer.axis = [{}, {}, {}]\n[[object]]\nmaterial = \"sheet\"\n\
+                 shape.quad = {{ center = [{}, {}, {}], u = [{}, {}, {}], v = [{}, {}, {}] }}\n",
+                axis.x, axis.y, axis.z, place.x, place.y, place.z, u.x, u.y, u.z, v.x, v.y, v.z
+            );
+        // s is vertical.
+        let expected = [0.5 * a, -0.5 * a * d, -0.5 * a * c, 0.0];
+        assert_near(stokes("", &scene), expected, ROUNDING, &format!("{degrees} degrees"));
+    }
+}
+
 /// A second plane of incidence turned against the first: light that one favors the other may not.
 #[test]
 fn two_reflections_depend_on_how_their_planes_lie() {
