@@ -48,6 +48,18 @@ BUGS = {
         "one of four wavelengths goes on, without four times the weight",
         ("lanes", "heroes_and_fixed_lanes_together_find_what_single_wavelengths_find"),
     ),
+    "retardance_of_columns": Bug(
+        "the phase between s and p with the sign that columns have, for rows",
+        ("polarization", "metals_mirror_all_four_components"),
+    ),
+    "verdet_sign_of_r_p": Bug(
+        "p reflected by glass with the sign of other textbooks",
+        ("polarization", "glass_turns_the_plane_of_polarization"),
+    ),
+    "frames_not_turned": Bug(
+        "polarization not turned from one plane of incidence into the next",
+        ("polarization", "two_reflections_depend_on_how_their_planes_lie"),
+    ),
     "ten_degree_observer": Bug("color matching functions of 1964 (10 degrees) for those of 1931"),
     "srgb_in_the_exr": Bug("the sRGB curve in the EXR"),
 }
