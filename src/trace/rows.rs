@@ -145,7 +145,9 @@ impl<const N: usize> Rows<N> {
 
     /// After a surface that light leaves by a way, and the factor on what leaves.
     fn passed(&self, at: &Interaction<N>, incoming: Incoming, value: Lanes<N>) -> (Self, Lanes<N>) {
-        let mueller = at.material.mueller(&at.arrival, incoming);
+        // Lanes that do not come this way are not asked for.
+        let present = Lanes::from_fn(|i| if value[i] == 0.0 { 0.0 } else { at.arrival.present[i] });
+        let mueller = at.material.mueller(&Arrival { present, ..at.arrival }, incoming);
         let z = [at.arrival.wo, -incoming.wi];
         self.after(&Passing { mueller: &mueller, value, z })
     }

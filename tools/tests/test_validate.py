@@ -27,14 +27,17 @@ def test_a_metal_reflects_by_n_and_k():
     assert formulas.fresnel(n + 1j * k, 0) == pytest.approx(((n - 1) ** 2 + k**2) / ((n + 1) ** 2 + k**2))
 
 
-def test_plates_transmit_the_known_shares_without_polarization():
+def test_plates_transmit_the_known_shares():
     known = {0: 0.918318, 30: 0.915446, 45: 0.899254, 60: 0.830693, 70: 0.702545}
     for degrees, transmittance in known.items():
-        assert formulas.slab(1.52, degrees)[1] == pytest.approx(transmittance, abs=5e-7)
+        assert formulas.slab_of_averages(1.52, degrees)[1] == pytest.approx(transmittance, abs=5e-7)
         assert sum(formulas.slab(1.52, degrees)) == pytest.approx(1)
+    for degrees, transmittance in {45: 0.907344, 60: 0.848128}.items():
+        assert formulas.slab(1.5, degrees)[1] == pytest.approx(transmittance, abs=5e-7)
     assert formulas.slab(1.5, 0, optical_depth=1) == pytest.approx((0.044990, 0.339111), abs=5e-7)
-    assert formulas.slab(1.5, 60, optical_depth=1) == pytest.approx((0.095579, 0.243925), abs=5e-7)
-    assert formulas.pile(1.5168, 45, 4) == pytest.approx(0.6925, abs=5e-5)
+    assert formulas.slab_of_averages(1.5, 60, optical_depth=1) == pytest.approx((0.095579, 0.243925), abs=5e-7)
+    for degrees, plates, transmittance in [(45, 4, 0.735751), (56.603838, 4, 0.702374), (56.603838, 10, 0.606913)]:
+        assert formulas.pile(1.5168, degrees, plates) == pytest.approx(transmittance, abs=5e-7)
     assert formulas.pile(1.5168, 45, 1) == pytest.approx(formulas.slab(1.5168, 45)[1])
 
 

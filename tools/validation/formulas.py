@@ -47,8 +47,17 @@ def inner_diffuse_reflectance(index):
 def slab(index, degrees, optical_depth=0):
     """Reflectance and transmittance of a plate in air, all orders summed: the geometric series of Stokes (1862).
 
-    Polarization is averaged at every boundary. `optical_depth` is absorption times thickness.
+    Unpolarized light has the mean of both polarizations, each with a series of its own. `optical_depth` is absorption
+    times thickness.
     """
+    a = np.exp(-optical_depth / refracted_cosine(index, degrees))
+    through = [(1 - r) ** 2 * a / (1 - (r * a) ** 2) for r in both_polarizations(index, degrees)]
+    back = [r + r * a * t for r, t in zip(both_polarizations(index, degrees), through, strict=True)]
+    return sum(back) / 2, sum(through) / 2
+
+
+def slab_of_averages(index, degrees, optical_depth=0):
+    """The same where each surface is met by unpolarized light: the mistake that rows guard against."""
     r = fresnel(index, degrees)
     a = np.exp(-optical_depth / refracted_cosine(index, degrees))
     transmittance = (1 - r) ** 2 * a / (1 - (r * a) ** 2)
@@ -120,9 +129,8 @@ def schlick(index, degrees):
 
 
 def pile(index, degrees, plates):
-    """Transmittance of so many plates, unpolarized at each surface (Stokes 1862): (1 - r) / (1 + (2 m - 1) r)."""
-    r = fresnel(index, degrees)
-    return (1 - r) / (1 + (2 * plates - 1) * r)
+    """Transmittance of so many plates, of both polarizations (Stokes 1862): the mean of (1 - r) / (1 + (2 m - 1) r)."""
+    return sum((1 - r) / (1 + (2 * plates - 1) * r) for r in both_polarizations(index, degrees)) / 2
 
 
 def least_incidence(index, apex):
@@ -209,7 +217,7 @@ def through_ball(index, center, light, half_side, count=400_000):
     step = 1 / count / (light - center)
     incidence = np.arcsin(sine * (light - center))
     inside = np.arcsin(np.sin(incidence) / index)
-    r = fresnel(index, np.degrees(incidence))
+    each = both_polarizations(index, np.degrees(incidence))
     angle, total = np.arcsin(sine), 0.0
     for reflections in range(9):
         # Directions turn toward the axis: from angle outward to angle - turned.
@@ -221,6 +229,6 @@ def through_ball(index, center, light, half_side, count=400_000):
         down = np.cos(leaving) > 1e-9
         place = np.abs(x + (center + y) * np.tan(leaving))
         share = np.clip(1 - 4 / np.pi * np.arccos(np.clip(half_side / np.maximum(place, 1e-12), 0, 1)), 0, 1)
-        weight = (1 - r) ** 2 * r**reflections
+        weight = sum((1 - r) ** 2 * r**reflections for r in each) / 2
         total += np.sum(np.where(down, weight * share * 2 * np.pi * sine / np.cos(angle), 0)) * step
     return total / (2 * half_side) ** 2

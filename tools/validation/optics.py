@@ -1,9 +1,8 @@
 """Optics: how much light surfaces reflect and let through. Where it goes is in angles.py.
 
-Abbe averages s and p at every surface, and so do these formulas, but for the thin pane, whose surfaces it sums for each
-polarization. In truth light that has met one surface at an angle is polarized in part, and a second surface in the same
-plane takes more or less of it: a plate of index 1.5 at 60 degrees lets through 0.8481 of unpolarized light (the mean of
-both polarizations), as the pane does, where the average at each surface gives 0.8362.
+Light that has met one surface at an angle is polarized in part, and a second surface in the same plane takes more or less
+of it: a plate of index 1.5 at 60 degrees lets through 0.8481 of unpolarized light, the mean of both polarizations, where
+the average at each surface would give 0.8362. So the rows of more than one surface ask for polarization.
 """
 
 import numpy as np
@@ -83,7 +82,7 @@ def fresnel(quick):
     for name in ("water", "N-BK7", "N-SF11", "diamond"):
         yield normal(name)
     for name in ("N-BK7", "N-SF11", "diamond"):
-        for degrees in (0, 30, 60):
+        for degrees in (0, 45, 60):
             yield daylight(name, degrees, "R")
             yield daylight(name, degrees, "T")
 
@@ -91,7 +90,8 @@ def fresnel(quick):
 def by_wavelength(name, degrees, share):
     """CIE XYZ of what a share of the light of D65 (of its reflectance at each wavelength) looks like, and of D65."""
     light = colors.illuminant("D65")
-    power = np.stack([light.power * share(formulas.fresnel(formulas.index(name, light.nm), degrees)), light.power])
+    both = formulas.both_polarizations(formulas.index(name, light.nm), degrees)
+    power = np.stack([light.power * sum(map(share, both)) / 2, light.power])
     return power @ colors.OBSERVER.values
 
 
@@ -126,6 +126,7 @@ def daylight(name, degrees, kind):
         up=(0, 0, 1),
         model={"bands": 16},
         space="lin_ciexyzd65_scene",
+        polarization="on",
     )
     words = (
         f"A plate of {name} 0.01 thick, seen at {degrees} degrees, in 16 bands; a plane of D65 "
@@ -134,7 +135,7 @@ def daylight(name, degrees, kind):
     return Row(
         GROUP,
         f"{kind} of a plate of {name} at {degrees} degrees in daylight",
-        {"T": "(1 - r) / (1 + r)", "R": "2 r / (1 + r)"}[kind] + " at each wavelength, unpolarized at each surface",
+        {"T": "(1 - r) / (1 + r)", "R": "2 r / (1 + r)"}[kind] + " at each wavelength, the mean of both polarizations",
         scene,
         readers.colors,
         expected,
@@ -248,7 +249,7 @@ def piles(quick):
         # Of more plates the plan follows some ways of light, chosen by chance.
         chance = {"size": 32, "samples": 16 if quick else 64} if plates > 2 else {}
         scene = view(
-            {"glass": glass(index), "glow": glow()}, objects, eye=looking_down(degrees), up=(0, 0, 1), **chance
+            {"glass": glass(index), "glow": glow()}, objects, eye=looking_down(degrees), up=(0, 0, 1), polarization="on", **chance
         )
         r = formulas.fresnel(index, degrees)
         words = (
@@ -258,7 +259,7 @@ def piles(quick):
         yield Row(
             GROUP,
             f"pile of {plates} plates at {degrees} degrees",
-            "(1 - r) / (1 + (2 m - 1) r), unpolarized at each surface",
+            "the mean of (1 - r) / (1 + (2 m - 1) r) over s and p",
             scene,
             readers.gray,
             formulas.pile(index, degrees, plates),

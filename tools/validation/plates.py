@@ -21,7 +21,7 @@ def plate(kind, degrees, index, optical_depth=0.0, surfaces=None):
     planes = {"R": plane((0, 30, 0), (0, -1, 0)), "T": plane((0, -5, 0), (0, 1, 0))}
     surfaces = surfaces or [cube((0, -0.005, 0), [40.0, 0.01, 40.0])]
     objects = [*(("glass", surface) for surface in surfaces), *(("glow", planes[side]) for side in kind.split("+"))]
-    scene = view(materials, objects, eye=looking_down(degrees), up=(0, 0, 1))
+    scene = view(materials, objects, eye=looking_down(degrees), up=(0, 0, 1), polarization="on")
     answer = dict(zip("RT", formulas.slab(np.array(index), degrees, depth), strict=True))
     once = formulas.fresnel(np.array(index), degrees)
     through = np.exp(-depth / formulas.refracted_cosine(np.array(index), degrees))
@@ -39,7 +39,7 @@ def plate(kind, degrees, index, optical_depth=0.0, surfaces=None):
     return Row(
         "energy",
         name,
-        formula + ", unpolarized at each surface",
+        formula + ", the mean of both polarizations",
         scene,
         readers.colors,
         sum(answer[side] for side in kind.split("+")),
