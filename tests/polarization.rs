@@ -215,8 +215,8 @@ fn a_filter_takes_the_glare_off_glass() {
     }
 }
 
-/// Light at 45 degrees is mirrored by glass of index 1.5 as c / a of its Mueller matrix has it: below Brewster's angle it
-/// swings the other way.
+/// Light at 45 degrees is mirrored by glass of index 1.5 as c / a of its Mueller matrix has it: below Brewster's angle
+/// it swings the other way.
 #[test]
 fn glass_turns_the_plane_of_polarization() {
     for (degrees, a, d, c) in [

@@ -41,7 +41,8 @@ use self::object::Names;
 use self::place::Placed;
 use super::index::Index;
 use super::text::{Document, Fields, INCLUDE, SET, Value};
-use super::{Object, RenderText, Scene};
+use super::{Object, PolarizationText, RenderText, Scene};
+use crate::film::Layer;
 use crate::light::{Area, Light, LightId};
 use crate::material::Material;
 use crate::shape::Sides;
@@ -105,6 +106,12 @@ fn scene<'d>(context: &mut Context, sections: &mut Fields<'d>) -> Option<Scene<C
     let (lights, infinite_lights, warnings, hash) = (Vec::new(), Vec::new(), Vec::new(), String::new());
     let (light_groups, hidden_lights) = (Vec::new(), Vec::new());
     let (camera, film, format, render) = (camera?, film?, format?, render?);
+    let has_stokes = Layer::STOKES.iter().any(|layer| format.layers.contains(layer));
+    if has_stokes && render.polarization == PolarizationText::Off {
+        let help = "leave `polarization` out of [render], or the layers S1, S2 and S3";
+        sections.refuse::<()>("Stokes vectors are asked for, and polarization is off", Some(help));
+        return None;
+    }
     let mut scene = Scene {
         camera,
         film,
