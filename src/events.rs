@@ -75,9 +75,12 @@ pub struct ErrorOfImage<'e> {
     samples_per_pixel: u32,
     /// In 95 of 100 renders the error is at most this.
     at_most: f64,
-    /// The part of it that is chance, as it is expected and at most, and the part that is color.
+    /// The part of it that is chance, as it is expected and at most, that of photons that are gathered, which blur, and
+    /// the part that is color.
     noise: f64,
     noise_at_most: f64,
+    blur: f64,
+    blur_at_most: f64,
     model: f64,
     /// First column and row of the 16 x 16 pixels with most noise, and how much it is.
     worst_tile: [i64; 2],
@@ -103,6 +106,8 @@ impl<'e> ErrorOfImage<'e> {
             at_most: error.at_most(),
             noise: noise.expected,
             noise_at_most: noise.at_most,
+            blur: error.blur.expected,
+            blur_at_most: error.blur.at_most,
             model: error.model,
             worst_tile: noise.worst_tile.corner,
             worst_tile_noise: noise.worst_tile.expected,

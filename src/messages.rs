@@ -276,6 +276,10 @@ pub fn so_far(error: &ImageError) -> String {
 fn print_error_of_image(error: &ImageError) {
     let noise = &error.noise;
     let [at_most, expected, of_color] = [error.at_most(), noise.expected, error.model].map(percent);
+    let blur = match error.blur.at_most {
+        0.0 => String::new(),
+        at_most => format!(", blur of photons {}", percent(at_most)),
+    };
     if let Some(outlier) = noise.outlier {
         let ([x, y], share) = (outlier.pixel, percent(outlier.share));
         let light = error.rare_light.as_ref().map_or("light".into(), told);
@@ -285,10 +289,14 @@ fn print_error_of_image(error: &ImageError) {
         ));
     }
     if let Some(asked) = error.asked.filter(|_| !error.is_reached()) {
-        warn(&format!("the error of {} that was asked for is not reached", percent(asked)));
+        let blurred = match error.blur.at_most > noise.at_most {
+            true => ": most of it is the blur of gathered photons, half as wide after 8 to 64 times as many samples",
+            false => "",
+        };
+        warn(&format!("the error of {} that was asked for is not reached{blurred}", percent(asked)));
     }
     let off = match noise.outlier {
-        None => format!("at most {at_most} in 95 of 100 renders (color {of_color}, the rest noise)"),
+        None => format!("at most {at_most} in 95 of 100 renders (color {of_color}{blur}, the rest noise)"),
         Some(_) => format!("{expected} or more"),
     };
     say(&format!("{} samples per pixel: the image is off by {off}", noise.samples));

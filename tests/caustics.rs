@@ -5,6 +5,7 @@
 //! ```
 
 mod agreement;
+mod blur;
 mod edges;
 mod gathered;
 mod known;

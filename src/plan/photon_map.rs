@@ -6,7 +6,7 @@ use super::words::{in_number, percent};
 use crate::scene::{CausticsText, Scene};
 use crate::spectrum::Curve;
 use crate::trace::{
-    GatheredWorth, LightPass, MapPasses, Transport, World, gathered_photons, gathered_worth, reached_places,
+    GatheredWorth, LightPass, MapPasses, Method, Transport, World, gathered_photons, gathered_worth, reached_places,
 };
 
 /// Most photons per camera sample: between 0.25 and 1 the error for the time hardly changes, where glass is seen
@@ -71,20 +71,23 @@ pub(super) fn with_map(
     }
     let map =
         gathered_worth(&with_few).map_or(map, |worth| MapPasses { chance: chance(&worth), ..passes(photons(&worth)) });
-    let line = described(&map, samples, method.stop.is_some());
+    let line = described(&map, samples, method);
     (asked(map), vec![line])
 }
 
-/// What a person is told of a map beside so many camera samples, which are all of them or not.
-fn described(map: &MapPasses, samples: f64, stops: bool) -> String {
-    let photons = match (stops, map.count) {
+/// What a person is told of a map beside so many camera samples, which are all of them or, with a stop rule, not.
+fn described(map: &MapPasses, samples: f64, method: &Method) -> String {
+    let photons = match (method.stop.is_some(), map.count) {
         (true, _) => {
             format!("{:.2} photons for each camera sample", (u64::from(map.count) * map.photons) as f64 / samples)
         }
         (false, 1) => format!("1 pass of {} photons", in_number(map.photons)),
         (false, count) => format!("{count} passes of {} photons", in_number(map.photons)),
     };
-    let less = if stops { "" } else { ", less with more samples" };
+    let less = match method.stop {
+        Some(_) => format!(", less after {} samples", method.samples),
+        None => ", less with more samples".into(),
+    };
     let chance = match map.chance {
         1.0.. => String::new(),
         chance => format!("; paths look for photons at {} of the surfaces they reach", percent(chance)),

@@ -1,4 +1,4 @@
-use crate::trace::{Noise, RareLight, Stopped};
+use crate::trace::{Blur, Noise, RareLight, Stopped};
 
 /// How far an image is off, as a render with a stop rule has measured it.
 ///
@@ -9,6 +9,8 @@ pub struct ImageError {
     pub asked: Option<f64>,
     /// What chance makes of it.
     pub noise: Noise,
+    /// What photons that are gathered make of it, which blur.
+    pub blur: Blur,
     /// The light that makes an outlier of the noise, of a render that has ended.
     pub rare_light: Option<RareLight>,
     /// What the model of color may make of it, as the plan predicts: relative to the strongest channel of each color.
@@ -18,11 +20,11 @@ pub struct ImageError {
 }
 
 impl ImageError {
-    /// The error is smaller than this in 95 of 100 renders, but for what no render of the plan finds, for the blur of
-    /// photons that are gathered, and for light that is too rare to have been met. Where the error that was asked for
-    /// is reached, it is that: what the render measured is less by chance as well.
+    /// The error is smaller than this in 95 of 100 renders, but for what no render of the plan finds, and for
+    /// light that is too rare to have been met. Where the error that was asked for is reached, it is that: what the
+    /// render measured is less by chance as well.
     pub fn at_most(&self) -> f64 {
-        let measured = self.noise.at_most.hypot(self.model);
+        let measured = self.noise.at_most.hypot(self.blur.at_most).hypot(self.model);
         self.asked.filter(|_| self.stopped_by == Some(Stopped::Noise)).map_or(measured, |asked| measured.max(asked))
     }
 

@@ -238,9 +238,10 @@ impl Rendering {
 
     /// How far the image was off at the last look, where a stop rule looks.
     pub fn error(&self) -> Option<ImageError> {
-        let (noise, model, stopped_by) = (*self.passes.noise()?, self.plan.model_error, self.passes.stopped_by());
+        let (noise, blur) = (*self.passes.noise()?, *self.passes.blur()?);
+        let (model, stopped_by) = (self.plan.model_error, self.passes.stopped_by());
         let rare_light = self.threads.install(|| stopped_by.and_then(|_| self.passes.rare_light()));
-        Some(ImageError { asked: self.asked, noise, rare_light, model, stopped_by })
+        Some(ImageError { asked: self.asked, noise, blur, rare_light, model, stopped_by })
     }
 
     /// The image of all samples so far.
@@ -276,7 +277,8 @@ fn facts_of_error(error: &ImageError) -> Vec<(Cow<'static, str>, Fact)> {
     let by = error.stopped_by.map(|by| ("stoppedBy", Fact::Text(by.name().to_owned())));
     let [at_most, noise] = [error.at_most(), error.noise.expected].map(Fact::Number);
     let facts = [("errorAtMost", at_most), ("noise", noise), ("modelError", Fact::Number(error.model))];
-    by.into_iter().chain(facts).map(|(key, fact)| (key.into(), fact)).collect()
+    let blur = (error.blur.at_most > 0.0).then_some(("blur", Fact::Number(error.blur.expected)));
+    by.into_iter().chain(facts).chain(blur).map(|(key, fact)| (key.into(), fact)).collect()
 }
 
 fn provenance(origin: &Origin, plan: &Plan, samples: u64, report: &Report) -> Provenance {

@@ -26,7 +26,6 @@ pub struct Matching<const N: usize> {
 #[derive(Clone, Copy, Debug)]
 pub struct Wavelength {
     hero: Hero,
-    bin: u32,
 }
 
 impl Wavelength {
@@ -86,7 +85,6 @@ impl<const N: usize> Matching<N> {
     /// Whether heroes carry light that arrives in lanes; `found` is told the lane, the wavelength
     /// and the film's color of each.
     pub fn alone(
-        &self,
         draw: &Draw<N>,
         response: &Response,
         lanes: Lanes<N>,
@@ -97,8 +95,7 @@ impl<const N: usize> Matching<N> {
         for (hero, lane) in draw.heroes().zip(draw.fixed_lanes()..) {
             let weight = factor * hero.factor * f64::from(lanes[lane]);
             if weight != 0.0 {
-                let wavelength = Wavelength { hero: *hero, bin: self.bins[hero.below] };
-                found(lane, wavelength, response.hero(hero).map(|x| weight * x));
+                found(lane, Wavelength { hero: *hero }, response.hero(hero).map(|x| weight * x));
             }
         }
         true
@@ -120,11 +117,12 @@ impl<const N: usize> Matching<N> {
 
     /// What heroes hold that count as one with a wavelength.
     pub fn shared(&self, draw: &Draw<N>, wavelength: &Wavelength, lanes: Lanes<N>, parted: bool) -> f64 {
-        let same = |hero: &Hero| self.bins[hero.below] == wavelength.bin;
+        let bin = self.bins[wavelength.hero.below];
+        let same = |hero: &Hero| self.bins[hero.below] == bin;
         let heroes = draw.heroes().zip(draw.fixed_lanes()..);
         let held: f64 = heroes.filter(|(hero, _)| same(hero)).map(|(_, lane)| f64::from(lanes[lane])).sum();
         let mean = draw.hero_factor(parted).unwrap_or(0.0) / draw.heroes().count() as f64;
-        held * mean / self.chances[wavelength.bin as usize]
+        held * mean / self.chances[bin as usize]
     }
 
     fn between(&self, hero: &Hero, lanes: Lanes<N>) -> f32 {

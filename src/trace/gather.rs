@@ -16,6 +16,7 @@ use super::World;
 use super::arrived::Arrived;
 use super::contribution::{self, Contribution, add};
 use super::interaction::Interaction;
+use super::kernel::Kernel;
 use super::path::Path;
 use super::photon_map::{Landed, PhotonMap};
 use super::polarization::Polarization;
@@ -99,6 +100,7 @@ pub(super) enum PartSpectrum<const N: usize> {
 /// How much of it polarization may change is an estimate by the photon that is looked at.
 pub(super) fn gather<const N: usize, P: Polarization<N>>(
     photons: &PhotonMap<N, P>,
+    kernel: &Kernel<N>,
     world: &World,
     path: &Path<N, P>,
     at: &Interaction<N>,
@@ -123,7 +125,7 @@ pub(super) fn gather<const N: usize, P: Polarization<N>>(
     if whether >= map.chance {
         return nothing;
     }
-    let radius = map.radius * world.scene.camera.pixel_width(path.length);
+    let radius = kernel.radius * world.scene.camera.pixel_width(path.length);
     let front = flat.dot(point.normal) > 0.0;
     let place = Place { world, position: point.position, flat, front, radius };
     let mut found = Found { sum: [0.0; 3], parts: apart.then(Vec::new), weight: 0.0, drawn: None, u };
@@ -134,7 +136,7 @@ pub(super) fn gather<const N: usize, P: Polarization<N>>(
         let parted = parted(photon.back);
         let carries = &photon.carries;
         let by_heroes = arrival.draw.hero_factor(parted).is_some();
-        let onto_heroes = |lanes: Lanes<N>| photons.matching.onto_heroes(arrival.draw, lanes);
+        let onto_heroes = |lanes: Lanes<N>| kernel.matching.onto_heroes(arrival.draw, lanes);
         let flux = if by_heroes { onto_heroes(carries.flux) } else { carries.flux };
         let read = if by_heroes { Some(P::read_landed(&photon.polarization, onto_heroes)) } else { None };
         let light = read.as_ref().unwrap_or(&photon.polarization);
@@ -151,8 +153,8 @@ pub(super) fn gather<const N: usize, P: Polarization<N>>(
         let (wavelength, parted) = (&photon.carries.wavelength, parted(photon.back));
         let by_heroes = arrival.draw.hero_factor(parted).is_some();
         let read = |lanes: Lanes<N>| match by_heroes {
-            true => photons.matching.shared(arrival.draw, wavelength, lanes, parted),
-            false => photons.matching.read(wavelength, lanes),
+            true => kernel.matching.shared(arrival.draw, wavelength, lanes, parted),
+            false => kernel.matching.read(wavelength, lanes),
         };
         // Most photons of wavelengths that parted meet others.
         if by_heroes && read(path.throughput.present()) == 0.0 {

@@ -23,7 +23,7 @@
 //! layers           what is asked for beside the image: contributions told apart, first surfaces, sums of a tile
 //! photon           photons and light paths: walker + landing
 //! walker           from surface to surface; interaction, media, path
-//! replicates       eight renders side by side; noise, stopping: what they tell, and when that is enough
+//! replicates       eight renders side by side; noise, blur, stopping: what they tell, and when that is enough
 //! probe, pilot ..  what the plan asks, by the same walks
 //! ```
 
@@ -31,6 +31,7 @@ mod aimed;
 mod apart;
 mod arrived;
 mod audit;
+mod blur;
 mod branching;
 mod bright;
 mod brightness;
@@ -46,6 +47,7 @@ mod gathering_worth;
 mod guide;
 mod interaction;
 mod kd_tree;
+mod kernel;
 mod layer_sample;
 mod layer_sums;
 mod layers;
@@ -100,6 +102,7 @@ mod white;
 mod width;
 mod world;
 
+pub use blur::Blur;
 pub use branching::{Branching, branching};
 pub use bright::{BrightPlace, BrightPlaces};
 pub use brightness::bright_places;

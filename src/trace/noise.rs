@@ -14,6 +14,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::blur::{Blur, BlurSums};
 use super::replicates::{REPLICATES, Replicates};
 use crate::film::{Filter, TilePlace};
 
@@ -35,6 +36,21 @@ pub struct Noise {
     /// A pixel that makes much of the noise by what one replicate found alone: light that is hardly ever found, of
     /// which no number of samples tells how much there is.
     pub outlier: Option<Outlier>,
+}
+
+/// What replicates tell of the error of their mean.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct Measured {
+    pub(super) noise: Noise,
+    pub(super) blur: Blur,
+}
+
+impl Measured {
+    /// The error is smaller than this in 95 of 100 renders, rather more, since both parts of it are at most what is
+    /// told. The noise of a pixel has nothing to do with how far it is blurred, so squares add up.
+    pub(super) fn at_most(&self) -> f64 {
+        self.noise.at_most.hypot(self.blur.at_most)
+    }
 }
 
 /// The noise of a tile.
@@ -140,44 +156,48 @@ impl Spread {
         [mean, mean + STUDENT * variance.sqrt()]
     }
 
-    /// What the sums tell.
-    fn noise(self, samples: u32, worst: Option<([i64; 2], f64)>) -> Noise {
+    /// What the sums tell, and those of the blur.
+    fn measured(self, samples: u32, worst: Option<([i64; 2], f64)>, blur: &BlurSums) -> Measured {
         let count = REPLICATES as f64;
         let (numbers, [mean, bound]) = (self.numbers.max(1.0), self.errors());
         // The square of the mean has its variance in it.
         let signal = self.squares / numbers - mean / count;
-        let relative = |error: f64| match error / count / signal {
+        let relative = |error: f64| match error / signal {
             _ if error == 0.0 => 0.0,
             square if square >= 0.0 => square.sqrt(),
             _ => f64::INFINITY,
         };
         let total = self.total();
         let outlier = self.outlier.map(|(outlier, sum)| Outlier { share: sum / total, ..outlier });
-        let of_tile = |(corner, variance)| TileNoise { corner, expected: relative(variance * count) };
-        Noise {
+        let of_tile = |(corner, variance)| TileNoise { corner, expected: relative(variance) };
+        let noise = Noise {
             samples,
-            expected: relative(mean),
-            at_most: relative(bound),
+            expected: relative(mean / count),
+            at_most: relative(bound / count),
             worst_tile: worst.map_or(TileNoise::default(), of_tile),
             outlier: outlier.filter(|outlier| outlier.share > MUCH),
-        }
+        };
+        let [expected, at_most] = blur.squares(STUDENT).map(|squares| relative(squares / numbers));
+        Measured { noise, blur: Blur { expected, at_most } }
     }
 }
 
-/// The noise of an image's tiles, whose first pixels are given, after so many samples of each replicate.
-pub(super) fn noise<'t>(
+/// The errors of an image's tiles, whose first pixels are given, after so many samples of each replicate.
+pub(super) fn measure<'t>(
     tiles: impl Iterator<Item = (&'t Replicates, TilePlace)>,
     first: [i32; 2],
     filter: Filter,
     each: u32,
-) -> Noise {
+) -> Measured {
     let (mut all, mut worst): (Spread, Option<([i64; 2], f64)>) = (Spread::default(), None);
+    let mut blur = BlurSums::default();
     for (replicates, place) in tiles {
         let corner = [0, 1].map(|i| i64::from(first[i]) + i64::from(place.corner[i]));
-        let mut of_tile = Spread::default();
+        let (mut of_tile, mut blur_of_tile) = (Spread::default(), BlurSums::default());
         for pixel in 0..place.pixels() {
             let (x, y) = (pixel as i64 % i64::from(place.width), pixel as i64 / i64::from(place.width));
             of_tile.add([corner[0] + x, corner[1] + y], &replicates.pixel(pixel, filter, each));
+            replicates.blur(pixel, filter).iter().for_each(|replicates| blur_of_tile.add(replicates));
         }
         let count = REPLICATES as f64;
         let variance = of_tile.total() / of_tile.numbers / (count * (count - 1.0));
@@ -185,8 +205,9 @@ pub(super) fn noise<'t>(
             worst = Some((corner, variance));
         }
         all.join(of_tile);
+        blur.join(&blur_of_tile);
     }
-    all.noise(REPLICATES as u32 * each, worst)
+    all.measured(REPLICATES as u32 * each, worst, &blur)
 }
 
 #[cfg(test)]
@@ -213,7 +234,7 @@ mod tests {
                 error += (mean - truth) * (mean - truth) / (f64::from(PIXELS) * truth * truth);
                 spread.add([i64::from(pixel), 0], &replicates);
             }
-            let noise = spread.noise(samples, None);
+            let noise = spread.measured(samples, None, &BlurSums::default()).noise;
             let doubts = noise.outlier.is_some();
             told[0] += f64::from(u8::from(!doubts && error.sqrt() <= noise.at_most)) / f64::from(RENDERS);
             told[1] += f64::from(u8::from(doubts)) / f64::from(RENDERS);

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::World;
 use super::light_pass::Sending;
-use super::noise::Noise;
+use super::noise::Measured;
 use super::pass::{Pass, Stage};
 use super::replicates::REPLICATES;
 use super::stats::Stats;
@@ -25,7 +25,7 @@ pub(super) struct Progress {
     /// Where there are replicates.
     pub(super) stage: Stage,
     /// What they told when they last had as many samples each.
-    pub(super) noise: Option<Noise>,
+    pub(super) measured: Option<Measured>,
     pub(super) sending: Sending,
     /// Of photons that were gathered, and paths from the lights.
     pub(super) gathered: Stats,

@@ -129,6 +129,11 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         Sample { rgb, depth: first.map(|point| camera.depth(point.position)), is_subtracted }
     }
 
+    /// By how much photons that were gathered blur the last camera sample.
+    pub(super) fn blur(&mut self) -> [f64; 3] {
+        std::mem::take(&mut self.sensor.blur)
+    }
+
     /// Whether the camera ray has met a shadow catcher.
     fn sees_shadow_catcher(&self) -> bool {
         let object = self.sensor.layers.as_ref().and_then(|layers| layers.left().object);
@@ -367,7 +372,11 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
     fn gather_photons(&mut self, path: &Path<N, P>, at: &Interaction<N>, sampler: &Sampler) {
         if let Some(photons) = self.photons.filter(|_| path.among == Among::All) {
             let apart = self.sensor.layers.is_some() && self.walker.world.layers.tell_photons_apart();
-            let gathered = gather(photons, self.walker.world, path, at, sampler, apart);
+            let within = |kernel, apart| gather(photons, kernel, self.walker.world, path, at, sampler, apart);
+            let gathered = within(&photons.kernel, apart);
+            if let Some(half) = &photons.half {
+                self.sensor.blur_by(gathered.all.rgb, within(half, false).all.rgb);
+            }
             self.sensor.receive_gathered(&gathered, at.arrival.draw);
         }
         if let Some(observer) = self.sensor.observer {

@@ -11,6 +11,7 @@ use rayon::prelude::*;
 use super::World;
 use super::interaction::Interaction;
 use super::kd_tree::KdTree;
+use super::kernel::Kernel;
 use super::pass::Pass;
 use super::photon::Landing;
 use super::photon_batch::{Batch, Sent, batches, send};
@@ -60,16 +61,15 @@ pub(super) struct Alone {
 pub(super) struct PhotonMap<const N: usize, P: Polarization<N> = Polarized> {
     pub(super) together: KdTree<Landed<Together<N>, P::Landed>>,
     pub(super) alone: KdTree<Landed<Alone, P::Landed>>,
-    pub(super) matching: Matching<N>,
+    pub(super) kernel: Kernel<N>,
+    /// One that blurs half as much, where the blur is to be told.
+    pub(super) half: Option<Kernel<N>>,
     pub(super) sent: u64,
     pub(super) stats: Stats,
 }
 
 /// Sets these random numbers apart from the others.
 const SEED: u64 = 0x6d61_7073;
-/// Parts of the draws in one of which two wavelengths count as one, where the radius is a pixel. They are chosen, as
-/// radii are, so that the blur is small where dispersion spreads colors over dozens of pixels.
-const PARTS: f64 = 32.0;
 
 /// What is kept of a photon where it lands.
 pub(super) enum Kept<const N: usize, L = Polarized> {
@@ -79,7 +79,7 @@ pub(super) enum Kept<const N: usize, L = Polarized> {
 
 /// Sends the photons of one pass.
 pub(super) fn photons<const N: usize, P: Polarization<N>>(world: &World, pass: &Pass) -> Option<PhotonMap<N, P>> {
-    let (targets, matching) = (world.map_targets.as_ref()?, matching(world)?);
+    let (targets, kernel) = (world.map_targets.as_ref()?, Kernel::of_pass(world, pass)?);
     let count = world.method.light_pass.as_ref()?.map?.count;
     let targets = &*pass
         .part_of_photons(world)
@@ -87,7 +87,7 @@ pub(super) fn photons<const N: usize, P: Polarization<N>>(world: &World, pass: &
     let (seed, before) = pass.photon_seed();
     let batches = batches(targets, |target| before * target.photons, |target| target.photons, seed ^ SEED);
     let done: Vec<Sent<(DVec3, Kept<N, P::Landed>)>> =
-        batches.par_iter().map(|batch| send_kept::<N, P>(world, targets, &matching, *batch)).collect();
+        batches.par_iter().map(|batch| send_kept::<N, P>(world, targets, *batch)).collect();
     let mut stats = Stats::default();
     let (mut together, mut alone) = (Vec::new(), Vec::new());
     for sent in done {
@@ -106,24 +106,18 @@ pub(super) fn photons<const N: usize, P: Polarization<N>>(world: &World, pass: &
     }
     let sent = batches.iter().map(|batch| batch.count).sum();
     let (together, alone) = (KdTree::new(together), KdTree::new(alone));
-    Some(PhotonMap { together, alone, matching, sent, stats })
-}
-
-/// Which wavelengths count as one in the world's map.
-pub(super) fn matching<const N: usize>(world: &World) -> Option<Matching<N>> {
-    let radius = world.method.light_pass.as_ref()?.map?.radius;
-    Some(Matching::new(&world.method.basis, PARTS / radius))
+    let half = pass.replicate.map(|_| kernel.half(world));
+    Some(PhotonMap { together, alone, kernel, half, sent, stats })
 }
 
 /// Sends one batch.
 pub(super) fn send_kept<const N: usize, P: Polarization<N>>(
     world: &World,
     targets: &PhotonTargets,
-    matching: &Matching<N>,
     batch: Batch,
 ) -> Sent<(DVec3, Kept<N, P::Landed>)> {
     let keep = |_: &Walker<N, P>, landing: &Landing<N, P>, _: &Sampler, kept: &mut Vec<_>| {
-        keep(world, matching, landing, kept);
+        keep(world, landing, kept);
     };
     send(world, targets, batch, false, keep)
 }
@@ -131,7 +125,6 @@ pub(super) fn send_kept<const N: usize, P: Polarization<N>>(
 /// Keeps a photon where it lands.
 fn keep<const N: usize, P: Polarization<N>>(
     world: &World,
-    matching: &Matching<N>,
     landing: &Landing<N, P>,
     kept: &mut Vec<(DVec3, Kept<N, P::Landed>)>,
 ) {
@@ -147,7 +140,7 @@ fn keep<const N: usize, P: Polarization<N>>(
         carries: (),
     };
     let response = &world.responses[*light];
-    let by_heroes = matching.alone(arrival.draw, response, flux, path.parted, |lane, wavelength, color| {
+    let by_heroes = Matching::<N>::alone(arrival.draw, response, flux, path.parted, |lane, wavelength, color| {
         let of_lane = |lanes: Lanes<N>| Lanes([lanes[lane]; N]);
         let polarization = P::read_landed(&photon.polarization, of_lane);
         let carries = Alone { wavelength, light: *light, color };

@@ -9,7 +9,7 @@ use super::light_vertices::{LightPaths, SHARED};
 use super::pass::Pass;
 use super::path_tracer::PathTracer;
 use super::photon_batch::Batch;
-use super::photon_map::{matching, photons, send_kept};
+use super::photon_map::{photons, send_kept};
 use super::photon_targets::PhotonTargets;
 use super::polarization::Polarization;
 use super::polarized::Polarized;
@@ -145,13 +145,9 @@ pub fn photon_times(world: &World) -> PhotonTimes {
         targets.as_ref().map_or(Duration::ZERO, |targets| photon_time(targets, world.method.seed, send))
     };
     in_lanes!(&world.method.basis, N => {
-        let matching = matching::<N>(world);
-        let keep = |targets: &PhotonTargets, batch| {
-            matching.as_ref().map_or(Stats::default(), |matching| send_kept::<N, Polarized>(world, targets, matching, batch).stats)
-        };
         PhotonTimes {
             shown: of(&world.photon_targets, &|targets, batch| send_shown::<N, Polarized>(world, targets, batch).stats),
-            kept: of(&world.map_targets, &keep),
+            kept: of(&world.map_targets, &|targets, batch| send_kept::<N, Polarized>(world, targets, batch).stats),
         }
     })
 }

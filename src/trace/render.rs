@@ -8,9 +8,10 @@ use std::time::Instant;
 
 use rayon::prelude::*;
 
+use super::blur::Blur;
 use super::layer_sums::{Taken, images, spectral_image, write};
 use super::light_pass;
-use super::noise::{Noise, noise};
+use super::noise::{Measured, Noise, measure};
 use super::pass_light::PassLight;
 use super::passes::{Progress, most_at_once};
 use super::photon_targets::PhotonTargets;
@@ -54,8 +55,10 @@ pub struct Report {
     pub light: f64,
     /// Photons sent by the light pass.
     pub photons: u64,
-    /// How far the image is off, where a stop rule has it measured.
+    /// How far the image is off by chance, where a stop rule has it measured.
     pub noise: Option<Noise>,
+    /// By how much photons that were gathered blur it, where a stop rule has it measured.
+    pub blur: Option<Blur>,
     /// What ended the render, if a stop rule could, and it is finished.
     pub stopped_by: Option<Stopped>,
 }
@@ -102,9 +105,8 @@ impl<W: Borrow<World>> Rendering<W> {
 
     /// One of several parts of an image; all other pixels stay blank.
     pub fn of_shard(world: W, shard: Shard) -> Self {
-        let (film, layers) = (&world.borrow().scene.film, &world.borrow().layers);
-        let replicated = world.borrow().method.stop.is_some();
-        let tiles = shard.tiles(film.window()).map(|place| Tile::new(film, place, layers, replicated)).collect();
+        let window = world.borrow().scene.film.window();
+        let tiles = shard.tiles(window).map(|place| Tile::new(world.borrow(), place)).collect();
         let (progress, clock) = (Progress::default(), Clock::new(Instant::now()));
         Self { world, shard, tiles, progress, light: None, clock }
     }
@@ -205,7 +207,7 @@ impl<W: Borrow<World>> Rendering<W> {
         if stage.size == 0 && stage.before > 0 && self.world().method.stop.is_some() {
             let window = film.window();
             let tiles = self.places().map(|(tile, place)| (&tile.replicates, place));
-            self.progress.noise = Some(noise(tiles, [window.left, window.top], film.filter, stage.before));
+            self.progress.measured = Some(measure(tiles, [window.left, window.top], film.filter, stage.before));
         }
     }
 
@@ -283,13 +285,23 @@ impl<W: Borrow<World>> Rendering<W> {
             light: all.light,
             photons: self.photons(),
             noise: self.noise().copied(),
+            blur: self.blur().copied(),
             stopped_by: self.stopped_by(),
         }
     }
 
     /// How far the image was off at the last look, where a stop rule looks.
     pub fn noise(&self) -> Option<&Noise> {
-        self.progress.noise.as_ref().filter(|noise| tells_noise(noise.samples))
+        self.measured().map(|measured| &measured.noise)
+    }
+
+    /// By how much gathered photons blurred it at the last look, where a stop rule looks.
+    pub fn blur(&self) -> Option<&Blur> {
+        self.measured().map(|measured| &measured.blur)
+    }
+
+    fn measured(&self) -> Option<&Measured> {
+        self.progress.measured.as_ref().filter(|Measured { noise, .. }| tells_noise(noise.samples))
     }
 
     /// What ended the render, if a stop rule could, and it is finished.

@@ -15,12 +15,20 @@ pub(super) const HALF: u32 = REPLICATES as u32 / 2;
 /// them is how far they are apart.
 #[derive(Clone, Default, Serialize, Deserialize)]
 pub(super) struct Replicates {
+    light: Sums,
+    /// By how much gathered photons blur it; empty where none are gathered.
+    blur: Sums,
+    /// What photons show, times the samples that they were sent beside; empty where none are sent.
+    shown: Vec<[[f32; 3]; REPLICATES]>,
+}
+
+/// Sums of samples.
+#[derive(Clone, Default, Serialize, Deserialize)]
+struct Sums {
     /// Of each pixel, the samples of each replicate.
     added: Vec<[Sum; REPLICATES]>,
     /// The same of samples that are subtracted; empty where the filter is nowhere negative.
     subtracted: Vec<[Sum; REPLICATES]>,
-    /// What photons show, times the samples that they were sent beside; empty where none are sent.
-    shown: Vec<[[f32; 3]; REPLICATES]>,
 }
 
 #[derive(Clone, Copy, Default, Serialize, Deserialize)]
@@ -37,33 +45,62 @@ impl Sum {
     }
 }
 
-impl Replicates {
-    /// Of so many pixels; some samples of theirs are subtracted, or none is.
-    pub(super) fn new(pixels: usize, is_signed: bool) -> Self {
+impl Sums {
+    fn new(pixels: usize, is_signed: bool) -> Self {
         let sums = |wanted: bool| if wanted { vec![[Sum::default(); REPLICATES]; pixels] } else { Vec::new() };
-        Self { added: sums(true), subtracted: sums(is_signed), shown: Vec::new() }
+        Self { added: sums(true), subtracted: sums(is_signed) }
+    }
+
+    fn is_shaped_as(&self, other: &Self) -> bool {
+        (self.added.len(), self.subtracted.len()) == (other.added.len(), other.subtracted.len())
+    }
+
+    /// Adds the samples of a pixel in one pass of a replicate; of those that are not kept nothing.
+    fn add(&mut self, pixel: usize, replicate: u32, [added, subtracted]: [&PassSum; 2]) {
+        for (sums, pass) in [(&mut self.added, added), (&mut self.subtracted, subtracted)] {
+            if let Some(sums) = sums.get_mut(pixel) {
+                sums[replicate as usize].add(pass);
+            }
+        }
+    }
+
+    /// The mean of a pixel's samples of a replicate.
+    fn mean(&self, pixel: usize, replicate: usize, filter: Filter) -> [f64; 3] {
+        let of = |sums: &[[Sum; REPLICATES]]| sums.get(pixel).map_or(Sum::default(), |sums| sums[replicate]);
+        let (added, subtracted) = (of(&self.added), of(&self.subtracted));
+        let weights = SampleWeights::new(filter, [added.kept, subtracted.kept]);
+        std::array::from_fn(|i| weights.sum([added.rgb[i].into(), subtracted.rgb[i].into()]) / weights.taken())
+    }
+}
+
+impl Replicates {
+    /// Of so many pixels; some samples of theirs are subtracted, or none is, and photons are gathered, or are not.
+    pub(super) fn new(pixels: usize, is_signed: bool, gathers: bool) -> Self {
+        let blur = if gathers { Sums::new(pixels, is_signed) } else { Sums::default() };
+        Self { light: Sums::new(pixels, is_signed), blur, shown: Vec::new() }
     }
 
     /// Whether it has as many sums of each kind as another one, or none yet of what photons show.
     pub(super) fn is_shaped_as(&self, other: &Self) -> bool {
-        let pixels = other.added.len();
-        (self.added.len(), self.subtracted.len()) == (pixels, other.subtracted.len())
-            && [0, pixels].contains(&self.shown.len())
+        self.light.is_shaped_as(&other.light)
+            && self.blur.is_shaped_as(&other.blur)
+            && [0, other.light.added.len()].contains(&self.shown.len())
     }
 
     /// Adds the samples of a pixel in one pass of a replicate: those that are added, and those that are subtracted.
-    pub(super) fn add(&mut self, pixel: usize, replicate: u32, [added, subtracted]: [&PassSum; 2]) {
-        let replicate = replicate as usize;
-        self.added[pixel][replicate].add(added);
-        if let Some(sums) = self.subtracted.get_mut(pixel) {
-            sums[replicate].add(subtracted);
-        }
+    pub(super) fn add(&mut self, pixel: usize, replicate: u32, samples: [&PassSum; 2]) {
+        self.light.add(pixel, replicate, samples);
+    }
+
+    /// Adds by how much gathered photons blur them.
+    pub(super) fn add_blur(&mut self, pixel: usize, replicate: u32, samples: [&PassSum; 2]) {
+        self.blur.add(pixel, replicate, samples);
     }
 
     /// Adds what photons of a replicate show in a pixel.
     pub(super) fn show(&mut self, pixel: usize, replicate: u32, rgb: [f64; 3]) {
         if self.shown.is_empty() {
-            self.shown = vec![[[0.0; 3]; REPLICATES]; self.added.len()];
+            self.shown = vec![[[0.0; 3]; REPLICATES]; self.light.added.len()];
         }
         let sum = &mut self.shown[pixel][replicate as usize];
         (0..3).for_each(|i| sum[i] += rgb[i] as f32);
@@ -72,13 +109,16 @@ impl Replicates {
     /// A pixel as each replicate has it, after so many samples of each.
     pub(super) fn pixel(&self, pixel: usize, filter: Filter, each: u32) -> [[f64; 3]; REPLICATES] {
         std::array::from_fn(|replicate| {
-            let added = self.added[pixel][replicate];
-            let subtracted = self.subtracted.get(pixel).map_or(Sum::default(), |sums| sums[replicate]);
+            let mean = self.light.mean(pixel, replicate, filter);
             let shown = self.shown.get(pixel).map_or([0.0; 3], |shown| shown[replicate]);
-            let weights = SampleWeights::new(filter, [added.kept, subtracted.kept]);
-            let mean = |i: usize| weights.sum([added.rgb[i].into(), subtracted.rgb[i].into()]) / weights.taken();
-            std::array::from_fn(|i| mean(i) + f64::from(shown[i]) / f64::from(each))
+            std::array::from_fn(|i| mean[i] + f64::from(shown[i]) / f64::from(each))
         })
+    }
+
+    /// By how much each replicate says that a pixel is blurred; none where no photons are gathered.
+    pub(super) fn blur(&self, pixel: usize, filter: Filter) -> Option<[[f64; 3]; REPLICATES]> {
+        let gathers = !self.blur.added.is_empty();
+        gathers.then(|| std::array::from_fn(|replicate| self.blur.mean(pixel, replicate, filter)))
     }
 
     /// The variance of a pixel's mean over all replicates, after so many samples of each.

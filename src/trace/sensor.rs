@@ -41,6 +41,8 @@ pub(super) struct Sensor<'a, const N: usize> {
     pub(super) rgb: [f64; 3],
     /// How much of that polarization may change.
     moved: f64,
+    /// By how much kernels blur what it has received.
+    pub(super) blur: [f64; 3],
     pub(super) observer: Option<&'a dyn Observer>,
     /// What it leaves in layers, if any are asked for.
     pub(super) layers: Option<LayerSample<'a, N>>,
@@ -48,7 +50,7 @@ pub(super) struct Sensor<'a, const N: usize> {
 
 impl<const N: usize> Sensor<'_, N> {
     pub(super) fn new() -> Self {
-        Self { rgb: [0.0; 3], moved: 0.0, observer: None, layers: None }
+        Self { rgb: [0.0; 3], moved: 0.0, blur: [0.0; 3], observer: None, layers: None }
     }
 
     /// Receives light, the lanes by which it arrives, and how the path is polarized where it meets the light.
@@ -73,6 +75,11 @@ impl<const N: usize> Sensor<'_, N> {
         self.receive_all(&gathered.all);
     }
 
+    /// Learns the blur of light that was gathered, from what was gathered by a kernel that blurs half as much.
+    pub(super) fn blur_by(&mut self, gathered: [f64; 3], by_half: [f64; 3]) {
+        add(&mut self.blur, std::array::from_fn(|i| 2.0 * (gathered[i] - by_half[i])));
+    }
+
     #[inline]
     fn receive_all(&mut self, all: &Contribution) {
         add(&mut self.rgb, all.rgb);
@@ -84,7 +91,7 @@ impl<const N: usize> Sensor<'_, N> {
 
     /// Forgets what the sample received.
     pub(super) fn forget(&mut self) {
-        (self.rgb, self.moved) = ([0.0; 3], 0.0);
+        (self.rgb, self.moved, self.blur) = ([0.0; 3], 0.0, [0.0; 3]);
     }
 
     /// What the sample received; the next one starts with nothing.

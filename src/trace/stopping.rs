@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use super::Stop;
-use super::noise::Noise;
+use super::noise::Measured;
 use super::passes::Progress;
 use super::replicates::REPLICATES;
 
@@ -18,7 +18,7 @@ const SHORT: f64 = 0.02;
 /// What ended a render that had a stop rule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stopped {
-    /// The noise is as small as was asked for.
+    /// The error is as small as was asked for.
     Noise,
     /// The time is over.
     Time,
@@ -30,7 +30,7 @@ impl Stopped {
     /// What ended it.
     pub(super) fn new(stop: &Stop, progress: &Progress) -> Self {
         match () {
-            () if is_enough(stop, progress.noise.as_ref()) => Self::Noise,
+            () if is_enough(stop, progress.measured.as_ref()) => Self::Noise,
             () if progress.stage.before >= most(stop) => Self::Samples,
             () => Self::Time,
         }
@@ -82,10 +82,10 @@ pub(super) fn tells_noise(samples: u32) -> bool {
     samples >= REPLICATES as u32 * FIRST
 }
 
-/// Whether the noise is small enough, and known well enough to say so.
-fn is_enough(stop: &Stop, noise: Option<&Noise>) -> bool {
-    let is_known = |noise: &&Noise| tells_noise(noise.samples) && noise.outlier.is_none();
-    matches!((stop.noise, noise.filter(is_known)), (Some(wanted), Some(noise)) if noise.at_most <= wanted)
+/// Whether noise and blur are small enough, and known well enough to say so.
+fn is_enough(stop: &Stop, measured: Option<&Measured>) -> bool {
+    let is_known = |Measured { noise, .. }: &&Measured| tells_noise(noise.samples) && noise.outlier.is_none();
+    matches!((stop.noise, measured.filter(is_known)), (Some(wanted), Some(error)) if error.at_most() <= wanted)
 }
 
 /// Most samples of each replicate.
@@ -95,7 +95,7 @@ fn most(stop: &Stop) -> u32 {
 
 /// How many samples each replicate takes in the next stage; none if enough are taken.
 pub(super) fn next_stage(stop: &Stop, progress: &Progress, clock: &Clock) -> u32 {
-    if is_enough(stop, progress.noise.as_ref()) {
+    if is_enough(stop, progress.measured.as_ref()) {
         return 0;
     }
     let each = progress.stage.before;
@@ -125,8 +125,8 @@ pub(super) fn samples_wanted(stop: &Stop, progress: &Progress, clock: &Clock) ->
     let stage = progress.stage;
     let each = stage.before + stage.size;
     let mut wanted = each.max(FIRST).min(most(stop));
-    if let (Some(goal), Some(noise)) = (stop.noise, &progress.noise) {
-        let times = (noise.at_most / goal).powi(2);
+    if let (Some(goal), Some(measured)) = (stop.noise, &progress.measured) {
+        let times = (measured.at_most() / goal).powi(2);
         while f64::from(wanted) < times * f64::from(stage.before) && wanted < most(stop) {
             wanted = wanted.saturating_mul(2).min(most(stop));
         }

@@ -11,9 +11,8 @@ use super::path_tracer::PathTracer;
 use super::polarization::Polarization;
 use super::replicates::Replicates;
 use super::stats::Stats;
-use crate::film::{PassSum, PixelSum, TilePlace};
+use crate::film::{PassSum, PixelSum, Sample, TilePlace};
 use crate::math::Sampler;
-use crate::scene::FilmSettings;
 
 /// A small part of the image.
 #[derive(Serialize, Deserialize)]
@@ -48,12 +47,15 @@ pub(super) struct Shown {
 }
 
 impl Tile {
-    pub(super) fn new(film: &FilmSettings, place: TilePlace, layers: &Layers, replicated: bool) -> Self {
-        let is_signed = film.filter.is_signed();
+    pub(super) fn new(world: &World, place: TilePlace) -> Self {
+        let is_signed = world.scene.film.filter.is_signed();
         let sums = vec![PixelSum::default(); place.pixels()];
         let subtracted = if is_signed { sums.clone() } else { Vec::new() };
-        let layers = LayerSums::new(layers, sums.len(), is_signed);
-        let replicates = if replicated { Replicates::new(sums.len(), is_signed) } else { Replicates::default() };
+        let layers = LayerSums::new(&world.layers, sums.len(), is_signed);
+        let replicates = match world.method.stop {
+            Some(_) => Replicates::new(sums.len(), is_signed, world.has_map()),
+            None => Replicates::default(),
+        };
         let (shown, stats) = (Shown::default(), Stats::default());
         Self { sums, subtracted, layers, shown, replicates, stats, first_non_finite: None, passes: 0, ahead: 0 }
     }
@@ -117,10 +119,15 @@ impl Tile {
     ) {
         let place = self.ahead as usize;
         let [mut added, mut subtracted] = [PassSum::default(), PassSum::default()];
+        let mut blurs = [PassSum::default(), PassSum::default()];
+        let blurs_are_told = light.tells_blur();
         for number in pass.numbers.clone() {
             tracer.light_vertices = light.vertices(number - pass.numbers.start);
             let sampler = Sampler::of_pixel(pass.seed, pixel, number);
             let sample = tracer.sample(&sampler, pixel);
+            if blurs_are_told {
+                blurs[usize::from(sample.is_subtracted)].add(&Sample { rgb: tracer.blur(), ..sample });
+            }
             let lobe = if sample.is_subtracted { &mut subtracted } else { &mut added };
             if !lobe.add(&sample) {
                 self.stats.non_finite += 1;
@@ -136,6 +143,7 @@ impl Tile {
         }
         if let Some(replicate) = pass.replicate {
             self.replicates.add(place, replicate, [&added, &subtracted]);
+            self.replicates.add_blur(place, replicate, blurs.each_ref());
         }
         self.sums[place].add(added);
         if let Some(sum) = self.subtracted.get_mut(place) {

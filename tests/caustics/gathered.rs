@@ -14,7 +14,7 @@ fn agree(what: &str, text: &str, samples: u32) {
 }
 
 /// A ball before a leaning mirror.
-fn mirror() -> String {
+pub fn mirror() -> String {
     seen_by("position = [0, 1.2, 2.5]\nlook_at = [0, 0.8, -2]\nvertical_fov = 40", "")
         + FLOOR
         + LAMP

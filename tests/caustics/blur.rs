@@ -1,0 +1,173 @@
+//! How far gathered photons blur, as a render with a stop rule tells it, beside how far they do.
+
+use std::f64::consts::PI;
+
+use abbe::film::Film;
+use abbe::trace::{Blur, LightPass, MapPasses, Method, Report, Stop, Stopped, prepare, render};
+use rayon::prelude::*;
+
+use super::agreement::{glass, object, seen_by, with_method};
+use super::gathered::mirror;
+use crate::support::scenes::SPLITTING;
+
+/// Pixels along each side of the images.
+const SIDE: usize = 24;
+
+/// A floor below a point that is 1 away, seen through a plate that bends no light.
+fn point_behind_a_plate() -> String {
+    seen_by(
+        "position = [0, 3, 0]\nlook_at = [0, 0, 0]\nup = [0, 0, 1]\nprojection = \"orthographic\"\nheight = 1.5",
+        "",
+    ) + "[render]\ndiffuse_bounces = 1\n[material.floor]\ndiffuse = { reflectance = 0.8 }\n"
+        + &object("floor", "quad = { center = [0, 0, 0], u = [2, 0, 0], v = [0, 0, -2] }")
+        + &glass("index = 1.0000001")
+        + &object("glass", "cube = { center = [0, 0.5, 0], size = [2, 0.1, 2] }")
+        + "[[light]]\npoint = { position = [0, 1, 0], intensity = 3 }\n"
+}
+
+/// What the floor of it sends to the camera beside the point below the lamp, without blur.
+fn radiance(x: f64, y: f64) -> f64 {
+    let squared = 1.0 + x * x + y * y;
+    3.0 * 0.8 / PI / (squared * squared.sqrt())
+}
+
+/// The same within a kernel of Epanechnikov around the point, less what is at its middle.
+fn moved(x: f64, y: f64, radius: f64) -> f64 {
+    const STEPS: u32 = 32;
+    let middle = |step: u32| (f64::from(step) + 0.5) / f64::from(STEPS);
+    let mut sum = 0.0;
+    for (q, angle) in (0..STEPS * STEPS).map(|i| (middle(i / STEPS), 2.0 * PI * middle(i % STEPS))) {
+        let (sin, cos) = libm::sincos(angle);
+        let far = radius * q.sqrt();
+        sum += 2.0 * (1.0 - q) * radiance(x + far * cos, y + far * sin);
+    }
+    sum / f64::from(STEPS * STEPS) - radiance(x, y)
+}
+
+/// Renders of eight replicates, with a map of so many photons for each of their passes and a radius in pixels.
+fn renders(text: &str, map: MapPasses, samples: u32, stop: &Stop, count: u64) -> Vec<(Film, Report)> {
+    let (scene, method) = with_method(text);
+    let light_pass = Some(LightPass { photons: 8192, lights: (0..scene.lights.len()).collect(), map: Some(map) });
+    let asked = Method { samples, transport: SPLITTING, stop: Some(stop.clone()), light_pass, ..method };
+    let one = |seed| render(&prepare(&scene, Method { seed, ..asked.clone() }), &|_| ());
+    (0..count).into_par_iter().map(one).collect()
+}
+
+const MAP: MapPasses = MapPasses { count: 8, photons: 32_768, radius: 4.0, chance: 1.0 };
+
+fn all_of(most: u32) -> Stop {
+    Stop { noise: None, time: None, most }
+}
+
+/// Mean and standard error.
+fn mean(values: &[f64]) -> [f64; 2] {
+    let count = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / count;
+    let variance = values.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / (count - 1.0);
+    [mean, (variance / count).sqrt()]
+}
+
+/// The mean of a function of a place over a pixel of that width around it.
+fn over_pixel([x, y]: [f64; 2], width: f64, value: &dyn Fn(f64, f64) -> f64) -> f64 {
+    // Gauss's two points are exact for the cubes that pixels see of such slow functions.
+    let aside = 0.5 * width / 3.0_f64.sqrt();
+    let corners = [[-aside, -aside], [aside, -aside], [-aside, aside], [aside, aside]];
+    corners.iter().map(|[a, b]| value(x + a, y + b)).sum::<f64>() / 4.0
+}
+
+#[test]
+fn the_blur_that_is_told_is_that_of_a_closed_form_and_grows_with_the_area() {
+    let text = point_behind_a_plate();
+    let width = 1.5 / SIDE as f64;
+    let place = |i: usize| (i as f64 + 0.5) * width - 0.75;
+    let pixels_of = |value: &dyn Fn(f64, f64) -> f64| -> Vec<f64> {
+        (0..SIDE * SIDE).map(|i| over_pixel([place(i % SIDE), place(i / SIDE)], width, value)).collect()
+    };
+    let square = |values: &[f64]| values.iter().map(|value| value * value).sum::<f64>();
+    let sharp = pixels_of(&radiance);
+    let mut told_of = Vec::new();
+    for pixels in [2.0, 4.0] {
+        let found = renders(&text, MapPasses { radius: pixels, ..MAP }, 64, &all_of(64), 12);
+        let (radius, half) = (pixels * width, pixels * width * std::f64::consts::FRAC_1_SQRT_2);
+        let squares: Vec<f64> = found.iter().map(|(_, report)| blur(report).expected.powi(2)).collect();
+        let [told, error] = mean(&squares);
+        let twice = pixels_of(&|x, y| 2.0 * (moved(x, y, radius) - moved(x, y, half)));
+        let blurs = pixels_of(&|x, y| moved(x, y, radius));
+        // Relative to the image as it is.
+        let blurred: Vec<f64> = sharp.iter().zip(&blurs).map(|(sharp, blur)| sharp + blur).collect();
+        let asked = square(&twice) / square(&blurred);
+        println!("{pixels} pixels: {told:.4e} +- {error:.1e}, closed form {asked:.4e}");
+        assert!((told - asked).abs() < 4.5 * error, "{pixels} pixels: {told} for {asked}, error {error}");
+        // The image is moved by the blur of its whole kernel.
+        let part = |(film, _): &(Film, Report)| {
+            let pixels = film.pixels.iter().zip(&sharp).zip(&blurs);
+            pixels.map(|((pixel, sharp), blur)| (f64::from(pixel.rgb[1]) - sharp) * blur).sum::<f64>() / square(&blurs)
+        };
+        let [part, error] = mean(&found.iter().map(part).collect::<Vec<f64>>());
+        println!("{part:.4} of it is there, +- {error:.4}");
+        assert!((part - 1.0).abs() < 4.5 * error, "{part} of the blur is there, error {error}");
+        told_of.push(told);
+    }
+    // Four times the area, so four times the blur, but for higher orders.
+    let ratio = (told_of[1] / told_of[0]).sqrt();
+    assert!(ratio > 3.5 && ratio < 4.5, "{ratio}");
+}
+
+fn blur(report: &Report) -> Blur {
+    report.blur.expect("there are replicates")
+}
+
+#[test]
+fn the_blur_that_is_told_of_a_caustic_is_that_beside_a_kernel_that_hardly_blurs() {
+    const RENDERS: u64 = 24;
+    let of = |radius: f64| renders(&mirror(), MapPasses { radius, ..MAP }, 64, &all_of(64), RENDERS);
+    let sharp = of(0.125);
+    for radius in [1.0, 2.0, 4.0] {
+        let found = of(radius);
+        // Camera samples are the same: what differs is what the kernels find.
+        let apart: Vec<Vec<f64>> = found
+            .iter()
+            .zip(&sharp)
+            .map(|((a, _), (b, _))| {
+                let pixels = a.pixels.iter().zip(&b.pixels);
+                pixels.flat_map(|(a, b)| [0, 1, 2].map(|i| f64::from(a.rgb[i] - b.rgb[i]))).collect()
+            })
+            .collect();
+        let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let signal = found
+            .iter()
+            .map(|(film, _)| film.pixels.iter().flat_map(|pixel| pixel.rgb).map(|x| f64::from(x).powi(2)).sum::<f64>())
+            .sum::<f64>()
+            / RENDERS as f64;
+        let with_others = |i: usize| {
+            let others = (0..apart.len()).filter(|&j| j != i);
+            others.map(|j| product(&apart[i], &apart[j])).sum::<f64>() / (RENDERS - 1) as f64 / signal
+        };
+        let [there, of_there] = mean(&(0..apart.len()).map(with_others).collect::<Vec<f64>>());
+        let told = |part: &dyn Fn(&Report) -> f64| {
+            mean(&found.iter().map(|(_, report)| part(report).powi(2)).collect::<Vec<f64>>())
+        };
+        let [expected, error] = told(&|report| blur(report).expected);
+        let kept = found.iter().filter(|(_, report)| there.sqrt() <= blur(report).at_most).count();
+        println!(
+            "{radius}: there {there:.3e} +- {:.1e}, told {expected:.3e} +- {error:.1e}, {kept} keep it",
+            2.0 * of_there
+        );
+    }
+}
+
+#[test]
+fn an_error_below_the_blur_is_not_reached_until_the_radius_has_shrunk() {
+    let ends = |most: u32| {
+        let stop = Stop { noise: Some(0.02), ..all_of(most) };
+        let fewer = MapPasses { photons: 8192, ..MAP };
+        let (_, report) = renders(&point_behind_a_plate(), fewer, 64, &stop, 1).remove(0);
+        let noise = report.noise.expect("there are replicates");
+        assert!(noise.at_most < 0.01, "{noise:?}");
+        (report.stopped_by, blur(&report))
+    };
+    let (by, blur) = ends(64);
+    assert!(by == Some(Stopped::Samples) && blur.at_most > 0.02, "{by:?} {blur:?}");
+    let (by, blur) = ends(1024);
+    assert!(by == Some(Stopped::Noise) && blur.at_most < 0.02, "{by:?} {blur:?}");
+}
