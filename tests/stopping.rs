@@ -45,6 +45,8 @@ fn any_threads_and_stops_on_the_way_make_the_same_bytes() {
         let asked = advance(&mut whole, u64::MAX);
         let (expected, report) = (bytes(&whole.image(), folder.path()), whole.image().report().clone());
         assert!(report.noise.is_some_and(|noise| noise.samples >= 64), "{kind}");
+        let gathers = whole.plan().method.light_pass.as_ref().is_some_and(|pass| pass.map.is_some());
+        assert_eq!(report.blur.is_some_and(|blur| blur.at_most > 0.0), gathers, "{kind}");
         for threads in [1, 3, 7] {
             let mut first = rendering(&scene, &options, threads);
             for _ in 0..2 {

@@ -3,7 +3,8 @@
 //! Light that photons bring to a disc of radius r is taken for the light at its middle, which blurs: light that varies
 //! by its Laplacian comes out too bright by r^2 / 12 of that. The radius is one of pixels, seen along the path, and
 //! shrinks with the samples as their number to the power -1 / 6, where bias and noise vanish at the same pace
-//! (Silverman 1986, *Density Estimation for Statistics and Data Analysis*, section 4.3).
+//! (Silverman 1986, *Density Estimation for Statistics and Data Analysis*, section 4.3). How far that blurs an image is
+//! told where a stop rule asks: see `blur.rs`.
 //!
 //! Whatever object they lie on, photons count on surfaces that continue the one around the place and that a point above
 //! it sees. At edges a part of the disc has no such surface, and what is found is divided by the share that has. One

@@ -54,7 +54,8 @@ pub enum Polarizing {
 /// (Kirk & Arvo 1991, *Unbiased Sampling Techniques for Image Synthesis*).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Stop {
-    /// The relative noise of the image that is enough, as [`Noise`](super::Noise) has it.
+    /// The relative error of the image that is enough, of noise and blur: see [`Noise`](super::Noise) and
+    /// [`Blur`](super::Blur).
     pub noise: Option<f64>,
     /// How long it may render.
     pub time: Option<Duration>,
@@ -85,7 +86,8 @@ pub struct MapPasses {
     pub count: u32,
     /// Photons of each, about.
     pub photons: u64,
-    /// Photons are gathered within this radius, in pixels as wide as the path from the camera is long.
+    /// Photons are gathered within this radius, in pixels as wide as the path from the camera is long. A stop rule that
+    /// takes more samples makes it smaller.
     pub radius: f64,
     /// The chance of each place that a path reaches that photons are gathered there, above 0 to 1; what is found counts
     /// for the others.

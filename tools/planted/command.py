@@ -60,6 +60,10 @@ BUGS = {
         "polarization not turned from one plane of incidence into the next",
         ("polarization", "two_reflections_depend_on_how_their_planes_lie"),
     ),
+    "blur_is_no_error": Bug(
+        "a stop rule that looks at noise, and not at how far gathered photons blur",
+        ("caustics", "an_error_below_the_blur_is_not_reached_until_the_radius_has_shrunk"),
+    ),
     "ten_degree_observer": Bug("color matching functions of 1964 (10 degrees) for those of 1931"),
     "srgb_in_the_exr": Bug("the sRGB curve in the EXR"),
 }
