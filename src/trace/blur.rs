@@ -2,8 +2,8 @@
 //!
 //! Light that varies by its Laplacian is blurred by the square of the kernel's radius times that, to leading order
 //! (Silverman 1986, *Density Estimation for Statistics and Data Analysis*, section 4.3); bins of wavelengths that count
-//! as one blur by the square of their width. By half of that, a kernel of half the area differs from the whole one. Both
-//! gather the same photons around the same places, so that much of their noise is the same.
+//! as one blur by the square of their width. By half of that, a kernel of half the area differs from the whole one.
+//! Both gather the same photons around the same places, so that much of their noise is the same.
 //!
 //! Every replicate has such an estimate d_r of all pixels. Their noise has nothing in common, so the mean of d_r . d_s
 //! over all pairs is the square of the blur, without noise (Hoeffding 1948, *A Class of Statistics with Asymptotically
