@@ -49,7 +49,7 @@ pub enum Event<'e> {
         polarization: f64,
         polarization_of_tile: f64,
         /// How far the image is off, where that was measured.
-        error: Option<ErrorOfImage<'e>>,
+        error: Option<Box<ErrorOfImage<'e>>>,
         /// What the process has taken so far, where the system tells it.
         processor_seconds: Option<f64>,
         peak_memory_bytes: Option<u64>,
@@ -179,7 +179,7 @@ impl<'e> Event<'e> {
             unmatched: report.unmatched,
             polarization: report.polarization,
             polarization_of_tile: report.polarization_of_tile,
-            error: image.error().map(ErrorOfImage::new),
+            error: image.error().map(|error| Box::new(ErrorOfImage::new(error))),
             processor_seconds: ProcessTime::try_now().ok().map(|time| time.as_duration().as_secs_f64()),
             peak_memory_bytes: peak_memory(),
         }
