@@ -49,7 +49,7 @@ impl AlbedoTable {
     }
 
     /// The cosine at a place of the table.
-    fn cosine(&self, place: f64) -> f64 {
+    pub(crate) fn cosine(&self, place: f64) -> f64 {
         (self.alpha * libm::expm1(self.span * place * place)).min(1.0)
     }
 

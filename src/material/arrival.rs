@@ -17,6 +17,8 @@ pub struct Arrival<'a, const N: usize> {
     pub draw: &'a Draw<N>,
     /// The lanes on the ray, each 1, the others 0.
     pub present: Lanes<N>,
+    /// Whether the viewer is behind the surface's front, inside a clear body, and meets a coating at its inner side.
+    pub from_inside: bool,
     /// Refractive index on the viewer's side.
     pub incident: Index<'a>,
     /// Refractive index beyond the surface; the same as `incident` where no medium begins or ends.
@@ -71,7 +73,9 @@ impl<const N: usize> Arrival<'_, N> {
     /// The same surface as it is met from beyond.
     pub fn turned_around(self) -> Self {
         let [here, beyond] = self.direction_indices;
-        Self { incident: self.beyond, beyond: self.incident, direction_indices: [beyond, here], ..self }
+        let (incident, beyond_it) = (self.beyond, self.incident);
+        let from_inside = !self.from_inside;
+        Self { from_inside, incident, beyond: beyond_it, direction_indices: [beyond, here], ..self }
     }
 
     /// The indices by which a lane's ray is refracted, on both sides.

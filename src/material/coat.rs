@@ -2,6 +2,8 @@ use std::array;
 use std::sync::{Arc, OnceLock};
 
 use super::albedo_table::AlbedoTable;
+use super::film_averages::FilmAverages;
+use super::film_kernel::FilmKernel;
 use super::fresnel::diffuse_transmittance;
 use super::{Interface, RoughSurface, Roughness, reflect};
 use crate::math::DVec3;
@@ -14,6 +16,8 @@ use crate::math::DVec3;
 pub struct Coat {
     roughness: Roughness,
     rows: Arc<[OnceLock<AlbedoTable>; ROWS]>,
+    /// What a film adds to what a rough one reflects.
+    kernel: Arc<OnceLock<FilmKernel>>,
 }
 
 /// Rows of the table on each side of a relative index of 1.
@@ -39,6 +43,8 @@ pub(super) struct Crossing {
     pub(super) around: f64,
     /// Square of the relative index.
     squared: f64,
+    /// Of diffuse light from inside, what a film absorbs, times that.
+    lost: f64,
 }
 
 impl Crossing {
@@ -58,14 +64,18 @@ impl Crossing {
     }
 
     fn unabsorbed(&self, r: f64) -> f64 {
-        self.squared * (1.0 - r) + r * self.around
+        self.squared * (1.0 - r) + r * (self.around + self.lost)
     }
 }
 
 impl Coat {
     /// A coat of a roughness, 0 to 1.
     pub fn new(roughness: f64) -> Self {
-        Self { roughness: Roughness::new(roughness), rows: Arc::new(array::from_fn(|_| OnceLock::new())) }
+        Self {
+            roughness: Roughness::new(roughness),
+            rows: Arc::new(array::from_fn(|_| OnceLock::new())),
+            kernel: Arc::default(),
+        }
     }
 
     /// How rough it is.
@@ -80,7 +90,7 @@ impl Coat {
         let around = diffuse_transmittance(m);
         let [from_smooth, to_smooth] = [from, to].map(|cos| transmittance(n1, n2, cos));
         let Some(surface) = self.roughness.surface() else {
-            return Crossing { from: from_smooth, to: to_smooth, around, squared };
+            return Crossing { from: from_smooth, to: to_smooth, around, squared, lost: 0.0 };
         };
         let again = surface.reflected_again(1.0 - around);
         let rows = self.rows(surface, m);
@@ -91,7 +101,30 @@ impl Coat {
         };
         let more: f64 = rows.iter().map(|(part, row)| part * row.mean()).sum();
         let around = around - more - again * surface.mean_blocked();
-        Crossing { from: rough(from_smooth, from), to: rough(to_smooth, to), around, squared }
+        Crossing { from: rough(from_smooth, from), to: rough(to_smooth, to), around, squared, lost: 0.0 }
+    }
+
+    /// The same under a film, of which `smooth` lets through a share of the light from a cosine.
+    ///
+    /// Of light that a rough one would reflect more than once, what is not reflected gets in.
+    pub(super) fn crossing_under(
+        &self,
+        averages: &FilmAverages,
+        [n1, n2]: [f64; 2],
+        [from, to]: [f64; 2],
+        smooth: impl Fn(f64) -> f64,
+    ) -> Crossing {
+        let bare = self.crossing(n1, n2, from, to);
+        let lost = bare.squared * averages.lost_inside;
+        let Some(surface) = self.roughness.surface() else {
+            return Crossing { from: smooth(from), to: smooth(to), around: averages.mean[1], lost, ..bare };
+        };
+        let kernel = self.kernel.get_or_init(|| kernel(surface));
+        let again = Self::reflected_again(surface, n1, n2) - surface.reflected_again(averages.mean[0]);
+        let more = |cos: f64| kernel.added(averages, cos) + again * surface.blocked(cos);
+        let around = bare.around + kernel.mean_added(averages) + again * surface.mean_blocked();
+        let [from, to] = [(bare.from, from), (bare.to, to)].map(|(bare, cos)| (bare + more(cos)).clamp(0.0, 1.0));
+        Crossing { from, to, around: around.max(f64::MIN_POSITIVE), lost, ..bare }
     }
 
     /// What of the light reflected by perfect mirrors more than once the coat reflects.
@@ -121,6 +154,24 @@ fn row(surface: &RoughSurface, m: f64) -> AlbedoTable {
     AlbedoTable::new(surface.facets().alpha(), STEPS, |z| {
         let z = z.max(HORIZON);
         reflected_once(surface, m, z) - (1.0 - transmittance(1.0, m, z))
+    })
+}
+
+/// What of the light that facets would reflect is blocked, and all that they would let through.
+fn kernel(surface: &RoughSurface) -> FilmKernel {
+    let facets = surface.facets();
+    // As if the body were denser than what is around it, which it nearly always is.
+    FilmKernel::new(facets.alpha(), 1.0, STEPS, |z, add| {
+        let z = z.max(HORIZON);
+        let wo = DVec3::new((1.0 - z * z).max(0.0).sqrt(), 0.0, z);
+        for up in 0..UP {
+            let v = (up as f64 + 0.5) / UP as f64;
+            for around in 0..AROUND {
+                let h = facets.visible_normal_from_end(wo, 0.5 * (around as f64 + 0.5) / AROUND as f64, v * v);
+                let [_, blocked] = facets.left_and_blocked(wo, reflect(wo, h));
+                add(wo.dot(h), 2.0 * v / (UP * AROUND) as f64, [blocked, 1.0]);
+            }
+        }
     })
 }
 

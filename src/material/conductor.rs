@@ -1,8 +1,11 @@
-use super::degree::{LANES, degree, largest};
+use super::coating::MetCoating;
+use super::degree::{LANES, degree, largest, of_all_lanes};
+use super::film_averages::{FilmAverages, mean};
 use super::{
-    Arrival, Block, Branch, Incoming, Mueller, RoughReflection, RoughSurface, Roughness, conductor_reflectance, reflect,
+    Arrival, Block, Branch, Coating, Incoming, Mueller, RoughReflection, RoughSurface, Roughness, Stack,
+    conductor_reflectance, reflect,
 };
-use crate::math::{DVec3, Frame, unit};
+use crate::math::{Complex, DVec3, Frame, unit};
 use crate::spectrum::{Lanes, Quantity, Table};
 
 /// A metal, smooth or rough.
@@ -10,6 +13,7 @@ use crate::spectrum::{Lanes, Quantity, Table};
 /// ```toml
 /// conductor = { metal = "Au" }
 /// conductor = { n = 0.2, k = 3.9, roughness = 0.3 }     # 0 to 1; 0, smooth, if absent
+/// conductor = { metal = "Ti", coating = [{ index = 2.4, thickness_nm = 50 }] }     # from the outside inward
 /// ```
 #[derive(Clone, Debug)]
 pub struct Conductor<S> {
@@ -19,6 +23,8 @@ pub struct Conductor<S> {
     pub k: S,
     /// How rough its surface is; below 0.01 it is taken as smooth.
     pub roughness: Roughness,
+    /// Layers on it in which light interferes.
+    pub coating: Option<Coating<S>>,
 }
 
 impl<S> Conductor<S> {
@@ -27,6 +33,7 @@ impl<S> Conductor<S> {
             n: convert(Quantity::MetalIndex, &self.n),
             k: convert(Quantity::MetalExtinction, &self.k),
             roughness: self.roughness.clone(),
+            coating: self.coating.as_ref().map(|coating| coating.map(convert)),
         }
     }
 }
@@ -51,9 +58,11 @@ impl Conductor<Table> {
     fn mirror<const N: usize>(&self, arrival: &Arrival<N>) -> Branch<N> {
         let (n, k) = (arrival.draw.read_exact(&self.n), arrival.draw.read_exact(&self.k));
         let cos = arrival.wo.dot(arrival.normal);
-        let reflected: [[f64; 2]; N] = std::array::from_fn(|i| match arrival.present[i] {
-            0.0 => [0.0; 2],
-            _ => conductor_reflectance(arrival.incident_of(i), n[i], k[i], cos),
+        let met = self.coating.as_ref().map(|coating| coating.met(arrival, false));
+        let reflected: [[f64; 2]; N] = std::array::from_fn(|i| match (arrival.present[i], &met) {
+            (0.0, _) => [0.0; 2],
+            (_, None) => conductor_reflectance(arrival.incident_of(i), n[i], k[i], cos),
+            (_, Some(met)) => coated_reflectance(&met.stack(i), arrival.incident_of(i), n[i], k[i], cos),
         });
         Branch {
             wi: reflect(arrival.wo, arrival.normal),
@@ -61,7 +70,10 @@ impl Conductor<Table> {
             pdf: None,
             crosses: false,
             eta_scale: 1.0,
-            polarization: reflected.into_iter().map(degree).fold(0.0, f64::max) as f32,
+            polarization: match met {
+                None => reflected.into_iter().map(degree).fold(0.0, f64::max) as f32,
+                Some(_) => of_all_lanes(reflected.into_iter()) as f32,
+            },
         }
     }
 
@@ -81,6 +93,18 @@ impl Conductor<Table> {
         factor: f64,
     ) -> Lanes<N> {
         let (n, k) = (arrival.draw.read_exact(&self.n), arrival.draw.read_exact(&self.k));
+        if let Some(coating) = &self.coating {
+            let met = coating.met(arrival, false);
+            return Lanes::from_fn(|i| match arrival.present[i] {
+                0.0 => 0.0,
+                _ => {
+                    let metal = [arrival.incident_of(i), n[i], k[i]];
+                    let [r, mean] = coated_by_facets(&met, i, metal, reflection.cos);
+                    let again = surface.reflected_again(mean);
+                    (factor * (r * reflection.once + again * reflection.again)) as f32
+                }
+            });
+        }
         let (mut last, mut reflected) = (None, 0.0);
         Lanes::from_fn(|i| {
             if arrival.present[i] == 0.0 {
@@ -103,8 +127,14 @@ impl Conductor<Table> {
     pub(super) fn degree_of_scattered<const N: usize>(&self, arrival: &Arrival<N>, wi: DVec3) -> f32 {
         let Some(h) = (arrival.wo + wi).try_normalize() else { return 0.0 };
         let (n, k) = (arrival.draw.read_exact(&self.n), arrival.draw.read_exact(&self.k));
-        let degree =
-            |lane: usize| degree(conductor_reflectance(arrival.incident_of(lane), n[lane], k[lane], arrival.wo.dot(h)));
+        let met = self.coating.as_ref().map(|coating| coating.met(arrival, false));
+        let degree = |lane: usize| {
+            let (n1, n, k, cos) = (arrival.incident_of(lane), n[lane], k[lane], arrival.wo.dot(h));
+            degree(match &met {
+                None => conductor_reflectance(n1, n, k, cos),
+                Some(met) => coated_reflectance(&met.stack(lane), n1, n, k, cos),
+            })
+        };
         largest((0..N).step_by(N.div_ceil(LANES)).map(degree))
     }
 
@@ -121,6 +151,14 @@ impl Conductor<Table> {
             _ => return Mueller::NONE,
         };
         let (n, k) = (arrival.draw.read_exact(&self.n), arrival.draw.read_exact(&self.k));
+        if let Some(coating) = &self.coating {
+            let met = coating.met(arrival, false);
+            return Mueller::of_lanes(axis, arrival.present, |lane| {
+                let metal = Complex::new(n[lane], -k[lane]);
+                let n1 = arrival.incident_of(lane);
+                met.stack(lane).shares(n1, metal, n1 * cos.clamp(0.0, 1.0)).reflected.block().times(once)
+            });
+        }
         let (mut last, mut block) = (None, Block::default());
         Mueller::of_lanes(axis, arrival.present, |lane| {
             let metal @ [n1, n, k] = [arrival.incident_of(lane), n[lane], k[lane]];
@@ -130,6 +168,22 @@ impl Conductor<Table> {
             block
         })
     }
+}
+
+/// Reflectances (s, p) of a metal n - i k under layers, as [`conductor_reflectance`] of a bare one.
+pub fn coated_reflectance(stack: &Stack, n1: f64, n: f64, k: f64, cos: f64) -> [f64; 2] {
+    let reflected = stack.shares(n1, Complex::new(n, -k), n1 * cos.clamp(0.0, 1.0)).reflected;
+    [reflected.s, reflected.p]
+}
+
+/// The reflectance of a coated metal at a cosine, and its mean over the hemisphere.
+fn coated_by_facets<const N: usize>(met: &MetCoating<N>, lane: usize, [n1, n, k]: [f64; 3], cos: f64) -> [f64; 2] {
+    let stack = met.stack(lane);
+    let at = |cos: f64| 0.5 * coated_reflectance(&stack, n1, n, k, cos).iter().sum::<f64>();
+    let averages = met.averages(lane, false, [n1, n, k, 0.0], || {
+        FilmAverages::of_mean(mean(stack.thickness_nm(), 1.0, |cos| [at(cos), 0.0]))
+    });
+    [at(cos), averages.mean[0]]
 }
 
 /// The viewer's direction in the surface's frame, on its side where rounding has put it behind.

@@ -1,6 +1,8 @@
+use super::coated_boundary::{CoatedBoundary, block_at};
 use super::rough_dielectric::{RoughBoundary, parts};
 use super::{
-    Arrival, Block, Branch, Incoming, Interface, Mueller, RoughInterface, Roughness, reflect, shared_transmittance,
+    Arrival, Block, Branch, Coating, Incoming, Interface, Mueller, RoughInterface, Roughness, reflect,
+    shared_transmittance,
 };
 use crate::math::DVec3;
 use crate::spectrum::{Draw, Lanes, Quantity, Table};
@@ -17,6 +19,7 @@ use crate::spectrum::{Draw, Lanes, Quantity, Table};
 /// dielectric = { index = "N-SF11" }
 /// dielectric = { index = { rgb = [1.513, 1.517, 1.523] }, transmittance = { rgb = [0.9, 1, 0.9] }, absorption = 0.2 }
 /// dielectric = { index = "N-BK7", roughness = 0.3 }     # 0 to 1; 0, smooth, if absent
+/// dielectric = { index = "N-BK7", coating = [{ index = 1.38, thickness_nm = 99.6 }] }     # from the outside inward
 /// ```
 #[derive(Clone, Debug)]
 pub struct Dielectric<S> {
@@ -35,6 +38,8 @@ pub struct Dielectric<S> {
     pub priority: i32,
     /// How rough its surface is; below 0.01 it is taken as smooth.
     pub roughness: Roughness,
+    /// Layers on its surface in which light interferes.
+    pub coating: Option<Coating<S>>,
 }
 
 impl<S> Dielectric<S> {
@@ -47,6 +52,7 @@ impl<S> Dielectric<S> {
             absorption: convert(Quantity::Absorption, &self.absorption),
             priority: self.priority,
             roughness: self.roughness.clone(),
+            coating: self.coating.as_ref().map(|coating| coating.map(convert)),
         }
     }
 }
@@ -56,6 +62,10 @@ impl Dielectric<Table> {
     pub(super) fn scatter<const N: usize>(&self, arrival: &Arrival<N>, u: [f64; 2], branches: &mut Vec<Branch<N>>) {
         match self.roughness.interface() {
             Some(interface) => self.rough(interface).scatter(arrival, u, branches),
+            None if let Some(coating) = &self.coating => {
+                let (reflectance, transmittance) = (&self.reflectance, &self.transmittance);
+                CoatedBoundary { coating, reflectance, transmittance }.scatter(arrival, branches);
+            }
             None => match arrival.one_direction() {
                 Some(directions) => self.scatter_as_one(arrival, directions, branches),
                 None => self.scatter_smooth(arrival, branches),
@@ -68,7 +78,8 @@ impl Dielectric<Table> {
     }
 
     fn rough<'a>(&'a self, interface: &'a RoughInterface) -> RoughBoundary<'a> {
-        RoughBoundary { interface, reflectance: &self.reflectance, transmittance: &self.transmittance }
+        let (reflectance, transmittance) = (&self.reflectance, &self.transmittance);
+        RoughBoundary { interface, coating: self.coating.as_ref(), reflectance, transmittance }
     }
 
     /// Whether lanes that cross the surface part there: a pure function of the surface and the arriving light.
@@ -83,14 +94,22 @@ impl Dielectric<Table> {
     /// Refraction through Rough Surfaces*, equations 13 and 16.
     pub(super) fn degree_of_scattered<const N: usize>(&self, arrival: &Arrival<N>, wi: DVec3) -> f32 {
         let (mut last, mut most) = (None, 0.0_f64);
+        let met = self.coating.as_ref().map(|coating| coating.met(arrival, arrival.from_inside));
         for lane in 0..N {
             let pair @ [n1, n2] = [arrival.incident_of(lane), arrival.beyond_of(lane)];
-            if n1 == n2 || last.replace(pair) == Some(pair) {
+            if n1 == n2 || (last.replace(pair) == Some(pair) && met.is_none()) {
                 continue;
             }
             let crosses = wi.dot(arrival.normal) < 0.0;
             let h = if crosses { (arrival.wo * n1 + wi * n2) * (n1 - n2).signum() } else { arrival.wo + wi };
             let Some(h) = h.try_normalize() else { continue };
+            if let Some(met) = &met {
+                let cos = arrival.wo.dot(h).clamp(0.0, 1.0);
+                let shares = met.stack(lane).shares(n1, n2.into(), n1 * cos);
+                let share = if crosses { shares.refracted } else { shares.reflected };
+                most = most.max(share.degree());
+                continue;
+            }
             let facet = Interface::new(n1, n2, arrival.wo.dot(h));
             let degree = if crosses { facet.polarization_refracted } else { facet.polarization_reflected };
             most = most.max(degree.abs());
@@ -204,6 +223,12 @@ impl Dielectric<Table> {
     fn mueller_of_smooth<const N: usize>(&self, arrival: &Arrival<N>, crosses: bool) -> Mueller<N> {
         let tint = arrival.read(if crosses { &self.transmittance } else { &self.reflectance });
         let (axis, cos) = (arrival.wo.cross(arrival.normal), arrival.wo.dot(arrival.normal));
+        if let Some(coating) = &self.coating {
+            let met = coating.met(arrival, arrival.from_inside);
+            return Mueller::of_lanes(axis, arrival.present, |lane| {
+                block_at(&met, arrival, lane, cos, crosses).times(f64::from(tint[lane]))
+            });
+        }
         let (mut last, mut block) = (None, Block::default());
         Mueller::of_lanes(axis, arrival.present, |lane| {
             let boundary = arrival.own_boundary(lane, cos);

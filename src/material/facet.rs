@@ -34,7 +34,7 @@ pub struct Facet {
     /// The shares of the light that leave by these.
     pub(super) once: [f64; 2],
     /// The same if it reflected, or let through, all light.
-    all: [f64; 2],
+    pub(super) all: [f64; 2],
     /// The share that meets a second facet.
     pub(super) again: f64,
     /// Cosines of the angles at which light meets it and goes on beyond it.

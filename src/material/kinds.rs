@@ -2,8 +2,8 @@
 //! has to know it.
 
 use super::{
-    Arrival, Branch, Conductor, Dielectric, Diffuse, Emissive, Incoming, Lobes, Mask, Mirror, Mix, Mueller, Part,
-    Plastic, Polarizer, Retarder, Scatter, Straight, Thin,
+    Arrival, Branch, Coating, Conductor, Dielectric, Diffuse, Emissive, Incoming, Lobes, Mask, Mirror, Mix, Mueller,
+    Part, Plastic, Polarizer, Retarder, Scatter, Straight, Thin,
 };
 use crate::math::{DVec3, Transform};
 use crate::spectrum::{Curve, Lanes, Quantity, Table};
@@ -200,10 +200,13 @@ impl Material<Table> {
     /// Whether it is a smooth clear surface that absorbs nothing: all that arrives is reflected or let through.
     pub fn absorbs_nothing(&self) -> bool {
         match self {
-            Self::Dielectric(Dielectric { roughness, reflectance, transmittance, .. }) => {
-                roughness.is_smooth() && reflectance.is_one() && transmittance.is_one()
+            Self::Dielectric(Dielectric { roughness, reflectance, transmittance, coating, .. }) => {
+                let is_clear = coating.as_ref().is_none_or(Coating::is_clear);
+                is_clear && roughness.is_smooth() && reflectance.is_one() && transmittance.is_one()
             }
-            Self::Thin(thin) => thin.transmittance.is_one(),
+            Self::Thin(Thin { transmittance, film, .. }) => {
+                transmittance.is_one() && film.as_ref().is_none_or(Coating::is_clear)
+            }
             Self::Retarder(_) => true,
             Self::Diffuse(_) | Self::Mirror(_) | Self::Conductor(_) | Self::Polarizer(_) => false,
             Self::Emissive(_) | Self::Plastic(_) | Self::Mix(_) | Self::Mask(_) => false,

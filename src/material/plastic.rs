@@ -2,8 +2,11 @@ use std::f64::consts::FRAC_1_PI;
 
 use super::coat::{Coat, Crossing};
 use super::conductor::above;
-use super::degree::{LANES, largest};
-use super::{Arrival, Base, Block, Branch, Incoming, Interface, Mueller, RoughSurface, reflect};
+use super::degree::{LANES, largest, of_all_lanes};
+use super::plastic_film::PlasticFilm;
+use super::{
+    Arrival, Base, Block, Branch, Coating, Incoming, Interface, Mueller, RoughReflection, RoughSurface, reflect,
+};
 use crate::math::{DVec3, Frame, cosine_hemisphere, unit};
 use crate::spectrum::{Lanes, Quantity, Table};
 
@@ -14,6 +17,7 @@ use crate::spectrum::{Lanes, Quantity, Table};
 ///
 /// ```toml
 /// plastic = { reflectance = { rgb = [0.7, 0.1, 0.1] }, roughness = 0.2 }     # index = 1.5, roughness = 0 if absent
+/// plastic = { reflectance = 0.02, coating = [{ index = 1.8, thickness_nm = 350 }] }     # oil on tar
 /// ```
 #[derive(Clone, Debug)]
 pub struct Plastic<S> {
@@ -23,6 +27,8 @@ pub struct Plastic<S> {
     pub index: S,
     /// The coat; below a roughness of 0.01 it is taken as smooth.
     pub coat: Coat,
+    /// Layers on the coat in which light interferes.
+    pub coating: Option<Coating<S>>,
 }
 
 impl<S> Plastic<S> {
@@ -31,6 +37,7 @@ impl<S> Plastic<S> {
             index: convert(Quantity::Index, &self.index),
             reflectance: convert(Quantity::Reflectance, &self.reflectance),
             coat: self.coat.clone(),
+            coating: self.coating.as_ref().map(|coating| coating.map(convert)),
         }
     }
 }
@@ -92,6 +99,26 @@ impl Plastic<Table> {
     fn mirrored<const N: usize>(&self, arrival: &Arrival<N>) -> Option<Branch<N>> {
         let (index, cos) = (arrival.draw.read_exact(&self.index), arrival.wo.dot(arrival.normal));
         let (mut share, mut polarization) = (Lanes::ZERO, 0.0);
+        if let Some(coating) = &self.coating {
+            let met = coating.met(arrival, false);
+            let mut of_lanes = [[0.0; 2]; N];
+            for lane in (0..N).filter(|&i| arrival.present[i] != 0.0) {
+                let reflected =
+                    PlasticFilm::new(&met, lane, [arrival.incident_of(lane), index[lane]]).shares(cos).reflected;
+                share.0[lane] = reflected.mean() as f32;
+                of_lanes[lane] = [reflected.s, reflected.p];
+            }
+            polarization = of_all_lanes(of_lanes.into_iter()) as f32;
+            let wi = reflect(arrival.wo, arrival.normal);
+            return (!share.is_zero()).then_some(Branch {
+                wi,
+                share,
+                pdf: None,
+                crosses: false,
+                eta_scale: 1.0,
+                polarization,
+            });
+        }
         for lane in (0..N).filter(|&i| arrival.present[i] != 0.0 && index[i] != arrival.incident_of(i)) {
             let interface = Interface::new(arrival.incident_of(lane), index[lane], cos);
             share.0[lane] = interface.reflectance as f32;
@@ -111,6 +138,9 @@ impl Plastic<Table> {
     ) -> Option<([f64; N], f64)> {
         let reflection = surface.evaluate(wo, wi)?;
         let base_pdf = wi.z * FRAC_1_PI;
+        if let Some(coating) = &self.coating {
+            return self.rough_coated(arrival, surface, coating, [wo.z, wi.z], &reflection);
+        }
         let of_lane = |crossing: &Crossing, r: f64, [n1, n2]: [f64; 2]| {
             let once = if n1 == n2 { 0.0 } else { Interface::new(n1, n2, reflection.cos).reflectance };
             let again = Coat::reflected_again(surface, n1, n2);
@@ -118,6 +148,33 @@ impl Plastic<Table> {
             (light, crossing.reflected(r))
         };
         let lanes = self.lanes(arrival, [wo.z, wi.z], of_lane);
+        let chance = chance_of_coat(&lanes.map(|lane| lane.1));
+        let pdf = chance * reflection.pdf + (1.0 - chance) * base_pdf;
+        (pdf > 0.0).then(|| (lanes.map(|lane| lane.0), pdf))
+    }
+
+    /// The same of a coated one.
+    fn rough_coated<const N: usize>(
+        &self,
+        arrival: &Arrival<N>,
+        surface: &RoughSurface,
+        coating: &Coating<Table>,
+        cosines: [f64; 2],
+        reflection: &RoughReflection,
+    ) -> Option<([f64; N], f64)> {
+        let (index, base) = (arrival.draw.read_exact(&self.index), arrival.read(&self.reflectance));
+        let (met, base_pdf) = (coating.met(arrival, false), cosines[1] * FRAC_1_PI);
+        let lanes: [(f64, [f64; 2]); N] = std::array::from_fn(|i| {
+            if arrival.present[i] == 0.0 {
+                return Default::default();
+            }
+            let film = PlasticFilm::new(&met, i, [arrival.incident_of(i), index[i]]);
+            let (crossing, r) = (film.crossing(&self.coat, cosines), f64::from(base[i]));
+            let again = surface.reflected_again(film.averages.mean[0]);
+            let once = film.shares(reflection.cos).reflected.mean();
+            let light = once * reflection.once + again * reflection.again + crossing.base(r) * base_pdf;
+            (light, crossing.reflected(r))
+        });
         let chance = chance_of_coat(&lanes.map(|lane| lane.1));
         let pdf = chance * reflection.pdf + (1.0 - chance) * base_pdf;
         (pdf > 0.0).then(|| (lanes.map(|lane| lane.0), pdf))
@@ -132,6 +189,16 @@ impl Plastic<Table> {
         of_lane: impl Fn(&Crossing, f64, [f64; 2]) -> T,
     ) -> [T; N] {
         let (index, base) = (arrival.draw.read_exact(&self.index), arrival.read(&self.reflectance));
+        if let Some(coating) = &self.coating {
+            let met = coating.met(arrival, false);
+            return std::array::from_fn(|i| match arrival.present[i] {
+                0.0 => T::default(),
+                _ => {
+                    let film = PlasticFilm::new(&met, i, [arrival.incident_of(i), index[i]]);
+                    of_lane(&film.crossing(&self.coat, [from, to]), f64::from(base[i]), film.indices)
+                }
+            });
+        }
         let mut last: Option<([f64; 2], Crossing)> = None;
         std::array::from_fn(|i| {
             if arrival.present[i] == 0.0 {
@@ -150,7 +217,13 @@ impl Plastic<Table> {
     /// By the coat, which light crosses and is mirrored by. A rough one is crossed as a smooth one is.
     pub(super) fn mueller<const N: usize>(&self, arrival: &Arrival<N>, incoming: Incoming) -> Mueller<N> {
         let index = arrival.draw.read_exact(&self.index);
+        let met = self.coating.as_ref().map(|coating| coating.met(arrival, false));
+        let film = |lane: usize, cos: f64| {
+            let indices = [arrival.incident_of(lane), index[lane]];
+            met.as_ref().map(|met| PlasticFilm::new(met, lane, indices).shares(cos))
+        };
         let reflected = |lane: usize, cos: f64| match (arrival.incident_of(lane), index[lane]) {
+            _ if let Some(shares) = film(lane, cos) => shares.reflected.block(),
             (n1, n2) if n1 == n2 => Block::default(),
             (n1, n2) => Block::reflected(n1, n2, cos),
         };
@@ -175,12 +248,13 @@ impl Plastic<Table> {
             }
         };
         let from = above(&Frame::about(arrival.normal), arrival.wo).z;
-        let crossed = |lane: usize, cos: f64| match (arrival.incident_of(lane), index[lane]) {
-            (n1, n2) if n1 == n2 => 0.0,
-            (n1, n2) => {
-                let crossing = Block::refracted(n1, n2, cos);
-                if crossing.a > 0.0 { crossing.d / crossing.a } else { 0.0 }
-            }
+        let crossed = |lane: usize, cos: f64| {
+            let crossing = match (arrival.incident_of(lane), index[lane]) {
+                _ if let Some(shares) = film(lane, cos) => shares.refracted.block(),
+                (n1, n2) if n1 == n2 => return 0.0,
+                (n1, n2) => Block::refracted(n1, n2, cos),
+            };
+            if crossing.a > 0.0 { crossing.d / crossing.a } else { 0.0 }
         };
         let base = self.lanes(arrival, [from, to], |crossing, r, _| crossing.base(r) * to * FRAC_1_PI);
         let [leaving, arriving] = [cos, to].map(|cos| -> [f64; N] {
@@ -200,15 +274,29 @@ impl Plastic<Table> {
     pub(super) fn degree_of_scattered<const N: usize>(&self, arrival: &Arrival<N>, wi: DVec3) -> f32 {
         let index = arrival.draw.read_exact(&self.index);
         let lanes = || (0..N).filter(|&lane| index[lane] != arrival.incident_of(lane)).step_by(N.div_ceil(LANES));
-        let coat = |lane: usize, cos: f64| Interface::new(arrival.incident_of(lane), index[lane], cos);
+        let met = self.coating.as_ref().map(|coating| coating.met(arrival, false));
+        let coat = |lane: usize, cos: f64| {
+            let indices @ [n1, n2] = [arrival.incident_of(lane), index[lane]];
+            match &met {
+                None => {
+                    let interface = Interface::new(n1, n2, cos);
+                    [interface.polarization_reflected, interface.polarization_refracted]
+                }
+                Some(met) => {
+                    let shares = PlasticFilm::new(met, lane, indices).shares(cos);
+                    [shares.reflected, shares.refracted].map(|share| share.degree())
+                }
+            }
+            .map(f64::abs)
+        };
         let crossed = |lane: usize| {
             let cosines = [arrival.wo, wi].map(|direction| direction.dot(arrival.normal).abs());
-            cosines.map(|cos| coat(lane, cos).polarization_refracted.abs()).into_iter().fold(0.0, f64::max)
+            cosines.map(|cos| coat(lane, cos)[1]).into_iter().fold(0.0, f64::max)
         };
         let base = largest(lanes().map(crossed));
         match (self.coat.roughness().is_smooth(), (arrival.wo + wi).try_normalize()) {
             (false, Some(h)) => {
-                let mirrored = |lane: usize| coat(lane, arrival.wo.dot(h)).polarization_reflected.abs();
+                let mirrored = |lane: usize| coat(lane, arrival.wo.dot(h))[0];
                 base.max(largest(lanes().map(mirrored)))
             }
             _ => base,

@@ -1,7 +1,10 @@
 //! A rough clear body, lane by lane.
 
+use super::coated_boundary::{block_at, shares_at};
+use super::coating::MetCoating;
 use super::conductor::above;
-use super::{Arrival, Block, Branch, Facet, Flow, Incoming, Interface, Mueller, RoughInterface, Sides, Way};
+use super::rough_coating::CoatedLane;
+use super::{Arrival, Block, Branch, Coating, Facet, Flow, Incoming, Interface, Mueller, RoughInterface, Sides, Way};
 use crate::math::{DVec3, Frame, unit};
 use crate::spectrum::{Lanes, Table};
 
@@ -19,6 +22,9 @@ struct Meeting<'a, 'b, const N: usize> {
     /// Each different boundary, and the lanes that meet it.
     kinds: Vec<Kind<'a, N>>,
     parts: bool,
+    coating: Option<(&'a RoughInterface, MetCoating<'a, N>)>,
+    /// Cosine of the direction that was asked for last.
+    cos: f64,
 }
 
 /// Lanes that are refracted between the same two indices.
@@ -34,7 +40,8 @@ struct Kind<'a, const N: usize> {
 }
 
 impl<'a, 'b, const N: usize> Meeting<'a, 'b, N> {
-    fn new(interface: &'a RoughInterface, arrival: &'a Arrival<'b, N>) -> Self {
+    fn new(boundary: &'a RoughBoundary<'a>, arrival: &'a Arrival<'b, N>) -> Self {
+        let interface = boundary.interface;
         let parts = parts(interface, arrival);
         let goes_on = if parts { arrival.draw.parting() } else { Lanes::ONE };
         let mut kinds: Vec<Kind<N>> = Vec::new();
@@ -61,7 +68,8 @@ impl<'a, 'b, const N: usize> Meeting<'a, 'b, N> {
             kind.crossing += f64::from(goes_on[lane]);
         }
         let frame = Frame::about(arrival.normal);
-        Self { arrival, wo: above(&frame, arrival.wo), frame, kinds, parts }
+        let coating = boundary.coating.map(|coating| (interface, coating.met(arrival, arrival.from_inside)));
+        Self { arrival, wo: above(&frame, arrival.wo), frame, kinds, parts, coating, cos: 0.0 }
     }
 
     /// The lanes of a kind that cross the surface.
@@ -73,6 +81,7 @@ impl<'a, 'b, const N: usize> Meeting<'a, 'b, N> {
     /// it. `drawn` is the kind that drew it, and the facet.
     fn reflect(&mut self, wi: DVec3, drawn: Option<(usize, Facet)>) -> f64 {
         let (mut pdf, mut lanes) = (0.0, 0.0);
+        self.cos = wi.z;
         for (number, kind) in self.kinds.iter_mut().enumerate() {
             kind.flow = kind.sides.reflected(self.wo, wi, facet_of(number, drawn));
             pdf += kind.count * kind.flow.pdf;
@@ -84,6 +93,7 @@ impl<'a, 'b, const N: usize> Meeting<'a, 'b, N> {
     /// The same of a direction beyond it.
     fn cross(&mut self, wi: DVec3, drawn: Option<(usize, Facet)>) -> f64 {
         let (mut pdf, mut lanes) = (0.0, 0.0);
+        self.cos = -wi.z;
         for (number, kind) in self.kinds.iter_mut().enumerate().filter(|(_, kind)| kind.crossing > 0.0) {
             kind.flow = kind.sides.crossed(self.wo, wi, facet_of(number, drawn));
             pdf += kind.crossing * kind.flow.pdf;
@@ -106,6 +116,9 @@ impl<'a, 'b, const N: usize> Meeting<'a, 'b, N> {
     /// What lanes of a kind do in the direction that was asked for last, each by its own indices, times a factor.
     fn flowing(&self, kind: &Kind<N>, factor: f64, crosses: bool) -> Lanes<N> {
         let Flow { value, facet, cos, .. } = kind.flow;
+        if let Some((interface, met)) = &self.coating {
+            return self.flowing_through(interface, met, kind, factor, crosses);
+        }
         let Some(own) = self.arrival.own_transmittance(cos) else {
             return Lanes::from_fn(|_| (value * factor) as f32);
         };
@@ -118,6 +131,32 @@ impl<'a, 'b, const N: usize> Meeting<'a, 'b, N> {
             let ratio = (self.arrival.incident_of(i) / self.arrival.beyond_of(i)) * (beyond / here);
             let square = if crosses { ratio * ratio } else { 1.0 };
             ((value + (own[i] - of_ray.transmittance) * facet) * square * factor).max(0.0) as f32
+        })
+    }
+
+    /// The same of a coated boundary.
+    fn flowing_through(
+        &self,
+        interface: &RoughInterface,
+        met: &MetCoating<N>,
+        kind: &Kind<N>,
+        factor: f64,
+        crosses: bool,
+    ) -> Lanes<N> {
+        let [here, beyond] = kind.indices;
+        let kernels = interface.film_kernels(here, beyond);
+        Lanes::from_fn(|lane| {
+            if kind.present[lane] == 0.0 {
+                return 0.0;
+            }
+            let shares = shares_at(met, self.arrival, lane, kind.flow.cos);
+            let ratio = self.arrival.incident_of(lane) / self.arrival.beyond_of(lane);
+            let square = if crosses { ratio * ratio } else { 1.0 };
+            // What one facet sends beyond is already converted by the ray's indices.
+            let converted = if crosses { square * (beyond / here) * (beyond / here) } else { 1.0 };
+            let once = converted * if crosses { shares.refracted.mean() } else { shares.reflected.mean() };
+            let coated = CoatedLane::new(met, self.arrival, lane, &kind.sides, kernels);
+            (factor * coated.value(&kind.flow, once, [self.wo.z, self.cos], crosses, square)) as f32
         })
     }
 
@@ -159,6 +198,7 @@ pub(super) fn parts<const N: usize>(interface: &RoughInterface, arrival: &Arriva
 /// A rough surface of a clear body.
 pub(super) struct RoughBoundary<'a> {
     pub(super) interface: &'a RoughInterface,
+    pub(super) coating: Option<&'a Coating<Table>>,
     /// Factors on what it reflects and lets through.
     pub(super) reflectance: &'a Table,
     pub(super) transmittance: &'a Table,
@@ -175,7 +215,7 @@ impl RoughBoundary<'_> {
     pub(super) fn scatter<const N: usize>(&self, arrival: &Arrival<N>, u: [f64; 2], branches: &mut Vec<Branch<N>>) {
         let (tint, reflectance) = (arrival.read(self.transmittance), arrival.read(self.reflectance));
         self.pass_equal_indices(arrival, tint, branches);
-        let mut meeting = Meeting::new(self.interface, arrival);
+        let mut meeting = Meeting::new(self, arrival);
         let total: f64 = meeting.kinds.iter().map(|kind| kind.count).sum();
         let mut at = u[0] * total;
         let chosen = meeting.kinds.iter().position(|kind| {
@@ -244,7 +284,7 @@ impl RoughBoundary<'_> {
     /// By the facet that reflects or refracts the light of each kind of lanes. What meets a second facet leaves
     /// unpolarized.
     pub(super) fn mueller<const N: usize>(&self, arrival: &Arrival<N>, incoming: Incoming) -> Mueller<N> {
-        let mut meeting = Meeting::new(self.interface, arrival);
+        let mut meeting = Meeting::new(self, arrival);
         let local = meeting.frame.to_local(incoming.wi);
         let crosses = local.z < 0.0;
         let pdf = if crosses { meeting.cross(local, None) } else { meeting.reflect(local, None) };
@@ -256,7 +296,10 @@ impl RoughBoundary<'_> {
         for kind in meeting.kinds.iter().filter(|kind| !crosses || kind.crossing > 0.0) {
             let lanes = if crosses { meeting.across(kind) } else { kind.present };
             for lane in (0..N).filter(|&lane| lanes[lane] != 0.0) {
-                let block = Block::at_boundary(arrival.own_boundary(lane, kind.flow.cos), crosses);
+                let block = match &meeting.coating {
+                    None => Block::at_boundary(arrival.own_boundary(lane, kind.flow.cos), crosses),
+                    Some((_, met)) => block_at(met, arrival, lane, kind.flow.cos, crosses),
+                };
                 // The facets' part of radiance that crosses is already changed by the ray's indices.
                 let [here, beyond] = kind.indices;
                 let square = if crosses { (beyond / here) * (beyond / here) } else { 1.0 };
@@ -268,7 +311,7 @@ impl RoughBoundary<'_> {
 
     /// BSDF times cosine of each lane, and the density of `wi` among the branches on its side.
     pub(super) fn evaluate<const N: usize>(&self, arrival: &Arrival<N>, wi: DVec3) -> Option<(Lanes<N>, f64)> {
-        let mut meeting = Meeting::new(self.interface, arrival);
+        let mut meeting = Meeting::new(self, arrival);
         let local = meeting.frame.to_local(wi);
         if local.z > 0.0 {
             let pdf = meeting.reflect(local, None);

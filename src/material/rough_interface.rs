@@ -3,6 +3,7 @@ use std::sync::OnceLock;
 
 use super::albedo_table::AlbedoTable;
 use super::facets::later_digits;
+use super::film_kernel::FilmKernel;
 use super::fresnel::diffuse_transmittance;
 use super::{Facet, Facets, Flow};
 use crate::math::DVec3;
@@ -21,6 +22,8 @@ use crate::math::DVec3;
 pub struct RoughInterface {
     facets: Facets,
     rows: Box<[OnceLock<AlbedoTable>]>,
+    /// What films add to them.
+    kernels: Box<[OnceLock<FilmKernel>]>,
 }
 
 /// Steps between rows for ratios above 1, and as many below.
@@ -31,13 +34,17 @@ const RATIOS: usize = 160;
 const SPAN: [f64; 2] = [1e-4, LN_10];
 /// Steps of a row over the cosine.
 const STEPS: usize = 192;
+/// The same of a film's kernel.
+const KERNEL_STEPS: usize = 64;
 /// Places of the quadrature over the visible facets.
 const PLACES: u32 = 4096;
 
 impl RoughInterface {
     /// The boundary whose facets have slopes as wide as `alpha`.
     pub fn new(alpha: f64) -> Self {
-        Self { facets: Facets::new(alpha), rows: (0..2 * (RATIOS + 1)).map(|_| OnceLock::new()).collect() }
+        let rows = (0..2 * (RATIOS + 1)).map(|_| OnceLock::new()).collect();
+        let kernels = (0..2 * (RATIOS + 1)).map(|_| OnceLock::new()).collect();
+        Self { facets: Facets::new(alpha), rows, kernels }
     }
 
     /// The facets themselves.
@@ -47,10 +54,7 @@ impl RoughInterface {
 
     /// The boundary as light meets it that comes from index `n1` and finds a different index `n2` beyond.
     pub fn between(&self, n1: f64, n2: f64) -> Sides<'_> {
-        let ratio = libm::log(n2 / n1);
-        let denser = ratio > 0.0;
-        let [least, most] = SPAN;
-        let place = libm::log(ratio.abs().clamp(least, most) / least) / libm::log(most / least) * RATIOS as f64;
+        let (denser, place) = place(n1, n2);
         let [near, far] = [denser, !denser].map(|denser| self.side(denser, place));
         // Light meets a boundary evenly as often from both sides if n^2 of it comes: what crosses is the same both
         // ways.
@@ -59,6 +63,16 @@ impl RoughInterface {
         let most = near.mean_blocked().max(far.mean_blocked());
         let crossing = [enters * far.mean_blocked() / most, leaves * near.mean_blocked() / most];
         Sides { facets: &self.facets, indices: [n1, n2], near, far, crossing, straight: enters * leaves }
+    }
+
+    /// What films add to what is blocked, on the viewer's side and beyond, of ratios near that of the indices.
+    pub(super) fn film_kernels(&self, n1: f64, n2: f64) -> [&FilmKernel; 2] {
+        let (denser, place) = place(n1, n2);
+        [denser, !denser].map(|denser| {
+            let row = place.round() as usize;
+            self.kernels[row + if denser { RATIOS + 1 } else { 0 }]
+                .get_or_init(|| kernel(&self.facets, ratio(denser, row)))
+        })
     }
 
     /// The tables at a place in 0..RATIOS, of light that meets the denser medium or the rarer.
@@ -70,12 +84,39 @@ impl RoughInterface {
 
     fn row(&self, denser: bool, row: usize) -> &AlbedoTable {
         self.rows[row + if denser { RATIOS + 1 } else { 0 }].get_or_init(|| {
-            let [least, most] = SPAN;
-            let size = least * libm::pow(most / least, row as f64 / RATIOS as f64);
-            let ratio = libm::exp(if denser { size } else { -size });
+            let ratio = ratio(denser, row);
             AlbedoTable::new(self.facets.alpha(), STEPS, |z| blocked(&self.facets, z, ratio))
         })
     }
+}
+
+/// Whether the medium beyond is denser, and the place of the indices among the rows.
+fn place(n1: f64, n2: f64) -> (bool, f64) {
+    let ratio = libm::log(n2 / n1);
+    let [least, most] = SPAN;
+    let place = libm::log(ratio.abs().clamp(least, most) / least) / libm::log(most / least) * RATIOS as f64;
+    (ratio > 0.0, place)
+}
+
+/// The ratio of the indices of a row.
+fn ratio(denser: bool, row: usize) -> f64 {
+    let [least, most] = SPAN;
+    let size = least * libm::pow(most / least, row as f64 / RATIOS as f64);
+    libm::exp(if denser { size } else { -size })
+}
+
+/// What is blocked of the light that facets would reflect, all of it, or let through.
+fn kernel(facets: &Facets, ratio: f64) -> FilmKernel {
+    FilmKernel::new(facets.alpha(), ratio, KERNEL_STEPS, |z, add| {
+        let (wo, straight) = (DVec3::new((1.0 - z * z).max(0.0).sqrt(), 0.0, z), straight(ratio));
+        for i in 0..PLACES {
+            let turn = (f64::from(i) * GOLDEN).fract();
+            let v = (f64::from(i) + 0.5) / f64::from(PLACES);
+            let h = facets.visible_normal_from_end(wo, turn, v * v);
+            let facet = Facet::new(facets, [1.0, ratio], straight, [wo, h], None);
+            add(facet.cos[0], 2.0 * v / f64::from(PLACES), facet.all.map(|left| 1.0 - left));
+        }
+    })
 }
 
 /// The share of the light from the cosine `z` that meets a second facet: the mean over the visible facets, where the

@@ -1,5 +1,5 @@
-use super::degree::degree;
-use super::{Arrival, Block, Branch, Interface, Mueller, Straight, reflect};
+use super::degree::{degree, of_all_lanes};
+use super::{Arrival, Block, Branch, Coating, Interface, Mueller, StackShares, Straight, reflect};
 use crate::spectrum::{Lanes, Quantity, Table};
 
 /// A pane of clear material without thickness: a window of which nothing but its two surfaces is seen. Light goes
@@ -8,13 +8,20 @@ use crate::spectrum::{Lanes, Quantity, Table};
 ///
 /// ```toml
 /// thin = { index = 1.52 }     # transmittance = 1: what is left after one way through the pane, straight on
+/// thin = { index = 1.33, thickness_nm = 400 }     # a film in which light interferes; k = 0 if absent
+/// thin = { index = 1.33, thickness_nm = { image = "bubble.png", scale = 600 } }
 /// ```
+///
+/// With a thickness it is a soap film or a flake of mica: light that is reflected by its two surfaces interferes, and
+/// what it absorbs is by its extinction `k`.
 #[derive(Clone, Debug)]
 pub struct Thin<S> {
     /// Refractive index.
     pub index: S,
     /// Share of the light that is left after one way through the pane, at every angle.
     pub transmittance: S,
+    /// The pane as a layer in which light interferes, if it has a thickness.
+    pub film: Option<Coating<S>>,
 }
 
 impl<S> Thin<S> {
@@ -22,6 +29,7 @@ impl<S> Thin<S> {
         Thin {
             index: convert(Quantity::Index, &self.index),
             transmittance: convert(Quantity::Transmittance, &self.transmittance),
+            film: self.film.as_ref().map(|film| film.map(convert)),
         }
     }
 }
@@ -47,7 +55,13 @@ impl Thin<Table> {
         let (index, way) = (arrival.draw.read_exact(&self.index), arrival.read(&self.transmittance));
         let (axis, cos) = (arrival.wo.cross(arrival.normal), arrival.wo.dot(arrival.normal));
         let (mut last, mut blocks) = (None, [Block::default(); 2]);
+        let film = self.film.as_ref().map(|film| film.met(arrival, false));
         let mut block_of = |lane: usize| {
+            if let Some(film) = &film {
+                let n = arrival.incident_of(lane);
+                let shares = film.stack(lane).shares(n, n.into(), n * cos.clamp(0.0, 1.0));
+                return [shares.refracted.block(), shares.reflected.block()];
+            }
             let pane @ [n1, n2, t] = [arrival.incident_of(lane), index[lane], f64::from(way[lane])];
             if n1 == n2 {
                 return [Block::IDENTITY.times(t), Block::default()];
@@ -69,6 +83,9 @@ impl Thin<Table> {
     /// What of each lane goes straight on and what is mirrored, and the largest degree of polarization that this gives
     /// to unpolarized light.
     pub(super) fn shares<const N: usize>(&self, arrival: &Arrival<N>) -> (Lanes<N>, Lanes<N>, [f64; 2]) {
+        if let Some(film) = &self.film {
+            return interfering(film, arrival);
+        }
         let (index, way) = (arrival.draw.read_exact(&self.index), arrival.read(&self.transmittance));
         let cos = arrival.wo.dot(arrival.normal);
         let (mut through, mut back, mut degrees) = (Lanes::ZERO, Lanes::ZERO, [0.0_f64; 2]);
@@ -89,6 +106,20 @@ impl Thin<Table> {
         }
         (through, back, degrees)
     }
+}
+
+/// [`Thin::shares`] of a film in which light interferes.
+fn interfering<const N: usize>(film: &Coating<Table>, arrival: &Arrival<N>) -> (Lanes<N>, Lanes<N>, [f64; 2]) {
+    let (cos, met) = (arrival.wo.dot(arrival.normal).clamp(0.0, 1.0), film.met(arrival, false));
+    let (mut through, mut back, mut of_lanes) = (Lanes::ZERO, Lanes::ZERO, [[[0.0; 2]; N]; 2]);
+    for lane in (0..N).filter(|&lane| arrival.present[lane] != 0.0) {
+        let n = arrival.incident_of(lane);
+        let StackShares { reflected, refracted } = met.stack(lane).shares(n, n.into(), n * cos);
+        [through.0[lane], back.0[lane]] = [refracted, reflected].map(|share| share.mean() as f32);
+        let both = [refracted, reflected].map(|share| [share.s, share.p]);
+        (0..2).for_each(|way| of_lanes[way][lane] = both[way]);
+    }
+    (through, back, of_lanes.map(|way| of_all_lanes(way.into_iter())))
 }
 
 /// What goes through a pane and what comes back, each (s, p), of which one way leaves the share `t`.

@@ -1,9 +1,11 @@
 //! Floor 0: points, directions and random numbers; knows glam only.
 
 mod bounds;
+mod complex;
 mod cone;
 mod distribution;
 mod frame;
+mod gauss;
 mod interpolate;
 mod neighbors;
 mod offset;
@@ -13,9 +15,11 @@ mod transform;
 mod warp;
 
 pub use bounds::Bounds;
+pub use complex::Complex;
 pub use cone::Cone;
 pub use distribution::{BELOW_ONE, DiscreteSample, Distribution, Distribution2d};
 pub use frame::Frame;
+pub use gauss::gauss_legendre;
 pub use interpolate::interpolate;
 pub use neighbors::neighbors;
 pub use offset::{UNIT_ROUNDOFF, gamma, offset_origin};

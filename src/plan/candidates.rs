@@ -35,7 +35,8 @@ pub(super) fn error(survey: &Survey, seen: &Seen, basis: &Basis) -> f64 {
 fn missed(survey: &Survey, basis: &Basis, scattering: &[&Tint], smooth: &[&Tint]) -> f64 {
     let draw = Draw::<MAX_LANES>::fixed(basis.fixed_lanes());
     let read = |tints: &[&Tint]| tints.iter().map(|tint| tint.on(basis)).collect::<Vec<_>>();
-    let in_lanes = paths(&read(scattering), &read(smooth));
+    let films = smooth.iter().filter(|tint| matches!(tint, Tint::Film(_))).count();
+    let in_lanes = paths(&read(scattering), &read(smooth), films);
     let mut worst: f64 = 0.0;
     for (curve, light) in survey.judged() {
         let exact = exact_colors(light, scattering, smooth, basis);
@@ -67,12 +68,14 @@ fn exact_colors(light: &Emission, scattering: &[&Tint], smooth: &[&Tint], basis:
         }
         color
     };
-    paths(&read(scattering), &read(smooth)).iter().map(sum).collect()
+    let films = smooth.iter().filter(|tint| matches!(tint, Tint::Film(_))).count();
+    paths(&read(scattering), &read(smooth), films).iter().map(sum).collect()
 }
 
 /// Every surface i lit straight and by way of every surface j, q = r_i (1 + r_j / (1 - mean r)), alone and seen by way
-/// of every smooth surface; and the lights, seen straight and by way of one or two smooth surfaces.
-fn paths(scattering: &[Vec<f64>], smooth: &[Vec<f64>]) -> Vec<Vec<f64>> {
+/// of every smooth surface; and the lights, seen straight and by way of one or two smooth surfaces, of which at most
+/// one is one of the `films`, the first ones: two never share their fringes as a film does with itself.
+fn paths(scattering: &[Vec<f64>], smooth: &[Vec<f64>], films: usize) -> Vec<Vec<f64>> {
     let length = scattering.iter().chain(smooth).next().map_or(0, Vec::len);
     let count = scattering.len().max(1) as f64;
     let mean: Vec<f64> = (0..length).map(|i| scattering.iter().map(|r| r[i]).sum::<f64>() / count).collect();
@@ -87,7 +90,7 @@ fn paths(scattering: &[Vec<f64>], smooth: &[Vec<f64>]) -> Vec<Vec<f64>> {
         }
     }
     for (number, first) in smooth.iter().enumerate() {
-        paths.extend(smooth[number..].iter().map(|second| product(first, second)));
+        paths.extend(smooth[number.max(films)..].iter().map(|second| product(first, second)));
         paths.push(first.clone());
     }
     paths
@@ -109,7 +112,7 @@ pub(super) fn candidates(survey: &Survey, seen: &Seen, heroes: usize) -> Vec<Can
         if heroes == 0 && error == 0.0 {
             return candidates;
         }
-    } else if let Some(light) = survey.common_light() {
+    } else if let (Some(light), false) = (survey.common_light(), survey.has_films()) {
         candidates.push(candidate(Basis::prefiltered(space, &light), PREFILTERED_SAFETY));
     }
     candidates.extend([8, 12, 16, 32].map(|bands| candidate(bands_beside(survey, bands, heroes), LANES_SAFETY)));

@@ -4,6 +4,7 @@ mod bright;
 mod candidates;
 mod caustics;
 mod efficiency;
+mod films;
 mod light_vertices;
 mod lights;
 mod model;

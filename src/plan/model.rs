@@ -1,6 +1,7 @@
 //! Which lanes carry the light, and whether they part.
 
 use super::candidates::{Candidate, LANES_SAFETY, bands_beside, candidates, error, own_lines};
+use super::films::spoken as spoken_film;
 use super::seen::Seen;
 use super::survey::{Survey, disperses, tolerance};
 use super::words::percent;
@@ -203,6 +204,7 @@ fn desaturated(scene: &Scene<Curve>, basis: &Basis) -> Option<String> {
 fn materials(scene: &Scene<Curve>, basis: &Basis) -> Vec<String> {
     let mut lines = Vec::new();
     for named in &scene.materials {
+        lines.extend(spoken_film(&named.material, basis).map(|film| format!("material {}: {film}", named.name)));
         match &named.material {
             Material::Dielectric(glass) => {
                 let table = basis.tabulate(Quantity::Index, &glass.index);

@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 use std::sync::Arc;
 
+use super::films::{Beyond, Film, films};
 use super::lights::{different, farthest_apart};
 use crate::material::{Conductor, Dielectric, Material, Plastic, conductor_reflectance, diffuse_transmittance};
 use crate::scene::Scene;
@@ -45,6 +46,8 @@ pub(super) enum Tint<'a> {
     Metal(&'a Conductor<Curve>, f64),
     /// Light goes a distance through an absorbing body.
     Depth(&'a Curve, f64),
+    /// Light meets layers in which it interferes.
+    Film(Film<'a>),
     /// Light meets a clear surface of a measured index at right angles, and is reflected or crosses it.
     Surface { index: &'a Curve, crosses: bool, together: bool },
 }
@@ -69,6 +72,7 @@ impl<'a> Survey<'a> {
                         .into_iter()
                         .flat_map(|index| [false, true].map(|crosses| Tint::Surface { index, crosses, together })),
                 );
+                tints.extend(films(material).into_iter().map(Tint::Film));
                 match material {
                     Material::Diffuse(diffuse) => {
                         tints.extend(diffuse.reflectance.shades().into_iter().map(Tint::Diffuse));
@@ -79,7 +83,8 @@ impl<'a> Survey<'a> {
                     }
                     Material::Thin(thin) => tints.extend(filters(Quantity::Transmittance, &thin.transmittance)),
                     Material::Mirror(mirror) => tints.extend(filters(Quantity::Reflectance, &mirror.reflectance)),
-                    Material::Conductor(metal) => tints.push(Tint::Metal(metal, 1.0)),
+                    Material::Conductor(metal) if metal.coating.is_none() => tints.push(Tint::Metal(metal, 1.0)),
+                    Material::Conductor(_) => {}
                     Material::Dielectric(glass) => {
                         tints.extend(filters(Quantity::Reflectance, &glass.reflectance));
                         tints.extend(filters(Quantity::Transmittance, &glass.transmittance));
@@ -100,8 +105,14 @@ impl<'a> Survey<'a> {
     pub(super) fn is_plain(&self) -> bool {
         let white: Curve = CurveKind::Illuminant(Arc::new(self.color_space.white_light())).into();
         let white = Emission::new(&white, self.color_space);
-        self.tints.iter().all(|tint| tint.curves().iter().all(|curve| !curve.is_measured()))
+        !self.has_films()
+            && self.tints.iter().all(|tint| tint.curves().iter().all(|curve| !curve.is_measured()))
             && self.lights.iter().all(|(curve, light)| !curve.is_measured() || light.has_shape_of(&white))
+    }
+
+    /// Whether light interferes somewhere, which three numbers cannot tell.
+    pub(super) fn has_films(&self) -> bool {
+        self.tints.iter().any(|tint| matches!(tint, Tint::Film(_)))
     }
 
     /// The light of the whole scene, if all lights have the same spectrum.
@@ -143,7 +154,21 @@ impl<'a> Survey<'a> {
     }
 
     pub(super) fn smooth(&self, most: usize) -> Vec<&Tint<'a>> {
-        self.farthest_from_gray(most, |tint| !tint.is_scattering() && !tint.is_flat())
+        let mut chosen = self.thickest_films(FILMS);
+        let others = |tint: &Tint| !tint.is_scattering() && !tint.is_flat() && !matches!(tint, Tint::Film(_));
+        chosen.extend(self.farthest_from_gray(most, others));
+        chosen
+    }
+
+    /// Films of which the fringes are closest.
+    fn thickest_films(&self, most: usize) -> Vec<&Tint<'a>> {
+        let thickness = |tint: &Tint| match tint {
+            Tint::Film(film) => Some(film.optical_nm().iter().sum::<f64>()),
+            _ => None,
+        };
+        let mut films: Vec<_> = self.tints.iter().filter_map(|tint| Some((thickness(tint)?, tint))).collect();
+        films.sort_by(|a, b| b.0.total_cmp(&a.0));
+        films.into_iter().take(most).map(|(_, tint)| tint).collect()
     }
 
     /// The clear surfaces alone.
@@ -168,6 +193,9 @@ impl<'a> Survey<'a> {
     }
 }
 
+/// Films by which models are judged, each as it reflects and as it lets through.
+const FILMS: usize = 4;
+
 /// The longest straight way through the largest body of a material.
 fn thickness(scene: &Scene<Curve>, material: u32) -> f64 {
     let bodies = scene.objects.iter().filter(|object| object.material == material);
@@ -183,7 +211,7 @@ impl Tint<'_> {
             Self::Depth(curve, _) => vec![curve],
             Self::Metal(metal, _) => vec![&metal.n, &metal.k],
             Self::Coated(_, reflectance) => vec![reflectance],
-            Self::Surface { .. } => Vec::new(),
+            Self::Surface { .. } | Self::Film(_) => Vec::new(),
         }
     }
 
@@ -192,7 +220,7 @@ impl Tint<'_> {
     }
 
     fn is_flat(&self) -> bool {
-        !matches!(self, Self::Surface { .. })
+        !matches!(self, Self::Surface { .. } | Self::Film(_))
             && self.curves().iter().all(|curve| matches!(curve.kind, CurveKind::Number(_)))
     }
 
@@ -203,6 +231,10 @@ impl Tint<'_> {
 
     pub(super) fn read(&self, wavelengths_nm: &[f64], upsampler: &Upsampler) -> Vec<f64> {
         self.combine(|quantity, curve| {
+            if quantity == Quantity::BandWidth {
+                // What is summed over 1 nm has the fringes of bands of 1 nm.
+                return wavelengths_nm.iter().map(|nm| 1.0 / nm).collect();
+            }
             let reader = curve.reader(quantity, upsampler);
             wavelengths_nm.iter().map(|&nm| reader(nm)).collect()
         })
@@ -229,8 +261,13 @@ impl Tint<'_> {
                 read(Quantity::Reflectance, reflectance).into_iter().zip(index).map(coated).collect()
             }
             Self::Filter(quantity, curve) => read(*quantity, curve),
+            Self::Film(film) => film.left(read),
             Self::Metal(metal, cos) => {
                 let (n, k) = (read(Quantity::MetalIndex, &metal.n), read(Quantity::MetalExtinction, &metal.k));
+                if let Some(coating) = &metal.coating {
+                    let beyond = Beyond::Metal(&metal.n, &metal.k);
+                    return Film { coating, beyond, crosses: false, thickest: true }.left(read);
+                }
                 let reflected = n.into_iter().zip(k).map(|(n, k)| match *cos {
                     1.0 => normal_reflectance(n, k),
                     cos => 0.5 * conductor_reflectance(1.0, n, k, cos).iter().sum::<f64>(),

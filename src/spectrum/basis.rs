@@ -176,8 +176,10 @@ impl Basis {
         if let Some(table) = self.patterned(quantity, curve) {
             return table;
         }
-        if quantity == Quantity::Emission {
-            return self.emission(curve);
+        match quantity {
+            Quantity::Emission => return self.emission(curve),
+            Quantity::BandWidth => return self.band_widths(),
+            _ => {}
         }
         let reader = curve.reader(quantity, &self.upsampler);
         let read = |nm: &f64| reader(*nm);
@@ -189,7 +191,7 @@ impl Basis {
                 Some(rgb) => Table::new(rgb.map(|x| x * curve.scale)),
                 None => Table::new(self.wavelengths_nm.iter().map(read).collect::<Vec<_>>()),
             },
-            (LaneKind::Prefiltered(bands), _) if quantity != Quantity::Index => {
+            (LaneKind::Prefiltered(bands), _) if !matches!(quantity, Quantity::Index | Quantity::Wavelength) => {
                 Table::new(bands.filter(quantity, curve, &*reader))
             }
             _ => self.table(self.wavelengths_nm.iter().map(read).collect(), &*reader),
@@ -222,13 +224,25 @@ impl Basis {
             true => self.tabulate(quantity, &curve.level()),
             false => self.even(curve.scale),
         };
-        let most = if shines { f32::INFINITY } else { 1.0 };
+        let most = if shines || quantity == Quantity::Thickness { f32::INFINITY } else { 1.0 };
         Some(level.varied(Pattern { kind, most, mean: curve.kind.mean() }))
     }
 
     /// The same number everywhere.
     fn even(&self, value: f64) -> Table {
         self.table(vec![value; self.fixed_lanes()], &|_| value)
+    }
+
+    /// The width of each fixed lane's band over its wavelength; 0 of what reads a single wavelength.
+    fn band_widths(&self) -> Table {
+        let LaneKind::Wavelengths(functions) = &self.lanes else { return self.even(0.0) };
+        let nodes = &self.wavelengths_nm[..functions.len()];
+        let width = |i: usize| {
+            let [first, last] = [i.saturating_sub(1), (i + 1).min(nodes.len() - 1)];
+            if first == last { 0.0 } else { (nodes[last] - nodes[first]) / ((last - first) as f64 * nodes[i]) }
+        };
+        let lines = self.wavelengths_nm[functions.len()..].iter().map(|_| 0.0);
+        Table::with_fine(&(0..nodes.len()).map(width).chain(lines).collect::<Vec<_>>(), self.fine(|_| 0.0, |_| 0.0))
     }
 
     /// The bins, and the fine grid if wavelengths are drawn.

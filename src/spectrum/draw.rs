@@ -133,6 +133,11 @@ impl<const N: usize> Draw<N> {
         }
     }
 
+    /// Whether a lane stands for the same light in every sample.
+    pub fn is_fixed(&self, lane: usize) -> bool {
+        lane < self.fixed
+    }
+
     /// How much each lane counts when a single number must stand for a throughput: while lanes are together their
     /// shares sum to 1. A hero that has parted counts in full, for it goes on alone in place of all: so its way is
     /// followed as far as if no lanes had parted, which on glass measured half the noise for a third more time than

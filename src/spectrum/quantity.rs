@@ -17,4 +17,11 @@ pub enum Quantity {
     MetalIndex,
     /// Extinction coefficient of a metal: imaginary part of its index; not negative.
     MetalExtinction,
+    /// Thickness of a layer in which light interferes, in nm.
+    Thickness,
+    /// Of the number 1: where a lane reads, in nm in vacuum.
+    Wavelength,
+    /// Of the number 1: the width of the band of wavelengths that a lane stands for over its wavelength, 0 of lines and
+    /// heroes.
+    BandWidth,
 }

@@ -55,7 +55,10 @@ impl<'a, const N: usize> Interaction<'a, N> {
             lobes,
             flat,
             boundary,
-            arrival: arrival(world, draw, wo, normal, uv, present, sides),
+            arrival: Arrival {
+                from_inside: point.normal.dot(wo) < 0.0,
+                ..arrival(world, draw, wo, normal, uv, present, sides)
+            },
             parts: false,
         };
         at.parts = parts(lobes, material, &at.arrival);
@@ -118,6 +121,7 @@ pub(super) fn arrival<'a, const N: usize>(
         uv,
         draw,
         present,
+        from_inside: false,
         incident: media::index_around(&world.scene, sides[0]),
         beyond: media::index_around(&world.scene, sides[1]),
         direction_indices: media::direction_indices(&world.scene, sides),

@@ -39,7 +39,16 @@ fn clear(basis: &Basis, index: Table) -> Material<Table> {
     let even = |x: f64| basis.tabulate(Quantity::Transmittance, &x.into());
     let [reflectance, transmittance, emission, absorption] = [1.0, 1.0, 0.0, 0.0].map(even);
     let (priority, roughness) = (0, Roughness::default());
-    Material::Dielectric(Dielectric { index, reflectance, transmittance, emission, absorption, priority, roughness })
+    Material::Dielectric(Dielectric {
+        index,
+        reflectance,
+        transmittance,
+        emission,
+        absorption,
+        priority,
+        roughness,
+        coating: None,
+    })
 }
 
 type Draws = Draw<MAX_LANES>;
@@ -72,6 +81,7 @@ fn d16_every_lane_of_every_glass_of_the_catalog_has_its_own_plate() {
                     uv: [0.0; 2],
                     draw: &draw,
                     present,
+                    from_inside: false,
                     incident: Index::Same(1.0),
                     beyond: Index::Own(&table),
                     direction_indices: [Some(1.0), Some(direction)],

@@ -40,6 +40,7 @@ pub fn arrival(draw: &Draw<4>, wo: DVec3, index: f64) -> Arrival<'_, 4> {
         uv: [0.0; 2],
         draw,
         present: draw.start(),
+        from_inside: false,
         incident,
         beyond,
         direction_indices: [None; 2],

@@ -38,6 +38,7 @@ fn furnace(material: &Material<Table>, cos: f64, index: f64) -> [f64; 3] {
         uv: [0.0; 2],
         draw: &draw,
         present: draw.start(),
+        from_inside: false,
         incident: Index::Same(index),
         beyond: Index::Same(index),
         direction_indices: [None; 2],

@@ -62,6 +62,7 @@ fn a_point_light_shows_the_brdf_itself() {
             uv: [0.0; 2],
             draw: &draw,
             present: draw.start(),
+            from_inside: false,
             incident,
             beyond,
             direction_indices: [None; 2],

@@ -80,6 +80,7 @@ fn s5_every_material_sends_light_on_along_unit_vectors() {
                 uv: [0.0; 2],
                 draw: &draw,
                 present: draw.start(),
+                from_inside: false,
                 incident,
                 beyond,
                 direction_indices: [None; 2],

@@ -73,6 +73,9 @@ fn forms(quantity: Quantity) -> &'static str {
         Quantity::Emission => "write a number, { rgb = [red, green, blue] } or { illuminant = \"D65\" }",
         Quantity::Index => "write a number, a glass such as \"N-BK7\" or { samples = [[nm, n], ..] }",
         Quantity::MetalIndex | Quantity::MetalExtinction => "write a number or { samples = [[nm, value], ..] }",
+        Quantity::Thickness | Quantity::Wavelength | Quantity::BandWidth => {
+            "write a number of nm, or an image of grays and the nm of its white: { image = \"thickness.png\", scale = 600 }"
+        }
         Quantity::Reflectance | Quantity::Transmittance | Quantity::Share | Quantity::Absorption => {
             "write a number, { rgb = [red, green, blue] } or { samples = [[nm, value], ..] }"
         }
@@ -83,6 +86,8 @@ fn forms(quantity: Quantity) -> &'static str {
 fn kind<'d>(context: &mut Context, text: &CurveText<'d>, quantity: Quantity) -> Option<CurveKind> {
     let (place, is_index, shines) = (text.place, quantity == Quantity::Index, quantity == Quantity::Emission);
     match &text.kind {
+        // A length is no spectrum.
+        kind if quantity == Quantity::Thickness && !matches!(kind, KindText::Number(_)) => unfit(text, quantity),
         KindText::Number(number) => {
             told(place, possible(quantity, number * text.scale.it, ""))?;
             Some(CurveKind::Number(*number))
@@ -318,6 +323,7 @@ fn named(context: &mut Context, place: Value, name: &str, quantity: Quantity) ->
             None => unknown_metal(name).tell(place),
         },
         Quantity::Absorption => absorption(context, place, name),
+        Quantity::Thickness | Quantity::Wavelength | Quantity::BandWidth => None,
         Quantity::Reflectance | Quantity::Transmittance | Quantity::Share | Quantity::Emission => {
             match data::reflectance(name) {
                 Some(reflectance) => Some(CurveKind::Reflectance(Named::new(name, reflectance))),

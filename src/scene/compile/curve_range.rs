@@ -7,6 +7,10 @@ use crate::spectrum::Quantity;
 const MAX_EMISSION: f64 = 1e30;
 /// Largest n and k: several times those of any metal in visible light.
 const MAX_METAL: f64 = 100.0;
+/// Largest thickness of a layer in which light interferes, in nm: 100 um.
+pub(super) const MAX_THICKNESS_NM: f64 = 1e5;
+/// A thickness below this many nm, far less than an atom, is meant in another unit.
+const LEAST_THICKNESS_NM: f64 = 1e-3;
 
 /// Why a spectrum cannot be what it is used as.
 pub(super) struct Refusal {
@@ -68,6 +72,8 @@ pub(super) fn possible(quantity: Quantity, value: f64, place: &str) -> Result<()
         Quantity::Absorption => (0.0, f64::MAX, false),
         Quantity::MetalIndex => (f64::MIN_POSITIVE, MAX_METAL, false),
         Quantity::MetalExtinction => (0.0, MAX_METAL, false),
+        Quantity::Thickness => return possible_thickness(value, place),
+        Quantity::Wavelength | Quantity::BandWidth => (0.0, f64::MAX, false),
     };
     if (least..=most).contains(&value) {
         return Ok(());
@@ -89,6 +95,25 @@ pub(super) fn possible(quantity: Quantity, value: f64, place: &str) -> Result<()
     })
 }
 
+/// That a layer of a thickness in nm is thick enough to be one, and thin enough to show that light interferes.
+pub(super) fn possible_thickness(nm: f64, place: &str) -> Result<(), Refusal> {
+    let (name, value) = (article(Quantity::Thickness), shown(nm));
+    if nm == 0.0 || (LEAST_THICKNESS_NM..=MAX_THICKNESS_NM).contains(&nm) {
+        return Ok(());
+    }
+    if nm < 0.0 {
+        return Err(Refusal::new(format!("{name} is at least 0, not {value} nm{place}")));
+    }
+    if nm > MAX_THICKNESS_NM {
+        let refusal = Refusal::new(format!("{name} is at most {MAX_THICKNESS_NM} nm, not {value} nm{place}"));
+        return Err(refusal.help("no eye sees how light interferes in more: for glass, leave the layer out"));
+    }
+    let refusal = Refusal::new(format!("{name} of {value} nm{place} is less than that of an atom"));
+    let in_nm = nm * 1e9;
+    let help = (1.0..=MAX_THICKNESS_NM).contains(&in_nm);
+    Err(if help { refusal.help(format!("in m? It is in nm: then write {}", shown(in_nm))) } else { refusal })
+}
+
 /// Six digits of a number.
 pub(super) fn shown(value: f64) -> String {
     let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
@@ -105,5 +130,7 @@ pub(super) fn article(quantity: Quantity) -> &'static str {
         Quantity::Absorption => "an absorption",
         Quantity::MetalIndex => "a metal's index n",
         Quantity::MetalExtinction => "a metal's extinction k",
+        Quantity::Thickness => "a layer's thickness",
+        Quantity::Wavelength | Quantity::BandWidth => "a lane",
     }
 }

@@ -111,6 +111,9 @@ fn example(quantity: Quantity) -> &'static str {
         Quantity::Emission => "{ illuminant = \"D65\" }",
         Quantity::Reflectance | Quantity::Transmittance | Quantity::Share => COLOR,
         Quantity::Absorption | Quantity::MetalIndex | Quantity::MetalExtinction => COLOR,
+        Quantity::Thickness | Quantity::Wavelength | Quantity::BandWidth => {
+            "{ image = \"thickness.png\", scale = 600 }"
+        }
     }
 }
 

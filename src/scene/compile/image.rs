@@ -7,7 +7,7 @@ use sha2::Digest;
 
 use super::context::Context;
 use super::curve::curve;
-use super::curve_range::is_factor;
+use super::curve_range::{is_factor, possible_thickness, told};
 use super::curve_text::{CurveText, KindText, is_repeat};
 use super::image_file::{Meaning, read_texture};
 use super::radiometry::on_film;
@@ -20,7 +20,9 @@ const IMAGE: FileKind = FileKind { nameless: "an image needs the name of its fil
 pub(super) fn surface_curve<'d>(context: &mut Context, text: &CurveText<'d>, quantity: Quantity) -> Option<Curve> {
     let varies = match quantity {
         Quantity::Reflectance | Quantity::Transmittance | Quantity::Share | Quantity::Emission => true,
+        Quantity::Thickness => true,
         Quantity::Index | Quantity::Absorption | Quantity::MetalIndex | Quantity::MetalExtinction => false,
+        Quantity::Wavelength | Quantity::BandWidth => false,
     };
     match &text.kind {
         KindText::Image(file) if varies => image_curve(context, text, file, quantity),
@@ -32,7 +34,9 @@ pub(super) fn surface_curve<'d>(context: &mut Context, text: &CurveText<'d>, qua
 fn image_curve<'d>(context: &mut Context, text: &CurveText<'d>, file: &'d str, quantity: Quantity) -> Option<Curve> {
     let (factor, placement) = (factor_on_image(text), text.placement());
     let at_file = At { place: text.place, it: file };
-    let encoding = text.encoding.map(|encoding| encoding.it);
+    // The grays of a thickness are numbers, which no screen has shown.
+    let linear = (quantity == Quantity::Thickness).then_some(Encoding::Linear);
+    let encoding = text.encoding.map(|encoding| encoding.it).or(linear);
     let image = match (text.channel, text.encoding) {
         (Some(Channel::Alpha), Some(At { place, it: Encoding::Srgb })) => {
             place.advise("alpha is a share, which no kind of file encodes as sRGB", "leave `encoding` out")
@@ -41,7 +45,9 @@ fn image_curve<'d>(context: &mut Context, text: &CurveText<'d>, file: &'d str, q
     };
     let (scale, placement, image) = (factor?, placement?, image?);
     let ([x, y], brightest) = image.brightest();
-    if quantity != Quantity::Emission && f64::from(brightest) * scale > 1.0 {
+    if quantity == Quantity::Thickness {
+        thickness_of(text, file, &image, scale)?;
+    } else if quantity != Quantity::Emission && f64::from(brightest) * scale > 1.0 {
         let scaled = if scale == 1.0 { String::new() } else { format!(" times its scale of {scale}") };
         let message = format!("{file}: pixel ({x}, {y}) is {brightest}{scaled}, and no surface gives back more than 1");
         let help = format!("scale = {:.4} makes it 1", (1e4 / f64::from(brightest)).floor() / 1e4);
@@ -52,6 +58,18 @@ fn image_curve<'d>(context: &mut Context, text: &CurveText<'d>, file: &'d str, q
         Quantity::Emission => on_film(context, text, curve),
         _ => Some(curve),
     }
+}
+
+/// That an image holds one number for each place, and nowhere more or less than a thickness in nm.
+fn thickness_of(text: &CurveText, file: &str, image: &Image, scale: f64) -> Option<()> {
+    let [r, g, b] = image.most_colorful();
+    if r != g || g != b {
+        let help = "a thickness is one number: save it in grays, or name its channel = \"red\"";
+        return text.place.advise(format!("{file} has colors"), help);
+    }
+    let ([x, y], most) = image.brightest();
+    let place = format!(" where pixel ({x}, {y}) of {file} is {most}");
+    told(text.scale.place, possible_thickness(f64::from(most) * scale, &place))
 }
 
 /// The factor on an image, if it is one, and no luminance stands in its place.

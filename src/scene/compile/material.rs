@@ -2,7 +2,9 @@
 
 use std::collections::BTreeMap;
 
+use super::asked::{Asked, spectrum, spectrum_or};
 use super::camera::extinction;
+use super::coating::{coating, film};
 use super::context::Context;
 use super::curve_text::CurveText;
 use super::image::surface_curve;
@@ -19,23 +21,6 @@ pub(super) enum Draft<'d, S> {
     Whole(Material<S>),
     Mix { parts: [Value<'d>; 2], amount: S },
     Mask { part: Value<'d>, opacity: S },
-}
-
-/// The spectrum of a key.
-#[derive(Clone, Copy)]
-pub(super) enum Asked<'d> {
-    There(Value<'d>),
-    Default(f64),
-    /// It is missing or wrong, which is told.
-    Lacking,
-}
-
-fn spectrum<'d>(fields: &mut Fields<'d>, key: &'static str) -> Asked<'d> {
-    fields.need(key, Some).map_or(Asked::Lacking, Asked::There)
-}
-
-fn spectrum_or<'d>(fields: &mut Fields<'d>, key: &'static str, default: f64) -> Asked<'d> {
-    fields.get(key).map_or(Asked::Default(default), Asked::There)
 }
 
 /// From 0, smooth, to 1; 0 if it is wrong, which is told.
@@ -64,7 +49,8 @@ const MATERIAL: Choice<Reader> = Choice {
         ("dielectric", |_, fields| dielectric(fields)),
         ("thin", |_, fields| {
             let (index, transmittance) = (spectrum(fields, "index"), spectrum_or(fields, "transmittance", 1.0));
-            Some(Draft::Whole(Material::Thin(Thin { index, transmittance })))
+            let film = film(fields, index)?;
+            Some(Draft::Whole(Material::Thin(Thin { index, transmittance, film })))
         }),
         ("emissive", |_, fields| {
             let radiance = spectrum(fields, "radiance");
@@ -74,8 +60,8 @@ const MATERIAL: Choice<Reader> = Choice {
         }),
         ("plastic", |_, fields| {
             let (reflectance, index) = (spectrum(fields, "reflectance"), spectrum_or(fields, "index", 1.5));
-            let coat = Coat::new(roughness(fields));
-            Some(Draft::Whole(Material::Plastic(Plastic { reflectance, index, coat })))
+            let (coat, coating) = (Coat::new(roughness(fields)), coating(fields));
+            Some(Draft::Whole(Material::Plastic(Plastic { reflectance, index, coat, coating: coating? })))
         }),
         ("polarizer", |_, fields| {
             let (axis, extinction) = (fields.need("axis", direction), fields.or("extinction", 0.0, extinction));
@@ -106,7 +92,7 @@ fn retardance(value: Value) -> Option<f64> {
 
 fn conductor<'d>(value: Value<'d>, fields: &mut Fields<'d>) -> Option<Draft<'d, Asked<'d>>> {
     let (metal, n, k) = (fields.get("metal"), fields.get("n"), fields.get("k"));
-    let roughness = Roughness::new(roughness(fields));
+    let (roughness, coating) = (Roughness::new(roughness(fields)), coating(fields));
     let [n, k] = match (metal, n, k) {
         // A metal gives both.
         (Some(metal), None, None) => [Asked::There(name(metal)?); 2],
@@ -114,10 +100,11 @@ fn conductor<'d>(value: Value<'d>, fields: &mut Fields<'d>) -> Option<Draft<'d, 
         _ if fields.has_unknown() => return None,
         _ => return value.refuse("a conductor needs either `metal`, or both `n` and `k`"),
     };
-    Some(Draft::Whole(Material::Conductor(Conductor { n, k, roughness })))
+    Some(Draft::Whole(Material::Conductor(Conductor { n, k, roughness, coating: coating? })))
 }
 
 fn dielectric<'d>(fields: &mut Fields<'d>) -> Option<Draft<'d, Asked<'d>>> {
+    let coating = coating(fields);
     Some(Draft::Whole(Material::Dielectric(Dielectric {
         index: spectrum(fields, "index"),
         reflectance: spectrum_or(fields, "reflectance", 1.0),
@@ -126,6 +113,7 @@ fn dielectric<'d>(fields: &mut Fields<'d>) -> Option<Draft<'d, Asked<'d>>> {
         absorption: spectrum_or(fields, "absorption", 0.0),
         priority: fields.or("priority", 0, Value::integer).unwrap_or_default(),
         roughness: Roughness::new(roughness(fields)),
+        coating: coating?,
     })))
 }
 

@@ -1,7 +1,9 @@
 //! From a scene's text to a world that can be rendered: what a scene may hold is told here and nowhere else, by the
 //! functions that read it. They look up all names and check all numbers, and go on after a mistake.
 
+mod asked;
 mod camera;
+mod coating;
 mod contact;
 mod context;
 mod curve;

@@ -1,0 +1,111 @@
+//! The smooth coated surface of a clear body, lane by lane.
+
+use super::coating::MetCoating;
+use super::degree::of_all_lanes;
+use super::stack::StackShares;
+use super::{Arrival, Block, Branch, Coating, Interface, reflect};
+use crate::spectrum::{Lanes, Table};
+
+/// A smooth surface of a clear body under a coating.
+pub(super) struct CoatedBoundary<'a> {
+    pub(super) coating: &'a Coating<Table>,
+    /// Factors on what it reflects and lets through.
+    pub(super) reflectance: &'a Table,
+    pub(super) transmittance: &'a Table,
+}
+
+impl CoatedBoundary<'_> {
+    /// One reflected branch, and one refracted branch for each distinct pair of indices that refract: those of the bare
+    /// surface, for layers with flat faces turn no ray.
+    pub(super) fn scatter<const N: usize>(&self, arrival: &Arrival<N>, branches: &mut Vec<Branch<N>>) {
+        let (tint, reflectance) = (arrival.read(self.transmittance), arrival.read(self.reflectance));
+        let parts = arrival.parts();
+        let crossing = if parts { tint * arrival.draw.parting() } else { tint };
+        let met = self.coating.met(arrival, arrival.from_inside);
+        let (cos, first) = (arrival.wo.dot(arrival.normal), branches.len());
+        let (mut reflected, mut of_lanes) = (Lanes::ZERO, [[[0.0; 2]; 2]; N]);
+        let mut pair_of_branch = [[0.0; 2]; N];
+        for lane in (0..N).filter(|&lane| arrival.present[lane] != 0.0) {
+            let pair @ [here, beyond] = arrival.refracting(lane);
+            let of_ray = (here != beyond).then(|| Interface::new(here, beyond, cos));
+            let shares = shares_at(&met, arrival, lane, cos);
+            let (r, t) = (shares.reflected, shares.refracted);
+            reflected.0[lane] = arrival.present[lane] * reflectance[lane] * r.mean() as f32;
+            of_lanes[lane] = [[r.s, r.p], [t.s, t.p]];
+            let crosses = arrival.present[lane] * crossing[lane];
+            if t.mean() == 0.0 || crosses == 0.0 {
+                continue;
+            }
+            let known = branches[first..].iter().zip(pair_of_branch).position(|(_, of)| !parts || of == pair);
+            let branch = known.unwrap_or_else(|| {
+                let wi = of_ray.map_or(-arrival.wo, |interface| interface.refract(arrival.wo, arrival.normal));
+                let eta_scale = (here / beyond) * (here / beyond);
+                pair_of_branch[branches.len() - first] = pair;
+                let (share, polarization) = (Lanes::ZERO, 0.0);
+                branches.push(Branch { wi, share, pdf: None, crosses: true, eta_scale, polarization });
+                branches.len() - first - 1
+            });
+            let ratio = arrival.incident_of(lane) / arrival.beyond_of(lane);
+            let branch = &mut branches[first + branch];
+            branch.share.0[lane] = crosses * (t.mean() * (ratio * ratio)) as f32;
+        }
+        let degree = |share: &Lanes<N>, way: usize| {
+            let there = (0..N).filter(|&lane| share[lane] != 0.0);
+            of_all_lanes(there.map(|lane| of_lanes[lane][way])) as f32
+        };
+        branches[first..].iter_mut().for_each(|branch| branch.polarization = degree(&branch.share, 1));
+        if !reflected.is_zero() {
+            let (wi, polarization) = (reflect(arrival.wo, arrival.normal), degree(&reflected, 0));
+            branches.push(Branch { wi, share: reflected, pdf: None, crosses: false, eta_scale: 1.0, polarization });
+        }
+    }
+}
+
+/// What a coated boundary, or a facet of it, does with a lane whose ray meets it at an angle with cosine `cos`.
+pub(super) fn shares_at<const N: usize>(
+    met: &MetCoating<N>,
+    arrival: &Arrival<N>,
+    lane: usize,
+    cos: f64,
+) -> StackShares {
+    let [here, beyond] = arrival.refracting(lane);
+    let goes_on = here == beyond || Interface::new(here, beyond, cos).transmittance > 0.0;
+    shares_of_lane(arrival, lane, cos, goes_on, |n1, n2, q1| met.stack(lane).shares(n1, n2.into(), q1))
+}
+
+/// What becomes of polarized radiance there.
+pub(super) fn block_at<const N: usize>(
+    met: &MetCoating<N>,
+    arrival: &Arrival<N>,
+    lane: usize,
+    cos: f64,
+    crosses: bool,
+) -> Block<f64> {
+    let StackShares { reflected, refracted } = shares_at(met, arrival, lane, cos);
+    let ratio = arrival.incident_of(lane) / arrival.beyond_of(lane);
+    if crosses { refracted.block().times(ratio * ratio) } else { reflected.block() }
+}
+
+/// What a coated boundary does with a lane whose ray meets it at an angle with cosine `cos`, by the lane's own indices
+/// n1 and n2 and the cosine times n1 that the ray's conserved n sin gives it: see
+/// [`shared_transmittance`](super::shared_transmittance). What has no way on is reflected.
+pub(super) fn shares_of_lane<const N: usize>(
+    arrival: &Arrival<N>,
+    lane: usize,
+    cos: f64,
+    goes_on: bool,
+    of_stack: impl Fn(f64, f64, f64) -> StackShares,
+) -> StackShares {
+    let [n1, n2] = [arrival.incident_of(lane), arrival.beyond_of(lane)];
+    let [here, _] = arrival.refracting(lane);
+    let (c, total) = (cos.clamp(0.0, 1.0), || StackShares::all_reflected());
+    let q1_squared = (n1 - here) * (n1 + here) + (here * c) * (here * c);
+    if q1_squared < 0.0 {
+        return total();
+    }
+    let mut shares = of_stack(n1, n2, q1_squared.sqrt());
+    if !goes_on {
+        shares.reflect_all();
+    }
+    shares
+}

@@ -1,0 +1,133 @@
+use std::sync::{Arc, OnceLock};
+
+use super::Arrival;
+use super::film_averages::FilmAverages;
+use super::stack::{Layer, Stack};
+use crate::math::Complex;
+use crate::spectrum::{Lanes, MAX_LANES, Quantity, Table};
+
+/// Thin layers on a surface, in which light interferes: what makes lenses dark, titanium blue and soap colorful.
+///
+/// Between the layers and on both sides, waves add up by Abeles' matrices: see [`Stack`]. A rough surface carries them
+/// on its facets (Belcour & Barla 2017, *A Practical Extension to Microfacet Theory for the Modeling of Varying
+/// Iridescence*, without its integration over the eye's curves: lanes do that). Beyond
+/// [`COHERENT_NM`](super::COHERENT_NM) a lane sees the mean over all phases; lines and heroes see every fringe.
+///
+/// ```toml
+/// coating = [{ index = 1.38, thickness_nm = 99.6 }]     # from the outside inward, at most 32
+/// coating = [{ index = 2.4, k = 0.02, thickness_nm = { image = "oxide.png", scale = 150 } }]     # k = 0 if absent
+/// coating = [{ metal = "Au", thickness_nm = 12 }]
+/// ```
+#[derive(Clone, Debug)]
+pub struct Coating<S> {
+    /// From the outside inward.
+    pub layers: Vec<CoatingLayer<S>>,
+    /// 1, of which lanes read where they are,
+    pub wavelength: S,
+    /// and how wide their bands are.
+    pub band: S,
+    /// From outside and from inside, what fixed lanes make of light from many directions.
+    known: Arc<[[Known; MAX_LANES]; 2]>,
+}
+
+/// The indices around a film, and its averages between them.
+type Known = OnceLock<([f64; 4], FilmAverages)>;
+
+/// One layer.
+#[derive(Clone, Debug)]
+pub struct CoatingLayer<S> {
+    /// Refractive index.
+    pub index: S,
+    /// Extinction coefficient.
+    pub k: S,
+    /// Whether its index and extinction are those of a metal.
+    pub is_metal: bool,
+    /// Thickness in nm.
+    pub thickness: S,
+}
+
+impl<S> Coating<S> {
+    /// Layers from the outside inward; `one` is the number 1.
+    pub fn new(layers: Vec<CoatingLayer<S>>, one: impl Fn() -> S) -> Self {
+        Self { layers, wavelength: one(), band: one(), known: unknown() }
+    }
+
+    pub(super) fn map<T>(&self, convert: &mut impl FnMut(Quantity, &S) -> T) -> Coating<T> {
+        let layer = |layer: &CoatingLayer<S>| CoatingLayer {
+            index: convert(if layer.is_metal { Quantity::MetalIndex } else { Quantity::Index }, &layer.index),
+            k: convert(Quantity::MetalExtinction, &layer.k),
+            is_metal: layer.is_metal,
+            thickness: convert(Quantity::Thickness, &layer.thickness),
+        };
+        let layers = self.layers.iter().map(layer).collect();
+        let [wavelength, band] = [(Quantity::Wavelength, &self.wavelength), (Quantity::BandWidth, &self.band)]
+            .map(|(what, one)| convert(what, one));
+        Coating { layers, wavelength, band, known: unknown() }
+    }
+}
+
+fn unknown() -> Arc<[[Known; MAX_LANES]; 2]> {
+    Arc::new([const { [const { OnceLock::new() }; MAX_LANES] }; 2])
+}
+
+impl Coating<Table> {
+    /// Whether no layer absorbs.
+    pub(super) fn is_clear(&self) -> bool {
+        self.layers.iter().all(|layer| layer.k.is_flat() && layer.k.bins()[0] == 0.0)
+    }
+
+    /// The coating where light arrives; `inside`: at its inner side.
+    pub(super) fn met<'a, const N: usize>(&'a self, arrival: &'a Arrival<'a, N>, inside: bool) -> MetCoating<'a, N> {
+        let varies = self.layers.iter().any(|layer| layer.thickness.varies());
+        let read = |layer: &CoatingLayer<Table>| arrival.read(&layer.thickness);
+        let thicknesses = if varies { self.layers.iter().map(read).collect() } else { Vec::new() };
+        MetCoating { coating: self, arrival, inside, thicknesses }
+    }
+}
+
+/// A coating where light arrives.
+pub(super) struct MetCoating<'a, const N: usize> {
+    coating: &'a Coating<Table>,
+    arrival: &'a Arrival<'a, N>,
+    /// Whether it is met at its inner side.
+    inside: bool,
+    /// Of each layer, where any varies over the surface.
+    thicknesses: Vec<Lanes<N>>,
+}
+
+impl<const N: usize> MetCoating<'_, N> {
+    /// Whether it is met at its inner side.
+    pub(super) fn is_inside(&self) -> bool {
+        self.inside
+    }
+
+    /// What a film makes of light from many directions, between `indices`: made once where it is the same everywhere
+    /// and in every sample. `inside`: of light that comes from inside.
+    pub(super) fn averages(
+        &self,
+        lane: usize,
+        inside: bool,
+        indices: [f64; 4],
+        make: impl Fn() -> FilmAverages,
+    ) -> FilmAverages {
+        if !self.thicknesses.is_empty() || !self.arrival.draw.is_fixed(lane) {
+            return make();
+        }
+        let (known, averages) = self.coating.known[usize::from(inside)][lane].get_or_init(|| (indices, make()));
+        if *known == indices { *averages } else { make() }
+    }
+
+    /// The layers for a lane, the viewer's side first.
+    pub(super) fn stack(&self, lane: usize) -> Stack {
+        let draw = self.arrival.draw;
+        let [nm, band] = [&self.coating.wavelength, &self.coating.band].map(|table| draw.read_lane(table, lane));
+        let mut stack = Stack::new(nm, band);
+        for (number, layer) in self.coating.layers.iter().enumerate() {
+            let read = |table| draw.read_lane(table, lane);
+            let exact = || read(&layer.thickness);
+            let thickness_nm = self.thicknesses.get(number).map_or_else(exact, |thickness| f64::from(thickness[lane]));
+            stack.push(Layer { index: Complex::new(read(&layer.index), -read(&layer.k)), thickness_nm });
+        }
+        if self.inside { stack.turned_around() } else { stack }
+    }
+}

@@ -1,0 +1,428 @@
+//! Thin layers between two media, in which light interferes: R and T of both polarizations, and the phase between them.
+
+use std::f64::consts::{PI, TAU};
+
+use super::Block;
+use super::degree::degree;
+use crate::math::Complex;
+
+/// Most layers of one coating.
+pub const MAX_LAYERS: usize = 32;
+/// Optical thickness of a layer in nm beyond which a lane that stands for a band of wavelengths sees no interference:
+/// there the eye hardly does, and bands of 32 lanes hold a fringe or more.
+pub const COHERENT_NM: f64 = 6500.0;
+/// A fringe is read at a band's own wavelength while its phase changes by no more than this over the band, in radians.
+pub const PHASE_STEP: f64 = 2.0;
+/// Places over a band, or over a fringe, where one reading is not enough.
+const PLACES: usize = 16;
+
+/// One layer, for light of one wavelength.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Layer {
+    /// Refractive index n - i k.
+    pub index: Complex,
+    /// Thickness in nm.
+    pub thickness_nm: f64,
+}
+
+impl Layer {
+    /// Optical thickness in nm.
+    pub fn optical_nm(&self) -> f64 {
+        self.index.re * self.thickness_nm
+    }
+}
+
+/// What of light goes one way, of both polarizations.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PolarizedShare {
+    /// Share of light polarized at right angles to the plane of incidence.
+    pub s: f64,
+    /// Share of light polarized within it.
+    pub p: f64,
+    /// conj(s) p of the amplitudes whose squares are the two shares.
+    pub cross: Complex,
+}
+
+impl PolarizedShare {
+    fn of(s: Complex, p: Complex, factors: [f64; 2]) -> Self {
+        let cross = s.conjugate() * p * (factors[0] * factors[1]).sqrt();
+        Self { s: s.norm_squared() * factors[0], p: p.norm_squared() * factors[1], cross }
+    }
+
+    /// Share of unpolarized light.
+    pub fn mean(&self) -> f64 {
+        0.5 * (self.s + self.p)
+    }
+
+    /// |s - p| / (s + p).
+    pub fn degree(&self) -> f64 {
+        degree([self.s, self.p])
+    }
+
+    /// The block of the Mueller matrix: a and d are half the sum and the difference of s and p, c + i q is `cross`.
+    ///
+    /// Fields go as e^(i omega t) and decay with n - i k; p is z x s for each ray, so that r_p = -r_s and c = -a where
+    /// light is reflected at normal incidence.
+    pub fn block(&self) -> Block<f64> {
+        Block { a: self.mean(), d: 0.5 * (self.s - self.p), c: self.cross.re, q: self.cross.im }
+    }
+
+    fn add(&mut self, other: &Self, weight: f64) {
+        self.s += weight * other.s;
+        self.p += weight * other.p;
+        self.cross += other.cross * weight;
+    }
+}
+
+/// What layers between two media reflect and let through.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StackShares {
+    /// What is reflected.
+    pub reflected: PolarizedShare,
+    /// What crosses, as flux: radiance changes by (n1 / n2)^2 besides. 0 where the medium beyond absorbs.
+    pub refracted: PolarizedShare,
+}
+
+impl StackShares {
+    /// All light is reflected, its polarization kept as at normal incidence.
+    pub fn all_reflected() -> Self {
+        let reflected = PolarizedShare { s: 1.0, p: 1.0, cross: -Complex::ONE };
+        Self { reflected, refracted: PolarizedShare::default() }
+    }
+
+    /// Reflects what would cross.
+    pub fn reflect_all(&mut self) {
+        self.reflected.s += self.refracted.s;
+        self.reflected.p += self.refracted.p;
+        self.refracted = PolarizedShare::default();
+    }
+}
+
+/// Layers for light of one wavelength, the viewer's side first.
+#[derive(Clone, Copy, Debug)]
+pub struct Stack {
+    layers: [Layer; MAX_LAYERS],
+    count: usize,
+    /// Wavelength in vacuum, in nm.
+    nm: f64,
+    /// Width of the band of wavelengths that the light stands for, over its wavelength: 0 of a single one.
+    band: f64,
+}
+
+impl Stack {
+    /// No layers yet, for light of a wavelength in nm and the relative width of its band.
+    pub fn new(nm: f64, band: f64) -> Self {
+        Self { layers: [Layer::default(); MAX_LAYERS], count: 0, nm, band }
+    }
+
+    /// Adds a layer behind the others; none that has no thickness.
+    ///
+    /// # Panics
+    /// If there are more than [`MAX_LAYERS`].
+    pub fn push(&mut self, layer: Layer) {
+        if layer.thickness_nm > 0.0 {
+            self.layers[self.count] = layer;
+            self.count += 1;
+        }
+    }
+
+    /// The layers, the viewer's side first.
+    pub fn layers(&self) -> &[Layer] {
+        &self.layers[..self.count]
+    }
+
+    /// Thickness of all layers in nm.
+    pub fn thickness_nm(&self) -> f64 {
+        self.layers().iter().map(|layer| layer.thickness_nm).sum()
+    }
+
+    /// How much the phase between both ends of the band differs after all layers and back, at most, in radians.
+    pub fn phase_step(&self) -> f64 {
+        2.0 * TAU * self.layers().iter().map(Layer::optical_nm).sum::<f64>() / self.nm * self.band
+    }
+
+    /// The same layers from the other side.
+    pub fn turned_around(mut self) -> Self {
+        self.layers[..self.count].reverse();
+        self
+    }
+
+    /// What the layers do between index `n1`, where the viewer is, and `n2` beyond, n - i k, for light whose normal
+    /// component n1 cos of the index is `q1`.
+    ///
+    /// A band of wavelengths has the mean over its wavelengths, and over all phases of layers thicker than
+    /// [`COHERENT_NM`].
+    pub fn shares(&self, n1: f64, n2: Complex, q1: f64) -> StackShares {
+        if self.count == 0 && n2 == n1.into() {
+            let all = PolarizedShare { s: 1.0, p: 1.0, cross: Complex::ONE };
+            return StackShares { refracted: all, ..StackShares::default() };
+        }
+        if self.phase_step() <= PHASE_STEP {
+            return self.coherent(n1, n2, q1, |_, _| 0.0);
+        }
+        let thick = |layer: &Layer| layer.optical_nm() > COHERENT_NM;
+        let several = self.layers().iter().filter(|layer| thick(layer)).count() > 1;
+        let places = if several { 4 * PLACES } else { PLACES };
+        let mut mean = StackShares::default();
+        for place in 0..places {
+            // A lattice over the phases of thick layers (Korobov 1959), which is even in each of them.
+            let mut at = place;
+            let shares = self.coherent(n1, n2, q1, |layer, delta| {
+                if thick(layer) {
+                    let turn = at as f64 / places as f64 * PI;
+                    at = at * 27 % places;
+                    return turn;
+                }
+                ((place as f64 + 0.5) / places as f64 - 0.5) * self.band * delta
+            });
+            mean.reflected.add(&shares.reflected, 1.0 / places as f64);
+            mean.refracted.add(&shares.refracted, 1.0 / places as f64);
+        }
+        mean
+    }
+
+    /// The same of light of one wavelength, where `turn` adds something to each layer's phase.
+    ///
+    /// Abeles' matrices (Born & Wolf 1999, *Principles of Optics*, section 1.6.2), with y = q for s and q / n^2 for p,
+    /// q = sqrt(n^2 - n1^2 sin^2), Im q <= 0: so p's amplitudes are those of the magnetic field, and r_p = -r_s at
+    /// normal incidence. sin(delta) / q stands in for both off-diagonal terms and is finite at the critical angle of a
+    /// layer. Each matrix is divided by e^|Im delta|, so that nothing overflows however much is absorbed.
+    fn coherent(&self, n1: f64, n2: Complex, q1: f64, mut turn: impl FnMut(&Layer, f64) -> f64) -> StackShares {
+        let across = |n: Complex| ((n - n1.into()) * (n + n1.into()) + (q1 * q1).into()).decaying_root();
+        let q2 = across(n2);
+        let (y1, y2) = ([q1, q1 / (n1 * n1)].map(Complex::from), [q2, q2 / (n2 * n2)]);
+        let mut fields = y2.map(|y| [Complex::ONE, y]);
+        let mut decay = 0.0;
+        for layer in self.layers().iter().rev() {
+            let (q, waves) = (across(layer.index), layer.thickness_nm / self.nm);
+            let delta = q * (TAU * waves);
+            let mut phase = delta.re;
+            // What only decays has no fringes.
+            if q.re > -q.im {
+                phase += turn(layer, delta.re);
+            }
+            let (sin, cos) = libm::sincos(phase);
+            let lost = -libm::expm1(2.0 * delta.im);
+            let (even, odd) = (1.0 - 0.5 * lost, 0.5 * lost);
+            decay -= delta.im;
+            let cosine = Complex::new(cos * even, sin * odd);
+            let over_q = match q == Complex::default() {
+                true => Complex::from(TAU * waves),
+                false => Complex::new(sin * even, -cos * odd) / q,
+            };
+            let n_squared = layer.index * layer.index;
+            let [s, p] = [[over_q, over_q * q * q], [over_q * n_squared, over_q * q * q / n_squared]]
+                .map(|pair| pair.map(Complex::times_i));
+            for (field, [above, below]) in fields.iter_mut().zip([s, p]) {
+                let [b, c] = *field;
+                *field = [cosine * b + above * c, below * b + cosine * c];
+            }
+        }
+        let left = libm::exp(-2.0 * decay);
+        let amplitudes = [0, 1].map(|i| {
+            let [b, c] = fields[i];
+            let sum = y1[i] * b + c;
+            [(y1[i] * b - c) / sum, (y1[i] + y1[i]) / sum]
+        });
+        let [[r_s, t_s], [r_p, t_p]] = amplitudes;
+        let crossing = [0, 1].map(|i| if y1[i].re > 0.0 { left * y2[i].re.max(0.0) / y1[i].re } else { 0.0 });
+        StackShares {
+            reflected: PolarizedShare::of(r_s, r_p, [1.0; 2]),
+            refracted: PolarizedShare::of(t_s, t_p, crossing),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const BK7: f64 = 1.518_522_366;
+    const DEGREE: f64 = PI / 180.0;
+
+    /// Layers of clear indices and thicknesses in nm, or absorbing ones, at a wavelength in nm.
+    fn stack(layers: &[([f64; 2], f64)], nm: f64) -> Stack {
+        let mut stack = Stack::new(nm, 0.0);
+        for &([n, k], thickness) in layers {
+            stack.push(Layer { index: Complex::new(n, -k), thickness_nm: thickness });
+        }
+        stack
+    }
+
+    fn met(layers: &[([f64; 2], f64)], nm: f64, n1: f64, n2: [f64; 2], degrees: f64) -> StackShares {
+        stack(layers, nm).shares(n1, Complex::new(n2[0], -n2[1]), n1 * (degrees * DEGREE).cos())
+    }
+
+    /// a, and d, c and q over it.
+    fn numbers(share: &PolarizedShare) -> [f64; 4] {
+        let Block { a, d, c, q } = share.block();
+        [a, d / a, c / a, q / a]
+    }
+
+    fn near(found: f64, expected: f64, digits: f64) {
+        assert!((found - expected).abs() < digits, "{found} for {expected}");
+    }
+
+    fn phase(share: &PolarizedShare) -> f64 {
+        let [_, _, c, q] = numbers(share);
+        q.atan2(c).abs() / DEGREE
+    }
+
+    #[test]
+    fn no_layers_are_fresnel_s_boundary() {
+        let rows = [
+            (0.0, [0.04, 0.0, -1.0], [0.96, 0.0, 1.0]),
+            (30.0, [0.041_523, 0.391_918, -0.92], [0.958_477, -0.016_978, 0.999_856]),
+            (60.0, [0.089_187, 0.979_796, 0.2], [0.910_813, -0.095_941, 0.995_387]),
+            (75.0, [0.253_061, 0.578_105, 0.815_963], [0.746_939, -0.195_860, 0.980_632]),
+        ];
+        for (degrees, reflected, refracted) in rows {
+            let shares = met(&[], 550.0, 1.0, [1.5, 0.0], degrees);
+            for (share, expected) in [(shares.reflected, reflected), (shares.refracted, refracted)] {
+                (0..3).for_each(|i| near(numbers(&share)[i], expected[i], 1e-6));
+                near(numbers(&share)[3], 0.0, 1e-12);
+            }
+        }
+        for (degrees, [c, q]) in [(45.0, [0.8, 0.6]), (60.0, [0.760_870, 0.648_905])] {
+            let [a, d, found_c, found_q] = numbers(&met(&[], 550.0, 1.5, [1.0, 0.0], degrees).reflected);
+            for (found, expected) in [(a, 1.0), (d, 0.0), (found_c, c), (found_q, q)] {
+                near(found, expected, 1e-6);
+            }
+        }
+    }
+
+    /// A linear congruence, for layers of any kind.
+    fn random() -> impl FnMut(f64, f64) -> f64 {
+        let mut state = 1_u64;
+        move |from, to| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            from + (to - from) * (state >> 11) as f64 / 9_007_199_254_740_992.0
+        }
+    }
+
+    #[test]
+    fn clear_layers_lose_nothing_and_are_the_same_from_both_sides() {
+        let mut random = random();
+        for _ in 0..5000 {
+            let count = random(1.0, 33.0) as usize;
+            let thickest = [300.0, 3000.0, 100_000.0][random(0.0, 3.0) as usize];
+            let layers: Vec<_> = (0..count).map(|_| ([random(1.0, 2.5), 0.0], random(0.0, thickest))).collect();
+            let (stack, [n1, n2]) = (stack(&layers, random(380.0, 730.0)), [random(1.0, 2.0), random(1.0, 2.0)]);
+            let q1 = n1 * random(0.0, 1.0);
+            let shares = stack.shares(n1, n2.into(), q1);
+            let (r, t) = (shares.reflected, shares.refracted);
+            near(r.s + t.s, 1.0, 1e-12);
+            near(r.p + t.p, 1.0, 1e-12);
+            let q2_squared = q1 * q1 + (n2 - n1) * (n2 + n1);
+            if q2_squared > 0.0 {
+                let back = stack.turned_around().shares(n2, n1.into(), q2_squared.sqrt());
+                near(back.refracted.s, t.s, 1e-10);
+                near(back.refracted.p, t.p, 1e-10);
+            }
+        }
+    }
+
+    #[test]
+    fn an_absorbing_layer() {
+        let StackShares { reflected: r, refracted: t } = met(&[([2.3, 0.1], 100.0)], 550.0, 1.0, [1.5, 0.0], 30.0);
+        let found = [r.s, t.s, 1.0 - r.s - t.s, r.p, t.p, 1.0 - r.p - t.p];
+        let expected = [0.170_494, 0.654_205, 0.175_300, 0.099_452, 0.711_481, 0.189_067];
+        (0..6).for_each(|i| near(found[i], expected[i], 1e-6));
+    }
+
+    #[test]
+    fn a_quarter_wave_on_glass() {
+        let quarter = [([1.38, 0.0], 550.0 / 4.0 / 1.38)];
+        let reflected = |degrees| met(&quarter, 550.0, 1.0, [BK7, 0.0], degrees).reflected;
+        let amplitude = (BK7 - 1.38 * 1.38) / (BK7 + 1.38 * 1.38);
+        near(reflected(0.0).mean(), amplitude * amplitude, 1e-12);
+        near(reflected(0.0).mean(), 0.012_709, 1e-6);
+        for (degrees, s, p, delta) in [
+            (30.0, 0.020_783, 0.007_085, 178.5563),
+            (45.0, 0.040_246, 0.001_373, 165.1251),
+            (60.0, 0.101_084, 0.006_016, 17.7510),
+            (75.0, 0.304_050, 0.114_505, 5.9963),
+        ] {
+            let found = reflected(degrees);
+            near(found.s, s, 1e-6);
+            near(found.p, p, 1e-6);
+            near(phase(&found), delta, 2e-3);
+        }
+    }
+
+    #[test]
+    fn quarter_waves_of_two_kinds_are_a_mirror() {
+        let [high, low] = [2.35, 1.38].map(|n| ([n, 0.0], 550.0 / 4.0 / n));
+        for (pairs, at_550, at_450) in
+            [(1, 0.683_313, 0.535_443), (3, 0.955_855, 0.589_673), (5, 0.994_646, 0.123_001), (9, 0.999_924, 0.620_067)]
+        {
+            let layers: Vec<_> = std::iter::repeat_n([high, low], pairs).flatten().chain([high]).collect();
+            let reflected = |nm, degrees| met(&layers, nm, 1.0, [1.52, 0.0], degrees).reflected;
+            let y = (2.35_f64 / 1.38).powi(2 * pairs as i32) * 2.35 * 2.35 / 1.52;
+            near(reflected(550.0, 0.0).mean(), ((1.0 - y) / (1.0 + y)).powi(2), 1e-12);
+            near(reflected(550.0, 0.0).mean(), at_550, 1e-6);
+            near(reflected(450.0, 0.0).mean(), at_450, 1e-6);
+            if pairs == 5 {
+                near(reflected(550.0, 45.0).s, 0.997_526, 1e-6);
+                near(reflected(550.0, 45.0).p, 0.951_827, 1e-6);
+            }
+        }
+    }
+
+    #[test]
+    fn a_layer_on_metal() {
+        let found = met(&[([1.46, 0.0], 100.0)], 550.0, 1.0, [1.015, 6.627], 60.0).reflected;
+        near(found.s, 0.791_828, 1e-6);
+        near(found.p, 0.867_711, 1e-6);
+        near(phase(&found), 160.8335, 1e-3);
+    }
+
+    #[test]
+    fn nothing_where_there_is_nothing_and_frustrated_total_reflection() {
+        let none = met(&[([1.33, 0.0], 0.0)], 550.0, 1.0, [1.0, 0.0], 37.0);
+        assert_eq!([none.reflected.mean(), none.refracted.mean()], [0.0, 1.0]);
+        for (gap, s, p) in [
+            (50.0, 0.196_161, 0.335_224),
+            (100.0, 0.547_909, 0.714_642),
+            (200.0, 0.914_268, 0.956_591),
+            (500.0, 0.999_695, 0.999_853),
+        ] {
+            let found = met(&[([1.0, 0.0], gap)], 550.0, 1.5, [1.5, 0.0], 60.0);
+            near(found.reflected.s, s, 1e-6);
+            near(found.reflected.p, p, 1e-6);
+            near(found.reflected.s + found.refracted.s, 1.0, 1e-12);
+        }
+        // At the critical angle of the gap, and so thick that nothing is left.
+        let critical = (1.0_f64 / 1.5).asin() / DEGREE;
+        for (degrees, gap) in [(critical, 300.0), (60.0, 100_000.0), (90.0, 300.0)] {
+            let found = met(&[([1.0, 0.0], gap)], 550.0, 1.5, [1.5, 0.0], degrees);
+            near(found.reflected.mean() + found.refracted.mean(), 1.0, 1e-12);
+        }
+        let opaque = met(&[([0.06, 3.586], 100_000.0)], 548.6, 1.0, [1.5, 0.0], 20.0);
+        assert_eq!(opaque.refracted.mean(), 0.0);
+        near(opaque.reflected.mean(), met(&[], 548.6, 1.0, [0.06, 3.586], 20.0).reflected.mean(), 1e-12);
+    }
+
+    #[test]
+    fn beyond_its_coherence_a_film_is_a_pane() {
+        let mut stack = Stack::new(550.0, 0.02);
+        stack.push(Layer { index: 1.33.into(), thickness_nm: 11_000.0 });
+        let r = (0.33_f64 / 2.33).powi(2);
+        near(stack.shares(1.0, 1.0.into(), 1.0).reflected.mean(), 2.0 * r / (1.0 + r), 1e-12);
+        near(stack.shares(1.0, 1.0.into(), 1.0).reflected.mean(), 0.039_329_698, 1e-9);
+        // Two thick layers, against the mean over all pairs of phases.
+        stack.push(Layer { index: 2.4.into(), thickness_nm: 18_000.0 });
+        let found = stack.shares(1.0, 1.5.into(), 0.8).reflected.mean();
+        let mut mean = 0.0;
+        for pair in 0..10_000 {
+            let phases = [f64::from(pair % 100), f64::from(pair / 100)].map(|i| 0.01 * i * PI);
+            let mut layer = 0;
+            let turned = stack.coherent(1.0, 1.5.into(), 0.8, |_, _| {
+                layer += 1;
+                phases[layer - 1]
+            });
+            mean += 1e-4 * turned.reflected.mean();
+        }
+        near(found, mean, 1e-4);
+    }
+}

@@ -1,0 +1,128 @@
+//! Films in which light interferes, as the survey judges lanes by them.
+
+use std::borrow::Cow;
+
+use crate::material::{COHERENT_NM, Coating, Layer, Material, PHASE_STEP, Stack};
+use crate::math::Complex;
+use crate::spectrum::{Basis, Curve, CurveKind, Quantity};
+
+/// Light meets a film at right angles, where its fringes are closest, and is reflected or crosses it.
+pub(super) struct Film<'a> {
+    pub(super) coating: &'a Coating<Curve>,
+    /// What is beyond it; nothing behind a pane.
+    pub(super) beyond: Beyond<'a>,
+    pub(super) crosses: bool,
+    /// Whether layers that vary are taken as thick as they are anywhere, and else as on the mean.
+    pub(super) thickest: bool,
+}
+
+/// What a film lies on.
+#[derive(Clone, Copy)]
+pub(super) enum Beyond<'a> {
+    Nothing,
+    Glass(&'a Curve),
+    Metal(&'a Curve, &'a Curve),
+}
+
+/// The films of a material alone, without the parts it is made of.
+pub(super) fn films(material: &Material<Curve>) -> Vec<Film<'_>> {
+    let (coating, beyond, lets_through) = match material {
+        Material::Dielectric(glass) => (&glass.coating, Beyond::Glass(&glass.index), true),
+        Material::Thin(pane) => (&pane.film, Beyond::Nothing, true),
+        Material::Conductor(metal) => (&metal.coating, Beyond::Metal(&metal.n, &metal.k), false),
+        Material::Plastic(plastic) => (&plastic.coating, Beyond::Glass(&plastic.index), true),
+        Material::Diffuse(_) | Material::Mirror(_) | Material::Emissive(_) => return Vec::new(),
+        Material::Mix(_) | Material::Mask(_) | Material::Polarizer(_) | Material::Retarder(_) => return Vec::new(),
+    };
+    let Some(coating) = coating else { return Vec::new() };
+    let varies = coating.layers.iter().any(|layer| layer.thickness.varies());
+    let mut films = Vec::new();
+    for thickest in if varies { &[true, false][..] } else { &[true] } {
+        for crosses in if lets_through { &[false, true][..] } else { &[false] } {
+            films.push(Film { coating, beyond, crosses: *crosses, thickest: *thickest });
+        }
+    }
+    films
+}
+
+impl Film<'_> {
+    /// What is left of the light, of all that is read of each curve.
+    pub(super) fn left(&self, read: impl Fn(Quantity, &Curve) -> Vec<f64>) -> Vec<f64> {
+        let stacks = stacks(self.coating, self.thickest, &read);
+        let (n, k) = match self.beyond {
+            Beyond::Nothing => (vec![1.0; stacks.len()], vec![0.0; stacks.len()]),
+            Beyond::Glass(index) => (read(Quantity::Index, index), vec![0.0; stacks.len()]),
+            Beyond::Metal(n, k) => (read(Quantity::MetalIndex, n), read(Quantity::MetalExtinction, k)),
+        };
+        let share = |(i, stack): (usize, &Stack)| {
+            let shares = stack.shares(1.0, Complex::new(n[i], -k[i]), 1.0);
+            if self.crosses { shares.refracted.mean() } else { shares.reflected.mean() }
+        };
+        stacks.iter().enumerate().map(share).collect()
+    }
+
+    /// Optical thickness of each layer in the middle of the spectrum, in nm.
+    pub(super) fn optical_nm(&self) -> Vec<f64> {
+        let read = |quantity, curve: &Curve| vec![curve.values(quantity)(MIDDLE_NM)];
+        let stacks = stacks(self.coating, self.thickest, read);
+        stacks.iter().flat_map(|stack| stack.layers().iter().map(Layer::optical_nm)).collect()
+    }
+}
+
+const MIDDLE_NM: f64 = 550.0;
+
+/// The layers at each wavelength or in each lane.
+fn stacks(coating: &Coating<Curve>, thickest: bool, read: impl Fn(Quantity, &Curve) -> Vec<f64>) -> Vec<Stack> {
+    let [nm, band] = [(Quantity::Wavelength, &coating.wavelength), (Quantity::BandWidth, &coating.band)]
+        .map(|(what, one)| read(what, one));
+    let mut stacks: Vec<Stack> = nm.iter().zip(band).map(|(nm, band)| Stack::new(*nm, band)).collect();
+    for layer in &coating.layers {
+        let of_index = if layer.is_metal { Quantity::MetalIndex } else { Quantity::Index };
+        let (n, k) = (read(of_index, &layer.index), read(Quantity::MetalExtinction, &layer.k));
+        let thickness = read(Quantity::Thickness, &even(&layer.thickness, thickest));
+        for (i, stack) in stacks.iter_mut().enumerate() {
+            stack.push(Layer { index: Complex::new(n[i], -k[i]), thickness_nm: thickness[i] });
+        }
+    }
+    stacks
+}
+
+/// A thickness that is the same all over: of one that varies the most or the mean.
+fn even(thickness: &Curve, thickest: bool) -> Cow<'_, Curve> {
+    let number = |number: f64| Cow::Owned(Curve { kind: CurveKind::Number(number), ..thickness.clone() });
+    match &thickness.kind {
+        CurveKind::Texture(texture) if thickest => number(f64::from(texture.image.brightest().1)),
+        CurveKind::Texture(texture) => number(texture.image.mean()[0]),
+        CurveKind::Checker { cells, .. } => {
+            let [a, b] = cells.each_ref().map(|cell| cell.scale * cell.kind.rgb().map_or(0.0, |rgb| rgb[0]));
+            number(if thickest { a.max(b) } else { 0.5 * (a + b) })
+        }
+        _ => Cow::Borrowed(thickness),
+    }
+}
+
+/// How lanes read the films of a material, in words; none of one without.
+pub(super) fn spoken(material: &Material<Curve>, basis: &Basis) -> Option<String> {
+    let films = films(material);
+    let thickest = films.first().filter(|film| film.thickest)?;
+    let read = |quantity, curve: &Curve| basis.tabulate(quantity, curve).bins().to_vec();
+    let widest = stacks(thickest.coating, true, read).iter().map(Stack::phase_step).fold(0.0, f64::max);
+    let optical = thickest.optical_nm();
+    let count = thickest.coating.layers.len();
+    let layers = if count == 1 { "a layer".to_owned() } else { format!("{count} layers") };
+    let how = if basis.fixed_lanes() <= 3 {
+        let [red, green, blue] = [0, 1, 2].map(|band| basis.wavelengths_nm()[band].round());
+        format!("its light interferes at {red}, {green} and {blue} nm alone, for three bands have no other wavelengths")
+    } else if widest <= PHASE_STEP {
+        "its light interferes at each lane's own wavelength".to_owned()
+    } else if optical.iter().all(|&nm| nm <= COHERENT_NM) {
+        "its light interferes over each lane's band of wavelengths".to_owned()
+    } else {
+        format!(
+            "layers of an optical thickness above {COHERENT_NM} nm show no interference, but that of emission lines: the \
+             mean over all phases"
+        )
+    };
+    let total = optical.iter().sum::<f64>().round();
+    Some(format!("{layers} of an optical thickness of up to {total} nm; {how}"))
+}
