@@ -16,6 +16,7 @@ mod colors;
 mod densities;
 mod determinism;
 mod film_layers;
+mod films;
 mod floors;
 mod lanes;
 mod layers;

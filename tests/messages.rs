@@ -181,6 +181,11 @@ fn images_that_cannot_light_a_scene_are_refused() {
 }
 
 #[test]
+fn coatings_and_films_that_cannot_be_are_refused() {
+    check("coatings.txt", 13);
+}
+
+#[test]
 fn images_and_patterns_that_cannot_lie_on_a_surface_are_refused() {
     check("textures.txt", 30);
 }

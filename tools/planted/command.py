@@ -65,6 +65,10 @@ BUGS = {
         ("caustics", "an_error_below_the_blur_is_not_reached_until_the_radius_has_shrunk"),
     ),
     "ten_degree_observer": Bug("color matching functions of 1964 (10 degrees) for those of 1931"),
+    "r_p_of_a_film": Bug(
+        "r_p of a film with the sign of r_s",
+        ("films", "p_is_the_negative_of_s_along_the_normal_and_turns_as_abeles_has_it"),
+    ),
     "srgb_in_the_exr": Bug("the sRGB curve in the EXR"),
 }
 

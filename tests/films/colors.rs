@@ -1,0 +1,101 @@
+//! The colors of soap and of anodized titanium under D65, in the lanes that the plan chooses.
+
+use abbe::plan::plan;
+use abbe::spectrum::{ColorSpace, apply};
+use abbe::trace::{Method, prepare, render};
+use palette::Lab;
+use palette::color_difference::Ciede2000;
+use palette::white_point::D65;
+
+use crate::support::scenes::{EVERY_BRANCH, body, scene, view};
+
+/// Y, x, y by a perfect mirror's.
+fn mirrored(material: &str, degrees: f64) -> ([f64; 3], String) {
+    let (y, x) = degrees.to_radians().sin_cos();
+    let center = [-6.0 * y, 0.0, 6.0 * x];
+    let quad = format!("quad = {{ center = {center:?}, u = {:?}, v = [0, 2, 0] }}", [2.0 * x, 0.0, 2.0 * y]);
+    let plane = "plane = { point = [0, 0, 0], normal = [0, 0, 1] }";
+    let text = view([4.0 * y, 0.0, 4.0 * x], [0.0; 3], 1e-3, 1)
+        + "[render]\nsamples = 1\n"
+        + &body("seen", material, &[plane])
+        + &body("lamp", "emissive = { radiance = { illuminant = \"D65\" } }", &[&quad]);
+    let scene = scene(&text);
+    let chosen = plan(&scene).method.basis;
+    let name = chosen.name();
+    let method = Method { basis: chosen, ..crate::support::scenes::method(&scene, EVERY_BRANCH) };
+    let rgb = render(&prepare(&scene, method), &|_| ()).0.pixels[0].rgb.map(f64::from);
+    (apply(&ColorSpace::Rec709.to_xyz(), rgb), name)
+}
+
+/// CIELAB under the film's white.
+fn lab(xyz: [f64; 3]) -> [f64; 3] {
+    let white = apply(&ColorSpace::Rec709.to_xyz(), [1.0; 3]);
+    let f = |t: f64| {
+        if t > (6.0_f64 / 29.0).powi(3) { t.cbrt() } else { t / (3.0 * (6.0_f64 / 29.0).powi(2)) + 4.0 / 29.0 }
+    };
+    let [x, y, z] = [0, 1, 2].map(|i| f(xyz[i] / white[i]));
+    [116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)]
+}
+
+fn difference(a: [f64; 3], b: [f64; 3]) -> f64 {
+    let [a, b] = [a, b].map(|[l, a, b]| Lab::<D65, f64>::new(l, a, b));
+    a.difference(b)
+}
+
+fn of_xy(y: f64, chromaticity: [f64; 2]) -> [f64; 3] {
+    let [x, small_y] = chromaticity;
+    lab([x / small_y * y, y, (1.0 - x - small_y) / small_y * y])
+}
+
+/// Thickness in nm; Y, x and y at normal incidence and at 45 degrees: sums over 1 nm of Airy's formula, made with
+/// colour-science 0.4.7.
+const SOAP: [(f64, [f64; 3], [f64; 3]); 9] = [
+    (100.0, [0.075937, 0.31403, 0.33860], [0.092297, 0.29998, 0.32220]),
+    (150.0, [0.046665, 0.43156, 0.43955], [0.088802, 0.35556, 0.38060]),
+    (200.0, [0.005199, 0.28978, 0.12426], [0.035929, 0.50543, 0.45417]),
+    (250.0, [0.029318, 0.18054, 0.22159], [0.006627, 0.19018, 0.08590]),
+    (300.0, [0.067491, 0.32086, 0.41972], [0.045355, 0.19260, 0.24536]),
+    (400.0, [0.017113, 0.30929, 0.15192], [0.079038, 0.44956, 0.48150]),
+    (500.0, [0.055238, 0.30164, 0.52967], [0.020518, 0.21435, 0.13816]),
+    (600.0, [0.028965, 0.33944, 0.20190], [0.076023, 0.33294, 0.51978]),
+    (1000.0, [0.039067, 0.36622, 0.32763], [0.043342, 0.33752, 0.34450]),
+];
+
+#[test]
+fn soap_has_its_colors() {
+    for (thickness, straight, slanting) in SOAP {
+        let material = format!("thin = {{ index = 1.33, thickness_nm = {thickness:?} }}");
+        for (degrees, [y, x, small_y]) in [(0.0, straight), (45.0, slanting)] {
+            let (found, model) = mirrored(&material, degrees);
+            let off = difference(lab(found), of_xy(y, [x, small_y]));
+            println!("{thickness} nm at {degrees} degrees, {model}: {off:.3}");
+            assert!(off < 0.5, "{thickness} nm at {degrees} degrees in {model}: {off}, {found:?}");
+        }
+    }
+}
+
+/// Thickness in nm of a clear oxide of index 2.4 on titanium, and its CIELAB.
+const OXIDE: [(f64, [f64; 3]); 11] = [
+    (0.0, [81.02, 1.04, 3.62]),
+    (20.0, [65.57, 2.81, 22.48]),
+    (30.0, [47.49, 11.33, 39.93]),
+    (40.0, [29.87, 26.61, -22.37]),
+    (50.0, [44.40, 1.21, -36.24]),
+    (60.0, [62.96, -7.42, -23.22]),
+    (80.0, [79.88, -4.95, -4.20]),
+    (100.0, [83.09, -5.06, 14.61]),
+    (120.0, [77.64, -4.05, 60.84]),
+    (140.0, [59.85, 41.65, 4.53]),
+    (160.0, [47.91, 34.35, -52.53]),
+];
+
+#[test]
+fn titanium_has_the_colors_of_its_oxide() {
+    for (thickness, expected) in OXIDE {
+        let coating = format!("[{{ index = 2.4, thickness_nm = {thickness:?} }}]");
+        let (found, model) = mirrored(&format!("conductor = {{ metal = \"Ti\", coating = {coating} }}"), 0.0);
+        let off = difference(lab(found), expected);
+        println!("{thickness} nm in {model}: {off:.3}");
+        assert!(off < 0.5, "{thickness} nm in {model}: {off}, {:?}", lab(found));
+    }
+}

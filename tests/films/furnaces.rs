@@ -1,0 +1,91 @@
+//! The white furnace under films: what is clear shows 1, and metal under a clear film what Abeles' matrices say.
+
+use abbe::material::{Arrival, Index, Material, Scatter};
+use abbe::spectrum::{Draw, Table};
+
+use super::reference::shares;
+use crate::layers::arrivals::{arrival, material, points, toward};
+
+const COSINES: [f64; 7] = [0.01, 0.1, 0.2, 0.4, 0.6, 0.8, 1.0];
+const DRAWS: u32 = 1 << 14;
+const ROUGHNESSES: [f64; 5] = [0.0, 0.2, 0.45, 0.7, 1.0];
+/// Where three bands read, in nm.
+const BANDS_NM: [f64; 3] = [656.27, 546.07, 486.13];
+
+/// What each band shows of an even sky, and how far chance may put it off.
+fn furnace(material: &Material<Table>, indices: [f64; 2], from_inside: bool, cos: f64) -> [[f64; 2]; 3] {
+    let draw = Draw::<4>::fixed(3);
+    let at = arrival(&draw, toward(cos, 0.4), indices[0]);
+    let arrival = Arrival { beyond: Index::Same(indices[1]), from_inside, ..at };
+    let (mut sums, mut branches) = ([[0.0; 2]; 3], Vec::new());
+    for u in points(DRAWS) {
+        material.scatter(&arrival, u, &mut branches);
+        let mut shown = [0.0; 3];
+        for branch in branches.drain(..) {
+            (0..3).for_each(|band| shown[band] += f64::from(branch.share[band]) / branch.eta_scale);
+        }
+        for (sum, shown) in sums.iter_mut().zip(shown) {
+            *sum = [sum[0] + shown / f64::from(DRAWS), sum[1] + shown * shown / f64::from(DRAWS)];
+        }
+    }
+    let straight =
+        material.straight(&arrival).map_or([0.0; 3], |straight| [0, 1, 2].map(|i| straight.share()[i].into()));
+    std::array::from_fn(|band| {
+        let [mean, square] = sums[band];
+        let error = ((square - mean * mean).max(0.0) / f64::from(DRAWS)).sqrt();
+        [mean + straight[band], if material.scatters_through() { 4.0 * error } else { 0.0 }]
+    })
+}
+
+/// Clear films: a quarter wave, soap, a mirror of five layers, and more than a wavelength.
+const CLEAR: [&str; 4] = [
+    "[{ index = 1.38, thickness_nm = 99.6 }]",
+    "[{ index = 1.33, thickness_nm = 300 }]",
+    "[{ index = 2.35, thickness_nm = 58.5 }, { index = 1.38, thickness_nm = 99.6 }, { index = 2.35, thickness_nm = 58.5 }, \
+     { index = 1.38, thickness_nm = 99.6 }, { index = 2.35, thickness_nm = 58.5 }]",
+    "[{ index = 1.6, thickness_nm = 900 }]",
+];
+
+#[test]
+fn clear_films_lose_nothing_and_win_nothing() {
+    let mut worst = [1.0_f64; 2];
+    for coating in CLEAR {
+        let mut rows = vec![("thin = { index = 1.33, thickness_nm = 400 }".to_owned(), vec![([1.0; 2], false)])];
+        for roughness in ROUGHNESSES {
+            let glass = format!("dielectric = {{ index = 1.5, roughness = {roughness:?}, coating = {coating} }}");
+            rows.push((glass, vec![([1.0, 1.5], false), ([1.5, 1.0], true)]));
+            let plastic = format!("plastic = {{ reflectance = 1, roughness = {roughness:?}, coating = {coating} }}");
+            rows.push((plastic, vec![([1.0; 2], false)]));
+            let metal = format!("conductor = {{ n = 1e-6, k = 100, roughness = {roughness:?}, coating = {coating} }}");
+            rows.push((metal, vec![([1.0; 2], false)]));
+        }
+        for (text, sides) in rows {
+            let material = material(&text);
+            let [mut least, mut most] = [f64::INFINITY, 0.0_f64];
+            for ((indices, inside), cos) in sides.iter().flat_map(|side| COSINES.map(|cos| (*side, cos))) {
+                for [shown, chance] in furnace(&material, indices, inside, cos) {
+                    [least, most] = [least.min(shown), most.max(shown)];
+                    let off = (shown - 1.0).abs() - chance;
+                    assert!(off <= 0.005, "{text}: {shown} +- {chance} between {indices:?} at the cosine {cos}");
+                }
+            }
+            println!("{text:.110} {least:.5} to {most:.5}");
+            worst = [worst[0].min(least), worst[1].max(most)];
+        }
+    }
+    println!("all {:.5} to {:.5}", worst[0], worst[1]);
+}
+
+#[test]
+fn metal_under_a_clear_film_shows_what_it_reflects() {
+    for (thickness, [n, k]) in [(50.0, [2.5418, 3.4345]), (100.0, [0.43, 2.455]), (300.0, [1.015, 6.627])] {
+        let coating = format!("coating = [{{ index = 2.4, thickness_nm = {thickness:?} }}]");
+        for cos in COSINES {
+            let smooth = material(&format!("conductor = {{ n = {n:?}, k = {k:?}, {coating} }}"));
+            for ([shown, _], nm) in furnace(&smooth, [1.0; 2], false, cos).into_iter().zip(BANDS_NM) {
+                let [expected, _] = shares(1.0, &[([2.4, 0.0], thickness)], [n, -k], cos, nm);
+                assert!((shown - expected).abs() < 1e-6 && shown < 1.0, "{shown} for {expected} at {cos}");
+            }
+        }
+    }
+}

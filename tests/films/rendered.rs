@@ -1,0 +1,160 @@
+//! Films in rendered images, where nothing is left to chance, against another way to add up their waves.
+
+use abbe::spectrum::{Basis, Response};
+use abbe::trace::{Method, prepare, render};
+
+use super::reference::{Layer, shares};
+use crate::support::scenes::{EVERY_BRANCH, body, method, scene, view};
+
+const ANGLES: [f64; 4] = [0.0, 30.0, 45.0, 60.0];
+const NAMED: [&str; 2] = ["reflected", "let through"];
+
+/// What of a lamp's light a pixel sees at three wavelengths in nm by way of a material at the origin, in its mirror
+/// image or behind it, under an angle in degrees.
+fn seen(material: &str, shape: &str, degrees: f64, behind: bool, nm: [f64; 3]) -> [f64; 3] {
+    let (y, x) = degrees.to_radians().sin_cos();
+    let camera = [4.0 * y, 0.0, 4.0 * x];
+    let [u, lamp] = if behind { [[-x, 0.0, y], [-y, 0.0, -x]] } else { [[x, 0.0, y], [-y, 0.0, x]] };
+    let center = lamp.map(|x| 6.0 * x);
+    let quad = format!(
+        "quad = {{ center = {center:?}, u = {:?}, v = [0, 2, 0] }}",
+        u.map(|x| if behind { 5.0 } else { 2.0 } * x)
+    );
+    let text = view(camera, [0.0; 3], 1e-3, 1)
+        + "[render]\nsamples = 1\n"
+        + &body("seen", material, &[shape])
+        + &body("lamp", "emissive = { radiance = 1 }", &[&quad]);
+    let scene = scene(&text);
+    // Lanes of lines stand for single wavelengths, however far apart they are.
+    let basis = Basis::wavelengths(scene.film.color_space, vec![600.0], &nm);
+    let columns = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let method = Method { basis, ..method(&scene, EVERY_BRANCH) };
+    let world = prepare(&scene, method).with_responses(|_| Response::new(&columns, Vec::new()));
+    render(&world, &|_| ()).0.pixels[0].rgb.map(f64::from)
+}
+
+const PLANE: &str = "plane = { point = [0, 0, 0], normal = [0, 0, 1] }";
+
+/// The same as a share of what a perfect mirror shows.
+fn reflected(material: &str, degrees: f64, nm: [f64; 3]) -> [f64; 3] {
+    let white = seen("mirror = { reflectance = 1 }", PLANE, degrees, false, nm);
+    let found = seen(material, PLANE, degrees, false, nm);
+    std::array::from_fn(|i| found[i] / white[i])
+}
+
+fn near(found: [f64; 3], expected: [f64; 3], what: &str) {
+    for i in 0..3 {
+        assert!((found[i] - expected[i]).abs() < 1e-5, "{what}: {found:?} for {expected:?}");
+    }
+}
+
+/// n - i k and nm of layers, as a scene has them.
+fn coating(layers: &[Layer]) -> String {
+    let layer = |([n, k], nm): &Layer| format!("{{ index = {n:?}, k = {:?}, thickness_nm = {nm:?} }}", -k);
+    format!("coating = [{}]", layers.iter().map(layer).collect::<Vec<_>>().join(", "))
+}
+
+/// The Sellmeier formula of N-BK7 (Schott).
+fn bk7(nm: f64) -> f64 {
+    let w2 = nm * nm * 1e-6;
+    let terms = [(1.03961212, 0.00600069867), (0.231792344, 0.0200179144), (1.01046945, 103.560653)];
+    (1.0 + terms.iter().map(|(b, c)| b * w2 / (w2 - c)).sum::<f64>()).sqrt()
+}
+
+#[test]
+fn a_quarter_wave_of_magnesium_fluoride_darkens_glass() {
+    let material = "dielectric = { index = \"N-BK7\", coating = [{ index = 1.38, thickness_nm = 99.63768115942 }] }";
+    let rows = [
+        ([400.0, 500.0, 600.0], [0.021_983, 0.013_261, 0.013_386]),
+        ([450.0, 550.0, 650.0], [0.015_953, 0.012_709, 0.014_704]),
+    ];
+    for (nm, expected) in rows {
+        near(reflected(material, 0.0, nm), expected, "F3, F4");
+        for degrees in ANGLES {
+            let cos = degrees.to_radians().cos();
+            let expected = nm.map(|nm| shares(1.0, &[([1.38, 0.0], 99.63768115942)], [bk7(nm), 0.0], cos, nm)[0]);
+            near(reflected(material, degrees, nm), expected, &format!("{degrees} degrees"));
+        }
+    }
+}
+
+#[test]
+fn eleven_layers_are_a_mirror_at_one_color() {
+    let [high, low] = [2.35, 1.38].map(|n| ([n, 0.0], 550.0 / 4.0 / n));
+    let layers = [high, low, high, low, high, low, high, low, high, low, high];
+    let material = format!("dielectric = {{ index = 1.52, {} }}", coating(&layers));
+    let [at_450, at_550, _] = reflected(&material, 0.0, [450.0, 550.0, 650.0]);
+    assert!((at_550 - 0.994_646).abs() < 1e-5 && (at_450 - 0.123_001).abs() < 1e-5, "F6: {at_450}, {at_550}");
+}
+
+/// Three layers of which one absorbs, so that the glass looks different from both sides.
+const STACK: [Layer; 3] = [([1.46, 0.0], 80.0), ([2.3, -0.4], 60.0), ([1.7, 0.0], 120.0)];
+
+#[test]
+fn layers_are_listed_from_the_outside_inward_and_met_from_both_sides() {
+    let material = format!("dielectric = {{ index = 1.52, {} }}", coating(&STACK));
+    let slab = "cube = { center = [0, 0, 0], size = [60, 60, 0.5] }";
+    let nm = [450.0, 550.0, 650.0];
+    let mut inside = STACK;
+    inside.reverse();
+    for degrees in ANGLES {
+        let cos = degrees.to_radians().cos();
+        let cos_inside = (1.0 - (1.0 - cos * cos) / (1.52 * 1.52)).sqrt();
+        let bare = seen(
+            "mask = { material = \"clear\", opacity = 0 }\n[material.clear]\nmirror = {}",
+            slab,
+            degrees,
+            true,
+            nm,
+        );
+        let found = seen(&material, slab, degrees, true, nm);
+        let through = nm.map(|nm| {
+            let [_, t] = shares(1.0, &STACK, [1.52, 0.0], cos, nm);
+            let [r, back] = shares(1.52, &inside, [1.0, 0.0], cos_inside, nm);
+            assert!((back - t).abs() < 1e-9);
+            t * t / (1.0 - r * r)
+        });
+        near([0, 1, 2].map(|i| found[i] / bare[i]), through, &format!("{degrees} degrees, through both faces"));
+        let expected = nm.map(|nm| shares(1.0, &STACK, [1.52, 0.0], cos, nm)[0]);
+        near(reflected(&material, degrees, nm), expected, &format!("{degrees} degrees, reflected"));
+    }
+}
+
+#[test]
+fn a_film_is_reflected_by_and_seen_through() {
+    for (k, thickness) in [(0.0, 300.0), (0.05, 700.0)] {
+        let material = format!("thin = {{ index = 1.33, k = {k:?}, thickness_nm = {thickness:?} }}");
+        let nm = [450.0, 550.0, 650.0];
+        for degrees in ANGLES {
+            let expected =
+                nm.map(|nm| shares(1.0, &[([1.33, -k], thickness)], [1.0, 0.0], degrees.to_radians().cos(), nm));
+            for (way, name) in NAMED.iter().enumerate() {
+                let found = match way {
+                    0 => reflected(&material, degrees, nm),
+                    _ => {
+                        let clear = "thin = { index = 1 }";
+                        let [found, bare] = [&*material, clear].map(|of| seen(of, PLANE, degrees, true, nm));
+                        [0, 1, 2].map(|i| found[i] / bare[i])
+                    }
+                };
+                near(found, expected.map(|shares| shares[way]), &format!("{thickness} nm, {degrees} degrees, {name}"));
+            }
+        }
+    }
+}
+
+#[test]
+fn metal_and_plastic_reflect_by_their_layers() {
+    let nm = [450.0, 550.0, 650.0];
+    let metal = format!("conductor = {{ n = 1.015, k = 6.627, {} }}", coating(&[([1.46, 0.0], 100.0)]));
+    let [_, at_550, _] = reflected(&metal, 60.0, nm);
+    assert!((at_550 - 0.5 * (0.791_828 + 0.867_711)).abs() < 1e-5, "F7: {at_550}");
+    let plastic = format!("plastic = {{ reflectance = 0, {} }}", coating(&STACK));
+    for degrees in ANGLES {
+        let cos = degrees.to_radians().cos();
+        let expected = nm.map(|nm| shares(1.0, &[([1.46, 0.0], 100.0)], [1.015, -6.627], cos, nm)[0]);
+        near(reflected(&metal, degrees, nm), expected, &format!("metal, {degrees} degrees"));
+        let expected = nm.map(|nm| shares(1.0, &STACK, [1.5, 0.0], cos, nm)[0]);
+        near(reflected(&plastic, degrees, nm), expected, &format!("plastic, {degrees} degrees"));
+    }
+}
