@@ -13,6 +13,8 @@ use crate::spectrum::{Lanes, MAX_LANES, Quantity, Table};
 /// Iridescence*, without its integration over the eye's curves: lanes do that). Beyond
 /// [`COHERENT_NM`](super::COHERENT_NM) a lane sees the mean over all phases; lines and heroes see every fringe.
 ///
+/// Layers turn no ray, and are flat where they are met. A rough surface between equal indices shows none.
+///
 /// ```toml
 /// coating = [{ index = 1.38, thickness_nm = 99.6 }]     # from the outside inward, at most 32
 /// coating = [{ index = 2.4, k = 0.02, thickness_nm = { image = "oxide.png", scale = 150 } }]     # k = 0 if absent

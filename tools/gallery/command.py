@@ -26,7 +26,7 @@ from . import shapes, textures
 SCENES = Path(__file__).resolve().parents[2] / "scenes"
 MEASURED = SCENES / "pictures/measured.json"
 FIRST = "rainbow"  # the picture on top of README.md, scenes/rainbow.png
-ORDER = "gem rainbow water pond pool window lens prism metals illuminants still_life large/instances large/landscape cornell smallpt classic spheres".split()
+ORDER = "gem rainbow water pond pool window lens prism bubble coatings metals illuminants still_life large/instances large/landscape cornell smallpt classic spheres".split()
 
 HEAD = """# The gallery
 
@@ -87,6 +87,7 @@ def make():
     textures.write_png(images / "tiles.png", textures.tiles())
     textures.write_png(images / "chart.png", textures.chart())
     textures.write_png(images / "painting.png", textures.painting())
+    textures.write_png(images / "soap.png", textures.soap())
     textures.write_hdr(images / "evening.hdr", textures.sky())
     make_sunflower(SCENES / "large/instances.toml")
     make_landscape()

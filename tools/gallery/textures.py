@@ -8,10 +8,11 @@ from .shapes import noise
 
 
 def write_png(path, image):
-    """An 8-bit PNG: height x width (gray), x 3 (color) or x 4 (with alpha), bytes or shares of 1."""
-    pixels = image if image.dtype == np.uint8 else np.round(np.clip(image, 0, 1) * 255).astype(np.uint8)
+    """A PNG of 8 bits, or of 16 where the image has them: height x width (gray), x 3 (color) or x 4 (with alpha), or shares of 1."""
+    pixels = np.round(np.clip(image, 0, 1) * 255).astype(np.uint8) if image.dtype.kind == "f" else image
     height, width = pixels.shape[:2]
-    kind = 0 if pixels.ndim == 2 else {3: 2, 4: 6}[pixels.shape[2]]
+    kind, bits = 0 if pixels.ndim == 2 else {3: 2, 4: 6}[pixels.shape[2]], 8 * pixels.itemsize
+    pixels = pixels.astype(f">u{pixels.itemsize}").view(np.uint8)
     # Each row minus the one above it (filter 2) packs best for pictures and patterns alike.
     rows = pixels.reshape(height, -1)
     rows = rows - np.vstack([np.zeros_like(rows[:1]), rows[:-1]])
@@ -20,7 +21,7 @@ def write_png(path, image):
     def chunk(name, body):
         return struct.pack(">I", len(body)) + name + body + struct.pack(">I", zlib.crc32(name + body))
 
-    head = struct.pack(">IIBBBBB", width, height, 8, kind, 0, 0, 0)
+    head = struct.pack(">IIBBBBB", width, height, bits, kind, 0, 0, 0)
     path.parent.mkdir(exist_ok=True)
     path.write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + chunk(b"IDAT", zlib.compress(data, 9)) + chunk(b"IEND", b""))
 
@@ -98,6 +99,20 @@ def sky(size=64):
     near = 0.5 + 0.5 * np.cos(turn - 4.1)
     color = np.array([0.16, 0.30, 0.62]) * (1 - haze) + haze * (np.array([0.62, 0.60, 0.66]) + near**3 * np.array([0.75, 0.42, 0.12]))
     return np.where(up > 0, color, np.array([0.10, 0.11, 0.13])) * np.ones((size, 2 * size, 1))
+
+
+def soap(size=160):
+    """The thickness of a bubble by longitude and latitude, 16 bits: drained to a black film at the top, thick below, and stirred."""
+    up = np.linspace(1, 0, size)[:, None] * np.ones((1, 2 * size))
+    turn = np.linspace(0, 2 * np.pi, 2 * size, endpoint=False)[None, :] * np.ones((size, 1))
+    # Swirls that join where the longitude begins again: waves of whole numbers, bent by each other.
+    bend, stir = np.zeros_like(up), np.random.default_rng(5)
+    for order in range(1, 9):
+        around, along, phase = stir.integers(1, order + 2), stir.uniform(2, 3 * order + 2), stir.uniform(0, 2 * np.pi, 2)
+        bend += np.sin(around * turn + 2.4 * bend + phase[0]) * np.sin(along * np.pi * up + 1.6 * bend + phase[1]) / order
+    still = np.sin(np.pi * up) ** 0.7
+    thickness = 0.06 + 0.80 * (1 - up) ** 1.15 + 0.085 * bend * still
+    return np.round(np.clip(thickness, 0.01, 1) * 65535).astype(np.uint16)
 
 
 def ground(heights, water):
