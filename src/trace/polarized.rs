@@ -75,6 +75,7 @@ impl Polarized {
 }
 
 impl<const N: usize> Polarization<N> for Polarized {
+    const IS_TRACED: bool = false;
     type Landed = Self;
 
     fn of_camera(_: &World, _: &Ray) -> Self {

@@ -208,6 +208,7 @@ impl<const N: usize> Rows<N> {
 }
 
 impl<const N: usize> Polarization<N> for Rows<N> {
+    const IS_TRACED: bool = true;
     /// None on surfaces that leave no polarization.
     type Landed = Option<Box<Column<N>>>;
 

@@ -44,7 +44,7 @@ use self::place::Placed;
 use super::index::Index;
 use super::text::{Document, Fields, INCLUDE, SET, Value};
 use super::{Object, PolarizationText, RenderText, Scene};
-use crate::film::Layer;
+use crate::film::{Format, Layer};
 use crate::light::{Area, Light, LightId};
 use crate::material::Material;
 use crate::shape::Sides;
@@ -108,12 +108,7 @@ fn scene<'d>(context: &mut Context, sections: &mut Fields<'d>) -> Option<Scene<C
     let (lights, infinite_lights, warnings, hash) = (Vec::new(), Vec::new(), Vec::new(), String::new());
     let (light_groups, hidden_lights) = (Vec::new(), Vec::new());
     let (camera, film, format, render) = (camera?, film?, format?, render?);
-    let has_stokes = Layer::STOKES.iter().any(|layer| format.layers.contains(layer));
-    if has_stokes && render.polarization == PolarizationText::Off {
-        let help = "leave `polarization` out of [render], or the layers S1, S2 and S3";
-        sections.refuse::<()>("Stokes vectors are asked for, and polarization is off", Some(help));
-        return None;
-    }
+    can_have_stokes(sections, &format, &render)?;
     let mut scene = Scene {
         camera,
         film,
@@ -137,6 +132,16 @@ fn scene<'d>(context: &mut Context, sections: &mut Fields<'d>) -> Option<Scene<C
     scene.light_groups.extend(others.groups);
     scene.lights.extend(others.all);
     Some(scene)
+}
+
+/// Without polarization there are no Stokes vectors.
+fn can_have_stokes(sections: &Fields, format: &Format, render: &RenderText) -> Option<()> {
+    let has_stokes = Layer::STOKES.iter().any(|layer| format.layers.contains(layer));
+    if !has_stokes || render.polarization != PolarizationText::Off {
+        return Some(());
+    }
+    let help = "leave `polarization` out of [render], or the layers S1, S2 and S3";
+    sections.refuse("Stokes vectors are asked for, and polarization is off", Some(help))
 }
 
 /// A section that is no list.
