@@ -403,3 +403,79 @@ fn a_polarized_sky_changes_what_water_mirrors() {
         }
     }
 }
+
+/// Facets that hardly differ from the surface polarize as it does.
+#[test]
+fn nearly_smooth_surfaces_polarize_as_smooth_ones() {
+    let slanting = [DVec3::new(1.0, 0.0, 1.0)];
+    for (rough, smooth) in [
+        ("conductor = { n = 0.43, k = 2.455, roughness = 0.12 }", "conductor = { n = 0.43, k = 2.455 }"),
+        ("dielectric = { index = 1.5, absorption = 1e6, roughness = 0.12 }", BLACK_GLASS),
+        ("plastic = { reflectance = 0, index = 1.5, roughness = 0.12 }", BLACK_GLASS),
+    ] {
+        let [rough_light, smooth_light] = [rough, smooth].map(|material| stokes("", &mirrors(material, &slanting)));
+        for part in 1..4 {
+            let [a, b] = [rough_light, smooth_light].map(|light| light[part] / light[0]);
+            assert!((a - b).abs() < 0.02, "{rough}: {rough_light:?} for {smooth_light:?}");
+        }
+    }
+}
+
+/// What a room shows of everything that polarizes: the same bits for any threads, and no more polarized light than
+/// light.
+#[test]
+fn any_threads_find_the_same_stokes_vectors() {
+    let text = r#"
+camera = { position = [0, 1.6, 6], look_at = [0, 0.7, 0], vertical_fov = 38, polarizer = { axis = 30, extinction = 0.2 } }
+film = { width = 40, height = 28, stokes = true }
+render = { samples = 16, seed = 5 }
+[material]
+floor.plastic = { reflectance = 0.5, roughness = 0.2 }
+glass.dielectric.index = "N-SF11"
+frosted.dielectric = { index = 1.5, roughness = 0.3 }
+gold.conductor = { metal = "Au", roughness = 0.3 }
+window.thin.index = 1.5
+sheet.polarizer.axis = [0, 1, 0]
+holes.mask = { material = "sheet", opacity = 0.5 }
+lamp.emissive.radiance = 40
+[[object]]
+shape.plane = { point = [0, 0, 0], normal = [0, 1, 0] }
+material = "floor"
+[[object]]
+shape.sphere = { center = [0.2, 0.8, 0.6], radius = 0.8 }
+material = "glass"
+[[object]]
+shape.sphere = { center = [-1.3, 0.5, 0.9], radius = 0.5 }
+material = "frosted"
+[[object]]
+shape.cube = { center = [1.9, 0.5, -0.4], size = 1 }
+material = "gold"
+[[object]]
+shape.quad = { center = [1.6, 0.6, 1.6], u = [0.4, 0, 0.1], v = [0, 0.6, 0] }
+material = "window"
+[[object]]
+shape.quad = { center = [-0.4, 0.6, 2], u = [0.4, 0, 0.1], v = [0, 0.5, 0] }
+material = "holes"
+[[object]]
+shape.sphere = { center = [-1, 2.3, -1], radius = 0.15 }
+material = "lamp"
+[[light]]
+environment = { radiance = 0.3, polarization = { sun = [0.3, 1, 0.2], degree = 0.7 } }
+"#;
+    let scene = Scene::parse(text, "").expect("the scene is valid");
+    let by =
+        |threads| abbe::render(&scene, &Options { threads: Some(threads), ..Options::default() }).expect("it renders");
+    let [one, three] = [1, 3].map(by);
+    assert_eq!(one.film().pixels, three.film().pixels);
+    assert_eq!(one.film().layers, three.film().layers);
+    let film = one.film();
+    let of = |layer: Layer| film.layers.iter().find(|image| image.layer == layer).expect("the layer is there");
+    let parts = Layer::STOKES.map(of);
+    for (number, pixel) in film.pixels.iter().enumerate() {
+        for channel in 0..3 {
+            let squared: f64 = parts.iter().map(|part| f64::from(part.values[3 * number + channel]).powi(2)).sum();
+            let s0 = f64::from(pixel.rgb[channel]);
+            assert!(squared.sqrt() <= s0 * (1.0 + 1e-4) + 1e-6, "pixel {number}: {} of {s0}", squared.sqrt());
+        }
+    }
+}
