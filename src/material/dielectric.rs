@@ -60,13 +60,13 @@ impl<S> Dielectric<S> {
 impl Dielectric<Table> {
     /// The ways on, backward.
     pub(super) fn scatter<const N: usize>(&self, arrival: &Arrival<N>, u: [f64; 2], branches: &mut Vec<Branch<N>>) {
-        match self.roughness.interface() {
-            Some(interface) => self.rough(interface).scatter(arrival, u, branches),
-            None if let Some(coating) = &self.coating => {
+        match (self.roughness.interface(), &self.coating) {
+            (Some(interface), _) => self.rough(interface).scatter(arrival, u, branches),
+            (None, Some(coating)) => {
                 let (reflectance, transmittance) = (&self.reflectance, &self.transmittance);
                 CoatedBoundary { coating, reflectance, transmittance }.scatter(arrival, branches);
             }
-            None => match arrival.one_direction() {
+            (None, None) => match arrival.one_direction() {
                 Some(directions) => self.scatter_as_one(arrival, directions, branches),
                 None => self.scatter_smooth(arrival, branches),
             },

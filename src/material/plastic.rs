@@ -222,10 +222,9 @@ impl Plastic<Table> {
             let indices = [arrival.incident_of(lane), index[lane]];
             met.as_ref().map(|met| PlasticFilm::new(met, lane, indices).shares(cos))
         };
-        let reflected = |lane: usize, cos: f64| match (arrival.incident_of(lane), index[lane]) {
-            _ if let Some(shares) = film(lane, cos) => shares.reflected.block(),
-            (n1, n2) if n1 == n2 => Block::default(),
-            (n1, n2) => Block::reflected(n1, n2, cos),
+        let reflected = |lane: usize, cos: f64| match (film(lane, cos), [arrival.incident_of(lane), index[lane]]) {
+            (Some(shares), _) => shares.reflected.block(),
+            (None, [n1, n2]) => Block::at_boundary([n1, n2, cos], false),
         };
         let cos = arrival.wo.dot(arrival.normal);
         if incoming.single {
@@ -249,10 +248,9 @@ impl Plastic<Table> {
         };
         let from = above(&Frame::about(arrival.normal), arrival.wo).z;
         let crossed = |lane: usize, cos: f64| {
-            let crossing = match (arrival.incident_of(lane), index[lane]) {
-                _ if let Some(shares) = film(lane, cos) => shares.refracted.block(),
-                (n1, n2) if n1 == n2 => return 0.0,
-                (n1, n2) => Block::refracted(n1, n2, cos),
+            let crossing = match (film(lane, cos), [arrival.incident_of(lane), index[lane]]) {
+                (Some(shares), _) => shares.refracted.block(),
+                (None, [n1, n2]) => Block::at_boundary([n1, n2, cos], true),
             };
             if crossing.a > 0.0 { crossing.d / crossing.a } else { 0.0 }
         };
