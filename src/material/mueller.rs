@@ -267,7 +267,7 @@ mod tests {
 
     #[test]
     fn total_reflection_has_its_phase() {
-        for [angle, c, q] in [[45.0, 0.8, 0.6], [60.0, 0.760870, 0.648905], [75.0, 0.927536, 0.373740]] {
+        for [angle, c, q] in [[45.0, 0.8, 0.6], [60.0, 0.760870, 0.648905], [75.0, 0.927532, 0.373743]] {
             let all = Block::reflected(1.5, 1.0, f64::to_radians(angle).cos());
             [(all.a, 1.0), (all.d, 0.0), (all.c, c), (all.q, q)].into_iter().for_each(|(x, y)| near(x, y));
         }
