@@ -19,7 +19,8 @@ pub(super) struct Decided {
 /// The error is measured on so few samples that they may miss what is so many times as large.
 const MISSED: f64 = 2.0;
 
-/// Traces polarization where the scene asks for it, or where leaving it out would be wrong by more than is tolerated.
+/// Traces polarization where the scene asks for it, or where leaving it out would be wrong by more than is tolerated:
+/// in the whole format, so that all parts of an image are made alike.
 pub(super) fn decide(scene: &Scene<Curve>, world: &World) -> Decided {
     let on = |why: String| {
         let why = Some(format!("polarization on: {why}"));
@@ -29,6 +30,7 @@ pub(super) fn decide(scene: &Scene<Curve>, world: &World) -> Decided {
         let why = why.map(|why| format!("polarization off: {why}"));
         Decided { polarization: Polarizing::Averaged, why, left_out }
     };
+    let world = &world.of_the_format();
     match scene.render.polarization {
         PolarizationText::On => return on("the scene asks for it".into()),
         PolarizationText::Off => {

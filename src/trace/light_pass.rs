@@ -199,8 +199,7 @@ struct Learned {
 /// Sends photons ahead. The format sees them, also where a part of it or more is made, so that all parts are made
 /// alike.
 fn send_ahead<const N: usize>(world: &World, most: u64) -> Learned {
-    let mut world = world.clone();
-    world.scene.film = world.scene.film.of_the_format();
+    let world = world.of_the_format();
     let Some(targets) = &world.photon_targets else { return Learned::default() };
     let batches = batches(targets, |_| 0, |target| target.photons.min(most), world.method.seed ^ AHEAD_SEED);
     let done: Vec<Sent<Splat>> =

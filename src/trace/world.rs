@@ -131,6 +131,14 @@ impl World {
         world
     }
 
+    /// This world with the whole format in view, whatever part of it or more is made: what is learned there is the same
+    /// for all parts.
+    pub fn of_the_format(&self) -> Self {
+        let mut world = self.clone();
+        world.scene.film = world.scene.film.of_the_format();
+        world
+    }
+
     /// CIE Y of what a light shines.
     pub(super) fn luminance(&self, light: LightId) -> f64 {
         let draw = Draw::<MAX_LANES>::fixed(self.method.basis.fixed_lanes());
