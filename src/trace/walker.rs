@@ -113,8 +113,8 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
         self.polarizations.clear();
     }
 
-    /// Makes the shares of the branches those of the path's light, which may be polarized. `follow` does so by itself,
-    /// and only to a branch that it has chosen, where shares are still those of the material.
+    /// Makes the shares of the branches those of the path's light, which may be polarized. `follow` does so by itself
+    /// where it has not been done.
     #[inline(always)]
     pub(super) fn polarize(&mut self, path: &Path<N, P>, at: &Interaction<N>) {
         path.polarization.split(at, &mut self.branches, &mut self.polarizations);
@@ -140,22 +140,14 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
     /// Decides which of the branches are followed, and of what goes straight on: their paths become pending.
     pub(super) fn follow(&mut self, departure: &mut Departure<N, P>, sampler: &Sampler) {
         let path = departure.path;
-        let count = self.branches.len() + usize::from(departure.onward.is_some());
-        let chooses = match self.rule() {
-            Transport::Deterministic { .. } => false,
-            Transport::Random { split, .. } => {
-                let draw = departure.at.arrival.draw;
-                count > 1 && (path.vertices >= LONG || path.weight(draw) <= split)
-            }
-        };
-        if P::IS_TRACED && !chooses && self.polarizations.is_empty() {
+        if P::IS_TRACED && self.polarizations.is_empty() {
             self.polarize(path, departure.at);
         }
         if let Some(onward) = &departure.onward {
             self.branches.push(Branch::onward(&path.ray, &onward.straight));
         }
         self.stats.partings += u64::from(self.branches.iter().filter(|branch| branch.crosses).count() > 1);
-        departure.branches = count;
+        departure.branches = self.branches.len();
         match self.rule() {
             Transport::Deterministic { cutoff, .. } => {
                 for (number, branch) in self.branches.iter().enumerate() {
@@ -167,8 +159,14 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
                     }
                 }
             }
-            Transport::Random { roulette, .. } if chooses => self.choose(departure, sampler, roulette),
-            Transport::Random { roulette, .. } => self.follow_many(departure, sampler, roulette),
+            Transport::Random { split, roulette } => {
+                let draw = departure.at.arrival.draw;
+                if self.branches.len() > 1 && (path.vertices >= LONG || path.weight(draw) <= split) {
+                    self.choose(departure, sampler, roulette)
+                } else {
+                    self.follow_many(departure, sampler, roulette)
+                }
+            }
         }
     }
 
@@ -187,14 +185,6 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
         let number = chosen.unwrap_or(last);
         if let Some(factor) = survival(total, roulette, departure.path.vertices, || u[1]) {
             let factor = factor * total / weight(number);
-            if P::IS_TRACED && self.polarizations.is_empty() && !departure.is_onward(number) {
-                let chosen = std::slice::from_mut(&mut self.branches[number]);
-                departure.path.polarization.split(departure.at, chosen, &mut self.polarizations);
-                let known = self.polarizations.first();
-                let along = departure.path_along(number, &self.branches[number], known, factor);
-                self.pending.push(along);
-                return;
-            }
             let (branch, known) = (&self.branches[number], self.polarizations.get(number));
             self.pending.push(departure.path_along(number, branch, known, factor));
         }
