@@ -207,17 +207,19 @@ def point_beside_rectangle(width, distance, height):
     return (np.arctan(half / distance) - distance / far * np.arctan(half / far)) / np.pi
 
 
-def through_ball(index, center, light, half_side, count=400_000):
+def through_ball(index, center, light, half_side, count=400_000, averaged=False):
     """Mean irradiance of a square of the floor under a clear ball of radius 1 whose center is `center` above it, from
     a point light of intensity 1 on the same axis at height `light`; the ball shades the square.
 
     A sum over the directions of the light within the cone of the ball: Snell and Fresnel, up to 8 reflections inside;
-    a ring on the floor counts by the part of it that lies in the square."""
+    a ring on the floor counts by the part of it that lies in the square. `averaged` takes light for unpolarized at every
+    surface, as the literature does."""
     sine = (np.arange(count) + 0.5) / count / (light - center)  # of the angle to the axis, evenly spaced
     step = 1 / count / (light - center)
     incidence = np.arcsin(sine * (light - center))
     inside = np.arcsin(np.sin(incidence) / index)
     each = both_polarizations(index, np.degrees(incidence))
+    each = [sum(each) / 2] * 2 if averaged else each
     angle, total = np.arcsin(sine), 0.0
     for reflections in range(9):
         # Directions turn toward the axis: from angle outward to angle - turned.
