@@ -114,6 +114,7 @@ class Bench:
             {
                 "camera": camera,
                 "film": {"width": POINTS, "height": ROWS, "color_space": "lin_ciexyzd65_scene"},
+                "render": {"polarization": "off"},
                 "material": {
                     "screen": {"diffuse": {"reflectance": 1}},
                     "flint": {"dielectric": {"index": "N-SF11"}},
