@@ -8,7 +8,6 @@ use crate::spectrum::Curve;
 use crate::trace::{Polarizing, World, polarization_error, seen_light};
 
 /// What is done about polarization, and what is said of it.
-#[derive(Default)]
 pub(super) struct Decided {
     pub(super) polarization: Polarizing,
     pub(super) why: Option<String>,

@@ -3,7 +3,7 @@ use super::Lanes;
 /// What share of the light at the end of a path reaches the sensor, lane by lane: the classic tracer's k.
 ///
 /// A lane whose throughput is 0 is not on the ray: padding, absorption, total reflection and parting are this one rule.
-/// Polarized light would put a Stokes weight in this place.
+/// Of polarized light it is what unpolarized light at the end of the path would count.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Throughput<const N: usize>(Lanes<N>);
 

@@ -138,8 +138,7 @@ impl Layers {
 
     /// Whether it matters of which light gathered photons are, whether they were dispersed, or what their spectra are.
     pub(super) fn tell_photons_apart(&self) -> bool {
-        let one = [Layer::Lights, Layer::Dispersed, Layer::S1].into_iter().any(|layer| self.at(layer).is_some());
-        one || self.spectrum.is_some()
+        self.at(Layer::Lights).or(self.at(Layer::Dispersed)).is_some() || self.has_stokes() || self.spectrum.is_some()
     }
 
     /// Whether anything is wanted of first surfaces.
@@ -215,10 +214,15 @@ impl Layers {
         }
     }
 
+    /// Whether any component of Stokes vectors is wanted.
+    pub(super) fn has_stokes(&self) -> bool {
+        Layer::STOKES.into_iter().any(|layer| self.at(layer).is_some())
+    }
+
     /// Adds S1, S2 and S3 of light to a row, times a factor.
     #[cold]
     pub(super) fn add_stokes(&self, row: &mut [f64], stokes: [[f64; 3]; 3], factor: f64) {
-        for (layer, color) in [Layer::S1, Layer::S2, Layer::S3].into_iter().zip(stokes) {
+        for (layer, color) in Layer::STOKES.into_iter().zip(stokes) {
             self.add_to(layer, row, color.map(|x| factor * x));
         }
     }

@@ -323,11 +323,12 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
                 return;
             }
         }
-        self.walker.clear_branches();
+        self.walker.branches.clear();
         match &aiming {
             Some(aiming) => scatter_aimed(aiming, &at, [u[2], u[3]], &mut self.walker.branches),
             None => shading::scatter(material, &at.arrival, at.flat, [u[2], u[3]], &mut self.walker.branches),
         }
+        self.walker.polarize(path, &at);
         self.walker.account(path, &at, onward.map(|onward| &onward.straight));
         if !goes_on {
             self.walker.keep_single();

@@ -160,7 +160,7 @@ fn scatter<const N: usize, P: Polarization<N>>(
 ) {
     let Interaction { material, point, arrival, flat, .. } = at;
     let u = sampler.four(path.key, SCATTER);
-    walker.clear_branches();
+    walker.branches.clear();
     if point.shading == point.normal {
         material.scatter(arrival, [u[0], u[1]], &mut walker.branches);
         walker.polarize(path, at);
@@ -214,7 +214,7 @@ fn bounce<const N: usize, P: Polarization<N>>(
     if !goes_on || path.vertices >= walker.world.method.max_bounces {
         return;
     }
-    walker.clear_branches();
+    walker.branches.clear();
     let u = sampler.four_plain(path.key, SCATTER);
     material.scatter(arrival, [u[0], u[1]], &mut walker.branches);
     let back = arrival.wo;

@@ -42,8 +42,6 @@ pub(super) struct SeenPhoton<const N: usize> {
 ///
 /// Densities never depend on it, nor do directions: all ways to sample light agree on them.
 pub(super) trait Polarization<const N: usize>: Copy + Debug + Send + Sync + 'static {
-    /// Whether it is traced.
-    const IS_TRACED: bool;
     /// What is kept of it with a photon that has landed.
     type Landed: Clone + Debug + Send + Sync;
 

@@ -3,9 +3,8 @@
 //! A surface that favors one polarization by the degree d multiplies intensity by 1 + d p, where p is the part of the
 //! light's polarization in its own frame, and p becomes (p + d) / (1 + d p) where the frames agree. Whatever the
 //! frames, retardances and signs are, intensity is thus changed at most by the product of 1 + P |d|, with P that
-//! follows the same rule from
-//! |d| alone: degrees add as velocities do, and ones that add all the way are the worst. Light leaves lamps and the sky
-//! unpolarized, and surfaces that scatter it diffusely.
+//! follows the same rule from |d| alone: degrees add as velocities do, and ones that add all the way are the worst.
+//! Light leaves lamps and the sky unpolarized, and surfaces that scatter it diffusely.
 
 use super::World;
 use super::interaction::Interaction;
@@ -75,7 +74,6 @@ impl Polarized {
 }
 
 impl<const N: usize> Polarization<N> for Polarized {
-    const IS_TRACED: bool = false;
     type Landed = Self;
 
     fn of_camera(_: &World, _: &Ray) -> Self {

@@ -13,7 +13,6 @@ use super::interaction::Interaction;
 use super::method::Polarizing;
 use super::polarization::{MetLight, Polarization, SeenPhoton};
 use super::shading;
-use crate::film::Layer;
 use crate::light::Light;
 use crate::material::{Arrival, Block, Branch, Incoming, Material, Mueller, Scatter, Straight};
 use crate::math::{DVec3, Frame, Ray};
@@ -208,12 +207,11 @@ impl<const N: usize> Rows<N> {
 }
 
 impl<const N: usize> Polarization<N> for Rows<N> {
-    const IS_TRACED: bool = true;
     /// None on surfaces that leave no polarization.
     type Landed = Option<Box<Column<N>>>;
 
     fn of_camera(world: &World, ray: &Ray) -> Self {
-        let count = if world.layers.at(Layer::S1).is_some() { 4 } else { 1 };
+        let count = if world.layers.has_stokes() { 4 } else { 1 };
         let camera = &world.scene.camera;
         let x = camera.image_right(ray.direction);
         let rows = Self::starting(x, count, world.method.polarization == Polarizing::Compared);

@@ -5,6 +5,7 @@ use super::light_pass::splats;
 use super::pass::Pass;
 use super::path_tracer::PathTracer;
 use super::photon_map;
+use super::polarization::Polarization;
 use super::polarized::Polarized;
 use super::width::in_lanes;
 use super::{LightPass, MapPasses, World};
@@ -12,7 +13,7 @@ use crate::film::Window;
 use crate::math::Sampler;
 
 /// Camera samples along each side of the image.
-pub(super) const SIDE: u32 = 24;
+const SIDE: u32 = 24;
 /// Parts of the view along each side.
 const PARTS: u32 = 6;
 /// Most photons that are shown, and most that are gathered.
@@ -61,26 +62,44 @@ pub(super) fn with_fewer_photons(world: &World) -> World {
 fn look<const N: usize>(world: &World) -> SeenLight {
     let window = world.scene.film.window();
     let mut seen = SeenLight { parts: [[0.0; 2]; (PARTS * PARTS) as usize] };
-    let photons = photon_map::photons::<N, Polarized>(world, &Pass::of_photons_alone(world, 0));
-    let mut tracer = PathTracer::<N>::new(world).with_photons(photons.as_ref());
+    for_each_light::<N, Polarized>(world, &mut |pixel, light, change, _| {
+        let part = &mut seen.parts[part_of(window, pixel)];
+        (part[0], part[1]) = (part[0] + light, part[1] + change);
+    });
+    seen
+}
+
+/// How light was found.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum By {
+    Sample,
+    Photon,
+}
+
+/// Hands over the light of samples all over the view, and of photons in proportion: the pixel, counted from the window's
+/// corner, X + Y + Z, and by how much polarization changes it.
+pub(super) fn for_each_light<const N: usize, P: Polarization<N>>(
+    world: &World,
+    take: &mut impl FnMut([u32; 2], f64, f64, By),
+) {
+    let window = world.scene.film.window();
+    let photons = photon_map::photons::<N, P>(world, &Pass::of_photons_alone(world, 0));
+    let mut tracer = PathTracer::<N, P>::new(world).with_photons(photons.as_ref());
     for place in 0..SIDE * SIDE {
         let [x, y] = window.middle_of_cell(SIDE, place);
         let before = tracer.walker.stats;
         tracer.sample(&Sampler::of_pixel(world.method.seed, [x, y], 0), [x, y]);
-        let part = &mut seen.parts[part_of(window, [(x - window.left) as u32, (y - window.top) as u32])];
-        part[0] += tracer.walker.stats.light - before.light;
-        part[1] += tracer.walker.stats.polarization - before.polarization;
+        let after = tracer.walker.stats;
+        let pixel = [(x - window.left) as u32, (y - window.top) as u32];
+        take(pixel, after.light - before.light, after.polarization - before.polarization, By::Sample);
     }
     // Photons light all pixels, of which so many were looked at.
-    let pixels = window.pixels() as f64;
-    let looked_at = f64::from(SIDE * SIDE) / pixels;
-    splats::<N, Polarized>(world, &mut |splat| {
+    let looked_at = f64::from(SIDE * SIDE) / window.pixels() as f64;
+    splats::<N, P>(world, &mut |splat| {
         let light = looked_at * world.amount(splat.rgb);
-        let part = &mut seen.parts[part_of(window, [splat.pixel % window.width, splat.pixel / window.width])];
-        part[0] += light;
-        part[1] += light * f64::from(splat.change);
+        let pixel = [splat.pixel % window.width, splat.pixel / window.width];
+        take(pixel, light, light * f64::from(splat.change), By::Photon);
     });
-    seen
 }
 
 /// The part of the view that a pixel of the window lies in.

@@ -106,15 +106,7 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
         Some(boundary)
     }
 
-    /// Leaves no branches of a surface before.
-    #[inline(always)]
-    pub(super) fn clear_branches(&mut self) {
-        self.branches.clear();
-        self.polarizations.clear();
-    }
-
-    /// Makes the shares of the branches those of the path's light, which may be polarized. `follow` does so by itself
-    /// where it has not been done.
+    /// Makes the shares of the branches those of the path's light, which may be polarized.
     #[inline(always)]
     pub(super) fn polarize(&mut self, path: &Path<N, P>, at: &Interaction<N>) {
         path.polarization.split(at, &mut self.branches, &mut self.polarizations);
@@ -129,9 +121,6 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
 
     /// Accounts for the branches and what goes straight on, if somebody asks.
     pub(super) fn account(&mut self, path: &Path<N, P>, at: &Interaction<N>, straight: Option<&Straight<N>>) {
-        if self.audit.is_some() {
-            self.polarize(path, at);
-        }
         if let Some(audit) = &mut self.audit {
             audit.split(path, at, &self.branches, straight);
         }
@@ -140,9 +129,6 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
     /// Decides which of the branches are followed, and of what goes straight on: their paths become pending.
     pub(super) fn follow(&mut self, departure: &mut Departure<N, P>, sampler: &Sampler) {
         let path = departure.path;
-        if P::IS_TRACED && self.polarizations.is_empty() {
-            self.polarize(path, departure.at);
-        }
         if let Some(onward) = &departure.onward {
             self.branches.push(Branch::onward(&path.ray, &onward.straight));
         }
