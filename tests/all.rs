@@ -18,6 +18,7 @@ mod determinism;
 mod film_layers;
 mod films;
 mod floors;
+mod fluorescence;
 mod lanes;
 mod layers;
 mod light_vertices;

@@ -186,6 +186,11 @@ fn coatings_and_films_that_cannot_be_are_refused() {
 }
 
 #[test]
+fn dyes_that_cannot_be_are_refused() {
+    check("fluorescence.txt", 11);
+}
+
+#[test]
 fn images_and_patterns_that_cannot_lie_on_a_surface_are_refused() {
     check("textures.txt", 30);
 }

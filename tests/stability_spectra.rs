@@ -178,7 +178,7 @@ fn d14_pure_colors_keep_their_negative_numbers_in_the_film_and_make_a_picture() 
 fn d15_a_blackbody_keeps_its_digits_from_embers_to_the_hottest_stars() {
     for kelvin in [100.0_f64, 450.0, 1000.0, 2856.0, 6504.0, 1e6, 1e9] {
         let light = Emission::new(&CurveKind::Blackbody(kelvin).into(), SPACE);
-        let at = |nm: f64| light.spectrum()[(nm - visible::FIRST_NM) as usize];
+        let at = |nm: f64| light.spectrum()[(nm - visible::START_NM) as usize];
         let c2 = 1.438_776_877e7 / kelvin;
         let (a, b) = (450.0_f64, 700.0_f64);
         let expected = (b / a).powi(5) * ((c2 / b).exp_m1() / (c2 / a).exp_m1());

@@ -1,6 +1,6 @@
 use std::f64::consts::{FRAC_1_PI, PI};
 
-use super::{Arrival, Branch};
+use super::{Arrival, Branch, Fluorescence};
 use crate::math::{DVec3, Frame, cosine_hemisphere, unit};
 use crate::spectrum::{Lanes, Quantity, Table};
 
@@ -13,11 +13,14 @@ use crate::spectrum::{Lanes, Quantity, Table};
 pub struct Diffuse<S> {
     /// Share of the arriving light that leaves again.
     pub reflectance: S,
+    /// A dye, by the key `fluorescence`, if it has one.
+    pub fluorescence: Option<Fluorescence<S>>,
 }
 
 impl<S> Diffuse<S> {
     pub(super) fn map<T>(&self, convert: &mut impl FnMut(Quantity, &S) -> T) -> Diffuse<T> {
-        Diffuse { reflectance: convert(Quantity::Reflectance, &self.reflectance) }
+        let reflectance = convert(Quantity::Reflectance, &self.reflectance);
+        Diffuse { reflectance, fluorescence: self.fluorescence.as_ref().map(|dye| dye.map(convert)) }
     }
 }
 

@@ -2,8 +2,8 @@
 //! has to know it.
 
 use super::{
-    Arrival, Branch, Coating, Conductor, Dielectric, Diffuse, Emissive, Incoming, Lobes, Mask, Mirror, Mix, Mueller,
-    Part, Plastic, Polarizer, Retarder, Scatter, Straight, Thin,
+    Arrival, Branch, Coating, Conductor, Dielectric, Diffuse, Emissive, Fluorescence, Incoming, Lobes, Mask, Mirror,
+    Mix, Mueller, Part, Plastic, Polarizer, Retarder, Scatter, Straight, Thin,
 };
 use crate::math::{DVec3, Transform};
 use crate::spectrum::{Curve, Lanes, Quantity, Table};
@@ -168,6 +168,17 @@ impl<S> Material<S> {
             || self.parts().iter().any(|part| part.material().has_axis())
     }
 
+    /// The dyes in it and in all that it is made of, in the order of `with_parts`.
+    pub fn dyes(&self) -> Vec<&Fluorescence<S>> {
+        let mut dyes = Vec::new();
+        for material in self.with_parts() {
+            if let Self::Diffuse(Diffuse { fluorescence: Some(dye), .. }) = material {
+                dyes.push(dye);
+            }
+        }
+        dyes
+    }
+
     /// Whether it is made of the material of a name.
     pub fn is_made_of(&self, name: &str) -> bool {
         self.parts().iter().any(|part| part.name == name || part.material().is_made_of(name))
@@ -210,6 +221,23 @@ impl Material<Table> {
             Self::Retarder(_) => true,
             Self::Diffuse(_) | Self::Mirror(_) | Self::Conductor(_) | Self::Polarizer(_) => false,
             Self::Emissive(_) | Self::Plastic(_) | Self::Mix(_) | Self::Mask(_) => false,
+        }
+    }
+
+    /// What share of the light that arrives meets each of its dyes, which stand in the order of `dyes`.
+    pub fn shares_of_dyes<const N: usize>(&self, arrival: &Arrival<N>, share: Lanes<N>, met: &mut Vec<Lanes<N>>) {
+        match self {
+            Self::Diffuse(diffuse) => met.extend(diffuse.fluorescence.as_ref().map(|_| share)),
+            Self::Mix(mix) => {
+                let parts = mix.parts(arrival);
+                parts.into_iter().for_each(|(part, of_part)| part.shares_of_dyes(arrival, share * of_part, met));
+            }
+            Self::Mask(mask) => {
+                let opacity = arrival.read(&mask.opacity);
+                mask.material.material().shares_of_dyes(arrival, share * opacity, met);
+            }
+            Self::Mirror(_) | Self::Conductor(_) | Self::Dielectric(_) | Self::Thin(_) => {}
+            Self::Emissive(_) | Self::Plastic(_) | Self::Polarizer(_) | Self::Retarder(_) => {}
         }
     }
 

@@ -22,6 +22,13 @@ impl<M: Scatter> Mix<Table, M> {
         [Lanes::from_fn(|i| 1.0 - second[i]), second]
     }
 
+    /// Each material with its share, per lane.
+    pub(super) fn parts<const N: usize>(&self, arrival: &Arrival<N>) -> [(&M, Lanes<N>); 2] {
+        let [first, second] = self.shares(arrival);
+        let [a, b] = self.materials.each_ref().map(Part::material);
+        [(a, first), (b, second)]
+    }
+
     /// How often a direction is drawn from the second one, of those drawn from the two: its mean share.
     fn chance_of_second<const N: usize>(&self, arrival: &Arrival<N>) -> f64 {
         match self.materials.each_ref().map(|part| part.material().lobes().is_wide()) {

@@ -1,5 +1,6 @@
 //! How much color each model of a spectrum would miss in a scene.
 
+use super::dyes;
 use super::seen::Seen;
 use super::survey::{Survey, Tint};
 use crate::spectrum::{Basis, Draw, Emission, Lanes, MAX_LANES, Quantity, visible};
@@ -28,7 +29,8 @@ const MOST: [usize; 2] = [20, 6];
 /// The largest relative error of a color that a basis makes in a scene: over its lights and all pairs of surfaces, and
 /// over what light of a probe meets, however many smooth surfaces those are.
 pub(super) fn error(survey: &Survey, seen: &Seen, basis: &Basis) -> f64 {
-    missed(survey, basis, &survey.scattering(MOST[0]), &survey.smooth(MOST[1])).max(seen.error(survey, basis))
+    let scattered = missed(survey, basis, &survey.scattering(MOST[0]), &survey.smooth(MOST[1]));
+    scattered.max(seen.error(survey, basis)).max(dyes::error(survey, basis))
 }
 
 /// The same over paths of chosen tints.
@@ -112,7 +114,7 @@ pub(super) fn candidates(survey: &Survey, seen: &Seen, heroes: usize) -> Vec<Can
         if heroes == 0 && error == 0.0 {
             return candidates;
         }
-    } else if let (Some(light), false) = (survey.common_light(), survey.has_films()) {
+    } else if let (Some(light), false) = (survey.common_light(), survey.has_films() || !survey.dyes.is_empty()) {
         candidates.push(candidate(Basis::prefiltered(space, &light), PREFILTERED_SAFETY));
     }
     candidates.extend([8, 12, 16, 32].map(|bands| candidate(bands_beside(survey, bands, heroes), LANES_SAFETY)));
@@ -127,7 +129,11 @@ pub(super) fn own_lines(survey: &Survey, heroes: usize) -> Vec<f64> {
 /// Fixed lanes that leave room for heroes: a scene's emission lines, and as many wavelengths as fit beside them.
 pub(super) fn bands_beside(survey: &Survey, bands: usize, heroes: usize) -> Basis {
     let lines = own_lines(survey, heroes);
-    Basis::bands(survey.color_space, bands.min(MAX_LANES - heroes - lines.len()), &lines)
+    let bands = bands.min(MAX_LANES - heroes - lines.len());
+    match survey.needs_ultraviolet() {
+        true => Basis::bands_from_ultraviolet(survey.color_space, bands, &lines),
+        false => Basis::bands(survey.color_space, bands, &lines),
+    }
 }
 
 /// Fewest interpolated wavelengths beside the lanes of emission lines.

@@ -8,11 +8,11 @@ const CLEARLY: f64 = 1.25;
 /// pixels share, shows in means over the image.
 const LARGE: f64 = 1e6;
 
-/// How many times as long an equal error takes without light vertices, where they pay.
+/// How many times as long an equal error takes without light vertices, where they pay. Their paths know no dyes.
 pub(super) fn gain(world: &World) -> Option<f64> {
     let (film, method) = (world.scene().film, world.method());
     let samples = f64::from(film.width) * f64::from(film.height) * f64::from(method.samples);
-    if samples < LARGE || method.diffuse_bounces == 0 {
+    if samples < LARGE || method.diffuse_bounces == 0 || world.fluoresces() {
         return None;
     }
     resampling_gain(world).filter(|&gain| gain > CLEARLY)

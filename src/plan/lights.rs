@@ -11,7 +11,7 @@ const GLANCE: usize = 24;
 fn glance(emission: &Emission) -> [f64; GLANCE] {
     let mut steps = [0.0; GLANCE];
     let count = visible::COUNT as f64;
-    let step = |nm: f64| (((nm - visible::FIRST_NM) / count * GLANCE as f64) as usize).min(GLANCE - 1);
+    let step = |nm: f64| (((nm - visible::START_NM) / count * GLANCE as f64) as usize).min(GLANCE - 1);
     visible::wavelengths().zip(emission.spectrum()).for_each(|(nm, power)| steps[step(nm)] += power);
     emission.lines().iter().for_each(|&[nm, power]| steps[step(nm)] += power);
     let total: f64 = steps.iter().sum();

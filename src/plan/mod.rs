@@ -3,6 +3,7 @@
 mod bright;
 mod candidates;
 mod caustics;
+mod dyes;
 mod efficiency;
 mod films;
 mod light_vertices;

@@ -1,13 +1,14 @@
 //! Which lanes carry the light, and whether they part.
 
 use super::candidates::{Candidate, LANES_SAFETY, bands_beside, candidates, error, own_lines};
+use super::dyes::spoken as spoken_dyes;
 use super::films::spoken as spoken_film;
 use super::seen::Seen;
 use super::survey::{Survey, disperses, tolerance};
 use super::words::percent;
 use crate::material::Material;
 use crate::scene::{ModelText, Scene};
-use crate::spectrum::{Basis, Curve, CurveKind, Emission, MAX_LANES, Quantity, provenance};
+use crate::spectrum::{Basis, Curve, CurveKind, Dye, Emission, MAX_LANES, Quantity, provenance};
 use crate::trace::{COLORS_NM, Dispersion, Method, Polarizing, Transport, World, dispersion as measured_dispersion};
 
 /// Share of the camera rays on dispersive surfaces from which twice the wavelengths are carried.
@@ -204,6 +205,8 @@ fn desaturated(scene: &Scene<Curve>, basis: &Basis) -> Option<String> {
 fn materials(scene: &Scene<Curve>, basis: &Basis) -> Vec<String> {
     let mut lines = Vec::new();
     for named in &scene.materials {
+        let dyes: Vec<Dye> = named.material.dyes().into_iter().map(|dye| dye.dye()).collect();
+        lines.extend(spoken_dyes(&dyes, basis).map(|dyes| format!("material {}: {dyes}", named.name)));
         lines.extend(spoken_film(&named.material, basis).map(|film| format!("material {}: {film}", named.name)));
         match &named.material {
             Material::Dielectric(glass) => {

@@ -8,7 +8,7 @@ use super::lights::{different, farthest_apart};
 use crate::material::{Conductor, Dielectric, Material, Plastic, conductor_reflectance, diffuse_transmittance};
 use crate::scene::Scene;
 use crate::spectrum::{
-    Basis, ColorSpace, Curve, CurveKind, Emission, Quantity, Upsampler, normal_reflectance, visible,
+    Basis, ColorSpace, Curve, CurveKind, Dye, Emission, Quantity, Upsampler, normal_reflectance, visible,
 };
 
 /// The share of the error that the model of color may make; noise may make the rest.
@@ -32,6 +32,8 @@ pub(super) struct Survey<'a> {
     /// Those of them by whose light models are judged.
     judged: Vec<usize>,
     tints: Vec<Tint<'a>>,
+    /// The dyes, each with the reflectance of its surface.
+    pub(super) dyes: Vec<(Dye, Cow<'a, Curve>)>,
 }
 
 /// Something that tints light.
@@ -61,7 +63,7 @@ impl<'a> Survey<'a> {
         let space = scene.film.color_space;
         let (lights, light_numbers) = different(scene.lights.iter().map(|light| light.emission()), space);
         let judged = farthest_apart(&lights, MOST_LIGHTS);
-        let mut tints = Vec::new();
+        let (mut tints, mut dyes) = (Vec::new(), Vec::new());
         let filters =
             |quantity, curve: &'a Curve| curve.shades().into_iter().map(move |shade| Tint::Filter(quantity, shade));
         for (id, named) in scene.materials.iter().enumerate() {
@@ -75,7 +77,9 @@ impl<'a> Survey<'a> {
                 tints.extend(films(material).into_iter().map(Tint::Film));
                 match material {
                     Material::Diffuse(diffuse) => {
-                        tints.extend(diffuse.reflectance.shades().into_iter().map(Tint::Diffuse));
+                        let shades = diffuse.reflectance.shades();
+                        dyes.extend(diffuse.fluorescence.iter().map(|dye| (dye.dye(), shades[0].clone())));
+                        tints.extend(shades.into_iter().map(Tint::Diffuse));
                     }
                     Material::Plastic(plastic) => {
                         let shades = plastic.reflectance.shades().into_iter();
@@ -98,14 +102,15 @@ impl<'a> Survey<'a> {
             }
         }
         let upsampler = Upsampler::new(space);
-        Self { color_space: space, upsampler, lights, light_numbers, judged, tints }
+        Self { color_space: space, upsampler, lights, light_numbers, judged, tints, dyes }
     }
 
     /// Whether three numbers say all that is known of every color: numbers and `rgb` under the film's own white.
     pub(super) fn is_plain(&self) -> bool {
         let white: Curve = CurveKind::Illuminant(Arc::new(self.color_space.white_light())).into();
         let white = Emission::new(&white, self.color_space);
-        !self.has_films()
+        self.dyes.is_empty()
+            && !self.has_films()
             && self.tints.iter().all(|tint| tint.curves().iter().all(|curve| !curve.is_measured()))
             && self.lights.iter().all(|(curve, light)| !curve.is_measured() || light.has_shape_of(&white))
     }
@@ -113,6 +118,18 @@ impl<'a> Survey<'a> {
     /// Whether light interferes somewhere, which three numbers cannot tell.
     pub(super) fn has_films(&self) -> bool {
         self.tints.iter().any(|tint| matches!(tint, Tint::Film(_)))
+    }
+
+    /// Whether dyes absorb light that the eye does not see: more than one part in a thousand of what excites them.
+    pub(super) fn needs_ultraviolet(&self) -> bool {
+        let invisible = |dye: &Dye, light: &Emission| {
+            let excited = dye.excited_by(light);
+            let smooth = visible::wavelengths().zip(excited.smooth).filter(|part| part.0 < ULTRAVIOLET_NM);
+            let lines = excited.lines.iter().filter(|line| line[0] < ULTRAVIOLET_NM);
+            let below: f64 = smooth.map(|part| part.1).chain(lines.map(|line| line[1])).sum();
+            below > 1e-3 * dye.excited_by(light).parts().sum::<f64>()
+        };
+        self.dyes.iter().any(|(dye, _)| self.judged().any(|(_, light)| invisible(dye, light)))
     }
 
     /// The light of the whole scene, if all lights have the same spectrum.
@@ -192,6 +209,9 @@ impl<'a> Survey<'a> {
         chosen.into_iter().take(most).map(|(_, tint)| tint).collect()
     }
 }
+
+/// Below this, in nm, lanes of visible light carry none that excites dyes.
+const ULTRAVIOLET_NM: f64 = 390.0;
 
 /// Films by which models are judged, each as it reflects and as it lets through.
 const FILMS: usize = 4;

@@ -1,7 +1,7 @@
 use std::sync::Arc;
 
 use super::draw::Hero;
-use super::visible::{COUNT, FIRST_NM};
+use super::visible::{COUNT, START_NM};
 use super::{Draw, Lanes, WavelengthBands};
 
 /// What each lane of one light is to bands of wavelengths: radiance per nm, on the scale on which an even spectrum of 1
@@ -57,7 +57,7 @@ impl BandResponse {
     pub(super) fn hero(&self, hero: &Hero, weight: f64) -> Option<(usize, f64)> {
         let nm = match hero.below.checked_sub(COUNT) {
             Some(line) => self.lines_nm[line],
-            None => FIRST_NM + hero.below as f64 + hero.fraction,
+            None => START_NM + hero.below as f64 + hero.fraction,
         };
         let band = self.bands.of(nm)?;
         let (a, b) = (self.fine[hero.below], self.fine[hero.below + 1]);

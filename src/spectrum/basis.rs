@@ -14,7 +14,7 @@ use super::mixture::Mixture;
 use super::palette::palette;
 use super::table::{MAX_LANES, Pattern, PatternKind};
 use super::visible::{self, COUNT};
-use super::{Curve, CurveKind, Draw, Emission, Quantity, Response, Table, Upsampler, WavelengthBands};
+use super::{Curve, CurveKind, Draw, Dye, Emission, Quantity, Response, Table, Upsampler, WavelengthBands};
 
 /// What the lanes of one render stand for: the bins on which all its spectra are tabulated.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -26,6 +26,8 @@ pub struct Basis {
     pub(super) wavelengths_nm: Vec<f64>,
     pub(super) heroes: Option<Heroes>,
     keeps_together: bool,
+    /// Whether lights are as bright as their whole power makes them, which excites dyes.
+    excites: bool,
 }
 
 /// Wavelengths that are drawn for each sample.
@@ -79,6 +81,19 @@ impl Basis {
             15..=23 => (380.0, 730.0),
             _ => (390.0, 730.0),
         };
+        Self::evenly(space, bands, [from, to], lines_nm)
+    }
+
+    /// The same from 300 nm on, for dyes that ultraviolet light excites.
+    ///
+    /// # Panics
+    /// If lanes and lines are none or more than [`MAX_LANES`].
+    pub fn bands_from_ultraviolet(space: ColorSpace, bands: usize, lines_nm: &[f64]) -> Self {
+        Self::evenly(space, bands, [visible::START_NM, 730.0], lines_nm)
+    }
+
+    /// As many wavelengths in equal steps.
+    fn evenly(space: ColorSpace, bands: usize, [from, to]: [f64; 2], lines_nm: &[f64]) -> Self {
         let step = (to - from) / bands as f64;
         let nodes: Vec<f64> = (0..bands).map(|i| from + (i as f64 + 0.5) * step).collect();
         Self::wavelengths(space, nodes, lines_nm)
@@ -110,9 +125,29 @@ impl Basis {
         Self { keeps_together: true, ..self }
     }
 
+    /// The same lanes, for a scene in which lights excite dyes: heroes are also drawn where they do.
+    pub fn exciting(self, dyes: &[Dye], lights: &[&Curve]) -> Self {
+        if self.excites || !self.can_excite() {
+            return self;
+        }
+        let heroes = self.heroes.map(|heroes| {
+            let lights = lights.iter().map(|light| Emission::new(light, self.space));
+            let lights: Vec<Emission> = lights.chain(dyes.iter().map(|dye| dye.shines(self.space))).collect();
+            let of_dye = |dye: &Dye| lights.iter().map(|light| dye.excited_by(light)).collect::<Vec<_>>();
+            let excitations: Vec<_> = dyes.iter().flat_map(of_dye).collect();
+            Heroes { mixture: Arc::new(heroes.mixture.exciting(&excitations)), ..heroes }
+        });
+        Self { heroes, excites: true, ..self }
+    }
+
+    /// Whether lanes are wavelengths, of which alone it can be said what dyes absorb.
+    pub fn can_excite(&self) -> bool {
+        matches!(self.lanes, LaneKind::Wavelengths(_))
+    }
+
     fn new(space: ColorSpace, lanes: LaneKind, wavelengths_nm: Vec<f64>) -> Self {
         let upsampler = Arc::new(Upsampler::new(space));
-        Self { space, upsampler, lanes, wavelengths_nm, heroes: None, keeps_together: false }
+        Self { space, upsampler, lanes, wavelengths_nm, heroes: None, keeps_together: false, excites: false }
     }
 
     /// The model's name, as it is recorded in a file.
@@ -266,8 +301,14 @@ impl Basis {
             (LaneKind::Rgb(_), Some(rgb)) if curve.luminance.is_none() => Table::new(rgb.map(|x| x * curve.scale)),
             (LaneKind::Rgb(_), _) => Table::new(apply(&ColorSpace::Rec709.of_xyz(), emission().xyz())),
             (LaneKind::Prefiltered(_), _) => Table::new(apply(&ColorSpace::Rec2020.of_xyz(), emission().xyz())),
-            (LaneKind::Wavelengths(_), _) => self.even(emission().level()),
+            (LaneKind::Wavelengths(_), _) => self.even(self.level(&emission())),
         }
+    }
+
+    /// The number that stands for a light's brightness in every lane.
+    fn level(&self, emission: &Emission) -> f64 {
+        let color = emission.level();
+        if self.excites { color.max(f64::from(emission.power() as f32)) } else { color }
     }
 
     /// What the lanes are worth to the sensor when a path ends in a light of this emission.
@@ -281,8 +322,23 @@ impl Basis {
             LaneKind::Rgb(_) if self.space == ColorSpace::Rec709 => of_matrix(&IDENTITY),
             LaneKind::Rgb(_) => of_matrix(&self.space.of_rec709()),
             LaneKind::Prefiltered(_) => of_matrix(&product(&self.space.of_xyz(), &ColorSpace::Rec2020.to_xyz())),
-            LaneKind::Wavelengths(functions) => self.light_matrix(&Emission::new(curve, self.space), functions),
+            LaneKind::Wavelengths(functions) => {
+                let emission = Emission::new(curve, self.space);
+                let lines = emission.lines().iter().map(|&[nm, power]| emission.film(nm).map(|x| x * power));
+                let light = emission.columns().chain(lines).collect();
+                self.response_to(&emission, functions, light)
+            }
         }
+    }
+
+    /// What the lanes are worth to a dye when a path ends in a light of this emission: in all three channels, what the
+    /// dye shines, as the number that stands for its brightness. Nothing where lanes are no wavelengths.
+    pub fn excitation(&self, dye: &Dye, light: &Curve) -> Response {
+        let LaneKind::Wavelengths(functions) = &self.lanes else { return Response::new(&[], Vec::new()) };
+        let emission = Emission::new(&light.level(), self.space);
+        let level = self.level(&dye.shines(self.space));
+        let light = dye.excited_by(&emission).parts().map(|x| [level * x; 3]).collect();
+        self.response_to(&emission, functions, light)
     }
 
     /// What the lanes bring to bands of wavelengths when a path ends in a light of this emission; none of three bands,
@@ -290,7 +346,7 @@ impl Basis {
     pub fn band_response(&self, curve: &Curve, bands: WavelengthBands) -> Option<BandResponse> {
         let LaneKind::Wavelengths(functions) = &self.lanes else { return None };
         let emission = Emission::new(&curve.level(), self.space);
-        let level = emission.level();
+        let level = self.level(&emission);
         let unit = if level == 0.0 { 0.0 } else { emission.unit() / level };
         let mut columns = vec![0.0; self.fixed_lanes() * bands.count()];
         let mut add = |lane: usize, band: usize, light: f64| {
@@ -300,14 +356,14 @@ impl Basis {
         self.spread(functions, lines, |part, lane, weight| match part.checked_sub(COUNT) {
             None => {
                 let light = weight * emission.spectrum()[part];
-                bands.around(visible::FIRST_NM + part as f64).for_each(|(band, width)| add(lane, band, light * width));
+                bands.around(visible::START_NM + part as f64).for_each(|(band, width)| add(lane, band, light * width));
             }
             Some(line) => {
                 let [nm, power] = lines[line];
                 bands.of(nm).into_iter().for_each(|band| add(lane, band, weight * power));
             }
         });
-        let at = |nm: f64| unit * emission.spectrum()[(nm - visible::FIRST_NM) as usize];
+        let at = |nm: f64| unit * emission.spectrum()[(nm - visible::START_NM) as usize];
         let line = |nm: f64| unit * emission.power_of_line(nm);
         let lines_nm = self.heroes.as_ref().map_or(&[][..], |heroes| heroes.mixture.lines());
         Some(BandResponse::new(bands, columns, self.fine(at, line), lines_nm))
@@ -332,18 +388,22 @@ impl Basis {
         }
     }
 
-    /// Light times color matching functions, integrated with the function of each lane.
-    fn light_matrix(&self, emission: &Emission, functions: &[Vec<f64>]) -> Response {
-        let level = emission.level();
+    /// What each part of a light is worth, over the light's level, integrated with the function of each lane: at the
+    /// wavelengths of the visible grid, per nm, and of the lines.
+    fn response_to(&self, emission: &Emission, functions: &[Vec<f64>], light: Vec<[f64; 3]>) -> Response {
+        let level = self.level(emission);
         let per_level = |color: [f64; 3]| if level == 0.0 { [0.0; 3] } else { color.map(|x| x / level) };
-        let lines = emission.lines().iter().map(|&[nm, power]| per_level(emission.film(nm).map(|x| x * power)));
-        let light: Vec<[f64; 3]> = emission.columns().map(per_level).chain(lines).collect();
+        let light: Vec<[f64; 3]> = light.into_iter().map(per_level).collect();
         let mut columns = vec![[0.0; 3]; self.fixed_lanes()];
         self.spread(functions, emission.lines(), |part, lane, weight| {
             (0..3).for_each(|c| columns[lane][c] += weight * light[part][c]);
         });
-        let at = |nm: f64| light[(nm - visible::FIRST_NM) as usize];
-        let line = |nm: f64| per_level(emission.film(nm).map(|x| x * emission.power_of_line(nm)));
+        let at = |nm: f64| light[(nm - visible::START_NM) as usize];
+        let of_lines = emission.lines().iter().zip(&light[COUNT..]);
+        let line = |nm: f64| {
+            let here = of_lines.clone().filter(|(line, _)| line[0] == nm).map(|(_, color)| *color);
+            here.fold([0.0; 3], |sum, color| std::array::from_fn(|c| sum[c] + color[c]))
+        };
         Response::new(&columns, self.fine(at, line))
     }
 }

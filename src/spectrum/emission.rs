@@ -3,7 +3,7 @@
 use super::color::{ColorSpace, Matrix, apply, factors, product};
 use super::curve::interpolate;
 use super::visible::{self, color_matching};
-use super::{Curve, CurveKind, Quantity, Upsampler, data};
+use super::{Curve, CurveKind, Quantity, Upsampler};
 
 /// The light of one curve, scaled so that sums with the color matching functions give film values.
 #[derive(Clone, Debug, PartialEq)]
@@ -86,6 +86,12 @@ impl Emission {
         visible::luminous() * self.correction[1]
     }
 
+    /// All of its power, on the scale on which an even spectrum of 1 has as much as there are nm of visible light in 1.
+    pub(super) fn power(&self) -> f64 {
+        let sum = self.spectrum.iter().sum::<f64>() + self.lines.iter().map(|line| line[1]).sum::<f64>();
+        sum * self.unit() / (visible::LAST_NM - visible::FIRST_NM)
+    }
+
     /// The power of the ideal lines at exactly a wavelength.
     pub(super) fn power_of_line(&self, wavelength_nm: f64) -> f64 {
         self.lines.iter().filter(|line| line[0] == wavelength_nm).map(|line| line[1]).sum()
@@ -122,8 +128,10 @@ impl Emission {
 
     /// Film color per nm at each wavelength of the visible grid, without the lines.
     pub fn columns(&self) -> impl Iterator<Item = [f64; 3]> {
-        let cmfs = data::color_matching().iter();
-        self.spectrum.iter().zip(cmfs).map(|(power, cmf)| apply(&self.film_of_xyz, cmf.map(|x| power * x)))
+        self.spectrum
+            .iter()
+            .zip(visible::observer())
+            .map(|(power, cmf)| apply(&self.film_of_xyz, cmf.map(|x| power * x)))
     }
 
     /// Whether two lights differ by a factor at most, to a part in a million.

@@ -29,6 +29,11 @@ pub struct Wavelength {
 }
 
 impl Wavelength {
+    /// What a light at this wavelength is worth.
+    pub fn worth(&self, response: &Response) -> [f64; 3] {
+        response.hero(&self.hero)
+    }
+
     /// The band into which light of this wavelength falls, and how much it is there: light of a film color that was
     /// found by a response, and is looked at by the same light's response to bands.
     pub fn band(&self, color: [f64; 3], response: &Response, bands: &BandResponse) -> Option<(usize, f64)> {
@@ -41,7 +46,7 @@ impl Wavelength {
 /// The bin of each entry of the fine grid, and how likely each is, for the probabilities of steps and lines.
 fn bins(probabilities: impl Iterator<Item = f64>, parts: f64) -> (Vec<u32>, Vec<f64>) {
     let steps = COUNT - 1;
-    let widest = (steps as f64 / parts).max(1.0);
+    let widest = ((visible::LAST_NM - visible::FIRST_NM) / parts).max(1.0);
     let (mut bins, mut chances, mut width) = (Vec::new(), vec![0.0], 0.0);
     for (entry, probability) in probabilities.enumerate() {
         if entry == steps {
@@ -83,19 +88,13 @@ impl<const N: usize> Matching<N> {
     }
 
     /// Whether heroes carry light that arrives in lanes; `found` is told the lane, the wavelength
-    /// and the film's color of each.
-    pub fn alone(
-        draw: &Draw<N>,
-        response: &Response,
-        lanes: Lanes<N>,
-        parted: bool,
-        mut found: impl FnMut(usize, Wavelength, [f64; 3]),
-    ) -> bool {
+    /// and the weight of each.
+    pub fn alone(draw: &Draw<N>, lanes: Lanes<N>, parted: bool, mut found: impl FnMut(usize, Wavelength, f64)) -> bool {
         let Some(factor) = draw.hero_factor(parted) else { return false };
         for (hero, lane) in draw.heroes().zip(draw.fixed_lanes()..) {
             let weight = factor * hero.factor * f64::from(lanes[lane]);
             if weight != 0.0 {
-                found(lane, Wavelength { hero: *hero }, response.hero(hero).map(|x| weight * x));
+                found(lane, Wavelength { hero: *hero }, weight);
             }
         }
         true

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::draw::Hero;
 use super::visible::{self, COUNT};
-use super::{Emission, data};
+use super::{Emission, Excited};
 use crate::math::Distribution;
 
 /// A distribution of wavelengths: a density, constant over each nm, and ideal lines, which are drawn as they are.
@@ -23,7 +23,7 @@ impl Mixture {
     /// Nine tenths light times color matching functions, an equal share for every different light, one tenth color
     /// matching functions alone. Where all light is in ideal lines, only they are drawn.
     pub(super) fn new(lights: &[Emission]) -> Self {
-        let eye: Vec<f64> = data::color_matching().iter().map(|cmf| cmf.iter().sum()).collect();
+        let eye: Vec<f64> = visible::observer().map(|cmf| cmf.iter().sum()).collect();
         let mut lines: Vec<f64> = lights.iter().flat_map(|light| light.lines()).map(|line| line[0]).collect();
         lines.sort_by(f64::total_cmp);
         lines.dedup();
@@ -52,10 +52,29 @@ impl Mixture {
         Self { entries: Distribution::new(probabilities), lines }
     }
 
+    /// Half of the wavelengths drawn as before, the others by what excites dyes.
+    pub(super) fn exciting(&self, excitations: &[Excited]) -> Self {
+        let mut weights: Vec<f64> = self.probabilities().collect();
+        for Excited { smooth, lines } in excitations {
+            let mut part: Vec<f64> = smooth.windows(2).map(|ends| 0.5 * (ends[0] + ends[1])).collect();
+            let of_line = |nm: f64| lines.iter().filter(|line| line[0] == nm).map(|line| line[1]).sum::<f64>();
+            part.extend(self.lines.iter().map(|&nm| of_line(nm)));
+            let total: f64 = part.iter().sum();
+            if total > 0.0 {
+                let scale = 1.0 / (total * excitations.len() as f64);
+                weights.iter_mut().zip(part).for_each(|(weight, x)| *weight += scale * x);
+            }
+        }
+        Self { entries: Distribution::new(weights), lines: self.lines.clone() }
+    }
+
     /// The density of pbrt-v4, sech^2(0.0072 (w - 538)) (Radziszewski, Boryczko & Alda 2009, *An Improved Technique for
     /// Full Spectral Rendering*).
     pub(super) fn visible() -> Self {
-        let density = |nm: f64| libm::pow(libm::cosh(0.0072 * (nm + 0.5 - 538.0)), -2.0);
+        let density = |nm: f64| match nm {
+            nm if nm < visible::FIRST_NM => 0.0,
+            _ => libm::pow(libm::cosh(0.0072 * (nm + 0.5 - 538.0)), -2.0),
+        };
         let entries = Distribution::new(visible::wavelengths().take(COUNT - 1).map(density));
         Self { entries, lines: Vec::new() }
     }

@@ -19,6 +19,10 @@ pub enum Quantity {
     MetalExtinction,
     /// Thickness of a layer in which light interferes, in nm.
     Thickness,
+    /// Share of light that a dye absorbs and may shine again, 0 to 1.
+    Excitation,
+    /// Power per nm that a dye shines, on any scale; not negative.
+    Fluorescence,
     /// Of the number 1: where a lane reads, in nm in vacuum.
     Wavelength,
     /// Of the number 1: the width of the band of wavelengths that a lane stands for over its wavelength, 0 of lines and

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::color::{ColorSpace, Matrix, adaptation, apply, factors, inverse, product};
 use super::data;
-use super::visible::{self, COUNT};
+use super::visible::{self, ULTRAVIOLET};
 
 /// A spectrum S(w) = 1/2 + x / (2 sqrt(1 + x^2)), x = (a t + b) t + c, where t runs from 0 at 360 to 1 at 830 nm.
 ///
@@ -47,7 +47,7 @@ impl Upsampler {
         let correction = factors(visible::xyz(&spectrum), space.white());
         let adapted = adaptation(space.white(), ColorSpace::Rec709.white());
         let to_rec709 = product(&ColorSpace::Rec709.of_xyz(), &adapted);
-        let steps = spectrum.iter().zip(data::color_matching());
+        let steps = spectrum.iter().skip(ULTRAVIOLET).zip(data::color_matching());
         let color = |(power, cmf): (&f64, &[f64; 3])| std::array::from_fn(|c| power * cmf[c] * correction[c]);
         Self { steps: steps.map(|step| apply(&to_rec709, color(step))).collect() }
     }
@@ -112,7 +112,7 @@ impl Upsampler {
     fn evaluate(&self, [a, b, c]: [f64; 3], goal: [f64; 3]) -> ([f64; 3], Matrix) {
         let (mut residual, mut slopes) = (goal.map(|x| -x), [[0.0; 3]; 3]);
         for (i, step) in self.steps.iter().enumerate() {
-            let t = i as f64 / (COUNT - 1) as f64;
+            let t = i as f64 / (visible::LAST_NM - visible::FIRST_NM);
             let x = (a * t + b) * t + c;
             let q = 1.0 / (1.0 + x * x).sqrt();
             let (value, slope) = (0.5 + 0.5 * x * q, 0.5 * q * q * q);

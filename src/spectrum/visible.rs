@@ -1,13 +1,18 @@
-//! The visible range, 360 to 830 nm, in steps of 1 nm: the grid on which color is integrated.
+//! The grid on which light is integrated, 300 to 830 nm in steps of 1 nm: the visible range, and the ultraviolet light
+//! below it that dyes make visible.
 
 use super::data;
 
-/// The first wavelength, in nm.
+/// The first wavelength of the grid, in nm: CIE illuminants have no light below it.
+pub const START_NM: f64 = 300.0;
+/// The first wavelength that the eye sees, in nm.
 pub const FIRST_NM: f64 = 360.0;
 /// The last wavelength, in nm.
 pub const LAST_NM: f64 = 830.0;
 /// Wavelengths on the grid.
-pub const COUNT: usize = 471;
+pub const COUNT: usize = 531;
+/// Those of them below the visible range.
+pub const ULTRAVIOLET: usize = 60;
 
 /// Luminous efficacy of radiation at the peak of the photopic eye, in lm/W: K_m of CIE 018:2019, *The Basis of Physical
 /// Photometry*.
@@ -15,12 +20,12 @@ pub const EFFICACY: f64 = 683.002;
 
 /// The wavelengths of the grid, in nm.
 pub fn wavelengths() -> impl Iterator<Item = f64> {
-    (0..COUNT).map(|i| FIRST_NM + i as f64)
+    (0..COUNT).map(|i| START_NM + i as f64)
 }
 
 /// Where a wavelength lies on the grid: the entry at or below it, and the fraction of the step to the next one.
 pub fn place(wavelength_nm: f64) -> (usize, f64) {
-    let at = (wavelength_nm - FIRST_NM).clamp(0.0, (COUNT - 1) as f64);
+    let at = (wavelength_nm - START_NM).clamp(0.0, (COUNT - 1) as f64);
     let below = (at as usize).min(COUNT - 2);
     (below, at - below as f64)
 }
@@ -31,14 +36,19 @@ pub fn color_matching(wavelength_nm: f64) -> [f64; 3] {
         return [0.0; 3];
     }
     let (below, fraction) = place(wavelength_nm);
-    let [a, b] = [0, 1].map(|step| data::color_matching()[below + step]);
+    let [a, b] = [0, 1].map(|step| data::color_matching()[below - ULTRAVIOLET + step]);
     std::array::from_fn(|i| a[i] + fraction * (b[i] - a[i]))
+}
+
+/// The color matching functions at each wavelength of the grid.
+pub fn observer() -> impl Iterator<Item = [f64; 3]> {
+    std::iter::repeat_n([0.0; 3], ULTRAVIOLET).chain(data::color_matching().iter().copied())
 }
 
 /// CIE XYZ of a spectrum on the grid: the sum over 1 nm steps (CIE 15:2018, equation 7.1) with k = 1.
 pub fn xyz(spectrum: &[f64]) -> [f64; 3] {
     let mut sum = [0.0; 3];
-    for (value, cmf) in spectrum.iter().zip(data::color_matching()) {
+    for (value, cmf) in spectrum.iter().skip(ULTRAVIOLET).zip(data::color_matching()) {
         (0..3).for_each(|i| sum[i] += value * cmf[i]);
     }
     sum

@@ -5,6 +5,7 @@ use std::cell::Cell;
 use super::arrived::Arrived;
 use super::bright::Aiming;
 use super::contribution::{Contribution, Found};
+use super::excitation::Excitation;
 use super::interaction::Interaction;
 use super::path::{Path, ScatterSample};
 use super::polarization::{MetLight, Polarization};
@@ -23,6 +24,8 @@ pub(super) struct DirectLighting<'a, const N: usize, P> {
     pub(super) world: &'a World,
     pub(super) path: &'a Path<N, P>,
     pub(super) at: &'a Interaction<'a, N>,
+    /// The dye that the light excites, if the path follows that.
+    pub(super) excitation: Option<&'a Excitation<N, P>>,
     /// Whether the path goes on from here and may hit a light by itself.
     pub(super) goes_on: bool,
     /// Whether every light is sampled, or one.
@@ -156,13 +159,13 @@ impl<const N: usize, P: Polarization<N>> DirectLighting<'_, N, P> {
         };
         let lanes = &self.path.throughput.scaled(factor).of(bsdf_cos * arriving);
         let (light, dispersed) = (*light, side.parted);
-        let arrived = Arrived { light, draw: arrival.draw, lanes, parted: dispersed };
-        let rgb = arrived.rgb(&world.responses);
-        let met = MetLight { world, arrived: &arrived, rgb };
+        let arrived = Arrived { source: light, draw: arrival.draw, lanes, parted: dispersed };
+        let met = MetLight::new(world, &arrived, self.excitation);
+        let rgb = met.rgb;
         let moved = self.path.polarization.moved(self.at, wi, on_its_way, &met);
         let (light, found, bounces) = (Some(light), Found::Sampled, self.path.bounces + 1);
         let first = self.at.first_lobe(world, self.path.lobe(), wi, side.normal != self.at.flat);
-        sensor.receive(Contribution { light, found, rgb, moved, first, bounces, dispersed }, &arrived, &on_its_way);
+        sensor.receive(Contribution { light, found, rgb, moved, first, bounces, dispersed }, &met, &on_its_way);
     }
 
     /// The factor on a light's emission and the material's answer: over the density of both ways to the light's

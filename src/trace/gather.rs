@@ -14,12 +14,13 @@
 use std::f64::consts::PI;
 
 use super::World;
-use super::arrived::Arrived;
+use super::arrived::{Arrived, SourceId};
 use super::contribution::{self, Contribution, add};
+use super::excitation::Excitation;
 use super::interaction::Interaction;
 use super::kernel::Kernel;
 use super::path::Path;
-use super::photon_map::{Landed, PhotonMap};
+use super::photon_map::{Alone, Landed, PhotonMap};
 use super::polarization::Polarization;
 use super::shading;
 use crate::light::LightId;
@@ -91,10 +92,38 @@ pub(super) struct Part<const N: usize> {
 /// The spectrum of what a photon brings.
 #[derive(Clone, Copy)]
 pub(super) enum PartSpectrum<const N: usize> {
-    /// Lanes of the camera path.
-    Lanes(Lanes<N>),
+    /// Lanes by which the light of a source arrives at the sensor, and whether they parted.
+    Lanes { source: SourceId, lanes: Lanes<N>, parted: bool },
     /// One wavelength.
     Alone(Wavelength),
+}
+
+/// A place that a path has reached, around which photons are gathered.
+pub(super) struct Gathering<'a, const N: usize, P> {
+    pub(super) world: &'a World,
+    pub(super) path: &'a Path<N, P>,
+    pub(super) at: &'a Interaction<'a, N>,
+    /// The dye that they excite, if the path follows that.
+    pub(super) excitation: Option<&'a Excitation<N, P>>,
+}
+
+/// What the sensor gets of one photon: in all, S1, S2 and S3 of it, and its spectrum.
+struct Seen<const N: usize> {
+    rgb: [f64; 3],
+    stokes: Option<[[f64; 3]; 3]>,
+    spectrum: PartSpectrum<N>,
+}
+
+impl<const N: usize> Seen<N> {
+    /// Of lanes by which it arrives.
+    fn new(world: &World, arrived: &Arrived<N>, stokes: Option<[Lanes<N>; 3]>) -> Self {
+        let Arrived { source, lanes, parted, .. } = *arrived;
+        Self {
+            rgb: arrived.rgb(&world.responses),
+            stokes: stokes.map(|stokes| stokes.map(|part| arrived.times(part, &world.responses))),
+            spectrum: PartSpectrum::Lanes { source, lanes: *lanes, parted },
+        }
+    }
 }
 
 /// What the sensor gets of the photons around a place that a path has reached; if `apart`, photon by photon as well.
@@ -102,9 +131,7 @@ pub(super) enum PartSpectrum<const N: usize> {
 pub(super) fn gather<const N: usize, P: Polarization<N>>(
     photons: &PhotonMap<N, P>,
     kernel: &Kernel<N>,
-    world: &World,
-    path: &Path<N, P>,
-    at: &Interaction<N>,
+    Gathering { world, path, at, excitation }: &Gathering<N, P>,
     sampler: &Sampler,
     apart: bool,
 ) -> Gathered<N> {
@@ -143,10 +170,12 @@ pub(super) fn gather<const N: usize, P: Polarization<N>>(
         let light = read.as_ref().unwrap_or(&photon.polarization);
         let joined = path.polarization.join(at, photon.back, light, &mut bsdf_cos);
         let lanes = path.throughput.of(bsdf_cos * flux);
-        let arrived = Arrived { light: carries.light, draw: arrival.draw, lanes: &lanes, parted };
-        let contribution = brought(Some(carries.light), arrived.rgb(&world.responses), parted);
-        let stokes = joined.stokes().map(|stokes| stokes.map(|part| arrived.times(part, &world.responses)));
-        let part = Part { contribution, stokes, spectrum: PartSpectrum::Lanes(lanes), factor: density };
+        let arrived = Arrived { source: carries.light, draw: arrival.draw, lanes: &lanes, parted };
+        let Seen { rgb, stokes, spectrum } = match excitation {
+            None => Seen::new(world, &arrived, joined.stokes()),
+            Some(dye) => dye.seen(world, &arrived, |seen| Seen::new(world, seen, dye.polarization.stokes())),
+        };
+        let part = Part { contribution: brought(Some(carries.light), rgb, parted), stokes, spectrum, factor: density };
         let change = || path.polarization.change_of_joined(at, photon.back, light, joined, lanes);
         found.add(world, position, part, change);
     });
@@ -165,11 +194,21 @@ pub(super) fn gather<const N: usize, P: Polarization<N>>(
         let Some((mut bsdf_cos, _)) = shading::evaluate(material, arrival, flat, photon.back) else { return };
         let joined = path.polarization.join(at, photon.back, &photon.polarization, &mut bsdf_cos);
         let lanes = path.throughput.of(bsdf_cos);
-        let (seen, color) = (read(lanes), photon.carries.color);
-        let contribution = brought(Some(photon.carries.light), color, true);
-        let share = |part: Lanes<N>| if seen == 0.0 { 0.0 } else { read(lanes * part) / seen };
-        let stokes = joined.stokes().map(|stokes| stokes.map(|part| color.map(|x| x * share(part))));
-        let part = Part { contribution, stokes, spectrum: PartSpectrum::Alone(*wavelength), factor: density * seen };
+        let (seen, Alone { light, weight, color, .. }) = (read(lanes), &photon.carries);
+        let (light, color) = (*light, *color);
+        let Seen { rgb, stokes, spectrum } = match excitation {
+            None => {
+                let share = |part: Lanes<N>| if seen == 0.0 { 0.0 } else { read(lanes * part) / seen };
+                let stokes = joined.stokes().map(|stokes| stokes.map(|part| color.map(|x| x * share(part))));
+                Seen { rgb: color, stokes, spectrum: PartSpectrum::Alone(*wavelength) }
+            }
+            Some(dye) => {
+                let brightness = weight * dye.worth(world, light, wavelength);
+                dye.seen_of(brightness, |seen| Seen::new(world, seen, dye.polarization.stokes()))
+            }
+        };
+        let contribution = brought(Some(light), rgb, true);
+        let part = Part { contribution, stokes, spectrum, factor: density * seen };
         let change = || path.polarization.change_of_joined(at, photon.back, &photon.polarization, joined, lanes);
         found.add(world, position, part, change);
     });

@@ -75,6 +75,12 @@ impl<'a, const N: usize> Interaction<'a, N> {
         Self { arrival, parts, ..self }
     }
 
+    /// As the light sees it that excites a dye: white, in lanes that stand for what excites.
+    pub(super) fn of_dye(&self, white: &'a Material<Table>, draw: &'a Draw<N>) -> Self {
+        let arrival = Arrival { draw, present: draw.start(), ..self.arrival };
+        Self { material: white, lobes: Lobes::DIFFUSE_REFLECTION, arrival, parts: false, ..*self }
+    }
+
     /// The lobe by which the first surface sends light to the camera that a path finds here, in a direction that may
     /// lead beyond the surface; none if layers do not tell that apart. `known` is that of a path that has left the
     /// first surface, none before.

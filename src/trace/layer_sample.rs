@@ -122,8 +122,8 @@ impl<'a, const N: usize> LayerSample<'a, N> {
             }
             let (Some(sample), Some(light)) = (&mut self.spectrum, contribution.light) else { continue };
             match spectrum {
-                PartSpectrum::Lanes(lanes) => {
-                    sample.receive(&Arrived { light, draw, lanes, parted: contribution.dispersed }, *factor);
+                PartSpectrum::Lanes { source, lanes, parted } => {
+                    sample.receive(&Arrived { source: *source, draw, lanes, parted: *parted }, *factor);
                 }
                 PartSpectrum::Alone(wavelength) => {
                     let responses = (&self.world.responses[light], sample.response(light));

@@ -20,6 +20,7 @@ pub(super) struct Media {
 }
 
 /// What crossing a surface does to the media of a ray.
+#[derive(Clone, Copy)]
 pub(super) struct Boundary {
     /// The medium the ray came through; none is vacuum.
     pub(super) here: Option<MaterialId>,

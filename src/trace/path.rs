@@ -41,6 +41,8 @@ pub(super) struct Path<const N: usize, P = Polarized> {
     pub(super) is_seen: bool,
     /// Which objects there are for it.
     pub(super) among: Among,
+    /// Which of the walk's excitations it follows: its lanes are then what excites a dye.
+    pub(super) excitation: Option<u32>,
     /// By which lobe the first surface sends its light to the camera, if layers tell that apart.
     pub(super) first: Option<FirstLobe>,
 }
@@ -143,6 +145,7 @@ impl<const N: usize, P: Polarization<N>> Path<N, P> {
             bounces: 0,
             is_seen: true,
             among: Among::All,
+            excitation: None,
             first: None,
         }
     }

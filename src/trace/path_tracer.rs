@@ -1,11 +1,15 @@
 //! Paths from the camera back to the lights.
 
+use std::rc::Rc;
+
 use super::aimed::{may_aim, scatter_aimed};
 use super::arrived::Arrived;
 use super::audit::Audit;
 use super::contribution::{Contribution, Found};
 use super::direct::{DirectLighting, weight_of_meeting};
-use super::gather::gather;
+use super::excitation::Excitation;
+use super::exciting::Exciting;
+use super::gather::{Gathering, gather};
 use super::interaction::{Interaction, Meeting};
 use super::layer_sample::{LayerSample, Met};
 use super::light_vertices::{LightVertices, holds_vertices};
@@ -37,6 +41,8 @@ pub(super) struct PathTracer<'a, const N: usize, P: Polarization<N> = Polarized>
     pub(super) light_vertices: Option<&'a LightVertices<N>>,
     /// What the lanes of every sample stand for, where that is the same.
     draw: Option<Draw<N>>,
+    /// The dyes that the paths of the sample at hand have seen.
+    excitations: Vec<Rc<Excitation<N, P>>>,
 }
 
 /// Where a path has hit a light.
@@ -64,7 +70,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         let basis = &world.method.basis;
         let draw = (!basis.draws_wavelengths()).then(|| basis.draw(0.0));
         let (walker, sensor) = (Walker::new(world, world.method.transport), Sensor::new());
-        Self { walker, sensor, photons: None, light_vertices: None, draw }
+        Self { walker, sensor, photons: None, light_vertices: None, draw, excitations: Vec::new() }
     }
 
     /// With photons that are gathered.
@@ -158,10 +164,13 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         let world = self.walker.world;
         let mut first = None;
         self.walker.started = self.walker.stats.rays;
+        self.excitations.clear();
         self.walker.pending.push(path);
         while let Some(last) = self.walker.pending.len().checked_sub(1) {
             let mut path = self.walker.pending[last];
             self.walker.pending.truncate(last);
+            let excitation = self.excitation(&path);
+            let draw = excitation.as_ref().map_or(draw, |excitation| &excitation.draw);
             if path.vertices >= self.walker.transport.last_vertex() {
                 self.walker.stats.stopped += path.weight(draw);
                 continue;
@@ -241,7 +250,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
             let polarization = path.polarization.lit_by(light, path.ray.direction, &mut shone);
             let lanes = &path.throughput.scaled(weight * factor).of(shone);
             let lit = Lit { normal: None, polarization };
-            self.receive(path, &lit, &Arrived { light: id, draw, lanes, parted: path.parted });
+            self.receive(path, &lit, &Arrived { source: id, draw, lanes, parted: path.parted });
         }
     }
 
@@ -258,21 +267,19 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         let uv = object.uv(&hit.crossing, point);
         let lanes = &path.throughput.scaled(weight).of(draw.read_at(&area.radiance, uv));
         let lit = Lit { normal: Some(point.normal), polarization: path.polarization };
-        self.receive(path, &lit, &Arrived { light: id, draw, lanes, parted: path.parted });
+        self.receive(path, &lit, &Arrived { source: id, draw, lanes, parted: path.parted });
     }
 
     /// Hands light that a path has hit to the sensor.
     fn receive(&mut self, path: &Path<N, P>, lit: &Lit<P>, arrived: &Arrived<N>) {
-        let rgb = arrived.rgb(&self.walker.world.responses);
+        let excitation = self.excitation(path);
+        let met = MetLight::new(self.walker.world, arrived, excitation.as_deref());
+        let rgb = met.rgb;
         let Lit { normal, polarization } = *lit;
-        let moved = polarization.moved_of_met(&MetLight { world: self.walker.world, arrived, rgb });
-        let (light, found) = (Some(arrived.light), Found::Hit { normal, scattered: path.scatter.is_some() });
+        let moved = polarization.moved_of_met(&met);
+        let (light, found) = (Some(arrived.source), Found::Hit { normal, scattered: path.scatter.is_some() });
         let Path { bounces, parted: dispersed, first, .. } = *path;
-        self.sensor.receive(
-            Contribution { light, found, rgb, moved, first, bounces, dispersed },
-            arrived,
-            &polarization,
-        );
+        self.sensor.receive(Contribution { light, found, rgb, moved, first, bounces, dispersed }, &met, &polarization);
     }
 
     /// Samples the lights where a surface scatters widely, and lets the path go on: its ways on become pending.
@@ -300,6 +307,43 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
             // Light vertices leave out what photons bring here.
             return self.gather_photons(path, &at, sampler);
         }
+        match self.excite(path, &at, sampler) {
+            0.0 => {}
+            1.0 => self.scatter_at(path, &at, sampler, onward),
+            factor => {
+                let throughput = path.throughput.scaled(factor);
+                self.scatter_at(&Path { throughput, ..*path }, &at, sampler, onward);
+            }
+        }
+    }
+
+    /// The dye that a path's light excites, if the path has seen one.
+    #[inline]
+    fn excitation(&self, path: &Path<N, P>) -> Option<Rc<Excitation<N, P>>> {
+        path.excitation.map(|number| self.excitations[number as usize].clone())
+    }
+
+    /// Follows what excites the dyes of a surface, and answers the factor on what the surface scatters by itself.
+    #[inline]
+    fn excite(&mut self, path: &Path<N, P>, at: &Interaction<N>, sampler: &Sampler) -> f64 {
+        let world = self.walker.world;
+        let Some(dyes) = world.dyes.as_ref().filter(|dyes| !dyes.of(&world.scene, at.object).is_empty()) else {
+            return 1.0;
+        };
+        let (all, seen) = (self.walker.follows_all(path, at.arrival.draw), self.excitation(path));
+        let ways = Exciting { world, dyes, path, at, all, seen: seen.as_deref() }.ways(sampler);
+        for (way, excitation) in ways.of_dyes {
+            let excitation = Rc::new(excitation);
+            let path = Path { excitation: Some(self.excitations.len() as u32), ..way };
+            self.excitations.push(excitation.clone());
+            self.scatter_at(&path, &at.of_dye(&dyes.white, &excitation.draw), sampler, None);
+        }
+        ways.scattered
+    }
+
+    /// Samples the lights where a surface scatters widely, and lets the path go on.
+    fn scatter_at(&mut self, path: &Path<N, P>, at: &Interaction<N>, sampler: &Sampler, onward: Option<&Onward<N, P>>) {
+        let (world, draw) = (self.walker.world, at.arrival.draw);
         let material = at.material;
         let goes_on = !at.lobes.is_diffuse() || path.diffuse_left > 0;
         let bright = world.bright.as_ref().filter(|_| may_aim(material));
@@ -310,8 +354,10 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
             u = if spread { sampler.four(path.key, SCATTER) } else { sampler.four_plain(path.key, SCATTER) };
             let all_lights = world.samples_all_lights(|| path.weight(draw));
             let last_occluder = &self.walker.last_occluder;
-            let (at, aiming) = (&at, aiming.as_ref());
-            let lighting = DirectLighting { world, path, at, goes_on, all_lights, last_occluder, u, aiming };
+            let (aiming, excitation) = (aiming.as_ref(), self.excitation(path));
+            let excitation = excitation.as_deref();
+            let lighting =
+                DirectLighting { world, path, at, excitation, goes_on, all_lights, last_occluder, u, aiming };
             let chance = lighting.gather(sampler, &mut self.sensor);
             if goes_on && path.kind != PathKind::Camera {
                 self.gather_photons(path, at, sampler);
@@ -325,15 +371,15 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         }
         self.walker.branches.clear();
         match &aiming {
-            Some(aiming) => scatter_aimed(aiming, &at, [u[2], u[3]], &mut self.walker.branches),
+            Some(aiming) => scatter_aimed(aiming, at, [u[2], u[3]], &mut self.walker.branches),
             None => shading::scatter(material, &at.arrival, at.flat, [u[2], u[3]], &mut self.walker.branches),
         }
-        self.walker.polarize(path, &at);
-        self.walker.account(path, &at, onward.map(|onward| &onward.straight));
+        self.walker.polarize(path, at);
+        self.walker.account(path, at, onward.map(|onward| &onward.straight));
         if !goes_on {
             self.walker.keep_single();
         }
-        let mut departure = Departure::new(world, path, &at).with(scatter.as_ref(), onward);
+        let mut departure = Departure::new(world, path, at).with(scatter.as_ref(), onward);
         self.walker.follow(&mut departure, sampler);
     }
 
@@ -372,12 +418,14 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
     fn gather_photons(&mut self, path: &Path<N, P>, at: &Interaction<N>, sampler: &Sampler) {
         if let Some(photons) = self.photons.filter(|_| path.among == Among::All) {
             let apart = self.sensor.layers.is_some() && self.walker.world.layers.tell_photons_apart();
-            let within = |kernel, apart| gather(photons, kernel, self.walker.world, path, at, sampler, apart);
+            let excitation = self.excitation(path);
+            let around = Gathering { world: self.walker.world, path, at, excitation: excitation.as_deref() };
+            let within = |kernel, apart| gather(photons, kernel, &around, sampler, apart);
             let gathered = within(&photons.kernel, apart);
             if let Some(half) = &photons.half {
                 self.sensor.blur_by(gathered.all.rgb, within(half, false).all.rgb);
             }
-            self.sensor.receive_gathered(&gathered, at.arrival.draw);
+            self.sensor.receive_gathered(&gathered, excitation.as_ref().map_or(at.arrival.draw, |dye| &dye.seen_by));
         }
         if let Some(observer) = self.sensor.observer {
             observer.reach(at.point.position);

@@ -5,11 +5,12 @@ use std::sync::Arc;
 
 use super::World;
 use super::arrived::Arrived;
+use super::dyes::Dyes;
 use super::first_lobe::FirstLobe;
 use super::interaction::{Interaction, parts};
 use super::media::Media;
 use super::path::{Path, PathKind};
-use super::polarization::Polarization;
+use super::polarization::{Polarization, SeenPhoton};
 use super::polarized::Polarized;
 use super::shading;
 use super::straight::{Passage, Past};
@@ -17,7 +18,7 @@ use super::walker::{Departure, Walker};
 use crate::light::{LeSample, LightId};
 use crate::material::{Arrival, Branch, Material, Scatter};
 use crate::math::{DVec2, DVec3, Frame, Ray, Sampler, cosine_hemisphere, unit};
-use crate::scene::{Ends, FilmSettings, Sight};
+use crate::scene::{Ends, FilmSettings, Seen, Sight};
 use crate::spectrum::{Draw, Lanes};
 
 /// Use of the random numbers where a photon is seen: the point of the lens.
@@ -234,6 +235,22 @@ fn send_forward<const N: usize>(arrival: &Arrival<N>, branches: &mut [Branch<N>]
     }
 }
 
+/// How the camera sees the place where a photon has landed.
+struct View<'v, 'a, const N: usize, P> {
+    walker: &'v Walker<'a, N, P>,
+    landing: &'v Landing<'v, N, P>,
+    sampler: &'v Sampler,
+    seen: Seen,
+    /// Where on the film, near enough to the window.
+    places: Vec<DVec2>,
+    /// Whether the camera is on the side where the photon has arrived; the surface as it sees it, and its own unit
+    /// normal there.
+    same: bool,
+    viewed: Arrival<'v, N>,
+    side: DVec3,
+    sight: Sight,
+}
+
 /// Adds what the camera sees of a photon.
 pub(super) fn show<const N: usize, P: Polarization<N>>(
     walker: &Walker<N, P>,
@@ -241,59 +258,148 @@ pub(super) fn show<const N: usize, P: Polarization<N>>(
     sampler: &Sampler,
     splats: &mut Vec<Splat>,
 ) {
-    let Landing { path, at, light, factor, early } = landing;
-    let Interaction { arrival, flat, point, material, .. } = at;
-    let world = walker.world;
-    let (camera, film) = (&world.scene.camera, world.scene.film);
-    let sight = world.sight(at.object);
-    if matches!(sight, Sight::Hidden | Sight::Holdout) {
-        return;
+    let Some(view) = View::new(walker, landing, sampler) else { return };
+    view.spread(view.scattered(), splats);
+    if let Some(dyes) = &walker.world.dyes {
+        for (number, dye) in dyes.of(&walker.world.scene, landing.at.object).enumerate() {
+            view.spread(view.shone_by(dyes, dye, number), splats);
+        }
     }
-    let u = if camera.has_lens() { sampler.four_plain(path.key, LENS) } else { [0.5; 4] };
-    let Some(seen) = camera.see(point.position, [u[0], u[1]]) else { return };
-    let (window, reach) = (film.window(), film.filter.reach());
-    let mut places = camera.places(seen.film, reach + f64::from(film.overscan.widest()));
-    let [first, end] = window.ends().map(|place| place.map(|x| x as f64));
-    let near = |x: f64, axis: usize| x >= first[axis] - reach && x <= end[axis] + reach;
-    places.retain(|place| near(place.x, 0) && near(place.y, 1));
-    if places.is_empty() {
-        return;
+}
+
+impl<'v, 'a, const N: usize, P: Polarization<N>> View<'v, 'a, N, P> {
+    /// None where the camera does not see the place.
+    fn new(walker: &'v Walker<'a, N, P>, landing: &'v Landing<'v, N, P>, sampler: &'v Sampler) -> Option<Self> {
+        let Landing { path, at, .. } = landing;
+        let Interaction { arrival, flat, point, .. } = at;
+        let world = walker.world;
+        let (camera, film) = (&world.scene.camera, world.scene.film);
+        let sight = world.sight(at.object);
+        if matches!(sight, Sight::Hidden | Sight::Holdout) {
+            return None;
+        }
+        let u = if camera.has_lens() { sampler.four_plain(path.key, LENS) } else { [0.5; 4] };
+        let seen = camera.see(point.position, [u[0], u[1]])?;
+        let (window, reach) = (film.window(), film.filter.reach());
+        let mut places = camera.places(seen.film, reach + f64::from(film.overscan.widest()));
+        let [first, end] = window.ends().map(|place| place.map(|x| x as f64));
+        let near = |x: f64, axis: usize| x >= first[axis] - reach && x <= end[axis] + reach;
+        places.retain(|place| near(place.x, 0) && near(place.y, 1));
+        if places.is_empty() {
+            return None;
+        }
+        let same = seen.direction.dot(*flat) > 0.0;
+        let [side, normal] = shading::normals(point, seen.direction);
+        let turned = Arrival { wo: seen.direction, normal, ..*arrival };
+        let viewed = if same { turned } else { turned.turned_around() };
+        Some(Self { walker, landing, sampler, seen, places, same, viewed, side, sight })
     }
-    // The surface as the camera sees it.
-    let same = seen.direction.dot(*flat) > 0.0;
-    let [side, normal] = shading::normals(point, seen.direction);
-    let turned = Arrival { wo: seen.direction, normal, ..*arrival };
-    let viewed = if same { turned } else { turned.turned_around() };
-    let Some((mut bsdf_cos, _)) = shading::evaluate(material, &viewed, side, arrival.wo) else { return };
-    let parted = path.parted || (!same && parts(at.lobes, material, &viewed));
-    let cosines = seen.direction.dot(*flat).abs() / arrival.wo.dot(*flat).abs();
-    let ray = point.leave(seen.direction);
-    let distance = (seen.start - ray.origin).length();
-    let inside = at.boundary.sides()[usize::from(!same)];
-    let ends = Ends { left: path.left, ..Ends::default() };
-    let passage = Passage { ray: &ray, distance, ends, inside, past: Past::Seen, last_occluder: &walker.last_occluder };
-    let start = || path.polarization.shown(at, seen.direction, &mut bsdf_cos);
-    let shone = passage.arriving(world, arrival.draw, start, || landing.shone(world));
-    let Some((shone, on_its_way)) = shone else { return };
-    let back = Ray { origin: seen.start, direction: -seen.direction };
-    let polarized = path.polarization.seen(at, &viewed, on_its_way, world, &back);
-    let arriving = polarized.factor.map_or(bsdf_cos * shone, |factor| bsdf_cos * shone * factor);
-    let lanes = &path.throughput.scaled(1.0 / path.eta_scale).of(arriving);
-    let arrived = Arrived { light: *light, draw: arrival.draw, lanes, parted };
-    let filtered = camera.filter().map_or(1.0, |filter| filter.transmittance());
-    let factor = factor * cosines * seen.importance * filtered;
-    let rgb = arrived.rgb(&world.responses).map(|x| x * factor);
-    let spectrum = world.layers.spectrum.as_ref();
-    let bands = spectrum.map(|spectrum| spectrum.of(&arrived, factor).into_iter().map(|x| x as f32).collect());
-    let color = |part: Lanes<N>| arrived.times(part, &world.responses).map(|x| x * factor);
-    let stokes = polarized.stokes.map(|stokes| Arc::new(stokes.map(color)));
-    let change = polarized.change;
-    let reflected = || FirstLobe::reflected(world.layers.white.as_ref(), material, at.lobes, &viewed, arrival.wo);
-    let lobe = || if same { reflected() } else { FirstLobe::Transmitted };
-    let first = world.layers.tell_lobes_apart().then(lobe);
-    let (light, dispersed, early, caught) = (*light, parted, *early, sight == Sight::ShadowCatcher);
-    let splat = Splat { pixel: 0, change, rgb, stokes, bands, weight: 1.0, light, dispersed, early, caught, first };
-    places.into_iter().for_each(|place| spread_over_pixels(film, place, &splat, splats));
+
+    /// What of light reaches the camera that leaves the place toward it, and how it is polarized on its way.
+    fn arriving(
+        &self,
+        draw: &Draw<N>,
+        start: impl FnOnce() -> P,
+        light: impl FnOnce() -> Lanes<N>,
+    ) -> Option<(Lanes<N>, P)> {
+        let Landing { path, at, .. } = self.landing;
+        let ray = at.point.leave(self.seen.direction);
+        let distance = (self.seen.start - ray.origin).length();
+        let inside = at.boundary.sides()[usize::from(!self.same)];
+        let ends = Ends { left: path.left, ..Ends::default() };
+        let last_occluder = &self.walker.last_occluder;
+        let passage = Passage { ray: &ray, distance, ends, inside, past: Past::Seen, last_occluder };
+        passage.arriving(self.walker.world, draw, start, light)
+    }
+
+    /// The ray of the camera that sees the place.
+    fn back(&self) -> Ray {
+        Ray { origin: self.seen.start, direction: -self.seen.direction }
+    }
+
+    /// What the pixels get of light that leaves the place toward the camera.
+    fn factor(&self) -> f64 {
+        let Interaction { arrival, flat, .. } = self.landing.at;
+        let cosines = self.seen.direction.dot(*flat).abs() / arrival.wo.dot(*flat).abs();
+        let filter = self.walker.world.scene.camera.filter();
+        self.landing.factor * cosines * self.seen.importance * filter.map_or(1.0, |filter| filter.transmittance())
+    }
+
+    /// What the surface scatters toward the camera.
+    fn scattered(&self) -> Option<Splat> {
+        let Self { landing, viewed, side, same, .. } = self;
+        let Landing { path, at, light, .. } = landing;
+        let Interaction { arrival, material, .. } = at;
+        let world = self.walker.world;
+        let (mut bsdf_cos, _) = shading::evaluate(material, viewed, *side, arrival.wo)?;
+        let parted = path.parted || (!same && parts(at.lobes, material, viewed));
+        let start = || path.polarization.shown(at, self.seen.direction, &mut bsdf_cos);
+        let (shone, on_its_way) = self.arriving(arrival.draw, start, || landing.shone(world))?;
+        let polarized = path.polarization.seen(at, viewed, on_its_way, world, &self.back());
+        let arriving = polarized.factor.map_or(bsdf_cos * shone, |factor| bsdf_cos * shone * factor);
+        let lanes = &path.throughput.scaled(1.0 / path.eta_scale).of(arriving);
+        let reflected = || FirstLobe::reflected(world.layers.white.as_ref(), material, at.lobes, viewed, arrival.wo);
+        let lobe = || if *same { reflected() } else { FirstLobe::Transmitted };
+        let first = world.layers.tell_lobes_apart().then(lobe);
+        let arrived = Arrived { source: *light, draw: arrival.draw, lanes, parted };
+        Some(self.splat(&arrived, &polarized, parted, first))
+    }
+
+    /// What a dye, one of its material by a number, shines toward the camera.
+    fn shone_by(&self, dyes: &Dyes, dye: usize, number: usize) -> Option<Splat> {
+        let Self { landing, viewed, side, .. } = self;
+        let Landing { path, at, light, .. } = landing;
+        let world = self.walker.world;
+        if !self.same {
+            return None;
+        }
+        let (bsdf_cos, _) = shading::evaluate(&dyes.white, viewed, *side, at.arrival.wo)?;
+        let lanes = &path.throughput.scaled(1.0 / path.eta_scale).of(bsdf_cos * landing.shone(world));
+        let parted = path.parted;
+        let brightness = dyes.excited(dye, &Arrived { source: *light, draw: at.arrival.draw, lanes, parted });
+        // Its light is of other wavelengths than that of the photon, whose lanes may have parted.
+        let draw = &world.method.basis.draw(self.sampler.four_plain(path.key.child(DYE + dye), LENS)[0]);
+        let mut shares = Vec::new();
+        at.material.shares_of_dyes(&Arrival { draw, ..*viewed }, Lanes::ONE, &mut shares);
+        let at = &at.of_dye(&dyes.white, draw);
+        let polarization = path.polarization.exciting();
+        let mut unpolarized = Lanes::ONE;
+        let start = || polarization.shown(at, self.seen.direction, &mut unpolarized);
+        let (arriving, on_its_way) = self.arriving(draw, start, || draw.start())?;
+        let polarized = polarization.seen(at, viewed, on_its_way, world, &self.back());
+        let arriving =
+            polarized.factor.map_or(arriving, |factor| arriving * factor) * shares[number] * brightness as f32;
+        let arrived = Arrived { source: dyes.source(dye), draw, lanes: &arriving, parted: false };
+        let first = world.layers.tell_lobes_apart().then_some(FirstLobe::Reflected { diffuse: [1.0; 3] });
+        Some(self.splat(&arrived, &polarized, parted, first))
+    }
+
+    /// Of light that arrives at the camera.
+    fn splat(
+        &self,
+        arrived: &Arrived<N>,
+        polarized: &SeenPhoton<N>,
+        dispersed: bool,
+        first: Option<FirstLobe>,
+    ) -> Splat {
+        let (world, factor) = (self.walker.world, self.factor());
+        let rgb = arrived.rgb(&world.responses).map(|x| x * factor);
+        let spectrum = world.layers.spectrum.as_ref();
+        let bands = spectrum.map(|spectrum| spectrum.of(arrived, factor).into_iter().map(|x| x as f32).collect());
+        let color = |part: Lanes<N>| arrived.times(part, &world.responses).map(|x| x * factor);
+        let stokes = polarized.stokes.map(|stokes| Arc::new(stokes.map(color)));
+        let Landing { light, early, .. } = *self.landing;
+        let (change, caught) = (polarized.change, self.sight == Sight::ShadowCatcher);
+        Splat { pixel: 0, change, rgb, stokes, bands, weight: 1.0, light, dispersed, early, caught, first }
+    }
+
+    /// Adds a splat to all pixels that it reaches.
+    fn spread(&self, splat: Option<Splat>, splats: &mut Vec<Splat>) {
+        let film = self.walker.world.scene.film;
+        if let Some(splat) = splat {
+            self.places.iter().for_each(|&place| spread_over_pixels(film, place, &splat, splats));
+        }
+    }
 }
 
 /// Spreads a splat over the pixels around a place of the film, as the filter weighs them.
@@ -322,5 +428,7 @@ fn spread_over_pixels(film: FilmSettings, place: DVec2, splat: &Splat, splats: &
 
 /// The branch of what passes holes, beyond those that a material may have.
 const BEYOND: usize = 64;
+/// Those of the light of dyes.
+const DYE: usize = 160;
 /// Use of the random numbers where a photon leaves a surface.
 const SCATTER: u32 = 4;

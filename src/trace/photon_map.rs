@@ -53,7 +53,9 @@ pub(super) struct Together<const N: usize> {
 pub(super) struct Alone {
     pub(super) wavelength: Wavelength,
     pub(super) light: LightId,
-    /// The film's color of its flux over the cosine under which it arrived.
+    /// Its flux over the cosine under which it arrived ..
+    pub(super) weight: f64,
+    /// .. and the film's color of that.
     pub(super) color: [f64; 3],
 }
 
@@ -97,9 +99,7 @@ pub(super) fn photons<const N: usize, P: Polarization<N>>(world: &World, pass: &
                 Kept::Together(photon) if photon.carries.flux.0.iter().all(|x| x.is_finite()) => {
                     together.push((place, photon));
                 }
-                Kept::Alone(photon) if photon.carries.color.iter().all(|x| x.is_finite()) => {
-                    alone.push((place, photon))
-                }
+                Kept::Alone(photon) if photon.carries.weight.is_finite() => alone.push((place, photon)),
                 _ => stats.non_finite += 1,
             }
         }
@@ -140,10 +140,11 @@ fn keep<const N: usize, P: Polarization<N>>(
         carries: (),
     };
     let response = &world.responses[*light];
-    let by_heroes = Matching::<N>::alone(arrival.draw, response, flux, path.parted, |lane, wavelength, color| {
+    let by_heroes = Matching::<N>::alone(arrival.draw, flux, path.parted, |lane, wavelength, weight| {
         let of_lane = |lanes: Lanes<N>| Lanes([lanes[lane]; N]);
         let polarization = P::read_landed(&photon.polarization, of_lane);
-        let carries = Alone { wavelength, light: *light, color };
+        let color = wavelength.worth(response).map(|x| weight * x);
+        let carries = Alone { wavelength, light: *light, weight, color };
         kept.push((point.position, Kept::Alone(photon.with(polarization, carries))));
     });
     if !by_heroes {

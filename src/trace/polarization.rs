@@ -4,6 +4,7 @@ use std::fmt::Debug;
 
 use super::World;
 use super::arrived::Arrived;
+use super::excitation::Excitation;
 use super::interaction::Interaction;
 use crate::light::Light;
 use crate::material::{Arrival, Branch, Material, Straight};
@@ -20,11 +21,24 @@ pub(super) struct Onward<const N: usize, P> {
 }
 
 /// Light that a path has found.
-pub(super) struct MetLight<'a, const N: usize> {
+pub(super) struct MetLight<'a, const N: usize, P> {
     pub(super) world: &'a World,
     pub(super) arrived: &'a Arrived<'a, N>,
+    /// The dye that it excites, where the path has seen one.
+    pub(super) excitation: Option<&'a Excitation<N, P>>,
     /// What the sensor gets of it.
     pub(super) rgb: [f64; 3],
+}
+
+impl<'a, const N: usize, P> MetLight<'a, N, P> {
+    #[inline]
+    pub(super) fn new(world: &'a World, arrived: &'a Arrived<'a, N>, excitation: Option<&'a Excitation<N, P>>) -> Self {
+        let rgb = match excitation {
+            None => arrived.rgb(&world.responses),
+            Some(excitation) => excitation.seen(world, arrived, |seen| seen.rgb(&world.responses)),
+        };
+        Self { world, arrived, excitation, rgb }
+    }
 }
 
 /// How the light of a photon reaches the camera.
@@ -67,10 +81,13 @@ pub(super) trait Polarization<const N: usize>: Copy + Debug + Send + Sync + 'sta
 
     /// How much of light that arrives along `wi`, `on_its_way` by `toward` and panes, polarization may change, as X + Y
     /// + Z.
-    fn moved(self, at: &Interaction<N>, wi: DVec3, on_its_way: Self, light: &MetLight<N>) -> f64;
+    fn moved(self, at: &Interaction<N>, wi: DVec3, on_its_way: Self, light: &MetLight<N, Self>) -> f64;
 
     /// The same of light that the path has met.
-    fn moved_of_met(self, light: &MetLight<N>) -> f64;
+    fn moved_of_met(self, light: &MetLight<N, Self>) -> f64;
+
+    /// Of the light that excites a dye, where the path sees one: evenly, whatever its polarization.
+    fn exciting(self) -> Self;
 
     /// Where the path meets light that comes from the unit vector `wi`, which may be polarized; makes `shone`, what the
     /// light would be that is not, what the path takes of it.

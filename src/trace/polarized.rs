@@ -105,7 +105,7 @@ impl<const N: usize> Polarization<N> for Polarized {
         Self::NOT
     }
 
-    fn moved(self, at: &Interaction<N>, wi: DVec3, on_its_way: Self, light: &MetLight<N>) -> f64 {
+    fn moved(self, at: &Interaction<N>, wi: DVec3, on_its_way: Self, light: &MetLight<N, Self>) -> f64 {
         if !self.is_any() && !light.world.has_see_through() {
             return 0.0;
         }
@@ -113,8 +113,12 @@ impl<const N: usize> Polarization<N> for Polarized {
         if change == 0.0 { 0.0 } else { change * light.world.amount(light.rgb) }
     }
 
-    fn moved_of_met(self, light: &MetLight<N>) -> f64 {
+    fn moved_of_met(self, light: &MetLight<N, Self>) -> f64 {
         if self.is_any() { self.change() * light.world.amount(light.rgb) } else { 0.0 }
+    }
+
+    fn exciting(self) -> Self {
+        Self { degree: 0.0, ..self }
     }
 
     #[inline(always)]

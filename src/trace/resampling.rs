@@ -79,14 +79,14 @@ impl<const N: usize, P: Polarization<N>> Resampling<'_, N, P> {
         let near_squared = self.vertices.near_squared();
         let factor = factor * cos / (squared + near_squared);
         let lanes = &self.path.throughput.scaled(factor).of(bsdf_cos * arriving);
-        let arrived = Arrived { light: vertex.light, draw: at.arrival.draw, lanes, parted: self.path.parted };
-        let rgb = arrived.rgb(&world.responses);
-        let met = MetLight { world, arrived: &arrived, rgb };
+        let arrived = Arrived { source: vertex.light, draw: at.arrival.draw, lanes, parted: self.path.parted };
+        let met = MetLight::new(world, &arrived, None);
+        let rgb = met.rgb;
         let moved = self.path.polarization.moved(at, direction, on_its_way, &met);
         let (bounces, dispersed) = (self.path.bounces + 1 + vertex.vertices, self.path.parted);
         let first = at.first_lobe(world, self.path.lobe(), direction, false);
         let (light, found) = (Some(vertex.light), Found::Connected);
-        sensor.receive(Contribution { light, found, rgb, moved, first, bounces, dispersed }, &arrived, &on_its_way);
+        sensor.receive(Contribution { light, found, rgb, moved, first, bounces, dispersed }, &met, &on_its_way);
         Some(())
     }
 }

@@ -195,13 +195,17 @@ impl<const N: usize> Rows<N> {
     }
 
     /// By how much polarization changes light that is compared.
-    fn compared(&self, light: &MetLight<N>) -> f64 {
+    fn compared(&self, light: &MetLight<N, Self>) -> f64 {
         if !self.compares {
             return 0.0;
         }
-        let MetLight { world, arrived, rgb } = *light;
+        let MetLight { world, arrived, rgb, .. } = *light;
         let lanes = &(*arrived.lanes * self.rows[0][0]);
-        let exact = Arrived { lanes, ..*arrived }.rgb(&world.responses);
+        let exact = Arrived { lanes, ..*arrived };
+        let exact = match light.excitation {
+            None => exact.rgb(&world.responses),
+            Some(dye) => dye.seen(world, &exact, |seen| seen.times(dye.polarization.rows[0][0], &world.responses)),
+        };
         world.amount(exact) - world.amount(rgb)
     }
 }
@@ -262,12 +266,16 @@ impl<const N: usize> Polarization<N> for Rows<N> {
         after
     }
 
-    fn moved(self, _: &Interaction<N>, _: DVec3, on_its_way: Self, light: &MetLight<N>) -> f64 {
+    fn moved(self, _: &Interaction<N>, _: DVec3, on_its_way: Self, light: &MetLight<N, Self>) -> f64 {
         on_its_way.compared(light)
     }
 
-    fn moved_of_met(self, light: &MetLight<N>) -> f64 {
+    fn moved_of_met(self, light: &MetLight<N, Self>) -> f64 {
         self.compared(light)
+    }
+
+    fn exciting(self) -> Self {
+        Self::starting(self.x, 1, self.compares)
     }
 
     fn lit_by(self, light: &Light<Table>, wi: DVec3, shone: &mut Lanes<N>) -> Self {

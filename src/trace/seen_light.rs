@@ -76,8 +76,8 @@ pub(super) enum By {
     Photon,
 }
 
-/// Hands over the light of samples all over the view, and of photons in proportion: the pixel, counted from the window's
-/// corner, X + Y + Z, and by how much polarization changes it.
+/// Hands over the light of samples all over the view, and of photons in proportion: the pixel, counted from the
+/// window's corner, X + Y + Z, and by how much polarization changes it.
 pub(super) fn for_each_light<const N: usize, P: Polarization<N>>(
     world: &World,
     take: &mut impl FnMut([u32; 2], f64, f64, By),

@@ -1,11 +1,10 @@
 //! Where the light of camera samples arrives.
 
 use super::World;
-use super::arrived::Arrived;
 use super::contribution::{Contribution, add};
 use super::gather::Gathered;
 use super::layer_sample::LayerSample;
-use super::polarization::Polarization;
+use super::polarization::{MetLight, Polarization};
 use super::stats::Stats;
 use crate::math::DVec3;
 use crate::spectrum::Draw;
@@ -58,11 +57,18 @@ impl<const N: usize> Sensor<'_, N> {
     pub(super) fn receive<P: Polarization<N>>(
         &mut self,
         contribution: Contribution,
-        arrived: &Arrived<N>,
+        light: &MetLight<N, P>,
         polarization: &P,
     ) {
         if let Some(layers) = &mut self.layers {
-            layers.receive(&contribution, arrived, polarization.stokes());
+            let MetLight { world, arrived, excitation, .. } = *light;
+            match excitation {
+                None => layers.receive(&contribution, arrived, polarization.stokes()),
+                Some(dye) => {
+                    let stokes = dye.polarization.stokes();
+                    dye.seen(world, arrived, |seen| layers.receive(&contribution, seen, stokes));
+                }
+            }
         }
         self.receive_all(&contribution);
     }

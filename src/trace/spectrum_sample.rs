@@ -2,8 +2,7 @@
 //!
 //! Lanes are summed over all samples of a pixel, and are spread over the bands once for all of them.
 
-use super::arrived::Arrived;
-use crate::light::LightId;
+use super::arrived::{Arrived, SourceId};
 use crate::scene::Scene;
 use crate::spectrum::visible::{EFFICACY, luminous};
 use crate::spectrum::{BandResponse, Basis, Curve, Distinct, Lanes, WavelengthBands};
@@ -16,7 +15,7 @@ pub(super) struct Spectrum {
     pub(super) at: usize,
     /// The spectral radiance that a 1 of the sums is: 1, or in W m^-2 sr^-1 nm^-1 where the scene's light is absolute.
     pub(super) unit: f64,
-    /// Of each light, which of the responses it has.
+    /// Of each source of light, which of the responses it has.
     response_of: Vec<usize>,
     responses: Vec<BandResponse>,
 }
@@ -26,8 +25,9 @@ impl Spectrum {
     pub(super) fn new(scene: &Scene<Curve>, basis: &Basis, bands: WavelengthBands, at: usize) -> Option<Self> {
         let (mut distinct, mut responses) = (Distinct::default(), Vec::new());
         let mut response_of = Vec::new();
-        for light in &scene.lights {
-            response_of.push(distinct.of(light.emission(), |curve| {
+        let dyes = scene.materials.iter().flat_map(|named| named.material.dyes());
+        for source in scene.lights.iter().map(|light| light.emission()).chain(dyes.map(|dye| &dye.emission)) {
+            response_of.push(distinct.of(source, |curve| {
                 responses.push(basis.band_response(curve, bands));
                 responses.len() - 1
             }));
@@ -38,15 +38,15 @@ impl Spectrum {
         Some(Self { bands, at, unit, response_of, responses })
     }
 
-    /// What a light's lanes are to the bands.
-    pub(super) fn response(&self, light: LightId) -> &BandResponse {
-        &self.responses[self.response_of[light]]
+    /// What a source's lanes are to the bands.
+    pub(super) fn response(&self, source: SourceId) -> &BandResponse {
+        &self.responses[self.response_of[source]]
     }
 
     /// Light in all bands.
     pub(super) fn of<const N: usize>(&self, arrived: &Arrived<N>, factor: f64) -> Vec<f64> {
-        let Arrived { light, draw, lanes, parted } = *arrived;
-        let (response, mut bands) = (self.response(light), vec![0.0; self.bands.count()]);
+        let Arrived { source, draw, lanes, parted } = *arrived;
+        let (response, mut bands) = (self.response(source), vec![0.0; self.bands.count()]);
         if !response.heroes(draw, lanes, parted, |band, light| bands[band] += factor * light) {
             response.add_fixed(&lanes.0.map(|lane| factor * f64::from(lane)), &mut bands);
         }
@@ -88,10 +88,10 @@ impl<'a, const N: usize> SpectrumSample<'a, N> {
     /// Receives light, times a factor.
     pub(super) fn receive(&mut self, arrived: &Arrived<N>, factor: f64) {
         let Self { spectrum, together, alone, .. } = self;
-        let Arrived { light, draw, lanes, parted } = *arrived;
+        let Arrived { source, draw, lanes, parted } = *arrived;
         let found = |band, light| alone.push((band, factor * light));
-        if !spectrum.response(light).heroes(draw, lanes, parted, found) {
-            together.push((spectrum.response_of[light], *lanes, factor));
+        if !spectrum.response(source).heroes(draw, lanes, parted, found) {
+            together.push((spectrum.response_of[source], *lanes, factor));
         }
     }
 
@@ -100,9 +100,9 @@ impl<'a, const N: usize> SpectrumSample<'a, N> {
         self.alone.extend(found);
     }
 
-    /// What a light's lanes are to the bands.
-    pub(super) fn response(&self, light: LightId) -> &'a BandResponse {
-        self.spectrum.response(light)
+    /// What a source's lanes are to the bands.
+    pub(super) fn response(&self, source: SourceId) -> &'a BandResponse {
+        self.spectrum.response(source)
     }
 
     /// Keeps what the sample, which is added or subtracted, has received.

@@ -145,14 +145,21 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
                     }
                 }
             }
-            Transport::Random { split, roulette } => {
-                let draw = departure.at.arrival.draw;
-                if self.branches.len() > 1 && (path.vertices >= LONG || path.weight(draw) <= split) {
+            Transport::Random { roulette, .. } => {
+                if self.branches.len() > 1 && !self.follows_all(path, departure.at.arrival.draw) {
                     self.choose(departure, sampler, roulette)
                 } else {
                     self.follow_many(departure, sampler, roulette)
                 }
             }
+        }
+    }
+
+    /// Whether a path of several ways on follows all of them, or one.
+    pub(super) fn follows_all(&self, path: &Path<N, P>, draw: &Draw<N>) -> bool {
+        match self.rule() {
+            Transport::Deterministic { .. } => true,
+            Transport::Random { split, .. } => path.vertices < LONG && path.weight(draw) > split,
         }
     }
 
@@ -272,6 +279,7 @@ impl<'a, const N: usize, P: Polarization<N>> Departure<'a, N, P> {
             bounces: path.bounces + 1,
             is_seen: path.is_seen && !wide && !at.lobes.is_wide(),
             among: path.among,
+            excitation: path.excitation,
             first: match path.bounces {
                 0 if !wide && !crosses && world.layers.tell_lobes_apart() => Some(FirstLobe::Specular),
                 _ => at.first_lobe(world, path.lobe(), branch.wi, crosses),

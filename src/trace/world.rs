@@ -1,4 +1,5 @@
 use super::bright::{Bright, BrightPlaces};
+use super::dyes::Dyes;
 use super::layers::Layers;
 use super::media::{Media, media_of_lights};
 use super::photon_targets::PhotonTargets;
@@ -20,7 +21,9 @@ pub struct World {
     pub(super) layers: Layers,
     /// X + Y + Z of each film channel.
     xyz_of_channel: [f64; 3],
-    /// What each light's lanes are worth to the sensor.
+    /// The dyes that light excites, if there are any.
+    pub(super) dyes: Option<Dyes>,
+    /// What the lanes of each light, and behind those of each dye, are worth to the sensor.
     pub(super) responses: Vec<Response>,
     /// Lights that next-event estimation samples.
     pub(super) sampled_lights: Vec<LightId>,
@@ -47,10 +50,11 @@ pub struct World {
 
 impl World {
     /// The scene, tabulated for the method. Nothing is learned of it: see [`prepare`](super::prepare).
-    pub fn new(scene: &Scene<Curve>, method: Method) -> Self {
+    pub fn new(scene: &Scene<Curve>, mut method: Method) -> Self {
+        let (dyes, of_dyes) = Dyes::new(scene, &mut method.basis).unzip();
         let (mut tables, mut responses) = (Distinct::default(), Distinct::default());
         let response = |light: &Light<Curve>| responses.of(light.emission(), |curve| method.basis.response(curve));
-        let responses = scene.lights.iter().map(response).collect();
+        let responses = scene.lights.iter().map(response).chain(of_dyes.into_iter().flatten()).collect();
         let to_xyz = scene.film.color_space.to_xyz();
         let xyz_of_channel = [0, 1, 2].map(|channel| to_xyz.iter().map(|row| row[channel]).sum());
         let layers = Layers::new(scene, &method.basis);
@@ -70,6 +74,7 @@ impl World {
         let mut world = Self {
             layers,
             xyz_of_channel,
+            dyes,
             responses,
             sampled_lights,
             light_sampler,
@@ -139,12 +144,14 @@ impl World {
         world
     }
 
-    /// CIE Y of what a light shines.
+    /// CIE Y of what a light shines, or of what dyes shine that it excites, if that is more.
     pub(super) fn luminance(&self, light: LightId) -> f64 {
         let draw = Draw::<MAX_LANES>::fixed(self.method.basis.fixed_lanes());
         let emission = draw.read(self.scene.lights[light].emission());
-        let rgb = self.responses[light].sensor(&draw, emission, false);
-        apply(&self.scene.film.color_space.to_xyz(), rgb)[1]
+        let to_xyz = self.scene.film.color_space.to_xyz();
+        let of = |source: usize, lanes| apply(&to_xyz, self.responses[source].sensor(&draw, lanes, false))[1];
+        let excited = self.dyes.as_ref().map_or(0.0, |dyes| dyes.most_excited(light, &draw, emission, of));
+        of(light, emission).max(excited)
     }
 
     /// Aims the photons of the light pass.
@@ -177,6 +184,11 @@ impl World {
     /// How it is rendered.
     pub fn method(&self) -> &Method {
         &self.method
+    }
+
+    /// Whether any surface fluoresces.
+    pub fn fluoresces(&self) -> bool {
+        self.dyes.is_some()
     }
 
     /// Whether any object lets light straight on.

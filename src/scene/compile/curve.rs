@@ -46,6 +46,18 @@ pub(super) fn curve<'d>(context: &mut Context, text: &CurveText<'d>, quantity: Q
     }
 }
 
+/// Whether a quantity that is no color may be written like this: a length is no spectrum, and what a dye does is known
+/// by wavelength.
+fn is_fit(kind: &KindText, quantity: Quantity) -> bool {
+    let is_measured = matches!(kind, KindText::Samples(_) | KindText::File(_));
+    match quantity {
+        Quantity::Thickness => matches!(kind, KindText::Number(_)),
+        Quantity::Excitation => is_measured || matches!(kind, KindText::Number(_)),
+        Quantity::Fluorescence => is_measured,
+        _ => true,
+    }
+}
+
 /// Tells that a quantity cannot be written like this.
 fn unfit<T>(text: &CurveText, quantity: Quantity) -> Option<T> {
     let key = || format!("`{}`", text.place.key());
@@ -63,6 +75,7 @@ fn even(quantity: Quantity) -> &'static str {
     match quantity {
         Quantity::Emission => "only a surface can show it: give an object an `emissive` material",
         Quantity::Index | Quantity::Absorption => "it belongs to the whole body, not to places on its surface",
+        Quantity::Excitation | Quantity::Fluorescence => "a dye is the same all over: `mix` it with what has none",
         _ => "a metal is the same all over: give its parts materials of their own",
     }
 }
@@ -76,6 +89,9 @@ fn forms(quantity: Quantity) -> &'static str {
         Quantity::Thickness | Quantity::Wavelength | Quantity::BandWidth => {
             "write a number of nm, or an image of grays and the nm of its white: { image = \"thickness.png\", scale = 600 }"
         }
+        Quantity::Excitation | Quantity::Fluorescence => {
+            "write { samples = [[nm, value], ..] } or { file = \"dye.csv\" }"
+        }
         Quantity::Reflectance | Quantity::Transmittance | Quantity::Share | Quantity::Absorption => {
             "write a number, { rgb = [red, green, blue] } or { samples = [[nm, value], ..] }"
         }
@@ -86,8 +102,7 @@ fn forms(quantity: Quantity) -> &'static str {
 fn kind<'d>(context: &mut Context, text: &CurveText<'d>, quantity: Quantity) -> Option<CurveKind> {
     let (place, is_index, shines) = (text.place, quantity == Quantity::Index, quantity == Quantity::Emission);
     match &text.kind {
-        // A length is no spectrum.
-        kind if quantity == Quantity::Thickness && !matches!(kind, KindText::Number(_)) => unfit(text, quantity),
+        kind if !is_fit(kind, quantity) => unfit(text, quantity),
         KindText::Number(number) => {
             told(place, possible(quantity, number * text.scale.it, ""))?;
             Some(CurveKind::Number(*number))
@@ -324,6 +339,7 @@ fn named(context: &mut Context, place: Value, name: &str, quantity: Quantity) ->
         },
         Quantity::Absorption => absorption(context, place, name),
         Quantity::Thickness | Quantity::Wavelength | Quantity::BandWidth => None,
+        Quantity::Excitation | Quantity::Fluorescence => None,
         Quantity::Reflectance | Quantity::Transmittance | Quantity::Share | Quantity::Emission => {
             match data::reflectance(name) {
                 Some(reflectance) => Some(CurveKind::Reflectance(Named::new(name, reflectance))),

@@ -66,8 +66,8 @@ pub(super) fn factor(name: &str, value: f64) -> Result<(), Refusal> {
 pub(super) fn possible(quantity: Quantity, value: f64, place: &str) -> Result<(), Refusal> {
     let name = article(quantity);
     let (least, most, is_share) = match quantity {
-        Quantity::Reflectance | Quantity::Transmittance | Quantity::Share => (0.0, 1.0, true),
-        Quantity::Emission => (0.0, MAX_EMISSION, false),
+        Quantity::Reflectance | Quantity::Transmittance | Quantity::Share | Quantity::Excitation => (0.0, 1.0, true),
+        Quantity::Emission | Quantity::Fluorescence => (0.0, MAX_EMISSION, false),
         Quantity::Index => (1.0, 10.0, false),
         Quantity::Absorption => (0.0, f64::MAX, false),
         Quantity::MetalIndex => (f64::MIN_POSITIVE, MAX_METAL, false),
@@ -131,6 +131,8 @@ pub(super) fn article(quantity: Quantity) -> &'static str {
         Quantity::MetalIndex => "a metal's index n",
         Quantity::MetalExtinction => "a metal's extinction k",
         Quantity::Thickness => "a layer's thickness",
+        Quantity::Excitation => "a dye's absorption",
+        Quantity::Fluorescence => "a dye's emission",
         Quantity::Wavelength | Quantity::BandWidth => "a lane",
     }
 }

@@ -111,6 +111,7 @@ fn example(quantity: Quantity) -> &'static str {
         Quantity::Emission => "{ illuminant = \"D65\" }",
         Quantity::Reflectance | Quantity::Transmittance | Quantity::Share => COLOR,
         Quantity::Absorption | Quantity::MetalIndex | Quantity::MetalExtinction => COLOR,
+        Quantity::Excitation | Quantity::Fluorescence => "{ samples = [[400, 0.2], [450, 0.9], [500, 0]] }",
         Quantity::Thickness | Quantity::Wavelength | Quantity::BandWidth => {
             "{ image = \"thickness.png\", scale = 600 }"
         }

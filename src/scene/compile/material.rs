@@ -7,10 +7,11 @@ use super::camera::extinction;
 use super::coating::{coating, film};
 use super::context::Context;
 use super::curve_text::CurveText;
+use super::fluorescence::{conserves, diffuse, written};
 use super::image::surface_curve;
 use super::measures::direction;
 use crate::material::{
-    Coat, Conductor, Dielectric, Diffuse, Emissive, Material, Mirror, Plastic, Polarizer, Retarder, Roughness, Thin,
+    Coat, Conductor, Dielectric, Emissive, Material, Mirror, Plastic, Polarizer, Retarder, Roughness, Thin,
 };
 use crate::scene::text::{Choice, Fields, Value};
 use crate::shape::Sides;
@@ -39,9 +40,7 @@ const MATERIAL: Choice<Reader> = Choice {
     example: "diffuse = { reflectance = 0.7 }",
     apart: "give each kind its own [material.NAME]",
     kinds: &[
-        ("diffuse", |_, fields| {
-            Some(Draft::Whole(Material::Diffuse(Diffuse { reflectance: spectrum(fields, "reflectance") })))
-        }),
+        ("diffuse", |_, fields| Some(Draft::Whole(Material::Diffuse(diffuse(fields)?)))),
         ("mirror", |_, fields| {
             Some(Draft::Whole(Material::Mirror(Mirror { reflectance: spectrum_or(fields, "reflectance", 1.0) })))
         }),
@@ -172,10 +171,17 @@ fn resolved<'d>(context: &mut Context, asking: Draft<'d, Asked<'d>>) -> Option<D
         right &= curve.is_some();
         curve.unwrap_or_else(|| 0.0.into())
     };
+    let dye = match &asking {
+        Draft::Whole(Material::Diffuse(diffuse)) => written(diffuse),
+        _ => None,
+    };
     let draft = match asking {
         Draft::Whole(material) => Draft::Whole(material.map(&mut curve)),
         Draft::Mix { parts, amount } => Draft::Mix { parts, amount: curve(Quantity::Share, &amount) },
         Draft::Mask { part, opacity } => Draft::Mask { part, opacity: curve(Quantity::Share, &opacity) },
     };
+    if let (true, Some(dye), Draft::Whole(Material::Diffuse(diffuse))) = (right, dye, &draft) {
+        conserves(diffuse, dye)?;
+    }
     right.then_some(draft)
 }

@@ -11,6 +11,7 @@ mod curve_name;
 mod curve_range;
 mod curve_text;
 mod film;
+mod fluorescence;
 mod format;
 mod image;
 mod image_file;
@@ -43,7 +44,7 @@ use self::object::Names;
 use self::place::Placed;
 use super::index::Index;
 use super::text::{Document, Fields, INCLUDE, SET, Value};
-use super::{Object, PolarizationText, RenderText, Scene};
+use super::{ModelText, NamedMaterial, Object, PolarizationText, RenderText, Scene};
 use crate::film::{Format, Layer};
 use crate::light::{Area, Light, LightId};
 use crate::material::Material;
@@ -108,7 +109,7 @@ fn scene<'d>(context: &mut Context, sections: &mut Fields<'d>) -> Option<Scene<C
     let (lights, infinite_lights, warnings, hash) = (Vec::new(), Vec::new(), Vec::new(), String::new());
     let (light_groups, hidden_lights) = (Vec::new(), Vec::new());
     let (camera, film, format, render) = (camera?, film?, format?, render?);
-    can_have_stokes(sections, &format, &render)?;
+    can_have_stokes(sections, &format, &render).and(can_fluoresce(sections, &materials, &render))?;
     let mut scene = Scene {
         camera,
         film,
@@ -142,6 +143,14 @@ fn can_have_stokes(sections: &Fields, format: &Format, render: &RenderText) -> O
     }
     let help = "leave `polarization` out of [render], or the layers S1, S2 and S3";
     sections.refuse("Stokes vectors are asked for, and polarization is off", Some(help))
+}
+
+/// Three bands have no wavelengths that a dye could absorb.
+fn can_fluoresce(sections: &Fields, materials: &[NamedMaterial<Curve>], render: &RenderText) -> Option<()> {
+    let dyed = materials.iter().find(|named| !named.material.dyes().is_empty());
+    let Some(NamedMaterial { name, .. }) = dyed.filter(|_| render.model == ModelText::Rgb) else { return Some(()) };
+    let message = format!("material {name} fluoresces, and the model \"rgb\" has no wavelengths for it");
+    sections.refuse(message, Some("leave `model` out of [render], or write { bands = 16 }"))
 }
 
 /// A section that is no list.

@@ -1,0 +1,123 @@
+//! How much color each model of a spectrum would miss of dyes.
+
+use super::survey::{Survey, Tint};
+use crate::spectrum::{Basis, Curve, Draw, Dye, Emission, Lanes, MAX_LANES, Quantity, visible};
+
+/// Most tints of each way that are combined, those farthest from gray.
+const MOST: usize = 8;
+
+/// What tints light on a way: nothing, or a surface.
+struct Ways<'a> {
+    tints: Vec<Option<&'a Tint<'a>>>,
+}
+
+impl Ways<'_> {
+    /// What is left of light at wavelengths in nm.
+    fn at(&self, wavelengths_nm: &[f64], basis: &Basis) -> Vec<Vec<f64>> {
+        self.read(wavelengths_nm.len(), |tint| tint.at(wavelengths_nm, basis))
+    }
+
+    /// The same in the lanes of a basis.
+    fn on(&self, basis: &Basis) -> Vec<Lanes<MAX_LANES>> {
+        let lanes = |left: Vec<f64>| Lanes::from_fn(|i| left.get(i).map_or(0.0, |&x| x as f32));
+        self.read(basis.fixed_lanes(), |tint| tint.on(basis)).into_iter().map(lanes).collect()
+    }
+
+    fn read(&self, count: usize, read: impl Fn(&Tint) -> Vec<f64>) -> Vec<Vec<f64>> {
+        self.tints.iter().map(|tint| tint.map_or_else(|| vec![1.0; count], &read)).collect()
+    }
+}
+
+/// The largest relative error of the color that a basis makes of a surface with a dye, seen by way of every other
+/// surface and lit by way of every other.
+pub(super) fn error(survey: &Survey, basis: &Basis) -> f64 {
+    if survey.dyes.is_empty() {
+        return 0.0;
+    }
+    let tints = survey.scattering(MOST).into_iter().chain(survey.smooth(MOST)).map(Some);
+    let ways = Ways { tints: std::iter::once(None).chain(tints).collect() };
+    let lights: Vec<&Curve> = survey.judged().map(|(curve, _)| curve).collect();
+    let dyes: Vec<Dye> = survey.dyes.iter().map(|(dye, _)| dye.clone()).collect();
+    let basis = &basis.clone().exciting(&dyes, &lights);
+    let mut worst: f64 = 0.0;
+    for (dye, reflectance) in &survey.dyes {
+        for (curve, light) in survey.judged() {
+            let lit = Lit { dye, reflectance, curve, light };
+            worst = worst.max(lit.missed(&ways, basis));
+        }
+    }
+    worst
+}
+
+/// A surface with a dye under a light.
+struct Lit<'a> {
+    dye: &'a Dye,
+    reflectance: &'a Curve,
+    /// The light as it is written, and as it shines.
+    curve: &'a Curve,
+    light: &'a Emission,
+}
+
+impl Lit<'_> {
+    fn missed(&self, ways: &Ways, basis: &Basis) -> f64 {
+        let Self { dye, reflectance, curve, light } = *self;
+        let shines = dye.shines(basis.color_space());
+        let wavelengths: Vec<f64> = visible::wavelengths().chain(light.lines().iter().map(|line| line[0])).collect();
+        let of_line = |&[nm, power]: &[f64; 2]| light.film(nm).map(|x| x * power);
+        let columns: Vec<[f64; 3]> = light.columns().chain(light.lines().iter().map(of_line)).collect();
+        let glow: Vec<[f64; 3]> = shines.columns().collect();
+        let excited: Vec<f64> = dye.excited_by(light).parts().collect();
+        let exact = ways.at(&wavelengths, basis);
+        let reflected: Vec<f64> = Tint::Diffuse(std::borrow::Cow::Borrowed(reflectance)).at(&wavelengths, basis);
+
+        let draw = Draw::<MAX_LANES>::fixed(basis.fixed_lanes());
+        let in_lanes = ways.on(basis);
+        let emission = draw.read(&basis.tabulate(Quantity::Emission, curve));
+        let (excitation, response) = (basis.excitation(dye, curve), basis.response(&dye.emission));
+        let brightness: Vec<[f64; 2]> = exact
+            .iter()
+            .zip(&in_lanes)
+            .map(|(left, lanes)| {
+                let exact = left.iter().zip(&excited).map(|(left, power)| left * power).sum();
+                [exact, excitation.sensor(&draw, emission * *lanes, false)[0]]
+            })
+            .collect();
+        let mut worst: f64 = 0.0;
+        for (seen, lanes) in exact.iter().zip(&in_lanes) {
+            let seen_glow = sum(seen, &glow);
+            let found_glow = response.sensor(&draw, *lanes, false);
+            for (lit, [brightness, found]) in exact.iter().zip(&brightness) {
+                let product: Vec<f64> = (0..wavelengths.len()).map(|i| reflected[i] * seen[i] * lit[i]).collect();
+                let elastic = sum(&product, &columns);
+                let strongest =
+                    (0..3).fold(0.0_f64, |most, c| most.max((elastic[c] + brightness * seen_glow[c]).abs()));
+                let missed =
+                    (0..3).fold(0.0_f64, |most, c| most.max((found * found_glow[c] - brightness * seen_glow[c]).abs()));
+                if strongest > 0.0 {
+                    worst = worst.max(missed / strongest);
+                }
+            }
+        }
+        worst
+    }
+}
+
+/// The color of what is left of light.
+fn sum(left: &[f64], columns: &[[f64; 3]]) -> [f64; 3] {
+    let mut color = [0.0; 3];
+    for (left, column) in left.iter().zip(columns) {
+        (0..3).for_each(|c| color[c] += left * column[c]);
+    }
+    color
+}
+
+/// What is said of a material's dyes: where they absorb light, and whether lanes reach there.
+pub(super) fn spoken(dyes: &[Dye], basis: &Basis) -> Option<String> {
+    let absorbed = |nm: f64| dyes.iter().map(|dye| dye.absorbed()(nm)).fold(0.0, f64::max);
+    let most = visible::wavelengths().map(absorbed).fold(0.0, f64::max);
+    let mut strong = visible::wavelengths().filter(|&nm| absorbed(nm) > 0.05 * most);
+    let (first, last) = (strong.next()?, strong.last()?);
+    let lowest = basis.wavelengths_nm().iter().copied().fold(f64::INFINITY, f64::min);
+    let lanes = if basis.fixed_lanes() > 3 { format!("; lanes reach down to {lowest:.0} nm") } else { String::new() };
+    Some(format!("fluoresces by light of {first:.0} to {last:.0} nm{lanes}"))
+}

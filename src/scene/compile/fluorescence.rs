@@ -1,0 +1,52 @@
+//! Dyes in matte surfaces.
+
+use super::asked::{Asked, spectrum};
+use super::curve_range::shown;
+use crate::material::{Diffuse, Fluorescence};
+use crate::scene::text::{Fields, Value};
+use crate::spectrum::Curve;
+
+pub(super) fn diffuse<'d>(fields: &mut Fields<'d>) -> Option<Diffuse<Asked<'d>>> {
+    let (reflectance, dye) = (spectrum(fields, "reflectance"), fields.get("fluorescence"));
+    let fluorescence = match dye {
+        Some(dye) => Some(Fields::read(dye, fluorescence)?),
+        None => None,
+    };
+    Some(Diffuse { reflectance, fluorescence })
+}
+
+fn fluorescence<'d>(fields: &mut Fields<'d>) -> Option<Fluorescence<Asked<'d>>> {
+    let [absorption, emission] = ["absorption", "emission"].map(|key| spectrum(fields, key));
+    let help = "photons that leave, of each that is absorbed: 0.9 of most highlighters";
+    let share = |value: Value| value.within(0.0..=1.0, "a quantum yield lies between 0 and 1", Some(help));
+    let quantum_yield = fields.need("quantum_yield", share);
+    Some(Fluorescence { absorption, emission, quantum_yield: quantum_yield? })
+}
+
+/// Where the spectra of a dye are written, if it has one: its absorption and its emission.
+pub(super) fn written<'d>(diffuse: &Diffuse<Asked<'d>>) -> Option<[Value<'d>; 2]> {
+    let dye = diffuse.fluorescence.as_ref()?;
+    match [dye.absorption, dye.emission] {
+        [Asked::There(absorption), Asked::There(emission)] => Some([absorption, emission]),
+        _ => None,
+    }
+}
+
+/// That a surface with a dye gives back no more light than it gets.
+pub(super) fn conserves(diffuse: &Diffuse<Curve>, [absorption, emission]: [Value; 2]) -> Option<()> {
+    let Diffuse { reflectance, fluorescence: Some(dye) } = diffuse else { return Some(()) };
+    let dye = dye.dye();
+    if dye.quantum_yield > 0.0 && dye.power_per_nm() == 0.0 {
+        return emission.refuse("the dye shines nowhere between 300 and 830 nm");
+    }
+    let Some(excess) = reflectance.shades().into_iter().find_map(|shade| dye.excess(&shade)) else { return Some(()) };
+    let nm = excess.nm;
+    if excess.taken > 1.0 {
+        let message = format!("reflectance and absorption are {} together at {nm} nm", shown(excess.taken));
+        return absorption
+            .advise(message, "they are shares of the same light: lower one of them until they make 1 together");
+    }
+    let message = format!("of light of {nm} nm, more power would leave than arrives: {}", shown(excess.given));
+    absorption
+        .advise(message, "a dye shines at longer wavelengths than those that it absorbs: end `absorption` below them")
+}

@@ -1,0 +1,90 @@
+use super::visible;
+use super::{ColorSpace, Curve, Emission, Quantity, Upsampler};
+
+/// What a surface absorbs and shines again at other wavelengths: fluorescence.
+///
+/// Of a photon absorbed at the wavelength i, a photon leaves at the wavelength o by a chance of Q e(o) per nm, with Q
+/// the quantum yield and e the dye's emission in photons, of integral 1. Of power it is Q a(i) e(o) i / o, with a the
+/// share that is absorbed: a matrix of rank 1 (Donaldson 1954, *Spectrophotometry of Fluorescent Pigments*).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Dye {
+    /// The share of the light that it absorbs, 0 to 1.
+    pub absorption: Curve,
+    /// What it shines, in power per nm on any scale.
+    pub emission: Curve,
+    /// How many photons leave of one that is absorbed, 0 to 1.
+    pub quantum_yield: f64,
+}
+
+/// How bright a dye is by a light: a factor on what it shines.
+#[derive(Clone, Debug)]
+pub struct Excited {
+    /// By the light of each wavelength of the grid, per nm.
+    pub smooth: Vec<f64>,
+    /// By each of its ideal lines: the wavelength in nm, and the factor.
+    pub lines: Vec<[f64; 2]>,
+}
+
+impl Excited {
+    /// By all parts of the light: first those of the grid, then the lines.
+    pub fn parts(&self) -> impl Iterator<Item = f64> {
+        self.smooth.iter().copied().chain(self.lines.iter().map(|line| line[1]))
+    }
+}
+
+/// Where a surface would give back more light than it gets.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Excess {
+    /// The wavelength of the light, in nm.
+    pub nm: f64,
+    /// The share of it that is reflected or absorbed by the dye.
+    pub taken: f64,
+    /// The share of its power that is reflected or shines again.
+    pub given: f64,
+}
+
+/// What the digits of curves may add up to.
+const ROUNDED: f64 = 1e-9;
+
+impl Dye {
+    /// The share of light that it absorbs at a wavelength in nm, 0 to 1.
+    pub fn absorbed(&self) -> Box<dyn Fn(f64) -> f64 + '_> {
+        self.absorption.values(Quantity::Excitation)
+    }
+
+    /// Power that it shines, over that which it absorbs times the wavelength in nm at which it does: 1 / nm.
+    pub fn power_per_nm(&self) -> f64 {
+        let shines = self.shines(ColorSpace::default());
+        let photons: f64 = visible::wavelengths().zip(shines.spectrum()).map(|(nm, power)| nm * power).sum();
+        if photons > 0.0 { self.quantum_yield * shines.spectrum().iter().sum::<f64>() / photons } else { 0.0 }
+    }
+
+    /// The first wavelength at which a surface of a reflectance would give back more light than it gets.
+    pub fn excess(&self, reflectance: &Curve) -> Option<Excess> {
+        let (upsampler, absorbed, power) =
+            (Upsampler::new(ColorSpace::default()), self.absorbed(), self.power_per_nm());
+        let reflected = reflectance.reader(Quantity::Reflectance, &upsampler);
+        let at = |nm: f64| Excess {
+            nm,
+            taken: reflected(nm) + absorbed(nm),
+            given: reflected(nm) + absorbed(nm) * power * nm,
+        };
+        visible::wavelengths().map(at).find(|found| found.taken.max(found.given) > 1.0 + ROUNDED)
+    }
+
+    /// The light that it shines, for a film.
+    pub fn shines(&self, space: ColorSpace) -> Emission {
+        Emission::new(&self.emission, space)
+    }
+
+    /// How bright it is by a light.
+    pub fn excited_by(&self, light: &Emission) -> Excited {
+        let shines = self.shines(ColorSpace::default());
+        let (absorbed, total) = (self.absorbed(), shines.spectrum().iter().sum::<f64>());
+        let scale = if total > 0.0 { self.power_per_nm() * light.unit() / (total * shines.unit()) } else { 0.0 };
+        let of = |nm: f64, light: f64| scale * nm * absorbed(nm) * light;
+        let smooth = visible::wavelengths().zip(light.spectrum()).map(|(nm, &light)| of(nm, light));
+        let lines = light.lines().iter().map(|&[nm, light]| [nm, of(nm, light)]);
+        Excited { smooth: smooth.collect(), lines: lines.collect() }
+    }
+}

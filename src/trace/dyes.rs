@@ -1,0 +1,124 @@
+//! The dyes of a scene, as sources of light and as what light excites.
+
+use std::ops::Range;
+
+use super::arrived::{Arrived, SourceId};
+use crate::light::LightId;
+use crate::material::{Diffuse, Material};
+use crate::scene::Scene;
+use crate::spectrum::{Basis, Curve, Distinct, Draw, Dye, Lanes, Quantity, Response, Table};
+
+/// The least chance of a dye, but for many of them, and the most of all: only how paths are drawn depends on it.
+const LEAST: f64 = 0.05;
+const MOST: f64 = 0.75;
+
+/// The dyes of a scene.
+#[derive(Clone, Debug)]
+pub(super) struct Dyes {
+    /// The number of the first dye of each material, and of one more.
+    first: Vec<usize>,
+    /// What the lanes of each source are worth to each dye.
+    excitations: Vec<Vec<Response>>,
+    /// What share of even light each shines again, about.
+    shares: Vec<f64>,
+    /// How many lights there are, behind which dyes follow as sources.
+    lights: usize,
+    /// What scatters the light of dyes, of which they take their share by its wavelengths.
+    pub(super) white: Material<Table>,
+}
+
+impl Dyes {
+    /// The dyes of a scene and what the light of each is worth to the sensor; none where there are no dyes, or where
+    /// lanes are no wavelengths. Makes the basis one for them.
+    pub(super) fn new(scene: &Scene<Curve>, basis: &mut Basis) -> Option<(Self, Vec<Response>)> {
+        let (mut first, mut dyes): (Vec<usize>, Vec<Dye>) = (Vec::new(), Vec::new());
+        for named in &scene.materials {
+            first.push(dyes.len());
+            dyes.extend(named.material.dyes().into_iter().map(|dye| dye.dye()));
+        }
+        first.push(dyes.len());
+        if dyes.is_empty() || !basis.can_excite() {
+            return None;
+        }
+        let lights: Vec<&Curve> = scene.lights.iter().map(|light| light.emission()).collect();
+        *basis = basis.clone().exciting(&dyes, &lights);
+        let sources = || lights.iter().copied().chain(dyes.iter().map(|dye| &dye.emission));
+        let of_dye = |dye: &Dye| {
+            let mut distinct = Distinct::default();
+            sources().map(|source| distinct.of(source, |source| basis.excitation(dye, source))).collect()
+        };
+        let shares = dyes.iter().map(|dye| {
+            let absorbed = basis.tabulate(Quantity::Excitation, &dye.absorption);
+            let mean = absorbed.bins().iter().sum::<f64>() / absorbed.bins().len() as f64;
+            (dye.quantum_yield * mean).max(LEAST)
+        });
+        let shares = shares.collect();
+        let reflectance = basis.tabulate(Quantity::Reflectance, &1.0.into());
+        let white = Material::Diffuse(Diffuse { reflectance, fluorescence: None });
+        let excitations = dyes.iter().map(of_dye).collect();
+        let responses = dyes.iter().map(|dye| basis.response(&dye.emission)).collect();
+        Some((Self { first, excitations, shares, lights: lights.len(), white }, responses))
+    }
+
+    /// The numbers of an object's dyes.
+    #[inline]
+    pub(super) fn of(&self, scene: &Scene<Table>, object: u32) -> Range<usize> {
+        let material = scene.objects[object as usize].material as usize;
+        self.first[material]..self.first[material + 1]
+    }
+
+    /// How likely a path goes on with each of some dyes where it goes on in one way.
+    pub(super) fn chances(&self, dyes: Range<usize>) -> Chances<'_> {
+        let total: f64 = self.shares[dyes].iter().sum();
+        Chances { dyes: self, fit: (MOST / total).min(1.0), total }
+    }
+
+    /// A dye as a source of light.
+    pub(super) fn source(&self, dye: usize) -> SourceId {
+        self.lights + dye
+    }
+
+    /// What the lanes of a source are worth to a dye.
+    pub(super) fn excitation(&self, dye: usize, source: SourceId) -> &Response {
+        &self.excitations[dye][source]
+    }
+
+    /// The largest of a number for each dye that a light excites, of an emission in lanes; the number is one for the
+    /// color of its light.
+    pub(super) fn most_excited<const N: usize>(
+        &self,
+        light: LightId,
+        draw: &Draw<N>,
+        emission: Lanes<N>,
+        number: impl Fn(SourceId, Lanes<N>) -> f64,
+    ) -> f64 {
+        let arrived = Arrived { source: light, draw, lanes: &emission, parted: false };
+        let of_dye = |dye| number(self.source(dye), draw.start() * self.excited(dye, &arrived) as f32);
+        (0..self.excitations.len()).map(of_dye).fold(0.0, f64::max)
+    }
+
+    /// How much a dye shines where light arrives in lanes: the number that stands for its brightness.
+    pub(super) fn excited<const N: usize>(&self, dye: usize, arrived: &Arrived<N>) -> f64 {
+        let Arrived { source, draw, lanes, parted } = *arrived;
+        self.excitation(dye, source).sensor(draw, *lanes, parted)[0]
+    }
+}
+
+/// How likely a path goes on with some dyes.
+pub(super) struct Chances<'a> {
+    dyes: &'a Dyes,
+    fit: f64,
+    total: f64,
+}
+
+impl Chances<'_> {
+    /// With one of them.
+    pub(super) fn of(&self, dye: usize) -> f64 {
+        self.fit * self.dyes.shares[dye]
+    }
+
+    /// With any.
+    pub(super) fn total(&self) -> f64 {
+        self.fit * self.total
+    }
+}

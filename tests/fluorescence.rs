@@ -1,0 +1,110 @@
+//! Dyes: light that comes back at other wavelengths, against sums over their matrices.
+//!
+//! ```text
+//! cargo test --test all fluorescence::
+//! ```
+
+mod closed_forms;
+mod rooms;
+mod ways;
+
+use std::fmt::Write;
+
+use abbe::scene::Scene;
+use abbe::spectrum::{Basis, ColorSpace, Curve, CurveKind, Emission, apply, visible};
+use abbe::trace::{Method, prepare, render};
+
+use crate::support::scenes::{EVERY_BRANCH, method, scene};
+
+/// A dye that absorbs a bell of light and shines another, in photons, over white paper.
+#[derive(Clone, Copy)]
+pub struct Bells {
+    pub name: &'static str,
+    /// Middle and standard deviation in nm of what it absorbs, 0.9 at most, and of the photons that it shines.
+    absorbs: [f64; 2],
+    shines: [f64; 2],
+    quantum_yield: f64,
+}
+
+pub const YELLOW: Bells = Bells { name: "yellow", absorbs: [450.0, 25.0], shines: [520.0, 20.0], quantum_yield: 0.9 };
+pub const RED: Bells = Bells { name: "red", absorbs: [540.0, 25.0], shines: [600.0, 20.0], quantum_yield: 0.8 };
+pub const BRIGHTENER: Bells =
+    Bells { name: "brightener", absorbs: [365.0, 20.0], shines: [440.0, 22.0], quantum_yield: 0.85 };
+
+fn bell([middle, deviation]: [f64; 2], nm: f64) -> f64 {
+    libm::exp(-0.5 * ((nm - middle) / deviation).powi(2))
+}
+
+fn samples(value: impl Fn(f64) -> f64) -> Vec<[f64; 2]> {
+    visible::wavelengths().map(|nm| [nm, value(nm)]).collect()
+}
+
+impl Bells {
+    pub fn absorbed(&self, nm: f64) -> f64 {
+        0.9 * bell(self.absorbs, nm)
+    }
+
+    pub fn reflected(&self, nm: f64) -> f64 {
+        0.92 - self.absorbed(nm)
+    }
+
+    /// Power that it shines per nm of 1 in all.
+    pub fn glow(&self) -> Vec<f64> {
+        let power: Vec<f64> = visible::wavelengths().map(|nm| bell(self.shines, nm) / nm).collect();
+        let total: f64 = power.iter().sum();
+        power.into_iter().map(|x| x / total).collect()
+    }
+
+    /// Power that it shines of all that comes at a wavelength.
+    pub fn excited(&self, nm: f64) -> f64 {
+        let [power, photons] =
+            [1.0, 0.0].map(|by| visible::wavelengths().map(|nm| bell(self.shines, nm) / nm.powf(by)).sum::<f64>());
+        self.quantum_yield * self.absorbed(nm) * nm * power / photons
+    }
+
+    /// The material as a scene has it.
+    pub fn material(&self) -> String {
+        let written = |samples: Vec<[f64; 2]>| {
+            let mut text = String::from("{ samples = [");
+            samples.iter().for_each(|[nm, x]| write!(text, "[{nm}, {x:e}],").expect("a String takes all"));
+            text + "] }"
+        };
+        format!(
+            "diffuse = {{ reflectance = {}, fluorescence = {{ absorption = {}, emission = {}, quantum_yield = {} }} }}",
+            written(samples(|nm| self.reflected(nm))),
+            written(samples(|nm| self.absorbed(nm))),
+            written(samples(|nm| 1e3 * bell(self.shines, nm) / nm)),
+            self.quantum_yield
+        )
+    }
+}
+
+/// The power per nm of an illuminant with Y = 1.
+pub fn light(name: &str) -> Vec<f64> {
+    let curve: Curve = CurveKind::illuminant(name).expect("it is in the catalog").into();
+    Emission::new(&curve, ColorSpace::Rec709).spectrum().to_vec()
+}
+
+/// Linear Rec.709 of a spectrum.
+pub fn color(spectrum: &[f64]) -> [f64; 3] {
+    apply(&ColorSpace::Rec709.of_xyz(), visible::xyz(spectrum))
+}
+
+pub fn lanes(scene: &Scene<Curve>, basis: Basis) -> Method {
+    Method { basis, ..method(scene, EVERY_BRANCH) }
+}
+
+/// The only pixel of an image in 32 lanes from 300 nm on, in which nothing is left to chance.
+pub fn pixel(text: &str) -> [f64; 3] {
+    let scene = scene(text);
+    let method = lanes(&scene, Basis::bands_from_ultraviolet(scene.film.color_space, 32, &[]));
+    render(&prepare(&scene, method), &|_| ()).0.pixels[0].rgb.map(f64::from)
+}
+
+/// Each channel within a share of the strongest.
+pub fn near(found: [f64; 3], expected: [f64; 3], share: f64, what: &str) {
+    let strongest = expected.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+    let off = (0..3).map(|c| (found[c] - expected[c]).abs() / strongest).fold(0.0, f64::max);
+    println!("{what}: {off:.1e}");
+    assert!(off <= share, "{what}: {found:?} for {expected:?}");
+}

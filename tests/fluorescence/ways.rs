@@ -1,0 +1,123 @@
+//! The ways by which light comes to a dye: photons, and wavelengths that have parted.
+
+use abbe::film::Film;
+use abbe::spectrum::{Basis, Emission};
+use abbe::trace::{LightPass, MapPasses, Method, prepare, render};
+
+use super::{BRIGHTENER, Bells, RED, YELLOW};
+use crate::support::scenes::{Mean, SPLITTING, body, method, moments, scene, view};
+
+/// Renders whose spread is their noise.
+const SEEDS: u64 = 4;
+
+/// Every channel of two means agrees.
+fn agree(found: Mean, expected: Mean, what: &str) {
+    let strongest = expected.value.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+    for c in 0..3 {
+        let (off, error) = (found.value[c] - expected.value[c], found.error[c].hypot(expected.error[c]));
+        println!("{what} {c}: {:.5} for {:.5} +- {error:.5}", found.value[c], expected.value[c]);
+        assert!(off.abs() < 4.0 * error + 1e-6 * strongest, "{what}: {found:?} for {expected:?}");
+        assert!(error < 0.02 * strongest, "{what}: the noise hides all");
+    }
+}
+
+/// The mean color of images under several seeds.
+fn mean(films: &[Film]) -> Mean {
+    let of = |c: usize| {
+        let means = films.iter().map(|film| {
+            film.pixels.iter().map(|pixel| f64::from(pixel.rgb[c])).sum::<f64>() / film.pixels.len() as f64
+        });
+        let (value, variance) = moments(means);
+        [value, (variance / films.len() as f64).sqrt()]
+    };
+    let bands = [0, 1, 2].map(of);
+    Mean { value: bands.map(|band| band[0]), error: bands.map(|band| band[1]) }
+}
+
+/// Paper under a lamp whose light comes by way of a mirror alone, or under one where the mirror shows it; seen straight
+/// or in another mirror.
+fn paper(dye: &Bells, lit_by_mirror: bool, seen_in_mirror: bool) -> String {
+    let (position, look_at) =
+        if seen_in_mirror { ([0.0, 0.0, 2.0], [0.0, -1.0, 1.0]) } else { ([0.0, -2.0, 2.0], [0.0; 3]) };
+    let lamp = if lit_by_mirror { "sphere = { center = [0, 0, 1], radius = 0.1 }" } else { SHOWN };
+    let mut text = view(position, look_at, 10.0, 8)
+        + &body("paper", &dye.material(), &["quad = { center = [0, 0, 0], u = [0.6, 0, 0], v = [0, 0.6, 0] }"])
+        + &body("lamp", "emissive = { radiance = { illuminant = \"D65\", scale = 100 } }", &[lamp]);
+    let lit_by = "quad = { center = [1.2, 0, 0.5], u = [0, 0, 0.5], v = [0, 1, 0] }";
+    let seen_in = "quad = { center = [0, -1, 1], u = [0.2, 0, 0], v = [0, 0, 0.2] }";
+    let mirrors = [(lit_by_mirror, lit_by), (seen_in_mirror, seen_in)];
+    let mirrors: Vec<&str> = mirrors.into_iter().filter(|mirror| mirror.0).map(|mirror| mirror.1).collect();
+    if !mirrors.is_empty() {
+        text += &body("mirror", "mirror = {}", &mirrors);
+    }
+    if lit_by_mirror {
+        let screen = "quad = { center = [0, 0, 0.8], u = [0.2, 0, 0], v = [0, 0.2, 0] }";
+        text += &body("screen", "diffuse = { reflectance = 0 }", &[screen]);
+    }
+    text
+}
+
+/// The lamp where the mirror shows it.
+const SHOWN: &str = "sphere = { center = [2.4, 0, 1], radius = 0.1 }";
+
+fn films(text: &str, basis: impl Fn(&abbe::scene::Scene) -> Basis, light_pass: Option<LightPass>) -> Vec<Film> {
+    let scene = scene(text);
+    let method =
+        Method { basis: basis(&scene), samples: 16, light_pass, diffuse_bounces: 1, ..method(&scene, SPLITTING) };
+    (0..SEEDS).map(|seed| render(&prepare(&scene, Method { seed, ..method.clone() }), &|_| ()).0).collect()
+}
+
+#[test]
+fn photons_excite_dyes_where_they_are_shown_and_where_they_are_gathered() {
+    let lanes = |scene: &abbe::scene::Scene| Basis::bands_from_ultraviolet(scene.film.color_space, 16, &[]);
+    let heroes = |scene: &abbe::scene::Scene| {
+        let lights: Vec<Emission> =
+            scene.lights.iter().map(|light| Emission::new(light.emission(), scene.film.color_space)).collect();
+        Basis::bands_from_ultraviolet(scene.film.color_space, 16, &[]).with_heroes(4, &lights)
+    };
+    for dye in [YELLOW, BRIGHTENER] {
+        for gathered in [false, true] {
+            let map = gathered.then_some(MapPasses { count: 2, photons: 40_000, radius: 1.0, chance: 1.0 });
+            let pass = LightPass { photons: 200_000, lights: vec![0], map };
+            let straight = mean(&films(&paper(&dye, false, gathered), lanes, None));
+            let what = format!("{}, gathered {gathered}", dye.name);
+            agree(mean(&films(&paper(&dye, true, gathered), lanes, Some(pass.clone()))), straight, &what);
+            agree(mean(&films(&paper(&dye, true, gathered), heroes, Some(pass))), straight, &format!("{what}, heroes"));
+        }
+    }
+}
+
+/// A dye behind a slab of glass that parts wavelengths, lit and seen through it: heroes, drawn anew for what excites,
+/// against as many lanes as there are, each of which goes its own way.
+#[test]
+fn heroes_that_have_parted_excite_dyes_as_all_wavelengths_do() {
+    for dye in [YELLOW, RED, BRIGHTENER] {
+        let text = view([0.8, 0.0, 3.0], [0.0, 0.0, 0.0], 8.0, 8)
+            + "[render]\nmax_bounces = 12\n[[light]]\nenvironment = { radiance = { illuminant = \"D65\" } }\n"
+            + &body("paper", &dye.material(), &["quad = { center = [0, 0, 0], u = [2, 0, 0], v = [0, 2, 0] }"])
+            + &body(
+                "slab",
+                "dielectric = { index = \"N-SF11\" }",
+                &["cube = { center = [0, 0, 0.45], size = [3, 3, 0.5] }"],
+            );
+        let scene = scene(&text);
+        let lights = [Emission::new(scene.lights[0].emission(), scene.film.color_space)];
+        let lanes = Basis::bands_from_ultraviolet(scene.film.color_space, 32, &[]);
+        let heroes = Basis::bands_from_ultraviolet(scene.film.color_space, 12, &[]).with_heroes(4, &lights);
+        let of = |basis: Basis, samples: u32| {
+            let method = Method { basis, samples, ..method(&scene, SPLITTING) };
+            let films: Vec<Film> =
+                (0..SEEDS).map(|seed| render(&prepare(&scene, Method { seed, ..method.clone() }), &|_| ()).0).collect();
+            mean(&films)
+        };
+        let (found, expected) = (of(heroes, 1024), of(lanes, 256));
+        for c in 0..3 {
+            let strongest = expected.value.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+            let (off, error) = ((found.value[c] - expected.value[c]).abs(), found.error[c].hypot(expected.error[c]));
+            println!("{} {c}: {:.5} for {:.5} +- {error:.5}", dye.name, found.value[c], expected.value[c]);
+            // Colors of the lanes that stay together, in 12 and in 32 of them.
+            assert!(off < 4.0 * error + 2e-3 * strongest, "{}: {found:?} for {expected:?}", dye.name);
+            assert!(error < 0.02 * strongest, "{}: the noise hides all", dye.name);
+        }
+    }
+}
