@@ -26,7 +26,7 @@ from . import shapes, textures
 SCENES = Path(__file__).resolve().parents[2] / "scenes"
 MEASURED = SCENES / "pictures/measured.json"
 FIRST = "rainbow"  # the picture on top of README.md, scenes/rainbow.png
-ORDER = "gem rainbow water pond pool window lens prism bubble coatings metals illuminants still_life large/instances large/landscape cornell smallpt classic spheres".split()
+ORDER = "gem rainbow water pond pool window lens prism bubble coatings highlighter metals illuminants still_life large/instances large/landscape cornell smallpt classic spheres".split()
 
 HEAD = """# The gallery
 

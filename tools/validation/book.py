@@ -5,9 +5,16 @@ import functools
 import numpy as np
 import OpenEXR
 
-from . import caustics, color, energy, optics, transport
+from . import caustics, color, dyes, energy, optics, transport
 
-GROUPS = {"energy": energy, "optics": optics, "transport": transport, "color": color, "caustics": caustics}
+GROUPS = {
+    "energy": energy,
+    "optics": optics,
+    "transport": transport,
+    "color": color,
+    "dyes": dyes,
+    "caustics": caustics,
+}
 
 
 @functools.cache
