@@ -176,7 +176,7 @@ pub(super) fn gather<const N: usize, P: Polarization<N>>(
             Some(dye) => dye.seen(world, &arrived, |seen| Seen::new(world, seen, dye.polarization.stokes())),
         };
         let part = Part { contribution: brought(Some(carries.light), rgb, parted), stokes, spectrum, factor: density };
-        let change = || path.polarization.change_of_joined(at, photon.back, light, joined, lanes);
+        let change = || path.polarization.change_of_joined(at, photon.back, light, &joined, lanes);
         found.add(world, position, part, change);
     });
     photons.alone.near(point.position, radius, &mut |position, photon| {
@@ -209,7 +209,7 @@ pub(super) fn gather<const N: usize, P: Polarization<N>>(
         };
         let contribution = brought(Some(light), rgb, true);
         let part = Part { contribution, stokes, spectrum, factor: density * seen };
-        let change = || path.polarization.change_of_joined(at, photon.back, &photon.polarization, joined, lanes);
+        let change = || path.polarization.change_of_joined(at, photon.back, &photon.polarization, &joined, lanes);
         found.add(world, position, part, change);
     });
     let (rgb, moved) = place.seen_of(&mut found, point, sampler, path.key);

@@ -335,7 +335,7 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> View<'v, 'a, N, P> {
         let parted = path.parted || (!same && parts(at.lobes, material, viewed));
         let start = || path.polarization.shown(at, self.seen.direction, &mut bsdf_cos);
         let (shone, on_its_way) = self.arriving(arrival.draw, start, || landing.shone(world))?;
-        let polarized = path.polarization.seen(at, viewed, on_its_way, world, &self.back());
+        let polarized = path.polarization.seen(at, viewed, &on_its_way, world, &self.back());
         let arriving = polarized.factor.map_or(bsdf_cos * shone, |factor| bsdf_cos * shone * factor);
         let lanes = &path.throughput.scaled(1.0 / path.eta_scale).of(arriving);
         let reflected = || FirstLobe::reflected(world.layers.white.as_ref(), material, at.lobes, viewed, arrival.wo);
@@ -366,7 +366,7 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> View<'v, 'a, N, P> {
         let mut unpolarized = Lanes::ONE;
         let start = || polarization.shown(at, self.seen.direction, &mut unpolarized);
         let (arriving, on_its_way) = self.arriving(draw, start, || draw.start())?;
-        let polarized = polarization.seen(at, viewed, on_its_way, world, &self.back());
+        let polarized = polarization.seen(at, viewed, &on_its_way, world, &self.back());
         let arriving =
             polarized.factor.map_or(arriving, |factor| arriving * factor) * shares[number] * brightness as f32;
         let arrived = Arrived { source: dyes.source(dye), draw, lanes: &arriving, parted: false };

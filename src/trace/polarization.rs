@@ -70,24 +70,24 @@ pub(super) trait Polarization<const N: usize>: Copy + Debug + Send + Sync + 'sta
 
     /// Before branches are chosen: makes their shares those of the path's light, and adds what each goes on with to
     /// `after`. Nothing is added where that can wait until one is chosen.
-    fn split(self, at: &Interaction<N>, branches: &mut [Branch<N>], after: &mut Vec<Self>);
+    fn split(&self, at: &Interaction<N>, branches: &mut [Branch<N>], after: &mut Vec<Self>);
 
     /// After a branch, of which `split` may have told already.
-    fn along(self, at: &Interaction<N>, branch: &Branch<N>, known: Option<&Self>) -> Self;
+    fn along(&self, at: &Interaction<N>, branch: &Branch<N>, known: Option<&Self>) -> Self;
 
     /// On the way from a surface along the unit vector `wi` to a light, where it meets panes next; makes `bsdf_cos`
     /// that of the path's light.
-    fn toward(self, at: &Interaction<N>, wi: DVec3, bsdf_cos: &mut Lanes<N>) -> Self;
+    fn toward(&self, at: &Interaction<N>, wi: DVec3, bsdf_cos: &mut Lanes<N>) -> Self;
 
     /// How much of light that arrives along `wi`, `on_its_way` by `toward` and panes, polarization may change, as X + Y
     /// + Z.
-    fn moved(self, at: &Interaction<N>, wi: DVec3, on_its_way: Self, light: &MetLight<N, Self>) -> f64;
+    fn moved(&self, at: &Interaction<N>, wi: DVec3, on_its_way: &Self, light: &MetLight<N, Self>) -> f64;
 
     /// The same of light that the path has met.
-    fn moved_of_met(self, light: &MetLight<N, Self>) -> f64;
+    fn moved_of_met(&self, light: &MetLight<N, Self>) -> f64;
 
     /// Of the light that excites a dye, where the path sees one: evenly, whatever its polarization.
-    fn exciting(self) -> Self;
+    fn exciting(&self) -> Self;
 
     /// Where the path meets light that comes from the unit vector `wi`, which may be polarized; makes `shone`, what the
     /// light would be that is not, what the path takes of it.
@@ -95,34 +95,34 @@ pub(super) trait Polarization<const N: usize>: Copy + Debug + Send + Sync + 'sta
 
     /// On the way from a surface, where a photon has landed, along a unit vector to the camera; makes `bsdf_cos` that
     /// of the photon's light.
-    fn shown(self, at: &Interaction<N>, direction: DVec3, bsdf_cos: &mut Lanes<N>) -> Self;
+    fn shown(&self, at: &Interaction<N>, direction: DVec3, bsdf_cos: &mut Lanes<N>) -> Self;
 
     /// What the camera sees of a photon that came to it from there along a ray of its own; `on_its_way` is by `shown`
     /// and panes, `viewed` the surface as the camera sees it.
     fn seen(
-        self,
+        &self,
         at: &Interaction<N>,
         viewed: &Arrival<N>,
-        on_its_way: Self,
+        on_its_way: &Self,
         world: &World,
         ray: &Ray,
     ) -> SeenPhoton<N>;
 
     /// What is kept of it where a photon has landed.
-    fn landed(self, at: &Interaction<N>) -> Self::Landed;
+    fn landed(&self, at: &Interaction<N>) -> Self::Landed;
 
     /// Brings a path from the camera, at a surface, together with a photon that has landed near and came along `wi`;
     /// makes `bsdf_cos` that of their light.
-    fn join(self, at: &Interaction<N>, wi: DVec3, photon: &Self::Landed, bsdf_cos: &mut Lanes<N>) -> Self;
+    fn join(&self, at: &Interaction<N>, wi: DVec3, photon: &Self::Landed, bsdf_cos: &mut Lanes<N>) -> Self;
 
     /// By what share polarization may change the light of a photon, which came along a unit vector, that `join` has
     /// brought together with a path in lanes.
     fn change_of_joined(
-        self,
+        &self,
         at: &Interaction<N>,
         wi: DVec3,
         photon: &Self::Landed,
-        joined: Self,
+        joined: &Self,
         lanes: Lanes<N>,
     ) -> f64;
 

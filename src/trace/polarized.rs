@@ -90,10 +90,10 @@ impl<const N: usize> Polarization<N> for Polarized {
     }
 
     #[inline(always)]
-    fn split(self, _: &Interaction<N>, _: &mut [Branch<N>], _: &mut Vec<Self>) {}
+    fn split(&self, _: &Interaction<N>, _: &mut [Branch<N>], _: &mut Vec<Self>) {}
 
     #[inline(always)]
-    fn along(self, at: &Interaction<N>, branch: &Branch<N>, _: Option<&Self>) -> Self {
+    fn along(&self, at: &Interaction<N>, branch: &Branch<N>, _: Option<&Self>) -> Self {
         match branch.pdf {
             Some(_) => self.scattered(at.material, &at.arrival, branch.wi),
             None => self.after(branch.polarization),
@@ -101,24 +101,24 @@ impl<const N: usize> Polarization<N> for Polarized {
     }
 
     #[inline(always)]
-    fn toward(self, _: &Interaction<N>, _: DVec3, _: &mut Lanes<N>) -> Self {
+    fn toward(&self, _: &Interaction<N>, _: DVec3, _: &mut Lanes<N>) -> Self {
         Self::NOT
     }
 
-    fn moved(self, at: &Interaction<N>, wi: DVec3, on_its_way: Self, light: &MetLight<N, Self>) -> f64 {
+    fn moved(&self, at: &Interaction<N>, wi: DVec3, on_its_way: &Self, light: &MetLight<N, Self>) -> f64 {
         if !self.is_any() && !light.world.has_see_through() {
             return 0.0;
         }
-        let change = self.brought(at.material, &at.arrival, wi, on_its_way).change();
+        let change = self.brought(at.material, &at.arrival, wi, *on_its_way).change();
         if change == 0.0 { 0.0 } else { change * light.world.amount(light.rgb) }
     }
 
-    fn moved_of_met(self, light: &MetLight<N, Self>) -> f64 {
+    fn moved_of_met(&self, light: &MetLight<N, Self>) -> f64 {
         if self.is_any() { self.change() * light.world.amount(light.rgb) } else { 0.0 }
     }
 
-    fn exciting(self) -> Self {
-        Self { degree: 0.0, ..self }
+    fn exciting(&self) -> Self {
+        Self { degree: 0.0, ..*self }
     }
 
     #[inline(always)]
@@ -127,25 +127,25 @@ impl<const N: usize> Polarization<N> for Polarized {
     }
 
     #[inline(always)]
-    fn shown(self, _: &Interaction<N>, _: DVec3, _: &mut Lanes<N>) -> Self {
+    fn shown(&self, _: &Interaction<N>, _: DVec3, _: &mut Lanes<N>) -> Self {
         Self::NOT
     }
 
-    fn seen(self, at: &Interaction<N>, viewed: &Arrival<N>, on_its_way: Self, _: &World, _: &Ray) -> SeenPhoton<N> {
-        let change = on_its_way.brought(at.material, viewed, at.arrival.wo, self).change() as f32;
+    fn seen(&self, at: &Interaction<N>, viewed: &Arrival<N>, on_its_way: &Self, _: &World, _: &Ray) -> SeenPhoton<N> {
+        let change = on_its_way.brought(at.material, viewed, at.arrival.wo, *self).change() as f32;
         SeenPhoton { change, factor: None, stokes: None }
     }
 
-    fn landed(self, _: &Interaction<N>) -> Self {
-        self
+    fn landed(&self, _: &Interaction<N>) -> Self {
+        *self
     }
 
     #[inline(always)]
-    fn join(self, _: &Interaction<N>, _: DVec3, _: &Self, _: &mut Lanes<N>) -> Self {
+    fn join(&self, _: &Interaction<N>, _: DVec3, _: &Self, _: &mut Lanes<N>) -> Self {
         Self::NOT
     }
 
-    fn change_of_joined(self, at: &Interaction<N>, wi: DVec3, photon: &Self, _: Self, _: Lanes<N>) -> f64 {
+    fn change_of_joined(&self, at: &Interaction<N>, wi: DVec3, photon: &Self, _: &Self, _: Lanes<N>) -> f64 {
         self.brought(at.material, &at.arrival, wi, *photon).change()
     }
 

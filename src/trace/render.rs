@@ -23,7 +23,7 @@ use super::stats::Stats;
 use super::stopping::{Clock, Stopped, next_stage, samples_wanted, tells_noise};
 use super::tile::Tile;
 use super::watch::Watch;
-use super::width::in_lanes_of;
+use super::width::in_lanes_of_layers;
 use super::{Stop, World};
 use crate::error::Result;
 use crate::film::{BlockReader, BlockWriter, Film, Pixel, PixelSum, SampleWeights, Shard, TilePlace};
@@ -180,7 +180,7 @@ impl<W: Borrow<World>> Rendering<W> {
         if !self.begin_pass() {
             return Advance::Finished;
         }
-        if !in_lanes_of!(self.world(), N, P => self.pass::<N, P>(&watch)) {
+        if !in_lanes_of_layers!(self.world(), N, P => self.pass::<N, P>(&watch)) {
             return Advance::Stopped;
         }
         if self.is_finished() { Advance::Finished } else { Advance::Passed }

@@ -82,7 +82,7 @@ impl<const N: usize, P: Polarization<N>> Resampling<'_, N, P> {
         let arrived = Arrived { source: vertex.light, draw: at.arrival.draw, lanes, parted: self.path.parted };
         let met = MetLight::new(world, &arrived, None);
         let rgb = met.rgb;
-        let moved = self.path.polarization.moved(at, direction, on_its_way, &met);
+        let moved = self.path.polarization.moved(at, direction, &on_its_way, &met);
         let (bounces, dispersed) = (self.path.bounces + 1 + vertex.vertices, self.path.parted);
         let first = at.first_lobe(world, self.path.lobe(), direction, false);
         let (light, found) = (Some(vertex.light), Found::Connected);

@@ -18,15 +18,14 @@ use crate::material::{Arrival, Block, Branch, Incoming, Material, Mueller, Scatt
 use crate::math::{DVec3, Frame, Ray};
 use crate::spectrum::{Lanes, Table};
 
-/// What the sensor takes of each Stokes component, lane by lane.
+/// What the sensor takes of each Stokes component, lane by lane: the row of S0 of the image alone, or all `K` = 4.
+/// Paths are copied, and one row is all that most images need.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Rows<const N: usize> {
+pub(super) struct Rows<const N: usize, const K: usize> {
     /// The x of the frame whose z is the direction of the light, back along the ray: a unit vector.
     x: DVec3,
-    /// Rows of S0, S1, S2 and S3 of the image, each over the throughput: the first begins with 1.
-    rows: [[Lanes<N>; 4]; 4],
-    /// How many are wanted: the first, or all.
-    count: usize,
+    /// Each over the throughput: the first begins with 1.
+    rows: [[Lanes<N>; 4]; K],
     /// Whether the throughput is that of a path whose light is taken for unpolarized at every surface, which is
     /// compared.
     compares: bool,
@@ -51,10 +50,12 @@ impl Turn {
     fn new(z: DVec3, x: DVec3, to: DVec3) -> Option<Self> {
         let (c, t) = (x.dot(to), z.cross(x).dot(to));
         let length = c * c + t * t;
-        (length > 0.0).then(|| Self(((c * c - t * t) / length) as f32, (2.0 * c * t / length) as f32))
+        let inverse = 1.0 / length;
+        (length > 0.0).then_some(Self(((c * c - t * t) * inverse) as f32, (2.0 * c * t * inverse) as f32))
     }
 
     /// Of the linear components, 1 and 2.
+    #[inline(always)]
     fn of<const N: usize>(self, one: Lanes<N>, two: Lanes<N>) -> [Lanes<N>; 2] {
         let Self(c, s) = self;
         [one * c + two * s, two * c + one * -s]
@@ -63,8 +64,7 @@ impl Turn {
 
 /// A unit vector across z, near a direction.
 fn across(z: DVec3, near: DVec3) -> DVec3 {
-    let across = near.try_normalize().and_then(|near| (near - z * z.dot(near)).try_normalize());
-    across.unwrap_or_else(|| Frame::about(z).to_world(DVec3::X))
+    (near - z * z.dot(near)).try_normalize().unwrap_or_else(|| Frame::about(z).to_world(DVec3::X))
 }
 
 /// One way by which light leaves a surface.
@@ -76,31 +76,30 @@ struct Passing<'a, const N: usize> {
     z: [DVec3; 2],
 }
 
-impl<const N: usize> Rows<N> {
+impl<const N: usize, const K: usize> Rows<N, K> {
     /// Where light meets no surface before it reaches the sensor, which has image right at `x`.
-    fn starting(x: DVec3, count: usize, compares: bool) -> Self {
+    fn starting(x: DVec3, compares: bool) -> Self {
         let one = |row: usize, column: usize| if row == column { Lanes::ONE } else { Lanes::ZERO };
         let rows = std::array::from_fn(|row| std::array::from_fn(|column| one(row, column)));
-        Self { x, rows, count, compares }
+        Self { x, rows, compares }
     }
 
-    /// After a surface, and the factor by which polarization changes what leaves it.
-    fn after(&self, passing: &Passing<N>) -> (Self, Lanes<N>) {
+    /// Goes on beyond a surface; answers the factor by which polarization changes what leaves it.
+    fn pass(&mut self, passing: &Passing<N>) -> Lanes<N> {
         let Passing { mueller, value, z: [z, onward] } = *passing;
         let Mueller { axis, block, base } = mueller;
-        let base = base.map(|base| {
+        let base = base.as_ref().map(|base| {
             let inward = across(onward, onward.cross(base.normal));
             (base, Turn::new(z, self.x, z.cross(base.normal)).unwrap_or(Turn::NONE), inward)
         });
         let met = Turn::new(z, self.x, *axis);
-        let x = match (&base, met) {
+        self.x = match (&base, met) {
             (Some((.., inward)), None) => *inward,
             (_, None) => across(onward, self.x),
             (_, Some(_)) => across(onward, *axis),
         };
         let met = met.unwrap_or(Turn::NONE);
-        let mut after = Self { x, ..*self };
-        for row in &mut after.rows[..self.count] {
+        for row in &mut self.rows {
             let [q0, q1, q2, q3] = *row;
             let [r1, r2] = met.of(q1, q2);
             *row = [
@@ -111,15 +110,14 @@ impl<const N: usize> Rows<N> {
             ];
             if let Some((base, turn, inward)) = &base {
                 let [u1, _] = turn.of(q1, q2);
-                let back = Turn::new(onward, *inward, x).unwrap_or(Turn::NONE);
+                let back = Turn::new(onward, *inward, self.x).unwrap_or(Turn::NONE);
                 let [v1, v2] = back.of(base.arriving * q0 + base.both * u1, Lanes::ZERO);
                 row[0] += base.leaving * u1;
                 row[1] += v1;
                 row[2] += v2;
             }
         }
-        let factor = after.divide_by(value);
-        (after, factor)
+        self.divide_by(value)
     }
 
     /// Makes rows that are absolute shares of what the throughput becomes; answers the factor on what leaves the
@@ -131,33 +129,32 @@ impl<const N: usize> Rows<N> {
             true => (Lanes::ONE, Lanes::from_fn(|i| inverse(value[i]))),
             false => (Lanes::from_fn(|i| first[i].max(0.0) * inverse(value[i])), Lanes::from_fn(|i| inverse(first[i]))),
         };
-        self.rows[..self.count].iter_mut().flatten().for_each(|part| *part = *part * scale);
+        self.rows.iter_mut().flatten().for_each(|part| *part = *part * scale);
         // Rounding may leave a degree above 1.
         let [_, one, two, three] = self.rows[0];
         let squared = one * one + two * two + three * three;
-        if !self.compares && squared.0.iter().any(|&squared| squared > 1.0) {
+        if !self.compares && squared.0.iter().fold(false, |any, &squared| any | (squared > 1.0)) {
             let within = Lanes::from_fn(|i| if squared[i] > 1.0 { 1.0 / squared[i].sqrt() } else { 1.0 });
             self.rows[0][1..].iter_mut().for_each(|part| *part = *part * within);
         }
         factor
     }
 
-    /// After a surface that light leaves by a way, and the factor on what leaves.
-    fn passed(&self, at: &Interaction<N>, incoming: Incoming, value: Lanes<N>) -> (Self, Lanes<N>) {
+    /// Goes on beyond a surface that light leaves by a way; answers the factor on what leaves.
+    fn pass_by(&mut self, at: &Interaction<N>, incoming: Incoming, value: Lanes<N>) -> Lanes<N> {
         // Lanes that do not come this way are not asked for.
         let present = Lanes::from_fn(|i| if value[i] == 0.0 { 0.0 } else { at.arrival.present[i] });
         let mueller = at.material.mueller(&Arrival { present, ..at.arrival }, incoming);
         let z = [at.arrival.wo, -incoming.wi];
-        self.after(&Passing { mueller: &mueller, value, z })
+        self.pass(&Passing { mueller: &mueller, value, z })
     }
 
     /// The mirror image in a plane: light that was folded there by a shading normal.
-    fn folded(mut self, flat: DVec3) -> Self {
+    fn fold(&mut self, flat: DVec3) {
         self.x = shading::folded(self.x, flat);
-        for row in &mut self.rows[..self.count] {
+        for row in &mut self.rows {
             (row[2], row[3]) = (row[2] * -1.0, row[3] * -1.0);
         }
-        self
     }
 
     /// The direction by which a material was asked, where shading normals have folded it to `incoming`.
@@ -166,26 +163,33 @@ impl<const N: usize> Rows<N> {
         is_folded.then(|| Incoming { wi: shading::folded(incoming.wi, at.flat), ..incoming })
     }
 
-    /// The same as `passed`, along a direction that shading normals may have folded.
-    fn passed_folded(&self, at: &Interaction<N>, incoming: Incoming, value: Option<Lanes<N>>) -> (Self, Lanes<N>) {
+    /// The same as `pass_by`, along a direction that shading normals may have folded.
+    fn pass_folded(&mut self, at: &Interaction<N>, incoming: Incoming, value: Option<Lanes<N>>) -> Lanes<N> {
+        // Such a surface leaves no polarization.
+        if let Material::Diffuse(_) = at.material {
+            self.rows.iter_mut().flat_map(|row| &mut row[1..]).for_each(|part| *part = Lanes::ZERO);
+            self.x = across(incoming.wi, self.x);
+            return Lanes::ONE;
+        }
         let drawn = Self::unfolded(at, incoming);
         let asked = drawn.unwrap_or(incoming);
         let evaluated = || at.material.evaluate(&at.arrival, asked.wi).map_or(Lanes::ZERO, |(light, _)| light);
-        let (after, factor) = self.passed(at, asked, value.unwrap_or_else(evaluated));
-        (if drawn.is_some() { after.folded(at.flat) } else { after }, factor)
+        let factor = self.pass_by(at, asked, value.unwrap_or_else(evaluated));
+        if drawn.is_some() {
+            self.fold(at.flat);
+        }
+        factor
     }
 
-    /// What light of some polarization, whose direction is z, is to the sensor; and the factor on its intensity.
-    fn receiving(&self, z: DVec3, light: &Column<N>) -> (Self, Lanes<N>) {
-        let mut after = *self;
+    /// Takes light of some polarization, whose direction is z; answers the factor on its intensity.
+    fn receive(&mut self, z: DVec3, light: &Column<N>) -> Lanes<N> {
         let turn = Turn::new(z, self.x, light.x).unwrap_or(Turn::NONE);
-        for row in &mut after.rows[..self.count] {
+        for row in &mut self.rows {
             let [one, two] = turn.of(row[1], row[2]);
             let [s0, s1, s2, s3] = light.stokes;
             row[0] = row[0] * s0 + one * s1 + two * s2 + row[3] * s3;
         }
-        let factor = after.divide_by(Lanes::ONE);
-        (after, factor)
+        self.divide_by(Lanes::ONE)
     }
 
     /// The light that a photon brings which has followed the first row: Q times it.
@@ -210,109 +214,110 @@ impl<const N: usize> Rows<N> {
     }
 }
 
-impl<const N: usize> Polarization<N> for Rows<N> {
+impl<const N: usize, const K: usize> Polarization<N> for Rows<N, K> {
     /// None on surfaces that leave no polarization.
     type Landed = Option<Box<Column<N>>>;
 
     fn of_camera(world: &World, ray: &Ray) -> Self {
-        let count = if world.layers.has_stokes() { 4 } else { 1 };
         let camera = &world.scene.camera;
         let x = camera.image_right(ray.direction);
-        let rows = Self::starting(x, count, world.method.polarization == Polarizing::Compared);
-        let Some(filter) = camera.filter() else { return rows };
-        let (z, value) = (-ray.direction, Lanes([filter.transmittance() as f32; N]));
-        let (sin, cos) = libm::sincos(filter.angle);
-        let axis = x * cos + z.cross(x) * sin;
-        let mueller = Mueller::of_lanes(axis, Lanes::ONE, |_| Block::of_polarizer(filter.extinction));
-        rows.after(&Passing { mueller: &mueller, value, z: [z; 2] }).0
+        let mut rows = Self::starting(x, world.method.polarization == Polarizing::Compared);
+        if let Some(filter) = camera.filter() {
+            let (z, value) = (-ray.direction, Lanes([filter.transmittance() as f32; N]));
+            let (sin, cos) = libm::sincos(filter.angle);
+            let axis = x * cos + z.cross(x) * sin;
+            let mueller = Mueller::of_lanes(axis, Lanes::ONE, |_| Block::of_polarizer(filter.extinction));
+            rows.pass(&Passing { mueller: &mueller, value, z: [z; 2] });
+        }
+        rows
     }
 
     fn of_light(world: &World, ray: &Ray) -> Self {
         let x = Frame::about(ray.direction).to_world(DVec3::X);
-        Self::starting(x, 1, world.method.polarization == Polarizing::Compared)
+        Self::starting(x, world.method.polarization == Polarizing::Compared)
     }
 
-    fn after_straight(self, material: &Material<Table>, arrival: &Arrival<N>, straight: &mut Straight<N>) -> Self {
+    fn after_straight(mut self, material: &Material<Table>, arrival: &Arrival<N>, straight: &mut Straight<N>) -> Self {
         let (mueller, value) = (material.mueller_of_straight(arrival), straight.share());
-        let (after, factor) = self.after(&Passing { mueller: &mueller, value, z: [arrival.wo; 2] });
+        let factor = self.pass(&Passing { mueller: &mueller, value, z: [arrival.wo; 2] });
         let share = value * factor;
         straight.panes = Lanes::from_fn(|i| (share[i] - straight.holes[i]).max(0.0));
-        after
+        self
     }
 
-    fn split(self, at: &Interaction<N>, branches: &mut [Branch<N>], after: &mut Vec<Self>) {
+    fn split(&self, at: &Interaction<N>, branches: &mut [Branch<N>], after: &mut Vec<Self>) {
         after.clear();
         for branch in branches {
+            let number = after.len();
+            after.extend_from_slice(std::slice::from_ref(self));
             let value = match branch.pdf {
                 None => Some(branch.share),
                 Some(pdf) if at.flat == at.arrival.normal => Some(branch.share * pdf as f32),
                 Some(_) => None,
             };
-            let (rows, factor) = self.passed_folded(at, branch.incoming(), value);
-            branch.share = branch.share * factor;
-            after.push(rows);
+            branch.share = branch.share * after[number].pass_folded(at, branch.incoming(), value);
         }
     }
 
-    fn along(self, _: &Interaction<N>, _: &Branch<N>, known: Option<&Self>) -> Self {
+    fn along(&self, _: &Interaction<N>, _: &Branch<N>, known: Option<&Self>) -> Self {
         *known.expect("`split` tells of all branches")
     }
 
-    fn toward(self, at: &Interaction<N>, wi: DVec3, bsdf_cos: &mut Lanes<N>) -> Self {
+    fn toward(&self, at: &Interaction<N>, wi: DVec3, bsdf_cos: &mut Lanes<N>) -> Self {
         let crosses = wi.dot(at.flat) < 0.0;
         let value = if at.flat == at.arrival.normal { Some(*bsdf_cos) } else { None };
-        let (after, factor) = self.passed_folded(at, Incoming { wi, crosses, single: false }, value);
-        *bsdf_cos = *bsdf_cos * factor;
+        let mut after = *self;
+        *bsdf_cos = *bsdf_cos * after.pass_folded(at, Incoming { wi, crosses, single: false }, value);
         after
     }
 
-    fn moved(self, _: &Interaction<N>, _: DVec3, on_its_way: Self, light: &MetLight<N, Self>) -> f64 {
+    fn moved(&self, _: &Interaction<N>, _: DVec3, on_its_way: &Self, light: &MetLight<N, Self>) -> f64 {
         on_its_way.compared(light)
     }
 
-    fn moved_of_met(self, light: &MetLight<N, Self>) -> f64 {
+    fn moved_of_met(&self, light: &MetLight<N, Self>) -> f64 {
         self.compared(light)
     }
 
-    fn exciting(self) -> Self {
-        Self::starting(self.x, 1, self.compares)
+    fn exciting(&self) -> Self {
+        Self::starting(self.x, self.compares)
     }
 
-    fn lit_by(self, light: &Light<Table>, wi: DVec3, shone: &mut Lanes<N>) -> Self {
+    fn lit_by(mut self, light: &Light<Table>, wi: DVec3, shone: &mut Lanes<N>) -> Self {
         let Some((axis, degree)) = light.polarization().and_then(|sky| sky.toward(wi)) else { return self };
         let stokes = [1.0, degree as f32, 0.0, 0.0].map(|part| Lanes([part; N]));
-        let (after, factor) = self.receiving(-wi, &Column { x: axis, stokes });
-        *shone = *shone * factor;
-        after
+        *shone = *shone * self.receive(-wi, &Column { x: axis, stokes });
+        self
     }
 
-    fn shown(self, at: &Interaction<N>, direction: DVec3, bsdf_cos: &mut Lanes<N>) -> Self {
+    fn shown(&self, at: &Interaction<N>, direction: DVec3, bsdf_cos: &mut Lanes<N>) -> Self {
+        let mut after = *self;
         let incoming = Incoming { wi: direction, crosses: direction.dot(at.flat) < 0.0, single: false };
-        let (after, factor) = self.passed_folded(at, incoming, None);
-        *bsdf_cos = *bsdf_cos * factor;
+        *bsdf_cos = *bsdf_cos * after.pass_folded(at, incoming, None);
         after
     }
 
-    fn seen(self, at: &Interaction<N>, _: &Arrival<N>, on_its_way: Self, world: &World, ray: &Ray) -> SeenPhoton<N> {
-        let (after, factor) = Self::of_camera(world, ray).receiving(-ray.direction, &on_its_way.column());
-        let joined = after.change_of_joined(at, ray.direction, &None, after, factor);
+    fn seen(&self, at: &Interaction<N>, _: &Arrival<N>, on_its_way: &Self, world: &World, ray: &Ray) -> SeenPhoton<N> {
+        let mut after = Self::of_camera(world, ray);
+        let factor = after.receive(-ray.direction, &on_its_way.column());
+        let joined = after.change_of_joined(at, ray.direction, &None, &after, factor);
         SeenPhoton { change: joined as f32, factor: Some(factor), stokes: after.stokes() }
     }
 
-    fn landed(self, at: &Interaction<N>) -> Self::Landed {
+    fn landed(&self, at: &Interaction<N>) -> Self::Landed {
         let is_of_no_use = matches!(at.material, Material::Diffuse(_)) && !self.compares;
         (!is_of_no_use).then(|| Box::new(self.column()))
     }
 
-    fn join(self, at: &Interaction<N>, wi: DVec3, photon: &Self::Landed, bsdf_cos: &mut Lanes<N>) -> Self {
-        let after = self.toward(at, wi, bsdf_cos);
-        let Some(light) = photon else { return after };
-        let (after, factor) = after.receiving(-wi, light);
-        *bsdf_cos = *bsdf_cos * factor;
+    fn join(&self, at: &Interaction<N>, wi: DVec3, photon: &Self::Landed, bsdf_cos: &mut Lanes<N>) -> Self {
+        let mut after = self.toward(at, wi, bsdf_cos);
+        if let Some(light) = photon {
+            *bsdf_cos = *bsdf_cos * after.receive(-wi, light);
+        }
         after
     }
 
-    fn change_of_joined(self, _: &Interaction<N>, _: DVec3, _: &Self::Landed, joined: Self, lanes: Lanes<N>) -> f64 {
+    fn change_of_joined(&self, _: &Interaction<N>, _: DVec3, _: &Self::Landed, joined: &Self, lanes: Lanes<N>) -> f64 {
         let all = f64::from(lanes.sum());
         if self.compares && all > 0.0 { f64::from((lanes * joined.rows[0][0]).sum()) / all - 1.0 } else { 0.0 }
     }
@@ -322,6 +327,6 @@ impl<const N: usize> Polarization<N> for Rows<N> {
     }
 
     fn stokes(&self) -> Option<[Lanes<N>; 3]> {
-        (self.count == 4).then(|| [1, 2, 3].map(|row| self.rows[row][0]))
+        (K == 4).then(|| [1, 2, 3].map(|row| self.rows[row][0]))
     }
 }

@@ -21,7 +21,7 @@ macro_rules! in_lanes {
     };
 }
 
-/// The same in a world's lanes, with what its paths know of polarization:
+/// The same in a world's lanes, with what its paths know of polarization, but for Stokes layers:
 /// `in_lanes_of!(world, N, P => work::<N, P>())`.
 macro_rules! in_lanes_of {
     ($world:expr, $n:ident, $p:ident => $work:expr) => {
@@ -31,11 +31,26 @@ macro_rules! in_lanes_of {
                 $work
             }),
             _ => $crate::trace::width::in_lanes!($world.method.basis, $n => {
-                type $p = $crate::trace::rows::Rows<$n>;
+                type $p = $crate::trace::rows::Rows<$n, 1>;
                 $work
             }),
         }
     };
 }
+
+/// The same with what Stokes layers ask for: `in_lanes_of_layers!(world, N, P => work::<N, P>())`.
+macro_rules! in_lanes_of_layers {
+    ($world:expr, $n:ident, $p:ident => $work:expr) => {
+        if $world.layers.has_stokes() && $world.method.polarization != $crate::trace::Polarizing::Averaged {
+            $crate::trace::width::in_lanes!($world.method.basis, $n => {
+                type $p = $crate::trace::rows::Rows<$n, 4>;
+                $work
+            })
+        } else {
+            $crate::trace::width::in_lanes_of!($world, $n, $p => $work)
+        }
+    };
+}
 pub(super) use in_lanes;
 pub(super) use in_lanes_of;
+pub(super) use in_lanes_of_layers;
