@@ -110,6 +110,9 @@ impl<const N: usize> Arrival<'_, N> {
     /// its ray meets at an angle of some cosine; those of the ray where that is reflected totally.
     pub(super) fn own_boundary(&self, lane: usize, cos: f64) -> [f64; 3] {
         let own @ [n1, n2] = [self.incident_of(lane), self.beyond_of(lane)];
+        if self.direction_indices == [None; 2] {
+            return [n1, n2, cos];
+        }
         let along @ [here, beyond] = self.refracting(lane);
         let sin_squared = 1.0 - cos * cos;
         if along == own || here * here * sin_squared >= beyond * beyond {

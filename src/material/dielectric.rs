@@ -221,7 +221,8 @@ impl Dielectric<Table> {
     }
 
     fn mueller_of_smooth<const N: usize>(&self, arrival: &Arrival<N>, crosses: bool) -> Mueller<N> {
-        let tint = arrival.read(if crosses { &self.transmittance } else { &self.reflectance });
+        let table = if crosses { &self.transmittance } else { &self.reflectance };
+        let tint = if table.is_one() { Lanes::ONE } else { arrival.read(table) };
         let (axis, cos) = (arrival.wo.cross(arrival.normal), arrival.wo.dot(arrival.normal));
         if let Some(coating) = &self.coating {
             let met = coating.met(arrival, arrival.from_inside);

@@ -47,26 +47,18 @@ impl Block<f64> {
     /// Fresnel 1823; beyond the critical angle p is ahead of s by delta, tan(delta / 2) = cos sqrt(sin^2 - n^2) /
     /// sin^2, n = n2 / n1 (Born & Wolf 1999, section 1.5.4).
     pub fn reflected(n1: f64, n2: f64, cos: f64) -> Self {
-        let (c1, squared) = refracted_cosine(n1, n2, cos);
-        if squared > 0.0 {
-            let c2 = squared.sqrt();
-            let (s, p) = (n1 * c1 + n2 * c2, n2 * c1 + n1 * c2);
-            return Self::of_amplitudes((n1 * c1 - n2 * c2) / s, (n2 * c1 - n1 * c2) / p);
+        match Fresnel::new(n1, n2, cos) {
+            Ok(fresnel) => fresnel.reflected(),
+            Err([x, y]) => {
+                let inverse = 1.0 / (x * x + y * y);
+                Self { a: 1.0, d: 0.0, c: (x * x - y * y) * inverse, q: 2.0 * x * y * inverse }
+            }
         }
-        let (x, y) = (1.0 - c1 * c1, c1 * (n2 / n1) * (-squared).sqrt());
-        let length = x * x + y * y;
-        Self { a: 1.0, d: 0.0, c: (x * x - y * y) / length, q: 2.0 * x * y / length }
     }
 
     /// What crosses it, as flux: radiance changes by (n1 / n2)^2 besides. Nothing beyond the critical angle.
     pub fn refracted(n1: f64, n2: f64, cos: f64) -> Self {
-        let (c1, squared) = refracted_cosine(n1, n2, cos);
-        if squared <= 0.0 {
-            return Self::default();
-        }
-        let c2 = squared.sqrt();
-        let both = 2.0 * (n1 * n2 * c1 * c2).sqrt();
-        Self::of_amplitudes(both / (n1 * c1 + n2 * c2), both / (n2 * c1 + n1 * c2))
+        Fresnel::new(n1, n2, cos).map_or(Self::default(), |fresnel| fresnel.refracted())
     }
 
     /// What becomes of radiance at a smooth boundary between two indices, met at an angle of a cosine, where it crosses
@@ -140,11 +132,42 @@ impl Block<f64> {
     }
 }
 
-/// The cosine within 0..1, and the square of the one beyond; it is negative under total reflection.
-fn refracted_cosine(n1: f64, n2: f64, cos: f64) -> (f64, f64) {
-    let c1 = cos.clamp(0.0, 1.0);
-    let eta = n1 / n2;
-    (c1, ((n2 - n1) * (n2 + n1) / (n2 * n2) + (eta * c1) * (eta * c1)).min(1.0))
+/// Fresnel's equations of a boundary with one square root and one division.
+struct Fresnel {
+    /// n1 c1, n2 c2, n2^2 c1 and n1 n2 c2, with the cosines c1 and c2 on both sides.
+    s: [f64; 2],
+    p: [f64; 2],
+    /// One over (n1 c1 + n2 c2) (n2^2 c1 + n1 n2 c2).
+    inverse: f64,
+    n2: f64,
+}
+
+impl Fresnel {
+    /// At an angle with cosine `cos`; beyond the critical angle sin^2 and cos sqrt(sin^2 - n^2), both times n1.
+    fn new(n1: f64, n2: f64, cos: f64) -> Result<Self, [f64; 2]> {
+        let c1 = cos.clamp(0.0, 1.0);
+        let along = n1 * c1;
+        let squared = (n2 - n1) * (n2 + n1) + along * along;
+        if squared <= 0.0 {
+            return Err([n1 * (1.0 - c1 * c1), c1 * (-squared).sqrt()]);
+        }
+        let beyond = squared.sqrt().min(n2);
+        let (s, p) = ([along, beyond], [n2 * n2 * c1, n1 * beyond]);
+        let inverse = 1.0 / ((s[0] + s[1]) * (p[0] + p[1]));
+        Ok(Self { s, p, inverse, n2 })
+    }
+
+    fn reflected(&self) -> Block<f64> {
+        let Self { s: [s1, s2], p: [p1, p2], inverse, .. } = *self;
+        Block::of_amplitudes((s1 - s2) * (p1 + p2) * inverse, (p1 - p2) * (s1 + s2) * inverse)
+    }
+
+    fn refracted(&self) -> Block<f64> {
+        let Self { s: [s1, s2], p: [p1, p2], inverse, n2 } = *self;
+        // Both amplitudes are 2 sqrt(n1 n2 c1 c2) over a sum.
+        let (s, p) = ((p1 + p2) * inverse, n2 * (s1 + s2) * inverse);
+        Block::of_amplitudes(s, p).times(4.0 * s1 * s2)
+    }
 }
 
 impl<const N: usize> Block<Lanes<N>> {
@@ -199,9 +222,9 @@ impl<const N: usize> Mueller<N> {
 
     /// Of a boundary that light meets in a plane; each lane on the ray has its own block.
     pub fn of_lanes(axis: DVec3, present: Lanes<N>, mut of_lane: impl FnMut(usize) -> Block<f64>) -> Self {
-        let mut block = Block::NONE;
-        (0..N).filter(|&lane| present[lane] != 0.0).for_each(|lane| block.set(lane, of_lane(lane)));
-        Self { axis, block, base: None }
+        let mut mueller = Self { axis, block: Block::NONE, base: None };
+        (0..N).filter(|&lane| present[lane] != 0.0).for_each(|lane| mueller.block.set(lane, of_lane(lane)));
+        mueller
     }
 
     /// Of a share that is left as it is.
