@@ -324,7 +324,10 @@ impl Scatter for Material<Table> {
     fn mueller<const N: usize>(&self, arrival: &Arrival<N>, incoming: Incoming) -> Mueller<N> {
         match self {
             Self::Mirror(mirror) if incoming.single => mirror.mueller(arrival),
-            Self::Thin(thin) if incoming.single => thin.muellers(arrival)[1],
+            Self::Thin(thin) if incoming.single => {
+                let [_, mirrored] = thin.muellers(arrival);
+                mirrored
+            }
             Self::Conductor(conductor) => conductor.mueller(arrival, incoming),
             Self::Dielectric(dielectric) => dielectric.mueller(arrival, incoming),
             Self::Plastic(plastic) => plastic.mueller(arrival, incoming),
@@ -337,7 +340,10 @@ impl Scatter for Material<Table> {
 
     fn mueller_of_straight<const N: usize>(&self, arrival: &Arrival<N>) -> Mueller<N> {
         match self {
-            Self::Thin(thin) => thin.muellers(arrival)[0],
+            Self::Thin(thin) => {
+                let [through, _] = thin.muellers(arrival);
+                through
+            }
             Self::Polarizer(polarizer) => polarizer.mueller(arrival),
             Self::Retarder(retarder) => retarder.mueller(arrival),
             Self::Mix(mix) => mix.mueller_of_straight(arrival),

@@ -206,14 +206,14 @@ pub struct Base<const N: usize> {
 /// What a surface does to light that leaves it to the viewer, in the unit of its share or of BSDF times cosine.
 ///
 /// The rest of that share, which is not in `block` nor in `base`, leaves unpolarized whatever it was.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Mueller<const N: usize> {
     /// Across the plane of incidence of `block`, of any length; 0 where there is none.
     pub axis: DVec3,
     /// What meets one boundary.
     pub block: Block<Lanes<N>>,
-    /// What comes from below a coat.
-    pub base: Option<Base<N>>,
+    /// What comes from below a coat. In a box: most surfaces have none, and matrices are handed on.
+    pub base: Option<Box<Base<N>>>,
 }
 
 impl<const N: usize> Mueller<N> {
@@ -235,11 +235,9 @@ impl<const N: usize> Mueller<N> {
 
     /// A share of it.
     pub fn scaled(&self, share: Lanes<N>) -> Self {
-        let base = self.base.map(|base| Base {
-            leaving: base.leaving * share,
-            arriving: base.arriving * share,
-            both: base.both * share,
-            ..base
+        let base = self.base.as_ref().map(|base| {
+            let [leaving, arriving, both] = [base.leaving, base.arriving, base.both].map(|part| part * share);
+            Box::new(Base { leaving, arriving, both, ..**base })
         });
         Self { axis: self.axis, block: self.block.map(|part| part * share), base }
     }
@@ -247,14 +245,14 @@ impl<const N: usize> Mueller<N> {
     /// Both together; where both have a plane of incidence it is the same.
     pub fn plus(&self, other: &Self) -> Self {
         let axis = if self.axis == DVec3::ZERO { other.axis } else { self.axis };
-        let base = match (self.base, other.base) {
-            (Some(a), Some(b)) => Some(Base {
+        let base = match (&self.base, &other.base) {
+            (Some(a), Some(b)) => Some(Box::new(Base {
                 leaving: a.leaving + b.leaving,
                 arriving: a.arriving + b.arriving,
                 both: a.both + b.both,
-                ..a
-            }),
-            (a, b) => a.or(b),
+                ..**a
+            })),
+            (a, b) => a.as_ref().or(b.as_ref()).cloned(),
         };
         Self { axis, block: self.block.plus(&other.block), base }
     }

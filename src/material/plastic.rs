@@ -264,7 +264,7 @@ impl Plastic<Table> {
             arriving: Lanes::from_fn(|i| (base[i] * arriving[i]) as f32),
             both: Lanes::from_fn(|i| (base[i] * leaving[i] * arriving[i]) as f32),
         };
-        Mueller { base: Some(base), ..mueller }
+        Mueller { base: Some(Box::new(base)), ..mueller }
     }
 
     /// The degree by the coat, which light crosses and, where it is rough, is mirrored by:
