@@ -5,6 +5,7 @@
 //! ```
 
 mod closed_forms;
+mod polarized;
 mod rooms;
 mod ways;
 

@@ -137,6 +137,22 @@ fn spectra_of_lanes_that_part_make_the_colors_of_the_image() {
     assert!(worst <= 0.06, "{worst}");
 }
 
+/// The floor fluoresces: its light is of other wavelengths than the photons and lamps that excite it.
+#[test]
+fn spectra_of_dyes_make_the_colors_of_the_image() {
+    for (glass, model, tolerance) in [("1.5", "model bands", 1e-3), ("\"N-SF11\"", "model hero", 0.06)] {
+        let floor = "floor.diffuse = { reflectance = 0.1, fluorescence = { absorption = { samples = [[420, 0.9], [520, 0]] }, \
+                     emission = { samples = [[500, 0], [540, 1], [620, 0]] }, quantum_yield = 0.9 } }";
+        let text = room(FINE, glass).replace("floor.diffuse.reflectance = { rgb = [0.7, 0.5, 0.3] }", floor);
+        let image = rendered(&text);
+        assert!(image.because().iter().any(|line| line.starts_with(model)), "{:?}", image.because());
+        assert!(image.because().iter().any(|line| line.contains("floor: fluoresces")), "{:?}", image.because());
+        let worst = worst_color(image.film());
+        println!("{model}: {worst:.1e}");
+        assert!(worst <= tolerance, "{model}: {worst}");
+    }
+}
+
 #[test]
 fn light_vertices_leave_spectra_too() {
     let text = format!(

@@ -64,6 +64,7 @@ BUGS = {
         "a stop rule that looks at noise, and not at how far gathered photons blur",
         ("caustics", "an_error_below_the_blur_is_not_reached_until_the_radius_has_shrunk"),
     ),
+    "power_for_photons": Bug("a dye's quantum yield of power, and not of photons"),
     "ten_degree_observer": Bug("color matching functions of 1964 (10 degrees) for those of 1931"),
     "r_p_of_a_film": Bug(
         "r_p of a film with the sign of r_s",
