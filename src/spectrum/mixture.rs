@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::draw::Hero;
-use super::visible::{self, COUNT};
+use super::visible::{self, COUNT, ULTRAVIOLET};
 use super::{Emission, Excited};
 use crate::math::Distribution;
 
@@ -31,6 +31,8 @@ impl Mixture {
         let mut probabilities = vec![0.0; steps + lines.len()];
         let mut add = |share: f64, density: &[f64], line: &dyn Fn(f64) -> f64| {
             let mut part: Vec<f64> = density.windows(2).map(|ends| 0.5 * (ends[0] + ends[1])).collect();
+            // The eye begins at once.
+            part[..ULTRAVIOLET].fill(0.0);
             part.extend(lines.iter().map(|&nm| line(nm)));
             let total: f64 = part.iter().sum();
             if total > 0.0 {
