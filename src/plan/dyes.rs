@@ -17,7 +17,7 @@ impl Ways<'_> {
         self.read(wavelengths_nm.len(), |tint| tint.at(wavelengths_nm, basis))
     }
 
-    /// The same in the lanes of a basis.
+    /// What is left of light in the lanes of a basis.
     fn on(&self, basis: &Basis) -> Vec<Lanes<MAX_LANES>> {
         let lanes = |left: Vec<f64>| Lanes::from_fn(|i| left.get(i).map_or(0.0, |&x| x as f32));
         self.read(basis.fixed_lanes(), |tint| tint.on(basis)).into_iter().map(lanes).collect()
@@ -119,5 +119,5 @@ pub(super) fn spoken(dyes: &[Dye], basis: &Basis) -> Option<String> {
     let (first, last) = (strong.next()?, strong.last()?);
     let lowest = basis.wavelengths_nm().iter().copied().fold(f64::INFINITY, f64::min);
     let lanes = if basis.fixed_lanes() > 3 { format!("; lanes reach down to {lowest:.0} nm") } else { String::new() };
-    Some(format!("fluoresces by light of {first:.0} to {last:.0} nm{lanes}"))
+    Some(format!("fluoresces under light of {first:.0} to {last:.0} nm{lanes}"))
 }

@@ -124,10 +124,10 @@ impl<'a> Survey<'a> {
     pub(super) fn needs_ultraviolet(&self) -> bool {
         let invisible = |dye: &Dye, light: &Emission| {
             let excited = dye.excited_by(light);
-            let smooth = visible::wavelengths().zip(excited.smooth).filter(|part| part.0 < ULTRAVIOLET_NM);
+            let smooth = visible::wavelengths().zip(&excited.smooth).filter(|part| part.0 < ULTRAVIOLET_NM);
             let lines = excited.lines.iter().filter(|line| line[0] < ULTRAVIOLET_NM);
-            let below: f64 = smooth.map(|part| part.1).chain(lines.map(|line| line[1])).sum();
-            below > 1e-3 * dye.excited_by(light).parts().sum::<f64>()
+            let below: f64 = smooth.map(|part| *part.1).chain(lines.map(|line| line[1])).sum();
+            below > 1e-3 * excited.parts().sum::<f64>()
         };
         self.dyes.iter().any(|(dye, _)| self.judged().any(|(_, light)| invisible(dye, light)))
     }

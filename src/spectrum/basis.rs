@@ -84,7 +84,8 @@ impl Basis {
         Self::evenly(space, bands, [from, to], lines_nm)
     }
 
-    /// The same from 300 nm on, for dyes that ultraviolet light excites.
+    /// As many wavelengths in equal steps from 300 to 730 nm, for dyes that ultraviolet light excites, and a lane of
+    /// its own for every ideal line.
     ///
     /// # Panics
     /// If lanes and lines are none or more than [`MAX_LANES`].

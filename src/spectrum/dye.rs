@@ -16,17 +16,17 @@ pub struct Dye {
     pub quantum_yield: f64,
 }
 
-/// How bright a dye is by a light: a factor on what it shines.
+/// How brightly a dye shines under a light, as a factor on its emission.
 #[derive(Clone, Debug)]
 pub struct Excited {
-    /// By the light of each wavelength of the grid, per nm.
+    /// What each wavelength of the grid adds, per nm.
     pub smooth: Vec<f64>,
-    /// By each of its ideal lines: the wavelength in nm, and the factor.
+    /// What each ideal line adds: its wavelength in nm, and the factor.
     pub lines: Vec<[f64; 2]>,
 }
 
 impl Excited {
-    /// By all parts of the light: first those of the grid, then the lines.
+    /// What all parts of the light add: first those of the grid, then the lines.
     pub fn parts(&self) -> impl Iterator<Item = f64> {
         self.smooth.iter().copied().chain(self.lines.iter().map(|line| line[1]))
     }
@@ -77,7 +77,7 @@ impl Dye {
         Emission::new(&self.emission, space)
     }
 
-    /// How bright it is by a light.
+    /// How brightly it shines under a light.
     pub fn excited_by(&self, light: &Emission) -> Excited {
         let shines = self.shines(ColorSpace::default());
         let (absorbed, total) = (self.absorbed(), shines.spectrum().iter().sum::<f64>());

@@ -86,7 +86,7 @@ impl Emission {
         visible::luminous() * self.correction[1]
     }
 
-    /// All of its power, on the scale on which an even spectrum of 1 has as much as there are nm of visible light in 1.
+    /// All of its power over the width of the visible range, on the scale on which an even spectrum of 1 is 1 per nm.
     pub(super) fn power(&self) -> f64 {
         let sum = self.spectrum.iter().sum::<f64>() + self.lines.iter().map(|line| line[1]).sum::<f64>();
         sum * self.unit() / (visible::LAST_NM - visible::FIRST_NM)

@@ -59,7 +59,7 @@ fn bins(probabilities: impl Iterator<Item = f64>, parts: f64) -> (Vec<u32>, Vec<
             width = 0.0;
         }
         let last = chances.len() - 1;
-        // Where nothing is drawn, below the visible range, no bin need be narrow.
+        // Steps below the visible range, of which none is drawn, make no bin wider.
         width = if chances[last] == 0.0 { 1.0 } else { width + 1.0 };
         chances[last] += probability;
         bins.push(last as u32);

@@ -5,7 +5,7 @@
 //! ended, is 0 on the average. What is left when all paths have ended was lost: to a limit of bounces, or to a mistake.
 //!
 //! A weight is a share of flux: a throughput without the factor of radiance between media, each lane by its own index.
-//! What dyes absorb is absorbed: what excites them is another balance, which is not kept.
+//! What a dye absorbs counts as absorbed; the paths that look for what excites it have no weight here.
 //!
 //! Where lanes part for the first time the fixed lanes hand over to the heroes, so lanes that are together and lanes
 //! that have parted have a balance each.
@@ -41,18 +41,12 @@ impl<'a, const N: usize> Audit<'a, N> {
 
     /// A path has come to its end.
     pub(super) fn end<P>(&mut self, path: &Path<N, P>, draw: &Draw<N>) {
-        if path.excitation.is_some() {
-            return;
-        }
         let ended = self.weight(path, path.throughput, draw);
         self.close(path.parted, &ended);
     }
 
     /// A path has come to its end, but for what goes straight on.
     pub(super) fn end_beside<P>(&mut self, path: &Path<N, P>, onward: Option<&Onward<N, P>>, draw: &Draw<N>) {
-        if path.excitation.is_some() {
-            return;
-        }
         let share = onward.map_or(Lanes::ZERO, |onward| onward.straight.share());
         let ended = self.weight(path, path.throughput, draw);
         self.close(path.parted, &std::array::from_fn(|i| ended[i] * (1.0 - f64::from(share[i]))));
@@ -60,7 +54,7 @@ impl<'a, const N: usize> Audit<'a, N> {
 
     /// The medium around a path has absorbed some of the throughput that it had before.
     pub(super) fn absorb<P>(&mut self, path: &Path<N, P>, before: Throughput<N>, draw: &Draw<N>) {
-        if before != path.throughput && path.excitation.is_none() {
+        if before != path.throughput {
             let [before, after] = [before, path.throughput].map(|throughput| self.weight(path, throughput, draw));
             self.close(path.parted, &std::array::from_fn(|i| before[i] - after[i]));
         }
@@ -77,9 +71,6 @@ impl<'a, const N: usize> Audit<'a, N> {
         branches: &[Branch<N>],
         straight: Option<&Straight<N>>,
     ) {
-        if path.excitation.is_some() {
-            return;
-        }
         let (arrival, draw) = (&at.arrival, at.arrival.draw);
         let arrived = self.weight(path, path.throughput, draw);
         let clear = at.material.absorbs_nothing();
@@ -122,6 +113,9 @@ impl<'a, const N: usize> Audit<'a, N> {
 
     /// A throughput as a share of the flux that left the camera, at the end of a path.
     fn weight<P>(&self, path: &Path<N, P>, throughput: Throughput<N>, draw: &Draw<N>) -> [f64; N] {
+        if path.excitation.is_some() {
+            return [0.0; N];
+        }
         let (lanes, here) = (throughput.of(Lanes::ONE), self.indices(&path.media, draw));
         std::array::from_fn(|lane| {
             let ratio = here[lane] / self.start[lane];

@@ -23,7 +23,7 @@ pub(super) struct Dyes {
     shares: Vec<f64>,
     /// How many lights there are, behind which dyes follow as sources.
     lights: usize,
-    /// What scatters the light of dyes, of which they take their share by its wavelengths.
+    /// The matte white surface at which paths look for what excites a dye: `excitations` know how much that absorbs.
     pub(super) white: Material<Table>,
 }
 
@@ -83,8 +83,8 @@ impl Dyes {
         &self.excitations[dye][source]
     }
 
-    /// The largest of a number for each dye that a light excites, of an emission in lanes; the number is one for the
-    /// color of its light.
+    /// The most that `number` answers for any dye which a light of an emission excites, told the dye as a source and
+    /// its lanes.
     pub(super) fn most_excited<const N: usize>(
         &self,
         light: LightId,

@@ -21,7 +21,7 @@ macro_rules! in_lanes {
     };
 }
 
-/// The same in a world's lanes, with what its paths know of polarization, but for Stokes layers:
+/// Does work in a world's lanes, with what its paths know of polarization where no Stokes layers are made:
 /// `in_lanes_of!(world, N, P => work::<N, P>())`.
 macro_rules! in_lanes_of {
     ($world:expr, $n:ident, $p:ident => $work:expr) => {
@@ -38,7 +38,7 @@ macro_rules! in_lanes_of {
     };
 }
 
-/// The same with what Stokes layers ask for: `in_lanes_of_layers!(world, N, P => work::<N, P>())`.
+/// Does work in a world's lanes, with all that its layers ask of polarization: `in_lanes_of_layers!(world, N, P => work::<N, P>())`.
 macro_rules! in_lanes_of_layers {
     ($world:expr, $n:ident, $p:ident => $work:expr) => {
         if $world.layers.has_stokes() && $world.method.polarization != $crate::trace::Polarizing::Averaged {
