@@ -38,7 +38,8 @@ macro_rules! in_lanes_of {
     };
 }
 
-/// Does work in a world's lanes, with all that its layers ask of polarization: `in_lanes_of_layers!(world, N, P => work::<N, P>())`.
+/// Does work in a world's lanes, with all that its layers ask of polarization:
+/// `in_lanes_of_layers!(world, N, P => work::<N, P>())`.
 macro_rules! in_lanes_of_layers {
     ($world:expr, $n:ident, $p:ident => $work:expr) => {
         if $world.layers.has_stokes() && $world.method.polarization != $crate::trace::Polarizing::Averaged {
