@@ -5,6 +5,8 @@
 //! > 0 is horizontal.
 
 mod criterion;
+mod degrees;
+mod plates;
 
 use abbe::film::Layer;
 use abbe::math::DVec3;

@@ -6,5 +6,6 @@
 //! ```
 
 mod directions;
+mod films;
 mod fresnel;
 mod lanes_at_the_critical_angle;

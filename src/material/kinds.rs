@@ -28,7 +28,7 @@ pub enum Material<S> {
     /// Lets light through that is polarized along an axis.
     Polarizer(Polarizer),
     /// Shifts the phase of light that is polarized along an axis.
-    Retarder(Retarder),
+    Retarder(Retarder<S>),
     /// Does what two other materials do, each on a share of the surface.
     Mix(Mix<S, Self>),
     /// Does what another material does, and lets the rest straight through.
@@ -47,7 +47,7 @@ impl<S> Material<S> {
             Self::Emissive(emissive) => Material::Emissive(emissive.map(convert)),
             Self::Plastic(plastic) => Material::Plastic(plastic.map(convert)),
             Self::Polarizer(polarizer) => Material::Polarizer(*polarizer),
-            Self::Retarder(retarder) => Material::Retarder(*retarder),
+            Self::Retarder(retarder) => Material::Retarder(retarder.map(convert)),
             Self::Mix(Mix { materials, amount }) => {
                 let amount = convert(Quantity::Share, amount);
                 let materials = materials.each_ref().map(|part| part.map(|material| material.map(convert)));
@@ -162,10 +162,18 @@ impl<S> Material<S> {
         std::iter::once(self).chain(parts).collect()
     }
 
+    /// The axis of its own by which it polarizes light, if it has one.
+    pub fn axis(&self) -> Option<DVec3> {
+        match self {
+            Self::Polarizer(polarizer) => Some(polarizer.axis),
+            Self::Retarder(retarder) => Some(retarder.axis),
+            _ => self.parts().iter().find_map(|part| part.material().axis()),
+        }
+    }
+
     /// Whether it polarizes light by an axis of its own.
     pub fn has_axis(&self) -> bool {
-        matches!(self, Self::Polarizer(_) | Self::Retarder(_))
-            || self.parts().iter().any(|part| part.material().has_axis())
+        self.axis().is_some()
     }
 
     /// The dyes in it and in all that it is made of, in the order of `with_parts`.

@@ -60,7 +60,7 @@ pub use mueller::{Base, Block, Mueller};
 pub use part::Part;
 pub use plastic::Plastic;
 pub use polarizer::Polarizer;
-pub use retarder::Retarder;
+pub use retarder::{PathDifference, Retardance, Retarder};
 pub use rough_interface::{RoughInterface, Side, Sides, Way};
 pub use roughness::{RoughReflection, RoughSurface, Roughness};
 pub use scatter::Scatter;

@@ -223,7 +223,9 @@ impl<const N: usize> Mueller<N> {
     /// Of a boundary that light meets in a plane; each lane on the ray has its own block.
     pub fn of_lanes(axis: DVec3, present: Lanes<N>, mut of_lane: impl FnMut(usize) -> Block<f64>) -> Self {
         let mut mueller = Self { axis, block: Block::NONE, base: None };
-        (0..N).filter(|&lane| present[lane] != 0.0).for_each(|lane| mueller.block.set(lane, of_lane(lane)));
+        for lane in present.present() {
+            mueller.block.set(lane, of_lane(lane));
+        }
         mueller
     }
 

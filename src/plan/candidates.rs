@@ -37,7 +37,7 @@ pub(super) fn error(survey: &Survey, seen: &Seen, basis: &Basis) -> f64 {
 fn missed(survey: &Survey, basis: &Basis, scattering: &[&Tint], smooth: &[&Tint]) -> f64 {
     let draw = Draw::<MAX_LANES>::fixed(basis.fixed_lanes());
     let read = |tints: &[&Tint]| tints.iter().map(|tint| tint.on(basis)).collect::<Vec<_>>();
-    let films = smooth.iter().filter(|tint| matches!(tint, Tint::Film(_))).count();
+    let films = smooth.iter().filter(|tint| tint.has_fringes()).count();
     let in_lanes = paths(&read(scattering), &read(smooth), films);
     let mut worst: f64 = 0.0;
     for (curve, light) in survey.judged() {
@@ -70,7 +70,7 @@ fn exact_colors(light: &Emission, scattering: &[&Tint], smooth: &[&Tint], basis:
         }
         color
     };
-    let films = smooth.iter().filter(|tint| matches!(tint, Tint::Film(_))).count();
+    let films = smooth.iter().filter(|tint| tint.has_fringes()).count();
     paths(&read(scattering), &read(smooth), films).iter().map(sum).collect()
 }
 
@@ -114,7 +114,7 @@ pub(super) fn candidates(survey: &Survey, seen: &Seen, heroes: usize) -> Vec<Can
         if heroes == 0 && error == 0.0 {
             return candidates;
         }
-    } else if let (Some(light), false) = (survey.common_light(), survey.has_films() || !survey.dyes.is_empty()) {
+    } else if let (Some(light), false) = (survey.common_light(), survey.has_fringes() || !survey.dyes.is_empty()) {
         candidates.push(candidate(Basis::prefiltered(space, &light), PREFILTERED_SAFETY));
     }
     candidates.extend([8, 12, 16, 32].map(|bands| candidate(bands_beside(survey, bands, heroes), LANES_SAFETY)));

@@ -1,8 +1,8 @@
-//! Films in which light interferes, as the survey judges lanes by them.
+//! Films and wave plates in which light interferes, as the survey judges lanes by them.
 
 use std::borrow::Cow;
 
-use crate::material::{COHERENT_NM, Coating, Layer, Material, PHASE_STEP, Stack};
+use crate::material::{COHERENT_NM, Coating, Layer, Material, PHASE_STEP, PathDifference, Retardance, Stack};
 use crate::math::Complex;
 use crate::spectrum::{Basis, Curve, CurveKind, Quantity};
 
@@ -101,18 +101,42 @@ fn even(thickness: &Curve, thickest: bool) -> Cow<'_, Curve> {
     }
 }
 
-/// How lanes read the films of a material, in words; none of one without.
+/// The plate of a material alone that shows fringes between polarizers, if it is one.
+pub(super) fn plate(material: &Material<Curve>) -> Option<&PathDifference<Curve>> {
+    match material {
+        Material::Retarder(retarder) => match &retarder.retardance {
+            Retardance::Path(path) => Some(path),
+            Retardance::Phase(_) => None,
+        },
+        _ => None,
+    }
+}
+
+/// What two crossed polarizers let through of light polarized along the first, with a plate at 45 degrees between them,
+/// of all that is read of each curve: sin^2 of half its phase.
+pub(super) fn between_polarizers(
+    plate: &PathDifference<Curve>,
+    read: impl Fn(Quantity, &Curve) -> Vec<f64>,
+) -> Vec<f64> {
+    let [nm, band] = [(Quantity::Wavelength, &plate.wavelength), (Quantity::BandWidth, &plate.band)]
+        .map(|(what, one)| read(what, one));
+    nm.iter().zip(band).map(|(nm, band)| 0.5 * (1.0 - plate.block(*nm, band).c)).collect()
+}
+
+/// How lanes read the films and the plates of a material, in words; none of one without.
 pub(super) fn spoken(material: &Material<Curve>, basis: &Basis) -> Option<String> {
+    let read = |quantity, curve: &Curve| basis.tabulate(quantity, curve).bins().to_vec();
+    if let Some(plate) = material.with_parts().into_iter().find_map(plate) {
+        return Some(spoken_plate(plate, basis, read));
+    }
     let films = films(material);
     let thickest = films.first().filter(|film| film.thickest)?;
-    let read = |quantity, curve: &Curve| basis.tabulate(quantity, curve).bins().to_vec();
     let widest = stacks(thickest.coating, true, read).iter().map(Stack::phase_step).fold(0.0, f64::max);
     let optical = thickest.optical_nm();
     let count = thickest.coating.layers.len();
     let layers = if count == 1 { "a layer".to_owned() } else { format!("{count} layers") };
     let how = if basis.fixed_lanes() <= 3 {
-        let [red, green, blue] = [0, 1, 2].map(|band| basis.wavelengths_nm()[band].round());
-        format!("its light interferes at {red}, {green} and {blue} nm alone, for three bands have no other wavelengths")
+        format!("its light interferes {}", of_three_bands(basis))
     } else if widest <= PHASE_STEP {
         "its light interferes at each lane's own wavelength".to_owned()
     } else if optical.iter().all(|&nm| nm <= COHERENT_NM) {
@@ -125,4 +149,24 @@ pub(super) fn spoken(material: &Material<Curve>, basis: &Basis) -> Option<String
     };
     let total = optical.iter().sum::<f64>().round();
     Some(format!("{layers} of an optical thickness of up to {total} nm; {how}"))
+}
+
+/// Where three bands read what has fringes.
+fn of_three_bands(basis: &Basis) -> String {
+    let [red, green, blue] = [0, 1, 2].map(|band| basis.wavelengths_nm()[band].round());
+    format!("at {red}, {green} and {blue} nm alone, for three bands have no other wavelengths")
+}
+
+fn spoken_plate(plate: &PathDifference<Curve>, basis: &Basis, read: impl Fn(Quantity, &Curve) -> Vec<f64>) -> String {
+    let [nm, band] = [(Quantity::Wavelength, &plate.wavelength), (Quantity::BandWidth, &plate.band)]
+        .map(|(what, one)| read(what, one));
+    let widest = nm.iter().zip(band).map(|(nm, band)| plate.phase_step(*nm, band)).fold(0.0, f64::max);
+    let how = if basis.fixed_lanes() <= 3 {
+        format!("its phase is that {}", of_three_bands(basis))
+    } else if widest <= PHASE_STEP {
+        "its phase is that at each lane's own wavelength".to_owned()
+    } else {
+        "its phase is averaged over each lane's band of wavelengths, but not that of emission lines".to_owned()
+    };
+    format!("a retardation of {} nm; {how}", plate.nm)
 }

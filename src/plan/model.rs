@@ -207,7 +207,9 @@ fn materials(scene: &Scene<Curve>, basis: &Basis) -> Vec<String> {
     for named in &scene.materials {
         let dyes: Vec<Dye> = named.material.dyes().into_iter().map(|dye| dye.dye()).collect();
         lines.extend(spoken_dyes(&dyes, basis).map(|dyes| format!("material {}: {dyes}", named.name)));
-        lines.extend(spoken_film(&named.material, basis).map(|film| format!("material {}: {film}", named.name)));
+        let film = spoken_film(&named.material, basis).map(|film| format!("material {}: {film}", named.name));
+        // Each object has a sheet of its own, turned with it.
+        lines.extend(film.filter(|film| !lines.contains(film)));
         match &named.material {
             Material::Dielectric(glass) => {
                 let table = basis.tabulate(Quantity::Index, &glass.index);

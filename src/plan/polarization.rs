@@ -2,7 +2,6 @@
 
 use super::survey::tolerance;
 use super::words::percent;
-use crate::film::Layer;
 use crate::scene::{PolarizationText, Scene};
 use crate::spectrum::Curve;
 use crate::trace::{Polarizing, World, polarization_error, seen_light};
@@ -59,7 +58,7 @@ fn asking(scene: &Scene<Curve>) -> Option<String> {
     if scene.camera.filter().is_some() {
         return Some("there is a filter before the camera".into());
     }
-    if Layer::STOKES.iter().any(|layer| scene.format.layers.contains(layer)) {
+    if scene.format.has_stokes() {
         return Some("the film asks for Stokes vectors".into());
     }
     if scene.lights.iter().any(|light| light.polarization().is_some()) {

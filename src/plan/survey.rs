@@ -3,10 +3,12 @@
 use std::borrow::Cow;
 use std::sync::Arc;
 
-use super::films::{Beyond, Film, films};
+use super::films::{Beyond, Film, between_polarizers, films, plate};
 use super::lights::{different, farthest_apart};
-use crate::material::{Conductor, Dielectric, Material, Plastic, conductor_reflectance, diffuse_transmittance};
-use crate::scene::Scene;
+use crate::material::{
+    Conductor, Dielectric, Material, PathDifference, Plastic, conductor_reflectance, diffuse_transmittance,
+};
+use crate::scene::{PolarizationText, Scene};
 use crate::spectrum::{
     Basis, ColorSpace, Curve, CurveKind, Dye, Emission, Quantity, Upsampler, normal_reflectance, visible,
 };
@@ -50,6 +52,8 @@ pub(super) enum Tint<'a> {
     Depth(&'a Curve, f64),
     /// Light meets layers in which it interferes.
     Film(Film<'a>),
+    /// Light crosses a wave plate between crossed polarizers.
+    Plate(&'a PathDifference<Curve>),
     /// Light meets a clear surface of a measured index at right angles, and is reflected or crosses it.
     Surface { index: &'a Curve, crosses: bool, together: bool },
 }
@@ -75,6 +79,11 @@ impl<'a> Survey<'a> {
                         .flat_map(|index| [false, true].map(|crosses| Tint::Surface { index, crosses, together })),
                 );
                 tints.extend(films(material).into_iter().map(Tint::Film));
+                if let Some(plate) = plate(material).filter(|_| scene.render.polarization != PolarizationText::Off) {
+                    // Each object has a plate of its own, turned with it.
+                    let known = |tint: &Tint| matches!(tint, Tint::Plate(known) if known.nm.abs() == plate.nm.abs());
+                    tints.extend((!tints.iter().any(known)).then_some(Tint::Plate(plate)));
+                }
                 match material {
                     Material::Diffuse(diffuse) => {
                         let shades = diffuse.reflectance.shades();
@@ -110,14 +119,14 @@ impl<'a> Survey<'a> {
         let white: Curve = CurveKind::Illuminant(Arc::new(self.color_space.white_light())).into();
         let white = Emission::new(&white, self.color_space);
         self.dyes.is_empty()
-            && !self.has_films()
+            && !self.has_fringes()
             && self.tints.iter().all(|tint| tint.curves().iter().all(|curve| !curve.is_measured()))
             && self.lights.iter().all(|(curve, light)| !curve.is_measured() || light.has_shape_of(&white))
     }
 
     /// Whether light interferes somewhere, which three numbers cannot tell.
-    pub(super) fn has_films(&self) -> bool {
-        self.tints.iter().any(|tint| matches!(tint, Tint::Film(_)))
+    pub(super) fn has_fringes(&self) -> bool {
+        self.tints.iter().any(|tint| tint.has_fringes())
     }
 
     /// Whether dyes absorb light that the eye does not see: more than one part in a thousand of what excites them.
@@ -172,15 +181,17 @@ impl<'a> Survey<'a> {
 
     pub(super) fn smooth(&self, most: usize) -> Vec<&Tint<'a>> {
         let mut chosen = self.thickest_films(FILMS);
-        let others = |tint: &Tint| !tint.is_scattering() && !tint.is_flat() && !matches!(tint, Tint::Film(_));
+        let others = |tint: &Tint| !tint.is_scattering() && !tint.is_flat() && !tint.has_fringes();
         chosen.extend(self.farthest_from_gray(most, others));
         chosen
     }
 
-    /// Films of which the fringes are closest.
+    /// Films and plates of which the fringes are closest.
     fn thickest_films(&self, most: usize) -> Vec<&Tint<'a>> {
         let thickness = |tint: &Tint| match tint {
             Tint::Film(film) => Some(film.optical_nm().iter().sum::<f64>()),
+            // Light crosses a film twice.
+            Tint::Plate(plate) => Some(0.5 * plate.nm.abs()),
             _ => None,
         };
         let mut films: Vec<_> = self.tints.iter().filter_map(|tint| Some((thickness(tint)?, tint))).collect();
@@ -213,7 +224,7 @@ impl<'a> Survey<'a> {
 /// Below this, in nm, lanes of visible light carry none that excites dyes.
 const ULTRAVIOLET_NM: f64 = 390.0;
 
-/// Films by which models are judged, each as it reflects and as it lets through.
+/// Films and plates by which models are judged, each film as it reflects and as it lets through.
 const FILMS: usize = 4;
 
 /// The longest straight way through the largest body of a material.
@@ -231,8 +242,13 @@ impl Tint<'_> {
             Self::Depth(curve, _) => vec![curve],
             Self::Metal(metal, _) => vec![&metal.n, &metal.k],
             Self::Coated(_, reflectance) => vec![reflectance],
-            Self::Surface { .. } | Self::Film(_) => Vec::new(),
+            Self::Surface { .. } | Self::Film(_) | Self::Plate(_) => Vec::new(),
         }
+    }
+
+    /// Whether light interferes in it.
+    pub(super) fn has_fringes(&self) -> bool {
+        matches!(self, Self::Film(_) | Self::Plate(_))
     }
 
     fn is_scattering(&self) -> bool {
@@ -240,7 +256,7 @@ impl Tint<'_> {
     }
 
     fn is_flat(&self) -> bool {
-        !matches!(self, Self::Surface { .. } | Self::Film(_))
+        !(matches!(self, Self::Surface { .. }) || self.has_fringes())
             && self.curves().iter().all(|curve| matches!(curve.kind, CurveKind::Number(_)))
     }
 
@@ -282,6 +298,7 @@ impl Tint<'_> {
             }
             Self::Filter(quantity, curve) => read(*quantity, curve),
             Self::Film(film) => film.left(read),
+            Self::Plate(plate) => between_polarizers(plate, read),
             Self::Metal(metal, cos) => {
                 let (n, k) = (read(Quantity::MetalIndex, &metal.n), read(Quantity::MetalExtinction, &metal.k));
                 if let Some(coating) = &metal.coating {

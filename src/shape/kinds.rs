@@ -197,6 +197,7 @@ impl Shape {
     /// The unit normal of the front of a flat shape.
     pub fn flat_normal(&self) -> Option<DVec3> {
         match self {
+            Self::Plane(plane) => Some(plane.normal()),
             Self::Triangle(triangle) => Some(triangle.normal()),
             Self::Disc(disc) => Some(disc.normal()),
             Self::Quad(quad) => Some(quad.normal()),

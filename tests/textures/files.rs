@@ -120,16 +120,41 @@ fn an_image_of_many_materials_is_read_once_and_belongs_to_the_hash() {
 
 /// What a scene whose only reflectance is an image is refused with.
 fn refusal(folder: &Path, reflectance: &str) -> String {
+    refusal_of(folder, &format!("diffuse = {{ reflectance = {reflectance} }}")).message
+}
+
+/// What a scene of a material is refused with.
+fn refusal_of(folder: &Path, material: &str) -> abbe::Diagnostic {
     let text = format!(
-        "{}[material.a]\ndiffuse = {{ reflectance = {reflectance} }}\n[[object]]\nmaterial = \"a\"\n\
+        "{}[material.a]\n{material}\n[[object]]\nmaterial = \"a\"\n\
          shape.sphere = {{ center = [0, 0, 0], radius = 1 }}\n",
         view([0.0, 0.0, 9.0], [0.0; 3], 30.0, 4)
     );
     let source = Source { path: folder.join("scene.toml"), text };
     let read = source.compile();
     match read {
-        Err(abbe::Error::Scene(mistakes)) => mistakes[0].message.clone(),
-        other => panic!("{reflectance}: {other:?}"),
+        Err(abbe::Error::Scene(mistakes)) => mistakes[0].clone(),
+        other => panic!("{material}: {other:?}"),
+    }
+}
+
+#[test]
+fn impossible_thicknesses_are_refused_with_their_place() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, bad, told) in
+        [("hole.exr", f32::NAN, "NaN"), ("dark.exr", -0.25, "-0.25"), ("far.exr", f32::INFINITY, "inf")]
+    {
+        let at = |x: usize, y: usize| if (x, y) == (2, 1) { (bad, bad, bad) } else { (0.5, 0.5, 0.5) };
+        exr::prelude::write_rgb_file(folder.path().join(name), 4, 3, at).unwrap();
+        let image = format!("{{ image = \"{name}\", scale = 600 }}");
+        for material in [
+            format!("thin = {{ index = 1.33, thickness_nm = {image} }}"),
+            format!("conductor = {{ metal = \"Ti\", coating = [{{ index = 2.4, thickness_nm = {image} }}] }}"),
+        ] {
+            let found = refusal_of(folder.path(), &material);
+            assert_eq!(found.message, format!("{name}: pixel (2, 1) is [{told}, {told}, {told}]"), "{material}");
+            assert_eq!(found.help.as_deref(), Some("thicknesses are finite and not negative"), "{material}");
+        }
     }
 }
 

@@ -34,14 +34,17 @@ pub(super) fn surface_curve<'d>(context: &mut Context, text: &CurveText<'d>, qua
 fn image_curve<'d>(context: &mut Context, text: &CurveText<'d>, file: &'d str, quantity: Quantity) -> Option<Curve> {
     let (factor, placement) = (factor_on_image(text), text.placement());
     let at_file = At { place: text.place, it: file };
-    // The grays of a thickness are numbers, which no screen has shown.
-    let linear = (quantity == Quantity::Thickness).then_some(Encoding::Linear);
-    let encoding = text.encoding.map(|encoding| encoding.it).or(linear);
+    let encoding = text.encoding.map(|encoding| encoding.it);
+    let meaning = match quantity {
+        // The grays of a thickness are numbers, which no screen has shown.
+        Quantity::Thickness => Meaning::Thicknesses(encoding.unwrap_or(Encoding::Linear)),
+        _ => Meaning::Light(encoding),
+    };
     let image = match (text.channel, text.encoding) {
         (Some(Channel::Alpha), Some(At { place, it: Encoding::Srgb })) => {
             place.advise("alpha is a share, which no kind of file encodes as sRGB", "leave `encoding` out")
         }
-        _ => image(context, &at_file, Meaning::Light(encoding), text.channel),
+        _ => image(context, &at_file, meaning, text.channel),
     };
     let (scale, placement, image) = (factor?, placement?, image?);
     let ([x, y], brightest) = image.brightest();

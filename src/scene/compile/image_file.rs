@@ -47,6 +47,8 @@ pub(super) fn read_image(path: &Path, bytes: &[u8]) -> Result<Image, Fault> {
 pub(super) enum Meaning {
     /// Light or shares of it, encoded as told or else as the kind of file implies.
     Light(Option<Encoding>),
+    /// Thicknesses, encoded as told.
+    Thicknesses(Encoding),
     /// Heights, just as they are.
     Heights,
     /// Directions: the middle of the range of whole numbers is 0, of others one half.
@@ -80,6 +82,7 @@ pub(super) fn read_texture(
     let srgb = match (channel, meaning) {
         (Some(Channel::Alpha), _) => false,
         (_, Meaning::Light(encoding)) => encoding.map_or(format.is_some(), |encoding| encoding == Encoding::Srgb),
+        (_, Meaning::Thicknesses(encoding)) => encoding == Encoding::Srgb,
         _ => false,
     };
     let texture = TextureOf { path, kind, meaning, channel, srgb };
@@ -222,6 +225,7 @@ fn possible(path: &Path, texels: Texels, meaning: Meaning) -> Result<(), Fault> 
     let Texels { width, channels, numbers } = texels;
     let (allowed, help) = match meaning {
         Meaning::Light(_) => (0.0..=f32::MAX, "light is finite and not negative"),
+        Meaning::Thicknesses(_) => (0.0..=f32::MAX, "thicknesses are finite and not negative"),
         Meaning::Heights => (f32::MIN..=f32::MAX, "heights are finite"),
         Meaning::Directions => (0.0..=1.0, "directions are written as numbers from 0 to 1, one half being none"),
     };

@@ -6,12 +6,14 @@ use super::asked::{Asked, spectrum, spectrum_or};
 use super::camera::extinction;
 use super::coating::{coating, film};
 use super::context::Context;
+use super::curve_range::shown;
 use super::curve_text::CurveText;
 use super::fluorescence::{conserves, diffuse, written};
 use super::image::surface_curve;
 use super::measures::direction;
 use crate::material::{
-    Coat, Conductor, Dielectric, Emissive, Material, Mirror, Plastic, Polarizer, Retarder, Roughness, Thin,
+    Coat, Conductor, Dielectric, Emissive, Material, Mirror, PathDifference, Plastic, Polarizer, Retardance, Retarder,
+    Roughness, Thin,
 };
 use crate::scene::text::{Choice, Fields, Value};
 use crate::shape::Sides;
@@ -67,7 +69,7 @@ const MATERIAL: Choice<Reader> = Choice {
             Some(Draft::Whole(Material::Polarizer(Polarizer { axis: axis?, extinction: extinction? })))
         }),
         ("retarder", |_, fields| {
-            let (axis, retardance) = (fields.need("axis", direction), fields.need("retardance", retardance));
+            let (axis, retardance) = (fields.need("axis", direction), retardance(fields));
             Some(Draft::Whole(Material::Retarder(Retarder { axis: axis?, retardance: retardance? })))
         }),
         ("mix", |_, fields| {
@@ -83,11 +85,42 @@ const MATERIAL: Choice<Reader> = Choice {
     ],
 };
 
-/// By how much light along the fast axis is ahead, in degrees.
-fn retardance(value: Value) -> Option<f64> {
-    let help = "in degrees: 90 of a quarter-wave plate, 180 of a half-wave plate";
-    value.within(-360.0..=360.0, "a retardance lies between -360 and 360 degrees", Some(help))
+/// By how much light along the fast axis is ahead: in degrees, or by a length.
+fn retardance<'d>(fields: &mut Fields<'d>) -> Option<Retardance<Asked<'d>>> {
+    let (phase, path) = (fields.get("retardance"), fields.get("retardation_nm"));
+    match (phase, path) {
+        (Some(phase), None) => {
+            let help = "in degrees: 90 of a quarter-wave plate, 180 of a half-wave plate";
+            let what = "a retardance lies between -360 and 360 degrees";
+            phase.within(-360.0..=360.0, what, Some(help)).map(Retardance::Phase)
+        }
+        (None, Some(path)) => {
+            let what = format!("a retardation lies between -{MOST_AHEAD_NM} and {MOST_AHEAD_NM} nm");
+            let help = "in nm: 137.5 of a quarter-wave plate at 550 nm";
+            let nm = path.within(-MOST_AHEAD_NM..=MOST_AHEAD_NM, &what, Some(help))?;
+            if nm != 0.0 && nm.abs() < LEAST_AHEAD_NM {
+                let in_nm = nm * 1e9;
+                let help = match in_nm.abs() {
+                    1.0..=MOST_AHEAD_NM => format!("in m? It is in nm: then write {}", shown(in_nm)),
+                    _ => help.to_owned(),
+                };
+                return path.advise(format!("a retardation of {} nm changes no light", shown(nm)), help);
+            }
+            Some(Retardance::Path(PathDifference::new(nm, || Asked::Default(1.0))))
+        }
+        (Some(_), Some(path)) => path.refuse_key(
+            "a retarder has a `retardance` or a `retardation_nm`, not both",
+            Some("the first is the same in degrees at every wavelength, the second the same in nm".into()),
+        ),
+        (None, None) if fields.is_misspelt("retardation_nm") => None,
+        (None, None) => fields.lack("retardance", Some("in degrees; or `retardation_nm`, in nm")),
+    }
 }
+
+/// The longest way in nm by which a wave is ahead: 1 mm.
+const MOST_AHEAD_NM: f64 = 1e6;
+/// The shortest, at which 3 parts in 10^9 of polarized light change: less is most likely in m.
+const LEAST_AHEAD_NM: f64 = 0.01;
 
 fn conductor<'d>(value: Value<'d>, fields: &mut Fields<'d>) -> Option<Draft<'d, Asked<'d>>> {
     let (metal, n, k) = (fields.get("metal"), fields.get("n"), fields.get("k"));

@@ -6,7 +6,8 @@ use std::sync::Arc;
 use super::object::Draft;
 use super::parts::Materials;
 use super::shape::Fit;
-use crate::math::Transform;
+use crate::material::Material;
+use crate::math::{DVec3, Transform};
 use crate::scene::text::{At, Value};
 use crate::scene::{NamedMaterial, Object};
 use crate::shape::{Coordinates, Shape};
@@ -49,6 +50,11 @@ pub(super) fn placed<'d>(drafts: Vec<Draft<'d>>, materials: &Materials<'d>) -> P
         for (instance, mut object) in objects.into_iter().enumerate() {
             if let Some(map) = maps.get(instance) {
                 let (name, material) = (name.to_owned(), material.turned(map));
+                if lies_across(&material, &object.shape) {
+                    let message = format!("the axis of material {name} is along the normal of this surface");
+                    shape.advise::<()>(message, "an axis lies within the surface; both turn with the object");
+                    break;
+                }
                 placed.materials.push(NamedMaterial { name, material });
                 object.material = placed.materials.len() as u32 - 1;
             }
@@ -58,6 +64,15 @@ pub(super) fn placed<'d>(drafts: Vec<Draft<'d>>, materials: &Materials<'d>) -> P
     }
     placed
 }
+
+/// Whether the axis of a material favors no direction on a flat shape, as it is along its normal.
+fn lies_across(material: &Material<Curve>, shape: &Shape) -> bool {
+    let axis = material.axis().and_then(DVec3::try_normalize);
+    axis.zip(shape.flat_normal()).is_some_and(|(axis, normal)| axis.cross(normal).length() < ALONG)
+}
+
+/// Sine of an angle that is left of 0 after a few rotations.
+const ALONG: f64 = 1e-9;
 
 /// The object, or each of its instances; `is_shared` is a mesh that stands in other places as well.
 fn objects_of(draft: Draft, is_shared: bool, material: u32, varies: bool) -> Option<Vec<Object>> {
