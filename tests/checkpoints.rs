@@ -117,7 +117,10 @@ fn kinds() -> Vec<Kind> {
         crop: Some(Window { left: -2, top: 4, width: 35, height: 18 }),
         ..all()
     };
-    let mitchell = GLASS.replace("height = 21", "height = 21, filter = \"mitchell\"");
+    let polarized = Layer::STOKES.into_iter().chain([Layer::Polarization]).collect::<Vec<_>>();
+    let stokes = || Options { layers: Some(polarized.clone()), ..all() };
+    let sharp = GLASS.replace("height = 21", "height = 21, filter = \"mitchell\"");
+    let mitchell = sharp.clone();
     let split = GLASS.replace("index = 1.5", "index = \"SF11\"");
     let still = GLASS
         .replace("height = 21", "height = 21, filter = \"center\"")
@@ -130,6 +133,8 @@ fn kinds() -> Vec<Kind> {
         ("photons that are shown", CAUSTIC.into(), Options::default(), shows),
         ("photons that are gathered, all layers", GLASS.into(), all(), gathers),
         ("a filter with negative lobes, a crop in the overscan", mitchell, cut, gathers),
+        ("Stokes vectors, of photons that are gathered", GLASS.into(), stokes(), gathers),
+        ("Stokes vectors, of a filter with negative lobes", sharp, stokes(), gathers),
         ("light vertices", large, part, |method| method.light_vertices),
         ("wavelengths that are drawn", split, all(), |method| method.basis.draws_wavelengths()),
         ("one sample per pixel", still.replace("samples = 20", "samples = 1"), all(), |method| method.samples == 1),

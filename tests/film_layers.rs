@@ -3,6 +3,7 @@
 mod files;
 mod mitchell;
 mod overscan;
+mod polarization;
 mod residual;
 
 use abbe::film::{FirstSurface, Layer, Window, id};

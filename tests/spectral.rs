@@ -1,5 +1,7 @@
 //! Spectra of pixels: that they are those of the lights, and that they make the colors of the image.
 
+mod stokes;
+
 use abbe::film::Film;
 use abbe::plan::plan;
 use abbe::spectrum::{apply, data};

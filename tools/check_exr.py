@@ -6,7 +6,7 @@ Scan lines: R G B A Z, alone or with layers, in one part or with each layer in a
 compression that loses. Numbers are finite, and 32-bit floats unless the file says that colors have 16 bits. Lights and kinds of light add up to the
 image, mattes to its coverage. A stated color space, the camera, and the provenance under render/.
 
-A spectral image holds R G B and one channel for each band of wavelengths (Fichet, Pacanowski & Wilkie 2021, "An OpenEXR
+A spectral image holds R G B and one channel for each band of wavelengths, or four with Stokes vectors (Fichet, Pacanowski & Wilkie 2021, "An OpenEXR
 Layout for Spectral Images", JCGT 10(3)).
 
 Attribute meanings: OpenEXR, "Standard Attributes"; color: ASWF Color Interop Forum, recommendations 03 and 04 (2026); mattes:
@@ -54,22 +54,24 @@ LAYERS = {
     r"emission|background|direct|indirect|caustics|dispersed|shadow": "RGB",
     r"(diffuse|glossy|specular|transmission)_(in)?direct": "RGB",
     r"light_[A-Za-z0-9_]+": "RGB",
-    r"albedo|variance|residual|half_[ab]|denoised": "RGB",
+    r"albedo|variance|residual|half_[ab]|denoised|S[123]": "RGB",
+    r"polarization": ("degree", "linear_degree", "angle"),
     r"Nd?|P": "XYZ",
     r"UV": "UV",
     r"samples": "V",
     r"Crypto(Object|Material|Asset)0[0-2]": "rgba",
 }
-# A band of wavelengths: its center in nm, with a decimal comma.
-BAND = r"S0\.([0-9]+),([0-9]{6})nm"
+# A Stokes component of a band of wavelengths: its center in nm, with a decimal comma.
+BAND = r"S([0-3])\.([0-9]+),([0-9]{6})nm"
 # What a compression that loses may change: light to look at. A is rounded, or kept.
 LIGHT = r"([RGBA]|(emission|background|direct|indirect|caustics|dispersed|shadow|light_\w+|[a-z]+_(in)?direct)\.[RGB])"
 # Numbers that 16 bits would spoil: depth, places, statistics and the numbers of mattes.
-ALWAYS_32_BITS = r"Z|P\..*|UV\..*|variance\..*|samples\..*|residual\..*|Crypto.*"
+ALWAYS_32_BITS = r"Z|P\..*|UV\..*|variance\..*|samples\..*|residual\..*|S[123]\..*|polarization\..*|Crypto.*"
 # Attributes in which the parts of a file agree.
 SHARED = ("type", "compression", "lineOrder", "dataWindow", "displayWindow", "pixelAspectRatio")
 SHARED += ("screenWindowCenter", "screenWindowWidth")
 MATTE_LAYERS = ("00", "01", "02")
+STOKES = ("S0", "S1", "S2", "S3")
 LOBES = ("diffuse", "glossy", "specular", "transmission")
 
 # What each provenance attribute must look like; a seed is text because an EXR integer has 32 bits only.
@@ -109,10 +111,11 @@ class File(NamedTuple):
             return np.array([self.channels[name] for name in names], np.float64)
         return None
 
-    def bands(self):
-        """The channels of a spectral image by the centers of their bands in nm, ascending."""
+    def bands(self, component=0):
+        """The channels of a Stokes component of a spectral image by the centers of their bands in nm, ascending."""
         found = {name: re.fullmatch(BAND, name) for name in self.channels}
-        return dict(sorted((float(f"{match[1]}.{match[2]}"), name) for name, match in found.items() if match))
+        own = {name: match for name, match in found.items() if match and int(match[1]) == component}
+        return dict(sorted((float(f"{match[2]}.{match[3]}"), name) for name, match in own.items()))
 
 
 def read(path):
@@ -209,7 +212,7 @@ def names(file):
             yield f"channel {channel.name!r}: subsampled"
     spectral = bool(file.bands())
     for layer in dict.fromkeys(["", *file.layers()]):
-        if spectral and layer == "S0":
+        if spectral and layer in STOKES:
             continue
         known, prefix = "RGB" if spectral and not layer else known_channels(layer), f"{layer}." if layer else ""
         held = {name[len(prefix) :] for name in file.channels if name.rpartition(".")[0] == layer}
@@ -289,6 +292,46 @@ def statistics(file):
         yield f"layer 'samples': down to {samples.min():g} of {asked}, and none was lost"
 
 
+def luminance(file, channels):
+    """Y of three channels in the color space of the file, if it is known."""
+    primaries = CHROMATICITIES.get(file.header.get("colorInteropID"))
+    if primaries is None or any(channel not in file.channels for channel in channels):
+        return None
+    xyz = np.array([(x / y, 1, (1 - x - y) / y) if y else (1, 0, 0) if x else (0, 0, 1) for x, y in np.reshape(primaries, (4, 2))])
+    # Red, green and blue of 1 are white.
+    weights = np.linalg.solve(xyz[:3].T, xyz[3]) * xyz[:3, 1]
+    return np.tensordot(weights, np.array([file.channels[channel] for channel in channels], np.float64), 1)
+
+
+def stokes(file):
+    """No light is polarized by more than all of it; degrees and angles are those of the Stokes vectors beside them."""
+    degrees = file.layer("polarization")
+    if degrees is not None:
+        degree, linear, angle = degrees
+        if not ((linear >= 0) & (linear <= degree * (1 + np.finfo(np.float32).eps)) & (degree <= 1)).all():
+            yield "layer 'polarization': degrees that are not 0 <= linear_degree <= degree <= 1"
+        if not ((angle > -90) & (angle <= 90)).all():
+            yield f"layer 'polarization': angles from {angle.min()} to {angle.max()}, not above -90 to 90"
+    s0, *others = (luminance(file, [prefix + channel for channel in "RGB"]) for prefix in ("", "S1.", "S2.", "S3."))
+    if s0 is None or any(each is None for each in others) or subtracts(file):
+        return
+    s1, s2, s3 = others
+    linear, whole = np.hypot(s1, s2), np.sqrt(s1**2 + s2**2 + s3**2)
+    # Lanes are interpolated, and may make a little more of a part of the light than of all of it.
+    if wrong := np.count_nonzero(whole > 1.01 * s0 + 1e-6 * np.abs(s0).max()):
+        yield f"layers S1, S2 and S3: more than the image in {wrong} pixels"
+    if degrees is None or file.channels["R"].dtype != np.float32:
+        return
+    # What 32 bits of each channel leave of a sum in which they cancel.
+    size = np.abs([file.channels[channel] for channel in "RGB"]).sum(axis=0)
+    rounding = 32 * unit(file, "R") * size
+    turned = np.deg2rad(2 * degrees[2])
+    off = [degrees[0] * s0 - np.minimum(whole, s0), degrees[1] * (s0 * np.cos(turned)) - s1, degrees[1] * (s0 * np.sin(turned)) - s2]
+    lit = (s0 > 1e-3 * np.abs(s0).max()) & (whole <= s0)
+    if wrong := np.count_nonzero((np.abs(off) > rounding)[:, lit].any(axis=0)):
+        yield f"layer 'polarization': not that of the Stokes vectors in {wrong} pixels"
+
+
 def sums(file):
     """Kinds of light, lights, and the halves of the samples make the image, as exactly as its numbers are stored."""
     lights = [layer for layer in file.layers() if layer.startswith("light_")]
@@ -321,7 +364,8 @@ SPECTRAL = {"spectralLayoutVersion": "1.0", "emissiveUnits": "W.m^-2.sr^-1", "re
 
 def spectrum(file):
     """Bands side by side, alone with R, G and B; attributes that say so, and only there."""
-    bands, said = np.array(list(file.bands())), {name: file.header.get(name) for name in (*SPECTRAL, "render/spectralStep")}
+    attributes = (*SPECTRAL, "render/spectralStep", "polarisationHandedness")
+    bands, said = np.array(list(file.bands())), {name: file.header.get(name) for name in attributes}
     if not len(bands):
         yield from (f"{name} in a file without spectra" for name, value in said.items() if value is not None)
         return
@@ -336,8 +380,14 @@ def spectrum(file):
         yield "a spectral image of 16 bits"
     if len(file.parts) > 1:
         yield "a spectral image of several parts"
-    if others := sorted(set(file.layers()) - {"", "S0"}):
+    if others := sorted(set(file.layers()) - {"", *STOKES}):
         yield f"a spectral image with the layers {', '.join(others)}"
+    components = [list(file.bands(component)) for component in (1, 2, 3)]
+    if any(components) and any(each != bands.tolist() for each in components):
+        yield "S1, S2 and S3 are not there in the bands of S0"
+    handedness = "right" if any(components) else None
+    if said["polarisationHandedness"] != handedness:
+        yield f"polarisationHandedness is {said['polarisationHandedness']!r}, not {handedness!r}"
 
 
 def murmur3(data):
@@ -564,7 +614,7 @@ def provenance(file):
 
 
 RULES = (layout, parts, losses, names, types, spectrum, color, optics, camera, provenance)
-RULES_OF_PIXELS = (values, surfaces, statistics, sums, mattes)
+RULES_OF_PIXELS = (values, surfaces, statistics, sums, stokes, mattes)
 
 
 def violations(path):

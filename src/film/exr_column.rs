@@ -24,8 +24,11 @@ pub(super) enum Of {
         layer: usize,
         channel: usize,
     },
-    /// The radiance of a spectral band.
-    Band(usize),
+    /// A Stokes component of a spectral band, by their numbers.
+    Band {
+        component: usize,
+        band: usize,
+    },
 }
 
 impl Column {
@@ -47,9 +50,9 @@ impl Column {
                 let values = &image.values[first * each..(first + pixels) * each];
                 self.put_all(values.iter().skip(channel).step_by(each).copied(), bytes)
             }
-            Of::Band(band) => {
+            Of::Band { component, band } => {
                 let spectral = film.spectral.as_ref().expect("bands are of a film with spectra");
-                self.put_all((first..first + pixels).map(|pixel| spectral.pixel(pixel)[band]), bytes)
+                self.put_all((first..first + pixels).map(|pixel| spectral.component(pixel, component)[band]), bytes)
             }
         }
     }

@@ -44,8 +44,15 @@ impl ExrFile {
     /// [`Error::Arguments`] if there is no such file, [`Error::Decode`] if it is no OpenEXR file, not complete, or of a
     /// kind that cannot be read.
     pub fn read(path: &Path) -> Result<Self> {
-        let bytes = bytes(path)?;
-        guarded(|| Self::decode(&bytes)).map_err(|said| decode_error(path, &said))
+        Self::of_bytes(&bytes(path)?, path)
+    }
+
+    /// The same of a file's bytes; `path` is what it is called if they are none of an image.
+    ///
+    /// # Errors
+    /// [`Error::Decode`] as of a file.
+    pub fn of_bytes(bytes: &[u8], path: &Path) -> Result<Self> {
+        guarded(|| Self::decode(bytes)).map_err(|said| decode_error(path, &said))
     }
 
     fn decode(bytes: &[u8]) -> std::result::Result<Self, String> {

@@ -14,7 +14,8 @@ use super::rows::Rows;
 use crate::error::Result;
 
 /// Writes the spectra of an image: a channel `S0.380,000000nm` and so on for each band, with its center in nm and a
-/// decimal comma, and R, G and B for looking. Nothing is written of an image without spectra.
+/// decimal comma, and R, G and B for looking. Where Stokes vectors are asked for, S1, S2 and S3 are beside S0. Nothing
+/// is written of an image without spectra.
 ///
 /// Numbers are radiance in W m^-2 sr^-1 nm^-1 where the scene's light is absolute, or given in that unit; each is the
 /// mean over its band. Programs that know the layout take it for the radiance at the center, and `emissiveUnits` for a
@@ -25,8 +26,12 @@ use crate::error::Result;
 pub fn write_spectral_exr(heading: Heading, rows: &mut dyn Rows, path: &Path) -> Result<()> {
     let Heading { film, format, view, provenance } = heading;
     let Some(spectral) = &film.spectral else { return Ok(()) };
-    let bands = spectral.bands.centers_nm().enumerate();
-    let bands = bands.map(|(band, center)| Column::new(&channel_name(center), false, Of::Band(band)));
+    let bands = (0..spectral.components()).flat_map(|component| {
+        let bands = spectral.bands.centers_nm().enumerate();
+        bands.map(move |(band, center)| {
+            Column::new(&channel_name(component, center), false, Of::Band { component, band })
+        })
+    });
     let columns = colors(false).chain(bands).collect();
     let mut attributes = attributes(film, format, view, provenance);
     let step = AttributeValue::F32(spectral.bands.step_nm() as f32);
@@ -38,6 +43,10 @@ pub fn write_spectral_exr(heading: Heading, rows: &mut dyn Rows, path: &Path) ->
     ] {
         attributes.other.insert(Text::from(key), value);
     }
+    if spectral.has_stokes {
+        // S3 is above 0 of light that turns right, seen toward its source.
+        attributes.other.insert(Text::from("polarisationHandedness"), text("right"));
+    }
     let mut shared = ImageAttributes::new(display_window(film));
     shared.chromaticities = Some(chromaticities(film));
     let parts = [Part::new(film, columns, Compression::Zip, shared, attributes)];
@@ -48,7 +57,7 @@ fn text(value: &str) -> AttributeValue {
     AttributeValue::Text(Text::from(value))
 }
 
-/// The layout's name of the band around a wavelength.
-fn channel_name(center_nm: f64) -> String {
-    format!("S0.{}nm", format!("{center_nm:.6}").replace('.', ","))
+/// The layout's name of a Stokes component of the band around a wavelength.
+fn channel_name(component: usize, center_nm: f64) -> String {
+    format!("S{component}.{}nm", format!("{center_nm:.6}").replace('.', ","))
 }

@@ -30,6 +30,11 @@ pub struct Format {
 }
 
 impl Format {
+    /// Whether anything is asked for of Stokes vectors.
+    pub fn has_stokes(&self) -> bool {
+        self.layers.iter().copied().any(Layer::is_of_polarization)
+    }
+
     /// Why no file can hold this, and what to do instead, if that is so.
     ///
     /// What is no color must stay as it is: a depth, a normal or the number of a matte that is nearly right is wrong.

@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::error::nearest;
+
 /// A layer, or several of one kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Layer {
@@ -70,6 +72,8 @@ pub enum Layer {
     S2,
     /// How much more of it turns right than left, seen toward the scene.
     S3,
+    /// The degree of polarization, that of linear polarization, and the angle of the latter: see [`polarization`].
+    Polarization,
 }
 
 impl Layer {
@@ -77,7 +81,7 @@ impl Layer {
     pub const ALL: &str = "all";
 
     /// All of them by the names that ask for them.
-    pub const NAMES: [(&str, Self); 32] = [
+    pub const NAMES: [(&str, Self); 33] = [
         ("emission", Self::Emission),
         ("background", Self::Background),
         ("direct", Self::Direct),
@@ -110,6 +114,7 @@ impl Layer {
         ("S1", Self::S1),
         ("S2", Self::S2),
         ("S3", Self::S3),
+        ("polarization", Self::Polarization),
     ];
 
     /// The components of the Stokes vector beside the image.
@@ -118,7 +123,25 @@ impl Layer {
     /// Every one that does not ask for light to be followed in another way.
     pub fn all() -> Vec<Self> {
         let all = Self::NAMES.iter().map(|(_, layer)| *layer);
-        all.filter(|layer| !Self::STOKES.contains(layer)).collect()
+        all.filter(|layer| !layer.is_of_polarization()).collect()
+    }
+
+    /// Whether it asks for polarization to be traced.
+    pub fn is_of_polarization(self) -> bool {
+        self == Self::Polarization || Self::STOKES.contains(&self)
+    }
+
+    /// The one that a name asks for, or what is wrong with the name and what to do.
+    ///
+    /// # Errors
+    /// If there is no such layer.
+    pub fn of_name(name: &str) -> Result<Self, String> {
+        let names = || Self::NAMES.iter().map(|(known, _)| *known);
+        let known = Self::NAMES.iter().find(|(known, _)| *known == name).map(|(_, layer)| *layer);
+        known.ok_or_else(|| match nearest(name, names()) {
+            Some(near) => format!("there is no layer `{name}`: did you mean {near}?"),
+            None => format!("there is no layer `{name}`: known are {}", names().collect::<Vec<_>>().join(", ")),
+        })
     }
 
     /// The name that asks for it, and that the file has unless there are several.
@@ -133,6 +156,7 @@ impl Layer {
             Self::Uv => &["U", "V"],
             Self::Samples => &["V"],
             Self::CryptoObject | Self::CryptoMaterial | Self::CryptoAsset => &["r", "g", "b", "a"],
+            Self::Polarization => &["degree", "linear_degree", "angle"],
             _ => &["R", "G", "B"],
         }
     }
@@ -140,7 +164,7 @@ impl Layer {
     /// Whether 16 bits are enough where the file has them: for light, and for numbers up to 1.
     pub fn may_be_half(self) -> bool {
         let exact = matches!(self, Self::Position | Self::Uv | Self::Variance | Self::Samples | Self::Residual);
-        !exact && !self.is_matte() && !Self::STOKES.contains(&self)
+        !exact && !self.is_matte() && !self.is_of_polarization()
     }
 
     /// Whether it is light to look at: what is computed with, such as an albedo or a half of the samples, is none.
@@ -169,7 +193,7 @@ impl Layer {
             Self::Caustics | Self::Dispersed | Self::Lights | Self::S1 | Self::S2 | Self::S3 => true,
             Self::Albedo | Self::Normal | Self::GeometricNormal | Self::Position | Self::Uv | Self::Shadow => false,
             Self::Variance | Self::Samples | Self::HalfA | Self::HalfB | Self::Residual => false,
-            Self::CryptoObject | Self::CryptoMaterial | Self::CryptoAsset => false,
+            Self::Polarization | Self::CryptoObject | Self::CryptoMaterial | Self::CryptoAsset => false,
         }
     }
 
@@ -177,6 +201,22 @@ impl Layer {
     pub fn is_matte(self) -> bool {
         matches!(self, Self::CryptoObject | Self::CryptoMaterial | Self::CryptoAsset)
     }
+}
+
+/// The degree of polarization of light, the degree of its linear polarization, both 0 to 1, and the angle of the latter
+/// from the image's right counterclockwise, above -90 to 90 degrees, by the luminances S0 to S3 of its Stokes vector;
+/// 0 of no light.
+///
+/// sqrt(S1^2 + S2^2 + S3^2) / S0, sqrt(S1^2 + S2^2) / S0 and atan2(S2, S1) / 2 (Hecht 2017, *Optics*, section 8.13.1).
+pub fn polarization([s0, s1, s2, s3]: [f64; 4]) -> [f64; 3] {
+    if s0 <= 0.0 {
+        return [0.0; 3];
+    }
+    let linear = libm::hypot(s1, s2);
+    let angle = 0.5 * libm::atan2(s2, s1).to_degrees();
+    // What lies along the columns is so whichever way S2 was rounded.
+    let angle = if angle <= -90.0 { 90.0 } else { angle };
+    [(libm::hypot(linear, s3) / s0).min(1.0), (linear / s0).min(1.0), angle]
 }
 
 /// Which surface is the first.

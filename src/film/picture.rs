@@ -10,11 +10,19 @@ use crate::spectrum::{apply, encode_srgb};
 /// # Errors
 /// If the file cannot be written; nothing is left behind then.
 pub fn write_png(film: &Film, exposure: f64, path: &Path) -> Result<()> {
+    replace_file(path, &film_png(film, exposure, path)?)
+}
+
+/// The bytes of that picture; `path` is what it is called if it cannot be made.
+///
+/// # Errors
+/// If the encoder refuses the size.
+pub fn film_png(film: &Film, exposure: f64, path: &Path) -> Result<Vec<u8>> {
     let gain = libm::exp2(exposure);
     let to_rec709 = film.color_space.to_rec709();
     let encoded = |rgb: [f32; 3]| encode_srgb(apply(&to_rec709, rgb.map(|x| f64::from(x) * gain)).map(|x| x as f32));
     let bytes: Vec<u8> = film.pixels.iter().flat_map(|pixel| encoded(pixel.rgb)).collect();
-    write_rgb8(&bytes, [film.width, film.height], path)
+    png(&bytes, [film.width, film.height], path)
 }
 
 /// Writes red, green and blue of 8 bits, row by row, as a PNG of this width and height.

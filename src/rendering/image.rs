@@ -3,9 +3,10 @@
 use std::path::Path;
 
 use super::image_error::ImageError;
+use super::warnings::warnings;
 use crate::error::Result;
 use crate::film::{
-    Film, Format, Heading, Pixel, Provenance, View, encode_exr, write_exr, write_png, write_spectral_exr,
+    Film, Format, Heading, Pixel, Provenance, View, encode_exr, film_png, write_exr, write_png, write_spectral_exr,
 };
 use crate::trace::Report;
 
@@ -89,6 +90,11 @@ impl Image {
         self.error.as_ref()
     }
 
+    /// What whoever sees it should know: light that is too rare, an error that is not reached, samples left out.
+    pub fn warnings(&self) -> Vec<String> {
+        warnings(&self.report, self.error.as_ref())
+    }
+
     /// How its file is written.
     pub fn format(&self) -> &Format {
         &self.format
@@ -136,6 +142,21 @@ impl Image {
         Some(spectral.bands.centers_nm().zip(values).map(|(nm, &value)| [nm, value.into()]).collect())
     }
 
+    /// The spectra of S1, S2 and S3 of a pixel, as [`spectrum_at`](Self::spectrum_at) has that of S0; none if no Stokes
+    /// vectors or no spectra were asked for.
+    ///
+    /// # Panics
+    /// If there is no such pixel.
+    pub fn stokes_spectra_at(&self, x: u32, y: u32) -> Option<[Vec<[f64; 2]>; 3]> {
+        let spectral = self.film.spectral.as_ref().filter(|spectral| spectral.has_stokes)?;
+        assert!(x < self.width(), "there is no column {x} in an image of {} pixels per row", self.width());
+        let pixel = y as usize * self.film.width as usize + x as usize;
+        Some([1, 2, 3].map(|component| {
+            let values = spectral.component(pixel, component).iter();
+            spectral.bands.centers_nm().zip(values).map(|(nm, &value)| [nm, value.into()]).collect()
+        }))
+    }
+
     /// Writes the spectra of all pixels as an OpenEXR file, in the layout of Fichet, Pacanowski & Wilkie 2021; nothing
     /// if they were not asked for.
     ///
@@ -151,5 +172,13 @@ impl Image {
     /// If it cannot be written; a file that was there before is then untouched.
     pub fn write_png(&self, path: impl AsRef<Path>, exposure: f64) -> Result<()> {
         write_png(&self.film, exposure, path.as_ref())
+    }
+
+    /// The bytes of that picture.
+    ///
+    /// # Errors
+    /// If it cannot be encoded.
+    pub fn png_bytes(&self, exposure: f64) -> Result<Vec<u8>> {
+        film_png(&self.film, exposure, Path::new("the picture"))
     }
 }

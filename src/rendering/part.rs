@@ -9,7 +9,8 @@ use super::identity::Identity;
 use super::image::Image;
 use crate::error::{Error, Result};
 use crate::film::{
-    BlockReader, Fact, Film, Format, Kind, LayerImage, Pixel, Provenance, Shard, TilePlace, View, Window, write_blocks,
+    BlockReader, Fact, Film, Format, Kind, LayerImage, Pixel, Provenance, Shard, SpectralImage, TilePlace, View,
+    Window, write_blocks,
 };
 use crate::scene::FilmSettings;
 
@@ -50,7 +51,7 @@ pub(super) fn write(path: &Path, identity: &Identity, shard: Shard, shared: u64,
     let pixels = std::mem::take(&mut film.pixels);
     let layers: Vec<_> =
         film.layers.iter_mut().map(|layer| (std::mem::take(&mut layer.values), numbers(layer))).collect();
-    let spectra = film.spectral.as_mut().map(|spectral| (std::mem::take(&mut spectral.values), spectral.bands.count()));
+    let spectra = film.spectral.as_mut().map(|spectral| (std::mem::take(&mut spectral.values), spectral.numbers()));
     let window = window(&film);
     let (identity, non_finite) = (identity.of_all_parts(), report.non_finite - shared);
     let head = Head { identity, shard, film, format, view, provenance, non_finite };
@@ -115,10 +116,10 @@ impl Head {
 impl Tile {
     /// Whether it has all numbers of a place in a film.
     pub(super) fn fits(&self, place: TilePlace, film: &Film) -> bool {
-        let bands = film.spectral.as_ref().map_or(0, |spectral| spectral.bands.count());
+        let spectra = film.spectral.as_ref().map_or(0, SpectralImage::numbers);
         self.pixels.len() == place.pixels()
             && self.layers.iter().map(Vec::len).eq(film.layers.iter().map(|layer| place.pixels() * numbers(layer)))
-            && self.spectral.len() == place.pixels() * bands
+            && self.spectral.len() == place.pixels() * spectra
     }
 }
 

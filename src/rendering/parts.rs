@@ -186,7 +186,7 @@ impl<'p> Strip<'p> {
         film.pixels.resize(pixels, BLANK);
         film.layers.iter_mut().for_each(|layer| layer.values.resize(pixels * numbers(layer), 0.0));
         if let Some(spectral) = &mut film.spectral {
-            spectral.values.resize(pixels * spectral.bands.count(), 0.0);
+            spectral.values.resize(pixels * spectral.numbers(), 0.0);
         }
     }
 
@@ -223,7 +223,7 @@ impl<'p> Strip<'p> {
             paste(values, numbers(layer), window, place, &mut layer.values);
         }
         if let Some(spectral) = &mut film.spectral {
-            paste(&tile.spectral, spectral.bands.count(), window, place, &mut spectral.values);
+            paste(&tile.spectral, spectral.numbers(), window, place, &mut spectral.values);
         }
     }
 }

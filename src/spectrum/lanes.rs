@@ -21,6 +21,19 @@ impl<const N: usize> Lanes<N> {
         self.0.iter().sum()
     }
 
+    /// The lanes that are not 0, in their order.
+    #[inline(always)]
+    pub fn present(&self) -> impl Iterator<Item = usize> + use<N> {
+        const { assert!(N <= 64) };
+        let bit = |i: usize| u64::from(self.0[i] != 0.0) << i;
+        let mut left = (0..N).fold(0, |bits, i| bits | bit(i));
+        std::iter::from_fn(move || {
+            let next = left.trailing_zeros() as usize;
+            left &= left.wrapping_sub(1);
+            (next < 64).then_some(next)
+        })
+    }
+
     /// Whether every lane is 0.
     pub fn is_zero(&self) -> bool {
         self.0.iter().all(|&x| x == 0.0)

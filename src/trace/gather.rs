@@ -90,10 +90,10 @@ pub(super) struct Part<const N: usize> {
 }
 
 /// The spectrum of what a photon brings.
-#[derive(Clone, Copy)]
 pub(super) enum PartSpectrum<const N: usize> {
-    /// Lanes by which the light of a source arrives at the sensor, and whether they parted.
-    Lanes { source: SourceId, lanes: Lanes<N>, parted: bool },
+    /// Lanes by which the light of a source arrives at the sensor, whether they parted, and the parts of them that S1,
+    /// S2 and S3 are, if their spectra are asked for.
+    Lanes { source: SourceId, lanes: Lanes<N>, parted: bool, stokes: Option<Box<[Lanes<N>; 3]>> },
     /// One wavelength.
     Alone(Wavelength),
 }
@@ -118,10 +118,11 @@ impl<const N: usize> Seen<N> {
     /// Of lanes by which it arrives.
     fn new(world: &World, arrived: &Arrived<N>, stokes: Option<[Lanes<N>; 3]>) -> Self {
         let Arrived { source, lanes, parted, .. } = *arrived;
+        let of_bands = stokes.filter(|_| world.layers.spectrum.is_some()).map(Box::new);
         Self {
             rgb: arrived.rgb(&world.responses),
             stokes: stokes.map(|stokes| stokes.map(|part| arrived.times(part, &world.responses))),
-            spectrum: PartSpectrum::Lanes { source, lanes: *lanes, parted },
+            spectrum: PartSpectrum::Lanes { source, lanes: *lanes, parted, stokes: of_bands },
         }
     }
 }

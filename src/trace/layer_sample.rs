@@ -102,12 +102,12 @@ impl<'a, const N: usize> LayerSample<'a, N> {
     /// Receives light that came to the sensor, and the lanes by which it arrived.
     pub(super) fn receive(&mut self, contribution: &Contribution, arrived: &Arrived<N>, stokes: Option<[Lanes<N>; 3]>) {
         self.world.layers.add(&mut self.row, contribution);
-        if let Some(stokes) = stokes {
+        if let Some(stokes) = &stokes {
             let stokes = stokes.map(|part| arrived.times(part, &self.world.responses));
             self.world.layers.add_stokes(&mut self.row, stokes, 1.0);
         }
         if let Some(spectrum) = &mut self.spectrum {
-            spectrum.receive(arrived, 1.0);
+            spectrum.receive(arrived, stokes.as_ref(), 1.0);
         }
     }
 
@@ -122,12 +122,16 @@ impl<'a, const N: usize> LayerSample<'a, N> {
             }
             let (Some(sample), Some(light)) = (&mut self.spectrum, contribution.light) else { continue };
             match spectrum {
-                PartSpectrum::Lanes { source, lanes, parted } => {
-                    sample.receive(&Arrived { source: *source, draw, lanes, parted: *parted }, *factor);
+                PartSpectrum::Lanes { source, lanes, parted, stokes } => {
+                    let arrived = Arrived { source: *source, draw, lanes, parted: *parted };
+                    sample.receive(&arrived, stokes.as_deref(), *factor);
                 }
                 PartSpectrum::Alone(wavelength) => {
                     let responses = (&self.world.responses[light], sample.response(light));
-                    sample.receive_alone(wavelength.band(rgb, responses.0, responses.1));
+                    let others = stokes.iter().flatten().map(|part| part.map(|x| factor * x));
+                    for (component, color) in std::iter::once(rgb).chain(others).enumerate() {
+                        sample.receive_alone(component, wavelength.band(color, responses.0, responses.1));
+                    }
                 }
             }
         }

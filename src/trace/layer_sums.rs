@@ -5,9 +5,9 @@ use serde::{Deserialize, Serialize};
 use super::contribution::add;
 use super::coverage::Coverage;
 use super::layer_sample::Left;
-use super::layers::{Layers, OF_A_HALF};
+use super::layers::{Layers, OF_A_HALF, STOKES};
 use super::spectrum_sample::Spectrum;
-use crate::film::{Layer, LayerImage, RANKS, Sample, SampleWeights, SpectralImage, stored};
+use crate::film::{Layer, LayerImage, RANKS, Sample, SampleWeights, SpectralImage, polarization, stored};
 
 /// Sums of the pixels of a tile.
 #[derive(Default, Serialize, Deserialize)]
@@ -74,8 +74,8 @@ impl LayerSums {
                         row[at..at + size].copy_from_slice(&left[at..at + size]);
                     }
                 }
-                Layer::Lights => {
-                    let size = 3 * layers.groups.len();
+                Layer::Lights | Layer::Polarization => {
+                    let size = if layer == Layer::Lights { 3 * layers.groups.len() } else { STOKES };
                     row[at..at + size].iter_mut().zip(&left[at..]).for_each(|(sum, more)| *sum += more);
                 }
                 _ => add(&mut row[at..], std::array::from_fn(|i| left[at + i])),
@@ -133,8 +133,9 @@ pub(super) fn images(layers: &Layers, pixels: usize) -> Vec<LayerImage> {
 
 /// The spectra of so many pixels, as yet without values; none if they are not asked for.
 pub(super) fn spectral_image(layers: &Layers, pixels: usize) -> Option<SpectralImage> {
-    let bands = layers.spectrum.as_ref()?.bands;
-    Some(SpectralImage { bands, values: vec![0.0; pixels * bands.count()] })
+    let spectrum = layers.spectrum.as_ref()?;
+    let values = vec![0.0; pixels * spectrum.numbers()];
+    Some(SpectralImage { bands: spectrum.bands, has_stokes: spectrum.has_stokes, values })
 }
 
 /// Writes a pixel's values into the images.
@@ -162,6 +163,11 @@ pub(super) fn write(layers: &Layers, taken: &Taken, pixel: usize, images: &mut [
                 values.copy_from_slice(&shadow.map(stored));
                 continue;
             }
+            if layer == Layer::Polarization {
+                let stokes = std::array::from_fn(|component| taken.light(at + component));
+                values.copy_from_slice(&polarization(stokes).map(stored));
+                continue;
+            }
             for (channel, value) in values.iter_mut().enumerate() {
                 *value = stored(taken.value(layer, at + 3 * number, channel));
             }
@@ -172,9 +178,9 @@ pub(super) fn write(layers: &Layers, taken: &Taken, pixel: usize, images: &mut [
 impl Taken<'_> {
     /// Writes the pixel's spectrum into the image.
     pub(super) fn write_spectrum(&self, spectrum: &Spectrum, pixel: usize, image: &mut SpectralImage) {
-        let bands = spectrum.bands.count();
-        for (band, value) in image.values[pixel * bands..][..bands].iter_mut().enumerate() {
-            *value = stored(spectrum.unit * self.light(spectrum.at + band));
+        let numbers = spectrum.numbers();
+        for (number, value) in image.values[pixel * numbers..][..numbers].iter_mut().enumerate() {
+            *value = stored(spectrum.unit * self.light(spectrum.at + number));
         }
     }
 

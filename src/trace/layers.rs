@@ -17,7 +17,7 @@ pub(super) struct Layers {
     /// In the order in which they were asked for.
     pub(super) wanted: Vec<Layer>,
     /// Where the numbers of each begin, if it is wanted.
-    places: [Option<usize>; Layer::NAMES.len()],
+    places: Places,
     /// Numbers in a row.
     pub(super) numbers: usize,
     /// The group of each light, and the names of the groups' layers.
@@ -35,6 +35,18 @@ pub(super) struct Layers {
     lobes_apart: bool,
     /// A light of radiance 1, by which albedo, lobes and residual are looked at.
     pub(super) white: Option<White>,
+    /// How bright red, green and blue of 1 are.
+    luminance: [f64; 3],
+}
+
+/// A place for each layer that there is.
+#[derive(Clone, Debug)]
+struct Places([Option<usize>; Layer::NAMES.len()]);
+
+impl Default for Places {
+    fn default() -> Self {
+        Self([None; Layer::NAMES.len()])
+    }
 }
 
 /// The name that each object has in a matte.
@@ -77,13 +89,16 @@ impl Caught {
     }
 }
 
+/// Numbers of polarization: the luminance of each Stokes component.
+pub(super) const STOKES: usize = 4;
 /// Numbers of a half of the samples: a color, and how many samples they are.
 pub(super) const OF_A_HALF: usize = 4;
 
 impl Layers {
     /// The layers that a scene asks for.
     pub(super) fn new(scene: &Scene<Curve>, basis: &Basis) -> Self {
-        let mut layers = Self { first: scene.format.first, ..Self::default() };
+        let luminance = scene.film.color_space.to_xyz()[1];
+        let mut layers = Self { first: scene.format.first, luminance, ..Self::default() };
         for group in &scene.light_groups {
             let name = light_layer_name(group);
             let known = layers.groups.iter().position(|known| *known == name);
@@ -92,11 +107,12 @@ impl Layers {
         }
         for &layer in &scene.format.layers {
             if layers.at(layer).is_none() {
-                layers.places[layer as usize] = Some(layers.numbers);
+                layers.places.0[layer as usize] = Some(layers.numbers);
                 layers.wanted.push(layer);
                 layers.numbers += match layer {
                     Layer::Lights => 3 * layers.groups.len(),
                     Layer::HalfA | Layer::HalfB => OF_A_HALF,
+                    Layer::Polarization => STOKES,
                     Layer::Samples | Layer::Shadow => 0,
                     _ if layer.is_matte() => 0,
                     _ => layer.channels().len(),
@@ -109,7 +125,7 @@ impl Layers {
         }
         if let Some(bands) = scene.format.spectral {
             layers.spectrum = Spectrum::new(scene, basis, bands, layers.numbers);
-            layers.numbers += layers.spectrum.as_ref().map_or(0, |spectrum| spectrum.bands.count());
+            layers.numbers += layers.spectrum.as_ref().map_or(0, Spectrum::numbers);
         }
         let mattes = layers.wanted.iter().filter(|layer| layer.is_matte());
         layers.ids = mattes.map(|&matte| (matte, names(scene, matte).map(id).collect())).collect();
@@ -133,7 +149,7 @@ impl Layers {
     /// Where in a row the numbers of a layer begin; none if it is not wanted.
     #[inline]
     pub(super) fn at(&self, layer: Layer) -> Option<usize> {
-        self.places[layer as usize]
+        self.places.0[layer as usize]
     }
 
     /// Whether it matters of which light gathered photons are, whether they were dispersed, or what their spectra are.
@@ -214,9 +230,9 @@ impl Layers {
         }
     }
 
-    /// Whether any component of Stokes vectors is wanted.
+    /// Whether anything is wanted of Stokes vectors.
     pub(super) fn has_stokes(&self) -> bool {
-        Layer::STOKES.into_iter().any(|layer| self.at(layer).is_some())
+        self.wanted.iter().copied().any(Layer::is_of_polarization)
     }
 
     /// Adds S1, S2 and S3 of light to a row, times a factor.
@@ -225,6 +241,14 @@ impl Layers {
         for (layer, color) in Layer::STOKES.into_iter().zip(stokes) {
             self.add_to(layer, row, color.map(|x| factor * x));
         }
+        let [s1, s2, s3] = stokes.map(|color| factor * self.luminance_of(&color));
+        if let Some(at) = self.at(Layer::Polarization) {
+            add(&mut row[at + 1..], [s1, s2, s3]);
+        }
+    }
+
+    fn luminance_of(&self, rgb: &[f64; 3]) -> f64 {
+        (0..3).map(|channel| self.luminance[channel] * rgb[channel]).sum()
     }
 
     /// Adds light to a row.
@@ -245,6 +269,9 @@ impl Layers {
         }
         if *dispersed {
             self.add_to(Layer::Dispersed, row, *rgb);
+        }
+        if let Some(at) = self.at(Layer::Polarization) {
+            row[at] += self.luminance_of(rgb);
         }
         if let (Some(at), Some(light)) = (self.at(Layer::Lights), light) {
             add(&mut row[at + 3 * self.group_of[*light]..], *rgb);

@@ -13,6 +13,7 @@ use super::path::{Path, PathKind};
 use super::polarization::{Polarization, SeenPhoton};
 use super::polarized::Polarized;
 use super::shading;
+use super::spectrum_sample::Spectrum;
 use super::straight::{Passage, Past};
 use super::walker::{Departure, Walker};
 use crate::light::{LeSample, LightId};
@@ -33,7 +34,7 @@ pub(super) struct Splat {
     pub(super) rgb: [f64; 3],
     /// S1, S2 and S3 if they are asked for, times a factor.
     pub(super) stokes: Option<Arc<[[f64; 3]; 3]>>,
-    /// What it adds to the bands of a spectral image if one is asked for, times a factor.
+    /// What it adds to the numbers of a spectral image if one is asked for, times a factor.
     pub(super) bands: Option<Arc<[f32]>>,
     pub(super) weight: f64,
     pub(super) light: LightId,
@@ -385,7 +386,8 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> View<'v, 'a, N, P> {
         let (world, factor) = (self.walker.world, self.factor());
         let rgb = arrived.rgb(&world.responses).map(|x| x * factor);
         let spectrum = world.layers.spectrum.as_ref();
-        let bands = spectrum.map(|spectrum| spectrum.of(arrived, factor).into_iter().map(|x| x as f32).collect());
+        let of_bands = |spectrum: &Spectrum| spectrum.of(arrived, polarized.stokes.as_ref(), factor);
+        let bands = spectrum.map(|spectrum| of_bands(spectrum).into_iter().map(|x| x as f32).collect());
         let color = |part: Lanes<N>| arrived.times(part, &world.responses).map(|x| x * factor);
         let stokes = polarized.stokes.map(|stokes| Arc::new(stokes.map(color)));
         let Landing { light, early, .. } = *self.landing;

@@ -56,9 +56,9 @@ impl Turn {
 
     /// Of the linear components, 1 and 2.
     #[inline(always)]
-    fn of<const N: usize>(self, one: Lanes<N>, two: Lanes<N>) -> [Lanes<N>; 2] {
+    fn of(self, one: f32, two: f32) -> [f32; 2] {
         let Self(c, s) = self;
-        [one * c + two * s, two * c + one * -s]
+        [one * c + two * s, two * c - one * s]
     }
 }
 
@@ -67,11 +67,32 @@ fn across(z: DVec3, near: DVec3) -> DVec3 {
     (near - z * z.dot(near)).try_normalize().unwrap_or_else(|| Frame::about(z).to_world(DVec3::X))
 }
 
+/// Makes rows of one lane, of light of which `value` would leave if it were unpolarized, shares of what leaves: of
+/// `value` itself where that is compared. Answers the factor on `value`.
+#[inline(always)]
+fn shares_of<const K: usize>(rows: &mut [[f32; 4]; K], value: f32, compares: bool) -> f32 {
+    let inverse = |x: f32| if x > 0.0 { 1.0 / x } else { 0.0 };
+    let first = rows[0][0];
+    let scale = inverse(if compares { value } else { first });
+    rows.iter_mut().flatten().for_each(|part| *part *= scale);
+    if compares {
+        return 1.0;
+    }
+    // Rounding may leave a degree above 1.
+    let [_, one, two, three] = rows[0];
+    let squared = one * one + two * two + three * three;
+    let within = 1.0 / if squared > 1.0 { squared } else { 1.0 }.sqrt();
+    rows[0][1..].iter_mut().for_each(|part| *part *= within);
+    first.max(0.0) * inverse(value)
+}
+
 /// One way by which light leaves a surface.
 struct Passing<'a, const N: usize> {
     mueller: &'a Mueller<N>,
     /// What leaves of unpolarized light.
     value: Lanes<N>,
+    /// The lanes that do, each 1.
+    present: Lanes<N>,
     /// The direction of the light on both sides of the surface, to the viewer and before it arrives.
     z: [DVec3; 2],
 }
@@ -86,7 +107,7 @@ impl<const N: usize, const K: usize> Rows<N, K> {
 
     /// Goes on beyond a surface; answers the factor by which polarization changes what leaves it.
     fn pass(&mut self, passing: &Passing<N>) -> Lanes<N> {
-        let Passing { mueller, value, z: [z, onward] } = *passing;
+        let Passing { mueller, value, present, z: [z, onward] } = *passing;
         let Mueller { axis, block, base } = mueller;
         let base = base.as_ref().map(|base| {
             let inward = across(onward, onward.cross(base.normal));
@@ -99,43 +120,60 @@ impl<const N: usize, const K: usize> Rows<N, K> {
             (_, Some(_)) => across(onward, *axis),
         };
         let met = met.unwrap_or(Turn::NONE);
-        for row in &mut self.rows {
-            let [q0, q1, q2, q3] = *row;
+        let base =
+            base.map(|(base, turn, inward)| (base, turn, Turn::new(onward, inward, self.x).unwrap_or(Turn::NONE)));
+        self.each_lane(present, value, |i, [q0, q1, q2, q3]| {
             let [r1, r2] = met.of(q1, q2);
-            *row = [
-                value * q0 + block.d * r1,
-                block.d * q0 + block.a * r1,
-                block.c * r2 + block.q * q3,
-                block.c * q3 + block.q * r2 * -1.0,
+            let mut row = [
+                value[i] * q0 + block.d[i] * r1,
+                block.d[i] * q0 + block.a[i] * r1,
+                block.c[i] * r2 + block.q[i] * q3,
+                block.c[i] * q3 - block.q[i] * r2,
             ];
-            if let Some((base, turn, inward)) = &base {
+            if let Some((base, turn, back)) = &base {
                 let [u1, _] = turn.of(q1, q2);
-                let back = Turn::new(onward, *inward, self.x).unwrap_or(Turn::NONE);
-                let [v1, v2] = back.of(base.arriving * q0 + base.both * u1, Lanes::ZERO);
-                row[0] += base.leaving * u1;
+                let [v1, v2] = back.of(base.arriving[i] * q0 + base.both[i] * u1, 0.0);
+                row[0] += base.leaving[i] * u1;
                 row[1] += v1;
                 row[2] += v2;
             }
-        }
-        self.divide_by(value)
+            row
+        })
     }
 
-    /// Makes rows that are absolute shares of what the throughput becomes; answers the factor on what leaves the
-    /// surface of unpolarized light.
-    fn divide_by(&mut self, value: Lanes<N>) -> Lanes<N> {
-        let first = self.rows[0][0];
-        let inverse = |x: f32| if x > 0.0 { 1.0 / x } else { 0.0 };
-        let (factor, scale) = match self.compares {
-            true => (Lanes::ONE, Lanes::from_fn(|i| inverse(value[i]))),
-            false => (Lanes::from_fn(|i| first[i].max(0.0) * inverse(value[i])), Lanes::from_fn(|i| inverse(first[i]))),
-        };
-        self.rows.iter_mut().flatten().for_each(|part| *part = *part * scale);
-        // Rounding may leave a degree above 1.
-        let [_, one, two, three] = self.rows[0];
-        let squared = one * one + two * two + three * three;
-        if !self.compares && squared.0.iter().fold(false, |any, &squared| any | (squared > 1.0)) {
-            let within = Lanes::from_fn(|i| if squared[i] > 1.0 { 1.0 / squared[i].sqrt() } else { 1.0 });
-            self.rows[0][1..].iter_mut().for_each(|part| *part = *part * within);
+    /// Changes the rows of the lanes that are present, where `value` is what becomes of unpolarized light, and makes
+    /// them shares of what the throughput becomes; answers the factor on `value`. A lane that has parted from the
+    /// others is alone, and to ask it alone takes a fraction of the time.
+    #[inline(always)]
+    fn each_lane(
+        &mut self,
+        present: Lanes<N>,
+        value: Lanes<N>,
+        changed: impl Fn(usize, [f32; 4]) -> [f32; 4],
+    ) -> Lanes<N> {
+        let mut factor = Lanes::ONE;
+        if present == Lanes::ONE {
+            for i in 0..N {
+                factor.0[i] = self.lane(i, value[i], &changed);
+            }
+        } else {
+            for i in present.present() {
+                factor.0[i] = self.lane(i, value[i], &changed);
+            }
+        }
+        factor
+    }
+
+    /// The same of one lane.
+    #[inline(always)]
+    fn lane(&mut self, i: usize, value: f32, changed: &impl Fn(usize, [f32; 4]) -> [f32; 4]) -> f32 {
+        let mut rows = [[0.0; 4]; K];
+        for (row, [zero, one, two, three]) in rows.iter_mut().zip(&self.rows) {
+            *row = changed(i, [zero[i], one[i], two[i], three[i]]);
+        }
+        let factor = shares_of(&mut rows, value, self.compares);
+        for ([zero, one, two, three], row) in self.rows.iter_mut().zip(rows) {
+            [zero.0[i], one.0[i], two.0[i], three.0[i]] = row;
         }
         factor
     }
@@ -146,7 +184,7 @@ impl<const N: usize, const K: usize> Rows<N, K> {
         let present = Lanes::from_fn(|i| if value[i] == 0.0 { 0.0 } else { at.arrival.present[i] });
         let mueller = at.material.mueller(&Arrival { present, ..at.arrival }, incoming);
         let z = [at.arrival.wo, -incoming.wi];
-        self.pass(&Passing { mueller: &mueller, value, z })
+        self.pass(&Passing { mueller: &mueller, value, present, z })
     }
 
     /// The mirror image in a plane: light that was folded there by a shading normal.
@@ -184,12 +222,11 @@ impl<const N: usize, const K: usize> Rows<N, K> {
     /// Takes light of some polarization, whose direction is z; answers the factor on its intensity.
     fn receive(&mut self, z: DVec3, light: &Column<N>) -> Lanes<N> {
         let turn = Turn::new(z, self.x, light.x).unwrap_or(Turn::NONE);
-        for row in &mut self.rows {
-            let [one, two] = turn.of(row[1], row[2]);
-            let [s0, s1, s2, s3] = light.stokes;
-            row[0] = row[0] * s0 + one * s1 + two * s2 + row[3] * s3;
-        }
-        self.divide_by(Lanes::ONE)
+        let [s0, s1, s2, s3] = light.stokes;
+        self.each_lane(Lanes::ONE, Lanes::ONE, |i, [q0, q1, q2, q3]| {
+            let [r1, r2] = turn.of(q1, q2);
+            [q0 * s0[i] + r1 * s1[i] + r2 * s2[i] + q3 * s3[i], q1, q2, q3]
+        })
     }
 
     /// The light that a photon brings which has followed the first row: Q times it.
@@ -227,7 +264,7 @@ impl<const N: usize, const K: usize> Polarization<N> for Rows<N, K> {
             let (sin, cos) = libm::sincos(filter.angle);
             let axis = x * cos + z.cross(x) * sin;
             let mueller = Mueller::of_lanes(axis, Lanes::ONE, |_| Block::of_polarizer(filter.extinction));
-            rows.pass(&Passing { mueller: &mueller, value, z: [z; 2] });
+            rows.pass(&Passing { mueller: &mueller, value, present: Lanes::ONE, z: [z; 2] });
         }
         rows
     }
@@ -239,7 +276,8 @@ impl<const N: usize, const K: usize> Polarization<N> for Rows<N, K> {
 
     fn after_straight(mut self, material: &Material<Table>, arrival: &Arrival<N>, straight: &mut Straight<N>) -> Self {
         let (mueller, value) = (material.mueller_of_straight(arrival), straight.share());
-        let factor = self.pass(&Passing { mueller: &mueller, value, z: [arrival.wo; 2] });
+        let present = arrival.present;
+        let factor = self.pass(&Passing { mueller: &mueller, value, present, z: [arrival.wo; 2] });
         let share = value * factor;
         straight.panes = Lanes::from_fn(|i| (share[i] - straight.holes[i]).max(0.0));
         self

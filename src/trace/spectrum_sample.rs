@@ -11,7 +11,9 @@ use crate::spectrum::{BandResponse, Basis, Curve, Distinct, Lanes, WavelengthBan
 #[derive(Clone, Debug)]
 pub(super) struct Spectrum {
     pub(super) bands: WavelengthBands,
-    /// Where their sums begin in a row.
+    /// Whether S1, S2 and S3 are wanted of each band.
+    pub(super) has_stokes: bool,
+    /// Where their sums begin in a row: those of all bands, and behind them those of each other component.
     pub(super) at: usize,
     /// The spectral radiance that a 1 of the sums is: 1, or in W m^-2 sr^-1 nm^-1 where the scene's light is absolute.
     pub(super) unit: f64,
@@ -35,7 +37,16 @@ impl Spectrum {
         let responses = responses.into_iter().collect::<Option<_>>()?;
         // In absolute light, an even spectrum of this radiance has the luminance of white.
         let unit = scene.format.white_luminance.map_or(1.0, |white| white / (EFFICACY * luminous()));
-        Some(Self { bands, at, unit, response_of, responses })
+        Some(Self { bands, has_stokes: scene.format.has_stokes(), at, unit, response_of, responses })
+    }
+
+    /// Numbers in a row.
+    pub(super) fn numbers(&self) -> usize {
+        self.components() * self.bands.count()
+    }
+
+    fn components(&self) -> usize {
+        if self.has_stokes { 4 } else { 1 }
     }
 
     /// What a source's lanes are to the bands.
@@ -43,29 +54,46 @@ impl Spectrum {
         &self.responses[self.response_of[source]]
     }
 
-    /// Light in all bands.
-    pub(super) fn of<const N: usize>(&self, arrived: &Arrived<N>, factor: f64) -> Vec<f64> {
+    /// Light in all bands, and S1, S2 and S3 of it if they are wanted, of which `stokes` are the parts.
+    pub(super) fn of<const N: usize>(
+        &self,
+        arrived: &Arrived<N>,
+        stokes: Option<&[Lanes<N>; 3]>,
+        factor: f64,
+    ) -> Vec<f64> {
         let Arrived { source, draw, lanes, parted } = *arrived;
-        let (response, mut bands) = (self.response(source), vec![0.0; self.bands.count()]);
-        if !response.heroes(draw, lanes, parted, |band, light| bands[band] += factor * light) {
-            response.add_fixed(&lanes.0.map(|lane| factor * f64::from(lane)), &mut bands);
+        let (response, mut all) = (self.response(source), vec![0.0; self.numbers()]);
+        for (lanes, bands) in self.parts(lanes, stokes).zip(all.chunks_exact_mut(self.bands.count())) {
+            if !response.heroes(draw, &lanes, parted, |band, light| bands[band] += factor * light) {
+                response.add_fixed(&lanes.0.map(|lane| factor * f64::from(lane)), bands);
+            }
         }
-        bands
+        all
+    }
+
+    /// Lanes of each component.
+    fn parts<const N: usize>(
+        &self,
+        lanes: &Lanes<N>,
+        stokes: Option<&[Lanes<N>; 3]>,
+    ) -> impl Iterator<Item = Lanes<N>> {
+        let others = stokes.filter(|_| self.has_stokes).into_iter().flatten();
+        std::iter::once(*lanes).chain(others.map(|part| *lanes * *part))
     }
 }
 
 /// Light that one camera sample after another leaves in the bands.
 pub(super) struct SpectrumSample<'a, const N: usize> {
     spectrum: &'a Spectrum,
-    /// Of the sample at hand: lanes that never parted, with the number of their response and a factor; and light of
-    /// single wavelengths, with its band.
+    /// Of the sample at hand: lanes that never parted, with the number of their component and response and a factor;
+    /// and light of single wavelengths, with the number of its component and band.
     together: Vec<(usize, Lanes<N>, f64)>,
     alone: Vec<(usize, f64)>,
     /// Sums of the samples that were kept and are added, and of those that are subtracted.
     kept: [Kept<N>; 2],
 }
 
-/// Sums of samples: lanes by their response, and bands.
+/// Sums of samples, of one component after the other: lanes by their response, and bands.
 #[derive(Clone)]
 struct Kept<const N: usize> {
     lanes: Vec<[f64; N]>,
@@ -74,8 +102,8 @@ struct Kept<const N: usize> {
 
 impl<'a, const N: usize> SpectrumSample<'a, N> {
     pub(super) fn new(spectrum: &'a Spectrum) -> Self {
-        let lanes = vec![[0.0; N]; spectrum.responses.len()];
-        let nothing = Kept { lanes, bands: vec![0.0; spectrum.bands.count()] };
+        let lanes = vec![[0.0; N]; spectrum.components() * spectrum.responses.len()];
+        let nothing = Kept { lanes, bands: vec![0.0; spectrum.numbers()] };
         Self { spectrum, together: Vec::new(), alone: Vec::new(), kept: [nothing.clone(), nothing] }
     }
 
@@ -85,19 +113,26 @@ impl<'a, const N: usize> SpectrumSample<'a, N> {
         self.alone.clear();
     }
 
-    /// Receives light, times a factor.
-    pub(super) fn receive(&mut self, arrived: &Arrived<N>, factor: f64) {
+    /// Receives light and the parts of it that S1, S2 and S3 are, times a factor.
+    pub(super) fn receive(&mut self, arrived: &Arrived<N>, stokes: Option<&[Lanes<N>; 3]>, factor: f64) {
         let Self { spectrum, together, alone, .. } = self;
         let Arrived { source, draw, lanes, parted } = *arrived;
-        let found = |band, light| alone.push((band, factor * light));
-        if !spectrum.response(source).heroes(draw, lanes, parted, found) {
-            together.push((spectrum.response_of[source], *lanes, factor));
+        for (component, lanes) in spectrum.parts(lanes, stokes).enumerate() {
+            let first_band = component * spectrum.bands.count();
+            let found = |band, light| alone.push((first_band + band, factor * light));
+            if !spectrum.response(source).heroes(draw, &lanes, parted, found) {
+                let response = component * spectrum.responses.len() + spectrum.response_of[source];
+                together.push((response, lanes, factor));
+            }
         }
     }
 
-    /// Receives light of a single wavelength: its band, if it falls into any, and how much it is.
-    pub(super) fn receive_alone(&mut self, found: Option<(usize, f64)>) {
-        self.alone.extend(found);
+    /// Receives a component of light of a single wavelength: its band, if it falls into any, and how much it is.
+    pub(super) fn receive_alone(&mut self, component: usize, found: Option<(usize, f64)>) {
+        if component < self.spectrum.components() {
+            let first_band = component * self.spectrum.bands.count();
+            self.alone.extend(found.map(|(band, light)| (first_band + band, light)));
+        }
     }
 
     /// What a source's lanes are to the bands.
@@ -120,8 +155,11 @@ impl<'a, const N: usize> SpectrumSample<'a, N> {
         let Self { spectrum, kept, .. } = self;
         for (row, kept) in rows.into_iter().zip(kept).filter(|(row, _)| !row.is_empty()) {
             let row = &mut row[spectrum.at..][..kept.bands.len()];
-            for (response, lanes) in spectrum.responses.iter().zip(&mut kept.lanes) {
-                response.add_fixed(&std::mem::replace(lanes, [0.0; N]), row);
+            let components = kept.lanes.chunks_exact_mut(spectrum.responses.len().max(1));
+            for (bands, lanes) in row.chunks_exact_mut(spectrum.bands.count()).zip(components) {
+                for (response, lanes) in spectrum.responses.iter().zip(lanes) {
+                    response.add_fixed(&std::mem::replace(lanes, [0.0; N]), bands);
+                }
             }
             row.iter_mut().zip(&mut kept.bands).for_each(|(sum, light)| *sum += std::mem::take(light));
         }

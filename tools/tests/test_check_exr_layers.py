@@ -40,7 +40,10 @@ def layered(half=False, **changes):
         "samples": np.full((1, HEIGHT, WIDTH), 4),
         "residual": 1e-7 * (share - 0.5),
         "shadow": np.zeros_like(image),
+        **{name: share_of * image for name, share_of in {"S1": 0.3, "S2": -0.2, "S3": 0.1}.items()},
     }
+    numbers_of = (np.sqrt(0.14), np.sqrt(0.13), np.rad2deg(np.arctan2(-0.2, 0.3) / 2))
+    layers["polarization"] = np.stack([np.full_like(alpha, number) for number in numbers_of])
     for matte, names in MATTES.items():
         for suffix in check_exr.MATTE_LAYERS:
             layers[matte + suffix] = np.zeros((4, HEIGHT, WIDTH))
@@ -139,6 +142,13 @@ def object_number(name):
         (changed("indirect.G", 3), "emission + background + direct + indirect: not R, G, B in 1 values"),
         (changed("light_rim_1.B", 3), "light_key + light_rim_1: not R, G, B in 1 values"),
         (changed("half_b.R", 30), "half_a + half_b: not twice R, G, B in 1 values"),
+        ({"S1.R": None}, "channel 'S1.R': missing"),
+        (changed("S2.G", -30), "layers S1, S2 and S3: more than the image in 1 pixels"),
+        (changed("polarization.degree", 1.1), "layer 'polarization': degrees that are not"),
+        (changed("polarization.linear_degree", 0.5), "layer 'polarization': degrees that are not"),
+        (changed("polarization.angle", -90), "layer 'polarization': angles from -90"),
+        (changed("polarization.degree", 0.4), "layer 'polarization': not that of the Stokes vectors in 1 pixels"),
+        (changed("polarization.angle", 16.9), "layer 'polarization': not that of the Stokes vectors in 1 pixels"),
         ({"light_rim_1.R": None, "light_rim_1.G": None, "light_rim_1.B": None}, "light_key: not R, G, B"),
         ({f"CryptoObject02.{channel}": None for channel in "rgba"}, "layer 'CryptoObject02': missing"),
         (changed("CryptoObject00.r", object_number("cube")), "1 numbers are not in its manifest"),

@@ -57,7 +57,29 @@ film = { width = 4, height = 3, spectral = true }
 render = { samples = 4 }
 light = [{ environment.radiance.samples = [[300, 1], [900, 1]] }]
 """
+# A ball of glass behind a polarizer and a wave plate whose phase depends on the wavelength.
+POLARIZED = """
+camera = { position = [0, 0, 5], look_at = [0, 0, 0], vertical_fov = 24 }
+film = { width = 16, height = 12, spectral = true, stokes = true, layers = ["polarization"] }
+render = { samples = 16 }
+[material]
+sheet.polarizer = { axis = [1, 0.4, 0], extinction = 0.01 }
+plate.retarder = { axis = [1, 1, 0], retardation_nm = 560 }
+glass.dielectric.index = 1.5
+[[object]]
+shape.sphere = { center = [0, 0, 0], radius = 0.9 }
+material = "glass"
+[[object]]
+shape.quad = { center = [0.6, 0, 1], u = [0.6, 0, 0], v = [0, 2, 0] }
+material = "sheet"
+[[object]]
+shape.quad = { center = [0, 0.5, 1.2], u = [2, 0, 0], v = [0, 0.5, 0] }
+material = "plate"
+[[light]]
+environment.radiance = { illuminant = "D65", scale = 1 }
+"""
 SCENES = {"room": ROOM.replace("SPACE", "lin_rec709_scene"), "aces": ROOM.replace("SPACE", "lin_ap1_scene"), "prism": PRISM, "even": EVEN}
+SCENES["polarized"] = POLARIZED
 every_scene = pytest.mark.parametrize("name", SCENES)
 
 
@@ -121,6 +143,20 @@ def test_colour_science_reads_the_bands_and_their_unit(colour, name):
     assert header["emissiveUnits"] == "W.m^-2.sr^-1" and header["spectralLayoutVersion"] == "1.0"
 
 
+def test_colour_science_reads_the_components_of_stokes_vectors(colour):
+    path = rendered("polarized")[1]
+    components, file = colour.io.read_spectral_image_Fichet2021(str(path)), check_exr.read(path)
+    for number, name in enumerate(check_exr.STOKES):
+        read_nm, read = components[name]
+        bands = file.bands(number)
+        order = np.argsort(read_nm)
+        assert np.allclose(np.asarray(read_nm)[order], list(bands), atol=1e-6)
+        expected = np.stack([file.channels[channel] for channel in bands.values()], -1)
+        assert np.array_equal(np.asarray(read, np.float32)[..., order], expected)
+        assert np.abs(expected).max() > 0
+    assert file.header["polarisationHandedness"] == "right"
+
+
 @pytest.mark.parametrize("name", ["room", "aces", "prism"])
 def test_spectra_seen_by_the_standard_observer_are_the_colors(colour, name):
     """Within 0.5 % of the brightest channel, or of 1 % of the image's mean, and 0.3 dE2000, of the image's white."""
@@ -159,6 +195,12 @@ def test_a_good_spectral_file_breaks_no_rule(found):  # noqa: F811
     assert spectral_file(found) == []
 
 
+def test_stokes_vectors_of_bands_say_their_handedness(found):  # noqa: F811
+    components = {f"S{i}.{nm},000000nm": plane(0.001) for i in (1, 2, 3) for nm in (500, 510, 520)}
+    assert spectral_file(found, components, {"polarisationHandedness": "right"}) == []
+    assert spectral_file(found, components) == ["polarisationHandedness is None, not 'right'"]
+
+
 @pytest.mark.parametrize(
     "changes, header_changes, said",
     [
@@ -170,6 +212,8 @@ def test_a_good_spectral_file_breaks_no_rule(found):  # noqa: F811
         ({"A": plane(1)}, {}, "'A': none of its layer"),
         ({"N.X": plane(0), "N.Y": plane(0), "N.Z": plane(0)}, {}, "with the layers N"),
         ({"G": None}, {}, "'G': missing"),
+        ({"S1.500,000000nm": plane(0)}, {"polarisationHandedness": "right"}, "not there in the bands of S0"),
+        ({}, {"polarisationHandedness": "right"}, "polarisationHandedness is 'right', not None"),
         ({}, {"spectralLayoutVersion": "2"}, "spectralLayoutVersion is '2'"),
         ({}, {"emissiveUnits": None}, "emissiveUnits is None"),
         ({}, {"render/spectralUnits": "W"}, "render/spectralUnits is 'W'"),

@@ -1,0 +1,68 @@
+//! The layer `polarization` is what the Stokes vectors of its pixel make, whatever light they are summed of.
+
+use abbe::Scene;
+use abbe::film::{Layer, polarization};
+use abbe::spectrum::ColorSpace;
+
+use super::{ROOM, beauty, rendered, rgb};
+
+/// A sheet and a plate before the middle of the room, so that all components are there.
+const SHEETS: &str = r#"
+[material.sheet]
+polarizer = { axis = [1, 0.5, 0], extinction = 0.05 }
+[material.plate]
+retarder = { axis = [0, 1, 0], retardation_nm = 200 }
+[[object]]
+shape.quad = { center = [0, 0.9, 3], u = [0.5, 0, 0], v = [0, 0.6, 0] }
+material = "sheet"
+[[object]]
+shape.quad = { center = [0.3, 0.9, 3.3], u = [0.4, 0, 0], v = [0, 0.6, 0] }
+material = "plate"
+"#;
+
+#[test]
+fn degrees_and_angles_are_those_of_the_sums_of_stokes_vectors() {
+    let all = Layer::STOKES.into_iter().chain([Layer::Polarization]).collect::<Vec<_>>();
+    // Photons are shown and gathered, samples are subtracted.
+    for (filter, space) in [("box", ColorSpace::Rec709), ("mitchell", ColorSpace::AcesCg)] {
+        let film = format!("height = 28, filter = \"{filter}\", color_space = \"{}\"", space.interop_id());
+        let image = rendered(&(ROOM.replace("height = 28", &film) + SHEETS), &all);
+        let weights = space.to_xyz()[1];
+        let luminance = |rgb: [f64; 3]| (0..3).map(|c| weights[c] * rgb[c]).sum::<f64>();
+        let [s1, s2, s3] = ["S1", "S2", "S3"].map(|layer| rgb(&image, layer));
+        let mut polarized = 0;
+        for (pixel, s0) in beauty(&image).into_iter().enumerate() {
+            let stokes = [s0, s1[pixel], s2[pixel], s3[pixel]].map(luminance);
+            let found = ["degree", "linear_degree", "angle"]
+                .map(|channel| f64::from(image.layer(&format!("polarization.{channel}")).expect("it is there")[pixel]));
+            let expected = polarization(stokes);
+            // Sums are stored in f32: their differences are as many roundings off as they cancel.
+            let rounding = 16.0 * f64::from(f32::EPSILON) * s0.iter().sum::<f64>().abs() / stokes[0].max(1e-9);
+            assert!((found[0] - expected[0]).abs() <= rounding, "{filter}: pixel {pixel}: {found:?} for {expected:?}");
+            assert!((found[1] - expected[1]).abs() <= rounding, "{filter}: pixel {pixel}: {found:?} for {expected:?}");
+            let turned = (found[2] - expected[2]).abs();
+            let turned = turned.min(180.0 - turned).to_radians();
+            assert!(turned * expected[1] <= rounding, "{filter}: pixel {pixel}: {found:?} for {expected:?}");
+            polarized += usize::from(found[1] > 0.1 && found[0] > 1.01 * found[1]);
+        }
+        assert!(polarized > 30, "{filter}: {polarized} pixels are polarized");
+    }
+}
+
+#[test]
+fn degrees_and_angles_need_no_other_layer() {
+    let all = Layer::STOKES.into_iter().chain([Layer::Polarization]).collect::<Vec<_>>();
+    let (both, alone) = (rendered(ROOM, &all), rendered(ROOM, &[Layer::Polarization]));
+    for channel in ["R", "polarization.degree", "polarization.linear_degree", "polarization.angle"] {
+        assert_eq!(both.layer(channel), alone.layer(channel), "{channel}");
+    }
+    assert!(alone.layer("S1.R").is_none());
+}
+
+#[test]
+fn asking_for_all_layers_does_not_ask_for_polarization() {
+    assert!(Layer::all().into_iter().all(|layer| !layer.is_of_polarization()));
+    let scene =
+        Scene::parse(&ROOM.replace("height = 28", "height = 28, layers = [\"polarization\"]"), "").expect("valid");
+    assert_eq!(scene.format.layers, [Layer::Polarization]);
+}
