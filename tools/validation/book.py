@@ -5,11 +5,13 @@ import functools
 import numpy as np
 import OpenEXR
 
-from . import caustics, color, dyes, energy, optics, transport
+from . import caustics, color, dyes, energy, films, optics, polarized, transport
 
 GROUPS = {
     "energy": energy,
     "optics": optics,
+    "polarization": polarized,
+    "films": films,
     "transport": transport,
     "color": color,
     "dyes": dyes,
