@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use abbe::film::{Layer, Overscan, Window};
-use abbe::{Options, Result, nearest};
+use abbe::{Options, Result};
 use clap::{Command, CommandFactory, Parser};
 
 use crate::frames::numbered;
@@ -186,15 +186,7 @@ fn layers(text: &str) -> std::result::Result<LayerList, String> {
     if text == Layer::ALL {
         return Ok(LayerList(Layer::all()));
     }
-    let names = || Layer::NAMES.iter().map(|(name, _)| *name);
-    let named = |word: &str| {
-        let known = Layer::NAMES.iter().find(|(name, _)| *name == word).map(|(_, layer)| *layer);
-        known.ok_or_else(|| match nearest(word, names()) {
-            Some(near) => format!("there is no layer `{word}`: did you mean {near}?"),
-            None => format!("there is no layer `{word}`: known are {}", names().collect::<Vec<_>>().join(", ")),
-        })
-    };
-    text.split(',').map(|word| named(word.trim())).collect::<std::result::Result<_, _>>().map(LayerList)
+    text.split(',').map(|word| Layer::of_name(word.trim())).collect::<std::result::Result<_, _>>().map(LayerList)
 }
 
 /// A scene and what is wanted of it.

@@ -5,10 +5,10 @@ use std::process::ExitCode;
 
 use abbe::Result;
 use abbe::film::{ExrFile, check_writable};
-use abbe::look::{Difference, Noise, compare};
+use abbe::look::{Difference, Noise, compare, number};
 use clap::Parser;
 
-use crate::messages::{aligned, answer_lines, number, print_error, say};
+use crate::messages::{aligned, answer_lines, print_error, say};
 use crate::outputs::{check_png, refuse, spare};
 
 const HELP: &str = "\

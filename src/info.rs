@@ -3,11 +3,12 @@
 use std::path::PathBuf;
 
 use abbe::film::{CameraMatrix, Channel, ExrFile, Part, PixelBounds, Statistics};
+use abbe::look::number;
 use abbe::spectrum::{ColorSpace, Primaries};
 use abbe::{Result, film::ExrLayer};
 use clap::Parser;
 
-use crate::messages::{aligned, number};
+use crate::messages::aligned;
 
 const HELP: &str = "\
 It says the size and the part of it that is there, the color space, the camera, all that the file says of itself, \

@@ -3,11 +3,11 @@
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use abbe::film::{Shard, check_writable};
 use abbe::scene::duration;
-use abbe::{Advance, Error, Rendering, Result, Resumed};
+use abbe::{Advance, Error, Rendering, Result, Resumed, Timer};
 use clap::Args;
 
 use crate::messages::{problem, say, so_far, warn};
@@ -37,8 +37,6 @@ pub struct Flags {
 
 /// How often where --resume alone is given.
 const OFTEN: Duration = Duration::from_secs(60);
-/// So many times what writing took passes before it is done again.
-const SELDOM: u32 = 100;
 
 pub fn time(text: &str) -> std::result::Result<Duration, String> {
     duration(text).ok_or_else(|| "a time is a number with a unit, such as 60s, 5m or 1h".into())
@@ -108,35 +106,6 @@ pub struct Keep {
     snapshot: Option<PathBuf>,
     snapshots: Timer,
     resume: bool,
-}
-
-/// When something is done again.
-struct Timer {
-    period: Option<Duration>,
-    due: Option<Instant>,
-}
-
-impl Timer {
-    fn new(period: Option<Duration>) -> Self {
-        Self { period, due: due(period) }
-    }
-
-    fn is_due(&self) -> bool {
-        self.due.is_some_and(|due| Instant::now() >= due)
-    }
-
-    /// Does it, and not again for a while.
-    fn run<T>(&mut self, work: impl FnOnce() -> T) -> T {
-        let start = Instant::now();
-        let result = work();
-        self.due = due(self.period.map(|period| period.max(start.elapsed() * SELDOM)));
-        result
-    }
-}
-
-/// The end of a time from now on; none if it is absent, or beyond all times.
-fn due(period: Option<Duration>) -> Option<Instant> {
-    period.and_then(|period| Instant::now().checked_add(period))
 }
 
 /// Whether the command was told to stop.

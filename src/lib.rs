@@ -27,6 +27,7 @@
 //! ```text
 //! scene.toml -> Document -> Scene<Curve> -> Plan -> World -> PathTracer<N> over tiles, pass by pass -> Film -> EXR
 //!
+//! floor 7   python      the package for Python
 //! floor 6   rendering   a scene made into an image
 //! floor 5   plan        looks at a Scene<Curve>; answers a Method and, in words, why
 //! floor 4   trace       how light travels
@@ -67,8 +68,15 @@ pub mod plan;
 // Floor 6
 mod rendering;
 
+// Floor 7
+#[cfg(feature = "python")]
+mod python;
+
 pub use error::{Diagnostic, Error, Result, nearest};
-pub use rendering::{Image, ImageError, Options, Parts, Rendering, Resumed, merge, render, write_plan};
+pub use rendering::{
+    ErrorAccount, Image, ImageError, Options, Parts, PlanAccount, RenderAccount, Rendering, Resumed, Timer, merge,
+    render, write_plan,
+};
 pub use scene::Scene;
 pub use toml;
 pub use trace::Advance;

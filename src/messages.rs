@@ -8,8 +8,8 @@ use std::sync::OnceLock;
 use std::time::Duration;
 
 use abbe::film::Format;
+use abbe::look::percent;
 use abbe::plan::Plan;
-use abbe::trace::RareLight;
 use abbe::{Diagnostic, Error, Image, ImageError, Result};
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 use clap::ValueEnum;
@@ -106,26 +106,6 @@ pub fn aligned(lines: &[Vec<String>]) -> Vec<String> {
         padded.join("  ").trim_end().to_owned()
     };
     lines.iter().map(line).collect()
-}
-
-/// Five digits, without a power of ten where that is as short.
-pub fn number(value: f64) -> String {
-    number_of_digits(value, 5)
-}
-
-/// The same of another number of digits.
-fn number_of_digits(value: f64, digits: i32) -> String {
-    let size = value.abs();
-    let scientific = || format!("{value:.*e}", digits as usize - 1);
-    if size < 5e-7 {
-        return if value == 0.0 { "0".into() } else { scientific() };
-    }
-    if !(1e-3..1e6).contains(&size) {
-        return scientific();
-    }
-    let digits = (digits - 1 - libm::floor(libm::log10(size)) as i32).clamp(0, 6) as usize;
-    let text = format!("{value:.digits$}");
-    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }
 
 /// Something to know that stops nothing.
@@ -280,21 +260,6 @@ fn print_error_of_image(error: &ImageError) {
         0.0 => String::new(),
         at_most => format!(", blur of photons {}", percent(at_most)),
     };
-    if let Some(outlier) = noise.outlier {
-        let ([x, y], share) = (outlier.pixel, percent(outlier.share));
-        let light = error.rare_light.as_ref().map_or("light".into(), told);
-        warn(&format!(
-            "pixel ({x}, {y}) makes {share} of the noise: one of eight renders found {light} there, and no other did. \
-             There may be more such light than the samples tell"
-        ));
-    }
-    if let Some(asked) = error.asked.filter(|_| !error.is_reached()) {
-        let blurred = match error.blur.at_most > noise.at_most {
-            true => ": most of it is the blur of gathered photons, half as wide after 8 to 64 times as many samples",
-            false => "",
-        };
-        warn(&format!("the error of {} that was asked for is not reached{blurred}", percent(asked)));
-    }
     let off = match noise.outlier {
         None => format!("at most {at_most} in 95 of 100 renders (color {of_color}{blur}, the rest noise)"),
         Some(_) => format!("{expected} or more"),
@@ -306,44 +271,14 @@ fn print_error_of_image(error: &ImageError) {
     ));
 }
 
-/// Rare light with its way.
-fn told(light: &RareLight) -> String {
-    let RareLight { name, bounces, found } = light;
-    let of = name.as_ref().map_or(String::new(), |name| format!(" of {name}"));
-    let after = if *bounces == 1 { "after 1 bounce".into() } else { format!("after {bounces} bounces") };
-    format!("light{of} ({found} {after})")
-}
-
-/// A share as people say it.
-fn percent(share: f64) -> String {
-    format!("{} %", number_of_digits(100.0 * share, 2))
-}
-
 /// What the render noticed.
 pub fn print_report(image: &Image, took: Duration, expected: Duration) {
     let report = image.report();
     if listener() == Listener::Program {
         Event::report(image, took, expected).tell();
     }
+    image.warnings().iter().for_each(|warning| warn(warning));
     image.error().iter().for_each(|error| print_error_of_image(error));
-    if let Some([x, y, sample]) = report.first_non_finite {
-        warn(&format!(
-            "{} samples were not finite and are left out; the first is sample {sample} of pixel ({x}, {y})",
-            report.non_finite
-        ));
-    }
-    if report.unmatched > 0 {
-        warn(&format!(
-            "{} times light left a clear body it had not entered and went straight on: is a dielectric mesh open?",
-            report.unmatched
-        ));
-    }
-    if report.by_chance > 0 {
-        warn(&format!(
-            "in {} of {} camera samples light had too many ways to follow all, and went on by chance: these pixels have noise",
-            report.by_chance, report.samples
-        ));
-    }
     if listener() == Listener::Program {
         return;
     }

@@ -11,6 +11,7 @@ import argparse
 import hashlib
 import importlib.util
 import os
+import shutil
 import subprocess
 import sys
 import time
@@ -22,6 +23,7 @@ ENVIRONMENT = ROOT / ".venv"
 PYTHON = ENVIRONMENT / "bin/python"
 # Everything is tested in the profile that keeps overflow and debug checks; its pictures have the bits of a release.
 RENDER = ROOT / "target/debug/render"
+WHEELS = ROOT / "target/wheels"
 
 
 class Failure(Exception):
@@ -64,13 +66,21 @@ def packages_and_browser():
     run(PYTHON, "tools/browser.py")
 
 
+def wheel():
+    """Builds the package for Python, in the profile in which everything is tested, and puts it into the environment."""
+    shutil.rmtree(WHEELS, ignore_errors=True)
+    run(PYTHON, "-m", "maturin", "build", "--profile", "dev", "--out", WHEELS)
+    run(PYTHON, "-m", "pip", "install", "--quiet", "--no-index", "--no-deps", "--force-reinstall", *WHEELS.glob("*.whl"))
+
+
 STEPS = {
     "format": lambda: run("cargo", "fmt", "--all", "--check"),
-    "clippy": lambda: run("cargo", "clippy", "--all-targets", "--", "-D", "warnings"),
+    "clippy": lambda: run("cargo", "clippy", "--all-targets", "--features", "python", "--", "-D", "warnings"),
     "doc": lambda: run("cargo", "doc", "--no-deps", RUSTDOCFLAGS="-D warnings"),
     "build": lambda: run("cargo", "test", "--no-run"),
     "test": lambda: run("cargo", "test"),
     "packages": packages_and_browser,
+    "wheel": wheel,
     "pytest": lambda: run(PYTHON, "-m", "pytest", "tools/tests", RENDER=str(RENDER)),
 }
 

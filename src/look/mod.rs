@@ -5,9 +5,11 @@ mod noise;
 mod picture;
 mod significance;
 mod tone;
+mod words;
 
 pub use difference::{ColorDifference, Difference, WorstPixel, compare};
 pub use noise::Noise;
 pub use picture::{Exposure, Picture};
 pub use significance::{normal_equivalent, sidak_threshold};
 pub use tone::Tone;
+pub use words::{number, percent};

@@ -1,5 +1,6 @@
 //! Floor 6: a scene made into an image, for programs; the `render` command is one of them.
 
+mod account;
 mod checkpoint;
 mod identity;
 mod image;
@@ -9,7 +10,10 @@ mod part;
 mod parts;
 mod plan_file;
 mod render;
+mod timer;
+mod warnings;
 
+pub use account::{ErrorAccount, PlanAccount, RenderAccount};
 pub use checkpoint::Resumed;
 pub use image::Image;
 pub use image_error::ImageError;
@@ -17,3 +21,4 @@ pub use options::Options;
 pub use parts::{Parts, merge};
 pub use plan_file::write_plan;
 pub use render::{Rendering, render};
+pub use timer::Timer;

@@ -204,7 +204,8 @@ impl<S> Scene<S> {
             _ => 1,
         };
         let layers = self.format.layers.iter().map(|layer| images(layer) * layer.channels().len()).sum::<usize>();
-        (layers + self.format.spectral.map_or(0, |bands| bands.count())) as u64
+        let components = if self.format.has_stokes() { 4 } else { 1 };
+        (layers + components * self.format.spectral.map_or(0, |bands| bands.count())) as u64
     }
 
     /// Bytes of memory that layers take: of each number a sum in 64 bits, another where a filter subtracts samples, its

@@ -20,4 +20,5 @@ pub use duration::duration;
 pub use film::FilmSettings;
 pub use relief::{Relief, ReliefKind};
 pub use render_text::{CausticsText, ModelText, PolarizationText, RenderText};
-pub use source::Source;
+pub use source::{SETTINGS, Source};
+pub use text::{Numbers, Rows};

@@ -9,9 +9,11 @@ use toml::de::DeTable;
 
 use super::Scene;
 use super::compile::{SECTIONS, compile};
-use super::text::{Document, Included, Mistake, Texts, fill, merged, set};
+use super::text::{Document, Included, Mistake, Rows, Texts, fill, merged, parsed, set};
 use crate::error::{Error, Result, nearest_file};
 
+/// What the text of settings is called in messages; each has a line of it.
+pub const SETTINGS: &str = "--set";
 const A_SCENE: &str = "a scene is a TOML file, such as scenes/prism.toml";
 
 /// A scene file that was read.
@@ -94,12 +96,36 @@ impl Source {
     /// As [`compile`](Self::compile). A mistake in a setting is told of a file called `--set`, in which each has a
     /// line.
     pub fn compile_with(&self, settings: &[String]) -> Result<Scene> {
-        self.compile_by(Place::Line, settings)
+        self.compile_by(Place::Line, settings, Vec::new())
     }
 
-    fn compile_by(&self, place: Place, given: &[String]) -> Result<Scene> {
+    /// The same of a text that a program has written, with rows of numbers beside it. Each mistake in it is told with
+    /// the path of its key, such as `object[3].shape.sphere.radius`.
+    ///
+    /// ```
+    /// use abbe::scene::{Numbers, Rows, Source};
+    /// let [points, faces] = [0, 1].map(|position| format!("{:?}", Rows::mark(position)).replace(r"\0", r"\u0000"));
+    /// let text = format!("camera = {{ position = [0, 0, 4], look_at = [0, 0, 0], vertical_fov = 40 }}
+    /// film = {{ width = 8, height = 8 }}
+    /// material.white.diffuse = {{ reflectance = 0.5 }}
+    /// object = [{{ shape.mesh = {{ points = {points}, faces = {faces} }}, material = \"white\" }}]");
+    /// let source = Source { path: "scene.toml".into(), text };
+    /// let corners = Rows { width: 3, numbers: Numbers::Real(vec![0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0]) };
+    /// let face = Rows { width: 3, numbers: Numbers::Whole(vec![0, 1, 2]) };
+    /// assert_eq!(source.compile_written(&[], vec![corners, face])?.objects.len(), 1);
+    /// # Ok::<(), abbe::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`compile_with`](Self::compile_with).
+    pub fn compile_written(&self, settings: &[String], rows: Vec<Rows>) -> Result<Scene> {
+        self.compile_by(Place::Key, settings, rows)
+    }
+
+    fn compile_by(&self, place: Place, given: &[String], rows: Vec<Rows>) -> Result<Scene> {
         let Included { mut texts, parts, mistakes, .. } = Included::of(&self.path, &self.text);
-        let settings = texts.add_lines(Path::new("--set"), self.folder(), given);
+        texts.rows = rows;
+        let settings = texts.add_lines(Path::new(SETTINGS), self.folder(), given);
         let refuse = |mut mistakes: Vec<Mistake>| {
             mistakes.sort_by_key(|mistake| mistake.span.start);
             mistakes.dedup();
@@ -152,7 +178,8 @@ fn whole<'d>(
 /// The keys where mistakes in the first file stand.
 fn keys(texts: &Texts, files: &[Range<usize>], mistakes: &[Mistake]) -> HashMap<Range<usize>, String> {
     let spans = mistakes.iter().map(|mistake| mistake.span.clone()).filter(|span| texts.is_in_first(span.start));
-    merged(texts, files).map(|root| Document::new(texts, &root).paths(spans)).unwrap_or_default()
+    let first = files.first().and_then(|file| parsed(&texts.whole()[file.clone()], file.start).ok());
+    first.map(|root| Document::new(texts, &root).paths(spans)).unwrap_or_default()
 }
 
 fn without_mark(text: &str) -> String {
@@ -190,6 +217,6 @@ impl Scene {
     /// As [`Scene::parse`], but each mistake is told with the path of its key, such as `object[3].shape.sphere.radius`.
     pub fn from_table(table: &toml::Table, folder: impl AsRef<Path>) -> Result<Self> {
         let source = Source { path: folder.as_ref().join("scene.toml"), text: table.to_string() };
-        source.compile_by(Place::Key, &[])
+        source.compile_written(&[], Vec::new())
     }
 }

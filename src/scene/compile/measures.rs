@@ -15,12 +15,22 @@ pub(super) fn point(value: Value) -> Option<DVec3> {
 
 /// Numbers that are coordinates, each finite and not too large.
 pub(super) fn near<const N: usize>(value: Value, numbers: [f64; N]) -> Option<[f64; N]> {
-    match numbers.iter().position(|x| !x.is_finite() || x.abs() > MAX_LENGTH) {
-        Some(axis) if numbers[axis].is_finite() => {
-            value.entry(axis).refuse(format!("a coordinate is at most {MAX_LENGTH:e}"))
-        }
-        Some(axis) => value.entry(axis).refuse(format!("a coordinate is a finite number, not {}", numbers[axis])),
+    match numbers.iter().position(|x| !is_near(*x)) {
+        Some(axis) => value.entry(axis).refuse(far(numbers[axis])),
         None => Some(numbers),
+    }
+}
+
+/// Whether a number is a coordinate: finite and not too large.
+pub(super) fn is_near(number: f64) -> bool {
+    number.is_finite() && number.abs() <= MAX_LENGTH
+}
+
+/// What is wrong with a number that is none.
+pub(super) fn far(number: f64) -> String {
+    match number.is_finite() {
+        true => format!("a coordinate is at most {MAX_LENGTH:e}"),
+        false => format!("a coordinate is a finite number, not {number}"),
     }
 }
 

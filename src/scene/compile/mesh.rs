@@ -5,9 +5,9 @@ use std::sync::Arc;
 use sha2::Digest;
 
 use super::context::Context;
-use super::measures::{MAX_LENGTH, direction, near, point};
+use super::measures::{MAX_LENGTH, direction, far, is_near, near, point};
 use crate::math::DVec3;
-use crate::scene::text::{At, Fields, Value, at};
+use crate::scene::text::{At, Fields, Numbers, Rows, Value, at};
 use crate::shape::{Attributes, Mesh, Vertices, read_mesh, read_smooth_mesh, vertex_normals};
 
 /// A mesh as written, before any transform.
@@ -36,11 +36,10 @@ struct Inline<'d> {
 pub(super) fn mesh<'d>(context: &mut Context, name: &str, value: Value<'d>) -> Option<WrittenMesh<'d>> {
     Fields::read(value, |mesh| {
         let file = mesh.maybe("file", at(Value::text));
-        let points = mesh.maybe("points", at(|value: Value| value.list(|entry| point(entry.as_list("a point", "")))));
-        let faces = mesh.maybe("faces", at(|value: Value| value.list(face)));
-        let normals =
-            mesh.maybe("normals", at(|value: Value| value.list(|entry| direction(entry.as_list("a normal", "")))));
-        let uv = mesh.maybe("uv", at(|value: Value| value.list(|entry| near(entry, entry.numbers()?))));
+        let points = mesh.maybe("points", at(points));
+        let faces = mesh.maybe("faces", at(faces));
+        let normals = mesh.maybe("normals", at(normals));
+        let uv = mesh.maybe("uv", at(coordinates));
         let smooth = mesh.or("smooth", false, Value::yes_or_no);
         let is_vague = mesh.has_unknown();
         let (file, smooth) = (file?, smooth?);
@@ -62,6 +61,53 @@ pub(super) fn mesh<'d>(context: &mut Context, name: &str, value: Value<'d>) -> O
         }
         Some(WrittenMesh { mesh, file: file.map(|file| file.it) })
     })
+}
+
+fn points(value: Value) -> Option<Vec<DVec3>> {
+    match value.rows() {
+        Some(rows) => Some(real(value, rows)?.into_iter().map(DVec3::from_array).collect()),
+        None => value.list(|entry| point(entry.as_list("a point", ""))),
+    }
+}
+
+fn faces(value: Value) -> Option<Vec<[u32; 3]>> {
+    match value.rows() {
+        Some(Rows { width: 3, numbers: Numbers::Whole(numbers) }) => Some(in_rows(numbers)),
+        Some(_) => value.advise("`faces` has rows of 3 whole numbers", "cut faces with more corners into triangles"),
+        None => value.list(face),
+    }
+}
+
+fn normals(value: Value) -> Option<Vec<DVec3>> {
+    let Some(rows) = value.rows() else { return value.list(|entry| direction(entry.as_list("a normal", ""))) };
+    let normals: Vec<DVec3> = real(value, rows)?.into_iter().map(DVec3::from_array).collect();
+    match normals.iter().position(|normal| normal.try_normalize().is_none()) {
+        Some(row) => value.refuse(format!("row {row}: a direction needs a length above 0")),
+        None => Some(normals),
+    }
+}
+
+fn coordinates(value: Value) -> Option<Vec<[f64; 2]>> {
+    match value.rows() {
+        Some(rows) => real(value, rows),
+        None => value.list(|entry| near(entry, entry.numbers()?)),
+    }
+}
+
+/// Rows of coordinates.
+fn real<const N: usize>(value: Value, rows: &Rows) -> Option<Vec<[f64; N]>> {
+    let numbers = match &rows.numbers {
+        Numbers::Real(numbers) if rows.width == N => numbers,
+        _ => return value.refuse(format!("`{}` has rows of {N} numbers, not {}", value.key(), rows.width)),
+    };
+    match numbers.iter().position(|number| !is_near(*number)) {
+        Some(first) => value.refuse(format!("row {}: {}", first / N, far(numbers[first]))),
+        None => Some(in_rows(numbers)),
+    }
+}
+
+fn in_rows<T: Copy, const N: usize>(numbers: &[T]) -> Vec<[T; N]> {
+    numbers.chunks_exact(N).map(|row| std::array::from_fn(|column| row[column])).collect()
 }
 
 fn face(value: Value) -> Option<[u32; 3]> {
@@ -91,8 +137,12 @@ impl Inline<'_> {
         for (number, face) in faces.it.iter().enumerate() {
             if let Some(corner) = face.iter().position(|&corner| corner as usize >= count) {
                 let message = format!("there is no point {}: the {count} points count from 0", face[corner]);
-                faces.place.entry(number).entry(corner).refuse::<()>(message);
                 right = false;
+                if faces.place.rows().is_some() {
+                    faces.place.refuse::<()>(format!("row {number}: {message}"));
+                    break;
+                }
+                faces.place.entry(number).entry(corner).refuse::<()>(message);
             }
         }
         let fits = |place: Value, what: &str, given: usize| match given == count {

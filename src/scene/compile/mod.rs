@@ -45,7 +45,7 @@ use self::place::Placed;
 use super::index::Index;
 use super::text::{Document, Fields, INCLUDE, SET, Value};
 use super::{ModelText, NamedMaterial, Object, PolarizationText, RenderText, Scene};
-use crate::film::{Format, Layer};
+use crate::film::Format;
 use crate::light::{Area, Light, LightId};
 use crate::material::Material;
 use crate::shape::Sides;
@@ -57,6 +57,7 @@ pub(super) const SECTIONS: [&str; 6] = ["camera", "film", "render", "material", 
 /// The world that a document describes; none if anything is wrong with it, which is told.
 pub(super) fn compile<'d>(document: &'d Document<'d>) -> Option<Scene<Curve>> {
     let mut context = Context::new(document.texts.whole());
+    document.texts.rows.iter().for_each(|rows| rows.digest(|bytes| context.hash.update(bytes)));
     let scene = Fields::of_document(document, |sections| scene(&mut context, sections));
     if document.told() > 0 {
         return None;
@@ -137,11 +138,10 @@ fn scene<'d>(context: &mut Context, sections: &mut Fields<'d>) -> Option<Scene<C
 
 /// Without polarization there are no Stokes vectors.
 fn can_have_stokes(sections: &Fields, format: &Format, render: &RenderText) -> Option<()> {
-    let has_stokes = Layer::STOKES.iter().any(|layer| format.layers.contains(layer));
-    if !has_stokes || render.polarization != PolarizationText::Off {
+    if !format.has_stokes() || render.polarization != PolarizationText::Off {
         return Some(());
     }
-    let help = "leave `polarization` out of [render], or the layers S1, S2 and S3";
+    let help = "leave `polarization` out of [render], or the layers S1, S2, S3 and polarization";
     sections.refuse("Stokes vectors are asked for, and polarization is off", Some(help))
 }
 

@@ -70,11 +70,15 @@ impl<'d> Search<'_, 'd> {
                 format!("a {kind} is made of surfaces that reflect or let through, and {known:?} is emissive"),
                 "give what shines an object of its own",
             ),
-            Some(Draft::Whole(material)) if kind == "mix" && material.has_axis() => place.advise(
-                format!("a mix is made of surfaces without an axis, and {known:?} polarizes light by one"),
-                "give it an object of its own; one with holes is a mask",
-            ),
-            _ => Some(Part::new(name, self.whole(known)?)),
+            _ => {
+                let whole = self.whole(known)?;
+                if kind == "mix" && whole.has_axis() {
+                    let message =
+                        format!("a mix is made of surfaces without an axis, and {known:?} polarizes light by one");
+                    return place.advise(message, "give it an object of its own; one with holes is a mask");
+                }
+                Some(Part::new(name, whole))
+            }
         }
     }
 }

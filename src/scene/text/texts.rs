@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::mistake::Mistake;
+use super::rows::Rows;
 use crate::error::Diagnostic;
 
 /// The texts that a scene is made of: its file, the files that it includes and what replaces their values. They stand
@@ -13,6 +14,8 @@ use crate::error::Diagnostic;
 pub(in crate::scene) struct Texts {
     whole: String,
     parts: Vec<Part>,
+    /// What a program has given beside them.
+    pub(in crate::scene) rows: Vec<Rows>,
 }
 
 /// One of the texts.

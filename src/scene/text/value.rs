@@ -8,6 +8,7 @@ use toml::de::{DeInteger, DeString, DeValue};
 
 use super::document::Document;
 use super::named_file::{FileKind, missing, read_named};
+use super::rows::Rows;
 use super::suggest::{remedy, suggestion};
 
 /// A value, where it stands.
@@ -218,6 +219,12 @@ impl<'d> Value<'d> {
             }
         }
         Some(all).filter(|all| all.len() == count)
+    }
+
+    /// The rows of numbers that a program has given for it, if it has.
+    pub(in crate::scene) fn rows(self) -> Option<&'d Rows> {
+        let position = self.node().as_str().and_then(Rows::marked)?;
+        self.document.texts.rows.get(position)
     }
 
     /// What the entries of a list of a given length say.

@@ -1,0 +1,26 @@
+//! Numbers as people read them.
+
+/// Five digits, without a power of ten where that is as short.
+pub fn number(value: f64) -> String {
+    number_of_digits(value, 5)
+}
+
+/// The same of another number of digits.
+fn number_of_digits(value: f64, digits: i32) -> String {
+    let size = value.abs();
+    let scientific = || format!("{value:.*e}", digits as usize - 1);
+    if size < 5e-7 {
+        return if value == 0.0 { "0".into() } else { scientific() };
+    }
+    if !(1e-3..1e6).contains(&size) {
+        return scientific();
+    }
+    let digits = (digits - 1 - libm::floor(libm::log10(size)) as i32).clamp(0, 6) as usize;
+    let text = format!("{value:.digits$}");
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}
+
+/// A share as people say it.
+pub fn percent(share: f64) -> String {
+    format!("{} %", number_of_digits(100.0 * share, 2))
+}

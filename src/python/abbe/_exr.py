@@ -1,0 +1,112 @@
+"""Images in files, and how far images are apart."""
+
+from __future__ import annotations
+
+import os
+from typing import Any, NamedTuple, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _abbe
+from ._image import Image
+from ._layers import Layers
+
+
+class ExrImage(Layers):
+    """An OpenEXR file of any program, read whole."""
+
+    def __init__(self, core: _abbe.Exr) -> None:
+        self._core = core
+
+    @property
+    def layers(self) -> tuple[str, ...]:
+        """The names of all layers; `"beauty"` are red, green and blue without a name."""
+        return tuple(self._core.layers)
+
+    def __getitem__(self, name: str) -> npt.NDArray[Any]:
+        """A layer, or one channel by its full name: float32, or uint32 if the file has that; height x width, and x
+        channels if there are several. Alpha is none of those of a color: it is `"A"`, or `"NAME.A"`.
+
+        Raises `OptionsError` with the nearest name if there is none.
+        """
+        return np.asarray(self._core.plane(name))
+
+    @property
+    def corner(self) -> tuple[int, int]:
+        """Column and row of the first pixel that is there, in the full image."""
+        return self._core.corner
+
+    @property
+    def format(self) -> tuple[int, int]:
+        """Columns and rows of the full image, of which the file may hold less or more."""
+        return self._core.format
+
+    @property
+    def attributes(self) -> dict[str, str]:
+        """What the file says of itself, as words."""
+        return dict(self._core.attributes)
+
+
+class Difference(NamedTuple):
+    """How far two images are apart. Pixels with a value that is not finite are left out, but of `torn`."""
+
+    agrees: bool
+    """Whether all values are equal; or whether `relative_mse` is within the tolerance; or, without one, whether both
+    images differ by no more than their `variance` layers explain."""
+    is_equal: bool
+    """Whether every value is the same."""
+    channels: list[str]
+    """The channels that were compared."""
+    relative_mse: float
+    """The mean of (a - b)^2 / (b^2 + 0.01)."""
+    brightness: float
+    """The sum of the first image's values over that of the second one's."""
+    mean_de2000: float | None
+    """CIEDE2000 of colors as a screen shows them, over all pixels; None if they are no colors."""
+    worst_de2000: float | None
+    """The largest."""
+    worst_pixel: tuple[int, int] | None
+    """Column and row of the pixel that differs most, if any does."""
+    left_out: int
+    """Pixels that are left out."""
+    torn: int
+    """Those of them whose values differ."""
+    worst_z: float | None
+    """The largest |a - b| / sqrt(variance of a + variance of b); None if not both images say how noisy they are."""
+    z_threshold: float | None
+    """What chance exceeds in one of a hundred pairs of images."""
+    z_of_means: list[float] | None
+    """The same of each channel's mean."""
+    absolute: npt.NDArray[np.float64]
+    """The largest |a - b| of each pixel's values, height x width."""
+
+
+Picture = Union[str, "os.PathLike[str]", ExrImage, Image]
+
+
+def read_exr(path: str | os.PathLike[str]) -> ExrImage:
+    """Reads an OpenEXR file of any program.
+
+    Raises `FileNotFoundError` if there is none, and `RenderError` if it is no complete image.
+    """
+    return ExrImage(_abbe.Exr.read(path))
+
+
+def _file(picture: Picture) -> _abbe.Exr:
+    if isinstance(picture, ExrImage):
+        return picture._core
+    return _abbe.Exr.of(picture._core) if isinstance(picture, Image) else _abbe.Exr.read(picture)
+
+
+def diff(a: Picture, b: Picture, *, layer: str | None = None, tolerance: float | None = None) -> Difference:
+    """Compares two images, or files of images, as the command `render diff` does.
+
+    Images that have a `variance` layer agree as long as chance explains every pixel and the mean of each channel: two
+    renders with other seeds are told apart by mistake in at most about one of a hundred cases. `tolerance` judges by
+    `relative_mse` instead. `layer` compares a layer such as `"albedo"` in place of the image itself.
+
+    Raises `OptionsError` if they cannot be compared, as of other sizes.
+    """
+    found = _abbe.diff(_file(a), _file(b), layer, tolerance)
+    return Difference(**{**found, "absolute": np.asarray(found["absolute"])})

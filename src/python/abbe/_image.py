@@ -1,0 +1,124 @@
+"""Rendered images."""
+
+from __future__ import annotations
+
+import json
+import os
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _abbe
+from ._layers import Layers
+
+
+class Spectrum(NamedTuple):
+    """The spectrum of a pixel."""
+
+    wavelengths_nm: npt.NDArray[np.float64]
+    """The middle of each band in nm."""
+    radiance: npt.NDArray[np.float32]
+    """The mean over each band, per nm: an even spectrum of 1 is 1 in all of them, and has luminance 1 in the image."""
+
+
+class Image(Layers):
+    """A rendered image, and all that is known of it.
+
+    Its arrays are those of the renderer, which are not copied: they are read-only. `image.rgb.copy()` can be written.
+    """
+
+    def __init__(self, core: _abbe.Image) -> None:
+        self._core = core
+
+    def __repr__(self) -> str:
+        return f"<abbe.Image of {self.width} x {self.height} pixels: {', '.join(self.layers)}>"
+
+    @property
+    def width(self) -> int:
+        """Pixels per row of what was made: the format, with its overscan or a part of it."""
+        return self._core.size[0]
+
+    @property
+    def height(self) -> int:
+        """Rows of what was made."""
+        return self._core.size[1]
+
+    @property
+    def corner(self) -> tuple[int, int]:
+        """Column and row of the first pixel, counted from the top left of the format: negative in its overscan."""
+        return self._core.corner
+
+    @property
+    def layers(self) -> tuple[str, ...]:
+        """The names of all layers: `"beauty"`, `"A"`, `"Z"`, and those that were asked for."""
+        return tuple(self._core.layers)
+
+    def __getitem__(self, name: str) -> npt.NDArray[np.float32]:
+        """A layer by its name, or one channel by its name in the file.
+
+        `"beauty"` is the image, height x width x 3. `"A"`, the share of camera rays that met something, 0 to 1, and
+        `"Z"`, the nearest depth in scene units, 1e10 where nothing is met, are height x width. Of those that were asked
+        for, colors and vectors have 3 channels, `"UV"` has 2, `"samples"` 1 and mattes 4. `"albedo.R"` is one channel.
+
+        Raises `KeyError` if the image has no such layer.
+        """
+        plane = self._core.plane(name)
+        if plane is None:
+            raise KeyError(f"the image has no layer {name!r}: it has {', '.join(self.layers)}")
+        return np.asarray(plane)
+
+    @cached_property
+    def stats(self) -> dict[str, Any]:
+        """What rendering noticed, with the keys of the command's `--json`.
+
+        Among them `samples` (camera samples of all pixels together), `seconds`, `error` (how far the image is off,
+        where an error or a time was asked for, else None), `plan` (a dict) and `warnings` (a list).
+        """
+        return json.loads(self._core.account)
+
+    @cached_property
+    def _spectra(self) -> Spectrum | None:
+        spectra = self._core.spectra()
+        return spectra and Spectrum(np.array(spectra[0]), np.asarray(spectra[1]))
+
+    @property
+    def spectra(self) -> Spectrum | None:
+        """The spectra of all pixels, radiance height x width x bands; None unless asked for by `spectral=True`."""
+        return self._spectra
+
+    def spectrum(self, x: int, y: int) -> Spectrum:
+        """The spectrum of the pixel in column `x`, row `y`, counted from 0 at the top left of what was made.
+
+        Raises `ValueError` if spectra were not asked for, and `IndexError` if there is no such pixel.
+        """
+        if self._spectra is None:
+            raise ValueError("the image has no spectra: ask for them with spectral=True")
+        if not (0 <= x < self.width and 0 <= y < self.height):
+            raise IndexError(f"there is no pixel ({x}, {y}) in {self.width} x {self.height}")
+        return Spectrum(self._spectra.wavelengths_nm, self._spectra.radiance[y, x])
+
+    def write_exr(self, path: str | os.PathLike[str]) -> int:
+        """Writes a linear OpenEXR file with all layers: the bytes that the command writes of the same scene file.
+
+        Answers how many values were too large for 16 bits, if it has those, and became 65504. Raises `OSError` if it
+        cannot be written; a file that was there before is then untouched.
+        """
+        return self._core.write_exr(path)
+
+    def write_spectral_exr(self, path: str | os.PathLike[str]) -> None:
+        """Writes the spectra of all pixels as an OpenEXR file.
+
+        Raises `ValueError` if spectra were not asked for, and `OSError` if it cannot be written.
+        """
+        if self._spectra is None:
+            raise ValueError("the image has no spectra: ask for them with spectral=True")
+        self._core.write_spectral_exr(path)
+
+    def to_png(self, path: str | os.PathLike[str], exposure: float = 0.0) -> None:
+        """Writes an 8-bit sRGB picture for looking, brightened by 2^`exposure`."""
+        self._core.write_png(path, exposure)
+
+    def _repr_png_(self) -> bytes:
+        return bytes(self._core.png(0.0))

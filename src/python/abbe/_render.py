@@ -1,0 +1,185 @@
+"""Scenes, plans and renders."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, NamedTuple, Union
+
+from . import _abbe
+from ._image import Image
+
+Path = Union[str, "os.PathLike[str]"]
+Time = Union[float, str]
+
+
+class Progress(NamedTuple):
+    """How far a render is."""
+
+    done: int
+    """Camera samples and photons that were taken."""
+    total: int
+    """All that are to be taken. Where an error or a time ends the render, this is a guess."""
+    seconds: float
+    """Since it began."""
+
+    @property
+    def share(self) -> float:
+        """The share that is done, 0 to 1."""
+        return min(self.done / max(self.total, 1), 1.0)
+
+    def __str__(self) -> str:
+        return f"{100 * self.share:.0f} %, {self.seconds:.1f} s passed"
+
+
+class Plan(NamedTuple):
+    """How a scene will be rendered, and why."""
+
+    model: str
+    """How spectra are carried."""
+    transport: str
+    """How light is followed."""
+    samples: int
+    """Camera samples per pixel, or the most."""
+    photons: int | None
+    """Photons of all passes, where it is known how many there will be."""
+    processor_seconds: float | None
+    """Time of all processors together, where it is known how many samples there will be."""
+    seconds: float | None
+    """Time on this machine, if nothing else keeps its processors busy."""
+    model_error: float
+    """How far colors may be off, relative to the strongest channel, because spectra are carried in so few lanes."""
+    left_out: list[str]
+    """What light is left out."""
+    words: list[str]
+    """The plan in words, a decision each."""
+
+    def __str__(self) -> str:
+        return "\n".join(self.words)
+
+
+class Scene:
+    """A scene that was read and checked: to render it several times, or to know that it is right.
+
+    `source` is the path of a scene file, or a dict with the keys of one. A dict may hold numbers, texts, dicts, lists,
+    tuples, paths, and numbers and arrays of numpy. Files that it names are looked for in `folder`. `set` puts values in
+    the place of the scene's by the paths of their keys, such as `{"film.width": 320, "object.ball.material": "gold"}`;
+    entries of lists go by their name or by their number from 1, and one word sets the scene's variable.
+
+    Raises `SceneError` with all its mistakes, and `FileNotFoundError` if there is no such file.
+    """
+
+    def __init__(
+        self, source: Path | Mapping[str, Any], *, set: Mapping[str, Any] | None = None, folder: Path = ""
+    ) -> None:
+        self._core = _abbe.Scene.compile(source, folder, None if set is None else dict(set))
+
+    def __repr__(self) -> str:
+        width, height = self._core.size
+        return f"<abbe.Scene of {self._core.objects} objects, {width} x {height} pixels>"
+
+    @property
+    def warnings(self) -> list[str]:
+        """What its author should know but need not change."""
+        return self._core.warnings
+
+
+def _scene(scene: Path | Mapping[str, Any] | Scene, set: Mapping[str, Any] | None, folder: Path) -> _abbe.Scene:
+    if isinstance(scene, Scene):
+        if set is not None:
+            raise TypeError("values are set in a scene when it is made: Scene(.., set=..)")
+        return scene._core
+    return Scene(scene, set=set, folder=folder)._core
+
+
+def _options(
+    samples: int | None,
+    error: float | None,
+    time: Time | None,
+    seed: int | None,
+    overscan: int | Sequence[int] | None,
+    crop: Sequence[int] | None,
+    layers: Sequence[str] | str | None,
+    spectral: bool,
+    threads: int | None,
+    stamp: bool = False,
+) -> dict[str, object]:
+    return locals()
+
+
+def plan(
+    scene: Path | Mapping[str, Any] | Scene,
+    *,
+    set: Mapping[str, Any] | None = None,
+    folder: Path = "",
+    samples: int | None = None,
+    error: float | None = None,
+    time: Time | None = None,
+    seed: int | None = None,
+    overscan: int | Sequence[int] | None = None,
+    crop: Sequence[int] | None = None,
+    layers: Sequence[str] | str | None = None,
+    spectral: bool = False,
+    threads: int | None = None,
+) -> Plan:
+    """How a scene would be rendered, why, and how long that takes: nothing is rendered.
+
+    The arguments are those of `render`, and so is what is raised.
+    """
+    options = _options(samples, error, time, seed, overscan, crop, layers, spectral, threads)
+    account, on = _abbe.plan(_scene(scene, set, folder), options)
+    found = json.loads(account)
+    seconds = found["processor_seconds"] and found["processor_seconds"] / on
+    return Plan(words=found.pop("because"), seconds=seconds, **found)
+
+
+def render(
+    scene: Path | Mapping[str, Any] | Scene,
+    *,
+    set: Mapping[str, Any] | None = None,
+    folder: Path = "",
+    samples: int | None = None,
+    error: float | None = None,
+    time: Time | None = None,
+    seed: int | None = None,
+    overscan: int | Sequence[int] | None = None,
+    crop: Sequence[int] | None = None,
+    layers: Sequence[str] | str | None = None,
+    spectral: bool = False,
+    threads: int | None = None,
+    stamp: bool = False,
+    progress: Callable[[Progress], object] | None = None,
+    checkpoint: Path | None = None,
+    every: Time = 60.0,
+    resume: bool = False,
+) -> Image:
+    """Renders a scene: a file, a dict with the keys of one, or a `Scene`.
+
+    The image is the same to the last bit as that of the command, for any number of threads. Other threads of Python run
+    meanwhile, and may render as well.
+
+    - `set`, `folder`: as of `Scene`.
+    - `samples`: camera samples per pixel, 1 or more, instead of the scene's; with `error` or `time`, the most.
+    - `error`: relative error of the image at which it is good enough, 0.000001 to 1. 0.01 is one percent.
+    - `time`: how long it may take, in seconds, or with a unit: `"10m"`.
+    - `seed`: chooses another set of random numbers.
+    - `overscan`: pixels around the format: one number, or those to the left, above, to the right and below.
+    - `crop`: the part of the image that is made: first column, first row, width and height in pixels.
+    - `layers`: names of layers beside the image, or `"all"`; `LAYERS` has them.
+    - `spectral`: whether spectra are made, for `Image.spectrum`.
+    - `threads`: processor threads; all if absent.
+    - `stamp`: whether the file says when it was made and how long that took.
+    - `progress`: is called twice a second, and at the end, with a `Progress`. What it raises stops the render.
+    - `checkpoint`: a file that keeps what is done, `every` so many seconds, when it is stopped, and at the end.
+    - `resume`: goes on from the checkpoint, if it is there, to the same image or to more samples.
+
+    Ctrl-C stops a render within a second, by `KeyboardInterrupt`. Processes that are forked after a render have none
+    of its threads, and would wait for them: start them by `spawn`.
+
+    Raises `SceneError` if the scene is wrong,
+    `OptionsError` if something impossible is asked for, and `OSError` or `RenderError` if a file fails.
+    """
+    options = _options(samples, error, time, seed, overscan, crop, layers, spectral, threads, stamp)
+    tell = None if progress is None else lambda *state: progress(Progress(*state))
+    return Image(_abbe.render(_scene(scene, set, folder), options, tell, checkpoint, every, resume))

@@ -1,0 +1,148 @@
+"""Glasses, metals, illuminants and reflectances by the names that scenes know them by.
+
+Wavelengths are in nm, single ones or arrays of any shape; what is answered has the same shape.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _abbe
+
+
+def _at(nm: npt.ArrayLike, values: Callable[[bytes], _abbe.Plane]) -> Any:
+    wavelengths = np.asarray(nm, dtype=np.float64)
+    found = np.asarray(values(wavelengths.tobytes())).reshape(wavelengths.shape)
+    return found if wavelengths.ndim else found[()]
+
+
+class _Entry:
+    _core: Any
+
+    @property
+    def name(self) -> str:
+        """Its full name."""
+        return self._core.name
+
+    @property
+    def source(self) -> str:
+        """Who published it."""
+        return self._core.source
+
+    @property
+    def range_nm(self) -> tuple[float, float]:
+        """The wavelengths in nm between which it is known."""
+        return self._core.range_nm
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} {self.name}>"
+
+
+class Glass(_Entry):
+    """A clear material: a glass, crystal, liquid, plastic or gas."""
+
+    _core: _abbe.Glass
+
+    def __init__(self, name: str) -> None:
+        self._core = _abbe.Glass(name)
+
+    @property
+    def n_d(self) -> float:
+        """The index at 587.56 nm."""
+        return self._core.n_d
+
+    @property
+    def v_d(self) -> float:
+        """The Abbe number (n_d - 1) / (n_F - n_C)."""
+        return self._core.v_d
+
+    def index(self, nm: npt.ArrayLike) -> Any:
+        """The index; beyond the known wavelengths, the value at their end."""
+        return _at(nm, self._core.index)
+
+    def extinction(self, nm: npt.ArrayLike) -> Any:
+        """The extinction k; NaN if it is not known."""
+        return _at(nm, self._core.extinction)
+
+
+class Metal(_Entry):
+    """A metal."""
+
+    _core: _abbe.Metal
+
+    def __init__(self, name: str) -> None:
+        self._core = _abbe.Metal(name)
+
+    def index(self, nm: npt.ArrayLike) -> Any:
+        """The complex index n + ik; linear between measured wavelengths, the same beyond their ends."""
+        return _at(nm, self._core.n) + 1j * _at(nm, self._core.k)
+
+
+class Illuminant(_Entry):
+    """The spectrum of a light."""
+
+    _core: _abbe.Tabulated
+
+    def __init__(self, name: str) -> None:
+        self._core = _abbe.illuminant(name)
+
+    def power(self, nm: npt.ArrayLike) -> Any:
+        """Its relative power per nm, in its own unit; linear between tabulated wavelengths, 0 beyond their ends."""
+        return _at(nm, self._core.at)
+
+
+class Reflectance(_Entry):
+    """The reflectance of a colored surface."""
+
+    _core: _abbe.Tabulated
+
+    def __init__(self, name: str) -> None:
+        self._core = _abbe.reflectance(name)
+
+    def reflectance(self, nm: npt.ArrayLike) -> Any:
+        """The share of light that it sends back, 0 to 1; linear between wavelengths of the table, flat beyond them."""
+        return _at(nm, self._core.at)
+
+
+def glass(name: str) -> Glass:
+    """The glass of a name such as `"N-BK7"` or `"schott/N-BK7"`. Raises `KeyError` with the nearest name."""
+    return Glass(name)
+
+
+def metal(name: str) -> Metal:
+    """The metal of a name such as `"Au"` or `"gold"`. Raises `KeyError` with the nearest name."""
+    return Metal(name)
+
+
+def illuminant(name: str) -> Illuminant:
+    """The illuminant of a name such as `"D65"`. Raises `KeyError` with the nearest name."""
+    return Illuminant(name)
+
+
+def reflectance(name: str) -> Reflectance:
+    """The reflectance of a name such as `"dark skin"`. Raises `KeyError` with the nearest name."""
+    return Reflectance(name)
+
+
+def glasses() -> list[str]:
+    """The full names of all glasses."""
+    return _abbe.names("glass")
+
+
+def metals() -> list[str]:
+    """The names of all metals."""
+    return _abbe.names("metal")
+
+
+def illuminants() -> list[str]:
+    """The names of all illuminants."""
+    return _abbe.names("illuminant")
+
+
+def reflectances() -> list[str]:
+    """The full names of all reflectances."""
+    return _abbe.names("reflectance")

@@ -1,0 +1,164 @@
+//! Glasses, metals, illuminants and reflectances by name.
+
+use pyo3::exceptions::PyKeyError;
+use pyo3::prelude::*;
+
+use super::plane::Plane;
+use crate::error::nearest;
+use crate::spectrum::data;
+
+/// A clear material.
+#[pyclass(frozen, module = "abbe._abbe")]
+pub(super) struct Glass(data::Glass);
+
+/// A metal.
+#[pyclass(frozen, module = "abbe._abbe")]
+pub(super) struct Metal(data::Metal);
+
+/// An illuminant or a reflectance.
+#[pyclass(frozen, module = "abbe._abbe")]
+pub(super) struct Tabulated {
+    #[pyo3(get)]
+    name: &'static str,
+    #[pyo3(get)]
+    source: &'static str,
+    #[pyo3(get)]
+    range_nm: (f64, f64),
+    at: Box<dyn Fn(f64) -> f64 + Send + Sync>,
+}
+
+/// Wavelengths in nm, as the bytes of an array of 64-bit floats.
+fn wavelengths(bytes: &[u8]) -> impl Iterator<Item = f64> {
+    bytes.chunks_exact(size_of::<f64>()).map(|bytes| f64::from_ne_bytes(std::array::from_fn(|i| bytes[i])))
+}
+
+/// A value for each wavelength.
+fn each(bytes: &[u8], value: impl Fn(f64) -> f64) -> Plane {
+    let values: Vec<f64> = wavelengths(bytes).map(value).collect();
+    let count = values.len();
+    Plane::owned(values, vec![count])
+}
+
+#[pymethods]
+impl Glass {
+    #[new]
+    fn new(name: &str) -> PyResult<Self> {
+        data::glass(name).map(Self).ok_or_else(|| unknown("glass", name))
+    }
+
+    #[getter]
+    fn name(&self) -> &'static str {
+        self.0.key
+    }
+
+    #[getter]
+    fn source(&self) -> &'static str {
+        self.0.source
+    }
+
+    #[getter]
+    fn range_nm(&self) -> (f64, f64) {
+        self.0.range_nm
+    }
+
+    #[getter]
+    fn n_d(&self) -> f64 {
+        self.0.n_d()
+    }
+
+    #[getter]
+    fn v_d(&self) -> f64 {
+        self.0.v_d()
+    }
+
+    fn index(&self, nm: &[u8]) -> Plane {
+        each(nm, |nm| self.0.index(nm))
+    }
+
+    /// Not a number where it is not known.
+    fn extinction(&self, nm: &[u8]) -> Plane {
+        each(nm, |nm| self.0.extinction(nm).unwrap_or(f64::NAN))
+    }
+}
+
+#[pymethods]
+impl Metal {
+    #[new]
+    fn new(name: &str) -> PyResult<Self> {
+        data::metal(name).map(Self).ok_or_else(|| unknown("metal", name))
+    }
+
+    #[getter]
+    fn name(&self) -> &'static str {
+        self.0.name
+    }
+
+    #[getter]
+    fn source(&self) -> &'static str {
+        self.0.source
+    }
+
+    #[getter]
+    fn range_nm(&self) -> (f64, f64) {
+        let samples = &self.0.samples;
+        (samples.first().map_or(0.0, |first| first[0]), samples.last().map_or(0.0, |last| last[0]))
+    }
+
+    fn n(&self, nm: &[u8]) -> Plane {
+        each(nm, |nm| self.0.nk(nm)[0])
+    }
+
+    fn k(&self, nm: &[u8]) -> Plane {
+        each(nm, |nm| self.0.nk(nm)[1])
+    }
+}
+
+#[pymethods]
+impl Tabulated {
+    fn at(&self, nm: &[u8]) -> Plane {
+        each(nm, &self.at)
+    }
+}
+
+/// The illuminant of a name.
+#[pyfunction]
+pub(super) fn illuminant(name: &str) -> PyResult<Tabulated> {
+    let found = data::illuminant(name).ok_or_else(|| unknown("illuminant", name))?;
+    let range_nm = range(found.start_nm, found.step_nm, found.values.len());
+    Ok(Tabulated { name: found.name, source: found.source, range_nm, at: Box::new(move |nm| found.at(nm)) })
+}
+
+/// The reflectance of a name.
+#[pyfunction]
+pub(super) fn reflectance(name: &str) -> PyResult<Tabulated> {
+    let found = data::reflectance(name).ok_or_else(|| unknown("reflectance", name))?;
+    let range_nm = range(found.start_nm, found.step_nm, found.values.len());
+    Ok(Tabulated { name: found.name, source: found.source, range_nm, at: Box::new(move |nm| found.at(nm)) })
+}
+
+fn range(start: f64, step: f64, count: usize) -> (f64, f64) {
+    (start, start + step * count.saturating_sub(1) as f64)
+}
+
+/// The full names of all entries of a kind.
+#[pyfunction]
+pub(super) fn names(kind: &str) -> Vec<&'static str> {
+    match kind {
+        "glass" => data::glass_names().collect(),
+        "metal" => data::metal_names().collect(),
+        "illuminant" => data::illuminants().map(|light| light.name).collect(),
+        "reflectance" => data::reflectances().map(|patch| patch.name).collect(),
+        _ => Vec::new(),
+    }
+}
+
+fn unknown(kind: &str, name: &str) -> PyErr {
+    let full = names(kind);
+    let bare = full.iter().map(|name| data::bare(name));
+    let near = match kind {
+        "glass" => nearest(name, data::known_as()),
+        _ => nearest(name, bare.chain(full.iter().copied())),
+    };
+    let help = near.map_or(String::new(), |near| format!(": did you mean {near:?}?"));
+    PyKeyError::new_err(format!("there is no {kind} named {name:?}{help}"))
+}

@@ -1,0 +1,67 @@
+//! Errors as exceptions.
+
+use std::path::Path;
+
+use pyo3::exceptions::{PyFileNotFoundError, PyOSError};
+use pyo3::prelude::*;
+
+use crate::error::{Diagnostic, Error};
+
+pyo3::import_exception!(abbe._errors, OptionsError);
+pyo3::import_exception!(abbe._errors, RenderError);
+pyo3::import_exception!(abbe._errors, SceneError);
+
+/// A mistake as the arguments of `abbe.Mistake`: key, message, help, file, line and column.
+type Mistake = (Option<String>, String, Option<String>, String, usize, usize);
+
+/// What the system says where there is no such file.
+const NO_SUCH_FILE: i32 = 2;
+
+/// The exception that an error is.
+pub(super) fn raised(error: Error) -> PyErr {
+    match error {
+        Error::Scene(mistakes) => {
+            let told = mistakes.iter().map(Diagnostic::to_string).collect::<Vec<_>>().join("\n");
+            SceneError::new_err((told, mistakes.into_iter().map(mistake).collect::<Vec<_>>()))
+        }
+        Error::Arguments { message, help } => OptionsError::new_err((message, help.map(|help| for_python(&help)))),
+        Error::Io { doing, path, source } => match source.raw_os_error() {
+            Some(number) => PyOSError::new_err((number, source.to_string(), path)),
+            None => PyOSError::new_err(format!("cannot {doing} {}: {source}", path.display())),
+        },
+        error @ (Error::Decode { .. } | Error::Encode { .. }) => {
+            RenderError::new_err((error.to_string(), None::<String>))
+        }
+    }
+}
+
+/// The same of a file that was to be read, which may not be there.
+pub(super) fn raised_of(path: &Path, error: Error) -> PyErr {
+    match error {
+        Error::Arguments { message, help } if !path.exists() => {
+            let help = help.map_or(String::new(), |help| format!(" ({help})"));
+            PyFileNotFoundError::new_err((NO_SUCH_FILE, message + &help, path.to_owned()))
+        }
+        error => raised(error),
+    }
+}
+
+/// What is wrong with an argument, and what to do.
+pub(super) fn refuse<T>(message: impl Into<String>, help: &str) -> PyResult<T> {
+    Err(OptionsError::new_err((message.into(), Some(help.to_owned()))))
+}
+
+/// What should not happen, in words.
+pub(super) fn defect(what: &str) -> PyErr {
+    RenderError::new_err((format!("this is a defect of Abbe: {what}"), None::<String>))
+}
+
+fn mistake(found: Diagnostic) -> Mistake {
+    let (line, column) = found.line_and_column();
+    (found.key, found.message, found.help, found.file.display().to_string(), line, column)
+}
+
+/// The flags of a command line are arguments of the same name.
+fn for_python(help: &str) -> String {
+    help.replace("--", "")
+}

@@ -1,0 +1,122 @@
+//! Images in files, whoever made them, and how far they are apart.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use super::errors::{raised, raised_of};
+use super::image::Image;
+use super::plane::Plane;
+use super::work;
+use crate::error::Result;
+use crate::film::{ExrFile, ExrLayer};
+use crate::look::{Difference, Noise, compare};
+
+/// An OpenEXR file.
+#[pyclass(frozen, module = "abbe._abbe")]
+pub(super) struct Exr {
+    file: Arc<ExrFile>,
+    path: PathBuf,
+}
+
+#[pymethods]
+impl Exr {
+    /// Reads a file.
+    #[staticmethod]
+    fn read(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
+        let read = path.clone();
+        let file = work::run(py, move || ExrFile::read(&read))?.map_err(|error| raised_of(&path, error))?;
+        Ok(Self { file: Arc::new(file), path })
+    }
+
+    /// The same of an image that was rendered, as its file would be.
+    #[staticmethod]
+    fn of(py: Python<'_>, image: &Image) -> PyResult<Self> {
+        let (image, path) = (image.image.clone(), PathBuf::from("the image"));
+        let file = move || -> Result<ExrFile> { ExrFile::of_bytes(&image.exr_bytes()?.0, Path::new("the image")) };
+        Ok(Self { file: Arc::new(work::run(py, file)?.map_err(raised)?), path })
+    }
+
+    /// The names of its layers.
+    #[getter]
+    fn layers(&self) -> Vec<String> {
+        self.file.layers().into_iter().map(|layer| layer.name).collect()
+    }
+
+    /// Column and row of the first pixel of the first part.
+    #[getter]
+    fn corner(&self) -> (i64, i64) {
+        self.file.parts.first().map_or([0; 2], |part| part.bounds.corner).into()
+    }
+
+    /// Columns and rows of the format.
+    #[getter]
+    fn format(&self) -> (usize, usize) {
+        self.file.display.size.into()
+    }
+
+    /// What the file says of itself.
+    #[getter]
+    fn attributes(&self) -> Vec<(String, String)> {
+        self.file.parts.iter().flat_map(|part| part.attributes.clone()).collect()
+    }
+
+    /// A layer, or a channel by its full name.
+    fn plane(&self, name: &str) -> PyResult<Plane> {
+        let layer = self.file.layer(Some(name), &self.path.display().to_string()).map_err(raised)?;
+        Ok(plane(&layer))
+    }
+}
+
+/// The numbers of a layer, side by side: what a file has as 16 or 32 bits, as 32.
+fn plane(layer: &ExrLayer) -> Plane {
+    let (channels, [width, height]) = (layer.values(), layer.part.bounds.size);
+    let shape = if channels.len() > 1 { vec![height, width, channels.len()] } else { vec![height, width] };
+    let numbers = || (0..width * height).flat_map(|pixel| channels.iter().map(move |channel| channel.at(pixel)));
+    if channels.iter().all(|channel| channel.kind() == "uint") {
+        Plane::owned(numbers().map(|number| number as u32).collect(), shape)
+    } else {
+        Plane::owned(numbers().map(|number| number as f32).collect(), shape)
+    }
+}
+
+/// How far two images are apart, and whether that is noise: the fields of `abbe.Difference`.
+#[pyfunction]
+pub(super) fn diff<'py>(
+    py: Python<'py>,
+    a: &Exr,
+    b: &Exr,
+    layer: Option<String>,
+    tolerance: Option<f64>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let files = [a.file.clone(), b.file.clone()];
+    let names = [a, b].map(|one| one.path.display().to_string());
+    let compared = move || {
+        let [a, b] = files.each_ref().map(|file| &**file);
+        compare([a, b], layer.as_deref(), names.each_ref().map(String::as_str))
+    };
+    let found = work::run(py, compared)?.map_err(raised)?;
+    fields(py, found, tolerance)
+}
+
+fn fields(py: Python<'_>, found: Difference, tolerance: Option<f64>) -> PyResult<Bound<'_, PyDict>> {
+    let fields = PyDict::new(py);
+    fields.set_item("agrees", found.agrees(tolerance))?;
+    fields.set_item("is_equal", found.is_equal)?;
+    fields.set_item("channels", found.channels)?;
+    fields.set_item("relative_mse", found.relative_mse)?;
+    fields.set_item("brightness", found.brightness)?;
+    fields.set_item("mean_de2000", found.color.map(|color| color.mean))?;
+    fields.set_item("worst_de2000", found.color.map(|color| color.worst))?;
+    fields.set_item("worst_pixel", found.worst.as_ref().map(|worst| (worst.at[0], worst.at[1])))?;
+    fields.set_item("left_out", found.left_out)?;
+    fields.set_item("torn", found.torn)?;
+    fields.set_item("worst_z", found.noise.as_ref().map(|noise| noise.worst))?;
+    fields.set_item("z_threshold", found.noise.as_ref().map(|noise| noise.threshold))?;
+    fields.set_item("z_of_means", found.noise.map(|Noise { means, .. }| means))?;
+    let [width, height] = found.bounds.size;
+    fields.set_item("absolute", Plane::owned(found.absolute, vec![height, width]).into_pyobject(py)?)?;
+    Ok(fields)
+}

@@ -1,0 +1,106 @@
+//! What is asked for beside the scene.
+
+use std::time::Duration;
+
+use pyo3::conversion::FromPyObjectOwned;
+use pyo3::prelude::*;
+use pyo3::types::{PyBool, PyDict, PyString};
+
+use super::errors::refuse;
+use super::text::shown;
+use crate::film::{Layer, Overscan, Window};
+use crate::rendering::Options;
+use crate::scene::duration;
+
+/// More threads than any one machine has processors for; many more would exhaust it.
+const MOST_THREADS: usize = 1024;
+
+/// The arguments of a render as the library takes them; None leaves one to the scene.
+///
+/// # Errors
+/// If one of them is none of those that it may be.
+pub(super) fn options(given: &Bound<'_, PyDict>) -> PyResult<Options> {
+    let threads: Option<usize> = get(given, "threads", "a whole number of 1 or more")?;
+    if threads.is_some_and(|threads| !(1..=MOST_THREADS).contains(&threads)) {
+        return refuse(format!("a render has 1 to {MOST_THREADS} threads"), "leave threads out to take them all");
+    }
+    let value = |name: &str| get::<Bound<'_, PyAny>>(given, name, "a value");
+    Ok(Options {
+        samples: get(given, "samples", "a whole number of 1 or more")?,
+        error: get(given, "error", "a number")?,
+        time: value("time")?.as_ref().map(time).transpose()?,
+        seed: get(given, "seed", "a whole number from 0 to 2**64 - 1")?,
+        overscan: value("overscan")?.as_ref().map(overscan).transpose()?,
+        crop: get(given, "crop", "four whole numbers: first column, first row, width and height")?
+            .map(crop)
+            .transpose()?,
+        layers: value("layers")?.as_ref().map(layers).transpose()?,
+        spectral: get(given, "spectral", "True or False")?.unwrap_or_default(),
+        threads,
+        stamp: get(given, "stamp", "True or False")?.unwrap_or_default(),
+        ..Options::default()
+    })
+}
+
+/// What an argument says, which is `wanted`; none if it is None, or not there.
+fn get<'py, T: FromPyObjectOwned<'py>>(given: &Bound<'py, PyDict>, name: &str, wanted: &str) -> PyResult<Option<T>> {
+    let Some(value) = given.get_item(name)?.filter(|value| !value.is_none()) else { return Ok(None) };
+    match value.extract() {
+        Ok(found) => Ok(Some(found)),
+        Err(_) => refuse(format!("{name} is {wanted}, not {}", shown(&value)), "help(abbe.render) says all arguments"),
+    }
+}
+
+/// Seconds, or a text such as `"10m"`.
+pub(super) fn time(value: &Bound<'_, PyAny>) -> PyResult<Duration> {
+    let found = match value.cast::<PyString>() {
+        Ok(text) => duration(&text.to_cow()?),
+        Err(_) if value.is_instance_of::<PyBool>() => None,
+        Err(_) => value
+            .extract()
+            .ok()
+            .and_then(|seconds| Duration::try_from_secs_f64(seconds).ok())
+            .filter(|time| !time.is_zero()),
+    };
+    found.map_or_else(
+        || refuse("this is no time", "a time is a number of seconds above 0, or a text such as \"10m\""),
+        Ok,
+    )
+}
+
+fn overscan(value: &Bound<'_, PyAny>) -> PyResult<Overscan> {
+    if let Ok(pixels) = value.extract::<u32>() {
+        return Ok(Overscan::even(pixels));
+    }
+    match value.extract::<[u32; 4]>() {
+        Ok([left, top, right, bottom]) => Ok(Overscan { left, top, right, bottom }),
+        Err(_) => refuse("overscan is one or four whole numbers of pixels", "such as 16 or (16, 8, 16, 8)"),
+    }
+}
+
+fn crop([left, top, width, height]: [i64; 4]) -> PyResult<Window> {
+    let read = || {
+        let ([left, top], [width, height]) = ([left, top].map(i32::try_from), [width, height].map(u32::try_from));
+        Some(Window { left: left.ok()?, top: top.ok()?, width: width.ok()?, height: height.ok()? })
+    };
+    read().map_or_else(
+        || refuse("a crop is first column, first row, width and height", "such as (100, 50, 320, 180)"),
+        Ok,
+    )
+}
+
+/// A list of names, or the word for all of them.
+fn layers(value: &Bound<'_, PyAny>) -> PyResult<Vec<Layer>> {
+    if let Ok(word) = value.cast::<PyString>() {
+        let word = word.to_cow()?;
+        return match word == Layer::ALL {
+            true => Ok(Layer::all()),
+            false => refuse("layers is a list of names", &format!("write layers=[\"{word}\"], or \"{}\"", Layer::ALL)),
+        };
+    }
+    let named = |name: String| Layer::of_name(&name).or_else(|said| refuse(said, "abbe.LAYERS has them all"));
+    match value.extract::<Vec<String>>() {
+        Ok(names) => names.into_iter().map(named).collect(),
+        Err(_) => refuse(format!("layers is a list of names, not {}", shown(value)), "such as [\"albedo\", \"N\"]"),
+    }
+}

@@ -1,0 +1,88 @@
+//! Numbers that numpy looks at where they are.
+
+use std::any::Any;
+use std::sync::Arc;
+
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
+
+/// Numbers in memory that somebody owns, by the array interface of numpy: they are not copied, and cannot be written.
+#[pyclass(frozen, module = "abbe._abbe")]
+pub(super) struct Plane {
+    /// As long as numpy looks.
+    _owner: Arc<dyn Any + Send + Sync>,
+    address: usize,
+    shape: Vec<usize>,
+    /// In bytes.
+    strides: Vec<usize>,
+    kind: &'static str,
+}
+
+/// A number that numpy knows.
+pub(super) trait Number: Copy + Send + Sync + 'static {
+    /// Its type in the array interface.
+    const KIND: &'static str;
+}
+
+impl Number for f32 {
+    const KIND: &'static str = if cfg!(target_endian = "big") { ">f4" } else { "<f4" };
+}
+
+impl Number for f64 {
+    const KIND: &'static str = if cfg!(target_endian = "big") { ">f8" } else { "<f8" };
+}
+
+impl Number for u32 {
+    const KIND: &'static str = if cfg!(target_endian = "big") { ">u4" } else { "<u4" };
+}
+
+/// Where numbers lie within what somebody owns.
+pub(super) struct Place<'a, T> {
+    /// All the memory in which they are.
+    pub(super) whole: &'a [T],
+    /// Where the first is, in bytes.
+    pub(super) start: usize,
+    pub(super) shape: Vec<usize>,
+    /// In bytes.
+    pub(super) strides: Vec<usize>,
+}
+
+impl Plane {
+    /// Numbers of one kind that lie in memory which `owner` keeps as it is.
+    pub(super) fn of<T, N: Number>(owner: Arc<dyn Any + Send + Sync>, place: Place<'_, T>) -> Self {
+        let Place { whole, start, shape, strides } = place;
+        Self { _owner: owner, address: whole.as_ptr().expose_provenance() + start, shape, strides, kind: N::KIND }
+    }
+
+    /// Numbers one behind the other.
+    pub(super) fn owned<N: Number>(numbers: Vec<N>, shape: Vec<usize>) -> Self {
+        let numbers = Arc::new(numbers);
+        let mut step = size_of::<N>();
+        let mut strides: Vec<usize> = shape
+            .iter()
+            .rev()
+            .map(|count| {
+                let stride = step;
+                step *= count;
+                stride
+            })
+            .collect();
+        strides.reverse();
+        let address = numbers.as_ptr().expose_provenance();
+        Self { _owner: numbers, address, shape, strides, kind: N::KIND }
+    }
+}
+
+#[pymethods]
+impl Plane {
+    #[getter]
+    fn __array_interface__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let interface = PyDict::new(py);
+        interface.set_item("version", 3)?;
+        interface.set_item("typestr", self.kind)?;
+        interface.set_item("data", (self.address, true))?;
+        interface.set_item("shape", PyTuple::new(py, &self.shape)?)?;
+        interface.set_item("strides", PyTuple::new(py, &self.strides)?)?;
+        Ok(interface)
+    }
+}

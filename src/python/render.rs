@@ -1,0 +1,209 @@
+//! Renders and plans.
+
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
+use std::sync::{Arc, OnceLock};
+use std::time::{Duration, Instant};
+
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use serde::Serialize;
+
+use super::errors::{defect, raised, refuse};
+use super::image::Image;
+use super::options::{options, time};
+use super::scene::Scene;
+use super::work::{self, Work};
+use crate::error::{Error, Result};
+use crate::film::check_writable;
+
+use crate::rendering::{Options, PlanAccount, RenderAccount, Rendering, Resumed, Timer};
+use crate::scene;
+use crate::trace::Advance;
+
+/// How often a program hears of progress.
+const PERIOD: Duration = Duration::from_millis(500);
+/// How long a render that was told to stop is waited for where it keeps nothing.
+const PATIENCE: Duration = Duration::from_secs(1);
+
+/// How a scene will be rendered, as JSON, and on how many threads.
+#[pyfunction]
+pub(super) fn plan(py: Python<'_>, scene: &Scene, asked: &Bound<'_, PyDict>) -> PyResult<(String, usize)> {
+    let (scene, options) = (scene.0.clone(), options(asked)?);
+    let threads = options.threads.or_else(|| std::thread::available_parallelism().map(usize::from).ok()).unwrap_or(1);
+    let planned = move || -> Result<String> {
+        let mut scene = (*scene).clone();
+        options.apply(&mut scene)?;
+        json(&PlanAccount::new(&crate::plan::plan(&scene)))
+    };
+    Ok((work::run(py, planned)?.map_err(raised)?, threads))
+}
+
+/// Renders; `progress` is told how much is done of how much, after how many seconds.
+#[pyfunction]
+pub(super) fn render(
+    py: Python<'_>,
+    scene: &Scene,
+    asked: &Bound<'_, PyDict>,
+    progress: Option<Bound<'_, PyAny>>,
+    checkpoint: Option<PathBuf>,
+    every: &Bound<'_, PyAny>,
+    resume: bool,
+) -> PyResult<Image> {
+    let state = Arc::new(State::default());
+    let checkpoint =
+        checkpoint.map(|path| Ok::<_, PyErr>(Checkpoint { path, every: time(every)?, resume })).transpose()?;
+    if resume && checkpoint.is_none() {
+        return refuse("there is no checkpoint to resume from", "name its file: checkpoint=\"image.checkpoint\"");
+    }
+    let keeps = checkpoint.is_some();
+    let job = Job { scene: scene.0.clone(), options: options(asked)?, checkpoint, state: state.clone() };
+    let work = Work::begin(move || job.run())?;
+    let mut next = Instant::now() + PERIOD;
+    let rendered = work.finish(py, &mut || match &progress {
+        Some(progress) if Instant::now() >= next && state.has_begun() => {
+            next = Instant::now() + PERIOD;
+            state.tell(progress)
+        }
+        _ => Ok(()),
+    });
+    let rendered = rendered.inspect_err(|_| {
+        state.stop.store(true, Relaxed);
+        // What is done is kept before it is said that it was stopped; who has not begun has nothing to keep.
+        let patience = if keeps && state.has_begun() { Duration::MAX } else { PATIENCE };
+        let _ = work.wait(py, patience);
+    });
+    let image = rendered?.map_err(raised)?.ok_or_else(|| defect("a render stopped that nobody stopped"))?;
+    progress.map_or(Ok(()), |progress| state.tell(&progress))?;
+    Ok(image)
+}
+
+/// What the one who renders and the one who waits tell one another.
+#[derive(Default)]
+struct State {
+    stop: AtomicBool,
+    done: AtomicU64,
+    work: AtomicU64,
+    /// When the render began, if it has.
+    began: OnceLock<Instant>,
+}
+
+impl State {
+    /// Says that a render begins which has so much done of so much work.
+    fn begin(&self, done: u64, work: u64) -> Instant {
+        self.done.store(done, Relaxed);
+        self.work.store(work, Relaxed);
+        *self.began.get_or_init(Instant::now)
+    }
+
+    fn has_begun(&self) -> bool {
+        self.began.get().is_some()
+    }
+
+    fn tell(&self, progress: &Bound<'_, PyAny>) -> PyResult<()> {
+        let seconds = self.began.get().map_or(0.0, |began| began.elapsed().as_secs_f64());
+        progress.call1((self.done.load(Relaxed), self.work.load(Relaxed), seconds)).map(drop)
+    }
+}
+
+struct Checkpoint {
+    path: PathBuf,
+    every: Duration,
+    resume: bool,
+}
+
+struct Job {
+    scene: Arc<scene::Scene>,
+    options: Options,
+    checkpoint: Option<Checkpoint>,
+    state: Arc<State>,
+}
+
+/// All that is known of a render.
+#[derive(Serialize)]
+struct Account<'a> {
+    #[serde(flatten)]
+    report: RenderAccount<'a>,
+    plan: PlanAccount<'a>,
+    warnings: Vec<String>,
+}
+
+impl Job {
+    /// The image, unless it was stopped.
+    fn run(self) -> Result<Option<Image>> {
+        let kept = self.checkpoint.as_ref();
+        kept.map_or(Ok(()), Checkpoint::spare)?;
+        let mut rendering = Rendering::new(&self.scene, &self.options)?;
+        kept.map_or(Ok(()), |kept| kept.go_on(&mut rendering))?;
+        let before = rendering.done();
+        let began = self.state.begin(before, rendering.work());
+        let mut warnings = self.scene.warnings.clone();
+        let is_finished = self.advance(&mut rendering, &mut warnings)?;
+        kept.map_or(Ok(()), |kept| rendering.save(&kept.path))?;
+        if !is_finished {
+            return Ok(None);
+        }
+        let (took, work) = (began.elapsed(), rendering.work());
+        let expected = rendering.expected().mul_f64(work.saturating_sub(before) as f64 / work.max(1) as f64);
+        let image = rendering.image();
+        warnings.extend(image.warnings());
+        let report = RenderAccount::new(&image, took, expected);
+        let account = json(&Account { report, plan: PlanAccount::new(rendering.plan()), warnings })?;
+        Ok(Some(Image { image: Arc::new(image), account }))
+    }
+
+    /// Takes all samples, and keeps them now and then. Answers whether all were taken, or somebody stopped it.
+    fn advance(&self, rendering: &mut Rendering, warnings: &mut Vec<String>) -> Result<bool> {
+        let state = &self.state;
+        let count = |more| {
+            state.done.fetch_add(more, Relaxed);
+        };
+        let mut timer = Timer::new(self.checkpoint.as_ref().map(|kept| kept.every));
+        loop {
+            let advance = rendering.advance_until(&count, &|| state.stop.load(Relaxed) || timer.is_due());
+            state.work.store(rendering.work(), Relaxed);
+            if advance == Advance::Finished {
+                return Ok(true);
+            }
+            if state.stop.load(Relaxed) {
+                return Ok(false);
+            }
+            if let Some(kept) = self.checkpoint.as_ref().filter(|_| advance == Advance::Stopped) {
+                // The render is worth more than what could not be kept of it.
+                let saved = timer.run(|| rendering.save(&kept.path));
+                warnings.extend(saved.err().map(|error| format!("the render went on, but {error}")));
+            }
+        }
+    }
+}
+
+impl Checkpoint {
+    /// Refuses to lose what an earlier run has kept.
+    fn spare(&self) -> Result<()> {
+        if self.resume || !self.path.exists() {
+            return check_writable(&self.path);
+        }
+        let message = format!("{} is there from an earlier run", self.path.display());
+        let help = "add resume=True to go on from it, or delete it to begin anew".to_owned();
+        Err(Error::Arguments { message, help: Some(help) })
+    }
+
+    /// Goes on from what an earlier run has kept, if there is anything.
+    fn go_on(&self, rendering: &mut Rendering) -> Result<()> {
+        if !self.resume || !self.path.exists() {
+            return Ok(());
+        }
+        match rendering.resume(&self.path)? {
+            Resumed::Continues | Resumed::Finished => Ok(()),
+            Resumed::HasMore(samples) => {
+                let message = format!("{} has {samples} samples per pixel, more than that", self.path.display());
+                Err(Error::Arguments { message, help: Some(format!("ask for samples={samples}")) })
+            }
+        }
+    }
+}
+
+fn json(account: &impl Serialize) -> Result<String> {
+    serde_json::to_string(account)
+        .map_err(|error| Error::Encode { path: "the report".into(), message: error.to_string() })
+}

@@ -1,0 +1,85 @@
+//! Scenes.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyMapping};
+
+use super::errors::{raised, raised_of, refuse};
+use super::{text, work};
+use crate::error::{Diagnostic, Error};
+use crate::scene::{self, SETTINGS, Source};
+
+/// The same error, in which mistakes in settings, of which each has a line, are told by their keys.
+fn by_key(error: Error, keys: &[String]) -> Error {
+    let Error::Scene(mut mistakes) = error else { return error };
+    let is_of_setting = |mistake: &&mut Diagnostic| mistake.file.as_os_str() == SETTINGS;
+    for mistake in mistakes.iter_mut().filter(is_of_setting) {
+        mistake.key = keys.get(mistake.line_and_column().0 - 1).cloned();
+    }
+    Error::Scene(mistakes)
+}
+
+/// A scene that was read and checked.
+#[pyclass(frozen, module = "abbe._abbe")]
+pub(super) struct Scene(pub(super) Arc<scene::Scene>);
+
+#[pymethods]
+impl Scene {
+    /// Reads a file, or what a dict says; files that a dict names are looked for in `folder`.
+    #[staticmethod]
+    fn compile(
+        py: Python<'_>,
+        source: &Bound<'_, PyAny>,
+        folder: PathBuf,
+        settings: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<Self> {
+        let (mut given, mut keys) = (Vec::new(), Vec::<String>::new());
+        for (key, value) in settings.into_iter().flatten() {
+            let key: String = key.extract()?;
+            if key.chars().any(|letter| letter == '=' || letter.is_control()) {
+                return refuse(
+                    format!("{key:?} is no path of a key"),
+                    "such as \"film.width\" or \"object.ball.material\"",
+                );
+            }
+            given.push(format!("{key}={}", text::value(&key, &value)?));
+            keys.push(key);
+        }
+        let raised = |error| raised(by_key(error, &keys));
+        let scene = match source.cast::<PyMapping>() {
+            Ok(table) => {
+                let path = folder.join("scene.toml");
+                let (text, rows) = text::scene(table, &path)?;
+                let source = Source { text, path };
+                work::run(py, move || source.compile_written(&given, rows))?.map_err(raised)
+            }
+            Err(_) => {
+                let path: PathBuf = source.extract()?;
+                let read = path.clone();
+                work::run(py, move || Source::read(&read)?.compile_with(&given))?
+                    .map_err(|error| raised_of(&path, by_key(error, &keys)))
+            }
+        };
+        Ok(Self(Arc::new(scene?)))
+    }
+
+    /// How many objects there are.
+    #[getter]
+    fn objects(&self) -> usize {
+        self.0.objects.len()
+    }
+
+    /// What its author should know.
+    #[getter]
+    fn warnings(&self) -> Vec<String> {
+        self.0.warnings.clone()
+    }
+
+    /// Pixels per row and rows.
+    #[getter]
+    fn size(&self) -> (u32, u32) {
+        (self.0.film.width, self.0.film.height)
+    }
+}

@@ -1,0 +1,251 @@
+//! What a program has built of dicts, lists, numbers and texts, as the text of a scene: the same keys and values in
+//! the same order.
+
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+use pyo3::prelude::*;
+use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyMapping, PyString, PyTuple};
+
+use super::errors::raised;
+use crate::error::{Diagnostic, Error};
+use crate::scene::{Numbers, Rows};
+
+/// Most dicts and lists within one another: more than a scene has, and fewer than TOML may have.
+const DEEPEST: usize = 64;
+
+/// The text of a scene, and the arrays of its meshes beside it.
+///
+/// # Errors
+/// If there is something in it that has no place in a scene, all of it with its keys.
+pub(super) fn scene(table: &Bound<'_, PyMapping>, file: &Path) -> PyResult<(String, Vec<Rows>)> {
+    let mut writer = Writer::default();
+    for entry in table.items()? {
+        writer.entry(&entry)?;
+        writer.text.push('\n');
+    }
+    writer.finish(file)
+}
+
+/// The lists of a mesh that are long, of numbers of points and of coordinates.
+const FACES: &str = "faces";
+const REAL: [&str; 3] = ["points", "normals", "uv"];
+
+/// A value by itself, as it stands behind `KEY=`.
+///
+/// # Errors
+/// If it is nothing that a scene may have; `key` says where it is.
+pub(super) fn value(key: &str, value: &Bound<'_, PyAny>) -> PyResult<String> {
+    let mut writer = Writer { path: vec![Step::Key(key.to_owned())], ..Writer::default() };
+    writer.value(value)?;
+    writer.finish(Path::new("set")).map(|(text, _)| text)
+}
+
+/// A step on the way to a value.
+enum Step {
+    Key(String),
+    Entry(usize),
+}
+
+#[derive(Default)]
+struct Writer {
+    text: String,
+    /// Arrays that the text has a mark of.
+    rows: Vec<Rows>,
+    path: Vec<Step>,
+    mistakes: Vec<Diagnostic>,
+}
+
+impl Writer {
+    fn finish(self, file: &Path) -> PyResult<(String, Vec<Rows>)> {
+        if self.mistakes.is_empty() {
+            return Ok((self.text, self.rows));
+        }
+        let file = |mistake| Diagnostic { file: file.to_owned(), ..mistake };
+        Err(raised(Error::Scene(self.mistakes.into_iter().map(file).collect())))
+    }
+
+    /// Keeps a mistake. Writing goes on, so that all are told at once.
+    fn refuse<'h>(&mut self, message: impl Into<String>, help: impl Into<Option<&'h str>>) -> PyResult<()> {
+        let mut path = String::new();
+        for step in &self.path {
+            let _ = match step {
+                Step::Key(key) if path.is_empty() => write!(path, "{key}"),
+                Step::Key(key) => write!(path, ".{key}"),
+                Step::Entry(number) => write!(path, "[{number}]"),
+            };
+        }
+        let help = help.into().map(str::to_owned);
+        let (file, text) = (PathBuf::new(), "".into());
+        self.mistakes.push(Diagnostic { file, text, span: 0..0, key: Some(path), message: message.into(), help });
+        Ok(())
+    }
+
+    /// Writes a key and its value.
+    fn entry(&mut self, entry: &Bound<'_, PyAny>) -> PyResult<()> {
+        let (key, value): (Bound<'_, PyAny>, Bound<'_, PyAny>) = entry.extract()?;
+        let name = key.cast::<PyString>().ok().and_then(|key| key.extract::<String>().ok());
+        let Some(name) = name else {
+            return self.refuse(format!("a key is a text, not {}", shown(&key)), "write the names of a scene file");
+        };
+        self.quoted(&name);
+        self.text.push_str(" = ");
+        self.path.push(Step::Key(name));
+        self.value(&value)?;
+        self.path.pop();
+        Ok(())
+    }
+
+    fn value(&mut self, value: &Bound<'_, PyAny>) -> PyResult<()> {
+        if self.path.len() > DEEPEST {
+            return self.refuse(
+                format!("more than {DEEPEST} dicts and lists stand within one another"),
+                "is one within itself?",
+            );
+        }
+        if let Ok(truth) = value.cast::<PyBool>() {
+            self.text.push_str(if truth.is_true() { "true" } else { "false" });
+        } else if let Ok(text) = value.cast::<PyString>() {
+            match text.extract::<String>() {
+                Ok(text) => self.quoted(&text),
+                Err(_) => return self.refuse("this text is not Unicode", "decode it another way"),
+            }
+        } else if value.is_instance_of::<PyInt>() {
+            return match value.extract::<i128>() {
+                Ok(whole) => {
+                    self.text.push_str(&whole.to_string());
+                    Ok(())
+                }
+                Err(_) => self.refuse("this number is too large", None),
+            };
+        } else if let Ok(number) = value.cast::<PyFloat>() {
+            self.text.push_str(&toml::Value::Float(number.value()).to_string());
+        } else if let Ok(table) = value.cast::<PyDict>() {
+            return self.table(table.as_mapping());
+        } else if value.is_instance_of::<PyList>() || value.is_instance_of::<PyTuple>() {
+            return self.list(value);
+        } else {
+            return self.other(value);
+        }
+        Ok(())
+    }
+
+    /// What becomes one of the others: of numpy, a path, a time, a number or dict of a type of its own.
+    fn other(&mut self, value: &Bound<'_, PyAny>) -> PyResult<()> {
+        let is = |method: &str| value.hasattr(method).unwrap_or(false);
+        if is("tolist") {
+            if let Some(rows) = self.list_of_mesh().and_then(|list| rows(value, list == FACES)) {
+                self.quoted(&Rows::mark(self.rows.len()));
+                self.rows.push(rows);
+                return Ok(());
+            }
+            let plain = value.call_method0("tolist")?;
+            return if plain.is(value) { self.foreign(value) } else { self.deeper(&plain) };
+        }
+        if is("__fspath__") {
+            return self.deeper(&value.call_method0("__fspath__")?);
+        }
+        if is("isoformat") {
+            let text: String = value.call_method0("isoformat")?.extract()?;
+            self.text.push_str(&text);
+            return Ok(());
+        }
+        if let Ok(table) = value.cast::<PyMapping>() {
+            return self.table(table);
+        }
+        if is("__index__") {
+            return self.deeper(&value.call_method0("__index__")?);
+        }
+        match value.extract::<f64>() {
+            Ok(number) => self.value(&PyFloat::new(value.py(), number)),
+            Err(_) => self.foreign(value),
+        }
+    }
+
+    /// The list that it writes, if that is one of a mesh in the scene itself.
+    fn list_of_mesh(&self) -> Option<&str> {
+        match self.path.as_slice() {
+            [Step::Key(first), .., Step::Key(mesh), Step::Key(list)] if first == "object" && mesh == "mesh" => {
+                Some(list.as_str()).filter(|list| *list == FACES || REAL.contains(list))
+            }
+            _ => None,
+        }
+    }
+
+    /// What a value stands for, which may stand for another in turn: but not without end.
+    fn deeper(&mut self, value: &Bound<'_, PyAny>) -> PyResult<()> {
+        let is_plain = value.is_instance_of::<PyInt>()
+            || value.is_instance_of::<PyFloat>()
+            || value.is_instance_of::<PyString>()
+            || value.is_instance_of::<PyList>();
+        if is_plain { self.value(value) } else { self.foreign(value) }
+    }
+
+    fn foreign(&mut self, value: &Bound<'_, PyAny>) -> PyResult<()> {
+        if value.is_none() {
+            return self.refuse("None is no value of a scene", "leave the key out");
+        }
+        let kind = value.get_type().name().map_or_else(|_| "object".into(), |name| name.to_string());
+        let help = "a scene has numbers, texts, True and False, dicts, lists and arrays of numpy";
+        self.refuse(format!("a value of the type {kind} is none of a scene"), help)
+    }
+
+    fn table(&mut self, table: &Bound<'_, PyMapping>) -> PyResult<()> {
+        self.text.push_str("{ ");
+        for (number, entry) in table.items()?.iter().enumerate() {
+            if number > 0 {
+                self.text.push_str(", ");
+            }
+            self.entry(&entry)?;
+        }
+        self.text.push_str(" }");
+        Ok(())
+    }
+
+    fn list(&mut self, entries: &Bound<'_, PyAny>) -> PyResult<()> {
+        self.text.push('[');
+        for (number, entry) in entries.try_iter()?.enumerate() {
+            if number > 0 {
+                self.text.push_str(", ");
+            }
+            self.path.push(Step::Entry(number));
+            self.value(&entry?)?;
+            self.path.pop();
+        }
+        self.text.push(']');
+        Ok(())
+    }
+
+    /// A text in quotes on one line. What JSON escapes, TOML reads; it refuses one character more.
+    fn quoted(&mut self, text: &str) {
+        let quoted = serde_json::Value::from(text).to_string().replace('\u{7f}', "\\u007F");
+        self.text.push_str(&quoted);
+    }
+}
+
+/// The rows of an array of numpy with two dimensions; none if its numbers are better told one by one.
+fn rows(array: &Bound<'_, PyAny>, is_whole: bool) -> Option<Rows> {
+    let (count, width): (usize, usize) = array.getattr("shape").ok()?.extract().ok()?;
+    let kind: String = array.getattr("dtype").ok()?.getattr("kind").ok()?.extract().ok()?;
+    let bytes = |kind: &str| array.call_method1("astype", (kind,))?.call_method0("tobytes");
+    let numbers = match kind.as_str() {
+        "i" | "u" if is_whole => {
+            let whole = each(bytes("<i8").ok()?.extract().ok()?, i64::from_le_bytes);
+            Numbers::Whole(whole.into_iter().map(u32::try_from).collect::<Result<_, _>>().ok()?)
+        }
+        "f" | "i" | "u" if !is_whole => Numbers::Real(each(bytes("<f8").ok()?.extract().ok()?, f64::from_le_bytes)),
+        _ => return None,
+    };
+    (count > 0 && width > 0).then_some(Rows { width, numbers })
+}
+
+/// A number of each eight bytes.
+fn each<T>(bytes: &[u8], number: impl Fn([u8; 8]) -> T) -> Vec<T> {
+    bytes.chunks_exact(8).map(|eight| number(std::array::from_fn(|i| eight[i]))).collect()
+}
+
+/// A value as Python shows it, if that is short.
+pub(super) fn shown(value: &Bound<'_, PyAny>) -> String {
+    let shown = value.repr().map(|text| text.to_string()).unwrap_or_default();
+    if shown.is_empty() || shown.chars().count() > 40 { "another value".into() } else { shown }
+}

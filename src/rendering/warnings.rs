@@ -1,0 +1,55 @@
+//! What whoever sees an image should know of it.
+
+use super::image_error::ImageError;
+use crate::look::percent;
+use crate::trace::{RareLight, Report};
+
+/// All that there is to warn of.
+pub(super) fn warnings(report: &Report, error: Option<&ImageError>) -> Vec<String> {
+    let mut warnings: Vec<String> =
+        error.into_iter().flat_map(|error| [outlier(error), missed(error)]).flatten().collect();
+    if let Some([x, y, sample]) = report.first_non_finite {
+        let count = report.non_finite;
+        let first = format!("the first is sample {sample} of pixel ({x}, {y})");
+        warnings.push(format!("{count} samples were not finite and are left out; {first}"));
+    }
+    if report.unmatched > 0 {
+        let times = format!("{} times light left a clear body it had not entered", report.unmatched);
+        warnings.push(format!("{times} and went straight on: is a dielectric mesh open?"));
+    }
+    if report.by_chance > 0 {
+        let share = format!("in {} of {} camera samples", report.by_chance, report.samples);
+        let what = "light had too many ways to follow all, and went on by chance: these pixels have noise";
+        warnings.push(format!("{share} {what}"));
+    }
+    warnings
+}
+
+/// Light that is too rare to know how much there is.
+fn outlier(error: &ImageError) -> Option<String> {
+    let outlier = error.noise.outlier?;
+    let ([x, y], share) = (outlier.pixel, percent(outlier.share));
+    let light = error.rare_light.as_ref().map_or("light".into(), told);
+    Some(format!(
+        "pixel ({x}, {y}) makes {share} of the noise: one of eight renders found {light} there, and no other did. \
+         There may be more such light than the samples tell"
+    ))
+}
+
+/// An error that was asked for and is not reached.
+fn missed(error: &ImageError) -> Option<String> {
+    let asked = error.asked.filter(|_| !error.is_reached())?;
+    let blurred = match error.blur.at_most > error.noise.at_most {
+        true => ": most of it is the blur of gathered photons, half as wide after 8 to 64 times as many samples",
+        false => "",
+    };
+    Some(format!("the error of {} that was asked for is not reached{blurred}", percent(asked)))
+}
+
+/// Rare light with its way.
+fn told(light: &RareLight) -> String {
+    let RareLight { name, bounces, found } = light;
+    let of = name.as_ref().map_or(String::new(), |name| format!(" of {name}"));
+    let after = if *bounces == 1 { "after 1 bounce".into() } else { format!("after {bounces} bounces") };
+    format!("light{of} ({found} {after})")
+}

@@ -1,0 +1,468 @@
+"""The renderer from Python: the bits of the command, by arrays that are not copied.
+
+pytest tools/tests/test_python.py
+"""
+
+import json
+import pickle
+import subprocess
+import sys
+import threading
+import time
+import tomllib
+from datetime import date
+
+import numpy as np
+import pytest
+import render
+
+abbe = pytest.importorskip("abbe", reason="the package is not installed: python3 tools/test.py --only wheel")
+
+TURNTABLE = render.ROOT / "examples/turntable.toml"
+SMALL = {"film.width": 24, "film.height": 16}
+# A sphere in front of a lamp: noise, layers, spectra.
+SCENE = {
+    "camera": {"position": (0, 0, 5), "look_at": np.zeros(3), "vertical_fov": np.float32(40)},
+    "film": {"width": 20, "height": np.int64(12)},
+    "render": {"samples": 4},
+    "material": {"matte": {"diffuse": {"reflectance": {"rgb": [0.2, 0.5, 0.8]}}}},
+    "object": [{"shape": {"sphere": {"center": [0, 0, 0], "radius": 1}}, "material": "matte"}],
+    "light": [{"environment": {"radiance": 1}}, {"point": {"position": [3, 3, 3], "intensity": 20}}],
+}
+
+
+def with_(**sections):
+    return {**SCENE, **sections}
+
+
+def same(a, b):
+    """Whether two files have the same channels, bit by bit; answers how many that are."""
+    a, b = render.read(a), render.read(b)
+    assert a.channels.keys() == b.channels.keys()
+    for name, pixels in a.channels.items():
+        assert pixels.dtype == b.channels[name].dtype and pixels.tobytes() == b.channels[name].tobytes(), name
+    return len(a.channels)
+
+
+# Random paths, dispersion with photons, wavelengths that interfere.
+@pytest.mark.parametrize("name", ["cornell", "prism", "coatings"])
+def test_a_file_has_the_bits_of_the_command(name, tmp_path):
+    scene = render.SCENES / f"{name}.toml"
+    by_command, by_python = tmp_path / "command.exr", tmp_path / "python.exr"
+    sizes = ["--set", "film.width=40", "--set", "film.height=24"]
+    command = [render.binary(), scene, "--exr", by_command, "--samples", "4", "--layers", "all", *sizes]
+    subprocess.run(list(map(str, command)), check=True, capture_output=True)
+    image = abbe.render(scene, samples=4, layers="all", set={"film.width": 40, "film.height": 24})
+    image.write_exr(by_python)
+    assert by_command.read_bytes() == by_python.read_bytes()
+    assert same(by_command, by_python) > 60
+
+
+# Those that are planned within seconds.
+QUICK = sorted(path for path in render.SCENES.glob("*.toml") if path.stem not in ("bubble", "rainbow", "water"))
+
+
+@pytest.mark.parametrize("path", QUICK, ids=lambda path: path.stem)
+def test_a_dict_means_what_its_file_means(path, tmp_path):
+    table = tomllib.loads(path.read_text("utf-8"))
+    small = {"film.width": 16, "film.height": 9, "render.samples": 1}
+    images = [
+        abbe.render(path, set=small),
+        abbe.render(table, folder=path.parent, set=small),
+    ]
+    for number, image in enumerate(images):
+        image.write_exr(tmp_path / f"{number}.exr")
+    assert same(tmp_path / "0.exr", tmp_path / "1.exr") >= 5
+
+
+def test_arrays_are_those_of_the_file_and_not_copied(tmp_path):
+    image = abbe.render(SCENE, layers=["albedo", "N", "UV", "samples", "CryptoObject", "lights"])
+    image.write_exr(tmp_path / "a.exr")
+    file = render.read(tmp_path / "a.exr").channels
+    assert image.rgb.shape == (12, 20, 3) and image.rgb.dtype == np.float32
+    assert (image.width, image.height, image.corner) == (20, 12, (0, 0))
+    assert np.array_equal(image.rgb, np.stack([file[name] for name in "RGB"], axis=-1))
+    for name in ("A", "Z", "R", "albedo.G", "N.X", "UV.V"):
+        assert np.array_equal(image[name], file[name]), name
+    assert np.array_equal(image["samples"], file["samples.V"]) and (image["samples"] == 4).all()
+    assert np.array_equal(image["N"], np.stack([file[f"N.{axis}"] for axis in "XYZ"], axis=-1))
+    assert image["CryptoObject00"].shape == (12, 20, 4)
+    assert image.layers[:4] == ("beauty", "A", "Z", "albedo") and len(image) == len(list(image)) == len(image.layers)
+    assert sum(image[name] for name in image.layers if name.startswith("light_")) == pytest.approx(image.rgb, rel=1e-5)
+    address = lambda array: array.__array_interface__["data"][0]  # noqa: E731
+    assert address(image.rgb) == address(image.rgb) == address(image["R"])
+    assert address(image["N"]) == address(image["N.X"])
+    with pytest.raises(ValueError, match="read-only"):
+        image.rgb[0, 0] = 0
+    with pytest.raises(KeyError, match="no layer 'albdo': it has beauty, A, Z, albedo"):
+        image["albdo"]
+
+
+def test_arrays_live_longer_than_their_image():
+    rgb = abbe.render(SCENE).rgb
+    again = abbe.render(SCENE)
+    for _ in range(20):
+        abbe.render(SCENE, seed=1)
+    assert np.array_equal(rgb, again.rgb) and rgb.any()
+
+
+def test_spectra_are_those_of_the_file(tmp_path):
+    image = abbe.render(SCENE, spectral=True)
+    spectrum = image.spectrum(10, 6)
+    assert (np.diff(spectrum.wavelengths_nm) > 0).all() and spectrum.radiance.shape == spectrum.wavelengths_nm.shape
+    assert image.spectra.radiance.shape == (12, 20, len(spectrum.wavelengths_nm))
+    image.write_spectral_exr(tmp_path / "a.exr")
+    file = render.read(tmp_path / "a.exr").channels
+    bands = sorted(
+        (float(name.split(".")[1].removesuffix("nm").replace(",", ".")), name)
+        for name in file
+        if name.startswith("S0.")
+    )
+    assert [nm for nm, _ in bands] == pytest.approx(list(spectrum.wavelengths_nm))
+    assert [file[name][6, 10] for _, name in bands] == list(spectrum.radiance)
+    with pytest.raises(IndexError, match=r"no pixel \(20, 0\)"):
+        image.spectrum(20, 0)
+    with pytest.raises(ValueError, match="spectral=True"):
+        abbe.render(SCENE).spectrum(0, 0)
+
+
+def test_what_is_known_of_a_render_is_what_json_says(tmp_path):
+    path = tmp_path / "report.json"
+    command = [render.binary(), TURNTABLE, "--exr", tmp_path / "a.exr", "--report", path, "--samples", "2"]
+    subprocess.run(
+        [*map(str, command), "--set", "film.width=24", "--set", "film.height=16"], check=True, capture_output=True
+    )
+    account = json.loads(path.read_text("utf-8"))
+    stats = abbe.render(TURNTABLE, samples=2, set=SMALL).stats
+    plan = {key: value for key, value in account["plan"].items() if key != "kind"}
+    assert {**stats["plan"], "processor_seconds": 0, "because": 0} == {**plan, "processor_seconds": 0, "because": 0}
+    assert stats.keys() == account["report"].keys() - {"kind"} | {"plan", "warnings"}
+    for key in ("samples", "rays", "photons", "dropped", "by_chance", "non_finite", "error"):
+        assert stats[key] == account["report"][key], key
+    assert stats["samples"] == 2 * 24 * 16 and stats["seconds"] > 0
+
+
+def test_a_plan_renders_nothing_and_says_why():
+    plan = abbe.plan(SCENE)
+    assert plan.samples == 4 and plan.model and plan.transport and str(plan) == "\n".join(plan.words)
+    assert 0 < plan.seconds <= plan.processor_seconds and plan.left_out == []
+    assert abbe.plan(SCENE, threads=1).seconds > 0
+    stops = abbe.plan(SCENE, error=0.01)
+    assert stops.seconds is None and stops.samples == 65536
+
+
+def test_an_error_that_is_asked_for_is_reached_and_told():
+    image = abbe.render(SCENE, error=0.05, samples=4096)
+    error = image.stats["error"]
+    assert error["is_reached"] and error["stopped_by"] == "error" and error["at_most"] <= 0.05
+    short = abbe.render(SCENE, error=1e-5, time=0.05)
+    assert short.stats["error"]["stopped_by"] == "time"
+    assert any("is not reached" in warning for warning in short.stats["warnings"])
+
+
+def test_progress_is_told_to_the_end():
+    told = []
+    abbe.render(SCENE, time="1.2s", error=1e-6, progress=told.append)
+    assert len(told) >= 2 and told[-1].share == 1 and told[0].share < 1
+    assert [one.done for one in told] == sorted(one.done for one in told)
+    assert [one.seconds for one in told] == sorted(one.seconds for one in told)
+    assert str(told[-1]).startswith("100 %")
+
+
+def test_what_progress_raises_stops_the_render():
+    class Enough(Exception):
+        pass
+
+    def progress(so_far):
+        raise Enough
+
+    began = time.monotonic()
+    with pytest.raises(Enough):
+        abbe.render(SCENE, time=60, error=1e-6, progress=progress)
+    assert time.monotonic() - began < 10
+
+
+INTERRUPTED = """
+import json, os, signal, sys
+import abbe
+interrupt = lambda progress: os.kill(os.getpid(), signal.SIGINT)
+try:
+    abbe.render(json.loads(sys.argv[1]), samples=1 << 20, checkpoint=sys.argv[2], progress=interrupt)
+except KeyboardInterrupt:
+    print("stopped")
+"""
+
+
+def test_ctrl_c_stops_a_render_and_leaves_a_checkpoint(tmp_path):
+    kept = tmp_path / "a.checkpoint"
+    scene = tomllib.loads(TURNTABLE.read_text("utf-8"))
+    ask = [sys.executable, "-c", INTERRUPTED, json.dumps(scene), str(kept)]
+    # All samples would take hours.
+    run = subprocess.run(ask, capture_output=True, text=True, timeout=120, cwd=TURNTABLE.parent)
+    assert run.stdout == "stopped\n", run.stderr
+    assert kept.stat().st_size > 0
+    with pytest.raises(abbe.OptionsError, match=r"is there from an earlier run \(add resume=True"):
+        abbe.render(scene, folder=TURNTABLE.parent, samples=1 << 20, checkpoint=kept)
+
+
+def test_a_render_that_stopped_goes_on_to_the_same_bits(tmp_path):
+    class Enough(Exception):
+        pass
+
+    def stop(so_far):
+        raise Enough
+
+    kept, scene = tmp_path / "a.checkpoint", with_(film={"width": 64, "height": 48})
+    with pytest.raises(Enough):
+        abbe.render(scene, samples=1024, checkpoint=kept, progress=stop)
+    told = []
+    image = abbe.render(scene, samples=1024, checkpoint=kept, resume=True, progress=told.append)
+    assert told[-1].share == 1
+    assert np.array_equal(image.rgb, abbe.render(scene, samples=1024).rgb)
+    # All samples are there: nothing is rendered any more.
+    assert np.array_equal(abbe.render(scene, samples=1024, checkpoint=kept, resume=True).rgb, image.rgb)
+    with pytest.raises(abbe.OptionsError, match="1024 samples per pixel, more than that"):
+        abbe.render(scene, samples=16, checkpoint=kept, resume=True)
+    with pytest.raises(abbe.OptionsError, match="made of another scene"):
+        abbe.render(with_(film={"width": 64, "height": 49}), samples=1024, checkpoint=kept, resume=True)
+    with pytest.raises(abbe.OptionsError, match="no checkpoint to resume from"):
+        abbe.render(scene, resume=True)
+
+
+def test_threads_of_python_render_at_once_and_others_go_on():
+    scenes = [abbe.Scene(SCENE, set={"render.seed": seed, "render.samples": 64}) for seed in range(4)]
+    alone = [abbe.render(scene).rgb for scene in scenes]
+    together = [None] * 4
+    ticks, stop = [], threading.Event()
+
+    def tick():
+        while not stop.wait(0.001):
+            ticks.append(None)
+
+    def make(number):
+        together[number] = abbe.render(scenes[number], threads=1 + number % 2).rgb
+
+    threads = [threading.Thread(target=make, args=(number,)) for number in range(4)]
+    counter = threading.Thread(target=tick)
+    counter.start()
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    stop.set()
+    counter.join()
+    assert ticks and all(np.array_equal(a, b) for a, b in zip(alone, together, strict=True))
+
+
+def test_pictures_show_in_notebooks(tmp_path):
+    image = abbe.render(SCENE)
+    image.to_png(tmp_path / "a.png")
+    assert image._repr_png_() == (tmp_path / "a.png").read_bytes() and image._repr_png_().startswith(b"\x89PNG\r\n")
+    image.to_png(tmp_path / "b.png", exposure=2)
+    matplotlib = pytest.importorskip("matplotlib.image")
+    dark, bright = (matplotlib.imread(tmp_path / name) for name in ("a.png", "b.png"))
+    assert dark.shape == (12, 20, 3) and (bright >= dark).all() and bright.mean() > dark.mean()
+
+
+def test_settings_replace_values_and_options_settings():
+    image = abbe.render(SCENE, set={"film.width": 8, "object.1.shape.sphere.radius": 2.5, "film.layers": []})
+    assert image.rgb.shape == (12, 8, 3) and image["A"].mean() > abbe.render(SCENE)["A"].mean()
+    assert abbe.render(SCENE, crop=(4, 2, 6, 5)).rgb.shape == (5, 6, 3)
+    whole, wide = abbe.render(SCENE), abbe.render(SCENE, overscan=(1, 2, 3, 4))
+    assert wide.rgb.shape == (18, 24, 3) and wide.corner == (-1, -2)
+    assert np.array_equal(wide.rgb[2:14, 1:21], whole.rgb)
+    assert not np.array_equal(abbe.render(SCENE, seed=5).rgb, whole.rgb)
+    scene = abbe.Scene(with_(set={"size": 4}), set={"film.width": "$size"} | {"size": 6})
+    assert abbe.render(scene).width == 6
+    with pytest.raises(TypeError, match="when it is made"):
+        abbe.render(scene, set={"size": 3})
+
+
+@pytest.mark.parametrize(
+    "options, said",
+    [
+        ({"samples": 0}, "a pixel needs at least 1 sample"),
+        ({"samples": 2.5}, "samples is a whole number of 1 or more, not 2.5"),
+        ({"seed": -1}, "seed is a whole number from 0 to 2**64 - 1, not -1"),
+        ({"crop": (1, 2)}, "crop is four whole numbers: first column, first row, width and height, not (1, 2)"),
+        ({"layers": [3]}, "layers is a list of names, not [3]"),
+        ({"time": [1]}, "this is no time"),
+        ({"error": 3}, "a relative error lies between 0.000001 and 1, not 3 (error 0.01 asks for one percent)"),
+        ({"time": "soon"}, "this is no time"),
+        ({"time": -1}, "this is no time"),
+        ({"threads": 0}, "a render has 1 to 1024 threads"),
+        ({"layers": ["albdo"]}, "there is no layer `albdo`: did you mean albedo?"),
+        ({"layers": "albedo"}, 'layers is a list of names (write layers=["albedo"], or "all")'),
+        ({"crop": (0, 0, 0, 0)}, "a crop has at least 1 pixel"),
+        ({"overscan": (1, 2)}, "overscan is one or four whole numbers"),
+    ],
+)
+def test_options_that_are_wrong_say_what_to_do(options, said):
+    with pytest.raises(abbe.OptionsError) as caught:
+        abbe.render(SCENE, **options)
+    assert said in str(caught.value) and caught.value.help and isinstance(caught.value, ValueError)
+    assert "--" not in str(caught.value)
+
+
+def test_files_that_fail_raise_what_python_raises(tmp_path):
+    with pytest.raises(
+        FileNotFoundError, match="there is no scene file .*turntabel.toml .did you mean .*turntable.toml"
+    ):
+        abbe.render(TURNTABLE.with_name("turntabel.toml"))
+    with pytest.raises(FileNotFoundError, match="there is no image file"):
+        abbe.read_exr(tmp_path / "a.exr")
+    (tmp_path / "a.exr").write_text("no image")
+    with pytest.raises(abbe.RenderError, match="no complete OpenEXR image"):
+        abbe.read_exr(tmp_path / "a.exr")
+    (tmp_path / "file").write_text("")
+    with pytest.raises(OSError):
+        abbe.render(SCENE).write_exr(tmp_path / "file/a.exr")
+
+
+def test_files_are_read_as_others_read_them(tmp_path):
+    path = tmp_path / "a.exr"
+    image = abbe.render(SCENE, layers=["albedo", "variance"], crop=(2, 3, 10, 6))
+    image.write_exr(path)
+    file, channels = abbe.read_exr(path), render.read(path).channels
+    assert np.array_equal(file.rgb, image.rgb) and np.array_equal(file["Z"], channels["Z"])
+    assert set(file.layers) >= {"beauty", "Z", "albedo", "variance"} and "albedo" in file
+    assert np.array_equal(file["albedo"], image["albedo"]) and np.array_equal(file["albedo.G"], channels["albedo.G"])
+    assert (file.corner, file.format) == ((2, 3), (20, 12))
+    assert file.attributes["render/samples"] == "4"
+    with pytest.raises(abbe.OptionsError, match="has no layer albdo .did you mean albedo"):
+        file["albdo"]
+
+
+def test_two_images_are_told_apart_by_more_than_their_noise(tmp_path):
+    a, b = (abbe.render(SCENE, samples=256, layers=["variance"], seed=seed) for seed in (1, 2))
+    brighter = abbe.render(SCENE, samples=256, layers=["variance"], set={"light.2.point.intensity": 24})
+    assert abbe.diff(a, a).is_equal and abbe.diff(a, a).agrees
+    noise = abbe.diff(a, b)
+    assert noise.agrees and not noise.is_equal and noise.relative_mse > 0 and noise.absolute.shape == (12, 20)
+    assert noise.absolute.max() == pytest.approx(np.abs(a.rgb.astype(float) - b.rgb).max())
+    apart = abbe.diff(a, brighter)
+    assert not apart.agrees and apart.brightness < 1 and max(map(abs, apart.z_of_means)) > 5
+    assert abbe.diff(a, brighter, tolerance=10).agrees
+    path = tmp_path / "b.exr"
+    b.write_exr(path)
+    assert abbe.diff(a, path).relative_mse == noise.relative_mse == abbe.diff(a, abbe.read_exr(path)).relative_mse
+    with pytest.raises(abbe.OptionsError, match="cannot be compared"):
+        abbe.diff(a, abbe.render(SCENE, crop=(0, 0, 4, 4)))
+
+
+def test_the_catalog_answers_arrays():
+    glass = abbe.catalog.glass("N-SF11")
+    nm = np.array([[486.1327, 587.5618], [656.2725, 1000.0]])
+    n = glass.index(nm)
+    assert n.shape == nm.shape and n.dtype == np.float64
+    # Schott's data sheet of N-SF11.
+    assert n[0, 1] == pytest.approx(1.78472, abs=5e-6) and (n[0, 1] - 1) / (n[0, 0] - n[1, 0]) == pytest.approx(
+        25.68, abs=0.005
+    )
+    assert glass.index(587.5618) == n[0, 1] and isinstance(glass.index(587.5618), float)
+    assert glass.v_d == pytest.approx(25.68, abs=0.005) and glass.name == "schott/N-SF11" and glass.source
+    # CIE 015:2018, table 1: D65 is 100 at 560 nm, and 117.008 at 460 nm.
+    light = abbe.catalog.illuminant("D65")
+    assert light.power([460, 560, 100]) == pytest.approx([117.8118, 100.0, 0.0], abs=1)
+    gold = abbe.catalog.metal("gold")
+    assert gold.index([600]).imag[0] > 2 and gold.index(600).real < 1
+    patch = abbe.catalog.reflectance("dark skin")
+    assert 0 < patch.reflectance(600) < 1 and patch.range_nm[0] < 400
+    assert len(abbe.catalog.glasses()) > 1000 and "D65" in abbe.catalog.illuminants() and abbe.catalog.metals()
+    with pytest.raises(KeyError, match="there is no glass named .*N-SF111.*did you mean"):
+        abbe.catalog.glass("N-SF111")
+
+
+def test_errors_can_be_sent_to_other_processes():
+    with pytest.raises(abbe.SceneError) as caught:
+        abbe.Scene({"camera": {}})
+    for error in (caught.value, abbe.OptionsError("no", "do")):
+        again = pickle.loads(pickle.dumps(error))
+        assert (str(again), type(again), vars(again)) == (str(error), type(error), vars(error))
+
+
+def test_the_package_imports_nothing_but_numpy():
+    code = (
+        "import sys, numpy; before = set(sys.modules); import abbe; print(*(m for m in sys.modules if m not in before))"
+    )
+    said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split()
+    standard = sys.stdlib_module_names
+    assert [name for name in said if name.split(".")[0] not in standard | {"abbe", "numpy"}] == []
+
+
+def test_dates_are_told_of_as_in_a_file():
+    with pytest.raises(abbe.SceneError, match="film.width: `width` is a whole number of 0 or more, not a date"):
+        abbe.Scene(with_(film={"width": date(2024, 1, 1), "height": 3}))
+
+
+def ball(rings=24):
+    """Points and faces of a ball of triangles."""
+    around, up = np.meshgrid(np.linspace(0, 2 * np.pi, rings, endpoint=False), np.linspace(0, np.pi, rings)[1:-1])
+    points = np.stack([np.sin(up) * np.cos(around), np.cos(up), np.sin(up) * np.sin(around)], axis=-1).reshape(-1, 3)
+    row, column = map(np.ravel, np.mgrid[: rings - 3, :rings])
+    corner = lambda down, right: (row + down) * rings + (column + right) % rings  # noqa: E731
+    first = np.stack([corner(0, 0), corner(0, 1), corner(1, 0)], axis=-1)
+    return points, np.concatenate([first, np.stack([corner(0, 1), corner(1, 1), corner(1, 0)], axis=-1)])
+
+
+def mesh_scene(**mesh):
+    return with_(object=[{"shape": {"mesh": mesh}, "material": "matte"}])
+
+
+@pytest.mark.parametrize("kind", [np.float64, np.float32, np.int64])
+def test_arrays_of_a_mesh_are_its_lists(kind):
+    points, faces = ball()
+    points = (1000 * points).astype(kind) if kind == np.int64 else points.astype(kind)
+    mesh = {"points": points, "faces": faces.astype(np.uint32), "normals": points, "uv": points[:, :2]}
+    lists = {name: array.tolist() for name, array in mesh.items()}
+    scenes = [
+        abbe.Scene(mesh_scene(**one), set={"camera.position": [0, 0, 5.0 * np.abs(points).max()]})
+        for one in (mesh, lists)
+    ]
+    by_arrays, by_lists = (abbe.render(scene, layers=["N", "UV", "P"]) for scene in scenes)
+    assert by_arrays["A"].mean() > 0.1 and len(by_arrays.layers) == 6
+    for name in by_arrays:
+        assert np.array_equal(by_arrays[name], by_lists[name]), name
+
+
+def test_views_and_other_orders_of_arrays_are_the_same():
+    points, faces = ball()
+    plain = abbe.render(mesh_scene(points=points, faces=faces)).rgb
+    wide = np.repeat(points, 2, axis=1)[:, ::2]
+    assert np.array_equal(abbe.render(mesh_scene(points=wide, faces=np.asfortranarray(faces))).rgb, plain)
+    assert np.array_equal(abbe.render(mesh_scene(points=points.astype(">f8"), faces=faces.astype(np.int16))).rgb, plain)
+
+
+@pytest.mark.parametrize(
+    "change, said",
+    [
+        ({"points": np.zeros((5, 2))}, "points: `points` has rows of 3 numbers, not 2"),
+        ({"points": np.full((600, 3), np.nan)}, "points: row 0: a coordinate is a finite number, not NaN"),
+        ({"points": np.full((600, 3), 1e31)}, "points: row 0: a coordinate is at most 1e30"),
+        (
+            {"faces": np.array([[0, 1, 2], [0, 9999, 1]])},
+            "faces: row 1: there is no point 9999: the 528 points count from 0",
+        ),
+        ({"faces": np.array([[0, 1, -2]])}, "faces[0][2]: an entry of `faces` is a whole number of 0 or more, not -2"),
+        ({"faces": np.array([[0.0, 1.0, 2.0]])}, "faces[0][0]: an entry of `faces` is a whole number"),
+        ({"faces": np.array([[0, 1, 2, 3]])}, "faces: `faces` has rows of 3 whole numbers"),
+        ({"normals": np.zeros((528, 3))}, "normals: row 0: a direction needs a length above 0"),
+        ({"uv": np.zeros((3, 2))}, "uv: 528 points have 528 entries of `uv`, not 3"),
+        ({"points": np.zeros(9)}, "points[0]"),
+        ({"points": np.zeros((0, 3))}, "mesh"),
+    ],
+)
+def test_arrays_of_a_mesh_that_are_wrong_are_told(change, said):
+    points, faces = ball()
+    with pytest.raises(abbe.SceneError) as caught:
+        abbe.Scene(mesh_scene(**{"points": points, "faces": faces, **change}))
+    assert f"object[0].shape.mesh.{said}" in str(caught.value) or said == "mesh"
+
+
+def test_a_checkpoint_knows_the_arrays_of_its_scene(tmp_path):
+    points, faces = ball()
+    kept = tmp_path / "a.checkpoint"
+    abbe.render(mesh_scene(points=points, faces=faces), checkpoint=kept)
+    points[0, 0] += 1e-6
+    with pytest.raises(abbe.OptionsError, match="made of another scene"):
+        abbe.render(mesh_scene(points=points, faces=faces), checkpoint=kept, resume=True)
