@@ -391,7 +391,9 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> View<'v, 'a, N, P> {
         let color = |part: Lanes<N>| arrived.times(part, &world.responses).map(|x| x * factor);
         let stokes = polarized.stokes.map(|stokes| Arc::new(stokes.map(color)));
         let Landing { light, early, .. } = *self.landing;
-        let (change, caught) = (polarized.change, self.sight == Sight::ShadowCatcher);
+        let changed = || arrived.times(Lanes::ONE + polarized.change, &world.responses).map(|x| x * factor);
+        let change = if polarized.change.is_zero() { 0.0 } else { world.share_of_change(rgb, changed()) as f32 };
+        let caught = self.sight == Sight::ShadowCatcher;
         Splat { pixel: 0, change, rgb, stokes, bands, weight: 1.0, light, dispersed, early, caught, first }
     }
 

@@ -43,8 +43,8 @@ impl<'a, const N: usize, P> MetLight<'a, N, P> {
 
 /// How the light of a photon reaches the camera.
 pub(super) struct SeenPhoton<const N: usize> {
-    /// By what share polarization may change it.
-    pub(super) change: f32,
+    /// By what share polarization may change each lane.
+    pub(super) change: Lanes<N>,
     /// The factor by which a filter changes it.
     pub(super) factor: Option<Lanes<N>>,
     /// S1, S2 and S3 over S0, if they are asked for.

@@ -133,7 +133,7 @@ impl<const N: usize> Polarization<N> for Polarized {
 
     fn seen(&self, at: &Interaction<N>, viewed: &Arrival<N>, on_its_way: &Self, _: &World, _: &Ray) -> SeenPhoton<N> {
         let change = on_its_way.brought(at.material, viewed, at.arrival.wo, *self).change() as f32;
-        SeenPhoton { change, factor: None, stokes: None }
+        SeenPhoton { change: Lanes([change; N]), factor: None, stokes: None }
     }
 
     fn landed(&self, _: &Interaction<N>) -> Self {

@@ -335,11 +335,11 @@ impl<const N: usize, const K: usize> Polarization<N> for Rows<N, K> {
         after
     }
 
-    fn seen(&self, at: &Interaction<N>, _: &Arrival<N>, on_its_way: &Self, world: &World, ray: &Ray) -> SeenPhoton<N> {
+    fn seen(&self, _: &Interaction<N>, _: &Arrival<N>, on_its_way: &Self, world: &World, ray: &Ray) -> SeenPhoton<N> {
         let mut after = Self::of_camera(world, ray);
         let factor = after.receive(-ray.direction, &on_its_way.column());
-        let joined = after.change_of_joined(at, ray.direction, &None, &after, factor);
-        SeenPhoton { change: joined as f32, factor: Some(factor), stokes: after.stokes() }
+        let change = if self.compares { after.rows[0][0] + Lanes([-1.0; N]) } else { Lanes::ZERO };
+        SeenPhoton { change, factor: Some(factor), stokes: after.stokes() }
     }
 
     fn landed(&self, at: &Interaction<N>) -> Self::Landed {

@@ -206,6 +206,12 @@ impl World {
         (0..3).map(|channel| rgb[channel] * self.xyz_of_channel[channel]).sum::<f64>().abs()
     }
 
+    /// By what share light that is seen as one color is brighter as another.
+    pub(super) fn share_of_change(&self, rgb: [f64; 3], changed: [f64; 3]) -> f64 {
+        let amount = self.amount(rgb);
+        if amount > 0.0 { self.amount(changed) / amount - 1.0 } else { 0.0 }
+    }
+
     /// What the camera sees of an object.
     pub(super) fn sight(&self, object: u32) -> Sight {
         self.scene.objects[object as usize].sight

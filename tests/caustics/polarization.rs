@@ -3,7 +3,7 @@
 
 use abbe::math::DVec3;
 use abbe::plan::plan;
-use abbe::trace::{LightPass, MapPasses, Method, Polarizing, prepare, render};
+use abbe::trace::{LightPass, MapPasses, Method, Polarizing, polarization_error, prepare, render};
 
 use crate::support::scenes::{SPLITTING, body, moments, scene};
 
@@ -92,4 +92,47 @@ fn what_polarization_may_change_of_a_caustic_is_said_where_photons_are_seen_and_
         println!("in a mirror {in_a_mirror}: {:.4}, z {z:.2}", traced / averaged);
         assert!(z.abs() < 3.0, "in a mirror {in_a_mirror}: {}, z {z}", traced / averaged);
     }
+}
+
+/// Sunlight at 60 degrees through a roof of glass, whose index in the three bands differs, seen from below.
+const ROOF: &str = "[camera]\nposition = [0, 0.1, 0]\nlook_at = [0, 0, 0]\nup = [0, 0, -1]\nprojection = \"orthographic\"\n\
+                    height = 0.3\nnear = 0\n[film]\nwidth = 8\nheight = 8\nfilter = \"box\"\n\
+                    [render]\nmodel = \"rgb\"\nsamples = 4\n\
+                    [[light]]\nsun = { toward = [0.8660254037844386, 0.5, 0], angular_diameter = 0, irradiance = 1 }\n";
+const INDICES: [f64; 3] = [1.333, 1.52, 2.42];
+
+/// Of light that crosses a plate at 60 degrees: of unpolarized light, each polarization by itself (Stokes 1862), and of
+/// light that is taken for unpolarized at every surface.
+fn through_a_plate(index: f64) -> [f64; 2] {
+    let cos = 0.5;
+    let inside = (1.0 - (1.0 - cos * cos) / (index * index)).sqrt();
+    let square = |x: f64| x * x;
+    let reflected =
+        [(cos - index * inside) / (cos + index * inside), (index * cos - inside) / (index * cos + inside)].map(square);
+    let through = |r: f64| (1.0 - r) / (1.0 + r);
+    [reflected.map(through).iter().sum::<f64>() / 2.0, through(reflected.iter().sum::<f64>() / 2.0)]
+}
+
+/// Photons of which the wavelengths have parted bring one lane each: what polarization changes is a share of what that
+/// lane brings, and lanes that are not there have no say.
+#[test]
+fn what_polarization_changes_of_parted_photons_is_said_by_the_lanes_that_they_bring() {
+    let [red, green, blue] = INDICES;
+    let glass = format!("dielectric = {{ index = {{ rgb = [{red}, {green}, {blue}] }} }}");
+    let roof = "cube = { center = [0, 0.22, 0], size = [1.4, 0.04, 1.4] }";
+    let floor = "quad = { center = [0, 0, 0], u = [6, 0, 0], v = [0, 0, -6] }";
+    let text = ROOF.to_owned()
+        + &body("glass", &glass, &[roof])
+        + &body("floor", "diffuse = { reflectance = 1e-4 }", &[floor]);
+    let scene = scene(&text);
+    let method = plan(&scene).method;
+    let errors = (0..16).map(|seed| polarization_error(&prepare(&scene, Method { seed, ..method.clone() })));
+    let (mean, variance) = moments(errors);
+    // X + Y + Z of the primaries of sRGB (IEC 61966-2-1).
+    let amounts = [0.4124 + 0.2126 + 0.0193, 0.3576 + 0.7152 + 0.1192, 0.1805 + 0.0722 + 0.9505];
+    let seen = |way: usize| (0..3).map(|band| amounts[band] * through_a_plate(INDICES[band])[way]).sum::<f64>();
+    let expected = seen(0) / seen(1) - 1.0;
+    let z = (mean - expected) / (variance / 16.0).sqrt();
+    println!("{mean:.5}, expected {expected:.5}, z {z:.2}");
+    assert!(z.abs() < 4.0 && variance.sqrt() < 0.5 * expected, "{mean}, expected {expected}, z {z}");
 }

@@ -5,20 +5,7 @@ use abbe::film::{Layer, polarization};
 use abbe::spectrum::ColorSpace;
 
 use super::{ROOM, beauty, rendered, rgb};
-
-/// A sheet and a plate before the middle of the room, so that all components are there.
-const SHEETS: &str = r#"
-[material.sheet]
-polarizer = { axis = [1, 0.5, 0], extinction = 0.05 }
-[material.plate]
-retarder = { axis = [0, 1, 0], retardation_nm = 200 }
-[[object]]
-shape.quad = { center = [0, 0.9, 3], u = [0.5, 0, 0], v = [0, 0.6, 0] }
-material = "sheet"
-[[object]]
-shape.quad = { center = [0.3, 0.9, 3.3], u = [0.4, 0, 0], v = [0, 0.6, 0] }
-material = "plate"
-"#;
+use crate::support::scenes::SHEETS;
 
 #[test]
 fn degrees_and_angles_are_those_of_the_sums_of_stokes_vectors() {

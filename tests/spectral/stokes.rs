@@ -6,6 +6,7 @@ use abbe::Image;
 use abbe::spectrum::{apply, data};
 
 use super::{FINE, WHITE, rendered, room};
+use crate::support::scenes::SHEETS;
 
 /// What the bands of S1, S2 and S3 make of their layers, at worst relative to the brightest channel of the pixel and
 /// one percent of the image's mean; and how much of the image's light is polarized.
@@ -34,20 +35,6 @@ fn worst_component(image: &Image) -> (f64, f64) {
     }
     (worst, polarized)
 }
-
-/// A sheet and a plate before the middle of the room.
-const SHEETS: &str = r#"
-[material.sheet]
-polarizer = { axis = [1, 0.5, 0], extinction = 0.05 }
-[material.plate]
-retarder = { axis = [0, 1, 0], retardation_nm = 200 }
-[[object]]
-shape.quad = { center = [0, 0.9, 3], u = [0.5, 0, 0], v = [0, 0.6, 0] }
-material = "sheet"
-[[object]]
-shape.quad = { center = [0.3, 0.9, 3.3], u = [0.4, 0, 0], v = [0, 0.6, 0] }
-material = "plate"
-"#;
 
 /// Photons are shown and gathered, samples are subtracted, wavelengths part, and a floor fluoresces: as exactly as
 /// spectra make the image.

@@ -13,6 +13,19 @@ pub const EVERY_BRANCH: Transport = Transport::Deterministic { cutoff: 1e-20, mo
 pub const SPLITTING: Transport = Transport::Random { split: 0.05, roulette: 0.05 };
 /// The path tracer: one branch at every surface, one light at every vertex.
 pub const SINGLE_PATH: Transport = Transport::Random { split: 1.0, roulette: 0.05 };
+/// A polarizer and a wave plate before the middle of a room, so that light has all components of Stokes vectors.
+pub const SHEETS: &str = r#"
+[material.sheet]
+polarizer = { axis = [1, 0.5, 0], extinction = 0.05 }
+[material.plate]
+retarder = { axis = [0, 1, 0], retardation_nm = 200 }
+[[object]]
+shape.quad = { center = [0, 0.9, 3], u = [0.5, 0, 0], v = [0, 0.6, 0] }
+material = "sheet"
+[[object]]
+shape.quad = { center = [0.3, 0.9, 3.3], u = [0.4, 0, 0], v = [0, 0.6, 0] }
+material = "plate"
+"#;
 
 /// The world that a text without mistakes describes.
 pub fn scene(text: &str) -> Scene<Curve> {

@@ -1,4 +1,6 @@
-"""Caustics: the light that glass and mirrors throw, found by photons, has the energy that it had before."""
+"""Caustics: the light that glass and mirrors throw, found by photons, has the energy that it had before.
+
+What crosses more than one surface of glass asks for polarization, as the formulas have it."""
 
 import numpy as np
 
@@ -64,13 +66,14 @@ def slabs(quick):
             [sun(degrees)],
             0.3,
             transmitted * cosine,
-            "E cos t (1 - r) / (1 + r)",
+            "E cos t (1 - r) / (1 + r), the mean of both polarizations",
             "Fresnel at one face alone",
             once * cosine,
             words,
             quick,
             readers.colors,
             eye=(0, 0.1, 0),
+            polarization="on",
         )
 
 
@@ -145,11 +148,12 @@ def balls(quick):
             [light],
             2 * half_side,
             expected,
-            "integral of I (1 - r)^2 r^k over the cone of the ball",
+            "integral of I (1 - r)^2 r^k over the cone of the ball, the mean of both polarizations",
             "reflection at its faces left out",
             expected / (1 - formulas.fresnel(index, 0)) ** 2,
             words,
             quick,
+            polarization="on",
         )
 
 
@@ -168,9 +172,9 @@ def beam(quick):
     place = exit_middle + 6 * along
     side = 2.0
     patch = quad((place[0], 0, place[1]), side * np.array([across[0], 0, across[1]]), (0, side, 0))
-    r = formulas.fresnel(index, np.degrees(incidence))
+    each = formulas.both_polarizations(index, np.degrees(incidence))
     # What all three faces reflect, each at 30 degrees, leaves again in the same direction.
-    through = (1 - r) ** 2 / (1 - r**3)
+    through = sum((1 - r) ** 2 / (1 - r**3) for r in each) / 2
     power = face * np.cos(incidence) * 1.0 * through
     direct, area = np.cos(deviation), side**2
     light = {"sun": {"toward": [0.0, 0.0, 1.0], "angular_diameter": 0, "irradiance": 1}}
@@ -193,7 +197,7 @@ def beam(quick):
         [light],
         side,
         direct + power / area,
-        "E cos d + E A cos i (1 - r)^2 / (1 - r^3) / S",
+        "E cos d + E A cos i (1 - r)^2 / (1 - r^3) / S, the mean of both polarizations",
         "reflection at its faces left out",
         direct + power / through / area,
         words,
@@ -201,6 +205,7 @@ def beam(quick):
         eye=(start[0], 0, start[1]),
         target=(place[0], 0, place[1]),
         up=(0, 1, 0),
+        polarization="on",
     )
 
 
