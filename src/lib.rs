@@ -27,7 +27,6 @@
 //! ```text
 //! scene.toml -> Document -> Scene<Curve> -> Plan -> World -> PathTracer<N> over tiles, pass by pass -> Film -> EXR
 //!
-//! floor 7   python      the package for Python
 //! floor 6   rendering   a scene made into an image
 //! floor 5   plan        looks at a Scene<Curve>; answers a Method and, in words, why
 //! floor 4   trace       how light travels
@@ -67,10 +66,6 @@ pub mod plan;
 
 // Floor 6
 mod rendering;
-
-// Floor 7
-#[cfg(feature = "python")]
-mod python;
 
 pub use error::{Diagnostic, Error, Result, nearest};
 pub use rendering::{

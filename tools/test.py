@@ -75,7 +75,7 @@ def wheel():
 
 STEPS = {
     "format": lambda: run("cargo", "fmt", "--all", "--check"),
-    "clippy": lambda: run("cargo", "clippy", "--all-targets", "--features", "python", "--", "-D", "warnings"),
+    "clippy": lambda: run("cargo", "clippy", "--workspace", "--all-targets", "--", "-D", "warnings"),
     "doc": lambda: run("cargo", "doc", "--no-deps", RUSTDOCFLAGS="-D warnings"),
     "build": lambda: run("cargo", "test", "--no-run"),
     "test": lambda: run("cargo", "test"),

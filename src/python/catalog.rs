@@ -1,11 +1,11 @@
 //! Glasses, metals, illuminants and reflectances by name.
 
+use abbe::nearest;
+use abbe::spectrum::data;
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 
 use super::plane::Plane;
-use crate::error::nearest;
-use crate::spectrum::data;
 
 /// A clear material.
 #[pyclass(frozen, module = "abbe._abbe")]

@@ -2,10 +2,9 @@
 
 use std::path::Path;
 
+use abbe::{Diagnostic, Error};
 use pyo3::exceptions::{PyFileNotFoundError, PyOSError};
 use pyo3::prelude::*;
-
-use crate::error::{Diagnostic, Error};
 
 pyo3::import_exception!(abbe._errors, OptionsError);
 pyo3::import_exception!(abbe._errors, RenderError);

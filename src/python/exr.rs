@@ -3,6 +3,9 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use abbe::Result;
+use abbe::film::{ExrFile, ExrLayer};
+use abbe::look::{Difference, Noise, compare};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -10,9 +13,6 @@ use super::errors::{raised, raised_of};
 use super::image::Image;
 use super::plane::Plane;
 use super::work;
-use crate::error::Result;
-use crate::film::{ExrFile, ExrLayer};
-use crate::look::{Difference, Noise, compare};
 
 /// An OpenEXR file.
 #[pyclass(frozen, module = "abbe._abbe")]

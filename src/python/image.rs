@@ -3,18 +3,17 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use abbe::film::{BEAUTY, Film, Pixel};
 use pyo3::prelude::*;
 
 use super::errors::raised;
 use super::plane::{Place, Plane};
 use super::work;
-use crate::film::{BEAUTY, Film, Pixel};
-use crate::rendering;
 
 /// A rendered image.
 #[pyclass(frozen, module = "abbe._abbe")]
 pub(super) struct Image {
-    pub(super) image: Arc<rendering::Image>,
+    pub(super) image: Arc<abbe::Image>,
     /// All that is known of it, as JSON.
     pub(super) account: String,
 }

@@ -2,15 +2,15 @@
 
 use std::time::Duration;
 
+use abbe::Options;
+use abbe::film::{Layer, Overscan, Window};
+use abbe::scene::duration;
 use pyo3::conversion::FromPyObjectOwned;
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyString};
 
 use super::errors::refuse;
 use super::text::shown;
-use crate::film::{Layer, Overscan, Window};
-use crate::rendering::Options;
-use crate::scene::duration;
 
 /// More threads than any one machine has processors for; many more would exhaust it.
 const MOST_THREADS: usize = 1024;

@@ -5,6 +5,10 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
 
+use abbe::film::check_writable;
+use abbe::scene;
+use abbe::trace::Advance;
+use abbe::{Error, Options, PlanAccount, RenderAccount, Rendering, Result, Resumed, Timer};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use serde::Serialize;
@@ -14,12 +18,6 @@ use super::image::Image;
 use super::options::{options, time};
 use super::scene::Scene;
 use super::work::{self, Work};
-use crate::error::{Error, Result};
-use crate::film::check_writable;
-
-use crate::rendering::{Options, PlanAccount, RenderAccount, Rendering, Resumed, Timer};
-use crate::scene;
-use crate::trace::Advance;
 
 /// How often a program hears of progress.
 const PERIOD: Duration = Duration::from_millis(500);
@@ -34,7 +32,7 @@ pub(super) fn plan(py: Python<'_>, scene: &Scene, asked: &Bound<'_, PyDict>) -> 
     let planned = move || -> Result<String> {
         let mut scene = (*scene).clone();
         options.apply(&mut scene)?;
-        json(&PlanAccount::new(&crate::plan::plan(&scene)))
+        json(&PlanAccount::new(&abbe::plan::plan(&scene)))
     };
     Ok((work::run(py, planned)?.map_err(raised)?, threads))
 }

@@ -3,13 +3,13 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use abbe::scene::{self, SETTINGS, Source};
+use abbe::{Diagnostic, Error};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyMapping};
 
 use super::errors::{raised, raised_of, refuse};
 use super::{text, work};
-use crate::error::{Diagnostic, Error};
-use crate::scene::{self, SETTINGS, Source};
 
 /// The same error, in which mistakes in settings, of which each has a line, are told by their keys.
 fn by_key(error: Error, keys: &[String]) -> Error {

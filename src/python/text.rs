@@ -4,12 +4,12 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
+use abbe::scene::{Numbers, Rows};
+use abbe::{Diagnostic, Error};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyMapping, PyString, PyTuple};
 
 use super::errors::raised;
-use crate::error::{Diagnostic, Error};
-use crate::scene::{Numbers, Rows};
 
 /// Most dicts and lists within one another: more than a scene has, and fewer than TOML may have.
 const DEEPEST: usize = 64;
@@ -119,7 +119,7 @@ impl Writer {
                 Err(_) => self.refuse("this number is too large", None),
             };
         } else if let Ok(number) = value.cast::<PyFloat>() {
-            self.text.push_str(&toml::Value::Float(number.value()).to_string());
+            self.text.push_str(&abbe::toml::Value::Float(number.value()).to_string());
         } else if let Ok(table) = value.cast::<PyDict>() {
             return self.table(table.as_mapping());
         } else if value.is_instance_of::<PyList>() || value.is_instance_of::<PyTuple>() {

@@ -5,10 +5,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::house::{House, here};
 use super::source::Source;
 
-/// Modules of the command, which stands above all floors.
-const COMMAND: [&str; 15] = [
+/// Modules of the command, and the crate of the package for Python, which stand above all floors.
+const COMMAND: [&str; 16] = [
     "main", "catalog", "cli", "diff", "events", "frames", "info", "keep", "manual", "merge", "messages", "openjd",
-    "outputs", "progress", "view",
+    "outputs", "progress", "python", "view",
 ];
 /// What `lib.rs` hands on from the room `error`.
 const ERRORS: [&str; 5] = ["Diagnostic", "Error", "Result", "nearest", "error"];

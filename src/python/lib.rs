@@ -1,7 +1,9 @@
-//! Floor 7: the library as an extension module of Python, `abbe._abbe`.
+//! The library as an extension module of Python, `abbe._abbe`.
 //!
 //! What people import is the package in `src/python/abbe`: it has the words, the types and the arrays, and asks here
 //! for the rest. Memory goes to Python by its address, with the object that owns it; nothing here is unsafe.
+
+#![deny(unsafe_code)]
 
 mod catalog;
 mod errors;
@@ -14,10 +16,9 @@ mod scene;
 mod text;
 mod work;
 
+use abbe::film::Layer;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
-
-use crate::film::Layer;
 
 #[pymodule]
 fn _abbe(module: &Bound<'_, PyModule>) -> PyResult<()> {
