@@ -92,9 +92,8 @@ fn a_smaller_error_can_be_asked_for_later() {
 }
 
 /// The square of the difference of two images, by the square of the second.
-fn error_squared(image: &Image, truth: &[[f64; 3]]) -> f64 {
+fn relative_squares(pixels: &[[f32; 3]], truth: &[[f64; 3]]) -> f64 {
     let squares = |x: f64| x * x;
-    let pixels = image.rgb();
     let pairs = pixels.iter().flatten().zip(truth.iter().flatten());
     let apart: f64 = pairs.map(|(&x, y)| squares(f64::from(x) - y)).sum();
     apart / truth.iter().flatten().map(|&x| squares(x)).sum::<f64>()
@@ -106,11 +105,12 @@ fn small_room() -> Scene {
     scene(&shaded.replace("width = 21, height = 18", "width = 32, height = 32"))
 }
 
-/// The mean of long renders without replicates and light vertices, which images of so few samples do not have.
-fn truth(scene: &Scene) -> Vec<[f64; 3]> {
+/// The mean of long renders without replicates and light vertices, which images of so few samples do not have; and the
+/// square of its own noise, relative to its square.
+fn truth(scene: &Scene) -> (Vec<[f64; 3]>, f64) {
     const RENDERS: u64 = 24;
     let one = |seed: u64| {
-        let options = Options { samples: Some(900), seed: Some(1000 + seed), ..Options::default() };
+        let options = Options { samples: Some(225), seed: Some(1000 + seed), ..Options::default() };
         let rendering = Rendering::new(scene, &options).expect("it can be rendered");
         assert!(!rendering.plan().method.light_vertices);
         rendering.run(&|_| ()).rgb()
@@ -119,18 +119,21 @@ fn truth(scene: &Scene) -> Vec<[f64; 3]> {
     let mean = |pixel: usize| {
         [0, 1, 2].map(|i| images.iter().map(|image| f64::from(image[pixel][i])).sum::<f64>() / RENDERS as f64)
     };
-    (0..images[0].len()).map(mean).collect()
+    let truth: Vec<[f64; 3]> = (0..images[0].len()).map(mean).collect();
+    let apart = |image: &Vec<[f32; 3]>| relative_squares(image, &truth);
+    let noise = images.iter().map(apart).sum::<f64>() / (RENDERS * (RENDERS - 1)) as f64;
+    (truth, noise)
 }
 
 #[test]
 fn the_noise_that_is_told_is_the_noise_that_is_there_and_the_bound_holds() {
     const RENDERS: u64 = 40;
     let scene = small_room();
-    let truth = truth(&scene);
+    let (truth, noise_of_truth) = truth(&scene);
     let one = |seed: u64| {
         let image = render(&scene, &Options { seed: Some(seed), ..asks(1e-6, 64) }).expect("it can be rendered");
         let noise = image.report().noise.expect("there are replicates");
-        [error_squared(&image, &truth), noise.expected * noise.expected, noise.at_most * noise.at_most]
+        [relative_squares(&image.rgb(), &truth) - noise_of_truth, noise.expected * noise.expected, noise.at_most * noise.at_most]
     };
     let found: Vec<[f64; 3]> = (0..RENDERS).into_par_iter().map(one).collect();
     let apart: Vec<f64> = found.iter().map(|[true_error, told, _]| true_error - told).collect();

@@ -73,12 +73,13 @@ def wheel():
     run(PYTHON, "-m", "pip", "install", "--quiet", "--no-index", "--no-deps", "--force-reinstall", *WHEELS.glob("*.whl"))
 
 
+# All in the workspace, so that the wheel takes the library that the tests have built.
 STEPS = {
     "format": lambda: run("cargo", "fmt", "--all", "--check"),
     "clippy": lambda: run("cargo", "clippy", "--workspace", "--all-targets", "--", "-D", "warnings"),
     "doc": lambda: run("cargo", "doc", "--no-deps", RUSTDOCFLAGS="-D warnings"),
-    "build": lambda: run("cargo", "test", "--no-run"),
-    "test": lambda: run("cargo", "test"),
+    "build": lambda: run("cargo", "test", "--workspace", "--no-run"),
+    "test": lambda: run("cargo", "test", "--workspace"),
     "packages": packages_and_browser,
     "wheel": wheel,
     "pytest": lambda: run(PYTHON, "-m", "pytest", "tools/tests", RENDER=str(RENDER)),

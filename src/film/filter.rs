@@ -43,6 +43,8 @@ pub enum Filter {
 
 /// Where the normal distribution ends, in standard deviations: 0.03 % of it lie beyond.
 const CUT: f64 = 4.0;
+/// The share of the normal distribution of the plane that lies within [`CUT`]: 1 - exp(-CUT^2 / 2).
+const WITHIN: f64 = 0.9996645373720975;
 /// Farthest that a sample falls from the middle of its pixel, on one axis.
 const FARTHEST: f64 = 16.0;
 /// The coefficients of the window of Blackman and Harris.
@@ -83,8 +85,7 @@ impl Filter {
             Self::Tent { radius } => each(&|x| (1.0 - x.abs() / radius).max(0.0) / radius),
             Self::Gaussian { sigma } => {
                 let squared = offset.length_squared() / (sigma * sigma);
-                let within = -libm::expm1(-0.5 * CUT * CUT);
-                if squared < CUT * CUT { libm::exp(-0.5 * squared) / (TAU * sigma * sigma * within) } else { 0.0 }
+                if squared < CUT * CUT { libm::exp(-0.5 * squared) / (TAU * sigma * sigma * WITHIN) } else { 0.0 }
             }
             Self::BlackmanHarris { radius } => each(&|x| {
                 if x.abs() >= radius {
@@ -180,8 +181,7 @@ fn normal(u: [f64; 2]) -> DVec2 {
     if squared == 0.0 {
         return DVec2::ZERO;
     }
-    let within = -libm::expm1(-0.5 * CUT * CUT);
-    let stretched = -2.0 * libm::log1p(-within * squared.min(1.0));
+    let stretched = -2.0 * libm::log1p(-WITHIN * squared.min(1.0));
     point * (stretched / squared).sqrt()
 }
 
@@ -212,4 +212,14 @@ fn blackman_harris(u: f64) -> f64 {
         }
     }
     if u < 0.5 { -x } else { x }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_share_within_the_cut_is_that_of_the_normal_distribution() {
+        assert_eq!(WITHIN, -libm::expm1(-0.5 * CUT * CUT));
+    }
 }
