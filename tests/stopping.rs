@@ -10,7 +10,7 @@ use std::time::Duration;
 
 use abbe::film::{Layer, Shard};
 use abbe::trace::{Method, Stopped};
-use abbe::{Image, Options, Rendering, Resumed, Scene, render};
+use abbe::{Options, Rendering, Resumed, Scene, render};
 use rayon::prelude::*;
 
 use crate::checkpoints::{CAUSTIC, GLASS, Kind, ROOM, advance, bytes, rendering};
@@ -133,7 +133,11 @@ fn the_noise_that_is_told_is_the_noise_that_is_there_and_the_bound_holds() {
     let one = |seed: u64| {
         let image = render(&scene, &Options { seed: Some(seed), ..asks(1e-6, 64) }).expect("it can be rendered");
         let noise = image.report().noise.expect("there are replicates");
-        [relative_squares(&image.rgb(), &truth) - noise_of_truth, noise.expected * noise.expected, noise.at_most * noise.at_most]
+        [
+            relative_squares(&image.rgb(), &truth) - noise_of_truth,
+            noise.expected * noise.expected,
+            noise.at_most * noise.at_most,
+        ]
     };
     let found: Vec<[f64; 3]> = (0..RENDERS).into_par_iter().map(one).collect();
     let apart: Vec<f64> = found.iter().map(|[true_error, told, _]| true_error - told).collect();

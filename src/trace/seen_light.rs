@@ -62,43 +62,53 @@ pub(super) fn with_fewer_photons(world: &World) -> World {
 fn look<const N: usize>(world: &World) -> SeenLight {
     let window = world.scene.film.window();
     let mut seen = SeenLight { parts: [[0.0; 2]; (PARTS * PARTS) as usize] };
-    for_each_light::<N, Polarized>(world, &mut |pixel, light, change, _| {
+    for_each_light::<N, Polarized, 1>(world, &mut |pixel, found| {
+        let (Found::Samples([sample]) | Found::Photon(sample)) = found;
         let part = &mut seen.parts[part_of(window, pixel)];
-        (part[0], part[1]) = (part[0] + light, part[1] + change);
+        (part[0], part[1]) = (part[0] + sample.light, part[1] + sample.change);
     });
     seen
 }
 
-/// How light was found.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum By {
-    Sample,
-    Photon,
+/// Light that is seen, X + Y + Z, and by how much polarization changes it.
+#[derive(Clone, Copy)]
+pub(super) struct Amount {
+    pub(super) light: f64,
+    pub(super) change: f64,
 }
 
-/// Hands over the light of samples all over the view, and of photons in proportion: the pixel, counted from the
-/// window's corner, X + Y + Z, and by how much polarization changes it.
-pub(super) fn for_each_light<const N: usize, P: Polarization<N>>(
+/// How light was found.
+pub(super) enum Found<const SAMPLES: usize> {
+    /// By samples of one pixel that know nothing of each other.
+    Samples([Amount; SAMPLES]),
+    Photon(Amount),
+}
+
+/// Hands over the light of so many samples at each of places all over the view, and of photons in proportion, with the
+/// pixel counted from the window's corner.
+pub(super) fn for_each_light<const N: usize, P: Polarization<N>, const SAMPLES: usize>(
     world: &World,
-    take: &mut impl FnMut([u32; 2], f64, f64, By),
+    take: &mut impl FnMut([u32; 2], Found<SAMPLES>),
 ) {
     let window = world.scene.film.window();
     let photons = photon_map::photons::<N, P>(world, &Pass::of_photons_alone(world, 0));
     let mut tracer = PathTracer::<N, P>::new(world).with_photons(photons.as_ref());
     for place in 0..SIDE * SIDE {
         let [x, y] = window.middle_of_cell(SIDE, place);
-        let before = tracer.walker.stats;
-        tracer.sample(&Sampler::of_pixel(world.method.seed, [x, y], 0), [x, y]);
-        let after = tracer.walker.stats;
-        let pixel = [(x - window.left) as u32, (y - window.top) as u32];
-        take(pixel, after.light - before.light, after.polarization - before.polarization, By::Sample);
+        let samples = std::array::from_fn(|number| {
+            let before = tracer.walker.stats;
+            tracer.sample(&Sampler::of_pixel(world.method.seed.wrapping_add(number as u64), [x, y], 0), [x, y]);
+            let after = tracer.walker.stats;
+            Amount { light: after.light - before.light, change: after.polarization - before.polarization }
+        });
+        take([(x - window.left) as u32, (y - window.top) as u32], Found::Samples(samples));
     }
     // Photons light all pixels, of which so many were looked at.
     let looked_at = f64::from(SIDE * SIDE) / window.pixels() as f64;
     splats::<N, P>(world, &mut |splat| {
         let light = looked_at * world.amount(splat.rgb);
         let pixel = [splat.pixel % window.width, splat.pixel / window.width];
-        take(pixel, light, light * f64::from(splat.change), By::Photon);
+        take(pixel, Found::Photon(Amount { light, change: light * f64::from(splat.change) }));
     });
 }
 

@@ -236,7 +236,7 @@ def distorted(scene, choose):
         into, key = choose.choice(found)
         match choose.randrange(6):
             case 0 | 1:
-                into[key] = choose.choice(STRANGE)
+                into[key] = copy.deepcopy(choose.choice(STRANGE))
             case 2:
                 del into[key]
             case 3:
