@@ -4,7 +4,7 @@
 
 The spectrum is computed without the renderer: rays all over the beam, half a nanometer apart, refracted by Snell's law with
 Schott's Sellmeier coefficients of N-SF11, reflected inside as often as it may be, dimmed by Fresnel's equations at every face, and
-counted in the pixels that they land in. Light is unpolarized at every face, as the renderer has it.
+counted in the pixels that they land in. Light is unpolarized at every face, as the scene asks for.
 """
 
 import math
