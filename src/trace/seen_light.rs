@@ -13,7 +13,7 @@ use crate::film::Window;
 use crate::math::Sampler;
 
 /// Camera samples along each side of the image.
-const SIDE: u32 = 24;
+pub(super) const SIDE: u32 = 24;
 /// Parts of the view along each side.
 const PARTS: u32 = 6;
 /// Most photons that are shown, and most that are gathered.
@@ -62,53 +62,46 @@ pub(super) fn with_fewer_photons(world: &World) -> World {
 fn look<const N: usize>(world: &World) -> SeenLight {
     let window = world.scene.film.window();
     let mut seen = SeenLight { parts: [[0.0; 2]; (PARTS * PARTS) as usize] };
-    for_each_light::<N, Polarized, 1>(world, &mut |pixel, found| {
-        let (Found::Samples([sample]) | Found::Photon(sample)) = found;
+    for_each_light::<N, Polarized>(world, 1, &mut |pixel, _, found| {
         let part = &mut seen.parts[part_of(window, pixel)];
-        (part[0], part[1]) = (part[0] + sample.light, part[1] + sample.change);
+        (part[0], part[1]) = (part[0] + found.light, part[1] + found.change);
     });
     seen
 }
 
 /// Light that is seen, X + Y + Z, and by how much polarization changes it.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 pub(super) struct Amount {
     pub(super) light: f64,
     pub(super) change: f64,
 }
 
-/// How light was found.
-pub(super) enum Found<const SAMPLES: usize> {
-    /// By samples of one pixel that know nothing of each other.
-    Samples([Amount; SAMPLES]),
-    Photon(Amount),
-}
-
-/// Hands over the light of so many samples at each of places all over the view, and of photons in proportion, with the
-/// pixel counted from the window's corner.
-pub(super) fn for_each_light<const N: usize, P: Polarization<N>, const SAMPLES: usize>(
+/// Hands over the light of one or two copies of the view, which know nothing of each other: the pixel, counted from the
+/// window's corner, the copy, and what of it a sample found, one in each of [`SIDE`] x [`SIDE`] cells, or photons bring
+/// to as many.
+pub(super) fn for_each_light<const N: usize, P: Polarization<N>>(
     world: &World,
-    take: &mut impl FnMut([u32; 2], Found<SAMPLES>),
+    copies: usize,
+    take: &mut impl FnMut([u32; 2], usize, Amount),
 ) {
     let window = world.scene.film.window();
     let photons = photon_map::photons::<N, P>(world, &Pass::of_photons_alone(world, 0));
     let mut tracer = PathTracer::<N, P>::new(world).with_photons(photons.as_ref());
-    for place in 0..SIDE * SIDE {
+    for (place, copy) in (0..SIDE * SIDE).flat_map(|place| (0..copies).map(move |copy| (place, copy))) {
         let [x, y] = window.middle_of_cell(SIDE, place);
-        let samples = std::array::from_fn(|number| {
-            let before = tracer.walker.stats;
-            tracer.sample(&Sampler::of_pixel(world.method.seed.wrapping_add(number as u64), [x, y], 0), [x, y]);
-            let after = tracer.walker.stats;
-            Amount { light: after.light - before.light, change: after.polarization - before.polarization }
-        });
-        take([(x - window.left) as u32, (y - window.top) as u32], Found::Samples(samples));
+        let before = tracer.walker.stats;
+        tracer.sample(&Sampler::of_pixel(world.method.seed.wrapping_add(copy as u64), [x, y], 0), [x, y]);
+        let after = tracer.walker.stats;
+        let found = Amount { light: after.light - before.light, change: after.polarization - before.polarization };
+        take([(x - window.left) as u32, (y - window.top) as u32], copy, found);
     }
     // Photons light all pixels, of which so many were looked at.
-    let looked_at = f64::from(SIDE * SIDE) / window.pixels() as f64;
+    let looked_at = copies as f64 * f64::from(SIDE * SIDE) / window.pixels() as f64;
     splats::<N, P>(world, &mut |splat| {
         let light = looked_at * world.amount(splat.rgb);
         let pixel = [splat.pixel % window.width, splat.pixel / window.width];
-        take(pixel, Found::Photon(Amount { light, change: light * f64::from(splat.change) }));
+        let copy = if splat.early { 0 } else { copies - 1 };
+        take(pixel, copy, Amount { light, change: light * f64::from(splat.change) });
     });
 }
 
