@@ -232,7 +232,7 @@ fn lit_places(scene: &Scene<Curve>, spread: impl Fn(&Material<Curve>) -> bool) -
     let place = |ray| {
         // What is seen through a pane is lit as well.
         let counts = |material: &Material<Curve>| spread(material) || !material.is_see_through();
-        let hit = scene.nearest(&ray, f64::INFINITY, |object| counts(scene.material_of(object)))?;
+        let hit = scene.nearest(&ray, f64::INFINITY, &|object| counts(scene.material_of(object)))?;
         if !spread(scene.material_of(hit.object)) {
             return None;
         }

@@ -5,7 +5,7 @@ use std::path::Path;
 use super::identity::Identity;
 use crate::error::{Error, Result};
 use crate::film::{BlockReader, Kind, write_blocks};
-use crate::trace::{self, World};
+use crate::trace;
 
 /// The first bytes of a checkpoint.
 const CHECKPOINT: Kind = *b"AbbeCkp1";
@@ -25,7 +25,7 @@ pub enum Resumed {
 ///
 /// # Errors
 /// If it cannot be written; a file that was there before is then untouched.
-pub(super) fn save(path: &Path, identity: &Identity, passes: &trace::Rendering<World>) -> Result<()> {
+pub(super) fn save(path: &Path, identity: &Identity, passes: &trace::Rendering) -> Result<()> {
     write_blocks(path, CHECKPOINT, &|blocks| {
         blocks.block(identity)?;
         passes.save(blocks)
@@ -36,7 +36,7 @@ pub(super) fn save(path: &Path, identity: &Identity, passes: &trace::Rendering<W
 ///
 /// # Errors
 /// If it is of something else, damaged, or cannot be read.
-pub(super) fn resume(path: &Path, identity: &Identity, passes: &mut trace::Rendering<World>) -> Result<Resumed> {
+pub(super) fn resume(path: &Path, identity: &Identity, passes: &mut trace::Rendering) -> Result<Resumed> {
     let Some(mut blocks) = BlockReader::open(path, CHECKPOINT)? else {
         return refuse(path, "it is no checkpoint", "name another image, or move that file away");
     };

@@ -15,7 +15,7 @@ use crate::error::{Error, Result};
 use crate::film::{Fact, Format, Provenance, Shard, View};
 use crate::plan::{Plan, plan};
 use crate::scene::{Projection, Scene};
-use crate::trace::{self, Advance, Report, World, prepare};
+use crate::trace::{self, Advance, Report, prepare};
 
 /// Renders a scene.
 ///
@@ -45,7 +45,7 @@ pub fn render(scene: &Scene, options: &Options) -> Result<Image> {
 /// ```
 pub struct Rendering {
     plan: Plan,
-    passes: trace::Rendering<World>,
+    passes: trace::Rendering<'static>,
     view: View,
     format: Format,
     /// The scene file's hash, the projection and the filter.
@@ -107,7 +107,7 @@ impl Rendering {
             identity: Identity::new(&scene, &plan.method, options.shard),
             shard: options.shard,
             plan,
-            passes: trace::Rendering::of_shard(world, options.shard).since(now),
+            passes: trace::Rendering::of_shard(Cow::Owned(world), options.shard).since(now),
             view,
             format: scene.format.clone(),
             origin: Origin { hash, projection: camera.projection(), filter, settings: settings.join(" ") },

@@ -1,5 +1,12 @@
+//! How rays find surfaces. What is asked here knows nothing of lanes or spectra, so that it is compiled once for all:
+//! for all objects, and for those that a function counts.
+
+use std::cell::Cell;
+
+use super::hit::{Ends, Hit, Primitive};
+use super::object::Object;
 use crate::math::Ray;
-use crate::shape::{Bvh, Pool, Shape, Vectors, Visitor};
+use crate::shape::{Bvh, Pool, Shape, Vectors, Visitor, is_before};
 
 /// Objects up to this many are tried one by one: a tree saves nothing there.
 const FEW: usize = 12;
@@ -38,10 +45,84 @@ impl Index {
         Self { always, tree: Bvh::new::<1>(bounds.into_iter()), bounded, pool }
     }
 
-    /// The pool of small objects.
-    #[inline]
-    pub(super) fn pool(&self) -> Option<&Pool> {
-        self.pool.as_ref()
+    /// The nearest surface along a ray up to a distance, of those objects that count; of equally near ones, that of the
+    /// object listed first.
+    pub(super) fn nearest(
+        &self,
+        objects: &[Object],
+        ray: &Ray,
+        distance: f64,
+        left: Option<Primitive>,
+        counts: impl Fn(u32) -> bool,
+    ) -> Option<Hit> {
+        let triangle = left.map(|left| [left.object, left.part]);
+        let left = left.unwrap_or(Primitive::NONE);
+        let pooled = self.pool.as_ref().and_then(|pool| pool.nearest(ray, distance, triangle, &counts));
+        let mut nearest = pooled.map(|(object, crossing)| Hit { object, crossing });
+        let limit = nearest.map_or(distance, |hit| hit.crossing.t);
+        self.in_order(ray, limit, |object, limit| {
+            if !counts(object) {
+                return limit;
+            }
+            let shape = &objects[object as usize].shape;
+            if let Some(crossing) = shape.intersect_from(ray, limit, left.of(object)) {
+                if nearest.is_none_or(|n| crossing.t < n.crossing.t || object < n.object) {
+                    nearest = Some(Hit { object, crossing });
+                }
+                return crossing.t;
+            }
+            limit
+        });
+        nearest
+    }
+
+    /// Whether any object that counts lies before a light at `distance`; the light's own does not occlude it.
+    pub(super) fn is_occluded(
+        &self,
+        objects: &[Object],
+        ray: &Ray,
+        distance: f64,
+        ends: Ends,
+        last_occluder: &Cell<Option<u32>>,
+        counts: impl Fn(u32) -> bool,
+    ) -> bool {
+        let Ends { left, light, part } = ends;
+        // An object listed after the light's own does not hide it by an equal distance.
+        let hides_at = |[object, other]: [u32; 2], t: f64| match light {
+            Some(light) if light == object => part.is_some_and(|part| is_before([other, part], [t, distance])),
+            _ if !counts(object) => false,
+            Some(light) if light < object => t < distance,
+            _ => true,
+        };
+        let triangle = left.map(|left| [left.object, left.part]);
+        if self.pool.as_ref().is_some_and(|pool| pool.any(ray, distance, triangle, hides_at)) {
+            return true;
+        }
+        let hides = |object: u32| {
+            let shape = &objects[object as usize].shape;
+            match light {
+                Some(light) if light == object => part.is_some_and(|part| shape.hides(ray, part, distance)),
+                _ if !counts(object) => false,
+                light => {
+                    let is_later = light.is_some_and(|light| light < object);
+                    let t_max = if is_later { distance.next_down() } else { distance };
+                    shape.is_crossed_from(ray, t_max, left.and_then(|left| left.of(object)))
+                }
+            }
+        };
+        let last = last_occluder.get();
+        if last.is_some_and(hides) {
+            return true;
+        }
+        let mut hidden = false;
+        self.any(ray, distance, |object| {
+            hidden = Some(object) != last && hides(object);
+            if hidden {
+                last_occluder.set(Some(object));
+            }
+            hidden
+        });
+        hidden
     }
 
     /// Calls `test(object, t_max)` for every object beside the pool that the ray may meet before `t_max`, nearer ones
@@ -49,7 +130,7 @@ impl Index {
     ///
     /// `test` answers the new `t_max`.
     #[inline]
-    pub(super) fn nearest(&self, ray: &Ray, mut t_max: f64, mut test: impl FnMut(u32, f64) -> f64) {
+    fn in_order(&self, ray: &Ray, mut t_max: f64, mut test: impl FnMut(u32, f64) -> f64) {
         for &object in &self.always {
             t_max = test(object, t_max);
         }
@@ -62,13 +143,18 @@ impl Index {
     /// Calls `test(object)` for objects beside the pool that the ray may meet before `t_max`, in any order, until one
     /// passes.
     #[inline]
-    pub(super) fn any(&self, ray: &Ray, t_max: f64, mut test: impl FnMut(u32) -> bool) {
+    fn any(&self, ray: &Ray, t_max: f64, mut test: impl FnMut(u32) -> bool) {
         if self.always.iter().any(|&object| test(object)) || self.bounded.is_empty() {
             return;
         }
         let test = |object, t_max| (!test(object)).then_some(t_max);
         self.tree.walk(ray, t_max, &mut Objects { index: self, test });
     }
+}
+
+/// Counts every object.
+pub(super) fn every(_: u32) -> bool {
+    true
 }
 
 /// Shows the objects of a leaf to a test, which answers the new `t_max`, or none to end the walk.

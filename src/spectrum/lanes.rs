@@ -12,8 +12,13 @@ impl<const N: usize> Lanes<N> {
     pub const ONE: Self = Self([1.0; N]);
 
     /// Lane `i` holds `value(i)`.
-    pub fn from_fn(value: impl FnMut(usize) -> f32) -> Self {
-        Self(std::array::from_fn(value))
+    #[inline]
+    pub fn from_fn(mut value: impl FnMut(usize) -> f32) -> Self {
+        let mut lanes = Self::ZERO;
+        for (i, lane) in lanes.0.iter_mut().enumerate() {
+            *lane = value(i);
+        }
+        lanes
     }
 
     /// The sum over the lanes, in a fixed order.

@@ -120,7 +120,7 @@ fn is_inside(world: &World, bounce: &Bounce, sampler: &Sampler) -> bool {
         let u = sampler.four_plain(BranchKey::CAMERA, *look);
         let direction = unit(frame.to_world(cosine_hemisphere([u[0], u[1]])));
         let ray = Ray { origin: from, direction };
-        world.scene.nearest(&ray, f64::INFINITY, |object| !world.is_see_through(object)).is_none()
+        world.scene.nearest(&ray, f64::INFINITY, &|object| !world.is_see_through(object)).is_none()
     };
     (0..LOOKS).filter(sees).count() <= INSIDE
 }

@@ -290,7 +290,7 @@ impl Place<'_> {
         let mut moved = many * chosen.change * self.world.amount(chosen.rgb);
         let up = point.leave(self.flat);
         let far = HIGH * self.radius;
-        let free = self.world.scene.nearest(&up, 2.0 * far, |_| true).map_or(far, |hit| 0.5 * hit.crossing.t);
+        let free = self.world.scene.nearest(&up, 2.0 * far, &|_| true).map_or(far, |hit| 0.5 * hit.crossing.t);
         let (height, from) = (far.min(free), up.at(far.min(free)));
         if !self.sees(from, chosen.position, 1.0).unwrap_or(true) {
             (0..3).for_each(|i| sum[i] -= chosen.rgb[i] * many);
@@ -324,7 +324,7 @@ impl Place<'_> {
         let scene = &self.world.scene;
         let way = to - from;
         let ray = Ray { origin: from, direction: unit(way) };
-        let hit = scene.nearest(&ray, way.length() * further, |_| true)?;
+        let hit = scene.nearest(&ray, way.length() * further, &|_| true)?;
         let SurfacePoint { position, normal, .. } = scene.objects[hit.object as usize].shape.point(&ray, &hit.crossing);
         let front = normal.dot(ray.direction) < 0.0;
         let flat = if front { normal } else { -normal };

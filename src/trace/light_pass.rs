@@ -6,24 +6,22 @@
 //! Simulation*, section 10.3.4, has the importance; Grittmann et al. 2018, *Efficient Caustic Rendering with
 //! Lightweight Photon Mapping*, the split by kind of path.
 
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::contribution::{Contribution, Found};
+use super::parallel::in_parallel;
 use super::pass::Pass;
-use super::photon::{Landing, Splat, show as show_photon};
+use super::photon::{Splat, show as show_photon};
 use super::photon_batch::{Batch, Sent, batches, send};
 use super::photon_targets::PhotonTargets;
 use super::polarization::Polarization;
 use super::polarized::Polarized;
 use super::stats::Stats;
 use super::tile::{Shown, Tile};
-use super::walker::Walker;
 use super::watch::Watch;
 use super::width::in_lanes;
 use super::{LightPass, World};
 use crate::film::{Layer, Shard};
-use crate::math::Sampler;
 
 /// Batches whose splats are kept in memory at once.
 const AT_ONCE: usize = 64;
@@ -149,8 +147,8 @@ fn send_on<const N: usize, P: Polarization<N>>(
 ) -> bool {
     let batches = batches(targets, |_| 0, |target| target.photons, seed ^ SEED);
     for group in batches.get(sending.batches..).unwrap_or_default().chunks(AT_ONCE) {
-        let send = |batch: &Batch| (!(watch.is_due)()).then(|| send_shown::<N, P>(world, targets, *batch));
-        let done: Vec<Option<Sent<Splat>>> = group.par_iter().map(send).collect();
+        let send = |number: usize| (!(watch.is_due)()).then(|| send_shown::<N, P>(world, targets, group[number]));
+        let done = in_parallel(group.len(), &send);
         for (batch, sent) in group.iter().zip(done) {
             // Splats are added in the order of the batches: what was found beyond a gap is found again.
             let Some(sent) = sent else { return false };
@@ -175,16 +173,7 @@ pub(super) fn send_shown<const N: usize, P: Polarization<N>>(
     targets: &PhotonTargets,
     batch: Batch,
 ) -> Sent<Splat> {
-    send(world, targets, batch, false, show_one::<N, P>)
-}
-
-fn show_one<const N: usize, P: Polarization<N>>(
-    walker: &Walker<N, P>,
-    landing: &Landing<N, P>,
-    sampler: &Sampler,
-    splats: &mut Vec<Splat>,
-) {
-    show_photon(walker, landing, sampler, splats);
+    send(world, targets, batch, false, &show_photon::<N, P>)
 }
 
 /// What photons sent ahead found.
@@ -202,8 +191,9 @@ fn send_ahead<const N: usize>(world: &World, most: u64) -> Learned {
     let world = world.of_the_format();
     let Some(targets) = &world.photon_targets else { return Learned::default() };
     let batches = batches(targets, |_| 0, |target| target.photons.min(most), world.method.seed ^ AHEAD_SEED);
-    let done: Vec<Sent<Splat>> =
-        batches.par_iter().map(|batch| send::<N, Polarized, _>(&world, targets, *batch, true, show_one)).collect();
+    let send =
+        |number: usize| send::<N, Polarized, _>(&world, targets, batches[number], true, &show_photon::<N, Polarized>);
+    let done = in_parallel(batches.len(), &send);
     let mut learned = Learned { found: vec![Vec::new(); targets.targets.len()], rays: 0 };
     for (batch, sent) in batches.iter().zip(done) {
         learned.rays += sent.stats.rays;

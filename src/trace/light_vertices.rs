@@ -10,9 +10,8 @@
 use std::f64::consts::FRAC_1_PI;
 use std::ops::Range;
 
-use rayon::prelude::*;
-
 use super::media::{Media, media_of_lights};
+use super::parallel::in_parallel;
 use super::path::PathKind;
 use super::photon::{Landing, Start, Surfaces, follow_photon};
 use super::polarization::Polarization;
@@ -174,8 +173,9 @@ impl<'a> LightPaths<'a> {
 
     /// The vertices of some light paths of a set.
     fn vertices<const N: usize, P: Polarization<N>>(&self, set: u32, paths: u64) -> LightVertices<N> {
-        let of_batch = |batch: u64| self.follow::<N, P>(set, batch * BATCH..(batch * BATCH + BATCH).min(paths));
-        let done: Vec<Followed<N>> = (0..paths.div_ceil(BATCH)).into_par_iter().map(of_batch).collect();
+        let first = |batch: usize| batch as u64 * BATCH;
+        let of_batch = |batch| self.follow::<N, P>(set, first(batch)..first(batch + 1).min(paths));
+        let done = in_parallel(paths.div_ceil(BATCH) as usize, &of_batch);
         let (mut stats, mut vertices) = (Stats::default(), Vec::new());
         for followed in done {
             stats += followed.stats;

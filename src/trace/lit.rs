@@ -154,7 +154,7 @@ impl Pair<'_> {
         let (own, from) = (direction.dot(end.normal), -first.last()?.direction.dot(end.normal));
         let keeps_away = |object| !first.met.contains(&object) && !scene.material_of(object).lets_through();
         let ray = end.leave(direction);
-        if own * from <= 0.0 || scene.is_occluded_by(&ray, distance, lamp, &Cell::new(None), keeps_away) {
+        if own * from <= 0.0 || scene.is_occluded_by(&ray, distance, lamp, &Cell::new(None), &keeps_away) {
             return None;
         }
         let (frame, step) = (Frame::about(start.direction), BESIDE * self.ball.radius);
@@ -225,7 +225,7 @@ impl Pair<'_> {
         let ray = point.leave(seen.direction);
         let distance = (seen.start - ray.origin).length();
         let hides = |object| !scene.material_of(object).lets_through();
-        let hidden = scene.is_occluded_by(&ray, distance, None, &Cell::new(None), hides);
+        let hidden = scene.is_occluded_by(&ray, distance, None, &Cell::new(None), &hides);
         (!hidden).then(|| (seen.importance * seen.direction.dot(point.normal).abs()).sqrt())
     }
 }

@@ -60,6 +60,7 @@ mod lit;
 mod media;
 mod method;
 mod noise;
+mod parallel;
 mod pass;
 mod pass_light;
 mod passes;

@@ -112,7 +112,7 @@ pub(super) fn follow_photon<const N: usize, P: Polarization<N>>(
     draw: &Draw<N>,
     sampler: &Sampler,
     over: Surfaces,
-    land: &mut impl FnMut(&Walker<N, P>, &Landing<N, P>),
+    land: &mut dyn FnMut(&Walker<N, P>, &Landing<N, P>),
 ) {
     let world = walker.world;
     walker.pending.push(Path::from_light(world, draw, emitted.ray, media));

@@ -59,7 +59,7 @@ pub(super) fn send<const N: usize, P: Polarization<N>, T>(
     targets: &PhotonTargets,
     batch: Batch,
     learns: bool,
-    land: impl Fn(&Walker<N, P>, &Landing<N, P>, &Sampler, &mut Vec<T>),
+    land: &dyn Fn(&Walker<N, P>, &Landing<N, P>, &Sampler, &mut Vec<T>),
 ) -> Sent<T> {
     let mut walker = Walker::<N, P>::new(world, PHOTONS);
     let (mut kept, mut places) = (Vec::new(), Vec::new());

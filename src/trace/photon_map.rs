@@ -6,12 +6,11 @@
 
 use std::borrow::Cow;
 
-use rayon::prelude::*;
-
 use super::World;
 use super::interaction::Interaction;
 use super::kd_tree::KdTree;
 use super::kernel::Kernel;
+use super::parallel::in_parallel;
 use super::pass::Pass;
 use super::photon::Landing;
 use super::photon_batch::{Batch, Sent, batches, send};
@@ -88,8 +87,7 @@ pub(super) fn photons<const N: usize, P: Polarization<N>>(world: &World, pass: &
         .map_or(Cow::Borrowed(targets), |part| Cow::Owned(targets.times(part * f64::from(count))));
     let (seed, before) = pass.photon_seed();
     let batches = batches(targets, |target| before * target.photons, |target| target.photons, seed ^ SEED);
-    let done: Vec<Sent<(DVec3, Kept<N, P::Landed>)>> =
-        batches.par_iter().map(|batch| send_kept::<N, P>(world, targets, *batch)).collect();
+    let done = in_parallel(batches.len(), &|number| send_kept::<N, P>(world, targets, batches[number]));
     let mut stats = Stats::default();
     let (mut together, mut alone) = (Vec::new(), Vec::new());
     for sent in done {
@@ -119,7 +117,7 @@ pub(super) fn send_kept<const N: usize, P: Polarization<N>>(
     let keep = |_: &Walker<N, P>, landing: &Landing<N, P>, _: &Sampler, kept: &mut Vec<_>| {
         keep(world, landing, kept);
     };
-    send(world, targets, batch, false, keep)
+    send(world, targets, batch, false, &keep)
 }
 
 /// Keeps a photon where it lands.

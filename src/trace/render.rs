@@ -1,17 +1,16 @@
 //! An image in the making: pass after pass over its tiles.
 
 use std::any::Any;
-use std::borrow::{Borrow, Cow};
+use std::borrow::Cow;
 use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
-
-use rayon::prelude::*;
 
 use super::blur::Blur;
 use super::layer_sums::{Taken, images, spectral_image, write};
 use super::light_pass;
 use super::noise::{Measured, Noise, measure};
+use super::parallel::for_each_in_parallel;
 use super::pass_light::PassLight;
 use super::passes::{Progress, most_at_once};
 use super::photon_targets::PhotonTargets;
@@ -66,7 +65,7 @@ pub struct Report {
 /// Renders the world's image, or the part of it that is asked for. `progress` is told how many camera samples and
 /// photons are done, from any thread; in the end they are [`Rendering::work`].
 pub fn render(world: &World, progress: &(dyn Fn(u64) + Sync)) -> (Film, Report) {
-    let mut rendering = Rendering::new(world);
+    let mut rendering = Rendering::of_shard(Cow::Borrowed(world), Shard::WHOLE);
     while rendering.advance(progress) {}
     (rendering.film(), rendering.report())
 }
@@ -86,8 +85,8 @@ pub enum Advance {
 ///
 /// A pass takes the next samples of all pixels; where photons are gathered, each pass sends its own before. The light
 /// pass comes before the first. It may stop anywhere between two pixels, be saved there, and go on.
-pub struct Rendering<W> {
-    world: W,
+pub struct Rendering<'a> {
+    world: Cow<'a, World>,
     shard: Shard,
     tiles: Vec<Tile>,
     progress: Progress,
@@ -97,16 +96,11 @@ pub struct Rendering<W> {
     clock: Clock,
 }
 
-impl<W: Borrow<World>> Rendering<W> {
-    /// An image without samples yet.
-    pub fn new(world: W) -> Self {
-        Self::of_shard(world, Shard::WHOLE)
-    }
-
-    /// One of several parts of an image; all other pixels stay blank.
-    pub fn of_shard(world: W, shard: Shard) -> Self {
-        let window = world.borrow().scene.film.window();
-        let tiles = shard.tiles(window).map(|place| Tile::new(world.borrow(), place)).collect();
+impl<'a> Rendering<'a> {
+    /// An image without samples yet, or one of several parts of it, where all other pixels stay blank.
+    pub fn of_shard(world: Cow<'a, World>, shard: Shard) -> Self {
+        let window = world.scene.film.window();
+        let tiles = shard.tiles(window).map(|place| Tile::new(&world, place)).collect();
         let (progress, clock) = (Progress::default(), Clock::new(Instant::now()));
         Self { world, shard, tiles, progress, light: None, clock }
     }
@@ -118,7 +112,7 @@ impl<W: Borrow<World>> Rendering<W> {
 
     /// What is rendered, and how.
     pub fn world(&self) -> &World {
-        self.world.borrow()
+        &self.world
     }
 
     /// Camera samples of each pixel that have been taken.
@@ -335,7 +329,7 @@ impl<W: Borrow<World>> Rendering<W> {
     /// If it cannot be read. Then, and if it does not go on, this one must not be used.
     pub(crate) fn restore(&mut self, blocks: BlockReader) -> Result<Restored> {
         self.light = None;
-        saved::restore(self.world.borrow(), &mut self.progress, &mut self.tiles, blocks)
+        saved::restore(&self.world, &mut self.progress, &mut self.tiles, blocks)
     }
 
     /// Samples of a pixel that each replicate has, on average, where there are replicates.
@@ -391,7 +385,7 @@ impl<W: Borrow<World>> Rendering<W> {
 
     /// Makes the next pass, or goes on with it; answers whether it is finished.
     fn pass<const N: usize, P: Polarization<N>>(&mut self, watch: &Watch) -> bool {
-        let world = self.world.borrow();
+        let world = &*self.world;
         let progress = &mut self.progress;
         let pass = progress.pass(world);
         if !light_pass::show::<N, P>(world, &pass, &mut progress.sending, self.shard, &mut self.tiles, watch) {
@@ -405,8 +399,8 @@ impl<W: Borrow<World>> Rendering<W> {
         });
         let (window, passes) = (world.scene.film.window(), progress.passes);
         let places: Vec<TilePlace> = self.shard.tiles(window).collect();
-        let left = self.tiles.par_iter_mut().zip(places).filter(|(tile, _)| tile.passes == passes);
-        left.for_each(|(tile, place)| {
+        let left = self.tiles.iter_mut().zip(places).filter(|(tile, _)| tile.passes == passes).collect();
+        for_each_in_parallel(left, &|(tile, place): (&mut Tile, TilePlace)| {
             let taken = tile.take::<N, P>(place, world, &light, &pass, watch.is_due);
             (watch.progress)(u64::from(taken) * pass.numbers.len() as u64);
         });

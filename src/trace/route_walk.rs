@@ -261,7 +261,7 @@ impl<'a> Walker<'a> {
         let mut walk = Walk { ray: sample.ray, ..walk.clone() };
         let mut left = sample.distance;
         for _ in 0..SURFACES {
-            let Some(hit) = world.scene.nearest(&walk.ray, left, |object| sample.object != Some(object)) else {
+            let Some(hit) = world.scene.nearest(&walk.ray, left, &|object| sample.object != Some(object)) else {
                 let walk = self.inside(walk, left);
                 return self.record(&walk, id);
             };

@@ -93,6 +93,7 @@ impl Past {
 
     fn has(self, world: &World, object: u32) -> bool {
         match self {
+            _ if !world.hides_objects => true,
             Self::Objects(Among::All) => true,
             Self::Objects(Among::Plate) => world.scene.is_of_plate(object),
             Self::Seen => world.sight(object) != Sight::Hidden,
@@ -114,14 +115,12 @@ impl Passage<'_> {
     ) -> Option<(Lanes<N>, P)> {
         let Self { ray, distance, ends, inside, past, last_occluder } = *self;
         let (mut arriving, after);
-        let all = past.is_all(world);
-        if !all || world.has_see_through() {
-            let is_there = |object| all || past.has(world, object);
-            let closed = |object| !world.is_see_through(object) && is_there(object);
-            if world.scene.is_occluded_by(ray, distance, ends, last_occluder, closed) {
+        if !past.is_all(world) || world.has_see_through() {
+            let closed = |object| !world.is_see_through(object) && past.has(world, object);
+            if world.scene.is_occluded_by(ray, distance, ends, last_occluder, &closed) {
                 return None;
             }
-            let (share, beyond) = self.transmittance(world, draw, polarization(), is_there)?;
+            let (share, beyond) = self.transmittance(world, draw, polarization())?;
             (arriving, after) = (light() * share, beyond);
         } else if world.scene.is_occluded(ray, distance, ends, last_occluder) {
             return None;
@@ -143,11 +142,10 @@ impl Passage<'_> {
         world: &World,
         draw: &Draw<N>,
         mut polarization: P,
-        is_there: impl Fn(u32) -> bool,
     ) -> Option<(Lanes<N>, P)> {
         let (mut ray, mut left, mut all) = (*self.ray, self.distance, Lanes::ONE);
-        let counts = |object: u32| world.is_see_through(object) && is_there(object);
-        while let Some(hit) = world.scene.nearest(&ray, left, counts) {
+        let counts = |object: u32| world.is_see_through(object) && self.past.has(world, object);
+        while let Some(hit) = world.scene.nearest(&ray, left, &counts) {
             let point = world.scene.objects[hit.object as usize].point(&ray, &hit.crossing);
             let through = Through { ray: &ray, present: Lanes::ONE, inside: self.inside };
             let onward = straight_at(world, draw, &through, &hit, &point, polarization)?;

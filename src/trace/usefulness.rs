@@ -64,7 +64,7 @@ fn sees(world: &World, place: &Place, vertex: DVec3, last_occluder: &Cell<Option
     let ray = Ray { direction: unit(direction), ..place.point.leave(direction) };
     let ends = Ends { left: Some(place.primitive), ..Ends::default() };
     let counts = |object| !world.is_see_through(object);
-    !world.scene.is_occluded_by(&ray, way.length() * NEARLY, ends, last_occluder, counts)
+    !world.scene.is_occluded_by(&ray, way.length() * NEARLY, ends, last_occluder, &counts)
 }
 
 /// Looks end a little before the vertex: they only guide.

@@ -102,7 +102,7 @@ impl<'a> Sight<'a> {
 
     pub(super) fn is_occluded(&self, ray: &Ray, distance: f64, light: Option<u32>) -> bool {
         self.rays.set(self.rays.get() + 1);
-        self.scene.is_occluded_by(ray, distance, light, &self.occluder, |object| self.is_opaque(object))
+        self.scene.is_occluded_by(ray, distance, light, &self.occluder, &|object| self.is_opaque(object))
     }
 
     /// Whether the camera, or a place on paths from it, sees a place.
