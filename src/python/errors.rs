@@ -25,7 +25,7 @@ pub(super) fn raised(error: Error) -> PyErr {
         }
         Error::Arguments { message, help } => OptionsError::new_err((message, help.map(|help| for_python(&help)))),
         Error::Io { doing, path, source } => match source.raw_os_error() {
-            Some(number) => PyOSError::new_err((number, source.to_string(), path)),
+            Some(number) => PyOSError::new_err((number, source.to_string(), path.into_os_string())),
             None => PyOSError::new_err(format!("cannot {doing} {}: {source}", path.display())),
         },
         error @ (Error::Decode { .. } | Error::Encode { .. }) => {
@@ -39,7 +39,7 @@ pub(super) fn raised_of(path: &Path, error: Error) -> PyErr {
     match error {
         Error::Arguments { message, help } if !path.exists() => {
             let help = help.map_or(String::new(), |help| format!(" ({help})"));
-            PyFileNotFoundError::new_err((NO_SUCH_FILE, message + &help, path.to_owned()))
+            PyFileNotFoundError::new_err((NO_SUCH_FILE, message + &help, path.as_os_str().to_owned()))
         }
         error => raised(error),
     }

@@ -3,9 +3,10 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use abbe::Result;
 use abbe::film::{ExrFile, ExrLayer};
-use abbe::look::{Difference, Noise, compare};
+use abbe::look::{Difference, Exposure, Noise, Picture, compare};
+use abbe::{Error, Result};
+use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -45,6 +46,12 @@ impl Exr {
         self.file.layers().into_iter().map(|layer| layer.name).collect()
     }
 
+    /// Columns and rows of the first part.
+    #[getter]
+    fn size(&self) -> (usize, usize) {
+        self.file.parts.first().map_or([0; 2], |part| part.bounds.size).into()
+    }
+
     /// Column and row of the first pixel of the first part.
     #[getter]
     fn corner(&self) -> (i64, i64) {
@@ -65,9 +72,32 @@ impl Exr {
 
     /// A layer, or a channel by its full name.
     fn plane(&self, name: &str) -> PyResult<Plane> {
-        let layer = self.file.layer(Some(name), &self.path.display().to_string()).map_err(raised)?;
-        Ok(plane(&layer))
+        match self.file.layer(Some(name), &self.path.display().to_string()) {
+            Ok(layer) => Ok(plane(&layer)),
+            Err(Error::Arguments { message, help }) => {
+                Err(PyKeyError::new_err(help.map_or(message.clone(), |help| format!("{message}: {help}"))))
+            }
+            Err(error) => Err(raised(error)),
+        }
     }
+
+    /// The bytes of a picture.
+    fn png(&self, py: Python<'_>, exposure: f64) -> PyResult<Vec<u8>> {
+        let (file, path) = (self.file.clone(), self.path.clone());
+        work::run(py, move || picture(&file, &path, exposure)?.png())?.map_err(raised)
+    }
+
+    /// Writes a picture.
+    fn write_png(&self, py: Python<'_>, path: PathBuf, exposure: f64) -> PyResult<()> {
+        let (file, of) = (self.file.clone(), self.path.clone());
+        work::run(py, move || picture(&file, &of, exposure)?.write_png(&path))?.map_err(raised)
+    }
+}
+
+/// The image itself for looking, or else the first layer.
+fn picture(file: &ExrFile, path: &Path, exposure: f64) -> Result<Picture> {
+    let layer = file.layer(None, &path.display().to_string())?;
+    Ok(Picture::of_layer(file, &layer, Exposure { stops: exposure, ..Exposure::default() }).0)
 }
 
 /// The numbers of a layer, side by side: what a file has as 16 or 32 bits, as 32.

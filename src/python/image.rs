@@ -3,7 +3,9 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use abbe::film::{BEAUTY, Film, Pixel};
+use abbe::film::{BEAUTY, Film, Layer, Pixel};
+use abbe::nearest;
+use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 
 use super::errors::raised;
@@ -48,12 +50,13 @@ impl Image {
     }
 
     /// A layer, or a channel by its name in the file.
-    fn plane(&self, name: &str) -> Option<Plane> {
+    fn plane(&self, name: &str) -> PyResult<Plane> {
         let film = self.image.film();
-        of_pixels(film, name).or_else(|| of_layers(film, name)).map(|place| match place {
-            Found::Pixels(place) => Plane::of::<Pixel, f32>(self.image.clone(), place),
-            Found::Numbers(place) => Plane::of::<f32, f32>(self.image.clone(), place),
-        })
+        match of_pixels(film, name).or_else(|| of_layers(film, name)) {
+            Some(Found::Pixels(place)) => Ok(Plane::of::<Pixel, f32>(self.image.clone(), place)),
+            Some(Found::Numbers(place)) => Ok(Plane::of::<f32, f32>(self.image.clone(), place)),
+            None => Err(self.missing(name)),
+        }
     }
 
     /// The centers of the spectral bands in nm, and the radiance of all pixels in them.
@@ -87,6 +90,21 @@ impl Image {
     fn write_png(&self, py: Python<'_>, path: PathBuf, exposure: f64) -> PyResult<()> {
         let image = self.image.clone();
         work::run(py, move || image.write_png(path, exposure))?.map_err(raised)
+    }
+}
+
+impl Image {
+    /// What is said of a layer that is not there.
+    fn missing(&self, name: &str) -> PyErr {
+        let layers = self.layers();
+        let layer = name.split_once('.').map_or(name, |(layer, _)| layer);
+        let known = layers.iter().map(String::as_str).chain(Layer::NAMES.map(|(name, _)| name));
+        let help = match nearest(layer, known) {
+            Some(near) if layers.iter().any(|layer| layer == near) => format!("did you mean {near:?}? "),
+            Some(near) => format!("layers=[{near:?}] asks for it; "),
+            None => String::new(),
+        };
+        PyKeyError::new_err(format!("the image has no layer {name:?}: {help}it has {}", layers.join(", ")))
     }
 }
 

@@ -22,7 +22,7 @@ use super::work::{self, Work};
 /// How often a program hears of progress.
 const PERIOD: Duration = Duration::from_millis(500);
 /// How long a render that was told to stop is waited for where it keeps nothing.
-const PATIENCE: Duration = Duration::from_secs(1);
+const PATIENCE: Duration = Duration::from_millis(500);
 
 /// How a scene will be rendered, as JSON, and on how many threads.
 #[pyfunction]
@@ -132,6 +132,10 @@ impl Job {
         let kept = self.checkpoint.as_ref();
         kept.map_or(Ok(()), Checkpoint::spare)?;
         let mut rendering = Rendering::new(&self.scene, &self.options)?;
+        if self.state.stop.load(Relaxed) {
+            // Nobody waits any longer, and there is nothing to keep.
+            return Ok(None);
+        }
         kept.map_or(Ok(()), |kept| kept.go_on(&mut rendering))?;
         let before = rendering.done();
         let began = self.state.begin(before, rendering.work());

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use abbe::scene::{self, SETTINGS, Source};
 use abbe::{Diagnostic, Error};
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyMapping};
 
@@ -56,7 +57,11 @@ impl Scene {
                 work::run(py, move || source.compile_written(&given, rows))?.map_err(raised)
             }
             Err(_) => {
-                let path: PathBuf = source.extract()?;
+                let Ok(path) = source.extract::<PathBuf>() else {
+                    let kind = source.get_type().name()?;
+                    let message = format!("a scene is a dict, the path of a file or an abbe.Scene, not {kind}");
+                    return Err(PyTypeError::new_err(message));
+                };
                 let read = path.clone();
                 work::run(py, move || Source::read(&read)?.compile_with(&given))?
                     .map_err(|error| raised_of(&path, by_key(error, &keys)))

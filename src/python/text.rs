@@ -134,7 +134,8 @@ impl Writer {
     fn other(&mut self, value: &Bound<'_, PyAny>) -> PyResult<()> {
         let is = |method: &str| value.hasattr(method).unwrap_or(false);
         if is("tolist") {
-            if let Some(rows) = self.list_of_mesh().and_then(|list| rows(value, list == FACES)) {
+            let list = self.list_of_mesh();
+            if let Some(rows) = list.map(|list| rows(value, list == FACES)).transpose()?.flatten() {
                 self.quoted(&Rows::mark(self.rows.len()));
                 self.rows.push(rows);
                 return Ok(());
@@ -224,19 +225,24 @@ impl Writer {
 }
 
 /// The rows of an array of numpy with two dimensions; none if its numbers are better told one by one.
-fn rows(array: &Bound<'_, PyAny>, is_whole: bool) -> Option<Rows> {
-    let (count, width): (usize, usize) = array.getattr("shape").ok()?.extract().ok()?;
-    let kind: String = array.getattr("dtype").ok()?.getattr("kind").ok()?.extract().ok()?;
+///
+/// # Errors
+/// What numpy raises: that there is too little memory.
+fn rows(array: &Bound<'_, PyAny>, is_whole: bool) -> PyResult<Option<Rows>> {
+    let asked = || -> PyResult<((usize, usize), String)> {
+        Ok((array.getattr("shape")?.extract()?, array.getattr("dtype")?.getattr("kind")?.extract()?))
+    };
+    let Ok(((count, width), kind)) = asked() else { return Ok(None) };
     let bytes = |kind: &str| array.call_method1("astype", (kind,))?.call_method0("tobytes");
     let numbers = match kind.as_str() {
         "i" | "u" if is_whole => {
-            let whole = each(bytes("<i8").ok()?.extract().ok()?, i64::from_le_bytes);
-            Numbers::Whole(whole.into_iter().map(u32::try_from).collect::<Result<_, _>>().ok()?)
+            let whole = each(bytes("<i8")?.extract()?, i64::from_le_bytes);
+            whole.into_iter().map(u32::try_from).collect::<Result<_, _>>().ok().map(Numbers::Whole)
         }
-        "f" | "i" | "u" if !is_whole => Numbers::Real(each(bytes("<f8").ok()?.extract().ok()?, f64::from_le_bytes)),
-        _ => return None,
+        "f" | "i" | "u" if !is_whole => Some(Numbers::Real(each(bytes("<f8")?.extract()?, f64::from_le_bytes))),
+        _ => None,
     };
-    (count > 0 && width > 0).then_some(Rows { width, numbers })
+    Ok(numbers.filter(|_| count > 0 && width > 0).map(|numbers| Rows { width, numbers }))
 }
 
 /// A number of each eight bytes.

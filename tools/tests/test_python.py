@@ -94,8 +94,7 @@ def test_arrays_are_those_of_the_file_and_not_copied(tmp_path):
     assert address(image["N"]) == address(image["N.X"])
     with pytest.raises(ValueError, match="read-only"):
         image.rgb[0, 0] = 0
-    with pytest.raises(KeyError, match="no layer 'albdo': it has beauty, A, Z, albedo"):
-        image["albdo"]
+    assert np.array_equal(image, image.rgb) and np.asarray(image).base is not None
 
 
 def test_arrays_live_longer_than_their_image():
@@ -329,8 +328,52 @@ def test_files_are_read_as_others_read_them(tmp_path):
     assert np.array_equal(file["albedo"], image["albedo"]) and np.array_equal(file["albedo.G"], channels["albedo.G"])
     assert (file.corner, file.format) == ((2, 3), (20, 12))
     assert file.attributes["render/samples"] == "4"
-    with pytest.raises(abbe.OptionsError, match="has no layer albdo .did you mean albedo"):
+    assert repr(file) == "<abbe.ExrImage of 10 x 6 pixels: " + ", ".join(file.layers) + ">"
+    file.to_png(tmp_path / "file.png", exposure=1)
+    image.to_png(tmp_path / "image.png", exposure=1)
+    assert (tmp_path / "file.png").read_bytes() == (tmp_path / "image.png").read_bytes()
+    assert file._repr_png_() == image._repr_png_()
+    with pytest.raises(KeyError, match="has no layer albdo: did you mean albedo. it has beauty"):
         file["albdo"]
+
+
+@pytest.mark.parametrize(
+    "name, said",
+    [
+        ("albdo", 'no layer "albdo": did you mean "albedo"? it has beauty, A, Z, albedo'),
+        ("albedo.Q", 'did you mean "albedo"?'),
+        ("N", 'layers=["N"] asks for it; it has'),
+        ("variance.R", 'layers=["variance"] asks for it'),
+        ("what", 'no layer "what": it has'),
+    ],
+)
+def test_a_layer_that_is_not_there_is_told_with_what_to_do(name, said):
+    image = abbe.render(SCENE, layers=["albedo"])
+    assert name not in image
+    with pytest.raises(KeyError) as caught:
+        image[name]
+    assert said in caught.value.args[0]
+
+
+def test_values_too_large_for_16_bits_are_warned_of(tmp_path):
+    bright = {"film.precision": "half", "light.1.environment.radiance": 1e5}
+    image = abbe.render(SCENE, set=bright)
+    with pytest.warns(UserWarning, match="values were too large for 16 bits and became 65504"):
+        image.write_exr(tmp_path / "a.exr")
+
+
+def test_everything_shows_what_it_is():
+    image, plan = abbe.render(SCENE, layers=["N"]), abbe.plan(SCENE)
+    assert repr(image) == "<abbe.Image of 20 x 12 pixels: beauty, A, Z, N>"
+    assert repr(abbe.Scene(SCENE)) == "<abbe.Scene of 1 object, 20 x 12 pixels>"
+    assert repr(plan) == f"<abbe.Plan: model {plan.model}, transport random, 4 samples per pixel>"
+    assert repr(abbe.catalog.glass("N-BK7")) == "<abbe.catalog.Glass schott/N-BK7>"
+    assert "absolute" not in repr(abbe.diff(image, image))
+    assert image._ipython_key_completions_() == list(image.layers)
+    assert f"{abbe.SceneError.__module__}.{abbe.SceneError.__qualname__}" == "abbe.SceneError"
+    assert dir(abbe.catalog) == sorted(abbe.catalog.__all__)
+    with pytest.raises(TypeError, match="a scene is a dict, the path of a file or an abbe.Scene, not int"):
+        abbe.render(3)
 
 
 def test_two_images_are_told_apart_by_more_than_their_noise(tmp_path):

@@ -186,6 +186,12 @@ def test_what_a_value_raises_is_raised():
         abbe.Scene({"film": Raises()})
 
 
+def test_arrays_that_fill_all_memory_are_told_by_numpy():
+    endless = np.broadcast_to(np.zeros(3), (2**50, 3))
+    with pytest.raises((MemoryError, ValueError)):
+        abbe.Scene({"object": [{"shape": {"mesh": {"points": endless}}}]})
+
+
 def test_all_that_is_wrong_is_told_at_once():
     with pytest.raises(abbe.SceneError) as caught:
         abbe.Scene({"a": None, "b": [1, {"c": None}], "d": 3j})

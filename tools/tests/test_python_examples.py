@@ -4,6 +4,7 @@ pytest tools/tests/test_python_examples.py
 """
 
 import importlib.util
+import re
 import subprocess
 import sys
 
@@ -21,6 +22,19 @@ def example(name):
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module
+
+
+def test_the_readme_says_what_runs(tmp_path, monkeypatch):
+    readme = (render.ROOT / "README.md").read_text("utf-8")
+    (first, *_), (code,) = (re.findall(rf"```{kind}\n(.*?)```", readme, re.DOTALL) for kind in ("toml", "python"))
+    small = first.replace("scenes/", f"{render.SCENES}/").replace("640", "64").replace("360", "36")
+    (tmp_path / "first.toml").write_text(small)
+    monkeypatch.chdir(tmp_path)
+    names = {}
+    exec(code, names)
+    image = abbe.read_exr("first.exr")
+    assert image.rgb.shape == (36, 64, 3) and "albedo" in image and (tmp_path / "look.png").is_file()
+    assert abbe.diff(names["a"], names["b"]).agrees and names["image"].stats["error"]["is_reached"]
 
 
 def test_every_example_is_run_here():

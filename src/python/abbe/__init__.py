@@ -35,3 +35,9 @@ __all__ = [
     "read_exr",
     "render",
 ]
+
+# Where people find them, which is what tracebacks and help say.
+for _name in __all__:
+    if hasattr(globals()[_name], "__module__"):
+        globals()[_name].__module__ = __name__
+del _name

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from typing import Any, NamedTuple, Union
+from dataclasses import dataclass, field
+from typing import Any, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -28,9 +29,19 @@ class ExrImage(Layers):
         """A layer, or one channel by its full name: float32, or uint32 if the file has that; height x width, and x
         channels if there are several. Alpha is none of those of a color: it is `"A"`, or `"NAME.A"`.
 
-        Raises `OptionsError` with the nearest name if there is none.
+        Raises `KeyError` with the nearest name if there is none.
         """
         return np.asarray(self._core.plane(name))
+
+    @property
+    def width(self) -> int:
+        """Pixels per row of what is there."""
+        return self._core.size[0]
+
+    @property
+    def height(self) -> int:
+        """Rows of what is there."""
+        return self._core.size[1]
 
     @property
     def corner(self) -> tuple[int, int]:
@@ -47,8 +58,16 @@ class ExrImage(Layers):
         """What the file says of itself, as words."""
         return dict(self._core.attributes)
 
+    def to_png(self, path: str | os.PathLike[str], exposure: float = 0.0) -> None:
+        """Writes an 8-bit sRGB picture for looking, brightened by 2^`exposure`, of whatever color space the file has."""
+        self._core.write_png(path, exposure)
 
-class Difference(NamedTuple):
+    def _repr_png_(self) -> bytes:
+        return self._core.png(0.0)
+
+
+@dataclass(frozen=True)
+class Difference:
     """How far two images are apart. Pixels with a value that is not finite are left out, but of `torn`."""
 
     agrees: bool
@@ -78,7 +97,7 @@ class Difference(NamedTuple):
     """What chance exceeds in one of a hundred pairs of images."""
     z_of_means: list[float] | None
     """The same of each channel's mean."""
-    absolute: npt.NDArray[np.float64]
+    absolute: npt.NDArray[np.float64] = field(repr=False, compare=False)
     """The largest |a - b| of each pixel's values, height x width."""
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import warnings
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -32,9 +33,6 @@ class Image(Layers):
     def __init__(self, core: _abbe.Image) -> None:
         self._core = core
 
-    def __repr__(self) -> str:
-        return f"<abbe.Image of {self.width} x {self.height} pixels: {', '.join(self.layers)}>"
-
     @property
     def width(self) -> int:
         """Pixels per row of what was made: the format, with its overscan or a part of it."""
@@ -62,12 +60,9 @@ class Image(Layers):
         `"Z"`, the nearest depth in scene units, 1e10 where nothing is met, are height x width. Of those that were asked
         for, colors and vectors have 3 channels, `"UV"` has 2, `"samples"` 1 and mattes 4. `"albedo.R"` is one channel.
 
-        Raises `KeyError` if the image has no such layer.
+        Raises `KeyError` if the image has no such layer, with what to do.
         """
-        plane = self._core.plane(name)
-        if plane is None:
-            raise KeyError(f"the image has no layer {name!r}: it has {', '.join(self.layers)}")
-        return np.asarray(plane)
+        return np.asarray(self._core.plane(name))
 
     @cached_property
     def stats(self) -> dict[str, Any]:
@@ -99,13 +94,14 @@ class Image(Layers):
             raise IndexError(f"there is no pixel ({x}, {y}) in {self.width} x {self.height}")
         return Spectrum(self._spectra.wavelengths_nm, self._spectra.radiance[y, x])
 
-    def write_exr(self, path: str | os.PathLike[str]) -> int:
+    def write_exr(self, path: str | os.PathLike[str]) -> None:
         """Writes a linear OpenEXR file with all layers: the bytes that the command writes of the same scene file.
 
-        Answers how many values were too large for 16 bits, if it has those, and became 65504. Raises `OSError` if it
-        cannot be written; a file that was there before is then untouched.
+        Warns if values were too large for 16 bits, where the scene asks for those, and became 65504. Raises `OSError`
+        if it cannot be written; a file that was there before is then untouched.
         """
-        return self._core.write_exr(path)
+        if too_large := self._core.write_exr(path):
+            warnings.warn(f"{too_large} values were too large for 16 bits and became 65504", stacklevel=2)
 
     def write_spectral_exr(self, path: str | os.PathLike[str]) -> None:
         """Writes the spectra of all pixels as an OpenEXR file.
@@ -121,4 +117,4 @@ class Image(Layers):
         self._core.write_png(path, exposure)
 
     def _repr_png_(self) -> bytes:
-        return bytes(self._core.png(0.0))
+        return self._core.png(0.0)

@@ -12,7 +12,10 @@ BEAUTY = "beauty"
 
 
 class Layers:
-    """The layers of an image by their names, as arrays: rows from the top, columns, and channels if it has several."""
+    """The layers of an image by their names, as arrays: rows from the top, columns, and channels if it has several.
+
+    numpy takes the whole for its `rgb`.
+    """
 
     def __getitem__(self, name: str) -> npt.NDArray[Any]:
         """A layer such as `"albedo"` or `"Z"`, or one channel by its name in the file, such as `"albedo.R"`."""
@@ -22,6 +25,25 @@ class Layers:
     def layers(self) -> tuple[str, ...]:
         """The names of all layers; `"beauty"` is the image itself."""
         raise NotImplementedError
+
+    @property
+    def width(self) -> int:
+        """Pixels per row of what is there: the format, with its overscan, or a part of it."""
+        raise NotImplementedError
+
+    @property
+    def height(self) -> int:
+        """Rows of what is there."""
+        raise NotImplementedError
+
+    def __repr__(self) -> str:
+        return f"<abbe.{type(self).__name__} of {self.width} x {self.height} pixels: {', '.join(self.layers)}>"
+
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> npt.NDArray[Any]:
+        return np.array(self.rgb, dtype=dtype, copy=copy)
+
+    def _ipython_key_completions_(self) -> list[str]:
+        return list(self.layers)
 
     def __contains__(self, name: object) -> bool:
         return name in self.layers

@@ -55,6 +55,9 @@ class Plan(NamedTuple):
     words: list[str]
     """The plan in words, a decision each."""
 
+    def __repr__(self) -> str:
+        return f"<abbe.Plan: model {self.model}, transport {self.transport}, {self.samples} samples per pixel>"
+
     def __str__(self) -> str:
         return "\n".join(self.words)
 
@@ -77,7 +80,8 @@ class Scene:
 
     def __repr__(self) -> str:
         width, height = self._core.size
-        return f"<abbe.Scene of {self._core.objects} objects, {width} x {height} pixels>"
+        objects = "1 object" if self._core.objects == 1 else f"{self._core.objects} objects"
+        return f"<abbe.Scene of {objects}, {width} x {height} pixels>"
 
     @property
     def warnings(self) -> list[str]:
@@ -177,8 +181,8 @@ def render(
     Ctrl-C stops a render within a second, by `KeyboardInterrupt`. Processes that are forked after a render have none
     of its threads, and would wait for them: start them by `spawn`.
 
-    Raises `SceneError` if the scene is wrong,
-    `OptionsError` if something impossible is asked for, and `OSError` or `RenderError` if a file fails.
+    Raises `SceneError` if the scene is wrong, `OptionsError` if something impossible is asked for, and `OSError` or
+    `RenderError` if a file fails.
     """
     options = _options(samples, error, time, seed, overscan, crop, layers, spectral, threads, stamp)
     tell = None if progress is None else lambda *state: progress(Progress(*state))

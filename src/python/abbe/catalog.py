@@ -13,6 +13,25 @@ import numpy.typing as npt
 
 from . import _abbe
 
+__all__ = [
+    "Glass",
+    "Illuminant",
+    "Metal",
+    "Reflectance",
+    "glass",
+    "glasses",
+    "illuminant",
+    "illuminants",
+    "metal",
+    "metals",
+    "reflectance",
+    "reflectances",
+]
+
+
+def __dir__() -> list[str]:
+    return __all__
+
 
 def _at(nm: npt.ArrayLike, values: Callable[[bytes], _abbe.Plane]) -> Any:
     wavelengths = np.asarray(nm, dtype=np.float64)
@@ -39,7 +58,7 @@ class _Entry:
         return self._core.range_nm
 
     def __repr__(self) -> str:
-        return f"<{type(self).__name__} {self.name}>"
+        return f"<abbe.catalog.{type(self).__name__} {self.name}>"
 
 
 class Glass(_Entry):
