@@ -40,7 +40,7 @@ class Layers:
         return f"<abbe.{type(self).__name__} of {self.width} x {self.height} pixels: {', '.join(self.layers)}>"
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> npt.NDArray[Any]:
-        return np.array(self.rgb, dtype=dtype, copy=copy)
+        return np.array(self.rgb, dtype) if copy else np.asarray(self.rgb, dtype)
 
     def _ipython_key_completions_(self) -> list[str]:
         return list(self.layers)
