@@ -25,7 +25,10 @@ pub(super) fn raised(error: Error) -> PyErr {
         }
         Error::Arguments { message, help } => OptionsError::new_err((message, help.map(|help| for_python(&help)))),
         Error::Io { doing, path, source } => match source.raw_os_error() {
-            Some(number) => PyOSError::new_err((number, source.to_string(), path.into_os_string())),
+            Some(number) => {
+                let told = source.to_string().replace(&format!(" (os error {number})"), "");
+                PyOSError::new_err((number, told, path.into_os_string()))
+            }
             None => PyOSError::new_err(format!("cannot {doing} {}: {source}", path.display())),
         },
         error @ (Error::Decode { .. } | Error::Encode { .. }) => {

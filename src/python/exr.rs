@@ -10,8 +10,9 @@ use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use super::errors::{raised, raised_of};
+use super::errors::{raised, raised_of, refuse};
 use super::image::Image;
+use super::options::stops;
 use super::plane::Plane;
 use super::work;
 
@@ -83,21 +84,21 @@ impl Exr {
 
     /// The bytes of a picture.
     fn png(&self, py: Python<'_>, exposure: f64) -> PyResult<Vec<u8>> {
-        let (file, path) = (self.file.clone(), self.path.clone());
-        work::run(py, move || picture(&file, &path, exposure)?.png())?.map_err(raised)
+        let (file, path, stops) = (self.file.clone(), self.path.clone(), stops(exposure)?);
+        work::run(py, move || picture(&file, &path, stops)?.png())?.map_err(raised)
     }
 
     /// Writes a picture.
     fn write_png(&self, py: Python<'_>, path: PathBuf, exposure: f64) -> PyResult<()> {
-        let (file, of) = (self.file.clone(), self.path.clone());
-        work::run(py, move || picture(&file, &of, exposure)?.write_png(&path))?.map_err(raised)
+        let (file, of, stops) = (self.file.clone(), self.path.clone(), stops(exposure)?);
+        work::run(py, move || picture(&file, &of, stops)?.write_png(&path))?.map_err(raised)
     }
 }
 
 /// The image itself for looking, or else the first layer.
-fn picture(file: &ExrFile, path: &Path, exposure: f64) -> Result<Picture> {
+fn picture(file: &ExrFile, path: &Path, stops: f64) -> Result<Picture> {
     let layer = file.layer(None, &path.display().to_string())?;
-    Ok(Picture::of_layer(file, &layer, Exposure { stops: exposure, ..Exposure::default() }).0)
+    Ok(Picture::of_layer(file, &layer, Exposure { stops, ..Exposure::default() }).0)
 }
 
 /// The numbers of a layer, side by side: what a file has as 16 or 32 bits, as 32.
@@ -121,6 +122,9 @@ pub(super) fn diff<'py>(
     layer: Option<String>,
     tolerance: Option<f64>,
 ) -> PyResult<Bound<'py, PyDict>> {
+    if tolerance.is_some_and(|most| !(most >= 0.0 && most.is_finite())) {
+        return refuse("a tolerance is a finite number, 0 or more", "such as tolerance=1e-4");
+    }
     let files = [a.file.clone(), b.file.clone()];
     let names = [a, b].map(|one| one.path.display().to_string());
     let compared = move || {

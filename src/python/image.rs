@@ -9,6 +9,7 @@ use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 
 use super::errors::raised;
+use super::options::stops;
 use super::plane::{Place, Plane};
 use super::work;
 
@@ -82,14 +83,14 @@ impl Image {
 
     /// The bytes of a picture.
     fn png(&self, py: Python<'_>, exposure: f64) -> PyResult<Vec<u8>> {
-        let image = self.image.clone();
-        work::run(py, move || image.png_bytes(exposure))?.map_err(raised)
+        let (image, stops) = (self.image.clone(), stops(exposure)?);
+        work::run(py, move || image.png_bytes(stops))?.map_err(raised)
     }
 
     /// Writes a picture.
     fn write_png(&self, py: Python<'_>, path: PathBuf, exposure: f64) -> PyResult<()> {
-        let image = self.image.clone();
-        work::run(py, move || image.write_png(path, exposure))?.map_err(raised)
+        let (image, stops) = (self.image.clone(), stops(exposure)?);
+        work::run(py, move || image.write_png(path, stops))?.map_err(raised)
     }
 }
 

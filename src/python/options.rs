@@ -51,6 +51,17 @@ fn get<'py, T: FromPyObjectOwned<'py>>(given: &Bound<'py, PyDict>, name: &str, w
     }
 }
 
+/// Stops of exposure that light can be multiplied by.
+///
+/// # Errors
+/// If they are no finite number.
+pub(super) fn stops(exposure: f64) -> PyResult<f64> {
+    match exposure.is_finite() {
+        true => Ok(exposure),
+        false => refuse("an exposure is a finite number of stops", "such as exposure=1"),
+    }
+}
+
 /// Seconds, or a text such as `"10m"`.
 pub(super) fn time(value: &Bound<'_, PyAny>) -> PyResult<Duration> {
     let found = match value.cast::<PyString>() {

@@ -258,6 +258,8 @@ def test_pictures_show_in_notebooks(tmp_path):
     image.to_png(tmp_path / "a.png")
     assert image._repr_png_() == (tmp_path / "a.png").read_bytes() and image._repr_png_().startswith(b"\x89PNG\r\n")
     image.to_png(tmp_path / "b.png", exposure=2)
+    with pytest.raises(abbe.OptionsError, match="an exposure is a finite number of stops"):
+        image.to_png(tmp_path / "c.png", exposure=float("nan"))
     matplotlib = pytest.importorskip("matplotlib.image")
     dark, bright = (matplotlib.imread(tmp_path / name) for name in ("a.png", "b.png"))
     assert dark.shape == (12, 20, 3) and (bright >= dark).all() and bright.mean() > dark.mean()
@@ -314,7 +316,7 @@ def test_files_that_fail_raise_what_python_raises(tmp_path):
     with pytest.raises(abbe.RenderError, match="no complete OpenEXR image"):
         abbe.read_exr(tmp_path / "a.exr")
     (tmp_path / "file").write_text("")
-    with pytest.raises(OSError):
+    with pytest.raises(OSError, match=r"^\[Errno 20\] Not a directory: '.*/file/a.exr'$"):
         abbe.render(SCENE).write_exr(tmp_path / "file/a.exr")
 
 
@@ -389,6 +391,8 @@ def test_two_images_are_told_apart_by_more_than_their_noise(tmp_path):
     path = tmp_path / "b.exr"
     b.write_exr(path)
     assert abbe.diff(a, path).relative_mse == noise.relative_mse == abbe.diff(a, abbe.read_exr(path)).relative_mse
+    with pytest.raises(abbe.OptionsError, match="a tolerance is a finite number, 0 or more"):
+        abbe.diff(a, b, tolerance=-1)
     with pytest.raises(abbe.OptionsError, match="cannot be compared"):
         abbe.diff(a, abbe.render(SCENE, crop=(0, 0, 4, 4)))
 
