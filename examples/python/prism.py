@@ -35,7 +35,7 @@ def exact(nm):
         middle = (low + high) / 2
         is_low = after(middle) < EDGE
         low, high = np.where(is_low, middle, low), np.where(is_low, high, middle)
-    return middle
+    return (low + high) / 2
 
 
 def scene():

@@ -224,6 +224,34 @@ STRANGE = [
 ]  # fmt: skip
 
 
+OPTIONS = [
+    "samples", "error", "time", "seed", "overscan", "crop", "layers", "spectral", "threads", "stamp", "progress",
+    "checkpoint", "every", "resume",
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("option", OPTIONS)
+def test_options_of_any_kind_are_taken_or_told(option, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    camera = {"position": [0, 0, 5], "look_at": [0, 0, 0], "vertical_fov": 40}
+    light = [{"environment": {"radiance": 1}}]
+    scene = abbe.Scene({"camera": camera, "film": {"width": 3, "height": 2}, "light": light})
+
+    class Enough(Exception):
+        pass
+
+    def stop(so_far):
+        raise Enough
+
+    for value in STRANGE:
+        try:
+            abbe.render(scene, **{"samples": 1, "progress": stop, option: value})
+        except abbe.RenderError as error:
+            assert error.message and "defect" not in error.message, value
+        except (Enough, TypeError, ValueError, OSError):
+            pass
+
+
 def places(value, found):
     """Every container of a scene with one of its keys."""
     keys = value.keys() if isinstance(value, dict) else range(len(value))
