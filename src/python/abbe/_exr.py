@@ -59,7 +59,7 @@ class ExrImage(Layers):
         return dict(self._core.attributes)
 
     def to_png(self, path: str | os.PathLike[str], exposure: float = 0.0) -> None:
-        """Writes an 8-bit sRGB picture for looking, brightened by 2^`exposure`, of whatever color space the file has."""
+        """Writes an 8-bit sRGB picture for looking, brightened by 2^`exposure`, whatever color space the file has."""
         self._core.write_png(path, exposure)
 
     def _repr_png_(self) -> bytes:
