@@ -155,6 +155,14 @@ fn is_same(a: &Image, b: &Image) -> bool {
     (a.film(), a.report()) == (b.film(), b.report())
 }
 
+/// The same options with a plan from a file, so that renders of one scene need no plan of their own.
+fn planned(scene: &Scene, options: &Options, folder: &Path) -> Options {
+    let (path, mut asked) = (folder.join("image.plan"), scene.clone());
+    options.apply(&mut asked).expect("the options fit");
+    abbe::write_plan(&abbe::plan::plan(&asked), &asked, &path).expect("a plan can be written");
+    Options { plan: Some(path), ..options.clone() }
+}
+
 pub fn rendering(scene: &Scene, options: &Options, threads: usize) -> Rendering {
     Rendering::new(scene, &Options { threads: Some(threads), ..options.clone() }).expect("it can be rendered")
 }
@@ -173,6 +181,7 @@ fn a_render_that_stops_anywhere_goes_on_to_the_same_bytes() {
     let path = folder.path().join("image.checkpoint");
     for (kind, text, options, is_meant) in kinds() {
         let scene = scene(&text);
+        let options = planned(&scene, &options, folder.path());
         let mut whole = rendering(&scene, &options, 2);
         assert!(is_meant(&whole.plan().method), "{kind}: {:?}", whole.plan().because);
         let asked = advance(&mut whole, u64::MAX);
@@ -210,6 +219,7 @@ fn a_render_that_stops_and_goes_on_in_one_run_makes_the_same_image() {
     let folder = tempfile::tempdir().expect("a folder");
     for (kind, text, options, _) in kinds() {
         let scene = scene(&text);
+        let options = planned(&scene, &options, folder.path());
         let (mut whole, mut often) = (rendering(&scene, &options, 2), rendering(&scene, &options, 2));
         let asked = advance(&mut whole, u64::MAX);
         while often.done() < often.work() {
@@ -230,6 +240,7 @@ fn parts_of_an_image_are_together_the_same_bytes_as_the_whole() {
     let tiles = ("64 tiles", LIT.into(), Options::default(), (|_| true) as fn(&Method) -> bool);
     for (number, (kind, text, options, _)) in [tiles].into_iter().chain(kinds()).enumerate() {
         let scene = scene(&text);
+        let options = planned(&scene, &options, folder.path());
         let whole = bytes(&rendering(&scene, &options, 2).run(&|_| ()), folder.path());
         let counts = match number {
             0 => &all[..],
@@ -263,7 +274,8 @@ fn a_part_that_stops_goes_on_to_the_same_bytes() {
     let [checkpoint, part, other] = ["a.checkpoint", "a.part", "b.part"].map(|name| folder.path().join(name));
     let shard = Shard::new(2, 3).expect("there is such a part");
     for (kind, text, options, _) in kinds() {
-        let (scene, options) = (scene(&text), Options { shard, ..options });
+        let scene = scene(&text);
+        let options = planned(&scene, &Options { shard, ..options }, folder.path());
         let [mut whole, mut first, mut next] = [2, 3, 1].map(|threads| rendering(&scene, &options, threads));
         let asked = advance(&mut whole, u64::MAX);
         whole.write_part(&part).expect("a part can be written");
@@ -280,14 +292,12 @@ fn a_part_that_stops_goes_on_to_the_same_bytes() {
 #[test]
 fn a_part_that_follows_a_plan_from_a_file_has_the_same_bytes() {
     let folder = tempfile::tempdir().expect("a folder");
-    let [plan, part, other] = ["a.plan", "a.part", "b.part"].map(|name| folder.path().join(name));
+    let [part, other] = ["a.part", "b.part"].map(|name| folder.path().join(name));
     for (kind, text, options, _) in kinds() {
-        let mut scene = scene(&text);
-        options.apply(&mut scene).expect("the options fit");
-        abbe::write_plan(&abbe::plan::plan(&scene), &scene, &plan).expect("a plan can be written");
+        let scene = scene(&text);
         let shard = Shard::new(2, 3).expect("there is such a part");
         let alone = Options { shard, ..options };
-        let planned = Options { plan: Some(plan.clone()), ..alone.clone() };
+        let planned = planned(&scene, &alone, folder.path());
         for (options, path) in [(alone, &part), (planned, &other)] {
             let mut rendering = rendering(&scene, &options, 2);
             advance(&mut rendering, u64::MAX);

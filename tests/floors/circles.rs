@@ -8,6 +8,27 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::exceptions::CIRCLES;
 use super::house::{self, House, exactly, here};
 
+/// What a file stands for where folders inside a room are told apart: its folder, or itself if it is in none.
+fn part(path: &str) -> &str {
+    let folder = path.rsplit_once('/').map_or("", |(folder, _)| folder);
+    if folder.contains('/') { folder } else { path }
+}
+
+/// The circles of folders inside rooms, and of files beside them.
+fn circles_of_folders(texts: &BTreeMap<String, String>) -> Vec<Vec<String>> {
+    let house = House::new(texts);
+    let of_file: Vec<&str> = house.files.iter().map(|file| part(&file.path)).collect();
+    let parts: Vec<&str> = of_file.iter().copied().collect::<BTreeSet<_>>().into_iter().collect();
+    let number = |file: usize| parts.binary_search(&of_file[file]).expect("every file has a part");
+    let mut graph = vec![BTreeMap::new(); parts.len()];
+    for (from, edges) in house.graph().into_iter().enumerate() {
+        let edges = edges.into_iter().map(|(to, name)| (number(to), name));
+        graph[number(from)].extend(edges.filter(|(to, _)| *to != number(from)));
+    }
+    let named = |circle: &BTreeSet<usize>| circle.iter().map(|part| parts[*part].to_owned()).collect();
+    house::circles(&graph).iter().map(named).collect()
+}
+
 /// Each circle as its files in order, and beside it why: one name for each file that another one uses.
 fn circles(texts: &BTreeMap<String, String>) -> Vec<(String, String)> {
     let all = House::new(texts);
@@ -31,6 +52,25 @@ fn no_files_stand_in_a_circle() {
     let new = circles.iter().filter(|(files, _)| !CIRCLES.contains(&files.as_str()));
     let why: Vec<&str> = new.map(|(_, why)| why.as_str()).collect();
     exactly("CIRCLES", CIRCLES, found, &why.join("\n\n"));
+}
+
+#[test]
+fn no_folders_stand_in_a_circle() {
+    assert_eq!(circles_of_folders(here()), [[""; 0]; 0]);
+    let both = |one: &str| {
+        let files = [
+            ("room/one/a.rs", one),
+            ("room/one/b.rs", "pub struct B;"),
+            ("room/two/a.rs", "use super::super::one::b::B; pub struct A;"),
+            ("room/one/mod.rs", "pub mod a; pub mod b;"),
+            ("room/two/mod.rs", "pub mod a;"),
+            ("room/mod.rs", "pub mod one; pub mod two;"),
+            ("lib.rs", "pub mod room;"),
+        ];
+        circles_of_folders(&files.map(|(path, text)| (path.to_owned(), text.to_owned())).into())
+    };
+    assert_eq!(both("use super::super::two::a::A;"), [["room/one", "room/two"]]);
+    assert!(both("use super::b::B;").is_empty());
 }
 
 fn circle_of(files: &[(&str, &str)]) -> Vec<String> {
