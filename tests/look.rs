@@ -8,6 +8,7 @@ mod damaged;
 mod diff;
 mod files;
 mod info;
+mod mattes;
 mod view;
 
 use crate::messages::run::{Answer, Folder, render};

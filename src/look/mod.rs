@@ -1,6 +1,7 @@
 //! Floor 3: images that are looked at and compared, whoever made them.
 
 mod difference;
+mod mattes;
 mod noise;
 mod picture;
 mod significance;
@@ -8,6 +9,7 @@ mod tone;
 mod words;
 
 pub use difference::{ColorDifference, Difference, WorstPixel, compare};
+pub use mattes::Mattes;
 pub use noise::Noise;
 pub use picture::{Exposure, Picture};
 pub use significance::{normal_equivalent, sidak_threshold};

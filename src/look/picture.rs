@@ -63,6 +63,12 @@ impl Picture {
         (Self { width, pixels, is_light: false }, said)
     }
 
+    /// Linear light of Rec.709 up to 1, row by row.
+    pub fn of_light(width: usize, light: impl IntoIterator<Item = [f64; 3]>) -> Self {
+        let pixels = light.into_iter().map(|rgb| rgb.map(|x| shown(x) as f32)).collect();
+        Self { width, pixels, is_light: true }
+    }
+
     /// Gray numbers from 0 to 1, row by row.
     pub fn of_grays(width: usize, grays: impl IntoIterator<Item = f64>) -> Self {
         Self { width, pixels: grays.into_iter().map(|gray| [gray as f32; 3]).collect(), is_light: false }

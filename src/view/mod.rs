@@ -5,8 +5,8 @@ mod terminal;
 use std::path::PathBuf;
 
 use abbe::Result;
-use abbe::film::{BEAUTY, ExrFile, check_writable};
-use abbe::look::{Exposure, Picture, Tone};
+use abbe::film::{BEAUTY, ExrFile, ExrLayer, check_writable};
+use abbe::look::{Exposure, Mattes, Picture, Tone};
 use clap::Parser;
 use clap::builder::PossibleValuesParser;
 
@@ -16,12 +16,14 @@ use crate::outputs::{check_exposure, check_png, refuse, spare};
 const HELP: &str = "\
 kitty, WezTerm and Ghostty show the pixels themselves, every other terminal two of them in a character. \
 Colors are brought to Rec.709. Normals are shown from -1 to 1, depths and single numbers from their 1st to their 99th \
-percentile. The tone srgb cuts off what is brighter than white; hable is the filmic curve of Hable 2010.
+percentile, Cryptomattes in a color for each name. The tone srgb cuts off what is brighter than white; hable is the filmic curve of Hable 2010.
 
 Examples:
   render view rainbow.exr                      on the terminal
   render view rainbow.exr Z                    the depth
   render view rainbow.exr --exposure 2         four times as bright
+  render view rainbow.exr CryptoObject         every object in its own color
+  render view rainbow.exr CryptoObject.prism   the matte of one object
   render view rainbow.exr --png look.png       a PNG instead
   render view rainbow.exr albedo --sixel       for terminals that know sixels
 
@@ -35,7 +37,8 @@ pub struct Query {
     #[arg(value_name = "FILE.exr")]
     file: PathBuf,
 
-    /// A layer such as albedo, N or Z, or a channel such as albedo.R; the image itself if absent
+    /// A layer such as albedo, N or Z, a channel such as albedo.R, mattes such as CryptoObject, or one of them such as
+    /// CryptoObject.ball; the image itself if absent
     layer: Option<String>,
 
     /// Write an 8-bit sRGB picture of full size, and show nothing
@@ -64,18 +67,11 @@ pub fn run(query: &Query) -> Result<()> {
     check_png(query.png.as_deref())?;
     query.png.as_deref().map_or(Ok(()), |png| spare(&query.file, "image", png))?;
     let file = ExrFile::read(&query.file)?;
-    let layer = file.layer(query.layer.as_deref(), &query.file.display().to_string())?;
-    if query.layer.is_none() && layer.name != BEAUTY {
-        say(&format!("there are no R, G and B: this is {}", layer.name));
-    }
-    let given = [("--exposure", query.exposure.is_some()), ("--tone", query.tone.is_some())];
-    if let Some((flag, _)) = given.iter().find(|(_, given)| *given).filter(|_| layer.color().is_none()) {
-        return refuse(&format!("{flag} is for colors, and {} has none", layer.name), Some("leave it out"));
-    }
-    let tone = Tone::ALL.into_iter().find(|tone| Some(tone.name()) == query.tone.as_deref()).unwrap_or_default();
-    let exposure = Exposure { stops: query.exposure.unwrap_or(0.0), tone };
-    let (picture, said) = Picture::of_layer(&file, &layer, exposure);
-    said.iter().for_each(|line| say(line));
+    let shown = query.file.display().to_string();
+    let picture = match file.layer(query.layer.as_deref(), &shown) {
+        Ok(layer) => of_layer(query, &file, &layer)?,
+        Err(unknown) => of_mattes(query, &file, &shown).unwrap_or(Err(unknown))?,
+    };
     match &query.png {
         Some(png) => {
             check_writable(png)?;
@@ -84,5 +80,41 @@ pub fn run(query: &Query) -> Result<()> {
             Ok(())
         }
         None => answer(&terminal::drawn(&picture, query.sixel)?),
+    }
+}
+
+/// A layer as a picture; says what is to be known of it.
+fn of_layer(query: &Query, file: &ExrFile, layer: &ExrLayer) -> Result<Picture> {
+    if query.layer.is_none() && layer.name != BEAUTY {
+        say(&format!("there are no R, G and B: this is {}", layer.name));
+    }
+    if layer.color().is_none() {
+        refuse_curves(query, &layer.name)?;
+    }
+    let tone = Tone::ALL.into_iter().find(|tone| Some(tone.name()) == query.tone.as_deref()).unwrap_or_default();
+    let exposure = Exposure { stops: query.exposure.unwrap_or(0.0), tone };
+    let (picture, said) = Picture::of_layer(file, layer, exposure);
+    said.iter().for_each(|line| say(line));
+    Ok(picture)
+}
+
+/// Mattes as a picture, or one of them, if the name that is asked for is one of mattes.
+fn of_mattes(query: &Query, file: &ExrFile, shown: &str) -> Option<Result<Picture>> {
+    let wanted = query.layer.as_deref()?;
+    let mattes = Mattes::all(file).into_iter().find_map(|mattes| {
+        let rest = wanted.strip_prefix(mattes.name())?;
+        (rest.is_empty() || rest.starts_with('.')).then_some((mattes, rest.get(1..)))
+    });
+    let (mattes, one) = mattes?;
+    let picture = one.map_or_else(|| Ok(mattes.picture()), |name| mattes.matte(name, shown));
+    Some(refuse_curves(query, wanted).and(picture))
+}
+
+/// Refuses an exposure or a curve of what has no colors.
+fn refuse_curves(query: &Query, name: &str) -> Result<()> {
+    let given = [("--exposure", query.exposure.is_some()), ("--tone", query.tone.is_some())];
+    match given.iter().find(|(_, given)| *given) {
+        Some((flag, _)) => refuse(&format!("{flag} is for colors, and {name} has none"), Some("leave it out")),
+        None => Ok(()),
     }
 }

@@ -7,7 +7,7 @@ use super::assert_refused;
 use super::files::{Exr, ramp};
 use crate::messages::run::{Folder, render};
 
-const SCENE: &str = r#"
+pub const SCENE: &str = r#"
 camera = { position = [0, 1, 6], look_at = [0, 1, 0], vertical_fov = 35 }
 film = { width = 6, height = 4, color_space = "lin_ap1_scene" }
 render.samples = 1
@@ -20,7 +20,7 @@ environment = { radiance = 1 }
 "#;
 
 /// The pixels of a PNG that is written of a layer, and what is said of it.
-fn pixels(folder: &Folder, arguments: &[&str]) -> (Vec<[u8; 3]>, String) {
+pub fn pixels(folder: &Folder, arguments: &[&str]) -> (Vec<[u8; 3]>, String) {
     let answer = render(folder, &[&["view", "a.exr", "--png", "look.png"], arguments].concat());
     assert_eq!((answer.code, &*answer.stdout), (Some(0), ""), "{}", answer.stderr);
     let said = answer.stderr.strip_suffix("wrote look.png\n").expect("the last line").to_owned();

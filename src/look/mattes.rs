@@ -1,0 +1,155 @@
+use std::collections::BTreeMap;
+
+use super::picture::Picture;
+use crate::error::{Error, Result, nearest};
+use crate::film::{Channel, ExrFile, ExrLayer, id};
+
+/// Most names that are listed where one is not known.
+const MOST_LISTED: usize = 20;
+
+/// The mattes of one kind in a file, such as `CryptoObject`: what every pixel shows, and how much of it.
+///
+/// Cryptomatte specification 1.2.0: layers `CryptoObject00`, `CryptoObject01` .. hold pairs of a name's number and its
+/// coverage, and an attribute holds the names.
+#[derive(Debug)]
+pub struct Mattes<'f> {
+    name: &'f str,
+    width: usize,
+    /// Channels with the number of a name, and its coverage.
+    ranks: Vec<[&'f Channel; 2]>,
+    /// Names and their numbers; none in a file that keeps them elsewhere.
+    names: BTreeMap<String, u32>,
+}
+
+impl<'f> Mattes<'f> {
+    /// All mattes of a file.
+    pub fn all(file: &'f ExrFile) -> Vec<Self> {
+        let mut all: Vec<Self> = Vec::new();
+        let layers = file.layers();
+        for (key, name) in file.parts.iter().flat_map(|part| &part.attributes) {
+            let Some(start) = key.strip_suffix("/name").filter(|start| start.starts_with("cryptomatte/")) else {
+                continue;
+            };
+            if all.iter().any(|known| known.name == name) {
+                continue;
+            }
+            let of_number = |number: usize| layers.iter().find(|layer| layer.name == format!("{name}{number:02}"));
+            let found: Vec<&ExrLayer> = (0..).map_while(of_number).filter(|layer| layer.channels.len() == 4).collect();
+            let ranks: Vec<_> = found.iter().flat_map(|layer| pairs(layer)).collect();
+            if let Some(first) = found.first().filter(|first| found.iter().all(|layer| same_size(first, layer))) {
+                let names = file.attribute(&format!("{start}/manifest")).map_or_else(BTreeMap::new, names);
+                all.push(Self { name, width: first.part.bounds.size[0], ranks, names });
+            }
+        }
+        all
+    }
+
+    /// What the kind is called, such as `CryptoObject`.
+    pub fn name(&self) -> &'f str {
+        self.name
+    }
+
+    /// Every name in a color of its own, weighted by its coverage; black where there is nothing.
+    pub fn picture(&self) -> Picture {
+        let pixel = |at: usize| {
+            self.ranks.iter().fold([0.0; 3], |sum: [f64; 3], [numbers, covered]| {
+                let (color, covered) = (color(number(numbers, at)), coverage(covered, at));
+                std::array::from_fn(|i| sum[i] + covered * color[i])
+            })
+        };
+        Picture::of_light(self.width, (0..self.pixels()).map(pixel))
+    }
+
+    /// The coverage of one name, black where it is not and white where nothing else is.
+    ///
+    /// # Errors
+    /// [`Error::Arguments`] if there is no such name, with the nearest one. `shown` is the file's name in messages.
+    pub fn matte(&self, wanted: &str, shown: &str) -> Result<Picture> {
+        let known = match self.names.get(wanted) {
+            Some(number) => *number,
+            None if self.names.is_empty() => id(wanted),
+            None => return Err(self.unknown(wanted, shown)),
+        };
+        let covered = |at: usize| {
+            let of_it = self.ranks.iter().filter(|[numbers, _]| number(numbers, at) == known);
+            of_it.map(|[_, covered]| coverage(covered, at)).sum::<f64>().min(1.0)
+        };
+        Ok(Picture::of_grays(self.width, (0..self.pixels()).map(covered)))
+    }
+
+    fn unknown(&self, wanted: &str, shown: &str) -> Error {
+        let names = || self.names.keys().map(String::as_str);
+        let near = nearest(wanted, names()).map_or(String::new(), |near| format!("did you mean {near}? "));
+        let listed = names().take(MOST_LISTED).collect::<Vec<_>>().join(", ");
+        let more = match self.names.len().saturating_sub(MOST_LISTED) {
+            0 => String::new(),
+            more => format!(" and {more} more"),
+        };
+        Error::Arguments {
+            message: format!("{shown} has no {wanted} in {}", self.name),
+            help: Some(format!("{near}it has {listed}{more}")),
+        }
+    }
+
+    fn pixels(&self) -> usize {
+        self.ranks.first().map_or(0, |[numbers, _]| numbers.values().count())
+    }
+}
+
+/// Number and coverage, twice in a layer.
+fn pairs<'f>(layer: &ExrLayer<'f>) -> [[&'f Channel; 2]; 2] {
+    let channels = &layer.channels;
+    [[channels[0], channels[1]], [channels[2], channels[3]]]
+}
+
+fn same_size(a: &ExrLayer, b: &ExrLayer) -> bool {
+    a.part.bounds.size == b.part.bounds.size
+}
+
+/// The names of a manifest: a JSON object of names and numbers of eight hexadecimal digits.
+fn names(manifest: &str) -> BTreeMap<String, u32> {
+    let entries: BTreeMap<String, String> = serde_json::from_str(manifest).unwrap_or_default();
+    let number = |(name, digits): (String, String)| Some((name, u32::from_str_radix(&digits, 16).ok()?));
+    entries.into_iter().filter_map(number).collect()
+}
+
+/// The number of a name; 0 stands for nothing.
+fn number(channel: &Channel, at: usize) -> u32 {
+    (channel.at(at) as f32).to_bits()
+}
+
+fn coverage(channel: &Channel, at: usize) -> f64 {
+    let covered = channel.at(at);
+    if covered.is_nan() { 0.0 } else { covered.clamp(0.0, 1.0) }
+}
+
+/// A color, in linear light, that hardly any other number has. Names' numbers are hashes, so their bits are as good as
+/// random: the upper half is the hue, the lower the brightness.
+fn color(number: u32) -> [f64; 3] {
+    if number == 0 {
+        return [0.0; 3];
+    }
+    let [hue, bright] = [number >> 16, number & 0xffff].map(|bits| f64::from(bits) / 65536.0);
+    // From red by way of green and blue to red again.
+    [0.0, 2.0, 4.0].map(|peak| {
+        let apart = (6.0 * hue - peak).rem_euclid(6.0);
+        let apart = apart.min(6.0 - apart);
+        (0.15 + 0.85 * bright) * (0.1 + 0.9 * (2.0 - apart).clamp(0.0, 1.0))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_thousand_names_have_a_thousand_colors() {
+        let mut colors: Vec<_> = (0..1000).map(|i| color(id(&format!("bead [{i}]"))).map(f64::to_bits)).collect();
+        colors.sort_unstable();
+        colors.dedup();
+        assert_eq!(colors.len(), 1000);
+        let bright = |i: usize| color(id(&format!("bead [{i}]"))).into_iter().fold(0.0, f64::max);
+        assert!((0..1000).all(|i| (0.15..=1.0).contains(&bright(i))));
+        assert_eq!(color(0), [0.0; 3]);
+    }
+}

@@ -1,0 +1,86 @@
+use abbe::film::{Manifest, id};
+
+use super::assert_refused;
+use super::files::Exr;
+use super::view::pixels;
+use crate::messages::run::{Folder, render};
+
+/// Four pixels: all ball, half ball and a quarter each of floor and nothing, all of what no name is of, and nothing.
+fn mattes(folder: &Folder) {
+    let of = |name: &str| f32::from_bits(id(name));
+    let (ball, floor, other) = (of("ball"), of("floor.left"), of("another"));
+    let channels = vec![
+        ("CryptoObject00.r", vec![ball, ball, other, 0.0]),
+        ("CryptoObject00.g", vec![1.0, 0.5, 1.0, 0.0]),
+        ("CryptoObject00.b", vec![0.0, floor, 0.0, 0.0]),
+        ("CryptoObject00.a", vec![0.0, 0.25, 0.0, 0.0]),
+        ("CryptoObject01.r", vec![0.0, 0.0, 0.0, 0.0]),
+        ("CryptoObject01.g", vec![0.0, 0.25, 0.0, 0.0]),
+        ("CryptoObject01.b", vec![0.0; 4]),
+        ("CryptoObject01.a", vec![0.0; 4]),
+        ("R", vec![0.5; 4]),
+        ("G", vec![0.5; 4]),
+        ("B", vec![0.5; 4]),
+    ];
+    let manifest = Manifest::new("CryptoObject", ["ball", "floor.left"].into_iter());
+    let texts = vec![
+        ("cryptomatte/3ae39a5/name", "CryptoObject".to_owned()),
+        ("cryptomatte/3ae39a5/manifest", manifest.json()),
+    ];
+    Exr { texts, ..Exr::new([4, 1], channels) }.write(&folder.path().join("a.exr"));
+}
+
+#[test]
+fn one_matte_is_the_coverage_of_its_name() {
+    let folder = Folder::new();
+    mattes(&folder);
+    let shown = |name: &str| pixels(&folder, &[name]);
+    assert_eq!(shown("CryptoObject.ball"), (vec![[255; 3], [128; 3], [0; 3], [0; 3]], String::new()));
+    assert_eq!(shown("CryptoObject.floor.left").0, [[0; 3], [64; 3], [0; 3], [0; 3]]);
+}
+
+#[test]
+fn all_mattes_have_colors_of_their_own_by_their_coverage() {
+    let folder = Folder::new();
+    mattes(&folder);
+    let (shown, said) = pixels(&folder, &["CryptoObject"]);
+    assert_eq!((shown.len(), &*said), (4, ""));
+    let linear = |pixel: [u8; 3]| {
+        // IEC 61966-2-1.
+        let of = |x: f64| if x <= 0.040_45 { x / 12.92 } else { ((x + 0.055) / 1.055).powf(2.4) };
+        pixel.map(|x| of(f64::from(x) / 255.0))
+    };
+    let [ball, edge, other, nothing] = [0, 1, 2, 3].map(|at| linear(shown[at]));
+    assert!(ball != other && nothing == [0.0; 3], "{shown:?}");
+    // What the ball has of it, and at most a quarter of something else.
+    assert!((0..3).all(|i| (-0.01..=0.26).contains(&(edge[i] - 0.5 * ball[i]))), "{shown:?}");
+    assert!((0..3).any(|i| edge[i] - 0.5 * ball[i] > 0.02), "{shown:?}");
+}
+
+#[test]
+fn mattes_of_a_render_are_shown_by_the_names_of_its_objects() {
+    let folder = Folder::new();
+    folder.write("balls.toml", super::view::SCENE);
+    let set = ["--set", "film.layers=[\"CryptoObject\"]", "--set", "film.multipart=true"];
+    let made = render(&folder, &[&["balls.toml", "--exr", "a.exr"], &set[..]].concat());
+    assert_eq!(made.code, Some(0), "{}", made.stderr);
+    let (ball, _) = pixels(&folder, &["CryptoObject.object 1"]);
+    // The ball fills the middle of the image, and no corner of it.
+    assert_eq!([ball[8], ball[0]], [[255; 3], [0; 3]]);
+    let (all, _) = pixels(&folder, &["CryptoObject"]);
+    assert!(all[8] != [0; 3] && all[0] == [0; 3], "{all:?}");
+}
+
+#[test]
+fn a_matte_that_there_is_not_is_refused_with_the_nearest_name() {
+    let folder = Folder::new();
+    mattes(&folder);
+    let view = |arguments: &[&str]| render(&folder, &[&["view", "a.exr", "--png", "b.png"], arguments].concat());
+    let near = "error: a.exr has no bal in CryptoObject\nhelp: did you mean ball? it has ball, floor.left\n";
+    assert_refused(&view(&["CryptoObject.bal"]), 2, near);
+    let tone = "error: --tone is for colors, and CryptoObject has none\nhelp: leave it out\n";
+    assert_refused(&view(&["CryptoObject", "--tone", "hable"]), 2, tone);
+    let other = view(&["CryptoMaterial"]);
+    assert!(other.stderr.starts_with("error: a.exr has no layer CryptoMaterial\n"), "{}", other.stderr);
+    assert_eq!(folder.listing(), ["a.exr"]);
+}
