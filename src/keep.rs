@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use abbe::film::{Shard, check_writable};
 use abbe::scene::duration;
-use abbe::{Advance, Error, Rendering, Result, Resumed, Timer};
+use abbe::{Advance, Error, ImageError, Rendering, Result, Resumed, Timer};
 use clap::Args;
 
 use crate::messages::{problem, say, so_far, warn};
@@ -110,6 +110,8 @@ pub struct Keep {
 
 /// Whether the command was told to stop.
 static STOPPED: AtomicBool = AtomicBool::new(false);
+/// What it says then, if nothing of the render is kept.
+const NOTHING_KEPT: &str = "stopped; nothing was kept. With --checkpoint 60s, what is done is kept";
 /// The exit code of a command that was.
 pub const STOPPED_CODE: u8 = 130;
 
@@ -128,15 +130,16 @@ impl Keep {
             return refuse(&format!("{} is there from an earlier run", there.display()), Some(help));
         }
         checkpoint.as_deref().map_or(Ok(()), check_writable)?;
-        if keeps || flags.snapshot.is_some() {
-            let caught = ctrlc::set_handler(|| {
-                if STOPPED.swap(true, Ordering::Relaxed) {
-                    std::process::exit(STOPPED_CODE.into());
-                }
-            });
-            caught
-                .map_err(|error| Error::Arguments { message: format!("cannot catch Ctrl-C: {error}"), help: None })?;
-        }
+        let stops_at_once = !keeps && flags.snapshot.is_none();
+        let caught = ctrlc::set_handler(move || {
+            if stops_at_once {
+                say(NOTHING_KEPT);
+            }
+            if stops_at_once || STOPPED.swap(true, Ordering::Relaxed) {
+                std::process::exit(STOPPED_CODE.into());
+            }
+        });
+        caught.map_err(|error| Error::Arguments { message: format!("cannot catch Ctrl-C: {error}"), help: None })?;
         Ok(Self {
             checkpoint,
             checkpoints: Timer::new(flags.checkpoint.or(flags.resume.then_some(OFTEN))),
@@ -201,7 +204,8 @@ impl Keep {
             }
             let error = rendering.error();
             if error != looked {
-                error.iter().for_each(|error| progress.say(&so_far(error)));
+                let more = more_samples(rendering, error.as_ref()).zip(progress.left());
+                error.iter().for_each(|error| progress.say(&so_far(error, more.as_ref())));
                 looked = error;
             }
             if stops() {
@@ -257,7 +261,7 @@ impl Keep {
     /// Says what was kept, and how to go on.
     pub fn say_how_to_resume(&self) {
         let Some(path) = &self.checkpoint else {
-            return say("stopped; with --checkpoint 60s, what is done would be kept");
+            return say("stopped; the snapshot is kept. With --checkpoint 60s, a render can also go on later");
         };
         let mut words: Vec<String> = std::env::args().map(|word| quoted(&word)).collect();
         if !self.resume {
@@ -265,6 +269,14 @@ impl Keep {
         }
         say(&format!("stopped; {} keeps what is done. Go on with\n  {}", path.display(), words.join(" ")));
     }
+}
+
+/// How many samples of a pixel will do, about, where that is known and more than there are.
+fn more_samples(rendering: &Rendering, error: Option<&ImageError>) -> Option<u32> {
+    let taken = error?.noise.samples;
+    let times = rendering.work() as f64 / rendering.done().max(1) as f64;
+    let wanted = (f64::from(taken) * times).round() as u32;
+    (wanted > taken).then_some(wanted)
 }
 
 /// A word as the shell takes it.

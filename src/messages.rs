@@ -242,11 +242,14 @@ pub fn print_written(path: &Path) {
     }
 }
 
-/// How far the image is off while it is rendered, in one line.
-pub fn so_far(error: &ImageError) -> String {
+/// How far the image is off while it is rendered, in one line, and how many samples will do in what time, if that is
+/// known.
+pub fn so_far(error: &ImageError, more: Option<&(u32, String)>) -> String {
     let asked = error.asked.map_or(String::new(), |asked| format!("; {} is asked for", percent(asked)));
+    let more =
+        more.map_or(String::new(), |(samples, left)| format!("; about {samples} samples will be taken, {left} left"));
     format!(
-        "{} samples per pixel: the image is off by at most {}{asked}",
+        "{} samples per pixel: the image is off by at most {}{asked}{more}",
         error.noise.samples,
         percent(error.at_most())
     )
@@ -287,8 +290,11 @@ pub fn print_report(image: &Image, took: Duration, expected: Duration) {
     }
     if report.polarization_of_tile > TOLD {
         let [all, tile] = [report.polarization, report.polarization_of_tile].map(|share| 100.0 * share);
-        let tile = if tile > 1.05 * all { format!(", up to {tile:.1} % in 16 x 16 pixels") } else { String::new() };
-        say(&format!("polarization may change up to {all:.1} % of the light seen{tile}: it is not traced"));
+        let tile = if tile > 1.05 * all { format!(", and {tile:.1} % in 16 x 16 pixels") } else { String::new() };
+        say(&format!(
+            "polarization is not traced: it may change at most {all:.1} % of the light seen{tile}; render.polarization = \"on\" \
+             traces it"
+        ));
     }
 }
 

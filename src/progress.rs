@@ -86,6 +86,13 @@ impl Progress {
         }
     }
 
+    /// The time that is left as people say it, if it can be told.
+    pub fn left(&self) -> Option<String> {
+        let (done, work) = (self.done.load(Ordering::Relaxed), self.work.load(Ordering::Relaxed).max(1));
+        let parts = [self.before, done].map(|count| count as f64 / work as f64);
+        (done > self.before).then(|| spoken(left(parts, self.start.elapsed().as_secs_f64())))
+    }
+
     /// Removes the bar and says how long it took, beside the time that was expected of the whole render.
     pub fn finish(self, expected: Duration) -> Duration {
         let (start, work) = (self.start, self.work.load(Ordering::Relaxed));
@@ -138,8 +145,11 @@ fn left([before, part]: [f64; 2], passed: f64) -> f64 {
 /// What is said at the end. Of a short render the time expected says nothing.
 fn rendered(took: Duration, expected: Duration) -> String {
     let [took, expected] = [took, expected].map(|time| time.as_secs_f64());
-    let compared =
-        if took.max(expected) < 2.0 { String::new() } else { format!("; the plan expected {expected:.1} s") };
+    let compared = if took.max(expected) < 2.0 {
+        String::new()
+    } else {
+        format!("; the plan expected {expected:.1} s on an idle machine")
+    };
     format!("rendered in {took:.1} s{compared}")
 }
 

@@ -89,7 +89,7 @@ fn the_classic_scene_is_said_to_part_its_lanes_in_every_dispersive_glass() {
     let (_, because) = planned("classic");
     for glass in ["crown", "flint", "diamond", "pond"] {
         let line = because.lines().find(|line| line.starts_with(&format!("material {glass}:")));
-        assert_says(line.expect("a line about the glass"), "so lanes part");
+        assert_says(line.expect("a line about the glass"), "so lanes separate");
     }
     assert_says(&because, "material ruby: index 1.5200 in every lane, so lanes stay together");
     assert_says(&because, "diffuse surfaces are lit straight from the lights alone");
@@ -104,8 +104,8 @@ fn the_smallpt_scene_is_planned_as_a_path_tracer_of_three_lanes_that_stay_togeth
     assert_says(&because, "in every lane, so lanes stay together");
     assert_says(&because, "light leaves left wall in every direction");
     // The tip that is seen has 0.14 sr, the whole sphere 2.8.
-    assert_says(&because, "photons from lamp (2.0e-1 sr) toward 2 smooth objects");
-    assert!(!because.contains("lanes part"), "{because}");
+    assert_says(&because, "photons from lamp (solid angle 2.0e-1 sr) toward 2 smooth objects");
+    assert!(!because.contains("lanes separate"), "{because}");
 }
 
 #[test]
@@ -113,9 +113,12 @@ fn the_prism_scene_is_said_to_let_wavelengths_part() {
     let (plan, because) = planned("prism");
     assert!(matches!(plan.method.transport, Transport::Random { .. }), "{because}");
     assert!(plan.method.basis.draws_wavelengths(), "{because}");
-    assert_says(&because, "model hero 12 + 4: 16 lanes; dispersion is seen");
-    assert_says(&because, "so wavelengths part");
-    assert_says(&because, "lanes part in ");
+    assert_says(
+        &because,
+        "model hero 12 + 4: 16 lanes: 12 fixed wavelengths and 4 hero wavelengths, drawn anew for each sample; dispersion is seen",
+    );
+    assert_says(&because, "so wavelengths separate");
+    assert_says(&because, "lanes separate in ");
 }
 
 #[test]

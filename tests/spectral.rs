@@ -122,7 +122,7 @@ fn spectra_make_the_colors_of_the_image() {
     // What is left of two sums of light, one of which is subtracted, is off by more of itself.
     for (filter, tolerance) in [("box", WHITE), ("mitchell", 2.0 * WHITE)] {
         let image = rendered(&room(&format!("{FINE}, filter = \"{filter}\""), "1.5"));
-        assert!(image.because().iter().any(|line| line.starts_with("light pass")), "{:?}", image.because());
+        assert!(image.because().iter().any(|line| line.starts_with("photon tracing")), "{:?}", image.because());
         assert!(image.because().iter().any(|line| line.starts_with("photon map")), "{:?}", image.because());
         let worst = worst_color(image.film());
         assert!(worst <= tolerance, "{filter}: {worst}");

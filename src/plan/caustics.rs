@@ -68,11 +68,8 @@ pub(super) fn light_pass(scene: &Scene<Curve>, unguided: &World) -> Shown {
     let (sending, left): (Vec<_>, Vec<_>) = seen.into_iter().partition(|(id, _)| lights.contains(id));
     large.extend(left);
     if sending.is_empty() {
-        let why = match gain {
-            Some(gain) => format!("with them, the same error would take {:.2} times as long", 1.0 / gain),
-            None => "what they land on is black".into(),
-        };
-        lines.push(format!("no light pass: photons from {} toward {to} are seen, but {why}", named(scene, &large)));
+        let (from, why) = (named(scene, &large), not_worth(gain));
+        lines.push(format!("no photon tracing: photons from {from} toward {to} are seen, but {why}"));
         return Shown::not(lines);
     }
     if !large.is_empty() {
@@ -85,16 +82,24 @@ pub(super) fn light_pass(scene: &Scene<Curve>, unguided: &World) -> Shown {
         Some(_) => String::new(),
     };
     lines.push(format!(
-        "light pass: {all}photons from {} toward {to}, {:.2} for each camera sample; {} of them are seen{}",
+        "photon tracing: {all}photons from {} toward {to}, {:.2} for each camera sample; {} of them are seen{}",
         named(scene, &sending),
         pass.photons as f64 / samples,
         if most < 0.095 { format!("{:.1} %", 100.0 * most) } else { format!("{:.0} %", 100.0 * most) },
         gain.map_or(String::new(), |gain| format!(
             "; without them, the same error would take about {} times as long",
-            in_number(gain.round() as u64)
+            if gain < 9.95 { format!("{gain:.1}") } else { in_number(gain.round() as u64) }
         ))
     ));
     Shown { pass: Some(pass), why: lines, taught: Some(world) }
+}
+
+/// Why photons that are seen are not sent, as the time to an error would be so many times shorter by them, or nothing
+/// would be lit.
+fn not_worth(gain: Option<f64>) -> String {
+    let Some(times) = gain.map(|gain| 1.0 / gain) else { return "what they land on is black".into() };
+    let small = if times < 1.0 { ", which is too small a gain to be sure of" } else { "" };
+    format!("with them, the same error would take {times:.2} times as long{small}")
 }
 
 /// A light and the largest solid angle under which it is seen.
@@ -115,17 +120,17 @@ fn sources(scene: &Scene<Curve>, world: &World) -> Result<Sources, Option<String
         return Err(None);
     }
     if scene.render.caustics == CausticsText::Off {
-        return Err(Some(format!("caustics \"off\": no light pass{}", missing(scene))));
+        return Err(Some(format!("caustics \"off\": no photon tracing{}", missing(scene))));
     }
     if targets(scene).is_empty() {
         let bends = smooth_object(scene).map_or("", |object| &scene.objects[object].name);
-        let why = format!("no light pass: {bends} has no end, so photons cannot be aimed at it{}", missing(scene));
+        let why = format!("no photon tracing: {bends} has no end, so photons cannot be aimed at it{}", missing(scene));
         return Err(Some(why));
     }
     let places = thinned(lit_places(scene, |material| may_receive(scene, material)), scene.lights.len());
     if places.is_empty() {
         let why = "the camera sees no diffuse or rough surface but through glass or in mirrors, where caustics";
-        return Err(Some(format!("no light pass: {why} are left to chance{}", missing(scene))));
+        return Err(Some(format!("no photon tracing: {why} are left to chance{}", missing(scene))));
     }
     let mut sources = Sources { small: Vec::new(), large: Vec::new() };
     for (id, light) in world.scene().lights.iter().enumerate().filter(|(_, light)| light.is_sampled()) {
@@ -143,7 +148,7 @@ fn sources(scene: &Scene<Curve>, world: &World) -> Result<Sources, Option<String
             [] => "rays find the sky by chance often enough".into(),
             lights => format!("{} large enough for rays to meet by chance", named(scene, lights)),
         };
-        return Err(Some(format!("no light pass: {why}")));
+        return Err(Some(format!("no photon tracing: {why}")));
     }
     Ok(sources)
 }
@@ -214,7 +219,7 @@ fn named(scene: &Scene<Curve>, lights: &[(LightId, f64)]) -> String {
             Light::Sun(_) => "the sun".into(),
             Light::Environment(_) => "the environment".into(),
         };
-        if size > 0.0 { format!("{name} ({size:.1e} sr)") } else { name }
+        if size > 0.0 { format!("{name} (solid angle {size:.1e} sr)") } else { name }
     };
     match lights {
         [one] => name(one),

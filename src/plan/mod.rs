@@ -114,7 +114,7 @@ pub fn plan(scene: &Scene<Curve>) -> Plan {
     because.extend(left_out.iter().cloned());
     because.extend(decisions);
     if probe.parted > 0.0 {
-        because.push(format!("lanes part in {:.0} % of the camera samples", 100.0 * probe.parted));
+        because.push(format!("lanes separate in {:.0} % of the camera samples", 100.0 * probe.parted));
     }
     because.extend(next.map(|basis| beside(scene, &method, &probe, basis)));
     Plan { method, because, processor_time, candidates, left_out, model_error }
@@ -213,5 +213,6 @@ fn beside(scene: &Scene<Curve>, method: &Method, probe_of_method: &Probe, basis:
     let name = basis.name();
     let other = probe(&prepare_unguided(scene, Method { basis, ..method.clone() }));
     let times = other.time.as_secs_f64() / probe_of_method.time.as_secs_f64();
-    format!("a sample of {name} would take {times:.1} times as long")
+    let what = if method.basis.draws_wavelengths() { "without dispersion, as" } else { "with" };
+    format!("for comparison: {what} {name}, a sample would take {times:.1} times as long")
 }

@@ -63,7 +63,7 @@ pub(super) fn model(scene: &Scene<Curve>) -> Model {
     let next =
         if hero { candidates.get(chosen) } else { candidates.get(chosen + 1) }.map(|candidate| candidate.basis.clone());
     let next = next.filter(|_| hero || !survey.is_plain());
-    let mut because = vec![format!("model {}: {} lanes; {why}", basis.name(), basis.lanes())];
+    let mut because = vec![format!("model {}: {}; {why}", basis.name(), lanes(&basis))];
     let missed = (!is_exact || basis.fixed_lanes() > 3).then(|| missed(&candidates, &basis, &survey, &seen, tolerance));
     let error = if missed.is_some() { bound(&candidates, &basis, &survey, &seen) } else { 0.0 };
     because.extend(lines_without_lane(&survey, &basis));
@@ -73,6 +73,18 @@ pub(super) fn model(scene: &Scene<Curve>) -> Model {
     because.extend(materials(scene, &basis));
     let next = next.map(|next| if together || hero { next.kept_together() } else { next });
     Model { basis, missed, error, because, next, candidates }
+}
+
+/// What a sample carries.
+fn lanes(basis: &Basis) -> String {
+    let (all, fixed) = (basis.lanes(), basis.fixed_lanes());
+    match all - fixed {
+        0 if fixed <= 3 => format!("{all} lanes"),
+        0 => format!("{all} lanes, one for each wavelength"),
+        heroes => {
+            format!("{all} lanes: {fixed} fixed wavelengths and {heroes} hero wavelengths, drawn anew for each sample")
+        }
+    }
 }
 
 /// Three bands, whatever they miss.
@@ -175,8 +187,8 @@ fn spoken(dispersion: &Dispersion, visible: bool, hero: bool) -> String {
         )
     };
     let what = match (visible, hero) {
-        (true, true) => "so wavelengths part",
-        (true, false) => "so lanes part",
+        (true, true) => "so wavelengths separate",
+        (true, false) => "so lanes separate",
         (false, true) => "less than can be seen, but the scene asks for it",
         (false, false) => "less than 0.2 cannot be seen, so lanes stay together",
     };
@@ -220,7 +232,7 @@ fn materials(scene: &Scene<Curve>, basis: &Basis) -> Vec<String> {
                     (_, Some(one)) => format!(
                         "index {low:.4} to {high:.4}{source}; all lanes are refracted by {one:.4}, so lanes stay together"
                     ),
-                    _ => format!("index {low:.4} to {high:.4}{source}, so lanes part"),
+                    _ => format!("index {low:.4} to {high:.4}{source}, so lanes separate"),
                 };
                 lines.push(format!("material {}: {index}", named.name));
             }

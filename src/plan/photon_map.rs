@@ -90,7 +90,10 @@ fn described(map: &MapPasses, samples: f64, method: &Method) -> String {
     };
     let chance = match map.chance {
         1.0.. => String::new(),
-        chance => format!("; paths look for photons at {} of the surfaces they reach", percent(chance)),
+        chance => format!(
+            "; it is read at {} of the places that paths reach, chosen by chance, which saves time",
+            percent(chance)
+        ),
     };
     format!(
         "photon map: {photons}, for caustics that are seen in mirrors or through glass or light other surfaces; it blurs them by \

@@ -45,11 +45,12 @@ pub(super) fn decide(scene: &Scene<Curve>, world: &World) -> Decided {
         return off(None, left_out(bound));
     }
     let error = polarization_error(world);
-    let measured = format!("{} (tolerated {})", percent(error), percent(tolerated));
-    if MISSED * error > tolerated {
-        on(format!("averaging would be wrong by {measured}"))
+    let traced_above = tolerated / MISSED;
+    let measured = format!("{} (it is traced above {})", percent(error), percent(traced_above));
+    if error > traced_above {
+        on(format!("without it, the image would be wrong by {measured}"))
     } else {
-        off(Some(format!("it would change {measured}")), None)
+        off(Some(format!("without it, the image is wrong by {measured}")), None)
     }
 }
 
@@ -71,7 +72,7 @@ fn asking(scene: &Scene<Curve>) -> Option<String> {
 /// How much polarization may change; nothing where it can hardly be told.
 fn left_out(change: f64) -> Option<String> {
     (change > NOTHING)
-        .then(|| format!("polarization is not traced: it changes at most {} of the light seen", percent(change)))
+        .then(|| format!("left out: polarization, which changes at most {} of the light seen", percent(change)))
 }
 
 /// A share that is not worth a word.

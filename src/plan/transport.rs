@@ -1,5 +1,6 @@
 //! Whether light is followed in all its ways or in some, chosen by chance.
 
+use super::words::percent;
 use crate::film::Filter;
 use crate::light::Light;
 use crate::scene::{Object, Scene};
@@ -50,7 +51,9 @@ pub(super) fn transport(scene: &Scene<Curve>, basis: &Basis, together: f64) -> (
         Some(why) => (
             random,
             format!(
-                "transport random: {why}; paths split above weight {SPLIT}, then follow one branch, roulette below {ROULETTE}"
+                "transport random: {why}; a path follows both reflection and refraction as long as it has {} of its weight or more, then \
+                 one of them, until Russian roulette ends it",
+                percent(SPLIT)
             ),
         ),
     }

@@ -234,7 +234,7 @@ fn any_number_of_threads_writes_the_same_bytes_of_a_caustic() {
             .output()
             .expect("the command runs");
         let said = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert!(output.status.success() && said.contains("light pass:") && said.contains("photon map:"), "{said}");
+        assert!(output.status.success() && said.contains("photon tracing:") && said.contains("photon map:"), "{said}");
         std::fs::read(Path::new(folder.path()).join("image.exr")).expect("the image was written")
     };
     let first = rendered("1");
@@ -292,7 +292,7 @@ fn the_plan_asks_for_photons_where_they_are_needed_and_says_why_where_not() {
     asks(format!("{ball}{}", lamp(0.1)), "photons from bulb (");
     asks(
         format!("{ball}[[light]]\nsun = {{ toward = [1, 2, 0], irradiance = 1 }}\n"),
-        "photons from the sun (6.8e-5 sr)",
+        "photons from the sun (solid angle 6.8e-5 sr)",
     );
     asks(format!("{ball}{point}{}", lamp(2.0)), "left to chance: caustics of bulb");
     leaves(point.into(), "no caustics: no surface is smooth");

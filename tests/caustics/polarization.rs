@@ -77,7 +77,7 @@ fn what_polarization_may_change_of_a_caustic_is_said_where_photons_are_seen_and_
         let stated = [report.polarization, report.polarization_of_tile];
         assert!(stated.iter().all(|&stated| stated > 0.99 && stated < 1.0 + 1e-6), "{in_a_mirror}: {stated:?}");
         assert!(planned.method.light_pass.is_some(), "{:?}", planned.because);
-        let said = |line: &String| line.starts_with("polarization on: averaging would be wrong by");
+        let said = |line: &String| line.starts_with("polarization on: without it, the image would be wrong by");
         assert!(planned.because.iter().any(said), "{in_a_mirror}: {:?}", planned.because);
         // The planes of incidence are one: traced, it is twice as much.
         let sums = |polarization| {

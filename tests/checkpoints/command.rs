@@ -1,6 +1,7 @@
 //! What the command says of checkpoints and parts, and what it leaves alone.
 
 use std::fs;
+use std::io::{BufRead, BufReader, Read};
 use std::process::{Command, Stdio};
 use std::time::{Duration, SystemTime};
 
@@ -241,6 +242,28 @@ fn a_render_that_is_told_to_stop_says_how_to_go_on_and_goes_on_to_the_same_bytes
         done(&folder, &format!("s.toml {samples} --resume"));
         assert!(bytes(&folder, "s.exr") == bytes(&folder, "whole.exr"), "{signal}");
         fs::remove_file(folder.path().join("s.checkpoint")).expect("it is there");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_render_that_keeps_nothing_says_so_when_it_is_told_to_stop() {
+    let folder = folder();
+    for signal in ["-INT", "-TERM"] {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_render"));
+        command.current_dir(folder.path()).args(["s.toml", "--samples", "1000000"]).stderr(Stdio::piped());
+        let mut child = command.spawn().expect("the command can be started");
+        let mut said = BufReader::new(child.stderr.take().expect("it is piped"));
+        // Its first line is the plan's, which is there before the render begins.
+        said.read_line(&mut String::new()).expect("messages are UTF-8");
+        let sent = Command::new("kill").args([signal, &child.id().to_string()]).status().expect("there is kill");
+        assert!(sent.success());
+        let mut rest = String::new();
+        said.read_to_string(&mut rest).expect("messages are UTF-8");
+        let told = "stopped; nothing was kept. With --checkpoint 60s, what is done is kept\n";
+        assert!(rest.ends_with(told), "{rest}");
+        assert_eq!(child.wait().expect("it ends").code(), Some(130));
+        assert_eq!(folder.listing(), ["s.toml"]);
     }
 }
 

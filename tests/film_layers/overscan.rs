@@ -58,7 +58,7 @@ fn overscan_changes_no_bit_of_the_format_and_crops_are_parts_of_both() {
         }
     }
     let room = made(ROOM, Some(AROUND), None, 1);
-    for photons in ["light pass: ", "photon map: "] {
+    for photons in ["photon tracing: ", "photon map: "] {
         assert!(room.because().iter().any(|line| line.starts_with(photons)), "{:?}", room.because());
     }
 }

@@ -13,7 +13,7 @@ fn of_twenty_rooms_the_plan_asks_for_photons_in_those_that_gain_and_says_why_not
     let mut wrong = Vec::new();
     for Room { name, text, asks, words } in rooms {
         let plan = plan(&scene(&text));
-        let said = plan.because.iter().filter(|line| line.contains("caustic") || line.contains("light pass"));
+        let said = plan.because.iter().filter(|line| line.contains("caustic") || line.contains("photon tracing"));
         let said: Vec<&str> = said.map(String::as_str).collect();
         println!("{name}: {}", said.join("; "));
         if plan.method.light_pass.is_some() != asks || !said.iter().any(|line| line.contains(words)) {

@@ -319,7 +319,7 @@ fn a_mirror_between_two_reflections_at_brewsters_angle_hides_nothing() {
     assert!((traced - 2.0).abs() < 1e-5, "{traced}");
     assert!((stated - 1.0).abs() < 1e-5, "{stated}");
     assert!(
-        because.iter().any(|line| line.starts_with("polarization on: averaging would be wrong by 50 %")),
+        because.iter().any(|line| line.starts_with("polarization on: without it, the image would be wrong by 50 %")),
         "{because:?}"
     );
 }

@@ -105,7 +105,7 @@ fn photons_leave_no_stokes_vectors_on_shadow_catchers() {
         abbe::render(&scene, &Options { threads: Some(1), ..Options::default() }).expect("it renders")
     };
     let (caught, shown) = (seen(text), seen(&text.replace("shadow_catcher = true", "")));
-    assert!(caught.because().iter().any(|line| line.starts_with("light pass")), "{:?}", caught.because());
+    assert!(caught.because().iter().any(|line| line.starts_with("photon tracing")), "{:?}", caught.because());
     let (mut dark, mut polarized) = (0, 0);
     for (pixel, rgb) in caught.rgb().into_iter().enumerate().filter(|(_, rgb)| *rgb == [0.0; 3]) {
         let of = |image: &Image, channel: &str| image.layer(channel).expect("it is there")[pixel];

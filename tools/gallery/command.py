@@ -173,7 +173,7 @@ def render_picture(name, quick):
 
 def words(plan):
     """What the page says of a plan: the model of color, and the photons if there are any."""
-    return ". ".join(line for line in plan.splitlines() if line.startswith(("model ", "light pass: ", "photon map: ")))
+    return ". ".join(line for line in plan.splitlines() if line.startswith(("model ", "photon tracing: ", "photon map: ")))
 
 
 def reduced(name, share=5):
