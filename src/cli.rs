@@ -1,11 +1,14 @@
 //! The command line.
 
+use std::error::Error as _;
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use abbe::film::{Layer, Overscan, Window};
+use abbe::look::number;
 use abbe::{Options, Result};
+use clap::error::{ContextKind, ErrorKind};
 use clap::{Command, CommandFactory, Parser};
 
 use crate::frames::numbered;
@@ -19,7 +22,7 @@ Examples:
   render scenes/prism.toml --exr out/frame.exr    name the file
   render scenes/prism.toml --png look.png         write a picture alone
   render --exr scenes/prism.toml --png look.png   write both
-  render --plan scenes/prism.toml                 say what it would do, and why
+  render --plan scenes/prism.toml                 report how, how long, and why
   render --check scenes/prism.toml                find mistakes in the scene
   render --samples 16 --exr scenes/prism.toml     take a quick look
   render --error 0.01 --exr scenes/prism.toml     stop when it is off by 1 %
@@ -31,11 +34,11 @@ Examples:
   render --plan s.toml --plan-file s.plan         make a plan for all parts
   render --set film.width=320 scenes/prism.toml   change a value of the scene
   render - --exr frame.exr < scenes/prism.toml    read it from standard input
-  render --json --exr scenes/prism.toml           speak to a program
+  render --json --exr scenes/prism.toml           report to a program
   render catalog --help                           see which glasses it knows
-  render info prism.exr                           say what an image carries
+  render info prism.exr                           list what an image holds
   render view prism.exr                           show it on the terminal
-  render diff prism.exr other.exr                 say whether two images agree
+  render diff prism.exr other.exr                 compare two images
   render completions bash                         complete its words in a shell
   render man                                      write its manual page
 
@@ -62,7 +65,7 @@ struct Arguments {
     #[arg(long, value_name = "STOPS", allow_negative_numbers = true)]
     exposure: Option<f64>,
 
-    /// Say what would be modelled, why, and at what cost; render nothing
+    /// Report what would be modelled, why, and at what cost; render nothing
     #[arg(long, conflicts_with_all = ["check", "png"])]
     plan: bool,
 
@@ -85,15 +88,15 @@ struct Arguments {
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32))]
     frame: Option<u32>,
 
-    /// Say nothing but warnings and errors
+    /// Write only warnings and errors
     #[arg(long, conflicts_with = "json")]
     quiet: bool,
 
-    /// Say all on standard output, as a JSON object a line: plan, progress, report, files, warnings and errors
+    /// Write all to standard output, one JSON object a line: plan, progress, report, files, warnings and errors
     #[arg(long)]
     json: bool,
 
-    /// Say on standard output how far it is, by the lines of a farm's protocol; all else goes to its log
+    /// Report on standard output how far it is, by the lines of a farm's protocol; all else goes to its log
     #[arg(long, value_name = "PROTOCOL", conflicts_with_all = ["json", "quiet", "plan", "check"])]
     progress: Option<Protocol>,
 
@@ -103,7 +106,7 @@ struct Arguments {
 
     /// Take samples until the image is off by no more than this in 95 of 100 renders: 0.01 is one percent. The first of
     /// --error, --time and --samples ends the render; the scene's samples then count no more
-    #[arg(long, value_name = "RATIO", allow_negative_numbers = true)]
+    #[arg(long, value_name = "RATIO", allow_negative_numbers = true, value_parser = ratio)]
     error: Option<f64>,
 
     /// Take samples for so long: 90s, 10m, 1.5h
@@ -145,8 +148,8 @@ struct Arguments {
     #[command(flatten)]
     keep: keep::Flags,
 
-    /// Say in the EXR when it was made, how long that took, and on how many threads. Without it two runs write the same
-    /// bytes
+    /// Write into the EXR when it was made, how long that took, and on how many threads. Without it two runs write the
+    /// same bytes
     #[arg(long, conflicts_with_all = ["plan", "check"])]
     stamp: bool,
 }
@@ -156,6 +159,13 @@ const MAX_THREADS: i64 = 1024;
 
 fn seed(text: &str) -> std::result::Result<u64, String> {
     text.parse().map_err(|_| format!("a seed is a whole number from 0 to {}", u64::MAX))
+}
+
+fn ratio(text: &str) -> std::result::Result<f64, String> {
+    text.parse().map_err(|_| match text.strip_suffix('%').map(|percent| percent.trim().parse::<f64>()) {
+        Some(Ok(percent)) => format!("write {} for {percent} %", number(percent / 100.0)),
+        _ => "an error is a number, such as 0.01 for one percent".into(),
+    })
 }
 
 fn overscan(text: &str) -> std::result::Result<Overscan, String> {
@@ -273,6 +283,12 @@ fn read<'w, A: Parser>(words: impl Iterator<Item = &'w OsString>, request: fn(A)
 
 /// What clap has to say: help and version are an answer like any other, a mistake ends the command.
 fn told(said: clap::Error) -> Result<Request> {
+    if let (ErrorKind::ValueValidation, Some(why)) = (said.kind(), said.source()) {
+        // Such as `--layers <NAMES>`.
+        let flag = said.get(ContextKind::InvalidArg).map(ToString::to_string).unwrap_or_default();
+        let flag = flag.split(' ').next().unwrap_or_default();
+        return refuse(&format!("{flag}: {why}"), None);
+    }
     if said.use_stderr() && matches!(listener(), Listener::Program | Listener::Farm) {
         let text = said.render().to_string();
         let (message, _) = text.split_once("\n\n").unwrap_or((&text, ""));
@@ -365,7 +381,7 @@ fn scene_and_image(
         }
         (Some(scene), None) => Ok((scene, None)),
         (None, Some(scene)) if !is_exr(&scene) => Ok((scene, None)),
-        (None, _) => refuse("no scene is given", Some("for instance: render --exr scenes/prism.toml")),
+        (None, _) => refuse("no scene is given", Some("name a scene, a TOML file: render --exr scene.toml")),
     }
 }
 

@@ -70,7 +70,7 @@ fn a_scene_on_standard_input_is_called_so_and_finds_its_files_from_the_current_f
     assert!(text(&wrong.stderr).contains("--> <stdin>:8:1\n"), "{}", text(&wrong.stderr));
     let latin = fed(&folder, &["--check", "-"], b"# caf\xe9\n");
     let expected = "error: the scene on standard input is not text in UTF-8\n\
-                    help: a scene is a TOML file, such as scenes/prism.toml\n";
+                    help: a scene is a TOML file, such as scene.toml\n";
     assert_eq!((latin.status.code(), text(&latin.stderr)), (Some(2), expected));
 }
 

@@ -14,7 +14,7 @@ use crate::error::{Error, Result, nearest_file};
 
 /// What the text of settings is called in messages; each has a line of it.
 pub const SETTINGS: &str = "--set";
-const A_SCENE: &str = "a scene is a TOML file, such as scenes/prism.toml";
+const A_SCENE: &str = "a scene is a TOML file, such as scene.toml";
 
 /// A scene file that was read.
 #[derive(Clone, Debug)]

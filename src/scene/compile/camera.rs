@@ -39,7 +39,7 @@ pub(super) fn camera(context: &mut Context, value: Value, film: Option<&FilmSett
             value.within(0.0..=MAX_LENGTH, &format!("near is a distance from 0 to {MAX_LENGTH:e}"), None)
         });
         let sensor = camera.maybe("sensor_width", |value| sensor_width(value, kind?));
-        let projection = kind.and_then(|kind| projection(camera, kind, keys));
+        let projection = kind.and_then(|kind| projection(context, camera, kind, keys));
         let [_, _, shifted, opened] = keys;
         let shift = shifted.map_or(Some([0.0; 2]), shift);
         let lens = opened.map_or(Some(None), |value| lens(value).map(Some));
@@ -83,6 +83,7 @@ const PROJECTIONS: [(&str, ProjectionKind); 3] = [
 /// The projection, if the camera has the keys for it and no other: of a vertical field of view in degrees, the height
 /// of the view in scene units, a shift and a lens.
 fn projection(
+    context: &mut Context,
     camera: &mut Fields,
     kind: ProjectionKind,
     [vertical_fov, height, shift, lens]: [Option<Value>; 4],
@@ -95,6 +96,15 @@ fn projection(
         (ProjectionKind::Perspective, Some(value), None) => {
             let between = (Bound::Excluded(0.0), Bound::Excluded(180.0));
             let vertical_fov = value.within(between, "a field of view lies between 0 and 180 degrees", None)?;
+            if vertical_fov < NARROW {
+                context.warn_at(
+                    value,
+                    format!(
+                        "{vertical_fov} degrees see very little; if radians are meant, write {:.1}",
+                        vertical_fov.to_degrees()
+                    ),
+                );
+            }
             Some(Projection::Perspective { vertical_fov })
         }
         (ProjectionKind::Perspective, None, None) => camera.lack("vertical_fov", None),
@@ -130,6 +140,9 @@ fn sensor_width(value: Value, kind: ProjectionKind) -> Option<f64> {
         _ => value.advise("only a perspective camera has a focal length, which its sensor tells", "leave it out"),
     }
 }
+
+/// A field of view in degrees below which it may be one in radians.
+const NARROW: f64 = 1.0;
 
 const HEIGHT: &str = "give the height of the view in scene units: height = 2";
 

@@ -103,6 +103,17 @@ fn point_light<'d>(context: &mut Context, value: Value<'d>) -> Option<Light<Curv
     })
 }
 
+/// Tells of keys that stand within the kind of a light, but belong to its entry.
+fn of_the_entry(light: &mut Fields, kind: &str) {
+    for key in ["name", "group", "visible_to_camera"] {
+        light.stray(
+            key,
+            format!("`{key}` is a key of the light"),
+            format!("write it beside `{kind}`, in its [[light]]"),
+        );
+    }
+}
+
 fn sun_light<'d>(context: &mut Context, value: Value<'d>) -> Option<Light<Curve>> {
     Fields::read(value, |light| {
         let toward = light.need("toward", direction);
@@ -112,6 +123,7 @@ fn sun_light<'d>(context: &mut Context, value: Value<'d>) -> Option<Light<Curve>
         let irradiance = light.need("irradiance", |value| emission(context, value));
         let help = "toward = [1, 2, 1] is the direction from the scene to the sun";
         light.stray("look_at", "a sun is infinitely far away and looks at no point", help.into());
+        of_the_entry(light, "sun");
         let toward = toward?.to_array();
         let (angular_diameter, irradiance) = (angular_diameter?, irradiance?);
         Some(Light::Sun(Sun { toward, angular_diameter, irradiance, disc: OnceLock::new() }))
@@ -161,6 +173,7 @@ fn even_or_image<'d>(context: &mut Context, value: Value<'d>) -> Option<Environm
         let radiance = light.need("radiance", |value| CurveText::read(value, Quantity::Emission));
         let turn = light.maybe("transform", at(steps));
         let polarization = light.maybe("polarization", sky_polarization);
+        of_the_entry(light, "environment");
         let (radiance, polarization) = (radiance?, polarization?);
         let KindText::Image(file) = radiance.kind else {
             if let Some(turn) = turn?.filter(|turn| !turn.it.is_empty()) {

@@ -118,7 +118,6 @@ fn built(context: &mut Context, name: &str, value: Value, parts: Parts, smooth: 
     let Parts { vertices, faces, mut attributes } = parts;
     if smooth && attributes.normals.is_empty() {
         attributes.normals = vertex_normals(&vertices, &faces);
-        context.warn(format!("{name}: the mesh has no normals; they are computed from its faces"));
     }
     let Some((mesh, report)) = Mesh::new(vertices, faces) else {
         return value.refuse("no triangle of this mesh has an area");

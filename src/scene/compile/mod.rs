@@ -40,7 +40,7 @@ use toml::de::DeValue;
 
 use self::context::Context;
 use self::material::Drafts;
-use self::object::Names;
+use self::object::{Draft, Names};
 use self::place::Placed;
 use super::index::Index;
 use super::text::{Document, Fields, INCLUDE, SET, Value};
@@ -99,7 +99,9 @@ fn scene<'d>(context: &mut Context, sections: &mut Fields<'d>) -> Option<Scene<C
         entries(objects, |entry| object::object(context, &mut names, entry, numbers.next().unwrap_or_default()))
     });
     context.meshes.clear();
-    let placed = place::placed(objects.unwrap_or_default(), &materials);
+    let objects = objects.unwrap_or_default();
+    namesakes(context, &objects);
+    let placed = place::placed(objects, &materials);
     unused(context, &placed, &drafts);
     contacts(context, &placed);
     faces_inward(context, &placed);
@@ -206,6 +208,16 @@ fn faces_inward(context: &mut Context, placed: &Placed) {
          each face's corners",
         placed.objects[first].name
     ));
+}
+
+/// Warns of objects that have one name.
+fn namesakes(context: &mut Context, objects: &[Draft]) {
+    let mut counts = BTreeMap::<&str, usize>::new();
+    objects.iter().for_each(|object| *counts.entry(&object.name).or_default() += 1);
+    for (name, count) in counts.into_iter().filter(|&(_, count)| count > 1) {
+        context
+            .warn(format!("{count} objects are named {name}: they share one matte, and --set cannot tell them apart"));
+    }
 }
 
 /// Warns of materials that no object has.

@@ -58,7 +58,10 @@ pub(super) fn object<'d>(
     Fields::read(entry, |object| {
         let name = object.maybe("name", Value::text);
         let shape = object.need("shape", Some);
-        let named = object.need("material", at(|value: Value<'d>| names.find(value)));
+        let named = match object.get("material") {
+            Some(value) => at(|value: Value<'d>| names.find(value))(value),
+            None => object.lack("material", names.help(name.flatten()).as_deref()),
+        };
         let map = object.or(
             "transform",
             At { place: entry, it: Transform::IDENTITY },
@@ -117,6 +120,13 @@ pub(super) fn group(value: Value<'_>) -> Option<&str> {
 }
 
 impl<'m, 'd> Names<'m, 'd> {
+    /// Which materials there are for an object that has none, if any.
+    fn help(&self, object: Option<&str>) -> Option<String> {
+        let known: Vec<&str> = self.materials.keys().copied().collect();
+        let (first, object) = (known.first()?, object.unwrap_or("it"));
+        Some(format!("give {object} one, as in material = {first:?}; the scene defines {}", known.join(", ")))
+    }
+
     /// The material of a name.
     fn find(&mut self, value: Value<'d>) -> Option<&'m Material<Curve>> {
         let name = value.text()?;
