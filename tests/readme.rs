@@ -1,4 +1,4 @@
-//! Every piece of TOML that the words show is TOML, and means what they say.
+//! Every piece of TOML that the pages show is TOML, and means what they say; every link leads somewhere.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -6,18 +6,32 @@ use std::path::{Path, PathBuf};
 use abbe::Error;
 use abbe::scene::Source;
 
-/// What the pieces of a row stand in.
-const AROUND: &str = r#"
-camera = { position = [0, 0, 9], look_at = [0, 0, 0], vertical_fov = 30 }
-film = { width = 4, height = 4 }
-render.meters_per_unit = 1
+/// The pages that show pieces of scenes.
+const PAGES: [&str; 2] = ["README.md", "scenes/REFERENCE.md"];
+/// What begins the tables whose pieces are TOML.
+const HEADS: [&str; 10] = [
+    "in an `[[object]]`",
+    "in a `[material.NAME]`",
+    "in a `[[light]]`",
+    "a spectrum: any reflectance, transmittance, radiance ..",
+    "besides, for a light",
+    "besides, for an index",
+    "in the image's table",
+    "in `[camera]`",
+    "in `[film]`",
+    "in `[render]`",
+];
+
+const VIEW: &str = "position = [0, 0, 9], look_at = [0, 0, 0]";
+const FILM: &str = "width = 640, height = 360";
+const MATERIALS: &str = r#"
 material.a.diffuse = { reflectance = 0.5 }
 material.b.mirror = { reflectance = 0.5 }
 "#;
 const BALL: &str = "[[object]]\nshape.sphere = { center = [0, 0, 0], radius = 1 }\n";
 
-fn readme() -> String {
-    fs::read_to_string("README.md").expect("there is a README")
+fn page(name: &str) -> String {
+    fs::read_to_string(name).expect("there is such a page")
 }
 
 /// What is wrong with a scene, but for files that it names and that are not there.
@@ -34,72 +48,174 @@ fn mistakes(text: &str) -> Vec<String> {
 }
 
 /// The rows of the tables of all that a scene can hold: the head of each table, and the pieces of TOML in the row.
-fn rows(readme: &str) -> Vec<(String, Vec<String>)> {
-    let part = readme.split("## What a scene can hold\n").nth(1).and_then(|rest| rest.split("\n## ").next());
-    let lines: Vec<&str> = part.expect("there is such a part").lines().collect();
+fn rows(page: &str) -> Vec<(&str, Vec<&str>)> {
+    let lines: Vec<&str> = page.lines().collect();
     let (mut rows, mut head) = (Vec::new(), "");
     for (line, next) in lines.iter().zip(&lines[1..]).filter(|(line, _)| line.starts_with('|')) {
         if next.starts_with("|---") {
             head = line.trim_matches(['|', ' ']);
-        } else if !line.starts_with("|---") {
-            rows.push((head.to_owned(), line.split('`').skip(1).step_by(2).map(str::to_owned).collect()));
+        } else if !line.starts_with("|---") && HEADS.contains(&head) {
+            rows.push((head, line.split('`').skip(1).step_by(2).collect()));
         }
     }
     rows
 }
 
+/// A scene around a part of it.
+fn around(view: &str, film: &str, render: &str, rest: &str) -> String {
+    format!("camera = {{ {view} }}\nfilm = {{ {film} }}\nrender = {{ {render} }}\n{MATERIALS}{rest}")
+}
+
+/// The same where only the rest matters.
+fn with(rest: &str) -> String {
+    around(&format!("{VIEW}, vertical_fov = 30"), FILM, "meters_per_unit = 1", rest)
+}
+
 /// The scene in which a piece of a row stands, if it is one that can be put into a scene by itself.
 fn scene(head: &str, piece: &str) -> Option<String> {
-    let on = |material: String| format!("{AROUND}[material.it]\n{material}\n{BALL}material = \"it\"\n");
-    let table = piece.contains(" = {") || piece.contains(" = [");
-    let value = piece.starts_with(['{', '"']);
+    let on = |material: &str| with(&format!("[material.it]\n{material}\n{BALL}material = \"it\"\n"));
+    let (key, _) = piece.split_once(" = ").unwrap_or_default();
+    let is_value = piece.starts_with(['{', '"']);
+    // A value in place of another, or a part of something.
+    let is_alone = !key.is_empty() && !is_value;
     Some(match head {
-        "in an `[[object]]`" if piece.starts_with("shape.") => {
-            format!("{AROUND}[[object]]\nmaterial = \"a\"\n{piece}\n")
+        "in an `[[object]]`" if key.starts_with("shape.") => with(&format!("[[object]]\nmaterial = \"a\"\n{piece}\n")),
+        "in an `[[object]]`" if is_alone && key != "material" => with(&format!("{BALL}material = \"a\"\n{piece}\n")),
+        "in a `[material.NAME]`" if piece.contains(" = {") => on(piece),
+        "in a `[[light]]`" if is_alone && piece.contains(" = {") => with(&format!("[[light]]\n{piece}\n")),
+        "in a `[[light]]`" if ["name", "group", "visible_to_camera"].contains(&key) => {
+            with(&format!("[[light]]\nenvironment = {{ radiance = 1 }}\n{piece}\n"))
         }
-        "in an `[[object]]`" | "in an `[[object]]`, on any material" if table => {
-            format!("{AROUND}{BALL}material = \"a\"\n{piece}\n")
-        }
-        "in a `[material.NAME]`" if table => on(piece.to_owned()),
-        "in a `[[light]]`" if piece.contains(" = {") => format!("{AROUND}[[light]]\n{piece}\n"),
         "a spectrum: any reflectance, transmittance, radiance .." => {
-            on(format!("diffuse = {{ reflectance = {piece} }}"))
+            on(&format!("diffuse = {{ reflectance = {piece} }}"))
         }
-        "besides, for a light" if value => on(format!("emissive = {{ radiance = {piece} }}")),
-        "besides, for an index" if value => on(format!("dielectric = {{ index = {piece} }}")),
-        "in the image's table" if piece.contains(" = ") => {
-            on(format!("diffuse = {{ reflectance = {{ image = \"wood.png\", {piece} }} }}"))
+        "besides, for a light" if is_value => on(&format!("emissive = {{ radiance = {piece} }}")),
+        "besides, for an index" if is_value => on(&format!("dielectric = {{ index = {piece} }}")),
+        "in the image's table" if is_alone => {
+            on(&format!("diffuse = {{ reflectance = {{ image = \"wood.png\", {piece} }} }}"))
         }
+        "in `[camera]`" if is_alone => {
+            let others = match piece {
+                "projection = \"orthographic\"" => format!("{VIEW}, height = 2"),
+                "projection = \"equirectangular\"" => VIEW.into(),
+                _ => format!("{VIEW}, vertical_fov = 30"),
+            };
+            around(&without(&others, key, piece), FILM, "", "")
+        }
+        "in `[film]`" if is_alone && key != "white_luminance" => {
+            around(&format!("{VIEW}, vertical_fov = 30"), &without(FILM, key, piece), "", "")
+        }
+        "in `[render]`" if is_alone => around(&format!("{VIEW}, vertical_fov = 30"), FILM, piece, ""),
         _ => return None,
     })
 }
 
-#[test]
-fn every_row_of_the_readme_shows_toml_that_a_scene_takes() {
-    let (mut read, mut compiled) = (0, 0);
-    for (head, pieces) in rows(&readme()) {
-        for piece in pieces.iter().filter(|piece| piece.contains([' ', '{', '[']) && !piece.contains("--")) {
-            let text =
-                if piece.contains(" = ") && !piece.starts_with('{') { piece.clone() } else { format!("x = {piece}") };
-            toml::from_str::<toml::Table>(&text).unwrap_or_else(|error| panic!("{head}: {piece}\n{error}"));
-            read += 1;
-            if let Some(scene) = scene(&head, piece) {
-                assert_eq!(mistakes(&scene), [""; 0], "{head}: {piece}");
-                compiled += 1;
-            }
-        }
-    }
-    assert!(read > 45 && compiled > 40, "{read} pieces were read, {compiled} compiled");
+/// Keys and values with a piece in place of the one of its key.
+fn without(others: &str, key: &str, piece: &str) -> String {
+    let mut table: toml::Table = toml::from_str(&format!("it = {{ {others} }}")).expect("TOML");
+    let it = table.get_mut("it").and_then(toml::Value::as_table_mut).expect("a table");
+    it.remove(key);
+    let rest: Vec<String> = it.iter().map(|(key, value)| format!("{key} = {value}")).collect();
+    [rest.join(", "), piece.to_owned()].join(", ")
 }
 
 #[test]
-fn every_block_of_toml_in_the_readme_is_a_scene() {
-    let readme = readme();
-    let blocks: Vec<&str> = readme.split("```toml\n").skip(1).filter_map(|rest| rest.split("```").next()).collect();
-    assert!(!blocks.is_empty());
-    for block in blocks {
-        assert_eq!(mistakes(block), [""; 0], "{block}");
+fn every_row_of_the_tables_shows_toml_that_a_scene_takes() {
+    for (name, least) in PAGES.into_iter().zip([[40, 40], [85, 80]]) {
+        let page = page(name);
+        let rows = rows(&page);
+        let (mut read, mut compiled) = (0, 0);
+        for &(head, ref pieces) in &rows {
+            for piece in pieces.iter().filter(|piece| piece.contains([' ', '{', '[']) && !piece.contains("--")) {
+                let is_entry = piece.contains(" = ") && !piece.starts_with('{');
+                let text = if is_entry { (*piece).to_owned() } else { format!("x = {piece}") };
+                toml::from_str::<toml::Table>(&text).unwrap_or_else(|error| panic!("{head}: {piece}\n{error}"));
+                read += 1;
+                if let Some(scene) = scene(head, piece) {
+                    assert_eq!(mistakes(&scene), [""; 0], "{head}: {piece}\n{scene}");
+                    compiled += 1;
+                }
+            }
+        }
+        assert!(read >= least[0] && compiled >= least[1], "{name}: {read} pieces were read, {compiled} compiled");
+        if name == "scenes/REFERENCE.md" {
+            assert!(HEADS.iter().all(|head| rows.iter().any(|row| row.0 == *head)), "a table is missing");
+        }
     }
+}
+
+#[test]
+fn every_block_of_toml_on_the_pages_is_a_scene() {
+    for name in PAGES {
+        let page = page(name);
+        let blocks: Vec<&str> = page.split("```toml\n").skip(1).filter_map(|rest| rest.split("```").next()).collect();
+        assert!(!blocks.is_empty());
+        for block in blocks {
+            assert_eq!(mistakes(block), [""; 0], "{block}");
+        }
+    }
+}
+
+/// Every page of text in the repository.
+fn pages(folder: &Path) -> Vec<PathBuf> {
+    let paths = fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path());
+    let is_ours = |path: &PathBuf| {
+        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        !name.starts_with('.') && !["target", "node_modules", "generated"].contains(&&*name)
+    };
+    paths
+        .filter(is_ours)
+        .flat_map(|path| match path.is_dir() {
+            true => pages(&path),
+            false => {
+                Some(path).filter(|path| path.extension().is_some_and(|ending| ending == "md")).into_iter().collect()
+            }
+        })
+        .collect()
+}
+
+/// The text of a page without blocks of code.
+fn prose(path: &Path) -> String {
+    let text = fs::read_to_string(path).expect("text");
+    let mut is_code = false;
+    let lines = text.lines().filter(|line| {
+        let fence = line.trim_start().starts_with("```");
+        is_code ^= fence;
+        !is_code && !fence
+    });
+    lines.collect::<Vec<_>>().join("\n")
+}
+
+/// The anchors of a page's headings, as GitHub and other sites make them.
+fn anchors(path: &Path) -> Vec<String> {
+    let anchor = |heading: &str| {
+        // Of a link its text.
+        let mut parts = heading.trim_start_matches('#').trim().split("](");
+        let first = parts.next().unwrap_or_default().to_owned();
+        let words = parts.fold(first, |words, part| words + part.split_once(')').map_or("", |(_, rest)| rest));
+        let kept =
+            words.to_lowercase().chars().filter(|c| c.is_alphanumeric() || " -_".contains(*c)).collect::<String>();
+        kept.replace(' ', "-")
+    };
+    prose(path).lines().filter(|line| line.starts_with('#')).map(anchor).collect()
+}
+
+#[test]
+fn every_link_of_a_page_leads_to_a_file_and_to_a_heading_of_it() {
+    let mut count = 0;
+    for page in pages(Path::new(".")) {
+        let text = prose(&page);
+        let links = text.split("](").skip(1).filter_map(|rest| rest.split(')').next());
+        for link in links.filter(|link| !link.contains("://") && !link.contains(char::is_whitespace)) {
+            let (file, anchor) = link.split_once('#').unwrap_or((link, ""));
+            let target = if file.is_empty() { page.clone() } else { page.with_file_name(file) };
+            assert!(target.exists(), "{}: there is no {file}", page.display());
+            let is_known = anchor.is_empty() || anchors(&target).iter().any(|known| known == anchor);
+            assert!(is_known, "{}: there is no heading for {link}", page.display());
+            count += 1;
+        }
+    }
+    assert!(count > 100, "only {count} links were found");
 }
 
 /// The text of every Rust file below a folder, and where it is.

@@ -25,8 +25,8 @@ def example(name):
 
 
 def test_the_readme_says_what_runs(tmp_path, monkeypatch):
-    readme = (render.ROOT / "README.md").read_text("utf-8")
-    (first, *_), (code,) = (re.findall(rf"```{kind}\n(.*?)```", readme, re.DOTALL) for kind in ("toml", "python"))
+    pages = [(render.ROOT / page).read_text("utf-8") for page in ("README.md", "src/python/README.md")]
+    (first, *_), (code,) = (re.findall(rf"```{kind}\n(.*?)```", page, re.DOTALL) for kind, page in zip(("toml", "python"), pages, strict=True))
     small = first.replace("scenes/", f"{render.SCENES}/").replace("640", "64").replace("360", "36")
     (tmp_path / "first.toml").write_text(small)
     monkeypatch.chdir(tmp_path)
