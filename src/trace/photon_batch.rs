@@ -37,6 +37,9 @@ pub(super) struct Sent<T> {
     pub(super) stats: Stats,
 }
 
+/// What is kept of a photon that lands.
+type Land<'a, const N: usize, P, T> = dyn Fn(&Walker<N, P>, &Landing<N, P>, &Sampler, &mut Vec<T>) + 'a;
+
 /// The photons of some targets from number `first` on, batch by batch.
 pub(super) fn batches(
     targets: &PhotonTargets,
@@ -59,7 +62,7 @@ pub(super) fn send<const N: usize, P: Polarization<N>, T>(
     targets: &PhotonTargets,
     batch: Batch,
     learns: bool,
-    land: &dyn Fn(&Walker<N, P>, &Landing<N, P>, &Sampler, &mut Vec<T>),
+    land: &Land<N, P, T>,
 ) -> Sent<T> {
     let mut walker = Walker::<N, P>::new(world, PHOTONS);
     let (mut kept, mut places) = (Vec::new(), Vec::new());
