@@ -139,34 +139,34 @@ impl Conductor<Table> {
     }
 
     /// By the facet that mirrors the light; what is reflected more than once leaves unpolarized.
-    pub(super) fn mueller<const N: usize>(&self, arrival: &Arrival<N>, incoming: Incoming) -> Mueller<N> {
+    pub(super) fn mueller<const N: usize>(&self, arrival: &Arrival<N>, incoming: Incoming, mueller: &mut Mueller<N>) {
         let (axis, cos, once) = match self.roughness.surface() {
             None if incoming.single => (arrival.wo.cross(arrival.normal), arrival.wo.dot(arrival.normal), 1.0),
             Some(surface) if !incoming.single => {
                 let frame = Frame::about(arrival.normal);
                 let reflection = surface.evaluate(above(&frame, arrival.wo), frame.to_local(incoming.wi));
-                let Some(reflection) = reflection else { return Mueller::NONE };
+                let Some(reflection) = reflection else { return *mueller = Mueller::NONE };
                 (arrival.wo.cross(incoming.wi), reflection.cos, reflection.once)
             }
-            _ => return Mueller::NONE,
+            _ => return *mueller = Mueller::NONE,
         };
         let (n, k) = (arrival.draw.read_exact(&self.n), arrival.draw.read_exact(&self.k));
         if let Some(coating) = &self.coating {
             let met = coating.met(arrival, false);
-            return Mueller::of_lanes(axis, arrival.present, |lane| {
+            return mueller.set_lanes(axis, arrival.present, |lane| {
                 let metal = Complex::new(n[lane], -k[lane]);
                 let n1 = arrival.incident_of(lane);
                 met.stack(lane).shares(n1, metal, n1 * cos.clamp(0.0, 1.0)).reflected.block().times(once)
             });
         }
         let (mut last, mut block) = (None, Block::default());
-        Mueller::of_lanes(axis, arrival.present, |lane| {
+        mueller.set_lanes(axis, arrival.present, |lane| {
             let metal @ [n1, n, k] = [arrival.incident_of(lane), n[lane], k[lane]];
             if last.replace(metal) != Some(metal) {
                 block = Block::of_metal(n1, n, k, cos).times(once);
             }
             block
-        })
+        });
     }
 }
 

@@ -212,32 +212,32 @@ impl Dielectric<Table> {
     }
 
     /// By the surface, or the facet that light meets.
-    pub(super) fn mueller<const N: usize>(&self, arrival: &Arrival<N>, incoming: Incoming) -> Mueller<N> {
+    pub(super) fn mueller<const N: usize>(&self, arrival: &Arrival<N>, incoming: Incoming, mueller: &mut Mueller<N>) {
         match self.roughness.interface() {
-            Some(interface) if !incoming.single => self.rough(interface).mueller(arrival, incoming),
-            Some(_) => Mueller::unchanged(arrival.present * arrival.read(&self.transmittance)),
-            None => self.mueller_of_smooth(arrival, incoming.crosses),
+            Some(interface) if !incoming.single => self.rough(interface).mueller(arrival, incoming, mueller),
+            Some(_) => mueller.set_unchanged(arrival.present * arrival.read(&self.transmittance)),
+            None => self.mueller_of_smooth(arrival, incoming.crosses, mueller),
         }
     }
 
-    fn mueller_of_smooth<const N: usize>(&self, arrival: &Arrival<N>, crosses: bool) -> Mueller<N> {
+    fn mueller_of_smooth<const N: usize>(&self, arrival: &Arrival<N>, crosses: bool, mueller: &mut Mueller<N>) {
         let table = if crosses { &self.transmittance } else { &self.reflectance };
         let tint = if table.is_one() { Lanes::ONE } else { arrival.read(table) };
         let (axis, cos) = (arrival.wo.cross(arrival.normal), arrival.wo.dot(arrival.normal));
         if let Some(coating) = &self.coating {
             let met = coating.met(arrival, arrival.from_inside);
-            return Mueller::of_lanes(axis, arrival.present, |lane| {
+            return mueller.set_lanes(axis, arrival.present, |lane| {
                 block_at(&met, arrival, lane, cos, crosses).times(f64::from(tint[lane]))
             });
         }
         let (mut last, mut block) = (None, Block::default());
-        Mueller::of_lanes(axis, arrival.present, |lane| {
+        mueller.set_lanes(axis, arrival.present, |lane| {
             let boundary = arrival.own_boundary(lane, cos);
             if last.replace(boundary) != Some(boundary) {
                 block = Block::at_boundary(boundary, crosses);
             }
             block.times(f64::from(tint[lane]))
-        })
+        });
     }
 
     fn is_clear(&self) -> bool {

@@ -1,6 +1,7 @@
 //! A material of any kind. A new kind is a file of its own and a variant here: the compiler then lists every place that
 //! has to know it.
 
+use super::thin::Way;
 use super::{
     Arrival, Branch, Coating, Conductor, Dielectric, Diffuse, Emissive, Fluorescence, Incoming, Lobes, Mask, Mirror,
     Mix, Mueller, Part, Plastic, Polarizer, Retarder, Scatter, Straight, Thin,
@@ -329,35 +330,29 @@ impl Scatter for Material<Table> {
         }
     }
 
-    fn mueller<const N: usize>(&self, arrival: &Arrival<N>, incoming: Incoming) -> Mueller<N> {
+    fn mueller<const N: usize>(&self, arrival: &Arrival<N>, incoming: Incoming, mueller: &mut Mueller<N>) {
         match self {
-            Self::Mirror(mirror) if incoming.single => mirror.mueller(arrival),
-            Self::Thin(thin) if incoming.single => {
-                let [_, mirrored] = thin.muellers(arrival);
-                mirrored
-            }
-            Self::Conductor(conductor) => conductor.mueller(arrival, incoming),
-            Self::Dielectric(dielectric) => dielectric.mueller(arrival, incoming),
-            Self::Plastic(plastic) => plastic.mueller(arrival, incoming),
-            Self::Mix(mix) => mix.mueller(arrival, incoming),
-            Self::Mask(mask) => mask.mueller(arrival, incoming),
-            Self::Diffuse(_) | Self::Emissive(_) | Self::Mirror(_) | Self::Thin(_) => Mueller::NONE,
-            Self::Polarizer(_) | Self::Retarder(_) => Mueller::NONE,
+            Self::Mirror(mirror) if incoming.single => mirror.mueller(arrival, mueller),
+            Self::Thin(thin) if incoming.single => thin.mueller(arrival, Way::Back, mueller),
+            Self::Conductor(conductor) => conductor.mueller(arrival, incoming, mueller),
+            Self::Dielectric(dielectric) => dielectric.mueller(arrival, incoming, mueller),
+            Self::Plastic(plastic) => plastic.mueller(arrival, incoming, mueller),
+            Self::Mix(mix) => mix.mueller(arrival, incoming, mueller),
+            Self::Mask(mask) => mask.mueller(arrival, incoming, mueller),
+            Self::Diffuse(_) | Self::Emissive(_) | Self::Mirror(_) | Self::Thin(_) => *mueller = Mueller::NONE,
+            Self::Polarizer(_) | Self::Retarder(_) => *mueller = Mueller::NONE,
         }
     }
 
-    fn mueller_of_straight<const N: usize>(&self, arrival: &Arrival<N>) -> Mueller<N> {
+    fn mueller_of_straight<const N: usize>(&self, arrival: &Arrival<N>, mueller: &mut Mueller<N>) {
         match self {
-            Self::Thin(thin) => {
-                let [through, _] = thin.muellers(arrival);
-                through
-            }
-            Self::Polarizer(polarizer) => polarizer.mueller(arrival),
-            Self::Retarder(retarder) => retarder.mueller(arrival),
-            Self::Mix(mix) => mix.mueller_of_straight(arrival),
-            Self::Mask(mask) => mask.mueller_of_straight(arrival),
-            Self::Diffuse(_) | Self::Mirror(_) | Self::Conductor(_) | Self::Dielectric(_) => Mueller::NONE,
-            Self::Emissive(_) | Self::Plastic(_) => Mueller::NONE,
+            Self::Thin(thin) => thin.mueller(arrival, Way::Through, mueller),
+            Self::Polarizer(polarizer) => polarizer.mueller(arrival, mueller),
+            Self::Retarder(retarder) => retarder.mueller(arrival, mueller),
+            Self::Mix(mix) => mix.mueller_of_straight(arrival, mueller),
+            Self::Mask(mask) => mask.mueller_of_straight(arrival, mueller),
+            Self::Diffuse(_) | Self::Mirror(_) | Self::Conductor(_) | Self::Dielectric(_) => *mueller = Mueller::NONE,
+            Self::Emissive(_) | Self::Plastic(_) => *mueller = Mueller::NONE,
         }
     }
 }

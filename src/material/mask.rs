@@ -32,15 +32,18 @@ impl<M: Scatter> Mask<Table, M> {
         self.material.material().diffuse_part(arrival, wi) * arrival.read(&self.opacity)
     }
 
-    pub(super) fn mueller<const N: usize>(&self, arrival: &Arrival<N>, incoming: Incoming) -> Mueller<N> {
-        self.material.material().mueller(arrival, incoming).scaled(arrival.read(&self.opacity))
+    pub(super) fn mueller<const N: usize>(&self, arrival: &Arrival<N>, incoming: Incoming, mueller: &mut Mueller<N>) {
+        self.material.material().mueller(arrival, incoming, mueller);
+        mueller.scale(arrival.read(&self.opacity));
     }
 
     /// Holes change nothing.
-    pub(super) fn mueller_of_straight<const N: usize>(&self, arrival: &Arrival<N>) -> Mueller<N> {
-        let (opacity, within) = (arrival.read(&self.opacity), self.material.material());
-        let hole = Mueller::unchanged(Lanes::from_fn(|i| 1.0 - opacity[i]));
-        within.mueller_of_straight(arrival).scaled(opacity).plus(&hole)
+    pub(super) fn mueller_of_straight<const N: usize>(&self, arrival: &Arrival<N>, mueller: &mut Mueller<N>) {
+        let (opacity, mut hole) = (arrival.read(&self.opacity), Mueller::NONE);
+        hole.set_unchanged(Lanes::from_fn(|i| 1.0 - opacity[i]));
+        self.material.material().mueller_of_straight(arrival, mueller);
+        mueller.scale(opacity);
+        mueller.add(&hole);
     }
 
     /// The share that goes straight on.

@@ -32,10 +32,10 @@ impl Mirror<Table> {
     }
 
     /// That of a perfect metal: handedness turns around.
-    pub(super) fn mueller<const N: usize>(&self, arrival: &Arrival<N>) -> Mueller<N> {
+    pub(super) fn mueller<const N: usize>(&self, arrival: &Arrival<N>, mueller: &mut Mueller<N>) {
         let share = arrival.read(&self.reflectance);
         let block = Block { a: share, d: Lanes::ZERO, c: share * -1.0, q: Lanes::ZERO };
-        Mueller { axis: arrival.wo.cross(arrival.normal), block, base: None }
+        *mueller = Mueller { axis: arrival.wo.cross(arrival.normal), block, base: None };
     }
 }
 

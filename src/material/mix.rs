@@ -119,16 +119,26 @@ impl<M: Scatter> Mix<Table, M> {
         a.diffuse_part(arrival, wi) * shares[0] + b.diffuse_part(arrival, wi) * shares[1]
     }
 
-    pub(super) fn mueller<const N: usize>(&self, arrival: &Arrival<N>, incoming: Incoming) -> Mueller<N> {
-        let [a, b] = self.materials.each_ref().map(|part| part.material().mueller(arrival, incoming));
-        let shares = self.shares(arrival);
-        a.scaled(shares[0]).plus(&b.scaled(shares[1]))
+    pub(super) fn mueller<const N: usize>(&self, arrival: &Arrival<N>, incoming: Incoming, mueller: &mut Mueller<N>) {
+        self.both_muellers(arrival, mueller, |part, mueller| part.mueller(arrival, incoming, mueller));
     }
 
-    pub(super) fn mueller_of_straight<const N: usize>(&self, arrival: &Arrival<N>) -> Mueller<N> {
-        let [a, b] = self.materials.each_ref().map(|part| part.material().mueller_of_straight(arrival));
-        let shares = self.shares(arrival);
-        a.scaled(shares[0]).plus(&b.scaled(shares[1]))
+    pub(super) fn mueller_of_straight<const N: usize>(&self, arrival: &Arrival<N>, mueller: &mut Mueller<N>) {
+        self.both_muellers(arrival, mueller, |part, mueller| part.mueller_of_straight(arrival, mueller));
+    }
+
+    fn both_muellers<const N: usize>(
+        &self,
+        arrival: &Arrival<N>,
+        mueller: &mut Mueller<N>,
+        of: impl Fn(&M, &mut Mueller<N>),
+    ) {
+        let ([(a, first), (b, second)], mut other) = (self.parts(arrival), Mueller::NONE);
+        of(a, mueller);
+        of(b, &mut other);
+        mueller.scale(first);
+        other.scale(second);
+        mueller.add(&other);
     }
 
     /// The share that goes straight on.

@@ -63,6 +63,7 @@ impl Block<f64> {
 
     /// What becomes of radiance at a smooth boundary between two indices, met at an angle of a cosine, where it crosses
     /// it or is reflected. Between equal indices nothing happens.
+    #[inline]
     pub fn at_boundary([n1, n2, cos]: [f64; 3], crosses: bool) -> Self {
         match (n1 == n2, crosses) {
             (true, true) => Self::IDENTITY,
@@ -205,7 +206,8 @@ pub struct Base<const N: usize> {
 
 /// What a surface does to light that leaves it to the viewer, in the unit of its share or of BSDF times cosine.
 ///
-/// The rest of that share, which is not in `block` nor in `base`, leaves unpolarized whatever it was.
+/// The rest of that share, which is not in `block` nor in `base`, leaves unpolarized whatever it was. Matrices are
+/// large, so they are filled in their place.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mueller<const N: usize> {
     /// Across the plane of incidence of `block`, of any length; 0 where there is none.
@@ -220,43 +222,43 @@ impl<const N: usize> Mueller<N> {
     /// Of a surface that leaves no polarization.
     pub const NONE: Self = Self { axis: DVec3::ZERO, block: Block::NONE, base: None };
 
-    /// Of a boundary that light meets in a plane; each lane on the ray has its own block.
-    pub fn of_lanes(axis: DVec3, present: Lanes<N>, mut of_lane: impl FnMut(usize) -> Block<f64>) -> Self {
-        let mut mueller = Self { axis, block: Block::NONE, base: None };
+    /// Becomes that of a boundary that light meets in a plane; each lane on the ray has its own block.
+    pub fn set_lanes(&mut self, axis: DVec3, present: Lanes<N>, mut of_lane: impl FnMut(usize) -> Block<f64>) {
+        (self.axis, self.block, self.base) = (axis, Block::NONE, None);
         for lane in present.present() {
-            mueller.block.set(lane, of_lane(lane));
+            self.block.set(lane, of_lane(lane));
         }
-        mueller
     }
 
-    /// Of a share that is left as it is.
-    pub fn unchanged(share: Lanes<N>) -> Self {
+    /// Becomes that of a share that is left as it is.
+    pub fn set_unchanged(&mut self, share: Lanes<N>) {
         let block = Block { a: share, d: Lanes::ZERO, c: share, q: Lanes::ZERO };
-        Self { block, ..Self::NONE }
+        (self.axis, self.block, self.base) = (DVec3::ZERO, block, None);
     }
 
-    /// A share of it.
-    pub fn scaled(&self, share: Lanes<N>) -> Self {
-        let base = self.base.as_ref().map(|base| {
-            let [leaving, arriving, both] = [base.leaving, base.arriving, base.both].map(|part| part * share);
-            Box::new(Base { leaving, arriving, both, ..**base })
-        });
-        Self { axis: self.axis, block: self.block.map(|part| part * share), base }
+    /// Becomes a share of what it was.
+    pub fn scale(&mut self, share: Lanes<N>) {
+        self.block = self.block.map(|part| part * share);
+        if let Some(base) = &mut self.base {
+            [&mut base.leaving, &mut base.arriving, &mut base.both].into_iter().for_each(|part| *part = *part * share);
+        }
     }
 
-    /// Both together; where both have a plane of incidence it is the same.
-    pub fn plus(&self, other: &Self) -> Self {
-        let axis = if self.axis == DVec3::ZERO { other.axis } else { self.axis };
-        let base = match (&self.base, &other.base) {
-            (Some(a), Some(b)) => Some(Box::new(Base {
-                leaving: a.leaving + b.leaving,
-                arriving: a.arriving + b.arriving,
-                both: a.both + b.both,
-                ..**a
-            })),
-            (a, b) => a.as_ref().or(b.as_ref()).cloned(),
-        };
-        Self { axis, block: self.block.plus(&other.block), base }
+    /// Takes in another one; where both have a plane of incidence it is the same.
+    pub fn add(&mut self, other: &Self) {
+        if self.axis == DVec3::ZERO {
+            self.axis = other.axis;
+        }
+        self.block = self.block.plus(&other.block);
+        match (&mut self.base, &other.base) {
+            (Some(base), Some(other)) => {
+                base.leaving += other.leaving;
+                base.arriving += other.arriving;
+                base.both += other.both;
+            }
+            (base @ None, other) => *base = other.clone(),
+            (Some(_), None) => {}
+        }
     }
 }
 

@@ -215,7 +215,7 @@ impl Plastic<Table> {
     }
 
     /// By the coat, which light crosses and is mirrored by. A rough one is crossed as a smooth one is.
-    pub(super) fn mueller<const N: usize>(&self, arrival: &Arrival<N>, incoming: Incoming) -> Mueller<N> {
+    pub(super) fn mueller<const N: usize>(&self, arrival: &Arrival<N>, incoming: Incoming, mueller: &mut Mueller<N>) {
         let index = arrival.draw.read_exact(&self.index);
         let met = self.coating.as_ref().map(|coating| coating.met(arrival, false));
         let film = |lane: usize, cos: f64| {
@@ -229,23 +229,23 @@ impl Plastic<Table> {
         let cos = arrival.wo.dot(arrival.normal);
         if incoming.single {
             let axis = arrival.wo.cross(arrival.normal);
-            return Mueller::of_lanes(axis, arrival.present, |lane| reflected(lane, cos));
+            return mueller.set_lanes(axis, arrival.present, |lane| reflected(lane, cos));
         }
         let to = incoming.wi.dot(arrival.normal);
         if to <= 0.0 {
-            return Mueller::NONE;
+            return *mueller = Mueller::NONE;
         }
-        let mueller = match self.coat.roughness().surface() {
-            None => Mueller::NONE,
+        match self.coat.roughness().surface() {
+            None => *mueller = Mueller::NONE,
             Some(surface) => {
                 let frame = Frame::about(arrival.normal);
                 let reflection = surface.evaluate(above(&frame, arrival.wo), frame.to_local(incoming.wi));
-                let Some(reflection) = reflection else { return Mueller::NONE };
+                let Some(reflection) = reflection else { return *mueller = Mueller::NONE };
                 let axis = arrival.wo.cross(incoming.wi);
                 let facet = |lane| reflected(lane, reflection.cos).times(reflection.once);
-                Mueller::of_lanes(axis, arrival.present, facet)
+                mueller.set_lanes(axis, arrival.present, facet);
             }
-        };
+        }
         let from = above(&Frame::about(arrival.normal), arrival.wo).z;
         let crossed = |lane: usize, cos: f64| {
             let crossing = match (film(lane, cos), [arrival.incident_of(lane), index[lane]]) {
@@ -264,7 +264,7 @@ impl Plastic<Table> {
             arriving: Lanes::from_fn(|i| (base[i] * arriving[i]) as f32),
             both: Lanes::from_fn(|i| (base[i] * leaving[i] * arriving[i]) as f32),
         };
-        Mueller { base: Some(Box::new(base)), ..mueller }
+        mueller.base = Some(Box::new(base));
     }
 
     /// The degree by the coat, which light crosses and, where it is rough, is mirrored by:

@@ -34,10 +34,10 @@ impl Polarizer {
         Straight { holes: Lanes::ZERO, panes, polarization }
     }
 
-    pub(super) fn mueller<const N: usize>(&self, arrival: &Arrival<N>) -> Mueller<N> {
+    pub(super) fn mueller<const N: usize>(&self, arrival: &Arrival<N>, mueller: &mut Mueller<N>) {
         match let_through(arrival, self.axis) {
-            Some(axis) => Mueller::of_lanes(axis, arrival.present, |_| Block::of_polarizer(self.extinction)),
-            None => Mueller::NONE,
+            Some(axis) => mueller.set_lanes(axis, arrival.present, |_| Block::of_polarizer(self.extinction)),
+            None => *mueller = Mueller::NONE,
         }
     }
 }

@@ -106,15 +106,15 @@ impl<S: Clone> Retarder<S> {
 }
 
 impl Retarder<Table> {
-    pub(super) fn mueller<const N: usize>(&self, arrival: &Arrival<N>) -> Mueller<N> {
-        let Some(axis) = let_through(arrival, self.axis) else { return Mueller::unchanged(arrival.present) };
+    pub(super) fn mueller<const N: usize>(&self, arrival: &Arrival<N>, mueller: &mut Mueller<N>) {
+        let Some(axis) = let_through(arrival, self.axis) else { return mueller.set_unchanged(arrival.present) };
         match &self.retardance {
             Retardance::Phase(degrees) => {
                 let block = Block::of_retarder(degrees.to_radians());
-                Mueller::of_lanes(axis, arrival.present, |_| block)
+                mueller.set_lanes(axis, arrival.present, |_| block)
             }
             Retardance::Path(path) => {
-                Mueller::of_lanes(axis, arrival.present, |lane| path.block_of_lane(arrival.draw, lane))
+                mueller.set_lanes(axis, arrival.present, |lane| path.block_of_lane(arrival.draw, lane))
             }
         }
     }

@@ -283,16 +283,16 @@ impl RoughBoundary<'_> {
 
     /// By the facet that reflects or refracts the light of each kind of lanes. What meets a second facet leaves
     /// unpolarized.
-    pub(super) fn mueller<const N: usize>(&self, arrival: &Arrival<N>, incoming: Incoming) -> Mueller<N> {
+    pub(super) fn mueller<const N: usize>(&self, arrival: &Arrival<N>, incoming: Incoming, mueller: &mut Mueller<N>) {
         let mut meeting = Meeting::new(self, arrival);
         let local = meeting.frame.to_local(incoming.wi);
         let crosses = local.z < 0.0;
         let pdf = if crosses { meeting.cross(local, None) } else { meeting.reflect(local, None) };
         if pdf <= 0.0 {
-            return Mueller::NONE;
+            return *mueller = Mueller::NONE;
         }
         let tint = arrival.read(if crosses { self.transmittance } else { self.reflectance });
-        let mut mueller = Mueller::of_lanes(arrival.wo.cross(incoming.wi), Lanes::ZERO, |_| Block::default());
+        *mueller = Mueller { axis: arrival.wo.cross(incoming.wi), ..Mueller::NONE };
         for kind in meeting.kinds.iter().filter(|kind| !crosses || kind.crossing > 0.0) {
             let lanes = if crosses { meeting.across(kind) } else { kind.present };
             for lane in (0..N).filter(|&lane| lanes[lane] != 0.0) {
@@ -306,7 +306,6 @@ impl RoughBoundary<'_> {
                 mueller.block.set(lane, block.times(kind.flow.facet * square * f64::from(tint[lane])));
             }
         }
-        mueller
     }
 
     /// BSDF times cosine of each lane, and the density of `wi` among the branches on its side.

@@ -27,10 +27,10 @@ pub trait Scatter {
     /// that it crosses.
     fn degree_of_scattered<const N: usize>(&self, arrival: &Arrival<N>, wi: DVec3) -> f32;
 
-    /// What becomes of the polarization of light that arrives, of which `scatter` and `evaluate` say how much
-    /// leaves.
-    fn mueller<const N: usize>(&self, arrival: &Arrival<N>, incoming: Incoming) -> Mueller<N>;
+    /// Makes `mueller` what becomes of the polarization of light that arrives, of which `scatter` and `evaluate` say
+    /// how much leaves.
+    fn mueller<const N: usize>(&self, arrival: &Arrival<N>, incoming: Incoming, mueller: &mut Mueller<N>);
 
     /// The same of light that goes straight on, as `straight` says.
-    fn mueller_of_straight<const N: usize>(&self, arrival: &Arrival<N>) -> Mueller<N>;
+    fn mueller_of_straight<const N: usize>(&self, arrival: &Arrival<N>, mueller: &mut Mueller<N>);
 }

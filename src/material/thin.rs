@@ -24,6 +24,13 @@ pub struct Thin<S> {
     pub film: Option<Coating<S>>,
 }
 
+/// The two ways on.
+#[derive(Clone, Copy)]
+pub(super) enum Way {
+    Through,
+    Back,
+}
+
 impl<S> Thin<S> {
     pub(super) fn map<T>(&self, convert: &mut impl FnMut(Quantity, &S) -> T) -> Thin<T> {
         Thin {
@@ -50,34 +57,27 @@ impl Thin<Table> {
         }
     }
 
-    /// What becomes of polarization straight on and where light is mirrored.
-    pub(super) fn muellers<const N: usize>(&self, arrival: &Arrival<N>) -> [Mueller<N>; 2] {
-        let (index, way) = (arrival.draw.read_exact(&self.index), arrival.read(&self.transmittance));
+    /// What becomes of polarization one way.
+    pub(super) fn mueller<const N: usize>(&self, arrival: &Arrival<N>, way: Way, mueller: &mut Mueller<N>) {
+        let (index, left) = (arrival.draw.read_exact(&self.index), arrival.read(&self.transmittance));
         let (axis, cos) = (arrival.wo.cross(arrival.normal), arrival.wo.dot(arrival.normal));
         let (mut last, mut blocks) = (None, [Block::default(); 2]);
         let film = self.film.as_ref().map(|film| film.met(arrival, false));
-        let mut block_of = |lane: usize| {
+        mueller.set_lanes(axis, arrival.present, |lane| {
             if let Some(film) = &film {
                 let n = arrival.incident_of(lane);
                 let shares = film.stack(lane).shares(n, n.into(), n * cos.clamp(0.0, 1.0));
-                return [shares.refracted.block(), shares.reflected.block()];
+                return [shares.refracted, shares.reflected][way as usize].block();
             }
-            let pane @ [n1, n2, t] = [arrival.incident_of(lane), index[lane], f64::from(way[lane])];
+            let pane @ [n1, n2, t] = [arrival.incident_of(lane), index[lane], f64::from(left[lane])];
             if n1 == n2 {
-                return [Block::IDENTITY.times(t), Block::default()];
+                return [Block::IDENTITY.times(t), Block::default()][way as usize];
             }
             if last.replace(pane) != Some(pane) {
                 blocks = Block::of_pane(Block::reflected(n1, n2, cos), Block::refracted(n1, n2, cos), t);
             }
-            blocks
-        };
-        let mut back = Mueller::of_lanes(axis, Lanes::ZERO, |_| Block::default());
-        let through = Mueller::of_lanes(axis, arrival.present, |lane| {
-            let [through, mirrored] = block_of(lane);
-            back.block.set(lane, mirrored);
-            through
+            blocks[way as usize]
         });
-        [through, back]
     }
 
     /// What of each lane goes straight on and what is mirrored, and the largest degree of polarization that this gives

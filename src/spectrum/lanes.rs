@@ -5,6 +5,16 @@ use std::ops::{Add, AddAssign, Index, Mul};
 #[repr(align(16))]
 pub struct Lanes<const N: usize>(pub [f32; N]);
 
+/// One bit for each lane. Read from a table, bits of four lanes are made at a time.
+const BITS: [u32; 32] = {
+    let (mut bits, mut i) = ([0; 32], 0);
+    while i < 32 {
+        bits[i] = 1 << i;
+        i += 1;
+    }
+    bits
+};
+
 impl<const N: usize> Lanes<N> {
     /// All lanes 0.
     pub const ZERO: Self = Self([0.0; N]);
@@ -29,13 +39,12 @@ impl<const N: usize> Lanes<N> {
     /// The lanes that are not 0, in their order.
     #[inline(always)]
     pub fn present(&self) -> impl Iterator<Item = usize> + use<N> {
-        const { assert!(N <= 64) };
-        let bit = |i: usize| u64::from(self.0[i] != 0.0) << i;
-        let mut left = (0..N).fold(0, |bits, i| bits | bit(i));
+        const { assert!(N <= 32) };
+        let mut left = (0..N).fold(0, |bits, i| bits | if self.0[i] != 0.0 { BITS[i] } else { 0 });
         std::iter::from_fn(move || {
             let next = left.trailing_zeros() as usize;
             left &= left.wrapping_sub(1);
-            (next < 64).then_some(next)
+            (next < 32).then_some(next)
         })
     }
 

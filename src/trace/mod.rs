@@ -91,6 +91,7 @@ mod search;
 mod seen_light;
 mod sensor;
 mod shading;
+mod slots;
 mod spectrum_sample;
 mod stats;
 mod stopping;

@@ -165,38 +165,38 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         let mut first = None;
         self.walker.started = self.walker.stats.rays;
         self.excitations.clear();
-        self.walker.pending.push(path);
-        while let Some(last) = self.walker.pending.len().checked_sub(1) {
-            let mut path = self.walker.pending[last];
-            self.walker.pending.truncate(last);
-            let excitation = self.excitation(&path);
+        *self.walker.pending.add(|| path) = path;
+        let mut path = Box::new(path);
+        while self.walker.pending.take(&mut path) {
+            let path = &mut *path;
+            let excitation = self.excitation(path);
             let draw = excitation.as_ref().map_or(draw, |excitation| &excitation.draw);
             if path.vertices >= self.walker.transport.last_vertex() {
                 self.walker.stats.stopped += path.weight(draw);
                 continue;
             }
             let before = self.sensor.rgb;
-            let Some(meeting) = self.walker.meet(&mut path, draw) else {
-                self.background(&path, draw);
-                self.tell(&path, draw, f64::INFINITY, before);
+            let Some(meeting) = self.walker.meet(path, draw) else {
+                self.background(path, draw);
+                self.tell(path, draw, f64::INFINITY, before);
                 continue;
             };
-            let onward = self.walker.straight(&path, draw, &meeting);
+            let onward = self.walker.straight(path, draw, &meeting);
             let Meeting { hit, point } = &meeting;
             if let Some(straight) = &onward
                 && path.throughput.through(straight.straight.share()) == path.throughput
             {
                 let polarization = straight.polarization;
-                self.walker.pending.push(Path { polarization, ..path.passed(point) });
+                *self.walker.pending.add(|| *path) = Path { polarization, ..path.passed(point) };
                 continue;
             }
             if world.hides_objects && path.kind == PathKind::Camera && world.sight(hit.object) == Sight::Holdout {
-                self.walker.audit.iter_mut().for_each(|audit| audit.end_beside(&path, onward.as_ref(), draw));
-                self.walker.pending.extend(onward.map(|onward| path.passed_in_part(point, &onward)));
+                self.walker.audit.iter_mut().for_each(|audit| audit.end_beside(path, onward.as_ref(), draw));
+                self.walker.go_on_in_part(path, point, onward.as_ref());
                 continue;
             }
             let is_met_first =
-                path.vertices == 0 && first.is_none() && straight::is_met(world, draw, sampler, &path, onward.as_ref());
+                path.vertices == 0 && first.is_none() && straight::is_met(world, draw, sampler, path, onward.as_ref());
             if is_met_first {
                 first = Some(*point);
                 if let Some(layers) = &mut self.sensor.layers {
@@ -204,14 +204,14 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
                 }
             }
             path.vertices += 1;
-            self.emission(&path, draw, &meeting);
+            self.emission(path, draw, &meeting);
             if path.vertices > world.method.max_bounces {
-                self.cut(&path, draw, &meeting, onward.as_ref());
+                self.cut(path, draw, &meeting, onward.as_ref());
                 continue;
             }
-            self.scatter(&path, draw, sampler, &meeting, onward.as_ref(), is_met_first);
+            self.scatter(path, draw, sampler, &meeting, onward.as_ref(), is_met_first);
             if onward.is_none() {
-                self.tell(&path, draw, hit.crossing.t, before);
+                self.tell(path, draw, hit.crossing.t, before);
             }
         }
         if let Transport::Deterministic { most, .. } = self.walker.transport {
@@ -227,7 +227,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         } else if let Some(audit) = &mut self.walker.audit {
             audit.end_beside(path, onward, draw);
         }
-        self.walker.pending.extend(onward.map(|onward| path.passed_in_part(&meeting.point, onward)));
+        self.walker.go_on_in_part(path, &meeting.point, onward);
     }
 
     /// Hands the light of the sky, at the end of a path that hits nothing, to the sensor.

@@ -115,17 +115,20 @@ pub(super) fn follow_photon<const N: usize, P: Polarization<N>>(
     land: &mut dyn FnMut(&Walker<N, P>, &Landing<N, P>),
 ) {
     let world = walker.world;
-    walker.pending.push(Path::from_light(world, draw, emitted.ray, media));
-    while let Some(mut path) = walker.pending.pop() {
+    let path = Path::from_light(world, draw, emitted.ray, media);
+    *walker.pending.add(|| path) = path;
+    let mut path = Box::new(path);
+    while walker.pending.take(&mut path) {
+        let path = &mut *path;
         if path.vertices >= walker.transport.last_vertex() {
             continue;
         }
-        let Some(meeting) = walker.meet(&mut path, draw) else { continue };
-        if let Some(onward) = walker.straight(&path, draw, &meeting) {
+        let Some(meeting) = walker.meet(path, draw) else { continue };
+        if let Some(onward) = walker.straight(path, draw, &meeting) {
             let (throughput, key) = (path.throughput.through(onward.straight.share()), path.key.child(BEYOND));
             let all = throughput == path.throughput;
             let polarization = onward.polarization;
-            walker.pending.push(Path { throughput, key, polarization, ..path.passed(&meeting.point) });
+            *walker.pending.add(|| *path) = Path { throughput, key, polarization, ..path.passed(&meeting.point) };
             if all {
                 continue;
             }
@@ -137,18 +140,18 @@ pub(super) fn follow_photon<const N: usize, P: Polarization<N>>(
             }
         }
         path.vertices += 1;
-        let Some(boundary) = walker.boundary(&path, &meeting) else { continue };
+        let Some(boundary) = walker.boundary(path, &meeting) else { continue };
         let at = Interaction::new(world, draw, &path.ray, path.throughput.present(), &meeting, boundary);
         // As often as light may leave surfaces on its way from the camera.
         let allowed = path.vertices <= world.method.max_bounces && !(at.lobes.is_diffuse() && path.diffuse_left == 0);
         let shown = over == Surfaces::All || path.vertices > 1;
         if at.lobes.is_wide() && allowed && shown {
-            land(walker, &Landing { path: &path, at: &at, light, factor: emitted.factor, early });
+            land(walker, &Landing { path, at: &at, light, factor: emitted.factor, early });
         }
         if over == Surfaces::Smooth || !at.lobes.is_wide() {
-            bounce(walker, &path, at, sampler);
+            bounce(walker, path, at, sampler);
         } else if allowed && path.vertices < world.method.max_bounces {
-            scatter(walker, &path, &at, sampler);
+            scatter(walker, path, &at, sampler);
         }
     }
 }
@@ -237,7 +240,7 @@ fn send_forward<const N: usize>(arrival: &Arrival<N>, branches: &mut [Branch<N>]
 }
 
 /// How the camera sees the place where a photon has landed.
-struct View<'v, 'a, const N: usize, P> {
+struct View<'v, 'a, const N: usize, P: Polarization<N>> {
     walker: &'v Walker<'a, N, P>,
     landing: &'v Landing<'v, N, P>,
     sampler: &'v Sampler,

@@ -6,6 +6,7 @@ use super::World;
 use super::arrived::Arrived;
 use super::excitation::Excitation;
 use super::interaction::Interaction;
+use super::slots::Slots;
 use crate::light::Light;
 use crate::material::{Arrival, Branch, Material, Straight};
 use crate::math::{DVec3, Ray};
@@ -58,6 +59,8 @@ pub(super) struct SeenPhoton<const N: usize> {
 pub(super) trait Polarization<const N: usize>: Copy + Debug + Send + Sync + 'static {
     /// What is kept of it with a photon that has landed.
     type Landed: Clone + Debug + Send + Sync;
+    /// What becomes of it along a branch that may be followed.
+    type Way: Debug;
 
     /// Of a path that starts at the camera along a ray.
     fn of_camera(world: &World, ray: &Ray) -> Self;
@@ -68,12 +71,12 @@ pub(super) trait Polarization<const N: usize>: Copy + Debug + Send + Sync + 'sta
     /// After a surface that lets some light go straight on; makes that the share that does.
     fn after_straight(self, material: &Material<Table>, arrival: &Arrival<N>, straight: &mut Straight<N>) -> Self;
 
-    /// Before branches are chosen: makes their shares those of the path's light, and adds what each goes on with to
-    /// `after`. Nothing is added where that can wait until one is chosen.
-    fn split(&self, at: &Interaction<N>, branches: &mut [Branch<N>], after: &mut Vec<Self>);
+    /// Before branches are chosen: makes their shares those of the path's light, and puts what becomes of it along each
+    /// of them into `ways`. Nothing is put there where that can wait until one is chosen.
+    fn split(&self, at: &Interaction<N>, branches: &mut [Branch<N>], ways: &mut Slots<Self::Way>);
 
-    /// After a branch, of which `split` may have told already.
-    fn along(&self, at: &Interaction<N>, branch: &Branch<N>, known: Option<&Self>) -> Self;
+    /// Becomes what it is along a branch, of which `split` may have told already, when it was `before`.
+    fn become_along(&mut self, before: &Self, at: &Interaction<N>, branch: &Branch<N>, way: Option<&Self::Way>);
 
     /// On the way from a surface along the unit vector `wi` to a light, where it meets panes next; makes `bsdf_cos`
     /// that of the path's light.

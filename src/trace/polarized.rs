@@ -9,6 +9,7 @@
 use super::World;
 use super::interaction::Interaction;
 use super::polarization::{MetLight, Polarization, SeenPhoton};
+use super::slots::Slots;
 use crate::light::Light;
 use crate::material::{Arrival, Branch, Material, Scatter, Straight};
 use crate::math::{DVec3, Ray};
@@ -75,6 +76,7 @@ impl Polarized {
 
 impl<const N: usize> Polarization<N> for Polarized {
     type Landed = Self;
+    type Way = ();
 
     fn of_camera(_: &World, _: &Ray) -> Self {
         Self::NOT
@@ -90,14 +92,14 @@ impl<const N: usize> Polarization<N> for Polarized {
     }
 
     #[inline(always)]
-    fn split(&self, _: &Interaction<N>, _: &mut [Branch<N>], _: &mut Vec<Self>) {}
+    fn split(&self, _: &Interaction<N>, _: &mut [Branch<N>], _: &mut Slots<()>) {}
 
     #[inline(always)]
-    fn along(&self, at: &Interaction<N>, branch: &Branch<N>, _: Option<&Self>) -> Self {
-        match branch.pdf {
-            Some(_) => self.scattered(at.material, &at.arrival, branch.wi),
-            None => self.after(branch.polarization),
-        }
+    fn become_along(&mut self, before: &Self, at: &Interaction<N>, branch: &Branch<N>, _: Option<&()>) {
+        *self = match branch.pdf {
+            Some(_) => before.scattered(at.material, &at.arrival, branch.wi),
+            None => before.after(branch.polarization),
+        };
     }
 
     #[inline(always)]

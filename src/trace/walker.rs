@@ -10,20 +10,22 @@ use super::path::{Among, Path, PathKind, ScatterSample};
 use super::polarization::{Onward, Polarization};
 use super::polarized::Polarized;
 use super::roulette::{LONG, survival};
+use super::slots::Slots;
 use super::stats::Stats;
 use super::{Transport, World, shading, straight};
 use crate::material::{Branch, Straight};
 use crate::math::Sampler;
+use crate::shape::SurfacePoint;
 use crate::spectrum::Draw;
 
 /// Follows rays, one sample after another; its buffers live as long as it does.
-pub(super) struct Walker<'a, const N: usize, P = Polarized> {
+pub(super) struct Walker<'a, const N: usize, P: Polarization<N> = Polarized> {
     pub(super) world: &'a World,
     pub(super) transport: Transport,
-    pub(super) pending: Vec<Path<N, P>>,
+    pub(super) pending: Slots<Path<N, P>>,
     pub(super) branches: Vec<Branch<N>>,
-    /// How light is polarized along each of them, where it is traced.
-    polarizations: Vec<P>,
+    /// What becomes of polarization along each of them, where it is traced.
+    ways: Slots<P::Way>,
     /// The object that occluded the last light that was: the first to ask about the next one.
     pub(super) last_occluder: Cell<Option<u32>>,
     pub(super) stats: Stats,
@@ -49,9 +51,9 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
         Self {
             world,
             transport,
-            pending: Vec::new(),
+            pending: Slots::new(),
             branches: Vec::new(),
-            polarizations: Vec::new(),
+            ways: Slots::new(),
             last_occluder: Cell::new(None),
             stats: Stats::default(),
             audit: None,
@@ -100,22 +102,29 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
             // No light was sampled through this surface, so what the path meets beyond counts in full.
             let (ray, key) = (point.leave(path.ray.direction), path.key.child(0));
             let kind = path.kind.then(self.world.has_map(), false, || Some(self.world.is_photon_target(hit.object)));
-            self.pending.push(Path { ray, media: boundary.crossed, key, scatter: None, kind, ..*path });
+            let next = self.pending.add(|| *path);
+            *next = Path { ray, media: boundary.crossed, key, scatter: None, kind, ..*path };
             return None;
         }
         Some(boundary)
     }
 
+    /// Makes the path pending that goes straight on through a surface that it has met, if any light does.
+    pub(super) fn go_on_in_part(&mut self, path: &Path<N, P>, point: &SurfacePoint, onward: Option<&Onward<N, P>>) {
+        if let Some(onward) = onward {
+            *self.pending.add(|| *path) = path.passed_in_part(point, onward);
+        }
+    }
+
     /// Makes the shares of the branches those of the path's light, which may be polarized.
     #[inline(always)]
     pub(super) fn polarize(&mut self, path: &Path<N, P>, at: &Interaction<N>) {
-        path.polarization.split(at, &mut self.branches, &mut self.polarizations);
+        path.polarization.split(at, &mut self.branches, &mut self.ways);
     }
 
     /// Leaves the branches alone that smooth surfaces have.
     pub(super) fn keep_single(&mut self) {
-        let mut branches = self.branches.iter();
-        self.polarizations.retain(|_| branches.next().is_some_and(|branch| branch.pdf.is_none()));
+        self.ways.keep(|number| self.branches[number].pdf.is_none());
         self.branches.retain(|branch| branch.pdf.is_none());
     }
 
@@ -139,9 +148,7 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
                 for (number, branch) in self.branches.iter().enumerate() {
                     match departure.weight(branch) {
                         weight if weight < cutoff => self.stats.dropped += weight,
-                        _ => {
-                            self.pending.push(departure.path_along(number, branch, self.polarizations.get(number), 1.0))
-                        }
+                        _ => departure.send(number, branch, self.ways.get(number), 1.0, &mut self.pending),
                     }
                 }
             }
@@ -178,8 +185,8 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
         let number = chosen.unwrap_or(last);
         if let Some(factor) = survival(total, roulette, departure.path.vertices, || u[1]) {
             let factor = factor * total / weight(number);
-            let (branch, known) = (&self.branches[number], self.polarizations.get(number));
-            self.pending.push(departure.path_along(number, branch, known, factor));
+            let (branch, way) = (&self.branches[number], self.ways.get(number));
+            departure.send(number, branch, way, factor, &mut self.pending);
         }
     }
 
@@ -193,7 +200,7 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
             if weight != 0.0
                 && let Some(factor) = survival(weight, roulette, departure.path.vertices, u)
             {
-                self.pending.push(departure.path_along(number, branch, self.polarizations.get(number), factor));
+                departure.send(number, branch, self.ways.get(number), factor, &mut self.pending);
             }
         }
     }
@@ -248,42 +255,52 @@ impl<'a, const N: usize, P: Polarization<N>> Departure<'a, N, P> {
         path.throughput.through(branch.share).weight(shares) / (path.eta_scale * branch.eta_scale)
     }
 
-    /// The path along a branch, followed with probability 1 / `factor`. `known` is how its light is polarized, where
-    /// that is known already.
+    /// Makes the path along a branch pending, followed with probability 1 / `factor`. `way` is what becomes of its
+    /// polarization, where that is known already.
+    ///
+    /// Paths are large: it becomes one in its place.
     #[inline(always)]
-    fn path_along(&self, number: usize, branch: &Branch<N>, known: Option<&P>, factor: f64) -> Path<N, P> {
+    fn send(
+        &self,
+        number: usize,
+        branch: &Branch<N>,
+        way: Option<&P::Way>,
+        factor: f64,
+        pending: &mut Slots<Path<N, P>>,
+    ) {
         let Self { world, path, at, .. } = self;
         if let Some(onward) = self.onward.filter(|_| self.is_onward(number)) {
             let beyond = path.passed_in_part(at.point, onward);
-            return Path { throughput: beyond.throughput.scaled(factor), key: path.key.child(number), ..beyond };
+            let (throughput, key) = (beyond.throughput.scaled(factor), path.key.child(number));
+            *pending.add(|| beyond) = Path { throughput, key, ..beyond };
+            return;
         }
         let (wide, crosses) = (branch.pdf.is_some(), branch.crosses);
         let aimed = || {
             let followed = shading::is_plain(at.point, at.arrival.wo, branch.wi, crosses);
             followed.then(|| world.is_photon_target(at.object))
         };
-        Path {
-            ray: at.point.leave(branch.wi),
-            left: path.left,
-            throughput: path.throughput.through(branch.share).scaled(factor),
-            eta_scale: path.eta_scale * branch.eta_scale,
-            media: if crosses { at.boundary.crossed } else { path.media },
-            parted: path.parted || (at.parts && crosses),
-            key: path.key.child(number),
-            vertices: path.vertices,
-            length: path.length,
-            kind: path.kind.then(world.has_map(), wide, aimed),
-            diffuse_left: path.diffuse_left - u32::from(wide && at.lobes.is_diffuse()),
-            scatter: branch.pdf.and_then(|pdf| self.scatter.map(|scatter| scatter.toward(pdf, crosses))),
-            polarization: path.polarization.along(at, branch, known),
-            bounces: path.bounces + 1,
-            is_seen: path.is_seen && !wide && !at.lobes.is_wide(),
-            among: path.among,
-            excitation: path.excitation,
-            first: match path.bounces {
-                0 if !wide && !crosses && world.layers.tell_lobes_apart() => Some(FirstLobe::Specular),
-                _ => at.first_lobe(world, path.lobe(), branch.wi, crosses),
-            },
-        }
+        let next = pending.add(|| **path);
+        next.ray = at.point.leave(branch.wi);
+        next.left = path.left;
+        next.throughput = path.throughput.through(branch.share).scaled(factor);
+        next.eta_scale = path.eta_scale * branch.eta_scale;
+        next.media = if crosses { at.boundary.crossed } else { path.media };
+        next.parted = path.parted || (at.parts && crosses);
+        next.key = path.key.child(number);
+        next.vertices = path.vertices;
+        next.length = path.length;
+        next.kind = path.kind.then(world.has_map(), wide, aimed);
+        next.diffuse_left = path.diffuse_left - u32::from(wide && at.lobes.is_diffuse());
+        next.scatter = branch.pdf.and_then(|pdf| self.scatter.map(|scatter| scatter.toward(pdf, crosses)));
+        next.polarization.become_along(&path.polarization, at, branch, way);
+        next.bounces = path.bounces + 1;
+        next.is_seen = path.is_seen && !wide && !at.lobes.is_wide();
+        next.among = path.among;
+        next.excitation = path.excitation;
+        next.first = match path.bounces {
+            0 if !wide && !crosses && world.layers.tell_lobes_apart() => Some(FirstLobe::Specular),
+            _ => at.first_lobe(world, path.lobe(), branch.wi, crosses),
+        };
     }
 }
