@@ -16,119 +16,55 @@
 //! 8. Light that reaches the camera is a contribution handed to the sensor.
 //! 9. Random numbers are a pure function of seed, pixel, sample, branch and use; sums have a fixed order.
 //!
+//! A folder uses the files beside it and the folders above it in this list, never those below:
+//!
 //! ```text
-//! prepare          a world, tabulated and taught where to look
-//! render, tile     an image in the making, pass by pass
-//! path_tracer      camera paths: walker + direct lighting + gathered photons + light vertices, into the sensor
-//! layers           what is asked for beside the image: contributions told apart, first surfaces, sums of a tile
-//! photon           photons and light paths: walker + landing
-//! walker           from surface to surface; interaction, media, path
-//! replicates       eight renders side by side; noise, blur, stopping: what they tell, and when that is enough
-//! probe, pilot ..  what the plan asks, by the same walks
+//! (files here)  what all share: the world, its method and layers, media, a pass, contributions of light
+//! walk          from surface to surface: paths, interactions, polarization, dyes, energy audit
+//! photon        photons and light paths: how they are followed, what is kept of them, how it is gathered
+//! camera        paths from the camera: walk + direct lighting + gathered photons + light vertices, into the sensor
+//! image         an image in the making, pass by pass over its tiles: sums, noise, when it is enough, what is saved
+//! probe         what the plan asks, by the same walks; `prepare` teaches a world where to look
+//! dispersion    how far colors are pulled apart, and what tints light on its ways: rays of few colors
 //! ```
 
-mod aimed;
-mod apart;
 mod arrived;
-mod audit;
-mod blur;
-mod branching;
 mod bright;
-mod brightness;
-mod clusters;
-mod compared;
+mod camera;
 mod contribution;
-mod coverage;
-mod direct;
 mod dispersion;
 mod dyes;
-mod excitation;
-mod exciting;
 mod first_lobe;
-mod gather;
-mod gathering_worth;
 mod guide;
-mod interaction;
-mod kd_tree;
-mod kernel;
-mod layer_sample;
-mod layer_sums;
+mod image;
 mod layers;
-mod light_pass;
-mod light_vertices;
-mod lit;
 mod media;
 mod method;
-mod noise;
 mod parallel;
 mod pass;
-mod pass_light;
-mod passes;
-mod path;
-mod path_tracer;
 mod photon;
-mod photon_batch;
-mod photon_map;
 mod photon_targets;
-mod pilot;
-mod polarization;
-mod polarized;
-mod prepare;
 mod probe;
-mod rare_light;
-mod reach;
-mod render;
 mod replicates;
-mod resampling;
-mod resampling_worth;
-mod roulette;
-mod route;
-mod route_walk;
-mod routes;
-mod rows;
-mod saved;
-mod search;
-mod seen_light;
-mod sensor;
-mod shading;
-mod slots;
 mod spectrum_sample;
 mod stats;
-mod stopping;
-mod straight;
-mod targets;
-mod tile;
-mod usefulness;
-mod visible_caps;
 mod walk;
-mod walker;
 mod watch;
 mod white;
 mod width;
 mod world;
 
-pub use blur::Blur;
-pub use branching::{Branching, branching};
 pub use bright::{BrightPlace, BrightPlaces};
-pub use brightness::bright_places;
-pub use compared::polarization_error;
-pub use dispersion::{COLORS_NM, Dispersion, dispersion};
-pub use gathering_worth::{GatheredWorth, gathered_worth};
-pub use light_pass::{piloted, seen_photons};
+pub use dispersion::{COLORS_NM, Dispersion, ROUTES_NM, Route, SEEN_PIXELS, Step, Way, dispersion, routes};
+pub use image::{
+    Advance, Blur, Noise, Outlier, RareLight, Rendering, Report, Restored, Stopped, TileNoise, piloted, render,
+    seen_photons,
+};
 pub use method::{LightPass, MapPasses, Method, Polarizing, Stop, Transport};
-pub use noise::{Noise, Outlier, TileNoise};
 pub use photon_targets::is_photon_target;
-pub use pilot::{PhotonWorth, SampleWorth, photons_worth, samples_worth};
-pub use prepare::{prepare, prepare_unguided};
-pub use probe::{PhotonTimes, Probe, photon_times, probe};
-pub use rare_light::RareLight;
-pub use reach::{gathered_photons, reached_places};
-pub use render::{Advance, Rendering, Report, render};
-pub use resampling_worth::resampling_gain;
-pub use route::{ROUTES_NM, Route, Step, Way};
-pub use routes::routes;
-pub use saved::Restored;
-pub use seen_light::{SeenLight, seen_light};
-pub use stopping::Stopped;
-pub use targets::SEEN_PIXELS;
+pub use probe::{
+    Branching, GatheredWorth, PhotonTimes, PhotonWorth, Probe, SampleWorth, SeenLight, branching, bright_places,
+    gathered_photons, gathered_worth, photon_times, photons_worth, polarization_error, prepare, prepare_unguided,
+    probe, reached_places, resampling_gain, samples_worth, seen_light,
+};
 pub use world::World;

@@ -27,11 +27,11 @@ macro_rules! in_lanes_of {
     ($world:expr, $n:ident, $p:ident => $work:expr) => {
         match $world.method.polarization {
             $crate::trace::Polarizing::Averaged => $crate::trace::width::in_lanes!($world.method.basis, $n => {
-                type $p = $crate::trace::polarized::Polarized;
+                type $p = $crate::trace::walk::Polarized;
                 $work
             }),
             _ => $crate::trace::width::in_lanes!($world.method.basis, $n => {
-                type $p = $crate::trace::rows::Rows<$n, 1>;
+                type $p = $crate::trace::walk::Rows<$n, 1>;
                 $work
             }),
         }
@@ -44,7 +44,7 @@ macro_rules! in_lanes_of_layers {
     ($world:expr, $n:ident, $p:ident => $work:expr) => {
         if $world.layers.has_stokes() && $world.method.polarization != $crate::trace::Polarizing::Averaged {
             $crate::trace::width::in_lanes!($world.method.basis, $n => {
-                type $p = $crate::trace::rows::Rows<$n, 4>;
+                type $p = $crate::trace::walk::Rows<$n, 4>;
                 $work
             })
         } else {

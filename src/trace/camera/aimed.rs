@@ -1,0 +1,43 @@
+//! Ways on from surfaces whose bounces are aimed at bright places.
+
+use crate::material::{Branch, Material};
+use crate::spectrum::Table;
+use crate::trace::bright::Aiming;
+use crate::trace::walk::{Interaction, shading};
+
+/// Whether bounces from a material may be aimed: it scatters nearly alike in all directions of one side.
+pub fn may_aim(material: &Material<Table>) -> bool {
+    matches!(material, Material::Diffuse(_) | Material::Plastic(_))
+}
+
+/// The ways on from a surface whose bounces are aimed.
+///
+/// Roulette is to end aimed paths as often as others: what their density takes from the weight is no measure of
+/// importance.
+pub fn scatter_aimed<const N: usize>(aiming: &Aiming, at: &Interaction<N>, u: [f64; 2], branches: &mut Vec<Branch<N>>) {
+    let Interaction { material, arrival, flat, .. } = at;
+    let divided = aiming.divided(u[0]);
+    shading::scatter(material, arrival, *flat, [divided.err().unwrap_or(0.5), u[1]], branches);
+    if let Ok(aimed) = divided {
+        branches.retain(|branch| branch.pdf.is_none());
+        let Some((wi, known)) = aiming.draw([aimed, u[1]]).filter(|(wi, _)| wi.dot(*flat) > 0.0) else { return };
+        let Some((bsdf_cos, own)) = shading::evaluate(material, arrival, *flat, wi) else { return };
+        let pdf = aiming.pdf_knowing(wi, own, known);
+        if !(own > 0.0 && pdf.is_finite()) {
+            return;
+        }
+        let share = bsdf_cos * (1.0 / pdf) as f32;
+        let eta_scale = own / pdf;
+        branches.push(Branch { wi, share, pdf: Some(pdf), crosses: false, eta_scale, polarization: 0.0 });
+        return;
+    }
+    for branch in branches {
+        if let Some(own) = branch.pdf.filter(|own| *own > 0.0) {
+            let pdf = aiming.pdf(branch.wi, own);
+            let factor = own / pdf;
+            branch.share = branch.share * factor as f32;
+            branch.eta_scale *= factor;
+            branch.pdf = Some(pdf);
+        }
+    }
+}

@@ -1,0 +1,214 @@
+//! Next-event estimation: light that comes straight from the lights.
+
+use std::cell::Cell;
+
+use super::sensor::Sensor;
+use crate::light::{LightId, LightSample, SampledLight};
+use crate::material::Lobes;
+use crate::math::{DVec3, Ray, Sampler};
+use crate::scene::{Ends, MaterialId};
+use crate::shape::Crossing;
+use crate::spectrum::Lanes;
+use crate::trace::World;
+use crate::trace::arrived::Arrived;
+use crate::trace::bright::Aiming;
+use crate::trace::contribution::{Contribution, Found};
+use crate::trace::walk::{
+    Excitation, Interaction, MetLight, Passage, Past, Path, Polarization, ScatterSample, shading,
+};
+
+/// A path at a surface that scatters widely, where lights are sampled.
+pub struct DirectLighting<'a, const N: usize, P> {
+    pub world: &'a World,
+    pub path: &'a Path<N, P>,
+    pub at: &'a Interaction<'a, N>,
+    /// The dye that the light excites, if the path follows that.
+    pub excitation: Option<&'a Excitation<N, P>>,
+    /// Whether the path goes on from here and may hit a light by itself.
+    pub goes_on: bool,
+    /// Whether every light is sampled, or one.
+    pub all_lights: bool,
+    /// The object that occluded a light last.
+    pub last_occluder: &'a Cell<Option<u32>>,
+    /// Four random numbers of the vertex; the first light uses the first two, the choice of one light the last.
+    pub u: [f64; 4],
+    /// How bounces are aimed from here, if they are.
+    pub aiming: Option<&'a Aiming<'a>>,
+}
+
+/// A side of the surface, from which lights are sampled.
+#[derive(Clone, Copy)]
+struct Side {
+    /// The surface's own unit normal on that side.
+    normal: DVec3,
+    /// How likely that side is looked at, where light may arrive at both: then light from the other side is left to it.
+    chance: Option<f64>,
+    /// The medium the light arrives through.
+    inside: Option<MaterialId>,
+    /// Whether lanes have parted on the way from the light to the camera.
+    parted: bool,
+}
+
+/// A ray to a light, and what is left to know of its light once the ray is known to be free.
+struct ShadowRay<const N: usize> {
+    light: LightId,
+    /// The ray, how far it goes, and the object that does not occlude it.
+    sample: LightSample,
+    /// How likely the light was chosen and this side looked at.
+    probability: f64,
+    /// The material's answer times the cosine, and how densely it scatters into the ray's direction.
+    bsdf_cos: Lanes<N>,
+    bsdf_pdf: f64,
+    /// The factor on both, where bounces are not guided.
+    factor: f64,
+}
+
+/// Random numbers for the second light and those after it.
+const FURTHER_LIGHTS: u32 = 16;
+/// Random digits for choices among many, and the choice of a side.
+const MORE_DIGITS: u32 = 3;
+
+impl<const N: usize, P: Polarization<N>> DirectLighting<'_, N, P> {
+    /// Hands the light of sampled lights to the sensor, and answers how likely it was to look at a side.
+    ///
+    /// Where light also comes from beyond the surface, both sides are looked at or, where only one light is sampled,
+    /// one of them chosen by chance.
+    pub fn gather(&self, sampler: &Sampler, sensor: &mut Sensor<N>) -> f64 {
+        let (at, parted) = (self.at, self.path.parted);
+        let near = Side { normal: at.flat, chance: None, inside: at.boundary.here, parted };
+        if !at.lobes.intersects(Lobes::GLOSSY_TRANSMISSION) {
+            self.gather_side(&near, sampler, sensor);
+            return 1.0;
+        }
+        let chance = if self.all_lights { 1.0 } else { 0.5 };
+        let u = sampler.four_plain(self.path.key, MORE_DIGITS)[2];
+        let near = Side { chance: Some(chance), ..near };
+        if u < chance {
+            self.gather_side(&near, sampler, sensor);
+        }
+        if 1.0 - u <= chance {
+            let far = Side { normal: -near.normal, inside: at.boundary.beyond, parted: parted || at.parts, ..near };
+            self.gather_side(&far, sampler, sensor);
+        }
+        chance
+    }
+
+    fn gather_side(&self, side: &Side, sampler: &Sampler, sensor: &mut Sensor<N>) {
+        let (lights, key) = (&self.world.scene.lights, self.path.key);
+        let mut take = |drawn: SampledLight, [u, v]: [f64; 2]| {
+            let u = if lights[drawn.light].has_parts() { finer(u, sampler.four_plain(key, MORE_DIGITS)[1]) } else { u };
+            if let Some(shadow_ray) = self.shadow_ray(side, drawn, [u, v]) {
+                self.trace(side, &shadow_ray, sensor);
+            }
+        };
+        if self.all_lights {
+            for (number, &light) in self.world.sampled_lights.iter().enumerate() {
+                let u = match number {
+                    0 => [self.u[0], self.u[1]],
+                    _ => {
+                        let u = sampler.four(key, FURTHER_LIGHTS + number as u32 / 2);
+                        if number % 2 == 0 { [u[0], u[1]] } else { [u[2], u[3]] }
+                    }
+                };
+                take(SampledLight { light, probability: 1.0 }, u);
+            }
+        } else {
+            let u = finer(self.u[3], sampler.four_plain(key, MORE_DIGITS)[0]);
+            if let Some(drawn) = self.world.light_sampler.sample(self.at.point.position, side.normal, u) {
+                take(drawn, [self.u[0], self.u[1]]);
+            }
+        }
+    }
+
+    /// A ray to a light that was chosen with a probability; none where the sensor gets nothing of it.
+    fn shadow_ray(&self, side: &Side, drawn: SampledLight, u: [f64; 2]) -> Option<ShadowRay<N>> {
+        let (normal, arrival) = (side.normal, &self.at.arrival);
+        let sample = self.world.scene.lights[drawn.light].sample_li_in_part(self.at.point, normal, u)?;
+        let wi = sample.ray.direction;
+        if wi.dot(normal) <= 0.0 {
+            return None;
+        }
+        let flat = if normal.dot(arrival.wo) < 0.0 { -normal } else { normal };
+        let (bsdf_cos, bsdf_pdf) = shading::evaluate(self.at.material, arrival, flat, wi)?;
+        let (light, probability) = (drawn.light, drawn.probability * side.chance.unwrap_or(1.0));
+        let factor = self.factor(&sample, probability, bsdf_pdf);
+        factor.is_finite().then_some(ShadowRay { light, sample, probability, bsdf_cos, bsdf_pdf, factor })
+    }
+
+    /// Hands what comes by a ray to the sensor, unless something occludes the light.
+    fn trace(&self, side: &Side, shadow_ray: &ShadowRay<N>, sensor: &mut Sensor<N>) {
+        let (world, arrival) = (self.world, &self.at.arrival);
+        let ShadowRay { light, sample, probability, bsdf_cos, bsdf_pdf, factor } = shadow_ray;
+        let LightSample { ray, distance, object, part, .. } = sample;
+        let ends = Ends { left: self.path.left, light: *object, part: *part };
+        let (distance, inside, last_occluder) = (*distance, side.inside, self.last_occluder);
+        let passage = Passage { ray, distance, ends, inside, past: Past::Objects(self.path.among), last_occluder };
+        let wi = ray.direction;
+        let light_of = || world.scene.lights[*light].toward(arrival.draw, wi, sample.uv);
+        let mut bsdf_cos = *bsdf_cos;
+        let toward = || self.path.polarization.toward(self.at, wi, &mut bsdf_cos);
+        let arriving = passage.arriving(world, arrival.draw, toward, light_of);
+        let Some((mut arriving, on_its_way)) = arriving else { return };
+        let on_its_way = on_its_way.lit_by(&world.scene.lights[*light], wi, &mut arriving);
+        // The density of bounces that are guided takes its time.
+        let factor = match self.aiming.filter(|_| self.goes_on && sample.pdf.is_some()) {
+            Some(aiming) => self.factor(sample, *probability, aiming.pdf(wi, *bsdf_pdf)),
+            None => *factor,
+        };
+        let lanes = &self.path.throughput.scaled(factor).of(bsdf_cos * arriving);
+        let (light, dispersed) = (*light, side.parted);
+        let arrived = Arrived { source: light, draw: arrival.draw, lanes, parted: dispersed };
+        let met = MetLight::new(world, &arrived, self.excitation);
+        let rgb = met.rgb;
+        let moved = self.path.polarization.moved(self.at, wi, &on_its_way, &met);
+        let (light, found, bounces) = (Some(light), Found::Sampled, self.path.bounces + 1);
+        let first = self.at.first_lobe(world, self.path.lobe(), wi, side.normal != self.at.flat);
+        sensor.receive(Contribution { light, found, rgb, moved, first, bounces, dispersed }, &met, &on_its_way);
+    }
+
+    /// The factor on a light's emission and the material's answer: over the density of both ways to the light's
+    /// direction together, where the path's own next direction may hit it.
+    fn factor(&self, sample: &LightSample, probability: f64, bounce_pdf: f64) -> f64 {
+        let Some(pdf) = sample.pdf else { return sample.factor / probability };
+        let pdf = pdf * probability;
+        let weight = if self.goes_on { power_heuristic(pdf, bounce_pdf) } else { 1.0 };
+        sample.factor * weight / pdf
+    }
+}
+
+/// A random number with more digits: choosing among many lights uses up those of the sequences, 24 bits.
+fn finer(u: f64, more: f64) -> f64 {
+    const STEPS: f64 = (1 << 24) as f64;
+    ((u * STEPS).floor() + more) / STEPS
+}
+
+/// The weight of a light that a path met by itself, beside next-event estimation at the path's last surface. `crossing`
+/// is where the ray meets the light, if that is a surface.
+pub fn weight_of_meeting(
+    world: &World,
+    light: LightId,
+    scatter: Option<&ScatterSample>,
+    ray: &Ray,
+    crossing: Option<&Crossing>,
+) -> f64 {
+    let Some(scatter) = scatter else { return 1.0 };
+    // Through holes and panes that the path has passed since, the light was sampled from before them.
+    let before = Ray { origin: scatter.from, direction: ray.direction };
+    let (ray, crossing) = if scatter.passed { (&before, None) } else { (ray, crossing) };
+    let pdf = world.scene.lights[light].pdf_li(ray, scatter.normal, crossing);
+    let Some(pdf) = pdf else { return 1.0 };
+    let probability =
+        if scatter.all_lights { 1.0 } else { world.light_sampler.probability(light, scatter.from, scatter.normal) };
+    power_heuristic(scatter.pdf, pdf * (probability * scatter.chance))
+}
+
+/// Veach & Guibas 1995, *Optimally Combining Sampling Techniques for Monte Carlo Rendering*, power heuristic, beta = 2.
+///
+/// A direction drawn with density 0, exactly along the surface, has weight 0.
+fn power_heuristic(this: f64, other: f64) -> f64 {
+    if this == 0.0 {
+        return 0.0;
+    }
+    let ratio = other / this;
+    1.0 / (1.0 + ratio * ratio)
+}

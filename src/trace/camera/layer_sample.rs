@@ -1,0 +1,230 @@
+//! What one camera sample leaves in the layers.
+
+use crate::film::{FirstSurface, Layer};
+use crate::material::{Branch, Straight};
+use crate::math::Sampler;
+use crate::spectrum::{Draw, Lanes};
+use crate::trace::World;
+use crate::trace::arrived::Arrived;
+use crate::trace::contribution::Contribution;
+use crate::trace::layers::Layers;
+use crate::trace::photon::{Gathered, Part, PartSpectrum};
+use crate::trace::spectrum_sample::SpectrumSample;
+use crate::trace::walk::{Among, Audit, Interaction, Meeting, Path, Polarization, shading};
+
+/// Use of the random numbers by which albedo is found.
+const ALBEDO: u32 = 7;
+
+/// A row of numbers, filled by one camera sample after another.
+pub struct LayerSample<'a, const N: usize> {
+    world: &'a World,
+    row: Vec<f64>,
+    /// What it leaves in the bands of a spectral image, if one is asked for.
+    spectrum: Option<SpectrumSample<'a, N>>,
+    /// The largest share of the sample that a surface had so far: places are those of that surface.
+    share: f64,
+    /// The object that the camera ray met.
+    object: Option<u32>,
+    branches: Vec<Branch<N>>,
+}
+
+/// What a camera sample has left.
+pub struct Left<'a> {
+    pub row: &'a [f64],
+    /// The object that the camera ray met, if any.
+    pub object: Option<u32>,
+}
+
+/// A surface that a path has met.
+pub struct Met<'a, const N: usize, P> {
+    pub path: &'a Path<N, P>,
+    pub meeting: &'a Meeting,
+    pub at: &'a Interaction<'a, N>,
+    /// What goes straight on.
+    pub straight: Option<&'a Straight<N>>,
+    /// Whether it is what the camera ray meets.
+    pub is_met_first: bool,
+}
+
+impl<'a, const N: usize> LayerSample<'a, N> {
+    /// None where no layers are asked for.
+    pub fn of(world: &'a World) -> Option<Self> {
+        let Layers { numbers, .. } = world.layers;
+        let (row, spectrum) = (vec![0.0; numbers], world.layers.spectrum.as_ref().map(SpectrumSample::new));
+        (!world.layers.is_empty()).then(|| Self {
+            world,
+            row,
+            spectrum,
+            share: 0.0,
+            object: None,
+            branches: Vec::new(),
+        })
+    }
+
+    /// Begins another sample.
+    pub fn begin(&mut self) {
+        self.row.fill(0.0);
+        self.spectrum.iter_mut().for_each(SpectrumSample::begin);
+        self.share = 0.0;
+        self.object = None;
+    }
+
+    /// What the sample has left.
+    pub fn left(&self) -> Left<'_> {
+        Left { row: &self.row, object: self.object }
+    }
+
+    /// Keeps what an audit of the sample has left open.
+    pub fn keep_audit(&mut self, audit: &Audit<N>, draw: &Draw<N>) {
+        if let Some(white) = &self.world.layers.white {
+            self.world.layers.add_to(Layer::Residual, &mut self.row, audit.left_open(white, draw));
+        }
+    }
+
+    /// Remembers the object that the camera ray met.
+    pub fn meet_object(&mut self, object: u32) {
+        self.object = Some(object);
+    }
+
+    /// Forgets all that the sample has left but the light of a shadow catcher, with all objects and with those of the
+    /// plate alone.
+    pub fn catch(&mut self, with_and_without: [[f64; 3]; 2]) {
+        self.begin();
+        if with_and_without.as_flattened().iter().all(|x| x.is_finite()) {
+            self.world.layers.catch(&mut self.row, with_and_without);
+        }
+    }
+
+    /// Receives light that came to the sensor, and the lanes by which it arrived.
+    pub fn receive(&mut self, contribution: &Contribution, arrived: &Arrived<N>, stokes: Option<[Lanes<N>; 3]>) {
+        self.world.layers.add(&mut self.row, contribution);
+        if let Some(stokes) = &stokes {
+            let stokes = stokes.map(|part| arrived.times(part, &self.world.responses));
+            self.world.layers.add_stokes(&mut self.row, stokes, 1.0);
+        }
+        if let Some(spectrum) = &mut self.spectrum {
+            spectrum.receive(arrived, stokes.as_ref(), 1.0);
+        }
+    }
+
+    /// Receives light of photons that were gathered.
+    pub fn receive_gathered(&mut self, gathered: &Gathered<N>, draw: &Draw<N>) {
+        let Some(parts) = &gathered.parts else { return self.world.layers.add(&mut self.row, &gathered.all) };
+        for Part { contribution, stokes, spectrum, factor } in parts {
+            let rgb = contribution.rgb.map(|x| factor * x);
+            self.world.layers.add(&mut self.row, &Contribution { rgb, ..*contribution });
+            if let Some(stokes) = stokes {
+                self.world.layers.add_stokes(&mut self.row, *stokes, *factor);
+            }
+            let (Some(sample), Some(light)) = (&mut self.spectrum, contribution.light) else { continue };
+            match spectrum {
+                PartSpectrum::Lanes { source, lanes, parted, stokes } => {
+                    let arrived = Arrived { source: *source, draw, lanes, parted: *parted };
+                    sample.receive(&arrived, stokes.as_deref(), *factor);
+                }
+                PartSpectrum::Alone(wavelength) => {
+                    let responses = (&self.world.responses[light], sample.response(light));
+                    let others = stokes.iter().flatten().map(|part| part.map(|x| factor * x));
+                    for (component, color) in std::iter::once(rgb).chain(others).enumerate() {
+                        sample.receive_alone(component, wavelength.band(color, responses.0, responses.1));
+                    }
+                }
+            }
+        }
+    }
+
+    /// Keeps what the sample at hand, which is added or subtracted, leaves in the bands of a spectral image.
+    pub fn keep(&mut self, is_subtracted: bool) {
+        self.spectrum.iter_mut().for_each(|spectrum| spectrum.keep(is_subtracted));
+    }
+
+    /// Adds all that was kept of spectra to a pixel's rows, that of samples that are subtracted behind the other.
+    pub fn hand_over(&mut self, rows: [&mut [f64]; 2]) {
+        if let Some(spectrum) = &mut self.spectrum {
+            spectrum.hand_over(rows);
+        }
+    }
+
+    /// Remembers a surface, if it is the first one.
+    pub fn meet<P: Polarization<N>>(&mut self, met: &Met<N, P>, sampler: &Sampler) {
+        let layers = &self.world.layers;
+        if met.path.among == Among::Plate {
+            return;
+        }
+        let share = if layers.see_surfaces() { met.share(layers.first) } else { 0.0 };
+        if share <= 0.0 {
+            return;
+        }
+        let Met { path, meeting, at, .. } = met;
+        layers.add_to(Layer::Normal, &mut self.row, (share * at.arrival.normal).to_array());
+        layers.add_to(Layer::GeometricNormal, &mut self.row, (share * at.flat).to_array());
+        // What a pane lets straight on is of it as what glass refracts is, unless what is behind counts by itself.
+        let panes = met.straight.filter(|_| layers.first == FirstSurface::Met).map(|straight| straight.panes);
+        let albedo = self.albedo(path, at, panes, sampler);
+        layers.add_to(Layer::Albedo, &mut self.row, albedo);
+        if share > self.share {
+            self.share = share;
+            let position = at.point.position;
+            let object = &self.world.scene.objects[at.object as usize];
+            self.place(Layer::Position, &position.to_array());
+            self.place(Layer::Uv, &object.chart_uv(&meeting.hit.crossing, at.point));
+        }
+    }
+
+    fn place(&mut self, layer: Layer, numbers: &[f64]) {
+        if let Some(at) = self.world.layers.at(layer) {
+            self.row[at..at + numbers.len()].copy_from_slice(numbers);
+        }
+    }
+
+    /// What a white light all around would show of the surface, if it is asked for: an estimate by the directions of
+    /// one draw, exact where shares do not depend on them.
+    fn albedo<P: Polarization<N>>(
+        &mut self,
+        path: &Path<N, P>,
+        at: &Interaction<N>,
+        panes: Option<Lanes<N>>,
+        sampler: &Sampler,
+    ) -> [f64; 3] {
+        let layers = &self.world.layers;
+        let (Some(white), Some(_)) = (&layers.white, layers.at(Layer::Albedo)) else { return [0.0; 3] };
+        let [u, v, ..] = sampler.four_plain(path.key, ALBEDO);
+        let (arrival, draw) = (&at.arrival, at.arrival.draw);
+        self.branches.clear();
+        shading::scatter(at.material, arrival, at.flat, [u, v], &mut self.branches);
+        // Radiance changes by each lane's own index where light crosses, `eta_scale` by that of the ray.
+        let crossing = arrival.forward().map(|twice| Lanes::from_fn(|i| twice[i].sqrt()));
+        let through = panes.map(|panes| white.times(draw, path.throughput.of(panes), path.parted));
+        let mut albedo = through.map_or([0.0; 3], |rgb| rgb.map(|x| x / path.eta_scale));
+        for branch in &self.branches {
+            let share = match crossing {
+                Some(crossing) if branch.crosses => branch.share * crossing,
+                _ => branch.share,
+            };
+            let parted = path.parted || (at.parts && branch.crosses);
+            let rgb = white.times(draw, path.throughput.of(share), parted);
+            let scale = path.eta_scale * branch.eta_scale;
+            (0..3).for_each(|channel| albedo[channel] += rgb[channel] / scale);
+        }
+        albedo
+    }
+}
+
+impl<const N: usize, P: Polarization<N>> Met<'_, N, P> {
+    /// The share of the camera sample for which the surface is the first.
+    fn share(&self, first: FirstSurface) -> f64 {
+        let Self { path, at, .. } = self;
+        if first == FirstSurface::Met {
+            return f64::from(u8::from(self.is_met_first));
+        }
+        let is_smooth = at.lobes.has_delta() && !at.lobes.is_wide();
+        if !path.is_seen || is_smooth {
+            return 0.0;
+        }
+        let draw = at.arrival.draw;
+        let shares = draw.shares(path.parted);
+        let through =
+            |straight: &Straight<N>| path.throughput.through(straight.share()).weight(shares) / path.eta_scale;
+        (path.weight(draw) - self.straight.map_or(0.0, through)) / draw.siblings(path.parted)
+    }
+}

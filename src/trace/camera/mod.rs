@@ -1,0 +1,12 @@
+//! Paths from the camera: direct light, gathered photons and light vertices, handed to the sensor.
+
+mod aimed;
+mod direct;
+mod layer_sample;
+mod path_tracer;
+mod resampling;
+mod sensor;
+
+pub use layer_sample::Left;
+pub use path_tracer::PathTracer;
+pub use sensor::{Bounce, Observer};

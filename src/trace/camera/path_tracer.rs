@@ -1,0 +1,443 @@
+//! Paths from the camera back to the lights.
+
+use std::rc::Rc;
+
+use super::aimed::{may_aim, scatter_aimed};
+use super::direct::{DirectLighting, weight_of_meeting};
+use super::layer_sample::{LayerSample, Met};
+use super::resampling::Resampling;
+use super::sensor::{Bounce, Observer, Sensor};
+use crate::film::{Layer, Sample};
+use crate::light::{Light, LightId};
+use crate::material::Material;
+use crate::math::{BranchKey, DVec2, DVec3, Sampler};
+use crate::scene::Sight;
+use crate::shape::SurfacePoint;
+use crate::spectrum::Draw;
+use crate::trace::arrived::Arrived;
+use crate::trace::contribution::{Contribution, Found};
+use crate::trace::photon::{Gathering, LightVertices, PhotonMap, gather, holds_vertices};
+use crate::trace::walk::{
+    Among, Audit, Departure, Excitation, Exciting, Interaction, Meeting, MetLight, Onward, Path, PathKind,
+    Polarization, Polarized, ScatterSample, Walker, shading, straight,
+};
+use crate::trace::{Transport, World};
+
+/// Follows the rays of camera samples back to the light, and samples the lights on the way.
+pub struct PathTracer<'a, const N: usize, P: Polarization<N> = Polarized> {
+    pub walker: Walker<'a, N, P>,
+    sensor: Sensor<'a, N>,
+    /// Photons that are gathered, if any are.
+    photons: Option<&'a PhotonMap<N, P>>,
+    /// Vertices of light paths, if light is looked for there.
+    pub light_vertices: Option<&'a LightVertices<N>>,
+    /// What the lanes of every sample stand for, where that is the same.
+    draw: Option<Draw<N>>,
+    /// The dyes that the paths of the sample at hand have seen.
+    excitations: Vec<Rc<Excitation<N, P>>>,
+}
+
+/// Where a path has hit a light.
+struct Lit<P> {
+    /// The unit normal of the surface that shines, on its front; none of a sky.
+    normal: Option<DVec3>,
+    /// How the path is polarized there.
+    polarization: P,
+}
+
+/// Use of the camera's random numbers: where in the pixel the sample falls.
+const PLACE: u32 = 0;
+/// Another: where on the lens its ray starts. The path's first vertex has 1, 2 and those from 16.
+const LENS: u32 = 3;
+/// Uses of the random numbers at a vertex.
+const SCATTER: u32 = 1;
+/// Use of those that end paths whose light is looked for at light vertices.
+const COMPLEMENT: u32 = 6;
+/// Surfaces of a path whose directions are drawn from a sequence spread over the pixel's samples. Behind them the
+/// samples see so many different places that plain random numbers, which cost less, are taken.
+const SPREAD: u32 = 4;
+
+impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
+    pub fn new(world: &'a World) -> Self {
+        let basis = &world.method.basis;
+        let draw = (!basis.draws_wavelengths()).then(|| basis.draw(0.0));
+        let (walker, sensor) = (Walker::new(world, world.method.transport), Sensor::new());
+        Self { walker, sensor, photons: None, light_vertices: None, draw, excitations: Vec::new() }
+    }
+
+    /// With photons that are gathered.
+    pub fn with_photons(self, photons: Option<&'a PhotonMap<N, P>>) -> Self {
+        Self { photons, ..self }
+    }
+
+    /// With somebody who is told what paths find.
+    pub fn with_observer(mut self, observer: &'a dyn Observer) -> Self {
+        self.sensor.observer = Some(observer);
+        self
+    }
+
+    /// With the layers that the world asks for.
+    pub fn with_layers(mut self) -> Self {
+        let world = self.walker.world;
+        self.sensor.layers = LayerSample::of(world);
+        self.walker.audit = world.layers.at(Layer::Residual).map(|_| Audit::new(world));
+        self
+    }
+
+    /// What the last camera sample left in the layers, if any are asked for.
+    pub fn layers(&mut self) -> Option<&mut LayerSample<'a, N>> {
+        self.sensor.layers.as_mut()
+    }
+
+    /// One camera sample.
+    pub fn sample(&mut self, sampler: &Sampler, [x, y]: [i32; 2]) -> Sample {
+        let world = self.walker.world;
+        let camera = &world.scene.camera;
+        let numbers = |purpose: u32| match world.method.transport {
+            Transport::Deterministic { .. } => [0.5; 4],
+            Transport::Random { .. } => sampler.four(BranchKey::CAMERA, purpose),
+        };
+        let [u, v, wavelength, _] = numbers(PLACE);
+        let place = world.scene.film.filter.place([u, v]);
+        let film = DVec2::new(f64::from(x), f64::from(y)) + place;
+        let is_subtracted = world.scene.film.filter.subtracts(place);
+        let draw = self.draw.clone().unwrap_or_else(|| world.method.basis.draw(wavelength));
+        let ray = if camera.has_lens() {
+            let [u, v, ..] = numbers(LENS);
+            camera.lens_ray(film, [u, v])
+        } else {
+            camera.ray(film)
+        };
+        if let Some(layers) = &mut self.sensor.layers {
+            layers.begin();
+        }
+        let path = Path::from_camera(world, &draw, ray);
+        if let Some(audit) = &mut self.walker.audit {
+            audit.begin(&path, &draw);
+        }
+        let first = self.trace(path, &draw, sampler);
+        if let (Some(audit), Some(layers)) = (&self.walker.audit, &mut self.sensor.layers) {
+            layers.keep_audit(audit, &draw);
+        }
+        if self.sees_shadow_catcher() {
+            self.catch(path, &draw, sampler);
+            return Sample { rgb: [0.0; 3], depth: None, is_subtracted };
+        }
+        let rgb = self.sensor.read_out(world, &mut self.walker.stats);
+        Sample { rgb, depth: first.map(|point| camera.depth(point.position)), is_subtracted }
+    }
+
+    /// By how much photons that were gathered blur the last camera sample.
+    pub fn blur(&mut self) -> [f64; 3] {
+        std::mem::take(&mut self.sensor.blur)
+    }
+
+    /// Whether the camera ray has met a shadow catcher.
+    fn sees_shadow_catcher(&self) -> bool {
+        let object = self.sensor.layers.as_ref().and_then(|layers| layers.left().object);
+        object.is_some_and(|object| self.walker.world.sight(object) == Sight::ShadowCatcher)
+    }
+
+    /// Holds the light of a path that met a shadow catcher against that of the same path among the objects of the plate
+    /// alone. Neither is seen in the image.
+    #[cold]
+    fn catch(&mut self, path: Path<N, P>, draw: &Draw<N>, sampler: &Sampler) {
+        let with = std::mem::take(&mut self.sensor.rgb);
+        self.trace(Path { among: Among::Plate, ..path }, draw, sampler);
+        let without = std::mem::take(&mut self.sensor.rgb);
+        self.sensor.forget();
+        if let Some(layers) = &mut self.sensor.layers {
+            layers.catch([with, without]);
+        }
+    }
+
+    /// Hands all light along the path of a camera ray to the sensor, and answers what the ray hit first.
+    fn trace(&mut self, path: Path<N, P>, draw: &Draw<N>, sampler: &Sampler) -> Option<SurfacePoint> {
+        let world = self.walker.world;
+        let mut first = None;
+        self.walker.started = self.walker.stats.rays;
+        self.excitations.clear();
+        *self.walker.pending.add(|| path) = path;
+        let mut path = Box::new(path);
+        while self.walker.pending.take(&mut path) {
+            let path = &mut *path;
+            let excitation = self.excitation(path);
+            let draw = excitation.as_ref().map_or(draw, |excitation| &excitation.draw);
+            if path.vertices >= self.walker.transport.last_vertex() {
+                self.walker.stats.stopped += path.weight(draw);
+                continue;
+            }
+            let before = self.sensor.rgb;
+            let Some(meeting) = self.walker.meet(path, draw) else {
+                self.background(path, draw);
+                self.tell(path, draw, f64::INFINITY, before);
+                continue;
+            };
+            let onward = self.walker.straight(path, draw, &meeting);
+            let Meeting { hit, point } = &meeting;
+            if let Some(straight) = &onward
+                && path.throughput.through(straight.straight.share()) == path.throughput
+            {
+                let polarization = straight.polarization;
+                *self.walker.pending.add(|| *path) = Path { polarization, ..path.passed(point) };
+                continue;
+            }
+            if world.hides_objects && path.kind == PathKind::Camera && world.sight(hit.object) == Sight::Holdout {
+                self.walker.audit.iter_mut().for_each(|audit| audit.end_beside(path, onward.as_ref(), draw));
+                self.walker.go_on_in_part(path, point, onward.as_ref());
+                continue;
+            }
+            let is_met_first =
+                path.vertices == 0 && first.is_none() && straight::is_met(world, draw, sampler, path, onward.as_ref());
+            if is_met_first {
+                first = Some(*point);
+                if let Some(layers) = &mut self.sensor.layers {
+                    layers.meet_object(hit.object);
+                }
+            }
+            path.vertices += 1;
+            self.emission(path, draw, &meeting);
+            if path.vertices > world.method.max_bounces {
+                self.cut(path, draw, &meeting, onward.as_ref());
+                continue;
+            }
+            self.scatter(path, draw, sampler, &meeting, onward.as_ref(), is_met_first);
+            if onward.is_none() {
+                self.tell(path, draw, hit.crossing.t, before);
+            }
+        }
+        if let Transport::Deterministic { most, .. } = self.walker.transport {
+            self.walker.stats.by_chance += u64::from(self.walker.surfaces() > most);
+        }
+        first
+    }
+
+    /// Ends a path that has met as many surfaces as it may, but for what goes straight on.
+    fn cut(&mut self, path: &Path<N, P>, draw: &Draw<N>, meeting: &Meeting, onward: Option<&Onward<N, P>>) {
+        if !matches!(self.walker.world.scene.material_of(meeting.hit.object), Material::Emissive(_)) {
+            self.walker.stats.stopped += path.weight(draw) / draw.siblings(path.parted);
+        } else if let Some(audit) = &mut self.walker.audit {
+            audit.end_beside(path, onward, draw);
+        }
+        self.walker.go_on_in_part(path, &meeting.point, onward);
+    }
+
+    /// Hands the light of the sky, at the end of a path that hits nothing, to the sensor.
+    fn background(&mut self, path: &Path<N, P>, draw: &Draw<N>) {
+        let world = self.walker.world;
+        self.walker.audit.iter_mut().for_each(|audit| audit.end(path, draw));
+        for &id in &world.scene.infinite_lights {
+            let light = &world.scene.lights[id];
+            let is_hidden = path.kind == PathKind::Camera && world.scene.hidden_lights.contains(&id);
+            if is_hidden || self.is_found_by_photons(path, id) {
+                continue;
+            }
+            let factor = match light {
+                Light::Sun(sun) if sun.pdf(&path.ray).is_some() => sun.radiance_factor(),
+                Light::Sun(_) => continue,
+                _ => 1.0,
+            };
+            let weight = weight_of_meeting(world, id, path.scatter.as_ref(), &path.ray, None);
+            let mut shone = light.toward(draw, path.ray.direction, [0.0; 2]);
+            let polarization = path.polarization.lit_by(light, path.ray.direction, &mut shone);
+            let lanes = &path.throughput.scaled(weight * factor).of(shone);
+            let lit = Lit { normal: None, polarization };
+            self.receive(path, &lit, &Arrived { source: id, draw, lanes, parted: path.parted });
+        }
+    }
+
+    /// Hands the light of a surface that shines by itself to the sensor.
+    fn emission(&mut self, path: &Path<N, P>, draw: &Draw<N>, Meeting { hit, point }: &Meeting) {
+        let world = self.walker.world;
+        let object = &world.scene.objects[hit.object as usize];
+        let Some(id) = object.light else { return };
+        let Light::Area(area) = &world.scene.lights[id] else { return };
+        if !area.sides.shine(point.normal.dot(path.ray.direction) < 0.0) || self.is_found_by_photons(path, id) {
+            return;
+        }
+        let weight = weight_of_meeting(world, id, path.scatter.as_ref(), &path.ray, Some(&hit.crossing));
+        let uv = object.uv(&hit.crossing, point);
+        let lanes = &path.throughput.scaled(weight).of(draw.read_at(&area.radiance, uv));
+        let lit = Lit { normal: Some(point.normal), polarization: path.polarization };
+        self.receive(path, &lit, &Arrived { source: id, draw, lanes, parted: path.parted });
+    }
+
+    /// Hands light that a path has hit to the sensor.
+    fn receive(&mut self, path: &Path<N, P>, lit: &Lit<P>, arrived: &Arrived<N>) {
+        let excitation = self.excitation(path);
+        let met = MetLight::new(self.walker.world, arrived, excitation.as_deref());
+        let rgb = met.rgb;
+        let Lit { normal, polarization } = *lit;
+        let moved = polarization.moved_of_met(&met);
+        let (light, found) = (Some(arrived.source), Found::Hit { normal, scattered: path.scatter.is_some() });
+        let Path { bounces, parted: dispersed, first, .. } = *path;
+        self.sensor.receive(Contribution { light, found, rgb, moved, first, bounces, dispersed }, &met, &polarization);
+    }
+
+    /// Samples the lights where a surface scatters widely, and lets the path go on: its ways on become pending.
+    fn scatter(
+        &mut self,
+        path: &Path<N, P>,
+        draw: &Draw<N>,
+        sampler: &Sampler,
+        meeting: &Meeting,
+        onward: Option<&Onward<N, P>>,
+        is_met_first: bool,
+    ) {
+        let world = self.walker.world;
+        let Some(boundary) = self.walker.boundary(path, meeting) else { return };
+        let ends = self.ends_at_light_vertices(path, draw, meeting, sampler);
+        if ends && !(world.has_map() && path.diffuse_left > 0) {
+            return;
+        }
+        let at = Interaction::new(world, draw, &path.ray, path.throughput.present(), meeting, boundary);
+        if let Some(layers) = &mut self.sensor.layers {
+            let straight = onward.map(|onward| &onward.straight);
+            layers.meet(&Met { path, meeting, at: &at, straight, is_met_first }, sampler);
+        }
+        if ends {
+            // Light vertices leave out what photons bring here.
+            return self.gather_photons(path, &at, sampler);
+        }
+        match self.excite(path, &at, sampler) {
+            0.0 => {}
+            1.0 => self.scatter_at(path, &at, sampler, onward),
+            factor => {
+                let throughput = path.throughput.scaled(factor);
+                self.scatter_at(&Path { throughput, ..*path }, &at, sampler, onward);
+            }
+        }
+    }
+
+    /// The dye that a path's light excites, if the path has seen one.
+    #[inline]
+    fn excitation(&self, path: &Path<N, P>) -> Option<Rc<Excitation<N, P>>> {
+        path.excitation.map(|number| self.excitations[number as usize].clone())
+    }
+
+    /// Follows what excites the dyes of a surface, and answers the factor on what the surface scatters by itself.
+    #[inline]
+    fn excite(&mut self, path: &Path<N, P>, at: &Interaction<N>, sampler: &Sampler) -> f64 {
+        let world = self.walker.world;
+        let Some(dyes) = world.dyes.as_ref().filter(|dyes| !dyes.of(&world.scene, at.object).is_empty()) else {
+            return 1.0;
+        };
+        let (all, seen) = (self.walker.follows_all(path, at.arrival.draw), self.excitation(path));
+        let ways = Exciting { world, dyes, path, at, all, seen: seen.as_deref() }.ways(sampler);
+        for (way, excitation) in ways.of_dyes {
+            let excitation = Rc::new(excitation);
+            let path = Path { excitation: Some(self.excitations.len() as u32), ..way };
+            self.excitations.push(excitation.clone());
+            self.scatter_at(&path, &at.of_dye(&dyes.white, &excitation.draw), sampler, None);
+        }
+        ways.scattered
+    }
+
+    /// Samples the lights where a surface scatters widely, and lets the path go on.
+    fn scatter_at(&mut self, path: &Path<N, P>, at: &Interaction<N>, sampler: &Sampler, onward: Option<&Onward<N, P>>) {
+        let (world, draw) = (self.walker.world, at.arrival.draw);
+        let material = at.material;
+        let goes_on = !at.lobes.is_diffuse() || path.diffuse_left > 0;
+        let bright = world.bright.as_ref().filter(|_| may_aim(material));
+        let aiming = bright.and_then(|bright| bright.at(at.point.position, at.flat));
+        let (mut u, mut scatter) = ([0.0; 4], None);
+        if at.lobes.is_wide() {
+            let spread = path.vertices <= SPREAD;
+            u = if spread { sampler.four(path.key, SCATTER) } else { sampler.four_plain(path.key, SCATTER) };
+            let all_lights = world.samples_all_lights(|| path.weight(draw));
+            let last_occluder = &self.walker.last_occluder;
+            let (aiming, excitation) = (aiming.as_ref(), self.excitation(path));
+            let excitation = excitation.as_deref();
+            let lighting =
+                DirectLighting { world, path, at, excitation, goes_on, all_lights, last_occluder, u, aiming };
+            let chance = lighting.gather(sampler, &mut self.sensor);
+            if goes_on && path.kind != PathKind::Camera {
+                self.gather_photons(path, at, sampler);
+            }
+            let resampled = goes_on && self.resample(path, at, sampler);
+            let (pdf, from, normal, passed) = (0.0, at.point.position, at.flat, false);
+            scatter = Some(ScatterSample { pdf, from, normal, chance, all_lights, passed, resampled });
+            if !goes_on && onward.is_none() && !at.lobes.has_delta() && self.walker.audit.is_none() {
+                return;
+            }
+        }
+        self.walker.branches.clear();
+        match &aiming {
+            Some(aiming) => scatter_aimed(aiming, at, [u[2], u[3]], &mut self.walker.branches),
+            None => shading::scatter(material, &at.arrival, at.flat, [u[2], u[3]], &mut self.walker.branches),
+        }
+        self.walker.polarize(path, at);
+        self.walker.account(path, at, onward.map(|onward| &onward.straight));
+        if !goes_on {
+            self.walker.keep_single();
+        }
+        let mut departure = Departure::new(world, path, at).with(scatter.as_ref(), onward);
+        self.walker.follow(&mut departure, sampler);
+    }
+
+    /// Hands the light of a light vertex to the sensor, where the path meets a diffuse surface.
+    fn resample(&mut self, path: &Path<N, P>, at: &Interaction<N>, sampler: &Sampler) -> bool {
+        let Some(vertices) = self.light_vertices.filter(|_| path.among == Among::All) else { return false };
+        let world = self.walker.world;
+        if !at.lobes.is_diffuse() {
+            return false;
+        }
+        let resampling = Resampling { world, path, at, vertices, last_occluder: &self.walker.last_occluder };
+        resampling.gather(sampler, &mut self.sensor);
+        self.walker.stats.resampled += 1;
+        true
+    }
+
+    /// Whether a path ends where its light was looked for at light vertices: mostly, and the less the nearer.
+    fn ends_at_light_vertices(
+        &mut self,
+        path: &Path<N, P>,
+        draw: &Draw<N>,
+        meeting: &Meeting,
+        sampler: &Sampler,
+    ) -> bool {
+        let (Some(vertices), Some(scatter)) = (self.light_vertices, path.scatter) else { return false };
+        if !scatter.resampled || !holds_vertices(self.walker.world, meeting.hit.object, &meeting.point) {
+            return false;
+        }
+        let chance = vertices.complement((meeting.point.position - scatter.from).length_squared());
+        let ends = sampler.four_plain(path.key, COMPLEMENT)[0] >= chance;
+        self.walker.audit.iter_mut().filter(|_| ends).for_each(|audit| audit.end(path, draw));
+        ends
+    }
+
+    /// Hands what photons bring to a place that the path has reached by way of others to the sensor.
+    fn gather_photons(&mut self, path: &Path<N, P>, at: &Interaction<N>, sampler: &Sampler) {
+        if let Some(photons) = self.photons.filter(|_| path.among == Among::All) {
+            let apart = self.sensor.layers.is_some() && self.walker.world.layers.tell_photons_apart();
+            let excitation = self.excitation(path);
+            let around = Gathering { world: self.walker.world, path, at, excitation: excitation.as_deref() };
+            let within = |kernel, apart| gather(photons, kernel, &around, sampler, apart);
+            let gathered = within(&photons.kernel, apart);
+            if let Some(half) = &photons.half {
+                self.sensor.blur_by(gathered.all.rgb, within(half, false).all.rgb);
+            }
+            self.sensor.receive_gathered(&gathered, excitation.as_ref().map_or(at.arrival.draw, |dye| &dye.seen_by));
+        }
+        if let Some(observer) = self.sensor.observer {
+            observer.reach(at.point.position);
+        }
+    }
+
+    /// Tells an observer what a bounce found that went on for a distance, where the sensor had received some light
+    /// before.
+    #[inline]
+    fn tell(&self, path: &Path<N, P>, draw: &Draw<N>, distance: f64, before: [f64; 3]) {
+        if let (Some(observer), Some(ScatterSample { from, normal, .. })) = (self.sensor.observer, path.scatter) {
+            let light = self.walker.world.amount(std::array::from_fn(|i| self.sensor.rgb[i] - before[i]));
+            let (direction, distance) = (path.ray.direction, distance + (path.ray.origin - from).length());
+            observer.bounce(Bounce { from, normal, direction, distance, light, weight: path.weight(draw) });
+        }
+    }
+
+    /// Whether the path's way to a light is one that photons find.
+    fn is_found_by_photons(&self, path: &Path<N, P>, light: LightId) -> bool {
+        let is_smooth = path.kind == PathKind::Smooth { aimed: true } && path.among == Among::All;
+        is_smooth && self.walker.world.sends_photons(light)
+    }
+}

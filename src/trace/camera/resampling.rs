@@ -1,0 +1,88 @@
+//! Light that comes to a camera path from a vertex of a light path.
+
+use std::cell::Cell;
+
+use super::sensor::Sensor;
+use crate::math::{Ray, Sampler, gamma, unit};
+use crate::scene::Ends;
+use crate::shape::prefetch;
+use crate::trace::World;
+use crate::trace::arrived::Arrived;
+use crate::trace::contribution::{Contribution, Found};
+use crate::trace::photon::{LightVertex, LightVertices};
+use crate::trace::walk::{Among, Interaction, MetLight, Passage, Past, Path, Polarization, shading};
+
+/// A path at a diffuse surface.
+pub struct Resampling<'a, const N: usize, P> {
+    pub world: &'a World,
+    pub path: &'a Path<N, P>,
+    pub at: &'a Interaction<'a, N>,
+    pub vertices: &'a LightVertices<N>,
+    /// The object that occluded a light last.
+    pub last_occluder: &'a Cell<Option<u32>>,
+}
+
+/// Use of the random numbers that choose vertices.
+const VERTEX: u32 = 5;
+
+impl<const N: usize, P: Polarization<N>> Resampling<'_, N, P> {
+    /// Hands the light of two vertices to the sensor, where they are seen.
+    pub fn gather(&self, sampler: &Sampler, sensor: &mut Sensor<N>) {
+        let [a, b, c, d] = sampler.four(self.path.key, VERTEX);
+        // Both are chosen first, so that the memory of one is read while the other is chosen.
+        let chosen = [[a, b], [c, d]].map(|u| {
+            let chosen = self.vertices.choose(self.at.point.position, self.at.flat, u);
+            chosen.inspect(|(vertex, _)| prefetch(*vertex))
+        });
+        for (vertex, factor) in chosen.into_iter().flatten() {
+            self.connect(vertex, 0.5 * factor, sensor);
+        }
+    }
+
+    /// Hands the light of a vertex to the sensor; answers nothing if it is not seen.
+    fn connect(&self, vertex: &LightVertex<N>, factor: f64, sensor: &mut Sensor<N>) -> Option<()> {
+        let (world, at) = (self.world, self.at);
+        let bounces = self.path.vertices.saturating_add(vertex.vertices);
+        if bounces > world.method.max_bounces || vertex.diffuse > self.path.diffuse_left {
+            return None;
+        }
+        let to = vertex.position;
+        let origin = at.point.leave((to - at.point.position).try_normalize()?).origin;
+        let way = to - origin;
+        let squared = way.length_squared();
+        let direction = unit(way.try_normalize()?);
+        let (ray, distance) = (Ray { origin, direction }, squared.sqrt());
+        let cos = -direction.dot(vertex.flat);
+        if direction.dot(at.flat) <= 0.0 || cos <= 0.0 {
+            return None;
+        }
+        let (mut bsdf_cos, _) = shading::evaluate(at.material, &at.arrival, at.flat, direction)?;
+        // The ray ends before the surface of the vertex: this lies within its error of the point, and the ray, whose
+        // direction is rounded, passes that within some roundings of the distance.
+        let short = (vertex.error + gamma(8) * distance) / cos;
+        let ends = Ends { left: self.path.left, ..Ends::default() };
+        let (distance, inside) = (distance - short, at.boundary.here);
+        let passage = Passage {
+            ray: &ray,
+            distance,
+            ends,
+            inside,
+            past: Past::Objects(Among::All),
+            last_occluder: self.last_occluder,
+        };
+        let toward = || self.path.polarization.toward(at, direction, &mut bsdf_cos);
+        let (arriving, on_its_way) = passage.arriving(world, at.arrival.draw, toward, || vertex.leaving)?;
+        let near_squared = self.vertices.near_squared();
+        let factor = factor * cos / (squared + near_squared);
+        let lanes = &self.path.throughput.scaled(factor).of(bsdf_cos * arriving);
+        let arrived = Arrived { source: vertex.light, draw: at.arrival.draw, lanes, parted: self.path.parted };
+        let met = MetLight::new(world, &arrived, None);
+        let rgb = met.rgb;
+        let moved = self.path.polarization.moved(at, direction, &on_its_way, &met);
+        let (bounces, dispersed) = (self.path.bounces + 1 + vertex.vertices, self.path.parted);
+        let first = at.first_lobe(world, self.path.lobe(), direction, false);
+        let (light, found) = (Some(vertex.light), Found::Connected);
+        sensor.receive(Contribution { light, found, rgb, moved, first, bounces, dispersed }, &met, &on_its_way);
+        Some(())
+    }
+}

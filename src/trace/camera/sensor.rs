@@ -1,0 +1,115 @@
+//! Where the light of camera samples arrives.
+
+use super::layer_sample::LayerSample;
+use crate::math::DVec3;
+use crate::spectrum::Draw;
+use crate::trace::World;
+use crate::trace::contribution::{Contribution, add};
+use crate::trace::photon::Gathered;
+use crate::trace::stats::Stats;
+use crate::trace::walk::{MetLight, Polarization};
+
+/// What a path found in a direction that was drawn where lights were sampled as well.
+#[derive(Clone, Copy, Debug)]
+pub struct Bounce {
+    pub from: DVec3,
+    /// The surface's unit normal there, on the side it left.
+    pub normal: DVec3,
+    pub direction: DVec3,
+    /// How far it went; infinite where it hit nothing.
+    pub distance: f64,
+    /// What the sensor got of the light found at its end, as X + Y + Z.
+    pub light: f64,
+    /// The path's weight.
+    pub weight: f64,
+}
+
+/// Somebody who wants to know what the camera's paths find, beside the image.
+pub trait Observer {
+    /// Light reached the sensor.
+    fn receive(&self, _contribution: &Contribution) {}
+    /// A path has come, by way of other surfaces, to a place that scatters widely.
+    fn reach(&self, _place: DVec3) {}
+    /// All light at the end of a bounce was received.
+    fn bounce(&self, _bounce: Bounce) {}
+}
+
+/// The sink of all light that one camera sample after another finds.
+pub struct Sensor<'a, const N: usize> {
+    /// What the sample at hand has received.
+    pub rgb: [f64; 3],
+    /// How much of that polarization may change.
+    moved: f64,
+    /// By how much kernels blur what it has received.
+    pub blur: [f64; 3],
+    pub observer: Option<&'a dyn Observer>,
+    /// What it leaves in layers, if any are asked for.
+    pub layers: Option<LayerSample<'a, N>>,
+}
+
+impl<const N: usize> Sensor<'_, N> {
+    pub fn new() -> Self {
+        Self { rgb: [0.0; 3], moved: 0.0, blur: [0.0; 3], observer: None, layers: None }
+    }
+
+    /// Receives light, the lanes by which it arrives, and how the path is polarized where it meets the light.
+    #[inline]
+    pub fn receive<P: Polarization<N>>(
+        &mut self,
+        contribution: Contribution,
+        light: &MetLight<N, P>,
+        polarization: &P,
+    ) {
+        if let Some(layers) = &mut self.layers {
+            let MetLight { world, arrived, excitation, .. } = *light;
+            match excitation {
+                None => layers.receive(&contribution, arrived, polarization.stokes()),
+                Some(dye) => {
+                    let stokes = dye.polarization.stokes();
+                    dye.seen(world, arrived, |seen| layers.receive(&contribution, seen, stokes));
+                }
+            }
+        }
+        self.receive_all(&contribution);
+    }
+
+    /// Receives light of photons that were gathered.
+    pub fn receive_gathered(&mut self, gathered: &Gathered<N>, draw: &Draw<N>) {
+        if let Some(layers) = &mut self.layers {
+            layers.receive_gathered(gathered, draw);
+        }
+        self.receive_all(&gathered.all);
+    }
+
+    /// Learns the blur of light that was gathered, from what was gathered by a kernel that blurs half as much.
+    pub fn blur_by(&mut self, gathered: [f64; 3], by_half: [f64; 3]) {
+        add(&mut self.blur, std::array::from_fn(|i| 2.0 * (gathered[i] - by_half[i])));
+    }
+
+    #[inline]
+    fn receive_all(&mut self, all: &Contribution) {
+        add(&mut self.rgb, all.rgb);
+        self.moved += all.moved;
+        if let Some(observer) = self.observer {
+            observer.receive(all);
+        }
+    }
+
+    /// Forgets what the sample received.
+    pub fn forget(&mut self) {
+        (self.rgb, self.moved, self.blur) = ([0.0; 3], 0.0, [0.0; 3]);
+    }
+
+    /// What the sample received; the next one starts with nothing.
+    ///
+    /// One that is not finite is left out of the image, and so of the light that is counted.
+    pub fn read_out(&mut self, world: &World, stats: &mut Stats) -> [f64; 3] {
+        let light = world.amount(self.rgb);
+        if light.is_finite() && self.moved.is_finite() {
+            stats.light += light;
+            stats.polarization += self.moved;
+        }
+        self.moved = 0.0;
+        std::mem::take(&mut self.rgb)
+    }
+}

@@ -1,0 +1,262 @@
+//! A ray of one color, followed over smooth surfaces the way that most of its light goes.
+
+use crate::material::{Dielectric, Facets, Interface, Material, RoughSurface, reflect};
+use crate::math::{BranchKey, DVec2, DVec3, Frame, Ray, Sampler, unit};
+use crate::scene::Hit;
+use crate::shape::SurfacePoint;
+use crate::spectrum::{Draw, Table};
+use crate::trace::media::Media;
+use crate::trace::walk::{Path, Polarized, Through, shading, straight_at};
+use crate::trace::{World, media};
+
+/// Surfaces after which a ray is given up: total reflection keeps one in six of those in a diamond for more than 24.
+const LONGEST: usize = 64;
+/// Share of the light from which on a fainter way counts as one: half of what glass mirrors.
+const LEAST: f64 = 0.02;
+/// The share that a glossy surface mirrors, about.
+const GLOSS: f64 = 0.05;
+/// Use of the random numbers at a surface.
+const SURFACE: u32 = 7;
+
+/// Which way is followed where light may go two ways.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Way {
+    /// The brighter one.
+    Brighter,
+    /// The fainter one at the first surface that has one, from there on the brighter one.
+    FainterFirst,
+    /// The fainter one where light would first leave a dispersive body, from there on the brighter one: the way of the
+    /// rainbow.
+    FainterInside,
+}
+
+/// Where a ray of one color went.
+pub struct Walk {
+    /// Its straight pieces: where each starts and how long it is, infinite where it leaves the scene.
+    pub legs: Vec<(Ray, f64)>,
+    /// The objects it went by.
+    pub met: Vec<u32>,
+    /// The surface at which it ends, and its object; none if it leaves the scene or is lost.
+    pub end: Option<(SurfacePoint, u32)>,
+    /// Whether that surface scatters widely.
+    pub diffuse: bool,
+    /// Whether the way leads over a dispersive surface.
+    pub dispersive: bool,
+    /// The share of the light that goes this way; 0 of a ray that is lost.
+    pub weight: f64,
+    /// The share of the fainter way at the first surface that has one.
+    pub fork: f64,
+    /// The share of the fainter way at the first surface that has one and is met inside a dispersive body.
+    pub fork_inside: f64,
+    media: Media,
+}
+
+impl Walk {
+    /// Whether it leaves the scene.
+    pub fn is_out(&self) -> bool {
+        self.length().is_infinite()
+    }
+
+    /// The length of its last piece.
+    pub fn length(&self) -> f64 {
+        self.legs.last().map_or(f64::INFINITY, |leg| leg.1)
+    }
+
+    /// The ray of its last piece.
+    pub fn last(&self) -> Option<&Ray> {
+        self.legs.last().map(|leg| &leg.0)
+    }
+
+    /// Whether the way on with a share of the light is taken, and not the other one.
+    fn takes(&mut self, share: f64, way: Way) -> bool {
+        let fainter = share.min(1.0 - share);
+        let forks = self.fork == 0.0 && fainter >= LEAST;
+        if forks {
+            self.fork = self.weight * fainter;
+        }
+        self.turns(share, forks && way == Way::FainterFirst)
+    }
+
+    /// Whether the way on with a share of the light is taken at a surface that is met inside a dispersive body.
+    fn takes_inside(&mut self, share: f64, way: Way) -> bool {
+        let fainter = share.min(1.0 - share);
+        let forks = self.fork_inside == 0.0 && fainter >= LEAST;
+        if forks {
+            self.fork_inside = self.weight * fainter;
+        }
+        match way {
+            Way::FainterInside => self.turns(share, forks),
+            _ => self.takes(share, way),
+        }
+    }
+
+    /// Goes on with a share of the light, or without it: the brighter way, or the fainter where it turns.
+    fn turns(&mut self, share: f64, turns: bool) -> bool {
+        let fainter = share.min(1.0 - share);
+        self.weight *= if turns { fainter } else { 1.0 - fainter };
+        (share > 0.5) != turns
+    }
+}
+
+/// Where a walk meets a surface, with four random numbers.
+#[derive(Clone, Copy)]
+struct Surface<'a> {
+    ray: &'a Ray,
+    hit: &'a Hit,
+    point: &'a SurfacePoint,
+    u: [f64; 4],
+    lane: usize,
+    way: Way,
+}
+
+/// How a walk goes on at a surface.
+enum Next {
+    Toward(DVec3),
+    End,
+    Lost,
+}
+
+/// A world of two lanes, one of each color that is compared.
+pub struct Colors<'a> {
+    pub world: &'a World,
+    pub draw: Draw<4>,
+}
+
+impl<'a> Colors<'a> {
+    pub fn new(world: &'a World) -> Self {
+        Self { world, draw: Draw::fixed(2) }
+    }
+
+    /// Whether a medium has two indices.
+    pub fn disperses(&self, glass: &Dielectric<Table>) -> bool {
+        let index: [f64; 4] = self.draw.read_exact(&glass.index);
+        index[0] != index[1]
+    }
+
+    /// Follows the ray through a place of the film.
+    pub fn walk_from_camera(&self, at: DVec2, lane: usize, sampler: &Sampler, way: Way) -> Walk {
+        let ray = self.world.scene.camera.ray(at);
+        let media = Path::<4, Polarized>::from_camera(self.world, &self.draw, ray).media;
+        self.walk(lane, ray, media, sampler, way)
+    }
+
+    /// Follows one lane; the first one decides for both where light may go two ways.
+    pub fn walk(&self, lane: usize, mut ray: Ray, media: Media, sampler: &Sampler, way: Way) -> Walk {
+        let (legs, met) = (Vec::with_capacity(4), Vec::with_capacity(4));
+        let mut walk = Walk {
+            legs,
+            met,
+            end: None,
+            diffuse: false,
+            dispersive: false,
+            weight: 1.0,
+            fork: 0.0,
+            fork_inside: 0.0,
+            media,
+        };
+        let mut key = BranchKey::CAMERA;
+        for _ in 0..LONGEST {
+            let hit = self.world.scene.intersect(&ray);
+            walk.legs.push((ray, hit.map_or(f64::INFINITY, |hit| hit.crossing.t)));
+            let Some(hit) = hit else { return walk };
+            let point = self.world.scene.objects[hit.object as usize].point(&ray, &hit.crossing);
+            key = key.child(0);
+            let at = Surface { ray: &ray, hit: &hit, point: &point, u: sampler.four_plain(key, SURFACE), lane, way };
+            match self.beyond(&mut walk, &at) {
+                Next::Toward(direction) => ray = point.leave(direction),
+                Next::End => {
+                    walk.end = Some((point, hit.object));
+                    return walk;
+                }
+                Next::Lost => break,
+            }
+            walk.met.push(hit.object);
+        }
+        walk.weight = 0.0;
+        walk
+    }
+
+    /// The way on from a surface.
+    fn beyond(&self, walk: &mut Walk, at: &Surface) -> Next {
+        let Surface { ray, hit, point, u, way, .. } = *at;
+        let (world, draw, wo) = (self.world, &self.draw, -ray.direction);
+        let [_, normal] = shading::normals(point, wo);
+        if world.is_see_through(hit.object) {
+            let inside = walk.media.inside(&world.scene);
+            let through = Through { ray, present: draw.start(), inside };
+            let onward = straight_at(world, draw, &through, hit, point, Polarized::NOT);
+            if onward.is_some_and(|onward| walk.takes(f64::from(onward.straight.holes[0]), way)) {
+                return Next::Toward(ray.direction);
+            }
+        }
+        match world.scene.material_of(hit.object) {
+            Material::Dielectric(glass) => self.meet_glass(walk, at, glass),
+            Material::Mirror(_) => Next::Toward(reflect(wo, normal)),
+            Material::Thin(pane) => {
+                let index: [f64; 4] = draw.read_exact(&pane.index);
+                let here = media::index(&world.scene, draw, walk.media.inside(&world.scene))[0];
+                let one = Interface::new(here, index[0], wo.dot(normal)).reflectance;
+                // Of both surfaces, without absorption (Born & Wolf 1999, section 7.6).
+                let mirrored = if index[0] == here { 0.0 } else { 2.0 * one / (1.0 + one) };
+                Next::Toward(if walk.takes(mirrored, way) { reflect(wo, normal) } else { ray.direction })
+            }
+            Material::Conductor(metal) => match metal.roughness.surface() {
+                None => Next::Toward(reflect(wo, normal)),
+                // The same facet for both colors, as if it were all there is.
+                Some(surface) => mirrored(surface, wo, normal, [u[2], u[3]]).map_or(Next::Lost, Next::Toward),
+            },
+            material if material.has_single_directions() && walk.takes(GLOSS, way) => Next::Toward(reflect(wo, normal)),
+            material => {
+                walk.diffuse = material.scatters_widely();
+                Next::End
+            }
+        }
+    }
+
+    /// The way on from the surface of a clear body.
+    fn meet_glass(&self, walk: &mut Walk, at: &Surface, glass: &Dielectric<Table>) -> Next {
+        let Surface { ray, hit, point, u, lane, way } = *at;
+        let (world, draw, wo) = (self.world, &self.draw, -ray.direction);
+        let [_, normal] = shading::normals(point, wo);
+        let front = point.normal.dot(ray.direction) < 0.0;
+        let material = world.scene.objects[hit.object as usize].material;
+        let Some(boundary) = walk.media.boundary(&world.scene, material, front) else {
+            return Next::Toward(ray.direction);
+        };
+        let indices = [boundary.here, boundary.beyond].map(|inside| media::index(&world.scene, draw, inside));
+        walk.dispersive |= indices.iter().any(|index| index[0] != index[1]);
+        let [n1, n2] = indices.map(|index| index[lane]);
+        // The same facet for both colors.
+        let facets = glass.roughness.interface().map(|rough| rough.facets());
+        let facet = facets.map_or(normal, |facets| visible(facets, wo, normal, [u[2], u[3]]));
+        let interface = Interface::new(n1, n2, wo.dot(facet));
+        // The first color's reflectance decides for both, but where it is reflected totally: there the edge has colors.
+        let first = Interface::new(indices[0][0], indices[1][0], wo.dot(facet));
+        let chance = if first.transmittance == 0.0 { interface.reflectance } else { first.reflectance };
+        let inside = indices[0][0] != indices[0][1];
+        let takes = |walk: &mut Walk| if inside { walk.takes_inside(chance, way) } else { walk.takes(chance, way) };
+        let mirrors = n1 != n2 && (takes(walk) || interface.transmittance == 0.0);
+        let (direction, side) = if mirrors {
+            (reflect(wo, facet), 1.0)
+        } else {
+            walk.media = boundary.crossed;
+            (if n1 == n2 { ray.direction } else { interface.refract(wo, facet) }, -1.0)
+        };
+        if facets.is_some() && direction.dot(normal) * side <= 0.0 { Next::Lost } else { Next::Toward(direction) }
+    }
+}
+
+/// The normal of a facet that is visible from `wo`.
+fn visible(facets: &Facets, wo: DVec3, normal: DVec3, u: [f64; 2]) -> DVec3 {
+    let frame = Frame::about(normal);
+    let local = frame.to_local(wo);
+    frame.to_world(facets.visible_normal(DVec3 { z: local.z.max(0.0), ..local }, u))
+}
+
+/// The mirror image of `wo` about a visible facet; none if it lies below the surface.
+fn mirrored(surface: &RoughSurface, wo: DVec3, normal: DVec3, u: [f64; 2]) -> Option<DVec3> {
+    let frame = Frame::about(normal);
+    let local = frame.to_local(wo);
+    let wi = reflect(local, surface.facets().visible_normal(local, u));
+    (wi.z > 0.0).then(|| unit(frame.to_world(wi)))
+}

@@ -1,0 +1,16 @@
+//! How far dispersion pulls colors apart, and the ways by which light is tinted: rays of few colors over smooth surfaces.
+
+mod apart;
+mod color_walk;
+mod lit;
+mod route;
+mod route_walk;
+mod routes;
+mod search;
+mod separation;
+mod targets;
+
+pub use route::{ROUTES_NM, Route, Step, Way};
+pub use routes::routes;
+pub use separation::{COLORS_NM, Dispersion, dispersion};
+pub use targets::SEEN_PIXELS;

@@ -1,0 +1,100 @@
+//! A way of light to the camera: what it meets, how far it has been followed back, and the surface that it meets there.
+
+use crate::light::LightId;
+use crate::material::Facets;
+use crate::math::{BranchKey, DVec3, Frame, Ray};
+use crate::scene::MaterialId;
+use crate::shape::SurfacePoint;
+use crate::spectrum::Lanes;
+use crate::trace::media::Media;
+
+/// Something that light meets on its way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Step {
+    /// The material.
+    pub material: MaterialId,
+    /// Which of the materials that it is made of, in the order of
+    /// [`Material::with_parts`](crate::material::Material::with_parts).
+    pub part: usize,
+    /// What light does there.
+    pub way: Way,
+}
+
+/// What light does at a surface, or in a body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Way {
+    /// It is mirrored, by a surface or a facet of it met under an angle of this cosine.
+    Reflected(f64),
+    /// It goes through the surface.
+    Crossed,
+    /// It is scattered in every direction.
+    Scattered,
+    /// It goes this distance through the body.
+    Inside(f64),
+}
+
+/// A way of light from a light to the camera.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Route {
+    /// What it meets, the nearest to the camera first.
+    pub steps: Vec<Step>,
+    /// Where it comes from.
+    pub light: LightId,
+    /// What is left of it but for the steps.
+    pub weight: f64,
+    /// Diffuse surfaces among the steps.
+    pub scattered: u32,
+}
+
+/// Wavelengths in nm of the lanes that decide which ways matter.
+pub const ROUTES_NM: [f64; 4] = [450.0, 520.0, 590.0, 650.0];
+/// The end of a way that is followed back from the camera.
+#[derive(Clone)]
+pub struct Walk {
+    pub ray: Ray,
+    pub media: Media,
+    pub key: BranchKey,
+    pub steps: Vec<Step>,
+    pub weight: f64,
+    /// What is left of the light, with the steps.
+    pub left: Lanes<4>,
+    pub scattered: u32,
+}
+
+impl Walk {
+    pub fn brightest(&self) -> f32 {
+        self.left.0.into_iter().fold(0.0, f32::max)
+    }
+
+    /// After a step that leaves a share of each lane, and a factor besides.
+    pub fn after(&self, step: Option<Step>, tint: Lanes<4>, factor: f64) -> Self {
+        let mut next = Self { left: self.left * tint * factor as f32, weight: self.weight * factor, ..self.clone() };
+        next.steps.extend(step);
+        next
+    }
+}
+
+/// Where a way meets a surface.
+pub struct At<'a> {
+    pub walk: &'a Walk,
+    pub material: MaterialId,
+    pub point: &'a SurfacePoint,
+    /// Unit normal on the side of the viewer.
+    pub normal: DVec3,
+    pub uv: [f64; 2],
+    pub part: usize,
+    pub u: [f64; 4],
+}
+
+impl At<'_> {
+    pub fn step(&self, way: Way) -> Step {
+        Step { material: self.material, part: self.part, way }
+    }
+
+    /// The normal of a facet that the viewer sees.
+    pub fn facet(&self, facets: &Facets) -> DVec3 {
+        let frame = Frame::about(self.normal);
+        let local = frame.to_local(-self.walk.ray.direction);
+        frame.to_world(facets.visible_normal(DVec3 { z: local.z.max(0.0), ..local }, [self.u[0], self.u[1]]))
+    }
+}

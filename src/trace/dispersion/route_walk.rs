@@ -1,0 +1,286 @@
+//! Follows the ways of one pixel back to the lights, the brightest first.
+
+use super::route::{At, ROUTES_NM, Route, Step, Walk, Way};
+use crate::light::{Light, LightId};
+use crate::material::{Facets, Interface, Material, reflect};
+use crate::math::{BranchKey, DVec3, Frame, Ray, Sampler, cosine_hemisphere, unit};
+use crate::scene::Hit;
+use crate::shape::SurfacePoint;
+use crate::spectrum::{Draw, Lanes, Table};
+use crate::trace::walk::{Path, Polarized, Through, shading, straight_at};
+use crate::trace::{World, media};
+
+/// Surfaces that are met for one pixel.
+const SURFACES: usize = 256;
+/// Ways that leave less than this share of the brightest one of a pixel are left.
+const FAINT: f32 = 1e-3;
+/// Diffuse surfaces of a way.
+const SCATTERED: u32 = 2;
+/// Lights that are aimed at.
+const LIGHTS: usize = 8;
+
+/// Follows the ways of one pixel, the brightest first.
+pub struct Walker<'a> {
+    world: &'a World,
+    draw: Draw<4>,
+    sampler: Sampler,
+    pending: Vec<Walk>,
+    pub found: Vec<Route>,
+}
+
+impl<'a> Walker<'a> {
+    pub fn new(world: &'a World, sampler: Sampler) -> Self {
+        let draw = Draw::fixed(ROUTES_NM.len());
+        Self { world, draw, sampler, pending: Vec::new(), found: Vec::new() }
+    }
+
+    /// Answers how many surfaces it met.
+    pub fn walk(&mut self, ray: Ray) -> usize {
+        let media = Path::<4, Polarized>::from_camera(self.world, &self.draw, ray).media;
+        let (steps, key) = (Vec::new(), BranchKey::CAMERA);
+        self.pending.push(Walk { ray, media, key, steps, weight: 1.0, left: Lanes::ONE, scattered: 0 });
+        let mut best = 0.0_f32;
+        for met in 0..SURFACES {
+            let order = |a: &usize, b: &usize| self.pending[*a].brightest().total_cmp(&self.pending[*b].brightest());
+            let Some(next) = (0..self.pending.len()).max_by(order) else { return met };
+            let walk = self.pending.swap_remove(next);
+            if walk.brightest() <= FAINT * best {
+                return met;
+            }
+            let (known, left) = (self.found.len(), walk.brightest());
+            self.meet(walk);
+            if self.found.len() > known {
+                best = best.max(left);
+            }
+        }
+        SURFACES
+    }
+
+    fn record(&mut self, walk: &Walk, light: LightId) {
+        let Walk { steps, weight, scattered, .. } = walk;
+        self.found.push(Route { steps: steps.clone(), light, weight: *weight, scattered: *scattered });
+    }
+
+    /// Follows a way to the next surface and finds out how it goes on.
+    fn meet(&mut self, walk: Walk) {
+        let world = self.world;
+        let Some(hit) = world.scene.intersect(&walk.ray) else {
+            for &id in &world.scene.infinite_lights {
+                if !matches!(&world.scene.lights[id], Light::Sun(sun) if sun.pdf(&walk.ray).is_none()) {
+                    self.record(&walk, id);
+                }
+            }
+            return;
+        };
+        let walk = self.inside(walk, hit.crossing.t);
+        let object = &world.scene.objects[hit.object as usize];
+        let point = object.point(&walk.ray, &hit.crossing);
+        let u = self.sampler.four_plain(walk.key, 0);
+        if self.passes(&walk, &hit, &point, u[3]) {
+            let (ray, key) = (point.leave(walk.ray.direction), walk.key.child(0));
+            self.pending.push(Walk { ray, key, ..walk });
+            return;
+        }
+        if let Some(light) = object.light
+            && let Light::Area(area) = &world.scene.lights[light]
+            && area.sides.shine(point.normal.dot(walk.ray.direction) < 0.0)
+        {
+            self.record(&walk, light);
+        }
+        let material = world.scene.material_of(hit.object);
+        let [flat, normal] = shading::normals(&point, -walk.ray.direction);
+        let uv = object.uv(&hit.crossing, &point);
+        let part = self.part(material, uv, u[2]);
+        let at = At { walk: &walk, material: object.material, point: &point, normal, uv, part, u };
+        self.leave(&at, material.with_parts()[part], flat);
+    }
+
+    /// Goes on from a surface in all ways that light may go.
+    fn leave(&mut self, at: &At, material: &Material<Table>, flat: DVec3) {
+        let At { walk, normal, uv, .. } = *at;
+        let world = self.world;
+        match material {
+            Material::Mirror(mirror) => {
+                let tint = self.draw.read_at(&mirror.reflectance, uv);
+                self.mirrored(at, normal, tint, 1.0);
+            }
+            Material::Conductor(metal) => {
+                let facet = metal.roughness.surface().map_or(normal, |surface| at.facet(surface.facets()));
+                self.mirrored(at, facet, Lanes::ONE, 1.0);
+            }
+            Material::Thin(pane) => {
+                let inside = media::index(&world.scene, &self.draw, walk.media.inside(&world.scene));
+                let index = self.draw.read_exact(&pane.index);
+                let cos = (-walk.ray.direction).dot(normal);
+                let r = if index[1] == inside[1] { 0.0 } else { Interface::new(inside[1], index[1], cos).reflectance };
+                let (tint, through) = (self.draw.read_at(&pane.transmittance, uv), (1.0 - r) * (1.0 - r));
+                let crossed = at.step(Way::Crossed);
+                let straight = walk.after(Some(crossed), tint, through);
+                self.go_on(at, straight, walk.ray.direction, 0);
+                // Mirrored by the first surface, and by the second.
+                let back = reflect(-walk.ray.direction, normal);
+                self.go_on(at, walk.after(None, Lanes::ONE, r), back, 1);
+                let behind = walk.after(Some(crossed), tint, r * through).after(Some(crossed), tint, 1.0);
+                self.go_on(at, behind, back, 2);
+            }
+            Material::Dielectric(glass) => self.glass(
+                at,
+                [&glass.reflectance, &glass.transmittance],
+                glass.roughness.interface().map(|rough| rough.facets()),
+            ),
+            Material::Diffuse(diffuse) => {
+                let tint = self.draw.read_at(&diffuse.reflectance, uv);
+                self.scattered(at, flat, tint, 1.0);
+            }
+            Material::Plastic(plastic) => {
+                let index = self.draw.read_exact(&plastic.index)[1];
+                let r = if index == 1.0 {
+                    0.0
+                } else {
+                    Interface::new(1.0, index, (-walk.ray.direction).dot(normal)).reflectance
+                };
+                self.go_on(at, walk.after(None, Lanes::ONE, r), reflect(-walk.ray.direction, normal), 1);
+                let tint = self.draw.read_at(&plastic.reflectance, uv);
+                self.scattered(at, flat, tint, 1.0 - r);
+            }
+            Material::Polarizer(_) | Material::Retarder(_) => {
+                self.go_on(at, walk.after(None, Lanes::ONE, 1.0), walk.ray.direction, 0);
+            }
+            Material::Emissive(_) | Material::Mix(_) | Material::Mask(_) => {}
+        }
+    }
+
+    /// The way after a distance through the body around it.
+    fn inside(&self, walk: Walk, distance: f64) -> Walk {
+        let Some(material) = walk.media.inside(&self.world.scene) else { return walk };
+        let transmission = media::medium(&self.world.scene, material).transmission(&self.draw, distance);
+        if transmission == Lanes::ONE {
+            return walk;
+        }
+        walk.after(Some(Step { material, part: 0, way: Way::Inside(distance) }), transmission, 1.0)
+    }
+
+    /// Whether a hole lets the way pass, by chance.
+    fn passes(&self, walk: &Walk, hit: &Hit, point: &SurfacePoint, u: f64) -> bool {
+        let (draw, inside) = (&self.draw, walk.media.inside(&self.world.scene));
+        self.world.is_see_through(hit.object)
+            && straight_at(
+                self.world,
+                draw,
+                &Through { ray: &walk.ray, present: Lanes::ONE, inside },
+                hit,
+                point,
+                Polarized::NOT,
+            )
+            .is_some_and(|onward| u < f64::from(onward.straight.holes[1]))
+    }
+
+    /// The material that is met, by chance where there are several.
+    fn part(&self, material: &Material<Table>, uv: [f64; 2], u: f64) -> usize {
+        match material {
+            Material::Mix(mix) => {
+                let amount = f64::from(self.draw.read_at(&mix.amount, uv)[1]);
+                let [first, second] = mix.materials.each_ref().map(|part| part.material());
+                if u < amount {
+                    1 + first.with_parts().len() + self.part(second, uv, u / amount)
+                } else {
+                    1 + self.part(first, uv, (u - amount) / (1.0 - amount))
+                }
+            }
+            Material::Mask(mask) => 1 + self.part(mask.material.material(), uv, u),
+            _ => 0,
+        }
+    }
+
+    /// Goes on from a surface in a direction.
+    fn go_on(&mut self, at: &At, next: Walk, direction: DVec3, number: usize) {
+        if next.brightest() > 0.0 {
+            let (ray, key) = (at.point.leave(direction), at.walk.key.child(number));
+            self.pending.push(Walk { ray, key, ..next });
+        }
+    }
+
+    fn mirrored(&mut self, at: &At, facet: DVec3, tint: Lanes<4>, factor: f64) {
+        let wo = -at.walk.ray.direction;
+        let step = at.step(Way::Reflected(wo.dot(facet).abs().min(1.0)));
+        let next = at.walk.after(Some(step), tint, factor);
+        self.go_on(at, next, reflect(wo, facet), 0);
+    }
+
+    fn glass(&mut self, at: &At, [reflectance, transmittance]: [&Table; 2], facets: Option<&Facets>) {
+        let (world, walk) = (self.world, at.walk);
+        let front = at.point.normal.dot(walk.ray.direction) < 0.0;
+        let Some(boundary) = walk.media.boundary(&world.scene, at.material, front) else {
+            return self.go_on(at, walk.clone(), walk.ray.direction, 0);
+        };
+        let [n1, n2] = [boundary.here, boundary.beyond].map(|inside| media::index(&world.scene, &self.draw, inside)[1]);
+        let crossed = Walk { media: boundary.crossed, ..walk.clone() };
+        if boundary.here == boundary.beyond {
+            return self.go_on(at, crossed, walk.ray.direction, 0);
+        }
+        let tint = self.draw.read_at(transmittance, at.uv);
+        let step = Some(at.step(Way::Crossed));
+        if n1 == n2 {
+            return self.go_on(at, crossed.after(step, tint, 1.0), walk.ray.direction, 0);
+        }
+        let (wo, facet) = (-walk.ray.direction, facets.map_or(at.normal, |facets| at.facet(facets)));
+        let interface = Interface::new(n1, n2, wo.dot(facet));
+        if interface.transmittance > 0.0 {
+            let next = crossed.after(step, tint, interface.transmittance);
+            self.go_on(at, next, interface.refract(wo, facet), 0);
+        }
+        let mirrored = walk.after(
+            Some(at.step(Way::Reflected(wo.dot(facet)))),
+            self.draw.read_at(reflectance, at.uv),
+            interface.reflectance,
+        );
+        self.go_on(at, mirrored, reflect(wo, facet), 1);
+    }
+
+    /// Light that a surface scatters: straight from the lights, and from anywhere.
+    fn scattered(&mut self, at: &At, flat: DVec3, tint: Lanes<4>, factor: f64) {
+        let mut next = at.walk.after(Some(at.step(Way::Scattered)), tint, factor);
+        next.scattered += 1;
+        for id in 0..self.world.scene.lights.len().min(LIGHTS) {
+            self.aim(at, &next, flat, id);
+        }
+        if next.scattered < SCATTERED && self.world.method.diffuse_bounces > 0 {
+            let direction = unit(Frame::about(flat).to_world(cosine_hemisphere([at.u[0], at.u[1]])));
+            self.go_on(at, next, direction, 3);
+        }
+    }
+
+    /// Light that comes straight from a light, through whatever lets it through.
+    fn aim(&mut self, at: &At, walk: &Walk, normal: DVec3, id: LightId) {
+        let (world, light) = (self.world, &self.world.scene.lights[id]);
+        let Some(sample) = light.sample_li(at.point, normal, [at.u[1], at.u[0]]) else { return };
+        let mut walk = Walk { ray: sample.ray, ..walk.clone() };
+        let mut left = sample.distance;
+        for _ in 0..SURFACES {
+            let Some(hit) = world.scene.nearest(&walk.ray, left, &|object| sample.object != Some(object)) else {
+                let walk = self.inside(walk, left);
+                return self.record(&walk, id);
+            };
+            walk = self.inside(walk, hit.crossing.t);
+            left -= hit.crossing.t;
+            let object = &world.scene.objects[hit.object as usize];
+            let point = object.point(&walk.ray, &hit.crossing);
+            if !self.passes(&walk, &hit, &point, at.u[2]) {
+                let uv = object.uv(&hit.crossing, &point);
+                let material = world.scene.material_of(hit.object);
+                let part = self.part(material, uv, at.u[2]);
+                let transmittance = match material.with_parts()[part] {
+                    Material::Thin(pane) => &pane.transmittance,
+                    Material::Dielectric(glass) => &glass.transmittance,
+                    _ => return,
+                };
+                let step = Step { material: object.material, part, way: Way::Crossed };
+                let tint = self.draw.read_at(transmittance, uv);
+                let enters = point.normal.dot(walk.ray.direction) < 0.0;
+                let media = walk.media.at_surface(&world.scene, object.material, enters).0.crossed;
+                walk = Walk { media, ..walk.after(Some(step), tint, 1.0) };
+            }
+            walk.ray = point.leave(walk.ray.direction);
+        }
+    }
+}

@@ -1,0 +1,36 @@
+//! The ways that light takes to the camera, as far as they tint it: which surfaces and bodies it meets, and how often.
+
+use super::route::Route;
+use super::route_walk::Walker;
+use crate::math::{DVec2, Sampler};
+use crate::trace::World;
+use crate::trace::probe::pixels_of_objects;
+
+/// Pixels along each side of the image.
+const SIDE: u32 = 24;
+/// Surfaces that are met for all pixels over the image or on objects.
+const ALL_SURFACES: usize = 16_384;
+
+/// The routes to a few hundred pixels, those of each together, in a world of the lanes [`ROUTES_NM`](super::route::ROUTES_NM).
+pub fn routes(world: &World) -> Vec<Vec<Route>> {
+    let film = world.scene.film.whole();
+    // A stride that is coprime to the number of places visits them all, far ones first.
+    let places = (0..SIDE * SIDE).map(|i| (i * 229) % (SIDE * SIDE));
+    let all_over = places.map(|place| film.middle_of_cell(SIDE, place));
+    let objects = pixels_of_objects(world, |material| material.has_single_directions());
+    let of_pixel = |(number, [x, y]): (u32, [i32; 2])| {
+        let ray = world.scene.camera.ray(DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5));
+        let sampler = Sampler::of_pixel(world.method.seed, [x, y], number);
+        let mut walker = Walker::new(world, sampler);
+        let met = walker.walk(ray);
+        (met, walker.found)
+    };
+    let until_enough = |met: &mut usize, (more, found): (usize, Vec<Route>)| {
+        let before = *met;
+        *met += more;
+        (before < ALL_SURFACES).then_some(found)
+    };
+    let mut routes: Vec<Vec<Route>> = (0..).zip(all_over).map(of_pixel).scan(0, until_enough).collect();
+    routes.extend((SIDE * SIDE..).zip(objects).map(of_pixel).scan(0, until_enough));
+    routes
+}

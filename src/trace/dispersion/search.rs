@@ -1,0 +1,228 @@
+//! Where in the view dispersion is seen: what is small in the picture is still the picture.
+//!
+//! The view is laid out in cells. A cell whose beam may touch a smooth object that its rays have not met is divided,
+//! down to a part of a pixel; so small objects are found also behind panes, in mirrors and in water, by a number of
+//! rays that does not depend on the number of pixels. Amanatides 1984, *Ray Tracing with Cones*, has beams of rays;
+//! Heckbert & Hanrahan 1984, *Beam Tracing Polygonal Objects*.
+
+use super::apart::{is_dark, pixels_apart as colors_apart, share_apart};
+use super::color_walk::{Colors, Walk, Way};
+use super::targets::{SEEN_PIXELS, Targets};
+use crate::math::{DVec2, DVec3, Sampler};
+
+/// Cells along each side of the view.
+const SIDE: u32 = 24;
+/// Cells that are looked at beside those.
+const MOST: usize = 6000;
+/// Cells this small, in pixels, are not divided.
+const SMALLEST: f64 = 0.5;
+/// So much of the view counts, in pixels, or this share of an image that has few: it changes one pixel as much as an
+/// edge that is just seen apart changes those along it.
+const PIXELS: f64 = SEEN_PIXELS;
+const SHARE: f64 = 0.005;
+/// Pixels that are looked at closer each time.
+const CLOSER: usize = 32;
+/// A pixel of which this share is pulled apart changes as much as one at an edge that is just seen apart: over such an
+/// edge the colors between the outermost two are moved by half as much.
+const SEEN_SHARE: f64 = 0.5 * SEEN_PIXELS;
+
+/// A place on a diffuse surface that is seen by way of others.
+pub struct Reached {
+    pub position: DVec3,
+    /// How far a pixel goes there, and how far the cell.
+    pub of_pixel: f64,
+    pub of_cell: f64,
+}
+
+/// What was found.
+pub struct Found {
+    /// Share of the view on dispersive surfaces.
+    pub seen: f64,
+    /// How many pixels colors are apart on [`PIXELS`] or more.
+    pub pixels: f64,
+    /// Whether no ray that went by a dispersive surface saw anything.
+    pub dark: bool,
+    pub reached: Vec<Reached>,
+}
+
+/// A part of the view, in pixels.
+#[derive(Clone, Copy)]
+struct Cell {
+    corner: DVec2,
+    size: DVec2,
+    way: Way,
+    /// How many such cells it stands for.
+    count: f64,
+}
+
+/// What was seen in a cell.
+struct Look {
+    cell: Cell,
+    /// Its area in pixels, as far as it is on dispersive surfaces; the share of light that goes this way.
+    dispersive: f64,
+    weight: f64,
+    /// How many pixels colors are apart; none where that cannot be told.
+    apart: Option<f64>,
+    /// Whether its way leads out of a scene that nothing shines from.
+    dark: bool,
+    /// The target it may show a part of.
+    touched: Option<usize>,
+}
+
+/// Looks for dispersion in all of the view.
+pub fn search(colors: &Colors, targets: &Targets) -> Found {
+    let film = colors.world.scene.film;
+    let all = f64::from(film.width) * f64::from(film.height);
+    let enough = PIXELS.min(SHARE * all);
+    let size = DVec2::new(f64::from(film.width), f64::from(film.height)) / f64::from(SIDE);
+    let corner = |i: u32| DVec2::new(f64::from(i % SIDE), f64::from(i / SIDE)) * size;
+    let cell = |i: u32| Cell { corner: corner(i), size, way: Way::Brighter, count: 1.0 };
+    let mut cells: Vec<Cell> = (0..SIDE * SIDE).map(cell).collect();
+    let (mut settled, mut reached, mut left) = (Vec::new(), Vec::new(), MOST);
+    loop {
+        let mut forks = Vec::new();
+        let mut looks: Vec<Look> =
+            cells.iter().map(|cell| look(colors, targets, *cell, &mut reached, &mut forks)).collect();
+        look_closer(colors, &mut looks);
+        let pixels = pixels_apart(settled.iter().chain(&looks), enough);
+        if pixels >= SEEN_PIXELS || left == 0 {
+            settled.extend(looks);
+            break;
+        }
+        let (divided, whole): (Vec<Look>, Vec<Look>) =
+            looks.into_iter().partition(|look| look.touched.is_some() && look.cell.is_divisible());
+        settled.extend(whole);
+        let mut next: Vec<(usize, Cell)> = Vec::new();
+        for look in &divided {
+            next.extend(look.cell.parts().into_iter().map(|part| (look.touched.unwrap_or(0), part)));
+        }
+        // Faint mirror images are kinds of their own.
+        let kind = |cell: &Cell| targets.all.len() + usize::from(cell.way == Way::FainterInside);
+        next.extend(forks.into_iter().map(|cell| (kind(&cell), cell)));
+        if next.is_empty() {
+            break;
+        }
+        let most = (left / 3).max(512).min(left);
+        cells = fairly(next, most);
+        left -= cells.len();
+    }
+    let seen = settled.iter().filter(|look| look.cell.way == Way::Brighter).map(|look| look.dispersive).sum::<f64>();
+    let dark = seen > 0.0 && settled.iter().all(|look| look.dark || look.dispersive == 0.0);
+    Found { seen: (seen / all).min(1.0), pixels: pixels_apart(settled.iter(), enough), dark, reached }
+}
+
+fn look(colors: &Colors, targets: &Targets, cell: Cell, reached: &mut Vec<Reached>, forks: &mut Vec<Cell>) -> Look {
+    let (middle, sampler) = cell.middle(colors);
+    let walk = |at| colors.walk_from_camera(at, 0, &sampler, cell.way);
+    let at = [DVec2::new(0.5, 0.5), DVec2::ZERO, DVec2::X, DVec2::Y, DVec2::ONE];
+    let walks = at.map(|place| walk(cell.corner + cell.size * place));
+    let first = &walks[0];
+    if cell.is_whole(colors) && cell.way == Way::Brighter {
+        if first.fork > 0.0 {
+            forks.push(Cell { way: Way::FainterFirst, ..cell });
+        }
+        // Before a sky, or the dark, what is mirrored inside may be all there is to see.
+        if first.fork_inside > 0.0 && first.is_out() {
+            forks.push(Cell { way: Way::FainterInside, ..cell });
+        }
+        reached.extend(place(&walks, cell.size));
+    }
+    let forked = match cell.way {
+        Way::Brighter => true,
+        Way::FainterFirst => first.fork > 0.0,
+        Way::FainterInside => first.fork_inside > 0.0,
+    };
+    let off = first.weight == 0.0 || !forked;
+    let dispersive = if first.dispersive && !off { cell.size.x * cell.size.y * cell.count } else { 0.0 };
+    let apart = if dispersive > 0.0 { colors_apart(colors, middle, first, &sampler, cell.way) } else { None };
+    let width = colors.world.scene.camera.pixel_angle() * cell.size.length();
+    let dark = first.is_out() && is_dark(colors.world);
+    Look { cell, dispersive, weight: first.weight, apart, dark, touched: targets.touched(&walks, width) }
+}
+
+/// Looks at all of a pixel where it cannot be told from one ray. Between the edges of small gems it hardly ever can,
+/// and what can be told there lies in the largest facets, many of which are parallel.
+fn look_closer(colors: &Colors, looks: &mut [Look]) {
+    let untold: Vec<&mut Look> =
+        looks.iter_mut().filter(|look| look.dispersive > 0.0 && look.apart.is_none()).collect();
+    let step = untold.len().div_ceil(CLOSER).max(1);
+    for look in untold.into_iter().step_by(step) {
+        let (middle, sampler) = look.cell.middle(colors);
+        let share = share_apart(colors, middle, &sampler, look.cell.way);
+        look.apart = Some(if share >= SEEN_SHARE { SEEN_PIXELS } else { 0.0 });
+        if share >= SEEN_SHARE {
+            // It was all of a pixel.
+            (look.dispersive, look.weight) = (look.dispersive.max(1.0), 1.0);
+        }
+    }
+}
+
+/// The place where the first of a cell's walks ends, if that is on a diffuse surface that is seen by way of others.
+fn place(walks: &[Walk; 5], size: DVec2) -> Option<Reached> {
+    let of = |walk: &Walk| walk.end.filter(|_| walk.diffuse).map(|end| end.0.position);
+    let position = of(&walks[0]).filter(|_| !walks[0].met.is_empty())?;
+    let beside = walks[1..].iter().filter(|walk| walk.met == walks[0].met).filter_map(of);
+    let of_cell = beside.map(|other| (other - position).length()).fold(0.0, f64::max);
+    (of_cell > 0.0).then(|| Reached { position, of_pixel: of_cell / (0.5 * size.length()), of_cell })
+}
+
+impl Cell {
+    fn middle(&self, colors: &Colors) -> (DVec2, Sampler) {
+        let middle = self.corner + self.size * 0.5;
+        (middle, Sampler::of_pixel(colors.world.method.seed, [middle.x as i32, middle.y as i32], 0))
+    }
+
+    fn is_whole(&self, colors: &Colors) -> bool {
+        self.size.x * f64::from(SIDE) >= f64::from(colors.world.scene.film.width)
+    }
+
+    fn is_divisible(&self) -> bool {
+        self.size.max_element() > SMALLEST
+    }
+
+    /// Its halves along each side that can be divided.
+    fn parts(&self) -> Vec<Self> {
+        let count = |size: f64| if size > SMALLEST { 2 } else { 1 };
+        let (columns, rows) = (count(self.size.x), count(self.size.y));
+        let size = self.size / DVec2::new(f64::from(columns), f64::from(rows));
+        let part = |i: u32| Self {
+            corner: self.corner + size * DVec2::new(f64::from(i % columns), f64::from(i / columns)),
+            size,
+            ..*self
+        };
+        (0..columns * rows).map(part).collect()
+    }
+}
+
+/// At most so many cells: all targets get alike, and those that want less leave it to the others.
+fn fairly(mut cells: Vec<(usize, Cell)>, most: usize) -> Vec<Cell> {
+    cells.sort_by_key(|cell| cell.0);
+    let mut groups: Vec<&[(usize, Cell)]> = cells.chunk_by(|a, b| a.0 == b.0).collect();
+    groups.sort_by_key(|group| group.len());
+    let (mut chosen, mut left) = (Vec::new(), most);
+    for (number, group) in groups.iter().enumerate() {
+        let share = (left / (groups.len() - number)).min(group.len());
+        let count = group.len() as f64 / share.max(1) as f64;
+        let one = |i: usize| group[i * group.len() / share].1;
+        chosen.extend((0..share).map(one).map(|cell| Cell { count: cell.count * count, ..cell }));
+        left -= share;
+    }
+    chosen
+}
+
+/// How many pixels colors are apart on so many pixels or more. Where it cannot be told, it is taken to be as elsewhere.
+fn pixels_apart<'a>(looks: impl Iterator<Item = &'a Look> + Clone, enough: f64) -> f64 {
+    let area = |look: &Look| look.dispersive * look.weight;
+    let all: f64 = looks.clone().map(area).sum();
+    let mut known: Vec<(f64, f64)> = looks.filter_map(|look| Some((look.apart?, area(look)))).collect();
+    let told: f64 = known.iter().map(|known| known.1).sum();
+    known.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let mut sum = 0.0;
+    for (pixels, area) in known {
+        sum += area * all / told;
+        if sum >= enough {
+            return pixels;
+        }
+    }
+    0.0
+}

@@ -1,0 +1,139 @@
+//! Where dispersive objects are, and the smooth ones in or through which they may be seen.
+
+use super::color_walk::{Colors, Walk};
+use crate::material::Material;
+use crate::math::{Bounds, DVec3, Ray, neighbors};
+use crate::shape::Ball;
+
+/// Dispersion over fewer pixels is not seen.
+pub const SEEN_PIXELS: f64 = 0.2;
+/// Most boxes of either kind: of more objects, neighbors share one.
+const MOST: usize = 48;
+/// How much wider a beam is taken than the rays around it: what they enclose may bulge out between them.
+const WIDER: f64 = 1.25;
+
+/// A box around an object, or around neighbors.
+pub struct Target {
+    bounds: Bounds,
+    pub dispersive: bool,
+}
+
+impl Target {
+    /// A ball around it.
+    pub fn ball(&self) -> Ball {
+        Ball { center: self.bounds.center(), radius: 0.5 * (self.bounds.max - self.bounds.min).length() }
+    }
+}
+
+/// All of them.
+pub struct Targets {
+    /// Dispersive ones first.
+    pub all: Vec<Target>,
+    /// The target that each object belongs to, if any.
+    of_object: Vec<Option<usize>>,
+}
+
+impl Targets {
+    pub fn new(colors: &Colors) -> Self {
+        let scene = &colors.world.scene;
+        let mut kinds: [Vec<(u32, Bounds)>; 2] = Default::default();
+        for (object, bounds) in (0..).zip(scene.objects.iter()).filter_map(|(i, o)| Some((i, o.shape.bounds()?))) {
+            match scene.material_of(object) {
+                Material::Dielectric(glass) => kinds[usize::from(!colors.disperses(glass))].push((object, bounds)),
+                Material::Mirror(_) | Material::Thin(_) | Material::Conductor(_) => kinds[1].push((object, bounds)),
+                _ => {}
+            }
+        }
+        let (mut all, mut of_object) = (Vec::new(), vec![None; scene.objects.len()]);
+        for (mut objects, dispersive) in kinds.into_iter().zip([true, false]) {
+            let mut add = |group: &[(u32, Bounds)]| {
+                group.iter().for_each(|(object, _)| of_object[*object as usize] = Some(all.len()));
+                let bounds = group.iter().map(|of| of.1).fold(Bounds::EMPTY, Bounds::union);
+                all.push(Target { bounds, dispersive });
+            };
+            neighbors(&mut objects, MOST, &|object| object.1.center(), &mut add);
+        }
+        Self { all, of_object }
+    }
+
+    /// The first target that a beam may touch which not all of its rays have met; none if there is none.
+    ///
+    /// Rays that went by the same objects are one beam on their next piece: as wide as they are apart. Of one that goes
+    /// its own way it is only known how wide a beam it would be that nothing has bent: `width` is its angle.
+    pub fn touched(&self, walks: &[Walk], width: f64) -> Option<usize> {
+        let met = |walk: &Walk, target: usize| {
+            walk.met
+                .iter()
+                .chain(walk.end.iter().map(|end| &end.1))
+                .any(|&of| self.of_object[of as usize] == Some(target))
+        };
+        let open: Vec<usize> = (0..self.all.len()).filter(|&i| !walks.iter().all(|walk| met(walk, i))).collect();
+        if open.is_empty() {
+            return None;
+        }
+        let beams = beams(walks, width);
+        open.into_iter().find(|&target| beams.iter().any(|beam| beam.touches(&self.all[target].bounds)))
+    }
+}
+
+/// A ray, and how far from it others are that go along with it.
+struct Beam {
+    ray: Ray,
+    length: f64,
+    /// At its start, and how much more for each unit of its length.
+    radius: f64,
+    slope: f64,
+}
+
+/// The beams of rays that start together.
+fn beams(walks: &[Walk], width: f64) -> Vec<Beam> {
+    let mut beams = Vec::new();
+    let longest = walks.iter().map(|walk| walk.legs.len()).max().unwrap_or(0);
+    for leg in 0..longest {
+        let on_leg: Vec<&Walk> = walks.iter().filter(|walk| walk.legs.len() > leg).collect();
+        for (number, walk) in on_leg.iter().enumerate() {
+            let along = |other: &&&Walk| other.met[..leg] == walk.met[..leg];
+            if on_leg[..number].iter().any(|other| along(&other)) {
+                continue;
+            }
+            let ray = walk.legs[leg].0;
+            let mut beam = Beam { ray, length: 0.0, radius: 0.0, slope: 0.0 };
+            let mut count = 0;
+            for (other, length) in on_leg[number..].iter().filter(along).map(|other| other.legs[leg]) {
+                beam.radius = beam.radius.max(WIDER * (other.origin - ray.origin).length());
+                beam.slope = beam.slope.max(WIDER * (other.direction - ray.direction).length());
+                beam.length = beam.length.max(length);
+                count += 1;
+            }
+            if count == 1 {
+                beam.radius = width * walk.legs[..leg].iter().map(|leg| leg.1).sum::<f64>();
+                beam.slope = width;
+            }
+            beams.push(beam);
+        }
+    }
+    beams
+}
+
+impl Beam {
+    /// Whether a box lies within the beam in part, or may.
+    fn touches(&self, bounds: &Bounds) -> bool {
+        let (half, middle) = (0.5 * (bounds.max - bounds.min).length(), bounds.center() - self.ray.origin);
+        let farthest = (middle.dot(self.ray.direction) + half).clamp(0.0, self.length);
+        let radius = DVec3::splat(self.radius + self.slope * farthest);
+        let (low, high) = (bounds.min - radius - self.ray.origin, bounds.max + radius - self.ray.origin);
+        let (mut from, mut to) = (0.0, self.length);
+        for axis in 0..3 {
+            let speed = self.ray.direction[axis];
+            if speed == 0.0 {
+                if low[axis] > 0.0 || high[axis] < 0.0 {
+                    return false;
+                }
+                continue;
+            }
+            let (a, b) = (low[axis] / speed, high[axis] / speed);
+            (from, to) = (f64::max(from, a.min(b)), f64::min(to, a.max(b)));
+        }
+        from <= to
+    }
+}

@@ -1,0 +1,57 @@
+//! Which objects the pixels of a tile show.
+
+use serde::{Deserialize, Serialize};
+
+use crate::film::RANKS;
+
+/// Of each pixel, the objects that its camera samples met, with how many did.
+#[derive(Default, Serialize, Deserialize)]
+pub struct Coverage(Vec<Vec<Covered>>);
+
+#[derive(Clone, Copy, Serialize, Deserialize)]
+struct Covered {
+    object: u32,
+    samples: u32,
+}
+
+impl Coverage {
+    /// Of so many pixels.
+    pub fn new(pixels: usize) -> Self {
+        Self(vec![Vec::new(); pixels])
+    }
+
+    /// How many pixels there are.
+    pub fn pixels(&self) -> usize {
+        self.0.len()
+    }
+
+    /// Whether all objects are among so many.
+    pub fn is_among(&self, objects: usize) -> bool {
+        self.0.iter().flatten().all(|covered| (covered.object as usize) < objects)
+    }
+
+    /// Counts a camera sample that met an object.
+    pub fn add(&mut self, pixel: usize, object: u32) {
+        let pixel = &mut self.0[pixel];
+        match pixel.iter_mut().find(|covered| covered.object == object) {
+            Some(covered) => covered.samples += 1,
+            None => pixel.push(Covered { object, samples: 1 }),
+        }
+    }
+
+    /// The numbers that stand for most of a pixel, as the bits of f32, and the samples of each; the most come first.
+    /// All objects have a number, which several may share.
+    pub fn ranks(&self, pixel: usize, ids: &[u32]) -> [(u32, u32); RANKS] {
+        let mut found: Vec<(u32, u32)> = Vec::new();
+        for &Covered { object, samples } in self.0.get(pixel).into_iter().flatten() {
+            let id = ids[object as usize];
+            match found.iter_mut().find(|(known, _)| *known == id) {
+                Some((_, sum)) => *sum += samples,
+                None => found.push((id, samples)),
+            }
+        }
+        found.sort_by_key(|&(id, samples)| (std::cmp::Reverse(samples), id));
+        found.resize(RANKS, (0, 0));
+        std::array::from_fn(|rank| found[rank])
+    }
+}

@@ -1,0 +1,214 @@
+//! Layers of many samples: sums of a tile's pixels, and the finished images.
+
+use serde::{Deserialize, Serialize};
+
+use super::coverage::Coverage;
+use crate::film::{Layer, LayerImage, RANKS, Sample, SampleWeights, SpectralImage, polarization, stored};
+use crate::trace::camera::Left;
+use crate::trace::contribution::add;
+use crate::trace::layers::{Layers, OF_A_HALF, STOKES};
+use crate::trace::spectrum_sample::Spectrum;
+
+/// Sums of the pixels of a tile.
+#[derive(Default, Serialize, Deserialize)]
+pub struct LayerSums {
+    /// A row of numbers for each pixel.
+    rows: Vec<f64>,
+    /// The same of samples that are subtracted, where there may be any: of light alone, and of what is made of samples.
+    subtracted: Vec<f64>,
+    /// The depth of what each pixel's places are of.
+    depths: Vec<f64>,
+    /// The objects of each pixel, if there are mattes.
+    covered: Coverage,
+}
+
+impl LayerSums {
+    /// Of so many pixels; some samples of theirs are subtracted, or none is.
+    pub fn new(layers: &Layers, pixels: usize, is_signed: bool) -> Self {
+        match layers.is_empty() {
+            true => Self::default(),
+            false => Self {
+                rows: vec![0.0; pixels * layers.numbers],
+                subtracted: if is_signed { vec![0.0; pixels * layers.numbers] } else { Vec::new() },
+                depths: vec![f64::INFINITY; pixels],
+                covered: if layers.ids.is_empty() { Coverage::default() } else { Coverage::new(pixels) },
+            },
+        }
+    }
+
+    /// Whether it has as many numbers of each kind as another one.
+    pub fn is_shaped_as(&self, other: &Self) -> bool {
+        let lengths = |sums: &Self| [sums.rows.len(), sums.subtracted.len(), sums.depths.len(), sums.covered.pixels()];
+        lengths(self) == lengths(other)
+    }
+
+    /// Adds a sample of a pixel: what the image gets of it, and what it left in the layers. `early` are those of the
+    /// first half: they and the others are each spread as evenly as all are, as every other one would not be.
+    pub fn add(&mut self, layers: &Layers, pixel: usize, early: bool, sample: &Sample, left: &Left) {
+        let rows = if sample.is_subtracted { &mut self.subtracted } else { &mut self.rows };
+        let row = &mut rows[pixel * layers.numbers..][..layers.numbers];
+        if let Some(object) = left.object.filter(|_| !layers.ids.is_empty() && !sample.is_subtracted) {
+            self.covered.add(pixel, object);
+        }
+        let left = left.row;
+        layers.add_caught(row, left);
+        let nearer = !sample.is_subtracted && sample.depth.is_some_and(|depth| depth < self.depths[pixel]);
+        if let (true, Some(depth)) = (nearer, sample.depth) {
+            self.depths[pixel] = depth;
+        }
+        for &layer in &layers.wanted {
+            let Some(at) = layers.at(layer) else { continue };
+            match layer {
+                Layer::Samples | Layer::Shadow => {}
+                Layer::CryptoObject | Layer::CryptoMaterial | Layer::CryptoAsset => {}
+                Layer::Variance => add(&mut row[at..], sample.rgb.map(|x| x * x)),
+                Layer::HalfA | Layer::HalfB => {
+                    if early == (layer == Layer::HalfA) {
+                        add(&mut row[at..], sample.rgb);
+                        row[at + OF_A_HALF - 1] += 1.0;
+                    }
+                }
+                Layer::Position | Layer::Uv => {
+                    let size = layer.channels().len();
+                    if nearer {
+                        row[at..at + size].copy_from_slice(&left[at..at + size]);
+                    }
+                }
+                Layer::Lights | Layer::Polarization => {
+                    let size = if layer == Layer::Lights { 3 * layers.groups.len() } else { STOKES };
+                    row[at..at + size].iter_mut().zip(&left[at..]).for_each(|(sum, more)| *sum += more);
+                }
+                _ => add(&mut row[at..], std::array::from_fn(|i| left[at + i])),
+            }
+        }
+    }
+
+    /// The row of a pixel, and that of its samples that are subtracted, which may be empty.
+    pub fn rows(&self, layers: &Layers, pixel: usize) -> [&[f64]; 2] {
+        let range = pixel * layers.numbers..(pixel + 1) * layers.numbers;
+        [&self.rows[range.clone()], self.subtracted.get(range).unwrap_or_default()]
+    }
+
+    /// The same, to add to them.
+    pub fn rows_mut(&mut self, layers: &Layers, pixel: usize) -> [&mut [f64]; 2] {
+        let range = pixel * layers.numbers..(pixel + 1) * layers.numbers;
+        [&mut self.rows[range.clone()], self.subtracted.get_mut(range).unwrap_or_default()]
+    }
+
+    /// Which objects each pixel shows.
+    pub fn covered(&self) -> &Coverage {
+        &self.covered
+    }
+}
+
+/// What is known of a pixel once its samples are taken.
+pub struct Taken<'a> {
+    /// Its row of sums, and that of samples that are subtracted.
+    pub sums: [&'a [f64]; 2],
+    /// The same of what photons show, which is no sum over samples; empty where they show nothing.
+    pub shown: &'a [f64],
+    /// The variance of the mean, where replicates tell it.
+    pub variance: Option<[f64; 3]>,
+    /// The sum of the samples that were kept, of those that are added and subtracted, and what they count.
+    pub rgb: [[f64; 3]; 2],
+    pub weights: SampleWeights,
+    /// Which objects the pixels of its tile show, and its place among them.
+    pub covered: &'a Coverage,
+    pub place: usize,
+}
+
+/// The images of the layers, as yet without values, for so many pixels.
+pub fn images(layers: &Layers, pixels: usize) -> Vec<LayerImage> {
+    let image = |layer: Layer, name: String| {
+        let values = vec![0.0; pixels * layer.channels().len()];
+        LayerImage { layer, name, values }
+    };
+    let of_layer = |&layer: &Layer| match layer {
+        Layer::Lights => layers.groups.iter().map(|name| image(layer, name.clone())).collect(),
+        _ if layer.is_matte() => (0..RANKS / 2).map(|i| image(layer, format!("{}{i:02}", layer.name()))).collect(),
+        _ => vec![image(layer, layer.name().to_owned())],
+    };
+    layers.wanted.iter().flat_map(of_layer).collect()
+}
+
+/// The spectra of so many pixels, as yet without values; none if they are not asked for.
+pub fn spectral_image(layers: &Layers, pixels: usize) -> Option<SpectralImage> {
+    let spectrum = layers.spectrum.as_ref()?;
+    let values = vec![0.0; pixels * spectrum.numbers()];
+    Some(SpectralImage { bands: spectrum.bands, has_stokes: spectrum.has_stokes, values })
+}
+
+/// Writes a pixel's values into the images.
+pub fn write(layers: &Layers, taken: &Taken, pixel: usize, images: &mut [LayerImage]) {
+    let mut images = images.iter_mut();
+    for &layer in &layers.wanted {
+        if let Some((_, ids)) = layers.ids.iter().find(|(matte, _)| *matte == layer) {
+            let ranks = taken.covered.ranks(taken.place, ids);
+            for (two, image) in ranks.chunks_exact(2).zip(images.by_ref()) {
+                let coverage = |samples: u32| (f64::from(samples) / taken.weights.added()) as f32;
+                let [(a, of_a), (b, of_b)] = [two[0], two[1]];
+                let values = [f32::from_bits(a), coverage(of_a), f32::from_bits(b), coverage(of_b)];
+                image.values[4 * pixel..4 * pixel + 4].copy_from_slice(&values);
+            }
+            continue;
+        }
+        let at = layers.at(layer).unwrap_or_default();
+        let several = if layer == Layer::Lights { layers.groups.len() } else { 1 };
+        for (number, image) in images.by_ref().take(several).enumerate() {
+            let size = layer.channels().len();
+            let values = &mut image.values[pixel * size..][..size];
+            if layer == Layer::Shadow {
+                let caught = layers.caught(taken.sums[0], taken.shown, taken.weights.added());
+                let shadow = caught.map_or([0.0; 3], |caught| caught.shadow());
+                values.copy_from_slice(&shadow.map(stored));
+                continue;
+            }
+            if layer == Layer::Polarization {
+                let stokes = std::array::from_fn(|component| taken.light(at + component));
+                values.copy_from_slice(&polarization(stokes).map(stored));
+                continue;
+            }
+            for (channel, value) in values.iter_mut().enumerate() {
+                *value = stored(taken.value(layer, at + 3 * number, channel));
+            }
+        }
+    }
+}
+
+impl Taken<'_> {
+    /// Writes the pixel's spectrum into the image.
+    pub fn write_spectrum(&self, spectrum: &Spectrum, pixel: usize, image: &mut SpectralImage) {
+        let numbers = spectrum.numbers();
+        for (number, value) in image.values[pixel * numbers..][..numbers].iter_mut().enumerate() {
+            *value = stored(spectrum.unit * self.light(spectrum.at + number));
+        }
+    }
+
+    /// The mean of a number that is light, with what photons show.
+    fn light(&self, at: usize) -> f64 {
+        let sums = self.sums.map(|row| row.get(at).copied().unwrap_or_default());
+        self.weights.sum(sums) / self.weights.taken() + self.shown.get(at).copied().unwrap_or_default()
+    }
+
+    fn value(&self, layer: Layer, at: usize, channel: usize) -> f64 {
+        let sums = self.sums.map(|row| row.get(at + channel).copied().unwrap_or_default());
+        let shown = self.shown.get(at + channel).copied().unwrap_or_default();
+        let weights = &self.weights;
+        match layer {
+            Layer::Samples => weights.kept().into(),
+            Layer::Position | Layer::Uv => sums[0],
+            Layer::Albedo => (sums[0] / weights.added()).clamp(0.0, 1.0),
+            // Photons land independently: the sum of their squares estimates the variance of their sum.
+            Layer::Variance => self.variance.map_or_else(
+                || weights.variance(self.rgb.map(|rgb| rgb[channel]), sums[0] + sums[1]) + shown,
+                |variance| variance[channel],
+            ),
+            Layer::HalfA | Layer::HalfB => {
+                let taken = self.sums.map(|row| row.get(at + OF_A_HALF - 1).copied().unwrap_or_default());
+                weights.sum(sums) / (taken[0] + taken[1]).max(1.0) + shown
+            }
+            _ if layer.is_light() => self.light(at + channel),
+            _ => sums[0] / weights.added(),
+        }
+    }
+}

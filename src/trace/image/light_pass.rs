@@ -1,0 +1,254 @@
+//! The light pass: caustics, by photons that are sent through glass and over mirrors to what the camera sees.
+//!
+//! It finds the paths light, one or more smooth surfaces, one that scatters widely, camera; and so all of those paths
+//! whose light and first smooth surface photons are sent from and to. The camera's rays leave exactly these out, so
+//! that nothing counts twice and no weights are needed. Veach 1997, *Robust Monte Carlo Methods for Light Transport
+//! Simulation*, section 10.3.4, has the importance; Grittmann et al. 2018, *Efficient Caustic Rendering with
+//! Lightweight Photon Mapping*, the split by kind of path.
+
+use serde::{Deserialize, Serialize};
+
+use super::tile::{Shown, Tile};
+use crate::film::{Layer, Shard};
+use crate::trace::contribution::{Contribution, Found};
+use crate::trace::parallel::in_parallel;
+use crate::trace::pass::Pass;
+use crate::trace::photon::{Batch, Sent, Splat, batches, send, show as show_photon};
+use crate::trace::photon_targets::PhotonTargets;
+use crate::trace::stats::Stats;
+use crate::trace::walk::{Polarization, Polarized};
+use crate::trace::watch::Watch;
+use crate::trace::width::in_lanes;
+use crate::trace::{LightPass, World};
+
+/// Batches whose splats are kept in memory at once.
+const AT_ONCE: usize = 64;
+/// Sets these random numbers apart from those of the camera, and those of photons sent ahead from both.
+const SEED: u64 = 0x7068_6f74;
+const AHEAD_SEED: u64 = 0x6168_6561;
+
+/// Of an target's photons, one in so many is sent ahead to learn which ones are seen, unless those are too few to tell,
+/// and as many as tell enough.
+const AHEAD: u64 = 8;
+const TOO_FEW: u64 = 4096;
+const ENOUGH: u64 = 1 << 16;
+/// Photons of all targets that the plan sends ahead, as many whatever the image is: no more than these, and than follow
+/// so many rays, if those are not too few to tell; and of all targets those that tell which are seen.
+const OF_A_PLAN: u64 = 1 << 17;
+const RAYS_OF_A_PLAN: f64 = (1 << 18) as f64;
+const SEEN_OF_A_PLAN: u64 = 1 << 16;
+/// Of each target, photons that tell how many rays one follows.
+const FIRST: u64 = 256;
+
+/// How far a light pass is. It goes on where it stopped.
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+pub struct Sending {
+    /// Batches that are done.
+    batches: usize,
+    /// Photons sent.
+    pub photons: u64,
+    pub(in crate::trace) stats: Stats,
+}
+
+impl Sending {
+    /// Whether any batch is done.
+    pub fn has_begun(&self) -> bool {
+        self.batches > 0
+    }
+
+    /// Another one follows.
+    pub fn begin_anew(&mut self) {
+        self.batches = 0;
+    }
+}
+
+/// Sends the photons of a world's light pass that have not been sent, until it shall stop, and adds what they show to
+/// the tiles of a part of the image; answers whether all are sent. `progress` is told how many are done. The first pass
+/// sends all photons; where there are replicates, every pass sends some.
+///
+/// Every part sends all photons, which may be seen anywhere: a sum of what the parts found would have other last bits.
+pub fn show<const N: usize, P: Polarization<N>>(
+    world: &World,
+    pass: &Pass,
+    sending: &mut Sending,
+    shard: Shard,
+    tiles: &mut [Tile],
+    watch: &Watch,
+) -> bool {
+    let Some(targets) = &world.photon_targets else { return true };
+    let some = pass.part_of_photons(world).map(|part| targets.times(part));
+    let weight = pass.weight_of_photons();
+    let (window, numbers) = (world.scene.film.window(), world.layers.numbers);
+    for tile in tiles.iter_mut().filter(|tile| tile.shown.pixels.is_empty()) {
+        let pixels = tile.sums.len();
+        tile.shown = Shown { pixels: vec![[0.0; 3]; pixels], layers: vec![0.0; pixels * numbers], moved: 0.0 };
+    }
+    let add = &mut |splat: Splat| {
+        let splat = splat.times(weight).of_half(pass.is_of_first_half());
+        let Splat { pixel, change, rgb, .. } = splat;
+        let Some([tile, place]) = shard.place_of(window, pixel) else { return };
+        let Tile { shown, replicates, .. } = &mut tiles[tile];
+        if !world.layers.is_empty() {
+            add_to_layers(world, &splat, &mut shown.layers[place * numbers..][..numbers]);
+        }
+        if splat.caught && world.layers.catches() {
+            return;
+        }
+        (0..3).for_each(|i| shown.pixels[place][i] += rgb[i]);
+        if change != 0.0 {
+            shown.moved += f64::from(change) * world.amount(rgb);
+        }
+        pass.replicate.iter().for_each(|&replicate| replicates.show(place, replicate, rgb));
+    };
+    send_on::<N, P>(world, some.as_ref().unwrap_or(targets), pass.photon_seed().0, sending, watch, add)
+}
+
+/// Adds a photon that the camera sees to the row of its pixel, which holds means.
+fn add_to_layers(world: &World, splat: &Splat, row: &mut [f64]) {
+    let Splat { light, rgb, dispersed, early, caught, first, weight, .. } = *splat;
+    if caught {
+        return world.layers.catch_photon(row, rgb);
+    }
+    // Smooth surfaces mirrored or refracted it, and the last one scattered it to the camera.
+    let bounces = 2;
+    let light = Some(light);
+    world.layers.add(row, &Contribution { light, found: Found::Shown, rgb, moved: 0.0, first, bounces, dispersed });
+    if let Some(stokes) = &splat.stokes {
+        world.layers.add_stokes(row, **stokes, weight);
+    }
+    if let (Some(spectrum), Some(bands)) = (&world.layers.spectrum, &splat.bands) {
+        let sums = row[spectrum.at..].iter_mut().zip(bands.iter());
+        sums.for_each(|(sum, &light)| *sum += weight * f64::from(light));
+    }
+    world.layers.add_to(Layer::Variance, row, rgb.map(|x| x * x));
+    world.layers.add_to(if early { Layer::HalfA } else { Layer::HalfB }, row, rgb.map(|x| 2.0 * x));
+}
+
+/// Sends all of them and hands over what they show, in an order that never changes; holds no image.
+pub fn splats<const N: usize, P: Polarization<N>>(world: &World, take: &mut dyn FnMut(Splat)) -> Sending {
+    let (mut sending, watch) = (Sending::default(), Watch { progress: &|_| (), is_due: &|| false });
+    let targets = world.photon_targets.iter();
+    targets.for_each(|targets| {
+        send_on::<N, P>(world, targets, world.method.seed, &mut sending, &watch, take);
+    });
+    sending
+}
+
+/// The same of those that have not been sent, until it shall stop; answers whether all are.
+fn send_on<const N: usize, P: Polarization<N>>(
+    world: &World,
+    targets: &PhotonTargets,
+    seed: u64,
+    sending: &mut Sending,
+    watch: &Watch,
+    take: &mut dyn FnMut(Splat),
+) -> bool {
+    let batches = batches(targets, |_| 0, |target| target.photons, seed ^ SEED);
+    for group in batches.get(sending.batches..).unwrap_or_default().chunks(AT_ONCE) {
+        let send = |number: usize| (!(watch.is_due)()).then(|| send_shown::<N, P>(world, targets, group[number]));
+        let done = in_parallel(group.len(), &send);
+        for (batch, sent) in group.iter().zip(done) {
+            // Splats are added in the order of the batches: what was found beyond a gap is found again.
+            let Some(sent) = sent else { return false };
+            (watch.progress)(batch.count);
+            (sending.batches, sending.photons) = (sending.batches + 1, sending.photons + batch.count);
+            sending.stats += sent.stats;
+            for splat in sent.kept {
+                if splat.rgb.iter().all(|x| x.is_finite()) {
+                    take(splat);
+                } else {
+                    sending.stats.non_finite += 1;
+                }
+            }
+        }
+    }
+    true
+}
+
+/// Sends one batch.
+pub fn send_shown<const N: usize, P: Polarization<N>>(
+    world: &World,
+    targets: &PhotonTargets,
+    batch: Batch,
+) -> Sent<Splat> {
+    send(world, targets, batch, false, &show_photon::<N, P>)
+}
+
+/// What photons sent ahead found.
+#[derive(Default)]
+struct Learned {
+    /// Of each target, the places and whether the camera saw them.
+    found: Vec<Vec<([f64; 2], bool)>>,
+    /// Rays followed.
+    rays: u64,
+}
+
+/// Sends photons ahead. The format sees them, also where a part of it or more is made, so that all parts are made
+/// alike.
+fn send_ahead<const N: usize>(world: &World, most: u64) -> Learned {
+    let world = world.of_the_format();
+    let Some(targets) = &world.photon_targets else { return Learned::default() };
+    let batches = batches(targets, |_| 0, |target| target.photons.min(most), world.method.seed ^ AHEAD_SEED);
+    let send =
+        |number: usize| send::<N, Polarized, _>(&world, targets, batches[number], true, &show_photon::<N, Polarized>);
+    let done = in_parallel(batches.len(), &send);
+    let mut learned = Learned { found: vec![Vec::new(); targets.targets.len()], rays: 0 };
+    for (batch, sent) in batches.iter().zip(done) {
+        learned.rays += sent.stats.rays;
+        learned.found[batch.target].extend(sent.places);
+    }
+    learned
+}
+
+/// Of the photons of each light, the share that the camera sees; of many lights, of a light and its neighbors.
+pub fn seen_photons(world: &World) -> Vec<f64> {
+    let mut shares = vec![0.0; world.scene.lights.len()];
+    let Some(targets) = &world.photon_targets else { return shares };
+    let most = (SEEN_OF_A_PLAN / targets.targets.len() as u64).clamp(1, TOO_FEW);
+    let found = in_lanes!(&world.method.basis, N => send_ahead::<N>(world, most)).found;
+    let mut counts = vec![[0_u32; 2]; shares.len()];
+    for (target, photons) in targets.targets.iter().zip(found) {
+        let [sent, seen] = &mut counts[target.light];
+        *sent += photons.len() as u32;
+        *seen += photons.iter().filter(|photon| photon.1).count() as u32;
+    }
+    for group in world.photon_light_groups() {
+        let of_group = |i: usize| group.iter().map(|&light| counts[light][i]).sum::<u32>();
+        let share = f64::from(of_group(1)) / f64::from(of_group(0).max(1));
+        group.iter().for_each(|&light| shares[light] = share);
+    }
+    shares
+}
+
+/// A world with another light pass and photons sent ahead, for a plan: no more of them for an image of many pixels than
+/// for one of few.
+pub fn piloted(world: &World, light_pass: LightPass) -> World {
+    let mut world = world.with_light_pass(Some(light_pass));
+    let targets = world.photon_targets.as_ref().map_or(1, |targets| targets.targets.len() as u64);
+    let most = OF_A_PLAN / targets;
+    if most >= TOO_FEW {
+        let first = in_lanes!(&world.method.basis, N => send_ahead::<N>(&world, FIRST));
+        let sent = first.found.iter().map(Vec::len).sum::<usize>() as f64;
+        let by_rays = RAYS_OF_A_PLAN * sent / (first.rays as f64 * targets as f64);
+        learn_where_to_send(&mut world, (by_rays as u64).clamp(TOO_FEW, most));
+    }
+    world
+}
+
+/// Sends photons ahead, at most so many of an target, and the others where those were seen.
+pub fn learn_where_to_send(world: &mut World, most: u64) {
+    let Some(least) = world
+        .photon_targets
+        .as_ref()
+        .and_then(|targets| targets.targets.iter().map(|target| target.photons / AHEAD).min())
+    else {
+        return;
+    };
+    let ahead = least.min(ENOUGH).min(most);
+    if ahead >= TOO_FEW {
+        let found = in_lanes!(&world.method.basis, N => send_ahead::<N>(world, ahead)).found;
+        if let Some(targets) = &mut world.photon_targets {
+            targets.learn(&found);
+        }
+    }
+}

@@ -1,0 +1,21 @@
+//! An image in the making, pass by pass over its tiles: sums, noise, when it is enough, and what is saved.
+
+mod blur;
+mod coverage;
+mod layer_sums;
+pub mod light_pass;
+mod noise;
+mod passes;
+mod rare_light;
+mod rendering;
+mod saved;
+mod stopping;
+mod tile;
+
+pub use blur::Blur;
+pub use light_pass::{learn_where_to_send, piloted, seen_photons, send_shown, splats};
+pub use noise::{Noise, Outlier, TileNoise};
+pub use rare_light::RareLight;
+pub use rendering::{Advance, Rendering, Report, render};
+pub use saved::Restored;
+pub use stopping::Stopped;

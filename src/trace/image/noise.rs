@@ -1,0 +1,257 @@
+//! The noise of an image, told by replicates.
+//!
+//! With errors e_r of R replicates, the error of their mean is expected to be E = mean |e_r|^2 / R. It is itself a
+//! random number, and the bound has to hold for the one that was drawn. Two things are not known of it:
+//!
+//! - E is an estimate. Its variance is told by how far the |e_r|^2 are apart: s^2 / R.
+//! - The error that was drawn lies around E. Where pixels know nothing of each other it hardly does, for they are many;
+//!   but light vertices and photons are shared by pixels, so that a whole image may be too bright. Of normal errors,
+//!   R |mean e_r|^2 has the variance g^2 = 2 tr(C^2), where C is the covariance of all pixels, and the products of two
+//!   replicates tell that: the mean of (e_r . e_s)^2 is tr(C^2). What s^2 has beyond g^2 are rare bright samples, of
+//!   which the mean has R times as many: they add (s^2 - g^2) / R.
+//!
+//! The bound is R E + t sqrt(s^2 / R + g^2 + (s^2 - g^2) / R), over R, with Student's t of R - 1 degrees of freedom.
+
+use serde::{Deserialize, Serialize};
+
+use super::blur::{Blur, BlurSums};
+use crate::film::{Filter, TilePlace};
+use crate::trace::replicates::{REPLICATES, Replicates};
+
+/// How far the replicates of an image are apart, and what that tells of their mean.
+///
+/// Errors are relative: the root of the mean square, over all pixels and the three film channels, by that of the image
+/// itself.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Noise {
+    /// Camera samples of each pixel that it is the noise of.
+    pub samples: u32,
+    /// The error that is expected.
+    pub expected: f64,
+    /// The error is smaller than this in 95 of 100 renders of as many samples. A render that takes samples until this
+    /// is small enough stops rather when it is too small by chance.
+    pub at_most: f64,
+    /// The tile of 16 x 16 pixels with most noise: the first column and row, and its error, relative to the image.
+    pub worst_tile: TileNoise,
+    /// A pixel that makes much of the noise by what one replicate found alone: light that is hardly ever found, of
+    /// which no number of samples tells how much there is.
+    pub outlier: Option<Outlier>,
+}
+
+/// What replicates tell of the error of their mean.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Measured {
+    pub noise: Noise,
+    pub blur: Blur,
+}
+
+impl Measured {
+    /// The error is smaller than this in 95 of 100 renders, rather more, since both parts of it are at most what is
+    /// told. The noise of a pixel has nothing to do with how far it is blurred, so squares add up.
+    pub fn at_most(&self) -> f64 {
+        self.noise.at_most.hypot(self.blur.at_most)
+    }
+}
+
+/// The noise of a tile.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct TileNoise {
+    /// Its first column and row in the format.
+    pub corner: [i64; 2],
+    /// The error that is expected of it, relative to the image.
+    pub expected: f64,
+}
+
+/// A pixel whose noise tells that its light is hardly ever found.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Outlier {
+    /// Its column and row in the format.
+    pub pixel: [i64; 2],
+    /// Its part of the image's variance.
+    pub share: f64,
+    /// The replicate that found it, counted from 0.
+    pub replicate: u32,
+}
+
+/// Student's t for 95 %, one side, 7 degrees of freedom.
+const STUDENT: f64 = 1.894_578_605;
+/// A pixel with more than this part of all variance is looked at (row A7 of the stability catalog).
+const MUCH: f64 = 0.1;
+/// The part of a pixel's variance that one of eight replicates makes where it stands out: the largest of eight normal
+/// numbers is as far from their mean in 1 of 20 cases (Grubbs 1950, *Sample Criteria for Testing Outlying
+/// Observations*: 2.126 standard deviations; 2.126^2 / 7).
+const ALONE: f64 = 0.6457;
+
+/// Sums over some pixels.
+#[derive(Default)]
+struct Spread {
+    /// Of products of two replicates' deviations from their mean, and of squares of the mean.
+    products: [[f64; REPLICATES]; REPLICATES],
+    squares: f64,
+    numbers: f64,
+    /// The pixel with the largest deviations in which one replicate stands out: where it is, and how large they are.
+    outlier: Option<(Outlier, f64)>,
+}
+
+impl Spread {
+    /// The sum of all squared deviations.
+    fn total(&self) -> f64 {
+        (0..REPLICATES).map(|i| self.products[i][i]).sum()
+    }
+
+    /// Adds a pixel of the format.
+    fn add(&mut self, pixel: [i64; 2], replicates: &[[f64; 3]; REPLICATES]) {
+        let mean: [f64; 3] = std::array::from_fn(|i| replicates.iter().map(|rgb| rgb[i]).sum::<f64>());
+        let mean = mean.map(|sum| sum / REPLICATES as f64);
+        let apart = replicates.map(|rgb| [0, 1, 2].map(|i| rgb[i] - mean[i]));
+        let product = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+        let (mut sum, mut most, mut replicate) = (0.0, 0.0, 0);
+        for (number, &deviation) in apart.iter().enumerate() {
+            for (products, &other) in self.products[number].iter_mut().zip(&apart) {
+                *products += product(deviation, other);
+            }
+            let square = product(deviation, deviation);
+            sum += square;
+            if square > most {
+                (most, replicate) = (square, number as u32);
+            }
+        }
+        if most > ALONE * sum && self.outlier.as_ref().is_none_or(|(_, other)| sum > *other) {
+            self.outlier = Some((Outlier { pixel, share: 0.0, replicate }, sum));
+        }
+        self.squares += mean.iter().map(|x| x * x).sum::<f64>();
+        self.numbers += 3.0;
+    }
+
+    fn join(&mut self, other: Self) {
+        let sums = self.products.iter_mut().flatten();
+        sums.zip(other.products.iter().flatten()).for_each(|(sum, more)| *sum += more);
+        (self.squares, self.numbers) = (self.squares + other.squares, self.numbers + other.numbers);
+        let is_larger = |new: &(Outlier, f64)| self.outlier.as_ref().is_none_or(|old| new.1 > old.1);
+        if let Some(outlier) = other.outlier.filter(is_larger) {
+            self.outlier = Some(outlier);
+        }
+    }
+
+    /// The mean square error of a replicate, and what the error of the mean of all stays below in 95 of 100 cases,
+    /// times their number.
+    fn errors(&self) -> [f64; 2] {
+        let (count, numbers) = (REPLICATES as f64, self.numbers.max(1.0));
+        // Each replicate is a part of the mean that its deviation is from.
+        let errors: [f64; REPLICATES] = std::array::from_fn(|i| self.products[i][i] / numbers * count / (count - 1.0));
+        let mean = errors.iter().sum::<f64>() / count;
+        let spread = errors.iter().map(|error| (error - mean) * (error - mean)).sum::<f64>() / (count - 1.0);
+        let mut shared = 0.0;
+        for (i, products) in self.products.iter().enumerate() {
+            for product in &products[..i] {
+                // Deviations of two replicates have the covariance -C / R, those of one (1 - 1/R) C.
+                let product = product / numbers + mean / count;
+                shared += product * product;
+            }
+        }
+        let of_one = 1.0 - 1.0 / count;
+        let pairs = 0.5 * count * (count - 1.0);
+        let normal = 2.0 * shared / pairs / (of_one * of_one + 1.0 / (count * count));
+        let variance = spread / count + normal + (spread - normal).max(0.0) / count;
+        [mean, mean + STUDENT * variance.sqrt()]
+    }
+
+    /// What the sums tell, and those of the blur.
+    fn measured(self, samples: u32, worst: Option<([i64; 2], f64)>, blur: &BlurSums) -> Measured {
+        let count = REPLICATES as f64;
+        let (numbers, [mean, bound]) = (self.numbers.max(1.0), self.errors());
+        // The square of the mean has its variance in it.
+        let signal = self.squares / numbers - mean / count;
+        let relative = |error: f64| match error / signal {
+            _ if error == 0.0 => 0.0,
+            square if square >= 0.0 => square.sqrt(),
+            _ => f64::INFINITY,
+        };
+        let total = self.total();
+        let outlier = self.outlier.map(|(outlier, sum)| Outlier { share: sum / total, ..outlier });
+        let of_tile = |(corner, variance)| TileNoise { corner, expected: relative(variance) };
+        let noise = Noise {
+            samples,
+            expected: relative(mean / count),
+            at_most: relative(bound / count),
+            worst_tile: worst.map_or(TileNoise::default(), of_tile),
+            outlier: outlier.filter(|outlier| outlier.share > MUCH),
+        };
+        let [expected, at_most] = blur.squares(STUDENT).map(|squares| relative(squares / numbers));
+        Measured { noise, blur: Blur { expected, at_most } }
+    }
+}
+
+/// The errors of an image's tiles, whose first pixels are given, after so many samples of each replicate.
+pub fn measure<'t>(
+    tiles: impl Iterator<Item = (&'t Replicates, TilePlace)>,
+    first: [i32; 2],
+    filter: Filter,
+    each: u32,
+) -> Measured {
+    let (mut all, mut worst): (Spread, Option<([i64; 2], f64)>) = (Spread::default(), None);
+    let mut blur = BlurSums::default();
+    for (replicates, place) in tiles {
+        let corner = [0, 1].map(|i| i64::from(first[i]) + i64::from(place.corner[i]));
+        let (mut of_tile, mut blur_of_tile) = (Spread::default(), BlurSums::default());
+        for pixel in 0..place.pixels() {
+            let (x, y) = (pixel as i64 % i64::from(place.width), pixel as i64 / i64::from(place.width));
+            of_tile.add([corner[0] + x, corner[1] + y], &replicates.pixel(pixel, filter, each));
+            replicates.blur(pixel, filter).iter().for_each(|replicates| blur_of_tile.add(replicates));
+        }
+        let count = REPLICATES as f64;
+        let variance = of_tile.total() / of_tile.numbers / (count * (count - 1.0));
+        if worst.is_none_or(|(_, most)| variance > most) {
+            worst = Some((corner, variance));
+        }
+        all.join(of_tile);
+        blur.join(&blur_of_tile);
+    }
+    all.measured(REPLICATES as u32 * each, worst, &blur)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::{BranchKey, Sampler};
+
+    /// Of renders of 1024 pixels with samples u^-a, by eight replicates of so many samples: the shares that are off by
+    /// no more than they say, and that say that they do not know.
+    fn told(a: f64, samples: u32) -> [f64; 2] {
+        const RENDERS: u32 = 60;
+        const PIXELS: u32 = 1024;
+        let mut told = [0.0; 2];
+        for render in 0..RENDERS {
+            let (mut spread, mut error, truth) = (Spread::default(), 0.0, 1.0 / (1.0 - a));
+            for pixel in 0..PIXELS {
+                let replicates: [[f64; 3]; REPLICATES] = std::array::from_fn(|replicate| {
+                    let key = [render, pixel * REPLICATES as u32 + replicate as u32];
+                    let number = |sample| Sampler::new(7, key, sample).four_plain(BranchKey::CAMERA, 0)[0];
+                    let value = |sample| libm::pow(number(sample).max(1e-12), -a);
+                    [(0..samples).map(value).sum::<f64>() / f64::from(samples); 3]
+                });
+                let mean = replicates.iter().map(|rgb| rgb[0]).sum::<f64>() / REPLICATES as f64;
+                error += (mean - truth) * (mean - truth) / (f64::from(PIXELS) * truth * truth);
+                spread.add([i64::from(pixel), 0], &replicates);
+            }
+            let noise = spread.measured(samples, None, &BlurSums::default()).noise;
+            let doubts = noise.outlier.is_some();
+            told[0] += f64::from(u8::from(!doubts && error.sqrt() <= noise.at_most)) / f64::from(RENDERS);
+            told[1] += f64::from(u8::from(doubts)) / f64::from(RENDERS);
+        }
+        told
+    }
+
+    /// Row A7 of the stability catalog. u^-0.3 has three moments, u^-0.45 has two, and u^-0.8 has no variance.
+    #[test]
+    fn a7_samples_without_variance_are_doubted_and_what_is_believed_is_kept() {
+        for samples in [8, 64] {
+            let [kept, doubted] = told(0.3, samples);
+            assert!(kept / (1.0 - doubted) >= 0.9 && doubted < 0.25, "u^-0.3, {samples}: {kept} {doubted}");
+            let [kept, doubted] = told(0.45, samples);
+            assert!(kept / (1.0 - doubted) >= 0.9, "u^-0.45, {samples}: {kept} {doubted}");
+            let [kept, doubted] = told(0.8, samples);
+            assert!(kept <= 0.02 && doubted >= 0.95, "u^-0.8, {samples}: {kept} {doubted}");
+        }
+    }
+}

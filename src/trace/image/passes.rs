@@ -1,0 +1,99 @@
+//! The order in which samples are taken.
+
+use serde::{Deserialize, Serialize};
+
+use super::light_pass::Sending;
+use super::noise::Measured;
+use crate::trace::World;
+use crate::trace::pass::{Pass, Stage};
+use crate::trace::replicates::REPLICATES;
+use crate::trace::stats::Stats;
+
+/// Samples of each pixel in the first pass, where no photons are gathered; every other pass takes as many as were taken
+/// before.
+const FIRST_PASS: u32 = 16;
+
+/// Samples of each pixel in the largest pass with light vertices, all of which are in memory at once.
+const MOST_AT_ONCE: u32 = 64;
+
+/// How far an image in the making is, but for the pixels that are ahead in a pass.
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+pub struct Progress {
+    /// Camera samples of each pixel, and passes.
+    pub samples: u32,
+    pub passes: u32,
+    /// Where there are replicates.
+    pub(in crate::trace) stage: Stage,
+    /// What they told when they last had as many samples each.
+    pub measured: Option<Measured>,
+    pub sending: Sending,
+    /// Of photons that were gathered, and paths from the lights.
+    pub(in crate::trace) gathered: Stats,
+    pub gathered_photons: u64,
+}
+
+impl Progress {
+    /// The next pass.
+    pub(in crate::trace) fn pass(&self, world: &World) -> Pass {
+        if world.method.stop.is_some() {
+            return self.stage.pass(world, self.passes, most_at_once(world));
+        }
+        let numbers = self.samples..end_of_pass(world, self.samples, self.passes);
+        Pass::of_one_render(world, self.passes, numbers)
+    }
+
+    /// Camera samples of each pixel after the next pass.
+    pub fn end_of_pass(&self, world: &World) -> u32 {
+        self.samples + self.pass(world).numbers.len() as u32
+    }
+
+    /// Counts a pass that is finished.
+    pub(in crate::trace) fn finish(&mut self, pass: &Pass) {
+        let samples = pass.numbers.len() as u32;
+        (self.samples, self.passes) = (self.samples + samples, self.passes + 1);
+        if pass.replicate.is_some() {
+            self.stage = self.stage.after(samples);
+            self.sending.begin_anew();
+        }
+    }
+
+    /// How many samples of each pixel photons have been shown for, where every pass sends some: of the pass that was
+    /// stopped, all or none.
+    pub fn shown_for(&self, world: &World) -> u32 {
+        if self.sending.has_begun() { self.end_of_pass(world) } else { self.samples }
+    }
+
+    /// Camera samples of each pixel after the stage of all replicates.
+    pub fn samples_of_stage(&self) -> u32 {
+        (self.stage.before.saturating_add(self.stage.size)).saturating_mul(REPLICATES as u32)
+    }
+
+    /// Whether its numbers fit together.
+    pub fn is_whole(&self, world: &World) -> bool {
+        let unused = self.stage == Stage::default();
+        if world.method.stop.is_some() { self.stage.is_after(self.samples) } else { unused }
+    }
+
+    /// Whether a render of a world comes by here, so that all its sums are these.
+    pub fn is_on_the_way_of(&self, world: &World) -> bool {
+        let samples = (0..self.passes).fold(0, |samples, pass| end_of_pass(world, samples, pass));
+        samples == self.samples && samples <= world.method.samples
+    }
+}
+
+/// Most samples of a replicate in one pass: as many as share a map, or light vertices that are in memory at once.
+pub fn most_at_once(world: &World) -> u32 {
+    let map = world.method.light_pass.as_ref().and_then(|pass| pass.map).filter(|_| world.has_map());
+    map.map_or(MOST_AT_ONCE, |map| (world.method.samples / map.count).clamp(1, MOST_AT_ONCE))
+}
+
+fn end_of_pass(world: &World, samples: u32, passes: u32) -> u32 {
+    let all = world.method.samples;
+    let map = world.method.light_pass.as_ref().and_then(|pass| pass.map).filter(|_| world.has_map());
+    let end = match map {
+        Some(map) => (u64::from(passes + 1) * u64::from(all) / u64::from(map.count)).min(all.into()) as u32,
+        None if world.method.light_vertices => samples.saturating_add(samples.clamp(FIRST_PASS, MOST_AT_ONCE)),
+        None => samples.saturating_mul(2).max(FIRST_PASS),
+    };
+    end.min(all)
+}

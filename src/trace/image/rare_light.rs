@@ -1,0 +1,86 @@
+//! Which light made a pixel stand out in one of the replicates.
+
+use std::cell::Cell;
+
+use super::noise::Outlier;
+use crate::math::Sampler;
+use crate::trace::World;
+use crate::trace::camera::{Observer, PathTracer};
+use crate::trace::contribution::{Contribution, Found};
+use crate::trace::pass::Stage;
+use crate::trace::photon::PassLight;
+use crate::trace::walk::Polarization;
+use crate::trace::width::in_lanes_of;
+
+/// Light that one of the replicates found and no other.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RareLight {
+    /// The name of the light; none where photons of several were gathered.
+    pub name: Option<String>,
+    /// How often surfaces scattered, mirrored or refracted it on its way.
+    pub bounces: u32,
+    /// How it was found.
+    pub found: &'static str,
+}
+
+/// Of all light of the pixel in the replicate, the part that one path must have brought to be what stands out.
+const MUCH: f64 = 0.2;
+
+/// The brightest light that a sample got.
+struct Brightest<'w> {
+    world: &'w World,
+    found: Cell<Option<Contribution>>,
+    amount: Cell<f64>,
+}
+
+impl Observer for Brightest<'_> {
+    fn receive(&self, contribution: &Contribution) {
+        let amount = self.world.amount(contribution.rgb);
+        if amount > self.amount.get() && amount.is_finite() {
+            self.amount.set(amount);
+            self.found.set(Some(*contribution));
+        }
+    }
+}
+
+/// Takes the samples of the pixel that stands out once more, and looks for the brightest light of them, after so many
+/// samples of each replicate. None where it was a photon that the camera saw, which is no sample's.
+pub fn rare_light(world: &World, outlier: &Outlier, each: u32, most_at_once: u32) -> Option<RareLight> {
+    in_lanes_of!(world, N, P => brightest::<N, P>(world, outlier, each, most_at_once))
+}
+
+fn brightest<const N: usize, P: Polarization<N>>(
+    world: &World,
+    outlier: &Outlier,
+    each: u32,
+    most_at_once: u32,
+) -> Option<RareLight> {
+    let brightest = Brightest { world, found: Cell::new(None), amount: Cell::new(0.0) };
+    let pixel = outlier.pixel.map(|place| place as i32);
+    let (mut all, mut before) = (0.0, 0);
+    while before < each {
+        let stage = Stage::of_replicate(outlier.replicate, before, each - before);
+        let pass = stage.pass(world, 0, most_at_once);
+        let light = PassLight::<N, P>::new(world, &pass);
+        let mut tracer = PathTracer::<N, P>::new(world).with_photons(light.photons.as_ref()).with_observer(&brightest);
+        for number in pass.numbers.clone() {
+            tracer.light_vertices = light.vertices(number - pass.numbers.start);
+            let sample = tracer.sample(&Sampler::of_pixel(pass.seed, pixel, number), pixel);
+            all += world.amount(sample.rgb);
+        }
+        before = pass.numbers.end;
+    }
+    let found = brightest.found.get().filter(|_| brightest.amount.get() > MUCH * all)?;
+    let name = found.light.map(|light| world.scene.light_groups[light].clone());
+    Some(RareLight { name, bounces: found.bounces, found: word(found.found) })
+}
+
+fn word(found: Found) -> &'static str {
+    match found {
+        Found::Hit { .. } => "met by chance",
+        Found::Sampled => "sampled",
+        Found::Connected => "met on its way",
+        Found::Gathered => "gathered from photons",
+        Found::Shown => "shown by photons",
+    }
+}

@@ -1,0 +1,424 @@
+//! An image in the making: pass after pass over its tiles.
+
+use std::any::Any;
+use std::borrow::Cow;
+use std::io;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
+
+use super::blur::Blur;
+use super::layer_sums::{Taken, images, spectral_image, write};
+use super::noise::{Measured, Noise, measure};
+use super::passes::{Progress, most_at_once};
+use super::rare_light::{RareLight, rare_light};
+use super::saved::Restored;
+use super::stopping::{Clock, Stopped, next_stage, samples_wanted, tells_noise};
+use super::tile::Tile;
+use super::{light_pass, saved};
+use crate::error::Result;
+use crate::film::{BlockReader, BlockWriter, Film, Pixel, PixelSum, SampleWeights, Shard, TilePlace};
+use crate::trace::parallel::for_each_in_parallel;
+use crate::trace::photon::PassLight;
+use crate::trace::photon_targets::PhotonTargets;
+use crate::trace::replicates::REPLICATES;
+use crate::trace::stats::Stats;
+use crate::trace::walk::Polarization;
+use crate::trace::watch::Watch;
+use crate::trace::width::in_lanes_of_layers;
+use crate::trace::{Stop, World};
+
+/// What rendering noticed.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Report {
+    /// Camera samples taken.
+    pub samples: u64,
+    /// Rays followed, without those to lights.
+    pub rays: u64,
+    /// Samples left out because they were not finite.
+    pub non_finite: u64,
+    /// Column, row and number of the first of them.
+    pub first_non_finite: Option<[i64; 3]>,
+    /// Mean weight per camera sample of the branches that deterministic transport dropped.
+    pub dropped: f64,
+    /// Mean weight per camera sample of paths stopped because they would not end.
+    pub stopped: f64,
+    /// Surfaces of clear bodies that were left without having been entered: open meshes.
+    pub unmatched: u64,
+    /// Camera samples of deterministic transport that met so many surfaces that they went on by chance.
+    pub by_chance: u64,
+    /// Most of the light seen, as a share, that polarization, which is not traced, may change.
+    pub polarization: f64,
+    /// The same in the tile of 16 x 16 pixels where it is largest.
+    pub polarization_of_tile: f64,
+    /// All light that camera rays and photons found, as X + Y + Z of every camera sample.
+    pub light: f64,
+    /// Photons sent by the light pass.
+    pub photons: u64,
+    /// How far the image is off by chance, where a stop rule has it measured.
+    pub noise: Option<Noise>,
+    /// By how much photons that were gathered blur it, where a stop rule has it measured.
+    pub blur: Option<Blur>,
+    /// What ended the render, if a stop rule could, and it is finished.
+    pub stopped_by: Option<Stopped>,
+}
+
+/// Renders the world's image, or the part of it that is asked for. `progress` is told how many camera samples and
+/// photons are done, from any thread; in the end they are [`Rendering::work`].
+pub fn render(world: &World, progress: &(dyn Fn(u64) + Sync)) -> (Film, Report) {
+    let mut rendering = Rendering::of_shard(Cow::Borrowed(world), Shard::WHOLE);
+    while rendering.advance(progress) {}
+    (rendering.film(), rendering.report())
+}
+
+/// How far an image in the making came.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Advance {
+    /// All samples are taken.
+    Finished,
+    /// A pass is finished, and another one is left.
+    Passed,
+    /// It stopped within a pass, as it was told to.
+    Stopped,
+}
+
+/// An image in the making. It advances pass by pass, can be looked at after each, and is finished after the last.
+///
+/// A pass takes the next samples of all pixels; where photons are gathered, each pass sends its own before. The light
+/// pass comes before the first. It may stop anywhere between two pixels, be saved there, and go on.
+pub struct Rendering<'a> {
+    world: Cow<'a, World>,
+    shard: Shard,
+    tiles: Vec<Tile>,
+    progress: Progress,
+    /// What the paths of the pass that was stopped look at.
+    light: Option<Box<dyn Any + Send + Sync>>,
+    /// How fast it goes, where there is a stop rule.
+    clock: Clock,
+}
+
+impl<'a> Rendering<'a> {
+    /// An image without samples yet, or one of several parts of it, where all other pixels stay blank.
+    pub fn of_shard(world: Cow<'a, World>, shard: Shard) -> Self {
+        let window = world.scene.film.window();
+        let tiles = shard.tiles(window).map(|place| Tile::new(&world, place)).collect();
+        let (progress, clock) = (Progress::default(), Clock::new(Instant::now()));
+        Self { world, shard, tiles, progress, light: None, clock }
+    }
+
+    /// Lets the time of a stop rule run from another moment on.
+    pub fn since(self, began: Instant) -> Self {
+        Self { clock: Clock::new(began), ..self }
+    }
+
+    /// What is rendered, and how.
+    pub fn world(&self) -> &World {
+        &self.world
+    }
+
+    /// Camera samples of each pixel that have been taken.
+    pub fn samples(&self) -> u32 {
+        self.progress.samples
+    }
+
+    /// Whether all samples are taken, or enough.
+    pub fn is_finished(&self) -> bool {
+        match &self.world().method.stop {
+            None => self.samples() >= self.world().method.samples,
+            Some(stop) => self.progress.stage.size == 0 && self.next_stage(stop) == 0,
+        }
+    }
+
+    /// Camera samples and photons of the method's samples.
+    pub fn planned_work(&self) -> u64 {
+        let world = self.world();
+        let samples = self.pixels() * u64::from(world.method.samples);
+        let passes = world.method.light_pass.as_ref().and_then(|pass| pass.map).map_or(0, |map| u64::from(map.count));
+        let photons = |targets: &Option<PhotonTargets>| targets.as_ref().map_or(0, PhotonTargets::photons);
+        samples + photons(&world.photon_targets) + passes * photons(&world.map_targets)
+    }
+
+    /// How many camera samples and photons the image takes; with a stop rule, about, and better known after each pass.
+    pub fn work(&self) -> u64 {
+        let (world, all) = (self.world(), self.planned_work());
+        match &world.method.stop {
+            None => all,
+            Some(_) if self.is_finished() => self.done(),
+            Some(stop) => {
+                let wanted = samples_wanted(stop, &self.progress, &self.clock);
+                let work = all as f64 * f64::from(wanted) / f64::from(world.method.samples);
+                self.done().max(work as u64)
+            }
+        }
+    }
+
+    /// How many of them are done.
+    pub fn done(&self) -> u64 {
+        self.samples_taken() + self.photons()
+    }
+
+    /// Makes the next pass, if there is one, and answers whether another one is left. `progress` is told how many
+    /// camera samples and photons were done since it was last told, from any thread.
+    pub fn advance(&mut self, progress: &(dyn Fn(u64) + Sync)) -> bool {
+        self.advance_until(progress, &|| false) == Advance::Passed
+    }
+
+    /// The same, but stops before the next pixels once `is_due` says so. It is asked before every pixel of a pass, from
+    /// any thread.
+    pub fn advance_until(&mut self, progress: &(dyn Fn(u64) + Sync), is_due: &(dyn Fn() -> bool + Sync)) -> Advance {
+        let stopped = AtomicBool::new(false);
+        let stops = || {
+            let due = stopped.load(Ordering::Relaxed) || is_due();
+            stopped.fetch_or(due, Ordering::Relaxed) || due
+        };
+        let watch = Watch { progress, is_due: &stops };
+        if !self.begin_pass() {
+            return Advance::Finished;
+        }
+        if !in_lanes_of_layers!(self.world(), N, P => self.pass::<N, P>(&watch)) {
+            return Advance::Stopped;
+        }
+        if self.is_finished() { Advance::Finished } else { Advance::Passed }
+    }
+
+    /// Whether there is a next pass. Decides how many samples the replicates take, if that is not known.
+    fn begin_pass(&mut self) -> bool {
+        if let (Some(stop), 0) = (&self.world().method.stop, self.progress.stage.size) {
+            self.progress.stage.size = self.next_stage(stop);
+            self.clock.begin(self.samples());
+            return self.progress.stage.size > 0;
+        }
+        self.world().method.stop.is_some() || !self.is_finished()
+    }
+
+    /// How many samples each replicate takes in the next stage; none if enough are taken.
+    fn next_stage(&self, stop: &Stop) -> u32 {
+        next_stage(stop, &self.progress, &self.clock)
+    }
+
+    /// Looks at the replicates, if they have as many samples each.
+    fn look(&mut self) {
+        let (stage, film) = (self.progress.stage, self.world().scene.film);
+        if stage.size == 0 && stage.before > 0 && self.world().method.stop.is_some() {
+            let window = film.window();
+            let tiles = self.places().map(|(tile, place)| (&tile.replicates, place));
+            self.progress.measured = Some(measure(tiles, [window.left, window.top], film.filter, stage.before));
+        }
+    }
+
+    /// The image of the samples so far.
+    pub fn film(&self) -> Film {
+        let settings = self.world().scene.film;
+        let window = settings.window();
+        let mut pixels = vec![BLANK; window.pixels() as usize];
+        let layers = &self.world().layers;
+        let luminance = settings.color_space.to_xyz()[1];
+        let (mut images, none) = (images(layers, pixels.len()), PixelSum::default());
+        let (each, shown_counts) = (self.each(), self.shown_counts());
+        let mut spectral = spectral_image(layers, pixels.len());
+        for (tile, at) in self.places() {
+            for (place, sum) in tile.sums.iter().enumerate() {
+                let number = at.pixel(window, place as u32);
+                let subtracted = tile.subtracted.get(place).unwrap_or(&none);
+                let weights = SampleWeights::new(settings.filter, [sum.kept(), subtracted.kept()]);
+                let shown = tile.shown_at(place).map(|x| x * shown_counts);
+                pixels[number] = sum.pixel(subtracted, &weights, shown);
+                if !layers.is_empty() {
+                    let (sums, shown) = (tile.layers.rows(layers, place), tile.shown_in_layers(layers, place));
+                    let shown = &*times(shown, shown_counts);
+                    let (covered, rgb) = (tile.layers.covered(), [sum.rgb(), subtracted.rgb()]);
+                    let variance = each.map(|each| tile.replicates.variance(place, settings.filter, each));
+                    let taken = Taken { sums, shown, variance, rgb, weights, covered, place };
+                    write(layers, &taken, number, &mut images);
+                    if let (Some(image), Some(spectrum)) = (&mut spectral, &layers.spectrum) {
+                        taken.write_spectrum(spectrum, number, image);
+                    }
+                    if let Some(caught) = layers.caught(sums[0], shown, weights.added()) {
+                        let alpha = f64::from(pixels[number].alpha) + caught.coverage(luminance);
+                        pixels[number].alpha = alpha.min(1.0) as f32;
+                    }
+                }
+            }
+        }
+        Film {
+            width: window.width,
+            height: window.height,
+            corner: [window.left, window.top],
+            full: [settings.width, settings.height],
+            color_space: settings.color_space,
+            pixels,
+            layers: images,
+            spectral,
+            manifests: layers.manifests(&self.world().scene),
+        }
+    }
+
+    /// What was noticed so far.
+    pub fn report(&self) -> Report {
+        let (mut all, mut first_non_finite, mut polarization_of_tile) = (self.shared_stats(), None, 0.0_f64);
+        for tile in &self.tiles {
+            let stats = self.stats_of(tile);
+            if stats.light > 0.0 {
+                polarization_of_tile = polarization_of_tile.max(stats.polarization / stats.light);
+            }
+            first_non_finite = first_non_finite.or(tile.first_non_finite);
+            all += stats;
+        }
+        let samples = self.samples_taken();
+        let per_sample = |sum: f64| sum / samples.max(1) as f64;
+        Report {
+            samples,
+            rays: all.rays,
+            non_finite: all.non_finite,
+            first_non_finite,
+            dropped: per_sample(all.dropped),
+            stopped: per_sample(all.stopped),
+            unmatched: all.unmatched,
+            by_chance: all.by_chance,
+            polarization: if all.light > 0.0 { all.polarization / all.light } else { 0.0 },
+            polarization_of_tile,
+            light: all.light,
+            photons: self.photons(),
+            noise: self.noise().copied(),
+            blur: self.blur().copied(),
+            stopped_by: self.stopped_by(),
+        }
+    }
+
+    /// How far the image was off at the last look, where a stop rule looks.
+    pub fn noise(&self) -> Option<&Noise> {
+        self.measured().map(|measured| &measured.noise)
+    }
+
+    /// By how much gathered photons blurred it at the last look, where a stop rule looks.
+    pub fn blur(&self) -> Option<&Blur> {
+        self.measured().map(|measured| &measured.blur)
+    }
+
+    fn measured(&self) -> Option<&Measured> {
+        self.progress.measured.as_ref().filter(|Measured { noise, .. }| tells_noise(noise.samples))
+    }
+
+    /// What ended the render, if a stop rule could, and it is finished.
+    pub fn stopped_by(&self) -> Option<Stopped> {
+        let stop = self.world().method.stop.as_ref().filter(|_| self.is_finished())?;
+        Some(Stopped::new(stop, &self.progress))
+    }
+
+    /// Which light it is that one replicate found alone, if any did at the last look.
+    pub fn rare_light(&self) -> Option<RareLight> {
+        let (world, noise) = (self.world(), self.noise()?);
+        rare_light(world, &noise.outlier?, noise.samples / REPLICATES as u32, most_at_once(world))
+    }
+
+    /// What was left out of the light that all parts of an image send alike.
+    pub fn non_finite_in_all_parts(&self) -> u64 {
+        self.shared_stats().non_finite
+    }
+
+    /// Writes how far it is, and all sums.
+    ///
+    /// # Errors
+    /// If they cannot be written.
+    pub(crate) fn save(&self, blocks: &mut BlockWriter) -> io::Result<()> {
+        saved::save(self.world(), &self.progress, &self.tiles, blocks)
+    }
+
+    /// Goes on from what was saved of a rendering of the same world, of other samples perhaps.
+    ///
+    /// # Errors
+    /// If it cannot be read. Then, and if it does not go on, this one must not be used.
+    pub(crate) fn restore(&mut self, blocks: BlockReader) -> Result<Restored> {
+        self.light = None;
+        saved::restore(&self.world, &mut self.progress, &mut self.tiles, blocks)
+    }
+
+    /// Samples of a pixel that each replicate has, on average, where there are replicates.
+    fn each(&self) -> Option<u32> {
+        let has_some = self.world().method.stop.is_some() && self.samples() > 0;
+        has_some.then(|| self.samples().div_ceil(REPLICATES as u32))
+    }
+
+    /// What the sum of what photons show counts in the image.
+    fn shown_counts(&self) -> f64 {
+        let world = self.world();
+        match world.method.stop {
+            None => 1.0,
+            Some(_) => 1.0 / f64::from(self.progress.shown_for(world).max(1)),
+        }
+    }
+
+    /// Its tiles with their places.
+    fn places(&self) -> impl Iterator<Item = (&Tile, TilePlace)> {
+        self.tiles.iter().zip(self.shard.tiles(self.world().scene.film.window()))
+    }
+
+    fn pixels(&self) -> u64 {
+        self.tiles.iter().map(|tile| tile.sums.len() as u64).sum()
+    }
+
+    fn photons(&self) -> u64 {
+        self.progress.sending.photons + self.progress.gathered_photons
+    }
+
+    /// Camera samples taken, with those of the pass that was stopped.
+    fn samples_taken(&self) -> u64 {
+        let (samples, passes) = (self.progress.samples, self.progress.passes);
+        let of_pass = u64::from(self.progress.end_of_pass(self.world()) - samples);
+        let ahead = |tile: &Tile| if tile.passes > passes { tile.sums.len() as u64 } else { tile.ahead.into() };
+        self.pixels() * u64::from(samples) + of_pass * self.tiles.iter().map(ahead).sum::<u64>()
+    }
+
+    fn shared_stats(&self) -> Stats {
+        let mut stats = self.progress.gathered;
+        stats += self.progress.sending.stats;
+        stats
+    }
+
+    /// What was noticed in a tile, with the light that photons show there.
+    fn stats_of(&self, tile: &Tile) -> Stats {
+        let mut stats = tile.stats;
+        let samples = f64::from(self.samples()) * self.shown_counts();
+        stats.polarization += samples * tile.shown.moved;
+        stats.light += samples * tile.shown.pixels.iter().map(|&rgb| self.world().amount(rgb)).sum::<f64>();
+        stats
+    }
+
+    /// Makes the next pass, or goes on with it; answers whether it is finished.
+    fn pass<const N: usize, P: Polarization<N>>(&mut self, watch: &Watch) -> bool {
+        let world = &*self.world;
+        let progress = &mut self.progress;
+        let pass = progress.pass(world);
+        if !light_pass::show::<N, P>(world, &pass, &mut progress.sending, self.shard, &mut self.tiles, watch) {
+            return false;
+        }
+        let kept = self.light.take().and_then(|light| light.downcast::<PassLight<N, P>>().ok());
+        let light = kept.unwrap_or_else(|| {
+            let light = PassLight::new(world, &pass);
+            (watch.progress)(light.sent());
+            Box::new(light)
+        });
+        let (window, passes) = (world.scene.film.window(), progress.passes);
+        let places: Vec<TilePlace> = self.shard.tiles(window).collect();
+        let left = self.tiles.iter_mut().zip(places).filter(|(tile, _)| tile.passes == passes).collect();
+        for_each_in_parallel(left, &|(tile, place): (&mut Tile, TilePlace)| {
+            let taken = tile.take::<N, P>(place, world, &light, &pass, watch.is_due);
+            (watch.progress)(u64::from(taken) * pass.numbers.len() as u64);
+        });
+        if self.tiles.iter().any(|tile| tile.passes == passes) {
+            self.light = Some(light);
+            return false;
+        }
+        light.add_to(&mut progress.gathered);
+        progress.gathered_photons += light.sent();
+        progress.finish(&pass);
+        self.look();
+        true
+    }
+}
+
+/// Numbers so many times as large.
+fn times(numbers: &[f64], factor: f64) -> Cow<'_, [f64]> {
+    if factor == 1.0 { numbers.into() } else { numbers.iter().map(|x| x * factor).collect() }
+}
+
+const BLANK: Pixel = Pixel { rgb: [0.0; 3], alpha: 0.0, depth: 0.0, samples: 0.0 };

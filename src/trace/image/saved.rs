@@ -1,0 +1,121 @@
+//! Images in the making as they are saved: how far they are, and the sums of all tiles.
+
+use std::io;
+
+use serde::{Deserialize, Serialize};
+
+use super::light_pass::Sending;
+use super::passes::Progress;
+use super::tile::{Shown, Tile};
+use crate::error::Result;
+use crate::film::{BlockReader, BlockWriter, Layer};
+use crate::trace::World;
+
+/// What stands before the tiles.
+#[derive(Serialize, Deserialize)]
+struct Head {
+    progress: Progress,
+    /// Camera samples of each pixel after the pass that was stopped, if any pixel is ahead in it.
+    end_of_pass: Option<u32>,
+    /// Of all passes.
+    samples: u32,
+    /// Of the light pass.
+    photons: Option<u64>,
+    tiles: u64,
+}
+
+fn photons(world: &World) -> Option<u64> {
+    world.method.light_pass.as_ref().map(|pass| pass.photons)
+}
+
+/// What came of a saved render.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Restored {
+    /// Another one goes on from there.
+    Continues,
+    /// It was finished, with more samples per pixel than are asked for: so many. Nothing else was read.
+    HasMore(u32),
+    /// Why no render can go on from there.
+    Refused(String),
+}
+
+/// Writes how far a render of a world is, and its sums.
+///
+/// # Errors
+/// If they cannot be written.
+pub fn save(world: &World, progress: &Progress, tiles: &[Tile], blocks: &mut BlockWriter) -> io::Result<()> {
+    let is_ahead = |tile: &Tile| tile.ahead > 0 || tile.passes > progress.passes;
+    let end_of_pass = tiles.iter().any(is_ahead).then(|| progress.end_of_pass(world));
+    let (samples, tiles_saved) = (world.method.samples, tiles.len() as u64);
+    let photons = photons(world);
+    blocks.block(&Head { progress: *progress, end_of_pass, samples, photons, tiles: tiles_saved })?;
+    tiles.iter().try_for_each(|tile| blocks.block(tile))
+}
+
+/// Reads how far a render of an equal world was, of other samples perhaps, and its sums.
+///
+/// # Errors
+/// If they cannot be read.
+pub fn restore(
+    world: &World,
+    progress: &mut Progress,
+    tiles: &mut [Tile],
+    mut blocks: BlockReader,
+) -> Result<Restored> {
+    let Head { progress: found, end_of_pass, samples, photons: sent, tiles: saved } = blocks.block()?;
+    *progress = found;
+    let has_more = match &world.method.stop {
+        None => progress.samples == samples && samples > world.method.samples,
+        Some(stop) => progress.samples > stop.most,
+    };
+    if has_more {
+        return Ok(Restored::HasMore(progress.samples));
+    }
+    if let Some(objection) = objection(world, progress, end_of_pass, samples) {
+        return Ok(Restored::Refused(objection));
+    }
+    if saved != tiles.len() as u64 || !progress.is_whole(world) {
+        return Err(blocks.damaged());
+    }
+    // Camera samples are what they are, however many photons are sent beside them.
+    let is_sent_anew = sent != photons(world);
+    let objects = world.scene.objects.len();
+    for tile in tiles {
+        let mut restored: Tile = blocks.block()?;
+        let passes = u64::from(restored.passes);
+        let fits = restored.is_shaped_as(tile, &world.layers) && restored.layers.covered().is_among(objects);
+        if !fits || ![0, 1].map(|more| u64::from(progress.passes) + more).contains(&passes) {
+            return Err(blocks.damaged());
+        }
+        if is_sent_anew {
+            restored.shown = Shown::default();
+        }
+        *tile = restored;
+    }
+    blocks.end()?;
+    if is_sent_anew {
+        progress.sending = Sending::default();
+    }
+    Ok(Restored::Continues)
+}
+
+/// Why a render cannot go on from what was saved of one of the same plan and so many samples.
+fn objection(world: &World, progress: &Progress, end_of_pass: Option<u32>, samples: u32) -> Option<String> {
+    if let Some(stop) = &world.method.stop {
+        let (end, most) = (progress.samples_of_stage(), stop.most);
+        return (end > most).then(|| format!("it is on its way to {end} samples per pixel, more than {most}"));
+    }
+    let asked = world.method.samples;
+    let (taken, begun) = (progress.samples, end_of_pass.is_some());
+    let is_on_the_way = progress.is_on_the_way_of(world);
+    if !is_on_the_way || end_of_pass.is_some_and(|end| end != progress.end_of_pass(world)) {
+        return Some(format!(
+            "it has {taken} samples per pixel of {samples}{}, where a render of {asked} has no pass that ends there",
+            if begun { ", and more of some pixels" } else { "" }
+        ));
+    }
+    let halves = [Layer::HalfA, Layer::HalfB].iter().any(|&half| world.layers.at(half).is_some());
+    (halves && asked != samples && (taken > 0 || begun)).then(|| {
+        format!("half_a and half_b are halves of {samples} samples, and those of {asked} cannot be made of them")
+    })
+}

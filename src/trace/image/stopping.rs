@@ -1,0 +1,140 @@
+//! When enough samples are taken.
+
+use std::time::{Duration, Instant};
+
+use super::noise::Measured;
+use super::passes::Progress;
+use crate::trace::Stop;
+use crate::trace::replicates::REPLICATES;
+
+/// Samples of each replicate before the first look at the noise: 64 of a pixel. The next looks come when there are
+/// twice as many.
+const FIRST: u32 = 8;
+/// Of the time that is left, the part that a stage is planned to take, and the part of all time that is too short for
+/// another one.
+const PLANNED: f64 = 0.95;
+const SHORT: f64 = 0.02;
+
+/// What ended a render that had a stop rule.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stopped {
+    /// The error is as small as was asked for.
+    Noise,
+    /// The time is over.
+    Time,
+    /// All samples are taken that it might take.
+    Samples,
+}
+
+impl Stopped {
+    /// What ended it.
+    pub fn new(stop: &Stop, progress: &Progress) -> Self {
+        match () {
+            () if is_enough(stop, progress.measured.as_ref()) => Self::Noise,
+            () if progress.stage.before >= most(stop) => Self::Samples,
+            () => Self::Time,
+        }
+    }
+
+    /// The word for it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Noise => "error",
+            Self::Time => "time",
+            Self::Samples => "samples",
+        }
+    }
+}
+
+/// How fast a render goes.
+#[derive(Clone, Debug)]
+pub struct Clock {
+    began: Instant,
+    /// When this run began its first stage, and how many samples of each pixel there were.
+    first: Option<(Instant, u32)>,
+}
+
+impl Clock {
+    pub fn new(began: Instant) -> Self {
+        Self { began, first: None }
+    }
+
+    /// A stage begins, after so many samples of each pixel.
+    pub fn begin(&mut self, samples: u32) {
+        self.first.get_or_insert((Instant::now(), samples));
+    }
+
+    /// The time that is left of some.
+    fn left(&self, time: Duration) -> Duration {
+        time.saturating_sub(self.began.elapsed())
+    }
+
+    /// How many samples of each pixel are taken in a time, after so many; none if that is not known.
+    fn samples_in(&self, time: Duration, samples: u32) -> Option<f64> {
+        let (since, before) = self.first?;
+        let taken = samples.checked_sub(before).filter(|&taken| taken > 0)?;
+        Some(f64::from(taken) * time.as_secs_f64() / since.elapsed().as_secs_f64())
+    }
+}
+
+/// Whether so many samples of each pixel tell its noise.
+pub fn tells_noise(samples: u32) -> bool {
+    samples >= REPLICATES as u32 * FIRST
+}
+
+/// Whether noise and blur are small enough, and known well enough to say so.
+fn is_enough(stop: &Stop, measured: Option<&Measured>) -> bool {
+    let is_known = |Measured { noise, .. }: &&Measured| tells_noise(noise.samples) && noise.outlier.is_none();
+    matches!((stop.noise, measured.filter(is_known)), (Some(wanted), Some(error)) if error.at_most() <= wanted)
+}
+
+/// Most samples of each replicate.
+fn most(stop: &Stop) -> u32 {
+    stop.most / REPLICATES as u32
+}
+
+/// How many samples each replicate takes in the next stage; none if enough are taken.
+pub fn next_stage(stop: &Stop, progress: &Progress, clock: &Clock) -> u32 {
+    if is_enough(stop, progress.measured.as_ref()) {
+        return 0;
+    }
+    let each = progress.stage.before;
+    let doubled = match (each, stop.time) {
+        (0, None) => FIRST,
+        (0, Some(_)) => 1,
+        _ => each,
+    };
+    let size = doubled.min(most(stop) - each.min(most(stop)));
+    match stop.time {
+        Some(time) if each > 0 => {
+            let left = clock.left(time);
+            let all = REPLICATES as u32 * each;
+            if left < time.mul_f64(SHORT) {
+                return 0;
+            }
+            // A run that goes on from a checkpoint does not know yet how fast it is.
+            let fits = clock.samples_in(left.mul_f64(PLANNED), all).map_or(1.0, |samples| samples / REPLICATES as f64);
+            size.min(fits as u32)
+        }
+        _ => size,
+    }
+}
+
+/// How many samples of a pixel will be enough, about.
+pub fn samples_wanted(stop: &Stop, progress: &Progress, clock: &Clock) -> u32 {
+    let stage = progress.stage;
+    let each = stage.before + stage.size;
+    let mut wanted = each.max(FIRST).min(most(stop));
+    if let (Some(goal), Some(measured)) = (stop.noise, &progress.measured) {
+        let times = (measured.at_most() / goal).powi(2);
+        while f64::from(wanted) < times * f64::from(stage.before) && wanted < most(stop) {
+            wanted = wanted.saturating_mul(2).min(most(stop));
+        }
+    } else if stop.noise.is_none() {
+        wanted = most(stop);
+    }
+    let wanted = REPLICATES as u32 * wanted;
+    let (taken, time) = (REPLICATES as u32 * stage.before, stop.time);
+    let in_time = time.and_then(|time| clock.samples_in(clock.left(time), taken));
+    in_time.map_or(wanted, |more| wanted.min(taken + more as u32).max(REPLICATES as u32 * each))
+}

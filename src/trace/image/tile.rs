@@ -1,0 +1,155 @@
+//! Parts of an image that are made side by side.
+
+use serde::{Deserialize, Serialize};
+
+use super::layer_sums::LayerSums;
+use crate::film::{PassSum, PixelSum, Sample, TilePlace};
+use crate::math::Sampler;
+use crate::trace::World;
+use crate::trace::camera::PathTracer;
+use crate::trace::layers::Layers;
+use crate::trace::pass::Pass;
+use crate::trace::photon::PassLight;
+use crate::trace::replicates::Replicates;
+use crate::trace::stats::Stats;
+use crate::trace::walk::Polarization;
+
+/// A small part of the image.
+#[derive(Serialize, Deserialize)]
+pub struct Tile {
+    /// Sums of its pixels, row by row.
+    pub sums: Vec<PixelSum>,
+    /// The same of samples that are subtracted; empty where the filter is nowhere negative.
+    pub subtracted: Vec<PixelSum>,
+    /// Sums of their layers.
+    pub layers: LayerSums,
+    /// What photons show in its pixels.
+    pub shown: Shown,
+    /// What each replicate found, where there are several.
+    pub replicates: Replicates,
+    pub stats: Stats,
+    pub first_non_finite: Option<[i64; 3]>,
+    /// Passes that all its pixels have had, and how many of them have had the next one.
+    pub passes: u32,
+    pub ahead: u32,
+}
+
+/// What photons show in a tile; empty where none are sent. Where every pass sends some, each counts as much as it takes
+/// samples.
+#[derive(Clone, Default, Serialize, Deserialize)]
+pub struct Shown {
+    /// Film values of its pixels.
+    pub pixels: Vec<[f64; 3]>,
+    /// A row for each pixel of what they show in the layers.
+    pub layers: Vec<f64>,
+    /// How much of their light polarization may change.
+    pub moved: f64,
+}
+
+impl Tile {
+    pub fn new(world: &World, place: TilePlace) -> Self {
+        let is_signed = world.scene.film.filter.is_signed();
+        let sums = vec![PixelSum::default(); place.pixels()];
+        let subtracted = if is_signed { sums.clone() } else { Vec::new() };
+        let layers = LayerSums::new(&world.layers, sums.len(), is_signed);
+        let replicates = match world.method.stop {
+            Some(_) => Replicates::new(sums.len(), is_signed, world.has_map()),
+            None => Replicates::default(),
+        };
+        let (shown, stats) = (Shown::default(), Stats::default());
+        Self { sums, subtracted, layers, shown, replicates, stats, first_non_finite: None, passes: 0, ahead: 0 }
+    }
+
+    /// Whether it has as many sums of each kind as another one of the same place.
+    pub fn is_shaped_as(&self, other: &Self, layers: &Layers) -> bool {
+        let pixels = other.sums.len();
+        let of = |whole: usize| [0, whole].into_iter();
+        (self.sums.len(), self.subtracted.len()) == (pixels, other.subtracted.len())
+            && self.layers.is_shaped_as(&other.layers)
+            && self.replicates.is_shaped_as(&other.replicates)
+            && of(pixels).any(|length| length == self.shown.pixels.len())
+            && of(pixels * layers.numbers).any(|length| length == self.shown.layers.len())
+            && (self.ahead as usize) < pixels
+    }
+
+    /// What photons show in one of its pixels.
+    pub fn shown_at(&self, place: usize) -> [f64; 3] {
+        self.shown.pixels.get(place).copied().unwrap_or_default()
+    }
+
+    /// What they show in the layers of one of its pixels.
+    pub fn shown_in_layers(&self, layers: &Layers, place: usize) -> &[f64] {
+        self.shown.layers.get(place * layers.numbers..(place + 1) * layers.numbers).unwrap_or_default()
+    }
+
+    /// Takes samples of all pixels that have not had them, until it shall stop. Answers how many pixels have got them.
+    pub fn take<const N: usize, P: Polarization<N>>(
+        &mut self,
+        place: TilePlace,
+        world: &World,
+        light: &PassLight<N, P>,
+        pass: &Pass,
+        stops: &dyn Fn() -> bool,
+    ) -> u32 {
+        let window = world.scene.film.window();
+        let mut tracer = PathTracer::<N, P>::new(world).with_photons(light.photons.as_ref()).with_layers();
+        let first = self.ahead;
+        while (self.ahead as usize) < self.sums.len() && !stops() {
+            // Random numbers and rays belong to the format's pixel, whatever part of it is made.
+            let x = window.left + (place.corner[0] + self.ahead % place.width) as i32;
+            let y = window.top + (place.corner[1] + self.ahead / place.width) as i32;
+            self.take_pixel(world, &mut tracer, light, [x, y], pass);
+            self.ahead += 1;
+        }
+        let taken = self.ahead - first;
+        if self.ahead as usize == self.sums.len() {
+            (self.passes, self.ahead) = (self.passes + 1, 0);
+        }
+        taken
+    }
+
+    /// Takes samples of the next pixel, which is pixel (x, y) of the format.
+    fn take_pixel<'w, const N: usize, P: Polarization<N>>(
+        &mut self,
+        world: &World,
+        tracer: &mut PathTracer<'w, N, P>,
+        light: &'w PassLight<N, P>,
+        pixel: [i32; 2],
+        pass: &Pass,
+    ) {
+        let place = self.ahead as usize;
+        let [mut added, mut subtracted] = [PassSum::default(), PassSum::default()];
+        let mut blurs = [PassSum::default(), PassSum::default()];
+        let blurs_are_told = light.tells_blur();
+        for number in pass.numbers.clone() {
+            tracer.light_vertices = light.vertices(number - pass.numbers.start);
+            let sampler = Sampler::of_pixel(pass.seed, pixel, number);
+            let sample = tracer.sample(&sampler, pixel);
+            if blurs_are_told {
+                blurs[usize::from(sample.is_subtracted)].add(&Sample { rgb: tracer.blur(), ..sample });
+            }
+            let lobe = if sample.is_subtracted { &mut subtracted } else { &mut added };
+            if !lobe.add(&sample) {
+                self.stats.non_finite += 1;
+                self.first_non_finite.get_or_insert([pixel[0].into(), pixel[1].into(), number.into()]);
+            } else if let Some(layers) = tracer.layers() {
+                let early = pass.is_early(world, number);
+                layers.keep(sample.is_subtracted);
+                self.layers.add(&world.layers, place, early, &sample, &layers.left());
+            }
+        }
+        if let Some(layers) = tracer.layers() {
+            layers.hand_over(self.layers.rows_mut(&world.layers, place));
+        }
+        if let Some(replicate) = pass.replicate {
+            self.replicates.add(place, replicate, [&added, &subtracted]);
+            self.replicates.add_blur(place, replicate, blurs.each_ref());
+        }
+        self.sums[place].add(added);
+        if let Some(sum) = self.subtracted.get_mut(place) {
+            sum.add(subtracted);
+        }
+        // Pixel by pixel, so that a stop between two of them changes no order of sums.
+        self.stats += std::mem::take(&mut tracer.walker.stats);
+    }
+}

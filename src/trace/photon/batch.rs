@@ -1,0 +1,93 @@
+//! Photons are sent in batches.
+
+use super::follow::{Landing, Start, Surfaces, follow_photon};
+use crate::light::Light;
+use crate::math::{BranchKey, Sampler};
+use crate::trace::media::Media;
+use crate::trace::photon_targets::{PhotonTarget, PhotonTargets};
+use crate::trace::stats::Stats;
+use crate::trace::walk::{Polarization, Walker};
+use crate::trace::{Transport, World};
+
+/// Photons that are followed one after another; what they leave is added in the order of the batches.
+const BATCH: u64 = 4096;
+/// Use of a photon's random numbers: its first ray.
+const RAY: u32 = 0;
+
+/// Photons are followed like camera paths: in all branches while they carry much, then in one. Splitting at 0.05 took
+/// as much time for as much noise, never splitting 2 to 15 times as much (`benches/caustics.rs`).
+const PHOTONS: Transport = Transport::Random { split: 0.25, roulette: 0.05 };
+
+/// A part of a target's photons.
+#[derive(Clone, Copy)]
+pub struct Batch {
+    pub target: usize,
+    pub first: u64,
+    pub count: u64,
+    pub seed: u64,
+}
+
+/// What became of a batch.
+pub struct Sent<T> {
+    pub kept: Vec<T>,
+    /// Where each photon was sent and whether anything was kept of it.
+    pub places: Vec<([f64; 2], bool)>,
+    pub stats: Stats,
+}
+
+/// What is kept of a photon that lands.
+type Land<'a, const N: usize, P, T> = dyn Fn(&Walker<N, P>, &Landing<N, P>, &Sampler, &mut Vec<T>) + 'a;
+
+/// The photons of some targets from number `first` on, batch by batch.
+pub fn batches(
+    targets: &PhotonTargets,
+    first: impl Fn(&PhotonTarget) -> u64,
+    count: impl Fn(&PhotonTarget) -> u64,
+    seed: u64,
+) -> Vec<Batch> {
+    let of_target = |(number, target): (usize, &PhotonTarget)| {
+        let (start, end) = (first(target), first(target) + count(target));
+        let batch = move |first: u64| Batch { target: number, first, count: BATCH.min(end - first), seed };
+        (start..end).step_by(BATCH as usize).map(batch)
+    };
+    targets.targets.iter().enumerate().flat_map(of_target).collect()
+}
+
+/// Follows the photons of one batch; `land` says what is kept of one that lands. What is learned is only of which
+/// photons something would be kept.
+pub fn send<const N: usize, P: Polarization<N>, T>(
+    world: &World,
+    targets: &PhotonTargets,
+    batch: Batch,
+    learns: bool,
+    land: &Land<N, P, T>,
+) -> Sent<T> {
+    let mut walker = Walker::<N, P>::new(world, PHOTONS);
+    let (mut kept, mut places) = (Vec::new(), Vec::new());
+    let light = targets.targets[batch.target].light;
+    // Ways and wavelengths matter more than where on a small lamp they begin, so theirs are the numbers spread best.
+    let extended = !matches!(world.scene.lights[light], Light::Point(_) | Light::Spot(_));
+    for photon in batch.first..batch.first + batch.count {
+        let key = [batch.target as u32, (photon >> 32) as u32];
+        let sampler = Sampler::new(batch.seed, key, photon as u32);
+        let u = sampler.four(BranchKey::CAMERA, RAY);
+        let more = if extended { sampler.four_more(BranchKey::CAMERA, RAY)[0] } else { 0.0 };
+        let guide_uv = targets.guide_uv(batch.target, [u[0], u[1]]);
+        let before = kept.len();
+        if let Some(emitted) = targets.sample_le(&world.scene, batch.target, guide_uv, [u[3], more]) {
+            let draw = world.method.basis.draw(u[2]);
+            let around = || Media::around(&world.scene, emitted.ray.origin, emitted.ray.direction);
+            let media = world.light_media[light].unwrap_or_else(around);
+            let early = photon < targets.targets[batch.target].photons / 2;
+            let start = Start { emitted: &emitted, light, media, early };
+            follow_photon(&mut walker, start, &draw, &sampler, Surfaces::Smooth, &mut |walker, landing| {
+                land(walker, landing, &sampler, &mut kept);
+            });
+        }
+        if learns {
+            places.push((guide_uv, kept.len() > before));
+            kept.clear();
+        }
+    }
+    Sent { kept, places, stats: walker.stats }
+}

@@ -1,0 +1,337 @@
+//! Photons are gathered around a place that a path from the camera has reached.
+//!
+//! Light that photons bring to a disc of radius r is taken for the light at its middle, which blurs: light that varies
+//! by its Laplacian comes out too bright by r^2 / 12 of that. The radius is one of pixels, seen along the path, and
+//! shrinks with the samples as their number to the power -1 / 6, where bias and noise vanish at the same pace
+//! (Silverman 1986, *Density Estimation for Statistics and Data Analysis*, section 4.3). How far that blurs an image is
+//! told where a stop rule asks: see `blur.rs`.
+//!
+//! Whatever object they lie on, photons count on surfaces that continue the one around the place and that a point above
+//! it sees. At edges a part of the disc has no such surface, and what is found is divided by the share that has. One
+//! over that share is how often points of the disc must be drawn, on average, until one has (Booth 2007, *Unbiased
+//! Monte Carlo Estimation of the Reciprocal of an Integral*): once, away from edges.
+
+use std::f64::consts::PI;
+
+use super::kernel::Kernel;
+use super::photon_map::{Alone, Landed, PhotonMap};
+use crate::light::LightId;
+use crate::math::{BranchKey, DVec2, DVec3, Frame, Ray, Sampler, unit};
+use crate::shape::SurfacePoint;
+use crate::spectrum::{Lanes, Wavelength};
+use crate::trace::arrived::{Arrived, SourceId};
+use crate::trace::contribution::{Contribution, add};
+use crate::trace::walk::{Excitation, Interaction, Path, Polarization, shading};
+use crate::trace::{World, contribution};
+
+/// Surfaces whose normals differ by more than 60 degrees belong to different sides or walls.
+const ALIKE: f64 = 0.5;
+/// How far, in radii, a surface may lie from where it would continue another smoothly: between flat faces that meet at
+/// 30 degrees it is less.
+const STEP: f64 = 0.25;
+/// How far above the place, in radii, the point lies that sees photons, unless something is in the way: from there a
+/// ball of the same radius shows all that is gathered of it.
+const HIGH: f64 = 4.0;
+/// Points of the disc that are drawn at most: what covers less of it is too small to be seen.
+const MOST: u32 = 1 << 12;
+/// The branch of the random numbers for them, beyond those that a path may take, and that of the photon that is looked
+/// at.
+const POINTS: usize = 128;
+const CHOICE: usize = 129;
+
+/// Where photons are gathered.
+struct Place<'a> {
+    world: &'a World,
+    position: DVec3,
+    /// The surface's own unit normal on the side of the path.
+    flat: DVec3,
+    /// Whether that is the front.
+    front: bool,
+    radius: f64,
+}
+
+/// What was found, and one photon of it, drawn by what it brings.
+struct Found<const N: usize> {
+    sum: [f64; 3],
+    /// What each photon brings, if that is asked for.
+    parts: Option<Vec<Part<N>>>,
+    weight: f64,
+    drawn: Option<Chosen>,
+    u: f64,
+}
+
+struct Chosen {
+    position: DVec3,
+    rgb: [f64; 3],
+    weight: f64,
+    /// Its number among the parts.
+    part: usize,
+    /// By what share polarization may change it.
+    change: f64,
+}
+
+/// Light that was gathered, and what each photon brings of it if that was asked for.
+pub struct Gathered<const N: usize> {
+    pub all: Contribution,
+    pub parts: Option<Vec<Part<N>>>,
+}
+
+/// What one photon brings, but for a factor.
+pub struct Part<const N: usize> {
+    pub contribution: Contribution,
+    /// S1, S2 and S3 of it, if they are asked for.
+    pub stokes: Option<[[f64; 3]; 3]>,
+    pub spectrum: PartSpectrum<N>,
+    pub factor: f64,
+}
+
+/// The spectrum of what a photon brings.
+pub enum PartSpectrum<const N: usize> {
+    /// Lanes by which the light of a source arrives at the sensor, whether they parted, and the parts of them that S1,
+    /// S2 and S3 are, if their spectra are asked for.
+    Lanes { source: SourceId, lanes: Lanes<N>, parted: bool, stokes: Option<Box<[Lanes<N>; 3]>> },
+    /// One wavelength.
+    Alone(Wavelength),
+}
+
+/// A place that a path has reached, around which photons are gathered.
+pub struct Gathering<'a, const N: usize, P> {
+    pub world: &'a World,
+    pub path: &'a Path<N, P>,
+    pub at: &'a Interaction<'a, N>,
+    /// The dye that they excite, if the path follows that.
+    pub excitation: Option<&'a Excitation<N, P>>,
+}
+
+/// What the sensor gets of one photon: in all, S1, S2 and S3 of it, and its spectrum.
+struct Seen<const N: usize> {
+    rgb: [f64; 3],
+    stokes: Option<[[f64; 3]; 3]>,
+    spectrum: PartSpectrum<N>,
+}
+
+impl<const N: usize> Seen<N> {
+    /// Of lanes by which it arrives.
+    fn new(world: &World, arrived: &Arrived<N>, stokes: Option<[Lanes<N>; 3]>) -> Self {
+        let Arrived { source, lanes, parted, .. } = *arrived;
+        let of_bands = stokes.filter(|_| world.layers.spectrum.is_some()).map(Box::new);
+        Self {
+            rgb: arrived.rgb(&world.responses),
+            stokes: stokes.map(|stokes| stokes.map(|part| arrived.times(part, &world.responses))),
+            spectrum: PartSpectrum::Lanes { source, lanes: *lanes, parted, stokes: of_bands },
+        }
+    }
+}
+
+/// What the sensor gets of the photons around a place that a path has reached; if `apart`, photon by photon as well.
+/// How much of it polarization may change is an estimate by the photon that is looked at.
+pub fn gather<const N: usize, P: Polarization<N>>(
+    photons: &PhotonMap<N, P>,
+    kernel: &Kernel<N>,
+    Gathering { world, path, at, excitation }: &Gathering<N, P>,
+    sampler: &Sampler,
+    apart: bool,
+) -> Gathered<N> {
+    let Interaction { point, flat, material, arrival, parts, .. } = at;
+    let (flat, parts) = (*flat, *parts);
+    let bounces = path.bounces + 2;
+    let brought = |light: Option<LightId>, rgb: [f64; 3], dispersed: bool| Contribution {
+        light,
+        found: contribution::Found::Gathered,
+        rgb,
+        moved: 0.0,
+        first: path.first,
+        bounces,
+        dispersed,
+    };
+    let nothing = Gathered { all: brought(None, [0.0; 3], false), parts: apart.then(Vec::new) };
+    let Some(map) = world.method.light_pass.as_ref().and_then(|pass| pass.map) else { return nothing };
+    let [u, whether, ..] = sampler.four_plain(path.key.child(CHOICE), 0);
+    if whether >= map.chance {
+        return nothing;
+    }
+    let radius = kernel.radius * world.scene.camera.pixel_width(path.length);
+    let front = flat.dot(point.normal) > 0.0;
+    let place = Place { world, position: point.position, flat, front, radius };
+    let mut found = Found { sum: [0.0; 3], parts: apart.then(Vec::new), weight: 0.0, drawn: None, u };
+    let parted = |back: DVec3| path.parted || (parts && back.dot(flat) < 0.0);
+    photons.together.near(point.position, radius, &mut |position, photon| {
+        let Some(density) = place.density(path, position, photon) else { return };
+        let Some((mut bsdf_cos, _)) = shading::evaluate(material, arrival, flat, photon.back) else { return };
+        let parted = parted(photon.back);
+        let carries = &photon.carries;
+        let by_heroes = arrival.draw.hero_factor(parted).is_some();
+        let onto_heroes = |lanes: Lanes<N>| kernel.matching.onto_heroes(arrival.draw, lanes);
+        let flux = if by_heroes { onto_heroes(carries.flux) } else { carries.flux };
+        let read = if by_heroes { Some(P::read_landed(&photon.polarization, onto_heroes)) } else { None };
+        let light = read.as_ref().unwrap_or(&photon.polarization);
+        let joined = path.polarization.join(at, photon.back, light, &mut bsdf_cos);
+        let lanes = path.throughput.of(bsdf_cos * flux);
+        let arrived = Arrived { source: carries.light, draw: arrival.draw, lanes: &lanes, parted };
+        let Seen { rgb, stokes, spectrum } = match excitation {
+            None => Seen::new(world, &arrived, joined.stokes()),
+            Some(dye) => dye.seen(world, &arrived, |seen| Seen::new(world, seen, dye.polarization.stokes())),
+        };
+        let part = Part { contribution: brought(Some(carries.light), rgb, parted), stokes, spectrum, factor: density };
+        let change = || path.polarization.change_of_joined(at, photon.back, light, &joined, lanes);
+        found.add(world, position, part, change);
+    });
+    photons.alone.near(point.position, radius, &mut |position, photon| {
+        let (wavelength, parted) = (&photon.carries.wavelength, parted(photon.back));
+        let by_heroes = arrival.draw.hero_factor(parted).is_some();
+        let read = |lanes: Lanes<N>| match by_heroes {
+            true => kernel.matching.shared(arrival.draw, wavelength, lanes, parted),
+            false => kernel.matching.read(wavelength, lanes),
+        };
+        // Most photons of wavelengths that parted meet others.
+        if by_heroes && read(path.throughput.present()) == 0.0 {
+            return;
+        }
+        let Some(density) = place.density(path, position, photon) else { return };
+        let Some((mut bsdf_cos, _)) = shading::evaluate(material, arrival, flat, photon.back) else { return };
+        let joined = path.polarization.join(at, photon.back, &photon.polarization, &mut bsdf_cos);
+        let lanes = path.throughput.of(bsdf_cos);
+        let (seen, Alone { light, weight, color, .. }) = (read(lanes), &photon.carries);
+        let (light, color) = (*light, *color);
+        let Seen { rgb, stokes, spectrum } = match excitation {
+            None => {
+                let share = |part: Lanes<N>| if seen == 0.0 { 0.0 } else { read(lanes * part) / seen };
+                let stokes = joined.stokes().map(|stokes| stokes.map(|part| color.map(|x| x * share(part))));
+                Seen { rgb: color, stokes, spectrum: PartSpectrum::Alone(*wavelength) }
+            }
+            Some(dye) => {
+                let brightness = weight * dye.worth(world, light, wavelength);
+                dye.seen_of(brightness, |seen| Seen::new(world, seen, dye.polarization.stokes()))
+            }
+        };
+        let contribution = brought(Some(light), rgb, true);
+        let part = Part { contribution, stokes, spectrum, factor: density * seen };
+        let change = || path.polarization.change_of_joined(at, photon.back, &photon.polarization, &joined, lanes);
+        found.add(world, position, part, change);
+    });
+    let (rgb, moved) = place.seen_of(&mut found, point, sampler, path.key);
+    let (rgb, moved) = (rgb.map(|x| x / map.chance), moved / map.chance);
+    found.parts.iter_mut().flatten().for_each(|part| part.factor /= map.chance);
+    Gathered { all: Contribution { moved, ..brought(None, rgb, false) }, parts: found.parts }
+}
+
+impl<const N: usize> Found<N> {
+    fn add(&mut self, world: &World, position: DVec3, part: Part<N>, change: impl FnOnce() -> f64) {
+        let rgb = part.contribution.rgb.map(|x| part.factor * x);
+        let weight = world.amount(rgb);
+        add(&mut self.sum, rgb);
+        let number = self.parts.as_ref().map_or(0, Vec::len);
+        if let Some(parts) = &mut self.parts {
+            parts.push(part);
+        }
+        if weight == 0.0 {
+            return;
+        }
+        self.weight += weight;
+        // What is left of a random number after a choice is one again.
+        let chance = weight / self.weight;
+        if self.u < chance {
+            self.drawn = Some(Chosen { position, rgb, weight, part: number, change: change() });
+            self.u /= chance;
+        } else {
+            self.u = (self.u - chance) / (1.0 - chance);
+        }
+    }
+}
+
+impl Place<'_> {
+    /// For how much a photon counts, if it is seen, per area of the plane that touches the surface at the place.
+    fn density<const N: usize, P, T, L>(
+        &self,
+        path: &Path<N, P>,
+        position: DVec3,
+        photon: &Landed<T, L>,
+    ) -> Option<f64> {
+        let short = path.vertices + photon.vertices - 1 <= self.world.method.max_bounces;
+        if !short || !self.goes_on(position, photon.flat, photon.front) {
+            return None;
+        }
+        let (way, squared_radius) = (position - self.position, self.radius * self.radius);
+        let beside = way - self.flat * way.dot(self.flat);
+        // The kernel of Epanechnikov, which integrates to 1 over the disc.
+        let kernel = 2.0 * (1.0 - beside.length_squared() / squared_radius) / (PI * squared_radius);
+        Some(kernel * photon.flat.dot(self.flat).abs())
+    }
+
+    /// Whether a surface continues that of the place; `flat` is its unit normal on the side from where it is reached,
+    /// and `front` whether that is the front.
+    fn goes_on(&self, position: DVec3, flat: DVec3, front: bool) -> bool {
+        let cos = flat.dot(self.flat);
+        // The far face of a thin body, too, is reached from the other side, but from the front.
+        if cos.abs() < ALIKE || (cos < 0.0 && front == self.front) {
+            return false;
+        }
+        // A chord of a ball is at right angles to the sum of the normals at its ends.
+        let normals = self.flat + flat * cos.signum();
+        0.5 * (position - self.position).dot(normals).abs() <= STEP * self.radius
+    }
+
+    /// What is seen of what was found, over the share of the disc that is seen, and how much of it polarization may
+    /// change.
+    fn seen_of<const N: usize>(
+        &self,
+        found: &mut Found<N>,
+        point: &SurfacePoint,
+        sampler: &Sampler,
+        key: BranchKey,
+    ) -> ([f64; 3], f64) {
+        let Found { mut sum, ref mut parts, weight, drawn: ref chosen, .. } = *found;
+        let Some(chosen) = chosen else { return (sum, 0.0) };
+        let many = weight / chosen.weight;
+        let mut moved = many * chosen.change * self.world.amount(chosen.rgb);
+        let up = point.leave(self.flat);
+        let far = HIGH * self.radius;
+        let free = self.world.scene.nearest(&up, 2.0 * far, &|_| true).map_or(far, |hit| 0.5 * hit.crossing.t);
+        let (height, from) = (far.min(free), up.at(far.min(free)));
+        if !self.sees(from, chosen.position, 1.0).unwrap_or(true) {
+            (0..3).for_each(|i| sum[i] -= chosen.rgb[i] * many);
+            if let Some(parts) = parts {
+                parts[chosen.part].factor *= 1.0 - many;
+            }
+            moved = 0.0;
+        }
+        let frame = Frame::about(self.flat);
+        let further = (height + STEP * self.radius) / height;
+        let mut drawn = 0;
+        while drawn < MOST {
+            let [a, b, c, d] = sampler.four_plain(key.child(POINTS), drawn);
+            for u in [[a, b], [c, d]] {
+                drawn += 1;
+                let DVec2 { x, y } = self.radius * by_kernel(u);
+                let at = self.position + frame.to_world(DVec3::new(x, y, 0.0));
+                if self.sees(from, at, further) == Some(true) {
+                    let drawn = f64::from(drawn);
+                    parts.iter_mut().flatten().for_each(|part| part.factor *= drawn);
+                    return (sum.map(|x| x * drawn), moved * drawn);
+                }
+            }
+        }
+        (sum, moved)
+    }
+
+    /// Whether what is met on the way to a point, or so many times as far, continues the surface; none if nothing is
+    /// met.
+    fn sees(&self, from: DVec3, to: DVec3, further: f64) -> Option<bool> {
+        let scene = &self.world.scene;
+        let way = to - from;
+        let ray = Ray { origin: from, direction: unit(way) };
+        let hit = scene.nearest(&ray, way.length() * further, &|_| true)?;
+        let SurfacePoint { position, normal, .. } = scene.objects[hit.object as usize].shape.point(&ray, &hit.crossing);
+        let front = normal.dot(ray.direction) < 0.0;
+        let flat = if front { normal } else { -normal };
+        let goes_on = flat.dot(self.flat) > 0.0 && self.goes_on(position, flat, front);
+        Some(goes_on && scene.material_of(hit.object).scatters_widely())
+    }
+}
+
+/// A point of the unit disc, drawn by the kernel: with q the square of its radius, a share 2 q - q^2 lies within it.
+fn by_kernel([u, v]: [f64; 2]) -> DVec2 {
+    let radius = (1.0 - (1.0 - u).sqrt()).sqrt();
+    let (sin, cos) = libm::sincos(2.0 * PI * v);
+    DVec2::new(radius * cos, radius * sin)
+}

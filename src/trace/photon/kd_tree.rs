@@ -1,0 +1,125 @@
+//! A map of points: a balanced k-d tree.
+//!
+//! Bentley 1975, *Multidimensional Binary Search Trees Used for Associative Searching*; Jensen 2001, *Realistic Image
+//! Synthesis Using Photon Mapping*, section 6.2, keeps photons in one. A grid would want one radius for all, and here
+//! each path has its own. What belongs to a point is kept apart, so that a search reads little memory.
+
+use std::ops::Range;
+
+use crate::math::{Bounds, DVec3};
+
+/// Points with what belongs to them.
+#[derive(Clone, Debug)]
+pub struct KdTree<T> {
+    /// Leaf by leaf; within each in the order that they were given.
+    points: Vec<DVec3>,
+    found: Vec<T>,
+    /// Level by level: the children of split i are 2 i + 1 and 2 i + 2.
+    splits: Vec<Split>,
+    bounds: Option<Bounds>,
+}
+
+/// A plane that has one half of a range before it and the other beyond.
+#[derive(Clone, Copy, Debug, Default)]
+struct Split {
+    at: f64,
+    axis: u32,
+}
+
+/// Ranges of so few points are not split.
+const FEW: usize = 8;
+
+impl<T> KdTree<T> {
+    pub fn new(points: Vec<(DVec3, T)>) -> Self {
+        let mut order: Vec<(DVec3, u32)> = (0..).zip(&points).map(|(number, point)| (point.0, number)).collect();
+        let mut splits = Vec::new();
+        split(&mut order, 0, &mut splits);
+        let mut given: Vec<Option<T>> = points.into_iter().map(|point| Some(point.1)).collect();
+        let found = order.iter().filter_map(|&(_, number)| given[number as usize].take()).collect();
+        let points: Vec<DVec3> = order.into_iter().map(|point| point.0).collect();
+        let bounds = points.iter().map(|&point| Bounds { min: point, max: point }).reduce(Bounds::union);
+        Self { points, found, splits, bounds }
+    }
+
+    /// Visits all points nearer to a place than a radius, in an order that never changes.
+    pub fn near(&self, place: DVec3, radius: f64, visit: &mut impl FnMut(DVec3, &T)) {
+        let Some(Bounds { min, max }) = self.bounds else { return };
+        if (place.clamp(min, max) - place).length_squared() < radius * radius {
+            self.visit(0, 0..self.points.len(), place, radius, visit);
+        }
+    }
+
+    fn visit(&self, node: usize, range: Range<usize>, place: DVec3, radius: f64, visit: &mut impl FnMut(DVec3, &T)) {
+        let Range { start, end } = range;
+        if end - start <= FEW {
+            self.look(start..end, place, radius, visit);
+            return;
+        }
+        let (Split { at, axis }, middle) = (self.splits[node], start + (end - start) / 2);
+        let beyond = place[axis as usize] - at;
+        if beyond < radius {
+            self.visit(2 * node + 1, start..middle, place, radius, visit);
+        }
+        if beyond > -radius {
+            self.visit(2 * node + 2, middle..end, place, radius, visit);
+        }
+    }
+
+    fn look(&self, range: Range<usize>, place: DVec3, radius: f64, visit: &mut impl FnMut(DVec3, &T)) {
+        for (point, number) in self.points[range.clone()].iter().zip(range) {
+            if (*point - place).length_squared() < radius * radius {
+                visit(*point, &self.found[number]);
+            }
+        }
+    }
+}
+
+/// Puts points in the order of a tree, which their numbers and places alone decide.
+fn split(points: &mut [(DVec3, u32)], node: usize, splits: &mut Vec<Split>) {
+    if points.len() <= FEW {
+        points.sort_unstable_by_key(|point| point.1);
+        return;
+    }
+    let [low, high] = [DVec3::min, DVec3::max].map(|of| points.iter().map(|point| point.0).reduce(of));
+    let size = high.unwrap_or_default() - low.unwrap_or_default();
+    let axis = (1..3).fold(0, |widest, axis| if size[axis] > size[widest] { axis } else { widest });
+    let middle = points.len() / 2;
+    let order = |a: &(DVec3, u32), b: &(DVec3, u32)| a.0[axis].total_cmp(&b.0[axis]).then(a.1.cmp(&b.1));
+    points.select_nth_unstable_by(middle, order);
+    if splits.len() <= node {
+        splits.resize(node + 1, Split::default());
+    }
+    splits[node] = Split { at: points[middle].0[axis], axis: axis as u32 };
+    let (before, beyond) = points.split_at_mut(middle);
+    split(before, 2 * node + 1, splits);
+    split(beyond, 2 * node + 2, splits);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::{BranchKey, Sampler};
+
+    #[test]
+    fn all_points_within_the_radius_are_visited_once() {
+        for count in [0, 1, 8, 9, 100, 40_000] {
+            let place = |i: u32| {
+                let [x, y, z, _] = Sampler::new(7, [0, 0], i).four_plain(BranchKey::CAMERA, 0);
+                // Many alike along one axis, as on a floor.
+                DVec3::new(x, (8.0 * y).floor(), 0.1 * z)
+            };
+            let map = KdTree::new((0..count).map(|i| (place(i), i)).collect());
+            for (number, radius) in [0.0, 0.01, 0.1, 1.0, 20.0].into_iter().enumerate() {
+                let from = place(1_000_000 + number as u32);
+                let mut found = Vec::new();
+                map.near(from, radius, &mut |point, &i| {
+                    assert_eq!(point, place(i));
+                    found.push(i);
+                });
+                found.sort_unstable();
+                let wanted: Vec<u32> = (0..count).filter(|&i| (place(i) - from).length() < radius).collect();
+                assert_eq!(found, wanted, "{count} points, radius {radius}");
+            }
+        }
+    }
+}

@@ -1,0 +1,386 @@
+//! Vertices of paths from the lights, at which paths from the camera look for the light that surfaces send each other.
+//!
+//! At a diffuse surface x, a path from the camera chooses one vertex y of some, by what each would bring, and looks
+//! whether it sees it: resampled importance sampling (Talbot, Cline & Egbert 2005, *Importance Resampling for
+//! Global Illumination*). Near vertices would bring too much by far: of what leaves y for x, only the part d^2 / (d^2 +
+//! D^2) is looked for at distance d, and the bounce that happens to go from x to y goes on from there with the
+//! probability of the rest, D^2 / (d^2 + D^2). Both together are exact for any D (Kollig & Keller 2004, *Illumination
+//! in the Presence of Weak Singularities*, bound the same way).
+
+use std::f64::consts::FRAC_1_PI;
+use std::ops::Range;
+
+use super::follow::{Landing, Start, Surfaces, follow_photon};
+use super::usefulness::{Place, places, usefulness};
+use crate::light::{Light, LightId};
+use crate::material::{Lobes, Material};
+use crate::math::{BranchKey, DVec3, Distribution, Sampler};
+use crate::shape::{Computation, Instructions, SurfacePoint, Vectors};
+use crate::spectrum::{Draw, Lanes};
+use crate::trace::media::{Media, media_of_lights};
+use crate::trace::parallel::in_parallel;
+use crate::trace::stats::Stats;
+use crate::trace::walk::{PathKind, Polarization, Polarized, Walker};
+use crate::trace::{Transport, World};
+
+/// A vertex of a light path, on a diffuse surface.
+#[derive(Clone, Debug)]
+pub struct LightVertex<const N: usize> {
+    pub position: DVec3,
+    /// Bound of its distance from the true surface.
+    pub error: f64,
+    /// The surface's unit normal on the side that is lit.
+    pub flat: DVec3,
+    /// What leaves it in any direction of that side, lane by lane: intensity over the cosine.
+    pub leaving: Lanes<N>,
+    pub light: LightId,
+    /// Surfaces that the light has met, and the diffuse ones of them, this one included.
+    pub vertices: u32,
+    pub diffuse: u32,
+}
+
+/// The vertices of some light paths, dealt into sets of candidates. Each set has vertices from all over the scene.
+pub struct LightVertices<const N: usize> {
+    candidates: Vec<Candidates>,
+    /// In the order of a curve through the scene. Of n sets of candidates each has every n-th vertex, row after row.
+    vertices: Vec<LightVertex<N>>,
+    /// The point from which places of candidates are counted, in units of D.
+    center: DVec3,
+    /// D.
+    near: f64,
+    /// The instructions by which candidates are weighed.
+    instructions: Instructions,
+    pub stats: Stats,
+}
+
+/// Rows of candidates, and vertices of a row. There are 64 in all: of 32, an image is noisier by a sixth.
+const ROWS: usize = 8;
+const ROW: usize = 8;
+const CANDIDATES: usize = ROWS * ROW;
+
+/// What a choice among some vertices asks of them; absent ones have no power.
+#[derive(Clone, Debug)]
+struct Candidates {
+    place: [OfCandidates; 3],
+    flat: [OfCandidates; 3],
+    /// X + Y + Z of what leaves, as the sensor sees it, times how often it is seen; 1 of the brightest vertex.
+    power: OfCandidates,
+}
+
+/// A number for each candidate: for each place in a row, the numbers of all rows side by side, so that all rows
+/// are summed at once.
+type OfCandidates = [[f32; ROWS]; ROW];
+
+/// Samples of each pixel that share light paths.
+pub const SHARED: u32 = 16;
+/// Camera samples for each light path, and the fewest and most light paths: what samples share does not average out
+/// over pixels.
+const PER_PATH: u64 = 32;
+const FEWEST: u64 = 256;
+const MOST: u64 = 16_384;
+/// Light paths that are followed one after another; their vertices are kept in the order of the batches.
+const BATCH: u64 = 256;
+/// D as a share of the median distance of vertices from their middle: a twelfth of the side of a room. From two thirds
+/// of that to one and a half, the error for the time is the same.
+const NEAR: f64 = 0.1;
+/// Cells of Morton's curve to a D.
+const CELLS: f64 = 25.0;
+/// The set of a pilot, and its light paths.
+const PILOT: u32 = u32::MAX;
+const OF_A_PILOT: u64 = 1024;
+/// Sets these random numbers apart from the others.
+const SEED: u64 = 0x6c76_7274;
+/// Uses of a light path's random numbers: where it starts, and of which light.
+const START: u32 = 0;
+const LIGHT: u32 = 1;
+/// Light paths are followed as photons are.
+const LIGHT_PATHS: Transport = Transport::Random { split: 0.25, roulette: 0.05 };
+
+/// Whether light paths find all light that surfaces send each other in a scene, as paths from the camera do.
+///
+/// Not where lights do not say where their light starts: skies, suns, lamps that show images, glowing glass. Not where
+/// interpolated normals bend glass or mirrors, whose light cannot be followed forward alike, nor where light crosses
+/// rough surfaces, nor where wavelengths are drawn anew for each camera sample.
+pub fn finds_all_light(world: &World) -> bool {
+    let scene = &world.scene;
+    let is_plain = |id: usize| {
+        let object = &scene.objects[id];
+        let lobes = world.lobes[object.material as usize];
+        let smooth = object.shape.is_smooth() || object.relief.is_some();
+        !(lobes.intersects(Lobes::GLOSSY_TRANSMISSION) || (smooth && lobes.has_delta()))
+    };
+    let shines = |light: &Light<_>| light.flux() > 0.0 && light.flux().is_finite();
+    !world.method.basis.draws_wavelengths()
+        && matches!(world.method.transport, Transport::Random { .. })
+        && !scene.lights.is_empty()
+        && scene.lights.iter().all(shines)
+        && (0..scene.objects.len()).all(is_plain)
+}
+
+/// Whether light that leaves a surface for another is looked for at light vertices on it: a diffuse one, by its own
+/// normal.
+pub fn holds_vertices(world: &World, object: u32, point: &SurfacePoint) -> bool {
+    matches!(world.scene.material_of(object), Material::Diffuse(_)) && point.shading == point.normal
+}
+
+/// The lights of a world that paths start from, and from where their vertices are looked at: what all sets share.
+pub struct LightPaths<'a> {
+    world: &'a World,
+    /// Of their random numbers.
+    seed: u64,
+    by_flux: Distribution,
+    media: Vec<Option<Media>>,
+    places: Vec<Place>,
+}
+
+/// What became of some light paths.
+struct Followed<const N: usize> {
+    vertices: Vec<LightVertex<N>>,
+    stats: Stats,
+}
+
+impl<'a> LightPaths<'a> {
+    /// None where they would not find all light, or nothing shines.
+    pub fn new(world: &'a World, seed: u64) -> Option<Self> {
+        if !finds_all_light(world) {
+            return None;
+        }
+        let flux = |(id, light): (LightId, &Light<_>)| light.flux() * world.luminance(id);
+        let by_flux = Distribution::new(world.scene.lights.iter().enumerate().map(flux));
+        let (media, places) = (media_of_lights(&world.scene), places(world));
+        (by_flux.total() > 0.0).then_some(Self { world, seed, by_flux, media, places })
+    }
+
+    /// Those that the method asks for.
+    pub fn asked_for(world: &'a World, seed: u64) -> Option<Self> {
+        if world.method.light_vertices { Self::new(world, seed) } else { None }
+    }
+
+    /// The vertices for some samples of each pixel, at most `SHARED`.
+    pub fn shared<const N: usize, P: Polarization<N>>(&self, samples: Range<u32>) -> LightVertices<N> {
+        let film = self.world.scene.film;
+        let all = u64::from(film.width) * u64::from(film.height) * samples.len() as u64;
+        self.vertices::<N, P>(samples.start, (all / PER_PATH).clamp(FEWEST, MOST))
+    }
+
+    /// A few vertices, for a pilot.
+    pub fn few<const N: usize>(&self) -> LightVertices<N> {
+        self.vertices::<N, Polarized>(PILOT, OF_A_PILOT)
+    }
+
+    /// The vertices of some light paths of a set.
+    fn vertices<const N: usize, P: Polarization<N>>(&self, set: u32, paths: u64) -> LightVertices<N> {
+        let first = |batch: usize| batch as u64 * BATCH;
+        let of_batch = |batch| self.follow::<N, P>(set, first(batch)..first(batch + 1).min(paths));
+        let done = in_parallel(paths.div_ceil(BATCH) as usize, &of_batch);
+        let (mut stats, mut vertices) = (Stats::default(), Vec::new());
+        for followed in done {
+            stats += followed.stats;
+            vertices.extend(followed.vertices);
+        }
+        let each = 1.0 / paths as f32;
+        vertices.iter_mut().for_each(|vertex| vertex.leaving = vertex.leaving * each);
+        self.dealt(vertices, stats)
+    }
+
+    /// Follows some light paths of a set.
+    fn follow<const N: usize, P: Polarization<N>>(&self, set: u32, paths: Range<u64>) -> Followed<N> {
+        let world = self.world;
+        let mut walker = Walker::<N, P>::new(world, LIGHT_PATHS);
+        let draw = world.method.basis.draw(0.0);
+        let mut vertices = Vec::new();
+        for number in paths {
+            let sampler = Sampler::new(self.seed ^ SEED, [set, 0], number as u32);
+            let drawn = self.by_flux.sample(sampler.four_plain(BranchKey::CAMERA, LIGHT)[0]);
+            let light = drawn.index;
+            let Some(mut emitted) = world.scene.lights[light].emit(sampler.four(BranchKey::CAMERA, START)) else {
+                continue;
+            };
+            emitted.factor /= drawn.probability;
+            let around = || Media::around(&world.scene, emitted.ray.origin, emitted.ray.direction);
+            let media = self.media[light].unwrap_or_else(around);
+            let start = Start { emitted: &emitted, light, media, early: true };
+            follow_photon(&mut walker, start, &draw, &sampler, Surfaces::All, &mut |_, landing| {
+                vertices.extend(kept(world, landing));
+            });
+        }
+        Followed { vertices, stats: walker.stats }
+    }
+
+    /// Deals vertices into sets of candidates.
+    fn dealt<const N: usize>(&self, mut vertices: Vec<LightVertex<N>>, stats: Stats) -> LightVertices<N> {
+        let center = vertices.iter().map(|vertex| vertex.position).sum::<DVec3>() / vertices.len().max(1) as f64;
+        let near = NEAR * median(vertices.iter().map(|vertex| (vertex.position - center).length()).collect());
+        vertices.sort_by_cached_key(|vertex| morton((vertex.position - center) * (CELLS / near)));
+        let count = vertices.len().div_ceil(CANDIDATES);
+        let mut candidates = vec![Candidates::EMPTY; count];
+        for (number, (vertex, power)) in vertices.iter().zip(self.powers(&vertices)).enumerate() {
+            candidates[number % count].set(number / count, (vertex.position - center) / near, vertex.flat, power);
+        }
+        LightVertices { candidates, vertices, center, near, instructions: Instructions::best(), stats }
+    }
+
+    /// What leaves each vertex, as the sensor sees it, times how often it is seen; 1 of the brightest.
+    fn powers<const N: usize>(&self, vertices: &[LightVertex<N>]) -> Vec<f32> {
+        let world = self.world;
+        let draw = Draw::<N>::fixed(world.method.basis.fixed_lanes());
+        let seen = |vertex: &LightVertex<N>| world.responses[vertex.light].sensor(&draw, vertex.leaving, false);
+        let powers: Vec<f64> = vertices.iter().map(|vertex| world.amount(seen(vertex))).collect();
+        let most = powers.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
+        let positions: Vec<DVec3> = vertices.iter().map(|vertex| vertex.position).collect();
+        let shares = usefulness(world, &self.places, &positions);
+        powers.iter().zip(shares).map(|(power, share)| (power / most) as f32 * share).collect()
+    }
+}
+
+impl<const N: usize> LightVertices<N> {
+    /// D^2: of light from a distance d, the part d^2 / (d^2 + D^2) is looked for at vertices.
+    pub fn near_squared(&self) -> f64 {
+        self.near * self.near
+    }
+
+    /// The chance with which a bounce goes on from a surface at a distance whose light is looked for at light vertices.
+    pub fn complement(&self, distance_squared: f64) -> f64 {
+        self.near_squared() / (distance_squared + self.near_squared())
+    }
+
+    /// A vertex as seen from a point of a surface, for two random numbers, and one over how likely it was; none if none
+    /// is seen.
+    pub fn choose(&self, from: DVec3, flat: DVec3, [u, v]: [f64; 2]) -> Option<(&LightVertex<N>, f64)> {
+        let count = self.candidates.len();
+        let number = ((u * count as f64) as usize).min(count.checked_sub(1)?);
+        let [from, flat] = [(from - self.center) / self.near, flat].map(|v| v.as_vec3().to_array());
+        let weights = self.instructions.run(Weighing { candidates: &self.candidates[number], from, flat });
+        let rows =
+            weights.iter().fold([0.0; ROWS], |rows, weights| std::array::from_fn(|row| rows[row] + weights[row]));
+        let total: f32 = rows.iter().sum();
+        let (row, left) = chosen(rows, v as f32 * total)?;
+        let (place, _) = chosen(weights.map(|weights| weights[row]), left)?;
+        let factor = count as f64 * f64::from(total) / f64::from(weights[place][row]);
+        factor.is_finite().then(|| (&self.vertices[(row * ROW + place) * count + number], factor))
+    }
+}
+
+/// The place of the weight in which a share of the sum ends, and what of the share falls to it. A weight of 0 is never
+/// chosen. Where rounding leaves the share larger than the sum, the last weight above 0 is chosen.
+fn chosen<const COUNT: usize>(weights: [f32; COUNT], share: f32) -> Option<(usize, f32)> {
+    let (mut left, mut chosen) = (share, None);
+    for (number, weight) in weights.into_iter().enumerate().filter(|(_, weight)| *weight > 0.0) {
+        chosen = Some((number, left));
+        if left < weight {
+            break;
+        }
+        left -= weight;
+    }
+    chosen
+}
+
+impl Candidates {
+    const EMPTY: Self =
+        Self { place: [[[0.0; ROWS]; ROW]; 3], flat: [[[0.0; ROWS]; ROW]; 3], power: [[0.0; ROWS]; ROW] };
+
+    fn set(&mut self, slot: usize, place: DVec3, flat: DVec3, power: f32) {
+        let (row, slot) = (slot / ROW, slot % ROW);
+        for axis in 0..3 {
+            (self.place[axis][slot][row], self.flat[axis][slot][row]) = (place[axis] as f32, flat[axis] as f32);
+        }
+        self.power[slot][row] = power;
+    }
+}
+
+/// Finds about what each candidate would bring to a white diffuse surface.
+struct Weighing<'a> {
+    candidates: &'a Candidates,
+    /// The point of the surface as places of candidates are given, and its unit normal.
+    from: [f32; 3],
+    flat: [f32; 3],
+}
+
+impl Computation for Weighing<'_> {
+    type Output = OfCandidates;
+
+    #[inline(always)]
+    fn run<V: Vectors>(self, _: V) -> OfCandidates {
+        let Self { candidates: Candidates { place, flat: flats, power }, from, flat } = self;
+        // One instruction, where `max` takes several for the sake of NaN.
+        let positive = |x: f32| if x > 0.0 { x } else { 0.0 };
+        std::array::from_fn(|i| {
+            std::array::from_fn(|row| {
+                let way = [0, 1, 2].map(|axis| place[axis][i][row] - from[axis]);
+                let squared = way[0] * way[0] + way[1] * way[1] + way[2] * way[2];
+                let here = positive(way[0] * flat[0] + way[1] * flat[1] + way[2] * flat[2]);
+                let there = [0, 1, 2].map(|axis| way[axis] * flats[axis][i][row]);
+                let there = positive(-(there[0] + there[1] + there[2]));
+                let weight = power[i][row] * (here * there) / (squared * (squared + 1.0));
+                if weight < f32::INFINITY { weight } else { 0.0 }
+            })
+        })
+    }
+}
+
+/// The median of some lengths; 1 if there are none.
+fn median(mut lengths: Vec<f64>) -> f64 {
+    let half = lengths.len() / 2;
+    if lengths.is_empty() { 1.0 } else { lengths.select_nth_unstable_by(half, f64::total_cmp).1.max(f64::MIN_POSITIVE) }
+}
+
+/// The place of a point along Morton's curve through a cube around the origin.
+fn morton(place: DVec3) -> u64 {
+    let spread = |x: f64| {
+        let mut x = (x + 1024.0).clamp(0.0, 2047.0) as u64;
+        x = (x | x << 32) & 0x1f_0000_0000_ffff;
+        x = (x | x << 16) & 0x1f_0000_ff00_00ff;
+        x = (x | x << 8) & 0x100f_00f0_0f00_f00f;
+        x = (x | x << 4) & 0x10c3_0c30_c30c_30c3;
+        (x | x << 2) & 0x1249_2492_4924_9249
+    };
+    spread(place.x) | spread(place.y) << 1 | spread(place.z) << 2
+}
+
+/// The vertex where a light path lands, if it is one: not where photons are gathered that came the same way.
+fn kept<const N: usize, P>(world: &World, landing: &Landing<N, P>) -> Option<LightVertex<N>> {
+    let Landing { path, at, light, .. } = landing;
+    let Material::Diffuse(diffuse) = at.material else { return None };
+    let leaving = landing.flux(world) * at.arrival.read(&diffuse.reflectance) * FRAC_1_PI as f32;
+    let came_over_smooth = path.vertices > 1 && path.kind == PathKind::Other;
+    let is_gathered = world.has_map() && world.sends_photons(*light) && came_over_smooth;
+    let usable = holds_vertices(world, at.object, at.point)
+        && !is_gathered
+        && !leaving.is_zero()
+        && leaving.0.iter().all(|x| x.is_finite());
+    let diffuse = world.method.diffuse_bounces - path.diffuse_left + 1;
+    let SurfacePoint { position, error, normal, .. } = *at.point;
+    let (error, flat, light, vertices) = (normal.abs().dot(error), at.flat, *light, path.vertices);
+    usable.then_some(LightVertex { position, error, flat, leaving, light, vertices, diffuse })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn plain_and_wide_instructions_weigh_candidates_alike() {
+        let number = |i: usize, purpose: u32| {
+            Sampler::new(3, [0, 0], i as u32).four_plain(BranchKey::CAMERA, purpose).map(|u| 4.0 * u - 2.0)
+        };
+        let mut candidates = Candidates::EMPTY;
+        for slot in 0..CANDIDATES - 3 {
+            let ([x, y, z, power], [a, b, c, _]) = (number(slot, 0), number(slot, 1));
+            candidates.set(slot, DVec3::new(x, y, z), DVec3::new(a, b, c).normalize(), power.abs() as f32);
+        }
+        let mut some = 0;
+        for i in 0..1000 {
+            let ([x, y, z, _], [a, b, c, _]) = (number(i, 2), number(i, 3));
+            // Also from the place of a vertex itself, where its weight is 0 / 0.
+            let from = if i < 8 { candidates.place.map(|axis| axis[i][0]) } else { [x, y, z].map(|x| x as f32) };
+            let weigh = |instructions: Instructions| {
+                instructions.run(Weighing { candidates: &candidates, from, flat: [a, b, c].map(|x| x as f32) })
+            };
+            let weights = weigh(Instructions::Plain);
+            assert_eq!(weights, weigh(Instructions::best()));
+            assert!(weights.as_flattened().iter().all(|weight| (0.0..f32::INFINITY).contains(weight)));
+            some += usize::from(weights.as_flattened().iter().any(|&weight| weight > 0.0));
+        }
+        assert!(some > 900, "only {some} of 1000 places are reached by any vertex");
+    }
+}

@@ -1,0 +1,18 @@
+//! Photons and light paths: where they are sent, what is kept of them, and how paths from the camera gather it.
+
+mod batch;
+mod follow;
+mod gather;
+mod kd_tree;
+mod kernel;
+mod light_vertices;
+mod pass_light;
+pub mod photon_map;
+mod usefulness;
+
+pub use batch::{Batch, Sent, batches, send};
+pub use follow::{Splat, show};
+pub use gather::{Gathered, Gathering, Part, PartSpectrum, gather};
+pub use light_vertices::{LightPaths, LightVertex, LightVertices, SHARED, holds_vertices};
+pub use pass_light::PassLight;
+pub use photon_map::{PhotonMap, photons, send_kept};

@@ -1,0 +1,51 @@
+//! What all camera samples of a pass share: gathered photons and vertices of light paths.
+
+use super::light_vertices::{LightPaths, LightVertices, SHARED};
+use super::photon_map::{PhotonMap, photons};
+use crate::trace::World;
+use crate::trace::pass::Pass;
+use crate::trace::stats::Stats;
+use crate::trace::walk::{Polarization, Polarized};
+
+/// The light that the paths of one pass look at.
+pub struct PassLight<const N: usize, P: Polarization<N> = Polarized> {
+    pub photons: Option<PhotonMap<N, P>>,
+    vertices: Vec<LightVertices<N>>,
+}
+
+impl<const N: usize, P: Polarization<N>> PassLight<N, P> {
+    /// For one pass.
+    pub fn new(world: &World, pass: &Pass) -> Self {
+        let photons = photons::<N, P>(world, pass);
+        let numbers = &pass.numbers;
+        let vertices = match LightPaths::asked_for(world, pass.seed) {
+            Some(light_paths) => {
+                let shared = |first: u32| light_paths.shared::<N, P>(first..(first + SHARED).min(numbers.end));
+                numbers.clone().step_by(SHARED as usize).map(shared).collect()
+            }
+            None => Vec::new(),
+        };
+        Self { photons, vertices }
+    }
+
+    /// The vertices that a sample looks at, counted from the first of the pass.
+    pub fn vertices(&self, sample: u32) -> Option<&LightVertices<N>> {
+        self.vertices.get((sample / SHARED) as usize)
+    }
+
+    /// Photons sent.
+    pub fn sent(&self) -> u64 {
+        self.photons.as_ref().map_or(0, |photons| photons.sent)
+    }
+
+    /// Whether photons tell by how much they are blurred.
+    pub fn tells_blur(&self) -> bool {
+        self.photons.as_ref().is_some_and(|photons| photons.half.is_some())
+    }
+
+    /// Adds what was noticed of it.
+    pub fn add_to(&self, stats: &mut Stats) {
+        self.photons.iter().for_each(|photons| *stats += photons.stats);
+        self.vertices.iter().for_each(|set| *stats += set.stats);
+    }
+}

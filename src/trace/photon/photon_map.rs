@@ -1,0 +1,166 @@
+//! Caustics that the camera does not see straight: photons are kept where they land, and paths from the camera gather
+//! them around the places that they reach by way of other surfaces.
+//!
+//! Every photon draws wavelengths of its own, as every camera sample does. One whose lanes have not parted is kept with
+//! its fixed lanes; of one whose lanes have, each wavelength is kept alone, with the color that its light has.
+
+use std::borrow::Cow;
+
+use super::batch::{Batch, Sent, batches, send};
+use super::follow::Landing;
+use super::kd_tree::KdTree;
+use super::kernel::Kernel;
+use crate::light::LightId;
+use crate::math::{DVec3, Sampler};
+use crate::spectrum::{Lanes, Matching, Wavelength};
+use crate::trace::World;
+use crate::trace::parallel::in_parallel;
+use crate::trace::pass::Pass;
+use crate::trace::photon_targets::PhotonTargets;
+use crate::trace::stats::Stats;
+use crate::trace::walk::{Interaction, Polarization, Polarized, Walker};
+
+/// A photon that has landed, and what it carries.
+#[derive(Clone, Debug)]
+pub struct Landed<T, L = Polarized> {
+    /// Unit vector back along its way.
+    pub back: DVec3,
+    /// The surface's own unit normal there, on the side it came from.
+    pub flat: DVec3,
+    /// Whether that is the front.
+    pub front: bool,
+    /// Surfaces it met, the last one included.
+    pub vertices: u32,
+    /// How its light is polarized.
+    pub polarization: L,
+    pub carries: T,
+}
+
+/// Lanes that have not parted.
+#[derive(Clone, Debug)]
+pub struct Together<const N: usize> {
+    /// Flux, lane by lane, over the cosine under which it arrived.
+    pub flux: Lanes<N>,
+    pub light: LightId,
+}
+
+/// One wavelength of lanes that have parted.
+#[derive(Clone, Debug)]
+pub struct Alone {
+    pub wavelength: Wavelength,
+    pub light: LightId,
+    /// Its flux over the cosine under which it arrived ..
+    pub weight: f64,
+    /// .. and the film's color of that.
+    pub color: [f64; 3],
+}
+
+/// The photons of one pass.
+pub struct PhotonMap<const N: usize, P: Polarization<N> = Polarized> {
+    pub together: KdTree<Landed<Together<N>, P::Landed>>,
+    pub alone: KdTree<Landed<Alone, P::Landed>>,
+    pub kernel: Kernel<N>,
+    /// One that blurs half as much, where the blur is to be told.
+    pub half: Option<Kernel<N>>,
+    pub sent: u64,
+    pub stats: Stats,
+}
+
+/// Sets these random numbers apart from the others.
+const SEED: u64 = 0x6d61_7073;
+
+/// What is kept of a photon where it lands.
+pub enum Kept<const N: usize, L = Polarized> {
+    Together(Landed<Together<N>, L>),
+    Alone(Landed<Alone, L>),
+}
+
+/// Sends the photons of one pass.
+pub fn photons<const N: usize, P: Polarization<N>>(world: &World, pass: &Pass) -> Option<PhotonMap<N, P>> {
+    let (targets, kernel) = (world.map_targets.as_ref()?, Kernel::of_pass(world, pass)?);
+    let count = world.method.light_pass.as_ref()?.map?.count;
+    let targets = &*pass
+        .part_of_photons(world)
+        .map_or(Cow::Borrowed(targets), |part| Cow::Owned(targets.times(part * f64::from(count))));
+    let (seed, before) = pass.photon_seed();
+    let batches = batches(targets, |target| before * target.photons, |target| target.photons, seed ^ SEED);
+    let done = in_parallel(batches.len(), &|number| send_kept::<N, P>(world, targets, batches[number]));
+    let mut stats = Stats::default();
+    let (mut together, mut alone) = (Vec::new(), Vec::new());
+    for sent in done {
+        stats += sent.stats;
+        for (place, kept) in sent.kept {
+            match kept {
+                Kept::Together(photon) if photon.carries.flux.0.iter().all(|x| x.is_finite()) => {
+                    together.push((place, photon));
+                }
+                Kept::Alone(photon) if photon.carries.weight.is_finite() => alone.push((place, photon)),
+                _ => stats.non_finite += 1,
+            }
+        }
+    }
+    let sent = batches.iter().map(|batch| batch.count).sum();
+    let (together, alone) = (KdTree::new(together), KdTree::new(alone));
+    let half = pass.replicate.map(|_| kernel.half(world));
+    Some(PhotonMap { together, alone, kernel, half, sent, stats })
+}
+
+/// Sends one batch.
+pub fn send_kept<const N: usize, P: Polarization<N>>(
+    world: &World,
+    targets: &PhotonTargets,
+    batch: Batch,
+) -> Sent<(DVec3, Kept<N, P::Landed>)> {
+    let keep = |_: &Walker<N, P>, landing: &Landing<N, P>, _: &Sampler, kept: &mut Vec<_>| {
+        keep(world, landing, kept);
+    };
+    send(world, targets, batch, false, &keep)
+}
+
+/// Keeps a photon where it lands.
+fn keep<const N: usize, P: Polarization<N>>(
+    world: &World,
+    landing: &Landing<N, P>,
+    kept: &mut Vec<(DVec3, Kept<N, P::Landed>)>,
+) {
+    let Landing { path, at, light, .. } = landing;
+    let Interaction { arrival, flat, point, .. } = at;
+    let flux = landing.flux(world) * (1.0 / arrival.wo.dot(*flat).abs()) as f32;
+    let photon = Landed {
+        back: arrival.wo,
+        flat: *flat,
+        front: flat.dot(point.normal) > 0.0,
+        vertices: path.vertices,
+        polarization: path.polarization.landed(at),
+        carries: (),
+    };
+    let response = &world.responses[*light];
+    let by_heroes = Matching::<N>::alone(arrival.draw, flux, path.parted, |lane, wavelength, weight| {
+        let of_lane = |lanes: Lanes<N>| Lanes([lanes[lane]; N]);
+        let polarization = P::read_landed(&photon.polarization, of_lane);
+        let color = wavelength.worth(response).map(|x| weight * x);
+        let carries = Alone { wavelength, light: *light, weight, color };
+        kept.push((point.position, Kept::Alone(photon.with(polarization, carries))));
+    });
+    if !by_heroes {
+        let polarization = photon.polarization.clone();
+        kept.push((point.position, Kept::Together(photon.with(polarization, Together { flux, light: *light }))));
+    }
+}
+
+impl<L> Landed<(), L> {
+    fn with<T>(&self, polarization: L, carries: T) -> Landed<T, L> {
+        let Self { back, flat, front, vertices, .. } = *self;
+        Landed { back, flat, front, vertices, polarization, carries }
+    }
+}
+
+impl<const N: usize, P: Polarization<N>> PhotonMap<N, P> {
+    /// Whether any photon lies within a radius of a place.
+    pub fn any_near(&self, place: DVec3, radius: f64) -> bool {
+        let mut any = false;
+        self.together.near(place, radius, &mut |_, _| any = true);
+        self.alone.near(place, radius, &mut |_, _| any = true);
+        any
+    }
+}

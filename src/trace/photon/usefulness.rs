@@ -1,0 +1,71 @@
+//! Which light vertices are seen from surfaces that the camera sees: of those behind walls, fewer need to be tried.
+
+use std::cell::Cell;
+
+use crate::math::{BranchKey, DVec2, DVec3, Ray, Sampler, unit};
+use crate::scene::{Ends, Primitive};
+use crate::shape::SurfacePoint;
+use crate::trace::World;
+
+/// Camera rays along each side of the image.
+const SIDE: u32 = 24;
+/// Neighboring vertices that are seen alike, and how many looks at them are tried.
+const ALIKE: usize = 64;
+const LOOKS: u32 = 32;
+/// Sets these random numbers apart from the others.
+const SEED: u64 = 0x6c6f_6f6b;
+
+/// A place on a diffuse surface that the camera sees straight.
+pub struct Place {
+    point: SurfacePoint,
+    primitive: Primitive,
+}
+
+/// For each vertex, how often places that the camera sees also see its neighborhood: above 0 to 1. Vertices that follow
+/// each other are neighbors. The whole image counts, also where only a part of it is made.
+pub fn usefulness(world: &World, places: &[Place], vertices: &[DVec3]) -> Vec<f32> {
+    if places.is_empty() {
+        return vec![1.0; vertices.len()];
+    }
+    let last_occluder = Cell::new(None);
+    let of_group = |(number, group): (usize, &[DVec3])| {
+        let seen = (0..LOOKS).filter(|&look| {
+            let [u, v, ..] =
+                Sampler::new(world.method.seed ^ SEED, [number as u32, 0], look).four(BranchKey::CAMERA, 0);
+            let chosen = |u: f64, count: usize| ((u * count as f64) as usize).min(count - 1);
+            let (vertex, place) = (group[chosen(u, group.len())], &places[chosen(v, places.len())]);
+            sees(world, place, vertex, &last_occluder)
+        });
+        // One look more that sees: what was never seen by chance must not be left out.
+        let share = (seen.count() + 1) as f32 / (LOOKS + 1) as f32;
+        std::iter::repeat_n(share, group.len())
+    };
+    vertices.chunks(ALIKE).enumerate().flat_map(of_group).collect()
+}
+
+/// Some such places, all over the image.
+pub fn places(world: &World) -> Vec<Place> {
+    let (scene, film) = (&world.scene, world.scene.film);
+    let place = |number: u32| {
+        let [x, y] = film.whole().middle_of_cell(SIDE, number).map(|x| f64::from(x) + 0.5);
+        let ray = scene.camera.ray(DVec2::new(x, y));
+        let hit = scene.intersect(&ray)?;
+        let point = scene.objects[hit.object as usize].point(&ray, &hit.crossing);
+        let is_diffuse = world.lobes[scene.objects[hit.object as usize].material as usize].is_diffuse();
+        is_diffuse.then_some(Place { point, primitive: hit.primitive() })
+    };
+    (0..SIDE * SIDE).filter_map(place).collect()
+}
+
+/// Whether nothing stands between a place and a vertex; on which sides of their surfaces is not asked.
+fn sees(world: &World, place: &Place, vertex: DVec3, last_occluder: &Cell<Option<u32>>) -> bool {
+    let way = vertex - place.point.position;
+    let Some(direction) = way.try_normalize() else { return true };
+    let ray = Ray { direction: unit(direction), ..place.point.leave(direction) };
+    let ends = Ends { left: Some(place.primitive), ..Ends::default() };
+    let counts = |object| !world.is_see_through(object);
+    !world.scene.is_occluded_by(&ray, way.length() * NEARLY, ends, last_occluder, &counts)
+}
+
+/// Looks end a little before the vertex: they only guide.
+const NEARLY: f64 = 1.0 - 1e-6;

@@ -1,0 +1,83 @@
+//! How many ways light has where all of them are followed.
+
+use crate::material::Material;
+use crate::math::{DVec2, DVec3, Sampler};
+use crate::spectrum::Table;
+use crate::trace::World;
+use crate::trace::camera::PathTracer;
+use crate::trace::width::in_lanes;
+
+/// What following all branches takes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Branching {
+    /// Surfaces that a mean camera sample meets.
+    Affordable(f64),
+    /// More than was asked for, seen from a pixel.
+    Beyond([i32; 2]),
+}
+
+/// Pixels along each side of the image that are asked.
+const SIDE: u32 = 16;
+/// Objects that are looked at one by one.
+const OBJECTS: usize = 64;
+
+/// Follows all branches in pixels all over the image, and where the camera would see objects of several ways if nothing
+/// were before them, until it is known whether a mean sample meets more than `most` surfaces. A sample that had to go
+/// on by chance is beyond that whatever the mean is.
+pub fn branching(world: &World, most: f64) -> Branching {
+    in_lanes!(&world.method.basis, N => ask::<N>(world, most))
+}
+
+fn ask<const N: usize>(world: &World, most: f64) -> Branching {
+    let mut tracer = PathTracer::<N>::new(world);
+    let film = world.scene.film.whole();
+    // A stride that is coprime to the number of places visits them all, far ones first.
+    let places = SIDE * SIDE;
+    let all_over = (0..places).map(|i| (i * 101) % places);
+    let all_over: Vec<[i32; 2]> = all_over.map(|place| film.middle_of_cell(SIDE, place)).collect();
+    let mut ask = |[x, y]: [i32; 2]| {
+        let before = tracer.walker.stats.rays;
+        tracer.sample(&Sampler::of_pixel(world.method.seed, [x, y], 0), [x, y]);
+        (tracer.walker.stats.rays - before, tracer.walker.stats.by_chance > 0)
+    };
+    let enough = most * f64::from(places);
+    let mut met = 0;
+    for &pixel in &all_over {
+        let (more, by_chance) = ask(pixel);
+        met += more;
+        if by_chance || met as f64 > enough {
+            return Branching::Beyond(pixel);
+        }
+    }
+    match pixels_of_objects(world, Material::lets_through).into_iter().find(|&pixel| ask(pixel).1) {
+        Some(pixel) => Branching::Beyond(pixel),
+        None => Branching::Affordable(met as f64 / f64::from(places)),
+    }
+}
+
+/// Pixels in which the camera would see objects of some materials if nothing were before them: their middles, and
+/// places toward their corners.
+pub fn pixels_of_objects(world: &World, counts: impl Fn(&Material<Table>) -> bool) -> Vec<[i32; 2]> {
+    let scene = &world.scene;
+    let wanted = |object: &u32| counts(scene.material_of(*object));
+    let several: Vec<u32> = (0..scene.objects.len() as u32).filter(wanted).collect();
+    let stride = several.len().div_ceil(OBJECTS).max(1);
+    let mut pixels = Vec::new();
+    for &object in several.iter().step_by(stride) {
+        let Some(bounds) = scene.objects[object as usize].shape.bounds() else { continue };
+        let (middle, half) = (0.5 * (bounds.min + bounds.max), 0.5 * (bounds.max - bounds.min));
+        let sign = |corner: u32, axis: u32| if corner >> axis & 1 == 0 { -1.0 } else { 1.0 };
+        let corners =
+            (0..8).map(|corner| middle + 0.6 * half * DVec3::new(sign(corner, 0), sign(corner, 1), sign(corner, 2)));
+        for point in std::iter::once(middle).chain(corners) {
+            let Some(DVec2 { x, y }) = scene.camera.see(point, [0.5; 2]).map(|seen| seen.film) else { continue };
+            let inside = |at: f64, size: u32| at >= 0.0 && at < f64::from(size);
+            if inside(x, scene.film.width) && inside(y, scene.film.height) {
+                pixels.push([x as i32, y as i32]);
+            }
+        }
+    }
+    pixels.sort_unstable();
+    pixels.dedup();
+    pixels
+}

@@ -1,0 +1,180 @@
+//! Points of light are gathered into few rectangles that fill their planes.
+
+use crate::math::{DVec3, Frame};
+
+/// A rectangle about weighted points.
+#[derive(Clone, Debug)]
+pub struct Cluster {
+    points: Vec<(DVec3, f64)>,
+    cost: f64,
+    pub center: DVec3,
+    /// Half edges at right angles, and half of the thickness.
+    pub half: [DVec3; 3],
+}
+
+/// Share of the weight that is left out at each end of a rectangle's edge.
+const OUTSIDE: f64 = 0.02;
+/// Directions of a rectangle's edge that are tried, over a right angle.
+const TURNS: u32 = 12;
+/// Planes between which points may be split, along each axis.
+const CUTS: usize = 7;
+/// What a split must save of all weights times areas.
+const WORTH: f64 = 0.05;
+/// Fewest points of a cluster.
+const FEWEST: usize = 8;
+/// Steps in which the normal of a plane is found.
+const STEPS: u32 = 24;
+
+/// The rectangles, at most so many: those that make the sum of weights times areas least, found by splitting in two.
+pub fn clusters(points: Vec<(DVec3, f64)>, most: usize) -> Vec<Cluster> {
+    let Some(first) = Cluster::around(points) else { return Vec::new() };
+    let mut found = vec![(first.split(), first)];
+    while found.len() < most {
+        let total: f64 = found.iter().map(|(_, cluster)| cluster.cost).sum();
+        let saves = |split: &Option<[Cluster; 2]>, cluster: &Cluster| {
+            split.as_ref().map_or(0.0, |[a, b]| cluster.cost - a.cost - b.cost)
+        };
+        let saved: Vec<f64> = found.iter().map(|(split, cluster)| saves(split, cluster)).collect();
+        let best = (0..found.len()).max_by(|&a, &b| saved[a].total_cmp(&saved[b])).unwrap_or(0);
+        if saved[best] <= WORTH * total {
+            break;
+        }
+        if let (Some(parts), _) = found.swap_remove(best) {
+            found.extend(parts.map(|part| (part.split(), part)));
+        }
+    }
+    found.into_iter().map(|(_, cluster)| cluster).collect()
+}
+
+impl Cluster {
+    fn around(points: Vec<(DVec3, f64)>) -> Option<Self> {
+        let weight: f64 = points.iter().map(|point| point.1).sum();
+        if points.len() < FEWEST || weight <= 0.0 {
+            return None;
+        }
+        let normal = normal_of(&points, weight);
+        let frame = Frame::about(normal);
+        let mut best: Option<(f64, DVec3, [DVec3; 3])> = None;
+        for turn in 0..TURNS {
+            let (sin, cos) = libm::sincos(std::f64::consts::FRAC_PI_2 * f64::from(turn) / f64::from(TURNS));
+            let axes = [DVec3::new(cos, sin, 0.0), DVec3::new(-sin, cos, 0.0), DVec3::Z].map(|x| frame.to_world(x));
+            let spans = axes.map(|axis| span(&points, weight, axis));
+            let [x, y, z] = spans.map(|[low, high]| high - low);
+            let area = (x + z) * (y + z);
+            if best.as_ref().is_none_or(|best| area < best.0) {
+                let middle = |i: usize| axes[i] * (0.5 * (spans[i][0] + spans[i][1]));
+                let half = |i: usize| axes[i] * (0.5 * (spans[i][1] - spans[i][0]));
+                best = Some((area, middle(0) + middle(1) + middle(2), [half(0), half(1), half(2)]));
+            }
+        }
+        let (_, center, half) = best?;
+        let cost = Dispersion::of(&points).cost();
+        Some(Self { points, cost, center, half })
+    }
+
+    /// The best two parts.
+    fn split(&self) -> Option<[Self; 2]> {
+        let mut best: Option<(f64, DVec3, f64)> = None;
+        for axis in self.half {
+            for cut in 0..CUTS {
+                let place = 2.0 * (cut as f64 + 1.0) / (CUTS as f64 + 1.0) - 1.0;
+                let level = axis.dot(self.center) + place * axis.length_squared();
+                let mut sides = [Dispersion::default(); 2];
+                self.points
+                    .iter()
+                    .for_each(|point| sides[usize::from(point.0.dot(axis) > level)].add(point.0, point.1));
+                let cost = sides[0].cost() + sides[1].cost();
+                let enough = sides.iter().all(|side| side.count >= FEWEST);
+                if enough && best.is_none_or(|best| cost < best.0) {
+                    best = Some((cost, axis, level));
+                }
+            }
+        }
+        let (_, axis, level) = best?;
+        let (above, below) = self.points.iter().partition(|point| point.0.dot(axis) > level);
+        Some([Self::around(above)?, Self::around(below)?])
+    }
+}
+
+/// How far weighted points are spread.
+#[derive(Clone, Copy, Default)]
+struct Dispersion {
+    count: usize,
+    weight: f64,
+    sum: DVec3,
+    squares: DVec3,
+    /// Sums of y z, z x and x y.
+    products: DVec3,
+}
+
+impl Dispersion {
+    fn of(points: &[(DVec3, f64)]) -> Self {
+        let mut all = Self::default();
+        points.iter().for_each(|point| all.add(point.0, point.1));
+        all
+    }
+
+    fn add(&mut self, point: DVec3, weight: f64) {
+        self.count += 1;
+        self.weight += weight;
+        self.sum += point * weight;
+        self.squares += point * point * weight;
+        self.products += DVec3::new(point.y * point.z, point.z * point.x, point.x * point.y) * weight;
+    }
+
+    /// Weight times area: how much of what is aimed is aimed in vain.
+    ///
+    /// The sum of the products of two eigenvalues of the covariance, its second invariant, goes with the square of the
+    /// area.
+    fn cost(&self) -> f64 {
+        if self.weight <= 0.0 {
+            return 0.0;
+        }
+        let mean = self.sum / self.weight;
+        let squares = self.squares / self.weight - mean * mean;
+        let crossed = DVec3::new(mean.y * mean.z, mean.z * mean.x, mean.x * mean.y);
+        let products = self.products / self.weight - crossed;
+        let DVec3 { x, y, z } = squares;
+        self.weight * (x * y + y * z + z * x - products.length_squared()).max(0.0).sqrt()
+    }
+}
+
+/// The direction in which points vary least: the largest eigenvector of trace(C) - C for their covariance C, by
+/// squaring.
+fn normal_of(points: &[(DVec3, f64)], weight: f64) -> DVec3 {
+    let middle = points.iter().fold(DVec3::ZERO, |sum, (point, share)| sum + *point * (share / weight));
+    let times = |x: DVec3| {
+        points.iter().fold(DVec3::ZERO, |sum, (point, share)| {
+            let way = *point - middle;
+            sum + way * (way.dot(x) * share / weight)
+        })
+    };
+    let columns = [DVec3::X, DVec3::Y, DVec3::Z].map(times);
+    let trace = columns[0].x + columns[1].y + columns[2].z;
+    let step = |x: DVec3| x * trace - (columns[0] * x.x + columns[1] * x.y + columns[2] * x.z);
+    let mut normal = DVec3::new(0.36, 0.48, 0.8);
+    for _ in 0..STEPS {
+        normal = step(step(normal)).try_normalize().unwrap_or(DVec3::Y);
+    }
+    normal
+}
+
+/// From where to where points reach along an axis, without a few at each end.
+fn span(points: &[(DVec3, f64)], weight: f64, axis: DVec3) -> [f64; 2] {
+    let mut along: Vec<(f64, f64)> = points.iter().map(|(point, share)| (point.dot(axis), *share)).collect();
+    along.sort_by(|a, b| a.0.total_cmp(&b.0));
+    quantiles(&along, weight, OUTSIDE)
+}
+
+/// The places beyond which lies a share of the weight, at each end of a sorted list.
+pub fn quantiles(along: &[(f64, f64)], weight: f64, outside: f64) -> [f64; 2] {
+    [reach(along.iter(), outside * weight), reach(along.iter().rev(), outside * weight)]
+}
+
+fn reach<'a>(mut along: impl Iterator<Item = &'a (f64, f64)>, mut left: f64) -> f64 {
+    let beyond = along.find(|point| {
+        left -= point.1;
+        left < 0.0
+    });
+    beyond.map_or(0.0, |point| point.0)
+}

@@ -1,0 +1,70 @@
+//! What polarization changes, measured on some hundred camera samples and some thousand photons.
+
+use super::seen_light::{Amount, SIDE, for_each_light, with_fewer_photons};
+use crate::film::Window;
+use crate::trace::World;
+use crate::trace::method::Polarizing;
+use crate::trace::walk::Polarization;
+use crate::trace::width::in_lanes_of;
+
+/// The relative RMS error of light that is taken for unpolarized at every surface, over small cells of the image, over
+/// large ones, or of all light together, whichever is most: so few photons may light an image that no cell has two.
+///
+/// The same paths are followed with and without: each lane is told what polarization makes of it, and only the
+/// difference is noisy. Two copies of each cell know nothing of each other, so the mean of their product has no part of
+/// that noise, as a square would have; one standard error is added for what they have not met.
+pub fn polarization_error(world: &World) -> f64 {
+    let world = with_fewer_photons(world).with_polarization(Polarizing::Compared);
+    in_lanes_of!(&world, N, P => compare::<N, P>(&world))
+}
+
+fn compare<const N: usize, P: Polarization<N>>(world: &World) -> f64 {
+    let mut grids = SIDES.map(|side| Cells::new(world.scene.film.window(), side));
+    let mut all = Amount::default();
+    for_each_light::<N, P>(world, 2, &mut |pixel, copy, found| {
+        grids.iter_mut().for_each(|cells| cells.add(pixel, copy, found));
+        (all.light, all.change) = (all.light + found.light, all.change + found.change);
+    });
+    let lit = all.light + all.change;
+    let of_all = if lit > 0.0 { all.change.abs() / lit } else { 0.0 };
+    grids.iter().map(Cells::error).fold(of_all, f64::max)
+}
+
+/// Cells along each side of the image: of one sample each, and so large that thin beams bring photons to both copies.
+const SIDES: [u32; 2] = [SIDE, SIDE / 4];
+
+/// What cells of the image show in both copies.
+struct Cells {
+    size: [u32; 2],
+    across: u32,
+    down: u32,
+    cells: Vec<[Amount; 2]>,
+}
+
+impl Cells {
+    fn new(window: Window, side: u32) -> Self {
+        let [across, down] = [window.width.min(side), window.height.min(side)];
+        let cells = vec![[Amount::default(); 2]; (across * down) as usize];
+        Self { size: [window.width, window.height], across, down, cells }
+    }
+
+    fn add(&mut self, [x, y]: [u32; 2], copy: usize, found: Amount) {
+        let cell = |at: u32, cells: u32, size: u32| u64::from(at) * u64::from(cells) / u64::from(size);
+        let [width, height] = self.size;
+        let place = cell(y, self.down, height) * u64::from(self.across) + cell(x, self.across, width);
+        let seen = &mut self.cells[place as usize][copy];
+        (seen.light, seen.change) = (seen.light + found.light, seen.change + found.change);
+    }
+
+    fn error(&self) -> f64 {
+        let (mut errors, mut spread, mut squares) = (0.0, 0.0, 0.0);
+        for [a, b] in &self.cells {
+            let error = a.change * b.change;
+            errors += error;
+            spread += error * error;
+            squares += (a.light + a.change) * (b.light + b.change);
+        }
+        let chance = f64::sqrt((spread - errors * errors / self.cells.len() as f64).max(0.0));
+        if squares > 0.0 { f64::sqrt((f64::max(errors, 0.0) + chance) / squares) } else { 0.0 }
+    }
+}

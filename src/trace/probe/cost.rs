@@ -1,0 +1,160 @@
+//! A few hundred camera samples, traced ahead so that the plan can speak in numbers.
+
+use std::cell::Cell;
+use std::ops::Range;
+use std::time::{Duration, Instant};
+
+use crate::math::Sampler;
+use crate::trace::camera::PathTracer;
+use crate::trace::image::send_shown;
+use crate::trace::pass::Pass;
+use crate::trace::photon::{Batch, LightPaths, SHARED, photons, send_kept};
+use crate::trace::photon_targets::PhotonTargets;
+use crate::trace::stats::Stats;
+use crate::trace::walk::{Polarization, Polarized};
+use crate::trace::width::{in_lanes, in_lanes_of};
+use crate::trace::{LightPass, MapPasses, World};
+
+/// What a probe found, per camera sample.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Probe {
+    /// Camera samples traced.
+    pub samples: u32,
+    /// Rays followed, without those to lights.
+    pub rays: f64,
+    /// Share of the samples whose lanes parted.
+    pub parted: f64,
+    /// Processor time, with that of gathering photons.
+    pub time: Duration,
+    /// Processor time of light paths, if any are followed, for one sample of every pixel.
+    pub light_paths: Duration,
+}
+
+/// Processor time per photon; none where there are no such photons.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PhotonTimes {
+    /// Of one of the light pass.
+    pub shown: Duration,
+    /// Of one of a map.
+    pub kept: Duration,
+}
+
+/// Camera samples along each side of the image.
+const SIDE: u32 = 48;
+/// Samples that are timed together.
+const BATCH: u32 = 16;
+/// What takes so many times as long as the median is timed again.
+const SLOW: f64 = 2.0;
+/// Photons that are timed together, and how often.
+const FEW: u64 = 64;
+const TIMES: u64 = 64;
+/// Most photons of the map that is gathered from.
+const GATHERED: u64 = 4096;
+/// Time after which the probe has seen enough.
+const ENOUGH: Duration = Duration::from_millis(300);
+
+/// Traces single samples of pixels spread over the part of the image that is made.
+pub fn probe(world: &World) -> Probe {
+    in_lanes_of!(world, N, P => probe_lanes::<N, P>(world))
+}
+
+fn probe_lanes<const N: usize, P: Polarization<N>>(world: &World) -> Probe {
+    // Tables that are computed when first needed are no part of a sample's time.
+    let rough = |id: u32| world.scene.material_of(id).roughness().is_some_and(|roughness| roughness > 0.0);
+    if (0..world.scene.objects.len()).any(|object| rough(object as u32)) {
+        let mut tracer = PathTracer::<N, P>::new(world);
+        let window = world.scene.film.window();
+        for place in 0..SIDE {
+            let at = |place: u32, size: u32| (u64::from(place) * u64::from(size) / u64::from(SIDE)) as u32;
+            let (x, y) = (at(place * 7 % SIDE, window.width), at(place, window.height));
+            let (x, y) = (window.left + x as i32, window.top + y as i32);
+            tracer.sample(&Sampler::of_pixel(world.method.seed, [x, y], 0), [x, y]);
+        }
+    }
+    let before_vertices = Instant::now();
+    let vertices =
+        LightPaths::asked_for(world, world.method.seed).map(|light_paths| light_paths.shared::<N, P>(0..SHARED));
+    let light_paths =
+        vertices.as_ref().map_or(Duration::ZERO, |_| before_vertices.elapsed().div_f64(f64::from(SHARED)));
+    let few = with_few_photons(world);
+    let photons = photons::<N, P>(&few, &Pass::of_photons_alone(&few, 0));
+    let mut tracer = PathTracer::<N, P>::new(&few).with_photons(photons.as_ref());
+    tracer.light_vertices = vertices.as_ref();
+    let window = world.scene.film.window();
+    let parted = Cell::new(0);
+    let mut take = |numbers: Range<u32>| {
+        let (start, before) = (Instant::now(), tracer.walker.stats.rays);
+        // A stride that is coprime to the number of places visits them all, far ones first.
+        for place in numbers.map(|i| (i * 229) % (SIDE * SIDE)) {
+            let [x, y] = window.middle_of_cell(SIDE, place);
+            let before = tracer.walker.stats.partings;
+            tracer.sample(&Sampler::of_pixel(world.method.seed, [x, y], 0), [x, y]);
+            parted.set(parted.get() + u32::from(tracer.walker.stats.partings > before));
+        }
+        Timed { time: start.elapsed(), rays: tracer.walker.stats.rays - before }
+    };
+    let (start, mut batches) = (Instant::now(), Vec::new());
+    while batches.len() < (SIDE * SIDE / BATCH) as usize && start.elapsed() < ENOUGH {
+        let first = batches.len() as u32 * BATCH;
+        batches.push(take(first..first + BATCH));
+    }
+    let (samples, parted) = (batches.len() as u32 * BATCH, parted.get());
+    let rays = batches.iter().map(|batch| batch.rays).sum::<u64>() as f64 / f64::from(samples);
+    let time = undisturbed(batches, |number| take(number as u32 * BATCH..(number as u32 + 1) * BATCH));
+    let per_sample = 1.0 / f64::from(samples);
+    Probe { samples, rays, parted: f64::from(parted) * per_sample, time: time.mul_f64(per_sample), light_paths }
+}
+
+/// What some work took.
+#[derive(Clone, Copy)]
+struct Timed {
+    time: Duration,
+    rays: u64,
+}
+
+/// The time of all batches. Those whose rays took much longer than the median are timed again: where only something
+/// else kept the processor, they are faster.
+fn undisturbed(batches: Vec<Timed>, mut again: impl FnMut(usize) -> Timed) -> Duration {
+    let per_ray = |batch: &Timed| batch.time.as_secs_f64() / batch.rays.max(1) as f64;
+    let mut all: Vec<f64> = batches.iter().map(per_ray).collect();
+    all.sort_by(f64::total_cmp);
+    let slow = SLOW * all[all.len() / 2];
+    let time = |(number, batch): (usize, &Timed)| match per_ray(batch) > slow {
+        true => batch.time.min(again(number).time),
+        false => batch.time,
+    };
+    batches.iter().enumerate().map(time).sum()
+}
+
+/// A world whose map has few photons, of which as many are gathered around a place as of all.
+pub fn with_few_photons(world: &World) -> World {
+    let fewer = |map: MapPasses| {
+        let photons = map.photons.min(GATHERED);
+        MapPasses { photons, radius: map.radius * (map.photons as f64 / photons as f64).sqrt(), ..map }
+    };
+    let pass = world.method.light_pass.as_ref();
+    world.with_light_pass(pass.map(|pass| LightPass { map: pass.map.map(fewer), ..pass.clone() }))
+}
+
+/// Sends some photons of those targets that send most.
+pub fn photon_times(world: &World) -> PhotonTimes {
+    let of = |targets: &Option<PhotonTargets>, send: &dyn Fn(&PhotonTargets, Batch) -> Stats| {
+        targets.as_ref().map_or(Duration::ZERO, |targets| photon_time(targets, world.method.seed, send))
+    };
+    in_lanes!(&world.method.basis, N => {
+        PhotonTimes {
+            shown: of(&world.photon_targets, &|targets, batch| send_shown::<N, Polarized>(world, targets, batch).stats),
+            kept: of(&world.map_targets, &|targets, batch| send_kept::<N, Polarized>(world, targets, batch).stats),
+        }
+    })
+}
+
+fn photon_time(targets: &PhotonTargets, seed: u64, send: &dyn Fn(&PhotonTargets, Batch) -> Stats) -> Duration {
+    let take = |number: u64| {
+        let target = targets.of_photon((2 * number + 1) * targets.photons() / (2 * TIMES));
+        let start = Instant::now();
+        let stats = send(targets, Batch { target, first: number * FEW, count: FEW, seed });
+        Timed { time: start.elapsed(), rays: stats.rays }
+    };
+    undisturbed((0..TIMES).map(take).collect(), |number| take(number as u64)).div_f64((TIMES * FEW) as f64)
+}

@@ -1,0 +1,120 @@
+//! What the photons of a map are worth, learned from a few.
+
+use std::cell::Cell;
+
+use super::pilot::SampleWorth;
+use crate::math::Sampler;
+use crate::spectrum::apply;
+use crate::trace::World;
+use crate::trace::camera::{Observer, PathTracer};
+use crate::trace::contribution::{Contribution, Found, add};
+use crate::trace::pass::Pass;
+use crate::trace::photon::photons;
+use crate::trace::walk::Polarized;
+use crate::trace::width::in_lanes;
+
+/// What a map's photons add to the noise, and the camera samples that gather them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GatheredWorth {
+    /// Variance of an image by n photons, summed over pixels and channels of XYZ, times n.
+    pub variance: f64,
+    /// Rays that a photon follows.
+    pub rays: f64,
+    /// Second moment of what a camera sample gathers, scaled as the variance of camera samples is.
+    pub second_moment: f64,
+    /// What else camera samples bring.
+    pub samples: SampleWorth,
+}
+
+/// Maps that are compared.
+const MAPS: u64 = 2;
+/// Pixels along each side of the image that gather from them, and how many samples of each.
+const SIDE: u32 = 20;
+const SAMPLES: u32 = 4;
+/// Sets these random numbers apart from those of the image.
+const SEED: u64 = 0x6761_7468;
+
+/// Gathers photons of two maps by the same paths: what differs is noise of the photons. It is overestimated where a
+/// pixel of many samples gathers at more places than these few, so that too many photons are sent rather than too few.
+///
+/// All of the image counts, also where only a part of it is made, so that all parts are made alike.
+pub fn gathered_worth(world: &World) -> Option<GatheredWorth> {
+    in_lanes!(&world.method.basis, N => gather::<N>(world))
+}
+
+/// All light that was gathered.
+#[derive(Default)]
+struct Gathered(Cell<[f64; 3]>);
+
+impl Observer for Gathered {
+    fn receive(&self, contribution: &Contribution) {
+        if contribution.found == Found::Gathered {
+            let mut sum = self.0.get();
+            add(&mut sum, contribution.rgb);
+            self.0.set(sum);
+        }
+    }
+}
+
+/// Sums of some values and of their squares.
+#[derive(Clone, Copy, Default)]
+struct Sums([[f64; 2]; 3]);
+
+impl Sums {
+    fn add(&mut self, values: [f64; 3]) {
+        if values.iter().all(|x| x.is_finite()) {
+            self.0.iter_mut().zip(values).for_each(|(sum, x)| *sum = [sum[0] + x, sum[1] + x * x]);
+        }
+    }
+
+    /// Variances of so many values, summed over channels.
+    fn variance(&self, count: f64) -> f64 {
+        self.0.iter().map(|[sum, squares]| ((squares - sum * sum / count) / (count - 1.0)).max(0.0)).sum()
+    }
+}
+
+fn gather<const N: usize>(world: &World) -> Option<GatheredWorth> {
+    let film = world.scene.film;
+    let to_xyz = film.color_space.to_xyz();
+    let places = SIDE * SIDE;
+    let mut by_photons = vec![Sums::default(); places as usize];
+    let mut by_samples = by_photons.clone();
+    let (mut sent, mut rays, mut of_samples, mut second_moment) = (0, 0, 0, 0.0);
+    for map in 0..MAPS {
+        let photons = photons::<N, Polarized>(world, &Pass::of_photons_alone(world, map as u32))?;
+        (sent, rays) = (sent + photons.sent, rays + photons.stats.rays);
+        let by_gathering = Gathered::default();
+        let mut tracer = PathTracer::<N>::new(world).with_photons(Some(&photons)).with_observer(&by_gathering);
+        for place in 0..places {
+            let [x, y] = film.whole().middle_of_cell(SIDE, place);
+            let before = by_gathering.0.get();
+            for number in 0..SAMPLES {
+                let so_far = by_gathering.0.get();
+                let sampler = Sampler::of_pixel((world.method.seed ^ SEED).wrapping_add(u64::from(number)), [x, y], 0);
+                let found = tracer.sample(&sampler, [x, y]).rgb;
+                let gathered = by_gathering.0.get();
+                let others = std::array::from_fn(|i| found[i] - (gathered[i] - so_far[i]));
+                let here = apply(&to_xyz, std::array::from_fn(|i| gathered[i] - so_far[i]));
+                second_moment += here.iter().filter(|x| x.is_finite()).map(|x| x * x).sum::<f64>();
+                if map == 0 {
+                    by_samples[place as usize].add(apply(&to_xyz, others));
+                }
+            }
+            let gathered = by_gathering.0.get();
+            let mean = std::array::from_fn(|i| (gathered[i] - before[i]) / f64::from(SAMPLES));
+            by_photons[place as usize].add(apply(&to_xyz, mean));
+        }
+        of_samples += tracer.walker.stats.rays;
+    }
+    let pixels = f64::from(film.width) * f64::from(film.height);
+    let mean = |variances: &[f64]| variances.iter().sum::<f64>() / f64::from(places);
+    let of_maps: Vec<f64> = by_photons.iter().map(|sums| sums.variance(MAPS as f64)).collect();
+    let variances = by_samples.iter().map(|sums| sums.variance(f64::from(SAMPLES))).collect();
+    let taken = MAPS as f64 * f64::from(places * SAMPLES);
+    Some(GatheredWorth {
+        variance: mean(&of_maps) * pixels * sent as f64 / MAPS as f64,
+        rays: rays as f64 / sent as f64,
+        second_moment: second_moment / taken * pixels * pixels,
+        samples: SampleWorth::of(variances, pixels, of_samples as f64 / taken),
+    })
+}

@@ -1,0 +1,25 @@
+//! What is found out before an image is made: by a few paths, for the plan and for those that follow.
+
+mod branching;
+mod brightness;
+mod clusters;
+mod compared;
+mod cost;
+mod gathering_worth;
+mod pilot;
+mod prepare;
+mod reach;
+mod resampling_worth;
+mod seen_light;
+mod visible_caps;
+
+pub use branching::{Branching, branching, pixels_of_objects};
+pub use brightness::bright_places;
+pub use compared::polarization_error;
+pub use cost::{PhotonTimes, Probe, photon_times, probe};
+pub use gathering_worth::{GatheredWorth, gathered_worth};
+pub use pilot::{PhotonWorth, SampleWorth, photons_worth, samples_worth};
+pub use prepare::{prepare, prepare_unguided};
+pub use reach::{gathered_photons, reached_places};
+pub use resampling_worth::resampling_gain;
+pub use seen_light::{SeenLight, seen_light};

@@ -1,0 +1,149 @@
+//! What photons and camera samples are worth, learned from a few of both; in XYZ, so that it is the same in every color
+//! space.
+
+use crate::light::LightId;
+use crate::math::Sampler;
+use crate::spectrum::apply;
+use crate::trace::World;
+use crate::trace::camera::PathTracer;
+use crate::trace::image::light_pass;
+use crate::trace::walk::Polarized;
+use crate::trace::width::in_lanes;
+
+/// What one light's photons bring to the whole image, or those of several.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PhotonWorth {
+    /// The lights that send them.
+    pub lights: Vec<LightId>,
+    /// XYZ, summed over all pixels, of all light that they bring.
+    pub brings: [f64; 3],
+    /// Variance of an image by n photons, summed over pixels and channels, times n.
+    pub variance: f64,
+    /// Rays that one follows.
+    pub rays: f64,
+}
+
+/// What camera samples bring beside photons.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SampleWorth {
+    /// Variance of an image of n camera samples in all, summed over pixels and channels, times n.
+    pub variance: f64,
+    /// The same without the hundredth of the pixels that has most of it.
+    pub common_variance: f64,
+    /// Rays that one follows, without those to lights.
+    pub rays: f64,
+}
+
+/// Photons of some lights in one image of a pilot, of all lights together, and how many images there are.
+const PHOTONS: u64 = 4096;
+const ALL: u64 = 4 * PHOTONS;
+const IMAGES: u64 = 4;
+/// Pixels along each side of the image whose samples are compared, and how many of each.
+const SIDE: u32 = 24;
+const SAMPLES: u32 = 4;
+/// Sets these random numbers apart from those of the image.
+const SEED: u64 = 0x7069_6c6f;
+
+/// What photons of each of the pass's lights are worth, where photons of the light are seen; many lights are weighed in
+/// groups.
+///
+/// The format counts, also where a part of it or more is made, so that all parts are made alike.
+pub fn photons_worth(world: &World) -> Vec<PhotonWorth> {
+    in_lanes!(&world.method.basis, N => weigh_photons::<N>(world))
+}
+
+fn weigh_photons<const N: usize>(whole: &World) -> Vec<PhotonWorth> {
+    let mut world = whole.clone();
+    world.scene.film = world.scene.film.of_the_format();
+    let groups = whole.photon_light_groups();
+    let photons = (ALL / groups.len().max(1) as u64).min(PHOTONS);
+    groups.into_iter().filter_map(|lights| weigh::<N>(whole, &mut world, lights, photons)).collect()
+}
+
+/// What so many photons of some lights are worth, in a world whose targets are replaced.
+fn weigh<const N: usize>(whole: &World, world: &mut World, lights: Vec<LightId>, each: u64) -> Option<PhotonWorth> {
+    let mut sending = whole.photon_targets.clone()?;
+    sending.targets.retain(|target| lights.binary_search(&target.light).is_ok());
+    let all: u64 = sending.targets.iter().map(|target| target.photons).sum();
+    for target in &mut sending.targets {
+        target.photons = (target.photons as f64 * each as f64 / all as f64).round().max(1.0) as u64;
+    }
+    world.photon_targets = Some(sending);
+    let to_xyz = world.scene.film.color_space.to_xyz();
+    let (mut values, mut photons, mut rays) = (Vec::new(), 0, 0);
+    for image in 0..IMAGES {
+        world.method.seed = (whole.method.seed ^ SEED).wrapping_add(image);
+        let mut splats = Vec::new();
+        let shown = light_pass::splats::<N, Polarized>(world, &mut |splat| splats.push((splat.pixel, splat.rgb)));
+        (photons, rays) = (photons + shown.photons, rays + shown.stats.rays);
+        values.extend(summed(splats).into_iter().map(|(pixel, rgb)| (pixel, apply(&to_xyz, rgb))));
+    }
+    let images = IMAGES as f64;
+    let squares = values.iter().map(|&(pixel, xyz)| (pixel, xyz.map(|x| x * x))).collect();
+    let (sums, squares) = (summed(values), summed(squares));
+    let of_value = |sum: f64, squares: f64| ((squares - sum * sum / images) / (images - 1.0)).max(0.0);
+    let of_pixel = |(sum, squares): (&[f64; 3], &[f64; 3])| (0..3).map(|i| of_value(sum[i], squares[i])).sum::<f64>();
+    let variance: f64 = sums.iter().map(|sum| &sum.1).zip(squares.iter().map(|sum| &sum.1)).map(of_pixel).sum();
+    let brings = [0, 1, 2].map(|channel| sums.iter().map(|(_, sum)| sum[channel]).sum::<f64>() / images);
+    let each = photons as f64 / images;
+    let rays = rays as f64 / photons as f64;
+    let worth = PhotonWorth { lights, brings, variance: variance * each, rays };
+    brings.iter().any(|&x| x != 0.0).then_some(worth)
+}
+
+/// The sums of what falls on each pixel, of those pixels that anything falls on: never more than there are values.
+fn summed(mut values: Vec<(u32, [f64; 3])>) -> Vec<(u32, [f64; 3])> {
+    values.sort_by_key(|value| value.0);
+    values.dedup_by(|next, sum| {
+        let same = next.0 == sum.0;
+        if same {
+            (0..3).for_each(|i| sum.1[i] += next.1[i]);
+        }
+        same
+    });
+    values
+}
+
+/// What camera samples are worth.
+pub fn samples_worth(world: &World) -> SampleWorth {
+    in_lanes!(&world.method.basis, N => weigh_samples::<N>(world))
+}
+
+fn weigh_samples<const N: usize>(world: &World) -> SampleWorth {
+    let mut tracer = PathTracer::<N>::new(world);
+    let film = world.scene.film;
+    let to_xyz = film.color_space.to_xyz();
+    let seed = world.method.seed ^ SEED;
+    let mut variances = Vec::new();
+    for place in 0..SIDE * SIDE {
+        let [x, y] = film.whole().middle_of_cell(SIDE, place);
+        let taken = (0..SAMPLES).map(|number| {
+            let sampler = Sampler::of_pixel(seed.wrapping_add(u64::from(number)), [x, y], 0);
+            apply(&to_xyz, tracer.sample(&sampler, [x, y]).rgb)
+        });
+        let taken: Vec<[f64; 3]> = taken.filter(|xyz| xyz.iter().all(|x| x.is_finite())).collect();
+        let count = taken.len().max(2) as f64;
+        let mut variance = 0.0;
+        for channel in 0..3 {
+            let mean = taken.iter().map(|xyz| xyz[channel]).sum::<f64>() / count;
+            let squares = taken.iter().map(|xyz| (xyz[channel] - mean) * (xyz[channel] - mean));
+            variance += squares.sum::<f64>() / (count - 1.0);
+        }
+        variances.push(variance);
+    }
+    let rays = tracer.walker.stats.rays as f64 / f64::from(SIDE * SIDE * SAMPLES);
+    SampleWorth::of(variances, f64::from(film.width) * f64::from(film.height), rays)
+}
+
+impl SampleWorth {
+    /// Of the variances of single samples in some of an image's pixels, summed over channels.
+    pub fn of(mut variances: Vec<f64>, pixels: f64, rays: f64) -> Self {
+        variances.sort_by(f64::total_cmp);
+        let places = variances.len() as f64;
+        // Of n samples, each pixel has n / pixels.
+        let of_image = |variances: &[f64]| variances.iter().sum::<f64>() / places * pixels * pixels;
+        let common = variances.len() - variances.len().div_ceil(100);
+        let (variance, common_variance) = (of_image(&variances), of_image(&variances[..common]));
+        Self { variance, common_variance, rays }
+    }
+}

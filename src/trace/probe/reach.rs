@@ -1,0 +1,60 @@
+//! What the plan asks of a map of photons before it is made.
+
+use std::cell::RefCell;
+
+use crate::math::{DVec3, Sampler};
+use crate::trace::World;
+use crate::trace::camera::{Observer, PathTracer};
+use crate::trace::pass::Pass;
+use crate::trace::photon::photons;
+use crate::trace::walk::Polarized;
+use crate::trace::width::in_lanes;
+
+/// Camera samples along each side of the image that look where the camera's paths lead.
+const SIDE: u32 = 24;
+/// Sets their random numbers apart.
+const LOOKING: u64 = 0x6c6f_6f6b;
+
+/// Places on surfaces that scatter widely to which paths from the camera come by way of others; the same whatever part
+/// of the image is made.
+pub fn reached_places(world: &World) -> Vec<DVec3> {
+    in_lanes!(&world.method.basis, N => look::<N>(world))
+}
+
+fn look<const N: usize>(world: &World) -> Vec<DVec3> {
+    let film = world.scene.film;
+    let reached = Reached::default();
+    let mut tracer = PathTracer::<N>::new(world).with_observer(&reached);
+    for place in 0..SIDE * SIDE {
+        let [x, y] = film.whole().middle_of_cell(SIDE, place);
+        tracer.sample(&Sampler::of_pixel(world.method.seed ^ LOOKING, [x, y], place), [x, y]);
+    }
+    reached.0.into_inner()
+}
+
+/// All places that were told of.
+#[derive(Default)]
+struct Reached(RefCell<Vec<DVec3>>);
+
+impl Observer for Reached {
+    fn reach(&self, place: DVec3) {
+        self.0.borrow_mut().push(place);
+    }
+}
+
+/// The photons of one pass that lie within a pixel of such places, where all of `SIDE` times `SIDE` fill the image; as
+/// a share.
+pub fn gathered_photons(world: &World, places: &[DVec3]) -> f64 {
+    in_lanes!(&world.method.basis, N => gathered::<N>(world, places))
+}
+
+fn gathered<const N: usize>(world: &World, places: &[DVec3]) -> f64 {
+    let Some(photons) = photons::<N, Polarized>(world, &Pass::of_photons_alone(world, 0)) else { return 0.0 };
+    let camera = &world.scene.camera;
+    let coarse = f64::from(world.scene.film.width) / f64::from(SIDE);
+    let found = |place: &&DVec3| {
+        let radius = coarse * camera.pixel_width((**place - camera.position()).length());
+        photons.any_near(**place, radius)
+    };
+    places.iter().filter(found).count() as f64 / places.len().max(1) as f64
+}

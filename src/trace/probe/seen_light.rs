@@ -1,0 +1,111 @@
+//! How much of the light seen polarization may change, learned from some hundred camera samples and some thousand
+//! photons.
+
+use crate::film::Window;
+use crate::math::Sampler;
+use crate::trace::camera::PathTracer;
+use crate::trace::image::splats;
+use crate::trace::pass::Pass;
+use crate::trace::photon::photon_map;
+use crate::trace::walk::{Polarization, Polarized};
+use crate::trace::width::in_lanes;
+use crate::trace::{LightPass, MapPasses, World};
+
+/// Camera samples along each side of the image.
+pub const SIDE: u32 = 24;
+/// Parts of the view along each side.
+const PARTS: u32 = 6;
+/// Most photons that are shown, and most that are gathered.
+const SHOWN: u64 = 2048;
+const GATHERED: u64 = 2048;
+
+/// Light that was seen, X + Y + Z summed, and by how much polarization may change it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SeenLight {
+    /// Both of each 36th of the view.
+    parts: [[f64; 2]; (PARTS * PARTS) as usize],
+}
+
+impl SeenLight {
+    /// The share of all light by which polarization may change it.
+    pub fn change(&self) -> f64 {
+        share(self.parts.iter().fold([0.0; 2], |sum, part| [sum[0] + part[0], sum[1] + part[1]]))
+    }
+
+    /// The share of the light of a 36th of the view by which polarization may change it, where that is largest.
+    pub fn change_of_part(&self) -> f64 {
+        self.parts.into_iter().map(share).fold(0.0, f64::max)
+    }
+}
+
+fn share([light, change]: [f64; 2]) -> f64 {
+    if light > 0.0 { change / light } else { 0.0 }
+}
+
+/// Looks at the part of the image that is made, with fewer photons than the world's method asks for.
+pub fn seen_light(world: &World) -> SeenLight {
+    let world = with_fewer_photons(world);
+    in_lanes!(&world.method.basis, N => look::<N>(&world))
+}
+
+/// The world with fewer photons than its method asks for.
+pub fn with_fewer_photons(world: &World) -> World {
+    let fewer = |pass: &LightPass| LightPass {
+        photons: pass.photons.min(SHOWN),
+        map: pass.map.map(|map| MapPasses { photons: map.photons.min(GATHERED), ..map }),
+        ..pass.clone()
+    };
+    world.with_light_pass(world.method.light_pass.as_ref().map(fewer))
+}
+
+fn look<const N: usize>(world: &World) -> SeenLight {
+    let window = world.scene.film.window();
+    let mut seen = SeenLight { parts: [[0.0; 2]; (PARTS * PARTS) as usize] };
+    for_each_light::<N, Polarized>(world, 1, &mut |pixel, _, found| {
+        let part = &mut seen.parts[part_of(window, pixel)];
+        (part[0], part[1]) = (part[0] + found.light, part[1] + found.change);
+    });
+    seen
+}
+
+/// Light that is seen, X + Y + Z, and by how much polarization changes it.
+#[derive(Clone, Copy, Default)]
+pub struct Amount {
+    pub light: f64,
+    pub change: f64,
+}
+
+/// Hands over the light of one or two copies of the view, which know nothing of each other: the pixel, counted from the
+/// window's corner, the copy, and what of it a sample found, one in each of [`SIDE`] x [`SIDE`] cells, or photons bring
+/// to as many.
+pub fn for_each_light<const N: usize, P: Polarization<N>>(
+    world: &World,
+    copies: usize,
+    take: &mut impl FnMut([u32; 2], usize, Amount),
+) {
+    let window = world.scene.film.window();
+    let photons = photon_map::photons::<N, P>(world, &Pass::of_photons_alone(world, 0));
+    let mut tracer = PathTracer::<N, P>::new(world).with_photons(photons.as_ref());
+    for (place, copy) in (0..SIDE * SIDE).flat_map(|place| (0..copies).map(move |copy| (place, copy))) {
+        let [x, y] = window.middle_of_cell(SIDE, place);
+        let before = tracer.walker.stats;
+        tracer.sample(&Sampler::of_pixel(world.method.seed.wrapping_add(copy as u64), [x, y], 0), [x, y]);
+        let after = tracer.walker.stats;
+        let found = Amount { light: after.light - before.light, change: after.polarization - before.polarization };
+        take([(x - window.left) as u32, (y - window.top) as u32], copy, found);
+    }
+    // Photons light all pixels, of which so many were looked at.
+    let looked_at = copies as f64 * f64::from(SIDE * SIDE) / window.pixels() as f64;
+    splats::<N, P>(world, &mut |splat| {
+        let light = looked_at * world.amount(splat.rgb);
+        let pixel = [splat.pixel % window.width, splat.pixel / window.width];
+        let copy = if splat.early { 0 } else { copies - 1 };
+        take(pixel, copy, Amount { light, change: light * f64::from(splat.change) });
+    });
+}
+
+/// The part of the view that a pixel of the window lies in.
+fn part_of(window: Window, [x, y]: [u32; 2]) -> usize {
+    let part = |at: u32, size: u32| (u64::from(at) * u64::from(PARTS) / u64::from(size)) as usize;
+    part(y, window.height) * PARTS as usize + part(x, window.width)
+}

@@ -1,0 +1,68 @@
+//! Where lights are really seen that may be hidden for the most part.
+
+use std::cell::RefCell;
+
+use crate::light::{Light, LightId};
+use crate::math::{DVec3, Sampler};
+use crate::trace::World;
+use crate::trace::camera::{Observer, PathTracer};
+use crate::trace::contribution::{Contribution, Found};
+use crate::trace::width::in_lanes;
+
+/// Camera samples along each side of the image.
+const SIDE: u32 = 64;
+/// Lights met that tell enough.
+const ENOUGH: usize = 2048;
+/// Sets these random numbers apart from those of the image.
+const SEED: u64 = 0x6c61_6d70;
+
+/// Learns where lamps are visible that may be hidden for the most part. The format counts, also where a part of it or
+/// more is made, so that all parts are made alike.
+pub fn learn_visible_caps(world: &mut World) {
+    if !world.scene.lights.iter().any(|light| matches!(light, Light::Area(area) if area.may_show_a_cap())) {
+        return;
+    }
+    // Paths hit lamps behind a diffuse surface, also where the image has no such paths.
+    let asked = std::mem::replace(&mut world.method.diffuse_bounces, u32::MAX);
+    let hit = in_lanes!(&world.method.basis, N => look::<N>(world));
+    world.method.diffuse_bounces = asked;
+    for (id, light) in world.scene.lights.iter_mut().enumerate() {
+        if let Light::Area(area) = light
+            && area.may_show_a_cap()
+        {
+            let normals: Vec<DVec3> = hit.iter().filter(|(light, _)| *light == id).map(|(_, n)| *n).collect();
+            area.learn_visible_cap(&normals);
+        }
+    }
+}
+
+/// The lights that paths hit by chance, with the unit normals there.
+fn look<const N: usize>(world: &World) -> Vec<(LightId, DVec3)> {
+    let film = world.scene.film;
+    let met = Met::default();
+    let mut tracer = PathTracer::<N>::new(world).with_observer(&met);
+    // A stride that is coprime to the number of places visits them all, far ones first.
+    let places = SIDE * SIDE;
+    for place in (0..places).map(|i| (i * 1597) % places) {
+        let [x, y] = film.whole().middle_of_cell(SIDE, place);
+        tracer.sample(&Sampler::of_pixel(world.method.seed ^ SEED, [x, y], place), [x, y]);
+        if met.0.borrow().len() >= ENOUGH {
+            break;
+        }
+    }
+    met.0.into_inner()
+}
+
+/// The lights hit in directions that were drawn where lights were sampled as well.
+#[derive(Default)]
+struct Met(RefCell<Vec<(LightId, DVec3)>>);
+
+impl Observer for Met {
+    fn receive(&self, contribution: &Contribution) {
+        if let (Some(light), Found::Hit { normal: Some(normal), scattered: true }) =
+            (contribution.light, contribution.found)
+        {
+            self.0.borrow_mut().push((light, normal));
+        }
+    }
+}

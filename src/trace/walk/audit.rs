@@ -1,0 +1,133 @@
+//! The energy audit of splitting: whether all of the weight that left the camera has come to an end somewhere.
+//!
+//! A camera sample starts with weight 1 in each lane. Surfaces split it into branches, media and surfaces absorb some,
+//! and the rest ends where it meets a light, or nothing. What chance adds or takes, where branches are chosen and paths
+//! ended, is 0 on the average. What is left when all paths have ended was lost: to a limit of bounces, or to a mistake.
+//!
+//! A weight is a share of flux: a throughput without the factor of radiance between media, each lane by its own index.
+//! What a dye absorbs counts as absorbed; the paths that look for what excites it have no weight here.
+//!
+//! Where lanes part for the first time the fixed lanes hand over to the heroes, so lanes that are together and lanes
+//! that have parted have a balance each.
+
+use super::interaction::Interaction;
+use super::path::Path;
+use super::polarization::Onward;
+use crate::material::{Branch, Index, Straight};
+use crate::spectrum::{Draw, Lanes, Throughput};
+use crate::trace::World;
+use crate::trace::media::{Media, index_around};
+use crate::trace::white::White;
+
+/// The balance of one camera sample after another.
+pub struct Audit<'a, const N: usize> {
+    world: &'a World,
+    /// The index of each lane around the camera.
+    start: [f64; N],
+    /// The weight of each lane that has not ended, before and after it parted.
+    open: [[f64; N]; 2],
+}
+
+impl<'a, const N: usize> Audit<'a, N> {
+    pub fn new(world: &'a World) -> Self {
+        Self { world, start: [1.0; N], open: [[0.0; N]; 2] }
+    }
+
+    /// Begins with the path of another camera ray.
+    pub fn begin<P>(&mut self, path: &Path<N, P>, draw: &Draw<N>) {
+        self.start = self.indices(&path.media, draw);
+        self.open = [draw.start().0.map(f64::from), [0.0; N]];
+    }
+
+    /// A path has come to its end.
+    pub fn end<P>(&mut self, path: &Path<N, P>, draw: &Draw<N>) {
+        let ended = self.weight(path, path.throughput, draw);
+        self.close(path.parted, &ended);
+    }
+
+    /// A path has come to its end, but for what goes straight on.
+    pub fn end_beside<P>(&mut self, path: &Path<N, P>, onward: Option<&Onward<N, P>>, draw: &Draw<N>) {
+        let share = onward.map_or(Lanes::ZERO, |onward| onward.straight.share());
+        let ended = self.weight(path, path.throughput, draw);
+        self.close(path.parted, &std::array::from_fn(|i| ended[i] * (1.0 - f64::from(share[i]))));
+    }
+
+    /// The medium around a path has absorbed some of the throughput that it had before.
+    pub fn absorb<P>(&mut self, path: &Path<N, P>, before: Throughput<N>, draw: &Draw<N>) {
+        if before != path.throughput {
+            let [before, after] = [before, path.throughput].map(|throughput| self.weight(path, throughput, draw));
+            self.close(path.parted, &std::array::from_fn(|i| before[i] - after[i]));
+        }
+    }
+
+    /// A surface has split a path into branches and what goes straight on.
+    ///
+    /// A clear surface absorbs nothing: what its branches lack, or have too much, stays open. Any other absorbs what
+    /// they lack, for no formula of its own says how much that is.
+    pub fn split<P>(
+        &mut self,
+        path: &Path<N, P>,
+        at: &Interaction<N>,
+        branches: &[Branch<N>],
+        straight: Option<&Straight<N>>,
+    ) {
+        let (arrival, draw) = (&at.arrival, at.arrival.draw);
+        let arrived = self.weight(path, path.throughput, draw);
+        let clear = at.material.absorbs_nothing();
+        let (goes_on, parting) = (straight.map_or(Lanes::ZERO, Straight::share), draw.parting());
+        let mut absorbed: [f64; N] = std::array::from_fn(|i| 1.0 - f64::from(goes_on[i]));
+        let mut parted = [0.0; N];
+        for branch in branches {
+            for lane in 0..N {
+                let ratio = arrival.beyond_of(lane) / arrival.incident_of(lane);
+                let share = f64::from(branch.share[lane]) * if branch.crosses { ratio * ratio } else { 1.0 };
+                absorbed[lane] -= share;
+                parted[lane] += if branch.crosses && at.parts { share } else { 0.0 };
+            }
+        }
+        let hand_over = at.parts && !path.parted;
+        for lane in 0..N {
+            // Lanes that do not cross where lanes part hand over to those that do.
+            let hands_over = at.parts && parting[lane] == 0.0;
+            if clear && !hands_over {
+                absorbed[lane] = 0.0;
+            }
+            let moved = if hand_over { arrived[lane] * parted[lane] } else { 0.0 };
+            self.open[usize::from(path.parted)][lane] -= arrived[lane] * absorbed[lane] + moved;
+            self.open[1][lane] += moved;
+        }
+    }
+
+    /// What has not come to an end, as the film's red, green and blue of a white light.
+    pub fn left_open(&self, white: &White, draw: &Draw<N>) -> [f64; 3] {
+        let [together, parted] = [false, true].map(|parted| {
+            let open = self.open[usize::from(parted)];
+            white.times(draw, Lanes::from_fn(|lane| open[lane] as f32), parted)
+        });
+        [0, 1, 2].map(|channel| together[channel] + parted[channel])
+    }
+
+    fn close(&mut self, parted: bool, ended: &[f64; N]) {
+        self.open[usize::from(parted)].iter_mut().zip(ended).for_each(|(open, ended)| *open -= ended);
+    }
+
+    /// A throughput as a share of the flux that left the camera, at the end of a path.
+    fn weight<P>(&self, path: &Path<N, P>, throughput: Throughput<N>, draw: &Draw<N>) -> [f64; N] {
+        if path.excitation.is_some() {
+            return [0.0; N];
+        }
+        let (lanes, here) = (throughput.of(Lanes::ONE), self.indices(&path.media, draw));
+        std::array::from_fn(|lane| {
+            let ratio = here[lane] / self.start[lane];
+            f64::from(lanes[lane]) * ratio * ratio
+        })
+    }
+
+    /// The index of each lane among the bodies around a place.
+    fn indices(&self, media: &Media, draw: &Draw<N>) -> [f64; N] {
+        match index_around(&self.world.scene, media.inside(&self.world.scene)) {
+            Index::Same(index) => [index; N],
+            Index::Own(table) => draw.read_exact(table),
+        }
+    }
+}

@@ -1,0 +1,91 @@
+//! Where a path meets dyes: besides what the surface scatters, it may go on with what excites each of them.
+
+use super::excitation::Excitation;
+use super::interaction::Interaction;
+use super::path::Path;
+use super::polarization::Polarization;
+use crate::math::Sampler;
+use crate::spectrum::{Lanes, Throughput};
+use crate::trace::World;
+use crate::trace::arrived::Arrived;
+use crate::trace::dyes::Dyes;
+
+/// The branch of the random numbers of dyes, beyond those that a path may take.
+const DYE: usize = 160;
+/// Use of those that choose one, and what lanes stand for.
+const CHOICE: u32 = 1;
+
+/// A path at a surface with dyes.
+pub struct Exciting<'a, const N: usize, P> {
+    pub world: &'a World,
+    pub dyes: &'a Dyes,
+    pub path: &'a Path<N, P>,
+    pub at: &'a Interaction<'a, N>,
+    /// Whether it goes on in all ways, or in one of them.
+    pub all: bool,
+    /// The dye that the path's light excites, if it has seen one.
+    pub seen: Option<&'a Excitation<N, P>>,
+}
+
+/// The ways on from there.
+pub struct Ways<const N: usize, P> {
+    pub of_dyes: Vec<(Path<N, P>, Excitation<N, P>)>,
+    /// The factor on what the surface scatters: 0 if one of the dyes is chosen.
+    pub scattered: f64,
+}
+
+impl<const N: usize, P: Polarization<N>> Exciting<'_, N, P> {
+    /// Chooses those that are followed.
+    pub fn ways(&self, sampler: &Sampler) -> Ways<N, P> {
+        let Self { world, dyes, path, at, all, .. } = *self;
+        let [mut u, wavelength, ..] = sampler.four_plain(path.key.child(DYE), CHOICE);
+        let weight = path.throughput.weight(at.arrival.draw.shares(path.parted));
+        let (mut of_dyes, mut shares) = (Vec::new(), Vec::new());
+        at.material.shares_of_dyes(&at.arrival, Lanes::ONE, &mut shares);
+        let of_surface = dyes.of(&world.scene, at.object);
+        let chances = dyes.chances(of_surface.clone());
+        for (number, (dye, share)) in of_surface.zip(shares).enumerate() {
+            let chance = chances.of(dye);
+            let is_chosen = (0.0..chance).contains(&u);
+            u -= chance;
+            if weight == 0.0 || !(all || is_chosen) {
+                continue;
+            }
+            let lanes = path.throughput.of(share * (1.0 / (weight * chance)) as f32);
+            let excitation = self.excitation(dye, lanes, wavelength);
+            // One that is chosen goes on for all.
+            let weight = if all { weight * chance } else { weight };
+            let way = Path {
+                throughput: Throughput::starting(excitation.draw.start()).scaled(weight),
+                parted: false,
+                polarization: path.polarization.exciting(),
+                key: path.key.child(DYE + 1 + number),
+                ..*path
+            };
+            of_dyes.push((way, excitation));
+        }
+        let scattered = match all {
+            true => 1.0,
+            false if u < 0.0 => 0.0,
+            false => 1.0 / (1.0 - chances.total()),
+        };
+        Ways { of_dyes, scattered }
+    }
+
+    /// What the sensor gets of a dye that is seen by lanes. A random number chooses what the lanes behind it stand for.
+    fn excitation(&self, dye: usize, lanes: Lanes<N>, wavelength: f64) -> Excitation<N, P> {
+        let Self { world, dyes, path, at, .. } = *self;
+        let (seen_by, draw) = (at.arrival.draw, world.method.basis.draw(wavelength));
+        let (source, parted) = (dyes.source(dye), path.parted);
+        match self.seen {
+            None => {
+                let (seen_by, polarization) = (seen_by.clone(), path.polarization);
+                Excitation { source, lanes, seen_by, parted, polarization, dye, draw }
+            }
+            Some(seen) => {
+                let brightness = dyes.excited(seen.dye, &Arrived { source, draw: seen_by, lanes: &lanes, parted });
+                Excitation { lanes: seen.lanes * brightness as f32, dye, draw, ..seen.clone() }
+            }
+        }
+    }
+}

@@ -1,0 +1,137 @@
+//! A ray meets a surface.
+
+use super::shading;
+use crate::material::{Arrival, Lobes, Material};
+use crate::math::{DVec3, Ray};
+use crate::scene::{Hit, MaterialId};
+use crate::shape::SurfacePoint;
+use crate::spectrum::{Draw, Lanes, Table};
+use crate::trace::first_lobe::FirstLobe;
+use crate::trace::media::Boundary;
+use crate::trace::{World, media};
+
+/// The next surface along a ray.
+pub struct Meeting {
+    pub hit: Hit,
+    pub point: SurfacePoint,
+}
+
+/// Where a path meets a surface, and what the surface may know of it: made here, for the camera's paths, photons and
+/// probes.
+pub struct Interaction<'a, const N: usize> {
+    pub object: u32,
+    pub point: &'a SurfacePoint,
+    pub material: &'a Material<Table>,
+    pub lobes: Lobes,
+    /// The surface's own unit normal, of the triangle where a mesh is smooth, on the side that the path comes from.
+    pub flat: DVec3,
+    /// The media on both sides.
+    pub boundary: Boundary,
+    pub arrival: Arrival<'a, N>,
+    /// Whether lanes that cross the surface part.
+    pub parts: bool,
+}
+
+impl<'a, const N: usize> Interaction<'a, N> {
+    /// Of a ray, with some lanes on it, with the surface that it has met at a boundary of media.
+    #[inline(always)]
+    pub fn new(
+        world: &'a World,
+        draw: &'a Draw<N>,
+        ray: &Ray,
+        present: Lanes<N>,
+        meeting: &'a Meeting,
+        boundary: Boundary,
+    ) -> Self {
+        let Meeting { hit, point } = meeting;
+        let object = &world.scene.objects[hit.object as usize];
+        let (wo, uv, number) = (-ray.direction, object.uv(&hit.crossing, point), object.material as usize);
+        let (material, lobes) = (&world.scene.materials[number].material, world.lobes[number]);
+        let [flat, normal] = shading::normals(point, wo);
+        let sides = boundary.sides();
+        let mut at = Self {
+            object: hit.object,
+            point,
+            material,
+            lobes,
+            flat,
+            boundary,
+            arrival: Arrival {
+                from_inside: point.normal.dot(wo) < 0.0,
+                ..arrival(world, draw, wo, normal, uv, present, sides)
+            },
+            parts: false,
+        };
+        at.parts = parts(lobes, material, &at.arrival);
+        at
+    }
+
+    /// With another normal by which the surface scatters.
+    pub fn by_normal(self, normal: DVec3) -> Self {
+        if normal == self.arrival.normal {
+            return self;
+        }
+        let arrival = Arrival { normal, ..self.arrival };
+        let parts = parts(self.lobes, self.material, &arrival);
+        Self { arrival, parts, ..self }
+    }
+
+    /// As the light sees it that excites a dye: white, in lanes that stand for what excites.
+    pub fn of_dye(&self, white: &'a Material<Table>, draw: &'a Draw<N>) -> Self {
+        let arrival = Arrival { draw, present: draw.start(), ..self.arrival };
+        Self { material: white, lobes: Lobes::DIFFUSE_REFLECTION, arrival, parts: false, ..*self }
+    }
+
+    /// The lobe by which the first surface sends light to the camera that a path finds here, in a direction that may
+    /// lead beyond the surface; none if layers do not tell that apart. `known` is that of a path that has left the
+    /// first surface, none before.
+    #[inline]
+    pub fn first_lobe(
+        &self,
+        world: &World,
+        known: Option<Option<FirstLobe>>,
+        wi: DVec3,
+        crosses: bool,
+    ) -> Option<FirstLobe> {
+        match known {
+            None if !world.layers.tell_lobes_apart() => None,
+            None if crosses => Some(FirstLobe::Transmitted),
+            None => {
+                let Self { material, lobes, arrival, .. } = self;
+                Some(FirstLobe::reflected(world.layers.white.as_ref(), material, *lobes, arrival, wi))
+            }
+            Some(first) => first,
+        }
+    }
+}
+
+/// Whether lanes part that cross a surface.
+pub fn parts<const N: usize>(lobes: Lobes, material: &Material<Table>, arrival: &Arrival<N>) -> bool {
+    lobes.is_transmissive() && material.parts_lanes(arrival)
+}
+
+/// What a surface may know of light that arrives there, between media on the viewer's side and beyond. `wo` leads to
+/// the viewer; `normal` is the one by which the surface scatters, on the viewer's side; `uv` says where it is met.
+#[inline(always)]
+pub fn arrival<'a, const N: usize>(
+    world: &'a World,
+    draw: &'a Draw<N>,
+    wo: DVec3,
+    normal: DVec3,
+    uv: [f64; 2],
+    present: Lanes<N>,
+    sides: [Option<MaterialId>; 2],
+) -> Arrival<'a, N> {
+    Arrival {
+        wo,
+        normal,
+        uv,
+        draw,
+        present,
+        from_inside: false,
+        incident: media::index_around(&world.scene, sides[0]),
+        beyond: media::index_around(&world.scene, sides[1]),
+        direction_indices: media::direction_indices(&world.scene, sides),
+        together: world.method.together,
+    }
+}

@@ -1,0 +1,26 @@
+//! A path from surface to surface: what it meets, how it goes on, and what it knows of its light.
+
+mod audit;
+mod excitation;
+mod exciting;
+mod interaction;
+mod path;
+mod polarization;
+mod polarized;
+mod roulette;
+mod rows;
+pub mod shading;
+mod slots;
+pub mod straight;
+mod walker;
+
+pub use audit::Audit;
+pub use excitation::Excitation;
+pub use exciting::Exciting;
+pub use interaction::{Interaction, Meeting, parts};
+pub use path::{Among, Path, PathKind, ScatterSample};
+pub use polarization::{MetLight, Onward, Polarization, SeenPhoton};
+pub use polarized::Polarized;
+pub use rows::Rows;
+pub use straight::{Passage, Past, Through, straight_at};
+pub use walker::{Departure, Walker};

@@ -1,0 +1,190 @@
+use super::polarization::{Onward, Polarization};
+use super::polarized::Polarized;
+use crate::math::{BranchKey, DVec3, Ray};
+use crate::scene::Primitive;
+use crate::shape::SurfacePoint;
+use crate::spectrum::{Draw, Throughput};
+use crate::trace::first_lobe::FirstLobe;
+use crate::trace::media::Media;
+use crate::trace::{World, media};
+
+/// A ray on its way back from the camera.
+#[derive(Clone, Copy, Debug)]
+pub struct Path<const N: usize, P = Polarized> {
+    pub ray: Ray,
+    /// The surface that it met last, which its ray leaves.
+    pub left: Option<Primitive>,
+    pub throughput: Throughput<N>,
+    /// The factor of radiance between the medium at the path's end and the camera's, which is no measure of importance.
+    pub eta_scale: f64,
+    /// The bodies the ray is inside of.
+    pub media: Media,
+    /// Whether lanes have parted on the way, after which other lanes count.
+    pub parted: bool,
+    /// Which random numbers belong to the path's next vertex.
+    pub key: BranchKey,
+    /// Surfaces met so far.
+    pub vertices: u32,
+    /// How far the light has to go along it.
+    pub length: f64,
+    /// What kind of path it is so far.
+    pub kind: PathKind,
+    /// How often the path may still leave a diffuse surface.
+    pub diffuse_left: u32,
+    /// How the last direction was sampled; none after the camera or a smooth surface.
+    pub scatter: Option<ScatterSample>,
+    /// How its light is polarized.
+    pub polarization: P,
+    /// How often surfaces have scattered, mirrored or refracted it.
+    pub bounces: u32,
+    /// Whether only smooth surfaces have: what it meets next is seen.
+    pub is_seen: bool,
+    /// Which objects there are for it.
+    pub among: Among,
+    /// Which of the walk's excitations it follows: its lanes are then what excites a dye.
+    pub excitation: Option<u32>,
+    /// By which lobe the first surface sends its light to the camera, if layers tell that apart.
+    pub first: Option<FirstLobe>,
+}
+
+/// Which objects there are for a ray.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Among {
+    /// All.
+    All,
+    /// Those that are in the plate or light it.
+    Plate,
+}
+
+/// How a path that photons may find as well goes on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PathKind {
+    /// Straight from the camera.
+    Camera,
+    /// Scattered widely by a surface from which photons are shown to the camera or gathered.
+    Wide,
+    /// After that over smooth surfaces alone; `aimed` says whether photons are sent to the last one.
+    Smooth { aimed: bool },
+    /// Another way.
+    Other,
+}
+
+impl PathKind {
+    /// After one more surface; `wide` says whether light left it by a density of directions, `aimed` whether photons
+    /// are sent to its object; none if light cannot be followed forward the same way. Photons are shown from the first
+    /// surface alone, and gathered from all others if they are at all.
+    pub fn then(self, gathers: bool, wide: bool, aimed: impl FnOnce() -> Option<bool>) -> Self {
+        match (self, wide) {
+            (Self::Camera, true) => Self::Wide,
+            (_, true) if gathers => Self::Wide,
+            (Self::Wide | Self::Smooth { .. }, false) => aimed().map_or(Self::Other, |aimed| Self::Smooth { aimed }),
+            _ => Self::Other,
+        }
+    }
+}
+
+/// How a direction was sampled at a surface where lights were sampled as well.
+#[derive(Clone, Copy, Debug)]
+pub struct ScatterSample {
+    /// Density per steradian.
+    pub pdf: f64,
+    /// The point from which lights were sampled.
+    pub from: DVec3,
+    /// The surface's unit normal on the side that the direction leads to.
+    pub normal: DVec3,
+    /// How likely lights were sampled on this side of the surface.
+    pub chance: f64,
+    /// Whether every light was sampled there, or one.
+    pub all_lights: bool,
+    /// Whether the path has gone straight on through surfaces since.
+    pub passed: bool,
+    /// Whether a vertex of a light path was looked at from there.
+    pub resampled: bool,
+}
+
+impl ScatterSample {
+    /// Toward a direction that was sampled with a density, which may lead beyond the surface.
+    pub fn toward(self, pdf: f64, crosses: bool) -> Self {
+        Self { pdf, normal: if crosses { -self.normal } else { self.normal }, ..self }
+    }
+}
+
+impl<const N: usize, P: Polarization<N>> Path<N, P> {
+    /// The path of a camera ray.
+    pub fn from_camera(world: &World, draw: &Draw<N>, ray: Ray) -> Self {
+        let camera = &world.scene.camera;
+        let media = if world.has_media && camera.starts_away() {
+            world.camera_media.after_walk(&world.scene, camera.position(), ray.origin)
+        } else {
+            world.camera_media
+        };
+        let polarization = P::of_camera(world, &ray);
+        let path = Self { kind: PathKind::Camera, polarization, ..Self::from_light(world, draw, ray, media) };
+        match camera.filter() {
+            Some(filter) => Self { throughput: path.throughput.scaled(filter.transmittance()), ..path },
+            None => path,
+        }
+    }
+
+    /// The path of a ray that leaves a light, inside of some bodies.
+    pub fn from_light(world: &World, draw: &Draw<N>, ray: Ray, media: Media) -> Self {
+        Self {
+            ray,
+            left: None,
+            throughput: Throughput::starting(draw.start()),
+            eta_scale: 1.0,
+            media,
+            parted: false,
+            key: BranchKey::CAMERA,
+            vertices: 0,
+            length: 0.0,
+            kind: PathKind::Other,
+            diffuse_left: world.method.diffuse_bounces,
+            scatter: None,
+            polarization: P::of_light(world, &ray),
+            bounces: 0,
+            is_seen: true,
+            among: Among::All,
+            excitation: None,
+            first: None,
+        }
+    }
+
+    /// The path beyond a surface that it goes straight through as if nothing were there.
+    ///
+    /// Lights beyond were sampled through the surface, from where its direction was: light that goes straight on makes
+    /// no other kind of path.
+    pub fn passed(&self, point: &SurfacePoint) -> Self {
+        let scatter = self.scatter.map(|scatter| ScatterSample { passed: true, ..scatter });
+        Self { ray: point.leave(self.ray.direction), scatter, ..*self }
+    }
+
+    /// The path beyond a surface that it has met and goes straight through in part, which is not counted among its
+    /// surfaces.
+    #[cold]
+    #[inline(never)]
+    pub fn passed_in_part(&self, point: &SurfacePoint, onward: &Onward<N, P>) -> Self {
+        let throughput = self.throughput.through(onward.straight.share());
+        let polarization = onward.polarization;
+        Self { throughput, polarization, vertices: self.vertices - 1, ..self.passed(point) }
+    }
+
+    /// By which lobe the first surface sends its light to the camera; none before it has left one.
+    pub fn lobe(&self) -> Option<Option<FirstLobe>> {
+        (self.bounces > 0).then_some(self.first)
+    }
+
+    /// How much the path can still matter: its mean throughput, without the factor of radiance between media.
+    pub fn weight(&self, draw: &Draw<N>) -> f64 {
+        self.throughput.weight(draw.shares(self.parted)) / self.eta_scale
+    }
+
+    /// Follows the ray along a distance, on which the medium around it absorbs.
+    pub fn advance(&mut self, world: &World, draw: &Draw<N>, distance: f64) {
+        self.length += distance;
+        if let Some(material) = self.media.inside(&world.scene) {
+            let transmission = media::medium(&world.scene, material).transmission(draw, distance);
+            self.throughput = self.throughput.through(transmission);
+        }
+    }
+}

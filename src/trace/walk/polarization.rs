@@ -1,0 +1,137 @@
+//! What a path knows of the polarization of its light.
+
+use std::fmt::Debug;
+
+use super::excitation::Excitation;
+use super::interaction::Interaction;
+use super::slots::Slots;
+use crate::light::Light;
+use crate::material::{Arrival, Branch, Material, Straight};
+use crate::math::{DVec3, Ray};
+use crate::spectrum::{Lanes, Table};
+use crate::trace::World;
+use crate::trace::arrived::Arrived;
+
+/// What of a path's light goes straight on where it meets a surface.
+#[derive(Clone, Copy, Debug)]
+pub struct Onward<const N: usize, P> {
+    /// The share of each lane.
+    pub straight: Straight<N>,
+    /// How the path's light is polarized beyond.
+    pub polarization: P,
+}
+
+/// Light that a path has found.
+pub struct MetLight<'a, const N: usize, P> {
+    pub world: &'a World,
+    pub arrived: &'a Arrived<'a, N>,
+    /// The dye that it excites, where the path has seen one.
+    pub excitation: Option<&'a Excitation<N, P>>,
+    /// What the sensor gets of it.
+    pub rgb: [f64; 3],
+}
+
+impl<'a, const N: usize, P> MetLight<'a, N, P> {
+    #[inline]
+    pub fn new(world: &'a World, arrived: &'a Arrived<'a, N>, excitation: Option<&'a Excitation<N, P>>) -> Self {
+        let rgb = match excitation {
+            None => arrived.rgb(&world.responses),
+            Some(excitation) => excitation.seen(world, arrived, |seen| seen.rgb(&world.responses)),
+        };
+        Self { world, arrived, excitation, rgb }
+    }
+}
+
+/// How the light of a photon reaches the camera.
+pub struct SeenPhoton<const N: usize> {
+    /// By what share polarization may change each lane.
+    pub change: Lanes<N>,
+    /// The factor by which a filter changes it.
+    pub factor: Option<Lanes<N>>,
+    /// S1, S2 and S3 over S0, if they are asked for.
+    pub stokes: Option<[Lanes<N>; 3]>,
+}
+
+/// What a path knows of the polarization of its light: [`Polarized`](super::polarized::Polarized), by how much it may
+/// matter that polarization is not traced, or [`Rows`](super::rows::Rows), all of it.
+///
+/// Densities never depend on it, nor do directions: all ways to sample light agree on them.
+pub trait Polarization<const N: usize>: Copy + Debug + Send + Sync + 'static {
+    /// What is kept of it with a photon that has landed.
+    type Landed: Clone + Debug + Send + Sync;
+    /// What becomes of it along a branch that may be followed.
+    type Way: Debug;
+
+    /// Of a path that starts at the camera along a ray.
+    fn of_camera(world: &World, ray: &Ray) -> Self;
+
+    /// Of a path that starts at a light, which shines unpolarized.
+    fn of_light(world: &World, ray: &Ray) -> Self;
+
+    /// After a surface that lets some light go straight on; makes that the share that does.
+    fn after_straight(self, material: &Material<Table>, arrival: &Arrival<N>, straight: &mut Straight<N>) -> Self;
+
+    /// Before branches are chosen: makes their shares those of the path's light, and puts what becomes of it along each
+    /// of them into `ways`. Nothing is put there where that can wait until one is chosen.
+    fn split(&self, at: &Interaction<N>, branches: &mut [Branch<N>], ways: &mut Slots<Self::Way>);
+
+    /// Becomes what it is along a branch, of which `split` may have told already, when it was `before`.
+    fn become_along(&mut self, before: &Self, at: &Interaction<N>, branch: &Branch<N>, way: Option<&Self::Way>);
+
+    /// On the way from a surface along the unit vector `wi` to a light, where it meets panes next; makes `bsdf_cos`
+    /// that of the path's light.
+    fn toward(&self, at: &Interaction<N>, wi: DVec3, bsdf_cos: &mut Lanes<N>) -> Self;
+
+    /// How much of light that arrives along `wi`, `on_its_way` by `toward` and panes, polarization may change, as X + Y
+    /// + Z.
+    fn moved(&self, at: &Interaction<N>, wi: DVec3, on_its_way: &Self, light: &MetLight<N, Self>) -> f64;
+
+    /// The same of light that the path has met.
+    fn moved_of_met(&self, light: &MetLight<N, Self>) -> f64;
+
+    /// Of the light that excites a dye, where the path sees one: evenly, whatever its polarization.
+    fn exciting(&self) -> Self;
+
+    /// Where the path meets light that comes from the unit vector `wi`, which may be polarized; makes `shone`, what the
+    /// light would be that is not, what the path takes of it.
+    fn lit_by(self, light: &Light<Table>, wi: DVec3, shone: &mut Lanes<N>) -> Self;
+
+    /// On the way from a surface, where a photon has landed, along a unit vector to the camera; makes `bsdf_cos` that
+    /// of the photon's light.
+    fn shown(&self, at: &Interaction<N>, direction: DVec3, bsdf_cos: &mut Lanes<N>) -> Self;
+
+    /// What the camera sees of a photon that came to it from there along a ray of its own; `on_its_way` is by `shown`
+    /// and panes, `viewed` the surface as the camera sees it.
+    fn seen(
+        &self,
+        at: &Interaction<N>,
+        viewed: &Arrival<N>,
+        on_its_way: &Self,
+        world: &World,
+        ray: &Ray,
+    ) -> SeenPhoton<N>;
+
+    /// What is kept of it where a photon has landed.
+    fn landed(&self, at: &Interaction<N>) -> Self::Landed;
+
+    /// Brings a path from the camera, at a surface, together with a photon that has landed near and came along `wi`;
+    /// makes `bsdf_cos` that of their light.
+    fn join(&self, at: &Interaction<N>, wi: DVec3, photon: &Self::Landed, bsdf_cos: &mut Lanes<N>) -> Self;
+
+    /// By what share polarization may change the light of a photon, which came along a unit vector, that `join` has
+    /// brought together with a path in lanes.
+    fn change_of_joined(
+        &self,
+        at: &Interaction<N>,
+        wi: DVec3,
+        photon: &Self::Landed,
+        joined: &Self,
+        lanes: Lanes<N>,
+    ) -> f64;
+
+    /// What is kept with a photon, its lanes read as others.
+    fn read_landed(photon: &Self::Landed, read: impl Fn(Lanes<N>) -> Lanes<N>) -> Self::Landed;
+
+    /// S1, S2 and S3 of unpolarized light that the path has met, each as a factor on S0, if they are asked for.
+    fn stokes(&self) -> Option<[Lanes<N>; 3]>;
+}

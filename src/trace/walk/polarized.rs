@@ -1,0 +1,176 @@
+//! What polarization, which is not traced, may change of the light seen.
+//!
+//! A surface that favors one polarization by the degree d multiplies intensity by 1 + d p, where p is the part of the
+//! light's polarization in its own frame, and p becomes (p + d) / (1 + d p) where the frames agree. Whatever the
+//! frames, retardances and signs are, intensity is thus changed at most by the product of 1 + P |d|, with P that
+//! follows the same rule from |d| alone: degrees add as velocities do, and ones that add all the way are the worst.
+//! Light leaves lamps and the sky unpolarized, and surfaces that scatter it diffusely.
+
+use super::interaction::Interaction;
+use super::polarization::{MetLight, Polarization, SeenPhoton};
+use super::slots::Slots;
+use crate::light::Light;
+use crate::material::{Arrival, Branch, Material, Scatter, Straight};
+use crate::math::{DVec3, Ray};
+use crate::spectrum::{Lanes, Table};
+use crate::trace::World;
+
+/// How far a path's light may be polarized, and by what factor that may have changed it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Polarized {
+    degree: f32,
+    growth: f32,
+}
+
+impl Polarized {
+    /// Of a camera that sees all polarizations alike.
+    pub const NOT: Self = Self { degree: 0.0, growth: 1.0 };
+
+    /// After a surface of a degree, 0 to 1.
+    pub fn after(self, degree: f32) -> Self {
+        if degree == 0.0 {
+            return self;
+        }
+        let factor = 1.0 + self.degree * degree;
+        let growth = (self.growth * factor).min(f32::MAX);
+        Self { degree: ((self.degree + degree) / factor).min(1.0), growth }
+    }
+
+    /// After a way on which unpolarized light is polarized as `other` says.
+    pub fn joined(self, other: Self) -> Self {
+        let growth = (other.growth * self.growth).min(f32::MAX);
+        Self { growth, ..self }.after(other.degree)
+    }
+
+    /// After light was scattered by a material in a direction that it drew from a density.
+    pub fn scattered<const N: usize>(self, material: &Material<Table>, arrival: &Arrival<N>, wi: DVec3) -> Self {
+        if let Material::Diffuse(_) = material {
+            return Self { degree: 0.0, ..self };
+        }
+        let degree = material.degree_of_scattered(arrival, wi);
+        let after = self.after(degree);
+        if material.is_diffuse() { Self { degree, ..after } } else { after }
+    }
+
+    /// With light that comes to a surface that scatters it, in a direction and polarized on its way there.
+    pub fn brought<const N: usize>(
+        self,
+        material: &Material<Table>,
+        arrival: &Arrival<N>,
+        wi: DVec3,
+        on_its_way: Self,
+    ) -> Self {
+        self.scattered(material, arrival, wi).joined(on_its_way)
+    }
+
+    /// Whether there is anything that polarization may have changed or may change at the next surface.
+    pub fn is_any(self) -> bool {
+        self.degree != 0.0 || self.growth != 1.0
+    }
+
+    /// The share of the light by which polarization may have changed it.
+    pub fn change(self) -> f64 {
+        f64::from(self.growth) - 1.0
+    }
+}
+
+impl<const N: usize> Polarization<N> for Polarized {
+    type Landed = Self;
+    type Way = ();
+
+    fn of_camera(_: &World, _: &Ray) -> Self {
+        Self::NOT
+    }
+
+    fn of_light(_: &World, _: &Ray) -> Self {
+        Self::NOT
+    }
+
+    #[inline]
+    fn after_straight(self, _: &Material<Table>, _: &Arrival<N>, straight: &mut Straight<N>) -> Self {
+        self.after(straight.polarization)
+    }
+
+    #[inline(always)]
+    fn split(&self, _: &Interaction<N>, _: &mut [Branch<N>], _: &mut Slots<()>) {}
+
+    #[inline(always)]
+    fn become_along(&mut self, before: &Self, at: &Interaction<N>, branch: &Branch<N>, _: Option<&()>) {
+        *self = match branch.pdf {
+            Some(_) => before.scattered(at.material, &at.arrival, branch.wi),
+            None => before.after(branch.polarization),
+        };
+    }
+
+    #[inline(always)]
+    fn toward(&self, _: &Interaction<N>, _: DVec3, _: &mut Lanes<N>) -> Self {
+        Self::NOT
+    }
+
+    fn moved(&self, at: &Interaction<N>, wi: DVec3, on_its_way: &Self, light: &MetLight<N, Self>) -> f64 {
+        if !self.is_any() && !light.world.has_see_through() {
+            return 0.0;
+        }
+        let change = self.brought(at.material, &at.arrival, wi, *on_its_way).change();
+        if change == 0.0 { 0.0 } else { change * light.world.amount(light.rgb) }
+    }
+
+    fn moved_of_met(&self, light: &MetLight<N, Self>) -> f64 {
+        if self.is_any() { self.change() * light.world.amount(light.rgb) } else { 0.0 }
+    }
+
+    fn exciting(&self) -> Self {
+        Self { degree: 0.0, ..*self }
+    }
+
+    #[inline(always)]
+    fn lit_by(self, _: &Light<Table>, _: DVec3, _: &mut Lanes<N>) -> Self {
+        self
+    }
+
+    #[inline(always)]
+    fn shown(&self, _: &Interaction<N>, _: DVec3, _: &mut Lanes<N>) -> Self {
+        Self::NOT
+    }
+
+    fn seen(&self, at: &Interaction<N>, viewed: &Arrival<N>, on_its_way: &Self, _: &World, _: &Ray) -> SeenPhoton<N> {
+        let change = on_its_way.brought(at.material, viewed, at.arrival.wo, *self).change() as f32;
+        SeenPhoton { change: Lanes([change; N]), factor: None, stokes: None }
+    }
+
+    fn landed(&self, _: &Interaction<N>) -> Self {
+        *self
+    }
+
+    #[inline(always)]
+    fn join(&self, _: &Interaction<N>, _: DVec3, _: &Self, _: &mut Lanes<N>) -> Self {
+        Self::NOT
+    }
+
+    fn change_of_joined(&self, at: &Interaction<N>, wi: DVec3, photon: &Self, _: &Self, _: Lanes<N>) -> f64 {
+        self.brought(at.material, &at.arrival, wi, *photon).change()
+    }
+
+    fn read_landed(photon: &Self, _: impl Fn(Lanes<N>) -> Lanes<N>) -> Self {
+        *photon
+    }
+
+    #[inline(always)]
+    fn stokes(&self) -> Option<[Lanes<N>; 3]> {
+        None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Polarized;
+
+    #[test]
+    fn degrees_add_as_velocities_do() {
+        let twice = Polarized::NOT.after(0.5).after(0.0).after(0.5);
+        assert_eq!(twice, Polarized { degree: 0.8, growth: 1.25 });
+        let brewster = Polarized::NOT.after(1.0).after(0.0).after(1.0);
+        assert_eq!((brewster.degree, brewster.change()), (1.0, 1.0));
+        assert!((0..1000).fold(Polarized::NOT, |path, _| path.after(1.0)).change().is_finite());
+    }
+}

@@ -1,0 +1,494 @@
+//! Polarization traced: rows of Stokes weights, followed backward.
+//!
+//! A sensor that takes the intensity of light takes the scalar product of a row of four weights with the light's Stokes
+//! vector. On its way back the row is multiplied by the Mueller matrix of each surface: of unpolarized light its first
+//! weight is what counts, which is the path's throughput. The others are kept as shares of it, with the reference
+//! direction of their frame, the last surface's s. (Rows and columns: Jarabo & Arellano 2018, *Bidirectional Rendering
+//! of Vector Light Transport*. Mueller matrices are reciprocal, M of the way back = Q M^T Q with Q = diag(1, 1, -1, 1):
+//! Sekera 1966, *Scattering Matrices and Reciprocity Relationships*. So photons are followed by the same code.)
+
+use super::interaction::Interaction;
+use super::polarization::{MetLight, Polarization, SeenPhoton};
+use super::shading;
+use super::slots::Slots;
+use crate::light::Light;
+use crate::material::{Arrival, Block, Branch, Incoming, Material, Mueller, Scatter, Straight};
+use crate::math::{DVec3, Frame, Ray};
+use crate::spectrum::{Lanes, Table};
+use crate::trace::World;
+use crate::trace::arrived::Arrived;
+use crate::trace::method::Polarizing;
+
+/// What the sensor takes of each Stokes component, lane by lane: the row of S0 of the image alone, or all `K` = 4.
+/// Paths are copied, and one row is all that most images need.
+#[derive(Clone, Copy, Debug)]
+pub struct Rows<const N: usize, const K: usize> {
+    /// The x of the frame whose z is the direction of the light, back along the ray: of any length, across z but for
+    /// rounding.
+    x: DVec3,
+    /// Each over the throughput: the first begins with 1.
+    rows: [[Lanes<N>; 4]; K],
+    /// Whether the throughput is that of a path whose light is taken for unpolarized at every surface, which is
+    /// compared.
+    compares: bool,
+}
+
+/// How light that a photon brings is polarized.
+#[derive(Clone, Debug)]
+pub struct Column<const N: usize> {
+    x: DVec3,
+    /// S0 to S3 over what light would be that is taken for unpolarized.
+    stokes: [Lanes<N>; 4],
+}
+
+/// Cosine and sine of twice the angle from one reference direction to another, about the direction z of the light.
+#[derive(Clone, Copy, Debug)]
+struct Turn(f32, f32);
+
+impl Turn {
+    const NONE: Self = Self(1.0, 0.0);
+
+    /// From `x`, of any length; none where either direction has no part across z.
+    fn new(z: DVec3, x: DVec3, to: DVec3) -> Option<Self> {
+        let (c, t) = (x.dot(to), z.cross(x).dot(to));
+        let length = c * c + t * t;
+        let inverse = 1.0 / length;
+        (length > 0.0).then_some(Self(((c * c - t * t) * inverse) as f32, (2.0 * c * t * inverse) as f32))
+    }
+
+    /// Of the linear components, 1 and 2.
+    #[inline(always)]
+    fn of(self, one: f32, two: f32) -> [f32; 2] {
+        let Self(c, s) = self;
+        [one * c + two * s, two * c - one * s]
+    }
+}
+
+/// A unit vector across z, near a direction.
+fn across(z: DVec3, near: DVec3) -> DVec3 {
+    (near - z * z.dot(near)).try_normalize().unwrap_or_else(|| Frame::about(z).to_world(DVec3::X))
+}
+
+/// One over a number, 0 where there is nothing to divide by, or so little that what is left of it has no digits.
+#[inline(always)]
+fn inverse(x: f32) -> f32 {
+    if x >= f32::MIN_POSITIVE { 1.0 / x } else { 0.0 }
+}
+
+/// One way by which light leaves a surface.
+struct Passing<const N: usize> {
+    /// What leaves of unpolarized light.
+    value: Lanes<N>,
+    /// The lanes that do, each 1.
+    present: Lanes<N>,
+    /// The direction of the light on both sides of the surface, to the viewer and before it arrives.
+    z: [DVec3; 2],
+}
+
+/// What becomes of rows along a branch.
+#[derive(Debug)]
+pub struct Way<const N: usize> {
+    /// Whether any polarization is left: what there is beside `change.x` otherwise has no meaning.
+    is_any_left: bool,
+    mueller: Mueller<N>,
+    change: Change<N>,
+    /// The unit normal of the plane at which a shading normal folds the light.
+    folded_at: Option<DVec3>,
+}
+
+impl<const N: usize> Way<N> {
+    fn new() -> Self {
+        Self { is_any_left: false, mueller: Mueller::NONE, change: Change::NONE, folded_at: None }
+    }
+}
+
+/// How a Mueller matrix changes rows.
+#[derive(Clone, Debug)]
+struct Change<const N: usize> {
+    /// What leaves of unpolarized light.
+    value: Lanes<N>,
+    /// What makes rows shares of the throughput beyond.
+    scale: Lanes<N>,
+    /// From the frame before to that of the block.
+    met: Turn,
+    /// The same to that of the base, and from there to the frame beyond.
+    base: [Turn; 2],
+    /// The x of the frame beyond.
+    x: DVec3,
+    /// The only lane that goes this way, where it is alone: to change it alone takes a fraction of the time.
+    alone: Option<usize>,
+}
+
+impl<const N: usize> Change<N> {
+    const NONE: Self = Self {
+        value: Lanes::ZERO,
+        scale: Lanes::ZERO,
+        met: Turn::NONE,
+        base: [Turn::NONE; 2],
+        x: DVec3::ZERO,
+        alone: None,
+    };
+
+    /// A row of one lane beyond the surface, not yet a share of what leaves.
+    #[inline(always)]
+    fn of_block(&self, block: &Block<Lanes<N>>, i: usize, [q0, q1, q2, q3]: [f32; 4]) -> [f32; 4] {
+        let [r1, r2] = self.met.of(q1, q2);
+        [
+            self.value[i] * q0 + block.d[i] * r1,
+            block.d[i] * q0 + block.a[i] * r1,
+            block.c[i] * r2 + block.q[i] * q3,
+            block.c[i] * q3 - block.q[i] * r2,
+        ]
+    }
+
+    /// The same with what comes from below a coat.
+    #[inline(always)]
+    fn of_both(&self, mueller: &Mueller<N>, i: usize, row: [f32; 4]) -> [f32; 4] {
+        let mut after = self.of_block(&mueller.block, i, row);
+        if let Some(base) = &mueller.base {
+            let ([q0, q1, q2, _], [turn, back]) = (row, self.base);
+            let [u1, _] = turn.of(q1, q2);
+            let [v1, v2] = back.of(base.arriving[i] * q0 + base.both[i] * u1, 0.0);
+            after[0] += base.leaving[i] * u1;
+            after[1] += v1;
+            after[2] += v2;
+        }
+        after
+    }
+}
+
+/// What leaves a surface of unpolarized light from a direction, by the normal by which it scatters.
+fn evaluated<const N: usize>(at: &Interaction<N>, wi: DVec3) -> Lanes<N> {
+    at.material.evaluate(&at.arrival, wi).map_or(Lanes::ZERO, |(light, _)| light)
+}
+
+impl<const N: usize, const K: usize> Rows<N, K> {
+    /// Where light meets no surface before it reaches the sensor, which has image right at `x`.
+    fn starting(x: DVec3, compares: bool) -> Self {
+        let one = |row: usize, column: usize| if row == column { Lanes::ONE } else { Lanes::ZERO };
+        let rows = std::array::from_fn(|row| std::array::from_fn(|column| one(row, column)));
+        Self { x, rows, compares }
+    }
+
+    /// Makes `change` how rows change beyond a surface, and `share` what leaves of the path's light.
+    #[inline(always)]
+    fn find_change(&self, mueller: &Mueller<N>, passing: &Passing<N>, change: &mut Change<N>, share: &mut Lanes<N>) {
+        let Passing { value, present, z: [z, onward] } = passing;
+        let (z, onward, met) = (*z, *onward, Turn::new(*z, self.x, mueller.axis));
+        let inward = mueller.base.as_ref().map(|base| across(onward, onward.cross(base.normal)));
+        change.x = match (inward, met) {
+            (Some(inward), None) => inward,
+            (None, None) => across(onward, self.x),
+            (_, Some(_)) => mueller.axis,
+        };
+        change.met = met.unwrap_or(Turn::NONE);
+        if let (Some(base), Some(inward)) = (&mueller.base, inward) {
+            change.base = [Turn::new(z, self.x, z.cross(base.normal)), Turn::new(onward, inward, change.x)]
+                .map(|turn| turn.unwrap_or(Turn::NONE));
+        }
+        let mut lanes = present.present();
+        change.alone = lanes.next().filter(|_| lanes.next().is_none());
+        if self.compares {
+            change.value = *value;
+            change.scale = Lanes::from_fn(|i| inverse(value[i]));
+        } else if let Some(i) = change.alone {
+            change.value.0[i] = value[i];
+            let [first, ..] = change.of_both(mueller, i, self.lane(0, i));
+            change.scale.0[i] = inverse(first);
+            share.0[i] *= first.max(0.0) * inverse(value[i]);
+        } else {
+            change.value = *value;
+            let firsts: Lanes<N> = match mueller.base {
+                None => Lanes::from_fn(|i| change.of_block(&mueller.block, i, self.lane(0, i))[0]),
+                Some(_) => Lanes::from_fn(|i| change.of_both(mueller, i, self.lane(0, i))[0]),
+            };
+            change.scale = Lanes::from_fn(|i| inverse(firsts[i]));
+            *share = Lanes::from_fn(|i| share[i] * (if firsts[i] > 0.0 { firsts[i] } else { 0.0 } * inverse(value[i])));
+        }
+    }
+
+    /// One lane of a row.
+    #[inline(always)]
+    fn lane(&self, row: usize, i: usize) -> [f32; 4] {
+        self.rows[row].each_ref().map(|part| part[i])
+    }
+
+    /// Sets one lane of a row.
+    #[inline(always)]
+    fn set(&mut self, row: usize, i: usize, parts: [f32; 4], scale: f32) {
+        let row = &mut self.rows[row];
+        (0..4).for_each(|part| row[part].0[i] = parts[part] * scale);
+    }
+
+    /// Becomes what rows are beyond a surface that were `before`; lanes that are not on the ray stay what they are.
+    fn go(&mut self, before: &Self, mueller: &Mueller<N>, change: &Change<N>) {
+        (self.x, self.compares) = (change.x, before.compares);
+        for row in 0..K {
+            match (change.alone, &mueller.base) {
+                (Some(i), _) => self.set(row, i, change.of_both(mueller, i, before.lane(row, i)), change.scale[i]),
+                (None, None) => {
+                    for i in 0..N {
+                        let after = change.of_block(&mueller.block, i, before.lane(row, i));
+                        self.set(row, i, after, change.scale[i]);
+                    }
+                }
+                (None, Some(_)) => {
+                    for i in 0..N {
+                        self.set(row, i, change.of_both(mueller, i, before.lane(row, i)), change.scale[i]);
+                    }
+                }
+            }
+        }
+        match change.alone {
+            _ if self.compares => {}
+            Some(i) if self.degree_squared(i) <= 1.0 => {}
+            Some(i) => self.bound(i),
+            None => (0..N).for_each(|i| self.bound(i)),
+        }
+    }
+
+    #[inline(always)]
+    fn degree_squared(&self, i: usize) -> f32 {
+        let [_, one, two, three] = self.lane(0, i);
+        one * one + two * two + three * three
+    }
+
+    /// Rounding may leave a degree above 1.
+    #[inline(always)]
+    fn bound(&mut self, i: usize) {
+        let squared = self.degree_squared(i);
+        let [_, one, two, three] = &mut self.rows[0];
+        let within = 1.0 / if squared > 1.0 { squared } else { 1.0 }.sqrt();
+        (one.0[i], two.0[i], three.0[i]) = (one.0[i] * within, two.0[i] * within, three.0[i] * within);
+    }
+
+    /// Goes on beyond a surface; makes `share` what leaves of the path's light.
+    #[inline(never)]
+    fn pass(&mut self, mueller: &Mueller<N>, passing: &Passing<N>, share: &mut Lanes<N>) {
+        let (before, mut change) = (*self, Change::NONE);
+        self.find_change(mueller, passing, &mut change, share);
+        self.go(&before, mueller, &change);
+    }
+
+    /// Makes `mueller` what a surface does to light that leaves it by a way, and answers that way.
+    #[inline(always)]
+    fn meet(at: &Interaction<N>, incoming: Incoming, value: Lanes<N>, mueller: &mut Mueller<N>) -> Passing<N> {
+        // Lanes that do not come this way are not asked for.
+        let present = Lanes::from_fn(|i| if value[i] == 0.0 { 0.0 } else { at.arrival.present[i] });
+        at.material.mueller(&Arrival { present, ..at.arrival }, incoming, mueller);
+        Passing { value, present, z: [at.arrival.wo, -incoming.wi] }
+    }
+
+    /// Becomes what rows are beyond a surface that leaves no polarization, with a frame's x.
+    fn lose(&mut self, before: &Self, x: DVec3) {
+        (self.x, self.compares) = (x, before.compares);
+        for (row, before) in self.rows.iter_mut().zip(&before.rows) {
+            *row = [before[0], Lanes::ZERO, Lanes::ZERO, Lanes::ZERO];
+        }
+    }
+
+    /// The mirror image in a plane: light that was folded there by a shading normal.
+    fn fold(&mut self, flat: DVec3) {
+        self.x = shading::folded(self.x, flat);
+        for row in &mut self.rows {
+            (row[2], row[3]) = (row[2] * -1.0, row[3] * -1.0);
+        }
+    }
+
+    /// The direction by which a material was asked, where shading normals have folded it to `incoming`.
+    fn unfolded(at: &Interaction<N>, incoming: Incoming) -> Option<Incoming> {
+        let is_folded = at.flat != at.arrival.normal && (incoming.wi.dot(at.arrival.normal) < 0.0) != incoming.crosses;
+        is_folded.then(|| Incoming { wi: shading::folded(incoming.wi, at.flat), ..incoming })
+    }
+
+    /// After a surface, along a direction, which shading normals may have folded; makes `bsdf_cos` that of the path's
+    /// light.
+    fn after(&self, at: &Interaction<N>, wi: DVec3, value: Option<Lanes<N>>, bsdf_cos: &mut Lanes<N>) -> Self {
+        let mut after = *self;
+        if let Material::Diffuse(_) = at.material {
+            after.lose(self, across(wi, self.x));
+            return after;
+        }
+        let incoming = Incoming { wi, crosses: wi.dot(at.flat) < 0.0, single: false };
+        let drawn = Self::unfolded(at, incoming);
+        let (asked, mut mueller) = (drawn.unwrap_or(incoming), Mueller::NONE);
+        let value = value.unwrap_or_else(|| evaluated(at, asked.wi));
+        let passing = Self::meet(at, asked, value, &mut mueller);
+        after.pass(&mueller, &passing, bsdf_cos);
+        if drawn.is_some() {
+            after.fold(at.flat);
+        }
+        after
+    }
+
+    /// Takes light of some polarization, whose direction is z; answers the factor on its intensity.
+    fn receive(&mut self, z: DVec3, light: &Column<N>) -> Lanes<N> {
+        let turn = Turn::new(z, self.x, light.x).unwrap_or(Turn::NONE);
+        let [s0, s1, s2, s3] = light.stokes;
+        for row in &mut self.rows {
+            let [q0, q1, q2, q3] = *row;
+            row[0] = Lanes::from_fn(|i| {
+                let [r1, r2] = turn.of(q1[i], q2[i]);
+                q0[i] * s0[i] + r1 * s1[i] + r2 * s2[i] + q3[i] * s3[i]
+            });
+        }
+        if self.compares {
+            return Lanes::ONE;
+        }
+        let taken = self.rows[0][0];
+        let scale = Lanes::from_fn(|i| inverse(taken[i]));
+        self.rows.iter_mut().flatten().for_each(|part| *part = *part * scale);
+        Lanes::from_fn(|i| if taken[i] > 0.0 { taken[i] } else { 0.0 })
+    }
+
+    /// The light that a photon brings which has followed the first row: Q times it.
+    fn column(&self) -> Column<N> {
+        let [zero, one, two, three] = self.rows[0];
+        Column { x: self.x, stokes: [zero, one, two * -1.0, three] }
+    }
+
+    /// By how much polarization changes light that is compared.
+    fn compared(&self, light: &MetLight<N, Self>) -> f64 {
+        if !self.compares {
+            return 0.0;
+        }
+        let MetLight { world, arrived, rgb, .. } = *light;
+        let lanes = &(*arrived.lanes * self.rows[0][0]);
+        let exact = Arrived { lanes, ..*arrived };
+        let exact = match light.excitation {
+            None => exact.rgb(&world.responses),
+            Some(dye) => dye.seen(world, &exact, |seen| seen.times(dye.polarization.rows[0][0], &world.responses)),
+        };
+        world.amount(exact) - world.amount(rgb)
+    }
+}
+
+impl<const N: usize, const K: usize> Polarization<N> for Rows<N, K> {
+    /// None on surfaces that leave no polarization.
+    type Landed = Option<Box<Column<N>>>;
+    type Way = Way<N>;
+
+    fn of_camera(world: &World, ray: &Ray) -> Self {
+        let camera = &world.scene.camera;
+        let x = camera.image_right(ray.direction);
+        let mut rows = Self::starting(x, world.method.polarization == Polarizing::Compared);
+        if let Some(filter) = camera.filter() {
+            let (z, mut value) = (-ray.direction, Lanes([filter.transmittance() as f32; N]));
+            let (sin, cos) = libm::sincos(filter.angle);
+            let axis = x * cos + z.cross(x) * sin;
+            let mut mueller = Mueller::NONE;
+            mueller.set_lanes(axis, Lanes::ONE, |_| Block::of_polarizer(filter.extinction));
+            rows.pass(&mueller, &Passing { value, present: Lanes::ONE, z: [z; 2] }, &mut value);
+        }
+        rows
+    }
+
+    fn of_light(world: &World, ray: &Ray) -> Self {
+        let x = Frame::about(ray.direction).to_world(DVec3::X);
+        Self::starting(x, world.method.polarization == Polarizing::Compared)
+    }
+
+    fn after_straight(mut self, material: &Material<Table>, arrival: &Arrival<N>, straight: &mut Straight<N>) -> Self {
+        let (mut mueller, mut share) = (Mueller::NONE, straight.share());
+        material.mueller_of_straight(arrival, &mut mueller);
+        let passing = Passing { value: share, present: arrival.present, z: [arrival.wo; 2] };
+        self.pass(&mueller, &passing, &mut share);
+        straight.panes = Lanes::from_fn(|i| (share[i] - straight.holes[i]).max(0.0));
+        self
+    }
+
+    fn split(&self, at: &Interaction<N>, branches: &mut [Branch<N>], ways: &mut Slots<Way<N>>) {
+        ways.clear();
+        for branch in branches {
+            let way = ways.add(Way::new);
+            way.is_any_left = !matches!(at.material, Material::Diffuse(_));
+            if !way.is_any_left {
+                way.change.x = across(branch.wi, self.x);
+                continue;
+            }
+            let incoming = branch.incoming();
+            let drawn = Self::unfolded(at, incoming);
+            let asked = drawn.unwrap_or(incoming);
+            let value = match branch.pdf {
+                None => branch.share,
+                Some(pdf) if at.flat == at.arrival.normal => branch.share * pdf as f32,
+                Some(_) => evaluated(at, asked.wi),
+            };
+            let passing = Self::meet(at, asked, value, &mut way.mueller);
+            self.find_change(&way.mueller, &passing, &mut way.change, &mut branch.share);
+            way.folded_at = drawn.map(|_| at.flat);
+        }
+    }
+
+    fn become_along(&mut self, before: &Self, _: &Interaction<N>, _: &Branch<N>, way: Option<&Way<N>>) {
+        let Way { is_any_left, mueller, change, folded_at } = way.expect("`split` tells of all branches");
+        if !is_any_left {
+            return self.lose(before, change.x);
+        }
+        self.go(before, mueller, change);
+        if let Some(flat) = folded_at {
+            self.fold(*flat);
+        }
+    }
+
+    fn toward(&self, at: &Interaction<N>, wi: DVec3, bsdf_cos: &mut Lanes<N>) -> Self {
+        let value = if at.flat == at.arrival.normal { Some(*bsdf_cos) } else { None };
+        self.after(at, wi, value, bsdf_cos)
+    }
+
+    fn moved(&self, _: &Interaction<N>, _: DVec3, on_its_way: &Self, light: &MetLight<N, Self>) -> f64 {
+        on_its_way.compared(light)
+    }
+
+    fn moved_of_met(&self, light: &MetLight<N, Self>) -> f64 {
+        self.compared(light)
+    }
+
+    fn exciting(&self) -> Self {
+        Self::starting(self.x, self.compares)
+    }
+
+    fn lit_by(mut self, light: &Light<Table>, wi: DVec3, shone: &mut Lanes<N>) -> Self {
+        let Some((axis, degree)) = light.polarization().and_then(|sky| sky.toward(wi)) else { return self };
+        let stokes = [1.0, degree as f32, 0.0, 0.0].map(|part| Lanes([part; N]));
+        *shone = *shone * self.receive(-wi, &Column { x: axis, stokes });
+        self
+    }
+
+    fn shown(&self, at: &Interaction<N>, direction: DVec3, bsdf_cos: &mut Lanes<N>) -> Self {
+        self.after(at, direction, None, bsdf_cos)
+    }
+
+    fn seen(&self, _: &Interaction<N>, _: &Arrival<N>, on_its_way: &Self, world: &World, ray: &Ray) -> SeenPhoton<N> {
+        let mut after = Self::of_camera(world, ray);
+        let factor = after.receive(-ray.direction, &on_its_way.column());
+        let change = if self.compares { after.rows[0][0] + Lanes([-1.0; N]) } else { Lanes::ZERO };
+        SeenPhoton { change, factor: Some(factor), stokes: after.stokes() }
+    }
+
+    fn landed(&self, at: &Interaction<N>) -> Self::Landed {
+        let is_of_no_use = matches!(at.material, Material::Diffuse(_)) && !self.compares;
+        (!is_of_no_use).then(|| Box::new(self.column()))
+    }
+
+    fn join(&self, at: &Interaction<N>, wi: DVec3, photon: &Self::Landed, bsdf_cos: &mut Lanes<N>) -> Self {
+        let mut after = self.toward(at, wi, bsdf_cos);
+        if let Some(light) = photon {
+            *bsdf_cos = *bsdf_cos * after.receive(-wi, light);
+        }
+        after
+    }
+
+    fn change_of_joined(&self, _: &Interaction<N>, _: DVec3, _: &Self::Landed, joined: &Self, lanes: Lanes<N>) -> f64 {
+        let all = f64::from(lanes.sum());
+        if self.compares && all > 0.0 { f64::from((lanes * joined.rows[0][0]).sum()) / all - 1.0 } else { 0.0 }
+    }
+
+    fn read_landed(photon: &Self::Landed, read: impl Fn(Lanes<N>) -> Lanes<N>) -> Self::Landed {
+        photon.as_ref().map(|column| Box::new(Column { x: column.x, stokes: column.stokes.map(read) }))
+    }
+
+    fn stokes(&self) -> Option<[Lanes<N>; 3]> {
+        (K == 4).then(|| [1, 2, 3].map(|row| self.rows[row][0]))
+    }
+}

@@ -1,0 +1,102 @@
+//! Surfaces that look smoother or rougher than they are: materials are asked with the shading normal, and no light is
+//! lost where its directions and those of the triangle disagree.
+//!
+//! Two things make up for the difference (Veach 1997, *Robust Monte Carlo Methods for Light Transport Simulation*,
+//! section 5.3, describes what goes wrong without): the shading normal is bent until the mirror image of the viewer's
+//! direction lies above the triangle, and a direction that leaves on the wrong side of the triangle is folded back
+//! through its plane. Folding moves light and takes none away: what a material gives to a direction is the sum over
+//! both directions that end there, and so is the density.
+
+use crate::material::{Arrival, Branch, Material, Scatter, reflect};
+use crate::math::{DVec3, unit};
+use crate::shape::SurfacePoint;
+use crate::spectrum::{Lanes, Table};
+
+/// The triangle's normal and the shading normal, both on the side of the unit vector `wo` to the viewer.
+pub fn normals(point: &SurfacePoint, wo: DVec3) -> [DVec3; 2] {
+    let front = point.normal.dot(-wo) < 0.0;
+    let [flat, smooth] = [point.normal, point.shading].map(|normal| if front { normal } else { -normal });
+    if flat == smooth { [flat; 2] } else { [flat, bent(wo, flat, smooth)] }
+}
+
+/// The shading normal on the side of the unit vector `wo`, as it is.
+pub fn plain_normal(point: &SurfacePoint, wo: DVec3) -> DVec3 {
+    if point.normal.dot(wo) > 0.0 { point.shading } else { -point.shading }
+}
+
+/// Whether light goes from `wi` to the viewer at `wo` by the shading normal as it is, so that it can be followed either
+/// way.
+pub fn is_plain(point: &SurfacePoint, wo: DVec3, wi: DVec3, crosses: bool) -> bool {
+    if point.shading == point.normal {
+        return true;
+    }
+    let smooth = plain_normal(point, wo);
+    let (wo_above, wi_above) = (wo.dot(point.normal), wi.dot(point.normal));
+    let mirrored = reflect(wo, smooth).dot(point.normal);
+    wo.dot(smooth) > 0.0 && mirrored * wo_above > 0.0 && crosses == (wi_above * wo_above < 0.0)
+}
+
+/// What light gains that is followed forward from `wi` to `wo`: the shading normal makes of a beam's width another than
+/// the surface's own. Veach 1997, equation 5.19.
+pub fn forward_factor(point: &SurfacePoint, wo: DVec3, wi: DVec3) -> f64 {
+    if point.shading == point.normal {
+        return 1.0;
+    }
+    let [flat, smooth] = [point.normal, point.shading];
+    ((wo.dot(flat) * wi.dot(smooth)) / (wo.dot(smooth) * wi.dot(flat))).abs()
+}
+
+/// The shading normal, or, where it would mirror `wo` below the triangle, the one that mirrors it as far above.
+fn bent(wo: DVec3, flat: DVec3, smooth: DVec3) -> DVec3 {
+    let mirrored = reflect(wo, smooth);
+    if mirrored.dot(flat) > 0.0 { smooth } else { unit(wo + folded(mirrored, flat)) }
+}
+
+/// The mirror image of a direction in the triangle's plane.
+pub fn folded(direction: DVec3, flat: DVec3) -> DVec3 {
+    unit(direction - flat * (2.0 * direction.dot(flat)))
+}
+
+/// `Material::scatter`, with every direction on its side of the triangle of normal `flat`.
+pub fn scatter<const N: usize>(
+    material: &Material<Table>,
+    arrival: &Arrival<N>,
+    flat: DVec3,
+    u: [f64; 2],
+    branches: &mut Vec<Branch<N>>,
+) {
+    material.scatter(arrival, u, branches);
+    if flat == arrival.normal {
+        return;
+    }
+    for branch in branches {
+        if branch.crosses != (branch.wi.dot(flat) < 0.0) {
+            branch.wi = folded(branch.wi, flat);
+        }
+        if branch.pdf.is_some() {
+            branch.pdf = Some(evaluate(material, arrival, flat, branch.wi).map_or(0.0, |(_, pdf)| pdf));
+        }
+    }
+}
+
+/// `Material::evaluate`, both ways to a direction together: straight, and folded at the triangle of normal `flat`.
+pub fn evaluate<const N: usize>(
+    material: &Material<Table>,
+    arrival: &Arrival<N>,
+    flat: DVec3,
+    wi: DVec3,
+) -> Option<(Lanes<N>, f64)> {
+    if flat == arrival.normal {
+        return material.evaluate(arrival, wi);
+    }
+    // A direction is folded where the two normals put it on different sides.
+    let above = wi.dot(flat) > 0.0;
+    let from = |drawn: DVec3| match (drawn.dot(arrival.normal) > 0.0) == above {
+        true => material.evaluate(arrival, drawn),
+        false => None,
+    };
+    match (from(wi), from(folded(wi, flat))) {
+        (Some((a, p)), Some((b, q))) => Some((a + b, p + q)),
+        (a, b) => a.or(b),
+    }
+}

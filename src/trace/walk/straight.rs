@@ -1,0 +1,189 @@
+//! Light that goes straight on through the holes of masks and through panes that bend nothing.
+
+use std::cell::Cell;
+
+use super::interaction::arrival;
+use super::path::{Among, Path};
+use super::polarization::{Onward, Polarization};
+use super::shading;
+use crate::material::Scatter;
+use crate::math::{Ray, Sampler};
+use crate::scene::{Ends, Hit, MaterialId, Sight};
+use crate::shape::SurfacePoint;
+use crate::spectrum::{Draw, Lanes};
+use crate::trace::{Transport, World, media};
+
+/// Use of the random numbers of a ray from the camera that meets a surface with holes.
+const COVER: u32 = 4;
+
+/// What of a path's light goes straight on where it meets a surface; none if nothing does.
+#[inline]
+pub fn straight_on<const N: usize, P: Polarization<N>>(
+    world: &World,
+    draw: &Draw<N>,
+    path: &Path<N, P>,
+    hit: &Hit,
+    point: &SurfacePoint,
+) -> Option<Onward<N, P>> {
+    if world.is_see_through(hit.object) { through_surface(world, draw, path, hit, point) } else { None }
+}
+
+/// The same of a surface that lets light straight on.
+#[cold]
+#[inline(never)]
+fn through_surface<const N: usize, P: Polarization<N>>(
+    world: &World,
+    draw: &Draw<N>,
+    path: &Path<N, P>,
+    hit: &Hit,
+    point: &SurfacePoint,
+) -> Option<Onward<N, P>> {
+    let present = path.throughput.present();
+    let through = Through { ray: &path.ray, present, inside: path.media.inside(&world.scene) };
+    let onward = straight_at(world, draw, &through, hit, point, path.polarization)?;
+    (!(onward.straight.share() * present).is_zero()).then_some(onward)
+}
+
+/// Whether a ray from the camera counts as having met a surface, which may have holes: a pane is met, a hole is not.
+pub fn is_met<const N: usize, P: Polarization<N>>(
+    world: &World,
+    draw: &Draw<N>,
+    sampler: &Sampler,
+    path: &Path<N, P>,
+    onward: Option<&Onward<N, P>>,
+) -> bool {
+    let straight = onward.map(|onward| &onward.straight);
+    let Some(straight) = straight.filter(|straight| !straight.holes.is_zero()) else { return true };
+    let u = match world.method.transport {
+        Transport::Deterministic { .. } => 0.5,
+        Transport::Random { .. } => sampler.four_plain(path.key, COVER)[0],
+    };
+    let shares = draw.shares(path.parted);
+    path.throughput.through(straight.holes).weight(shares) <= u * path.throughput.weight(shares)
+}
+
+/// The straight way of light to a place, which something may occlude.
+pub struct Passage<'a> {
+    /// From the place toward the light.
+    pub ray: &'a Ray,
+    /// How far away the light is.
+    pub distance: f64,
+    pub ends: Ends,
+    /// The medium around the ray.
+    pub inside: Option<MaterialId>,
+    /// Which objects may occlude it.
+    pub past: Past,
+    /// The object that occluded a light last.
+    pub last_occluder: &'a Cell<Option<u32>>,
+}
+
+/// Which objects may occlude a way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Past {
+    /// Those that are there for a path.
+    Objects(Among),
+    /// Those that are not hidden from the camera, to which it leads.
+    Seen,
+}
+
+impl Past {
+    fn is_all(self, world: &World) -> bool {
+        self == Self::Objects(Among::All) || !world.hides_objects
+    }
+
+    fn has(self, world: &World, object: u32) -> bool {
+        match self {
+            _ if !world.hides_objects => true,
+            Self::Objects(Among::All) => true,
+            Self::Objects(Among::Plate) => world.scene.is_of_plate(object),
+            Self::Seen => world.sight(object) != Sight::Hidden,
+        }
+    }
+}
+
+impl Passage<'_> {
+    /// What arrives of light through holes, panes and the medium, and how it is polarized beyond them; none if
+    /// something occludes it. `polarization` is that of the path at the place; it and `light` are asked only if nothing
+    /// does.
+    #[inline]
+    pub fn arriving<const N: usize, P: Polarization<N>>(
+        &self,
+        world: &World,
+        draw: &Draw<N>,
+        polarization: impl FnOnce() -> P,
+        light: impl FnOnce() -> Lanes<N>,
+    ) -> Option<(Lanes<N>, P)> {
+        let Self { ray, distance, ends, inside, past, last_occluder } = *self;
+        let (mut arriving, after);
+        if !past.is_all(world) || world.has_see_through() {
+            let closed = |object| !world.is_see_through(object) && past.has(world, object);
+            if world.scene.is_occluded_by(ray, distance, ends, last_occluder, &closed) {
+                return None;
+            }
+            let (share, beyond) = self.transmittance(world, draw, polarization())?;
+            (arriving, after) = (light() * share, beyond);
+        } else if world.scene.is_occluded(ray, distance, ends, last_occluder) {
+            return None;
+        } else {
+            (arriving, after) = (light(), polarization());
+        }
+        if let Some(material) = inside {
+            arriving = arriving * media::medium(&world.scene, material).transmission(draw, distance);
+        }
+        Some((arriving, after))
+    }
+
+    /// The share of each lane that goes straight on through all surfaces before the light, and how it is polarized
+    /// beyond them; none if no light does.
+    #[cold]
+    #[inline(never)]
+    fn transmittance<const N: usize, P: Polarization<N>>(
+        &self,
+        world: &World,
+        draw: &Draw<N>,
+        mut polarization: P,
+    ) -> Option<(Lanes<N>, P)> {
+        let (mut ray, mut left, mut all) = (*self.ray, self.distance, Lanes::ONE);
+        let counts = |object: u32| world.is_see_through(object) && self.past.has(world, object);
+        while let Some(hit) = world.scene.nearest(&ray, left, &counts) {
+            let point = world.scene.objects[hit.object as usize].point(&ray, &hit.crossing);
+            let through = Through { ray: &ray, present: Lanes::ONE, inside: self.inside };
+            let onward = straight_at(world, draw, &through, &hit, &point, polarization)?;
+            (all, polarization) = (all * onward.straight.share(), onward.polarization);
+            if all.is_zero() {
+                return None;
+            }
+            left -= hit.crossing.t;
+            ray = point.leave(ray.direction);
+        }
+        Some((all, polarization))
+    }
+}
+
+/// A ray that meets a surface which may let some of its light straight on.
+pub struct Through<'a, const N: usize> {
+    pub ray: &'a Ray,
+    /// The lanes on it.
+    pub present: Lanes<N>,
+    /// The medium around it.
+    pub inside: Option<MaterialId>,
+}
+
+/// What a material lets straight on where a ray meets it: what every ray asks.
+pub fn straight_at<const N: usize, P: Polarization<N>>(
+    world: &World,
+    draw: &Draw<N>,
+    through: &Through<N>,
+    hit: &Hit,
+    point: &SurfacePoint,
+    polarization: P,
+) -> Option<Onward<N, P>> {
+    let Through { ray, present, inside } = *through;
+    let (wo, uv) = (-ray.direction, world.scene.objects[hit.object as usize].uv(&hit.crossing, point));
+    let [_, normal] = shading::normals(point, wo);
+    let arrival = arrival(world, draw, wo, normal, uv, present, [inside; 2]);
+    let material = world.scene.material_of(hit.object);
+    let mut straight = material.straight(&arrival)?;
+    let polarization = polarization.after_straight(material, &arrival, &mut straight);
+    Some(Onward { straight, polarization })
+}
