@@ -1,19 +1,6 @@
 //! The `render` command: read, compile, plan, render, write.
 
-mod catalog;
-mod cli;
-mod diff;
-mod events;
-mod frames;
-mod info;
-mod keep;
-mod manual;
-mod merge;
-mod messages;
-mod openjd;
-mod outputs;
-mod progress;
-mod view;
+mod command;
 
 use std::path::Path;
 use std::process::ExitCode;
@@ -23,10 +10,11 @@ use abbe::plan::plan;
 use abbe::scene::Source;
 use abbe::{Image, Rendering, Result, Scene, write_plan};
 
-use cli::{Job, Output, Request};
-use events::{Event, write_account};
-use keep::Keep;
-use outputs::{check_standard, is_standard, spare};
+use command::cli::{self, Job, Output, Request};
+use command::events::{Event, write_account};
+use command::keep::{self, Keep};
+use command::outputs::{check_standard, is_standard, spare};
+use command::{catalog, diff, info, merge, messages, progress, view};
 
 fn main() -> ExitCode {
     let answered = cli::parse().and_then(|request| match request {

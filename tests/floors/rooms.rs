@@ -5,11 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::house::{House, here};
 use super::source::Source;
 
-/// Modules of the command, and the crate of the package for Python, which stand above all floors.
-const COMMAND: [&str; 16] = [
-    "main", "catalog", "cli", "diff", "events", "frames", "info", "keep", "manual", "merge", "messages", "openjd",
-    "outputs", "progress", "python", "view",
-];
+/// The command, and the crate of the package for Python, which stand above all floors.
+const COMMAND: [&str; 3] = ["main", "command", "python"];
 /// What `lib.rs` hands on from the room `error`.
 const ERRORS: [&str; 5] = ["Diagnostic", "Error", "Result", "nearest", "error"];
 
@@ -90,7 +87,7 @@ fn paths_that_go_up_or_sideways_are_noticed() {
         ("trace/world.rs", "use crate::{light::{Light, LightId}, scene::Scene};"),
         ("trace/world.rs", "use super::media::Media; use crate::Error;"),
         ("film/exr.rs", "// use crate::trace::World;\nconst X: &str = \"crate::trace::World\";"),
-        ("cli.rs", "use crate::messages::say;"),
+        ("command/cli.rs", "use crate::command::messages::say;"),
         ("spectrum/data/glass.rs", "use super::super::Lanes;"),
         ("math/ray.rs", "#[cfg(test)]\nmod tests {\n    use crate::shape::Shape;\n}"),
     ];

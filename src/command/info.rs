@@ -8,7 +8,7 @@ use abbe::spectrum::{ColorSpace, Primaries};
 use abbe::{Result, film::ExrLayer};
 use clap::Parser;
 
-use crate::messages::aligned;
+use super::messages::aligned;
 
 const HELP: &str = "\
 It says the size and the part of it that is there, the color space, the camera, all that the file says of itself, \

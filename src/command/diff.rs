@@ -8,8 +8,8 @@ use abbe::film::{ExrFile, check_writable};
 use abbe::look::{Difference, Noise, compare, number};
 use clap::Parser;
 
-use crate::messages::{aligned, answer_lines, print_error, say};
-use crate::outputs::{check_png, refuse, spare};
+use super::messages::{aligned, answer_lines, print_error, say};
+use super::outputs::{check_png, refuse, spare};
 
 const HELP: &str = "\
 Files with a variance layer agree if they differ by no more than their noise: if every z = (a - b) / sqrt(va + vb), \

@@ -10,9 +10,9 @@ use abbe::scene::duration;
 use abbe::{Advance, Error, ImageError, Rendering, Result, Resumed, Timer};
 use clap::Args;
 
-use crate::messages::{problem, say, so_far, warn};
-use crate::outputs::refuse;
-use crate::progress::Progress;
+use super::messages::{problem, say, so_far, warn};
+use super::outputs::refuse;
+use super::progress::Progress;
 
 /// What the command line says of it.
 #[derive(Args)]

@@ -9,9 +9,9 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::events::Event;
-use crate::messages::{Listener, listener, say};
-use crate::openjd;
+use super::events::Event;
+use super::messages::{Listener, listener, say};
+use super::openjd;
 
 /// How far a render is.
 pub struct Progress {

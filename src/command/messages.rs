@@ -14,8 +14,8 @@ use abbe::{Diagnostic, Error, Image, ImageError, Result};
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 use clap::ValueEnum;
 
-use crate::events::Event;
-use crate::openjd;
+use super::events::Event;
+use super::openjd;
 
 /// To whom it speaks.
 #[derive(Clone, Copy, PartialEq, Eq)]

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use abbe::Result;
 
-use crate::outputs::refuse;
+use super::outputs::refuse;
 
 /// More digits than any number of a frame has.
 const MOST_DIGITS: usize = 20;

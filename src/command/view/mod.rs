@@ -10,8 +10,8 @@ use abbe::look::{Exposure, Mattes, Picture, Tone};
 use clap::Parser;
 use clap::builder::PossibleValuesParser;
 
-use crate::messages::{answer, say};
-use crate::outputs::{check_exposure, check_png, refuse, spare};
+use super::messages::{answer, say};
+use super::outputs::{check_exposure, check_png, refuse, spare};
 
 const HELP: &str = "\
 kitty, WezTerm and Ghostty show the pixels themselves, every other terminal two of them in a character. \

@@ -6,8 +6,8 @@ use abbe::film::check_writable;
 use abbe::{Error, Parts, Result};
 use clap::Parser;
 
-use crate::messages::{Listener, Protocol, problem, say, speak_to, warn, warn_of_clamped};
-use crate::outputs::{ends_in, refuse, spare};
+use super::messages::{Listener, Protocol, problem, say, speak_to, warn, warn_of_clamped};
+use super::outputs::{ends_in, refuse, spare};
 
 const EXAMPLES: &str = "\
 Examples:

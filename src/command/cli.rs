@@ -11,10 +11,10 @@ use abbe::{Options, Result};
 use clap::error::{ContextKind, ErrorKind};
 use clap::{Command, CommandFactory, Parser};
 
-use crate::frames::numbered;
-use crate::messages::{Listener, Protocol, is_colored, listener, speak_to};
-use crate::outputs::{check_exposure, check_png, ends_in, is_standard, refuse};
-use crate::{catalog, diff, info, keep, manual, merge, view};
+use super::frames::numbered;
+use super::messages::{Listener, Protocol, is_colored, listener, speak_to};
+use super::outputs::{check_exposure, check_png, ends_in, is_standard, refuse};
+use super::{catalog, diff, info, keep, manual, merge, view};
 
 const EXAMPLES: &str = "\
 Examples:

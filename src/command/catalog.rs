@@ -4,7 +4,7 @@ use abbe::spectrum::data::{self, GLASS_MAKERS, Glass};
 use abbe::{Error, Result};
 use clap::Parser;
 
-use crate::messages::aligned;
+use super::messages::aligned;
 
 const HELP: &str = "\
 Words are looked for in names, other names and makers, whatever their case; all of them must be found. \

@@ -1,0 +1,16 @@
+//! What the command says, reads and keeps: a client of the library.
+
+pub mod catalog;
+pub mod cli;
+pub mod diff;
+pub mod events;
+mod frames;
+pub mod info;
+pub mod keep;
+mod manual;
+pub mod merge;
+pub mod messages;
+mod openjd;
+pub mod outputs;
+pub mod progress;
+pub mod view;
