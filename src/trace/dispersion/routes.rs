@@ -11,7 +11,8 @@ const SIDE: u32 = 24;
 /// Surfaces that are met for all pixels over the image or on objects.
 const ALL_SURFACES: usize = 16_384;
 
-/// The routes to a few hundred pixels, those of each together, in a world of the lanes [`ROUTES_NM`](super::route::ROUTES_NM).
+/// The routes to a few hundred pixels, those of each together, in a world of the lanes
+/// [`ROUTES_NM`](super::route::ROUTES_NM).
 pub fn routes(world: &World) -> Vec<Vec<Route>> {
     let film = world.scene.film.whole();
     // A stride that is coprime to the number of places visits them all, far ones first.
