@@ -1,7 +1,7 @@
 //! Light that leaves a surface: by ways of its own, or straight on.
 
 use crate::math::{DVec3, Ray};
-use crate::spectrum::Lanes;
+use crate::spectrum::{LaneSet, Lanes};
 
 /// One way light came to the surface, and the lanes that came by it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,12 +31,16 @@ pub struct Incoming {
     pub crosses: bool,
     /// Whether it is the one direction that a smooth surface allows.
     pub single: bool,
+    /// The lanes of it: others are not asked for.
+    pub lanes: LaneSet,
 }
 
 impl<const N: usize> Branch<N> {
-    /// From where its light arrives.
-    pub fn incoming(&self) -> Incoming {
-        Incoming { wi: self.wi, crosses: self.crosses, single: self.pdf.is_none() }
+    /// From where its light arrives, of the lanes that are present on the ray.
+    #[inline(always)]
+    pub fn incoming(&self, present: &Lanes<N>) -> Incoming {
+        let lanes = (self.share * *present).not_zero();
+        Incoming { wi: self.wi, crosses: self.crosses, single: self.pdf.is_none(), lanes }
     }
 
     /// The way of a ray that goes straight on, with the light that comes by it.

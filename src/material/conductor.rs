@@ -153,14 +153,14 @@ impl Conductor<Table> {
         let (n, k) = (arrival.draw.read_exact(&self.n), arrival.draw.read_exact(&self.k));
         if let Some(coating) = &self.coating {
             let met = coating.met(arrival, false);
-            return mueller.set_lanes(axis, arrival.present, |lane| {
+            return mueller.set_lanes(axis, incoming.lanes, |lane| {
                 let metal = Complex::new(n[lane], -k[lane]);
                 let n1 = arrival.incident_of(lane);
                 met.stack(lane).shares(n1, metal, n1 * cos.clamp(0.0, 1.0)).reflected.block().times(once)
             });
         }
         let (mut last, mut block) = (None, Block::default());
-        mueller.set_lanes(axis, arrival.present, |lane| {
+        mueller.set_lanes(axis, incoming.lanes, |lane| {
             let metal @ [n1, n, k] = [arrival.incident_of(lane), n[lane], k[lane]];
             if last.replace(metal) != Some(metal) {
                 block = Block::of_metal(n1, n, k, cos).times(once);

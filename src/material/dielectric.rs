@@ -216,22 +216,23 @@ impl Dielectric<Table> {
         match self.roughness.interface() {
             Some(interface) if !incoming.single => self.rough(interface).mueller(arrival, incoming, mueller),
             Some(_) => mueller.set_unchanged(arrival.present * arrival.read(&self.transmittance)),
-            None => self.mueller_of_smooth(arrival, incoming.crosses, mueller),
+            None => self.mueller_of_smooth(arrival, incoming, mueller),
         }
     }
 
-    fn mueller_of_smooth<const N: usize>(&self, arrival: &Arrival<N>, crosses: bool, mueller: &mut Mueller<N>) {
+    fn mueller_of_smooth<const N: usize>(&self, arrival: &Arrival<N>, incoming: Incoming, mueller: &mut Mueller<N>) {
+        let crosses = incoming.crosses;
         let table = if crosses { &self.transmittance } else { &self.reflectance };
         let tint = if table.is_one() { Lanes::ONE } else { arrival.read(table) };
         let (axis, cos) = (arrival.wo.cross(arrival.normal), arrival.wo.dot(arrival.normal));
         if let Some(coating) = &self.coating {
             let met = coating.met(arrival, arrival.from_inside);
-            return mueller.set_lanes(axis, arrival.present, |lane| {
+            return mueller.set_lanes(axis, incoming.lanes, |lane| {
                 block_at(&met, arrival, lane, cos, crosses).times(f64::from(tint[lane]))
             });
         }
         let (mut last, mut block) = (None, Block::default());
-        mueller.set_lanes(axis, arrival.present, |lane| {
+        mueller.set_lanes(axis, incoming.lanes, |lane| {
             let boundary = arrival.own_boundary(lane, cos);
             if last.replace(boundary) != Some(boundary) {
                 block = Block::at_boundary(boundary, crosses);

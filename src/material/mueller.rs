@@ -6,7 +6,7 @@
 //! of Optics*, section 1.4.2). Fields vary as e^(i omega t), and an absorbing index is n - i k.
 
 use crate::math::DVec3;
-use crate::spectrum::Lanes;
+use crate::spectrum::{LaneSet, Lanes};
 
 /// The Mueller matrix of light that meets one smooth boundary, or one facet:
 ///
@@ -222,10 +222,14 @@ impl<const N: usize> Mueller<N> {
     /// Of a surface that leaves no polarization.
     pub const NONE: Self = Self { axis: DVec3::ZERO, block: Block::NONE, base: None };
 
-    /// Becomes that of a boundary that light meets in a plane; each lane on the ray has its own block.
-    pub fn set_lanes(&mut self, axis: DVec3, present: Lanes<N>, mut of_lane: impl FnMut(usize) -> Block<f64>) {
-        (self.axis, self.block, self.base) = (axis, Block::NONE, None);
-        for lane in present.present() {
+    /// Becomes that of a boundary that light meets in a plane; each of some lanes has its own block.
+    /// Where there is only one lane, the blocks of the others have no meaning.
+    pub fn set_lanes(&mut self, axis: DVec3, lanes: LaneSet, mut of_lane: impl FnMut(usize) -> Block<f64>) {
+        (self.axis, self.base) = (axis, None);
+        if lanes.only().is_none() {
+            self.block = Block::NONE;
+        }
+        for lane in lanes.iter() {
             self.block.set(lane, of_lane(lane));
         }
     }

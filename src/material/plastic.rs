@@ -229,7 +229,7 @@ impl Plastic<Table> {
         let cos = arrival.wo.dot(arrival.normal);
         if incoming.single {
             let axis = arrival.wo.cross(arrival.normal);
-            return mueller.set_lanes(axis, arrival.present, |lane| reflected(lane, cos));
+            return mueller.set_lanes(axis, incoming.lanes, |lane| reflected(lane, cos));
         }
         let to = incoming.wi.dot(arrival.normal);
         if to <= 0.0 {
@@ -243,7 +243,7 @@ impl Plastic<Table> {
                 let Some(reflection) = reflection else { return *mueller = Mueller::NONE };
                 let axis = arrival.wo.cross(incoming.wi);
                 let facet = |lane| reflected(lane, reflection.cos).times(reflection.once);
-                mueller.set_lanes(axis, arrival.present, facet);
+                mueller.set_lanes(axis, incoming.lanes, facet);
             }
         }
         let from = above(&Frame::about(arrival.normal), arrival.wo).z;

@@ -36,7 +36,7 @@ impl Polarizer {
 
     pub(super) fn mueller<const N: usize>(&self, arrival: &Arrival<N>, mueller: &mut Mueller<N>) {
         match let_through(arrival, self.axis) {
-            Some(axis) => mueller.set_lanes(axis, arrival.present, |_| Block::of_polarizer(self.extinction)),
+            Some(axis) => mueller.set_lanes(axis, arrival.present.not_zero(), |_| Block::of_polarizer(self.extinction)),
             None => *mueller = Mueller::NONE,
         }
     }

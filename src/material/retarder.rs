@@ -111,10 +111,10 @@ impl Retarder<Table> {
         match &self.retardance {
             Retardance::Phase(degrees) => {
                 let block = Block::of_retarder(degrees.to_radians());
-                mueller.set_lanes(axis, arrival.present, |_| block)
+                mueller.set_lanes(axis, arrival.present.not_zero(), |_| block)
             }
             Retardance::Path(path) => {
-                mueller.set_lanes(axis, arrival.present, |lane| path.block_of_lane(arrival.draw, lane))
+                mueller.set_lanes(axis, arrival.present.not_zero(), |lane| path.block_of_lane(arrival.draw, lane))
             }
         }
     }

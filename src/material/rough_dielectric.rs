@@ -284,6 +284,7 @@ impl RoughBoundary<'_> {
     /// By the facet that reflects or refracts the light of each kind of lanes. What meets a second facet leaves
     /// unpolarized.
     pub(super) fn mueller<const N: usize>(&self, arrival: &Arrival<N>, incoming: Incoming, mueller: &mut Mueller<N>) {
+        let arrival = &Arrival { present: Lanes::one_in(incoming.lanes), ..*arrival };
         let mut meeting = Meeting::new(self, arrival);
         let local = meeting.frame.to_local(incoming.wi);
         let crosses = local.z < 0.0;

@@ -1,6 +1,6 @@
 use super::degree::{degree, of_all_lanes};
 use super::{Arrival, Block, Branch, Coating, Interface, Mueller, StackShares, Straight, reflect};
-use crate::spectrum::{Lanes, Quantity, Table};
+use crate::spectrum::{LaneSet, Lanes, Quantity, Table};
 
 /// A pane of clear material without thickness: a window of which nothing but its two surfaces is seen. Light goes
 /// straight on, that of lights to the surfaces behind as well, or is mirrored; all reflections between the two surfaces
@@ -57,13 +57,19 @@ impl Thin<Table> {
         }
     }
 
-    /// What becomes of polarization one way.
-    pub(super) fn mueller<const N: usize>(&self, arrival: &Arrival<N>, way: Way, mueller: &mut Mueller<N>) {
+    /// What becomes of polarization one way, in some lanes.
+    pub(super) fn mueller<const N: usize>(
+        &self,
+        arrival: &Arrival<N>,
+        way: Way,
+        lanes: LaneSet,
+        mueller: &mut Mueller<N>,
+    ) {
         let (index, left) = (arrival.draw.read_exact(&self.index), arrival.read(&self.transmittance));
         let (axis, cos) = (arrival.wo.cross(arrival.normal), arrival.wo.dot(arrival.normal));
         let (mut last, mut blocks) = (None, [Block::default(); 2]);
         let film = self.film.as_ref().map(|film| film.met(arrival, false));
-        mueller.set_lanes(axis, arrival.present, |lane| {
+        mueller.set_lanes(axis, lanes, |lane| {
             if let Some(film) = &film {
                 let n = arrival.incident_of(lane);
                 let shares = film.stack(lane).shares(n, n.into(), n * cos.clamp(0.0, 1.0));

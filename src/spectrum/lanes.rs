@@ -5,15 +5,28 @@ use std::ops::{Add, AddAssign, Index, Mul};
 #[repr(align(16))]
 pub struct Lanes<const N: usize>(pub [f32; N]);
 
-/// One bit for each lane. Read from a table, bits of four lanes are made at a time.
-const BITS: [u32; 32] = {
-    let (mut bits, mut i) = ([0; 32], 0);
-    while i < 32 {
-        bits[i] = 1 << i;
-        i += 1;
+/// Some of up to 32 lanes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LaneSet(u32);
+
+impl LaneSet {
+    /// The lanes in their order.
+    #[inline(always)]
+    pub fn iter(self) -> impl Iterator<Item = usize> {
+        let mut left = self.0;
+        std::iter::from_fn(move || {
+            let next = left.trailing_zeros() as usize;
+            left &= left.wrapping_sub(1);
+            (next < 32).then_some(next)
+        })
     }
-    bits
-};
+
+    /// The only lane; none if there are more or none.
+    #[inline(always)]
+    pub fn only(self) -> Option<usize> {
+        self.0.is_power_of_two().then(|| self.0.trailing_zeros() as usize)
+    }
+}
 
 impl<const N: usize> Lanes<N> {
     /// All lanes 0.
@@ -36,16 +49,16 @@ impl<const N: usize> Lanes<N> {
         self.0.iter().sum()
     }
 
-    /// The lanes that are not 0, in their order.
+    /// The lanes that are not 0.
     #[inline(always)]
-    pub fn present(&self) -> impl Iterator<Item = usize> + use<N> {
+    pub fn not_zero(&self) -> LaneSet {
         const { assert!(N <= 32) };
-        let mut left = (0..N).fold(0, |bits, i| bits | if self.0[i] != 0.0 { BITS[i] } else { 0 });
-        std::iter::from_fn(move || {
-            let next = left.trailing_zeros() as usize;
-            left &= left.wrapping_sub(1);
-            (next < 32).then_some(next)
-        })
+        LaneSet((0..N).rev().fold(0, |bits, i| bits << 1 | u32::from(self.0[i] != 0.0)))
+    }
+
+    /// 1 in some lanes, 0 in the others.
+    pub fn one_in(lanes: LaneSet) -> Self {
+        Self::from_fn(|i| (lanes.0 >> i & 1) as f32)
     }
 
     /// Whether every lane is 0.

@@ -39,7 +39,7 @@ pub use draw::Draw;
 pub use dye::{Dye, Excess, Excited};
 pub use emission::Emission;
 pub use image::Image;
-pub use lanes::Lanes;
+pub use lanes::{LaneSet, Lanes};
 pub use matching::{Matching, Wavelength};
 pub use quantity::Quantity;
 pub use response::Response;

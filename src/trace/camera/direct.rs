@@ -149,7 +149,8 @@ impl<const N: usize, P: Polarization<N>> DirectLighting<'_, N, P> {
         let toward = || self.path.polarization.toward(self.at, wi, &mut bsdf_cos);
         let arriving = passage.arriving(world, arrival.draw, toward, light_of);
         let Some((mut arriving, on_its_way)) = arriving else { return };
-        let on_its_way = on_its_way.lit_by(&world.scene.lights[*light], wi, &mut arriving);
+        let lit = on_its_way.lit_by(&world.scene.lights[*light], wi, &mut arriving);
+        let on_its_way = lit.as_ref().unwrap_or(&on_its_way);
         // The density of bounces that are guided takes its time.
         let factor = match self.aiming.filter(|_| self.goes_on && sample.pdf.is_some()) {
             Some(aiming) => self.factor(sample, *probability, aiming.pdf(wi, *bsdf_pdf)),
@@ -160,10 +161,10 @@ impl<const N: usize, P: Polarization<N>> DirectLighting<'_, N, P> {
         let arrived = Arrived { source: light, draw: arrival.draw, lanes, parted: dispersed };
         let met = MetLight::new(world, &arrived, self.excitation);
         let rgb = met.rgb;
-        let moved = self.path.polarization.moved(self.at, wi, &on_its_way, &met);
+        let moved = self.path.polarization.moved(self.at, wi, on_its_way, &met);
         let (light, found, bounces) = (Some(light), Found::Sampled, self.path.bounces + 1);
         let first = self.at.first_lobe(world, self.path.lobe(), wi, side.normal != self.at.flat);
-        sensor.receive(Contribution { light, found, rgb, moved, first, bounces, dispersed }, &met, &on_its_way);
+        sensor.receive(Contribution { light, found, rgb, moved, first, bounces, dispersed }, &met, on_its_way);
     }
 
     /// The factor on a light's emission and the material's answer: over the density of both ways to the light's

@@ -38,11 +38,11 @@ pub struct PathTracer<'a, const N: usize, P: Polarization<N> = Polarized> {
 }
 
 /// Where a path has hit a light.
-struct Lit<P> {
+struct Lit<'a, P> {
     /// The unit normal of the surface that shines, on its front; none of a sky.
     normal: Option<DVec3>,
     /// How the path is polarized there.
-    polarization: P,
+    polarization: &'a P,
 }
 
 /// Use of the camera's random numbers: where in the pixel the sample falls.
@@ -115,12 +115,12 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         if let Some(audit) = &mut self.walker.audit {
             audit.begin(&path, &draw);
         }
-        let first = self.trace(path, &draw, sampler);
+        let first = self.trace(&path, &draw, sampler);
         if let (Some(audit), Some(layers)) = (&self.walker.audit, &mut self.sensor.layers) {
             layers.keep_audit(audit, &draw);
         }
         if self.sees_shadow_catcher() {
-            self.catch(path, &draw, sampler);
+            self.catch(&path, &draw, sampler);
             return Sample { rgb: [0.0; 3], depth: None, is_subtracted };
         }
         let rgb = self.sensor.read_out(world, &mut self.walker.stats);
@@ -141,9 +141,9 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
     /// Holds the light of a path that met a shadow catcher against that of the same path among the objects of the plate
     /// alone. Neither is seen in the image.
     #[cold]
-    fn catch(&mut self, path: Path<N, P>, draw: &Draw<N>, sampler: &Sampler) {
+    fn catch(&mut self, path: &Path<N, P>, draw: &Draw<N>, sampler: &Sampler) {
         let with = std::mem::take(&mut self.sensor.rgb);
-        self.trace(Path { among: Among::Plate, ..path }, draw, sampler);
+        self.trace(&Path { among: Among::Plate, ..*path }, draw, sampler);
         let without = std::mem::take(&mut self.sensor.rgb);
         self.sensor.forget();
         if let Some(layers) = &mut self.sensor.layers {
@@ -152,64 +152,69 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
     }
 
     /// Hands all light along the path of a camera ray to the sensor, and answers what the ray hit first.
-    fn trace(&mut self, path: Path<N, P>, draw: &Draw<N>, sampler: &Sampler) -> Option<SurfacePoint> {
-        let world = self.walker.world;
+    fn trace(&mut self, path: &Path<N, P>, draw: &Draw<N>, sampler: &Sampler) -> Option<SurfacePoint> {
         let mut first = None;
         self.walker.started = self.walker.stats.rays;
         self.excitations.clear();
-        *self.walker.pending.add(|| path) = path;
-        let mut path = Box::new(path);
-        while self.walker.pending.take(&mut path) {
-            let path = &mut *path;
-            let excitation = self.excitation(path);
-            let draw = excitation.as_ref().map_or(draw, |excitation| &excitation.draw);
-            if path.vertices >= self.walker.transport.last_vertex() {
-                self.walker.stats.stopped += path.weight(draw);
-                continue;
-            }
-            let before = self.sensor.rgb;
-            let Some(meeting) = self.walker.meet(path, draw) else {
-                self.background(path, draw);
-                self.tell(path, draw, f64::INFINITY, before);
-                continue;
-            };
-            let onward = self.walker.straight(path, draw, &meeting);
-            let Meeting { hit, point } = &meeting;
-            if let Some(straight) = &onward
-                && path.throughput.through(straight.straight.share()) == path.throughput
-            {
-                let polarization = straight.polarization;
-                *self.walker.pending.add(|| *path) = Path { polarization, ..path.passed(point) };
-                continue;
-            }
-            if world.hides_objects && path.kind == PathKind::Camera && world.sight(hit.object) == Sight::Holdout {
-                self.walker.audit.iter_mut().for_each(|audit| audit.end_beside(path, onward.as_ref(), draw));
-                self.walker.go_on_in_part(path, point, onward.as_ref());
-                continue;
-            }
-            let is_met_first =
-                path.vertices == 0 && first.is_none() && straight::is_met(world, draw, sampler, path, onward.as_ref());
-            if is_met_first {
-                first = Some(*point);
-                if let Some(layers) = &mut self.sensor.layers {
-                    layers.meet_object(hit.object);
-                }
-            }
-            path.vertices += 1;
-            self.emission(path, draw, &meeting);
-            if path.vertices > world.method.max_bounces {
-                self.cut(path, draw, &meeting, onward.as_ref());
-                continue;
-            }
-            self.scatter(path, draw, sampler, &meeting, onward.as_ref(), is_met_first);
-            if onward.is_none() {
-                self.tell(path, draw, hit.crossing.t, before);
-            }
+        *self.walker.pending.add(|| *path) = *path;
+        while let Some(mut path) = self.walker.pending.take() {
+            self.advance(&mut path, draw, sampler, &mut first);
+            self.walker.pending.release(path);
         }
         if let Transport::Deterministic { most, .. } = self.walker.transport {
             self.walker.stats.by_chance += u64::from(self.walker.surfaces() > most);
         }
         first
+    }
+
+    /// Follows a path to the next surface. `first` becomes what the camera ray hits first.
+    #[inline(always)]
+    fn advance(&mut self, path: &mut Path<N, P>, draw: &Draw<N>, sampler: &Sampler, first: &mut Option<SurfacePoint>) {
+        let world = self.walker.world;
+        let excitation = self.excitation(path);
+        let draw = excitation.as_ref().map_or(draw, |excitation| &excitation.draw);
+        if path.vertices >= self.walker.transport.last_vertex() {
+            self.walker.stats.stopped += path.weight(draw);
+            return;
+        }
+        let before = self.sensor.rgb;
+        let Some(meeting) = self.walker.meet(path, draw) else {
+            self.background(path, draw);
+            self.tell(path, draw, f64::INFINITY, before);
+            return;
+        };
+        let onward = self.walker.straight(path, draw, &meeting);
+        let Meeting { hit, point } = &meeting;
+        if let Some(straight) = &onward
+            && path.throughput.through(straight.straight.share()) == path.throughput
+        {
+            let polarization = straight.polarization;
+            *self.walker.pending.add(|| *path) = Path { polarization, ..path.passed(point) };
+            return;
+        }
+        if world.hides_objects && path.kind == PathKind::Camera && world.sight(hit.object) == Sight::Holdout {
+            self.walker.audit.iter_mut().for_each(|audit| audit.end_beside(path, onward.as_ref(), draw));
+            self.walker.go_on_in_part(path, point, onward.as_ref());
+            return;
+        }
+        let is_met_first =
+            path.vertices == 0 && first.is_none() && straight::is_met(world, draw, sampler, path, onward.as_ref());
+        if is_met_first {
+            *first = Some(*point);
+            if let Some(layers) = &mut self.sensor.layers {
+                layers.meet_object(hit.object);
+            }
+        }
+        path.vertices += 1;
+        self.emission(path, draw, &meeting);
+        if path.vertices > world.method.max_bounces {
+            self.cut(path, draw, &meeting, onward.as_ref());
+            return;
+        }
+        self.scatter(path, draw, sampler, &meeting, onward.as_ref(), is_met_first);
+        if onward.is_none() {
+            self.tell(path, draw, hit.crossing.t, before);
+        }
     }
 
     /// Ends a path that has met as many surfaces as it may, but for what goes straight on.
@@ -241,7 +246,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
             let mut shone = light.toward(draw, path.ray.direction, [0.0; 2]);
             let polarization = path.polarization.lit_by(light, path.ray.direction, &mut shone);
             let lanes = &path.throughput.scaled(weight * factor).of(shone);
-            let lit = Lit { normal: None, polarization };
+            let lit = Lit { normal: None, polarization: polarization.as_ref().unwrap_or(&path.polarization) };
             self.receive(path, &lit, &Arrived { source: id, draw, lanes, parted: path.parted });
         }
     }
@@ -258,7 +263,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         let weight = weight_of_meeting(world, id, path.scatter.as_ref(), &path.ray, Some(&hit.crossing));
         let uv = object.uv(&hit.crossing, point);
         let lanes = &path.throughput.scaled(weight).of(draw.read_at(&area.radiance, uv));
-        let lit = Lit { normal: Some(point.normal), polarization: path.polarization };
+        let lit = Lit { normal: Some(point.normal), polarization: &path.polarization };
         self.receive(path, &lit, &Arrived { source: id, draw, lanes, parted: path.parted });
     }
 
@@ -271,7 +276,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         let moved = polarization.moved_of_met(&met);
         let (light, found) = (Some(arrived.source), Found::Hit { normal, scattered: path.scatter.is_some() });
         let Path { bounces, parted: dispersed, first, .. } = *path;
-        self.sensor.receive(Contribution { light, found, rgb, moved, first, bounces, dispersed }, &met, &polarization);
+        self.sensor.receive(Contribution { light, found, rgb, moved, first, bounces, dispersed }, &met, polarization);
     }
 
     /// Samples the lights where a surface scatters widely, and lets the path go on: its ways on become pending.

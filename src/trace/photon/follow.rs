@@ -104,51 +104,64 @@ pub struct Start<'a> {
 /// between media.
 pub fn follow_photon<const N: usize, P: Polarization<N>>(
     walker: &mut Walker<N, P>,
-    Start { emitted, light, media, early }: Start,
+    start: Start,
+    draw: &Draw<N>,
+    sampler: &Sampler,
+    over: Surfaces,
+    land: &mut dyn FnMut(&Walker<N, P>, &Landing<N, P>),
+) {
+    let path = Path::from_light(walker.world, draw, start.emitted.ray, start.media);
+    *walker.pending.add(|| path) = path;
+    while let Some(mut path) = walker.pending.take() {
+        advance(walker, &mut path, &start, draw, sampler, over, land);
+        walker.pending.release(path);
+    }
+}
+
+/// Follows a photon to the next surface.
+#[inline(always)]
+fn advance<const N: usize, P: Polarization<N>>(
+    walker: &mut Walker<N, P>,
+    path: &mut Path<N, P>,
+    &Start { emitted, light, early, .. }: &Start,
     draw: &Draw<N>,
     sampler: &Sampler,
     over: Surfaces,
     land: &mut dyn FnMut(&Walker<N, P>, &Landing<N, P>),
 ) {
     let world = walker.world;
-    let path = Path::from_light(world, draw, emitted.ray, media);
-    *walker.pending.add(|| path) = path;
-    let mut path = Box::new(path);
-    while walker.pending.take(&mut path) {
-        let path = &mut *path;
-        if path.vertices >= walker.transport.last_vertex() {
-            continue;
+    if path.vertices >= walker.transport.last_vertex() {
+        return;
+    }
+    let Some(meeting) = walker.meet(path, draw) else { return };
+    if let Some(onward) = walker.straight(path, draw, &meeting) {
+        let (throughput, key) = (path.throughput.through(onward.straight.share()), path.key.child(BEYOND));
+        let all = throughput == path.throughput;
+        let polarization = onward.polarization;
+        *walker.pending.add(|| *path) = Path { throughput, key, polarization, ..path.passed(&meeting.point) };
+        if all {
+            return;
         }
-        let Some(meeting) = walker.meet(path, draw) else { continue };
-        if let Some(onward) = walker.straight(path, draw, &meeting) {
-            let (throughput, key) = (path.throughput.through(onward.straight.share()), path.key.child(BEYOND));
-            let all = throughput == path.throughput;
-            let polarization = onward.polarization;
-            *walker.pending.add(|| *path) = Path { throughput, key, polarization, ..path.passed(&meeting.point) };
-            if all {
-                continue;
-            }
+    }
+    if path.vertices == 0 && !world.is_photon_target(meeting.hit.object) {
+        match over {
+            Surfaces::Smooth => return,
+            Surfaces::All => path.kind = PathKind::Wide,
         }
-        if path.vertices == 0 && !world.is_photon_target(meeting.hit.object) {
-            match over {
-                Surfaces::Smooth => continue,
-                Surfaces::All => path.kind = PathKind::Wide,
-            }
-        }
-        path.vertices += 1;
-        let Some(boundary) = walker.boundary(path, &meeting) else { continue };
-        let at = Interaction::new(world, draw, &path.ray, path.throughput.present(), &meeting, boundary);
-        // As often as light may leave surfaces on its way from the camera.
-        let allowed = path.vertices <= world.method.max_bounces && !(at.lobes.is_diffuse() && path.diffuse_left == 0);
-        let shown = over == Surfaces::All || path.vertices > 1;
-        if at.lobes.is_wide() && allowed && shown {
-            land(walker, &Landing { path, at: &at, light, factor: emitted.factor, early });
-        }
-        if over == Surfaces::Smooth || !at.lobes.is_wide() {
-            bounce(walker, path, at, sampler);
-        } else if allowed && path.vertices < world.method.max_bounces {
-            scatter(walker, path, &at, sampler);
-        }
+    }
+    path.vertices += 1;
+    let Some(boundary) = walker.boundary(path, &meeting) else { return };
+    let at = Interaction::new(world, draw, &path.ray, path.throughput.present(), &meeting, boundary);
+    // As often as light may leave surfaces on its way from the camera.
+    let allowed = path.vertices <= world.method.max_bounces && !(at.lobes.is_diffuse() && path.diffuse_left == 0);
+    let shown = over == Surfaces::All || path.vertices > 1;
+    if at.lobes.is_wide() && allowed && shown {
+        land(walker, &Landing { path, at: &at, light, factor: emitted.factor, early });
+    }
+    if over == Surfaces::Smooth || !at.lobes.is_wide() {
+        bounce(walker, path, at, sampler);
+    } else if allowed && path.vertices < world.method.max_bounces {
+        scatter(walker, path, &at, sampler);
     }
 }
 

@@ -56,12 +56,10 @@ impl<'a, const N: usize> Interaction<'a, N> {
             lobes,
             flat,
             boundary,
-            arrival: Arrival {
-                from_inside: point.normal.dot(wo) < 0.0,
-                ..arrival(world, draw, wo, normal, uv, present, sides)
-            },
+            arrival: arrival(world, draw, wo, normal, uv, present, sides),
             parts: false,
         };
+        at.arrival.from_inside = point.normal.dot(wo) < 0.0;
         at.parts = parts(lobes, material, &at.arrival);
         at
     }

@@ -118,30 +118,40 @@ impl<const N: usize, P: Polarization<N>> Path<N, P> {
         } else {
             world.camera_media
         };
-        let polarization = P::of_camera(world, &ray);
-        let path = Self { kind: PathKind::Camera, polarization, ..Self::from_light(world, draw, ray, media) };
-        match camera.filter() {
-            Some(filter) => Self { throughput: path.throughput.scaled(filter.transmittance()), ..path },
-            None => path,
-        }
+        let transmittance = camera.filter().map_or(1.0, |filter| filter.transmittance());
+        let throughput = Throughput::starting(draw.start()).scaled(transmittance);
+        Self::starting(world, PathKind::Camera, throughput, ray, media, P::of_camera(world, &ray))
     }
 
     /// The path of a ray that leaves a light, inside of some bodies.
     pub fn from_light(world: &World, draw: &Draw<N>, ray: Ray, media: Media) -> Self {
+        let throughput = Throughput::starting(draw.start());
+        Self::starting(world, PathKind::Other, throughput, ray, media, P::of_light(world, &ray))
+    }
+
+    #[inline(always)]
+    fn starting(
+        world: &World,
+        kind: PathKind,
+        throughput: Throughput<N>,
+        ray: Ray,
+        media: Media,
+        polarization: P,
+    ) -> Self {
         Self {
             ray,
             left: None,
-            throughput: Throughput::starting(draw.start()),
+            throughput,
             eta_scale: 1.0,
             media,
             parted: false,
             key: BranchKey::CAMERA,
             vertices: 0,
             length: 0.0,
-            kind: PathKind::Other,
+            kind,
             diffuse_left: world.method.diffuse_bounces,
             scatter: None,
-            polarization: P::of_light(world, &ray),
+            polarization,
             bounces: 0,
             is_seen: true,
             among: Among::All,

@@ -92,9 +92,9 @@ pub trait Polarization<const N: usize>: Copy + Debug + Send + Sync + 'static {
     /// Of the light that excites a dye, where the path sees one: evenly, whatever its polarization.
     fn exciting(&self) -> Self;
 
-    /// Where the path meets light that comes from the unit vector `wi`, which may be polarized; makes `shone`, what the
-    /// light would be that is not, what the path takes of it.
-    fn lit_by(self, light: &Light<Table>, wi: DVec3, shone: &mut Lanes<N>) -> Self;
+    /// Where the path meets polarized light that comes from the unit vector `wi`; makes `shone`, what the light would
+    /// be that is not, what the path takes of it. None where the light is not polarized.
+    fn lit_by(&self, light: &Light<Table>, wi: DVec3, shone: &mut Lanes<N>) -> Option<Self>;
 
     /// On the way from a surface, where a photon has landed, along a unit vector to the camera; makes `bsdf_cos` that
     /// of the photon's light.

@@ -124,8 +124,8 @@ impl<const N: usize> Polarization<N> for Polarized {
     }
 
     #[inline(always)]
-    fn lit_by(self, _: &Light<Table>, _: DVec3, _: &mut Lanes<N>) -> Self {
-        self
+    fn lit_by(&self, _: &Light<Table>, _: DVec3, _: &mut Lanes<N>) -> Option<Self> {
+        None
     }
 
     #[inline(always)]

@@ -7,6 +7,8 @@
 //! of Vector Light Transport*. Mueller matrices are reciprocal, M of the way back = Q M^T Q with Q = diag(1, 1, -1, 1):
 //! Sekera 1966, *Scattering Matrices and Reciprocity Relationships*. So photons are followed by the same code.)
 
+use std::array::from_fn;
+
 use super::interaction::Interaction;
 use super::polarization::{MetLight, Polarization, SeenPhoton};
 use super::shading;
@@ -14,7 +16,7 @@ use super::slots::Slots;
 use crate::light::Light;
 use crate::material::{Arrival, Block, Branch, Incoming, Material, Mueller, Scatter, Straight};
 use crate::math::{DVec3, Frame, Ray};
-use crate::spectrum::{Lanes, Table};
+use crate::spectrum::{LaneSet, Lanes, Table};
 use crate::trace::World;
 use crate::trace::arrived::Arrived;
 use crate::trace::method::Polarizing;
@@ -26,12 +28,16 @@ pub struct Rows<const N: usize, const K: usize> {
     /// The x of the frame whose z is the direction of the light, back along the ray: of any length, across z but for
     /// rounding.
     x: DVec3,
-    /// Each over the throughput: the first begins with 1.
-    rows: [[Lanes<N>; 4]; K],
+    /// Each over the throughput, the first begins with 1: the weights of a lane side by side, since a lane is often
+    /// alone.
+    weights: [Weights<K>; N],
     /// Whether the throughput is that of a path whose light is taken for unpolarized at every surface, which is
     /// compared.
     compares: bool,
 }
+
+/// Of each of K rows the weight of S0, then those of S1, S2 and S3.
+type Weights<const K: usize> = [[f32; K]; 4];
 
 /// How light that a photon brings is polarized.
 #[derive(Clone, Debug)]
@@ -58,9 +64,9 @@ impl Turn {
 
     /// Of the linear components, 1 and 2.
     #[inline(always)]
-    fn of(self, one: f32, two: f32) -> [f32; 2] {
+    fn of<const K: usize>(self, one: [f32; K], two: [f32; K]) -> [[f32; K]; 2] {
         let Self(c, s) = self;
-        [one * c + two * s, two * c - one * s]
+        [from_fn(|k| one[k] * c + two[k] * s), from_fn(|k| two[k] * c - one[k] * s)]
     }
 }
 
@@ -79,8 +85,8 @@ fn inverse(x: f32) -> f32 {
 struct Passing<const N: usize> {
     /// What leaves of unpolarized light.
     value: Lanes<N>,
-    /// The lanes that do, each 1.
-    present: Lanes<N>,
+    /// The lanes that do.
+    lanes: LaneSet,
     /// The direction of the light on both sides of the surface, to the viewer and before it arrives.
     z: [DVec3; 2],
 }
@@ -129,29 +135,33 @@ impl<const N: usize> Change<N> {
         alone: None,
     };
 
-    /// A row of one lane beyond the surface, not yet a share of what leaves.
+    /// Rows of one lane beyond the surface, not yet shares of what leaves.
     #[inline(always)]
-    fn of_block(&self, block: &Block<Lanes<N>>, i: usize, [q0, q1, q2, q3]: [f32; 4]) -> [f32; 4] {
+    fn of_block<const K: usize>(&self, block: &Block<Lanes<N>>, i: usize, weights: Weights<K>) -> Weights<K> {
+        let [q0, q1, q2, q3] = weights;
         let [r1, r2] = self.met.of(q1, q2);
+        let (value, a, d, c, q) = (self.value[i], block.a[i], block.d[i], block.c[i], block.q[i]);
         [
-            self.value[i] * q0 + block.d[i] * r1,
-            block.d[i] * q0 + block.a[i] * r1,
-            block.c[i] * r2 + block.q[i] * q3,
-            block.c[i] * q3 - block.q[i] * r2,
+            from_fn(|k| value * q0[k] + d * r1[k]),
+            from_fn(|k| d * q0[k] + a * r1[k]),
+            from_fn(|k| c * r2[k] + q * q3[k]),
+            from_fn(|k| c * q3[k] - q * r2[k]),
         ]
     }
 
     /// The same with what comes from below a coat.
     #[inline(always)]
-    fn of_both(&self, mueller: &Mueller<N>, i: usize, row: [f32; 4]) -> [f32; 4] {
-        let mut after = self.of_block(&mueller.block, i, row);
+    fn of_both<const K: usize>(&self, mueller: &Mueller<N>, i: usize, weights: Weights<K>) -> Weights<K> {
+        let mut after = self.of_block(&mueller.block, i, weights);
         if let Some(base) = &mueller.base {
-            let ([q0, q1, q2, _], [turn, back]) = (row, self.base);
+            let ([q0, q1, q2, _], [turn, back]) = (weights, self.base);
             let [u1, _] = turn.of(q1, q2);
-            let [v1, v2] = back.of(base.arriving[i] * q0 + base.both[i] * u1, 0.0);
-            after[0] += base.leaving[i] * u1;
-            after[1] += v1;
-            after[2] += v2;
+            let [v1, v2] = back.of(from_fn(|k| base.arriving[i] * q0[k] + base.both[i] * u1[k]), [0.0; K]);
+            for k in 0..K {
+                after[0][k] += base.leaving[i] * u1[k];
+                after[1][k] += v1[k];
+                after[2][k] += v2[k];
+            }
         }
         after
     }
@@ -165,15 +175,14 @@ fn evaluated<const N: usize>(at: &Interaction<N>, wi: DVec3) -> Lanes<N> {
 impl<const N: usize, const K: usize> Rows<N, K> {
     /// Where light meets no surface before it reaches the sensor, which has image right at `x`.
     fn starting(x: DVec3, compares: bool) -> Self {
-        let one = |row: usize, column: usize| if row == column { Lanes::ONE } else { Lanes::ZERO };
-        let rows = std::array::from_fn(|row| std::array::from_fn(|column| one(row, column)));
-        Self { x, rows, compares }
+        let identity = from_fn(|part| from_fn(|row| if row == part { 1.0 } else { 0.0 }));
+        Self { x, weights: [identity; N], compares }
     }
 
     /// Makes `change` how rows change beyond a surface, and `share` what leaves of the path's light.
     #[inline(always)]
     fn find_change(&self, mueller: &Mueller<N>, passing: &Passing<N>, change: &mut Change<N>, share: &mut Lanes<N>) {
-        let Passing { value, present, z: [z, onward] } = passing;
+        let Passing { value, lanes, z: [z, onward] } = passing;
         let (z, onward, met) = (*z, *onward, Turn::new(*z, self.x, mueller.axis));
         let inward = mueller.base.as_ref().map(|base| across(onward, onward.cross(base.normal)));
         change.x = match (inward, met) {
@@ -186,56 +195,56 @@ impl<const N: usize, const K: usize> Rows<N, K> {
             change.base = [Turn::new(z, self.x, z.cross(base.normal)), Turn::new(onward, inward, change.x)]
                 .map(|turn| turn.unwrap_or(Turn::NONE));
         }
-        let mut lanes = present.present();
-        change.alone = lanes.next().filter(|_| lanes.next().is_none());
+        change.alone = lanes.only();
         if self.compares {
             change.value = *value;
             change.scale = Lanes::from_fn(|i| inverse(value[i]));
         } else if let Some(i) = change.alone {
             change.value.0[i] = value[i];
-            let [first, ..] = change.of_both(mueller, i, self.lane(0, i));
+            let [[first], ..] = change.of_both(mueller, i, self.first_row(i));
             change.scale.0[i] = inverse(first);
             share.0[i] *= first.max(0.0) * inverse(value[i]);
         } else {
             change.value = *value;
             let firsts: Lanes<N> = match mueller.base {
-                None => Lanes::from_fn(|i| change.of_block(&mueller.block, i, self.lane(0, i))[0]),
-                Some(_) => Lanes::from_fn(|i| change.of_both(mueller, i, self.lane(0, i))[0]),
+                None => Lanes::from_fn(|i| change.of_block(&mueller.block, i, self.first_row(i))[0][0]),
+                Some(_) => Lanes::from_fn(|i| change.of_both(mueller, i, self.first_row(i))[0][0]),
             };
             change.scale = Lanes::from_fn(|i| inverse(firsts[i]));
             *share = Lanes::from_fn(|i| share[i] * (if firsts[i] > 0.0 { firsts[i] } else { 0.0 } * inverse(value[i])));
         }
     }
 
-    /// One lane of a row.
+    /// One lane of the first row.
     #[inline(always)]
-    fn lane(&self, row: usize, i: usize) -> [f32; 4] {
-        self.rows[row].each_ref().map(|part| part[i])
+    fn first_row(&self, i: usize) -> Weights<1> {
+        self.weights[i].map(|part| [part[0]])
     }
 
-    /// Sets one lane of a row.
+    /// The first weight of the first row, which the image is made of.
+    fn firsts(&self) -> Lanes<N> {
+        Lanes::from_fn(|i| self.weights[i][0][0])
+    }
+
+    /// Sets one lane.
     #[inline(always)]
-    fn set(&mut self, row: usize, i: usize, parts: [f32; 4], scale: f32) {
-        let row = &mut self.rows[row];
-        (0..4).for_each(|part| row[part].0[i] = parts[part] * scale);
+    fn set(&mut self, i: usize, weights: Weights<K>, scale: f32) {
+        self.weights[i] = weights.map(|part| part.map(|weight| weight * scale));
     }
 
     /// Becomes what rows are beyond a surface that were `before`; lanes that are not on the ray stay what they are.
     fn go(&mut self, before: &Self, mueller: &Mueller<N>, change: &Change<N>) {
         (self.x, self.compares) = (change.x, before.compares);
-        for row in 0..K {
-            match (change.alone, &mueller.base) {
-                (Some(i), _) => self.set(row, i, change.of_both(mueller, i, before.lane(row, i)), change.scale[i]),
-                (None, None) => {
-                    for i in 0..N {
-                        let after = change.of_block(&mueller.block, i, before.lane(row, i));
-                        self.set(row, i, after, change.scale[i]);
-                    }
+        match (change.alone, &mueller.base) {
+            (Some(i), _) => self.set(i, change.of_both(mueller, i, before.weights[i]), change.scale[i]),
+            (None, None) => {
+                for i in 0..N {
+                    self.set(i, change.of_block(&mueller.block, i, before.weights[i]), change.scale[i]);
                 }
-                (None, Some(_)) => {
-                    for i in 0..N {
-                        self.set(row, i, change.of_both(mueller, i, before.lane(row, i)), change.scale[i]);
-                    }
+            }
+            (None, Some(_)) => {
+                for i in 0..N {
+                    self.set(i, change.of_both(mueller, i, before.weights[i]), change.scale[i]);
                 }
             }
         }
@@ -249,7 +258,7 @@ impl<const N: usize, const K: usize> Rows<N, K> {
 
     #[inline(always)]
     fn degree_squared(&self, i: usize) -> f32 {
-        let [_, one, two, three] = self.lane(0, i);
+        let [_, [one], [two], [three]] = self.first_row(i);
         one * one + two * two + three * three
     }
 
@@ -257,9 +266,8 @@ impl<const N: usize, const K: usize> Rows<N, K> {
     #[inline(always)]
     fn bound(&mut self, i: usize) {
         let squared = self.degree_squared(i);
-        let [_, one, two, three] = &mut self.rows[0];
         let within = 1.0 / if squared > 1.0 { squared } else { 1.0 }.sqrt();
-        (one.0[i], two.0[i], three.0[i]) = (one.0[i] * within, two.0[i] * within, three.0[i] * within);
+        self.weights[i][1..].iter_mut().for_each(|part| part[0] *= within);
     }
 
     /// Goes on beyond a surface; makes `share` what leaves of the path's light.
@@ -273,29 +281,28 @@ impl<const N: usize, const K: usize> Rows<N, K> {
     /// Makes `mueller` what a surface does to light that leaves it by a way, and answers that way.
     #[inline(always)]
     fn meet(at: &Interaction<N>, incoming: Incoming, value: Lanes<N>, mueller: &mut Mueller<N>) -> Passing<N> {
-        // Lanes that do not come this way are not asked for.
-        let present = Lanes::from_fn(|i| if value[i] == 0.0 { 0.0 } else { at.arrival.present[i] });
-        at.material.mueller(&Arrival { present, ..at.arrival }, incoming, mueller);
-        Passing { value, present, z: [at.arrival.wo, -incoming.wi] }
+        at.material.mueller(&at.arrival, incoming, mueller);
+        Passing { value, lanes: incoming.lanes, z: [at.arrival.wo, -incoming.wi] }
     }
 
     /// Becomes what rows are beyond a surface that leaves no polarization, with a frame's x.
     fn lose(&mut self, before: &Self, x: DVec3) {
         (self.x, self.compares) = (x, before.compares);
-        for (row, before) in self.rows.iter_mut().zip(&before.rows) {
-            *row = [before[0], Lanes::ZERO, Lanes::ZERO, Lanes::ZERO];
+        for (weights, [firsts, ..]) in self.weights.iter_mut().zip(before.weights) {
+            *weights = [firsts, [0.0; K], [0.0; K], [0.0; K]];
         }
     }
 
     /// The mirror image in a plane: light that was folded there by a shading normal.
     fn fold(&mut self, flat: DVec3) {
         self.x = shading::folded(self.x, flat);
-        for row in &mut self.rows {
-            (row[2], row[3]) = (row[2] * -1.0, row[3] * -1.0);
+        for weights in &mut self.weights {
+            weights[2..].iter_mut().flatten().for_each(|weight| *weight *= -1.0);
         }
     }
 
     /// The direction by which a material was asked, where shading normals have folded it to `incoming`.
+    #[inline(always)]
     fn unfolded(at: &Interaction<N>, incoming: Incoming) -> Option<Incoming> {
         let is_folded = at.flat != at.arrival.normal && (incoming.wi.dot(at.arrival.normal) < 0.0) != incoming.crosses;
         is_folded.then(|| Incoming { wi: shading::folded(incoming.wi, at.flat), ..incoming })
@@ -309,7 +316,8 @@ impl<const N: usize, const K: usize> Rows<N, K> {
             after.lose(self, across(wi, self.x));
             return after;
         }
-        let incoming = Incoming { wi, crosses: wi.dot(at.flat) < 0.0, single: false };
+        let lanes = at.arrival.present.not_zero();
+        let incoming = Incoming { wi, crosses: wi.dot(at.flat) < 0.0, single: false, lanes };
         let drawn = Self::unfolded(at, incoming);
         let (asked, mut mueller) = (drawn.unwrap_or(incoming), Mueller::NONE);
         let value = value.unwrap_or_else(|| evaluated(at, asked.wi));
@@ -324,26 +332,22 @@ impl<const N: usize, const K: usize> Rows<N, K> {
     /// Takes light of some polarization, whose direction is z; answers the factor on its intensity.
     fn receive(&mut self, z: DVec3, light: &Column<N>) -> Lanes<N> {
         let turn = Turn::new(z, self.x, light.x).unwrap_or(Turn::NONE);
-        let [s0, s1, s2, s3] = light.stokes;
-        for row in &mut self.rows {
-            let [q0, q1, q2, q3] = *row;
-            row[0] = Lanes::from_fn(|i| {
-                let [r1, r2] = turn.of(q1[i], q2[i]);
-                q0[i] * s0[i] + r1 * s1[i] + r2 * s2[i] + q3[i] * s3[i]
-            });
+        for (i, weights) in self.weights.iter_mut().enumerate() {
+            let ([s0, s1, s2, s3], [q0, q1, q2, q3]) = (light.stokes.map(|part| part[i]), *weights);
+            let [r1, r2] = turn.of(q1, q2);
+            weights[0] = from_fn(|k| q0[k] * s0 + r1[k] * s1 + r2[k] * s2 + q3[k] * s3);
         }
         if self.compares {
             return Lanes::ONE;
         }
-        let taken = self.rows[0][0];
-        let scale = Lanes::from_fn(|i| inverse(taken[i]));
-        self.rows.iter_mut().flatten().for_each(|part| *part = *part * scale);
+        let taken = self.firsts();
+        (0..N).for_each(|i| self.set(i, self.weights[i], inverse(taken[i])));
         Lanes::from_fn(|i| if taken[i] > 0.0 { taken[i] } else { 0.0 })
     }
 
     /// The light that a photon brings which has followed the first row: Q times it.
     fn column(&self) -> Column<N> {
-        let [zero, one, two, three] = self.rows[0];
+        let [zero, one, two, three] = from_fn(|part| Lanes::from_fn(|i| self.weights[i][part][0]));
         Column { x: self.x, stokes: [zero, one, two * -1.0, three] }
     }
 
@@ -353,11 +357,11 @@ impl<const N: usize, const K: usize> Rows<N, K> {
             return 0.0;
         }
         let MetLight { world, arrived, rgb, .. } = *light;
-        let lanes = &(*arrived.lanes * self.rows[0][0]);
+        let lanes = &(*arrived.lanes * self.firsts());
         let exact = Arrived { lanes, ..*arrived };
         let exact = match light.excitation {
             None => exact.rgb(&world.responses),
-            Some(dye) => dye.seen(world, &exact, |seen| seen.times(dye.polarization.rows[0][0], &world.responses)),
+            Some(dye) => dye.seen(world, &exact, |seen| seen.times(dye.polarization.firsts(), &world.responses)),
         };
         world.amount(exact) - world.amount(rgb)
     }
@@ -373,12 +377,13 @@ impl<const N: usize, const K: usize> Polarization<N> for Rows<N, K> {
         let x = camera.image_right(ray.direction);
         let mut rows = Self::starting(x, world.method.polarization == Polarizing::Compared);
         if let Some(filter) = camera.filter() {
-            let (z, mut value) = (-ray.direction, Lanes([filter.transmittance() as f32; N]));
+            let (z, lanes) = (-ray.direction, Lanes::<N>::ONE.not_zero());
+            let mut value = Lanes([filter.transmittance() as f32; N]);
             let (sin, cos) = libm::sincos(filter.angle);
             let axis = x * cos + z.cross(x) * sin;
             let mut mueller = Mueller::NONE;
-            mueller.set_lanes(axis, Lanes::ONE, |_| Block::of_polarizer(filter.extinction));
-            rows.pass(&mueller, &Passing { value, present: Lanes::ONE, z: [z; 2] }, &mut value);
+            mueller.set_lanes(axis, lanes, |_| Block::of_polarizer(filter.extinction));
+            rows.pass(&mueller, &Passing { value, lanes, z: [z; 2] }, &mut value);
         }
         rows
     }
@@ -391,7 +396,7 @@ impl<const N: usize, const K: usize> Polarization<N> for Rows<N, K> {
     fn after_straight(mut self, material: &Material<Table>, arrival: &Arrival<N>, straight: &mut Straight<N>) -> Self {
         let (mut mueller, mut share) = (Mueller::NONE, straight.share());
         material.mueller_of_straight(arrival, &mut mueller);
-        let passing = Passing { value: share, present: arrival.present, z: [arrival.wo; 2] };
+        let passing = Passing { value: share, lanes: arrival.present.not_zero(), z: [arrival.wo; 2] };
         self.pass(&mueller, &passing, &mut share);
         straight.panes = Lanes::from_fn(|i| (share[i] - straight.holes[i]).max(0.0));
         self
@@ -406,7 +411,7 @@ impl<const N: usize, const K: usize> Polarization<N> for Rows<N, K> {
                 way.change.x = across(branch.wi, self.x);
                 continue;
             }
-            let incoming = branch.incoming();
+            let incoming = branch.incoming(&at.arrival.present);
             let drawn = Self::unfolded(at, incoming);
             let asked = drawn.unwrap_or(incoming);
             let value = match branch.pdf {
@@ -448,11 +453,11 @@ impl<const N: usize, const K: usize> Polarization<N> for Rows<N, K> {
         Self::starting(self.x, self.compares)
     }
 
-    fn lit_by(mut self, light: &Light<Table>, wi: DVec3, shone: &mut Lanes<N>) -> Self {
-        let Some((axis, degree)) = light.polarization().and_then(|sky| sky.toward(wi)) else { return self };
-        let stokes = [1.0, degree as f32, 0.0, 0.0].map(|part| Lanes([part; N]));
-        *shone = *shone * self.receive(-wi, &Column { x: axis, stokes });
-        self
+    fn lit_by(&self, light: &Light<Table>, wi: DVec3, shone: &mut Lanes<N>) -> Option<Self> {
+        let (axis, degree) = light.polarization().and_then(|sky| sky.toward(wi))?;
+        let (mut lit, stokes) = (*self, [1.0, degree as f32, 0.0, 0.0].map(|part| Lanes([part; N])));
+        *shone = *shone * lit.receive(-wi, &Column { x: axis, stokes });
+        Some(lit)
     }
 
     fn shown(&self, at: &Interaction<N>, direction: DVec3, bsdf_cos: &mut Lanes<N>) -> Self {
@@ -462,7 +467,7 @@ impl<const N: usize, const K: usize> Polarization<N> for Rows<N, K> {
     fn seen(&self, _: &Interaction<N>, _: &Arrival<N>, on_its_way: &Self, world: &World, ray: &Ray) -> SeenPhoton<N> {
         let mut after = Self::of_camera(world, ray);
         let factor = after.receive(-ray.direction, &on_its_way.column());
-        let change = if self.compares { after.rows[0][0] + Lanes([-1.0; N]) } else { Lanes::ZERO };
+        let change = if self.compares { after.firsts() + Lanes([-1.0; N]) } else { Lanes::ZERO };
         SeenPhoton { change, factor: Some(factor), stokes: after.stokes() }
     }
 
@@ -481,7 +486,7 @@ impl<const N: usize, const K: usize> Polarization<N> for Rows<N, K> {
 
     fn change_of_joined(&self, _: &Interaction<N>, _: DVec3, _: &Self::Landed, joined: &Self, lanes: Lanes<N>) -> f64 {
         let all = f64::from(lanes.sum());
-        if self.compares && all > 0.0 { f64::from((lanes * joined.rows[0][0]).sum()) / all - 1.0 } else { 0.0 }
+        if self.compares && all > 0.0 { f64::from((lanes * joined.firsts()).sum()) / all - 1.0 } else { 0.0 }
     }
 
     fn read_landed(photon: &Self::Landed, read: impl Fn(Lanes<N>) -> Lanes<N>) -> Self::Landed {
@@ -489,6 +494,6 @@ impl<const N: usize, const K: usize> Polarization<N> for Rows<N, K> {
     }
 
     fn stokes(&self) -> Option<[Lanes<N>; 3]> {
-        (K == 4).then(|| [1, 2, 3].map(|row| self.rows[row][0]))
+        (K == 4).then(|| [1, 2, 3].map(|row| Lanes::from_fn(|i| self.weights[i][0][row])))
     }
 }

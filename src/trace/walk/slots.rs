@@ -5,53 +5,51 @@
 #[derive(Debug)]
 pub struct Slots<T> {
     entries: Vec<Box<T>>,
-    used: usize,
+    /// Entries that are gone.
+    spare: Vec<Box<T>>,
 }
 
 impl<T> Slots<T> {
     pub fn new() -> Self {
-        Self { entries: Vec::new(), used: 0 }
+        Self { entries: Vec::new(), spare: Vec::new() }
     }
 
     /// Another entry on top, to be filled: it holds what an entry that is gone did, or what `new` makes.
     #[inline(always)]
     pub fn add(&mut self, new: impl FnOnce() -> T) -> &mut T {
-        if self.used == self.entries.len() {
-            self.entries.push(Box::new(new()));
-        }
-        self.used += 1;
-        &mut self.entries[self.used - 1]
+        self.entries.push(self.spare.pop().unwrap_or_else(|| Box::new(new())));
+        self.entries.last_mut().expect("one was pushed")
     }
 
-    /// Exchanges the entry at the top, if there is any, for one that is not used any more; answers whether there was.
+    /// Takes the entry at the top, if there is any. [`release`](Self::release) gives its memory back.
     #[inline(always)]
-    pub fn take(&mut self, entry: &mut Box<T>) -> bool {
-        let Some(used) = self.used.checked_sub(1) else { return false };
-        self.used = used;
-        std::mem::swap(&mut self.entries[used], entry);
-        true
+    pub fn take(&mut self) -> Option<Box<T>> {
+        self.entries.pop()
+    }
+
+    /// Takes back the memory of an entry that is not used any more.
+    #[inline(always)]
+    pub fn release(&mut self, entry: Box<T>) {
+        self.spare.push(entry);
     }
 
     /// An entry, counted from the bottom.
     #[inline(always)]
     pub fn get(&self, number: usize) -> Option<&T> {
-        self.entries[..self.used].get(number).map(|entry| &**entry)
+        self.entries.get(number).map(|entry| &**entry)
     }
 
     /// Leaves those alone whose number is to be kept.
     pub fn keep(&mut self, is_kept: impl Fn(usize) -> bool) {
-        let mut kept = 0;
-        for number in 0..self.used {
-            if is_kept(number) {
-                self.entries.swap(kept, number);
-                kept += 1;
-            }
-        }
-        self.used = kept;
+        let mut number = 0;
+        self.spare.extend(self.entries.extract_if(.., |_| {
+            number += 1;
+            !is_kept(number - 1)
+        }));
     }
 
     pub fn clear(&mut self) {
-        self.used = 0;
+        self.spare.append(&mut self.entries);
     }
 }
 
@@ -61,15 +59,17 @@ mod tests {
 
     #[test]
     fn entries_are_filled_in_the_place_of_those_that_are_gone() {
-        let (mut slots, mut entry) = (Slots::new(), Box::new(0));
+        let mut slots = Slots::new();
         for number in 1..=3 {
             *slots.add(|| 0) = number;
         }
         slots.keep(|number| number != 1);
         assert_eq!([slots.get(0), slots.get(1), slots.get(2)], [Some(&1), Some(&3), None]);
-        assert!(slots.take(&mut entry));
-        assert_eq!((*entry, *slots.add(|| 7)), (3, 0));
+        let entry = slots.take().expect("two are left");
+        assert_eq!((*entry, *slots.add(|| 7)), (3, 2));
+        slots.release(entry);
+        assert_eq!([*slots.add(|| 7), *slots.add(|| 7)], [3, 7]);
         slots.clear();
-        assert!(!slots.take(&mut entry));
+        assert!(slots.take().is_none() && slots.get(0).is_none());
     }
 }

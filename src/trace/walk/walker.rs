@@ -104,7 +104,8 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
             let (ray, key) = (point.leave(path.ray.direction), path.key.child(0));
             let kind = path.kind.then(self.world.has_map(), false, || Some(self.world.is_photon_target(hit.object)));
             let next = self.pending.add(|| *path);
-            *next = Path { ray, media: boundary.crossed, key, scatter: None, kind, ..*path };
+            *next = *path;
+            (next.ray, next.media, next.key, next.scatter, next.kind) = (ray, boundary.crossed, key, None, kind);
             return None;
         }
         Some(boundary)
