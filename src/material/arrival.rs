@@ -147,18 +147,32 @@ impl<const N: usize> Arrival<'_, N> {
         !((1..N).all(same) || (self.together > 0.0 && self.is_one_way()))
     }
 
+    /// The smallest and the largest index by which rays are refracted on a side: the one given, or the lanes' own.
+    #[inline]
+    fn range(&self, given: Option<f64>, index: Index) -> [f64; 2] {
+        match (given, index) {
+            (Some(index), _) | (None, Index::Same(index)) => [index; 2],
+            (None, Index::Own(table)) => self.draw.range(table),
+        }
+    }
+
     /// Whether the outermost refracted rays lie within `together`. All lanes of a draw are asked, on this ray or not,
     /// so that what becomes of a surface does not depend on what was absorbed before.
     fn is_one_way(&self) -> bool {
         let cos = self.wo.dot(self.normal).clamp(0.0, 1.0);
-        let ratio = |i: usize| {
-            let [here, beyond] = self.refracting(i);
-            here / beyond
+        let [given, given_beyond] = self.direction_indices;
+        let (here, beyond) = (self.range(given, self.incident), self.range(given_beyond, self.beyond));
+        let ratios = if here[0] == here[1] || beyond[0] == beyond[1] {
+            [here[0] / beyond[1], here[1] / beyond[0]]
+        } else {
+            // Plain comparisons, since no index is a NaN: `min` and `max` would ask about that in every lane.
+            let wider = |[l, m]: [f64; 2], [here, beyond]: [f64; 2]| {
+                let x = here / beyond;
+                [if x < l { x } else { l }, if x > m { x } else { m }]
+            };
+            (0..N).map(|i| self.refracting(i)).fold([f64::INFINITY, 0.0], wider)
         };
-        // Plain comparisons, since no index is a NaN: `min` and `max` would ask about that in every lane.
-        let wider = |(l, m): (f64, f64), x: f64| (if x < l { x } else { l }, if x > m { x } else { m });
-        let (least, most) = (0..N).map(ratio).fold((f64::INFINITY, 0.0), wider);
-        let [a, b] = [least, most].map(|eta| {
+        let [a, b] = ratios.map(|eta| {
             let sin = eta * (1.0 - cos * cos).sqrt();
             [sin, (1.0 - sin * sin).max(0.0).sqrt()]
         });

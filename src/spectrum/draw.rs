@@ -133,6 +133,15 @@ impl<const N: usize> Draw<N> {
         }
     }
 
+    /// The smallest and the largest of them.
+    #[inline]
+    pub fn range(&self, table: &Table) -> [f64; 2] {
+        self.heroes().fold(table.fixed_range(), |[least, most], hero| {
+            let x = table.between(hero.below, hero.fraction);
+            [if x < least { x } else { least }, if x > most { x } else { most }]
+        })
+    }
+
     /// Whether a lane stands for the same light in every sample.
     pub fn is_fixed(&self, lane: usize) -> bool {
         lane < self.fixed

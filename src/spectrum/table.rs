@@ -15,6 +15,8 @@ pub struct Table {
     weights: Arc<[f32; MAX_LANES]>,
     fine: Arc<[f64]>,
     flat: bool,
+    /// The smallest and the largest number of the fixed lanes.
+    fixed_range: [f64; 2],
     /// Of an index: the one by which all lanes are refracted.
     direction: Option<f64>,
     /// A factor that varies over the surface.
@@ -62,6 +64,7 @@ impl Table {
             weights: Arc::new(weights),
             fine: fine.into(),
             flat,
+            fixed_range: [f64::min, f64::max].map(|of| bins.iter().copied().fold(bins[0], of)),
             direction: None,
             pattern: None,
         }
@@ -116,6 +119,11 @@ impl Table {
     /// Whether it is 1 in every bin and everywhere.
     pub fn is_one(&self) -> bool {
         self.flat && self.pattern.is_none() && self.fixed[0] == 1.0
+    }
+
+    /// Smallest and largest number of the fixed lanes.
+    pub(super) fn fixed_range(&self) -> [f64; 2] {
+        self.fixed_range
     }
 
     /// The numbers of the first N fixed lanes.

@@ -2,7 +2,7 @@
 
     python tools/chart.py --list                 # which renderers are there, and how to install the others
     python tools/chart.py --quick                # every chart, small: under 10 minutes on two cores
-    python tools/chart.py                        # twice the side, four times the samples, five repeats: two hours
+    python tools/chart.py                        # eight times the side, without the longest runs: two hours
     python tools/chart.py --scene cornell --quick
     python tools/chart.py --only abbe --quick    # Abbe's own series alone
     python tools/chart.py --redraw               # pictures and words of what was measured last
@@ -202,7 +202,7 @@ def main() -> None:
     names = [chart.name for chart in scenes.CHARTS]
     parser.add_argument("--scene", choices=names, action="append", help="only this chart; may be repeated")
     parser.add_argument("--only", choices=renderers.NAMES, action="append", help="only this one; may be repeated")
-    parser.add_argument("--quick", action="store_true", help="small pictures, fewer samples, three repeats")
+    parser.add_argument("--quick", action="store_true", help="small pictures, more samples")
     parser.add_argument("--list", action="store_true", help="say what is installed, and how to get the rest")
     parser.add_argument("--redraw", action="store_true", help="draw and say chart.json anew; measure nothing")
     parser.add_argument("--pictures", action="store_true", help="also write each converged picture")

@@ -23,7 +23,7 @@ from smallpt import reference
 
 TOOLS = render.ROOT / "tools"
 PACKAGES = {"mitsuba": "mitsuba", "luxcore": "pyluxcore", "cycles": "bpy"}
-INSTALL = {"mitsuba": "mitsuba==3.9.1", "luxcore": "pyluxcore==2.11.2", "cycles": "bpy==5.0.1 (for Python 3.11)"}
+INSTALL = {"mitsuba": "mitsuba==3.9.1", "luxcore": "pyluxcore==2.11.2", "cycles": "bpy==5.2.3 (for Python 3.13)"}
 NAMES = {"abbe": "Abbe", "smallpt": "smallpt", "mitsuba": "Mitsuba 3", "luxcore": "LuxCore"}
 NAMES |= {"cycles": "Blender Cycles", "povray": "POV-Ray"}
 LLVM = (

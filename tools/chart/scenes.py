@@ -43,12 +43,12 @@ class Profile(NamedTuple):
     """How much is rendered: sides of the picture and samples as multiples of a chart's own, and repeats."""
 
     side: float
-    levels: int  # further points, each with four times the samples
+    left_out: int  # points of most samples that are not rendered
     reference: int  # samples of half a reference, as a multiple of the longest point's
     repeats: int
 
 
-FULL = Profile(2, 1, 8, 5)
+FULL = Profile(8, 1, 4, 3)
 QUICK = Profile(1, 0, 3, 3)
 
 MODELS = {"rgb": '"rgb"', **{f"{n} bands": f"{{ bands = {n} }}" for n in (8, 12, 16, 32)}, "heroes": '"hero"'}
@@ -221,10 +221,8 @@ CHARTS = (
 def scaled(chart: Chart, profile: Profile) -> Chart:
     """The chart at the profile's size and samples."""
     size = tuple(max(4, round(side * profile.side)) for side in chart.size)
-    longer = lambda samples: samples + tuple(samples[-1] * 4**i for i in range(1, profile.levels + 1))  # noqa: E731
-    series = tuple(
-        one if one.renderer == "povray" else one._replace(samples=longer(one.samples)) for one in chart.series
-    )
+    points = lambda samples: samples[: max(2, len(samples) - profile.left_out)]  # noqa: E731
+    series = tuple(one._replace(samples=points(one.samples)) for one in chart.series)
     return chart._replace(size=size, series=series)
 
 
