@@ -1,5 +1,7 @@
 """Polarization at flat surfaces of glass: one of them, total reflection, piles of plates, a pane."""
 
+from typing import NamedTuple
+
 import numpy as np
 
 from . import formulas
@@ -21,34 +23,46 @@ def along(degrees, side):
     return np.array([np.sin(angle), 0, side * np.cos(angle)])
 
 
+class Stage(NamedTuple):
+    """A camera and a lamp before or behind z = 0, between them a sheet that polarizes halfway between s and p."""
+
+    eye: np.ndarray
+    onward: np.ndarray  # toward the lamp
+    light: Light  # as it comes
+    materials: dict
+    objects: list
+
+    @classmethod
+    def of(cls, seen, lit, lamp=None):
+        """`seen` and `lit` have the angle and the side of camera and lamp."""
+        onward = along(*lit) * [-1, 1, 1]
+        axis = unit(S + np.cross(S, onward))
+        light = Light.unpolarized(-onward).through_polarizer(axis, -onward)
+        materials = {"sheet": {"polarizer": {"axis": axis.tolist()}}, "glow": lamp or glow()}
+        objects = [(name, disc(far * onward, -onward, 0.3)) for name, far in (("sheet", 2), ("glow", 3))]
+        return cls(along(*seen), onward, light, materials, objects)
+
+
 def surface(name, formula, index, seen, lit, guards, wrong, words):
-    """The surface z = 0 of glass that lies below, between a camera and a lamp behind a polarizer halfway between s and
-    p. `seen` and `lit` have the angle and the side of camera and lamp; `wrong` makes of S0 to S3 what the mistake would
-    measure."""
-    eye, onward = along(*seen), along(lit[0], lit[1]) * [-1, 1, 1]
-    axis = unit(S + np.cross(S, onward))
-    light = Light.unpolarized(-onward).through_polarizer(axis, -onward)
+    """The surface z = 0 of glass that lies below; `wrong` makes of S0 to S3 what the mistake would measure."""
+    stage = Stage.of(seen, lit)
     around, beyond = (1, index) if lit[1] > 0 else (index, 1)
-    to = complex(beyond / around)
-    light = light.reflected(UP, to) if seen[1] == lit[1] else light.crossing(UP, to)
+    to, returns = complex(beyond / around), seen[1] == lit[1]
+    light = stage.light.reflected(UP, to) if returns else stage.light.crossing(UP, to)
     # Radiance goes by the square of the index.
-    expected = light.stokes(RIGHT) * (1.0 if seen[1] == lit[1] else to.real**2)
+    expected = light.stokes(RIGHT) * (1.0 if returns else to.real**2)
     return row(
         name,
         formula,
-        {"glass": glass(index), "sheet": {"polarizer": {"axis": axis.tolist()}}, "glow": glow()},
-        [
-            ("glass", plane((0, 0, 0), UP)),
-            ("sheet", disc(2 * onward, -onward, 0.3)),
-            ("glow", disc(3 * onward, -onward, 0.3)),
-        ],
+        stage.materials | {"glass": glass(index)},
+        [*stage.objects, ("glass", plane((0, 0, 0), UP))],
         expected,
         guards,
         wrong(expected),
         words,
         lights=[],
         film=STOKES,
-        eye=eye,
+        eye=stage.eye,
     )
 
 
@@ -150,10 +164,9 @@ def piles(quick):
 def pane(quick):
     """All reflections between both faces of a pane that absorbs, one after the other."""
     index, left, degrees = 1.52, 0.9, 60.0
-    eye = along(degrees, 1)
-    for which, onward in (("reflected by", along(degrees, 1) * [-1, 1, 1]), ("through", -eye)):
-        axis = unit(S + np.cross(S, onward))
-        coming = Light.unpolarized(-onward).through_polarizer(axis, -onward)
+    for which, side in (("reflected by", 1), ("through", -1)):
+        stage = Stage.of((degrees, 1), (degrees, side))
+        coming = stage.light
         into, out = complex(index), complex(1 / index)
         inside = coming.crossing(UP, into)
         # Amplitudes by the root of the share that one way leaves; orders do not interfere.
@@ -164,7 +177,7 @@ def pane(quick):
             if (order % 2 == 0) == (which == "through"):
                 field = field + inside.crossing(UP, out).field
             inside = inside.reflected(UP, out)
-        expected = Light(eye, field).stokes(RIGHT)
+        expected = Light(stage.eye, field).stokes(RIGHT)
         s, p = formulas.both_polarizations(index, degrees)
         mean = (s + p) / 2
         through = (1 - mean) ** 2 * left / (1 - (mean * left) ** 2)
@@ -172,16 +185,8 @@ def pane(quick):
         yield row(
             f"light at 45 degrees {which} a pane at 60 degrees",
             "the sum of <E E*> over all orders",
-            {
-                "pane": {"thin": {"index": index, "transmittance": left}},
-                "sheet": {"polarizer": {"axis": axis.tolist()}},
-                "glow": glow(),
-            },
-            [
-                ("pane", disc((0, 0, 0), UP, 0.5)),
-                ("sheet", disc(2 * onward, -onward, 0.3)),
-                ("glow", disc(3 * onward, -onward, 0.3)),
-            ],
+            stage.materials | {"pane": {"thin": {"index": index, "transmittance": left}}},
+            [*stage.objects, ("pane", disc((0, 0, 0), UP, 0.5))],
             expected,
             AVERAGED,
             [averaged / 2, 0, 0, 0],
@@ -189,7 +194,7 @@ def pane(quick):
             f"leaves {left}, at {degrees} degrees; S0 to S3.",
             lights=[],
             film=STOKES,
-            eye=eye,
+            eye=stage.eye,
         )
 
 
