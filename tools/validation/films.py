@@ -325,14 +325,18 @@ def lab(xyz, white):
     return colors.colour.XYZ_to_Lab(xyz, colors.colour.XYZ_to_xy(white))
 
 
-def daylight(name, material, layers, body, degrees, words):
-    """The color of a film under D65 in the lanes that the plan chooses: at most 0.5 dE2000 away."""
+def under_d65(layers, body, degrees):
+    """CIE XYZ of what layers on a body reflect, of white, and of the gray that reflects as much at every wavelength."""
     light = colors.illuminant("D65")
     reflected = shares(layers, body(light.nm), degrees, light.nm)[0]
-    of = lambda share: (light.power * share) @ colors.OBSERVER.values  # noqa: E731
-    expected, white, gray = of(reflected), of(1), of(reflected.mean())
+    return [(light.power * share) @ colors.OBSERVER.values for share in (reflected, 1, reflected.mean())]
+
+
+def daylight(name, material, layers, body, degrees, words):
+    """The color of a film under D65 in the lanes that the plan chooses: at most 0.5 dE2000 away."""
+    expected, white, gray = under_d65(layers, body, degrees)
     scene = view(
-        {"film": material, "glow": glow(light.curve)},
+        {"film": material, "glow": glow({"illuminant": "D65"})},
         [("film", plane((0, 0, 0), (0, 1, 0))), ("glow", plane((0, 30, 0), (0, -1, 0)))],
         eye=looking_down(degrees),
         up=(0, 0, 1),
@@ -357,6 +361,10 @@ def daylight(name, material, layers, body, degrees, words):
     )
 
 
+def air(nm):
+    return np.ones_like(nm)
+
+
 def in_daylight(quick):
     for thickness in (100, 150, 200, 250, 300, 400, 500, 600, 1000):
         for degrees in (0, 45):
@@ -364,7 +372,7 @@ def in_daylight(quick):
                 f"{thickness} nm of soap",
                 {"thin": {"index": 1.33, "thickness_nm": thickness}},
                 [(1.33, thickness)],
-                lambda nm: np.ones_like(nm),
+                air,
                 degrees,
                 f"A soap film of index 1.33, {thickness} nm thick",
             )
