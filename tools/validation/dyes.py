@@ -280,8 +280,8 @@ def closed(dye, quick):
         within(dye.material(covers=1 - HOLES), 1 - HOLES, *few(quick), 1 / HOLES),
         expected,
         mistaken,
-        f"The inside of a ball; reflectance and absorption of the {dye.name} are divided by {1 - HOLES}, of which the wall "
-        f"covers all directions; outside an even sky of D65, Y = {1 / HOLES:g}, in CIE XYZ.",
+        f"The inside of a ball; reflectance and absorption of the {dye.name} are divided by {1 - HOLES}, of which the "
+        f"wall covers all directions; outside an even sky of D65, Y = {1 / HOLES:g}, in CIE XYZ.",
         2,
         told=0.04,
     )

@@ -129,9 +129,9 @@ def polarized(name, material, degrees, both, guards, mistake, words, *, way="R",
         expected,
         guards,
         np.where(np.abs(wrong - expected) > 8 * bound, wrong, expected),
-        f"{words}, in light polarized halfway between s and p, at {degrees} degrees, of lines at {LINES} nm; S0 to S3 in "
-        f"CIE XYZ.",
-        rounding=bound * max(1.0, factor),
+        f"{words}, in light polarized halfway between s and p, at {degrees} degrees, of lines at {LINES} nm; S0 to S3 "
+        f"in CIE XYZ.",
+        rounding=bound,
     )
 
 
@@ -299,8 +299,8 @@ def fringe(quick):
             2 * r / (1 + r),
             "two waves that interfere, without those that go to and fro",
             2 * r,
-            f"{count} soap films of index {index} side by side, whose thicknesses are evenly spread over {nm:g} nm / 2 n "
-            f"from 300 nm on, at normal incidence in the light of a line at {nm:g} nm.",
+            f"{count} soap films of index {index} side by side, whose thicknesses are evenly spread over {nm:g} nm / 2 "
+            f"n from 300 nm on, at normal incidence in the light of a line at {nm:g} nm.",
             rounding=exactly(amplified),
         )
     ]

@@ -165,8 +165,8 @@ def mirrors(quick):
                 turning(degrees, turn),
                 1.5 + 0j,
                 AVERAGED if turn != 45 else NOT_TURNED,
-                f"Light that two surfaces of index 1.5 reflect at {degrees:.6g} degrees, the planes of incidence {turn} "
-                f"degrees apart.",
+                f"Light that two surfaces of index 1.5 reflect at {degrees:.6g} degrees, the planes of incidence "
+                f"{turn} degrees apart.",
                 mistake=None if turn != 45 else (s**2 + p**2) / 2,
             )
 
@@ -289,7 +289,8 @@ def prisms(quick):
                 index,
                 way,
                 directions,
-                f"A ray through {which} of 60 degrees and index {index} at least deviation, to a lamp of radiance 1; S0 to S3.",
+                f"A ray through {which} of 60 degrees and index {index} at least deviation, to a lamp of radiance 1; "
+                f"S0 to S3.",
                 film={"stokes": True},
             )
             yield found
@@ -317,8 +318,8 @@ def rainbows(quick):
             index,
             way,
             directions,
-            f"A ray of least deviation through a ball of index {index}, reflected {order} times inside, to a lamp; S0 to "
-            f"S3.",
+            f"A ray of least deviation through a ball of index {index}, reflected {order} times inside, to a lamp; "
+            f"S0 to S3.",
             film={"stokes": True},
         )
         yield found

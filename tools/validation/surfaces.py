@@ -90,8 +90,8 @@ def amplitudes(quick):
                 lit,
                 VERDET if verdet else AVERAGED,
                 (lambda stokes: stokes * [1, 1, -1, -1]) if verdet else averaged,
-                f"Light polarized halfway between s and p, {which} at a flat surface of index {index}, at {degrees:.6g} "
-                f"degrees in air; S0 to S3.",
+                f"Light polarized halfway between s and p, {which} at a flat surface of index {index}, at "
+                f"{degrees:.6g} degrees in air; S0 to S3.",
             )
 
 
@@ -107,7 +107,8 @@ def total_reflection(quick):
             (degrees, -1),
             "a phase of the other sign",
             lambda stokes: stokes * [1, 1, 1, -1],
-            f"Light polarized halfway between s and p, reflected inside index {index} at {degrees:.6g} degrees; S0 to S3.",
+            f"Light polarized halfway between s and p, reflected inside index {index} at {degrees:.6g} degrees; S0 to "
+            f"S3.",
         )
 
 
@@ -190,8 +191,8 @@ def pane(quick):
             expected,
             AVERAGED,
             [averaged / 2, 0, 0, 0],
-            f"Light polarized halfway between s and p, {which} a pane without thickness of index {index}, of which one way "
-            f"leaves {left}, at {degrees} degrees; S0 to S3.",
+            f"Light polarized halfway between s and p, {which} a pane without thickness of index {index}, of which one "
+            f"way leaves {left}, at {degrees} degrees; S0 to S3.",
             lights=[],
             film=STOKES,
             eye=stage.eye,
