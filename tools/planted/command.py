@@ -52,10 +52,7 @@ BUGS = {
         "the phase between s and p with the sign that columns have, for rows",
         ("polarization", "metals_mirror_all_four_components"),
     ),
-    "verdet_sign_of_r_p": Bug(
-        "p reflected by glass with the sign of other textbooks",
-        ("polarization", "glass_turns_the_plane_of_polarization"),
-    ),
+    "verdet_sign_of_r_p": Bug("p reflected by glass with the sign of other textbooks"),
     "frames_not_turned": Bug(
         "polarization not turned from one plane of incidence into the next",
         ("polarization", "two_reflections_depend_on_how_their_planes_lie"),
@@ -66,10 +63,7 @@ BUGS = {
     ),
     "power_for_photons": Bug("a dye's quantum yield of power, and not of photons"),
     "ten_degree_observer": Bug("color matching functions of 1964 (10 degrees) for those of 1931"),
-    "r_p_of_a_film": Bug(
-        "r_p of a film with the sign of r_s",
-        ("films", "p_is_the_negative_of_s_along_the_normal_and_turns_as_abeles_has_it"),
-    ),
+    "r_p_of_a_film": Bug("r_p of a film with the sign of r_s"),
     "srgb_in_the_exr": Bug("the sRGB curve in the EXR"),
 }
 

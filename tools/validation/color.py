@@ -45,7 +45,7 @@ def line_powers(lines):
     """The matrix from XYZ to the power of each of a few lines, and by how much it amplifies rounding at equal
     powers."""
     matrix = observer(colors.OBSERVER, np.array(lines))
-    inverse = np.linalg.inv(matrix)
+    inverse = np.linalg.pinv(matrix)
     return inverse, float((np.abs(inverse) @ matrix.sum(axis=1)).max())
 
 

@@ -2,6 +2,8 @@
 
 A dye shines Q a(i) e(o) i / o at the wavelength o of what comes at i, in power: of a photon that is absorbed, with a, one
 leaves with the chance Q, and e is its emission in photons. Beside it paper reflects 0.92 - a.
+
+What shines is exact. What paper reflects is read at 32 wavelengths.
 """
 
 from typing import NamedTuple
@@ -11,8 +13,8 @@ import numpy as np
 import colors
 
 from . import readers
-from .color import XYZ
-from .row import Row
+from .color import XYZ, observer
+from .row import LIMIT, Row
 from .scenes import sphere, view
 
 NM = np.arange(300.0, 831.0)
@@ -21,6 +23,8 @@ OBSERVER = np.stack([np.interp(NM, colors.WAVELENGTHS, axis, left=0) for axis in
 # Between so many wavelengths spectra are splines: by how much that may move a color, of its largest number.
 LANES, SMOOTH = {"bands": 32}, 3e-4
 POWER = "a quantum yield of power, and not of photons"
+# Of what shines alone, of its largest number.
+EXACT = 1e-5 / LIMIT
 
 
 class Dye(NamedTuple):
@@ -52,15 +56,27 @@ class Dye(NamedTuple):
         """The same by mistake."""
         return self.quantum_yield * self.absorbed
 
-    def material(self):
-        samples = {
-            "reflectance": 0.92 - self.absorbed,
-            "absorption": self.absorbed,
-            "emission": 1000 * bell(*self.shines) / NM,
+    @property
+    def paper(self):
+        """What is reflected."""
+        return 0.92 - self.absorbed
+
+    def material(self, paper=None, absorbed=None, covers=1.0):
+        """On paper, or on what reflects otherwise; for a wall that covers a part of its place, as if it covered all."""
+        paper = self.paper if paper is None else paper
+        absorbed = self.absorbed if absorbed is None else absorbed
+        curve = lambda values: {"samples": samples(values)}  # noqa: E731
+        dye = {
+            "absorption": curve(absorbed / covers),
+            "emission": curve(1000 * bell(*self.shines) / NM),
+            "quantum_yield": self.quantum_yield,
         }
-        curves = {key: {"samples": np.column_stack([NM, values]).tolist()} for key, values in samples.items()}
-        dye = {"absorption": curves["absorption"], "emission": curves["emission"], "quantum_yield": self.quantum_yield}
-        return {"diffuse": {"reflectance": curves["reflectance"], "fluorescence": dye}}
+        reflectance = curve(paper / covers)
+        return {"diffuse": {"reflectance": reflectance, "fluorescence": dye}}
+
+
+def samples(values):
+    return np.column_stack([NM, values]).tolist()
 
 
 def bell(middle, deviation):
@@ -81,76 +97,207 @@ def illuminant(name):
     return power / (OBSERVER[1] @ power)
 
 
-def room(dye, excited, opacity, light):
-    """Radiance in a closed room that the dye covers by an opacity; light comes from outside."""
-    left = 1 - opacity * (0.92 - dye.absorbed)
-    outside = (1 - opacity) * light
+def room(dye, excited, opacity, outside):
+    """Radiance in a closed room that the dye covers by an opacity, into which light comes."""
+    left = 1 - opacity * dye.paper
     brightness = (excited * outside / left).sum() / (1 - opacity * (excited * dye.glow / left).sum())
     return OBSERVER @ ((outside + opacity * brightness * dye.glow) / left)
 
 
 def rows(quick):
-    # FL11 has no ultraviolet light.
-    for dye, names in zip(DYES, (("D65", "A", "FL11"), ("D65", "A", "FL11"), ("D65", "A")), strict=True):
-        yield from (patch(dye, name) for name in names)
+    for dye in DYES:
+        for name in ("D65", "A", "FL11"):
+            yield patch(dye, name)
+            yield paper(dye, name)
+            yield glowing(dye, name)
+        yield lit_by_lines(dye)
         yield ball(dye, quick)
+        yield closed(dye, quick)
+        yield closed_paper(dye, quick)
+    for least in (360, 380):
+        yield sharper(DYES[2], least)
 
 
-def row(name, formula, scene, expected, mistaken, words, seeds=1):
-    """Of those of X, Y and Z that the mistake changes."""
-    bound = SMOOTH * np.abs(expected).max()
-    told = np.abs(mistaken - expected) > 8 * bound
+def row(name, formula, scene, expected, mistaken, words, seeds=1, guards=POWER, bound=SMOOTH / LIMIT, told=8 * SMOOTH):
+    """What the mistake changes by less than a share of the largest number is not told by it."""
+    largest = np.abs(expected).max()
+    mistaken = np.where(np.abs(mistaken - expected) > told * largest, mistaken, expected)
     return Row(
         "dyes",
         name,
         formula,
         scene,
-        lambda image: readers.colors(image)[:, told],
-        expected[told],
-        POWER,
-        mistaken[told],
+        readers.colors,
+        expected,
+        guards,
+        mistaken,
         words,
         seeds,
-        rounding=np.full(told.sum(), bound),
+        rounding=np.full(3, bound * largest),
+    )
+
+
+def under(material, light):
+    """A patch under an even sky."""
+    scene = colors.patches_scene([0], light, LANES, XYZ)
+    scene["material"] = {"m0": material}
+    scene["render"]["samples"] = 1
+    return scene
+
+
+def described(dye, paper="reflects 0.92 - a and "):
+    return (
+        f"A diffuse patch that {paper}has a dye of absorption a = 0.9 exp(-((nm - {dye.absorbs[0]}) / "
+        f"{dye.absorbs[1]})^2 / 2), emission in photons exp(-((nm - {dye.shines[0]}) / {dye.shines[1]})^2 / 2) and "
+        f"quantum yield {dye.quantum_yield}"
     )
 
 
 def patch(dye, name):
     light = illuminant(name)
     expected, mistaken = (
-        OBSERVER @ ((0.92 - dye.absorbed) * light + (excited @ light) * dye.glow)
-        for excited in (dye.excited, dye.in_power)
+        OBSERVER @ (dye.paper * light + (excited @ light) * dye.glow) for excited in (dye.excited, dye.in_power)
     )
-    scene = colors.patches_scene([0], {"illuminant": name}, LANES, XYZ)
-    scene["material"] = {"m0": dye.material()}
-    scene["render"]["samples"] = 1
-    words = (
-        f"A diffuse patch that reflects 0.92 - a and has a dye of absorption a = 0.9 exp(-((nm - {dye.absorbs[0]}) / "
-        f"{dye.absorbs[1]})^2 / 2), emission in photons exp(-((nm - {dye.shines[0]}) / {dye.shines[1]})^2 / 2) and "
-        f"quantum yield {dye.quantum_yield}, under an even sky of {name}, Y = 1, in CIE XYZ."
-    )
+    guards = POWER
+    if np.abs(mistaken - expected).max() < 8 * SMOOTH * expected.max():
+        guards, mistaken = "a dye that does not shine", OBSERVER @ (dye.paper * light)
+    words = f"{described(dye)}, under an even sky of {name}, Y = 1, in CIE XYZ."
     formula = "sum of light x (reflectance + Q a e i / o) x observer"
-    return row(f"{dye.name} under {name}", formula, scene, expected, mistaken, words)
+    scene = under(dye.material(), {"illuminant": name})
+    return row(f"{dye.name} under {name}", formula, scene, expected, mistaken, words, guards=guards)
 
 
-def ball(dye, quick, opacity=0.8):
+def paper(dye, name):
+    light = illuminant(name)
+    expected = OBSERVER @ (dye.paper * light)
+    reflectance = {"samples": samples(dye.paper)}
+    return row(
+        f"the paper of the {dye.name} under {name}",
+        "sum of light x reflectance x observer",
+        under({"diffuse": {"reflectance": reflectance}}, {"illuminant": name}),
+        expected,
+        expected + (dye.excited @ light) * (OBSERVER @ dye.glow),
+        f"The same patch without its dye, under an even sky of {name}, Y = 1, in CIE XYZ.",
+        guards="light that shines where no dye is",
+    )
+
+
+def glowing(dye, name):
+    """The dye on black: no lane stands for what it reflects."""
+    light = illuminant(name)
+    expected, mistaken = ((excited @ light) * (OBSERVER @ dye.glow) for excited in (dye.excited, dye.in_power))
+    return row(
+        f"{dye.name} alone under {name}",
+        "sum of light x Q a e i / o x observer",
+        under(dye.material(0 * NM), {"illuminant": name}),
+        expected,
+        mistaken,
+        f"{described(dye, 'reflects nothing and ')}, under an even sky of {name}, Y = 1, in CIE XYZ.",
+        bound=EXACT,
+    )
+
+
+def lit_by_lines(dye):
+    """Where light is of single wavelengths, paper is exact as well."""
+    lines = np.array([365.0, 436.0, 546.0])
+    at = lambda values: np.interp(lines, NM, values)  # noqa: E731
+    reflected = observer(colors.OBSERVER, lines) @ at(dye.paper)
+    glow = observer(colors.OBSERVER, NM) @ dye.glow
+    expected, mistaken = (reflected + at(excited).sum() * glow for excited in (dye.excited, dye.in_power))
+    return row(
+        f"{dye.name} under three lines",
+        "sum of lines x (reflectance + Q a e i / o) x observer",
+        under(dye.material(), {"lines": [[float(nm), 1] for nm in lines]}),
+        expected,
+        mistaken,
+        f"{described(dye)}, under an even sky of lines at {lines.tolist()} nm, in CIE XYZ.",
+        bound=EXACT,
+    )
+
+
+def sharper(dye, least):
+    """A dye that only longer waves excite."""
     light = illuminant("D65")
-    expected, mistaken = (room(dye, excited, opacity, light) for excited in (dye.excited, dye.in_power))
-    scene = view(
-        {"dyed": dye.material(), "wall": {"mask": {"material": "dyed", "opacity": opacity}}},
+    absorbed = np.where(NM < least, 0, dye.absorbed)
+    expected, mistaken = (
+        OBSERVER @ (dye.paper * light + (excited @ light) * dye.glow)
+        for excited in (np.where(NM < least, 0, dye.excited), dye.excited)
+    )
+    return row(
+        f"{dye.name} that absorbs from {least} nm on",
+        "sum of light x (reflectance + Q a e i / o) x observer",
+        under(dye.material(absorbed=absorbed), {"illuminant": "D65"}),
+        expected,
+        mistaken,
+        f"{described(dye)}, whose a is 0 below {least} nm, under an even sky of D65, Y = 1, in CIE XYZ.",
+        guards="ultraviolet light that excites all the same",
+    )
+
+
+def within(material, opacity, size, samples, scale=1.0):
+    """A camera in a ball with holes in its wall, under an even sky of D65."""
+    return view(
+        {"dyed": material, "wall": {"mask": {"material": "dyed", "opacity": opacity}}},
         [("wall", sphere())],
-        [{"environment": {"radiance": {"illuminant": "D65"}}}],
+        [{"environment": {"radiance": {"illuminant": "D65", "scale": scale}}}],
         eye=(0, 0, 0),
         target=(0, 0, 1),
         fov=20,
-        size=16 if quick else 24,
+        size=size,
         space=XYZ,
-        samples=128 if quick else 256,
+        samples=samples,
         model=LANES,
     )
+
+
+def ball(dye, quick, opacity=0.8):
+    outside = (1 - opacity) * illuminant("D65")
+    expected, mistaken = (room(dye, excited, opacity, outside) for excited in (dye.excited, dye.in_power))
     words = (
         f"The inside of a ball whose wall covers {opacity} of all directions with the {dye.name} of the row above, and "
         f"lets the rest of the light through; outside an even sky of D65, Y = 1, in CIE XYZ."
     )
     formula = "(1 - opacity (reflectance + Q a e i / o))^-1 (1 - opacity) E"
+    scene = within(dye.material(), opacity, *((16, 128) if quick else (24, 256)))
     return row(f"ball of {dye.name} with holes", formula, scene, expected, mistaken, words, 2)
+
+
+# Of a closed room's wall so much is a hole, by which its light comes.
+HOLES = 0.05
+
+
+def few(quick):
+    """Pixels along a side and samples: light goes to and fro often there."""
+    return (16, 12) if quick else (16, 64)
+
+
+def closed(dye, quick):
+    """As if the wall shone by itself and had no holes: what covers the rest reflects and absorbs so much more."""
+    expected, mistaken = (room(dye, excited, 1, illuminant("D65")) for excited in (dye.excited, dye.in_power))
+    return row(
+        f"closed room of {dye.name}",
+        "(1 - reflectance - Q a e i / o)^-1 E",
+        within(dye.material(covers=1 - HOLES), 1 - HOLES, *few(quick), 1 / HOLES),
+        expected,
+        mistaken,
+        f"The inside of a ball; reflectance and absorption of the {dye.name} are divided by {1 - HOLES}, of which the "
+        f"wall covers all directions; outside an even sky of D65, Y = {1 / HOLES:g}, in CIE XYZ.",
+        2,
+        told=0.04,
+    )
+
+
+def closed_paper(dye, quick):
+    light = illuminant("D65")
+    reflectance = {"samples": samples(dye.paper / (1 - HOLES))}
+    return row(
+        f"closed room of the paper of the {dye.name}",
+        "(1 - reflectance)^-1 E",
+        within({"diffuse": {"reflectance": reflectance}}, 1 - HOLES, *few(quick), 1 / HOLES),
+        OBSERVER @ (light / (1 - dye.paper)),
+        room(dye, dye.excited, 1, light),
+        "The closed room above, without its dye.",
+        2,
+        guards="light that shines where no dye is",
+        told=0.04,
+    )

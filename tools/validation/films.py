@@ -1,8 +1,8 @@
 """Films in which light interferes, against the matrices of Abeles (1950), at single wavelengths and in daylight.
 
 A layer of n - i k and thickness D has M = [[cos d, i sin d / y], [i y sin d, cos d]], d = 2 pi q D / wavelength, with
-q = n cos and the admittances y = q of s, n^2 / q of p; (B, C) = M (1, y of the body) reflects the share
-|(y B - C) / (y B + C)|^2.
+q = n cos and the admittances y = q of s, n^2 / q of p; (B, C) = M (1, y of the body) reflects the amplitude
+(y B - C) / (y B + C), of p with the other sign.
 """
 
 import numpy as np
@@ -12,20 +12,25 @@ import colors
 from . import formulas, readers
 from .color import XYZ, line_powers
 from .plates import looking_down
-from .row import ROUNDING, Row
-from .scenes import glass, glow, plane, view
+from .polarized_row import RIGHT
+from .row import LIMIT, ROUNDING, Row
+from .scenes import disc, glass, glow, plane, quad, sphere, view
+from .stokes import unit
+from .surfaces import STOKES, UP, S, Stage
 
 GROUP = "films"
 LINES = (450.0, 550.0, 650.0)
 UNCOATED = "the surface without its layers"
 PANE = "a pane in which light does not interfere"
 QUARTER = 550 / 4
+# How far single wavelengths may be off, in standard errors of rounding.
+EXACT = 1e-5 / LIMIT
 
 
-def shares(layers, body, degrees, nm):
-    """What is reflected of unpolarized light and what crosses, at each wavelength, from air by layers (index n - i k,
-    thickness in nm, from the outside inward) into a body."""
-    along = np.sin(np.radians(degrees)) ** 2
+def amplitudes(layers, body, degrees, nm, around=1.0):
+    """What is reflected and what crosses of s and of p, at each wavelength, from a medium by layers (index n - i k,
+    thickness in nm, from the outside inward) into a body. The squares of what crosses are fluxes."""
+    along = (around * np.sin(np.radians(degrees))) ** 2
     found = []
     for p in (False, True):
 
@@ -37,14 +42,20 @@ def shares(layers, body, degrees, nm):
         def admittance(index):
             return np.asarray(index, complex) ** 2 / root(index) if p else root(index)
 
-        start, end = admittance(1), admittance(body) + 0 * nm
+        start, end = admittance(around), admittance(body) + 0 * nm
         b, c = np.ones_like(end), end
         for index, thickness in reversed(layers):
             y, phase = admittance(index), 2 * np.pi * root(index) * thickness / nm
             b, c = np.cos(phase) * b + 1j * np.sin(phase) / y * c, 1j * y * np.sin(phase) * b + np.cos(phase) * c
         whole = start * b + c
-        found.append((np.abs((start * b - c) / whole) ** 2, 4 * start.real * end.real / np.abs(whole) ** 2))
-    return np.mean(found, axis=0)
+        sign = -1 if p else 1
+        found.append((sign * (start * b - c) / whole, 2 * np.sqrt(start.real * end.real) / whole))
+    return np.array(found)
+
+
+def shares(layers, body, degrees, nm):
+    """Of unpolarized light, what is reflected and what crosses, from air."""
+    return np.mean(np.abs(amplitudes(layers, body, degrees, nm)) ** 2, axis=0)
 
 
 def coating(layers):
@@ -54,25 +65,73 @@ def coating(layers):
     ]
 
 
-def seen(name, material, degrees, expected, guards, mistake, words, *, behind=False):
-    """A flat surface in the light of three lines, and the share of each."""
-    powers, amplified = line_powers(LINES)
+def exactly(amplified):
+    """Bound of what rounding does to the share of a line."""
+    return min(ROUNDING * amplified, EXACT)
+
+
+def seen(name, material, degrees, expected, guards, mistake, words, *, behind=False, lines=LINES, body=None):
+    """A flat surface in the light of lines before it or behind it, and the share of each; with the index of a `body`
+    below, lamps on both sides."""
+    powers, amplified = line_powers(lines)
+    light = {"lines": [[nm, 1] for nm in lines]}
     lamp = plane((0, -5, 0), (0, 1, 0)) if behind else plane((0, 30, 0), (0, -1, 0))
     surface = plane((0, 0, 0), (0, 1, 0))
     if behind:
         surface = {"quad": {"center": [0.0, 0.0, 0.0], "u": [90.0, 0.0, 0.0], "v": [0.0, 0.0, -90.0]}}
-    scene = view(
-        {"surface": material, "glow": glow({"lines": [[nm, 1] for nm in LINES]})},
-        [("surface", surface), ("glow", lamp)],
-        eye=looking_down(degrees),
-        up=(0, 0, 1),
-        model="auto",
-        space=XYZ,
-    )
-    words = f"{words}, at {degrees} degrees, in the light of lines at {LINES} nm; in CIE XYZ."
+    materials, objects = {"surface": material, "glow": glow(light)}, [("surface", surface), ("glow", lamp)]
+    if body:
+        # Radiance goes by the square of the index.
+        materials["below"] = glow({"lines": [[nm, body**2] for nm in lines]})
+        objects.append(("below", plane((0, -5, 0), (0, 1, 0))))
+    scene = view(materials, objects, eye=looking_down(degrees), up=(0, 0, 1), model="auto", space=XYZ)
+    words = f"{words}, at {degrees} degrees, in the light of lines at {lines} nm; in CIE XYZ."
     read = lambda image: readers.colors(image) @ powers.T  # noqa: E731
     return Row(
-        GROUP, name, "matrices of Abeles", scene, read, expected, guards, mistake, words, rounding=ROUNDING * amplified
+        GROUP, name, "matrices of Abeles", scene, read, expected, guards, mistake, words, rounding=exactly(amplified)
+    )
+
+
+def polarized(name, material, degrees, both, guards, mistake, words, *, way="R", index=1.0, surface=None):
+    """The same in light at 45 degrees to s and p, S0 to S3 of each line. `both` and `mistake` are amplitudes of s and
+    p. The camera is on the lamp's side, or behind in a body of an index; `index` around both is a glass of its own."""
+    powers, amplified = line_powers(LINES)
+    around = index if way != "body" else 1.0
+    below = float(np.degrees(np.arcsin(np.sin(np.radians(degrees)) / index)))
+    camera = {"R": (degrees, 1), "T": (degrees, -1), "body": (below, -1)}[way]
+    stage = Stage.of(camera, (degrees, 1), glow({"lines": [[nm, 1] for nm in LINES]}))
+    factor = index**2 if way == "body" else 1.0
+
+    def stokes(both):
+        sent = [stage.light.sent(unit(stage.eye), S, pair) for pair in both.T]
+        return factor * np.array([light.stokes(RIGHT) for light in sent]).T.ravel()
+
+    def read(image):
+        parts = [image.rgb, *(np.stack([readers.need(image, f"S{i}.{c}") for c in "RGB"], -1) for i in (1, 2, 3))]
+        return np.concatenate([part.reshape(-1, 3) @ powers.T for part in parts], -1)
+
+    objects = [*stage.objects, ("surface", surface or plane((0, 0, 0), UP))]
+    materials = stage.materials | {"surface": material}
+    if around != 1.0:
+        materials["glass"] = glass(around)
+        # Aslant, so that nothing that its wall reflects comes back.
+        objects.append(("glass", sphere((0, 40, 0), 100)))
+    expected, wrong = np.round(stokes(both), 12), np.round(stokes(mistake), 12)
+    scene = view(materials, objects, eye=stage.eye, model="auto", space=XYZ, polarization="on")
+    scene["film"] |= STOKES
+    bound = exactly(amplified)
+    return Row(
+        GROUP,
+        name,
+        "<E E*> by the matrices of Abeles",
+        scene,
+        read,
+        expected,
+        guards,
+        np.where(np.abs(wrong - expected) > 8 * bound, wrong, expected),
+        f"{words}, in light polarized halfway between s and p, at {degrees} degrees, of lines at {LINES} nm; S0 to S3 "
+        f"in CIE XYZ.",
+        rounding=bound,
     )
 
 
@@ -84,23 +143,36 @@ def coated(name, layers, body, index, angles, words):
         expected, bare = (shares(stack, index, degrees, nm)[0] for stack in (layers, []))
         material = {kind: keys | {"coating": coating(layers)}}
         yield seen(f"{name} at {degrees} degrees", material, degrees, expected, UNCOATED, bare, words)
+        r, _ = np.moveaxis(amplitudes(layers, index, degrees, nm), 1, 0)
+        verdet = r * [[1], [-1]]
+        yield polarized(
+            f"{name} at {degrees} degrees, S0 to S3", material, degrees, r, "r_p of the sign of r_s", verdet, words
+        )
+
+
+MAGNESIUM_FLUORIDE = [(1.38, QUARTER / 1.38)]
+ABSORBING = [(2.3 - 0.1j, 100)]
+
+
+def quarter_waves(pairs):
+    high, low = (2.35, QUARTER / 2.35), (1.38, QUARTER / 1.38)
+    return [high, low] * pairs + [high]
 
 
 def stacks(quick):
     crown = formulas.index("N-BK7", np.array(LINES))
     yield from coated(
         "a quarter wave of magnesium fluoride on N-BK7",
-        [(1.38, QUARTER / 1.38)],
+        MAGNESIUM_FLUORIDE,
         glass("N-BK7"),
         crown,
         (0, 30, 45, 60, 75),
         "N-BK7 under a layer of index 1.38, a quarter wave thick at 550 nm",
     )
     for pairs in (1, 3, 5, 9):
-        high, low = (2.35, QUARTER / 2.35), (1.38, QUARTER / 1.38)
         yield from coated(
             f"a mirror of {2 * pairs + 1} layers",
-            [high, low] * pairs + [high],
+            quarter_waves(pairs),
             glass(1.52),
             1.52,
             (0, 45),
@@ -108,7 +180,7 @@ def stacks(quick):
         )
     yield from coated(
         "a layer that absorbs",
-        [(2.3 - 0.1j, 100)],
+        ABSORBING,
         glass(1.5),
         1.5,
         (0, 30, 60),
@@ -123,6 +195,115 @@ def stacks(quick):
         (0, 60, 75),
         "A metal of 1.015 - 6.627i under 100 nm of index 1.46",
     )
+
+
+def lens(quick):
+    """Crown glass bare, and darkened at one wavelength, at others."""
+    for nm in (400.0, 450.0, 500.0, 550.0, 600.0, 650.0, 700.0):
+        index = formulas.index("N-BK7", nm)
+        bare, dark = (shares(stack, index, 0, np.array([nm]))[0] for stack in ([], MAGNESIUM_FLUORIDE))
+        material = glass("N-BK7", coating=coating(MAGNESIUM_FLUORIDE))
+        words = "N-BK7 under a layer of index 1.38, a quarter wave thick at 550 nm"
+        yield seen(f"a darkened lens at {nm:g} nm", material, 0, dark, UNCOATED, bare, words, lines=(nm,))
+        at_d = formulas.fresnel(formulas.index("N-BK7", formulas.D_LINE), 0)
+        guards = "the index of the d line at every wavelength"
+        yield seen(f"a bare lens at {nm:g} nm", glass("N-BK7"), 0, bare, guards, at_d, "N-BK7", lines=(nm,))
+
+
+def both_ways(quick):
+    """What crosses layers, and that clear ones lose nothing."""
+    nm = np.array(LINES)
+    for degrees in (0, 30, 60):
+        crossing, bare = (amplitudes(stack, 1.5, degrees, nm)[:, 1] for stack in (ABSORBING, []))
+        yield polarized(
+            f"through a layer that absorbs at {degrees} degrees, S0 to S3",
+            glass(1.5, coating=coating(ABSORBING)),
+            degrees,
+            crossing,
+            UNCOATED,
+            bare,
+            "Glass of index 1.5 under 100 nm of 2.3 - 0.1i, seen from within",
+            way="body",
+            index=1.5,
+        )
+    for count, layers in ((1, MAGNESIUM_FLUORIDE), (19, quarter_waves(9))):
+        for degrees in (0, 45, 75):
+            reflected, crossing = shares(layers, 1.52, degrees, nm)
+            yield seen(
+                f"all light at {count} clear {'layers' if count > 1 else 'layer'} at {degrees} degrees",
+                glass(1.52, coating=coating(layers)),
+                degrees,
+                reflected + crossing,
+                "light that crosses as if there were no layers",
+                reflected + shares([], 1.52, degrees, nm)[1],
+                f"Glass of index 1.52 under {count} clear layers, white on both sides",
+                body=1.52,
+            )._replace(formula="R + T = 1")
+
+
+def gaps(quick):
+    """No film at all, and air between glass beyond the critical angle (frustrated total reflection: Newton 1704)."""
+    nm = np.array(LINES)
+    for degrees in (0, 45):
+        for which, behind, expected in (("R", False, 0.0), ("T", True, 1.0)):
+            material = {"thin": {"index": 1.33, "thickness_nm": 0}}
+            wrong = formulas.slab(1.33, degrees)[int(behind)]
+            yield seen(
+                f"{which} of no soap at {degrees} degrees",
+                material,
+                degrees,
+                np.full(3, expected),
+                PANE,
+                wrong,
+                "A soap film of index 1.33 and no thickness",
+                behind=behind,
+            )._replace(formula=f"{expected:g}", rounding=EXACT)
+    for gap in (50, 100, 200, 500):
+        for number, way in enumerate("RT"):
+            both = amplitudes([(1.0, gap)], 1.5, 60, nm, around=1.5)[:, number]
+            total = amplitudes([], 1.0, 60, nm, around=1.5)[:, number]
+            yield polarized(
+                f"{way} of {gap} nm of air in glass at 60 degrees, S0 to S3",
+                {"thin": {"index": 1, "thickness_nm": gap}},
+                60,
+                both,
+                "total reflection without what lies beyond",
+                total,
+                f"A gap of {gap} nm of air in glass of index 1.5",
+                way=way,
+                index=1.5,
+                surface=disc((0, 0, 0), UP, 0.9),
+            )
+
+
+def fringe(quick):
+    """The mean over thicknesses that are evenly spread over one fringe is that of a pane (Born and Wolf 7.6.1)."""
+    nm, index, count = 550.0, 1.33, 16
+    objects, materials = [], {"glow": glow({"lines": [[nm, 1]]})}
+    for number in range(count):
+        materials[f"film-{number}"] = {
+            "thin": {"index": index, "thickness_nm": 300 + nm / (2 * index) * number / count}
+        }
+        objects.append((f"film-{number}", quad((number - (count - 1) / 2, 0, 0), (0.5, 0, 0), (0, 0.5, 0))))
+    objects.append(("glow", plane((0, 0, 30), (0, 0, -1))))
+    scene = view(materials, objects, eye=(0, 0, 5), height=1.0, size=(count, 1), model="auto", space=XYZ)
+    powers, amplified = line_powers((nm,))
+    r = formulas.fresnel(index, 0)
+    return [
+        Row(
+            GROUP,
+            "the mean of soap over one fringe",
+            "2 r / (1 + r)",
+            scene,
+            lambda image: (readers.colors(image) @ powers.T).mean(axis=0)[None],
+            2 * r / (1 + r),
+            "two waves that interfere, without those that go to and fro",
+            2 * r,
+            f"{count} soap films of index {index} side by side, whose thicknesses are evenly spread over {nm:g} nm / 2 "
+            f"n from 300 nm on, at normal incidence in the light of a line at {nm:g} nm.",
+            rounding=exactly(amplified),
+        )
+    ]
 
 
 def soap(quick):
@@ -144,14 +325,18 @@ def lab(xyz, white):
     return colors.colour.XYZ_to_Lab(xyz, colors.colour.XYZ_to_xy(white))
 
 
-def daylight(name, material, layers, body, degrees, words):
-    """The color of a film under D65 in the lanes that the plan chooses: at most 0.5 dE2000 away."""
+def under_d65(layers, body, degrees):
+    """CIE XYZ of what layers on a body reflect, of white, and of the gray that reflects as much at every wavelength."""
     light = colors.illuminant("D65")
     reflected = shares(layers, body(light.nm), degrees, light.nm)[0]
-    of = lambda share: (light.power * share) @ colors.OBSERVER.values  # noqa: E731
-    expected, white, gray = of(reflected), of(1), of(reflected.mean())
+    return [(light.power * share) @ colors.OBSERVER.values for share in (reflected, 1, reflected.mean())]
+
+
+def daylight(name, material, layers, body, degrees, words):
+    """The color of a film under D65 in the lanes that the plan chooses: at most 0.5 dE2000 away."""
+    expected, white, gray = under_d65(layers, body, degrees)
     scene = view(
-        {"film": material, "glow": glow(light.curve)},
+        {"film": material, "glow": glow({"illuminant": "D65"})},
         [("film", plane((0, 0, 0), (0, 1, 0))), ("glow", plane((0, 30, 0), (0, -1, 0)))],
         eye=looking_down(degrees),
         up=(0, 0, 1),
@@ -176,6 +361,10 @@ def daylight(name, material, layers, body, degrees, words):
     )
 
 
+def air(nm):
+    return np.ones_like(nm)
+
+
 def in_daylight(quick):
     for thickness in (100, 150, 200, 250, 300, 400, 500, 600, 1000):
         for degrees in (0, 45):
@@ -183,12 +372,22 @@ def in_daylight(quick):
                 f"{thickness} nm of soap",
                 {"thin": {"index": 1.33, "thickness_nm": thickness}},
                 [(1.33, thickness)],
-                lambda nm: np.ones_like(nm),
+                air,
                 degrees,
                 f"A soap film of index 1.33, {thickness} nm thick",
             )
+    for thickness in (0, 20, 30, 40, 50, 60, 80, 100, 120, 140, 160):
+        layers = [(2.4, thickness)] if thickness else []
+        yield daylight(
+            f"titanium under {thickness} nm of oxide",
+            {"conductor": {"metal": "Ti", "coating": coating([(2.4, thickness)])}},
+            layers,
+            formulas.titanium,
+            0,
+            f"Titanium (Johnson and Christy 1974) under {thickness} nm of a clear oxide of index 2.4",
+        )
 
 
 def rows(quick):
-    for part in (stacks, soap, in_daylight):
+    for part in (stacks, lens, both_ways, gaps, fringe, soap, in_daylight):
         yield from part(quick)

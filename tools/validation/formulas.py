@@ -104,6 +104,29 @@ SELLMEIER = {
         (0.005101829712, 0.01821153936, 0.02620722293, 10.69792721),
     ),
 }
+# Wavelength in nm, n and k of titanium: Johnson and Christy 1974, Phys. Rev. B 9, 5056.
+TITANIUM = np.transpose(
+    [
+        (354, 1.82, 2.87),
+        (368, 1.90, 2.90),
+        (381, 1.99, 2.93),
+        (397, 2.08, 2.95),
+        (413, 2.14, 2.98),
+        (431, 2.21, 3.01),
+        (451, 2.27, 3.04),
+        (471, 2.32, 3.10),
+        (496, 2.36, 3.19),
+        (521, 2.44, 3.30),
+        (549, 2.54, 3.43),
+        (582, 2.60, 3.58),
+        (617, 2.67, 3.72),
+        (659, 2.76, 3.84),
+        (704, 2.86, 3.96),
+        (756, 3.00, 4.01),
+        (821, 3.21, 4.01),
+        (892, 3.29, 3.96),
+    ]
+)
 F_LINE, D_LINE, C_LINE, E_LINE = 486.13, 587.56, 656.27, 546.07  # nm
 # The wavelengths of red, green and blue where an index is measured and lanes are three: C, e and F.
 RED_GREEN_BLUE = (656.27, 546.07, 486.13)
@@ -114,6 +137,12 @@ def index(name, nm):
     strengths, places = SELLMEIER[name]
     squared = (np.asarray(nm, float) / 1000) ** 2
     return np.sqrt(1 + sum(b * squared / (squared - c) for b, c in zip(strengths, places, strict=True)))
+
+
+def titanium(nm):
+    """n - i k, linearly between what was measured."""
+    wavelengths, n, k = TITANIUM
+    return np.interp(nm, wavelengths, n) - 1j * np.interp(nm, wavelengths, k)
 
 
 def inside_fresnel(index, degrees):

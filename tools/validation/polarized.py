@@ -2,57 +2,13 @@
 
 import numpy as np
 
-from . import formulas, readers
+from . import formulas, surfaces
+from .polarized_row import AVERAGED, DOWN, NOT_TURNED, RIGHT, components, in_plane, polarizer, row, untraced
 from .plates import looking_down
-from .row import ROUNDING, Row
-from .scenes import disc, extrude, glass, glow, plane, quad, sphere, view
+from .scenes import disc, extrude, glass, glow, plane, quad, sphere
 from .stokes import Light, unit
 
-GROUP = "polarization"
-SKY = [{"environment": {"radiance": 1}}]
-DOWN = np.array([0.0, 0.0, -1.0])
-RIGHT = (1, 0, 0)
-GOLD, ALUMINUM = 0.43 - 2.455j, 1.015 - 6.627j
-AVERAGED = "light that is taken for unpolarized at every surface"
-NOT_TURNED = "frames that are not turned from surface to surface"
-
-
-def components(image):
-    """S0 to S3 of every pixel."""
-    polarized = [readers.need(image, f"S{number}.G") for number in (1, 2, 3)]
-    return np.stack([image.rgb[..., 1], *polarized], -1).reshape(-1, 4)
-
-
-def row(
-    name,
-    formula,
-    materials,
-    objects,
-    expected,
-    guards,
-    mistake,
-    words,
-    *,
-    film=None,
-    camera=None,
-    lights=SKY,
-    **settings,
-):
-    """A pixel of gray light, S0 or with `film` S0 to S3. Rounding counts by the bright light of which dark pixels are
-    left; what the mistake changes by less is not told by it."""
-    scene = view(materials, objects, lights, polarization="on", **settings)
-    scene["film"] |= film or {}
-    scene["camera"] |= camera or {}
-    count = 4 if film else 1
-    expected, mistake = (np.round(np.broadcast_to(value, 4)[:count], 12) for value in (expected, mistake))
-    mistake = np.where(np.abs(mistake - expected) > 8 * ROUNDING, mistake, expected)
-    reader = components if film else readers.gray
-    return Row(GROUP, name, formula, scene, reader, expected, guards, mistake, words, rounding=ROUNDING)
-
-
-def in_plane(degrees):
-    """A direction in the image, counterclockwise from its right."""
-    return [float(np.cos(np.radians(degrees))), float(np.sin(np.radians(degrees))), 0.0]
+GOLD, SILVER, ALUMINUM = 0.43 - 2.455j, 0.06 - 3.586j, 1.015 - 6.627j
 
 
 def sheets(name, formula, stack, guards, mistake, words, degrees=0.0, **more):
@@ -70,10 +26,6 @@ def sheets(name, formula, stack, guards, mistake, words, degrees=0.0, **more):
         else:
             light = light.through_retarder(keys["axis"], keys["retardance"])
     return row(name, formula, materials, objects, light.stokes(RIGHT), guards, mistake, words, eye=10 * eye, **more)
-
-
-def polarizer(degrees, **more):
-    return {"polarizer": {"axis": in_plane(degrees), **more}}
 
 
 def retarder(degrees, retardance):
@@ -118,7 +70,13 @@ def malus(quick):
 def plates(quick):
     """Wave plates, alone behind a polarizer and between two."""
     with_stokes = {"film": {"stokes": True}}
-    for axis, retardance, name in ((45, 90, "quarter"), (135, 90, "quarter"), (22.5, 180, "half"), (45, 60, "sixth")):
+    for axis, retardance, name in (
+        (45, 90, "quarter"),
+        (135, 90, "quarter"),
+        (22.5, 180, "half"),
+        (45, 180, "half"),
+        (45, 60, "sixth"),
+    ):
         yield sheets(
             f"polarized light through a {name} wave at {axis} degrees",
             "its axis is ahead by the retardance",
@@ -157,19 +115,36 @@ def mirrored(name, formula, normals, index, guards, words, *, mistake=None, **mo
     return row(name, formula, materials, objects, light.stokes(RIGHT), guards, wrong, words, **settings)
 
 
+def turning(degrees, *turns):
+    """The normals of mirrors that a ray from above meets at an angle, each plane of incidence turned from the last."""
+    direction, s, normals = DOWN, np.array([0.0, 1, 0]), []
+    angle = np.radians(degrees)
+    for turn in (0, *turns):
+        s = rotation(direction, turn) @ s
+        normals.append(np.sin(angle) * np.cross(direction, s) - np.cos(angle) * direction)
+        direction = direction + 2 * np.cos(angle) * normals[-1]
+    return normals
+
+
 def mirrors(quick):
     with_stokes = {"film": {"stokes": True}}
     near, next_to_it = (0.965925826, 0, 0.258819045), (0.462096828, 0.683012702, 0.565650219)
     turned = (np.cos(np.pi / 6), np.sin(np.pi / 6), 1)
     up = np.array([0, 1, 1]) / 2**0.5 - np.array([1, 0, 0])
     third = (-0.159272307, -0.985466895, 0.059053637)
-    for name, index in (("gold", GOLD), ("aluminum", ALUMINUM)):
+    for name, index in (("gold", GOLD), ("silver", SILVER), ("aluminum", ALUMINUM)):
         for which, normals in (
             ("a mirror at 45 degrees", [(1, 0, 1)]),
             ("a mirror at 45 degrees, its plane turned by 30", [turned]),
+            ("a mirror at 75 degrees", turning(75)),
             ("two mirrors at 45 degrees", [(1, 0, 1), up]),
             ("two mirrors at 75 degrees", [near, next_to_it]),
+            ("two mirrors at 45 degrees in a plane", turning(45, 0)),
+            ("two mirrors at 75 degrees in a plane", turning(75, 0)),
+            ("two crossed mirrors at 45 degrees", turning(45, 90)),
+            ("two crossed mirrors at 75 degrees", turning(75, 90)),
             ("three mirrors at 75 degrees", [near, next_to_it, third]),
+            ("three mirrors at 75 degrees, each turned by 45", turning(75, 45, 45)),
         ):
             yield mirrored(
                 f"{which} of {name}",
@@ -181,20 +156,19 @@ def mirrors(quick):
                 f"radiance 1; S0 to S3.",
                 **with_stokes,
             )
-    for turn in (0, 30, 45, 60, 90):
-        first, onward = np.array([1.0, 0, 1]), np.array([1.0, 0, 0])
-        second = np.array([0, np.sin(np.radians(turn)), np.cos(np.radians(turn))])
-        s, p = formulas.both_polarizations(1.5, 45)
-        yield mirrored(
-            f"two surfaces of glass at 45 degrees, planes {turn} degrees apart",
-            "((R_s^2 + R_p^2) cos^2 + 2 R_s R_p sin^2) / 2",
-            [first, second - onward],
-            1.5 + 0j,
-            AVERAGED if turn != 45 else NOT_TURNED,
-            f"Light that two surfaces of index 1.5 reflect at 45 degrees, the planes of incidence {turn} degrees "
-            f"apart.",
-            mistake=None if turn != 45 else (s**2 + p**2) / 2,
-        )
+    for degrees in (45.0, float(np.degrees(np.arctan(1.5)))):
+        s, p = formulas.both_polarizations(1.5, degrees)
+        for turn in (0, 30, 45, 60, 90):
+            yield mirrored(
+                f"two surfaces of glass at {degrees:.6g} degrees, planes {turn} degrees apart",
+                "((R_s^2 + R_p^2) cos^2 + 2 R_s R_p sin^2) / 2",
+                turning(degrees, turn),
+                1.5 + 0j,
+                AVERAGED if turn != 45 else NOT_TURNED,
+                f"Light that two surfaces of index 1.5 reflect at {degrees:.6g} degrees, the planes of incidence "
+                f"{turn} degrees apart.",
+                mistake=None if turn != 45 else (s**2 + p**2) / 2,
+            )
 
 
 def glare(quick):
@@ -216,6 +190,15 @@ def glare(quick):
                 camera={"polarizer": {"axis": axis}},
             )
             yield row._replace(expected=share / 2)
+        yield mirrored(
+            f"glass at {degrees:.6g} degrees without a filter",
+            "(R_s + R_p) / 2, (R_s - R_p) / 2",
+            [normal],
+            1.5 + 0j,
+            AVERAGED,
+            f"A surface of index 1.5 before a lamp, seen at {degrees:.6g} degrees; S0 to S3.",
+            film={"stokes": True},
+        )
 
 
 def refracted(direction, normal, index):
@@ -299,15 +282,19 @@ def prisms(quick):
                 way += [(turned @ place + moved, turned @ normal, True) for place, normal in FACES]
                 directions += [turned @ along, turned @ leaving]
             which = "a prism" if turn is None else "two prisms in a plane" if turn == 0 else "two crossed prisms"
-            yield through(
+            found = through(
                 f"{which} of {glass_name} at least deviation",
                 "the mean of T^2 over s and p, for each face" if turn != 90 else "T_s^2 T_p^2",
                 stack,
                 index,
                 way,
                 directions,
-                f"A ray through {which} of 60 degrees and index {index} at least deviation, to a lamp of radiance 1.",
+                f"A ray through {which} of 60 degrees and index {index} at least deviation, to a lamp of radiance 1; "
+                f"S0 to S3.",
+                film={"stokes": True},
             )
+            yield found
+            yield untraced(found, found.mistake[0])
 
 
 def rainbows(quick):
@@ -324,21 +311,25 @@ def rainbows(quick):
             way.append((place, place, crosses))
             mirrored = direction - 2 * (direction @ place) * place
             directions.append(refracted(direction, place, 1 / index) if crosses else mirrored)
-        yield through(
+        found = through(
             f"a drop at its {name} rainbow",
             f"the mean of T^2 R^{order} over s and p",
             [sphere()],
             index,
             way,
             directions,
-            f"A ray of least deviation through a ball of index {index}, reflected {order} times inside, to a lamp.",
+            f"A ray of least deviation through a ball of index {index}, reflected {order} times inside, to a lamp; "
+            f"S0 to S3.",
+            film={"stokes": True},
         )
+        yield found
+        yield untraced(found, found.mistake[0])
 
 
 def rhombs(quick):
     """Fresnel 1823: light polarized at 45 degrees turns after two total reflections."""
     index = 1.51
-    for degrees in (48.6243, 54.6):
+    for degrees in (48.6243, 54.6, 54.623):
         angle = np.radians(degrees)
         normal = np.array([np.sin(angle), 0, -np.cos(angle)])
         across = DOWN - 2 * (DOWN @ normal) * normal
@@ -421,5 +412,5 @@ def varnish(quick):
 
 
 def rows(quick):
-    for part in (malus, plates, mirrors, glare, prisms, rainbows, rhombs, skies, varnish):
+    for part in (malus, plates, mirrors, glare, prisms, rainbows, rhombs, skies, varnish, surfaces.rows):
         yield from part(quick)

@@ -69,22 +69,23 @@ class Light(NamedTuple):
         normal = -normal if normal @ self.direction > 0 else normal
         return normal, -normal @ self.direction, across(self.direction, np.cross(self.direction, normal))
 
+    def sent(self, onward, s, amplitudes):
+        """Onward, by the amplitudes of s and p."""
+        by_s, by_p = amplitudes
+        p = [np.cross(direction, s) for direction in (self.direction, onward)]
+        return self._after(onward, by_s * np.outer(s, s) + by_p * np.outer(p[1], p[0]))
+
     def reflected(self, normal, index):
         """By a boundary to so many times the index around the light."""
         normal, cos, s = self._met(normal)
-        onward = self.direction + 2 * cos * normal
-        by_s, by_p = Boundary.of(index, cos).reflected
-        p = [np.cross(direction, s) for direction in (self.direction, onward)]
-        return self._after(onward, by_s * np.outer(s, s) + by_p * np.outer(p[1], p[0]))
+        return self.sent(self.direction + 2 * cos * normal, s, Boundary.of(index, cos).reflected)
 
     def crossing(self, normal, index):
         """Through that boundary, as a flux."""
         normal, cos, s = self._met(normal)
         boundary = Boundary.of(index, cos)
         onward = self.direction / index.real + (cos / index.real - boundary.beyond.real) * normal
-        by_s, by_p = boundary.crossing
-        p = [np.cross(direction, s) for direction in (self.direction, onward)]
-        return self._after(onward, by_s * np.outer(s, s) + by_p * np.outer(p[1], p[0]))
+        return self.sent(onward, s, boundary.crossing)
 
     def through_polarizer(self, axis, normal, extinction=0.0):
         """A sheet absorbs light along what lies in it, across its axis."""
