@@ -119,7 +119,7 @@ fn image(job: &Job, scene: &Scene, exr: Option<&Path>, png: Option<&Path>) -> Re
     png.map_or(Ok(()), |png| image.write_png(png, job.exposure))?;
     // Last: a checkpoint with all samples says that the image is written.
     keep.save(&rendering)?;
-    messages::print_report(&image, took, expected);
+    messages::print_report(&image, rendering.plan(), took, expected);
     if let Some(report) = report {
         let (plan, end) = (Event::plan(rendering.plan()), Event::report(&image, took, expected));
         write_account(report, plan, end, &outputs)?;

@@ -121,6 +121,23 @@ fn one_scene_is_asked_for() {
 }
 
 #[test]
+fn what_other_renderers_call_an_argument_is_refused_with_what_it_is_called_here() {
+    let refusal = |said: &str, help: &str| format!("error: there is no {said}\nhelp: {help}\n");
+    let flag = |flag: &str, help: &str| {
+        assert_refuses(&["ball.toml", flag, "3"], 2, &refusal(&format!("argument {flag}"), help))
+    };
+    flag("--spp", "write --samples 64");
+    flag("--width", "write --set film.width=640");
+    flag("-o", "write --exr frame.exr");
+    let command =
+        |word: &str, help: &str| assert_refuses(&[word, "ball.toml"], 2, &refusal(&format!("command `{word}`"), help));
+    command("vew", "did you mean render view?");
+    command("plan", "did you mean render --plan?");
+    let every = "error: f.####.exr would be the name of every frame\nhelp: write %04d in place of ####\n";
+    assert_refuses(&["ball.toml", "--exr", "f.####.exr", "--frame", "3"], 2, every);
+}
+
+#[test]
 fn a_scene_that_cannot_be_read_is_refused_with_the_nearest_file() {
     let example = "help: a scene is a TOML file, such as scene.toml\n";
     let missing = "error: there is no scene file bal.toml\nhelp: did you mean ball.toml?\n";

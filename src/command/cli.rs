@@ -12,6 +12,7 @@ use clap::error::{ContextKind, ErrorKind};
 use clap::{Command, CommandFactory, Parser};
 
 use super::frames::numbered;
+use super::meant::meant;
 use super::messages::{Listener, Protocol, is_colored, listener, speak_to};
 use super::outputs::{check_exposure, check_png, ends_in, is_standard, refuse};
 use super::{catalog, diff, info, keep, manual, merge, view};
@@ -193,10 +194,7 @@ fn crop(text: &str) -> std::result::Result<Window, String> {
 struct LayerList(Vec<Layer>);
 
 fn layers(text: &str) -> std::result::Result<LayerList, String> {
-    if text == Layer::ALL {
-        return Ok(LayerList(Layer::all()));
-    }
-    text.split(',').map(|word| Layer::of_name(word.trim())).collect::<std::result::Result<_, _>>().map(LayerList)
+    Layer::of_names(text.split(',').map(str::trim)).map(LayerList)
 }
 
 /// A scene and what is wanted of it.
@@ -257,6 +255,11 @@ pub fn parse() -> Result<Request> {
                 Err(_) if words.iter().any(|word| word == "--progress") => Listener::Farm,
                 _ => Listener::Person,
             });
+            if let Err(said) = &parsed
+                && let Some((message, help)) = meant(said, &words)
+            {
+                return refuse(&message, Some(&help));
+            }
             parsed.map_or_else(told, |arguments| job(arguments).map(|job| Request::Render(Box::new(job))))
         }
     }

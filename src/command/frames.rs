@@ -16,7 +16,13 @@ const MOST_DIGITS: usize = 20;
 /// If the path asks for a number and there is none.
 pub fn numbered(path: &Path, frame: Option<u32>) -> Result<PathBuf> {
     let Some(text) = path.to_str() else { return Ok(path.to_owned()) };
-    let Some((place, digits)) = pattern(text) else { return Ok(path.to_owned()) };
+    let Some((place, digits)) = pattern(text) else {
+        if frame.is_some() && text.contains("##") {
+            let message = format!("{text} would be the name of every frame");
+            return refuse(&message, Some("write %04d in place of ####"));
+        }
+        return Ok(path.to_owned());
+    };
     let Some(frame) = frame else {
         let message = format!("{text} is named after a frame, and no frame is given");
         return refuse(&message, Some("give its number: --frame 1"));

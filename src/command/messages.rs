@@ -274,8 +274,8 @@ fn print_error_of_image(error: &ImageError) {
     ));
 }
 
-/// What the render noticed.
-pub fn print_report(image: &Image, took: Duration, expected: Duration) {
+/// What a render by a plan noticed.
+pub fn print_report(image: &Image, plan: &Plan, took: Duration, expected: Duration) {
     let report = image.report();
     if listener() == Listener::Program {
         Event::report(image, took, expected).tell();
@@ -288,14 +288,19 @@ pub fn print_report(image: &Image, took: Duration, expected: Duration) {
     if report.dropped + report.stopped > 0.0 {
         say(&format!("branches that were not followed: {:.1e} of the weight", report.dropped + report.stopped));
     }
-    if report.polarization_of_tile > TOLD {
-        let [all, tile] = [report.polarization, report.polarization_of_tile].map(|share| 100.0 * share);
-        let tile = if tile > 1.05 * all { format!(", and {tile:.1} % in 16 x 16 pixels") } else { String::new() };
+    // Where the plan has measured it, a bound has no more to say.
+    if report.polarization_of_tile > TOLD && plan.polarization_error.is_none() {
+        let [all, tile] = [report.polarization, report.polarization_of_tile].map(at_most);
+        let tile = if tile == all { String::new() } else { format!(", and {tile} in 16 x 16 pixels") };
         say(&format!(
-            "polarization is not traced: it may change at most {all:.1} % of the light seen{tile}; render.polarization = \"on\" \
-             traces it"
+            "polarization is not traced: it may change {all} of the light seen{tile}; render.polarization = \"on\" traces it"
         ));
     }
+}
+
+/// A bound in words; one above 1 says no more than that there is none.
+fn at_most(share: f64) -> String {
+    if share < 1.0 { format!("at most {:.1} %", 100.0 * share) } else { "most".into() }
 }
 
 /// The share of the light from which on it is said what polarization may change.

@@ -8,6 +8,7 @@ mod frames;
 pub mod info;
 pub mod keep;
 mod manual;
+mod meant;
 pub mod merge;
 pub mod messages;
 mod openjd;

@@ -144,6 +144,21 @@ impl Layer {
         })
     }
 
+    /// Those that some names ask for, of which one may be the word for all.
+    ///
+    /// # Errors
+    /// If there is no such layer.
+    pub fn of_names<'a>(names: impl Iterator<Item = &'a str>) -> Result<Vec<Self>, String> {
+        let mut layers = Vec::new();
+        for name in names {
+            match name {
+                Self::ALL => layers.extend(Self::all()),
+                name => layers.push(Self::of_name(name)?),
+            }
+        }
+        Ok(layers)
+    }
+
     /// The name that asks for it, and that the file has unless there are several.
     pub fn name(self) -> &'static str {
         Self::NAMES.into_iter().find(|(_, layer)| *layer == self).map_or("", |(name, _)| name)

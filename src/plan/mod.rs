@@ -50,6 +50,8 @@ pub struct Plan {
     pub left_out: Vec<String>,
     /// How far colors may be off, relative to the strongest channel, because spectra are carried in so few lanes.
     pub model_error: f64,
+    /// How far the image is off because polarization is not traced, relative, where that was measured.
+    pub polarization_error: Option<f64>,
 }
 
 /// Samples where the scene does not say.
@@ -117,7 +119,8 @@ pub fn plan(scene: &Scene<Curve>) -> Plan {
         because.push(format!("lanes separate in {:.0} % of the camera samples", 100.0 * probe.parted));
     }
     because.extend(next.map(|basis| beside(scene, &method, &probe, basis)));
-    Plan { method, because, processor_time, candidates, left_out, model_error }
+    let polarization_error = polarization.error;
+    Plan { method, because, processor_time, candidates, left_out, model_error, polarization_error }
 }
 
 /// How light between surfaces is found.

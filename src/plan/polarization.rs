@@ -12,6 +12,8 @@ pub(super) struct Decided {
     pub(super) why: Option<String>,
     /// What is left out of the image.
     pub(super) left_out: Option<String>,
+    /// How far the image is off where it is not traced, if that was measured.
+    pub(super) error: Option<f64>,
 }
 
 /// The error is measured on so few samples that they may miss what is so many times as large.
@@ -22,11 +24,11 @@ const MISSED: f64 = 2.0;
 pub(super) fn decide(scene: &Scene<Curve>, world: &World) -> Decided {
     let on = |why: String| {
         let why = Some(format!("polarization on: {why}"));
-        Decided { polarization: Polarizing::Traced, why, left_out: None }
+        Decided { polarization: Polarizing::Traced, why, left_out: None, error: None }
     };
     let off = |why: Option<String>, left_out: Option<String>| {
         let why = why.map(|why| format!("polarization off: {why}"));
-        Decided { polarization: Polarizing::Averaged, why, left_out }
+        Decided { polarization: Polarizing::Averaged, why, left_out, error: None }
     };
     let world = &world.of_the_format();
     match scene.render.polarization {
@@ -50,7 +52,7 @@ pub(super) fn decide(scene: &Scene<Curve>, world: &World) -> Decided {
     if error > traced_above {
         on(format!("without it, the image would be wrong by {measured}"))
     } else {
-        off(Some(format!("without it, the image is wrong by {measured}")), None)
+        Decided { error: Some(error), ..off(Some(format!("without it, the image is wrong by {measured}")), None) }
     }
 }
 

@@ -109,9 +109,10 @@ fn layers(value: &Bound<'_, PyAny>) -> PyResult<Vec<Layer>> {
             false => refuse("layers is a list of names", &format!("write layers=[\"{word}\"], or \"{}\"", Layer::ALL)),
         };
     }
-    let named = |name: String| Layer::of_name(&name).or_else(|said| refuse(said, "abbe.LAYERS has them all"));
     match value.extract::<Vec<String>>() {
-        Ok(names) => names.into_iter().map(named).collect(),
+        Ok(names) => {
+            Layer::of_names(names.iter().map(String::as_str)).or_else(|said| refuse(said, "abbe.LAYERS has them all"))
+        }
         Err(_) => refuse(format!("layers is a list of names, not {}", shown(value)), "such as [\"albedo\", \"N\"]"),
     }
 }

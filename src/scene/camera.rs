@@ -264,6 +264,11 @@ impl Camera {
         right.try_normalize().unwrap_or(self.right)
     }
 
+    /// What reaches it of unpolarized light: less than 1 behind a filter.
+    pub fn transmittance(&self) -> f64 {
+        self.filter.map_or(1.0, |filter| filter.transmittance())
+    }
+
     /// The filter before it, if there is one.
     pub fn filter(&self) -> Option<PolarizingFilter> {
         self.filter

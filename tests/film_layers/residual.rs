@@ -124,3 +124,23 @@ fn light_vertices_end_paths_and_a_limit_of_diffuse_bounces_loses_them() {
     let limited = room(", diffuse_bounces = 0");
     assert!(limited.iter().all(|(mean, _)| (0.6..=0.7).contains(mean)), "{limited:?}");
 }
+
+/// A filter takes half of all light before any surface does, which is no loss, and no surface's color.
+#[test]
+fn a_filter_before_the_camera_is_accounted_for() {
+    let scene = |filter: &str| {
+        let camera = format!("vertical_fov = 30{filter} }}");
+        SPECULAR.replacen("vertical_fov = 30 }", &camera, 1)
+    };
+    let [bare, behind] = ["", ", polarizer = { angle = 20 }"].map(|filter| {
+        let layers = [Layer::Residual, Layer::Albedo, Layer::Normal];
+        rendered(&scene(filter), &layers)
+    });
+    let worst = residual(&behind).into_iter().flatten().fold(0.0, |worst: f64, x| worst.max(x.abs()));
+    assert!(worst < 2e-6, "{worst}");
+    for channel in ["albedo.R", "albedo.G", "albedo.B", "N.X", "N.Y", "N.Z"] {
+        let [bare, behind] = [&bare, &behind].map(|image| image.layer(channel).expect("it was asked for"));
+        let off = bare.iter().zip(behind).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+        assert!(off <= 1e-6, "{channel}: {off}");
+    }
+}

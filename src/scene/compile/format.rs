@@ -107,9 +107,14 @@ fn layers(value: Value) -> Option<Vec<Layer>> {
         }
         None => {}
     }
-    value
-        .as_list("layer", "write a list such as [\"albedo\", \"N\"], or \"all\"")
-        .list(|layer| layer.word(&Layer::NAMES))
+    let layers =
+        value.as_list("layer", "write a list such as [\"albedo\", \"N\"], or \"all\"").list(|layer| {
+            match layer.node().as_str() {
+                Some(Layer::ALL) => Some(Layer::all()),
+                _ => layer.word(&Layer::NAMES).map(|layer| vec![layer]),
+            }
+        });
+    layers.map(|layers| layers.concat())
 }
 
 /// Text for the header of the file, which a 0 would end.

@@ -151,7 +151,9 @@ impl<'a, const N: usize> LayerSample<'a, N> {
         if met.path.among == Among::Plate {
             return;
         }
-        let share = if layers.see_surfaces() { met.share(layers.first) } else { 0.0 };
+        // A filter before the camera is no part of what a surface is.
+        let unfiltered = 1.0 / self.world.scene.camera.transmittance();
+        let share = if layers.see_surfaces() { met.share(layers.first, unfiltered) } else { 0.0 };
         if share <= 0.0 {
             return;
         }
@@ -160,7 +162,7 @@ impl<'a, const N: usize> LayerSample<'a, N> {
         layers.add_to(Layer::GeometricNormal, &mut self.row, (share * at.flat).to_array());
         // What a pane lets straight on is of it as what glass refracts is, unless what is behind counts by itself.
         let panes = met.straight.filter(|_| layers.first == FirstSurface::Met).map(|straight| straight.panes);
-        let albedo = self.albedo(path, at, panes, sampler);
+        let albedo = self.albedo(path, at, panes, sampler).map(|x| unfiltered * x);
         layers.add_to(Layer::Albedo, &mut self.row, albedo);
         if share > self.share {
             self.share = share;
@@ -211,8 +213,8 @@ impl<'a, const N: usize> LayerSample<'a, N> {
 }
 
 impl<const N: usize, P: Polarization<N>> Met<'_, N, P> {
-    /// The share of the camera sample for which the surface is the first.
-    fn share(&self, first: FirstSurface) -> f64 {
+    /// The share of the camera sample for which the surface is the first: `unfiltered` of the weight along its path.
+    fn share(&self, first: FirstSurface, unfiltered: f64) -> f64 {
         let Self { path, at, .. } = self;
         if first == FirstSurface::Met {
             return f64::from(u8::from(self.is_met_first));
@@ -225,6 +227,6 @@ impl<const N: usize, P: Polarization<N>> Met<'_, N, P> {
         let shares = draw.shares(path.parted);
         let through =
             |straight: &Straight<N>| path.throughput.through(straight.share()).weight(shares) / path.eta_scale;
-        (path.weight(draw) - self.straight.map_or(0.0, through)) / draw.siblings(path.parted)
+        unfiltered * (path.weight(draw) - self.straight.map_or(0.0, through)) / draw.siblings(path.parted)
     }
 }

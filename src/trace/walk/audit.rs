@@ -1,6 +1,6 @@
 //! The energy audit of splitting: whether all of the weight that left the camera has come to an end somewhere.
 //!
-//! A camera sample starts with weight 1 in each lane. Surfaces split it into branches, media and surfaces absorb some,
+//! A camera sample starts with weight 1 in each lane, or what a filter before the camera leaves of it. Surfaces split it into branches, media and surfaces absorb some,
 //! and the rest ends where it meets a light, or nothing. What chance adds or takes, where branches are chosen and paths
 //! ended, is 0 on the average. What is left when all paths have ended was lost: to a limit of bounces, or to a mistake.
 //!
@@ -36,7 +36,7 @@ impl<'a, const N: usize> Audit<'a, N> {
     /// Begins with the path of another camera ray.
     pub fn begin<P>(&mut self, path: &Path<N, P>, draw: &Draw<N>) {
         self.start = self.indices(&path.media, draw);
-        self.open = [draw.start().0.map(f64::from), [0.0; N]];
+        self.open = [path.throughput.of(Lanes::ONE).0.map(f64::from), [0.0; N]];
     }
 
     /// A path has come to its end.

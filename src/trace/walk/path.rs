@@ -118,8 +118,7 @@ impl<const N: usize, P: Polarization<N>> Path<N, P> {
         } else {
             world.camera_media
         };
-        let transmittance = camera.filter().map_or(1.0, |filter| filter.transmittance());
-        let throughput = Throughput::starting(draw.start()).scaled(transmittance);
+        let throughput = Throughput::starting(draw.start()).scaled(camera.transmittance());
         Self::starting(world, PathKind::Camera, throughput, ray, media, P::of_camera(world, &ray))
     }
 
