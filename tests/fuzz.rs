@@ -14,6 +14,9 @@ mod fuzz {
     mod allocator;
     mod corpus;
     mod mutate;
+    #[allow(dead_code)]
+    #[path = "../support/pictures.rs"]
+    mod pictures;
     mod readers;
     mod regressions;
     mod run;

@@ -7,6 +7,7 @@
 use std::f64::consts::{PI, TAU};
 use std::path::Path;
 
+use crate::support::pictures::{L8, RGB8, RGB16, write_png};
 use crate::support::random::Random;
 use crate::support::scenes::{EVERY_BRANCH, Mean, SINGLE_PATH, SPLITTING, environment, method, view};
 use abbe::film::Film;
@@ -14,7 +15,6 @@ use abbe::math::{DVec3, Ray};
 use abbe::scene::{Scene, Source};
 use abbe::spectrum::Curve;
 use abbe::trace::{Report, Transport, prepare, render};
-use image::ExtendedColorType::{L8, Rgb8, Rgb16};
 
 /// The scene of a text in a folder.
 fn scene(folder: &Path, text: &str) -> Scene<Curve> {
@@ -26,11 +26,6 @@ fn film(folder: &Path, text: &str, transport: Transport) -> (Film, Report) {
     let scene = scene(folder, text);
     let method = method(&scene, transport);
     render(&prepare(&scene, method), &|_| ())
-}
-
-fn write_png(folder: &Path, name: &str, width: u32, color: image::ExtendedColorType, numbers: &[u8]) {
-    let height = numbers.len() as u32 / (u32::from(color.bits_per_pixel() / 8) * width);
-    image::save_buffer(folder.join(name), numbers, width, height, color).expect("written");
 }
 
 /// Writes an OpenEXR image of the colors at the middles of its texels, u to the right and v up.
@@ -70,9 +65,9 @@ fn room(material: &str, map: &str) -> String {
 fn a_flat_map_changes_no_bit() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
-    write_png(folder, "flat.png", 2, Rgb8, &[128, 128, 255].repeat(4));
-    let words = [32768_u16, 32768, 65535].map(u16::to_ne_bytes).concat();
-    write_png(folder, "deep.png", 2, Rgb16, &words.repeat(4));
+    write_png(folder, "flat.png", 2, RGB8, &[128, 128, 255].repeat(4));
+    let words = [32768_u16, 32768, 65535].map(u16::to_be_bytes).concat();
+    write_png(folder, "deep.png", 2, RGB16, &words.repeat(4));
     write_exr(folder, "flat.exr", [2, 2], |_, _| [0.5, 0.5, 1.0]);
     write_png(folder, "level.png", 2, L8, &[77; 4]);
     write_png(folder, "steps.png", 2, L8, &[77, 99, 20, 5]);
@@ -108,7 +103,7 @@ fn write_dents(folder: &Path) {
             [way.x, way.y, 0.4 + way.z.abs()].map(|x| (128.0 + 127.0 * x.min(1.0)) as u8)
         })
         .collect();
-    write_png(folder, "normals.png", 16, Rgb8, &normals);
+    write_png(folder, "normals.png", 16, RGB8, &normals);
 }
 
 const DENTS: [&str; 2] = [
@@ -327,8 +322,8 @@ fn images_that_are_no_relief_are_refused_in_words() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     write_png(folder, "gray.png", 2, L8, &[128; 4]);
-    write_png(folder, "dark.png", 2, Rgb8, &[128, 128, 60].repeat(4));
-    write_png(folder, "flat.png", 2, Rgb8, &[128, 128, 255].repeat(4));
+    write_png(folder, "dark.png", 2, RGB8, &[128, 128, 60].repeat(4));
+    write_png(folder, "flat.png", 2, RGB8, &[128, 128, 255].repeat(4));
     write_exr(folder, "signed.exr", [2, 2], |_, _| [0.0, -0.25, 1.0]);
     let sphere = "shape.sphere = { center = [0, 0, 0], radius = 1 }";
     let bare = "shape.mesh = { points = [[0, 0, 0], [1, 0, 0], [0, 1, 0]], faces = [[0, 1, 2]] }";

@@ -15,6 +15,7 @@ use abbe::spectrum::Curve;
 use abbe::trace::{Method, prepare, render};
 use exr::prelude::write_rgb_file;
 
+use crate::support::pictures::radiance;
 use crate::support::scenes::{Mean, view};
 
 /// Dim ground, a brighter sky with a little of every color, and a sun of a few texels near the zenith of +x.
@@ -182,10 +183,8 @@ fn an_even_image_is_the_sky_of_its_color() {
 fn a_damaged_image_never_stops_the_program() {
     let folder = tempfile::tempdir().unwrap();
     write_sky(folder.path());
-    let texels: Vec<image::Rgb<f32>> =
-        (0..WIDTH * WIDTH / 2).map(|i| image::Rgb(texel(i % WIDTH, i / WIDTH))).collect();
-    let mut radiance = Vec::new();
-    image::codecs::hdr::HdrEncoder::new(&mut radiance).encode(&texels, WIDTH, WIDTH / 2).unwrap();
+    let texels: Vec<[f32; 3]> = (0..WIDTH * WIDTH / 2).map(|i| texel(i % WIDTH, i / WIDTH)).collect();
+    let radiance = radiance(WIDTH, &texels);
     let openexr = std::fs::read(folder.path().join("sky.exr")).unwrap();
     let mut random = crate::support::random::Random::new(5);
     for (name, whole) in [("sky.exr", openexr), ("sky.hdr", radiance)] {

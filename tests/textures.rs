@@ -2,10 +2,12 @@
 
 mod files;
 mod lamps;
+mod radiance;
 
 use std::path::Path;
 use std::sync::Arc;
 
+use crate::support::pictures::{RGB8, write_png};
 use crate::support::random::Random;
 use crate::support::scenes::view;
 use abbe::film::Film;
@@ -26,13 +28,6 @@ fn scene(folder: &Path, text: &str) -> Scene<Curve> {
 /// The scene's image as the plan would make it.
 fn film(scene: &Scene<Curve>) -> Film {
     render(&prepare(scene, plan(scene).method), &|_| ()).0
-}
-
-/// Writes a PNG of 8 bits a number.
-fn write_png(folder: &Path, name: &str, width: u32, color: image::ExtendedColorType, numbers: &[u8]) {
-    let channels = u32::from(color.bits_per_pixel() / 8);
-    let height = numbers.len() as u32 / (channels * width);
-    image::save_buffer(folder.join(name), numbers, width, height, color).expect("written");
 }
 
 /// Objects of every kind with coordinates, of a material `even`, under an even sky.
@@ -59,7 +54,7 @@ const MODELS: [&str; 4] = ["\"rgb\"", "{ bands = 8 }", "{ bands = 32 }", "\"hero
 #[test]
 fn an_even_gray_image_is_the_plain_reflectance_to_the_last_bit() {
     let folder = tempfile::tempdir().unwrap();
-    write_png(folder.path(), "gray.png", 3, image::ExtendedColorType::Rgb8, &[128; 3 * 3 * 2]);
+    write_png(folder.path(), "gray.png", 3, RGB8, &[128; 3 * 3 * 2]);
     let value = 128.0 / 255.0;
     let pairs = [
         ("{ image = \"gray.png\", encoding = \"linear\", repeat = [3, 0.7] }", value),
@@ -147,7 +142,7 @@ fn a_texel_under_white_light_has_its_own_color() {
 #[test]
 fn images_are_colors_that_three_lanes_hold_and_a_measured_square_is_none() {
     let folder = tempfile::tempdir().unwrap();
-    write_png(folder.path(), "red.png", 1, image::ExtendedColorType::Rgb8, &[200, 50, 20, 90, 90, 90]);
+    write_png(folder.path(), "red.png", 1, RGB8, &[200, 50, 20, 90, 90, 90]);
     let model = |reflectance: &str| {
         let text = room(&format!("diffuse = {{ reflectance = {reflectance} }}"), "\"auto\"")
             .replace("{ illuminant = \"A\", scale = 9 }", "9");
@@ -162,7 +157,7 @@ fn images_are_colors_that_three_lanes_hold_and_a_measured_square_is_none() {
 #[test]
 fn squares_of_a_checkerboard_are_their_curves() {
     let folder = tempfile::tempdir().unwrap();
-    write_png(folder.path(), "dots.png", 2, image::ExtendedColorType::Rgb8, &[200, 50, 20, 90, 90, 90]);
+    write_png(folder.path(), "dots.png", 2, RGB8, &[200, 50, 20, 90, 90, 90]);
     let cells = ["\"dark skin\"", "{ image = \"dots.png\" }", "{ samples = [[400, 0.1], [700, 0.8]] }", "0.25"];
     let see = |reflectance: &str, x: f64| {
         let text = format!(

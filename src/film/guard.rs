@@ -1,6 +1,7 @@
 //! Decoders of other makers: some panic over damaged files, some believe any size that a file claims to have.
 
 use std::cell::Cell;
+use std::fmt::Display;
 use std::panic::{AssertUnwindSafe, catch_unwind, set_hook, take_hook};
 use std::sync::Once;
 
@@ -9,7 +10,7 @@ thread_local! {
 }
 
 /// What a decoder answers, or an error if it panics; nothing is printed of that.
-pub(crate) fn guarded<T>(decode: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
+pub(crate) fn guarded<T, E: Display>(decode: impl FnOnce() -> Result<T, E>) -> Result<T, String> {
     static HOOK: Once = Once::new();
     HOOK.call_once(|| {
         let others = take_hook();
@@ -22,7 +23,10 @@ pub(crate) fn guarded<T>(decode: impl FnOnce() -> Result<T, String>) -> Result<T
     QUIET.set(true);
     let answer = catch_unwind(AssertUnwindSafe(decode));
     QUIET.set(false);
-    answer.unwrap_or_else(|_| Err("its data contradict themselves".into()))
+    match answer {
+        Ok(answer) => answer.map_err(|error| error.to_string()),
+        Err(_) => Err("its data contradict themselves".into()),
+    }
 }
 
 /// Most texels of an image: 16384 x 8192.

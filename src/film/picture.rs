@@ -38,9 +38,16 @@ pub fn write_rgb8(bytes: &[u8], size: [u32; 2], path: &Path) -> Result<()> {
 /// # Errors
 /// If the encoder refuses the size.
 pub fn png(bytes: &[u8], [width, height]: [u32; 2], path: &Path) -> Result<Vec<u8>> {
-    let mut file = std::io::Cursor::new(Vec::new());
-    let (color, format) = (image::ExtendedColorType::Rgb8, image::ImageFormat::Png);
-    image::write_buffer_with_format(&mut file, bytes, width, height, color, format)
-        .map_err(|error| Error::Encode { path: path.to_owned(), message: error.to_string() })?;
-    Ok(file.into_inner())
+    let encode = || {
+        let mut file = Vec::new();
+        let mut encoder = png::Encoder::new(&mut file, width, height);
+        encoder.set_color(png::ColorType::Rgb);
+        encoder.set_compression(png::Compression::Fast);
+        encoder.set_filter(png::Filter::Adaptive);
+        let mut writer = encoder.write_header()?;
+        writer.write_image_data(bytes)?;
+        writer.finish()?;
+        Ok(file)
+    };
+    encode().map_err(|error: png::EncodingError| Error::Encode { path: path.to_owned(), message: error.to_string() })
 }

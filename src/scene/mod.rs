@@ -6,6 +6,7 @@
 mod camera;
 mod compile;
 mod content;
+mod decode;
 mod duration;
 mod film;
 mod hit;

@@ -5,8 +5,8 @@ use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
 use exr::prelude::{Blocks, Compression, Encoding, Image, LineOrder, SpecificChannels, Vec2, WritableImage, f16};
-use image::codecs::{hdr::HdrEncoder, jpeg::JpegEncoder, png::PngEncoder};
-use image::{ExtendedColorType, ImageEncoder, Rgb};
+
+use super::pictures::{self, L8, L16, LA8, LA16, RGB8, RGB16, RGBA8, RGBA16};
 
 const POINTS: [[f32; 3]; 5] = [[-1., 0., -1.], [1., 0., -1.], [1., 0., 1.], [-1., 0., 1.], [0., 1.5, 0.]];
 const FACES: [[u32; 3]; 6] = [[0, 1, 2], [0, 2, 3], [0, 4, 1], [1, 4, 2], [2, 4, 3], [3, 4, 0]];
@@ -144,39 +144,28 @@ fn numbers(count: usize) -> Vec<u8> {
 }
 
 pub fn png() -> Vec<Vec<u8>> {
-    use ExtendedColorType::{L8, L16, La8, La16, Rgb8, Rgb16, Rgba8, Rgba16};
-    let kinds = [(L8, 1), (L16, 2), (La8, 2), (La16, 4), (Rgb8, 3), (Rgb16, 6), (Rgba8, 4), (Rgba16, 8)];
-    let mut files: Vec<Vec<u8>> = (kinds.into_iter())
-        .map(|(kind, bytes)| {
-            let mut file = Vec::new();
-            PngEncoder::new(&mut file).write_image(&numbers(6 * 5 * bytes), 6, 5, kind).expect("a picture");
-            file
-        })
-        .collect();
+    let file = |kind: pictures::Kind| pictures::png(6, kind, &numbers(6 * 5 * kind.bytes()));
+    let mut files: Vec<Vec<u8>> = [L8, L16, LA8, LA16, RGB8, RGB16, RGBA8, RGBA16].into_iter().map(file).collect();
     files.push(fs::read("tests/messages/dots.png").expect("a palette"));
     files
 }
 
 pub fn jpeg() -> Vec<Vec<u8>> {
-    let encoded = |quality, kind, bytes: usize| {
-        let mut file = Vec::new();
-        let encoder = JpegEncoder::new_with_quality(&mut file, quality);
-        encoder.write_image(&numbers(17 * 9 * bytes), 17, 9, kind).expect("a picture");
-        file
-    };
+    let encoded =
+        |quality, progressive, bytes: usize| pictures::jpeg([17, 9], quality, progressive, &numbers(17 * 9 * bytes));
     vec![
-        encoded(90, ExtendedColorType::Rgb8, 3),
-        encoded(30, ExtendedColorType::Rgb8, 3),
-        encoded(80, ExtendedColorType::L8, 1),
+        encoded(90, false, 3),
+        encoded(30, false, 3),
+        encoded(80, false, 1),
+        encoded(60, true, 3),
+        encoded(60, true, 1),
     ]
 }
 
 pub fn hdr() -> Vec<Vec<u8>> {
     let encoded = |width: usize| {
-        let texels: Vec<Rgb<f32>> = (0..width * 4).map(|i| Rgb([i as f32, 0.5, 1.0 / (1 + i) as f32])).collect();
-        let mut file = Vec::new();
-        HdrEncoder::new(&mut file).encode(&texels, width, 4).expect("a picture");
-        file
+        let texels: Vec<[f32; 3]> = (0..width * 4).map(|i| [i as f32, 0.5, 1.0 / (1 + i) as f32]).collect();
+        pictures::radiance(width, &texels)
     };
     // Below 8 texels a row is not packed, beyond it is; runs of the older way repeat a texel.
     let old = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\nEXPOSURE=1\n\n-Y 2 +X 6\n\x80\x40\x20\x81\x01\x01\x01\x05";

@@ -14,6 +14,7 @@ use abbe::film::ExrFile;
 
 use super::files::{Exr, ramp};
 use crate::messages::run::Folder;
+use crate::support::pictures;
 
 /// Reads damaged bytes; looks at all that a file says where they are still one.
 fn look(folder: &Folder, bytes: &[u8]) -> Result<(), String> {

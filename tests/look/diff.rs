@@ -5,6 +5,7 @@ use abbe::{Options, Scene};
 use super::assert_refused;
 use super::files::{Exr, ramp};
 use crate::messages::run::{Answer, Folder, render};
+use crate::support::pictures::read_png;
 
 /// A lamp above matte balls: noise in nearly every pixel, and a sky without any.
 const SCENE: &str = r#"
@@ -205,8 +206,8 @@ fn a_layer_is_compared_by_its_name_and_a_picture_shows_where() {
     assert_eq!(answer.code, Some(1), "{}", answer.stderr);
     assert_eq!(answer.stderr, "wrote where.png: white is a difference of 2 or more\n");
     assert!(answer.stdout.contains("\nworst pixel  (1, 1): 1 and 3\n"), "{}", answer.stdout);
-    let picture = image::open(folder.path().join("where.png")).expect("a picture").into_rgb8();
-    let white: Vec<usize> = (0..8).filter(|&i| picture.get_pixel(i as u32 % 4, i as u32 / 4).0 == [255; 3]).collect();
+    let picture = read_png(&folder.path().join("where.png"));
+    let white: Vec<usize> = (0..8).filter(|&i| picture.pixels[i] == [255; 3]).collect();
     assert_eq!(white, [5]);
 }
 

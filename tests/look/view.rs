@@ -6,6 +6,7 @@ use exr::prelude::Vec2;
 use super::assert_refused;
 use super::files::{Exr, ramp};
 use crate::messages::run::{Folder, render};
+use crate::support::pictures::read_png;
 
 pub const SCENE: &str = r#"
 camera = { position = [0, 1, 6], look_at = [0, 1, 0], vertical_fov = 35 }
@@ -24,8 +25,7 @@ pub fn pixels(folder: &Folder, arguments: &[&str]) -> (Vec<[u8; 3]>, String) {
     let answer = render(folder, &[&["view", "a.exr", "--png", "look.png"], arguments].concat());
     assert_eq!((answer.code, &*answer.stdout), (Some(0), ""), "{}", answer.stderr);
     let said = answer.stderr.strip_suffix("wrote look.png\n").expect("the last line").to_owned();
-    let picture = image::open(folder.path().join("look.png")).expect("a picture").into_rgb8();
-    (picture.pixels().map(|pixel| pixel.0).collect(), said)
+    (read_png(&folder.path().join("look.png")).pixels, said)
 }
 
 /// Color, a normal, a position, a depth and a label of two pixels.

@@ -5,5 +5,6 @@
 pub mod bodies;
 pub mod chi_squared;
 pub mod exact;
+pub mod pictures;
 pub mod random;
 pub mod scenes;

@@ -1,9 +1,9 @@
 //! The kinds of image files, what is read of them, and damaged ones.
 
 use abbe::material::Material;
-use image::ExtendedColorType::{L8, L16, La8, La16, Rgb8, Rgb16, Rgba8, Rgba16};
 
 use super::*;
+use crate::support::pictures::{L8, L16, LA8, LA16, RGB16, RGBA8, RGBA16, jpeg, radiance};
 
 /// A scene with a material for every reflectance, and its warnings.
 fn materials(folder: &Path, reflectances: &[&str]) -> Scene<Curve> {
@@ -42,21 +42,21 @@ fn every_kind_of_png_is_read_as_it_is_meant() {
     let [bytes, words] = [255.0, 65535.0];
     let as_bytes = |list: &[f64]| -> Vec<u8> { list.iter().map(|x| (x * bytes).round() as u8).collect() };
     let as_words =
-        |list: &[f64]| -> Vec<u8> { list.iter().flat_map(|x| ((x * words).round() as u16).to_ne_bytes()).collect() };
+        |list: &[f64]| -> Vec<u8> { list.iter().flat_map(|x| ((x * words).round() as u16).to_be_bytes()).collect() };
     let color = [red, green, blue];
     let gray = [green; 3];
     let kinds: [(&str, _, Vec<u8>, [f64; 3], f64); 8] = [
         ("l8.png", L8, as_bytes(&[green]), gray, bytes),
-        ("la8.png", La8, as_bytes(&[green, alpha]), gray, bytes),
-        ("rgb8.png", Rgb8, as_bytes(&color), color, bytes),
-        ("rgba8.png", Rgba8, as_bytes(&[red, green, blue, alpha]), color, bytes),
+        ("la8.png", LA8, as_bytes(&[green, alpha]), gray, bytes),
+        ("rgb8.png", RGB8, as_bytes(&color), color, bytes),
+        ("rgba8.png", RGBA8, as_bytes(&[red, green, blue, alpha]), color, bytes),
         ("l16.png", L16, as_words(&[green]), gray, words),
-        ("la16.png", La16, as_words(&[green, alpha]), gray, words),
-        ("rgb16.png", Rgb16, as_words(&color), color, words),
-        ("rgba16.png", Rgba16, as_words(&[red, green, blue, alpha]), color, words),
+        ("la16.png", LA16, as_words(&[green, alpha]), gray, words),
+        ("rgb16.png", RGB16, as_words(&color), color, words),
+        ("rgba16.png", RGBA16, as_words(&[red, green, blue, alpha]), color, words),
     ];
     for (name, kind, numbers, color, steps) in kinds {
-        image::save_buffer(folder.path().join(name), &numbers, 1, 1, kind).unwrap();
+        write_png(folder.path(), name, 1, kind, &numbers);
         let has_alpha = name.contains('a');
         let image = |options: &str| format!("{{ image = \"{name}\"{options} }}");
         let mut options =
@@ -80,18 +80,18 @@ fn every_kind_of_png_is_read_as_it_is_meant() {
 #[test]
 fn a_jpeg_and_images_of_floats_are_read() {
     let folder = tempfile::tempdir().unwrap();
-    image::save_buffer(folder.path().join("gray.jpg"), &[100; 3 * 64], 8, 8, Rgb8).unwrap();
+    let write = |name: &str, bytes: Vec<u8>| std::fs::write(folder.path().join(name), bytes).unwrap();
+    write("gray.jpg", jpeg([8, 8], 75, false, &[100; 64]));
+    write("color.jpeg", jpeg([20, 9], 95, true, &[100, 50, 200].repeat(20 * 9)));
     exr::prelude::write_rgba_file(folder.path().join("a.exr"), 2, 1, |x, _| (0.1 + x as f32, 0.5, 0.25, 0.75)).unwrap();
-    let texels = vec![image::Rgb([0.5_f32, 0.25, 0.125]); 4];
-    let mut radiance = Vec::new();
-    image::codecs::hdr::HdrEncoder::new(&mut radiance).encode(&texels, 2, 2).unwrap();
-    std::fs::write(folder.path().join("b.hdr"), radiance).unwrap();
+    write("b.hdr", radiance(2, &[[0.5, 0.25, 0.125]; 4]));
     let reflectances = [
         "{ image = \"gray.jpg\" }",
         "{ image = \"a.exr\", scale = 0.9 }",
         "{ image = \"a.exr\", channel = \"alpha\" }",
         "{ image = \"b.hdr\" }",
         "{ image = \"b.hdr\", encoding = \"srgb\" }",
+        "{ image = \"color.jpeg\" }",
     ];
     let scene = materials(folder.path(), &reflectances);
     // JPEG may be a step off.
@@ -100,12 +100,15 @@ fn a_jpeg_and_images_of_floats_are_read() {
     assert_near(image_of(&scene, 2).texel(1, 0), [0.75; 3], 0.0, "alpha of exr");
     assert_near(image_of(&scene, 3).texel(1, 1), [0.5, 0.25, 0.125], 0.0, "hdr");
     assert_near(image_of(&scene, 4).texel(0, 0), [0.5, 0.25, 0.125].map(from_srgb), 1e-7, "encoded hdr");
+    // Two steps of sRGB, at most 2.3 times as wide where it is steepest.
+    let color = [100.0, 50.0, 200.0].map(|x| from_srgb(x / 255.0));
+    assert_near(image_of(&scene, 5).texel(19, 8), color, 2.3 * 2.0 / 255.0, "progressive jpeg");
 }
 
 #[test]
 fn an_image_of_many_materials_is_read_once_and_belongs_to_the_hash() {
     let folder = tempfile::tempdir().unwrap();
-    let write = |number| write_png(folder.path(), "a.png", 1, Rgb8, &[number; 6]);
+    let write = |number| write_png(folder.path(), "a.png", 1, RGB8, &[number; 6]);
     write(9);
     let image = "{ image = \"a.png\", repeat = 3 }";
     let first =
@@ -181,8 +184,6 @@ fn impossible_texels_are_refused_with_their_place() {
         &["{ image = \"hole.exr\", channel = \"red\" }", "{ image = \"bright.exr\", scale = 0.6 }"],
     );
     // A picture that would fill the memory: its header alone says so.
-    let mut png = Vec::new();
-    image::codecs::png::PngEncoder::new(&mut png);
     write_png(folder.path(), "huge.png", 1, L8, &[7]);
     let mut huge = std::fs::read(folder.path().join("huge.png")).unwrap();
     huge[16..24].copy_from_slice(&[0, 1, 0, 0, 0, 1, 0, 0]);
@@ -205,8 +206,8 @@ fn checksum(bytes: &[u8]) -> u32 {
 fn a_damaged_image_never_stops_the_program() {
     let folder = tempfile::tempdir().unwrap();
     let numbers: Vec<u8> = (0..8 * 8 * 3).map(|i| (i * 37 % 251) as u8).collect();
-    write_png(folder.path(), "a.png", 8, Rgb8, &numbers);
-    image::save_buffer(folder.path().join("a.jpg"), &numbers, 8, 8, Rgb8).unwrap();
+    write_png(folder.path(), "a.png", 8, RGB8, &numbers);
+    std::fs::write(folder.path().join("a.jpg"), jpeg([8, 8], 75, false, &numbers)).unwrap();
     let at = |x: usize, y: usize| (x as f32 / 8.0, y as f32 / 8.0, 0.5, 1.0);
     exr::prelude::write_rgba_file(folder.path().join("a.exr"), 8, 8, at).unwrap();
     let mut random = Random::new(5);

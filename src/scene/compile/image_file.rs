@@ -1,13 +1,9 @@
 //! Files of images that light or color a scene.
 
-use std::io::Cursor;
 use std::path::Path;
 
-use exr::math::Vec2;
-use exr::prelude::{ReadChannels, ReadLayers, read};
-use image::{DynamicImage, ImageDecoder, ImageFormat};
-
-use crate::film::{MOST_TEXELS, fits, guarded};
+use crate::film::guarded;
+use crate::scene::decode::{Steps, Unreadable, Whole, decode_exr, decode_jpeg, decode_png, decode_radiance};
 use crate::spectrum::{Channel, Encoding, Image, decode_srgb};
 
 /// What is wrong with a file.
@@ -29,8 +25,8 @@ impl Fault {
 /// What is wrong with it, and what to do.
 pub(super) fn read_image(path: &Path, bytes: &[u8]) -> Result<Image, Fault> {
     let (kind, image) = match ending(path).as_str() {
-        "exr" => ("OpenEXR", guarded(|| read_exr(bytes, false))),
-        "hdr" => ("Radiance", guarded(|| read_radiance(bytes))),
+        "exr" => ("OpenEXR", guarded(|| decode_exr(bytes, false))),
+        "hdr" => ("Radiance", guarded(|| decode_radiance(bytes))),
         ending @ ("png" | "jpg" | "jpeg") => {
             let help = "use an OpenEXR (.exr) or Radiance (.hdr) image";
             return Err(Fault::new(format!("a .{ending} image holds no light brighter than white"), help));
@@ -72,25 +68,28 @@ pub(super) fn read_texture(
     meaning: Meaning,
     channel: Option<Channel>,
 ) -> Result<TextureFile, Fault> {
-    let (kind, format) = match ending(path).as_str() {
+    let (kind, whole): (_, Option<Decoder>) = match ending(path).as_str() {
         "exr" => ("OpenEXR", None),
         "hdr" => ("Radiance", None),
-        "png" => ("PNG", Some(ImageFormat::Png)),
-        "jpg" | "jpeg" => ("JPEG", Some(ImageFormat::Jpeg)),
+        "png" => ("PNG", Some(decode_png)),
+        "jpg" | "jpeg" => ("JPEG", Some(decode_jpeg)),
         _ => return Err(unknown(path, "images end in .png, .jpg, .exr (OpenEXR) or .hdr (Radiance)")),
     };
     let srgb = match (channel, meaning) {
         (Some(Channel::Alpha), _) => false,
-        (_, Meaning::Light(encoding)) => encoding.map_or(format.is_some(), |encoding| encoding == Encoding::Srgb),
+        (_, Meaning::Light(encoding)) => encoding.map_or(whole.is_some(), |encoding| encoding == Encoding::Srgb),
         (_, Meaning::Thicknesses(encoding)) => encoding == Encoding::Srgb,
         _ => false,
     };
     let texture = TextureOf { path, kind, meaning, channel, srgb };
-    match format {
-        Some(format) => texture.of_whole_numbers(bytes, format),
+    match whole {
+        Some(decode) => texture.of_whole_numbers(bytes, decode),
         None => texture.of_floats(bytes),
     }
 }
+
+/// Reads a file of whole numbers.
+type Decoder = fn(&[u8]) -> Result<Whole, Unreadable>;
 
 /// An image that is read, and as what.
 struct TextureOf<'p> {
@@ -106,43 +105,44 @@ impl TextureOf<'_> {
         unreadable(self.path, self.kind, &said)
     }
 
-    fn of_whole_numbers(self, bytes: &[u8], format: ImageFormat) -> Result<TextureFile, Fault> {
+    fn of_whole_numbers(self, bytes: &[u8], decode: Decoder) -> Result<TextureFile, Fault> {
         let Self { path, srgb, .. } = self;
         let directions = self.meaning == Meaning::Directions;
-        let image = guarded(|| decode(bytes, format)).map_err(|said| self.fault(said))?;
-        let width = image.width() as usize;
-        let (count, has_alpha) = (usize::from(image.color().channel_count()), image.color().has_alpha());
-        let picked = Picked::new(path, self.channel, count, has_alpha)?;
+        let whole = guarded(|| decode(bytes)).map_err(|said| self.fault(said))?;
+        let width = whole.width;
+        let picked = Picked::new(path, self.channel, whole.channels, whole.has_alpha())?;
         if directions && picked.channels() == 1 {
             let message = format!("{} is gray, and a normal map has red, green and blue", path.display());
             return Err(Fault::new(message, "heights are a `bump_map`"));
         }
-        let wide = image.color().bytes_per_pixel() as usize > count;
-        if wide {
-            let (numbers, even) = (words(image), |word: u16| f64::from(word) / 65535.0);
-            let value = |word: u16| match directions {
-                true => (f64::from(word) - 32768.0) / 32767.0,
-                false if srgb => decode_srgb(even(word)),
-                false => even(word),
-            };
-            let table: Vec<f32> = (0..=u16::MAX).map(|word| value(word) as f32).collect();
-            let ignores_alpha = !directions && picked.ignores(&numbers, u16::MAX);
-            let floats = picked.of(&numbers).map(|word| table[usize::from(word)]).collect();
-            return Ok(TextureFile { image: Image::of_floats(width, picked.channels(), floats), ignores_alpha });
+        match whole.steps {
+            Steps::Words(numbers) => {
+                let even = |word: u16| f64::from(word) / 65535.0;
+                let value = |word: u16| match directions {
+                    true => (f64::from(word) - 32768.0) / 32767.0,
+                    false if srgb => decode_srgb(even(word)),
+                    false => even(word),
+                };
+                let table: Vec<f32> = (0..=u16::MAX).map(|word| value(word) as f32).collect();
+                let ignores_alpha = !directions && picked.ignores(&numbers, u16::MAX);
+                let floats = picked.of(&numbers).map(|word| table[usize::from(word)]).collect();
+                Ok(TextureFile { image: Image::of_floats(width, picked.channels(), floats), ignores_alpha })
+            }
+            Steps::Bytes(numbers) => {
+                let ignores_alpha = !directions && picked.ignores(&numbers, u8::MAX);
+                let (channels, bytes) = (picked.channels(), picked.of(&numbers).collect());
+                let image = match directions {
+                    true => Image::of_signed_bytes(width, channels, bytes),
+                    false => Image::of_bytes(width, channels, bytes, srgb),
+                };
+                Ok(TextureFile { image, ignores_alpha })
+            }
         }
-        let numbers = image.into_bytes();
-        let ignores_alpha = !directions && picked.ignores(&numbers, u8::MAX);
-        let (channels, bytes) = (picked.channels(), picked.of(&numbers).collect());
-        let image = match directions {
-            true => Image::of_signed_bytes(width, channels, bytes),
-            false => Image::of_bytes(width, channels, bytes, srgb),
-        };
-        Ok(TextureFile { image, ignores_alpha })
     }
 
     fn of_floats(self, bytes: &[u8]) -> Result<TextureFile, Fault> {
         let (radiance, directions) = (self.kind == "Radiance", self.meaning == Meaning::Directions);
-        let read = || if radiance { read_radiance(bytes) } else { read_exr(bytes, true) };
+        let read = || if radiance { decode_radiance(bytes) } else { decode_exr(bytes, true) };
         let image = guarded(read).map_err(|said| self.fault(said))?;
         let picked = Picked::new(self.path, self.channel, image.channels, !radiance)?;
         let ignores_alpha = !directions && picked.ignores(&image.numbers, 1.0);
@@ -210,6 +210,7 @@ fn unknown(path: &Path, help: &str) -> Fault {
 }
 
 fn unreadable(path: &Path, kind: &str, said: &str) -> Fault {
+    let said = said.trim_end_matches('.');
     Fault::new(format!("{} is no {kind} image ({said})", path.display()), "is the file complete?")
 }
 
@@ -238,73 +239,5 @@ fn possible(path: &Path, texels: Texels, meaning: Meaning) -> Result<(), Fault> 
             Err(Fault::new(message, help))
         }
         None => Ok(()),
-    }
-}
-
-/// Red, green, blue and maybe alpha of each texel, rows from the top.
-struct Floats {
-    width: usize,
-    channels: usize,
-    numbers: Vec<f32>,
-}
-
-impl Floats {
-    fn new(size: Vec2<usize>, channels: usize) -> Self {
-        Self { width: size.width(), channels, numbers: vec![0.0; channels * size.area()] }
-    }
-
-    fn put<const K: usize>(&mut self, at: Vec2<usize>, texel: [f32; K]) {
-        let from = K * (at.y() * self.width + at.x());
-        self.numbers[from..from + K].copy_from_slice(&texel);
-    }
-}
-
-fn read_exr(bytes: &[u8], alpha: bool) -> Result<Floats, String> {
-    let described = exr::meta::MetaData::read_from_buffered(Cursor::new(bytes), false);
-    let headers = described.map_err(|error| error.to_string())?.headers;
-    for size in headers.iter().map(|header| header.layer_size) {
-        let texel = 4 * if alpha { 4 } else { 3 };
-        fits(size.width(), size.height(), texel * size.width() as u64 * size.height() as u64, bytes)?;
-    }
-    let (layers, bytes) = (read().no_deep_data().largest_resolution_level(), Cursor::new(bytes));
-    let floats = if alpha {
-        let put = |image: &mut Floats, at, (r, g, b, a): (f32, f32, f32, f32)| image.put(at, [r, g, b, a]);
-        let layers = layers.rgba_channels(|size, _| Floats::new(size, 4), put).first_valid_layer();
-        let image = layers.all_attributes().non_parallel().from_buffered(bytes);
-        image.map(|image| image.layer_data.channel_data.pixels)
-    } else {
-        let put = |image: &mut Floats, at, (r, g, b): (f32, f32, f32)| image.put(at, [r, g, b]);
-        let layers = layers.rgb_channels(|size, _| Floats::new(size, 3), put).first_valid_layer();
-        let image = layers.all_attributes().non_parallel().from_buffered(bytes);
-        image.map(|image| image.layer_data.channel_data.pixels)
-    };
-    floats.map_err(|error| error.to_string())
-}
-
-fn read_radiance(bytes: &[u8]) -> Result<Floats, String> {
-    let image = decode(bytes, ImageFormat::Hdr)?.into_rgb32f();
-    Ok(Floats { width: image.width() as usize, channels: 3, numbers: image.into_raw() })
-}
-
-/// The numbers of an image of at most `MOST_TEXELS`.
-fn decode(bytes: &[u8], format: ImageFormat) -> Result<DynamicImage, String> {
-    let mut reader = image::ImageReader::with_format(Cursor::new(bytes), format);
-    let mut limits = image::Limits::default();
-    limits.max_alloc = Some(12 * MOST_TEXELS as u64);
-    reader.limits(limits);
-    let decoder = reader.into_decoder().map_err(|error| error.to_string())?;
-    let (width, height) = decoder.dimensions();
-    fits(width as usize, height as usize, decoder.total_bytes(), bytes)?;
-    DynamicImage::from_decoder(decoder).map_err(|error| error.to_string())
-}
-
-/// The numbers of an image of 16 bits.
-fn words(image: DynamicImage) -> Vec<u16> {
-    match image {
-        DynamicImage::ImageLuma16(image) => image.into_raw(),
-        DynamicImage::ImageLumaA16(image) => image.into_raw(),
-        DynamicImage::ImageRgb16(image) => image.into_raw(),
-        DynamicImage::ImageRgba16(image) => image.into_raw(),
-        other => other.into_rgb16().into_raw(),
     }
 }

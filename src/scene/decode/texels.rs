@@ -1,0 +1,65 @@
+//! What files of images hold, and why they cannot be read.
+
+/// Whole numbers, texel by texel, rows from the top: gray, or red, green and blue, and maybe alpha behind them.
+pub(in crate::scene) struct Whole {
+    pub(in crate::scene) width: usize,
+    /// Numbers of a texel, 1 to 4.
+    pub(in crate::scene) channels: usize,
+    pub(in crate::scene) steps: Steps,
+}
+
+/// Numbers of 8 or 16 bits, the greatest of which means 1.
+pub(in crate::scene) enum Steps {
+    Bytes(Vec<u8>),
+    Words(Vec<u16>),
+}
+
+impl Whole {
+    /// Whether the last number of a texel is alpha.
+    pub(in crate::scene) fn has_alpha(&self) -> bool {
+        self.channels.is_multiple_of(2)
+    }
+}
+
+/// Red, green, blue and maybe alpha of each texel, rows from the top.
+pub(in crate::scene) struct Floats {
+    pub(in crate::scene) width: usize,
+    /// Numbers of a texel, 3 or 4.
+    pub(in crate::scene) channels: usize,
+    pub(in crate::scene) numbers: Vec<f32>,
+}
+
+impl Floats {
+    /// Black, and transparent.
+    pub(super) fn new(width: usize, height: usize, channels: usize) -> Self {
+        Self { width, channels, numbers: vec![0.0; channels * width * height] }
+    }
+
+    pub(super) fn put<const K: usize>(&mut self, x: usize, y: usize, texel: [f32; K]) {
+        let from = K * (y * self.width + x);
+        self.numbers[from..from + K].copy_from_slice(&texel);
+    }
+}
+
+/// Why a file is not the image that its name promises.
+#[derive(Debug, thiserror::Error)]
+pub(in crate::scene) enum Unreadable {
+    #[error("{0}")]
+    Unfit(String),
+    #[error(transparent)]
+    Png(#[from] ::png::DecodingError),
+    #[error("{}", .0.to_string().trim_matches('"'))]
+    Jpeg(#[from] zune_jpeg::errors::DecodeErrors),
+    #[error(transparent)]
+    Exr(#[from] ::exr::error::Error),
+    #[error("it does not begin as one does")]
+    Signature,
+    #[error("it ends too early")]
+    Short,
+    #[error("its format is {0:?}, and only 32-bit_rle_rgbe is read")]
+    Format(String),
+    #[error("its size is {0:?}, and only -Y height +X width is read")]
+    Size(String),
+    #[error("row {0} is not as long as the image is wide")]
+    Row(usize),
+}

@@ -1,0 +1,90 @@
+//! Radiance pictures: what four bytes mean, and the ways in which a row is packed.
+
+use abbe::material::Material;
+
+use super::*;
+
+const HEADER: &str = "#?RADIANCE\n# made by hand\nEXPOSURE=2\nFORMAT=32-bit_rle_rgbe\n\n";
+
+fn compiled(bytes: &[u8]) -> abbe::Result<Scene<Curve>> {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("a.hdr"), bytes).unwrap();
+    // No number of a picture is more than 2^127.
+    let text = format!(
+        "{}[material.a]\ndiffuse = {{ reflectance = {{ image = \"a.hdr\", scale = 1e-39 }} }}\n\
+         [[object]]\nmaterial = \"a\"\nshape.sphere = {{ center = [0, 0, 0], radius = 1 }}\n\
+         [[light]]\nenvironment.radiance = 1\n",
+        view([0.0, 0.0, 9.0], [0.0; 3], 30.0, 4)
+    );
+    Source { path: folder.path().join("scene.toml"), text }.compile()
+}
+
+/// The first texels of the first row of a picture.
+fn row(size: &str, bytes: &[u8], count: usize) -> Vec<[f32; 3]> {
+    let scene = compiled(&[HEADER.as_bytes(), size.as_bytes(), b"\n", bytes].concat()).unwrap();
+    let Material::Diffuse(diffuse) = &scene.materials[0].material else { panic!("it is diffuse") };
+    let CurveKind::Texture(texture) = &diffuse.reflectance.kind else { panic!("it is an image") };
+    (0..count).map(|x| texture.image.texel(x, 0)).collect()
+}
+
+#[test]
+fn every_exponent_of_a_radiance_picture_is_a_power_of_two() {
+    for exponent in 0..=u8::MAX {
+        let found = row("-Y 1 +X 1", &[255, 128, 1, exponent], 1)[0];
+        let unit = if exponent == 0 { 0.0 } else { (f64::from(exponent) - 136.0).exp2() };
+        assert_eq!(found.map(f64::from), [255.0, 128.0, 1.0].map(|color| color * unit), "{exponent}");
+    }
+}
+
+#[test]
+fn a_row_is_the_same_in_whatever_way_it_is_packed() {
+    const COUNT: usize = 600;
+    let texel = |x: usize| if x < 2 { [9, 8, x as u8, 128] } else { [200, 100, 50, 129] };
+    let flat: Vec<u8> = (0..COUNT).flat_map(texel).collect();
+    let size = format!("-Y 1 +X {COUNT}");
+    let expected = row(&size, &flat, COUNT);
+    assert_eq!(expected[1], [9.0, 8.0, 1.0].map(|color: f32| color / 256.0));
+    // 3 texels, then 597 = 85 + 2 * 256 more.
+    let older = [&flat[..12], &[1, 1, 1, 85, 1, 1, 1, 2]].concat();
+    assert_eq!(row(&size, &older, COUNT), expected);
+    let mut newer = vec![2, 2, (COUNT >> 8) as u8, COUNT as u8];
+    for channel in 0..4 {
+        newer.extend([2, texel(0)[channel], texel(1)[channel]]);
+        // 598 = 4 * 127 + 90
+        newer.extend([255, texel(2)[channel]].repeat(4));
+        newer.extend([128 + 90, texel(2)[channel]]);
+    }
+    assert_eq!(row(&size, &newer, COUNT), expected);
+    // A row of fewer than 8 texels is never packed in the newer way, though it begins as if it were.
+    assert_eq!(row("-Y 1 +X 1", &[2, 2, 0, 136], 1), [[2.0, 2.0, 0.0]]);
+}
+
+#[test]
+fn what_is_wrong_with_a_radiance_picture_is_said() {
+    let header = |from: &str, to: &str| HEADER.replace(from, to);
+    let with = |size: &str, bytes: &[u8]| [HEADER.as_bytes(), size.as_bytes(), b"\n", bytes].concat();
+    let packed = |bytes: &[u8]| with("-Y 1 +X 8", &[&[2, 2, 0, 8], bytes].concat());
+    let cases = [
+        (b"#?RGB".to_vec(), "it does not begin as one does"),
+        (HEADER.as_bytes().to_vec(), "it ends too early"),
+        (header("rgbe", "xyze").into_bytes(), "its format is \"32-bit_rle_xyze\", and only 32-bit_rle_rgbe is read"),
+        (with("+Y 1 +X 1", &[9; 4]), "its size is \"+Y 1 +X 1\", and only -Y height +X width is read"),
+        (with("-Y 1 +X few", &[9; 4]), "its size is \"-Y 1 +X few\", and only -Y height +X width is read"),
+        (with("-Y 0 +X 1", &[]), "it has no pixels"),
+        (with("-Y 2 +X 1", &[9; 7]), "it ends too early"),
+        (with("-Y 2 +X 1", &[9, 9, 9, 9, 1, 1, 1, 1]), "row 1 is not as long as the image is wide"),
+        (with("-Y 1 +X 3", &[9, 9, 9, 9, 1, 1, 1, 3]), "row 0 is not as long as the image is wide"),
+        (
+            with("-Y 1 +X 3", &[&[9; 4][..], &[1, 1, 1, 0].repeat(9)].concat()),
+            "row 0 is not as long as the image is wide",
+        ),
+        (with("-Y 1 +X 9", &[2, 2, 0, 8]), "row 0 is not as long as the image is wide"),
+        (packed(&[128 + 9, 5]), "row 0 is not as long as the image is wide"),
+        (packed(&[128 + 8, 5, 9, 1, 2, 3]), "row 0 is not as long as the image is wide"),
+        (packed(&[128 + 8, 5, 8, 1, 2, 3]), "it ends too early"),
+    ];
+    for (bytes, said) in cases {
+        let Err(abbe::Error::Scene(mistakes)) = compiled(&bytes) else { panic!("{said}: it is read") };
+        assert_eq!(mistakes[0].message, format!("a.hdr is no Radiance image ({said})"));
+    }
+}
