@@ -140,6 +140,12 @@ impl<S> Scene<S> {
         self.index.nearest(&self.objects, ray, distance, None, counts)
     }
 
+    /// Objects without bounds: planes.
+    pub fn unbounded(&self) -> impl Iterator<Item = &Object> {
+        let all = self.index.always().iter().map(|&number| &self.objects[number as usize]);
+        all.filter(|object| object.shape.bounds().is_none())
+    }
+
     fn nearest_from(&self, ray: &Ray, left: Option<Primitive>, counts: &dyn Fn(u32) -> bool) -> Option<Hit> {
         self.index.nearest(&self.objects, ray, f64::INFINITY, left, counts)
     }

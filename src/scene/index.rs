@@ -45,6 +45,11 @@ impl Index {
         Self { always, tree: Bvh::new::<1>(bounds.into_iter()), bounded, pool }
     }
 
+    /// Objects that have no bounds, and some that have.
+    pub(super) fn always(&self) -> &[u32] {
+        &self.always
+    }
+
     /// The nearest surface along a ray up to a distance, of those objects that count; of equally near ones, that of the
     /// object listed first.
     pub(super) fn nearest(

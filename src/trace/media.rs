@@ -39,8 +39,27 @@ impl Boundary {
 
 impl Media {
     /// The media around a point, by walking from it to infinity and back in thought: every body whose inside the walk
-    /// leaves more often than it enters is around the start.
+    /// leaves more often than it enters is around the start. A half space may reach to infinity one way, so where there
+    /// are any the other way is walked as well.
     pub(super) fn around(scene: &Scene<Table>, start: DVec3, direction: DVec3) -> Self {
+        let mut left = Self::left_by(scene, start, direction);
+        if scene.unbounded().any(|object| scene.materials[object.material as usize].material.medium().is_some()) {
+            for (material, count) in Self::left_by(scene, start, -direction) {
+                match left.iter_mut().find(|(known, _)| *known == material) {
+                    Some((_, most)) => *most = count.max(*most),
+                    None => left.push((material, count)),
+                }
+            }
+        }
+        let mut media = Self::default();
+        for (material, count) in left.into_iter().filter(|(_, count)| *count > 0) {
+            (0..count).for_each(|_| media = media.entered(material).unwrap_or(media));
+        }
+        media
+    }
+
+    /// How much more often a walk to infinity leaves bodies of each medium than it enters them.
+    fn left_by(scene: &Scene<Table>, start: DVec3, direction: DVec3) -> Vec<(MaterialId, i32)> {
         let mut balance: Vec<(MaterialId, i32)> = Vec::new();
         let mut ray = Ray { origin: start, direction };
         for _ in 0..MOST_CROSSINGS {
@@ -56,11 +75,7 @@ impl Media {
             }
             ray = point.leave(direction);
         }
-        let mut media = Self::default();
-        for (material, count) in balance.into_iter().filter(|(_, count)| *count > 0) {
-            (0..count).for_each(|_| media = media.entered(material).unwrap_or(media));
-        }
-        media
+        balance
     }
 
     /// The media after walking from one point to another along a straight line.

@@ -178,3 +178,27 @@ fn overlapping_bodies_of_one_material_are_one_body() {
     let found = seen_through(&bodies);
     assert!((found / expected - 1.0).abs() <= 1e-6, "{found} for {expected}");
 }
+
+/// Half spaces have no outside at infinity one way, and slabs of two planes have one both ways.
+#[test]
+fn m4_a_camera_knows_whether_it_is_in_a_half_space_whichever_way_it_looks() {
+    let plane = |x: f64, normal: f64| format!("plane = {{ point = [{x:?}, 0, 0], normal = [{normal:?}, 0, 0] }}");
+    let (half, slab) = (vec![plane(0.0, 1.0)], vec![plane(0.0, 1.0), plane(-4.0, -1.0)]);
+    let inside = (-1_f64).exp();
+    // The camera's place, the lamp's, 1 away, and what is left of its light.
+    let cases =
+        [(&half, -2.0, -3.0, inside), (&half, -2.0, -1.0, inside), (&half, 1.0, 2.0, 1.0), (&slab, 1.0, 2.0, 1.0)];
+    let more = [(&slab, -5.0, -6.0, 1.0), (&slab, -2.0, -3.0, inside), (&slab, -2.0, -1.0, inside)];
+    for (planes, camera, lamp, expected) in cases.into_iter().chain(more) {
+        let planes: Vec<&str> = planes.iter().map(String::as_str).collect();
+        let water = body("water", "dielectric = { index = 1.333, absorption = 1 }", &planes);
+        let quad = format!("quad = {{ center = [{lamp:?}, 0, 0], u = [0, 1, 0], v = [0, 0, 1] }}");
+        let text = view([camera, 0.0, 0.0], [lamp, 0.0, 0.0], 1e-6, 1)
+            + &water
+            + &body("lamp", "emissive = { radiance = 1 }", &[&quad]);
+        let (film, report) = image(&text, EVERY_BRANCH);
+        let seen = f64::from(film.pixels[0].rgb[1]);
+        assert!((seen - expected).abs() < 1e-6, "from {camera} to {lamp}: {seen} for {expected}");
+        assert_eq!(report.unmatched, 0, "from {camera} to {lamp}");
+    }
+}
