@@ -119,8 +119,7 @@ pub fn plan(scene: &Scene<Curve>) -> Plan {
         because.push(format!("lanes separate in {:.0} % of the camera samples", 100.0 * probe.parted));
     }
     because.extend(next.map(|basis| beside(scene, &method, &probe, basis)));
-    let polarization_error = polarization.error;
-    Plan { method, because, processor_time, candidates, left_out, model_error, polarization_error }
+    Plan { method, because, processor_time, candidates, left_out, model_error, polarization_error: polarization.error }
 }
 
 /// How light between surfaces is found.

@@ -48,7 +48,7 @@ class Profile(NamedTuple):
     repeats: int
 
 
-FULL = Profile(8, 1, 4, 3)
+FULL = Profile(8, 1, 2, 3)
 QUICK = Profile(1, 0, 3, 3)
 
 MODELS = {"rgb": '"rgb"', **{f"{n} bands": f"{{ bands = {n} }}" for n in (8, 12, 16, 32)}, "heroes": '"hero"'}

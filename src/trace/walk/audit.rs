@@ -1,8 +1,9 @@
 //! The energy audit of splitting: whether all of the weight that left the camera has come to an end somewhere.
 //!
-//! A camera sample starts with weight 1 in each lane, or what a filter before the camera leaves of it. Surfaces split it into branches, media and surfaces absorb some,
-//! and the rest ends where it meets a light, or nothing. What chance adds or takes, where branches are chosen and paths
-//! ended, is 0 on the average. What is left when all paths have ended was lost: to a limit of bounces, or to a mistake.
+//! A camera sample starts with weight 1 in each lane, or what a filter before the camera leaves of it. Surfaces split
+//! it into branches, media and surfaces absorb some, and the rest ends where it meets a light, or nothing. What
+//! chance adds or takes, where branches are chosen and paths ended, is 0 on the average. What is left when all paths
+//! have ended was lost: to a limit of bounces, or to a mistake.
 //!
 //! A weight is a share of flux: a throughput without the factor of radiance between media, each lane by its own index.
 //! What a dye absorbs counts as absorbed; the paths that look for what excites it have no weight here.
