@@ -1,5 +1,7 @@
 //! How much color each model of a spectrum would miss of dyes.
 
+use std::borrow::Cow;
+
 use super::survey::{Survey, Tint};
 use crate::spectrum::{Basis, Curve, Draw, Dye, Emission, Lanes, MAX_LANES, Quantity, visible};
 
@@ -19,8 +21,7 @@ impl Ways<'_> {
 
     /// What is left of light in the lanes of a basis.
     fn on(&self, basis: &Basis) -> Vec<Lanes<MAX_LANES>> {
-        let lanes = |left: Vec<f64>| Lanes::from_fn(|i| left.get(i).map_or(0.0, |&x| x as f32));
-        self.read(basis.fixed_lanes(), |tint| tint.on(basis)).into_iter().map(lanes).collect()
+        self.read(basis.fixed_lanes(), |tint| tint.on(basis)).iter().map(|left| lanes(left)).collect()
     }
 
     fn read(&self, count: usize, read: impl Fn(&Tint) -> Vec<f64>) -> Vec<Vec<f64>> {
@@ -68,12 +69,14 @@ impl Lit<'_> {
         let glow: Vec<[f64; 3]> = shines.columns().collect();
         let excited: Vec<f64> = dye.excited_by(light).parts().collect();
         let exact = ways.at(&wavelengths, basis);
-        let reflected: Vec<f64> = Tint::Diffuse(std::borrow::Cow::Borrowed(reflectance)).at(&wavelengths, basis);
+        let paper = Tint::Diffuse(Cow::Borrowed(reflectance));
+        let (reflected, reflected_lanes) = (paper.at(&wavelengths, basis), lanes(&paper.on(basis)));
 
         let draw = Draw::<MAX_LANES>::fixed(basis.fixed_lanes());
         let in_lanes = ways.on(basis);
         let emission = draw.read(&basis.tabulate(Quantity::Emission, curve));
         let (excitation, response) = (basis.excitation(dye, curve), basis.response(&dye.emission));
+        let (response_to_light, of_paper) = (basis.response(curve), emission * reflected_lanes);
         let brightness: Vec<[f64; 2]> = exact
             .iter()
             .zip(&in_lanes)
@@ -83,23 +86,29 @@ impl Lit<'_> {
             })
             .collect();
         let mut worst: f64 = 0.0;
-        for (seen, lanes) in exact.iter().zip(&in_lanes) {
+        for (seen, seen_lanes) in exact.iter().zip(&in_lanes) {
             let seen_glow = sum(seen, &glow);
-            let found_glow = response.sensor(&draw, *lanes, false);
-            for (lit, [brightness, found]) in exact.iter().zip(&brightness) {
+            let found_glow = response.sensor(&draw, *seen_lanes, false);
+            for ((lit, lit_lanes), [brightness, found]) in exact.iter().zip(&in_lanes).zip(&brightness) {
                 let product: Vec<f64> = (0..wavelengths.len()).map(|i| reflected[i] * seen[i] * lit[i]).collect();
                 let elastic = sum(&product, &columns);
-                let strongest =
-                    (0..3).fold(0.0_f64, |most, c| most.max((elastic[c] + brightness * seen_glow[c]).abs()));
-                let missed =
-                    (0..3).fold(0.0_f64, |most, c| most.max((found * found_glow[c] - brightness * seen_glow[c]).abs()));
+                let found_elastic = response_to_light.sensor(&draw, of_paper * *seen_lanes * *lit_lanes, false);
+                let color: [f64; 3] = std::array::from_fn(|c| elastic[c] + brightness * seen_glow[c]);
+                let found: [f64; 3] = std::array::from_fn(|c| found_elastic[c] + found * found_glow[c]);
+                let largest = |color: [f64; 3]| color.into_iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+                let strongest = largest(color);
                 if strongest > 0.0 {
-                    worst = worst.max(missed / strongest);
+                    worst = worst.max(largest(std::array::from_fn(|c| found[c] - color[c])) / strongest);
                 }
             }
         }
         worst
     }
+}
+
+/// What is left of light, a number for each lane.
+fn lanes(left: &[f64]) -> Lanes<MAX_LANES> {
+    Lanes::from_fn(|i| left.get(i).map_or(0.0, |&x| x as f32))
 }
 
 /// The color of what is left of light.

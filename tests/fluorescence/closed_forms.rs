@@ -2,25 +2,30 @@
 
 use std::f64::consts::PI;
 
+use abbe::plan::plan;
 use abbe::spectrum::{ColorSpace, Curve, CurveKind, Dye, apply, visible};
+use abbe::trace::{prepare, render};
 
 use super::{BRIGHTENER, Bells, RED, YELLOW, color, light, near, pixel};
-use crate::support::scenes::{body, view};
+use crate::support::scenes::{body, scene, view};
 
 const PAPER: &str = "quad = { center = [0, 0, 0], u = [2, 0, 0], v = [0, 2, 0] }";
 
 /// Paper below a point light, as the only pixel sees it, times pi over the light's irradiance.
 fn lit(material: &str, illuminant: &str, more: &str) -> [f64; 3] {
+    pixel(&lit_scene(material, illuminant, more))
+}
+
+fn lit_scene(material: &str, illuminant: &str, more: &str) -> String {
     let intensity = 4.0 * PI;
     let lamp = format!(
         "point = {{ position = [0, 0, 2], intensity = {{ illuminant = \"{illuminant}\", scale = {intensity:?} }} }}"
     );
-    let text = view([0.5, 0.0, 4.0], [0.0; 3], 1e-3, 1)
+    view([0.5, 0.0, 4.0], [0.0; 3], 1e-3, 1)
         + "[render]\nsamples = 1\n[[light]]\n"
         + &format!("{lamp}\n")
         + &body("paper", material, &[PAPER])
-        + more;
-    pixel(&text)
+        + more
 }
 
 #[test]
@@ -61,6 +66,22 @@ fn dyes_have_the_colors_of_their_matrices() {
         near(color(&leaving), expected, 2e-6, &format!("{what}, summed"));
         // What is off are the colors of the paper in 32 lanes.
         near(lit(&dye.material(), illuminant, ""), expected, 2e-4, &format!("{what}, rendered"));
+    }
+}
+
+/// What a dye reflects and what it shines are off together.
+#[test]
+fn the_plan_keeps_its_word_of_dyed_paper() {
+    for dye in [YELLOW, RED, BRIGHTENER] {
+        for illuminant in ["D65", "A", "FL11"] {
+            let text = lit_scene(&dye.material(), illuminant, "");
+            let scene = scene(&text);
+            let plan = plan(&scene);
+            let found = render(&prepare(&scene, plan.method.clone()), &|_| ()).0.pixels[0].rgb.map(f64::from);
+            // 32 lanes are within 2e-4.
+            let share = plan.model_error + 2e-4;
+            near(found, pixel(&text), share, &format!("{} by {illuminant}, at most {share:.1e}", dye.name));
+        }
     }
 }
 
