@@ -31,7 +31,7 @@ pub struct Incoming {
     pub crosses: bool,
     /// Whether it is the one direction that a smooth surface allows.
     pub single: bool,
-    /// The lanes of it: others are not asked for.
+    /// The lanes in which it arrives. What becomes of others has no meaning.
     pub lanes: LaneSet,
 }
 

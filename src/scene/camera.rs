@@ -264,7 +264,7 @@ impl Camera {
         right.try_normalize().unwrap_or(self.right)
     }
 
-    /// What reaches it of unpolarized light: less than 1 behind a filter.
+    /// The share of unpolarized light that reaches it: 1 without a filter before it.
     pub fn transmittance(&self) -> f64 {
         self.filter.map_or(1.0, |filter| filter.transmittance())
     }

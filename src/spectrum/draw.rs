@@ -133,7 +133,7 @@ impl<const N: usize> Draw<N> {
         }
     }
 
-    /// The smallest and the largest of them.
+    /// The smallest and the largest number that a lane reads in a table.
     #[inline]
     pub fn range(&self, table: &Table) -> [f64; 2] {
         self.heroes().fold(table.fixed_range(), |[least, most], hero| {
