@@ -290,8 +290,9 @@ pub fn print_report(image: &Image, plan: &Plan, took: Duration, expected: Durati
     }
     // Where the plan has measured it, a bound has no more to say.
     if report.polarization_of_tile > TOLD && plan.polarization_error.is_none() {
+        let is_uneven = report.polarization_of_tile > 1.05 * report.polarization;
         let [all, tile] = [report.polarization, report.polarization_of_tile].map(at_most);
-        let tile = if tile == all { String::new() } else { format!(", and {tile} in 16 x 16 pixels") };
+        let tile = if is_uneven && tile != all { format!(", and {tile} in 16 x 16 pixels") } else { String::new() };
         say(&format!(
             "polarization is not traced: it may change {all} of the light seen{tile}; render.polarization = \"on\" traces it"
         ));
