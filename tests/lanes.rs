@@ -11,4 +11,5 @@ mod nested_bodies;
 mod one_direction;
 mod panes;
 mod parting;
+mod reflectances;
 mod wavelengths;

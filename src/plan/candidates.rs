@@ -130,13 +130,15 @@ pub(super) fn own_lines(survey: &Survey, heroes: usize) -> Vec<f64> {
 pub(super) fn bands_beside(survey: &Survey, bands: usize, heroes: usize) -> Basis {
     let lines = own_lines(survey, heroes);
     let bands = bands.min(MAX_LANES - heroes - lines.len());
-    match survey.needs_ultraviolet() {
+    let basis = match survey.needs_ultraviolet() {
         true => Basis::bands_from_ultraviolet(survey.color_space, bands, &lines),
         false => Basis::bands(survey.color_space, bands, &lines),
-    }
+    };
+    let (lights, dyes) = survey.shining();
+    basis.seen_under(&lights, &dyes)
 }
 
 /// Fewest interpolated wavelengths beside the lanes of emission lines.
 const FEWEST: usize = 8;
-pub(super) const LANES_SAFETY: f64 = 1.2;
+pub(super) const LANES_SAFETY: f64 = 1.5;
 const PREFILTERED_SAFETY: f64 = 1.9;

@@ -160,6 +160,13 @@ impl<'a> Survey<'a> {
         self.judged.iter().map(|&light| &self.lights[light])
     }
 
+    /// What shines on surfaces, the lights by which models are judged and the dyes; and the dyes.
+    pub(super) fn shining(&self) -> (Vec<Emission>, Vec<Dye>) {
+        let lights = self.judged().map(|(_, light)| light.clone());
+        let dyes = self.dyes.iter().map(|(dye, _)| dye);
+        (lights.chain(dyes.clone().map(|dye| dye.shines(self.color_space))).collect(), dyes.cloned().collect())
+    }
+
     /// The brightest ideal lines, ascending in nm, and how many there are in all.
     pub(super) fn lines(&self, most: usize) -> Vec<f64> {
         let brightness = |nm: f64, power: f64| power * visible::color_matching(nm).iter().sum::<f64>();

@@ -12,6 +12,7 @@ use super::curve::BAND_WAVELENGTHS_NM;
 use super::draw::MAX_HEROES;
 use super::mixture::Mixture;
 use super::palette::palette;
+use super::projection::{Part, Projection};
 use super::table::{MAX_LANES, Pattern, PatternKind};
 use super::visible::{self, COUNT};
 use super::{Curve, CurveKind, Draw, Dye, Emission, Quantity, Response, Table, Upsampler, WavelengthBands};
@@ -26,6 +27,8 @@ pub struct Basis {
     pub(super) wavelengths_nm: Vec<f64>,
     pub(super) heroes: Option<Heroes>,
     keeps_together: bool,
+    /// How interpolated lanes read reflectances, if lights are known under which they shall look right.
+    pub(super) projection: Option<Arc<Projection>>,
     /// Whether lights are as bright as their whole power makes them, which excites dyes.
     excites: bool,
 }
@@ -109,6 +112,45 @@ impl Basis {
         Self::new(space, LaneKind::Wavelengths(Arc::new(functions)), wavelengths)
     }
 
+    /// The same lanes, by which reflectances and transmittances have the colors that they have under some lights, and
+    /// let as much light excite dyes: not what they are at each lane's own wavelength alone. Of three bands, the same.
+    pub fn seen_under(self, lights: &[Emission], dyes: &[Dye]) -> Self {
+        let LaneKind::Wavelengths(functions) = &self.lanes else { return self };
+        let mut lines: Vec<[f64; 2]> = self.wavelengths_nm[functions.len()..].iter().map(|&nm| [nm, 0.0]).collect();
+        for &[nm, _] in lights.iter().flat_map(Emission::lines) {
+            if !lines.iter().any(|line| line[0] == nm) {
+                lines.push([nm, 0.0]);
+            }
+        }
+        let mut parts: Vec<Part> = visible::wavelengths()
+            .chain(lines.iter().map(|line| line[0]))
+            .map(|at_nm| Part { at_nm, shares: vec![0.0; self.fixed_lanes()], worth: Vec::new() })
+            .collect();
+        self.spread(functions, &lines, |part, lane, share| parts[part].shares[lane] = share);
+        for light in lights {
+            let shown = |(cmf, power): ([f64; 3], f64)| cmf.map(|x| x * power);
+            let of_lines = lines.iter().map(|&[nm, _]| (visible::color_matching(nm), light.power_of_line(nm)));
+            let smooth = visible::observer().zip(light.spectrum().iter().copied());
+            measure(&mut parts, smooth.chain(of_lines).map(shown).collect());
+            for dye in dyes {
+                let excited = dye.excited_by(light);
+                let of_line = |&[nm, _]: &[f64; 2]| {
+                    excited.lines.iter().filter(|line| line[0] == nm).map(|line| line[1]).sum::<f64>()
+                };
+                measure(
+                    &mut parts,
+                    excited.smooth.iter().copied().chain(lines.iter().map(of_line)).map(|x| [x]).collect(),
+                );
+            }
+        }
+        if parts[0].worth.is_empty() {
+            return self;
+        }
+        let ends = [self.wavelengths_nm[0], self.wavelengths_nm[functions.len() - 1]];
+        let projection = Projection::new(&parts, functions.len(), ends);
+        Self { projection: Some(Arc::new(projection)), ..self }
+    }
+
     /// The same lanes, and heroes: wavelengths drawn where the lights shine, which go on where lanes part.
     ///
     /// # Panics
@@ -148,7 +190,16 @@ impl Basis {
 
     fn new(space: ColorSpace, lanes: LaneKind, wavelengths_nm: Vec<f64>) -> Self {
         let upsampler = Arc::new(Upsampler::new(space));
-        Self { space, upsampler, lanes, wavelengths_nm, heroes: None, keeps_together: false, excites: false }
+        Self {
+            space,
+            upsampler,
+            lanes,
+            wavelengths_nm,
+            heroes: None,
+            keeps_together: false,
+            projection: None,
+            excites: false,
+        }
     }
 
     /// The model's name, as it is recorded in a file.
@@ -229,6 +280,10 @@ impl Basis {
             },
             (LaneKind::Prefiltered(bands), _) if !matches!(quantity, Quantity::Index | Quantity::Wavelength) => {
                 Table::new(bands.filter(quantity, curve, &*reader))
+            }
+            (_, Quantity::Reflectance | Quantity::Transmittance | Quantity::Share) => {
+                let projected = self.projection.as_ref().map(|projection| projection.read(&*reader));
+                self.table(projected.unwrap_or_else(|| self.wavelengths_nm.iter().map(read).collect()), &*reader)
             }
             _ => self.table(self.wavelengths_nm.iter().map(read).collect(), &*reader),
         };
@@ -406,5 +461,13 @@ impl Basis {
             here.fold([0.0; 3], |sum, color| std::array::from_fn(|c| sum[c] + color[c]))
         };
         Response::new(&columns, self.fine(at, line))
+    }
+}
+
+/// Adds what each part is worth to some measures, over all they measure; nothing of those that measure nothing.
+fn measure<const M: usize>(parts: &mut [Part], worth: Vec<[f64; M]>) {
+    let sum = worth.iter().flatten().map(|x| x.abs()).sum::<f64>();
+    if sum > 0.0 {
+        parts.iter_mut().zip(worth).for_each(|(part, worth)| part.worth.extend(worth.map(|x| x / sum)));
     }
 }

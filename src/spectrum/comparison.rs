@@ -17,13 +17,14 @@ pub fn collapsing(space: ColorSpace) -> Basis {
 /// One of the interpolated wavelengths of a basis alone, worth to the sensor what it is worth among the others.
 ///
 /// # Panics
-/// If the lane is no interpolated wavelength.
+/// If the lane is no interpolated wavelength, or reads reflectances by way of all others.
 pub fn alone(basis: &Basis, lane: usize) -> Basis {
     let LaneKind::Wavelengths(functions) = &basis.lanes else { panic!("bands have no wavelengths") };
     let mut alone = basis.clone();
     alone.lanes = LaneKind::Wavelengths(Arc::new(vec![functions[lane].clone()]));
     alone.wavelengths_nm = vec![basis.wavelengths_nm[lane]];
     alone.heroes = None;
+    assert!(alone.projection.is_none(), "a projection is of all lanes together");
     alone
 }
 

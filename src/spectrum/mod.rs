@@ -19,6 +19,7 @@ mod lanes;
 mod matching;
 mod mixture;
 mod palette;
+mod projection;
 mod quantity;
 mod response;
 mod table;

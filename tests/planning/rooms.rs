@@ -147,7 +147,7 @@ fn true_error(room: &Room, basis: &Basis) -> f64 {
     worst
 }
 
-const ROOMS: usize = 50;
+const ROOMS: usize = 300;
 
 #[test]
 fn errors_of_color_are_as_predicted() {
@@ -176,7 +176,7 @@ fn errors_of_color_are_as_predicted() {
             "{name:40} true error, median {:.3} %; true / predicted p95 {p95:.2}; {within} of {ROOMS} within the bound",
             100.0 * found[ROOMS / 2]
         );
-        let most = if name.starts_with("rgb") { 1.9 } else { 1.2 };
+        let most = if name.starts_with("rgb") { 1.9 } else { 1.5 };
         assert!(p95 <= most, "{name}: true over predicted error {p95:.2}");
         assert!(within * 100 >= 95 * ROOMS, "{name}: {within} of {ROOMS} rooms within the promised error");
     }

@@ -3,7 +3,7 @@
 A dye shines Q a(i) e(o) i / o at the wavelength o of what comes at i, in power: of a photon that is absorbed, with a, one
 leaves with the chance Q, and e is its emission in photons. Beside it paper reflects 0.92 - a.
 
-What shines is exact. What paper reflects is read at 32 wavelengths.
+Both are exact but for rounding: 32 lanes read what paper reflects so that it has its color under each light.
 """
 
 from typing import NamedTuple
@@ -20,11 +20,10 @@ from .scenes import sphere, view
 NM = np.arange(300.0, 831.0)
 # The eye sees none of what lies below 360 nm.
 OBSERVER = np.stack([np.interp(NM, colors.WAVELENGTHS, axis, left=0) for axis in colors.OBSERVER.values.T])
-# Between so many wavelengths spectra are splines: by how much that may move a color, of its largest number.
-LANES, SMOOTH = {"bands": 32}, 3e-4
+LANES = {"bands": 32}
 POWER = "a quantum yield of power, and not of photons"
-# Of what shines alone, of its largest number.
-EXACT = 1e-5 / LIMIT
+# Of a color's largest number.
+EXACT = 1e-5
 
 
 class Dye(NamedTuple):
@@ -118,7 +117,7 @@ def rows(quick):
         yield sharper(DYES[2], least)
 
 
-def row(name, formula, scene, expected, mistaken, words, seeds=1, guards=POWER, bound=SMOOTH / LIMIT, told=8 * SMOOTH):
+def row(name, formula, scene, expected, mistaken, words, seeds=1, guards=POWER, told=8 * EXACT):
     """What the mistake changes by less than a share of the largest number is not told by it."""
     largest = np.abs(expected).max()
     mistaken = np.where(np.abs(mistaken - expected) > told * largest, mistaken, expected)
@@ -133,7 +132,7 @@ def row(name, formula, scene, expected, mistaken, words, seeds=1, guards=POWER, 
         mistaken,
         words,
         seeds,
-        rounding=np.full(3, bound * largest),
+        rounding=np.full(3, EXACT / LIMIT * largest),
     )
 
 
@@ -159,7 +158,7 @@ def patch(dye, name):
         OBSERVER @ (dye.paper * light + (excited @ light) * dye.glow) for excited in (dye.excited, dye.in_power)
     )
     guards = POWER
-    if np.abs(mistaken - expected).max() < 8 * SMOOTH * expected.max():
+    if np.abs(mistaken - expected).max() < 8 * EXACT * expected.max():
         guards, mistaken = "a dye that does not shine", OBSERVER @ (dye.paper * light)
     words = f"{described(dye)}, under an even sky of {name}, Y = 1, in CIE XYZ."
     formula = "sum of light x (reflectance + Q a e i / o) x observer"
@@ -193,12 +192,10 @@ def glowing(dye, name):
         expected,
         mistaken,
         f"{described(dye, 'reflects nothing and ')}, under an even sky of {name}, Y = 1, in CIE XYZ.",
-        bound=EXACT,
     )
 
 
 def lit_by_lines(dye):
-    """Where light is of single wavelengths, paper is exact as well."""
     lines = np.array([365.0, 436.0, 546.0])
     at = lambda values: np.interp(lines, NM, values)  # noqa: E731
     reflected = observer(colors.OBSERVER, lines) @ at(dye.paper)
@@ -211,7 +208,6 @@ def lit_by_lines(dye):
         expected,
         mistaken,
         f"{described(dye)}, under an even sky of lines at {lines.tolist()} nm, in CIE XYZ.",
-        bound=EXACT,
     )
 
 
@@ -259,7 +255,7 @@ def ball(dye, quick, opacity=0.8):
     )
     formula = "(1 - opacity (reflectance + Q a e i / o))^-1 (1 - opacity) E"
     scene = within(dye.material(), opacity, *((16, 128) if quick else (24, 256)))
-    return row(f"ball of {dye.name} with holes", formula, scene, expected, mistaken, words, 2)
+    return row(f"ball of {dye.name} with holes", formula, scene, expected, mistaken, words, 2, told=0.0024)
 
 
 # Of a closed room's wall so much is a hole, by which its light comes.
