@@ -6,7 +6,7 @@ use sha2::Digest;
 
 use super::context::Context;
 use super::curve_name::{illuminant_called, unknown_glass, unknown_illuminant, unknown_metal, unknown_reflectance};
-use super::curve_range::{Refusal, article, factor, possible, shown, told};
+use super::curve_range::{Refusal, article, factor, hardly_a_layer, possible, shown, told};
 use super::curve_text::{CurveText, KindText, finite, not_finite};
 use super::radiometry::on_film;
 use super::spectrum_file::read_columns;
@@ -39,6 +39,9 @@ pub(super) fn curve<'d>(context: &mut Context, text: &CurveText<'d>, quantity: Q
     if quantity == Quantity::Index {
         let advice = [reach(&curve), imitation(&curve)];
         advice.into_iter().flatten().for_each(|advice| context.warn_at(text.value, advice));
+    }
+    if let (Quantity::Thickness, CurveKind::Number(nm)) = (quantity, &curve.kind) {
+        hardly_a_layer(nm * curve.scale).into_iter().for_each(|advice| context.warn_at(text.value, advice));
     }
     match quantity {
         Quantity::Emission => on_film(context, text, curve),

@@ -114,6 +114,17 @@ pub(super) fn possible_thickness(nm: f64, place: &str) -> Result<(), Refusal> {
     Err(if help { refusal.help(format!("in m? It is in nm: then write {}", shown(in_nm))) } else { refusal })
 }
 
+/// What is said of a layer so thin that a length in um is likely meant.
+pub(super) fn hardly_a_layer(nm: f64) -> Option<String> {
+    let is_thin = (LEAST_THICKNESS_NM..ONE_NM).contains(&nm);
+    is_thin.then(|| {
+        format!("{} nm are a few atoms, which show nothing; if um are meant, write {}", shown(nm), shown(nm * 1e3))
+    })
+}
+
+/// Below this, no layer is seen.
+const ONE_NM: f64 = 1.0;
+
 /// Six digits of a number.
 pub(super) fn shown(value: f64) -> String {
     let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
