@@ -58,8 +58,7 @@ def test_the_prism_keeps_snells_law(tmp_path):
 def test_the_color_chart_is_that_of_the_tables(tmp_path):
     pytest.importorskip("colour", reason="colour-science is not installed")
     worst = example("color_chart").main(tmp_path / "chart.png")
-    # The README's bound for 16 lanes and more.
-    assert worst.keys() == {"D65", "A", "FL11"} and max(worst.values()) < 0.15, worst
+    assert worst.keys() == {"D65", "A", "FL11"} and max(worst.values()) < 0.01, worst
 
 
 def test_the_turntable_turns(tmp_path):
