@@ -184,6 +184,8 @@ def test_what_progress_raises_stops_the_render():
 INTERRUPTED = """
 import json, os, signal, sys
 import abbe
+# A shell that runs the tests in the background has it ignored.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 interrupt = lambda progress: os.kill(os.getpid(), signal.SIGINT)
 try:
     abbe.render(json.loads(sys.argv[1]), samples=1 << 20, checkpoint=sys.argv[2], progress=interrupt)
