@@ -112,8 +112,9 @@ impl Basis {
         Self::new(space, LaneKind::Wavelengths(Arc::new(functions)), wavelengths)
     }
 
-    /// The same lanes, by which reflectances and transmittances have the colors that they have under some lights, and
-    /// let as much light excite dyes: not what they are at each lane's own wavelength alone. Of three bands, the same.
+    /// Reads reflectances and transmittances onto the lanes so that they have their colors under some lights, and let as
+    /// much light excite dyes as they do. Without this, a lane reads them at its own wavelength. Three bands stay as
+    /// they are.
     pub fn seen_under(self, lights: &[Emission], dyes: &[Dye]) -> Self {
         let LaneKind::Wavelengths(functions) = &self.lanes else { return self };
         let mut lines: Vec<[f64; 2]> = self.wavelengths_nm[functions.len()..].iter().map(|&nm| [nm, 0.0]).collect();
@@ -464,7 +465,7 @@ impl Basis {
     }
 }
 
-/// Adds what each part is worth to some measures, over all they measure; nothing of those that measure nothing.
+/// Adds what each part of the light is worth to some measures, as a share of the sum. Light worth nothing adds none.
 fn measure<const M: usize>(parts: &mut [Part], worth: Vec<[f64; M]>) {
     let sum = worth.iter().flatten().map(|x| x.abs()).sum::<f64>();
     if sum > 0.0 {
