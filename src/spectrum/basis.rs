@@ -112,8 +112,8 @@ impl Basis {
         Self::new(space, LaneKind::Wavelengths(Arc::new(functions)), wavelengths)
     }
 
-    /// Reads reflectances and transmittances onto the lanes so that they have their colors under some lights, and let as
-    /// much light excite dyes as they do. Without this, a lane reads them at its own wavelength. Three bands stay as
+    /// Reads reflectances and transmittances onto the lanes so that they have their colors under some lights, and let
+    /// as much light excite dyes as they do. Without this, a lane reads them at its own wavelength. Three bands stay as
     /// they are.
     pub fn seen_under(self, lights: &[Emission], dyes: &[Dye]) -> Self {
         let LaneKind::Wavelengths(functions) = &self.lanes else { return self };
