@@ -209,8 +209,11 @@ impl<'a> LightPaths<'a> {
 
     /// Deals vertices into sets of candidates.
     fn dealt<const N: usize>(&self, mut vertices: Vec<LightVertex<N>>, stats: Stats) -> LightVertices<N> {
-        let center = vertices.iter().map(|vertex| vertex.position).sum::<DVec3>() / vertices.len().max(1) as f64;
-        let near = NEAR * median(vertices.iter().map(|vertex| (vertex.position - center).length()).collect());
+        // Medians: some vertices may lie far outside of all that is seen.
+        let middle = |axis: usize| median(vertices.iter().map(|vertex| vertex.position[axis]).collect());
+        let center = DVec3::new(middle(0), middle(1), middle(2));
+        let distances = vertices.iter().map(|vertex| (vertex.position - center).length()).collect();
+        let near = if vertices.is_empty() { 1.0 } else { (NEAR * median(distances)).max(f64::MIN_POSITIVE) };
         vertices.sort_by_cached_key(|vertex| morton((vertex.position - center) * (CELLS / near)));
         let count = vertices.len().div_ceil(CANDIDATES);
         let mut candidates = vec![Candidates::EMPTY; count];
@@ -228,7 +231,7 @@ impl<'a> LightPaths<'a> {
         let powers: Vec<f64> = vertices.iter().map(|vertex| world.amount(seen(vertex))).collect();
         let most = powers.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
         let positions: Vec<DVec3> = vertices.iter().map(|vertex| vertex.position).collect();
-        let shares = usefulness(world, &self.places, &positions);
+        let shares = usefulness(world, &self.places, &positions, &powers);
         powers.iter().zip(shares).map(|(power, share)| (power / most) as f32 * share).collect()
     }
 }
@@ -318,10 +321,10 @@ impl Computation for Weighing<'_> {
     }
 }
 
-/// The median of some lengths; 1 if there are none.
-fn median(mut lengths: Vec<f64>) -> f64 {
-    let half = lengths.len() / 2;
-    if lengths.is_empty() { 1.0 } else { lengths.select_nth_unstable_by(half, f64::total_cmp).1.max(f64::MIN_POSITIVE) }
+/// The median of some numbers; 0 of none.
+fn median(mut numbers: Vec<f64>) -> f64 {
+    let half = numbers.len() / 2;
+    if numbers.is_empty() { 0.0 } else { *numbers.select_nth_unstable_by(half, f64::total_cmp).1 }
 }
 
 /// The place of a point along Morton's curve through a cube around the origin.

@@ -12,6 +12,8 @@ const SIDE: u32 = 24;
 /// Neighboring vertices that are seen alike, and how many looks at them are tried.
 const ALIKE: usize = 64;
 const LOOKS: u32 = 32;
+/// What vertices of which no look saw any may bring, of what all bring, at most.
+const UNSEEN: f64 = 0.05;
 /// Sets these random numbers apart from the others.
 const SEED: u64 = 0x6c6f_6f6b;
 
@@ -22,8 +24,9 @@ pub struct Place {
 }
 
 /// For each vertex, how often places that the camera sees also see its neighborhood: above 0 to 1. Vertices that follow
-/// each other are neighbors. The whole image counts, also where only a part of it is made.
-pub fn usefulness(world: &World, places: &[Place], vertices: &[DVec3]) -> Vec<f32> {
+/// each other are neighbors, and each has the power of what leaves it. The whole image counts, also where only a part of
+/// it is made.
+pub fn usefulness(world: &World, places: &[Place], vertices: &[DVec3], powers: &[f64]) -> Vec<f32> {
     if places.is_empty() {
         return vec![1.0; vertices.len()];
     }
@@ -36,11 +39,17 @@ pub fn usefulness(world: &World, places: &[Place], vertices: &[DVec3]) -> Vec<f3
             let (vertex, place) = (group[chosen(u, group.len())], &places[chosen(v, places.len())]);
             sees(world, place, vertex, &last_occluder)
         });
-        // One look more that sees: what was never seen by chance must not be left out.
-        let share = (seen.count() + 1) as f32 / (LOOKS + 1) as f32;
-        std::iter::repeat_n(share, group.len())
+        std::iter::repeat_n(seen.count(), group.len())
     };
-    vertices.chunks(ALIKE).enumerate().flat_map(of_group).collect()
+    let seen: Vec<usize> = vertices.chunks(ALIKE).enumerate().flat_map(of_group).collect();
+    // One look more that sees: what was never seen by chance must not be left out.
+    let share = |seen: usize| (seen + 1) as f64 / f64::from(LOOKS + 1);
+    let mut sums = [0.0; 2];
+    seen.iter().zip(powers).for_each(|(&seen, power)| sums[usize::from(seen > 0)] += share(seen) * power);
+    let [unseen, of_seen] = sums;
+    // Above 0: what is tried never is left out.
+    let fewer = if of_seen > 0.0 { (UNSEEN * of_seen / unseen).clamp(f64::from(f32::EPSILON), 1.0) } else { 1.0 };
+    seen.into_iter().map(|seen| (share(seen) * if seen > 0 { 1.0 } else { fewer }) as f32).collect()
 }
 
 /// Some such places, all over the image.
