@@ -8,6 +8,7 @@
 
 mod support;
 
+mod adaptive;
 mod camera;
 mod catalog;
 mod caustics;

@@ -129,6 +129,8 @@ fn kinds() -> Vec<Kind> {
     let large = ROOM.replace("width = 21, height = 18", "width = 420, height = 360");
     let crop = Some(Window { left: 200, top: 150, width: 21, height: 18 });
     let part = Options { crop, ..Options::default() };
+    let noisy = GLASS.replace("width = 37, height = 21", "width = 370, height = 210");
+    let of_the_ball = Options { crop: Some(Window { left: 160, top: 90, width: 37, height: 21 }), ..all() };
     vec![
         ("photons that are shown", CAUSTIC.into(), Options::default(), shows),
         ("photons that are gathered, all layers", GLASS.into(), all(), gathers),
@@ -136,6 +138,7 @@ fn kinds() -> Vec<Kind> {
         ("Stokes vectors, of photons that are gathered", GLASS.into(), stokes(), gathers),
         ("Stokes vectors, of a filter with negative lobes", sharp, stokes(), gathers),
         ("light vertices", large, part, |method| method.light_vertices),
+        ("adaptive sampling", noisy, of_the_ball, |method| method.density.is_some()),
         ("wavelengths that are drawn", split, all(), |method| method.basis.draws_wavelengths()),
         ("one sample per pixel", still.replace("samples = 20", "samples = 1"), all(), |method| method.samples == 1),
     ]

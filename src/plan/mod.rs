@@ -1,5 +1,6 @@
 //! Floor 5: looks at a scene, decides how little of the world must be modelled to render it, and says why.
 
+mod adaptive;
 mod bright;
 mod candidates;
 mod caustics;
@@ -63,33 +64,8 @@ const TOGETHER_PIXELS: f64 = 0.01;
 /// Decides how to render a scene.
 pub fn plan(scene: &Scene<Curve>) -> Plan {
     let Model { basis, missed, error: model_error, because: mut decisions, next, candidates } = model::model(scene);
-    let together = if basis.draws_wavelengths() { TOGETHER_PIXELS * scene.camera.pixel_angle() } else { 0.0 };
-    let (transport, reason) = transport::transport(scene, &basis, together);
+    let (method, reason) = before_light(scene, basis);
     decisions.push(reason);
-    let stop = stopping::stop(&scene.render);
-    let samples = match (transport, scene.render.samples) {
-        _ if stop.is_some() => stopping::COUNTED_FOR,
-        (_, Some(samples)) => samples,
-        (Transport::Deterministic { .. }, None) => 1,
-        (Transport::Random { .. }, None) => SAMPLES,
-    };
-    let diffuse_bounces = scene.render.diffuse_bounces.unwrap_or(u32::MAX);
-    let max_bounces = scene.render.max_bounces.unwrap_or(u32::MAX);
-    let seed = scene.render.seed;
-    let method = Method {
-        basis,
-        transport,
-        together,
-        samples,
-        stop,
-        seed,
-        diffuse_bounces,
-        max_bounces,
-        light_pass: None,
-        bright: None,
-        light_vertices: false,
-        polarization: Polarizing::Averaged,
-    };
     let world = prepare_unguided(scene, method.clone());
     let Shown { pass: shown, why, taught } = caustics::light_pass(scene, &world);
     let (light_pass, why_gathered) = photon_map::with_map(scene, &world, shown.as_ref());
@@ -103,10 +79,15 @@ pub fn plan(scene: &Scene<Curve>) -> Plan {
     let polarization = polarization::decide(scene, &world);
     decisions.extend(polarization.why);
     let world = world.with_polarization(polarization.polarization);
+    let adaptive = adaptive::decide(scene, &world);
+    decisions.extend(adaptive.as_ref().map(adaptive::reason));
+    let times_rays = adaptive.as_ref().map_or(1.0, |adaptive| adaptive.rays);
+    let world = world.with_density(adaptive.map(|adaptive| adaptive.density));
     let method = world.method().clone();
     let probe = probe(&world);
     let times = photon_times(&taught.map_or(world.clone(), |taught| world.clone().taught_by(&taught)));
-    let (cost, processor_time) = cost(scene, &method, &probe, times);
+    let on_average = Probe { time: probe.time.mul_f64(times_rays), rays: probe.rays * times_rays, ..probe };
+    let (cost, processor_time) = cost(scene, &method, &on_average, times);
     let mut because = vec![cost];
     because.extend(stopping::reason(scene, method.stop.as_ref()));
     because.extend(layers(scene));
@@ -120,6 +101,35 @@ pub fn plan(scene: &Scene<Curve>) -> Plan {
     }
     because.extend(next.map(|basis| beside(scene, &method, &probe, basis)));
     Plan { method, because, processor_time, candidates, left_out, model_error, polarization_error: polarization.error }
+}
+
+/// What does not depend on how light is found, and in words, which branches are followed.
+fn before_light(scene: &Scene<Curve>, basis: Basis) -> (Method, String) {
+    let together = if basis.draws_wavelengths() { TOGETHER_PIXELS * scene.camera.pixel_angle() } else { 0.0 };
+    let (transport, reason) = transport::transport(scene, &basis, together);
+    let stop = stopping::stop(&scene.render);
+    let samples = match (transport, scene.render.samples) {
+        _ if stop.is_some() => stopping::COUNTED_FOR,
+        (_, Some(samples)) => samples,
+        (Transport::Deterministic { .. }, None) => 1,
+        (Transport::Random { .. }, None) => SAMPLES,
+    };
+    let method = Method {
+        basis,
+        transport,
+        together,
+        samples,
+        stop,
+        seed: scene.render.seed,
+        diffuse_bounces: scene.render.diffuse_bounces.unwrap_or(u32::MAX),
+        max_bounces: scene.render.max_bounces.unwrap_or(u32::MAX),
+        light_pass: None,
+        bright: None,
+        light_vertices: false,
+        density: None,
+        polarization: Polarizing::Averaged,
+    };
+    (method, reason)
 }
 
 /// How light between surfaces is found.

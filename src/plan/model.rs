@@ -161,6 +161,7 @@ fn dispersion(scene: &Scene<Curve>) -> Option<Dispersion> {
         light_pass: None,
         bright: None,
         light_vertices: false,
+        density: None,
         polarization: Polarizing::Averaged,
     };
     Some(measured_dispersion(&World::new(scene, method)))

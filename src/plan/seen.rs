@@ -57,6 +57,7 @@ impl<'a> Seen<'a> {
             light_pass: None,
             bright: None,
             light_vertices: false,
+            density: None,
             polarization: Polarizing::Averaged,
         };
         let mut keeping = Keeping::new(scene, survey);

@@ -85,6 +85,7 @@ fn too_many_ways(scene: &Scene<Curve>, basis: &Basis, together: f64) -> Option<S
         light_pass: None,
         bright: None,
         light_vertices: false,
+        density: None,
         polarization: Polarizing::Averaged,
     };
     match branching(&World::new(scene, method), AFFORDABLE) {

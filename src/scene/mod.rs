@@ -24,6 +24,6 @@ pub use film::FilmSettings;
 pub use hit::{Ends, Hit, Primitive};
 pub use object::{MaterialId, Object, Sight};
 pub use relief::{Relief, ReliefKind};
-pub use render_text::{CausticsText, ModelText, PolarizationText, RenderText};
+pub use render_text::{AdaptiveText, CausticsText, ModelText, PolarizationText, RenderText};
 pub use source::{SETTINGS, Source};
 pub use text::{Numbers, Rows};

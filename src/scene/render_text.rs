@@ -32,6 +32,8 @@ pub struct RenderText {
     pub max_bounces: Option<u32>,
     /// Whether caustics may have a light pass of their own.
     pub caustics: CausticsText,
+    /// Whether pixels may take more samples where the noise is, and fewer elsewhere.
+    pub adaptive: AdaptiveText,
     /// Whether polarization is traced.
     pub polarization: PolarizationText,
     /// Whether a part of the image is made, which does not know the error of the whole: then all samples are taken.
@@ -56,6 +58,20 @@ pub enum PolarizationText {
     /// Yes.
     On,
     /// No: light is taken for unpolarized at every surface.
+    Off,
+}
+
+/// Whether pixels may take more samples where the noise is, and fewer elsewhere.
+///
+/// ```toml
+/// render.adaptive = "auto"     # "off"
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum AdaptiveText {
+    /// Where an equal error comes clearly sooner.
+    #[default]
+    Auto,
+    /// All pixels take as many.
     Off,
 }
 

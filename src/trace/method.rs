@@ -2,7 +2,7 @@ use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
-use super::BrightPlaces;
+use super::{BrightPlaces, SampleDensity};
 use crate::light::LightId;
 use crate::spectrum::Basis;
 
@@ -15,8 +15,10 @@ pub struct Method {
     pub transport: Transport,
     /// Lanes whose refracted rays lie within this angle of each other, in radians, stay together.
     pub together: f64,
-    /// Camera samples per pixel; with a stop rule, those that photons are counted for.
+    /// Camera samples per pixel, on average; with a stop rule, those that photons are counted for.
     pub samples: u32,
+    /// Where more of them are taken, and where fewer; none takes as many everywhere.
+    pub density: Option<SampleDensity>,
     /// When enough samples are taken; without, it is all of them.
     pub stop: Option<Stop>,
     /// Chooses the set of random numbers.

@@ -32,6 +32,7 @@ mod arrived;
 mod bright;
 mod camera;
 mod contribution;
+mod density;
 mod dispersion;
 mod dyes;
 mod first_lobe;
@@ -55,6 +56,7 @@ mod width;
 mod world;
 
 pub use bright::{BrightPlace, BrightPlaces};
+pub use density::SampleDensity;
 pub use dispersion::{COLORS_NM, Dispersion, ROUTES_NM, Route, SEEN_PIXELS, Step, Way, dispersion, routes};
 pub use image::{
     Advance, Blur, Noise, Outlier, RareLight, Rendering, Report, Restored, Stopped, TileNoise, piloted, render,
@@ -63,8 +65,8 @@ pub use image::{
 pub use method::{LightPass, MapPasses, Method, Polarizing, Stop, Transport};
 pub use photon_targets::is_photon_target;
 pub use probe::{
-    Branching, GatheredWorth, PhotonTimes, PhotonWorth, Probe, SampleWorth, SeenLight, branching, bright_places,
-    gathered_photons, gathered_worth, photon_times, photons_worth, polarization_error, prepare, prepare_unguided,
-    probe, reached_places, resampling_gain, samples_worth, seen_light,
+    Adaptive, Branching, GatheredWorth, PhotonTimes, PhotonWorth, Probe, SampleWorth, SeenLight, adaptive, branching,
+    bright_places, gathered_photons, gathered_worth, photon_times, photons_worth, polarization_error, prepare,
+    prepare_unguided, probe, reached_places, resampling_gain, samples_worth, seen_light,
 };
 pub use world::World;

@@ -2,6 +2,8 @@ use std::ops::AddAssign;
 
 use serde::{Deserialize, Serialize};
 
+use super::density::Rate;
+
 /// What happened to the rays of many samples.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Stats {
@@ -25,6 +27,14 @@ pub(super) struct Stats {
     pub(super) resampled: u64,
     /// What was sent, showed or kept and is not finite.
     pub(super) non_finite: u64,
+}
+
+impl Stats {
+    /// Those of a pixel that takes more samples or fewer: light counts as much as that of any pixel.
+    pub(super) fn of_pixel(self, rate: Rate) -> Self {
+        let times = rate.times();
+        Self { light: self.light / times, polarization: self.polarization / times, ..self }
+    }
 }
 
 impl AddAssign for Stats {

@@ -1,4 +1,5 @@
 use super::bright::{Bright, BrightPlaces};
+use super::density::{Rate, SampleDensity};
 use super::dyes::Dyes;
 use super::layers::Layers;
 use super::media::{Media, media_of_lights};
@@ -127,6 +128,19 @@ impl World {
         let mut world = self.clone();
         world.method.light_vertices = light_vertices;
         world
+    }
+
+    /// This world with more samples at some places and fewer at others.
+    pub fn with_density(&self, density: Option<SampleDensity>) -> Self {
+        let mut world = self.clone();
+        world.method.density = density;
+        world
+    }
+
+    /// How many samples a pixel of the format takes.
+    pub(super) fn rate(&self, pixel: [i32; 2]) -> Rate {
+        let format = [self.scene.film.width, self.scene.film.height];
+        self.method.density.as_ref().map_or(Rate::default(), |density| density.rate(format, pixel))
     }
 
     /// This world with polarization traced or not.

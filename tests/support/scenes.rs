@@ -66,6 +66,7 @@ pub fn method(scene: &Scene<Curve>, transport: Transport) -> Method {
         light_pass: None,
         bright: None,
         light_vertices: false,
+        density: None,
         polarization: Polarizing::Averaged,
     }
 }

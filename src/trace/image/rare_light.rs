@@ -63,8 +63,9 @@ fn brightest<const N: usize, P: Polarization<N>>(
         let pass = stage.pass(world, 0, most_at_once);
         let light = PassLight::<N, P>::new(world, &pass);
         let mut tracer = PathTracer::<N, P>::new(world).with_photons(light.photons.as_ref()).with_observer(&brightest);
-        for number in pass.numbers.clone() {
-            tracer.light_vertices = light.vertices(number - pass.numbers.start);
+        let rate = world.rate(pixel);
+        for number in rate.of(&pass.numbers) {
+            tracer.light_vertices = light.vertices(rate.among_all(number) - pass.numbers.start);
             let sample = tracer.sample(&Sampler::of_pixel(pass.seed, pixel, number), pixel);
             all += world.amount(sample.rgb);
         }

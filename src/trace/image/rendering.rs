@@ -263,8 +263,8 @@ impl<'a> Rendering<'a> {
             first_non_finite = first_non_finite.or(tile.first_non_finite);
             all += stats;
         }
-        let samples = self.samples_taken();
-        let per_sample = |sum: f64| sum / samples.max(1) as f64;
+        let samples = self.tiles.iter().map(Tile::samples).sum();
+        let per_sample = |sum: f64| sum / u64::max(samples, 1) as f64;
         Report {
             samples,
             rays: all.rays,
@@ -360,7 +360,7 @@ impl<'a> Rendering<'a> {
         self.progress.sending.photons + self.progress.gathered_photons
     }
 
-    /// Camera samples taken, with those of the pass that was stopped.
+    /// Camera samples taken, with those of the pass that was stopped, as if all pixels took as many.
     fn samples_taken(&self) -> u64 {
         let (samples, passes) = (self.progress.samples, self.progress.passes);
         let of_pass = u64::from(self.progress.end_of_pass(self.world()) - samples);

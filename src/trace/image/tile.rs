@@ -72,6 +72,12 @@ impl Tile {
             && (self.ahead as usize) < pixels
     }
 
+    /// Camera samples taken.
+    pub fn samples(&self) -> u64 {
+        let kept = self.sums.iter().chain(&self.subtracted).map(|sum| u64::from(sum.kept())).sum::<u64>();
+        kept + self.stats.non_finite
+    }
+
     /// What photons show in one of its pixels.
     pub fn shown_at(&self, place: usize) -> [f64; 3] {
         self.shown.pixels.get(place).copied().unwrap_or_default()
@@ -121,8 +127,10 @@ impl Tile {
         let [mut added, mut subtracted] = [PassSum::default(), PassSum::default()];
         let mut blurs = [PassSum::default(), PassSum::default()];
         let blurs_are_told = light.tells_blur();
-        for number in pass.numbers.clone() {
-            tracer.light_vertices = light.vertices(number - pass.numbers.start);
+        let rate = world.rate(pixel);
+        for number in rate.of(&pass.numbers) {
+            let among_all = rate.among_all(number);
+            tracer.light_vertices = light.vertices(among_all - pass.numbers.start);
             let sampler = Sampler::of_pixel(pass.seed, pixel, number);
             let sample = tracer.sample(&sampler, pixel);
             if blurs_are_told {
@@ -133,7 +141,7 @@ impl Tile {
                 self.stats.non_finite += 1;
                 self.first_non_finite.get_or_insert([pixel[0].into(), pixel[1].into(), number.into()]);
             } else if let Some(layers) = tracer.layers() {
-                let early = pass.is_early(world, number);
+                let early = pass.is_early(world, among_all);
                 layers.keep(sample.is_subtracted);
                 self.layers.add(&world.layers, place, early, &sample, &layers.left());
             }
@@ -150,6 +158,6 @@ impl Tile {
             sum.add(subtracted);
         }
         // Pixel by pixel, so that a stop between two of them changes no order of sums.
-        self.stats += std::mem::take(&mut tracer.walker.stats);
+        self.stats += std::mem::take(&mut tracer.walker.stats).of_pixel(rate);
     }
 }

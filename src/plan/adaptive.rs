@@ -1,0 +1,39 @@
+//! Whether more samples are taken where the noise is.
+
+use super::stopping::FIRST_LOOK;
+use crate::scene::{AdaptiveText, Scene};
+use crate::spectrum::Curve;
+use crate::trace::{Adaptive, Transport, World, adaptive};
+
+/// How much shorter an equal error must take: a pilot knows no better.
+const CLEARLY: f64 = 1.15;
+/// Fewest camera samples of an image: of a smaller one a pilot would take too large a part.
+const LARGE: f64 = 1e6;
+
+/// Where samples are taken, if as many everywhere would be clearly worse.
+///
+/// An image that stops by its error is judged as a whole; else every pixel counts by itself.
+pub(super) fn decide(scene: &Scene<Curve>, world: &World) -> Option<Adaptive> {
+    let (film, method) = (world.scene().film, world.method());
+    let of_pixel = if method.stop.is_some() { FIRST_LOOK } else { method.samples };
+    let samples = f64::from(film.width) * f64::from(film.height) * f64::from(of_pixel);
+    let is_asked = scene.render.adaptive == AdaptiveText::Auto && matches!(method.transport, Transport::Random { .. });
+    if !is_asked || samples < LARGE {
+        return None;
+    }
+    let is_absolute = method.stop.as_ref().is_some_and(|stop| stop.noise.is_some());
+    adaptive(world, is_absolute).filter(|adaptive| adaptive.gain > CLEARLY)
+}
+
+/// What a person is told of it.
+pub(super) fn reason(adaptive: &Adaptive) -> String {
+    let powers = &adaptive.density.powers;
+    let times = |power: Option<&i8>| f64::from(*power.unwrap_or(&0)).exp2();
+    format!(
+        "adaptive sampling: pixels take {} to {} times the samples, most where the noise is; with as many everywhere, the \
+         same error would take about {:.1} times as long",
+        times(powers.iter().min()),
+        times(powers.iter().max()),
+        adaptive.gain
+    )
+}

@@ -1,0 +1,94 @@
+//! Adaptive sampling: where an image takes more samples than on average, and where fewer.
+//!
+//! Of a time that is given, the error is least where the samples n of a pixel go as the root of its variance over what
+//! a sample of it takes (Neyman 1934, *On the Two Different Aspects of the Representative Method*). A pilot whose
+//! samples are not used for the image tells that, so that no pixel depends on its own samples: else it would be too
+//! dark (Kirk & Arvo 1991, *Unbiased Sampling Techniques for Image Synthesis*). Counts are powers of two times the
+//! samples asked for, as sets of random numbers are spread evenly in powers of two.
+
+use std::ops::Range;
+
+use serde::{Deserialize, Serialize};
+
+/// How many samples the pixels of each cell of the format take.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SampleDensity {
+    /// Cells along both sides, 1 or more. Each has as many pixels as any other, or one more.
+    pub cells: [u32; 2],
+    /// Of each cell, row by row, the power of two by which it takes more samples, from [`LEAST`](Self::LEAST) to
+    /// [`MOST`](Self::MOST).
+    pub powers: Vec<i8>,
+}
+
+/// By what power of two a pixel takes more samples than on average.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Rate(i8);
+
+impl SampleDensity {
+    /// Half as many samples.
+    pub const LEAST: i8 = -1;
+    /// Four times as many samples.
+    pub const MOST: i8 = 2;
+
+    /// The rate of a pixel; beyond the format's edge, that of the nearest one.
+    pub(super) fn rate(&self, format: [u32; 2], pixel: [i32; 2]) -> Rate {
+        let place = |axis: usize| {
+            let at = pixel[axis].clamp(0, format[axis] as i32 - 1) as u64;
+            (at * u64::from(self.cells[axis]) / u64::from(format[axis])) as usize
+        };
+        let power = self.powers.get(place(1) * self.cells[0] as usize + place(0)).copied();
+        Rate(power.unwrap_or_default().clamp(Self::LEAST, Self::MOST))
+    }
+}
+
+impl Rate {
+    /// Samples for each one on average.
+    pub fn times(self) -> f64 {
+        f64::from(self.0).exp2()
+    }
+
+    /// Those that it takes where so many of all are due.
+    pub fn of(self, all: &Range<u32>) -> Range<u32> {
+        let of =
+            |number: u32| if self.0 < 0 { number.div_ceil(1 << -self.0) } else { number.saturating_mul(1 << self.0) };
+        of(all.start)..of(all.end)
+    }
+
+    /// The one of all that one of its own is taken with.
+    pub fn among_all(self, own: u32) -> u32 {
+        if self.0 < 0 { own << -self.0 } else { own >> self.0 }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn samples_of_every_rate_are_taken_once_and_with_those_of_all() {
+        for rate in (SampleDensity::LEAST..=SampleDensity::MOST).map(Rate) {
+            let (mut next, mut taken) = (0, 0);
+            for all in [0..1, 1..2, 2..5, 5..16, 16..17, 17..64] {
+                let own = rate.of(&all);
+                assert_eq!(own.start, next, "{rate:?}");
+                own.clone().for_each(|number| assert!(all.contains(&rate.among_all(number)), "{rate:?}, {number}"));
+                (next, taken) = (own.end, taken + own.len());
+            }
+            assert_eq!(taken as f64, 64.0 * rate.times());
+        }
+    }
+
+    #[test]
+    fn every_pixel_has_the_rate_of_its_cell() {
+        let density = SampleDensity { cells: [3, 2], powers: vec![-1, 0, 1, 2, 1, 0] };
+        let times = |pixel| density.rate([10, 4], pixel).times();
+        let row = |y| (-2..12).map(|x| times([x, y])).collect::<Vec<_>>();
+        let first = [0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 1.0, 1.0, 1.0, 2.0, 2.0, 2.0, 2.0, 2.0];
+        assert_eq!(row(1), first);
+        assert_eq!(row(-7), first);
+        assert_eq!(times([0, 2]), 4.0);
+        assert_eq!(times([9, 9]), 1.0);
+        let damaged = SampleDensity { cells: [3, 2], powers: vec![9] };
+        assert_eq!([damaged.rate([10, 4], [0, 0]), damaged.rate([10, 4], [9, 3])].map(Rate::times), [4.0, 1.0]);
+    }
+}

@@ -1,0 +1,203 @@
+//! Where the noise of an image is, and what adaptive sampling is worth: a pilot of some thousand camera samples.
+
+use std::ops::Range;
+
+use super::cost::with_few_photons;
+use crate::math::Sampler;
+use crate::trace::World;
+use crate::trace::camera::PathTracer;
+use crate::trace::density::SampleDensity;
+use crate::trace::parallel::in_parallel;
+use crate::trace::pass::Pass;
+use crate::trace::photon::{LightPaths, LightVertices, PhotonMap, photons};
+use crate::trace::walk::Polarization;
+use crate::trace::width::in_lanes_of;
+
+/// What adaptive sampling is worth.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Adaptive {
+    /// Where.
+    pub density: SampleDensity,
+    /// How many times as long an equal error takes with as many samples everywhere.
+    pub gain: f64,
+    /// How many times as many rays it takes as so many samples everywhere.
+    pub rays: f64,
+}
+
+/// Pixels that are looked at in a cell, how often each, and samples of each look. Samples of a look are spread evenly,
+/// as those of an image are: how far looks are apart tells what noise that leaves.
+const PIXELS: u32 = 2;
+const LOOKS: u32 = 2;
+const SAMPLES: u32 = 4;
+const OF_A_CELL: f64 = (PIXELS * LOOKS * SAMPLES) as f64;
+/// Pixels of a cell at least, and most cells. How many samples an image takes does not count, so that one with more of
+/// them may go on from it.
+const PIXELS_OF_A_CELL: f64 = 32.0;
+const MOST_CELLS: f64 = 4096.0;
+/// Cells to each side that tell the noise of a cell.
+const AROUND: i64 = 2;
+/// What all that belongs to a sample, and a look at vertices of light paths, take in rays of a path.
+const SAMPLE: f64 = 0.5;
+const LOOKING: f64 = 0.6;
+/// Darker pixels than this share of the mean square count as if they were as bright: errors in them are hardly seen.
+const DARK: f64 = 0.1;
+/// Steps of a scale to twice as much.
+const STEPS: i32 = 16;
+/// Sets these random numbers apart from those of the image.
+const SEED: u64 = 0x6465_6e73;
+
+/// Where an image takes more samples and where fewer, and what that is worth; none where there is no noise.
+///
+/// Errors are relative to each pixel, or to the image if `is_absolute`. Rays followed stand for time, so that the
+/// answer is the same everywhere; the whole format counts, whatever part of it is made.
+pub fn adaptive(world: &World, is_absolute: bool) -> Option<Adaptive> {
+    let format = [world.scene.film.width, world.scene.film.height];
+    let pixels = f64::from(format[0]) * f64::from(format[1]);
+    let side = (pixels / (pixels / PIXELS_OF_A_CELL).clamp(1.0, MOST_CELLS)).sqrt();
+    let cells = format.map(|pixels| ((f64::from(pixels) / side) as u32).max(1));
+    let found = in_lanes_of!(world, N, P => look::<N, P>(world, cells));
+    let of = |pixels: Range<usize>| smoothed(cells, &found, pixels, is_absolute);
+    // What one pixel of each cell asks for is judged by the other: what is chosen by its own noise looks too good.
+    let [gain, rays] = worth(&powers(&of(0..1))?, &of(1..2));
+    Some(Adaptive { density: SampleDensity { cells, powers: powers(&of(0..2))? }, gain, rays })
+}
+
+/// What a pixel of a cell showed in the film's channels: the mean of its samples, and the variance of one of them, as
+/// it counts where many are spread evenly.
+#[derive(Clone, Copy, Debug, Default)]
+struct Pixel {
+    mean: [f64; 3],
+    variance: [f64; 3],
+}
+
+/// What the pixels of a cell showed, and the rays of all their samples.
+#[derive(Clone, Copy, Debug, Default)]
+struct Found {
+    pixels: [Pixel; PIXELS as usize],
+    rays: f64,
+}
+
+/// Variance of a sample of a cell, and the rays of one.
+#[derive(Clone, Copy, Debug)]
+struct Cell {
+    variance: f64,
+    rays: f64,
+}
+
+fn look<const N: usize, P: Polarization<N>>(world: &World, cells: [u32; 2]) -> Vec<Found> {
+    let few = with_few_photons(world);
+    let photons = photons::<N, P>(&few, &Pass::of_photons_alone(&few, 0));
+    let vertices = LightPaths::asked_for(world, world.method.seed).map(|light_paths| light_paths.few::<N>());
+    let row = |row: usize| look_at_row::<N, P>(&few, photons.as_ref(), vertices.as_ref(), cells, row as u32);
+    in_parallel(cells[1] as usize, &row).concat()
+}
+
+fn look_at_row<const N: usize, P: Polarization<N>>(
+    world: &World,
+    photons: Option<&PhotonMap<N, P>>,
+    vertices: Option<&LightVertices<N>>,
+    cells: [u32; 2],
+    row: u32,
+) -> Vec<Found> {
+    let format = [world.scene.film.width, world.scene.film.height];
+    let mut tracer = PathTracer::<N, P>::new(world).with_photons(photons);
+    tracer.light_vertices = vertices;
+    let mut found = vec![Found::default(); cells[0] as usize];
+    for (column, found) in (0..).zip(&mut found) {
+        let before = tracer.walker.stats;
+        for (number, pixel) in (0..).zip(&mut found.pixels) {
+            // At a third and two thirds of the cell's diagonal.
+            let at = [column, row];
+            let place = |i: usize| {
+                let within = f64::from(at[i]) + f64::from(number + 1) / f64::from(PIXELS + 1);
+                ((within * f64::from(format[i]) / f64::from(cells[i])) as i32).min(format[i] as i32 - 1)
+            };
+            *pixel = look_at_pixel(world, &mut tracer, [place(0), place(1)]);
+        }
+        let stats = tracer.walker.stats;
+        let [rays, resampled] =
+            [stats.rays - before.rays, stats.resampled - before.resampled].map(|count| count as f64);
+        found.rays = SAMPLE * OF_A_CELL + rays + LOOKING * resampled;
+    }
+    found
+}
+
+fn look_at_pixel<const N: usize, P: Polarization<N>>(
+    world: &World,
+    tracer: &mut PathTracer<N, P>,
+    pixel: [i32; 2],
+) -> Pixel {
+    let mut look = |look: u64| {
+        let seed = (world.method.seed ^ SEED).wrapping_add(look);
+        let mut mean = [0.0; 3];
+        for number in 0..SAMPLES {
+            let rgb = tracer.sample(&Sampler::of_pixel(seed, pixel, number), pixel).rgb;
+            (0..3).filter(|&i| rgb[i].is_finite()).for_each(|i| mean[i] += rgb[i] / f64::from(SAMPLES));
+        }
+        mean
+    };
+    let [one, other] = [look(0), look(1)];
+    let mean = std::array::from_fn(|i| 0.5 * (one[i] + other[i]));
+    let variance = |i: usize| 0.5 * f64::from(SAMPLES) * (one[i] - other[i]) * (one[i] - other[i]);
+    Pixel { mean, variance: std::array::from_fn(variance) }
+}
+
+/// Of each cell, the mean over the 5 x 5 cells around it.
+fn smoothed(cells: [u32; 2], found: &[Found], pixels: Range<usize>, is_absolute: bool) -> Vec<Cell> {
+    let means = || found.iter().flat_map(|found| found.pixels).flat_map(|pixel| pixel.mean);
+    let dark =
+        means().map(|x| x * x).sum::<f64>() / means().count().max(1) as f64 * if is_absolute { 1.0 } else { DARK };
+    let of_pixel = |Pixel { mean, variance }: &Pixel| {
+        let own = |i: usize| if is_absolute { 0.0 } else { mean[i] * mean[i] };
+        (0..3).map(|i| variance[i] / (own(i) + dark).max(f64::MIN_POSITIVE)).sum::<f64>()
+    };
+    let own: Vec<f64> = found.iter().map(|found| found.pixels[pixels.clone()].iter().map(of_pixel).sum()).collect();
+    let [columns, rows] = cells.map(i64::from);
+    let around = |cell: i64| {
+        let (x, y) = (cell % columns, cell / columns);
+        let near = |at: i64, end: i64| (at - AROUND).max(0)..(at + AROUND + 1).min(end);
+        let (mut variance, mut rays, mut count) = (0.0, 0.0, 0.0);
+        for at in near(y, rows).flat_map(|y| near(x, columns).map(move |x| (y * columns + x) as usize)) {
+            (variance, rays, count) = (variance + own[at], rays + found[at].rays, count + 1.0);
+        }
+        Cell { variance: variance / count, rays: rays / count }
+    };
+    (0..columns * rows).map(around).collect()
+}
+
+/// The powers of two that make the error least, of as many rays as so many samples everywhere take; none where there is
+/// no noise.
+fn powers(found: &[Cell]) -> Option<Vec<i8>> {
+    let wanted: Vec<f64> = found.iter().map(|cell| (cell.variance / cell.rays).sqrt()).collect();
+    let most = wanted.iter().copied().fold(0.0, f64::max);
+    if !(most > 0.0 && most.is_finite()) {
+        return None;
+    }
+    let [least, largest] = [SampleDensity::LEAST, SampleDensity::MOST].map(f64::from);
+    let of_scale = |step: i32| -> Vec<i8> {
+        let scale = libm::exp2(f64::from(step) / f64::from(STEPS)) / most;
+        wanted.iter().map(|wanted| libm::log2(wanted * scale).round().clamp(least, largest) as i8).collect()
+    };
+    let all = rays(found, &vec![0; found.len()]);
+    // The largest scale that takes no more rays.
+    let steps = (-4 * STEPS..64 * STEPS).rev();
+    steps.map(of_scale).find(|powers| rays(found, powers) <= all)
+}
+
+/// The rays of all cells.
+fn rays(found: &[Cell], powers: &[i8]) -> f64 {
+    found.iter().zip(powers).map(|(cell, &power)| cell.rays * times(power)).sum()
+}
+
+fn times(power: i8) -> f64 {
+    f64::from(power).exp2()
+}
+
+/// How many times as long an equal error takes with as many samples everywhere, and how many times as many rays are
+/// followed.
+fn worth(powers: &[i8], found: &[Cell]) -> [f64; 2] {
+    let rays = rays(found, powers) / rays(found, &vec![0; found.len()]);
+    let before: f64 = found.iter().map(|cell| cell.variance).sum();
+    let after: f64 = found.iter().zip(powers).map(|(cell, &power)| cell.variance / times(power)).sum();
+    [before / (rays * after), rays]
+}

@@ -1,0 +1,169 @@
+//! More samples where the noise is: when the plan asks for it, what it saves, and that it changes no mean.
+//!
+//! ```text
+//! cargo test --test all adaptive::
+//! ```
+
+use abbe::film::{Film, Window};
+use abbe::plan::{Plan, plan};
+use abbe::trace::{Method, SampleDensity, Stop, prepare, render};
+
+use crate::support::scenes::{SPLITTING, body, method, moments, scene, standard_errors, view};
+
+/// A floor under a point, without noise, and a ball before a lamp, which is noisy.
+fn lit(size: [u32; 2], samples: u32, render: &str) -> String {
+    large_view(size)
+        + &format!("[render]\nmodel = \"rgb\"\nsamples = {samples}\ndiffuse_bounces = 0\n{render}\n")
+        + &body("floor", "diffuse = { reflectance = 0.6 }", &[FLOOR])
+        + &body("ball", "conductor = { n = 1, k = 5, roughness = 0.5 }", &[BALL])
+        + &body("lamp", LAMP, &["quad = { center = [0, 1, 1.5], u = [0.3, 0, 0], v = [0, -0.3, 0] }"])
+        + "[[light]]\npoint = { position = [1, 5, 4], intensity = 60 }\n"
+}
+
+fn large_view([width, height]: [u32; 2]) -> String {
+    let small = view([0.0, 3.0, 6.0], [0.0, 0.5, 0.0], 50.0, 12);
+    small.replace("width = 12\nheight = 12", &format!("width = {width}\nheight = {height}"))
+}
+
+const FLOOR: &str = "plane = { point = [0, 0, 0], normal = [0, 1, 0] }";
+const BALL: &str = "sphere = { center = [0, 0.6, 0], radius = 0.6 }";
+const LAMP: &str = "emissive = { radiance = 5, sides = \"front\" }";
+
+fn is_adaptive(text: &str) -> (bool, Plan) {
+    let plan = plan(&scene(text));
+    (plan.method.density.is_some(), plan)
+}
+
+/// Large images of uneven noise take uneven counts, and say so; small, even and noiseless ones do not.
+#[test]
+fn the_plan_asks_for_more_samples_where_the_noise_is() {
+    let large = [256, 256];
+    let (adaptive, decided) = is_adaptive(&lit(large, 64, ""));
+    assert!(adaptive, "{:?}", decided.because);
+    assert!(decided.because.iter().any(|line| line.starts_with("adaptive sampling")), "{:?}", decided.because);
+    assert!(!is_adaptive(&lit(large, 64, "adaptive = \"off\"")).0, "off");
+    assert!(!is_adaptive(&lit([64, 64], 64, "")).0, "too small");
+    let furnace = large_view(large)
+        + "[render]\nsamples = 64\n[[light]]\nenvironment = { radiance = 1 }\n"
+        + &body("floor", "diffuse = { reflectance = 1 }", &[FLOOR]);
+    assert!(!is_adaptive(&furnace).0, "a furnace");
+    // As many samples as an image has do not change where they are taken.
+    let of = |samples| plan(&scene(&lit(large, samples, ""))).method.density;
+    assert_eq!(of(32), of(256));
+}
+
+/// Rates all over an image of 12 x 12.
+fn density() -> SampleDensity {
+    let power = |cell: i32| (cell * 7 % 4) as i8 + SampleDensity::LEAST;
+    SampleDensity { cells: [5, 4], powers: (0..20).map(power).collect() }
+}
+
+fn films(text: &str, density: Option<&SampleDensity>, change: impl Fn(Method) -> Method, seeds: u64) -> Vec<Film> {
+    let scene = scene(text);
+    let asked = change(Method { density: density.cloned(), ..method(&scene, SPLITTING) });
+    (0..seeds).map(|seed| render(&prepare(&scene, Method { seed, ..asked.clone() }), &|_| ()).0).collect()
+}
+
+/// Every pixel takes the samples of its cell, also where each replicate takes some.
+#[test]
+fn every_pixel_takes_the_samples_of_its_cell() {
+    let density = density();
+    let stop = |method| Method { stop: Some(Stop { noise: None, time: None, most: 64 }), ..method };
+    for (name, film, each) in [
+        ("one render", films(&lit([12, 12], 20, ""), Some(&density), |method| method, 1).remove(0), [20, 1]),
+        ("replicates", films(&lit([12, 12], 20, ""), Some(&density), stop, 1).remove(0), [8, 8]),
+        ("one sample", films(&lit([12, 12], 1, ""), Some(&density), |method| method, 1).remove(0), [1, 1]),
+    ] {
+        for (i, pixel) in (0..).zip(&film.pixels) {
+            let [x, y] = [i % 12, i / 12];
+            let power = density.powers[(y * 4 / 12 * 5 + x * 5 / 12) as usize];
+            let expected = f64::from(each[1]) * (f64::from(each[0]) * f64::from(power).exp2()).ceil();
+            assert_eq!(f64::from(pixel.samples), expected, "{name}: pixel {x}, {y}");
+        }
+    }
+}
+
+/// Quarters of images have the same means with samples of any density, in one render and in replicates, with photons,
+/// light vertices and a filter with negative lobes.
+#[test]
+fn the_density_of_samples_changes_no_mean() {
+    const SEEDS: u64 = 24;
+    type Change = fn(Method) -> Method;
+    let vertices = |method| Method { light_vertices: true, ..method };
+    let stop = |method| Method { stop: Some(Stop { noise: None, time: None, most: 32 }), ..method };
+    let plain: Change = |method| method;
+    let sharp = lit([12, 12], 24, "").replace("height = 12", "height = 12\nfilter = \"mitchell\"");
+    let cases: [(&str, String, Change); 4] = [
+        ("one render", lit([12, 12], 24, ""), plain),
+        ("light vertices", lit([12, 12], 24, ""), vertices),
+        ("replicates", lit([12, 12], 24, ""), stop),
+        ("a filter", sharp, plain),
+    ];
+    for (name, text, change) in &cases {
+        let [even, uneven] = [None, Some(density())].map(|density| films(text, density.as_ref(), change, SEEDS));
+        for (quarter, band) in (0..4).flat_map(|quarter| (0..3).map(move |band| (quarter, band))) {
+            let of = |films: &[Film]| {
+                let mean = |film: &Film| {
+                    let inside = |i: &usize| (i % 12) / 6 + 2 * (i / 72) == quarter;
+                    (0..144).filter(inside).map(|i| f64::from(film.pixels[i].rgb[band])).sum::<f64>() / 36.0
+                };
+                let (mean, variance) = moments(films.iter().map(mean));
+                (mean, variance / SEEDS as f64)
+            };
+            let [(a, of_a), (b, of_b)] = [of(&even), of(&uneven)];
+            let off = (a - b).abs() / (of_a + of_b).sqrt();
+            let bound = standard_errors(12 * cases.len());
+            assert!(off < bound, "{name}: quarter {quarter}, band {band}: {b} for {a}, off by {off:.1} sigma");
+        }
+    }
+}
+
+/// Parts of an image take the samples of the whole, beyond the format those of its edge.
+#[test]
+fn parts_of_an_image_take_the_samples_of_the_whole() {
+    let (text, density) = (lit([12, 12], 6, ""), density());
+    let whole = films(&text, Some(&density), |method| method, 1).remove(0);
+    for (crop, overscan) in [(Some(Window { left: 5, top: 4, width: 3, height: 2 }), 0), (None, 3)] {
+        let mut part = scene(&text);
+        (part.film.crop, part.film.overscan) = (crop, abbe::film::Overscan::even(overscan));
+        let asked = Method { density: Some(density.clone()), ..method(&part, SPLITTING) };
+        let part = render(&prepare(&part, asked), &|_| ()).0;
+        for (i, pixel) in (0_i32..).zip(&part.pixels) {
+            let [x, y] = [part.corner[0] + i % part.width as i32, part.corner[1] + i / part.width as i32];
+            let inside = (0..12).contains(&x) && (0..12).contains(&y);
+            let same = whole.at(x.clamp(0, 11) as u32, y.clamp(0, 11) as u32);
+            assert_eq!(pixel.samples, same.samples, "pixel {x}, {y}");
+            assert!(!inside || pixel.rgb == same.rgb, "pixel {x}, {y}");
+        }
+    }
+}
+
+/// What the plan says that it saves is saved, of the rays: variances of images of many seeds. It may be more, since
+/// samples that are spread evenly gain more by their number than the plan counts on.
+#[test]
+fn what_the_plan_says_of_the_gain_is_so() {
+    const SEEDS: u64 = 12;
+    let text = lit([192, 144], 64, "");
+    let (adaptive, Plan { method: decided, because, .. }) = is_adaptive(&text);
+    assert!(adaptive, "{because:?}");
+    let line = because.iter().find(|line| line.starts_with("adaptive")).expect("it is told");
+    let told: f64 =
+        line.split("about ").nth(1).and_then(|end| end.split(' ').next()).and_then(|x| x.parse().ok()).expect("a gain");
+    let scene = scene(&text);
+    let [even, uneven] = [None, decided.density.clone()].map(|density| {
+        let of_seed = |seed| {
+            let method = Method { seed, samples: 16, density: density.clone(), ..decided.clone() };
+            render(&prepare(&scene, method), &|_| ())
+        };
+        let images: Vec<_> = (0..SEEDS).map(of_seed).collect();
+        let rays = images.iter().map(|(_, report)| report.rays as f64).sum::<f64>();
+        let scale = images[0].0.pixels.iter().map(|pixel| f64::from(pixel.rgb[1]).powi(2)).sum::<f64>() / 27_648.0;
+        let error = |i: usize| {
+            let (mean, variance) = moments(images.iter().map(|(film, _)| f64::from(film.pixels[i].rgb[1])));
+            variance / (mean * mean + 0.1 * scale)
+        };
+        rays * (0..27_648).map(error).sum::<f64>()
+    });
+    println!("the plan says {told} times as long, it is {:.2} times", even / uneven);
+    assert!((0.75..2.0).contains(&(even / uneven / told)), "{} for {told}", even / uneven);
+}
