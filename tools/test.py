@@ -90,12 +90,33 @@ def main():
     parser = argparse.ArgumentParser(description="Runs every test of the project.")
     parser.add_argument("--only", choices=STEPS, help="run this step alone")
     only = parser.parse_args().only
+    if only:
+        run_steps({only: STEPS[only]})
+        return
+    # Packages come from the network, while cargo keeps the processors busy.
+    with subprocess.Popen(
+        [sys.executable, __file__, "--only", "packages"], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+    ) as installing:
+        try:
+            run_steps({**STEPS, "packages": lambda: finish(installing)})
+        finally:
+            installing.terminate()
+
+
+def finish(installing):
+    """Waits for what was begun before the other steps, and prints what it said."""
+    print(installing.communicate()[0], flush=True)
+    if installing.returncode:
+        raise Failure("the Python packages could not be installed")
+
+
+def run_steps(steps):
     times = {}
-    for name in [only] if only else STEPS:
+    for name, step in steps.items():
         print(f"\n== {name}", flush=True)
         start = time.monotonic()
         try:
-            STEPS[name]()
+            step()
         except Failure as failure:
             sys.exit(f"\nFAILED at {name}: {failure}")
         times[name] = time.monotonic() - start
