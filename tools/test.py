@@ -98,9 +98,10 @@ def main():
         [sys.executable, __file__, "--only", "packages"], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
     ) as installing:
         try:
-            run_steps({**STEPS, "packages": lambda: finish(installing)})
+            times = run_steps({**STEPS, "packages": lambda: finish(installing)})
         finally:
             installing.terminate()
+    print("\nall passed: " + ", ".join(f"{name} {seconds:.0f} s" for name, seconds in times.items()))
 
 
 def finish(installing):
@@ -121,7 +122,7 @@ def run_steps(steps):
             sys.exit(f"\nFAILED at {name}: {failure}")
         times[name] = time.monotonic() - start
         print(f"== {name} passed in {times[name]:.1f} s", flush=True)
-    print("\nall passed: " + ", ".join(f"{name} {seconds:.0f} s" for name, seconds in times.items()))
+    return times
 
 
 if __name__ == "__main__":
