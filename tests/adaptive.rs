@@ -49,7 +49,7 @@ fn the_plan_asks_for_more_samples_where_the_noise_is() {
     assert!(!is_adaptive(&furnace).0, "a furnace");
     // As many samples as an image has do not change where they are taken.
     let of = |samples| plan(&scene(&lit(large, samples, ""))).method.density;
-    assert_eq!(of(32), of(256));
+    assert_eq!(of(64), of(256));
 }
 
 /// Rates all over an image of 12 x 12.
@@ -143,7 +143,7 @@ fn parts_of_an_image_take_the_samples_of_the_whole() {
 #[test]
 fn what_the_plan_says_of_the_gain_is_so() {
     const SEEDS: u64 = 12;
-    let text = lit([192, 144], 64, "");
+    let text = lit([192, 144], 160, "");
     let (adaptive, Plan { method: decided, because, .. }) = is_adaptive(&text);
     assert!(adaptive, "{because:?}");
     let line = because.iter().find(|line| line.starts_with("adaptive")).expect("it is told");

@@ -129,8 +129,8 @@ fn kinds() -> Vec<Kind> {
     let large = ROOM.replace("width = 21, height = 18", "width = 420, height = 360");
     let crop = Some(Window { left: 200, top: 150, width: 21, height: 18 });
     let part = Options { crop, ..Options::default() };
-    let noisy = GLASS.replace("width = 37, height = 21", "width = 370, height = 210");
-    let of_the_ball = Options { crop: Some(Window { left: 160, top: 90, width: 37, height: 21 }), ..all() };
+    let noisy = GLASS.replace("width = 37, height = 21", "width = 740, height = 420");
+    let of_the_ball = Options { crop: Some(Window { left: 320, top: 180, width: 37, height: 21 }), ..all() };
     vec![
         ("photons that are shown", CAUSTIC.into(), Options::default(), shows),
         ("photons that are gathered, all layers", GLASS.into(), all(), gathers),

@@ -7,8 +7,8 @@ use crate::trace::{Adaptive, Transport, World, adaptive};
 
 /// How much shorter an equal error must take: a pilot knows no better.
 const CLEARLY: f64 = 1.15;
-/// Fewest camera samples of an image: of a smaller one a pilot would take too large a part.
-const LARGE: f64 = 1e6;
+/// Fewest camera samples of an image: of a smaller one a pilot would take more than a few hundredths of the time.
+const LARGE: f64 = 4e6;
 
 /// Where samples are taken, if as many everywhere would be clearly worse.
 ///
