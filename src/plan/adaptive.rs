@@ -3,7 +3,7 @@
 use super::stopping::FIRST_LOOK;
 use crate::scene::{AdaptiveText, Scene};
 use crate::spectrum::Curve;
-use crate::trace::{Adaptive, Transport, World, adaptive};
+use crate::trace::{Adaptive, SampleDensity, Transport, World, adaptive};
 
 /// How much shorter an equal error must take: a pilot knows no better.
 const CLEARLY: f64 = 1.15;
@@ -28,7 +28,7 @@ pub(super) fn decide(scene: &Scene<Curve>, world: &World) -> Option<Adaptive> {
 /// What a person is told of it.
 pub(super) fn reason(adaptive: &Adaptive) -> String {
     let powers = &adaptive.density.powers;
-    let times = |power: Option<&i8>| f64::from(*power.unwrap_or(&0)).exp2();
+    let times = |power: Option<&i8>| SampleDensity::times(*power.unwrap_or(&0));
     format!(
         "adaptive sampling: pixels take {} to {} times the samples, most where the noise is; with as many everywhere, the \
          same error would take about {:.1} times as long",

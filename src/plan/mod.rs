@@ -25,8 +25,7 @@ use serde::{Deserialize, Serialize};
 use crate::scene::Scene;
 use crate::spectrum::{Basis, Curve};
 use crate::trace::{
-    BrightPlaces, LightPass, Method, PhotonTimes, Polarizing, Probe, Transport, World, photon_times, prepare_unguided,
-    probe,
+    BrightPlaces, LightPass, Method, PhotonTimes, Probe, Transport, World, photon_times, prepare_unguided, probe,
 };
 use caustics::Shown;
 use model::Model;
@@ -115,19 +114,12 @@ fn before_light(scene: &Scene<Curve>, basis: Basis) -> (Method, String) {
         (Transport::Random { .. }, None) => SAMPLES,
     };
     let method = Method {
-        basis,
-        transport,
         together,
         samples,
         stop,
-        seed: scene.render.seed,
         diffuse_bounces: scene.render.diffuse_bounces.unwrap_or(u32::MAX),
         max_bounces: scene.render.max_bounces.unwrap_or(u32::MAX),
-        light_pass: None,
-        bright: None,
-        light_vertices: false,
-        density: None,
-        polarization: Polarizing::Averaged,
+        ..Method::of_paths(basis, transport, scene.render.seed)
     };
     (method, reason)
 }

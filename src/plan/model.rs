@@ -9,7 +9,7 @@ use super::words::percent;
 use crate::material::Material;
 use crate::scene::{ModelText, Scene};
 use crate::spectrum::{Basis, Curve, CurveKind, Dye, Emission, MAX_LANES, Quantity, provenance};
-use crate::trace::{COLORS_NM, Dispersion, Method, Polarizing, Transport, World, dispersion as measured_dispersion};
+use crate::trace::{COLORS_NM, Dispersion, Method, Transport, World, dispersion as measured_dispersion};
 
 /// Share of the camera rays on dispersive surfaces from which twice the wavelengths are carried.
 const FILLED: f64 = 0.5;
@@ -148,22 +148,7 @@ fn dispersion(scene: &Scene<Curve>) -> Option<Dispersion> {
     let basis = Basis::wavelengths(scene.film.color_space, COLORS_NM.into(), &[]);
     let transport = Transport::Random { split: 1.0, roulette: 0.0 };
     let diffuse_bounces = scene.render.diffuse_bounces.unwrap_or(u32::MAX);
-    let seed = scene.render.seed;
-    let method = Method {
-        basis,
-        transport,
-        together: 0.0,
-        samples: 1,
-        stop: None,
-        seed,
-        diffuse_bounces,
-        max_bounces: u32::MAX,
-        light_pass: None,
-        bright: None,
-        light_vertices: false,
-        density: None,
-        polarization: Polarizing::Averaged,
-    };
+    let method = Method { diffuse_bounces, ..Method::of_paths(basis, transport, scene.render.seed) };
     Some(measured_dispersion(&World::new(scene, method)))
 }
 

@@ -6,7 +6,7 @@ use super::survey::{Survey, Tint, tolerance};
 use crate::material::Material;
 use crate::scene::Scene;
 use crate::spectrum::{Basis, Curve, Draw, Lanes, MAX_LANES, Quantity, visible};
-use crate::trace::{Method, Polarizing, ROUTES_NM, Route, Step, Transport, Way, World, routes};
+use crate::trace::{Method, ROUTES_NM, Route, Step, Transport, Way, World, routes};
 
 /// Products of tints by number, with the weight of each.
 type Weighted = Vec<(usize, f64)>;
@@ -46,19 +46,8 @@ impl<'a> Seen<'a> {
         }
         let basis = Basis::wavelengths(survey.color_space, ROUTES_NM.into(), &[]);
         let method = Method {
-            basis,
-            transport: Transport::Random { split: 1.0, roulette: 0.0 },
-            together: 0.0,
-            samples: 1,
-            stop: None,
-            seed: scene.render.seed,
             diffuse_bounces: scene.render.diffuse_bounces.unwrap_or(u32::MAX),
-            max_bounces: u32::MAX,
-            light_pass: None,
-            bright: None,
-            light_vertices: false,
-            density: None,
-            polarization: Polarizing::Averaged,
+            ..Method::of_paths(basis, Transport::Random { split: 1.0, roulette: 0.0 }, scene.render.seed)
         };
         let mut keeping = Keeping::new(scene, survey);
         for of_pixel in routes(&World::new(scene, method)) {

@@ -5,7 +5,7 @@ use crate::film::Filter;
 use crate::light::Light;
 use crate::scene::{Object, Scene};
 use crate::spectrum::{Basis, Curve};
-use crate::trace::{Branching, Method, Polarizing, Transport, World, branching};
+use crate::trace::{Branching, Method, Transport, World, branching};
 
 /// Weight below which deterministic transport follows no branch.
 const CUTOFF: f64 = 1e-9;
@@ -73,20 +73,12 @@ fn too_many_ways(scene: &Scene<Curve>, basis: &Basis, together: f64) -> Option<S
     if !scene.materials.iter().any(|named| named.material.has_single_directions()) {
         return None;
     }
+    let transport = Transport::Deterministic { cutoff: CUTOFF, most: MOST_SURFACES };
     let method = Method {
-        basis: basis.clone(),
-        transport: Transport::Deterministic { cutoff: CUTOFF, most: MOST_SURFACES },
         together,
-        samples: 1,
-        stop: None,
-        seed: scene.render.seed,
         diffuse_bounces: scene.render.diffuse_bounces.unwrap_or(u32::MAX),
         max_bounces: scene.render.max_bounces.unwrap_or(u32::MAX),
-        light_pass: None,
-        bright: None,
-        light_vertices: false,
-        density: None,
-        polarization: Polarizing::Averaged,
+        ..Method::of_paths(basis.clone(), transport, scene.render.seed)
     };
     match branching(&World::new(scene, method), AFFORDABLE) {
         Branching::Affordable(_) => None,

@@ -30,6 +30,11 @@ impl SampleDensity {
     /// Four times as many samples.
     pub const MOST: i8 = 2;
 
+    /// Samples for each one on average, by a power.
+    pub fn times(power: i8) -> f64 {
+        f64::from(power).exp2()
+    }
+
     /// The rate of a pixel; beyond the format's edge, that of the nearest one.
     pub(super) fn rate(&self, format: [u32; 2], pixel: [i32; 2]) -> Rate {
         let place = |axis: usize| {
@@ -44,7 +49,7 @@ impl SampleDensity {
 impl Rate {
     /// Samples for each one on average.
     pub fn times(self) -> f64 {
-        f64::from(self.0).exp2()
+        SampleDensity::times(self.0)
     }
 
     /// Those that it takes where so many of all are due.

@@ -37,6 +37,27 @@ pub struct Method {
     pub polarization: Polarizing,
 }
 
+impl Method {
+    /// One sample of each pixel by paths of any length from the camera alone, without polarization.
+    pub fn of_paths(basis: Basis, transport: Transport, seed: u64) -> Self {
+        Self {
+            basis,
+            transport,
+            together: 0.0,
+            samples: 1,
+            density: None,
+            stop: None,
+            seed,
+            diffuse_bounces: u32::MAX,
+            max_bounces: u32::MAX,
+            light_pass: None,
+            bright: None,
+            light_vertices: false,
+            polarization: Polarizing::Averaged,
+        }
+    }
+}
+
 /// Whether polarization is traced.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Polarizing {

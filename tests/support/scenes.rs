@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use abbe::film::Film;
 use abbe::scene::{Scene, Source};
 use abbe::spectrum::{Basis, Curve};
-use abbe::trace::{Method, Polarizing, Report, Transport, prepare, render};
+use abbe::trace::{Method, Report, Transport, prepare, render};
 
 /// Follows every branch down to a weight that no pixel can show.
 pub const EVERY_BRANCH: Transport = Transport::Deterministic { cutoff: 1e-20, most: u64::MAX };
@@ -55,19 +55,10 @@ pub fn environment(radiance: f64) -> String {
 /// How the scene asks to be rendered, by a given transport.
 pub fn method(scene: &Scene<Curve>, transport: Transport) -> Method {
     Method {
-        basis: Basis::rgb(scene.film.color_space),
-        transport,
-        together: 0.0,
         samples: scene.render.samples.unwrap_or(1),
-        stop: None,
-        seed: scene.render.seed,
         diffuse_bounces: scene.render.diffuse_bounces.unwrap_or(u32::MAX),
         max_bounces: scene.render.max_bounces.unwrap_or(u32::MAX),
-        light_pass: None,
-        bright: None,
-        light_vertices: false,
-        density: None,
-        polarization: Polarizing::Averaged,
+        ..Method::of_paths(Basis::rgb(scene.film.color_space), transport, scene.render.seed)
     }
 }
 

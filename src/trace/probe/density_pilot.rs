@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::cost::with_few_photons;
+use super::resampling_worth::{DARK, LOOKING};
 use crate::math::Sampler;
 use crate::trace::World;
 use crate::trace::camera::PathTracer;
@@ -36,11 +37,8 @@ const PIXELS_OF_A_CELL: f64 = 32.0;
 const MOST_CELLS: f64 = 4096.0;
 /// Cells to each side that tell the noise of a cell.
 const AROUND: i64 = 2;
-/// What all that belongs to a sample, and a look at vertices of light paths, take in rays of a path.
+/// What all that belongs to a sample takes in rays of a path.
 const SAMPLE: f64 = 0.5;
-const LOOKING: f64 = 0.6;
-/// Darker pixels than this share of the mean square count as if they were as bright: errors in them are hardly seen.
-const DARK: f64 = 0.1;
 /// Steps of a scale to twice as much.
 const STEPS: i32 = 16;
 /// Sets these random numbers apart from those of the image.
@@ -186,11 +184,7 @@ fn powers(found: &[Cell]) -> Option<Vec<i8>> {
 
 /// The rays of all cells.
 fn rays(found: &[Cell], powers: &[i8]) -> f64 {
-    found.iter().zip(powers).map(|(cell, &power)| cell.rays * times(power)).sum()
-}
-
-fn times(power: i8) -> f64 {
-    f64::from(power).exp2()
+    found.iter().zip(powers).map(|(cell, &power)| cell.rays * SampleDensity::times(power)).sum()
 }
 
 /// How many times as long an equal error takes with as many samples everywhere, and how many times as many rays are
@@ -198,6 +192,6 @@ fn times(power: i8) -> f64 {
 fn worth(powers: &[i8], found: &[Cell]) -> [f64; 2] {
     let rays = rays(found, powers) / rays(found, &vec![0; found.len()]);
     let before: f64 = found.iter().map(|cell| cell.variance).sum();
-    let after: f64 = found.iter().zip(powers).map(|(cell, &power)| cell.variance / times(power)).sum();
+    let after: f64 = found.iter().zip(powers).map(|(cell, &power)| cell.variance / SampleDensity::times(power)).sum();
     [before / (rays * after), rays]
 }

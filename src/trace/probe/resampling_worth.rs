@@ -14,9 +14,9 @@ use crate::trace::width::in_lanes;
 const SIDE: u32 = 24;
 const SAMPLES: u32 = 8;
 /// The vertices that a path looks at take as long as so many rays of the path with all that belongs to them.
-const LOOKING: f64 = 0.6;
+pub(super) const LOOKING: f64 = 0.6;
 /// Darker pixels than this share of the squared mean count as if they were as bright: errors in them are hardly seen.
-const DARK: f64 = 0.1;
+pub(super) const DARK: f64 = 0.1;
 /// Sets these random numbers apart from those of the image.
 const SEED: u64 = 0x7265_7361;
 
