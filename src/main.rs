@@ -2,6 +2,7 @@
 
 mod command;
 
+use std::io::IsTerminal;
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -20,7 +21,7 @@ fn main() -> ExitCode {
     let answered = cli::parse().and_then(|request| match request {
         Request::Render(job) => run(&job),
         Request::Answer(text) => messages::answer(&text).map(|()| ExitCode::SUCCESS),
-        Request::Catalog(query) => listed(catalog::lines(&query)),
+        Request::Catalog(query) => listed(catalog::lines(&query, std::io::stdout().is_terminal())),
         Request::Info(query) => listed(info::lines(&query)),
         Request::View(query) => view::run(&query).map(|()| ExitCode::SUCCESS),
         Request::Merge(query) => merge::run(&query).map(|()| ExitCode::SUCCESS),

@@ -11,7 +11,8 @@ Words are looked for in names, other names and makers, whatever their case; all 
 Among the glasses of the makers, flint finds those with V_d below 50, crown the others.
 
 A line holds, of a glass: name, n_d, V_d, known wavelengths, whether absorption is known, source; \
-of a metal: name, other names, measured wavelengths, source; of the others: name, tabulated wavelengths, source.
+of a metal: name, other names, measured wavelengths, source; of the others: name, tabulated wavelengths, source. \
+On a terminal the columns have titles.
 
 Examples:
   render catalog glass                 list every glass
@@ -29,32 +30,71 @@ pub struct Query {
     words: Vec<String>,
 }
 
-/// A kind of entry: what it is called, its lines, and the names of all that it has.
-type Kind = (&'static str, fn(&[String]) -> Vec<Vec<String>>, fn() -> Vec<&'static str>);
+/// A kind of entry.
+struct Kind {
+    /// What it is called: the title of the column of names.
+    name: &'static str,
+    /// The titles of the others.
+    titles: &'static [&'static str],
+    lines: fn(&[String]) -> Vec<Vec<String>>,
+    /// The names of all that it has.
+    names: fn() -> Vec<&'static str>,
+}
 
 const KINDS: [Kind; 4] = [
-    ("glass", glass_lines, || data::known_as().collect()),
-    ("metal", metal_lines, || data::metals().flat_map(|metal| [vec![metal.name], metal.aliases].concat()).collect()),
-    ("illuminant", illuminant_lines, || data::illuminants().map(|light| light.name).collect()),
-    ("reflectance", reflectance_lines, || data::reflectances().map(|chip| chip.name).collect()),
+    Kind {
+        name: "glass",
+        titles: &["n_d", "V_d", "known", "absorption", "source"],
+        lines: glass_lines,
+        names: || data::known_as().collect(),
+    },
+    Kind {
+        name: "metal",
+        titles: &["also", "measured", "source"],
+        lines: metal_lines,
+        names: || data::metals().flat_map(|metal| [vec![metal.name], metal.aliases].concat()).collect(),
+    },
+    Kind {
+        name: "illuminant",
+        titles: &["tabulated", "source"],
+        lines: illuminant_lines,
+        names: || data::illuminants().map(|light| light.name).collect(),
+    },
+    Kind {
+        name: "reflectance",
+        titles: &["tabulated", "source"],
+        lines: reflectance_lines,
+        names: || data::reflectances().map(|chip| chip.name).collect(),
+    },
 ];
 
-/// The lines that answer a query.
+impl Kind {
+    /// The lines of what is found, below the titles of their columns if these are asked for.
+    fn found(&self, words: &[String], titled: bool) -> Vec<String> {
+        let mut lines = (self.lines)(words);
+        if titled && !lines.is_empty() {
+            lines.insert(0, std::iter::once(&self.name).chain(self.titles).map(ToString::to_string).collect());
+        }
+        aligned(&lines)
+    }
+}
+
+/// The lines that answer a query, below the titles of their columns if these are asked for.
 ///
 /// # Errors
 /// Nothing is found; the help holds the nearest names.
-pub fn lines(query: &Query) -> Result<Vec<String>> {
+pub fn lines(query: &Query, titled: bool) -> Result<Vec<String>> {
     let mut words: Vec<_> = query.words.iter().map(|word| word.to_lowercase()).collect();
-    let one = words.first().and_then(|word| KINDS.iter().position(|(kind, ..)| kind == word));
+    let one = words.first().and_then(|word| KINDS.iter().position(|kind| kind.name == word));
     let kinds = one.map_or(&KINDS[..], |i| &KINDS[i..=i]);
     words.drain(..usize::from(one.is_some()));
-    let found: Vec<_> = kinds.iter().flat_map(|(_, lines, _)| aligned(&lines(&words))).collect();
+    let found: Vec<_> = kinds.iter().flat_map(|kind| kind.found(&words, titled)).collect();
     if !found.is_empty() {
         return Ok(found);
     }
-    let what = one.map_or("entry", |i| KINDS[i].0);
+    let what = one.map_or("entry", |i| KINDS[i].name);
     let wanted = words.join(" ");
-    let near = nearest(&wanted, kinds.iter().flat_map(|(_, _, names)| names()).collect());
+    let near = nearest(&wanted, kinds.iter().flat_map(|kind| (kind.names)()).collect());
     let message = format!("the catalog has no {what} that matches {wanted:?}");
     let help = match near.as_str() {
         "" => "render catalog --help says how to search".into(),
@@ -137,4 +177,25 @@ fn reflectance_lines(words: &[String]) -> Vec<Vec<String>> {
 
 fn range(low: f64, high: f64) -> String {
     format!("{low:.0}-{high:.0} nm")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_have_titles_on_a_terminal() {
+        let query = |words: &[&str]| Query { words: words.iter().map(ToString::to_string).collect() };
+        for kind in &KINDS {
+            let [plain, titled] =
+                [false, true].map(|titled| lines(&query(&[kind.name]), titled).expect("there are some"));
+            assert!(titled[0].starts_with(kind.name) && titled[0].ends_with("source"), "{}", titled[0]);
+            assert_eq!(titled.len(), plain.len() + 1);
+            let at = titled[0].rfind("source").expect("it ends so");
+            assert!(
+                titled[1..].iter().all(|line| line.is_char_boundary(at) && line[..at].ends_with(' ')),
+                "{titled:?}"
+            );
+        }
+    }
 }
