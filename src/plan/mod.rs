@@ -4,11 +4,13 @@ mod adaptive;
 mod bright;
 mod candidates;
 mod caustics;
+mod control;
 mod dyes;
 mod efficiency;
 mod films;
 mod light_vertices;
 mod lights;
+mod lit;
 mod model;
 mod photon_map;
 mod polarization;
@@ -27,7 +29,7 @@ use crate::spectrum::{Basis, Curve};
 use crate::trace::{
     BrightPlaces, LightPass, Method, PhotonTimes, Probe, Transport, World, photon_times, prepare_unguided, probe,
 };
-use caustics::Shown;
+use lit::Lit;
 use model::Model;
 use words::{in_number, in_words};
 
@@ -62,16 +64,16 @@ const TOGETHER_PIXELS: f64 = 0.01;
 
 /// Decides how to render a scene.
 pub fn plan(scene: &Scene<Curve>) -> Plan {
-    let Model { basis, missed, error: model_error, because: mut decisions, next, candidates } = model::model(scene);
+    let Model { basis, why, missed, error: model_error, because: mut decisions, next, candidates } =
+        model::model(scene);
     let (method, reason) = before_light(scene, basis);
     decisions.push(reason);
-    let world = prepare_unguided(scene, method.clone());
-    let Shown { pass: shown, why, taught } = caustics::light_pass(scene, &world);
-    let (light_pass, why_gathered) = photon_map::with_map(scene, &world, shown.as_ref());
-    // Why nothing is shown matters only where nothing is gathered either.
-    decisions.extend(why.into_iter().filter(|_| shown.is_some() || light_pass.is_none()));
-    decisions.extend(why_gathered);
-    let world = world.with_light_pass(light_pass.clone());
+    let unlit = prepare_unguided(scene, method);
+    let lit = Lit::new(scene, &unlit);
+    let (Lit { world, because, taught, .. }, control) = control::decide(scene, &unlit, lit);
+    decisions.insert(0, model::line(&world.method().basis, &why));
+    decisions.extend(control);
+    decisions.extend(because);
     let between = between(&world);
     decisions.extend(between.reason);
     let world = world.with_bright(between.bright.clone()).with_light_vertices(between.light_vertices);

@@ -15,6 +15,12 @@ pub struct Method {
     pub transport: Transport,
     /// Lanes whose refracted rays lie within this angle of each other, in radians, stay together.
     pub together: f64,
+    /// Whether lanes that part also go on together, as a control variate: then heroes bring what dispersion changes.
+    ///
+    /// All lanes follow the way of one wavelength, where the fixed ones count. Each hero follows its own way as well,
+    /// and counts there, and against the light on the way of all. So what is left to chance is the difference of two
+    /// ways that mostly meet nearly the same.
+    pub control: bool,
     /// Camera samples per pixel, on average; with a stop rule, those that photons are counted for.
     pub samples: u32,
     /// Where more of them are taken, and where fewer; none takes as many everywhere.
@@ -44,6 +50,7 @@ impl Method {
             basis,
             transport,
             together: 0.0,
+            control: false,
             samples: 1,
             density: None,
             stop: None,

@@ -66,7 +66,7 @@ pub use method::{LightPass, MapPasses, Method, Polarizing, Stop, Transport};
 pub use photon_targets::is_photon_target;
 pub use probe::{
     Adaptive, Branching, GatheredWorth, PhotonTimes, PhotonWorth, Probe, SampleWorth, SeenLight, adaptive, branching,
-    bright_places, gathered_photons, gathered_worth, photon_times, photons_worth, polarization_error, prepare,
-    prepare_unguided, probe, reached_places, resampling_gain, samples_worth, seen_light,
+    bright_places, control_gain, gathered_photons, gathered_worth, photon_times, photons_worth, polarization_error,
+    prepare, prepare_unguided, probe, reached_places, resampling_gain, samples_worth, seen_light,
 };
 pub use world::World;

@@ -123,6 +123,14 @@ impl World {
         world
     }
 
+    /// This world, in which lanes that part also go on together, and one hero brings what dispersion changes.
+    pub fn with_control(&self) -> Self {
+        let mut world = self.clone();
+        world.method.control = true;
+        world.method.basis = self.method.basis.with_one_hero();
+        world
+    }
+
     /// This world with or without light vertices.
     pub fn with_light_vertices(&self, light_vertices: bool) -> Self {
         let mut world = self.clone();

@@ -172,7 +172,8 @@ pub fn gather<const N: usize, P: Polarization<N>>(
             None => Seen::new(world, &arrived, joined.stokes()),
             Some(dye) => dye.seen(world, &arrived, |seen| Seen::new(world, seen, dye.polarization.stokes())),
         };
-        let part = Part { contribution: brought(Some(carries.light), rgb, parted), stokes, spectrum, factor: density };
+        let contribution = brought(Some(carries.light), rgb, parted || path.control.is_some());
+        let part = Part { contribution, stokes, spectrum, factor: density };
         let change = || path.polarization.change_of_joined(at, photon.back, light, &joined, lanes);
         found.add(world, position, part, change);
     });

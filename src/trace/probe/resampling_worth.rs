@@ -34,28 +34,36 @@ fn compare<const N: usize>(world: &World, light_paths: &LightPaths) -> Option<f6
     let vertices = light_paths.few::<N>();
     let few = with_few_photons(world);
     let photons = photons::<N, Polarized>(&few, &Pass::of_photons_alone(&few, 0));
-    let plain = weigh(&few, photons.as_ref(), None);
-    let resampled = weigh(&few, photons.as_ref(), Some(&vertices));
-    let mean = plain.pixels.iter().map(|pixel| pixel.mean).sum::<f64>() / plain.pixels.len() as f64;
-    let gain = plain.error(mean) * plain.rays / (resampled.error(mean) * resampled.rays);
-    gain.is_finite().then_some(gain)
+    let plain = weigh(&few, photons.as_ref(), None, Noise::OfSums);
+    weigh(&few, photons.as_ref(), Some(&vertices), Noise::OfSums).gain(&plain)
 }
 
-/// What some samples of a pixel are: X + Y + Z.
+/// Which noise counts.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Noise {
+    /// That of X + Y + Z.
+    OfSums,
+    /// That of each channel, so that noise in colors counts as well.
+    OfChannels,
+}
+
+/// What some samples of a pixel are: the mean of X + Y + Z, and the variance.
 struct Pixel {
     mean: f64,
     variance: f64,
 }
 
-struct Weighed {
+/// What samples of pixels all over the image are.
+pub(super) struct Weighed {
     pixels: Vec<Pixel>,
     rays: f64,
 }
 
-fn weigh<const N: usize>(
+pub(super) fn weigh<const N: usize>(
     world: &World,
     photons: Option<&PhotonMap<N>>,
     vertices: Option<&LightVertices<N>>,
+    noise: Noise,
 ) -> Weighed {
     let mut tracer = PathTracer::<N>::new(world).with_photons(photons);
     tracer.light_vertices = vertices;
@@ -65,12 +73,19 @@ fn weigh<const N: usize>(
         let [x, y] = film.whole().middle_of_cell(SIDE, place);
         let taken = (0..SAMPLES).map(|number| {
             let sampler = Sampler::of_pixel(world.method.seed ^ SEED, [x, y], number);
-            apply(&to_xyz, tracer.sample(&sampler, [x, y]).rgb).iter().sum::<f64>()
+            let [x, y, z] = apply(&to_xyz, tracer.sample(&sampler, [x, y]).rgb);
+            if noise == Noise::OfSums { [x + y + z, 0.0, 0.0] } else { [x, y, z] }
         });
-        let taken: Vec<f64> = taken.filter(|light| light.is_finite()).collect();
+        let taken: Vec<[f64; 3]> = taken.filter(|light| light.iter().all(|x| x.is_finite())).collect();
         let count = taken.len().max(2) as f64;
-        let mean = taken.iter().sum::<f64>() / count;
-        Pixel { mean, variance: taken.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / (count - 1.0) }
+        let (mut all, mut variance) = (0.0, 0.0);
+        for channel in 0..3 {
+            let mean = taken.iter().map(|light| light[channel]).sum::<f64>() / count;
+            let squared = |light: &[f64; 3]| (light[channel] - mean) * (light[channel] - mean);
+            all += mean;
+            variance += taken.iter().map(squared).sum::<f64>() / (count - 1.0);
+        }
+        Pixel { mean: all, variance }
     };
     let pixels = (0..SIDE * SIDE).map(pixel).collect();
     let stats = tracer.walker.stats;
@@ -78,6 +93,13 @@ fn weigh<const N: usize>(
 }
 
 impl Weighed {
+    /// How many times as long an equal error takes with other samples.
+    pub(super) fn gain(&self, others: &Self) -> Option<f64> {
+        let mean = others.pixels.iter().map(|pixel| pixel.mean).sum::<f64>() / others.pixels.len() as f64;
+        let gain = others.error(mean) * others.rays / (self.error(mean) * self.rays);
+        gain.is_finite().then_some(gain)
+    }
+
     /// The sum of the relative variances of most pixels.
     fn error(&self, mean: f64) -> f64 {
         let relative = |pixel: &Pixel| pixel.variance / (pixel.mean * pixel.mean + DARK * mean * mean);
