@@ -197,10 +197,13 @@ fn layers_hold_the_same() {
 /// The plan takes it where dispersion is small, and not where it parts rays widely.
 #[test]
 fn the_plan_weighs_it() {
-    let larger = |text: &str| text.replace("width = 12\nheight = 12", "width = 96\nheight = 96");
-    let decided = plan(&scene(&larger(&tiles("8", "", &body("glass", FLINT, &[BALL])))));
+    let larger = |text: &str| text.replace("width = 12\nheight = 12", "width = 128\nheight = 128");
+    let text = larger(&tiles("8", "", &body("glass", FLINT, &[BALL])));
+    let decided = plan(&scene(&text));
     assert!(decided.method.control, "{:?}", decided.because);
     assert!(decided.because.iter().any(|line| line.contains("as a difference")), "{:?}", decided.because);
+    let spectral = text.replace("[film]", "[film]\nspectral = true");
+    assert!(!plan(&scene(&spectral)).method.control, "each band would be noisier");
     for name in ["prism", "gem", "lens"] {
         let path = format!("scenes/{name}.toml");
         let source = Source { text: std::fs::read_to_string(&path).expect("it comes with Abbe"), path: path.into() };

@@ -11,11 +11,13 @@ const CLEARLY: f64 = 1.25;
 const LARGE: f64 = 4e5;
 
 /// The world that takes less work to an equal error, with its photons, and what a person is told where that is not the
-/// one given. Photons of one wavelength each tell less of a caustic, so both are weighed.
+/// one given. Photons of one wavelength each tell less of a caustic, so both are weighed. Where spectra are asked for,
+/// each band would have the noise of the one wavelength.
 pub(super) fn decide(scene: &Scene<Curve>, unlit: &World, plain: Lit) -> (Lit, Option<String>) {
     let (film, samples) = (unlit.scene().film, f64::from(unlit.method().samples));
     let is_large = f64::from(film.width) * f64::from(film.height) * samples >= LARGE;
-    let gain = if is_large { control_gain(&plain.world).filter(|&gain| gain > CLEARLY) } else { None };
+    let can_be = is_large && scene.format.spectral.is_none();
+    let gain = if can_be { control_gain(&plain.world).filter(|&gain| gain > CLEARLY) } else { None };
     let Some(of_samples) = gain else { return (plain, None) };
     let lit = Lit::new(scene, &unlit.with_control());
     let of_both = plain.work.zip(lit.work).map_or(of_samples, |(plain, work)| plain / work);

@@ -401,7 +401,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         shading::scatter(at.material, &at.arrival, at.flat, [0.0; 2], &mut self.walker.branches);
         self.walker.branches.retain(|branch| branch.crosses);
         self.walker.polarize(path, &at);
-        let mut departure = Departure::new(self.walker.world, path, &at).as_control(lane);
+        let mut departure = Departure::new(self.walker.world, path, &at).with_control(lane);
         self.walker.follow(&mut departure, sampler);
     }
 

@@ -247,7 +247,7 @@ impl<'a, const N: usize, P: Polarization<N>> Departure<'a, N, P> {
     }
 
     /// With heroes that part here and count against the light of this path, which crosses by the index of one lane.
-    pub fn as_control(self, lane: usize) -> Self {
+    pub fn with_control(self, lane: usize) -> Self {
         Self { control: Some(lane as u8), ..self }
     }
 
