@@ -1,4 +1,4 @@
-//! Whether one wavelength brings what dispersion changes, in place of several that bring all the light.
+//! Whether one hero adds what dispersion changes, in place of several that bring all the light.
 
 use super::lit::Lit;
 use crate::scene::Scene;
@@ -27,7 +27,7 @@ pub(super) fn decide(scene: &Scene<Curve>, unlit: &World, plain: Lit) -> (Lit, O
 
 fn reason(gain: f64) -> String {
     format!(
-        "dispersion as a difference: all lanes also go on together, and one hero wavelength brings what dispersion \
-         changes; with more heroes instead, the same error would take about {gain:.1} times as long"
+        "dispersion as a difference: all lanes also go through glass together, and one hero wavelength adds what \
+         dispersion changes; with more heroes instead, the same error would take about {gain:.1} times as long"
     )
 }

@@ -15,11 +15,13 @@ pub struct Method {
     pub transport: Transport,
     /// Lanes whose refracted rays lie within this angle of each other, in radians, stay together.
     pub together: f64,
-    /// Whether lanes that part also go on together, as a control variate: then heroes bring what dispersion changes.
+    /// Whether lanes that part also go on together, as a control variate: then heroes add what dispersion changes.
     ///
-    /// All lanes follow the way of one wavelength, where the fixed ones count. Each hero follows its own way as well,
-    /// and counts there, and against the light on the way of all. So what is left to chance is the difference of two
-    /// ways that mostly meet nearly the same.
+    /// All lanes follow the path of one wavelength, on which the fixed lanes count. Each hero has its own path as well.
+    /// Its light is added there, and subtracted on the path of all. What is left to chance is the difference of two
+    /// paths that mostly meet nearly the same.
+    ///
+    /// It needs heroes. Dyes and the layer `residual` do not go with it.
     pub control: bool,
     /// Camera samples per pixel, on average; with a stop rule, those that photons are counted for.
     pub samples: u32,

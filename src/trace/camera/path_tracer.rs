@@ -442,20 +442,14 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
             let apart = self.sensor.layers.is_some() && self.walker.world.layers.tell_photons_apart();
             let excitation = self.excitation(path);
             for parted in path.counted() {
-                let of_heroes;
-                let path = if parted == path.parted {
-                    path
-                } else {
-                    of_heroes = Path { parted, ..*path };
-                    &of_heroes
-                };
-                let around = Gathering { world: self.walker.world, path, at, excitation: excitation.as_deref() };
+                let excitation = excitation.as_deref();
+                let around = Gathering { world: self.walker.world, path, at, parted, excitation };
                 let within = |kernel, apart| gather(photons, kernel, &around, sampler, apart);
                 let gathered = within(&photons.kernel, apart);
                 if let Some(half) = &photons.half {
                     self.sensor.blur_by(gathered.all.rgb, within(half, false).all.rgb);
                 }
-                let draw = excitation.as_ref().map_or(at.arrival.draw, |dye| &dye.seen_by);
+                let draw = excitation.map_or(at.arrival.draw, |dye| &dye.seen_by);
                 self.sensor.receive_gathered(&gathered, draw);
             }
         }

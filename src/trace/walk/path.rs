@@ -192,7 +192,7 @@ impl<const N: usize, P: Polarization<N>> Path<N, P> {
         importance(self.throughput, draw, self.parted, self.control.is_some()) / self.eta_scale
     }
 
-    /// How much light it stands for, of one camera sample's: heroes that count against it are taken off.
+    /// Its share of the light of one camera sample, less that of heroes that count against it.
     pub fn worth(&self, draw: &Draw<N>) -> f64 {
         let of = |parted| self.throughput.weight(draw.shares(parted)) / self.eta_scale / draw.siblings(parted);
         self.counted().map(of).sum()
