@@ -3,13 +3,14 @@
     python tools/chart.py --list                 # which renderers are there, and how to install the others
     python tools/chart.py --quick                # every chart, small: under 10 minutes on two cores
     python tools/chart.py                        # eight times the side, without the longest runs: two hours
-    python tools/chart.py --scene cornell --quick
+    python tools/chart.py --scene cornell --side 512
     python tools/chart.py --only abbe --quick    # Abbe's own series alone
     python tools/chart.py --redraw               # pictures and words of what was measured last
 
 Writes into target/chart a PNG and an SVG for each chart, overview.png of the field, chart.csv, chart.json and table.md,
-the table of benches/README.md, and prints what the charts say in words. A renderer that fails is told in a line and
-left out. tools/chart/scenes.py says what is charted, tools/chart/measure.py what the error is and what counts as time,
+the table of benches/README.md, and prints what the charts say in words. Charts that chart.json already holds stay,
+unless they are measured again: so a quiet hour can go to one of them. A renderer that fails is told in a line and left
+out. tools/chart/scenes.py says what is charted, tools/chart/measure.py what the error is and what counts as time,
 tools/chart/findings.py what the words mean. Every renderer runs on one thread and reads the same scene file, the others
 by way of tools/peers.
 """
@@ -97,7 +98,7 @@ def panel_for(chart: Chart, found: dict[str, Measured]) -> draw.Panel:
     return draw.Panel(chart.title, finding, lines)
 
 
-def record(chart: Chart, found: dict[str, Measured], words: list[str]) -> dict:
+def record(chart: Chart, found: dict[str, Measured], made_by: str) -> dict:
     """The chart as it stands in chart.json."""
     kinds = {one.label: "abbe" if one.renderer == "abbe" else "other" for one in chart.series}
     series = []
@@ -108,7 +109,8 @@ def record(chart: Chart, found: dict[str, Measured], words: list[str]) -> dict:
             extra |= {name: getattr(measured, name) for name in CONVERGED}
         series.append({"label": label, "kind": kinds[label], **extra, "points": points})
     pictures = {"svg": f"{chart.name}.svg", "png": f"{chart.name}.png"}
-    return {"name": chart.name, "title": chart.title, "words": words, "series": series, **pictures}
+    head = {"name": chart.name, "title": chart.title, "size": chart.size, "made_by": made_by}
+    return head | {"words": words_for(chart, found), "series": series, **pictures}
 
 
 def table(found: dict[str, Measured]) -> str:
@@ -121,7 +123,18 @@ def table(found: dict[str, Measured]) -> str:
     return "\n".join(lines)
 
 
+def read_data(out: Path) -> dict:
+    """What was measured before: `versions` and, by name in the order of the charts, `scenes`."""
+    path = out / "chart.json"
+    return json.loads(path.read_text("utf-8")) if path.exists() else {"versions": {}, "scenes": []}
+
+
 def write_data(out: Path, versions: dict, made_by: str, records: list[dict]) -> None:
+    """chart.csv and chart.json of these charts and of those that were there before."""
+    before = read_data(out)
+    every = {one["name"]: one for one in before["scenes"] + records}
+    records = [every[chart.name] for chart in scenes.CHARTS if chart.name in every]
+    versions = before["versions"] | versions
     with (out / "chart.csv").open("w", newline="") as file:
         rows = csv.writer(file, lineterminator="\n")
         rows.writerow(("chart", "series", "samples", "cpu_seconds", "error", "rms", "error_against_common"))
@@ -153,26 +166,23 @@ def overview(out: Path, panels: dict[str, draw.Panel], note: str) -> None:
         draw.draw_overview(wanted, out / "overview", note)
 
 
-def write_table(out: Path, rows: list[str]) -> None:
-    head = ["| scene | beside | time that Abbe takes | pictures apart |", "|---|---|---|---|"]
-    (out / "table.md").write_text("\n".join(head + rows) + "\n", "utf-8")
-
-
-def redraw(out: Path) -> None:
-    """Pictures and words from what was measured before."""
-    data = json.loads((out / "chart.json").read_text("utf-8"))
+def draw_all(out: Path) -> list[dict]:
+    """Pictures, words and table.md of what chart.json holds."""
+    data = read_data(out)
     charts = {chart.name: chart for chart in scenes.CHARTS}
-    records, panels, rows = [], {}, []
+    records, panels = [], {}
+    rows = ["| scene | beside | time that Abbe takes | pictures apart |", "|---|---|---|---|"]
     for one in data["scenes"]:
-        chart, found = charts[one["name"]], {series["label"]: recorded(series) for series in one["series"]}
+        chart = charts[one["name"]]._replace(size=tuple(one["size"]))
+        found = {series["label"]: recorded(series) for series in one["series"]}
         panels[chart.name] = panel_for(chart, found)
-        records.append(record(chart, found, words_for(chart, found)))
+        records.append(record(chart, found, one["made_by"]))
         rows += table_rows(chart, found)
-        print(f"\n== {chart.name}: {chart.title}", *records[-1]["words"], sep="\n")
-        draw.draw([panels[chart.name]], out / chart.name, data["made_by"])
+        draw.draw([panels[chart.name]], out / chart.name, one["made_by"])
     overview(out, panels, data["made_by"])
-    write_table(out, rows)
+    (out / "table.md").write_text("\n".join(rows) + "\n", "utf-8")
     write_data(out, data["versions"], data["made_by"], records)
+    return records
 
 
 def vectors() -> str:
@@ -203,6 +213,7 @@ def main() -> None:
     parser.add_argument("--scene", choices=names, action="append", help="only this chart; may be repeated")
     parser.add_argument("--only", choices=renderers.NAMES, action="append", help="only this one; may be repeated")
     parser.add_argument("--quick", action="store_true", help="small pictures, more samples")
+    parser.add_argument("--side", type=int, metavar="PIXELS", help="the longer side of every picture")
     parser.add_argument("--list", action="store_true", help="say what is installed, and how to get the rest")
     parser.add_argument("--redraw", action="store_true", help="draw and say chart.json anew; measure nothing")
     parser.add_argument("--pictures", action="store_true", help="also write each converged picture")
@@ -218,26 +229,24 @@ def main() -> None:
     if arguments.list:
         return
     if arguments.redraw:
-        return redraw(arguments.out)
+        for one in draw_all(arguments.out):
+            print(f"\n== {one['name']}: {one['title']}", *one["words"], sep="\n")
+        return
     arguments.out.mkdir(parents=True, exist_ok=True)
     made_by = f"python tools/chart.py {' '.join(sys.argv[1:])}".strip()
     note = f"{made_by}, {profile.repeats} repeats, {vectors()}, {os.cpu_count()} cores, {load()}"
-    begun, records, panels, rows = time.monotonic(), [], {}, []
-    for chart in (scenes.scaled(one, profile) for one in charts):
+    begun, measured = time.monotonic(), 0
+    for chart in (scenes.scaled(one, profile, arguments.side) for one in charts):
         print(f"\n== {chart.name}: {chart.title}, {chart.size[0]} x {chart.size[1]}", flush=True)
         found = run(chart, profile, arguments.only)
         if not found:
             continue
-        words = words_for(chart, found)
-        print(table(found), *words, f"({time.monotonic() - begun:.0f} s so far)", sep="\n", flush=True)
-        panels[chart.name] = panel_for(chart, found)
-        draw.draw([panels[chart.name]], arguments.out / chart.name, note)
-        records.append(record(chart, found, words))
-        rows += table_rows(chart, found)
-        write_data(arguments.out, versions, note, records)
+        measured += 1
+        entry = record(chart, found, note)
+        print(table(found), *entry["words"], f"({time.monotonic() - begun:.0f} s so far)", sep="\n", flush=True)
+        write_data(arguments.out, versions, note, [entry])
         if arguments.pictures:
             write_picture(arguments.out, chart, found)
-    overview(arguments.out, panels, note)
-    write_table(arguments.out, rows)
+    draw_all(arguments.out)
     took = f"{time.monotonic() - begun:.0f} s, {processor_seconds():.0f} s of processor time"
-    print(f"\nwrote {len(records)} charts, chart.csv and chart.json into {arguments.out} in {took}")
+    print(f"\nwrote {measured} charts, chart.csv and chart.json into {arguments.out} in {took}")

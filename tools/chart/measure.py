@@ -114,7 +114,7 @@ def measure(renderers: dict, chart: Chart, profile: Profile) -> dict[str, Measur
     series = {one.label: one for one in chart.series if one.label in renderers}
     seeded = [label for label, one in series.items() if one.renderer != "povray"]
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        longest = [profile.reference * series[label].samples[-1] for label in seeded]
+        longest = [profile.reference * chart.longer * series[label].samples[-1] for label in seeded]
         found = pool.map(or_none, seeded, [converged] * len(seeded), (renderers[label] for label in seeded), longest)
         references = {label: one for label, one in zip(seeded, found, strict=True) if one is not None}
     if not references:

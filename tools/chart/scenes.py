@@ -1,9 +1,9 @@
 """What tools/chart.py charts: each chart's scene, its series, and how many samples each takes.
 
 A series is a renderer with its settings. The first one of a chart is the one that others are held against. Where
-`common` names a series, its converged picture judges all of them, with the bias that they have beside it; else each
-is judged by its own. The lamp of the Cornell box is also shown as glass of index 1 that emits: never aimed at, met by
-chance.
+`common` names a series, its converged picture judges all of them, with the bias that they have beside it and what they
+do not find; else each is judged by its own. The lamp of the Cornell box is also shown as glass of index 1 that emits:
+never aimed at, met by chance.
 """
 
 from pathlib import Path
@@ -36,6 +36,7 @@ class Chart(NamedTuple):
     size: tuple[int, int]
     series: tuple[Series, ...]
     common: str | None = None
+    longer: int = 1  # times as many samples in its converged pictures
     bumps: tuple[int, int] | None = None  # rings and sectors of the bumpy ball, where the scene shows it
 
 
@@ -103,8 +104,8 @@ CHARTS = (
         PEERS / "cornell.toml",
         (48, 48),
         (
-            abbe("Abbe", 4, 16, 64, model='"rgb"'),
-            abbe("Abbe, 12 bands", 4, 16, 64),
+            abbe("Abbe", 2, 4, 16, 64, model='"rgb"'),
+            abbe("Abbe, 12 bands", 2, 4, 16, 64),
             Series("Abbe, lamp met by chance", "abbe", (4, 16, 64), "", {"model": '"rgb"'}, ((AIMED, BY_CHANCE),)),
             mitsuba("llvm_ad_rgb", 16, 64, 256),
             mitsuba("llvm_ad_spectral", 16, 64, 256),
@@ -120,7 +121,7 @@ CHARTS = (
         render.SCENES / "smallpt.toml",
         (48, 36),
         (
-            abbe("Abbe", 4, 16, 64),
+            abbe("Abbe", 1, 4, 16, 64),
             mitsuba("llvm_ad_rgb", 16, 64, 256, flat_lamp=True),
             mitsuba("scalar_rgb", 4, 16, 64, flat_lamp=True),
             luxcore(2, 8, 32, flat_lamp=True),
@@ -134,7 +135,7 @@ CHARTS = (
         PEERS / "caustic.toml",
         (48, 48),
         (
-            abbe("Abbe", 4, 16, 64),
+            abbe("Abbe", 1, 4, 16, 64),
             abbe("Abbe, caustics by chance", 4, 16, 64, caustics='"off"'),
             mitsuba("llvm_ad_rgb", 16, 64, 256),
             mitsuba("scalar_rgb", 16, 64, 256),
@@ -148,7 +149,7 @@ CHARTS = (
         PEERS / "glass.toml",
         (48, 48),
         (
-            abbe("Abbe", 4, 16, 64),
+            abbe("Abbe", 1, 4, 16, 64),
             abbe("Abbe, caustics by chance", 4, 16, 64, caustics='"off"'),
             luxcore(16, 64, 256),
         ),
@@ -183,7 +184,7 @@ CHARTS = (
         PEERS / "ajar.toml",
         (48, 48),
         (
-            abbe("Abbe", 16, 64, 256, model='"rgb"'),
+            abbe("Abbe", 4, 16, 64, 256, model='"rgb"'),
             mitsuba("llvm_ad_rgb", 16, 64, 256),
             mitsuba("scalar_rgb", 16, 64, 256),
             luxcore(16, 64, 256),
@@ -200,6 +201,8 @@ CHARTS = (
             mitsuba("llvm_ad_rgb", 16, 64, 256),
             cycles(16, 64, 256),
         ),
+        common="Abbe",
+        longer=16,
     ),
     Chart(
         "mesh",
@@ -218,9 +221,10 @@ CHARTS = (
 )
 
 
-def scaled(chart: Chart, profile: Profile) -> Chart:
-    """The chart at the profile's size and samples."""
-    size = tuple(max(4, round(side * profile.side)) for side in chart.size)
+def scaled(chart: Chart, profile: Profile, pixels: int | None = None) -> Chart:
+    """The chart at the profile's samples and size, or with `pixels` along its longer side."""
+    factor = pixels / max(chart.size) if pixels else profile.side
+    size = tuple(max(4, round(side * factor)) for side in chart.size)
     points = lambda samples: samples[: max(2, len(samples) - profile.left_out)]  # noqa: E731
     series = tuple(one._replace(samples=points(one.samples)) for one in chart.series)
     return chart._replace(size=size, series=series)

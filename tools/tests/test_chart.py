@@ -218,5 +218,15 @@ def test_a_tiny_chart_is_measured_drawn_and_written(tmp_path, monkeypatch, capsy
     command.main()
     assert json.loads((tmp_path / "chart.json").read_text()) == data
     assert "Abbe" in (tmp_path / scene["svg"]).read_text() and (tmp_path / "overview.png").is_file()
+    kept = {**scene, "name": "cornell", "title": "kept"}
+    (tmp_path / "chart.json").write_text(json.dumps({**data, "scenes": [kept]}))
+    monkeypatch.setattr(scenes, "CHARTS", (whole._replace(name="cornell"), *scenes.CHARTS))
+    monkeypatch.setattr(
+        "sys.argv", ["chart.py", "--scene", "smallpt", "--side", "12", "--quick", "--out", str(tmp_path)]
+    )
+    command.main()
+    first, second = json.loads((tmp_path / "chart.json").read_text())["scenes"]
+    assert first["series"] == kept["series"] and (second["name"], second["size"]) == ("smallpt", [12, 9])
     table = (tmp_path / "table.md").read_text().splitlines()[2:]
+    table = table[: len(table) // 2]
     assert len(table) == len(names) - 1 and all(row.count("|") == 5 for row in table)
