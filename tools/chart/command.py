@@ -22,7 +22,6 @@ import math
 import os
 import platform
 import resource
-import sys
 import tempfile
 import time
 from pathlib import Path
@@ -36,7 +35,7 @@ from .measure import Measured, Point, measure
 from .scenes import Chart, Profile
 
 CONVERGED = ("difference", "unseen", "brightness")  # what chart.json keeps of a converged picture
-OVERVIEW = ("cornell", "ajar", "smallpt", "mesh", "caustic", "beam")
+OVERVIEW = ("cornell", "ajar", "smallpt", "caustic", "window", "mesh")
 
 
 def found_versions(charts: list[Chart]) -> tuple[dict[str, str], dict[str, str]]:
@@ -179,7 +178,7 @@ def draw_all(out: Path) -> list[dict]:
         records.append(record(chart, found, one["made_by"]))
         rows += table_rows(chart, found)
         draw.draw([panels[chart.name]], out / chart.name, one["made_by"])
-    overview(out, panels, data["made_by"])
+    overview(out, panels, f"python tools/chart.py, {data['made_by'].partition(', ')[2]}")
     (out / "table.md").write_text("\n".join(rows) + "\n", "utf-8")
     write_data(out, data["versions"], data["made_by"], records)
     return records
@@ -205,6 +204,14 @@ def processor_seconds() -> float:
     """Of this process and of the renderers that have ended."""
     usages = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
     return sum(usage.ru_utime + usage.ru_stime for usage in usages)
+
+
+def made_by(arguments: argparse.Namespace) -> str:
+    """The command that measures the same again."""
+    words = [f"--{key} {value}" for key in ("scene", "only") for value in getattr(arguments, key) or []]
+    words += ["--quick"] if arguments.quick else []
+    words += [f"--side {arguments.side}"] if arguments.side else []
+    return " ".join(["python tools/chart.py", *words])
 
 
 def main() -> None:
@@ -233,8 +240,7 @@ def main() -> None:
             print(f"\n== {one['name']}: {one['title']}", *one["words"], sep="\n")
         return
     arguments.out.mkdir(parents=True, exist_ok=True)
-    made_by = f"python tools/chart.py {' '.join(sys.argv[1:])}".strip()
-    note = f"{made_by}, {profile.repeats} repeats, {vectors()}, {os.cpu_count()} cores, {load()}"
+    note = f"{made_by(arguments)}, {profile.repeats} repeats, {vectors()}, {os.cpu_count()} cores, {load()}"
     begun, measured = time.monotonic(), 0
     for chart in (scenes.scaled(one, profile, arguments.side) for one in charts):
         print(f"\n== {chart.name}: {chart.title}, {chart.size[0]} x {chart.size[1]}", flush=True)

@@ -138,7 +138,7 @@ def paint(axes, panel: Panel, size: float) -> None:
 def draw(panels: list[Panel], out: Path, note: str) -> None:
     """Writes `out` as PNG and SVG."""
     figure = Figure(figsize=(8.6, 5.4))
-    figure.subplots_adjust(0.09, 0.13, 0.75, 0.87)
+    figure.subplots_adjust(0.1, 0.13, 0.75, 0.87)
     arrange(figure, panels, 1, 10, note)
     figure.savefig(out.with_suffix(".png"), dpi=110)
     with matplotlib.rc_context({"svg.fonttype": "none", "svg.hashsalt": "chart"}):
@@ -149,7 +149,7 @@ def draw_overview(panels: list[Panel], out: Path, note: str) -> None:
     """Several panels in two columns as a PNG of few colors, below 150 kB."""
     rows = -(-len(panels) // 2)
     figure = Figure(figsize=(12.6, 4.5 * rows))
-    figure.subplots_adjust(0.055, 0.055 + 0.05 / rows, 0.855, 1 - 0.17 / rows, wspace=0.56, hspace=0.45)
+    figure.subplots_adjust(0.065, 0.055 + 0.05 / rows, 0.855, 1 - 0.17 / rows, wspace=0.56, hspace=0.45)
     arrange(figure, [one._replace(finding=textwrap.fill(one.finding, 60)) for one in panels], 2, 9, note)
     figure.savefig(out.with_suffix(".png"), dpi=80)
     with Image.open(out.with_suffix(".png")) as image:
