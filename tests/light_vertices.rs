@@ -46,6 +46,17 @@ fn lamp() -> String {
     body("lamp", LAMP, &[&quad([0.3, 2.9, -0.4], [0.5, 0.0, 0.0], [0.0, 0.0, 0.4])])
 }
 
+/// A lamp that lights the ceiling alone.
+fn up() -> String {
+    let material = "emissive = { radiance = { rgb = [30, 25, 20] }, sides = \"front\" }";
+    body("lamp", material, &[&quad([-0.8, 1.8, -0.4], [0.5, 0.0, 0.0], [0.0, 0.0, -0.4])])
+}
+
+/// Most of a wall beside the lamp.
+fn screen(material: &str) -> String {
+    body("screen", material, &[&quad([-1.9, 1.5, 0.0], [0.0, 0.0, 2.3], [0.0, 1.4, 0.0])])
+}
+
 fn ball(name: &str, material: &str) -> String {
     body(name, material, &["sphere = { center = [-0.6, 0.9, -0.8], radius = 0.8 }"])
 }
@@ -183,6 +194,14 @@ fn rooms() -> Vec<(&'static str, String)> {
         (
             "two diffuse bounces",
             room(WHITE, "diffuse_bounces = 2", &[lamp(), ball("silver", "mirror = { reflectance = 0.9 }")]),
+        ),
+        (
+            "one diffuse bounce by a mirror",
+            room(WHITE, "diffuse_bounces = 1", &[up(), screen("mirror = { reflectance = 0.95 }")]),
+        ),
+        (
+            "two diffuse bounces by rough metal",
+            room(WHITE, "diffuse_bounces = 2", &[up(), screen("conductor = { metal = \"gold\", roughness = 0.4 }")]),
         ),
         ("a gap", with(&[wall_with_gap, beyond])),
         ("planes without end", open),
