@@ -153,7 +153,7 @@ fn advance<const N: usize, P: Polarization<N>>(
     let Some(boundary) = walker.boundary(path, &meeting) else { return };
     let at = Interaction::new(world, draw, &path.ray, path.throughput.present(), &meeting, boundary);
     if over == Surfaces::All && path.vertices == 1 && !at.lobes.is_diffuse() {
-        // A path from the camera leaves a diffuse surface for this one, and none for a light.
+        // From the camera, a path has to leave the next diffuse surface to reach this one. It leaves none for a light.
         path.diffuse_left = path.diffuse_left.saturating_sub(1);
     }
     // As often as light may leave surfaces on its way from the camera.
