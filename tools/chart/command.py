@@ -123,26 +123,27 @@ def table(found: dict[str, Measured]) -> str:
 
 
 def read_data(out: Path) -> dict:
-    """What was measured before: `versions` and, by name in the order of the charts, `scenes`."""
+    """What chart.json holds: `versions`, `made_by` of what was measured last, and `scenes`."""
     path = out / "chart.json"
-    return json.loads(path.read_text("utf-8")) if path.exists() else {"versions": {}, "scenes": []}
+    return json.loads(path.read_text("utf-8")) if path.exists() else {"versions": {}, "made_by": "", "scenes": []}
 
 
-def write_data(out: Path, versions: dict, made_by: str, records: list[dict]) -> None:
-    """chart.csv and chart.json of these charts and of those that were there before."""
-    before = read_data(out)
-    every = {one["name"]: one for one in before["scenes"] + records}
-    records = [every[chart.name] for chart in scenes.CHARTS if chart.name in every]
-    versions = before["versions"] | versions
+def with_record(data: dict, versions: dict, entry: dict) -> dict:
+    """The data with a chart that was measured, in place of an older one of its name and in the order of the charts."""
+    every = {one["name"]: one for one in [*data["scenes"], entry]}
+    kept = [every[chart.name] for chart in scenes.CHARTS if chart.name in every]
+    return {"versions": data["versions"] | versions, "made_by": entry["made_by"], "scenes": kept}
+
+
+def write_data(out: Path, data: dict) -> None:
     with (out / "chart.csv").open("w", newline="") as file:
         rows = csv.writer(file, lineterminator="\n")
         rows.writerow(("chart", "series", "samples", "cpu_seconds", "error", "rms", "error_against_common"))
-        for one in records:
+        for one in data["scenes"]:
             for series in one["series"]:
                 rows.writerows(
                     (one["name"], series["label"], *map(rounded, point.values())) for point in series["points"]
                 )
-    data = {"versions": versions, "made_by": made_by, "scenes": records}
     (out / "chart.json").write_text(json.dumps(data, indent=1, default=str) + "\n", "utf-8")
 
 
@@ -172,15 +173,17 @@ def draw_all(out: Path) -> list[dict]:
     records, panels = [], {}
     rows = ["| scene | beside | time that Abbe takes | pictures apart |", "|---|---|---|---|"]
     for one in data["scenes"]:
-        chart = charts[one["name"]]._replace(size=tuple(one["size"]))
+        chart = charts[one["name"]]
+        chart = chart._replace(size=one.get("size", chart.size))
         found = {series["label"]: recorded(series) for series in one["series"]}
         panels[chart.name] = panel_for(chart, found)
-        records.append(record(chart, found, one["made_by"]))
+        note = one.get("made_by", data["made_by"])
+        records.append(record(chart, found, note))
         rows += table_rows(chart, found)
-        draw.draw([panels[chart.name]], out / chart.name, one["made_by"])
+        draw.draw([panels[chart.name]], out / chart.name, note)
     overview(out, panels, f"python tools/chart.py, {data['made_by'].partition(', ')[2]}")
     (out / "table.md").write_text("\n".join(rows) + "\n", "utf-8")
-    write_data(out, data["versions"], data["made_by"], records)
+    write_data(out, data | {"scenes": records})
     return records
 
 
@@ -226,6 +229,8 @@ def main() -> None:
     parser.add_argument("--pictures", action="store_true", help="also write each converged picture")
     parser.add_argument("--out", type=Path, default=render.ROOT / "target/chart", help="folder for what is written")
     arguments = parser.parse_args()
+    if arguments.side is not None and arguments.side < scenes.LEAST:
+        parser.error(f"--side {arguments.side}: a picture has at least {scenes.LEAST} pixels along a side")
     profile = scenes.QUICK if arguments.quick else scenes.FULL
     charts = [chart for chart in scenes.CHARTS if not arguments.scene or chart.name in arguments.scene]
     versions, missing = found_versions(charts)
@@ -236,6 +241,8 @@ def main() -> None:
     if arguments.list:
         return
     if arguments.redraw:
+        if not read_data(arguments.out)["scenes"]:
+            parser.error(f"{arguments.out / 'chart.json'} holds no chart to draw: measure one without --redraw")
         for one in draw_all(arguments.out):
             print(f"\n== {one['name']}: {one['title']}", *one["words"], sep="\n")
         return
@@ -250,7 +257,7 @@ def main() -> None:
         measured += 1
         entry = record(chart, found, note)
         print(table(found), *entry["words"], f"({time.monotonic() - begun:.0f} s so far)", sep="\n", flush=True)
-        write_data(arguments.out, versions, note, [entry])
+        write_data(arguments.out, with_record(read_data(arguments.out), versions, entry))
         if arguments.pictures:
             write_picture(arguments.out, chart, found)
     draw_all(arguments.out)

@@ -49,6 +49,7 @@ class Profile(NamedTuple):
     repeats: int
 
 
+LEAST = 4  # pixels along a side
 FULL = Profile(8, 1, 2, 3)
 QUICK = Profile(1, 0, 3, 3)
 
@@ -224,7 +225,7 @@ CHARTS = (
 def scaled(chart: Chart, profile: Profile, pixels: int | None = None) -> Chart:
     """The chart at the profile's samples and size, or with `pixels` along its longer side."""
     factor = pixels / max(chart.size) if pixels else profile.side
-    size = tuple(max(4, round(side * factor)) for side in chart.size)
+    size = tuple(max(LEAST, round(side * factor)) for side in chart.size)
     points = lambda samples: samples[: max(2, len(samples) - profile.left_out)]  # noqa: E731
     series = tuple(one._replace(samples=points(one.samples)) for one in chart.series)
     return chart._replace(size=size, series=series)

@@ -230,3 +230,21 @@ def test_a_tiny_chart_is_measured_drawn_and_written(tmp_path, monkeypatch, capsy
     table = (tmp_path / "table.md").read_text().splitlines()[2:]
     table = table[: len(table) // 2]
     assert len(table) == len(names) - 1 and all(row.count("|") == 5 for row in table)
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [(["--redraw"], "chart.json holds no chart to draw"), (["--side", "0"], "at least 4 pixels along a side")],
+)
+def test_what_cannot_be_drawn_is_refused_in_a_line(words, said, tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr("sys.argv", ["chart.py", *words, "--out", str(tmp_path)])
+    with pytest.raises(SystemExit):
+        command.main()
+    assert said in capsys.readouterr().err and not list(tmp_path.iterdir())
+
+
+def test_a_chart_of_which_nothing_is_left_ends_without_pictures(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(command, "run", lambda *_: {})
+    monkeypatch.setattr("sys.argv", ["chart.py", "--scene", "smallpt", "--quick", "--out", str(tmp_path)])
+    command.main()
+    assert "wrote 0 charts" in capsys.readouterr().out and not list(tmp_path.glob("*.png"))

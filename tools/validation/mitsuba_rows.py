@@ -11,8 +11,8 @@ tests.
 Rough glass is nearly smooth here: Mitsuba gives up what meets a second facet, 3 % of the light at a roughness of 0.3,
 which Abbe gives back, as its furnaces show.
 
-Caustics are Mitsuba's particle tracer's, which sends light from a sun of many exact directions and splats it where the
-camera sees the floor, so the glass stands outside of the picture. Means of 16 x 16 blocks are compared.
+Caustics are compared with Mitsuba's particle tracer, for which many directional lights stand for the sun. It shows only
+what the camera sees straight, so the glass stands outside of the picture. Means of 16 x 16 blocks are compared.
 """
 
 import tempfile
@@ -62,7 +62,7 @@ def scenes(samples, size):
 
 
 def caustics(samples, size):
-    """Name and scene: the floor beside what bundles the light of the sun."""
+    """Name and scene: the floor where glass gathers the light of the sun."""
     common = {"eye": (4.4, 2.8, 2), "target": (2.6, 0, -0.2), "fov": 36, "samples": samples, "size": size}
     floor = ("white", quad((0, 0, 0), (5, 0, 0), (0, 0, -5)))
     for name, body, one in (
