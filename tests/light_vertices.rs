@@ -5,12 +5,13 @@
 //! cargo test --test all light_vertices::
 //! ```
 
+mod suns;
+
 use std::f64::consts::PI;
 
 use abbe::film::Film;
 use abbe::plan::plan;
-use abbe::spectrum::Basis;
-use abbe::trace::{Method, prepare, render, resampling_gain};
+use abbe::trace::{Method, World, pilot_noise, prepare, render, with_light_vertices};
 
 use crate::support::scenes::{SPLITTING, body, environment, method, moments, scene, standard_errors, view};
 
@@ -229,12 +230,26 @@ fn rooms() -> Vec<(&'static str, String)> {
     ]
 }
 
-/// Images with or without light vertices.
-fn films(text: &str, light_vertices: bool, basis: Option<&Basis>, seeds: u64) -> Vec<Film> {
+/// A world with light vertices, where there is light that can be followed.
+fn looking(world: &World) -> World {
+    with_light_vertices(world).unwrap_or_else(|| world.clone())
+}
+
+/// How many times as long an equal error takes without light vertices.
+fn gain(world: &World) -> Option<f64> {
+    pilot_noise(&looking(world)).gain_over(&pilot_noise(world))
+}
+
+/// Images by a method that something is changed of, without light vertices or with those that `with` asks for.
+fn films(text: &str, change: &dyn Fn(&mut Method), with: Option<&dyn Fn(&World) -> World>, seeds: u64) -> Vec<Film> {
     let scene = scene(text);
-    let mut asked = Method { light_vertices, ..method(&scene, SPLITTING) };
-    asked.basis = basis.cloned().unwrap_or(asked.basis);
-    (0..seeds).map(|seed| render(&prepare(&scene, Method { seed, ..asked.clone() }), &|_| ()).0).collect()
+    let film = |seed: u64| {
+        let mut asked = Method { seed, ..method(&scene, SPLITTING) };
+        change(&mut asked);
+        let plain = prepare(&scene, asked);
+        render(&with.map_or(plain.clone(), |with| with(&plain)), &|_| ()).0
+    };
+    (0..seeds).map(film).collect()
 }
 
 /// The mean of a quarter of an image in a band, and its standard error from seed to seed: pixels share light paths.
@@ -251,8 +266,16 @@ fn of_quarter(films: &[Film], quarter: usize, band: usize) -> (f64, f64) {
 
 const SEEDS: u64 = 16;
 
-fn assert_same(what: &str, text: &str, basis: Option<&Basis>, claims: usize) -> f64 {
-    let [plain, resampled] = [false, true].map(|on| films(text, on, basis, SEEDS));
+/// Quarters of images have the same means with light vertices and without, and not the same images.
+fn assert_same(
+    what: &str,
+    text: &str,
+    change: &dyn Fn(&mut Method),
+    with: &dyn Fn(&World) -> World,
+    claims: usize,
+) -> f64 {
+    let [plain, resampled] = [None, Some(with)].map(|with| films(text, change, with, SEEDS));
+    assert_ne!(plain[0], resampled[0], "{what}: light vertices are looked at");
     let mut worst = 0.0_f64;
     for (quarter, band) in (0..4).flat_map(|quarter| (0..3).map(move |band| (quarter, band))) {
         let [(a, of_a), (b, of_b)] = [&plain, &resampled].map(|films| of_quarter(films, quarter, band));
@@ -272,10 +295,9 @@ fn assert_same(what: &str, text: &str, basis: Option<&Basis>, claims: usize) -> 
 fn light_vertices_change_no_mean() {
     let rooms = rooms();
     for (what, text) in &rooms {
-        let gain = resampling_gain(&prepare(&scene(text), method(&scene(text), SPLITTING)));
-        assert!(gain.is_some(), "{what}: light vertices do not find all light");
-        let worst = assert_same(what, text, None, rooms.len());
-        println!("{what}: at most {worst:.1} sigma, gain {:.1}", gain.unwrap_or(0.0));
+        let gain = gain(&prepare(&scene(text), method(&scene(text), SPLITTING)));
+        let worst = assert_same(what, text, &|_| (), &looking, rooms.len());
+        println!("{what}: at most {worst:.1} sigma, gain {:.1}", gain.expect("there is noise"));
     }
 }
 
@@ -296,7 +318,7 @@ fn light_vertices_carry_all_bands() {
     );
     let basis = plan(&scene(&text)).method.basis;
     assert!(basis.fixed_lanes() > 4 && !basis.draws_wavelengths(), "{}", basis.name());
-    assert_same("twelve bands", &text, Some(&basis), 1);
+    assert_same("twelve bands", &text, &|method| method.basis = basis.clone(), &looking, 1);
 }
 
 /// An integrating sphere of radius r with a point of intensity I in its middle shows (rho / pi) (I / r^2) / (1 - rho)
@@ -312,7 +334,7 @@ fn an_integrating_sphere_shows_its_closed_form() {
                 &["sphere = { center = [0, 0, 0], radius = 2 }"],
             );
         let expected = reflectance / PI * (2.0 / 4.0) / (1.0 - reflectance);
-        let films = films(&text, true, None, SEEDS);
+        let films = films(&text, &|_| (), Some(&looking), SEEDS);
         for quarter in 0..4 {
             let (mean, error) = of_quarter(&films, quarter, 1);
             println!("{reflectance}: {mean:.6} +- {error:.1e} for {expected:.6}");
@@ -328,18 +350,17 @@ fn rooms_with_light_that_light_paths_miss_have_no_light_vertices() {
     let with = |more: &[String]| room(WHITE, "", more);
     let glass = "dielectric = { index = 1.5, roughness = 0.2 }";
     let scenes = [
-        ("a sky", with(&[lamp(), environment(1.0)])),
-        ("the sun", with(&[lamp(), "[[light]]\nsun = { toward = [0, 1, 0], irradiance = 1 }\n".into()])),
+        ("a sky alone", with(&[environment(1.0)])),
+        ("a sun that no bounce sees", with(&["[[light]]\nsun = { toward = [0, 1, 0], irradiance = 1 }\n".into()])),
         ("rough glass", with(&[lamp(), ball("glass", glass)])),
         ("glass that looks smoother than it is", with(&[lamp(), smooth("dielectric = { index = 1.5 }")])),
         ("nothing shines", with(&[])),
     ];
     for (what, text) in &scenes {
         let scene = scene(text);
-        let asked = Method { samples: 4, ..method(&scene, SPLITTING) };
-        let world = prepare(&scene, asked.clone());
-        assert_eq!(resampling_gain(&world), None, "{what}");
-        let forced = prepare(&scene, Method { light_vertices: true, ..asked });
+        let world = prepare(&scene, Method { samples: 4, ..method(&scene, SPLITTING) });
+        assert!(with_light_vertices(&world).is_none(), "{what}");
+        let forced = world.with_light_vertices(Vec::new());
         assert_eq!(render(&forced, &|_| ()).0, render(&world, &|_| ()).0, "{what}");
     }
 }
@@ -348,7 +369,7 @@ fn rooms_with_light_that_light_paths_miss_have_no_light_vertices() {
 #[test]
 fn parts_of_an_image_are_the_same_as_the_whole() {
     let text = room(WHITE, "", &[lamp(), ball("glass", "dielectric = { index = 1.5 }")]);
-    let whole = films(&text, true, None, 1).remove(0);
+    let whole = films(&text, &|_| (), Some(&looking), 1).remove(0);
     let crop = abbe::film::Window { left: 5, top: 4, width: 3, height: 2 };
     for (threads, crop, overscan) in [(1, Some(crop), 0), (2, Some(crop), 0), (3, Some(crop), 3), (1, None, 3)] {
         let mut part = scene(&text);
@@ -392,7 +413,8 @@ fn vertices_far_outside_of_a_room_are_seldom_tried() {
     assert!(decided.method.light_vertices, "{:?}", decided.because);
     let small = scene(&text.replace("width = 1024\nheight = 768", "width = 256\nheight = 192"));
     for seed in 0..3 {
-        let gain = resampling_gain(&prepare(&small, Method { seed, ..decided.method.clone() }));
+        let plain = Method { seed, light_vertices: false, ..decided.method.clone() };
+        let gain = gain(&prepare(&small, plain));
         println!("smallpt, seed {seed}: gain {gain:?}");
         assert!(gain.is_some_and(|gain| gain > 2.0), "{gain:?}");
     }

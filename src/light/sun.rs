@@ -53,6 +53,11 @@ impl<S> Sun<S> {
         })
     }
 
+    /// The direction toward the middle of the disc.
+    pub fn middle(&self) -> DVec3 {
+        self.disc().cone.axis
+    }
+
     /// A direction toward the disc, uniform over its solid angle.
     fn sample(&self, u: [f64; 2]) -> DVec3 {
         let cone = &self.disc().cone;

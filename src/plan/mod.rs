@@ -1,14 +1,13 @@
 //! Floor 5: looks at a scene, decides how little of the world must be modelled to render it, and says why.
 
 mod adaptive;
-mod bright;
+mod between;
 mod candidates;
 mod caustics;
 mod control;
 mod dyes;
 mod efficiency;
 mod films;
-mod light_vertices;
 mod lights;
 mod lit;
 mod model;
@@ -26,9 +25,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::scene::Scene;
 use crate::spectrum::{Basis, Curve};
-use crate::trace::{
-    BrightPlaces, LightPass, Method, PhotonTimes, Probe, Transport, World, photon_times, prepare_unguided, probe,
-};
+use crate::trace::{LightPass, Method, PhotonTimes, Probe, Transport, photon_times, prepare_unguided, probe};
+use between::between;
 use lit::Lit;
 use model::Model;
 use words::{in_number, in_words};
@@ -74,9 +72,8 @@ pub fn plan(scene: &Scene<Curve>) -> Plan {
     decisions.insert(0, model::line(&world.method().basis, &why));
     decisions.extend(control);
     decisions.extend(because);
-    let between = between(&world);
-    decisions.extend(between.reason);
-    let world = world.with_bright(between.bright.clone()).with_light_vertices(between.light_vertices);
+    let (world, reasons) = between(world);
+    decisions.extend(reasons);
     let polarization = polarization::decide(scene, &world);
     decisions.extend(polarization.why);
     let world = world.with_polarization(polarization.polarization);
@@ -124,30 +121,6 @@ fn before_light(scene: &Scene<Curve>, basis: Basis) -> (Method, String) {
         ..Method::of_paths(basis, transport, scene.render.seed)
     };
     (method, reason)
-}
-
-/// How light between surfaces is found.
-#[derive(Default)]
-struct Between {
-    bright: Option<BrightPlaces>,
-    light_vertices: bool,
-    reason: Option<String>,
-}
-
-/// By light vertices or by bounces that are aimed at bright places, whichever pays more, if any does.
-fn between(world: &World) -> Between {
-    let gain = light_vertices::gain(world);
-    let aimed = bright::aimed(world);
-    match (gain, aimed) {
-        (Some(gain), aimed) if aimed.as_ref().is_none_or(|aimed| gain >= aimed.gain) => {
-            Between { light_vertices: true, reason: Some(light_vertices::reason(gain)), ..Between::default() }
-        }
-        (_, Some(aimed)) => {
-            let reason = Some(aimed.reason());
-            Between { bright: Some(aimed.places), reason, ..Between::default() }
-        }
-        _ => Between::default(),
-    }
 }
 
 /// What layers take, where that is much.

@@ -1,5 +1,7 @@
 //! Which photons are worth sending.
 
+use std::collections::HashMap;
+
 use crate::math::Distribution2d;
 
 /// Cells along each side of the square.
@@ -37,7 +39,27 @@ impl Guide {
             let near = |x: usize| x.saturating_sub(1)..=(x + 1).min(SIDE - 1);
             near(row).flat_map(|i| near(column).map(move |j| i * SIDE + j)).map(|i| share[i]).fold(0.0, f64::max)
         };
-        let wanted: Vec<f64> = (0..SIDE * SIDE).map(|cell| share[cell] + 0.25 * spread(cell)).collect();
+        Self::following(&(0..SIDE * SIDE).map(|cell| share[cell] + 0.25 * spread(cell)).collect::<Vec<_>>())
+    }
+
+    /// The density that follows weights of some cells, by their numbers: as much those of single cells as those of
+    /// blocks of 2 x 2, 4 x 4 and 8 x 8 cells, where few of many places are known.
+    pub(super) fn weighted(weights: &[(u32, f32)]) -> Self {
+        let mut wanted = vec![0.0; SIDE * SIDE];
+        for level in 0..=3 {
+            let block = |cell: usize| [cell / SIDE, cell % SIDE].map(|at| at >> level);
+            let mut blocks = HashMap::new();
+            for &(cell, weight) in weights {
+                *blocks.entry(block(cell as usize)).or_insert(0.0) += f64::from(weight.max(0.0));
+            }
+            let of_cell = |cell: usize| blocks.get(&block(cell)).map_or(0.0, |weight| weight * 0.25_f64.powi(level));
+            wanted.iter_mut().enumerate().for_each(|(cell, wanted)| *wanted += of_cell(cell));
+        }
+        Self::following(&wanted)
+    }
+
+    /// The density that follows what is wanted of each cell, for the most part.
+    fn following(wanted: &[f64]) -> Self {
         let total: f64 = wanted.iter().sum();
         if total == 0.0 {
             return Self::disc();
@@ -63,6 +85,12 @@ impl Guide {
         self.cells.sample(u).map(|drawn| (drawn.index as f64 + drawn.u) / SIDE as f64)
     }
 
+    /// The part of the square in which most places are drawn, about: of n cells that are equally likely, n cells.
+    pub(super) fn extent(&self) -> f64 {
+        let probability = |cell: usize| self.cells.probability([cell % SIDE, cell / SIDE]);
+        1.0 / ((SIDE * SIDE) as f64 * (0..SIDE * SIDE).map(|cell| probability(cell) * probability(cell)).sum::<f64>())
+    }
+
     /// The density of places drawn.
     pub(super) fn density(&self, place: [f64; 2]) -> f64 {
         let cell = cell_of(place);
@@ -80,7 +108,8 @@ fn touches_disc(cell: usize) -> bool {
     x * x + y * y < 1.0
 }
 
-fn cell_of(place: [f64; 2]) -> usize {
+/// The number of a place's cell.
+pub(super) fn cell_of(place: [f64; 2]) -> usize {
     let [column, row] = place.map(|x| ((x * SIDE as f64) as usize).min(SIDE - 1));
     row * SIDE + column
 }
@@ -98,7 +127,8 @@ mod tests {
     fn photons_go_where_they_are_seen_as_often_as_the_density_says() {
         let seen = |[x, y]: [f64; 2]| (x - 0.3).abs() < 0.02 && y > 0.4;
         let learned = Guide::learned(&grid(256).map(|place| (place, seen(place))).collect::<Vec<_>>());
-        for guide in [Guide::even(), Guide::disc(), learned.clone()] {
+        let weighted = Guide::weighted(&[(2000, 1.0), (2001, 3.0), (700, 0.5)]);
+        for guide in [Guide::even(), Guide::disc(), learned.clone(), weighted] {
             let total: f64 = grid(SIDE as u32).map(|place| guide.density(place)).sum::<f64>() / (SIDE * SIDE) as f64;
             assert!((total - 1.0).abs() < 1e-12, "the density sums to {total}");
             // An integral over the disc by drawing places: pi / 4 for its area, a sixteenth of it for (x - 1 / 2)^2.
@@ -109,6 +139,7 @@ mod tests {
             let exact = std::f64::consts::PI / 64.0;
             assert!((mean / exact - 1.0).abs() < 2e-3, "{mean} for {exact}");
         }
+        assert!((Guide::even().extent() - 1.0).abs() < 1e-12 && learned.extent() < 0.2);
         let hits = grid(200).filter(|&u| seen(learned.sample(u))).count() as f64 / 40_000.0;
         assert!(hits > 0.5, "{hits} of the photons are seen where 0.024 of all would be");
     }

@@ -2,7 +2,7 @@ use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
-use super::{BrightPlaces, SampleDensity};
+use super::{BrightPlaces, SampleDensity, Sunlit};
 use crate::light::LightId;
 use crate::spectrum::Basis;
 
@@ -41,6 +41,8 @@ pub struct Method {
     pub bright: Option<BrightPlaces>,
     /// Whether light that surfaces send each other is also looked for at vertices of paths from the lights.
     pub light_vertices: bool,
+    /// Where paths from suns start for that; light of other suns is left to the camera's paths.
+    pub sunlit: Vec<Sunlit>,
     /// Whether polarization is traced.
     pub polarization: Polarizing,
 }
@@ -62,6 +64,7 @@ impl Method {
             light_pass: None,
             bright: None,
             light_vertices: false,
+            sunlit: Vec::new(),
             polarization: Polarizing::Averaged,
         }
     }

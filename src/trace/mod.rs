@@ -12,7 +12,8 @@
 //! 6. In Heckbert's notation, with S for surfaces that mirror or refract and D for those that scatter widely: photons
 //!    may find `L S+ D E`, and gathered photons `L S+ D (D|S)* E`; paths from the camera then leave exactly those out.
 //! 7. Light that one diffuse surface sends another may be looked for at vertices of light paths: `L (S|D)* D D S* E`.
-//!    Paths from the camera then go on to such a surface with the probability of the rest alone.
+//!    Paths from the camera then go on to such a surface with the probability of the rest alone, or else for other
+//!    lights.
 //! 8. Light that reaches the camera is a contribution handed to the sensor.
 //! 9. Random numbers are a pure function of seed, pixel, sample, branch and use; sums have a fixed order.
 //!
@@ -43,6 +44,7 @@ mod media;
 mod method;
 mod parallel;
 mod pass;
+mod path_start;
 mod photon;
 mod photon_targets;
 mod probe;
@@ -63,10 +65,12 @@ pub use image::{
     seen_photons,
 };
 pub use method::{LightPass, MapPasses, Method, Polarizing, Stop, Transport};
+pub use path_start::Sunlit;
 pub use photon_targets::is_photon_target;
 pub use probe::{
-    Adaptive, Branching, GatheredWorth, PhotonTimes, PhotonWorth, Probe, SampleWorth, SeenLight, adaptive, branching,
-    bright_places, control_gain, gathered_photons, gathered_worth, photon_times, photons_worth, polarization_error,
-    prepare, prepare_unguided, probe, reached_places, resampling_gain, samples_worth, seen_light,
+    Adaptive, Branching, GatheredWorth, PhotonTimes, PhotonWorth, PilotNoise, Probe, SampleWorth, SeenLight, adaptive,
+    branching, bright_places, control_gain, gathered_photons, gathered_worth, photon_times, photons_worth, pilot_noise,
+    polarization_error, prepare, prepare_unguided, probe, reached_places, samples_worth, seen_light,
+    with_light_vertices,
 };
 pub use world::World;

@@ -1,8 +1,11 @@
+use std::sync::Arc;
+
 use super::bright::{Bright, BrightPlaces};
 use super::density::{Rate, SampleDensity};
 use super::dyes::Dyes;
 use super::layers::Layers;
 use super::media::{Media, media_of_lights};
+use super::path_start::{PathStart, Sunlit};
 use super::photon_targets::PhotonTargets;
 use super::{LightPass, Method, Polarizing, Transport};
 use crate::light::{Light, LightId, LightSampler};
@@ -41,6 +44,8 @@ pub struct World {
     see_through: Vec<bool>,
     /// What bounces are aimed at.
     pub(super) bright: Option<Bright>,
+    /// How paths of each light start, for light vertices.
+    pub(super) path_starts: Arc<[PathStart]>,
     /// Where photons are sent, if the method has a light pass.
     pub(super) photon_targets: Option<PhotonTargets>,
     /// The same of each pass of its map.
@@ -72,6 +77,7 @@ impl World {
         let light_sampler = LightSampler::new(&scene.lights);
         let sampled_lights = light_sampler.lights();
         let bright = method.bright.as_ref().map(Bright::new);
+        let path_starts = if method.light_vertices { path_starts(&scene, &method.sunlit) } else { Arc::new([]) };
         let mut world = Self {
             layers,
             xyz_of_channel,
@@ -87,6 +93,7 @@ impl World {
             lobes,
             see_through,
             bright,
+            path_starts,
             photon_targets: None,
             map_targets: None,
             light_media: Vec::new(),
@@ -131,10 +138,11 @@ impl World {
         world
     }
 
-    /// This world with or without light vertices.
-    pub fn with_light_vertices(&self, light_vertices: bool) -> Self {
+    /// This world with light vertices, for which paths from suns start where some places in their light are.
+    pub fn with_light_vertices(&self, sunlit: Vec<Sunlit>) -> Self {
         let mut world = self.clone();
-        world.method.light_vertices = light_vertices;
+        world.path_starts = path_starts(&world.scene, &sunlit);
+        (world.method.light_vertices, world.method.sunlit) = (true, sunlit);
         world
     }
 
@@ -274,4 +282,9 @@ impl World {
     pub(super) fn sends_photons(&self, light: LightId) -> bool {
         self.photon_targets.as_ref().is_some_and(|targets| targets.lights[light])
     }
+}
+
+/// How paths of each light start.
+fn path_starts(scene: &Scene<Table>, sunlit: &[Sunlit]) -> Arc<[PathStart]> {
+    (0..scene.lights.len()).map(|id| PathStart::of(scene, id, sunlit)).collect()
 }

@@ -13,6 +13,7 @@ use crate::trace::World;
 use crate::trace::arrived::Arrived;
 use crate::trace::bright::Aiming;
 use crate::trace::contribution::{Contribution, Found};
+use crate::trace::photon::LightVertices;
 use crate::trace::walk::{
     Excitation, Interaction, MetLight, Passage, Past, Path, Polarization, ScatterSample, shading,
 };
@@ -34,6 +35,8 @@ pub struct DirectLighting<'a, const N: usize, P> {
     pub u: [f64; 4],
     /// How bounces are aimed from here, if they are.
     pub aiming: Option<&'a Aiming<'a>>,
+    /// The light vertices whose light was looked for before.
+    pub found_at: Option<&'a LightVertices<N>>,
 }
 
 /// A side of the surface, from which lights are sampled.
@@ -125,7 +128,8 @@ impl<const N: usize, P: Polarization<N>> DirectLighting<'_, N, P> {
         let (normal, arrival) = (side.normal, &self.at.arrival);
         let sample = self.world.scene.lights[drawn.light].sample_li_in_part(self.at.point, normal, u)?;
         let wi = sample.ray.direction;
-        if wi.dot(normal) <= 0.0 {
+        let is_found = |vertices: &LightVertices<N>| vertices.carry(self.world, drawn.light, &sample.ray);
+        if wi.dot(normal) <= 0.0 || self.found_at.is_some_and(is_found) {
             return None;
         }
         let flat = if normal.dot(arrival.wo) < 0.0 { -normal } else { normal };

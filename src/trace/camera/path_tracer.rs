@@ -234,7 +234,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         for &id in &world.scene.infinite_lights {
             let light = &world.scene.lights[id];
             let is_hidden = path.kind == PathKind::Camera && world.scene.hidden_lights.contains(&id);
-            if is_hidden || self.is_found_by_photons(path, id) {
+            if is_hidden || self.is_found_otherwise(path, id) {
                 continue;
             }
             let factor = match light {
@@ -257,7 +257,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         let object = &world.scene.objects[hit.object as usize];
         let Some(id) = object.light else { return };
         let Light::Area(area) = &world.scene.lights[id] else { return };
-        if !area.sides.shine(point.normal.dot(path.ray.direction) < 0.0) || self.is_found_by_photons(path, id) {
+        if !area.sides.shine(point.normal.dot(path.ray.direction) < 0.0) || self.is_found_otherwise(path, id) {
             return;
         }
         let weight = weight_of_meeting(world, id, path.scatter.as_ref(), &path.ray, Some(&hit.crossing));
@@ -286,7 +286,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
     /// Samples the lights where a surface scatters widely, and lets the path go on: its ways on become pending.
     fn scatter(
         &mut self,
-        path: &Path<N, P>,
+        path: &mut Path<N, P>,
         draw: &Draw<N>,
         sampler: &Sampler,
         meeting: &Meeting,
@@ -296,6 +296,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         let world = self.walker.world;
         let Some(boundary) = self.walker.boundary(path, meeting) else { return };
         let ends = self.ends_at_light_vertices(path, draw, meeting, sampler);
+        let path = &*path;
         if ends && !(world.has_map() && path.diffuse_left > 0) {
             return;
         }
@@ -361,8 +362,9 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
             let last_occluder = &self.walker.last_occluder;
             let (aiming, excitation) = (aiming.as_ref(), self.excitation(path));
             let excitation = excitation.as_deref();
+            let found_at = self.found_at(path);
             let lighting =
-                DirectLighting { world, path, at, excitation, goes_on, all_lights, last_occluder, u, aiming };
+                DirectLighting { world, path, at, excitation, goes_on, all_lights, last_occluder, u, aiming, found_at };
             let chance = lighting.gather(sampler, &mut self.sensor);
             if goes_on && path.kind != PathKind::Camera {
                 self.gather_photons(path, at, sampler);
@@ -407,7 +409,8 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
 
     /// Hands the light of a light vertex to the sensor, where the path meets a diffuse surface.
     fn resample(&mut self, path: &Path<N, P>, at: &Interaction<N>, sampler: &Sampler) -> bool {
-        let Some(vertices) = self.light_vertices.filter(|_| path.among == Among::All) else { return false };
+        let is_asked = path.among == Among::All && !path.resampled;
+        let Some(vertices) = self.light_vertices.filter(|_| is_asked) else { return false };
         let world = self.walker.world;
         if !at.lobes.is_diffuse() {
             return false;
@@ -418,10 +421,11 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         true
     }
 
-    /// Whether a path ends where its light was looked for at light vertices: mostly, and the less the nearer.
+    /// Whether a path ends where its light was looked for at light vertices: mostly, and the less the nearer. For light
+    /// that they do not carry it goes on.
     fn ends_at_light_vertices(
         &mut self,
-        path: &Path<N, P>,
+        path: &mut Path<N, P>,
         draw: &Draw<N>,
         meeting: &Meeting,
         sampler: &Sampler,
@@ -432,6 +436,10 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         }
         let chance = vertices.complement((meeting.point.position - scatter.from).length_squared());
         let ends = sampler.four_plain(path.key, COMPLEMENT)[0] >= chance;
+        if !vertices.carry_all() {
+            path.resampled |= ends;
+            return false;
+        }
         self.walker.audit.iter_mut().filter(|_| ends).for_each(|audit| audit.end(path, draw));
         ends
     }
@@ -469,9 +477,16 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         }
     }
 
-    /// Whether the path's way to a light is one that photons find.
-    fn is_found_by_photons(&self, path: &Path<N, P>, light: LightId) -> bool {
+    /// Whether the light of the path's way to a light is found by photons, or was looked for at light vertices.
+    fn is_found_otherwise(&self, path: &Path<N, P>, light: LightId) -> bool {
+        let world = self.walker.world;
         let is_smooth = path.kind == PathKind::Smooth { aimed: true } && path.among == Among::All;
-        is_smooth && self.walker.world.sends_photons(light)
+        let found_at = self.found_at(path);
+        (is_smooth && world.sends_photons(light)) || found_at.is_some_and(|at| at.carry(world, light, &path.ray))
+    }
+
+    /// The light vertices whose light was looked for before, and does not count on the path any more.
+    fn found_at(&self, path: &Path<N, P>) -> Option<&'a LightVertices<N>> {
+        self.light_vertices.filter(|_| path.resampled)
     }
 }

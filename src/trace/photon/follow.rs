@@ -87,6 +87,8 @@ pub enum Surfaces {
     Smooth,
     /// All.
     All,
+    /// All, but not by ways on which photons are sent.
+    AllButPhotons,
 }
 
 /// How a photon starts.
@@ -143,22 +145,25 @@ fn advance<const N: usize, P: Polarization<N>>(
             return;
         }
     }
-    if path.vertices == 0 && !world.is_photon_target(meeting.hit.object) {
+    if path.vertices == 0 {
+        let is_target = world.is_photon_target(meeting.hit.object);
         match over {
-            Surfaces::Smooth => return,
-            Surfaces::All => path.kind = PathKind::Wide,
+            Surfaces::Smooth if !is_target => return,
+            Surfaces::AllButPhotons if is_target && world.sends_photons(light) => return,
+            Surfaces::All | Surfaces::AllButPhotons if !is_target => path.kind = PathKind::Wide,
+            _ => {}
         }
     }
     path.vertices += 1;
     let Some(boundary) = walker.boundary(path, &meeting) else { return };
     let at = Interaction::new(world, draw, &path.ray, path.throughput.present(), &meeting, boundary);
-    if over == Surfaces::All && path.vertices == 1 && !at.lobes.is_diffuse() {
+    if over != Surfaces::Smooth && path.vertices == 1 && !at.lobes.is_diffuse() {
         // From the camera, a path has to leave the next diffuse surface to reach this one. It leaves none for a light.
         path.diffuse_left = path.diffuse_left.saturating_sub(1);
     }
     // As often as light may leave surfaces on its way from the camera.
     let allowed = path.vertices <= world.method.max_bounces && !(at.lobes.is_diffuse() && path.diffuse_left == 0);
-    let shown = over == Surfaces::All || path.vertices > 1;
+    let shown = over != Surfaces::Smooth || path.vertices > 1;
     if at.lobes.is_wide() && allowed && shown {
         land(walker, &Landing { path, at: &at, light, factor: emitted.factor, early });
     }

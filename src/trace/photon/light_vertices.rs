@@ -9,16 +9,18 @@
 
 use std::f64::consts::FRAC_1_PI;
 use std::ops::Range;
+use std::sync::Arc;
 
 use super::follow::{Landing, Start, Surfaces, follow_photon};
 use super::usefulness::{Place, places, usefulness};
 use crate::light::{Light, LightId};
 use crate::material::{Lobes, Material};
-use crate::math::{BranchKey, DVec3, Distribution, Sampler};
+use crate::math::{BranchKey, DVec3, Distribution, Ray, Sampler};
 use crate::shape::{Computation, Instructions, SurfacePoint, Vectors};
 use crate::spectrum::{Draw, Lanes};
 use crate::trace::media::{Media, media_of_lights};
 use crate::trace::parallel::in_parallel;
+use crate::trace::path_start::PathStart;
 use crate::trace::stats::Stats;
 use crate::trace::walk::{PathKind, Polarization, Polarized, Walker};
 use crate::trace::{Transport, World};
@@ -48,6 +50,8 @@ pub struct LightVertices<const N: usize> {
     center: DVec3,
     /// D.
     near: f64,
+    /// How paths of each light start, where they do not find all light.
+    starts: Option<Arc<[PathStart]>>,
     /// The instructions by which candidates are weighed.
     instructions: Instructions,
     pub stats: Stats,
@@ -96,12 +100,11 @@ const LIGHT: u32 = 1;
 /// Light paths are followed as photons are.
 const LIGHT_PATHS: Transport = Transport::Random { split: 0.25, roulette: 0.05 };
 
-/// Whether light paths find all light that surfaces send each other in a scene, as paths from the camera do.
+/// Whether light paths find what surfaces send each other of a light that they start from, as paths from the camera do.
 ///
-/// Not where lights do not say where their light starts: skies, suns, lamps that show images, glowing glass. Not where
-/// interpolated normals bend glass or mirrors, whose light cannot be followed forward alike, nor where light crosses
-/// rough surfaces, nor where wavelengths are drawn anew for each camera sample.
-pub fn finds_all_light(world: &World) -> bool {
+/// Not where interpolated normals bend glass or mirrors, whose light cannot be followed forward alike, nor where light
+/// crosses rough surfaces, nor where wavelengths are drawn anew for each camera sample.
+pub fn can_be_followed(world: &World) -> bool {
     let scene = &world.scene;
     let is_plain = |id: usize| {
         let object = &scene.objects[id];
@@ -109,11 +112,8 @@ pub fn finds_all_light(world: &World) -> bool {
         let smooth = object.shape.is_smooth() || object.relief.is_some();
         !(lobes.intersects(Lobes::GLOSSY_TRANSMISSION) || (smooth && lobes.has_delta()))
     };
-    let shines = |light: &Light<_>| light.flux() > 0.0 && light.flux().is_finite();
     !world.method.basis.draws_wavelengths()
         && matches!(world.method.transport, Transport::Random { .. })
-        && !scene.lights.is_empty()
-        && scene.lights.iter().all(shines)
         && (0..scene.objects.len()).all(is_plain)
 }
 
@@ -129,6 +129,8 @@ pub struct LightPaths<'a> {
     /// Of their random numbers.
     seed: u64,
     by_flux: Distribution,
+    /// Whether all light is theirs.
+    finds_all: bool,
     media: Vec<Option<Media>>,
     places: Vec<Place>,
 }
@@ -140,20 +142,17 @@ struct Followed<const N: usize> {
 }
 
 impl<'a> LightPaths<'a> {
-    /// None where they would not find all light, or nothing shines.
+    /// Those that the method asks for; none where no light can be followed.
     pub fn new(world: &'a World, seed: u64) -> Option<Self> {
-        if !finds_all_light(world) {
+        if world.path_starts.is_empty() || !can_be_followed(world) {
             return None;
         }
-        let flux = |(id, light): (LightId, &Light<_>)| light.flux() * world.luminance(id);
-        let by_flux = Distribution::new(world.scene.lights.iter().enumerate().map(flux));
+        let starts = || world.path_starts.iter().zip(&world.scene.lights);
+        let flux = |(id, (start, light)): (LightId, (&PathStart, &Light<_>))| start.flux(light) * world.luminance(id);
+        let by_flux = Distribution::new(starts().enumerate().map(flux));
+        let finds_all = world.path_starts.iter().all(|start| matches!(start, PathStart::Anywhere));
         let (media, places) = (media_of_lights(&world.scene), places(world));
-        (by_flux.total() > 0.0).then_some(Self { world, seed, by_flux, media, places })
-    }
-
-    /// Those that the method asks for.
-    pub fn asked_for(world: &'a World, seed: u64) -> Option<Self> {
-        if world.method.light_vertices { Self::new(world, seed) } else { None }
+        (by_flux.total() > 0.0).then_some(Self { world, seed, by_flux, finds_all, media, places })
     }
 
     /// The vertices for some samples of each pixel, at most `SHARED`.
@@ -188,19 +187,20 @@ impl<'a> LightPaths<'a> {
         let world = self.world;
         let mut walker = Walker::<N, P>::new(world, LIGHT_PATHS);
         let draw = world.method.basis.draw(0.0);
+        let over = if self.finds_all || !world.has_map() { Surfaces::All } else { Surfaces::AllButPhotons };
         let mut vertices = Vec::new();
         for number in paths {
             let sampler = Sampler::new(self.seed ^ SEED, [set, 0], number as u32);
             let drawn = self.by_flux.sample(sampler.four_plain(BranchKey::CAMERA, LIGHT)[0]);
             let light = drawn.index;
-            let Some(mut emitted) = world.scene.lights[light].emit(sampler.four(BranchKey::CAMERA, START)) else {
-                continue;
-            };
+            let u = sampler.four(BranchKey::CAMERA, START);
+            let emitted = world.path_starts[light].emit(&world.scene, &world.scene.lights[light], u);
+            let Some(mut emitted) = emitted else { continue };
             emitted.factor /= drawn.probability;
             let around = || Media::around(&world.scene, emitted.ray.origin, emitted.ray.direction);
             let media = self.media[light].unwrap_or_else(around);
             let start = Start { emitted: &emitted, light, media, early: true };
-            follow_photon(&mut walker, start, &draw, &sampler, Surfaces::All, &mut |_, landing| {
+            follow_photon(&mut walker, start, &draw, &sampler, over, &mut |_, landing| {
                 vertices.extend(kept(world, landing));
             });
         }
@@ -220,7 +220,9 @@ impl<'a> LightPaths<'a> {
         for (number, (vertex, power)) in vertices.iter().zip(self.powers(&vertices)).enumerate() {
             candidates[number % count].set(number / count, (vertex.position - center) / near, vertex.flat, power);
         }
-        LightVertices { candidates, vertices, center, near, instructions: Instructions::best(), stats }
+        let (starts, instructions) = (self.world.path_starts.clone(), Instructions::best());
+        let starts = (!self.finds_all).then_some(starts);
+        LightVertices { candidates, vertices, center, near, starts, instructions, stats }
     }
 
     /// What leaves each vertex, as the sensor sees it, times how often it is seen; 1 of the brightest.
@@ -240,6 +242,16 @@ impl<const N: usize> LightVertices<N> {
     /// D^2: of light from a distance d, the part d^2 / (d^2 + D^2) is looked for at vertices.
     pub fn near_squared(&self) -> f64 {
         self.near * self.near
+    }
+
+    /// Whether all light that surfaces send each other is looked for.
+    pub fn carry_all(&self) -> bool {
+        self.starts.is_none()
+    }
+
+    /// Whether the light that comes along a ray from a light is looked for behind the first surface that it meets.
+    pub fn carry(&self, world: &World, light: LightId, ray: &Ray) -> bool {
+        self.starts.as_ref().is_none_or(|starts| starts[light].covers(&world.scene.lights[light], ray))
     }
 
     /// The chance with which a bounce goes on from a surface at a distance whose light is looked for at light vertices.

@@ -13,6 +13,6 @@ mod usefulness;
 pub use batch::{Batch, Sent, batches, send};
 pub use follow::{Splat, show};
 pub use gather::{Gathered, Gathering, Part, PartSpectrum, gather};
-pub use light_vertices::{LightPaths, LightVertex, LightVertices, SHARED, holds_vertices};
+pub use light_vertices::{LightPaths, LightVertex, LightVertices, SHARED, can_be_followed, holds_vertices};
 pub use pass_light::PassLight;
 pub use photon_map::{PhotonMap, photons, send_kept};

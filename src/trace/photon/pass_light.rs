@@ -18,7 +18,7 @@ impl<const N: usize, P: Polarization<N>> PassLight<N, P> {
     pub fn new(world: &World, pass: &Pass) -> Self {
         let photons = photons::<N, P>(world, pass);
         let numbers = &pass.numbers;
-        let vertices = match LightPaths::asked_for(world, pass.seed) {
+        let vertices = match LightPaths::new(world, pass.seed) {
             Some(light_paths) => {
                 let shared = |first: u32| light_paths.shared::<N, P>(first..(first + SHARED).min(numbers.end));
                 numbers.clone().step_by(SHARED as usize).map(shared).collect()

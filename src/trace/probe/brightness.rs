@@ -7,6 +7,7 @@ use crate::math::{Bounds, BranchKey, DVec3, Frame, Ray, Sampler, cosine_hemisphe
 use crate::shape::{Quad, Shape};
 use crate::trace::bright::{BrightPlace, BrightPlaces, MOST};
 use crate::trace::camera::{Bounce, Observer, PathTracer};
+use crate::trace::photon::LightPaths;
 use crate::trace::width::in_lanes;
 use crate::trace::{Transport, World};
 
@@ -45,10 +46,12 @@ fn places<const N: usize>(world: &World) -> Option<BrightPlaces> {
 }
 
 /// What the bounces of so many camera samples along each side of the image found.
-fn bounces<const N: usize>(world: &World, side: u32) -> Vec<Bounce> {
+pub(super) fn bounces<const N: usize>(world: &World, side: u32) -> Vec<Bounce> {
     let film = world.scene.film;
     let found = Bounces::default();
+    let vertices = LightPaths::new(world, world.method.seed).map(|light_paths| light_paths.few::<N>());
     let mut tracer = PathTracer::<N>::new(world).with_observer(&found);
+    tracer.light_vertices = vertices.as_ref();
     for place in 0..side * side {
         let [x, y] = film.whole().middle_of_cell(side, place);
         tracer.sample(&Sampler::of_pixel(world.method.seed ^ SEED, [x, y], place), [x, y]);

@@ -1,7 +1,7 @@
 //! What it is worth that lanes which part also go on together, learned from some thousand camera samples of both kinds.
 
 use super::cost::with_few_photons;
-use super::resampling_worth::{Noise, weigh};
+use super::pilot_noise::{Noise, weigh};
 use crate::film::Layer;
 use crate::trace::pass::Pass;
 use crate::trace::photon::photons;
@@ -21,6 +21,6 @@ pub fn control_gain(world: &World) -> Option<f64> {
         let few = with_few_photons(world);
         let photons = photons::<N, Polarized>(&few, &Pass::of_photons_alone(&few, 0));
         let of = |world| weigh(world, photons.as_ref(), None, Noise::OfChannels);
-        of(&few.with_control()).gain(&of(&few))
+        of(&few.with_control()).gain_over(&of(&few))
     })
 }

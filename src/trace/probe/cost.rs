@@ -72,8 +72,7 @@ fn probe_lanes<const N: usize, P: Polarization<N>>(world: &World) -> Probe {
         }
     }
     let before_vertices = Instant::now();
-    let vertices =
-        LightPaths::asked_for(world, world.method.seed).map(|light_paths| light_paths.shared::<N, P>(0..SHARED));
+    let vertices = LightPaths::new(world, world.method.seed).map(|light_paths| light_paths.shared::<N, P>(0..SHARED));
     let light_paths =
         vertices.as_ref().map_or(Duration::ZERO, |_| before_vertices.elapsed().div_f64(f64::from(SHARED)));
     let few = with_few_photons(world);

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::cost::with_few_photons;
-use super::resampling_worth::{DARK, LOOKING};
+use super::pilot_noise::{DARK, LOOKING};
 use crate::math::Sampler;
 use crate::trace::World;
 use crate::trace::camera::PathTracer;
@@ -85,7 +85,7 @@ struct Cell {
 fn look<const N: usize, P: Polarization<N>>(world: &World, cells: [u32; 2]) -> Vec<Found> {
     let few = with_few_photons(world);
     let photons = photons::<N, P>(&few, &Pass::of_photons_alone(&few, 0));
-    let vertices = LightPaths::asked_for(world, world.method.seed).map(|light_paths| light_paths.few::<N>());
+    let vertices = LightPaths::new(world, world.method.seed).map(|light_paths| light_paths.few::<N>());
     let row = |row: usize| look_at_row::<N, P>(&few, photons.as_ref(), vertices.as_ref(), cells, row as u32);
     in_parallel(cells[1] as usize, &row).concat()
 }

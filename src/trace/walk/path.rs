@@ -44,6 +44,8 @@ pub struct Path<const N: usize, P = Polarized> {
     pub is_seen: bool,
     /// Which objects there are for it.
     pub among: Among,
+    /// Whether the light that light vertices carry was looked for there, and does not count any more.
+    pub resampled: bool,
     /// Which of the walk's excitations it follows: its lanes are then what excites a dye.
     pub excitation: Option<u32>,
     /// By which lobe the first surface sends its light to the camera, if layers tell that apart.
@@ -158,6 +160,7 @@ impl<const N: usize, P: Polarization<N>> Path<N, P> {
             bounces: 0,
             is_seen: true,
             among: Among::All,
+            resampled: false,
             excitation: None,
             first: None,
         }

@@ -311,6 +311,7 @@ impl<'a, const N: usize, P: Polarization<N>> Departure<'a, N, P> {
         next.bounces = path.bounces + 1;
         next.is_seen = path.is_seen && !wide && !at.lobes.is_wide();
         next.among = path.among;
+        next.resampled = path.resampled;
         next.excitation = path.excitation;
         next.first = match path.bounces {
             0 if !wide && !crosses && world.layers.tell_lobes_apart() => Some(FirstLobe::Specular),

@@ -1,4 +1,5 @@
-//! What light vertices are worth, learned from some thousand camera samples with and without them.
+//! Which of two ways to render a scene takes less time to an equal error, learned from some thousand camera samples of
+//! each.
 
 use super::cost::with_few_photons;
 use crate::math::Sampler;
@@ -20,22 +21,15 @@ pub(super) const DARK: f64 = 0.1;
 /// Sets these random numbers apart from those of the image.
 const SEED: u64 = 0x7265_7361;
 
-/// How many times as long an equal error takes without light vertices; none where these would not find all light.
-///
-/// Variances are relative to the squares of the means, and those of the hundredth of the pixels that has most are left
-/// out. Rays followed stand for time, so that the answer is the same everywhere; all of the image counts, also where
-/// only a part of it is made.
-pub fn resampling_gain(world: &World) -> Option<f64> {
-    let light_paths = LightPaths::new(world, world.method.seed)?;
-    in_lanes!(&world.method.basis, N => compare::<N>(world, &light_paths))
-}
-
-fn compare<const N: usize>(world: &World, light_paths: &LightPaths) -> Option<f64> {
-    let vertices = light_paths.few::<N>();
-    let few = with_few_photons(world);
-    let photons = photons::<N, Polarized>(&few, &Pass::of_photons_alone(&few, 0));
-    let plain = weigh(&few, photons.as_ref(), None, Noise::OfSums);
-    weigh(&few, photons.as_ref(), Some(&vertices), Noise::OfSums).gain(&plain)
+/// The noise of some thousand camera samples all over the image, with few photons, and with light vertices if the
+/// method asks for them. All of the image counts, also where only a part of it is made.
+pub fn pilot_noise(world: &World) -> PilotNoise {
+    in_lanes!(&world.method.basis, N => {
+        let vertices = LightPaths::new(world, world.method.seed).map(|light_paths| light_paths.few::<N>());
+        let few = with_few_photons(world);
+        let photons = photons::<N, Polarized>(&few, &Pass::of_photons_alone(&few, 0));
+        weigh(&few, photons.as_ref(), vertices.as_ref(), Noise::OfSums)
+    })
 }
 
 /// Which noise counts.
@@ -54,7 +48,7 @@ struct Pixel {
 }
 
 /// What samples of pixels all over the image are.
-pub(super) struct Weighed {
+pub struct PilotNoise {
     pixels: Vec<Pixel>,
     rays: f64,
 }
@@ -64,7 +58,7 @@ pub(super) fn weigh<const N: usize>(
     photons: Option<&PhotonMap<N>>,
     vertices: Option<&LightVertices<N>>,
     noise: Noise,
-) -> Weighed {
+) -> PilotNoise {
     let mut tracer = PathTracer::<N>::new(world).with_photons(photons);
     tracer.light_vertices = vertices;
     let film = world.scene.film;
@@ -89,12 +83,15 @@ pub(super) fn weigh<const N: usize>(
     };
     let pixels = (0..SIDE * SIDE).map(pixel).collect();
     let stats = tracer.walker.stats;
-    Weighed { pixels, rays: stats.rays as f64 + LOOKING * stats.resampled as f64 }
+    PilotNoise { pixels, rays: stats.rays as f64 + LOOKING * stats.resampled as f64 }
 }
 
-impl Weighed {
-    /// How many times as long an equal error takes with other samples.
-    pub(super) fn gain(&self, others: &Self) -> Option<f64> {
+impl PilotNoise {
+    /// How many times as long an equal error takes with other samples; none where there is no noise.
+    ///
+    /// Variances are relative to the squares of the means, and those of the hundredth of the pixels that has most are
+    /// left out. Rays followed stand for time, so that the answer is the same everywhere.
+    pub fn gain_over(&self, others: &Self) -> Option<f64> {
         let mean = others.pixels.iter().map(|pixel| pixel.mean).sum::<f64>() / others.pixels.len() as f64;
         let gain = others.error(mean) * others.rays / (self.error(mean) * self.rays);
         gain.is_finite().then_some(gain)

@@ -1,0 +1,84 @@
+//! How light that surfaces send each other is found.
+
+use std::cell::OnceCell;
+
+use crate::light::Light;
+use crate::trace::{PilotNoise, World, bright_places, pilot_noise, with_light_vertices};
+
+/// How much shorter an equal error must take: a pilot knows no better.
+const CLEARLY: f64 = 1.25;
+/// Fewest camera samples of an image with light vertices: of a smaller one there would be so few light paths that their
+/// noise, which all pixels share, shows in means over the image.
+const LARGE: f64 = 1e6;
+
+/// A world that finds it in one way.
+struct Way {
+    world: World,
+    noise: OnceCell<PilotNoise>,
+    /// How many times as long an equal error takes by bounces alone, as surfaces scatter them.
+    gain: f64,
+    /// What a person is told of it.
+    reasons: Vec<String>,
+}
+
+/// The world in which light between surfaces is found by light vertices, by bounces that are aimed at bright places, or
+/// by both, whichever pays most, if any does; and what a person is told of it.
+pub(super) fn between(world: World) -> (World, Vec<String>) {
+    let plain = Way { world, noise: OnceCell::new(), gain: 1.0, reasons: Vec::new() };
+    let aimed = plain.with_aimed_bounces();
+    let looking = plain.with_light_vertices();
+    let both = looking.as_ref().and_then(Way::with_aimed_bounces);
+    let others = [looking, both, aimed].into_iter().flatten();
+    let best = others.fold(plain, |best, other| if other.gain > best.gain { other } else { best });
+    (best.world, best.reasons)
+}
+
+impl Way {
+    fn noise(&self) -> &PilotNoise {
+        self.noise.get_or_init(|| pilot_noise(&self.world))
+    }
+
+    /// Another world instead, if it is clearly better.
+    fn improved(&self, world: World, reason: impl FnOnce(&World, &str) -> String) -> Option<Self> {
+        let noise = pilot_noise(&world);
+        let gain = noise.gain_over(self.noise())?;
+        let without = format!("the same error would take about {gain:.1} times as long");
+        let reasons = self.reasons.iter().cloned().chain([reason(&world, &without)]).collect();
+        (gain > CLEARLY).then(|| Self { world, noise: noise.into(), gain: self.gain * gain, reasons })
+    }
+
+    /// With light vertices. Their paths know no dyes.
+    fn with_light_vertices(&self) -> Option<Self> {
+        let (film, method) = (self.world.scene().film, self.world.method());
+        let samples = f64::from(film.width) * f64::from(film.height) * f64::from(method.samples);
+        if samples < LARGE || method.diffuse_bounces == 0 || self.world.fluoresces() {
+            return None;
+        }
+        self.improved(with_light_vertices(&self.world)?, |world, without| {
+            let light = carried(world);
+            format!("{light} between surfaces is looked for at light vertices; without them, {without}")
+        })
+    }
+
+    /// With bounces that are aimed at bright places.
+    fn with_aimed_bounces(&self) -> Option<Self> {
+        let places = bright_places(&self.world)?;
+        let count = places.places.len();
+        let [places_word, light] = if count == 1 { ["place", "lights"] } else { ["places", "light"] };
+        self.improved(self.world.with_bright(Some(places)), |_, without| {
+            format!("bounces in the room are aimed at {count} bright {places_word} that {light} it; without, {without}")
+        })
+    }
+}
+
+/// Which light light vertices carry.
+fn carried(world: &World) -> &'static str {
+    let of = |light: &Light<_>| matches!(light, Light::Sun(_) | Light::Environment(_));
+    let lights = &world.scene().lights;
+    match (world.method().sunlit.is_empty(), lights.iter().any(of), lights.iter().all(of)) {
+        (_, false, _) => "light",
+        (false, _, true) => "sunlight",
+        (false, ..) => "light of suns and lamps",
+        (true, ..) => "light of lamps",
+    }
+}

@@ -1,0 +1,134 @@
+//! How light paths start whose vertices paths from the camera look at.
+//!
+//! Those of lamps start anywhere on them. Those of a sun start toward the places in its light that paths from the
+//! camera find: on a disc across the sun's light, densest where such places lie behind. Light beside the disc is left
+//! to paths from the camera: of every ray to the sun it is known whether it runs through the disc.
+
+use std::cell::Cell;
+
+use serde::{Deserialize, Serialize};
+
+use super::guide::Guide;
+use crate::light::{Beam, LeSample, Light, LightId};
+use crate::math::{DVec3, Ray};
+use crate::scene::Scene;
+use crate::shape::Ball;
+use crate::spectrum::Table;
+
+/// Places in the light of a sun that paths from the camera find.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Sunlit {
+    /// The sun.
+    pub light: LightId,
+    /// A ball around nearly all of them.
+    pub center: DVec3,
+    /// Its radius.
+    pub radius: f64,
+    /// How much light was found behind the cells of a grid across the ball, by their numbers: those where there was
+    /// some.
+    pub cells: Vec<(u32, f32)>,
+}
+
+/// How paths of a light start.
+#[derive(Clone, Debug)]
+pub(super) enum PathStart {
+    /// They do not: its light is left to paths from the camera.
+    Nowhere,
+    /// Wherever the light leaves it.
+    Anywhere,
+    /// In a beam of a sun.
+    Beam(SunBeam),
+}
+
+impl PathStart {
+    /// Of one light; some suns have places in their light.
+    pub(super) fn of(scene: &Scene<Table>, id: LightId, sunlit: &[Sunlit]) -> Self {
+        let flux = scene.lights[id].flux();
+        if flux > 0.0 && flux.is_finite() {
+            return Self::Anywhere;
+        }
+        let beam = || SunBeam::new(scene, sunlit.iter().find(|sunlit| sunlit.light == id)?);
+        beam().map_or(Self::Nowhere, Self::Beam)
+    }
+
+    /// The flux of the paths, per emission, about; 0 where there are none.
+    pub(super) fn flux(&self, light: &Light<Table>) -> f64 {
+        match self {
+            Self::Nowhere => 0.0,
+            Self::Anywhere => light.flux(),
+            Self::Beam(beam) => beam.flux,
+        }
+    }
+
+    /// The start of a path, for four random numbers; its factor makes flux of the emission. None where the light does
+    /// not shine.
+    pub(super) fn emit(&self, scene: &Scene<Table>, light: &Light<Table>, u: [f64; 4]) -> Option<LeSample> {
+        match self {
+            Self::Nowhere => None,
+            Self::Anywhere => light.emit(u),
+            Self::Beam(beam) => beam.emit(scene, light, u),
+        }
+    }
+
+    /// Whether paths start along a ray to the light.
+    pub(super) fn covers(&self, light: &Light<Table>, ray: &Ray) -> bool {
+        match self {
+            Self::Nowhere => false,
+            Self::Anywhere => true,
+            Self::Beam(beam) => place_in_disc(light, &beam.beam, ray).is_some(),
+        }
+    }
+}
+
+/// Paths from a sun, ready to be started.
+#[derive(Clone, Debug)]
+pub(super) struct SunBeam {
+    beam: Beam,
+    guide: Guide,
+    /// The flux that is worth sending, per irradiance: about the area in which light was found.
+    flux: f64,
+    /// A ball around all that is finite.
+    world: Ball,
+}
+
+impl SunBeam {
+    /// None where no light was found, or the light is no sun.
+    fn new(scene: &Scene<Table>, sunlit: &Sunlit) -> Option<Self> {
+        let light = scene.lights.get(sunlit.light).filter(|light| matches!(light, Light::Sun(_)))?;
+        let beam = light.beam(&Ball { center: sunlit.center, radius: sunlit.radius })?;
+        let world = scene.objects.iter().filter_map(|object| object.shape.ball()).reduce(Ball::around)?;
+        let guide = Guide::weighted(&sunlit.cells);
+        let flux = guide.extent() * 4.0 * sunlit.radius * sunlit.radius;
+        (flux > 0.0 && flux.is_finite()).then_some(Self { beam, guide, flux, world })
+    }
+
+    fn emit(&self, scene: &Scene<Table>, light: &Light<Table>, u: [f64; 4]) -> Option<LeSample> {
+        let sample = light.sample_le(&self.beam, self.guide.sample([u[0], u[1]]), [u[2], u[3]])?;
+        let factor = sample.factor / light.pdf_le(&self.beam, &sample, |place| self.guide.density(place));
+        let ray = self.started_outside(scene, &sample.ray);
+        factor.is_finite().then_some(LeSample { ray, factor, ..sample })
+    }
+
+    /// The same ray, started outside of all that is finite and beyond all planes without end.
+    fn started_outside(&self, scene: &Scene<Table>, ray: &Ray) -> Ray {
+        let sky = -ray.direction;
+        let out = (self.world.center - ray.origin).dot(sky) + 2.0 * self.world.radius;
+        let mut start = Ray { origin: ray.origin + sky * out, direction: sky };
+        // A ray crosses a plane once.
+        for _ in scene.unbounded() {
+            let Some(hit) = scene.nearest(&start, f64::INFINITY, &|_| true) else { break };
+            start.origin += sky * (hit.crossing.t + self.world.radius);
+        }
+        Ray { direction: ray.direction, ..start }
+    }
+}
+
+/// Where a ray to a sun runs through the disc of a beam, as a place of the unit square; none beside it.
+pub(super) fn place_in_disc(light: &Light<Table>, beam: &Beam, ray: &Ray) -> Option<[f64; 2]> {
+    let (place, ray) = (Cell::new(None), Ray { direction: -ray.direction, ..*ray });
+    light.pdf_le(beam, &LeSample { ray, factor: 1.0, surface: None }, |uv| {
+        place.set(Some(uv));
+        1.0
+    });
+    place.get()
+}

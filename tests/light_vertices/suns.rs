@@ -1,0 +1,174 @@
+//! Light vertices of suns and lamps, under skies whose light is left to paths from the camera.
+
+use std::f64::consts::PI;
+
+use abbe::math::DVec3;
+use abbe::trace::{LightPass, MapPasses, Method, Sunlit, World};
+
+use super::{SEEDS, WHITE, assert_same, ball, films, lamp, looking, of_quarter, quad, screen, smooth, walls};
+use crate::support::scenes::{body, environment, standard_errors, view};
+
+const SUN: &str = "[[light]]\nsun = { toward = [1, 0.7, 0.1], irradiance = { rgb = [15, 13, 10] } }\n";
+
+fn sun(more: &str) -> String {
+    SUN.replace(" }\n", &format!(", {more} }}\n"))
+}
+
+/// Mirrors throw its light to where paths from the camera find it by chance often enough to tell a mean.
+fn wide() -> String {
+    sun("angular_diameter = 40")
+}
+
+/// The box without its right wall, but for a strip at its lower edge.
+fn open(render: &str, more: &[String]) -> String {
+    let walls = walls();
+    let strip = quad([2.0, 0.3, 0.0], [0.0, 0.0, 2.5], [0.0, 0.3, 0.0]);
+    let shapes: Vec<&str> = [0, 1, 3, 4, 5].map(|i| walls[i].as_str()).into_iter().chain([strip.as_str()]).collect();
+    view([1.3, 1.6, 2.2], [-0.6, 1.0, -1.0], 75.0, 12)
+        + &format!("[render]\nsamples = 32\n{render}\n")
+        + &body("wall", WHITE, &shapes)
+        + &more.concat()
+}
+
+fn cubes() -> String {
+    let shapes = [
+        "cube = { center = [-0.6, 0.6, -0.9], size = [1, 1.2, 1] }",
+        "cube = { center = [0.9, 0.3, 0.2], size = 0.6 }",
+    ];
+    body("red", "diffuse = { reflectance = { rgb = [0.8, 0.2, 0.1] } }", &shapes)
+}
+
+fn pane() -> String {
+    let window = quad([2.0, 1.8, 0.0], [0.0, 0.0, 2.5], [0.0, 1.2, 0.0]);
+    body("pane", "thin = { index = 1.5 }", &[&window])
+}
+
+fn rooms() -> Vec<(&'static str, String)> {
+    let with = |more: &[String]| open("", more);
+    let (sky, sun_alone) = (environment(0.8), SUN.to_owned());
+    let plane = "[[object]]\nshape.plane = { point = [0, -0.2, 0], normal = [0, 1, 0] }\nmaterial = \"wall\"\n";
+    let holes = "[material.paint]\ndiffuse = { reflectance = 0.5 }\n".to_owned()
+        + &body(
+            "screen",
+            "mask = { material = \"paint\", opacity = 0.4 }",
+            &[&quad([1.9, 1.5, 0.0], [0.0, 0.0, 2.3], [0.0, 1.2, 0.0])],
+        );
+    vec![
+        ("a sun", with(&[sun_alone.clone(), cubes()])),
+        ("a sun and a sky", with(&[sun_alone.clone(), sky.clone(), cubes()])),
+        ("a pane", with(&[sun_alone.clone(), sky.clone(), cubes(), pane()])),
+        ("a sun and a lamp", with(&[sun_alone.clone(), lamp(), cubes()])),
+        ("a lamp under a sky", with(&[lamp(), sky.clone(), cubes()])),
+        ("a sun, a sky and a lamp", with(&[sun_alone.clone(), sky.clone(), lamp(), cubes()])),
+        ("parallel light", with(&[sun("angular_diameter = 0"), sky.clone(), cubes()])),
+        ("a wide sun", with(&[wide(), sky.clone(), cubes()])),
+        (
+            "two suns",
+            with(&[
+                sun_alone.clone(),
+                "[[light]]\nsun = { toward = [1, 0.2, -0.3], irradiance = { rgb = [2, 4, 9] } }\n".into(),
+                cubes(),
+            ]),
+        ),
+        ("a plane without end", with(&[sun_alone.clone(), sky.clone(), plane.into(), cubes()])),
+        ("a mirror", with(&[wide(), sky.clone(), ball("silver", "mirror = { reflectance = 0.9 }")])),
+        (
+            "rough metal",
+            with(&[sun_alone.clone(), ball("metal", "conductor = { metal = \"copper\", roughness = 0.3 }")]),
+        ),
+        ("plastic", with(&[sun_alone.clone(), ball("plastic", "plastic = { reflectance = 0.6, index = 1.5 }")])),
+        ("a smooth mesh", with(&[sun_alone.clone(), smooth("diffuse = { reflectance = { rgb = [0.8, 0.5, 0.2] } }")])),
+        ("holes", with(&[sun_alone.clone(), sky.clone(), holes, cubes()])),
+        ("a mirror on the wall", open("diffuse_bounces = 1", &[wide(), screen("mirror = { reflectance = 0.9 }")])),
+        ("two diffuse bounces", open("diffuse_bounces = 2", &[sun_alone.clone(), sky.clone(), cubes()])),
+        ("three bounces", open("max_bounces = 3", &[sun_alone, sky, cubes()])),
+    ]
+}
+
+/// Quarters of images have the same means with light vertices and without, whatever lights there are beside those that
+/// light paths start from.
+#[test]
+fn light_vertices_of_some_lights_change_no_mean() {
+    let rooms = rooms();
+    for (what, text) in &rooms {
+        let worst = assert_same(what, text, &|_| (), &looking, rooms.len());
+        println!("{what}: at most {worst:.1} sigma");
+    }
+}
+
+/// Light of a sun beside the disc from which paths start is left to paths from the camera, wherever the disc lies.
+#[test]
+fn paths_may_start_in_any_part_of_a_suns_light() {
+    let text = open("", &[SUN.into(), environment(0.5), cubes(), pane()]);
+    let parts = [
+        ("a small part", [-1.0, 0.4, 0.3], 0.5, None),
+        ("half", [0.0, 1.0, -2.5], 2.5, Some(64 * 32 + 32)),
+        ("all, mostly elsewhere", [0.0; 3], 20.0, Some(64 * 10 + 30)),
+        ("nothing", [0.0, 0.0, 30.0], 1.0, None),
+    ];
+    for (what, center, radius, cell) in parts {
+        let cells = cell.map(|cell| (cell, 1.0)).into_iter().collect();
+        let sunlit = Sunlit { light: 0, center: DVec3::from(center), radius, cells };
+        let part = |world: &World| world.with_light_vertices(vec![sunlit.clone()]);
+        if what == "nothing" {
+            let [plain, looked] =
+                [None, Some(&part as &dyn Fn(&World) -> World)].map(|with| films(&text, &|_| (), with, 1));
+            assert_eq!(plain, looked);
+        } else {
+            let worst = assert_same(what, &text, &|_| (), &part, 3);
+            println!("{what}: at most {worst:.1} sigma");
+        }
+    }
+}
+
+/// Photons bring what smooth surfaces throw, light vertices the rest.
+#[test]
+fn light_vertices_of_some_lights_leave_to_photons_what_is_theirs() {
+    let map = MapPasses { count: 2, photons: 8192, radius: 0.5, chance: 0.5 };
+    let glass = || ball("glass", "dielectric = { index = 1.5 }");
+    let rooms = [
+        ("glass in the sun", open("", &[SUN.into(), environment(0.5), glass()]), vec![0], Some(map)),
+        ("a pane", open("", &[SUN.into(), environment(0.5), cubes(), pane()]), vec![0], Some(map)),
+        ("photons that are shown", open("", &[wide(), environment(0.5), glass()]), vec![0], None),
+        ("photons of the lamp alone", open("", &[SUN.into(), lamp(), environment(0.5), glass()]), vec![1], Some(map)),
+    ];
+    for (what, text, lights, map) in &rooms {
+        let photons = |method: &mut Method| {
+            method.light_pass = Some(LightPass { photons: 8192, lights: lights.clone(), map: *map });
+        };
+        let worst = assert_same(what, text, &photons, &looking, rooms.len());
+        println!("{what}: at most {worst:.1} sigma");
+    }
+}
+
+/// A disc of radius R in the sun has the radiosity B = rho E cos t. What comes from there to a small disc at the height
+/// h above its middle is B R^2 / (R^2 + h^2): Howell, Menguc, Daun & Siegel 2020, *Thermal Radiation Heat
+/// Transfer*, configuration factor of an element parallel to a disk.
+#[test]
+fn what_a_sunlit_disc_sends_has_its_closed_form() {
+    for (radius, height) in [(1.0, 1.0), (3.0, 0.5), (0.4, 2.0)] {
+        let text = view([0.1, height - 0.3, 0.03], [0.0, height, 0.0], 0.6, 12)
+            + "[render]\nsamples = 64\nmax_bounces = 2\n"
+            + SUN
+            + &body(
+                "floor",
+                "diffuse = { reflectance = 0.6 }",
+                &[&format!("disc = {{ center = [0, 0, 0], normal = [0, 1, 0], radius = {radius:?} }}")],
+            )
+            + &body(
+                "small",
+                "diffuse = { reflectance = 0.5 }",
+                &[&format!("disc = {{ center = [0, {height:?}, 0], normal = [0, -1, 0], radius = 0.008 }}")],
+            );
+        let irradiance = 13.0 * 0.7 / (1.0_f64 + 0.49 + 0.01).sqrt();
+        let factor = radius * radius / (radius * radius + height * height);
+        let expected = 0.5 / PI * 0.6 * irradiance * factor;
+        let films = films(&text, &|_| (), Some(&looking), SEEDS);
+        for quarter in 0..4 {
+            let (mean, error) = of_quarter(&films, quarter, 1);
+            println!("radius {radius}, height {height}: {mean:.6} +- {error:.1e} for {expected:.6}");
+            assert!((mean - expected).abs() < standard_errors(12) * error + 1e-4 * expected, "{mean} for {expected}");
+            assert!(error < 0.02 * expected, "{error}");
+        }
+    }
+}
