@@ -173,10 +173,10 @@ CHARTS = (
         PEERS / "window.toml",
         (48, 48),
         (
-            abbe("Abbe", 4, 16, 64, model='"rgb"'),
+            abbe("Abbe", 4, 16, 64, 256, model='"rgb"'),
             mitsuba("llvm_ad_rgb", 16, 64, 256),
             mitsuba("scalar_rgb", 4, 16, 64),
-            cycles(4, 16, 64),
+            cycles(4, 16, 64, 256),
         ),
     ),
     Chart(
