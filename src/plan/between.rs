@@ -11,7 +11,7 @@ const CLEARLY: f64 = 1.25;
 /// noise, which all pixels share, shows in means over the image.
 const LARGE: f64 = 1e6;
 
-/// A world that finds it in one way.
+/// A world in which light between surfaces is found in one way.
 struct Way {
     world: World,
     noise: OnceCell<PilotNoise>,

@@ -24,8 +24,7 @@ pub struct Sunlit {
     pub center: DVec3,
     /// Its radius.
     pub radius: f64,
-    /// How much light was found behind the cells of a grid across the ball, by their numbers: those where there was
-    /// some.
+    /// The numbers of those cells of a grid across the ball behind which light was found, and how much.
     pub cells: Vec<(u32, f32)>,
 }
 
@@ -41,7 +40,7 @@ pub(super) enum PathStart {
 }
 
 impl PathStart {
-    /// Of one light; some suns have places in their light.
+    /// Of one light, where some suns have places in their light.
     pub(super) fn of(scene: &Scene<Table>, id: LightId, sunlit: &[Sunlit]) -> Self {
         let flux = scene.lights[id].flux();
         if flux > 0.0 && flux.is_finite() {
@@ -109,7 +108,7 @@ impl SunBeam {
         factor.is_finite().then_some(LeSample { ray, factor, ..sample })
     }
 
-    /// The same ray, started outside of all that is finite and beyond all planes without end.
+    /// The ray of a path, started outside of all that is finite and beyond all planes without end.
     fn started_outside(&self, scene: &Scene<Table>, ray: &Ray) -> Ray {
         let sky = -ray.direction;
         let out = (self.world.center - ray.origin).dot(sky) + 2.0 * self.world.radius;

@@ -35,7 +35,7 @@ pub struct DirectLighting<'a, const N: usize, P> {
     pub u: [f64; 4],
     /// How bounces are aimed from here, if they are.
     pub aiming: Option<&'a Aiming<'a>>,
-    /// The light vertices whose light was looked for before.
+    /// Light vertices at which light was looked for before: what they carry does not count any more.
     pub found_at: Option<&'a LightVertices<N>>,
 }
 

@@ -87,7 +87,7 @@ pub enum Surfaces {
     Smooth,
     /// All.
     All,
-    /// All, but not by ways on which photons are sent.
+    /// All, but light that starts toward an object to which its photons are sent is left to those.
     AllButPhotons,
 }
 

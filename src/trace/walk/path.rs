@@ -44,7 +44,7 @@ pub struct Path<const N: usize, P = Polarized> {
     pub is_seen: bool,
     /// Which objects there are for it.
     pub among: Among,
-    /// Whether the light that light vertices carry was looked for there, and does not count any more.
+    /// Whether light was looked for at light vertices before: what they carry does not count any more.
     pub resampled: bool,
     /// Which of the walk's excitations it follows: its lanes are then what excites a dye.
     pub excitation: Option<u32>,
