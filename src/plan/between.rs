@@ -73,9 +73,12 @@ impl Way {
 
 /// Which light light vertices carry.
 fn carried(world: &World) -> &'static str {
-    let of = |light: &Light<_>| matches!(light, Light::Sun(_) | Light::Environment(_));
     let lights = &world.scene().lights;
-    match (world.method().sunlit.is_empty(), lights.iter().any(of), lights.iter().all(of)) {
+    match (
+        world.method().sunlit.is_empty(),
+        lights.iter().any(Light::is_infinite),
+        lights.iter().all(Light::is_infinite),
+    ) {
         (_, false, _) => "light",
         (false, _, true) => "sunlight",
         (false, ..) => "light of suns and lamps",

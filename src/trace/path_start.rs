@@ -9,6 +9,7 @@ use std::cell::Cell;
 use serde::{Deserialize, Serialize};
 
 use super::guide::Guide;
+use super::photon_targets::{back_to_the_sky, ball_around_all};
 use crate::light::{Beam, LeSample, Light, LightId};
 use crate::math::{DVec3, Ray};
 use crate::scene::Scene;
@@ -95,7 +96,7 @@ impl SunBeam {
     fn new(scene: &Scene<Table>, sunlit: &Sunlit) -> Option<Self> {
         let light = scene.lights.get(sunlit.light).filter(|light| matches!(light, Light::Sun(_)))?;
         let beam = light.beam(&Ball { center: sunlit.center, radius: sunlit.radius })?;
-        let world = scene.objects.iter().filter_map(|object| object.shape.ball()).reduce(Ball::around)?;
+        let world = ball_around_all(scene)?;
         let guide = Guide::weighted(&sunlit.cells);
         let flux = guide.extent() * 4.0 * sunlit.radius * sunlit.radius;
         (flux > 0.0 && flux.is_finite()).then_some(Self { beam, guide, flux, world })
@@ -110,13 +111,11 @@ impl SunBeam {
 
     /// The ray of a path, started outside of all that is finite and beyond all planes without end.
     fn started_outside(&self, scene: &Scene<Table>, ray: &Ray) -> Ray {
-        let sky = -ray.direction;
-        let out = (self.world.center - ray.origin).dot(sky) + 2.0 * self.world.radius;
-        let mut start = Ray { origin: ray.origin + sky * out, direction: sky };
+        let mut start = back_to_the_sky(&self.world, ray);
         // A ray crosses a plane once.
         for _ in scene.unbounded() {
             let Some(hit) = scene.nearest(&start, f64::INFINITY, &|_| true) else { break };
-            start.origin += sky * (hit.crossing.t + self.world.radius);
+            start.origin += start.direction * (hit.crossing.t + self.world.radius);
         }
         Ray { direction: ray.direction, ..start }
     }

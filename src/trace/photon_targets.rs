@@ -64,7 +64,7 @@ impl PhotonTargets {
         let balls = shapes().zip(&objects).filter(|(_, target)| **target).filter_map(|(shape, _)| shape.ball());
         let balls = gathered(balls.collect(), (MOST_AIMS / lights.len().max(1)).clamp(1, MOST));
         let [even, disc] = [Guide::even(), Guide::disc()].map(Arc::new);
-        let world = shapes().filter_map(|shape| shape.ball()).reduce(Ball::around)?;
+        let world = ball_around_all(scene)?;
         let mut targets = Vec::new();
         for (&(light, luminance), ball) in lights.iter().flat_map(|light| balls.iter().map(move |ball| (light, ball))) {
             let Some(beam) = scene.lights[light].beam(ball) else { continue };
@@ -164,12 +164,22 @@ impl PhotonTargets {
 
     /// The ray of a photon from the sky, started outside of all that is finite; none where a plane hides the sky there.
     fn started_outside(&self, scene: &Scene<Table>, ray: &Ray) -> Option<Ray> {
-        let sky = -ray.direction;
-        let out = (self.world.center - ray.origin).dot(sky) + 2.0 * self.world.radius;
-        let start = Ray { origin: ray.origin + sky * out, direction: sky };
+        let start = back_to_the_sky(&self.world, ray);
         let hidden = scene.is_occluded(&start, f64::INFINITY, None, &Cell::new(None));
         (!hidden).then_some(Ray { direction: ray.direction, ..start })
     }
+}
+
+/// A ball around all that is finite; none where nothing is.
+pub(super) fn ball_around_all(scene: &Scene<Table>) -> Option<Ball> {
+    scene.objects.iter().filter_map(|object| object.shape.ball()).reduce(Ball::around)
+}
+
+/// The way of a photon from the sky, backwards from outside of a ball around all that is finite.
+pub(super) fn back_to_the_sky(world: &Ball, ray: &Ray) -> Ray {
+    let sky = -ray.direction;
+    let out = (world.center - ray.origin).dot(sky) + 2.0 * world.radius;
+    Ray { origin: ray.origin + sky * out, direction: sky }
 }
 
 /// Balls of which none lies in another; of more than are wanted, neighbors as one.

@@ -5,8 +5,8 @@ use std::f64::consts::PI;
 use abbe::math::DVec3;
 use abbe::trace::{LightPass, MapPasses, Method, Sunlit, World};
 
-use super::{SEEDS, WHITE, assert_same, ball, films, lamp, looking, of_quarter, quad, screen, smooth, walls};
-use crate::support::scenes::{body, environment, standard_errors, view};
+use super::{SEEDS, WHITE, assert_same, assert_shows, ball, films, lamp, looking, quad, screen, smooth, walls};
+use crate::support::scenes::{body, environment, view};
 
 const SUN: &str = "[[light]]\nsun = { toward = [1, 0.7, 0.1], irradiance = { rgb = [15, 13, 10] } }\n";
 
@@ -164,11 +164,6 @@ fn what_a_sunlit_disc_sends_has_its_closed_form() {
         let factor = radius * radius / (radius * radius + height * height);
         let expected = 0.5 / PI * 0.6 * irradiance * factor;
         let films = films(&text, &|_| (), Some(&looking), SEEDS);
-        for quarter in 0..4 {
-            let (mean, error) = of_quarter(&films, quarter, 1);
-            println!("radius {radius}, height {height}: {mean:.6} +- {error:.1e} for {expected:.6}");
-            assert!((mean - expected).abs() < standard_errors(12) * error + 1e-4 * expected, "{mean} for {expected}");
-            assert!(error < 0.02 * expected, "{error}");
-        }
+        assert_shows(&format!("radius {radius}, height {height}"), &films, expected, [1e-4, 0.02]);
     }
 }

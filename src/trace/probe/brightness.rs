@@ -2,7 +2,7 @@
 
 use std::cell::RefCell;
 
-use super::clusters::{Cluster, clusters, quantiles};
+use super::clusters::{Cluster, clusters, span};
 use crate::math::{Bounds, BranchKey, DVec3, Frame, Ray, Sampler, cosine_hemisphere, unit};
 use crate::shape::{Quad, Shape};
 use crate::trace::bright::{BrightPlace, BrightPlaces, MOST};
@@ -129,13 +129,8 @@ fn is_inside(world: &World, bounce: &Bounce, sampler: &Sampler) -> bool {
 
 /// The box in which bounces begin, but for a few.
 fn room_of(inside: &[Bounce]) -> Bounds {
-    let weight: f64 = inside.iter().map(|bounce| bounce.weight).sum();
-    let span = |axis: DVec3| {
-        let mut along: Vec<(f64, f64)> = inside.iter().map(|bounce| (bounce.from.dot(axis), bounce.weight)).collect();
-        along.sort_by(|a, b| a.0.total_cmp(&b.0));
-        quantiles(&along, weight, BEYOND)
-    };
-    let [x, y, z] = [DVec3::X, DVec3::Y, DVec3::Z].map(span);
+    let from: Vec<(DVec3, f64)> = inside.iter().map(|bounce| (bounce.from, bounce.weight)).collect();
+    let [x, y, z] = DVec3::AXES.map(|axis| span(&from, weight(inside), axis, BEYOND));
     let (min, max) = (DVec3::new(x[0], y[0], z[0]), DVec3::new(x[1], y[1], z[1]));
     let margin = 1e-6 * (max - min).length();
     Bounds { min: min - margin, max: max + margin }

@@ -58,7 +58,7 @@ impl Cluster {
         for turn in 0..TURNS {
             let (sin, cos) = libm::sincos(std::f64::consts::FRAC_PI_2 * f64::from(turn) / f64::from(TURNS));
             let axes = [DVec3::new(cos, sin, 0.0), DVec3::new(-sin, cos, 0.0), DVec3::Z].map(|x| frame.to_world(x));
-            let spans = axes.map(|axis| span(&points, weight, axis));
+            let spans = axes.map(|axis| span(&points, weight, axis, OUTSIDE));
             let [x, y, z] = spans.map(|[low, high]| high - low);
             let area = (x + z) * (y + z);
             if best.as_ref().is_none_or(|best| area < best.0) {
@@ -159,15 +159,10 @@ fn normal_of(points: &[(DVec3, f64)], weight: f64) -> DVec3 {
     normal
 }
 
-/// From where to where points reach along an axis, without a few at each end.
-fn span(points: &[(DVec3, f64)], weight: f64, axis: DVec3) -> [f64; 2] {
+/// From where to where weighted points reach along an axis, without a share of all their weight at each end.
+pub fn span(points: &[(DVec3, f64)], weight: f64, axis: DVec3, outside: f64) -> [f64; 2] {
     let mut along: Vec<(f64, f64)> = points.iter().map(|(point, share)| (point.dot(axis), *share)).collect();
     along.sort_by(|a, b| a.0.total_cmp(&b.0));
-    quantiles(&along, weight, OUTSIDE)
-}
-
-/// The places beyond which lies a share of the weight, at each end of a sorted list.
-pub fn quantiles(along: &[(f64, f64)], weight: f64, outside: f64) -> [f64; 2] {
     [reach(along.iter(), outside * weight), reach(along.iter().rev(), outside * weight)]
 }
 

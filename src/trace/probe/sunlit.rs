@@ -4,7 +4,7 @@ use std::cell::Cell;
 use std::collections::BTreeMap;
 
 use super::brightness::bounces;
-use super::clusters::quantiles;
+use super::clusters::span;
 use crate::light::{Light, LightId};
 use crate::math::{DVec3, Ray};
 use crate::scene::Ends;
@@ -64,12 +64,7 @@ fn of_sun(world: &World, id: LightId, ends: &[(DVec3, f64)]) -> Option<Sunlit> {
         return None;
     }
     let all: f64 = lit.iter().map(|place| place.1).sum();
-    let span = |axis: DVec3| {
-        let mut along: Vec<(f64, f64)> = lit.iter().map(|(place, light)| (place.dot(axis), *light)).collect();
-        along.sort_by(|a, b| a.0.total_cmp(&b.0));
-        quantiles(&along, all, BEYOND)
-    };
-    let [x, y, z] = [DVec3::X, DVec3::Y, DVec3::Z].map(span);
+    let [x, y, z] = DVec3::AXES.map(|axis| span(&lit, all, axis, BEYOND));
     let [low, high] = [0, 1].map(|i| DVec3::new(x[i], y[i], z[i]));
     let (center, radius) = (0.5 * (low + high), 0.5 * (high - low).length());
     let beam = light.beam(&Ball { center, radius })?;
