@@ -9,7 +9,7 @@ use std::cell::Cell;
 use serde::{Deserialize, Serialize};
 
 use super::guide::Guide;
-use super::photon_targets::{back_to_the_sky, ball_around_all};
+use super::photon_targets::{ball_around_all, started_outside};
 use crate::light::{Beam, LeSample, Light, LightId};
 use crate::math::{DVec3, Ray};
 use crate::scene::Scene;
@@ -105,19 +105,8 @@ impl SunBeam {
     fn emit(&self, scene: &Scene<Table>, light: &Light<Table>, u: [f64; 4]) -> Option<LeSample> {
         let sample = light.sample_le(&self.beam, self.guide.sample([u[0], u[1]]), [u[2], u[3]])?;
         let factor = sample.factor / light.pdf_le(&self.beam, &sample, |place| self.guide.density(place));
-        let ray = self.started_outside(scene, &sample.ray);
+        let ray = started_outside(scene, &self.world, &sample.ray);
         factor.is_finite().then_some(LeSample { ray, factor, ..sample })
-    }
-
-    /// The ray of a path, started outside of all that is finite and beyond all planes without end.
-    fn started_outside(&self, scene: &Scene<Table>, ray: &Ray) -> Ray {
-        let mut start = back_to_the_sky(&self.world, ray);
-        // A ray crosses a plane once.
-        for _ in scene.unbounded() {
-            let Some(hit) = scene.nearest(&start, f64::INFINITY, &|_| true) else { break };
-            start.origin += start.direction * (hit.crossing.t + self.world.radius);
-        }
-        Ray { direction: ray.direction, ..start }
     }
 }
 

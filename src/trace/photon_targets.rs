@@ -1,6 +1,5 @@
 //! Where photons are sent, and how they start.
 
-use std::cell::Cell;
 use std::sync::Arc;
 
 use super::guide::Guide;
@@ -154,19 +153,12 @@ impl PhotonTargets {
         let first = self.targets[..number].iter().rposition(|target| !of_light(&target)).map_or(0, |before| before + 1);
         let light = &scene.lights[self.targets[number].light];
         let sample = light.sample_le(&self.targets[number].beam, guide_uv, u)?;
-        let ray = if light.is_infinite() { self.started_outside(scene, &sample.ray)? } else { sample.ray };
+        let ray = if light.is_infinite() { started_outside(scene, &self.world, &sample.ray) } else { sample.ray };
         let sent = |target: &PhotonTarget| {
             target.photons as f64 * light.pdf_le(&target.beam, &sample, |uv| target.guide.density(uv))
         };
         let factor = sample.factor / self.targets[first..].iter().take_while(of_light).map(sent).sum::<f64>();
         (factor > 0.0 && factor.is_finite()).then_some(LeSample { ray, factor, ..sample })
-    }
-
-    /// The ray of a photon from the sky, started outside of all that is finite; none where a plane hides the sky there.
-    fn started_outside(&self, scene: &Scene<Table>, ray: &Ray) -> Option<Ray> {
-        let start = back_to_the_sky(&self.world, ray);
-        let hidden = scene.is_occluded(&start, f64::INFINITY, None, &Cell::new(None));
-        (!hidden).then_some(Ray { direction: ray.direction, ..start })
     }
 }
 
@@ -175,11 +167,17 @@ pub(super) fn ball_around_all(scene: &Scene<Table>) -> Option<Ball> {
     scene.objects.iter().filter_map(|object| object.shape.ball()).reduce(Ball::around)
 }
 
-/// The way of a photon from the sky, backwards from outside of a ball around all that is finite.
-pub(super) fn back_to_the_sky(world: &Ball, ray: &Ray) -> Ray {
+/// The ray of a path from the sky, started outside of all that is finite, a ball, and beyond all planes without end.
+pub(super) fn started_outside(scene: &Scene<Table>, world: &Ball, ray: &Ray) -> Ray {
     let sky = -ray.direction;
     let out = (world.center - ray.origin).dot(sky) + 2.0 * world.radius;
-    Ray { origin: ray.origin + sky * out, direction: sky }
+    let mut back = Ray { origin: ray.origin + sky * out, direction: sky };
+    // A ray crosses a plane once.
+    for _ in scene.unbounded() {
+        let Some(hit) = scene.nearest(&back, f64::INFINITY, &|_| true) else { break };
+        back.origin += sky * (hit.crossing.t + world.radius);
+    }
+    Ray { direction: ray.direction, ..back }
 }
 
 /// Balls of which none lies in another; of more than are wanted, neighbors as one.

@@ -156,6 +156,26 @@ fn absorbing_water_in_a_glass_with_a_lamp_in_the_sky() {
     agree("water", &text, 16);
 }
 
+/// A plane without end lets some of the sun through to a ball below it; another ball is above it.
+#[test]
+fn balls_in_the_sun_below_a_plane_with_holes_and_one_above_it() {
+    let over = |material: &str| {
+        seen_by("position = [1.2, 2.4, 2.5]\nlook_at = [-0.5, 0, 0]\nvertical_fov = 50", "")
+            + "[material.floor]\ndiffuse = { reflectance = 0.8 }\n"
+            + &object("floor", "quad = { center = [0, 0, 0], u = [4, 0, 0], v = [0, 0, -4] }")
+            + "[material.paper]\ndiffuse = { reflectance = 0.3 }\n"
+            + &glass("index = 1.5")
+            + &format!("[material.over]\n{material}\n")
+            + &object("over", "plane = { point = [0, 3, 0], normal = [0.1, 1, 0] }")
+            + &object("glass", "sphere = { center = [-0.7, 1, 0], radius = 0.7 }")
+            + &object("glass", "sphere = { center = [0.9, 4.2, 0], radius = 0.7 }")
+            + "[[light]]\nsun = { toward = [0.3, 1, 0.2], angular_diameter = 30, irradiance = 3 }\n"
+    };
+    agree("below a mask", &over("mask = { material = \"paper\", opacity = 0.5 }"), 64);
+    agree("below a pane without end", &over("thin = { index = 1.5 }"), 16);
+    agree("below water without end", &over("dielectric = { index = 1.33 }"), 16);
+}
+
 #[test]
 fn panes_and_boxes_seen_through_a_lens() {
     let lens = "lens = { radius = 0.2, focus_distance = 4 }\nshift = [0.1, -0.2]\nnear = 0.5";
