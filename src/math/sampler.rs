@@ -2,7 +2,7 @@
 
 use std::sync::LazyLock;
 
-use sobol_burley::parts::{Int4, hash, hash_int4, owen_scramble_int4_rev, owen_scramble_rev, sobol_int4_rev};
+use sobol_burley::parts::{hash, hash_int4, owen_scramble_int4_rev, owen_scramble_rev, sobol_rev};
 
 /// Samples after which the Sobol sequence is continued under another scramble.
 const SEQUENCE: u32 = 1 << 16;
@@ -50,15 +50,25 @@ impl Sampler {
     /// Owen-scrambled Sobol points in four dimensions, padded by an independent scramble and shuffle for each use.
     /// Burley 2020, *Practical Hash-based Owen Scrambling*.
     pub fn four(&self, branch: BranchKey, purpose: u32) -> [f64; 4] {
-        let seed = mix(self.pixel ^ branch.0.wrapping_add(u64::from(purpose)));
-        sobol(self.index, 0, (seed >> 32) as u32)
+        let seed = self.seed(branch, purpose);
+        sobol(self.index, 0, [seed; 2])
     }
 
     /// Four more numbers for the same use at the same vertex: with those of [`four`](Self::four), points in eight
     /// dimensions.
     pub fn four_more(&self, branch: BranchKey, purpose: u32) -> [f64; 4] {
-        let seed = mix(self.pixel ^ branch.0.wrapping_add(u64::from(purpose)));
-        sobol(self.index, 1, (seed >> 32) as u32)
+        let seed = self.seed(branch, purpose);
+        sobol(self.index, 1, [seed; 2])
+    }
+
+    /// Two pairs of numbers in [0, 1) for one use at one vertex. Where the first two numbers of one of the camera's
+    /// uses fall into the same part of the square, each pair is spread evenly.
+    pub fn pairs_beside(&self, first: u32, branch: BranchKey, purpose: u32) -> [f64; 4] {
+        sobol(self.index, PAIRS, [self.seed(BranchKey::CAMERA, first), self.seed(branch, purpose)])
+    }
+
+    fn seed(&self, branch: BranchKey, purpose: u32) -> u32 {
+        (mix(self.pixel ^ branch.0.wrapping_add(u64::from(purpose))) >> 32) as u32
     }
 
     /// Four numbers in [0, 1) for one use at one vertex, independent from sample to sample.
@@ -76,22 +86,38 @@ pub fn seed_of(seed: u64, number: u64) -> u64 {
     mix(mix(seed) ^ number.wrapping_add(1))
 }
 
-/// Four dimensions of a shuffled and scrambled point, the numbers of `sobol_burley::sample_4d`.
-fn sobol(index: u32, dimensions: usize, seed: u32) -> [f64; 4] {
-    let shuffled = owen_scramble_rev(index.reverse_bits(), hash(seed ^ 0x79c6_8e4a));
-    let digit = |i: usize| SOBOL[dimensions][i][(shuffled >> (28 - 4 * i)) as usize & 15];
+/// Four dimensions of a point, shuffled by a seed and scrambled by another: the numbers of `sobol_burley::sample_4d`
+/// where both are the same.
+fn sobol(index: u32, set: usize, [shuffle, scramble]: [u32; 2]) -> [f64; 4] {
+    let shuffled = owen_scramble_rev(index.reverse_bits(), hash(shuffle ^ 0x79c6_8e4a));
+    let digit = |i: usize| SOBOL[set][i][(shuffled >> (28 - 4 * i)) as usize & 15];
     let [a, b, c, d] = [digit(0), digit(1), digit(2), digit(3)];
     let point: [u32; 4] = std::array::from_fn(|i| (a[i] ^ b[i]) ^ (c[i] ^ d[i]));
-    let seed = seed.wrapping_mul(0x9c8f_2d3b) ^ dimensions as u32;
+    let seed = scramble.wrapping_mul(0x9c8f_2d3b) ^ set as u32;
     let scramble = [0x912f_69ba, 0x174f_18ab, 0x691e_72ca, 0xb40c_c1b8].map(|x: u32| x ^ seed);
     owen_scramble_int4_rev(point.into(), hash_int4(scramble.into())).reverse_bits().to_f32_norm().map(f64::from)
 }
 
-/// Of two sets of four dimensions, the points of each of the four hexadecimal digits of an index, bits reversed. The
+/// The set of four dimensions that are two pairs beside the first.
+const PAIRS: usize = 2;
+/// The pairs beside the first are the first at another index, whose digits are those of these dimensions. So each is
+/// as even as the first, a (0, 2)-sequence. Of all dimensions, these leave the fewest boxes uneven that the first pair
+/// makes with the second, and both of these with the third, in sets of 4 to 256 samples.
+const BESIDE: [u32; 2] = [156, 234];
+
+/// Of three sets of four dimensions, the points of each of the four hexadecimal digits of an index, bits reversed. The
 /// sequence is linear: an index has the sum of its digits' points, bit by bit.
-static SOBOL: LazyLock<[[[[u32; 4]; 16]; 4]; 2]> = LazyLock::new(|| {
-    let point =
-        |set: usize, i: usize, digit: usize| Int4::into(sobol_int4_rev((digit as u32) << (28 - 4 * i), set as u32));
+static SOBOL: LazyLock<[[[[u32; 4]; 16]; 4]; 3]> = LazyLock::new(|| {
+    let point = |set: usize, i: usize, digit: usize| {
+        let index = (digit as u32) << (28 - 4 * i);
+        if set != PAIRS {
+            return std::array::from_fn(|dimension| sobol_rev(index, (4 * set + dimension) as u32));
+        }
+        std::array::from_fn(|dimension| {
+            let index = sobol_rev(index, BESIDE[dimension / 2]).reverse_bits();
+            sobol_rev(index, (dimension % 2) as u32)
+        })
+    };
     std::array::from_fn(|set| std::array::from_fn(|i| std::array::from_fn(|digit| point(set, i, digit))))
 });
 
@@ -115,8 +141,95 @@ mod tests {
             let (index, seed) = (i.wrapping_mul(0x9e37_79b1) >> 16, mix(u64::from(i)) as u32);
             for dimensions in 0..2 {
                 let plain = sobol_burley::sample_4d(index, dimensions, seed).map(f64::from);
-                assert_eq!(sobol(index, dimensions as usize, seed), plain, "{index} {seed}");
+                assert_eq!(sobol(index, dimensions as usize, [seed; 2]), plain, "{index} {seed}");
             }
         }
+    }
+
+    /// All shapes of 2^m boxes of the same volume: how many times each axis is halved.
+    fn shapes<const D: usize>(m: u32) -> Vec<[u32; D]> {
+        let sums_to_m = |halved: &[u32; D]| halved.iter().sum::<u32>() == m;
+        let digits = |number: u32| std::array::from_fn(|axis| number / (m + 1).pow(axis as u32) % (m + 1));
+        (0..(m + 1).pow(D as u32)).map(digits).filter(sums_to_m).collect()
+    }
+
+    /// How many of 2^m points of 32 bits share a box where there are any, on the average.
+    fn crowd<const D: usize>(points: &[[u32; D]], halved: &[u32; D]) -> f64 {
+        let mut is_filled = vec![false; points.len()];
+        for point in points {
+            let digits = |axis: usize| if halved[axis] == 0 { 0 } else { point[axis] >> (32 - halved[axis]) };
+            is_filled[(0..D).fold(0, |number, axis| (number << halved[axis]) | digits(axis) as usize)] = true;
+        }
+        points.len() as f64 / is_filled.iter().filter(|filled| **filled).count() as f64
+    }
+
+    fn share_of_even_shapes<const D: usize>(points: &[[f64; D]], m: u32) -> f64 {
+        let points: Vec<_> = points.iter().map(|point| point.map(|x| (x * 4_294_967_296.0) as u32)).collect();
+        let shapes = shapes::<D>(m);
+        shapes.iter().filter(|halved| crowd(&points, halved) == 1.0).count() as f64 / shapes.len() as f64
+    }
+
+    #[test]
+    fn pairs_beside_another_are_even_and_even_in_parts_of_its_square() {
+        let key = BranchKey::CAMERA;
+        for m in 2..=8_u32 {
+            let samples = |points: &dyn Fn(Sampler) -> [f64; 4]| {
+                (0..1 << m).map(|i| points(Sampler::of_pixel(3, [5, 7], i))).collect::<Vec<_>>()
+            };
+            let beside = |pair: usize| {
+                samples(&|sampler| {
+                    let (place, ways) = (sampler.four(key, 0), sampler.pairs_beside(0, key, 1));
+                    [place[0], place[1], ways[2 * pair], ways[2 * pair + 1]]
+                })
+            };
+            let apart = samples(&|sampler| {
+                let (place, ways) = (sampler.four(key, 0), sampler.four(key, 1));
+                [place[0], place[1], ways[0], ways[1]]
+            });
+            for pair in 0..2 {
+                let points = beside(pair);
+                let ways: Vec<[f64; 2]> = points.iter().map(|point| [point[2], point[3]]).collect();
+                assert_eq!(share_of_even_shapes(&ways, m), 1.0, "{m}");
+                let [with, without] = [&points, &apart].map(|points| share_of_even_shapes(points, m));
+                println!(
+                    "2^{m} samples, pair {pair}: {with:.2} of the shapes are even; {without:.2} of independent pairs"
+                );
+                assert!(with > 0.5 && (m < 4 || with > without + 0.2), "{m} {pair}: {with} {without}");
+            }
+        }
+    }
+
+    /// The search that found [`BESIDE`].
+    #[test]
+    fn no_other_dimensions_leave_fewer_boxes_uneven() {
+        let pair = |index: u32| [0, 1].map(|dimension| sobol_rev(index.reverse_bits(), dimension).reverse_bits());
+        let at = |dimension: u32, index: u32| match dimension {
+            0 => pair(index),
+            _ => pair(sobol_rev(index.reverse_bits(), dimension)),
+        };
+        let shapes: Vec<Vec<[u32; 4]>> = (2..=8).map(shapes).collect();
+        // Boxes count less, the longer their sides are beside each other; more, the more points share one.
+        let weight = |[a, b, c, d]: [u32; 4]| {
+            0.5_f64.powi((a.abs_diff(b).max(1) - 1) as i32 + (c.abs_diff(d).max(1) - 1) as i32)
+        };
+        let uneven = |first: u32, second: u32| -> f64 {
+            let of_count = |shapes: &Vec<[u32; 4]>| {
+                let m = shapes[0].iter().sum::<u32>();
+                let points: Vec<_> = (0..1 << m)
+                    .map(|index| {
+                        let ([a, b], [c, d]) = (at(first, index), at(second, index));
+                        [a, b, c, d]
+                    })
+                    .collect();
+                let sum: f64 = shapes.iter().map(|halved| weight(*halved) * (crowd(&points, halved) - 1.0)).sum();
+                sum / shapes.iter().map(|halved| weight(*halved)).sum::<f64>()
+            };
+            shapes.iter().map(of_count).sum()
+        };
+        let least = |of: &dyn Fn(u32) -> f64| (2..256).min_by(|a, b| of(*a).total_cmp(&of(*b))).expect("dimensions");
+        let beside: Vec<f64> = (0..256).map(|dimension| uneven(0, dimension.max(1))).collect();
+        let first = least(&|dimension| beside[dimension as usize]);
+        let both: Vec<f64> = (0..256).map(|i| beside[i as usize] + uneven(first, i.max(1))).collect();
+        assert_eq!([first, least(&|dimension| both[dimension as usize])], BESIDE);
     }
 }

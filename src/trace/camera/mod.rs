@@ -3,6 +3,7 @@
 mod aimed;
 mod direct;
 mod layer_sample;
+mod numbers;
 mod path_tracer;
 mod resampling;
 mod sensor;

@@ -5,12 +5,13 @@ use std::rc::Rc;
 use super::aimed::{may_aim, scatter_aimed};
 use super::direct::{DirectLighting, weight_of_meeting};
 use super::layer_sample::{LayerSample, Met};
+use super::numbers;
 use super::resampling::Resampling;
 use super::sensor::{Bounce, Observer, Sensor};
 use crate::film::{Layer, Sample};
 use crate::light::{Light, LightId};
 use crate::material::Material;
-use crate::math::{BranchKey, DVec2, DVec3, Sampler};
+use crate::math::{DVec2, DVec3, Sampler};
 use crate::scene::Sight;
 use crate::shape::SurfacePoint;
 use crate::spectrum::{Draw, Lanes};
@@ -45,17 +46,8 @@ struct Lit<'a, P> {
     polarization: &'a P,
 }
 
-/// Use of the camera's random numbers: where in the pixel the sample falls.
-const PLACE: u32 = 0;
-/// Another: where on the lens its ray starts. The path's first vertex has 1, 2 and those from 16.
-const LENS: u32 = 3;
-/// Uses of the random numbers at a vertex.
-const SCATTER: u32 = 1;
-/// Use of those that end paths whose light is looked for at light vertices.
+/// Use of random numbers: those that end paths whose light is looked for at light vertices.
 const COMPLEMENT: u32 = 6;
-/// Surfaces of a path whose directions are drawn from a sequence spread over the pixel's samples. Behind them the
-/// samples see so many different places that plain random numbers, which cost less, are taken.
-const SPREAD: u32 = 4;
 
 impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
     pub fn new(world: &'a World) -> Self {
@@ -93,21 +85,15 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
     pub fn sample(&mut self, sampler: &Sampler, [x, y]: [i32; 2]) -> Sample {
         let world = self.walker.world;
         let camera = &world.scene.camera;
-        let numbers = |purpose: u32| match world.method.transport {
-            Transport::Deterministic { .. } => [0.5; 4],
-            Transport::Random { .. } => sampler.four(BranchKey::CAMERA, purpose),
+        let drawn = |numbers: fn(&Sampler) -> [f64; 2]| match world.method.transport {
+            Transport::Deterministic { .. } => [0.5; 2],
+            Transport::Random { .. } => numbers(sampler),
         };
-        let [u, v, wavelength, _] = numbers(PLACE);
-        let place = world.scene.film.filter.place([u, v]);
+        let place = world.scene.film.filter.place(drawn(numbers::place));
         let film = DVec2::new(f64::from(x), f64::from(y)) + place;
         let is_subtracted = world.scene.film.filter.subtracts(place);
-        let draw = self.draw.clone().unwrap_or_else(|| world.method.basis.draw(wavelength));
-        let ray = if camera.has_lens() {
-            let [u, v, ..] = numbers(LENS);
-            camera.lens_ray(film, [u, v])
-        } else {
-            camera.ray(film)
-        };
+        let draw = self.draw.clone().unwrap_or_else(|| world.method.basis.draw(drawn(numbers::wavelength)[0]));
+        let ray = if camera.has_lens() { camera.lens_ray(film, drawn(numbers::lens)) } else { camera.ray(film) };
         if let Some(layers) = &mut self.sensor.layers {
             layers.begin();
         }
@@ -356,8 +342,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         let aiming = bright.and_then(|bright| bright.at(at.point.position, at.flat));
         let (mut u, mut scatter) = ([0.0; 4], None);
         if at.lobes.is_wide() {
-            let spread = path.vertices <= SPREAD;
-            u = if spread { sampler.four(path.key, SCATTER) } else { sampler.four_plain(path.key, SCATTER) };
+            u = numbers::scatter(sampler, path);
             let all_lights = world.samples_all_lights(|| path.weight(draw));
             let last_occluder = &self.walker.last_occluder;
             let (aiming, excitation) = (aiming.as_ref(), self.excitation(path));

@@ -1,0 +1,47 @@
+//! The random numbers of a camera sample, and which of them are spread evenly together.
+//!
+//! What edges and bumps hide of the light differs from place to place in a pixel. So the ways in which light is looked
+//! for from the first surface are spread evenly over each part of the pixel, not over the pixel alone. Later surfaces
+//! have points of their own.
+
+use crate::math::{BranchKey, Sampler};
+use crate::trace::walk::Path;
+
+/// Use of the camera's numbers.
+const PLACE: u32 = 0;
+/// Another of them. The first vertex has 1, 2 and those from 16.
+const LENS: u32 = 3;
+/// Use of the numbers at a vertex.
+const SCATTER: u32 = 1;
+/// Surfaces of a path whose directions are drawn from a sequence spread over the pixel's samples. Behind them the
+/// samples see so many different places that plain random numbers, which cost less, are taken.
+const SPREAD: u32 = 4;
+
+/// Where in the pixel the sample falls.
+pub fn place(sampler: &Sampler) -> [f64; 2] {
+    let [u, v, ..] = sampler.four(BranchKey::CAMERA, PLACE);
+    [u, v]
+}
+
+/// Which wavelengths it has; the second is spare.
+pub fn wavelength(sampler: &Sampler) -> [f64; 2] {
+    let [.., u, v] = sampler.four(BranchKey::CAMERA, PLACE);
+    [u, v]
+}
+
+/// Where on the lens its ray starts.
+pub fn lens(sampler: &Sampler) -> [f64; 2] {
+    let [u, v, ..] = sampler.four(BranchKey::CAMERA, LENS);
+    [u, v]
+}
+
+/// Ways from a surface that scatters widely: two numbers for that to a light, two for the bounce.
+pub fn scatter<const N: usize, P>(sampler: &Sampler, path: &Path<N, P>) -> [f64; 4] {
+    if path.key == BranchKey::CAMERA {
+        sampler.pairs_beside(PLACE, path.key, SCATTER)
+    } else if path.vertices <= SPREAD {
+        sampler.four(path.key, SCATTER)
+    } else {
+        sampler.four_plain(path.key, SCATTER)
+    }
+}
