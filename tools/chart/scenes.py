@@ -127,7 +127,7 @@ CHARTS = (
             mitsuba("scalar_rgb", 4, 16, 64, flat_lamp=True),
             luxcore(2, 8, 32, flat_lamp=True),
             cycles(4, 16, 64, flat_lamp=True),
-            Series("smallpt", "smallpt", (16, 64, 256)),
+            Series("smallpt", "smallpt", (16, 64, 256, 1024)),
         ),
     ),
     Chart(
