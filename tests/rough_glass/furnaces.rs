@@ -108,14 +108,13 @@ fn between_equal_indices_rough_glass_is_not_there() {
 #[test]
 fn very_dense_rough_glass_neither_gains_nor_loses_seen_from_outside_and_from_inside() {
     let mut cases = Vec::new();
-    for (index, roughnesses, samples) in
-        [(2.4, &[0.3, 0.99][..], 16), (4.0, &[0.1, 0.5, 0.99], 16), (9.9, &[0.1, 0.3, 0.5, 0.65, 0.77, 0.9, 0.99], 12)]
-    {
+    let roughest = [0.1, 0.3, 0.5, 0.65, 0.77, 0.9, 0.99];
+    for (index, roughnesses) in [(2.4, &[0.3, 0.99][..]), (4.0, &[0.1, 0.5, 0.99]), (9.9, &roughest)] {
         let outside = view([1.3, 0.9, 4.1], [0.05, 0.02, 0.1], 14.0, 16);
         let inside = view([0.3, -0.1, 0.2], [0.4, 0.9, -0.7], 120.0, 16);
         for &roughness in roughnesses {
             let glass = format!("dielectric = {{ index = {index:?}, roughness = {roughness:?} }}");
-            let rest = format!("[render]\nsamples = {samples}\n") + &body("glass", &glass, &[BALL]) + &environment(1.0);
+            let rest = "[render]\nsamples = 16\n".to_owned() + &body("glass", &glass, &[BALL]) + &environment(1.0);
             let what = format!("n {index}, roughness {roughness}");
             cases.push((format!("{what}, outside"), outside.clone() + &rest, SPLITTING, 1.0));
             cases.push((format!("{what}, inside"), inside.clone() + &rest, SINGLE_PATH, index * index));
