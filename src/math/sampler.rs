@@ -61,8 +61,8 @@ impl Sampler {
         sobol(self.index, 1, [seed; 2])
     }
 
-    /// Two pairs of numbers in [0, 1) for one use at one vertex. Where the first two numbers of one of the camera's
-    /// uses fall into the same part of the square, each pair is spread evenly.
+    /// Two pairs of numbers in [0, 1) for one use at one vertex. Among samples whose first two numbers for the camera's
+    /// use `first` fall into one part of the square, each pair is spread evenly.
     pub fn pairs_beside(&self, first: u32, branch: BranchKey, purpose: u32) -> [f64; 4] {
         sobol(self.index, PAIRS, [self.seed(BranchKey::CAMERA, first), self.seed(branch, purpose)])
     }
@@ -203,10 +203,7 @@ mod tests {
     #[test]
     fn no_other_dimensions_leave_fewer_boxes_uneven() {
         let pair = |index: u32| [0, 1].map(|dimension| sobol_rev(index.reverse_bits(), dimension).reverse_bits());
-        let at = |dimension: u32, index: u32| match dimension {
-            0 => pair(index),
-            _ => pair(sobol_rev(index.reverse_bits(), dimension)),
-        };
+        let at = |dimension: u32, index: u32| pair(sobol_rev(index.reverse_bits(), dimension));
         let shapes: Vec<Vec<[u32; 4]>> = (2..=8).map(shapes).collect();
         // Boxes count less, the longer their sides are beside each other; more, the more points share one.
         let weight = |[a, b, c, d]: [u32; 4]| {

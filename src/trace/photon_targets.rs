@@ -167,7 +167,7 @@ pub(super) fn ball_around_all(scene: &Scene<Table>) -> Option<Ball> {
     scene.objects.iter().filter_map(|object| object.shape.ball()).reduce(Ball::around)
 }
 
-/// The ray of a path from the sky, started outside of all that is finite, a ball, and beyond all planes without end.
+/// The ray of a path from the sky, started outside of a ball around all that is finite, beyond all planes without end.
 pub(super) fn started_outside(scene: &Scene<Table>, world: &Ball, ray: &Ray) -> Ray {
     let sky = -ray.direction;
     let out = (world.center - ray.origin).dot(sky) + 2.0 * world.radius;

@@ -1,8 +1,8 @@
 //! The random numbers of a camera sample, and which of them are spread evenly together.
 //!
-//! What edges and bumps hide of the light differs from place to place in a pixel. So the ways in which light is looked
-//! for from the first surface are spread evenly over each part of the pixel, not over the pixel alone. Later surfaces
-//! have points of their own.
+//! What edges and bumps hide of the light differs from place to place in a pixel. So the directions to lights and of
+//! bounces are spread evenly, at the first surface, over each part of the pixel and not over the pixel alone. Later
+//! surfaces have points of their own.
 
 use crate::math::{BranchKey, Sampler};
 use crate::trace::walk::Path;
@@ -17,25 +17,17 @@ const SCATTER: u32 = 1;
 /// samples see so many different places that plain random numbers, which cost less, are taken.
 const SPREAD: u32 = 4;
 
-/// Where in the pixel the sample falls.
-pub fn place(sampler: &Sampler) -> [f64; 2] {
-    let [u, v, ..] = sampler.four(BranchKey::CAMERA, PLACE);
-    [u, v]
+/// Two numbers for the place in the pixel, one for the wavelengths, and a spare one.
+pub fn film(sampler: &Sampler) -> [f64; 4] {
+    sampler.four(BranchKey::CAMERA, PLACE)
 }
 
-/// Which wavelengths it has; the second is spare.
-pub fn wavelength(sampler: &Sampler) -> [f64; 2] {
-    let [.., u, v] = sampler.four(BranchKey::CAMERA, PLACE);
-    [u, v]
+/// Two numbers for the place on the lens where the ray starts, and two spare ones.
+pub fn lens(sampler: &Sampler) -> [f64; 4] {
+    sampler.four(BranchKey::CAMERA, LENS)
 }
 
-/// Where on the lens its ray starts.
-pub fn lens(sampler: &Sampler) -> [f64; 2] {
-    let [u, v, ..] = sampler.four(BranchKey::CAMERA, LENS);
-    [u, v]
-}
-
-/// Ways from a surface that scatters widely: two numbers for that to a light, two for the bounce.
+/// At a surface that scatters widely: two numbers for the direction to a light, two for that of the bounce.
 pub fn scatter<const N: usize, P>(sampler: &Sampler, path: &Path<N, P>) -> [f64; 4] {
     if path.key == BranchKey::CAMERA {
         sampler.pairs_beside(PLACE, path.key, SCATTER)

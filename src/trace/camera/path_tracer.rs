@@ -85,15 +85,21 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
     pub fn sample(&mut self, sampler: &Sampler, [x, y]: [i32; 2]) -> Sample {
         let world = self.walker.world;
         let camera = &world.scene.camera;
-        let drawn = |numbers: fn(&Sampler) -> [f64; 2]| match world.method.transport {
-            Transport::Deterministic { .. } => [0.5; 2],
+        let drawn = |numbers: fn(&Sampler) -> [f64; 4]| match world.method.transport {
+            Transport::Deterministic { .. } => [0.5; 4],
             Transport::Random { .. } => numbers(sampler),
         };
-        let place = world.scene.film.filter.place(drawn(numbers::place));
+        let [u, v, wavelength, _] = drawn(numbers::film);
+        let place = world.scene.film.filter.place([u, v]);
         let film = DVec2::new(f64::from(x), f64::from(y)) + place;
         let is_subtracted = world.scene.film.filter.subtracts(place);
-        let draw = self.draw.clone().unwrap_or_else(|| world.method.basis.draw(drawn(numbers::wavelength)[0]));
-        let ray = if camera.has_lens() { camera.lens_ray(film, drawn(numbers::lens)) } else { camera.ray(film) };
+        let draw = self.draw.clone().unwrap_or_else(|| world.method.basis.draw(wavelength));
+        let ray = if camera.has_lens() {
+            let [u, v, ..] = drawn(numbers::lens);
+            camera.lens_ray(film, [u, v])
+        } else {
+            camera.ray(film)
+        };
         if let Some(layers) = &mut self.sensor.layers {
             layers.begin();
         }
