@@ -143,7 +143,7 @@ impl<S> Scene<S> {
     /// Objects without bounds: planes.
     pub fn unbounded(&self) -> impl Iterator<Item = &Object> {
         let all = self.index.always().iter().map(|&number| &self.objects[number as usize]);
-        all.filter(|object| object.shape.bounds().is_none())
+        all.filter(|object| !object.shape.is_bounded())
     }
 
     fn nearest_from(&self, ray: &Ray, left: Option<Primitive>, counts: &dyn Fn(u32) -> bool) -> Option<Hit> {

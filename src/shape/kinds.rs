@@ -121,6 +121,11 @@ impl Shape {
         if let Self::Mesh(mesh) = self { mesh.normal(crossing.part) } else { self.point(ray, crossing).normal }
     }
 
+    /// Whether the shape has an end: all but planes.
+    pub fn is_bounded(&self) -> bool {
+        !matches!(self, Self::Plane(_))
+    }
+
     /// The box the shape fills, or none for an infinite one.
     pub fn bounds(&self) -> Option<Bounds> {
         match self {

@@ -23,6 +23,7 @@ pub struct Mesh {
     packed: Packed,
     /// The triangles of a small mesh, at which more rays arrive than it has of them.
     facets: Vec<Facet>,
+    bounds: Bounds,
     /// The triangles by their areas; only lights ask for it.
     areas: OnceLock<Distribution>,
     closed: bool,
@@ -61,8 +62,9 @@ impl Mesh {
         let bvh = Bvh::new::<GROUP>(shapes().map(|triangle| triangle.bounds()));
         let packed = Packed::new(&vertices, &triangles, bvh.items());
         let facets = if triangles.len() <= SMALL { shapes().map(|shape| Facet::new(&shape)).collect() } else { vec![] };
+        let bounds = Bounds::around(triangles.iter().flatten().map(|&corner| vertices.at(corner)));
         let (areas, attributes) = (OnceLock::new(), Attributes::default());
-        Self { bvh, packed, facets, vertices, triangles, areas, closed, attributes }
+        Self { bvh, packed, facets, vertices, triangles, bounds, areas, closed, attributes }
     }
 
     /// How many triangles there are.
@@ -165,7 +167,7 @@ impl Mesh {
     }
 
     pub(super) fn bounds(&self) -> Bounds {
-        Bounds::around(self.triangles.iter().flatten().map(|&corner| self.vertices.at(corner)))
+        self.bounds
     }
 
     pub(super) fn transformed(&self, map: &Transform) -> Self {

@@ -51,7 +51,7 @@ const EVENLY: f64 = 0.1;
 pub fn is_photon_target<S>(scene: &Scene<S>, object: usize) -> bool {
     let material = scene.material_of(object as u32);
     let smooth = !material.scatters_widely() && !matches!(material, Material::Emissive(_));
-    smooth && scene.objects[object].shape.bounds().is_some()
+    smooth && scene.objects[object].shape.is_bounded()
 }
 
 impl PhotonTargets {

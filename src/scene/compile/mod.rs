@@ -242,7 +242,7 @@ fn surfaces_that_shine(scene: &mut Scene<Curve>) {
             continue;
         }
         let light: LightId = scene.lights.len();
-        let aimed_at = lamp && object.shape.bounds().is_some();
+        let aimed_at = lamp && object.shape.is_bounded();
         let mut area = Area::new(object.shape.clone(), number as u32, radiance.clone(), sides, aimed_at);
         area.coordinates = object.coordinates.clone().filter(|_| radiance.varies());
         scene.light_groups.push(object.group.as_ref().unwrap_or(&object.asset).clone());
