@@ -79,7 +79,7 @@ fn measure(text: &str, collapses: bool, mask: &[bool]) -> Measured {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread can be started");
     let (mut times, mut images) = (Vec::new(), Vec::new());
     for seed in 0..SEEDS {
-        let world = prepare(&scene, Method { basis: basis.clone(), seed, samples: SAMPLES, ..method.clone() });
+        let world = prepare(&scene, Method { basis: basis.clone(), seed, ..method.clone() });
         let start = Instant::now();
         images.push(pool.install(|| render(&world, &|_| ())).0);
         times.push(start.elapsed().as_secs_f64());
@@ -120,7 +120,7 @@ fn glass_pixels(index: &str, light: &str) -> Vec<bool> {
 fn text(index: &str, light: &str, model: &str, ball: bool) -> String {
     let mut text = format!(
         "[camera]\nposition = [0, 1.7, 5.2]\nlook_at = [0, 0.8, 0]\nvertical_fov = 40\n\
-         [film]\nwidth = 96\nheight = 72\n[render]\nmodel = {model}\npolarization = \"off\"\n\
+         [film]\nwidth = 96\nheight = 72\n[render]\nmodel = {model}\nsamples = {SAMPLES}\npolarization = \"off\"\n\
          [material.glass]\ndielectric = {{ index = {index} }}\n\
          [material.light]\ndiffuse = {{ reflectance = {{ rgb = [0.8, 0.8, 0.75] }} }}\n\
          [material.dark]\ndiffuse = {{ reflectance = {{ rgb = [0.12, 0.1, 0.1] }} }}\n\

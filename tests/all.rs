@@ -14,7 +14,6 @@ mod catalog;
 mod caustics;
 mod checkpoints;
 mod colors;
-mod control_variate;
 mod densities;
 mod determinism;
 mod film_layers;

@@ -27,13 +27,11 @@ pub(super) struct Shown {
     pub(super) why: Vec<String>,
     /// A world whose photons have learned where to go.
     pub(super) taught: Option<World>,
-    /// The product of time and variance, if photons were weighed.
-    pub(super) work: Option<f64>,
 }
 
 impl Shown {
     fn not(why: Vec<String>) -> Self {
-        Self { pass: None, why, taught: None, work: None }
+        Self { pass: None, why, taught: None }
     }
 }
 
@@ -66,7 +64,7 @@ pub(super) fn light_pass(scene: &Scene<Curve>, unguided: &World) -> Shown {
     if seen.is_empty() {
         return Shown::not(lines);
     }
-    let Worth { lights, photons, gain, work } = weigh(scene, &world);
+    let Worth { lights, photons, gain } = weigh(scene, &world);
     let (sending, left): (Vec<_>, Vec<_>) = seen.into_iter().partition(|(id, _)| lights.contains(id));
     large.extend(left);
     if sending.is_empty() {
@@ -93,7 +91,7 @@ pub(super) fn light_pass(scene: &Scene<Curve>, unguided: &World) -> Shown {
             if gain < 9.95 { format!("{gain:.1}") } else { in_number(gain.round() as u64) }
         ))
     ));
-    Shown { pass: Some(pass), why: lines, taught: Some(world), work: Some(work) }
+    Shown { pass: Some(pass), why: lines, taught: Some(world) }
 }
 
 /// Why photons that are seen are not sent, as the time to an error would be so many times shorter by them, or nothing

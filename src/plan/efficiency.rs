@@ -24,8 +24,6 @@ pub(super) struct Worth {
     /// How many times as long chance takes to the same error; none where it misses light for good, or there is no
     /// light.
     pub(super) gain: Option<f64>,
-    /// The least product of time and variance, without the worst hundredth of the pixels, in any unit.
-    pub(super) work: f64,
 }
 
 /// Weighs photons of some lights, which the world sends, against chance.
@@ -53,7 +51,7 @@ pub(super) fn weigh(scene: &Scene<Curve>, world: &World) -> Worth {
     let mut known: Vec<(PhotonWorth, f64)> = photons_worth(world).into_iter().map(with_chance).collect();
     // Those first whose photons save most.
     known.sort_by(|(a, of_a), (b, of_b)| (of_b * a.variance * a.rays).total_cmp(&(of_a * b.variance * b.rays)));
-    let total = |sent: usize| product(&samples, samples.variance, &known, sent);
+    let total = |sent: usize| product(&samples, &known, sent);
     let best = (0..=known.len()).min_by(|&a, &b| total(a).total_cmp(&total(b))).unwrap_or(0);
     let best = if total(0) > CLEARLY * total(best) { best } else { 0 };
     let left: f64 = known[best..].iter().map(|light| light.1).sum();
@@ -65,7 +63,6 @@ pub(super) fn weigh(scene: &Scene<Curve>, world: &World) -> Worth {
         lights: known[..best].iter().flat_map(|(photons, _)| photons.lights.clone()).collect(),
         photons: rounded(known[..best].iter().map(of_light).sum::<f64>().clamp(FEWEST, MOST)),
         gain: (gain.is_finite() && !known.is_empty()).then_some(gain),
-        work: product(&samples, samples.common_variance, &known, best),
     }
 }
 
@@ -75,11 +72,11 @@ pub(super) fn rounded(photons: f64) -> f64 {
     libm::exp2(0.5 * (2.0 * libm::log2(photons)).round())
 }
 
-/// The least product of time and variance where the first lights send photons, by a variance of the samples.
-fn product(samples: &SampleWorth, variance: f64, known: &[(PhotonWorth, f64)], sent: usize) -> f64 {
+/// The least product of time and variance where the first lights send photons.
+fn product(samples: &SampleWorth, known: &[(PhotonWorth, f64)], sent: usize) -> f64 {
     let left: f64 = known[sent..].iter().map(|light| light.1).sum();
     let photons: f64 = known[..sent].iter().map(|(photons, _)| (photons.variance * photons.rays).sqrt()).sum();
-    let root = ((variance + left) * samples.rays).sqrt() + photons;
+    let root = ((samples.variance + left) * samples.rays).sqrt() + photons;
     root * root
 }
 

@@ -12,17 +12,15 @@ pub(super) struct Lit {
     pub(super) because: Vec<String>,
     /// Where photons learned to go.
     pub(super) taught: Option<World>,
-    /// The product of time and variance, if photons were weighed.
-    pub(super) work: Option<f64>,
 }
 
 impl Lit {
     pub(super) fn new(scene: &Scene<Curve>, unlit: &World) -> Self {
-        let Shown { pass: shown, why, taught, work } = caustics::light_pass(scene, unlit);
+        let Shown { pass: shown, why, taught } = caustics::light_pass(scene, unlit);
         let (light_pass, why_gathered) = photon_map::with_map(scene, unlit, shown.as_ref());
         // Why nothing is shown matters only where nothing is gathered either.
         let mut because: Vec<String> = why.into_iter().filter(|_| shown.is_some() || light_pass.is_none()).collect();
         because.extend(why_gathered);
-        Self { world: unlit.with_light_pass(light_pass), because, taught, work }
+        Self { world: unlit.with_light_pass(light_pass), because, taught }
     }
 }

@@ -4,7 +4,6 @@ mod adaptive;
 mod between;
 mod candidates;
 mod caustics;
-mod control;
 mod dyes;
 mod efficiency;
 mod films;
@@ -62,15 +61,11 @@ const TOGETHER_PIXELS: f64 = 0.01;
 
 /// Decides how to render a scene.
 pub fn plan(scene: &Scene<Curve>) -> Plan {
-    let Model { basis, why, missed, error: model_error, because: mut decisions, next, candidates } =
-        model::model(scene);
+    let Model { basis, missed, error: model_error, because: mut decisions, next, candidates } = model::model(scene);
     let (method, reason) = before_light(scene, basis);
     decisions.push(reason);
     let unlit = prepare_unguided(scene, method);
-    let lit = Lit::new(scene, &unlit);
-    let (Lit { world, because, taught, .. }, control) = control::decide(scene, &unlit, lit);
-    decisions.insert(0, model::line(&world.method().basis, &why));
-    decisions.extend(control);
+    let Lit { world, because, taught } = Lit::new(scene, &unlit);
     decisions.extend(because);
     let (world, reasons) = between(world);
     decisions.extend(reasons);

@@ -24,17 +24,10 @@ pub(super) struct Model {
     /// The same as a number.
     pub(super) error: f64,
     pub(super) because: Vec<String>,
-    /// Why that basis.
-    pub(super) why: String,
     /// The model beside it that would cost more or less.
     pub(super) next: Option<Basis>,
     /// The models it was chosen from.
     pub(super) candidates: Vec<Candidate>,
-}
-
-/// What a person is told of a basis.
-pub(super) fn line(basis: &Basis, why: &str) -> String {
-    format!("model {}: {}; {why}", basis.name(), lanes(basis))
 }
 
 /// The least model that a scene needs, or the one it asks for.
@@ -70,7 +63,7 @@ pub(super) fn model(scene: &Scene<Curve>) -> Model {
     let next =
         if hero { candidates.get(chosen) } else { candidates.get(chosen + 1) }.map(|candidate| candidate.basis.clone());
     let next = next.filter(|_| hero || !survey.is_plain());
-    let mut because = Vec::new();
+    let mut because = vec![format!("model {}: {}; {why}", basis.name(), lanes(&basis))];
     let missed = (!is_exact || basis.fixed_lanes() > 3).then(|| missed(&candidates, &basis, &survey, &seen, tolerance));
     let error = if missed.is_some() { bound(&candidates, &basis, &survey, &seen) } else { 0.0 };
     because.extend(lines_without_lane(&survey, &basis));
@@ -79,7 +72,7 @@ pub(super) fn model(scene: &Scene<Curve>) -> Model {
     because.extend(desaturated(scene, &basis));
     because.extend(materials(scene, &basis));
     let next = next.map(|next| if together || hero { next.kept_together() } else { next });
-    Model { basis, why, missed, error, because, next, candidates }
+    Model { basis, missed, error, because, next, candidates }
 }
 
 /// What a sample carries.
@@ -89,10 +82,7 @@ fn lanes(basis: &Basis) -> String {
         0 if fixed <= 3 => format!("{all} lanes"),
         0 => format!("{all} lanes, one for each wavelength"),
         heroes => {
-            let s = if heroes == 1 { "" } else { "s" };
-            format!(
-                "{all} lanes: {fixed} fixed wavelengths and {heroes} hero wavelength{s}, drawn anew for each sample"
-            )
+            format!("{all} lanes: {fixed} fixed wavelengths and {heroes} hero wavelengths, drawn anew for each sample")
         }
     }
 }

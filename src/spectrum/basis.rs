@@ -169,12 +169,6 @@ impl Basis {
         Self { keeps_together: true, ..self }
     }
 
-    /// The same lanes with one hero, if there are any.
-    pub fn with_one_hero(&self) -> Self {
-        let heroes = self.heroes.clone().map(|heroes| Heroes { count: 1, ..heroes });
-        Self { heroes, ..self.clone() }
-    }
-
     /// The same lanes, for a scene in which lights excite dyes: heroes are also drawn where they do.
     pub fn exciting(self, dyes: &[Dye], lights: &[&Curve]) -> Self {
         if self.excites || !self.can_excite() {

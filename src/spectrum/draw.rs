@@ -165,16 +165,6 @@ impl<const N: usize> Draw<N> {
         Lanes::from_fn(|i| if self.shares[1][i] == 0.0 { 0.0 } else { 1.0 })
     }
 
-    /// What makes heroes count against the light of the fixed lanes.
-    pub fn against(&self) -> Lanes<N> {
-        Lanes::from_fn(|i| if i < self.fixed { 1.0 } else { -1.0 })
-    }
-
-    /// The fixed lane in the middle.
-    pub fn middle(&self) -> usize {
-        self.fixed / 2
-    }
-
     /// The lanes a camera ray starts with: 1 where a lane stands for something.
     pub fn start(&self) -> Lanes<N> {
         Lanes::from_fn(|i| if i < self.fixed + self.count { 1.0 } else { 0.0 })

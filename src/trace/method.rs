@@ -15,14 +15,6 @@ pub struct Method {
     pub transport: Transport,
     /// Lanes whose refracted rays lie within this angle of each other, in radians, stay together.
     pub together: f64,
-    /// Whether lanes that part also go on together, as a control variate: then heroes add what dispersion changes.
-    ///
-    /// All lanes follow the path of one wavelength, on which the fixed lanes count. Each hero has its own path as well.
-    /// Its light is added there, and subtracted on the path of all. What is left to chance is the difference of two
-    /// paths that mostly meet nearly the same.
-    ///
-    /// It needs heroes. Dyes and the layer `residual` do not go with it.
-    pub control: bool,
     /// Camera samples per pixel, on average; with a stop rule, those that photons are counted for.
     pub samples: u32,
     /// Where more of them are taken, and where fewer; none takes as many everywhere.
@@ -54,7 +46,6 @@ impl Method {
             basis,
             transport,
             together: 0.0,
-            control: false,
             samples: 1,
             density: None,
             stop: None,

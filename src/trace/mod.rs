@@ -69,7 +69,7 @@ pub use path_start::Sunlit;
 pub use photon_targets::is_photon_target;
 pub use probe::{
     Adaptive, Branching, GatheredWorth, PhotonTimes, PhotonWorth, PilotNoise, Probe, SampleWorth, SeenLight, adaptive,
-    branching, bright_places, control_gain, gathered_photons, gathered_worth, photon_times, photons_worth, pilot_noise,
+    branching, bright_places, gathered_photons, gathered_worth, photon_times, photons_worth, pilot_noise,
     polarization_error, prepare, prepare_unguided, probe, reached_places, samples_worth, seen_light,
     with_light_vertices,
 };

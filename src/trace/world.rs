@@ -130,14 +130,6 @@ impl World {
         world
     }
 
-    /// This world, in which lanes that part also go on together, and one hero brings what dispersion changes.
-    pub fn with_control(&self) -> Self {
-        let mut world = self.clone();
-        world.method.control = true;
-        world.method.basis = self.method.basis.with_one_hero();
-        world
-    }
-
     /// This world with light vertices, for which paths from suns start where some places in their light are.
     pub fn with_light_vertices(&self, sunlit: Vec<Sunlit>) -> Self {
         let mut world = self.clone();

@@ -161,19 +161,14 @@ impl<const N: usize, P: Polarization<N>> DirectLighting<'_, N, P> {
             None => *factor,
         };
         let lanes = &self.path.throughput.scaled(factor).of(bsdf_cos * arriving);
-        let (source, found, bounces) = (*light, Found::Sampled, self.path.bounces + 1);
+        let (light, dispersed) = (*light, side.parted);
+        let arrived = Arrived { source: light, draw: arrival.draw, lanes, parted: dispersed };
+        let met = MetLight::new(world, &arrived, self.excitation);
+        let rgb = met.rgb;
+        let moved = self.path.polarization.moved(self.at, wi, on_its_way, &met);
+        let (light, found, bounces) = (Some(light), Found::Sampled, self.path.bounces + 1);
         let first = self.at.first_lobe(world, self.path.lobe(), wi, side.normal != self.at.flat);
-        let mut hand_over = |parted: bool| {
-            let arrived = Arrived { source, draw: arrival.draw, lanes, parted };
-            let met = MetLight::new(world, &arrived, self.excitation);
-            let (light, rgb, dispersed) = (Some(source), met.rgb, parted || self.path.control.is_some());
-            let moved = self.path.polarization.moved(self.at, wi, on_its_way, &met);
-            sensor.receive(Contribution { light, found, rgb, moved, first, bounces, dispersed }, &met, on_its_way);
-        };
-        hand_over(side.parted);
-        if self.path.control.is_some() {
-            hand_over(true);
-        }
+        sensor.receive(Contribution { light, found, rgb, moved, first, bounces, dispersed }, &met, on_its_way);
     }
 
     /// The factor on a light's emission and the material's answer: over the density of both ways to the light's

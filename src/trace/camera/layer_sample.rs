@@ -154,8 +154,7 @@ impl<'a, const N: usize> LayerSample<'a, N> {
         // A filter before the camera is no part of what a surface is.
         let unfiltered = 1.0 / self.world.scene.camera.transmittance();
         let share = if layers.see_surfaces() { met.share(layers.first, unfiltered) } else { 0.0 };
-        // Heroes that count against the light of a path may make it less than nothing.
-        if share == 0.0 || (share < 0.0 && met.path.control.is_none()) {
+        if share <= 0.0 {
             return;
         }
         let Met { path, meeting, at, .. } = met;
@@ -197,23 +196,17 @@ impl<'a, const N: usize> LayerSample<'a, N> {
         shading::scatter(at.material, arrival, at.flat, [u, v], &mut self.branches);
         // Radiance changes by each lane's own index where light crosses, `eta_scale` by that of the ray.
         let crossing = arrival.forward().map(|twice| Lanes::from_fn(|i| twice[i].sqrt()));
-        let mut albedo = [0.0; 3];
-        let mut count = |throughput, parted, scale: f64| {
-            let rgb = white.times(draw, throughput, parted);
-            (0..3).for_each(|channel| albedo[channel] += rgb[channel] / scale);
-        };
-        for parted in path.counted() {
-            panes.iter().for_each(|panes| count(path.throughput.of(*panes), parted, path.eta_scale));
-        }
+        let through = panes.map(|panes| white.times(draw, path.throughput.of(panes), path.parted));
+        let mut albedo = through.map_or([0.0; 3], |rgb| rgb.map(|x| x / path.eta_scale));
         for branch in &self.branches {
             let share = match crossing {
                 Some(crossing) if branch.crosses => branch.share * crossing,
                 _ => branch.share,
             };
-            for parted in path.counted() {
-                let parted = parted || (at.parts && branch.crosses);
-                count(path.throughput.of(share), parted, path.eta_scale * branch.eta_scale);
-            }
+            let parted = path.parted || (at.parts && branch.crosses);
+            let rgb = white.times(draw, path.throughput.of(share), parted);
+            let scale = path.eta_scale * branch.eta_scale;
+            (0..3).for_each(|channel| albedo[channel] += rgb[channel] / scale);
         }
         albedo
     }
@@ -231,10 +224,9 @@ impl<const N: usize, P: Polarization<N>> Met<'_, N, P> {
             return 0.0;
         }
         let draw = at.arrival.draw;
-        let through = |straight: &Straight<N>| {
-            let throughput = path.throughput.through(straight.share());
-            Path { throughput, ..**path }.worth(draw)
-        };
-        unfiltered * (path.worth(draw) - self.straight.map_or(0.0, through))
+        let shares = draw.shares(path.parted);
+        let through =
+            |straight: &Straight<N>| path.throughput.through(straight.share()).weight(shares) / path.eta_scale;
+        unfiltered * (path.weight(draw) - self.straight.map_or(0.0, through)) / draw.siblings(path.parted)
     }
 }

@@ -14,7 +14,7 @@ use crate::material::Material;
 use crate::math::{DVec2, DVec3, Sampler};
 use crate::scene::Sight;
 use crate::shape::SurfacePoint;
-use crate::spectrum::{Draw, Lanes};
+use crate::spectrum::Draw;
 use crate::trace::arrived::Arrived;
 use crate::trace::contribution::{Contribution, Found};
 use crate::trace::photon::{Gathering, LightVertices, PhotonMap, gather, holds_vertices};
@@ -212,7 +212,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
     /// Ends a path that has met as many surfaces as it may, but for what goes straight on.
     fn cut(&mut self, path: &Path<N, P>, draw: &Draw<N>, meeting: &Meeting, onward: Option<&Onward<N, P>>) {
         if !matches!(self.walker.world.scene.material_of(meeting.hit.object), Material::Emissive(_)) {
-            self.walker.stats.stopped += path.worth(draw);
+            self.walker.stats.stopped += path.weight(draw) / draw.siblings(path.parted);
         } else if let Some(audit) = &mut self.walker.audit {
             audit.end_beside(path, onward, draw);
         }
@@ -239,7 +239,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
             let polarization = path.polarization.lit_by(light, path.ray.direction, &mut shone);
             let lanes = &path.throughput.scaled(weight * factor).of(shone);
             let lit = Lit { normal: None, polarization: polarization.as_ref().unwrap_or(&path.polarization) };
-            self.receive(path, &lit, id, draw, lanes);
+            self.receive(path, &lit, &Arrived { source: id, draw, lanes, parted: path.parted });
         }
     }
 
@@ -256,23 +256,19 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         let uv = object.uv(&hit.crossing, point);
         let lanes = &path.throughput.scaled(weight).of(draw.read_at(&area.radiance, uv));
         let lit = Lit { normal: Some(point.normal), polarization: &path.polarization };
-        self.receive(path, &lit, id, draw, lanes);
+        self.receive(path, &lit, &Arrived { source: id, draw, lanes, parted: path.parted });
     }
 
     /// Hands light that a path has hit to the sensor.
-    fn receive(&mut self, path: &Path<N, P>, lit: &Lit<P>, source: LightId, draw: &Draw<N>, lanes: &Lanes<N>) {
+    fn receive(&mut self, path: &Path<N, P>, lit: &Lit<P>, arrived: &Arrived<N>) {
         let excitation = self.excitation(path);
+        let met = MetLight::new(self.walker.world, arrived, excitation.as_deref());
+        let rgb = met.rgb;
         let Lit { normal, polarization } = *lit;
-        let (light, found) = (Some(source), Found::Hit { normal, scattered: path.scatter.is_some() });
-        let Path { bounces, first, .. } = *path;
-        for parted in path.counted() {
-            let arrived = &Arrived { source, draw, lanes, parted };
-            let met = MetLight::new(self.walker.world, arrived, excitation.as_deref());
-            let (rgb, moved) = (met.rgb, polarization.moved_of_met(&met));
-            let dispersed = parted || path.control.is_some();
-            let contribution = Contribution { light, found, rgb, moved, first, bounces, dispersed };
-            self.sensor.receive(contribution, &met, polarization);
-        }
+        let moved = polarization.moved_of_met(&met);
+        let (light, found) = (Some(arrived.source), Found::Hit { normal, scattered: path.scatter.is_some() });
+        let Path { bounces, parted: dispersed, first, .. } = *path;
+        self.sensor.receive(Contribution { light, found, rgb, moved, first, bounces, dispersed }, &met, polarization);
     }
 
     /// Samples the lights where a surface scatters widely, and lets the path go on: its ways on become pending.
@@ -293,10 +289,6 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
             return;
         }
         let at = Interaction::new(world, draw, &path.ray, path.throughput.present(), meeting, boundary);
-        let at = match path.control {
-            Some(lane) => at.by_index_of(usize::from(lane)),
-            None => at,
-        };
         if let Some(layers) = &mut self.sensor.layers {
             let straight = onward.map(|onward| &onward.straight);
             layers.meet(&Met { path, meeting, at: &at, straight, is_met_first }, sampler);
@@ -379,23 +371,6 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         }
         let mut departure = Departure::new(world, path, at).with(scatter.as_ref(), onward);
         self.walker.follow(&mut departure, sampler);
-        if world.method.control && at.parts && !path.parted && !at.lobes.is_wide() {
-            self.follow_control(path, at, sampler);
-        }
-    }
-
-    /// Lets all lanes cross a smooth surface together from which heroes have parted, which count against their light.
-    #[cold]
-    #[inline(never)]
-    fn follow_control(&mut self, path: &Path<N, P>, at: &Interaction<N>, sampler: &Sampler) {
-        let lane = at.arrival.draw.middle();
-        let at = at.by_index_of(lane);
-        self.walker.branches.clear();
-        shading::scatter(at.material, &at.arrival, at.flat, [0.0; 2], &mut self.walker.branches);
-        self.walker.branches.retain(|branch| branch.crosses);
-        self.walker.polarize(path, &at);
-        let mut departure = Departure::new(self.walker.world, path, &at).with_control(lane);
-        self.walker.follow(&mut departure, sampler);
     }
 
     /// Hands the light of a light vertex to the sensor, where the path meets a diffuse surface.
@@ -440,17 +415,15 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         if let Some(photons) = self.photons.filter(|_| path.among == Among::All) {
             let apart = self.sensor.layers.is_some() && self.walker.world.layers.tell_photons_apart();
             let excitation = self.excitation(path);
-            for parted in path.counted() {
-                let excitation = excitation.as_deref();
-                let around = Gathering { world: self.walker.world, path, at, parted, excitation };
-                let within = |kernel, apart| gather(photons, kernel, &around, sampler, apart);
-                let gathered = within(&photons.kernel, apart);
-                if let Some(half) = &photons.half {
-                    self.sensor.blur_by(gathered.all.rgb, within(half, false).all.rgb);
-                }
-                let draw = excitation.map_or(at.arrival.draw, |dye| &dye.seen_by);
-                self.sensor.receive_gathered(&gathered, draw);
+            let excitation = excitation.as_deref();
+            let around = Gathering { world: self.walker.world, path, at, excitation };
+            let within = |kernel, apart| gather(photons, kernel, &around, sampler, apart);
+            let gathered = within(&photons.kernel, apart);
+            if let Some(half) = &photons.half {
+                self.sensor.blur_by(gathered.all.rgb, within(half, false).all.rgb);
             }
+            let draw = excitation.map_or(at.arrival.draw, |dye| &dye.seen_by);
+            self.sensor.receive_gathered(&gathered, draw);
         }
         if let Some(observer) = self.sensor.observer {
             observer.reach(at.point.position);

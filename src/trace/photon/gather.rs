@@ -99,8 +99,6 @@ pub struct Gathering<'a, const N: usize, P> {
     pub world: &'a World,
     pub path: &'a Path<N, P>,
     pub at: &'a Interaction<'a, N>,
-    /// Whether those of its lanes count that have parted.
-    pub parted: bool,
     /// The dye that they excite, if the path follows that.
     pub excitation: Option<&'a Excitation<N, P>>,
 }
@@ -130,7 +128,7 @@ impl<const N: usize> Seen<N> {
 pub fn gather<const N: usize, P: Polarization<N>>(
     photons: &PhotonMap<N, P>,
     kernel: &Kernel<N>,
-    Gathering { world, path, at, parted: have_parted, excitation }: &Gathering<N, P>,
+    Gathering { world, path, at, excitation }: &Gathering<N, P>,
     sampler: &Sampler,
     apart: bool,
 ) -> Gathered<N> {
@@ -156,7 +154,7 @@ pub fn gather<const N: usize, P: Polarization<N>>(
     let front = flat.dot(point.normal) > 0.0;
     let place = Place { world, position: point.position, flat, front, radius };
     let mut found = Found { sum: [0.0; 3], parts: apart.then(Vec::new), weight: 0.0, drawn: None, u };
-    let parted = |back: DVec3| *have_parted || (parts && back.dot(flat) < 0.0);
+    let parted = |back: DVec3| path.parted || (parts && back.dot(flat) < 0.0);
     photons.together.near(point.position, radius, &mut |position, photon| {
         let Some(density) = place.density(path, position, photon) else { return };
         let Some((mut bsdf_cos, _)) = shading::evaluate(material, arrival, flat, photon.back) else { return };
@@ -174,8 +172,7 @@ pub fn gather<const N: usize, P: Polarization<N>>(
             None => Seen::new(world, &arrived, joined.stokes()),
             Some(dye) => dye.seen(world, &arrived, |seen| Seen::new(world, seen, dye.polarization.stokes())),
         };
-        let contribution = brought(Some(carries.light), rgb, parted || path.control.is_some());
-        let part = Part { contribution, stokes, spectrum, factor: density };
+        let part = Part { contribution: brought(Some(carries.light), rgb, parted), stokes, spectrum, factor: density };
         let change = || path.polarization.change_of_joined(at, photon.back, light, &joined, lanes);
         found.add(world, position, part, change);
     });

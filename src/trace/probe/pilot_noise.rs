@@ -28,17 +28,8 @@ pub fn pilot_noise(world: &World) -> PilotNoise {
         let vertices = LightPaths::new(world, world.method.seed).map(|light_paths| light_paths.few::<N>());
         let few = with_few_photons(world);
         let photons = photons::<N, Polarized>(&few, &Pass::of_photons_alone(&few, 0));
-        weigh(&few, photons.as_ref(), vertices.as_ref(), Noise::OfSums)
+        weigh(&few, photons.as_ref(), vertices.as_ref())
     })
-}
-
-/// Which noise counts.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Noise {
-    /// That of X + Y + Z.
-    OfSums,
-    /// That of each channel, so that noise in colors counts as well.
-    OfChannels,
 }
 
 /// What some samples of a pixel are: the mean of X + Y + Z, and the variance.
@@ -53,11 +44,10 @@ pub struct PilotNoise {
     rays: f64,
 }
 
-pub(super) fn weigh<const N: usize>(
+fn weigh<const N: usize>(
     world: &World,
     photons: Option<&PhotonMap<N>>,
     vertices: Option<&LightVertices<N>>,
-    noise: Noise,
 ) -> PilotNoise {
     let mut tracer = PathTracer::<N>::new(world).with_photons(photons);
     tracer.light_vertices = vertices;
@@ -67,19 +57,13 @@ pub(super) fn weigh<const N: usize>(
         let [x, y] = film.whole().middle_of_cell(SIDE, place);
         let taken = (0..SAMPLES).map(|number| {
             let sampler = Sampler::of_pixel(world.method.seed ^ SEED, [x, y], number);
-            let [x, y, z] = apply(&to_xyz, tracer.sample(&sampler, [x, y]).rgb);
-            if noise == Noise::OfSums { [x + y + z, 0.0, 0.0] } else { [x, y, z] }
+            apply(&to_xyz, tracer.sample(&sampler, [x, y]).rgb).iter().sum::<f64>()
         });
-        let taken: Vec<[f64; 3]> = taken.filter(|light| light.iter().all(|x| x.is_finite())).collect();
+        let taken: Vec<f64> = taken.filter(|light| light.is_finite()).collect();
         let count = taken.len().max(2) as f64;
-        let (mut all, mut variance) = (0.0, 0.0);
-        for channel in 0..3 {
-            let mean = taken.iter().map(|light| light[channel]).sum::<f64>() / count;
-            let squared = |light: &[f64; 3]| (light[channel] - mean) * (light[channel] - mean);
-            all += mean;
-            variance += taken.iter().map(squared).sum::<f64>() / (count - 1.0);
-        }
-        Pixel { mean: all, variance }
+        let mean = taken.iter().sum::<f64>() / count;
+        let squares = taken.iter().map(|light| (light - mean) * (light - mean));
+        Pixel { mean, variance: squares.sum::<f64>() / (count - 1.0) }
     };
     let pixels = (0..SIDE * SIDE).map(pixel).collect();
     let stats = tracer.walker.stats;

@@ -74,13 +74,6 @@ impl<'a, const N: usize> Interaction<'a, N> {
         Self { arrival, parts, ..self }
     }
 
-    /// With all lanes refracted by the index of one, together.
-    pub fn by_index_of(&self, lane: usize) -> Self {
-        let indices = [self.arrival.incident_of(lane), self.arrival.beyond_of(lane)];
-        let arrival = Arrival { direction_indices: indices.map(Some), ..self.arrival };
-        Self { arrival, parts: false, ..*self }
-    }
-
     /// As the light sees it that excites a dye: white, in lanes that stand for what excites.
     pub fn of_dye(&self, white: &'a Material<Table>, draw: &'a Draw<N>) -> Self {
         let arrival = Arrival { draw, present: draw.start(), ..self.arrival };

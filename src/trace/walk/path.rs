@@ -21,9 +21,6 @@ pub struct Path<const N: usize, P = Polarized> {
     pub media: Media,
     /// Whether lanes have parted on the way, after which other lanes count.
     pub parted: bool,
-    /// The lane by whose index all are refracted, where lanes have parted that also go on together: the heroes on this
-    /// path count against its light.
-    pub control: Option<u8>,
     /// Which random numbers belong to the path's next vertex.
     pub key: BranchKey,
     /// Surfaces met so far.
@@ -149,7 +146,6 @@ impl<const N: usize, P: Polarization<N>> Path<N, P> {
             eta_scale: 1.0,
             media,
             parted: false,
-            control: None,
             key: BranchKey::CAMERA,
             vertices: 0,
             length: 0.0,
@@ -192,18 +188,7 @@ impl<const N: usize, P: Polarization<N>> Path<N, P> {
 
     /// How much the path can still matter: its mean throughput, without the factor of radiance between media.
     pub fn weight(&self, draw: &Draw<N>) -> f64 {
-        importance(self.throughput, draw, self.parted, self.control.is_some()) / self.eta_scale
-    }
-
-    /// Its share of the light of one camera sample, less that of heroes that count against it.
-    pub fn worth(&self, draw: &Draw<N>) -> f64 {
-        let of = |parted| self.throughput.weight(draw.shares(parted)) / self.eta_scale / draw.siblings(parted);
-        self.counted().map(of).sum()
-    }
-
-    /// Which of its lanes count: those of lanes that are together, or those of lanes that have parted, or both.
-    pub fn counted(&self) -> impl Iterator<Item = bool> + use<N, P> {
-        std::iter::once(self.parted).chain(self.control.map(|_| true))
+        self.throughput.weight(draw.shares(self.parted)) / self.eta_scale
     }
 
     /// Follows the ray along a distance, on which the medium around it absorbs.
@@ -214,11 +199,4 @@ impl<const N: usize, P: Polarization<N>> Path<N, P> {
             self.throughput = self.throughput.through(transmission);
         }
     }
-}
-
-/// How much a throughput can still matter; `is_control` says whether heroes count against it.
-#[inline(always)]
-pub fn importance<const N: usize>(throughput: Throughput<N>, draw: &Draw<N>, parted: bool, is_control: bool) -> f64 {
-    let weight = throughput.weight(draw.shares(parted));
-    if is_control { weight.max(-throughput.weight(draw.shares(true)) / draw.siblings(true)) } else { weight }
 }

@@ -4,7 +4,7 @@ use std::cell::Cell;
 
 use super::audit::Audit;
 use super::interaction::{Interaction, Meeting};
-use super::path::{Among, Path, PathKind, ScatterSample, importance};
+use super::path::{Among, Path, PathKind, ScatterSample};
 use super::polarization::{Onward, Polarization};
 use super::polarized::Polarized;
 use super::roulette::{LONG, survival};
@@ -231,24 +231,17 @@ pub struct Departure<'a, const N: usize, P = Polarized> {
     scatter: Option<&'a ScatterSample>,
     /// What goes straight on: the last branch.
     onward: Option<&'a Onward<N, P>>,
-    /// The lane by whose index all cross the surface, on a path from which heroes have parted.
-    control: Option<u8>,
     branches: usize,
 }
 
 impl<'a, const N: usize, P: Polarization<N>> Departure<'a, N, P> {
     pub fn new(world: &'a World, path: &'a Path<N, P>, at: &'a Interaction<'a, N>) -> Self {
-        Self { world, path, at, scatter: None, onward: None, control: path.control, branches: 0 }
+        Self { world, path, at, scatter: None, onward: None, branches: 0 }
     }
 
     /// With lights sampled here, and what goes straight on.
     pub fn with(self, scatter: Option<&'a ScatterSample>, onward: Option<&'a Onward<N, P>>) -> Self {
         Self { scatter, onward, ..self }
-    }
-
-    /// With heroes that part here and count against the light of this path, which crosses by the index of one lane.
-    pub fn with_control(self, lane: usize) -> Self {
-        Self { control: Some(lane as u8), ..self }
     }
 
     /// Whether a branch is what goes straight on.
@@ -260,9 +253,8 @@ impl<'a, const N: usize, P: Polarization<N>> Departure<'a, N, P> {
     #[inline]
     fn weight(&self, branch: &Branch<N>) -> f64 {
         let Self { path, at, .. } = self;
-        let parted = path.parted || (at.parts && branch.crosses);
-        let throughput = path.throughput.through(branch.share);
-        importance(throughput, at.arrival.draw, parted, path.control.is_some()) / (path.eta_scale * branch.eta_scale)
+        let shares = at.arrival.draw.shares(path.parted || (at.parts && branch.crosses));
+        path.throughput.through(branch.share).weight(shares) / (path.eta_scale * branch.eta_scale)
     }
 
     /// Makes the path along a branch pending, followed with probability 1 / `factor`. `way` is what becomes of its
@@ -297,10 +289,6 @@ impl<'a, const N: usize, P: Polarization<N>> Departure<'a, N, P> {
         next.eta_scale = path.eta_scale * branch.eta_scale;
         next.media = if crosses { at.boundary.crossed } else { path.media };
         next.parted = path.parted || (at.parts && crosses);
-        next.control = self.control;
-        if self.control.is_some() && path.control.is_none() {
-            next.throughput = next.throughput.through(at.arrival.draw.against());
-        }
         next.key = path.key.child(number);
         next.vertices = path.vertices;
         next.length = path.length;
