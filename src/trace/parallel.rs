@@ -1,14 +1,17 @@
 //! Work on all threads. Work is handed over as a `dyn` function: what deals it out is compiled once for each type of
 //! result, not once for every number of lanes.
+//!
+//! Pieces are dealt out one by one: left to itself, Rayon hands two threads a quarter of them at a time, and one waits
+//! for the other at the end.
 
 use rayon::prelude::*;
 
 /// Does pieces of work 0 to `count` - 1, and answers their results in that order.
 pub(super) fn in_parallel<T: Send>(count: usize, work: &(dyn Fn(usize) -> T + Sync)) -> Vec<T> {
-    (0..count).into_par_iter().map(work).collect()
+    (0..count).into_par_iter().with_max_len(1).map(work).collect()
 }
 
 /// Does work on each of some items.
 pub(super) fn for_each_in_parallel<T: Send>(items: Vec<T>, work: &(dyn Fn(T) + Sync)) {
-    items.into_par_iter().for_each(work);
+    items.into_par_iter().with_max_len(1).for_each(work);
 }
