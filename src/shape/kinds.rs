@@ -121,7 +121,7 @@ impl Shape {
         if let Self::Mesh(mesh) = self { mesh.normal(crossing.part) } else { self.point(ray, crossing).normal }
     }
 
-    /// Whether the shape has an end: all but planes.
+    /// Whether the shape is finite, as all are but planes.
     pub fn is_bounded(&self) -> bool {
         !matches!(self, Self::Plane(_))
     }

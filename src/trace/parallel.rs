@@ -1,7 +1,7 @@
 //! Work on all threads. Work is handed over as a `dyn` function: what deals it out is compiled once for each type of
 //! result, not once for every number of lanes.
 //!
-//! Pieces are dealt out one by one: left to itself, Rayon hands two threads a quarter of them at a time, and one waits
+//! Pieces are dealt out one by one. Rayon's own choice is a quarter of them at a time for two threads, so that one waits
 //! for the other at the end.
 
 use rayon::prelude::*;
