@@ -1,8 +1,8 @@
 //! Work on all threads. Work is handed over as a `dyn` function: what deals it out is compiled once for each type of
 //! result, not once for every number of lanes.
 //!
-//! Pieces are dealt out one by one. Rayon's own choice is a quarter of them at a time for two threads, so that one waits
-//! for the other at the end.
+//! Pieces are dealt out one by one. Rayon's own choice for two threads is a quarter of them at a time, so that one
+//! waits for the other at the end.
 
 use rayon::prelude::*;
 
