@@ -34,7 +34,7 @@ impl<'a> CoatedLane<'a> {
         let turned = arrival.turned_around();
         let stack = met.stack(lane);
         let averages =
-            [(arrival, stack, false), (&turned, stack.turned_around(), true)].map(|(from, stack, beyond)| {
+            [(arrival, &stack, false), (&turned, &stack.turned_around(), true)].map(|(from, stack, beyond)| {
                 let ([here, there], own) = (from.refracting(lane), [from.incident_of(lane), from.beyond_of(lane)]);
                 let bare = |cos: f64| {
                     let interface = Interface::new(here, there, cos);

@@ -2,6 +2,8 @@
 
 use std::f64::consts::{PI, TAU};
 
+use smallvec::SmallVec;
+
 use super::Block;
 use super::degree::degree;
 use crate::math::Complex;
@@ -99,10 +101,9 @@ impl StackShares {
 }
 
 /// Layers for light of one wavelength, the viewer's side first.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Stack {
-    layers: [Layer; MAX_LAYERS],
-    count: usize,
+    layers: SmallVec<[Layer; 4]>,
     /// Wavelength in vacuum, in nm.
     nm: f64,
     /// Width of the band of wavelengths that the light stands for, over its wavelength: 0 of a single one.
@@ -112,23 +113,19 @@ pub struct Stack {
 impl Stack {
     /// No layers yet, for light of a wavelength in nm and the relative width of its band.
     pub fn new(nm: f64, band: f64) -> Self {
-        Self { layers: [Layer::default(); MAX_LAYERS], count: 0, nm, band }
+        Self { layers: SmallVec::new(), nm, band }
     }
 
     /// Adds a layer behind the others; none that has no thickness.
-    ///
-    /// # Panics
-    /// If there are more than [`MAX_LAYERS`].
     pub fn push(&mut self, layer: Layer) {
         if layer.thickness_nm > 0.0 {
-            self.layers[self.count] = layer;
-            self.count += 1;
+            self.layers.push(layer);
         }
     }
 
     /// The layers, the viewer's side first.
     pub fn layers(&self) -> &[Layer] {
-        &self.layers[..self.count]
+        &self.layers
     }
 
     /// Thickness of all layers in nm.
@@ -142,9 +139,8 @@ impl Stack {
     }
 
     /// The same layers from the other side.
-    pub fn turned_around(mut self) -> Self {
-        self.layers[..self.count].reverse();
-        self
+    pub fn turned_around(&self) -> Self {
+        Self { layers: self.layers.iter().rev().copied().collect(), ..*self }
     }
 
     /// What the layers do between index `n1`, where the viewer is, and `n2` beyond, n - i k, for light whose normal
@@ -153,7 +149,7 @@ impl Stack {
     /// A band of wavelengths has the mean over its wavelengths, and over all phases of layers thicker than
     /// [`COHERENT_NM`].
     pub fn shares(&self, n1: f64, n2: Complex, q1: f64) -> StackShares {
-        if self.count == 0 && n2 == n1.into() {
+        if self.layers.is_empty() && n2 == n1.into() {
             let all = PolarizedShare { s: 1.0, p: 1.0, cross: Complex::ONE };
             return StackShares { refracted: all, ..StackShares::default() };
         }
@@ -194,7 +190,16 @@ impl Stack {
         let mut fields = y2.map(|y| [Complex::ONE, y]);
         let mut decay = 0.0;
         for layer in self.layers().iter().rev() {
-            let (q, waves) = (across(layer.index), layer.thickness_nm / self.nm);
+            let waves = layer.thickness_nm / self.nm;
+            let n = layer.index.re;
+            let q_squared = (n - n1) * (n + n1) + q1 * q1;
+            if layer.index.im == 0.0 && q_squared > 0.0 {
+                let q = q_squared.sqrt();
+                let delta = q * (TAU * waves);
+                pass_clear(&mut fields, q, n * n, delta + turn(layer, delta));
+                continue;
+            }
+            let q = across(layer.index);
             let delta = q * (TAU * waves);
             let mut phase = delta.re;
             // What only decays has no fringes.
@@ -230,6 +235,18 @@ impl Stack {
             reflected: PolarizedShare::of(r_s, r_p, [1.0; 2]),
             refracted: PolarizedShare::of(t_s, t_p, crossing),
         }
+    }
+}
+
+/// Takes the fields of s and p to the near side of a layer that neither absorbs nor reflects all light: its matrices
+/// are real but for a factor i.
+fn pass_clear(fields: &mut [[Complex; 2]; 2], q: f64, n_squared: f64, phase: f64) {
+    let (sin, cos) = libm::sincos(phase);
+    let (over_q, times_q) = (sin / q, sin * q);
+    let [s, p] = [[over_q, times_q], [over_q * n_squared, times_q / n_squared]];
+    for (field, [above, below]) in fields.iter_mut().zip([s, p]) {
+        let [b, c] = *field;
+        *field = [b * cos + (c * above).times_i(), (b * below).times_i() + c * cos];
     }
 }
 
@@ -318,6 +335,27 @@ mod tests {
                 let back = stack.turned_around().shares(n2, n1.into(), q2_squared.sqrt());
                 near(back.refracted.s, t.s, 1e-10);
                 near(back.refracted.p, t.p, 1e-10);
+            }
+        }
+    }
+
+    #[test]
+    fn clear_layers_do_what_layers_do_that_hardly_absorb() {
+        let mut random = random();
+        for _ in 0..2000 {
+            let layer = |random: &mut dyn FnMut(f64, f64) -> f64| (random(1.0, 2.5), random(0.0, 2000.0));
+            let layers: Vec<_> = (0..3).map(|_| layer(&mut random)).collect();
+            let (nm, degrees) = (random(380.0, 730.0), random(0.0, 89.0));
+            // In glass, light may be totally reflected by a layer and then cross it all the same.
+            let of = |k: f64| {
+                let layers: Vec<_> = layers.iter().map(|&(n, thickness)| ([n, k], thickness)).collect();
+                met(&layers, nm, 1.5, [1.7, 0.0], degrees)
+            };
+            let [clear, dim] = [of(0.0), of(1e-18)].map(|shares| {
+                [shares.reflected, shares.refracted].map(|way| [way.s, way.p, way.cross.re, way.cross.im])
+            });
+            for (clear, dim) in clear.as_flattened().iter().zip(dim.as_flattened()) {
+                near(*clear, *dim, 1e-11);
             }
         }
     }
