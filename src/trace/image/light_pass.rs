@@ -6,6 +6,8 @@
 //! Simulation*, section 10.3.4, has the importance; Grittmann et al. 2018, *Efficient Caustic Rendering with
 //! Lightweight Photon Mapping*, the split by kind of path.
 
+use std::ops::Range;
+
 use serde::{Deserialize, Serialize};
 
 use super::tile::{Shown, Tile};
@@ -14,7 +16,7 @@ use crate::trace::contribution::{Contribution, Found};
 use crate::trace::parallel::in_parallel;
 use crate::trace::pass::Pass;
 use crate::trace::photon::{Batch, Sent, Splat, batches, send, show as show_photon};
-use crate::trace::photon_targets::PhotonTargets;
+use crate::trace::photon_targets::{PhotonTarget, PhotonTargets};
 use crate::trace::stats::Stats;
 use crate::trace::walk::{Polarization, Polarized};
 use crate::trace::watch::Watch;
@@ -27,7 +29,7 @@ const AT_ONCE: usize = 64;
 const SEED: u64 = 0x7068_6f74;
 const AHEAD_SEED: u64 = 0x6168_6561;
 
-/// Of an target's photons, one in so many is sent ahead to learn which ones are seen, unless those are too few to tell,
+/// Of a target's photons, one in so many is sent ahead to learn which ones are seen, unless those are too few to tell,
 /// and as many as tell enough.
 const AHEAD: u64 = 8;
 const TOO_FEW: u64 = 4096;
@@ -37,6 +39,8 @@ const ENOUGH: u64 = 1 << 16;
 const OF_A_PLAN: u64 = 1 << 17;
 const RAYS_OF_A_PLAN: f64 = (1 << 18) as f64;
 const SEEN_OF_A_PLAN: u64 = 1 << 16;
+/// Most rays of either, about half a second: photons of a heap of glass balls follow a hundred each.
+const MOST_RAYS: f64 = (1 << 20) as f64;
 /// Of each target, photons that tell how many rays one follows.
 const FIRST: u64 = 256;
 
@@ -183,12 +187,13 @@ struct Learned {
     rays: u64,
 }
 
-/// Sends photons ahead. The format sees them, also where a part of it or more is made, so that all parts are made
-/// alike.
-fn send_ahead<const N: usize>(world: &World, most: u64) -> Learned {
+/// Sends photons ahead, of each target those of some numbers as far as it has so many. The format sees them, also where
+/// a part of it or more is made, so that all parts are made alike.
+fn send_ahead<const N: usize>(world: &World, numbers: Range<u64>) -> Learned {
     let world = world.of_the_format();
     let Some(targets) = &world.photon_targets else { return Learned::default() };
-    let batches = batches(targets, |_| 0, |target| target.photons.min(most), world.method.seed ^ AHEAD_SEED);
+    let count = |target: &PhotonTarget| target.photons.min(numbers.end).saturating_sub(numbers.start);
+    let batches = batches(targets, |_| numbers.start, count, world.method.seed ^ AHEAD_SEED);
     let send =
         |number: usize| send::<N, Polarized, _>(&world, targets, batches[number], true, &show_photon::<N, Polarized>);
     let done = in_parallel(batches.len(), &send);
@@ -200,12 +205,22 @@ fn send_ahead<const N: usize>(world: &World, most: u64) -> Learned {
     learned
 }
 
+/// Sends so many photons of each target ahead, or as many as follow [`MOST_RAYS`], but no fewer than [`FIRST`].
+fn send_some_ahead<const N: usize>(world: &World, most: u64) -> Learned {
+    let mut learned = send_ahead::<N>(world, 0..most.min(FIRST));
+    let affordable = (FIRST as f64 * MOST_RAYS / learned.rays as f64) as u64;
+    let more = send_ahead::<N>(world, FIRST..most.min(affordable));
+    learned.rays += more.rays;
+    learned.found.iter_mut().zip(more.found).for_each(|(found, more)| found.extend(more));
+    learned
+}
+
 /// Of the photons of each light, the share that the camera sees; of many lights, of a light and its neighbors.
 pub fn seen_photons(world: &World) -> Vec<f64> {
     let mut shares = vec![0.0; world.scene.lights.len()];
     let Some(targets) = &world.photon_targets else { return shares };
     let most = (SEEN_OF_A_PLAN / targets.targets.len() as u64).clamp(1, TOO_FEW);
-    let found = in_lanes!(&world.method.basis, N => send_ahead::<N>(world, most)).found;
+    let found = in_lanes!(&world.method.basis, N => send_some_ahead::<N>(world, most)).found;
     let mut counts = vec![[0_u32; 2]; shares.len()];
     for (target, photons) in targets.targets.iter().zip(found) {
         let [sent, seen] = &mut counts[target.light];
@@ -221,21 +236,23 @@ pub fn seen_photons(world: &World) -> Vec<f64> {
 }
 
 /// A world with another light pass and photons sent ahead, for a plan: no more of them for an image of many pixels than
-/// for one of few.
+/// for one of few, and none where enough to learn from would follow too many rays.
 pub fn piloted(world: &World, light_pass: LightPass) -> World {
     let mut world = world.with_light_pass(Some(light_pass));
     let targets = world.photon_targets.as_ref().map_or(1, |targets| targets.targets.len() as u64);
     let most = OF_A_PLAN / targets;
     if most >= TOO_FEW {
-        let first = in_lanes!(&world.method.basis, N => send_ahead::<N>(&world, FIRST));
+        let first = in_lanes!(&world.method.basis, N => send_ahead::<N>(&world, 0..FIRST));
         let sent = first.found.iter().map(Vec::len).sum::<usize>() as f64;
-        let by_rays = RAYS_OF_A_PLAN * sent / (first.rays as f64 * targets as f64);
-        learn_where_to_send(&mut world, (by_rays as u64).clamp(TOO_FEW, most));
+        let within = |rays: f64| (rays * sent / (first.rays as f64 * targets as f64)) as u64;
+        if within(MOST_RAYS) >= TOO_FEW {
+            learn_where_to_send(&mut world, within(RAYS_OF_A_PLAN).clamp(TOO_FEW, most));
+        }
     }
     world
 }
 
-/// Sends photons ahead, at most so many of an target, and the others where those were seen.
+/// Sends photons ahead, at most so many of a target, and the others where those were seen.
 pub fn learn_where_to_send(world: &mut World, most: u64) {
     let Some(least) = world
         .photon_targets
@@ -246,9 +263,57 @@ pub fn learn_where_to_send(world: &mut World, most: u64) {
     };
     let ahead = least.min(ENOUGH).min(most);
     if ahead >= TOO_FEW {
-        let found = in_lanes!(&world.method.basis, N => send_ahead::<N>(world, ahead)).found;
+        let found = in_lanes!(&world.method.basis, N => send_ahead::<N>(world, 0..ahead)).found;
         if let Some(targets) = &mut world.photon_targets {
             targets.learn(&found);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Scene;
+    use crate::spectrum::{Basis, ColorSpace};
+    use crate::trace::{Method, Transport};
+
+    /// A heap of glass balls under a spot, in which a photon follows dozens of rays.
+    fn heap() -> World {
+        let mut text = String::from(
+            "[camera]\nposition = [0, -20, 4]\nlook_at = [0, 0, 0]\nvertical_fov = 40\n[film]\nwidth = 64\nheight = 48\n\
+             [material.glass]\ndielectric = { index = 1.5 }\n[material.floor]\ndiffuse = { reflectance = 0.5 }\n\
+             [[object]]\nmaterial = \"floor\"\nshape.quad = { center = [0, 0, -4], u = [20, 0, 0], v = [0, 20, 0] }\n\
+             [[light]]\nspot = { position = [0, 0, 20], toward = [0, 0, -1], cone_angle = 30, intensity = 3000 }\n",
+        );
+        for ball in 0..512 {
+            let [x, y, z] = [ball % 8, ball / 8 % 8, ball / 64].map(|i| f64::from(i) - 3.5);
+            text += &format!(
+                "[[object]]\nmaterial = \"glass\"\nshape.sphere = {{ center = [{x}, {y}, {z}], radius = 0.4 }}\n"
+            );
+        }
+        let scene = Scene::parse(&text, ".").expect("the heap is a scene");
+        let transport = Transport::Random { split: 0.05, roulette: 0.05 };
+        let method = Method::of_paths(Basis::rgb(ColorSpace::Rec709), transport, 0);
+        let pass = LightPass { photons: 1 << 20, lights: vec![0], map: None };
+        World::new(&scene, method).with_light_pass(Some(pass))
+    }
+
+    #[test]
+    fn a_plan_sends_no_more_photons_ahead_than_it_has_time_for() {
+        let world = heap();
+        let first = send_ahead::<4>(&world, 0..FIRST);
+        let all = first.rays as f64 * TOO_FEW as f64 / FIRST as f64;
+        assert!(all > 2.0 * MOST_RAYS, "{all} rays are affordable");
+        let some = send_some_ahead::<4>(&world, TOO_FEW);
+        assert!((some.rays as f64 / MOST_RAYS - 1.0).abs() < 0.1, "{} rays", some.rays);
+        for (first, some) in first.found.iter().zip(&some.found) {
+            assert!(some.len() > first.len() && some.starts_with(first), "{} and {}", first.len(), some.len());
+        }
+        // Nothing is learned from them.
+        let photons = |world: &World| -> Vec<u64> {
+            world.photon_targets.iter().flat_map(|targets| &targets.targets).map(|target| target.photons).collect()
+        };
+        let pass = world.method.light_pass.clone().expect("it was asked for");
+        assert_eq!(photons(&piloted(&world, pass)), photons(&world));
     }
 }

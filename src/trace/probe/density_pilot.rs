@@ -39,8 +39,10 @@ const MOST_CELLS: f64 = 4096.0;
 const AROUND: i64 = 2;
 /// What all that belongs to a sample takes in rays of a path.
 const SAMPLE: f64 = 0.5;
-/// Steps of a scale to twice as much.
+/// Steps of a scale to twice as much, the least, and one beyond the largest.
 const STEPS: i32 = 16;
+const LEAST_STEP: i32 = -4 * STEPS;
+const MOST_STEP: i32 = 64 * STEPS;
 /// Sets these random numbers apart from those of the image.
 const SEED: u64 = 0x6465_6e73;
 
@@ -177,9 +179,18 @@ fn powers(found: &[Cell]) -> Option<Vec<i8>> {
         wanted.iter().map(|wanted| libm::log2(wanted * scale).round().clamp(least, largest) as i8).collect()
     };
     let all = rays(found, &vec![0; found.len()]);
-    // The largest scale that takes no more rays.
-    let steps = (-4 * STEPS..64 * STEPS).rev();
-    steps.map(of_scale).find(|powers| rays(found, powers) <= all)
+    let affordable = |step: i32| Some(of_scale(step)).filter(|powers| rays(found, powers) <= all);
+    // The largest scale that takes no more rays: a larger one never takes fewer.
+    let (mut from, mut to) = (LEAST_STEP, MOST_STEP);
+    let mut best = affordable(from)?;
+    while to - from > 1 {
+        let middle = (from + to) / 2;
+        match affordable(middle) {
+            Some(powers) => (from, best) = (middle, powers),
+            None => to = middle,
+        }
+    }
+    Some(best)
 }
 
 /// The rays of all cells.
