@@ -19,6 +19,8 @@ pub struct Arrival<'a, const N: usize> {
     pub present: Lanes<N>,
     /// Whether the viewer is behind the surface's front, inside a clear body, and meets a coating at its inner side.
     pub from_inside: bool,
+    /// Whether lanes have parted and left one alone on the ray: no others go its way.
+    pub is_alone: bool,
     /// Refractive index on the viewer's side.
     pub incident: Index<'a>,
     /// Refractive index beyond the surface; the same as `incident` where no medium begins or ends.
@@ -68,6 +70,11 @@ impl<const N: usize> Arrival<'_, N> {
     /// A table of the material, read for this ray.
     pub fn read(&self, table: &Table) -> Lanes<N> {
         self.draw.read_at(table, self.uv)
+    }
+
+    /// A factor on lanes, read for this ray; of lanes that stand for nothing it says nothing.
+    pub(super) fn read_tint(&self, table: &Table) -> Lanes<N> {
+        if table.is_one() { Lanes::ONE } else { self.read(table) }
     }
 
     /// The same surface as it is met from beyond.
@@ -139,7 +146,10 @@ impl<const N: usize> Arrival<'_, N> {
 
     /// Whether light that crosses the surface goes different ways in different lanes.
     pub fn parts(&self) -> bool {
-        if self.one_direction().is_some() || matches!((self.incident, self.beyond), (Index::Same(_), Index::Same(_))) {
+        if self.is_alone
+            || self.one_direction().is_some()
+            || matches!((self.incident, self.beyond), (Index::Same(_), Index::Same(_)))
+        {
             return false;
         }
         let first = self.refracting(0);

@@ -121,7 +121,7 @@ impl Dielectric<Table> {
     /// lanes part, and only those go on that are there for it. Lanes that share a direction have their own Fresnel
     /// shares.
     fn scatter_smooth<const N: usize>(&self, arrival: &Arrival<N>, branches: &mut Vec<Branch<N>>) {
-        let (tint, reflectance) = (arrival.read(&self.transmittance), arrival.read(&self.reflectance));
+        let [tint, reflectance] = [&self.transmittance, &self.reflectance].map(|table| arrival.read_tint(table));
         let parts = arrival.parts();
         let crossing = if parts { tint * arrival.draw.parting() } else { tint };
         let cos = arrival.wo.dot(arrival.normal);
@@ -182,7 +182,7 @@ impl Dielectric<Table> {
         [here, beyond]: [f64; 2],
         branches: &mut Vec<Branch<N>>,
     ) {
-        let (tint, reflectance) = (arrival.read(&self.transmittance), arrival.read(&self.reflectance));
+        let [tint, reflectance] = [&self.transmittance, &self.reflectance].map(|table| arrival.read_tint(table));
         let cos = arrival.wo.dot(arrival.normal);
         let [n1, n2] = &arrival.indices();
         let mut push = |wi, share: Lanes<N>, crosses, eta_scale, polarization: f64| {
@@ -223,7 +223,7 @@ impl Dielectric<Table> {
     fn mueller_of_smooth<const N: usize>(&self, arrival: &Arrival<N>, incoming: Incoming, mueller: &mut Mueller<N>) {
         let crosses = incoming.crosses;
         let table = if crosses { &self.transmittance } else { &self.reflectance };
-        let tint = if table.is_one() { Lanes::ONE } else { arrival.read(table) };
+        let tint = arrival.read_tint(table);
         let (axis, cos) = (arrival.wo.cross(arrival.normal), arrival.wo.dot(arrival.normal));
         if let Some(coating) = &self.coating {
             let met = coating.met(arrival, arrival.from_inside);

@@ -82,6 +82,7 @@ fn d16_every_lane_of_every_glass_of_the_catalog_has_its_own_plate() {
                     draw: &draw,
                     present,
                     from_inside: false,
+                    is_alone: false,
                     incident: Index::Same(1.0),
                     beyond: Index::Own(&table),
                     direction_indices: [Some(1.0), Some(direction)],

@@ -41,6 +41,7 @@ pub fn arrival(draw: &Draw<4>, wo: DVec3, index: f64) -> Arrival<'_, 4> {
         draw,
         present: draw.start(),
         from_inside: false,
+        is_alone: false,
         incident,
         beyond,
         direction_indices: [None; 2],

@@ -39,6 +39,7 @@ fn furnace(material: &Material<Table>, cos: f64, index: f64) -> [f64; 3] {
         draw: &draw,
         present: draw.start(),
         from_inside: false,
+        is_alone: false,
         incident: Index::Same(index),
         beyond: Index::Same(index),
         direction_indices: [None; 2],

@@ -63,6 +63,7 @@ fn a_point_light_shows_the_brdf_itself() {
             draw: &draw,
             present: draw.start(),
             from_inside: false,
+            is_alone: false,
             incident,
             beyond,
             direction_indices: [None; 2],

@@ -81,6 +81,7 @@ fn s5_every_material_sends_light_on_along_unit_vectors() {
                 draw: &draw,
                 present: draw.start(),
                 from_inside: false,
+                is_alone: false,
                 incident,
                 beyond,
                 direction_indices: [None; 2],

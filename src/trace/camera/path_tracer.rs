@@ -288,7 +288,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         if ends && !(world.has_map() && path.diffuse_left > 0) {
             return;
         }
-        let at = Interaction::new(world, draw, &path.ray, path.throughput.present(), meeting, boundary);
+        let at = Interaction::new(world, draw, &path.arriving(), meeting, boundary);
         if let Some(layers) = &mut self.sensor.layers {
             let straight = onward.map(|onward| &onward.straight);
             layers.meet(&Met { path, meeting, at: &at, straight, is_met_first }, sampler);

@@ -156,7 +156,7 @@ fn advance<const N: usize, P: Polarization<N>>(
     }
     path.vertices += 1;
     let Some(boundary) = walker.boundary(path, &meeting) else { return };
-    let at = Interaction::new(world, draw, &path.ray, path.throughput.present(), &meeting, boundary);
+    let at = Interaction::new(world, draw, &path.arriving(), &meeting, boundary);
     if over != Surfaces::Smooth && path.vertices == 1 && !at.lobes.is_diffuse() {
         // From the camera, a path has to leave the next diffuse surface to reach this one. It leaves none for a light.
         path.diffuse_left = path.diffuse_left.saturating_sub(1);

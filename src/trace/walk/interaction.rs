@@ -16,6 +16,15 @@ pub struct Meeting {
     pub point: SurfacePoint,
 }
 
+/// A ray that arrives at a surface.
+pub struct Arriving<'a, const N: usize> {
+    pub ray: &'a Ray,
+    /// The lanes on it.
+    pub present: Lanes<N>,
+    /// Whether lanes have parted on the way.
+    pub parted: bool,
+}
+
 /// Where a path meets a surface, and what the surface may know of it: made here, for the camera's paths, photons and
 /// probes.
 pub struct Interaction<'a, const N: usize> {
@@ -33,22 +42,21 @@ pub struct Interaction<'a, const N: usize> {
 }
 
 impl<'a, const N: usize> Interaction<'a, N> {
-    /// Of a ray, with some lanes on it, with the surface that it has met at a boundary of media.
+    /// Of a ray with the surface that it has met at a boundary of media.
     #[inline(always)]
     pub fn new(
         world: &'a World,
         draw: &'a Draw<N>,
-        ray: &Ray,
-        present: Lanes<N>,
+        arriving: &Arriving<N>,
         meeting: &'a Meeting,
         boundary: Boundary,
     ) -> Self {
         let Meeting { hit, point } = meeting;
         let object = &world.scene.objects[hit.object as usize];
-        let (wo, uv, number) = (-ray.direction, object.uv(&hit.crossing, point), object.material as usize);
+        let (wo, uv, number) = (-arriving.ray.direction, object.uv(&hit.crossing, point), object.material as usize);
         let (material, lobes) = (&world.scene.materials[number].material, world.lobes[number]);
         let [flat, normal] = shading::normals(point, wo);
-        let sides = boundary.sides();
+        let (sides, present) = (boundary.sides(), arriving.present);
         let mut at = Self {
             object: hit.object,
             point,
@@ -60,6 +68,7 @@ impl<'a, const N: usize> Interaction<'a, N> {
             parts: false,
         };
         at.arrival.from_inside = point.normal.dot(wo) < 0.0;
+        at.arrival.is_alone = arriving.parted && present.sum() == 1.0;
         at.parts = parts(lobes, material, &at.arrival);
         at
     }
@@ -127,6 +136,7 @@ pub fn arrival<'a, const N: usize>(
         draw,
         present,
         from_inside: false,
+        is_alone: false,
         incident: media::index_around(&world.scene, sides[0]),
         beyond: media::index_around(&world.scene, sides[1]),
         direction_indices: media::direction_indices(&world.scene, sides),

@@ -1,3 +1,4 @@
+use super::interaction::Arriving;
 use super::polarization::{Onward, Polarization};
 use super::polarized::Polarized;
 use crate::math::{BranchKey, DVec3, Ray};
@@ -184,6 +185,12 @@ impl<const N: usize, P: Polarization<N>> Path<N, P> {
     /// By which lobe the first surface sends its light to the camera; none before it has left one.
     pub fn lobe(&self) -> Option<Option<FirstLobe>> {
         (self.bounces > 0).then_some(self.first)
+    }
+
+    /// Its end, where it meets a surface.
+    #[inline(always)]
+    pub fn arriving(&self) -> Arriving<'_, N> {
+        Arriving { ray: &self.ray, present: self.throughput.present(), parted: self.parted }
     }
 
     /// How much the path can still matter: its mean throughput, without the factor of radiance between media.
