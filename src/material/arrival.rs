@@ -19,7 +19,7 @@ pub struct Arrival<'a, const N: usize> {
     pub present: Lanes<N>,
     /// Whether the viewer is behind the surface's front, inside a clear body, and meets a coating at its inner side.
     pub from_inside: bool,
-    /// Whether lanes have parted and left one alone on the ray: no others go its way.
+    /// Whether one lane is alone on the ray since lanes parted.
     pub is_alone: bool,
     /// Refractive index on the viewer's side.
     pub incident: Index<'a>,
@@ -72,7 +72,7 @@ impl<const N: usize> Arrival<'_, N> {
         self.draw.read_at(table, self.uv)
     }
 
-    /// A factor on lanes, read for this ray; of lanes that stand for nothing it says nothing.
+    /// A factor on the lanes of this ray. Lanes that stand for nothing get any number.
     pub(super) fn read_tint(&self, table: &Table) -> Lanes<N> {
         if table.is_one() { Lanes::ONE } else { self.read(table) }
     }

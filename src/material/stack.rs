@@ -346,7 +346,7 @@ mod tests {
             let layer = |random: &mut dyn FnMut(f64, f64) -> f64| (random(1.0, 2.5), random(0.0, 2000.0));
             let layers: Vec<_> = (0..3).map(|_| layer(&mut random)).collect();
             let (nm, degrees) = (random(380.0, 730.0), random(0.0, 89.0));
-            // In glass, light may be totally reflected by a layer and then cross it all the same.
+            // Light that comes from glass is totally reflected by some of the layers, and part of it tunnels through.
             let of = |k: f64| {
                 let layers: Vec<_> = layers.iter().map(|&(n, thickness)| ([n, k], thickness)).collect();
                 met(&layers, nm, 1.5, [1.7, 0.0], degrees)

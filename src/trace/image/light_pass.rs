@@ -39,7 +39,8 @@ const ENOUGH: u64 = 1 << 16;
 const OF_A_PLAN: u64 = 1 << 17;
 const RAYS_OF_A_PLAN: f64 = (1 << 18) as f64;
 const SEEN_OF_A_PLAN: u64 = 1 << 16;
-/// Most rays of either, about half a second: photons of a heap of glass balls follow a hundred each.
+/// Most rays that a plan follows to learn where to send photons, and as many to tell which are seen: each takes about
+/// half a second. Photons in a heap of glass balls follow a hundred rays each.
 const MOST_RAYS: f64 = (1 << 20) as f64;
 /// Of each target, photons that tell how many rays one follows.
 const FIRST: u64 = 256;
@@ -187,6 +188,14 @@ struct Learned {
     rays: u64,
 }
 
+impl Learned {
+    /// How many photons of each target follow so many rays, by what these took.
+    fn each_within(&self, rays: f64) -> u64 {
+        let sent = self.found.iter().map(Vec::len).sum::<usize>() as f64;
+        (rays * sent / (self.rays as f64 * self.found.len() as f64)) as u64
+    }
+}
+
 /// Sends photons ahead, of each target those of some numbers as far as it has so many. The format sees them, also where
 /// a part of it or more is made, so that all parts are made alike.
 fn send_ahead<const N: usize>(world: &World, numbers: Range<u64>) -> Learned {
@@ -208,8 +217,7 @@ fn send_ahead<const N: usize>(world: &World, numbers: Range<u64>) -> Learned {
 /// Sends so many photons of each target ahead, or as many as follow [`MOST_RAYS`], but no fewer than [`FIRST`].
 fn send_some_ahead<const N: usize>(world: &World, most: u64) -> Learned {
     let mut learned = send_ahead::<N>(world, 0..most.min(FIRST));
-    let affordable = (FIRST as f64 * MOST_RAYS / learned.rays as f64) as u64;
-    let more = send_ahead::<N>(world, FIRST..most.min(affordable));
+    let more = send_ahead::<N>(world, FIRST..most.min(learned.each_within(MOST_RAYS)));
     learned.rays += more.rays;
     learned.found.iter_mut().zip(more.found).for_each(|(found, more)| found.extend(more));
     learned
@@ -243,10 +251,8 @@ pub fn piloted(world: &World, light_pass: LightPass) -> World {
     let most = OF_A_PLAN / targets;
     if most >= TOO_FEW {
         let first = in_lanes!(&world.method.basis, N => send_ahead::<N>(&world, 0..FIRST));
-        let sent = first.found.iter().map(Vec::len).sum::<usize>() as f64;
-        let within = |rays: f64| (rays * sent / (first.rays as f64 * targets as f64)) as u64;
-        if within(MOST_RAYS) >= TOO_FEW {
-            learn_where_to_send(&mut world, within(RAYS_OF_A_PLAN).clamp(TOO_FEW, most));
+        if first.each_within(MOST_RAYS) >= TOO_FEW {
+            learn_where_to_send(&mut world, first.each_within(RAYS_OF_A_PLAN).clamp(TOO_FEW, most));
         }
     }
     world

@@ -42,7 +42,7 @@ pub struct Interaction<'a, const N: usize> {
 }
 
 impl<'a, const N: usize> Interaction<'a, N> {
-    /// Of a ray with the surface that it has met at a boundary of media.
+    /// Where a ray arrives at a surface that it has met, at a boundary of media.
     #[inline(always)]
     pub fn new(
         world: &'a World,

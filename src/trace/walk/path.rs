@@ -187,7 +187,7 @@ impl<const N: usize, P: Polarization<N>> Path<N, P> {
         (self.bounces > 0).then_some(self.first)
     }
 
-    /// Its end, where it meets a surface.
+    /// Its ray, as it arrives at a surface.
     #[inline(always)]
     pub fn arriving(&self) -> Arriving<'_, N> {
         Arriving { ray: &self.ray, present: self.throughput.present(), parted: self.parted }
