@@ -44,7 +44,10 @@ fn read(path: &Path, text: String) -> Option<Scene<Curve>> {
     let source = Source { path: path.to_owned(), text };
     match source.compile() {
         Ok(mut scene) => {
-            // A small part is rendered: its size decides nothing but the time it takes.
+            // A small part of a small image is rendered: sizes decide nothing but the time it takes.
+            scene.film.width = scene.film.width.min(64);
+            scene.film.height = scene.film.height.min(48);
+            scene.film.crop = None;
             let whole = scene.film.window();
             scene.film.crop = Some(Window { width: whole.width.min(4), height: whole.height.min(3), ..whole });
             scene.render.samples = scene.render.samples.map(|samples| samples.min(1));
