@@ -14,7 +14,7 @@ use abbe::{Image, Rendering, Result, Scene, write_plan};
 use command::cli::{self, Job, Output, Request};
 use command::events::{Event, write_account};
 use command::keep::{self, Keep};
-use command::outputs::{check_standard, is_standard, spare};
+use command::outputs::{check_outputs, check_standard, is_standard};
 use command::{catalog, diff, info, merge, messages, progress, view};
 
 fn main() -> ExitCode {
@@ -50,14 +50,15 @@ fn run(job: &Job) -> Result<ExitCode> {
             messages::print_checked(&source.path, scene.objects.len());
             Ok(ExitCode::SUCCESS)
         }
-        Output::Plan(file) => answer_plan(job, &scene, file.as_deref()),
+        Output::Plan(file) => answer_plan(&scene, file.as_deref()),
         Output::Image { exr, png } => image(job, &scene, exr.as_deref(), png.as_deref()),
     }
 }
 
 /// Says how the scene is rendered, and writes it down if that is asked for.
-fn answer_plan(job: &Job, scene: &Scene, file: Option<&Path>) -> Result<ExitCode> {
-    file.map_or(Ok(()), |file| spare(&job.scene, "scene", file).and_then(|()| check_writable(file)))?;
+fn answer_plan(scene: &Scene, file: Option<&Path>) -> Result<ExitCode> {
+    check_outputs(scene, &Vec::from_iter(file))?;
+    file.map_or(Ok(()), check_writable)?;
     let plan = plan(scene);
     messages::answer_plan(&plan)?;
     if let Some(file) = file {
@@ -89,17 +90,20 @@ fn image(job: &Job, scene: &Scene, exr: Option<&Path>, png: Option<&Path>) -> Re
         Some(part) => vec![part],
         None => [exr_file, spectral.as_deref(), png].into_iter().flatten().collect(),
     };
-    outputs.iter().try_for_each(|output| spare(&job.scene, "scene", output))?;
-    outputs.iter().try_for_each(|output| check_writable(output))?;
     let report = job.report.as_deref();
-    report.map_or(Ok(()), |report| spare(&job.scene, "scene", report).and_then(|()| check_writable(report)))?;
-    let mut keep = Keep::new(&job.keep, outputs.first().copied().unwrap_or(Path::new("image")))?;
+    let main = outputs.first().copied().unwrap_or(Path::new("image"));
+    let checkpoint = job.keep.checkpoint(main);
+    let all: Vec<&Path> = outputs.iter().copied().chain(checkpoint.as_deref()).chain(report).collect();
+    check_outputs(scene, &all)?;
+    all.iter().try_for_each(|output| check_writable(output))?;
+    let mut keep = Keep::new(&job.keep, main, checkpoint)?;
     let mut rendering = Rendering::new(scene, &job.options)?;
     messages::print_plan(rendering.plan());
     if !keep.resume(&mut rendering, &outputs)? {
         return Ok(ExitCode::SUCCESS);
     }
-    let progress = progress::Progress::new(rendering.work(), rendering.done());
+    let limit = rendering.plan().method.stop.as_ref().and_then(|stop| stop.time);
+    let progress = progress::Progress::new(rendering.work(), rendering.done(), limit);
     let is_finished = keep.run(&mut rendering, &progress)?;
     if !is_finished {
         progress.stop();

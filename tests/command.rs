@@ -193,6 +193,14 @@ fn numbers_on_the_command_line_are_checked() {
     is_refused("--error", "little", "an error is a number, such as 0.01 for one percent");
     is_refused("--layers", "N,albdo", "there is no layer `albdo`: did you mean albedo?");
     is_refused("--time", "soon", "a time is a number with a unit, such as 60s, 5m or 1h");
+    is_refused("--time", "-3s", "a time is a number with a unit, such as 60s, 5m or 1h");
+    for (flag, value, message) in [
+        ("--samples", "4.5", "--samples takes a whole number, not 4.5"),
+        ("--frame", "1.5", "--frame takes a whole number, not 1.5"),
+        ("--exposure", "bright", "--exposure takes a number, not bright"),
+    ] {
+        assert_refuses(&["ball.toml", flag, value], 2, &format!("error: {message}\n"));
+    }
     let exposure = "error: an exposure is a finite number of stops\nhelp: for instance: --exposure 1\n";
     assert_refuses(&["ball.toml", "--exposure", "nan"], 2, exposure);
     assert_refuses(&["ball.toml", "--exposure", "inf"], 2, exposure);

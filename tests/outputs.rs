@@ -210,3 +210,65 @@ fn a_device_that_takes_no_more_is_a_failure() {
     assert_eq!(answer.code, Some(1));
     assert!(answer.stderr.ends_with("error: cannot write full.exr: the disk is full\n"), "{}", answer.stderr);
 }
+
+/// A scene that includes a file, reads a mesh and an image, and is lit by another one.
+fn folder_of_a_whole_scene() -> Folder {
+    let folder = Folder::new();
+    folder.write("light.toml", "[[light]]\nenvironment = { radiance = { image = \"sky.hdr\" } }\n");
+    folder.write("cup.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n");
+    folder.write("gray.csv", "400, 0.5\n700, 0.5\n");
+    folder.write("main.toml", "include = [\"light.toml\"]\ncamera = { position = [0, 0, 6], look_at = [0, 0, 0], vertical_fov = 35 }\n\
+        film = { width = 6, height = 4 }\nrender.samples = 1\nmaterial.gray.diffuse = { reflectance = { file = \"gray.csv\" } }\n\
+        [[object]]\nshape.mesh = { file = \"cup.obj\" }\nmaterial = \"gray\"\n");
+    let mut sky = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 4\n".to_vec();
+    sky.extend([[128, 128, 128, 129]; 8].concat());
+    fs::write(folder.path().join("sky.hdr"), sky).expect("the folder takes files");
+    folder
+}
+
+#[test]
+fn no_output_takes_the_place_of_what_the_scene_is_read_from() {
+    let folder = folder_of_a_whole_scene();
+    fs::create_dir(folder.path().join("other")).expect("the folder takes folders");
+    symlink("../cup.obj", folder.path().join("other/link.png")).expect("the folder takes links");
+    let before = |name: &str| fs::read(folder.path().join(name)).expect("it is there");
+    let names = ["cup.obj", "gray.csv", "light.toml", "main.toml", "sky.hdr"];
+    let files = names.map(before);
+    for (arguments, name) in [
+        ("--exr sky.hdr", ""),
+        ("--report cup.obj", "cup.obj"),
+        ("--report light.toml", "light.toml"),
+        ("--report ./gray.csv", "./gray.csv"),
+        ("--report sky.hdr", "sky.hdr"),
+        ("--png other/link.png", "other/link.png"),
+        ("--plan --plan-file sky.hdr", "sky.hdr"),
+    ] {
+        let words: Vec<&str> = ["main.toml"].into_iter().chain(arguments.split(' ')).collect();
+        let answer = render(&folder, &words);
+        assert_eq!(answer.code, Some(2), "{arguments}: {}", answer.stderr);
+        if !name.is_empty() {
+            let message = format!("error: {name} is a file that the scene reads\nhelp: name another file\n");
+            assert_eq!(answer.stderr, message, "{arguments}");
+        }
+        assert_eq!(names.map(before), files, "{arguments}");
+    }
+}
+
+#[test]
+fn no_two_outputs_are_one_file() {
+    let folder = folder();
+    fs::create_dir(folder.path().join("other")).expect("the folder takes folders");
+    for (arguments, name) in [
+        ("--exr a.exr --report a.exr", "a.exr"),
+        ("--exr a.exr --report other/../a.exr", "other/../a.exr"),
+        ("--png a.png --report a.png", "a.png"),
+        ("--exr a.exr --spectral --report a.spectral.exr", "a.spectral.exr"),
+        ("--exr a.exr --checkpoint 1h --report a.checkpoint", "a.checkpoint"),
+    ] {
+        let words: Vec<&str> = ["ball.toml"].into_iter().chain(arguments.split(' ')).collect();
+        let answer = render(&folder, &words);
+        let message = format!("error: {name} would be written twice\nhelp: name another file\n");
+        assert_eq!((answer.code, answer.stderr), (Some(2), message), "{arguments}");
+        assert_eq!(folder.listing(), ["ball.toml", "other"], "{arguments}");
+    }
+}

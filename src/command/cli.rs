@@ -2,6 +2,7 @@
 
 use std::error::Error as _;
 use std::ffi::{OsStr, OsString};
+use std::num::{ParseFloatError, ParseIntError};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -111,7 +112,7 @@ struct Arguments {
     error: Option<f64>,
 
     /// Take samples for so long: 90s, 10m, 1.5h
-    #[arg(long, value_name = "TIME", value_parser = keep::time)]
+    #[arg(long, value_name = "TIME", allow_hyphen_values = true, value_parser = keep::time)]
     time: Option<Duration>,
 
     /// Another set of random numbers, instead of the scene's
@@ -290,7 +291,12 @@ fn told(said: clap::Error) -> Result<Request> {
         // Such as `--layers <NAMES>`.
         let flag = said.get(ContextKind::InvalidArg).map(ToString::to_string).unwrap_or_default();
         let flag = flag.split(' ').next().unwrap_or_default();
-        return refuse(&format!("{flag}: {why}"), None);
+        let given = said.get(ContextKind::InvalidValue).map(ToString::to_string).unwrap_or_default();
+        return match (why.is::<ParseIntError>(), why.is::<ParseFloatError>()) {
+            (true, _) => refuse(&format!("{flag} takes a whole number, not {given}"), None),
+            (_, true) => refuse(&format!("{flag} takes a number, not {given}"), None),
+            _ => refuse(&format!("{flag}: {why}"), None),
+        };
     }
     if said.use_stderr() && matches!(listener(), Listener::Program | Listener::Farm) {
         let text = said.render().to_string();

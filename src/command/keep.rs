@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use abbe::film::{Shard, check_writable};
+use abbe::film::Shard;
 use abbe::scene::duration;
 use abbe::{Advance, Error, ImageError, Rendering, Result, Resumed, Timer};
 use clap::Args;
@@ -19,7 +19,7 @@ use super::progress::Progress;
 pub struct Flags {
     /// Keep what is done in NAME.checkpoint beside the image, so often and when stopped by Ctrl-C: 60s, 5m, 1h. Of an
     /// image so large that writing takes long, at most 1 % of the time goes into it
-    #[arg(long, value_name = "TIME", value_parser = time)]
+    #[arg(long, value_name = "TIME", allow_hyphen_values = true, value_parser = time)]
     checkpoint: Option<Duration>,
 
     /// Go on from NAME.checkpoint, if it is there, to the same image; with more --samples than it has, to a better one
@@ -27,7 +27,7 @@ pub struct Flags {
     resume: bool,
 
     /// Keep the image fresh while rendering, so often
-    #[arg(long, value_name = "TIME", value_parser = time)]
+    #[arg(long, value_name = "TIME", allow_hyphen_values = true, value_parser = time)]
     snapshot: Option<Duration>,
 
     /// Render one of N parts of the image to NAME.i-of-N.part, for `render merge`
@@ -91,6 +91,13 @@ impl Flags {
         Ok(())
     }
 
+    /// Where the checkpoint of a render to a file is, if one is kept.
+    pub fn checkpoint(&self, file: &Path) -> Option<PathBuf> {
+        let mut name = file.file_stem().unwrap_or(OsStr::new("image")).to_owned();
+        name.push(".checkpoint");
+        (self.checkpoint.is_some() || self.resume).then(|| file.with_file_name(name))
+    }
+
     /// Where a part of an image is written, if one is made.
     pub fn part(&self, image: &Path) -> Option<PathBuf> {
         self.shard.map(|shard| image.with_extension(format!("{}-of-{}.part", shard.number(), shard.count())))
@@ -116,21 +123,16 @@ const NOTHING_KEPT: &str = "stopped; nothing was kept. With --checkpoint 60s, wh
 pub const STOPPED_CODE: u8 = 130;
 
 impl Keep {
-    /// Of a render to a file.
+    /// Of a render to a file, and its checkpoint if one is kept.
     ///
     /// # Errors
     /// If a checkpoint of an earlier run would be lost, or Ctrl-C cannot be caught.
-    pub fn new(flags: &Flags, file: &Path) -> Result<Self> {
-        let keeps = flags.checkpoint.is_some() || flags.resume;
-        let mut name = file.file_stem().unwrap_or(OsStr::new("image")).to_owned();
-        name.push(".checkpoint");
-        let checkpoint = keeps.then(|| file.with_file_name(name));
+    pub fn new(flags: &Flags, file: &Path, checkpoint: Option<PathBuf>) -> Result<Self> {
         if let Some(there) = checkpoint.as_deref().filter(|path| !flags.resume && path.exists()) {
             let help = "add --resume to go on from it, or delete it to begin anew";
             return refuse(&format!("{} is there from an earlier run", there.display()), Some(help));
         }
-        checkpoint.as_deref().map_or(Ok(()), check_writable)?;
-        let stops_at_once = !keeps && flags.snapshot.is_none();
+        let stops_at_once = checkpoint.is_none() && flags.snapshot.is_none();
         let caught = ctrlc::set_handler(move || {
             if stops_at_once {
                 say(NOTHING_KEPT);

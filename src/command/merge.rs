@@ -53,8 +53,8 @@ pub fn run(query: &Query) -> Result<()> {
         return refuse(&message, Some("for instance: render merge out.exr *.part"));
     }
     parts.iter().try_for_each(|part| spare(part, "part", path))?;
-    check_writable(path)?;
     let image = Parts::open(parts)?;
+    check_writable(path)?;
     warn_of_clamped(image.format(), image.write_exr(path)?);
     say(&format!("wrote {}", path.display()));
     let path = path.with_extension("spectral.exr");

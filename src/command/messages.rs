@@ -129,7 +129,7 @@ pub fn warn_of_clamped(format: &Format, clamped: u64) {
 /// What went wrong with a file or what was asked for, in one line.
 pub fn problem(error: &Error) -> String {
     match error {
-        Error::Io { doing, path, source } => format!("cannot {doing} {}: {}", path.display(), reason(source)),
+        Error::Io { doing, path, source } => format!("cannot {doing} {}: {}", path.display(), reason(doing, source)),
         other => other.to_string(),
     }
 }
@@ -174,8 +174,9 @@ fn print_mistakes(mistakes: &[Diagnostic]) {
 }
 
 /// What the system said, in plain words where it is terse.
-fn reason(error: &std::io::Error) -> String {
+fn reason(doing: &str, error: &std::io::Error) -> String {
     match error.kind() {
+        ErrorKind::NotFound if doing == "read" => "there is no such file".into(),
         ErrorKind::NotFound => "its folder does not exist and cannot be made".into(),
         ErrorKind::AlreadyExists | ErrorKind::NotADirectory => "a file stands where its folder should be".into(),
         ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => "permission is denied".into(),
@@ -281,7 +282,11 @@ pub fn print_report(image: &Image, plan: &Plan, took: Duration, expected: Durati
         Event::report(image, took, expected).tell();
     }
     image.warnings().iter().for_each(|warning| warn(warning));
-    image.error().iter().for_each(|error| print_error_of_image(error));
+    match (image.error(), report.stopped_by) {
+        (Some(error), _) => print_error_of_image(error),
+        (None, Some(_)) => say("fewer than 64 samples per pixel do not tell the error"),
+        (None, None) => {}
+    }
     if listener() == Listener::Program {
         return;
     }

@@ -1,9 +1,9 @@
 //! What the command may write, and how it refuses.
 
 use std::io::IsTerminal;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use abbe::{Error, Result};
+use abbe::{Error, Result, Scene};
 
 /// A refusal of what is asked for.
 pub fn refuse<T>(message: &str, help: Option<&str>) -> Result<T> {
@@ -49,6 +49,35 @@ pub fn spare(input: &Path, what: &str, output: &Path) -> Result<()> {
         Some(_) => refuse(&format!("{} is the {what} itself", output.display()), Some("name another file")),
         None => Ok(()),
     }
+}
+
+/// Refuses an output that the scene is read from, or that is another output by the same or another name.
+pub fn check_outputs(scene: &Scene, outputs: &[&Path]) -> Result<()> {
+    let [own, others @ ..] = &scene.files[..] else { return Ok(()) };
+    let another = |message: String| refuse(&message, Some("name another file"));
+    for (number, output) in outputs.iter().enumerate() {
+        spare(own, "scene", output)?;
+        let (name, file) = (output.display(), full(output));
+        if others.iter().any(|other| full(other) == file) {
+            return another(format!("{name} is a file that the scene reads"));
+        }
+        // A device takes what it is given.
+        let is_file = !output.exists() || output.is_file();
+        if is_file && outputs[..number].iter().any(|earlier| full(earlier) == file) {
+            return another(format!("{name} would be written twice"));
+        }
+    }
+    Ok(())
+}
+
+/// The one name of a file that may not be there yet, without links.
+fn full(path: &Path) -> PathBuf {
+    let in_folder = || {
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let folder = std::fs::canonicalize(folder).or_else(|_| std::path::absolute(folder)).ok();
+        folder.zip(path.file_name()).map(|(folder, name)| folder.join(name))
+    };
+    std::fs::canonicalize(path).ok().or_else(in_folder).unwrap_or_else(|| path.to_owned())
 }
 
 /// Refuses what is no number of stops.

@@ -17,12 +17,34 @@ use super::openjd;
 pub struct Progress {
     bar: Option<ProgressBar>,
     lines: Option<Lines>,
-    done: Arc<AtomicU64>,
+    counts: Arc<Counts>,
+}
+
+/// What is done, and what is to be done.
+struct Counts {
     start: Instant,
-    /// All that is to be done, as far as it is known.
-    work: Arc<AtomicU64>,
+    /// When it ends, done or not.
+    limit: Option<Duration>,
     /// What an earlier run has done.
     before: u64,
+    done: AtomicU64,
+    /// All that is to be done if there is time, as far as it is known.
+    work: AtomicU64,
+}
+
+impl Counts {
+    fn done(&self) -> u64 {
+        self.done.load(Ordering::Relaxed)
+    }
+
+    /// All that will be done: what there is time for, at the pace so far.
+    fn total(&self) -> u64 {
+        let (done, work) = (self.done(), self.work.load(Ordering::Relaxed));
+        let Some(limit) = self.limit.filter(|_| done > self.before) else { return work };
+        let times = limit.as_secs_f64() / self.start.elapsed().as_secs_f64();
+        let in_time = self.before + ((done - self.before) as f64 * times) as u64;
+        in_time.clamp(done.min(work), work)
+    }
 }
 
 /// Renders shorter than this say nothing where there is no terminal.
@@ -35,10 +57,11 @@ const TICK: Duration = Duration::from_secs(1);
 const LOGGED: Duration = Duration::from_secs(5);
 
 impl Progress {
-    /// Of a render of so many camera samples and photons, some of which an earlier run has done.
-    pub fn new(work: u64, before: u64) -> Self {
-        let [done, work_known] = [before, work].map(|count| Arc::new(AtomicU64::new(count)));
-        let start = Instant::now();
+    /// Of a render of so many camera samples and photons, some of which an earlier run has done; it may have a limit of
+    /// time.
+    pub fn new(work: u64, before: u64, limit: Option<Duration>) -> Self {
+        let (done, known) = (AtomicU64::new(before), AtomicU64::new(work));
+        let counts = Arc::new(Counts { start: Instant::now(), limit, before, done, work: known });
         let is_shown = listener() == Listener::Person && std::io::stderr().is_terminal();
         let bar = is_shown.then(|| {
             let style = ProgressStyle::with_template("{wide_bar} {percent:>3} %  {elapsed} passed, {eta} left");
@@ -47,26 +70,25 @@ impl Progress {
                 .with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
         });
         let lines = bar.is_none().then(|| {
-            let (done, work) = (done.clone(), work_known.clone());
+            let counts = counts.clone();
             let (first, then) = match listener() {
                 Listener::Program => (TICK, TICK),
                 Listener::Farm => (TICK, LOGGED),
                 _ => (QUIET, PERIOD),
             };
-            let [done, work] = [done, work].map(|count| move || count.load(Ordering::Relaxed));
-            Lines::new(first, then, move || speak([before, done()], work(), start.elapsed()))
+            Lines::new(first, then, move || speak([before, counts.done()], counts.total(), counts.start.elapsed()))
         });
         if listener() == Listener::Farm {
             openjd::progress(before as f64 / work.max(1) as f64);
         }
-        Self { bar, lines, done, start, work: work_known, before }
+        Self { bar, lines, counts }
     }
 
     /// Says anew how much is to be done in all.
     pub fn expect(&self, work: u64) {
-        self.work.store(work, Ordering::Relaxed);
+        self.counts.work.store(work, Ordering::Relaxed);
         if let Some(bar) = &self.bar {
-            bar.set_length(work);
+            bar.set_length(self.counts.total());
         }
     }
 
@@ -80,23 +102,25 @@ impl Progress {
 
     /// Counts those that are done; may be called from any thread.
     pub fn advance(&self, work: u64) {
-        self.done.fetch_add(work, Ordering::Relaxed);
+        self.counts.done.fetch_add(work, Ordering::Relaxed);
         if let Some(bar) = &self.bar {
+            bar.set_length(self.counts.total());
             bar.inc(work);
         }
     }
 
     /// The time that is left as people say it, if it can be told.
     pub fn left(&self) -> Option<String> {
-        let (done, work) = (self.done.load(Ordering::Relaxed), self.work.load(Ordering::Relaxed).max(1));
-        let parts = [self.before, done].map(|count| count as f64 / work as f64);
-        (done > self.before).then(|| spoken(left(parts, self.start.elapsed().as_secs_f64())))
+        let Counts { before, start, .. } = *self.counts;
+        let (done, total) = (self.counts.done(), self.counts.total().max(1));
+        let parts = [before, done].map(|count| count as f64 / total as f64);
+        (done > before).then(|| spoken(left(parts, start.elapsed().as_secs_f64())))
     }
 
     /// Removes the bar and says how long it took, beside the time that was expected of the whole render.
     pub fn finish(self, expected: Duration) -> Duration {
-        let (start, work) = (self.start, self.work.load(Ordering::Relaxed));
-        let left = work.saturating_sub(self.before) as f64 / work.max(1) as f64;
+        let (start, before, work) = (self.counts.start, self.counts.before, self.counts.work.load(Ordering::Relaxed));
+        let left = work.saturating_sub(before) as f64 / work.max(1) as f64;
         let expected = expected.mul_f64(left);
         self.stop();
         let took = start.elapsed();

@@ -39,7 +39,9 @@ pub(super) fn reason(scene: &Scene<Curve>, stop: Option<&Stop>) -> Option<String
         let noise = percent(NOISE * error);
         format!("when the error is at most {} in 95 of 100 renders (noise {noise}, the rest color)", percent(error))
     };
-    let after = |time: std::time::Duration| format!("after {}", spoken(time.as_secs_f64()));
+    let after = |time: std::time::Duration| {
+        format!("after {} and at least {FEWEST} samples per pixel", spoken(time.as_secs_f64()))
+    };
     let rules = [error.map(within), time.map(after), Some(format!("at {} samples per pixel", stop.most))];
     let rules: Vec<String> = rules.into_iter().flatten().collect();
     Some(format!("stops {}, whichever is first", rules.join(", or ")))

@@ -42,7 +42,7 @@ pub(super) fn resume(path: &Path, identity: &Identity, passes: &mut trace::Rende
     };
     let saved: Identity = blocks.block()?;
     if let Some(difference) = identity.difference(&saved) {
-        return refuse(path, &difference, "delete it, or leave --resume out, to begin anew");
+        return refuse(path, &difference, "delete it to begin anew, or name another image");
     }
     match passes.restore(blocks)? {
         trace::Restored::Continues if passes.is_finished() => Ok(Resumed::Finished),

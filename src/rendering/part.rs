@@ -70,11 +70,14 @@ pub(super) fn write(path: &Path, identity: &Identity, shard: Shard, shared: u64,
 /// Opens a part and reads what stands before its tiles.
 ///
 /// # Errors
-/// [`Error::Arguments`] if it is no part; [`Error::Decode`] if it is damaged.
+/// [`Error::Arguments`] if it is no part, or not there; [`Error::Decode`] if it is damaged.
 pub(super) fn open(path: &Path) -> Result<(Head, BlockReader)> {
+    let made = "parts are made by --shard, as in render --shard 1/4 scene.toml";
+    if !path.exists() {
+        return Err(refused(format!("there is no part {}", path.display()), made));
+    }
     let Some(mut blocks) = BlockReader::open(path, PART)? else {
-        let message = format!("{} is no part of an image", path.display());
-        return Err(refused(message, "parts are made by --shard, as in render --shard 1/4 scene.toml"));
+        return Err(refused(format!("{} is no part of an image", path.display()), made));
     };
     let head: Head = blocks.block()?;
     let Film { width, height, .. } = head.film;

@@ -251,7 +251,8 @@ impl Rendering {
         let within = report.samples.div_ceil(film.pixels.len() as u64);
         let samples = if self.passes.is_finished() { self.passes.samples().into() } else { within };
         let mut provenance = provenance(&self.origin, &self.plan, samples, &report);
-        provenance.facts.extend(error.iter().flat_map(facts_of_error));
+        let stopped_by = report.stopped_by.map(|by| ("stoppedBy".into(), Fact::Text(by.name().to_owned())));
+        provenance.facts.extend(stopped_by.into_iter().chain(error.iter().flat_map(facts_of_error)));
         if !self.passes.is_finished() {
             provenance.facts.push(("complete".into(), Fact::Count(0)));
         }
@@ -274,11 +275,10 @@ impl Rendering {
 
 /// What a file says of its image's error.
 fn facts_of_error(error: &ImageError) -> Vec<(Cow<'static, str>, Fact)> {
-    let by = error.stopped_by.map(|by| ("stoppedBy", Fact::Text(by.name().to_owned())));
     let [at_most, noise] = [error.at_most(), error.noise.expected].map(Fact::Number);
     let facts = [("errorAtMost", at_most), ("noise", noise), ("modelError", Fact::Number(error.model))];
     let blur = (error.blur.at_most > 0.0).then_some(("blur", Fact::Number(error.blur.expected)));
-    by.into_iter().chain(facts).chain(blur).map(|(key, fact)| (key.into(), fact)).collect()
+    facts.into_iter().chain(blur).map(|(key, fact)| (key.into(), fact)).collect()
 }
 
 fn provenance(origin: &Origin, plan: &Plan, samples: u64, report: &Report) -> Provenance {

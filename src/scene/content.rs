@@ -2,6 +2,7 @@
 
 use std::cell::Cell;
 use std::collections::BTreeSet;
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::hit::{Ends, Hit, Primitive};
@@ -41,6 +42,8 @@ pub struct Scene<S = Curve> {
     pub warnings: Vec<String>,
     /// SHA-256 of the scene file, the values set in it and the files it names, 64 hexadecimal digits.
     pub hash: String,
+    /// The files that it was read from: its own first, those that it includes, and all that these name.
+    pub files: Vec<PathBuf>,
     /// Values that were put in place of those of the file, each as `KEY=VALUE`.
     pub settings: Vec<String>,
     pub(super) index: Arc<Index>,
@@ -74,6 +77,7 @@ impl<S> Scene<S> {
             hidden_lights: self.hidden_lights.clone(),
             warnings: self.warnings.clone(),
             hash: self.hash.clone(),
+            files: self.files.clone(),
             settings: self.settings.clone(),
             index: self.index.clone(),
         }

@@ -123,7 +123,7 @@ impl Source {
     }
 
     fn compile_by(&self, place: Place, given: &[String], rows: Vec<Rows>) -> Result<Scene> {
-        let Included { mut texts, parts, mistakes, .. } = Included::of(&self.path, &self.text);
+        let Included { mut texts, parts, mistakes, mut files, .. } = Included::of(&self.path, &self.text);
         texts.rows = rows;
         let settings = texts.add_lines(Path::new(SETTINGS), self.folder(), given);
         let refuse = |mut mistakes: Vec<Mistake>| {
@@ -147,6 +147,8 @@ impl Source {
         let document = Document::new(&texts, &root);
         let mut scene = compile(&document).ok_or_else(|| refuse(document.mistakes()))?;
         scene.settings = given.to_vec();
+        files.append(&mut scene.files);
+        scene.files = files;
         scene.warnings.extend(unused.into_iter().map(|name| format!("variable {name} is not used")));
         Ok(scene)
     }

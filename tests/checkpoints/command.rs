@@ -79,7 +79,7 @@ fn a_finished_render_that_is_resumed_says_so_and_rewrites_nothing() {
 fn a_checkpoint_of_something_else_is_refused_in_one_line_that_says_what_differs() {
     let folder = folder();
     done(&folder, "s.toml --resume --samples 4");
-    let begin_anew = "help: delete it, or leave --resume out, to begin anew";
+    let begin_anew = "help: delete it to begin anew, or name another image";
     for (flags, difference) in [
         ("--seed 4", "its seed is 3, not 4"),
         ("--crop 0,0,8,8", "its crop is none, not 0,0,8,8"),
@@ -135,6 +135,10 @@ fn parts_that_do_not_make_one_image_are_refused_by_name() {
     ] {
         refused(&folder, &format!("merge old.exr {parts}"), &message);
     }
+    let missing =
+        "error: there is no part new.part\nhelp: parts are made by --shard, as in render --shard 1/4 scene.toml";
+    refused(&folder, &format!("merge new/old.exr {one} new.part"), missing);
+    assert!(!folder.path().join("new").exists());
     assert_eq!(run(&folder, &format!("merge old.exr {one} samples.2-of-2.part")).code, Some(2));
     assert_eq!(bytes(&folder, "old.exr"), b"an image of last week");
     assert_eq!(done(&folder, &format!("merge old.exr {two} {one}")).stderr, "wrote old.exr\n");

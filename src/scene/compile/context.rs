@@ -17,6 +17,8 @@ pub(super) struct Context {
     warnings: Vec<Warning>,
     /// Of the texts of the scene and the files that they name.
     pub(super) hash: Sha256,
+    /// The files that they name and that were read.
+    pub(super) files: Vec<PathBuf>,
     /// Length of a scene unit in meters, if the scene says it.
     pub(super) meters_per_unit: Option<f64>,
     /// Luminance of the film's white in cd/m^2, if the scene's light is absolute.
@@ -38,7 +40,14 @@ impl Context {
         let hash = Sha256::new_with_prefix(text.as_bytes());
         let (images, meshes) = (BTreeMap::new(), HashMap::new());
         let (meters_per_unit, white_luminance) = (None, None);
-        Self { warnings: Vec::new(), hash, meters_per_unit, white_luminance, images, meshes }
+        let (warnings, files) = (Vec::new(), Vec::new());
+        Self { warnings, hash, files, meters_per_unit, white_luminance, images, meshes }
+    }
+
+    /// Notes a file that was read.
+    pub(super) fn has_read(&mut self, file: PathBuf, bytes: &[u8]) {
+        self.hash.update(bytes);
+        self.files.push(file);
     }
 
     pub(super) fn warn(&mut self, message: impl Into<String>) {

@@ -2,8 +2,6 @@
 
 use std::sync::Arc;
 
-use sha2::Digest;
-
 use super::context::Context;
 use super::curve_name::{illuminant_called, unknown_glass, unknown_illuminant, unknown_metal, unknown_reflectance};
 use super::curve_range::{Refusal, article, factor, hardly_a_layer, possible, shown, told};
@@ -220,7 +218,7 @@ fn file_of_samples<'d>(
             return place.tell(format!("{file}{}", fault.message), fault.help);
         }
     };
-    context.hash.update(table.as_bytes());
+    context.has_read(place.folder().join(file), table.as_bytes());
     let samples: Vec<[f64; 2]> = rows.iter().map(|row| row.pair).collect();
     let all_finite = samples.iter().position(|pair| pair.iter().any(|x| !x.is_finite())).map_or(Ok(()), |entry| {
         let wrong = samples[entry].into_iter().find(|x| !x.is_finite()).unwrap_or_default();

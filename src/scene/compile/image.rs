@@ -3,8 +3,6 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use sha2::Digest;
-
 use super::context::Context;
 use super::curve::curve;
 use super::curve_range::{is_factor, possible_thickness, told};
@@ -140,7 +138,7 @@ pub(super) fn image<'d>(
         Ok(read) => read,
         Err(fault) => return place.tell(fault.message, fault.help),
     };
-    context.hash.update(&bytes);
+    context.has_read(place.folder().join(file), &bytes);
     if read.ignores_alpha {
         context.warn_at(place, format!("the alpha of {file} is ignored; channel = \"alpha\" reads it"));
     }

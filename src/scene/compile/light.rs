@@ -3,8 +3,6 @@
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
 
-use sha2::Digest;
-
 use super::context::Context;
 use super::curve::curve;
 use super::curve_text::{CurveText, KindText};
@@ -227,7 +225,7 @@ fn panorama(context: &mut Context, file: &At<&str>) -> Option<Panorama> {
         Ok(image) => image,
         Err(fault) => return file.place.tell(fault.message, fault.help),
     };
-    context.hash.update(&bytes);
+    context.has_read(file.place.folder().join(file.it), &bytes);
     let (width, height) = (image.width(), image.height());
     if width != 2 * height {
         let message = "an image of all directions is twice as wide as high";

@@ -2,8 +2,6 @@
 
 use std::sync::Arc;
 
-use sha2::Digest;
-
 use super::context::Context;
 use super::measures::{MAX_LENGTH, direction, far, is_near, near, point};
 use crate::math::DVec3;
@@ -178,12 +176,12 @@ fn read_file(context: &mut Context, name: &str, file: &At<&str>, smooth: bool) -
         return place.refuse(format!("{file}: vertex {vertex} (counted from 0) is beyond {MAX_LENGTH:e}"));
     }
     match std::fs::read(&path) {
-        Ok(bytes) => context.hash.update(&bytes),
+        Ok(bytes) => context.has_read(path, &bytes),
         Err(error) => return place.refuse(format!("cannot read {file}: {error}")),
     }
-    for other in &mesh.others {
-        match std::fs::read(other) {
-            Ok(bytes) => context.hash.update(&bytes),
+    for other in mesh.others {
+        match std::fs::read(&other) {
+            Ok(bytes) => context.has_read(other, &bytes),
             Err(error) => return place.refuse(format!("{}: {error}", other.display())),
         }
     }

@@ -68,6 +68,7 @@ pub(super) fn compile<'d>(document: &'d Document<'d>) -> Option<Scene<Curve>> {
         scene.warnings.push("nothing shines, so the image will be black".into());
     }
     scene.warnings.extend(unlit::unlit(&scene));
+    scene.files = context.files;
     scene.hash = context.hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
     Some(scene)
 }
@@ -126,6 +127,7 @@ fn scene<'d>(context: &mut Context, sections: &mut Fields<'d>) -> Option<Scene<C
         hidden_lights,
         warnings,
         hash,
+        files: Vec::new(),
         settings: Vec::new(),
         index: index.into(),
     };

@@ -23,7 +23,7 @@ pub(in crate::scene) struct Included {
     pub(in crate::scene) parts: Vec<Range<usize>>,
     pub(in crate::scene) mistakes: Vec<Mistake>,
     /// All files, none by two names.
-    files: Vec<PathBuf>,
+    pub(in crate::scene) files: Vec<PathBuf>,
     /// Those of them that are being read, the outermost first.
     within: Vec<PathBuf>,
 }
