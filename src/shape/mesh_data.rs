@@ -6,7 +6,7 @@ use super::{Attributes, Vertices};
 pub struct MeshFile {
     /// Its vertices, in the precision of the file.
     pub vertices: Vertices,
-    /// Corners of its triangles; polygons are cut into fans.
+    /// Corners of its triangles; polygons are cut.
     pub faces: Vec<[u32; 3]>,
     /// What its vertices carry.
     pub attributes: Attributes,

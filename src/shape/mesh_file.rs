@@ -9,6 +9,7 @@ use ply_rs_bw::ply::{
     ElementDef, Encoding, Header, Property, PropertyAccess, PropertyAccessResult, PropertyType, ScalarType,
 };
 
+use super::faces::Faces;
 use super::mesh_data::MeshFile;
 use super::{Attributes, Vertices};
 
@@ -127,7 +128,7 @@ fn read_ply(path: &Path, smooth: bool) -> Result<MeshFile, String> {
     let file = File::open(path).map_err(|error| error.to_string())?;
     let mut reader = Reader::new(BufReader::new(file));
     let header = Parser::<PlyVertex>::new().read_header(&mut reader).map_err(ply_error)?;
-    let (mut vertices, mut faces) = (Vertices::Single(Vec::new()), Vec::new());
+    let (mut vertices, mut faces) = (Vertices::Single(Vec::new()), Faces::default());
     let mut attributes = Attributes::default();
     // Elements without properties are lines of a text, but nothing at all in a binary file, however many there are.
     let takes_no_bytes = |e: &ElementDef| e.properties.is_empty() && header.encoding != Encoding::Ascii;
@@ -136,7 +137,7 @@ fn read_ply(path: &Path, smooth: bool) -> Result<MeshFile, String> {
             continue;
         }
         if element.name == "face" {
-            let keep = |polygon: PlyFace| faces.extend(fan(&polygon.0));
+            let keep = |polygon: PlyFace| faces.push(&polygon.0);
             in_batches(&mut reader, element, &header, keep)?;
         } else if element.name == "vertex" {
             for axis in ["x", "y", "z"] {
@@ -162,6 +163,7 @@ fn read_ply(path: &Path, smooth: bool) -> Result<MeshFile, String> {
             in_batches(&mut reader, element, &header, |_: PlyVertex| ())?;
         }
     }
+    let faces = faces.triangles(&vertices)?;
     Ok(MeshFile { vertices, faces, attributes, names_materials: false, ignored: Vec::new(), others: Vec::new() })
 }
 
@@ -207,12 +209,6 @@ fn ply_error(error: ply_rs_bw::parser::ParseError) -> String {
         (None, Some(line)) => format!("line {line} does not fit a PLY file with this header"),
         (None, None) => message.to_owned(),
     }
-}
-
-/// The triangles of a convex polygon, all sharing its first corner.
-fn fan(polygon: &[u32]) -> impl Iterator<Item = [u32; 3]> + '_ {
-    let rest = polygon.get(1..).unwrap_or_default();
-    rest.windows(2).map(move |pair| [polygon[0], pair[0], pair[1]])
 }
 
 #[cfg(test)]

@@ -109,6 +109,31 @@ fn every_way_to_write_an_obj_gives_the_same_triangles() {
     }
 }
 
+/// The corners of an L, from one of which a fan does not stay inside.
+const CORNERS: [[i32; 2]; 6] = [[2, 0], [2, 1], [1, 1], [1, 2], [0, 2], [0, 0]];
+
+/// Twice the area of triangles that look the same way, whichever they are.
+fn doubled_area(triangles: &[[DVec3; 3]]) -> f64 {
+    triangles.iter().map(|[a, b, c]| (*b - *a).cross(*c - *a).z.abs()).sum()
+}
+
+#[test]
+fn faces_that_are_not_convex_cover_their_area_once() {
+    let points = CORNERS.map(|[x, y]| format!("{x} {y} 0\n")).concat();
+    let header = ply_header("ascii", "float", "int").replace("property uchar red\n", "");
+    let header = header.replace("vertex 5", "vertex 6").replace("face 5", "face 1");
+    let ply = format!("{header}{points}6 0 1 2 3 4 5\n");
+    // An L of which the faces are listed before the vertices is cut as well.
+    let (vertices, faces) = header.split_once("element face").expect("it has faces");
+    let (faces, _) = faces.split_once("end_header").expect("it ends");
+    let (first, vertices) = vertices.split_once("element vertex").expect("it has vertices");
+    let late = format!("{first}element face{faces}element vertex{vertices}end_header\n6 0 1 2 3 4 5\n{points}");
+    for text in [ply, late] {
+        let triangles = read("a.ply", text.as_bytes()).0;
+        assert_eq!((triangles.len(), doubled_area(&triangles)), (4, 6.0), "{text}");
+    }
+}
+
 /// The warnings of a scene that holds nothing but a mesh file of some material.
 fn warnings(name: &str, bytes: &[u8], material: &str) -> Vec<String> {
     let (folder, _path) = file(name, bytes);

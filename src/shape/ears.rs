@@ -1,0 +1,178 @@
+//! Polygons in a plane, cut into triangles.
+
+use crate::math::DVec2;
+
+/// Most corners of a polygon that is cut: the time grows with their square.
+pub(super) const MOST_CORNERS: usize = 1 << 12;
+
+/// The triangles of a polygon that runs counterclockwise, told by its corners, of which each is off by up to `reach`;
+/// none if its sides cross. Every corner is one of a triangle.
+///
+/// A corner is an ear where the triangle with both its neighbors lies inside: it is cut off, and what is left has ears
+/// again (Meisters 1975, *Polygons Have Ears*). A polygon may touch itself, as one does that goes around a hole.
+pub(super) fn ears(corners: &[DVec2], reach: f64) -> Option<Vec<[usize; 3]>> {
+    let count = corners.len();
+    let ring = Ring { corners, reach, next: Vec::new(), before: Vec::new() };
+    if !(3..=MOST_CORNERS).contains(&count) || ring.crosses_itself() {
+        return None;
+    }
+    let next = (1..count).chain([0]).collect();
+    let before = [count - 1].into_iter().chain(0..count - 1).collect();
+    let (mut ring, mut triangles, mut left, mut at) = (Ring { next, before, ..ring }, Vec::new(), count, 0);
+    // Ears that are right whatever rounding did come first. Which corners are none changes only beside one that was
+    // cut off, but for corners that others touch: these are asked again in the next round.
+    for is_sure in [true, true, true, false, false] {
+        let (mut asked, mut waiting) = (vec![false; count], left);
+        while left > 3 && waiting > 0 {
+            let [before, next] = [ring.before[at], ring.next[at]];
+            if asked[at] || !ring.is_ear(at, is_sure) {
+                asked[at] = true;
+                waiting -= 1;
+            } else {
+                triangles.push([before, at, next]);
+                (ring.next[before], ring.before[next]) = (next, before);
+                (asked[before], asked[next]) = (false, false);
+                left -= 1;
+                waiting = left;
+            }
+            at = next;
+        }
+    }
+    let last = [ring.before[at], at, ring.next[at]];
+    let (turn, rounding) = ring.turn(last.map(|corner| corners[corner]));
+    triangles.push(last);
+    (left == 3 && turn >= -rounding).then_some(triangles)
+}
+
+/// The corners that are left.
+struct Ring<'a> {
+    corners: &'a [DVec2],
+    reach: f64,
+    next: Vec<usize>,
+    before: Vec<usize>,
+}
+
+impl Ring<'_> {
+    /// Twice the area of a triangle, above 0 if it runs counterclockwise, and what rounding makes of 0.
+    fn turn(&self, [a, b, c]: [DVec2; 3]) -> (f64, f64) {
+        let (along, across, opposite) = (b - a, c - a, c - b);
+        (along.perp_dot(across), self.reach * (along.length() + across.length() + opposite.length()))
+    }
+
+    /// Whether a corner can be cut off: surely, or as far as rounding lets one tell.
+    fn is_ear(&self, at: usize, is_sure: bool) -> bool {
+        let (first, last) = (self.before[at], self.next[at]);
+        let [a, b, c] = [first, at, last].map(|corner| self.corners[corner]);
+        let is_left = |from: DVec2, to: DVec2, point: DVec2, sure: bool| {
+            let (turn, rounding) = self.turn([from, to, point]);
+            turn > if sure { rounding } else { -rounding }
+        };
+        if !is_left(a, b, c, is_sure) {
+            return false;
+        }
+        let mut other = self.next[last];
+        while other != first {
+            let point = self.corners[other];
+            let is_inside = [[a, b], [b, c], [c, a]].iter().all(|&[from, to]| is_left(from, to, point, !is_sure));
+            if is_inside && point != a && point != b && point != c {
+                return false;
+            }
+            other = self.next[other];
+        }
+        true
+    }
+
+    fn crosses_itself(&self) -> bool {
+        let count = self.corners.len();
+        let side = |at: usize| [self.corners[at], self.corners[(at + 1) % count]];
+        let cross =
+            |one: usize, other: usize| self.separates(side(one), side(other)) && self.separates(side(other), side(one));
+        (0..count).any(|one| (one + 2..count).any(|other| cross(one, other)))
+    }
+
+    /// Whether two points lie on different sides of the line through two others.
+    fn separates(&self, [from, to]: [DVec2; 2], points: [DVec2; 2]) -> bool {
+        let [(one, near), (other, far)] = points.map(|point| self.turn([from, to, point]));
+        one.abs() > near && other.abs() > far && (one > 0.0) != (other > 0.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::TAU;
+
+    use super::*;
+
+    fn area(corners: &[DVec2]) -> f64 {
+        let next = corners.iter().cycle().skip(1);
+        0.5 * corners.iter().zip(next).map(|(a, b)| a.perp_dot(*b)).sum::<f64>()
+    }
+
+    /// The triangles lie side by side if they are none with a negative area, and together have that of the polygon.
+    fn is_cut(corners: &[DVec2]) -> bool {
+        let Some(triangles) = ears(corners, 1e-15) else { return false };
+        let areas: Vec<f64> = triangles.iter().map(|corner| area(&corner.map(|at| corners[at]))).collect();
+        assert_eq!(areas.len(), corners.len() - 2);
+        assert!(areas.iter().all(|&area| area > 0.0), "{areas:?}");
+        assert!((areas.iter().sum::<f64>() - area(corners)).abs() < 1e-12);
+        true
+    }
+
+    /// The polygon, whichever corner is listed first.
+    fn is_cut_from_everywhere(corners: &[[f64; 2]]) -> bool {
+        (0..corners.len()).all(|first| {
+            let turned: Vec<DVec2> =
+                corners.iter().cycle().skip(first).take(corners.len()).map(|&corner| corner.into()).collect();
+            is_cut(&turned)
+        })
+    }
+
+    #[test]
+    fn polygons_are_cut_into_triangles_that_lie_side_by_side() {
+        let dart = [[0.0, 0.0], [2.0, 2.0], [0.0, 0.5], [-2.0, 2.0]];
+        let corner = [[-1.0, -1.0], [1.0, -1.0], [1.0, 0.0], [0.0, 0.0], [0.0, 1.0], [-1.0, 1.0]];
+        let points_on_sides = [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [2.0, 2.0], [1.0, 2.0], [1.0, 1.0], [0.0, 1.0]];
+        // Around a square hole and back the same way.
+        let hole = [
+            [0.0, 0.0],
+            [4.0, 0.0],
+            [4.0, 4.0],
+            [0.0, 4.0],
+            [0.0, 0.0],
+            [1.0, 1.0],
+            [1.0, 3.0],
+            [3.0, 3.0],
+            [3.0, 1.0],
+            [1.0, 1.0],
+        ];
+        for polygon in [&dart[..], &corner, &points_on_sides, &hole] {
+            assert!(is_cut_from_everywhere(polygon), "{polygon:?}");
+        }
+        let comb = |i: u32| [f64::from(i), if i % 2 == 0 { 0.1 } else { 9.0 }];
+        let comb: Vec<[f64; 2]> = (0..60).rev().map(comb).chain([[-1.0, -1.0], [60.0, -1.0]]).collect();
+        assert!(is_cut_from_everywhere(&comb));
+        let around = |i: u32, distance: f64| DVec2::from_angle(f64::from(i) / 40.0 * TAU) * distance;
+        let out = (0..120).map(|i| around(i, 1.0 + f64::from(i) / 40.0));
+        let spiral: Vec<DVec2> = out.chain((0..120).rev().map(|i| around(i, 0.7 + f64::from(i) / 40.0))).collect();
+        assert!(is_cut(&spiral));
+    }
+
+    #[test]
+    fn polygons_whose_sides_cross_are_not_cut() {
+        let bow = [[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]].map(DVec2::from);
+        assert_eq!(ears(&bow, 1e-15), None);
+        let star: Vec<DVec2> = (0..5).map(|i| DVec2::from_angle(f64::from(i) * 0.4 * TAU)).collect();
+        assert_eq!(ears(&star, 1e-15), None);
+        assert_eq!(ears(&[DVec2::NAN; 5], 1e-15), None);
+        assert_eq!(ears(&[DVec2::ONE; 2], 1e-15), None);
+    }
+
+    #[test]
+    fn polygons_of_one_point_or_of_one_line_end() {
+        for count in [3, 4, 50] {
+            let _ = ears(&vec![DVec2::ONE; count], 1e-15);
+            let line: Vec<DVec2> = (0..count).map(|i| DVec2::splat((i * 7 % count) as f64)).collect();
+            let _ = ears(&line, 1e-15);
+        }
+    }
+}

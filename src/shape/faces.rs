@@ -1,0 +1,189 @@
+//! Faces of mesh files, with any number of corners, as triangles.
+
+use std::ops::Range;
+
+use super::Vertices;
+use super::ears::{MOST_CORNERS, ears};
+use crate::math::{DVec2, DVec3};
+
+/// The triangles of faces, which share the first corner of their face until they are cut.
+#[derive(Default)]
+pub(super) struct Faces {
+    fans: Vec<[u32; 3]>,
+    /// Where the triangles stand of each face that has several.
+    several: Vec<Range<usize>>,
+}
+
+impl Faces {
+    /// One more face; with fewer than 3 corners it has no triangle.
+    pub(super) fn push(&mut self, corners: &[u32]) {
+        let first = self.fans.len();
+        let rest = corners.get(1..).unwrap_or_default();
+        self.fans.extend(rest.windows(2).map(|pair| [corners[0], pair[0], pair[1]]));
+        if self.fans.len() > first + 1 {
+            self.several.push(first..self.fans.len());
+        }
+    }
+
+    /// The triangles. Those that share a corner are right for convex faces: of others they would overlap, and these are
+    /// cut anew. Faces whose sides cross stay as they are, as do those whose corners are no finite vertices.
+    ///
+    /// # Errors
+    /// A sentence on a face that has too many corners.
+    pub(super) fn triangles(mut self, vertices: &Vertices) -> Result<Vec<[u32; 3]>, String> {
+        for place in self.several {
+            let fan = &mut self.fans[place];
+            if fan.iter().flatten().any(|&corner| corner as usize >= vertices.count()) {
+                continue;
+            }
+            let Some(normal) = overlap(fan, vertices) else { continue };
+            let corners: Vec<u32> = fan[0][..2].iter().copied().chain(fan.iter().map(|face| face[2])).collect();
+            if corners.len() > MOST_CORNERS {
+                let count = corners.len();
+                return Err(format!("a face that is not convex has {count} corners, more than {MOST_CORNERS}"));
+            }
+            let points: Vec<DVec3> = corners.iter().map(|&corner| vertices.at(corner)).collect();
+            let reach = reach(points.iter().copied(), vertices);
+            let cut = ears(&seen_along(normal, &points), reach).unwrap_or_default();
+            fan.iter_mut().zip(cut).for_each(|(face, cut)| *face = cut.map(|corner| corners[corner]));
+        }
+        Ok(self.fans)
+    }
+}
+
+/// The normal of the polygon that triangles make up, if one of them looks the other way.
+///
+/// Their normals add up to that of Newell's method (Sutherland, Sproull & Schumacker 1974, *A Characterization of Ten
+/// Hidden-Surface Algorithms*), which weighs the whole polygon.
+fn overlap(fan: &[[u32; 3]], vertices: &Vertices) -> Option<DVec3> {
+    let points = |face: &[u32; 3]| face.map(|corner| vertices.at(corner));
+    let normal = |face: &[u32; 3]| {
+        let [a, b, c] = points(face);
+        (b - a).cross(c - a)
+    };
+    let whole = fan.iter().map(normal).sum::<DVec3>().try_normalize()?;
+    let reach = reach(fan.iter().flat_map(points), vertices);
+    let looks_away = |face: &[u32; 3]| {
+        let [a, b, c] = points(face);
+        normal(face).dot(whole) < -reach * ((b - a).length() + (c - b).length() + (a - c).length())
+    };
+    fan.iter().any(looks_away).then_some(whole)
+}
+
+/// How far points may be from where they were meant, by the digits of their coordinates, and what is reckoned with them
+/// from what it stands for.
+fn reach(points: impl Iterator<Item = DVec3>, vertices: &Vertices) -> f64 {
+    let digits = match vertices {
+        Vertices::Single(_) => f64::from(f32::EPSILON),
+        Vertices::Double(_) => f64::EPSILON,
+    };
+    2.0 * digits * points.map(|point| point.abs().max_element()).fold(0.0, f64::max)
+}
+
+/// Points as they are seen against a direction, counterclockwise about it. What lies in a plane across an axis keeps its
+/// coordinates to the last bit.
+fn seen_along(normal: DVec3, points: &[DVec3]) -> Vec<DVec2> {
+    let size = normal.abs();
+    let axis = (0..3).fold(0, |most, axis| if size[axis] > size[most] { axis } else { most });
+    let (mut across, mut up) = ((axis + 1) % 3, (axis + 2) % 3);
+    if normal[axis] < 0.0 {
+        (across, up) = (up, across);
+    }
+    let [right, high] = [across, up].map(|other| normal[other] / normal[axis]);
+    let seen = |point: &DVec3| DVec2::new(point[across] - point[axis] * right, point[up] - point[axis] * high);
+    points.iter().map(seen).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The triangles of one face, and how much of its area they have.
+    fn cut(points: &[[f64; 3]], single: bool) -> (Vec<[u32; 3]>, f64) {
+        let vertices = match single {
+            true => Vertices::Single(points.iter().map(|point| point.map(|x| x as f32)).collect()),
+            false => Vertices::Double(points.iter().map(|&point| point.into()).collect()),
+        };
+        let mut faces = Faces::default();
+        faces.push(&(0..points.len() as u32).collect::<Vec<u32>>());
+        let normal = |[a, b, c]: [DVec3; 3]| (b - a).cross(c - a);
+        let fan = faces.fans.iter().map(|face| normal(face.map(|corner| vertices.at(corner)))).sum::<DVec3>();
+        let triangles = faces.triangles(&vertices).expect("few corners");
+        let sum: f64 = triangles.iter().map(|face| normal(face.map(|corner| vertices.at(corner))).length()).sum();
+        (triangles, sum / fan.length())
+    }
+
+    fn fan(count: u32) -> Vec<[u32; 3]> {
+        (2..count).map(|corner| [0, corner - 1, corner]).collect()
+    }
+
+    #[test]
+    fn faces_that_are_not_convex_have_their_area_in_every_plane() {
+        let corner = [[1.0, -1.0], [1.0, 0.0], [0.0, 0.0], [0.0, 1.0], [-1.0, 1.0], [-1.0, -1.0]];
+        let dart = [[2.0, 2.0], [0.0, 0.5], [-2.0, 2.0], [0.0, 0.0]];
+        for outline in [&corner[..], &dart] {
+            for [u, v] in [
+                [DVec3::X, DVec3::Y],
+                [DVec3::Y, DVec3::X],
+                [DVec3::Z, DVec3::X],
+                [DVec3::Y, DVec3::Z],
+                [DVec3::Z, DVec3::Y],
+                [DVec3::new(1.0, 0.2, -0.3), DVec3::new(0.1, -2.0, 0.7)],
+            ] {
+                for (place, size) in [(0.0, 1.0), (100.0, 1.0), (0.0, 1e-20), (0.0, 1e18)] {
+                    let point = |&[a, b]: &[f64; 2]| ((DVec3::splat(place) + u * a + v * b) * size).to_array();
+                    let points: Vec<[f64; 3]> = outline.iter().map(point).collect();
+                    for single in [true, false] {
+                        let (triangles, share) = cut(&points, single);
+                        assert_ne!(triangles, fan(points.len() as u32));
+                        assert!((share - 1.0).abs() < 1e-6, "{points:?}: {share}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn convex_faces_share_their_first_corner() {
+        let normal = DVec3::new(0.3, -0.5, 0.8).normalize();
+        let (u, v) = normal.any_orthonormal_pair();
+        for count in 4..40 {
+            for single in [true, false] {
+                // Half of the corners lie on sides, but for the rounding of their coordinates.
+                let around = |i: u32| DVec2::from_angle(f64::from(i) / f64::from(count) * std::f64::consts::TAU);
+                let corners = (0..count).flat_map(|i| [around(i), (around(i) + around(i + 1)) / 2.0]);
+                let points: Vec<[f64; 3]> =
+                    corners.map(|corner| (DVec3::ONE * 10.0 + u * corner.x + v * corner.y).to_array()).collect();
+                assert_eq!(cut(&points, single).0, fan(2 * count));
+            }
+        }
+    }
+
+    #[test]
+    fn faces_that_no_cut_makes_right_stay_as_they_are() {
+        let bow = [[0.0, 0.0, 0.0], [2.0, 1.0, 0.0], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0]];
+        let nowhere = [[0.0, 0.0, 0.0], [1.0, f64::NAN, 0.0], [f64::INFINITY, 0.0, 0.0], [0.0, 2.0, 0.0]];
+        for points in [bow, nowhere, [[1.0; 3]; 4], [[1e300, -1e300, 0.0]; 4]] {
+            for single in [true, false] {
+                assert_eq!(cut(&points, single).0, fan(4));
+            }
+        }
+        let mut faces = Faces::default();
+        [&[][..], &[0], &[0, 1], &[0, 1, 2, 9], &[2, u32::MAX, 1, 0]].into_iter().for_each(|face| faces.push(face));
+        let triangles = faces.triangles(&Vertices::Double(vec![DVec3::X, DVec3::Y, DVec3::Z]));
+        assert_eq!(triangles, Ok(vec![[0, 1, 2], [0, 2, 9], [2, u32::MAX, 1], [2, 1, 0]]));
+    }
+
+    #[test]
+    fn a_face_with_countless_corners_is_cut_only_where_it_is_convex() {
+        let count = MOST_CORNERS as u32 + 1;
+        let around = |i: u32| DVec2::from_angle(f64::from(i) / f64::from(count) * std::f64::consts::TAU).extend(0.0);
+        let mut points: Vec<[f64; 3]> = (0..count).map(|i| around(i).to_array()).collect();
+        assert_eq!(cut(&points, false).0, fan(count));
+        points[7] = [0.0, -0.5, 0.0];
+        let mut faces = Faces::default();
+        faces.push(&(0..count).collect::<Vec<u32>>());
+        let message = faces.triangles(&Vertices::Double(points.into_iter().map(DVec3::from).collect()));
+        assert_eq!(message, Err("a face that is not convex has 4097 corners, more than 4096".into()));
+    }
+}
