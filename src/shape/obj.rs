@@ -1,91 +1,180 @@
-//! Triangles from OBJ files.
+//! Triangles from OBJ files (Wavefront 1991, *Advanced Visualizer Manual*, appendix B1).
 
-use std::cell::Cell;
+use std::borrow::Cow;
+use std::collections::HashMap;
 use std::path::Path;
 
-use tobj::LoadError;
+use smallvec::SmallVec;
 
+use super::faces::Faces;
 use super::mesh_data::MeshFile;
 use super::{Attributes, Vertices};
 
 /// Reads the triangles of all objects of a file, and the normals of its vertices if they are wanted.
 ///
-/// Where the file has texture coordinates, or normals that are wanted, a vertex with several of them becomes several.
+/// A vertex with several texture coordinates, or normals that are wanted, becomes several.
 pub(super) fn read(path: &Path, smooth: bool) -> Result<MeshFile, String> {
     let bytes = std::fs::read(path).map_err(|error| error.to_string())?;
     // Names and comments may be in any encoding.
     let text = String::from_utf8_lossy(&bytes);
-    let [_, coordinates, normals] = counted(&text)?;
-    let (has_normals, has_coordinates) = (smooth && normals > 0, coordinates > 0);
-    let single_index = has_normals || has_coordinates;
-    let options = tobj::LoadOptions { triangulate: true, single_index, ..Default::default() };
-    let names_materials = Cell::new(false);
-    let models = tobj::load_obj_buf(&mut text.as_bytes(), &options, |_| {
-        names_materials.set(true);
-        Ok(Default::default())
-    });
-    let (models, _) = models.map_err(|error| match error {
-        LoadError::PositionParseError => "a vertex, v, is not made of numbers".into(),
-        LoadError::FaceParseError => "a face, f, is not made of whole numbers".into(),
-        LoadError::FaceVertexOutOfBounds => no_such("vertex"),
-        LoadError::FaceTexCoordOutOfBounds => no_such("texture coordinate"),
-        LoadError::FaceNormalOutOfBounds => no_such("normal"),
-        other => other.to_string(),
-    })?;
-    let (mut points, mut faces, mut attributes) = (Vec::new(), Vec::new(), Attributes::default());
-    for model in models {
-        let first = points.len() as u32;
-        points.extend(model.mesh.positions.chunks_exact(3).map(|p| [p[0], p[1], p[2]]));
-        // An object of which only some corners have them has none.
-        if has_normals {
-            attributes.normals.extend(groups(&model.mesh.normals, points.len() - first as usize));
-        }
-        if has_coordinates {
-            attributes.coordinates.extend(groups(&model.mesh.texcoords, points.len() - first as usize));
-        }
-        let corners = model.mesh.indices.chunks_exact(3);
-        faces.extend(corners.map(|c| [c[0] + first, c[1] + first, c[2] + first]));
-    }
-    let (vertices, names_materials) = (Vertices::Single(points), names_materials.get());
-    Ok(MeshFile { vertices, faces, attributes, names_materials, ignored: Vec::new(), others: Vec::new() })
-}
-
-fn no_such(what: &str) -> String {
-    format!("a face, f, asks for a {what} that the file does not have")
-}
-
-/// How many vertices, texture coordinates and normals a text lists.
-///
-/// # Errors
-/// A face counts further back than there are any, or to a number that no file has: tobj multiplies both before it
-/// looks.
-fn counted(text: &str) -> Result<[u64; 3], String> {
-    let mut counts = [0; 3];
-    for line in text.lines() {
-        let mut words = line.split_whitespace();
-        match words.next() {
-            Some("v") => counts[0] += 1,
-            Some("vt") => counts[1] += 1,
-            Some("vn") => counts[2] += 1,
-            Some("f" | "l") => {
-                for (kind, number) in words.flat_map(|corner| corner.split('/').enumerate().take(3)) {
-                    let is_plain = !number.starts_with('-') && number.len() < 10;
-                    // What is no number is refused as that later.
-                    let Some(index) = (if is_plain { None } else { number.parse::<i64>().ok() }) else { continue };
-                    let most = if index < 0 { counts[kind] } else { u64::from(u32::MAX) };
-                    if index.unsigned_abs() > most {
-                        return Err(no_such(["vertex", "texture coordinate", "normal"][kind]));
-                    }
-                }
+    let mut lists = Lists::default();
+    for (line, statement) in statements(text.strip_prefix('\u{feff}').unwrap_or(&text)) {
+        let words: SmallVec<[&str; 8]> = statement.split_whitespace().collect();
+        let Some((keyword, words)) = words.split_first() else { continue };
+        match *keyword {
+            "v" => lists.places.push(place(words).map_err(|what| format!("the vertex in line {line} {what}"))?),
+            "vt" => {
+                let coordinates = coordinates(words);
+                let refused = |what| format!("the texture coordinate in line {line} {what}");
+                lists.coordinates.push(coordinates.map_err(refused)?);
             }
+            "vn" => {
+                // Programs write normals that are no numbers for faces without area.
+                let normal = if smooth { numbers(words) } else { Ok([0.0; 3]) };
+                lists.normals.push(normal.map_err(|what| format!("the normal in line {line} {what}"))?);
+            }
+            "f" | "fo" => lists.face(line, words, smooth).map_err(|what| format!("the face in line {line} {what}"))?,
+            "mtllib" => lists.names_materials = true,
             _ => {}
         }
     }
-    Ok(counts)
+    lists.file()
 }
 
-/// Numbers in groups, one group for each of `count` vertices; zeros if they are not as many.
-fn groups<const K: usize>(numbers: &[f32], count: usize) -> Vec<[f32; K]> {
-    let (groups, rest) = numbers.as_chunks::<K>();
-    if rest.is_empty() && groups.len() == count { groups.to_vec() } else { vec![[0.0; K]; count] }
+/// What stands in a text line by line, without comments, each with the number of its line; a backslash at the end of a
+/// line takes the next one to it.
+fn statements(text: &str) -> impl Iterator<Item = (usize, Cow<'_, str>)> {
+    // Lines that end with a carriage return and a line feed have white space at their end.
+    let end = if text.contains('\n') { '\n' } else { '\r' };
+    let mut lines = text.split(end).map(|line| line.split('#').next().unwrap_or_default()).zip(1..);
+    std::iter::from_fn(move || {
+        let (mut line, number) = lines.next()?;
+        let mut whole = String::new();
+        while let Some(before) = line.trim_end().strip_suffix('\\') {
+            whole.extend([before, " "]);
+            line = lines.next().map_or("", |(line, _)| line);
+        }
+        let is_whole = whole.is_empty();
+        whole.push_str(if is_whole { "" } else { line });
+        Some((number, if is_whole { Cow::Borrowed(line) } else { Cow::Owned(whole) }))
+    })
+}
+
+fn number(word: &str) -> Result<f32, &'static str> {
+    let number: f32 = word.parse().map_err(|_| "is not made of numbers")?;
+    if number.is_finite() { Ok(number) } else { Err("is not finite") }
+}
+
+/// The first K numbers of a line.
+fn numbers<const K: usize>(words: &[&str]) -> Result<[f32; K], &'static str> {
+    let words = words.first_chunk::<K>().ok_or("has too few numbers")?;
+    let mut numbers = [0.0; K];
+    for (into, word) in numbers.iter_mut().zip(words) {
+        *into = number(word)?;
+    }
+    Ok(numbers)
+}
+
+/// A fourth number is a weight; colors make it six or more, and are left out.
+fn place(words: &[&str]) -> Result<[f32; 3], &'static str> {
+    let place = numbers::<3>(words)?;
+    let [_, _, _, weight] = words else { return Ok(place) };
+    let weight = number(weight)?;
+    let place = place.map(|x| x / weight);
+    if place.iter().all(|x| x.is_finite()) { Ok(place) } else { Err("is not finite") }
+}
+
+/// One number is enough for a texture that is a line, and a third one is its depth.
+fn coordinates(words: &[&str]) -> Result<[f32; 2], &'static str> {
+    if let [u] = words { Ok([number(u)?, 0.0]) } else { numbers(words) }
+}
+
+/// Where a corner has its place, its texture coordinates and its normal, each in a list of its own.
+type Corner = [u32; 3];
+
+/// Stands for texture coordinates or a normal that a corner does not have.
+const NONE: u32 = u32::MAX;
+
+const NAMES: [&str; 3] = ["vertex", "texture coordinate", "normal"];
+
+fn no_such(kind: usize) -> String {
+    format!("asks for a {} that the file does not have", NAMES[kind])
+}
+
+/// What was read of a file so far.
+#[derive(Default)]
+struct Lists {
+    places: Vec<[f32; 3]>,
+    coordinates: Vec<[f32; 2]>,
+    normals: Vec<[f32; 3]>,
+    /// Different corners, in the order in which faces ask for them, and their numbers.
+    corners: Vec<Corner>,
+    numbers: HashMap<Corner, u32>,
+    faces: Faces,
+    /// The highest place in each list that a face asks for, and its line: lists may be filled later.
+    highest: [(u32, usize); 3],
+    names_materials: bool,
+}
+
+impl Lists {
+    fn face(&mut self, line: usize, words: &[&str], smooth: bool) -> Result<(), String> {
+        let mut face = Vec::with_capacity(words.len());
+        for word in words {
+            let mut corner = self.corner(line, word)?;
+            if !smooth {
+                corner[2] = NONE;
+            }
+            let number = *self.numbers.entry(corner).or_insert_with(|| {
+                self.corners.push(corner);
+                self.corners.len() as u32 - 1
+            });
+            face.push(number);
+        }
+        self.faces.push(&face);
+        Ok(())
+    }
+
+    /// A corner such as 3, 3/2, 3//1 or 3/2/1: numbers that count from 1, or back from the last entry so far.
+    fn corner(&mut self, line: usize, word: &str) -> Result<Corner, String> {
+        let counts = [self.places.len(), self.coordinates.len(), self.normals.len()];
+        let mut corner = [NONE; 3];
+        for (kind, number) in word.split('/').enumerate() {
+            if kind > 0 && number.is_empty() {
+                continue;
+            }
+            let number: i64 = number.parse().map_err(|_| "is not made of whole numbers")?;
+            let Some(into) = corner.get_mut(kind) else { return Err("is not made of whole numbers".into()) };
+            let index = if number < 0 { (counts[kind] as i64).checked_add(number) } else { number.checked_sub(1) };
+            let index = index.and_then(|index| u32::try_from(index).ok()).filter(|&index| index != NONE);
+            *into = index.ok_or_else(|| no_such(kind))?;
+            if *into >= self.highest[kind].0 {
+                self.highest[kind] = (*into, line);
+            }
+        }
+        Ok(corner)
+    }
+
+    fn file(self) -> Result<MeshFile, String> {
+        let counts = [self.places.len(), self.coordinates.len(), self.normals.len()];
+        for (kind, (highest, line)) in self.highest.into_iter().enumerate() {
+            // Some programs leave out a list, but not the numbers that ask for it.
+            let is_left_out = kind > 0 && counts[kind] == 0;
+            if line > 0 && !is_left_out && highest as usize >= counts[kind] {
+                return Err(format!("the face in line {line} {}", no_such(kind)));
+            }
+        }
+        let mut attributes = Attributes::default();
+        let has = |kind: usize| counts[kind] > 0 && self.corners.iter().any(|corner| corner[kind] != NONE);
+        if has(1) {
+            let of = |corner: &Corner| self.coordinates.get(corner[1] as usize).copied().unwrap_or_default();
+            attributes.coordinates = self.corners.iter().map(of).collect();
+        }
+        if has(2) {
+            let of = |corner: &Corner| self.normals.get(corner[2] as usize).copied().unwrap_or_default();
+            attributes.normals = self.corners.iter().map(of).collect();
+        }
+        let vertices = Vertices::Single(self.corners.iter().map(|corner| self.places[corner[0] as usize]).collect());
+        let (faces, names_materials) = (self.faces.triangles(&vertices)?, self.names_materials);
+        Ok(MeshFile { vertices, faces, attributes, names_materials, ignored: Vec::new(), others: Vec::new() })
+    }
 }

@@ -47,7 +47,7 @@ fn corners_far_outside_of_their_lists_are_refused() {
         ("9223372036854775807/1/1", "vertex"),
     ] {
         for refusal in refusals(&obj, file(corner).as_bytes()) {
-            assert_eq!(refusal, format!("case.obj: a face, f, asks for a {what} that the file does not have"));
+            assert_eq!(refusal, format!("case.obj: the face in line 6 asks for a {what} that the file does not have"));
         }
     }
     assert_eq!(read(&obj, file("-1/-1/-1").as_bytes(), 1, "regression").outcome, Ok(()));

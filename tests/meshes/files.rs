@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use abbe::math::{DVec3, Ray, Transform};
 use abbe::scene::Source;
-use abbe::shape::{Mesh, Shape, Vertices, read_mesh};
+use abbe::shape::{Mesh, Shape, Vertices, read_mesh, read_smooth_mesh};
 
 use crate::support::random::Random;
 
@@ -109,6 +109,65 @@ fn every_way_to_write_an_obj_gives_the_same_triangles() {
     }
 }
 
+#[test]
+fn all_that_an_obj_may_hold_besides_is_read_or_passed_over() {
+    let vertices = POINTS.map(|[x, y, z]| format!("v {x} {y} {z}\n")).concat();
+    let faces = "f 1 4 3 2\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n";
+    let plain = vertices.clone() + faces;
+    let colors = POINTS.map(|[x, y, z]| format!("v {x} {y} {z} 1 0.5 0\n")).concat();
+    let weighed = POINTS.map(|[x, y, z]| format!("v {} {} {} 2\n", 2.0 * x as f32, 2.0 * y as f32, 2.0 * z as f32));
+    for text in [
+        format!("\u{feff}{plain}"),
+        format!("\u{feff}# a pyramid\n{plain}"),
+        plain.replace('\n', "\r\n"),
+        plain.replace('\n', "\r"),
+        plain.replace('\n', " # a comment\n"),
+        plain.replace(" 5\n", " \\\n5\n"),
+        plain.replace(' ', " \\  \r\n\t"),
+        format!("# a comment ends there \\\n{plain}\\"),
+        plain.replace("f ", "fo "),
+        plain.replace(' ', "\t  ") + "l 1 2 3\np 4\nf 1 2\nf 3\nf\nvp 0.5\ncurv 0 1 1 2\n",
+        format!("{faces}{vertices}"),
+        format!("vt 0.5\nvt 1 2 3\n{}", plain.replace(" 5\n", " 5/2\n").replace("f 2 ", "f 2/1 ")),
+        // What texture coordinates are asked for is not there.
+        plain.replace(" 5\n", " 5/7\n"),
+        format!("{colors}{faces}"),
+        format!("{}{faces}", weighed.concat()),
+    ] {
+        assert_eq!(read("a.obj", text.as_bytes()).0, triangles(true), "{text}");
+    }
+}
+
+#[test]
+fn broken_obj_files_are_refused_with_the_line() {
+    let good = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\nf 1/1/1 2/1/1 3/1/1\n";
+    for (old, new, message) in [
+        ("f", "# \nf", ""),
+        ("v 1 0 0", "v 1,0 0 0", "the vertex in line 2 is not made of numbers"),
+        ("v 1 0 0", "v 1 0", "the vertex in line 2 has too few numbers"),
+        ("v 1 0 0", "v 1 0 0 0", "the vertex in line 2 is not finite"),
+        ("v 1 0 0", "v \\\n1 0 inf", "the vertex in line 2 is not finite"),
+        ("vt 0 0", "vt", "the texture coordinate in line 4 has too few numbers"),
+        ("vt 0 0", "vt 0 zero", "the texture coordinate in line 4 is not made of numbers"),
+        ("vt 0 0", "vt nan 0", "the texture coordinate in line 4 is not finite"),
+        ("vn 0 0 1", "vn 0 0", "the normal in line 5 has too few numbers"),
+        ("vn 0 0 1", "vn 0 1e39 0", "the normal in line 5 is not finite"),
+        ("f 1/", "f one/", "the face in line 6 is not made of whole numbers"),
+        ("f 1/", "f /", "the face in line 6 is not made of whole numbers"),
+        ("f 1/1/1", "f 1/1/1/1", "the face in line 6 is not made of whole numbers"),
+        ("f 1/", "f 0/", "the face in line 6 asks for a vertex that the file does not have"),
+        ("f 1/", "f 4/", "the face in line 6 asks for a vertex that the file does not have"),
+        ("f 1/1/", "f 1/2/", "the face in line 6 asks for a texture coordinate that the file does not have"),
+        ("f 1/1/1", "f 1/1/-2", "the face in line 6 asks for a normal that the file does not have"),
+    ] {
+        let (_folder, path) = file("a.obj", good.replace(old, new).as_bytes());
+        assert_eq!(read_smooth_mesh(&path).err().unwrap_or_default(), message, "{new}");
+        // Normals that are not used may be anything, as for faces without area.
+        let is_of_normal = message.starts_with("the normal");
+        assert_eq!(read_mesh(&path).is_err(), !message.is_empty() && !is_of_normal, "{new}");
+    }
+}
+
 /// The corners of an L, from one of which a fan does not stay inside.
 const CORNERS: [[i32; 2]; 6] = [[2, 0], [2, 1], [1, 1], [1, 2], [0, 2], [0, 0]];
 
@@ -128,8 +187,9 @@ fn faces_that_are_not_convex_cover_their_area_once() {
     let (faces, _) = faces.split_once("end_header").expect("it ends");
     let (first, vertices) = vertices.split_once("element vertex").expect("it has vertices");
     let late = format!("{first}element face{faces}element vertex{vertices}end_header\n6 0 1 2 3 4 5\n{points}");
-    for text in [ply, late] {
-        let triangles = read("a.ply", text.as_bytes()).0;
+    let obj = CORNERS.map(|[x, y]| format!("v {x} {y} 0\n")).concat() + "f 1 2 3 4 5 6\n";
+    for (name, text) in [("a.ply", ply), ("b.ply", late), ("a.obj", obj)] {
+        let triangles = read(name, text.as_bytes()).0;
         assert_eq!((triangles.len(), doubled_area(&triangles)), (4, 6.0), "{text}");
     }
 }
