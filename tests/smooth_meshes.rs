@@ -123,7 +123,7 @@ fn smooth(around: u32, rings: u32, exact: bool) -> Shape {
     };
     let coordinates = points.iter().map(|p| [p.x as f32, p.y as f32]).collect();
     let (mesh, _) = Mesh::new(vertices, faces).expect("faces with area");
-    Shape::Mesh(mesh.with(Attributes { normals, coordinates }).into())
+    Shape::Mesh(mesh.with(Attributes { normals, coordinates, bare: 0 }).into())
 }
 
 #[test]
@@ -201,6 +201,7 @@ fn files_give_normals_where_they_are_wanted_and_texture_coordinates_where_they_a
     let expected = Attributes {
         normals: vec![[0.0, 0.0, 1.0], [0.0, 0.6, 0.8], [0.0, 1.0, 0.0]],
         coordinates: vec![[0.0, 0.25], [0.5, 0.75], [1.0, 0.0]],
+        bare: 0,
     };
     let flat = Attributes { normals: Vec::new(), ..expected.clone() };
     let rows = ["0 0 0 0 0 1 0 0.25", "1 0 0 0 0.6 0.8 0.5 0.75", "0 1 0 0 1 0 1 0"];
@@ -221,6 +222,15 @@ fn files_give_normals_where_they_are_wanted_and_texture_coordinates_where_they_a
         attributes("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"),
         [Attributes::default(), Attributes::default()]
     );
+    // Faces without either leave those of others as they are.
+    let mixed = obj.to_owned() + "o bare\nf 3 2 1\nf 1 2 3/1\n";
+    let [flat_one, smooth_one] = attributes("a.obj", &mixed);
+    assert_eq!(
+        (&smooth_one.normals[..3], &smooth_one.coordinates[..3]),
+        (&expected.normals[..], &expected.coordinates[..])
+    );
+    assert_eq!((&smooth_one.normals[3..], smooth_one.bare), (&[[0.0; 3]; 4][..], 2));
+    assert_eq!(flat_one.coordinates[3..], [[0.0; 2], [0.0; 2], [0.0; 2], [0.0, 0.25]]);
     // One float after the other: places, normals, coordinates, whose v runs down in glTF.
     let numbers: Vec<f32> = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0]
         .into_iter()

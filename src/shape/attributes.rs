@@ -12,6 +12,8 @@ pub struct Attributes {
     pub normals: Vec<[f32; 3]>,
     /// Texture coordinates, v up.
     pub coordinates: Vec<[f32; 2]>,
+    /// Triangles that have no texture coordinates where others have: zeros stand for them.
+    pub bare: usize,
 }
 
 impl Attributes {
@@ -38,7 +40,8 @@ impl Attributes {
         let size = a.max(b).max(c);
         let turned =
             |normal: &[f32; 3]| (back.transposed(normal.map(f64::from).into()) / size).to_array().map(|x| x as f32);
-        Self { normals: self.normals.iter().map(turned).collect(), coordinates: self.coordinates.clone() }
+        let (normals, coordinates) = (self.normals.iter().map(turned).collect(), self.coordinates.clone());
+        Self { normals, coordinates, bare: self.bare }
     }
 }
 

@@ -262,7 +262,7 @@ mod tests {
         let faces = vec![[0, 1, 2], [0, 4, 3]];
         let coordinates = vec![[0.5, 0.25], [1.0, 0.5], [0.75, 1.5], [1.0, 0.125], [1.5, 0.5]];
         let (mesh, _) = Mesh::new(Vertices::Double(points), faces).unwrap();
-        Shape::Mesh(mesh.with(Attributes { normals: Vec::new(), coordinates }).into())
+        Shape::Mesh(mesh.with(Attributes { coordinates, ..Default::default() }).into())
     }
 
     /// Steps along a surface change its coordinates as the tangents say, under every transform.

@@ -204,6 +204,8 @@ impl Document {
                     let flipped = |[u, v]: [f32; 2]| [u, 1.0 - v];
                     own.coordinates = accessor(coordinates)?.floats()?.into_iter().map(flipped).collect();
                     has_coordinates = true;
+                } else {
+                    attributes.bare += cut(&corners, primitive.mode).count();
                 }
                 let fits = |own: usize| own == 0 || own == count;
                 if !fits(own.normals.len()) || !fits(own.coordinates.len()) {
@@ -227,7 +229,7 @@ impl Document {
             attributes.normals = Vec::new();
         }
         if !has_coordinates {
-            attributes.coordinates = Vec::new();
+            (attributes.coordinates, attributes.bare) = (Vec::new(), 0);
         }
         let vertices = if as_written { Vertices::Single(single) } else { Vertices::Double(double) };
         Ok(MeshFile { vertices, faces, attributes, names_materials: false, ignored: Vec::new(), others: Vec::new() })

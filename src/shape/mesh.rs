@@ -150,6 +150,11 @@ impl Mesh {
         !self.attributes.coordinates.is_empty()
     }
 
+    /// How many triangles have no texture coordinates, in a mesh of which others have.
+    pub fn bare(&self) -> usize {
+        self.attributes.bare
+    }
+
     /// Texture coordinates at affine coordinates of a triangle; none if the mesh has none.
     pub fn coordinates(&self, part: u32, uv: [f64; 2]) -> Option<[f64; 2]> {
         self.attributes.coordinates(self.triangles[part as usize], uv)

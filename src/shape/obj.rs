@@ -111,6 +111,8 @@ struct Lists {
     corners: Vec<Corner>,
     numbers: HashMap<Corner, u32>,
     faces: Faces,
+    /// Triangles of faces that leave out texture coordinates.
+    bare: usize,
     /// The highest place in each list that a face asks for, and its line: lists may be filled later.
     highest: [(u32, usize); 3],
     names_materials: bool,
@@ -129,6 +131,9 @@ impl Lists {
                 self.corners.len() as u32 - 1
             });
             face.push(number);
+        }
+        if face.iter().any(|&number| self.corners[number as usize][1] == NONE) {
+            self.bare += face.len().saturating_sub(2);
         }
         self.faces.push(&face);
         Ok(())
@@ -167,6 +172,7 @@ impl Lists {
         let has = |kind: usize| counts[kind] > 0 && self.corners.iter().any(|corner| corner[kind] != NONE);
         if has(1) {
             let of = |corner: &Corner| self.coordinates.get(corner[1] as usize).copied().unwrap_or_default();
+            attributes.bare = self.bare;
             attributes.coordinates = self.corners.iter().map(of).collect();
         }
         if has(2) {

@@ -220,6 +220,18 @@ fn materials_of_an_obj_are_ignored_with_a_warning() {
 }
 
 #[test]
+fn faces_without_texture_coordinates_are_warned_of_where_an_image_lies_on_them() {
+    let places = POINTS.map(|[x, y, z]| format!("v {x} {y} {z}\n")).concat() + "vt 0.25 0.5\nvt 1 1\nvt 0 1\n";
+    let some = places.clone() + "f 1/1 4/2 3/3 2/2\no sides\nf 1/1 2/2 5\nf 2 3 5\nf 3/1 4/2 5/3\nf 4/1 1/2 5/3\n";
+    let said = warnings("a.obj", some.as_bytes(), "diffuse.reflectance.checker = [0.2, 0.8]");
+    let shown = "have no texture coordinates: they show the image where u and v are 0";
+    assert_eq!(said, [format!("pyramid: 2 triangles of a.obj {shown}")]);
+    assert!(warnings("a.obj", some.as_bytes(), "diffuse.reflectance = 0.5").is_empty());
+    let all = places + "f 1/1 4/2 3/3 2/2\nf 1/1 2/2 5/1\n";
+    assert!(warnings("a.obj", all.as_bytes(), "diffuse.reflectance.checker = [0.2, 0.8]").is_empty());
+}
+
+#[test]
 fn a_dielectric_on_an_open_mesh_is_warned_of_and_on_a_closed_one_is_not() {
     let closed =
         POINTS.map(|[x, y, z]| format!("v {x} {y} {z}\n")).concat() + "f 1 4 3 2\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n";

@@ -81,13 +81,20 @@ pub(super) fn object<'d>(
         }));
         let instances = instances.map_or(Some(None), |value| maps(value, map?.it).map(Some));
         let (shape, map, named, instances) = (shape?, map?, named?, instances?);
-        let (group, sight) = (group?, sight?);
+        let (group, sight, relief) = (group?, sight?, relief?);
         let written = &shape.it.shape;
         if named.it.medium().is_some() && matches!(written, Shape::Mesh(_)) && !written.is_closed() {
             let warning = format!("{name}: a dielectric on an open mesh: light may enter it and never leave");
             context.warn(warning);
         }
-        Some(Draft { name, material: named.place.text()?, shape, map, instances, relief: relief?, group, sight })
+        if let (Shape::Mesh(mesh), Some(file)) = (written, shape.it.file)
+            && mesh.bare() > 0
+            && (named.it.varies() || relief.is_some())
+        {
+            let (bare, shown) = (mesh.bare(), "they show the image where u and v are 0");
+            context.warn(format!("{name}: {bare} triangles of {file} have no texture coordinates: {shown}"));
+        }
+        Some(Draft { name, material: named.place.text()?, shape, map, instances, relief, group, sight })
     })
 }
 
