@@ -187,6 +187,65 @@ fn texture_coordinates_are_interpolated() {
     assert_eq!(bare.coordinates(0, [0.2, 0.3]), None);
 }
 
+/// A triangle in every format, whose second vertex has a normal and texture coordinates.
+fn files_with(normal: [f32; 3], coordinates: [f32; 2]) -> [(&'static str, Vec<u8>); 3] {
+    let ([x, y, z], [u, v]) = (normal, coordinates);
+    let names: String =
+        ["x", "y", "z", "nx", "ny", "nz", "u", "v"].map(|name| format!("property float {name}\n")).concat();
+    let header = format!(
+        "ply\nformat binary_little_endian 1.0\nelement vertex 3\n{names}element face 1\n\
+         property list uchar uchar vertex_indices\nend_header\n"
+    );
+    let rows = [
+        [0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0],
+        [1.0, 0.0, 0.0, x, y, z, u, v],
+        [0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0],
+    ];
+    let bytes: Vec<u8> = rows.iter().flatten().flat_map(|x: &f32| x.to_le_bytes()).collect();
+    let ply = [header.as_bytes(), &bytes, &[3, 0, 1, 2]].concat();
+    let obj = format!("v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nvt 0 0\nvn {x} {y} {z}\nvt {u} {v}\nf 1/1/1 2/2/2 3/1/1\n");
+    let [places, normals, pairs] =
+        [0..3, 3..6, 6..8].map(|range| rows.iter().flat_map(move |row| row[range.clone()].to_vec()));
+    let numbers = places.chain(normals).chain(pairs).flat_map(f32::to_le_bytes);
+    let json = r#"{"asset":{"version":"2.0"},"nodes":[{"mesh":0}],
+"meshes":[{"primitives":[{"attributes":{"POSITION":0,"NORMAL":1,"TEXCOORD_0":2}}]}],
+"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"},
+{"bufferView":0,"byteOffset":36,"componentType":5126,"count":3,"type":"VEC3"},
+{"bufferView":0,"byteOffset":72,"componentType":5126,"count":3,"type":"VEC2"}],
+"bufferViews":[{"buffer":0,"byteLength":96}],"buffers":[{"byteLength":96}]}"#;
+    let json = format!("{json}{}", " ".repeat(json.len().next_multiple_of(4) - json.len()));
+    let number = |n: usize| (n as u32).to_le_bytes();
+    let head = [b"glTF".as_slice(), &number(2), &number(28 + json.len() + 96), &number(json.len()), b"JSON"].concat();
+    let glb = [&head, json.as_bytes(), &number(96), b"BIN\0"].concat().into_iter().chain(numbers).collect();
+    [("a.ply", ply), ("a.obj", obj.into_bytes()), ("a.glb", glb)]
+}
+
+#[test]
+fn normals_and_texture_coordinates_that_are_not_finite_are_refused() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let refusals = |normal, coordinates, smooth: bool| {
+        files_with(normal, coordinates).map(|(name, bytes)| {
+            let path = folder.path().join(name);
+            std::fs::write(&path, bytes).expect("the file can be written");
+            let mesh = if smooth { read_smooth_mesh(&path) } else { read_mesh(&path) };
+            mesh.err().unwrap_or_default()
+        })
+    };
+    let up = [0.0, 0.0, 1.0];
+    let said = "the normal of vertex 1 (counted from 0) is not finite";
+    let of_line = "the normal in line 6 is not finite";
+    assert_eq!(refusals([0.0, f32::NAN, 0.0], [0.0; 2], true), [said, of_line, said]);
+    assert_eq!(refusals([f32::INFINITY, 0.0, 0.0], [0.0; 2], true), [said, of_line, said]);
+    assert_eq!(refusals([0.0, f32::NAN, 0.0], [0.0; 2], false), ["", "", ""], "flat meshes have no normals");
+    for smooth in [false, true] {
+        let said = "the texture coordinates of vertex 1 (counted from 0) are not finite";
+        let of_line = "the texture coordinate in line 7 is not finite";
+        assert_eq!(refusals(up, [f32::NAN, 0.5], smooth), [said, of_line, said]);
+        assert_eq!(refusals(up, [0.5, f32::NEG_INFINITY], smooth), [said, of_line, said]);
+        assert_eq!(refusals(up, [0.5, 0.5], smooth), ["", "", ""]);
+    }
+}
+
 /// What a file's vertices carry, read with and without normals.
 fn attributes(name: &str, text: &str) -> [Attributes; 2] {
     let folder = tempfile::tempdir().expect("a folder");

@@ -13,8 +13,8 @@ use super::faces::Faces;
 use super::mesh_data::MeshFile;
 use super::{Attributes, Vertices};
 
-/// Reads a mesh file by its ending, `.ply`, `.obj`, `.gltf` or `.glb`; checks that corners exist and vertices are
-/// finite.
+/// Reads a mesh file by its ending, `.ply`, `.obj`, `.gltf` or `.glb`; checks that corners exist and that
+/// vertices and what they carry are finite.
 ///
 /// # Errors
 /// A sentence that says what is wrong with the file.
@@ -41,6 +41,13 @@ fn read_with(path: &Path, smooth: bool) -> Result<MeshFile, String> {
     let count = file.vertices.count();
     if let Some(vertex) = (0..count as u32).find(|&index| !file.vertices.at(index).is_finite()) {
         return Err(format!("vertex {vertex} (counted from 0) is not finite"));
+    }
+    let Attributes { normals, coordinates, .. } = &file.attributes;
+    if let Some(vertex) = normals.iter().position(|normal| !normal.iter().all(|x| x.is_finite())) {
+        return Err(format!("the normal of vertex {vertex} (counted from 0) is not finite"));
+    }
+    if let Some(vertex) = coordinates.iter().position(|pair| !pair.iter().all(|x| x.is_finite())) {
+        return Err(format!("the texture coordinates of vertex {vertex} (counted from 0) are not finite"));
     }
     if let Some(corner) = file.faces.iter().flatten().find(|&&corner| corner as usize >= count) {
         let vertex = if *corner == NO_VERTEX { "a negative vertex".into() } else { format!("vertex {corner}") };
