@@ -25,6 +25,7 @@ struct Document {
     buffer_views: Vec<BufferView>,
     buffers: Vec<Buffer>,
     extensions_required: Vec<String>,
+    extensions_used: Vec<String>,
     materials: Vec<IgnoredAny>,
     animations: Vec<IgnoredAny>,
     skins: Vec<IgnoredAny>,
@@ -85,6 +86,10 @@ fn triangles() -> u32 {
 
 /// Beginnings of the names of required extensions that change nothing but looks.
 const HARMLESS: [&str; 4] = ["KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_punctual"];
+/// What places a mesh many times; where it is not required, programs that do not know it place it once.
+const INSTANCING: &str = "EXT_mesh_gpu_instancing";
+/// How far the last row of an affine matrix may be from 0, 0, 0, 1 where one was made of others in 32 bits.
+const ROUNDING: f64 = 8.0 * f32::EPSILON as f64;
 /// Most triangles of a file: a small one may place a large mesh as often as it likes.
 const MOST: usize = 1 << 27;
 
@@ -111,6 +116,7 @@ pub(super) fn read(path: &Path, smooth: bool) -> Result<MeshFile, String> {
         ("animations", !document.animations.is_empty()),
         ("skins", !document.skins.is_empty()),
         ("morph targets", has_morphs),
+        ("copies by EXT_mesh_gpu_instancing", document.extensions_used.iter().any(|name| name == INSTANCING)),
     ] {
         file.ignored.extend(there.then_some(what));
     }
@@ -254,7 +260,7 @@ impl Node {
     fn map(&self) -> Option<Transform> {
         if let Some(m) = self.matrix {
             let column = |i: usize| DVec3::new(m[4 * i], m[4 * i + 1], m[4 * i + 2]);
-            let is_affine = [m[3], m[7], m[11], m[15]] == [0.0, 0.0, 0.0, 1.0];
+            let is_affine = [m[3], m[7], m[11], m[15] - 1.0].iter().all(|x| x.abs() <= ROUNDING);
             let linear = DMat3::from_cols(column(0), column(1), column(2));
             return is_affine.then(|| Transform::affine(linear, column(3)));
         }

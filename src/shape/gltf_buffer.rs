@@ -40,7 +40,7 @@ pub(super) struct Accessor {
     sparse: Option<Sparse>,
 }
 
-/// Entries that differ from those of the view.
+/// Entries that differ from those of the view, or from zeros where there is none (section 3.6.2.3 of the specification).
 #[derive(Deserialize)]
 struct Sparse {
     count: usize,
@@ -154,8 +154,18 @@ impl<'a> Data<'a> {
 
     fn entries<T>(&self, width: usize, read: impl Fn(&[u8]) -> T) -> Result<Vec<T>, String> {
         let Accessor { buffer_view, byte_offset, count, sparse, .. } = self.accessor;
-        let view = buffer_view.ok_or_else(|| format!("accessor {} has no buffer view", self.number))?;
-        let mut entries: Vec<T> = self.view(view, *byte_offset, *count, width)?.map(&read).collect();
+        let mut entries: Vec<T> = match (buffer_view, sparse) {
+            (Some(view), _) => self.view(*view, *byte_offset, *count, width)?.map(&read).collect(),
+            // Zeros take no bytes, but what they belong to does.
+            (None, Some(_)) if *count > self.store.buffers.iter().map(Vec::len).sum() => {
+                return Err(format!("accessor {} has more entries than the buffers have bytes", self.number));
+            }
+            (None, Some(_)) => {
+                let zero = vec![0; width];
+                (0..*count).map(|_| read(&zero)).collect()
+            }
+            (None, None) => return Err(format!("accessor {} has no buffer view", self.number)),
+        };
         if let Some(Sparse { count, indices, values }) = sparse {
             let index = whole_number(indices.component_type)
                 .ok_or_else(|| format!("accessor {} has no whole indices", self.number))?;

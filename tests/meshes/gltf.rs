@@ -108,6 +108,48 @@ fn sparse_entries_replace_those_of_the_view() {
 }
 
 #[test]
+fn sparse_entries_without_a_view_replace_zeros() {
+    // The base stays where it is, and the tip is at 0.
+    let points = POINTS[..4].iter().flatten().flat_map(|&x| (x as f32).to_le_bytes());
+    let bytes: Vec<u8> = binary(1).into_iter().chain([0, 1, 2, 3]).chain(points).collect();
+    let uri = format!(r#""uri":"data:;base64,{}","#, base64(&bytes));
+    let sparse = r#"{"componentType":5126,"count":5,"type":"VEC3","sparse":{"count":4,"indices":{"bufferView":2,"componentType":5121},"values":{"bufferView":3}}}"#;
+    let text =
+        document(&uri, 1, "").replace(r#"{"bufferView":0,"componentType":5126,"count":5,"type":"VEC3"}"#, sparse);
+    let text = text.replace(
+        r#""byteLength":18}]"#,
+        r#""byteLength":18},{"buffer":0,"byteOffset":78,"byteLength":4},{"buffer":0,"byteOffset":82,"byteLength":48}]"#,
+    );
+    let point = |corner: u32| {
+        if corner == 4 { DVec3::ZERO } else { POINTS[corner as usize].map(|x| f64::from(x as f32)).into() }
+    };
+    assert_eq!(read("a.gltf", text.as_bytes()).0, FACES.map(|face| face.map(point)));
+    let countless = text.replace(r#""count":5"#, r#""count":1000000000000"#);
+    let (_folder, path) = file("a.gltf", countless.as_bytes());
+    let message = read_mesh(&path).err();
+    assert_eq!(message.as_deref(), Some("accessor 0 has more entries than the buffers have bytes"));
+}
+
+#[test]
+fn copies_that_only_an_extension_tells_of_are_said_to_be_ignored() {
+    let used = r#""scene":0,"extensionsUsed":["KHR_materials_ior","EXT_mesh_gpu_instancing"]"#;
+    let text = document(&embedded(1), 1, "");
+    let (_folder, path) = file("a.gltf", text.replace(r#""scene":0"#, used).as_bytes());
+    assert_eq!(read_mesh(&path).expect("a glTF file").ignored, ["copies by EXT_mesh_gpu_instancing"]);
+    let (_folder, path) = file("a.gltf", text.as_bytes());
+    assert_eq!(read_mesh(&path).expect("a glTF file").ignored, [""; 0]);
+}
+
+#[test]
+fn a_matrix_of_a_node_may_have_the_rounding_of_32_bits() {
+    let text =
+        |last: &str| document(&embedded(1), 1, &format!(r#","matrix":[1,0,0,0,0,1,0,1e-9,0,0,1,0,0,0,0,{last}]"#));
+    assert_eq!(read("a.gltf", text("1.0000001").as_bytes()).0, triangles(true));
+    let (_folder, path) = file("a.gltf", text("1.00001").as_bytes());
+    assert_eq!(read_mesh(&path).err().as_deref(), Some("the matrix of node 0 is not affine"));
+}
+
+#[test]
 fn nodes_place_their_meshes_and_mirrored_ones_keep_their_front() {
     let (sin, cos) = libm::sincos(20_f64.to_radians());
     let trs = format!(
