@@ -201,6 +201,35 @@ fn checksum(bytes: &[u8]) -> u32 {
     })
 }
 
+/// The decoder makes gray of what is missing, and says nothing.
+#[test]
+fn a_jpeg_that_ends_too_early_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let image = "{ image = \"a.jpg\" }";
+    let write = |bytes: &[u8]| std::fs::write(folder.path().join("a.jpg"), bytes).unwrap();
+    let numbers: Vec<u8> = (0..64 * 64 * 3).map(|i: u32| (i * 37 % 251) as u8).collect();
+    for progressive in [false, true] {
+        let whole = jpeg([64, 64], 90, progressive, &numbers);
+        // A small picture of the picture, as cameras put it before: it has an end of its own.
+        let small = jpeg([8, 8], 75, false, &numbers[..8 * 8 * 3]);
+        let length = (small.len() as u16 + 2).to_be_bytes();
+        let pictured = [&whole[..2], &[0xff, 0xe1], &length, &small, &whole[2..]].concat();
+        // What stands between segments and behind the end is nobody's business.
+        let stray = [&whole[..2], &[0, 1, 2, 3, 4], &whole[2..], &small[..9]].concat();
+        for bytes in [&whole, &pictured, &stray] {
+            write(bytes);
+            materials(folder.path(), &[image]);
+        }
+        for (bytes, ends) in [(&whole, [0.5, 0.8]), (&pictured, [0.6, 0.9])] {
+            let ends = ends.map(|share| (share * bytes.len() as f64) as usize);
+            for end in [ends[0], ends[1], bytes.len() - 1] {
+                write(&bytes[..end]);
+                assert_eq!(refusal(folder.path(), image), "a.jpg is no JPEG image (it ends too early)");
+            }
+        }
+    }
+}
+
 /// Files that were cut off or damaged are refused in words, whatever byte is hit.
 #[test]
 fn a_damaged_image_never_stops_the_program() {

@@ -24,5 +24,33 @@ pub(in crate::scene) fn decode(bytes: &[u8]) -> Result<Whole, Unreadable> {
     decoder.set_options(any.jpeg_set_out_colorspace(color));
     let mut numbers = vec![0; width * height * channels];
     decoder.decode_into(&mut numbers)?;
+    if !is_complete(bytes) {
+        return Err(Unreadable::Short);
+    }
     Ok(Whole { width, channels, steps: Steps::Bytes(numbers) })
+}
+
+/// Whether the markers of a file (ITU-T T.81, B.1.1) lead to the end of its image. What lies behind may be anything.
+///
+/// The decoder makes gray of all that is missing. Its strict mode tells, but also refuses files of cameras with stray
+/// bytes between segments.
+fn is_complete(bytes: &[u8]) -> bool {
+    const END: u8 = 0xd9;
+    // No segments follow these: the start of the image, restarts within a scan, and a private marker.
+    let stands_alone = |marker: u8| matches!(marker, 0x01 | 0xd0..=0xd8);
+    let mut rest = bytes;
+    // What is no segment, above all the data of scans, holds no marker: a 0 follows each of its bytes 255.
+    while let Some(at) = rest.windows(2).position(|pair| pair[0] == 0xff && !matches!(pair[1], 0 | 0xff)) {
+        let marker = rest[at + 1];
+        if marker == END {
+            return true;
+        }
+        rest = &rest[at + 2..];
+        if !stands_alone(marker) {
+            let length = rest.first_chunk().map(|high_first| usize::from(u16::from_be_bytes(*high_first)));
+            let Some(behind) = length.and_then(|length| rest.get(length..)) else { return false };
+            rest = behind;
+        }
+    }
+    false
 }
