@@ -6,7 +6,7 @@
 
 mod damaged;
 mod diff;
-mod files;
+pub mod files;
 mod info;
 mod mattes;
 mod view;

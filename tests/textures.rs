@@ -2,6 +2,7 @@
 
 mod files;
 mod lamps;
+mod openexr;
 mod radiance;
 
 use std::path::Path;

@@ -9,7 +9,7 @@ use exr::prelude::{LayerAttributes, Text};
 pub type CameraMatrix = [f32; 16];
 
 /// Bytes as a text: files are meant to hold UTF-8, and older ones hold Latin-1. Nothing in it can steer a terminal.
-pub(super) fn text(text: &Text) -> String {
+pub(crate) fn text(text: &Text) -> String {
     let text = std::str::from_utf8(text.bytes()).map_or_else(|_| text.to_string(), str::to_owned);
     text.chars().map(|c| if c.is_control() { char::REPLACEMENT_CHARACTER } else { c }).collect()
 }

@@ -199,6 +199,12 @@ pub fn exr() -> Vec<Vec<u8>> {
             image.write().non_parallel().to_buffered(file).expect("an image");
         });
     }
+    let gray = SpecificChannels::build().with_channel("A").with_channel("Y");
+    let pixels = gray.with_pixel_fn(|at: Vec2<usize>| (1.0_f32, at.x() as f32 / 8.0));
+    keep(&|file| {
+        let image = Image::from_channels((9, 7), pixels.clone());
+        image.write().non_parallel().to_buffered(file).expect("an image");
+    });
     files
 }
 

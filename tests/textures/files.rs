@@ -6,7 +6,7 @@ use super::*;
 use crate::support::pictures::{L8, L16, LA8, LA16, RGB16, RGBA8, RGBA16, jpeg, radiance};
 
 /// A scene with a material for every reflectance, and its warnings.
-fn materials(folder: &Path, reflectances: &[&str]) -> Scene<Curve> {
+pub(super) fn materials(folder: &Path, reflectances: &[&str]) -> Scene<Curve> {
     let materials: String = (reflectances.iter().enumerate())
         .map(|(i, reflectance)| {
             format!(
@@ -19,7 +19,7 @@ fn materials(folder: &Path, reflectances: &[&str]) -> Scene<Curve> {
     scene(folder, &format!("{text}[[light]]\nenvironment = {{ radiance = 1 }}\n"))
 }
 
-fn image_of(scene: &Scene<Curve>, material: usize) -> Arc<Image> {
+pub(super) fn image_of(scene: &Scene<Curve>, material: usize) -> Arc<Image> {
     let Material::Diffuse(diffuse) = &scene.materials[material].material else { panic!("all are diffuse") };
     let CurveKind::Texture(texture) = &diffuse.reflectance.kind else { panic!("all are images") };
     texture.image.clone()
@@ -127,7 +127,7 @@ fn refusal(folder: &Path, reflectance: &str) -> String {
 }
 
 /// What a scene of a material is refused with.
-fn refusal_of(folder: &Path, material: &str) -> abbe::Diagnostic {
+pub(super) fn refusal_of(folder: &Path, material: &str) -> abbe::Diagnostic {
     let text = format!(
         "{}[material.a]\n{material}\n[[object]]\nmaterial = \"a\"\n\
          shape.sphere = {{ center = [0, 0, 0], radius = 1 }}\n",

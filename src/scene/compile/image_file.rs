@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::film::guarded;
-use crate::scene::decode::{Steps, Unreadable, Whole, decode_exr, decode_jpeg, decode_png, decode_radiance};
+use crate::scene::decode::{Floats, Steps, Unreadable, Whole, decode_exr, decode_jpeg, decode_png, decode_radiance};
 use crate::spectrum::{Channel, Encoding, Image, decode_srgb};
 
 /// What is wrong with a file.
@@ -24,18 +24,18 @@ impl Fault {
 /// # Errors
 /// What is wrong with it, and what to do.
 pub(super) fn read_image(path: &Path, bytes: &[u8]) -> Result<Image, Fault> {
-    let (kind, image) = match ending(path).as_str() {
-        "exr" => ("OpenEXR", guarded(|| decode_exr(bytes, false))),
-        "hdr" => ("Radiance", guarded(|| decode_radiance(bytes))),
+    let image = match ending(path).as_str() {
+        "exr" => decoded(path, "OpenEXR", || decode_exr(bytes, false))?,
+        "hdr" => decoded(path, "Radiance", || decode_radiance(bytes))?,
         ending @ ("png" | "jpg" | "jpeg") => {
             let help = "use an OpenEXR (.exr) or Radiance (.hdr) image";
             return Err(Fault::new(format!("a .{ending} image holds no light brighter than white"), help));
         }
         _ => return Err(unknown(path, "images end in .exr (OpenEXR) or .hdr (Radiance)")),
     };
-    let image = image.map_err(|said| unreadable(path, kind, &said))?;
-    possible(path, Texels { width: image.width, channels: 3, numbers: &image.numbers }, Meaning::Light(None))?;
-    Ok(Image::of_floats(image.width, 3, image.numbers))
+    let Floats { width, channels, numbers, .. } = image;
+    possible(path, Texels { width, channels, numbers: &numbers }, Meaning::Light(None))?;
+    Ok(Image::of_floats(width, channels, numbers))
 }
 
 /// What the numbers of an image on a surface stand for.
@@ -101,20 +101,21 @@ struct TextureOf<'p> {
 }
 
 impl TextureOf<'_> {
-    fn fault(&self, said: String) -> Fault {
-        unreadable(self.path, self.kind, &said)
+    /// Which numbers of texels are read.
+    fn picked(&self, channels: usize, has_alpha: bool) -> Result<Picked, Fault> {
+        let picked = Picked::new(self.path, self.channel, channels, has_alpha)?;
+        if self.meaning == Meaning::Directions && picked.channels() == 1 {
+            let message = format!("{} is gray, and a normal map has red, green and blue", self.path.display());
+            return Err(Fault::new(message, "heights are a `bump_map`"));
+        }
+        Ok(picked)
     }
 
     fn of_whole_numbers(self, bytes: &[u8], decode: Decoder) -> Result<TextureFile, Fault> {
-        let Self { path, srgb, .. } = self;
-        let directions = self.meaning == Meaning::Directions;
-        let whole = guarded(|| decode(bytes)).map_err(|said| self.fault(said))?;
+        let (srgb, directions) = (self.srgb, self.meaning == Meaning::Directions);
+        let whole = decoded(self.path, self.kind, || decode(bytes))?;
         let width = whole.width;
-        let picked = Picked::new(path, self.channel, whole.channels, whole.has_alpha())?;
-        if directions && picked.channels() == 1 {
-            let message = format!("{} is gray, and a normal map has red, green and blue", path.display());
-            return Err(Fault::new(message, "heights are a `bump_map`"));
-        }
+        let picked = self.picked(whole.channels, whole.has_alpha())?;
         match whole.steps {
             Steps::Words(numbers) => {
                 let even = |word: u16| f64::from(word) / 65535.0;
@@ -143,8 +144,8 @@ impl TextureOf<'_> {
     fn of_floats(self, bytes: &[u8]) -> Result<TextureFile, Fault> {
         let (radiance, directions) = (self.kind == "Radiance", self.meaning == Meaning::Directions);
         let read = || if radiance { decode_radiance(bytes) } else { decode_exr(bytes, true) };
-        let image = guarded(read).map_err(|said| self.fault(said))?;
-        let picked = Picked::new(self.path, self.channel, image.channels, !radiance)?;
+        let image = decoded(self.path, self.kind, read)?;
+        let picked = self.picked(image.channels, image.has_alpha)?;
         let ignores_alpha = !directions && picked.ignores(&image.numbers, 1.0);
         let mut floats: Vec<f32> = picked.of(&image.numbers).collect();
         let texels = Texels { width: image.width, channels: picked.channels(), numbers: &floats };
@@ -169,12 +170,13 @@ struct Picked {
 }
 
 impl Picked {
-    /// Of texels of 1 to 4 numbers: 1 or 3 colors, and maybe alpha behind them.
+    /// Of texels of 1 to 4 numbers: a gray or 3 colors, and maybe alpha behind them, or alpha alone.
     fn new(path: &Path, channel: Option<Channel>, stride: usize, has_alpha: bool) -> Result<Self, Fault> {
-        let colors = if stride < 3 { 1 } else { 3 };
-        let one = |at: usize| (at.min(colors - 1), at.min(colors - 1));
+        let colors = stride - usize::from(has_alpha);
+        let last = colors.max(1) - 1;
+        let one = |at: usize| (at.min(last), at.min(last));
         let (first, last) = match channel {
-            None => (0, colors - 1),
+            None => (0, last),
             Some(Channel::Red) => one(0),
             Some(Channel::Green) => one(1),
             Some(Channel::Blue) => one(2),
@@ -183,7 +185,7 @@ impl Picked {
                 return Err(Fault { message: format!("{} has no alpha", path.display()), help: None });
             }
         };
-        let alpha = (has_alpha && channel.is_none()).then_some(colors);
+        let alpha = (has_alpha && channel.is_none() && colors > 0).then_some(colors);
         Ok(Self { stride, first, last, alpha })
     }
 
@@ -209,9 +211,20 @@ fn unknown(path: &Path, help: &str) -> Fault {
     Fault::new(format!("the kind of image cannot be told from {:?}", path.display()), help)
 }
 
-fn unreadable(path: &Path, kind: &str, said: &str) -> Fault {
-    let said = said.trim_end_matches('.');
-    Fault::new(format!("{} is no {kind} image ({said})", path.display()), "is the file complete?")
+/// What a decoder makes of the file.
+fn decoded<T>(path: &Path, kind: &str, decode: impl FnOnce() -> Result<T, Unreadable>) -> Result<T, Fault> {
+    let unreadable = |said: &str, help: &str| {
+        Fault::new(format!("{} is no {kind} image ({})", path.display(), said.trim_end_matches('.')), help)
+    };
+    match guarded(|| Ok::<_, String>(decode())) {
+        Ok(Ok(read)) => Ok(read),
+        Ok(Err(Unreadable::Channels(channels))) => {
+            let message = format!("{} has no channels R, G and B: it has the channels {channels}", path.display());
+            Err(Fault::new(message, "save one of them alone, and it is a gray"))
+        }
+        Ok(Err(other)) => Err(unreadable(&other.to_string(), "is the file complete?")),
+        Err(said) => Err(unreadable(&said, "is the file complete?")),
+    }
 }
 
 /// The numbers of an image, rows from the top.

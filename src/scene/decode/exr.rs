@@ -1,37 +1,58 @@
 use std::io::Cursor;
 
-use exr::math::Vec2;
-use exr::meta::MetaData;
-use exr::prelude::{ReadChannels, ReadLayers, read};
+use exr::block::UncompressedBlock;
+use exr::block::reader::ChunksReader;
+use exr::meta::header::Header;
+use exr::prelude::{SampleType, f16};
 
+use super::exr_channels::Chosen;
 use super::texels::{Floats, Unreadable};
 use crate::film::fits;
 
-/// Reads red, green and blue of the first layer of an OpenEXR file that has them, and alpha if asked; where there is
-/// none, it is 1.
+/// Reads the colors or the grays of an OpenEXR file, and alpha if asked; where there is none, it is 1.
 ///
 /// # Errors
-/// If it is none, is damaged, or claims a size that it cannot have.
+/// If it is none, is damaged, claims a size that it cannot have, or has no channels that make an image.
 pub(in crate::scene) fn decode(bytes: &[u8], alpha: bool) -> Result<Floats, Unreadable> {
-    let channels = if alpha { 4 } else { 3 };
-    for header in MetaData::read_from_buffered(Cursor::new(bytes), false)?.headers {
+    let reader = exr::block::read(Cursor::new(bytes), false)?;
+    for header in reader.headers() {
         let [width, height] = [header.layer_size.width(), header.layer_size.height()];
-        let length = (width as u64 * height as u64).saturating_mul(4 * channels as u64);
+        let length = (width as u64 * height as u64).saturating_mul(4 * if alpha { 4 } else { 3 });
         fits(width, height, length, bytes).map_err(Unreadable::Unfit)?;
     }
-    let (layers, bytes) = (read().no_deep_data().largest_resolution_level(), Cursor::new(bytes));
-    let black = |size: Vec2<usize>| Floats::new(size.width(), size.height(), channels);
-    let floats = if alpha {
-        let put = |image: &mut Floats, at: Vec2<usize>, (r, g, b, a): (f32, f32, f32, f32)| {
-            image.put(at.x(), at.y(), [r, g, b, a])
-        };
-        let layers = layers.rgba_channels(|size, _| black(size), put).first_valid_layer();
-        layers.all_attributes().non_parallel().from_buffered(bytes)?.layer_data.channel_data.pixels
-    } else {
-        let put =
-            |image: &mut Floats, at: Vec2<usize>, (r, g, b): (f32, f32, f32)| image.put(at.x(), at.y(), [r, g, b]);
-        let layers = layers.rgb_channels(|size, _| black(size), put).first_valid_layer();
-        layers.all_attributes().non_parallel().from_buffered(bytes)?.layer_data.channel_data.pixels
-    };
+    let chosen = Chosen::of(reader.headers(), alpha)?;
+    let header = reader.headers()[chosen.part].clone();
+    let mut floats = Floats::new(header.layer_size.width(), header.layer_size.height(), chosen.channels());
+    floats.has_alpha = alpha;
+    let chunks = reader
+        .filter_chunks(false, |_, tile, block| block.layer == chosen.part && tile.is_largest_resolution_level())?;
+    chunks.decompress_sequential(false, |_, block| {
+        keep(&mut floats, &block, &header, &chosen);
+        Ok(())
+    })?;
     Ok(floats)
+}
+
+/// Keeps those numbers of a block that are chosen.
+fn keep(floats: &mut Floats, block: &UncompressedBlock, header: &Header, chosen: &Chosen) {
+    for line in block.lines(&header.channels) {
+        let Some(number) = chosen.numbers.iter().position(|channel| *channel == Some(line.location.channel)) else {
+            continue;
+        };
+        let [left, y] = [line.location.position.x(), line.location.position.y()];
+        let mut put = |x: usize, value: f32| floats.put(left + x, y, number, value);
+        let (words, longs) = (line.value.as_chunks().0.iter(), line.value.as_chunks().0.iter());
+        match header.channels.list[line.location.channel].sample_type {
+            SampleType::F16 => words.enumerate().for_each(|(x, word)| put(x, f16::from_ne_bytes(*word).to_f32())),
+            SampleType::F32 => longs.enumerate().for_each(|(x, long)| put(x, f32::from_ne_bytes(*long))),
+            SampleType::U32 => longs.enumerate().for_each(|(x, long)| put(x, u32::from_ne_bytes(*long) as f32)),
+        }
+    }
+    let size = block.index.pixel_size;
+    let [left, top] = [block.index.pixel_position.x(), block.index.pixel_position.y()];
+    for number in (0..chosen.channels()).filter(|number| chosen.numbers[*number].is_none()) {
+        for y in top..top + size.height() {
+            (left..left + size.width()).for_each(|x| floats.put(x, y, number, 1.0));
+        }
+    }
 }

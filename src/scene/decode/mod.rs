@@ -1,6 +1,7 @@
 //! The files of images that a scene names: bytes in, the numbers of their texels out, as they stand in the file.
 
 mod exr;
+mod exr_channels;
 mod jpeg;
 mod png;
 mod radiance;
@@ -10,4 +11,4 @@ pub(super) use exr::decode as decode_exr;
 pub(super) use jpeg::decode as decode_jpeg;
 pub(super) use png::decode as decode_png;
 pub(super) use radiance::decode as decode_radiance;
-pub(super) use texels::{Steps, Unreadable, Whole};
+pub(super) use texels::{Floats, Steps, Unreadable, Whole};

@@ -21,23 +21,25 @@ impl Whole {
     }
 }
 
-/// Red, green, blue and maybe alpha of each texel, rows from the top.
+/// Red, green and blue of each texel, or a gray, and maybe alpha behind them, rows from the top.
 pub(in crate::scene) struct Floats {
     pub(in crate::scene) width: usize,
-    /// Numbers of a texel, 3 or 4.
+    /// Numbers of a texel, 1 to 4.
     pub(in crate::scene) channels: usize,
+    /// Whether the last number of a texel is alpha.
+    pub(in crate::scene) has_alpha: bool,
     pub(in crate::scene) numbers: Vec<f32>,
 }
 
 impl Floats {
     /// Black, and transparent.
     pub(super) fn new(width: usize, height: usize, channels: usize) -> Self {
-        Self { width, channels, numbers: vec![0.0; channels * width * height] }
+        Self { width, channels, has_alpha: false, numbers: vec![0.0; channels * width * height] }
     }
 
-    pub(super) fn put<const K: usize>(&mut self, x: usize, y: usize, texel: [f32; K]) {
-        let from = K * (y * self.width + x);
-        self.numbers[from..from + K].copy_from_slice(&texel);
+    /// Sets a number of a texel.
+    pub(super) fn put(&mut self, x: usize, y: usize, number: usize, value: f32) {
+        self.numbers[self.channels * (y * self.width + x) + number] = value;
     }
 }
 
@@ -52,6 +54,13 @@ pub(in crate::scene) enum Unreadable {
     Jpeg(#[from] zune_jpeg::errors::DecodeErrors),
     #[error(transparent)]
     Exr(#[from] ::exr::error::Error),
+    #[error("it is a deep image, which has many values to a pixel")]
+    Deep,
+    /// No red, green and blue, but these channels.
+    #[error("it has the channels {0}")]
+    Channels(String),
+    #[error("its channel {0} does not have a number for each pixel")]
+    Sparse(String),
     #[error("it does not begin as one does")]
     Signature,
     #[error("it ends too early")]
