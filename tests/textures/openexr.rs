@@ -81,3 +81,39 @@ fn channels_that_are_no_image_are_told() {
     let found = refusal_of(folder, &format!("diffuse = {{ reflectance = 1 }}\n{bent}"));
     assert_eq!(found.message, "a.exr is gray, and a normal map has red, green and blue");
 }
+
+/// The data window lies in the display window, where a crop, an overscan or another program put it.
+#[test]
+fn an_image_is_its_display_window() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let value = |x: i32, y: i32| 0.1 + 0.1 * x as f32 + 0.01 * y as f32;
+    for (corner, size, full) in [
+        ([1, 1], [2, 1], [4, 3]),
+        ([-2, -1], [7, 5], [4, 3]),
+        ([0, 0], [4, 3], [4, 3]),
+        ([3, -1], [3, 3], [4, 3]),
+        ([-3, 2], [4, 4], [4, 3]),
+        ([9, 9], [2, 2], [4, 3]),
+    ] {
+        let [right, below] = [0, 1].map(|axis| corner[axis] + size[axis] as i32);
+        let inside = |x: i32, y: i32| (corner[0]..right).contains(&x) && (corner[1]..below).contains(&y);
+        let rows = (corner[1]..below).flat_map(|y| (corner[0]..right).map(move |x| value(x, y).max(0.0)));
+        let values: Vec<f32> = rows.collect();
+        let channels = ["R", "G", "B"].map(|name| (name, values.clone())).to_vec();
+        Exr { corner, full, ..Exr::new(size, channels) }.write(&folder.join("a.exr"));
+        let scene = materials(folder, &["{ image = \"a.exr\" }", "{ image = \"a.exr\", channel = \"alpha\" }"]);
+        let [color, alpha] = [0, 1].map(|material| image_of(&scene, material));
+        assert_eq!([color.width(), color.height()], full);
+        for (x, y) in (0..4).flat_map(|x| (0..3).map(move |y| (x, y))) {
+            let expected = if inside(x, y) { [value(x, y), 1.0] } else { [0.0; 2] };
+            let found = [&color, &alpha].map(|image| image.texel(x as usize, y as usize)[0]);
+            assert_eq!(found, expected, "({x}, {y}) of {size:?} at {corner:?}");
+        }
+    }
+    // A display window that would fill the memory is refused before.
+    let huge = Exr { full: [16384, 8192], ..Exr::new([1, 1], vec![("Y", vec![0.5])]) };
+    huge.write(&folder.join("a.exr"));
+    let found = refusal_of(folder, "diffuse = { reflectance = { image = \"a.exr\" } }").message;
+    assert!(found.ends_with("bytes cannot hold 16384 x 8192 pixels)"), "{found}");
+}

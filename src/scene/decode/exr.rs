@@ -11,6 +11,9 @@ use crate::film::fits;
 
 /// Reads the colors or the grays of an OpenEXR file, and alpha if asked; where there is none, it is 1.
 ///
+/// The image is the display window. It is black and transparent where the data window does not reach, and what lies
+/// beyond it is left out.
+///
 /// # Errors
 /// If it is none, is damaged, claims a size that it cannot have, or has no channels that make an image.
 pub(in crate::scene) fn decode(bytes: &[u8], alpha: bool) -> Result<Floats, Unreadable> {
@@ -22,7 +25,11 @@ pub(in crate::scene) fn decode(bytes: &[u8], alpha: bool) -> Result<Floats, Unre
     }
     let chosen = Chosen::of(reader.headers(), alpha)?;
     let header = reader.headers()[chosen.part].clone();
-    let mut floats = Floats::new(header.layer_size.width(), header.layer_size.height(), chosen.channels());
+    let display = header.shared_attributes.display_window;
+    let [width, height] = [display.size.width(), display.size.height()];
+    let length = (width as u64 * height as u64).saturating_mul(4 * chosen.channels() as u64);
+    fits(width, height, length, bytes).map_err(Unreadable::Unfit)?;
+    let mut floats = Floats::new(width, height, chosen.channels());
     floats.has_alpha = alpha;
     let chunks = reader
         .filter_chunks(false, |_, tile, block| block.layer == chosen.part && tile.is_largest_resolution_level())?;
@@ -33,14 +40,22 @@ pub(in crate::scene) fn decode(bytes: &[u8], alpha: bool) -> Result<Floats, Unre
     Ok(floats)
 }
 
-/// Keeps those numbers of a block that are chosen.
+/// Keeps those numbers of a block that are chosen, where they lie in the display window.
 fn keep(floats: &mut Floats, block: &UncompressedBlock, header: &Header, chosen: &Chosen) {
+    let (data, display) = (header.own_attributes.layer_position, header.shared_attributes.display_window.position);
+    let shift = [i64::from(data.x()) - i64::from(display.x()), i64::from(data.y()) - i64::from(display.y())];
+    let mut put = |x: usize, y: usize, number: usize, value: f32| {
+        let [column, row] = [x as i64 + shift[0], y as i64 + shift[1]].map(usize::try_from);
+        if let (Ok(column), Ok(row)) = (column, row) {
+            floats.put(column, row, number, value);
+        }
+    };
     for line in block.lines(&header.channels) {
         let Some(number) = chosen.numbers.iter().position(|channel| *channel == Some(line.location.channel)) else {
             continue;
         };
         let [left, y] = [line.location.position.x(), line.location.position.y()];
-        let mut put = |x: usize, value: f32| floats.put(left + x, y, number, value);
+        let mut put = |x: usize, value: f32| put(left + x, y, number, value);
         let (words, longs) = (line.value.as_chunks().0.iter(), line.value.as_chunks().0.iter());
         match header.channels.list[line.location.channel].sample_type {
             SampleType::F16 => words.enumerate().for_each(|(x, word)| put(x, f16::from_ne_bytes(*word).to_f32())),
@@ -52,7 +67,7 @@ fn keep(floats: &mut Floats, block: &UncompressedBlock, header: &Header, chosen:
     let [left, top] = [block.index.pixel_position.x(), block.index.pixel_position.y()];
     for number in (0..chosen.channels()).filter(|number| chosen.numbers[*number].is_none()) {
         for y in top..top + size.height() {
-            (left..left + size.width()).for_each(|x| floats.put(x, y, number, 1.0));
+            (left..left + size.width()).for_each(|x| put(x, y, number, 1.0));
         }
     }
 }

@@ -37,9 +37,12 @@ impl Floats {
         Self { width, channels, has_alpha: false, numbers: vec![0.0; channels * width * height] }
     }
 
-    /// Sets a number of a texel.
+    /// Sets a number of a texel, if there is that texel.
     pub(super) fn put(&mut self, x: usize, y: usize, number: usize, value: f32) {
-        self.numbers[self.channels * (y * self.width + x) + number] = value;
+        let at = self.channels * (y * self.width + x) + number;
+        if x < self.width && at < self.numbers.len() {
+            self.numbers[at] = value;
+        }
     }
 }
 
