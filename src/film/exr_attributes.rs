@@ -2,8 +2,10 @@
 
 use std::collections::HashMap;
 
-use exr::meta::attribute::{AttributeValue, EnvironmentMap};
-use exr::prelude::{LayerAttributes, Text};
+use exr::meta::attribute::{AttributeValue, Chromaticities, EnvironmentMap};
+use exr::prelude::{LayerAttributes, Text, Vec2};
+
+use crate::spectrum::Primaries;
 
 /// World to camera for row vectors, row by row.
 pub type CameraMatrix = [f32; 16];
@@ -12,6 +14,12 @@ pub type CameraMatrix = [f32; 16];
 pub(crate) fn text(text: &Text) -> String {
     let text = std::str::from_utf8(text.bytes()).map_or_else(|_| text.to_string(), str::to_owned);
     text.chars().map(|c| if c.is_control() { char::REPLACEMENT_CHARACTER } else { c }).collect()
+}
+
+/// What red, green and blue mean.
+pub(crate) fn primaries(found: Chromaticities) -> Primaries {
+    let pair = |v: Vec2<f32>| [v.x().into(), v.y().into()];
+    Primaries { red: pair(found.red), green: pair(found.green), blue: pair(found.blue), white: pair(found.white) }
 }
 
 /// The attributes of a part and those that all parts share, by their names in the file, in order. Those that say how

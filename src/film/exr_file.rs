@@ -8,10 +8,10 @@ use std::path::Path;
 use exr::meta::MetaData;
 use exr::prelude::{
     AnyChannels, Blocks, Compression, Encoding, FlatImage, FlatSamples, IntegerBounds, LineOrder, ReadChannels,
-    ReadLayers, Vec2, read,
+    ReadLayers, read,
 };
 
-use super::exr_attributes::{attributes, text};
+use super::exr_attributes::{attributes, primaries, text};
 use super::exr_layer::{BEAUTY, ExrLayer};
 use super::exr_part::{Channel, Part, PixelBounds};
 use super::guard::{fits, guarded};
@@ -75,13 +75,7 @@ impl ExrFile {
     fn of_image(image: FlatImage, length: usize) -> Self {
         let shared = image.attributes;
         let IntegerBounds { position, size } = shared.display_window;
-        let pair = |v: Vec2<f32>| [v.x().into(), v.y().into()];
-        let chromaticities = shared.chromaticities.map(|found| Primaries {
-            red: pair(found.red),
-            green: pair(found.green),
-            blue: pair(found.blue),
-            white: pair(found.white),
-        });
+        let chromaticities = shared.chromaticities.map(primaries);
         let mut taken = BTreeSet::new();
         let parts = image.layer_data.into_iter().map(|layer| {
             let name = layer.attributes.layer_name.as_ref().map(text);

@@ -49,5 +49,5 @@ pub use sum::{PassSum, PixelSum, stored};
 pub use window::{Overscan, Window};
 
 pub(crate) use blocks::{BlockReader, BlockWriter, Kind, write_blocks};
-pub(crate) use exr_attributes::text as exr_text;
+pub(crate) use exr_attributes::{primaries as exr_primaries, text as exr_text};
 pub(crate) use guard::{MOST_TEXELS, fits, guarded};

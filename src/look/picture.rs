@@ -3,7 +3,7 @@ use std::path::Path;
 use super::tone::{Tone, shown};
 use crate::error::Result;
 use crate::film::{Channel, ExrFile, ExrLayer, png, write_rgb8};
-use crate::spectrum::{ColorSpace, apply, encode_srgb};
+use crate::spectrum::{IDENTITY, Matrix, apply, encode_srgb, matrix_of_file};
 
 /// Depths and the like from here on stand for nothing at all.
 const NOTHING: f64 = 1e9;
@@ -143,19 +143,10 @@ fn is_direction(layer: &ExrLayer) -> bool {
 }
 
 /// The matrix from the colors of a file to linear Rec.709, and what is to be said if it is not known.
-pub(super) fn to_rec709(file: &ExrFile) -> ([[f64; 3]; 3], Option<String>) {
-    let id = file.attribute("colorInteropID");
-    if let Some(space) = id.and_then(ColorSpace::of_interop_id) {
-        return (space.to_rec709(), None);
-    }
-    let as_is = ColorSpace::Rec709.to_rec709();
-    match (file.chromaticities.map(|primaries| primaries.to_rec709()), id) {
-        (Some(Some(matrix)), _) => (matrix, None),
-        (Some(None), _) => (as_is, Some("its chromaticities mean no colors: it is shown as linear Rec.709".into())),
-        (None, Some(id)) => {
-            (as_is, Some(format!("the color space {id:?} is not known: it is shown as linear Rec.709")))
-        }
-        (None, None) => (as_is, None),
+pub(super) fn to_rec709(file: &ExrFile) -> (Matrix, Option<String>) {
+    match matrix_of_file(file.attribute("colorInteropID"), file.chromaticities) {
+        Ok(matrix) => (matrix, None),
+        Err(said) => (IDENTITY, Some(format!("{said}: it is shown as linear Rec.709"))),
     }
 }
 

@@ -51,6 +51,13 @@ impl Primaries {
         columns.map(|row| std::array::from_fn(|i| row[i] * strengths[i]))
     }
 
+    /// Whether they are those of a space, to the four digits with which most are published.
+    fn are_of(self, space: ColorSpace) -> bool {
+        let list = |it: Self| [it.red, it.green, it.blue, it.white];
+        let (ours, theirs) = (list(self), list(space.primaries()));
+        ours.as_flattened().iter().zip(theirs.as_flattened()).all(|(a, b)| (a - b).abs() <= 5e-5)
+    }
+
     /// Color to linear Rec.709, adapted to its white; none of primaries that lie on one line, or a white without light.
     pub fn to_rec709(self) -> Option<Matrix> {
         let from_red = |[x, y]: [f64; 2]| [x - self.red[0], y - self.red[1]];
@@ -62,6 +69,23 @@ impl Primaries {
         let adapted = product(&adaptation(from_chromaticity(self.white), ColorSpace::Rec709.white()), &self.to_xyz());
         let matrix = product(&ColorSpace::Rec709.of_xyz(), &adapted);
         matrix.iter().flatten().all(|x| x.is_finite()).then_some(matrix)
+    }
+}
+
+/// The matrix from the colors of a file to linear Rec.709, adapted to its white, by what the file says of them: the
+/// `colorInteropID` of their space, or else its primaries and white. Without a word they are Rec.709 itself.
+///
+/// # Errors
+/// Why it cannot be told what they mean.
+pub fn matrix_of_file(interop_id: Option<&str>, primaries: Option<Primaries>) -> Result<Matrix, String> {
+    let like = |primaries: Primaries| ColorSpace::ALL.into_iter().find(|space| primaries.are_of(*space));
+    if let Some(space) = interop_id.and_then(ColorSpace::of_interop_id).or_else(|| like(primaries?)) {
+        return Ok(space.to_rec709());
+    }
+    match (primaries, interop_id) {
+        (Some(primaries), _) => primaries.to_rec709().ok_or_else(|| "its chromaticities mean no colors".into()),
+        (None, Some(id)) => Err(format!("the color space {id:?} is not known")),
+        (None, None) => Ok(IDENTITY),
     }
 }
 

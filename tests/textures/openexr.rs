@@ -1,5 +1,9 @@
 //! Which numbers of an OpenEXR file are read, and what they stand for.
 
+use abbe::material::Material;
+use exr::meta::attribute::Chromaticities;
+use exr::prelude::Vec2;
+
 use super::files::{image_of, materials, refusal_of};
 use super::*;
 use crate::look::files::Exr;
@@ -116,4 +120,88 @@ fn an_image_is_its_display_window() {
     huge.write(&folder.join("a.exr"));
     let found = refusal_of(folder, "diffuse = { reflectance = { image = \"a.exr\" } }").message;
     assert!(found.ends_with("bytes cannot hold 16384 x 8192 pixels)"), "{found}");
+}
+
+fn pair([x, y]: [f32; 2]) -> Vec2<f32> {
+    Vec2(x, y)
+}
+
+const ACESCG: [[f32; 2]; 4] = [[0.713, 0.293], [0.165, 0.830], [0.128, 0.044], [0.32168, 0.33767]];
+
+/// Writes 2 x 1 pixels of primaries and a white.
+fn write_colors(folder: &Path, [red, green, blue, white]: [[f32; 2]; 4], colors: [[f32; 3]; 2]) {
+    let channels = ["R", "G", "B"].into_iter().enumerate().map(|(c, name)| (name, colors.map(|rgb| rgb[c]).to_vec()));
+    let [red, green, blue, white] = [red, green, blue, white].map(pair);
+    let chromaticities = Some(Chromaticities { red, green, blue, white });
+    Exr { chromaticities, ..Exr::new([2, 1], channels.collect()) }.write(&folder.join("a.exr"));
+}
+
+#[test]
+fn colors_of_another_space_are_converted_and_numbers_are_not() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let read = |options: &str| {
+        let scene = materials(folder, &[&format!("{{ image = \"a.exr\"{options} }}")]);
+        (image_of(&scene, 0).texel(1, 0), scene.warnings)
+    };
+    let color = [0.5, 0.25, 0.125];
+    write_colors(folder, ACESCG, [[0.5; 3], color]);
+    // ACEScg to linear Rec.709 with the Bradford adaptation, to the digits of the ACES 1.3 transform.
+    let matrix = [[1.70505, -0.62179, -0.08326], [-0.13026, 1.14080, -0.01055], [-0.02400, -0.12897, 1.15297]];
+    let expected = matrix.map(|row: [f32; 3]| row[0] * color[0] + row[1] * color[1] + row[2] * color[2]);
+    let (found, warnings) = read("");
+    for c in 0..3 {
+        assert!((found[c] - expected[c]).abs() < 2e-5, "{found:?} for {expected:?}");
+    }
+    assert_eq!(warnings, Vec::<String>::new());
+    assert_eq!(read(", channel = \"green\"").0, [0.25; 3]);
+    let mask =
+        "mask = { material = \"m0\", opacity = { image = \"a.exr\" } }\n[material.m0]\ndiffuse.reflectance = 0.5";
+    let text = format!(
+        "{}[material.a]\n{mask}\n[[object]]\nmaterial = \"a\"\nshape.sphere = {{ center = [0, 0, 0], radius = 1 }}\n",
+        view([0.0, 0.0, 9.0], [0.0; 3], 30.0, 4)
+    );
+    let masked = scene(folder, &text);
+    let opacity = masked.materials.iter().find_map(|named| match &named.material {
+        Material::Mask(mask) => Some(mask.opacity.kind.clone()),
+        _ => None,
+    });
+    let Some(CurveKind::Texture(texture)) = opacity else { panic!("the opacity is an image") };
+    assert_eq!(texture.image.texel(1, 0), color);
+    // The same by its name, and Rec.709 as other programs write it.
+    let channels = ["R", "G", "B"].into_iter().zip(color).map(|(name, value)| (name, vec![value; 2])).collect();
+    let id = |id: &str| vec![("colorInteropID", id.to_owned())];
+    Exr { texts: id("lin_ap1_scene"), ..Exr::new([2, 1], channels) }.write(&folder.join("a.exr"));
+    assert_eq!(read("").0, found);
+    write_colors(folder, [[0.64, 0.33], [0.3, 0.6], [0.15, 0.06], [0.31271, 0.32902]], [[0.5; 3], color]);
+    assert_eq!(read(""), (color, vec![]));
+}
+
+/// Rec.709 has no colors with negative numbers, and wide spaces hold colors that it does not.
+#[test]
+fn colors_outside_of_rec709_are_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let warnings = || materials(folder, &["{ image = \"a.exr\" }"]).warnings;
+    let told = |others: &str| {
+        let told = format!("a.exr: pixel (0, 0) lies outside of Rec.709{others}: what is negative there counts as 0");
+        vec![format!("material.m0.diffuse.reflectance.image: {told}")]
+    };
+    write_colors(folder, ACESCG, [[0.0, 0.5, 0.0], [0.5; 3]]);
+    assert_eq!(warnings(), told(""));
+    assert_eq!(second(folder, ""), [0.5; 3]);
+    write_colors(folder, ACESCG, [[0.0, 0.5, 0.0]; 2]);
+    assert_eq!(warnings(), told(", as does 1 other"));
+    // Rec.709's own green in ACEScg, rounded as halves do, lies on the edge.
+    let green = [0.169_799_8, 0.458_251_95, 0.054_779_053];
+    write_colors(folder, ACESCG, [green; 2]);
+    assert_eq!(warnings(), Vec::<String>::new());
+    write_colors(folder, [[0.2, 0.2], [0.3, 0.3], [0.4, 0.4], [0.3, 0.3]], [[0.5; 3]; 2]);
+    let none = "a.exr: its chromaticities mean no colors: it is read as linear Rec.709";
+    assert_eq!(warnings(), [format!("material.m0.diffuse.reflectance.image: {none}")]);
+    // A sky says so too.
+    write_colors(folder, ACESCG, [[0.0, 9.0, 0.0], [0.5; 3]]);
+    let text = format!("{}[[light]]\nenvironment.radiance.image = \"a.exr\"\n", view([9.0; 3], [0.0; 3], 30.0, 4));
+    let sky = scene(folder, &text).warnings;
+    assert!(sky.iter().any(|told| told.contains("a.exr: pixel (0, 0) lies outside of Rec.709")), "{sky:?}");
 }

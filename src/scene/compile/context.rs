@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use sha2::{Digest, Sha256};
 
-use super::image_file::Meaning;
+use super::image_numbers::Meaning;
 use crate::scene::text::{Document, Value};
 use crate::shape::Mesh;
 use crate::spectrum::{Channel, Image};

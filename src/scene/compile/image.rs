@@ -7,7 +7,8 @@ use super::context::Context;
 use super::curve::curve;
 use super::curve_range::{is_factor, possible_thickness, told};
 use super::curve_text::{CurveText, KindText, is_repeat};
-use super::image_file::{Meaning, read_texture};
+use super::image_file::{ImageFile, read_texture};
+use super::image_numbers::Meaning;
 use super::radiometry::on_film;
 use crate::scene::text::{At, FileKind};
 use crate::spectrum::{Channel, Curve, CurveKind, Encoding, Image, Quantity, Texture};
@@ -36,6 +37,7 @@ fn image_curve<'d>(context: &mut Context, text: &CurveText<'d>, file: &'d str, q
     let meaning = match quantity {
         // The grays of a thickness are numbers, which no screen has shown.
         Quantity::Thickness => Meaning::Thicknesses(encoding.unwrap_or(Encoding::Linear)),
+        Quantity::Share => Meaning::Shares(encoding),
         _ => Meaning::Light(encoding),
     };
     let image = match (text.channel, text.encoding) {
@@ -134,15 +136,13 @@ pub(super) fn image<'d>(
         return Some(image.clone());
     }
     let bytes = bytes_of_image(&At { place, it: file })?;
-    let read = match read_texture(Path::new(file), &bytes, meaning, channel) {
-        Ok(read) => read,
+    let ImageFile { image, warnings } = match read_texture(Path::new(file), &bytes, meaning, channel) {
+        Ok(file) => file,
         Err(fault) => return place.tell(fault.message, fault.help),
     };
     context.has_read(place.folder().join(file), &bytes);
-    if read.ignores_alpha {
-        context.warn_at(place, format!("the alpha of {file} is ignored; channel = \"alpha\" reads it"));
-    }
-    let image = Arc::new(read.image);
+    warnings.into_iter().for_each(|warning| context.warn_at(place, warning));
+    let image = Arc::new(image);
     context.images.insert(key, image.clone());
     Some(image)
 }

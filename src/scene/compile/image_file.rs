@@ -2,28 +2,16 @@
 
 use std::path::Path;
 
+use super::image_numbers::{Fault, Meaning, Texels};
 use crate::film::guarded;
 use crate::scene::decode::{Floats, Steps, Unreadable, Whole, decode_exr, decode_jpeg, decode_png, decode_radiance};
-use crate::spectrum::{Channel, Encoding, Image, decode_srgb};
-
-/// What is wrong with a file.
-pub(super) struct Fault {
-    pub(super) message: String,
-    /// What to do.
-    pub(super) help: Option<String>,
-}
-
-impl Fault {
-    fn new(message: String, help: impl Into<String>) -> Self {
-        Self { message, help: Some(help.into()) }
-    }
-}
+use crate::spectrum::{Channel, IDENTITY, Image, Matrix, decode_srgb};
 
 /// Reads an OpenEXR or Radiance file from its bytes; the ending of its name says which it is.
 ///
 /// # Errors
 /// What is wrong with it, and what to do.
-pub(super) fn read_image(path: &Path, bytes: &[u8]) -> Result<Image, Fault> {
+pub(super) fn read_image(path: &Path, bytes: &[u8]) -> Result<ImageFile, Fault> {
     let image = match ending(path).as_str() {
         "exr" => decoded(path, "OpenEXR", || decode_exr(bytes, false))?,
         "hdr" => decoded(path, "Radiance", || decode_radiance(bytes))?,
@@ -33,29 +21,17 @@ pub(super) fn read_image(path: &Path, bytes: &[u8]) -> Result<Image, Fault> {
         }
         _ => return Err(unknown(path, "images end in .exr (OpenEXR) or .hdr (Radiance)")),
     };
-    let Floats { width, channels, numbers, .. } = image;
-    possible(path, Texels { width, channels, numbers: &numbers }, Meaning::Light(None))?;
-    Ok(Image::of_floats(width, channels, numbers))
+    let Floats { width, channels, numbers, to_rec709, .. } = image;
+    let mut texels = Texels { path, width, channels, numbers };
+    texels.check(Meaning::Light(None))?;
+    let warnings = rec709(&mut texels, &to_rec709).into_iter().collect();
+    Ok(ImageFile { image: Image::of_floats(width, channels, texels.numbers), warnings })
 }
 
-/// What the numbers of an image on a surface stand for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Meaning {
-    /// Light or shares of it, encoded as told or else as the kind of file implies.
-    Light(Option<Encoding>),
-    /// Thicknesses, encoded as told.
-    Thicknesses(Encoding),
-    /// Heights, just as they are.
-    Heights,
-    /// Directions: the middle of the range of whole numbers is 0, of others one half.
-    Directions,
-}
-
-/// An image for a surface.
-pub(super) struct TextureFile {
+/// An image, and what is to be said of its file.
+pub(super) struct ImageFile {
     pub(super) image: Image,
-    /// Whether it has transparent places of which nothing was read.
-    pub(super) ignores_alpha: bool,
+    pub(super) warnings: Vec<String>,
 }
 
 /// Reads a PNG, JPEG, OpenEXR or Radiance file from its bytes; the ending of its name says which it is.
@@ -67,7 +43,7 @@ pub(super) fn read_texture(
     bytes: &[u8],
     meaning: Meaning,
     channel: Option<Channel>,
-) -> Result<TextureFile, Fault> {
+) -> Result<ImageFile, Fault> {
     let (kind, whole): (_, Option<Decoder>) = match ending(path).as_str() {
         "exr" => ("OpenEXR", None),
         "hdr" => ("Radiance", None),
@@ -75,12 +51,7 @@ pub(super) fn read_texture(
         "jpg" | "jpeg" => ("JPEG", Some(decode_jpeg)),
         _ => return Err(unknown(path, "images end in .png, .jpg, .exr (OpenEXR) or .hdr (Radiance)")),
     };
-    let srgb = match (channel, meaning) {
-        (Some(Channel::Alpha), _) => false,
-        (_, Meaning::Light(encoding)) => encoding.map_or(whole.is_some(), |encoding| encoding == Encoding::Srgb),
-        (_, Meaning::Thicknesses(encoding)) => encoding == Encoding::Srgb,
-        _ => false,
-    };
+    let srgb = channel != Some(Channel::Alpha) && meaning.is_srgb(whole.is_some());
     let texture = TextureOf { path, kind, meaning, channel, srgb };
     match whole {
         Some(decode) => texture.of_whole_numbers(bytes, decode),
@@ -111,7 +82,13 @@ impl TextureOf<'_> {
         Ok(picked)
     }
 
-    fn of_whole_numbers(self, bytes: &[u8], decode: Decoder) -> Result<TextureFile, Fault> {
+    /// An image, some transparent places of which may not be read.
+    fn file(&self, image: Image, ignores_alpha: bool) -> ImageFile {
+        let told = || format!("the alpha of {} is ignored; channel = \"alpha\" reads it", self.path.display());
+        ImageFile { image, warnings: ignores_alpha.then(told).into_iter().collect() }
+    }
+
+    fn of_whole_numbers(self, bytes: &[u8], decode: Decoder) -> Result<ImageFile, Fault> {
         let (srgb, directions) = (self.srgb, self.meaning == Meaning::Directions);
         let whole = decoded(self.path, self.kind, || decode(bytes))?;
         let width = whole.width;
@@ -127,7 +104,7 @@ impl TextureOf<'_> {
                 let table: Vec<f32> = (0..=u16::MAX).map(|word| value(word) as f32).collect();
                 let ignores_alpha = !directions && picked.ignores(&numbers, u16::MAX);
                 let floats = picked.of(&numbers).map(|word| table[usize::from(word)]).collect();
-                Ok(TextureFile { image: Image::of_floats(width, picked.channels(), floats), ignores_alpha })
+                Ok(self.file(Image::of_floats(width, picked.channels(), floats), ignores_alpha))
             }
             Steps::Bytes(numbers) => {
                 let ignores_alpha = !directions && picked.ignores(&numbers, u8::MAX);
@@ -136,27 +113,41 @@ impl TextureOf<'_> {
                     true => Image::of_signed_bytes(width, channels, bytes),
                     false => Image::of_bytes(width, channels, bytes, srgb),
                 };
-                Ok(TextureFile { image, ignores_alpha })
+                Ok(self.file(image, ignores_alpha))
             }
         }
     }
 
-    fn of_floats(self, bytes: &[u8]) -> Result<TextureFile, Fault> {
+    fn of_floats(self, bytes: &[u8]) -> Result<ImageFile, Fault> {
         let (radiance, directions) = (self.kind == "Radiance", self.meaning == Meaning::Directions);
         let read = || if radiance { decode_radiance(bytes) } else { decode_exr(bytes, true) };
         let image = decoded(self.path, self.kind, read)?;
         let picked = self.picked(image.channels, image.has_alpha)?;
         let ignores_alpha = !directions && picked.ignores(&image.numbers, 1.0);
-        let mut floats: Vec<f32> = picked.of(&image.numbers).collect();
-        let texels = Texels { width: image.width, channels: picked.channels(), numbers: &floats };
-        possible(self.path, texels, self.meaning)?;
+        let (width, channels) = (image.width, picked.channels());
+        let mut texels = Texels { path: self.path, width, channels, numbers: picked.of(&image.numbers).collect() };
+        texels.check(self.meaning)?;
         if directions {
-            floats.iter_mut().for_each(|x| *x = 2.0 * *x - 1.0);
+            texels.numbers.iter_mut().for_each(|x| *x = 2.0 * *x - 1.0);
         }
         if self.srgb {
-            floats.iter_mut().for_each(|x| *x = decode_srgb(f64::from(*x)) as f32);
+            texels.decode_srgb();
         }
-        Ok(TextureFile { image: Image::of_floats(image.width, picked.channels(), floats), ignores_alpha })
+        let is_light = matches!(self.meaning, Meaning::Light(_));
+        let told = if is_light { rec709(&mut texels, &image.to_rec709) } else { None };
+        let mut file = self.file(Image::of_floats(width, channels, texels.numbers), ignores_alpha);
+        file.warnings.extend(told);
+        Ok(file)
+    }
+}
+
+/// Makes linear Rec.709 of an image that has colors; what is to be said of that.
+fn rec709(texels: &mut Texels, to_rec709: &Result<Matrix, String>) -> Option<String> {
+    match to_rec709 {
+        _ if texels.channels == 1 => None,
+        Ok(matrix) if *matrix == IDENTITY => None,
+        Ok(matrix) => texels.convert(matrix),
+        Err(said) => Some(format!("{}: {said}: it is read as linear Rec.709", texels.path.display())),
     }
 }
 
@@ -224,33 +215,5 @@ fn decoded<T>(path: &Path, kind: &str, decode: impl FnOnce() -> Result<T, Unread
         }
         Ok(Err(other)) => Err(unreadable(&other.to_string(), "is the file complete?")),
         Err(said) => Err(unreadable(&said, "is the file complete?")),
-    }
-}
-
-/// The numbers of an image, rows from the top.
-struct Texels<'n> {
-    width: usize,
-    channels: usize,
-    numbers: &'n [f32],
-}
-
-/// Refuses numbers that no light and no surface has.
-fn possible(path: &Path, texels: Texels, meaning: Meaning) -> Result<(), Fault> {
-    let Texels { width, channels, numbers } = texels;
-    let (allowed, help) = match meaning {
-        Meaning::Light(_) => (0.0..=f32::MAX, "light is finite and not negative"),
-        Meaning::Thicknesses(_) => (0.0..=f32::MAX, "thicknesses are finite and not negative"),
-        Meaning::Heights => (f32::MIN..=f32::MAX, "heights are finite"),
-        Meaning::Directions => (0.0..=1.0, "directions are written as numbers from 0 to 1, one half being none"),
-    };
-    let mut texels = numbers.chunks_exact(channels);
-    match texels.position(|texel| texel.iter().any(|x| !allowed.contains(x))) {
-        Some(at) => {
-            let (x, y) = (at % width, at / width);
-            let texel = &numbers[at * channels..(at + 1) * channels];
-            let message = format!("{}: pixel ({x}, {y}) is {texel:?}", path.display());
-            Err(Fault::new(message, help))
-        }
-        None => Ok(()),
     }
 }

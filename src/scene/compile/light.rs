@@ -7,7 +7,7 @@ use super::context::Context;
 use super::curve::curve;
 use super::curve_text::{CurveText, KindText};
 use super::image::{bytes_of_image, factor_on_image};
-use super::image_file::read_image;
+use super::image_file::{ImageFile, read_image};
 use super::measures::{direction, point};
 use super::object;
 use super::radiometry;
@@ -221,11 +221,12 @@ fn rotation(steps: &[At<Step>]) -> Option<Transform> {
 
 fn panorama(context: &mut Context, file: &At<&str>) -> Option<Panorama> {
     let bytes = bytes_of_image(file)?;
-    let image = match read_image(Path::new(file.it), &bytes) {
-        Ok(image) => image,
+    let ImageFile { image, warnings } = match read_image(Path::new(file.it), &bytes) {
+        Ok(file) => file,
         Err(fault) => return file.place.tell(fault.message, fault.help),
     };
     context.has_read(file.place.folder().join(file.it), &bytes);
+    warnings.into_iter().for_each(|warning| context.warn_at(file.place, warning));
     let (width, height) = (image.width(), image.height());
     if width != 2 * height {
         let message = "an image of all directions is twice as wide as high";

@@ -15,6 +15,7 @@ mod fluorescence;
 mod format;
 mod image;
 mod image_file;
+mod image_numbers;
 mod inside_out;
 mod light;
 mod material;

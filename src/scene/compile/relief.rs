@@ -8,7 +8,7 @@ use std::sync::Arc;
 use super::context::Context;
 use super::curve_text::{CHANNELS, ENCODINGS, WRAPS, repeat};
 use super::image::image;
-use super::image_file::Meaning;
+use super::image_numbers::Meaning;
 use super::measures::MAX_LENGTH;
 use crate::scene::text::{Fields, Value, at};
 use crate::scene::{Relief, ReliefKind};

@@ -3,11 +3,12 @@ use std::io::Cursor;
 use exr::block::UncompressedBlock;
 use exr::block::reader::ChunksReader;
 use exr::meta::header::Header;
-use exr::prelude::{SampleType, f16};
+use exr::prelude::{AttributeValue, SampleType, f16};
 
 use super::exr_channels::Chosen;
 use super::texels::{Floats, Unreadable};
-use crate::film::fits;
+use crate::film::{exr_primaries, exr_text, fits};
+use crate::spectrum::{Matrix, matrix_of_file};
 
 /// Reads the colors or the grays of an OpenEXR file, and alpha if asked; where there is none, it is 1.
 ///
@@ -31,6 +32,7 @@ pub(in crate::scene) fn decode(bytes: &[u8], alpha: bool) -> Result<Floats, Unre
     fits(width, height, length, bytes).map_err(Unreadable::Unfit)?;
     let mut floats = Floats::new(width, height, chosen.channels());
     floats.has_alpha = alpha;
+    floats.to_rec709 = to_rec709(&header);
     let chunks = reader
         .filter_chunks(false, |_, tile, block| block.layer == chosen.part && tile.is_largest_resolution_level())?;
     chunks.decompress_sequential(false, |_, block| {
@@ -38,6 +40,16 @@ pub(in crate::scene) fn decode(bytes: &[u8], alpha: bool) -> Result<Floats, Unre
         Ok(())
     })?;
     Ok(floats)
+}
+
+/// The matrix from the colors of a part to linear Rec.709, or why it is not known.
+fn to_rec709(header: &Header) -> Result<Matrix, String> {
+    let own = header.own_attributes.other.iter().chain(&header.shared_attributes.other);
+    let id = own.into_iter().find_map(|(key, value)| match value {
+        AttributeValue::Text(id) if key == "colorInteropID" => Some(exr_text(id)),
+        _ => None,
+    });
+    matrix_of_file(id.as_deref(), header.shared_attributes.chromaticities.map(exr_primaries))
 }
 
 /// Keeps those numbers of a block that are chosen, where they lie in the display window.

@@ -1,5 +1,7 @@
 //! What files of images hold, and why they cannot be read.
 
+use crate::spectrum::{IDENTITY, Matrix};
+
 /// Whole numbers, texel by texel, rows from the top: gray, or red, green and blue, and maybe alpha behind them.
 pub(in crate::scene) struct Whole {
     pub(in crate::scene) width: usize,
@@ -28,13 +30,16 @@ pub(in crate::scene) struct Floats {
     pub(in crate::scene) channels: usize,
     /// Whether the last number of a texel is alpha.
     pub(in crate::scene) has_alpha: bool,
+    /// The matrix from its colors to linear Rec.709, or why it is not known.
+    pub(in crate::scene) to_rec709: Result<Matrix, String>,
     pub(in crate::scene) numbers: Vec<f32>,
 }
 
 impl Floats {
     /// Black, and transparent.
     pub(super) fn new(width: usize, height: usize, channels: usize) -> Self {
-        Self { width, channels, has_alpha: false, numbers: vec![0.0; channels * width * height] }
+        let numbers = vec![0.0; channels * width * height];
+        Self { width, channels, has_alpha: false, to_rec709: Ok(IDENTITY), numbers }
     }
 
     /// Sets a number of a texel, if there is that texel.

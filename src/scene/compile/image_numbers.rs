@@ -1,0 +1,108 @@
+//! What the numbers of an image stand for, and which of them can be.
+
+use std::path::Path;
+
+use crate::spectrum::{Encoding, Matrix, apply, decode_srgb};
+
+/// What is wrong with a file.
+pub(super) struct Fault {
+    pub(super) message: String,
+    /// What to do.
+    pub(super) help: Option<String>,
+}
+
+impl Fault {
+    pub(super) fn new(message: String, help: impl Into<String>) -> Self {
+        Self { message, help: Some(help.into()) }
+    }
+}
+
+/// What the numbers of an image stand for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Meaning {
+    /// Light or what a surface makes of it, encoded as told or else as the kind of file implies.
+    Light(Option<Encoding>),
+    /// Shares of a surface, encoded in the same way. They are no colors.
+    Shares(Option<Encoding>),
+    /// Thicknesses, encoded as told.
+    Thicknesses(Encoding),
+    /// Heights, just as they are.
+    Heights,
+    /// Directions: the middle of the range of whole numbers is 0, of others one half.
+    Directions,
+}
+
+impl Meaning {
+    /// Whether numbers are encoded as sRGB, where a kind of file implies it or not.
+    pub(super) fn is_srgb(self, implied: bool) -> bool {
+        match self {
+            Self::Light(encoding) | Self::Shares(encoding) => encoding.map_or(implied, |it| it == Encoding::Srgb),
+            Self::Thicknesses(encoding) => encoding == Encoding::Srgb,
+            Self::Heights | Self::Directions => false,
+        }
+    }
+}
+
+/// The numbers of an image, rows from the top.
+pub(super) struct Texels<'p> {
+    pub(super) path: &'p Path,
+    pub(super) width: usize,
+    /// Numbers of a texel.
+    pub(super) channels: usize,
+    pub(super) numbers: Vec<f32>,
+}
+
+impl Texels<'_> {
+    /// Refuses numbers that no light and no surface has.
+    pub(super) fn check(&self, meaning: Meaning) -> Result<(), Fault> {
+        let (allowed, help) = match meaning {
+            Meaning::Light(_) => (0.0..=f32::MAX, "light is finite and not negative"),
+            Meaning::Shares(_) => (0.0..=f32::MAX, "shares are finite and not negative"),
+            Meaning::Thicknesses(_) => (0.0..=f32::MAX, "thicknesses are finite and not negative"),
+            Meaning::Heights => (f32::MIN..=f32::MAX, "heights are finite"),
+            Meaning::Directions => (0.0..=1.0, "directions are written as numbers from 0 to 1, one half being none"),
+        };
+        let mut texels = self.numbers.chunks_exact(self.channels);
+        match texels.position(|texel| texel.iter().any(|x| !allowed.contains(x))) {
+            Some(at) => {
+                let (x, y) = (at % self.width, at / self.width);
+                let texel = &self.numbers[at * self.channels..(at + 1) * self.channels];
+                let message = format!("{}: pixel ({x}, {y}) is {texel:?}", self.path.display());
+                Err(Fault::new(message, help))
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// Makes linear numbers of sRGB.
+    pub(super) fn decode_srgb(&mut self) {
+        self.numbers.iter_mut().for_each(|x| *x = decode_srgb(f64::from(*x)) as f32);
+    }
+
+    /// Makes linear Rec.709 of colors; what is to be said of those that lie outside.
+    ///
+    /// What is negative there becomes 0. It is rounding, and not told, where halves in the file round as much away.
+    pub(super) fn convert(&mut self, to_rec709: &Matrix) -> Option<String> {
+        const HALF: f64 = 1.0 / 2048.0;
+        let rounding = to_rec709.map(|row| row.map(|x| HALF * x.abs()));
+        let (mut first, mut count) = (0, 0);
+        for (at, texel) in self.numbers.as_chunks_mut().0.iter_mut().enumerate() {
+            let color = texel.map(f64::from);
+            let (found, rounded) = (apply(to_rec709, color), apply(&rounding, color));
+            if (0..3).any(|c| found[c] < -rounded[c]) {
+                first = if count == 0 { at } else { first };
+                count += 1;
+            }
+            *texel = found.map(|x| x.clamp(0.0, f32::MAX.into()) as f32);
+        }
+        let [x, y] = [first % self.width, first / self.width];
+        let others = match count {
+            0 => return None,
+            1 => String::new(),
+            2 => ", as does 1 other".to_owned(),
+            _ => format!(", as do {} others", count - 1),
+        };
+        let told = format!("{}: pixel ({x}, {y}) lies outside of Rec.709{others}", self.path.display());
+        Some(format!("{told}: what is negative there counts as 0"))
+    }
+}
