@@ -4,8 +4,8 @@ use std::path::Path;
 
 use exr::meta::attribute::Chromaticities;
 use exr::prelude::{
-    AnyChannel, AnyChannels, AttributeValue, Encoding, FlatSamples, Image, ImageAttributes, IntegerBounds, Layer,
-    LayerAttributes, Layers, Text, Vec2, WritableImage, f16,
+    AnyChannel, AnyChannels, AttributeValue, Compression, Encoding, FlatSamples, Image, ImageAttributes, IntegerBounds,
+    Layer, LayerAttributes, Layers, Text, Vec2, WritableImage, f16,
 };
 
 /// Names and values.
@@ -18,6 +18,7 @@ pub struct Exr {
     pub corner: [i32; 2],
     pub full: [usize; 2],
     pub half: bool,
+    pub compression: Compression,
     pub chromaticities: Option<Chromaticities>,
     pub texts: Vec<(&'static str, String)>,
     /// Name of the part, and its channels.
@@ -28,7 +29,16 @@ impl Exr {
     /// One part of 32-bit floats.
     pub fn new(size: [usize; 2], channels: Channels) -> Self {
         let (texts, parts) = (Vec::new(), vec![("", channels)]);
-        Self { size, corner: [0, 0], full: size, half: false, chromaticities: None, texts, parts }
+        Self {
+            size,
+            corner: [0, 0],
+            full: size,
+            half: false,
+            compression: Compression::Uncompressed,
+            chromaticities: None,
+            texts,
+            parts,
+        }
     }
 
     /// The values of a channel.
@@ -59,7 +69,8 @@ impl Exr {
                 attributes.other.insert(Text::from(*key), value);
             }
             let size = Vec2(self.size[0], self.size[1]);
-            Layer::new(size, attributes, Encoding::UNCOMPRESSED, AnyChannels::sort(list.collect()))
+            let encoding = Encoding { compression: self.compression, ..Encoding::UNCOMPRESSED };
+            Layer::new(size, attributes, encoding, AnyChannels::sort(list.collect()))
         });
         let display = IntegerBounds::from_dimensions((self.full[0], self.full[1]));
         let mut image = Image::from_layers(ImageAttributes::new(display), layers.collect::<Layers<_>>());

@@ -2,7 +2,7 @@
 
 use abbe::material::Material;
 use exr::meta::attribute::Chromaticities;
-use exr::prelude::Vec2;
+use exr::prelude::{Compression, Vec2};
 
 use super::files::{image_of, materials, refusal_of};
 use super::*;
@@ -204,4 +204,44 @@ fn colors_outside_of_rec709_are_told() {
     let text = format!("{}[[light]]\nenvironment.radiance.image = \"a.exr\"\n", view([9.0; 3], [0.0; 3], 30.0, 4));
     let sky = scene(folder, &text).warnings;
     assert!(sky.iter().any(|told| told.contains("a.exr: pixel (0, 0) lies outside of Rec.709")), "{sky:?}");
+}
+
+/// Lossy compressions leave numbers below 0 where there is black.
+#[test]
+fn noise_below_0_is_black_and_all_else_there_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let write = |compression: Compression, half: bool, dark: f32| {
+        let values: Vec<f32> = (0..64).map(|i| if i == 9 { dark } else { 0.01 * (i % 8) as f32 }).collect();
+        let channels = ["R", "G", "B"].map(|name| (name, values.clone())).to_vec();
+        Exr { half, compression, ..Exr::new([8, 8], channels) }.write(&folder.join("a.exr"));
+    };
+    let darkest = || {
+        let image = image_of(&materials(folder, &["{ image = \"a.exr\" }"]), 0);
+        (0..64).map(|i| image.texel(i % 8, i / 8)[0]).fold(f32::MAX, f32::min)
+    };
+    for (compression, half) in [
+        (Compression::DWAA(None), false),
+        (Compression::DWAB(None), true),
+        (Compression::B44, true),
+        (Compression::B44A, true),
+    ] {
+        write(compression, half, -0.01);
+        assert_eq!(darkest(), 0.0, "{compression}");
+    }
+    // What halves round of the mean, which is 0.0348.
+    write(Compression::ZIP16, false, -0.034 / 2048.0);
+    assert_eq!(darkest(), 0.0);
+    let light = "light is finite and not negative: save the image with 0 for all that lies below";
+    for (compression, half, dark) in [
+        (Compression::ZIP16, false, -0.036 / 2048.0),
+        (Compression::PIZ, true, -0.5),
+        // Only halves are packed with loss there.
+        (Compression::B44, false, -0.5),
+    ] {
+        write(compression, half, dark);
+        let found = refusal_of(folder, "diffuse = { reflectance = { image = \"a.exr\" } }");
+        assert_eq!(found.message, format!("a.exr: pixel (1, 1) is [{dark:?}, {dark:?}, {dark:?}]"));
+        assert_eq!(found.help.as_deref(), Some(light));
+    }
 }

@@ -21,9 +21,9 @@ pub(super) fn read_image(path: &Path, bytes: &[u8]) -> Result<ImageFile, Fault> 
         }
         _ => return Err(unknown(path, "images end in .exr (OpenEXR) or .hdr (Radiance)")),
     };
-    let Floats { width, channels, numbers, to_rec709, .. } = image;
+    let Floats { width, channels, is_lossy, to_rec709, numbers, .. } = image;
     let mut texels = Texels { path, width, channels, numbers };
-    texels.check(Meaning::Light(None))?;
+    texels.check(Meaning::Light(None), is_lossy)?;
     let warnings = rec709(&mut texels, &to_rec709).into_iter().collect();
     Ok(ImageFile { image: Image::of_floats(width, channels, texels.numbers), warnings })
 }
@@ -126,7 +126,7 @@ impl TextureOf<'_> {
         let ignores_alpha = !directions && picked.ignores(&image.numbers, 1.0);
         let (width, channels) = (image.width, picked.channels());
         let mut texels = Texels { path: self.path, width, channels, numbers: picked.of(&image.numbers).collect() };
-        texels.check(self.meaning)?;
+        texels.check(self.meaning, image.is_lossy)?;
         if directions {
             texels.numbers.iter_mut().for_each(|x| *x = 2.0 * *x - 1.0);
         }

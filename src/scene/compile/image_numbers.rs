@@ -4,6 +4,9 @@ use std::path::Path;
 
 use crate::spectrum::{Encoding, Matrix, apply, decode_srgb};
 
+/// Largest rounding of a number of 16 bits, relative to it.
+const HALF: f64 = 1.0 / 2048.0;
+
 /// What is wrong with a file.
 pub(super) struct Fault {
     pub(super) message: String,
@@ -53,8 +56,8 @@ pub(super) struct Texels<'p> {
 }
 
 impl Texels<'_> {
-    /// Refuses numbers that no light and no surface has.
-    pub(super) fn check(&self, meaning: Meaning) -> Result<(), Fault> {
+    /// Refuses numbers that no light and no surface has; negative ones that are only noise become 0.
+    pub(super) fn check(&mut self, meaning: Meaning, is_lossy: bool) -> Result<(), Fault> {
         let (allowed, help) = match meaning {
             Meaning::Light(_) => (0.0..=f32::MAX, "light is finite and not negative"),
             Meaning::Shares(_) => (0.0..=f32::MAX, "shares are finite and not negative"),
@@ -62,16 +65,27 @@ impl Texels<'_> {
             Meaning::Heights => (f32::MIN..=f32::MAX, "heights are finite"),
             Meaning::Directions => (0.0..=1.0, "directions are written as numbers from 0 to 1, one half being none"),
         };
-        let mut texels = self.numbers.chunks_exact(self.channels);
-        match texels.position(|texel| texel.iter().any(|x| !allowed.contains(x))) {
-            Some(at) => {
-                let (x, y) = (at % self.width, at / self.width);
-                let texel = &self.numbers[at * self.channels..(at + 1) * self.channels];
-                let message = format!("{}: pixel ({x}, {y}) is {texel:?}", self.path.display());
-                Err(Fault::new(message, help))
-            }
-            None => Ok(()),
+        if *allowed.start() == 0.0 {
+            let noise = if is_lossy { f32::MAX } else { self.noise() };
+            self.numbers.iter_mut().filter(|x| **x < 0.0 && -**x <= noise).for_each(|x| *x = 0.0);
         }
+        let is_wrong = |x: &f32| !allowed.contains(x);
+        let Some(at) = self.numbers.chunks_exact(self.channels).position(|texel| texel.iter().any(is_wrong)) else {
+            return Ok(());
+        };
+        let texel = &self.numbers[at * self.channels..(at + 1) * self.channels];
+        let (x, y) = (at % self.width, at / self.width);
+        let message = format!("{}: pixel ({x}, {y}) is {texel:?}", self.path.display());
+        let is_negative = texel.iter().filter(|x| is_wrong(x)).all(|x| x.is_finite() && *x < 0.0);
+        let save = if is_negative { ": save the image with 0 for all that lies below" } else { "" };
+        Err(Fault::new(message, format!("{help}{save}")))
+    }
+
+    /// How far below 0 a number is noise: were all of them that wrong, their mean would be off by no more than 16 bits
+    /// round it. Filters and conversions leave such numbers behind, and so do compressions that were undone.
+    fn noise(&self) -> f32 {
+        let sum: f64 = self.numbers.iter().filter(|x| **x > 0.0).map(|x| f64::from(*x)).sum();
+        (HALF * sum / self.numbers.len() as f64) as f32
     }
 
     /// Makes linear numbers of sRGB.
@@ -83,7 +97,6 @@ impl Texels<'_> {
     ///
     /// What is negative there becomes 0. It is rounding, and not told, where halves in the file round as much away.
     pub(super) fn convert(&mut self, to_rec709: &Matrix) -> Option<String> {
-        const HALF: f64 = 1.0 / 2048.0;
         let rounding = to_rec709.map(|row| row.map(|x| HALF * x.abs()));
         let (mut first, mut count) = (0, 0);
         for (at, texel) in self.numbers.as_chunks_mut().0.iter_mut().enumerate() {

@@ -3,7 +3,7 @@ use std::io::Cursor;
 use exr::block::UncompressedBlock;
 use exr::block::reader::ChunksReader;
 use exr::meta::header::Header;
-use exr::prelude::{AttributeValue, SampleType, f16};
+use exr::prelude::{AttributeValue, Compression, SampleType, f16};
 
 use super::exr_channels::Chosen;
 use super::texels::{Floats, Unreadable};
@@ -32,6 +32,7 @@ pub(in crate::scene) fn decode(bytes: &[u8], alpha: bool) -> Result<Floats, Unre
     fits(width, height, length, bytes).map_err(Unreadable::Unfit)?;
     let mut floats = Floats::new(width, height, chosen.channels());
     floats.has_alpha = alpha;
+    floats.is_lossy = is_lossy(&header, &chosen);
     floats.to_rec709 = to_rec709(&header);
     let chunks = reader
         .filter_chunks(false, |_, tile, block| block.layer == chosen.part && tile.is_largest_resolution_level())?;
@@ -40,6 +41,16 @@ pub(in crate::scene) fn decode(bytes: &[u8], alpha: bool) -> Result<Floats, Unre
         Ok(())
     })?;
     Ok(floats)
+}
+
+/// Whether the numbers were made to look alike rather than kept. PXR24 only rounds them, and turns no sign.
+fn is_lossy(header: &Header, chosen: &Chosen) -> bool {
+    let is_half = |channel: &usize| header.channels.list[*channel].sample_type == SampleType::F16;
+    match header.compression {
+        Compression::DWAA(_) | Compression::DWAB(_) => true,
+        Compression::B44 | Compression::B44A => chosen.numbers.iter().flatten().any(is_half),
+        _ => false,
+    }
 }
 
 /// The matrix from the colors of a part to linear Rec.709, or why it is not known.

@@ -31,7 +31,7 @@ pub(in crate::scene) fn decode(bytes: &[u8]) -> Result<Floats, Unreadable> {
         reader.fill(&mut texels)?;
         numbers.extend(texels.iter().flat_map(|&[r, g, b, e]| [r, g, b].map(|c| f32::from(c) * units[usize::from(e)])));
     }
-    Ok(Floats { width, channels: 3, has_alpha: false, to_rec709: Ok(IDENTITY), numbers })
+    Ok(Floats { width, channels: 3, has_alpha: false, is_lossy: false, to_rec709: Ok(IDENTITY), numbers })
 }
 
 /// What is not read yet, and the row that is.

@@ -30,6 +30,8 @@ pub(in crate::scene) struct Floats {
     pub(in crate::scene) channels: usize,
     /// Whether the last number of a texel is alpha.
     pub(in crate::scene) has_alpha: bool,
+    /// Whether a compression has changed numbers.
+    pub(in crate::scene) is_lossy: bool,
     /// The matrix from its colors to linear Rec.709, or why it is not known.
     pub(in crate::scene) to_rec709: Result<Matrix, String>,
     pub(in crate::scene) numbers: Vec<f32>,
@@ -39,7 +41,7 @@ impl Floats {
     /// Black, and transparent.
     pub(super) fn new(width: usize, height: usize, channels: usize) -> Self {
         let numbers = vec![0.0; channels * width * height];
-        Self { width, channels, has_alpha: false, to_rec709: Ok(IDENTITY), numbers }
+        Self { width, channels, has_alpha: false, is_lossy: false, to_rec709: Ok(IDENTITY), numbers }
     }
 
     /// Sets a number of a texel, if there is that texel.
