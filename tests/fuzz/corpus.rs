@@ -168,7 +168,7 @@ pub fn hdr() -> Vec<Vec<u8>> {
         pictures::radiance(width, &texels)
     };
     // Below 8 texels a row is not packed, beyond it is; runs of the older way repeat a texel.
-    let old = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\nEXPOSURE=1\n\n-Y 2 +X 6\n\x80\x40\x20\x81\x01\x01\x01\x05";
+    let old = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\nEXPOSURE=2\n\n-Y 2 +X 6\n\x80\x40\x20\x81\x01\x01\x01\x05";
     let old = [old.as_slice(), b"\x80\x40\x20\x81\x01\x01\x01\x05"].concat();
     vec![encoded(3), encoded(16), old]
 }

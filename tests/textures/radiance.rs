@@ -4,7 +4,7 @@ use abbe::material::Material;
 
 use super::*;
 
-const HEADER: &str = "#?RADIANCE\n# made by hand\nEXPOSURE=2\nFORMAT=32-bit_rle_rgbe\n\n";
+const HEADER: &str = "#?RADIANCE\n# made by hand\nEXPOSURE=1\nFORMAT=32-bit_rle_rgbe\n\n";
 
 fn compiled(bytes: &[u8]) -> abbe::Result<Scene<Curve>> {
     let folder = tempfile::tempdir().unwrap();
@@ -21,7 +21,11 @@ fn compiled(bytes: &[u8]) -> abbe::Result<Scene<Curve>> {
 
 /// The first texels of the first row of a picture.
 fn row(size: &str, bytes: &[u8], count: usize) -> Vec<[f32; 3]> {
-    let scene = compiled(&[HEADER.as_bytes(), size.as_bytes(), b"\n", bytes].concat()).unwrap();
+    texels(&[HEADER.as_bytes(), size.as_bytes(), b"\n", bytes].concat(), count)
+}
+
+fn texels(file: &[u8], count: usize) -> Vec<[f32; 3]> {
+    let scene = compiled(file).unwrap();
     let Material::Diffuse(diffuse) = &scene.materials[0].material else { panic!("it is diffuse") };
     let CurveKind::Texture(texture) = &diffuse.reflectance.kind else { panic!("it is an image") };
     (0..count).map(|x| texture.image.texel(x, 0)).collect()
@@ -33,6 +37,30 @@ fn every_exponent_of_a_radiance_picture_is_a_power_of_two() {
         let found = row("-Y 1 +X 1", &[255, 128, 1, exponent], 1)[0];
         let unit = if exponent == 0 { 0.0 } else { (f64::from(exponent) - 136.0).exp2() };
         assert_eq!(found.map(f64::from), [255.0, 128.0, 1.0].map(|color| color * unit), "{exponent}");
+    }
+}
+
+/// "Radiance File Formats": what light a picture shows is its numbers divided by all exposures that were applied.
+#[test]
+fn exposures_of_a_radiance_picture_are_taken_out() {
+    let picture = |lines: &str| {
+        let text = HEADER.replace("EXPOSURE=1\n", lines) + "-Y 1 +X 1\n";
+        texels(&[text.as_bytes(), &[128, 64, 32, 129]].concat(), 1)[0]
+    };
+    assert_eq!(picture(""), [1.0, 0.5, 0.25]);
+    assert_eq!(picture("EXPOSURE=4\n"), [0.25, 0.125, 0.0625]);
+    assert_eq!(picture("EXPOSURE= 4.0 \nEXPOSURE=2.5e-1\n"), [1.0, 0.5, 0.25]);
+    assert_eq!(picture("COLORCORR=2 1 0.5\nEXPOSURE=2\n"), [0.25, 0.25, 0.25]);
+    // Of a picture that this one was made of.
+    assert_eq!(picture("\tEXPOSURE=4\n"), [1.0, 0.5, 0.25]);
+}
+
+#[test]
+fn a_radiance_picture_of_another_program_is_read() {
+    let expected = row("-Y 1 +X 1", &[9, 8, 7, 128], 1);
+    for from in [("#?RADIANCE", "#?RGBE"), ("\n", "\r\n")] {
+        let header = format!("{HEADER}-Y 1 +X 1\n").replace(from.0, from.1);
+        assert_eq!(texels(&[header.as_bytes(), &[9, 8, 7, 128]].concat(), 1), expected, "{header:?}");
     }
 }
 
@@ -68,6 +96,13 @@ fn what_is_wrong_with_a_radiance_picture_is_said() {
         (b"#?RGB".to_vec(), "it does not begin as one does"),
         (HEADER.as_bytes().to_vec(), "it ends too early"),
         (header("rgbe", "xyze").into_bytes(), "its format is \"32-bit_rle_xyze\", and only 32-bit_rle_rgbe is read"),
+        (header("=1", "=0").into_bytes(), "its EXPOSURE is \"0\", which it cannot be divided by"),
+        (header("=1", "= dark").into_bytes(), "its EXPOSURE is \"dark\", which it cannot be divided by"),
+        (
+            header("=1", "=1e-300\nEXPOSURE=1e-300").into_bytes(),
+            "its EXPOSURE is \"1e-300\", which it cannot be divided by",
+        ),
+        (header("EXPOSURE=1", "COLORCORR=1 2").into_bytes(), "its COLORCORR is \"1 2\", which it cannot be divided by"),
         (with("+Y 1 +X 1", &[9; 4]), "its size is \"+Y 1 +X 1\", and only -Y height +X width is read"),
         (with("-Y 1 +X few", &[9; 4]), "its size is \"-Y 1 +X few\", and only -Y height +X width is read"),
         (with("-Y 0 +X 1", &[]), "it has no pixels"),

@@ -6,32 +6,45 @@ use super::texels::{Floats, Unreadable};
 use crate::film::fits;
 use crate::spectrum::IDENTITY;
 
-const SIGNATURE: &[u8] = b"#?RADIANCE";
+/// How files begin: those of Radiance, and those of other programs.
+const SIGNATURES: [&[u8]; 2] = [b"#?RADIANCE", b"#?RGBE"];
 const FORMAT: &str = "32-bit_rle_rgbe";
 /// Texels of a row that can be packed in the newer way.
 const PACKED: std::ops::Range<usize> = 8..1 << 15;
 
-/// Reads a picture of RGBE, packed in the newer way, the older one or not at all. Its exposure is not undone.
+/// Reads a picture of RGBE, packed in the newer way, the older one or not at all. What was multiplied to the light is
+/// taken out again.
 ///
 /// # Errors
 /// If it is none, is damaged, or claims a size that it cannot have.
 pub(in crate::scene) fn decode(bytes: &[u8]) -> Result<Floats, Unreadable> {
-    let rest = bytes.strip_prefix(SIGNATURE).ok_or(Unreadable::Signature)?;
+    let rest = SIGNATURES.iter().find_map(|signature| bytes.strip_prefix(*signature)).ok_or(Unreadable::Signature)?;
     let mut reader = Reader { rest, row: 0 };
-    let [width, height] = reader.size()?;
+    let Header { size: [width, height], factors } = reader.header()?;
     let length = 12_u64.saturating_mul(width as u64).saturating_mul(height as u64);
     fits(width, height, length, bytes).map_err(Unreadable::Unfit)?;
     // Colors are whole multiples of 2^(exponent - 136); an exponent of 0 is black.
-    let unit = |exponent: usize| if exponent == 0 { 0.0 } else { libm::ldexp(1.0, exponent as i32 - 136) as f32 };
-    let units: [f32; 256] = std::array::from_fn(unit);
+    let unit = |exponent: usize| if exponent == 0 { 0.0 } else { libm::ldexp(1.0, exponent as i32 - 136) };
+    let units: [f64; 256] = std::array::from_fn(unit);
     let mut texels = vec![[0; 4]; width];
     let mut numbers = Vec::with_capacity(3 * width * height);
     for row in 0..height {
         reader.row = row;
         reader.fill(&mut texels)?;
-        numbers.extend(texels.iter().flat_map(|&[r, g, b, e]| [r, g, b].map(|c| f32::from(c) * units[usize::from(e)])));
+        numbers.extend(texels.iter().flat_map(|&[r, g, b, e]| {
+            let color = [r, g, b].map(|c| f64::from(c) * units[usize::from(e)]);
+            [0, 1, 2].map(|c| (color[c] / factors[c]) as f32)
+        }));
     }
     Ok(Floats { width, channels: 3, has_alpha: false, is_lossy: false, to_rec709: Ok(IDENTITY), numbers })
+}
+
+/// What stands before the texels.
+struct Header {
+    /// Width and height.
+    size: [usize; 2],
+    /// What red, green and blue of the light were multiplied by.
+    factors: [f64; 3],
 }
 
 /// What is not read yet, and the row that is.
@@ -49,19 +62,30 @@ impl Reader<'_> {
 
     fn line(&mut self) -> Result<String, Unreadable> {
         let end = self.rest.iter().position(|&byte| byte == b'\n').ok_or(Unreadable::Short)?;
-        let line = String::from_utf8_lossy(&self.rest[..end]).into_owned();
+        let line = &self.rest[..end];
+        let line = String::from_utf8_lossy(line.strip_suffix(b"\r").unwrap_or(line)).into_owned();
         self.rest = &self.rest[end + 1..];
         Ok(line)
     }
 
-    /// Width and height, at the end of the header.
-    fn size(&mut self) -> Result<[usize; 2], Unreadable> {
+    /// The header, to its end, which is the size. Each program that changes a picture adds its factors to those that
+    /// are there: all have been applied.
+    fn header(&mut self) -> Result<Header, Unreadable> {
         self.line()?;
+        let mut factors = [1.0; 3];
         loop {
             let line = self.line()?;
             match line.split_once('=') {
                 Some((key, format)) if key.trim() == "FORMAT" && format.trim() != FORMAT => {
                     return Err(Unreadable::Format(beginning(format.trim())));
+                }
+                Some((key @ ("EXPOSURE" | "COLORCORR"), words)) => {
+                    let bad = || Unreadable::Factors(key.to_owned(), beginning(words.trim()));
+                    let found = numbers(words, key == "EXPOSURE").ok_or_else(bad)?;
+                    factors = [0, 1, 2].map(|c| factors[c] * found[c]);
+                    if !factors.iter().all(|factor| factor.is_normal()) {
+                        return Err(bad());
+                    }
                 }
                 _ if line.is_empty() => break,
                 _ => (),
@@ -73,7 +97,8 @@ impl Reader<'_> {
             ["-Y", height, "+X", width] => width.parse().ok().zip(height.parse().ok()),
             _ => None,
         };
-        size.map(|(width, height)| [width, height]).ok_or_else(|| Unreadable::Size(beginning(&line)))
+        let (width, height) = size.ok_or_else(|| Unreadable::Size(beginning(&line)))?;
+        Ok(Header { size: [width, height], factors })
     }
 
     fn fill(&mut self, texels: &mut [[u8; 4]]) -> Result<(), Unreadable> {
@@ -127,6 +152,17 @@ impl Reader<'_> {
         }
         Ok(())
     }
+}
+
+/// One number above 0 for all colors, or one for each.
+fn numbers(words: &str, is_one: bool) -> Option<[f64; 3]> {
+    let numbers: Vec<f64> = words.split_whitespace().map(|word| word.parse().ok()).collect::<Option<_>>()?;
+    let numbers = match numbers[..] {
+        [all] if is_one => [all; 3],
+        [red, green, blue] if !is_one => [red, green, blue],
+        _ => return None,
+    };
+    numbers.iter().all(|number| *number > 0.0).then_some(numbers)
 }
 
 /// As much of a line as a message can hold.

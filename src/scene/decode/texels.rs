@@ -77,6 +77,8 @@ pub(in crate::scene) enum Unreadable {
     Short,
     #[error("its format is {0:?}, and only 32-bit_rle_rgbe is read")]
     Format(String),
+    #[error("its {0} is {1:?}, which it cannot be divided by")]
+    Factors(String, String),
     #[error("its size is {0:?}, and only -Y height +X width is read")]
     Size(String),
     #[error("row {0} is not as long as the image is wide")]
