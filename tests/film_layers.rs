@@ -85,6 +85,21 @@ fn assert_sum(image: &Image, layers: &[&str], share: f64) {
     }
 }
 
+/// What the camera does not see takes no light on the way to it, wherever the camera is.
+#[test]
+fn a_camera_within_a_hidden_body_sees_as_if_that_were_not_there() {
+    let floor = "[camera]\nposition = [0, 9, 0]\nlook_at = [0, 0, 0]\nup = [1, 0, 0]\nvertical_fov = 20\n[film]\nwidth = 4\nheight = 4\n\
+        [material.floor]\ndiffuse = { reflectance = 0.5 }\n[[object]]\nmaterial = \"floor\"\n\
+        shape.plane = { point = [0, 0, 0], normal = [0, 1, 0] }\n[[light]]\nenvironment = { radiance = 1 }\n";
+    let body = "[material.body]\ndielectric = { index = 1, absorption = 3 }\n[[object]]\nmaterial = \"body\"\n\
+        shape.sphere = { center = [0, 9, 0], radius = 0.5 }\nvisible_to_camera = false\n";
+    let colors = beauty(&rendered(&(floor.to_owned() + body), &[]));
+    let shown = colors.iter().map(|color| color[1]).sum::<f64>() / colors.len() as f64;
+    // The body covers at most this part of the light that the floor gets; chance may find it some times more often.
+    let covered = (0.5 / 8.5_f64).powi(2);
+    assert!((0.5 * (1.0 - 4.0 * covered)..=0.5 + 1e-6).contains(&shown), "{shown}");
+}
+
 #[test]
 fn layers_of_light_add_up_to_the_image() {
     let image = rendered(ROOM, &Layer::all());

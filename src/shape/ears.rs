@@ -148,7 +148,7 @@ mod tests {
         for polygon in [&dart[..], &corner, &points_on_sides, &hole] {
             assert!(is_cut_from_everywhere(polygon), "{polygon:?}");
         }
-        let comb = |i: u32| [f64::from(i), if i % 2 == 0 { 0.1 } else { 9.0 }];
+        let comb = |i: u32| [f64::from(i), if i.is_multiple_of(2) { 0.1 } else { 9.0 }];
         let comb: Vec<[f64; 2]> = (0..60).rev().map(comb).chain([[-1.0, -1.0], [60.0, -1.0]]).collect();
         assert!(is_cut_from_everywhere(&comb));
         let around = |i: u32, distance: f64| DVec2::from_angle(f64::from(i) / 40.0 * TAU) * distance;

@@ -42,9 +42,19 @@ impl Media {
     /// leaves more often than it enters is around the start. A half space may reach to infinity one way, so where there
     /// are any the other way is walked as well.
     pub(super) fn around(scene: &Scene<Table>, start: DVec3, direction: DVec3) -> Self {
-        let mut left = Self::left_by(scene, start, direction);
+        Self::around_of(scene, start, direction, &|_| true)
+    }
+
+    /// The same of those objects that count.
+    pub(super) fn around_of(
+        scene: &Scene<Table>,
+        start: DVec3,
+        direction: DVec3,
+        counts: &dyn Fn(u32) -> bool,
+    ) -> Self {
+        let mut left = Self::left_by(scene, start, direction, counts);
         if scene.unbounded().any(|object| scene.materials[object.material as usize].material.medium().is_some()) {
-            for (material, count) in Self::left_by(scene, start, -direction) {
+            for (material, count) in Self::left_by(scene, start, -direction, counts) {
                 match left.iter_mut().find(|(known, _)| *known == material) {
                     Some((_, most)) => *most = count.max(*most),
                     None => left.push((material, count)),
@@ -59,11 +69,16 @@ impl Media {
     }
 
     /// How much more often a walk to infinity leaves bodies of each medium than it enters them.
-    fn left_by(scene: &Scene<Table>, start: DVec3, direction: DVec3) -> Vec<(MaterialId, i32)> {
+    fn left_by(
+        scene: &Scene<Table>,
+        start: DVec3,
+        direction: DVec3,
+        counts: &dyn Fn(u32) -> bool,
+    ) -> Vec<(MaterialId, i32)> {
         let mut balance: Vec<(MaterialId, i32)> = Vec::new();
         let mut ray = Ray { origin: start, direction };
         for _ in 0..MOST_CROSSINGS {
-            let Some(hit) = scene.intersect(&ray) else { break };
+            let Some(hit) = scene.nearest(&ray, f64::INFINITY, counts) else { break };
             let object = &scene.objects[hit.object as usize];
             let point = object.shape.point(&ray, &hit.crossing);
             if scene.material_of(hit.object).medium().is_some() {
@@ -78,13 +93,19 @@ impl Media {
         balance
     }
 
-    /// The media after walking from one point to another along a straight line.
-    pub(super) fn after_walk(mut self, scene: &Scene<Table>, from: DVec3, to: DVec3) -> Self {
+    /// The media after walking from one point to another along a straight line, through those objects that count.
+    pub(super) fn after_walk(
+        mut self,
+        scene: &Scene<Table>,
+        [from, to]: [DVec3; 2],
+        counts: &dyn Fn(u32) -> bool,
+    ) -> Self {
         let Some(direction) = (to - from).try_normalize() else { return self };
         let mut ray = Ray { origin: from, direction };
         for _ in 0..MOST_CROSSINGS {
             let left = (to - ray.origin).dot(direction);
-            let Some(hit) = scene.intersect(&ray).filter(|hit| hit.crossing.t <= left) else { break };
+            let hit = scene.nearest(&ray, f64::INFINITY, counts);
+            let Some(hit) = hit.filter(|hit| hit.crossing.t <= left) else { break };
             let object = &scene.objects[hit.object as usize];
             let point = object.shape.point(&ray, &hit.crossing);
             if scene.material_of(hit.object).medium().is_some() {
@@ -119,6 +140,14 @@ impl Media {
             return (same, true);
         }
         self.boundary(scene, material, enters).map_or((same, false), |boundary| (boundary, true))
+    }
+
+    /// These media and others.
+    pub(super) fn and(mut self, others: &Self) -> Self {
+        for &(material, count) in &others.entries[..others.len as usize] {
+            (0..count).for_each(|_| self = self.entered(material).unwrap_or(self));
+        }
+        self
     }
 
     fn entered(mut self, material: MaterialId) -> Option<Self> {

@@ -10,7 +10,8 @@ use super::photon_targets::PhotonTargets;
 use super::{LightPass, Method, Polarizing, Transport};
 use crate::light::{Light, LightId, LightSampler};
 use crate::material::Lobes;
-use crate::scene::{Scene, Sight};
+use crate::math::Ray;
+use crate::scene::{Hit, Scene, Sight};
 use crate::spectrum::{Curve, Distinct, Draw, MAX_LANES, Quantity, Response, Table, apply};
 
 /// Lights that are weighed one by one: of more, neighbors in the scene as one.
@@ -35,6 +36,8 @@ pub struct World {
     pub(super) light_sampler: LightSampler,
     /// The bodies around the camera.
     pub(super) camera_media: Media,
+    /// Those that the camera does not see.
+    pub(super) hidden_media: Media,
     pub(super) has_media: bool,
     /// Whether there are objects that the camera does not see, or sees as holes.
     pub(super) hides_objects: bool,
@@ -88,6 +91,7 @@ impl World {
             scene,
             method,
             camera_media: Media::default(),
+            hidden_media: Media::default(),
             has_media,
             hides_objects,
             lobes,
@@ -100,7 +104,9 @@ impl World {
         };
         if has_media {
             let (position, forward) = (world.scene.camera.position(), world.scene.camera.forward());
-            world.camera_media = Media::around(&world.scene, position, forward);
+            let around = |counts| Media::around_of(&world.scene, position, forward, counts);
+            let media = [around(&|object| world.is_seen(object)), around(&|object| !world.is_seen(object))];
+            [world.camera_media, world.hidden_media] = media;
         }
         world.choose_photon_targets();
         world
@@ -237,6 +243,28 @@ impl World {
     /// What the camera sees of an object.
     pub(super) fn sight(&self, object: u32) -> Sight {
         self.scene.objects[object as usize].sight
+    }
+
+    /// The media around a ray, but for those that the camera does not see.
+    pub(super) fn seen_media(&self, ray: &Ray) -> Media {
+        Media::around_of(&self.scene, ray.origin, ray.direction, &|object| self.is_seen(object))
+    }
+
+    /// Adds the media of bodies around a surface that the camera's ray has met, and has gone through to it without
+    /// seeing them; those around the camera too if it is the first.
+    #[cold]
+    pub(super) fn enter_hidden(&self, is_first: bool, ray: &Ray, hit: &Hit, media: &mut Media) {
+        let is_hidden = |object: u32| !self.is_seen(object);
+        if is_first {
+            let way = [self.scene.camera.position(), ray.origin];
+            *media = media.and(&self.hidden_media.after_walk(&self.scene, way, &is_hidden));
+        }
+        *media = media.after_walk(&self.scene, [ray.origin, ray.at(hit.crossing.t)], &is_hidden);
+    }
+
+    /// Whether the camera sees an object, or at least its hole.
+    pub(super) fn is_seen(&self, object: u32) -> bool {
+        self.sight(object) != Sight::Hidden
     }
 
     /// Whether next-event estimation at a vertex of the given weight samples every light, or one.

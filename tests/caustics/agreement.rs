@@ -104,6 +104,14 @@ pub fn agree_with(what: &str, text: &str, samples: u32, map: Option<MapPasses>) 
 pub const BALL: &str = "sphere = { center = [0, 1.5, 0], radius = 1 }";
 
 #[test]
+fn a_floor_in_water_that_the_camera_does_not_see() {
+    let water = object("glass", "cube = { center = [0, 0, 0], size = 2 }") + "visible_to_camera = false\n";
+    let lamp = object("lamp", "sphere = { center = [0, 4, 0], radius = 0.5 }");
+    let text = seen_by(ABOVE, "") + FLOOR + &glass("index = 1.33, absorption = 0.5") + &water + LAMP + &lamp;
+    agree("a floor in hidden water", &text, 64);
+}
+
+#[test]
 fn a_glass_ball_under_a_round_lamp() {
     let text = seen_by(ABOVE, "")
         + FLOOR

@@ -17,6 +17,7 @@ use crate::shape::SurfacePoint;
 use crate::spectrum::Draw;
 use crate::trace::arrived::Arrived;
 use crate::trace::contribution::{Contribution, Found};
+use crate::trace::media::Media;
 use crate::trace::photon::{Gathering, LightVertices, PhotonMap, gather, holds_vertices};
 use crate::trace::walk::{
     Among, Audit, Departure, Excitation, Exciting, Interaction, Meeting, MetLight, Onward, Path, PathKind,
@@ -135,7 +136,8 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
     #[cold]
     fn catch(&mut self, path: &Path<N, P>, draw: &Draw<N>, sampler: &Sampler) {
         let with = std::mem::take(&mut self.sensor.rgb);
-        self.trace(&Path { among: Among::Plate, ..*path }, draw, sampler);
+        let media = Media::default();
+        self.trace(&Path { among: Among::Plate, media, ..*path }, draw, sampler);
         let without = std::mem::take(&mut self.sensor.rgb);
         self.sensor.forget();
         if let Some(layers) = &mut self.sensor.layers {

@@ -137,11 +137,17 @@ impl<'a> Colors<'a> {
     pub fn walk_from_camera(&self, at: DVec2, lane: usize, sampler: &Sampler, way: Way) -> Walk {
         let ray = self.world.scene.camera.ray(at);
         let media = Path::<4, Polarized>::from_camera(self.world, &self.draw, ray).media;
-        self.walk(lane, ray, media, sampler, way)
+        let first = self.world.scene.intersect_seen(&ray, None);
+        self.walk(lane, ray, first, media, sampler, way)
     }
 
-    /// Follows one lane; the first one decides for both where light may go two ways.
-    pub fn walk(&self, lane: usize, mut ray: Ray, media: Media, sampler: &Sampler, way: Way) -> Walk {
+    /// Follows one lane of light.
+    pub fn walk_from_light(&self, lane: usize, ray: Ray, media: Media, sampler: &Sampler, way: Way) -> Walk {
+        self.walk(lane, ray, self.world.scene.intersect(&ray), media, sampler, way)
+    }
+
+    /// Follows one lane from what its ray meets first; the first lane decides for both where light may go two ways.
+    fn walk(&self, lane: usize, mut ray: Ray, mut hit: Option<Hit>, media: Media, sampler: &Sampler, way: Way) -> Walk {
         let (legs, met) = (Vec::with_capacity(4), Vec::with_capacity(4));
         let mut walk = Walk {
             legs,
@@ -156,21 +162,21 @@ impl<'a> Colors<'a> {
         };
         let mut key = BranchKey::CAMERA;
         for _ in 0..LONGEST {
-            let hit = self.world.scene.intersect(&ray);
             walk.legs.push((ray, hit.map_or(f64::INFINITY, |hit| hit.crossing.t)));
-            let Some(hit) = hit else { return walk };
-            let point = self.world.scene.objects[hit.object as usize].point(&ray, &hit.crossing);
+            let Some(met) = hit else { return walk };
+            let point = self.world.scene.objects[met.object as usize].point(&ray, &met.crossing);
             key = key.child(0);
-            let at = Surface { ray: &ray, hit: &hit, point: &point, u: sampler.four_plain(key, SURFACE), lane, way };
+            let at = Surface { ray: &ray, hit: &met, point: &point, u: sampler.four_plain(key, SURFACE), lane, way };
             match self.beyond(&mut walk, &at) {
                 Next::Toward(direction) => ray = point.leave(direction),
                 Next::End => {
-                    walk.end = Some((point, hit.object));
+                    walk.end = Some((point, met.object));
                     return walk;
                 }
                 Next::Lost => break,
             }
-            walk.met.push(hit.object);
+            walk.met.push(met.object);
+            hit = self.world.scene.intersect(&ray);
         }
         walk.weight = 0.0;
         walk

@@ -64,7 +64,11 @@ impl<'a> Walker<'a> {
     /// Follows a way to the next surface and finds out how it goes on.
     fn meet(&mut self, walk: Walk) {
         let world = self.world;
-        let Some(hit) = world.scene.intersect(&walk.ray) else {
+        let hit = match walk.key == BranchKey::CAMERA {
+            true => world.scene.intersect_seen(&walk.ray, None),
+            false => world.scene.intersect(&walk.ray),
+        };
+        let Some(hit) = hit else {
             for &id in &world.scene.infinite_lights {
                 if !matches!(&world.scene.lights[id], Light::Sun(sun) if sun.pdf(&walk.ray).is_none()) {
                     self.record(&walk, id);

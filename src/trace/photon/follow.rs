@@ -327,11 +327,15 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> View<'v, 'a, N, P> {
         let Landing { path, at, .. } = self.landing;
         let ray = at.point.leave(self.seen.direction);
         let distance = (self.seen.start - ray.origin).length();
-        let inside = at.boundary.sides()[usize::from(!self.same)];
+        let world = self.walker.world;
+        let inside = match world.hides_objects && world.has_media {
+            true => world.seen_media(&ray).inside(&world.scene),
+            false => at.boundary.sides()[usize::from(!self.same)],
+        };
         let ends = Ends { left: path.left, ..Ends::default() };
         let last_occluder = &self.walker.last_occluder;
         let passage = Passage { ray: &ray, distance, ends, inside, past: Past::Seen, last_occluder };
-        passage.arriving(self.walker.world, draw, start, light)
+        passage.arriving(world, draw, start, light)
     }
 
     /// The ray of the camera that sees the place.

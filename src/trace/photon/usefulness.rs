@@ -58,7 +58,7 @@ pub fn places(world: &World) -> Vec<Place> {
     let place = |number: u32| {
         let [x, y] = film.whole().middle_of_cell(SIDE, number).map(|x| f64::from(x) + 0.5);
         let ray = scene.camera.ray(DVec2::new(x, y));
-        let hit = scene.intersect(&ray)?;
+        let hit = scene.intersect_seen(&ray, None)?;
         let point = scene.objects[hit.object as usize].point(&ray, &hit.crossing);
         let is_diffuse = world.lobes[scene.objects[hit.object as usize].material as usize].is_diffuse();
         is_diffuse.then_some(Place { point, primitive: hit.primitive() })

@@ -117,7 +117,9 @@ impl<const N: usize, P: Polarization<N>> Path<N, P> {
     pub fn from_camera(world: &World, draw: &Draw<N>, ray: Ray) -> Self {
         let camera = &world.scene.camera;
         let media = if world.has_media && camera.starts_away() {
-            world.camera_media.after_walk(&world.scene, camera.position(), ray.origin)
+            world
+                .camera_media
+                .after_walk(&world.scene, [camera.position(), ray.origin], &|object| world.is_seen(object))
         } else {
             world.camera_media
         };

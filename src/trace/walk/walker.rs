@@ -79,6 +79,10 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
             audit.absorb(path, before, draw);
         }
         let hit = hit?;
+        let is_view = path.kind == PathKind::Camera && path.among == Among::All;
+        if is_view && self.world.hides_objects && self.world.has_media {
+            self.world.enter_hidden(path.left.is_none(), &path.ray, &hit, &mut path.media);
+        }
         path.left = Some(hit.primitive());
         let point = self.world.scene.objects[hit.object as usize].point(&path.ray, &hit.crossing);
         Some(Meeting { hit, point })
