@@ -1,7 +1,7 @@
 //! Triangles from PLY, OBJ and glTF files.
 
 use std::fs::File;
-use std::io::BufReader;
+use std::io::{BufReader, Read};
 use std::path::Path;
 
 use ply_rs_bw::parser::{Parser, Reader};
@@ -32,6 +32,9 @@ pub fn read_smooth(path: &Path) -> Result<MeshFile, String> {
 
 fn read_with(path: &Path, smooth: bool) -> Result<MeshFile, String> {
     let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_lowercase();
+    if is_packed(path) {
+        return Err("it is compressed by gzip: unpack it first".into());
+    }
     let file = match ending.as_str() {
         "ply" => read_ply(path, smooth)?,
         "obj" => super::obj::read(path, smooth)?,
@@ -57,6 +60,12 @@ fn read_with(path: &Path, smooth: bool) -> Result<MeshFile, String> {
         return Err("the file holds no faces".into());
     }
     Ok(file)
+}
+
+/// Whether a file begins as gzip begins (RFC 1952, section 2.3.1).
+fn is_packed(path: &Path) -> bool {
+    let mut start = [0; 2];
+    File::open(path).and_then(|mut file| file.read_exact(&mut start)).is_ok() && start == [0x1f, 0x8b]
 }
 
 /// Stands for a negative index: no mesh has so many vertices.
@@ -131,6 +140,33 @@ impl PropertyAccess for PlyFace {
     }
 }
 
+impl PlyFace {
+    /// The triangles of strips, each of which a negative index ends; two equal corners only lead on to the next triangle.
+    fn triangles(&self, mut keep: impl FnMut([u32; 3])) {
+        for strip in self.0.split(|&corner| corner == NO_VERTEX) {
+            for (number, corners) in strip.windows(3).enumerate() {
+                let &[a, b, c] = corners else { continue };
+                if a != b && b != c && c != a {
+                    keep(if number % 2 == 0 { [a, b, c] } else { [b, a, c] });
+                }
+            }
+        }
+    }
+}
+
+/// Whether an element lists vertices; `name` is what there are several of.
+fn has_corners(element: &ElementDef, name: &str) -> Result<(), String> {
+    let list = ["vertex_indices", "vertex_index"].iter().find_map(|key| element.properties.get(*key));
+    match list.map(|property| &property.data_type) {
+        _ if element.count == 0 => Ok(()),
+        Some(PropertyType::List(_, ScalarType::Float | ScalarType::Double)) => {
+            Err(format!("the vertex_indices of its {name} are not whole numbers"))
+        }
+        Some(PropertyType::List(..)) => Ok(()),
+        _ => Err(format!("its {name} have no list of vertex_indices")),
+    }
+}
+
 fn read_ply(path: &Path, smooth: bool) -> Result<MeshFile, String> {
     let file = File::open(path).map_err(|error| error.to_string())?;
     let mut reader = Reader::new(BufReader::new(file));
@@ -144,8 +180,11 @@ fn read_ply(path: &Path, smooth: bool) -> Result<MeshFile, String> {
             continue;
         }
         if element.name == "face" {
-            let keep = |polygon: PlyFace| faces.push(&polygon.0);
-            in_batches(&mut reader, element, &header, keep)?;
+            has_corners(element, "faces")?;
+            in_batches(&mut reader, element, &header, |polygon: PlyFace| faces.push(&polygon.0))?;
+        } else if element.name == "tristrips" {
+            has_corners(element, "tristrips")?;
+            in_batches(&mut reader, element, &header, |strips: PlyFace| strips.triangles(|face| faces.push(&face)))?;
         } else if element.name == "vertex" {
             for axis in ["x", "y", "z"] {
                 match element.properties.get(axis).map(|property| &property.data_type) {

@@ -48,6 +48,14 @@ pub fn ply() -> Vec<Vec<u8>> {
         header("ascii", list, more) + &rich + "1 2 0.5 0.25\n2 1 3\n" + &faces,
     ];
     files[0] += "\n";
+    files.push(
+        header("ascii", list, "") + &plain + "6 0 4 1 3 2 4\n" + &faces[faces.find('\n').map_or(0, |end| end + 1)..],
+    );
+    files.push(
+        header("ascii", "property list int int vertex_indices\n", "").replace("face 6", "tristrips 1")
+            + &plain
+            + "8 0 1 2 3 -1 1 4 2\n",
+    );
     let mut files: Vec<Vec<u8>> = files.into_iter().map(String::into_bytes).collect();
     for big in [false, true] {
         let bytes = |x: u32| if big { x.to_be_bytes() } else { x.to_le_bytes() };
@@ -77,6 +85,7 @@ pub fn obj() -> Vec<Vec<u8>> {
         format!("# a pyramid\no pyramid\n{points}{}", faces(&|i| (i + 1).to_string())),
         format!("{points}{others}g a\ns 1\n{}", faces(&|i| format!("{}/{}/{}", i + 1, i % 2 + 1, i % 2 + 1))),
         format!("{points}{others}{}", faces(&|i| format!("{}//{}", i as i32 - 5, -1))),
+        format!("\u{feff}{points}vt 0.5\nf 1 2 \\\n4/1 5 3 # no convex one\r\nf 5 4 1\nfo 2 3 5\n"),
         format!("{points}f 1 2 3 4\nf 1 5 2\nl 1 2\np 3\nmtllib none.mtl\nusemtl none\nf 1 2 5\n"),
     ]
     .map(String::into_bytes)

@@ -155,7 +155,7 @@ const SCENE_WORDS: [&str; 44] = [
     "[[object]]\n",
     "\"\"\"",
 ];
-const PLY_WORDS: [&str; 19] = [
+const PLY_WORDS: [&str; 20] = [
     "char",
     "uchar",
     "short",
@@ -168,6 +168,7 @@ const PLY_WORDS: [&str; 19] = [
     "property",
     "element",
     "face",
+    "tristrips",
     "vertex",
     "x",
     "vertex_indices",

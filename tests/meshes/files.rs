@@ -94,6 +94,39 @@ fn every_kind_of_ply_gives_the_same_triangles() {
 }
 
 #[test]
+fn strips_of_a_ply_are_cut_into_triangles() {
+    let header = ply_header("ascii", "float", "int").replace("element face 5", "element tristrips 2");
+    let vertices = POINTS.map(|[x, y, z]| format!("{x} {y} {z} 255\n")).concat();
+    // The second one goes back to where it was without a triangle.
+    let strips = "8 0 3 2 -1 2 1 0 4\n13 1 2 4 3 -1 -7 0 4 3 -1 4 4 0\n";
+    let (_folder, path) = file("a.ply", (header.replace("uchar int", "int int") + &vertices + strips).as_bytes());
+    let expected = [[0, 3, 2], [2, 1, 0], [0, 1, 4], [1, 2, 4], [4, 2, 3], [0, 4, 3]];
+    assert_eq!(read_mesh(&path).expect("strips").faces, expected);
+}
+
+#[test]
+fn what_a_ply_cannot_say_with_its_faces_is_told() {
+    let refusal = |from: &str, to: &str| {
+        let (_folder, path) = file("a.ply", ply_text().replace(from, to).as_bytes());
+        read_mesh(&path).err().unwrap_or_default()
+    };
+    let list = "list uchar int vertex_indices";
+    assert_eq!(refusal(list, list), "");
+    let floats = refusal("uchar int", "uchar float");
+    assert_eq!(floats, "the vertex_indices of its faces are not whole numbers");
+    assert_eq!(refusal(list, "list uchar int corners"), "its faces have no list of vertex_indices");
+    assert_eq!(refusal(list, "int vertex_indices"), "its faces have no list of vertex_indices");
+    assert_eq!(
+        refusal("element face 5\nproperty list uchar int vertex_indices", "element face 0"),
+        "the file holds no faces"
+    );
+    for name in ["a.ply", "a.obj", "a.glb"] {
+        let (_folder, path) = file(name, b"\x1f\x8b\x08\0\0\0\0\0");
+        assert_eq!(read_mesh(&path).err().as_deref(), Some("it is compressed by gzip: unpack it first"));
+    }
+}
+
+#[test]
 fn every_way_to_write_an_obj_gives_the_same_triangles() {
     let vertices = POINTS.map(|[x, y, z]| format!("v {x} {y} {z}\n")).concat();
     let faces = [
