@@ -102,12 +102,17 @@ impl ExrFile {
         let mut layers = Vec::new();
         for part in &self.parts {
             let at_root: Vec<&Channel> = part.channels.iter().filter(|channel| channel.layer.is_empty()).collect();
-            let is_color = |channel: &&Channel| ["R", "G", "B", "A"].contains(&channel.name.as_str());
-            let (color, alone): (Vec<&Channel>, Vec<&Channel>) = at_root.iter().partition(|channel| is_color(channel));
-            let beauty = ExrLayer::new(BEAUTY, part, color.clone());
-            let has_beauty = beauty.color().is_some();
-            layers.extend(has_beauty.then_some(beauty));
-            let alone = if has_beauty { alone } else { at_root };
+            let of_letters = |letters: [&str; 4]| {
+                let is_color = |channel: &&Channel| letters.contains(&channel.name.as_str());
+                let (color, alone): (Vec<&Channel>, Vec<&Channel>) = at_root.iter().partition(|it| is_color(it));
+                let beauty = ExrLayer::new(BEAUTY, part, color);
+                beauty.color().is_some().then_some((beauty, alone))
+            };
+            let found = of_letters(["R", "G", "B", "A"]).or_else(|| of_letters(["r", "g", "b", "a"]));
+            let (beauty, mut alone) = found.map_or((None, at_root.clone()), |(beauty, alone)| (Some(beauty), alone));
+            layers.extend(beauty);
+            // What an alpha belongs to comes before it.
+            alone.sort_by_key(|channel| channel.name == "A");
             layers.extend(alone.into_iter().map(|channel| ExrLayer::new(&channel.name, part, vec![channel])));
             let mut names: Vec<&str> = part.channels.iter().map(|channel| channel.layer.as_str()).collect();
             names.sort_unstable();

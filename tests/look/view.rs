@@ -77,6 +77,18 @@ fn where_there_are_no_colors_the_first_layer_is_shown_and_named() {
     assert!(said.starts_with("there are no R, G and B: this is Y\nY: black is 1.0, white 3.0, "), "{said}");
 }
 
+#[test]
+fn a_gray_comes_before_its_alpha_and_small_letters_are_colors() {
+    let folder = Folder::new();
+    let path = folder.path().join("a.exr");
+    Exr::new([2, 1], vec![("A", vec![1.0; 2]), ("Y", vec![1.0, 3.0])]).write(&path);
+    let (shown, said) = pixels(&folder, &[]);
+    assert_eq!(shown, [[0; 3], [255; 3]]);
+    assert!(said.starts_with("there are no R, G and B: this is Y\nY: black is 1.0, white 3.0, "), "{said}");
+    Exr::new([1, 1], vec![("b", vec![0.0]), ("g", vec![0.5]), ("r", vec![1.0])]).write(&path);
+    assert_eq!(pixels(&folder, &[]), (vec![[255, 188, 0]], String::new()));
+}
+
 /// Hable's curve of 1: (0.704 / 1.66 - 1 / 15) / (19.38 / 24.476 - 1 / 15) = 0.49292, in sRGB 186.3.
 #[test]
 fn a_tone_is_chosen_by_name() {

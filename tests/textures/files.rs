@@ -203,6 +203,33 @@ fn checksum(bytes: &[u8]) -> u32 {
     })
 }
 
+#[test]
+fn an_image_of_another_kind_than_its_name_says_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    exr::prelude::write_rgb_file(folder.join("exr"), 1, 1, |_, _| (0.5, 0.5, 0.5)).unwrap();
+    let open_exr = std::fs::read(folder.join("exr")).unwrap();
+    write_png(folder, "png", 1, L8, &[7]);
+    let png = std::fs::read(folder.join("png")).unwrap();
+    let joint = jpeg([8, 8], 75, false, &[100; 64]);
+    for (name, bytes, told, help) in [
+        ("a.b.jpg", &png[..], "JPEG image: it is a PNG image", "call it a.b.png"),
+        ("a.png", &joint, "PNG image: it is a JPEG image", "call it a.jpg"),
+        ("a.hdr", &open_exr, "Radiance image: it is an OpenEXR image", "call it a.exr"),
+        ("a.exr", b"#?RADIANCE\n", "OpenEXR image: it is a Radiance image", "call it a.hdr"),
+        ("a.jpeg", b"II*\0", "JPEG image: it is a TIFF image", "save it as JPEG"),
+    ] {
+        std::fs::write(folder.join(name), bytes).unwrap();
+        let found = refusal_of(folder, &format!("diffuse = {{ reflectance = {{ image = \"{name}\" }} }}"));
+        assert_eq!(found.message, format!("{name} is no {told}"));
+        assert_eq!(found.help.as_deref(), Some(help));
+    }
+    write_png(folder, "a.png", 1, L8, &[7]);
+    let found = refusal_of(folder, "diffuse = { reflectance = { image = \"a.png\", channel = \"alpha\" } }");
+    assert_eq!(found.message, "a.png has no alpha");
+    assert_eq!(found.help.as_deref(), Some("leave `channel` out, or save the image with alpha"));
+}
+
 /// The decoder makes gray of what is missing, and says nothing.
 #[test]
 fn a_jpeg_that_ends_too_early_is_refused() {

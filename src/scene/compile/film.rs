@@ -38,7 +38,10 @@ pub(super) fn film(value: Value) -> Option<(FilmSettings, Format)> {
         let (width, height) = (width?.it, height?);
         let (pixels, most) = (u64::from(width) * u64::from(height.it), FilmSettings::MAX_PIXELS);
         if pixels > most {
-            return height.place.refuse(format!("{width} x {} pixels are {pixels}; at most {most} fit", height.it));
+            let message = format!("{width} x {} pixels are {pixels}; at most {most} fit", height.it);
+            let [across, down] = [width, height.it].map(u64::from);
+            let (wide, high) = ((most * across / down).isqrt(), (most * down / across).isqrt());
+            return height.place.advise(message, format!("in this shape, {wide} x {high} pixels fit"));
         }
         let (filter, color_space, height, overscan, crop) = (filter?, color_space?, height.it, overscan?, crop?);
         let film = FilmSettings {

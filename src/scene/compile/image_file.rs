@@ -13,8 +13,8 @@ use crate::spectrum::{Channel, IDENTITY, Image, Matrix, decode_srgb};
 /// What is wrong with it, and what to do.
 pub(super) fn read_image(path: &Path, bytes: &[u8]) -> Result<ImageFile, Fault> {
     let image = match ending(path).as_str() {
-        "exr" => decoded(path, "OpenEXR", || decode_exr(bytes, false))?,
-        "hdr" => decoded(path, "Radiance", || decode_radiance(bytes))?,
+        "exr" => decoded(path, "OpenEXR", bytes, |bytes| decode_exr(bytes, false))?,
+        "hdr" => decoded(path, "Radiance", bytes, decode_radiance)?,
         ending @ ("png" | "jpg" | "jpeg") => {
             let help = "use an OpenEXR (.exr) or Radiance (.hdr) image";
             return Err(Fault::new(format!("a .{ending} image holds no light brighter than white"), help));
@@ -90,7 +90,7 @@ impl TextureOf<'_> {
 
     fn of_whole_numbers(self, bytes: &[u8], decode: Decoder) -> Result<ImageFile, Fault> {
         let (srgb, directions) = (self.srgb, self.meaning == Meaning::Directions);
-        let whole = decoded(self.path, self.kind, || decode(bytes))?;
+        let whole = decoded(self.path, self.kind, bytes, decode)?;
         let width = whole.width;
         let picked = self.picked(whole.channels, whole.has_alpha())?;
         match whole.steps {
@@ -120,8 +120,8 @@ impl TextureOf<'_> {
 
     fn of_floats(self, bytes: &[u8]) -> Result<ImageFile, Fault> {
         let (radiance, directions) = (self.kind == "Radiance", self.meaning == Meaning::Directions);
-        let read = || if radiance { decode_radiance(bytes) } else { decode_exr(bytes, true) };
-        let image = decoded(self.path, self.kind, read)?;
+        let read = |bytes: &[u8]| if radiance { decode_radiance(bytes) } else { decode_exr(bytes, true) };
+        let image = decoded(self.path, self.kind, bytes, read)?;
         let picked = self.picked(image.channels, image.has_alpha)?;
         let ignores_alpha = !directions && picked.ignores(&image.numbers, 1.0);
         let (width, channels) = (image.width, picked.channels());
@@ -173,7 +173,8 @@ impl Picked {
             Some(Channel::Blue) => one(2),
             Some(Channel::Alpha) if has_alpha => (colors, colors),
             Some(Channel::Alpha) => {
-                return Err(Fault { message: format!("{} has no alpha", path.display()), help: None });
+                let message = format!("{} has no alpha", path.display());
+                return Err(Fault::new(message, "leave `channel` out, or save the image with alpha"));
             }
         };
         let alpha = (has_alpha && channel.is_none() && colors > 0).then_some(colors);
@@ -198,16 +199,48 @@ fn ending(path: &Path) -> String {
     path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase()
 }
 
+/// What files begin with, whatever they are called: the kind, and how its names end. Those of the last kinds are not
+/// read.
+const BEGINNINGS: [(&[u8], &str, &str); 9] = [
+    (b"\x89PNG", "PNG", "png"),
+    (b"\xff\xd8\xff", "JPEG", "jpg"),
+    (b"\x76\x2f\x31\x01", "OpenEXR", "exr"),
+    (b"#?RADIANCE", "Radiance", "hdr"),
+    (b"#?RGBE", "Radiance", "hdr"),
+    (b"II*\0", "TIFF", ""),
+    (b"MM\0*", "TIFF", ""),
+    (b"GIF8", "GIF", ""),
+    (b"RIFF", "WebP", ""),
+];
+
+/// The kind of image that a file holds, if it begins as one does, and how its name should end if it is read.
+fn kind_of(bytes: &[u8]) -> Option<(&'static str, &'static str)> {
+    let (_, kind, ending) = BEGINNINGS.iter().find(|(beginning, ..)| bytes.starts_with(beginning))?;
+    Some((kind, ending))
+}
+
 fn unknown(path: &Path, help: &str) -> Fault {
     Fault::new(format!("the kind of image cannot be told from {:?}", path.display()), help)
 }
 
 /// What a decoder makes of the file.
-fn decoded<T>(path: &Path, kind: &str, decode: impl FnOnce() -> Result<T, Unreadable>) -> Result<T, Fault> {
+fn decoded<T>(
+    path: &Path,
+    kind: &str,
+    bytes: &[u8],
+    decode: impl FnOnce(&[u8]) -> Result<T, Unreadable>,
+) -> Result<T, Fault> {
+    if let Some((another, ending)) = kind_of(bytes).filter(|(another, _)| *another != kind) {
+        let article = if another.starts_with('O') { "an" } else { "a" };
+        let message = format!("{} is no {kind} image: it is {article} {another} image", path.display());
+        let name = Path::new(path.file_name().unwrap_or_default()).with_extension(ending);
+        let help = if ending.is_empty() { format!("save it as {kind}") } else { format!("call it {}", name.display()) };
+        return Err(Fault::new(message, help));
+    }
     let unreadable = |said: &str, help: &str| {
         Fault::new(format!("{} is no {kind} image ({})", path.display(), said.trim_end_matches('.')), help)
     };
-    match guarded(|| Ok::<_, String>(decode())) {
+    match guarded(|| Ok::<_, String>(decode(bytes))) {
         Ok(Ok(read)) => Ok(read),
         Ok(Err(Unreadable::Channels(channels))) => {
             let message = format!("{} has no channels R, G and B: it has the channels {channels}", path.display());
