@@ -80,8 +80,8 @@ fn reach(points: impl Iterator<Item = DVec3>, vertices: &Vertices) -> f64 {
     2.0 * digits * points.map(|point| point.abs().max_element()).fold(0.0, f64::max)
 }
 
-/// Points as they are seen against a direction, counterclockwise about it. What lies in a plane across an axis keeps its
-/// coordinates to the last bit.
+/// Points as they are seen against a direction, counterclockwise about it. What lies in a plane across an axis keeps
+/// its coordinates to the last bit.
 fn seen_along(normal: DVec3, points: &[DVec3]) -> Vec<DVec2> {
     let size = normal.abs();
     let axis = (0..3).fold(0, |most, axis| if size[axis] > size[most] { axis } else { most });

@@ -40,7 +40,8 @@ pub(super) struct Accessor {
     sparse: Option<Sparse>,
 }
 
-/// Entries that differ from those of the view, or from zeros where there is none (section 3.6.2.3 of the specification).
+/// Entries that differ from those of the view, or from zeros where there is none (section 3.6.2.3 of the
+/// specification).
 #[derive(Deserialize)]
 struct Sparse {
     count: usize,

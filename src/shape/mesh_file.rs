@@ -141,7 +141,8 @@ impl PropertyAccess for PlyFace {
 }
 
 impl PlyFace {
-    /// The triangles of strips, each of which a negative index ends; two equal corners only lead on to the next triangle.
+    /// The triangles of strips, each of which a negative index ends; two equal corners only lead on to the next
+    /// triangle.
     fn triangles(&self, mut keep: impl FnMut([u32; 3])) {
         for strip in self.0.split(|&corner| corner == NO_VERTEX) {
             for (number, corners) in strip.windows(3).enumerate() {

@@ -137,8 +137,8 @@ fn parts_that_do_not_make_one_image_are_refused_by_name() {
     }
     let missing =
         "error: there is no part new.part\nhelp: parts are made by --shard, as in render --shard 1/4 scene.toml";
-    refused(&folder, &format!("merge new/old.exr {one} new.part"), missing);
-    assert!(!folder.path().join("new").exists());
+    refused(&folder, &format!("merge fresh/old.exr {one} new.part"), missing);
+    assert!(!folder.path().join("fresh").exists());
     assert_eq!(run(&folder, &format!("merge old.exr {one} samples.2-of-2.part")).code, Some(2));
     assert_eq!(bytes(&folder, "old.exr"), b"an image of last week");
     assert_eq!(done(&folder, &format!("merge old.exr {two} {one}")).stderr, "wrote old.exr\n");
