@@ -33,7 +33,7 @@ fn with(text: &str, settings: &[&str]) -> Scene {
 /// All that a scene is but what it is called and made of.
 fn shown(scene: Scene) -> String {
     let mut scene = scene;
-    (scene.hash, scene.settings) = Default::default();
+    (scene.hash, scene.files, scene.settings) = Default::default();
     format!("{scene:?}")
 }
 
@@ -162,6 +162,9 @@ fn included_files_stand_in_the_scene_as_if_they_were_written_there() {
     ]);
     let whole = read(&folder);
     assert_eq!(whole.objects.iter().map(|object| &*object.name).collect::<Vec<_>>(), ["ball", "big \"b.ll\""]);
+    let files = whole.files.iter().map(|file| file.strip_prefix(fs::canonicalize(folder.path()).expect("it is there")));
+    let files: Vec<String> = files.map(|file| file.expect("all lie within").display().to_string()).collect();
+    assert_eq!(files, ["scene.toml", "parts/all.toml", "parts/ball.toml", "gold.toml"]);
     let hash = whole.hash.clone();
     assert_eq!(shown(whole), shown(with(SCENE, &[])));
     fs::write(folder.path().join("gold.toml"), format!("{gold}# other\n")).expect("files can be written");

@@ -146,7 +146,17 @@ fn sources(scene: &Scene<Curve>, world: &World) -> Result<Sources, Option<String
                 "caustics of an image of the sky are left to chance".into()
             }
             [] => "rays find the sky by chance often enough".into(),
-            lights => format!("{} large enough for rays to meet by chance", named(scene, lights)),
+            lights => {
+                let is_small = |&&(_, size): &&SizedLight| size < SMALL;
+                let small: Vec<SizedLight> = lights.iter().filter(is_small).copied().collect();
+                match small.is_empty() {
+                    true => format!("{} large enough for rays to meet by chance", named(scene, lights)),
+                    false => format!(
+                        "lamps with images and instances of lamps send none, so caustics of {} are left to chance",
+                        named(scene, &small)
+                    ),
+                }
+            }
         };
         return Err(Some(format!("no photon tracing: {why}")));
     }

@@ -297,6 +297,11 @@ fn the_plan_asks_for_photons_where_they_are_needed_and_says_why_where_not() {
     asks(format!("{ball}{point}{}", lamp(2.0)), "left to chance: caustics of bulb");
     leaves(point.into(), "no caustics: no surface is smooth");
     leaves(format!("{ball}{}", lamp(2.0)), "large enough for rays to meet by chance");
+    let screen = "[material.screen]\nemissive = { radiance = { checker = [3, 1] } }\n";
+    leaves(
+        format!("{screen}{ball}{}", lamp(0.1).replace("\"lamp\"", "\"screen\"")),
+        "lamps with images and instances of lamps send none, so caustics of bulb (",
+    );
     leaves(format!("{ball}[[light]]\nenvironment = {{ radiance = 1 }}\n"), "rays find the sky by chance");
     leaves(
         format!(
