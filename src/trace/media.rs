@@ -45,7 +45,7 @@ impl Media {
         Self::around_of(scene, start, direction, &|_| true)
     }
 
-    /// The same of those objects that count.
+    /// The media around a point, of those objects that count.
     pub(super) fn around_of(
         scene: &Scene<Table>,
         start: DVec3,
