@@ -55,15 +55,17 @@ pub fn spare(input: &Path, what: &str, output: &Path) -> Result<()> {
 pub fn check_outputs(scene: &Scene, outputs: &[&Path]) -> Result<()> {
     let [own, others @ ..] = &scene.files[..] else { return Ok(()) };
     let another = |message: String| refuse(&message, Some("name another file"));
-    for (number, output) in outputs.iter().enumerate() {
+    let read: Vec<PathBuf> = others.iter().map(|other| full(other)).collect();
+    let written: Vec<PathBuf> = outputs.iter().map(|output| full(output)).collect();
+    for (number, (output, file)) in outputs.iter().zip(&written).enumerate() {
         spare(own, "scene", output)?;
-        let (name, file) = (output.display(), full(output));
-        if others.iter().any(|other| full(other) == file) {
+        let name = output.display();
+        if read.contains(file) {
             return another(format!("{name} is a file that the scene reads"));
         }
         // A device takes what it is given.
         let is_file = !output.exists() || output.is_file();
-        if is_file && outputs[..number].iter().any(|earlier| full(earlier) == file) {
+        if is_file && written[..number].contains(file) {
             return another(format!("{name} would be written twice"));
         }
     }

@@ -7,7 +7,7 @@ use super::words::in_number;
 use crate::light::{Light, LightId};
 use crate::material::Material;
 use crate::math::{DVec2, DVec3, one_minus_cos_of_cone};
-use crate::scene::{CausticsText, Scene, Sight};
+use crate::scene::{CausticsText, Scene};
 use crate::spectrum::Curve;
 use crate::trace::{LightPass, Transport, World, is_photon_target, piloted, seen_photons};
 
@@ -247,8 +247,7 @@ fn lit_places(scene: &Scene<Curve>, spread: impl Fn(&Material<Curve>) -> bool) -
     let place = |ray| {
         // What is seen through a pane is lit as well.
         let counts = |material: &Material<Curve>| spread(material) || !material.is_see_through();
-        let is_hidden = |object: u32| scene.objects[object as usize].sight == Sight::Hidden;
-        let counts = |object| counts(scene.material_of(object)) && !is_hidden(object);
+        let counts = |object| counts(scene.material_of(object)) && scene.is_seen(object);
         let hit = scene.nearest(&ray, f64::INFINITY, &counts)?;
         if !spread(scene.material_of(hit.object)) {
             return None;

@@ -125,7 +125,12 @@ impl<S> Scene<S> {
 
     /// The nearest surface along a ray of the camera, which may have left one through which light goes straight on.
     pub fn intersect_seen(&self, ray: &Ray, left: Option<Primitive>) -> Option<Hit> {
-        self.nearest_from(ray, left, &|object| self.objects[object as usize].sight != Sight::Hidden)
+        self.nearest_from(ray, left, &|object| self.is_seen(object))
+    }
+
+    /// Whether the camera sees an object, or at least its hole.
+    pub fn is_seen(&self, object: u32) -> bool {
+        self.objects[object as usize].sight != Sight::Hidden
     }
 
     /// The nearest surface of the plate's world along a ray: see [`Scene::is_of_plate`].

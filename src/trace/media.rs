@@ -63,7 +63,7 @@ impl Media {
         }
         let mut media = Self::default();
         for (material, count) in left.into_iter().filter(|(_, count)| *count > 0) {
-            (0..count).for_each(|_| media = media.entered(material).unwrap_or(media));
+            media = media.with(material, count as u32);
         }
         media
     }
@@ -143,11 +143,14 @@ impl Media {
     }
 
     /// These media and others.
-    pub(super) fn and(mut self, others: &Self) -> Self {
-        for &(material, count) in &others.entries[..others.len as usize] {
-            (0..count).for_each(|_| self = self.entered(material).unwrap_or(self));
-        }
-        self
+    pub(super) fn and(self, others: &Self) -> Self {
+        let entries = &others.entries[..others.len as usize];
+        entries.iter().fold(self, |media, &(material, count)| media.with(material, count))
+    }
+
+    /// These media and so many bodies of one, as far as there is room.
+    fn with(self, material: MaterialId, count: u32) -> Self {
+        (0..count).fold(self, |media, _| media.entered(material).unwrap_or(media))
     }
 
     fn entered(mut self, material: MaterialId) -> Option<Self> {

@@ -104,9 +104,11 @@ impl World {
         };
         if has_media {
             let (position, forward) = (world.scene.camera.position(), world.scene.camera.forward());
-            let around = |counts| Media::around_of(&world.scene, position, forward, counts);
-            let media = [around(&|object| world.is_seen(object)), around(&|object| !world.is_seen(object))];
-            [world.camera_media, world.hidden_media] = media;
+            let scene = &world.scene;
+            let around =
+                |seen: bool| Media::around_of(scene, position, forward, &|object| scene.is_seen(object) == seen);
+            (world.camera_media, world.hidden_media) =
+                (around(true), if hides_objects { around(false) } else { Media::default() });
         }
         world.choose_photon_targets();
         world
@@ -247,24 +249,19 @@ impl World {
 
     /// The media around a ray, but for those that the camera does not see.
     pub(super) fn seen_media(&self, ray: &Ray) -> Media {
-        Media::around_of(&self.scene, ray.origin, ray.direction, &|object| self.is_seen(object))
+        Media::around_of(&self.scene, ray.origin, ray.direction, &|object| self.scene.is_seen(object))
     }
 
     /// Adds the media of bodies around a surface that the camera's ray has met, and has gone through to it without
     /// seeing them; those around the camera too if it is the first.
     #[cold]
     pub(super) fn enter_hidden(&self, is_first: bool, ray: &Ray, hit: &Hit, media: &mut Media) {
-        let is_hidden = |object: u32| !self.is_seen(object);
+        let is_hidden = |object: u32| !self.scene.is_seen(object);
         if is_first {
             let way = [self.scene.camera.position(), ray.origin];
             *media = media.and(&self.hidden_media.after_walk(&self.scene, way, &is_hidden));
         }
         *media = media.after_walk(&self.scene, [ray.origin, ray.at(hit.crossing.t)], &is_hidden);
-    }
-
-    /// Whether the camera sees an object, or at least its hole.
-    pub(super) fn is_seen(&self, object: u32) -> bool {
-        self.sight(object) != Sight::Hidden
     }
 
     /// Whether next-event estimation at a vertex of the given weight samples every light, or one.

@@ -119,7 +119,7 @@ impl<const N: usize, P: Polarization<N>> Path<N, P> {
         let media = if world.has_media && camera.starts_away() {
             world
                 .camera_media
-                .after_walk(&world.scene, [camera.position(), ray.origin], &|object| world.is_seen(object))
+                .after_walk(&world.scene, [camera.position(), ray.origin], &|object| world.scene.is_seen(object))
         } else {
             world.camera_media
         };

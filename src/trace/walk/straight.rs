@@ -8,7 +8,7 @@ use super::polarization::{Onward, Polarization};
 use super::shading;
 use crate::material::Scatter;
 use crate::math::{Ray, Sampler};
-use crate::scene::{Ends, Hit, MaterialId, Sight};
+use crate::scene::{Ends, Hit, MaterialId};
 use crate::shape::SurfacePoint;
 use crate::spectrum::{Draw, Lanes};
 use crate::trace::{Transport, World, media};
@@ -96,7 +96,7 @@ impl Past {
             _ if !world.hides_objects => true,
             Self::Objects(Among::All) => true,
             Self::Objects(Among::Plate) => world.scene.is_of_plate(object),
-            Self::Seen => world.sight(object) != Sight::Hidden,
+            Self::Seen => world.scene.is_seen(object),
         }
     }
 }

@@ -66,12 +66,11 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
     #[inline(always)]
     pub fn meet(&mut self, path: &mut Path<N, P>, draw: &Draw<N>) -> Option<Meeting> {
         self.stats.rays += 1;
-        let hit = match path.kind {
-            PathKind::Camera if self.world.hides_objects && path.among == Among::All => {
-                self.world.scene.intersect_seen(&path.ray, path.left)
-            }
-            _ if path.among == Among::Plate => self.world.scene.intersect_plate(&path.ray, path.left),
-            _ => self.world.scene.intersect_from(&path.ray, path.left),
+        let is_past_hidden = self.world.hides_objects && path.kind == PathKind::Camera && path.among == Among::All;
+        let hit = match path.among {
+            Among::All if is_past_hidden => self.world.scene.intersect_seen(&path.ray, path.left),
+            Among::All => self.world.scene.intersect_from(&path.ray, path.left),
+            Among::Plate => self.world.scene.intersect_plate(&path.ray, path.left),
         };
         let before = path.throughput;
         path.advance(self.world, draw, hit.map_or(f64::INFINITY, |hit| hit.crossing.t));
@@ -79,8 +78,7 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
             audit.absorb(path, before, draw);
         }
         let hit = hit?;
-        let is_view = path.kind == PathKind::Camera && path.among == Among::All;
-        if is_view && self.world.hides_objects && self.world.has_media {
+        if is_past_hidden && self.world.has_media {
             self.world.enter_hidden(path.left.is_none(), &path.ray, &hit, &mut path.media);
         }
         path.left = Some(hit.primitive());
