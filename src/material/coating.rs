@@ -1,8 +1,9 @@
+use std::cell::RefCell;
 use std::sync::{Arc, OnceLock};
 
 use super::Arrival;
 use super::film_averages::FilmAverages;
-use super::stack::{Layer, Stack};
+use super::stack::{Layer, Stack, StackShares};
 use crate::math::Complex;
 use crate::spectrum::{Lanes, MAX_LANES, Quantity, Table};
 
@@ -87,6 +88,19 @@ impl Coating<Table> {
     }
 }
 
+/// What [`Stack::shares`] answered.
+struct Answer {
+    /// The indices on both sides, and the cosine times the first.
+    boundary: [f64; 4],
+    stack: Stack,
+    shares: StackShares,
+}
+
+thread_local! {
+    /// The last answer for each lane.
+    static LAST: RefCell<[Option<Answer>; MAX_LANES]> = const { RefCell::new([const { None }; MAX_LANES]) };
+}
+
 /// A coating where light arrives.
 pub(super) struct MetCoating<'a, const N: usize> {
     coating: &'a Coating<Table>,
@@ -119,17 +133,40 @@ impl<const N: usize> MetCoating<'_, N> {
         if *known == indices { *averages } else { make() }
     }
 
+    /// What the layers do with a lane between index `n1` and `n2` beyond: [`Stack::shares`].
+    ///
+    /// A surface asks up to four times, for what goes straight on, what is mirrored and how each is polarized.
+    pub(super) fn shares(&self, lane: usize, n1: f64, n2: Complex, q1: f64) -> StackShares {
+        let boundary = [n1, n2.re, n2.im, q1];
+        LAST.with_borrow_mut(|last| match &mut last[lane] {
+            Some(last) if last.boundary == boundary && last.stack.is(self.light(lane), self.layers(lane)) => {
+                last.shares
+            }
+            last => {
+                let stack = self.stack(lane);
+                last.insert(Answer { boundary, shares: stack.shares(n1, n2, q1), stack }).shares
+            }
+        })
+    }
+
     /// The layers for a lane, the viewer's side first.
     pub(super) fn stack(&self, lane: usize) -> Stack {
-        let draw = self.arrival.draw;
-        let [nm, band] = [&self.coating.wavelength, &self.coating.band].map(|table| draw.read_lane(table, lane));
-        let mut stack = Stack::new(nm, band);
-        for (number, layer) in self.coating.layers.iter().enumerate() {
-            let read = |table| draw.read_lane(table, lane);
-            let exact = || read(&layer.thickness);
+        Stack::new(self.light(lane), self.layers(lane))
+    }
+
+    /// The wavelength of a lane in nm, and the relative width of its band.
+    fn light(&self, lane: usize) -> [f64; 2] {
+        [&self.coating.wavelength, &self.coating.band].map(|table| self.arrival.draw.read_lane(table, lane))
+    }
+
+    fn layers(&self, lane: usize) -> impl Iterator<Item = Layer> {
+        let layers = &self.coating.layers;
+        (0..layers.len()).map(move |place| {
+            let number = if self.inside { layers.len() - 1 - place } else { place };
+            let read = |table| self.arrival.draw.read_lane(table, lane);
+            let exact = || read(&layers[number].thickness);
             let thickness_nm = self.thicknesses.get(number).map_or_else(exact, |thickness| f64::from(thickness[lane]));
-            stack.push(Layer { index: Complex::new(read(&layer.index), -read(&layer.k)), thickness_nm });
-        }
-        if self.inside { stack.turned_around() } else { stack }
+            Layer { index: Complex::new(read(&layers[number].index), -read(&layers[number].k)), thickness_nm }
+        })
     }
 }

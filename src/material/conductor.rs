@@ -62,7 +62,11 @@ impl Conductor<Table> {
         let reflected: [[f64; 2]; N] = std::array::from_fn(|i| match (arrival.present[i], &met) {
             (0.0, _) => [0.0; 2],
             (_, None) => conductor_reflectance(arrival.incident_of(i), n[i], k[i], cos),
-            (_, Some(met)) => coated_reflectance(&met.stack(i), arrival.incident_of(i), n[i], k[i], cos),
+            (_, Some(met)) => {
+                let n1 = arrival.incident_of(i);
+                let shares = met.shares(i, n1, Complex::new(n[i], -k[i]), n1 * cos.clamp(0.0, 1.0));
+                [shares.reflected.s, shares.reflected.p]
+            }
         });
         Branch {
             wi: reflect(arrival.wo, arrival.normal),
@@ -156,7 +160,7 @@ impl Conductor<Table> {
             return mueller.set_lanes(axis, incoming.lanes, |lane| {
                 let metal = Complex::new(n[lane], -k[lane]);
                 let n1 = arrival.incident_of(lane);
-                met.stack(lane).shares(n1, metal, n1 * cos.clamp(0.0, 1.0)).reflected.block().times(once)
+                met.shares(lane, n1, metal, n1 * cos.clamp(0.0, 1.0)).reflected.block().times(once)
             });
         }
         let (mut last, mut block) = (None, Block::default());

@@ -111,16 +111,14 @@ pub struct Stack {
 }
 
 impl Stack {
-    /// No layers yet, for light of a wavelength in nm and the relative width of its band.
-    pub fn new(nm: f64, band: f64) -> Self {
-        Self { layers: SmallVec::new(), nm, band }
+    /// Those of some layers that have a thickness, for light of a wavelength in nm and the relative width of its band.
+    pub fn new([nm, band]: [f64; 2], layers: impl Iterator<Item = Layer>) -> Self {
+        Self { layers: with_thickness(layers).collect(), nm, band }
     }
 
-    /// Adds a layer behind the others; none that has no thickness.
-    pub fn push(&mut self, layer: Layer) {
-        if layer.thickness_nm > 0.0 {
-            self.layers.push(layer);
-        }
+    /// Whether [`new`](Self::new) would make the same.
+    pub fn is(&self, [nm, band]: [f64; 2], layers: impl Iterator<Item = Layer>) -> bool {
+        self.nm == nm && self.band == band && self.layers.iter().copied().eq(with_thickness(layers))
     }
 
     /// The layers, the viewer's side first.
@@ -238,6 +236,10 @@ impl Stack {
     }
 }
 
+fn with_thickness(layers: impl Iterator<Item = Layer>) -> impl Iterator<Item = Layer> {
+    layers.filter(|layer| layer.thickness_nm > 0.0)
+}
+
 /// Takes the fields of s and p to the near side of a layer that neither absorbs nor reflects all light: its matrices
 /// are real but for a factor i.
 fn pass_clear(fields: &mut [[Complex; 2]; 2], q: f64, n_squared: f64, phase: f64) {
@@ -259,11 +261,8 @@ mod tests {
 
     /// Layers of clear indices and thicknesses in nm, or absorbing ones, at a wavelength in nm.
     fn stack(layers: &[([f64; 2], f64)], nm: f64) -> Stack {
-        let mut stack = Stack::new(nm, 0.0);
-        for &([n, k], thickness) in layers {
-            stack.push(Layer { index: Complex::new(n, -k), thickness_nm: thickness });
-        }
-        stack
+        let layer = |&([n, k], thickness_nm): &([f64; 2], f64)| Layer { index: Complex::new(n, -k), thickness_nm };
+        Stack::new([nm, 0.0], layers.iter().map(layer))
     }
 
     fn met(layers: &[([f64; 2], f64)], nm: f64, n1: f64, n2: [f64; 2], degrees: f64) -> StackShares {
@@ -443,19 +442,19 @@ mod tests {
 
     #[test]
     fn beyond_its_coherence_a_film_is_a_pane() {
-        let mut stack = Stack::new(550.0, 0.02);
-        stack.push(Layer { index: 1.33.into(), thickness_nm: 11_000.0 });
+        let layers = [(1.33, 11_000.0), (2.4, 18_000.0)]
+            .map(|(index, thickness_nm)| Layer { index: Complex::from(index), thickness_nm });
+        let [stack, both] = [1, 2].map(|count| Stack::new([550.0, 0.02], layers.into_iter().take(count)));
         let r = (0.33_f64 / 2.33).powi(2);
         near(stack.shares(1.0, 1.0.into(), 1.0).reflected.mean(), 2.0 * r / (1.0 + r), 1e-12);
         near(stack.shares(1.0, 1.0.into(), 1.0).reflected.mean(), 0.039_329_698, 1e-9);
         // Two thick layers, against the mean over all pairs of phases.
-        stack.push(Layer { index: 2.4.into(), thickness_nm: 18_000.0 });
-        let found = stack.shares(1.0, 1.5.into(), 0.8).reflected.mean();
+        let found = both.shares(1.0, 1.5.into(), 0.8).reflected.mean();
         let mut mean = 0.0;
         for pair in 0..10_000 {
             let phases = [f64::from(pair % 100), f64::from(pair / 100)].map(|i| 0.01 * i * PI);
             let mut layer = 0;
-            let turned = stack.coherent(1.0, 1.5.into(), 0.8, |_, _| {
+            let turned = both.coherent(1.0, 1.5.into(), 0.8, |_, _| {
                 layer += 1;
                 phases[layer - 1]
             });

@@ -2,7 +2,9 @@
 
 use std::borrow::Cow;
 
-use crate::material::{COHERENT_NM, Coating, Layer, Material, PHASE_STEP, PathDifference, Retardance, Stack};
+use crate::material::{
+    COHERENT_NM, Coating, CoatingLayer, Layer, Material, PHASE_STEP, PathDifference, Retardance, Stack,
+};
 use crate::math::Complex;
 use crate::spectrum::{Basis, Curve, CurveKind, Quantity};
 
@@ -75,16 +77,16 @@ const MIDDLE_NM: f64 = 550.0;
 fn stacks(coating: &Coating<Curve>, thickest: bool, read: impl Fn(Quantity, &Curve) -> Vec<f64>) -> Vec<Stack> {
     let [nm, band] = [(Quantity::Wavelength, &coating.wavelength), (Quantity::BandWidth, &coating.band)]
         .map(|(what, one)| read(what, one));
-    let mut stacks: Vec<Stack> = nm.iter().zip(band).map(|(nm, band)| Stack::new(*nm, band)).collect();
-    for layer in &coating.layers {
+    let of_layer = |layer: &CoatingLayer<Curve>| {
         let of_index = if layer.is_metal { Quantity::MetalIndex } else { Quantity::Index };
         let (n, k) = (read(of_index, &layer.index), read(Quantity::MetalExtinction, &layer.k));
         let thickness = read(Quantity::Thickness, &even(&layer.thickness, thickest));
-        for (i, stack) in stacks.iter_mut().enumerate() {
-            stack.push(Layer { index: Complex::new(n[i], -k[i]), thickness_nm: thickness[i] });
-        }
-    }
-    stacks
+        let lane = |i: usize| Layer { index: Complex::new(n[i], -k[i]), thickness_nm: thickness[i] };
+        (0..n.len()).map(lane).collect()
+    };
+    let layers: Vec<Vec<Layer>> = coating.layers.iter().map(of_layer).collect();
+    let stack = |i: usize| Stack::new([nm[i], band[i]], layers.iter().map(|lanes| lanes[i]));
+    (0..nm.len()).map(stack).collect()
 }
 
 /// A thickness that is the same all over: of one that varies the most or the mean.
