@@ -82,7 +82,11 @@ STEPS = {
     "test": lambda: run("cargo", "test", "--workspace"),
     "packages": packages_and_browser,
     "wheel": wheel,
-    "pytest": lambda: run(PYTHON, "-m", "pytest", "tools/tests", RENDER=str(RENDER)),
+    # Two files at a time: half of them keep one processor busy.
+    "pytest": lambda: run(
+        PYTHON, "-m", "pytest", "tools/tests", "-n", "2", "--dist", "loadfile", "--no-loadscope-reorder",
+        RENDER=str(RENDER),
+    ),
 }
 
 
