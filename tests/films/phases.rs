@@ -5,8 +5,8 @@ use abbe::math::Complex;
 
 /// What is reflected at 550 nm by one clear layer on n - i k, under an angle in degrees.
 fn reflected(index: f64, thickness_nm: f64, n2: [f64; 2], degrees: f64) -> PolarizedShare {
-    let mut stack = Stack::new(550.0, 0.0);
-    stack.push(Layer { index: index.into(), thickness_nm });
+    let layer = Layer { index: index.into(), thickness_nm };
+    let stack = Stack::new([550.0, 0.0], [layer].into_iter());
     stack.shares(1.0, Complex::new(n2[0], -n2[1]), degrees.to_radians().cos()).reflected
 }
 

@@ -9,11 +9,8 @@ const NM: f64 = 548.6;
 const SILVER: [f64; 2] = [0.06, 3.586];
 
 fn stack(layers: &[([f64; 2], f64)]) -> Stack {
-    let mut stack = Stack::new(NM, 0.0);
-    for &([n, k], thickness_nm) in layers {
-        stack.push(Layer { index: Complex::new(n, -k), thickness_nm });
-    }
-    stack
+    let layer = |&([n, k], thickness_nm): &([f64; 2], f64)| Layer { index: Complex::new(n, -k), thickness_nm };
+    Stack::new([NM, 0.0], layers.iter().map(layer))
 }
 
 /// Bytes of a layer's characteristic matrix as it is written in Born & Wolf: cos delta of a complex phase.

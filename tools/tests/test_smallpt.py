@@ -31,7 +31,7 @@ def pictures():
 def centered():
     """A picture whose samples all leave a pixel's wall from the same point, so that a bad point shows."""
     text = scene_text(WIDTH // 2, HEIGHT // 2).replace("[film]", '[film]\nfilter = "center"')
-    return render(text, samples=512).rgb
+    return render(text, samples=128).rgb
 
 
 def specks(image, ignored):
