@@ -2,7 +2,7 @@
 
 use crate::light::{Light, LightId};
 use crate::material::{Dielectric, Index};
-use crate::math::{DVec3, Ray};
+use crate::math::{DVec3, Frame, Ray, unit};
 use crate::scene::{MaterialId, Scene};
 use crate::spectrum::{Draw, Table};
 
@@ -45,13 +45,14 @@ impl Media {
         Self::around_of(scene, start, direction, &|_| true)
     }
 
-    /// The media around a point, of those objects that count.
+    /// The media around a point, of those objects that count. Walks begin near `direction`.
     pub(super) fn around_of(
         scene: &Scene<Table>,
         start: DVec3,
         direction: DVec3,
         counts: &dyn Fn(u32) -> bool,
     ) -> Self {
+        let direction = aside(direction);
         let mut left = Self::left_by(scene, start, direction, counts);
         if scene.unbounded().any(|object| scene.materials[object.material as usize].material.medium().is_some()) {
             for (material, count) in Self::left_by(scene, start, -direction, counts) {
@@ -177,6 +178,12 @@ impl Media {
         }
         Some(self)
     }
+}
+
+/// A unit vector near another. One that a scene gives, toward what a camera looks at or straight up, may lead exactly
+/// to a corner of an outline, which is met once where a body is entered and left, or neither.
+fn aside(direction: DVec3) -> DVec3 {
+    unit(Frame::about(direction).to_world(DVec3::new(7.31e-4, 4.19e-4, 1.0)))
 }
 
 /// Surfaces a straight walk crosses at most; more are taken for a walk that never ends.

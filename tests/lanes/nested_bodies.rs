@@ -3,7 +3,7 @@
 use abbe::math::DVec3;
 
 use crate::support::random::Random;
-use crate::support::scenes::{EVERY_BRANCH, body, image, view};
+use crate::support::scenes::{EVERY_BRANCH, body, environment, image, view};
 use abbe::trace::Transport;
 
 /// Reflectance over transmittance of one interface at normal incidence.
@@ -200,5 +200,22 @@ fn m4_a_camera_knows_whether_it_is_in_a_half_space_whichever_way_it_looks() {
         let seen = f64::from(film.pixels[0].rgb[1]);
         assert!((seen - expected).abs() < 1e-6, "from {camera} to {lamp}: {seen} for {expected}");
         assert_eq!(report.unmatched, 0, "from {camera} to {lamp}");
+    }
+}
+
+/// A corner of an outline, met exactly, is no surface that leads out of the body.
+#[test]
+fn m4_a_camera_that_looks_exactly_at_a_corner_of_a_glass_mesh_is_outside_of_it() {
+    let octahedron =
+        "mesh = { points = [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]], faces = [
+        [0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]] }";
+    let glass = body("glass", "dielectric = { index = 1.5, absorption = 20 }", &[octahedron]);
+    for corner in [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]] {
+        for position in [[2.5, 3.5, 2.0], [-3.0, 1.0, 2.5], [1.0, -4.0, -2.0], [4.0, 1.0, 0.0]] {
+            let text = view(position, corner.map(f64::from), 70.0, 8) + &glass + &environment(1.0);
+            let (film, report) = image(&text, EVERY_BRANCH);
+            assert_eq!(report.unmatched, 0, "{corner:?} from {position:?}");
+            assert_eq!(film.pixels[0].rgb, [1.0; 3], "{corner:?} from {position:?}");
+        }
     }
 }
