@@ -192,6 +192,8 @@ fn numbers_on_the_command_line_are_checked() {
     is_refused("--error", "5%", "write 0.05 for 5 %");
     is_refused("--error", "little", "an error is a number, such as 0.01 for one percent");
     is_refused("--layers", "N,albdo", "there is no layer `albdo`: did you mean albedo?");
+    let both = "there are no layers `albdo` (did you mean albedo?), `varianc` (did you mean variance?)";
+    is_refused("--layers", "albdo,N,varianc", both);
     is_refused("--time", "soon", "a time is a number with a unit, such as 60s, 5m or 1h");
     is_refused("--time", "-3s", "a time is a number with a unit, such as 60s, 5m or 1h");
     for (flag, value, message) in [

@@ -131,32 +131,20 @@ impl Layer {
         self == Self::Polarization || Self::STOKES.contains(&self)
     }
 
-    /// The one that a name asks for, or what is wrong with the name and what to do.
-    ///
-    /// # Errors
-    /// If there is no such layer.
-    pub fn of_name(name: &str) -> Result<Self, String> {
-        let names = || Self::NAMES.iter().map(|(known, _)| *known);
-        let known = Self::NAMES.iter().find(|(known, _)| *known == name).map(|(_, layer)| *layer);
-        known.ok_or_else(|| match nearest(name, names()) {
-            Some(near) => format!("there is no layer `{name}`: did you mean {near}?"),
-            None => format!("there is no layer `{name}`: known are {}", names().collect::<Vec<_>>().join(", ")),
-        })
-    }
-
     /// Those that some names ask for, of which one may be the word for all.
     ///
     /// # Errors
-    /// If there is no such layer.
+    /// If there are no such layers: all of these, each with the name that was most likely meant.
     pub fn of_names<'a>(names: impl Iterator<Item = &'a str>) -> Result<Vec<Self>, String> {
-        let mut layers = Vec::new();
+        let (mut layers, mut unknown) = (Vec::new(), Vec::new());
         for name in names {
-            match name {
-                Self::ALL => layers.extend(Self::all()),
-                name => layers.push(Self::of_name(name)?),
+            match Self::NAMES.iter().find(|(known, _)| *known == name) {
+                Some((_, layer)) => layers.push(*layer),
+                None if name == Self::ALL => layers.extend(Self::all()),
+                None => unknown.push(name),
             }
         }
-        Ok(layers)
+        if unknown.is_empty() { Ok(layers) } else { Err(unknown_layers(&unknown)) }
     }
 
     /// The name that asks for it, and that the file has unless there are several.
@@ -215,6 +203,26 @@ impl Layer {
     /// Whether it is a matte.
     pub fn is_matte(self) -> bool {
         matches!(self, Self::CryptoObject | Self::CryptoMaterial | Self::CryptoAsset)
+    }
+}
+
+/// What is told of names that no layer has, at least one.
+fn unknown_layers(unknown: &[&str]) -> String {
+    let known = || Layer::NAMES.iter().map(|(known, _)| *known).chain([Layer::ALL]);
+    let meant: Vec<Option<&str>> = unknown.iter().map(|name| nearest(name, known())).collect();
+    let list = known().collect::<Vec<_>>().join(", ");
+    let told = |(name, near): (&&str, &Option<&str>)| match near {
+        Some(near) => format!("`{name}` (did you mean {near}?)"),
+        None => format!("`{name}`"),
+    };
+    match (unknown, meant.as_slice()) {
+        ([name], [Some(near)]) => format!("there is no layer `{name}`: did you mean {near}?"),
+        ([name], _) => format!("there is no layer `{name}`: known are {list}"),
+        _ => {
+            let told = unknown.iter().zip(&meant).map(told).collect::<Vec<_>>().join(", ");
+            let list = if meant.contains(&None) { format!("; known are {list}") } else { String::new() };
+            format!("there are no layers {told}{list}")
+        }
     }
 }
 

@@ -221,6 +221,13 @@ impl<'d> Value<'d> {
         Some(all).filter(|all| all.len() == count)
     }
 
+    /// What all entries of a list say, if nothing is wrong with any: each wrong one is told.
+    pub(in crate::scene) fn each<T>(self, read: impl FnMut(Self) -> Option<T>) -> Option<Vec<T>> {
+        let Some(entries) = self.entries() else { return self.wanted("a list") };
+        let all: Vec<Option<T>> = entries.map(read).collect();
+        all.into_iter().collect()
+    }
+
     /// The rows of numbers that a program has given for it, if it has.
     pub(in crate::scene) fn rows(self) -> Option<&'d Rows> {
         let position = self.node().as_str().and_then(Rows::marked)?;
