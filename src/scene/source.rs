@@ -9,7 +9,7 @@ use toml::de::DeTable;
 
 use super::Scene;
 use super::compile::{SECTIONS, compile};
-use super::text::{Document, Included, Mistake, Rows, Texts, fill, merged, parsed, set};
+use super::text::{Document, Included, Mistake, Place, Rows, Texts, fill, merged, parsed, set};
 use crate::error::{Error, Result, nearest_file};
 
 /// What the text of settings is called in messages; each has a line of it.
@@ -124,7 +124,7 @@ impl Source {
 
     fn compile_by(&self, place: Place, given: &[String], rows: Vec<Rows>) -> Result<Scene> {
         let Included { mut texts, parts, mistakes, mut files, .. } = Included::of(&self.path, &self.text);
-        texts.rows = rows;
+        (texts.rows, texts.told_by) = (rows, place);
         let settings = texts.add_lines(Path::new(SETTINGS), self.folder(), given);
         let refuse = |mut mistakes: Vec<Mistake>| {
             mistakes.sort_by_key(|mistake| mistake.span.start);
@@ -187,12 +187,6 @@ fn keys(texts: &Texts, files: &[Range<usize>], mistakes: &[Mistake]) -> HashMap<
 fn without_mark(text: &str) -> String {
     // A byte order mark would count as a column.
     text.strip_prefix('\u{feff}').unwrap_or(text).to_owned()
-}
-
-/// By what a mistake is told.
-enum Place {
-    Line,
-    Key,
 }
 
 impl Scene {

@@ -31,9 +31,10 @@ pub(super) fn camera(context: &mut Context, value: Value, film: Option<&FilmSett
     Fields::read(value, |camera| {
         let position = camera.need("position", point);
         let target = camera.need("look_at", at(point));
-        let up = camera.or("up", DVec3::Y, direction);
+        let up = camera.maybe("up", at(direction));
         let filter = camera.maybe("polarizer", filter);
-        let kind = camera.or("projection", ProjectionKind::Perspective, |value| value.word(&PROJECTIONS));
+        let named = camera.get("projection");
+        let kind = named.map_or(Some(ProjectionKind::Perspective), |value| value.word(&PROJECTIONS));
         let keys = ["vertical_fov", "height", "shift", "lens"].map(|key| camera.get(key));
         let near = camera.or("near", 0.0, |value| {
             value.within(0.0..=MAX_LENGTH, &format!("near is a distance from 0 to {MAX_LENGTH:e}"), None)
@@ -48,16 +49,16 @@ pub(super) fn camera(context: &mut Context, value: Value, film: Option<&FilmSett
             return target.place.refuse("the camera looks at the very point where it stands");
         }
         let (projection, shift, lens, near, sensor, film) = (projection?, shift?, lens?, near?, sensor?, film?);
-        let (view, parallel) = Camera::new(position, target.it, up, projection, [film.width, film.height]);
+        let size = [film.width, film.height];
+        let (view, parallel) = Camera::new(position, target.it, up.map_or(DVec3::Y, |up| up.it), projection, size);
         if parallel {
-            let warning = "camera.up is parallel to the viewing direction; another direction is taken";
-            context.warn(warning);
+            let place = up.map_or(target.place, |up| up.place);
+            context.warn_at(place, "`up` is parallel to the viewing direction; another direction is taken");
         }
-        if projection == Projection::Equirectangular && film.width != 2 * film.height {
-            context.warn(format!(
-                "an equirectangular image is twice as wide as high; {} x {} pixels are stretched",
-                film.width, film.height
-            ));
+        if let Some(named) = named.filter(|_| projection == Projection::Equirectangular && size[0] != 2 * size[1]) {
+            let [width, height] = size;
+            let stretched = format!("{width} x {height} pixels are stretched");
+            context.warn_at(named, format!("an equirectangular image is twice as wide as high; {stretched}"));
         }
         Some(view.starting_at(near).shifted(shift).with_lens(lens).on_sensor(sensor).behind(filter?))
     })

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use sha2::{Digest, Sha256};
 
 use super::image_numbers::Meaning;
-use crate::scene::text::{Document, Value};
+use crate::scene::text::{Document, Place, Value};
 use crate::shape::Mesh;
 use crate::spectrum::{Channel, Image};
 
@@ -54,16 +54,23 @@ impl Context {
         self.warnings.push(Warning { place: None, message: message.into() });
     }
 
-    /// Warns by the path of a value.
+    /// Warns of a value, by the place where it stands.
     pub(super) fn warn_at(&mut self, place: Value, message: impl Into<String>) {
         self.warnings.push(Warning { place: Some(place.span()), message: message.into() });
     }
 
     /// All warnings of a document.
     pub(super) fn warnings(&self, document: &Document) -> Vec<String> {
-        let paths = document.paths(self.warnings.iter().filter_map(|warning| warning.place.clone()));
-        let told = |Warning { place, message }: &Warning| match place.as_ref().and_then(|place| paths.get(place)) {
-            Some(path) => format!("{path}: {message}"),
+        let places = self.warnings.iter().filter_map(|warning| warning.place.clone());
+        let paths = match document.texts.told_by {
+            Place::Line => HashMap::new(),
+            Place::Key => document.paths(places),
+        };
+        let told = |Warning { place, message }: &Warning| match place {
+            Some(place) => {
+                let place = paths.get(place).cloned().unwrap_or_else(|| document.texts.named(place.clone()));
+                format!("{place}: {message}")
+            }
             None => message.clone(),
         };
         self.warnings.iter().map(told).collect()

@@ -23,7 +23,7 @@ pub(super) use mistake::Mistake;
 pub(super) use named_file::FileKind;
 pub use rows::{Numbers, Rows};
 pub(super) use settings::set;
-pub(super) use texts::Texts;
+pub(super) use texts::{Place, Texts};
 pub(super) use tree::parsed;
 pub(super) use value::{At, Value, above_0_to, at};
 pub(super) use variables::{SET, fill};

@@ -14,8 +14,19 @@ use crate::error::Diagnostic;
 pub(in crate::scene) struct Texts {
     whole: String,
     parts: Vec<Part>,
+    /// By what their places are told.
+    pub(in crate::scene) told_by: Place,
     /// What a program has given beside them.
     pub(in crate::scene) rows: Vec<Rows>,
+}
+
+/// By what a place is told.
+#[derive(Clone, Copy, Default)]
+pub(in crate::scene) enum Place {
+    #[default]
+    Line,
+    /// The path of its key, in a text that a program has written.
+    Key,
 }
 
 /// One of the texts.
@@ -75,7 +86,7 @@ impl Texts {
     }
 
     /// A place as people name it, such as `scene.toml:3:7`.
-    pub(super) fn named(&self, span: Range<usize>) -> String {
+    pub(in crate::scene) fn named(&self, span: Range<usize>) -> String {
         let found = self.diagnostic(Mistake { span, message: String::new(), help: None }, None);
         let (line, column) = found.line_and_column();
         format!("{}:{line}:{column}", found.file.display())
