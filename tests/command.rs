@@ -154,7 +154,14 @@ fn a_scene_that_cannot_be_read_is_refused_with_the_nearest_file() {
     let folder = folder();
     fs::write(folder.path().join("latin.toml"), b"# caf\xe9\n").expect("files can be written");
     let answer = render(&folder, &["latin.toml"]);
-    assert_refused(&answer, 2, &format!("error: latin.toml is not text in UTF-8\n{example}"));
+    let byte = "line 1 has the byte 0xE9 in column 6\nhelp: save it as UTF-8\n";
+    assert_refused(&answer, 2, &format!("error: latin.toml is not text in UTF-8: {byte}"));
+    fs::write(folder.path().join("wide.toml"), b"\xff\xfe[\0").expect("files can be written");
+    let byte = "line 1 has the byte 0xFF in column 1\nhelp: it begins as UTF-16 does: save it as UTF-8\n";
+    assert_refused(&render(&folder, &["wide.toml"]), 2, &format!("error: wide.toml is not text in UTF-8: {byte}"));
+    fs::write(folder.path().join("image.toml"), b"\x89PNG\r\n\x1a\n\0").expect("files can be written");
+    let byte = format!("line 1 has the byte 0x89 in column 1\n{example}");
+    assert_refused(&render(&folder, &["image.toml"]), 2, &format!("error: image.toml is not text in UTF-8: {byte}"));
 }
 
 #[test]

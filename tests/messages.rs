@@ -211,13 +211,13 @@ fn a_file_of_a_spectrum_that_is_not_text_is_refused() {
     fs::write(folder.path().join("paint.csv"), b"\xff\xfe4\x000\x000\x00").expect("written");
     folder.write("scene.toml", &BASE.replace("reflectance = 0.7", "reflectance = { file = \"paint.csv\" }"));
     let expected = "\
-error: paint.csv is not text in UTF-8
+error: paint.csv is not text in UTF-8: line 1 has the byte 0xFF in column 1
   --> scene.toml:14:36
    |
 14 | diffuse = { reflectance = { file = \"paint.csv\" } }
    |                                    ^^^^^^^^^^^
    |
-   = help: save the table as CSV in UTF-8
+   = help: it begins as UTF-16 does: save it as UTF-8
 ";
     let answer = render(&folder, &["--check", "scene.toml"]);
     assert_eq!((answer.code, &*answer.stderr), (Some(2), expected));

@@ -68,9 +68,9 @@ fn a_scene_on_standard_input_is_called_so_and_finds_its_files_from_the_current_f
     let wrong = fed(&folder, &["--check", "-"], scene.replace("width = 4", "widht = 4").as_bytes());
     assert_eq!(wrong.status.code(), Some(2));
     assert!(text(&wrong.stderr).contains("--> <stdin>:8:1\n"), "{}", text(&wrong.stderr));
-    let latin = fed(&folder, &["--check", "-"], b"# caf\xe9\n");
-    let expected = "error: the scene on standard input is not text in UTF-8\n\
-                    help: a scene is a TOML file, such as scene.toml\n";
+    let latin = fed(&folder, &["--check", "-"], "# é\n# caf".bytes().chain(*b"\xe9\n").collect::<Vec<_>>().as_slice());
+    let expected = "error: the scene on standard input is not text in UTF-8: line 2 has the byte 0xE9 in column 6\n\
+                    help: save it as UTF-8\n";
     assert_eq!((latin.status.code(), text(&latin.stderr)), (Some(2), expected));
 }
 

@@ -9,7 +9,7 @@ use toml::de::DeTable;
 
 use super::Scene;
 use super::compile::{SECTIONS, compile};
-use super::text::{Document, Included, Mistake, Place, Rows, Texts, fill, merged, parsed, set};
+use super::text::{Document, Fault, Included, Mistake, Place, Rows, Texts, fill, merged, parsed, set, utf8};
 use crate::error::{Error, Result, nearest_file};
 
 /// What the text of settings is called in messages; each has a line of it.
@@ -33,8 +33,8 @@ impl Source {
     pub fn read(path: &Path) -> Result<Self> {
         let refuse = |message: String, help: String| Err(Error::Arguments { message, help: Some(help) });
         let shown = path.display();
-        let text = match std::fs::read_to_string(path) {
-            Ok(text) => text,
+        let bytes = match std::fs::read(path) {
+            Ok(bytes) => bytes,
             Err(error) => {
                 return match error.kind() {
                     ErrorKind::NotFound | ErrorKind::NotADirectory => {
@@ -42,12 +42,11 @@ impl Source {
                         refuse(format!("there is no scene file {shown}"), near.unwrap_or(A_SCENE.into()))
                     }
                     ErrorKind::IsADirectory => refuse(format!("{shown} is a folder, not a scene"), A_SCENE.into()),
-                    ErrorKind::InvalidData => refuse(format!("{shown} is not text in UTF-8"), A_SCENE.into()),
                     _ => Err(Error::Io { doing: "read", path: path.to_owned(), source: error }),
                 };
             }
         };
-        Ok(Self { path: path.to_owned(), text: without_mark(&text) })
+        Ok(Self { path: path.to_owned(), text: text_of(bytes, &shown.to_string())? })
     }
 
     /// Reads a scene from standard input. Files that it names are looked for in the current folder.
@@ -60,11 +59,7 @@ impl Source {
         if let Err(source) = std::io::stdin().lock().read_to_end(&mut bytes) {
             return Err(Error::Io { doing: "read", path, source });
         }
-        let Ok(text) = String::from_utf8(bytes) else {
-            let message = "the scene on standard input is not text in UTF-8".into();
-            return Err(Error::Arguments { message, help: Some(A_SCENE.into()) });
-        };
-        Ok(Self { path, text: without_mark(&text) })
+        Ok(Self { path, text: text_of(bytes, "the scene on standard input")? })
     }
 
     /// The scene that the text describes, with the files that it includes, and the meshes, images and tables that they
@@ -184,9 +179,8 @@ fn keys(texts: &Texts, files: &[Range<usize>], mistakes: &[Mistake]) -> HashMap<
     first.map(|root| Document::new(texts, &root).paths(spans)).unwrap_or_default()
 }
 
-fn without_mark(text: &str) -> String {
-    // A byte order mark would count as a column.
-    text.strip_prefix('\u{feff}').unwrap_or(text).to_owned()
+fn text_of(bytes: Vec<u8>, shown: &str) -> Result<String> {
+    utf8(bytes, shown, A_SCENE).map_err(|Fault { message, help }| Error::Arguments { message, help })
 }
 
 impl Scene {

@@ -8,7 +8,7 @@ use super::curve_range::{Refusal, article, factor, hardly_a_layer, possible, sho
 use super::curve_text::{CurveText, KindText, finite, not_finite};
 use super::radiometry::on_film;
 use super::spectrum_file::read_columns;
-use crate::scene::text::{At, FileKind, Value};
+use crate::scene::text::{At, FileKind, Value, utf8};
 use crate::spectrum::{
     ColorSpace, Curve, CurveKind, Emission, Named, Quantity, cauchy_through, data, imitation, reach, sellmeier_squared,
 };
@@ -208,8 +208,9 @@ fn file_of_samples<'d>(
     if column.it < 2 {
         return column.place.refuse("the values stand in column 2 or later: column 1 holds the wavelengths");
     }
-    let Ok(table) = String::from_utf8(place.file(file, &TABLE)?) else {
-        return place.advise(format!("{file} is not text in UTF-8"), "save the table as CSV in UTF-8");
+    let table = match utf8(place.file(file, &TABLE)?, file, "save the table as CSV in UTF-8") {
+        Ok(table) => table,
+        Err(fault) => return place.tell(fault.message, fault.help),
     };
     let rows = match read_columns(&table, column.it) {
         Ok(rows) => rows,

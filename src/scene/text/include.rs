@@ -9,6 +9,7 @@ use super::mistake::Mistake;
 use super::named_file::{Fault, FileKind, read_named};
 use super::texts::Texts;
 use super::tree::{Node, parsed, word};
+use super::utf8::utf8;
 
 /// The key of the names of such files.
 pub(in crate::scene) const INCLUDE: &str = "include";
@@ -85,10 +86,8 @@ impl Included {
         if self.within.len() >= DEEPEST {
             return Err(Fault { message: format!("more than {DEEPEST} files include one another"), help: None });
         }
-        let Ok(text) = String::from_utf8(read_named(folder, name, &SCENE)?) else {
-            return Err(Fault { message: format!("{name} is not text in UTF-8"), help: None });
-        };
-        self.add(&path, text.strip_prefix('\u{feff}').unwrap_or(&text));
+        let text = utf8(read_named(folder, name, &SCENE)?, name, "an included file is TOML, as a scene is")?;
+        self.add(&path, &text);
         Ok(())
     }
 }

@@ -13,10 +13,10 @@ pub(in crate::scene) struct FileKind {
 }
 
 /// What is wrong with a file.
-pub(super) struct Fault {
-    pub(super) message: String,
+pub(in crate::scene) struct Fault {
+    pub(in crate::scene) message: String,
     /// What to do.
-    pub(super) help: Option<String>,
+    pub(in crate::scene) help: Option<String>,
 }
 
 /// The bytes of a file whose name begins at a folder.
