@@ -71,6 +71,11 @@ fn entries_of_lists_go_by_name_or_number() {
     let big = "center = [3, 1, 0], radius = 1";
     assert_replaces(&[r#"object."big \"b.ll\"".shape.sphere.radius=0.5"#], big, "center = [3, 1, 0], radius = 0.5");
     assert_replaces(&[r#"object.'big "b.ll"'.shape.sphere.radius=0.5"#], big, "center = [3, 1, 0], radius = 0.5");
+    let text = SCENE.replace("\"ball\"", "\"wine glass\"");
+    let written = text.replacen("\"white\"", "\"gold\"", 1);
+    for setting in ["object.wine glass.material=gold", r#"object."wine glass".material="gold""#] {
+        assert_eq!(shown(with(&text, &[setting])), shown(with(&written, &[])), "{setting}");
+    }
     assert_replaces(&["light.key.point.intensity=5"], "intensity = 10", "intensity = 5");
     assert_replaces(&["light.2.point.intensity=5"], "intensity = 10", "intensity = 5");
     let (old, new) = ("{ translate = [0, 0, 0] }", "{ translate = [0, 1, 0] }");

@@ -82,7 +82,8 @@ struct Arguments {
 
     /// Another value of the scene: the path of a key and a TOML value, such as film.width=320 or
     /// object.ball.shape.sphere.radius=2. Objects, lights and other entries of lists go by name, or by number from 1.
-    /// What is not TOML is a text: object.ball.material=gold. One word sets the scene's variable: angle=45
+    /// What is not TOML is a text: object.wine glass.material=gold. A name with a dot stands in quotes: object."a.b".
+    /// One word sets the scene's variable: angle=45
     #[arg(long, value_name = "KEY=VALUE", allow_hyphen_values = true)]
     set: Vec<String>,
 

@@ -92,16 +92,22 @@ fn setting(text: &str, start: usize) -> Result<Setting<'_>, Mistake> {
         return refuse("a setting is a key, `=` and a value");
     }
     let key = format!("{}=0", &text[..equals]);
-    let path: Option<Vec<Key>> = parsed(&key, start).map(|table| {
-        let path = path(&table)?;
-        Some(path.into_iter().map(|key| Spanned::new(key.span(), word(key).to_string().into())).collect())
-    })?;
+    // What is parsed with its value: of words with spaces, the last alone.
+    let (path, tail): (Option<Vec<Key>>, _) = match (parsed(&key, start), spaced(&text[..equals], start)) {
+        (Ok(table), _) => (path(&table).map(|path| path.into_iter().map(owned).collect()), 0),
+        (Err(_), Some(path)) => {
+            let last = path.len() - 1;
+            (Some(path), last)
+        }
+        (Err(mistake), None) => return Err(mistake),
+    };
     let Some(path) = path else { return refuse("a setting is one key, `=` and its value") };
     let (before, value) = text.split_at(equals + 1);
     let at = start + before.len() + (value.len() - value.trim_start().len());
     let value = value.trim();
-    match parsed(text, start) {
-        Ok(mut table) => match valued(&mut table, &path) {
+    let from = if tail == 0 { start } else { path[tail].span().start };
+    match parsed(&text[from - start..], from) {
+        Ok(mut table) => match valued(&mut table, &path[tail..]) {
             Some(value) => Ok(Setting { path, value }),
             None => refuse("a setting is one key, `=` and its value"),
         },
@@ -111,6 +117,27 @@ fn setting(text: &str, start: usize) -> Result<Setting<'_>, Mistake> {
             Ok(Setting { path, value })
         }
     }
+}
+
+fn owned<'k>(key: &Key) -> Key<'k> {
+    Spanned::new(key.span(), word(key).to_string().into())
+}
+
+/// The words of a path in which names have spaces, or other characters that TOML wants quotes for: they end at a dot.
+/// None if there are quotes, or the last word, which is a key, wants them.
+fn spaced<'k>(path: &str, start: usize) -> Option<Vec<Key<'k>>> {
+    let (mut keys, mut next) = (Vec::new(), start);
+    for part in path.split('.') {
+        let word = part.trim();
+        let at = next + (part.len() - part.trim_start().len());
+        keys.push(Spanned::new(at..at + word.len(), word.to_owned().into()));
+        next += part.len() + 1;
+    }
+    let is_bare = |letter: char| letter.is_ascii_alphanumeric() || letter == '_' || letter == '-';
+    let is_plain =
+        |key: &Key| !word(key).is_empty() && !word(key).contains(['"', '\'', '#', '[', ']', '{', '}', '\n', '\r']);
+    let last = keys.last().is_some_and(|key| word(key).chars().all(is_bare));
+    (last && keys.iter().all(is_plain)).then_some(keys)
 }
 
 /// Where a key ends that may be quoted.
