@@ -108,19 +108,24 @@ impl fmt::Display for Diagnostic {
 /// The candidate that a misspelt word most likely meant, if one is near enough.
 ///
 /// Near: at most a third of its letters changed, or one where one of both has two letters and the other more, counting
-/// a swap of neighbors as one change; of equally near ones, the one made of the most of the same letters.
+/// a swap of neighbors as one change; of equally near ones, the one made of the most of the same letters. One that has
+/// the word whole after a hyphen, as `N-BK7` has `BK7`, is nearer than one with a letter changed.
 pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let lower = word.to_lowercase();
     let most_changes = |candidate: &str| {
         let [a, b] = [&lower, candidate].map(|word| word.chars().count());
         (b / 3).max(usize::from(a.min(b) >= 2 && a.max(b) >= 3))
     };
+    let has_whole = |candidate: &str| candidate.to_lowercase().split('-').skip(1).any(|part| part == lower);
     candidates
         .into_iter()
         .map(|candidate| (strsim::damerau_levenshtein(&lower, &candidate.to_lowercase()), candidate))
-        .filter(|(changes, candidate)| *changes <= most_changes(candidate))
-        .min_by_key(|(changes, candidate)| (*changes, foreign_letters(&lower, &candidate.to_lowercase())))
-        .map(|(_, candidate)| candidate)
+        .map(|(changes, candidate)| (changes, lower.len() > 1 && has_whole(candidate), candidate))
+        .filter(|(changes, whole, candidate)| *whole || *changes <= most_changes(candidate))
+        .min_by_key(|(changes, whole, candidate)| {
+            (*changes > 0, !whole, *changes, foreign_letters(&lower, &candidate.to_lowercase()))
+        })
+        .map(|(.., candidate)| candidate)
 }
 
 /// The file beside a missing one that was most likely meant.
