@@ -128,11 +128,17 @@ pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
         .map(|(.., candidate)| candidate)
 }
 
-/// The file beside a missing one that was most likely meant.
-pub(crate) fn nearest_file(missing: &Path) -> Option<PathBuf> {
+/// The file beside a missing one that was most likely meant, of those whose names end in one of some ways; of all if
+/// there are none.
+pub(crate) fn nearest_file(missing: &Path, endings: &[&str]) -> Option<PathBuf> {
     let folder = missing.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let files = fs::read_dir(folder).ok()?.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
-    let mut names: Vec<String> = files.collect();
+    let ends = |path: &Path| {
+        let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+        endings.is_empty() || endings.iter().any(|known| known.eq_ignore_ascii_case(ending))
+    };
+    let paths = fs::read_dir(folder).ok()?.filter_map(|entry| Some(entry.ok()?.path()));
+    let files = paths.filter(|path| ends(path) && path.is_file());
+    let mut names: Vec<String> = files.filter_map(|path| path.file_name()?.to_str().map(str::to_owned)).collect();
     names.sort();
     let near = nearest(missing.file_name()?.to_str()?, names.iter().map(String::as_str))?;
     Some(missing.with_file_name(near))

@@ -148,6 +148,7 @@ fn a_scene_that_cannot_be_read_is_refused_with_the_nearest_file() {
     assert_refuses(&["bal.toml"], 2, missing);
     assert_refuses(&["--exr", "bal.toml"], 2, missing);
     assert_refuses(&["cup"], 2, &format!("error: there is no scene file cup\n{example}"));
+    assert_refuses(&["ball.txt"], 2, "error: there is no scene file ball.txt\nhelp: did you mean ball.toml?\n");
     assert_refuses(&["no/ball.toml"], 2, &format!("error: there is no scene file no/ball.toml\n{example}"));
     assert_refuses(&["ball.toml/x.toml"], 2, &format!("error: there is no scene file ball.toml/x.toml\n{example}"));
     assert_refuses(&["."], 2, &format!("error: . is a folder, not a scene\n{example}"));

@@ -178,7 +178,7 @@ fn bytes(path: &Path) -> Result<Vec<u8>> {
         Ok(()) if start.starts_with(&MAGIC) => Ok(start),
         Ok(()) => Err(decode_error(path, "it does not begin as one does")),
         Err((ErrorKind::NotFound | ErrorKind::NotADirectory, _)) => {
-            let near = nearest_file(path).map(|near| format!("did you mean {}?", near.display()));
+            let near = nearest_file(path, &["exr"]).map(|near| format!("did you mean {}?", near.display()));
             refuse(format!("there is no image file {shown}"), near.unwrap_or(an_image.into()))
         }
         Err((ErrorKind::IsADirectory, _)) => refuse(format!("{shown} is a folder, not an image"), an_image.into()),

@@ -38,7 +38,8 @@ impl Source {
             Err(error) => {
                 return match error.kind() {
                     ErrorKind::NotFound | ErrorKind::NotADirectory => {
-                        let near = nearest_file(path).map(|near| format!("did you mean {}?", near.display()));
+                        let near =
+                            nearest_file(path, &["toml"]).map(|near| format!("did you mean {}?", near.display()));
                         refuse(format!("there is no scene file {shown}"), near.unwrap_or(A_SCENE.into()))
                     }
                     ErrorKind::IsADirectory => refuse(format!("{shown} is a folder, not a scene"), A_SCENE.into()),

@@ -13,7 +13,7 @@ use crate::spectrum::{
     ColorSpace, Curve, CurveKind, Emission, Named, Quantity, cauchy_through, data, imitation, reach, sellmeier_squared,
 };
 
-const TABLE: FileKind = FileKind { nameless: "a file of samples needs a name", most_bytes: 1 << 26 };
+const TABLE: FileKind = FileKind { nameless: "a file of samples needs a name", most_bytes: 1 << 26, endings: &[] };
 
 const CAUCHY: &str = "for a glass, A is about 1.5 and B about 0.004 um^2";
 const SELLMEIER: &str = "c holds squared wavelengths in um^2: square the coefficients if they are wavelengths";

@@ -13,7 +13,13 @@ use super::radiometry::on_film;
 use crate::scene::text::{At, FileKind};
 use crate::spectrum::{Channel, Curve, CurveKind, Encoding, Image, Quantity, Texture};
 
-const IMAGE: FileKind = FileKind { nameless: "an image needs the name of its file", most_bytes: 1 << 32 };
+const IMAGE: FileKind = FileKind {
+    nameless: "an image needs the name of its file",
+    most_bytes: 1 << 32,
+    endings: &["png", "jpg", "jpeg", "exr", "hdr"],
+};
+/// One that may be brighter than white.
+pub(super) const BRIGHT_IMAGE: FileKind = FileKind { endings: &["exr", "hdr"], ..IMAGE };
 
 /// The spectrum of a surface, which may vary over it.
 pub(super) fn surface_curve<'d>(context: &mut Context, text: &CurveText<'d>, quantity: Quantity) -> Option<Curve> {
@@ -135,7 +141,7 @@ pub(super) fn image<'d>(
     if let Some(image) = context.images.get(&key) {
         return Some(image.clone());
     }
-    let bytes = bytes_of_image(&At { place, it: file })?;
+    let bytes = place.file(file, &IMAGE)?;
     let ImageFile { image, warnings } = match read_texture(Path::new(file), &bytes, meaning, channel) {
         Ok(file) => file,
         Err(fault) => return place.tell(fault.message, fault.help),
@@ -145,8 +151,4 @@ pub(super) fn image<'d>(
     let image = Arc::new(image);
     context.images.insert(key, image.clone());
     Some(image)
-}
-
-pub(super) fn bytes_of_image(file: &At<&str>) -> Option<Vec<u8>> {
-    file.place.file(file.it, &IMAGE)
 }

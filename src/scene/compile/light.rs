@@ -6,7 +6,7 @@ use std::sync::{Arc, OnceLock};
 use super::context::Context;
 use super::curve::curve;
 use super::curve_text::{CurveText, KindText};
-use super::image::{bytes_of_image, factor_on_image};
+use super::image::{BRIGHT_IMAGE, factor_on_image};
 use super::image_file::{ImageFile, read_image};
 use super::measures::{direction, point};
 use super::object;
@@ -220,7 +220,7 @@ fn rotation(steps: &[At<Step>]) -> Option<Transform> {
 }
 
 fn panorama(context: &mut Context, file: &At<&str>) -> Option<Panorama> {
-    let bytes = bytes_of_image(file)?;
+    let bytes = file.place.file(file.it, &BRIGHT_IMAGE)?;
     let ImageFile { image, warnings } = match read_image(Path::new(file.it), &bytes) {
         Ok(file) => file,
         Err(fault) => return file.place.tell(fault.message, fault.help),

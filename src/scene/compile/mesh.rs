@@ -8,6 +8,9 @@ use crate::math::DVec3;
 use crate::scene::text::{At, Fields, Numbers, Rows, Value, at};
 use crate::shape::{Attributes, Mesh, Vertices, read_mesh, read_smooth_mesh, vertex_normals};
 
+/// How the names of mesh files end.
+const MESHES: [&str; 4] = ["ply", "obj", "gltf", "glb"];
+
 /// A mesh as written, before any transform.
 pub(super) struct WrittenMesh<'d> {
     pub(super) mesh: Arc<Mesh>,
@@ -168,7 +171,7 @@ fn read_file(context: &mut Context, name: &str, file: &At<&str>, smooth: bool) -
         Ok(mesh) => mesh,
         Err(_) if file.is_empty() => return place.refuse("a mesh file needs a name"),
         Err(_) if path.is_dir() => return place.refuse(format!("{file} is a folder")),
-        Err(_) if path.try_exists().is_ok_and(|exists| !exists) => return place.missing(file),
+        Err(_) if path.try_exists().is_ok_and(|exists| !exists) => return place.missing(file, &MESHES),
         Err(message) => return place.refuse(format!("{file}: {message}")),
     };
     let is_far = |&vertex: &u32| mesh.vertices.at(vertex).abs().max_element() > MAX_LENGTH;

@@ -13,7 +13,8 @@ use super::utf8::utf8;
 
 /// The key of the names of such files.
 pub(in crate::scene) const INCLUDE: &str = "include";
-const SCENE: FileKind = FileKind { nameless: "a file to include needs a name", most_bytes: 1 << 30 };
+const SCENE: FileKind =
+    FileKind { nameless: "a file to include needs a name", most_bytes: 1 << 30, endings: &["toml"] };
 /// Most files within one another: far fewer than would exhaust the stack.
 const DEEPEST: usize = 64;
 

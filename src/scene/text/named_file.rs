@@ -10,6 +10,8 @@ pub(in crate::scene) struct FileKind {
     /// What is told where its name is empty.
     pub(in crate::scene) nameless: &'static str,
     pub(in crate::scene) most_bytes: u64,
+    /// How its name may end; in any way if there are none.
+    pub(in crate::scene) endings: &'static [&'static str],
 }
 
 /// What is wrong with a file.
@@ -36,15 +38,15 @@ pub(super) fn read_named(folder: &Path, file: &str, kind: &FileKind) -> Result<V
         Err(_) if file.is_empty() => refuse(kind.nameless.into()),
         Err(_) if path.is_dir() => refuse(format!("{file} is a folder")),
         Err(error) if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {
-            Err(missing(folder, file))
+            Err(missing(folder, file, kind.endings))
         }
         Err(error) => refuse(format!("cannot read {file}: {error}")),
     }
 }
 
-/// That there is no such file.
-pub(super) fn missing(folder: &Path, file: &str) -> Fault {
-    let near = nearest_file(&folder.join(file));
+/// That there is no such file, whose name ends in one of some ways.
+pub(super) fn missing(folder: &Path, file: &str, endings: &[&str]) -> Fault {
+    let near = nearest_file(&folder.join(file), endings);
     let near = near.and_then(|near| near.file_name().map(|name| Path::new(file).with_file_name(name)));
     let help = match near {
         Some(near) => format!("did you mean \"{}\"?", near.display()),

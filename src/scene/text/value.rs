@@ -93,9 +93,9 @@ impl<'d> Value<'d> {
         }
     }
 
-    /// Tells that there is no file of this name.
-    pub(in crate::scene) fn missing<T>(self, name: &str) -> Option<T> {
-        let fault = missing(self.folder(), name);
+    /// Tells that there is no file of this name, which ends in one of some ways.
+    pub(in crate::scene) fn missing<T>(self, name: &str, endings: &[&str]) -> Option<T> {
+        let fault = missing(self.folder(), name, endings);
         self.tell(fault.message, fault.help)
     }
 
