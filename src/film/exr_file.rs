@@ -149,10 +149,17 @@ impl ExrFile {
                 return Ok(ExrLayer::new(wanted, part, vec![channel]));
             }
         }
-        let names: Vec<&str> = layers.iter().map(|layer| layer.name.as_str()).collect();
+        Err(self.no_layer(wanted, shown, &[]))
+    }
+
+    /// What is told of a layer that is not there: the nearest name and those that there are, of layers and of what else
+    /// may be named, such as mattes.
+    pub fn no_layer(&self, wanted: &str, shown: &str, others: &[&str]) -> Error {
+        let layers = self.layers();
+        let names: Vec<&str> = layers.iter().map(|layer| layer.name.as_str()).chain(others.iter().copied()).collect();
         let near = nearest(wanted, names.iter().copied()).map(|near| format!("did you mean {near}? "));
-        let has = format!("it has {}", names.join(", "));
-        refuse(format!("{shown} has no layer {wanted}"), near.unwrap_or_default() + &has)
+        let help = near.unwrap_or_default() + "it has " + &names.join(", ");
+        Error::Arguments { message: format!("{shown} has no layer {wanted}"), help: Some(help) }
     }
 
     /// The value of an attribute in the first part that has it.

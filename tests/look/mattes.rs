@@ -80,6 +80,9 @@ fn a_matte_that_there_is_not_is_refused_with_the_nearest_name() {
     assert_refused(&view(&["CryptoObject.bal"]), 2, near);
     let tone = "error: --tone is for colors, and CryptoObject has none\nhelp: leave it out\n";
     assert_refused(&view(&["CryptoObject", "--tone", "hable"]), 2, tone);
+    let misspelt = view(&["crptoobject"]);
+    let near = "error: a.exr has no layer crptoobject\nhelp: did you mean CryptoObject? it has ";
+    assert!(misspelt.code == Some(2) && misspelt.stderr.starts_with(near), "{}", misspelt.stderr);
     let other = view(&["CryptoMaterial"]);
     assert!(other.stderr.starts_with("error: a.exr has no layer CryptoMaterial\n"), "{}", other.stderr);
     assert_eq!(folder.listing(), ["a.exr"]);

@@ -4,9 +4,9 @@ mod terminal;
 
 use std::path::PathBuf;
 
-use abbe::Result;
 use abbe::film::{BEAUTY, ExrFile, ExrLayer, check_writable};
 use abbe::look::{Exposure, Mattes, Picture, Tone};
+use abbe::{Error, Result};
 use clap::Parser;
 use clap::builder::PossibleValuesParser;
 
@@ -70,7 +70,7 @@ pub fn run(query: &Query) -> Result<()> {
     let shown = query.file.display().to_string();
     let picture = match file.layer(query.layer.as_deref(), &shown) {
         Ok(layer) => of_layer(query, &file, &layer)?,
-        Err(unknown) => of_mattes(query, &file, &shown).unwrap_or(Err(unknown))?,
+        Err(unknown) => of_mattes(query, &file, &shown, unknown)?,
     };
     match &query.png {
         Some(png) => {
@@ -98,16 +98,20 @@ fn of_layer(query: &Query, file: &ExrFile, layer: &ExrLayer) -> Result<Picture> 
     Ok(picture)
 }
 
-/// Mattes as a picture, or one of them, if the name that is asked for is one of mattes.
-fn of_mattes(query: &Query, file: &ExrFile, shown: &str) -> Option<Result<Picture>> {
-    let wanted = query.layer.as_deref()?;
-    let mattes = Mattes::all(file).into_iter().find_map(|mattes| {
+/// Mattes as a picture, or one of them, if what is asked for and is no layer is a name of mattes.
+fn of_mattes(query: &Query, file: &ExrFile, shown: &str, unknown: Error) -> Result<Picture> {
+    let Some(wanted) = query.layer.as_deref() else { return Err(unknown) };
+    let all = Mattes::all(file);
+    let found = all.iter().find_map(|mattes| {
         let rest = wanted.strip_prefix(mattes.name())?;
         (rest.is_empty() || rest.starts_with('.')).then_some((mattes, rest.get(1..)))
     });
-    let (mattes, one) = mattes?;
+    let Some((mattes, one)) = found else {
+        let names: Vec<&str> = all.iter().map(Mattes::name).collect();
+        return Err(if names.is_empty() { unknown } else { file.no_layer(wanted, shown, &names) });
+    };
     let picture = one.map_or_else(|| Ok(mattes.picture()), |name| mattes.matte(name, shown));
-    Some(refuse_curves(query, wanted).and(picture))
+    refuse_curves(query, wanted).and(picture)
 }
 
 /// Refuses an exposure or a curve of what has no colors.
