@@ -6,7 +6,7 @@ use super::picture::{Picture, percentile, to_rec709};
 use super::tone::shown;
 use crate::error::{Error, Result};
 use crate::film::{BEAUTY, Channel, ExrFile, ExrLayer, PixelBounds};
-use crate::spectrum::apply;
+use crate::spectrum::{apply, space_of_file};
 
 /// What the square of a value is raised by before the square of a difference is divided by it: dark pixels do not
 /// count without bound.
@@ -108,10 +108,7 @@ fn comparable(files: [&ExrFile; 2], layers: &[ExrLayer; 2], shown: [&str; 2]) ->
         let matrices = files.map(|file| to_rec709(file).0);
         let pairs = matrices[0].as_flattened().iter().zip(matrices[1].as_flattened());
         if pairs.into_iter().any(|(a, b)| (a - b).abs() > SAME_SPACE) {
-            let space = |file: &ExrFile| match file.attribute("colorInteropID") {
-                Some(id) => format!("the color space {id}"),
-                None => "colors of other chromaticities".into(),
-            };
+            let space = |file: &ExrFile| space_of_file(file.attribute("colorInteropID"), file.chromaticities);
             return refuse(files.map(space), "colors of other spaces cannot be compared");
         }
     }

@@ -89,6 +89,22 @@ pub fn matrix_of_file(interop_id: Option<&str>, primaries: Option<Primaries>) ->
     }
 }
 
+/// What messages call the colors of a file: the space that it names or that has its primaries, or the primaries.
+pub fn space_of_file(interop_id: Option<&str>, primaries: Option<Primaries>) -> String {
+    let like = |primaries: Primaries| ColorSpace::ALL.into_iter().find(|space| primaries.are_of(*space));
+    let point = |[x, y]: [f64; 2]| format!("({}, {})", x as f32, y as f32);
+    match (interop_id, primaries.and_then(like), primaries) {
+        (Some(id), ..) => format!("the color space {id}"),
+        (None, Some(space), _) => format!("the primaries of {}", space.interop_id()),
+        (None, None, Some(primaries)) => {
+            let Primaries { red, green, blue, white } = primaries;
+            let [red, green, blue, white] = [red, green, blue, white].map(point);
+            format!("the primaries red {red}, green {green}, blue {blue} and white {white}")
+        }
+        (None, None, None) => format!("no color space, which means {}", ColorSpace::default().interop_id()),
+    }
+}
+
 const D65: [f64; 2] = [0.3127, 0.3290];
 const ACES_WHITE: [f64; 2] = [0.32168, 0.33767];
 

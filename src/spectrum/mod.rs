@@ -33,7 +33,9 @@ pub use advice::{imitation, provenance, reach};
 pub use band_response::BandResponse;
 pub use bands::normal_reflectance;
 pub use basis::Basis;
-pub use color::{ColorSpace, IDENTITY, Matrix, Primaries, apply, decode_srgb, encode_srgb, matrix_of_file};
+pub use color::{
+    ColorSpace, IDENTITY, Matrix, Primaries, apply, decode_srgb, encode_srgb, matrix_of_file, space_of_file,
+};
 pub use curve::{Curve, CurveKind, Named, cauchy_through, sellmeier_squared};
 pub use distinct::Distinct;
 pub use draw::Draw;

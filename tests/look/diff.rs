@@ -221,8 +221,8 @@ fn what_cannot_be_compared_is_refused_with_an_exit_code_of_its_own() {
     assert_refused(&diff(&folder, &ramp(), &crop, &[]), 2, size);
     let mut aces = ramp();
     aces.texts.push(("colorInteropID", "lin_ap1_scene".into()));
-    let space = "error: b.exr has the color space lin_ap1_scene, a.exr colors of other chromaticities\n\
-                 help: colors of other spaces cannot be compared\n";
+    let space = "error: b.exr has the color space lin_ap1_scene, a.exr no color space, which means lin_rec709_scene\n\
+         help: colors of other spaces cannot be compared\n";
     diff(&folder, &ramp(), &aces, &[]);
     assert_refused(&render(&folder, &["diff", "b.exr", "a.exr", "--png", "c.png"]), 2, space);
     let layer = "error: a.exr has no layer Z\nhelp: it has beauty\n";
