@@ -10,6 +10,9 @@ use crate::spectrum::WavelengthBands;
 pub struct Format {
     /// Layers, in the order in which they were asked for.
     pub layers: Vec<Layer>,
+    /// Whether the components of Stokes vectors are among them, whatever others are asked for in place of the scene's.
+    #[serde(skip)]
+    pub stokes: bool,
     /// Which surface layers such as `N` and `albedo` are of.
     pub first: FirstSurface,
     /// Bits of a color.
@@ -30,6 +33,13 @@ pub struct Format {
 }
 
 impl Format {
+    /// Asks for some layers in place of others.
+    pub fn ask_for(&mut self, layers: &[Layer]) {
+        self.layers = layers.to_vec();
+        let stokes = Layer::STOKES.into_iter().filter(|layer| self.stokes && !layers.contains(layer));
+        self.layers.extend(stokes);
+    }
+
     /// Whether anything is asked for of Stokes vectors.
     pub fn has_stokes(&self) -> bool {
         self.layers.iter().copied().any(Layer::is_of_polarization)

@@ -76,7 +76,7 @@ impl Options {
         }
         (scene.render, scene.film) = (render, film);
         if let Some(layers) = &self.layers {
-            scene.format.layers.clone_from(layers);
+            scene.format.ask_for(layers);
         }
         if self.spectral {
             scene.format.spectral.get_or_insert_default();

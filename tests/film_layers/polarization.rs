@@ -53,3 +53,13 @@ fn asking_for_all_layers_does_not_ask_for_polarization() {
         Scene::parse(&ROOM.replace("height = 28", "height = 28, layers = [\"polarization\"]"), "").expect("valid");
     assert_eq!(scene.format.layers, [Layer::Polarization]);
 }
+
+#[test]
+fn stokes_vectors_that_the_film_asks_for_stay_whatever_other_layers_are_asked_for() {
+    let film = ROOM.replace("height = 28", "height = 28, stokes = true, layers = [\"albedo\"]");
+    let scene = Scene::parse(&film, "").expect("valid");
+    assert_eq!(scene.format.layers, [Layer::Albedo, Layer::S1, Layer::S2, Layer::S3]);
+    let image = rendered(&film, &[Layer::Normal, Layer::S2]);
+    assert!(["N.X", "S1.R", "S2.R", "S3.R"].into_iter().all(|channel| image.layer(channel).is_some()));
+    assert!(image.layer("albedo.R").is_none());
+}

@@ -170,7 +170,8 @@ def render(
     - `seed`: chooses another set of random numbers.
     - `overscan`: pixels around the format: one number, or those to the left, above, to the right and below.
     - `crop`: the part of the image that is made: first column, first row, width and height in pixels.
-    - `layers`: names of layers beside the image, or `"all"`; `LAYERS` has them.
+    - `layers`: names of layers beside the image, or `"all"`; `LAYERS` has them. What `film.stokes` asks for stays beside
+      them, and `"all"` asks for no polarization.
     - `spectral`: whether spectra are made, for `Image.spectrum`.
     - `threads`: processor threads; all if absent.
     - `stamp`: whether the file says when it was made and how long that took.

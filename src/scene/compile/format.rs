@@ -29,16 +29,26 @@ pub(super) fn format(film: &mut Fields) -> Option<Format> {
     });
     let white_luminance = white_luminance(film);
     let [owner, comments] = metadata?;
-    let (mut layers, first, compressed, multipart) = (layers?, first?, compression?, multipart?);
-    layers.extend(if stokes? { Layer::STOKES.as_slice() } else { &[] });
+    let (layers, first, compressed, multipart, stokes) = (layers?, first?, compression?, multipart?, stokes?);
     let (place, compression) = compressed.map_or((None, Compression::default()), |at| (Some(at.place), at.it));
     let precision = precision?.unwrap_or(match compression.is_of_16_bits() {
         true => Precision::Half,
         false => Precision::default(),
     });
     let (white_luminance, spectral) = (white_luminance?, spectral?);
-    let format =
-        Format { layers, first, precision, compression, multipart, spectral, white_luminance, owner, comments };
+    let mut format = Format {
+        layers: Vec::new(),
+        stokes,
+        first,
+        precision,
+        compression,
+        multipart,
+        spectral,
+        white_luminance,
+        owner,
+        comments,
+    };
+    format.ask_for(&layers);
     match place.and_then(|place| Some((place, format.objection()?))) {
         Some((place, (message, help))) => place.advise(message, help),
         None => Some(format),
