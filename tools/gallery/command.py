@@ -5,6 +5,7 @@
     python tools/gallery.py render gem lens     # these alone
     python tools/gallery.py render --quick      # with a quarter of the samples
     python tools/gallery.py errors              # the noise of every scene at its own samples, then scenes/README.md
+    python tools/gallery.py plan                # the plan's words alone, then scenes/README.md
     python tools/gallery.py write               # scenes/README.md alone
 
 Everything made is the same on every run. Needs numpy, and for pictures OpenEXR and the release build (or $RENDER).
@@ -155,7 +156,7 @@ def render_picture(name, quick):
     scene = SCENES / f"{name}.toml"
     samples = tomllib.loads(scene.read_text("utf-8"))["render"]["samples"]
     share = max(1, samples // 4) if quick else samples
-    plan = subprocess.run([render.binary(), "--plan", scene], capture_output=True, text=True, check=True).stdout
+    plan = plan_of(name)
     with tempfile.TemporaryDirectory() as folder:
         before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
         render.write(scene, Path(folder) / "scene.exr", threads=2, samples=share)
@@ -169,6 +170,13 @@ def render_picture(name, quick):
         if picture.stat().st_size <= 150_000:
             break
     return {"samples": share, "seconds": round(seconds / 2 * samples / share, 1), "plan": words(plan)}
+
+
+def plan_of(name):
+    """What `render --plan` says of a scene."""
+    import render
+
+    return subprocess.run([render.binary(), "--plan", SCENES / f"{name}.toml"], capture_output=True, text=True, check=True).stdout
 
 
 def words(plan):
@@ -194,7 +202,7 @@ def measure_error(name):
     """The noise of a scene at its own samples."""
     import render
 
-    plan = subprocess.run([render.binary(), "--plan", SCENES / f"{name}.toml"], capture_output=True, text=True, check=True).stdout
+    plan = plan_of(name)
     # A map of few pixels takes other numbers of photons and passes than one of many; small images have no light vertices.
     share = 2 if "photon map: " in plan or "light vertices" in plan else 5
     first, second = (render.render(reduced(name, share), seed=seed, threads=2).rgb for seed in (1, 2))
@@ -239,7 +247,7 @@ def readme():
 
 def main():
     parser = argparse.ArgumentParser(description="Makes and renders the gallery in scenes/.")
-    parser.add_argument("what", choices=["make", "render", "errors", "write"])
+    parser.add_argument("what", choices=["make", "render", "errors", "plan", "write"])
     parser.add_argument("names", nargs="*", help="scenes to render or measure, without .toml; all if none is given")
     parser.add_argument("--quick", action="store_true", help="a quarter of the samples, four times the measured time")
     arguments = parser.parse_intermixed_args()
@@ -248,7 +256,13 @@ def main():
         return
     MEASURED.parent.mkdir(exist_ok=True)
     for name in (arguments.names or scenes()) if arguments.what != "write" else []:
-        found = measure_error(name) if arguments.what == "errors" else render_picture(name, arguments.quick)
+        match arguments.what:
+            case "errors":
+                found = measure_error(name)
+            case "plan":
+                found = {"plan": words(plan_of(name))}
+            case _:
+                found = render_picture(name, arguments.quick)
         print(name, found, flush=True)
         measured = json.loads(MEASURED.read_text("utf-8")) if MEASURED.is_file() else {}
         found = measured.get(name, {}) | found
