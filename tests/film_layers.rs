@@ -1,5 +1,6 @@
 //! Layers beside the image: what they hold, that they add up to it, and that they change nothing of it.
 
+mod edges;
 mod files;
 mod mitchell;
 mod overscan;
