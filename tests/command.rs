@@ -217,6 +217,14 @@ fn numbers_on_the_command_line_are_checked() {
 }
 
 #[test]
+fn the_help_of_every_command_names_all_of_it() {
+    for command in ["catalog", "info", "view", "diff", "merge", "completions", "man"] {
+        let help = render(&folder(), &[command, "--help"]);
+        assert!(help.stdout.contains(&format!("\nUsage: render {command}")), "{}", help.stdout);
+    }
+}
+
+#[test]
 fn a_misspelt_flag_is_told_with_the_nearest_right_one() {
     let answer = render(&folder(), &["ball.toml", "--sampels", "3"]);
     assert_eq!(answer.code, Some(2));

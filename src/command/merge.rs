@@ -19,7 +19,7 @@ The merged image has the same bytes as one that a single render makes.";
 
 /// Lay the parts of an image together.
 #[derive(Parser)]
-#[command(name = "render merge", after_help = EXAMPLES)]
+#[command(name = "render merge", bin_name = "render merge", after_help = EXAMPLES)]
 pub struct Query {
     /// The image to write
     #[arg(value_name = "OUT.exr")]

@@ -120,8 +120,9 @@ pub fn warn(message: &str) {
 pub fn warn_of_clamped(format: &Format, clamped: u64) {
     if clamped > 0 {
         let lossless = if format.compression.is_of_16_bits() { " with compression = \"zip\"" } else { "" };
+        let [values, them] = if clamped == 1 { ["value was", "it"] } else { ["values were", "them"] };
         warn(&format!(
-            "{clamped} values were too bright for 16 bits and became 65504: precision = \"float\"{lossless} keeps them"
+            "{clamped} {values} too bright for 16 bits and became 65504: precision = \"float\"{lossless} keeps {them}"
         ));
     }
 }

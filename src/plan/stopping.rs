@@ -30,9 +30,10 @@ pub(super) fn reason(scene: &Scene<Curve>, stop: Option<&Stop>) -> Option<String
     let RenderText { error, time, samples, is_part, .. } = scene.render;
     let Some(stop) = stop else {
         let samples = samples.filter(|_| error.is_some() || time.is_some())?;
+        let all = if samples == 1 { "one sample".into() } else { format!("all {samples} samples") };
         return Some(match is_part {
-            true => format!("takes all {samples} samples: a part of an image does not tell the error of the whole"),
-            false => format!("takes all {samples} samples: fewer than {FIRST_LOOK} do not tell the error"),
+            true => format!("takes {all}: a part of an image does not tell the error of the whole"),
+            false => format!("takes {all}: fewer than {FIRST_LOOK} do not tell the error"),
         });
     };
     let within = |error: f64| {

@@ -22,8 +22,21 @@ pub(super) fn in_number(count: u64) -> String {
 pub(super) fn in_words(seconds: f64) -> String {
     match seconds {
         s if s < 1.0 => "a second or less".into(),
+        s if s < 1.5 => "1 second".into(),
         s if s < 120.0 => format!("{s:.0} seconds"),
         s if s < 7200.0 => format!("{:.0} minutes", s / 60.0),
         s => format!("{:.1} hours", s / 3600.0),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::in_words;
+
+    #[test]
+    fn one_second_is_no_seconds() {
+        let times = [0.4, 1.0, 1.49, 1.5, 119.0, 125.0, 7300.0].map(in_words);
+        let said = ["a second or less", "1 second", "1 second", "2 seconds", "119 seconds", "2 minutes", "2.0 hours"];
+        assert_eq!(times, said);
     }
 }

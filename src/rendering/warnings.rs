@@ -11,10 +11,14 @@ pub(super) fn warnings(report: &Report, error: Option<&ImageError>) -> Vec<Strin
     if let Some([x, y, sample]) = report.first_non_finite {
         let count = report.non_finite;
         let first = format!("the first is sample {sample} of pixel ({x}, {y})");
-        warnings.push(format!("{count} samples were not finite and are left out; {first}"));
+        warnings.push(match count {
+            1 => format!("1 sample was not finite and is left out: sample {sample} of pixel ({x}, {y})"),
+            _ => format!("{count} samples were not finite and are left out; {first}"),
+        });
     }
     if report.unmatched > 0 {
-        let times = format!("{} times light left a clear body it had not entered", report.unmatched);
+        let times = if report.unmatched == 1 { "once".into() } else { format!("{} times", report.unmatched) };
+        let times = format!("{times} light left a clear body it had not entered");
         warnings.push(format!("{times} and went straight on: is a dielectric mesh open?"));
     }
     if report.by_chance > 0 {

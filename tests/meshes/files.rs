@@ -278,7 +278,7 @@ fn a_dielectric_on_an_open_mesh_is_warned_of_and_on_a_closed_one_is_not() {
     assert_eq!(warnings("a.obj", turned.as_bytes(), glass).len(), 1, "one face looks the other way");
     let empty_face = format!("{closed}f 1 2 2\n");
     let said = warnings("a.obj", empty_face.as_bytes(), glass);
-    assert_eq!(said, ["pyramid: 1 triangles without area were dropped"]);
+    assert_eq!(said, ["pyramid: 1 triangle without area was dropped"]);
 }
 
 fn report(faces: &[[u32; 3]]) -> (usize, usize) {

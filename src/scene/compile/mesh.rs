@@ -124,7 +124,10 @@ fn built(context: &mut Context, name: &str, value: Value, parts: Parts, smooth: 
         return value.refuse("no triangle of this mesh has an area");
     };
     if report.degenerate > 0 {
-        context.warn(format!("{name}: {} triangles without area were dropped", report.degenerate));
+        context.warn(match report.degenerate {
+            1 => format!("{name}: 1 triangle without area was dropped"),
+            count => format!("{name}: {count} triangles without area were dropped"),
+        });
     }
     Some(Arc::new(mesh.with(attributes)))
 }

@@ -91,8 +91,11 @@ pub(super) fn object<'d>(
             && mesh.bare() > 0
             && (named.it.varies() || relief.is_some())
         {
-            let (bare, shown) = (mesh.bare(), "they show the image where u and v are 0");
-            context.warn(format!("{name}: {bare} triangles of {file} have no texture coordinates: {shown}"));
+            let what = match mesh.bare() {
+                1 => format!("1 triangle of {file} has no texture coordinates: it shows"),
+                bare => format!("{bare} triangles of {file} have no texture coordinates: they show"),
+            };
+            context.warn(format!("{name}: {what} the image where u and v are 0"));
         }
         Some(Draft { name, material: named.place.text()?, shape, map, instances, relief, group, sight })
     })
