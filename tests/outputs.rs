@@ -43,6 +43,25 @@ fn is_image(path: &Path) -> bool {
     fs::read(path).expect("the image is there").starts_with(&[0x76, 0x2f, 0x31, 0x01])
 }
 
+/// The limit is one of addresses, below what the film takes.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_film_that_does_not_fit_in_memory_is_refused_and_planned_all_the_same() {
+    let folder = folder();
+    let run = |flag: &str| {
+        let size = "--set film.width=16384 --set film.height=16384 --threads 1";
+        shell(&folder, &format!("ulimit -v 4000000; $RENDER {flag} ball.toml {size}"))
+    };
+    let (code, plan, _) = run("--plan");
+    assert_eq!(code, Some(0));
+    assert!(plan.contains("\nfilm: 16384 x 16384 pixels take 19.3 GB of memory\n"), "{plan}");
+    let (code, _, told) = run("--exr");
+    let expected = "error: cannot keep the film in memory, 19.3 GB: there is not so much; \
+                    --crop and --shard render a part of the image\n";
+    assert_eq!((code, &*told), (Some(1), expected));
+    assert_eq!(folder.listing(), ["ball.toml"]);
+}
+
 #[test]
 fn an_image_is_made_though_stderr_cannot_be_written() {
     for lost in ["2>/dev/full", "2>&-", "2>&- 1>&- <&-", "2>/dev/full >/dev/full", "2>&1 | true"] {

@@ -22,9 +22,12 @@ use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
+use crate::film::Window;
 use crate::scene::Scene;
 use crate::spectrum::{Basis, Curve};
-use crate::trace::{LightPass, Method, PhotonTimes, Probe, Transport, photon_times, prepare_unguided, probe};
+use crate::trace::{
+    LightPass, Method, PhotonTimes, Probe, Transport, bytes_of_film, photon_times, prepare_unguided, probe,
+};
 use between::between;
 use lit::Lit;
 use model::Model;
@@ -83,7 +86,7 @@ pub fn plan(scene: &Scene<Curve>) -> Plan {
     let (cost, processor_time) = cost(scene, &method, &on_average, times);
     let mut because = vec![cost];
     because.extend(stopping::reason(scene, method.stop.as_ref()));
-    because.extend(layers(scene));
+    because.extend(memory(scene, &method));
     because.extend(missed);
     let left_out: Vec<String> =
         polarization.left_out.into_iter().chain(lights(scene, method.light_pass.as_ref())).collect();
@@ -118,11 +121,17 @@ fn before_light(scene: &Scene<Curve>, basis: Basis) -> (Method, String) {
     (method, reason)
 }
 
-/// What layers take, where that is much.
-fn layers(scene: &Scene<Curve>) -> Option<String> {
-    let gigabytes = scene.layer_bytes() as f64 / 1e9;
+/// What the film and its layers take, where that is much.
+fn memory(scene: &Scene<Curve>, method: &Method) -> impl Iterator<Item = String> {
+    let takes = |what: String, bytes: u64| {
+        let gigabytes = bytes as f64 / 1e9;
+        (gigabytes >= 1.0).then(|| format!("{what} take {gigabytes:.1} GB of memory"))
+    };
+    let Window { width, height, .. } = scene.film.window();
+    let film = takes(format!("film: {width} x {height} pixels"), bytes_of_film(scene, method));
     let channels = scene.layer_channels();
-    (gigabytes >= 1.0).then(|| format!("layers: {channels} channels beside the image take {gigabytes:.1} GB of memory"))
+    let layers = takes(format!("layers: {channels} channels beside the image"), scene.layer_bytes());
+    film.into_iter().chain(layers)
 }
 
 /// What lights cannot do.

@@ -1,6 +1,7 @@
 //! Renders, step by step.
 
 use std::borrow::Cow;
+use std::io::ErrorKind;
 use std::path::Path;
 use std::time::{Duration, Instant, SystemTime};
 
@@ -15,7 +16,7 @@ use crate::error::{Error, Result};
 use crate::film::{Fact, Format, Provenance, Shard, View};
 use crate::plan::{Plan, plan};
 use crate::scene::{Projection, Scene};
-use crate::trace::{self, Advance, Report, prepare};
+use crate::trace::{self, Advance, Method, Report, bytes_of_film, prepare};
 
 /// Renders a scene.
 ///
@@ -91,6 +92,7 @@ impl Rendering {
             Some(path) => read_plan(path, &scene)?,
             None => threads.install(|| plan(&scene)),
         };
+        has_memory(&scene, &plan.method, options.shard)?;
         let world = prepare(&scene, plan.method.clone());
         let camera = &scene.camera;
         let view = View {
@@ -274,6 +276,18 @@ impl Rendering {
 }
 
 /// What a file says of its image's error.
+/// Refuses a film that is known not to fit in memory before the first sample is taken: an allocation that fails later
+/// ends the process without a word. What is small always fits.
+fn has_memory(scene: &Scene, method: &Method, shard: Shard) -> Result<()> {
+    let bytes = (bytes_of_film(scene, method) + scene.layer_bytes()) / u64::from(shard.count());
+    let is_there = || Vec::<u8>::new().try_reserve_exact(usize::try_from(bytes).unwrap_or(usize::MAX)).is_ok();
+    if bytes < 1_000_000_000 || is_there() {
+        return Ok(());
+    }
+    let path = format!("the film in memory, {:.1} GB", bytes as f64 / 1e9).into();
+    Err(Error::Io { doing: "keep", path, source: ErrorKind::OutOfMemory.into() })
+}
+
 fn facts_of_error(error: &ImageError) -> Vec<(Cow<'static, str>, Fact)> {
     let [at_most, noise] = [error.at_most(), error.noise.expected].map(Fact::Number);
     let facts = [("errorAtMost", at_most), ("noise", noise), ("modelError", Fact::Number(error.model))];

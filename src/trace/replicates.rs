@@ -80,6 +80,12 @@ impl Replicates {
         Self { light: Sums::new(pixels, is_signed), blur, shown: Vec::new() }
     }
 
+    /// Bytes of memory that they take for each pixel.
+    pub(super) fn bytes_of_pixel(is_signed: bool, gathers: bool) -> usize {
+        let kinds = (1 + usize::from(is_signed)) * (1 + usize::from(gathers));
+        kinds * size_of::<[Sum; REPLICATES]>()
+    }
+
     /// Whether it has as many sums of each kind as another one, or none yet of what photons show.
     pub(super) fn is_shaped_as(&self, other: &Self) -> bool {
         self.light.is_shaped_as(&other.light)

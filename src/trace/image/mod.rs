@@ -19,3 +19,4 @@ pub use rare_light::RareLight;
 pub use rendering::{Advance, Rendering, Report, render};
 pub use saved::Restored;
 pub use stopping::Stopped;
+pub use tile::bytes_of_film;

@@ -3,11 +3,14 @@
 use serde::{Deserialize, Serialize};
 
 use super::layer_sums::LayerSums;
-use crate::film::{PassSum, PixelSum, Sample, TilePlace};
+use crate::film::{PassSum, Pixel, PixelSum, Sample, TilePlace};
 use crate::math::Sampler;
+use crate::scene::Scene;
+use crate::spectrum::Curve;
 use crate::trace::World;
 use crate::trace::camera::PathTracer;
 use crate::trace::layers::Layers;
+use crate::trace::method::Method;
 use crate::trace::pass::Pass;
 use crate::trace::photon::PassLight;
 use crate::trace::replicates::Replicates;
@@ -44,6 +47,16 @@ pub struct Shown {
     pub layers: Vec<f64>,
     /// How much of their light polarization may change.
     pub moved: f64,
+}
+
+/// Bytes of memory that the film takes by some method, without layers: the sums of each pixel, those of its replicates
+/// where a stop rule compares them, and its finished values.
+pub fn bytes_of_film(scene: &Scene<Curve>, method: &Method) -> u64 {
+    let is_signed = scene.film.filter.is_signed();
+    let gathers = method.light_pass.as_ref().is_some_and(|pass| pass.map.is_some());
+    let replicates = method.stop.as_ref().map_or(0, |_| Replicates::bytes_of_pixel(is_signed, gathers));
+    let sums = (1 + usize::from(is_signed)) * size_of::<PixelSum>();
+    scene.film.window().pixels() * (sums + replicates + size_of::<Pixel>()) as u64
 }
 
 impl Tile {
