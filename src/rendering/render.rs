@@ -275,7 +275,6 @@ impl Rendering {
     }
 }
 
-/// What a file says of its image's error.
 /// Refuses a film that is known not to fit in memory before the first sample is taken: an allocation that fails later
 /// ends the process without a word. What is small always fits.
 fn has_memory(scene: &Scene, method: &Method, shard: Shard) -> Result<()> {
@@ -288,6 +287,7 @@ fn has_memory(scene: &Scene, method: &Method, shard: Shard) -> Result<()> {
     Err(Error::Io { doing: "keep", path, source: ErrorKind::OutOfMemory.into() })
 }
 
+/// What a file says of its image's error.
 fn facts_of_error(error: &ImageError) -> Vec<(Cow<'static, str>, Fact)> {
     let [at_most, noise] = [error.at_most(), error.noise.expected].map(Fact::Number);
     let facts = [("errorAtMost", at_most), ("noise", noise), ("modelError", Fact::Number(error.model))];
