@@ -68,7 +68,7 @@ fn weigh_photons<const N: usize>(whole: &World) -> Vec<PhotonWorth> {
 
 /// How many rays a photon follows, by the first of each target of a world, whose targets are replaced.
 fn rays_of_photon<const N: usize>(world: &mut World) -> f64 {
-    for targets in &mut world.photon_targets {
+    if let Some(targets) = &mut world.photon_targets {
         let each = (FIRST / targets.targets.len() as u64).max(1);
         targets.targets.iter_mut().for_each(|target| target.photons = target.photons.min(each));
     }
