@@ -4,7 +4,9 @@
 //! cargo test --test all checkpoints::
 //! ```
 
+use std::collections::BTreeMap;
 use std::path::Path;
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use abbe::film::{Layer, Overscan, Shard, Window};
@@ -167,6 +169,19 @@ fn planned(scene: &Scene, options: &Options, folder: &Path) -> Options {
     Options { plan: Some(path), ..options.clone() }
 }
 
+/// The same of one of the [`kinds`], whose plan is made once for all tests.
+fn planned_once(kind: &'static str, scene: &Scene, options: &Options, folder: &Path) -> Options {
+    static PLANS: Mutex<BTreeMap<&str, Vec<u8>>> = Mutex::new(BTreeMap::new());
+    let path = folder.join("image.plan");
+    let mut plans = PLANS.lock().expect("no other test has panicked");
+    let plan = plans.entry(kind).or_insert_with(|| {
+        planned(scene, options, folder);
+        std::fs::read(&path).expect("it was written")
+    });
+    std::fs::write(&path, plan).expect("a plan can be written");
+    Options { plan: Some(path), ..options.clone() }
+}
+
 pub fn rendering(scene: &Scene, options: &Options, threads: usize) -> Rendering {
     Rendering::new(scene, &Options { threads: Some(threads), ..options.clone() }).expect("it can be rendered")
 }
@@ -185,7 +200,7 @@ fn a_render_that_stops_anywhere_goes_on_to_the_same_bytes() {
     let path = folder.path().join("image.checkpoint");
     for (kind, text, options, is_meant) in kinds() {
         let scene = scene(&text);
-        let options = planned(&scene, &options, folder.path());
+        let options = planned_once(kind, &scene, &options, folder.path());
         let mut whole = rendering(&scene, &options, 2);
         assert!(is_meant(&whole.plan().method), "{kind}: {:?}", whole.plan().because);
         let asked = advance(&mut whole, u64::MAX);
@@ -223,7 +238,7 @@ fn a_render_that_stops_and_goes_on_in_one_run_makes_the_same_image() {
     let folder = tempfile::tempdir().expect("a folder");
     for (kind, text, options, _) in kinds() {
         let scene = scene(&text);
-        let options = planned(&scene, &options, folder.path());
+        let options = planned_once(kind, &scene, &options, folder.path());
         let (mut whole, mut often) = (rendering(&scene, &options, 2), rendering(&scene, &options, 2));
         let asked = advance(&mut whole, u64::MAX);
         while often.done() < often.work() {
@@ -244,7 +259,7 @@ fn parts_of_an_image_are_together_the_same_bytes_as_the_whole() {
     let tiles = ("64 tiles", LIT.into(), Options::default(), (|_| true) as fn(&Method) -> bool);
     for (number, (kind, text, options, _)) in [tiles].into_iter().chain(kinds()).enumerate() {
         let scene = scene(&text);
-        let options = planned(&scene, &options, folder.path());
+        let options = planned_once(kind, &scene, &options, folder.path());
         let whole = bytes(&rendering(&scene, &options, 2).run(&|_| ()), folder.path());
         let counts = match number {
             0 => &all[..],

@@ -15,7 +15,7 @@ const COSINES: [f64; 10] = [0.001, 0.01, 0.04, 0.1, 0.2, 0.35, 0.5, 0.7, 0.9, 1.
 const DRAWS: u32 = 1 << 15;
 /// A rough boundary is drawn by more than the two numbers that are spread evenly: what is left to chance is told by its
 /// spread.
-const DRAWS_OF_GLASS: u32 = 1 << 16;
+const DRAWS_OF_GLASS: u32 = 1 << 15;
 /// A metal that takes less than 1e-9 of the light at right angles.
 const LOSSLESS: &str = "n = 1e-6, k = 100";
 

@@ -179,7 +179,7 @@ fn balls_in_the_sun_below_a_plane_with_holes_and_one_above_it() {
             + &object("glass", "sphere = { center = [0.9, 4.2, 0], radius = 0.7 }")
             + "[[light]]\nsun = { toward = [0.3, 1, 0.2], angular_diameter = 30, irradiance = 3 }\n"
     };
-    agree("below a mask", &over("mask = { material = \"paper\", opacity = 0.5 }"), 64);
+    agree("below a mask", &over("mask = { material = \"paper\", opacity = 0.5 }"), 16);
     agree("below a pane without end", &over("thin = { index = 1.5 }"), 16);
     agree("below water without end", &over("dielectric = { index = 1.33 }"), 16);
 }

@@ -55,11 +55,11 @@ fn every_lossless_compression_and_several_parts_hold_the_same_numbers() {
     for compression in Compression::NAMES.into_iter().map(|(_, known)| known).filter(|known| !known.is_lossy()) {
         for multipart in [false, true] {
             let (parts, bytes) = written(Precision::Float, compression, multipart, &Layer::all());
-            assert_eq!(bytes, written(Precision::Float, compression, multipart, &Layer::all()).1);
             let together: BTreeMap<_, _> = parts.iter().flat_map(|(_, channels)| channels.clone()).collect();
             assert_eq!(&together, all, "{compression:?}, several parts: {multipart}");
             if !multipart {
                 assert_eq!(parts.len(), 1);
+                assert_eq!(bytes, written(Precision::Float, compression, multipart, &Layer::all()).1);
                 continue;
             }
             assert_eq!(parts[1].0.as_deref(), Some("depth"));

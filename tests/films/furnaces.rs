@@ -7,7 +7,7 @@ use super::reference::shares;
 use crate::layers::arrivals::{arrival, material, points, toward};
 
 const COSINES: [f64; 7] = [0.01, 0.1, 0.2, 0.4, 0.6, 0.8, 1.0];
-const DRAWS: u32 = 1 << 14;
+const DRAWS: u32 = 1 << 13;
 const ROUGHNESSES: [f64; 5] = [0.0, 0.2, 0.45, 0.7, 1.0];
 /// Where three bands read, in nm.
 const BANDS_NM: [f64; 3] = [656.27, 546.07, 486.13];
@@ -48,30 +48,29 @@ const CLEAR: [&str; 4] = [
 
 #[test]
 fn clear_films_lose_nothing_and_win_nothing() {
+    let mut rows = vec![("thin = { index = 1.33, thickness_nm = 400 }".to_owned(), vec![([1.0; 2], false)])];
+    for (coating, roughness) in CLEAR.into_iter().flat_map(|coating| ROUGHNESSES.map(|roughness| (coating, roughness)))
+    {
+        let glass = format!("dielectric = {{ index = 1.5, roughness = {roughness:?}, coating = {coating} }}");
+        rows.push((glass, vec![([1.0, 1.5], false), ([1.5, 1.0], true)]));
+        let plastic = format!("plastic = {{ reflectance = 1, roughness = {roughness:?}, coating = {coating} }}");
+        rows.push((plastic, vec![([1.0; 2], false)]));
+        let metal = format!("conductor = {{ n = 1e-6, k = 100, roughness = {roughness:?}, coating = {coating} }}");
+        rows.push((metal, vec![([1.0; 2], false)]));
+    }
     let mut worst = [1.0_f64; 2];
-    for coating in CLEAR {
-        let mut rows = vec![("thin = { index = 1.33, thickness_nm = 400 }".to_owned(), vec![([1.0; 2], false)])];
-        for roughness in ROUGHNESSES {
-            let glass = format!("dielectric = {{ index = 1.5, roughness = {roughness:?}, coating = {coating} }}");
-            rows.push((glass, vec![([1.0, 1.5], false), ([1.5, 1.0], true)]));
-            let plastic = format!("plastic = {{ reflectance = 1, roughness = {roughness:?}, coating = {coating} }}");
-            rows.push((plastic, vec![([1.0; 2], false)]));
-            let metal = format!("conductor = {{ n = 1e-6, k = 100, roughness = {roughness:?}, coating = {coating} }}");
-            rows.push((metal, vec![([1.0; 2], false)]));
-        }
-        for (text, sides) in rows {
-            let material = material(&text);
-            let [mut least, mut most] = [f64::INFINITY, 0.0_f64];
-            for ((indices, inside), cos) in sides.iter().flat_map(|side| COSINES.map(|cos| (*side, cos))) {
-                for [shown, chance] in furnace(&material, indices, inside, cos) {
-                    [least, most] = [least.min(shown), most.max(shown)];
-                    let off = (shown - 1.0).abs() - chance;
-                    assert!(off <= 0.005, "{text}: {shown} +- {chance} between {indices:?} at the cosine {cos}");
-                }
+    for (text, sides) in rows {
+        let material = material(&text);
+        let [mut least, mut most] = [f64::INFINITY, 0.0_f64];
+        for ((indices, inside), cos) in sides.iter().flat_map(|side| COSINES.map(|cos| (*side, cos))) {
+            for [shown, chance] in furnace(&material, indices, inside, cos) {
+                [least, most] = [least.min(shown), most.max(shown)];
+                let off = (shown - 1.0).abs() - chance;
+                assert!(off <= 0.005, "{text}: {shown} +- {chance} between {indices:?} at the cosine {cos}");
             }
-            println!("{text:.110} {least:.5} to {most:.5}");
-            worst = [worst[0].min(least), worst[1].max(most)];
         }
+        println!("{text:.110} {least:.5} to {most:.5}");
+        worst = [worst[0].min(least), worst[1].max(most)];
     }
     println!("all {:.5} to {:.5}", worst[0], worst[1]);
 }
