@@ -7,7 +7,9 @@ mod overscan;
 mod polarization;
 mod residual;
 
-use abbe::film::{FirstSurface, Layer, Window, id};
+use abbe::film::{Film, FirstSurface, Layer, Window, id};
+use abbe::plan::plan;
+use abbe::trace::{Method, prepare, render};
 use abbe::{Image, Options, Scene};
 
 /// Glass that disperses, a mirror, a pane, rough metal and a coated ball on a floor, lit by a lamp, a sky and a spot:
@@ -449,24 +451,21 @@ fn mattes_cover_what_the_image_covers() {
 /// What the halves and the variance say is what other seeds show.
 #[test]
 fn variance_is_no_less_than_images_of_other_seeds_show() {
-    let scene = Scene::parse(ROOM, "").expect("the scene is valid");
-    let layers = Some(vec![Layer::Variance, Layer::HalfA, Layer::HalfB]);
-    let images: Vec<Image> = (0..24)
-        .map(|seed| {
-            let options = Options { layers: layers.clone(), seed: Some(seed), ..Options::default() };
-            abbe::render(&scene, &options).expect("it renders")
-        })
-        .collect();
+    let mut scene = Scene::parse(ROOM, "").expect("the scene is valid");
+    scene.format.layers = vec![Layer::Variance, Layer::HalfA, Layer::HalfB];
+    let method = plan(&scene).method;
+    let of_seed = |seed| render(&prepare(&scene, Method { seed, ..method.clone() }), &|_| ()).0;
+    let films: Vec<Film> = (0..24).map(of_seed).collect();
     let (mut told, mut seen, mut halves) = (0.0, 0.0, 0.0);
     for pixel in 0..40 * 28 {
         for channel in 0..3 {
-            let values: Vec<f64> = images.iter().map(|image| f64::from(image.rgb()[pixel][channel])).collect();
+            let values: Vec<f64> = films.iter().map(|film| f64::from(film.pixels[pixel].rgb[channel])).collect();
             let mean = values.iter().sum::<f64>() / 24.0;
             let weight = 1.0 / (mean * mean + 0.01);
             seen += weight * values.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / 23.0;
-            for image in &images {
-                told += weight * rgb_of(image, "variance", pixel, channel) / 24.0;
-                let apart = rgb_of(image, "half_a", pixel, channel) - rgb_of(image, "half_b", pixel, channel);
+            for film in &films {
+                told += weight * rgb_of(film, "variance", pixel, channel) / 24.0;
+                let apart = rgb_of(film, "half_a", pixel, channel) - rgb_of(film, "half_b", pixel, channel);
                 halves += weight * 0.25 * apart * apart / 24.0;
             }
         }
@@ -476,7 +475,7 @@ fn variance_is_no_less_than_images_of_other_seeds_show() {
     assert!((0.5..2.0).contains(&(halves / seen)), "halves {halves:.3}, seen {seen:.3}");
 }
 
-fn rgb_of(image: &Image, name: &str, pixel: usize, channel: usize) -> f64 {
-    let layer = image.film().layers.iter().find(|layer| layer.name == name).expect("it was asked for");
+fn rgb_of(film: &Film, name: &str, pixel: usize, channel: usize) -> f64 {
+    let layer = film.layers.iter().find(|layer| layer.name == name).expect("it was asked for");
     f64::from(layer.values[3 * pixel + channel])
 }
