@@ -1,4 +1,5 @@
-//! Rows L6 and M6: scenes that look right in their file and in which a light lights nothing, or a body is inside out.
+//! Rows L6, L9 and M6: scenes that look right in their file and in which a light lights nothing or stands in a surface,
+//! or a body is inside out.
 
 use crate::support::scenes::{body, environment, scene, view};
 
@@ -121,4 +122,38 @@ fn m6_a_clear_mesh_that_is_inside_out_is_told_of_and_a_bubble_is_not() {
     // A mirror image in a transform turns no faces around.
     let mirrored = format!("{}\ntransform = [{{ scale = [-1, 1, 1] }}]", tetrahedron(true));
     assert_warns(&stage(&glass(&[&mirrored])), &[]);
+}
+
+/// Where a light or the camera stands exactly in a surface, neither side of that is theirs.
+#[test]
+fn l9_lights_and_cameras_that_stand_exactly_in_a_surface_are_told_of() {
+    let ceiling = |shape: &str| body("ceiling", "diffuse = { reflectance = 0.5 }", &[shape]);
+    let point = |y: f64| format!("[[light]]\npoint = {{ position = [0.3, {y:?}, 0.2], intensity = 9 }}\n");
+    let spot = "[[light]]\nspot = { position = [0, 5, 0], toward = [0, -1, 0], cone_angle = 30, intensity = 9 }\n";
+    let flat = "quad = { center = [0, 5, 0], u = [3, 0, 0], v = [0, 0, 3] }";
+    for shape in [flat, "plane = { point = [0, 5, 0], normal = [0, -1, 0] }", "cube = { center = [0, 6, 0], size = 2 }"]
+    {
+        let told = "light 1 (point) stands exactly in the surface of object 3";
+        assert_warns(&stage(&(ceiling(shape) + &point(5.0))), &[told]);
+        assert_warns(&stage(&(ceiling(shape) + &point(5.0 - 1e-9))), &[]);
+        assert_warns(&stage(&(ceiling(shape) + spot)), &["light 1 (spot) stands exactly in the surface of object 3"]);
+    }
+    let lamp =
+        |y: f64| body("lamp", LAMP, &[&format!("quad = {{ center = [0, {y:?}, 0], u = [1, 0, 0], v = [0, 0, 1] }}")]);
+    for both in [ceiling(flat) + &lamp(5.0), lamp(5.0) + &ceiling(flat)] {
+        let text = view([0.0, 2.0, 8.0], [0.0, 1.0, 0.0], 40.0, 16)
+            + &body("white", "diffuse = { reflectance = 0.7 }", &[FLOOR, BALL])
+            + &both;
+        let warnings = scene(&text).warnings;
+        let told = "which shines, lies exactly in object";
+        assert!(warnings.iter().any(|warning| warning.contains(told)), "{warnings:?}");
+    }
+    assert_warns(&stage(&(ceiling(flat) + &lamp(4.999))), &[]);
+    let water = |y: f64| {
+        let size = 2.0 * y;
+        body("water", "dielectric = { index = 1.33 }", &[&format!("cube = {{ center = [0, 0, 8], size = {size:?} }}")])
+    };
+    let told = "the camera stands exactly in the surface of object 3, neither inside nor outside";
+    assert_warns(&stage(&(water(2.0) + &environment(1.0))), &[told]);
+    assert_warns(&stage(&(water(2.0 + 1e-9) + &environment(1.0))), &[]);
 }

@@ -1,4 +1,4 @@
-//! Clear bodies that share a part of their surface with something else.
+//! Clear bodies and flat lamps that share a part of their surface with something else.
 
 use crate::math::{Bounds, BranchKey, DVec3, Ray, Sampler, ball_surface};
 use crate::scene::Object;
@@ -12,22 +12,23 @@ const NEAR: f64 = 1e-9;
 /// Pairs of bodies that are compared at most; a scene with more is not searched further.
 const MOST_PAIRS: usize = 20_000;
 
-/// Pairs of objects, the first one clear, whose surfaces coincide in part; `clear` says which objects are.
+/// Pairs of objects whose surfaces coincide in part, the first one such as counts.
 ///
 /// A ray that leaves one of them starts beyond the other and never meets it (row M2 of the stability catalog).
-pub(super) fn coinciding(objects: &[Object], clear: impl Fn(&Object) -> bool) -> Vec<(usize, usize)> {
-    let is_clear: Vec<bool> = objects.iter().map(clear).collect();
+pub(super) fn coinciding(objects: &[Object], counts: impl Fn(&Object) -> bool) -> Vec<(usize, usize)> {
+    let counting: Vec<bool> = objects.iter().map(counts).collect();
     let boxes: Vec<Option<Bounds>> = objects.iter().map(|object| object.shape.bounds()).collect();
-    let mut pairs = near_pairs(&boxes, &is_clear);
+    let mut pairs = near_pairs(&boxes, &counting);
     pairs.sort_unstable();
     pairs.retain(|&(first, second)| share_a_surface(&objects[first], &objects[second]));
     pairs
 }
 
-/// Pairs whose boxes meet, the first one clear: of objects in the order in which they begin along the longest side of
-/// the scene, each is compared with those that have not ended (Cohen et al. 1995, *I-COLLIDE*, sweep and prune).
-fn near_pairs(boxes: &[Option<Bounds>], is_clear: &[bool]) -> Vec<(usize, usize)> {
-    if !is_clear.contains(&true) {
+/// Pairs whose boxes meet, the first one such as counts: of objects in the order in which they begin along the longest
+/// side of the scene, each is compared with those that have not ended (Cohen et al. 1995, *I-COLLIDE*, sweep and
+/// prune).
+fn near_pairs(boxes: &[Option<Bounds>], counting: &[bool]) -> Vec<(usize, usize)> {
+    if !counting.contains(&true) {
         return Vec::new();
     }
     let size = Bounds::around(boxes.iter().flatten().map(Bounds::center));
@@ -42,8 +43,8 @@ fn near_pairs(boxes: &[Option<Bounds>], is_clear: &[bool]) -> Vec<(usize, usize)
         open.retain(|&other| to(other) >= from(object));
         for &other in &open {
             let (low, high) = (object.min(other), object.max(other));
-            let (first, second) = if is_clear[low] { (low, high) } else { (high, low) };
-            if is_clear[first] && may_touch(boxes[first], boxes[second]) {
+            let (first, second) = if counting[low] { (low, high) } else { (high, low) };
+            if counting[first] && may_touch(boxes[first], boxes[second]) {
                 pairs.push((first, second));
                 if pairs.len() == MOST_PAIRS {
                     return pairs;

@@ -22,6 +22,7 @@ mod material;
 mod measures;
 mod mesh;
 mod object;
+mod on_surface;
 mod parts;
 mod place;
 mod radiometry;
@@ -49,7 +50,7 @@ use super::{ModelText, NamedMaterial, Object, PolarizationText, RenderText, Scen
 use crate::film::Format;
 use crate::light::{Area, Light, LightId};
 use crate::material::Material;
-use crate::shape::Sides;
+use crate::shape::{Shape, Sides};
 use crate::spectrum::Curve;
 
 /// The sections that a scene may have.
@@ -69,6 +70,7 @@ pub(super) fn compile<'d>(document: &'d Document<'d>) -> Option<Scene<Curve>> {
         scene.warnings.push("nothing shines, so the image will be black".into());
     }
     scene.warnings.extend(unlit::unlit(&scene));
+    scene.warnings.extend(on_surface::on_surface(&scene));
     scene.files = context.files;
     scene.hash = context.hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
     Some(scene)
@@ -184,20 +186,31 @@ fn is_clear(placed: &Placed, object: &Object) -> bool {
     placed.materials[object.material as usize].material.medium().is_some()
 }
 
-/// Clear bodies may overlap but not share a surface: rounding would decide which of the two a ray meets.
+/// A lamp that has no inside.
+fn is_flat_lamp(placed: &Placed, object: &Object) -> bool {
+    let shines = matches!(placed.materials[object.material as usize].material, Material::Emissive(_));
+    shines && matches!(*object.shape, Shape::Quad(_) | Shape::Disc(_) | Shape::Triangle(_))
+}
+
+/// Clear bodies may overlap but not share a surface: rounding would decide which of the two a ray meets. Of a flat lamp
+/// in another surface nothing may be seen.
 fn contacts(context: &mut Context, placed: &Placed) {
-    for (first, second) in contact::coinciding(&placed.objects, |object| is_clear(placed, object)) {
+    let counts = |object: &Object| is_clear(placed, object) || is_flat_lamp(placed, object);
+    for (first, second) in contact::coinciding(&placed.objects, counts) {
         let [body, other] = [first, second].map(|number| &placed.objects[number].name);
-        if is_clear(placed, &placed.objects[second]) {
+        if [first, second].iter().all(|&number| is_clear(placed, &placed.objects[number])) {
             let message = format!("a part of the surfaces of {body} and {other} lies in one place");
             let help = "let one reach a little into the other: there the one of higher `priority` is; or leave a gap";
             placed.shapes[first.max(second)].advise::<()>(message, help);
             continue;
         }
-        context.warn(format!(
-            "a part of the surface of {body} lies exactly in {other}, where light may pass by it: move it a little, apart \
-             or into the other"
-        ));
+        context.warn(match is_flat_lamp(placed, &placed.objects[first]) {
+            true => format!("a part of {body}, which shines, lies exactly in {other}, which may hide it: move it a little"),
+            false => format!(
+                "a part of the surface of {body} lies exactly in {other}, where light may pass by it: move it a little, \
+                 apart or into the other"
+            ),
+        });
     }
 }
 

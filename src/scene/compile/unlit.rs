@@ -160,8 +160,8 @@ fn start_on(area: &Area<Curve>, sampler: &Sampler) -> Option<Start> {
     Some(Start { ray, surface: Some(Place { point, normal, object: area.object }) })
 }
 
-/// The object that shines, or the number of the `[[light]]`, counted from 1, and its kind.
-fn name(scene: &Scene<Curve>, id: LightId) -> String {
+/// What messages call a light: the object that shines, or the number of the `[[light]]`, counted from 1, and its kind.
+pub(super) fn name(scene: &Scene<Curve>, id: LightId) -> String {
     let kind = match &scene.lights[id] {
         Light::Area(area) => return scene.objects[area.object as usize].name.clone(),
         Light::Point(_) => "point",

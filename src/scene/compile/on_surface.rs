@@ -1,0 +1,51 @@
+//! Cameras and lights that stand exactly in a surface, neither on one side of it nor on the other.
+
+use super::unlit::name;
+use crate::light::Light;
+use crate::math::{Bounds, DVec3, Ray};
+use crate::scene::Scene;
+use crate::spectrum::Curve;
+
+/// Lights that are looked at.
+const MOST: usize = 4096;
+/// Parts of the scene's size: from how far away a place is looked at, and how near a surface counts as being there. The
+/// latter is far above rounding and far below anything meant.
+const STEP: f64 = 1e-7;
+const NEAR: f64 = 1e-13;
+
+/// What is wrong with the camera and with points and spots that stand in a surface.
+///
+/// Rounding decides which side of it such a light lights (row L9 of the stability catalog). A camera is taken for in a
+/// clear body or outside of it as its way to what it looks at leads.
+pub(super) fn on_surface(scene: &Scene<Curve>) -> Vec<String> {
+    let places = scene.lights.iter().enumerate().filter_map(|(id, light)| match light {
+        Light::Point(point) => Some((id, DVec3::from(point.position))),
+        Light::Spot(spot) => Some((id, DVec3::from(spot.position))),
+        Light::Area(_) | Light::Sun(_) | Light::Environment(_) => None,
+    });
+    let (places, camera): (Vec<_>, _) = (places.take(MOST).collect(), scene.camera.position());
+    let boxes = scene.objects.iter().filter_map(|object| object.shape.bounds());
+    let around = Bounds::around(places.iter().map(|place| place.1).chain([camera]));
+    let around = boxes.fold(around, Bounds::union);
+    let size = around.min.abs().max(around.max.abs()).max_element();
+    let is_clear = |object: u32| scene.material_of(object).medium().is_some();
+    let camera = surface_at(scene, camera, size).filter(|&object| is_clear(object)).map(|object| {
+        let body = &scene.objects[object as usize].name;
+        format!("the camera stands exactly in the surface of {body}, neither inside nor outside: move it a little")
+    });
+    let lights = places.into_iter().filter_map(|(id, place)| {
+        let object = &scene.objects[surface_at(scene, place, size)? as usize].name;
+        let name = name(scene, id);
+        Some(format!("{name} stands exactly in the surface of {object}, where rounding hides it: move it a little"))
+    });
+    camera.into_iter().chain(lights).collect()
+}
+
+/// The object in whose surface a place lies, if it lies in one.
+fn surface_at(scene: &Scene<Curve>, place: DVec3, size: f64) -> Option<u32> {
+    // One of the three leads through the surface, whatever its normal.
+    DVec3::AXES.into_iter().find_map(|direction| {
+        let hit = scene.intersect(&Ray { origin: place - direction * (STEP * size), direction })?;
+        ((hit.crossing.t - STEP * size).abs() <= NEAR * size).then_some(hit.object)
+    })
+}
