@@ -189,17 +189,22 @@ fn m4_a_camera_knows_whether_it_is_in_a_half_space_whichever_way_it_looks() {
     let cases =
         [(&half, -2.0, -3.0, inside), (&half, -2.0, -1.0, inside), (&half, 1.0, 2.0, 1.0), (&slab, 1.0, 2.0, 1.0)];
     let more = [(&slab, -5.0, -6.0, 1.0), (&slab, -2.0, -3.0, inside), (&slab, -2.0, -1.0, inside)];
-    for (planes, camera, lamp, expected) in cases.into_iter().chain(more) {
+    let look = |planes: &[String], ways: [[f64; 3]; 2], sides: &str, expected: f64| {
         let planes: Vec<&str> = planes.iter().map(String::as_str).collect();
         let water = body("water", "dielectric = { index = 1.333, absorption = 1 }", &planes);
-        let quad = format!("quad = {{ center = [{lamp:?}, 0, 0], u = [0, 1, 0], v = [0, 0, 1] }}");
-        let text = view([camera, 0.0, 0.0], [lamp, 0.0, 0.0], 1e-6, 1)
-            + &water
-            + &body("lamp", "emissive = { radiance = 1 }", &[&quad]);
+        let quad = format!("quad = {{ center = {:?}, {sides} }}", ways[1]);
+        let text = view(ways[0], ways[1], 1e-6, 1) + &water + &body("lamp", "emissive = { radiance = 1 }", &[&quad]);
         let (film, report) = image(&text, EVERY_BRANCH);
         let seen = f64::from(film.pixels[0].rgb[1]);
-        assert!((seen - expected).abs() < 1e-6, "from {camera} to {lamp}: {seen} for {expected}");
-        assert_eq!(report.unmatched, 0, "from {camera} to {lamp}");
+        assert!((seen - expected).abs() < 1e-6, "{ways:?}: {seen} for {expected}");
+        assert_eq!(report.unmatched, 0, "{ways:?}");
+    };
+    for (planes, camera, lamp, expected) in cases.into_iter().chain(more) {
+        look(planes, [[camera, 0.0, 0.0], [lamp, 0.0, 0.0]], "u = [0, 1, 0], v = [0, 0, 1]", expected);
+    }
+    // Exactly along the surface.
+    for (planes, camera, expected) in [(&half, -2.0, inside), (&half, 1.0, 1.0), (&slab, -2.0, inside)] {
+        look(planes, [[camera, 0.0, 0.0], [camera, 0.0, 1.0]], "u = [1, 0, 0], v = [0, 1, 0]", expected);
     }
 }
 
