@@ -169,7 +169,7 @@ fn planned(scene: &Scene, options: &Options, folder: &Path) -> Options {
     Options { plan: Some(path), ..options.clone() }
 }
 
-/// The same of one of the [`kinds`], whose plan is made once for all tests.
+/// Options with the plan of one of the [`kinds`] from a file; each plan is made once for all tests.
 fn planned_once(kind: &'static str, scene: &Scene, options: &Options, folder: &Path) -> Options {
     static PLANS: Mutex<BTreeMap<&str, Vec<u8>>> = Mutex::new(BTreeMap::new());
     let path = folder.join("image.plan");

@@ -66,7 +66,7 @@ fn weigh_photons<const N: usize>(whole: &World) -> Vec<PhotonWorth> {
     groups.into_iter().filter_map(|lights| weigh::<N>(whole, &mut world, lights, photons)).collect()
 }
 
-/// How many rays a photon follows, by the first of each target of a world, whose targets are replaced.
+/// How many rays a photon follows, by a few of each target. The world is left with these few.
 fn rays_of_photon<const N: usize>(world: &mut World) -> f64 {
     if let Some(targets) = &mut world.photon_targets {
         let each = (FIRST / targets.targets.len() as u64).max(1);
