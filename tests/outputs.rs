@@ -56,7 +56,7 @@ fn a_film_that_does_not_fit_in_memory_is_refused_and_planned_all_the_same() {
     assert_eq!(code, Some(0));
     assert!(plan.contains("\nfilm: 16384 x 16384 pixels take 19.3 GB of memory\n"), "{plan}");
     let (code, _, told) = run("--exr");
-    let expected = "error: cannot keep the film in memory, 19.3 GB: there is not so much; \
+    let expected = "error: cannot keep the film in memory, 19.3 GB: not that much is free; \
                     --crop and --shard render a part of the image\n";
     assert_eq!((code, &*told), (Some(1), expected));
     assert_eq!(folder.listing(), ["ball.toml"]);

@@ -130,8 +130,8 @@ struct Arguments {
     #[arg(long, value_name = "X,Y,W,H", allow_hyphen_values = true, value_parser = crop)]
     crop: Option<Window>,
 
-    /// Layers in the EXR beside the image, instead of the scene's: such as albedo,N,lights, or all, which are those
-    /// that do not ask for polarization. What film.stokes asks for stays
+    /// Layers in the EXR beside the image, instead of the scene's: such as albedo,N,lights, or all, which leaves out
+    /// those of polarization. S1, S2 and S3 stay if film.stokes asks for them
     #[arg(long, value_name = "NAMES", value_parser = layers)]
     layers: Option<LayerList>,
 

@@ -182,7 +182,7 @@ fn reason(doing: &str, error: &std::io::Error) -> String {
         ErrorKind::AlreadyExists | ErrorKind::NotADirectory => "a file stands where its folder should be".into(),
         ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => "permission is denied".into(),
         ErrorKind::StorageFull => "the disk is full".into(),
-        ErrorKind::OutOfMemory => "there is not so much; --crop and --shard render a part of the image".into(),
+        ErrorKind::OutOfMemory => "not that much is free; --crop and --shard render a part of the image".into(),
         _ => error.to_string(),
     }
 }

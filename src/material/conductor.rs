@@ -2,7 +2,7 @@ use super::coating::MetCoating;
 use super::degree::{LANES, degree, largest, of_all_lanes};
 use super::film_averages::{FilmAverages, mean};
 use super::{
-    Arrival, Block, Branch, Coating, Incoming, Mueller, RoughReflection, RoughSurface, Roughness, Stack,
+    Arrival, Block, Branch, Coating, Incoming, Mueller, PolarizedShare, RoughReflection, RoughSurface, Roughness,
     conductor_reflectance, reflect,
 };
 use crate::math::{Complex, DVec3, Frame, unit};
@@ -63,9 +63,8 @@ impl Conductor<Table> {
             (0.0, _) => [0.0; 2],
             (_, None) => conductor_reflectance(arrival.incident_of(i), n[i], k[i], cos),
             (_, Some(met)) => {
-                let n1 = arrival.incident_of(i);
-                let shares = met.shares(i, n1, Complex::new(n[i], -k[i]), n1 * cos.clamp(0.0, 1.0));
-                [shares.reflected.s, shares.reflected.p]
+                let reflected = reflected_under(met, i, [arrival.incident_of(i), n[i], k[i]], cos);
+                [reflected.s, reflected.p]
             }
         });
         Branch {
@@ -134,10 +133,10 @@ impl Conductor<Table> {
         let met = self.coating.as_ref().map(|coating| coating.met(arrival, false));
         let degree = |lane: usize| {
             let (n1, n, k, cos) = (arrival.incident_of(lane), n[lane], k[lane], arrival.wo.dot(h));
-            degree(match &met {
-                None => conductor_reflectance(n1, n, k, cos),
-                Some(met) => coated_reflectance(&met.stack(lane), n1, n, k, cos),
-            })
+            match &met {
+                None => degree(conductor_reflectance(n1, n, k, cos)),
+                Some(met) => reflected_under(met, lane, [n1, n, k], cos).degree(),
+            }
         };
         largest((0..N).step_by(N.div_ceil(LANES)).map(degree))
     }
@@ -158,9 +157,7 @@ impl Conductor<Table> {
         if let Some(coating) = &self.coating {
             let met = coating.met(arrival, false);
             return mueller.set_lanes(axis, incoming.lanes, |lane| {
-                let metal = Complex::new(n[lane], -k[lane]);
-                let n1 = arrival.incident_of(lane);
-                met.shares(lane, n1, metal, n1 * cos.clamp(0.0, 1.0)).reflected.block().times(once)
+                reflected_under(&met, lane, [arrival.incident_of(lane), n[lane], k[lane]], cos).block().times(once)
             });
         }
         let (mut last, mut block) = (None, Block::default());
@@ -174,16 +171,15 @@ impl Conductor<Table> {
     }
 }
 
-/// Reflectances (s, p) of a metal n - i k under layers, as [`conductor_reflectance`] of a bare one.
-pub fn coated_reflectance(stack: &Stack, n1: f64, n: f64, k: f64, cos: f64) -> [f64; 2] {
-    let reflected = stack.shares(n1, Complex::new(n, -k), n1 * cos.clamp(0.0, 1.0)).reflected;
-    [reflected.s, reflected.p]
+/// What a metal n - i k under layers reflects of a lane, in a medium of index `n1`.
+fn reflected_under<const N: usize>(met: &MetCoating<N>, lane: usize, [n1, n, k]: [f64; 3], cos: f64) -> PolarizedShare {
+    met.shares(lane, n1, Complex::new(n, -k), n1 * cos.clamp(0.0, 1.0)).reflected
 }
 
 /// The reflectance of a coated metal at a cosine, and its mean over the hemisphere.
 fn coated_by_facets<const N: usize>(met: &MetCoating<N>, lane: usize, [n1, n, k]: [f64; 3], cos: f64) -> [f64; 2] {
     let stack = met.stack(lane);
-    let at = |cos: f64| 0.5 * coated_reflectance(&stack, n1, n, k, cos).iter().sum::<f64>();
+    let at = |cos: f64| stack.shares(n1, Complex::new(n, -k), n1 * cos.clamp(0.0, 1.0)).reflected.mean();
     let averages = met.averages(lane, false, [n1, n, k, 0.0], || {
         FilmAverages::of_mean(mean(stack.thickness_nm(), 1.0, |cos| [at(cos), 0.0]))
     });

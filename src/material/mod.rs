@@ -43,7 +43,7 @@ pub use arrival::{Arrival, Index};
 pub use branch::{Branch, Incoming, Straight};
 pub use coat::Coat;
 pub use coating::{Coating, CoatingLayer};
-pub use conductor::{Conductor, coated_reflectance};
+pub use conductor::Conductor;
 pub use dielectric::Dielectric;
 pub use diffuse::Diffuse;
 pub use emissive::Emissive;

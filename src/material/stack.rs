@@ -111,12 +111,12 @@ pub struct Stack {
 }
 
 impl Stack {
-    /// Those of some layers that have a thickness, for light of a wavelength in nm and the relative width of its band.
+    /// Layers, without those of no thickness, for light of a wavelength in nm and the relative width of its band.
     pub fn new([nm, band]: [f64; 2], layers: impl Iterator<Item = Layer>) -> Self {
         Self { layers: with_thickness(layers).collect(), nm, band }
     }
 
-    /// Whether [`new`](Self::new) would make the same.
+    /// Whether [`new`](Self::new) would make this stack.
     pub fn is(&self, [nm, band]: [f64; 2], layers: impl Iterator<Item = Layer>) -> bool {
         self.nm == nm && self.band == band && self.layers.iter().copied().eq(with_thickness(layers))
     }

@@ -6,7 +6,7 @@ use crate::math::{Bounds, DVec3, Ray};
 use crate::scene::Scene;
 use crate::spectrum::Curve;
 
-/// Lights that are looked at.
+/// Most lights that are looked at.
 const MOST: usize = 4096;
 /// Parts of the scene's size: from how far away a place is looked at, and how near a surface counts as being there. The
 /// latter is far above rounding and far below anything meant.
@@ -15,8 +15,8 @@ const NEAR: f64 = 1e-13;
 
 /// What is wrong with the camera and with points and spots that stand in a surface.
 ///
-/// Rounding decides which side of it such a light lights (row L9 of the stability catalog). A camera is taken for in a
-/// clear body or outside of it as its way to what it looks at leads.
+/// Rounding decides where such a light shines (row L9 of the stability catalog). Whether such a camera counts as inside
+/// of a clear body depends on where it looks.
 pub(super) fn on_surface(scene: &Scene<Curve>) -> Vec<String> {
     let places = scene.lights.iter().enumerate().filter_map(|(id, light)| match light {
         Light::Point(point) => Some((id, DVec3::from(point.position))),
@@ -36,7 +36,9 @@ pub(super) fn on_surface(scene: &Scene<Curve>) -> Vec<String> {
     let lights = places.into_iter().filter_map(|(id, place)| {
         let object = &scene.objects[surface_at(scene, place, size)? as usize].name;
         let name = name(scene, id);
-        Some(format!("{name} stands exactly in the surface of {object}, where rounding hides it: move it a little"))
+        Some(format!(
+            "{name} stands exactly in the surface of {object}, where rounding decides what it lights: move it a little"
+        ))
     });
     camera.into_iter().chain(lights).collect()
 }
