@@ -105,16 +105,17 @@ def test_a_part_that_fails_stops_the_job_and_those_that_are_there_are_not_made_a
 
 
 def test_a_canceled_task_keeps_what_is_done_and_goes_on_from_there(folder):
-    expected = whole(folder, samples=700)
-    started = subprocess.Popen(command(folder, Shards=2, Samples=700, Threads=1), stdout=subprocess.PIPE, text=True)
+    expected = whole(folder, samples=1000)
+    started = subprocess.Popen(command(folder, Shards=2, Samples=1000, Threads=1), stdout=subprocess.PIPE, text=True)
     # Nothing is told of a task that hangs.
     timer = threading.Timer(300, started.kill)
     timer.start()
     said = ""
     for line in started.stdout:
         said += line
-        share = re.search(r"\topenjd_progress: (.+)", line)
-        if share and float(share[1]) > 0:
+        # The second is a second after the first. A busy machine may still be in its first photons: they are finished,
+        # so that something is kept.
+        if said.count("\topenjd_progress: ") == 2:
             started.send_signal(signal.SIGINT)
             break
     said += started.stdout.read()
@@ -122,7 +123,7 @@ def test_a_canceled_task_keeps_what_is_done_and_goes_on_from_there(folder):
     assert started.wait(timeout=60) != 0, said
     assert "frame.1-of-2.checkpoint keeps what is done" in said and "Running step 'Merge'" not in said, said
     assert listing(folder) == ["frame.1-of-2.checkpoint"]
-    said = run(folder, Shards=2, Samples=700)
+    said = run(folder, Shards=2, Samples=1000)
     assert re.search(r"openjd_status: going on from .*frame\.1-of-2\.checkpoint, which has [1-9]", said), said
     assert (folder / "out/frame.exr").read_bytes() == expected
 
