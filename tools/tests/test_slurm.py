@@ -133,8 +133,8 @@ def test_an_array_of_eight_makes_the_bytes_of_one_render(cluster, folder):
 
 
 def test_a_task_that_runs_out_of_time_goes_on_in_another_turn(cluster, folder):
-    expected = whole(folder, samples=700)
-    array, merge = cluster.submit(folder, 2, "--samples", "700")
+    expected = whole(folder, samples=2000)
+    array, merge = cluster.submit(folder, 2, "--samples", "2000")
     log = folder / "2.log"
     until(lambda: log.exists() and "the render begins" in log.read_text("utf-8"), "the task has not begun")
     time.sleep(1)
