@@ -102,8 +102,7 @@ fn image(job: &Job, scene: &Scene, exr: Option<&Path>, png: Option<&Path>) -> Re
     if !keep.resume(&mut rendering, &outputs)? {
         return Ok(ExitCode::SUCCESS);
     }
-    let limit = rendering.plan().method.stop.as_ref().and_then(|stop| stop.time);
-    let progress = progress::Progress::new(rendering.work(), rendering.done(), limit);
+    let progress = progress::Progress::new(&rendering);
     let is_finished = keep.run(&mut rendering, &progress)?;
     if !is_finished {
         progress.stop();

@@ -167,7 +167,8 @@ impl Keep {
         match rendering.resume(path)? {
             Resumed::Continues => {
                 let share = rendering.done() as f64 / rendering.work().max(1) as f64;
-                say(&format!("going on from {name}, which has {:.0} % of the work", (100.0 * share).floor()));
+                let of_work = format!(", which has {:.0} % of the work", (100.0 * share).floor());
+                say(&format!("going on from {name}{}", if rendering.is_work_known() { &of_work } else { "" }));
                 Ok(true)
             }
             Resumed::Finished if missing.is_none() => {
@@ -200,7 +201,7 @@ impl Keep {
             let stops = || STOPPED.load(Ordering::Relaxed);
             let is_due = || stops() || self.checkpoints.is_due() || self.snapshots.is_due();
             let advance = rendering.advance_until(&|done| progress.advance(done), &is_due);
-            progress.expect(rendering.work());
+            progress.expect(rendering);
             if advance == Advance::Finished {
                 return Ok(true);
             }

@@ -10,6 +10,7 @@ use std::time::Duration;
 use abbe::film::Format;
 use abbe::look::percent;
 use abbe::plan::Plan;
+use abbe::trace::FIRST_LOOK;
 use abbe::{Diagnostic, Error, Image, ImageError, Result};
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 use clap::ValueEnum;
@@ -286,7 +287,7 @@ pub fn print_report(image: &Image, plan: &Plan, took: Duration, expected: Durati
     image.warnings().iter().for_each(|warning| warn(warning));
     match (image.error(), report.stopped_by) {
         (Some(error), _) => print_error_of_image(error),
-        (None, Some(_)) => say("fewer than 64 samples per pixel do not tell the error"),
+        (None, Some(_)) => say(&format!("fewer than {FIRST_LOOK} samples per pixel do not tell the error")),
         (None, None) => {}
     }
     if listener() == Listener::Program {

@@ -2,11 +2,12 @@
 
 use std::io::IsTerminal;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::thread::{JoinHandle, spawn};
 use std::time::{Duration, Instant};
 
+use abbe::Rendering;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::events::Event;
@@ -30,6 +31,8 @@ struct Counts {
     done: AtomicU64,
     /// All that is to be done if there is time, as far as it is known.
     work: AtomicU64,
+    /// Whether it is known; else it is the most that may be done.
+    is_known: AtomicBool,
 }
 
 impl Counts {
@@ -45,6 +48,14 @@ impl Counts {
         let in_time = self.before + ((done - self.before) as f64 * times) as u64;
         in_time.clamp(done.min(work), work)
     }
+
+    /// Seconds left, if that is known.
+    fn left(&self) -> Option<f64> {
+        let (done, total) = (self.done(), self.total().max(1));
+        let parts = [self.before, done].map(|count| count as f64 / total as f64);
+        let is_known = self.is_known.load(Ordering::Relaxed) && done > self.before;
+        is_known.then(|| left(parts, self.start.elapsed().as_secs_f64()))
+    }
 }
 
 /// Renders shorter than this say nothing where there is no terminal.
@@ -57,18 +68,20 @@ const TICK: Duration = Duration::from_secs(1);
 const LOGGED: Duration = Duration::from_secs(5);
 
 impl Progress {
-    /// Of a render of so many camera samples and photons, some of which an earlier run has done; it may have a limit of
-    /// time.
-    pub fn new(work: u64, before: u64, limit: Option<Duration>) -> Self {
-        let (done, known) = (AtomicU64::new(before), AtomicU64::new(work));
-        let counts = Arc::new(Counts { start: Instant::now(), limit, before, done, work: known });
-        let is_shown = listener() == Listener::Person && std::io::stderr().is_terminal();
-        let bar = is_shown.then(|| {
-            let style = ProgressStyle::with_template("{wide_bar} {percent:>3} %  {elapsed} passed, {eta} left");
-            ProgressBar::new(work)
-                .with_position(before)
-                .with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+    /// Of a render, some of which an earlier run may have done.
+    pub fn new(rendering: &Rendering) -> Self {
+        let (work, before) = (rendering.work(), rendering.done());
+        let counts = Arc::new(Counts {
+            start: Instant::now(),
+            limit: rendering.plan().method.stop.as_ref().and_then(|stop| stop.time),
+            before,
+            done: AtomicU64::new(before),
+            work: AtomicU64::new(work),
+            is_known: AtomicBool::new(rendering.is_work_known()),
         });
+        let is_shown = listener() == Listener::Person && std::io::stderr().is_terminal();
+        let style = style(rendering.is_work_known());
+        let bar = is_shown.then(|| ProgressBar::new(work).with_position(before).with_style(style));
         let lines = bar.is_none().then(|| {
             let counts = counts.clone();
             let (first, then) = match listener() {
@@ -76,7 +89,7 @@ impl Progress {
                 Listener::Farm => (TICK, LOGGED),
                 _ => (QUIET, PERIOD),
             };
-            Lines::new(first, then, move || speak([before, counts.done()], counts.total(), counts.start.elapsed()))
+            Lines::new(first, then, move || speak(&counts))
         });
         if listener() == Listener::Farm {
             openjd::progress(before as f64 / work.max(1) as f64);
@@ -84,10 +97,13 @@ impl Progress {
         Self { bar, lines, counts }
     }
 
-    /// Says anew how much is to be done in all.
-    pub fn expect(&self, work: u64) {
-        self.counts.work.store(work, Ordering::Relaxed);
+    /// Learns anew how much is to be done in all.
+    pub fn expect(&self, rendering: &Rendering) {
+        let is_known = rendering.is_work_known();
+        self.counts.work.store(rendering.work(), Ordering::Relaxed);
+        self.counts.is_known.store(is_known, Ordering::Relaxed);
         if let Some(bar) = &self.bar {
+            bar.set_style(style(is_known));
             bar.set_length(self.counts.total());
         }
     }
@@ -111,10 +127,7 @@ impl Progress {
 
     /// The time that is left as people say it, if it can be told.
     pub fn left(&self) -> Option<String> {
-        let Counts { before, start, .. } = *self.counts;
-        let (done, total) = (self.counts.done(), self.counts.total().max(1));
-        let parts = [before, done].map(|count| count as f64 / total as f64);
-        (done > before).then(|| spoken(left(parts, start.elapsed().as_secs_f64())))
+        self.counts.left().map(spoken)
     }
 
     /// Removes the bar and says how long it took, beside the time that was expected of the whole render.
@@ -125,7 +138,10 @@ impl Progress {
         self.stop();
         let took = start.elapsed();
         match listener() {
-            Listener::Program => speak([0, work], work, took),
+            Listener::Program => {
+                Event::Progress { done: work, total: work, seconds: took.as_secs_f64(), seconds_left: Some(0.0) }
+                    .tell();
+            }
             Listener::Farm => {
                 openjd::progress(1.0);
                 say(&rendered(took, expected));
@@ -144,20 +160,24 @@ impl Progress {
     }
 }
 
-/// Says how much of the work is done after some time, of which an earlier run has done some.
-fn speak([before, done]: [u64; 2], total: u64, passed: Duration) {
-    let parts = [before, done].map(|work| work as f64 / total.max(1) as f64);
-    let seconds = passed.as_secs_f64();
+/// The bar; a time left is shown where it can be told.
+fn style(is_known: bool) -> ProgressStyle {
+    let left = if is_known { ", {eta} left" } else { "" };
+    let style = ProgressStyle::with_template(&format!("{{wide_bar}} {{percent:>3}} %  {{elapsed}} passed{left}"));
+    style.unwrap_or_else(|_| ProgressStyle::default_bar())
+}
+
+/// Says how much of the work is done.
+fn speak(counts: &Counts) {
+    let (done, total, seconds) = (counts.done(), counts.total(), counts.start.elapsed().as_secs_f64());
+    let (part, seconds_left) = (done as f64 / total.max(1) as f64, counts.left());
     match listener() {
-        Listener::Program => {
-            let seconds_left = (done > before).then(|| left(parts, seconds));
-            Event::Progress { done, total, seconds, seconds_left }.tell();
-        }
+        Listener::Program => Event::Progress { done, total, seconds, seconds_left }.tell(),
         Listener::Farm => {
-            openjd::progress(parts[1]);
-            say(&line(parts, seconds));
+            openjd::progress(part);
+            say(&line(part, seconds, seconds_left));
         }
-        _ => say(&line(parts, seconds)),
+        _ => say(&line(part, seconds, seconds_left)),
     }
 }
 
@@ -205,13 +225,10 @@ impl Drop for Lines {
     }
 }
 
-/// How far the work is after so many seconds: the parts of it that were done before them and are done now.
-fn line([before, part]: [f64; 2], passed: f64) -> String {
+/// How far the work is after so many seconds, and how many are left, if that is known.
+fn line(part: f64, passed: f64, left: Option<f64>) -> String {
     let percent = (100.0 * part).floor().min(99.0);
-    let left = match part - before {
-        0.0 => String::new(),
-        _ => format!(", about {} left", spoken(left([before, part], passed))),
-    };
+    let left = left.map_or(String::new(), |left| format!(", about {} left", spoken(left)));
     format!("{percent} %, {} passed{left}", spoken(passed))
 }
 
@@ -230,11 +247,12 @@ mod tests {
 
     #[test]
     fn a_line_says_the_part_that_is_done_and_the_time_passed_and_left() {
-        assert_eq!(line([0.0, 0.0], 10.0), "0 %, 10 s passed");
-        assert_eq!(line([0.0, 0.25], 40.0), "25 %, 40 s passed, about 2 min left");
-        assert_eq!(line([0.0, 0.999], 3000.0), "99 %, 50 min passed, about 3 s left");
-        assert_eq!(line([0.0, 0.1], 7200.0), "10 %, 2.0 h passed, about 18.0 h left");
-        assert_eq!(line([0.5, 0.6], 10.0), "60 %, 10 s passed, about 40 s left");
+        let after = |parts: [f64; 2], passed| line(parts[1], passed, Some(left(parts, passed)));
+        assert_eq!(line(0.0, 10.0, None), "0 %, 10 s passed");
+        assert_eq!(after([0.0, 0.25], 40.0), "25 %, 40 s passed, about 2 min left");
+        assert_eq!(after([0.0, 0.999], 3000.0), "99 %, 50 min passed, about 3 s left");
+        assert_eq!(after([0.0, 0.1], 7200.0), "10 %, 2.0 h passed, about 18.0 h left");
+        assert_eq!(after([0.5, 0.6], 10.0), "60 %, 10 s passed, about 40 s left");
     }
 
     #[test]

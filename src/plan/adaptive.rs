@@ -1,9 +1,8 @@
 //! Whether more samples are taken where the noise is.
 
-use super::stopping::FIRST_LOOK;
 use crate::scene::{AdaptiveText, Scene};
 use crate::spectrum::Curve;
-use crate::trace::{Adaptive, SampleDensity, Transport, World, adaptive};
+use crate::trace::{Adaptive, FIRST_LOOK, SampleDensity, Transport, World, adaptive};
 
 /// How much shorter an equal error must take: a pilot knows no better.
 const CLEARLY: f64 = 1.15;

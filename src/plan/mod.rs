@@ -26,7 +26,7 @@ use crate::film::Window;
 use crate::scene::Scene;
 use crate::spectrum::{Basis, Curve};
 use crate::trace::{
-    LightPass, Method, PhotonTimes, Probe, Transport, bytes_of_film, photon_times, prepare_unguided, probe,
+    FIRST_LOOK, LightPass, Method, PhotonTimes, Probe, Transport, bytes_of_film, photon_times, prepare_unguided, probe,
 };
 use between::between;
 use lit::Lit;
@@ -177,7 +177,7 @@ fn cost(scene: &Scene<Curve>, method: &Method, probe: &Probe, times: PhotonTimes
     let of_light_paths = probe.light_paths.mul_f64(f64::from(method.samples));
     let time = probe.time.mul_f64(samples) + of_photons + of_light_paths;
     let (share, of) = match method.stop {
-        Some(_) => (f64::from(stopping::FIRST_LOOK) / f64::from(method.samples), " for each"),
+        Some(_) => (f64::from(FIRST_LOOK) / f64::from(method.samples), " for each"),
         None => (1.0, ":"),
     };
     let (told, photons) = ((share * f64::from(method.samples)) as u32, (share * photons as f64) as u64);

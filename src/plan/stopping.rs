@@ -3,10 +3,8 @@
 use super::words::{in_words, percent};
 use crate::scene::{RenderText, Scene};
 use crate::spectrum::Curve;
-use crate::trace::Stop;
+use crate::trace::{FIRST_LOOK, Stop};
 
-/// Samples that tell the noise of an image, at least.
-pub(super) const FIRST_LOOK: u32 = 64;
 /// Fewest that replicates can share.
 const FEWEST: u32 = 8;
 /// Most samples where the scene does not say.

@@ -1,4 +1,4 @@
-use crate::trace::{Blur, Noise, RareLight, Stopped};
+use crate::trace::{Blur, FIRST_LOOK, Noise, RareLight, Stopped};
 
 /// How far an image is off, as a render with a stop rule has measured it.
 ///
@@ -21,11 +21,12 @@ pub struct ImageError {
 
 impl ImageError {
     /// The error is smaller than this in 95 of 100 renders, but for what no render of the plan finds, and for
-    /// light that is too rare to have been met. Where the error that was asked for is reached, it is that: what the
-    /// render measured is less by chance as well.
+    /// light that is too rare to have been met. Where the error that was asked for is reached at a later look than the
+    /// first, it is that: a render that ends as soon as it measures so little ends rather where it measures too little.
     pub fn at_most(&self) -> f64 {
         let measured = self.noise.at_most.hypot(self.blur.at_most).hypot(self.model);
-        self.asked.filter(|_| self.stopped_by == Some(Stopped::Noise)).map_or(measured, |asked| measured.max(asked))
+        let is_chosen = self.stopped_by == Some(Stopped::Noise) && self.noise.samples > FIRST_LOOK;
+        self.asked.filter(|_| is_chosen).map_or(measured, |asked| measured.max(asked))
     }
 
     /// Whether the error that was asked for is reached; so it is where none was.

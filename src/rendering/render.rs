@@ -124,12 +124,19 @@ impl Rendering {
         &self.plan
     }
 
-    /// How much there is to do: camera samples and photons. With a stop rule this is a guess, better after each pass.
+    /// How much there is to do: camera samples and photons. With a stop rule this is a guess, better after each pass,
+    /// and the most that may be done as long as nothing [is known](Self::is_work_known).
     pub fn work(&self) -> u64 {
         self.passes.work()
     }
 
-    /// How long it will take, about, if nothing else keeps the processors busy.
+    /// Whether it is known, about, how much there is to do: where an error is asked for and no time, not before the
+    /// first look at the noise.
+    pub fn is_work_known(&self) -> bool {
+        self.passes.is_work_known()
+    }
+
+    /// How long all its [work](Self::work) will take, about, if nothing else keeps the processors busy.
     pub fn expected(&self) -> Duration {
         let part = self.work() as f64 / self.passes.planned_work().max(1) as f64;
         self.plan.processor_time.mul_f64(part / self.threads.current_num_threads() as f64)

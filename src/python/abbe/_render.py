@@ -20,7 +20,8 @@ class Progress(NamedTuple):
     done: int
     """Camera samples and photons that were taken."""
     total: int
-    """All that are to be taken. Where an error or a time ends the render, this is a guess."""
+    """All that are to be taken. Where an error or a time ends the render, this is a guess; before the first look at the
+    error, after 64 samples of each pixel, it is the most that may be taken."""
     seconds: float
     """Since it began."""
 

@@ -18,5 +18,5 @@ pub use noise::{Noise, Outlier, TileNoise};
 pub use rare_light::RareLight;
 pub use rendering::{Advance, Rendering, Report, render};
 pub use saved::Restored;
-pub use stopping::Stopped;
+pub use stopping::{FIRST_LOOK, Stopped};
 pub use tile::bytes_of_film;

@@ -12,7 +12,7 @@ use super::noise::{Measured, Noise, measure};
 use super::passes::{Progress, most_at_once};
 use super::rare_light::{RareLight, rare_light};
 use super::saved::Restored;
-use super::stopping::{Clock, Stopped, next_stage, samples_wanted, tells_noise};
+use super::stopping::{Clock, FIRST_LOOK, Stopped, is_wanted_known, next_stage, samples_wanted};
 use super::tile::Tile;
 use super::{light_pass, saved};
 use crate::error::Result;
@@ -137,7 +137,8 @@ impl<'a> Rendering<'a> {
         samples + photons(&world.photon_targets) + passes * photons(&world.map_targets)
     }
 
-    /// How many camera samples and photons the image takes; with a stop rule, about, and better known after each pass.
+    /// How many camera samples and photons the image takes; with a stop rule, about, and better known after each pass:
+    /// the most that it may take as long as nothing [is known](Self::is_work_known).
     pub fn work(&self) -> u64 {
         let (world, all) = (self.world(), self.planned_work());
         match &world.method.stop {
@@ -149,6 +150,12 @@ impl<'a> Rendering<'a> {
                 self.done().max(work as u64)
             }
         }
+    }
+
+    /// Whether it is known, about, how many that are.
+    pub fn is_work_known(&self) -> bool {
+        let stop = self.world().method.stop.as_ref();
+        self.is_finished() || stop.is_none_or(|stop| is_wanted_known(stop, &self.progress))
     }
 
     /// How many of them are done.
@@ -295,7 +302,7 @@ impl<'a> Rendering<'a> {
     }
 
     fn measured(&self) -> Option<&Measured> {
-        self.progress.measured.as_ref().filter(|Measured { noise, .. }| tells_noise(noise.samples))
+        self.progress.measured.as_ref().filter(|Measured { noise, .. }| noise.samples >= FIRST_LOOK)
     }
 
     /// What ended the render, if a stop rule could, and it is finished.

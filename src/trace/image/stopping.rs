@@ -7,9 +7,10 @@ use super::passes::Progress;
 use crate::trace::Stop;
 use crate::trace::replicates::REPLICATES;
 
-/// Samples of each replicate before the first look at the noise: 64 of a pixel. The next looks come when there are
-/// twice as many.
+/// Samples of each replicate before the first look at the noise. The next looks come when there are twice as many.
 const FIRST: u32 = 8;
+/// Samples of a pixel that tell its noise, at least.
+pub const FIRST_LOOK: u32 = REPLICATES as u32 * FIRST;
 /// Of the time that is left, the part that a stage is planned to take, and the part of all time that is too short for
 /// another one.
 const PLANNED: f64 = 0.95;
@@ -77,14 +78,9 @@ impl Clock {
     }
 }
 
-/// Whether so many samples of each pixel tell its noise.
-pub fn tells_noise(samples: u32) -> bool {
-    samples >= REPLICATES as u32 * FIRST
-}
-
 /// Whether noise and blur are small enough, and known well enough to say so.
 fn is_enough(stop: &Stop, measured: Option<&Measured>) -> bool {
-    let is_known = |Measured { noise, .. }: &&Measured| tells_noise(noise.samples) && noise.outlier.is_none();
+    let is_known = |Measured { noise, .. }: &&Measured| noise.samples >= FIRST_LOOK && noise.outlier.is_none();
     matches!((stop.noise, measured.filter(is_known)), (Some(wanted), Some(error)) if error.at_most() <= wanted)
 }
 
@@ -120,7 +116,13 @@ pub fn next_stage(stop: &Stop, progress: &Progress, clock: &Clock) -> u32 {
     }
 }
 
-/// How many samples of a pixel will be enough, about.
+/// Whether it is known, about, how many samples of a pixel will be enough: where an error is asked for and no time, not
+/// before the first look.
+pub fn is_wanted_known(stop: &Stop, progress: &Progress) -> bool {
+    stop.noise.is_none() || stop.time.is_some() || progress.measured.is_some()
+}
+
+/// How many samples of a pixel will be enough, about; where that is not known, the most that are taken.
 pub fn samples_wanted(stop: &Stop, progress: &Progress, clock: &Clock) -> u32 {
     let stage = progress.stage;
     let each = stage.before + stage.size;
@@ -130,7 +132,7 @@ pub fn samples_wanted(stop: &Stop, progress: &Progress, clock: &Clock) -> u32 {
         while f64::from(wanted) < times * f64::from(stage.before) && wanted < most(stop) {
             wanted = wanted.saturating_mul(2).min(most(stop));
         }
-    } else if stop.noise.is_none() {
+    } else {
         wanted = most(stop);
     }
     let wanted = REPLICATES as u32 * wanted;
