@@ -14,7 +14,7 @@ use abbe::{Image, Rendering, Result, Scene, write_plan};
 use command::cli::{self, Job, Output, Request};
 use command::events::{Event, write_account};
 use command::keep::{self, Keep};
-use command::outputs::{check_outputs, check_standard, is_standard};
+use command::outputs::{check_outputs, check_standard, check_words, is_standard};
 use command::{catalog, diff, info, merge, messages, progress, view};
 
 fn main() -> ExitCode {
@@ -58,6 +58,7 @@ fn run(job: &Job) -> Result<ExitCode> {
 /// Says how the scene is rendered, and writes it down if that is asked for.
 fn answer_plan(scene: &Scene, file: Option<&Path>) -> Result<ExitCode> {
     check_outputs(scene, &Vec::from_iter(file))?;
+    check_words("--plan-file", "frame.plan", file)?;
     file.map_or(Ok(()), check_writable)?;
     let plan = plan(scene);
     messages::answer_plan(&plan)?;
@@ -95,6 +96,7 @@ fn image(job: &Job, scene: &Scene, exr: Option<&Path>, png: Option<&Path>) -> Re
     let checkpoint = job.keep.checkpoint(main);
     let all: Vec<&Path> = outputs.iter().copied().chain(checkpoint.as_deref()).chain(report).collect();
     check_outputs(scene, &all)?;
+    check_words("--report", "frame.json", report)?;
     all.iter().try_for_each(|output| check_writable(output))?;
     let mut keep = Keep::new(&job.keep, main, checkpoint)?;
     let mut rendering = Rendering::new(scene, &job.options)?;

@@ -56,6 +56,22 @@ name = "rim"
 spot = { position = [3, 3, -2], look_at = [0.2, 0.8, 0.6], cone_angle = 30, intensity = 8 }
 "#;
 
+/// Two renders of two samples differ in pixels in which both samples of each are the same.
+#[test]
+fn too_few_samples_tell_no_variance_and_that_is_said() {
+    let told = |layers: &[Layer], samples: u32| {
+        let options = Options { layers: Some(layers.to_vec()), samples: Some(samples), ..Options::default() };
+        let image = abbe::render(&Scene::parse(ROOM, "").expect("the scene is valid"), &options);
+        image.expect("it can be rendered").warnings()
+    };
+    assert_eq!(
+        told(&[Layer::Variance, Layer::HalfA, Layer::Normal], 3),
+        ["variance, half_a tell the noise of 4 samples per pixel or more, not of 3"]
+    );
+    assert_eq!(told(&[Layer::HalfB], 1), ["half_b tells the noise of 4 samples per pixel or more, not of 1"]);
+    assert!(told(&[Layer::Variance, Layer::HalfB], 4).is_empty() && told(&[Layer::Samples], 1).is_empty());
+}
+
 fn rendered(text: &str, layers: &[Layer]) -> Image {
     let scene = Scene::parse(text, "").expect("the scene is valid");
     let options = Options { layers: Some(layers.to_vec()), threads: Some(1), ..Options::default() };

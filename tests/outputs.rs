@@ -274,6 +274,30 @@ fn no_output_takes_the_place_of_what_the_scene_is_read_from() {
 }
 
 #[test]
+fn no_words_take_the_place_of_an_image() {
+    let folder = folder();
+    fs::write(folder.path().join("old.exr"), "an image of last week").expect("the folder takes files");
+    for (arguments, message, help) in [
+        ("--report old.exr", "--report writes no image, and old.exr is called one", "--report frame.json"),
+        ("--report a.PNG", "--report writes no image, and a.PNG is called one", "--report frame.json"),
+        ("--report -", "--report writes a file, and - is standard output", "--report frame.json"),
+        (
+            "--plan --plan-file old.exr",
+            "--plan-file writes no image, and old.exr is called one",
+            "--plan-file frame.plan",
+        ),
+        ("--plan --plan-file -", "--plan-file writes a file, and - is standard output", "--plan-file frame.plan"),
+    ] {
+        let words: Vec<&str> = ["ball.toml"].into_iter().chain(arguments.split(' ')).collect();
+        let answer = render(&folder, &words);
+        let message = format!("error: {message}\nhelp: for instance: {help}\n");
+        assert_eq!((answer.code, answer.stderr), (Some(2), message), "{arguments}");
+        assert_eq!(folder.listing(), ["ball.toml", "old.exr"], "{arguments}");
+    }
+    assert_eq!(fs::read(folder.path().join("old.exr")).expect("it is there"), b"an image of last week");
+}
+
+#[test]
 fn no_two_outputs_are_one_file() {
     let folder = folder();
     fs::create_dir(folder.path().join("other")).expect("the folder takes folders");

@@ -216,6 +216,36 @@ fn the_first_of_error_time_and_samples_ends_a_render() {
 }
 
 #[test]
+fn a_render_that_ends_at_the_first_look_says_what_it_measured_and_a_later_one_no_less_than_was_asked_for() {
+    let at_most = |options: Options| {
+        let image = render(&scene(ROOM), &options).expect("it can be rendered");
+        let error = image.error().expect("it has a stop rule").clone();
+        assert_eq!(error.stopped_by, Some(Stopped::Noise));
+        (error.noise.samples, error.at_most(), error.noise.at_most.hypot(error.blur.at_most).hypot(error.model))
+    };
+    let (samples, first, measured) = at_most(asks(0.9, 4096));
+    assert!(samples == 64 && first == measured && first < 0.5, "{first}");
+    let asked = 0.7 * first;
+    let (samples, later, measured) = at_most(asks(asked, 4096));
+    assert!(samples > 64 && measured <= asked && later == asked, "{later} for {asked}");
+}
+
+#[test]
+fn how_much_there_is_to_do_is_known_at_the_first_look_and_is_the_most_there_may_be_before() {
+    let mut rendering = Rendering::new(&scene(ROOM), &asks(0.05, 4096)).expect("it can be rendered");
+    let all = rendering.work();
+    assert!(!rendering.is_work_known() && all >= 4096 * 21 * 18, "{all}");
+    let mut before = 0.0;
+    while rendering.advance(&|_| ()) {
+        let share = rendering.done() as f64 / rendering.work() as f64;
+        assert_eq!(rendering.is_work_known(), rendering.error().is_some());
+        assert!(share >= before || rendering.is_work_known(), "{share} after {before}");
+        before = share;
+    }
+    assert!(rendering.is_work_known() && rendering.work() == rendering.done());
+}
+
+#[test]
 fn an_image_without_noise_has_none_and_its_halves_and_variance_are_of_replicates() {
     let black = scene(&ROOM.replace("radiance.rgb = [9, 8, 6]", "radiance = 1e-300"));
     let image = render(&black, &asks(1e-6, 128)).expect("it can be rendered");

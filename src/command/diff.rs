@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use abbe::Result;
-use abbe::film::{ExrFile, check_writable};
+use abbe::film::{ExrFile, TELL_VARIANCE, check_writable};
 use abbe::look::{Difference, Noise, compare, number};
 use clap::Parser;
 
@@ -111,7 +111,8 @@ fn figures(found: &Difference, tolerance: Option<f64>) -> Vec<String> {
         }
     }
     if !found.is_equal && found.noise.is_none() && tolerance.is_none() {
-        put("judged by", "equality: no variance layers tell the noise, and no --tolerance is given".into());
+        let untold = format!("no variance layers of {TELL_VARIANCE} samples per pixel or more tell the noise");
+        put("judged by", format!("equality: {untold}, and no --tolerance is given"));
     }
     if let Some(worst) = &found.worst {
         let [a, b] = worst

@@ -42,6 +42,19 @@ pub fn check_png(png: Option<&Path>) -> Result<()> {
     }
 }
 
+/// Refuses a file of words, such as `--report frame.json`, that is called an image, which it might replace, or is to go
+/// to standard output.
+pub fn check_words(flag: &str, example: &str, file: Option<&Path>) -> Result<()> {
+    let refused = |message: String| refuse(&message, Some(&format!("for instance: {flag} {example}")));
+    match file {
+        Some(file) if is_standard(file) => refused(format!("{flag} writes a file, and - is standard output")),
+        Some(file) if ["exr", "png"].iter().any(|ending| ends_in(file, ending)) => {
+            refused(format!("{flag} writes no image, and {} is called one", file.display()))
+        }
+        _ => Ok(()),
+    }
+}
+
 /// Refuses an output that is the input itself, by another name or a link.
 pub fn spare(input: &Path, what: &str, output: &Path) -> Result<()> {
     let real = |path: &Path| std::fs::canonicalize(path).ok();

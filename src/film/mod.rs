@@ -42,7 +42,7 @@ pub use layers::{FirstSurface, LONGEST_NAME, Layer, LayerImage, light_layer_name
 pub use mitchell::Mitchell;
 pub use picture::{film_png, png, write_png, write_rgb8};
 pub use rows::Rows;
-pub use sample_weights::SampleWeights;
+pub use sample_weights::{SampleWeights, TELL_VARIANCE};
 pub use shard::{Shard, TILE, TilePlace};
 pub use spectral::SpectralImage;
 pub use sum::{PassSum, PixelSum, stored};

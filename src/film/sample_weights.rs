@@ -1,5 +1,9 @@
 use super::filter::Filter;
 
+/// Samples of a pixel that tell its variance, at least. Fewer are the same by chance in one pixel of an edge and others
+/// in the next render, and then seem to have none.
+pub const TELL_VARIANCE: u32 = 4;
+
 /// What each of a pixel's samples counts in its means.
 ///
 /// Of n samples drawn by the absolute value of a filter f, with the integral a, s are subtracted: they fall where f is

@@ -1,5 +1,5 @@
 use super::significance::{normal_equivalent, sidak_threshold};
-use crate::film::{Channel, ExrFile, ExrLayer};
+use crate::film::{Channel, ExrFile, ExrLayer, TELL_VARIANCE};
 
 /// Probability with which two images of the same thing are said to differ.
 const FAMILY: f64 = 0.01;
@@ -36,8 +36,12 @@ pub(super) struct Noisy<'f> {
 }
 
 impl<'f> Noisy<'f> {
-    /// Of the colors of a file that says their variance.
+    /// Of the colors of a file that says their variance, unless it says that too few samples tell it.
     pub(super) fn new(file: &'f ExrFile, beauty: &ExrLayer<'f>) -> Option<Self> {
+        let taken = file.attribute("render/samples").and_then(|taken| taken.parse::<u32>().ok());
+        if taken.is_some_and(|taken| taken < TELL_VARIANCE) {
+            return None;
+        }
         let layers = file.layers();
         let there = |name: &str| {
             let named = layers.iter().filter(move |layer| layer.name == name);

@@ -1,5 +1,6 @@
 //! Whether more samples are taken where the noise is.
 
+use crate::film::TELL_VARIANCE;
 use crate::scene::{AdaptiveText, Scene};
 use crate::spectrum::Curve;
 use crate::trace::{Adaptive, FIRST_LOOK, SampleDensity, Transport, World, adaptive};
@@ -11,13 +12,15 @@ const LARGE: f64 = 4e6;
 
 /// Where samples are taken, if as many everywhere would be clearly worse.
 ///
-/// An image that stops by its error is judged as a whole; else every pixel counts by itself.
+/// An image that stops by its error is judged as a whole; else every pixel counts by itself. No pixel gets too few
+/// samples to tell its variance.
 pub(super) fn decide(scene: &Scene<Curve>, world: &World) -> Option<Adaptive> {
     let (film, method) = (world.scene().film, world.method());
     let of_pixel = if method.stop.is_some() { FIRST_LOOK } else { method.samples };
     let samples = f64::from(film.width) * f64::from(film.height) * f64::from(of_pixel);
     let is_asked = scene.render.adaptive == AdaptiveText::Auto && matches!(method.transport, Transport::Random { .. });
-    if !is_asked || samples < LARGE {
+    let fewest = f64::from(of_pixel) * SampleDensity::times(SampleDensity::LEAST);
+    if !is_asked || samples < LARGE || fewest < f64::from(TELL_VARIANCE) {
         return None;
     }
     let is_absolute = method.stop.as_ref().is_some_and(|stop| stop.noise.is_some());

@@ -3,10 +3,11 @@
 use std::path::Path;
 
 use super::image_error::ImageError;
-use super::warnings::warnings;
+use super::warnings::{few_samples, warnings};
 use crate::error::Result;
 use crate::film::{
-    Film, Format, Heading, Pixel, Provenance, View, encode_exr, film_png, write_exr, write_png, write_spectral_exr,
+    Fact, Film, Format, Heading, Pixel, Provenance, View, encode_exr, film_png, write_exr, write_png,
+    write_spectral_exr,
 };
 use crate::trace::Report;
 
@@ -92,7 +93,12 @@ impl Image {
 
     /// What whoever sees it should know: light that is too rare, an error that is not reached, samples left out.
     pub fn warnings(&self) -> Vec<String> {
-        warnings(&self.report, self.error.as_ref())
+        let samples = self.provenance.facts.iter().find_map(|(key, fact)| match fact {
+            Fact::Count(samples) if key == "samples" => Some(*samples),
+            _ => None,
+        });
+        let few = samples.and_then(|samples| few_samples(&self.format.layers, samples));
+        few.into_iter().chain(warnings(&self.report, self.error.as_ref())).collect()
     }
 
     /// How its file is written.

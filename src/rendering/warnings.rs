@@ -1,6 +1,7 @@
 //! What whoever sees an image should know of it.
 
 use super::image_error::ImageError;
+use crate::film::{Layer, TELL_VARIANCE};
 use crate::look::percent;
 use crate::trace::{RareLight, Report};
 
@@ -27,6 +28,16 @@ pub(super) fn warnings(report: &Report, error: Option<&ImageError>) -> Vec<Strin
         warnings.push(format!("{share} {what}"));
     }
     warnings
+}
+
+/// Layers that tell nothing of so few samples per pixel.
+pub(super) fn few_samples(layers: &[Layer], samples: u64) -> Option<String> {
+    let of_halves = [Layer::Variance, Layer::HalfA, Layer::HalfB];
+    let asked: Vec<&str> = of_halves.iter().filter(|layer| layers.contains(layer)).map(|layer| layer.name()).collect();
+    (!asked.is_empty() && samples < TELL_VARIANCE.into()).then(|| {
+        let (layers, tell) = (asked.join(", "), if asked.len() == 1 { "tells" } else { "tell" });
+        format!("{layers} {tell} the noise of {TELL_VARIANCE} samples per pixel or more, not of {samples}")
+    })
 }
 
 /// Light that is too rare to know how much there is.
