@@ -122,10 +122,10 @@ fn matches(words: &[String], names: &[&str], said: &str) -> bool {
 /// What opticians call the glass of a maker.
 fn family(glass: &Glass) -> &'static str {
     let maker = glass.key.split('/').next().unwrap_or_default();
-    match glass.v_d() < 50.0 {
-        _ if !GLASS_MAKERS.contains(&maker) => "",
-        true => "flint",
-        false => "crown",
+    match glass.v_d().filter(|_| GLASS_MAKERS.contains(&maker)) {
+        None => "",
+        Some(vd) if vd < 50.0 => "flint",
+        Some(_) => "crown",
     }
 }
 
@@ -139,7 +139,7 @@ fn glass_lines(words: &[String]) -> Vec<Vec<String>> {
         vec![
             glass.key.into(),
             format!("{:.5}", glass.n_d()),
-            format!("{:6.2}", glass.v_d()),
+            glass.v_d().map_or("     -".into(), |vd| format!("{vd:6.2}")),
             range(glass.range_nm.0, glass.range_nm.1),
             absorption.into(),
             glass.source.into(),

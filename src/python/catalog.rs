@@ -66,9 +66,10 @@ impl Glass {
         self.0.n_d()
     }
 
+    /// Not a number where it is not known.
     #[getter]
     fn v_d(&self) -> f64 {
-        self.0.v_d()
+        self.0.v_d().unwrap_or(f64::NAN)
     }
 
     fn index(&self, nm: &[u8]) -> Plane {

@@ -24,7 +24,10 @@ pub fn imitation(curve: &Curve) -> Option<String> {
     let index = |nm: f64| curve.scale * (a + b / (nm * nm * 1e-6));
     let [nd, nf, nc] = [587.5618, 486.1327, 656.2725].map(index);
     let vd = (nd - 1.0) / (nf - nc);
-    let distance = |glass: &Glass| ((glass.n_d() - nd) / 5e-4).abs().max(((glass.v_d() - vd) / 0.3).abs());
+    let distance = |glass: &Glass| {
+        let of_vd = glass.v_d().map_or(f64::INFINITY, |other| (other - vd) / 0.3);
+        ((glass.n_d() - nd) / 5e-4).abs().max(of_vd.abs())
+    };
     let like = data::glasses().filter(|glass| distance(glass) < 1.0);
     let nearest = like.min_by(|x, y| distance(x).total_cmp(&distance(y)))?;
     let apex = if nd < 1.9 { 60.0 } else { 30.0_f64 };

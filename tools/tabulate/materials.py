@@ -50,7 +50,7 @@ CLEAR = [
     *axes("crystal/calcite", "main/CaCO3/nk/Ghosh-", "Iceland spar", "CaCO3"),
     *axes("crystal/CaWO4", "main/CaWO4/nk/Bond-", "scheelite"),
     material("crystal/CsI", "main/CsI/nk/Li", "cesium iodide"),
-    *axes("crystal/GaN", "main/GaN/nk/Barker-", "gallium nitride"),
+    *axes("crystal/GaN", "main/GaN/nk/Barker-", "gallium nitride", rest=""),
     material("crystal/ice", "main/H2O/nk/Warren-2008"),
     material("crystal/KBr", "main/KBr/nk/Li", "potassium bromide"),
     material("crystal/KCl", "main/KCl/nk/Li", "sylvite", "potassium chloride"),

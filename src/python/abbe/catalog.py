@@ -76,7 +76,7 @@ class Glass(_Entry):
 
     @property
     def v_d(self) -> float:
-        """The Abbe number (n_d - 1) / (n_F - n_C)."""
+        """The Abbe number (n_d - 1) / (n_F - n_C); not a number if the index is not known at these lines."""
         return self._core.v_d
 
     def index(self, nm: npt.ArrayLike) -> Any:

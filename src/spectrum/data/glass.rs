@@ -130,10 +130,10 @@ impl Glass {
         self.index(LINES_NM[1])
     }
 
-    /// The Abbe number (n_d - 1) / (n_F - n_C).
-    pub fn v_d(&self) -> f64 {
-        let [f, d, c] = LINES_NM.map(|nm| self.index(nm));
-        (d - 1.0) / (f - c)
+    /// The Abbe number (n_d - 1) / (n_F - n_C), if the index is known at these lines.
+    pub fn v_d(&self) -> Option<f64> {
+        let ([f, d, c], (first, last)) = (LINES_NM.map(|nm| self.index(nm)), self.range_nm);
+        (first <= LINES_NM[0] && LINES_NM[2] <= last).then_some((d - 1.0) / (f - c))
     }
 }
 

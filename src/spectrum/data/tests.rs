@@ -60,11 +60,27 @@ fn names_stand_for_one_material() {
 
 #[test]
 fn formulas_have_the_indices_that_makers_state() {
-    let stated = glasses().filter_map(|glass| Some((glass.n_d() - glass.stated_nd?, glass.v_d() - glass.stated_vd?)));
+    let stated = glasses().filter_map(|glass| Some((glass.n_d() - glass.stated_nd?, glass.v_d()? - glass.stated_vd?)));
     // SUMITA states V_d to one decimal only, so that rounding alone takes up 0.05.
     let agrees = |(nd, vd): &(f64, f64)| nd.abs() <= 1.5e-5 && vd.abs() <= 0.1;
     let (agreeing, differing): (Vec<_>, Vec<_>) = stated.partition(agrees);
     assert!(agreeing.len() > 1570 && differing.len() * 100 <= 3 * (agreeing.len() + differing.len()), "{differing:?}");
+}
+
+#[test]
+fn no_abbe_number_is_told_of_a_glass_that_is_not_known_from_blue_to_red() {
+    let vd = |name: &str| super::glass(name).expect("it is in the catalog").v_d();
+    // Known up to 644 nm, and from 495 nm on.
+    assert_eq!([vd("heptane"), vd("oleic acid")], [None, None]);
+    assert!(vd("N-BK7").is_some_and(|vd| (vd - 64.17).abs() < 0.005));
+    // Helium disperses least of all.
+    glasses().for_each(|glass| assert!(glass.v_d().is_none_or(|vd| vd < 240.0), "{}: {:?}", glass.key, glass.v_d()));
+}
+
+#[test]
+fn water_absorbs_as_hale_and_querry_have_it() {
+    let k = super::glass("water").and_then(|water| water.extinction(700.0));
+    assert_eq!(k, Some(3.35e-8));
 }
 
 #[test]
