@@ -10,8 +10,12 @@ const ROUNDING_OF_HALF: f64 = 1.0 / 1024.0;
 /// Whether two images differ by more than their noise.
 ///
 /// Of each value, z is the difference over its standard deviation sqrt(va + vb), by the `variance` layers of both
-/// files. Where `samples.V` says how few samples these rest on, z is the normal number that is as improbable, by the
-/// degrees of freedom of Welch 1947. A variance that is negative or no number counts as 0.
+/// files. Where `samples.V`, or how many replicates there were, says how little these rest on, z is the normal number
+/// that is as improbable, by the degrees of freedom of Welch 1947. A variance that is negative or no number counts as
+/// 0.
+///
+/// Where all samples of a pixel are the same beside an edge, another one might have shown what a neighbor shows: n of
+/// them tell the mean no better than to 1 / n of the difference.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Noise {
     /// The z of either sign that all values together exceed by chance in 1 of 100 pairs of images.
@@ -30,16 +34,24 @@ pub struct Noise {
 
 /// What is needed of one image.
 pub(super) struct Noisy<'f> {
+    colors: Vec<&'f Channel>,
     variance: Vec<&'f Channel>,
     samples: Option<&'f Channel>,
+    /// Samples of each pixel, if the file says so.
+    taken: Option<f64>,
+    /// Renders that the variance is of, where it is not that of samples.
+    replicates: Option<f64>,
+    /// Columns and rows.
+    size: [usize; 2],
     rounding: f64,
 }
 
 impl<'f> Noisy<'f> {
     /// Of the colors of a file that says their variance, unless it says that too few samples tell it.
     pub(super) fn new(file: &'f ExrFile, beauty: &ExrLayer<'f>) -> Option<Self> {
-        let taken = file.attribute("render/samples").and_then(|taken| taken.parse::<u32>().ok());
-        if taken.is_some_and(|taken| taken < TELL_VARIANCE) {
+        let said = |name: &str| file.attribute(name).and_then(|count| count.parse::<f64>().ok());
+        let (taken, replicates) = (said("render/samples"), said("render/replicates"));
+        if taken.is_some_and(|taken| taken < f64::from(TELL_VARIANCE)) {
             return None;
         }
         let layers = file.layers();
@@ -49,8 +61,10 @@ impl<'f> Noisy<'f> {
         };
         let variance = there("variance")?.color()?.to_vec();
         let samples = there("samples").and_then(|layer| layer.channels.first().copied());
-        let half = beauty.values().iter().any(|channel| channel.kind() == "half");
-        Some(Self { variance, samples, rounding: if half { ROUNDING_OF_HALF } else { ROUNDING } })
+        let (colors, size) = (beauty.values(), beauty.part.bounds.size);
+        let half = colors.iter().any(|channel| channel.kind() == "half");
+        let rounding = if half { ROUNDING_OF_HALF } else { ROUNDING };
+        Some(Self { colors, variance, samples, taken, replicates, size, rounding })
     }
 
     fn variance(&self, channel: usize, pixel: usize) -> f64 {
@@ -58,9 +72,24 @@ impl<'f> Noisy<'f> {
         self.variance[channel].at(pixel).max(0.0)
     }
 
-    /// How many samples beyond the first its variance rests on; endless where it is not said.
+    /// The same; where no sample differs from the others, what one that shows the most different neighbor would make.
+    fn variance_beside_neighbors(&self, channel: usize, pixel: usize) -> f64 {
+        let taken = self.samples.map(|samples| samples.at(pixel)).or(self.taken).filter(|taken| *taken >= 1.0);
+        let told = self.variance(channel, pixel);
+        let Some(taken) = taken.filter(|_| told == 0.0) else { return told };
+        let (value, [columns, rows]) = (self.colors[channel].at(pixel), self.size);
+        let [column, row] = [pixel % columns, pixel / columns];
+        let beside = |at: usize, count: usize| at.saturating_sub(1)..(at + 2).min(count);
+        let neighbors = beside(row, rows).flat_map(|y| beside(column, columns).map(move |x| y * columns + x));
+        let apart = neighbors.map(|other| (self.colors[channel].at(other) - value).abs());
+        let apart = apart.filter(|apart| apart.is_finite()).fold(0.0, f64::max);
+        (apart / taken) * (apart / taken)
+    }
+
+    /// How many independent values beyond the first its variance rests on; endless where it is not said.
     fn freedom(&self, pixel: usize) -> f64 {
-        self.samples.map_or(f64::INFINITY, |samples| (samples.at(pixel) - 1.0).max(1.0))
+        let values = self.replicates.or(self.samples.map(|samples| samples.at(pixel)));
+        values.map_or(f64::INFINITY, |values| (values - 1.0).max(1.0))
     }
 }
 
@@ -74,20 +103,16 @@ fn freedom(variances: [f64; 2], of_each: [f64; 2]) -> f64 {
 
 impl Noise {
     /// Of two images with their colors; `is_left_out` tells pixels that are not compared.
-    pub(super) fn new(
-        noisy: [&Noisy; 2],
-        colors: [&[&Channel]; 2],
-        count: usize,
-        is_left_out: impl Fn(usize) -> bool,
-    ) -> Self {
+    pub(super) fn new(noisy: [&Noisy; 2], count: usize, is_left_out: impl Fn(usize) -> bool) -> Self {
         let rounding = noisy[0].rounding.max(noisy[1].rounding);
         let same = |a: f64, b: f64| (a - b).abs() <= rounding * a.abs().max(b.abs());
-        let (mut all, mut tests) = (Vec::new(), colors[0].len());
+        let channels = noisy[0].colors.len();
+        let (mut all, mut tests) = (Vec::new(), channels);
         let mut found = Self { threshold: 0.0, worst: 0.0, at: [0; 2], beyond: 0, changed: 0, means: Vec::new() };
-        for channel in 0..colors[0].len() {
+        for channel in 0..channels {
             let (mut sums, mut variance) = ([0.0; 2], 0.0);
             for pixel in (0..count).filter(|pixel| !is_left_out(*pixel)) {
-                let [a, b] = colors.map(|colors| colors[channel].at(pixel));
+                let [a, b] = noisy.map(|noisy| noisy.colors[channel].at(pixel));
                 let variances = noisy.map(|noisy| noisy.variance(channel, pixel));
                 let both = variances[0] + variances[1];
                 (sums, variance) = ([sums[0] + a, sums[1] + b], variance + both);
@@ -95,6 +120,8 @@ impl Noise {
                 if same(a, b) {
                     continue;
                 }
+                let variances = noisy.map(|noisy| noisy.variance_beside_neighbors(channel, pixel));
+                let both = variances[0] + variances[1];
                 if both == 0.0 {
                     found.changed += 1;
                     continue;

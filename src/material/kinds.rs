@@ -123,6 +123,16 @@ impl<S> Material<S> {
         self.lobes().is_diffuse()
     }
 
+    /// Whether some of it is smooth, so that it mirrors or refracts. Rough glass is not, though between equal indices
+    /// it lets light go straight on.
+    pub fn is_smooth_somewhere(&self) -> bool {
+        match self {
+            Self::Dielectric(dielectric) => dielectric.roughness.is_smooth(),
+            Self::Mix(_) | Self::Mask(_) => self.parts().iter().any(|part| part.material().is_smooth_somewhere()),
+            _ => self.has_single_directions(),
+        }
+    }
+
     /// Whether light leaves in single directions, all of it or some: the mirror images and refractions of smooth
     /// surfaces.
     pub fn has_single_directions(&self) -> bool {

@@ -146,7 +146,7 @@ fn lights(scene: &Scene<Curve>, light_pass: Option<&LightPass>) -> Vec<String> {
         [true, true] => Some("diffuse or rough"),
     };
     let points = scene.lights.iter().filter(|light| !light.is_extended()).count();
-    let bends = scene.materials.iter().find(|m| m.material.has_single_directions());
+    let bends = scene.materials.iter().find(|m| m.material.is_smooth_somewhere());
     let all_found = light_pass.is_some_and(|pass| pass.map.is_some());
     if let (Some(lit), true, Some(bends), false) = (lit, points > 0, bends, all_found) {
         let where_seen =

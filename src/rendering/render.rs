@@ -16,7 +16,7 @@ use crate::error::{Error, Result};
 use crate::film::{Fact, Format, Provenance, Shard, View};
 use crate::plan::{Plan, plan};
 use crate::scene::{Projection, Scene};
-use crate::trace::{self, Advance, Method, Report, bytes_of_film, prepare};
+use crate::trace::{self, Advance, Method, REPLICATES, Report, bytes_of_film, prepare};
 
 /// Renders a scene.
 ///
@@ -306,6 +306,7 @@ fn provenance(origin: &Origin, plan: &Plan, samples: u64, report: &Report) -> Pr
     let text = |text: &str| Fact::Text(text.to_owned());
     let method = &plan.method;
     let wavelengths: Vec<String> = method.basis.wavelengths_nm().iter().map(f64::to_string).collect();
+    let replicates = method.stop.as_ref().map(|_| ("replicates", Fact::Count(REPLICATES as u64)));
     let pass = method.light_pass.as_ref();
     let photons = pass.map(|pass| ("photons", Fact::Count(pass.photons)));
     let blur = pass.and_then(|pass| pass.map).map(|map| ("photonRadius", text(&format!("{:.3} pixels", map.radius))));
@@ -322,6 +323,12 @@ fn provenance(origin: &Origin, plan: &Plan, samples: u64, report: &Report) -> Pr
         ("nonFinite", Fact::Count(report.non_finite)),
     ];
     let settings = (!origin.settings.is_empty()).then(|| ("set", text(&origin.settings)));
-    let facts = facts.into_iter().chain(settings).chain(photons).chain(blur).map(|(key, fact)| (key.into(), fact));
+    let facts = facts
+        .into_iter()
+        .chain(settings)
+        .chain(replicates)
+        .chain(photons)
+        .chain(blur)
+        .map(|(key, fact)| (key.into(), fact));
     Provenance { facts: facts.collect(), time: None }
 }

@@ -73,4 +73,5 @@ pub use probe::{
     polarization_error, prepare, prepare_unguided, probe, reached_places, samples_worth, seen_light,
     with_light_vertices,
 };
+pub use replicates::REPLICATES;
 pub use world::World;

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::film::{Filter, PassSum, SampleWeights};
 
 /// How many there are.
-pub(super) const REPLICATES: usize = 8;
+pub const REPLICATES: usize = 8;
 /// How many of them are the first half.
 pub(super) const HALF: u32 = REPLICATES as u32 / 2;
 

@@ -298,6 +298,10 @@ fn the_plan_asks_for_photons_where_they_are_needed_and_says_why_where_not() {
     );
     asks(format!("{ball}{point}{}", lamp(2.0)), "left to chance: caustics of bulb");
     leaves(point.into(), "no caustics: no surface is smooth");
+    let frosted = "[material.frosted]\ndielectric = { index = 1.5, roughness = 0.25 }\n".to_owned();
+    let plan = room(&(frosted + &ball.replace("\"glass\"", "\"frosted\"") + point));
+    let all = because(&plan);
+    assert!(all.contains("no caustics: no surface is smooth") && !all.contains("left out: light of point"), "{all}");
     leaves(format!("{ball}{}", lamp(2.0)), "large enough for rays to meet by chance");
     let screen = "[material.screen]\nemissive = { radiance = { checker = [3, 1] } }\n";
     leaves(

@@ -146,6 +146,34 @@ fn few_samples_know_their_own_spread_badly() {
     }
 }
 
+/// A disc that shines, so that its edge alone is noisy: samples of a pixel there may all be the same by chance. With a
+/// stop rule the variance is that of eight renders, whose samples are spread so well that they may differ by one.
+#[test]
+fn edges_agree_whatever_tells_their_variance() {
+    let scene = Scene::parse(
+        "camera = { position = [0, 0, 5], look_at = [0, 0, 0], vertical_fov = 40 }\n\
+         film = { width = 40, height = 30, layers = [\"variance\"] }\nmaterial.lamp.emissive.radiance = 1\n\
+         [[object]]\nshape.disc = { center = [0, 0, 0], normal = [0, 0, 1], radius = 1.2 }\nmaterial = \"lamp\"\n",
+        "",
+    )
+    .expect("a scene");
+    let folder = Folder::new();
+    let file = |seed: u64, options: Options| {
+        let path = folder.path().join(format!("{seed}.exr"));
+        let image = abbe::render(&scene, &Options { seed: Some(seed), ..options }).expect("an image");
+        image.write_exr(&path).expect("the folder takes files");
+        ExrFile::read(&path).expect("an image")
+    };
+    let few = |seed: u64| file(seed, Options { samples: Some(16), ..Options::default() });
+    let enough = |seed: u64| file(seed, Options { error: Some(0.003), ..Options::default() });
+    for seed in 0..12 {
+        for [a, b] in [[few(seed), enough(seed + 100)], [enough(seed + 200), enough(seed + 300)]] {
+            let noise = compare([&a, &b], None, ["a", "b"]).expect("they can be compared").noise.expect("variance");
+            assert!(noise.agrees(), "{seed}: {noise:?}");
+        }
+    }
+}
+
 #[test]
 fn values_without_variance_differ_only_beyond_rounding() {
     let (a, mut b) = (gray(), gray());

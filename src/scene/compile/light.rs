@@ -37,7 +37,7 @@ impl Lights {
     pub(super) fn read<'d>(&mut self, context: &mut Context, value: Value<'d>) -> Option<()> {
         let (mut group, mut visible) = (None, true);
         let light = Fields::read(value, |light| {
-            let name = light.maybe("name", Value::text);
+            let name = light.maybe("name", object::name);
             let own = light.maybe("group", object::group);
             let seen = light.maybe("visible_to_camera", at(Value::yes_or_no));
             let kinds = ["environment", "point", "spot", "sun"].map(|kind| light.get(kind));

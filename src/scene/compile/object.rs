@@ -56,7 +56,7 @@ pub(super) fn object<'d>(
     number: usize,
 ) -> Option<Draft<'d>> {
     Fields::read(entry, |object| {
-        let name = object.maybe("name", Value::text);
+        let name = object.maybe("name", name);
         let shape = object.need("shape", Some);
         let named = match object.get("material") {
             Some(value) => at(|value: Value<'d>| names.find(value))(value),
@@ -117,6 +117,15 @@ fn sight(object: &mut Fields) -> Option<Sight> {
         (true, Some(_), None) => Some(Sight::Holdout),
         (true, None, Some(_)) => Some(Sight::ShadowCatcher),
         (true, None, None) => Some(Sight::Shown),
+    }
+}
+
+/// The name of an object or a light.
+pub(super) fn name(value: Value<'_>) -> Option<&str> {
+    let name = value.text()?;
+    match name.is_empty() {
+        true => value.advise("a name has a letter or more", "leave `name` out where there is none"),
+        false => Some(name),
     }
 }
 
