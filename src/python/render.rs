@@ -48,9 +48,9 @@ pub(super) fn render(
     every: &Bound<'_, PyAny>,
     resume: bool,
 ) -> PyResult<Image> {
+    let every = time("every", every)?;
     let state = Arc::new(State::default());
-    let checkpoint =
-        checkpoint.map(|path| Ok::<_, PyErr>(Checkpoint { path, every: time(every)?, resume })).transpose()?;
+    let checkpoint = checkpoint.map(|path| Checkpoint { path, every, resume });
     if resume && checkpoint.is_none() {
         return refuse("there is no checkpoint to resume from", "name its file: checkpoint=\"image.checkpoint\"");
     }
