@@ -22,6 +22,9 @@ const ELSEWHERE: [(&str, &str); 11] = [
 
 /// The known name that was meant by the value or key `word`, or all of them; `key` is the key of a value.
 pub(super) fn suggestion(key: &str, word: &str, known: &[&str]) -> String {
+    if matches!(word, "box" | "cuboid") && known.contains(&"cube") {
+        return "write cube = { center = [0, 1, 0], size = [2, 1, 3] }".into();
+    }
     match meant(key, word, known) {
         Some(near) => format!("did you mean `{near}`?"),
         None => format!("known here: {}", known.join(", ")),
