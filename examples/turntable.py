@@ -6,10 +6,10 @@ import subprocess
 import sys
 from pathlib import Path
 
-scene, images = Path(__file__).with_name("turntable.toml"), Path(sys.argv[1]) / "turntable.%04d.exr"
+images = Path(sys.argv[1] if sys.argv[1:] else sys.exit(__doc__)) / "turntable.%04d.exr"
 for frame in range(1, 9):
-    command = [os.environ.get("RENDER", "render"), scene, "--json", "--exr", images, *sys.argv[2:]]
-    command += ["--frame", str(frame), "--set", f"angle={45 * (frame - 1)}"]
+    command = [os.environ.get("RENDER", "render"), Path(__file__).with_name("turntable.toml"), "--json", *sys.argv[2:]]
+    command += ["--exr", images, "--frame", str(frame), "--set", f"angle={45 * (frame - 1)}"]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as run:
         for event in map(json.loads, run.stdout):
             if event["kind"] == "progress":

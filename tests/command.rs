@@ -137,8 +137,11 @@ fn what_other_renderers_call_an_argument_is_refused_with_what_it_is_called_here(
         |word: &str, help: &str| assert_refuses(&[word, "ball.toml"], 2, &refusal(&format!("command `{word}`"), help));
     command("vew", "did you mean render view?");
     command("plan", "did you mean render --plan?");
-    let every = "error: f.####.exr would be the name of every frame\nhelp: write %04d in place of ####\n";
-    assert_refuses(&["ball.toml", "--exr", "f.####.exr", "--frame", "3"], 2, every);
+    for mark in ["####", "@@@", "$F4", "{frame}", "%s"] {
+        let name = format!("f.{mark}.exr");
+        let every = format!("error: {name} would be the name of every frame\nhelp: write %04d in place of {mark}\n");
+        assert_refuses(&["ball.toml", "--exr", &name, "--frame", "3"], 2, &every);
+    }
 }
 
 #[test]
@@ -192,12 +195,9 @@ fn numbers_on_the_command_line_are_checked() {
     let is_refused = |flag: &str, value: &str, why: &str| {
         assert_refuses(&["ball.toml", flag, value], 2, &format!("error: {flag}: {why}\n"))
     };
-    is_refused("--samples", "0", "0 is not in 1..=4294967295");
-    is_refused("--samples", "-3", "-3 is not in 1..=4294967295");
-    is_refused("--threads", "0", "0 is not in 1..=1024");
-    is_refused("--threads", "1025", "1025 is not in 1..=1024");
     is_refused("--seed", "-1", "a seed is a whole number from 0 to 18446744073709551615");
     is_refused("--error", "5%", "write 0.05 for 5 %");
+    is_refused("--error", "0.07%", "write 0.0007 for 0.07 %");
     is_refused("--error", "little", "an error is a number, such as 0.01 for one percent");
     is_refused("--layers", "N,albdo", "there is no layer `albdo`: did you mean albedo?");
     let both = "there are no layers `albdo` (did you mean albedo?), `varianc` (did you mean variance?)";
@@ -206,6 +206,10 @@ fn numbers_on_the_command_line_are_checked() {
     is_refused("--time", "-3s", "a time is a number with a unit, such as 60s, 5m or 1h");
     for (flag, value, message) in [
         ("--samples", "4.5", "--samples takes a whole number, not 4.5"),
+        ("--samples", "0", "--samples takes a whole number from 1 to 4294967295, not 0"),
+        ("--samples", "-3", "--samples takes a whole number from 1 to 4294967295, not -3"),
+        ("--threads", "1025", "--threads takes a whole number from 1 to 1024, not 1025"),
+        ("--frame", "-3", "--frame takes a whole number from 0 to 4294967295, not -3"),
         ("--frame", "1.5", "--frame takes a whole number, not 1.5"),
         ("--exposure", "bright", "--exposure takes a number, not bright"),
     ] {
@@ -221,6 +225,14 @@ fn the_help_of_every_command_names_all_of_it() {
     for command in ["catalog", "info", "view", "diff", "merge", "completions", "man"] {
         let help = render(&folder(), &[command, "--help"]);
         assert!(help.stdout.contains(&format!("\nUsage: render {command}")), "{}", help.stdout);
+    }
+}
+
+#[test]
+fn the_help_lists_all_commands() {
+    let help = render(&folder(), &["--help"]).stdout;
+    for command in ["catalog", "info", "view", "diff", "merge", "completions", "man"] {
+        assert!(help.contains(&format!("\n  render {command} ")), "{command}: {help}");
     }
 }
 

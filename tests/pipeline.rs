@@ -161,7 +161,7 @@ fn with_json_mistakes_are_objects_with_their_place() {
     let expected = concat!(
         r#"{"kind":"error","message":"unknown key `widht`","file":"--set","line":1,"column":6,"help":"did you mean `width`?"}"#,
         "\n",
-        r#"{"kind":"error","message":"`samples` is a whole number of 0 or more, not -1","file":"--set","line":2,"column":16,"help":null}"#,
+        r#"{"kind":"error","message":"`samples` is a whole number of 1 or more, not -1","file":"--set","line":2,"column":16,"help":null}"#,
         "\n"
     );
     assert_eq!(wrong.stdout, expected);
@@ -261,14 +261,14 @@ fn a_frame_is_a_variable_and_a_number_in_the_names_of_files() {
             render(&folder, &["turn.toml", "--quiet"].into_iter().chain(arguments.iter().copied()).collect::<Vec<_>>());
         assert_eq!((answer.code, &*answer.stderr), (Some(0), ""));
     };
-    frame(&["--frame", "12", "--exr", "out/turn.%04d.exr", "--png", "%d.png"]);
+    frame(&["--frame", "12", "--exr", "out/%d/turn.%04d.exr", "--png", "%d%%.png"]);
     frame(&["--frame", "7"]);
     frame(&["--set", "set.frame=7", "--exr", "seven.exr"]);
-    assert_eq!(folder.listing(), ["12.png", "out", "scene.toml", "seven.exr", "turn.0007.exr", "turn.toml"]);
-    assert!(folder.path().join("out/turn.0012.exr").is_file());
+    assert_eq!(folder.listing(), ["12%.png", "out", "scene.toml", "seven.exr", "turn.0007.exr", "turn.toml"]);
+    assert!(folder.path().join("out/12/turn.0012.exr").is_file());
     let bytes = |name: &str| fs::read(folder.path().join(name)).expect("the image was written");
     assert_eq!(bytes("seven.exr"), bytes("turn.0007.exr"));
-    assert_ne!(bytes("seven.exr"), bytes("out/turn.0012.exr"));
+    assert_ne!(bytes("seven.exr"), bytes("out/12/turn.0012.exr"));
     let nameless = render(&folder, &["scene.toml", "--exr", "turn.%04d.exr"]);
     let expected =
         "error: turn.%04d.exr is named after a frame, and no frame is given\nhelp: give its number: --frame 1\n";
@@ -307,6 +307,9 @@ fn completions_and_the_manual_page_know_every_flag_and_command() {
         );
     }
     let page = words(&page.stdout);
+    // There are no other pages, and no command `help`.
+    assert!(page.contains("\n.SS \"render merge\"") && !page.contains("render-merge") && !page.contains("render-help"));
+    assert!(page.contains("\n.TP\n\\fBrender info prism.exr\\fR\nlist what an image holds\n"), "{page}");
     assert!(["--set", "--json", "--quiet", "--frame"].iter().all(|flag| flags.contains(flag) && page.contains(flag)));
     let wrong = render(&folder, &["completions", "fsh"]);
     assert!(wrong.code == Some(2) && wrong.stderr.contains("'fish'"), "{}", wrong.stderr);

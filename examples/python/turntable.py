@@ -18,4 +18,6 @@ def main(folder, frames=8, **options):
 
 
 if __name__ == "__main__":
+    if not sys.argv[1:]:
+        sys.exit(__doc__)
     main(sys.argv[1], *map(int, sys.argv[2:3]))

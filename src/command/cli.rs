@@ -7,7 +7,6 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use abbe::film::{Layer, Overscan, Window};
-use abbe::look::number;
 use abbe::{Options, Result};
 use clap::error::{ContextKind, ErrorKind};
 use clap::{Command, CommandFactory, Parser};
@@ -18,7 +17,17 @@ use super::messages::{Listener, Protocol, is_colored, listener, speak_to};
 use super::outputs::{check_exposure, check_png, ends_in, is_standard, refuse};
 use super::{catalog, diff, info, keep, manual, merge, view};
 
-const EXAMPLES: &str = "\
+const HELP: &str = "\
+Commands:
+  render catalog      list the glasses, metals, lights and colors it knows
+  render info         say what an OpenEXR image holds
+  render view         show an image on the terminal
+  render diff         say whether two images agree
+  render merge        lay the parts of an image together
+  render completions  write what completes its words in a shell
+  render man          write its manual page
+Each has a help of its own: render merge --help
+
 Examples:
   render --exr scenes/prism.toml                  write ./prism.exr
   render scenes/prism.toml --exr out/frame.exr    name the file
@@ -49,7 +58,7 @@ Exit codes: 0 done, 1 the render or a file failed, 2 bad arguments or scene,
 
 /// Render a TOML scene to a linear OpenEXR image.
 #[derive(Parser)]
-#[command(name = "render", version, after_help = EXAMPLES)]
+#[command(name = "render", version, after_help = HELP)]
 struct Arguments {
     /// The scene, a TOML file; - is standard input
     scene: Option<PathBuf>,
@@ -87,7 +96,8 @@ struct Arguments {
     #[arg(long, value_name = "KEY=VALUE", allow_hyphen_values = true)]
     set: Vec<String>,
 
-    /// The number of a frame: the value of the variable frame, and of %04d in the names of the files to write
+    /// The number of a frame: the value of the variable frame, and of every %04d or %d in the names of the files to
+    /// write; %% is a percent there
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32))]
     frame: Option<u32>,
 
@@ -167,9 +177,14 @@ fn seed(text: &str) -> std::result::Result<u64, String> {
 
 fn ratio(text: &str) -> std::result::Result<f64, String> {
     text.parse().map_err(|_| match text.strip_suffix('%').map(|percent| percent.trim().parse::<f64>()) {
-        Some(Ok(percent)) => format!("write {} for {percent} %", number(percent / 100.0)),
+        Some(Ok(percent)) => format!("write {} for {percent} %", of_percent(percent)),
         _ => "an error is a number, such as 0.01 for one percent".into(),
     })
+}
+
+/// A share of so many percent, without what division by 100 rounds.
+fn of_percent(percent: f64) -> f64 {
+    format!("{percent}e-2").parse().unwrap_or(percent / 100.0)
 }
 
 fn overscan(text: &str) -> std::result::Result<Overscan, String> {
@@ -279,7 +294,8 @@ fn whole() -> Command {
         ("completions", manual::Completions::command()),
         ("man", manual::Manual::command()),
     ];
-    Arguments::command().subcommands(below.map(|(name, command)| command.name(name).bin_name(name)))
+    let below = below.map(|(name, command)| command.name(name).bin_name(format!("render {name}")));
+    Arguments::command().subcommands(below).disable_help_subcommand(true)
 }
 
 /// The arguments of a command, the first of which is its name.
@@ -297,7 +313,10 @@ fn told(said: clap::Error) -> Result<Request> {
         return match (why.is::<ParseIntError>(), why.is::<ParseFloatError>()) {
             (true, _) => refuse(&format!("{flag} takes a whole number, not {given}"), None),
             (_, true) => refuse(&format!("{flag} takes a number, not {given}"), None),
-            _ => refuse(&format!("{flag}: {why}"), None),
+            _ => match within(&why.to_string()) {
+                Some(range) => refuse(&format!("{flag} takes a whole number {range}, not {given}"), None),
+                None => refuse(&format!("{flag}: {why}"), None),
+            },
         };
     }
     if said.use_stderr() && matches!(listener(), Listener::Program | Listener::Farm) {
@@ -311,6 +330,13 @@ fn told(said: clap::Error) -> Result<Request> {
     let styled = said.render();
     let text = if is_colored(&std::io::stdout()) { styled.ansi().to_string() } else { styled.to_string() };
     Ok(Request::Answer(text))
+}
+
+/// The range that clap says a number is not in, in words.
+fn within(said: &str) -> Option<String> {
+    let (_, range) = said.split_once(" is not in ")?;
+    let (first, last) = range.split_once("..=")?;
+    Some(format!("from {first} to {last}"))
 }
 
 fn job(arguments: Arguments) -> Result<Job> {
@@ -335,9 +361,9 @@ fn job(arguments: Arguments) -> Result<Job> {
     } else if arguments.check {
         Output::Check
     } else {
-        let exr = if with_exr { Some(exr.map_or_else(|| beside(&scene, frame), Ok)?) } else { None };
-        let of_frame = |path: Option<PathBuf>| path.map(|path| numbered(&path, frame)).transpose();
-        Output::Image { exr: of_frame(exr)?, png: of_frame(arguments.png)? }
+        let named = |exr: Option<PathBuf>| exr.map_or_else(|| beside(&scene, frame), |exr| numbered(&exr, frame));
+        let exr = with_exr.then(|| named(exr)).transpose()?;
+        Output::Image { exr, png: arguments.png.map(|path| numbered(&path, frame)).transpose()? }
     };
     let talks = [("--json", arguments.json), ("--progress", arguments.progress.is_some())];
     if let (Output::Image { exr: Some(exr), .. }, Some((flag, _))) = (&output, talks.iter().find(|(_, asked)| *asked))

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use abbe::Result;
 use abbe::film::{ExrFile, TELL_VARIANCE, check_writable};
-use abbe::look::{Difference, Noise, compare, number};
+use abbe::look::{Difference, Noise, WorstPixel, compare, number};
 use clap::Parser;
 
 use super::messages::{aligned, answer_lines, print_error, say};
@@ -81,7 +81,12 @@ fn compared(query: &Query) -> Result<bool> {
         let (picture, white) = found.picture();
         check_writable(png)?;
         picture.write_png(png)?;
-        say(&format!("wrote {}: white is a difference of {} or more", png.display(), number(white)));
+        let what = match (white > 0.0, found.torn) {
+            (true, _) => format!("white is a difference of {} or more", number(white)),
+            (false, 0) => "all of it is black, as nothing differs".into(),
+            (false, _) => "white is what differs and is not finite".into(),
+        };
+        say(&format!("wrote {}: {what}", png.display()));
     }
     answer_lines(&lines)?;
     Ok(agrees)
@@ -115,18 +120,23 @@ fn figures(found: &Difference, tolerance: Option<f64>) -> Vec<String> {
         put("judged by", format!("equality: {untold}, and no --tolerance is given"));
     }
     if let Some(worst) = &found.worst {
-        let [a, b] = worst
-            .values
-            .each_ref()
-            .map(|values| values.iter().map(|value| number(*value)).collect::<Vec<_>>().join(" "));
-        let [x, y] = worst.at;
-        put("worst pixel", format!("({x}, {y}): {a} and {b}"));
+        put("worst pixel", of_pixel(worst));
     }
     if found.left_out > 0 {
         let all = found.absolute.len();
         put("not finite", format!("{} of {all} pixels, left out; {} of them differ", found.left_out, found.torn));
     }
+    if let Some(torn) = &found.first_torn {
+        put("first of them", of_pixel(torn));
+    }
     aligned(&rows)
+}
+
+/// A pixel with its values in both images.
+fn of_pixel(pixel: &WorstPixel) -> String {
+    let values = |values: &[f64]| values.iter().map(|value| number(*value)).collect::<Vec<_>>().join(" ");
+    let ([x, y], [a, b]) = (pixel.at, pixel.values.each_ref().map(|of| values(of)));
+    format!("({x}, {y}): {a} and {b}")
 }
 
 fn of_noise(found: &Difference, noise: &Noise) -> String {

@@ -9,6 +9,8 @@ use abbe::plan::Plan;
 use abbe::{Diagnostic, Error, Image, PlanAccount, RenderAccount, Result};
 use serde::Serialize;
 
+use super::problem::problem;
+
 /// Something that happened or was found out.
 #[derive(Serialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
@@ -75,7 +77,7 @@ impl<'e> Event<'e> {
             Error::Scene(mistakes) => mistakes.iter().map(mistake).collect(),
             Error::Arguments { message, help } => plain(message.clone(), None, help.as_deref()),
             Error::Io { path, .. } | Error::Decode { path, .. } | Error::Encode { path, .. } => {
-                plain(error.to_string(), Some(path), None)
+                plain(problem(error), Some(path), None)
             }
         }
     }

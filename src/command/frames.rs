@@ -1,6 +1,5 @@
 //! The number of a frame in the names of its files.
 
-use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use abbe::Result;
@@ -10,52 +9,117 @@ use super::outputs::refuse;
 /// More digits than any number of a frame has.
 const MOST_DIGITS: usize = 20;
 
-/// The path with the number of the frame where it says `%04d`, or another number of digits.
+/// The path with the number of the frame wherever it says `%04d`, or another number of digits; `%%` is a percent.
 ///
 /// # Errors
-/// If the path asks for a number and there is none.
+/// If the path asks for a number and there is none, or asks for one as other programs do.
 pub fn numbered(path: &Path, frame: Option<u32>) -> Result<PathBuf> {
     let Some(text) = path.to_str() else { return Ok(path.to_owned()) };
-    let Some((place, digits)) = pattern(text) else {
-        if frame.is_some() && text.contains("##") {
+    let (mut name, mut rest, mut is_numbered) = (String::new(), text, false);
+    while let Some((before, after)) = rest.split_once('%') {
+        name.push_str(before);
+        rest = if let Some(after) = after.strip_prefix('%') {
+            name.push('%');
+            after
+        } else if let Some((digits, after)) = digits(after) {
+            let Some(frame) = frame else {
+                let message = format!("{text} is named after a frame, and no frame is given");
+                return refuse(&message, Some("give its number: --frame 1"));
+            };
+            name.push_str(&format!("{frame:0digits$}"));
+            is_numbered = true;
+            after
+        } else {
+            name.push('%');
+            after
+        };
+    }
+    name.push_str(rest);
+    match foreign(text).filter(|_| frame.is_some() && !is_numbered) {
+        Some(mark) => {
             let message = format!("{text} would be the name of every frame");
-            return refuse(&message, Some("write %04d in place of ####"));
+            refuse(&message, Some(&format!("write %04d in place of {mark}")))
         }
-        return Ok(path.to_owned());
-    };
-    let Some(frame) = frame else {
-        let message = format!("{text} is named after a frame, and no frame is given");
-        return refuse(&message, Some("give its number: --frame 1"));
-    };
-    let number = format!("{frame:0digits$}");
-    Ok([&text[..place.start], &number, &text[place.end..]].concat().into())
+        None => Ok(name.into()),
+    }
 }
 
-/// Where `%04d`, `%4d` or `%d` stands first, and its least number of digits.
-fn pattern(text: &str) -> Option<(Range<usize>, usize)> {
-    text.match_indices('%').find_map(|(start, _)| {
-        let rest = &text[start + 1..];
-        let digits = rest.len() - rest.trim_start_matches(|letter: char| letter.is_ascii_digit()).len();
-        let width = if digits == 0 { Some(0) } else { rest[..digits].parse().ok() };
-        let width = width.filter(|&width: &usize| width <= MOST_DIGITS && rest[digits..].starts_with('d'))?;
-        Some((start..start + digits + 2, width))
-    })
+/// The least number of digits that stands behind a percent, as in `%04d`, `%4d` or `%d`, and what follows. A `%d` that
+/// a letter follows is part of a word, as in `50%dark`.
+fn digits(text: &str) -> Option<(usize, &str)> {
+    let rest = text.trim_start_matches(|letter: char| letter.is_ascii_digit());
+    let (number, rest) = (&text[..text.len() - rest.len()], rest.strip_prefix('d')?);
+    if number.is_empty() {
+        return Some((0, rest)).filter(|_| !rest.starts_with(char::is_alphabetic));
+    }
+    let digits = number.parse().ok().filter(|&digits| digits <= MOST_DIGITS)?;
+    Some((digits, rest))
+}
+
+/// What stands for the number of a frame in other programs.
+fn foreign(text: &str) -> Option<&str> {
+    let run = |of: char| {
+        let from = &text[text.find([of, of].iter().collect::<String>().as_str())?..];
+        Some(&from[..from.len() - from.trim_start_matches(of).len()])
+    };
+    let alone = |mark: &str| {
+        let ends = |at: usize| at + mark.len();
+        let (at, _) = text.match_indices(mark).find(|(at, _)| !text[ends(*at)..].starts_with(char::is_alphabetic))?;
+        let after = text[ends(at)..].trim_start_matches(|letter: char| letter.is_ascii_digit());
+        Some(&text[at..text.len() - after.len()])
+    };
+    let python = || {
+        let from = &text[text.find("{frame}").or_else(|| text.find("{frame:"))?..];
+        Some(&from[..=from.find('}')?])
+    };
+    run('#').or_else(|| run('@')).or_else(|| alone("$F")).or_else(python).or_else(|| alone("%s"))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    fn name(path: &str, frame: Option<u32>) -> Option<String> {
+        numbered(Path::new(path), frame).map(|path| path.display().to_string()).ok()
+    }
+
     #[test]
     fn a_number_takes_at_least_so_many_digits_where_the_name_asks_for_it() {
-        let name = |path: &str, frame| numbered(Path::new(path), frame).map(|path| path.display().to_string()).ok();
         assert_eq!(name("out/turn.%04d.exr", Some(7)).as_deref(), Some("out/turn.0007.exr"));
         assert_eq!(name("turn.%04d.exr", Some(12345)).as_deref(), Some("turn.12345.exr"));
         assert_eq!(name("%d.exr", Some(7)).as_deref(), Some("7.exr"));
-        assert_eq!(name("100%.exr", Some(7)).as_deref(), Some("100%.exr"));
-        assert_eq!(name("100%x %02d.exr", Some(7)).as_deref(), Some("100%x 07.exr"));
-        assert_eq!(name("%99999999999999999999d.exr", Some(7)).as_deref(), Some("%99999999999999999999d.exr"));
+        assert_eq!(name("d%04d/f_%d_%02d.exr", Some(7)).as_deref(), Some("d0007/f_7_07.exr"));
         assert_eq!(name("plain.exr", None).as_deref(), Some("plain.exr"));
         assert_eq!(name("turn.%04d.exr", None), None);
+    }
+
+    #[test]
+    fn a_percent_that_asks_for_no_number_stays() {
+        for frame in [None, Some(7)] {
+            for plain in ["100%.exr", "50%dark.exr", "%99999999999999999999d.exr", "100%x.exr", "50%small.exr"] {
+                assert_eq!(name(plain, frame).as_deref(), Some(plain));
+            }
+            assert_eq!(name("100%%d.exr", frame).as_deref(), Some("100%d.exr"));
+        }
+        assert_eq!(name("100%x %02d.exr", Some(7)).as_deref(), Some("100%x 07.exr"));
+    }
+
+    #[test]
+    fn a_number_that_is_asked_for_as_elsewhere_is_refused() {
+        for (plain, mark) in [
+            ("f.####.exr", "####"),
+            ("f.@@@.exr", "@@@"),
+            ("f.$F4.exr", "$F4"),
+            ("$F.exr", "$F"),
+            ("f.{frame}.exr", "{frame}"),
+            ("f.{frame:04}.exr", "{frame:04}"),
+            ("f.%s.exr", "%s"),
+        ] {
+            assert_eq!(foreign(plain), Some(mark));
+            assert_eq!(name(plain, Some(7)), None);
+            assert_eq!(name(plain, None).as_deref(), Some(plain));
+        }
+        assert_eq!(name("#1 @home $Final {frames}.exr", Some(7)).as_deref(), Some("#1 @home $Final {frames}.exr"));
+        assert_eq!(name("####.%d.exr", Some(7)).as_deref(), Some("####.7.exr"));
     }
 }

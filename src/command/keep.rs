@@ -7,11 +7,12 @@ use std::time::Duration;
 
 use abbe::film::Shard;
 use abbe::scene::duration;
-use abbe::{Advance, Error, ImageError, Rendering, Result, Resumed, Timer};
+use abbe::{Advance, Error, ImageError, Rendering, Result, Resumed, Timer, is_checkpoint};
 use clap::Args;
 
-use super::messages::{problem, say, so_far, warn};
+use super::messages::{say, so_far, warn};
 use super::outputs::refuse;
+use super::problem::problem;
 use super::progress::Progress;
 
 /// What the command line says of it.
@@ -129,8 +130,13 @@ impl Keep {
     /// If a checkpoint of an earlier run would be lost, or Ctrl-C cannot be caught.
     pub fn new(flags: &Flags, file: &Path, checkpoint: Option<PathBuf>) -> Result<Self> {
         if let Some(there) = checkpoint.as_deref().filter(|path| !flags.resume && path.exists()) {
+            let name = there.display();
+            if !is_checkpoint(there)? {
+                let help = "name another image, or move that file away";
+                return refuse(&format!("{name} would be overwritten, and is no checkpoint"), Some(help));
+            }
             let help = "add --resume to go on from it, or delete it to begin anew";
-            return refuse(&format!("{} is there from an earlier run", there.display()), Some(help));
+            return refuse(&format!("{name} is there from an earlier run"), Some(help));
         }
         let stops_at_once = checkpoint.is_none() && flags.snapshot.is_none();
         let caught = ctrlc::set_handler(move || {

@@ -2,6 +2,7 @@
 
 use clap::{Command, Parser};
 use clap_complete::Shell;
+use clap_mangen::Man;
 
 const COMPLETIONS: &str = "\
 Examples:
@@ -32,10 +33,63 @@ pub fn completions(query: &Completions, mut command: Command) -> String {
     String::from_utf8_lossy(&script).into_owned()
 }
 
-/// The manual page of a command.
+/// The manual page of a command and of all commands below it.
 pub fn page(command: Command) -> String {
+    let below: Vec<Command> = command.get_subcommands().cloned().collect();
+    let after = command.get_after_help().map(ToString::to_string).unwrap_or_default();
+    let man = Man::new(command);
     let mut page = Vec::new();
     // Memory takes all that is written.
-    let _ = clap_mangen::Man::new(command).render(&mut page);
+    let _ = man.render_title(&mut page);
+    let _ = man.render_name_section(&mut page);
+    let _ = man.render_synopsis_section(&mut page);
+    let _ = man.render_description_section(&mut page);
+    let _ = man.render_options_section(&mut page);
+    page.extend(b".SH COMMANDS\n");
+    below.into_iter().for_each(|command| add_command(command, &mut page));
+    page.extend(b".SH EXAMPLES\n");
+    page.extend(after_help(&after).bytes());
+    let _ = man.render_version_section(&mut page);
     String::from_utf8_lossy(&page).into_owned()
+}
+
+/// Adds what the page has of a command below.
+fn add_command(command: Command, page: &mut Vec<u8>) {
+    let name = command.get_bin_name().unwrap_or_else(|| command.get_name()).to_owned();
+    let about = command.get_about().map(ToString::to_string).unwrap_or_default();
+    let after = command.get_after_help().map(ToString::to_string).unwrap_or_default();
+    let man = Man::new(command);
+    let mut told = Vec::new();
+    let _ = man.render_synopsis_section(&mut told);
+    told.extend(format!(".PP\n{}.\n", escaped(about.trim_end_matches('.'))).bytes());
+    let _ = man.render_options_section(&mut told);
+    let told = String::from_utf8_lossy(&told);
+    // They stand in a section already.
+    let lines =
+        told.lines().filter(|line| !line.starts_with(".SH ") && !line.starts_with(".ie") && !line.starts_with(".el"));
+    page.extend(format!(".SS \"{}\"\n", escaped(&name)).bytes());
+    page.extend(lines.flat_map(|line| format!("{line}\n").into_bytes()));
+    page.extend(format!(".PP\n{}", after_help(&after)).bytes());
+}
+
+/// What stands below the options of a help, in roff: what an example does stands below it, whatever the width.
+fn after_help(text: &str) -> String {
+    // The commands have a section of their own.
+    let text = text.find("Examples:").filter(|_| text.starts_with("Commands:")).map_or(text, |start| &text[start..]);
+    let roff = text.lines().map(|line| match line.strip_prefix("  ") {
+        Some(example) => {
+            let (command, what) = example.split_once("  ").unwrap_or((example, ""));
+            let what = if what.is_empty() { String::new() } else { format!("{}\n", escaped(what.trim())) };
+            format!(".TP\n\\fB{}\\fR\n{what}", escaped(command))
+        }
+        None if line.is_empty() || line == "Examples:" => ".PP\n".into(),
+        None => format!("{}\n", escaped(line)),
+    });
+    roff.collect()
+}
+
+/// A line of text that roff shows as it is.
+fn escaped(line: &str) -> String {
+    let line = line.replace('\\', "\\e").replace('-', "\\-");
+    if line.starts_with(['.', '\'']) { format!("\\&{line}") } else { line }
 }

@@ -6,8 +6,9 @@ use abbe::film::check_writable;
 use abbe::{Error, Parts, Result};
 use clap::Parser;
 
-use super::messages::{Listener, Protocol, problem, say, speak_to, warn, warn_of_clamped};
+use super::messages::{Listener, Protocol, say, speak_to, warn, warn_of_clamped};
 use super::outputs::{ends_in, refuse, spare};
+use super::problem::problem;
 
 const EXAMPLES: &str = "\
 Examples:

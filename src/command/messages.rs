@@ -17,6 +17,7 @@ use clap::ValueEnum;
 
 use super::events::Event;
 use super::openjd;
+use super::problem::problem;
 
 /// To whom it speaks.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -128,14 +129,6 @@ pub fn warn_of_clamped(format: &Format, clamped: u64) {
     }
 }
 
-/// What went wrong with a file or what was asked for, in one line.
-pub fn problem(error: &Error) -> String {
-    match error {
-        Error::Io { doing, path, source } => format!("cannot {doing} {}: {}", path.display(), reason(doing, source)),
-        other => other.to_string(),
-    }
-}
-
 /// What went wrong, where, and what to do.
 pub fn print_error(error: &Error) {
     if listener() == Listener::Farm {
@@ -173,19 +166,6 @@ fn print_mistakes(mistakes: &[Diagnostic]) {
     files.dedup();
     let more = if more > 0 { format!(": these and {more} more") } else { String::new() };
     print(&format!("\n{count} mistakes in {}{more}", files.join(", ")));
-}
-
-/// What the system said, in plain words where it is terse.
-fn reason(doing: &str, error: &std::io::Error) -> String {
-    match error.kind() {
-        ErrorKind::NotFound if doing == "read" => "there is no such file".into(),
-        ErrorKind::NotFound => "its folder does not exist and cannot be made".into(),
-        ErrorKind::AlreadyExists | ErrorKind::NotADirectory => "a file stands where its folder should be".into(),
-        ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => "permission is denied".into(),
-        ErrorKind::StorageFull => "the disk is full".into(),
-        ErrorKind::OutOfMemory => "not that much is free; --crop and --shard render a part of the image".into(),
-        _ => error.to_string(),
-    }
 }
 
 /// The mistake with its line, the word underlined.

@@ -13,5 +13,6 @@ pub mod merge;
 pub mod messages;
 mod openjd;
 pub mod outputs;
+mod problem;
 pub mod progress;
 pub mod view;

@@ -1,6 +1,7 @@
 //! The film as an OpenEXR file of scan lines; the same bytes for the same film.
 
 use std::borrow::Cow;
+use std::fmt;
 use std::io::Cursor;
 use std::path::Path;
 use std::time::SystemTime;
@@ -72,6 +73,16 @@ pub enum Fact {
     Count(u64),
     /// A double attribute.
     Number(f64),
+}
+
+impl fmt::Display for Fact {
+    fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::Text(text) => write!(formatter, "{text}"),
+            Self::Count(count) => write!(formatter, "{count}"),
+            Self::Number(number) => write!(formatter, "{number}"),
+        }
+    }
 }
 
 /// What a file says of an image beside its pixels.

@@ -35,6 +35,8 @@ pub struct Difference {
     pub color: Option<ColorDifference>,
     /// The pixel with the largest sum of (a - b)^2 / (b^2 + 0.01), if any differs.
     pub worst: Option<WorstPixel>,
+    /// The first pixel that is left out and differs, if any does.
+    pub first_torn: Option<WorstPixel>,
     /// Whether that is noise, if both files say how noisy they are.
     pub noise: Option<Noise>,
     /// The largest |a - b| of each pixel's values; infinite where it is left out and torn, 0 where only left out.
@@ -129,8 +131,13 @@ fn measured([a, b]: [&[&Channel]; 2], bounds: PixelBounds) -> Difference {
         brightness: 1.0,
         color: None,
         worst: None,
+        first_torn: None,
         noise: None,
         absolute: Vec::with_capacity(count),
+    };
+    let place = |at: usize| {
+        let of = |channels: &[&Channel]| channels.iter().map(|channel| channel.at(at)).collect();
+        WorstPixel { at: bounds.place(at), values: [of(a), of(b)] }
     };
     for at in 0..count {
         let pairs = || a.iter().zip(b).map(|(a, b)| (a.at(at), b.at(at)));
@@ -139,6 +146,9 @@ fn measured([a, b]: [&[&Channel]; 2], bounds: PixelBounds) -> Difference {
         if pairs().any(|(a, b)| !(a.is_finite() && b.is_finite())) {
             found.left_out += 1;
             found.torn += usize::from(!is_equal);
+            if !is_equal && found.first_torn.is_none() {
+                found.first_torn = Some(place(at));
+            }
             found.absolute.push(if is_equal { 0.0 } else { f64::INFINITY });
             continue;
         }
@@ -153,8 +163,7 @@ fn measured([a, b]: [&[&Channel]; 2], bounds: PixelBounds) -> Difference {
         found.absolute.push(absolute);
         if error > most {
             most = error;
-            let of = |channels: &[&Channel]| channels.iter().map(|channel| channel.at(at)).collect();
-            found.worst = Some(WorstPixel { at: bounds.place(at), values: [of(a), of(b)] });
+            found.worst = Some(place(at));
         }
     }
     found.relative_mse = squares / values.max(1) as f64;
@@ -202,7 +211,7 @@ impl Difference {
     }
 
     /// The largest difference of each pixel as a gray picture, and the difference that is white in it: the 99th
-    /// percentile, or the largest where that is 0.
+    /// percentile, or the largest where that is 0. It is 0 where nothing differs but what is not finite.
     pub fn picture(&self) -> (Picture, f64) {
         let finite: Vec<f64> = self.absolute.iter().copied().filter(|x| x.is_finite()).collect();
         let largest = finite.iter().copied().fold(0.0, f64::max);

@@ -1,5 +1,7 @@
 //! Errors as exceptions.
 
+use std::fs::create_dir_all;
+use std::io::ErrorKind;
 use std::path::Path;
 
 use abbe::{Diagnostic, Error};
@@ -51,6 +53,25 @@ pub(super) fn raised_of(path: &Path, error: Error) -> PyErr {
 /// What is wrong with an argument, and what to do.
 pub(super) fn refuse<T>(message: impl Into<String>, help: &str) -> PyResult<T> {
     Err(OptionsError::new_err((message.into(), Some(help.to_owned()))))
+}
+
+/// A file to write, which ends as its kind does; makes its folder if that is missing.
+///
+/// # Errors
+/// If it ends otherwise, or its folder cannot be made.
+pub(super) fn output(path: &Path, ending: &str) -> PyResult<()> {
+    if !path.extension().is_some_and(|found| found.eq_ignore_ascii_case(ending)) {
+        let message = format!("the file to write ends in .{ending}, not {}", path.display());
+        return refuse(message, &format!("for instance: \"image.{ending}\""));
+    }
+    let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) else { return Ok(()) };
+    match create_dir_all(folder) {
+        // A file that stands there is told when the image is written.
+        Err(error) if error.kind() != ErrorKind::AlreadyExists => {
+            Err(raised(Error::Io { doing: "make", path: folder.to_owned(), source: error }))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// What should not happen, in words.

@@ -10,11 +10,14 @@ use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use super::errors::{raised, raised_of, refuse};
+use super::errors::{output, raised, raised_of, refuse};
 use super::image::Image;
 use super::options::stops;
 use super::plane::Plane;
 use super::work;
+
+/// What a rendered image is called, which has no file.
+const IMAGE: &str = "the image";
 
 /// An OpenEXR file.
 #[pyclass(frozen, module = "abbe._abbe")]
@@ -36,8 +39,8 @@ impl Exr {
     /// The same of an image that was rendered, as its file would be.
     #[staticmethod]
     fn of(py: Python<'_>, image: &Image) -> PyResult<Self> {
-        let (image, path) = (image.image.clone(), PathBuf::from("the image"));
-        let file = move || -> Result<ExrFile> { ExrFile::of_bytes(&image.exr_bytes()?.0, Path::new("the image")) };
+        let (image, path) = (image.image.clone(), PathBuf::from(IMAGE));
+        let file = move || -> Result<ExrFile> { ExrFile::of_bytes(&image.exr_bytes()?.0, Path::new(IMAGE)) };
         Ok(Self { file: Arc::new(work::run(py, file)?.map_err(raised)?), path })
     }
 
@@ -74,7 +77,7 @@ impl Exr {
     /// A layer, or a channel by its full name.
     fn plane(&self, name: &str) -> PyResult<Plane> {
         match self.file.layer(Some(name), &self.path.display().to_string()) {
-            Ok(layer) => Ok(plane(&layer)),
+            Ok(layer) => Ok(plane(&layer, self.is_matte(&layer.name))),
             Err(Error::Arguments { message, help }) => {
                 Err(PyKeyError::new_err(help.map_or(message.clone(), |help| format!("{message}: {help}"))))
             }
@@ -90,8 +93,18 @@ impl Exr {
 
     /// Writes a picture.
     fn write_png(&self, py: Python<'_>, path: PathBuf, exposure: f64) -> PyResult<()> {
+        output(&path, "png")?;
         let (file, of, stops) = (self.file.clone(), self.path.clone(), stops(exposure)?);
         work::run(py, move || picture(&file, &of, stops)?.write_png(&path))?.map_err(raised)
+    }
+}
+
+impl Exr {
+    /// Whether a layer holds two ranks of a Cryptomatte, of which alpha is a share like any other.
+    fn is_matte(&self, name: &str) -> bool {
+        let attributes = self.file.parts.iter().flat_map(|part| &part.attributes);
+        let mut names = attributes.filter(|(key, _)| key.starts_with("cryptomatte/") && key.ends_with("/name"));
+        names.any(|(_, matte)| name.strip_prefix(matte.as_str()).is_some_and(|rank| rank.parse::<u32>().is_ok()))
     }
 }
 
@@ -102,8 +115,9 @@ fn picture(file: &ExrFile, path: &Path, stops: f64) -> Result<Picture> {
 }
 
 /// The numbers of a layer, side by side: what a file has as 16 or 32 bits, as 32.
-fn plane(layer: &ExrLayer) -> Plane {
-    let (channels, [width, height]) = (layer.values(), layer.part.bounds.size);
+fn plane(layer: &ExrLayer, whole: bool) -> Plane {
+    let channels = if whole { layer.channels.clone() } else { layer.values() };
+    let [width, height] = layer.part.bounds.size;
     let shape = if channels.len() > 1 { vec![height, width, channels.len()] } else { vec![height, width] };
     let numbers = || (0..width * height).flat_map(|pixel| channels.iter().map(move |channel| channel.at(pixel)));
     if channels.iter().all(|channel| channel.kind() == "uint") {
@@ -126,7 +140,12 @@ pub(super) fn diff<'py>(
         return refuse("a tolerance is a finite number, 0 or more", "such as tolerance=1e-4");
     }
     let files = [a.file.clone(), b.file.clone()];
-    let names = [a, b].map(|one| one.path.display().to_string());
+    let mut names = [a, b].map(|one| one.path.display().to_string());
+    for (name, number) in names.iter_mut().zip(["first", "second"]) {
+        if name == IMAGE {
+            *name = format!("the {number} image");
+        }
+    }
     let compared = move || {
         let [a, b] = files.each_ref().map(|file| &**file);
         compare([a, b], layer.as_deref(), names.each_ref().map(String::as_str))

@@ -8,7 +8,7 @@ use abbe::nearest;
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 
-use super::errors::raised;
+use super::errors::{output, raised};
 use super::options::stops;
 use super::plane::{Place, Plane};
 use super::work;
@@ -71,12 +71,14 @@ impl Image {
 
     /// Writes the linear image; answers how many values were too large for 16 bits.
     fn write_exr(&self, py: Python<'_>, path: PathBuf) -> PyResult<u64> {
+        output(&path, "exr")?;
         let image = self.image.clone();
         work::run(py, move || image.write_exr(path))?.map_err(raised)
     }
 
     /// Writes the spectra.
     fn write_spectral_exr(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
+        output(&path, "exr")?;
         let image = self.image.clone();
         work::run(py, move || image.write_spectral_exr(path))?.map_err(raised)
     }
@@ -89,6 +91,7 @@ impl Image {
 
     /// Writes a picture.
     fn write_png(&self, py: Python<'_>, path: PathBuf, exposure: f64) -> PyResult<()> {
+        output(&path, "png")?;
         let (image, stops) = (self.image.clone(), stops(exposure)?);
         work::run(py, move || image.write_png(path, stops))?.map_err(raised)
     }

@@ -26,9 +26,9 @@ pub(super) fn options(given: &Bound<'_, PyDict>) -> PyResult<Options> {
     }
     let value = |name: &str| get::<Bound<'_, PyAny>>(given, name, "a value");
     Ok(Options {
-        samples: get(given, "samples", "a whole number of 1 or more")?,
+        samples: get(given, "samples", "a whole number from 1 to 2**32 - 1")?,
         error: get(given, "error", "a number")?,
-        time: value("time")?.as_ref().map(time).transpose()?,
+        time: value("time")?.as_ref().map(|value| time("time", value)).transpose()?,
         seed: get(given, "seed", "a whole number from 0 to 2**64 - 1")?,
         overscan: value("overscan")?.as_ref().map(overscan).transpose()?,
         crop: get(given, "crop", "four whole numbers: first column, first row, width and height")?
@@ -62,8 +62,11 @@ pub(super) fn stops(exposure: f64) -> PyResult<f64> {
     }
 }
 
-/// Seconds, or a text such as `"10m"`.
-pub(super) fn time(value: &Bound<'_, PyAny>) -> PyResult<Duration> {
+/// Seconds, or a text such as `"10m"`, of the argument `name`.
+///
+/// # Errors
+/// If it is none.
+pub(super) fn time(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Duration> {
     let found = match value.cast::<PyString>() {
         Ok(text) => duration(&text.to_cow()?),
         Err(_) if value.is_instance_of::<PyBool>() => None,
@@ -74,7 +77,11 @@ pub(super) fn time(value: &Bound<'_, PyAny>) -> PyResult<Duration> {
             .filter(|time| !time.is_zero()),
     };
     found.map_or_else(
-        || refuse("this is no time", "a time is a number of seconds above 0, or a text such as \"10m\""),
+        || {
+            let message =
+                format!("{name} is a number of seconds above 0 or a text such as \"10m\", not {}", shown(value));
+            refuse(message, "units are ms, s, m and h")
+        },
         Ok,
     )
 }

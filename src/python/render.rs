@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use abbe::film::check_writable;
 use abbe::scene;
 use abbe::trace::Advance;
-use abbe::{Error, Options, PlanAccount, RenderAccount, Rendering, Result, Resumed, Timer};
+use abbe::{Error, Options, PlanAccount, RenderAccount, Rendering, Result, Resumed, Timer, is_checkpoint};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use serde::Serialize;
@@ -48,9 +48,9 @@ pub(super) fn render(
     every: &Bound<'_, PyAny>,
     resume: bool,
 ) -> PyResult<Image> {
+    let every = time("every", every)?;
     let state = Arc::new(State::default());
-    let checkpoint =
-        checkpoint.map(|path| Ok::<_, PyErr>(Checkpoint { path, every: time(every)?, resume })).transpose()?;
+    let checkpoint = checkpoint.map(|path| Checkpoint { path, every, resume });
     if resume && checkpoint.is_none() {
         return refuse("there is no checkpoint to resume from", "name its file: checkpoint=\"image.checkpoint\"");
     }
@@ -182,12 +182,25 @@ impl Job {
 impl Checkpoint {
     /// Refuses to lose what an earlier run has kept.
     fn spare(&self) -> Result<()> {
-        if self.resume || !self.path.exists() {
-            return check_writable(&self.path);
+        let name = self.path.display();
+        let refuse = |message: String, help: &str| Err(Error::Arguments { message, help: Some(help.to_owned()) });
+        if self.path.is_dir() {
+            return refuse(format!("the checkpoint {name} is a folder"), "name a file, such as \"image.checkpoint\"");
         }
-        let message = format!("{} is there from an earlier run", self.path.display());
-        let help = "add resume=True to go on from it, or delete it to begin anew".to_owned();
-        Err(Error::Arguments { message, help: Some(help) })
+        check_writable(&self.path)?;
+        if !self.path.exists() {
+            return Ok(());
+        }
+        if !is_checkpoint(&self.path)? {
+            return refuse(format!("{name} would be overwritten, and is no checkpoint"), "name another file");
+        }
+        match self.resume {
+            true => Ok(()),
+            false => refuse(
+                format!("{name} is there from an earlier run"),
+                "add resume=True to go on from it, or delete it to begin anew",
+            ),
+        }
     }
 
     /// Goes on from what an earlier run has kept, if there is anything.

@@ -134,6 +134,10 @@ impl Writer {
     fn other(&mut self, value: &Bound<'_, PyAny>) -> PyResult<()> {
         let is = |method: &str| value.hasattr(method).unwrap_or(false);
         if is("tolist") {
+            if is_masked(value) {
+                let help = "fill them, as by array.filled(0), or leave them out";
+                return self.refuse("masked values are none of a scene", help);
+            }
             let list = self.list_of_mesh();
             if let Some(rows) = list.map(|list| rows(value, list == FACES)).transpose()?.flatten() {
                 self.quoted(&Rows::mark(self.rows.len()));
@@ -141,7 +145,7 @@ impl Writer {
                 return Ok(());
             }
             let plain = value.call_method0("tolist")?;
-            return if plain.is(value) { self.foreign(value) } else { self.deeper(&plain) };
+            return self.deeper(&plain);
         }
         if is("__fspath__") {
             return self.deeper(&value.call_method0("__fspath__")?);
@@ -179,7 +183,12 @@ impl Writer {
             || value.is_instance_of::<PyFloat>()
             || value.is_instance_of::<PyString>()
             || value.is_instance_of::<PyList>();
-        if is_plain { self.value(value) } else { self.foreign(value) }
+        match value.extract::<f64>() {
+            _ if is_plain => self.value(value),
+            // A number of more digits than Python has, such as a long double of numpy.
+            Ok(number) => self.value(&PyFloat::new(value.py(), number)),
+            Err(_) => self.foreign(value),
+        }
     }
 
     fn foreign(&mut self, value: &Bound<'_, PyAny>) -> PyResult<()> {
@@ -222,6 +231,12 @@ impl Writer {
         let quoted = serde_json::Value::from(text).to_string().replace('\u{7f}', "\\u007F");
         self.text.push_str(&quoted);
     }
+}
+
+/// Whether an array of numpy hides some of its values.
+fn is_masked(array: &Bound<'_, PyAny>) -> bool {
+    let any = array.getattr("mask").and_then(|mask| mask.call_method0("any"));
+    any.and_then(|any| any.is_truthy()).unwrap_or(false)
 }
 
 /// The rows of an array of numpy with two dimensions; none if its numbers are better told one by one.

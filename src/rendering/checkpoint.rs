@@ -21,6 +21,15 @@ pub enum Resumed {
     HasMore(u32),
 }
 
+/// Whether a file is a checkpoint, which may be damaged or of another render.
+///
+/// # Errors
+/// If it cannot be read.
+pub fn is_checkpoint(path: &Path) -> Result<bool> {
+    // A pipe would be waited for.
+    Ok(path.is_file() && BlockReader::open(path, CHECKPOINT)?.is_some())
+}
+
 /// Writes a checkpoint.
 ///
 /// # Errors

@@ -99,8 +99,11 @@ impl Head {
             return Some(difference);
         }
         let (ours, theirs) = (&self.provenance, &part.provenance);
-        if let Some((key, _)) = theirs.facts.iter().zip(&ours.facts).find(|(a, b)| a != b).map(|(theirs, _)| theirs) {
-            return Some(format!("its {key} is another"));
+        if let Some(((key, theirs), (_, ours))) = theirs.facts.iter().zip(&ours.facts).find(|(a, b)| a != b) {
+            return Some(match &**key {
+                "samples" => format!("it has {theirs} samples per pixel, not {ours}"),
+                key => format!("its {key} is {theirs}, not {ours}"),
+            });
         }
         let is_other = (&part.film, &part.format, &part.view) != (&self.film, &self.format, &self.view);
         (is_other || ours != theirs).then(|| "it was made with other options".into())

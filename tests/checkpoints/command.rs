@@ -100,6 +100,12 @@ fn a_checkpoint_of_something_else_is_refused_in_one_line_that_says_what_differs(
         "s.toml --resume",
         "error: cannot go on from s.checkpoint: it is no checkpoint\nhelp: name another image, or move that file away",
     );
+    refused(
+        &folder,
+        "s.toml --checkpoint 1h",
+        "error: s.checkpoint would be overwritten, and is no checkpoint\n\
+         help: name another image, or move that file away",
+    );
     assert_eq!(bytes(&folder, "s.checkpoint"), b"something else");
 }
 
@@ -110,7 +116,10 @@ fn parts_that_do_not_make_one_image_are_refused_by_name() {
         done(&folder, &format!("s.toml --samples 4 --exr new/folder/s.exr --shard {part}"));
     }
     done(&folder, "s.toml --samples 4 --exr seed.exr --shard 2/2 --seed 8");
-    done(&folder, "s.toml --samples 5 --exr samples.exr --shard 2/2");
+    // Where no photons are gathered, no plan depends on the samples.
+    let off = "--set render.caustics=off";
+    done(&folder, &format!("s.toml --samples 4 {off} --exr off.exr --shard 1/2"));
+    done(&folder, &format!("s.toml --samples 5 {off} --exr samples.exr --shard 2/2"));
     done(&folder, "s.toml --samples 4 --exr layers.exr --shard 2/2 --layers N");
     let [one, two, third] = ["1-of-2", "2-of-2", "1-of-3"].map(|part| format!("new/folder/s.{part}.part"));
     let again = "help: render it again, or leave it out";
@@ -125,6 +134,12 @@ fn parts_that_do_not_make_one_image_are_refused_by_name() {
         ),
         (format!("{one} {two} {third}"), other(&third, "it is one of 3 parts, not of 2")),
         (format!("{one} seed.2-of-2.part"), other("seed.2-of-2.part", "its seed is 8, not 3")),
+        (
+            "off.1-of-2.part samples.2-of-2.part".into(),
+            format!(
+                "error: samples.2-of-2.part does not belong to off.1-of-2.part: it has 5 samples per pixel, not 4\n{again}"
+            ),
+        ),
         (format!("{one} layers.2-of-2.part"), other("layers.2-of-2.part", "its list of layers is N, not empty")),
         (
             format!("{one} s.toml"),

@@ -240,6 +240,22 @@ fn a_layer_is_compared_by_its_name_and_a_picture_shows_where() {
 }
 
 #[test]
+fn a_pixel_that_is_no_number_in_one_image_alone_is_white_and_named() {
+    let folder = Folder::new();
+    let (a, mut b) = (ramp(), ramp());
+    b.channel("G")[6] = f32::NAN;
+    let answer = diff(&folder, &a, &b, &["--png", "where.png"]);
+    assert_eq!(answer.stderr, "wrote where.png: white is what differs and is not finite\n");
+    assert!(answer.stdout.contains("\nfirst of them  (2, 1): "), "{}", answer.stdout);
+    let picture = read_png(&folder.path().join("where.png"));
+    assert_eq!((0..8).filter(|&i| picture.pixels[i] == [255; 3]).collect::<Vec<_>>(), [6]);
+    assert_eq!(
+        diff(&folder, &a, &a, &["--png", "same.png"]).stderr,
+        "wrote same.png: all of it is black, as nothing differs\n"
+    );
+}
+
+#[test]
 fn what_cannot_be_compared_is_refused_with_an_exit_code_of_its_own() {
     let folder = Folder::new();
     let mut crop = ramp();

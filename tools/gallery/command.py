@@ -241,7 +241,8 @@ def readme():
         text += f"render --exr scenes/{name}.toml\n```\n"
         if "plan" in measured.get(name, {}):
             samples, seconds, plan = (measured[name][key] for key in ("samples", "seconds", "plan"))
-            text += f"\nAbout {max(1, round(seconds))} s; the picture shows {samples} samples. The plan: {plan}.\n"
+            shown = "1 sample" if samples == 1 else f"{samples} samples"
+            text += f"\nAbout {max(1, round(seconds))} s; the picture shows {shown}. The plan: {plan}.\n"
     return text
 
 

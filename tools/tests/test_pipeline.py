@@ -116,6 +116,14 @@ def test_a_turntable_of_eight_frames_is_driven_by_twenty_lines(tmp_path):
     assert all(f"written {tmp_path / name}" in run.stdout for name in names)
 
 
+def test_a_driver_without_a_folder_says_how_it_is_called():
+    for driver in ("turntable.py", "python/turntable.py"):
+        command = [sys.executable, str(render.ROOT / "examples" / driver)]
+        run = subprocess.run(command, capture_output=True, text=True, check=False, timeout=600)
+        if "No module named 'abbe'" not in run.stderr:
+            assert run.returncode == 1 and "turntable.py FOLDER" in run.stderr and "Traceback" not in run.stderr
+
+
 def test_a_driver_stops_at_a_mistake_and_says_it(tmp_path):
     environment = {**os.environ, "RENDER": str(render.binary())}
     command = [sys.executable, str(render.ROOT / "examples/turntable.py"), str(tmp_path), "--set", "film.widht=3"]

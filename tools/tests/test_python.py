@@ -4,6 +4,7 @@ pytest tools/tests/test_python.py
 """
 
 import json
+import os
 import pickle
 import subprocess
 import sys
@@ -285,14 +286,20 @@ def test_settings_replace_values_and_options_settings():
     "options, said",
     [
         ({"samples": 0}, "a pixel needs at least 1 sample"),
-        ({"samples": 2.5}, "samples is a whole number of 1 or more, not 2.5"),
+        ({"samples": 2.5}, "samples is a whole number from 1 to 2**32 - 1, not 2.5"),
         ({"seed": -1}, "seed is a whole number from 0 to 2**64 - 1, not -1"),
         ({"crop": (1, 2)}, "crop is four whole numbers: first column, first row, width and height, not (1, 2)"),
         ({"layers": [3]}, "layers is a list of names, not [3]"),
-        ({"time": [1]}, "this is no time"),
+        ({"samples": 2**32}, "samples is a whole number from 1 to 2**32 - 1, not 4294967296"),
+        ({"time": [1]}, 'time is a number of seconds above 0 or a text such as "10m", not [1]'),
+        ({"every": "x"}, "every is a number of seconds above 0 or a text such as \"10m\", not 'x'"),
+        ({"resume": 1}, "resume is True or False, not 1"),
+        ({"progress": 3}, "progress is a function, not 3"),
+        ({"set": "film.width=16"}, "set is a dict, not 'film.width=16'"),
+        ({"set": {1: 2}}, "a key of set is a text, not 1"),
         ({"error": 3}, "a relative error lies between 0.000001 and 1, not 3 (error 0.01 asks for one percent)"),
-        ({"time": "soon"}, "this is no time"),
-        ({"time": -1}, "this is no time"),
+        ({"time": "soon"}, "time is a number of seconds above 0"),
+        ({"time": -1}, "time is a number of seconds above 0"),
         ({"threads": 0}, "a render has 1 to 1024 threads"),
         ({"layers": ["albdo"]}, "there is no layer `albdo`: did you mean albedo?"),
         ({"layers": "albedo"}, 'layers is a list of names (write layers=["albedo"], or "all")'),
@@ -305,6 +312,88 @@ def test_options_that_are_wrong_say_what_to_do(options, said):
         abbe.render(SCENE, **options)
     assert said in str(caught.value) and caught.value.help and isinstance(caught.value, ValueError)
     assert "--" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    "ask, said",
+    [
+        (lambda: abbe.render(SCENE, folder=None), "folder is the path of a file or folder, not None"),
+        (lambda: abbe.render(SCENE, checkpoint=3), "checkpoint is the path of a file or folder, not 3"),
+        (lambda: abbe.render(SCENE).write_exr(None), "path is the path of a file or folder, not None"),
+        (lambda: abbe.read_exr(None), "path is the path of a file or folder, not None"),
+        (lambda: abbe.diff("a.exr", 3), "a.exr|an image is the path of a file or folder, not 3"),
+        (lambda: abbe.catalog.glass(3), "the name of a glass is a text, not 3"),
+        (lambda: abbe.diff(abbe.render(SCENE), abbe.render(SCENE), layer=3), "layer is a text, not 3"),
+    ],
+)
+def test_arguments_of_another_type_are_named(ask, said):
+    with pytest.raises((TypeError, FileNotFoundError), match=said):
+        ask()
+
+
+def test_a_checkpoint_is_no_folder_and_no_other_file(tmp_path):
+    with pytest.raises(abbe.OptionsError, match="the checkpoint .* is a folder"):
+        abbe.render(SCENE, checkpoint=tmp_path)
+    photo = tmp_path / "photo.jpg"
+    photo.write_bytes(b"a photo")
+    for resume in (False, True):
+        with pytest.raises(abbe.OptionsError, match=r"photo.jpg would be overwritten, and is no checkpoint \(name an"):
+            abbe.render(SCENE, checkpoint=photo, resume=resume)
+    assert photo.read_bytes() == b"a photo"
+
+
+def test_folders_are_made_and_other_endings_refused(tmp_path):
+    image = abbe.render(SCENE, spectral=True)
+    image.write_exr(tmp_path / "new/folder/a.exr")
+    image.write_spectral_exr(os.fsencode(tmp_path / "spectra/a.exr"))
+    image.to_png(tmp_path / "pictures/a.png")
+    abbe.read_exr(tmp_path / "new/folder/a.exr").to_png(tmp_path / "others/a.PNG")
+    assert sorted(entry.name for entry in tmp_path.iterdir()) == ["new", "others", "pictures", "spectra"]
+    for write, name, ending in [
+        (image.write_exr, "o.png", "exr"),
+        (image.write_spectral_exr, "o", "exr"),
+        (image.to_png, "q.jpg", "png"),
+        (abbe.read_exr(tmp_path / "new/folder/a.exr").to_png, "q.exr", "png"),
+    ]:
+        with pytest.raises(abbe.OptionsError, match=rf"the file to write ends in .{ending}, not .*{name}"):
+            write(tmp_path / "no" / name)
+    assert not (tmp_path / "no").exists()
+
+
+def test_mattes_of_a_file_have_four_channels(tmp_path):
+    image = abbe.render(SCENE, layers=["CryptoObject"])
+    image.write_exr(tmp_path / "a.exr")
+    names = [name for name in image.layers if name.startswith("Crypto")]
+    file = abbe.read_exr(tmp_path / "a.exr")
+    assert names and all(np.array_equal(file[name], image[name], equal_nan=True) for name in names)
+    assert file[names[0]].shape == (12, 20, 4) and file.rgb.shape == (12, 20, 3)
+
+
+def test_images_of_two_sizes_are_told_apart():
+    small, large = abbe.render(SCENE), abbe.render(SCENE, crop=(0, 0, 4, 4))
+    with pytest.raises(abbe.OptionsError, match="the first image has 20 x 12 .*, the second image 4 x 4"):
+        abbe.diff(small, large)
+
+
+def test_masked_arrays_are_refused_and_long_doubles_taken():
+    points = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]
+    faces = np.array([[0, 1, 2]])
+    mesh = {"points": points, "faces": faces}
+    entry = {"shape": {"mesh": mesh}, "material": "matte"}
+    for key, hidden in [("points", np.ma.masked_equal(points, 1)), ("faces", np.ma.masked_equal(faces, 2))]:
+        scene = with_(object=[entry | {"shape": {"mesh": mesh | {key: hidden}}}])
+        with pytest.raises(abbe.SceneError, match=f"{key}: masked values are none of a scene .fill them"):
+            abbe.Scene(scene)
+    whole = np.ma.masked_array(np.array(points, dtype=float))
+    abbe.Scene(with_(object=[entry | {"shape": {"mesh": mesh | {"points": whole}}}]))
+    long = np.array([0, 1, 6], dtype=np.longdouble)
+    abbe.Scene(with_(object=[{"shape": {"sphere": {"center": [*long], "radius": long[1]}}, "material": "matte"}]))
+
+
+def test_a_key_that_an_included_file_gives_as_well_is_told_without_a_file_that_is_not_there(tmp_path):
+    (tmp_path / "more.toml").write_text("film.width = 3\n")
+    with pytest.raises(abbe.SceneError, match="it stands in the scene itself as well: keep one of them"):
+        abbe.Scene(SCENE | {"include": ["more.toml"]}, folder=tmp_path)
 
 
 def test_files_that_fail_raise_what_python_raises(tmp_path):
@@ -440,7 +529,7 @@ def test_the_package_imports_nothing_but_numpy():
 
 
 def test_dates_are_told_of_as_in_a_file():
-    with pytest.raises(abbe.SceneError, match="film.width: `width` is a whole number of 0 or more, not a date"):
+    with pytest.raises(abbe.SceneError, match="film.width: `width` is a whole number from 1 to 65536, not a date"):
         abbe.Scene(with_(film={"width": date(2024, 1, 1), "height": 3}))
 
 

@@ -22,6 +22,8 @@ rows: int = image.rgb.shape[0]
 exposed: np.ndarray = image["Z"] * 2
 model: str = abbe.plan("scene.toml", time="10m").model
 index: float = abbe.catalog.glass("N-BK7").index(587.56)
+sizes = np.array([0, 0, 2, 2])
+abbe.render("scene.toml", samples=np.int64(4), error=np.float32(0.1), crop=sizes, overscan=sizes, seed=np.uint8(3))
 agrees: bool = abbe.diff(image, "other.exr", layer="albedo").agrees
 try:
     abbe.Scene("scene.toml")

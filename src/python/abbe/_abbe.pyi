@@ -128,6 +128,6 @@ def render(
     asked: dict[str, object],
     progress: Callable[[int, int, float], object] | None,
     checkpoint: _Path | None,
-    every: float | str,
+    every: object,
     resume: bool,
 ) -> Image: ...

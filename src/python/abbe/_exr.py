@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass, field
 from typing import Any, Union
 
 import numpy as np
 import numpy.typing as npt
 
-from . import _abbe
-from ._image import Image
+from . import _abbe, _arguments
+from ._image import Image, Path
 from ._layers import Layers
 
 
@@ -27,7 +26,8 @@ class ExrImage(Layers):
 
     def __getitem__(self, name: str) -> npt.NDArray[Any]:
         """A layer, or one channel by its full name: float32, or uint32 if the file has that; height x width, and x
-        channels if there are several. Alpha is none of those of a color: it is `"A"`, or `"NAME.A"`.
+        channels if there are several. Alpha is none of those of a color: it is `"A"`, or `"NAME.A"`. Mattes have
+        four.
 
         Raises `KeyError` with the nearest name if there is none.
         """
@@ -58,9 +58,9 @@ class ExrImage(Layers):
         """What the file says of itself, as words."""
         return dict(self._core.attributes)
 
-    def to_png(self, path: str | os.PathLike[str], exposure: float = 0.0) -> None:
+    def to_png(self, path: Path, exposure: float = 0.0) -> None:
         """Writes an 8-bit sRGB picture for looking, brightened by 2^`exposure`, whatever color space the file has."""
-        self._core.write_png(path, exposure)
+        self._core.write_png(_arguments.path("path", path), exposure)
 
     def _repr_png_(self) -> bytes:
         return self._core.png(0.0)
@@ -101,21 +101,21 @@ class Difference:
     """The largest |a - b| of each pixel's values, height x width."""
 
 
-Picture = Union[str, "os.PathLike[str]", ExrImage, Image]
+Picture = Union[Path, ExrImage, Image]
 
 
-def read_exr(path: str | os.PathLike[str]) -> ExrImage:
+def read_exr(path: Path) -> ExrImage:
     """Reads an OpenEXR file of any program.
 
     Raises `FileNotFoundError` if there is none, and `RenderError` if it is no complete image.
     """
-    return ExrImage(_abbe.Exr.read(path))
+    return ExrImage(_abbe.Exr.read(_arguments.path("path", path)))
 
 
 def _file(picture: Picture) -> _abbe.Exr:
     if isinstance(picture, ExrImage):
         return picture._core
-    return _abbe.Exr.of(picture._core) if isinstance(picture, Image) else _abbe.Exr.read(picture)
+    return _abbe.Exr.of(picture._core) if isinstance(picture, Image) else _abbe.Exr.read(_arguments.path("an image", picture))
 
 
 def diff(a: Picture, b: Picture, *, layer: str | None = None, tolerance: float | None = None) -> Difference:
@@ -127,5 +127,6 @@ def diff(a: Picture, b: Picture, *, layer: str | None = None, tolerance: float |
 
     Raises `OptionsError` if they cannot be compared, as of other sizes.
     """
-    found = _abbe.diff(_file(a), _file(b), layer, tolerance)
+    name = None if layer is None else _arguments.text("layer", layer)
+    found = _abbe.diff(_file(a), _file(b), name, tolerance)
     return Difference(**{**found, "absolute": np.asarray(found["absolute"])})

@@ -6,13 +6,15 @@ import json
 import os
 import warnings
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Union
 
 import numpy as np
 import numpy.typing as npt
 
-from . import _abbe
+from . import _abbe, _arguments
 from ._layers import Layers
+
+Path = Union[str, bytes, "os.PathLike[str]"]
 
 
 class Spectrum(NamedTuple):
@@ -94,27 +96,28 @@ class Image(Layers):
             raise IndexError(f"there is no pixel ({x}, {y}) in {self.width} x {self.height}")
         return Spectrum(self._spectra.wavelengths_nm, self._spectra.radiance[y, x])
 
-    def write_exr(self, path: str | os.PathLike[str]) -> None:
+    def write_exr(self, path: Path) -> None:
         """Writes a linear OpenEXR file with all layers: the bytes that the command writes of the same scene file.
 
-        Warns if values were too large for 16 bits, where the scene asks for those, and became 65504. Raises `OSError`
-        if it cannot be written; a file that was there before is then untouched.
+        Warns if values were too large for 16 bits, where the scene asks for those, and became 65504. Its folder
+        is made if it is missing. Raises `OSError` if it cannot be written; a file that was there before is then
+        untouched.
         """
-        if too_large := self._core.write_exr(path):
+        if too_large := self._core.write_exr(_arguments.path("path", path)):
             warnings.warn(f"{too_large} values were too large for 16 bits and became 65504", stacklevel=2)
 
-    def write_spectral_exr(self, path: str | os.PathLike[str]) -> None:
+    def write_spectral_exr(self, path: Path) -> None:
         """Writes the spectra of all pixels as an OpenEXR file.
 
         Raises `ValueError` if spectra were not asked for, and `OSError` if it cannot be written.
         """
         if self._spectra is None:
             raise ValueError("the image has no spectra: ask for them with spectral=True")
-        self._core.write_spectral_exr(path)
+        self._core.write_spectral_exr(_arguments.path("path", path))
 
-    def to_png(self, path: str | os.PathLike[str], exposure: float = 0.0) -> None:
+    def to_png(self, path: Path, exposure: float = 0.0) -> None:
         """Writes an 8-bit sRGB picture for looking, brightened by 2^`exposure`."""
-        self._core.write_png(path, exposure)
+        self._core.write_png(_arguments.path("path", path), exposure)
 
     def _repr_png_(self) -> bytes:
         return self._core.png(0.0)

@@ -7,11 +7,16 @@ import os
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple, Union
 
-from . import _abbe
-from ._image import Image
+import numpy as np
+import numpy.typing as npt
 
-Path = Union[str, "os.PathLike[str]"]
-Time = Union[float, str]
+from . import _abbe, _arguments
+from ._image import Image, Path
+
+Whole = Union[int, "np.integer[Any]"]
+Real = Union[float, "np.floating[Any]", Whole]
+Pixels = Union[Sequence[Whole], "npt.NDArray[np.integer[Any]]"]
+Time = Union[Real, str]
 
 
 class Progress(NamedTuple):
@@ -77,7 +82,9 @@ class Scene:
     def __init__(
         self, source: Path | Mapping[str, Any], *, set: Mapping[str, Any] | None = None, folder: Path = ""
     ) -> None:
-        self._core = _abbe.Scene.compile(source, folder, None if set is None else dict(set))
+        settings = None if set is None else _arguments.settings(set)
+        source = os.fsdecode(source) if isinstance(source, bytes) else source
+        self._core = _abbe.Scene.compile(source, _arguments.path("folder", folder), settings)
 
     def __repr__(self) -> str:
         width, height = self._core.size
@@ -99,15 +106,15 @@ def _scene(scene: Path | Mapping[str, Any] | Scene, set: Mapping[str, Any] | Non
 
 
 def _options(
-    samples: int | None,
-    error: float | None,
+    samples: Whole | None,
+    error: Real | None,
     time: Time | None,
-    seed: int | None,
-    overscan: int | Sequence[int] | None,
-    crop: Sequence[int] | None,
+    seed: Whole | None,
+    overscan: Whole | Pixels | None,
+    crop: Pixels | None,
     layers: Sequence[str] | str | None,
     spectral: bool,
-    threads: int | None,
+    threads: Whole | None,
     stamp: bool = False,
 ) -> dict[str, object]:
     return locals()
@@ -118,15 +125,15 @@ def plan(
     *,
     set: Mapping[str, Any] | None = None,
     folder: Path = "",
-    samples: int | None = None,
-    error: float | None = None,
+    samples: Whole | None = None,
+    error: Real | None = None,
     time: Time | None = None,
-    seed: int | None = None,
-    overscan: int | Sequence[int] | None = None,
-    crop: Sequence[int] | None = None,
+    seed: Whole | None = None,
+    overscan: Whole | Pixels | None = None,
+    crop: Pixels | None = None,
     layers: Sequence[str] | str | None = None,
     spectral: bool = False,
-    threads: int | None = None,
+    threads: Whole | None = None,
 ) -> Plan:
     """How a scene would be rendered, why, and how long that takes: nothing is rendered.
 
@@ -144,15 +151,15 @@ def render(
     *,
     set: Mapping[str, Any] | None = None,
     folder: Path = "",
-    samples: int | None = None,
-    error: float | None = None,
+    samples: Whole | None = None,
+    error: Real | None = None,
     time: Time | None = None,
-    seed: int | None = None,
-    overscan: int | Sequence[int] | None = None,
-    crop: Sequence[int] | None = None,
+    seed: Whole | None = None,
+    overscan: Whole | Pixels | None = None,
+    crop: Pixels | None = None,
     layers: Sequence[str] | str | None = None,
     spectral: bool = False,
-    threads: int | None = None,
+    threads: Whole | None = None,
     stamp: bool = False,
     progress: Callable[[Progress], object] | None = None,
     checkpoint: Path | None = None,
@@ -187,5 +194,10 @@ def render(
     `RenderError` if a file fails.
     """
     options = _options(samples, error, time, seed, overscan, crop, layers, spectral, threads, stamp)
-    tell = None if progress is None else lambda *state: progress(Progress(*state))
-    return Image(_abbe.render(_scene(scene, set, folder), options, tell, checkpoint, every, resume))
+    tell = None
+    if progress is not None:
+        told = _arguments.function("progress", progress)
+        tell = lambda *state: told(Progress(*state))  # noqa: E731
+    kept = None if checkpoint is None else _arguments.path("checkpoint", checkpoint)
+    resumes = _arguments.truth("resume", resume)
+    return Image(_abbe.render(_scene(scene, set, folder), options, tell, kept, every, resumes))

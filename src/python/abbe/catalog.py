@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from . import _abbe
+from . import _abbe, _arguments
 
 __all__ = [
     "Glass",
@@ -67,7 +67,7 @@ class Glass(_Entry):
     _core: _abbe.Glass
 
     def __init__(self, name: str) -> None:
-        self._core = _abbe.Glass(name)
+        self._core = _abbe.Glass(_arguments.text("the name of a glass", name))
 
     @property
     def n_d(self) -> float:
@@ -94,7 +94,7 @@ class Metal(_Entry):
     _core: _abbe.Metal
 
     def __init__(self, name: str) -> None:
-        self._core = _abbe.Metal(name)
+        self._core = _abbe.Metal(_arguments.text("the name of a metal", name))
 
     def index(self, nm: npt.ArrayLike) -> Any:
         """The complex index n + ik; linear between measured wavelengths, the same beyond their ends."""
@@ -107,7 +107,7 @@ class Illuminant(_Entry):
     _core: _abbe.Tabulated
 
     def __init__(self, name: str) -> None:
-        self._core = _abbe.illuminant(name)
+        self._core = _abbe.illuminant(_arguments.text("the name of an illuminant", name))
 
     def power(self, nm: npt.ArrayLike) -> Any:
         """Its relative power per nm, in its own unit; linear between tabulated wavelengths, 0 beyond their ends."""
@@ -120,7 +120,7 @@ class Reflectance(_Entry):
     _core: _abbe.Tabulated
 
     def __init__(self, name: str) -> None:
-        self._core = _abbe.reflectance(name)
+        self._core = _abbe.reflectance(_arguments.text("the name of a reflectance", name))
 
     def reflectance(self, nm: npt.ArrayLike) -> Any:
         """The share of light that it sends back, 0 to 1; linear between wavelengths of the table, flat beyond them."""

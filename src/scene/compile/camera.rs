@@ -98,13 +98,12 @@ fn projection(
             let between = (Bound::Excluded(0.0), Bound::Excluded(180.0));
             let vertical_fov = value.within(between, "a field of view lies between 0 and 180 degrees", None)?;
             if vertical_fov < NARROW {
-                context.warn_at(
-                    value,
-                    format!(
-                        "{vertical_fov} degrees see very little; if radians are meant, write {:.1}",
-                        vertical_fov.to_degrees()
-                    ),
-                );
+                // Whoever meant radians did not mean less than a degree.
+                let radians = match vertical_fov.to_degrees() {
+                    degrees if degrees < NARROW => String::new(),
+                    degrees => format!("; if radians are meant, write {degrees:.1}"),
+                };
+                context.warn_at(value, format!("{vertical_fov} degrees see very little{radians}"));
             }
             Some(Projection::Perspective { vertical_fov })
         }

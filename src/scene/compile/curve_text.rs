@@ -151,7 +151,7 @@ fn curve_text<'d>(value: Value<'d>, example: &str) -> Option<CurveText<'d>> {
 
 fn curve_table<'d>(value: Value<'d>, table: &mut Fields<'d>, example: &str) -> Option<CurveText<'d>> {
     let kinds = KINDS.map(|(key, read)| table.get(key).map(|place| (place, read(place))));
-    let column = table.maybe("column", at(|value: Value| value.whole(u64::MAX)));
+    let column = table.maybe("column", at(|value: Value| value.whole(0..=u64::MAX)));
     let encoding = table.maybe("encoding", at(|value: Value| value.word(&ENCODINGS)));
     let channel = table.maybe("channel", at(|value: Value| value.word(&CHANNELS)));
     let wrap = table.maybe("wrap", at(|value: Value| value.word(&WRAPS)));

@@ -64,13 +64,7 @@ pub(super) fn film(value: Value) -> Option<(FilmSettings, Format)> {
 }
 
 fn side(value: Value) -> Option<u32> {
-    match value.count()? {
-        size @ 1..=FilmSettings::MAX_SIDE => Some(size),
-        size => {
-            let most = FilmSettings::MAX_SIDE;
-            value.refuse(format!("an image has 1 to {most} pixels along each side, not {size}"))
-        }
-    }
+    value.whole(1..=FilmSettings::MAX_SIDE.into())
 }
 
 fn crop(value: Value) -> Option<Window> {

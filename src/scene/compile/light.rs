@@ -64,6 +64,8 @@ impl Lights {
                 }
             }
             if let Some(place) = environment {
+                let help = "environment = { radiance = .., transform = [..] }".into();
+                light.stray("transform", "`transform` stands inside `environment`, beside `radiance`", help);
                 if std::mem::replace(&mut self.has_environment, true) {
                     return place.refuse("a scene has at most one environment");
                 }

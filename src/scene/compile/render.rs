@@ -28,11 +28,8 @@ pub(super) fn render(value: Value) -> Option<RenderText> {
             let help = "0.01 if the scene is in centimeters";
             value.within(1e-12..=1e12, "a scene unit is 1e-12 to 1e12 meters", Some(help))
         });
-        let samples = render.maybe("samples", |value| match value.count()? {
-            0 => value.refuse("a pixel needs at least 1 sample"),
-            samples => Some(samples),
-        });
-        let seed = render.or("seed", 0, |value| value.whole(u64::MAX));
+        let samples = render.maybe("samples", |value| value.whole(1..=u32::MAX.into()));
+        let seed = render.or("seed", 0, |value| value.whole(0..=u64::MAX));
         let diffuse_bounces = render.maybe("diffuse_bounces", Value::count);
         let max_bounces = render.maybe("max_bounces", Value::count);
         let words = [("auto", AdaptiveText::Auto), ("off", AdaptiveText::Off)];

@@ -5,6 +5,7 @@ use std::ops::Range;
 use toml::de::DeTable;
 
 use super::document::Document;
+use super::include::INCLUDE;
 use super::suggest::{meant, suggestion};
 use super::value::Value;
 
@@ -52,11 +53,14 @@ impl<'d> Fields<'d> {
     fn are_right(&self) -> bool {
         let unknown = self.unknown();
         for (span, word) in &unknown {
-            self.document.tell(
-                span.clone(),
-                format!("unknown key `{word}`"),
-                Some(suggestion(word, word, &self.known)),
-            );
+            let (message, help) = match *word {
+                INCLUDE => (
+                    "`include` is no key of a section".into(),
+                    "write it before the first section, at the top of the file".into(),
+                ),
+                word => (format!("unknown key `{word}`"), suggestion(word, word, &self.known)),
+            };
+            self.document.tell(span.clone(), message, Some(help));
         }
         // What a key without sense should have been may be what is missing.
         let is_obscure =

@@ -130,7 +130,7 @@ fn merge<'d>(whole: &mut DeTable<'d>, table: DeTable<'d>, texts: &Texts, mistake
                     match keys.get_key_value(word(&key)) {
                         Some((known, _)) => {
                             let message = format!("`{name}.{}` is given twice", word(&key));
-                            let help = format!("it stands at {} as well: keep one of them", texts.named(known.span()));
+                            let help = format!("it stands {} as well: keep one of them", texts.placed(known.span()));
                             mistakes.push(Mistake { span: key.span(), message, help: Some(help) });
                         }
                         None => drop(keys.insert(key, value)),
@@ -140,7 +140,7 @@ fn merge<'d>(whole: &mut DeTable<'d>, table: DeTable<'d>, texts: &Texts, mistake
             }
             (found, _) => {
                 let message = format!("`{name}` is given twice");
-                let help = format!("it stands at {} as well, in another form", texts.named(first.span()));
+                let help = format!("it stands {} as well, in another form", texts.placed(first.span()));
                 mistakes.push(Mistake { span: section.span(), message, help: Some(help) });
                 found
             }

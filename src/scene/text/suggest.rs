@@ -22,6 +22,9 @@ const ELSEWHERE: [(&str, &str); 11] = [
 
 /// The known name that was meant by the value or key `word`, or all of them; `key` is the key of a value.
 pub(super) fn suggestion(key: &str, word: &str, known: &[&str]) -> String {
+    if matches!(word, "box" | "cuboid") && known.contains(&"cube") {
+        return "write cube = { center = [0, 1, 0], size = [2, 1, 3] }".into();
+    }
     match meant(key, word, known) {
         Some(near) => format!("did you mean `{near}`?"),
         None => format!("known here: {}", known.join(", ")),
@@ -45,7 +48,10 @@ pub(super) fn remedy(key: &str, value: &DeValue, wanted: &str, written: &str) ->
             Some(format!("write it without quotes: {text}"))
         }
         DeValue::String(text) if number => match text.strip_suffix('%').map(|share| share.trim().parse::<f64>()) {
-            Some(Ok(percent)) => Some(format!("write {}", percent / 100.0)),
+            Some(Ok(percent)) => {
+                // Without what division by 100 rounds.
+                format!("{percent}e-2").parse::<f64>().ok().map(|share| format!("write {share}"))
+            }
             _ if key == "column" => Some("columns are counted from 1".into()),
             _ if text.starts_with(|first: char| first.is_ascii_digit()) => {
                 Some("a number stands alone, without quotes and unit".into())
@@ -55,6 +61,9 @@ pub(super) fn remedy(key: &str, value: &DeValue, wanted: &str, written: &str) ->
         },
         DeValue::Integer(_) | DeValue::Float(_) if key == "illuminant" => {
             Some(format!("write {{ blackbody = {written} }} for a temperature"))
+        }
+        DeValue::Integer(_) | DeValue::Float(_) if key == "time" && !written.starts_with('-') => {
+            Some(format!("write \"{written}s\" for seconds"))
         }
         DeValue::Integer(_) | DeValue::Float(_) if wanted == "a list of 2 numbers" => match key {
             "samples" => Some("write [[wavelength in nm, value], ..]".into()),

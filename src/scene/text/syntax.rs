@@ -17,13 +17,16 @@ pub(in crate::scene) fn explain(text: &str, error: &toml::de::Error) -> Mistake 
         "invalid basic string" | "invalid literal string" if rest.is_empty() || rest.starts_with(['\r', '\n']) => {
             ("the closing quote is missing".into(), None)
         }
-        "missing escaped value" => {
+        _ if said.starts_with("missing escaped value") || said.contains("unicode hexadecimal value") => {
             let help = "write / in the path of a file, or put the text in single quotes";
             ("in double quotes, `\\` does not stand for itself".into(), Some(help.into()))
         }
         "missing comma between array elements" => return unclosed(before, ']'),
         "missing comma between key-value pairs" | "missing key for inline table element" => {
             return unclosed(before, '}');
+        }
+        "invalid literal string" | "extra comma in inline table" if !written.starts_with('\'') => {
+            return of_inline_table(before);
         }
         "unclosed array" | "unclosed table" => ("the closing `]` is missing".into(), None),
         "unclosed array table" => ("the closing `]]` is missing".into(), None),
@@ -33,7 +36,7 @@ pub(in crate::scene) fn explain(text: &str, error: &toml::de::Error) -> Mistake 
         "invalid fraction" => ("a number ends with a digit, as in 1.0".into(), None),
         "unexpected leading zero" => ("a number starts with no needless 0".into(), None),
         "invalid float" | "invalid integer number" => ("this is no number".into(), None),
-        "duplicate key" => duplicate(written, line),
+        "duplicate key" => duplicate(written, before, line),
         _ => (said.to_owned(), None),
     };
     Mistake { span, message, help }
@@ -58,6 +61,28 @@ fn unclosed(before: &str, bracket: char) -> Mistake {
     Mistake { span: end..end, message: format!("a comma or the closing `{bracket}` is missing here"), help: None }
 }
 
+/// A table in braces has a key without a value, or a number with a comma in it.
+fn of_inline_table(before: &str) -> Mistake {
+    let before = before.trim_end();
+    let (message, help) = ("a value is missing here".to_owned(), None);
+    if let Some((first, last)) = before.rsplit_once(',') {
+        let is_digit = |c: char| c.is_ascii_digit();
+        if first.ends_with(is_digit) && !last.is_empty() && last.chars().all(is_digit) {
+            let (message, help) = ("a number has no comma".into(), Some("a decimal point is written `.`".into()));
+            return Mistake { span: first.len()..first.len() + 1, message, help };
+        }
+        if last.is_empty() {
+            let message = "there is a comma too many here".into();
+            return Mistake { span: first.len()..first.len() + 1, message, help };
+        }
+        if !last.contains(['=', '{']) {
+            let message = "a key is followed by `=` and its value".into();
+            return Mistake { span: before.len()..before.len(), message, help };
+        }
+    }
+    Mistake { span: before.len()..before.len(), message, help }
+}
+
 fn unquoted(written: &str) -> (String, Option<String>) {
     let parts: Vec<&str> = written.split_whitespace().collect();
     if parts.is_empty() {
@@ -79,9 +104,24 @@ fn after_value(line: &str, rest: &str) -> Option<String> {
     Some(if decimal { "a decimal point is written `.`" } else { "each key stands on a line of its own" }.to_owned())
 }
 
-fn duplicate(key: &str, line: &str) -> (String, Option<String>) {
+fn duplicate(key: &str, before: &str, line: &str) -> (String, Option<String>) {
     if line.starts_with('[') && matches!(key, "object" | "light") {
         return (format!("`{key}` is a list of tables"), Some(format!("write [[{key}]] for each")));
     }
-    (format!("`{key}` is given twice"), None)
+    let help =
+        first_line(key, before, line).map(|first| format!("it stands in line {first} as well: keep one of them"));
+    (format!("`{key}` is given twice"), help)
+}
+
+/// The line that gives a key first, which `line` begins to give again: a section, or a key of the same section.
+fn first_line(key: &str, before: &str, line: &str) -> Option<usize> {
+    let lines: Vec<&str> = before.lines().map(str::trim).collect();
+    let above = lines.get(..before.matches('\n').count())?;
+    if line.trim_start().starts_with('[') {
+        let header = format!("{}{key}]", line.trim());
+        return above.iter().position(|line| line.starts_with(&header)).map(|at| at + 1);
+    }
+    let section = above.iter().rposition(|line| line.starts_with('[')).map_or(0, |at| at + 1);
+    let gives = |line: &&str| line.split_once('=').is_some_and(|(found, _)| found.trim() == key);
+    above[section..].iter().position(gives).map(|at| section + at + 1)
 }

@@ -85,6 +85,14 @@ impl Texts {
         self.parts.iter().rfind(|part| part.span.start <= place)
     }
 
+    /// A place as people name it, such as `at scene.toml:3:7`; what a program has written is no file.
+    pub(in crate::scene) fn placed(&self, span: Range<usize>) -> String {
+        match self.told_by {
+            Place::Key if self.is_in_first(span.start) => "in the scene itself".into(),
+            _ => format!("at {}", self.named(span)),
+        }
+    }
+
     /// A place as people name it, such as `scene.toml:3:7`.
     pub(in crate::scene) fn named(&self, span: Range<usize>) -> String {
         let found = self.diagnostic(Mistake { span, message: String::new(), help: None }, None);

@@ -1,6 +1,6 @@
 //! A value of a scene's text, read as what is wanted of it; what it is instead is told.
 
-use std::ops::{Bound, Range, RangeBounds};
+use std::ops::{Bound, Range, RangeBounds, RangeInclusive};
 use std::path::Path;
 
 use toml::Spanned;
@@ -147,28 +147,34 @@ impl<'d> Value<'d> {
         }
     }
 
-    /// A whole number of 0 or more.
-    pub(in crate::scene) fn whole<T: TryFrom<i128>>(self, most: u64) -> Option<T> {
-        const WANTED: &str = "a whole number of 0 or more";
+    /// A whole number of a range. One that ends where a type does is told by its start.
+    pub(in crate::scene) fn whole<T: TryFrom<i128>>(self, range: RangeInclusive<u64>) -> Option<T> {
+        let (least, most) = range.into_inner();
+        let is_open = most >= u64::from(u32::MAX);
+        let wanted = match is_open {
+            true => format!("a whole number of {least} or more"),
+            false => format!("a whole number from {least} to {most}"),
+        };
         match self.node() {
             DeValue::Integer(integer) => match parsed(integer) {
-                Some(whole) if whole < 0 => self.wanted(WANTED),
-                Some(whole) if whole > i128::from(most) => self.wanted(&format!("at most {most}")),
+                Some(whole) if whole > i128::from(most) && is_open => self.wanted(&format!("at most {most}")),
+                Some(whole) if !(i128::from(least)..=i128::from(most)).contains(&whole) => self.wanted(&wanted),
                 Some(whole) => T::try_from(whole).ok(),
                 None => self.refuse("this number is too large"),
             },
-            _ => self.wanted(WANTED),
+            _ => self.wanted(&wanted),
         }
     }
 
     pub(in crate::scene) fn count(self) -> Option<u32> {
-        self.whole(u32::MAX.into())
+        self.whole(0..=u32::MAX.into())
     }
 
     /// A whole number, below 0 as well.
     pub(in crate::scene) fn integer(self) -> Option<i32> {
-        let integer = self.node().as_integer().and_then(parsed);
-        integer.and_then(|whole| i32::try_from(whole).ok()).or_else(|| self.wanted("a whole number"))
+        let Some(integer) = self.node().as_integer() else { return self.wanted("a whole number") };
+        let within = parsed(integer).and_then(|whole| i32::try_from(whole).ok());
+        within.or_else(|| self.wanted(&format!("a whole number from {} to {}", i32::MIN, i32::MAX)))
     }
 
     pub(in crate::scene) fn text(self) -> Option<&'d str> {
@@ -181,7 +187,13 @@ impl<'d> Value<'d> {
 
     /// What a word stands for.
     pub(in crate::scene) fn word<T: Copy>(self, words: &[(&'static str, T)]) -> Option<T> {
-        let word = self.text()?;
+        let Some(word) = self.node().as_str() else {
+            if words.len() > MOST_WORDS {
+                return self.text().and(None);
+            }
+            let quoted: Vec<String> = words.iter().map(|(known, _)| format!("\"{known}\"")).collect();
+            return self.wanted(&one_of(&quoted));
+        };
         words.iter().find(|(known, _)| *known == word).map(|(_, meaning)| *meaning).or_else(|| {
             let known: Vec<&str> = words.iter().map(|(known, _)| *known).collect();
             self.unknown(word, &known)
@@ -279,6 +291,18 @@ pub(in crate::scene) fn at<'d, T>(
 /// The numbers above 0 to a greatest one.
 pub(in crate::scene) fn above_0_to(most: f64) -> (Bound<f64>, Bound<f64>) {
     (Bound::Excluded(0.0), Bound::Included(most))
+}
+
+/// Most words that are all told of a value that is none.
+const MOST_WORDS: usize = 10;
+
+/// Words as `a, b or c`.
+fn one_of(words: &[String]) -> String {
+    match words {
+        [] => String::new(),
+        [word] => word.clone(),
+        [words @ .., last] => format!("{} or {last}", words.join(", ")),
+    }
 }
 
 /// An integer, if it is one of at most 128 bits.

@@ -1,0 +1,26 @@
+//! What went wrong with a file, in plain words.
+
+use std::io::ErrorKind;
+
+use abbe::Error;
+
+/// What went wrong with a file or what was asked for, in one line.
+pub fn problem(error: &Error) -> String {
+    match error {
+        Error::Io { doing, path, source } => format!("cannot {doing} {}: {}", path.display(), reason(doing, source)),
+        other => other.to_string(),
+    }
+}
+
+/// What the system said, in plain words where it is terse.
+fn reason(doing: &str, error: &std::io::Error) -> String {
+    match error.kind() {
+        ErrorKind::NotFound if doing == "read" => "there is no such file".into(),
+        ErrorKind::NotFound => "its folder does not exist and cannot be made".into(),
+        ErrorKind::AlreadyExists | ErrorKind::NotADirectory => "a file stands where its folder should be".into(),
+        ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => "permission is denied".into(),
+        ErrorKind::StorageFull => "the disk is full".into(),
+        ErrorKind::OutOfMemory => "not that much is free; --crop and --shard render a part of the image".into(),
+        _ => error.to_string(),
+    }
+}

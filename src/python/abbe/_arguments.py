@@ -1,0 +1,53 @@
+"""Arguments that are checked before anything is done with them."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from ._errors import OptionsError
+
+
+def path(name: str, value: Any) -> str:
+    """The path that `value` is."""
+    try:
+        return os.fsdecode(value)
+    except TypeError:
+        raise TypeError(f"{name} is the path of a file or folder, not {_shown(value)}") from None
+
+
+def text(name: str, value: Any) -> str:
+    """The text that `value` is."""
+    if not isinstance(value, str):
+        raise TypeError(f"{name} is a text, not {_shown(value)}")
+    return value
+
+
+def truth(name: str, value: Any) -> bool:
+    """The truth that `value` is, of Python or numpy."""
+    if type(value).__name__ not in ("bool", "bool_"):
+        raise OptionsError(f"{name} is True or False, not {_shown(value)}", "help(abbe.render) says all arguments")
+    return bool(value)
+
+
+def function(name: str, value: Any) -> Callable[..., object]:
+    """The function that `value` is."""
+    if not callable(value):
+        raise OptionsError(f"{name} is a function, not {_shown(value)}", f"such as {name}=print")
+    return value
+
+
+def settings(value: Any) -> dict[str, Any]:
+    """The values that replace those of a scene."""
+    if not isinstance(value, Mapping):
+        raise OptionsError(f"set is a dict, not {_shown(value)}", 'such as set={"film.width": 320}')
+    for key in value:
+        if not isinstance(key, str):
+            raise OptionsError(f"a key of set is a text, not {_shown(key)}", 'such as set={"film.width": 320}')
+    return dict(value)
+
+
+def _shown(value: object) -> str:
+    shown = repr(value)
+    return shown if len(shown) <= 40 else f"a value of the type {type(value).__name__}"
