@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use abbe::film::{Layer, Overscan, Window};
+use abbe::scene::share;
 use abbe::{Options, Result};
 use clap::error::{ContextKind, ErrorKind};
 use clap::{Command, CommandFactory, Parser};
@@ -176,15 +177,10 @@ fn seed(text: &str) -> std::result::Result<u64, String> {
 }
 
 fn ratio(text: &str) -> std::result::Result<f64, String> {
-    text.parse().map_err(|_| match text.strip_suffix('%').map(|percent| percent.trim().parse::<f64>()) {
-        Some(Ok(percent)) => format!("write {} for {percent} %", of_percent(percent)),
-        _ => "an error is a number, such as 0.01 for one percent".into(),
+    text.parse().map_err(|_| match share(text) {
+        Some(share) => format!("write {share} for {} %", text.trim_end_matches('%').trim()),
+        None => "an error is a number, such as 0.01 for one percent".into(),
     })
-}
-
-/// A share of so many percent, without what division by 100 rounds.
-fn of_percent(percent: f64) -> f64 {
-    format!("{percent}e-2").parse().unwrap_or(percent / 100.0)
 }
 
 fn overscan(text: &str) -> std::result::Result<Overscan, String> {

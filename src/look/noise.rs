@@ -72,7 +72,8 @@ impl<'f> Noisy<'f> {
         self.variance[channel].at(pixel).max(0.0)
     }
 
-    /// The same; where no sample differs from the others, what one that shows the most different neighbor would make.
+    /// The variance of a pixel; where no sample differs from the others, that of one that shows what the most
+    /// different neighbor does.
     fn variance_beside_neighbors(&self, channel: usize, pixel: usize) -> f64 {
         let taken = self.samples.map(|samples| samples.at(pixel)).or(self.taken).filter(|taken| *taken >= 1.0);
         let told = self.variance(channel, pixel);

@@ -14,6 +14,7 @@ mod index;
 mod object;
 mod relief;
 mod render_text;
+mod share;
 mod source;
 mod text;
 
@@ -25,5 +26,6 @@ pub use hit::{Ends, Hit, Primitive};
 pub use object::{MaterialId, Object, Sight};
 pub use relief::{Relief, ReliefKind};
 pub use render_text::{AdaptiveText, CausticsText, ModelText, PolarizationText, RenderText};
+pub use share::share;
 pub use source::{SETTINGS, Source};
 pub use text::{Numbers, Rows};

@@ -3,6 +3,7 @@
 use toml::de::DeValue;
 
 use crate::error::nearest;
+use crate::scene::share;
 use crate::spectrum::ColorSpace;
 
 /// Words of other renderers, and what is called so here.
@@ -47,11 +48,8 @@ pub(super) fn remedy(key: &str, value: &DeValue, wanted: &str, written: &str) ->
         DeValue::String(text) if number && text.parse::<f64>().is_ok_and(f64::is_finite) => {
             Some(format!("write it without quotes: {text}"))
         }
-        DeValue::String(text) if number => match text.strip_suffix('%').map(|share| share.trim().parse::<f64>()) {
-            Some(Ok(percent)) => {
-                // Without what division by 100 rounds.
-                format!("{percent}e-2").parse::<f64>().ok().map(|share| format!("write {share}"))
-            }
+        DeValue::String(text) if number => match share(text) {
+            Some(share) => Some(format!("write {share}")),
             _ if key == "column" => Some("columns are counted from 1".into()),
             _ if text.starts_with(|first: char| first.is_ascii_digit()) => {
                 Some("a number stands alone, without quotes and unit".into())
