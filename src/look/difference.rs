@@ -81,7 +81,7 @@ pub fn compare(files: [&ExrFile; 2], layer: Option<&str>, shown: [&str; 2]) -> R
         && layers[0].name == BEAUTY
     {
         let finite = |at: usize| [&a, &b].iter().all(|channels| channels.iter().all(|one| one.at(at).is_finite()));
-        found.noise = Some(Noise::new([&first, &second], found.absolute.len(), |at| !finite(at)));
+        found.noise = Some(Noise::new([&first, &second], |at| !finite(at)));
     }
     Ok(found)
 }

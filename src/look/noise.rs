@@ -103,16 +103,16 @@ fn freedom(variances: [f64; 2], of_each: [f64; 2]) -> f64 {
 }
 
 impl Noise {
-    /// Of two images with their colors; `is_left_out` tells pixels that are not compared.
-    pub(super) fn new(noisy: [&Noisy; 2], count: usize, is_left_out: impl Fn(usize) -> bool) -> Self {
+    /// Of two images of one size; `is_left_out` tells pixels that are not compared.
+    pub(super) fn new(noisy: [&Noisy; 2], is_left_out: impl Fn(usize) -> bool) -> Self {
         let rounding = noisy[0].rounding.max(noisy[1].rounding);
         let same = |a: f64, b: f64| (a - b).abs() <= rounding * a.abs().max(b.abs());
-        let channels = noisy[0].colors.len();
+        let (channels, [columns, rows]) = (noisy[0].colors.len(), noisy[0].size);
         let (mut all, mut tests) = (Vec::new(), channels);
         let mut found = Self { threshold: 0.0, worst: 0.0, at: [0; 2], beyond: 0, changed: 0, means: Vec::new() };
         for channel in 0..channels {
             let (mut sums, mut variance) = ([0.0; 2], 0.0);
-            for pixel in (0..count).filter(|pixel| !is_left_out(*pixel)) {
+            for pixel in (0..columns * rows).filter(|pixel| !is_left_out(*pixel)) {
                 let [a, b] = noisy.map(|noisy| noisy.colors[channel].at(pixel));
                 let variances = noisy.map(|noisy| noisy.variance(channel, pixel));
                 let both = variances[0] + variances[1];
