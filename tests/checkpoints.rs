@@ -162,7 +162,7 @@ fn is_same(a: &Image, b: &Image) -> bool {
 }
 
 /// The same options with a plan from a file, so that renders of one scene need no plan of their own.
-fn planned(scene: &Scene, options: &Options, folder: &Path) -> Options {
+pub fn planned(scene: &Scene, options: &Options, folder: &Path) -> Options {
     let (path, mut asked) = (folder.join("image.plan"), scene.clone());
     options.apply(&mut asked).expect("the options fit");
     abbe::write_plan(&abbe::plan::plan(&asked), &asked, &path).expect("a plan can be written");

@@ -13,7 +13,7 @@ use abbe::trace::{Method, Stopped};
 use abbe::{Options, Rendering, Resumed, Scene, render};
 use rayon::prelude::*;
 
-use crate::checkpoints::{CAUSTIC, GLASS, Kind, ROOM, advance, bytes, rendering};
+use crate::checkpoints::{CAUSTIC, GLASS, Kind, ROOM, advance, bytes, planned, rendering};
 use crate::support::random::Random;
 use crate::support::scenes::scene;
 
@@ -47,6 +47,7 @@ fn any_threads_and_stops_on_the_way_make_the_same_bytes() {
         assert!(report.noise.is_some_and(|noise| noise.samples >= 64), "{kind}");
         let gathers = whole.plan().method.light_pass.as_ref().is_some_and(|pass| pass.map.is_some());
         assert_eq!(report.blur.is_some_and(|blur| blur.at_most > 0.0), gathers, "{kind}");
+        let options = planned(&scene, &options, folder.path());
         for threads in [1, 3, 7] {
             let mut first = rendering(&scene, &options, threads);
             for _ in 0..2 {

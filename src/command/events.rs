@@ -19,7 +19,7 @@ pub enum Event<'e> {
     Checked { scene: &'e Path, objects: usize },
     /// How it will be rendered.
     Plan(PlanAccount<'e>),
-    /// How far it is, in camera samples and photons.
+    /// How far it is, in camera samples; a photon counts as the samples that take as long.
     Progress { done: u64, total: u64, seconds: f64, seconds_left: Option<f64> },
     /// What rendering noticed.
     Report(Box<RenderAccount<'e>>),

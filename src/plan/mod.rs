@@ -26,7 +26,8 @@ use crate::film::Window;
 use crate::scene::Scene;
 use crate::spectrum::{Basis, Curve};
 use crate::trace::{
-    FIRST_LOOK, LightPass, Method, PhotonTimes, Probe, Transport, bytes_of_film, photon_times, prepare_unguided, probe,
+    FIRST_LOOK, LightPass, Method, PhotonCost, PhotonTimes, Probe, Transport, bytes_of_film, photon_times,
+    prepare_unguided, probe,
 };
 use between::between;
 use lit::Lit;
@@ -45,6 +46,8 @@ pub struct Plan {
     pub because: Vec<String>,
     /// Processor time that the render will take, about.
     pub processor_time: Duration,
+    /// As how many camera samples photons count where it is told how much is done.
+    pub photon_cost: PhotonCost,
     /// The models of color that were weighed, from few lanes to many; none of a plan that was read from a file.
     #[serde(skip)]
     pub candidates: Vec<Candidate>,
@@ -96,7 +99,16 @@ pub fn plan(scene: &Scene<Curve>) -> Plan {
         because.push(format!("lanes separate in {:.0} % of the camera samples", 100.0 * probe.parted));
     }
     because.extend(next.map(|basis| beside(scene, &method, &probe, basis)));
-    Plan { method, because, processor_time, candidates, left_out, model_error, polarization_error: polarization.error }
+    Plan {
+        photon_cost: times.in_samples(on_average.time),
+        method,
+        because,
+        processor_time,
+        candidates,
+        left_out,
+        model_error,
+        polarization_error: polarization.error,
+    }
 }
 
 /// What does not depend on how light is found, and in words, which branches are followed.

@@ -93,7 +93,7 @@ impl Rendering {
             None => threads.install(|| plan(&scene)),
         };
         has_memory(&scene, &plan.method, options.shard)?;
-        let world = prepare(&scene, plan.method.clone());
+        let (world, photon_cost) = (prepare(&scene, plan.method.clone()), plan.photon_cost);
         let camera = &scene.camera;
         let view = View {
             world_to_camera: camera.world_to_camera(),
@@ -109,7 +109,9 @@ impl Rendering {
             identity: Identity::new(&scene, &plan.method, options.shard),
             shard: options.shard,
             plan,
-            passes: trace::Rendering::of_shard(Cow::Owned(world), options.shard).since(now),
+            passes: trace::Rendering::of_shard(Cow::Owned(world), options.shard)
+                .since(now)
+                .counting_photons_as(photon_cost),
             view,
             format: scene.format.clone(),
             origin: Origin { hash, projection: camera.projection(), filter, settings: settings.join(" ") },
@@ -124,8 +126,9 @@ impl Rendering {
         &self.plan
     }
 
-    /// How much there is to do: camera samples and photons. With a stop rule this is a guess, better after each pass,
-    /// and the most that may be done as long as nothing [is known](Self::is_work_known).
+    /// How much there is to do: camera samples, and photons, each of which counts as the samples that take as long.
+    /// With a stop rule this is a guess, better after each pass, and the most that may be done as long as nothing
+    /// [is known](Self::is_work_known).
     pub fn work(&self) -> u64 {
         self.passes.work()
     }

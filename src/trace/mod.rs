@@ -61,7 +61,7 @@ pub use bright::{BrightPlace, BrightPlaces};
 pub use density::SampleDensity;
 pub use dispersion::{COLORS_NM, Dispersion, ROUTES_NM, Route, SEEN_PIXELS, Step, Way, dispersion, routes};
 pub use image::{
-    Advance, Blur, FIRST_LOOK, Noise, Outlier, RareLight, Rendering, Report, Restored, Stopped, TileNoise,
+    Advance, Blur, FIRST_LOOK, Noise, Outlier, PhotonCost, RareLight, Rendering, Report, Restored, Stopped, TileNoise,
     bytes_of_film, piloted, render, seen_photons,
 };
 pub use method::{LightPass, MapPasses, Method, Polarizing, Stop, Transport};
@@ -69,7 +69,7 @@ pub use path_start::Sunlit;
 pub use photon_targets::is_photon_target;
 pub use probe::{
     Adaptive, Branching, GatheredWorth, PhotonTimes, PhotonWorth, PilotNoise, Probe, SampleWorth, SeenLight, adaptive,
-    branching, bright_places, gathered_photons, gathered_worth, photon_times, photons_worth, pilot_noise,
+    branching, bright_places, gathered_worth, photon_times, photons_within, photons_worth, pilot_noise,
     polarization_error, prepare, prepare_unguided, probe, reached_places, samples_worth, seen_light,
     with_light_vertices,
 };

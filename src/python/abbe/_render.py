@@ -23,7 +23,7 @@ class Progress(NamedTuple):
     """How far a render is."""
 
     done: int
-    """Camera samples and photons that were taken."""
+    """Camera samples that were taken, and photons, each of which counts as the samples that take as long."""
     total: int
     """All that are to be taken. Where an error or a time ends the render, this is a guess; before the first look at the
     error, after 64 samples of each pixel, it is the most that may be taken."""

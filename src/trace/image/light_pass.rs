@@ -42,7 +42,7 @@ const SEEN_OF_A_PLAN: u64 = 1 << 16;
 /// Most rays that a plan follows to learn where to send photons, and as many to tell which are seen: each takes about
 /// half a second. Photons in a heap of glass balls follow a hundred rays each.
 const MOST_RAYS: f64 = (1 << 20) as f64;
-/// Of each target, photons that tell how many rays one follows.
+/// Photons of all targets that tell how many rays one follows.
 const FIRST: u64 = 256;
 
 /// How far a light pass is. It goes on where it stopped.
@@ -214,10 +214,16 @@ fn send_ahead<const N: usize>(world: &World, numbers: Range<u64>) -> Learned {
     learned
 }
 
-/// Sends so many photons of each target ahead, or as many as follow [`MOST_RAYS`], but no fewer than [`FIRST`].
+/// Photons of each target that tell how many rays one follows.
+fn first_of_each(world: &World) -> u64 {
+    world.photon_targets.as_ref().map_or(0, |targets| (FIRST / targets.targets.len() as u64).max(1))
+}
+
+/// Sends so many photons of each target ahead, or as many as follow [`MOST_RAYS`], but [`FIRST`] at least.
 fn send_some_ahead<const N: usize>(world: &World, most: u64) -> Learned {
-    let mut learned = send_ahead::<N>(world, 0..most.min(FIRST));
-    let more = send_ahead::<N>(world, FIRST..most.min(learned.each_within(MOST_RAYS)));
+    let first = most.min(first_of_each(world));
+    let mut learned = send_ahead::<N>(world, 0..first);
+    let more = send_ahead::<N>(world, first..most.min(learned.each_within(MOST_RAYS)));
     learned.rays += more.rays;
     learned.found.iter_mut().zip(more.found).for_each(|(found, more)| found.extend(more));
     learned
@@ -250,7 +256,7 @@ pub fn piloted(world: &World, light_pass: LightPass) -> World {
     let targets = world.photon_targets.as_ref().map_or(1, |targets| targets.targets.len() as u64);
     let most = OF_A_PLAN / targets;
     if most >= TOO_FEW {
-        let first = in_lanes!(&world.method.basis, N => send_ahead::<N>(&world, 0..FIRST));
+        let first = in_lanes!(&world.method.basis, N => send_ahead::<N>(&world, 0..first_of_each(&world)));
         if first.each_within(MOST_RAYS) >= TOO_FEW {
             learn_where_to_send(&mut world, first.each_within(RAYS_OF_A_PLAN).clamp(TOO_FEW, most));
         }
@@ -307,8 +313,8 @@ mod tests {
     #[test]
     fn a_plan_sends_no_more_photons_ahead_than_it_has_time_for() {
         let world = heap();
-        let first = send_ahead::<4>(&world, 0..FIRST);
-        let all = first.rays as f64 * TOO_FEW as f64 / FIRST as f64;
+        let first = send_ahead::<4>(&world, 0..first_of_each(&world));
+        let all = first.rays as f64 * TOO_FEW as f64 / first_of_each(&world) as f64;
         assert!(all > 2.0 * MOST_RAYS, "{all} rays are affordable");
         let some = send_some_ahead::<4>(&world, TOO_FEW);
         assert!((some.rays as f64 / MOST_RAYS - 1.0).abs() < 0.1, "{} rays", some.rays);

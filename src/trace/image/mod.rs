@@ -16,7 +16,7 @@ pub use blur::Blur;
 pub use light_pass::{learn_where_to_send, piloted, seen_photons, send_shown, splats};
 pub use noise::{Noise, Outlier, TileNoise};
 pub use rare_light::RareLight;
-pub use rendering::{Advance, Rendering, Report, render};
+pub use rendering::{Advance, PhotonCost, Rendering, Report, render};
 pub use saved::Restored;
 pub use stopping::{FIRST_LOOK, Stopped};
 pub use tile::bytes_of_film;

@@ -6,6 +6,8 @@ use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
+use serde::{Deserialize, Serialize};
+
 use super::blur::Blur;
 use super::layer_sums::{Taken, images, spectral_image, write};
 use super::noise::{Measured, Noise, measure};
@@ -62,8 +64,8 @@ pub struct Report {
     pub stopped_by: Option<Stopped>,
 }
 
-/// Renders the world's image, or the part of it that is asked for. `progress` is told how many camera samples and
-/// photons are done, from any thread; in the end they are [`Rendering::work`].
+/// Renders the world's image, or the part of it that is asked for. `progress` is told how much is
+/// done, from any thread; in the end that is [`Rendering::work`].
 pub fn render(world: &World, progress: &(dyn Fn(u64) + Sync)) -> (Film, Report) {
     let mut rendering = Rendering::of_shard(Cow::Borrowed(world), Shard::WHOLE);
     while rendering.advance(progress) {}
@@ -81,6 +83,22 @@ pub enum Advance {
     Stopped,
 }
 
+/// As how many camera samples one photon counts where it is told how much is done: those that take as long, one at
+/// least.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct PhotonCost {
+    /// One of the light pass.
+    pub shown: u64,
+    /// One of a map.
+    pub kept: u64,
+}
+
+impl Default for PhotonCost {
+    fn default() -> Self {
+        Self { shown: 1, kept: 1 }
+    }
+}
+
 /// An image in the making. It advances pass by pass, can be looked at after each, and is finished after the last.
 ///
 /// A pass takes the next samples of all pixels; where photons are gathered, each pass sends its own before. The light
@@ -94,6 +112,8 @@ pub struct Rendering<'a> {
     light: Option<Box<dyn Any + Send + Sync>>,
     /// How fast it goes, where there is a stop rule.
     clock: Clock,
+    /// What counts as work.
+    photon_cost: PhotonCost,
 }
 
 impl<'a> Rendering<'a> {
@@ -102,12 +122,17 @@ impl<'a> Rendering<'a> {
         let window = world.scene.film.window();
         let tiles = shard.tiles(window).map(|place| Tile::new(&world, place)).collect();
         let (progress, clock) = (Progress::default(), Clock::new(Instant::now()));
-        Self { world, shard, tiles, progress, light: None, clock }
+        Self { world, shard, tiles, progress, light: None, clock, photon_cost: PhotonCost::default() }
     }
 
     /// Lets the time of a stop rule run from another moment on.
     pub fn since(self, began: Instant) -> Self {
         Self { clock: Clock::new(began), ..self }
+    }
+
+    /// Counts photons as so many camera samples in its [work](Self::work).
+    pub fn counting_photons_as(self, photon_cost: PhotonCost) -> Self {
+        Self { photon_cost, ..self }
     }
 
     /// What is rendered, and how.
@@ -128,17 +153,19 @@ impl<'a> Rendering<'a> {
         }
     }
 
-    /// Camera samples and photons of the method's samples.
+    /// The work of the method's samples.
     pub fn planned_work(&self) -> u64 {
         let world = self.world();
         let samples = self.pixels() * u64::from(world.method.samples);
         let passes = world.method.light_pass.as_ref().and_then(|pass| pass.map).map_or(0, |map| u64::from(map.count));
         let photons = |targets: &Option<PhotonTargets>| targets.as_ref().map_or(0, PhotonTargets::photons);
-        samples + photons(&world.photon_targets) + passes * photons(&world.map_targets)
+        let PhotonCost { shown, kept } = self.photon_cost;
+        samples + shown * photons(&world.photon_targets) + kept * passes * photons(&world.map_targets)
     }
 
-    /// How many camera samples and photons the image takes; with a stop rule, about, and better known after each pass:
-    /// the most that it may take as long as nothing [is known](Self::is_work_known).
+    /// How many camera samples the image takes, where photons count as those that take as long; with a stop rule,
+    /// about, and better known after each pass: the most that it may take as long as nothing
+    /// [is known](Self::is_work_known).
     pub fn work(&self) -> u64 {
         let (world, all) = (self.world(), self.planned_work());
         match &world.method.stop {
@@ -160,11 +187,12 @@ impl<'a> Rendering<'a> {
 
     /// How many of them are done.
     pub fn done(&self) -> u64 {
-        self.samples_taken() + self.photons()
+        let PhotonCost { shown, kept } = self.photon_cost;
+        self.samples_taken() + shown * self.progress.sending.photons + kept * self.progress.gathered_photons
     }
 
-    /// Makes the next pass, if there is one, and answers whether another one is left. `progress` is told how many
-    /// camera samples and photons were done since it was last told, from any thread.
+    /// Makes the next pass, if there is one, and answers whether another one is left. `progress` is told how much
+    /// of the [work](Self::work) was done since it was last told, from any thread.
     pub fn advance(&mut self, progress: &(dyn Fn(u64) + Sync)) -> bool {
         self.advance_until(progress, &|| false) == Advance::Passed
     }
@@ -395,13 +423,15 @@ impl<'a> Rendering<'a> {
         let world = &*self.world;
         let progress = &mut self.progress;
         let pass = progress.pass(world);
-        if !light_pass::show::<N, P>(world, &pass, &mut progress.sending, self.shard, &mut self.tiles, watch) {
+        let PhotonCost { shown, kept } = self.photon_cost;
+        let of_shown = Watch { progress: &|photons| (watch.progress)(shown * photons), is_due: watch.is_due };
+        if !light_pass::show::<N, P>(world, &pass, &mut progress.sending, self.shard, &mut self.tiles, &of_shown) {
             return false;
         }
-        let kept = self.light.take().and_then(|light| light.downcast::<PassLight<N, P>>().ok());
-        let light = kept.unwrap_or_else(|| {
+        let of_stopped = self.light.take().and_then(|light| light.downcast::<PassLight<N, P>>().ok());
+        let light = of_stopped.unwrap_or_else(|| {
             let light = PassLight::new(world, &pass);
-            (watch.progress)(light.sent());
+            (watch.progress)(kept * light.sent());
             Box::new(light)
         });
         let (window, passes) = (world.scene.film.window(), progress.passes);

@@ -6,9 +6,10 @@ use std::time::{Duration, Instant};
 
 use crate::math::Sampler;
 use crate::trace::camera::PathTracer;
-use crate::trace::image::send_shown;
+use crate::trace::image::{PhotonCost, send_shown};
+use crate::trace::parallel::in_parallel;
 use crate::trace::pass::Pass;
-use crate::trace::photon::{Batch, LightPaths, SHARED, photons, send_kept};
+use crate::trace::photon::{Batch, LightPaths, PhotonMap, SHARED, photons, send_kept};
 use crate::trace::photon_targets::PhotonTargets;
 use crate::trace::stats::Stats;
 use crate::trace::walk::{Polarization, Polarized};
@@ -39,6 +40,17 @@ pub struct PhotonTimes {
     pub kept: Duration,
 }
 
+impl PhotonTimes {
+    /// As how many camera samples photons count, if one takes so long.
+    pub fn in_samples(&self, sample: Duration) -> PhotonCost {
+        let sample = sample.max(Duration::from_nanos(1)).as_secs_f64();
+        let of = |photon: Duration| (photon.as_secs_f64() / sample).round().clamp(1.0, MOST_COST) as u64;
+        PhotonCost { shown: of(self.shown), kept: of(self.kept) }
+    }
+}
+
+/// More is a sample that was not measured well.
+const MOST_COST: f64 = 100.0;
 /// Camera samples along each side of the image.
 const SIDE: u32 = 48;
 /// Samples that are timed together.
@@ -48,8 +60,9 @@ const SLOW: f64 = 2.0;
 /// Photons that are timed together, and how often.
 const FEW: u64 = 64;
 const TIMES: u64 = 64;
-/// Most photons of the map that is gathered from.
+/// Most photons of the map that is gathered from, and most rays that they follow, about.
 const GATHERED: u64 = 4096;
+const MOST_RAYS: f64 = (1 << 18) as f64;
 /// Time after which the probe has seen enough.
 const ENOUGH: Duration = Duration::from_millis(300);
 
@@ -75,8 +88,7 @@ fn probe_lanes<const N: usize, P: Polarization<N>>(world: &World) -> Probe {
     let vertices = LightPaths::new(world, world.method.seed).map(|light_paths| light_paths.shared::<N, P>(0..SHARED));
     let light_paths =
         vertices.as_ref().map_or(Duration::ZERO, |_| before_vertices.elapsed().div_f64(f64::from(SHARED)));
-    let few = with_few_photons(world);
-    let photons = photons::<N, P>(&few, &Pass::of_photons_alone(&few, 0));
+    let (few, photons) = few_photons::<N, P>(world);
     let mut tracer = PathTracer::<N, P>::new(&few).with_photons(photons.as_ref());
     tracer.light_vertices = vertices.as_ref();
     let window = world.scene.film.window();
@@ -125,14 +137,34 @@ fn undisturbed(batches: Vec<Timed>, mut again: impl FnMut(usize) -> Timed) -> Du
     batches.iter().enumerate().map(time).sum()
 }
 
-/// A world whose map has few photons, of which as many are gathered around a place as of all.
-pub fn with_few_photons(world: &World) -> World {
+/// A world whose map has few photons, of which as many are gathered around a place as of all, and its map.
+pub fn few_photons<const N: usize, P: Polarization<N>>(world: &World) -> (World, Option<PhotonMap<N, P>>) {
+    let most = photons_within(world, MOST_RAYS).clamp(FEW, GATHERED);
     let fewer = |map: MapPasses| {
-        let photons = map.photons.min(GATHERED);
+        let photons = map.photons.min(most);
         MapPasses { photons, radius: map.radius * (map.photons as f64 / photons as f64).sqrt(), ..map }
     };
     let pass = world.method.light_pass.as_ref();
-    world.with_light_pass(pass.map(|pass| LightPass { map: pass.map.map(fewer), ..pass.clone() }))
+    let world = world.with_light_pass(pass.map(|pass| LightPass { map: pass.map.map(fewer), ..pass.clone() }));
+    let photons = photons::<N, P>(&world, &Pass::of_photons_alone(&world, 0));
+    (world, photons)
+}
+
+/// How many photons follow so many rays, about, by what a few follow: in a heap of glass balls, each follows hundreds.
+pub fn photons_within(world: &World, rays: f64) -> u64 {
+    let of = |targets: &Option<PhotonTargets>, send: &(dyn Fn(&PhotonTargets, Batch) -> Stats + Sync)| {
+        let Some(targets) = targets else { return 0 };
+        let of_photon = |number: usize| {
+            let target = targets.of_photon((2 * number as u64 + 1) * targets.photons() / (2 * FEW));
+            send(targets, Batch { target, first: number as u64, count: 1, seed: world.method.seed }).rays
+        };
+        in_parallel(FEW as usize, &of_photon).into_iter().sum()
+    };
+    let followed: u64 = in_lanes!(&world.method.basis, N => {
+        let shown = of(&world.photon_targets, &|targets, batch| send_shown::<N, Polarized>(world, targets, batch).stats);
+        shown.max(of(&world.map_targets, &|targets, batch| send_kept::<N, Polarized>(world, targets, batch).stats))
+    });
+    (rays * FEW as f64 / followed.max(1) as f64) as u64
 }
 
 /// Sends some photons of those targets that send most.
@@ -150,10 +182,51 @@ pub fn photon_times(world: &World) -> PhotonTimes {
 
 fn photon_time(targets: &PhotonTargets, seed: u64, send: &dyn Fn(&PhotonTargets, Batch) -> Stats) -> Duration {
     let take = |number: u64| {
+        // Far ones first, as some are enough where photons take long.
+        let number = (number * 29) % TIMES;
         let target = targets.of_photon((2 * number + 1) * targets.photons() / (2 * TIMES));
         let start = Instant::now();
         let stats = send(targets, Batch { target, first: number * FEW, count: FEW, seed });
         Timed { time: start.elapsed(), rays: stats.rays }
     };
-    undisturbed((0..TIMES).map(take).collect(), |number| take(number as u64)).div_f64((TIMES * FEW) as f64)
+    let (start, mut batches) = (Instant::now(), Vec::new());
+    while batches.len() < TIMES as usize && start.elapsed() < ENOUGH {
+        batches.push(take(batches.len() as u64));
+    }
+    let photons = batches.len() as f64 * FEW as f64;
+    undisturbed(batches, |number| take(number as u64)).div_f64(photons)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Scene;
+    use crate::spectrum::{Basis, ColorSpace};
+    use crate::trace::{Method, Transport};
+
+    #[test]
+    fn photons_that_meet_a_mirror_and_a_floor_follow_two_rays() {
+        let text = "[camera]\nposition = [0, -9, 4]\nlook_at = [0, 0, 0]\nvertical_fov = 40\n\
+                    [film]\nwidth = 64\nheight = 48\n\
+                    [material.mirror]\nmirror = { reflectance = 1 }\n[material.floor]\ndiffuse = { reflectance = 0.5 }\n\
+                    [[object]]\nmaterial = \"floor\"\nshape.quad = { center = [0, 0, 0], u = [9, 0, 0], v = [0, 9, 0] }\n\
+                    [[object]]\nmaterial = \"mirror\"\nshape.quad = { center = [0, 0, 4], u = [0, 1, 0], v = [1, 0, 0] }\n\
+                    [[light]]\nspot = { position = [0, 0, 2], toward = [0, 0, 1], cone_angle = 20, intensity = 9 }\n";
+        let scene = Scene::parse(text, ".").expect("it is a scene");
+        let transport = Transport::Random { split: 0.05, roulette: 0.05 };
+        let method = Method::of_paths(Basis::rgb(ColorSpace::Rec709), transport, 0);
+        let pass = LightPass { photons: 1 << 20, lights: vec![0], map: None };
+        let world = World::new(&scene, method).with_light_pass(Some(pass));
+        // Those that are sent beside the spot's cone follow none.
+        let photons = photons_within(&world, 4096.0);
+        assert!((2048..2300).contains(&photons), "{photons}");
+    }
+
+    #[test]
+    fn photons_count_as_the_samples_that_take_as_long_and_one_at_least() {
+        let times = PhotonTimes { shown: Duration::from_micros(11), kept: Duration::from_micros(1) };
+        assert_eq!(times.in_samples(Duration::from_micros(2)), PhotonCost { shown: 6, kept: 1 });
+        assert_eq!(PhotonTimes::default().in_samples(Duration::ZERO), PhotonCost { shown: 1, kept: 1 });
+        assert_eq!(times.in_samples(Duration::ZERO), PhotonCost { shown: 100, kept: 100 });
+    }
 }

@@ -2,15 +2,14 @@
 
 use std::ops::Range;
 
-use super::cost::with_few_photons;
+use super::cost::few_photons;
 use super::pilot_noise::{DARK, LOOKING};
 use crate::math::Sampler;
 use crate::trace::World;
 use crate::trace::camera::PathTracer;
 use crate::trace::density::SampleDensity;
 use crate::trace::parallel::in_parallel;
-use crate::trace::pass::Pass;
-use crate::trace::photon::{LightPaths, LightVertices, PhotonMap, photons};
+use crate::trace::photon::{LightPaths, LightVertices, PhotonMap};
 use crate::trace::walk::Polarization;
 use crate::trace::width::in_lanes_of;
 
@@ -35,6 +34,9 @@ const OF_A_CELL: f64 = (PIXELS * LOOKS * SAMPLES) as f64;
 /// them may go on from it.
 const PIXELS_OF_A_CELL: f64 = 32.0;
 const MOST_CELLS: f64 = 4096.0;
+/// Cells that tell how many rays a cell takes, and most rays that all take, about.
+const FEW_CELLS: f64 = 64.0;
+const MOST_RAYS: f64 = (1 << 21) as f64;
 /// Cells to each side that tell the noise of a cell.
 const AROUND: i64 = 2;
 /// What all that belongs to a sample takes in rays of a path.
@@ -53,9 +55,11 @@ const SEED: u64 = 0x6465_6e73;
 pub fn adaptive(world: &World, is_absolute: bool) -> Option<Adaptive> {
     let format = [world.scene.film.width, world.scene.film.height];
     let pixels = f64::from(format[0]) * f64::from(format[1]);
-    let side = (pixels / (pixels / PIXELS_OF_A_CELL).clamp(1.0, MOST_CELLS)).sqrt();
-    let cells = format.map(|pixels| ((f64::from(pixels) / side) as u32).max(1));
-    let found = in_lanes_of!(world, N, P => look::<N, P>(world, cells));
+    let cells = |most: f64| {
+        let side = (pixels / (pixels / PIXELS_OF_A_CELL).clamp(1.0, most)).sqrt();
+        format.map(|pixels| ((f64::from(pixels) / side) as u32).max(1))
+    };
+    let (cells, found) = in_lanes_of!(world, N, P => look::<N, P>(world, &cells));
     let of = |pixels: Range<usize>| smoothed(cells, &found, pixels, is_absolute);
     // What one pixel of each cell asks for is judged by the other: what is chosen by its own noise looks too good.
     let [gain, rays] = worth(&powers(&of(0..1))?, &of(1..2));
@@ -84,12 +88,18 @@ struct Cell {
     rays: f64,
 }
 
-fn look<const N: usize, P: Polarization<N>>(world: &World, cells: [u32; 2]) -> Vec<Found> {
-    let few = with_few_photons(world);
-    let photons = photons::<N, P>(&few, &Pass::of_photons_alone(&few, 0));
+/// Looks at as many cells as it may, by what few of them take. `cells` tells how many there are of at most so many.
+fn look<const N: usize, P: Polarization<N>>(world: &World, cells: &dyn Fn(f64) -> [u32; 2]) -> ([u32; 2], Vec<Found>) {
+    let (few, photons) = few_photons::<N, P>(world);
     let vertices = LightPaths::new(world, world.method.seed).map(|light_paths| light_paths.few::<N>());
-    let row = |row: usize| look_at_row::<N, P>(&few, photons.as_ref(), vertices.as_ref(), cells, row as u32);
-    in_parallel(cells[1] as usize, &row).concat()
+    let look = |most: f64| {
+        let cells = cells(most);
+        let row = |row: usize| look_at_row::<N, P>(&few, photons.as_ref(), vertices.as_ref(), cells, row as u32);
+        (cells, in_parallel(cells[1] as usize, &row).concat())
+    };
+    let (_, found) = look(FEW_CELLS);
+    let rays = found.iter().map(|found| found.rays).sum::<f64>() / found.len() as f64;
+    look((MOST_RAYS / rays).clamp(FEW_CELLS, MOST_CELLS))
 }
 
 fn look_at_row<const N: usize, P: Polarization<N>>(
@@ -205,4 +215,41 @@ fn worth(powers: &[i8], found: &[Cell]) -> [f64; 2] {
     let before: f64 = found.iter().map(|cell| cell.variance).sum();
     let after: f64 = found.iter().zip(powers).map(|(cell, &power)| cell.variance / SampleDensity::times(power)).sum();
     [before / (rays * after), rays]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Scene;
+    use crate::spectrum::{Basis, ColorSpace};
+    use crate::trace::{Method, Transport};
+
+    #[test]
+    fn fewer_cells_are_looked_at_where_samples_follow_many_rays() {
+        let cells = |panes: u32| {
+            let mut text = String::from(
+                "[camera]\nposition = [0, -9, 0]\nlook_at = [0, 0, 0]\nvertical_fov = 40\n\
+                 [film]\nwidth = 1024\nheight = 768\n[material.glass]\nthin = { index = 1.8 }\n\
+                 [material.wall]\ndiffuse = { reflectance = 0.5 }\n[material.lamp]\nemissive = { radiance = 1 }\n\
+                 [[object]]\nmaterial = \"lamp\"\nshape.sphere = { center = [0, 0, 20], radius = 1 }\n\
+                 [[object]]\nmaterial = \"wall\"\nshape.quad = { center = [0, 9, 0], u = [20, 0, 0], v = [0, 0, 20] }\n",
+            );
+            for pane in 0..panes {
+                text += &format!(
+                    "[[object]]\nmaterial = \"glass\"\n\
+                     shape.quad = {{ center = [0, {}, 0], u = [9, 0, 0], v = [0, 0, 9] }}\n",
+                    0.1 * f64::from(pane)
+                );
+            }
+            let scene = Scene::parse(&text, ".").expect("it is a scene");
+            let transport = Transport::Random { split: 0.05, roulette: 0.05 };
+            let world = World::new(&scene, Method::of_paths(Basis::rgb(ColorSpace::Rec709), transport, 0));
+            let [columns, rows] = adaptive(&world, false).expect("there is noise").density.cells;
+            columns * rows
+        };
+        let most = MOST_CELLS as u32;
+        assert!((most - most / 32..=most).contains(&cells(1)), "{}", cells(1));
+        let few = cells(60);
+        assert!(few < most / 2 && few > FEW_CELLS as u32, "{few}");
+    }
 }

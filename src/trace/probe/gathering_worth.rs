@@ -3,7 +3,8 @@
 use std::cell::Cell;
 
 use super::pilot::SampleWorth;
-use crate::math::Sampler;
+use super::reach::reaches_photons;
+use crate::math::{DVec3, Sampler};
 use crate::spectrum::apply;
 use crate::trace::World;
 use crate::trace::camera::{Observer, PathTracer};
@@ -37,9 +38,10 @@ const SEED: u64 = 0x6761_7468;
 /// Gathers photons of two maps by the same paths: what differs is noise of the photons. It is overestimated where a
 /// pixel of many samples gathers at more places than these few, so that too many photons are sent rather than too few.
 ///
-/// All of the image counts, also where only a part of it is made, so that all parts are made alike.
-pub fn gathered_worth(world: &World) -> Option<GatheredWorth> {
-    in_lanes!(&world.method.basis, N => gather::<N>(world))
+/// All of the image counts, also where only a part of it is made, so that all parts are made alike. None if no photon
+/// lies near places that paths from the camera [reach](super::reached_places).
+pub fn gathered_worth(world: &World, places: &[DVec3]) -> Option<GatheredWorth> {
+    in_lanes!(&world.method.basis, N => gather::<N>(world, places))
 }
 
 /// All light that was gathered.
@@ -73,7 +75,7 @@ impl Sums {
     }
 }
 
-fn gather<const N: usize>(world: &World) -> Option<GatheredWorth> {
+fn gather<const N: usize>(world: &World, reached: &[DVec3]) -> Option<GatheredWorth> {
     let film = world.scene.film;
     let to_xyz = film.color_space.to_xyz();
     let places = SIDE * SIDE;
@@ -82,6 +84,9 @@ fn gather<const N: usize>(world: &World) -> Option<GatheredWorth> {
     let (mut sent, mut rays, mut of_samples, mut second_moment) = (0, 0, 0, 0.0);
     for map in 0..MAPS {
         let photons = photons::<N, Polarized>(world, &Pass::of_photons_alone(world, map as u32))?;
+        if map == 0 && !reaches_photons(world, reached, &photons) {
+            return None;
+        }
         (sent, rays) = (sent + photons.sent, rays + photons.stats.rays);
         let by_gathering = Gathered::default();
         let mut tracer = PathTracer::<N>::new(world).with_photons(Some(&photons)).with_observer(&by_gathering);

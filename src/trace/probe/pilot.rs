@@ -1,6 +1,7 @@
 //! What photons and camera samples are worth, learned from a few of both; in XYZ, so that it is the same in every color
 //! space.
 
+use super::cost::photons_within;
 use crate::light::LightId;
 use crate::math::Sampler;
 use crate::spectrum::apply;
@@ -38,10 +39,8 @@ pub struct SampleWorth {
 const PHOTONS: u64 = 4096;
 const ALL: u64 = 4 * PHOTONS;
 const IMAGES: u64 = 4;
-/// Rays that the photons of all images follow, about, and how many photons tell how many one follows: in a heap of
-/// glass balls a hundred.
+/// Rays that the photons of all images follow, about.
 const RAYS: f64 = (1 << 18) as f64;
-const FIRST: u64 = 1024;
 /// Pixels along each side of the image whose samples are compared, and how many of each.
 const SIDE: u32 = 24;
 const SAMPLES: u32 = 4;
@@ -61,19 +60,9 @@ fn weigh_photons<const N: usize>(whole: &World) -> Vec<PhotonWorth> {
     world.scene.film = world.scene.film.of_the_format();
     let groups = whole.photon_light_groups();
     let photons = (ALL / groups.len().max(1) as u64).min(PHOTONS);
-    let affordable = RAYS / (rays_of_photon::<N>(&mut world) * (IMAGES * groups.len().max(1) as u64) as f64);
-    let photons = photons.min(affordable as u64);
+    let affordable = photons_within(&world, RAYS / (IMAGES * groups.len().max(1) as u64) as f64);
+    let photons = photons.min(affordable);
     groups.into_iter().filter_map(|lights| weigh::<N>(whole, &mut world, lights, photons)).collect()
-}
-
-/// How many rays a photon follows, by a few of each target. The world is left with these few.
-fn rays_of_photon<const N: usize>(world: &mut World) -> f64 {
-    if let Some(targets) = &mut world.photon_targets {
-        let each = (FIRST / targets.targets.len() as u64).max(1);
-        targets.targets.iter_mut().for_each(|target| target.photons = target.photons.min(each));
-    }
-    let first = light_pass::splats::<N, Polarized>(world, &mut |_| ());
-    first.stats.rays as f64 / first.photons.max(1) as f64
 }
 
 /// What so many photons of some lights are worth, in a world whose targets are replaced.

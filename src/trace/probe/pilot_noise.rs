@@ -1,13 +1,12 @@
 //! Which of two ways to render a scene takes less time to an equal error, learned from some thousand camera samples of
 //! each.
 
-use super::cost::with_few_photons;
+use super::cost::few_photons;
 use crate::math::Sampler;
 use crate::spectrum::apply;
 use crate::trace::World;
 use crate::trace::camera::PathTracer;
-use crate::trace::pass::Pass;
-use crate::trace::photon::{LightPaths, LightVertices, PhotonMap, photons};
+use crate::trace::photon::{LightPaths, LightVertices, PhotonMap};
 use crate::trace::walk::Polarized;
 use crate::trace::width::in_lanes;
 
@@ -26,8 +25,7 @@ const SEED: u64 = 0x7265_7361;
 pub fn pilot_noise(world: &World) -> PilotNoise {
     in_lanes!(&world.method.basis, N => {
         let vertices = LightPaths::new(world, world.method.seed).map(|light_paths| light_paths.few::<N>());
-        let few = with_few_photons(world);
-        let photons = photons::<N, Polarized>(&few, &Pass::of_photons_alone(&few, 0));
+        let (few, photons) = few_photons::<N, Polarized>(world);
         weigh(&few, photons.as_ref(), vertices.as_ref())
     })
 }

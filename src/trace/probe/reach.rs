@@ -5,9 +5,7 @@ use std::cell::RefCell;
 use crate::math::{DVec3, Sampler};
 use crate::trace::World;
 use crate::trace::camera::{Observer, PathTracer};
-use crate::trace::pass::Pass;
-use crate::trace::photon::photons;
-use crate::trace::walk::Polarized;
+use crate::trace::photon::PhotonMap;
 use crate::trace::width::in_lanes;
 
 /// Camera samples along each side of the image that look where the camera's paths lead.
@@ -42,19 +40,12 @@ impl Observer for Reached {
     }
 }
 
-/// The photons of one pass that lie within a pixel of such places, where all of `SIDE` times `SIDE` fill the image; as
-/// a share.
-pub fn gathered_photons(world: &World, places: &[DVec3]) -> f64 {
-    in_lanes!(&world.method.basis, N => gathered::<N>(world, places))
-}
-
-fn gathered<const N: usize>(world: &World, places: &[DVec3]) -> f64 {
-    let Some(photons) = photons::<N, Polarized>(world, &Pass::of_photons_alone(world, 0)) else { return 0.0 };
+/// Whether any photon lies within a pixel of such places, where all of `SIDE` times `SIDE` fill the image.
+pub fn reaches_photons<const N: usize>(world: &World, places: &[DVec3], photons: &PhotonMap<N>) -> bool {
     let camera = &world.scene.camera;
     let coarse = f64::from(world.scene.film.width) / f64::from(SIDE);
-    let found = |place: &&DVec3| {
-        let radius = coarse * camera.pixel_width((**place - camera.position()).length());
-        photons.any_near(**place, radius)
-    };
-    places.iter().filter(found).count() as f64 / places.len().max(1) as f64
+    places.iter().any(|&place| {
+        let radius = coarse * camera.pixel_width((place - camera.position()).length());
+        photons.any_near(place, radius)
+    })
 }

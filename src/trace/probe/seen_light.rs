@@ -1,6 +1,7 @@
 //! How much of the light seen polarization may change, learned from some hundred camera samples and some thousand
 //! photons.
 
+use super::cost::photons_within;
 use crate::film::Window;
 use crate::math::Sampler;
 use crate::trace::camera::PathTracer;
@@ -15,9 +16,11 @@ use crate::trace::{LightPass, MapPasses, World};
 pub const SIDE: u32 = 24;
 /// Parts of the view along each side.
 const PARTS: u32 = 6;
-/// Most photons that are shown, and most that are gathered.
-const SHOWN: u64 = 2048;
-const GATHERED: u64 = 2048;
+/// Most photons that are shown, and most that are gathered; fewer where they follow more rays than this, but never too
+/// few.
+const MOST: u64 = 2048;
+const MOST_RAYS: f64 = (1 << 19) as f64;
+const FEWEST: u64 = 256;
 
 /// Light that was seen, X + Y + Z summed, and by how much polarization may change it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,9 +53,10 @@ pub fn seen_light(world: &World) -> SeenLight {
 
 /// The world with fewer photons than its method asks for.
 pub fn with_fewer_photons(world: &World) -> World {
+    let most = photons_within(world, MOST_RAYS).clamp(FEWEST, MOST);
     let fewer = |pass: &LightPass| LightPass {
-        photons: pass.photons.min(SHOWN),
-        map: pass.map.map(|map| MapPasses { photons: map.photons.min(GATHERED), ..map }),
+        photons: pass.photons.min(most),
+        map: pass.map.map(|map| MapPasses { photons: map.photons.min(most), ..map }),
         ..pass.clone()
     };
     world.with_light_pass(world.method.light_pass.as_ref().map(fewer))
