@@ -11,7 +11,7 @@ use abbe::plan::plan;
 use abbe::scene::Source;
 use abbe::{Image, Rendering, Result, Scene, write_plan};
 
-use command::cli::{self, Job, Output, Request};
+use command::cli::{self, Job, Jobs, Output, Request};
 use command::events::{Event, write_account};
 use command::keep::{self, Keep};
 use command::outputs::{check_outputs, check_standard, check_words, is_standard};
@@ -19,7 +19,7 @@ use command::{catalog, diff, info, merge, messages, progress, view};
 
 fn main() -> ExitCode {
     let answered = cli::parse().and_then(|request| match request {
-        Request::Render(job) => run(&job),
+        Request::Render(jobs) => run(&jobs),
         Request::Answer(text) => messages::answer(&text).map(|()| ExitCode::SUCCESS),
         Request::Catalog(query) => listed(catalog::lines(&query, std::io::stdout().is_terminal())),
         Request::Info(query) => listed(info::lines(&query)),
@@ -37,8 +37,28 @@ fn listed(lines: Result<Vec<String>>) -> Result<ExitCode> {
     messages::answer_lines(&lines?).map(|()| ExitCode::SUCCESS)
 }
 
-fn run(job: &Job) -> Result<ExitCode> {
-    let source = if is_standard(&job.scene) { Source::standard_input() } else { Source::read(&job.scene) }?;
+/// Does one frame after another, until one is stopped.
+fn run(jobs: &Jobs) -> Result<ExitCode> {
+    let mut read = None;
+    for job in jobs.each() {
+        let job = job?;
+        let source = match &mut read {
+            Some(source) => source,
+            none if is_standard(&job.scene) => none.insert(Source::standard_input()?),
+            none => none.insert(Source::read(&job.scene)?),
+        };
+        if let Some(frame) = job.frame.filter(|_| jobs.are_several()) {
+            messages::say(&format!("frame {frame}"));
+        }
+        let code = do_one(&job, source)?;
+        if code != ExitCode::SUCCESS {
+            return Ok(code);
+        }
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn do_one(job: &Job, source: &Source) -> Result<ExitCode> {
     let mut scene = source.compile_with(&job.set)?;
     if let Output::Image { exr: None, .. } = job.output {
         scene.format.spectral = None;

@@ -202,6 +202,9 @@ fn numbers_on_the_command_line_are_checked() {
     is_refused("--layers", "N,albdo", "there is no layer `albdo`: did you mean albedo?");
     let both = "there are no layers `albdo` (did you mean albedo?), `varianc` (did you mean variance?)";
     is_refused("--layers", "albdo,N,varianc", both);
+    let frames = "frames are a whole number from 0 to 4294967295, or a range such as 1-24 or 1-24x2";
+    (["-3", "1.5", "1-24x0"]).iter().for_each(|wrong| is_refused("--frame", wrong, frames));
+    is_refused("--frame", "24-1", "24-1 ends before it begins: write 1-24");
     is_refused("--time", "soon", "a time is a number with a unit, such as 60s, 5m or 1h");
     is_refused("--time", "-3s", "a time is a number with a unit, such as 60s, 5m or 1h");
     for (flag, value, message) in [
@@ -209,8 +212,6 @@ fn numbers_on_the_command_line_are_checked() {
         ("--samples", "0", "--samples takes a whole number from 1 to 4294967295, not 0"),
         ("--samples", "-3", "--samples takes a whole number from 1 to 4294967295, not -3"),
         ("--threads", "1025", "--threads takes a whole number from 1 to 1024, not 1025"),
-        ("--frame", "-3", "--frame takes a whole number from 0 to 4294967295, not -3"),
-        ("--frame", "1.5", "--frame takes a whole number, not 1.5"),
         ("--exposure", "bright", "--exposure takes a number, not bright"),
     ] {
         assert_refuses(&["ball.toml", flag, value], 2, &format!("error: {message}\n"));

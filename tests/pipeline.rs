@@ -276,6 +276,50 @@ fn a_frame_is_a_variable_and_a_number_in_the_names_of_files() {
 }
 
 #[test]
+fn frames_are_rendered_one_after_another() {
+    let folder = folder();
+    folder.write("turn.toml", &SCENE.replace("degrees = 30", "degrees = \"$frame\""));
+    let frames = |arguments: &[&str]| {
+        render(&folder, &["turn.toml"].into_iter().chain(arguments.iter().copied()).collect::<Vec<_>>())
+    };
+    let bytes = |name: &str| fs::read(folder.path().join(name)).expect("the image was written");
+    assert_eq!(frames(&["--quiet", "--frame", "2", "--exr", "two.exr"]).code, Some(0));
+    let several = ["--frame", "1-4x1", "--exr", "t.%d.exr", "--report", "t.%d.json", "--checkpoint", "60s"];
+    let rendered = frames(&several);
+    assert_eq!(rendered.code, Some(0), "{}", rendered.stderr);
+    let told: Vec<&str> = rendered.stderr.lines().filter(|line| line.starts_with("frame ")).collect();
+    assert_eq!(told, ["frame 1", "frame 2", "frame 3", "frame 4"]);
+    assert!(bytes("t.2.exr") == bytes("two.exr") && bytes("t.1.exr") != bytes("t.4.exr"));
+    assert!(bytes("t.3.json").starts_with(b"{"));
+    // What is done is not done again.
+    fs::remove_file(folder.path().join("t.4.exr")).expect("it was written");
+    let done = frames(&[&several[..], &["--resume"]].concat());
+    assert!(done.code == Some(0) && done.stderr.matches("nothing is left to be done").count() == 3, "{}", done.stderr);
+    assert_eq!(bytes("t.4.exr").len(), bytes("t.1.exr").len());
+    let piped = fed(&folder, &["-", "--frame", "3-4", "--exr", "p.%d.exr", "--quiet"], &bytes("turn.toml"));
+    assert!(piped.status.code() == Some(0) && bytes("p.3.exr") == bytes("t.3.exr"), "{}", text(&piped.stderr));
+    assert_eq!(frames(&["--check", "--frame", "1-3"]).stderr.matches("is a valid scene").count(), 3);
+    for (arguments, message) in [
+        (
+            &["--exr", "one.exr"][..],
+            "one.exr would be the name of every frame\nhelp: put its number into it: one.%04d.exr",
+        ),
+        (&["--exr", "-"], "- would be the name of every frame"),
+        (
+            &["--png", "a/one.png"],
+            "a/one.png would be the name of every frame\nhelp: put its number into it: a/one.%04d.png",
+        ),
+        (&["--report", "one.json"], "one.json would be the name of every frame"),
+        (&["--progress", "openjd"], "--progress is of one frame"),
+        (&["--plan-file", "p.%d.plan"], "--plan-file is of one frame"),
+    ] {
+        let refused = frames(&[&["--frame", "1-2"], arguments].concat());
+        let said = refused.stdout + &refused.stderr;
+        assert!(refused.code == Some(2) && said.contains(message), "{arguments:?}: {said}");
+    }
+}
+
+#[test]
 fn the_image_says_what_was_set() {
     let folder = folder();
     let sets = ["--set", "film.width=5", "--set", "object.ball.material=gold"];

@@ -12,7 +12,7 @@ use abbe::{Options, Result};
 use clap::error::{ContextKind, ErrorKind};
 use clap::{Command, CommandFactory, Parser};
 
-use super::frames::numbered;
+use super::frames::{Frames, check_numbered, numbered};
 use super::meant::meant;
 use super::messages::{Listener, Protocol, is_colored, listener, speak_to};
 use super::outputs::{check_exposure, check_png, ends_in, is_standard, refuse};
@@ -45,6 +45,7 @@ Examples:
   render merge prism.exr prism.*.part             lay them together
   render --plan s.toml --plan-file s.plan         make a plan for all parts
   render --set film.width=320 scenes/prism.toml   change a value of the scene
+  render --frame 1-24 turn.toml                   render frames, one by one
   render - --exr frame.exr < scenes/prism.toml    read it from standard input
   render --json --exr scenes/prism.toml           report to a program
   render catalog --help                           see which glasses it knows
@@ -58,7 +59,7 @@ Exit codes: 0 done, 1 the render or a file failed, 2 bad arguments or scene,
 130 stopped by Ctrl-C.";
 
 /// Render a TOML scene to a linear OpenEXR image.
-#[derive(Parser)]
+#[derive(Clone, Parser)]
 #[command(name = "render", version, after_help = HELP)]
 struct Arguments {
     /// The scene, a TOML file; - is standard input
@@ -98,9 +99,9 @@ struct Arguments {
     set: Vec<String>,
 
     /// The number of a frame: the value of the variable frame, and of every %04d or %d in the names of the files to
-    /// write; %% is a percent there
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32))]
-    frame: Option<u32>,
+    /// write; %% is a percent there. 1-24 are frames one after another, and 1-24x2 is every second of them
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    frame: Option<Frames>,
 
     /// Write only warnings and errors
     #[arg(long, conflicts_with = "json")]
@@ -211,8 +212,47 @@ fn layers(text: &str) -> std::result::Result<LayerList, String> {
     Layer::of_names(text.split(',').map(str::trim)).map(LayerList)
 }
 
+/// What is wanted of a scene, frame by frame.
+pub struct Jobs(Box<Arguments>);
+
+impl Jobs {
+    /// Whether there may be more than one.
+    pub fn are_several(&self) -> bool {
+        self.0.frame.is_some_and(|frames| frames.numbers().nth(1).is_some())
+    }
+
+    /// Each by itself.
+    pub fn each(&self) -> impl Iterator<Item = Result<Job>> {
+        let numbers: Box<dyn Iterator<Item = Option<u32>>> = match self.0.frame {
+            Some(frames) => Box::new(frames.numbers().map(Some)),
+            None => Box::new(std::iter::once(None)),
+        };
+        numbers.map(|frame| job((*self.0).clone(), frame))
+    }
+
+    /// Refuses what several frames cannot have.
+    fn check(&self) -> Result<()> {
+        let Arguments { exr, png, report, plan, plan_file, progress, scene, .. } = &*self.0;
+        if !self.are_several() {
+            return Ok(());
+        }
+        if progress.is_some() {
+            return refuse("--progress is of one frame", Some("give the farm a task for each: --frame 1"));
+        }
+        if !plan && plan_file.is_some() {
+            return refuse("--plan-file is of one frame, and each has a plan of its own", Some("leave it out"));
+        }
+        // Without a scene of its own, --exr has the scene.
+        let exr = exr.iter().flatten().filter(|_| scene.is_some());
+        let files = exr.chain(png).chain(report).chain(plan_file);
+        files.into_iter().try_for_each(|path| check_numbered(path))
+    }
+}
+
 /// A scene and what is wanted of it.
 pub struct Job {
+    /// The frame, if it has a number.
+    pub frame: Option<u32>,
     pub scene: PathBuf,
     /// Values in place of the scene's.
     pub set: Vec<String>,
@@ -237,7 +277,7 @@ pub enum Output {
 
 /// What is asked for.
 pub enum Request {
-    Render(Box<Job>),
+    Render(Jobs),
     Catalog(catalog::Query),
     Info(info::Query),
     View(view::Query),
@@ -274,7 +314,10 @@ pub fn parse() -> Result<Request> {
             {
                 return refuse(&message, Some(&help));
             }
-            parsed.map_or_else(told, |arguments| job(arguments).map(|job| Request::Render(Box::new(job))))
+            parsed.map_or_else(told, |arguments| {
+                let jobs = Jobs(Box::new(arguments));
+                jobs.check().map(|()| Request::Render(jobs))
+            })
         }
     }
 }
@@ -335,7 +378,7 @@ fn within(said: &str) -> Option<String> {
     Some(format!("from {first} to {last}"))
 }
 
-fn job(arguments: Arguments) -> Result<Job> {
+fn job(arguments: Arguments, frame: Option<u32>) -> Result<Job> {
     let idle = [("--plan", arguments.plan), ("--check", arguments.check)].into_iter().find(|(_, asked)| *asked);
     let with_exr = idle.is_none() && (arguments.exr.is_some() || arguments.png.is_none());
     let (scene, exr) = scene_and_image(arguments.scene, arguments.exr, idle.map(|(flag, _)| flag))?;
@@ -350,7 +393,6 @@ fn job(arguments: Arguments) -> Result<Job> {
         let help = "add --exr, or leave --spectral out";
         return refuse("--spectral writes spectra beside an EXR, and --png alone writes none", Some(help));
     }
-    let frame = arguments.frame;
     let mut plan_file = arguments.plan_file.map(|path| numbered(&path, frame)).transpose()?;
     let output = if arguments.plan {
         Output::Plan(plan_file.take())
@@ -388,7 +430,7 @@ fn job(arguments: Arguments) -> Result<Job> {
     };
     let report = arguments.report.map(|path| numbered(&path, frame)).transpose()?;
     let set = frame.map(|frame| format!("set.frame={frame}")).into_iter().chain(arguments.set).collect();
-    Ok(Job { scene, set, output, exposure, options, keep, report })
+    Ok(Job { frame, scene, set, output, exposure, options, keep, report })
 }
 
 /// `--exr` takes an image to write, or nothing; right before the scene it belongs to the scene.

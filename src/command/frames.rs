@@ -1,10 +1,44 @@
-//! The number of a frame in the names of its files.
+//! Frames: which ones, and the number of each in the names of its files.
 
 use std::path::{Path, PathBuf};
+use std::str::FromStr;
 
 use abbe::Result;
 
 use super::outputs::refuse;
+
+/// Frames that are rendered one after another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Frames {
+    first: u32,
+    last: u32,
+    step: u32,
+}
+
+impl Frames {
+    /// Their numbers.
+    pub fn numbers(self) -> impl Iterator<Item = u32> {
+        (self.first..=self.last).step_by(self.step as usize)
+    }
+}
+
+impl FromStr for Frames {
+    type Err = String;
+
+    /// Of `7`, `1-24` or `1-24x2`.
+    fn from_str(text: &str) -> std::result::Result<Self, String> {
+        let number = |text: &str| text.bytes().all(|byte| byte.is_ascii_digit()).then(|| text.parse().ok()).flatten();
+        let (range, step) = text.split_once('x').map_or((text, Some(1)), |(range, step)| (range, number(step)));
+        let (first, last) = range.split_once('-').unwrap_or((range, range));
+        match (number(first), number(last), step) {
+            (Some(first), Some(last), Some(_)) if last < first => {
+                Err(format!("{text} ends before it begins: write {last}-{first}"))
+            }
+            (Some(first), Some(last), Some(step)) if step > 0 => Ok(Self { first, last, step }),
+            _ => Err(format!("frames are a whole number from 0 to {}, or a range such as 1-24 or 1-24x2", u32::MAX)),
+        }
+    }
+}
 
 /// More digits than any number of a frame has.
 const MOST_DIGITS: usize = 20;
@@ -36,12 +70,29 @@ pub fn numbered(path: &Path, frame: Option<u32>) -> Result<PathBuf> {
     }
     name.push_str(rest);
     match foreign(text).filter(|_| frame.is_some() && !is_numbered) {
-        Some(mark) => {
-            let message = format!("{text} would be the name of every frame");
-            refuse(&message, Some(&format!("write %04d in place of {mark}")))
-        }
+        Some(mark) => refuse(&one_name(text), Some(&format!("write %04d in place of {mark}"))),
         None => Ok(name.into()),
     }
+}
+
+/// Refuses a file of several frames whose name has no number.
+///
+/// # Errors
+/// If it is one.
+pub fn check_numbered(path: &Path) -> Result<()> {
+    if numbered(path, Some(0))? != numbered(path, Some(1))? {
+        return Ok(());
+    }
+    let example = match (path.file_stem().and_then(|stem| stem.to_str()), path.extension().and_then(|end| end.to_str()))
+    {
+        (Some(stem), Some(end)) => path.with_file_name(format!("{stem}.%04d.{end}")),
+        _ => "turn.%04d.exr".into(),
+    };
+    refuse(&one_name(&path.display().to_string()), Some(&format!("put its number into it: {}", example.display())))
+}
+
+fn one_name(path: &str) -> String {
+    format!("{path} would be the name of every frame")
 }
 
 /// The least number of digits that stands behind a percent, as in `%04d`, `%4d` or `%d`, and what follows. A `%d` that
@@ -81,6 +132,35 @@ mod tests {
 
     fn name(path: &str, frame: Option<u32>) -> Option<String> {
         numbered(Path::new(path), frame).map(|path| path.display().to_string()).ok()
+    }
+
+    #[test]
+    fn frames_are_one_or_a_range_with_a_step() {
+        let numbers = |text: &str| text.parse::<Frames>().map(|frames| frames.numbers().collect::<Vec<_>>());
+        assert_eq!(numbers("7"), Ok(vec![7]));
+        assert_eq!(numbers("0-3"), Ok(vec![0, 1, 2, 3]));
+        assert_eq!(numbers("4-4"), Ok(vec![4]));
+        assert_eq!(numbers("1-10x4"), Ok(vec![1, 5, 9]));
+        assert_eq!(numbers("4294967295"), Ok(vec![u32::MAX]));
+        assert_eq!(numbers("24-1"), Err("24-1 ends before it begins: write 1-24".into()));
+        for wrong in ["", "-3", "1.5", "1-", "-", "1-24x0", "1-24x", "+1", "1-+2", "a", "1-2-3", "4294967296", "1 - 2"]
+        {
+            let error = numbers(wrong).expect_err(wrong);
+            assert!(error.contains("a range such as 1-24"), "{error}");
+        }
+    }
+
+    #[test]
+    fn a_name_without_a_number_is_no_name_of_several_frames() {
+        let help = |path: &str| match check_numbered(Path::new(path)) {
+            Err(abbe::Error::Arguments { message, help: Some(help) }) => Some([message, help]),
+            _ => None,
+        };
+        assert_eq!(help("out/turn.%04d.exr"), None);
+        let [message, told] = help("out/turn.exr").expect("it is refused");
+        assert_eq!(message, "out/turn.exr would be the name of every frame");
+        assert_eq!(told, "put its number into it: out/turn.%04d.exr");
+        assert!(help("-").is_some() && help("100%%d.exr").is_some());
     }
 
     #[test]

@@ -16,7 +16,7 @@ use super::problem::problem;
 use super::progress::Progress;
 
 /// What the command line says of it.
-#[derive(Args)]
+#[derive(Args, Clone)]
 pub struct Flags {
     /// Keep what is done in NAME.checkpoint beside the image, so often and when stopped by Ctrl-C: 60s, 5m, 1h. Of an
     /// image so large that writing takes long, at most 1 % of the time goes into it
@@ -118,6 +118,8 @@ pub struct Keep {
 
 /// Whether the command was told to stop.
 static STOPPED: AtomicBool = AtomicBool::new(false);
+/// Whether Ctrl-C is caught; it is once, however many frames are rendered.
+static IS_CAUGHT: AtomicBool = AtomicBool::new(false);
 /// What it says then, if nothing of the render is kept.
 const NOTHING_KEPT: &str = "stopped; nothing was kept. With --checkpoint 60s, what is done is kept";
 /// The exit code of a command that was.
@@ -139,14 +141,7 @@ impl Keep {
             return refuse(&format!("{name} is there from an earlier run"), Some(help));
         }
         let stops_at_once = checkpoint.is_none() && flags.snapshot.is_none();
-        let caught = ctrlc::set_handler(move || {
-            if stops_at_once {
-                say(NOTHING_KEPT);
-            }
-            if stops_at_once || STOPPED.swap(true, Ordering::Relaxed) {
-                std::process::exit(STOPPED_CODE.into());
-            }
-        });
+        let caught = if IS_CAUGHT.swap(true, Ordering::Relaxed) { Ok(()) } else { catch(stops_at_once) };
         caught.map_err(|error| Error::Arguments { message: format!("cannot catch Ctrl-C: {error}"), help: None })?;
         Ok(Self {
             checkpoint,
@@ -278,6 +273,18 @@ impl Keep {
         }
         say(&format!("stopped; {} keeps what is done. Go on with\n  {}", path.display(), words.join(" ")));
     }
+}
+
+/// Lets Ctrl-C stop the command, at once or after what is done is kept; a second one stops it at once.
+fn catch(stops_at_once: bool) -> std::result::Result<(), ctrlc::Error> {
+    ctrlc::set_handler(move || {
+        if stops_at_once {
+            say(NOTHING_KEPT);
+        }
+        if stops_at_once || STOPPED.swap(true, Ordering::Relaxed) {
+            std::process::exit(STOPPED_CODE.into());
+        }
+    })
 }
 
 /// How many samples of a pixel will do, about, where that is known and more than there are.
