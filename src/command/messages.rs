@@ -209,11 +209,15 @@ pub fn answer_plan(plan: &Plan) -> Result<()> {
     Ok(())
 }
 
-/// How a scene is rendered.
+/// How a scene is rendered. On a terminal, only how long it takes, how accurate it is and what is left out.
 pub fn print_plan(plan: &Plan) {
     match listener() {
         Listener::Program => Event::plan(plan).tell(),
         Listener::Farm => plan.because.iter().for_each(|line| print(line)),
+        _ if std::io::stderr().is_terminal() => {
+            plan.because.iter().take(plan.summary_lines).for_each(|line| say(line));
+            say("(--plan tells how, and why)");
+        }
         _ => plan.because.iter().for_each(|line| say(line)),
     }
 }

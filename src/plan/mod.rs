@@ -44,6 +44,8 @@ pub struct Plan {
     /// What it will cost, how far colors may be off and what is left out; then one decision a line, each with its
     /// numbers.
     pub because: Vec<String>,
+    /// How many of these lines come before the decisions.
+    pub summary_lines: usize,
     /// Processor time that the render will take, about.
     pub processor_time: Duration,
     /// As how many camera samples photons count where it is told how much is done.
@@ -94,6 +96,7 @@ pub fn plan(scene: &Scene<Curve>) -> Plan {
     let left_out: Vec<String> =
         polarization.left_out.into_iter().chain(lights(scene, method.light_pass.as_ref())).collect();
     because.extend(left_out.iter().cloned());
+    let summary_lines = because.len();
     because.extend(decisions);
     if probe.parted > 0.0 {
         because.push(format!("lanes separate in {:.0} % of the camera samples", 100.0 * probe.parted));
@@ -103,6 +106,7 @@ pub fn plan(scene: &Scene<Curve>) -> Plan {
         photon_cost: times.in_samples(on_average.time),
         method,
         because,
+        summary_lines,
         processor_time,
         candidates,
         left_out,

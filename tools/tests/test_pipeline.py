@@ -3,6 +3,7 @@
     pytest tools/tests/test_pipeline.py
 """
 
+import contextlib
 import json
 import os
 import subprocess
@@ -129,3 +130,25 @@ def test_a_driver_stops_at_a_mistake_and_says_it(tmp_path):
     command = [sys.executable, str(render.ROOT / "examples/turntable.py"), str(tmp_path), "--set", "film.widht=3"]
     run = subprocess.run(command, capture_output=True, text=True, check=False, timeout=600, env=environment)
     assert (run.returncode, run.stdout) == (2, "frame 1: error unknown key `widht`\n")
+
+
+@pytest.mark.skipif(os.name == "nt", reason="there are no pseudo-terminals")
+def test_on_a_terminal_a_render_says_what_matters_of_its_plan_and_elsewhere_all(tmp_path):
+    import pty
+
+    command = [str(render.binary()), str(TURNTABLE), *SMALL, "--exr", str(tmp_path / "a.exr")]
+    all_of_it = subprocess.run(command, capture_output=True, text=True, check=True, timeout=600).stderr.splitlines()
+    ours, theirs = pty.openpty()
+    with subprocess.Popen(command, stderr=theirs) as run:
+        os.close(theirs)
+        said = b""
+        # A terminal that is closed is no file any more.
+        with contextlib.suppress(OSError):
+            while more := os.read(ours, 4096):
+                said += more
+    os.close(ours)
+    assert run.returncode == 0
+    lines = [line.strip() for line in said.decode("utf-8").splitlines()]
+    end = lines.index("(--plan tells how, and why)")
+    assert lines[0].startswith("cost: ") and lines[1:end] == all_of_it[1:end] and end < 5
+    assert all_of_it[end].startswith("model ") and not any(line.startswith("model ") for line in lines)
