@@ -39,16 +39,16 @@ fn listed(lines: Result<Vec<String>>) -> Result<ExitCode> {
 
 /// Does one frame after another, until one is stopped.
 fn run(jobs: &Jobs) -> Result<ExitCode> {
-    let mut read = None;
-    for job in jobs.each() {
+    let (mut read, count) = (None, jobs.count());
+    for (number, job) in (1..=count).zip(jobs.each()) {
         let job = job?;
         let source = match &mut read {
             Some(source) => source,
             none if is_standard(&job.scene) => none.insert(Source::standard_input()?),
             none => none.insert(Source::read(&job.scene)?),
         };
-        if let Some(frame) = job.frame.filter(|_| jobs.are_several()) {
-            messages::say(&format!("frame {frame}"));
+        if let Some(frame) = job.frame.filter(|_| count > 1) {
+            messages::say(&format!("frame {frame}, {number} of {count}"));
         }
         let code = do_one(&job, source)?;
         if code != ExitCode::SUCCESS {

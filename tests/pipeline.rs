@@ -288,7 +288,7 @@ fn frames_are_rendered_one_after_another() {
     let rendered = frames(&several);
     assert_eq!(rendered.code, Some(0), "{}", rendered.stderr);
     let told: Vec<&str> = rendered.stderr.lines().filter(|line| line.starts_with("frame ")).collect();
-    assert_eq!(told, ["frame 1", "frame 2", "frame 3", "frame 4"]);
+    assert_eq!(told, ["frame 1, 1 of 4", "frame 2, 2 of 4", "frame 3, 3 of 4", "frame 4, 4 of 4"]);
     assert!(bytes("t.2.exr") == bytes("two.exr") && bytes("t.1.exr") != bytes("t.4.exr"));
     assert!(bytes("t.3.json").starts_with(b"{"));
     // What is done is not done again.

@@ -216,9 +216,9 @@ fn layers(text: &str) -> std::result::Result<LayerList, String> {
 pub struct Jobs(Box<Arguments>);
 
 impl Jobs {
-    /// Whether there may be more than one.
-    pub fn are_several(&self) -> bool {
-        self.0.frame.is_some_and(|frames| frames.numbers().nth(1).is_some())
+    /// How many there are.
+    pub fn count(&self) -> u64 {
+        self.0.frame.map_or(1, Frames::count)
     }
 
     /// Each by itself.
@@ -233,7 +233,7 @@ impl Jobs {
     /// Refuses what several frames cannot have.
     fn check(&self) -> Result<()> {
         let Arguments { exr, png, report, plan, plan_file, progress, scene, .. } = &*self.0;
-        if !self.are_several() {
+        if self.count() == 1 {
             return Ok(());
         }
         if progress.is_some() {

@@ -20,6 +20,11 @@ impl Frames {
     pub fn numbers(self) -> impl Iterator<Item = u32> {
         (self.first..=self.last).step_by(self.step as usize)
     }
+
+    /// How many they are.
+    pub fn count(self) -> u64 {
+        u64::from((self.last - self.first) / self.step) + 1
+    }
 }
 
 impl FromStr for Frames {
@@ -137,6 +142,9 @@ mod tests {
     #[test]
     fn frames_are_one_or_a_range_with_a_step() {
         let numbers = |text: &str| text.parse::<Frames>().map(|frames| frames.numbers().collect::<Vec<_>>());
+        for (text, count) in [("7", 1), ("1-10x4", 3), ("1-9x4", 3), ("1-8x4", 2), ("0-4294967295", 1 << 32)] {
+            assert_eq!(text.parse::<Frames>().map(Frames::count), Ok(count));
+        }
         assert_eq!(numbers("7"), Ok(vec![7]));
         assert_eq!(numbers("0-3"), Ok(vec![0, 1, 2, 3]));
         assert_eq!(numbers("4-4"), Ok(vec![4]));
