@@ -14,7 +14,8 @@ use super::outputs::{check_png, refuse, spare};
 const HELP: &str = "\
 Files with a variance layer agree if they differ by no more than their noise: if every z = (a - b) / sqrt(va + vb), \
 and that of each channel's mean, is within what chance exceeds in one of a hundred pairs of images. \
-Other files agree if all values are equal, or relMSE is at most --tolerance.
+Other files agree if all values are equal, or relMSE is at most --tolerance. \
+Of a crop beside its image, the pixels that both have are compared.
 
 Examples:
   render diff old.exr new.exr                       do they agree, and if not, where
@@ -75,6 +76,10 @@ fn compared(query: &Query) -> Result<bool> {
     let found = compare(files.each_ref(), query.layer.as_deref(), names)?;
     let agrees = found.agrees(query.tolerance);
     let mut lines = vec![format!("{} and {} {}", names[0], names[1], if agrees { "agree" } else { "differ" })];
+    if found.is_part {
+        let (lines, [width, height], [x, y]) = (&mut lines[0], found.bounds.size, found.bounds.corner);
+        lines.push_str(&format!(" in the {width} x {height} pixels at ({x}, {y}) that both have"));
+    }
     lines[0].push_str(if found.is_equal { ": all values are equal" } else { "" });
     lines.extend(figures(&found, query.tolerance));
     if let Some(png) = &query.png {

@@ -97,6 +97,11 @@ impl ExrFile {
         }
     }
 
+    /// The same with some of the pixels alone, of the parts that have all of these.
+    pub(crate) fn cut(&self, bounds: PixelBounds) -> Self {
+        Self { parts: self.parts.iter().filter_map(|part| part.cut(bounds)).collect(), ..*self }
+    }
+
     /// Its layers, the beauty of a part before the others.
     pub fn layers(&self) -> Vec<ExrLayer<'_>> {
         let mut layers = Vec::new();

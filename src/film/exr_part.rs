@@ -23,6 +23,14 @@ impl PixelBounds {
         [self.corner[0] + (index % self.size[0]) as i64, self.corner[1] + (index / self.size[0]) as i64]
     }
 
+    /// The pixels that another one holds as well, if there are any.
+    pub fn common(&self, other: &Self) -> Option<Self> {
+        let corner = [0, 1].map(|axis| self.corner[axis].max(other.corner[axis]));
+        let [ends, others] = [self, other].map(Self::last);
+        let size = [0, 1].map(|axis| ends[axis].min(others[axis]) + 1 - corner[axis]);
+        size.iter().all(|&size| size > 0).then(|| Self { corner, size: size.map(|size| size as usize) })
+    }
+
     /// The last column and row.
     pub fn last(&self) -> [i64; 2] {
         [0, 1].map(|axis| self.corner[axis] + self.size[axis] as i64 - 1)
@@ -46,6 +54,28 @@ pub struct Part {
     pub channels: Vec<Channel>,
 }
 
+impl Part {
+    /// Those of its pixels, if it has all of them.
+    pub(super) fn cut(&self, bounds: PixelBounds) -> Option<Self> {
+        let [left, top] = [0, 1].map(|axis| (bounds.corner[axis] - self.bounds.corner[axis]) as usize);
+        let row = |y: usize| {
+            let first = (top + y) * self.bounds.size[0] + left;
+            first..first + bounds.size[0]
+        };
+        let places = || (0..bounds.size[1]).flat_map(row);
+        let channels = || self.channels.iter().map(|channel| channel.of_pixels(places())).collect();
+        let is_whole = self.bounds.common(&bounds) == Some(bounds);
+        is_whole.then(|| Self {
+            name: self.name.clone(),
+            bounds,
+            storage: self.storage.clone(),
+            attributes: self.attributes.clone(),
+            camera: self.camera,
+            channels: channels(),
+        })
+    }
+}
+
 /// One number of every pixel.
 #[derive(Debug)]
 pub struct Channel {
@@ -60,6 +90,15 @@ impl Channel {
     /// Layer and name, as the file has them.
     pub fn full_name(&self) -> String {
         if self.layer.is_empty() { self.name.clone() } else { format!("{}.{}", self.layer, self.name) }
+    }
+
+    fn of_pixels(&self, places: impl Iterator<Item = usize>) -> Self {
+        let samples = match &self.samples {
+            FlatSamples::F16(values) => FlatSamples::F16(places.map(|at| values[at]).collect()),
+            FlatSamples::F32(values) => FlatSamples::F32(places.map(|at| values[at]).collect()),
+            FlatSamples::U32(values) => FlatSamples::U32(places.map(|at| values[at]).collect()),
+        };
+        Self { layer: self.layer.clone(), name: self.name.clone(), samples }
     }
 
     /// `half`, `float` or `uint`.

@@ -17,8 +17,10 @@ const SAME_SPACE: f64 = 1e-3;
 /// How far two images are apart. Pixels with a value that is not finite are left out, but of `torn`.
 #[derive(Clone, Debug)]
 pub struct Difference {
-    /// Where both images lie.
+    /// The pixels that are compared: those that both images have.
     pub bounds: PixelBounds,
+    /// Whether one of them has others as well, as beside a crop of it.
+    pub is_part: bool,
     /// The channels that are compared.
     pub channels: Vec<String>,
     /// Whether every value is the same; those that are no numbers are.
@@ -64,12 +66,20 @@ pub struct WorstPixel {
     pub values: [Vec<f64>; 2],
 }
 
-/// Compares a layer of two files, without a name the beauty. `shown` are the files' names in messages.
+/// Compares a layer of two files, without a name the beauty. `shown` are the files' names in messages. Of a crop or an
+/// overscan beside the image, the pixels that both have are compared.
 ///
 /// # Errors
-/// [`Error::Arguments`] if one of them has no such layer, or their sizes, places, channels or color spaces differ.
+/// [`Error::Arguments`] if one of them has no such layer, or their sizes, channels or color spaces differ, or they
+/// have no pixel in common.
 pub fn compare(files: [&ExrFile; 2], layer: Option<&str>, shown: [&str; 2]) -> Result<Difference> {
     let layers = [files[0].layer(layer, shown[0])?, files[1].layer(layer, shown[1])?];
+    let of_each = layers.each_ref().map(|layer| layer.part.bounds);
+    let common = of_each[0].common(&of_each[1]).filter(|_| files[0].display == files[1].display);
+    if let Some(common) = common.filter(|_| of_each[0] != of_each[1]) {
+        let [a, b] = files.map(|file| file.cut(common));
+        return Ok(Difference { is_part: true, ..compare([&a, &b], layer, shown)? });
+    }
     comparable(files, &layers, shown)?;
     let [a, b] = layers.each_ref().map(ExrLayer::values);
     let bounds = layers[0].part.bounds;
@@ -98,7 +108,7 @@ fn comparable(files: [&ExrFile; 2], layers: &[ExrLayer; 2], shown: [&str; 2]) ->
             let ([x, y], [width, height], full) = (bounds[i].corner, bounds[i].size, files[i].display.size);
             format!("{width} x {height} pixels at ({x}, {y}) of {} x {}", full[0], full[1])
         };
-        return refuse([0, 1].map(place), "images of other sizes or crops cannot be compared");
+        return refuse([0, 1].map(place), "images of one size can be compared where both have pixels");
     }
     let names = layers
         .each_ref()
@@ -123,6 +133,7 @@ fn measured([a, b]: [&[&Channel]; 2], bounds: PixelBounds) -> Difference {
     let (mut sums, mut squares, mut values, mut most) = ([0.0; 2], 0.0, 0usize, 0.0);
     let mut found = Difference {
         bounds,
+        is_part: false,
         channels: a.iter().map(|channel| channel.name.clone()).collect(),
         is_equal: true,
         left_out: 0,

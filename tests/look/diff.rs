@@ -256,12 +256,47 @@ fn a_pixel_that_is_no_number_in_one_image_alone_is_white_and_named() {
 }
 
 #[test]
+fn of_a_crop_the_pixels_that_both_have_are_compared() {
+    let folder = Folder::new();
+    folder.write("room.toml", SCENE);
+    let made = |name: &str, more: &[&str]| {
+        let words = [&["room.toml", "--quiet", "--samples", "16", "--layers", "variance,samples", "--exr", name], more];
+        assert_eq!(render(&folder, &words.concat()).code, Some(0));
+    };
+    made("whole.exr", &[]);
+    made("crop.exr", &["--crop", "6,4,9,5"]);
+    made("wide.exr", &["--overscan", "3"]);
+    made("other.exr", &["--crop", "6,4,9,5", "--seed", "7"]);
+    made("beside.exr", &["--crop", "0,0,3,3"]);
+    made("small.exr", &["--set", "film.width=16"]);
+    let compared = |a: &str, b: &str| render(&folder, &["diff", a, b, "--png", "where.png"]);
+    let here = "in the 9 x 5 pixels at (6, 4) that both have";
+    for (a, b) in [("whole.exr", "crop.exr"), ("crop.exr", "whole.exr"), ("wide.exr", "crop.exr")] {
+        let same = compared(a, b);
+        let told = format!("{a} and {b} agree {here}: all values are equal\n");
+        assert_eq!((same.code, same.stdout), (Some(0), told));
+    }
+    let noisy = compared("whole.exr", "other.exr");
+    assert!(noisy.code == Some(0) && noisy.stdout.starts_with(&format!("whole.exr and other.exr agree {here}\n")));
+    assert!(noisy.stdout.contains("\nz "), "{}", noisy.stdout);
+    assert_eq!(read_png(&folder.path().join("where.png")).pixels.len(), 45);
+    let wide = compared("wide.exr", "whole.exr");
+    assert!(wide.stdout.starts_with("wide.exr and whole.exr agree in the 32 x 24 pixels at (0, 0)"), "{}", wide.stdout);
+    for (other, pixels) in
+        [("beside.exr", "3 x 3 pixels at (0, 0) of 32 x 24"), ("small.exr", "16 x 24 pixels at (0, 0)")]
+    {
+        let refused = compared("crop.exr", other);
+        assert!(refused.code == Some(2) && refused.stderr.contains(pixels), "{}", refused.stderr);
+    }
+}
+
+#[test]
 fn what_cannot_be_compared_is_refused_with_an_exit_code_of_its_own() {
     let folder = Folder::new();
     let mut crop = ramp();
     (crop.corner, crop.full) = ([2, 1], [8, 4]);
     let size = "error: a.exr has 4 x 2 pixels at (0, 0) of 4 x 2, b.exr 4 x 2 pixels at (2, 1) of 8 x 4\n\
-                help: images of other sizes or crops cannot be compared\n";
+                help: images of one size can be compared where both have pixels\n";
     assert_refused(&diff(&folder, &ramp(), &crop, &[]), 2, size);
     let mut aces = ramp();
     aces.texts.push(("colorInteropID", "lin_ap1_scene".into()));

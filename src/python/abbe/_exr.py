@@ -75,6 +75,8 @@ class Difference:
     images differ by no more than their `variance` layers explain."""
     is_equal: bool
     """Whether every value is the same."""
+    is_part: bool
+    """Whether one image has pixels that the other has not, as beside a crop of it: those that both have are compared."""
     channels: list[str]
     """The channels that were compared."""
     relative_mse: float
@@ -123,7 +125,8 @@ def diff(a: Picture, b: Picture, *, layer: str | None = None, tolerance: float |
 
     Images that have a `variance` layer agree as long as chance explains every pixel and the mean of each channel: two
     renders with other seeds are told apart by mistake in at most about one of a hundred cases. `tolerance` judges by
-    `relative_mse` instead. `layer` compares a layer such as `"albedo"` in place of the image itself.
+    `relative_mse` instead. `layer` compares a layer such as `"albedo"` in place of the image itself. Of a crop
+    beside its image, the pixels that both have are compared.
 
     Raises `OptionsError` if they cannot be compared, as of other sizes.
     """
