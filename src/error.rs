@@ -140,8 +140,14 @@ pub(crate) fn nearest_file(missing: &Path, endings: &[&str]) -> Option<PathBuf> 
     let files = paths.filter(|path| ends(path) && path.is_file());
     let mut names: Vec<String> = files.filter_map(|path| path.file_name()?.to_str().map(str::to_owned)).collect();
     names.sort();
-    let near = nearest(missing.file_name()?.to_str()?, names.iter().map(String::as_str))?;
-    Some(missing.with_file_name(near))
+    // A short name is no nearer to another for an ending that both have.
+    let stem = |name: &str| Path::new(name).file_stem().and_then(|stem| stem.to_str()).unwrap_or_default().to_owned();
+    let missing_name = missing.file_name()?.to_str()?;
+    let stems: Vec<String> = names.iter().map(|name| stem(name)).collect();
+    let near = nearest(&stem(missing_name), stems.iter().map(String::as_str))?;
+    let mut of_stem = names.iter().zip(&stems).filter(|(_, stem)| *stem == near).map(|(name, _)| name.as_str());
+    let first = of_stem.next()?;
+    Some(missing.with_file_name(nearest(missing_name, [first].into_iter().chain(of_stem)).unwrap_or(first)))
 }
 
 /// The letters that only one of two words has.

@@ -119,9 +119,12 @@ fn one_scene_is_asked_for() {
     assert_refuses(&[], 2, refusal);
     assert_refuses(&["--exr"], 2, refusal);
     assert_refuses(&["--exr", "frame.exr"], 2, refusal);
-    let two = render(&folder(), &["ball.toml", "ball.toml"]);
-    assert_eq!(two.code, Some(2));
-    assert!(two.stderr.starts_with("error: unexpected argument 'ball.toml' found\n"), "{}", two.stderr);
+    let refusal = "error: one scene is rendered at a time, and box.toml is another\n\
+        help: render each by a command of its own\n";
+    assert_refuses(&["ball.toml", "box.toml"], 2, refusal);
+    let refusal = |file: &str, flag: &str| format!("error: {file} is no scene\nhelp: write {flag} {file}\n");
+    assert_refuses(&["ball.toml", "out/frame.exr"], 2, &refusal("out/frame.exr", "--exr"));
+    assert_refuses(&["ball.toml", "look.png"], 2, &refusal("look.png", "--png"));
 }
 
 #[test]
@@ -133,6 +136,7 @@ fn what_other_renderers_call_an_argument_is_refused_with_what_it_is_called_here(
     flag("--spp", "write --samples 64");
     flag("--width", "write --set film.width=640");
     flag("-o", "write --exr frame.exr");
+    flag("--frames", "write --frame 1-24");
     let command =
         |word: &str, help: &str| assert_refuses(&[word, "ball.toml"], 2, &refusal(&format!("command `{word}`"), help));
     command("vew", "did you mean render view?");
@@ -152,6 +156,7 @@ fn a_scene_that_cannot_be_read_is_refused_with_the_nearest_file() {
     assert_refuses(&["--exr", "bal.toml"], 2, missing);
     assert_refuses(&["cup"], 2, &format!("error: there is no scene file cup\n{example}"));
     assert_refuses(&["ball.txt"], 2, "error: there is no scene file ball.txt\nhelp: did you mean ball.toml?\n");
+    assert_refuses(&["bone.toml"], 2, &format!("error: there is no scene file bone.toml\n{example}"));
     assert_refuses(&["no/ball.toml"], 2, &format!("error: there is no scene file no/ball.toml\n{example}"));
     assert_refuses(&["ball.toml/x.toml"], 2, &format!("error: there is no scene file ball.toml/x.toml\n{example}"));
     assert_refuses(&["."], 2, &format!("error: . is a folder, not a scene\n{example}"));
@@ -200,6 +205,8 @@ fn numbers_on_the_command_line_are_checked() {
     is_refused("--error", "0.07%", "write 0.0007 for 0.07 %");
     is_refused("--error", "little", "an error is a number, such as 0.01 for one percent");
     is_refused("--layers", "N,albdo", "there is no layer `albdo`: did you mean albedo?");
+    is_refused("--layers", "depth", "there is no layer `depth` (leave it out: Z is in every file)");
+    is_refused("--layers", "N,normals", "there is no layer `normals` (normals are in N)");
     let both = "there are no layers `albdo` (did you mean albedo?), `varianc` (did you mean variance?)";
     is_refused("--layers", "albdo,N,varianc", both);
     let frames = "frames are a whole number from 0 to 4294967295, or a range such as 1-24 or 1-24x2";

@@ -23,7 +23,8 @@ pub struct Flags {
     #[arg(long, value_name = "TIME", allow_hyphen_values = true, value_parser = time)]
     checkpoint: Option<Duration>,
 
-    /// Go on from NAME.checkpoint, if it is there, to the same image; with more --samples than it has, to a better one
+    /// Go on from NAME.checkpoint, if it is there, to the same image; with more --samples than it has, to a better one.
+    /// It keeps one, too, every 60 s where --checkpoint does not say how often
     #[arg(long)]
     resume: bool,
 

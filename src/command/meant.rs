@@ -20,7 +20,7 @@ const COMMANDS: [(&str, &str); 11] = [
 ];
 
 /// Arguments of other renderers, and what does the same here.
-const ELSEWHERE: [(&str, &str); 10] = [
+const ELSEWHERE: [(&str, &str); 12] = [
     ("--spp", "--samples 64"),
     ("--output", "--exr frame.exr"),
     ("-o", "--exr frame.exr"),
@@ -31,6 +31,8 @@ const ELSEWHERE: [(&str, &str); 10] = [
     ("--size", "--set film.width=640 --set film.height=360"),
     ("--noise", "--error 0.01"),
     ("--aov", "--layers albedo,N"),
+    ("--aovs", "--layers albedo,N"),
+    ("--frames", "--frame 1-24"),
 ];
 
 /// Most letters that are wrong in a command.
@@ -45,9 +47,24 @@ pub fn meant(said: &clap::Error, words: &[OsString]) -> Option<(String, String)>
     if let Some((_, here)) = ELSEWHERE.iter().find(|(there, _)| *there == given) {
         return Some((format!("there is no argument {given}"), format!("write {here}")));
     }
-    let first = words.get(1)?.to_str().filter(|first| !first.starts_with('-') && !first.contains('.'))?;
+    let first = words.get(1)?.to_str()?;
+    if first.starts_with('-') || first.contains('.') {
+        return out_of_place(&given);
+    }
     let wrong = |command: &str| strsim::damerau_levenshtein(first, command);
     let (_, here) =
         COMMANDS.iter().min_by_key(|(command, _)| wrong(command)).filter(|(near, _)| wrong(near) <= WRONG)?;
     Some((format!("there is no command `{first}`"), format!("did you mean {here}?")))
+}
+
+/// The same of a file that no argument names.
+fn out_of_place(given: &str) -> Option<(String, String)> {
+    match given.rsplit_once('.')?.1 {
+        "toml" => {
+            let message = format!("one scene is rendered at a time, and {given} is another");
+            Some((message, "render each by a command of its own".into()))
+        }
+        ending @ ("exr" | "png") => Some((format!("{given} is no scene"), format!("write --{ending} {given}"))),
+        _ => None,
+    }
 }

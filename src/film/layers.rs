@@ -206,8 +206,25 @@ impl Layer {
     }
 }
 
+/// What to ask for in place of a layer that other renderers have by this name.
+pub fn layer_elsewhere(name: &str) -> Option<&'static str> {
+    match name.to_lowercase().as_str() {
+        "z" | "depth" => Some("leave it out: Z is in every file"),
+        "beauty" | "rgb" | "rgba" | "a" | "alpha" => Some("leave it out: the image and its A are in every file"),
+        "normal" | "normals" => Some("normals are in N"),
+        "position" | "positions" => Some("places are in P"),
+        "crypto" | "cryptomatte" => Some("ask for CryptoObject, CryptoMaterial or CryptoAsset"),
+        _ => None,
+    }
+}
+
 /// What is told of names that no layer has, at least one.
 fn unknown_layers(unknown: &[&str]) -> String {
+    if let [name] = unknown
+        && let Some(help) = layer_elsewhere(name)
+    {
+        return format!("there is no layer `{name}` ({help})");
+    }
     let known = || Layer::NAMES.iter().map(|(known, _)| *known).chain([Layer::ALL]);
     let meant: Vec<Option<&str>> = unknown.iter().map(|name| nearest(name, known())).collect();
     let list = known().collect::<Vec<_>>().join(", ");

@@ -38,7 +38,7 @@ pub use file::{check_writable, replace_file};
 pub use filter::Filter;
 pub use format::{Compression, Format, Precision};
 pub use image::{DEPTH_OF_NOTHING, Film, Pixel, Sample};
-pub use layers::{FirstSurface, LONGEST_NAME, Layer, LayerImage, light_layer_name, polarization};
+pub use layers::{FirstSurface, LONGEST_NAME, Layer, LayerImage, layer_elsewhere, light_layer_name, polarization};
 pub use mitchell::Mitchell;
 pub use picture::{film_png, png, write_png, write_rgb8};
 pub use rows::Rows;

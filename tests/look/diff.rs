@@ -313,8 +313,8 @@ fn what_cannot_be_compared_is_refused_with_an_exit_code_of_its_own() {
     folder.write("b.exr", "no image");
     let broken = "error: cannot read b.exr: it is no complete OpenEXR image (it does not begin as one does)\n";
     assert_refused(&render(&folder, &["diff", "a.exr", "b.exr", "--png", "c.png"]), 2, broken);
-    let missing = "error: there is no image file c.exr\nhelp: did you mean a.exr?\n";
-    assert_refused(&render(&folder, &["diff", "a.exr", "c.exr"]), 2, missing);
+    let missing = "error: there is no image file A.exr\nhelp: did you mean a.exr?\n";
+    assert_refused(&render(&folder, &["diff", "a.exr", "A.exr"]), 2, missing);
     assert_eq!(render(&folder, &["diff", "a.exr"]).code, Some(2));
     assert_eq!(folder.listing(), ["a.exr", "b.exr"]);
 }

@@ -162,8 +162,8 @@ fn what_cannot_be_shown_is_refused_and_nothing_is_written() {
     assert_refused(&view(&["a.exr", "--exposure", "nan"]), 2, exposure);
     let depth = "error: --exposure is for colors, and Z has none\nhelp: leave it out\n";
     assert_refused(&view(&["a.exr", "Z", "--exposure", "1"]), 2, depth);
-    let missing = "error: there is no image file b.exr\nhelp: did you mean a.exr?\n";
-    assert_refused(&view(&["b.exr", "--png", "b.png"]), 2, missing);
+    let missing = "error: there is no image file A.exr\nhelp: did you mean a.exr?\n";
+    assert_refused(&view(&["A.exr", "--png", "b.png"]), 2, missing);
     assert_eq!(view(&["a.exr", "--png", "b.png", "--sixel"]).code, Some(2));
     let place = "error: cannot write a.exr/b.png: a file stands where its folder should be\n";
     assert_refused(&view(&["a.exr", "--png", "a.exr/b.png"]), 1, place);

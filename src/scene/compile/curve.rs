@@ -3,7 +3,9 @@
 use std::sync::Arc;
 
 use super::context::Context;
-use super::curve_name::{illuminant_called, unknown_glass, unknown_illuminant, unknown_metal, unknown_reflectance};
+use super::curve_name::{
+    illuminant_called, image_called, in_quotes, unknown_glass, unknown_illuminant, unknown_metal, unknown_reflectance,
+};
 use super::curve_range::{Refusal, article, factor, hardly_a_layer, possible, shown, told};
 use super::curve_text::{CurveText, KindText, finite, not_finite};
 use super::radiometry::on_film;
@@ -63,7 +65,7 @@ fn is_fit(kind: &KindText, quantity: Quantity) -> bool {
 fn unfit<T>(text: &CurveText, quantity: Quantity) -> Option<T> {
     let key = || format!("`{}`", text.place.key());
     let (form, help) = match text.kind {
-        KindText::Name(name) => (format!("the name {name:?}"), illuminant_called(name)),
+        KindText::Name(name) => (format!("the name {name:?}"), in_quotes(name).or_else(|| illuminant_called(name))),
         KindText::Image(_) | KindText::Checker(_) => (key(), Some(even(quantity).to_owned())),
         _ => (key(), None),
     };
@@ -207,6 +209,9 @@ fn file_of_samples<'d>(
     let column = text.column.unwrap_or(At { place, it: 2 });
     if column.it < 2 {
         return column.place.refuse("the values stand in column 2 or later: column 1 holds the wavelengths");
+    }
+    if let Some(help) = image_called(file) {
+        return place.advise(format!("{file} is an image, not a table of samples"), help);
     }
     let table = match utf8(place.file(file, &TABLE)?, file, "save the table as CSV in UTF-8") {
         Ok(table) => table,

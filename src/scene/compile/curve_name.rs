@@ -1,7 +1,11 @@
 //! Names that the catalog does not have, or has for something else.
 
+use std::path::Path;
+
 use super::curve_range::Refusal;
+use super::image_file::IMAGES;
 use crate::error::nearest;
+use crate::scene::share;
 use crate::spectrum::data::{self, bare};
 
 const LISTS: &str = "lists the known names";
@@ -15,6 +19,9 @@ pub(super) fn unknown_metal(name: &str) -> Refusal {
 }
 
 pub(super) fn unknown_reflectance(name: &str) -> Refusal {
+    if let Some(help) = in_quotes(name) {
+        return Refusal::new(format!("there is no reflectance named {name:?}")).help(help);
+    }
     let full = || data::reflectances().map(|patch| patch.name);
     let refusal = unknown(name, "reflectance", full().map(bare).chain(full()));
     match refusal.help.as_deref() {
@@ -24,6 +31,25 @@ pub(super) fn unknown_reflectance(name: &str) -> Refusal {
         }
         _ => refusal,
     }
+}
+
+/// How to write what stands in quotes and is no name: a file, or a share in percent.
+pub(super) fn in_quotes(text: &str) -> Option<String> {
+    match share(text) {
+        Some(share) => Some(format!("write {share}")),
+        None if ends_in(text, &["csv", "txt", "tsv", "dat"]) => Some(format!("write {{ file = {text:?} }}")),
+        None => image_called(text),
+    }
+}
+
+/// How to write an image by the name of its file.
+pub(super) fn image_called(file: &str) -> Option<String> {
+    ends_in(file, IMAGES).then(|| format!("write {{ image = {file:?} }}"))
+}
+
+fn ends_in(file: &str, endings: &[&str]) -> bool {
+    let ending = Path::new(file).extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+    endings.iter().any(|known| known.eq_ignore_ascii_case(ending))
 }
 
 pub(super) fn unknown_illuminant(name: &str) -> Refusal {

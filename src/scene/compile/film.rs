@@ -91,6 +91,7 @@ const FILTER: Choice<for<'d> fn(Value<'d>) -> Option<Filter>> = Choice {
     word: "filter",
     example: "{ gaussian = { sigma = 0.5 } }",
     apart: "leave one of them out",
+    beside: &[],
     kinds: &[
         ("tent", |value| wide(value, "radius", |radius| Filter::Tent { radius })),
         ("gaussian", |value| wide(value, "sigma", |sigma| Filter::Gaussian { sigma })),

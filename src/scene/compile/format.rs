@@ -113,7 +113,10 @@ fn layers(value: Value) -> Option<Vec<Layer>> {
     match value.node().as_str() {
         Some(Layer::ALL) => return Some(Layer::all()),
         Some(word) => {
-            return value.advise("`layers` is a list", format!("write layers = [\"{word}\"], or \"{}\"", Layer::ALL));
+            let words = word.split([',', ' ']).filter(|word| !word.is_empty());
+            let list: Vec<String> = words.map(|word| format!("\"{word}\"")).collect();
+            let help = format!("write layers = [{}], or \"{}\"", list.join(", "), Layer::ALL);
+            return value.advise("`layers` is a list", help);
         }
         None => {}
     }

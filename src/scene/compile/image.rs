@@ -7,17 +7,14 @@ use super::context::Context;
 use super::curve::curve;
 use super::curve_range::{is_factor, possible_thickness, told};
 use super::curve_text::{CurveText, KindText, is_repeat};
-use super::image_file::{ImageFile, read_texture};
+use super::image_file::{IMAGES, ImageFile, read_texture};
 use super::image_numbers::Meaning;
 use super::radiometry::on_film;
 use crate::scene::text::{At, FileKind};
 use crate::spectrum::{Channel, Curve, CurveKind, Encoding, Image, Quantity, Texture};
 
-const IMAGE: FileKind = FileKind {
-    nameless: "an image needs the name of its file",
-    most_bytes: 1 << 32,
-    endings: &["png", "jpg", "jpeg", "exr", "hdr"],
-};
+const IMAGE: FileKind =
+    FileKind { nameless: "an image needs the name of its file", most_bytes: 1 << 32, endings: IMAGES };
 /// One that may be brighter than white.
 pub(super) const BRIGHT_IMAGE: FileKind = FileKind { endings: &["exr", "hdr"], ..IMAGE };
 

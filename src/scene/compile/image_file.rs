@@ -7,6 +7,9 @@ use crate::film::guarded;
 use crate::scene::decode::{Floats, Steps, Unreadable, Whole, decode_exr, decode_jpeg, decode_png, decode_radiance};
 use crate::spectrum::{Channel, IDENTITY, Image, Matrix, decode_srgb};
 
+/// How the names of images end.
+pub(super) const IMAGES: &[&str] = &["png", "jpg", "jpeg", "exr", "hdr"];
+
 /// Reads an OpenEXR or Radiance file from its bytes; the ending of its name says which it is.
 ///
 /// # Errors

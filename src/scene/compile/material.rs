@@ -41,6 +41,7 @@ const MATERIAL: Choice<Reader> = Choice {
     word: "kind of material",
     example: "diffuse = { reflectance = 0.7 }",
     apart: "give each kind its own [material.NAME]",
+    beside: &[],
     kinds: &[
         ("diffuse", |_, fields| Some(Draft::Whole(Material::Diffuse(diffuse(fields)?)))),
         ("mirror", |_, fields| {

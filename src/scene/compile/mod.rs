@@ -95,7 +95,9 @@ fn scene<'d>(context: &mut Context, sections: &mut Fields<'d>) -> Option<Scene<C
     // A length that is misspelt is not missing as well.
     context.meters_per_unit = render.as_ref().map_or(Some(1.0), |render| render.meters_per_unit);
     let drafts = materials.map(|materials| material::drafts(context, materials));
-    let drafts = drafts.unwrap_or_else(|| Drafts { by_name: BTreeMap::new(), nameless: false });
+    // Of a section that is misspelt, the names are not known.
+    let nameless = sections.is_misspelt("material");
+    let drafts = drafts.unwrap_or_else(|| Drafts { by_name: BTreeMap::new(), nameless });
     let materials = parts::with_parts(&drafts);
     let mut names = Names { materials: &materials, nameless: drafts.nameless, unknown: BTreeSet::new() };
     let objects = objects.map(|objects| {

@@ -58,8 +58,10 @@ pub(super) fn object<'d>(
     Fields::read(entry, |object| {
         let name = object.maybe("name", name);
         let shape = object.need("shape", Some);
+        let is_within = shape.is_some_and(|shape| shape.node().get("material").is_some());
         let named = match object.get("material") {
             Some(value) => at(|value: Value<'d>| names.find(value))(value),
+            None if is_within => None,
             None => object.lack("material", names.help(name.flatten()).as_deref()),
         };
         let map = object.or(

@@ -34,6 +34,7 @@ pub(super) const SHAPE: Choice<Reader> = Choice {
     word: "shape",
     example: "shape.sphere = { center = [0, 1, 0], radius = 1 }",
     apart: "start another [[object]] for the second shape",
+    beside: &["name", "material", "transform", "instances", "group", "visible_to_camera", "holdout", "shadow_catcher"],
     kinds: &[
         ("plane", |_, _, value| plane(value).map(Written::from)),
         ("triangle", |_, _, value| triangle(value).map(Written::from)),

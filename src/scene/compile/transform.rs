@@ -20,6 +20,7 @@ const STEP: Choice<for<'d> fn(Value<'d>) -> Option<Step>> = Choice {
     word: "step of a transform",
     example: "{ translate = [0, 1, 0] }",
     apart: "write one step after the other: [{ scale = 2 }, { translate = [0, 1, 0] }]",
+    beside: &[],
     kinds: &[
         ("scale", |value| near(value, value.one_or("[x, y, z]")?).map(|factors| Step::Scale(factors.into()))),
         ("rotate", |value| {

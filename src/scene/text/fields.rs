@@ -6,7 +6,7 @@ use toml::de::DeTable;
 
 use super::document::Document;
 use super::include::INCLUDE;
-use super::suggest::{meant, suggestion};
+use super::suggest::{TABLE, meant, suggestion};
 use super::value::Value;
 
 /// A table that is being read: the keys that are asked for are those that it may have.
@@ -25,7 +25,7 @@ impl<'d> Fields<'d> {
     /// What a table says, if it has all the keys that it needs and no others. `read` asks for every key that there may
     /// be before it gives up over one.
     pub(in crate::scene) fn read<T>(value: Value<'d>, read: impl FnOnce(&mut Self) -> Option<T>) -> Option<T> {
-        let Some(table) = value.node().as_table() else { return value.wanted("a table, { .. }") };
+        let Some(table) = value.node().as_table() else { return value.wanted(TABLE) };
         Self::of(value.document, table, value.span(), read)
     }
 
@@ -88,7 +88,9 @@ impl<'d> Fields<'d> {
 
     /// The value of a key that there may be.
     pub(in crate::scene) fn get(&mut self, key: &'static str) -> Option<Value<'d>> {
-        self.known.push(key);
+        if !self.known.contains(&key) {
+            self.known.push(key);
+        }
         self.table.get_key_value(key).map(|(key, node)| Value::new(self.document, key, node))
     }
 
@@ -154,6 +156,8 @@ pub(in crate::scene) struct Choice<R: 'static> {
     pub(in crate::scene) example: &'static str,
     /// What to do with a second kind.
     pub(in crate::scene) apart: &'static str,
+    /// Keys that belong beside it and not into it.
+    pub(in crate::scene) beside: &'static [&'static str],
     /// The kinds, each with what reads it.
     pub(in crate::scene) kinds: &'static [(&'static str, R)],
 }
@@ -179,6 +183,22 @@ impl<R: Copy> Choice<R> {
         self.kinds.iter().any(|(known, _)| *known == word)
     }
 
+    /// The kind that a key such as `type` names.
+    fn tagged<'d>(&self, tag: Value<'d>) -> Option<&'d str> {
+        let named = || tag.node().as_str().filter(|word| self.knows(word));
+        matches!(tag.key(), "type" | "kind").then(named).flatten()
+    }
+
+    /// Whether a key belongs beside it, which is told.
+    fn is_beside(&self, stray: Value) -> bool {
+        let is_beside = self.beside.contains(&stray.key());
+        if is_beside {
+            let help = format!("write it beside `{0}`: above a line [object.{0}], or outside of its braces", self.word);
+            stray.refuse_key::<()>(format!("`{}` is no part of {}", stray.key(), self.name), Some(help));
+        }
+        is_beside
+    }
+
     /// The value of the first key of a table, known or not; tells of a second one.
     pub(in crate::scene) fn kind<'d>(&self, value: Value<'d>) -> Option<Value<'d>> {
         let example = || format!("such as {}", self.example);
@@ -187,6 +207,11 @@ impl<R: Copy> Choice<R> {
         };
         let mut kinds: Vec<_> = table.iter().map(|(key, node)| Value::new(value.document, key, node)).collect();
         kinds.sort_by_key(|kind| kind.key_span().start);
+        if let Some((tag, kind)) = kinds.iter().find_map(|tag| Some((tag, self.tagged(*tag)?))) {
+            let help = format!("write {kind} = {{ .. }}, with what belongs to it in the braces");
+            return tag.refuse_key(format!("the kind of {} is a key itself", self.name), Some(help));
+        }
+        kinds.retain(|kind| !self.is_beside(*kind));
         if let [_, second, ..] = kinds.as_slice() {
             second.refuse_key::<()>(format!("{} has exactly one kind", self.name), Some(self.apart.into()));
         }

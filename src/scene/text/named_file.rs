@@ -49,6 +49,9 @@ pub(super) fn missing(folder: &Path, file: &str, endings: &[&str]) -> Fault {
     let near = nearest_file(&folder.join(file), endings);
     let near = near.and_then(|near| near.file_name().map(|name| Path::new(file).with_file_name(name)));
     let help = match near {
+        _ if file.contains(['\\', '\t', '\n', '\r', '\u{8}', '\u{c}', '\u{1b}']) => {
+            "write / between folders, not \\".into()
+        }
         Some(near) => format!("did you mean \"{}\"?", near.display()),
         None if folder.as_os_str().is_empty() => "the path starts at the current folder".into(),
         None => format!("the path starts at {}", folder.display()),

@@ -3,28 +3,74 @@
 use toml::de::DeValue;
 
 use crate::error::nearest;
+use crate::film::layer_elsewhere;
 use crate::scene::share;
 use crate::spectrum::ColorSpace;
 
 /// Words of other renderers, and what is called so here.
-const ELSEWHERE: [(&str, &str); 11] = [
+const ELSEWHERE: [(&str, &str); 32] = [
     ("ior", "index"),
     ("eta", "index"),
     ("albedo", "reflectance"),
     ("color", "reflectance"),
     ("color", "rgb"),
+    ("texture", "image"),
+    ("map", "image"),
     ("temperature", "blackbody"),
     ("kelvin", "blackbody"),
     ("spectrum", "samples"),
     ("direction", "toward"),
     ("directional", "sun"),
     ("distant", "sun"),
+    ("radiance", "intensity"),
+    ("power", "intensity"),
+    ("intensity", "irradiance"),
+    ("intensity", "radiance"),
+    ("target", "look_at"),
+    ("position", "center"),
+    ("position", "point"),
+    ("center", "point"),
+    ("angle", "degrees"),
+    ("translate", "transform"),
+    ("rotate", "transform"),
+    ("scale", "transform"),
+    ("matte", "diffuse"),
+    ("lambert", "diffuse"),
+    ("lambertian", "diffuse"),
+    ("metal", "conductor"),
+    ("glass", "dielectric"),
+    ("glossy", "plastic"),
+    ("light", "emissive"),
+];
+
+/// Words of other renderers that no one word here stands for: one of the names that are known beside them, and what to
+/// do.
+const IN_OTHER_WORDS: [(&[&str], &str, &str); 6] = [
+    (&["box", "cuboid"], "cube", "write cube = { center = [0, 1, 0], size = [2, 1, 3] }"),
+    (&["resolution", "size"], "color_space", "write width = 640 and height = 360"),
+    (
+        &["horizontal_fov", "fov_x", "focal_length"],
+        "vertical_fov",
+        "write vertical_fov, in degrees: 27 sees as much as a lens of 50 mm before film of 36 x 24 mm",
+    ),
+    (&["aperture", "f_stop", "fstop"], "lens", "write lens = { radius = 0.02, focus_distance = 6 }"),
+    (
+        &["f_number", "f_stop", "fstop", "aperture"],
+        "focus_distance",
+        "write `radius`, in scene units: the focal length over twice the f-number",
+    ),
+    (
+        &["area", "quad", "rect", "disc", "sphere", "mesh", "shape", "emissive"],
+        "environment",
+        "a surface that shines is an [[object]] whose material is `emissive`",
+    ),
 ];
 
 /// The known name that was meant by the value or key `word`, or all of them; `key` is the key of a value.
 pub(super) fn suggestion(key: &str, word: &str, known: &[&str]) -> String {
-    if matches!(word, "box" | "cuboid") && known.contains(&"cube") {
-        return "write cube = { center = [0, 1, 0], size = [2, 1, 3] }".into();
+    let layer = || (key == "layers").then(|| layer_elsewhere(word)).flatten().map(str::to_owned);
+    if let Some(help) = layer().or_else(|| in_other_words(word, known)) {
+        return help;
     }
     match meant(key, word, known) {
         Some(near) => format!("did you mean `{near}`?"),
@@ -32,14 +78,31 @@ pub(super) fn suggestion(key: &str, word: &str, known: &[&str]) -> String {
     }
 }
 
+/// What to do where no known name is meant by a word, but it is known what is.
+fn in_other_words(word: &str, known: &[&str]) -> Option<String> {
+    let help = IN_OTHER_WORDS.iter().find(|(words, beside, _)| words.contains(&word) && known.contains(beside));
+    let of_spectrum = || {
+        let is_kind = matches!(word, "image" | "rgb" | "samples" | "blackbody" | "illuminant");
+        let of_light = matches!(word, "blackbody" | "illuminant");
+        let spectra = [("reflectance", !of_light), ("radiance", true), ("irradiance", true), ("intensity", true)];
+        let (key, _) = spectra.into_iter().find(|(key, fits)| is_kind && *fits && known.contains(key))?;
+        Some(format!("write {key} = {{ {word} = .. }}"))
+    };
+    help.map(|(.., help)| (*help).to_owned()).or_else(of_spectrum)
+}
+
 /// The known name that was meant by the value or key `word`, if any is near.
 pub(super) fn meant<'a>(key: &str, word: &str, known: &[&'a str]) -> Option<&'a str> {
-    let part_of =
-        || known.iter().copied().find(|name| name.starts_with(word) || name.split('_').any(|part| part == word));
+    let lower = word.to_lowercase();
+    let is_part = |name: &str| name.to_lowercase().starts_with(&lower) || name.split('_').any(|part| part == word);
+    let part_of = || known.iter().copied().find(|name| is_part(name));
     let elsewhere = || ELSEWHERE.iter().find(|pair| pair.0 == word && known.contains(&pair.1)).map(|pair| pair.1);
     let space = || (key == "color_space").then(|| ColorSpace::called(word)).flatten().map(ColorSpace::interop_id);
     nearest(word, known.iter().copied()).or_else(part_of).or_else(elsewhere).or_else(space)
 }
+
+/// What is wanted where keys are read.
+pub(super) const TABLE: &str = "a table, { .. }";
 
 /// How to write what a value of the wrong type seems to mean.
 pub(super) fn remedy(key: &str, value: &DeValue, wanted: &str, written: &str) -> Option<String> {
@@ -73,6 +136,20 @@ pub(super) fn remedy(key: &str, value: &DeValue, wanted: &str, written: &str) ->
             (float >= 0.0 && float.fract() == 0.0).then(|| format!("write {float}"))
         }
         DeValue::Integer(_) if wanted == "a number" => Some(format!("write it with a decimal point: {written}.0")),
+        DeValue::String(text) if wanted == "true or false" && matches!(&**text, "true" | "false") => {
+            Some(format!("write it without quotes: {text}"))
+        }
+        DeValue::String(_) if wanted == TABLE && key == "mesh" => Some(format!("write {{ file = {written} }}")),
+        DeValue::String(_) if wanted == TABLE && key.ends_with("_map") => {
+            Some(format!("write {{ image = {written}, .. }}"))
+        }
+        DeValue::Integer(_) | DeValue::Float(_) if wanted == TABLE && key == "environment" => {
+            Some(format!("write {{ radiance = {written} }}"))
+        }
+        _ if wanted == TABLE && key == "rotate" => Some("write { axis = [0, 1, 0], degrees = 30 }".into()),
+        DeValue::Table(_) if key == "roughness" => {
+            Some("it is the same all over: two materials `mix` by an image".into())
+        }
         DeValue::Array(_) if wanted.starts_with("a number, a catalog name") => {
             Some(format!("write {{ rgb = {written} }} for a color"))
         }

@@ -36,6 +36,16 @@ pub(in crate::scene) fn explain(text: &str, error: &toml::de::Error) -> Mistake 
         "invalid fraction" => ("a number ends with a digit, as in 1.0".into(), None),
         "unexpected leading zero" => ("a number starts with no needless 0".into(), None),
         "invalid float" | "invalid integer number" => ("this is no number".into(), None),
+        "invalid boolean" => (
+            "this is neither true nor false".into(),
+            Some(written.to_lowercase())
+                .filter(|word| word == "true" || word == "false")
+                .map(|word| format!("write {word}")),
+        ),
+        "missing assignment between key-value pairs" => {
+            let help = rest.trim_start().starts_with(':') || before.trim_end().ends_with(':');
+            ("a key is followed by `=` and its value".into(), help.then(|| "write `=` instead of `:`".into()))
+        }
         "duplicate key" => duplicate(written, before, line),
         _ => (said.to_owned(), None),
     };
