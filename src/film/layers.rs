@@ -117,6 +117,12 @@ impl Layer {
         ("polarization", Self::Polarization),
     ];
 
+    /// What to say of a name of what every file has; none of another name.
+    pub fn told_of_every_file(name: &str) -> Option<&'static str> {
+        const NAMES: [&str; 9] = ["R", "G", "B", "A", "Z", "RGBA", "beauty", "alpha", "depth"];
+        NAMES.contains(&name).then_some("every file has R, G, B, A and Z: leave it out")
+    }
+
     /// The components of the Stokes vector beside the image.
     pub const STOKES: [Self; 3] = [Self::S1, Self::S2, Self::S3];
 
@@ -208,6 +214,9 @@ impl Layer {
 
 /// What is told of names that no layer has, at least one.
 fn unknown_layers(unknown: &[&str]) -> String {
+    if let Some((name, said)) = unknown.iter().find_map(|name| Some((name, Layer::told_of_every_file(name)?))) {
+        return format!("`{name}` cannot be asked for: {said}");
+    }
     let known = || Layer::NAMES.iter().map(|(known, _)| *known).chain([Layer::ALL]);
     let meant: Vec<Option<&str>> = unknown.iter().map(|name| nearest(name, known())).collect();
     let list = known().collect::<Vec<_>>().join(", ");

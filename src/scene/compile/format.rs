@@ -117,13 +117,14 @@ fn layers(value: Value) -> Option<Vec<Layer>> {
         }
         None => {}
     }
-    let layers =
-        value.as_list("layer", "write a list such as [\"albedo\", \"N\"], or \"all\"").each(|layer| {
-            match layer.node().as_str() {
-                Some(Layer::ALL) => Some(Layer::all()),
-                _ => layer.word(&Layer::NAMES).map(|layer| vec![layer]),
-            }
-        });
+    let layers = value.as_list("layer", "write a list such as [\"albedo\", \"N\"], or \"all\"").each(|layer| {
+        let name = layer.node().as_str().unwrap_or_default();
+        match Layer::told_of_every_file(name) {
+            Some(said) => layer.advise(format!("`layers` cannot be \"{name}\""), said),
+            None if name == Layer::ALL => Some(Layer::all()),
+            None => layer.word(&Layer::NAMES).map(|layer| vec![layer]),
+        }
+    });
     layers.map(|layers| layers.concat())
 }
 
