@@ -210,7 +210,9 @@ impl Layer {
 pub fn layer_elsewhere(name: &str) -> Option<&'static str> {
     match name.to_lowercase().as_str() {
         "z" | "depth" => Some("leave it out: Z is in every file"),
-        "beauty" | "rgb" | "rgba" | "a" | "alpha" => Some("leave it out: the image and its A are in every file"),
+        "beauty" | "rgb" | "rgba" | "r" | "g" | "b" | "a" | "alpha" => {
+            Some("leave it out: the image and its A are in every file")
+        }
         "normal" | "normals" => Some("normals are in N"),
         "position" | "positions" => Some("places are in P"),
         "crypto" | "cryptomatte" => Some("ask for CryptoObject, CryptoMaterial or CryptoAsset"),

@@ -30,8 +30,8 @@ pub struct Picture {
 impl Picture {
     /// A layer as a picture, and what is to be said of it.
     ///
-    /// Colors are brought to Rec.709 and exposed. Of directions (`N`), -1 becomes 0 and 1 becomes 1. Of any other layer
-    /// the first three channels are stretched from their 1st to their 99th percentile; one alone is gray.
+    /// Colors are brought to Rec.709 and exposed. Of directions (`N`, `Nd`), -1 becomes 0 and 1 becomes 1. Of any other
+    /// layer the first three channels are stretched from their 1st to their 99th percentile; one alone is gray.
     pub fn of_layer(file: &ExrFile, layer: &ExrLayer, exposure: Exposure) -> (Self, Vec<String>) {
         let width = layer.part.bounds.size[0];
         if let Some(color) = layer.color() {
@@ -139,7 +139,7 @@ fn shares(from: usize, to: usize) -> Vec<Vec<(usize, f32)>> {
 /// Whether a layer holds unit vectors: normals of any kind, by the names that renderers give them.
 fn is_direction(layer: &ExrLayer) -> bool {
     let last = layer.name.rsplit('.').next().unwrap_or_default().to_lowercase();
-    layer.channels.len() == 3 && (last == "n" || last == "ns" || last == "ng" || last.contains("normal"))
+    layer.channels.len() == 3 && (matches!(&*last, "n" | "nd" | "ns" | "ng") || last.contains("normal"))
 }
 
 /// The matrix from the colors of a file to linear Rec.709, and what is to be said if it is not known.

@@ -3,7 +3,7 @@
 use super::image_error::ImageError;
 use crate::film::{Layer, TELL_VARIANCE};
 use crate::look::percent;
-use crate::trace::{RareLight, Report};
+use crate::trace::{MOST_MEDIA, RareLight, Report};
 
 /// All that there is to warn of.
 pub(super) fn warnings(report: &Report, error: Option<&ImageError>) -> Vec<String> {
@@ -20,7 +20,9 @@ pub(super) fn warnings(report: &Report, error: Option<&ImageError>) -> Vec<Strin
     if report.unmatched > 0 {
         let times = if report.unmatched == 1 { "once".into() } else { format!("{} times", report.unmatched) };
         let times = format!("{times} light left a clear body it had not entered");
-        warnings.push(format!("{times} and went straight on: is a dielectric mesh open?"));
+        let crowded = format!(", or do more than {MOST_MEDIA} clear materials overlap in one place");
+        let crowded = if report.has_many_media { &crowded } else { "" };
+        warnings.push(format!("{times} and went straight on: is a dielectric mesh open{crowded}?"));
     }
     if report.by_chance > 0 {
         let share = format!("in {} of {} camera samples", report.by_chance, report.samples);
@@ -67,4 +69,17 @@ fn told(light: &RareLight) -> String {
     let of = name.as_ref().map_or(String::new(), |name| format!(" of {name}"));
     let after = if *bounces == 1 { "after 1 bounce".into() } else { format!("after {bounces} bounces") };
     format!("light{of} ({found} {after})")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn too_many_clear_materials_are_told_of_only_where_there_are_so_many() {
+        let told = |has_many_media| warnings(&Report { unmatched: 1, has_many_media, ..Report::default() }, None);
+        let once = "once light left a clear body it had not entered and went straight on: is a dielectric mesh open";
+        assert_eq!(told(false), [format!("{once}?")]);
+        assert_eq!(told(true), [format!("{once}, or do more than 16 clear materials overlap in one place?")]);
+    }
 }

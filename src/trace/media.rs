@@ -6,8 +6,8 @@ use crate::math::{DVec3, Frame, Ray, unit};
 use crate::scene::{MaterialId, Scene};
 use crate::spectrum::{Draw, Table};
 
-/// Different media that may overlap in one place.
-const MOST: usize = 6;
+/// Different media that may overlap in one place: a lens of varying index is made of many shells.
+pub const MOST_MEDIA: usize = 16;
 
 /// The media around a point, each with how many bodies of it are there.
 ///
@@ -15,7 +15,7 @@ const MOST: usize = 6;
 /// Traced Images*). Counting by material lets one body be made of many objects.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Media {
-    entries: [(MaterialId, u32); MOST],
+    entries: [(MaterialId, u32); MOST_MEDIA],
     len: u8,
 }
 
@@ -158,7 +158,7 @@ impl Media {
         let len = self.len as usize;
         match self.entries[..len].iter_mut().find(|entry| entry.0 == material) {
             Some(entry) => entry.1 += 1,
-            None if len < MOST => {
+            None if len < MOST_MEDIA => {
                 self.entries[len] = (material, 1);
                 self.len += 1;
             }
@@ -225,6 +225,11 @@ pub(super) fn direction_indices(scene: &Scene<Table>, sides: [Option<MaterialId>
         Some(table) => table.direction().or_else(|| table.is_flat().then(|| table.bins()[0])),
         None => Some(1.0),
     })
+}
+
+/// Whether there are more media than may overlap in one place.
+pub(super) fn are_many(scene: &Scene<Table>) -> bool {
+    scene.materials.iter().filter(|named| named.material.medium().is_some()).nth(MOST_MEDIA).is_some()
 }
 
 /// The bodies around each light; none where they may differ from point to point.

@@ -64,6 +64,7 @@ pub use image::{
     Advance, Blur, FIRST_LOOK, Noise, Outlier, PhotonCost, RareLight, Rendering, Report, Restored, Stopped, TileNoise,
     bytes_of_film, piloted, render, seen_photons,
 };
+pub use media::MOST_MEDIA;
 pub use method::{LightPass, MapPasses, Method, Polarizing, Stop, Transport};
 pub use path_start::Sunlit;
 pub use photon_targets::is_photon_target;

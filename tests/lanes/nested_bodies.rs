@@ -4,7 +4,7 @@ use abbe::math::DVec3;
 
 use crate::support::random::Random;
 use crate::support::scenes::{EVERY_BRANCH, body, environment, image, view};
-use abbe::trace::Transport;
+use abbe::trace::{MOST_MEDIA, Transport};
 
 /// Reflectance over transmittance of one interface at normal incidence.
 fn lost(n1: f64, n2: f64) -> f64 {
@@ -222,5 +222,33 @@ fn m4_a_camera_that_looks_exactly_at_a_corner_of_a_glass_mesh_is_outside_of_it()
             assert_eq!(report.unmatched, 0, "{corner:?} from {position:?}");
             assert_eq!(film.pixels[0].rgb, [1.0; 3], "{corner:?} from {position:?}");
         }
+    }
+}
+
+/// Shells of a lens of varying index: balls in balls, each of a material of its own that absorbs and bends nothing.
+fn shells(count: u32) -> String {
+    let shell = |i: u32| {
+        let material = format!("dielectric = {{ index = 1, absorption = 0.02, priority = {i} }}");
+        let ball =
+            format!("sphere = {{ center = [0, 0, 0], radius = {} }}", 1.0 - 0.9 * f64::from(i) / f64::from(count));
+        body(&format!("shell{i}"), &material, &[&ball])
+    };
+    (0..count).map(shell).collect()
+}
+
+#[test]
+fn as_many_bodies_as_there_is_room_for_lie_in_one_another_and_more_are_told_of() {
+    for (position, path) in [([0.0, 0.0, 5.0], 2.0_f64), ([0.0, 0.0, 0.05], 1.05)] {
+        let seen = |count: u32| {
+            let text = view(position, [0.0, 0.0, -9.0], 1e-6, 1) + &shells(count) + &environment(1.0);
+            let (film, report) = image(&text, EVERY_BRANCH);
+            (f64::from(film.pixels[0].rgb[1]), report)
+        };
+        let (shown, report) = seen(MOST_MEDIA as u32);
+        assert_eq!((report.unmatched, report.has_many_media), (0, false), "from {position:?}");
+        let expected = (-0.02 * path).exp();
+        assert!((shown - expected).abs() < 1e-6, "from {position:?}: {shown}, not {expected}");
+        let (_, report) = seen(MOST_MEDIA as u32 + 1);
+        assert!(report.unmatched > 0 && report.has_many_media, "from {position:?}");
     }
 }

@@ -28,12 +28,13 @@ pub fn pixels(folder: &Folder, arguments: &[&str]) -> (Vec<[u8; 3]>, String) {
     (read_png(&folder.path().join("look.png")).pixels, said)
 }
 
-/// Color, a normal, a position, a depth and a label of two pixels.
+/// Color, two normals, a position, a depth and a label of two pixels.
 fn layers(folder: &Folder) {
     let mut channels: Vec<_> = ["R", "G", "B"].map(|name| (name, vec![0.5, 2.0])).to_vec();
     channels.push(("A", vec![1.0, 0.0]));
     channels.push(("Z", vec![3.0, 1e10]));
     channels.extend([("N.X", vec![0.0, -1.0]), ("N.Y", vec![0.0, 1.0]), ("N.Z", vec![1.0, 0.0])]);
+    channels.extend([("Nd.X", vec![0.0, -1.0]), ("Nd.Y", vec![0.0, 1.0]), ("Nd.Z", vec![1.0, 0.0])]);
     channels.extend([("P.X", vec![5.0, 7.0]), ("P.Y", vec![f32::NAN, 1.0])]);
     channels.extend([("albedo.R", vec![1.0, 0.0]), ("albedo.G", vec![0.0; 2]), ("albedo.B", vec![0.0; 2])]);
     Exr::new([2, 1], channels).write(&folder.path().join("a.exr"));
@@ -57,7 +58,9 @@ fn each_layer_is_shown_as_what_it_is() {
     assert_eq!(pixels(&folder, &[]), (vec![[188; 3], [255; 3]], String::new()));
     assert_eq!(pixels(&folder, &["beauty", "--exposure", "-2"]).0[1], [188; 3]);
     assert_eq!(pixels(&folder, &["albedo"]).0, [[255, 0, 0], [0; 3]]);
-    assert_eq!(pixels(&folder, &["N"]), (vec![[128, 128, 255], [0, 255, 128]], String::new()));
+    for normals in ["N", "Nd"] {
+        assert_eq!(pixels(&folder, &[normals]), (vec![[128, 128, 255], [0, 255, 128]], String::new()));
+    }
     let span = "the 1st and 99th percentile of the finite values below 1e9\n";
     // One depth is finite: it is the middle, and nothing is white.
     assert_eq!(pixels(&folder, &["Z"]), (vec![[128; 3], [255; 3]], format!("Z: black is 3.0, white 3.0, {span}")));
@@ -152,7 +155,7 @@ fn what_cannot_be_shown_is_refused_and_nothing_is_written() {
     let folder = Folder::new();
     layers(&folder);
     let view = |arguments: &[&str]| render(&folder, &[&["view"], arguments].concat());
-    let has = "it has beauty, Z, N, P, albedo\n";
+    let has = "it has beauty, Z, N, Nd, P, albedo\n";
     let refusal = format!("error: a.exr has no layer albdo\nhelp: did you mean albedo? {has}");
     assert_refused(&view(&["a.exr", "albdo", "--png", "b.png"]), 2, &refusal);
     assert_refused(&view(&["a.exr", "variance"]), 2, &format!("error: a.exr has no layer variance\nhelp: {has}"));

@@ -249,7 +249,10 @@ fn decoded<T>(
             let message = format!("{} has no channels R, G and B: it has the channels {channels}", path.display());
             Err(Fault::new(message, "save one of them alone, and it is a gray"))
         }
-        Ok(Err(other)) => Err(unreadable(&other.to_string(), "is the file complete?")),
+        Ok(Err(other)) => Err(match other.remedy() {
+            Some(remedy) => Fault::new(format!("{} is not read: {other}", path.display()), remedy),
+            None => unreadable(&other.to_string(), "is the file complete?"),
+        }),
         Err(said) => Err(unreadable(&said, "is the file complete?")),
     }
 }

@@ -84,3 +84,16 @@ pub(in crate::scene) enum Unreadable {
     #[error("row {0} is not as long as the image is wide")]
     Row(usize),
 }
+
+impl Unreadable {
+    /// How to save an image that is whole, but of a form that is not read; none of another.
+    pub(in crate::scene) fn remedy(&self) -> Option<&'static str> {
+        match self {
+            Self::Deep => Some("flatten it"),
+            Self::Sparse(_) => Some("save all channels in full size"),
+            Self::Format(_) => Some("save it as red, green and blue"),
+            Self::Size(_) => Some("save it with its rows from the top, each from the left"),
+            _ => None,
+        }
+    }
+}

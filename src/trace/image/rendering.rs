@@ -27,7 +27,7 @@ use crate::trace::stats::Stats;
 use crate::trace::walk::Polarization;
 use crate::trace::watch::Watch;
 use crate::trace::width::in_lanes_of_layers;
-use crate::trace::{Stop, World};
+use crate::trace::{Stop, World, media};
 
 /// What rendering noticed.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -46,6 +46,8 @@ pub struct Report {
     pub stopped: f64,
     /// Surfaces of clear bodies that were left without having been entered: open meshes.
     pub unmatched: u64,
+    /// Whether there are more clear materials than may overlap in one place.
+    pub has_many_media: bool,
     /// Camera samples of deterministic transport that met so many surfaces that they went on by chance.
     pub by_chance: u64,
     /// Most of the light seen, as a share, that polarization, which is not traced, may change.
@@ -308,6 +310,7 @@ impl<'a> Rendering<'a> {
             dropped: per_sample(all.dropped),
             stopped: per_sample(all.stopped),
             unmatched: all.unmatched,
+            has_many_media: media::are_many(&self.world().scene),
             by_chance: all.by_chance,
             polarization: if all.light > 0.0 { all.polarization / all.light } else { 0.0 },
             polarization_of_tile,
