@@ -15,7 +15,8 @@ pub const MOST_MEDIA: usize = 16;
 /// Traced Images*). Counting by material lets one body be made of many objects.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Media {
-    entries: [(MaterialId, u32); MOST_MEDIA],
+    materials: [MaterialId; MOST_MEDIA],
+    counts: [u16; MOST_MEDIA],
     len: u8,
 }
 
@@ -26,8 +27,15 @@ pub(super) struct Boundary {
     pub(super) here: Option<MaterialId>,
     /// The medium it enters if it goes on.
     pub(super) beyond: Option<MaterialId>,
-    /// The bodies around the ray if it goes on.
-    pub(super) crossed: Media,
+    /// What it then enters or leaves; none if the media around it stay as they are.
+    crossing: Option<Crossing>,
+}
+
+/// A body that a ray enters or leaves.
+#[derive(Clone, Copy)]
+struct Crossing {
+    material: MaterialId,
+    enters: bool,
 }
 
 impl Boundary {
@@ -121,22 +129,36 @@ impl Media {
 
     /// The medium that is really there.
     pub(super) fn inside(&self, scene: &Scene<Table>) -> Option<MaterialId> {
-        let rank = |&(material, _): &(MaterialId, u32)| (medium(scene, material).priority, material);
-        self.entries[..self.len as usize].iter().max_by_key(|entry| rank(entry)).map(|entry| entry.0)
+        strongest(scene, self.materials[..self.len as usize].iter().copied())
     }
 
     /// What a ray meets that crosses the surface of a body; none if it leaves a body it never entered, or enters more
     /// different ones than there is room for.
     pub(super) fn boundary(&self, scene: &Scene<Table>, material: MaterialId, enters: bool) -> Option<Boundary> {
-        let crossed = if enters { self.entered(material)? } else { self.left(material)? };
-        Some(Boundary { here: self.inside(scene), beyond: crossed.inside(scene), crossed })
+        let (here, at) = (self.inside(scene), self.place(material));
+        let beyond = if enters {
+            let has_room = at.map_or((self.len as usize) < MOST_MEDIA, |at| self.counts[at] < u16::MAX);
+            has_room.then(|| strongest(scene, here.into_iter().chain([material])))?
+        } else if self.counts[at?] > 1 || here != Some(material) {
+            here
+        } else {
+            let others = self.materials[..self.len as usize].iter().copied();
+            strongest(scene, others.filter(|other| *other != material))
+        };
+        Some(Boundary { here, beyond, crossing: Some(Crossing { material, enters }) })
+    }
+
+    /// The media behind a boundary of these.
+    pub(super) fn beyond(self, boundary: &Boundary) -> Self {
+        let Some(Crossing { material, enters }) = boundary.crossing else { return self };
+        if enters { self.entered(material) } else { self.left(material) }.unwrap_or(self)
     }
 
     /// What a ray meets that crosses a surface of any material, which may bound no medium; and whether the bodies
     /// around the ray fit to it.
     pub(super) fn at_surface(&self, scene: &Scene<Table>, material: MaterialId, enters: bool) -> (Boundary, bool) {
         let here = self.inside(scene);
-        let same = Boundary { here, beyond: here, crossed: *self };
+        let same = Boundary { here, beyond: here, crossing: None };
         if scene.materials[material as usize].material.medium().is_none() {
             return (same, true);
         }
@@ -145,8 +167,8 @@ impl Media {
 
     /// These media and others.
     pub(super) fn and(self, others: &Self) -> Self {
-        let entries = &others.entries[..others.len as usize];
-        entries.iter().fold(self, |media, &(material, count)| media.with(material, count))
+        let of_each = others.materials.iter().zip(&others.counts).take(others.len as usize);
+        of_each.fold(self, |media, (&material, &count)| media.with(material, count.into()))
     }
 
     /// These media and so many bodies of one, as far as there is room.
@@ -156,10 +178,10 @@ impl Media {
 
     fn entered(mut self, material: MaterialId) -> Option<Self> {
         let len = self.len as usize;
-        match self.entries[..len].iter_mut().find(|entry| entry.0 == material) {
-            Some(entry) => entry.1 += 1,
+        match self.place(material) {
+            Some(at) => self.counts[at] = self.counts[at].checked_add(1)?,
             None if len < MOST_MEDIA => {
-                self.entries[len] = (material, 1);
+                (self.materials[len], self.counts[len]) = (material, 1);
                 self.len += 1;
             }
             None => return None,
@@ -169,15 +191,25 @@ impl Media {
 
     fn left(mut self, material: MaterialId) -> Option<Self> {
         let len = self.len as usize;
-        let at = self.entries[..len].iter().position(|entry| entry.0 == material)?;
-        self.entries[at].1 -= 1;
-        if self.entries[at].1 == 0 {
-            self.entries.copy_within(at + 1..len, at);
-            self.entries[len - 1] = (0, 0);
+        let at = self.place(material)?;
+        self.counts[at] -= 1;
+        if self.counts[at] == 0 {
+            self.materials.copy_within(at + 1..len, at);
+            self.counts.copy_within(at + 1..len, at);
+            (self.materials[len - 1], self.counts[len - 1]) = (0, 0);
             self.len -= 1;
         }
         Some(self)
     }
+
+    fn place(&self, material: MaterialId) -> Option<usize> {
+        self.materials[..self.len as usize].iter().position(|known| *known == material)
+    }
+}
+
+/// Of several media in one place, the one that is really there.
+fn strongest(scene: &Scene<Table>, media: impl Iterator<Item = MaterialId>) -> Option<MaterialId> {
+    media.max_by_key(|material| (medium(scene, *material).priority, *material))
 }
 
 /// A unit vector near another. One that a scene gives, toward what a camera looks at or straight up, may lead exactly

@@ -245,7 +245,7 @@ impl<'a> Colors<'a> {
         let (direction, side) = if mirrors {
             (reflect(wo, facet), 1.0)
         } else {
-            walk.media = boundary.crossed;
+            walk.media = walk.media.beyond(&boundary);
             (if n1 == n2 { ray.direction } else { interface.refract(wo, facet) }, -1.0)
         };
         if facets.is_some() && direction.dot(normal) * side <= 0.0 { Next::Lost } else { Next::Toward(direction) }

@@ -218,7 +218,7 @@ impl<'a> Walker<'a> {
             return self.go_on(at, walk.clone(), walk.ray.direction, 0);
         };
         let [n1, n2] = [boundary.here, boundary.beyond].map(|inside| media::index(&world.scene, &self.draw, inside)[1]);
-        let crossed = Walk { media: boundary.crossed, ..walk.clone() };
+        let crossed = Walk { media: walk.media.beyond(&boundary), ..walk.clone() };
         if boundary.here == boundary.beyond {
             return self.go_on(at, crossed, walk.ray.direction, 0);
         }
@@ -281,7 +281,8 @@ impl<'a> Walker<'a> {
                 let step = Step { material: object.material, part, way: Way::Crossed };
                 let tint = self.draw.read_at(transmittance, uv);
                 let enters = point.normal.dot(walk.ray.direction) < 0.0;
-                let media = walk.media.at_surface(&world.scene, object.material, enters).0.crossed;
+                let (boundary, _) = walk.media.at_surface(&world.scene, object.material, enters);
+                let media = walk.media.beyond(&boundary);
                 walk = Walk { media, ..walk.after(Some(step), tint, 1.0) };
             }
             walk.ray = point.leave(walk.ray.direction);

@@ -107,7 +107,8 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
             let kind = path.kind.then(self.world.has_map(), false, || Some(self.world.is_photon_target(hit.object)));
             let next = self.pending.add(|| *path);
             *next = *path;
-            (next.ray, next.media, next.key, next.scatter, next.kind) = (ray, boundary.crossed, key, None, kind);
+            (next.ray, next.key, next.scatter, next.kind) = (ray, key, None, kind);
+            next.media = path.media.beyond(&boundary);
             return None;
         }
         Some(boundary)
@@ -289,7 +290,7 @@ impl<'a, const N: usize, P: Polarization<N>> Departure<'a, N, P> {
         next.left = path.left;
         next.throughput = path.throughput.through(branch.share).scaled(factor);
         next.eta_scale = path.eta_scale * branch.eta_scale;
-        next.media = if crosses { at.boundary.crossed } else { path.media };
+        next.media = if crosses { path.media.beyond(&at.boundary) } else { path.media };
         next.parted = path.parted || (at.parts && crosses);
         next.key = path.key.child(number);
         next.vertices = path.vertices;
