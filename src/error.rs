@@ -128,14 +128,17 @@ pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
         .map(|(.., candidate)| candidate)
 }
 
+/// Whether a file's name ends in one of some ways.
+pub(crate) fn ends_in(path: &Path, endings: &[&str]) -> bool {
+    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+    endings.iter().any(|known| known.eq_ignore_ascii_case(ending))
+}
+
 /// The file beside a missing one that was most likely meant, of those whose names end in one of some ways; of all if
 /// there are none.
 pub(crate) fn nearest_file(missing: &Path, endings: &[&str]) -> Option<PathBuf> {
     let folder = missing.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let ends = |path: &Path| {
-        let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
-        endings.is_empty() || endings.iter().any(|known| known.eq_ignore_ascii_case(ending))
-    };
+    let ends = |path: &Path| endings.is_empty() || ends_in(path, endings);
     let paths = fs::read_dir(folder).ok()?.filter_map(|entry| Some(entry.ok()?.path()));
     let files = paths.filter(|path| ends(path) && path.is_file());
     let mut names: Vec<String> = files.filter_map(|path| path.file_name()?.to_str().map(str::to_owned)).collect();
@@ -145,9 +148,8 @@ pub(crate) fn nearest_file(missing: &Path, endings: &[&str]) -> Option<PathBuf> 
     let missing_name = missing.file_name()?.to_str()?;
     let stems: Vec<String> = names.iter().map(|name| stem(name)).collect();
     let near = nearest(&stem(missing_name), stems.iter().map(String::as_str))?;
-    let mut of_stem = names.iter().zip(&stems).filter(|(_, stem)| *stem == near).map(|(name, _)| name.as_str());
-    let first = of_stem.next()?;
-    Some(missing.with_file_name(nearest(missing_name, [first].into_iter().chain(of_stem)).unwrap_or(first)))
+    let of_stem = || names.iter().zip(&stems).filter(|(_, stem)| *stem == near).map(|(name, _)| name.as_str());
+    Some(missing.with_file_name(nearest(missing_name, of_stem()).or_else(|| of_stem().next())?))
 }
 
 /// The letters that only one of two words has.

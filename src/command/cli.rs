@@ -223,11 +223,10 @@ impl Jobs {
 
     /// Each by itself.
     pub fn each(&self) -> impl Iterator<Item = Result<Job>> {
-        let numbers: Box<dyn Iterator<Item = Option<u32>>> = match self.0.frame {
-            Some(frames) => Box::new(frames.numbers().map(Some)),
-            None => Box::new(std::iter::once(None)),
-        };
-        numbers.map(|frame| job((*self.0).clone(), frame))
+        let frames = self.0.frame;
+        let numbers = frames.into_iter().flat_map(Frames::numbers).map(Some);
+        let without = frames.is_none().then_some(None);
+        numbers.chain(without).map(|frame| job((*self.0).clone(), frame))
     }
 
     /// Refuses what several frames cannot have.

@@ -57,7 +57,7 @@ pub fn meant(said: &clap::Error, words: &[OsString]) -> Option<(String, String)>
     Some((format!("there is no command `{first}`"), format!("did you mean {here}?")))
 }
 
-/// The same of a file that no argument names.
+/// What was meant by a file that no argument names.
 fn out_of_place(given: &str) -> Option<(String, String)> {
     match given.rsplit_once('.')?.1 {
         "toml" => {

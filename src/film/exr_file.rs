@@ -97,7 +97,7 @@ impl ExrFile {
         }
     }
 
-    /// The same with some of the pixels alone, of the parts that have all of these.
+    /// A file with some of its pixels alone, of the parts that have all of these.
     pub(crate) fn cut(&self, bounds: PixelBounds) -> Self {
         Self { parts: self.parts.iter().filter_map(|part| part.cut(bounds)).collect(), ..*self }
     }

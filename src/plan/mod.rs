@@ -48,7 +48,7 @@ pub struct Plan {
     pub summary_lines: usize,
     /// Processor time that the render will take, about.
     pub processor_time: Duration,
-    /// As how many camera samples photons count where it is told how much is done.
+    /// How many camera samples a photon counts as in the progress.
     pub photon_cost: PhotonCost,
     /// The models of color that were weighed, from few lanes to many; none of a plan that was read from a file.
     #[serde(skip)]

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::curve_range::Refusal;
 use super::image_file::IMAGES;
-use crate::error::nearest;
+use crate::error::{ends_in, nearest};
 use crate::scene::share;
 use crate::spectrum::data::{self, bare};
 
@@ -37,19 +37,14 @@ pub(super) fn unknown_reflectance(name: &str) -> Refusal {
 pub(super) fn in_quotes(text: &str) -> Option<String> {
     match share(text) {
         Some(share) => Some(format!("write {share}")),
-        None if ends_in(text, &["csv", "txt", "tsv", "dat"]) => Some(format!("write {{ file = {text:?} }}")),
+        None if ends_in(Path::new(text), &["csv", "txt", "tsv", "dat"]) => Some(format!("write {{ file = {text:?} }}")),
         None => image_called(text),
     }
 }
 
 /// How to write an image by the name of its file.
 pub(super) fn image_called(file: &str) -> Option<String> {
-    ends_in(file, IMAGES).then(|| format!("write {{ image = {file:?} }}"))
-}
-
-fn ends_in(file: &str, endings: &[&str]) -> bool {
-    let ending = Path::new(file).extension().and_then(|ending| ending.to_str()).unwrap_or_default();
-    endings.iter().any(|known| known.eq_ignore_ascii_case(ending))
+    ends_in(Path::new(file), IMAGES).then(|| format!("write {{ image = {file:?} }}"))
 }
 
 pub(super) fn unknown_illuminant(name: &str) -> Refusal {

@@ -66,8 +66,8 @@ pub struct Report {
     pub stopped_by: Option<Stopped>,
 }
 
-/// Renders the world's image, or the part of it that is asked for. `progress` is told how much is
-/// done, from any thread; in the end that is [`Rendering::work`].
+/// Renders the world's image, or the part of it that is asked for. `progress` is told how much is done,
+/// from any thread; in the end that is [`Rendering::work`].
 pub fn render(world: &World, progress: &(dyn Fn(u64) + Sync)) -> (Film, Report) {
     let mut rendering = Rendering::of_shard(Cow::Borrowed(world), Shard::WHOLE);
     while rendering.advance(progress) {}
@@ -85,8 +85,7 @@ pub enum Advance {
     Stopped,
 }
 
-/// As how many camera samples one photon counts where it is told how much is done: those that take as long, one at
-/// least.
+/// How many camera samples a photon counts as in the progress: those that take as long, one at least.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PhotonCost {
     /// One of the light pass.

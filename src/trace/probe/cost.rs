@@ -41,7 +41,7 @@ pub struct PhotonTimes {
 }
 
 impl PhotonTimes {
-    /// As how many camera samples photons count, if one takes so long.
+    /// How many camera samples a photon counts as, if a sample takes so long.
     pub fn in_samples(&self, sample: Duration) -> PhotonCost {
         let sample = sample.max(Duration::from_nanos(1)).as_secs_f64();
         let of = |photon: Duration| (photon.as_secs_f64() / sample).round().clamp(1.0, MOST_COST) as u64;
