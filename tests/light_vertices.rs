@@ -134,6 +134,17 @@ fn rooms() -> Vec<(&'static str, String)> {
             with(&[small("spot = { position = [0, 2.5, 0], toward = [-0.2, -1, 0.1], cone_angle = 50"), boxes.clone()]),
         ),
         (
+            "a lamp with a pattern",
+            with(&[
+                body(
+                    "lamp",
+                    "emissive = { radiance = { checker = [{ rgb = [30, 20, 10] }, 0.2], repeat = [3, 2] } }",
+                    &[&quad([0.3, 2.9, -0.4], [0.5, 0.0, 0.0], [0.0, 0.0, 0.4])],
+                ),
+                boxes.clone(),
+            ]),
+        ),
+        (
             "a ball of light",
             with(&[body("lamp", LAMP, &["sphere = { center = [0.8, 2.2, -0.8], radius = 0.3 }"]), boxes.clone()]),
         ),

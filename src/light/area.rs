@@ -1,9 +1,12 @@
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-use super::{Beam, LeSample, LightBounds, LightSample, LightTree};
-use crate::math::{Bounds, Cone, DVec3, Frame, Ray, cosine_hemisphere, unit};
-use crate::shape::{Ball, Coordinates, Crossing, Shape, ShapeSample, Sides, SurfacePoint};
+use super::emission_map::Cells;
+use super::{Beam, EmissionMap, EmissionPoint, LeSample, LightBounds, LightSample, LightTree};
+use crate::math::{Bounds, Cone, DVec3, DiscreteSample, Distribution, Frame, Ray, cosine_hemisphere, unit};
+use crate::shape::{
+    Ball, Coordinates, Crossing, Density, Place, Shape, ShapeSample, Sides, SurfacePoint, TexturedShape,
+};
 use crate::spectrum::Quantity;
 
 /// A surface that shines: an object whose material emits.
@@ -21,28 +24,64 @@ pub struct Area<S> {
     /// chance.
     pub is_sampled: bool,
     /// Where its points lie in the image that it shows, if it shows one.
-    pub coordinates: Option<Arc<Coordinates>>,
+    coordinates: Option<Arc<Coordinates>>,
+    /// How bright that image makes its places.
+    emission_map: Option<Arc<EmissionMap>>,
     /// The parts of a shape of several, one of which is sampled.
-    parts: Option<Arc<LightTree>>,
+    parts: Option<Arc<Parts>>,
     /// The box from whose outside no backs are seen.
     closed: Option<Bounds>,
     /// The unit normals of all that is seen of a sphere, if that is a small part.
     visible_cap: Option<Cone>,
 }
 
+/// The parts of a shape of several.
+#[derive(Clone, Debug)]
+struct Parts {
+    /// By what they send to a point.
+    tree: LightTree,
+    /// By what they send at all.
+    flux: Distribution,
+}
+
+impl Parts {
+    /// An area of each part is worth so much; none of a shape of one part.
+    fn new(shape: &Shape, worth: impl Fn(u32) -> f64) -> Option<Arc<Self>> {
+        let part = |number| {
+            let part = LightBounds::of_part(&shape.part(number)?);
+            Some(LightBounds { intensity: part.intensity * worth(number), ..part })
+        };
+        let parts: Vec<_> = (0..shape.part_count()).filter_map(part).collect();
+        let flux = || Distribution::new(parts.iter().map(|part| part.intensity));
+        (parts.len() > 1).then(|| Arc::new(Self { tree: LightTree::new(&parts), flux: flux() }))
+    }
+}
+
 /// 1 - cos of the largest cap that is sampled, and not the cone in which the whole sphere is seen: an eighth of it.
 const SMALL: f64 = 0.25;
 /// Unit normals below which a cap is not known well enough.
 const ENOUGH: usize = 64;
+/// How often a lamp that shows an image is sampled where that is bright, and not evenly over what is seen of it.
+const BY_IMAGE: f64 = 0.75;
 
 impl<S> Area<S> {
     /// The light that an object is.
     pub fn new(shape: Arc<Shape>, object: u32, radiance: S, sides: Sides, is_sampled: bool) -> Self {
-        let count = if is_sampled { shape.part_count() } else { 0 };
-        let parts: Vec<_> = (0..count).filter_map(|part| Some(LightBounds::of_part(&shape.part(part)?))).collect();
-        let parts = (parts.len() > 1).then(|| Arc::new(LightTree::new(&parts)));
+        let parts = if is_sampled { Parts::new(&shape, |_| 1.0) } else { None };
         let closed = if shape.is_closed() { shape.bounds() } else { None };
-        Self { shape, object, radiance, sides, is_sampled, coordinates: None, parts, closed, visible_cap: None }
+        let (coordinates, emission_map, visible_cap) = (None, None, None);
+        Self { shape, object, radiance, sides, is_sampled, coordinates, emission_map, parts, closed, visible_cap }
+    }
+
+    /// The light where it shows an image: where that lies, and how bright it makes which places. Without such a map all
+    /// places are sampled alike.
+    #[must_use]
+    pub fn showing(self, coordinates: Arc<Coordinates>, emission_map: Option<Arc<EmissionMap>>) -> Self {
+        let parts = match &emission_map {
+            Some(map) if self.is_sampled => Parts::new(&self.shape, |part| map.worth(part)),
+            _ => self.parts,
+        };
+        Self { coordinates: Some(coordinates), emission_map, parts, ..self }
     }
 
     pub(super) fn map<T>(&self, convert: &mut impl FnMut(Quantity, &S) -> T) -> Area<T> {
@@ -53,15 +92,32 @@ impl<S> Area<S> {
             sides: self.sides,
             is_sampled: self.is_sampled,
             coordinates: self.coordinates.clone(),
+            emission_map: self.emission_map.clone(),
             parts: self.parts.clone(),
             closed: self.closed,
             visible_cap: self.visible_cap,
         }
     }
 
-    /// Whether all that is seen of it may be a cap, so that learning it could help: of a sphere.
+    /// Whether all that is seen of it may be a cap, so that learning it could help: of a sphere that shines everywhere
+    /// alike.
     pub fn may_show_a_cap(&self) -> bool {
-        self.is_sampled && matches!(*self.shape, Shape::Sphere(_))
+        self.is_sampled && matches!(*self.shape, Shape::Sphere(_)) && self.coordinates.is_none()
+    }
+
+    fn has_cells(&self) -> bool {
+        self.emission_map.as_ref().is_some_and(|map| map.has_cells())
+    }
+
+    /// The shape with its image, and the cells of a part by which that is sampled, if it has some.
+    fn cells(&self, part: u32) -> Option<(TexturedShape<'_>, Cells<'_>)> {
+        let surface = TexturedShape { shape: &self.shape, coordinates: self.coordinates.as_ref()? };
+        Some((surface, self.emission_map.as_ref()?.cells(part)?))
+    }
+
+    /// The mean brightness of what it shows, if that varies.
+    pub(super) fn mean_brightness(&self) -> Option<f64> {
+        self.emission_map.as_ref().map(|map| map.mean())
     }
 
     /// Tells the light the unit normals at which paths met it by chance: if they lie close together, it is sampled
@@ -82,18 +138,52 @@ impl<S> Area<S> {
         self.sides == Sides::Both && !self.closed.is_some_and(outside)
     }
 
-    /// Whether one of several parts is drawn first, which uses up digits of a random number.
+    /// Whether one of several parts or cells is drawn first, which uses up digits of a random number.
     pub(super) fn has_parts(&self) -> bool {
-        self.parts.is_some()
+        self.parts.is_some() || self.has_cells()
     }
 
     fn sample(&self, from: DVec3, normal: DVec3, u: [f64; 2]) -> Option<ShapeSample> {
         if let Some(cap) = &self.visible_cap {
             return self.shape.sample_cap(cap, from, u);
         }
-        let Some(parts) = &self.parts else { return self.shape.sample(from, u) };
-        let part = parts.sample(from, normal, self.shows_backs(from), u[0])?;
-        Some(self.shape.sample_part(part.index as u32, from, [part.u, u[1]])?.times(part.probability))
+        let Some(parts) = &self.parts else { return self.sample_part(None, from, u) };
+        let part = parts.tree.sample(from, normal, self.shows_backs(from), u[0])?;
+        Some(self.sample_part(Some(part.index as u32), from, [part.u, u[1]])?.times(part.probability))
+    }
+
+    /// A direction toward one of several parts, or to a shape that has no others.
+    fn sample_part(&self, part: Option<u32>, from: DVec3, [u, v]: [f64; 2]) -> Option<ShapeSample> {
+        let evenly = |u: f64| match part {
+            Some(part) => self.shape.sample_part(part, from, [u, v]),
+            None => self.shape.sample(from, [u, v]),
+        };
+        let Some((surface, cells)) = self.cells(part.unwrap_or(0)) else { return evenly(u) };
+        let sample = if u < BY_IMAGE {
+            let place = cells.sample([u / BY_IMAGE, v]);
+            let point = surface.point_at(part.unwrap_or(0), place)?;
+            let is_behind = surface.is_behind(&point, from);
+            let sample = ShapeSample::along(point.position - from).filter(|_| !is_behind)?;
+            part.map_or(sample, |part| sample.with_part(part))
+        } else {
+            evenly((u - BY_IMAGE) / (1.0 - BY_IMAGE))?
+        };
+        Some(ShapeSample { density: None, ..sample })
+    }
+
+    /// Density per steradian with which `sample_part` draws the direction of a ray that first meets the part at a
+    /// crossing.
+    fn pdf_part(&self, ray: &Ray, crossing: &Crossing) -> f64 {
+        let evenly = match &self.parts {
+            Some(_) => self.shape.pdf_part(ray, crossing),
+            None => self.shape.pdf(ray, crossing),
+        };
+        let Some((surface, cells)) = self.cells(crossing.part) else { return evenly };
+        let point = self.shape.point(ray, crossing);
+        let of_image = surface.place(crossing, point.position).map_or(0.0, |place| {
+            Density::Area(cells.density(&place)).toward(crossing.t, point.normal.dot(ray.direction).abs())
+        });
+        BY_IMAGE * of_image + (1.0 - BY_IMAGE) * evenly
     }
 
     /// A sample of which it is known that no other part of the light hides it.
@@ -140,13 +230,18 @@ impl<S> Area<S> {
     pub fn pdf_at(&self, ray: &Ray, normal: DVec3, crossing: &Crossing) -> Option<f64> {
         usable(match (&self.visible_cap, &self.parts) {
             (Some(cap), _) => self.shape.pdf_cap(cap, ray, crossing),
-            (None, None) => self.shape.pdf(ray, crossing),
+            (None, None) => self.pdf_part(ray, crossing),
             (None, Some(parts)) => {
                 let two_sided = self.shows_backs(ray.origin);
-                let probability = parts.probability(crossing.part as usize, ray.origin, normal, two_sided);
-                if probability == 0.0 { 0.0 } else { probability * self.shape.pdf_part(ray, crossing) }
+                let probability = parts.tree.probability(crossing.part as usize, ray.origin, normal, two_sided);
+                if probability == 0.0 { 0.0 } else { probability * self.pdf_part(ray, crossing) }
             }
         })
+    }
+
+    /// The share of its area from which most of its light comes, by the image that it shows; 1 if it shows none.
+    pub fn evenness(&self) -> f64 {
+        self.emission_map.as_ref().map_or(1.0, |map| map.evenness())
     }
 
     /// A ball around the part that can be seen, and the area of that from where it is seen best; none of a shape that
@@ -160,10 +255,9 @@ impl<S> Area<S> {
         Some((part, PI * part.radius * part.radius))
     }
 
-    /// Whether photons can be sent from it: not if it shows an image, since it does not send the same from all its
-    /// points, nor from an instance, whose points are drawn by their areas before it was placed.
+    /// Whether photons can be sent from it.
     pub(super) fn sends_photons(&self) -> bool {
-        self.coordinates.is_none() && !matches!(*self.shape, Shape::Instance(_))
+        self.coordinates.is_none() || self.emission_map.is_some()
     }
 
     pub(super) fn beam(&self, ball: &Ball) -> Beam {
@@ -177,10 +271,8 @@ impl<S> Area<S> {
     /// A photon from a point of the surface to the ball: in the cone that this fills; by its cosine where the point is
     /// inside the ball.
     pub(super) fn sample_le(&self, ball: &Ball, [a, b]: [f64; 2], u: [f64; 2]) -> Option<LeSample> {
-        let point = match &self.visible_cap {
-            Some(cap) => self.shape.sample_cap_emission(cap, ball, u)?,
-            None => self.shape.sample_emission(ball, u)?,
-        };
+        let surface = self.sample_emission(ball, u)?;
+        let point = &surface.point;
         let cone = ball.cone_from(point.position);
         let direction = if cone.is_all() {
             let front = self.front();
@@ -191,14 +283,14 @@ impl<S> Area<S> {
             cone.sample([a, b])?
         };
         let cos = point.normal.dot(direction);
-        let sample = LeSample { ray: point.leave(direction), factor: cos.abs(), surface: Some(point) };
+        let sample = LeSample { ray: point.leave(direction), factor: cos.abs(), surface: Some(surface) };
         self.sides.shine(cos > 0.0).then_some(sample)
     }
 
     /// How densely `sample_le` draws a photon for a ball from places of a density of their own, per unit of area and
     /// steradian; 0 of a way that does not lead there.
     pub(super) fn pdf_le(&self, ball: &Ball, sample: &LeSample, guide: impl Fn([f64; 2]) -> f64) -> f64 {
-        let Some(point) = &sample.surface else { return 0.0 };
+        let Some(EmissionPoint { point, density, .. }) = &sample.surface else { return 0.0 };
         let (cone, direction) = (ball.cone_from(point.position), sample.ray.direction);
         let along = if cone.is_all() {
             let cos = point.normal.dot(direction);
@@ -207,11 +299,40 @@ impl<S> Area<S> {
         } else {
             cone.pdf(direction, guide)
         };
-        let of_point = match &self.visible_cap {
-            Some(cap) => self.shape.pdf_cap_emission(cap, ball, point),
-            None => self.shape.pdf_emission(ball, point),
+        let of_point = match (density, &self.visible_cap) {
+            (Some(density), _) => *density,
+            (None, Some(cap)) => self.shape.pdf_cap_emission(cap, ball, point),
+            (None, None) => self.shape.pdf_emission(ball, point),
         };
         along * of_point
+    }
+
+    /// A point from which light may reach a ball.
+    fn sample_emission(&self, ball: &Ball, u: [f64; 2]) -> Option<EmissionPoint> {
+        match (&self.coordinates, &self.visible_cap) {
+            (Some(coordinates), _) => self.sample_textured(coordinates, u),
+            (None, _) if matches!(*self.shape, Shape::Instance(_)) => self.sample_textured(&Coordinates::Mesh, u),
+            (None, Some(cap)) => Some(EmissionPoint::of_even(self.shape.sample_cap_emission(cap, ball, u)?)),
+            (None, None) => Some(EmissionPoint::of_even(self.shape.sample_emission(ball, u)?)),
+        }
+    }
+
+    /// A point of a part that is drawn by its flux: most often where its image is bright, else anywhere.
+    fn sample_textured(&self, coordinates: &Coordinates, [u, v]: [f64; 2]) -> Option<EmissionPoint> {
+        let surface = TexturedShape { shape: &self.shape, coordinates };
+        let whole = DiscreteSample { index: 0, probability: 1.0, u };
+        let DiscreteSample { index, probability, u } = self.parts.as_ref().map_or(whole, |parts| parts.flux.sample(u));
+        let (part, cells) = (index as u32, self.cells(index as u32));
+        let at = match &cells {
+            Some((_, cells)) if u < BY_IMAGE => cells.sample([u / BY_IMAGE, v]),
+            Some(_) => [(u - BY_IMAGE) / (1.0 - BY_IMAGE), v],
+            None => [u, v],
+        };
+        let point = surface.point_at(part, at)?;
+        let place = Place { at, area: surface.area(part, at, point.position)? };
+        let share = cells.map_or(1.0, |(_, cells)| BY_IMAGE * cells.density(&place) * place.area + 1.0 - BY_IMAGE);
+        let density = Some(probability * share / place.area);
+        Some(EmissionPoint { point, uv: surface.coordinates_at(part, at)?, density })
     }
 
     /// A path of light from a point of the surface, by its cosine; of a sphere of which a cap is seen, from there most

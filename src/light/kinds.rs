@@ -217,6 +217,11 @@ impl Light<Table> {
         }
     }
 
+    /// The mean brightness of the image that lies on a lamp, which may be a small part of its file.
+    pub fn shown(&self) -> Option<f64> {
+        if let Self::Area(area) = self { area.mean_brightness() } else { None }
+    }
+
     /// The largest irradiance that a sky gives; 0 of other lights.
     pub fn irradiance(&self) -> f64 {
         let brightest = || self.emission().range().1.max(0.0);
@@ -236,6 +241,10 @@ impl Light<Table> {
             Self::Spot(spot) => LightBounds::of_point(spot.position.into()),
             Self::Environment(_) | Self::Sun(_) => return None,
         };
-        Some(LightBounds { intensity: bounds.intensity * self.emission().brightness(), ..bounds })
+        let brightness = match self.shown() {
+            Some(mean) => mean * self.emission().range().1.max(0.0),
+            None => self.emission().brightness(),
+        };
+        Some(LightBounds { intensity: bounds.intensity * brightness, ..bounds })
     }
 }

@@ -6,6 +6,7 @@
 
 mod area;
 mod bounds;
+mod emission_map;
 mod environment;
 mod kinds;
 mod panorama;
@@ -18,11 +19,12 @@ mod tree;
 
 pub use area::Area;
 pub use bounds::{LightBounds, NormalCone};
+pub use emission_map::EmissionMap;
 pub use environment::{Environment, Sky, SkyPolarization};
 pub use kinds::{Light, LightId};
 pub use panorama::Panorama;
 pub use point::Point;
-pub use sample::{Beam, LeSample, LightSample};
+pub use sample::{Beam, EmissionPoint, LeSample, LightSample};
 pub use sampler::{LightSampler, SampledLight};
 pub use spot::Spot;
 pub use sun::Sun;

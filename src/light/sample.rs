@@ -61,10 +61,33 @@ pub struct LeSample {
     /// The factor on the light's emission that makes flux of it, over the density of the sample.
     pub factor: f64,
     /// Where it leaves a surface that shines.
-    pub surface: Option<SurfacePoint>,
+    pub surface: Option<EmissionPoint>,
+}
+
+/// A point of a surface that shines.
+#[derive(Clone, Copy, Debug)]
+pub struct EmissionPoint {
+    /// The point.
+    pub point: SurfacePoint,
+    /// Where it lies on the image that the light shows, if it shows one.
+    pub uv: [f64; 2],
+    /// How many such points are drawn per unit of area, where that does not depend on what photons are sent to.
+    pub density: Option<f64>,
+}
+
+impl EmissionPoint {
+    /// Of a light that shines everywhere alike.
+    pub(super) fn of_even(point: SurfacePoint) -> Self {
+        Self { point, uv: [0.0; 2], density: None }
+    }
 }
 
 impl LeSample {
+    /// Where it starts on the image that the light shows, if it shows one.
+    pub fn uv(&self) -> [f64; 2] {
+        self.surface.map_or([0.0; 2], |surface| surface.uv)
+    }
+
     /// Of a point that shines with a part of its intensity in each direction.
     pub(super) fn of_point(light: DVec3, cone: &Cone, guide_uv: [f64; 2], part: impl Fn(DVec3) -> f64) -> Option<Self> {
         let direction = cone.sample(guide_uv)?;

@@ -94,6 +94,11 @@ impl Distribution2d {
         Self { rows, columns }
     }
 
+    /// How many columns and rows there are.
+    pub fn size(&self) -> [usize; 2] {
+        [self.columns[0].count(), self.columns.len()]
+    }
+
     /// Sum of all products of the weights of cells and rows.
     pub fn total(&self) -> f64 {
         self.rows.total()

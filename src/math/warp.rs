@@ -73,3 +73,8 @@ pub fn triangle_coordinates(u: [f64; 2]) -> [f64; 2] {
     }
     [a, b]
 }
+
+/// The place of the unit square that `triangle_coordinates` takes to a point of a triangle.
+pub fn triangle_square([a, b]: [f64; 2]) -> [f64; 2] {
+    if b > a { [2.0 * a, a + b] } else { [a + b, 2.0 * b] }
+}

@@ -146,17 +146,7 @@ fn sources(scene: &Scene<Curve>, world: &World) -> Result<Sources, Option<String
                 "caustics of an image of the sky are left to chance".into()
             }
             [] => "rays find the sky by chance often enough".into(),
-            lights => {
-                let is_small = |&&(_, size): &&SizedLight| size < SMALL;
-                let small: Vec<SizedLight> = lights.iter().filter(is_small).copied().collect();
-                match small.is_empty() {
-                    true => format!("{} large enough for rays to meet by chance", named(scene, lights)),
-                    false => format!(
-                        "lamps with images and instances of lamps send none, so caustics of {} are left to chance",
-                        named(scene, &small)
-                    ),
-                }
-            }
+            lights => format!("{} large enough for rays to meet by chance", named(scene, lights)),
         };
         return Err(Some(format!("no photon tracing: {why}")));
     }
@@ -219,7 +209,7 @@ fn missing(scene: &Scene<Curve>) -> &'static str {
     if scene.lights.iter().all(Light::is_extended) { "" } else { "; those of points are left out" }
 }
 
-/// Lights with the solid angle under which they are seen.
+/// Lights with the solid angle under which what is bright of them is seen.
 fn named(scene: &Scene<Curve>, lights: &[(LightId, f64)]) -> String {
     let name = |&(id, size): &(LightId, f64)| {
         let name = match &scene.lights[id] {
@@ -271,7 +261,7 @@ fn solid_angle<S>(light: &Light<S>, places: &[DVec3]) -> Option<f64> {
             let (ball, size) = area.visible_part()?;
             let from = |place: &DVec3| {
                 let distance_squared = (ball.center - *place).length_squared();
-                (TAU * ball.cone_from(*place).one_minus_cos).min(size / distance_squared)
+                area.evenness() * (TAU * ball.cone_from(*place).one_minus_cos).min(size / distance_squared)
             };
             let mut angles: Vec<f64> = places.iter().map(from).collect();
             angles.sort_by(f64::total_cmp);

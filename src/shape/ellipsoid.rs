@@ -46,6 +46,10 @@ impl Ellipsoid {
         (self.inverse * (point - self.center)).normalize()
     }
 
+    pub(super) fn is_outside(&self, point: DVec3) -> bool {
+        (self.inverse * (point - self.center)).length_squared() > 1.0
+    }
+
     /// The surface over a point of the unit sphere.
     pub(super) fn point_at(&self, unit: DVec3) -> SurfacePoint {
         let arm = self.axes * unit;

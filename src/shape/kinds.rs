@@ -308,7 +308,8 @@ impl Shape {
         part.map_or(0.0, |part| self.toward(part.density(ray.origin), ray, crossing))
     }
 
-    /// A point from which light may reach a ball; none of an infinite shape and of an instance.
+    /// A point from which light may reach a ball; none of an infinite shape, and of an instance, whose triangles are
+    /// drawn one by one.
     ///
     /// Of a sphere, in the cap that sees some of the ball; of other shapes, anywhere on the surface.
     pub fn sample_emission(&self, toward: &Ball, u: [f64; 2]) -> Option<SurfacePoint> {

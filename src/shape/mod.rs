@@ -32,6 +32,7 @@ mod quad;
 mod sample;
 mod sides;
 mod sphere;
+mod textured;
 mod triangle;
 mod vertices;
 
@@ -55,6 +56,6 @@ pub use quad::Quad;
 pub use sample::{Density, ShapeSample};
 pub use sides::Sides;
 pub use sphere::Sphere;
-
+pub use textured::{Place, TexturedShape};
 pub use triangle::Triangle;
 pub use vertices::Vertices;

@@ -27,11 +27,13 @@ impl ShapeSample {
     }
 
     /// The direction along a vector to the shape; none of length 0.
-    pub(super) fn along(vector: DVec3) -> Option<Self> {
+    pub fn along(vector: DVec3) -> Option<Self> {
         Some(Self { direction: vector.try_normalize()?, part: None, density: None })
     }
 
-    pub(super) fn with_part(self, part: u32) -> Self {
+    /// The sample, if it lies on one of several parts.
+    #[must_use]
+    pub fn with_part(self, part: u32) -> Self {
         Self { part: Some(part), ..self }
     }
 

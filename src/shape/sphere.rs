@@ -157,6 +157,10 @@ impl Sphere {
         ELSEWHERE * self.pdf_emission(own, toward, point) + (1.0 - ELSEWHERE) * of_cap
     }
 
+    pub(super) fn is_outside(&self, point: DVec3) -> bool {
+        (point - self.center).length_squared() > self.radius * self.radius
+    }
+
     /// The cone of directions in which the sphere is seen from outside.
     fn cone_from(&self, from: DVec3) -> Option<Cone> {
         let cone = Ball { center: self.center, radius: self.radius }.cone_from(from);

@@ -4,6 +4,7 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 use super::data::{self, Glass, Illuminant, Metal, Reflectance};
+use super::texture::square;
 use super::{Quantity, Texture, Upsampler};
 
 /// Where the bands of the `rgb` basis read an index, in nm: the hydrogen C, mercury e and hydrogen F lines.
@@ -164,6 +165,30 @@ impl CurveKind {
         match self {
             Self::Number(value) => Some([*value; 3]),
             Self::Rgb(rgb) => Some(*rgb),
+            _ => None,
+        }
+    }
+
+    /// Of what varies over a surface, the mean of red, green and blue at a place of it; else of all of it.
+    pub fn brightness_at(&self, uv: [f64; 2]) -> f64 {
+        match self {
+            Self::Texture(texture) => texture.color(uv).iter().map(|&x| f64::from(x)).sum::<f64>() / 3.0,
+            Self::Checker { cells, repeat } => {
+                let cell = &cells[square(*repeat, uv)];
+                cell.scale * cell.kind.mean()
+            }
+            _ => self.mean(),
+        }
+    }
+
+    /// Texels or squares in a unit of u and of v; none of what does not vary over a surface.
+    pub fn resolution(&self) -> Option<[f64; 2]> {
+        match self {
+            Self::Texture(Texture { image, placement }) => {
+                let [across, up] = placement.repeat;
+                Some([across * image.width() as f64, up * image.height() as f64])
+            }
+            Self::Checker { repeat, .. } => Some(*repeat),
             _ => None,
         }
     }

@@ -181,7 +181,7 @@ impl World {
         let to_xyz = self.scene.film.color_space.to_xyz();
         let of = |source: usize, lanes| apply(&to_xyz, self.responses[source].sensor(&draw, lanes, false))[1];
         let excited = self.dyes.as_ref().map_or(0.0, |dyes| dyes.most_excited(light, &draw, emission, of));
-        of(light, emission).max(excited)
+        of(light, emission).max(excited) * self.scene.lights[light].shown().unwrap_or(1.0)
     }
 
     /// Aims the photons of the light pass.

@@ -122,6 +122,36 @@ fn a_glass_ball_under_a_round_lamp() {
     agree("ball", &text, 16);
 }
 
+/// Squares of three brightnesses on lamps of every kind, each in a room of its own.
+#[test]
+fn a_glass_ball_under_lamps_that_show_patterns() {
+    let shown =
+        "[material.lamp]\nemissive = { radiance = { checker = [{ rgb = [30, 20, 10] }, 0.5], repeat = [3, 2] } }\n";
+    let mesh = "mesh = { points = [[1, 0, 1], [-1, 0, 1], [-1, 0, -1], [1, 0, -1]], faces = [[0, 1, 2], [0, 2, 3]], \
+                uv = [[0, 0], [1, 0], [1, 1], [0, 1]] }\nmaterial = \"lamp\"\n";
+    let at = |transform: &str| format!("transform = [{{ {transform} }}]\n");
+    let lamps = [
+        object("lamp", "quad = { center = [0, 4, 0], u = [0.8, 0, 0], v = [0, 0.2, 0.7] }"),
+        object("lamp", "disc = { center = [0, 4, 0], normal = [0.2, -1, 0], radius = 0.9 }"),
+        object("lamp", "sphere = { center = [0, 5, 0], radius = 1 }"),
+        object("lamp", "sphere = { center = [0, 5, 0], radius = 1 }") + &at("scale = [1.2, 1, 0.7]"),
+        object("lamp", "cube = { center = [0.2, 4.5, 0], size = [1, 0.5, 1.2] }"),
+        format!("[[object]]\nshape.{mesh}{}", at("translate = [0, 4, 0]")),
+        format!(
+            "[[object]]\nshape.{mesh}{}instances = [[{{ translate = [0.8, 4, 0] }}], \
+             [{{ scale = [-0.6, 1, 0.9] }}, {{ translate = [-0.6, 4.2, 0.2] }}]]\n",
+            at("rotate = { axis = [0, 0, 1], degrees = 10 }")
+        ),
+    ];
+    for (number, lamp) in lamps.iter().enumerate() {
+        let text = seen_by(ABOVE, "") + FLOOR + shown + &glass("index = 1.5") + &object("glass", BALL) + lamp;
+        agree(&format!("ball under pattern {number}"), &text, 32);
+    }
+    // Instances of a lamp that is bright everywhere.
+    let text = seen_by(ABOVE, "") + FLOOR + LAMP + &glass("index = 1.5") + &object("glass", BALL) + &lamps[6];
+    agree("ball under two of a kind", &text, 16);
+}
+
 #[test]
 fn a_mirror_beside_a_lamp_that_lights_the_floor_as_well() {
     let text = seen_by(ABOVE, "filter = \"mitchell\"")

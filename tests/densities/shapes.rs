@@ -3,18 +3,20 @@
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-use abbe::light::{Area, Light, LightSample};
+use abbe::light::{Area, EmissionMap, Light, LightSample};
 use abbe::math::{DMat3, DVec3, Frame, Ray, Transform};
 use abbe::shape::{
-    Crossing, Cube, Density, Disc, Ellipsoid, Quad, Shape, ShapeSample, Sides, Sphere, SurfacePoint, Triangle,
+    Attributes, Coordinates, Crossing, Cube, Density, Disc, Ellipsoid, Mesh, Quad, Shape, ShapeSample, Sides, Sphere,
+    SurfacePoint, TexturedShape, Triangle, Vertices,
 };
+use abbe::spectrum::{CurveKind, Image, Placement, TexelFilter, Texture, Wrap};
 
 use crate::support::bodies::{ball, closed_mesh};
 use crate::support::chi_squared;
 use crate::support::random::Random;
 
 /// Calls of `check_samples` by the tests of this file.
-const TESTS: u32 = 33;
+const TESTS: u32 = 48;
 const DRAWS: usize = 100_000;
 /// Bins by height, and around.
 const BINS: [usize; 2] = [12, 24];
@@ -285,4 +287,77 @@ fn directions_toward_a_mesh_follow_their_density() {
     check("mesh from inside", &mesh, DVec3::new(0.1, 0.05, 0.1), DVec3::Y, PI);
     check_lamp("triangles of a mesh from outside", &mesh, from, -from, 1.0);
     check_lamp("triangles of a mesh from inside", &mesh, DVec3::new(0.1, 0.05, 0.1), DVec3::Y, PI);
+}
+
+/// A dim image with one bright and one brighter texel.
+fn picture(repeat: [f64; 2], filter: TexelFilter) -> CurveKind {
+    let mut texels = vec![0.05; 7 * 5];
+    [texels[9], texels[23], texels[24], texels[12]] = [3.0, 10.0, 0.0, 0.0];
+    let placement = Placement { repeat, wrap: Wrap::Repeat, filter };
+    CurveKind::Texture(Texture { image: Arc::new(Image::of_floats(7, 1, texels)), placement })
+}
+
+/// Tests how a shape that shows an image is sampled as a lamp after a transform, from a point with a normal toward it.
+fn check_image(name: &str, written: &Shape, map: &Transform, from: DVec3, bins: &Bins) {
+    let coordinates = Coordinates::new(written, map).expect("it has coordinates");
+    let picture =
+        picture([1.5, 1.0], if name.len().is_multiple_of(2) { TexelFilter::Linear } else { TexelFilter::Nearest });
+    let shape = written.clone().transformed(map);
+    let seen = EmissionMap::new(&picture, TexturedShape { shape: &shape, coordinates: &coordinates })
+        .expect("the image varies");
+    let shapes = if written.part_count() > 0 { vec![shape.clone(), written.copied(map)] } else { vec![shape.clone()] };
+    for shape in shapes {
+        let lamp = Area::new(Arc::new(shape.clone()), 0, (), Sides::Both, true);
+        let lamp = Light::Area(lamp.showing(Arc::new(coordinates), Some(Arc::new(seen.clone()))));
+        assert!(lamp.has_parts(), "{name}");
+        let normal = (bins.axis + DVec3::new(0.1, -0.2, 0.1)).normalize();
+        check_light(name, &shape, from, bins, (&lamp, normal));
+    }
+}
+
+#[test]
+fn directions_toward_flat_lamps_with_images_follow_their_density() {
+    let map = Transform::scale(DVec3::new(-1.0, 1.2, 0.8)).then(&Transform::rotate(DVec3::new(1.0, 0.3, 0.5), 70.0));
+    let (from, far) = (DVec3::new(0.3, 0.4, 0.2), DVec3::new(2.0, 3.0, 2.5));
+    let quad = Shape::Quad(Quad::new(DVec3::ZERO, DVec3::new(1.0, 0.0, 0.2), DVec3::new(0.4, 0.1, -0.7)));
+    let toward =
+        |normal: DVec3| -map.normal(normal.normalize()) * map.normal(normal.normalize()).dot(map.point(from)).signum();
+    let below = |normal: DVec3| Bins::new(toward(normal), 0.5 * PI);
+    check_image("image on a quad", &quad, &map, map.point(from), &below(DVec3::new(-0.02, 0.78, 0.1)));
+    check_image("image on a far quad", &quad, &map, map.point(far), &Bins::new(-map.point(far), 0.35));
+    let disc = Shape::Disc(Disc::new(DVec3::ZERO, DVec3::new(0.3, 1.0, -0.2), 0.8, None).expect("it has a normal"));
+    check_image("image on a disc", &disc, &map, map.point(from), &below(DVec3::new(0.3, 1.0, -0.2)));
+    let points = [DVec3::new(0.0, 0.0, 1.0), DVec3::new(1.0, 0.2, 0.0), DVec3::new(-0.5, 0.4, -0.6)];
+    let triangle = Shape::Triangle(Triangle::new(points));
+    check_image("image on a triangle", &triangle, &map, map.point(far), &Bins::new(-map.point(far), 0.4));
+    check_image("image on it, nearby", &triangle, &Transform::IDENTITY, from, &Bins::new(-DVec3::Y, PI));
+}
+
+#[test]
+fn directions_toward_round_lamps_with_images_follow_their_density() {
+    let turned = Transform::rotate(DVec3::new(1.0, 0.3, 0.5), 70.0).then(&Transform::translate(DVec3::X));
+    let sphere = Shape::Sphere(Sphere::new(DVec3::new(0.1, 0.2, 0.0), 0.7));
+    let center = turned.point(DVec3::new(0.1, 0.2, 0.0));
+    let away = DVec3::new(0.36, 0.48, 0.8);
+    let cone = |distance: f64| Bins::new(-away, 1.01 * libm::asin(0.7 / distance));
+    check_image("image on a sphere", &sphere, &turned, center + away * 2.0, &cone(2.0));
+    check_image("image on a sphere nearby", &sphere, &turned, center + away * 0.75, &cone(0.75));
+    check_image("image around", &sphere, &turned, center - away * 0.4, &Bins::new(DVec3::Y, PI));
+    let unit = Shape::Sphere(Sphere::new(DVec3::ZERO, 1.0));
+    let axes = DMat3::from_cols(skew().vector(DVec3::X), skew().vector(DVec3::Y), skew().vector(DVec3::Z));
+    for (name, from) in [("image on an ellipsoid", away * 2.0), ("image around, skew", away * 0.2)] {
+        check_image(name, &unit, &skew(), from, &Bins::of_ellipsoid(DVec3::ZERO, axes, from));
+    }
+}
+
+#[test]
+fn directions_toward_lamps_of_parts_with_images_follow_their_density() {
+    let cube = Shape::Cube(Cube::new(DVec3::new(0.1, 0.0, 0.2), DVec3::new(1.0, 0.5, 1.6)));
+    let from = DVec3::new(1.2, 0.9, 1.4);
+    check_image("image on a cube", &cube, &Transform::IDENTITY, from, &Bins::new(-from, 0.6));
+    let (points, faces) = ball();
+    let coordinates = points.iter().map(|point| [point.x as f32, 0.5 * point.y as f32]).collect();
+    let (mesh, _) = Mesh::new(Vertices::Double(points), faces).expect("it has triangles");
+    let mesh = Shape::Mesh(Arc::new(mesh.with(Attributes { coordinates, ..Default::default() })));
+    check_image("image on a mesh", &mesh, &skew(), from, &Bins::new(-from, 1.0));
 }

@@ -162,3 +162,89 @@ fn an_image_turns_with_its_sphere() {
         }
     }
 }
+
+/// A lamp on which one texel of 256 x 256 shines, above the small white floor, and the point of it at (u, v), with the
+/// area that stands for one of the image, times its normal.
+struct OneTexel {
+    shape: &'static str,
+    texel: [usize; 2],
+    place: fn([f64; 2]) -> [DVec3; 2],
+}
+
+const ONE_TEXEL: [OneTexel; 5] = [
+    OneTexel {
+        shape: "quad = { center = [0.2, 1, 0.1], u = [1, 0, 0], v = [0, 0, 0.8] }",
+        texel: [40, 200],
+        place: |[u, v]| [DVec3::new(2.0 * u - 0.8, 1.0, 1.6 * v - 0.7), DVec3::new(0.0, -3.2, 0.0)],
+    },
+    OneTexel {
+        shape: "mesh = { points = [[-0.8, 1, -0.7], [1.2, 1, -0.7], [1.2, 1, 0.9], [-0.8, 1, 0.9]], \
+                faces = [[0, 1, 2], [0, 2, 3]], uv = [[0, 0], [1, 0], [1, 1], [0, 1]] }",
+        texel: [40, 200],
+        place: |[u, v]| [DVec3::new(2.0 * u - 0.8, 1.0, 1.6 * v - 0.7), DVec3::new(0.0, -3.2, 0.0)],
+    },
+    OneTexel {
+        shape: "disc = { center = [0.2, 1, 0.1], normal = [0, -1, 0], radius = 0.9, u = [1, 0, 0] }",
+        texel: [70, 90],
+        place: |[u, v]| [DVec3::new(1.8 * u - 0.7, 1.0, 1.8 * v - 0.8), DVec3::new(0.0, -3.24, 0.0)],
+    },
+    OneTexel {
+        shape: "cube = { center = [0.2, 1.5, 0.1], size = 1 }",
+        texel: [70, 90],
+        place: |[u, v]| [DVec3::new(u - 0.3, 1.0, v - 0.4), DVec3::new(0.0, -1.0, 0.0)],
+    },
+    OneTexel {
+        shape: "sphere = { center = [0.2, 1.5, 0.1], radius = 0.5 }",
+        texel: [100, 230],
+        place: |[u, v]| {
+            let (longitude, latitude) = (std::f64::consts::TAU * (u - 0.5), std::f64::consts::PI * (v - 0.5));
+            let (across, up) = (libm::cos(latitude), libm::sin(latitude));
+            let normal = DVec3::new(across * libm::sin(longitude), up, across * libm::cos(longitude));
+            let area = 0.25 * std::f64::consts::TAU * std::f64::consts::PI * across;
+            [DVec3::new(0.2, 1.5, 0.1) + normal * 0.5, normal * area]
+        },
+    },
+];
+
+impl OneTexel {
+    /// The radiance of a white floor that reflects a half, at the origin, under a radiance of 1.
+    fn expected(&self) -> f64 {
+        const STEPS: usize = 20;
+        let mut sum = 0.0;
+        for (i, j) in (0..STEPS).flat_map(|i| (0..STEPS).map(move |j| (i, j))) {
+            let within = [i, j].map(|i| (i as f64 + 0.5) / STEPS as f64);
+            let u = (self.texel[0] as f64 + within[0]) / 256.0;
+            let v = 1.0 - (self.texel[1] as f64 + within[1]) / 256.0;
+            let [point, normal] = (self.place)([u, v]);
+            let squared = point.length_squared();
+            sum += (-normal.dot(point)).max(0.0) * point.y / (squared * squared);
+        }
+        0.5 / std::f64::consts::PI * sum / (STEPS * STEPS) as f64 / (256.0 * 256.0)
+    }
+}
+
+/// Sampled evenly, a lamp would be met where it is dark by all but one of 65,536 samples.
+#[test]
+fn l10_one_bright_texel_of_a_lamp_is_found() {
+    for lamp in ONE_TEXEL {
+        let folder = tempfile::tempdir().unwrap();
+        let bright = |x: usize, y: usize| if [x, y] == lamp.texel { (1e6, 1e6, 1e6) } else { (0.0, 0.0, 0.0) };
+        exr::prelude::write_rgb_file(folder.path().join("lamp.exr"), 256, 256, bright).unwrap();
+        let quad = "quad = { center = [0.2, 1, 0.1], u = [1, 0, 0], v = [0, 0, 0.8] }";
+        let text = floor("\"rgb\"").replace(LAMP, &LAMP.replace("wrap = \"clamp\"", "filter = \"nearest\""));
+        let scene = scene(folder.path(), &text.replace(quad, lamp.shape));
+        let films: Vec<Film> = (0..16)
+            .map(|seed| {
+                let method = Method { seed, transport: SPLITTING, ..plan(&scene).method };
+                render(&prepare(&scene, method), &|_| ()).0
+            })
+            .collect();
+        let (mean, expected) = (Mean::over_seeds(films.iter()), 2e6 * lamp.expected());
+        let error = mean.worst_error([expected; 3]);
+        println!("{}: {} +- {} for {expected}", lamp.shape, mean.value[0], mean.error[0]);
+        assert!(error < 0.01, "{}: noise {error}", lamp.shape);
+        // As above: the floor is no point, and the texel is near the horizon of none.
+        let off = (mean.value[0] - expected).abs();
+        assert!(off <= 3.5 * mean.error[0] + 2e-4 * expected, "{}: {} for {expected}", lamp.shape, mean.value[0]);
+    }
+}

@@ -29,13 +29,13 @@ mod radiometry;
 mod relief;
 mod render;
 mod shape;
+mod shining;
 mod sight;
 mod spectrum_file;
 mod transform;
 mod unlit;
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::sync::Arc;
 
 use sha2::Digest;
 use toml::de::DeValue;
@@ -44,13 +44,13 @@ use self::context::Context;
 use self::material::Drafts;
 use self::object::{Draft, Names};
 use self::place::Placed;
+use self::shining::surfaces_that_shine;
 use super::index::Index;
 use super::text::{Document, Fields, INCLUDE, SET, Value};
 use super::{ModelText, NamedMaterial, Object, PolarizationText, RenderText, Scene};
 use crate::film::Format;
-use crate::light::{Area, Light, LightId};
 use crate::material::Material;
-use crate::shape::{Shape, Sides};
+use crate::shape::Shape;
 use crate::spectrum::Curve;
 
 /// The sections that a scene may have.
@@ -244,27 +244,5 @@ fn unused(context: &mut Context, placed: &Placed, drafts: &Drafts) {
         if !placed.materials.iter().any(|used| used.name == *name || used.material.is_made_of(name)) {
             context.warn(format!("material {name} is not used by any object"));
         }
-    }
-}
-
-/// Gives every object whose material emits its light.
-fn surfaces_that_shine(scene: &mut Scene<Curve>) {
-    for number in 0..scene.objects.len() {
-        let object = &scene.objects[number];
-        let (radiance, sides, lamp) = match &scene.materials[object.material as usize].material {
-            Material::Emissive(emissive) => (&emissive.radiance, emissive.sides, true),
-            Material::Dielectric(dielectric) => (&dielectric.emission, Sides::Both, false),
-            _ => continue,
-        };
-        if radiance.is_dark() {
-            continue;
-        }
-        let light: LightId = scene.lights.len();
-        let aimed_at = lamp && object.shape.is_bounded();
-        let mut area = Area::new(object.shape.clone(), number as u32, radiance.clone(), sides, aimed_at);
-        area.coordinates = object.coordinates.clone().filter(|_| radiance.varies());
-        scene.light_groups.push(object.group.as_ref().unwrap_or(&object.asset).clone());
-        scene.lights.push(Light::Area(area));
-        Arc::make_mut(&mut scene.objects)[number].light = Some(light);
     }
 }

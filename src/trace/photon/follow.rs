@@ -61,6 +61,8 @@ pub struct Landing<'a, const N: usize, P = Polarized> {
     pub path: &'a Path<N, P>,
     pub at: &'a Interaction<'a, N>,
     pub light: LightId,
+    /// Where it left the image that the light shows, if it shows one.
+    uv: [f64; 2],
     /// Flux per emission.
     factor: f64,
     /// Whether the photon is of the first half of those sent with it.
@@ -70,7 +72,7 @@ pub struct Landing<'a, const N: usize, P = Polarized> {
 impl<const N: usize, P> Landing<'_, N, P> {
     /// What the light shines on the photon's way, per emission.
     fn shone(&self, world: &World) -> Lanes<N> {
-        world.scene.lights[self.light].toward(self.at.arrival.draw, -self.path.ray.direction, [0.0; 2])
+        world.scene.lights[self.light].toward(self.at.arrival.draw, -self.path.ray.direction, self.uv)
     }
 
     /// What the photon brings: its flux, lane by lane.
@@ -165,7 +167,7 @@ fn advance<const N: usize, P: Polarization<N>>(
     let allowed = path.vertices <= world.method.max_bounces && !(at.lobes.is_diffuse() && path.diffuse_left == 0);
     let shown = over != Surfaces::Smooth || path.vertices > 1;
     if at.lobes.is_wide() && allowed && shown {
-        land(walker, &Landing { path, at: &at, light, factor: emitted.factor, early });
+        land(walker, &Landing { path, at: &at, light, uv: emitted.uv(), factor: emitted.factor, early });
     }
     if over == Surfaces::Smooth || !at.lobes.is_wide() {
         bounce(walker, path, at, sampler);

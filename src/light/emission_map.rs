@@ -1,0 +1,163 @@
+//! How bright an image makes the places of a lamp, by which they are sampled.
+
+use rayon::prelude::*;
+
+use crate::math::{BELOW_ONE, Distribution2d};
+use crate::shape::{Coordinates, Place, TexturedShape};
+use crate::spectrum::CurveKind;
+
+/// The brightness of each part of a surface that shines by an image, and of cells of the unit square on it.
+///
+/// Cells are about as large as texels; those of large images hold several. A part that is nearly even has none.
+#[derive(Clone, Debug)]
+pub struct EmissionMap {
+    mean: f64,
+    evenness: f64,
+    parts: Vec<Part>,
+}
+
+/// A part of the surface: a triangle, a face, or all of it.
+#[derive(Clone, Debug)]
+struct Part {
+    mean: f64,
+    cells: Option<Box<Distribution2d>>,
+}
+
+/// Most cells of a lamp, which take 8 MB.
+const MOST_CELLS: f64 = (1 << 20) as f64;
+/// Most places of a cell that are looked at, each way.
+const MOST_LOOKS: f64 = 8.0;
+/// The mean square of a part's brightness from which its cells are kept, in units of the squared mean: below, what they
+/// take is worth more than what they bring.
+const UNEVEN: f64 = 1.3;
+/// The same of a round shape, of which cells behind the horizon are drawn as often as those before it.
+const UNEVEN_ROUND: f64 = 4.0;
+/// How much of a part's worth is its own brightness, and not that of the whole lamp: no part is left out because its
+/// light was not seen.
+const OWN: f64 = 0.9;
+
+impl EmissionMap {
+    /// Of a shape on which an image or a pattern lies; none if that does not vary, or if the shape is infinite.
+    pub fn new(kind: &CurveKind, surface: TexturedShape) -> Option<Self> {
+        let shape = surface.shape;
+        let resolution = kind.resolution().filter(|_| shape.is_bounded())?;
+        let count = shape.part_count().max(1);
+        let texels = |part| surface.edges(part).map(|[u, v]| (u * resolution[0] + v * resolution[1]).max(1.0));
+        let all: f64 = (0..count).map(|part| texels(part).iter().product::<f64>()).sum();
+        let coarser = (all / MOST_CELLS).max(1.0).sqrt();
+        let uneven = if matches!(surface.coordinates, Coordinates::Sphere { .. }) { UNEVEN_ROUND } else { UNEVEN };
+        let grid = |part| {
+            Grid::new(texels(part), coarser, move |place| {
+                let uv = surface.coordinates_at(part, place)?;
+                Some([kind.brightness_at(uv), surface.growth(place)])
+            })
+        };
+        let looked: Vec<(Part, f64)> = (0..count).into_par_iter().map(|part| grid(part).part(uneven)).collect();
+        let area = |part| shape.part(part).map_or(1.0, |part| part.area());
+        let [mut light, mut squares, mut whole] = [0.0; 3];
+        for (number, (part, square)) in looked.iter().enumerate() {
+            let area = area(number as u32);
+            light += area * part.mean;
+            squares += area * square;
+            whole += area;
+        }
+        let evenness = if light > 0.0 { light * light / (squares * whole) } else { 1.0 };
+        let parts = looked.into_iter().map(|(part, _)| part).collect();
+        Some(Self { mean: light / whole, evenness, parts })
+    }
+
+    /// The mean brightness of the lamp, a third of red, green and blue.
+    pub fn mean(&self) -> f64 {
+        self.mean
+    }
+
+    /// The share of the lamp's area that would send as much light if it were bright and the rest dark, by the mean
+    /// square of the brightness: 1 of an even image.
+    pub fn evenness(&self) -> f64 {
+        self.evenness
+    }
+
+    /// By how much an area of a part counts.
+    pub(super) fn worth(&self, part: u32) -> f64 {
+        OWN * self.parts[part as usize].mean + (1.0 - OWN) * self.mean
+    }
+
+    /// Whether parts are sampled by their cells.
+    pub(super) fn has_cells(&self) -> bool {
+        self.parts.iter().any(|part| part.cells.is_some())
+    }
+
+    /// The cells of a part; none if it is nearly even.
+    pub(super) fn cells(&self, part: u32) -> Option<Cells<'_>> {
+        self.parts[part as usize].cells.as_deref().map(Cells)
+    }
+}
+
+/// The cells of a part, each drawn by its light.
+pub(super) struct Cells<'a>(&'a Distribution2d);
+
+impl Cells<'_> {
+    /// A place of the unit square, even within a cell.
+    pub fn sample(&self, u: [f64; 2]) -> [f64; 2] {
+        let size = self.0.size();
+        let drawn = self.0.sample(u);
+        [0, 1].map(|i| ((drawn[i].index as f64 + drawn[i].u) / size[i] as f64).min(BELOW_ONE))
+    }
+
+    /// How many points `sample` draws per unit of area at a place.
+    pub fn density(&self, place: &Place) -> f64 {
+        let size = self.0.size();
+        let cell = [0, 1].map(|i| ((place.at[i] * size[i] as f64) as usize).min(size[i] - 1));
+        self.0.probability(cell) * (size[0] * size[1]) as f64 / place.area
+    }
+}
+
+/// The unit square on a part, cut into cells of even size.
+struct Grid<F> {
+    size: [usize; 2],
+    looks: [usize; 2],
+    /// The brightness at a place, and how much area it stands for; none beside the shape.
+    look: F,
+}
+
+impl<F: Fn([f64; 2]) -> Option<[f64; 2]> + Sync> Grid<F> {
+    /// Of a part on which so many texels lie; cells are coarser than these by a factor of 1 or more.
+    fn new(texels: [f64; 2], coarser: f64, look: F) -> Self {
+        let size = texels.map(|texels| (texels / coarser).ceil());
+        // Two looks are exact where texels pass into each other, and one at each of several.
+        let looks = [0, 1].map(|i| (texels[i] / size[i]).ceil().clamp(2.0, MOST_LOOKS) as usize);
+        Self { size: size.map(|cells| cells as usize), looks, look }
+    }
+
+    /// The part, and the mean square of its brightness.
+    fn part(&self, uneven: f64) -> (Part, f64) {
+        let [columns, rows] = self.size;
+        let cell = |number: usize| self.cell([number % columns, number / columns]);
+        let cells: Vec<[f64; 2]> = (0..columns * rows).into_par_iter().with_min_len(256).map(cell).collect();
+        let (mut light, mut area, mut square) = (0.0, 0.0, 0.0);
+        for [of_cell, its_area] in cells.iter().copied().filter(|[_, area]| *area > 0.0) {
+            light += of_cell;
+            area += its_area;
+            square += of_cell * of_cell / its_area;
+        }
+        let area = area.max(f64::MIN_POSITIVE);
+        let (mean, square) = (light / area, square / area);
+        let keeps = cells.len() > 1 && square > uneven * mean * mean;
+        let kept = || Box::new(Distribution2d::new(self.size, |[x, y]| cells[y * columns + x][0], |_| 1.0));
+        (Part { mean, cells: keeps.then(kept) }, square)
+    }
+
+    /// The light of a cell and its area.
+    fn cell(&self, cell: [usize; 2]) -> [f64; 2] {
+        let [mut light, mut area] = [0.0; 2];
+        for (i, j) in (0..self.looks[1]).flat_map(|j| (0..self.looks[0]).map(move |i| (i, j))) {
+            let within = [i, j].map(|at| at as f64 + 0.5);
+            let place = |k: usize| (cell[k] as f64 + within[k] / self.looks[k] as f64) / self.size[k] as f64;
+            if let Some([brightness, its_area]) = (self.look)([place(0), place(1)]) {
+                light += brightness * its_area;
+                area += its_area;
+            }
+        }
+        [light, area]
+    }
+}

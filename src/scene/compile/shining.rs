@@ -1,0 +1,68 @@
+//! Surfaces that shine.
+
+use std::sync::Arc;
+
+use crate::light::{Area, EmissionMap, Light, LightId};
+use crate::material::Material;
+use crate::scene::{Object, Scene};
+use crate::shape::{Coordinates, Shape, Sides, TexturedShape};
+use crate::spectrum::{Curve, CurveKind};
+
+/// Gives every object whose material emits its light.
+pub(super) fn surfaces_that_shine(scene: &mut Scene<Curve>) {
+    let mut maps = Maps::default();
+    for number in 0..scene.objects.len() {
+        let object = &scene.objects[number];
+        let (radiance, sides, lamp) = match &scene.materials[object.material as usize].material {
+            Material::Emissive(emissive) => (&emissive.radiance, emissive.sides, true),
+            Material::Dielectric(dielectric) => (&dielectric.emission, Sides::Both, false),
+            _ => continue,
+        };
+        if radiance.is_dark() {
+            continue;
+        }
+        let light: LightId = scene.lights.len();
+        let is_sampled = lamp && object.shape.is_bounded();
+        let mut area = Area::new(object.shape.clone(), number as u32, radiance.clone(), sides, is_sampled);
+        if let Some(coordinates) = object.coordinates.clone().filter(|_| radiance.varies()) {
+            let map = if is_sampled { maps.of(object, &coordinates, &radiance.kind) } else { None };
+            area = area.showing(coordinates, map);
+        }
+        scene.light_groups.push(object.group.as_ref().unwrap_or(&object.asset).clone());
+        scene.lights.push(Light::Area(area));
+        Arc::make_mut(&mut scene.objects)[number].light = Some(light);
+    }
+}
+
+/// The maps of lamps that show images. Those on which the same image lies alike share one.
+#[derive(Default)]
+struct Maps {
+    known: Vec<Known>,
+}
+
+struct Known {
+    shape: Arc<Shape>,
+    coordinates: Arc<Coordinates>,
+    kind: CurveKind,
+    map: Arc<EmissionMap>,
+}
+
+impl Maps {
+    fn of(&mut self, object: &Object, coordinates: &Arc<Coordinates>, kind: &CurveKind) -> Option<Arc<EmissionMap>> {
+        let surface = TexturedShape { shape: &object.shape, coordinates };
+        let is_like = |known: &&Known| known.kind == *kind && surface.is_like(&known.surface());
+        if let Some(known) = self.known.iter().rev().find(is_like) {
+            return Some(known.map.clone());
+        }
+        let map = Arc::new(EmissionMap::new(kind, surface)?);
+        let (shape, coordinates) = (object.shape.clone(), coordinates.clone());
+        self.known.push(Known { shape, coordinates, kind: kind.clone(), map: map.clone() });
+        Some(map)
+    }
+}
+
+impl Known {
+    fn surface(&self) -> TexturedShape<'_> {
+        TexturedShape { shape: &self.shape, coordinates: &self.coordinates }
+    }
+}
