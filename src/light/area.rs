@@ -239,9 +239,14 @@ impl<S> Area<S> {
         })
     }
 
-    /// The share of its area from which most of its light comes, by the image that it shows; 1 if it shows none.
-    pub fn evenness(&self) -> f64 {
-        self.emission_map.as_ref().map_or(1.0, |map| map.evenness())
+    /// The factor on its radiance by the image that it shows, each place by what it sends; 1 if it shows none.
+    pub fn brightness(&self) -> f64 {
+        self.emission_map.as_ref().map_or(1.0, |map| map.brightness())
+    }
+
+    /// The share of its area that sends as much light at that brightness; 1 if it shows no image.
+    pub fn bright_share(&self) -> f64 {
+        self.emission_map.as_ref().map_or(1.0, |map| map.mean() / map.brightness().max(f64::MIN_POSITIVE))
     }
 
     /// A ball around the part that can be seen, and the area of that from where it is seen best; none of a shape that

@@ -12,7 +12,7 @@ use crate::spectrum::CurveKind;
 #[derive(Clone, Debug)]
 pub struct EmissionMap {
     mean: f64,
-    evenness: f64,
+    brightness: f64,
     parts: Vec<Part>,
 }
 
@@ -61,9 +61,9 @@ impl EmissionMap {
             squares += area * square;
             whole += area;
         }
-        let evenness = if light > 0.0 { light * light / (squares * whole) } else { 1.0 };
+        let brightness = if light > 0.0 { squares / light } else { 0.0 };
         let parts = looked.into_iter().map(|(part, _)| part).collect();
-        Some(Self { mean: light / whole, evenness, parts })
+        Some(Self { mean: light / whole, brightness, parts })
     }
 
     /// The mean brightness of the lamp, a third of red, green and blue.
@@ -71,10 +71,9 @@ impl EmissionMap {
         self.mean
     }
 
-    /// The share of the lamp's area that would send as much light if it were bright and the rest dark, by the mean
-    /// square of the brightness: 1 of an even image.
-    pub fn evenness(&self) -> f64 {
-        self.evenness
+    /// Its brightness, each place by what it sends: the mean square over the mean.
+    pub fn brightness(&self) -> f64 {
+        self.brightness
     }
 
     /// By how much an area of a part counts.

@@ -1,9 +1,9 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use super::{LightSample, Panorama};
+use super::{Beam, BrightPart, LeSample, LightSample, Panorama};
 use crate::math::{DMat3, DVec3, Frame, cosine_hemisphere, unit};
-use crate::shape::SurfacePoint;
+use crate::shape::{Ball, SurfacePoint};
 use crate::spectrum::{Curve, CurveKind, Draw, Lanes, Placement, Quantity, Table, Texture};
 
 /// Light from all directions, where rays miss everything: the same from everywhere, or an image.
@@ -101,6 +101,31 @@ impl<S> Environment<S> {
             Some(sky) => sky.panorama.pdf(sky.turn * direction),
             None => direction.dot(normal).max(0.0) / PI,
         }
+    }
+
+    /// The bright part of its image, from which photons are sent; none of a polarized sky.
+    pub fn bright(&self) -> Option<&BrightPart> {
+        self.image.as_ref().filter(|_| self.polarization.is_none())?.panorama.bright()
+    }
+
+    /// Whether a direction lies in that part.
+    pub(super) fn is_bright(&self, direction: DVec3) -> bool {
+        let is_bright = |sky: &Sky<S>| sky.panorama.is_bright(sky.turn * direction);
+        self.polarization.is_none() && self.image.as_ref().is_some_and(is_bright)
+    }
+
+    /// Photons of the bright part.
+    pub(super) fn beam(&self, ball: &Ball) -> Option<Beam> {
+        self.bright()?;
+        Some(Beam::from_sky(ball, self.image.as_ref()?.panorama.bright_irradiance()))
+    }
+
+    /// A photon of the bright part, through a disc across the ball.
+    pub(super) fn sample_le(&self, ball: &Ball, guide_uv: [f64; 2], u: [f64; 2]) -> Option<LeSample> {
+        let sky = self.image.as_ref()?;
+        let (direction, pdf) = sky.panorama.sample_bright(u)?;
+        let ray = Beam::ray_from_sky(ball, unit(sky.turn.transpose() * direction), guide_uv)?;
+        Some(LeSample { ray, factor: 1.0 / pdf, surface: None })
     }
 
     /// The mean over all directions of the factor on `radiance`.

@@ -107,9 +107,14 @@ impl<S> Light<S> {
     pub fn sends_photons(&self) -> bool {
         match self {
             Self::Area(area) => area.sends_photons(),
-            Self::Environment(_) => false,
+            Self::Environment(environment) => environment.bright().is_some(),
             Self::Point(_) | Self::Spot(_) | Self::Sun(_) => true,
         }
+    }
+
+    /// Whether photons bring what it sends along a direction toward it, if it sends any.
+    pub fn sends_photons_from(&self, direction: DVec3) -> bool {
+        if let Self::Environment(environment) = self { environment.is_bright(direction) } else { true }
     }
 
     /// How photons are sent to a ball; none if the light sends none there.
@@ -118,8 +123,8 @@ impl<S> Light<S> {
             Self::Area(area) => area.beam(ball),
             Self::Point(point) => point.beam(ball),
             Self::Spot(spot) => spot.beam(ball),
-            Self::Sun(sun) => sun.beam(ball),
-            Self::Environment(_) => return None,
+            Self::Sun(_) => Beam::from_sky(ball, 1.0),
+            Self::Environment(environment) => environment.beam(ball)?,
         };
         Some(beam).filter(|beam| beam.flux > 0.0)
     }
@@ -132,7 +137,7 @@ impl<S> Light<S> {
             Self::Point(point) => LeSample::of_point(point.position.into(), &beam.cone, guide_uv, |_| 1.0),
             Self::Spot(spot) => LeSample::of_point(spot.position.into(), &beam.cone, guide_uv, |way| spot.part(way)),
             Self::Sun(sun) => sun.sample_le(&beam.ball, guide_uv, u),
-            Self::Environment(_) => None,
+            Self::Environment(environment) => environment.sample_le(&beam.ball, guide_uv, u),
         }
     }
 
@@ -142,8 +147,7 @@ impl<S> Light<S> {
         match self {
             Self::Area(area) => area.pdf_le(&beam.ball, sample, guide),
             Self::Point(_) | Self::Spot(_) => beam.cone.pdf(sample.ray.direction, guide),
-            Self::Sun(sun) => sun.pdf_le(&beam.ball, &sample.ray, guide),
-            Self::Environment(_) => 0.0,
+            Self::Sun(_) | Self::Environment(_) => beam.pdf_from_sky(&sample.ray, guide),
         }
     }
 

@@ -22,7 +22,7 @@ pub use bounds::{LightBounds, NormalCone};
 pub use emission_map::EmissionMap;
 pub use environment::{Environment, Sky, SkyPolarization};
 pub use kinds::{Light, LightId};
-pub use panorama::Panorama;
+pub use panorama::{BrightPart, Panorama};
 pub use point::Point;
 pub use sample::{Beam, EmissionPoint, LeSample, LightSample};
 pub use sampler::{LightSampler, SampledLight};

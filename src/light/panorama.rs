@@ -1,9 +1,9 @@
 //! Light from all around as an image, drawn where it is bright.
 
 use std::f64::consts::{PI, TAU};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
-use crate::math::{DVec3, Distribution2d};
+use crate::math::{DVec3, Distribution, Distribution2d};
 use crate::spectrum::Image;
 
 /// An image of all directions: latitude and longitude, +y on top, +z in the center, +x at the left quarter.
@@ -16,6 +16,72 @@ pub struct Panorama {
     texels: Distribution2d,
     /// Cosine of the angle from the top to the upper edge of each row, and to the lower edge of the last.
     edges: Vec<f64>,
+    bright: OnceLock<Option<BrightPart>>,
+}
+
+/// The texels of an image that are many times as bright as its mean, such as a sun or a studio's lamps, if they fill a
+/// small part of the sky.
+#[derive(Clone, Debug)]
+pub struct BrightPart {
+    /// Their density per steradian is above this one.
+    above: f64,
+    texels: Vec<u32>,
+    by_light: Distribution,
+    /// Of all light, how much comes from them.
+    share: f64,
+    /// In steradians.
+    solid_angle: f64,
+    /// Their radiance, each direction by what it sends, for one of the image.
+    radiance: f64,
+}
+
+/// How many times as bright as the mean a texel of the bright part is at least.
+const BRIGHT: f64 = 8.0;
+/// The largest solid angle of the bright part, and the least share of the light that is worth telling it apart.
+const MOST_SOLID_ANGLE: f64 = 0.5;
+const LEAST_SHARE: f64 = 0.02;
+
+impl BrightPart {
+    /// Of a panorama; none if nothing in it is so bright.
+    fn new(panorama: &Panorama) -> Option<Self> {
+        let (width, height) = (panorama.image.width(), panorama.image.height());
+        let solid_angle = |texel: u32| panorama.solid_angle(texel as usize / width);
+        let density = |texel: u32| panorama.density([texel as usize % width, texel as usize / width]);
+        let above = BRIGHT / (4.0 * PI);
+        let mut texels: Vec<u32> = (0..(width * height) as u32).filter(|&texel| density(texel) > above).collect();
+        let mut by_density = texels.clone();
+        by_density.sort_by(|&a, &b| density(b).total_cmp(&density(a)));
+        let mut all = 0.0;
+        let too_many = by_density.into_iter().find(|&texel| {
+            all += solid_angle(texel);
+            all > MOST_SOLID_ANGLE
+        });
+        let above = too_many.map_or(above, density);
+        texels.retain(|&texel| density(texel) > above);
+        let [mut share, mut squares, mut whole] = [0.0; 3];
+        for &texel in &texels {
+            let (density, solid_angle) = (density(texel), solid_angle(texel));
+            share += density * solid_angle;
+            squares += density * density * solid_angle;
+            whole += solid_angle;
+        }
+        if share < LEAST_SHARE {
+            return None;
+        }
+        let by_light = Distribution::new(texels.iter().map(|&texel| density(texel) * solid_angle(texel)));
+        let radiance = squares / share * panorama.mean() * 4.0 * PI;
+        Some(Self { above, texels, by_light, share, solid_angle: whole, radiance })
+    }
+
+    /// In steradians.
+    pub fn solid_angle(&self) -> f64 {
+        self.solid_angle
+    }
+
+    /// Its radiance, each direction by what it sends, for one of the image.
+    pub fn radiance(&self) -> f64 {
+        self.radiance
+    }
 }
 
 impl Panorama {
@@ -25,7 +91,7 @@ impl Panorama {
         let edges: Vec<f64> = (0..=height).map(|row| libm::cos(PI * row as f64 / height as f64)).collect();
         let by_row = |row| edges[row] - edges[row + 1];
         let texels = Distribution2d::new(size, |place| brightness(&image, place), by_row);
-        Self { image, texels, edges }
+        Self { image, texels, edges, bright: OnceLock::new() }
     }
 
     /// The image.
@@ -63,12 +129,42 @@ impl Panorama {
     /// A direction for two random numbers, not turned into the world, and its density per steradian.
     pub(super) fn sample(&self, u: [f64; 2]) -> (DVec3, f64) {
         let [column, row] = self.texels.sample(u);
-        let (top, bottom) = (self.edges[row.index], self.edges[row.index + 1]);
-        let y = top + row.u * (bottom - top);
-        let angle = TAU * (0.5 - (column.index as f64 + column.u) / self.image.width() as f64);
+        let texel = [column.index, row.index];
+        (self.direction(texel, [column.u, row.u]), self.density(texel))
+    }
+
+    /// The direction at a place of a texel.
+    fn direction(&self, [column, row]: [usize; 2], [u, v]: [f64; 2]) -> DVec3 {
+        let (top, bottom) = (self.edges[row], self.edges[row + 1]);
+        let y = top + v * (bottom - top);
+        let angle = TAU * (0.5 - (column as f64 + u) / self.image.width() as f64);
         let radius = (1.0 - y * y).max(0.0).sqrt();
         let (sin, cos) = libm::sincos(angle);
-        (DVec3::new(radius * sin, y, radius * cos), self.density([column.index, row.index]))
+        DVec3::new(radius * sin, y, radius * cos)
+    }
+
+    /// What is brightest in it, if that is much brighter than the rest.
+    pub fn bright(&self) -> Option<&BrightPart> {
+        self.bright.get_or_init(|| BrightPart::new(self)).as_ref()
+    }
+
+    /// Whether a direction lies in the bright part.
+    pub(super) fn is_bright(&self, direction: DVec3) -> bool {
+        self.bright().is_some_and(|bright| self.pdf(direction) > bright.above)
+    }
+
+    /// A direction to the bright part for two random numbers, and its density per steradian.
+    pub(super) fn sample_bright(&self, [u, v]: [f64; 2]) -> Option<(DVec3, f64)> {
+        let bright = self.bright()?;
+        let drawn = bright.by_light.sample(u);
+        let (texel, width) = (bright.texels[drawn.index] as usize, self.image.width());
+        let texel = [texel % width, texel / width];
+        Some((self.direction(texel, [drawn.u, v]), self.density(texel) / bright.share))
+    }
+
+    /// The irradiance of the bright part, at right angles, for one of the image.
+    pub(super) fn bright_irradiance(&self) -> f64 {
+        self.bright().map_or(0.0, |bright| bright.share * self.mean() * 4.0 * PI)
     }
 
     /// Density per steradian with which `sample` draws a direction.
@@ -77,8 +173,12 @@ impl Panorama {
     }
 
     fn density(&self, texel: [usize; 2]) -> f64 {
-        let solid_angle = TAU / self.image.width() as f64 * (self.edges[texel[1]] - self.edges[texel[1] + 1]);
-        self.texels.probability(texel) / solid_angle
+        self.texels.probability(texel) / self.solid_angle(texel[1])
+    }
+
+    /// Of a texel of a row, in steradians.
+    fn solid_angle(&self, row: usize) -> f64 {
+        TAU / self.image.width() as f64 * (self.edges[row] - self.edges[row + 1])
     }
 
     /// Column and row of the texel in which a direction lies.
@@ -186,5 +286,35 @@ mod tests {
             let expected = panorama.texels.probability([at % width, at / width]);
             assert!((f64::from(count) / 1e6 - expected).abs() < 1.5e-3, "texel {at}: {count} for {expected}");
         }
+    }
+
+    /// Row L11 of the stability catalog.
+    #[test]
+    fn l11_the_bright_part_is_drawn_by_its_light_and_met_where_it_is() {
+        let (width, height) = (24, 12);
+        let of = |i: usize| if i == 17 || i == 100 { 900.0 } else { (i % 5) as f32 };
+        let texels: Vec<[f32; 3]> = (0..width * height).map(|i| [of(i); 3]).collect();
+        let panorama = panorama(width, &texels);
+        let bright = panorama.bright().expect("two texels are bright");
+        let (mut irradiance, mut solid_angle) = (0.0, 0.0);
+        for texel in (0..width * height).map(|i| [i % width, i / width]) {
+            let here = panorama.solid_angle(texel[1]);
+            if panorama.is_bright(panorama.direction(texel, [0.5, 0.5])) {
+                irradiance += here * brightness(&panorama.image, texel);
+                solid_angle += here;
+            }
+        }
+        assert!((panorama.bright_irradiance() / irradiance - 1.0).abs() < 1e-12, "{irradiance}");
+        assert!((bright.solid_angle() / solid_angle - 1.0).abs() < 1e-12 && solid_angle < MOST_SOLID_ANGLE);
+        assert!(bright.radiance() > 300.0 && bright.radiance() < 900.0, "{}", bright.radiance());
+        // Every draw stands for the same irradiance but for what changes within a texel, and their mean is exact.
+        let mut sum = 0.0;
+        for u in grid(400) {
+            let (direction, pdf) = panorama.sample_bright(u).expect("there is a bright part");
+            assert!(panorama.is_bright(direction), "{direction}");
+            sum += f64::from(panorama.color(direction)[0]) / pdf / 160_000.0;
+        }
+        assert!((sum / irradiance - 1.0).abs() < 2e-3, "{sum} for {irradiance}");
+        assert!(self::panorama(width, &vec![[1.0; 3]; width * height]).bright().is_none());
     }
 }

@@ -1,4 +1,6 @@
-use crate::math::{Cone, DVec3, Ray};
+use std::f64::consts::PI;
+
+use crate::math::{Cone, DVec3, Frame, Ray, disk_in_square, square_around_disk};
 use crate::shape::{Ball, SurfacePoint};
 
 /// Light that may reach a point along one ray, unless something hides it.
@@ -51,6 +53,29 @@ pub struct Beam {
     pub flux: f64,
     /// Whether the light is apart from the ball, so that a place of the unit square stands for a way to it.
     pub is_apart: bool,
+}
+
+impl Beam {
+    /// Of light that comes from far away, with an irradiance for its emission.
+    pub(super) fn from_sky(ball: &Ball, irradiance: f64) -> Self {
+        Self { ball: *ball, cone: Cone::ALL, flux: irradiance * PI * ball.radius * ball.radius, is_apart: true }
+    }
+
+    /// The ray of a photon from a unit vector toward the sky, through a disc across the ball; none beside the disc.
+    pub(super) fn ray_from_sky(ball: &Ball, toward: DVec3, guide_uv: [f64; 2]) -> Option<Ray> {
+        let [x, y] = disk_in_square(guide_uv)?;
+        let origin = ball.center + Frame::about(toward).to_world(DVec3::new(x, y, 0.0) * ball.radius);
+        Some(Ray { origin, direction: -toward })
+    }
+
+    /// How densely `ray_from_sky` draws a ray of a direction from places of a density of their own, per unit of area
+    /// across its way; 0 beside the ball.
+    pub(super) fn pdf_from_sky(&self, ray: &Ray, guide: impl Fn([f64; 2]) -> f64) -> f64 {
+        let Ball { center, radius } = self.ball;
+        let local = Frame::about(-ray.direction).to_local(ray.origin - center) / radius;
+        let place = square_around_disk([local.x, local.y]);
+        place.map_or(0.0, |place| guide(place) / (4.0 * radius * radius))
+    }
 }
 
 /// The start of a photon.

@@ -2,7 +2,7 @@ use std::f64::consts::PI;
 use std::sync::OnceLock;
 
 use super::{Beam, LeSample, LightSample};
-use crate::math::{Cone, DVec3, Frame, Ray, disk_in_square, one_minus_cos_of_cone, square_around_disk, unit};
+use crate::math::{Cone, DVec3, Ray, one_minus_cos_of_cone, unit};
 use crate::shape::{Ball, SurfacePoint};
 use crate::spectrum::Quantity;
 
@@ -89,32 +89,18 @@ impl<S> Sun<S> {
         self.disc().radiance_factor
     }
 
-    pub(super) fn beam(&self, ball: &Ball) -> Beam {
-        Beam { ball: *ball, cone: Cone::ALL, flux: PI * ball.radius * ball.radius, is_apart: true }
-    }
-
     /// A photon through a disc across the ball.
     pub(super) fn sample_le(&self, ball: &Ball, guide_uv: [f64; 2], u: [f64; 2]) -> Option<LeSample> {
-        let toward = self.sample(u);
-        let [x, y] = disk_in_square(guide_uv)?;
-        let origin = ball.center + Frame::about(toward).to_world(DVec3::new(x, y, 0.0) * ball.radius);
-        let light = self.along(Ray { origin, direction: toward })?;
-        let ray = Ray { origin, direction: -toward };
+        let ray = Beam::ray_from_sky(ball, self.sample(u), guide_uv)?;
+        let light = self.along(Ray { direction: -ray.direction, ..ray })?;
         Some(LeSample { ray, factor: light.factor / light.pdf.unwrap_or(1.0), surface: None })
-    }
-
-    /// How densely `sample_le` draws a photon for a ball from places of a density of their own, per unit of area across
-    /// its way; 0 beside the ball.
-    pub(super) fn pdf_le(&self, ball: &Ball, ray: &Ray, guide: impl Fn([f64; 2]) -> f64) -> f64 {
-        let local = Frame::about(-ray.direction).to_local(ray.origin - ball.center) / ball.radius;
-        let place = square_around_disk([local.x, local.y]);
-        place.map_or(0.0, |place| guide(place) / (4.0 * ball.radius * ball.radius))
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::Frame;
 
     #[test]
     fn a_sun_is_sampled_within_its_disc_and_met_nowhere_else() {

@@ -142,8 +142,8 @@ fn sources(scene: &Scene<Curve>, world: &World) -> Result<Sources, Option<String
     }
     if sources.small.is_empty() {
         let why = match sources.large.as_slice() {
-            [] if scene.lights.iter().any(|light| light.is_infinite() && !light.is_even_sky()) => {
-                "caustics of an image of the sky are left to chance".into()
+            [] if scene.lights.iter().any(|light| light.polarization().is_some() && !light.is_even_sky()) => {
+                "caustics of a polarized image of the sky are left to chance".into()
             }
             [] => "rays find the sky by chance often enough".into(),
             lights => format!("{} large enough for rays to meet by chance", named(scene, lights)),
@@ -217,7 +217,7 @@ fn named(scene: &Scene<Curve>, lights: &[(LightId, f64)]) -> String {
             Light::Point(_) => "a point".into(),
             Light::Spot(_) => "a spot".into(),
             Light::Sun(_) => "the sun".into(),
-            Light::Environment(_) => "the environment".into(),
+            Light::Environment(_) => "what is bright in the image of the sky".into(),
         };
         if size > 0.0 { format!("{name} (solid angle {size:.1e} sr)") } else { name }
     };
@@ -248,7 +248,7 @@ fn lit_places(scene: &Scene<Curve>, spread: impl Fn(&Material<Curve>) -> bool) -
 }
 
 /// Under which solid angle, in steradians, a light is seen from half of some places or more, by the part of it that can
-/// be seen; none of one that fills the sky.
+/// be seen and is bright; none of one that fills the sky.
 fn solid_angle<S>(light: &Light<S>, places: &[DVec3]) -> Option<f64> {
     match light {
         Light::Point(_) | Light::Spot(_) => Some(0.0),
@@ -256,12 +256,12 @@ fn solid_angle<S>(light: &Light<S>, places: &[DVec3]) -> Option<f64> {
             let sin = libm::sin(0.5 * sun.angular_diameter.to_radians());
             Some(TAU * one_minus_cos_of_cone(sin * sin))
         }
-        Light::Environment(_) => None,
+        Light::Environment(environment) => environment.bright().map(|bright| bright.solid_angle()),
         Light::Area(area) => {
             let (ball, size) = area.visible_part()?;
             let from = |place: &DVec3| {
                 let distance_squared = (ball.center - *place).length_squared();
-                area.evenness() * (TAU * ball.cone_from(*place).one_minus_cos).min(size / distance_squared)
+                area.bright_share() * (TAU * ball.cone_from(*place).one_minus_cos).min(size / distance_squared)
             };
             let mut angles: Vec<f64> = places.iter().map(from).collect();
             angles.sort_by(f64::total_cmp);

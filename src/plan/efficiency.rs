@@ -84,7 +84,8 @@ fn product(samples: &SampleWorth, known: &[(PhotonWorth, f64)], sent: usize) -> 
 fn radiance(scene: &Scene<Curve>, light: LightId, colors: &mut Distinct<[f64; 3]>) -> Option<[f64; 3]> {
     let light = &scene.lights[light];
     let factor = match light {
-        Light::Area(_) => 1.0,
+        Light::Area(area) => area.brightness(),
+        Light::Environment(environment) => environment.bright()?.radiance(),
         Light::Sun(sun) if sun.angular_diameter > 0.0 => {
             let sin = libm::sin(0.5 * sun.angular_diameter.to_radians());
             1.0 / (PI * sin * sin)

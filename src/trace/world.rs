@@ -299,6 +299,11 @@ impl World {
     pub(super) fn sends_photons(&self, light: LightId) -> bool {
         self.photon_targets.as_ref().is_some_and(|targets| targets.lights[light])
     }
+
+    /// Whether photons bring the light of a ray that meets a light.
+    pub(super) fn is_found_by_photons(&self, light: LightId, ray: &Ray) -> bool {
+        self.sends_photons(light) && self.scene.lights[light].sends_photons_from(ray.direction)
+    }
 }
 
 /// How paths of each light start.

@@ -152,6 +152,33 @@ fn a_glass_ball_under_lamps_that_show_patterns() {
     agree("ball under two of a kind", &text, 16);
 }
 
+/// A sky of three bright places and a dim rest, which photons and the camera's rays share.
+#[test]
+fn l11_a_glass_ball_under_an_image_of_the_sky_with_lamps_in_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("sky.exr");
+    let at = |x: usize, y: usize| match (x, y) {
+        (20..=22, 5..=6) => (30.0, 22.0, 14.0),
+        (44, 9) => (9.0, 14.0, 25.0),
+        (4..=6, 12) => (8.0, 8.0, 8.0),
+        _ => (0.3, 0.01 * (x + y) as f32, 0.4),
+    };
+    exr::prelude::write_rgb_file(&file, 64, 32, at).unwrap();
+    let sky = format!(
+        "[[light]]\nenvironment = {{ radiance = {{ image = {file:?}, scale = 0.5 }}, \
+         transform = [{{ rotate = {{ axis = [0.2, 1, 0], degrees = 40 }} }}] }}\n"
+    );
+    let text = seen_by(ABOVE, "") + FLOOR + &glass("index = 1.5") + &object("glass", BALL) + &sky;
+    agree("a ball under a sky", &text, 64);
+    let cup = object("glass", "cube = { center = [0, 0.7, 0], size = 1 }");
+    let prism = "[material.glass]\ndielectric = { index = \"N-SF11\" }\n";
+    agree("a cube of N-SF11 under a sky", &(seen_by(ABOVE, "") + FLOOR + prism + &cup + &sky), 64);
+    let camera = "position = [2.5, 3.5, 2.5]\nlook_at = [0, 0.5, 0]\nvertical_fov = 30";
+    let map = Some(MapPasses { count: 16, photons: 8192, radius: 0.1, chance: 1.0 });
+    let text = seen_by(camera, "") + FLOOR + &glass("index = 1.5") + &object("glass", BALL) + &sky;
+    agree_with("a ball under a sky, gathered", &text, 64, map);
+}
+
 #[test]
 fn a_mirror_beside_a_lamp_that_lights_the_floor_as_well() {
     let text = seen_by(ABOVE, "filter = \"mitchell\"")

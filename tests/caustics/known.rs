@@ -306,6 +306,17 @@ fn the_plan_asks_for_photons_where_they_are_needed_and_says_why_where_not() {
     let screen = "[material.screen]\nemissive = { radiance = { checker = [3, 1] } }\n";
     asks(format!("{screen}{ball}{}", lamp(0.1).replace("\"lamp\"", "\"screen\"")), "photons from bulb (");
     leaves(format!("{ball}[[light]]\nenvironment = {{ radiance = 1 }}\n"), "rays find the sky by chance");
+    let folder = tempfile::tempdir().unwrap();
+    let sky = |sun: f32, more: &str| {
+        let file = folder.path().join(format!("{sun}.exr"));
+        let at = |x: usize, y: usize| if [x, y] == [30, 20] { (sun, sun, sun) } else { (1.0, 1.0, 2.0) };
+        exr::prelude::write_rgb_file(&file, 128, 64, at).unwrap();
+        format!("{ball}[[light]]\nenvironment = {{ radiance = {{ image = {file:?} }}{more} }}\n")
+    };
+    asks(sky(1e4, ""), "photons from what is bright in the image of the sky (solid angle 2.0e-3 sr) toward ball");
+    leaves(sky(9.0, ""), "rays find the sky by chance");
+    let polarized = ", polarization = { sun = [0, 1, 1], degree = 0.7 }";
+    leaves(sky(1e4, polarized), "caustics of a polarized image of the sky are left to chance");
     leaves(
         format!(
             "[[object]]\nname = \"wall\"\nmaterial = \"mirror\"\nshape.plane = {{ point = [0, 0, -3], normal = [0, 0, 1] }}\n{point}"

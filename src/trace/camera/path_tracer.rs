@@ -448,7 +448,8 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         let world = self.walker.world;
         let is_smooth = path.kind == PathKind::Smooth { aimed: true } && path.among == Among::All;
         let found_at = self.found_at(path);
-        (is_smooth && world.sends_photons(light)) || found_at.is_some_and(|at| at.carry(world, light, &path.ray))
+        (is_smooth && world.is_found_by_photons(light, &path.ray))
+            || found_at.is_some_and(|at| at.carry(world, light, &path.ray))
     }
 
     /// The light vertices whose light was looked for before, and does not count on the path any more.

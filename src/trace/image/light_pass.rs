@@ -36,8 +36,8 @@ const TOO_FEW: u64 = 4096;
 const ENOUGH: u64 = 1 << 16;
 /// Photons of all targets that the plan sends ahead, as many whatever the image is: no more than these, and than follow
 /// so many rays, if those are not too few to tell; and of all targets those that tell which are seen.
-const OF_A_PLAN: u64 = 1 << 17;
-const RAYS_OF_A_PLAN: f64 = (1 << 18) as f64;
+const OF_A_PLAN: u64 = 1 << 16;
+const RAYS_OF_A_PLAN: f64 = (1 << 17) as f64;
 const SEEN_OF_A_PLAN: u64 = 1 << 16;
 /// Most rays that a plan follows to learn where to send photons, and as many to tell which are seen: each takes about
 /// half a second. Photons in a heap of glass balls follow a hundred rays each.

@@ -61,10 +61,8 @@ pub struct Landing<'a, const N: usize, P = Polarized> {
     pub path: &'a Path<N, P>,
     pub at: &'a Interaction<'a, N>,
     pub light: LightId,
-    /// Where it left the image that the light shows, if it shows one.
-    uv: [f64; 2],
-    /// Flux per emission.
-    factor: f64,
+    /// How it left the light, with its flux per emission.
+    emitted: &'a LeSample,
     /// Whether the photon is of the first half of those sent with it.
     early: bool,
 }
@@ -72,12 +70,12 @@ pub struct Landing<'a, const N: usize, P = Polarized> {
 impl<const N: usize, P> Landing<'_, N, P> {
     /// What the light shines on the photon's way, per emission.
     fn shone(&self, world: &World) -> Lanes<N> {
-        world.scene.lights[self.light].toward(self.at.arrival.draw, -self.path.ray.direction, self.uv)
+        world.scene.lights[self.light].toward(self.at.arrival.draw, -self.emitted.ray.direction, self.emitted.uv())
     }
 
     /// What the photon brings: its flux, lane by lane.
     pub fn flux(&self, world: &World) -> Lanes<N> {
-        self.path.throughput.scaled(self.factor / self.path.eta_scale).of(self.shone(world))
+        self.path.throughput.scaled(self.emitted.factor / self.path.eta_scale).of(self.shone(world))
     }
 }
 
@@ -167,7 +165,7 @@ fn advance<const N: usize, P: Polarization<N>>(
     let allowed = path.vertices <= world.method.max_bounces && !(at.lobes.is_diffuse() && path.diffuse_left == 0);
     let shown = over != Surfaces::Smooth || path.vertices > 1;
     if at.lobes.is_wide() && allowed && shown {
-        land(walker, &Landing { path, at: &at, light, uv: emitted.uv(), factor: emitted.factor, early });
+        land(walker, &Landing { path, at: &at, light, emitted, early });
     }
     if over == Surfaces::Smooth || !at.lobes.is_wide() {
         bounce(walker, path, at, sampler);
@@ -350,7 +348,10 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> View<'v, 'a, N, P> {
         let Interaction { arrival, flat, .. } = self.landing.at;
         let cosines = self.seen.direction.dot(*flat).abs() / arrival.wo.dot(*flat).abs();
         let filter = self.walker.world.scene.camera.filter();
-        self.landing.factor * cosines * self.seen.importance * filter.map_or(1.0, |filter| filter.transmittance())
+        self.landing.emitted.factor
+            * cosines
+            * self.seen.importance
+            * filter.map_or(1.0, |filter| filter.transmittance())
     }
 
     /// What the surface scatters toward the camera.
