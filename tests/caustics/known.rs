@@ -313,7 +313,7 @@ fn the_plan_asks_for_photons_where_they_are_needed_and_says_why_where_not() {
         exr::prelude::write_rgb_file(&file, 128, 64, at).unwrap();
         format!("{ball}[[light]]\nenvironment = {{ radiance = {{ image = {file:?} }}{more} }}\n")
     };
-    asks(sky(1e4, ""), "photons from what is bright in the image of the sky (solid angle 2.0e-3 sr) toward ball");
+    asks(sky(1e4, ""), "photons from what is bright in the image of the sky (solid angle 1.8e-2 sr) toward ball");
     leaves(sky(9.0, ""), "rays find the sky by chance");
     let polarized = ", polarization = { sun = [0, 1, 1], degree = 0.7 }";
     leaves(sky(1e4, polarized), "caustics of a polarized image of the sky are left to chance");
