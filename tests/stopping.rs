@@ -274,6 +274,15 @@ fn an_image_without_noise_has_none_and_its_halves_and_variance_are_of_replicates
 }
 
 #[test]
+fn however_long_it_may_take_the_work_is_known() {
+    let options = Options { time: Some(Duration::from_secs(1 << 40)), samples: Some(256), ..Options::default() };
+    let mut rendering = rendering(&scene(ROOM), &options, 2);
+    while rendering.advance(&|_| ()) {
+        assert_eq!(rendering.work(), 256 * 21 * 18);
+    }
+}
+
+#[test]
 fn parts_take_all_samples_and_say_so() {
     let text = scene(ROOM);
     let shard = Shard::new(1, 2).expect("there is such a part");
