@@ -283,6 +283,17 @@ fn however_long_it_may_take_the_work_is_known() {
 }
 
 #[test]
+fn a_time_for_less_samples_than_it_may_end_after_says_so() {
+    let told = |options: Options| {
+        let rendering = Rendering::new(&scene(ROOM), &options).expect("it can be rendered");
+        rendering.plan().because.iter().find(|line| line.starts_with("takes all")).cloned()
+    };
+    let in_time = Options { time: Some(Duration::from_secs(3600)), samples: Some(4), ..Options::default() };
+    assert_eq!(told(in_time).as_deref(), Some("takes all 4 samples: a time ends no render before 8"));
+    assert_eq!(told(asks(0.1, 40)).as_deref(), Some("takes all 40 samples: fewer than 64 do not tell the error"));
+}
+
+#[test]
 fn parts_take_all_samples_and_say_so() {
     let text = scene(ROOM);
     let shard = Shard::new(1, 2).expect("there is such a part");
