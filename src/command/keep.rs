@@ -57,17 +57,19 @@ impl Flags {
         self.shard.unwrap_or_default()
     }
 
-    /// What stands in the way of it, if no image is rendered, or none is written as an EXR.
+    /// What stands in the way of it, if a flag asks for no image, or none is written as an EXR.
     ///
     /// # Errors
     /// If anything does.
-    pub fn check(&self, idle: bool, exr: bool, png: bool, stamp: bool) -> Result<()> {
+    pub fn check(&self, idle: Option<&str>, exr: bool, png: bool, stamp: bool) -> Result<()> {
         let keeps = [("--checkpoint", self.checkpoint.is_some()), ("--resume", self.resume)];
-        let flags = [("--snapshot", self.snapshot.is_some()), ("--shard", self.shard.is_some())];
-        if let Some((flag, _)) = keeps.into_iter().chain(flags).find(|(_, given)| *given && idle) {
+        // A part has a plan of its own where the whole would stop by its error or a time.
+        let is_planned = idle == Some("--plan");
+        let flags = [("--snapshot", self.snapshot.is_some()), ("--shard", self.shard.is_some() && !is_planned)];
+        if let Some((flag, _)) = keeps.into_iter().chain(flags).find(|(_, given)| *given && idle.is_some()) {
             return refuse(&format!("{flag} is of a render, and nothing is rendered"), Some("leave it out"));
         }
-        if self.shard.is_some() && (!exr || png) {
+        if self.shard.is_some() && !is_planned && (!exr || png) {
             let help = "leave --png out, and make a picture of the merged image";
             return refuse("--shard makes a part of an EXR, and no picture", Some(help));
         }
