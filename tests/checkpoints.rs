@@ -355,13 +355,19 @@ fn more_samples_are_added_to_those_that_were_taken() {
 fn samples_that_cannot_become_those_that_are_asked_for_are_refused() {
     let halves = Options { layers: Some(vec![Layer::HalfA]), ..Options::default() };
     for (text, options, samples, why) in [
+        (CAUSTIC, Options::default(), [50, 64], "no pass that ends there"),
         (CAUSTIC, Options::default(), [50, 100], "no pass that ends there"),
         (CAUSTIC, halves, [16, 32], "half_a and half_b are halves of 16 samples"),
         // The radius within which photons are gathered becomes less with more samples.
         (GLASS, Options::default(), [16, 32], "another plan"),
     ] {
-        let message = raised(text, &options, samples).map(|_| ()).expect_err("it is refused").to_string();
+        let refused = raised(text, &options, samples).map(|_| ()).expect_err("it is refused");
+        let Error::Arguments { message, help: Some(help) } = refused else { panic!("{refused}") };
         assert!(message.contains(why), "{samples:?}: {message}");
+        // With the samples that are named it goes on.
+        let named = format!("ask for {} samples per pixel, or delete it to begin anew", samples[0]);
+        assert!(help == named || why == "another plan", "{samples:?}: {help}");
+        assert_eq!(raised(text, &options, [samples[0]; 2]).expect("it goes on").2, Resumed::Finished);
     }
 }
 

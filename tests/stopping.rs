@@ -6,11 +6,12 @@
 //! cargo test --test all stopping::
 //! ```
 
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
 use abbe::film::{Layer, Shard};
 use abbe::trace::{Method, Stopped};
-use abbe::{Options, Rendering, Resumed, Scene, render};
+use abbe::{Advance, Image, Options, Rendering, Resumed, Scene, render};
 use rayon::prelude::*;
 
 use crate::checkpoints::{CAUSTIC, GLASS, Kind, ROOM, advance, bytes, planned, rendering};
@@ -271,6 +272,69 @@ fn an_image_without_noise_has_none_and_its_halves_and_variance_are_of_replicates
         // Over all pixels, halves and replicates tell the same.
         assert!((apart / variance - 1.0).abs() < 0.35, "{apart} {variance}");
     }
+}
+
+/// The mean of a layer's red, green and blue, or of the image's.
+fn mean(image: &Image, layer: &str) -> f64 {
+    let channels = ["R", "G", "B"].map(|name| image.layer(&format!("{layer}{name}")).expect("it was asked for"));
+    let values = channels.iter().flatten();
+    values.map(|&value| f64::from(value)).sum::<f64>()
+        / channels.map(|values| values.len()).iter().sum::<usize>() as f64
+}
+
+/// A look at an image in the making shows the light of photons as bright as it will be, also while they are sent, and
+/// while some replicates have more samples than others, or have none.
+#[test]
+fn on_the_way_caustics_are_as_bright_as_in_the_end_and_so_are_halves_and_variance() {
+    const PIXELS: u64 = 148 * 84;
+    let text = CAUSTIC.replace("width = 37, height = 21", "width = 148, height = 84");
+    let layers = Some(vec![Layer::Caustics, Layer::HalfA, Layer::HalfB, Layer::Variance]);
+    let mut rendering = rendering(&scene(&text), &Options { layers, ..asks(1e-6, 96) }, 2);
+    let (mut looks, mut samples) = (Vec::new(), 0);
+    loop {
+        // A few batches as long as photons are sent, then many pixels at once.
+        let (asked, most) = (AtomicU64::new(0), if samples % PIXELS == 0 { 3 } else { 6000 });
+        if rendering.advance_until(&|_| (), &|| asked.fetch_add(1, Ordering::Relaxed) >= most) == Advance::Finished {
+            break;
+        }
+        let image = rendering.image();
+        samples = image.report().samples;
+        if samples >= PIXELS {
+            let means = ["caustics.", "half_a.", "half_b.", "variance."].map(|layer| mean(&image, layer));
+            looks.push((samples, means));
+        }
+    }
+    let image = rendering.image();
+    let [caustics, light, variance] = ["caustics.", "", "variance."].map(|layer| mean(&image, layer));
+    assert!(looks.iter().filter(|(samples, _)| samples % PIXELS == 0).count() > 32, "{}", looks.len());
+    for (samples, [shown, a, b, noise]) in looks {
+        let of_each = samples as f64 / PIXELS as f64;
+        let [shown, a, b, noise] = [shown / caustics, a / light, b / light, noise * of_each / variance / 96.0];
+        assert!((shown - 1.0).abs() < 0.02, "{of_each} samples: {shown} times the caustics");
+        assert!(of_each < 8.0 || (a - 1.0).abs() < 0.02, "{of_each} samples: {a} times the light");
+        assert!(of_each < 40.0 || (b - 1.0).abs() < 0.02, "{of_each} samples: {b} times the light");
+        assert!(of_each < 24.0 || (0.7..1.4).contains(&noise), "{of_each} samples: {noise} times the variance");
+    }
+}
+
+#[test]
+fn however_long_it_may_take_the_work_is_known() {
+    let options = Options { time: Some(Duration::from_secs(1 << 40)), samples: Some(256), ..Options::default() };
+    let mut rendering = rendering(&scene(ROOM), &options, 2);
+    while rendering.advance(&|_| ()) {
+        assert_eq!(rendering.work(), 256 * 21 * 18);
+    }
+}
+
+#[test]
+fn a_time_for_less_samples_than_it_may_end_after_says_so() {
+    let told = |options: Options| {
+        let rendering = Rendering::new(&scene(ROOM), &options).expect("it can be rendered");
+        rendering.plan().because.iter().find(|line| line.starts_with("takes all")).cloned()
+    };
+    let in_time = Options { time: Some(Duration::from_secs(3600)), samples: Some(4), ..Options::default() };
+    assert_eq!(told(in_time).as_deref(), Some("takes all 4 samples: a time ends no render before 8"));
+    assert_eq!(told(asks(0.1, 40)).as_deref(), Some("takes all 40 samples: fewer than 64 do not tell the error"));
 }
 
 #[test]

@@ -83,7 +83,8 @@ struct Arguments {
     plan: bool,
 
     /// With --plan, write the plan to this file; without, follow it, so that parts of an image need not plan each for
-    /// itself. It is of one scene and its options, and the image is the same
+    /// itself. It is of one scene and its options, and the image is the same. Where an error or a time is asked for,
+    /// parts have a plan of their own, which --shard with --plan makes
     #[arg(long, value_name = "FILE.plan", conflicts_with = "check")]
     plan_file: Option<PathBuf>,
 
@@ -387,7 +388,7 @@ fn job(arguments: Arguments, frame: Option<u32>) -> Result<Job> {
         return refuse("--exposure brightens the picture of --png alone, and none is asked for", Some(help));
     }
     check_png(arguments.png.as_deref())?;
-    arguments.keep.check(idle.is_some(), with_exr, arguments.png.is_some(), arguments.stamp)?;
+    arguments.keep.check(idle.map(|(flag, _)| flag), with_exr, arguments.png.is_some(), arguments.stamp)?;
     if arguments.spectral && !with_exr && arguments.png.is_some() {
         let help = "add --exr, or leave --spectral out";
         return refuse("--spectral writes spectra beside an EXR, and --png alone writes none", Some(help));

@@ -57,17 +57,19 @@ impl Flags {
         self.shard.unwrap_or_default()
     }
 
-    /// What stands in the way of it, if no image is rendered, or none is written as an EXR.
+    /// What stands in the way of it, if a flag asks for no image, or none is written as an EXR.
     ///
     /// # Errors
     /// If anything does.
-    pub fn check(&self, idle: bool, exr: bool, png: bool, stamp: bool) -> Result<()> {
+    pub fn check(&self, idle: Option<&str>, exr: bool, png: bool, stamp: bool) -> Result<()> {
         let keeps = [("--checkpoint", self.checkpoint.is_some()), ("--resume", self.resume)];
-        let flags = [("--snapshot", self.snapshot.is_some()), ("--shard", self.shard.is_some())];
-        if let Some((flag, _)) = keeps.into_iter().chain(flags).find(|(_, given)| *given && idle) {
+        // A part has a plan of its own where the whole would stop by its error or a time.
+        let is_planned = idle == Some("--plan");
+        let flags = [("--snapshot", self.snapshot.is_some()), ("--shard", self.shard.is_some() && !is_planned)];
+        if let Some((flag, _)) = keeps.into_iter().chain(flags).find(|(_, given)| *given && idle.is_some()) {
             return refuse(&format!("{flag} is of a render, and nothing is rendered"), Some("leave it out"));
         }
-        if self.shard.is_some() && (!exr || png) {
+        if self.shard.is_some() && !is_planned && (!exr || png) {
             let help = "leave --png out, and make a picture of the merged image";
             return refuse("--shard makes a part of an EXR, and no picture", Some(help));
         }
@@ -290,9 +292,14 @@ fn catch(stops_at_once: bool) -> std::result::Result<(), ctrlc::Error> {
 
 /// How many samples of a pixel will do, about, where that is known and more than there are.
 fn more_samples(rendering: &Rendering, error: Option<&ImageError>) -> Option<u32> {
-    let taken = error?.noise.samples;
+    let most = rendering.plan().method.stop.as_ref()?.most;
     let times = rendering.work() as f64 / rendering.done().max(1) as f64;
-    let wanted = (f64::from(taken) * times).round() as u32;
+    more_than(error?.noise.samples, times, most)
+}
+
+/// So many times as many as are taken, but no more than may be, if those are more. Work is known to a few photons only.
+fn more_than(taken: u32, times: f64, most: u32) -> Option<u32> {
+    let wanted = ((f64::from(taken) * times).round() as u32).min(most);
     (wanted > taken).then_some(wanted)
 }
 
@@ -309,6 +316,13 @@ fn quoted(word: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn no_more_samples_are_said_to_be_taken_than_may_be() {
+        assert_eq!(more_than(8192, 8.0002, 65536), Some(65536));
+        assert_eq!(more_than(8192, 2.0, 65536), Some(16384));
+        assert_eq!(more_than(65536, 1.0001, 65536), None);
+    }
 
     #[test]
     fn a_word_is_quoted_where_the_shell_would_split_it() {

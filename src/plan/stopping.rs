@@ -31,6 +31,7 @@ pub(super) fn reason(scene: &Scene<Curve>, stop: Option<&Stop>) -> Option<String
         let all = if samples == 1 { "one sample".into() } else { format!("all {samples} samples") };
         return Some(match is_part {
             true => format!("takes {all}: a part of an image does not tell the error of the whole"),
+            false if error.is_none() => format!("takes {all}: a time ends no render before {FEWEST}"),
             false => format!("takes {all}: fewer than {FIRST_LOOK} do not tell the error"),
         });
     };

@@ -57,8 +57,8 @@ pub(super) fn resume(path: &Path, identity: &Identity, passes: &mut trace::Rende
         trace::Restored::Continues if passes.is_finished() => Ok(Resumed::Finished),
         trace::Restored::Continues => Ok(Resumed::Continues),
         trace::Restored::HasMore(samples) => Ok(Resumed::HasMore(samples)),
-        trace::Restored::Refused(why) => {
-            refuse(path, &why, "ask for as many samples as it was begun with, or for a power of two times 16")
+        trace::Restored::Refused(why, samples) => {
+            refuse(path, &why, &format!("ask for {samples} samples per pixel, or delete it to begin anew"))
         }
     }
 }

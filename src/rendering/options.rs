@@ -38,7 +38,8 @@ pub struct Options {
     /// The part of the image's tiles that is made.
     pub shard: Shard,
     /// The file of a plan that is followed, where one would be made: of this scene with the same options but for
-    /// threads, part and stamp. The image is the same.
+    /// threads, stamp and which part it is. The image is the same. Where an error or a time is asked for, parts have
+    /// another plan than the whole.
     pub plan: Option<PathBuf>,
     /// Whether the file says when the image was made, on how many threads, and how long it took. Then no two files are
     /// the same to the byte. Parts do not say it.

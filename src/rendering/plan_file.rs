@@ -77,20 +77,28 @@ pub fn write_plan(plan: &Plan, scene: &Scene, path: impl AsRef<Path>) -> Result<
 /// [`Error::Arguments`] if it is missing, or of something else; [`Error::Decode`] if it is damaged.
 pub(super) fn read_plan(path: &Path, scene: &Scene) -> Result<Plan> {
     if !path.exists() {
-        return refuse(&format!("there is no plan {}", path.display()));
+        return refuse(&format!("there is no plan {}", path.display()), AGAIN);
     }
     let Some(mut blocks) = BlockReader::open(path, PLAN)? else {
-        return refuse(&format!("{} is no plan", path.display()));
+        return refuse(&format!("{} is no plan", path.display()), AGAIN);
     };
     let (head, plan): (Head, Plan) = (blocks.block()?, blocks.block()?);
     blocks.end()?;
+    let is_of_whole = scene.render.is_part && (head.error.is_some() || head.time.is_some());
     match Head::new(scene, &plan).difference(&head) {
-        Some(difference) => refuse(&format!("cannot follow {}: {difference}", path.display())),
+        Some(difference) => {
+            let help = if is_of_whole { AGAIN_FOR_PARTS } else { AGAIN };
+            refuse(&format!("cannot follow {}: {difference}", path.display()), help)
+        }
         None => Ok(plan),
     }
 }
 
-fn refuse<T>(message: &str) -> Result<T> {
-    let help = "make it with the same options: render --plan scene.toml --plan-file frame.plan";
+/// How a plan is made that can be followed.
+const AGAIN: &str = "make it with the same options: render --plan scene.toml --plan-file frame.plan";
+const AGAIN_FOR_PARTS: &str =
+    "parts take all samples, and have a plan of their own: render --plan scene.toml --shard 1/4 --plan-file frame.plan";
+
+fn refuse<T>(message: &str, help: &str) -> Result<T> {
     Err(Error::Arguments { message: message.to_owned(), help: Some(help.to_owned()) })
 }

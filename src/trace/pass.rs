@@ -1,5 +1,6 @@
 //! One pass over the pixels: which samples it takes.
 
+use std::cmp::Ordering;
 use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
@@ -97,6 +98,16 @@ impl Stage {
             return Self { before: self.before + self.size, ..Self::default() };
         }
         self
+    }
+
+    /// Samples of a pixel that a replicate has, but for the pass under way.
+    pub(super) fn samples_of(self, replicate: u32) -> u32 {
+        self.before
+            + match replicate.cmp(&self.replicate) {
+                Ordering::Less => self.size,
+                Ordering::Equal => self.taken,
+                Ordering::Greater => 0,
+            }
     }
 
     /// Whether it can be one, after so many samples of each pixel.

@@ -64,6 +64,12 @@ impl Sums {
         }
     }
 
+    /// How many samples of a pixel a replicate has.
+    fn kept(&self, pixel: usize, replicate: usize) -> u32 {
+        let of = |sums: &[[Sum; REPLICATES]]| sums.get(pixel).map_or(0, |sums| sums[replicate].kept);
+        of(&self.added) + of(&self.subtracted)
+    }
+
     /// The mean of a pixel's samples of a replicate.
     fn mean(&self, pixel: usize, replicate: usize, filter: Filter) -> [f64; 3] {
         let of = |sums: &[[Sum; REPLICATES]]| sums.get(pixel).map_or(Sum::default(), |sums| sums[replicate]);
@@ -114,11 +120,15 @@ impl Replicates {
 
     /// A pixel as each replicate has it, after so many samples of each.
     pub(super) fn pixel(&self, pixel: usize, filter: Filter, each: u32) -> [[f64; 3]; REPLICATES] {
-        std::array::from_fn(|replicate| {
-            let mean = self.light.mean(pixel, replicate, filter);
-            let shown = self.shown.get(pixel).map_or([0.0; 3], |shown| shown[replicate]);
-            std::array::from_fn(|i| mean[i] + f64::from(shown[i]) / f64::from(each))
-        })
+        std::array::from_fn(|replicate| self.pixel_of(replicate, pixel, filter, each.into()))
+    }
+
+    /// A pixel as one replicate has it, where its photons were shown for so many samples.
+    fn pixel_of(&self, replicate: usize, pixel: usize, filter: Filter, shown_for: f64) -> [f64; 3] {
+        let mean = self.light.mean(pixel, replicate, filter);
+        let shown = self.shown.get(pixel).map_or([0.0; 3], |shown| shown[replicate]);
+        let shown_for = if shown_for > 0.0 { shown_for } else { f64::INFINITY };
+        std::array::from_fn(|i| mean[i] + f64::from(shown[i]) / shown_for)
     }
 
     /// By how much each replicate says that a pixel is blurred; none where no photons are gathered.
@@ -127,12 +137,18 @@ impl Replicates {
         gathers.then(|| std::array::from_fn(|replicate| self.blur.mean(pixel, replicate, filter)))
     }
 
-    /// The variance of a pixel's mean over all replicates, after so many samples of each.
-    pub(super) fn variance(&self, pixel: usize, filter: Filter, each: u32) -> [f64; 3] {
-        let (replicates, count) = (self.pixel(pixel, filter, each), REPLICATES as f64);
-        std::array::from_fn(|i| {
-            let mean = replicates.iter().map(|rgb| rgb[i]).sum::<f64>() / count;
-            replicates.iter().map(|rgb| (rgb[i] - mean) * (rgb[i] - mean)).sum::<f64>() / (count * (count - 1.0))
+    /// The variance of a pixel's mean over all replicates that have begun, where the photons of each were shown for so
+    /// many samples; none as long as fewer than two have.
+    pub(super) fn variance(&self, pixel: usize, filter: Filter, shown_for: [f64; REPLICATES]) -> Option<[f64; 3]> {
+        let begun = (0..REPLICATES).filter(|&replicate| self.light.kept(pixel, replicate) > 0);
+        let pixels: Vec<[f64; 3]> =
+            begun.map(|replicate| self.pixel_of(replicate, pixel, filter, shown_for[replicate])).collect();
+        let count = pixels.len() as f64;
+        (count > 1.0).then(|| {
+            std::array::from_fn(|i| {
+                let mean = pixels.iter().map(|rgb| rgb[i]).sum::<f64>() / count;
+                pixels.iter().map(|rgb| (rgb[i] - mean) * (rgb[i] - mean)).sum::<f64>() / (count * (count - 1.0))
+            })
         })
     }
 }

@@ -196,6 +196,27 @@ fn a_plan_is_made_once_and_followed_and_one_of_something_else_is_refused() {
 }
 
 #[test]
+fn parts_of_a_scene_that_asks_for_an_error_follow_a_plan_for_parts() {
+    let folder = folder();
+    let asked = "s.toml --error 0.5 --samples 64";
+    done(&folder, &format!("{asked} --plan --plan-file whole.plan"));
+    done(&folder, &format!("{asked} --plan --plan-file parts.plan --shard 1/2"));
+    for part in ["1/2", "2/2"] {
+        refused(
+            &folder,
+            &format!("{asked} --plan-file whole.plan --shard {part}"),
+            "error: cannot follow whole.plan: its error is 0.5, not none\n\
+             help: parts take all samples, and have a plan of their own: render --plan scene.toml --shard 1/4 \
+             --plan-file frame.plan",
+        );
+        done(&folder, &format!("{asked} --plan-file parts.plan --exr out.exr --shard {part}"));
+    }
+    done(&folder, "merge merged.exr out.1-of-2.part out.2-of-2.part");
+    done(&folder, "s.toml --samples 64 --exr whole.exr");
+    assert!(bytes(&folder, "merged.exr") == bytes(&folder, "whole.exr"));
+}
+
+#[test]
 fn flags_that_have_no_place_are_refused() {
     let folder = folder();
     for (words, message) in [

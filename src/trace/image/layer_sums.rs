@@ -101,12 +101,23 @@ impl LayerSums {
     }
 }
 
+/// What the sums of what photons show count in an image.
+#[derive(Clone, Copy, Debug)]
+pub struct ShownCounts {
+    /// In all layers but the halves.
+    pub image: f64,
+    /// In the halves, times that: 1 each where as many samples have photons in both.
+    pub halves: [f64; 2],
+}
+
 /// What is known of a pixel once its samples are taken.
 pub struct Taken<'a> {
     /// Its row of sums, and that of samples that are subtracted.
     pub sums: [&'a [f64]; 2],
     /// The same of what photons show, which is no sum over samples; empty where they show nothing.
     pub shown: &'a [f64],
+    /// What that counts beside the samples.
+    pub counts: ShownCounts,
     /// The variance of the mean, where replicates tell it.
     pub variance: Option<[f64; 3]>,
     /// The sum of the samples that were kept, of those that are added and subtracted, and what they count.
@@ -200,12 +211,13 @@ impl Taken<'_> {
             Layer::Albedo => (sums[0] / weights.added()).clamp(0.0, 1.0),
             // Photons land independently: the sum of their squares estimates the variance of their sum.
             Layer::Variance => self.variance.map_or_else(
-                || weights.variance(self.rgb.map(|rgb| rgb[channel]), sums[0] + sums[1]) + shown,
+                || weights.variance(self.rgb.map(|rgb| rgb[channel]), sums[0] + sums[1]) + self.counts.image * shown,
                 |variance| variance[channel],
             ),
             Layer::HalfA | Layer::HalfB => {
                 let taken = self.sums.map(|row| row.get(at + OF_A_HALF - 1).copied().unwrap_or_default());
-                weights.sum(sums) / (taken[0] + taken[1]).max(1.0) + shown
+                let counts = self.counts.halves[usize::from(layer == Layer::HalfB)];
+                weights.sum(sums) / (taken[0] + taken[1]).max(1.0) + counts * shown
             }
             _ if layer.is_light() => self.light(at + channel),
             _ => sums[0] / weights.added(),

@@ -56,11 +56,6 @@ pub struct Sending {
 }
 
 impl Sending {
-    /// Whether any batch is done.
-    pub fn has_begun(&self) -> bool {
-        self.batches > 0
-    }
-
     /// Another one follows.
     pub fn begin_anew(&mut self) {
         self.batches = 0;
@@ -106,6 +101,15 @@ pub fn show<const N: usize, P: Polarization<N>>(
         pass.replicate.iter().for_each(|&replicate| replicates.show(place, replicate, rgb));
     };
     send_on::<N, P>(world, some.as_ref().unwrap_or(targets), pass.photon_seed().0, sending, watch, add)
+}
+
+/// The part of a pass's photons that are sent.
+pub fn part_sent(world: &World, pass: &Pass, sending: &Sending) -> f64 {
+    let Some(targets) = world.photon_targets.as_ref().filter(|_| sending.batches > 0) else { return 0.0 };
+    let some = pass.part_of_photons(world).map(|part| targets.times(part));
+    let batches = batches(some.as_ref().unwrap_or(targets), |_| 0, |target| target.photons, 0);
+    let photons = |batches: &[Batch]| batches.iter().map(|batch| batch.count).sum::<u64>() as f64;
+    photons(&batches[..sending.batches.min(batches.len())]) / photons(&batches)
 }
 
 /// Adds a photon that the camera sees to the row of its pixel, which holds means.

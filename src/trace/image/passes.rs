@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::light_pass::Sending;
+use super::light_pass::{Sending, part_sent};
 use super::noise::Measured;
 use crate::trace::World;
 use crate::trace::pass::{Pass, Stage};
@@ -57,10 +57,15 @@ impl Progress {
         }
     }
 
-    /// How many samples of each pixel photons have been shown for, where every pass sends some: of the pass that was
-    /// stopped, all or none.
-    pub fn shown_for(&self, world: &World) -> u32 {
-        if self.sending.has_begun() { self.end_of_pass(world) } else { self.samples }
+    /// For how many samples of each pixel photons of each replicate have been shown, where every pass sends some: of
+    /// the pass under way, for as large a part of its samples as of its photons.
+    pub fn shown_for(&self, world: &World) -> [f64; REPLICATES] {
+        let mut shown_for = std::array::from_fn(|replicate| f64::from(self.stage.samples_of(replicate as u32)));
+        let pass = self.pass(world);
+        if let Some(replicate) = pass.replicate {
+            shown_for[replicate as usize] += pass.numbers.len() as f64 * part_sent(world, &pass, &self.sending);
+        }
+        shown_for
     }
 
     /// Camera samples of each pixel after the stage of all replicates.

@@ -9,7 +9,7 @@ use std::time::Instant;
 use serde::{Deserialize, Serialize};
 
 use super::blur::Blur;
-use super::layer_sums::{Taken, images, spectral_image, write};
+use super::layer_sums::{ShownCounts, Taken, images, spectral_image, write};
 use super::noise::{Measured, Noise, measure};
 use super::passes::{Progress, most_at_once};
 use super::rare_light::{RareLight, rare_light};
@@ -22,7 +22,7 @@ use crate::film::{BlockReader, BlockWriter, Film, Pixel, PixelSum, SampleWeights
 use crate::trace::parallel::for_each_in_parallel;
 use crate::trace::photon::PassLight;
 use crate::trace::photon_targets::PhotonTargets;
-use crate::trace::replicates::REPLICATES;
+use crate::trace::replicates::{HALF, REPLICATES};
 use crate::trace::stats::Stats;
 use crate::trace::walk::Polarization;
 use crate::trace::watch::Watch;
@@ -249,21 +249,21 @@ impl<'a> Rendering<'a> {
         let layers = &self.world().layers;
         let luminance = settings.color_space.to_xyz()[1];
         let (mut images, none) = (images(layers, pixels.len()), PixelSum::default());
-        let (each, shown_counts) = (self.each(), self.shown_counts());
+        let (shown_for, counts) = (self.shown_for(), self.shown_counts());
         let mut spectral = spectral_image(layers, pixels.len());
         for (tile, at) in self.places() {
             for (place, sum) in tile.sums.iter().enumerate() {
                 let number = at.pixel(window, place as u32);
                 let subtracted = tile.subtracted.get(place).unwrap_or(&none);
                 let weights = SampleWeights::new(settings.filter, [sum.kept(), subtracted.kept()]);
-                let shown = tile.shown_at(place).map(|x| x * shown_counts);
+                let shown = tile.shown_at(place).map(|x| x * counts.image);
                 pixels[number] = sum.pixel(subtracted, &weights, shown);
                 if !layers.is_empty() {
                     let (sums, shown) = (tile.layers.rows(layers, place), tile.shown_in_layers(layers, place));
-                    let shown = &*times(shown, shown_counts);
+                    let shown = &*times(shown, counts.image);
                     let (covered, rgb) = (tile.layers.covered(), [sum.rgb(), subtracted.rgb()]);
-                    let variance = each.map(|each| tile.replicates.variance(place, settings.filter, each));
-                    let taken = Taken { sums, shown, variance, rgb, weights, covered, place };
+                    let variance = shown_for.and_then(|each| tile.replicates.variance(place, settings.filter, each));
+                    let taken = Taken { sums, shown, counts, variance, rgb, weights, covered, place };
                     write(layers, &taken, number, &mut images);
                     if let (Some(image), Some(spectrum)) = (&mut spectral, &layers.spectrum) {
                         taken.write_spectrum(spectrum, number, image);
@@ -291,8 +291,9 @@ impl<'a> Rendering<'a> {
     /// What was noticed so far.
     pub fn report(&self) -> Report {
         let (mut all, mut first_non_finite, mut polarization_of_tile) = (self.shared_stats(), None, 0.0_f64);
+        let shown_counts = self.shown_counts().image;
         for tile in &self.tiles {
-            let stats = self.stats_of(tile);
+            let stats = self.stats_of(tile, shown_counts);
             if stats.light > 0.0 {
                 polarization_of_tile = polarization_of_tile.max(stats.polarization / stats.light);
             }
@@ -369,19 +370,18 @@ impl<'a> Rendering<'a> {
         saved::restore(&self.world, &mut self.progress, &mut self.tiles, blocks)
     }
 
-    /// Samples of a pixel that each replicate has, on average, where there are replicates.
-    fn each(&self) -> Option<u32> {
-        let has_some = self.world().method.stop.is_some() && self.samples() > 0;
-        has_some.then(|| self.samples().div_ceil(REPLICATES as u32))
+    /// For how many samples of each pixel photons of each replicate are shown, where there are replicates.
+    fn shown_for(&self) -> Option<[f64; REPLICATES]> {
+        self.world().method.stop.as_ref().map(|_| self.progress.shown_for(self.world()))
     }
 
-    /// What the sum of what photons show counts in the image.
-    fn shown_counts(&self) -> f64 {
-        let world = self.world();
-        match world.method.stop {
-            None => 1.0,
-            Some(_) => 1.0 / f64::from(self.progress.shown_for(world).max(1)),
-        }
+    /// What the sums of what photons show count in the image.
+    fn shown_counts(&self) -> ShownCounts {
+        let Some(shown_for) = self.shown_for() else { return ShownCounts { image: 1.0, halves: [1.0; 2] } };
+        let (first, second) = shown_for.split_at(HALF as usize);
+        let [all, first, second] = [&shown_for[..], first, second].map(|part| part.iter().sum::<f64>());
+        let over = |share: f64, samples: f64| if samples > 0.0 { share / samples } else { 0.0 };
+        ShownCounts { image: over(1.0, all), halves: [first, second].map(|half| over(0.5 * all, half)) }
     }
 
     /// Its tiles with their places.
@@ -411,10 +411,10 @@ impl<'a> Rendering<'a> {
         stats
     }
 
-    /// What was noticed in a tile, with the light that photons show there.
-    fn stats_of(&self, tile: &Tile) -> Stats {
+    /// What was noticed in a tile, with the light that photons show there, whose sums count so much.
+    fn stats_of(&self, tile: &Tile, shown_counts: f64) -> Stats {
         let mut stats = tile.stats;
-        let samples = f64::from(self.samples()) * self.shown_counts();
+        let samples = f64::from(self.samples()) * shown_counts;
         stats.polarization += samples * tile.shown.moved;
         stats.light += samples * tile.shown.pixels.iter().map(|&rgb| self.world().amount(rgb)).sum::<f64>();
         stats

@@ -35,8 +35,8 @@ pub enum Restored {
     Continues,
     /// It was finished, with more samples per pixel than are asked for: so many. Nothing else was read.
     HasMore(u32),
-    /// Why no render can go on from there.
-    Refused(String),
+    /// Why this render cannot go on from there, and how many samples per pixel one that can takes.
+    Refused(String, u32),
 }
 
 /// Writes how far a render of a world is, and its sums.
@@ -72,7 +72,8 @@ pub fn restore(
         return Ok(Restored::HasMore(progress.samples));
     }
     if let Some(objection) = objection(world, progress, end_of_pass, samples) {
-        return Ok(Restored::Refused(objection));
+        let end = if world.method.stop.is_some() { progress.samples_of_stage() } else { samples };
+        return Ok(Restored::Refused(objection, end));
     }
     if saved != tiles.len() as u64 || !progress.is_whole(world) {
         return Err(blocks.damaged());

@@ -138,5 +138,5 @@ pub fn samples_wanted(stop: &Stop, progress: &Progress, clock: &Clock) -> u32 {
     let wanted = REPLICATES as u32 * wanted;
     let (taken, time) = (REPLICATES as u32 * stage.before, stop.time);
     let in_time = time.and_then(|time| clock.samples_in(clock.left(time), taken));
-    in_time.map_or(wanted, |more| wanted.min(taken + more as u32).max(REPLICATES as u32 * each))
+    in_time.map_or(wanted, |more| wanted.min(taken.saturating_add(more as u32)).max(REPLICATES as u32 * each))
 }
