@@ -25,8 +25,10 @@ struct Part {
 
 /// Most cells of a lamp, which take 8 MB.
 const MOST_CELLS: f64 = (1 << 20) as f64;
-/// Most places of a cell that are looked at, each way.
-const MOST_LOOKS: f64 = 8.0;
+/// Most texels along an edge of a part that are told apart.
+const MOST_TEXELS: f64 = MOST_CELLS;
+/// Most places of a lamp that are looked at, but for two each way in each of its cells.
+const MOST_LOOKS: f64 = (1 << 25) as f64;
 /// The mean square of a part's brightness from which its cells are kept, in units of the squared mean: below, what they
 /// take is worth more than what they bring.
 const UNEVEN: f64 = 1.3;
@@ -42,12 +44,16 @@ impl EmissionMap {
         let shape = surface.shape;
         let resolution = kind.resolution().filter(|_| shape.is_bounded())?;
         let count = shape.part_count().max(1);
-        let texels = |part| surface.edges(part).map(|[u, v]| (u * resolution[0] + v * resolution[1]).max(1.0));
+        let texels = |part| {
+            let along = |[u, v]: [f64; 2]| u * resolution[0] + v * resolution[1];
+            surface.edges(part).map(|edge| along(edge).clamp(1.0, MOST_TEXELS))
+        };
         let all: f64 = (0..count).map(|part| texels(part).iter().product::<f64>()).sum();
         let coarser = (all / MOST_CELLS).max(1.0).sqrt();
+        let looks = (MOST_LOOKS / all.min(MOST_CELLS).max(count.into())).sqrt().max(2.0);
         let uneven = if matches!(surface.coordinates, Coordinates::Sphere { .. }) { UNEVEN_ROUND } else { UNEVEN };
         let grid = |part| {
-            Grid::new(texels(part), coarser, move |place| {
+            Grid::new(texels(part), [coarser, looks], move |place| {
                 let uv = surface.coordinates_at(part, place)?;
                 Some([kind.brightness_at(uv), surface.growth(place)])
             })
@@ -120,11 +126,12 @@ struct Grid<F> {
 }
 
 impl<F: Fn([f64; 2]) -> Option<[f64; 2]> + Sync> Grid<F> {
-    /// Of a part on which so many texels lie; cells are coarser than these by a factor of 1 or more.
-    fn new(texels: [f64; 2], coarser: f64, look: F) -> Self {
+    /// Of a part on which so many texels lie; cells are coarser than these by a factor of 1 or more, and looked at in
+    /// no more columns and rows than so many.
+    fn new(texels: [f64; 2], [coarser, most]: [f64; 2], look: F) -> Self {
         let size = texels.map(|texels| (texels / coarser).ceil());
         // Two looks are exact where texels pass into each other, and one at each of several.
-        let looks = [0, 1].map(|i| (texels[i] / size[i]).ceil().clamp(2.0, MOST_LOOKS) as usize);
+        let looks = [0, 1].map(|i| (texels[i] / size[i]).ceil().clamp(2.0, most) as usize);
         Self { size: size.map(|cells| cells as usize), looks, look }
     }
 

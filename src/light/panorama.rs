@@ -307,14 +307,15 @@ mod tests {
         assert!((panorama.bright_irradiance() / irradiance - 1.0).abs() < 1e-12, "{irradiance}");
         assert!((bright.solid_angle() / solid_angle - 1.0).abs() < 1e-12 && solid_angle < MOST_SOLID_ANGLE);
         assert!(bright.radiance() > 300.0 && bright.radiance() < 900.0, "{}", bright.radiance());
-        // Every draw stands for the same irradiance but for what changes within a texel, and their mean is exact.
+        // Every draw stands for the same irradiance but for what changes within a texel, whose rows are 15 degrees high
+        // here: their mean is that of linear interpolation by solid angle, the table's by latitude.
         let mut sum = 0.0;
         for u in grid(400) {
             let (direction, pdf) = panorama.sample_bright(u).expect("there is a bright part");
             assert!(panorama.is_bright(direction), "{direction}");
             sum += f64::from(panorama.color(direction)[0]) / pdf / 160_000.0;
         }
-        assert!((sum / irradiance - 1.0).abs() < 2e-3, "{sum} for {irradiance}");
+        assert!((sum / irradiance - 1.0).abs() < 0.02, "{sum} for {irradiance}");
         assert!(self::panorama(width, &vec![[1.0; 3]; width * height]).bright().is_none());
     }
 }

@@ -248,3 +248,23 @@ fn l10_one_bright_texel_of_a_lamp_is_found() {
         assert!(off <= 3.5 * mean.error[0] + 2e-4 * expected, "{}: {} for {expected}", lamp.shape, mean.value[0]);
     }
 }
+
+/// Neither a million repeats nor coordinates of a mesh that are far apart take memory or time without end.
+#[test]
+fn patterns_too_fine_to_be_told_apart_shine_like_their_mean() {
+    let fine = "emissive = { radiance = { checker = [0, { rgb = [3, 2, 1] }], repeat = [1e6, 1e6], scale = 2 } }";
+    let mesh = "mesh = { points = [[-0.8, 1, -0.7], [1.2, 1, -0.7], [1.2, 1, 0.9], [-0.8, 1, 0.9]], \
+                faces = [[0, 1, 2], [0, 2, 3]], uv = [[0, 0], [1e30, 0], [1e30, -1e25], [0, 1e9]] }";
+    let quad = "quad = { center = [0.2, 1, 0.1], u = [1, 0, 0], v = [0, 0, 0.8] }";
+    let lit = |lamp: &str, shape: &str| {
+        let scene = scene(Path::new("."), &floor("\"rgb\"").replace(LAMP, lamp).replace(quad, shape));
+        let method = Method { transport: SPLITTING, ..plan(&scene).method };
+        let film = render(&prepare(&scene, method), &|_| ()).0;
+        film.pixels.iter().map(|pixel| f64::from(pixel.rgb[0])).sum::<f64>() / film.pixels.len() as f64
+    };
+    let even = lit("emissive = { radiance = { rgb = [3, 2, 1] } }", quad);
+    let (of_quad, of_mesh) = (lit(fine, quad), lit(fine, mesh));
+    println!("{of_quad} and {of_mesh} for {even}");
+    // Where numbers end, a pattern is no more what it is written as: on the mesh it is still light.
+    assert!((of_quad / even - 1.0).abs() < 0.1 && of_mesh >= 0.0 && of_mesh < 2.0 * even);
+}
