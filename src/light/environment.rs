@@ -116,8 +116,7 @@ impl<S> Environment<S> {
 
     /// Photons of the bright part.
     pub(super) fn beam(&self, ball: &Ball) -> Option<Beam> {
-        self.bright()?;
-        Some(Beam::from_sky(ball, self.image.as_ref()?.panorama.bright_irradiance()))
+        Some(Beam::from_sky(ball, self.bright()?.irradiance()))
     }
 
     /// A photon of the bright part, through a disc across the ball.

@@ -1,40 +1,48 @@
 //! Light from all around as an image, drawn where it is bright.
 
 use std::f64::consts::{PI, TAU};
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
+
+use rayon::prelude::*;
 
 use crate::math::{DVec3, Distribution, Distribution2d};
 use crate::spectrum::Image;
 
 /// An image of all directions: latitude and longitude, +y on top, +z in the center, +x at the left quarter.
 ///
-/// Between the middles of its texels it is linear. Directions are drawn by texel, each by its mean brightness and the
-/// exact solid angle of its row, and evenly within it.
+/// Between the middles of its texels it is linear. Directions are drawn by texel, each by the exact solid angle of its
+/// row and by how much its mean brightness is above that of the image, and evenly within it: what is dimmer is found by
+/// bounces. Karlík, Šik, Vévoda, Skřivan & Křivánek 2019, *MIS Compensation: Optimizing Sampling Techniques in Multiple
+/// Importance Sampling*.
 #[derive(Clone, Debug)]
 pub struct Panorama {
     image: Arc<Image>,
+    mean: f64,
     texels: Distribution2d,
     /// Cosine of the angle from the top to the upper edge of each row, and to the lower edge of the last.
     edges: Vec<f64>,
-    bright: OnceLock<Option<BrightPart>>,
+    bright: Option<BrightPart>,
 }
 
 /// The texels of an image that are many times as bright as its mean, such as a sun or a studio's lamps, if they fill a
 /// small part of the sky.
 #[derive(Clone, Debug)]
 pub struct BrightPart {
-    /// Their density per steradian is above this one.
+    /// Their brightness is above this one.
     above: f64,
     texels: Vec<u32>,
     by_light: Distribution,
-    /// Of all light, how much comes from them.
-    share: f64,
+    /// At right angles, for one of the image.
+    irradiance: f64,
     /// In steradians.
     solid_angle: f64,
     /// Their radiance, each direction by what it sends, for one of the image.
     radiance: f64,
 }
 
+/// How densely directions are drawn at least, in units of how they would be by brightness alone: what is dimmer than the
+/// mean is not left out, for bounces do not find it everywhere.
+const PLAINLY: f64 = 0.1;
 /// How many times as bright as the mean a texel of the bright part is at least.
 const BRIGHT: f64 = 8.0;
 /// The largest solid angle of the bright part, and the least share of the light that is worth telling it apart.
@@ -42,40 +50,43 @@ const MOST_SOLID_ANGLE: f64 = 0.5;
 const LEAST_SHARE: f64 = 0.02;
 
 impl BrightPart {
-    /// Of a panorama; none if nothing in it is so bright.
-    fn new(panorama: &Panorama) -> Option<Self> {
-        let (width, height) = (panorama.image.width(), panorama.image.height());
-        let solid_angle = |texel: u32| panorama.solid_angle(texel as usize / width);
-        let density = |texel: u32| panorama.density([texel as usize % width, texel as usize / width]);
-        let above = BRIGHT / (4.0 * PI);
-        let mut texels: Vec<u32> = (0..(width * height) as u32).filter(|&texel| density(texel) > above).collect();
-        let mut by_density = texels.clone();
-        by_density.sort_by(|&a, &b| density(b).total_cmp(&density(a)));
+    /// Of texels of some brightness, and the solid angle of each; none if few of them are so much brighter than the
+    /// mean.
+    fn new(levels: &[f64], mean: f64, solid_angle: impl Fn(u32) -> f64) -> Option<Self> {
+        let level = |texel: u32| levels[texel as usize];
+        let mut texels: Vec<u32> = (0..levels.len() as u32).filter(|&texel| level(texel) > BRIGHT * mean).collect();
+        let mut by_level = texels.clone();
+        by_level.sort_by(|&a, &b| level(b).total_cmp(&level(a)));
         let mut all = 0.0;
-        let too_many = by_density.into_iter().find(|&texel| {
+        let too_many = by_level.into_iter().find(|&texel| {
             all += solid_angle(texel);
             all > MOST_SOLID_ANGLE
         });
-        let above = too_many.map_or(above, density);
-        texels.retain(|&texel| density(texel) > above);
-        let [mut share, mut squares, mut whole] = [0.0; 3];
+        let above = too_many.map_or(BRIGHT * mean, level);
+        texels.retain(|&texel| level(texel) > above);
+        let [mut irradiance, mut squares, mut whole] = [0.0; 3];
         for &texel in &texels {
-            let (density, solid_angle) = (density(texel), solid_angle(texel));
-            share += density * solid_angle;
-            squares += density * density * solid_angle;
+            let (level, solid_angle) = (level(texel), solid_angle(texel));
+            irradiance += level * solid_angle;
+            squares += level * level * solid_angle;
             whole += solid_angle;
         }
-        if share < LEAST_SHARE {
+        if irradiance <= LEAST_SHARE * 4.0 * PI * mean {
             return None;
         }
-        let by_light = Distribution::new(texels.iter().map(|&texel| density(texel) * solid_angle(texel)));
-        let radiance = squares / share * panorama.mean() * 4.0 * PI;
-        Some(Self { above, texels, by_light, share, solid_angle: whole, radiance })
+        let by_light = Distribution::new(texels.iter().map(|&texel| level(texel) * solid_angle(texel)));
+        let radiance = squares / irradiance;
+        Some(Self { above, texels, by_light, irradiance, solid_angle: whole, radiance })
     }
 
     /// In steradians.
     pub fn solid_angle(&self) -> f64 {
         self.solid_angle
+    }
+
+    /// At right angles, for one of the image.
+    pub(super) fn irradiance(&self) -> f64 {
+        self.irradiance
     }
 
     /// Its radiance, each direction by what it sends, for one of the image.
@@ -85,13 +96,25 @@ impl BrightPart {
 }
 
 impl Panorama {
-    /// Of an image in which no number is negative or not finite.
-    pub fn new(image: Arc<Image>) -> Self {
-        let size @ [_, height] = [image.width(), image.height()];
+    /// Of an image in which no number is negative or not finite. Where few paths bounce, so that these find little of
+    /// its light, directions are drawn by brightness alone.
+    pub fn new(image: Arc<Image>, few_bounces: bool) -> Self {
+        let plainly = if few_bounces { 1.0 } else { PLAINLY };
+        let size @ [width, height] = [image.width(), image.height()];
         let edges: Vec<f64> = (0..=height).map(|row| libm::cos(PI * row as f64 / height as f64)).collect();
-        let by_row = |row| edges[row] - edges[row + 1];
-        let texels = Distribution2d::new(size, |place| brightness(&image, place), by_row);
-        Self { image, texels, edges, bright: OnceLock::new() }
+        let by_row = |row: usize| edges[row] - edges[row + 1];
+        let level = |texel: usize| brightness(&image, [texel % width, texel / width]);
+        let levels: Vec<f64> = (0..width * height).into_par_iter().with_min_len(1024).map(level).collect();
+        let rows = levels.chunks(width).enumerate();
+        let total: f64 = rows.map(|(row, levels)| levels.iter().sum::<f64>() * by_row(row)).sum();
+        let mean = total / (2 * width) as f64;
+        let weight = |[x, y]: [usize; 2]| {
+            let level = levels[y * width + x];
+            (level - mean).max(plainly * level)
+        };
+        let texels = Distribution2d::new(size, weight, by_row);
+        let bright = BrightPart::new(&levels, mean, |texel| TAU / width as f64 * by_row(texel as usize / width));
+        Self { image, mean, texels, edges, bright }
     }
 
     /// The image.
@@ -101,7 +124,7 @@ impl Panorama {
 
     /// The mean of its brightness, a third of red, green and blue, over all directions.
     pub fn mean(&self) -> f64 {
-        self.texels.total() / (2 * self.image.width()) as f64
+        self.mean
     }
 
     /// Where a direction lies in the image, in texels from its upper left corner.
@@ -145,26 +168,22 @@ impl Panorama {
 
     /// What is brightest in it, if that is much brighter than the rest.
     pub fn bright(&self) -> Option<&BrightPart> {
-        self.bright.get_or_init(|| BrightPart::new(self)).as_ref()
+        self.bright.as_ref()
     }
 
     /// Whether a direction lies in the bright part.
     pub(super) fn is_bright(&self, direction: DVec3) -> bool {
-        self.bright().is_some_and(|bright| self.pdf(direction) > bright.above)
+        let level = || brightness(&self.image, self.texel_of(direction));
+        self.bright.as_ref().is_some_and(|bright| level() > bright.above)
     }
 
     /// A direction to the bright part for two random numbers, and its density per steradian.
     pub(super) fn sample_bright(&self, [u, v]: [f64; 2]) -> Option<(DVec3, f64)> {
-        let bright = self.bright()?;
+        let bright = self.bright.as_ref()?;
         let drawn = bright.by_light.sample(u);
         let (texel, width) = (bright.texels[drawn.index] as usize, self.image.width());
         let texel = [texel % width, texel / width];
-        Some((self.direction(texel, [drawn.u, v]), self.density(texel) / bright.share))
-    }
-
-    /// The irradiance of the bright part, at right angles, for one of the image.
-    pub(super) fn bright_irradiance(&self) -> f64 {
-        self.bright().map_or(0.0, |bright| bright.share * self.mean() * 4.0 * PI)
+        Some((self.direction(texel, [drawn.u, v]), brightness(&self.image, texel) / bright.irradiance))
     }
 
     /// Density per steradian with which `sample` draws a direction.
@@ -212,7 +231,7 @@ mod tests {
     use super::*;
 
     fn panorama(width: usize, texels: &[[f32; 3]]) -> Panorama {
-        Panorama::new(Arc::new(Image::of_floats(width, 3, texels.as_flattened().to_vec())))
+        Panorama::new(Arc::new(Image::of_floats(width, 3, texels.as_flattened().to_vec())), false)
     }
 
     fn grid(n: u32) -> impl Iterator<Item = [f64; 2]> {
@@ -304,7 +323,7 @@ mod tests {
                 solid_angle += here;
             }
         }
-        assert!((panorama.bright_irradiance() / irradiance - 1.0).abs() < 1e-12, "{irradiance}");
+        assert!((bright.irradiance() / irradiance - 1.0).abs() < 1e-12, "{irradiance}");
         assert!((bright.solid_angle() / solid_angle - 1.0).abs() < 1e-12 && solid_angle < MOST_SOLID_ANGLE);
         assert!(bright.radiance() > 300.0 && bright.radiance() < 900.0, "{}", bright.radiance());
         // Every draw stands for the same irradiance but for what changes within a texel, whose rows are 15 degrees high

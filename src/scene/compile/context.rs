@@ -21,6 +21,8 @@ pub(super) struct Context {
     pub(super) files: Vec<PathBuf>,
     /// Length of a scene unit in meters, if the scene says it.
     pub(super) meters_per_unit: Option<f64>,
+    /// Whether paths scatter from diffuse surfaces once at most.
+    pub(super) few_bounces: bool,
     /// Luminance of the film's white in cd/m^2, if the scene's light is absolute.
     pub(super) white_luminance: Option<f64>,
     /// By file and by what was read of it.
@@ -41,7 +43,7 @@ impl Context {
         let (images, meshes) = (BTreeMap::new(), HashMap::new());
         let (meters_per_unit, white_luminance) = (None, None);
         let (warnings, files) = (Vec::new(), Vec::new());
-        Self { warnings, hash, files, meters_per_unit, white_luminance, images, meshes }
+        Self { warnings, hash, files, meters_per_unit, few_bounces: false, white_luminance, images, meshes }
     }
 
     /// Notes a file that was read.

@@ -234,5 +234,5 @@ fn panorama(context: &mut Context, file: &At<&str>) -> Option<Panorama> {
         let message = "an image of all directions is twice as wide as high";
         context.warn_at(file.place, format!("{} is {width} x {height}; {message}", file.it));
     }
-    Some(Panorama::new(Arc::new(image)))
+    Some(Panorama::new(Arc::new(image), context.few_bounces))
 }
