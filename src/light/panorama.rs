@@ -40,8 +40,8 @@ pub struct BrightPart {
     radiance: f64,
 }
 
-/// How densely directions are drawn at least, in units of how they would be by brightness alone: what is dimmer than the
-/// mean is not left out, for bounces do not find it everywhere.
+/// How densely directions are drawn at least, in units of how they would be by brightness alone: what is dimmer than
+/// the mean is not left out, for bounces do not find it everywhere.
 const PLAINLY: f64 = 0.1;
 /// How many times as bright as the mean a texel of the bright part is at least.
 const BRIGHT: f64 = 8.0;
