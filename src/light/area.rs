@@ -4,9 +4,7 @@ use std::sync::Arc;
 use super::emission_map::Cells;
 use super::{Beam, EmissionMap, EmissionPoint, LeSample, LightBounds, LightSample, LightTree};
 use crate::math::{Bounds, Cone, DVec3, DiscreteSample, Distribution, Frame, Ray, cosine_hemisphere, unit};
-use crate::shape::{
-    Ball, Coordinates, Crossing, Density, Place, Shape, ShapeSample, Sides, SurfacePoint, TexturedShape,
-};
+use crate::shape::{Ball, Coordinates, Crossing, Density, Shape, ShapeSample, Sides, SurfacePoint, TexturedShape};
 use crate::spectrum::Quantity;
 
 /// A surface that shines: an object whose material emits.
@@ -23,16 +21,23 @@ pub struct Area<S> {
     /// Whether next-event estimation samples it: finite `emissive` surfaces. Planes and glowing glass are only met by
     /// chance.
     pub is_sampled: bool,
-    /// Where its points lie in the image that it shows, if it shows one.
-    coordinates: Option<Arc<Coordinates>>,
-    /// How bright that image makes its places.
-    emission_map: Option<Arc<EmissionMap>>,
+    /// The image that it shows, if it shows one.
+    image: Option<ShownImage>,
     /// The parts of a shape of several, one of which is sampled.
     parts: Option<Arc<Parts>>,
     /// The box from whose outside no backs are seen.
     closed: Option<Bounds>,
     /// The unit normals of all that is seen of a sphere, if that is a small part.
     visible_cap: Option<Cone>,
+}
+
+/// An image on a surface that shines.
+#[derive(Clone, Debug)]
+pub struct ShownImage {
+    /// Where the points of the surface lie in it.
+    pub coordinates: Arc<Coordinates>,
+    /// How bright it makes them; none of a surface that is not sampled.
+    pub map: Option<Arc<EmissionMap>>,
 }
 
 /// The parts of a shape of several.
@@ -65,23 +70,20 @@ const ENOUGH: usize = 64;
 const BY_IMAGE: f64 = 0.75;
 
 impl<S> Area<S> {
-    /// The light that an object is.
-    pub fn new(shape: Arc<Shape>, object: u32, radiance: S, sides: Sides, is_sampled: bool) -> Self {
-        let parts = if is_sampled { Parts::new(&shape, |_| 1.0) } else { None };
+    /// The light that an object is, with the image that it shows.
+    pub fn new(
+        shape: Arc<Shape>,
+        object: u32,
+        radiance: S,
+        sides: Sides,
+        is_sampled: bool,
+        image: Option<ShownImage>,
+    ) -> Self {
+        let map = image.as_ref().and_then(|image| image.map.as_ref());
+        let worth = |part| map.map_or(1.0, |map| map.worth(part));
+        let parts = if is_sampled { Parts::new(&shape, worth) } else { None };
         let closed = if shape.is_closed() { shape.bounds() } else { None };
-        let (coordinates, emission_map, visible_cap) = (None, None, None);
-        Self { shape, object, radiance, sides, is_sampled, coordinates, emission_map, parts, closed, visible_cap }
-    }
-
-    /// The light where it shows an image: where that lies, and how bright it makes which places. Without such a map all
-    /// places are sampled alike.
-    #[must_use]
-    pub fn showing(self, coordinates: Arc<Coordinates>, emission_map: Option<Arc<EmissionMap>>) -> Self {
-        let parts = match &emission_map {
-            Some(map) if self.is_sampled => Parts::new(&self.shape, |part| map.worth(part)),
-            _ => self.parts,
-        };
-        Self { coordinates: Some(coordinates), emission_map, parts, ..self }
+        Self { shape, object, radiance, sides, is_sampled, image, parts, closed, visible_cap: None }
     }
 
     pub(super) fn map<T>(&self, convert: &mut impl FnMut(Quantity, &S) -> T) -> Area<T> {
@@ -91,8 +93,7 @@ impl<S> Area<S> {
             radiance: convert(Quantity::Emission, &self.radiance),
             sides: self.sides,
             is_sampled: self.is_sampled,
-            coordinates: self.coordinates.clone(),
-            emission_map: self.emission_map.clone(),
+            image: self.image.clone(),
             parts: self.parts.clone(),
             closed: self.closed,
             visible_cap: self.visible_cap,
@@ -102,22 +103,27 @@ impl<S> Area<S> {
     /// Whether all that is seen of it may be a cap, so that learning it could help: of a sphere that shines everywhere
     /// alike.
     pub fn may_show_a_cap(&self) -> bool {
-        self.is_sampled && matches!(*self.shape, Shape::Sphere(_)) && self.coordinates.is_none()
+        self.is_sampled && matches!(*self.shape, Shape::Sphere(_)) && self.image.is_none()
+    }
+
+    fn emission_map(&self) -> Option<&EmissionMap> {
+        self.image.as_ref()?.map.as_deref()
     }
 
     fn has_cells(&self) -> bool {
-        self.emission_map.as_ref().is_some_and(|map| map.has_cells())
+        self.emission_map().is_some_and(EmissionMap::has_cells)
     }
 
     /// The shape with its image, and the cells of a part by which that is sampled, if it has some.
     fn cells(&self, part: u32) -> Option<(TexturedShape<'_>, Cells<'_>)> {
-        let surface = TexturedShape { shape: &self.shape, coordinates: self.coordinates.as_ref()? };
-        Some((surface, self.emission_map.as_ref()?.cells(part)?))
+        let image = self.image.as_ref()?;
+        let surface = TexturedShape { shape: &self.shape, coordinates: &image.coordinates };
+        Some((surface, image.map.as_ref()?.cells(part)?))
     }
 
     /// The mean brightness of what it shows, if that varies.
     pub(super) fn mean_brightness(&self) -> Option<f64> {
-        self.emission_map.as_ref().map(|map| map.mean())
+        self.emission_map().map(EmissionMap::mean)
     }
 
     /// Tells the light the unit normals at which paths met it by chance: if they lie close together, it is sampled
@@ -181,7 +187,8 @@ impl<S> Area<S> {
         let Some((surface, cells)) = self.cells(crossing.part) else { return evenly };
         let point = self.shape.point(ray, crossing);
         let of_image = surface.place(crossing, point.position).map_or(0.0, |place| {
-            Density::Area(cells.density(&place)).toward(crossing.t, point.normal.dot(ray.direction).abs())
+            Density::Area(cells.density(place.at) / place.area)
+                .toward(crossing.t, point.normal.dot(ray.direction).abs())
         });
         BY_IMAGE * of_image + (1.0 - BY_IMAGE) * evenly
     }
@@ -218,8 +225,8 @@ impl<S> Area<S> {
             Some(density) => usable(density.toward(crossing.t, cos.abs()))?,
             None => self.pdf_at(&ray, normal, &crossing)?,
         };
-        let uv = self.coordinates.as_ref().map_or([0.0; 2], |coordinates| {
-            coordinates.at(&self.shape, &crossing, self.shape.point(&ray, &crossing).position)
+        let uv = self.image.as_ref().map_or([0.0; 2], |image| {
+            image.coordinates.at(&self.shape, &crossing, self.shape.point(&ray, &crossing).position)
         });
         let (distance, object) = (crossing.t, Some(self.object));
         Some(LightSample { ray, distance, object, part, pdf: Some(pdf), factor: 1.0, uv })
@@ -241,12 +248,12 @@ impl<S> Area<S> {
 
     /// The factor on its radiance by the image that it shows, each place by what it sends; 1 if it shows none.
     pub fn brightness(&self) -> f64 {
-        self.emission_map.as_ref().map_or(1.0, |map| map.brightness())
+        self.emission_map().map_or(1.0, EmissionMap::brightness)
     }
 
     /// The share of its area that sends as much light at that brightness; 1 if it shows no image.
     pub fn bright_share(&self) -> f64 {
-        self.emission_map.as_ref().map_or(1.0, |map| map.mean() / map.brightness().max(f64::MIN_POSITIVE))
+        self.emission_map().map_or(1.0, |map| map.mean() / map.brightness().max(f64::MIN_POSITIVE))
     }
 
     /// A ball around the part that can be seen, and the area of that from where it is seen best; none of a shape that
@@ -262,7 +269,7 @@ impl<S> Area<S> {
 
     /// Whether photons can be sent from it.
     pub(super) fn sends_photons(&self) -> bool {
-        self.coordinates.is_none() || self.emission_map.is_some()
+        self.image.as_ref().is_none_or(|image| image.map.is_some())
     }
 
     pub(super) fn beam(&self, ball: &Ball) -> Beam {
@@ -314,8 +321,8 @@ impl<S> Area<S> {
 
     /// A point from which light may reach a ball.
     fn sample_emission(&self, ball: &Ball, u: [f64; 2]) -> Option<EmissionPoint> {
-        match (&self.coordinates, &self.visible_cap) {
-            (Some(coordinates), _) => self.sample_textured(coordinates, u),
+        match (&self.image, &self.visible_cap) {
+            (Some(image), _) => self.sample_textured(&image.coordinates, u),
             (None, _) if matches!(*self.shape, Shape::Instance(_)) => self.sample_textured(&Coordinates::Mesh, u),
             (None, Some(cap)) => Some(EmissionPoint::of_even(self.shape.sample_cap_emission(cap, ball, u)?)),
             (None, None) => Some(EmissionPoint::of_even(self.shape.sample_emission(ball, u)?)),
@@ -334,9 +341,8 @@ impl<S> Area<S> {
             None => [u, v],
         };
         let point = surface.point_at(part, at)?;
-        let place = Place { at, area: surface.area(part, at, point.position)? };
-        let share = cells.map_or(1.0, |(_, cells)| BY_IMAGE * cells.density(&place) * place.area + 1.0 - BY_IMAGE);
-        let density = Some(probability * share / place.area);
+        let share = cells.map_or(1.0, |(_, cells)| BY_IMAGE * cells.density(at) + 1.0 - BY_IMAGE);
+        let density = Some(probability * share / surface.area(part, at, point.position)?);
         Some(EmissionPoint { point, uv: surface.coordinates_at(part, at)?, density })
     }
 

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use crate::math::{BELOW_ONE, Distribution2d};
-use crate::shape::{Coordinates, Place, TexturedShape};
+use crate::shape::{Coordinates, TexturedShape};
 use crate::spectrum::CurveKind;
 
 /// The brightness of each part of a surface that shines by an image, and of cells of the unit square on it.
@@ -109,11 +109,11 @@ impl Cells<'_> {
         [0, 1].map(|i| ((drawn[i].index as f64 + drawn[i].u) / size[i] as f64).min(BELOW_ONE))
     }
 
-    /// How many points `sample` draws per unit of area at a place.
-    pub fn density(&self, place: &Place) -> f64 {
+    /// How densely `sample` draws a place of the unit square.
+    pub fn density(&self, place: [f64; 2]) -> f64 {
         let size = self.0.size();
-        let cell = [0, 1].map(|i| ((place.at[i] * size[i] as f64) as usize).min(size[i] - 1));
-        self.0.probability(cell) * (size[0] * size[1]) as f64 / place.area
+        let cell = [0, 1].map(|i| ((place[i] * size[i] as f64) as usize).min(size[i] - 1));
+        self.0.probability(cell) * (size[0] * size[1]) as f64
     }
 }
 

@@ -17,7 +17,7 @@ mod spot;
 mod sun;
 mod tree;
 
-pub use area::Area;
+pub use area::{Area, ShownImage};
 pub use bounds::{LightBounds, NormalCone};
 pub use emission_map::EmissionMap;
 pub use environment::{Environment, Sky, SkyPolarization};

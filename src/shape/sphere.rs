@@ -100,7 +100,7 @@ impl Sphere {
     /// A direction from a point to a sphere of which most often a cap alone is seen: from outside most lead to points
     /// of the cap, uniform by area. The others keep the estimate right where more is seen.
     pub(super) fn sample_cap(&self, cap: &Cone, from: DVec3, [u, v]: [f64; 2]) -> Option<ShapeSample> {
-        let outside = self.cone_from(from).is_some();
+        let outside = self.is_outside(from);
         if u < ELSEWHERE || !outside {
             let u = if outside { u / ELSEWHERE } else { u };
             return Some(ShapeSample { density: None, ..self.sample(from, [u, v]) });
@@ -115,7 +115,7 @@ impl Sphere {
     /// distance.
     pub(super) fn pdf_cap(&self, cap: &Cone, ray: &Ray, t: f64) -> f64 {
         let everywhere = self.pdf(ray);
-        if self.cone_from(ray.origin).is_none() {
+        if !self.is_outside(ray.origin) {
             return everywhere;
         }
         let normal = (ray.at(t) - self.center).normalize();
@@ -158,7 +158,7 @@ impl Sphere {
     }
 
     pub(super) fn is_outside(&self, point: DVec3) -> bool {
-        (point - self.center).length_squared() > self.radius * self.radius
+        self.cone_from(point).is_some()
     }
 
     /// The cone of directions in which the sphere is seen from outside.

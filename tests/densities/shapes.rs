@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-use abbe::light::{Area, EmissionMap, Light, LightSample};
+use abbe::light::{Area, EmissionMap, Light, LightSample, ShownImage};
 use abbe::math::{DMat3, DVec3, Frame, Ray, Transform};
 use abbe::shape::{
     Attributes, Coordinates, Crossing, Cube, Density, Disc, Ellipsoid, Mesh, Quad, Shape, ShapeSample, Sides, Sphere,
@@ -110,7 +110,7 @@ fn of_light(shape: &Shape, sample: &LightSample) -> ShapeSample {
 /// Tests how a shape is sampled as a lamp, by its parts, from a surface of some normal.
 fn check_lamp(name: &str, shape: &Shape, from: DVec3, axis: DVec3, half_angle: f64) {
     let normal = (axis.normalize() + DVec3::new(0.5, -0.3, 0.4)).normalize();
-    let area = Area::new(Arc::new(shape.clone()), 0, (), Sides::Both, true);
+    let area = Area::new(Arc::new(shape.clone()), 0, (), Sides::Both, true, None);
     let light = Light::Area(area);
     assert!(light.has_parts(), "{name}");
     check_light(name, shape, from, &Bins::new(axis, half_angle), (&light, normal));
@@ -212,7 +212,7 @@ fn directions_toward_a_sphere_that_shows_a_cap_follow_their_density() {
         let mut near = || axis + width * random.number().sqrt() * random.direction().cross(axis).normalize();
         let normals: Vec<DVec3> = (0..2000).map(|_| near().normalize()).collect();
         let shape = Shape::Sphere(Sphere::new(center, radius));
-        let mut area = Area::new(Arc::new(shape.clone()), 0, (), Sides::Both, true);
+        let mut area = Area::new(Arc::new(shape.clone()), 0, (), Sides::Both, true, None);
         area.learn_visible_cap(&normals);
         check_light(name, &shape, from, &Bins::new(-away, half_angle), (&Light::Area(area), -away));
     }
@@ -307,8 +307,9 @@ fn check_image(name: &str, written: &Shape, map: &Transform, from: DVec3, bins: 
         .expect("the image varies");
     let shapes = if written.part_count() > 0 { vec![shape.clone(), written.copied(map)] } else { vec![shape.clone()] };
     for shape in shapes {
-        let lamp = Area::new(Arc::new(shape.clone()), 0, (), Sides::Both, true);
-        let lamp = Light::Area(lamp.showing(Arc::new(coordinates), Some(Arc::new(seen.clone()))));
+        let image = ShownImage { coordinates: Arc::new(coordinates), map: Some(Arc::new(seen.clone())) };
+        let lamp = Area::new(Arc::new(shape.clone()), 0, (), Sides::Both, true, Some(image));
+        let lamp = Light::Area(lamp);
         assert!(lamp.has_parts(), "{name}");
         let normal = (bins.axis + DVec3::new(0.1, -0.2, 0.1)).normalize();
         check_light(name, &shape, from, bins, (&lamp, normal));

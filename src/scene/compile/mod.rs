@@ -94,7 +94,7 @@ fn scene<'d>(context: &mut Context, sections: &mut Fields<'d>) -> Option<Scene<C
     let render = render.map_or(Some(RenderText::default()), |render| render::render(section(render)?));
     // A length that is misspelt is not missing as well.
     context.meters_per_unit = render.as_ref().map_or(Some(1.0), |render| render.meters_per_unit);
-    // The last surface of a path that may not bounce is lit by aiming alone.
+    // Where a path may not bounce, light is found by sampling the lights alone.
     let bounces = render.as_ref().and_then(|render| render.diffuse_bounces);
     context.few_bounces = bounces.is_some_and(|bounces| bounces <= 1);
     let drafts = materials.map(|materials| material::drafts(context, materials));

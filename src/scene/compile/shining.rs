@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::light::{Area, EmissionMap, Light, LightId};
+use crate::light::{Area, EmissionMap, Light, LightId, ShownImage};
 use crate::material::Material;
 use crate::scene::{Object, Scene};
 use crate::shape::{Coordinates, Shape, Sides, TexturedShape};
@@ -23,11 +23,11 @@ pub(super) fn surfaces_that_shine(scene: &mut Scene<Curve>) {
         }
         let light: LightId = scene.lights.len();
         let is_sampled = lamp && object.shape.is_bounded();
-        let mut area = Area::new(object.shape.clone(), number as u32, radiance.clone(), sides, is_sampled);
-        if let Some(coordinates) = object.coordinates.clone().filter(|_| radiance.varies()) {
+        let image = object.coordinates.clone().filter(|_| radiance.varies()).map(|coordinates| {
             let map = if is_sampled { maps.of(object, &coordinates, &radiance.kind) } else { None };
-            area = area.showing(coordinates, map);
-        }
+            ShownImage { coordinates, map }
+        });
+        let area = Area::new(object.shape.clone(), number as u32, radiance.clone(), sides, is_sampled, image);
         scene.light_groups.push(object.group.as_ref().unwrap_or(&object.asset).clone());
         scene.lights.push(Light::Area(area));
         Arc::make_mut(&mut scene.objects)[number].light = Some(light);
