@@ -114,6 +114,13 @@ impl<S> Environment<S> {
         self.polarization.is_none() && self.image.as_ref().is_some_and(is_bright)
     }
 
+    /// A direction toward the bright part for two random numbers, and its density per steradian.
+    pub fn sample_bright(&self, u: [f64; 2]) -> Option<(DVec3, f64)> {
+        let sky = self.image.as_ref()?;
+        let (direction, pdf) = sky.panorama.sample_bright(u)?;
+        Some((unit(sky.turn.transpose() * direction), pdf))
+    }
+
     /// Photons of the bright part.
     pub(super) fn beam(&self, ball: &Ball) -> Option<Beam> {
         Some(Beam::from_sky(ball, self.bright()?.irradiance()))
@@ -121,9 +128,8 @@ impl<S> Environment<S> {
 
     /// A photon of the bright part, through a disc across the ball.
     pub(super) fn sample_le(&self, ball: &Ball, guide_uv: [f64; 2], u: [f64; 2]) -> Option<LeSample> {
-        let sky = self.image.as_ref()?;
-        let (direction, pdf) = sky.panorama.sample_bright(u)?;
-        let ray = Beam::ray_from_sky(ball, unit(sky.turn.transpose() * direction), guide_uv)?;
+        let (direction, pdf) = self.sample_bright(u)?;
+        let ray = Beam::ray_from_sky(ball, direction, guide_uv)?;
         Some(LeSample { ray, factor: 1.0 / pdf, surface: None })
     }
 

@@ -3,6 +3,7 @@
 use std::cell::OnceCell;
 
 use crate::light::Light;
+use crate::spectrum::Table;
 use crate::trace::{PilotNoise, World, bright_places, pilot_noise, with_light_vertices};
 
 /// How much shorter an equal error must take: a pilot knows no better.
@@ -56,7 +57,7 @@ impl Way {
         }
         self.improved(with_light_vertices(&self.world)?, |world, without| {
             let light = carried(world);
-            format!("{light} between surfaces is looked for at light vertices; without them, {without}")
+            format!("{light} is looked for at light vertices; without them, {without}")
         })
     }
 
@@ -72,16 +73,22 @@ impl Way {
 }
 
 /// Which light light vertices carry.
-fn carried(world: &World) -> &'static str {
+fn carried(world: &World) -> String {
     let lights = &world.scene().lights;
-    match (
-        world.method().sunlit.is_empty(),
-        lights.iter().any(Light::is_infinite),
-        lights.iter().all(Light::is_infinite),
-    ) {
-        (_, false, _) => "light",
-        (false, _, true) => "sunlight",
-        (false, ..) => "light of suns and lamps",
-        (true, ..) => "light of lamps",
+    if !lights.iter().any(Light::is_infinite) {
+        return "light between surfaces".into();
+    }
+    let of_some = |is_kind: &dyn Fn(&Light<Table>) -> bool| {
+        world.method().sunlit.iter().any(|sunlit| is_kind(&lights[sunlit.light]))
+    };
+    let kinds = [
+        ("suns", of_some(&|light| matches!(light, Light::Sun(_)))),
+        ("what is bright in the image of the sky", of_some(&|light| matches!(light, Light::Environment(_)))),
+        ("lamps", lights.iter().any(|light| !light.is_infinite())),
+    ];
+    let kinds: Vec<&str> = kinds.into_iter().filter(|kind| kind.1).map(|kind| kind.0).collect();
+    match kinds[..] {
+        ["suns"] => "sunlight between surfaces".into(),
+        _ => format!("light between surfaces that comes from {}", kinds.join(" or ")),
     }
 }

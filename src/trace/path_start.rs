@@ -1,10 +1,12 @@
 //! How light paths start whose vertices paths from the camera look at.
 //!
-//! Those of lamps start anywhere on them. Those of a sun start toward the places in its light that paths from the
-//! camera find: on a disc across the sun's light, densest where such places lie behind. Light beside the disc is left
-//! to paths from the camera: of every ray to the sun it is known whether it runs through the disc.
+//! Those of lamps start anywhere on them. Those of a sun, or of what is bright in an image of the sky, start toward the
+//! places in its light that paths from the camera find: on a disc across that light, densest where such places lie
+//! behind. Light beside the disc is left to paths from the camera: of every ray to the sun it is known whether it runs
+//! through the disc.
 
 use std::cell::Cell;
+use std::f64::consts::PI;
 
 use serde::{Deserialize, Serialize};
 
@@ -16,10 +18,10 @@ use crate::scene::Scene;
 use crate::shape::Ball;
 use crate::spectrum::Table;
 
-/// Places in the light of a sun that paths from the camera find.
+/// Places in the light of a sun, or of what is bright in an image of the sky, that paths from the camera find.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sunlit {
-    /// The sun.
+    /// The sun or the sky.
     pub light: LightId,
     /// A ball around nearly all of them.
     pub center: DVec3,
@@ -36,18 +38,18 @@ pub(super) enum PathStart {
     Nowhere,
     /// Wherever the light leaves it.
     Anywhere,
-    /// In a beam of a sun.
-    Beam(SunBeam),
+    /// In a beam from the sky.
+    Beam(SkyBeam),
 }
 
 impl PathStart {
-    /// Of one light, where some suns have places in their light.
+    /// Of one light, where places in the light of some are known.
     pub(super) fn of(scene: &Scene<Table>, id: LightId, sunlit: &[Sunlit]) -> Self {
         let flux = scene.lights[id].flux();
         if flux > 0.0 && flux.is_finite() {
             return Self::Anywhere;
         }
-        let beam = || SunBeam::new(scene, sunlit.iter().find(|sunlit| sunlit.light == id)?);
+        let beam = || SkyBeam::new(scene, sunlit.iter().find(|sunlit| sunlit.light == id)?);
         beam().map_or(Self::Nowhere, Self::Beam)
     }
 
@@ -75,30 +77,33 @@ impl PathStart {
         match self {
             Self::Nowhere => false,
             Self::Anywhere => true,
-            Self::Beam(beam) => place_in_disc(light, &beam.beam, ray).is_some(),
+            Self::Beam(beam) => {
+                light.sends_photons_from(ray.direction) && place_in_disc(light, &beam.beam, ray).is_some()
+            }
         }
     }
 }
 
-/// Paths from a sun, ready to be started.
+/// Paths from a sun or a sky, ready to be started.
 #[derive(Clone, Debug)]
-pub(super) struct SunBeam {
+pub(super) struct SkyBeam {
     beam: Beam,
     guide: Guide,
-    /// The flux that is worth sending, per irradiance: about the area in which light was found.
+    /// The flux that is worth sending, per emission: to about the area in which light was found.
     flux: f64,
     /// A ball around all that is finite.
     world: Ball,
 }
 
-impl SunBeam {
-    /// None where no light was found, or the light is no sun.
+impl SkyBeam {
+    /// None where no light was found, or the light does not come from far away.
     fn new(scene: &Scene<Table>, sunlit: &Sunlit) -> Option<Self> {
-        let light = scene.lights.get(sunlit.light).filter(|light| matches!(light, Light::Sun(_)))?;
+        let light = scene.lights.get(sunlit.light).filter(|light| light.is_infinite())?;
         let beam = light.beam(&Ball { center: sunlit.center, radius: sunlit.radius })?;
         let world = ball_around_all(scene)?;
         let guide = Guide::weighted(&sunlit.cells);
-        let flux = guide.extent() * 4.0 * sunlit.radius * sunlit.radius;
+        // The disc is a part of the square of the guide.
+        let flux = guide.extent() * (4.0 / PI) * beam.flux;
         (flux > 0.0 && flux.is_finite()).then_some(Self { beam, guide, flux, world })
     }
 
@@ -110,7 +115,7 @@ impl SunBeam {
     }
 }
 
-/// Where a ray to a sun runs through the disc of a beam, as a place of the unit square; none beside it.
+/// Where a ray to a sun or a sky runs through the disc of a beam, as a place of the unit square; none beside it.
 pub(super) fn place_in_disc(light: &Light<Table>, beam: &Beam, ray: &Ray) -> Option<[f64; 2]> {
     let (place, ray) = (Cell::new(None), Ray { direction: -ray.direction, ..*ray });
     light.pdf_le(beam, &LeSample { ray, factor: 1.0, surface: None }, |uv| {

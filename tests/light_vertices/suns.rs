@@ -121,6 +121,51 @@ fn paths_may_start_in_any_part_of_a_suns_light() {
     }
 }
 
+/// Paths from an image of the sky start at what is bright in it: here two lamps, before a sky that changes from side to
+/// side. The rest of its light, and that beside the disc from which they start, is left to paths from the camera.
+#[test]
+fn l12_what_is_bright_in_an_image_of_the_sky_lights_a_room() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("sky.exr");
+    let at = |x: usize, y: usize| match (x, y) {
+        (16..=17, 9..=10) => (400.0, 350.0, 300.0),
+        (11, 13) => (150.0, 300.0, 500.0),
+        _ => (0.5, 0.01 * (x + y) as f32, 0.7),
+    };
+    exr::prelude::write_rgb_file(&file, 64, 32, at).unwrap();
+    let turn = "{ rotate = { axis = [0, 1, 0], degrees = 5 } }";
+    let sky = format!(
+        "[[light]]\nenvironment = {{ radiance = {{ image = {file:?}, scale = 0.8 }}, transform = [{turn}] }}\n"
+    );
+    let part = |cells: Vec<(u32, f32)>, center: [f64; 3], radius: f64| {
+        let sunlit = Sunlit { light: 0, center: DVec3::from(center), radius, cells };
+        move |world: &World| world.with_light_vertices(vec![sunlit.clone()])
+    };
+    let with = |more: &[String]| open("", &[&[sky.clone()], more].concat());
+    let map = LightPass {
+        photons: 8192,
+        lights: vec![0],
+        map: Some(MapPasses { count: 2, photons: 8192, radius: 0.5, chance: 0.5 }),
+    };
+    type Looking = Box<dyn Fn(&World) -> World>;
+    let rooms: [(&str, String, Option<LightPass>, Looking); 9] = [
+        ("alone", with(&[cubes()]), None, Box::new(looking)),
+        ("a pane", with(&[cubes(), pane()]), None, Box::new(looking)),
+        ("a lamp", with(&[cubes(), lamp()]), None, Box::new(looking)),
+        ("a sun as well", with(&[cubes(), SUN.into()]), None, Box::new(looking)),
+        ("a mirror", with(&[ball("silver", "mirror = { reflectance = 0.9 }")]), None, Box::new(looking)),
+        ("plastic", with(&[ball("plastic", "plastic = { reflectance = 0.6, index = 1.5 }")]), None, Box::new(looking)),
+        ("glass and photons", with(&[ball("glass", "dielectric = { index = 1.5 }")]), Some(map), Box::new(looking)),
+        ("a small part", with(&[cubes()]), None, Box::new(part(Vec::new(), [-1.0, 0.4, 0.3], 0.5))),
+        ("half", with(&[cubes(), pane()]), None, Box::new(part(vec![(2080, 1.0)], [0.0, 1.0, -2.5], 2.5))),
+    ];
+    for (what, text, pass, looking) in &rooms {
+        let photons = |method: &mut Method| method.light_pass = pass.clone();
+        let worst = assert_same(what, text, &photons, looking, rooms.len());
+        println!("{what}: at most {worst:.1} sigma");
+    }
+}
+
 /// Photons bring what smooth surfaces throw, light vertices the rest.
 #[test]
 fn light_vertices_of_some_lights_leave_to_photons_what_is_theirs() {
@@ -163,7 +208,7 @@ fn what_a_sunlit_disc_sends_has_its_closed_form() {
         let irradiance = 13.0 * 0.7 / (1.0_f64 + 0.49 + 0.01).sqrt();
         let factor = radius * radius / (radius * radius + height * height);
         let expected = 0.5 / PI * 0.6 * irradiance * factor;
-        let films = films(&text, &|_| (), Some(&looking), SEEDS);
+        let films = films(&text, &|_| (), Some(&looking), 10 * SEEDS);
         assert_shows(&format!("radius {radius}, height {height}"), &films, expected, [1e-4, 0.02]);
     }
 }

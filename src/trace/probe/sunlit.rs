@@ -1,4 +1,5 @@
-//! Where paths start from suns for light vertices: toward places in their light that the camera's paths find.
+//! Where paths start from suns, and from what is bright in images of the sky, for light vertices: toward places in that
+//! light that the camera's paths find.
 
 use std::cell::Cell;
 use std::collections::BTreeMap;
@@ -6,9 +7,10 @@ use std::collections::BTreeMap;
 use super::brightness::bounces;
 use super::clusters::span;
 use crate::light::{Light, LightId};
-use crate::math::{DVec3, Ray};
+use crate::math::{BranchKey, DVec3, Ray, Sampler};
 use crate::scene::Ends;
 use crate::shape::Ball;
+use crate::spectrum::Table;
 use crate::trace::camera::Bounce;
 use crate::trace::guide::cell_of;
 use crate::trace::path_start::place_in_disc;
@@ -18,7 +20,7 @@ use crate::trace::{Sunlit, World};
 
 /// Camera samples along each side of the image.
 const SIDE: u32 = 48;
-/// Most suns that are looked at.
+/// Most suns and skies that are looked at.
 const SUNS: usize = 4;
 /// Fewest places that tell where paths should start.
 const FEWEST: usize = 16;
@@ -26,6 +28,8 @@ const FEWEST: usize = 16;
 const BEYOND: f64 = 0.01;
 /// Of the way to a place, how far off it the ray to the sun starts: it only guides.
 const OFF: f64 = 1e-6;
+/// Sets these random numbers apart from those of the image.
+const SEED: u64 = 0x7375_6e73;
 
 /// The world with light vertices; none where there is no light that can be followed forward.
 pub fn with_light_vertices(world: &World) -> Option<World> {
@@ -33,11 +37,12 @@ pub fn with_light_vertices(world: &World) -> Option<World> {
     LightPaths::new(&world, world.method.seed).is_some().then_some(world)
 }
 
-/// The places in the light of each sun that bounces find, if they are some. The format counts, also where a part of it
+/// The places in the light of each sun and of each bright part of a sky that bounces find, if they are some. The format counts, also where a part of it
 /// or more is made, so that all parts are made alike.
 fn sunlit_places(world: &World) -> Vec<Sunlit> {
     let lights = &world.scene.lights;
-    let suns: Vec<LightId> = (0..lights.len()).filter(|&id| matches!(lights[id], Light::Sun(_))).take(SUNS).collect();
+    let is_sun = |&id: &LightId| lights[id].is_infinite() && lights[id].sends_photons();
+    let suns: Vec<LightId> = (0..lights.len()).filter(is_sun).take(SUNS).collect();
     if suns.is_empty() {
         return Vec::new();
     }
@@ -52,14 +57,15 @@ fn sunlit_places(world: &World) -> Vec<Sunlit> {
 /// Those in the light of one sun.
 fn of_sun(world: &World, id: LightId, ends: &[(DVec3, f64)]) -> Option<Sunlit> {
     let light = &world.scene.lights[id];
-    let Light::Sun(sun) = light else { return None };
-    let direction = sun.middle();
     let (last_occluder, counts) = (Cell::new(None), |object| !world.is_see_through(object));
-    let is_lit = |(origin, _): &&(DVec3, f64)| {
-        let ray = Ray { origin: *origin, direction };
-        !world.scene.is_occluded_by(&ray, f64::INFINITY, Ends::default(), &last_occluder, &counts)
+    let lit_along = |(number, &(origin, found)): (u32, &(DVec3, f64))| {
+        let u = Sampler::new(world.method.seed ^ SEED, [0, 0], number).four_plain(BranchKey::CAMERA, 0);
+        let direction = toward(light, [u[0], u[1]])?;
+        let ray = Ray { origin, direction };
+        let is_hidden = world.scene.is_occluded_by(&ray, f64::INFINITY, Ends::default(), &last_occluder, &counts);
+        (!is_hidden).then_some(((origin, found), direction))
     };
-    let lit: Vec<(DVec3, f64)> = ends.iter().filter(is_lit).copied().collect();
+    let (lit, directions): (Vec<(DVec3, f64)>, Vec<DVec3>) = (0..).zip(ends).filter_map(lit_along).unzip();
     if lit.len() < FEWEST {
         return None;
     }
@@ -69,10 +75,19 @@ fn of_sun(world: &World, id: LightId, ends: &[(DVec3, f64)]) -> Option<Sunlit> {
     let (center, radius) = (0.5 * (low + high), 0.5 * (high - low).length());
     let beam = light.beam(&Ball { center, radius })?;
     let mut cells = BTreeMap::new();
-    for (origin, light_there) in lit {
+    for ((origin, found), direction) in lit.into_iter().zip(directions) {
         if let Some(place) = place_in_disc(light, &beam, &Ray { origin, direction }) {
-            *cells.entry(cell_of(place) as u32).or_insert(0.0) += (light_there / all) as f32;
+            *cells.entry(cell_of(place) as u32).or_insert(0.0) += (found / all) as f32;
         }
     }
     Some(Sunlit { light: id, center, radius, cells: cells.into_iter().collect() })
+}
+
+/// The direction toward the middle of a sun, or one toward what is bright in the image of a sky.
+fn toward(light: &Light<Table>, u: [f64; 2]) -> Option<DVec3> {
+    match light {
+        Light::Sun(sun) => Some(sun.middle()),
+        Light::Environment(sky) => Some(sky.sample_bright(u)?.0),
+        Light::Area(_) | Light::Point(_) | Light::Spot(_) => None,
+    }
 }
