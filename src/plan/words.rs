@@ -3,6 +3,8 @@
 /// A share as people say it.
 pub(super) fn percent(share: f64) -> String {
     match 100.0 * share {
+        0.0 => "0 %".into(),
+        p if p < 0.0095 => format!("{p:.0e} %"),
         p if p < 0.095 => format!("{p:.2} %"),
         p if p < 9.95 => format!("{p:.1} %"),
         p => format!("{p:.0} %"),
@@ -31,7 +33,13 @@ pub(super) fn in_words(seconds: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::in_words;
+    use super::{in_words, percent};
+
+    #[test]
+    fn little_is_not_nothing() {
+        let shares = [0.0, 1e-9, 4.9e-5, 5.1e-5, 9.4e-4, 0.0123, 0.5].map(percent);
+        assert_eq!(shares, ["0 %", "1e-7 %", "5e-3 %", "5e-3 %", "0.09 %", "1.2 %", "50 %"]);
+    }
 
     #[test]
     fn one_second_is_no_seconds() {
