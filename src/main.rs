@@ -5,6 +5,7 @@ mod command;
 use std::io::IsTerminal;
 use std::path::Path;
 use std::process::ExitCode;
+use std::time::Instant;
 
 use abbe::film::check_writable;
 use abbe::plan::plan;
@@ -59,6 +60,7 @@ fn run(jobs: &Jobs) -> Result<ExitCode> {
 }
 
 fn do_one(job: &Job, source: &Source) -> Result<ExitCode> {
+    let began = Instant::now();
     let mut scene = source.compile_with(&job.set)?;
     if let Output::Image { exr: None, .. } = job.output {
         scene.format.spectral = None;
@@ -71,7 +73,7 @@ fn do_one(job: &Job, source: &Source) -> Result<ExitCode> {
             Ok(ExitCode::SUCCESS)
         }
         Output::Plan(file) => answer_plan(&scene, file.as_deref()),
-        Output::Image { exr, png } => image(job, &scene, exr.as_deref(), png.as_deref()),
+        Output::Image { exr, png } => image(job, &scene, [exr.as_deref(), png.as_deref()], began),
     }
 }
 
@@ -99,7 +101,7 @@ fn write(image: &Image, exr: &Path) -> Result<u64> {
     Ok(clamped)
 }
 
-fn image(job: &Job, scene: &Scene, exr: Option<&Path>, png: Option<&Path>) -> Result<ExitCode> {
+fn image(job: &Job, scene: &Scene, [exr, png]: [Option<&Path>; 2], began: Instant) -> Result<ExitCode> {
     let exr_file = exr.filter(|exr| !is_standard(exr));
     if exr_file != exr {
         check_standard(scene.format.spectral.is_some())?;
@@ -119,9 +121,10 @@ fn image(job: &Job, scene: &Scene, exr: Option<&Path>, png: Option<&Path>) -> Re
     check_words("--report", "frame.json", report)?;
     all.iter().try_for_each(|output| check_writable(output))?;
     let mut keep = Keep::new(&job.keep, main, checkpoint)?;
-    let mut rendering = Rendering::new(scene, &job.options)?;
+    let mut rendering = Rendering::new(scene, &job.options)?.since(began);
     messages::print_plan(rendering.plan());
-    if !keep.resume(&mut rendering, &outputs)? {
+    let files: Vec<&Path> = outputs.iter().copied().chain(report).collect();
+    if !keep.resume(&mut rendering, &files)? {
         return Ok(ExitCode::SUCCESS);
     }
     let progress = progress::Progress::new(&rendering);
@@ -143,13 +146,12 @@ fn image(job: &Job, scene: &Scene, exr: Option<&Path>, png: Option<&Path>) -> Re
         image.write_spectral_exr(spectral)?;
     }
     png.map_or(Ok(()), |png| image.write_png(png, job.exposure))?;
-    // Last: a checkpoint with all samples says that the image is written.
-    keep.save(&rendering)?;
     messages::print_report(&image, rendering.plan(), took, expected);
     if let Some(report) = report {
         let (plan, end) = (Event::plan(rendering.plan()), Event::report(&image, took, expected));
         write_account(report, plan, end, &outputs)?;
     }
-    outputs.into_iter().chain(report).for_each(messages::print_written);
+    keep.finish(&rendering, &files)?;
+    files.into_iter().for_each(messages::print_written);
     Ok(ExitCode::SUCCESS)
 }

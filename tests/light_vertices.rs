@@ -73,7 +73,7 @@ fn smooth(material: &str) -> String {
     )
 }
 
-/// Rooms in which all light is found by light paths.
+/// Rooms in which light paths start from all lights.
 fn rooms() -> Vec<(&'static str, String)> {
     let with = |more: &[String]| room(WHITE, "", more);
     let boxes = body(
@@ -200,6 +200,22 @@ fn rooms() -> Vec<(&'static str, String)> {
         ),
         ("a smooth mesh", with(&[lamp(), smooth("diffuse = { reflectance = { rgb = [0.8, 0.5, 0.2] } }")])),
         ("a smooth mesh of rough metal", with(&[lamp(), smooth("conductor = { metal = \"gold\", roughness = 0.4 }")])),
+        ("a smooth mesh of glass", with(&[lamp(), smooth("dielectric = { index = 1.5 }")])),
+        ("a smooth mesh of silver", with(&[lamp(), smooth("mirror = { reflectance = 0.9 }")])),
+        ("a smooth mesh of plastic", with(&[lamp(), smooth("plastic = { reflectance = 0.6, index = 1.5 }")])),
+        ("rough glass", with(&[lamp(), ball("frosted", "dielectric = { index = 1.5, roughness = 0.3 }")])),
+        (
+            "rough glass before a mirror",
+            with(&[
+                lamp(),
+                screen("mirror = { reflectance = 0.9 }"),
+                ball("frosted", "dielectric = { index = 1.5, roughness = 0.3 }"),
+            ]),
+        ),
+        (
+            "two diffuse bounces by smooth glass",
+            room(WHITE, "diffuse_bounces = 2", &[lamp(), smooth("dielectric = { index = 1.5 }")]),
+        ),
         ("three bounces", room(WHITE, "max_bounces = 3", &[lamp(), ball("glass", "dielectric = { index = 1.5 }")])),
         ("two bounces", room(WHITE, "max_bounces = 2", &[lamp(), boxes.clone()])),
         ("one diffuse bounce", room(WHITE, "diffuse_bounces = 1", &[lamp(), boxes.clone()])),
@@ -365,12 +381,10 @@ fn an_integrating_sphere_shows_its_closed_form() {
 #[test]
 fn rooms_with_light_that_light_paths_miss_have_no_light_vertices() {
     let with = |more: &[String]| room(WHITE, "", more);
-    let glass = "dielectric = { index = 1.5, roughness = 0.2 }";
     let scenes = [
         ("a sky alone", with(&[environment(1.0)])),
         ("a sun that no bounce sees", with(&["[[light]]\nsun = { toward = [0, 1, 0], irradiance = 1 }\n".into()])),
-        ("rough glass", with(&[lamp(), ball("glass", glass)])),
-        ("glass that looks smoother than it is", with(&[lamp(), smooth("dielectric = { index = 1.5 }")])),
+        ("a pane that looks smoother than it is", with(&[lamp(), smooth("thin = { index = 1.5 }")])),
         ("nothing shines", with(&[])),
     ];
     for (what, text) in &scenes {

@@ -124,7 +124,7 @@ static STOPPED: AtomicBool = AtomicBool::new(false);
 /// Whether Ctrl-C is caught; it is once, however many frames are rendered.
 static IS_CAUGHT: AtomicBool = AtomicBool::new(false);
 /// What it says then, if nothing of the render is kept.
-const NOTHING_KEPT: &str = "stopped; nothing was kept. With --checkpoint 60s, what is done is kept";
+const NOTHING_KEPT: &str = "stopped; nothing of this image was kept. With --checkpoint 60s, what is done is kept";
 /// The exit code of a command that was.
 pub const STOPPED_CODE: u8 = 130;
 
@@ -156,7 +156,7 @@ impl Keep {
     }
 
     /// Goes on from the checkpoint, if it shall and there is one. Answers whether anything is left to be done:
-    /// `outputs` are the files that a finished render has written.
+    /// `outputs` are the files that shall be there in the end.
     ///
     /// # Errors
     /// If the checkpoint is of something else, or damaged.
@@ -166,9 +166,10 @@ impl Keep {
             say(&format!("there is no {}: the render begins", path.display()));
             return Ok(true);
         }
-        let missing = outputs.iter().find(|output| !output.exists());
         let name = path.display();
-        match rendering.resume(path)? {
+        let resumed = rendering.resume(path)?;
+        let missing = outputs.iter().find(|output| !rendering.has_written(output));
+        match resumed {
             Resumed::Continues => {
                 let share = rendering.done() as f64 / rendering.work().max(1) as f64;
                 let of_work = format!(", which has {:.0} % of the work", (100.0 * share).floor());
@@ -188,7 +189,7 @@ impl Keep {
                     Ok(false)
                 }
                 Some(missing) => refuse(
-                    &format!("{name} has {samples} samples per pixel, and {} is not there", missing.display()),
+                    &format!("{name} has {samples} samples per pixel, and has not written {}", missing.display()),
                     Some(&format!("add --samples {samples} to write it")),
                 ),
             },
@@ -234,7 +235,7 @@ impl Keep {
         let mut checkpoints = std::mem::replace(&mut self.checkpoints, Timer::new(None));
         let mut save = || checkpoints.run(|| self.save(rendering));
         let kept = if snapshots.is_due() {
-            // No image may have more samples than the checkpoint that says it is finished, whose time counts as well.
+            // The time of the checkpoint counts as well.
             snapshots.run(|| {
                 let saved = save();
                 saved.and(self.take_snapshot(rendering))
@@ -246,11 +247,15 @@ impl Keep {
         kept
     }
 
-    /// Writes the checkpoint, if one is kept.
+    /// Writes the checkpoint of a finished render and its files, if one is kept.
     ///
     /// # Errors
     /// If it cannot be written.
-    pub fn save(&self, rendering: &Rendering) -> Result<()> {
+    pub fn finish(&self, rendering: &Rendering, outputs: &[&Path]) -> Result<()> {
+        self.checkpoint.as_ref().map_or(Ok(()), |path| rendering.save_finished(path, outputs))
+    }
+
+    fn save(&self, rendering: &Rendering) -> Result<()> {
         self.checkpoint.as_ref().map_or(Ok(()), |path| rendering.save(path))
     }
 

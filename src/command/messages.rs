@@ -236,11 +236,11 @@ pub fn so_far(error: &ImageError, more: Option<&(u32, String)>) -> String {
     let asked = error.asked.map_or(String::new(), |asked| format!("; {} is asked for", percent(asked)));
     let more =
         more.map_or(String::new(), |(samples, left)| format!("; about {samples} samples will be taken, {left} left"));
-    format!(
-        "{} samples per pixel: the image is off by at most {}{asked}{more}",
-        error.noise.samples,
-        percent(error.at_most())
-    )
+    let off = match error.noise.outlier {
+        None => format!("at most {}", percent(error.at_most())),
+        Some(_) => format!("{} or more, as some light is too rare to tell", percent(error.noise.expected)),
+    };
+    format!("{} samples per pixel: the image is off by {off}{asked}{more}", error.noise.samples)
 }
 
 /// How far it is off in the end, and whether that was asked for.

@@ -14,7 +14,7 @@ use exr::prelude::{
 use super::exr_attributes::{attributes, primaries, text};
 use super::exr_layer::{BEAUTY, ExrLayer};
 use super::exr_part::{Channel, Part, PixelBounds};
-use super::guard::{fits, guarded};
+use super::guard::{claims_fit, fits, guarded};
 use crate::error::{Error, Result, nearest, nearest_file};
 use crate::spectrum::Primaries;
 
@@ -52,23 +52,33 @@ impl ExrFile {
     /// # Errors
     /// [`Error::Decode`] as of a file.
     pub fn of_bytes(bytes: &[u8], path: &Path) -> Result<Self> {
-        guarded(|| Self::decode(bytes)).map_err(|said| decode_error(path, &said))
+        match guarded(|| Ok::<_, String>(Self::decode(bytes))) {
+            Ok(Ok(file)) => Ok(file),
+            Ok(Err(exr::error::Error::NotSupported(what))) => {
+                let message = format!("it is an OpenEXR image of a kind that is not read: {what}");
+                Err(Error::Decode { path: path.to_owned(), message })
+            }
+            Ok(Err(error)) => Err(decode_error(path, &error.to_string())),
+            Err(said) => Err(decode_error(path, &said)),
+        }
     }
 
-    fn decode(bytes: &[u8]) -> std::result::Result<Self, String> {
-        let described = MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(|error| error.to_string())?;
+    fn decode(bytes: &[u8]) -> exr::error::Result<Self> {
+        let described = MetaData::read_from_buffered(Cursor::new(bytes), false)?;
         if described.headers.iter().any(|header| header.deep) {
-            return Err("it is a deep image, which has many values to a pixel".into());
+            return Err(exr::error::Error::NotSupported("a deep image, which has many values to a pixel".into()));
         }
+        let invalid = |said: String| exr::error::Error::Invalid(said.into());
         let mut all = 0u64;
         for header in &described.headers {
             let [width, height] = [header.layer_size.width(), header.layer_size.height()];
             all = all
                 .saturating_add((width as u64 * height as u64).saturating_mul(header.channels.bytes_per_pixel as u64));
-            fits(width, height, all, bytes)?;
+            fits(width, height, all, bytes).map_err(invalid)?;
         }
+        claims_fit(bytes)?;
         let reader = read().no_deep_data().largest_resolution_level().all_channels().all_layers().all_attributes();
-        let image = reader.non_parallel().from_buffered(Cursor::new(bytes)).map_err(|error| error.to_string())?;
+        let image = reader.non_parallel().from_buffered(Cursor::new(bytes))?;
         Ok(Self::of_image(image, bytes.len()))
     }
 

@@ -2,8 +2,13 @@
 
 use std::cell::Cell;
 use std::fmt::Display;
+use std::io::Cursor;
 use std::panic::{AssertUnwindSafe, catch_unwind, set_hook, take_hook};
 use std::sync::Once;
+
+use exr::block::chunk::CompressedBlock;
+use exr::meta::header::Header;
+use exr::prelude::Compression;
 
 thread_local! {
     static QUIET: Cell<bool> = const { Cell::new(false) };
@@ -49,6 +54,41 @@ pub(crate) fn fits(width: usize, height: usize, bytes: u64, file: &[u8]) -> Resu
     }
     if bytes > ALWAYS.max(DENSEST * file.len() as u64) {
         return Err(format!("its {} bytes cannot hold {width} x {height} pixels", file.len()));
+    }
+    Ok(())
+}
+
+/// Most bytes that a block of DWAA or DWAB may claim beside twice those of the image.
+const CLAIMED: u64 = 1 << 20;
+
+/// Refuses an OpenEXR file whose blocks of DWAA or DWAB claim to unpack to more than the image: their decoder takes
+/// the memory before it unpacks them. Each begins with a version and nine numbers of bytes or of half floats,
+/// little-endian.
+pub(crate) fn claims_fit(bytes: &[u8]) -> exr::error::Result<()> {
+    let reader = exr::block::read(Cursor::new(bytes), false)?;
+    let most = |header: &Header| match header.compression {
+        Compression::DWAA(_) | Compression::DWAB(_) => {
+            let pixels = header.layer_size.area() as u64;
+            Some(pixels.saturating_mul(2 * header.channels.bytes_per_pixel as u64).saturating_add(CLAIMED))
+        }
+        _ => None,
+    };
+    let most: Vec<Option<u64>> = reader.headers().iter().map(most).collect();
+    if most.iter().all(Option::is_none) {
+        return Ok(());
+    }
+    for chunk in reader.all_chunks(false)? {
+        let chunk = chunk?;
+        let packed = match &chunk.compressed_block {
+            CompressedBlock::ScanLine(block) => &block.compressed_pixels_le,
+            CompressedBlock::Tile(block) => &block.compressed_pixels_le,
+            _ => continue,
+        };
+        let Some(most) = most.get(chunk.layer_index).copied().flatten() else { continue };
+        let numbers = packed.as_chunks::<8>().0.iter().map(|number| u64::from_le_bytes(*number));
+        if numbers.skip(1).take(9).any(|number| number > most) {
+            return Err(exr::error::Error::Invalid("a block claims to be larger than the image".into()));
+        }
     }
     Ok(())
 }

@@ -114,6 +114,12 @@ impl<S> Environment<S> {
         self.polarization.is_none() && self.image.as_ref().is_some_and(is_bright)
     }
 
+    /// Whether its image is not black in a direction.
+    pub fn shines_toward(&self, direction: DVec3) -> bool {
+        let color = |sky: &Sky<S>| sky.panorama.color(sky.turn * direction);
+        self.image.as_ref().is_none_or(|sky| color(sky).iter().any(|&x| x > 0.0))
+    }
+
     /// A direction toward the bright part for two random numbers, and its density per steradian.
     pub fn sample_bright(&self, u: [f64; 2]) -> Option<(DVec3, f64)> {
         let sky = self.image.as_ref()?;

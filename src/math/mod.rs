@@ -24,7 +24,7 @@ pub use interpolate::interpolate;
 pub use neighbors::neighbors;
 pub use offset::{UNIT_ROUNDOFF, gamma, offset_origin};
 pub use ray::{Ray, unit};
-pub use sampler::{BranchKey, Sampler, seed_of};
+pub use sampler::{BranchKey, Sampler, mix, seed_of};
 pub use transform::Transform;
 pub use warp::{
     ball_surface, cone, cosine_hemisphere, disk, disk_in_square, one_minus_cos_of_cone, square_around_disk,

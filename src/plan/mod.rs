@@ -32,6 +32,7 @@ use crate::trace::{
 use between::between;
 use lit::Lit;
 use model::Model;
+use survey::SEED;
 use words::{in_number, in_words};
 
 pub use candidates::Candidate;
@@ -84,13 +85,13 @@ pub fn plan(scene: &Scene<Curve>) -> Plan {
     decisions.extend(adaptive.as_ref().map(adaptive::reason));
     let times_rays = adaptive.as_ref().map_or(1.0, |adaptive| adaptive.rays);
     let world = world.with_density(adaptive.map(|adaptive| adaptive.density));
-    let method = world.method().clone();
+    let method = Method { seed: scene.render.seed, ..world.method().clone() };
     let probe = probe(&world);
     let times = photon_times(&taught.map_or(world.clone(), |taught| world.clone().taught_by(&taught)));
     let on_average = Probe { time: probe.time.mul_f64(times_rays), rays: probe.rays * times_rays, ..probe };
     let (cost, processor_time) = cost(scene, &method, &on_average, times);
     let mut because = vec![cost];
-    because.extend(stopping::reason(scene, method.stop.as_ref()));
+    because.extend(stopping::reason(scene, method.stop.as_ref(), model_error));
     because.extend(memory(scene, &method));
     because.extend(missed);
     let left_out: Vec<String> =
@@ -132,7 +133,7 @@ fn before_light(scene: &Scene<Curve>, basis: Basis) -> (Method, String) {
         stop,
         diffuse_bounces: scene.render.diffuse_bounces.unwrap_or(u32::MAX),
         max_bounces: scene.render.max_bounces.unwrap_or(u32::MAX),
-        ..Method::of_paths(basis, transport, scene.render.seed)
+        ..Method::of_paths(basis, transport, SEED)
     };
     (method, reason)
 }

@@ -4,7 +4,7 @@ use super::candidates::{Candidate, LANES_SAFETY, bands_beside, candidates, error
 use super::dyes::spoken as spoken_dyes;
 use super::films::spoken as spoken_film;
 use super::seen::Seen;
-use super::survey::{Survey, disperses, tolerance};
+use super::survey::{SEED, Survey, disperses, tolerance};
 use super::words::percent;
 use crate::material::Material;
 use crate::scene::{ModelText, Scene};
@@ -148,7 +148,7 @@ fn dispersion(scene: &Scene<Curve>) -> Option<Dispersion> {
     let basis = Basis::wavelengths(scene.film.color_space, COLORS_NM.into(), &[]);
     let transport = Transport::Random { split: 1.0, roulette: 0.0 };
     let diffuse_bounces = scene.render.diffuse_bounces.unwrap_or(u32::MAX);
-    let method = Method { diffuse_bounces, ..Method::of_paths(basis, transport, scene.render.seed) };
+    let method = Method { diffuse_bounces, ..Method::of_paths(basis, transport, SEED) };
     Some(measured_dispersion(&World::new(scene, method)))
 }
 

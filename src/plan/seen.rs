@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::survey::{Survey, Tint, tolerance};
+use super::survey::{SEED, Survey, Tint, tolerance};
 use crate::material::Material;
 use crate::scene::Scene;
 use crate::spectrum::{Basis, Curve, Draw, Lanes, MAX_LANES, Quantity, visible};
@@ -47,7 +47,7 @@ impl<'a> Seen<'a> {
         let basis = Basis::wavelengths(survey.color_space, ROUTES_NM.into(), &[]);
         let method = Method {
             diffuse_bounces: scene.render.diffuse_bounces.unwrap_or(u32::MAX),
-            ..Method::of_paths(basis, Transport::Random { split: 1.0, roulette: 0.0 }, scene.render.seed)
+            ..Method::of_paths(basis, Transport::Random { split: 1.0, roulette: 0.0 }, SEED)
         };
         let mut keeping = Keeping::new(scene, survey);
         for of_pixel in routes(&World::new(scene, method)) {

@@ -24,7 +24,7 @@ pub(super) fn stop(render: &RenderText) -> Option<Stop> {
 }
 
 /// What a person is told of it.
-pub(super) fn reason(scene: &Scene<Curve>, stop: Option<&Stop>) -> Option<String> {
+pub(super) fn reason(scene: &Scene<Curve>, stop: Option<&Stop>, model_error: f64) -> Option<String> {
     let RenderText { error, time, samples, is_part, .. } = scene.render;
     let Some(stop) = stop else {
         let samples = samples.filter(|_| error.is_some() || time.is_some())?;
@@ -37,7 +37,14 @@ pub(super) fn reason(scene: &Scene<Curve>, stop: Option<&Stop>) -> Option<String
     };
     let within = |error: f64| {
         let noise = percent(NOISE * error);
-        format!("when the error is at most {} in 95 of 100 renders (noise {noise}, the rest color)", percent(error))
+        let color = match model_error {
+            alone if alone > error => format!("; color alone may be off by {}", percent(alone)),
+            _ => String::new(),
+        };
+        format!(
+            "when the error is at most {} in 95 of 100 renders (noise {noise}, the rest color{color})",
+            percent(error)
+        )
     };
     let after = |time: std::time::Duration| {
         format!("after {} and at least {FEWEST} samples per pixel", spoken(time.as_secs_f64()))

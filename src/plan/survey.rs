@@ -17,6 +17,9 @@ use crate::spectrum::{
 const SHARE: f64 = 1.0 / 3.0;
 /// The relative error of an image that is aimed at where the scene does not say.
 const ERROR: f64 = 0.03;
+/// The seed of what a plan looks at. A plan is the same for all seeds of the image: otherwise its model of color could
+/// change from frame to frame.
+pub(super) const SEED: u64 = 0;
 
 /// The relative error of a color that its model may make.
 pub(super) fn tolerance(scene: &Scene<Curve>) -> f64 {

@@ -1,5 +1,6 @@
 //! Whether light is followed in all its ways or in some, chosen by chance.
 
+use super::survey::SEED;
 use super::words::percent;
 use crate::film::Filter;
 use crate::light::Light;
@@ -78,7 +79,7 @@ fn too_many_ways(scene: &Scene<Curve>, basis: &Basis, together: f64) -> Option<S
         together,
         diffuse_bounces: scene.render.diffuse_bounces.unwrap_or(u32::MAX),
         max_bounces: scene.render.max_bounces.unwrap_or(u32::MAX),
-        ..Method::of_paths(basis.clone(), transport, scene.render.seed)
+        ..Method::of_paths(basis.clone(), transport, SEED)
     };
     match branching(&World::new(scene, method), AFFORDABLE) {
         Branching::Affordable(_) => None,

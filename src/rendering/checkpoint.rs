@@ -1,6 +1,10 @@
 //! Checkpoints: renders that were stopped, and go on.
 
+use std::fs;
 use std::path::Path;
+use std::time::SystemTime;
+
+use serde::{Deserialize, Serialize};
 
 use super::identity::Identity;
 use crate::error::{Error, Result};
@@ -8,17 +12,33 @@ use crate::film::{BlockReader, Kind, write_blocks};
 use crate::trace;
 
 /// The first bytes of a checkpoint.
-const CHECKPOINT: Kind = *b"AbbeCkp1";
+const CHECKPOINT: Kind = *b"AbbeCkp2";
 
 /// What came of a checkpoint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Resumed {
     /// The render goes on from there.
     Continues,
-    /// All samples that are asked for had been taken; the image is there.
+    /// All samples that are asked for had been taken.
     Finished,
     /// More than that had been taken, so many of each pixel. Nothing was read.
     HasMore(u32),
+}
+
+/// A file that a finished render has written, as it was then.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) struct Written {
+    name: String,
+    length: u64,
+    modified: SystemTime,
+}
+
+impl Written {
+    /// A file as it is now; none if it is not there.
+    pub(super) fn of(path: &Path) -> Option<Self> {
+        let (name, found) = (path.file_name()?.to_string_lossy().into_owned(), fs::metadata(path).ok()?);
+        Some(Self { name, length: found.len(), modified: found.modified().ok()? })
+    }
 }
 
 /// Whether a file is a checkpoint, which may be damaged or of another render.
@@ -34,18 +54,23 @@ pub fn is_checkpoint(path: &Path) -> Result<bool> {
 ///
 /// # Errors
 /// If it cannot be written; a file that was there before is then untouched.
-pub(super) fn save(path: &Path, identity: &Identity, passes: &trace::Rendering) -> Result<()> {
+pub(super) fn save(path: &Path, identity: &Identity, written: &[Written], passes: &trace::Rendering) -> Result<()> {
     write_blocks(path, CHECKPOINT, &|blocks| {
         blocks.block(identity)?;
+        blocks.block(&written)?;
         passes.save(blocks)
     })
 }
 
-/// Goes on from a checkpoint.
+/// Goes on from a checkpoint. Answers with what the render has written that it was of, if that had ended.
 ///
 /// # Errors
 /// If it is of something else, damaged, or cannot be read.
-pub(super) fn resume(path: &Path, identity: &Identity, passes: &mut trace::Rendering) -> Result<Resumed> {
+pub(super) fn resume(
+    path: &Path,
+    identity: &Identity,
+    passes: &mut trace::Rendering,
+) -> Result<(Resumed, Vec<Written>)> {
     let Some(mut blocks) = BlockReader::open(path, CHECKPOINT)? else {
         return refuse(path, "it is no checkpoint", "name another image, or move that file away");
     };
@@ -53,14 +78,16 @@ pub(super) fn resume(path: &Path, identity: &Identity, passes: &mut trace::Rende
     if let Some(difference) = identity.difference(&saved) {
         return refuse(path, &difference, "delete it to begin anew, or name another image");
     }
-    match passes.restore(blocks)? {
-        trace::Restored::Continues if passes.is_finished() => Ok(Resumed::Finished),
-        trace::Restored::Continues => Ok(Resumed::Continues),
-        trace::Restored::HasMore(samples) => Ok(Resumed::HasMore(samples)),
+    let written = blocks.block()?;
+    let resumed = match passes.restore(blocks)? {
+        trace::Restored::Continues if passes.is_finished() => Resumed::Finished,
+        trace::Restored::Continues => Resumed::Continues,
+        trace::Restored::HasMore(samples) => Resumed::HasMore(samples),
         trace::Restored::Refused(why, samples) => {
-            refuse(path, &why, &format!("ask for {samples} samples per pixel, or delete it to begin anew"))
+            return refuse(path, &why, &format!("ask for {samples} samples per pixel, or delete it to begin anew"));
         }
-    }
+    };
+    Ok((resumed, written))
 }
 
 fn refuse<T>(path: &Path, why: &str, help: &str) -> Result<T> {

@@ -31,6 +31,8 @@ impl ImageError {
 
     /// Whether the error that was asked for is reached; so it is where none was.
     pub fn is_reached(&self) -> bool {
-        self.asked.is_none() || self.stopped_by == Some(Stopped::Noise)
+        self.asked.is_none_or(|asked| {
+            self.stopped_by == Some(Stopped::Noise) && self.at_most() <= asked * (1.0 + 4.0 * f64::EPSILON)
+        })
     }
 }

@@ -5,7 +5,7 @@ use std::io::ErrorKind;
 use std::path::Path;
 use std::time::{Duration, Instant, SystemTime};
 
-use super::checkpoint::{self, Resumed};
+use super::checkpoint::{self, Resumed, Written};
 use super::identity::Identity;
 use super::image::Image;
 use super::image_error::ImageError;
@@ -59,6 +59,8 @@ pub struct Rendering {
     asked: Option<f64>,
     /// When it began, if the file says that.
     began: Option<Instant>,
+    /// Files of the finished render from which it was resumed.
+    written: Vec<Written>,
 }
 
 struct Origin {
@@ -118,7 +120,15 @@ impl Rendering {
             threads,
             asked: scene.render.error,
             began,
+            written: Vec::new(),
         })
+    }
+
+    /// Counts the time that it may take from an earlier moment on, such as that before the scene was read.
+    pub fn since(mut self, began: Instant) -> Self {
+        self.began = self.began.map(|_| began);
+        self.passes = self.passes.since(began);
+        self
     }
 
     /// How it will be rendered, and why.
@@ -206,7 +216,22 @@ impl Rendering {
     /// # Errors
     /// If it cannot be written; a file that was there before is then untouched.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<()> {
-        checkpoint::save(path.as_ref(), &self.identity, &self.passes)
+        checkpoint::save(path.as_ref(), &self.identity, &[], &self.passes)
+    }
+
+    /// Writes the checkpoint of a finished render that has written its files: so [`has_written`](Self::has_written)
+    /// knows of them when it is resumed.
+    ///
+    /// # Errors
+    /// As of [`save`](Self::save).
+    pub fn save_finished(&self, path: impl AsRef<Path>, files: &[&Path]) -> Result<()> {
+        let written: Vec<Written> = files.iter().filter_map(|file| Written::of(file)).collect();
+        checkpoint::save(path.as_ref(), &self.identity, &written, &self.passes)
+    }
+
+    /// Whether the finished render that this was resumed from has written a file, which nobody has changed since.
+    pub fn has_written(&self, file: impl AsRef<Path>) -> bool {
+        Written::of(file.as_ref()).is_some_and(|file| self.written.contains(&file))
     }
 
     /// Goes on from a checkpoint of the same scene, seed, image, layers and plan; more samples may be asked for.
@@ -231,7 +256,9 @@ impl Rendering {
     /// [`Error::Arguments`] if it is a checkpoint of something else, or cannot become this image; [`Error::Decode`] if
     /// it is damaged; then this render must not be used any more.
     pub fn resume(&mut self, path: impl AsRef<Path>) -> Result<Resumed> {
-        checkpoint::resume(path.as_ref(), &self.identity, &mut self.passes)
+        let (resumed, written) = checkpoint::resume(path.as_ref(), &self.identity, &mut self.passes)?;
+        self.written = written;
+        Ok(resumed)
     }
 
     /// Writes the finished tiles of a part of an image, for [`merge`](super::merge).

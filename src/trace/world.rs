@@ -231,6 +231,16 @@ impl World {
         self.see_through.get(object as usize).is_some_and(|&on| on)
     }
 
+    /// Whether paths for light vertices end at an object: where interpolated normals bend glass or mirrors, whose light
+    /// cannot be followed forward alike, and where light crosses rough surfaces. What comes by way of it is left to
+    /// paths from the camera.
+    pub(super) fn ends_light_paths(&self, object: u32) -> bool {
+        let object = &self.scene.objects[object as usize];
+        let lobes = self.lobes[object.material as usize];
+        let smooth = object.shape.is_smooth() || object.relief.is_some();
+        lobes.intersects(Lobes::GLOSSY_TRANSMISSION) || (smooth && lobes.has_delta())
+    }
+
     /// How much light there is in a film color: X + Y + Z.
     pub(super) fn amount(&self, rgb: [f64; 3]) -> f64 {
         (0..3).map(|channel| rgb[channel] * self.xyz_of_channel[channel]).sum::<f64>().abs()

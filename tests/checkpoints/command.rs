@@ -300,7 +300,7 @@ fn a_render_that_keeps_nothing_says_so_when_it_is_told_to_stop() {
         assert!(sent.success());
         let mut rest = String::new();
         said.read_to_string(&mut rest).expect("messages are UTF-8");
-        let told = "stopped; nothing was kept. With --checkpoint 60s, what is done is kept\n";
+        let told = "stopped; nothing of this image was kept. With --checkpoint 60s, what is done is kept\n";
         assert!(rest.ends_with(told), "{rest}");
         assert_eq!(child.wait().expect("it ends").code(), Some(130));
         assert_eq!(folder.listing(), ["s.toml"]);

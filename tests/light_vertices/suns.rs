@@ -141,7 +141,7 @@ fn l12_what_is_bright_in_an_image_of_the_sky_lights_a_room() {
         let sunlit = Sunlit { light: 0, center: DVec3::from(center), radius, cells };
         move |world: &World| world.with_light_vertices(vec![sunlit.clone()])
     };
-    let with = |more: &[String]| open("", &[&[sky.clone()], more].concat());
+    let with = |more: &[String]| open("", &[std::slice::from_ref(&sky), more].concat());
     let map = LightPass {
         photons: 8192,
         lights: vec![0],
@@ -171,9 +171,17 @@ fn l12_what_is_bright_in_an_image_of_the_sky_lights_a_room() {
 fn light_vertices_of_some_lights_leave_to_photons_what_is_theirs() {
     let map = MapPasses { count: 2, photons: 8192, radius: 0.5, chance: 0.5 };
     let glass = || ball("glass", "dielectric = { index = 1.5 }");
+    let bent = || smooth("dielectric = { index = 1.5 }");
+    let frosted = || {
+        let cube = "cube = { center = [0.9, 0.5, 0.2], size = 0.8 }";
+        body("frosted", "dielectric = { index = 1.5, roughness = 0.3 }", &[cube])
+    };
     let rooms = [
         ("glass in the sun", open("", &[SUN.into(), environment(0.5), glass()]), vec![0], Some(map)),
         ("a pane", open("", &[SUN.into(), environment(0.5), cubes(), pane()]), vec![0], Some(map)),
+        ("smooth glass in the sun", open("", &[SUN.into(), environment(0.5), bent()]), vec![0], Some(map)),
+        ("smooth glass under a lamp", open("", &[lamp(), bent(), cubes()]), vec![0], Some(map)),
+        ("smooth and rough glass", open("", &[lamp(), bent(), frosted()]), vec![0], Some(map)),
         ("photons that are shown", open("", &[wide(), environment(0.5), glass()]), vec![0], None),
         ("photons of the lamp alone", open("", &[SUN.into(), lamp(), environment(0.5), glass()]), vec![1], Some(map)),
     ];

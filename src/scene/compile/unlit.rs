@@ -76,7 +76,13 @@ fn reaches(sight: &Sight, light: &Light<Curve>, place: &Place) -> bool {
         let above = sample.ray.direction.dot(place.normal) > 0.0;
         Some(above && !sight.is_occluded(&sample.ray, sample.distance, sample.object))
     };
-    place.shines(light) || lit() == Some(true)
+    // Nearly all samples of an image of the sky may lead to its sun.
+    let sees_sky = || {
+        let direction = unit(Frame::about(place.normal).to_world(cosine_hemisphere([u, v])));
+        let shines = matches!(light, Light::Environment(sky) if sky.shines_toward(direction));
+        shines && !sight.is_occluded(&place.point.leave(direction), f64::INFINITY, None)
+    };
+    place.shines(light) || lit() == Some(true) || sees_sky()
 }
 
 /// Whether the light of a sky comes to a clear body, which may send it anywhere.

@@ -7,7 +7,7 @@ use exr::prelude::{AttributeValue, Compression, SampleType, f16};
 
 use super::exr_channels::Chosen;
 use super::texels::{Floats, Unreadable};
-use crate::film::{exr_primaries, exr_text, fits};
+use crate::film::{claims_fit, exr_primaries, exr_text, fits};
 use crate::spectrum::{Matrix, matrix_of_file};
 
 /// Reads the colors or the grays of an OpenEXR file, and alpha if asked; where there is none, it is 1.
@@ -18,12 +18,17 @@ use crate::spectrum::{Matrix, matrix_of_file};
 /// # Errors
 /// If it is none, is damaged, claims a size that it cannot have, or has no channels that make an image.
 pub(in crate::scene) fn decode(bytes: &[u8], alpha: bool) -> Result<Floats, Unreadable> {
-    let reader = exr::block::read(Cursor::new(bytes), false)?;
+    let reader = exr::block::read(Cursor::new(bytes), false).map_err(|error| match error {
+        // Of all that a file's head may ask for, this alone is what other programs read.
+        exr::error::Error::NotSupported(what) if what.contains("subsampling") => Unreadable::Sparse,
+        other => other.into(),
+    })?;
     for header in reader.headers() {
         let [width, height] = [header.layer_size.width(), header.layer_size.height()];
         let length = (width as u64 * height as u64).saturating_mul(4 * if alpha { 4 } else { 3 });
         fits(width, height, length, bytes).map_err(Unreadable::Unfit)?;
     }
+    claims_fit(bytes)?;
     let chosen = Chosen::of(reader.headers(), alpha)?;
     let header = reader.headers()[chosen.part].clone();
     let display = header.shared_attributes.display_window;

@@ -1,7 +1,6 @@
 //! Which channels of an OpenEXR file make an image.
 
 use exr::meta::header::Header;
-use exr::prelude::Vec2;
 
 use super::texels::Unreadable;
 use crate::film::exr_text;
@@ -47,11 +46,7 @@ impl Chosen {
         let alpha_alone = own_alpha.is_some_and(|alpha| colors == [alpha]);
         let behind = (alpha && !alpha_alone).then_some(own_alpha);
         let numbers: Vec<_> = colors.into_iter().map(Some).chain(behind).collect();
-        let of_part = &headers[part.number].channels.list;
-        match numbers.iter().flatten().find(|number| of_part[**number].sampling != Vec2(1, 1)) {
-            Some(number) => Err(Unreadable::Sparse(part.names[*number].clone())),
-            None => Ok(Self { part: part.number, numbers }),
-        }
+        Ok(Self { part: part.number, numbers })
     }
 
     /// Numbers of a texel.

@@ -69,8 +69,8 @@ pub(in crate::scene) enum Unreadable {
     /// No red, green and blue, but these channels.
     #[error("it has the channels {0}")]
     Channels(String),
-    #[error("its channel {0} does not have a number for each pixel")]
-    Sparse(String),
+    #[error("some of its channels do not have a number for each pixel")]
+    Sparse,
     #[error("it does not begin as one does")]
     Signature,
     #[error("it ends too early")]
@@ -90,7 +90,7 @@ impl Unreadable {
     pub(in crate::scene) fn remedy(&self) -> Option<&'static str> {
         match self {
             Self::Deep => Some("flatten it"),
-            Self::Sparse(_) => Some("save all channels in full size"),
+            Self::Sparse => Some("save all channels in full size"),
             Self::Format(_) => Some("save it as red, green and blue"),
             Self::Size(_) => Some("save it with its rows from the top, each from the left"),
             _ => None,

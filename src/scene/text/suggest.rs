@@ -133,7 +133,9 @@ pub(super) fn remedy(key: &str, value: &DeValue, wanted: &str, written: &str) ->
         },
         DeValue::Float(float) if number => {
             let float: f64 = float.as_str().parse().ok()?;
-            (float >= 0.0 && float.fract() == 0.0).then(|| format!("write {float}"))
+            let most = wanted.rsplit(' ').next().and_then(|most| most.parse::<f64>().ok());
+            let fits = float >= 0.0 && float.fract() == 0.0 && most.is_none_or(|most| float <= most);
+            fits.then(|| format!("write {float}"))
         }
         DeValue::Integer(_) if wanted == "a number" => Some(format!("write it with a decimal point: {written}.0")),
         DeValue::String(text) if wanted == "true or false" && matches!(&**text, "true" | "false") => {

@@ -10,7 +10,7 @@ use obvhs::{Boundable, BvhBuildParams};
 use super::node::{Node, Outer, Pair};
 use super::slabs::{Child, WIDTH};
 use super::stack::STACK;
-use crate::math::DVec3;
+use crate::math::{DVec3, mix};
 
 /// Most items of a cluster: building one takes some 200 bytes for each of its items.
 const CLUSTER: usize = 1 << 17;
@@ -22,6 +22,11 @@ const DEEP: u32 = 24;
 const MAX_LEVELS: usize = (STACK - 1) / (WIDTH - 1);
 /// What visiting an inner node costs, in tests of an item.
 const NODE_COST: f32 = 3.0;
+
+/// Up to what share of its longest side a box is made larger, over 2^24, and the longest side that counts at least:
+/// boxes are in a unit cube, in steps of 2^-24.
+const UNEVEN: f32 = 1.0 / (1_u64 << 30) as f32;
+const LEAST_SIZE: f32 = 1.0 / (1 << 16) as f32;
 
 /// A tree in the making.
 pub struct Builder<'a> {
@@ -161,8 +166,16 @@ impl<'a> Builder<'a> {
         let shrink = libm::exp2(-libm::floor(libm::log2(size)));
         let items = self.order[range.clone()].to_vec();
         let place = |corner: [f32; 3]| ((DVec3::from(corner.map(f64::from)) - low) * shrink).as_vec3a();
-        let scaled = items.iter().map(|&item| &self.boxes[item as usize]);
-        let scaled: Vec<Scaled> = scaled.map(|outer| Scaled(Aabb::new(place(outer.min), place(outer.max)))).collect();
+        let scaled = items.iter().map(|&item| (item, &self.boxes[item as usize]));
+        let scaled = scaled.map(|(item, outer)| {
+            let [low, high] = [outer.min, outer.max].map(place);
+            let longest = (high - low).max_element().max(LEAST_SIZE);
+            // Pairs are merged that are nearest to each other. Of a row of equal distances that is one pair alone, then
+            // the next, in square time; so no two distances may be equal.
+            let [below, above] = [0, 1].map(|end| (mix(2 * u64::from(item) + end) >> 40) as f32 * (UNEVEN * longest));
+            Scaled(Aabb::new(low - below, high + above))
+        });
+        let scaled: Vec<Scaled> = scaled.collect();
         let params = BvhBuildParams {
             max_prims_per_leaf: (self.group * 2).min(8) as u32,
             collapse_traversal_cost: NODE_COST,

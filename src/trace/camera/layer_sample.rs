@@ -23,6 +23,8 @@ pub struct LayerSample<'a, const N: usize> {
     spectrum: Option<SpectrumSample<'a, N>>,
     /// The largest share of the sample that a surface had so far: places are those of that surface.
     share: f64,
+    /// How likely the camera ray met what it has met, of surfaces with holes and what is behind them.
+    chance: f64,
     /// The object that the camera ray met.
     object: Option<u32>,
     branches: Vec<Branch<N>>,
@@ -56,6 +58,7 @@ impl<'a, const N: usize> LayerSample<'a, N> {
             row,
             spectrum,
             share: 0.0,
+            chance: 1.0,
             object: None,
             branches: Vec::new(),
         })
@@ -65,7 +68,7 @@ impl<'a, const N: usize> LayerSample<'a, N> {
     pub fn begin(&mut self) {
         self.row.fill(0.0);
         self.spectrum.iter_mut().for_each(SpectrumSample::begin);
-        self.share = 0.0;
+        (self.share, self.chance) = (0.0, 1.0);
         self.object = None;
     }
 
@@ -79,6 +82,11 @@ impl<'a, const N: usize> LayerSample<'a, N> {
         if let Some(white) = &self.world.layers.white {
             self.world.layers.add_to(Layer::Residual, &mut self.row, audit.left_open(white, draw));
         }
+    }
+
+    /// Remembers how likely it was that the camera ray met a surface with holes, or a hole of it.
+    pub fn choose(&mut self, chance: f64) {
+        self.chance *= chance;
     }
 
     /// Remembers the object that the camera ray met.
@@ -162,7 +170,9 @@ impl<'a, const N: usize> LayerSample<'a, N> {
         layers.add_to(Layer::GeometricNormal, &mut self.row, (share * at.flat).to_array());
         // What a pane lets straight on is of it as what glass refracts is, unless what is behind counts by itself.
         let panes = met.straight.filter(|_| layers.first == FirstSurface::Met).map(|straight| straight.panes);
-        let albedo = self.albedo(path, at, panes, sampler).map(|x| unfiltered * x);
+        // Of surfaces with holes and what is behind them, one has been met by chance: that is in its weight already.
+        let chance = if layers.first == FirstSurface::Met { self.chance } else { 1.0 };
+        let albedo = self.albedo(path, at, panes, sampler).map(|x| unfiltered * x / chance);
         layers.add_to(Layer::Albedo, &mut self.row, albedo);
         if share > self.share {
             self.share = share;

@@ -191,8 +191,11 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
             self.walker.go_on_in_part(path, point, onward.as_ref());
             return;
         }
-        let is_met_first =
-            path.vertices == 0 && first.is_none() && straight::is_met(world, draw, sampler, path, onward.as_ref());
+        let is_met_first = path.vertices == 0 && first.is_none() && {
+            let (is_met, chance) = straight::is_met(world, draw, sampler, path, onward.as_ref());
+            self.sensor.layers.iter_mut().for_each(|layers| layers.choose(chance));
+            is_met
+        };
         if is_met_first {
             *first = Some(*point);
             if let Some(layers) = &mut self.sensor.layers {
@@ -285,6 +288,9 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
     ) {
         let world = self.walker.world;
         let Some(boundary) = self.walker.boundary(path, meeting) else { return };
+        if path.resampled && world.ends_light_paths(meeting.hit.object) {
+            path.resampled = false;
+        }
         let ends = self.ends_at_light_vertices(path, draw, meeting, sampler);
         let path = &*path;
         if ends && !(world.has_map() && path.diffuse_left > 0) {

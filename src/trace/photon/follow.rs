@@ -155,6 +155,9 @@ fn advance<const N: usize, P: Polarization<N>>(
         }
     }
     path.vertices += 1;
+    if over != Surfaces::Smooth && world.ends_light_paths(meeting.hit.object) {
+        return;
+    }
     let Some(boundary) = walker.boundary(path, &meeting) else { return };
     let at = Interaction::new(world, draw, &path.arriving(), &meeting, boundary);
     if over != Surfaces::Smooth && path.vertices == 1 && !at.lobes.is_diffuse() {

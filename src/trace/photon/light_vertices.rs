@@ -14,7 +14,7 @@ use std::sync::Arc;
 use super::follow::{Landing, Start, Surfaces, follow_photon};
 use super::usefulness::{Place, places, usefulness};
 use crate::light::{Light, LightId};
-use crate::material::{Lobes, Material};
+use crate::material::Material;
 use crate::math::{BranchKey, DVec3, Distribution, Ray, Sampler};
 use crate::shape::{Computation, Instructions, SurfacePoint, Vectors};
 use crate::spectrum::{Draw, Lanes};
@@ -102,19 +102,13 @@ const LIGHT_PATHS: Transport = Transport::Random { split: 0.25, roulette: 0.05 }
 
 /// Whether light paths find what surfaces send each other of a light that they start from, as paths from the camera do.
 ///
-/// Not where interpolated normals bend glass or mirrors, whose light cannot be followed forward alike, nor where light
-/// crosses rough surfaces, nor where wavelengths are drawn anew for each camera sample.
+/// Not where wavelengths are drawn anew for each camera sample, nor where light goes straight through surfaces at which
+/// light paths end.
 pub fn can_be_followed(world: &World) -> bool {
-    let scene = &world.scene;
-    let is_plain = |id: usize| {
-        let object = &scene.objects[id];
-        let lobes = world.lobes[object.material as usize];
-        let smooth = object.shape.is_smooth() || object.relief.is_some();
-        !(lobes.intersects(Lobes::GLOSSY_TRANSMISSION) || (smooth && lobes.has_delta()))
-    };
+    let objects = 0..world.scene.objects.len() as u32;
     !world.method.basis.draws_wavelengths()
         && matches!(world.method.transport, Transport::Random { .. })
-        && (0..scene.objects.len()).all(is_plain)
+        && objects.into_iter().all(|object| !(world.ends_light_paths(object) && world.is_see_through(object)))
 }
 
 /// Whether light that leaves a surface for another is looked for at light vertices on it: a diffuse one, by its own
@@ -150,7 +144,9 @@ impl<'a> LightPaths<'a> {
         let starts = || world.path_starts.iter().zip(&world.scene.lights);
         let flux = |(id, (start, light)): (LightId, (&PathStart, &Light<_>))| start.flux(light) * world.luminance(id);
         let by_flux = Distribution::new(starts().enumerate().map(flux));
-        let finds_all = world.path_starts.iter().all(|start| matches!(start, PathStart::Anywhere));
+        let starts_anywhere = world.path_starts.iter().all(|start| matches!(start, PathStart::Anywhere));
+        let ends_nowhere = (0..world.scene.objects.len() as u32).all(|object| !world.ends_light_paths(object));
+        let finds_all = starts_anywhere && ends_nowhere;
         let (media, places) = (media_of_lights(&world.scene), places(world));
         (by_flux.total() > 0.0).then_some(Self { world, seed, by_flux, finds_all, media, places })
     }

@@ -37,8 +37,8 @@ pub fn with_light_vertices(world: &World) -> Option<World> {
     LightPaths::new(&world, world.method.seed).is_some().then_some(world)
 }
 
-/// The places in the light of each sun and of each bright part of a sky that bounces find, if they are some. The format counts, also where a part of it
-/// or more is made, so that all parts are made alike.
+/// The places in the light of each sun and of each bright part of a sky that bounces find, if they are some. The format
+/// counts, also where a part of it or more is made, so that all parts are made alike.
 fn sunlit_places(world: &World) -> Vec<Sunlit> {
     let lights = &world.scene.lights;
     let is_sun = |&id: &LightId| lights[id].is_infinite() && lights[id].sends_photons();

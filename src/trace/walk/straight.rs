@@ -44,22 +44,24 @@ fn through_surface<const N: usize, P: Polarization<N>>(
     (!(onward.straight.share() * present).is_zero()).then_some(onward)
 }
 
-/// Whether a ray from the camera counts as having met a surface, which may have holes: a pane is met, a hole is not.
+/// Whether a ray from the camera counts as having met a surface, which may have holes, and how likely that was: a pane
+/// is met, a hole is not.
 pub fn is_met<const N: usize, P: Polarization<N>>(
     world: &World,
     draw: &Draw<N>,
     sampler: &Sampler,
     path: &Path<N, P>,
     onward: Option<&Onward<N, P>>,
-) -> bool {
+) -> (bool, f64) {
     let straight = onward.map(|onward| &onward.straight);
-    let Some(straight) = straight.filter(|straight| !straight.holes.is_zero()) else { return true };
+    let Some(straight) = straight.filter(|straight| !straight.holes.is_zero()) else { return (true, 1.0) };
     let u = match world.method.transport {
         Transport::Deterministic { .. } => 0.5,
         Transport::Random { .. } => sampler.four_plain(path.key, COVER)[0],
     };
     let shares = draw.shares(path.parted);
-    path.throughput.through(straight.holes).weight(shares) <= u * path.throughput.weight(shares)
+    let holes = path.throughput.through(straight.holes).weight(shares) / path.throughput.weight(shares);
+    if holes <= u { (true, 1.0 - holes) } else { (false, holes) }
 }
 
 /// The straight way of light to a place, which something may occlude.
