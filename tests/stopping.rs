@@ -348,3 +348,17 @@ fn parts_take_all_samples_and_say_so() {
     assert!(part.plan().method.stop.is_none() && part.plan().method.samples == 128);
     assert!(part.plan().because.iter().any(|line| line.starts_with("takes all 128 samples")));
 }
+
+/// Three numbers miss the color of a laser by far; noise is not all that counts.
+#[test]
+fn an_error_that_the_model_of_color_alone_exceeds_is_not_reached() {
+    let text = "camera = { position = [0, 0, 4], look_at = [0, 0, 0], vertical_fov = 40 }\n\
+        film = { width = 8, height = 8 }\nrender.model = \"rgb\"\n\
+        material.paint.diffuse.reflectance = \"blue sky\"\nlight = [{ environment.radiance = { illuminant = \"FL11\" } }]\n\
+        object = [{ shape.sphere = { center = [0, 0, 0], radius = 1 }, material = \"paint\" }]\n";
+    let image = render(&scene(text), &asks(0.003, 1 << 14)).expect("it can be rendered");
+    let error = image.error().expect("it was measured");
+    assert!(error.model > 0.003 && error.stopped_by == Some(Stopped::Noise) && !error.is_reached(), "{error:?}");
+    let told = image.warnings().join("\n");
+    assert!(told.contains("is not reached: the model of color alone may be off by"), "{told}");
+}

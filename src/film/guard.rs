@@ -58,35 +58,33 @@ pub(crate) fn fits(width: usize, height: usize, bytes: u64, file: &[u8]) -> Resu
     Ok(())
 }
 
-/// Most bytes that a block of DWAA or DWAB may claim beside twice those of the image.
+/// Most bytes that a part of a block of DWAA or DWAB may claim beside twice those of the block's pixels.
 const CLAIMED: u64 = 1 << 20;
 
-/// Refuses an OpenEXR file whose blocks of DWAA or DWAB claim to unpack to more than the image: their decoder takes
+/// Refuses an OpenEXR file whose blocks of DWAA or DWAB claim to be much larger than their pixels: their decoder takes
 /// the memory before it unpacks them. Each begins with a version and nine numbers of bytes or of half floats,
-/// little-endian.
+/// little-endian, but for one that is not packed, as that would make it larger.
 pub(crate) fn claims_fit(bytes: &[u8]) -> exr::error::Result<()> {
     let reader = exr::block::read(Cursor::new(bytes), false)?;
-    let most = |header: &Header| match header.compression {
-        Compression::DWAA(_) | Compression::DWAB(_) => {
-            let pixels = header.layer_size.area() as u64;
-            Some(pixels.saturating_mul(2 * header.channels.bytes_per_pixel as u64).saturating_add(CLAIMED))
-        }
-        _ => None,
-    };
-    let most: Vec<Option<u64>> = reader.headers().iter().map(most).collect();
-    if most.iter().all(Option::is_none) {
+    let is_packed = |header: &Header| matches!(header.compression, Compression::DWAA(_) | Compression::DWAB(_));
+    let headers = reader.headers().to_vec();
+    if !headers.iter().any(is_packed) {
         return Ok(());
     }
     for chunk in reader.all_chunks(false)? {
         let chunk = chunk?;
+        let Some(header) = headers.get(chunk.layer_index).filter(|header| is_packed(header)) else { continue };
         let packed = match &chunk.compressed_block {
             CompressedBlock::ScanLine(block) => &block.compressed_pixels_le,
             CompressedBlock::Tile(block) => &block.compressed_pixels_le,
-            _ => continue,
+            CompressedBlock::DeepScanLine(_) | CompressedBlock::DeepTile(_) => continue,
         };
-        let Some(most) = most.get(chunk.layer_index).copied().flatten() else { continue };
+        let place = header.get_block_data_indices(&chunk.compressed_block)?;
+        let pixels = header.get_absolute_block_pixel_coordinates(place)?.size.area();
+        let size = (pixels as u64).saturating_mul(header.channels.bytes_per_pixel as u64);
         let numbers = packed.as_chunks::<8>().0.iter().map(|number| u64::from_le_bytes(*number));
-        if numbers.skip(1).take(9).any(|number| number > most) {
+        let most = size.saturating_mul(2).saturating_add(CLAIMED);
+        if packed.len() as u64 != size && numbers.skip(1).take(9).any(|number| number > most) {
             return Err(exr::error::Error::Invalid("a block claims to be larger than the image".into()));
         }
     }

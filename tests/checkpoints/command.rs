@@ -63,8 +63,14 @@ fn a_finished_render_that_is_resumed_says_so_and_rewrites_nothing() {
         assert_eq!(said_from(&done(&folder, words), "s.checkpoint"), told, "{words}");
     }
     assert_eq!(["s.checkpoint", "s.exr"].map(|name| modified(&folder, name)), times);
-    // An image that was lost is written again.
+    // An image that is not the one that was written is made again, and so are other files that are asked for now.
     let image = bytes(&folder, "s.exr");
+    folder.write("s.exr", "another image");
+    done(&folder, "s.toml --resume");
+    assert!(bytes(&folder, "s.exr") == image);
+    done(&folder, "s.toml --resume --exr s.exr --png s.png --report s.json");
+    assert_eq!(folder.listing(), ["s.checkpoint", "s.exr", "s.json", "s.png", "s.toml"]);
+    // An image that was lost is written again.
     fs::remove_file(folder.path().join("s.exr")).expect("it is there");
     done(&folder, "s.toml --resume");
     assert!(bytes(&folder, "s.exr") == image);

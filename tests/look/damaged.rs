@@ -11,6 +11,8 @@ use std::fs;
 
 use abbe::Error;
 use abbe::film::ExrFile;
+use exr::meta::MetaData;
+use exr::prelude::Compression;
 
 use super::files::{Exr, ramp};
 use crate::messages::run::Folder;
@@ -80,6 +82,44 @@ fn damaged_files_of_every_kind_are_read_or_refused() {
     let mut dice = mutate::Dice::new(1);
     let read = (0..1000).filter(|_| look(&folder, &mutate::mutated(&mut dice, &files, &[])).is_ok()).count();
     assert!((50..950).contains(&read), "{read}");
+}
+
+/// The first numbers of a block are a version, and how many bytes its parts have packed and unpacked.
+#[test]
+fn a_block_that_claims_more_than_the_image_is_refused_before_memory_is_asked_for() {
+    let folder = Folder::new();
+    let values: Vec<f32> = (0..4096).map(|i| 0.01 * (i % 64) as f32).collect();
+    let channels = ["R", "G", "B"].map(|name| (name, values.clone())).to_vec();
+    let image = Exr { compression: Compression::DWAA(None), half: true, ..Exr::new([64, 64], channels) };
+    image.write(&folder.path().join("whole.exr"));
+    let whole = fs::read(folder.path().join("whole.exr")).expect("it is there");
+    assert_eq!(look(&folder, &whole), Ok(()));
+    let mut rest = std::io::Cursor::new(&whole);
+    MetaData::read_from_buffered(&mut rest, false).expect("it has a head");
+    let offsets = rest.position() as usize;
+    let block = u64::from_le_bytes(whole[offsets..offsets + 8].try_into().expect("8 bytes")) as usize + 8;
+    for number in 1..10 {
+        let mut bytes = whole.clone();
+        bytes[block + 8 * number..block + 8 * number + 8].copy_from_slice(&(1_u64 << 50).to_le_bytes());
+        let said = look(&folder, &bytes).expect_err("no block is so large");
+        assert!(said.contains("a block claims to be larger than the image"), "{said}");
+    }
+}
+
+/// Luminance in full size beside chroma in half of it, as other programs write it.
+#[test]
+fn channels_in_half_the_size_are_told_of_as_what_they_are() {
+    let folder = Folder::new();
+    ramp().write(&folder.path().join("whole.exr"));
+    let mut bytes = fs::read(folder.path().join("whole.exr")).expect("it is there");
+    let name = b"channels\0chlist\0";
+    let list = bytes.windows(name.len()).position(|window| window == name).expect("channels") + name.len() + 4;
+    // Behind the first channel's name of one letter: its type, 4 bytes, and steps along both axes.
+    for axis in [0, 4] {
+        bytes[list + 10 + axis..list + 14 + axis].copy_from_slice(&2_i32.to_le_bytes());
+    }
+    let said = look(&folder, &bytes).expect_err("not every pixel has a number");
+    assert!(said.starts_with("it is an OpenEXR image of a kind that is not read: channel subsampling"), "{said}");
 }
 
 /// A window of 16000 x 8000 pixels would be 1.5 GB.

@@ -111,3 +111,23 @@ fn what_the_scene_asks_for_is_done() {
         assert!(plan.because.iter().any(|line| line.contains("asks for it")), "{:?}", plan.because);
     }
 }
+
+/// Otherwise an animation whose seed is its frame would change its colors from frame to frame.
+#[test]
+fn the_seed_decides_nothing() {
+    let text = view([0.0, 1.5, 6.0], [0.0, 0.7, 0.0], 35.0, 48)
+        + "[material.gold]\nconductor = { metal = \"Au\", roughness = 0.25 }\n\
+           [material.glass]\ndielectric = { index = \"N-BK7\" }\n\
+           [[object]]\nshape.sphere = { center = [-1.2, 1, 0], radius = 1 }\nmaterial = \"gold\"\n\
+           [[object]]\nshape.sphere = { center = [1.2, 1, 0], radius = 1 }\nmaterial = \"glass\"\n\
+           [[light]]\nenvironment = { radiance = { illuminant = \"FL11\" } }\n";
+    let decided = |seed: u64| {
+        let mut scene = scene(&text);
+        scene.render.seed = seed;
+        let plan = plan(&scene);
+        assert_eq!(plan.method.seed, seed);
+        (abbe::trace::Method { seed: 0, ..plan.method }, plan.model_error)
+    };
+    let first = decided(0);
+    (1..5).for_each(|seed| assert_eq!(decided(seed), first, "seed {seed}"));
+}

@@ -157,3 +157,17 @@ fn l9_lights_and_cameras_that_stand_exactly_in_a_surface_are_told_of() {
     assert_warns(&stage(&(water(2.0) + &environment(1.0))), &[told]);
     assert_warns(&stage(&(water(2.0 + 1e-9) + &environment(1.0))), &[]);
 }
+
+/// Nearly every direction that is drawn for this sky leads to its sun, behind the only wall.
+#[test]
+fn l6_a_sky_that_lights_a_wall_from_before_is_not_told_of_for_its_sun_behind() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("sky.exr");
+    let at = |x: usize, y: usize| if (x, y) == (0, 16) { (1e7, 1e7, 1e7) } else { (0.5, 0.5, 0.5) };
+    exr::prelude::write_rgb_file(&file, 64, 32, at).expect("an image can be written");
+    let wall = "quad = { center = [0, 0, 0], u = [50, 0, 0], v = [0, 50, 0] }";
+    let text = view([0.0, 0.0, 5.0], [0.0, 0.0, 0.0], 40.0, 16)
+        + &body("wall", "diffuse = { reflectance = 0.5 }", &[wall])
+        + &format!("[[light]]\nenvironment = {{ radiance = {{ image = {file:?} }} }}\n");
+    assert_warns(&text, &[]);
+}

@@ -252,6 +252,17 @@ mod tests {
     use super::*;
     use crate::math::Bounds;
 
+    /// Row B5 of the stability catalog.
+    #[test]
+    fn b5_a_row_of_equal_boxes_is_merged_many_pairs_at_a_time() {
+        let at = |i: u16| Outer { min: [f32::from(i), 0.0, 0.0], max: [f32::from(i) + 1.0, 1.0, 0.0] };
+        let row: Vec<Outer> = (0..8192).map(at).collect();
+        // One pair at a time makes a tree as deep as the row is long, and takes the square of the time.
+        let mut built = Builder::started(&row, 4);
+        let root = built.clusters();
+        assert!(built.levels(root) <= 8, "{}", built.levels(root));
+    }
+
     /// Row B4 of the stability catalog.
     #[test]
     fn b4_equal_and_geometric_boxes_give_trees_no_deeper_than_the_stack() {
