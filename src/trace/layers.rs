@@ -6,7 +6,7 @@ use super::spectrum_sample::Spectrum;
 use super::white::White;
 use crate::film::{FirstSurface, Layer, Manifest, id, light_layer_name};
 use crate::scene::{Scene, Sight};
-use crate::spectrum::{Basis, Curve};
+use crate::spectrum::{Basis, Curve, apply};
 
 /// The layers of a world's image.
 ///
@@ -37,6 +37,8 @@ pub(super) struct Layers {
     pub(super) white: Option<White>,
     /// How bright red, green and blue of 1 are.
     luminance: [f64; 3],
+    /// The color of the film's white: no albedo is above it.
+    pub(super) film_white: [f64; 3],
 }
 
 /// A place for each layer that there is.
@@ -97,8 +99,9 @@ pub(super) const OF_A_HALF: usize = 4;
 impl Layers {
     /// The layers that a scene asks for.
     pub(super) fn new(scene: &Scene<Curve>, basis: &Basis) -> Self {
-        let luminance = scene.film.color_space.to_xyz()[1];
-        let mut layers = Self { first: scene.format.first, luminance, ..Self::default() };
+        let color_space = scene.film.color_space;
+        let (luminance, film_white) = (color_space.to_xyz()[1], apply(&color_space.of_xyz(), color_space.white()));
+        let mut layers = Self { first: scene.format.first, luminance, film_white, ..Self::default() };
         for group in &scene.light_groups {
             let name = light_layer_name(group);
             let known = layers.groups.iter().position(|known| *known == name);

@@ -68,3 +68,19 @@ fn albedo_and_normals_of_a_sheet_with_holes_are_of_what_it_covers() {
         }
     }
 }
+
+/// In CIE XYZ, white has a Z above 1.
+#[test]
+fn albedo_of_white_is_the_white_of_the_film() {
+    for (space, white) in [("lin_ciexyzd65_scene", [0.9505, 1.0, 1.0891]), ("lin_ap1_scene", [1.0; 3])] {
+        let film = format!("film = {{ width = 4, height = 4, color_space = \"{space}\" }}");
+        let text = BALL
+            .replace("film = { width = 16, height = 16 }", &film)
+            .replace("vertical_fov = 40", "vertical_fov = 4")
+            .replace("reflectance = 0.5", "reflectance = 1");
+        for pixel in rgb(&rendered(&text, &[Layer::Albedo]), "albedo") {
+            let off = (0..3).map(|i| (pixel[i] - white[i]).abs()).fold(0.0, f64::max);
+            assert!(off < 2e-4, "{space}: {pixel:?} for {white:?}");
+        }
+    }
+}

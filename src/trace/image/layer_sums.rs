@@ -180,7 +180,9 @@ pub fn write(layers: &Layers, taken: &Taken, pixel: usize, images: &mut [LayerIm
                 continue;
             }
             for (channel, value) in values.iter_mut().enumerate() {
-                *value = stored(taken.value(layer, at + 3 * number, channel));
+                let told = taken.value(layer, at + 3 * number, channel);
+                *value =
+                    stored(if layer == Layer::Albedo { told.clamp(0.0, layers.film_white[channel]) } else { told });
             }
         }
     }
@@ -208,7 +210,6 @@ impl Taken<'_> {
         match layer {
             Layer::Samples => weights.kept().into(),
             Layer::Position | Layer::Uv => sums[0],
-            Layer::Albedo => (sums[0] / weights.added()).clamp(0.0, 1.0),
             // Photons land independently: the sum of their squares estimates the variance of their sum.
             Layer::Variance => self.variance.map_or_else(
                 || weights.variance(self.rgb.map(|rgb| rgb[channel]), sums[0] + sums[1]) + self.counts.image * shown,
