@@ -62,7 +62,7 @@ pub(super) fn save(path: &Path, identity: &Identity, written: &[Written], passes
     })
 }
 
-/// Goes on from a checkpoint. Answers with what the render has written that it was of, if that had ended.
+/// Goes on from a checkpoint. Answers as well which files were written, if the render had finished.
 ///
 /// # Errors
 /// If it is of something else, damaged, or cannot be read.

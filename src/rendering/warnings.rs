@@ -56,10 +56,12 @@ fn outlier(error: &ImageError) -> Option<String> {
 /// An error that was asked for and is not reached.
 fn missed(error: &ImageError) -> Option<String> {
     let asked = error.asked.filter(|_| !error.is_reached())?;
-    let why = match error.blur.at_most > error.noise.at_most {
-        _ if error.model > asked => format!(": the model of color alone may be off by {}", percent(error.model)),
-        true => ": most of it is the blur of gathered photons, half as wide after 8 to 64 times as many samples".into(),
-        false => String::new(),
+    let why = if error.model > asked {
+        format!(": the model of color alone may be off by {}", percent(error.model))
+    } else if error.blur.at_most > error.noise.at_most {
+        ": most of it is the blur of gathered photons, half as wide after 8 to 64 times as many samples".into()
+    } else {
+        String::new()
     };
     Some(format!("the error of {} that was asked for is not reached{why}", percent(asked)))
 }
