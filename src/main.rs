@@ -131,7 +131,7 @@ fn image(job: &Job, scene: &Scene, [exr, png]: [Option<&Path>; 2], began: Instan
     let is_finished = keep.run(&mut rendering, &progress)?;
     if !is_finished {
         progress.stop();
-        keep.say_how_to_resume();
+        keep.say_how_to_resume(&rendering);
         return Ok(ExitCode::from(keep::STOPPED_CODE));
     }
     let expected = rendering.expected();

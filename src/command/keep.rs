@@ -10,7 +10,7 @@ use abbe::scene::duration;
 use abbe::{Advance, Error, ImageError, Rendering, Result, Resumed, Timer, is_checkpoint};
 use clap::Args;
 
-use super::messages::{say, so_far, warn};
+use super::messages::{say, say_last, so_far, warn};
 use super::outputs::refuse;
 use super::problem::problem;
 use super::progress::Progress;
@@ -271,8 +271,11 @@ impl Keep {
     }
 
     /// Says what was kept, and how to go on.
-    pub fn say_how_to_resume(&self) {
+    pub fn say_how_to_resume(&self, rendering: &Rendering) {
         let Some(path) = &self.checkpoint else {
+            if rendering.image().report().samples == 0 {
+                return say(NOTHING_KEPT);
+            }
             return say("stopped; the snapshot is kept. With --checkpoint 60s, a render can also go on later");
         };
         let mut words: Vec<String> = std::env::args().map(|word| quoted(&word)).collect();
@@ -287,9 +290,9 @@ impl Keep {
 fn catch(stops_at_once: bool) -> std::result::Result<(), ctrlc::Error> {
     ctrlc::set_handler(move || {
         if stops_at_once {
-            say(NOTHING_KEPT);
+            say_last(NOTHING_KEPT, STOPPED_CODE);
         }
-        if stops_at_once || STOPPED.swap(true, Ordering::Relaxed) {
+        if STOPPED.swap(true, Ordering::Relaxed) {
             std::process::exit(STOPPED_CODE.into());
         }
     })

@@ -63,6 +63,15 @@ pub fn say(line: &str) {
     }
 }
 
+/// Says it and ends the process. Other threads wait for that with what they want to say.
+pub fn say_last(line: &str, code: u8) -> ! {
+    let _stderr = std::io::stderr().lock();
+    // An image that is sent there must not hold it up.
+    let _stdout = matches!(listener(), Listener::Program | Listener::Farm).then(|| std::io::stdout().lock());
+    say(line);
+    std::process::exit(code.into())
+}
+
 fn print(line: &str) {
     let _ = writeln!(std::io::stderr().lock(), "{line}");
 }
