@@ -264,7 +264,7 @@ fn looking(world: &World) -> World {
 
 /// How many times as long an equal error takes without light vertices.
 fn gain(world: &World) -> Option<f64> {
-    pilot_noise(&looking(world)).gain_over(&pilot_noise(world))
+    pilot_noise(&looking(world)).gain_over(&pilot_noise(world), &[])
 }
 
 /// Images by a method that something is changed of, without light vertices or with those that `with` asks for.

@@ -4,7 +4,7 @@ use std::cell::OnceCell;
 
 use crate::light::Light;
 use crate::spectrum::Table;
-use crate::trace::{PilotNoise, World, bright_places, pilot_noise, with_light_vertices};
+use crate::trace::{PhotonWorth, PilotNoise, World, bright_places, pilot_noise, with_light_vertices};
 
 /// How much shorter an equal error must take: a pilot knows no better.
 const CLEARLY: f64 = 1.25;
@@ -13,28 +13,34 @@ const CLEARLY: f64 = 1.25;
 const LARGE: f64 = 1e6;
 
 /// A world in which light between surfaces is found in one way.
-struct Way {
-    world: World,
+pub(super) struct Way<'a> {
+    pub(super) world: World,
+    /// What a person is told of it.
+    pub(super) reasons: Vec<String>,
+    /// The photons of each light that show caustics beside it.
+    photons: &'a [PhotonWorth],
     noise: OnceCell<PilotNoise>,
     /// How many times as long an equal error takes by bounces alone, as surfaces scatter them.
     gain: f64,
-    /// What a person is told of it.
-    reasons: Vec<String>,
 }
 
 /// The world in which light between surfaces is found by light vertices, by bounces that are aimed at bright places, or
-/// by both, whichever pays most, if any does; and what a person is told of it.
-pub(super) fn between(world: World) -> (World, Vec<String>) {
-    let plain = Way { world, noise: OnceCell::new(), gain: 1.0, reasons: Vec::new() };
+/// by both, whichever pays most, if any does.
+pub(super) fn between(world: World, photons: &[PhotonWorth]) -> Way<'_> {
+    let plain = Way { world, reasons: Vec::new(), photons, noise: OnceCell::new(), gain: 1.0 };
     let aimed = plain.with_aimed_bounces();
     let looking = plain.with_light_vertices();
     let both = looking.as_ref().and_then(Way::with_aimed_bounces);
     let others = [looking, both, aimed].into_iter().flatten();
-    let best = others.fold(plain, |best, other| if other.gain > best.gain { other } else { best });
-    (best.world, best.reasons)
+    others.fold(plain, |best, other| if other.gain > best.gain { other } else { best })
 }
 
-impl Way {
+impl Way<'_> {
+    /// How many of the photons for each camera sample make the time to an error least.
+    pub(super) fn photons_of_a_sample(&self) -> f64 {
+        self.noise().photons_of_a_sample(self.photons)
+    }
+
     fn noise(&self) -> &PilotNoise {
         self.noise.get_or_init(|| pilot_noise(&self.world))
     }
@@ -42,10 +48,16 @@ impl Way {
     /// Another world instead, if it is clearly better.
     fn improved(&self, world: World, reason: impl FnOnce(&World, &str) -> String) -> Option<Self> {
         let noise = pilot_noise(&world);
-        let gain = noise.gain_over(self.noise())?;
+        let gain = noise.gain_over(self.noise(), self.photons)?;
         let without = format!("the same error would take about {gain:.1} times as long");
         let reasons = self.reasons.iter().cloned().chain([reason(&world, &without)]).collect();
-        (gain > CLEARLY).then(|| Self { world, noise: noise.into(), gain: self.gain * gain, reasons })
+        (gain > CLEARLY).then(|| Self {
+            world,
+            reasons,
+            photons: self.photons,
+            noise: noise.into(),
+            gain: self.gain * gain,
+        })
     }
 
     /// With light vertices. Their paths know no dyes.

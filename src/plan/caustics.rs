@@ -2,20 +2,23 @@
 
 use std::f64::consts::TAU;
 
-use super::efficiency::{Worth, weigh};
+use super::efficiency::{Worth, rounded, weigh};
 use super::words::in_number;
 use crate::light::{Light, LightId};
 use crate::material::Material;
 use crate::math::{DVec2, DVec3, one_minus_cos_of_cone};
 use crate::scene::{CausticsText, Scene};
 use crate::spectrum::Curve;
-use crate::trace::{LightPass, Transport, World, is_photon_target, piloted, seen_photons};
+use crate::trace::{LightPass, PhotonWorth, Transport, World, is_photon_target, piloted, seen_photons};
 
 /// Solid angle in steradians from which on rays meet a lamp often enough: there photons and chance cost the same
 /// (`benches/rooms.rs`).
 const SMALL: f64 = 0.5;
 /// Fewest photons of a light pass: from fewer it does not learn where to send them.
 const FEWEST: f64 = 65_536.0;
+/// Photons that are fewer than one in so many camera samples, or more than so many for each, were learned of too badly.
+const FEWEST_OF_A_SAMPLE: f64 = 1.0 / 16.0;
+const MOST_OF_A_SAMPLE: f64 = 4.0;
 /// Pairs of a light and a place whose solid angles are looked at.
 const PAIRS: usize = 1 << 19;
 /// Camera rays along each side of the image that look for surfaces on which caustics may lie.
@@ -23,7 +26,7 @@ const SIDE: u32 = 24;
 
 /// Whether caustics are shown to the camera by photons.
 pub(super) struct Shown {
-    pub(super) pass: Option<LightPass>,
+    pub(super) caustics: Option<Caustics>,
     pub(super) why: Vec<String>,
     /// A world whose photons have learned where to go.
     pub(super) taught: Option<World>,
@@ -31,23 +34,64 @@ pub(super) struct Shown {
 
 impl Shown {
     fn not(why: Vec<String>) -> Self {
-        Self { pass: None, why, taught: None }
+        Self { caustics: None, why, taught: None }
     }
 }
 
-/// The light pass that a scene needs, if any, and why.
-pub(super) fn light_pass(scene: &Scene<Curve>, unguided: &World) -> Shown {
+/// Caustics that photons show.
+pub(super) struct Caustics {
+    /// The photons of each light that sends them.
+    pub(super) photons: Vec<PhotonWorth>,
+    /// Which those are, and what they are sent to.
+    from: String,
+    to: String,
+    /// The share of them that is seen.
+    seen: f64,
+    /// How many times as long chance takes to the same error, if it finds them.
+    gain: Option<f64>,
+}
+
+impl Caustics {
+    /// The pass of so many photons for each camera sample.
+    pub(super) fn pass(&self, world: &World, of_a_sample: f64) -> LightPass {
+        let lights = self.photons.iter().flat_map(|photons| photons.lights.clone()).collect();
+        let of_a_sample = rounded(of_a_sample.clamp(FEWEST_OF_A_SAMPLE, MOST_OF_A_SAMPLE));
+        LightPass { photons: (of_a_sample * samples(world)).max(FEWEST).ceil() as u64, lights, map: None }
+    }
+
+    /// What a person is told of them.
+    pub(super) fn reason(&self, world: &World) -> Option<String> {
+        let Self { from, to, seen, gain, .. } = self;
+        let (method, photons) = (world.method(), world.method().light_pass.as_ref()?.photons);
+        let all = if method.stop.is_none() { format!("{} ", in_number(photons)) } else { String::new() };
+        let without = gain.map_or(String::new(), |gain| {
+            let times = if gain < 9.95 { format!("{gain:.1}") } else { in_number(gain.round() as u64) };
+            format!("; without them, the same error would take about {times} times as long")
+        });
+        Some(format!(
+            "photon tracing: {all}photons from {from} toward {to}, {:.2} for each camera sample; {} of them are \
+             seen{without}",
+            photons as f64 / samples(world),
+            if *seen < 0.095 { format!("{:.1} %", 100.0 * seen) } else { format!("{:.0} %", 100.0 * seen) },
+        ))
+    }
+}
+
+/// Camera samples of the format.
+fn samples(world: &World) -> f64 {
+    let film = world.scene().film;
+    f64::from(film.width) * f64::from(film.height) * f64::from(world.method().samples)
+}
+
+/// The caustics of a scene that are worth photons, if any, and why.
+pub(super) fn caustics(scene: &Scene<Curve>, unguided: &World) -> Shown {
     let Sources { small, mut large } = match sources(scene, unguided) {
         Ok(sources) => sources,
         Err(why) => return Shown::not(why.into_iter().collect()),
     };
-    let film = scene.film;
-    let samples = f64::from(film.width) * f64::from(film.height) * f64::from(unguided.method().samples);
-    let pass = |photons: f64, lights: &[SizedLight]| {
-        let photons = (photons * samples).max(FEWEST).ceil() as u64;
-        LightPass { photons, lights: lights.iter().map(|light| light.0).collect(), map: None }
-    };
-    let world = piloted(unguided, pass(1.0, &small));
+    let of_all = (samples(unguided).max(FEWEST).ceil()) as u64;
+    let lights = small.iter().map(|light| light.0).collect();
+    let world = piloted(unguided, LightPass { photons: of_all, lights, map: None });
     let share = seen_photons(&world);
     let (seen, unseen): (Vec<_>, Vec<_>) = small.into_iter().partition(|&(id, _)| share[id] > 0.0);
     let to = match targets(scene).as_slice() {
@@ -64,8 +108,9 @@ pub(super) fn light_pass(scene: &Scene<Curve>, unguided: &World) -> Shown {
     if seen.is_empty() {
         return Shown::not(lines);
     }
-    let Worth { lights, photons, gain } = weigh(scene, &world);
-    let (sending, left): (Vec<_>, Vec<_>) = seen.into_iter().partition(|(id, _)| lights.contains(id));
+    let Worth { photons, gain } = weigh(scene, &world);
+    let is_sent = |&(id, _): &SizedLight| photons.iter().any(|photons| photons.lights.contains(&id));
+    let (sending, left): (Vec<_>, Vec<_>) = seen.into_iter().partition(is_sent);
     large.extend(left);
     if sending.is_empty() {
         let (from, why) = (named(scene, &large), not_worth(gain));
@@ -75,23 +120,9 @@ pub(super) fn light_pass(scene: &Scene<Curve>, unguided: &World) -> Shown {
     if !large.is_empty() {
         lines.push(format!("left to chance: caustics of {}", named(scene, &large)));
     }
-    let most = sending.iter().map(|&(id, _)| share[id]).fold(0.0, f64::max);
-    let pass = pass(photons, &sending);
-    let all = match unguided.method().stop {
-        None => format!("{} ", in_number(pass.photons)),
-        Some(_) => String::new(),
-    };
-    lines.push(format!(
-        "photon tracing: {all}photons from {} toward {to}, {:.2} for each camera sample; {} of them are seen{}",
-        named(scene, &sending),
-        pass.photons as f64 / samples,
-        if most < 0.095 { format!("{:.1} %", 100.0 * most) } else { format!("{:.0} %", 100.0 * most) },
-        gain.map_or(String::new(), |gain| format!(
-            "; without them, the same error would take about {} times as long",
-            if gain < 9.95 { format!("{gain:.1}") } else { in_number(gain.round() as u64) }
-        ))
-    ));
-    Shown { pass: Some(pass), why: lines, taught: Some(world) }
+    let seen = sending.iter().map(|&(id, _)| share[id]).fold(0.0, f64::max);
+    let caustics = Caustics { photons, from: named(scene, &sending), to, seen, gain };
+    Shown { caustics: Some(caustics), why: lines, taught: Some(world) }
 }
 
 /// Why photons that are seen are not sent, as the time to an error would be so many times shorter by them, or nothing

@@ -9,18 +9,13 @@ use crate::trace::{PhotonWorth, SampleWorth, World, photons_worth, samples_worth
 
 /// Of a lamp's radiance, what the camera sees of it by way of a smooth surface and one that scatters: about half.
 const LEFT: f64 = 0.5;
-/// Photons that are fewer than one in so many camera samples, or more than so many for each, were learned of too badly.
-const FEWEST: f64 = 1.0 / 16.0;
-const MOST: f64 = 4.0;
 /// A gain below this is none: a pilot does not know better.
 const CLEARLY: f64 = 1.1;
 
 /// What photons of some lights are worth beside camera samples.
 pub(super) struct Worth {
-    /// The lights whose photons lower the time to an error.
-    pub(super) lights: Vec<LightId>,
-    /// How many photons of them for each camera sample make the time to an error least.
-    pub(super) photons: f64,
+    /// The photons of those lights whose photons lower the time to an error.
+    pub(super) photons: Vec<PhotonWorth>,
     /// How many times as long chance takes to the same error; none where it misses light for good, or there is no
     /// light.
     pub(super) gain: Option<f64>,
@@ -31,10 +26,8 @@ pub(super) struct Worth {
 /// An image of n_p camera samples and n_l photons has the variance A / n_p + sum B_i / n_i in the time C_p n_p + sum
 /// C_i n_i; their product is least for n_i / n_p = sqrt(B_i C_p / (A C_i)), where it is (sqrt(A C_p) + sum sqrt(B_i
 /// C_i))^2. A light that is left to chance adds K to A: a camera sample that meets the lamp sees f of its radiance, and
-/// does so as often as makes the mean right, so that its second moment is f times the mean. How many photons there are
-/// goes by an A without the worst hundredth of the pixels: else one edge or rare bright path, which no photon mends,
-/// leaves the caustic noisier than all around it. Rays followed stand for time, so that the plan is the same
-/// everywhere.
+/// does so as often as makes the mean right, so that its second moment is f times the mean. Rays followed stand for
+/// time, so that the plan is the same everywhere. How many photons there are is found when all else is decided.
 pub(super) fn weigh(scene: &Scene<Curve>, world: &World) -> Worth {
     let samples = samples_worth(world);
     let film = scene.film;
@@ -54,16 +47,9 @@ pub(super) fn weigh(scene: &Scene<Curve>, world: &World) -> Worth {
     let total = |sent: usize| product(&samples, &known, sent);
     let best = (0..=known.len()).min_by(|&a, &b| total(a).total_cmp(&total(b))).unwrap_or(0);
     let best = if total(0) > CLEARLY * total(best) { best } else { 0 };
-    let left: f64 = known[best..].iter().map(|light| light.1).sum();
-    let of_light = |(photons, _): &(PhotonWorth, f64)| {
-        (photons.variance * samples.rays / ((samples.common_variance + left) * photons.rays)).sqrt()
-    };
     let gain = total(0) / total(if best == 0 { known.len() } else { best });
-    Worth {
-        lights: known[..best].iter().flat_map(|(photons, _)| photons.lights.clone()).collect(),
-        photons: rounded(known[..best].iter().map(of_light).sum::<f64>().clamp(FEWEST, MOST)),
-        gain: (gain.is_finite() && !known.is_empty()).then_some(gain),
-    }
+    let gain = (gain.is_finite() && !known.is_empty()).then_some(gain);
+    Worth { photons: known.into_iter().take(best).map(|light| light.0).collect(), gain }
 }
 
 /// The nearest power of the square root of 2: the least of time x variance is flat, and rounding must not change an

@@ -1,12 +1,13 @@
-//! The photons that a world needs.
+//! How the light of a scene is found.
 
+use super::between::{Way, between};
 use super::caustics::{self, Shown};
 use super::photon_map;
 use crate::scene::Scene;
 use crate::spectrum::Curve;
-use crate::trace::World;
+use crate::trace::{LightPass, World};
 
-/// A world and the photons that it needs.
+/// A world with all that finds its light.
 pub(super) struct Lit {
     pub(super) world: World,
     pub(super) because: Vec<String>,
@@ -16,11 +17,22 @@ pub(super) struct Lit {
 
 impl Lit {
     pub(super) fn new(scene: &Scene<Curve>, unlit: &World) -> Self {
-        let Shown { pass: shown, why, taught } = caustics::light_pass(scene, unlit);
+        let Shown { caustics, why, taught } = caustics::caustics(scene, unlit);
+        let shown = caustics.as_ref().map(|caustics| caustics.pass(unlit, 0.0));
         let (light_pass, why_gathered) = photon_map::with_map(scene, unlit, shown.as_ref());
         // Why nothing is shown matters only where nothing is gathered either.
-        let mut because: Vec<String> = why.into_iter().filter(|_| shown.is_some() || light_pass.is_none()).collect();
-        because.extend(why_gathered);
-        Self { world: unlit.with_light_pass(light_pass), because, taught }
+        let why = if shown.is_some() || light_pass.is_none() { why } else { Vec::new() };
+        let map = light_pass.as_ref().and_then(|pass| pass.map);
+        let photons = caustics.as_ref().map_or(&[][..], |caustics| &caustics.photons);
+        let way = between(unlit.with_light_pass(light_pass), photons);
+        // As many as are best beside the noise that all else leaves.
+        let pass = caustics.as_ref().map(|caustics| caustics.pass(unlit, way.photons_of_a_sample()));
+        let Way { mut world, reasons, .. } = way;
+        if let Some(pass) = pass {
+            world = world.with_light_pass(Some(LightPass { map, ..pass }));
+        }
+        let reason = caustics.as_ref().and_then(|caustics| caustics.reason(&world));
+        let because = reason.into_iter().chain(why).chain(why_gathered).chain(reasons).collect();
+        Self { world, because, taught }
     }
 }

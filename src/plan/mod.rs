@@ -29,7 +29,6 @@ use crate::trace::{
     FIRST_LOOK, LightPass, Method, PhotonCost, PhotonTimes, Probe, Transport, bytes_of_film, photon_times,
     prepare_unguided, probe,
 };
-use between::between;
 use lit::Lit;
 use model::Model;
 use survey::SEED;
@@ -76,8 +75,6 @@ pub fn plan(scene: &Scene<Curve>) -> Plan {
     let unlit = prepare_unguided(scene, method);
     let Lit { world, because, taught } = Lit::new(scene, &unlit);
     decisions.extend(because);
-    let (world, reasons) = between(world);
-    decisions.extend(reasons);
     let polarization = polarization::decide(scene, &world);
     decisions.extend(polarization.why);
     let world = world.with_polarization(polarization.polarization);

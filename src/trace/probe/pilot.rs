@@ -4,6 +4,7 @@
 use super::cost::photons_within;
 use crate::light::LightId;
 use crate::math::Sampler;
+use crate::scene::FilmSettings;
 use crate::spectrum::apply;
 use crate::trace::World;
 use crate::trace::camera::PathTracer;
@@ -22,6 +23,15 @@ pub struct PhotonWorth {
     pub variance: f64,
     /// Rays that one follows.
     pub rays: f64,
+    /// What they show in the pixels of each cell of the format.
+    pub(super) cells: Vec<Shown>,
+}
+
+/// X + Y + Z in a pixel of a cell, on average: its mean, and its variance in an image by n photons, times n.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Shown {
+    pub(super) mean: f64,
+    pub(super) variance: f64,
 }
 
 /// What camera samples bring beside photons.
@@ -41,8 +51,8 @@ const ALL: u64 = 4 * PHOTONS;
 const IMAGES: u64 = 4;
 /// Rays that the photons of all images follow, about.
 const RAYS: f64 = (1 << 18) as f64;
-/// Pixels along each side of the image whose samples are compared, and how many of each.
-const SIDE: u32 = 24;
+/// Cells along each side of the format. Samples of the pixel in the middle of each are compared, and how many of it.
+pub(super) const SIDE: u32 = 24;
 const SAMPLES: u32 = 4;
 /// Sets these random numbers apart from those of the image.
 const SEED: u64 = 0x7069_6c6f;
@@ -81,28 +91,54 @@ fn weigh<const N: usize>(whole: &World, world: &mut World, lights: Vec<LightId>,
         let mut splats = Vec::new();
         let shown = light_pass::splats::<N, Polarized>(world, &mut |splat| splats.push((splat.pixel, splat.rgb)));
         (photons, rays) = (photons + shown.photons, rays + shown.stats.rays);
-        values.extend(summed(splats).into_iter().map(|(pixel, rgb)| (pixel, apply(&to_xyz, rgb))));
+        values.extend(summed(splats).into_iter().map(|(pixel, rgb)| {
+            let [x, y, z] = apply(&to_xyz, rgb);
+            (pixel, [x, y, z, x + y + z])
+        }));
     }
     let images = IMAGES as f64;
-    let squares = values.iter().map(|&(pixel, xyz)| (pixel, xyz.map(|x| x * x))).collect();
-    let (sums, squares) = (summed(values), summed(squares));
-    let of_value = |sum: f64, squares: f64| ((squares - sum * sum / images) / (images - 1.0)).max(0.0);
-    let of_pixel = |(sum, squares): (&[f64; 3], &[f64; 3])| (0..3).map(|i| of_value(sum[i], squares[i])).sum::<f64>();
-    let variance: f64 = sums.iter().map(|sum| &sum.1).zip(squares.iter().map(|sum| &sum.1)).map(of_pixel).sum();
-    let brings = [0, 1, 2].map(|channel| sums.iter().map(|(_, sum)| sum[channel]).sum::<f64>() / images);
     let each = photons as f64 / images;
-    let rays = rays as f64 / photons as f64;
-    let worth = PhotonWorth { lights, brings, variance: variance * each, rays };
+    let squares = values.iter().map(|&(pixel, light)| (pixel, light.map(|x| x * x))).collect();
+    let (sums, squares) = (summed(values), summed(squares));
+    let of_value = |sum: f64, squares: f64| ((squares - sum * sum / images) / (images - 1.0)).max(0.0) * each;
+    let film = world.scene.film;
+    let sizes = sizes_of_cells(film);
+    let (mut brings, mut variance, mut cells) = ([0.0; 3], 0.0, vec![Shown::default(); sizes.len()]);
+    for ((pixel, sums), (_, squares)) in sums.iter().zip(&squares) {
+        let variances: [f64; 4] = std::array::from_fn(|i| of_value(sums[i], squares[i]));
+        (0..3).for_each(|i| brings[i] += sums[i] / images);
+        variance += variances[..3].iter().sum::<f64>();
+        let cell = cell_of(film, [pixel % film.width, pixel / film.width]);
+        cells[cell].mean += sums[3] / (images * sizes[cell]);
+        cells[cell].variance += variances[3] / sizes[cell];
+    }
+    let worth = PhotonWorth { lights, brings, variance, rays: rays as f64 / photons as f64, cells };
     brings.iter().any(|&x| x != 0.0).then_some(worth)
 }
 
+/// The cell in which a pixel of the format lies.
+pub(super) fn cell_of(film: FilmSettings, [x, y]: [u32; 2]) -> usize {
+    let of = |place: u32, size: u32| (u64::from(place) * u64::from(SIDE) / u64::from(size)) as usize;
+    of(y, film.height) * SIDE as usize + of(x, film.width)
+}
+
+/// How many pixels each cell has.
+fn sizes_of_cells(film: FilmSettings) -> Vec<f64> {
+    let of_side = |size: u32| {
+        // The first pixel of a cell, counted also where a cell has none.
+        let first = move |cell: u32| (u64::from(cell) * u64::from(size)).div_ceil(u64::from(SIDE));
+        (0..SIDE).map(move |cell| (first(cell + 1) - first(cell)) as f64)
+    };
+    of_side(film.height).flat_map(|rows| of_side(film.width).map(move |columns| rows * columns)).collect()
+}
+
 /// The sums of what falls on each pixel, of those pixels that anything falls on: never more than there are values.
-fn summed(mut values: Vec<(u32, [f64; 3])>) -> Vec<(u32, [f64; 3])> {
+fn summed<const COUNT: usize>(mut values: Vec<(u32, [f64; COUNT])>) -> Vec<(u32, [f64; COUNT])> {
     values.sort_by_key(|value| value.0);
     values.dedup_by(|next, sum| {
         let same = next.0 == sum.0;
         if same {
-            (0..3).for_each(|i| sum.1[i] += next.1[i]);
+            (0..COUNT).for_each(|i| sum.1[i] += next.1[i]);
         }
         same
     });

@@ -1,7 +1,12 @@
 //! Which of two ways to render a scene takes less time to an equal error, learned from some thousand camera samples of
 //! each.
+//!
+//! An image of n_p camera samples, and n_i photons of light i that it sees, has the variance A / n_p + sum B_i / n_i in
+//! the time C_p n_p + sum C_i n_i; their product is least for n_i / n_p = sqrt(B_i C_p / (A C_i)), where it is (sqrt(A
+//! C_p) + sum sqrt(B_i C_i))^2. Rays followed stand for time, so that the answer is the same everywhere.
 
 use super::cost::few_photons;
+use super::pilot::{PhotonWorth, SIDE, cell_of};
 use crate::math::Sampler;
 use crate::spectrum::apply;
 use crate::trace::World;
@@ -10,8 +15,7 @@ use crate::trace::photon::{LightPaths, LightVertices, PhotonMap};
 use crate::trace::walk::Polarized;
 use crate::trace::width::in_lanes;
 
-/// Pixels along each side of the image whose samples are compared, and how many of each.
-const SIDE: u32 = 24;
+/// Samples of a pixel in the middle of each cell of the format.
 const SAMPLES: u32 = 8;
 /// The vertices that a path looks at take as long as so many rays of the path with all that belongs to them.
 pub(super) const LOOKING: f64 = 0.6;
@@ -26,20 +30,38 @@ pub fn pilot_noise(world: &World) -> PilotNoise {
     in_lanes!(&world.method.basis, N => {
         let vertices = LightPaths::new(world, world.method.seed).map(|light_paths| light_paths.few::<N>());
         let (few, photons) = few_photons::<N, Polarized>(world);
-        weigh(&few, photons.as_ref(), vertices.as_ref())
+        let of_map = photons.as_ref().map_or(0.0, |photons| {
+            let of_photon = photons.stats.rays as f64 / photons.sent as f64;
+            let map = world.method.light_pass.as_ref().and_then(|pass| pass.map);
+            map.map_or(0.0, |map| of_photon * map.photons as f64 * f64::from(map.count))
+        });
+        let noise = weigh(&few, photons.as_ref(), vertices.as_ref());
+        let samples = noise.format * f64::from(world.method.samples);
+        PilotNoise { rays: noise.rays + of_map / samples, ..noise }
     })
 }
 
-/// What some samples of a pixel are: the mean of X + Y + Z, and the variance.
+/// What some samples of a pixel are: the mean of X + Y + Z, and the variance of one. The cell of the format in which it
+/// lies.
 struct Pixel {
     mean: f64,
     variance: f64,
+    cell: usize,
 }
 
 /// What samples of pixels all over the image are.
 pub struct PilotNoise {
     pixels: Vec<Pixel>,
+    /// Pixels of the format.
+    format: f64,
+    /// Rays of one sample, and its part of those of photons that are gathered.
     rays: f64,
+}
+
+/// Variances summed over the pixels, times the rays that they take: of a camera sample, and of a photon of each light.
+struct Work {
+    samples: f64,
+    photons: Vec<f64>,
 }
 
 fn weigh<const N: usize>(
@@ -61,30 +83,59 @@ fn weigh<const N: usize>(
         let count = taken.len().max(2) as f64;
         let mean = taken.iter().sum::<f64>() / count;
         let squares = taken.iter().map(|light| (light - mean) * (light - mean));
-        Pixel { mean, variance: squares.sum::<f64>() / (count - 1.0) }
+        let cell = cell_of(film, [x, y].map(|place| place as u32));
+        Pixel { mean, variance: squares.sum::<f64>() / (count - 1.0), cell }
     };
-    let pixels = (0..SIDE * SIDE).map(pixel).collect();
+    let pixels: Vec<Pixel> = (0..SIDE * SIDE).map(pixel).collect();
     let stats = tracer.walker.stats;
-    PilotNoise { pixels, rays: stats.rays as f64 + LOOKING * stats.resampled as f64 }
+    let rays = stats.rays as f64 + LOOKING * stats.resampled as f64;
+    let format = f64::from(film.width) * f64::from(film.height);
+    PilotNoise { format, rays: rays / (pixels.len() as f64 * f64::from(SAMPLES)), pixels }
 }
 
 impl PilotNoise {
-    /// How many times as long an equal error takes with other samples; none where there is no noise.
-    ///
-    /// Variances are relative to the squares of the means, and those of the hundredth of the pixels that has most are
-    /// left out. Rays followed stand for time, so that the answer is the same everywhere.
-    pub fn gain_over(&self, others: &Self) -> Option<f64> {
-        let mean = others.pixels.iter().map(|pixel| pixel.mean).sum::<f64>() / others.pixels.len() as f64;
-        let gain = others.error(mean) * others.rays / (self.error(mean) * self.rays);
+    /// How many times as long an equal error takes with other samples, both beside as many photons as are best for
+    /// them; none where there is no noise. Variances are relative to the squares of the means.
+    pub fn gain_over(&self, others: &Self, photons: &[PhotonWorth]) -> Option<f64> {
+        let mean = others.pixels.iter().map(|pixel| pixel.seen(photons)).sum::<f64>() / others.pixels.len() as f64;
+        let least = |noise: &Self| {
+            let work = noise.work(photons, |pixel| pixel.seen(photons).powi(2) + DARK * mean * mean);
+            let of_photons: f64 = work.photons.iter().map(|of_light| of_light.sqrt()).sum();
+            (work.samples.sqrt() + of_photons).powi(2)
+        };
+        let gain = least(others) / least(self);
         gain.is_finite().then_some(gain)
     }
 
-    /// The sum of the relative variances of most pixels.
-    fn error(&self, mean: f64) -> f64 {
-        let relative = |pixel: &Pixel| pixel.variance / (pixel.mean * pixel.mean + DARK * mean * mean);
-        let mut errors: Vec<f64> = self.pixels.iter().map(relative).collect();
-        errors.sort_by(f64::total_cmp);
-        let most = errors.len() - errors.len().div_ceil(100);
-        errors[..most].iter().sum()
+    /// How many photons for each of the samples make the time to an error least. Variances are not relative: else what
+    /// photons show, which is bright, would be noisier than all around it.
+    pub fn photons_of_a_sample(&self, photons: &[PhotonWorth]) -> f64 {
+        let work = self.work(photons, |_| 1.0);
+        let of_light = |(photons, of_photons): (&PhotonWorth, &f64)| {
+            let times = (of_photons / work.samples).sqrt() * self.rays / photons.rays;
+            if times.is_nan() { 0.0 } else { times }
+        };
+        photons.iter().zip(&work.photons).map(of_light).sum()
+    }
+
+    /// Variances over squares of pixels. The hundredth of the pixels in which samples vary most is left out of theirs.
+    fn work(&self, photons: &[PhotonWorth], squares: impl Fn(&Pixel) -> f64) -> Work {
+        let mut of_samples: Vec<f64> = self.pixels.iter().map(|pixel| pixel.variance / squares(pixel)).collect();
+        of_samples.sort_by(f64::total_cmp);
+        let most = of_samples.len() - of_samples.len().div_ceil(100);
+        // Of n samples, each pixel has as many times fewer as there are pixels.
+        let samples = of_samples[..most].iter().sum::<f64>() * self.rays * self.format;
+        let of_light = |photons: &PhotonWorth| {
+            let of_pixel = |pixel: &Pixel| photons.cells[pixel.cell].variance / squares(pixel);
+            self.pixels.iter().map(of_pixel).sum::<f64>() * photons.rays
+        };
+        Work { samples, photons: photons.iter().map(of_light).collect() }
+    }
+}
+
+impl Pixel {
+    /// Its mean with what photons show.
+    fn seen(&self, photons: &[PhotonWorth]) -> f64 {
+        self.mean + photons.iter().map(|photons| photons.cells[self.cell].mean).sum::<f64>()
     }
 }
