@@ -2,6 +2,7 @@
 
 mod edges;
 mod files;
+mod mattes;
 mod mitchell;
 mod overscan;
 mod polarization;

@@ -4,7 +4,8 @@ use super::survey::SEED;
 use super::words::percent;
 use crate::film::Filter;
 use crate::light::Light;
-use crate::scene::{Object, Scene};
+use crate::material::Material;
+use crate::scene::{Object, Scene, Sight};
 use crate::spectrum::{Basis, Curve};
 use crate::trace::{Branching, Method, Transport, World, branching};
 
@@ -42,7 +43,7 @@ pub(super) fn transport(scene: &Scene<Curve>, basis: &Basis, together: f64) -> (
             _ => Some(format!("light leaves {} in every direction", object.name)),
         },
     };
-    match why.or_else(|| too_many_ways(scene, basis, together)) {
+    match why.or_else(|| holes_beside_mattes(scene)).or_else(|| too_many_ways(scene, basis, together)) {
         None => (
             Transport::Deterministic { cutoff: CUTOFF, most: MOST_SURFACES },
             format!(
@@ -67,6 +68,16 @@ fn extended_light(scene: &Scene<Curve>) -> Option<String> {
         Light::Sun(_) => "the sun".into(),
         _ => "the environment".into(),
     })
+}
+
+/// That camera samples take surfaces with holes, or what is behind them, in whole.
+fn holes_beside_mattes(scene: &Scene<Curve>) -> Option<String> {
+    let has_mattes = scene.objects.iter().any(|object| matches!(object.sight, Sight::Holdout | Sight::ShadowCatcher));
+    let is_mask = |material: &&Material<Curve>| matches!(material, Material::Mask(_));
+    let parts = |object: &Object| scene.materials[object.material as usize].material.with_parts();
+    let holes = |object: &&Object| parts(object).iter().any(is_mask);
+    let object = scene.objects.iter().find(holes).filter(|_| has_mattes)?;
+    Some(format!("beside holdouts and shadow catchers each sample shows {} or what is behind its holes", object.name))
 }
 
 /// Why not all ways of light can be followed, where they are too many.

@@ -41,6 +41,8 @@ pub struct World {
     pub(super) has_media: bool,
     /// Whether there are objects that the camera does not see, or sees as holes.
     pub(super) hides_objects: bool,
+    /// Whether some of them are holdouts or shadow catchers, over which samples count in whole.
+    pub(super) has_mattes: bool,
     /// The lobes of each material.
     pub(super) lobes: Vec<Lobes>,
     /// Whether each object lets light straight on; empty where none does.
@@ -73,6 +75,8 @@ impl World {
             _ => method.basis.tabulate(quantity, curve),
         });
         let hides_objects = scene.objects.iter().any(|object| object.sight != Sight::Shown);
+        let is_matte = |sight: Sight| matches!(sight, Sight::Holdout | Sight::ShadowCatcher);
+        let has_mattes = scene.objects.iter().any(|object| is_matte(object.sight));
         let is_see_through = |object: u32| scene.material_of(object).is_see_through();
         let see_through: Vec<bool> = (0..scene.objects.len() as u32).map(is_see_through).collect();
         let see_through = if see_through.contains(&true) { see_through } else { Vec::new() };
@@ -94,6 +98,7 @@ impl World {
             hidden_media: Media::default(),
             has_media,
             hides_objects,
+            has_mattes,
             lobes,
             see_through,
             bright,

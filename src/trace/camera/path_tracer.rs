@@ -10,11 +10,11 @@ use super::resampling::Resampling;
 use super::sensor::{Bounce, Observer, Sensor};
 use crate::film::{Layer, Sample};
 use crate::light::{Light, LightId};
-use crate::material::Material;
+use crate::material::{Material, Straight};
 use crate::math::{DVec2, DVec3, Sampler};
 use crate::scene::Sight;
 use crate::shape::SurfacePoint;
-use crate::spectrum::Draw;
+use crate::spectrum::{Draw, Lanes};
 use crate::trace::arrived::Arrived;
 use crate::trace::contribution::{Contribution, Found};
 use crate::trace::media::Media;
@@ -177,7 +177,10 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
             self.tell(path, draw, f64::INFINITY, before);
             return;
         };
-        let onward = self.walker.straight(path, draw, &meeting);
+        let mut onward = self.walker.straight(path, draw, &meeting);
+        if world.has_mattes && path.vertices == 0 && first.is_none() {
+            self.choose(path, draw, sampler, &mut onward);
+        }
         let Meeting { hit, point } = &meeting;
         if let Some(straight) = &onward
             && path.throughput.through(straight.straight.share()) == path.throughput
@@ -186,12 +189,12 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
             *self.walker.pending.add(|| *path) = Path { polarization, ..path.passed(point) };
             return;
         }
+        path.vertices += 1;
         if world.hides_objects && path.kind == PathKind::Camera && world.sight(hit.object) == Sight::Holdout {
             self.walker.audit.iter_mut().for_each(|audit| audit.end_beside(path, onward.as_ref(), draw));
-            self.walker.go_on_in_part(path, point, onward.as_ref());
-            return;
+            return self.walker.go_on_in_part(path, point, onward.as_ref());
         }
-        let is_met_first = path.vertices == 0 && first.is_none() && {
+        let is_met_first = path.vertices == 1 && first.is_none() && {
             let (is_met, chance) = straight::is_met(world, draw, sampler, path, onward.as_ref());
             self.sensor.layers.iter_mut().for_each(|layers| layers.choose(chance));
             is_met
@@ -202,7 +205,6 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
                 layers.meet_object(hit.object);
             }
         }
-        path.vertices += 1;
         self.emission(path, draw, &meeting);
         if path.vertices > world.method.max_bounces {
             self.cut(path, draw, &meeting, onward.as_ref());
@@ -212,6 +214,27 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         if onward.is_none() {
             self.tell(path, draw, hit.crossing.t, before);
         }
+    }
+
+    /// Lets a path from the camera go on from a surface or through its holes, and not both, by how likely each is: a
+    /// holdout hides all that a sample shows, and a shadow catcher takes all of it for its own.
+    #[cold]
+    fn choose(&mut self, path: &mut Path<N, P>, draw: &Draw<N>, sampler: &Sampler, onward: &mut Option<Onward<N, P>>) {
+        let world = self.walker.world;
+        let is_by_chance = matches!(world.method.transport, Transport::Random { .. });
+        let is_pane = |straight: &Straight<N>| !straight.panes.is_zero();
+        let Some(whole) = onward.filter(|onward| is_by_chance && !is_pane(&onward.straight)) else { return };
+        let (is_met, chance) = straight::is_met(world, draw, sampler, path, Some(&whole));
+        let before = path.throughput;
+        if is_met {
+            *onward = None;
+        } else {
+            path.throughput = before.through(whole.straight.holes);
+            path.key = path.key.child(0);
+            *onward = Some(Onward { straight: Straight { holes: Lanes::ONE, ..whole.straight }, ..whole });
+        }
+        path.throughput = path.throughput.scaled(1.0 / chance);
+        self.walker.audit.iter_mut().for_each(|audit| audit.absorb(path, before, draw));
     }
 
     /// Ends a path that has met as many surfaces as it may, but for what goes straight on.
