@@ -152,12 +152,14 @@ impl Emission {
     }
 }
 
-/// A sampled emission on the grid: 0 beyond its ends. Where samples lie closer than the grid each step gets the light
-/// around it, weighed by the hat function of its step, so that no narrow line is lost.
+/// A sampled emission on the grid: 0 beyond its ends. Where samples lie closer than the grid, or where light ends at
+/// once, each step gets the light around it, weighed by the hat function of its step: no narrow line is lost, and no
+/// table is wider than it is.
 fn on_grid(samples: &[[f64; 2]], wavelength_nm: f64) -> f64 {
-    let (Some([first, _]), Some([last, _])) = (samples.first(), samples.last()) else { return 0.0 };
-    let at = |nm: f64| if (*first..=*last).contains(&nm) { interpolate(samples, nm) } else { 0.0 };
-    if samples.windows(2).all(|pair| pair[1][0] - pair[0][0] >= 1.0) {
+    let (Some(first), Some(last)) = (samples.first(), samples.last()) else { return 0.0 };
+    let at = |nm: f64| if (first[0]..=last[0]).contains(&nm) { interpolate(samples, nm) } else { 0.0 };
+    let ends_near = [first, last].iter().any(|end| end[1] != 0.0 && (end[0] - wavelength_nm).abs() < 1.0);
+    if !ends_near && samples.windows(2).all(|pair| pair[1][0] - pair[0][0] >= 1.0) {
         return at(wavelength_nm);
     }
     let (from, to) = (wavelength_nm - 1.0, wavelength_nm + 1.0);
@@ -177,4 +179,23 @@ fn on_grid(samples: &[[f64; 2]], wavelength_nm: f64) -> f64 {
 
 fn diagonal([x, y, z]: [f64; 3]) -> Matrix {
     [[x, 0.0, 0.0], [0.0, y, 0.0], [0.0, 0.0, z]]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_even_table_has_the_light_of_its_width_wherever_it_ends() {
+        for [from, to] in
+            [[550.0, 560.0], [550.0, 551.0], [549.5, 560.5], [550.25, 560.0], [550.0, 550.5], [500.1, 600.7]]
+        {
+            let samples = [[from, 2.0], [to, 2.0]];
+            let sum: f64 = visible::wavelengths().map(|nm| on_grid(&samples, nm)).sum();
+            assert!((sum - 2.0 * (to - from)).abs() < 1e-6, "{from} to {to} nm: {sum}");
+        }
+        // A table that ends dark has no jump: each step has the light at its wavelength.
+        let peak = [[540.0, 0.0], [550.0, 1.0], [560.0, 0.0]];
+        assert!(visible::wavelengths().all(|nm| on_grid(&peak, nm) == (1.0 - 0.1 * (nm - 550.0).abs()).max(0.0)));
+    }
 }
