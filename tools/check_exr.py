@@ -65,6 +65,8 @@ LAYERS = {
 BAND = r"S([0-3])\.([0-9]+),([0-9]{6})nm"
 # What a compression that loses may change: light to look at. A is rounded, or kept.
 LIGHT = r"([RGBA]|(emission|background|direct|indirect|caustics|dispersed|shadow|light_\w+|[a-z]+_(in)?direct)\.[RGB])"
+# Colors of the file's space, in parts of their own: no shares, squares or differences.
+COLOR = r"(emission|background|direct|indirect|caustics|dispersed|albedo|half_[ab]|denoised|light_\w+|[a-z]+_(in)?direct)\.[RGB]"
 # Numbers that 16 bits would spoil: depth, places, statistics and the numbers of mattes.
 ALWAYS_32_BITS = r"Z|P\..*|UV\..*|variance\..*|samples\..*|residual\..*|S[123]\..*|polarization\..*|Crypto.*"
 # Attributes in which the parts of a file agree.
@@ -152,7 +154,7 @@ def layout(file):
 
 
 def parts(file):
-    """Of several parts, the first is the image and says all of it; each other one is data: the layer of its name, or depth."""
+    """Of several parts, the first is the image and says all of it; each other one is the layer of its name, or depth."""
     if len(file.parts) == 1:
         return
     if file.header.get("name") != "image":
@@ -172,8 +174,10 @@ def parts(file):
                 wanted = OpenEXR.ZIP_COMPRESSION
             if not np.array_equal(header.get(name), wanted):
                 yield f"{part}: {name} differs from that of the first part"
-        if header.get("colorInteropID") != "data":
-            yield f"{part}: colorInteropID is {header.get('colorInteropID')!r}, not 'data'"
+        is_color = all(re.fullmatch(COLOR, each) for each in channels)
+        wanted = file.header.get("colorInteropID") if is_color else "data"
+        if header.get("colorInteropID") != wanted:
+            yield f"{part}: colorInteropID is {header.get('colorInteropID')!r}, not {wanted!r}"
         if said := sorted(name for name in header if re.match("render/|cryptomatte/|chromaticities|capDate", name)):
             yield f"{part}: {', '.join(said)} would stand in the first part, if anywhere"
         if warnings := int(OpenEXR.checkColorMetadata(header, file.header)):

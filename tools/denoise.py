@@ -74,9 +74,9 @@ def parts_with(file, result):
         for name, plane in planes.items():
             first.channels[name] = OpenEXR.Channel(name, plane)
         return file.parts
-    # Only the first part may name a color space; all others that Abbe writes are "data".
+    # All colors of a file are of one space.
     header = {name: first.header[name] for name in check_exr.SHARED if name in first.header}
-    header |= {"name": LAYER, "colorInteropID": "data"}
+    header |= {"name": LAYER, "colorInteropID": first.header["colorInteropID"]}
     own = OpenEXR.Part(header, planes, LAYER)
     return [*(part for part in file.parts if part.header.get("name") != LAYER), own]
 

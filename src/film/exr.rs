@@ -150,7 +150,7 @@ fn parts(heading: Heading) -> Vec<Part> {
     // The chromaticities would be those of all parts, also of those that hold no colors.
     shared.chromaticities = (!format.multipart).then(|| chromaticities(film));
     let part = |(number, group): (usize, Group)| {
-        let own = if number == 0 { attributes.clone() } else { of_data(&attributes) };
+        let own = if number == 0 { attributes.clone() } else { of_other_part(film, &attributes, group.has_colors) };
         let name = format.multipart.then(|| Text::new_or_panic(group.name));
         let packed = if group.is_data && format.compression.is_lossy() { Compression::Zip } else { format.compression };
         Part::new(film, group.columns, packed, shared.clone(), LayerAttributes { layer_name: name, ..own })
@@ -163,6 +163,8 @@ struct Group<'f> {
     name: &'f str,
     /// Whether it holds what is no color, apart from the image.
     is_data: bool,
+    /// Whether it holds colors of the film's space.
+    has_colors: bool,
     columns: Vec<Column>,
 }
 
@@ -170,15 +172,16 @@ struct Group<'f> {
 fn groups<'f>(film: &'f Film, format: &Format, half: bool) -> Vec<Group<'f>> {
     let mut image = vec![Column::new("A", half, Of::Alpha)];
     image.extend(colors(half));
-    let mut groups = vec![Group { name: "image", is_data: false, columns: image }];
+    let mut groups = vec![Group { name: "image", is_data: false, has_colors: true, columns: image }];
     if format.multipart {
         // Blender takes a part of R, G, B, A and another channel for none of what they are.
-        groups.push(Group { name: "depth", is_data: true, columns: Vec::new() });
+        groups.push(Group { name: "depth", is_data: true, has_colors: false, columns: Vec::new() });
     }
     groups.last_mut().expect("the image comes first").columns.push(Column::new("Z", false, Of::Depth));
     for (layer, image) in film.layers.iter().enumerate() {
         if format.multipart {
-            groups.push(Group { name: &image.name, is_data: !image.layer.is_color(), columns: Vec::new() });
+            let (is_data, has_colors) = (!image.layer.is_color(), image.layer.has_color_space());
+            groups.push(Group { name: &image.name, is_data, has_colors, columns: Vec::new() });
         }
         let columns = image.layer.channels().iter().enumerate().map(|(channel, name)| {
             let is_half = half && image.layer.may_be_half();
@@ -211,15 +214,17 @@ fn utf8(text: &str) -> Text {
     Text::from_slice_unchecked(text.as_bytes())
 }
 
-/// The attributes of another part than the first: where it lies and how it was seen.
-fn of_data(attributes: &LayerAttributes) -> LayerAttributes {
+/// The attributes of another part than the first: where it lies, how it was seen, and what its numbers are. All colors
+/// of a file are of one space.
+fn of_other_part(film: &Film, attributes: &LayerAttributes, has_colors: bool) -> LayerAttributes {
     let mut own = LayerAttributes {
         layer_position: attributes.layer_position,
         screen_window_width: attributes.screen_window_width,
         screen_window_center: attributes.screen_window_center,
         ..LayerAttributes::default()
     };
-    own.other.insert(Text::from("colorInteropID"), AttributeValue::Text(Text::from("data")));
+    let space = if has_colors { film.color_space.interop_id() } else { "data" };
+    own.other.insert(Text::from("colorInteropID"), AttributeValue::Text(Text::from(space)));
     own
 }
 

@@ -179,6 +179,12 @@ impl Layer {
         }
     }
 
+    /// Whether its numbers are colors of the film's space: not where they are shares, squares or differences.
+    pub fn has_color_space(self) -> bool {
+        let is_color = self.is_color() && self != Self::Shadow;
+        is_color || matches!(self, Self::Albedo | Self::HalfA | Self::HalfB)
+    }
+
     /// Whether it holds what one lobe of the first surface sends to the camera.
     pub fn is_of_lobe(self) -> bool {
         use Layer::{DiffuseDirect, GlossyDirect, SpecularDirect, TransmissionDirect};

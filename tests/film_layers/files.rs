@@ -31,11 +31,18 @@ fn written(precision: Precision, compression: Compression, multipart: bool, laye
         });
         (name, channels.collect())
     };
-    let data = |layer: &exr::prelude::Layer<_>| {
-        let space = &layer.attributes.other[&exr::prelude::Text::from("colorInteropID")];
-        *space == AttributeValue::Text("data".into())
-    };
-    assert!(file.layer_data.iter().skip(1).all(data) && !data(&file.layer_data[0]));
+    for layer in &file.layer_data {
+        let AttributeValue::Text(space) = &layer.attributes.other[&exr::prelude::Text::from("colorInteropID")] else {
+            panic!("it is a text");
+        };
+        let name = layer.attributes.layer_name.as_ref().map_or("image".into(), ToString::to_string);
+        let lights = ["emission", "background", "direct", "indirect", "caustics", "dispersed", "albedo"];
+        let is_color = name == "image"
+            || lights.contains(&&*name)
+            || ["light_", "half_"].iter().any(|start| name.starts_with(start))
+            || ["_direct", "_indirect"].iter().any(|end| name.ends_with(end));
+        assert_eq!(space.to_string(), if is_color { "lin_rec709_scene" } else { "data" }, "{name}");
+    }
     (file.layer_data.iter().map(part).collect(), bytes)
 }
 

@@ -215,11 +215,12 @@ def several_parts(half=False, *, changes=None, **attributes):
     attributes = {"chromaticities": None, "render/clamped": 0 if half else None, **matte_attributes(), **attributes}
     first = header(**attributes)
     shared = ("type", "compression", "dataWindow", "displayWindow", "screenWindowWidth")
-    data = {name: first[name] for name in shared if name in first} | {"colorInteropID": "data"}
+    own = {name: first[name] for name in shared if name in first}
     parts = {"image": ({**first, "name": "image"}, {})}
     for name, values in image.items():
         layer = name.rpartition(".")[0] or "image"
-        parts.setdefault(layer, ({**data, "name": layer}, {}))[1][name] = values
+        space = first["colorInteropID"] if re.fullmatch(check_exr.COLOR, name) else "data"
+        parts.setdefault(layer, ({**own, "colorInteropID": space, "name": layer}, {}))[1][name] = values
     for layer, change in (changes or {}).items():
         own = {name: value for name, value in {**parts[layer][0], **change}.items() if value is not None}
         parts[layer] = own, parts[layer][1]
@@ -293,6 +294,7 @@ def test_depth_may_be_a_part_of_its_own(found_in_parts):
         (several_parts(changes={"image": {"name": "beauty"}}), "the first part is 'beauty', not 'image'"),
         (several_parts(changes={"N": {"name": "normal"}}), "part 'normal': holds 'N', not the layer of its name"),
         (several_parts(changes={"N": {"colorInteropID": None}}), "part 'N': colorInteropID is None, not 'data'"),
+        (several_parts(changes={"emission": {"colorInteropID": "data"}}), "part 'emission': colorInteropID is 'data', not 'lin_"),
         (several_parts(changes={"N": {"compression": OpenEXR.RLE_COMPRESSION}}), "part 'N': compression differs"),
         (several_parts(changes={"N": {"dataWindow": SHIFTED}}), "part 'N': dataWindow differs"),
         (several_parts(changes={"N": {"screenWindowWidth": 2.0}}), "part 'N': screenWindowWidth differs"),
