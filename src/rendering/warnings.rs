@@ -22,7 +22,7 @@ pub(super) fn warnings(report: &Report, error: Option<&ImageError>) -> Vec<Strin
         let times = format!("{times} light left a clear body it had not entered");
         let crowded = format!(", or do more than {MOST_MEDIA} clear materials overlap in one place");
         let crowded = if report.has_many_media { &crowded } else { "" };
-        warnings.push(format!("{times} and went straight on: is a dielectric mesh open{crowded}?"));
+        warnings.push(format!("{times} and went straight on: is the surface of a dielectric open{crowded}?"));
     }
     if report.by_chance > 0 {
         let share = format!("in {} of {} camera samples", report.by_chance, report.samples);
@@ -81,7 +81,8 @@ mod tests {
     #[test]
     fn too_many_clear_materials_are_told_of_only_where_there_are_so_many() {
         let told = |has_many_media| warnings(&Report { unmatched: 1, has_many_media, ..Report::default() }, None);
-        let once = "once light left a clear body it had not entered and went straight on: is a dielectric mesh open";
+        let once =
+            "once light left a clear body it had not entered and went straight on: is the surface of a dielectric open";
         assert_eq!(told(false), [format!("{once}?")]);
         assert_eq!(told(true), [format!("{once}, or do more than 16 clear materials overlap in one place?")]);
     }

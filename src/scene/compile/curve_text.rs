@@ -208,9 +208,10 @@ fn one_or_two(value: Value) -> Option<[f64; 2]> {
 /// Numbers of copies in a unit that are neither too large nor too small.
 pub(super) fn is_repeat(At { place: value, it: repeat }: At<[f64; 2]>) -> Option<[f64; 2]> {
     match repeat.iter().find(|x| !(1.0 / MOST_REPEAT..=MOST_REPEAT).contains(*x)) {
-        Some(wrong) => {
-            value.refuse(format!("`repeat` counts copies in a unit, above 0 to {MOST_REPEAT:e}, not {wrong}"))
-        }
+        Some(wrong) => value.refuse(format!(
+            "`repeat` counts copies in a unit, {:e} to {MOST_REPEAT:e}, not {wrong}",
+            1.0 / MOST_REPEAT
+        )),
         None => Some(repeat),
     }
 }

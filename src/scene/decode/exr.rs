@@ -6,8 +6,8 @@ use exr::meta::header::Header;
 use exr::prelude::{AttributeValue, Compression, SampleType, f16};
 
 use super::exr_channels::Chosen;
-use super::texels::{Floats, Unreadable};
-use crate::film::{claims_fit, exr_primaries, exr_text, fits};
+use super::texels::{Floats, Unreadable, fits};
+use crate::film::{claims_fit, exr_primaries, exr_text};
 use crate::spectrum::{Matrix, matrix_of_file};
 
 /// Reads the colors or the grays of an OpenEXR file, and alpha if asked; where there is none, it is 1.
@@ -26,7 +26,7 @@ pub(in crate::scene) fn decode(bytes: &[u8], alpha: bool) -> Result<Floats, Unre
     for header in reader.headers() {
         let [width, height] = [header.layer_size.width(), header.layer_size.height()];
         let length = (width as u64 * height as u64).saturating_mul(4 * if alpha { 4 } else { 3 });
-        fits(width, height, length, bytes).map_err(Unreadable::Unfit)?;
+        fits(width, height, length, bytes)?;
     }
     claims_fit(bytes)?;
     let chosen = Chosen::of(reader.headers(), alpha)?;
@@ -34,7 +34,7 @@ pub(in crate::scene) fn decode(bytes: &[u8], alpha: bool) -> Result<Floats, Unre
     let display = header.shared_attributes.display_window;
     let [width, height] = [display.size.width(), display.size.height()];
     let length = (width as u64 * height as u64).saturating_mul(4 * chosen.channels() as u64);
-    fits(width, height, length, bytes).map_err(Unreadable::Unfit)?;
+    fits(width, height, length, bytes)?;
     let mut floats = Floats::new(width, height, chosen.channels());
     floats.has_alpha = alpha;
     floats.is_lossy = is_lossy(&header, &chosen);

@@ -4,8 +4,7 @@ use zune_jpeg::zune_core::bytestream::ZCursor;
 use zune_jpeg::zune_core::colorspace::ColorSpace;
 use zune_jpeg::zune_core::options::DecoderOptions;
 
-use super::texels::{Steps, Unreadable, Whole};
-use crate::film::fits;
+use super::texels::{Steps, Unreadable, Whole, fits};
 
 /// Reads a JPEG: gray stays gray, all other colors become red, green and blue.
 ///
@@ -20,7 +19,7 @@ pub(in crate::scene) fn decode(bytes: &[u8]) -> Result<Whole, Unreadable> {
         Some(ColorSpace::Luma) => (ColorSpace::Luma, 1),
         _ => (ColorSpace::RGB, 3),
     };
-    fits(width, height, (width * height * channels) as u64, bytes).map_err(Unreadable::Unfit)?;
+    fits(width, height, (width * height * channels) as u64, bytes)?;
     decoder.set_options(any.jpeg_set_out_colorspace(color));
     let mut numbers = vec![0; width * height * channels];
     decoder.decode_into(&mut numbers)?;

@@ -2,8 +2,8 @@ use std::io::Cursor;
 
 use png::{BitDepth, Decoder, DecodingError, Limits, Transformations};
 
-use super::texels::{Steps, Unreadable, Whole};
-use crate::film::{MOST_TEXELS, fits};
+use super::texels::{Steps, Unreadable, Whole, fits};
+use crate::film::MOST_TEXELS;
 
 /// Reads a PNG (ISO/IEC 15948): palettes, transparent colors and less than 8 bits become numbers of 8 bits.
 ///
@@ -17,7 +17,7 @@ pub(in crate::scene) fn decode(bytes: &[u8]) -> Result<Whole, Unreadable> {
     let mut reader = decoder.read_info()?;
     let [width, height] = [reader.info().width, reader.info().height].map(|side| side as usize);
     let size = reader.output_buffer_size().ok_or(DecodingError::LimitsExceeded)?;
-    fits(width, height, size as u64, bytes).map_err(Unreadable::Unfit)?;
+    fits(width, height, size as u64, bytes)?;
     let mut numbers = vec![0; size];
     reader.next_frame(&mut numbers)?;
     let (color, depth) = reader.output_color_type();

@@ -2,8 +2,7 @@
 //!
 //! G. Ward, "Real Pixels", Graphics Gems II (1991); "Radiance File Formats", Lawrence Berkeley National Laboratory.
 
-use super::texels::{Floats, Unreadable};
-use crate::film::fits;
+use super::texels::{Floats, Unreadable, fits};
 use crate::spectrum::IDENTITY;
 
 /// How files begin: those of Radiance, and those of other programs.
@@ -22,7 +21,7 @@ pub(in crate::scene) fn decode(bytes: &[u8]) -> Result<Floats, Unreadable> {
     let mut reader = Reader { rest, row: 0 };
     let Header { size: [width, height], factors } = reader.header()?;
     let length = 12_u64.saturating_mul(width as u64).saturating_mul(height as u64);
-    fits(width, height, length, bytes).map_err(Unreadable::Unfit)?;
+    fits(width, height, length, bytes)?;
     // Colors are whole multiples of 2^(exponent - 136); an exponent of 0 is black.
     let unit = |exponent: usize| if exponent == 0 { 0.0 } else { libm::ldexp(1.0, exponent as i32 - 136) };
     let units: [f64; 256] = std::array::from_fn(unit);

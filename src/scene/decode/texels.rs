@@ -1,5 +1,6 @@
 //! What files of images hold, and why they cannot be read.
 
+use crate::film::{self, MOST_TEXELS};
 use crate::spectrum::{IDENTITY, Matrix};
 
 /// Whole numbers, texel by texel, rows from the top: gray, or red, green and blue, and maybe alpha behind them.
@@ -58,6 +59,8 @@ impl Floats {
 pub(in crate::scene) enum Unreadable {
     #[error("{0}")]
     Unfit(String),
+    #[error("its {0} x {1} pixels are more than {MOST_TEXELS}")]
+    Large(usize, usize),
     #[error(transparent)]
     Png(#[from] ::png::DecodingError),
     #[error("{}", .0.to_string().trim_matches('"'))]
@@ -89,6 +92,7 @@ impl Unreadable {
     /// How to save an image that is whole, but of a form that is not read; none of another.
     pub(in crate::scene) fn remedy(&self) -> Option<&'static str> {
         match self {
+            Self::Large(..) => Some("make it smaller"),
             Self::Deep => Some("flatten it"),
             Self::Sparse => Some("save all channels in full size"),
             Self::Format(_) => Some("save it as red, green and blue"),
@@ -96,4 +100,12 @@ impl Unreadable {
             _ => None,
         }
     }
+}
+
+/// Refuses images without texels, with too many, and sizes whose `bytes` the file cannot hold.
+pub(super) fn fits(width: usize, height: usize, bytes: u64, file: &[u8]) -> Result<(), Unreadable> {
+    if width.saturating_mul(height) > MOST_TEXELS {
+        return Err(Unreadable::Large(width, height));
+    }
+    film::fits(width, height, bytes, file).map_err(Unreadable::Unfit)
 }
