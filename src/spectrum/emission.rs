@@ -158,8 +158,10 @@ impl Emission {
 fn on_grid(samples: &[[f64; 2]], wavelength_nm: f64) -> f64 {
     let (Some(first), Some(last)) = (samples.first(), samples.last()) else { return 0.0 };
     let at = |nm: f64| if (first[0]..=last[0]).contains(&nm) { interpolate(samples, nm) } else { 0.0 };
-    let ends_near = [first, last].iter().any(|end| end[1] != 0.0 && (end[0] - wavelength_nm).abs() < 1.0);
-    if !ends_near && samples.windows(2).all(|pair| pair[1][0] - pair[0][0] >= 1.0) {
+    // What is even over the visible range has its light in every step of it.
+    let is_whole = |nm: f64| [visible::START_NM, visible::FIRST_NM, visible::LAST_NM].contains(&nm);
+    let ends_at_once = |end: &[f64; 2]| end[1] != 0.0 && !is_whole(end[0]) && (end[0] - wavelength_nm).abs() < 1.0;
+    if ![first, last].into_iter().any(ends_at_once) && samples.windows(2).all(|pair| pair[1][0] - pair[0][0] >= 1.0) {
         return at(wavelength_nm);
     }
     let (from, to) = (wavelength_nm - 1.0, wavelength_nm + 1.0);
