@@ -32,7 +32,7 @@ pub(super) enum Found {
     Sampled,
     /// A path from the light was met.
     Connected,
-    /// Photons were gathered.
+    /// Photons were gathered, or one was met where it had landed.
     Gathered,
     /// A photon was shown to the camera.
     Shown,

@@ -316,7 +316,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         }
         let ends = self.ends_at_light_vertices(path, draw, meeting, sampler);
         let path = &*path;
-        if ends && !(world.has_map() && path.diffuse_left > 0) {
+        if ends && !path.resampled {
             return;
         }
         let at = Interaction::new(world, draw, &path.arriving(), meeting, boundary);
@@ -324,16 +324,12 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
             let straight = onward.map(|onward| &onward.straight);
             layers.meet(&Met { path, meeting, at: &at, straight, is_met_first }, sampler);
         }
-        if ends {
-            // Light vertices leave out what photons bring here.
-            return self.gather_photons(path, &at, sampler);
-        }
         match self.excite(path, &at, sampler) {
             0.0 => {}
-            1.0 => self.scatter_at(path, &at, sampler, onward),
+            1.0 => self.scatter_at(path, &at, sampler, onward, !ends),
             factor => {
                 let throughput = path.throughput.scaled(factor);
-                self.scatter_at(&Path { throughput, ..*path }, &at, sampler, onward);
+                self.scatter_at(&Path { throughput, ..*path }, &at, sampler, onward, !ends);
             }
         }
     }
@@ -357,13 +353,20 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
             let excitation = Rc::new(excitation);
             let path = Path { excitation: Some(self.excitations.len() as u32), ..way };
             self.excitations.push(excitation.clone());
-            self.scatter_at(&path, &at.of_dye(&dyes.white, &excitation.draw), sampler, None);
+            self.scatter_at(&path, &at.of_dye(&dyes.white, &excitation.draw), sampler, None, true);
         }
         ways.scattered
     }
 
-    /// Samples the lights where a surface scatters widely, and lets the path go on.
-    fn scatter_at(&mut self, path: &Path<N, P>, at: &Interaction<N>, sampler: &Sampler, onward: Option<&Onward<N, P>>) {
+    /// Samples the lights where a surface scatters widely, gathers photons there if it shall, and lets the path go on.
+    fn scatter_at(
+        &mut self,
+        path: &Path<N, P>,
+        at: &Interaction<N>,
+        sampler: &Sampler,
+        onward: Option<&Onward<N, P>>,
+        gathers: bool,
+    ) {
         let (world, draw) = (self.walker.world, at.arrival.draw);
         let material = at.material;
         let goes_on = !at.lobes.is_diffuse() || path.diffuse_left > 0;
@@ -380,7 +383,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
             let lighting =
                 DirectLighting { world, path, at, excitation, goes_on, all_lights, last_occluder, u, aiming, found_at };
             let chance = lighting.gather(sampler, &mut self.sensor);
-            if goes_on && path.kind != PathKind::Camera {
+            if gathers && goes_on && path.kind != PathKind::Camera {
                 self.gather_photons(path, at, sampler);
             }
             let resampled = goes_on && self.resample(path, at, sampler);
@@ -435,7 +438,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         let ends = sampler.four_plain(path.key, COMPLEMENT)[0] >= chance;
         if !vertices.carry_all() {
             path.resampled |= ends;
-            return false;
+            return ends;
         }
         self.walker.audit.iter_mut().filter(|_| ends).for_each(|audit| audit.end(path, draw));
         ends

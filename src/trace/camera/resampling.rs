@@ -81,7 +81,8 @@ impl<const N: usize, P: Polarization<N>> Resampling<'_, N, P> {
         let moved = self.path.polarization.moved(at, direction, &on_its_way, &met);
         let (bounces, dispersed) = (self.path.bounces + 1 + vertex.vertices, self.path.parted);
         let first = at.first_lobe(world, self.path.lobe(), direction, false);
-        let (light, found) = (Some(vertex.light), Found::Connected);
+        let light = Some(vertex.light);
+        let found = if vertex.is_of_photon { Found::Gathered } else { Found::Connected };
         sensor.receive(Contribution { light, found, rgb, moved, first, bounces, dispersed }, &met, &on_its_way);
         Some(())
     }

@@ -6,11 +6,15 @@
 //! D^2) is looked for at distance d, and the bounce that happens to go from x to y goes on from there with the
 //! probability of the rest, D^2 / (d^2 + D^2). Both together are exact for any D (Kollig & Keller 2004, *Illumination
 //! in the Presence of Weak Singularities*, bound the same way).
+//!
+//! Where photons are gathered, others that are sent as they are leave vertices too: light that comes over smooth
+//! surfaces is looked for at those as at others, and gathered only where a bounce goes on.
 
 use std::f64::consts::FRAC_1_PI;
 use std::ops::Range;
 use std::sync::Arc;
 
+use super::batch::{batches, send};
 use super::follow::{Landing, Start, Surfaces, follow_photon};
 use super::usefulness::{Place, places, usefulness};
 use crate::light::{Light, LightId};
@@ -21,6 +25,7 @@ use crate::spectrum::{Draw, Lanes};
 use crate::trace::media::{Media, media_of_lights};
 use crate::trace::parallel::in_parallel;
 use crate::trace::path_start::PathStart;
+use crate::trace::photon_targets::PhotonTarget;
 use crate::trace::stats::Stats;
 use crate::trace::walk::{PathKind, Polarization, Polarized, Walker};
 use crate::trace::{Transport, World};
@@ -39,6 +44,8 @@ pub struct LightVertex<const N: usize> {
     /// Surfaces that the light has met, and the diffuse ones of them, this one included.
     pub vertices: u32,
     pub diffuse: u32,
+    /// Whether a photon has left it.
+    pub is_of_photon: bool,
 }
 
 /// The vertices of some light paths, dealt into sets of candidates. Each set has vertices from all over the scene.
@@ -92,8 +99,9 @@ const CELLS: f64 = 25.0;
 /// The set of a pilot, and its light paths.
 const PILOT: u32 = u32::MAX;
 const OF_A_PILOT: u64 = 1024;
-/// Sets these random numbers apart from the others.
+/// Sets these random numbers apart from the others, and those of photons from both.
 const SEED: u64 = 0x6c76_7274;
+const PHOTON_SEED: u64 = 0x6169_6d65;
 /// Uses of a light path's random numbers: where it starts, and of which light.
 const START: u32 = 0;
 const LIGHT: u32 = 1;
@@ -155,16 +163,35 @@ impl<'a> LightPaths<'a> {
     pub fn shared<const N: usize, P: Polarization<N>>(&self, samples: Range<u32>) -> LightVertices<N> {
         let film = self.world.scene.film;
         let all = u64::from(film.width) * u64::from(film.height) * samples.len() as u64;
-        self.vertices::<N, P>(samples.start, (all / PER_PATH).clamp(FEWEST, MOST))
+        self.of_set::<N, P>(samples.start, (all / PER_PATH).clamp(FEWEST, MOST))
     }
 
     /// A few vertices, for a pilot.
     pub fn few<const N: usize>(&self) -> LightVertices<N> {
-        self.vertices::<N, Polarized>(PILOT, OF_A_PILOT)
+        self.of_set::<N, Polarized>(PILOT, OF_A_PILOT)
+    }
+
+    /// Those of so many light paths of a set; where photons are gathered, too, of as many that are sent as those are.
+    fn of_set<const N: usize, P: Polarization<N>>(&self, set: u32, paths: u64) -> LightVertices<N> {
+        let (mut vertices, mut stats) = self.vertices::<N, P>(set, paths);
+        if let Some(targets) = &self.world.map_targets {
+            let targets = targets.times(paths as f64 / targets.photons() as f64);
+            let first = |target: &PhotonTarget| u64::from(set) * target.photons;
+            let batches = batches(&targets, first, |target| target.photons, self.seed ^ PHOTON_SEED);
+            let keep = |_: &Walker<N, P>, landing: &Landing<N, P>, _: &Sampler, vertices: &mut Vec<_>| {
+                vertices.extend(kept(self.world, landing, true));
+            };
+            let of_batch = |number: usize| send(self.world, &targets, batches[number], false, &keep);
+            for sent in in_parallel(batches.len(), &of_batch) {
+                stats += sent.stats;
+                vertices.extend(sent.kept);
+            }
+        }
+        self.dealt(vertices, stats)
     }
 
     /// The vertices of some light paths of a set.
-    fn vertices<const N: usize, P: Polarization<N>>(&self, set: u32, paths: u64) -> LightVertices<N> {
+    fn vertices<const N: usize, P: Polarization<N>>(&self, set: u32, paths: u64) -> (Vec<LightVertex<N>>, Stats) {
         let first = |batch: usize| batch as u64 * BATCH;
         let of_batch = |batch| self.follow::<N, P>(set, first(batch)..first(batch + 1).min(paths));
         let done = in_parallel(paths.div_ceil(BATCH) as usize, &of_batch);
@@ -175,7 +202,7 @@ impl<'a> LightPaths<'a> {
         }
         let each = 1.0 / paths as f32;
         vertices.iter_mut().for_each(|vertex| vertex.leaving = vertex.leaving * each);
-        self.dealt(vertices, stats)
+        (vertices, stats)
     }
 
     /// Follows some light paths of a set.
@@ -197,7 +224,7 @@ impl<'a> LightPaths<'a> {
             let media = self.media[light].unwrap_or_else(around);
             let start = Start { emitted: &emitted, light, media, early: true };
             follow_photon(&mut walker, start, &draw, &sampler, over, &mut |_, landing| {
-                vertices.extend(kept(world, landing));
+                vertices.extend(kept(world, landing, false));
             });
         }
         Followed { vertices, stats: walker.stats }
@@ -348,21 +375,23 @@ fn morton(place: DVec3) -> u64 {
     spread(place.x) | spread(place.y) << 1 | spread(place.z) << 2
 }
 
-/// The vertex where a light path lands, if it is one: not where photons are gathered that came the same way.
-fn kept<const N: usize, P>(world: &World, landing: &Landing<N, P>) -> Option<LightVertex<N>> {
+/// The vertex where a light path or a photon that is aimed at smooth surfaces lands, if it is one: what comes over those
+/// from lights that send photons is left to them.
+fn kept<const N: usize, P>(world: &World, landing: &Landing<N, P>, is_of_photon: bool) -> Option<LightVertex<N>> {
     let Landing { path, at, light, .. } = landing;
     let Material::Diffuse(diffuse) = at.material else { return None };
     let leaving = landing.flux(world) * at.arrival.read(&diffuse.reflectance) * FRAC_1_PI as f32;
     let came_over_smooth = path.vertices > 1 && path.kind == PathKind::Other;
-    let is_gathered = world.has_map() && world.sends_photons(*light) && came_over_smooth;
+    let is_left = !is_of_photon && world.has_map() && world.sends_photons(*light) && came_over_smooth;
     let usable = holds_vertices(world, at.object, at.point)
-        && !is_gathered
+        && !is_left
         && !leaving.is_zero()
         && leaving.0.iter().all(|x| x.is_finite());
-    let diffuse = world.method.diffuse_bounces - path.diffuse_left + 1;
+    // From the camera, a path leaves one diffuse surface more to come over smooth ones to the light.
+    let diffuse = world.method.diffuse_bounces - path.diffuse_left + 1 + u32::from(is_of_photon);
     let SurfacePoint { position, error, normal, .. } = *at.point;
     let (error, flat, light, vertices) = (normal.abs().dot(error), at.flat, *light, path.vertices);
-    usable.then_some(LightVertex { position, error, flat, leaving, light, vertices, diffuse })
+    usable.then_some(LightVertex { position, error, flat, leaving, light, vertices, diffuse, is_of_photon })
 }
 
 #[cfg(test)]
