@@ -5,7 +5,9 @@ use std::f64::consts::PI;
 use abbe::math::DVec3;
 use abbe::trace::{LightPass, MapPasses, Method, Sunlit, World};
 
-use super::{SEEDS, WHITE, assert_same, assert_shows, ball, films, lamp, looking, quad, screen, smooth, walls};
+use super::{
+    LAMP, SEEDS, WHITE, assert_same, assert_shows, ball, films, lamp, looking, quad, room, screen, smooth, walls,
+};
 use crate::support::scenes::{body, environment, view};
 
 const SUN: &str = "[[light]]\nsun = { toward = [1, 0.7, 0.1], irradiance = { rgb = [15, 13, 10] } }\n";
@@ -176,6 +178,13 @@ fn light_vertices_of_some_lights_leave_to_photons_what_is_theirs() {
         let cube = "cube = { center = [0.9, 0.5, 0.2], size = 0.8 }";
         body("frosted", "dielectric = { index = 1.5, roughness = 0.3 }", &[cube])
     };
+    // What is gathered is blurred, which light at vertices is not.
+    let sharp = MapPasses { radius: 0.3, chance: 1.0, ..map };
+    let globe = |render: &str| {
+        let sphere = |radius: f64| format!("sphere = {{ center = [0, 2, 0], radius = {radius:?} }}");
+        let globe = body("globe", "dielectric = { index = 1.5 }", &[&sphere(0.5)]);
+        room(WHITE, render, &[globe, body("lamp", LAMP, &[&sphere(0.3)])])
+    };
     let rooms = [
         ("glass in the sun", open("", &[SUN.into(), environment(0.5), glass()]), vec![0], Some(map)),
         ("a pane", open("", &[SUN.into(), environment(0.5), cubes(), pane()]), vec![0], Some(map)),
@@ -183,6 +192,9 @@ fn light_vertices_of_some_lights_leave_to_photons_what_is_theirs() {
         ("smooth glass under a lamp", open("", &[lamp(), bent(), cubes()]), vec![0], Some(map)),
         ("smooth and rough glass", open("", &[lamp(), bent(), frosted()]), vec![0], Some(map)),
         ("photons that are shown", open("", &[wide(), environment(0.5), glass()]), vec![0], None),
+        ("a lamp in a globe", globe(""), vec![0], Some(sharp)),
+        ("a lamp in a globe, two diffuse bounces", globe("diffuse_bounces = 2"), vec![0], Some(sharp)),
+        ("a lamp in a globe, four bounces", globe("max_bounces = 4"), vec![0], Some(sharp)),
         ("photons of the lamp alone", open("", &[SUN.into(), lamp(), environment(0.5), glass()]), vec![1], Some(map)),
     ];
     for (what, text, lights, map) in &rooms {
