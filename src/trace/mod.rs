@@ -11,9 +11,9 @@
 //!    photons look through them.
 //! 6. In Heckbert's notation, with S for surfaces that mirror or refract and D for those that scatter widely: photons
 //!    may find `L S+ D E`, and gathered photons `L S+ D (D|S)* E`; paths from the camera then leave exactly those out.
-//! 7. Light that one diffuse surface sends another may be looked for at vertices of light paths and photons: `L (S|D)* D
-//!    D S* E`. Paths from the camera then go on to such a surface, and gather photons there, with the probability of the
-//!    rest alone, or else for other lights.
+//! 7. Light that one diffuse surface sends another may be looked for at vertices of light paths and photons: `L (S|D)*
+//!    D D S* E`. Paths from the camera then go on to such a surface, and gather photons there, with the probability of
+//!    the rest alone, or else for other lights.
 //! 8. Light that reaches the camera is a contribution handed to the sensor.
 //! 9. Random numbers are a pure function of seed, pixel, sample, branch and use; sums have a fixed order.
 //!

@@ -301,7 +301,6 @@ def test_depth_may_be_a_part_of_its_own(found_in_parts):
         (several_parts(changes={"N": {"render/samples": 4}}), "part 'N': render/samples would stand in the first part"),
         (several_parts(changes={"image": {"render/samples": None}}), "render/samples is missing"),
         (several_parts(changes={"image": {"worldToNDC": None}}), "worldToNDC is missing"),
-        (several_parts(changes={"image": {"colorInteropID": "data"}}), "colorInteropID is 'data', not one of"),
     ],
 )
 def test_a_bad_part_fails_for_its_own_reason(found_in_parts, parts, reason):

@@ -375,8 +375,8 @@ fn morton(place: DVec3) -> u64 {
     spread(place.x) | spread(place.y) << 1 | spread(place.z) << 2
 }
 
-/// The vertex where a light path or a photon that is aimed at smooth surfaces lands, if it is one: what comes over those
-/// from lights that send photons is left to them.
+/// The vertex where a light path or a photon that is aimed at smooth surfaces lands, if it is one: what comes over
+/// those from lights that send photons is left to photons.
 fn kept<const N: usize, P>(world: &World, landing: &Landing<N, P>, is_of_photon: bool) -> Option<LightVertex<N>> {
     let Landing { path, at, light, .. } = landing;
     let Material::Diffuse(diffuse) = at.material else { return None };
