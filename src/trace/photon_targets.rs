@@ -85,6 +85,11 @@ impl PhotonTargets {
         self.targets.iter().map(|target| target.photons).sum()
     }
 
+    /// The flux that all targets send, about, as CIE Y.
+    pub(super) fn flux(&self) -> f64 {
+        self.targets.iter().map(|target| target.flux).sum()
+    }
+
     /// The target of one of all the photons, counted from the first target on.
     pub(super) fn of_photon(&self, number: u64) -> usize {
         let mut before = 0;
@@ -112,7 +117,7 @@ impl PhotonTargets {
 
     /// Lets each target have its part of the photons, most of them by flux.
     fn share_out(&mut self) {
-        let (total, count) = (self.targets.iter().map(|target| target.flux).sum::<f64>(), self.targets.len() as f64);
+        let (total, count) = (self.flux(), self.targets.len() as f64);
         for target in &mut self.targets {
             let by_flux = if total > 0.0 { target.flux / total } else { 1.0 / count };
             let share = EVENLY / count + (1.0 - EVENLY) * by_flux;

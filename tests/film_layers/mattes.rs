@@ -10,13 +10,18 @@ const SAMPLES: usize = 256;
 
 /// A floor seen from above through a black card with holes. The lamp is below the card, which throws no shadow.
 fn card_over_floor(floor: &str, card: &str, opacity: [f64; 2]) -> Image {
+    seen_through("diffuse.reflectance = 0", floor, card, opacity)
+}
+
+/// The same of a card of another material.
+fn seen_through(of: &str, floor: &str, card: &str, opacity: [f64; 2]) -> Image {
     let [of_floor, of_card] = opacity;
     let text = format!(
         "camera = {{ projection = \"orthographic\", height = 0.2, position = [0, 5, 0], look_at = [0, 0, 0], \
          up = [0, 0, -1] }}\nfilm = {{ width = 6, height = 6 }}\nrender = {{ samples = {SAMPLES} }}\n[material]\n\
-         gray.diffuse.reflectance = 0.5\nblack.diffuse.reflectance = 0\n\
+         gray.diffuse.reflectance = 0.5\npaper.{of}\n\
          floor.mask = {{ material = \"gray\", opacity = {of_floor} }}\n\
-         card.mask = {{ material = \"black\", opacity = {of_card} }}\n\
+         card.mask = {{ material = \"paper\", opacity = {of_card} }}\n\
          [[object]]\n{floor}shape.plane = {{ point = [0, 0, 0], normal = [0, 1, 0] }}\nmaterial = \"floor\"\n\
          [[object]]\n{card}shape.quad = {{ center = [0, 3, 0], u = [0.5, 0, 0], v = [0, 0, 0.5] }}\nmaterial = \"card\"\n\
          [[light]]\npoint = {{ position = [2, 2, 0], intensity = 10 }}\n"
@@ -69,6 +74,19 @@ fn a_holdout_with_holes_hides_the_share_that_it_covers() {
         let (left, within) = (1.0 - opacity, five_sigma(opacity));
         assert!((coverage(&image) - left).abs() < within, "{} for {left}", coverage(&image));
         assert!((red(&image) / open - left).abs() < within, "{} of {open} for {left}", red(&image));
+        assert_all_is_accounted_for(&image);
+    }
+}
+
+#[test]
+fn a_pane_with_holes_shows_a_shadow_catcher_where_it_is() {
+    let open = red(&card_over_floor("", "", [1.0, 0.0]));
+    for opacity in [0.2, 0.5] {
+        let pane = "thin = { index = 1, transmittance = 0.2 }";
+        let image = seen_through(pane, "shadow_catcher = true\n", "", [1.0, opacity]);
+        let (of_card, shown) = (coverage(&image), red(&image) / (0.2 * open));
+        assert!((of_card - opacity).abs() < five_sigma(opacity), "{of_card} of {opacity}");
+        assert!((shown - of_card).abs() < 1e-5, "{shown} through {of_card}");
         assert_all_is_accounted_for(&image);
     }
 }

@@ -23,7 +23,7 @@ use crate::trace::walk::{
     Among, Audit, Departure, Excitation, Exciting, Interaction, Meeting, MetLight, Onward, Path, PathKind,
     Polarization, Polarized, ScatterSample, Walker, shading, straight,
 };
-use crate::trace::{Transport, World};
+use crate::trace::{Method, Polarizing, Transport, World};
 
 /// Follows the rays of camera samples back to the light, and samples the lights on the way.
 pub struct PathTracer<'a, const N: usize, P: Polarization<N> = Polarized> {
@@ -220,19 +220,20 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
     /// holdout hides all that a sample shows, and a shadow catcher takes all of it for its own.
     #[cold]
     fn choose(&mut self, path: &mut Path<N, P>, draw: &Draw<N>, sampler: &Sampler, onward: &mut Option<Onward<N, P>>) {
-        let world = self.walker.world;
-        let is_by_chance = matches!(world.method.transport, Transport::Random { .. });
-        let is_pane = |straight: &Straight<N>| !straight.panes.is_zero();
-        let Some(whole) = onward.filter(|onward| is_by_chance && !is_pane(&onward.straight)) else { return };
-        let (is_met, chance) = straight::is_met(world, draw, sampler, path, Some(&whole));
+        let Method { transport, polarization, .. } = &self.walker.world.method;
+        let is_by_chance = matches!(transport, Transport::Random { .. });
+        // Beyond both in part light is polarized by their mean.
+        let is_mean = |straight: &Straight<N>| *polarization == Polarizing::Traced && !straight.panes.is_zero();
+        let Some(whole) = onward.filter(|onward| is_by_chance && !is_mean(&onward.straight)) else { return };
+        let (is_met, chance) = straight::is_met(self.walker.world, draw, sampler, path, Some(&whole));
         let before = path.throughput;
-        if is_met {
-            *onward = None;
-        } else {
+        let (holes, panes) = if is_met { (Lanes::ZERO, whole.straight.panes) } else { (Lanes::ONE, Lanes::ZERO) };
+        if !is_met {
             path.throughput = before.through(whole.straight.holes);
             path.key = path.key.child(0);
-            *onward = Some(Onward { straight: Straight { holes: Lanes::ONE, ..whole.straight }, ..whole });
         }
+        let straight = Straight { holes, panes, ..whole.straight };
+        *onward = (!straight.share().is_zero()).then_some(Onward { straight, ..whole });
         path.throughput = path.throughput.scaled(1.0 / chance);
         self.walker.audit.iter_mut().for_each(|audit| audit.absorb(path, before, draw));
     }

@@ -89,6 +89,8 @@ pub const SHARED: u32 = 16;
 const PER_PATH: u64 = 32;
 const FEWEST: u64 = 256;
 const MOST: u64 = 16_384;
+/// Least photons for each light path.
+const LEAST_PHOTONS: f64 = 1.0 / 16.0;
 /// Light paths that are followed one after another; their vertices are kept in the order of the batches.
 const BATCH: u64 = 256;
 /// D as a share of the median distance of vertices from their middle: a twelfth of the side of a room. From two thirds
@@ -171,11 +173,13 @@ impl<'a> LightPaths<'a> {
         self.of_set::<N, Polarized>(PILOT, OF_A_PILOT)
     }
 
-    /// Those of so many light paths of a set; where photons are gathered, too, of as many that are sent as those are.
+    /// Those of so many light paths of a set, and where photons are gathered, of photons that are sent as those are: as
+    /// many as there are for the flux of the paths, so that vertices of both bring about as much.
     fn of_set<const N: usize, P: Polarization<N>>(&self, set: u32, paths: u64) -> LightVertices<N> {
         let (mut vertices, mut stats) = self.vertices::<N, P>(set, paths);
         if let Some(targets) = &self.world.map_targets {
-            let targets = targets.times(paths as f64 / targets.photons() as f64);
+            let of_a_path = (targets.flux() / self.by_flux.total()).clamp(LEAST_PHOTONS, 1.0);
+            let targets = targets.times(of_a_path * paths as f64 / targets.photons() as f64);
             let first = |target: &PhotonTarget| u64::from(set) * target.photons;
             let batches = batches(&targets, first, |target| target.photons, self.seed ^ PHOTON_SEED);
             let keep = |_: &Walker<N, P>, landing: &Landing<N, P>, _: &Sampler, vertices: &mut Vec<_>| {
