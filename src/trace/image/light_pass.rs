@@ -332,4 +332,31 @@ mod tests {
         let pass = world.method.light_pass.clone().expect("it was asked for");
         assert_eq!(photons(&piloted(&world, pass)), photons(&world));
     }
+
+    /// Each pane of a stack mirrors a twelfth of the light: of 30, a photon that was followed both ways at every one
+    /// came to no end.
+    #[test]
+    fn photons_between_many_panes_come_to_an_end() {
+        let mut text = String::from(
+            "[camera]\nposition = [0, 3, 12]\nlook_at = [0, 0, 0]\nvertical_fov = 45\n[film]\nwidth = 64\nheight = 36\n\
+             [material.pane]\nthin = { index = 1.5 }\n[material.floor]\ndiffuse = { reflectance = 0.7 }\n[[object]]\n\
+             material = \"floor\"\nshape.plane = { point = [0, -1, 0], normal = [0, 1, 0] }\n\
+             [[light]]\npoint = { position = [0, 2, -3], intensity = 10 }\n",
+        );
+        for pane in 0..30 {
+            let z = 0.1 * f64::from(pane);
+            text += &format!(
+                "[[object]]\nmaterial = \"pane\"\nshape.quad = {{ center = [0, 0, {z}], u = [4, 0, 0], v = [0, 4, 0] }}\n"
+            );
+        }
+        let scene = Scene::parse(&text, ".").expect("it is a scene");
+        let transport = Transport::Random { split: 0.05, roulette: 0.05 };
+        let method = Method::of_paths(Basis::rgb(ColorSpace::Rec709), transport, 0);
+        let pass = LightPass { photons: 1 << 16, lights: vec![0], map: None };
+        let world = World::new(&scene, method).with_light_pass(Some(pass));
+        let learned = send_ahead::<4>(&world, 0..64);
+        let sent: usize = learned.found.iter().map(Vec::len).sum();
+        let each = learned.rays as f64 / sent as f64;
+        assert!((30.0..300.0).contains(&each), "{each} rays");
+    }
 }

@@ -7,6 +7,7 @@ use crate::light::{LeSample, LightId};
 use crate::material::{Arrival, Branch, Material, Scatter};
 use crate::math::{DVec2, DVec3, Frame, Ray, Sampler, cosine_hemisphere, unit};
 use crate::scene::{Ends, FilmSettings, Seen, Sight};
+use crate::shape::SurfacePoint;
 use crate::spectrum::{Draw, Lanes};
 use crate::trace::World;
 use crate::trace::arrived::Arrived;
@@ -15,7 +16,8 @@ use crate::trace::first_lobe::FirstLobe;
 use crate::trace::media::Media;
 use crate::trace::spectrum_sample::Spectrum;
 use crate::trace::walk::{
-    Departure, Interaction, Passage, Past, Path, PathKind, Polarization, Polarized, SeenPhoton, Walker, parts, shading,
+    Departure, Interaction, Onward, Passage, Past, Path, PathKind, Polarization, Polarized, SeenPhoton, Walker, parts,
+    shading,
 };
 
 /// Use of the random numbers where a photon is seen: the point of the lens.
@@ -136,14 +138,10 @@ fn advance<const N: usize, P: Polarization<N>>(
         return;
     }
     let Some(meeting) = walker.meet(path, draw) else { return };
-    if let Some(onward) = walker.straight(path, draw, &meeting) {
-        let (throughput, key) = (path.throughput.through(onward.straight.share()), path.key.child(BEYOND));
-        let all = throughput == path.throughput;
-        let polarization = onward.polarization;
-        *walker.pending.add(|| *path) = Path { throughput, key, polarization, ..path.passed(&meeting.point) };
-        if all {
-            return;
-        }
+    if let Some(onward) = walker.straight(path, draw, &meeting)
+        && passes(walker, path, draw, sampler, &meeting.point, &onward)
+    {
+        return;
     }
     if path.vertices == 0 {
         let is_target = world.is_photon_target(meeting.hit.object);
@@ -175,6 +173,34 @@ fn advance<const N: usize, P: Polarization<N>>(
     } else if allowed && path.vertices < world.method.max_bounces {
         scatter(walker, path, &at, sampler);
     }
+}
+
+/// Lets a photon go straight on, and answers whether it does not meet the surface as well. One that carries little does
+/// one or the other: each of a stack of panes would double the photons that it mirrors.
+#[cold]
+fn passes<const N: usize, P: Polarization<N>>(
+    walker: &mut Walker<N, P>,
+    path: &mut Path<N, P>,
+    draw: &Draw<N>,
+    sampler: &Sampler,
+    point: &SurfacePoint,
+    onward: &Onward<N, P>,
+) -> bool {
+    let (throughput, key) = (path.throughput.through(onward.straight.share()), path.key.child(BEYOND));
+    let beyond = Path { throughput, key, polarization: onward.polarization, ..path.passed(point) };
+    let all = throughput == path.throughput;
+    if all || walker.follows_all(path, draw) {
+        *walker.pending.add(|| *path) = beyond;
+        return all;
+    }
+    let shares = draw.shares(path.parted);
+    let share = throughput.weight(shares) / path.throughput.weight(shares);
+    if sampler.four_plain(path.key, STRAIGHT)[0] < share {
+        *walker.pending.add(|| *path) = Path { throughput: throughput.scaled(1.0 / share), ..beyond };
+        return true;
+    }
+    path.throughput = path.throughput.scaled(1.0 / (1.0 - share));
+    false
 }
 
 /// Lets a photon go on from a surface that scatters widely, with the share that the camera would see of the way back.
@@ -465,5 +491,6 @@ fn spread_over_pixels(film: FilmSettings, place: DVec2, splat: &Splat, splats: &
 const BEYOND: usize = 64;
 /// Those of the light of dyes.
 const DYE: usize = 160;
-/// Use of the random numbers where a photon leaves a surface.
+/// Use of the random numbers where a photon leaves a surface, and where it passes one or not.
 const SCATTER: u32 = 4;
+const STRAIGHT: u32 = 9;
