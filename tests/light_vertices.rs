@@ -436,7 +436,8 @@ fn the_plan_weighs_light_vertices() {
 }
 
 /// One path in twenty starts from the whole of a huge lamp whose tip is seen, and ends far outside of the room. Such
-/// vertices must not take the place of those that are seen: gains of 1.0 to 1.6 were 2.3 to 2.6 without them, by seeds.
+/// vertices must not take the place of those that are seen: gains of 1.0 to 1.6 were 2.3 to 2.6 without them, by seeds. As
+/// rays of gathered photons count on both sides since, 1.9 is left of 2.3.
 #[test]
 fn vertices_far_outside_of_a_room_are_seldom_tried() {
     let text = std::fs::read_to_string("scenes/smallpt.toml").expect("it comes with Abbe");
@@ -447,6 +448,6 @@ fn vertices_far_outside_of_a_room_are_seldom_tried() {
         let plain = Method { seed, light_vertices: false, ..decided.method.clone() };
         let gain = gain(&prepare(&small, plain));
         println!("smallpt, seed {seed}: gain {gain:?}");
-        assert!(gain.is_some_and(|gain| gain > 2.0), "{gain:?}");
+        assert!(gain.is_some_and(|gain| gain > 1.75), "{gain:?}");
     }
 }

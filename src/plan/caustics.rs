@@ -89,7 +89,7 @@ pub(super) fn caustics(scene: &Scene<Curve>, unguided: &World) -> Shown {
         Ok(sources) => sources,
         Err(why) => return Shown::not(why.into_iter().collect()),
     };
-    let of_all = (samples(unguided).max(FEWEST).ceil()) as u64;
+    let of_all = samples(unguided).max(FEWEST).ceil() as u64;
     let lights = small.iter().map(|light| light.0).collect();
     let world = piloted(unguided, LightPass { photons: of_all, lights, map: None });
     let share = seen_photons(&world);
@@ -108,7 +108,8 @@ pub(super) fn caustics(scene: &Scene<Curve>, unguided: &World) -> Shown {
     if seen.is_empty() {
         return Shown::not(lines);
     }
-    let Worth { photons, gain } = weigh(scene, &world);
+    let Worth { mut photons, gain } = weigh(scene, &world);
+    photons.retain(|photons| seen.iter().any(|(id, _)| photons.lights.contains(id)));
     let is_sent = |&(id, _): &SizedLight| photons.iter().any(|photons| photons.lights.contains(&id));
     let (sending, left): (Vec<_>, Vec<_>) = seen.into_iter().partition(is_sent);
     large.extend(left);
