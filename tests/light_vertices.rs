@@ -436,8 +436,8 @@ fn the_plan_weighs_light_vertices() {
 }
 
 /// One path in twenty starts from the whole of a huge lamp whose tip is seen, and ends far outside of the room. Such
-/// vertices must not take the place of those that are seen: gains of 1.0 to 1.6 were 2.3 to 2.6 without them, by seeds. As
-/// rays of gathered photons count on both sides since, 1.9 is left of 2.3.
+/// vertices must not take the place of those that are seen: gains of 1.0 to 1.6 were 2.3 to 2.6 without them, by seeds.
+/// Since the rays of gathered photons count on both sides, those are 1.9 to 2.1.
 #[test]
 fn vertices_far_outside_of_a_room_are_seldom_tried() {
     let text = std::fs::read_to_string("scenes/smallpt.toml").expect("it comes with Abbe");
