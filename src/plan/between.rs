@@ -62,9 +62,10 @@ impl Way<'_> {
 
     /// With light vertices. Their paths know no dyes.
     fn with_light_vertices(&self) -> Option<Self> {
-        let (film, method) = (self.world.scene().film, self.world.method());
-        let samples = f64::from(film.width) * f64::from(film.height) * f64::from(method.samples);
-        if samples < LARGE || method.diffuse_bounces == 0 || self.world.fluoresces() {
+        if self.world.samples_of_the_format() < LARGE
+            || self.world.method().diffuse_bounces == 0
+            || self.world.fluoresces()
+        {
             return None;
         }
         self.improved(with_light_vertices(&self.world)?, |world, without| {

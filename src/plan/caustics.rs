@@ -56,7 +56,11 @@ impl Caustics {
     pub(super) fn pass(&self, world: &World, of_a_sample: f64) -> LightPass {
         let lights = self.photons.iter().flat_map(|photons| photons.lights.clone()).collect();
         let of_a_sample = rounded(of_a_sample.clamp(FEWEST_OF_A_SAMPLE, MOST_OF_A_SAMPLE));
-        LightPass { photons: (of_a_sample * samples(world)).max(FEWEST).ceil() as u64, lights, map: None }
+        LightPass {
+            photons: (of_a_sample * world.samples_of_the_format()).max(FEWEST).ceil() as u64,
+            lights,
+            map: None,
+        }
     }
 
     /// What a person is told of them.
@@ -71,16 +75,10 @@ impl Caustics {
         Some(format!(
             "photon tracing: {all}photons from {from} toward {to}, {:.2} for each camera sample; {} of them are \
              seen{without}",
-            photons as f64 / samples(world),
+            photons as f64 / world.samples_of_the_format(),
             if *seen < 0.095 { format!("{:.1} %", 100.0 * seen) } else { format!("{:.0} %", 100.0 * seen) },
         ))
     }
-}
-
-/// Camera samples of the format.
-fn samples(world: &World) -> f64 {
-    let film = world.scene().film;
-    f64::from(film.width) * f64::from(film.height) * f64::from(world.method().samples)
 }
 
 /// The caustics of a scene that are worth photons, if any, and why.
@@ -89,7 +87,7 @@ pub(super) fn caustics(scene: &Scene<Curve>, unguided: &World) -> Shown {
         Ok(sources) => sources,
         Err(why) => return Shown::not(why.into_iter().collect()),
     };
-    let of_all = samples(unguided).max(FEWEST).ceil() as u64;
+    let of_all = unguided.samples_of_the_format().max(FEWEST).ceil() as u64;
     let lights = small.iter().map(|light| light.0).collect();
     let world = piloted(unguided, LightPass { photons: of_all, lights, map: None });
     let share = seen_photons(&world);

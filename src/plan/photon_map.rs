@@ -46,8 +46,7 @@ pub(super) fn with_map(
         return as_shown();
     }
     let places = reached_places(untaught);
-    let film = scene.film;
-    let samples = f64::from(film.width) * f64::from(film.height) * f64::from(method.samples);
+    let samples = untaught.samples_of_the_format();
     let most = f64::from(method.samples);
     // Bias falls with the square of the radius, noise with its inverse: both alike fast with this power of the samples.
     let radius = RADIUS * libm::pow(most, -1.0 / 6.0);

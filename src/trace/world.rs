@@ -179,6 +179,12 @@ impl World {
         world
     }
 
+    /// Camera samples of the format, whatever part of it is made.
+    pub fn samples_of_the_format(&self) -> f64 {
+        let film = self.scene.film;
+        f64::from(film.width) * f64::from(film.height) * f64::from(self.method.samples)
+    }
+
     /// CIE Y of what a light shines, or of what dyes shine that it excites, if that is more.
     pub(super) fn luminance(&self, light: LightId) -> f64 {
         let draw = Draw::<MAX_LANES>::fixed(self.method.basis.fixed_lanes());

@@ -13,7 +13,7 @@ fn card_over_floor(floor: &str, card: &str, opacity: [f64; 2]) -> Image {
     seen_through("diffuse.reflectance = 0", floor, card, opacity)
 }
 
-/// The same of a card of another material.
+/// A floor seen from above through a card of any material, below which the lamp is.
 fn seen_through(of: &str, floor: &str, card: &str, opacity: [f64; 2]) -> Image {
     let [of_floor, of_card] = opacity;
     let text = format!(

@@ -36,8 +36,7 @@ pub fn pilot_noise(world: &World) -> PilotNoise {
             map.map_or(0.0, |map| of_photon * map.photons as f64 * f64::from(map.count))
         });
         let noise = weigh(&few, photons.as_ref(), vertices.as_ref());
-        let samples = noise.format * f64::from(world.method.samples);
-        PilotNoise { rays: noise.rays + of_map / samples, ..noise }
+        PilotNoise { rays: noise.rays + of_map / world.samples_of_the_format(), ..noise }
     })
 }
 
