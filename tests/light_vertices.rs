@@ -38,7 +38,7 @@ fn walls() -> [String; 6] {
 fn room(wall: &str, render: &str, more: &[String]) -> String {
     let walls = walls();
     view([1.3, 1.6, 2.2], [-0.6, 1.0, -1.0], 75.0, 12)
-        + &format!("[render]\nsamples = 32\n{render}\n")
+        + &format!("[render]\nsamples = 16\n{render}\n")
         + &body("wall", wall, &walls.each_ref().map(String::as_str))
         + &more.concat()
 }

@@ -145,7 +145,7 @@ fn a_glass_ball_under_lamps_that_show_patterns() {
     ];
     for (number, lamp) in lamps.iter().enumerate() {
         let text = seen_by(ABOVE, "") + FLOOR + shown + &glass("index = 1.5") + &object("glass", BALL) + lamp;
-        agree(&format!("ball under pattern {number}"), &text, 32);
+        agree(&format!("ball under pattern {number}"), &text, 16);
     }
     // Instances of a lamp that is bright everywhere.
     let text = seen_by(ABOVE, "") + FLOOR + LAMP + &glass("index = 1.5") + &object("glass", BALL) + &lamps[6];

@@ -160,7 +160,7 @@ fn the_variance_is_that_of_the_sharpened_image() {
                 material.white.diffuse.reflectance = 0.9\nmaterial.lamp.emissive.radiance = 5\n\
                 [[object]]\nshape.cube = { center = [0, 0, 0], size = 2 }\nmaterial = \"white\"\n\
                 [[object]]\nshape.sphere = { center = [0.6, 0.6, -0.6], radius = 0.1 }\nmaterial = \"lamp\"\n";
-    let told: Vec<[Vec<f32>; 2]> = (0..96)
+    let told: Vec<[Vec<f32>; 2]> = (0..48)
         .map(|seed| {
             let options = Options { seed: Some(seed), layers: Some(vec![Layer::Variance]), ..Options::default() };
             let image = abbe::render(&abbe::Scene::parse(text, "").expect("a scene"), &options).expect("it renders");

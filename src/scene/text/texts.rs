@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use super::mistake::Mistake;
 use super::rows::Rows;
@@ -36,6 +36,8 @@ struct Part {
     /// Where the names of its files begin.
     folder: PathBuf,
     span: Range<usize>,
+    /// A copy that all its mistakes share.
+    alone: OnceLock<Arc<str>>,
 }
 
 impl Texts {
@@ -48,7 +50,12 @@ impl Texts {
         let start = self.whole.len();
         self.whole.push_str(text);
         let span = start..self.whole.len();
-        self.parts.push(Part { path: path.to_owned(), folder: folder.to_owned(), span: span.clone() });
+        self.parts.push(Part {
+            path: path.to_owned(),
+            folder: folder.to_owned(),
+            span: span.clone(),
+            alone: OnceLock::new(),
+        });
         span
     }
 
@@ -103,11 +110,12 @@ impl Texts {
     /// A mistake with its file.
     pub(in crate::scene) fn diagnostic(&self, mistake: Mistake, key: Option<String>) -> Diagnostic {
         let Mistake { span, message, help } = mistake;
-        let (file, part) =
-            self.part(span.start).map_or((PathBuf::new(), 0..0), |part| (part.path.clone(), part.span.clone()));
-        let local = |at: usize| at.min(part.end) - part.start;
+        let Some(part) = self.part(span.start) else {
+            return Diagnostic { file: PathBuf::new(), text: "".into(), span: 0..0, key, message, help };
+        };
+        let local = |at: usize| at.min(part.span.end) - part.span.start;
+        let text = part.alone.get_or_init(|| self.whole[part.span.clone()].into());
         let span = local(span.start)..local(span.end);
-        let text: Arc<str> = self.whole[part].into();
-        Diagnostic { file, text, span, key, message, help }
+        Diagnostic { file: part.path.clone(), text: text.clone(), span, key, message, help }
     }
 }
