@@ -112,20 +112,21 @@ impl fmt::Display for Diagnostic {
 /// the word whole after a hyphen, as `N-BK7` has `BK7`, is nearer than one with a letter changed.
 pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let lower = word.to_lowercase();
-    let most_changes = |candidate: &str| {
-        let [a, b] = [&lower, candidate].map(|word| word.chars().count());
-        (b / 3).max(usize::from(a.min(b) >= 2 && a.max(b) >= 3))
+    let length = lower.chars().count();
+    let farness = |candidate: &str| {
+        let candidate = candidate.to_lowercase();
+        let whole = length > 1 && candidate.split('-').skip(1).any(|part| part == lower);
+        let other = candidate.chars().count();
+        let most = (other / 3).max(usize::from(length.min(other) >= 2 && length.max(other) >= 3));
+        // Words of other lengths are that far apart at least.
+        if !whole && length.abs_diff(other) > most {
+            return None;
+        }
+        let changes = strsim::osa_distance(&lower, &candidate);
+        (whole || changes <= most).then(|| (changes > 0, !whole, changes, foreign_letters(&lower, &candidate)))
     };
-    let has_whole = |candidate: &str| candidate.to_lowercase().split('-').skip(1).any(|part| part == lower);
-    candidates
-        .into_iter()
-        .map(|candidate| (strsim::damerau_levenshtein(&lower, &candidate.to_lowercase()), candidate))
-        .map(|(changes, candidate)| (changes, lower.len() > 1 && has_whole(candidate), candidate))
-        .filter(|(changes, whole, candidate)| *whole || *changes <= most_changes(candidate))
-        .min_by_key(|(changes, whole, candidate)| {
-            (*changes > 0, !whole, *changes, foreign_letters(&lower, &candidate.to_lowercase()))
-        })
-        .map(|(.., candidate)| candidate)
+    let near = candidates.into_iter().filter_map(|candidate| Some((farness(candidate)?, candidate)));
+    near.min_by_key(|(farness, _)| *farness).map(|(_, candidate)| candidate)
 }
 
 /// Whether a file's name ends in one of some ways.

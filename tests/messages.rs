@@ -264,6 +264,35 @@ fn of_many_mistakes_the_first_twenty_are_shown_and_all_are_counted() {
     assert!(answer.stderr.ends_with("\n\n27 mistakes in scene.toml: these and 7 more\n"), "{}", answer.stderr);
 }
 
+/// Twice as many parts with every material, and a chain of thousands: they are told once, and take no time.
+#[test]
+fn materials_that_are_made_of_too_many_others_are_refused() {
+    let made = |count: usize, second: &dyn Fn(usize) -> String| {
+        let mix = |i: usize| {
+            format!("[material.x{i}]\nmix = {{ materials = [\"x{}\", \"{}\"], amount = 0.5 }}\n", i + 1, second(i))
+        };
+        let last = format!("[material.x{count}]\ndiffuse = {{ reflectance = 0.5 }}\n");
+        format!("{BASE}{}{last}", (0..count).map(mix).collect::<String>())
+    };
+    for (text, expected) in [
+        (made(30, &|i| format!("x{}", i + 1)), "error: material \"x0\" is made of more than 1000 others\n"),
+        (
+            made(3000, &|_| "white".into()),
+            "error: material \"x0\" is made of others that lie more than 64 deep in one another\n",
+        ),
+    ] {
+        let folder = Folder::new();
+        folder.write("scene.toml", &text);
+        let answer = render(&folder, &["--check", "scene.toml"]);
+        assert_eq!(answer.code, Some(2), "{}", answer.stderr);
+        assert!(answer.stderr.starts_with(expected), "{}", answer.stderr);
+        assert_eq!(answer.stderr.matches("error: ").count(), 1, "{}", answer.stderr);
+    }
+    let folder = Folder::new();
+    folder.write("scene.toml", &made(8, &|i| format!("x{}", i + 1)));
+    assert_eq!(render(&folder, &["--check", "scene.toml"]).code, Some(0));
+}
+
 #[test]
 fn an_empty_scene_asks_for_a_camera_and_a_film() {
     let folder = Folder::new();

@@ -87,6 +87,12 @@ impl<const N: usize> Straight<N> {
         self.holes + self.panes
     }
 
+    /// The same but for what goes through panes.
+    #[must_use]
+    pub fn through_holes(self) -> Self {
+        Self { panes: Lanes::ZERO, ..self }
+    }
+
     /// What two materials let through that each cover a share of a surface.
     pub(super) fn of_both(parts: [Option<Self>; 2], shares: [Lanes<N>; 2]) -> Option<Self> {
         if parts.iter().all(Option::is_none) {

@@ -45,15 +45,17 @@ pub struct MeshReport {
 impl Mesh {
     /// The mesh of triangles whose corners index existing, finite vertices. None if no triangle has an area.
     pub fn new(vertices: Vertices, faces: Vec<[u32; 3]>) -> Option<(Self, MeshReport)> {
-        let count = faces.len();
-        let corners = |face: &[u32; 3]| face.map(|corner| vertices.at(corner));
-        let triangles: Vec<[u32; 3]> =
-            faces.into_iter().filter(|face| !Triangle::is_degenerate(corners(face))).collect();
+        let is_flat = |face: &[u32; 3]| Triangle::is_degenerate(face.map(|corner| vertices.at(corner)));
+        let (flat, triangles): (Vec<_>, Vec<_>) = faces.into_iter().partition(is_flat);
         if triangles.is_empty() {
             return None;
         }
-        let open_edges = open_edges(&vertices, &triangles);
-        let report = MeshReport { degenerate: count - triangles.len(), open_edges };
+        // A triangle without area closes what is beside it, such as the tip of a sphere.
+        let open_edges = match open_edges(&vertices, &triangles) {
+            open if open > 0 && !flat.is_empty() => open.min(open_edges(&vertices, &[&*triangles, &flat].concat())),
+            open => open,
+        };
+        let report = MeshReport { degenerate: flat.len(), open_edges };
         Some((Self::built(vertices, triangles, open_edges == 0), report))
     }
 

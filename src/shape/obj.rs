@@ -9,6 +9,7 @@ use smallvec::SmallVec;
 use super::faces::Faces;
 use super::mesh_data::MeshFile;
 use super::{Attributes, Vertices};
+use crate::math::{Bounds, DVec3};
 
 /// Reads the triangles of all objects of a file, and the normals of its vertices if they are wanted.
 ///
@@ -31,7 +32,8 @@ pub(super) fn read(path: &Path, smooth: bool) -> Result<MeshFile, String> {
             "vn" => {
                 // Programs write normals that are no numbers for faces without area.
                 let normal = if smooth { numbers(words) } else { Ok([0.0; 3]) };
-                lists.normals.push(normal.map_err(|what| format!("the normal in line {line} {what}"))?);
+                let normal = normal.map_err(|what| format!("the normal in line {line} {what}"))?;
+                lists.normals.push(normal.map(|x| x as f32));
             }
             "f" | "fo" => lists.face(line, words, smooth).map_err(|what| format!("the face in line {line} {what}"))?,
             "mtllib" => lists.names_materials = true,
@@ -60,13 +62,13 @@ fn statements(text: &str) -> impl Iterator<Item = (usize, Cow<'_, str>)> {
     })
 }
 
-fn number(word: &str) -> Result<f32, &'static str> {
-    let number: f32 = word.parse().map_err(|_| "is not made of numbers")?;
-    if number.is_finite() { Ok(number) } else { Err("is not finite") }
+fn number(word: &str) -> Result<f64, &'static str> {
+    let number: f64 = word.parse().map_err(|_| "is not made of numbers")?;
+    if (number as f32).is_finite() { Ok(number) } else { Err("is not finite") }
 }
 
 /// The first K numbers of a line.
-fn numbers<const K: usize>(words: &[&str]) -> Result<[f32; K], &'static str> {
+fn numbers<const K: usize>(words: &[&str]) -> Result<[f64; K], &'static str> {
     let words = words.first_chunk::<K>().ok_or("has too few numbers")?;
     let mut numbers = [0.0; K];
     for (into, word) in numbers.iter_mut().zip(words) {
@@ -76,17 +78,33 @@ fn numbers<const K: usize>(words: &[&str]) -> Result<[f32; K], &'static str> {
 }
 
 /// A fourth number is a weight; colors make it six or more, and are left out.
-fn place(words: &[&str]) -> Result<[f32; 3], &'static str> {
+fn place(words: &[&str]) -> Result<[f64; 3], &'static str> {
     let place = numbers::<3>(words)?;
     let [_, _, _, weight] = words else { return Ok(place) };
     let weight = number(weight)?;
     let place = place.map(|x| x / weight);
-    if place.iter().all(|x| x.is_finite()) { Ok(place) } else { Err("is not finite") }
+    if place.iter().all(|&x| (x as f32).is_finite()) { Ok(place) } else { Err("is not finite") }
 }
 
 /// One number is enough for a texture that is a line, and a third one is its depth.
 fn coordinates(words: &[&str]) -> Result<[f32; 2], &'static str> {
-    if let [u] = words { Ok([number(u)?, 0.0]) } else { numbers(words) }
+    let of_both = if let [u] = words { [number(u)?, 0.0] } else { numbers(words)? };
+    Ok(of_both.map(|x| x as f32))
+}
+
+/// How many times as far from the origin as they are wide places may lie to be kept in 32 bits: roundings are then at
+/// most a millionth of the width, 2^-24 times this.
+const FARTHEST: f64 = 16.0;
+
+/// The places of vertices, in 64 bits where 32 would round them by too much.
+fn vertices(places: impl Iterator<Item = [f64; 3]> + Clone) -> Vertices {
+    let bounds = Bounds::around(places.clone().map(DVec3::from));
+    let widest = (bounds.max - bounds.min).max_element();
+    if bounds.min.abs().max(bounds.max.abs()).max_element() <= FARTHEST * widest {
+        Vertices::Single(places.map(|place| place.map(|x| x as f32)).collect())
+    } else {
+        Vertices::Double(places.map(DVec3::from).collect())
+    }
 }
 
 /// Where a corner has its place, its texture coordinates and its normal, each in a list of its own.
@@ -104,7 +122,7 @@ fn no_such(kind: usize) -> String {
 /// What was read of a file so far.
 #[derive(Default)]
 struct Lists {
-    places: Vec<[f32; 3]>,
+    places: Vec<[f64; 3]>,
     coordinates: Vec<[f32; 2]>,
     normals: Vec<[f32; 3]>,
     /// Different corners, in the order in which faces ask for them, and their numbers.
@@ -179,7 +197,7 @@ impl Lists {
             let of = |corner: &Corner| self.normals.get(corner[2] as usize).copied().unwrap_or_default();
             attributes.normals = self.corners.iter().map(of).collect();
         }
-        let vertices = Vertices::Single(self.corners.iter().map(|corner| self.places[corner[0] as usize]).collect());
+        let vertices = vertices(self.corners.iter().map(|corner| self.places[corner[0] as usize]));
         let (faces, names_materials) = (self.faces.triangles(&vertices)?, self.names_materials);
         Ok(MeshFile { vertices, faces, attributes, names_materials, ignored: Vec::new(), others: Vec::new() })
     }

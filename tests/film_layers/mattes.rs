@@ -90,3 +90,45 @@ fn a_pane_with_holes_shows_a_shadow_catcher_where_it_is() {
         assert!((shown / of_card - 1.0).abs() < 1e-3, "{shown} through {of_card}");
     }
 }
+
+/// Of a pane or a sheet the hole is as whole as of what nothing is seen through.
+#[test]
+fn a_holdout_of_what_is_seen_through_hides_all_but_what_is_behind_its_holes() {
+    let open = red(&card_over_floor("", "", [1.0, 0.0]));
+    let sheets = [
+        "thin = { index = 1.5, transmittance = 0.6 }",
+        "polarizer.axis = [1, 0, 0]",
+        "retarder = { axis = [1, 0, 0], retardance = 90 }",
+    ];
+    for sheet in sheets {
+        let whole = seen_through(sheet, "", "holdout = true\n", [1.0, 1.0]);
+        assert!(whole.rgb().iter().all(|rgb| *rgb == [0.0; 3]) && coverage(&whole) == 0.0, "{sheet}");
+        assert_all_is_accounted_for(&whole);
+        let image = seen_through(sheet, "", "holdout = true\n", [1.0, 0.3]);
+        assert!((coverage(&image) - 0.7).abs() < five_sigma(0.3), "{sheet}: {}", coverage(&image));
+        assert!((red(&image) / open - 0.7).abs() < five_sigma(0.3), "{sheet}: {} of {open}", red(&image));
+    }
+}
+
+/// Photons are shown through no pane that is held out.
+#[test]
+fn a_caustic_behind_a_pane_that_is_held_out_is_hidden() {
+    let text = |pane: &str| {
+        format!(
+            "camera = {{ position = [0, 4, 4], look_at = [0, 0, 0], vertical_fov = 30 }}\n\
+             film = {{ width = 32, height = 32 }}\nrender = {{ samples = 16 }}\n[material]\n\
+             gray.diffuse.reflectance = 0.5\nball.dielectric.index = 1.5\npane.thin.index = 1.5\n\
+             [[object]]\nshape.plane = {{ point = [0, 0, 0], normal = [0, 1, 0] }}\nmaterial = \"gray\"\n\
+             [[object]]\nshape.sphere = {{ center = [0, 1, 0], radius = 0.6 }}\nmaterial = \"ball\"\n\
+             [[object]]\n{pane}shape.quad = {{ center = [0, 3, 3], u = [9, 0, 0], v = [0, 9, -9] }}\nmaterial = \"pane\"\n\
+             [[light]]\npoint = {{ position = [2, 4, -2], intensity = 10 }}\n"
+        )
+    };
+    let caustics = |image: &Image| rgb(image, "caustics").as_flattened().iter().sum::<f64>();
+    let shown = rendered(&text(""), &[Layer::Caustics]);
+    assert!(shown.because().iter().any(|line| line.starts_with("photon")), "{:?}", shown.because());
+    assert!(caustics(&shown) > 0.0);
+    let hidden = rendered(&text("holdout = true\n"), &[Layer::Caustics]);
+    assert!(hidden.rgb().as_flattened().iter().all(|&x| x == 0.0), "light comes through");
+    assert_eq!(caustics(&hidden), 0.0);
+}

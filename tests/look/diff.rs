@@ -115,6 +115,14 @@ fn a_pixel_that_is_ten_standard_deviations_off_is_found() {
         "worst pixel (7, 3): 0.5 0.5 0.5 and 0.5 0.35858 0.5",
     ];
     assert_says(&diff(&folder, &a, &b, &[]), 1, &lines);
+    // Photons that many samples share make more of it.
+    let mut gathered = b.clone();
+    gathered.texts.push(("render/photonRadius", "4.000 pixels".into()));
+    assert_says(
+        &diff(&folder, &a, &gathered, &[]),
+        1,
+        &["a.exr and b.exr differ", "photon map its noise is told in part"],
+    );
     // Four are within what the largest of so many is by chance.
     b.channel("G")[67] = 0.5 - 4.0 * 2e-4_f32.sqrt();
     assert_says(&diff(&folder, &a, &b, &[]), 0, &["a.exr and b.exr agree"]);

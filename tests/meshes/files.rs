@@ -171,6 +171,22 @@ fn all_that_an_obj_may_hold_besides_is_read_or_passed_over() {
     }
 }
 
+/// What lies far from the origin for its size keeps all digits, and what does not takes half the memory.
+#[test]
+fn an_obj_far_from_the_origin_is_as_exact_as_near_it() {
+    let faces = "f 1 4 3 2\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n";
+    for (far, is_rounded) in [(0.0, true), (1e7 + 0.1, false)] {
+        let text = POINTS.map(|[x, y, z]| format!("v {} {y} {z}\n", x + far)).concat() + faces;
+        let (_folder, path) = file("far.obj", text.as_bytes());
+        let mesh = read_mesh(&path).expect("it is right");
+        assert_eq!(matches!(mesh.vertices, Vertices::Single(_)), is_rounded);
+        for [x, y, z] in POINTS {
+            let there = DVec3::new(x + far, y, z);
+            assert!((0..5).any(|number| (mesh.vertices.at(number) - there).length() < 1e-7), "{there}");
+        }
+    }
+}
+
 #[test]
 fn broken_obj_files_are_refused_with_the_line() {
     let good = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\nf 1/1/1 2/1/1 3/1/1\n";
@@ -279,6 +295,24 @@ fn a_dielectric_on_an_open_mesh_is_warned_of_and_on_a_closed_one_is_not() {
     let empty_face = format!("{closed}f 1 2 2\n");
     let said = warnings("a.obj", empty_face.as_bytes(), glass);
     assert_eq!(said, ["pyramid: 1 triangle without area was dropped"]);
+}
+
+/// A corner on an edge of another triangle, between which a triangle without area lies.
+#[test]
+fn triangles_without_area_close_what_is_beside_them() {
+    let points =
+        || [[0.0; 3], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 2.0], [1.0, 0.0, 0.0]].map(DVec3::from).to_vec();
+    let open = vec![[0, 2, 1], [0, 4, 3], [4, 1, 3], [0, 3, 2], [1, 2, 3]];
+    let closed = [open.clone(), vec![[0, 1, 4]]].concat();
+    for (faces, expected) in [(open, (3, 0)), (closed, (0, 1))] {
+        let (mesh, report) = Mesh::new(Vertices::Double(points()), faces).expect("faces with area");
+        assert_eq!((report.open_edges, report.degenerate), expected);
+        assert_eq!(Shape::Mesh(mesh.into()).is_closed(), expected.0 == 0);
+    }
+    // One that lies alone opens nothing.
+    let alone = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3], [0, 1, 4]].to_vec();
+    let (_, report) = Mesh::new(Vertices::Double(points()), alone).expect("faces with area");
+    assert_eq!((report.open_edges, report.degenerate), (0, 1));
 }
 
 fn report(faces: &[[u32; 3]]) -> (usize, usize) {

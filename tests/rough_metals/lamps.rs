@@ -1,6 +1,6 @@
 //! Rough metals under lamps: aiming at them and meeting them agree, and nearly smooth metals look smooth.
 
-use abbe::material::{Arrival, Index, Roughness, Scatter};
+use abbe::material::{Arrival, Index, Material, Roughness, Scatter};
 use abbe::math::DVec3;
 use abbe::plan::plan;
 use abbe::spectrum::Draw;
@@ -123,4 +123,30 @@ fn deterministic_transport_follows_rough_metals_as_well() {
     let (film, _) = image(&gold(0.5, &lamp, 16), EVERY_BRANCH);
     assert!(film.pixels.iter().all(|pixel| pixel.rgb.iter().all(|x| x.is_finite() && *x > 0.0)));
     assert!(Roughness::new(0.5).surface().is_some());
+}
+
+/// Tables of rough surfaces take long: what is as rough shares them, whatever it is made of.
+#[test]
+fn surfaces_that_are_as_rough_share_their_tables() {
+    let metal = |roughness: f64| format!("conductor = {{ metal = \"Au\", roughness = {roughness:?} }}");
+    let text = view([4.0, 3.0, 0.5], [0.5, 0.0, 0.0], 10.0, 1)
+        + &body("gold", &metal(0.25), &[FLOOR])
+        + &body("copper", "conductor = { metal = \"Cu\", roughness = 0.25 }", &[FLOOR])
+        + &body("other", &metal(0.5), &[FLOOR])
+        + &body("red", "plastic = { reflectance = 0.5, roughness = 0.25 }", &[FLOOR])
+        + &body(
+            "frost",
+            "dielectric = { index = 1.5, roughness = 0.25 }",
+            &["sphere = { center = [0, 2, 0], radius = 1 }"],
+        );
+    let scene = scene(&text);
+    let roughness = |object: u32| match scene.material_of(object) {
+        Material::Conductor(conductor) => &conductor.roughness,
+        Material::Plastic(plastic) => plastic.coat.roughness(),
+        Material::Dielectric(dielectric) => &dielectric.roughness,
+        other => panic!("{other:?}"),
+    };
+    let surface = |object: u32| std::ptr::from_ref(roughness(object).surface().expect("it is rough"));
+    assert_eq!([1, 3, 4].map(surface), [surface(0); 3]);
+    assert_ne!(surface(2), surface(0));
 }

@@ -77,6 +77,38 @@ fn every_kind_of_png_is_read_as_it_is_meant() {
     }
 }
 
+/// Of colors alone, and unless the file says that they are sRGB all the same.
+#[test]
+fn what_a_png_says_of_colors_that_are_not_srgb_is_told() {
+    type Marks = fn(&mut png::Info);
+    let p3 = png::SourceChromaticities::new((0.3127, 0.329), (0.68, 0.32), (0.265, 0.69), (0.15, 0.06));
+    let marks: [(Marks, Option<&str>); 5] = [
+        (|_| (), None),
+        (|info| info.source_gamma = Some(png::ScaledFloat::new(1.0)), Some("a gamma of 1 (gAMA)")),
+        (|info| info.source_gamma = Some(png::ScaledFloat::new(0.45455)), None),
+        (|info| info.srgb = Some(png::SrgbRenderingIntent::Perceptual), None),
+        (|_| (), Some("other primaries (cHRM)")),
+    ];
+    for (number, (mark, expected)) in marks.into_iter().enumerate() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut info = png::Info::with_size(1, 1);
+        (info.color_type, info.bit_depth) = (png::ColorType::Rgb, png::BitDepth::Eight);
+        mark(&mut info);
+        info.source_chromaticities = (number == 4).then_some(p3);
+        let file = std::fs::File::create(folder.path().join("a.png")).unwrap();
+        let mut writer = png::Encoder::with_info(file, info).unwrap().write_header().unwrap();
+        writer.write_image_data(&[9, 8, 7]).unwrap();
+        writer.finish().unwrap();
+        let told = materials(folder.path(), &["{ image = \"a.png\" }"]).warnings.clone();
+        match expected {
+            None => assert!(told.is_empty(), "{told:?}"),
+            Some(said) => assert!(told.len() == 1 && told[0].contains(said), "{told:?}"),
+        }
+        let of_data = ["{ image = \"a.png\", encoding = \"linear\" }"];
+        assert!(materials(folder.path(), &of_data).warnings.is_empty());
+    }
+}
+
 #[test]
 fn a_jpeg_and_images_of_floats_are_read() {
     let folder = tempfile::tempdir().unwrap();

@@ -55,6 +55,38 @@ fn exposures_of_a_radiance_picture_are_taken_out() {
     assert_eq!(picture("\tEXPOSURE=4\n"), [1.0, 0.5, 0.25]);
 }
 
+/// Of light: the primaries of Rec.2020 mean other colors in Rec.709, and those of Rec.709 the same.
+#[test]
+fn primaries_of_a_radiance_picture_are_brought_to_rec709() {
+    let lamp = |primaries: &str| {
+        let text = HEADER.replace("EXPOSURE=1\n", &format!("PRIMARIES={primaries}\n")) + "-Y 2 +X 2\n";
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("a.hdr"), [text.as_bytes(), &[128, 64, 32, 129].repeat(4)].concat()).unwrap();
+        let view = view([0.0, 0.0, 9.0], [0.0; 3], 30.0, 4);
+        let text = view
+            + "[material.a]\nemissive.radiance = { image = \"a.hdr\" }\n[[object]]\nmaterial = \"a\"\n\
+               shape.sphere = { center = [0, 0, 0], radius = 1 }\n";
+        let scene = Source { path: folder.path().join("scene.toml"), text }.compile().unwrap();
+        let Material::Emissive(emissive) = &scene.materials[0].material else { panic!("it shines") };
+        let CurveKind::Texture(texture) = &emissive.radiance.kind else { panic!("it is an image") };
+        (texture.image.texel(0, 0), scene.warnings.clone())
+    };
+    let rec709 = "0.64 0.33 0.3 0.6 0.15 0.06 0.3127 0.329";
+    assert_eq!(lamp(rec709), ([1.0, 0.5, 0.25], vec![]));
+    let (found, warnings) = lamp("0.708 0.292 0.17 0.797 0.131 0.046 0.3127 0.329");
+    // ITU-R BT.2087: from Rec.2020 to Rec.709.
+    let expected = [[1.6605, -0.5876, -0.0728], [-0.1246, 1.1329, -0.0083], [-0.0182, -0.1006, 1.1187]]
+        .map(|row| row[0] + 0.5 * row[1] + 0.25 * row[2]);
+    let is_near = (0..3).all(|c| (f64::from(found[c]) - expected[c]).abs() < 2e-4);
+    assert!(is_near, "{found:?} for {expected:?}");
+    assert!(warnings.is_empty(), "{warnings:?}");
+    for unknown in ["0.64 0.33", "a b c d e f g h"] {
+        let (found, warnings) = lamp(unknown);
+        assert_eq!(found, [1.0, 0.5, 0.25]);
+        assert!(warnings.len() == 1 && warnings[0].contains("its primaries are not known"), "{warnings:?}");
+    }
+}
+
 #[test]
 fn a_radiance_picture_of_another_program_is_read() {
     let expected = row("-Y 1 +X 1", &[9, 8, 7, 128], 1);

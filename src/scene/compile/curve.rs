@@ -13,6 +13,7 @@ use super::spectrum_file::read_columns;
 use crate::scene::text::{At, FileKind, Value, utf8};
 use crate::spectrum::{
     ColorSpace, Curve, CurveKind, Emission, Named, Quantity, cauchy_through, data, imitation, reach, sellmeier_squared,
+    visible::START_NM,
 };
 
 const TABLE: FileKind = FileKind { nameless: "a file of samples needs a name", most_bytes: 1 << 26, endings: &[] };
@@ -164,6 +165,14 @@ fn samples_fit(samples: &[[f64; 2]], quantity: Quantity, scale: f64) -> Result<(
     if let ([[nm, power]], Quantity::Emission) = (samples, quantity) {
         let refusal = Refusal::new("an emission of one sample is dark: it is 0 beyond its ends");
         return Err(refusal.help(format!("for one wavelength write {{ lines = [[{nm}, {power}]] }}")).at(0));
+    }
+    if let (Some([last, _]), Quantity::Emission) = (samples.last(), quantity)
+        && *last <= START_NM
+    {
+        let refusal = Refusal::new(format!("an emission that ends at {last} nm is dark: it is 0 beyond its ends"));
+        return Err(refusal
+            .help("light is visible from 360 nm on, and excites dyes from 300 nm on")
+            .at(samples.len() - 1));
     }
     let possible = |value: f64| possible(quantity, value * scale, &with_scale(scale));
     samples.iter().enumerate().try_for_each(|(entry, pair)| {

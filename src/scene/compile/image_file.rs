@@ -85,16 +85,21 @@ impl TextureOf<'_> {
         Ok(picked)
     }
 
-    /// An image, some transparent places of which may not be read.
-    fn file(&self, image: Image, ignores_alpha: bool) -> ImageFile {
-        let told = || format!("the alpha of {} is ignored; channel = \"alpha\" reads it", self.path.display());
-        ImageFile { image, warnings: ignores_alpha.then(told).into_iter().collect() }
+    /// An image, some transparent places of which may not be read, and which may say of its colors that they are not
+    /// sRGB.
+    fn file(&self, image: Image, ignores_alpha: bool, not_srgb: Option<&str>) -> ImageFile {
+        let file = self.path.display();
+        let alpha = ignores_alpha.then(|| format!("the alpha of {file} is ignored; channel = \"alpha\" reads it"));
+        let colors = not_srgb.filter(|_| self.srgb).map(|said| {
+            format!("the colors of {file} have {said}, which is ignored: they are read as sRGB; save them as that")
+        });
+        ImageFile { image, warnings: alpha.into_iter().chain(colors).collect() }
     }
 
     fn of_whole_numbers(self, bytes: &[u8], decode: Decoder) -> Result<ImageFile, Fault> {
         let (srgb, directions) = (self.srgb, self.meaning == Meaning::Directions);
         let whole = decoded(self.path, self.kind, bytes, decode)?;
-        let width = whole.width;
+        let (width, not_srgb) = (whole.width, whole.not_srgb.as_deref());
         let picked = self.picked(whole.channels, whole.has_alpha())?;
         match whole.steps {
             Steps::Words(numbers) => {
@@ -107,7 +112,7 @@ impl TextureOf<'_> {
                 let table: Vec<f32> = (0..=u16::MAX).map(|word| value(word) as f32).collect();
                 let ignores_alpha = !directions && picked.ignores(&numbers, u16::MAX);
                 let floats = picked.of(&numbers).map(|word| table[usize::from(word)]).collect();
-                Ok(self.file(Image::of_floats(width, picked.channels(), floats), ignores_alpha))
+                Ok(self.file(Image::of_floats(width, picked.channels(), floats), ignores_alpha, not_srgb))
             }
             Steps::Bytes(numbers) => {
                 let ignores_alpha = !directions && picked.ignores(&numbers, u8::MAX);
@@ -116,7 +121,7 @@ impl TextureOf<'_> {
                     true => Image::of_signed_bytes(width, channels, bytes),
                     false => Image::of_bytes(width, channels, bytes, srgb),
                 };
-                Ok(self.file(image, ignores_alpha))
+                Ok(self.file(image, ignores_alpha, not_srgb))
             }
         }
     }
@@ -138,7 +143,7 @@ impl TextureOf<'_> {
         }
         let is_light = matches!(self.meaning, Meaning::Light(_));
         let told = if is_light { rec709(&mut texels, &image.to_rec709) } else { None };
-        let mut file = self.file(Image::of_floats(width, channels, texels.numbers), ignores_alpha);
+        let mut file = self.file(Image::of_floats(width, channels, texels.numbers), ignores_alpha, None);
         file.warnings.extend(told);
         Ok(file)
     }
@@ -247,7 +252,10 @@ fn decoded<T>(
         Ok(Ok(read)) => Ok(read),
         Ok(Err(Unreadable::Channels(channels))) => {
             let message = format!("{} has no channels R, G and B: it has the channels {channels}", path.display());
-            Err(Fault::new(message, "save one of them alone, and it is a gray"))
+            let has_chroma = ["RY", "BY"].iter().any(|chroma| channels.split(", ").any(|channel| channel == *chroma));
+            let help =
+                if has_chroma { "save it as red, green and blue" } else { "save one of them alone, and it is a gray" };
+            Err(Fault::new(message, help))
         }
         Ok(Err(other)) => Err(match other.remedy() {
             Some(remedy) => Fault::new(format!("{} is not read: {other}", path.display()), remedy),

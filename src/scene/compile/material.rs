@@ -175,8 +175,9 @@ pub(super) fn drafts<'d>(context: &mut Context, value: Value<'d>) -> Drafts<'d> 
         value.advise::<()>("`material` is a table, not a list", "write [material.NAME] for each");
         return drafts;
     }
+    let mut rough = BTreeMap::new();
     for material in value.table().unwrap_or_default() {
-        let draft = MATERIAL.kind(material).and_then(|kind| {
+        let mut draft = MATERIAL.kind(material).and_then(|kind| {
             let word = material.key();
             if MATERIAL.knows(word) && !MATERIAL.knows(kind.key()) {
                 drafts.nameless = true;
@@ -186,9 +187,25 @@ pub(super) fn drafts<'d>(context: &mut Context, value: Value<'d>) -> Drafts<'d> 
             let read = MATERIAL.reader(kind)?;
             Fields::read(kind, |fields| resolved(context, read(kind, fields)?))
         });
+        if let Some(Draft::Whole(material)) = &mut draft {
+            share_tables(&mut rough, material);
+        }
         drafts.by_name.insert(material.key(), draft);
     }
     drafts
+}
+
+/// Lets surfaces that are as rough as one another share their tables, which take 10 ms to a second; `rough` has a coat
+/// of each roughness so far, by its bits.
+fn share_tables(rough: &mut BTreeMap<u64, Coat>, material: &mut Material<Curve>) {
+    let mut coat = |value: f64| rough.entry(value.to_bits()).or_insert_with(|| Coat::new(value)).clone();
+    match material {
+        Material::Plastic(Plastic { coat: of, .. }) => *of = coat(of.roughness().value()),
+        Material::Conductor(Conductor { roughness, .. }) | Material::Dielectric(Dielectric { roughness, .. }) => {
+            *roughness = coat(roughness.value()).roughness().clone();
+        }
+        _ => {}
+    }
 }
 
 /// A material with the spectra that its keys mean.

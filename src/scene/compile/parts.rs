@@ -18,12 +18,26 @@ struct Search<'s, 'd> {
     within: Vec<&'d str>,
     /// Those of which it was told that they are made of themselves.
     circular: BTreeSet<&'d str>,
+    /// Materials that the outermost one is made of so far, each as often as it is named.
+    parts: usize,
+    /// Whether it was told that a material is made of too many.
+    too_large: bool,
 }
+
+/// Most materials that one is made of, and how deep they may lie in one another: surfaces take each apart where they
+/// are met, and twice the same part is two.
+const MOST_PARTS: usize = 1000;
+const DEEPEST: usize = 64;
 
 /// Every material with those it is made of.
 pub(super) fn with_parts<'d>(drafts: &Drafts<'d>) -> Materials<'d> {
-    let mut search = Search { drafts: &drafts.by_name, within: Vec::new(), circular: BTreeSet::new() };
-    drafts.by_name.keys().map(|name| (*name, search.whole(name))).collect()
+    let (within, circular) = (Vec::new(), BTreeSet::new());
+    let mut search = Search { drafts: &drafts.by_name, within, circular, parts: 0, too_large: false };
+    let mut whole = |name| {
+        search.parts = 0;
+        search.whole(name)
+    };
+    drafts.by_name.keys().map(|name| (*name, whole(name))).collect()
 }
 
 impl<'d> Search<'_, 'd> {
@@ -59,6 +73,10 @@ impl<'d> Search<'_, 'd> {
             let by = if way.is_empty() { String::new() } else { format!(", by way of {}", way.join(" and ")) };
             return place.refuse(format!("material {known:?} is made of itself{by}"));
         }
+        self.parts += 1;
+        if self.parts > MOST_PARTS || self.within.len() > DEEPEST {
+            return self.refuse_size(place);
+        }
         match draft {
             Some(Draft::Whole(Material::Dielectric(_))) => place.advise(
                 format!(
@@ -80,6 +98,18 @@ impl<'d> Search<'_, 'd> {
                 Some(Part::new(name, whole))
             }
         }
+    }
+
+    /// Tells once that a material is made of too many: those that are made of it are as well.
+    fn refuse_size<T>(&mut self, place: Value<'d>) -> Option<T> {
+        let is_told = std::mem::replace(&mut self.too_large, true);
+        let whole = self.within.first().copied().unwrap_or_default();
+        let how = match self.parts > MOST_PARTS {
+            true => format!("more than {MOST_PARTS} others"),
+            false => format!("others that lie more than {DEEPEST} deep in one another"),
+        };
+        let refuse = || place.advise(format!("material {whole:?} is made of {how}"), "make it of fewer");
+        if is_told { None } else { refuse() }
     }
 }
 

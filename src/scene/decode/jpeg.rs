@@ -26,7 +26,7 @@ pub(in crate::scene) fn decode(bytes: &[u8]) -> Result<Whole, Unreadable> {
     if !is_complete(bytes) {
         return Err(Unreadable::Short);
     }
-    Ok(Whole { width, channels, steps: Steps::Bytes(numbers) })
+    Ok(Whole { width, channels, not_srgb: None, steps: Steps::Bytes(numbers) })
 }
 
 /// Whether the markers of a file (ITU-T T.81, B.1.1) lead to the end of its image. What lies behind may be anything.

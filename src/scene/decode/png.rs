@@ -1,6 +1,6 @@
 use std::io::Cursor;
 
-use png::{BitDepth, Decoder, DecodingError, Limits, Transformations};
+use png::{BitDepth, Decoder, DecodingError, Info, Limits, ScaledFloat, SourceChromaticities, Transformations};
 
 use super::texels::{Steps, Unreadable, Whole, fits};
 use crate::film::MOST_TEXELS;
@@ -20,10 +20,36 @@ pub(in crate::scene) fn decode(bytes: &[u8]) -> Result<Whole, Unreadable> {
     fits(width, height, size as u64, bytes)?;
     let mut numbers = vec![0; size];
     reader.next_frame(&mut numbers)?;
+    let not_srgb = not_srgb(reader.info());
     let (color, depth) = reader.output_color_type();
     let steps = match depth {
         BitDepth::Sixteen => Steps::Words(numbers.as_chunks().0.iter().map(|word| u16::from_be_bytes(*word)).collect()),
         _ => Steps::Bytes(numbers),
     };
-    Ok(Whole { width, channels: color.samples(), steps })
+    Ok(Whole { width, channels: color.samples(), not_srgb, steps })
 }
+
+/// What the chunks of a file say of its colors, the strongest first, if that is not sRGB.
+fn not_srgb(info: &Info) -> Option<String> {
+    if let Some(points) = info.coding_independent_code_points {
+        let said = [points.color_primaries, points.transfer_function];
+        return (!SRGB_POINTS.contains(&said)).then(|| format!("cICP {} {}", said[0], said[1]));
+    }
+    if info.srgb.is_some() {
+        return None;
+    }
+    let gamma = info.gama_chunk.map(ScaledFloat::into_value).filter(|gamma| (gamma * 2.2 - 1.0).abs() > 0.02);
+    let others = |found: &SourceChromaticities| {
+        let found = [found.red, found.green, found.blue, found.white].map(|(x, y)| [x, y].map(ScaledFloat::into_value));
+        let pairs = found.as_flattened().iter().zip(REC709.as_flattened());
+        pairs.into_iter().any(|(found, known)| (found - known).abs() > 0.005)
+    };
+    let primaries = info.chrm_chunk.filter(others).map(|_| "other primaries (cHRM)".to_owned());
+    gamma.map(|gamma| format!("a gamma of {gamma} (gAMA)")).or(primaries)
+}
+
+/// Color primaries and transfer function of sRGB, by the numbers of ITU-T H.273, and of Rec.709, which displays show
+/// alike.
+const SRGB_POINTS: [[u8; 2]; 2] = [[1, 13], [1, 1]];
+/// x and y of red, green, blue and white of Rec. ITU-R BT.709.
+const REC709: [[f32; 2]; 4] = [[0.64, 0.33], [0.3, 0.6], [0.15, 0.06], [0.3127, 0.329]];

@@ -3,7 +3,7 @@
 //! G. Ward, "Real Pixels", Graphics Gems II (1991); "Radiance File Formats", Lawrence Berkeley National Laboratory.
 
 use super::texels::{Floats, Unreadable, fits};
-use crate::spectrum::IDENTITY;
+use crate::spectrum::{Matrix, Primaries, matrix_of_file};
 
 /// How files begin: those of Radiance, and those of other programs.
 const SIGNATURES: [&[u8]; 2] = [b"#?RADIANCE", b"#?RGBE"];
@@ -19,7 +19,7 @@ const PACKED: std::ops::Range<usize> = 8..1 << 15;
 pub(in crate::scene) fn decode(bytes: &[u8]) -> Result<Floats, Unreadable> {
     let rest = SIGNATURES.iter().find_map(|signature| bytes.strip_prefix(*signature)).ok_or(Unreadable::Signature)?;
     let mut reader = Reader { rest, row: 0 };
-    let Header { size: [width, height], factors } = reader.header()?;
+    let Header { size: [width, height], factors, to_rec709 } = reader.header()?;
     let length = 12_u64.saturating_mul(width as u64).saturating_mul(height as u64);
     fits(width, height, length, bytes)?;
     // Colors are whole multiples of 2^(exponent - 136); an exponent of 0 is black.
@@ -35,7 +35,7 @@ pub(in crate::scene) fn decode(bytes: &[u8]) -> Result<Floats, Unreadable> {
             [0, 1, 2].map(|c| (color[c] / factors[c]) as f32)
         }));
     }
-    Ok(Floats { width, channels: 3, has_alpha: false, is_lossy: false, to_rec709: Ok(IDENTITY), numbers })
+    Ok(Floats { width, channels: 3, has_alpha: false, is_lossy: false, to_rec709, numbers })
 }
 
 /// What stands before the texels.
@@ -44,6 +44,8 @@ struct Header {
     size: [usize; 2],
     /// What red, green and blue of the light were multiplied by.
     factors: [f64; 3],
+    /// From its primaries to linear Rec.709, or why it is not known.
+    to_rec709: Result<Matrix, String>,
 }
 
 /// What is not read yet, and the row that is.
@@ -71,7 +73,7 @@ impl Reader<'_> {
     /// are there: all have been applied.
     fn header(&mut self) -> Result<Header, Unreadable> {
         self.line()?;
-        let mut factors = [1.0; 3];
+        let (mut factors, mut to_rec709) = ([1.0; 3], matrix_of_file(None, None));
         loop {
             let line = self.line()?;
             match line.split_once('=') {
@@ -86,6 +88,10 @@ impl Reader<'_> {
                         return Err(bad());
                     }
                 }
+                Some(("PRIMARIES", words)) => {
+                    to_rec709 = primaries(words)
+                        .map_or(Err("its primaries are not known".into()), |found| matrix_of_file(None, Some(found)));
+                }
                 _ if line.is_empty() => break,
                 _ => (),
             }
@@ -97,7 +103,7 @@ impl Reader<'_> {
             _ => None,
         };
         let (width, height) = size.ok_or_else(|| Unreadable::Size(beginning(&line)))?;
-        Ok(Header { size: [width, height], factors })
+        Ok(Header { size: [width, height], factors, to_rec709 })
     }
 
     fn fill(&mut self, texels: &mut [[u8; 4]]) -> Result<(), Unreadable> {
@@ -151,6 +157,13 @@ impl Reader<'_> {
         }
         Ok(())
     }
+}
+
+/// x and y of red, green, blue and white.
+fn primaries(words: &str) -> Option<Primaries> {
+    let numbers: Vec<f64> = words.split_whitespace().map(|word| word.parse().ok()).collect::<Option<_>>()?;
+    let [red, green, blue, white] = numbers.as_chunks().0.try_into().ok()?;
+    (numbers.len() == 8).then_some(Primaries { red, green, blue, white })
 }
 
 /// One number above 0 for all colors, or one for each.

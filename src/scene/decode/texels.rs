@@ -8,6 +8,8 @@ pub(in crate::scene) struct Whole {
     pub(in crate::scene) width: usize,
     /// Numbers of a texel, 1 to 4.
     pub(in crate::scene) channels: usize,
+    /// What the file says of its colors that is not sRGB.
+    pub(in crate::scene) not_srgb: Option<String>,
     pub(in crate::scene) steps: Steps,
 }
 

@@ -178,6 +178,13 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
             return;
         };
         let mut onward = self.walker.straight(path, draw, &meeting);
+        let is_held_out =
+            world.hides_objects && path.kind == PathKind::Camera && world.sight(meeting.hit.object) == Sight::Holdout;
+        if is_held_out {
+            // What lies behind a pane is cut out with it, and what lies behind a hole is not.
+            onward.iter_mut().for_each(|onward| onward.straight = onward.straight.through_holes());
+            onward = onward.filter(|onward| !onward.straight.holes.is_zero());
+        }
         if world.has_mattes && path.vertices == 0 && first.is_none() {
             self.choose(path, draw, sampler, &mut onward);
         }
@@ -190,7 +197,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
             return;
         }
         path.vertices += 1;
-        if world.hides_objects && path.kind == PathKind::Camera && world.sight(hit.object) == Sight::Holdout {
+        if is_held_out {
             self.walker.audit.iter_mut().for_each(|audit| audit.end_beside(path, onward.as_ref(), draw));
             return self.walker.go_on_in_part(path, point, onward.as_ref());
         }

@@ -8,7 +8,7 @@ use super::polarization::{Onward, Polarization};
 use super::shading;
 use crate::material::Scatter;
 use crate::math::{Ray, Sampler};
-use crate::scene::{Ends, Hit, MaterialId};
+use crate::scene::{Ends, Hit, MaterialId, Sight};
 use crate::shape::SurfacePoint;
 use crate::spectrum::{Draw, Lanes};
 use crate::trace::{Transport, World, media};
@@ -151,7 +151,9 @@ impl Passage<'_> {
             let point = world.scene.objects[hit.object as usize].point(&ray, &hit.crossing);
             let through = Through { ray: &ray, present: Lanes::ONE, inside: self.inside };
             let onward = straight_at(world, draw, &through, &hit, &point, polarization)?;
-            (all, polarization) = (all * onward.straight.share(), onward.polarization);
+            let is_held_out = self.past == Past::Seen && world.sight(hit.object) == Sight::Holdout;
+            let straight = if is_held_out { onward.straight.through_holes() } else { onward.straight };
+            (all, polarization) = (all * straight.share(), onward.polarization);
             if all.is_zero() {
                 return None;
             }
