@@ -212,6 +212,9 @@ fn impossible_texels_are_refused_with_their_place() {
     assert_eq!(refused("{ image = \"bright.exr\" }"), format!("bright.exr: pixel (2, 1) is 1.5, {more}"));
     let scaled = refused("{ image = \"bright.exr\", scale = 0.7 }");
     assert_eq!(scaled, format!("bright.exr: pixel (2, 1) is 1.5 times its scale of 0.7, {more}"));
+    let mask = "[material.b]\nmask = { material = \"a\", opacity = { image = \"bright.exr\" } }";
+    let told = refusal_of(folder.path(), &format!("diffuse = {{ reflectance = 1 }}\n{mask}")).message;
+    assert_eq!(told, "bright.exr: pixel (2, 1) is 1.5, and a share is at most 1");
     // A number that is not read may be anything.
     materials(
         folder.path(),

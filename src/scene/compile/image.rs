@@ -55,7 +55,9 @@ fn image_curve<'d>(context: &mut Context, text: &CurveText<'d>, file: &'d str, q
         thickness_of(text, file, &image, scale)?;
     } else if quantity != Quantity::Emission && f64::from(brightest) * scale > 1.0 {
         let scaled = if scale == 1.0 { String::new() } else { format!(" times its scale of {scale}") };
-        let message = format!("{file}: pixel ({x}, {y}) is {brightest}{scaled}, and no surface gives back more than 1");
+        let limit =
+            if quantity == Quantity::Share { "a share is at most 1" } else { "no surface gives back more than 1" };
+        let message = format!("{file}: pixel ({x}, {y}) is {brightest}{scaled}, and {limit}");
         let help = format!("scale = {:.4} makes it 1", (1e4 / f64::from(brightest)).floor() / 1e4);
         return text.place.tell(message, (brightest < 1e4).then_some(help));
     }

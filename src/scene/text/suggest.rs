@@ -45,8 +45,18 @@ const ELSEWHERE: [(&str, &str); 32] = [
 
 /// Words of other renderers that no one word here stands for: one of the names that are known beside them, and what to
 /// do.
-const IN_OTHER_WORDS: [(&[&str], &str, &str); 6] = [
+const IN_OTHER_WORDS: [(&[&str], &str, &str); 8] = [
     (&["box", "cuboid"], "cube", "write cube = { center = [0, 1, 0], size = [2, 1, 3] }"),
+    (
+        &["environment", "sun", "point", "spot", "sky"],
+        "include",
+        "lights are [[light]]: write that, and below it the kind, such as environment = { radiance = 1 }",
+    ),
+    (
+        &["sphere", "plane", "cube", "quad", "disc", "triangle", "mesh", "shape"],
+        "include",
+        "surfaces are [[object]]: write that, and below it shape.sphere = { center = [0, 1, 0], radius = 1 }",
+    ),
     (&["resolution", "size"], "color_space", "write width = 640 and height = 360"),
     (
         &["horizontal_fov", "fov_x", "focal_length"],
