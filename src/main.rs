@@ -69,7 +69,7 @@ fn do_one(job: &Job, source: &Source) -> Result<ExitCode> {
     scene.warnings.iter().for_each(|warning| messages::warn(warning));
     match &job.output {
         Output::Check => {
-            messages::print_checked(&source.path, scene.objects.len());
+            messages::print_checked(&source.path, scene.objects.len())?;
             Ok(ExitCode::SUCCESS)
         }
         Output::Plan(file) => answer_plan(&scene, file.as_deref()),

@@ -114,6 +114,13 @@ fn figures(found: &Difference, tolerance: Option<f64>, gathers: bool) -> Vec<Str
         };
         put("dE2000", format!("mean {:.3}, worst {:.2}{clipped}", color.mean, color.worst));
     }
+    if let Some(alpha) = &found.alpha {
+        let [largest, error] = [alpha.largest, alpha.relative_mse].map(number);
+        put(
+            "alpha",
+            format!("up to {largest} apart, relMSE {error}; of its noise nothing is known; --layer A compares it"),
+        );
+    }
     if let Some(noise) = found.noise.as_ref().filter(|_| !found.is_equal) {
         put("z", of_noise(found, noise));
         let means: Vec<String> = noise.means.iter().map(|z| format!("{z:.1}")).collect();

@@ -82,9 +82,14 @@ impl<'e> Event<'e> {
         }
     }
 
+    /// As a line of JSON; none where a path in it is no text.
+    pub fn line(&self) -> Option<String> {
+        serde_json::to_string(self).ok()
+    }
+
     /// Says it on stdout. Where nobody listens the work goes on.
     pub fn tell(&self) {
-        if let Ok(line) = serde_json::to_string(self) {
+        if let Some(line) = self.line() {
             let mut stdout = std::io::stdout().lock();
             let _ = writeln!(stdout, "{line}").and_then(|()| stdout.flush());
         }

@@ -10,6 +10,7 @@ use abbe::scene::duration;
 use abbe::{Advance, Error, ImageError, Rendering, Result, Resumed, Timer, is_checkpoint};
 use clap::Args;
 
+use super::hangup::kept_ignored;
 use super::messages::{say, say_last, so_far, warn};
 use super::outputs::refuse;
 use super::problem::problem;
@@ -288,14 +289,15 @@ impl Keep {
 
 /// Lets Ctrl-C stop the command, at once or after what is done is kept; a second one stops it at once.
 fn catch(stops_at_once: bool) -> std::result::Result<(), ctrlc::Error> {
-    ctrlc::set_handler(move || {
+    let stop = move || {
         if stops_at_once {
             say_last(NOTHING_KEPT, STOPPED_CODE);
         }
         if STOPPED.swap(true, Ordering::Relaxed) {
             std::process::exit(STOPPED_CODE.into());
         }
-    })
+    };
+    kept_ignored(|| ctrlc::set_handler(stop))
 }
 
 /// How many samples of a pixel will do, about, where that is known and more than there are.

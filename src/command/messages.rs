@@ -197,13 +197,22 @@ pub fn is_colored(stream: &impl IsTerminal) -> bool {
     stream.is_terminal() && std::env::var_os("NO_COLOR").is_none()
 }
 
+/// All that a program has asked for.
+fn answer_event(event: &Event) -> Result<()> {
+    event.line().map_or(Ok(()), |line| answer_lines(&[line]))
+}
+
 /// That a scene is right.
-pub fn print_checked(scene: &Path, objects: usize) {
+///
+/// # Errors
+/// As of a text, for a program.
+pub fn print_checked(scene: &Path, objects: usize) -> Result<()> {
     if listener() == Listener::Program {
-        return Event::Checked { scene, objects }.tell();
+        return answer_event(&Event::Checked { scene, objects });
     }
     let what = if objects == 1 { "object" } else { "objects" };
     say(&format!("{} is a valid scene: {objects} {what}", scene.display()));
+    Ok(())
 }
 
 /// How a scene would be rendered, on stdout.
@@ -212,7 +221,7 @@ pub fn print_checked(scene: &Path, objects: usize) {
 /// As of a text.
 pub fn answer_plan(plan: &Plan) -> Result<()> {
     match listener() {
-        Listener::Program => print_plan(plan),
+        Listener::Program => answer_event(&Event::plan(plan))?,
         _ => answer_lines(&plan.because)?,
     }
     Ok(())

@@ -5,6 +5,7 @@ pub mod cli;
 pub mod diff;
 pub mod events;
 mod frames;
+mod hangup;
 pub mod info;
 pub mod keep;
 mod manual;

@@ -39,10 +39,21 @@ pub struct Difference {
     pub worst: Option<WorstPixel>,
     /// The first pixel that is left out and differs, if any does.
     pub first_torn: Option<WorstPixel>,
+    /// How far apart the alpha beside compared colors is, if it differs.
+    pub alpha: Option<AlphaDifference>,
     /// Whether that is noise, if both files say how noisy they are.
     pub noise: Option<Noise>,
     /// The largest |a - b| of each pixel's values; infinite where it is left out and torn, 0 where only left out.
     pub absolute: Vec<f64>,
+}
+
+/// The alpha of both images, of which no file says how noisy it is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AlphaDifference {
+    /// The largest |a - b|; infinite if one of them is no finite number.
+    pub largest: f64,
+    /// The mean of (a - b)^2 / (b^2 + 0.01).
+    pub relative_mse: f64,
 }
 
 /// CIEDE2000 (CIE 142:2001) of colors as a screen shows them: brought to Rec.709 and clipped to 0..1. The film's
@@ -86,6 +97,8 @@ pub fn compare(files: [&ExrFile; 2], layer: Option<&str>, shown: [&str; 2]) -> R
     let mut found = measured([&a, &b], bounds);
     if layers.iter().all(|layer| layer.color().is_some()) {
         found.color = Some(color_difference(files, [&a, &b], &found));
+        found.alpha = alpha_difference(&layers, bounds);
+        found.is_equal &= found.alpha.is_none();
     }
     if let [Some(first), Some(second)] = [0, 1].map(|i| Noisy::new(files[i], &layers[i]))
         && layers[0].name == BEAUTY
@@ -141,6 +154,7 @@ fn measured([a, b]: [&[&Channel]; 2], bounds: PixelBounds) -> Difference {
         relative_mse: 0.0,
         brightness: 1.0,
         color: None,
+        alpha: None,
         worst: None,
         first_torn: None,
         noise: None,
@@ -182,6 +196,15 @@ fn measured([a, b]: [&[&Channel]; 2], bounds: PixelBounds) -> Difference {
     found
 }
 
+fn alpha_difference(layers: &[ExrLayer; 2], bounds: PixelBounds) -> Option<AlphaDifference> {
+    let alphas =
+        layers.each_ref().map(|layer| layer.channels.iter().find(|channel| channel.name.to_lowercase() == "a"));
+    let [a, b] = [alphas[0]?, alphas[1]?];
+    let found = measured([&[a], &[b]], bounds);
+    let largest = found.absolute.iter().copied().fold(0.0, f64::max);
+    (!found.is_equal).then_some(AlphaDifference { largest, relative_mse: found.relative_mse })
+}
+
 fn color_difference(files: [&ExrFile; 2], colors: [&[&Channel]; 2], measured: &Difference) -> ColorDifference {
     let matrices = files.map(|file| to_rec709(file).0);
     let (mut sum, mut worst, mut clipped, mut count) = (0.0, 0.0f64, 0usize, 0usize);
@@ -211,14 +234,20 @@ fn delta_e_2000(colors: [[f64; 3]; 2]) -> f64 {
 
 impl Difference {
     /// Whether the images agree: equal values do; otherwise a tolerance of the relative mean squared error decides, if
-    /// there is one, or else whether both differ by more than their noise. Without either, what differs does not agree.
+    /// there is one, or else whether both differ by more than their noise. Without either, what differs does not agree,
+    /// nor does alpha where nothing else differs: nobody knows its noise.
     pub fn agrees(&self, tolerance: Option<f64>) -> bool {
+        let alpha_fits = match (&self.alpha, tolerance) {
+            (None, _) => true,
+            (Some(alpha), Some(tolerance)) => alpha.largest.is_finite() && alpha.relative_mse <= tolerance,
+            (Some(_), None) => self.relative_mse > 0.0,
+        };
         let within = match (tolerance, &self.noise) {
             (Some(tolerance), _) => self.relative_mse <= tolerance,
             (None, Some(noise)) => noise.agrees(),
             (None, None) => false,
         };
-        self.is_equal || within && self.torn == 0
+        self.is_equal || within && alpha_fits && self.torn == 0
     }
 
     /// The largest difference of each pixel as a gray picture, and the difference that is white in it: the 99th

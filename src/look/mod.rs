@@ -8,7 +8,7 @@ mod significance;
 mod tone;
 mod words;
 
-pub use difference::{ColorDifference, Difference, WorstPixel, compare};
+pub use difference::{AlphaDifference, ColorDifference, Difference, WorstPixel, compare};
 pub use mattes::Mattes;
 pub use noise::Noise;
 pub use picture::{Exposure, Picture};

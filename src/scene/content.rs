@@ -133,9 +133,9 @@ impl<S> Scene<S> {
         self.objects[object as usize].sight != Sight::Hidden
     }
 
-    /// The nearest surface of the plate's world along a ray: see [`Scene::is_of_plate`].
-    pub fn intersect_plate(&self, ray: &Ray, left: Option<Primitive>) -> Option<Hit> {
-        self.nearest_from(ray, left, &|object| self.is_of_plate(object))
+    /// The nearest surface of the plate's world along a ray, which may be of the camera: see [`Scene::is_of_plate`].
+    pub fn intersect_plate(&self, ray: &Ray, left: Option<Primitive>, of_camera: bool) -> Option<Hit> {
+        self.nearest_from(ray, left, &|object| self.is_of_plate(object) && (!of_camera || self.is_seen(object)))
     }
 
     /// Whether an object stands for something that is in the plate, or lights it: a shadow catcher, a holdout, a lamp.

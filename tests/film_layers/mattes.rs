@@ -132,3 +132,27 @@ fn a_caustic_behind_a_pane_that_is_held_out_is_hidden() {
     assert!(hidden.rgb().as_flattened().iter().all(|&x| x == 0.0), "light comes through");
     assert_eq!(caustics(&hidden), 0.0);
 }
+
+/// The share of the light of a disc that another disc hides from the middle of a floor, which is seen through both:
+/// b^2 / (b^2 + k^2) of a^2 / (a^2 + h^2), for radii and heights of the discs (Howell, Menguc, Daun & Siegel 2020,
+/// *Thermal Radiation Heat Transfer*, configuration factor of an element parallel to a disk).
+#[test]
+fn a_shadow_catcher_seen_through_a_lamp_that_the_camera_does_not_see_shows_the_shadow_alone() {
+    let shadow = |more: &str| {
+        let text = format!(
+            "camera = {{ projection = \"orthographic\", height = 0.04, position = [0, 6, 0], look_at = [0, 0, 0], \
+             up = [0, 0, -1] }}\nfilm = {{ width = 6, height = 6 }}\nrender = {{ samples = {SAMPLES} }}\n[material]\n\
+             lamp.emissive.radiance = 5\ngray.diffuse.reflectance = 0.5\nblack.diffuse.reflectance = 0\n\
+             [[object]]\nshape.disc = {{ center = [0, 2, 0], normal = [0, -1, 0], radius = 1 }}\nmaterial = \"lamp\"\n\
+             visible_to_camera = false\n\
+             [[object]]\nshape.plane = {{ point = [0, 0, 0], normal = [0, 1, 0] }}\nmaterial = \"gray\"\n\
+             shadow_catcher = true\n{more}"
+        );
+        coverage(&rendered(&text, &[Layer::Shadow]))
+    };
+    assert_eq!(shadow(""), 0.0);
+    let disc = "[[object]]\nshape.disc = { center = [0, 1, 0], normal = [0, 1, 0], radius = 0.25 }\n\
+                material = \"black\"\nvisible_to_camera = false\n";
+    let expected = (0.0625 / 1.0625) / 0.2;
+    assert!((shadow(disc) - expected).abs() < 0.005, "{} for {expected}", shadow(disc));
+}

@@ -197,6 +197,29 @@ fn values_without_variance_differ_only_beyond_rounding() {
     assert!(!difference(&a, &c).agrees(None));
 }
 
+/// A shadow pass has nothing else.
+#[test]
+fn images_whose_alpha_alone_differs_do_not_agree() {
+    let folder = Folder::new();
+    let with_alpha = |alpha: f32| {
+        let mut image = gray();
+        image.parts[0].1.push(("A", vec![alpha; 200]));
+        image
+    };
+    let (a, b) = (with_alpha(0.3), with_alpha(0.7));
+    // 0.4^2 / (0.7^2 + 0.01).
+    let lines = ["a.exr and b.exr differ", "alpha up to 0.4 apart, relMSE 0.32; of its noise nothing is known"];
+    assert_says(&diff(&folder, &a, &b, &[]), 1, &lines);
+    assert_says(&diff(&folder, &a, &b, &["--tolerance", "0.1"]), 1, &lines);
+    assert_says(&diff(&folder, &a, &b, &["--tolerance", "0.4"]), 0, &["a.exr and b.exr agree"]);
+    // Beside colors that differ by their noise, its own noise is allowed.
+    let mut noisy = b.clone();
+    noisy.channel("G")[67] += 2e-4_f32.sqrt();
+    assert_says(&diff(&folder, &a, &noisy, &[]), 0, &["a.exr and b.exr agree", "alpha up to 0.4 apart"]);
+    let same = diff(&folder, &a, &a, &[]);
+    assert_eq!((same.code, &*same.stdout), (Some(0), "a.exr and b.exr agree: all values are equal\n"));
+}
+
 #[test]
 fn without_variance_equality_or_a_tolerance_decides() {
     let folder = Folder::new();

@@ -143,3 +143,17 @@ def test_a_place_that_cannot_be_written_to_is_told_before_the_render(folder, fla
     said = run.communicate(timeout=600)[1]
     assert run.returncode == 1 and said.count("\n") == 1 and unwritable in said, said
     assert sorted(path.name for path in folder.iterdir()) == ["place", "s.toml"]
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there are no hangups")
+@pytest.mark.parametrize("ignored", [True, False])
+def test_a_render_outlives_its_terminal_where_nohup_asks_for_it(folder, ignored):
+    action = signal.SIG_IGN if ignored else signal.SIG_DFL
+    command = [str(binary()), "s.toml", "--samples", "100", "--checkpoint", "30ms"]
+    prepare = lambda: signal.signal(signal.SIGHUP, action)
+    run = subprocess.Popen(command, cwd=folder, stderr=subprocess.PIPE, text=True, preexec_fn=prepare)
+    while run.poll() is None and not list(folder.glob("*.checkpoint")):
+        time.sleep(0.01)
+    run.send_signal(signal.SIGHUP)
+    said = run.communicate(timeout=600)[1]
+    assert (run.returncode, (folder / "s.exr").is_file()) == ((0, True) if ignored else (130, False)), said

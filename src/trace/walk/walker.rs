@@ -70,7 +70,7 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
         let hit = match path.among {
             Among::All if is_past_hidden => self.world.scene.intersect_seen(&path.ray, path.left),
             Among::All => self.world.scene.intersect_from(&path.ray, path.left),
-            Among::Plate => self.world.scene.intersect_plate(&path.ray, path.left),
+            Among::Plate => self.world.scene.intersect_plate(&path.ray, path.left, path.kind == PathKind::Camera),
         };
         let before = path.throughput;
         path.advance(self.world, draw, hit.map_or(f64::INFINITY, |hit| hit.crossing.t));
