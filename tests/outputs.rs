@@ -126,6 +126,10 @@ fn an_answer_that_cannot_be_written_is_a_failure() {
         assert_eq!((code, &*told), (Some(1), reason), "{question}");
         assert_eq!(shell(&folder, &format!("$RENDER {question} >/dev/full 2>/dev/full")).0, Some(1), "{question}");
     }
+    // A program that listens there cannot be told why.
+    for question in ["--json --plan ball.toml", "--json --check ball.toml"] {
+        assert_eq!(shell(&folder, &format!("$RENDER {question} >/dev/full")).0, Some(1), "{question}");
+    }
 }
 
 #[test]
