@@ -4,6 +4,7 @@ use png::{BitDepth, Decoder, DecodingError, Info, Limits, ScaledFloat, SourceChr
 
 use super::texels::{Steps, Unreadable, Whole, fits};
 use crate::film::MOST_TEXELS;
+use crate::spectrum::{ColorSpace, Primaries};
 
 /// Reads a PNG (ISO/IEC 15948): palettes, transparent colors and less than 8 bits become numbers of 8 bits.
 ///
@@ -41,8 +42,10 @@ fn not_srgb(info: &Info) -> Option<String> {
     let gamma = info.gama_chunk.map(ScaledFloat::into_value).filter(|gamma| (gamma * 2.2 - 1.0).abs() > 0.02);
     let others = |found: &SourceChromaticities| {
         let found = [found.red, found.green, found.blue, found.white].map(|(x, y)| [x, y].map(ScaledFloat::into_value));
-        let pairs = found.as_flattened().iter().zip(REC709.as_flattened());
-        pairs.into_iter().any(|(found, known)| (found - known).abs() > 0.005)
+        let Primaries { red, green, blue, white } = ColorSpace::Rec709.primaries();
+        let known = [red, green, blue, white];
+        let pairs = found.as_flattened().iter().zip(known.as_flattened());
+        pairs.into_iter().any(|(found, known)| (f64::from(*found) - known).abs() > 0.005)
     };
     let primaries = info.chrm_chunk.filter(others).map(|_| "other primaries (cHRM)".to_owned());
     gamma.map(|gamma| format!("a gamma of {gamma} (gAMA)")).or(primaries)
@@ -51,5 +54,3 @@ fn not_srgb(info: &Info) -> Option<String> {
 /// Color primaries and transfer function of sRGB, by the numbers of ITU-T H.273, and of Rec.709, which displays show
 /// alike.
 const SRGB_POINTS: [[u8; 2]; 2] = [[1, 13], [1, 1]];
-/// x and y of red, green, blue and white of Rec. ITU-R BT.709.
-const REC709: [[f32; 2]; 4] = [[0.64, 0.33], [0.3, 0.6], [0.15, 0.06], [0.3127, 0.329]];
