@@ -205,7 +205,7 @@ fn answer_event(event: &Event) -> Result<()> {
 /// That a scene is right.
 ///
 /// # Errors
-/// As of a text, for a program.
+/// If a program is to be answered, and the answer cannot be written.
 pub fn print_checked(scene: &Path, objects: usize) -> Result<()> {
     if listener() == Listener::Program {
         return answer_event(&Event::Checked { scene, objects });

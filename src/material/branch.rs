@@ -87,7 +87,7 @@ impl<const N: usize> Straight<N> {
         self.holes + self.panes
     }
 
-    /// The same but for what goes through panes.
+    /// What goes through holes, without what goes through panes.
     #[must_use]
     pub fn through_holes(self) -> Self {
         Self { panes: Lanes::ZERO, ..self }

@@ -161,15 +161,18 @@ impl Reader<'_> {
 
 /// x and y of red, green, blue and white.
 fn primaries(words: &str) -> Option<Primaries> {
-    let numbers: Vec<f64> = words.split_whitespace().map(|word| word.parse().ok()).collect::<Option<_>>()?;
+    let numbers = every_number(words)?;
     let [red, green, blue, white] = numbers.as_chunks().0.try_into().ok()?;
     (numbers.len() == 8).then_some(Primaries { red, green, blue, white })
 }
 
+fn every_number(words: &str) -> Option<Vec<f64>> {
+    words.split_whitespace().map(|word| word.parse().ok()).collect()
+}
+
 /// One number above 0 for all colors, or one for each.
 fn numbers(words: &str, is_one: bool) -> Option<[f64; 3]> {
-    let numbers: Vec<f64> = words.split_whitespace().map(|word| word.parse().ok()).collect::<Option<_>>()?;
-    let numbers = match numbers[..] {
+    let numbers = match every_number(words)?[..] {
         [all] if is_one => [all; 3],
         [red, green, blue] if !is_one => [red, green, blue],
         _ => return None,
