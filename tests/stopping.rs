@@ -157,6 +157,43 @@ fn the_noise_that_is_told_is_the_noise_that_is_there_and_the_bound_holds() {
     assert!(ratios[ratios.len() / 2] > 0.5, "median {:.2}", ratios[ratios.len() / 2]);
 }
 
+/// A shadow alone: the image is black, and all there is to see is alpha. A disc hides b^2 / (b^2 + k^2) of a lamp that
+/// sends a^2 / (a^2 + h^2), for radii and heights of the discs (Howell, Menguc, Daun & Siegel 2020, *Thermal Radiation
+/// Heat Transfer*, configuration factor of an element parallel to a disk).
+#[test]
+fn the_noise_of_alpha_under_a_shadow_catcher_is_the_noise_that_is_there_and_a_render_ends_by_it() {
+    const RENDERS: u64 = 40;
+    let truth = (0.0625 / 1.0625) / 0.2;
+    for filter in ["box", "mitchell"] {
+        let scene = scene(&format!(
+            "camera = {{ projection = \"orthographic\", height = 0.04, position = [0, 6, 0], look_at = [0, 0, 0], \
+             up = [0, 0, -1] }}\nfilm = {{ width = 12, height = 12, filter = \"{filter}\" }}\n[material]\n\
+             lamp.emissive.radiance = 5\ngray.diffuse.reflectance = 0.5\nblack.diffuse.reflectance = 0\n\
+             [[object]]\nshape.disc = {{ center = [0, 2, 0], normal = [0, -1, 0], radius = 1 }}\nmaterial = \"lamp\"\n\
+             visible_to_camera = false\n\
+             [[object]]\nshape.disc = {{ center = [0, 1, 0], normal = [0, 1, 0], radius = 0.25 }}\n\
+             material = \"black\"\nvisible_to_camera = false\n\
+             [[object]]\nshape.plane = {{ point = [0, 0, 0], normal = [0, 1, 0] }}\nmaterial = \"gray\"\n\
+             shadow_catcher = true\n"
+        ));
+        let one = |seed: u64| {
+            let image = render(&scene, &Options { seed: Some(seed), ..asks(0.02, 4096) }).expect("it can be rendered");
+            let error = image.error().expect("there are replicates").clone();
+            assert!(error.is_reached() && error.noise.at_most == 0.0 && error.noise.samples > 64, "{error:?}");
+            let alpha = image.layer("A").expect("every image has it");
+            let square = |alpha: &f32| (f64::from(*alpha) / truth - 1.0).powi(2);
+            let told = error.alpha.expect("there is a shadow catcher");
+            [alpha.iter().map(square).sum::<f64>() / alpha.len() as f64, told.expected.powi(2), told.at_most.powi(2)]
+        };
+        let found: Vec<[f64; 3]> = (0..RENDERS).into_par_iter().map(one).collect();
+        let mean = |i: usize| found.iter().map(|numbers| numbers[i]).sum::<f64>() / RENDERS as f64;
+        assert!((mean(0) / mean(1) - 1.0).abs() < 0.1, "{filter}: {:e} is told as {:e}", mean(0), mean(1));
+        let kept = found.iter().filter(|[true_error, _, bound]| true_error <= bound).count();
+        assert!(kept >= 34, "{filter}: {kept} of {RENDERS}");
+        assert!(found.iter().all(|[_, _, bound]| (0.01..=0.02).contains(&bound.sqrt())), "{filter}");
+    }
+}
+
 #[test]
 fn light_that_one_of_eight_renders_finds_alone_ends_no_render_and_is_told() {
     // A glossy ball throws the light of a tiny lamp onto the floor: no photons are sent there.

@@ -269,14 +269,16 @@ fn print_error_of_image(error: &ImageError) {
         0.0 => String::new(),
         at_most => format!(", blur of photons {}", percent(at_most)),
     };
+    let alpha = error.alpha.map_or(String::new(), |alpha| format!(", alpha {}", percent(alpha.at_most)));
     let off = match noise.outlier {
-        None => format!("at most {at_most} in 95 of 100 renders (color {of_color}{blur}, the rest noise)"),
+        None => format!("at most {at_most} in 95 of 100 renders (color {of_color}{blur}{alpha}, the rest noise)"),
         Some(_) => format!("{expected} or more"),
     };
     say(&format!("{} samples per pixel: the image is off by {off}", noise.samples));
     let ([x, y], worst) = (noise.worst_tile.corner, percent(noise.worst_tile.expected));
+    let alpha = error.alpha.map_or(String::new(), |alpha| format!("; that of alpha is {}", percent(alpha.expected)));
     say(&format!(
-        "noise is about {expected} of the image's brightness, and {worst} in the 16 x 16 pixels from ({x}, {y})"
+        "noise is about {expected} of the image's brightness, and {worst} in the 16 x 16 pixels from ({x}, {y}){alpha}"
     ));
 }
 

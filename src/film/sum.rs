@@ -95,6 +95,11 @@ impl PassSum {
         self.taken - self.rejected
     }
 
+    /// How many of them met something.
+    pub fn met(&self) -> u32 {
+        self.total().met
+    }
+
     fn total(&self) -> Entry {
         self.tree.iter().flatten().fold(self.block, |sum, entry| entry.plus(sum))
     }

@@ -129,6 +129,10 @@ pub struct ErrorAccount<'a> {
     pub blur: f64,
     /// The same at most.
     pub blur_at_most: f64,
+    /// The noise of alpha, relative to alpha, as it is expected; none without shadow catchers.
+    pub alpha: Option<f64>,
+    /// The same at most.
+    pub alpha_at_most: Option<f64>,
     /// The part that is color.
     pub model: f64,
     /// First column and row of the 16 x 16 pixels with most noise.
@@ -162,6 +166,8 @@ impl<'a> ErrorAccount<'a> {
             noise_at_most: noise.at_most,
             blur: error.blur.expected,
             blur_at_most: error.blur.at_most,
+            alpha: error.alpha.map(|alpha| alpha.expected),
+            alpha_at_most: error.alpha.map(|alpha| alpha.at_most),
             model: error.model,
             worst_tile: noise.worst_tile.corner,
             worst_tile_noise: noise.worst_tile.expected,

@@ -1,4 +1,4 @@
-use crate::trace::{Blur, FIRST_LOOK, Noise, RareLight, Stopped};
+use crate::trace::{AlphaNoise, Blur, FIRST_LOOK, Noise, RareLight, Stopped};
 
 /// How far an image is off, as a render with a stop rule has measured it.
 ///
@@ -11,6 +11,9 @@ pub struct ImageError {
     pub noise: Noise,
     /// What photons that are gathered make of it, which blur.
     pub blur: Blur,
+    /// The noise of alpha, relative to alpha, where shadow catchers make some: the larger of it and of all that colors
+    /// are off counts.
+    pub alpha: Option<AlphaNoise>,
     /// The light that makes an outlier of the noise, of a render that has ended.
     pub rare_light: Option<RareLight>,
     /// What the model of color may make of it, as the plan predicts: relative to the strongest channel of each color.
@@ -24,7 +27,8 @@ impl ImageError {
     /// light that is too rare to have been met. Where the error that was asked for is reached at a later look than the
     /// first, it is that: a render that ends as soon as it measures so little ends rather where it measures too little.
     pub fn at_most(&self) -> f64 {
-        let measured = self.noise.at_most.hypot(self.blur.at_most).hypot(self.model);
+        let of_alpha = self.alpha.map_or(0.0, |alpha| alpha.at_most);
+        let measured = self.noise.at_most.hypot(self.blur.at_most).hypot(self.model).max(of_alpha);
         let is_chosen = self.stopped_by == Some(Stopped::Noise) && self.noise.samples > FIRST_LOOK;
         self.asked.filter(|_| is_chosen).map_or(measured, |asked| measured.max(asked))
     }

@@ -280,7 +280,7 @@ impl Rendering {
         let (noise, blur) = (*self.passes.noise()?, *self.passes.blur()?);
         let (model, stopped_by) = (self.plan.model_error, self.passes.stopped_by());
         let rare_light = self.threads.install(|| stopped_by.and_then(|_| self.passes.rare_light()));
-        Some(ImageError { asked: self.asked, noise, blur, rare_light, model, stopped_by })
+        Some(ImageError { asked: self.asked, noise, blur, alpha: self.passes.alpha(), rare_light, model, stopped_by })
     }
 
     /// The image of all samples so far.
@@ -329,7 +329,8 @@ fn facts_of_error(error: &ImageError) -> Vec<(Cow<'static, str>, Fact)> {
     let [at_most, noise] = [error.at_most(), error.noise.expected].map(Fact::Number);
     let facts = [("errorAtMost", at_most), ("noise", noise), ("modelError", Fact::Number(error.model))];
     let blur = (error.blur.at_most > 0.0).then_some(("blur", Fact::Number(error.blur.expected)));
-    facts.into_iter().chain(blur).map(|(key, fact)| (key.into(), fact)).collect()
+    let alpha = error.alpha.map(|alpha| ("alphaNoise", Fact::Number(alpha.expected)));
+    facts.into_iter().chain(blur).chain(alpha).map(|(key, fact)| (key.into(), fact)).collect()
 }
 
 fn provenance(origin: &Origin, plan: &Plan, samples: u64, report: &Report) -> Provenance {

@@ -76,18 +76,35 @@ impl Caught {
 
     /// The part of each channel that other objects take, times the share of the pixel; negative where they add light.
     pub(super) fn shadow(&self) -> [f64; 3] {
-        [0, 1, 2].map(|channel| self.taken(self.with[channel], self.without[channel]))
+        [0, 1, 2].map(|channel| match self.without[channel] {
+            without if without > 0.0 => self.share * (1.0 - self.with[channel] / without),
+            _ => 0.0,
+        })
+    }
+}
+
+/// The luminance that shadow catchers send to the camera, or sums of it.
+#[derive(Clone, Copy)]
+pub(super) struct CaughtLuminance {
+    /// With all objects.
+    pub(super) with: f64,
+    /// With those alone that are in the plate or light it.
+    pub(super) without: f64,
+    /// The share of the pixel that they cover.
+    pub(super) share: f64,
+}
+
+impl CaughtLuminance {
+    /// A sum, without what it was before.
+    pub(super) fn since(self, before: Self) -> Self {
+        Self { with: self.with - before.with, without: self.without - before.without, share: self.share - before.share }
     }
 
-    /// The same of luminance, which is what the image covers there; 0 where light is added. `luminance` is the weight
-    /// of each channel.
-    pub(super) fn coverage(&self, luminance: [f64; 3]) -> f64 {
-        let of = |rgb: [f64; 3]| (0..3).map(|channel| luminance[channel] * rgb[channel]).sum::<f64>();
-        self.taken(of(self.with), of(self.without)).clamp(0.0, self.share)
-    }
-
-    fn taken(&self, with: f64, without: f64) -> f64 {
-        if without > 0.0 { self.share * (1.0 - with / without) } else { 0.0 }
+    /// What the image covers there: the part of the luminance that other objects take, times the share of the pixel; 0
+    /// where light is added.
+    pub(super) fn coverage(&self) -> f64 {
+        let taken = if self.without > 0.0 { 1.0 - self.with / self.without } else { 0.0 };
+        (self.share * taken).clamp(0.0, self.share)
     }
 }
 
@@ -194,6 +211,12 @@ impl Layers {
         Some(Caught { with, without, share: mean(6) })
     }
 
+    /// The luminance of what shadow catchers send.
+    pub(super) fn luminance_caught(&self, caught: &Caught) -> CaughtLuminance {
+        let [with, without] = [&caught.with, &caught.without].map(|rgb| self.luminance_of(rgb));
+        CaughtLuminance { with, without, share: caught.share }
+    }
+
     /// Adds the numbers of shadow catchers to sums.
     pub(super) fn add_caught(&self, sums: &mut [f64], row: &[f64]) {
         if let Some(at) = self.caught {
@@ -250,7 +273,8 @@ impl Layers {
         }
     }
 
-    fn luminance_of(&self, rgb: &[f64; 3]) -> f64 {
+    /// How bright a color is.
+    pub(super) fn luminance_of(&self, rgb: &[f64; 3]) -> f64 {
         (0..3).map(|channel| self.luminance[channel] * rgb[channel]).sum()
     }
 

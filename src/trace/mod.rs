@@ -61,8 +61,8 @@ pub use bright::{BrightPlace, BrightPlaces};
 pub use density::SampleDensity;
 pub use dispersion::{COLORS_NM, Dispersion, ROUTES_NM, Route, SEEN_PIXELS, Step, Way, dispersion, routes};
 pub use image::{
-    Advance, Blur, FIRST_LOOK, Noise, Outlier, PhotonCost, RareLight, Rendering, Report, Restored, Stopped, TileNoise,
-    bytes_of_film, piloted, render, seen_photons,
+    Advance, AlphaNoise, Blur, FIRST_LOOK, Noise, Outlier, PhotonCost, RareLight, Rendering, Report, Restored, Stopped,
+    TileNoise, bytes_of_film, piloted, render, seen_photons,
 };
 pub use media::MOST_MEDIA;
 pub use method::{LightPass, MapPasses, Method, Polarizing, Stop, Transport};

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::layers::CaughtLuminance;
 use crate::film::{Filter, PassSum, SampleWeights};
 
 /// How many there are.
@@ -20,6 +21,35 @@ pub(super) struct Replicates {
     blur: Sums,
     /// What photons show, times the samples that they were sent beside; empty where none are sent.
     shown: Vec<[[f32; 3]; REPLICATES]>,
+    /// How much of it is covered; empty where no shadow catcher makes noise of that.
+    covered: Vec<[Covered; REPLICATES]>,
+}
+
+/// How much of a pixel is covered: sums over samples.
+#[derive(Clone, Copy, Default, Serialize, Deserialize)]
+struct Covered {
+    /// Samples that met something, of those that are added and subtracted.
+    met: [u32; 2],
+    /// The luminance of shadow catchers with all objects and with those of the plate alone, and samples of them.
+    caught: [f32; 3],
+    /// What photons add to the first, times the samples that they were sent beside.
+    shown: f32,
+}
+
+impl Covered {
+    fn add(&mut self, samples: [&PassSum; 2], caught: CaughtLuminance) {
+        (0..2).for_each(|lobe| self.met[lobe] += samples[lobe].met());
+        let caught = [caught.with, caught.without, caught.share];
+        (0..3).for_each(|i| self.caught[i] += caught[i] as f32);
+    }
+
+    /// The alpha of a pixel, by the weights of its samples, where photons were shown for so many.
+    fn alpha(&self, weights: &SampleWeights, shown_for: f64) -> f64 {
+        let met = weights.sum(self.met.map(f64::from)) / weights.taken();
+        let [with, without, share] = self.caught.map(|sum| f64::from(sum) / weights.added());
+        let caught = CaughtLuminance { with: with + f64::from(self.shown) / shown_for, without, share };
+        (met.clamp(0.0, 1.0) + caught.coverage()).min(1.0)
+    }
 }
 
 /// Sums of samples.
@@ -80,16 +110,18 @@ impl Sums {
 }
 
 impl Replicates {
-    /// Of so many pixels; some samples of theirs are subtracted, or none is, and photons are gathered, or are not.
-    pub(super) fn new(pixels: usize, is_signed: bool, gathers: bool) -> Self {
+    /// Of so many pixels; some samples of theirs are subtracted, or none is, photons are gathered, or are not, and there
+    /// are shadow catchers, or none.
+    pub(super) fn new(pixels: usize, is_signed: bool, gathers: bool, catches: bool) -> Self {
         let blur = if gathers { Sums::new(pixels, is_signed) } else { Sums::default() };
-        Self { light: Sums::new(pixels, is_signed), blur, shown: Vec::new() }
+        let covered = if catches { vec![[Covered::default(); REPLICATES]; pixels] } else { Vec::new() };
+        Self { light: Sums::new(pixels, is_signed), blur, shown: Vec::new(), covered }
     }
 
     /// Bytes of memory that they take for each pixel.
-    pub(super) fn bytes_of_pixel(is_signed: bool, gathers: bool) -> usize {
+    pub(super) fn bytes_of_pixel(is_signed: bool, gathers: bool, catches: bool) -> usize {
         let kinds = (1 + usize::from(is_signed)) * (1 + usize::from(gathers));
-        kinds * size_of::<[Sum; REPLICATES]>()
+        kinds * size_of::<[Sum; REPLICATES]>() + usize::from(catches) * size_of::<[Covered; REPLICATES]>()
     }
 
     /// Whether it has as many sums of each kind as another one, or none yet of what photons show.
@@ -97,6 +129,7 @@ impl Replicates {
         self.light.is_shaped_as(&other.light)
             && self.blur.is_shaped_as(&other.blur)
             && [0, other.light.added.len()].contains(&self.shown.len())
+            && self.covered.len() == other.covered.len()
     }
 
     /// Adds the samples of a pixel in one pass of a replicate: those that are added, and those that are subtracted.
@@ -116,6 +149,27 @@ impl Replicates {
         }
         let sum = &mut self.shown[pixel][replicate as usize];
         (0..3).for_each(|i| sum[i] += rgb[i] as f32);
+    }
+
+    /// Adds how much of a pixel one pass of a replicate covers, where shadow catchers sent so much luminance.
+    pub(super) fn add_alpha(&mut self, pixel: usize, replicate: u32, samples: [&PassSum; 2], caught: CaughtLuminance) {
+        self.covered[pixel][replicate as usize].add(samples, caught);
+    }
+
+    /// Adds the luminance that photons of a replicate show on shadow catchers in a pixel.
+    pub(super) fn show_caught(&mut self, pixel: usize, replicate: u32, luminance: f64) {
+        self.covered[pixel][replicate as usize].shown += luminance as f32;
+    }
+
+    /// The alpha of a pixel as each replicate has it, after so many samples of each; none without shadow catchers,
+    /// where it is as even as edges are.
+    pub(super) fn alpha(&self, pixel: usize, filter: Filter, each: u32) -> Option<[f64; REPLICATES]> {
+        let of = |replicate: usize| {
+            let kept = [&self.light.added, &self.light.subtracted];
+            let kept = kept.map(|sums| sums.get(pixel).map_or(0, |sums| sums[replicate].kept));
+            self.covered[pixel][replicate].alpha(&SampleWeights::new(filter, kept), each.into())
+        };
+        (!self.covered.is_empty()).then(|| std::array::from_fn(of))
     }
 
     /// A pixel as each replicate has it, after so many samples of each.

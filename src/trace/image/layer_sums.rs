@@ -6,7 +6,7 @@ use super::coverage::Coverage;
 use crate::film::{Layer, LayerImage, RANKS, Sample, SampleWeights, SpectralImage, polarization, stored};
 use crate::trace::camera::Left;
 use crate::trace::contribution::add;
-use crate::trace::layers::{Layers, OF_A_HALF, STOKES};
+use crate::trace::layers::{CaughtLuminance, Layers, OF_A_HALF, STOKES};
 use crate::trace::spectrum_sample::Spectrum;
 
 /// Sums of the pixels of a tile.
@@ -93,6 +93,12 @@ impl LayerSums {
     pub fn rows_mut(&mut self, layers: &Layers, pixel: usize) -> [&mut [f64]; 2] {
         let range = pixel * layers.numbers..(pixel + 1) * layers.numbers;
         [&mut self.rows[range.clone()], self.subtracted.get_mut(range).unwrap_or_default()]
+    }
+
+    /// The sums of luminance that shadow catchers send to a pixel, if there are any.
+    pub fn caught(&self, layers: &Layers, pixel: usize) -> Option<CaughtLuminance> {
+        let of = |row: &[f64]| layers.caught(row, &[], 1.0).map(|caught| layers.luminance_caught(&caught));
+        layers.catches().then(|| self.rows(layers, pixel)[0]).and_then(of)
     }
 
     /// Which objects each pixel shows.

@@ -92,6 +92,8 @@ pub fn show<const N: usize, P: Polarization<N>>(
             add_to_layers(world, &splat, &mut shown.layers[place * numbers..][..numbers]);
         }
         if splat.caught && world.layers.catches() {
+            let luminance = world.layers.luminance_of(&rgb);
+            pass.replicate.iter().for_each(|&replicate| replicates.show_caught(place, replicate, luminance));
             return;
         }
         (0..3).for_each(|i| shown.pixels[place][i] += rgb[i]);

@@ -14,7 +14,7 @@ mod tile;
 
 pub use blur::Blur;
 pub use light_pass::{learn_where_to_send, piloted, seen_photons, send_shown, splats};
-pub use noise::{Noise, Outlier, TileNoise};
+pub use noise::{AlphaNoise, Noise, Outlier, TileNoise};
 pub use rare_light::RareLight;
 pub use rendering::{Advance, PhotonCost, Rendering, Report, render};
 pub use saved::Restored;

@@ -43,13 +43,26 @@ pub struct Noise {
 pub struct Measured {
     pub noise: Noise,
     pub blur: Blur,
+    pub alpha: Option<AlphaNoise>,
+}
+
+/// The noise of alpha, where shadow catchers make some: the root of the mean square over all pixels, by that of alpha
+/// itself. Alpha is never above 1, so no light is so rare that it could be far off unseen.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct AlphaNoise {
+    /// What is expected.
+    pub expected: f64,
+    /// It is smaller than this in 95 of 100 renders.
+    pub at_most: f64,
 }
 
 impl Measured {
     /// The error is smaller than this in 95 of 100 renders, rather more, since both parts of it are at most what is
-    /// told. The noise of a pixel has nothing to do with how far it is blurred, so squares add up.
+    /// told. The noise of a pixel has nothing to do with how far it is blurred, so squares add up. The larger of the
+    /// errors of colors and alpha counts.
     pub fn at_most(&self) -> f64 {
-        self.noise.at_most.hypot(self.blur.at_most)
+        let alpha = self.alpha.map_or(0.0, |alpha| alpha.at_most);
+        self.noise.at_most.hypot(self.blur.at_most).max(alpha)
     }
 }
 
@@ -99,12 +112,12 @@ impl Spread {
         (0..REPLICATES).map(|i| self.products[i][i]).sum()
     }
 
-    /// Adds a pixel of the format.
-    fn add(&mut self, pixel: [i64; 2], replicates: &[[f64; 3]; REPLICATES]) {
-        let mean: [f64; 3] = std::array::from_fn(|i| replicates.iter().map(|rgb| rgb[i]).sum::<f64>());
+    /// Adds a pixel of the format, with some channels.
+    fn add<const C: usize>(&mut self, pixel: [i64; 2], replicates: &[[f64; C]; REPLICATES]) {
+        let mean: [f64; C] = std::array::from_fn(|i| replicates.iter().map(|values| values[i]).sum::<f64>());
         let mean = mean.map(|sum| sum / REPLICATES as f64);
-        let apart = replicates.map(|rgb| [0, 1, 2].map(|i| rgb[i] - mean[i]));
-        let product = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+        let apart = replicates.map(|values| -> [f64; C] { std::array::from_fn(|i| values[i] - mean[i]) });
+        let product = |a: [f64; C], b: [f64; C]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         let (mut sum, mut most, mut replicate) = (0.0, 0.0, 0);
         for (number, &deviation) in apart.iter().enumerate() {
             for (products, &other) in self.products[number].iter_mut().zip(&apart) {
@@ -120,7 +133,7 @@ impl Spread {
             self.outlier = Some((Outlier { pixel, share: 0.0, replicate }, sum));
         }
         self.squares += mean.iter().map(|x| x * x).sum::<f64>();
-        self.numbers += 3.0;
+        self.numbers += C as f64;
     }
 
     fn join(&mut self, other: Self) {
@@ -156,29 +169,30 @@ impl Spread {
         [mean, mean + STUDENT * variance.sqrt()]
     }
 
-    /// What the sums tell, and those of the blur.
-    fn measured(self, samples: u32, worst: Option<([i64; 2], f64)>, blur: &BlurSums) -> Measured {
-        let count = REPLICATES as f64;
-        let (numbers, [mean, bound]) = (self.numbers.max(1.0), self.errors());
+    /// A mean square error as an error relative to the mean of all replicates.
+    fn relative(&self, square: f64) -> f64 {
+        let (numbers, [mean, _]) = (self.numbers.max(1.0), self.errors());
         // The square of the mean has its variance in it.
-        let signal = self.squares / numbers - mean / count;
-        let relative = |error: f64| match error / signal {
-            _ if error == 0.0 => 0.0,
-            square if square >= 0.0 => square.sqrt(),
+        let signal = self.squares / numbers - mean / REPLICATES as f64;
+        match square / signal {
+            _ if square == 0.0 => 0.0,
+            relative if relative >= 0.0 => relative.sqrt(),
             _ => f64::INFINITY,
-        };
-        let total = self.total();
+        }
+    }
+
+    /// What the sums tell of so many samples. `worst` is the tile with the largest mean square error.
+    fn noise(&self, samples: u32, worst: Option<([i64; 2], f64)>) -> Noise {
+        let (count, total, [mean, bound]) = (REPLICATES as f64, self.total(), self.errors());
         let outlier = self.outlier.map(|(outlier, sum)| Outlier { share: sum / total, ..outlier });
-        let of_tile = |(corner, variance)| TileNoise { corner, expected: relative(variance) };
-        let noise = Noise {
+        let of_tile = |(corner, square)| TileNoise { corner, expected: self.relative(square) };
+        Noise {
             samples,
-            expected: relative(mean / count),
-            at_most: relative(bound / count),
+            expected: self.relative(mean / count),
+            at_most: self.relative(bound / count),
             worst_tile: worst.map_or(TileNoise::default(), of_tile),
             outlier: outlier.filter(|outlier| outlier.share > MUCH),
-        };
-        let [expected, at_most] = blur.squares(STUDENT).map(|squares| relative(squares / numbers));
-        Measured { noise, blur: Blur { expected, at_most } }
+        }
     }
 }
 
@@ -190,24 +204,34 @@ pub fn measure<'t>(
     each: u32,
 ) -> Measured {
     let (mut all, mut worst): (Spread, Option<([i64; 2], f64)>) = (Spread::default(), None);
-    let mut blur = BlurSums::default();
+    let (mut alpha, mut blur) = (Spread::default(), BlurSums::default());
     for (replicates, place) in tiles {
         let corner = [0, 1].map(|i| i64::from(first[i]) + i64::from(place.corner[i]));
-        let (mut of_tile, mut blur_of_tile) = (Spread::default(), BlurSums::default());
+        let (mut of_tile, mut alpha_of_tile, mut blur_of_tile) =
+            (Spread::default(), Spread::default(), BlurSums::default());
         for pixel in 0..place.pixels() {
             let (x, y) = (pixel as i64 % i64::from(place.width), pixel as i64 / i64::from(place.width));
-            of_tile.add([corner[0] + x, corner[1] + y], &replicates.pixel(pixel, filter, each));
+            let at = [corner[0] + x, corner[1] + y];
+            of_tile.add(at, &replicates.pixel(pixel, filter, each));
             replicates.blur(pixel, filter).iter().for_each(|replicates| blur_of_tile.add(replicates));
+            let alphas = replicates.alpha(pixel, filter, each);
+            alphas.iter().for_each(|alphas| alpha_of_tile.add(at, &alphas.map(|alpha| [alpha])));
         }
         let count = REPLICATES as f64;
-        let variance = of_tile.total() / of_tile.numbers / (count * (count - 1.0));
-        if worst.is_none_or(|(_, most)| variance > most) {
-            worst = Some((corner, variance));
+        let square = of_tile.total() / of_tile.numbers / (count * (count - 1.0));
+        if worst.is_none_or(|(_, most)| square > most) {
+            worst = Some((corner, square));
         }
         all.join(of_tile);
+        alpha.join(alpha_of_tile);
         blur.join(&blur_of_tile);
     }
-    all.measured(REPLICATES as u32 * each, worst, &blur)
+    let numbers = all.numbers.max(1.0);
+    let [expected, at_most] = blur.squares(STUDENT).map(|squares| all.relative(squares / numbers));
+    let blur = Blur { expected, at_most };
+    let Noise { expected, at_most, .. } = alpha.noise(REPLICATES as u32 * each, None);
+    let alpha = (alpha.numbers > 0.0).then_some(AlphaNoise { expected, at_most });
+    Measured { noise: all.noise(REPLICATES as u32 * each, worst), blur, alpha }
 }
 
 #[cfg(test)]
@@ -234,7 +258,7 @@ mod tests {
                 error += (mean - truth) * (mean - truth) / (f64::from(PIXELS) * truth * truth);
                 spread.add([i64::from(pixel), 0], &replicates);
             }
-            let noise = spread.measured(samples, None, &BlurSums::default()).noise;
+            let noise = spread.noise(samples, None);
             let doubts = noise.outlier.is_some();
             told[0] += f64::from(u8::from(!doubts && error.sqrt() <= noise.at_most)) / f64::from(RENDERS);
             told[1] += f64::from(u8::from(doubts)) / f64::from(RENDERS);

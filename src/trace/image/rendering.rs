@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use super::blur::Blur;
 use super::layer_sums::{ShownCounts, Taken, images, spectral_image, write};
-use super::noise::{Measured, Noise, measure};
+use super::noise::{AlphaNoise, Measured, Noise, measure};
 use super::passes::{Progress, most_at_once};
 use super::rare_light::{RareLight, rare_light};
 use super::saved::Restored;
@@ -62,6 +62,8 @@ pub struct Report {
     pub noise: Option<Noise>,
     /// By how much photons that were gathered blur it, where a stop rule has it measured.
     pub blur: Option<Blur>,
+    /// The noise of alpha, where shadow catchers make some.
+    pub alpha: Option<AlphaNoise>,
     /// What ended the render, if a stop rule could, and it is finished.
     pub stopped_by: Option<Stopped>,
 }
@@ -247,7 +249,6 @@ impl<'a> Rendering<'a> {
         let window = settings.window();
         let mut pixels = vec![BLANK; window.pixels() as usize];
         let layers = &self.world().layers;
-        let luminance = settings.color_space.to_xyz()[1];
         let (mut images, none) = (images(layers, pixels.len()), PixelSum::default());
         let (shown_for, counts) = (self.shown_for(), self.shown_counts());
         let mut spectral = spectral_image(layers, pixels.len());
@@ -269,7 +270,7 @@ impl<'a> Rendering<'a> {
                         taken.write_spectrum(spectrum, number, image);
                     }
                     if let Some(caught) = layers.caught(sums[0], shown, weights.added()) {
-                        let alpha = f64::from(pixels[number].alpha) + caught.coverage(luminance);
+                        let alpha = f64::from(pixels[number].alpha) + layers.luminance_caught(&caught).coverage();
                         pixels[number].alpha = alpha.min(1.0) as f32;
                     }
                 }
@@ -318,6 +319,7 @@ impl<'a> Rendering<'a> {
             photons: self.photons(),
             noise: self.noise().copied(),
             blur: self.blur().copied(),
+            alpha: self.alpha(),
             stopped_by: self.stopped_by(),
         }
     }
@@ -330,6 +332,11 @@ impl<'a> Rendering<'a> {
     /// By how much gathered photons blurred it at the last look, where a stop rule looks.
     pub fn blur(&self) -> Option<&Blur> {
         self.measured().map(|measured| &measured.blur)
+    }
+
+    /// The noise of alpha at the last look, where shadow catchers make some.
+    pub fn alpha(&self) -> Option<AlphaNoise> {
+        self.measured().and_then(|measured| measured.alpha)
     }
 
     fn measured(&self) -> Option<&Measured> {

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::layer_sums::LayerSums;
 use crate::film::{PassSum, Pixel, PixelSum, Sample, TilePlace};
 use crate::math::Sampler;
-use crate::scene::Scene;
+use crate::scene::{Scene, Sight};
 use crate::spectrum::Curve;
 use crate::trace::World;
 use crate::trace::camera::PathTracer;
@@ -54,7 +54,8 @@ pub struct Shown {
 pub fn bytes_of_film(scene: &Scene<Curve>, method: &Method) -> u64 {
     let is_signed = scene.film.filter.is_signed();
     let gathers = method.light_pass.as_ref().is_some_and(|pass| pass.map.is_some());
-    let replicates = method.stop.as_ref().map_or(0, |_| Replicates::bytes_of_pixel(is_signed, gathers));
+    let catches = scene.objects.iter().any(|object| object.sight == Sight::ShadowCatcher);
+    let replicates = method.stop.as_ref().map_or(0, |_| Replicates::bytes_of_pixel(is_signed, gathers, catches));
     let sums = (1 + usize::from(is_signed)) * size_of::<PixelSum>();
     scene.film.window().pixels() * (sums + replicates + size_of::<Pixel>()) as u64
 }
@@ -66,7 +67,7 @@ impl Tile {
         let subtracted = if is_signed { sums.clone() } else { Vec::new() };
         let layers = LayerSums::new(&world.layers, sums.len(), is_signed);
         let replicates = match world.method.stop {
-            Some(_) => Replicates::new(sums.len(), is_signed, world.has_map()),
+            Some(_) => Replicates::new(sums.len(), is_signed, world.has_map(), world.layers.catches()),
             None => Replicates::default(),
         };
         let (shown, stats) = (Shown::default(), Stats::default());
@@ -141,6 +142,7 @@ impl Tile {
         let mut blurs = [PassSum::default(), PassSum::default()];
         let blurs_are_told = light.tells_blur();
         let rate = world.rate(pixel);
+        let caught_before = self.layers.caught(&world.layers, place);
         for number in rate.of(&pass.numbers) {
             let among_all = rate.among_all(number);
             tracer.light_vertices = light.vertices(among_all - pass.numbers.start);
@@ -165,6 +167,10 @@ impl Tile {
         if let Some(replicate) = pass.replicate {
             self.replicates.add(place, replicate, [&added, &subtracted]);
             self.replicates.add_blur(place, replicate, blurs.each_ref());
+            let caught = self.layers.caught(&world.layers, place);
+            if let (Some(after), Some(before)) = (caught, caught_before) {
+                self.replicates.add_alpha(place, replicate, [&added, &subtracted], after.since(before));
+            }
         }
         self.sums[place].add(added);
         if let Some(sum) = self.subtracted.get_mut(place) {
