@@ -110,7 +110,7 @@ fn small_room() -> Scene {
 /// The mean of long renders without replicates and light vertices, which images of so few samples do not have; and the
 /// square of its own noise, relative to its square.
 fn truth(scene: &Scene) -> (Vec<[f64; 3]>, f64) {
-    const RENDERS: u64 = 24;
+    const RENDERS: u64 = 12;
     let one = |seed: u64| {
         let options = Options { samples: Some(225), seed: Some(1000 + seed), ..Options::default() };
         let rendering = Rendering::new(scene, &options).expect("it can be rendered");

@@ -12,10 +12,10 @@ use abbe::spectrum::{Draw, Table};
 const ROUGHNESSES: [f64; 7] = [0.0, 0.05, 0.2, 0.4, 0.6, 0.8, 1.0];
 const INDICES: [f64; 5] = [1.1, 1.33, 1.52, 1.9, 2.5];
 const COSINES: [f64; 10] = [0.001, 0.01, 0.04, 0.1, 0.2, 0.35, 0.5, 0.7, 0.9, 1.0];
-const DRAWS: u32 = 1 << 15;
+const DRAWS: u32 = 1 << 14;
 /// A rough boundary is drawn by more than the two numbers that are spread evenly: what is left to chance is told by its
 /// spread.
-const DRAWS_OF_GLASS: u32 = 1 << 15;
+const DRAWS_OF_GLASS: u32 = 1 << 14;
 /// A metal that takes less than 1e-9 of the light at right angles.
 const LOSSLESS: &str = "n = 1e-6, k = 100";
 

@@ -2,8 +2,8 @@ use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
 use super::emission_map::Cells;
-use super::{Beam, EmissionMap, EmissionPoint, LeSample, LightBounds, LightSample, LightTree};
-use crate::math::{Bounds, Cone, DVec3, DiscreteSample, Distribution, Frame, Ray, cosine_hemisphere, unit};
+use super::{Beam, EmissionMap, EmissionPoint, KnownParts, LeSample, LightBounds, LightParts, LightSample};
+use crate::math::{Bounds, Cone, DVec3, DiscreteSample, Frame, Ray, cosine_hemisphere, unit};
 use crate::shape::{Ball, Coordinates, Crossing, Density, Shape, ShapeSample, Sides, SurfacePoint, TexturedShape};
 use crate::spectrum::Quantity;
 
@@ -24,7 +24,7 @@ pub struct Area<S> {
     /// The image that it shows, if it shows one.
     image: Option<ShownImage>,
     /// The parts of a shape of several, one of which is sampled.
-    parts: Option<Arc<Parts>>,
+    parts: Option<LightParts>,
     /// The box from whose outside no backs are seen.
     closed: Option<Bounds>,
     /// The unit normals of all that is seen of a sphere, if that is a small part.
@@ -40,28 +40,6 @@ pub struct ShownImage {
     pub map: Option<Arc<EmissionMap>>,
 }
 
-/// The parts of a shape of several.
-#[derive(Clone, Debug)]
-struct Parts {
-    /// By what they send to a point.
-    tree: LightTree,
-    /// By what they send at all.
-    flux: Distribution,
-}
-
-impl Parts {
-    /// An area of each part is worth so much; none of a shape of one part.
-    fn new(shape: &Shape, worth: impl Fn(u32) -> f64) -> Option<Arc<Self>> {
-        let part = |number| {
-            let part = LightBounds::of_part(&shape.part(number)?);
-            Some(LightBounds { intensity: part.intensity * worth(number), ..part })
-        };
-        let parts: Vec<_> = (0..shape.part_count()).filter_map(part).collect();
-        let flux = || Distribution::new(parts.iter().map(|part| part.intensity));
-        (parts.len() > 1).then(|| Arc::new(Self { tree: LightTree::new(&parts), flux: flux() }))
-    }
-}
-
 /// 1 - cos of the largest cap that is sampled, and not the cone in which the whole sphere is seen: an eighth of it.
 const SMALL: f64 = 0.25;
 /// Unit normals below which a cap is not known well enough.
@@ -70,7 +48,7 @@ const ENOUGH: usize = 64;
 const BY_IMAGE: f64 = 0.75;
 
 impl<S> Area<S> {
-    /// The light that an object is, with the image that it shows.
+    /// The light that an object is, with the image that it shows. Parts that are known of its mesh are shared.
     pub fn new(
         shape: Arc<Shape>,
         object: u32,
@@ -78,10 +56,13 @@ impl<S> Area<S> {
         sides: Sides,
         is_sampled: bool,
         image: Option<ShownImage>,
+        known: &mut KnownParts,
     ) -> Self {
-        let map = image.as_ref().and_then(|image| image.map.as_ref());
-        let worth = |part| map.map_or(1.0, |map| map.worth(part));
-        let parts = if is_sampled { Parts::new(&shape, worth) } else { None };
+        let parts = match image.as_ref().and_then(|image| image.map.as_ref()) {
+            _ if !is_sampled => None,
+            Some(map) => LightParts::of(&shape, |part| map.worth(part)),
+            None => LightParts::even(&shape, known),
+        };
         let closed = if shape.is_closed() { shape.bounds() } else { None };
         Self { shape, object, radiance, sides, is_sampled, image, parts, closed, visible_cap: None }
     }
@@ -154,7 +135,7 @@ impl<S> Area<S> {
             return self.shape.sample_cap(cap, from, u);
         }
         let Some(parts) = &self.parts else { return self.sample_part(None, from, u) };
-        let part = parts.tree.sample(from, normal, self.shows_backs(from), u[0])?;
+        let part = parts.sample(from, normal, self.shows_backs(from), u[0])?;
         Some(self.sample_part(Some(part.index as u32), from, [part.u, u[1]])?.times(part.probability))
     }
 
@@ -240,7 +221,7 @@ impl<S> Area<S> {
             (None, None) => self.pdf_part(ray, crossing),
             (None, Some(parts)) => {
                 let two_sided = self.shows_backs(ray.origin);
-                let probability = parts.tree.probability(crossing.part as usize, ray.origin, normal, two_sided);
+                let probability = parts.probability(crossing.part, ray.origin, normal, two_sided);
                 if probability == 0.0 { 0.0 } else { probability * self.pdf_part(ray, crossing) }
             }
         })
@@ -333,7 +314,8 @@ impl<S> Area<S> {
     fn sample_textured(&self, coordinates: &Coordinates, [u, v]: [f64; 2]) -> Option<EmissionPoint> {
         let surface = TexturedShape { shape: &self.shape, coordinates };
         let whole = DiscreteSample { index: 0, probability: 1.0, u };
-        let DiscreteSample { index, probability, u } = self.parts.as_ref().map_or(whole, |parts| parts.flux.sample(u));
+        let DiscreteSample { index, probability, u } =
+            self.parts.as_ref().map_or(whole, |parts| parts.sample_by_flux(u));
         let (part, cells) = (index as u32, self.cells(index as u32));
         let at = match &cells {
             Some((_, cells)) if u < BY_IMAGE => cells.sample([u / BY_IMAGE, v]),

@@ -44,6 +44,11 @@ impl Instance {
         self.mesh.transformed(&self.to_world)
     }
 
+    /// The map back to the mesh and how much longer lengths are in the world, if the map to the world keeps all angles.
+    pub fn similarity(&self) -> Option<(Transform, f64)> {
+        Some((self.to_object, self.to_world.uniform_scale()?))
+    }
+
     /// The mesh that it places.
     pub fn mesh(&self) -> &Arc<Mesh> {
         &self.mesh

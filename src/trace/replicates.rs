@@ -110,8 +110,8 @@ impl Sums {
 }
 
 impl Replicates {
-    /// Of so many pixels; some samples of theirs are subtracted, or none is, photons are gathered, or are not, and there
-    /// are shadow catchers, or none.
+    /// Of so many pixels; some samples of theirs are subtracted, or none is, photons are gathered, or are not, and
+    /// there are shadow catchers, or none.
     pub(super) fn new(pixels: usize, is_signed: bool, gathers: bool, catches: bool) -> Self {
         let blur = if gathers { Sums::new(pixels, is_signed) } else { Sums::default() };
         let covered = if catches { vec![[Covered::default(); REPLICATES]; pixels] } else { Vec::new() };

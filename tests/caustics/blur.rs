@@ -87,7 +87,7 @@ fn the_blur_that_is_told_is_that_of_a_closed_form_and_grows_with_the_area() {
     let sharp = pixels_of(&radiance);
     let mut told_of = Vec::new();
     for pixels in [2.0, 4.0] {
-        let found = renders(&text, MapPasses { radius: pixels, ..MAP }, 64, &all_of(64), 12);
+        let found = renders(&text, MapPasses { radius: pixels, ..MAP }, 64, &all_of(64), 8);
         let (radius, half) = (pixels * width, pixels * width * std::f64::consts::FRAC_1_SQRT_2);
         let squares: Vec<f64> = found.iter().map(|(_, report)| blur(report).expected.powi(2)).collect();
         let [told, error] = mean(&squares);

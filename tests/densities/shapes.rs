@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-use abbe::light::{Area, EmissionMap, Light, LightSample, ShownImage};
+use abbe::light::{Area, EmissionMap, KnownParts, Light, LightSample, ShownImage};
 use abbe::math::{DMat3, DVec3, Frame, Ray, Transform};
 use abbe::shape::{
     Attributes, Coordinates, Crossing, Cube, Density, Disc, Ellipsoid, Mesh, Quad, Shape, ShapeSample, Sides, Sphere,
@@ -16,7 +16,7 @@ use crate::support::chi_squared;
 use crate::support::random::Random;
 
 /// Calls of `check_samples` by the tests of this file.
-const TESTS: u32 = 48;
+const TESTS: u32 = 54;
 const DRAWS: usize = 100_000;
 /// Bins by height, and around.
 const BINS: [usize; 2] = [12, 24];
@@ -110,7 +110,7 @@ fn of_light(shape: &Shape, sample: &LightSample) -> ShapeSample {
 /// Tests how a shape is sampled as a lamp, by its parts, from a surface of some normal.
 fn check_lamp(name: &str, shape: &Shape, from: DVec3, axis: DVec3, half_angle: f64) {
     let normal = (axis.normalize() + DVec3::new(0.5, -0.3, 0.4)).normalize();
-    let area = Area::new(Arc::new(shape.clone()), 0, (), Sides::Both, true, None);
+    let area = Area::new(Arc::new(shape.clone()), 0, (), Sides::Both, true, None, &mut KnownParts::default());
     let light = Light::Area(area);
     assert!(light.has_parts(), "{name}");
     check_light(name, shape, from, &Bins::new(axis, half_angle), (&light, normal));
@@ -212,7 +212,7 @@ fn directions_toward_a_sphere_that_shows_a_cap_follow_their_density() {
         let mut near = || axis + width * random.number().sqrt() * random.direction().cross(axis).normalize();
         let normals: Vec<DVec3> = (0..2000).map(|_| near().normalize()).collect();
         let shape = Shape::Sphere(Sphere::new(center, radius));
-        let mut area = Area::new(Arc::new(shape.clone()), 0, (), Sides::Both, true, None);
+        let mut area = Area::new(Arc::new(shape.clone()), 0, (), Sides::Both, true, None, &mut KnownParts::default());
         area.learn_visible_cap(&normals);
         check_light(name, &shape, from, &Bins::new(-away, half_angle), (&Light::Area(area), -away));
     }
@@ -289,6 +289,46 @@ fn directions_toward_a_mesh_follow_their_density() {
     check_lamp("triangles of a mesh from inside", &mesh, DVec3::new(0.1, 0.05, 0.1), DVec3::Y, PI);
 }
 
+/// A mesh that is placed where maps keep angles has the parts of the mesh itself, and any other has its own.
+#[test]
+fn directions_toward_the_triangles_of_copies_of_a_mesh_follow_their_density_and_miss_none() {
+    let (points, faces) = ball();
+    let mesh = closed_mesh(points, faces).transformed(&skew());
+    let placed = Transform::scale(DVec3::splat(3.0))
+        .then(&Transform::rotate(DVec3::new(1.0, 2.0, -0.5), 77.0))
+        .then(&Transform::translate(DVec3::new(40.0, -7.0, 3.0)));
+    let mirrored = Transform::scale(DVec3::new(-1.0, 1.0, 1.0)).then(&placed);
+    let stretched = Transform::scale(DVec3::new(1.0, 2.0, 1.0)).then(&placed);
+    let mut random = Random::new(67);
+    for (name, map, keeps_angles) in
+        [("placed", placed, true), ("mirrored", mirrored, true), ("stretched", stretched, false)]
+    {
+        let copy = mesh.copied(&map);
+        let Shape::Instance(instance) = &copy else { panic!("{name}: it shares no triangles") };
+        assert_eq!(instance.similarity().is_some(), keeps_angles, "{name}");
+        let [from, inside] = [DVec3::new(1.0, 1.2, 0.9), DVec3::new(0.1, 0.05, 0.1)].map(|point| map.point(point));
+        let toward = map.point(DVec3::ZERO) - from;
+        check_lamp(&format!("triangles of a copy, {name}, from outside"), &copy, from, toward, 1.0);
+        check_lamp(&format!("triangles of a copy, {name}, from inside"), &copy, inside, DVec3::Y, PI);
+        let (known, copy) = (&mut KnownParts::default(), Arc::new(copy));
+        let lamp = Light::Area(Area::new(copy.clone(), 0, (), Sides::Front, true, None, known));
+        let mut seen = 0;
+        for _ in 0..2000 {
+            let origin = map.point(4.0 * random.direction());
+            let direction = (map.point(0.8 * random.direction()) - origin).normalize();
+            let ray = Ray { origin, direction };
+            let normal = random.direction();
+            let Some(crossing) = copy.intersect(&ray, f64::INFINITY) else { continue };
+            if copy.normal(&ray, &crossing).dot(ray.direction) < 0.0 && normal.dot(ray.direction) > 0.0 {
+                seen += 1;
+                let density = lamp.pdf_li(&ray, normal, Some(&crossing));
+                assert!(density.is_some_and(|density| density > 0.0), "{name}: {density:?} along {ray:?}");
+            }
+        }
+        assert!(seen > 200, "{name}: {seen}");
+    }
+}
+
 /// A dim image with one bright and one brighter texel.
 fn picture(repeat: [f64; 2], filter: TexelFilter) -> CurveKind {
     let mut texels = vec![0.05; 7 * 5];
@@ -308,7 +348,8 @@ fn check_image(name: &str, written: &Shape, map: &Transform, from: DVec3, bins: 
     let shapes = if written.part_count() > 0 { vec![shape.clone(), written.copied(map)] } else { vec![shape.clone()] };
     for shape in shapes {
         let image = ShownImage { coordinates: Arc::new(coordinates), map: Some(Arc::new(seen.clone())) };
-        let lamp = Area::new(Arc::new(shape.clone()), 0, (), Sides::Both, true, Some(image));
+        let lamp =
+            Area::new(Arc::new(shape.clone()), 0, (), Sides::Both, true, Some(image), &mut KnownParts::default());
         let lamp = Light::Area(lamp);
         assert!(lamp.has_parts(), "{name}");
         let normal = (bins.axis + DVec3::new(0.1, -0.2, 0.1)).normalize();

@@ -108,7 +108,7 @@ fn between_equal_indices_rough_glass_is_not_there() {
 #[test]
 fn very_dense_rough_glass_neither_gains_nor_loses_seen_from_outside_and_from_inside() {
     let mut cases = Vec::new();
-    let roughest = [0.1, 0.3, 0.5, 0.65, 0.77, 0.9, 0.99];
+    let roughest = [0.1, 0.5, 0.77, 0.9, 0.99];
     for (index, roughnesses) in [(2.4, &[0.3, 0.99][..]), (4.0, &[0.1, 0.5, 0.99]), (9.9, &roughest)] {
         let outside = view([1.3, 0.9, 4.1], [0.05, 0.02, 0.1], 14.0, 16);
         let inside = view([0.3, -0.1, 0.2], [0.4, 0.9, -0.7], 120.0, 16);

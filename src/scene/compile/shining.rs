@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::light::{Area, EmissionMap, Light, LightId, ShownImage};
+use crate::light::{Area, EmissionMap, KnownParts, Light, LightId, ShownImage};
 use crate::material::Material;
 use crate::scene::{Object, Scene};
 use crate::shape::{Coordinates, Shape, Sides, TexturedShape};
@@ -10,7 +10,7 @@ use crate::spectrum::{Curve, CurveKind};
 
 /// Gives every object whose material emits its light.
 pub(super) fn surfaces_that_shine(scene: &mut Scene<Curve>) {
-    let mut maps = Maps::default();
+    let (mut maps, mut known) = (Maps::default(), KnownParts::default());
     for number in 0..scene.objects.len() {
         let object = &scene.objects[number];
         let (radiance, sides, lamp) = match &scene.materials[object.material as usize].material {
@@ -27,7 +27,8 @@ pub(super) fn surfaces_that_shine(scene: &mut Scene<Curve>) {
             let map = if is_sampled { maps.of(object, &coordinates, &radiance.kind) } else { None };
             ShownImage { coordinates, map }
         });
-        let area = Area::new(object.shape.clone(), number as u32, radiance.clone(), sides, is_sampled, image);
+        let area =
+            Area::new(object.shape.clone(), number as u32, radiance.clone(), sides, is_sampled, image, &mut known);
         scene.light_groups.push(object.group.as_ref().unwrap_or(&object.asset).clone());
         scene.lights.push(Light::Area(area));
         Arc::make_mut(&mut scene.objects)[number].light = Some(light);

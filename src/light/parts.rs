@@ -1,0 +1,96 @@
+//! The parts of a light whose shape has several, such as the triangles of a mesh.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use super::{LightBounds, LightTree};
+use crate::math::{DVec3, DiscreteSample, Distribution, Transform};
+use crate::shape::{Mesh, Shape};
+
+/// The parts of a light, by which one of them is drawn.
+#[derive(Clone, Debug)]
+pub struct LightParts {
+    shared: Arc<Shared>,
+    /// Where a mesh is placed by a map that keeps all angles: the map back to the mesh, whose parts these are, and how
+    /// much longer lengths are in the world.
+    placed: Option<(Transform, f64)>,
+}
+
+#[derive(Debug)]
+struct Shared {
+    /// By what they send to a point.
+    tree: LightTree,
+    /// By what they send at all.
+    flux: Distribution,
+}
+
+/// The parts of meshes that are known, for all that are placed by maps that keep angles: shares of what parts send are
+/// the same there.
+#[derive(Default)]
+pub struct KnownParts(HashMap<*const Mesh, (Arc<Mesh>, Option<Arc<Shared>>)>);
+
+impl KnownParts {
+    /// Those of a mesh that shines everywhere alike.
+    fn of(&mut self, mesh: &Arc<Mesh>) -> Option<Arc<Shared>> {
+        // A mesh that is kept is nowhere else in memory.
+        let new = || (mesh.clone(), Shared::new(&Shape::Mesh(mesh.clone()), |_| 1.0).map(Arc::new));
+        self.0.entry(Arc::as_ptr(mesh)).or_insert_with(new).1.clone()
+    }
+}
+
+impl Shared {
+    fn new(shape: &Shape, worth: impl Fn(u32) -> f64) -> Option<Self> {
+        let part = |number| {
+            let part = LightBounds::of_part(&shape.part(number)?);
+            Some(LightBounds { intensity: part.intensity * worth(number), ..part })
+        };
+        let parts: Vec<_> = (0..shape.part_count()).filter_map(part).collect();
+        let flux = || Distribution::new(parts.iter().map(|part| part.intensity));
+        (parts.len() > 1).then(|| Self { tree: LightTree::new(&parts), flux: flux() })
+    }
+}
+
+impl LightParts {
+    /// Those of a shape of several that shines everywhere alike; none of a shape of one part.
+    pub fn even(shape: &Shape, known: &mut KnownParts) -> Option<Self> {
+        let (mesh, placed) = match shape {
+            Shape::Mesh(mesh) => (mesh, None),
+            Shape::Instance(instance) => match instance.similarity() {
+                Some(placed) => (instance.mesh(), Some(placed)),
+                None => return Self::of(shape, |_| 1.0),
+            },
+            _ => return Self::of(shape, |_| 1.0),
+        };
+        Some(Self { shared: known.of(mesh)?, placed })
+    }
+
+    /// The same where an area of each part is worth so much.
+    pub fn of(shape: &Shape, worth: impl Fn(u32) -> f64) -> Option<Self> {
+        Some(Self { shared: Arc::new(Shared::new(shape, worth)?), placed: None })
+    }
+
+    /// A place and a unit normal as the parts have them.
+    fn own(&self, from: DVec3, normal: DVec3) -> (DVec3, DVec3) {
+        match &self.placed {
+            Some((to_own, scale)) => (to_own.point(from), to_own.vector(normal) * *scale),
+            None => (from, normal),
+        }
+    }
+
+    /// A part for a point on a surface, as [`LightTree::sample`].
+    pub fn sample(&self, from: DVec3, normal: DVec3, two_sided: bool, u: f64) -> Option<DiscreteSample> {
+        let (from, normal) = self.own(from, normal);
+        self.shared.tree.sample(from, normal, two_sided, u)
+    }
+
+    /// How likely `sample` draws a part.
+    pub fn probability(&self, part: u32, from: DVec3, normal: DVec3, two_sided: bool) -> f64 {
+        let (from, normal) = self.own(from, normal);
+        self.shared.tree.probability(part as usize, from, normal, two_sided)
+    }
+
+    /// A part by what it sends at all.
+    pub fn sample_by_flux(&self, u: f64) -> DiscreteSample {
+        self.shared.flux.sample(u)
+    }
+}
