@@ -161,8 +161,8 @@ impl Replicates {
         self.covered[pixel][replicate as usize].shown += luminance as f32;
     }
 
-    /// The alpha of a pixel as each replicate has it, after so many samples of each; none without shadow catchers,
-    /// where it is as even as edges are.
+    /// The alpha of a pixel as each replicate has it, after so many samples of each; none where no shadow catchers make
+    /// noise of it.
     pub(super) fn alpha(&self, pixel: usize, filter: Filter, each: u32) -> Option<[f64; REPLICATES]> {
         let of = |replicate: usize| {
             let kept = [&self.light.added, &self.light.subtracted];
