@@ -76,11 +76,13 @@ impl Caught {
 
     /// The part of each channel that other objects take, times the share of the pixel; negative where they add light.
     pub(super) fn shadow(&self) -> [f64; 3] {
-        [0, 1, 2].map(|channel| match self.without[channel] {
-            without if without > 0.0 => self.share * (1.0 - self.with[channel] / without),
-            _ => 0.0,
-        })
+        [0, 1, 2].map(|channel| self.share * taken(self.with[channel], self.without[channel]))
     }
+}
+
+/// The part of some light that is not there with all objects; 0 of no light.
+fn taken(with: f64, without: f64) -> f64 {
+    if without > 0.0 { 1.0 - with / without } else { 0.0 }
 }
 
 /// The luminance that shadow catchers send to the camera, or sums of it.
@@ -103,8 +105,7 @@ impl CaughtLuminance {
     /// What the image covers there: the part of the luminance that other objects take, times the share of the pixel; 0
     /// where light is added.
     pub(super) fn coverage(&self) -> f64 {
-        let taken = if self.without > 0.0 { 1.0 - self.with / self.without } else { 0.0 };
-        (self.share * taken).clamp(0.0, self.share)
+        (self.share * taken(self.with, self.without)).clamp(0.0, self.share)
     }
 }
 
