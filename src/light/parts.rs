@@ -64,7 +64,7 @@ impl LightParts {
         Some(Self { shared: known.of(mesh)?, placed })
     }
 
-    /// The same where an area of each part is worth so much.
+    /// Those of a shape of several where an area of each part is worth so much; none of a shape of one part.
     pub fn of(shape: &Shape, worth: impl Fn(u32) -> f64) -> Option<Self> {
         Some(Self { shared: Arc::new(Shared::new(shape, worth)?), placed: None })
     }

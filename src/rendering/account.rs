@@ -131,7 +131,7 @@ pub struct ErrorAccount<'a> {
     pub blur_at_most: f64,
     /// The noise of alpha, relative to alpha, as it is expected; none without shadow catchers.
     pub alpha: Option<f64>,
-    /// The same at most.
+    /// What the noise of alpha is at most in 95 of 100 renders.
     pub alpha_at_most: Option<f64>,
     /// The part that is color.
     pub model: f64,
