@@ -94,17 +94,24 @@ impl Sums {
         }
     }
 
-    /// How many samples of a pixel a replicate has.
+    /// The samples of a pixel that a replicate has: those that are added, and those that are subtracted.
+    fn of(&self, pixel: usize, replicate: usize) -> [Sum; 2] {
+        [&self.added, &self.subtracted].map(|sums| sums.get(pixel).map_or(Sum::default(), |sums| sums[replicate]))
+    }
+
+    /// How many they are.
     fn kept(&self, pixel: usize, replicate: usize) -> u32 {
-        let of = |sums: &[[Sum; REPLICATES]]| sums.get(pixel).map_or(0, |sums| sums[replicate].kept);
-        of(&self.added) + of(&self.subtracted)
+        self.of(pixel, replicate).iter().map(|sum| sum.kept).sum()
+    }
+
+    /// What they count.
+    fn weights(&self, pixel: usize, replicate: usize, filter: Filter) -> SampleWeights {
+        SampleWeights::new(filter, self.of(pixel, replicate).map(|sum| sum.kept))
     }
 
     /// The mean of a pixel's samples of a replicate.
     fn mean(&self, pixel: usize, replicate: usize, filter: Filter) -> [f64; 3] {
-        let of = |sums: &[[Sum; REPLICATES]]| sums.get(pixel).map_or(Sum::default(), |sums| sums[replicate]);
-        let (added, subtracted) = (of(&self.added), of(&self.subtracted));
-        let weights = SampleWeights::new(filter, [added.kept, subtracted.kept]);
+        let (weights, [added, subtracted]) = (self.weights(pixel, replicate, filter), self.of(pixel, replicate));
         std::array::from_fn(|i| weights.sum([added.rgb[i].into(), subtracted.rgb[i].into()]) / weights.taken())
     }
 }
@@ -165,9 +172,8 @@ impl Replicates {
     /// noise of it.
     pub(super) fn alpha(&self, pixel: usize, filter: Filter, each: u32) -> Option<[f64; REPLICATES]> {
         let of = |replicate: usize| {
-            let kept = [&self.light.added, &self.light.subtracted];
-            let kept = kept.map(|sums| sums.get(pixel).map_or(0, |sums| sums[replicate].kept));
-            self.covered[pixel][replicate].alpha(&SampleWeights::new(filter, kept), each.into())
+            let weights = self.light.weights(pixel, replicate, filter);
+            self.covered[pixel][replicate].alpha(&weights, each.into())
         };
         (!self.covered.is_empty()).then(|| std::array::from_fn(of))
     }

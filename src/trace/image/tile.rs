@@ -142,7 +142,7 @@ impl Tile {
         let mut blurs = [PassSum::default(), PassSum::default()];
         let blurs_are_told = light.tells_blur();
         let rate = world.rate(pixel);
-        let caught_before = self.layers.caught(&world.layers, place);
+        let caught_before = pass.replicate.and_then(|_| self.layers.caught(&world.layers, place));
         for number in rate.of(&pass.numbers) {
             let among_all = rate.among_all(number);
             tracer.light_vertices = light.vertices(among_all - pass.numbers.start);
