@@ -144,6 +144,11 @@ impl<S> Scene<S> {
         object.light.is_some() || matches!(object.sight, Sight::ShadowCatcher | Sight::Holdout)
     }
 
+    /// Whether any object is a shadow catcher.
+    pub fn has_shadow_catchers(&self) -> bool {
+        self.objects.iter().any(|object| object.sight == Sight::ShadowCatcher)
+    }
+
     /// The nearest surface along a ray up to a distance, of those objects that count.
     pub fn nearest(&self, ray: &Ray, distance: f64, counts: &dyn Fn(u32) -> bool) -> Option<Hit> {
         self.index.nearest(&self.objects, ray, distance, None, counts)

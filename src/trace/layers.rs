@@ -5,7 +5,7 @@ use super::first_lobe::FirstLobe;
 use super::spectrum_sample::Spectrum;
 use super::white::White;
 use crate::film::{FirstSurface, Layer, Manifest, id, light_layer_name};
-use crate::scene::{Scene, Sight};
+use crate::scene::Scene;
 use crate::spectrum::{Basis, Curve, apply};
 
 /// The layers of a world's image.
@@ -140,7 +140,7 @@ impl Layers {
                 };
             }
         }
-        if scene.objects.iter().any(|object| object.sight == Sight::ShadowCatcher) {
+        if scene.has_shadow_catchers() {
             layers.caught = Some(layers.numbers);
             layers.numbers += Caught::NUMBERS;
         }

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::layer_sums::LayerSums;
 use crate::film::{PassSum, Pixel, PixelSum, Sample, TilePlace};
 use crate::math::Sampler;
-use crate::scene::{Scene, Sight};
+use crate::scene::Scene;
 use crate::spectrum::Curve;
 use crate::trace::World;
 use crate::trace::camera::PathTracer;
@@ -54,8 +54,8 @@ pub struct Shown {
 pub fn bytes_of_film(scene: &Scene<Curve>, method: &Method) -> u64 {
     let is_signed = scene.film.filter.is_signed();
     let gathers = method.light_pass.as_ref().is_some_and(|pass| pass.map.is_some());
-    let catches = scene.objects.iter().any(|object| object.sight == Sight::ShadowCatcher);
-    let replicates = method.stop.as_ref().map_or(0, |_| Replicates::bytes_of_pixel(is_signed, gathers, catches));
+    let replicates =
+        method.stop.as_ref().map_or(0, |_| Replicates::bytes_of_pixel(is_signed, gathers, scene.has_shadow_catchers()));
     let sums = (1 + usize::from(is_signed)) * size_of::<PixelSum>();
     scene.film.window().pixels() * (sums + replicates + size_of::<Pixel>()) as u64
 }
