@@ -19,7 +19,7 @@ mod sun;
 mod tree;
 
 pub use area::{Area, ShownImage};
-pub use bounds::{LightBounds, NormalCone};
+pub use bounds::LightBounds;
 pub use emission_map::EmissionMap;
 pub use environment::{Environment, Sky, SkyPolarization};
 pub use kinds::{Light, LightId};

@@ -4,7 +4,8 @@
 //! without their splitting: from any point exactly one is chosen.
 
 use super::LightBounds;
-use crate::math::{BELOW_ONE, Bounds, DVec3, DiscreteSample};
+use super::bounds::LightGroup;
+use crate::math::{BELOW_ONE, Bounds, DVec3, DiscreteSample, gamma};
 
 /// Lights 0, 1, 2, .. in nested boxes, with how much light those hold and which way it goes.
 #[derive(Clone, Debug)]
@@ -41,22 +42,23 @@ impl LightTree {
     pub fn new(lights: &[LightBounds]) -> Self {
         let mut order: Vec<u32> = (0..lights.len() as u32).collect();
         order.retain(|&i| lights[i as usize].intensity > 0.0);
-        let mut tree = Self { nodes: Vec::new(), parents: Vec::new(), leaves: vec![None; lights.len()] };
+        let count = (2 * order.len()).saturating_sub(1);
+        let (nodes, parents) = (Vec::with_capacity(count), Vec::with_capacity(count));
+        let mut tree = Self { nodes, parents, leaves: vec![None; lights.len()] };
         if order.is_empty() {
             return tree;
         }
-        tree.nodes.push(Node::around(&lights[order[0] as usize]));
+        tree.nodes.push(Node::around(lights, &order[..1]));
         tree.parents.push(0);
         let mut open = vec![(0, 0..order.len(), 0)];
         while let Some((index, range, depth)) = open.pop() {
             let items = &mut order[range.clone()];
-            let all = items.iter().map(|&i| lights[i as usize]).reduce(|a, b| a.with(&b)).expect("no range is empty");
-            let mut node = Node::around(&all);
+            let mut node = Node::around(lights, items);
             if let [item] = *items {
                 (node.leaf, node.first) = (true, item);
                 tree.leaves[item as usize] = Some(index as u32);
             } else {
-                let middle = range.start + split(lights, items, &all, depth);
+                let middle = range.start + split(lights, items, depth);
                 node.first = tree.nodes.len() as u32;
                 for (child, range) in [range.start..middle, middle..range.end].into_iter().enumerate() {
                     tree.nodes.push(node);
@@ -107,43 +109,44 @@ impl LightTree {
 }
 
 /// Reorders items so that the first of two groups comes first, and tells how many it has: the split of least cost.
-fn split(lights: &[LightBounds], items: &mut [u32], all: &LightBounds, depth: u32) -> usize {
+fn split(lights: &[LightBounds], items: &mut [u32], depth: u32) -> usize {
+    if items.len() == 2 {
+        return 1;
+    }
     let center = |item: u32| lights[item as usize].bounds.center();
     let centers = Bounds::around(items.iter().map(|&item| center(item)));
     let (low, size) = (centers.min, centers.max - centers.min);
-    let longest = (all.bounds.max - all.bounds.min).max_element();
     let slice = |item: u32, axis: usize| {
         (((center(item)[axis] - low[axis]) / size[axis] * SLICES as f64) as usize).min(SLICES - 1)
     };
     let mut best: Option<(f64, usize, usize)> = None;
     for axis in (0..3).filter(|&axis| size[axis] > 0.0 && depth < DEEP) {
-        let mut slices: [Option<LightBounds>; SLICES] = [None; SLICES];
-        let join = |a: Option<LightBounds>, b: Option<LightBounds>| match (a, b) {
-            (Some(a), Some(b)) => Some(a.with(&b)),
-            (a, b) => a.or(b),
-        };
+        let mut slices = [LightGroup::EMPTY; SLICES];
         for &item in items.iter() {
             let slice = &mut slices[slice(item, axis)];
-            *slice = join(*slice, Some(lights[item as usize]));
+            *slice = slice.and(&lights[item as usize]);
         }
-        let mut after = [None; SLICES];
-        (0..SLICES - 1).rev().for_each(|i| after[i] = join(slices[i + 1], after[i + 1]));
-        let mut before = None;
-        for (i, after) in after.iter().enumerate() {
-            before = join(before, slices[i]);
-            if let (Some(before), Some(after)) = (&before, after) {
-                // Thin boxes are split along their length.
-                let cost = (before.cost() + after.cost()) * longest / size[axis];
-                if best.is_none_or(|best| cost < best.0) {
-                    best = Some((cost, axis, i));
-                }
+        let mut after = [LightGroup::EMPTY; SLICES];
+        (0..SLICES - 1).rev().for_each(|i| after[i] = slices[i + 1].with(&after[i + 1]));
+        let mut before = LightGroup::EMPTY;
+        for (i, (slice, after)) in slices.iter().zip(&after).enumerate() {
+            if slice.intensity == 0.0 || after.intensity == 0.0 {
+                continue;
+            }
+            before = before.with(slice);
+            // Thin boxes are split along their length.
+            let cost = (before.cost() + after.cost()) / size[axis];
+            if best.is_none_or(|best| cost < best.0) {
+                best = Some((cost, axis, i));
             }
         }
     }
     match best {
         Some((_, axis, last)) => {
-            items.sort_by_key(|&item| slice(item, axis) > last);
-            items.partition_point(|&item| slice(item, axis) <= last)
+            let (first, second): (Vec<u32>, Vec<u32>) = items.iter().partition(|&&item| slice(item, axis) <= last);
+            items[..first.len()].copy_from_slice(&first);
+            items[first.len()..].copy_from_slice(&second);
+            first.len()
         }
         None => {
             let axis = size.max_position();
@@ -154,12 +157,28 @@ fn split(lights: &[LightBounds], items: &mut [u32], all: &LightBounds, depth: u3
 }
 
 impl Node {
-    fn around(light: &LightBounds) -> Self {
-        let LightBounds { bounds, normals, two_sided, intensity } = *light;
-        let (sin, cos) = libm::sincos(normals.angle);
-        let radius = (0.5 * (bounds.max - bounds.min)).length();
-        let center = bounds.center();
-        Self { center, radius, axis: normals.axis, sin, cos, two_sided, leaf: false, first: 0, intensity }
+    /// Around one light or several.
+    fn around(lights: &[LightBounds], items: &[u32]) -> Self {
+        let each = || items.iter().map(|&item| &lights[item as usize]);
+        let all = each().fold(LightGroup::EMPTY, |all, light| all.and(light));
+        let axis = all.axis();
+        let cosine = |light: &LightBounds| light.normal.zip(axis).map_or(-1.0, |(normal, axis)| normal.dot(axis));
+        let least = each().map(cosine).fold(1.0, f64::min);
+        // Rounding leaves no normal out: each of two unit vectors has six roundings, their product three.
+        let widened = (least - gamma(15)).max(-1.0);
+        let cos = if items.len() == 1 && axis.is_some() { 1.0 } else { widened };
+        let radius = (0.5 * (all.bounds.max - all.bounds.min)).length();
+        Self {
+            center: all.bounds.center(),
+            radius,
+            axis: axis.unwrap_or(DVec3::Z),
+            sin: (1.0 - cos * cos).max(0.0).sqrt(),
+            cos,
+            two_sided: all.two_sided,
+            leaf: false,
+            first: 0,
+            intensity: all.intensity,
+        }
     }
 
     /// About the light that reaches a point but for what hides it: equation 3 of the paper, times the cosine at the

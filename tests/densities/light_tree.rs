@@ -1,6 +1,6 @@
 //! Choosing one of many things that shine: as likely as it is said to be, and none left out that sends light.
 
-use abbe::light::{LightBounds, LightTree, NormalCone};
+use abbe::light::{LightBounds, LightTree};
 use abbe::math::{Bounds, DVec3};
 
 use crate::support::chi_squared;
@@ -13,9 +13,9 @@ fn crowd(random: &mut Random, count: u32, size: f64) -> Vec<LightBounds> {
         let mut place = || random.between(-1.0, 1.0);
         let center = DVec3::new(4.0 * place(), 4.0 * place(), 4.0 * place());
         let half = DVec3::new(place(), place(), place()).abs() * size;
-        let normals = if number.is_multiple_of(4) { NormalCone::ALL } else { NormalCone::one(random.direction()) };
+        let normal = (!number.is_multiple_of(4)).then(|| random.direction());
         let bounds = Bounds { min: center - half, max: center + half };
-        LightBounds { bounds, normals, two_sided: number % 4 == 1, intensity: random.number() }
+        LightBounds { bounds, normal, two_sided: number % 4 == 1, intensity: random.number() }
     };
     (0..count).map(&mut one).collect()
 }
@@ -59,8 +59,7 @@ fn no_light_is_left_out_that_sends_light() {
                 let share = DVec3::from([(); 3].map(|()| random.number()));
                 let way = min + (max - min) * share - from;
                 let lit = way.dot(normal) > 1e-9;
-                // Those that face one way shine from a point to where they face; others from anywhere.
-                let facing = i % 4 == 0 || tree_faces(light, way);
+                let facing = light.normal.is_none_or(|normal| faces(normal, light.two_sided, way));
                 let probability = tree.probability(i, from, normal, false);
                 assert!(probability > 0.0 || !(lit && facing), "{size}: {light:?} from {from}");
             }
@@ -69,16 +68,16 @@ fn no_light_is_left_out_that_sends_light() {
 }
 
 /// Whether the front, or the back that shines too, faces a point at the start of a way.
-fn tree_faces(light: &LightBounds, way: DVec3) -> bool {
-    let cos = -light.normals.axis().dot(way);
-    cos > 1e-9 || (light.two_sided && cos < -1e-9)
+fn faces(normal: DVec3, two_sided: bool, way: DVec3) -> bool {
+    let cos = -normal.dot(way);
+    cos > 1e-9 || (two_sided && cos < -1e-9)
 }
 
 #[test]
 fn lights_in_one_place_and_in_growing_distances_are_all_chosen() {
     let at = |x: f64, intensity| {
         let bounds = Bounds { min: DVec3::splat(x), max: DVec3::splat(x) };
-        LightBounds { bounds, normals: NormalCone::ALL, two_sided: false, intensity }
+        LightBounds { bounds, normal: None, two_sided: false, intensity }
     };
     let one_place: Vec<LightBounds> = (0..3000).map(|_| at(1.0, 1.0)).collect();
     let growing: Vec<LightBounds> = (0..3000).map(|i| at(libm::exp2(f64::from(i) / 20.0), 1.0)).collect();
