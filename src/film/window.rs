@@ -20,6 +20,13 @@ impl Window {
         [self.left + middle(cell % side, self.width), self.top + middle(cell / side, self.height)]
     }
 
+    /// The pixels in the middle of all of side x side cells, far ones first: any number of them is spread over the
+    /// window.
+    pub fn middles_of_cells(self, side: u32) -> impl Iterator<Item = [i32; 2]> {
+        // A stride that is coprime to the number of cells visits them all.
+        (0..side * side).map(move |i| self.middle_of_cell(side, (i * 229) % (side * side)))
+    }
+
     /// How many pixels it has.
     pub fn pixels(&self) -> u64 {
         u64::from(self.width) * u64::from(self.height)

@@ -95,9 +95,7 @@ fn probe_lanes<const N: usize, P: Polarization<N>>(world: &World) -> Probe {
     let parted = Cell::new(0);
     let mut take = |numbers: Range<u32>| {
         let (start, before) = (Instant::now(), tracer.walker.stats.rays);
-        // A stride that is coprime to the number of places visits them all, far ones first.
-        for place in numbers.map(|i| (i * 229) % (SIDE * SIDE)) {
-            let [x, y] = window.middle_of_cell(SIDE, place);
+        for [x, y] in window.middles_of_cells(SIDE).skip(numbers.start as usize).take(numbers.len()) {
             let before = tracer.walker.stats.partings;
             tracer.sample(&Sampler::of_pixel(world.method.seed, [x, y], 0), [x, y]);
             parted.set(parted.get() + u32::from(tracer.walker.stats.partings > before));

@@ -35,8 +35,8 @@ const OF_A_CELL: f64 = (PIXELS * LOOKS * SAMPLES) as f64;
 const PIXELS_OF_A_CELL: f64 = 32.0;
 const MOST_CELLS: f64 = 4096.0;
 /// Cells that tell how many rays a cell takes, and most rays that all take, about.
-const FEW_CELLS: f64 = 64.0;
-const MOST_RAYS: f64 = (1 << 21) as f64;
+const FEW_CELLS: f64 = 16.0;
+const MOST_RAYS: f64 = (1 << 19) as f64;
 /// Cells to each side that tell the noise of a cell.
 const AROUND: i64 = 2;
 /// What all that belongs to a sample takes in rays of a path.

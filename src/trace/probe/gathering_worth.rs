@@ -2,7 +2,7 @@
 
 use std::cell::Cell;
 
-use super::pilot::SampleWorth;
+use super::pilot::{RAYS, SampleWorth};
 use super::reach::reaches_photons;
 use crate::math::{DVec3, Sampler};
 use crate::spectrum::apply;
@@ -78,8 +78,8 @@ impl Sums {
 fn gather<const N: usize>(world: &World, reached: &[DVec3]) -> Option<GatheredWorth> {
     let film = world.scene.film;
     let to_xyz = film.color_space.to_xyz();
-    let places = SIDE * SIDE;
-    let mut by_photons = vec![Sums::default(); places as usize];
+    let mut places: Vec<_> = film.whole().middles_of_cells(SIDE).collect();
+    let mut by_photons = vec![Sums::default(); places.len()];
     let mut by_samples = by_photons.clone();
     let (mut sent, mut rays, mut of_samples, mut second_moment) = (0, 0, 0, 0.0);
     for map in 0..MAPS {
@@ -90,8 +90,8 @@ fn gather<const N: usize>(world: &World, reached: &[DVec3]) -> Option<GatheredWo
         (sent, rays) = (sent + photons.sent, rays + photons.stats.rays);
         let by_gathering = Gathered::default();
         let mut tracer = PathTracer::<N>::new(world).with_photons(Some(&photons)).with_observer(&by_gathering);
-        for place in 0..places {
-            let [x, y] = film.whole().middle_of_cell(SIDE, place);
+        let mut looked_at = 0;
+        for (place, &[x, y]) in places.iter().enumerate() {
             let before = by_gathering.0.get();
             for number in 0..SAMPLES {
                 let so_far = by_gathering.0.get();
@@ -102,20 +102,26 @@ fn gather<const N: usize>(world: &World, reached: &[DVec3]) -> Option<GatheredWo
                 let here = apply(&to_xyz, std::array::from_fn(|i| gathered[i] - so_far[i]));
                 second_moment += here.iter().filter(|x| x.is_finite()).map(|x| x * x).sum::<f64>();
                 if map == 0 {
-                    by_samples[place as usize].add(apply(&to_xyz, others));
+                    by_samples[place].add(apply(&to_xyz, others));
                 }
             }
             let gathered = by_gathering.0.get();
             let mean = std::array::from_fn(|i| (gathered[i] - before[i]) / f64::from(SAMPLES));
-            by_photons[place as usize].add(apply(&to_xyz, mean));
+            by_photons[place].add(apply(&to_xyz, mean));
+            looked_at += 1;
+            if map == 0 && tracer.walker.stats.rays > RAYS {
+                break;
+            }
         }
+        places.truncate(looked_at);
         of_samples += tracer.walker.stats.rays;
     }
     let pixels = f64::from(film.width) * f64::from(film.height);
-    let mean = |variances: &[f64]| variances.iter().sum::<f64>() / f64::from(places);
-    let of_maps: Vec<f64> = by_photons.iter().map(|sums| sums.variance(MAPS as f64)).collect();
-    let variances = by_samples.iter().map(|sums| sums.variance(f64::from(SAMPLES))).collect();
-    let taken = MAPS as f64 * f64::from(places * SAMPLES);
+    let count = places.len() as f64;
+    let mean = |variances: &[f64]| variances.iter().sum::<f64>() / count;
+    let of_maps: Vec<f64> = by_photons[..places.len()].iter().map(|sums| sums.variance(MAPS as f64)).collect();
+    let variances = by_samples[..places.len()].iter().map(|sums| sums.variance(f64::from(SAMPLES))).collect();
+    let taken = MAPS as f64 * count * f64::from(SAMPLES);
     Some(GatheredWorth {
         variance: mean(&of_maps) * pixels * sent as f64 / MAPS as f64,
         rays: rays as f64 / sent as f64,

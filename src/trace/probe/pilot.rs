@@ -49,8 +49,8 @@ pub struct SampleWorth {
 const PHOTONS: u64 = 4096;
 const ALL: u64 = 4 * PHOTONS;
 const IMAGES: u64 = 4;
-/// Rays that the photons of all images follow, about.
-const RAYS: f64 = (1 << 18) as f64;
+/// Rays that the photons of all images follow, about, and those that samples do.
+pub(super) const RAYS: u64 = 1 << 18;
 /// Cells along each side of the format. Samples of the pixel in the middle of each are compared, and how many of it.
 pub(super) const SIDE: u32 = 24;
 const SAMPLES: u32 = 4;
@@ -70,7 +70,7 @@ fn weigh_photons<const N: usize>(whole: &World) -> Vec<PhotonWorth> {
     world.scene.film = world.scene.film.of_the_format();
     let groups = whole.photon_light_groups();
     let photons = (ALL / groups.len().max(1) as u64).min(PHOTONS);
-    let affordable = photons_within(&world, RAYS / (IMAGES * groups.len().max(1) as u64) as f64);
+    let affordable = photons_within(&world, RAYS as f64 / (IMAGES * groups.len().max(1) as u64) as f64);
     let photons = photons.min(affordable);
     groups.into_iter().filter_map(|lights| weigh::<N>(whole, &mut world, lights, photons)).collect()
 }
@@ -156,8 +156,7 @@ fn weigh_samples<const N: usize>(world: &World) -> SampleWorth {
     let to_xyz = film.color_space.to_xyz();
     let seed = world.method.seed ^ SEED;
     let mut variances = Vec::new();
-    for place in 0..SIDE * SIDE {
-        let [x, y] = film.whole().middle_of_cell(SIDE, place);
+    for [x, y] in film.whole().middles_of_cells(SIDE) {
         let taken = (0..SAMPLES).map(|number| {
             let sampler = Sampler::of_pixel(seed.wrapping_add(u64::from(number)), [x, y], 0);
             apply(&to_xyz, tracer.sample(&sampler, [x, y]).rgb)
@@ -171,8 +170,11 @@ fn weigh_samples<const N: usize>(world: &World) -> SampleWorth {
             variance += squares.sum::<f64>() / (count - 1.0);
         }
         variances.push(variance);
+        if tracer.walker.stats.rays > RAYS {
+            break;
+        }
     }
-    let rays = tracer.walker.stats.rays as f64 / f64::from(SIDE * SIDE * SAMPLES);
+    let rays = tracer.walker.stats.rays as f64 / (variances.len() as f64 * f64::from(SAMPLES));
     SampleWorth::of(variances, f64::from(film.width) * f64::from(film.height), rays)
 }
 

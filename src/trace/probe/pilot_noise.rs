@@ -6,7 +6,7 @@
 //! C_p) + sum sqrt(B_i C_i))^2. Rays followed stand for time, so that the answer is the same everywhere.
 
 use super::cost::few_photons;
-use super::pilot::{PhotonWorth, SIDE, cell_of};
+use super::pilot::{PhotonWorth, RAYS, SIDE, cell_of};
 use crate::math::Sampler;
 use crate::spectrum::apply;
 use crate::trace::World;
@@ -24,7 +24,7 @@ pub(super) const DARK: f64 = 0.1;
 /// Sets these random numbers apart from those of the image.
 const SEED: u64 = 0x7265_7361;
 
-/// The noise of some thousand camera samples all over the image, with few photons, and with light vertices if the
+/// The noise of up to some thousand camera samples all over the image, with few photons, and with light vertices if the
 /// method asks for them. All of the image counts, also where only a part of it is made.
 pub fn pilot_noise(world: &World) -> PilotNoise {
     in_lanes!(&world.method.basis, N => {
@@ -57,7 +57,8 @@ pub struct PilotNoise {
     rays: f64,
 }
 
-/// Variances summed over the pixels, times the rays that they take: of a camera sample, and of a photon of each light.
+/// Variances in the mean of the pixels, times the rays that they take: of a camera sample, and of a photon of each
+/// light.
 struct Work {
     samples: f64,
     photons: Vec<f64>,
@@ -72,8 +73,8 @@ fn weigh<const N: usize>(
     tracer.light_vertices = vertices;
     let film = world.scene.film;
     let to_xyz = film.color_space.to_xyz();
-    let pixel = |place: u32| {
-        let [x, y] = film.whole().middle_of_cell(SIDE, place);
+    let mut pixels = Vec::new();
+    for [x, y] in film.whole().middles_of_cells(SIDE) {
         let taken = (0..SAMPLES).map(|number| {
             let sampler = Sampler::of_pixel(world.method.seed ^ SEED, [x, y], number);
             apply(&to_xyz, tracer.sample(&sampler, [x, y]).rgb).iter().sum::<f64>()
@@ -83,9 +84,11 @@ fn weigh<const N: usize>(
         let mean = taken.iter().sum::<f64>() / count;
         let squares = taken.iter().map(|light| (light - mean) * (light - mean));
         let cell = cell_of(film, [x, y].map(|place| place as u32));
-        Pixel { mean, variance: squares.sum::<f64>() / (count - 1.0), cell }
-    };
-    let pixels: Vec<Pixel> = (0..SIDE * SIDE).map(pixel).collect();
+        pixels.push(Pixel { mean, variance: squares.sum::<f64>() / (count - 1.0), cell });
+        if tracer.walker.stats.rays > RAYS {
+            break;
+        }
+    }
     let stats = tracer.walker.stats;
     let rays = stats.rays as f64 + LOOKING * stats.resampled as f64;
     let format = f64::from(film.width) * f64::from(film.height);
@@ -123,10 +126,11 @@ impl PilotNoise {
         of_samples.sort_by(f64::total_cmp);
         let most = of_samples.len() - of_samples.len().div_ceil(100);
         // Of n samples, each pixel has as many times fewer as there are pixels.
-        let samples = of_samples[..most].iter().sum::<f64>() * self.rays * self.format;
+        let count = of_samples.len() as f64;
+        let samples = of_samples[..most].iter().sum::<f64>() / count * self.rays * self.format;
         let of_light = |photons: &PhotonWorth| {
             let of_pixel = |pixel: &Pixel| photons.cells[pixel.cell].variance / squares(pixel);
-            self.pixels.iter().map(of_pixel).sum::<f64>() * photons.rays
+            self.pixels.iter().map(of_pixel).sum::<f64>() / count * photons.rays
         };
         Work { samples, photons: photons.iter().map(of_light).collect() }
     }
