@@ -82,8 +82,9 @@ pub fn matrix_of_file(interop_id: Option<&str>, primaries: Option<Primaries>) ->
     if let Some(space) = interop_id.and_then(ColorSpace::of_interop_id).or_else(|| like(primaries?)) {
         return Ok(space.to_rec709());
     }
-    match (primaries, interop_id) {
+    match (primaries, interop_id.filter(|id| *id != "unknown")) {
         (Some(primaries), _) => primaries.to_rec709().ok_or_else(|| "its chromaticities mean no colors".into()),
+        (None, Some("data")) => Err("it says that it holds data, not colors".into()),
         (None, Some(id)) => Err(format!("the color space {id:?} is not known")),
         (None, None) => Ok(IDENTITY),
     }

@@ -77,17 +77,54 @@ fn every_kind_of_png_is_read_as_it_is_meant() {
     }
 }
 
+/// A color profile of nothing but the XYZ of red, green and blue, adapted to D50.
+fn profile(primaries: [[f64; 3]; 3]) -> Vec<u8> {
+    let mut bytes = vec![0; 128];
+    bytes.extend(3u32.to_be_bytes());
+    for (i, tag) in (0u32..).zip([b"rXYZ", b"gXYZ", b"bXYZ"]) {
+        bytes.extend(tag);
+        bytes.extend([168 + 20 * i, 20].map(u32::to_be_bytes).as_flattened());
+    }
+    for primary in primaries {
+        bytes.extend(b"XYZ \0\0\0\0");
+        bytes.extend(primary.map(|x| ((x * 65536.0) as i32).to_be_bytes()).as_flattened());
+    }
+    bytes
+}
+
+/// By Apple's profile.
+const DISPLAY_P3: [[f64; 3]; 3] = [[0.5151, 0.2412, -0.0011], [0.2920, 0.6922, 0.0419], [0.1571, 0.0666, 0.7841]];
+/// By the profile of the International Color Consortium.
+const SRGB: [[f64; 3]; 3] = [[0.4361, 0.2225, 0.0139], [0.3851, 0.7169, 0.0971], [0.1431, 0.0606, 0.7141]];
+
+#[test]
+fn what_the_color_profile_of_a_jpeg_says_is_told() {
+    let p3 = profile(DISPLAY_P3);
+    let damaged = (0..p3.len()).step_by(7).map(|end| (p3[..end].to_vec(), false));
+    for (profile, is_told) in [(p3.clone(), true), (profile(SRGB), false)].into_iter().chain(damaged) {
+        let folder = tempfile::tempdir().unwrap();
+        let mut encoder = jpeg_encoder::Encoder::new_file(folder.path().join("a.jpg"), 90).unwrap();
+        encoder.add_icc_profile(&profile).unwrap();
+        encoder.encode(&[9, 8, 7], 1, 1, jpeg_encoder::ColorType::Rgb).unwrap();
+        let told = materials(folder.path(), &["{ image = \"a.jpg\" }"]).warnings.clone();
+        let said = |told: &String| told.contains("a color profile (ICC) of other primaries, which is ignored");
+        assert!(told.len() == usize::from(is_told) && told.iter().all(said), "{} bytes: {told:?}", profile.len());
+    }
+}
+
 /// Of colors alone, and unless the file says that they are sRGB all the same.
 #[test]
 fn what_a_png_says_of_colors_that_are_not_srgb_is_told() {
     type Marks = fn(&mut png::Info);
     let p3 = png::SourceChromaticities::new((0.3127, 0.329), (0.68, 0.32), (0.265, 0.69), (0.15, 0.06));
-    let marks: [(Marks, Option<&str>); 5] = [
+    let marks: [(Marks, Option<&str>); 7] = [
         (|_| (), None),
         (|info| info.source_gamma = Some(png::ScaledFloat::new(1.0)), Some("a gamma of 1 (gAMA)")),
         (|info| info.source_gamma = Some(png::ScaledFloat::new(0.45455)), None),
         (|info| info.srgb = Some(png::SrgbRenderingIntent::Perceptual), None),
         (|_| (), Some("other primaries (cHRM)")),
+        (|info| info.icc_profile = Some(profile(DISPLAY_P3).into()), Some("a color profile (ICC) of other primaries")),
+        (|info| info.icc_profile = Some(profile(SRGB).into()), None),
     ];
     for (number, (mark, expected)) in marks.into_iter().enumerate() {
         let folder = tempfile::tempdir().unwrap();

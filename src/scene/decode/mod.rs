@@ -2,6 +2,7 @@
 
 mod exr;
 mod exr_channels;
+mod icc;
 mod jpeg;
 mod png;
 mod radiance;

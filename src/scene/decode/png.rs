@@ -2,6 +2,7 @@ use std::io::Cursor;
 
 use png::{BitDepth, Decoder, DecodingError, Info, Limits, ScaledFloat, SourceChromaticities, Transformations};
 
+use super::icc;
 use super::texels::{Steps, Unreadable, Whole, fits};
 use crate::film::MOST_TEXELS;
 use crate::spectrum::{ColorSpace, Primaries};
@@ -13,7 +14,6 @@ use crate::spectrum::{ColorSpace, Primaries};
 pub(in crate::scene) fn decode(bytes: &[u8]) -> Result<Whole, Unreadable> {
     let mut decoder = Decoder::new_with_limits(Cursor::new(bytes), Limits { bytes: 12 * MOST_TEXELS });
     decoder.set_ignore_text_chunk(true);
-    decoder.set_ignore_iccp_chunk(true);
     decoder.set_transformations(Transformations::EXPAND);
     let mut reader = decoder.read_info()?;
     let [width, height] = [reader.info().width, reader.info().height].map(|side| side as usize);
@@ -35,6 +35,9 @@ fn not_srgb(info: &Info) -> Option<String> {
     if let Some(points) = info.coding_independent_code_points {
         let said = [points.color_primaries, points.transfer_function];
         return (!SRGB_POINTS.contains(&said)).then(|| format!("cICP {} {}", said[0], said[1]));
+    }
+    if let Some(profile) = &info.icc_profile {
+        return icc::not_srgb(profile);
     }
     if info.srgb.is_some() {
         return None;
