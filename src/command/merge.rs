@@ -64,7 +64,9 @@ pub fn run(query: &Query) -> Result<()> {
     }
     if *delete {
         // The image is written all the same.
-        parts.iter().try_for_each(|part| delete_part(part)).unwrap_or_else(|error| warn(&problem(&error)));
+        for error in parts.iter().filter_map(|part| delete_part(part).err()) {
+            warn(&problem(&error));
+        }
     }
     Ok(())
 }
