@@ -126,6 +126,11 @@ fn colors_of_any_space_are_brought_to_rec709() {
     Exr { texts: text("lin_other_scene"), ..green.clone() }.write(&path);
     let said = "the color space \"lin_other_scene\" is not known: it is shown as linear Rec.709\n";
     assert_eq!(pixels(&folder, &[]), (vec![[0, 124, 0]], said.to_owned()));
+    Exr { texts: text("unknown"), ..green.clone() }.write(&path);
+    assert_eq!(pixels(&folder, &[]), (vec![[0, 124, 0]], String::new()));
+    Exr { texts: text("data"), ..green.clone() }.write(&path);
+    let said = "it says that it holds data, not colors: it is shown as linear Rec.709\n";
+    assert_eq!(pixels(&folder, &[]), (vec![[0, 124, 0]], said.to_owned()));
     let none = Chromaticities { green: Vec2(0.708, 0.292), ..rec2020 };
     Exr { chromaticities: Some(none), ..green }.write(&path);
     let said = "its chromaticities mean no colors: it is shown as linear Rec.709\n";
