@@ -38,7 +38,7 @@ fn walls() -> [String; 6] {
 fn room(wall: &str, render: &str, more: &[String]) -> String {
     let walls = walls();
     view([1.3, 1.6, 2.2], [-0.6, 1.0, -1.0], 75.0, 12)
-        + &format!("[render]\nsamples = 16\n{render}\n")
+        + &format!("[render]\nsamples = 8\n{render}\n")
         + &body("wall", wall, &walls.each_ref().map(String::as_str))
         + &more.concat()
 }
@@ -423,7 +423,7 @@ fn parts_of_an_image_are_the_same_as_the_whole() {
 /// The plan looks for light at vertices where that pays, and not where all light comes straight from lamps.
 #[test]
 fn the_plan_weighs_light_vertices() {
-    let larger = |text: &str| text.replace("width = 12\nheight = 12", "width = 256\nheight = 256");
+    let larger = |text: &str| text.replace("width = 12\nheight = 12", "width = 384\nheight = 384");
     let closed = larger(&room(WHITE, "", &[lamp()]));
     let decided = plan(&scene(&closed));
     assert!(decided.method.light_vertices, "{:?}", decided.because);

@@ -27,7 +27,7 @@ fn open(render: &str, more: &[String]) -> String {
     let strip = quad([2.0, 0.3, 0.0], [0.0, 0.0, 2.5], [0.0, 0.3, 0.0]);
     let shapes: Vec<&str> = [0, 1, 3, 4, 5].map(|i| walls[i].as_str()).into_iter().chain([strip.as_str()]).collect();
     view([1.3, 1.6, 2.2], [-0.6, 1.0, -1.0], 75.0, 12)
-        + &format!("[render]\nsamples = 16\n{render}\n")
+        + &format!("[render]\nsamples = 8\n{render}\n")
         + &body("wall", WHITE, &shapes)
         + &more.concat()
 }
