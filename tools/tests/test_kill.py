@@ -118,7 +118,7 @@ def unwritable(folder, request):
     if mounted.returncode:
         pytest.skip("no disk can be mounted here")
     try:
-        yield "permission is denied"
+        yield "nothing can be written or deleted on that disk"
     finally:
         subprocess.run(["umount", str(place)], check=True)
 

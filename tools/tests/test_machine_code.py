@@ -49,4 +49,6 @@ def test_the_stack_of_a_walk_is_not_filled_in_advance():
     command = ["objdump", "--disassemble", "--demangle", "--no-show-raw-insn", os.environ["RENDER"]]
     listing = subprocess.run(command, capture_output=True, text=True, check=True).stdout.splitlines()
     assert any("abbe::" in line for line in listing), "no function of the library is named"
-    assert [name for name, length in fills(listing) if length in STACKS and "abbe" in name] == []
+    # The decoder of JPEG has a list of the same length for the pieces of a color profile.
+    walks = lambda name: "abbe" in name and "scene::decode" not in name
+    assert [name for name, length in fills(listing) if length in STACKS and walks(name)] == []
