@@ -92,10 +92,11 @@ fn probe_lanes<const N: usize, P: Polarization<N>>(world: &World) -> Probe {
     let mut tracer = PathTracer::<N, P>::new(&few).with_photons(photons.as_ref());
     tracer.light_vertices = vertices.as_ref();
     let window = world.scene.film.window();
+    let places: Vec<_> = window.middles_of_cells(SIDE).collect();
     let parted = Cell::new(0);
     let mut take = |numbers: Range<u32>| {
         let (start, before) = (Instant::now(), tracer.walker.stats.rays);
-        for [x, y] in window.middles_of_cells(SIDE).skip(numbers.start as usize).take(numbers.len()) {
+        for &[x, y] in &places[numbers.start as usize..numbers.end as usize] {
             let before = tracer.walker.stats.partings;
             tracer.sample(&Sampler::of_pixel(world.method.seed, [x, y], 0), [x, y]);
             parted.set(parted.get() + u32::from(tracer.walker.stats.partings > before));
