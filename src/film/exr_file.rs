@@ -14,7 +14,7 @@ use exr::prelude::{
 use super::exr_attributes::{attributes, primaries, text};
 use super::exr_layer::{BEAUTY, ExrLayer};
 use super::exr_part::{Channel, Part, PixelBounds};
-use super::guard::{MOST_TEXELS, claims_fit, fits, guarded};
+use super::guard::{claims_fit, fits, guarded, too_large};
 use crate::error::{Error, Result, nearest, nearest_file};
 use crate::spectrum::Primaries;
 
@@ -72,8 +72,7 @@ impl ExrFile {
         let mut all = 0u64;
         for header in &described.headers {
             let [width, height] = [header.layer_size.width(), header.layer_size.height()];
-            if width.saturating_mul(height) > MOST_TEXELS {
-                let said = format!("its {width} x {height} pixels are more than {MOST_TEXELS}");
+            if let Some(said) = too_large(width, height) {
                 return Err(exr::error::Error::NotSupported(said.into()));
             }
             all = all

@@ -37,6 +37,12 @@ pub(crate) fn guarded<T, E: Display>(decode: impl FnOnce() -> Result<T, E>) -> R
 /// Most texels of an image: 16384 x 8192.
 pub(crate) const MOST_TEXELS: usize = 1 << 27;
 
+/// What is said of an image that has more texels than are read.
+pub(crate) fn too_large(width: usize, height: usize) -> Option<String> {
+    let said = || format!("its {width} x {height} pixels are more than {MOST_TEXELS}");
+    (width.saturating_mul(height) > MOST_TEXELS).then(said)
+}
+
 /// Bytes of texels that a file of any length may ask for.
 const ALWAYS: u64 = 1 << 27;
 /// Bytes of texels that one byte of a file can stand for: deflate packs 1032 into one at best (RFC 1951: 258 by 2
@@ -48,9 +54,6 @@ const DENSEST: u64 = 1032 * 24;
 pub(crate) fn fits(width: usize, height: usize, bytes: u64, file: &[u8]) -> Result<(), String> {
     if width == 0 || height == 0 {
         return Err("it has no pixels".into());
-    }
-    if width.saturating_mul(height) > MOST_TEXELS {
-        return Err(format!("{width} x {height} pixels are more than {MOST_TEXELS}"));
     }
     if bytes > ALWAYS.max(DENSEST * file.len() as u64) {
         return Err(format!("its {} bytes cannot hold {width} x {height} pixels", file.len()));

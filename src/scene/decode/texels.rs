@@ -1,6 +1,6 @@
 //! What files of images hold, and why they cannot be read.
 
-use crate::film::{self, MOST_TEXELS};
+use crate::film;
 use crate::spectrum::{IDENTITY, Matrix};
 
 /// Whole numbers, texel by texel, rows from the top: gray, or red, green and blue, and maybe alpha behind them.
@@ -61,8 +61,8 @@ impl Floats {
 pub(in crate::scene) enum Unreadable {
     #[error("{0}")]
     Unfit(String),
-    #[error("its {0} x {1} pixels are more than {MOST_TEXELS}")]
-    Large(usize, usize),
+    #[error("{0}")]
+    Large(String),
     #[error(transparent)]
     Png(#[from] ::png::DecodingError),
     #[error("{}", .0.to_string().trim_matches('"'))]
@@ -106,8 +106,8 @@ impl Unreadable {
 
 /// Refuses images without texels, with too many, and sizes whose `bytes` the file cannot hold.
 pub(super) fn fits(width: usize, height: usize, bytes: u64, file: &[u8]) -> Result<(), Unreadable> {
-    if width.saturating_mul(height) > MOST_TEXELS {
-        return Err(Unreadable::Large(width, height));
+    if let Some(said) = film::too_large(width, height) {
+        return Err(Unreadable::Large(said));
     }
     film::fits(width, height, bytes, file).map_err(Unreadable::Unfit)
 }
