@@ -32,6 +32,22 @@ impl Bounds {
         Self { min: self.min.min(other.min), max: self.max.max(other.max) }
     }
 
+    /// What is inside both; empty where they do not meet.
+    pub fn intersection(self, other: Self) -> Self {
+        Self { min: self.min.max(other.min), max: self.max.min(other.max) }
+    }
+
+    /// Whether it contains nothing.
+    pub fn is_empty(&self) -> bool {
+        self.min.cmpgt(self.max).any()
+    }
+
+    /// Half the surface.
+    pub fn half_area(&self) -> f64 {
+        let DVec3 { x, y, z } = (self.max - self.min).max(DVec3::ZERO);
+        if self.is_empty() { 0.0 } else { x * y + y * z + z * x }
+    }
+
     /// The box enlarged so that it contains every point computed on a surface inside it.
     ///
     /// `roundings` counts the chained roundings behind such a point.

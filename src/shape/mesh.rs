@@ -1,10 +1,9 @@
 use std::sync::OnceLock;
 
-use super::bvh::GROUP;
 use super::edges::open_edges;
 use super::packed::Packed;
 use super::triangle::{Facet, tangents_over};
-use super::{Attributes, Bvh, Crossing, Polygon, SurfacePoint, Triangle, Vertices};
+use super::{Attributes, Bvh, Crossing, Polygon, SurfacePoint, Triangle, Vertices, fragments};
 use crate::math::{Bounds, DVec3, Distribution, Ray, Transform};
 
 /// Triangles over shared vertices, with a tree of boxes.
@@ -61,7 +60,8 @@ impl Mesh {
 
     fn built(vertices: Vertices, triangles: Vec<[u32; 3]>, closed: bool) -> Self {
         let shapes = || triangles.iter().map(|face| Triangle::new(face.map(|corner| vertices.at(corner))));
-        let bvh = Bvh::new::<GROUP>(shapes().map(|triangle| triangle.bounds()));
+        let corners = |index: u32| triangles[index as usize].map(|corner| vertices.at(corner));
+        let bvh = fragments::tree(triangles.len() as u32, corners);
         let packed = Packed::new(&vertices, &triangles, bvh.items());
         let facets = if triangles.len() <= SMALL { shapes().map(|shape| Facet::new(&shape)).collect() } else { vec![] };
         let bounds = Bounds::around(triangles.iter().flatten().map(|&corner| vertices.at(corner)));

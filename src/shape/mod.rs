@@ -15,6 +15,7 @@ mod ears;
 mod edges;
 mod ellipsoid;
 mod faces;
+mod fragments;
 mod gltf;
 mod gltf_buffer;
 mod instance;

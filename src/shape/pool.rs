@@ -1,7 +1,6 @@
-use super::bvh::GROUP;
 use super::mesh::SMALL;
 use super::packed::Packed;
-use super::{Bvh, Crossing, Shape, Triangle, Vertices};
+use super::{Bvh, Crossing, Shape, Triangle, Vertices, fragments};
 use crate::math::{DVec3, Ray};
 
 /// The triangles of several small shapes in one tree, which a ray goes through once.
@@ -40,8 +39,7 @@ impl Pool {
             }
         }
         let triangles: Vec<[u32; 3]> = (0..owners.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
-        let boxes = points.chunks_exact(3).map(|p| Triangle::new([p[0], p[1], p[2]]).bounds());
-        let bvh = Bvh::new::<GROUP>(boxes);
+        let bvh = fragments::tree(owners.len() as u32, |item| triangles[item as usize].map(|i| points[i as usize]));
         let packed = Packed::new(&Vertices::Double(points), &triangles, bvh.items());
         Self { bvh, packed, owners }
     }

@@ -1,5 +1,5 @@
-//! Rows B1 to B3 of the stability catalog: boxes of the tree, and vertices that are no numbers. (Row B4, the depth of
-//! the tree, is tested where the tree is built.)
+//! Rows B1 to B3 and B6 of the stability catalog: boxes of the tree, and vertices that are no numbers. (Rows B4 and B5
+//! are tested where the tree is built.)
 
 use std::fs;
 use std::path::Path;
@@ -128,4 +128,40 @@ fn b3_the_largest_vertices_a_file_can_hold_build_a_mesh_that_is_hit() {
     let crossing = shape.intersect(&ray, f64::INFINITY).expect("the ray runs through the first triangle");
     assert!((crossing.t / (9.0 * f64::from(most)) - 1.0).abs() < 1e-15 && crossing.part == 0, "{crossing:?}");
     assert!(shape.area().is_finite() && shape.pdf(&ray, &crossing).is_finite());
+}
+
+/// Long triangles between points of a lattice: they are cut in planes of the lattice, within which many rays run.
+#[test]
+fn b6_triangles_that_are_cut_are_met_as_if_they_were_whole() {
+    let mut random = Random::new(36);
+    let mut steps = |most: f64| DVec3::from([(); 3].map(|()| (random.between(-most, most)).round()));
+    let mut triangles = Vec::new();
+    while triangles.len() < 2000 {
+        let corner = steps(16.0);
+        let points = [corner, corner + steps(24.0), corner + steps(1.0)].map(|point| point * 0.25);
+        if !Triangle::is_degenerate(points) {
+            triangles.push(points);
+        }
+    }
+    let faces: Vec<[u32; 3]> = (0..triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+    let mesh = Mesh::new(Vertices::Double(triangles.concat()), faces).expect("triangles").0;
+    let mesh = Shape::Mesh(mesh.into());
+    let alone: Vec<Shape> = triangles.iter().map(|&points| Shape::Triangle(Triangle::new(points))).collect();
+    let mut hits = 0;
+    for i in 0..20_000 {
+        let origin = steps(24.0) * 0.25;
+        let direction = match i % 3 {
+            0 => DVec3::AXES[i / 3 % 3],
+            1 => (steps(24.0) * 0.25 - origin).normalize_or(DVec3::X),
+            _ => steps(1e9).normalize(),
+        };
+        let ray = Ray { origin, direction };
+        let found = mesh.intersect(&ray, f64::INFINITY).map(|crossing| (crossing.t, crossing.part));
+        let each = (0..).zip(&alone).filter_map(|(i, one)| Some((one.intersect(&ray, f64::INFINITY)?.t, i)));
+        let nearest = each.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        assert_eq!(found, nearest, "{ray:?}");
+        assert_eq!(mesh.is_crossed(&ray, f64::INFINITY), nearest.is_some(), "{ray:?}");
+        hits += usize::from(found.is_some());
+    }
+    assert!(hits > 5000, "{hits}");
 }

@@ -31,8 +31,10 @@ const LEAST_SIZE: f32 = 1.0 / (1 << 16) as f32;
 /// A tree in the making.
 pub struct Builder<'a> {
     boxes: &'a [Outer],
+    /// The item of each box.
+    pub(super) owners: &'a [u32],
     pub(super) group: usize,
-    /// Items, reordered in place.
+    /// Boxes, reordered in place.
     pub(super) order: Vec<u32>,
     pub(super) nodes: Vec<Node>,
     pub(super) items: Vec<u32>,
@@ -40,14 +42,14 @@ pub struct Builder<'a> {
 
 impl<'a> Builder<'a> {
     /// The root, the nodes and the items of a tree, leaves filled up to whole groups.
-    pub fn build(boxes: &'a [Outer], group: usize) -> (Option<Child>, Vec<Node>, Vec<u32>) {
+    pub fn build(boxes: &'a [Outer], owners: &'a [u32], group: usize) -> (Option<Child>, Vec<Node>, Vec<u32>) {
         if boxes.is_empty() {
             return (None, Vec::new(), Vec::new());
         }
-        let mut built = Self::started(boxes, group);
+        let mut built = Self::started(boxes, owners, group);
         let mut root = built.clusters();
         if built.levels(root) > MAX_LEVELS {
-            built = Self::started(boxes, group);
+            built = Self::started(boxes, owners, group);
             root = built.by_halves();
         }
         built.nodes.shrink_to_fit();
@@ -55,9 +57,9 @@ impl<'a> Builder<'a> {
         (Some(root), built.nodes, built.items)
     }
 
-    fn started(boxes: &'a [Outer], group: usize) -> Self {
+    fn started(boxes: &'a [Outer], owners: &'a [u32], group: usize) -> Self {
         let order = (0..boxes.len() as u32).collect();
-        Self { boxes, group, order, nodes: Vec::new(), items: Vec::new() }
+        Self { boxes, owners, group, order, nodes: Vec::new(), items: Vec::new() }
     }
 
     fn around(&self, range: Range<usize>) -> Outer {
@@ -263,7 +265,8 @@ mod tests {
         for count in [1000, CLUSTER as u32] {
             let at = |i: u32| Outer { min: [i as f32, 0.0, 0.0], max: [i as f32 + 1.0, 1.0, 0.0] };
             let row: Vec<Outer> = (0..count).map(at).collect();
-            let scaled = Builder::started(&row, 4).scaled(0..row.len());
+            let owners = Vec::from_iter(0..count);
+            let scaled = Builder::started(&row, &owners, 4).scaled(0..row.len());
             let areas: Vec<f32> = scaled.windows(2).map(|pair| pair[0].0.union(&pair[1].0).half_area()).collect();
             let pairs = areas.windows(3).filter(|area| area[1] <= area[0] && area[1] < area[2]).count();
             assert!(pairs > row.len() / 5, "{pairs} of {count}");
@@ -281,12 +284,13 @@ mod tests {
                 Outer::of(&Bounds { min: DVec3::splat(x), max: DVec3::splat(x * 1.1) })
             })
             .collect();
+        let owners = Vec::from_iter(0..4096);
         for boxes in [equal, geometric] {
             for group in [1, 4] {
-                let (root, nodes, items) = Builder::build(&boxes, group);
-                let built = Builder { nodes, items, ..Builder::started(&boxes, group) };
+                let (root, nodes, items) = Builder::build(&boxes, &owners, group);
+                let built = Builder { nodes, items, ..Builder::started(&boxes, &owners, group) };
                 assert!(built.levels(root.expect("a tree")) <= MAX_LEVELS);
-                let mut halved = Builder::started(&boxes, group);
+                let mut halved = Builder::started(&boxes, &owners, group);
                 let root = halved.by_halves();
                 assert!(halved.levels(root) <= 12);
             }

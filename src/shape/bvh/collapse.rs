@@ -40,7 +40,12 @@ impl Builder<'_> {
 
     fn leaf(&mut self, pair: &Pair) -> Child {
         let first = self.items.len();
-        self.items.extend_from_slice(&self.order[pair.first as usize..(pair.first + pair.count) as usize]);
+        for &part in &self.order[pair.first as usize..(pair.first + pair.count) as usize] {
+            let item = self.owners[part as usize];
+            if !self.items[first..].contains(&item) {
+                self.items.push(item);
+            }
+        }
         let full = self.items.len().next_multiple_of(self.group);
         self.items.resize(full, NO_ITEM);
         Child::leaf(first / self.group, (full - first) / self.group)

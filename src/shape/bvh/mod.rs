@@ -36,8 +36,13 @@ impl Bvh {
 
     /// The tree over items 0, 1, 2, .. with the given finite boxes, in groups of `GROUP`.
     pub fn new<const GROUP: usize>(bounds: impl Iterator<Item = Bounds>) -> Self {
-        let boxes: Vec<Outer> = bounds.map(|bounds| Outer::of(&bounds)).collect();
-        let (root, nodes, items) = Builder::build(&boxes, GROUP);
+        Self::of_parts::<GROUP>((0..).zip(bounds))
+    }
+
+    /// The tree over items that may have several boxes each, which contain all that is to be found of them together.
+    pub fn of_parts<const GROUP: usize>(parts: impl Iterator<Item = (u32, Bounds)>) -> Self {
+        let (owners, boxes): (Vec<u32>, Vec<Outer>) = parts.map(|(item, bounds)| (item, Outer::of(&bounds))).unzip();
+        let (root, nodes, items) = Builder::build(&boxes, &owners, GROUP);
         Self { root, nodes, items, instructions: Instructions::best() }
     }
 

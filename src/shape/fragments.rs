@@ -1,0 +1,198 @@
+//! Boxes around parts of triangles, for those that fill their own boxes badly.
+//!
+//! A long triangle that runs aslant leaves most of its box empty, and rays enter it for nothing. Cut into parts with a
+//! box each, it costs little more than a compact one (Ernst & Greiner 2007, *Early Split Clipping for Bounding
+//! Volume Hierarchies*). First comes the cut that saves most (Karras & Aila 2013, *Fast Parallel Construction of
+//! High-Quality Bounding Volume Hierarchies*, section 5).
+
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+use super::Bvh;
+use super::bvh::GROUP;
+use crate::math::{Bounds, DVec3, gamma};
+
+/// What a cut saves at least, in half surfaces of the box that the triangle would have if it filled it well.
+const LEAST_GAIN: f64 = 8.0;
+/// Cuts at most for each triangle, unless these are more than `FREE` in all.
+const MOST_CUTS: usize = 8;
+/// Cuts whose memory does not matter, some 200 bytes each. Of more triangles there is one cut each.
+const FREE: usize = 1 << 20;
+
+/// What a box holds of a triangle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Fragment {
+    triangle: u32,
+    bounds: Bounds,
+}
+
+/// The tree over some triangles, of which those that fill their boxes badly are cut.
+pub(super) fn tree(count: u32, corners: impl Fn(u32) -> [DVec3; 3]) -> Bvh {
+    let cut = fragments(count, &corners);
+    let is_whole = |triangle: &u32| cut.binary_search_by_key(triangle, |fragment| fragment.triangle).is_err();
+    let whole = (0..count).filter(is_whole).map(|triangle| (triangle, Bounds::around(corners(triangle))));
+    Bvh::of_parts::<GROUP>(whole.chain(cut.iter().map(|fragment| (fragment.triangle, fragment.bounds))))
+}
+
+/// The fragments of those of some triangles that are worth cutting, sorted by triangle.
+fn fragments(count: u32, corners: impl Fn(u32) -> [DVec3; 3]) -> Vec<Fragment> {
+    let well = |triangle| filled(corners(triangle));
+    let mean = (0..count).map(well).sum::<f64>() / f64::from(count);
+    let cut = |fragment: Fragment| Cut::new(fragment, &corners(fragment.triangle));
+    let pays = |cut: &Cut| cut.gain > mean.max(LEAST_GAIN * well(cut.fragment.triangle));
+    let whole = |triangle| Fragment { triangle, bounds: Bounds::around(corners(triangle)) };
+    // A cut cannot save more than there is.
+    let large = (0..count).map(whole).filter(|fragment| fragment.bounds.half_area() > mean);
+    let mut open: BinaryHeap<Cut> = large.map(cut).filter(pays).collect();
+    let most = open.len() + (MOST_CUTS * count as usize).min(FREE.max(count as usize));
+    let mut done = Vec::new();
+    while open.len() + done.len() < most
+        && let Some(Cut { fragment: Fragment { triangle, .. }, halves, .. }) = open.pop()
+    {
+        for bounds in halves.into_iter().filter(|half| !half.is_empty()) {
+            let next = cut(Fragment { triangle, bounds });
+            if pays(&next) { open.push(next) } else { done.push(next.fragment) }
+        }
+    }
+    done.extend(open.into_iter().map(|cut| cut.fragment));
+    done.sort_by_key(|fragment| fragment.triangle);
+    done
+}
+
+/// Half the surface of a triangle's box, were it to lie along two axes with a right angle at a corner of the box.
+fn filled([a, b, c]: [DVec3; 3]) -> f64 {
+    (b - a).cross(c - a).abs().element_sum()
+}
+
+struct Cut {
+    fragment: Fragment,
+    halves: [Bounds; 2],
+    /// By how much half the surface of the box exceeds those of both halves.
+    gain: f64,
+}
+
+impl Cut {
+    /// Cuts a fragment across its longest side.
+    fn new(fragment: Fragment, corners: &[DVec3; 3]) -> Self {
+        let Bounds { min, max } = fragment.bounds;
+        let axis = (max - min).max_position();
+        // Boxes of the tree meet where both are cut: in 32 bits.
+        let middle = f64::from((0.5 * min[axis] + 0.5 * max[axis]) as f32);
+        if !(min[axis] < middle && middle < max[axis]) {
+            return Self { fragment, halves: [fragment.bounds; 2], gain: 0.0 };
+        }
+        let halves = sides(corners, axis, middle).map(|side| side.intersection(fragment.bounds));
+        let gain = fragment.bounds.half_area() - halves[0].half_area() - halves[1].half_area();
+        Self { fragment, halves, gain }
+    }
+}
+
+/// The boxes around what a triangle has on both sides of a plane across an axis.
+fn sides(corners: &[DVec3; 3], axis: usize, at: f64) -> [Bounds; 2] {
+    let mut sides = [Bounds::EMPTY; 2];
+    for (i, &a) in corners.iter().enumerate() {
+        let b = corners[(i + 1) % 3];
+        if a[axis] <= at {
+            sides[0] = sides[0].union(Bounds::around([a]));
+        }
+        if a[axis] >= at {
+            sides[1] = sides[1].union(Bounds::around([a]));
+        }
+        if (a[axis] < at) != (b[axis] < at) && b[axis] != at && a[axis] != at {
+            let crossing = a + (b - a) * ((at - a[axis]) / (b[axis] - a[axis]));
+            // Five roundings of the product, of at most twice the larger coordinate, and that of the sum.
+            let error = a.abs().max(b.abs()) * gamma(11);
+            let around = Bounds { min: crossing - error, max: crossing + error };
+            sides = sides.map(|side| side.union(around));
+        }
+    }
+    let [mut low, mut high] = sides;
+    (low.max[axis], high.min[axis]) = (at, at);
+    [low, high]
+}
+
+impl PartialEq for Cut {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl Eq for Cut {}
+
+impl PartialOrd for Cut {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Cut {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.gain.total_cmp(&other.gain).then(other.fragment.triangle.cmp(&self.fragment.triangle))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::{Frame, triangle_coordinates};
+    use libm::{cos, sin};
+
+    /// A pipe of two triangles a side, along a direction.
+    fn pipe(sides: u32, along: DVec3) -> Vec<[DVec3; 3]> {
+        let frame = Frame::about(along);
+        let at = |side: u32, end: f64| {
+            let turn = std::f64::consts::TAU * f64::from(side % sides) / f64::from(sides);
+            frame.to_world(DVec3::new(0.3 * cos(turn), 0.3 * sin(turn), end))
+        };
+        let two = |i| [[at(i, -1.0), at(i + 1, -1.0), at(i + 1, 1.0)], [at(i, -1.0), at(i + 1, 1.0), at(i, 1.0)]];
+        (0..sides).flat_map(two).collect()
+    }
+
+    fn cut(triangles: &[[DVec3; 3]]) -> Vec<Fragment> {
+        fragments(triangles.len() as u32, |index| triangles[index as usize])
+    }
+
+    /// Row B6 of the stability catalog.
+    #[test]
+    fn b6_long_triangles_that_run_aslant_are_cut_and_others_are_not() {
+        let aslant = pipe(1000, DVec3::new(0.5, 0.6, 0.7).normalize());
+        let fragments = cut(&aslant);
+        assert!(fragments.len() <= 9 * aslant.len(), "{}", fragments.len());
+        let whole: f64 = aslant.iter().map(|&points| Bounds::around(points).half_area()).sum();
+        let parts: f64 = fragments.iter().map(|fragment| fragment.bounds.half_area()).sum();
+        assert!(parts < 0.15 * whole, "{parts} of {whole}");
+        // Along an axis, boxes are hardly larger than what is in them. Large is not long.
+        assert_eq!(cut(&pipe(100, DVec3::Z)), []);
+        let mut compact = pipe(40, DVec3::new(0.5, 0.6, 0.7).normalize());
+        compact.push([DVec3::X, DVec3::Y, DVec3::Z].map(|corner| 100.0 * corner));
+        assert_eq!(cut(&compact), []);
+    }
+
+    #[test]
+    fn fragments_hold_all_of_their_triangles() {
+        let triangles = pipe(100, DVec3::new(-0.5, 0.6, 0.3).normalize());
+        let fragments = cut(&triangles);
+        let mut number = 0.5;
+        for (index, points) in (0..).zip(&triangles) {
+            let of_this: Vec<Fragment> =
+                fragments.iter().filter(|fragment| fragment.triangle == index).copied().collect();
+            assert!(of_this.len() > 1);
+            for fragment in &of_this {
+                assert_eq!(fragment.bounds.intersection(Bounds::around(*points)), fragment.bounds);
+            }
+            for _ in 0..1000 {
+                let mut next = || {
+                    number = (number + 0.5_f64.sqrt()).fract();
+                    number
+                };
+                let [u, v] = triangle_coordinates([next(), next()]);
+                let point = points[0] + (points[1] - points[0]) * u + (points[2] - points[0]) * v;
+                let holds = |fragment: &Fragment| {
+                    let Bounds { min, max } = fragment.bounds.padded(8);
+                    point.cmpge(min).all() && point.cmple(max).all()
+                };
+                assert!(of_this.iter().any(holds), "{point}");
+            }
+        }
+    }
+}
