@@ -2,6 +2,7 @@ use std::array;
 use std::sync::{Arc, OnceLock};
 
 use super::albedo_table::AlbedoTable;
+use super::facets::places;
 use super::film_averages::FilmAverages;
 use super::film_kernel::FilmKernel;
 use super::fresnel::diffuse_transmittance;
@@ -28,9 +29,6 @@ const WIDEST: f64 = 1.52;
 
 /// Steps of a row over the cosine.
 const STEPS: usize = 64;
-/// Steps of the quadrature over the visible facets: around the normal's half turn, and up.
-const AROUND: usize = 48;
-const UP: usize = 96;
 
 /// What crosses a coat.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -162,15 +160,9 @@ fn kernel(surface: &RoughSurface) -> FilmKernel {
     let facets = surface.facets();
     // As if the body were denser than what is around it, which it nearly always is.
     FilmKernel::new(facets.alpha(), 1.0, STEPS, |z, add| {
-        let z = z.max(HORIZON);
-        let wo = DVec3::new((1.0 - z * z).max(0.0).sqrt(), 0.0, z);
-        for up in 0..UP {
-            let v = (up as f64 + 0.5) / UP as f64;
-            for around in 0..AROUND {
-                let h = facets.visible_normal_from_end(wo, 0.5 * (around as f64 + 0.5) / AROUND as f64, v * v);
-                let [_, blocked] = facets.left_and_blocked(wo, reflect(wo, h));
-                add(wo.dot(h), 2.0 * v / (UP * AROUND) as f64, [blocked, 1.0]);
-            }
+        for ([wo, h], weight) in facets.visible_from(z.max(HORIZON), places(1.0)) {
+            let [_, blocked] = facets.left_and_blocked(wo, reflect(wo, h));
+            add(wo.dot(h), weight, [blocked, 1.0]);
         }
     })
 }
@@ -181,18 +173,11 @@ const HORIZON: f64 = 1e-9;
 /// Share of the light from the cosine `z` that facets of relative index m reflect and no facet blocks.
 fn reflected_once(surface: &RoughSurface, m: f64, z: f64) -> f64 {
     let facets = surface.facets();
-    let wo = DVec3::new((1.0 - z * z).max(0.0).sqrt(), 0.0, z);
-    let mut sum = 0.0;
-    for up in 0..UP {
-        // left = v^2: dense among upright facets, which are few.
-        let v = (up as f64 + 0.5) / UP as f64;
-        for around in 0..AROUND {
-            let h = facets.visible_normal_from_end(wo, 0.5 * (around as f64 + 0.5) / AROUND as f64, v * v);
-            let reflected = 1.0 - transmittance(1.0, m, wo.dot(h).clamp(0.0, 1.0));
-            sum += 2.0 * v * reflected * facets.left_and_blocked(wo, reflect(wo, h))[0];
-        }
-    }
-    sum / (UP * AROUND) as f64
+    let reflected = |[wo, h]: [DVec3; 2]| {
+        let reflectance = 1.0 - transmittance(1.0, m, wo.dot(h).clamp(0.0, 1.0));
+        reflectance * facets.left_and_blocked(wo, reflect(wo, h))[0]
+    };
+    facets.visible_from(z, places(m)).map(|(directions, weight)| weight * reflected(directions)).sum()
 }
 
 /// Share of the light that crosses a smooth boundary; all of it where there is none.

@@ -107,6 +107,30 @@ impl Facets {
         let cap = DVec3::new(stretched.x + sin * x, stretched.y + sin * y, left * height);
         DVec3::new(self.alpha * cap.x, self.alpha * cap.y, cap.z).normalize()
     }
+
+    /// The visible facets from the cosine `z` for a quadrature: the direction they are seen from, their normals, and
+    /// weights that sum to 1.
+    pub(super) fn visible_from(&self, z: f64, places: u32) -> impl Iterator<Item = ([DVec3; 2], f64)> {
+        let wo = DVec3::new((1.0 - z * z).max(0.0).sqrt(), 0.0, z);
+        (0..places).map(move |i| {
+            // A lattice of the golden ratio, whose rows lie along no edge: total reflection sets in along a curve.
+            let turn = (f64::from(i) * GOLDEN).fract();
+            // left = v^2: dense among upright facets, which are few and block most.
+            let v = (f64::from(i) + 0.5) / f64::from(places);
+            ([wo, self.visible_normal_from_end(wo, turn, v * v)], 2.0 * v / f64::from(places))
+        })
+    }
+}
+
+/// (sqrt(5) - 1) / 2.
+const GOLDEN: f64 = 0.618_033_988_749_894_9;
+
+/// How many visible facets tell a mean over them where the index beyond is `ratio` times that on this side.
+///
+/// Shares are off by 1e-4 at most, and by 8e-4 where some facets reflect totally and others do not: from those of half a
+/// million facets, at 13 cosines and 6 roughnesses.
+pub(super) fn places(ratio: f64) -> u32 {
+    if ratio < 1.0 { 4096 } else { 2048 }
 }
 
 /// Two more random numbers, from the later digits of two: for what is decided after these have been used up.

@@ -2,7 +2,7 @@ use std::f64::consts::{LN_10, PI};
 use std::sync::OnceLock;
 
 use super::albedo_table::AlbedoTable;
-use super::facets::later_digits;
+use super::facets::{later_digits, places};
 use super::film_kernel::FilmKernel;
 use super::fresnel::diffuse_transmittance;
 use super::{Facet, Facets, Flow};
@@ -36,9 +36,6 @@ const SPAN: [f64; 2] = [1e-4, LN_10];
 const STEPS: usize = 192;
 /// The same of a film's kernel.
 const KERNEL_STEPS: usize = 64;
-/// Places of the quadrature over the visible facets.
-const PLACES: u32 = 4096;
-
 impl RoughInterface {
     /// The boundary whose facets have slopes as wide as `alpha`.
     pub fn new(alpha: f64) -> Self {
@@ -107,14 +104,11 @@ fn ratio(denser: bool, row: usize) -> f64 {
 
 /// What is blocked of the light that facets would reflect, all of it, or let through.
 fn kernel(facets: &Facets, ratio: f64) -> FilmKernel {
+    let straight = straight(ratio);
     FilmKernel::new(facets.alpha(), ratio, KERNEL_STEPS, |z, add| {
-        let (wo, straight) = (DVec3::new((1.0 - z * z).max(0.0).sqrt(), 0.0, z), straight(ratio));
-        for i in 0..PLACES {
-            let turn = (f64::from(i) * GOLDEN).fract();
-            let v = (f64::from(i) + 0.5) / f64::from(PLACES);
-            let h = facets.visible_normal_from_end(wo, turn, v * v);
-            let facet = Facet::new(facets, [1.0, ratio], straight, [wo, h], None);
-            add(facet.cos[0], 2.0 * v / f64::from(PLACES), facet.all.map(|left| 1.0 - left));
+        for (directions, weight) in facets.visible_from(z, places(ratio)) {
+            let facet = Facet::new(facets, [1.0, ratio], straight, directions, None);
+            add(facet.cos[0], weight, facet.all.map(|left| 1.0 - left));
         }
     })
 }
@@ -122,21 +116,10 @@ fn kernel(facets: &Facets, ratio: f64) -> FilmKernel {
 /// The share of the light from the cosine `z` that meets a second facet: the mean over the visible facets, where the
 /// index beyond is `ratio` times that on this side.
 fn blocked(facets: &Facets, z: f64, ratio: f64) -> f64 {
-    let wo = DVec3::new((1.0 - z * z).max(0.0).sqrt(), 0.0, z);
-    let (mut sum, straight) = (0.0, straight(ratio));
-    for i in 0..PLACES {
-        // A lattice of the golden ratio, whose rows lie along no edge: total reflection sets in along a curve.
-        let turn = (f64::from(i) * GOLDEN).fract();
-        // left = v^2: dense among upright facets, which are few and block most.
-        let v = (f64::from(i) + 0.5) / f64::from(PLACES);
-        let h = facets.visible_normal_from_end(wo, turn, v * v);
-        sum += 2.0 * v * Facet::new(facets, [1.0, ratio], straight, [wo, h], None).again;
-    }
-    sum / f64::from(PLACES)
+    let straight = straight(ratio);
+    let again = |directions| Facet::new(facets, [1.0, ratio], straight, directions, None).again;
+    facets.visible_from(z, places(ratio)).map(|(directions, weight)| weight * again(directions)).sum()
 }
-
-/// (sqrt(5) - 1) / 2.
-const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
 /// The share of light from all around that crosses a boundary both there and back, the same from either side.
 fn straight(ratio: f64) -> f64 {

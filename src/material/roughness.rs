@@ -2,6 +2,7 @@ use std::f64::consts::PI;
 use std::sync::{Arc, OnceLock};
 
 use super::albedo_table::AlbedoTable;
+use super::facets::places;
 use super::{Facets, RoughInterface, reflect};
 use crate::math::DVec3;
 
@@ -79,14 +80,11 @@ pub struct RoughReflection {
 
 /// Steps of the table over the cosine.
 const STEPS: usize = 64;
-/// Steps of the quadrature over the visible facets: around the normal's half turn, and up.
-const AROUND: usize = 48;
-const UP: usize = 96;
 
 impl RoughSurface {
     fn new(alpha: f64) -> Self {
         let facets = Facets::new(alpha);
-        Self { facets, blocked: AlbedoTable::new(alpha, STEPS, |z| quadrature(&facets, z)) }
+        Self { facets, blocked: AlbedoTable::new(alpha, STEPS, |z| blocked(&facets, z)) }
     }
 
     /// The facets themselves.
@@ -143,19 +141,8 @@ impl RoughSurface {
     }
 }
 
-/// The share of light from the cosine `z` that meets a second facet: the mean of `blocked` over the visible facets.
-fn quadrature(facets: &Facets, z: f64) -> f64 {
-    let wo = DVec3::new((1.0 - z * z).max(0.0).sqrt(), 0.0, z);
-    let mut sum = 0.0;
-    for up in 0..UP {
-        // left = v^2: dense among upright facets, which are few and block most.
-        let v = (up as f64 + 0.5) / UP as f64;
-        for around in 0..AROUND {
-            let turn = 0.5 * (around as f64 + 0.5) / AROUND as f64;
-            let h = facets.visible_normal_from_end(wo, turn, v * v);
-            let [_, blocked] = facets.left_and_blocked(wo, reflect(wo, h));
-            sum += 2.0 * v * blocked;
-        }
-    }
-    sum / (UP * AROUND) as f64
+/// The share of light from the cosine `z` that meets a second facet: the mean over the visible facets.
+fn blocked(facets: &Facets, z: f64) -> f64 {
+    let blocked = |[wo, h]: [DVec3; 2]| facets.left_and_blocked(wo, reflect(wo, h))[1];
+    facets.visible_from(z, places(1.0)).map(|(directions, weight)| weight * blocked(directions)).sum()
 }

@@ -169,14 +169,14 @@ fn l11_a_glass_ball_under_an_image_of_the_sky_with_lamps_in_it() {
          transform = [{{ rotate = {{ axis = [0.2, 1, 0], degrees = 40 }} }}] }}\n"
     );
     let text = seen_by(ABOVE, "") + FLOOR + &glass("index = 1.5") + &object("glass", BALL) + &sky;
-    agree("a ball under a sky", &text, 16);
+    agree("a ball under a sky", &text, 8);
     let cup = object("glass", "cube = { center = [0, 0.7, 0], size = 1 }");
     let prism = "[material.glass]\ndielectric = { index = \"N-SF11\" }\n";
-    agree("a cube of N-SF11 under a sky", &(seen_by(ABOVE, "") + FLOOR + prism + &cup + &sky), 16);
+    agree("a cube of N-SF11 under a sky", &(seen_by(ABOVE, "") + FLOOR + prism + &cup + &sky), 8);
     let camera = "position = [2.5, 3.5, 2.5]\nlook_at = [0, 0.5, 0]\nvertical_fov = 30";
     let map = Some(MapPasses { count: 16, photons: 8192, radius: 0.1, chance: 1.0 });
     let text = seen_by(camera, "") + FLOOR + &glass("index = 1.5") + &object("glass", BALL) + &sky;
-    agree_with("a ball under a sky, gathered", &text, 16, map);
+    agree_with("a ball under a sky, gathered", &text, 8, map);
 }
 
 #[test]

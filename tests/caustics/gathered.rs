@@ -86,7 +86,7 @@ fn a_caustic_that_lights_a_wall() {
         + &object("veil", "quad = { center = [0.9, 0.5, 0], u = [0, 0.5, 0], v = [0, 0, 0.8] }")
         + &object("glass", BALL)
         + &object("lamp", "cube = { center = [0, 4, 0], size = 0.8 }");
-    agree("wall", &text, 16);
+    agree("wall", &text, 8);
 }
 
 #[test]
@@ -105,5 +105,5 @@ fn a_body_of_many_materials_under_a_dome_of_glass() {
         + &object("frost", "sphere = { center = [0.4, 0.5, 0], radius = 0.3 }")
         + &object("both", "cube = { center = [-0.4, 0.4, 0], size = 0.5 }")
         + "[[light]]\nsun = { toward = [0.3, 1, 0.2], angular_diameter = 30, irradiance = 3 }\n";
-    agree("dome", &text, 16);
+    agree("dome", &text, 8);
 }

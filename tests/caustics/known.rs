@@ -199,10 +199,10 @@ fn a_part_of_an_image_has_the_bits_that_it_has_in_the_whole() {
         let whole = scene(&crowd(filter));
         let planned = plan(&whole).method;
         let pass = planned.light_pass.clone().expect("a caustic");
-        let map = pass.map.map(|map| MapPasses { count: 3, photons: 8192, ..map });
+        let map = pass.map.map(|map| MapPasses { count: 3, photons: 4096, ..map });
         assert!(map.is_some(), "a caustic in a mirror");
-        let few = LightPass { photons: 65_536, map, ..pass };
-        let method = Method { samples: 24, light_pass: Some(few), ..planned.clone() };
+        let few = LightPass { photons: 16_384, map, ..pass };
+        let method = Method { samples: 8, light_pass: Some(few), ..planned.clone() };
         let render = |scene: &abbe::Scene| render(&prepare(scene, method.clone()), &|_| ()).0;
         let full = render(&whole);
         for window in ["crop = [7, 11, 22, 19]", "overscan = [40, 5, 3, 60]", "overscan = 9\ncrop = [-9, 3, 13, 17]"] {

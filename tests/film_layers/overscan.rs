@@ -47,11 +47,12 @@ fn overscan_changes_no_bit_of_the_format_and_crops_are_parts_of_both() {
         assert_eq!(all, Window { left: -5, top: -17, width: format.width + 23, height: format.height + 18 });
         assert_eq!(wide.film().full, [format.width, format.height]);
         assert!(bits(wide.film(), format) == bits(plain.film(), format), "overscan changes the image");
-        for crop in [
+        let crops = [
             Window { left: -5, top: -17, width: 9, height: 20 },
             Window { left: 3, top: -2, width: 4, height: 6 },
             Window { left: all.width as i32 - 6, top: 0, width: 1, height: 5 },
-        ] {
+        ];
+        for crop in crops.into_iter().take(if text == ROOM { 3 } else { 1 }) {
             let part = made(text, Some(AROUND), Some(crop), 2);
             assert_eq!(window(part.film()), crop);
             assert!(bits(part.film(), crop) == bits(wide.film(), crop), "{crop:?} has other bits");

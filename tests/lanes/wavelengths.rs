@@ -131,7 +131,7 @@ fn lossless_dispersive_glass_in_an_even_sky_is_1_in_every_channel() {
     {
         let view = view([0.0, 0.0, 6.0], [0.0, 0.0, 0.0], 17.0, 24);
         let text = format!(
-            "{view}color_space = \"{space}\"\n[render]\nmodel = {model}\nsamples = 128\n\
+            "{view}color_space = \"{space}\"\n[render]\nmodel = {model}\nsamples = 64\n\
              [material.flint]\ndielectric = {{ index = \"N-SF11\" }}\n\
              [material.gem]\ndielectric = {{ index = \"diamond\" }}\n\
              [[object]]\nshape.sphere = {{ center = [0, 0, 0], radius = 1.3 }}\nmaterial = \"flint\"\n\

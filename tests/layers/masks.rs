@@ -90,7 +90,7 @@ fn aiming_through_a_mask_and_meeting_the_lamp_beyond_show_the_same() {
     let sheet = |lamp: &str| {
         let rough = "[material.gold]\nconductor = { metal = \"Au\", roughness = 0.4 }\n\
             [material.inner]\ndiffuse = { reflectance = 0.7 }\n";
-        under(&(rough.to_owned() + &masked("inner", "0.5")), lamp, 1024).replace("\"floor\"\n", "\"gold\"\n")
+        under(&(rough.to_owned() + &masked("inner", "0.5")), lamp, 512).replace("\"floor\"\n", "\"gold\"\n")
     };
     let met = LAMP.replace(
         "emissive = { radiance = { rgb = [10, 20, 5] } }",

@@ -12,7 +12,7 @@ use crate::support::scenes::scene;
 
 /// What the plan tolerates of it: a third of one percent of each error that a scene may have, see `plan`.
 const TOLERATED: f64 = 0.01;
-const SCENES: u64 = 120;
+const SCENES: u64 = 80;
 
 fn vector(random: &mut Random, from: f64, to: f64) -> [f64; 3] {
     [0, 1, 2].map(|_| random.between(from, to))

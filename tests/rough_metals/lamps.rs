@@ -28,10 +28,10 @@ fn aiming_at_a_lamp_and_meeting_it_show_the_same() {
     let met = body("lamp", &format!("dielectric = {{ {dark}, emission = {RADIANCE} }}"), &[LAMP]);
     let cases = [0.15, 0.3, 0.6, 1.0];
     for roughness in cases {
-        let by_chance = images(&gold(roughness, &met, 2048), SINGLE_PATH, 8);
+        let by_chance = images(&gold(roughness, &met, 1024), SINGLE_PATH, 8);
         let by_chance = Mean::over_seeds(by_chance.iter().map(|(film, _)| film));
         for transport in [SINGLE_PATH, SPLITTING] {
-            let aimed = images(&gold(roughness, &aimed_at, 256), transport, 8);
+            let aimed = images(&gold(roughness, &aimed_at, 128), transport, 8);
             let mut aimed = Mean::over_seeds(aimed.iter().map(|(film, _)| film));
             println!("roughness {roughness}: {aimed:.5?} for {by_chance:.5?}");
             for band in 0..3 {
