@@ -1,3 +1,5 @@
+use smallvec::SmallVec;
+
 use super::significance::{normal_equivalent, sidak_threshold};
 use crate::film::{Channel, ExrFile, ExrLayer, TELL_VARIANCE};
 
@@ -10,12 +12,13 @@ const ROUNDING_OF_HALF: f64 = 1.0 / 1024.0;
 /// Whether two images differ by more than their noise.
 ///
 /// Of each value, z is the difference over its standard deviation sqrt(va + vb), by the `variance` layers of both
-/// files. Where `samples.V`, or how many replicates there were, says how little these rest on, z is the normal number
-/// that is as improbable, by the degrees of freedom of Welch 1947. A variance that is negative or no number counts as
-/// 0.
+/// files. Where `samples.V`, `render/samples` or how many replicates there were says how little these rest on, z is the
+/// normal number that is as improbable, by the degrees of freedom of Welch 1947. A variance that is negative or no
+/// number counts as 0.
 ///
-/// Where all samples of a pixel are the same beside an edge, another one might have shown what a neighbor shows: n of
-/// them tell the mean no better than to 1 / n of the difference.
+/// Few samples that happen to agree tell far too little: a variance counts as half the median of the pixel and those
+/// around it, or more. Where all samples of a pixel are the same beside an edge, another one might have shown what a
+/// neighbor shows: n of them tell the mean no better than to 1 / n of the difference.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Noise {
     /// The z of either sign that all values together exceed by chance in 1 of 100 pairs of images.
@@ -72,24 +75,35 @@ impl<'f> Noisy<'f> {
         self.variance[channel].at(pixel).max(0.0)
     }
 
-    /// The variance of a pixel; where no sample differs from the others, that of one that shows what the most
+    /// The variance of a pixel, or what stands in for it where few samples that happen to agree tell far too little:
+    /// half the median around it, or where no sample differs from the others, that of one that shows what the most
     /// different neighbor does.
     fn variance_beside_neighbors(&self, channel: usize, pixel: usize) -> f64 {
-        let taken = self.samples.map(|samples| samples.at(pixel)).or(self.taken).filter(|taken| *taken >= 1.0);
         let told = self.variance(channel, pixel);
-        let Some(taken) = taken.filter(|_| told == 0.0) else { return told };
-        let (value, [columns, rows]) = (self.colors[channel].at(pixel), self.size);
+        let [columns, rows] = self.size;
         let [column, row] = [pixel % columns, pixel / columns];
         let beside = |at: usize, count: usize| at.saturating_sub(1)..(at + 2).min(count);
         let neighbors = beside(row, rows).flat_map(|y| beside(column, columns).map(move |x| y * columns + x));
+        if told > 0.0 {
+            let mut around: SmallVec<[f64; 9]> = neighbors.map(|other| self.variance(channel, other)).collect();
+            let middle = around.len() / 2;
+            return told.max(0.5 * *around.select_nth_unstable_by(middle, f64::total_cmp).1);
+        }
+        let Some(taken) = self.taken(pixel) else { return told };
+        let value = self.colors[channel].at(pixel);
         let apart = neighbors.map(|other| (self.colors[channel].at(other) - value).abs());
         let apart = apart.filter(|apart| apart.is_finite()).fold(0.0, f64::max);
         (apart / taken) * (apart / taken)
     }
 
+    /// The samples of a pixel, or of each on the average, where the file says so.
+    fn taken(&self, pixel: usize) -> Option<f64> {
+        self.samples.map(|samples| samples.at(pixel)).or(self.taken).filter(|taken| *taken >= 1.0)
+    }
+
     /// How many independent values beyond the first its variance rests on; endless where it is not said.
     fn freedom(&self, pixel: usize) -> f64 {
-        let values = self.replicates.or(self.samples.map(|samples| samples.at(pixel)));
+        let values = self.replicates.or_else(|| self.taken(pixel));
         values.map_or(f64::INFINITY, |values| (values - 1.0).max(1.0))
     }
 }

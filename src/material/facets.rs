@@ -127,8 +127,8 @@ const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
 /// How many visible facets tell a mean over them where the index beyond is `ratio` times that on this side.
 ///
-/// Shares are off by 1e-4 at most, and by 8e-4 where some facets reflect totally and others do not: from those of half a
-/// million facets, at 13 cosines and 6 roughnesses.
+/// Shares are off by 1e-4 at most, and by 8e-4 where some facets reflect totally and others do not: beside those of
+/// half a million facets, at 13 cosines and 6 roughnesses.
 pub(super) fn places(ratio: f64) -> u32 {
     if ratio < 1.0 { 4096 } else { 2048 }
 }

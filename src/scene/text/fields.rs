@@ -8,6 +8,7 @@ use super::document::Document;
 use super::include::INCLUDE;
 use super::suggest::{TABLE, meant, suggestion};
 use super::value::Value;
+use crate::error::nearest;
 
 /// A table that is being read: the keys that are asked for are those that it may have.
 pub(in crate::scene) struct Fields<'d> {
@@ -199,6 +200,17 @@ impl<R: Copy> Choice<R> {
         is_beside
     }
 
+    /// Whether a key that resembles no kind stands beside one, which is told: it may belong into that.
+    fn is_part_of(&self, kind: &str, stray: Value) -> bool {
+        let word = stray.key();
+        let is_part = !self.knows(word) && nearest(word, self.kinds.iter().map(|kind| kind.0)).is_none();
+        if is_part {
+            let help = format!("what belongs to `{kind}` stands inside of it: {kind} = {{ .., {word} = .. }}");
+            stray.refuse_key::<()>(format!("unknown key `{word}` beside `{kind}`"), Some(help));
+        }
+        is_part
+    }
+
     /// The value of the first key of a table, known or not; tells of a second one.
     pub(in crate::scene) fn kind<'d>(&self, value: Value<'d>) -> Option<Value<'d>> {
         let example = || format!("such as {}", self.example);
@@ -212,6 +224,9 @@ impl<R: Copy> Choice<R> {
             return tag.refuse_key(format!("the kind of {} is a key itself", self.name), Some(help));
         }
         kinds.retain(|kind| !self.is_beside(*kind));
+        if let [kind] = kinds.iter().filter(|kind| self.knows(kind.key())).copied().collect::<Vec<_>>()[..] {
+            kinds.retain(|other| !self.is_part_of(kind.key(), *other));
+        }
         if let [_, second, ..] = kinds.as_slice() {
             second.refuse_key::<()>(format!("{} has exactly one kind", self.name), Some(self.apart.into()));
         }
