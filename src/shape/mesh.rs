@@ -59,11 +59,12 @@ impl Mesh {
     }
 
     fn built(vertices: Vertices, triangles: Vec<[u32; 3]>, closed: bool) -> Self {
-        let shapes = || triangles.iter().map(|face| Triangle::new(face.map(|corner| vertices.at(corner))));
         let corners = |index: u32| triangles[index as usize].map(|corner| vertices.at(corner));
-        let bvh = fragments::tree(triangles.len() as u32, corners);
+        let count = triangles.len() as u32;
+        let bvh = fragments::tree(count, corners);
         let packed = Packed::new(&vertices, &triangles, bvh.items());
-        let facets = if triangles.len() <= SMALL { shapes().map(|shape| Facet::new(&shape)).collect() } else { vec![] };
+        let facet = |index: u32| Facet::new(&Triangle::new(corners(index)));
+        let facets = if triangles.len() <= SMALL { (0..count).map(facet).collect() } else { vec![] };
         let bounds = Bounds::around(triangles.iter().flatten().map(|&corner| vertices.at(corner)));
         let (areas, attributes) = (OnceLock::new(), Attributes::default());
         Self { bvh, packed, facets, vertices, triangles, bounds, areas, closed, attributes }
