@@ -177,9 +177,9 @@ fn the_noise_of_alpha_under_a_shadow_catcher_is_the_noise_that_is_there_and_a_re
              shadow_catcher = true\n"
         ));
         let one = |seed: u64| {
-            let image = render(&scene, &Options { seed: Some(seed), ..asks(0.03, 4096) }).expect("it can be rendered");
+            let image = render(&scene, &Options { seed: Some(seed), ..asks(0.02, 4096) }).expect("it can be rendered");
             let error = image.error().expect("there are replicates").clone();
-            assert!(error.is_reached() && error.noise.at_most == 0.0 && error.noise.samples >= 64, "{error:?}");
+            assert!(error.is_reached() && error.noise.at_most == 0.0 && error.noise.samples > 64, "{error:?}");
             let alpha = image.layer("A").expect("every image has it");
             let square = |alpha: &f32| (f64::from(*alpha) / truth - 1.0).powi(2);
             let told = error.alpha.expect("there is a shadow catcher");
@@ -190,7 +190,7 @@ fn the_noise_of_alpha_under_a_shadow_catcher_is_the_noise_that_is_there_and_a_re
         assert!((mean(0) / mean(1) - 1.0).abs() < 0.1, "{filter}: {:e} is told as {:e}", mean(0), mean(1));
         let kept = found.iter().filter(|[true_error, _, bound]| true_error <= bound).count();
         assert!(kept >= 34, "{filter}: {kept} of {RENDERS}");
-        assert!(found.iter().all(|[_, _, bound]| (0.015..=0.03).contains(&bound.sqrt())), "{filter}");
+        assert!(found.iter().all(|[_, _, bound]| (0.01..=0.02).contains(&bound.sqrt())), "{filter}");
     }
 }
 

@@ -36,6 +36,7 @@ const SPAN: [f64; 2] = [1e-4, LN_10];
 const STEPS: usize = 192;
 /// The same of a film's kernel.
 const KERNEL_STEPS: usize = 64;
+
 impl RoughInterface {
     /// The boundary whose facets have slopes as wide as `alpha`.
     pub fn new(alpha: f64) -> Self {

@@ -12,11 +12,11 @@ use super::Bvh;
 use super::bvh::GROUP;
 use crate::math::{Bounds, DVec3, gamma};
 
-/// What a cut saves at least, in half surfaces of the box that the triangle would have if it filled it well.
+/// A cut saves at least so many times half the surface of a box that the triangle would fill.
 const LEAST_GAIN: f64 = 8.0;
 /// Cuts at most for each triangle, unless these are more than `FREE` in all.
 const MOST_CUTS: usize = 8;
-/// Cuts whose memory does not matter, some 200 bytes each. Of more triangles there is one cut each.
+/// So many cuts are allowed in any mesh, for they take some 200 bytes each. A mesh of more triangles has one for each.
 const FREE: usize = 1 << 20;
 
 /// What a box holds of a triangle.
