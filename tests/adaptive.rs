@@ -6,7 +6,7 @@
 
 use abbe::film::{Film, Window};
 use abbe::plan::{Plan, plan};
-use abbe::trace::{Method, SampleDensity, Stop, prepare, render};
+use abbe::trace::{Method, SampleDensity, Stop, World, adaptive, prepare, render};
 
 use crate::support::scenes::{SPLITTING, body, method, moments, scene, standard_errors, view};
 
@@ -50,6 +50,32 @@ fn the_plan_asks_for_more_samples_where_the_noise_is() {
     // As many samples as an image has do not change where they are taken.
     let of = |samples| plan(&scene(&lit(large, samples, ""))).method.density;
     assert_eq!(of(64), of(256));
+}
+
+/// At most 4096 cells are looked at, and 16 at least.
+#[test]
+fn fewer_cells_are_looked_at_where_samples_follow_many_rays() {
+    let cells = |panes: u32| {
+        let pane =
+            |pane: u32| format!("quad = {{ center = [0, 0.6, {}], u = [9, 0, 0], v = [0, 9, 0] }}", 0.1 * pane as f64);
+        let panes: Vec<String> = (0..panes).map(pane).collect();
+        let panes: Vec<&str> = panes.iter().map(String::as_str).collect();
+        let text = large_view([1024, 768])
+            + &body("glass", "thin = { index = 1.8 }", &panes)
+            + &body(
+                "wall",
+                "diffuse = { reflectance = 0.5 }",
+                &["quad = { center = [0, 0, -9], u = [40, 0, 0], v = [0, 40, 0] }"],
+            )
+            + &body("lamp", LAMP, &["sphere = { center = [0, 20, 0], radius = 1 }"]);
+        let scene = scene(&text);
+        let [columns, rows] =
+            adaptive(&World::new(&scene, method(&scene, SPLITTING)), false).expect("there is noise").density.cells;
+        columns * rows
+    };
+    let (many, few) = (cells(1), cells(60));
+    assert!((3968..=4096).contains(&many), "{many}");
+    assert!(few < 2048 && few > 16, "{few}");
 }
 
 /// Rates all over an image of 12 x 12.

@@ -43,13 +43,15 @@ def read(path):
 
 
 def write(scene, exr, timeout=3600, **flags):
-    """Renders `scene` (a path, or a scene's text) into the file `exr`; flags as on the command line: samples=16.
+    """Renders `scene` (a path, or a scene's text) into the file `exr`; flags as on the command line: samples=16; those
+    that are given several times: set=["film.width=64", "film.height=48"].
 
     A render that takes longer than `timeout` seconds is an error."""
     if isinstance(scene, str):
         text, scene = scene, Path(exr).with_suffix(".toml")
         scene.write_text(text, "utf-8")
-    arguments = [word for name, value in flags.items() for word in (f"--{name}", str(value))]
+    values = ((name, value) for name, given in flags.items() for value in (given if isinstance(given, list) else [given]))
+    arguments = [word for name, value in values for word in (f"--{name}", str(value))]
     command = [str(binary()), str(scene), "--exr", str(exr), *arguments]
     run = subprocess.run(command, capture_output=True, text=True, check=False, timeout=timeout)
     if run.returncode:

@@ -1,9 +1,10 @@
 //! The plan asks for a light pass where that lowers the time to an error, and says why where not.
 
 use abbe::plan::plan;
+use abbe::trace::{LightPass, World, photons_within};
 
 use super::twenty::{Room, rooms};
-use crate::support::scenes::scene;
+use crate::support::scenes::{SPLITTING, body, method, scene, view};
 
 /// What is right for each was measured: `cargo bench --bench rooms`, the table in `benches/README.md`.
 #[test]
@@ -55,4 +56,21 @@ fn photons_that_light_a_room_are_counted_beside_the_noise_that_all_else_leaves()
     let method = plan(&scene(text)).method;
     let photons = method.light_pass.expect("the lamp is behind glass").photons as f64 / f64::from(128 * 128 * 64);
     assert!(method.light_vertices && (0.7..=4.0).contains(&photons), "{photons} for each camera sample");
+}
+
+#[test]
+fn photons_that_meet_a_mirror_and_a_floor_follow_two_rays() {
+    let quad = |z: f64, half: f64, front: f64| {
+        format!("quad = {{ center = [0, 0, {z:?}], u = [{half:?}, 0, 0], v = [0, {:?}, 0] }}", front * half)
+    };
+    let text = view([0.0, -9.0, 4.0], [0.0; 3], 40.0, 48)
+        + &body("floor", "diffuse = { reflectance = 0.5 }", &[&quad(0.0, 9.0, 1.0)])
+        + &body("mirror", "mirror = { reflectance = 1 }", &[&quad(4.0, 1.0, -1.0)])
+        + "[[light]]\nspot = { position = [0, 0, 2], toward = [0, 0, 1], cone_angle = 20, intensity = 9 }\n";
+    let scene = scene(&text);
+    let pass = LightPass { photons: 1 << 20, lights: vec![0], map: None };
+    let world = World::new(&scene, method(&scene, SPLITTING)).with_light_pass(Some(pass));
+    // Those that are sent beside the spot's cone follow none.
+    let photons = photons_within(&world, 4096.0);
+    assert!((2048..2300).contains(&photons), "{photons}");
 }

@@ -22,7 +22,7 @@ KILLS = int(os.environ.get("KILLS", "10"))
 SCENE = """
 camera = { position = [0, 1.5, 6], look_at = [0, 0.7, 0], vertical_fov = 35 }
 film = { width = 150, height = 90, layers = ["N", "lights", "CryptoObject"] }
-render = { samples = 400, seed = 3, caustics = "off" }
+render = { samples = 150, seed = 3, caustics = "off" }
 [material]
 floor.diffuse.reflectance = 0.6
 glass.dielectric.index = 1.5

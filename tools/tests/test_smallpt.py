@@ -15,7 +15,7 @@ from smallpt.reference import REFERENCE, SIZE
 from smallpt.regions import REGIONS, mean_and_error, region_means, scene_text, sees_front_wall, sees_glass
 
 WIDTH, HEIGHT = SIZE
-SAMPLES = 16
+SAMPLES = 8
 SEEDS = range(1, 9)
 LARGEST_ERROR = 0.004
 EXPECTED = json.loads(REFERENCE.read_text())["reference"]["regions"]

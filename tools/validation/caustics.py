@@ -30,7 +30,7 @@ def lit(
     **camera,
 ):
     """The mean irradiance of a square of the floor, by its radiance."""
-    samples, seeds, size = (256, 6, 12) if quick else (1024, 8, 16)
+    samples, seeds, size = (64, 6, 12) if quick else (1024, 8, 16)
     camera = {"eye": (0, 0.5, 0), "target": (0, 0, 0), "up": (0, 0, -1), "height": patch} | camera
     scene = view(materials | {"floor": diffuse(DARK)}, objects, lights, size=size, samples=samples, **camera)
     factor = DARK / np.pi

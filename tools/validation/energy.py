@@ -92,7 +92,7 @@ def heroes(quick):
             0.95,
             "wavelengths that go on alone without the weight of those that end",
             quick,
-            samples=1024,
+            samples=256 if quick else 1024,
             model="hero",
         )
 

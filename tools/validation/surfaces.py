@@ -133,7 +133,7 @@ def piles(quick):
                 objects.append(("glass", cube((0, -gap * number - 0.005, 0), [40.0, 0.01, 40.0])))
             objects.append(("glow", plane((0, -5, 0), (0, 1, 0))))
             # Of more plates the plan follows some ways of light, chosen by chance.
-            chance = {"size": 32, "samples": 32 if quick else 64} if plates > 1 else {}
+            chance = {"size": 32, "samples": 8 if quick else 64} if plates > 1 else {}
             found = row(
                 f"S0 and S1 through {plates} {'plates' if plates > 1 else 'plate'} of {index} at {degrees:.6g} degrees",
                 "(1 - r) / (1 + (2 m - 1) r), of s and of p",
