@@ -6,7 +6,8 @@ use super::words::{in_number, percent};
 use crate::scene::{CausticsText, Scene};
 use crate::spectrum::Curve;
 use crate::trace::{
-    GatheredWorth, LightPass, MapPasses, Method, Transport, World, gathered_worth, photons_within, reached_places,
+    GatheredWorth, LightPass, MapPasses, Method, RAYS_OF_A_LOOK, Transport, World, gathered_worth, photons_within,
+    reached_places,
 };
 
 /// Most photons per camera sample: between 0.25 and 1 the error for the time hardly changes, where glass is seen
@@ -27,8 +28,7 @@ const RADIUS: f64 = 2.0;
 const OF_A_PASS: f64 = 32_768.0;
 /// Photons of a map that tells whether any are gathered, and what they are worth.
 const FEW: u64 = 4096;
-/// Fewer where they follow more rays than this, but never too few.
-const MOST_RAYS: f64 = (1 << 20) as f64;
+/// Fewer where they follow many rays, but never too few.
 const FEWEST_SENT: u64 = 512;
 
 /// The light pass with a map, if one is needed, and why.
@@ -66,7 +66,7 @@ pub(super) fn with_map(
     }
     let asked = |map| Some(LightPass { map: Some(map), ..pass.clone() });
     // A few photons tell whether any are gathered, however many the image will take.
-    let affordable = photons_within(&untaught.with_light_pass(asked(map)), MOST_RAYS).max(FEWEST_SENT);
+    let affordable = photons_within(&untaught.with_light_pass(asked(map)), RAYS_OF_A_LOOK as f64).max(FEWEST_SENT);
     let few = MapPasses { photons: map.photons.min(FEW).min(affordable), ..map };
     let with_few = untaught.with_light_pass(asked(few));
     let Some(worth) = gathered_worth(&with_few, &places) else { return as_shown() };

@@ -40,6 +40,7 @@ mod first_lobe;
 mod guide;
 mod image;
 mod layers;
+mod look;
 mod media;
 mod method;
 mod parallel;
@@ -64,6 +65,7 @@ pub use image::{
     Advance, AlphaNoise, Blur, FIRST_LOOK, Noise, Outlier, PhotonCost, RareLight, Rendering, Report, Restored, Stopped,
     TileNoise, bytes_of_film, piloted, render, seen_photons,
 };
+pub use look::RAYS_OF_A_LOOK;
 pub use media::MOST_MEDIA;
 pub use method::{LightPass, MapPasses, Method, Polarizing, Stop, Transport};
 pub use path_start::Sunlit;

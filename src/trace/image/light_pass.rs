@@ -21,7 +21,7 @@ use crate::trace::stats::Stats;
 use crate::trace::walk::{Polarization, Polarized};
 use crate::trace::watch::Watch;
 use crate::trace::width::in_lanes;
-use crate::trace::{LightPass, World};
+use crate::trace::{LightPass, RAYS_OF_A_LOOK, World};
 
 /// Batches whose splats are kept in memory at once.
 const AT_ONCE: usize = 64;
@@ -35,13 +35,12 @@ const AHEAD: u64 = 8;
 const TOO_FEW: u64 = 4096;
 const ENOUGH: u64 = 1 << 16;
 /// Photons of all targets that the plan sends ahead, as many whatever the image is: no more than these, and than follow
-/// so many rays, if those are not too few to tell; and of all targets those that tell which are seen.
+/// the rays of a look, if those are not too few to tell; and of all targets those that tell which are seen.
 const OF_A_PLAN: u64 = 1 << 16;
-const RAYS_OF_A_PLAN: f64 = (1 << 17) as f64;
 const SEEN_OF_A_PLAN: u64 = 1 << 16;
-/// Most rays that a plan follows to learn where to send photons, and as many to tell which are seen: each takes about
-/// half a second. Photons in a heap of glass balls follow a hundred rays each.
-const MOST_RAYS: f64 = (1 << 20) as f64;
+/// Most rays that a plan follows to learn where to send photons, which takes some, and most to tell which are seen.
+/// Photons in a heap of glass balls follow a hundred rays each.
+const MOST_RAYS: f64 = (4 * RAYS_OF_A_LOOK) as f64;
 /// Photons of all targets that tell how many rays one follows.
 const FIRST: u64 = 256;
 
@@ -258,13 +257,17 @@ pub fn seen_photons(world: &World) -> Vec<f64> {
 /// A world with another light pass and photons sent ahead, for a plan: no more of them for an image of many pixels than
 /// for one of few, and none where enough to learn from would follow too many rays.
 pub fn piloted(world: &World, light_pass: LightPass) -> World {
-    let mut world = world.with_light_pass(Some(light_pass));
+    let world = world.with_light_pass(Some(light_pass));
+    in_lanes!(&world.method.basis, N => taught::<N>(world))
+}
+
+fn taught<const N: usize>(mut world: World) -> World {
     let targets = world.photon_targets.as_ref().map_or(1, |targets| targets.targets.len() as u64);
     let most = OF_A_PLAN / targets;
     if most >= TOO_FEW {
-        let first = in_lanes!(&world.method.basis, N => send_ahead::<N>(&world, 0..first_of_each(&world)));
+        let first = send_ahead::<N>(&world, 0..first_of_each(&world));
         if first.each_within(MOST_RAYS) >= TOO_FEW {
-            learn_where_to_send(&mut world, first.each_within(RAYS_OF_A_PLAN).clamp(TOO_FEW, most));
+            teach::<N>(&mut world, first.each_within(RAYS_OF_A_LOOK as f64).clamp(TOO_FEW, most));
         }
     }
     world
@@ -272,6 +275,10 @@ pub fn piloted(world: &World, light_pass: LightPass) -> World {
 
 /// Sends photons ahead, at most so many of a target, and the others where those were seen.
 pub fn learn_where_to_send(world: &mut World, most: u64) {
+    in_lanes!(&world.method.basis, N => teach::<N>(world, most));
+}
+
+fn teach<const N: usize>(world: &mut World, most: u64) {
     let Some(least) = world
         .photon_targets
         .as_ref()
@@ -281,7 +288,7 @@ pub fn learn_where_to_send(world: &mut World, most: u64) {
     };
     let ahead = least.min(ENOUGH).min(most);
     if ahead >= TOO_FEW {
-        let found = in_lanes!(&world.method.basis, N => send_ahead::<N>(world, 0..ahead)).found;
+        let found = send_ahead::<N>(world, 0..ahead).found;
         if let Some(targets) = &mut world.photon_targets {
             targets.learn(&found);
         }
@@ -331,8 +338,7 @@ mod tests {
         let photons = |world: &World| -> Vec<u64> {
             world.photon_targets.iter().flat_map(|targets| &targets.targets).map(|target| target.photons).collect()
         };
-        let pass = world.method.light_pass.clone().expect("it was asked for");
-        assert_eq!(photons(&piloted(&world, pass)), photons(&world));
+        assert_eq!(photons(&taught::<4>(world.clone())), photons(&world));
     }
 
     /// Each pane of a stack mirrors a twelfth of the light: of 30, a photon that was followed both ways at every one

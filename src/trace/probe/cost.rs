@@ -14,7 +14,7 @@ use crate::trace::photon_targets::PhotonTargets;
 use crate::trace::stats::Stats;
 use crate::trace::walk::{Polarization, Polarized};
 use crate::trace::width::{in_lanes, in_lanes_of};
-use crate::trace::{LightPass, MapPasses, World};
+use crate::trace::{LightPass, MapPasses, RAYS_OF_A_LOOK, World};
 
 /// What a probe found, per camera sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,9 +60,8 @@ const SLOW: f64 = 2.0;
 /// Photons that are timed together, and how often.
 const FEW: u64 = 64;
 const TIMES: u64 = 64;
-/// Most photons of the map that is gathered from, and most rays that they follow, about.
+/// Most photons of the map that is gathered from.
 const GATHERED: u64 = 4096;
-const MOST_RAYS: f64 = (1 << 18) as f64;
 /// Time after which the probe has seen enough.
 const ENOUGH: Duration = Duration::from_millis(300);
 
@@ -138,7 +137,7 @@ fn undisturbed(batches: Vec<Timed>, mut again: impl FnMut(usize) -> Timed) -> Du
 
 /// A world whose map has few photons, of which as many are gathered around a place as of all, and its map.
 pub fn few_photons<const N: usize, P: Polarization<N>>(world: &World) -> (World, Option<PhotonMap<N, P>>) {
-    let most = photons_within(world, MOST_RAYS).clamp(FEW, GATHERED);
+    let most = photons_within(world, RAYS_OF_A_LOOK as f64).clamp(FEW, GATHERED);
     let fewer = |map: MapPasses| {
         let photons = map.photons.min(most);
         MapPasses { photons, radius: map.radius * (map.photons as f64 / photons as f64).sqrt(), ..map }
@@ -199,27 +198,6 @@ fn photon_time(targets: &PhotonTargets, seed: u64, send: &dyn Fn(&PhotonTargets,
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Scene;
-    use crate::spectrum::{Basis, ColorSpace};
-    use crate::trace::{Method, Transport};
-
-    #[test]
-    fn photons_that_meet_a_mirror_and_a_floor_follow_two_rays() {
-        let text = "[camera]\nposition = [0, -9, 4]\nlook_at = [0, 0, 0]\nvertical_fov = 40\n\
-                    [film]\nwidth = 64\nheight = 48\n\
-                    [material.mirror]\nmirror = { reflectance = 1 }\n[material.floor]\ndiffuse = { reflectance = 0.5 }\n\
-                    [[object]]\nmaterial = \"floor\"\nshape.quad = { center = [0, 0, 0], u = [9, 0, 0], v = [0, 9, 0] }\n\
-                    [[object]]\nmaterial = \"mirror\"\nshape.quad = { center = [0, 0, 4], u = [0, 1, 0], v = [1, 0, 0] }\n\
-                    [[light]]\nspot = { position = [0, 0, 2], toward = [0, 0, 1], cone_angle = 20, intensity = 9 }\n";
-        let scene = Scene::parse(text, ".").expect("it is a scene");
-        let transport = Transport::Random { split: 0.05, roulette: 0.05 };
-        let method = Method::of_paths(Basis::rgb(ColorSpace::Rec709), transport, 0);
-        let pass = LightPass { photons: 1 << 20, lights: vec![0], map: None };
-        let world = World::new(&scene, method).with_light_pass(Some(pass));
-        // Those that are sent beside the spot's cone follow none.
-        let photons = photons_within(&world, 4096.0);
-        assert!((2048..2300).contains(&photons), "{photons}");
-    }
 
     #[test]
     fn photons_count_as_the_samples_that_take_as_long_and_one_at_least() {

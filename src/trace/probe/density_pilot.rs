@@ -5,13 +5,13 @@ use std::ops::Range;
 use super::cost::few_photons;
 use super::pilot_noise::{DARK, LOOKING};
 use crate::math::Sampler;
-use crate::trace::World;
 use crate::trace::camera::PathTracer;
 use crate::trace::density::SampleDensity;
 use crate::trace::parallel::in_parallel;
 use crate::trace::photon::{LightPaths, LightVertices, PhotonMap};
 use crate::trace::walk::Polarization;
 use crate::trace::width::in_lanes_of;
+use crate::trace::{RAYS_OF_A_LOOK, World};
 
 /// What adaptive sampling is worth.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,9 +34,10 @@ const OF_A_CELL: f64 = (PIXELS * LOOKS * SAMPLES) as f64;
 /// them may go on from it.
 const PIXELS_OF_A_CELL: f64 = 32.0;
 const MOST_CELLS: f64 = 4096.0;
-/// Cells that tell how many rays a cell takes, and most rays that all take, about.
+/// Cells that tell how many rays a cell takes, and as how many other looks all take: with half of it, an equal error
+/// took `scenes/prism.toml` 1.18 times as long.
 const FEW_CELLS: f64 = 16.0;
-const MOST_RAYS: f64 = (1 << 19) as f64;
+const AS_MANY_LOOKS: f64 = 4.0;
 /// Cells to each side that tell the noise of a cell.
 const AROUND: i64 = 2;
 /// What all that belongs to a sample takes in rays of a path.
@@ -99,7 +100,7 @@ fn look<const N: usize, P: Polarization<N>>(world: &World, cells: &dyn Fn(f64) -
     };
     let (_, found) = look(FEW_CELLS);
     let rays = found.iter().map(|found| found.rays).sum::<f64>() / found.len() as f64;
-    look((MOST_RAYS / rays).clamp(FEW_CELLS, MOST_CELLS))
+    look((AS_MANY_LOOKS * RAYS_OF_A_LOOK as f64 / rays).clamp(FEW_CELLS, MOST_CELLS))
 }
 
 fn look_at_row<const N: usize, P: Polarization<N>>(
@@ -215,41 +216,4 @@ fn worth(powers: &[i8], found: &[Cell]) -> [f64; 2] {
     let before: f64 = found.iter().map(|cell| cell.variance).sum();
     let after: f64 = found.iter().zip(powers).map(|(cell, &power)| cell.variance / SampleDensity::times(power)).sum();
     [before / (rays * after), rays]
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::scene::Scene;
-    use crate::spectrum::{Basis, ColorSpace};
-    use crate::trace::{Method, Transport};
-
-    #[test]
-    fn fewer_cells_are_looked_at_where_samples_follow_many_rays() {
-        let cells = |panes: u32| {
-            let mut text = String::from(
-                "[camera]\nposition = [0, -9, 0]\nlook_at = [0, 0, 0]\nvertical_fov = 40\n\
-                 [film]\nwidth = 1024\nheight = 768\n[material.glass]\nthin = { index = 1.8 }\n\
-                 [material.wall]\ndiffuse = { reflectance = 0.5 }\n[material.lamp]\nemissive = { radiance = 1 }\n\
-                 [[object]]\nmaterial = \"lamp\"\nshape.sphere = { center = [0, 0, 20], radius = 1 }\n\
-                 [[object]]\nmaterial = \"wall\"\nshape.quad = { center = [0, 9, 0], u = [20, 0, 0], v = [0, 0, 20] }\n",
-            );
-            for pane in 0..panes {
-                text += &format!(
-                    "[[object]]\nmaterial = \"glass\"\n\
-                     shape.quad = {{ center = [0, {}, 0], u = [9, 0, 0], v = [0, 0, 9] }}\n",
-                    0.1 * f64::from(pane)
-                );
-            }
-            let scene = Scene::parse(&text, ".").expect("it is a scene");
-            let transport = Transport::Random { split: 0.05, roulette: 0.05 };
-            let world = World::new(&scene, Method::of_paths(Basis::rgb(ColorSpace::Rec709), transport, 0));
-            let [columns, rows] = adaptive(&world, false).expect("there is noise").density.cells;
-            columns * rows
-        };
-        let most = MOST_CELLS as u32;
-        assert!((most - most / 32..=most).contains(&cells(1)), "{}", cells(1));
-        let few = cells(60);
-        assert!(few < most / 2 && few > FEW_CELLS as u32, "{few}");
-    }
 }

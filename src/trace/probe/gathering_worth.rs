@@ -2,17 +2,17 @@
 
 use std::cell::Cell;
 
-use super::pilot::{RAYS, SampleWorth};
+use super::pilot::SampleWorth;
 use super::reach::reaches_photons;
 use crate::math::{DVec3, Sampler};
 use crate::spectrum::apply;
-use crate::trace::World;
 use crate::trace::camera::{Observer, PathTracer};
 use crate::trace::contribution::{Contribution, Found, add};
 use crate::trace::pass::Pass;
 use crate::trace::photon::photons;
 use crate::trace::walk::Polarized;
 use crate::trace::width::in_lanes;
+use crate::trace::{RAYS_OF_A_LOOK, World};
 
 /// What a map's photons add to the noise, and the camera samples that gather them.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -109,7 +109,7 @@ fn gather<const N: usize>(world: &World, reached: &[DVec3]) -> Option<GatheredWo
             let mean = std::array::from_fn(|i| (gathered[i] - before[i]) / f64::from(SAMPLES));
             by_photons[place].add(apply(&to_xyz, mean));
             looked_at += 1;
-            if map == 0 && tracer.walker.stats.rays > RAYS {
+            if map == 0 && tracer.walker.stats.rays > RAYS_OF_A_LOOK {
                 break;
             }
         }

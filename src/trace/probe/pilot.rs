@@ -6,11 +6,11 @@ use crate::light::LightId;
 use crate::math::Sampler;
 use crate::scene::FilmSettings;
 use crate::spectrum::apply;
-use crate::trace::World;
 use crate::trace::camera::PathTracer;
 use crate::trace::image::light_pass;
 use crate::trace::walk::Polarized;
 use crate::trace::width::in_lanes;
+use crate::trace::{RAYS_OF_A_LOOK, World};
 
 /// What one light's photons bring to the whole image, or those of several.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,8 +49,6 @@ pub struct SampleWorth {
 const PHOTONS: u64 = 4096;
 const ALL: u64 = 4 * PHOTONS;
 const IMAGES: u64 = 4;
-/// Rays that the photons of all images follow, about, and those that samples do.
-pub(super) const RAYS: u64 = 1 << 18;
 /// Cells along each side of the format. Samples of the pixel in the middle of each are compared, and how many of it.
 pub(super) const SIDE: u32 = 24;
 const SAMPLES: u32 = 4;
@@ -70,7 +68,7 @@ fn weigh_photons<const N: usize>(whole: &World) -> Vec<PhotonWorth> {
     world.scene.film = world.scene.film.of_the_format();
     let groups = whole.photon_light_groups();
     let photons = (ALL / groups.len().max(1) as u64).min(PHOTONS);
-    let affordable = photons_within(&world, RAYS as f64 / (IMAGES * groups.len().max(1) as u64) as f64);
+    let affordable = photons_within(&world, RAYS_OF_A_LOOK as f64 / (IMAGES * groups.len().max(1) as u64) as f64);
     let photons = photons.min(affordable);
     groups.into_iter().filter_map(|lights| weigh::<N>(whole, &mut world, lights, photons)).collect()
 }
@@ -170,7 +168,7 @@ fn weigh_samples<const N: usize>(world: &World) -> SampleWorth {
             variance += squares.sum::<f64>() / (count - 1.0);
         }
         variances.push(variance);
-        if tracer.walker.stats.rays > RAYS {
+        if tracer.walker.stats.rays > RAYS_OF_A_LOOK {
             break;
         }
     }

@@ -6,14 +6,14 @@
 //! C_p) + sum sqrt(B_i C_i))^2. Rays followed stand for time, so that the answer is the same everywhere.
 
 use super::cost::few_photons;
-use super::pilot::{PhotonWorth, RAYS, SIDE, cell_of};
+use super::pilot::{PhotonWorth, SIDE, cell_of};
 use crate::math::Sampler;
 use crate::spectrum::apply;
-use crate::trace::World;
 use crate::trace::camera::PathTracer;
 use crate::trace::photon::{LightPaths, LightVertices, PhotonMap};
 use crate::trace::walk::Polarized;
 use crate::trace::width::in_lanes;
+use crate::trace::{RAYS_OF_A_LOOK, World};
 
 /// Samples of a pixel in the middle of each cell of the format.
 const SAMPLES: u32 = 8;
@@ -85,7 +85,7 @@ fn weigh<const N: usize>(
         let squares = taken.iter().map(|light| (light - mean) * (light - mean));
         let cell = cell_of(film, [x, y].map(|place| place as u32));
         pixels.push(Pixel { mean, variance: squares.sum::<f64>() / (count - 1.0), cell });
-        if tracer.walker.stats.rays > RAYS {
+        if tracer.walker.stats.rays > RAYS_OF_A_LOOK {
             break;
         }
     }

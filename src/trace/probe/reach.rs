@@ -3,10 +3,10 @@
 use std::cell::RefCell;
 
 use crate::math::{DVec3, Sampler};
-use crate::trace::World;
 use crate::trace::camera::{Observer, PathTracer};
 use crate::trace::photon::PhotonMap;
 use crate::trace::width::in_lanes;
+use crate::trace::{RAYS_OF_A_LOOK, World};
 
 /// Camera samples along each side of the image that look where the camera's paths lead.
 const SIDE: u32 = 24;
@@ -23,9 +23,11 @@ fn look<const N: usize>(world: &World) -> Vec<DVec3> {
     let film = world.scene.film;
     let reached = Reached::default();
     let mut tracer = PathTracer::<N>::new(world).with_observer(&reached);
-    for place in 0..SIDE * SIDE {
-        let [x, y] = film.whole().middle_of_cell(SIDE, place);
+    for (place, [x, y]) in (0..).zip(film.whole().middles_of_cells(SIDE)) {
         tracer.sample(&Sampler::of_pixel(world.method.seed ^ LOOKING, [x, y], place), [x, y]);
+        if tracer.walker.stats.rays > RAYS_OF_A_LOOK {
+            break;
+        }
     }
     reached.0.into_inner()
 }

@@ -10,16 +10,14 @@ use crate::trace::pass::Pass;
 use crate::trace::photon::photon_map;
 use crate::trace::walk::{Polarization, Polarized};
 use crate::trace::width::in_lanes;
-use crate::trace::{LightPass, MapPasses, World};
+use crate::trace::{LightPass, MapPasses, RAYS_OF_A_LOOK, World};
 
 /// Camera samples along each side of the image.
 pub const SIDE: u32 = 24;
 /// Parts of the view along each side.
 const PARTS: u32 = 6;
-/// Most photons that are shown, and most that are gathered; fewer where they follow more rays than this, but never too
-/// few.
+/// Most photons that are shown, and most that are gathered; and the fewest, however many rays they follow.
 const MOST: u64 = 2048;
-const MOST_RAYS: f64 = (1 << 19) as f64;
 const FEWEST: u64 = 256;
 
 /// Light that was seen, X + Y + Z summed, and by how much polarization may change it.
@@ -53,7 +51,7 @@ pub fn seen_light(world: &World) -> SeenLight {
 
 /// The world with fewer photons than its method asks for.
 pub fn with_fewer_photons(world: &World) -> World {
-    let most = photons_within(world, MOST_RAYS).clamp(FEWEST, MOST);
+    let most = photons_within(world, RAYS_OF_A_LOOK as f64).clamp(FEWEST, MOST);
     let fewer = |pass: &LightPass| LightPass {
         photons: pass.photons.min(most),
         map: pass.map.map(|map| MapPasses { photons: map.photons.min(most), ..map }),
@@ -80,8 +78,8 @@ pub struct Amount {
 }
 
 /// Hands over the light of one or two copies of the view, which know nothing of each other: the pixel, counted from the
-/// window's corner, the copy, and what of it a sample found, one in each of [`SIDE`] x [`SIDE`] cells, or photons bring
-/// to as many.
+/// window's corner, the copy, and what of it a sample found, one in each of [`SIDE`] x [`SIDE`] cells as far as there
+/// are rays for them, or photons bring to as many.
 pub fn for_each_light<const N: usize, P: Polarization<N>>(
     world: &World,
     copies: usize,
@@ -90,16 +88,22 @@ pub fn for_each_light<const N: usize, P: Polarization<N>>(
     let window = world.scene.film.window();
     let photons = photon_map::photons::<N, P>(world, &Pass::of_photons_alone(world, 0));
     let mut tracer = PathTracer::<N, P>::new(world).with_photons(photons.as_ref());
-    for (place, copy) in (0..SIDE * SIDE).flat_map(|place| (0..copies).map(move |copy| (place, copy))) {
-        let [x, y] = window.middle_of_cell(SIDE, place);
-        let before = tracer.walker.stats;
-        tracer.sample(&Sampler::of_pixel(world.method.seed.wrapping_add(copy as u64), [x, y], 0), [x, y]);
-        let after = tracer.walker.stats;
-        let found = Amount { light: after.light - before.light, change: after.polarization - before.polarization };
-        take([(x - window.left) as u32, (y - window.top) as u32], copy, found);
+    let mut samples = 0;
+    for [x, y] in window.middles_of_cells(SIDE) {
+        for copy in 0..copies {
+            let before = tracer.walker.stats;
+            tracer.sample(&Sampler::of_pixel(world.method.seed.wrapping_add(copy as u64), [x, y], 0), [x, y]);
+            let after = tracer.walker.stats;
+            let found = Amount { light: after.light - before.light, change: after.polarization - before.polarization };
+            take([(x - window.left) as u32, (y - window.top) as u32], copy, found);
+            samples += 1;
+        }
+        if tracer.walker.stats.rays > RAYS_OF_A_LOOK {
+            break;
+        }
     }
     // Photons light all pixels, of which so many were looked at.
-    let looked_at = copies as f64 * f64::from(SIDE * SIDE) / window.pixels() as f64;
+    let looked_at = f64::from(samples) / window.pixels() as f64;
     splats::<N, P>(world, &mut |splat| {
         let light = looked_at * world.amount(splat.rgb);
         let pixel = [splat.pixel % window.width, splat.pixel / window.width];
