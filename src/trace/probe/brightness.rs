@@ -9,7 +9,7 @@ use crate::trace::bright::{BrightPlace, BrightPlaces, MOST};
 use crate::trace::camera::{Bounce, Observer, PathTracer};
 use crate::trace::photon::LightPaths;
 use crate::trace::width::in_lanes;
-use crate::trace::{Transport, World};
+use crate::trace::{RAYS_OF_A_LOOK, Transport, World};
 
 /// Camera samples along each side of the image: few that look for a room, and those that look what lights it.
 const FEW: u32 = 24;
@@ -45,16 +45,18 @@ fn places<const N: usize>(world: &World) -> Option<BrightPlaces> {
     learned(inside_of(world, bounces::<N>(world, SIDE))?)
 }
 
-/// What the bounces of so many camera samples along each side of the image found.
+/// What the bounces of so many camera samples along each side of the image found, as far as there are rays for them.
 pub(super) fn bounces<const N: usize>(world: &World, side: u32) -> Vec<Bounce> {
     let film = world.scene.film;
     let found = Bounces::default();
     let vertices = LightPaths::new(world, world.method.seed).map(|light_paths| light_paths.few::<N>());
     let mut tracer = PathTracer::<N>::new(world).with_observer(&found);
     tracer.light_vertices = vertices.as_ref();
-    for place in 0..side * side {
-        let [x, y] = film.whole().middle_of_cell(side, place);
+    for (place, [x, y]) in (0..).zip(film.whole().middles_of_cells(side)) {
         tracer.sample(&Sampler::of_pixel(world.method.seed ^ SEED, [x, y], place), [x, y]);
+        if tracer.walker.stats.rays > RAYS_OF_A_LOOK {
+            break;
+        }
     }
     found.0.into_inner()
 }
