@@ -38,8 +38,8 @@ const ENOUGH: u64 = 1 << 16;
 /// the rays of a look, if those are not too few to tell; and of all targets those that tell which are seen.
 const OF_A_PLAN: u64 = 1 << 16;
 const SEEN_OF_A_PLAN: u64 = 1 << 16;
-/// Most rays that a plan follows to learn where to send photons, which takes some, and most to tell which are seen.
-/// Photons in a heap of glass balls follow a hundred rays each.
+/// Most rays that a plan follows to learn where to send photons, and as many to tell which are seen. A photon in a heap
+/// of glass balls follows a hundred.
 const MOST_RAYS: f64 = (4 * RAYS_OF_A_LOOK) as f64;
 /// Photons of all targets that tell how many rays one follows.
 const FIRST: u64 = 256;
