@@ -56,8 +56,9 @@ fn the_plan_asks_for_more_samples_where_the_noise_is() {
 #[test]
 fn fewer_cells_are_looked_at_where_samples_follow_many_rays() {
     let cells = |panes: u32| {
-        let pane =
-            |pane: u32| format!("quad = {{ center = [0, 0.6, {}], u = [9, 0, 0], v = [0, 9, 0] }}", 0.1 * pane as f64);
+        let pane = |pane: u32| {
+            format!("quad = {{ center = [0, 0.6, {}], u = [9, 0, 0], v = [0, 9, 0] }}", 0.1 * f64::from(pane))
+        };
         let panes: Vec<String> = (0..panes).map(pane).collect();
         let panes: Vec<&str> = panes.iter().map(String::as_str).collect();
         let text = large_view([1024, 768])

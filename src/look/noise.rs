@@ -122,42 +122,37 @@ impl Noise {
         let rounding = noisy[0].rounding.max(noisy[1].rounding);
         let same = |a: f64, b: f64| (a - b).abs() <= rounding * a.abs().max(b.abs());
         let (channels, [columns, rows]) = (noisy[0].colors.len(), noisy[0].size);
-        let compared = || (0..columns * rows).filter(|pixel| !is_left_out(*pixel));
-        let values = |channel: usize, pixel: usize| noisy.map(|noisy| noisy.colors[channel].at(pixel));
-        let told = |channel: usize, pixel: usize| noisy.map(|noisy| noisy.variance(channel, pixel)).iter().sum::<f64>();
-        let (mut means, mut tests) = (Vec::new(), channels);
+        let (mut all, mut tests) = (Vec::new(), channels);
+        let mut found = Self { threshold: 0.0, worst: 0.0, at: [0; 2], beyond: 0, changed: 0, means: Vec::new() };
         for channel in 0..channels {
             let (mut sums, mut variance) = ([0.0; 2], 0.0);
-            for pixel in compared() {
-                let ([a, b], both) = (values(channel, pixel), told(channel, pixel));
+            for pixel in (0..columns * rows).filter(|pixel| !is_left_out(*pixel)) {
+                let [a, b] = noisy.map(|noisy| noisy.colors[channel].at(pixel));
+                let variances = noisy.map(|noisy| noisy.variance(channel, pixel));
+                let both = variances[0] + variances[1];
                 (sums, variance) = ([sums[0] + a, sums[1] + b], variance + both);
                 tests += usize::from(both > 0.0);
+                if same(a, b) {
+                    continue;
+                }
+                let variances = noisy.map(|noisy| noisy.variance_beside_neighbors(channel, pixel));
+                let both = variances[0] + variances[1];
+                if both == 0.0 {
+                    found.changed += 1;
+                    continue;
+                }
+                let freedom = freedom(variances, noisy.map(|noisy| noisy.freedom(pixel)));
+                let z = normal_equivalent((a - b) / both.sqrt(), freedom);
+                all.push(z);
+                if z.abs() > found.worst.abs() {
+                    (found.worst, found.at) = (z, [pixel, channel]);
+                }
             }
             let [a, b] = sums;
-            means.push(if same(a, b) || variance == 0.0 { 0.0 } else { (a - b) / variance.sqrt() });
+            found.means.push(if same(a, b) || variance == 0.0 { 0.0 } else { (a - b) / variance.sqrt() });
         }
-        let threshold = sidak_threshold(tests, FAMILY);
-        let mut found = Self { threshold, worst: 0.0, at: [0; 2], beyond: 0, changed: 0, means };
-        for (channel, pixel) in (0..channels).flat_map(|channel| compared().map(move |pixel| (channel, pixel))) {
-            let [a, b] = values(channel, pixel);
-            // Neighbors can only make the variance larger, and few samples z smaller.
-            let at_most = (a - b).abs() / told(channel, pixel).sqrt();
-            if same(a, b) || at_most <= threshold.min(found.worst.abs()) {
-                continue;
-            }
-            let variances = noisy.map(|noisy| noisy.variance_beside_neighbors(channel, pixel));
-            let both = variances[0] + variances[1];
-            if both == 0.0 {
-                found.changed += 1;
-                continue;
-            }
-            let freedom = freedom(variances, noisy.map(|noisy| noisy.freedom(pixel)));
-            let z = normal_equivalent((a - b) / both.sqrt(), freedom);
-            found.beyond += usize::from(z.abs() > threshold);
-            if z.abs() > found.worst.abs() {
-                (found.worst, found.at) = (z, [pixel, channel]);
-            }
-        }
+        found.threshold = sidak_threshold(tests, FAMILY);
+        found.beyond = all.iter().filter(|z| z.abs() > found.threshold).count();
         found
     }
 

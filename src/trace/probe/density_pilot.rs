@@ -34,8 +34,8 @@ const OF_A_CELL: f64 = (PIXELS * LOOKS * SAMPLES) as f64;
 /// them may go on from it.
 const PIXELS_OF_A_CELL: f64 = 32.0;
 const MOST_CELLS: f64 = 4096.0;
-/// Cells that tell how many rays a cell takes, and as how many other looks all take: with half of it, an equal error
-/// took `scenes/prism.toml` 1.18 times as long.
+/// Cells that tell how many rays a cell takes, and as how many other looks all take: with half of it,
+/// `scenes/prism.toml` took 1.18 times as many rays to an equal error.
 const FEW_CELLS: f64 = 16.0;
 const AS_MANY_LOOKS: f64 = 4.0;
 /// Cells to each side that tell the noise of a cell.
