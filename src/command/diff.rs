@@ -15,6 +15,8 @@ const HELP: &str = "\
 Files with a variance layer agree if they differ by no more than their noise: if every z = (a - b) / sqrt(va + vb), \
 and that of each channel's mean, is within what chance exceeds in one of a hundred pairs of images. \
 Other files agree if all values are equal, or relMSE is at most --tolerance. \
+Images that are equal do not agree if a layer that both files have is not, such as Z; \
+nor does alpha that is 0 in one and 1 in the other more often than chance makes it so. \
 Of a crop beside its image, the pixels that both have are compared.
 
 Examples:
@@ -80,7 +82,7 @@ fn compared(query: &Query) -> Result<bool> {
         let (lines, [width, height], [x, y]) = (&mut lines[0], found.bounds.size, found.bounds.corner);
         lines.push_str(&format!(" in the {width} x {height} pixels at ({x}, {y}) that both have"));
     }
-    lines[0].push_str(if found.is_equal { ": all values are equal" } else { "" });
+    lines[0].push_str(&of_equal(&found));
     let gathers = files.iter().any(|file| file.attribute("render/photonRadius").is_some());
     lines.extend(figures(&found, query.tolerance, gathers));
     if let Some(png) = &query.png {
@@ -96,6 +98,19 @@ fn compared(query: &Query) -> Result<bool> {
     }
     answer_lines(&lines)?;
     Ok(agrees)
+}
+
+/// What is told of equal images.
+fn of_equal(found: &Difference) -> String {
+    match &*found.layers_apart {
+        _ if !found.is_equal => String::new(),
+        [] => ": all values are equal".into(),
+        [one] => format!(": the image is equal, the layer {one} is not; --layer {one} compares it"),
+        [one, ..] => {
+            let all = found.layers_apart.join(", ");
+            format!(": the image is equal, the layers {all} are not; --layer {one} compares one of them")
+        }
+    }
 }
 
 /// What is told of a difference; `gathers` says that an image has a photon map.
@@ -116,10 +131,12 @@ fn figures(found: &Difference, tolerance: Option<f64>, gathers: bool) -> Vec<Str
     }
     if let Some(alpha) = &found.alpha {
         let [largest, error] = [alpha.largest, alpha.relative_mse].map(number);
-        put(
-            "alpha",
-            format!("up to {largest} apart, relMSE {error}; of its noise nothing is known; --layer A compares it"),
-        );
+        let known = if alpha.contradicts() {
+            format!("{} pixels are empty in one and full in the other, more than chance makes", alpha.opposite)
+        } else {
+            "of its noise nothing is known".into()
+        };
+        put("alpha", format!("up to {largest} apart, relMSE {error}; {known}; --layer A compares it"));
     }
     if let Some(noise) = found.noise.as_ref().filter(|_| !found.is_equal) {
         put("z", of_noise(found, noise));

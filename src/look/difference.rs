@@ -1,7 +1,7 @@
 use palette::color_difference::Ciede2000;
 use palette::{FromColor, Lab, LinSrgb};
 
-use super::noise::{Noise, Noisy};
+use super::noise::{FAMILY, Noise, Noisy};
 use super::picture::{Picture, percentile, to_rec709};
 use super::tone::shown;
 use crate::error::{Error, Result};
@@ -25,6 +25,8 @@ pub struct Difference {
     pub channels: Vec<String>,
     /// Whether every value is the same; those that are no numbers are.
     pub is_equal: bool,
+    /// If all of both images is equal: the other layers of both files that are not.
+    pub layers_apart: Vec<String>,
     /// Pixels that are left out.
     pub left_out: usize,
     /// Those of them whose values differ: finite in one image only, or infinite with another sign.
@@ -54,6 +56,12 @@ pub struct AlphaDifference {
     pub largest: f64,
     /// The mean of (a - b)^2 / (b^2 + 0.01).
     pub relative_mse: f64,
+    /// Pixels that are empty in one image and full in the other.
+    pub opposite: usize,
+    /// How many of those chance makes at most, on the average; none if no file says how many samples were taken. If a
+    /// share p of a pixel is covered, n samples all miss that and n others all meet it in p^n (1 - p)^n of cases, at
+    /// most 1 / 4^n.
+    pub opposite_by_chance: Option<f64>,
 }
 
 /// CIEDE2000 (CIE 142:2001) of colors as a screen shows them: brought to Rec.709 and clipped to 0..1. The film's
@@ -105,8 +113,34 @@ pub fn compare(files: [&ExrFile; 2], layer: Option<&str>, shown: [&str; 2]) -> R
     {
         let finite = |at: usize| [&a, &b].iter().all(|channels| channels.iter().all(|one| one.at(at).is_finite()));
         found.noise = Some(Noise::new([&first, &second], |at| !finite(at)));
+        let fewest = |at: usize| Some(first.taken(at)?.min(second.taken(at)?));
+        let by_chance = |at: usize| Some(2.0 * libm::pow(0.25, fewest(at)?));
+        let by_chance = (0..found.absolute.len()).map(by_chance).sum();
+        found.alpha = found.alpha.map(|alpha| AlphaDifference { opposite_by_chance: by_chance, ..alpha });
+    }
+    if layer.is_none() && found.is_equal {
+        found.layers_apart = layers_apart(files);
     }
     Ok(found)
+}
+
+/// The layers of both files that have other values in the channels that both have.
+fn layers_apart(files: [&ExrFile; 2]) -> Vec<String> {
+    let [first, second] = files.map(ExrFile::layers);
+    let is_same = |a: f64, b: f64| a == b || a.is_nan() && b.is_nan();
+    let mut apart = Vec::new();
+    for a in &first {
+        let Some(b) = second.iter().find(|b| b.name == a.name && b.part.bounds == a.part.bounds) else { continue };
+        let [width, height] = a.part.bounds.size;
+        let is_apart = |one: &Channel| {
+            let other = b.channels.iter().find(|other| other.name == one.name);
+            other.is_some_and(|other| !(0..width * height).all(|at| is_same(one.at(at), other.at(at))))
+        };
+        if a.channels.iter().any(|one| is_apart(one)) {
+            apart.push(a.name.clone());
+        }
+    }
+    apart
 }
 
 /// Refuses images that do not show the same pixels in the same way.
@@ -149,6 +183,7 @@ fn measured([a, b]: [&[&Channel]; 2], bounds: PixelBounds) -> Difference {
         is_part: false,
         channels: a.iter().map(|channel| channel.name.clone()).collect(),
         is_equal: true,
+        layers_apart: Vec::new(),
         left_out: 0,
         torn: 0,
         relative_mse: 0.0,
@@ -202,7 +237,10 @@ fn alpha_difference(layers: &[ExrLayer; 2], bounds: PixelBounds) -> Option<Alpha
     let [a, b] = [alphas[0]?, alphas[1]?];
     let found = measured([&[a], &[b]], bounds);
     let largest = found.absolute.iter().copied().fold(0.0, f64::max);
-    (!found.is_equal).then_some(AlphaDifference { largest, relative_mse: found.relative_mse })
+    let is_opposite = |at: &usize| [[0.0, 1.0], [1.0, 0.0]].contains(&[a.at(*at), b.at(*at)]);
+    let opposite = (0..found.absolute.len()).filter(is_opposite).count();
+    let of_alpha = AlphaDifference { largest, relative_mse: found.relative_mse, opposite, opposite_by_chance: None };
+    (!found.is_equal).then_some(of_alpha)
 }
 
 fn color_difference(files: [&ExrFile; 2], colors: [&[&Channel]; 2], measured: &Difference) -> ColorDifference {
@@ -232,22 +270,34 @@ fn delta_e_2000(colors: [[f64; 3]; 2]) -> f64 {
     Ciede2000::difference(a, b)
 }
 
+impl AlphaDifference {
+    /// Whether chance makes so many pixels opposite in at most one of a hundred pairs of images: no number that is
+    /// never negative is a hundred times its mean more often (Markov's inequality).
+    pub fn contradicts(&self) -> bool {
+        self.opposite_by_chance.is_some_and(|by_chance| FAMILY * self.opposite as f64 > by_chance)
+    }
+}
+
 impl Difference {
-    /// Whether the images agree: equal values do; otherwise a tolerance of the relative mean squared error decides, if
-    /// there is one, or else whether both differ by more than their noise. Without either, what differs does not agree,
-    /// nor does alpha where nothing else differs: nobody knows its noise.
+    /// Whether the images agree: equal values do, unless other layers differ; otherwise a tolerance of the relative
+    /// mean squared error decides, if there is one, or else whether both differ by more than their noise. Without either,
+    /// what differs does not agree, nor does alpha where nothing else differs, as nobody knows its noise, or where more
+    /// pixels are empty in one image and full in the other than chance makes.
     pub fn agrees(&self, tolerance: Option<f64>) -> bool {
+        if self.is_equal {
+            return tolerance.is_some() || self.layers_apart.is_empty();
+        }
         let alpha_fits = match (&self.alpha, tolerance) {
             (None, _) => true,
             (Some(alpha), Some(tolerance)) => alpha.largest.is_finite() && alpha.relative_mse <= tolerance,
-            (Some(_), None) => self.relative_mse > 0.0,
+            (Some(alpha), None) => self.relative_mse > 0.0 && !alpha.contradicts(),
         };
         let within = match (tolerance, &self.noise) {
             (Some(tolerance), _) => self.relative_mse <= tolerance,
             (None, Some(noise)) => noise.agrees(),
             (None, None) => false,
         };
-        self.is_equal || within && alpha_fits && self.torn == 0
+        within && alpha_fits && self.torn == 0
     }
 
     /// The largest difference of each pixel as a gray picture, and the difference that is white in it: the 99th

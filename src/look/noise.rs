@@ -4,7 +4,7 @@ use super::significance::{normal_equivalent, sidak_threshold};
 use crate::film::{Channel, ExrFile, ExrLayer, TELL_VARIANCE};
 
 /// Probability with which two images of the same thing are said to differ.
-const FAMILY: f64 = 0.01;
+pub(super) const FAMILY: f64 = 0.01;
 /// Values so near to each other are the same but for rounding, whatever their variance; in half floats, so near.
 const ROUNDING: f64 = 1e-5;
 const ROUNDING_OF_HALF: f64 = 1.0 / 1024.0;
@@ -97,7 +97,7 @@ impl<'f> Noisy<'f> {
     }
 
     /// The samples of a pixel, or of each on the average, where the file says so.
-    fn taken(&self, pixel: usize) -> Option<f64> {
+    pub(super) fn taken(&self, pixel: usize) -> Option<f64> {
         self.samples.map(|samples| samples.at(pixel)).or(self.taken).filter(|taken| *taken >= 1.0)
     }
 
