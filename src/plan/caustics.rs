@@ -192,7 +192,7 @@ fn no_caustics(scene: &Scene<Curve>) -> Option<&'static str> {
     } else if scene.materials.iter().any(|named| named.material.is_diffuse()) {
         Some("with diffuse_bounces 0, diffuse surfaces are lit straight from the lights alone")
     } else {
-        Some("no surface is diffuse or rough, on which one could lie")
+        Some("there is no diffuse or rough surface to show one")
     }
 }
 

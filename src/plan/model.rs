@@ -1,12 +1,14 @@
 //! Which lanes carry the light, and whether they part.
 
+use std::cell::LazyCell;
+
 use super::candidates::{Candidate, LANES_SAFETY, bands_beside, candidates, error, own_lines};
 use super::dyes::spoken as spoken_dyes;
 use super::films::spoken as spoken_film;
 use super::seen::Seen;
 use super::survey::{SEED, Survey, disperses, tolerance};
 use super::words::percent;
-use crate::material::Material;
+use crate::material::{Dielectric, Material};
 use crate::scene::{ModelText, Scene};
 use crate::spectrum::{Basis, Curve, CurveKind, Dye, Emission, MAX_LANES, Quantity, provenance};
 use crate::trace::{COLORS_NM, Dispersion, Method, Transport, World, dispersion as measured_dispersion};
@@ -134,6 +136,7 @@ fn lines_without_lane(survey: &Survey, basis: &Basis) -> Option<String> {
     let lines = survey.lines(usize::MAX);
     let own = lines.iter().filter(|nm| basis.wavelengths_nm().contains(nm)).count();
     (own < lines.len()).then(|| match own {
+        0 if lines.len() == 1 => "the emission line is interpolated between the lanes".into(),
         0 => format!("{} emission lines are interpolated between the lanes", lines.len()),
         _ => format!(
             "of {} emission lines the {own} brightest have lanes of their own, the others are interpolated",
@@ -144,7 +147,13 @@ fn lines_without_lane(survey: &Survey, basis: &Basis) -> Option<String> {
 
 /// How far dispersive glass pulls colors apart; none if there is none.
 fn dispersion(scene: &Scene<Curve>) -> Option<Dispersion> {
-    scene.materials.iter().find(|m| m.material.medium().is_some_and(disperses))?;
+    let of_three =
+        |glass: &Dielectric<Curve>| matches!(glass.index.kind, CurveKind::Rgb([r, g, b]) if r != g || g != b);
+    // Under white light and paints of three numbers, three indices are all there is to know. Of other light, each
+    // wavelength has one index.
+    let is_plain = LazyCell::new(|| Survey::new(scene, true).is_plain());
+    let parts = |glass: &Dielectric<Curve>| disperses(glass) || of_three(glass) && !*is_plain;
+    scene.materials.iter().find(|m| m.material.medium().is_some_and(parts))?;
     let basis = Basis::wavelengths(scene.film.color_space, COLORS_NM.into(), &[]);
     let transport = Transport::Random { split: 1.0, roulette: 0.0 };
     let diffuse_bounces = scene.render.diffuse_bounces.unwrap_or(u32::MAX);

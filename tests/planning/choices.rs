@@ -64,10 +64,17 @@ fn dispersion_too_small_to_be_seen_is_not_modelled() {
     assert!(forced.method.basis.draws_wavelengths());
 }
 
+/// Three images of a white lamp are what three numbers say; of the light of one wavelength there is but one.
 #[test]
-fn an_rgb_index_never_asks_for_heroes() {
-    let plan = behind("{ rgb = [1.5, 1.55, 1.6] }", PRISM, RGB, "10", "");
-    assert_eq!(plan.method.basis.name(), "rgb");
+fn an_rgb_index_asks_for_heroes_under_light_that_is_not_white() {
+    let of = |light: &str| behind("{ rgb = [1.5, 1.55, 1.6] }", PRISM, RGB, light, "");
+    assert_eq!(of("10").method.basis.name(), "rgb");
+    for light in ["{ lines = [[587.56, 9]] }", "{ samples = [[586, 9], [589, 9]] }"] {
+        let plan = of(light);
+        assert!(plan.method.basis.draws_wavelengths(), "{light}: {:?}", plan.because);
+    }
+    let same = behind("{ rgb = [1.5, 1.5, 1.5] }", PRISM, RGB, "{ lines = [[587.56, 9]] }", "");
+    assert!(!same.method.basis.draws_wavelengths(), "{:?}", same.because);
 }
 
 #[test]

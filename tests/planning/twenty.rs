@@ -114,7 +114,7 @@ pub fn rooms() -> Vec<Room> {
         "a glass ball on a mirror under a point",
         on("mirror", &[&ball(), POINT]),
         false,
-        "no caustics: no surface is diffuse or rough, on which one could lie",
+        "no caustics: there is no diffuse or rough surface to show one",
     );
     room(
         "a glass ball where light leaves no diffuse surface",
