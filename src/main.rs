@@ -2,6 +2,7 @@
 
 mod command;
 
+use std::collections::HashSet;
 use std::io::IsTerminal;
 use std::path::Path;
 use std::process::ExitCode;
@@ -16,9 +17,10 @@ use command::cli::{self, Job, Jobs, Output, Request};
 use command::events::{Event, write_account};
 use command::keep::{self, Keep};
 use command::outputs::{check_outputs, check_standard, check_words, is_standard};
-use command::{catalog, diff, info, merge, messages, progress, view};
+use command::{catalog, diff, info, merge, messages, progress, signals, view};
 
 fn main() -> ExitCode {
+    signals::report_large_files();
     let answered = cli::parse().and_then(|request| match request {
         Request::Render(jobs) => run(&jobs),
         Request::Answer(text) => messages::answer(&text).map(|()| ExitCode::SUCCESS),
@@ -28,10 +30,11 @@ fn main() -> ExitCode {
         Request::Merge(query) => merge::run(&query).map(|()| ExitCode::SUCCESS),
         Request::Diff(query) => Ok(diff::run(&query)),
     });
-    answered.unwrap_or_else(|error| {
+    let code = answered.unwrap_or_else(|error| {
         messages::print_error(&error);
         ExitCode::from(error.exit_code())
-    })
+    });
+    if messages::has_lost_lines() && code == ExitCode::SUCCESS { ExitCode::FAILURE } else { code }
 }
 
 fn listed(lines: Result<Vec<String>>) -> Result<ExitCode> {
@@ -40,7 +43,7 @@ fn listed(lines: Result<Vec<String>>) -> Result<ExitCode> {
 
 /// Does one frame after another, until one is stopped.
 fn run(jobs: &Jobs) -> Result<ExitCode> {
-    let (mut read, count) = (None, jobs.count());
+    let (mut read, mut warned, count) = (None, HashSet::new(), jobs.count());
     for (number, job) in (1..=count).zip(jobs.each()) {
         let job = job?;
         let source = match &mut read {
@@ -51,7 +54,7 @@ fn run(jobs: &Jobs) -> Result<ExitCode> {
         if let Some(frame) = job.frame.filter(|_| count > 1) {
             messages::say(&format!("frame {frame}, {number} of {count}"));
         }
-        let code = do_one(&job, source)?;
+        let code = do_one(&job, source, &mut warned)?;
         if code != ExitCode::SUCCESS {
             return Ok(code);
         }
@@ -59,14 +62,16 @@ fn run(jobs: &Jobs) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn do_one(job: &Job, source: &Source) -> Result<ExitCode> {
+/// Does a frame. What was warned of in another one is not said again.
+fn do_one(job: &Job, source: &Source, warned: &mut HashSet<String>) -> Result<ExitCode> {
     let began = Instant::now();
     let mut scene = source.compile_with(&job.set)?;
     if let Output::Image { exr: None, .. } = job.output {
         scene.format.spectral = None;
     }
     job.options.apply(&mut scene)?;
-    scene.warnings.iter().for_each(|warning| messages::warn(warning));
+    let news = scene.warnings.iter().filter(|warning| warned.insert((*warning).clone()));
+    news.for_each(|warning| messages::warn(warning));
     match &job.output {
         Output::Check => {
             messages::print_checked(&source.path, scene.objects.len())?;

@@ -141,6 +141,9 @@ fn what_other_renderers_call_an_argument_is_refused_with_what_it_is_called_here(
         |word: &str, help: &str| assert_refuses(&[word, "ball.toml"], 2, &refusal(&format!("command `{word}`"), help));
     command("vew", "did you mean render view?");
     command("plan", "did you mean render --plan?");
+    let before = "error: the command info stands before all other arguments\n\
+                  help: write render info, and what belongs to it after that; render info --help tells it\n";
+    assert_refuses(&["--threads", "1", "info", "a.exr"], 2, before);
     for mark in ["####", "@@@", "$F4", "{frame}", "%s"] {
         let name = format!("f.{mark}.exr");
         let every = format!("error: {name} would be the name of every frame\nhelp: write %04d in place of {mark}\n");
@@ -207,6 +210,8 @@ fn numbers_on_the_command_line_are_checked() {
     is_refused("--layers", "N,albdo", "there is no layer `albdo`: did you mean albedo?");
     is_refused("--layers", "depth", "there is no layer `depth` (leave it out: Z is in every file)");
     is_refused("--layers", "N,normals", "there is no layer `normals` (normals are in N)");
+    let of_a_light = "there is no layer `light_key` (ask for lights: it brings one such layer for each light)";
+    is_refused("--layers", "light_key", of_a_light);
     let both = "there are no layers `albdo` (did you mean albedo?), `varianc` (did you mean variance?)";
     is_refused("--layers", "albdo,N,varianc", both);
     let frames = "frames are a whole number from 0 to 4294967295, or a range such as 1-24 or 1-24x2";

@@ -126,6 +126,14 @@ fn an_answer_that_cannot_be_written_is_a_failure() {
         assert_eq!((code, &*told), (Some(1), reason), "{question}");
         assert_eq!(shell(&folder, &format!("$RENDER {question} >/dev/full 2>/dev/full")).0, Some(1), "{question}");
     }
+    // An image is made and kept all the same.
+    for protocol in ["--json", "--progress openjd"] {
+        let (code, _, told) = shell(&folder, &format!("$RENDER --exr ball.toml {protocol} >/dev/full"));
+        let reason = "error: cannot write all there is to say to stdout: No space left on device (os error 28)\n";
+        assert!(code == Some(1) && told.ends_with(reason), "{protocol}: {told}");
+        assert!(is_image(&folder.path().join("ball.exr")), "{protocol}");
+        fs::remove_file(folder.path().join("ball.exr")).expect("it is there");
+    }
     // A program that listens there cannot be told why.
     for question in ["--json --plan ball.toml", "--json --check ball.toml"] {
         assert_eq!(shell(&folder, &format!("$RENDER {question} >/dev/full")).0, Some(1), "{question}");

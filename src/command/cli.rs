@@ -83,8 +83,8 @@ struct Arguments {
     plan: bool,
 
     /// With --plan, write the plan to this file; without, follow it, so that parts of an image need not plan each for
-    /// itself. It is of one scene and its options, and the image is the same. Where an error or a time is asked for,
-    /// parts have a plan of their own, which --shard with --plan makes
+    /// itself. It belongs to one scene with its options, and changes no image. Where the scene asks for an error or a
+    /// time, make it with --shard 1/N as well
     #[arg(long, value_name = "FILE.plan", conflicts_with = "check")]
     plan_file: Option<PathBuf>,
 
@@ -144,7 +144,7 @@ struct Arguments {
     crop: Option<Window>,
 
     /// Layers in the EXR beside the image, instead of the scene's: such as albedo,N,lights, or all, which leaves out
-    /// those of polarization. S1, S2 and S3 stay if film.stokes asks for them
+    /// those of polarization; "" for none. S1, S2 and S3 stay if film.stokes asks for them
     #[arg(long, value_name = "NAMES", value_parser = layers)]
     layers: Option<LayerList>,
 
@@ -210,6 +210,9 @@ fn crop(text: &str) -> std::result::Result<Window, String> {
 struct LayerList(Vec<Layer>);
 
 fn layers(text: &str) -> std::result::Result<LayerList, String> {
+    if text.trim().is_empty() {
+        return Ok(LayerList(Vec::new()));
+    }
     Layer::of_names(text.split(',').map(str::trim)).map(LayerList)
 }
 

@@ -1,6 +1,5 @@
 //! What is said with `--json`: an object a line. `tools/events.schema.json` tells all of their keys.
 
-use std::io::Write;
 use std::path::Path;
 use std::time::Duration;
 
@@ -10,6 +9,7 @@ use abbe::{Diagnostic, Error, Image, PlanAccount, RenderAccount, Result};
 use serde::Serialize;
 
 use super::problem::problem;
+use super::stdout::tell;
 
 /// Something that happened or was found out.
 #[derive(Serialize)]
@@ -89,9 +89,6 @@ impl<'e> Event<'e> {
 
     /// Says it on stdout. Where nobody listens the work goes on.
     pub fn tell(&self) {
-        if let Some(line) = self.line() {
-            let mut stdout = std::io::stdout().lock();
-            let _ = writeln!(stdout, "{line}").and_then(|()| stdout.flush());
-        }
+        self.line().iter().for_each(|line| tell(line));
     }
 }

@@ -3,18 +3,18 @@
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use abbe::film::Shard;
 use abbe::scene::duration;
 use abbe::{Advance, Error, ImageError, Rendering, Result, Resumed, Timer, is_checkpoint};
 use clap::Args;
 
-use super::hangup::kept_ignored;
 use super::messages::{say, say_last, so_far, warn};
 use super::outputs::refuse;
 use super::problem::problem;
 use super::progress::Progress;
+use super::signals::kept_ignored;
 
 /// What the command line says of it.
 #[derive(Args, Clone)]
@@ -24,8 +24,8 @@ pub struct Flags {
     #[arg(long, value_name = "TIME", allow_hyphen_values = true, value_parser = time)]
     checkpoint: Option<Duration>,
 
-    /// Go on from NAME.checkpoint, if it is there, to the same image; with more --samples than it has, to a better one.
-    /// It keeps one, too, every 60 s where --checkpoint does not say how often
+    /// Go on from NAME.checkpoint, if it is there, to the same image; with more --samples than it has, to a better one,
+    /// unless photons are gathered, whose number goes by the samples. It keeps one, too, every 60 s where --checkpoint does not say how often
     #[arg(long)]
     resume: bool,
 
@@ -287,13 +287,19 @@ impl Keep {
     }
 }
 
+/// Signals that come so soon after the first one are the same one: `timeout` sends it to a command, and again to all
+/// that the command belongs to.
+const ECHO: Duration = Duration::from_millis(500);
+
 /// Lets Ctrl-C stop the command, at once or after what is done is kept; a second one stops it at once.
 fn catch(stops_at_once: bool) -> std::result::Result<(), ctrlc::Error> {
+    let mut first = None;
     let stop = move || {
         if stops_at_once {
             say_last(NOTHING_KEPT, STOPPED_CODE);
         }
-        if STOPPED.swap(true, Ordering::Relaxed) {
+        let is_echo = first.get_or_insert_with(Instant::now).elapsed() < ECHO;
+        if STOPPED.swap(true, Ordering::Relaxed) && !is_echo {
             std::process::exit(STOPPED_CODE.into());
         }
     };

@@ -35,6 +35,9 @@ const ELSEWHERE: [(&str, &str); 12] = [
     ("--frames", "--frame 1-24"),
 ];
 
+/// How many of the commands are words of their own, not flags.
+const WORDS: usize = 7;
+
 /// Most letters that are wrong in a command.
 const WRONG: usize = 2;
 
@@ -49,7 +52,14 @@ pub fn meant(said: &clap::Error, words: &[OsString]) -> Option<(String, String)>
     }
     let first = words.get(1)?.to_str()?;
     if first.starts_with('-') || first.contains('.') {
-        return out_of_place(&given);
+        let command = COMMANDS[..WORDS].iter().find(|(command, _)| words.iter().any(|word| word == command));
+        return match command {
+            Some((command, whole)) => {
+                let help = format!("write {whole}, and what belongs to it after that; {whole} --help tells it");
+                Some((format!("the command {command} stands before all other arguments"), help))
+            }
+            None => out_of_place(&given),
+        };
     }
     let wrong = |command: &str| strsim::damerau_levenshtein(first, command);
     let (_, here) =

@@ -18,6 +18,7 @@ use clap::ValueEnum;
 use super::events::Event;
 use super::openjd;
 use super::problem::problem;
+use super::stdout;
 
 /// To whom it speaks.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -136,6 +137,13 @@ pub fn warn_of_clamped(format: &Format, clamped: u64) {
             "{clamped} {values} too bright for 16 bits and became 65504: precision = \"float\"{lossless} keeps {them}"
         ));
     }
+}
+
+/// Whether lines for the program that listens were lost, which is said on stderr.
+pub fn has_lost_lines() -> bool {
+    let lost = stdout::lost();
+    lost.iter().for_each(|why| print(&format!("error: cannot write all there is to say to stdout: {why}")));
+    lost.is_some()
 }
 
 /// What went wrong, where, and what to do.

@@ -2,7 +2,7 @@
 //!
 //! <https://github.com/OpenJobDescription/openjd-specifications/wiki/How-Jobs-Are-Run#stdoutstderr-messages>
 
-use std::io::Write;
+use super::stdout;
 
 /// How far the task is: a share of its work, from 0 to 1. Only all of it is 100 %.
 pub fn progress(share: f64) {
@@ -21,8 +21,7 @@ pub fn fail(words: &str) {
 
 /// Says it in one line. Where nobody listens the work goes on.
 fn tell(kind: &str, words: &str) {
-    let mut stdout = std::io::stdout().lock();
-    let _ = writeln!(stdout, "openjd_{kind}: {}", line(words)).and_then(|()| stdout.flush());
+    stdout::tell(&format!("openjd_{kind}: {}", line(words)));
 }
 
 fn percent(share: f64) -> String {

@@ -1,7 +1,19 @@
-//! The end of the terminal, which `nohup` has a command ignore.
+//! Signals that would end a command without a word.
 
-/// Installs handlers of signals, and lets SIGHUP be ignored if it was: a handler would end what is to outlive its
-/// terminal.
+/// Lets a file that grows beyond what `ulimit -f` allows be an error of writing like any other.
+#[cfg(unix)]
+#[allow(unsafe_code)]
+pub fn report_large_files() {
+    // SAFETY: both the signal and what becomes of it exist, and nothing of ours is run by it.
+    unsafe { libc::signal(libc::SIGXFSZ, libc::SIG_IGN) };
+}
+
+/// There is no such signal elsewhere.
+#[cfg(not(unix))]
+pub fn report_large_files() {}
+
+/// Installs handlers of signals, and lets SIGHUP, the end of the terminal, be ignored if `nohup` had it so: a handler
+/// would end what is to outlive its terminal.
 #[cfg(unix)]
 #[allow(unsafe_code)]
 pub fn kept_ignored<T>(install: impl FnOnce() -> T) -> T {

@@ -221,6 +221,7 @@ pub fn layer_elsewhere(name: &str) -> Option<&'static str> {
         }
         "normal" | "normals" => Some("normals are in N"),
         "position" | "positions" => Some("places are in P"),
+        light if light.starts_with("light_") => Some("ask for lights: it brings one such layer for each light"),
         "crypto" | "cryptomatte" => Some("ask for CryptoObject, CryptoMaterial or CryptoAsset"),
         _ => None,
     }

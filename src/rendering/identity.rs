@@ -55,7 +55,10 @@ impl Identity {
         let (name, theirs) = other.0.iter().find(|(name, theirs)| value(name) != Some(theirs))?;
         Some(match name.as_str() {
             SCENE => "it was made of another scene, or of this one before it was changed".into(),
-            PLAN => "it was made by another plan, which other --samples or another --error may need".into(),
+            PLAN => {
+                "it was made by another plan: where photons are gathered, other --samples or another --error need one"
+                    .into()
+            }
             _ => format!("its {name} is {theirs}, not {}", value(name).map_or("known", String::as_str)),
         })
     }

@@ -1,6 +1,7 @@
 //! Scenes that are read: a file, a text, or a table that a program has built.
 
 use std::collections::HashMap;
+use std::fs::File;
 use std::io::{ErrorKind, Read};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -15,6 +16,8 @@ use crate::error::{Error, Result, nearest_file};
 /// What the text of settings is called in messages; each has a line of it.
 pub const SETTINGS: &str = "--set";
 const A_SCENE: &str = "a scene is a TOML file, such as scene.toml";
+/// Most bytes of a scene, as of a file that it includes. A device may never end.
+const MOST_BYTES: u64 = 1 << 30;
 
 /// A scene file that was read.
 #[derive(Clone, Debug)]
@@ -33,7 +36,7 @@ impl Source {
     pub fn read(path: &Path) -> Result<Self> {
         let refuse = |message: String, help: String| Err(Error::Arguments { message, help: Some(help) });
         let shown = path.display();
-        let bytes = match std::fs::read(path) {
+        let bytes = match File::open(path).and_then(all_of) {
             Ok(bytes) => bytes,
             Err(error) => {
                 return match error.kind() {
@@ -56,11 +59,10 @@ impl Source {
     /// If it cannot be read or is not UTF-8.
     pub fn standard_input() -> Result<Self> {
         let path = PathBuf::from("<stdin>");
-        let mut bytes = Vec::new();
-        if let Err(source) = std::io::stdin().lock().read_to_end(&mut bytes) {
-            return Err(Error::Io { doing: "read", path, source });
+        match all_of(std::io::stdin().lock()) {
+            Ok(bytes) => Ok(Self { path, text: text_of(bytes, "the scene on standard input")? }),
+            Err(source) => Err(Error::Io { doing: "read", path, source }),
         }
-        Ok(Self { path, text: text_of(bytes, "the scene on standard input")? })
     }
 
     /// The scene that the text describes, with the files that it includes, and the meshes, images and tables that they
@@ -180,7 +182,20 @@ fn keys(texts: &Texts, files: &[Range<usize>], mistakes: &[Mistake]) -> HashMap<
     first.map(|root| Document::new(texts, &root).paths(spans)).unwrap_or_default()
 }
 
+/// All bytes, or one more than there may be.
+fn all_of(reader: impl Read) -> std::io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    reader.take(MOST_BYTES + 1).read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
 fn text_of(bytes: Vec<u8>, shown: &str) -> Result<String> {
+    if bytes.len() as u64 > MOST_BYTES {
+        return Err(Error::Arguments {
+            message: format!("{shown} has more than {MOST_BYTES} bytes"),
+            help: Some(A_SCENE.into()),
+        });
+    }
     utf8(bytes, shown, A_SCENE).map_err(|Fault { message, help }| Error::Arguments { message, help })
 }
 

@@ -64,8 +64,12 @@ fn read_with(path: &Path, smooth: bool) -> Result<MeshFile, String> {
 
 /// Whether a file begins as gzip begins (RFC 1952, section 2.3.1).
 fn is_packed(path: &Path) -> bool {
-    let mut start = [0; 2];
-    File::open(path).and_then(|mut file| file.read_exact(&mut start)).is_ok() && start == [0x1f, 0x8b]
+    begins_with(path, &[0x1f, 0x8b])
+}
+
+fn begins_with(path: &Path, bytes: &[u8]) -> bool {
+    let mut start = vec![0; bytes.len()];
+    File::open(path).and_then(|mut file| file.read_exact(&mut start)).is_ok() && start == bytes
 }
 
 /// Stands for a negative index: no mesh has so many vertices.
@@ -169,6 +173,10 @@ fn has_corners(element: &ElementDef, name: &str) -> Result<(), String> {
 }
 
 fn read_ply(path: &Path, smooth: bool) -> Result<MeshFile, String> {
+    // The parser would look for the end of the first line, however far away that is.
+    if !begins_with(path, b"ply") {
+        return Err("a PLY file begins with a line `ply`, and this one does not".into());
+    }
     let file = File::open(path).map_err(|error| error.to_string())?;
     let mut reader = Reader::new(BufReader::new(file));
     let header = Parser::<PlyVertex>::new().read_header(&mut reader).map_err(ply_error)?;

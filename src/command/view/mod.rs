@@ -53,7 +53,7 @@ pub struct Query {
     #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(Tone::ALL.map(Tone::name)))]
     tone: Option<String>,
 
-    /// Show sixels; which terminals know them cannot be found out
+    /// Show sixels, for a terminal that draws them
     #[arg(long, conflicts_with = "png")]
     sixel: bool,
 }
