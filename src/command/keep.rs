@@ -25,7 +25,8 @@ pub struct Flags {
     checkpoint: Option<Duration>,
 
     /// Go on from NAME.checkpoint, if it is there, to the same image; with more --samples than it has, to a better one,
-    /// unless photons are gathered, whose number goes by the samples. It keeps one, too, every 60 s where --checkpoint does not say how often
+    /// unless photons are gathered, whose number goes by the samples. It keeps one, too, every 60 s where --checkpoint
+    /// does not say how often
     #[arg(long)]
     resume: bool,
 

@@ -280,9 +280,9 @@ impl AlphaDifference {
 
 impl Difference {
     /// Whether the images agree: equal values do, unless other layers differ; otherwise a tolerance of the relative
-    /// mean squared error decides, if there is one, or else whether both differ by more than their noise. Without either,
-    /// what differs does not agree, nor does alpha where nothing else differs, as nobody knows its noise, or where more
-    /// pixels are empty in one image and full in the other than chance makes.
+    /// mean squared error decides, if there is one, or else whether both differ by more than their noise. Without
+    /// either, what differs does not agree, nor does alpha where nothing else differs, as nobody knows its noise, or
+    /// where more pixels are empty in one image and full in the other than chance makes.
     pub fn agrees(&self, tolerance: Option<f64>) -> bool {
         if self.is_equal {
             return tolerance.is_some() || self.layers_apart.is_empty();
