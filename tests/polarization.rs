@@ -6,6 +6,7 @@
 
 mod criterion;
 mod degrees;
+mod furnaces;
 mod plates;
 
 use abbe::film::Layer;

@@ -6,7 +6,7 @@ use super::facets::places;
 use super::film_averages::FilmAverages;
 use super::film_kernel::FilmKernel;
 use super::fresnel::diffuse_transmittance;
-use super::{Interface, RoughSurface, Roughness, reflect};
+use super::{Block, Interface, RoughSurface, Roughness, reflect};
 use crate::math::DVec3;
 
 /// The clear surface of an opaque body, smooth or rough: what of the light it lets in, and out again.
@@ -16,10 +16,15 @@ use crate::math::DVec3;
 #[derive(Clone, Debug)]
 pub struct Coat {
     roughness: Roughness,
-    rows: Arc<[OnceLock<AlbedoTable>; ROWS]>,
+    rows: Rows,
+    /// The same of how much what it reflects is polarized.
+    polarized: Rows,
     /// What a film adds to what a rough one reflects.
     kernel: Arc<OnceLock<FilmKernel>>,
 }
+
+/// Rows of a table, by the relative index.
+type Rows = Arc<[OnceLock<AlbedoTable>; ROWS]>;
 
 /// Rows of the table on each side of a relative index of 1.
 const SIDE: usize = 76;
@@ -69,11 +74,8 @@ impl Crossing {
 impl Coat {
     /// A coat of a roughness, 0 to 1.
     pub fn new(roughness: f64) -> Self {
-        Self {
-            roughness: Roughness::new(roughness),
-            rows: Arc::new(array::from_fn(|_| OnceLock::new())),
-            kernel: Arc::default(),
-        }
+        let [rows, polarized] = array::from_fn(|_| Arc::new(array::from_fn(|_| OnceLock::new())));
+        Self { roughness: Roughness::new(roughness), rows, polarized, kernel: Arc::default() }
     }
 
     /// How rough it is.
@@ -91,7 +93,7 @@ impl Coat {
             return Crossing { from: from_smooth, to: to_smooth, around, squared, lost: 0.0 };
         };
         let again = surface.reflected_again(1.0 - around);
-        let rows = self.rows(surface, m);
+        let rows = around_index(&self.rows, m, |m| row(surface, m));
         let rough = |smooth: f64, cos: f64| {
             let place = rows[0].1.place(cos);
             let more: f64 = rows.iter().map(|(part, row)| part * row.at(place)).sum();
@@ -130,20 +132,40 @@ impl Coat {
         surface.reflected_again(1.0 - diffuse_transmittance(n2 / n1))
     }
 
-    /// The rows on both sides of a relative index, and how much of each is taken.
-    fn rows(&self, surface: &RoughSurface, m: f64) -> [(f64, &AlbedoTable); 2] {
-        let log = libm::log(m);
-        let at = (log.abs().sqrt().copysign(log) / WIDEST + 1.0) * SIDE as f64;
-        let below = (at.max(0.0) as usize).min(ROWS - 2);
-        let part = (at - below as f64).clamp(0.0, 1.0);
-        let numbered = |number: usize| {
-            self.rows[number].get_or_init(|| {
-                let root = (number as f64 / SIDE as f64 - 1.0) * WIDEST;
-                row(surface, libm::exp(root * root.abs()))
-            })
+    /// The degree to which light that crosses from a direction of a cosine is polarized, across the plane of incidence
+    /// less along it, 0 to 1 either way.
+    ///
+    /// Light from all around is reflected and let through so that as much leaves unpolarized as came, as in a closed
+    /// room of one temperature. So what crosses is polarized as much as what facets reflect once, the other way.
+    pub(super) fn degree_crossing(&self, n1: f64, n2: f64, cos: f64) -> f64 {
+        if n1 == n2 {
+            return 0.0;
+        }
+        let Some(surface) = self.roughness.surface() else {
+            let crossing = Block::refracted(n1, n2, cos);
+            return if crossing.a > 0.0 { crossing.d / crossing.a } else { 0.0 };
         };
-        [(1.0 - part, numbered(below)), (part, numbered(below + 1))]
+        let rows = around_index(&self.polarized, n2 / n1, |m| polarized_row(surface, m));
+        let place = rows[0].1.place(cos);
+        let more: f64 = rows.iter().map(|(part, row)| part * row.at(place)).sum();
+        let [reflected, crossing] = [Block::reflected(n1, n2, cos).d + more, self.crossing(n1, n2, cos, cos).from];
+        if crossing > 0.0 { (-reflected / crossing).clamp(-1.0, 1.0) } else { 0.0 }
     }
+}
+
+/// The rows on both sides of a relative index, and how much of each is taken.
+fn around_index(rows: &Rows, m: f64, row: impl Fn(f64) -> AlbedoTable) -> [(f64, &AlbedoTable); 2] {
+    let log = libm::log(m);
+    let at = (log.abs().sqrt().copysign(log) / WIDEST + 1.0) * SIDE as f64;
+    let below = (at.max(0.0) as usize).min(ROWS - 2);
+    let part = (at - below as f64).clamp(0.0, 1.0);
+    let numbered = |number: usize| {
+        rows[number].get_or_init(|| {
+            let root = (number as f64 / SIDE as f64 - 1.0) * WIDEST;
+            row(libm::exp(root * root.abs()))
+        })
+    };
+    [(1.0 - part, numbered(below)), (part, numbered(below + 1))]
 }
 
 /// What a rough surface reflects once, beyond a smooth one of the same relative index m.
@@ -152,6 +174,24 @@ fn row(surface: &RoughSurface, m: f64) -> AlbedoTable {
     AlbedoTable::new(surface.facets().alpha(), STEPS, |z| {
         let z = z.max(HORIZON);
         reflected_once(surface, m, z) - (1.0 - transmittance(1.0, m, z))
+    })
+}
+
+/// By how much what a rough surface reflects once of light from all around is polarized across the plane of incidence,
+/// beyond a smooth one of the same relative index m.
+fn polarized_row(surface: &RoughSurface, m: f64) -> AlbedoTable {
+    let facets = surface.facets();
+    let polarized = |[wo, h]: [DVec3; 2]| {
+        // Across the surface's plane of incidence is y.
+        let across = wo.cross(h);
+        let cos_squared = if across == DVec3::ZERO { 0.5 } else { across.y * across.y / across.length_squared() };
+        let of_facet = Block::at_boundary([1.0, m, wo.dot(h)], false).d;
+        of_facet * (2.0 * cos_squared - 1.0) * facets.left_and_blocked(wo, reflect(wo, h))[0]
+    };
+    AlbedoTable::new(facets.alpha(), STEPS, |z| {
+        let z = z.max(HORIZON);
+        let mean: f64 = facets.visible_from(z, places(m)).map(|(facet, weight)| weight * polarized(facet)).sum();
+        mean - Block::at_boundary([1.0, m, z], false).d
     })
 }
 

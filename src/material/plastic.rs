@@ -214,7 +214,7 @@ impl Plastic<Table> {
         })
     }
 
-    /// By the coat, which light crosses and is mirrored by. A rough one is crossed as a smooth one is.
+    /// By the coat, which light crosses and is mirrored by. A rough one with a film is crossed as a smooth one is.
     pub(super) fn mueller<const N: usize>(&self, arrival: &Arrival<N>, incoming: Incoming, mueller: &mut Mueller<N>) {
         let index = arrival.draw.read_exact(&self.index);
         let met = self.coating.as_ref().map(|coating| coating.met(arrival, false));
@@ -247,17 +247,20 @@ impl Plastic<Table> {
             }
         }
         let from = above(&Frame::about(arrival.normal), arrival.wo).z;
-        let crossed = |lane: usize, cos: f64| {
-            let crossing = match (film(lane, cos), [arrival.incident_of(lane), index[lane]]) {
-                (Some(shares), _) => shares.refracted.block(),
-                (None, [n1, n2]) => Block::at_boundary([n1, n2, cos], true),
-            };
-            if crossing.a > 0.0 { crossing.d / crossing.a } else { 0.0 }
+        let mut last = None;
+        let mut crossed = |lane: usize, cos: f64| match (film(lane, cos), [arrival.incident_of(lane), index[lane]]) {
+            _ if arrival.present[lane] == 0.0 => 0.0,
+            (Some(shares), _) => {
+                let crossing = shares.refracted.block();
+                if crossing.a > 0.0 { crossing.d / crossing.a } else { 0.0 }
+            }
+            (None, pair) => match last {
+                Some((known, degree)) if known == (pair, cos) => degree,
+                _ => last.insert(((pair, cos), self.coat.degree_crossing(pair[0], pair[1], cos))).1,
+            },
         };
         let base = self.lanes(arrival, [from, to], |crossing, r, _| crossing.base(r) * to * FRAC_1_PI);
-        let [leaving, arriving] = [cos, to].map(|cos| -> [f64; N] {
-            std::array::from_fn(|lane| if arrival.present[lane] == 0.0 { 0.0 } else { crossed(lane, cos) })
-        });
+        let [leaving, arriving] = [from, to].map(|cos| -> [f64; N] { std::array::from_fn(|lane| crossed(lane, cos)) });
         let base = Base {
             normal: arrival.normal,
             leaving: Lanes::from_fn(|i| (base[i] * leaving[i]) as f32),

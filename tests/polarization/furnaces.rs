@@ -1,0 +1,46 @@
+//! Light from all around that is scattered without loss: as much of it as came, and as little polarized.
+
+use abbe::{Options, Scene};
+
+use super::{components, sheets};
+use crate::support::scenes::{moments, standard_errors};
+
+/// What is seen of a surface that is turned from the viewer, in an even sky: S0 to S3, each its mean and variance, of
+/// renders by other seeds.
+fn in_an_even_sky(material: &str, turned: f64) -> [(f64, f64); 4] {
+    let view = "camera = { position = [0, 0, 5], look_at = [0, 0, 0], projection = \"orthographic\", height = 1e-6 }\n\
+                film = { width = 1, height = 1, filter = \"center\", stokes = true }\n";
+    let text = view.to_owned() + &sheets(&[material.to_owned()], turned);
+    let scene = Scene::parse(&text, "").unwrap_or_else(|error| panic!("{error}\n{text}"));
+    let of_seed = |seed| {
+        let options = Options { seed: Some(seed), samples: Some(SAMPLES), threads: Some(1), ..Options::default() };
+        components(&abbe::render(&scene, &options).expect("it renders"))
+    };
+    let found: Vec<[f64; 4]> = (0..SEEDS).map(of_seed).collect();
+    std::array::from_fn(|part| moments(found.iter().map(|stokes| stokes[part])))
+}
+
+const SAMPLES: u32 = 1024;
+const SEEDS: u64 = 16;
+
+/// Tables of facets are off by up to this much.
+const TABLES: f64 = 3e-4;
+
+/// What a rough coat mirrors is polarized one way, and what leaves the base through it the other way by as much.
+#[test]
+fn white_plastic_in_light_from_all_around_leaves_it_unpolarized() {
+    for roughness in [0.0, 0.02, 0.2, 0.6, 1.0] {
+        for turned in [30.0, 60.0, 80.0, 88.0] {
+            let plastic = format!("plastic = {{ reflectance = 1, roughness = {roughness} }}");
+            let found = in_an_even_sky(&plastic, turned);
+            // The 16 means of each have the tails of Student's t, 1.4 times those of the normal one so far out.
+            let limit = 1.4 * standard_errors(5 * 4 * 4);
+            for (part, (mean, variance)) in found.into_iter().enumerate() {
+                let expected = if part == 0 { 1.0 } else { 0.0 };
+                let error = (variance / SEEDS as f64).sqrt();
+                println!("{roughness} {turned} S{part}: {mean:.5} +- {error:.5}");
+                assert!((mean - expected).abs() < limit * error + TABLES, "{roughness}, {turned} degrees: {found:?}");
+            }
+        }
+    }
+}
