@@ -158,6 +158,7 @@ fn fields(py: Python<'_>, found: Difference, tolerance: Option<f64>) -> PyResult
     let fields = PyDict::new(py);
     fields.set_item("agrees", found.agrees(tolerance))?;
     fields.set_item("is_equal", found.is_equal)?;
+    fields.set_item("layers_apart", found.layers_apart)?;
     fields.set_item("is_part", found.is_part)?;
     fields.set_item("channels", found.channels)?;
     fields.set_item("relative_mse", found.relative_mse)?;

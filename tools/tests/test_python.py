@@ -472,7 +472,8 @@ def test_everything_shows_what_it_is():
 def test_two_images_are_told_apart_by_more_than_their_noise(tmp_path):
     a, b = (abbe.render(SCENE, samples=256, layers=["variance"], seed=seed) for seed in (1, 2))
     brighter = abbe.render(SCENE, samples=256, layers=["variance"], set={"light.2.point.intensity": 24})
-    assert abbe.diff(a, a).is_equal and abbe.diff(a, a).agrees
+    same = abbe.diff(a, a)
+    assert same.is_equal and same.agrees and same.layers_apart == []
     noise = abbe.diff(a, b)
     assert noise.agrees and not noise.is_equal and noise.relative_mse > 0 and noise.absolute.shape == (12, 20)
     assert noise.absolute.max() == pytest.approx(np.abs(a.rgb.astype(float) - b.rgb).max())

@@ -71,10 +71,12 @@ class Difference:
     """How far two images are apart. Pixels with a value that is not finite are left out, but of `torn`."""
 
     agrees: bool
-    """Whether all values are equal; or whether `relative_mse` is within the tolerance; or, without one, whether both
-    images differ by no more than their `variance` layers explain."""
+    """Whether all values are equal, those of other layers as well; or whether `relative_mse` is within the tolerance;
+    or, without one, whether both images differ by no more than their `variance` layers explain."""
     is_equal: bool
     """Whether every value is the same."""
+    layers_apart: list[str]
+    """If it is: the other layers of both images that differ."""
     is_part: bool
     """Whether one image has pixels that the other has not, as beside a crop of it: those that both have are compared."""
     channels: list[str]
