@@ -136,20 +136,20 @@ impl Coat {
     /// less along it, 0 to 1 either way.
     ///
     /// Light from all around is reflected and let through so that as much leaves unpolarized as came, as in a closed
-    /// room of one temperature. So what crosses is polarized as much as what facets reflect once, the other way.
-    pub(super) fn degree_crossing(&self, n1: f64, n2: f64, cos: f64) -> f64 {
+    /// room of one temperature. So what crosses, `share` of the light, is polarized as much as what facets reflect once,
+    /// the other way.
+    pub(super) fn degree_crossing(&self, [n1, n2]: [f64; 2], cos: f64, share: f64) -> f64 {
         if n1 == n2 {
             return 0.0;
         }
         let Some(surface) = self.roughness.surface() else {
-            let crossing = Block::refracted(n1, n2, cos);
-            return if crossing.a > 0.0 { crossing.d / crossing.a } else { 0.0 };
+            return Block::refracted(n1, n2, cos).degree();
         };
         let rows = around_index(&self.polarized, n2 / n1, |m| polarized_row(surface, m));
         let place = rows[0].1.place(cos);
         let more: f64 = rows.iter().map(|(part, row)| part * row.at(place)).sum();
-        let [reflected, crossing] = [Block::reflected(n1, n2, cos).d + more, self.crossing(n1, n2, cos, cos).from];
-        if crossing > 0.0 { (-reflected / crossing).clamp(-1.0, 1.0) } else { 0.0 }
+        let reflected = Block::reflected(n1, n2, cos).d + more;
+        if share > 0.0 { (-reflected / share).clamp(-1.0, 1.0) } else { 0.0 }
     }
 }
 
@@ -177,8 +177,8 @@ fn row(surface: &RoughSurface, m: f64) -> AlbedoTable {
     })
 }
 
-/// By how much what a rough surface reflects once of light from all around is polarized across the plane of incidence,
-/// beyond a smooth one of the same relative index m.
+/// By how much what a rough surface reflects once of light from all around is polarized across the plane of
+/// incidence, beyond a smooth one of the same relative index m.
 fn polarized_row(surface: &RoughSurface, m: f64) -> AlbedoTable {
     let facets = surface.facets();
     let polarized = |[wo, h]: [DVec3; 2]| {

@@ -127,6 +127,11 @@ impl Block<f64> {
         [0, 1].map(|way| Self { a: 0.5 * (s[way] + p[way]), d: 0.5 * (s[way] - p[way]), c: mixed[way], q: 0.0 })
     }
 
+    /// What it leaves of unpolarized light that is s less what is p, as a share of both; 0 if nothing is left.
+    pub(super) fn degree(self) -> f64 {
+        if self.a > 0.0 { self.d / self.a } else { 0.0 }
+    }
+
     /// Times a number.
     pub fn times(self, factor: f64) -> Self {
         Self { a: self.a * factor, d: self.d * factor, c: self.c * factor, q: self.q * factor }

@@ -5,7 +5,8 @@ use super::conductor::above;
 use super::degree::{LANES, largest, of_all_lanes};
 use super::plastic_film::PlasticFilm;
 use super::{
-    Arrival, Base, Block, Branch, Coating, Incoming, Interface, Mueller, RoughReflection, RoughSurface, reflect,
+    Arrival, Base, Block, Branch, Coating, Incoming, Interface, Mueller, RoughReflection, RoughSurface, StackShares,
+    reflect,
 };
 use crate::math::{DVec3, Frame, cosine_hemisphere, unit};
 use crate::spectrum::{Lanes, Quantity, Table};
@@ -247,27 +248,44 @@ impl Plastic<Table> {
             }
         }
         let from = above(&Frame::about(arrival.normal), arrival.wo).z;
+        mueller.base = Some(Box::new(self.polarized_base(arrival, [from, to], film)));
+    }
+
+    /// What light between directions of two cosines, that which leaves first, is polarized by on its way through the
+    /// coat; `film` says what a film does to a lane at a cosine, if there is one.
+    fn polarized_base<const N: usize>(
+        &self,
+        arrival: &Arrival<N>,
+        [from, to]: [f64; 2],
+        film: impl Fn(usize, f64) -> Option<StackShares>,
+    ) -> Base<N> {
+        let index = arrival.draw.read_exact(&self.index);
+        let crossings = self.lanes(arrival, [from, to], |crossing, r, _| {
+            (crossing.base(r) * to * FRAC_1_PI, [crossing.from, crossing.to])
+        });
         let mut last = None;
-        let mut crossed = |lane: usize, cos: f64| match (film(lane, cos), [arrival.incident_of(lane), index[lane]]) {
-            _ if arrival.present[lane] == 0.0 => 0.0,
-            (Some(shares), _) => {
-                let crossing = shares.refracted.block();
-                if crossing.a > 0.0 { crossing.d / crossing.a } else { 0.0 }
+        let mut crossed = |lane: usize, cos: f64, share: f64| {
+            if arrival.present[lane] == 0.0 {
+                return 0.0;
             }
-            (None, pair) => match last {
-                Some((known, degree)) if known == (pair, cos) => degree,
-                _ => last.insert(((pair, cos), self.coat.degree_crossing(pair[0], pair[1], cos))).1,
-            },
+            if let Some(shares) = film(lane, cos) {
+                return shares.refracted.block().degree();
+            }
+            let met = ([arrival.incident_of(lane), index[lane]], cos);
+            match last {
+                Some((known, degree)) if known == met => degree,
+                _ => last.insert((met, self.coat.degree_crossing(met.0, cos, share))).1,
+            }
         };
-        let base = self.lanes(arrival, [from, to], |crossing, r, _| crossing.base(r) * to * FRAC_1_PI);
-        let [leaving, arriving] = [from, to].map(|cos| -> [f64; N] { std::array::from_fn(|lane| crossed(lane, cos)) });
-        let base = Base {
+        let [leaving, arriving] = [(from, 0), (to, 1)]
+            .map(|(cos, way)| -> [f64; N] { std::array::from_fn(|lane| crossed(lane, cos, crossings[lane].1[way])) });
+        let base = |lane: usize| crossings[lane].0;
+        Base {
             normal: arrival.normal,
-            leaving: Lanes::from_fn(|i| (base[i] * leaving[i]) as f32),
-            arriving: Lanes::from_fn(|i| (base[i] * arriving[i]) as f32),
-            both: Lanes::from_fn(|i| (base[i] * leaving[i] * arriving[i]) as f32),
-        };
-        mueller.base = Some(Box::new(base));
+            leaving: Lanes::from_fn(|i| (base(i) * leaving[i]) as f32),
+            arriving: Lanes::from_fn(|i| (base(i) * arriving[i]) as f32),
+            both: Lanes::from_fn(|i| (base(i) * leaving[i] * arriving[i]) as f32),
+        }
     }
 
     /// The degree by the coat, which light crosses and, where it is rough, is mirrored by:
