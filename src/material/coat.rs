@@ -136,8 +136,8 @@ impl Coat {
     /// less along it, 0 to 1 either way.
     ///
     /// Light from all around is reflected and let through so that as much leaves unpolarized as came, as in a closed
-    /// room of one temperature. So what crosses, `share` of the light, is polarized as much as what facets reflect once,
-    /// the other way.
+    /// room of one temperature. So what crosses, a `share` of the light, is polarized as much as what facets reflect
+    /// once, the other way.
     pub(super) fn degree_crossing(&self, [n1, n2]: [f64; 2], cos: f64, share: f64) -> f64 {
         if n1 == n2 {
             return 0.0;
