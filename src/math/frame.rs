@@ -34,6 +34,11 @@ impl Frame {
     }
 }
 
+/// The horizontal unit vector across `normal`, to the right of who stands before it, +y up; +x where it is vertical.
+pub fn level(normal: DVec3) -> DVec3 {
+    DVec3::Y.cross(normal).try_normalize().unwrap_or(DVec3::X)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -18,7 +18,7 @@ pub use bounds::Bounds;
 pub use complex::Complex;
 pub use cone::Cone;
 pub use distribution::{BELOW_ONE, DiscreteSample, Distribution, Distribution2d};
-pub use frame::Frame;
+pub use frame::{Frame, level};
 pub use gauss::gauss_legendre;
 pub use interpolate::interpolate;
 pub use neighbors::neighbors;

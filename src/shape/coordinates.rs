@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use super::{Crossing, Shape, SurfacePoint};
-use crate::math::{DMat3, DVec3, Transform};
+use crate::math::{DMat3, DVec3, Transform, level};
 
 /// The coordinates (u, v) of the points of a shape, by which images lie on it; a transform carries them along.
 ///
@@ -55,7 +55,7 @@ impl Coordinates {
             Shape::Sphere(sphere) => Self::Sphere { center: map.point(sphere.center()), inverse },
             Shape::Plane(plane) => {
                 let normal = plane.normal();
-                let u = DVec3::Y.cross(normal).try_normalize().unwrap_or(DVec3::X);
+                let u = level(normal);
                 let [u, v] = [u, normal.cross(u)].map(|axis| inverse.transpose() * axis);
                 Self::Plane { origin: map.point(plane.origin()), u, v }
             }
@@ -210,6 +210,22 @@ mod tests {
             for map in maps {
                 assert_near(seen(shape.clone(), &map, map.point(from), map.point(point)), plain);
             }
+        }
+    }
+
+    #[test]
+    fn images_on_discs_stand_upright_as_on_planes() {
+        // Toward who looks, to the right and up.
+        for (normal, right, up) in [
+            (DVec3::NEG_Z, DVec3::NEG_X, DVec3::Y),
+            (DVec3::Z, DVec3::X, DVec3::Y),
+            (DVec3::X, DVec3::NEG_Z, DVec3::Y),
+            (DVec3::Y, DVec3::X, DVec3::NEG_Z),
+            (DVec3::new(0.0, 0.6, -0.8), DVec3::NEG_X, DVec3::new(0.0, 0.8, 0.6)),
+        ] {
+            let disc = || Shape::Disc(Disc::new(DVec3::ZERO, normal, 1.0, None).expect("it has a radius"));
+            let point = 0.4 * right - 0.6 * up;
+            assert_near(seen(disc(), &Transform::IDENTITY, normal + point, point), [0.7, 0.2]);
         }
     }
 

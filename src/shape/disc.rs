@@ -2,7 +2,7 @@ use std::f64::consts::PI;
 
 use super::affine_plane::AffinePlane;
 use super::{Crossing, SurfacePoint};
-use crate::math::{Bounds, DMat3, DVec3, Frame, Ray, Transform, disk};
+use crate::math::{Bounds, DMat3, DVec3, Ray, Transform, disk, level};
 
 /// A flat disc; its front is the side `normal` points to. An uneven scale makes it an ellipse.
 ///
@@ -19,7 +19,8 @@ pub struct Disc {
 
 impl Disc {
     /// A disc with a normal of any length above 0; `u` gives the direction of its first coordinate, made
-    /// perpendicular to the normal. None if `u` is parallel to the normal.
+    /// perpendicular to the normal; without it images stand upright, as on a plane. None if `u` is parallel to the
+    /// normal.
     pub fn new(center: DVec3, normal: DVec3, radius: f64, u: Option<DVec3>) -> Option<Self> {
         let normal = normal.normalize();
         let u = match u {
@@ -27,7 +28,7 @@ impl Disc {
                 let u = u.normalize();
                 (u - normal * u.dot(normal)).try_normalize()?
             }
-            None => Frame::about(normal).to_world(DVec3::X),
+            None => level(normal),
         };
         let plane = AffinePlane::new(center, u * radius, normal.cross(u) * radius, normal);
         Some(Self { plane })

@@ -26,7 +26,9 @@ impl Faces {
     }
 
     /// The triangles. Those that share a corner are right for convex faces: of others they would overlap, and these are
-    /// cut anew. Faces whose sides cross stay as they are, as do those whose corners are no finite vertices.
+    /// cut anew. So are faces with corners on their sides, where that leaves fewer triangles without area: these are
+    /// dropped, and what their corners carry with them. Faces whose sides cross stay as they are, as do those whose
+    /// corners are no finite vertices.
     ///
     /// # Errors
     /// A sentence on a face that has too many corners.
@@ -36,38 +38,66 @@ impl Faces {
             if fan.iter().flatten().any(|&corner| corner as usize >= vertices.count()) {
                 continue;
             }
-            let Some(normal) = overlap(fan, vertices) else { continue };
+            let Some(polygon) = Polygon::new(fan, vertices) else { continue };
+            let (overlaps, flat) = (polygon.overlaps(fan), polygon.flat(fan));
+            if !overlaps && flat == 0 {
+                continue;
+            }
             let corners: Vec<u32> = fan[0][..2].iter().copied().chain(fan.iter().map(|face| face[2])).collect();
-            if corners.len() > MOST_CORNERS {
-                let count = corners.len();
-                return Err(format!("a face that is not convex has {count} corners, more than {MOST_CORNERS}"));
+            match corners.len() > MOST_CORNERS {
+                true if overlaps => {
+                    let count = corners.len();
+                    return Err(format!("a face that is not convex has {count} corners, more than {MOST_CORNERS}"));
+                }
+                true => continue,
+                false => {}
             }
             let points: Vec<DVec3> = corners.iter().map(|&corner| vertices.at(corner)).collect();
-            let reach = reach(points.iter().copied(), vertices);
-            let cut = ears(&seen_along(normal, &points), reach).unwrap_or_default();
-            fan.iter_mut().zip(cut).for_each(|(face, cut)| *face = cut.map(|corner| corners[corner]));
+            let Some(cut) = ears(&seen_along(polygon.normal, &points), polygon.reach) else { continue };
+            let cut: Vec<[u32; 3]> = cut.into_iter().map(|face| face.map(|corner| corners[corner])).collect();
+            if overlaps || polygon.flat(&cut) < flat {
+                fan.copy_from_slice(&cut);
+            }
         }
         Ok(self.fans)
     }
 }
 
-/// The normal of the polygon that triangles make up, if one of them looks the other way.
-///
-/// Their normals add up to that of Newell's method (Sutherland, Sproull & Schumacker 1974, *A Characterization of Ten
-/// Hidden-Surface Algorithms*), which weighs the whole polygon.
-fn overlap(fan: &[[u32; 3]], vertices: &Vertices) -> Option<DVec3> {
-    let points = |face: &[u32; 3]| face.map(|corner| vertices.at(corner));
-    let normal = |face: &[u32; 3]| {
-        let [a, b, c] = points(face);
-        (b - a).cross(c - a)
-    };
-    let whole = fan.iter().map(normal).sum::<DVec3>().try_normalize()?;
-    let reach = reach(fan.iter().flat_map(points), vertices);
-    let looks_away = |face: &[u32; 3]| {
-        let [a, b, c] = points(face);
-        normal(face).dot(whole) < -reach * ((b - a).length() + (c - b).length() + (a - c).length())
-    };
-    fan.iter().any(looks_away).then_some(whole)
+/// What triangles make up.
+struct Polygon<'v> {
+    vertices: &'v Vertices,
+    normal: DVec3,
+    reach: f64,
+}
+
+impl<'v> Polygon<'v> {
+    /// None if it has no area.
+    ///
+    /// The normals of its triangles add up to that of Newell's method (Sutherland, Sproull & Schumacker 1974, *A
+    /// Characterization of Ten Hidden-Surface Algorithms*), which weighs the whole polygon.
+    fn new(fan: &[[u32; 3]], vertices: &'v Vertices) -> Option<Self> {
+        let points = || fan.iter().flatten().map(|&corner| vertices.at(corner));
+        let mut polygon = Self { vertices, normal: DVec3::ZERO, reach: reach(points(), vertices) };
+        polygon.normal = fan.iter().map(|face| polygon.turned(face).0).sum::<DVec3>().try_normalize()?;
+        Some(polygon)
+    }
+
+    /// The normal of a triangle, twice its area long, and what rounding makes of a length of 0.
+    fn turned(&self, face: &[u32; 3]) -> (DVec3, f64) {
+        let [a, b, c] = face.map(|corner| self.vertices.at(corner));
+        let rounding = self.reach * ((b - a).length() + (c - b).length() + (a - c).length());
+        ((b - a).cross(c - a), rounding)
+    }
+
+    /// Whether one of the triangles looks the other way.
+    fn overlaps(&self, faces: &[[u32; 3]]) -> bool {
+        faces.iter().map(|face| self.turned(face)).any(|(normal, rounding)| normal.dot(self.normal) < -rounding)
+    }
+
+    /// How many triangles have no area.
+    fn flat(&self, faces: &[[u32; 3]]) -> usize {
+        faces.iter().map(|face| self.turned(face)).filter(|(normal, rounding)| normal.length() <= *rounding).count()
+    }
 }
 
 /// How far points may be from where they were meant, by the digits of their coordinates, and what is reckoned with them
@@ -144,17 +174,27 @@ mod tests {
     }
 
     #[test]
-    fn convex_faces_share_their_first_corner() {
+    fn convex_faces_share_their_first_corner_unless_corners_lie_on_their_sides() {
         let normal = DVec3::new(0.3, -0.5, 0.8).normalize();
         let (u, v) = normal.any_orthonormal_pair();
         for count in 4..40 {
             for single in [true, false] {
-                // Half of the corners lie on sides, but for the rounding of their coordinates.
                 let around = |i: u32| DVec2::from_angle(f64::from(i) / f64::from(count) * std::f64::consts::TAU);
+                let point = |corner: DVec2| (DVec3::ONE * 10.0 + u * corner.x + v * corner.y).to_array();
+                let points: Vec<[f64; 3]> = (0..count).map(|i| point(around(i))).collect();
+                assert_eq!(cut(&points, single).0, fan(count));
+                // But for the rounding of their coordinates.
                 let corners = (0..count).flat_map(|i| [around(i), (around(i) + around(i + 1)) / 2.0]);
-                let points: Vec<[f64; 3]> =
-                    corners.map(|corner| (DVec3::ONE * 10.0 + u * corner.x + v * corner.y).to_array()).collect();
-                assert_eq!(cut(&points, single).0, fan(2 * count));
+                let mut points: Vec<[f64; 3]> = corners.map(point).collect();
+                for _ in 0..2 {
+                    let (triangles, share) = cut(&points, single);
+                    let area = |face: &[u32; 3]| {
+                        let [a, b, c] = face.map(|corner| DVec3::from(points[corner as usize]));
+                        (b - a).cross(c - a).length()
+                    };
+                    assert!((share - 1.0).abs() < 1e-6 && triangles.iter().all(|face| area(face) > 1e-6), "{count}");
+                    points.rotate_left(1);
+                }
             }
         }
     }

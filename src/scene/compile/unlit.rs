@@ -9,7 +9,7 @@ use crate::light::{Area, Light, LightId};
 use crate::material::Material;
 use crate::math::{BranchKey, DVec3, Frame, Ray, Sampler, ball_surface, cosine_hemisphere, unit};
 use crate::scene::Scene;
-use crate::shape::{Sides, SurfacePoint};
+use crate::shape::{Shape, Sides, SurfacePoint};
 use crate::spectrum::Curve;
 
 /// Paths from one light.
@@ -179,9 +179,14 @@ pub(super) fn name(scene: &Scene<Curve>, id: LightId) -> String {
     format!("light {} ({kind})", before + 1)
 }
 
+/// Whether it may be inside out, as a sphere may not.
+fn is_closed_mesh(shape: &Shape) -> bool {
+    matches!(shape, Shape::Mesh(_) | Shape::Instance(_)) && shape.is_closed()
+}
+
 fn past_everything(light: &Light<Curve>) -> &'static str {
     match light {
-        Light::Area(area) if area.sides == Sides::Front && area.shape.is_closed() => {
+        Light::Area(area) if area.sides == Sides::Front && is_closed_mesh(&area.shape) => {
             "shines only into its own inside: reverse the corners of its faces, or write sides = \"both\""
         }
         Light::Area(area) if area.sides == Sides::Front => {
