@@ -96,11 +96,12 @@ impl BlockReader {
     /// If it cannot be read.
     pub fn open(path: &Path, kind: Kind) -> Result<Option<Self>> {
         let opened = || {
-            let mut file = File::open(path)?;
-            let (mut found, metadata) = (Kind::default(), file.metadata()?);
+            // To open a pipe would wait for whoever writes to it.
+            let (mut found, metadata) = (Kind::default(), std::fs::metadata(path)?);
             if !metadata.is_file() || metadata.len() < kind.len() as u64 {
                 return Ok(None);
             }
+            let mut file = File::open(path)?;
             file.read_exact(&mut found)?;
             let (place, left) = (kind.len() as u64, metadata.len() - kind.len() as u64);
             Ok((found == kind).then(|| Self { path: path.to_owned(), file: BufReader::new(file), place, left }))
@@ -175,7 +176,7 @@ impl BlockReader {
 
     /// The error of a file that is not as it was written.
     pub fn damaged(&self) -> Error {
-        let message = "it is damaged or cut short; delete it and render again".to_owned();
+        let message = "it is damaged or cut short; delete it and make it anew".to_owned();
         Error::Decode { path: self.path.clone(), message }
     }
 }

@@ -103,7 +103,9 @@ impl Image {
         let layers = self.layers();
         let layer = name.split_once('.').map_or(name, |(layer, _)| layer);
         let known = layers.iter().map(String::as_str).chain(Layer::NAMES.map(|(name, _)| name));
-        let help = match nearest(layer, known) {
+        // Ranks of a Cryptomatte have a number after its name.
+        let rank = layers.iter().find(|rank| rank.starts_with(layer)).map(String::as_str);
+        let help = match rank.or_else(|| nearest(layer, known)) {
             Some(near) if layers.iter().any(|layer| layer == near) => format!("did you mean {near:?}? "),
             Some(near) => format!("layers=[{near:?}] asks for it; "),
             None => String::new(),

@@ -113,7 +113,12 @@ fn layers(value: &Bound<'_, PyAny>) -> PyResult<Vec<Layer>> {
         let word = word.to_cow()?;
         return match word == Layer::ALL {
             true => Ok(Layer::all()),
-            false => refuse("layers is a list of names", &format!("write layers=[\"{word}\"], or \"{}\"", Layer::ALL)),
+            false => {
+                let names = word.split(',').map(str::trim).filter(|name| !name.is_empty());
+                let names: Vec<String> = names.map(|name| format!("{name:?}")).collect();
+                let help = format!("write layers=[{}], or \"{}\"", names.join(", "), Layer::ALL);
+                refuse("layers is a list of names", &help)
+            }
         };
     }
     match value.extract::<Vec<String>>() {

@@ -100,6 +100,16 @@ fn a_checkpoint_of_something_else_is_refused_in_one_line_that_says_what_differs(
     let difference = "it was made of another scene, or of this one before it was changed";
     let message = format!("error: cannot go on from s.checkpoint: {difference}\n{begin_anew}");
     refused(&folder, "s.toml --resume --samples 4", &message);
+    #[cfg(unix)]
+    {
+        // Nobody writes to it.
+        let pipe = folder.path().join("s.checkpoint");
+        fs::remove_file(&pipe).expect("it is there");
+        assert!(Command::new("mkfifo").arg(&pipe).status().expect("there is mkfifo").success());
+        let message = "error: cannot go on from s.checkpoint: it is no checkpoint\nhelp: name another image, or move that file away";
+        refused(&folder, "s.toml --resume", message);
+        fs::remove_file(&pipe).expect("it is there");
+    }
     folder.write("s.checkpoint", "something else");
     refused(
         &folder,

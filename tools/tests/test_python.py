@@ -111,6 +111,7 @@ def test_spectra_are_those_of_the_file(tmp_path):
     spectrum = image.spectrum(10, 6)
     assert (np.diff(spectrum.wavelengths_nm) > 0).all() and spectrum.radiance.shape == spectrum.wavelengths_nm.shape
     assert image.spectra.radiance.shape == (12, 20, len(spectrum.wavelengths_nm))
+    assert not spectrum.wavelengths_nm.flags.writeable
     image.write_spectral_exr(tmp_path / "a.exr")
     file = render.read(tmp_path / "a.exr").channels
     bands = sorted(
@@ -303,6 +304,7 @@ def test_settings_replace_values_and_options_settings():
         ({"threads": 0}, "a render has 1 to 1024 threads"),
         ({"layers": ["albdo"]}, "there is no layer `albdo`: did you mean albedo?"),
         ({"layers": "albedo"}, 'layers is a list of names (write layers=["albedo"], or "all")'),
+        ({"layers": "albedo,N"}, 'layers is a list of names (write layers=["albedo", "N"], or "all")'),
         ({"crop": (0, 0, 0, 0)}, "a crop has at least 1 pixel"),
         ({"overscan": (1, 2)}, "overscan is one or four whole numbers"),
     ],

@@ -78,7 +78,12 @@ class Image(Layers):
     @cached_property
     def _spectra(self) -> Spectrum | None:
         spectra = self._core.spectra()
-        return spectra and Spectrum(np.array(spectra[0]), np.asarray(spectra[1]))
+        if spectra is None:
+            return None
+        # All spectra of the image share them.
+        wavelengths = np.array(spectra[0])
+        wavelengths.setflags(write=False)
+        return Spectrum(wavelengths, np.asarray(spectra[1]))
 
     @property
     def spectra(self) -> Spectrum | None:
