@@ -24,9 +24,8 @@ pub struct Flags {
     #[arg(long, value_name = "TIME", allow_hyphen_values = true, value_parser = time)]
     checkpoint: Option<Duration>,
 
-    /// Go on from NAME.checkpoint, if it is there, to the same image; with more --samples than it has, to a better one,
-    /// unless photons are gathered, whose number goes by the samples. It keeps one, too, every 60 s where --checkpoint
-    /// does not say how often
+    /// Go on from NAME.checkpoint, if it is there, to the same image; from 16, 32, 64 and so on samples also to more of
+    /// them, unless photons are gathered. It keeps one, too, every 60 s where --checkpoint does not say how often
     #[arg(long)]
     resume: bool,
 
