@@ -297,22 +297,6 @@ fn a_dielectric_on_an_open_mesh_is_warned_of_and_on_a_closed_one_is_not() {
     assert_eq!(said, ["pyramid: 1 triangle without area was dropped"]);
 }
 
-#[test]
-fn a_dielectric_on_a_flat_shape_is_warned_of() {
-    let pane = "[material.glass]\ndielectric.index = 1.5\n[[object]]\nname = \"pane\"\nmaterial = \"glass\"\n";
-    for (shape, flat) in [
-        ("quad = { center = [0, 0, 0], u = [1, 0, 0], v = [0, 1, 0] }", true),
-        ("disc = { center = [0, 0, 0], normal = [0, 0, 1], radius = 1 }", true),
-        ("triangle = { points = [[0, 0, 0], [1, 0, 0], [0, 1, 0]] }", true),
-        ("plane = { point = [0, 0, 0], normal = [0, 0, 1] }", false),
-    ] {
-        let view = crate::support::scenes::view([0.0, 0.0, 6.0], [0.0, 0.0, 0.0], 40.0, 20);
-        let said = crate::support::scenes::scene(&format!("{view}{pane}shape.{shape}\n")).warnings;
-        let told = "pane: a dielectric on a flat shape: light may enter it and never leave; a pane is `thin`";
-        assert_eq!(said.iter().any(|warning| warning == told), flat, "{shape}: {said:?}");
-    }
-}
-
 /// A corner on an edge of another triangle, between which a triangle without area lies.
 #[test]
 fn triangles_without_area_close_what_is_beside_them() {

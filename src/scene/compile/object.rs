@@ -85,12 +85,9 @@ pub(super) fn object<'d>(
         let (shape, map, named, instances) = (shape?, map?, named?, instances?);
         let (group, sight, relief) = (group?, sight?, relief?);
         let written = &shape.it.shape;
-        if named.it.medium().is_some() && !written.is_closed() {
-            let what = match written {
-                Shape::Mesh(_) => "an open mesh: light may enter it and never leave",
-                _ => "a flat shape: light may enter it and never leave; a pane is `thin`",
-            };
-            context.warn(format!("{name}: a dielectric on {what}"));
+        if named.it.medium().is_some() && matches!(written, Shape::Mesh(_)) && !written.is_closed() {
+            let warning = format!("{name}: a dielectric on an open mesh: light may enter it and never leave");
+            context.warn(warning);
         }
         if let (Shape::Mesh(mesh), Some(file)) = (written, shape.it.file)
             && mesh.bare() > 0
