@@ -127,7 +127,6 @@ pub fn compare(files: [&ExrFile; 2], layer: Option<&str>, shown: [&str; 2]) -> R
 /// The layers of both files that have other values in the channels that both have.
 fn layers_apart(files: [&ExrFile; 2]) -> Vec<String> {
     let [first, second] = files.map(ExrFile::layers);
-    let is_same = |a: f64, b: f64| a == b || a.is_nan() && b.is_nan();
     let mut apart = Vec::new();
     for a in &first {
         let Some(b) = second.iter().find(|b| b.name == a.name && b.part.bounds == a.part.bounds) else { continue };
@@ -174,6 +173,11 @@ fn comparable(files: [&ExrFile; 2], layers: &[ExrLayer; 2], shown: [&str; 2]) ->
     Ok(())
 }
 
+/// Whether two values are the same; those that are no numbers are.
+fn is_same(a: f64, b: f64) -> bool {
+    a == b || a.is_nan() && b.is_nan()
+}
+
 /// All that the values alone say.
 fn measured([a, b]: [&[&Channel]; 2], bounds: PixelBounds) -> Difference {
     let count = bounds.size[0] * bounds.size[1];
@@ -201,7 +205,7 @@ fn measured([a, b]: [&[&Channel]; 2], bounds: PixelBounds) -> Difference {
     };
     for at in 0..count {
         let pairs = || a.iter().zip(b).map(|(a, b)| (a.at(at), b.at(at)));
-        let is_equal = pairs().all(|(a, b)| a == b || a.is_nan() && b.is_nan());
+        let is_equal = pairs().all(|(a, b)| is_same(a, b));
         found.is_equal &= is_equal;
         if pairs().any(|(a, b)| !(a.is_finite() && b.is_finite())) {
             found.left_out += 1;

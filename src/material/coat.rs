@@ -16,8 +16,9 @@ use crate::math::DVec3;
 #[derive(Clone, Debug)]
 pub struct Coat {
     roughness: Roughness,
+    /// What a rough one reflects once, beyond a smooth one.
     rows: Rows,
-    /// The same of how much what it reflects is polarized.
+    /// By how much that is polarized.
     polarized: Rows,
     /// What a film adds to what a rough one reflects.
     kernel: Arc<OnceLock<FilmKernel>>,
