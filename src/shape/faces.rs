@@ -44,13 +44,9 @@ impl Faces {
                 continue;
             }
             let corners: Vec<u32> = fan[0][..2].iter().copied().chain(fan.iter().map(|face| face[2])).collect();
-            match corners.len() > MOST_CORNERS {
-                true if overlaps => {
-                    let count = corners.len();
-                    return Err(format!("a face that is not convex has {count} corners, more than {MOST_CORNERS}"));
-                }
-                true => continue,
-                false => {}
+            if overlaps && corners.len() > MOST_CORNERS {
+                let count = corners.len();
+                return Err(format!("a face that is not convex has {count} corners, more than {MOST_CORNERS}"));
             }
             let points: Vec<DVec3> = corners.iter().map(|&corner| vertices.at(corner)).collect();
             let Some(cut) = ears(&seen_along(polygon.normal, &points), polygon.reach) else { continue };
